@@ -1,0 +1,260 @@
+"""The one table of TiniScript bytecode.
+
+Everything that must know an instruction reads it from here: `lower`, `listing`, `verify` and
+`vm` import it; `tools/generate.py` writes the tables of `bytecode_spec.md` from it. Codes on
+the wire are promises: a code is never used again for something else.
+
+Knows numbers, operands, stack pictures, faults and limits. Does not know what anything does.
+"""
+
+from __future__ import annotations
+
+from struct import Struct
+from typing import NamedTuple
+
+ISA_MAJOR = 1  # a machine runs images of its own major version,
+ISA_MINOR = 0  # and of its own minor version or an earlier one
+
+
+class OperandKind(NamedTuple):
+    """How an operand is written: `size` bytes, little-endian, from `low` to `high`."""
+
+    name: str
+    size: int
+    signed: bool
+    low: int
+    high: int
+    meaning: str
+
+
+class Operand(NamedTuple):
+    name: str
+    kind: OperandKind
+
+
+class Op(NamedTuple):
+    """One instruction. `picture` is a Forth stack picture, top of the stack on the right."""
+
+    code: int
+    name: str
+    operands: tuple[Operand, ...]
+    picture: str
+    role: str
+    meaning: str
+    size: int
+    pops: int
+    pushes: int
+
+
+# fmt: off
+OPERAND_KINDS = {kind.name: kind for kind in (
+    #           name        size signed      low    high  meaning
+    OperandKind("u8",       1, False,         0,    255, "a whole number"),
+    OperandKind("i8",       1, True,       -128,    127, "a whole number"),
+    OperandKind("i16",      2, True,     -32768,  32767, "a whole number"),
+    OperandKind("milli16",  2, True,     -32768,  32767, "thousandths"),
+    OperandKind("milli32",  4, True,     -2**31, 2**31 - 1, "thousandths"),
+    OperandKind("tenths",   1, False,         0,    255, "tenths of a second"),
+    OperandKind("power",    1, False,         0,    100, "a percentage"),
+    OperandKind("percent",  1, True,       -100,    100, "a percentage, negative is backward"),
+    OperandKind("count",    1, False,         1,    255, "how many times"),
+    OperandKind("variable", 1, False,         0,     31, "the number of a variable"),
+    OperandKind("sensor",   1, False,         0,    255, "the number of a sensor of the kit"),
+    OperandKind("actuator", 1, False,         0,    255, "the number of an actuator of the kit"),
+    OperandKind("fwd8",     1, False,         0,    255, "bytes forward from the next instruction"),
+    OperandKind("fwd16",    2, False,         0,  65535, "bytes forward from the next instruction"),
+    OperandKind("back8",    1, False,         0,    255, "bytes back from the next instruction"),
+    OperandKind("back16",   2, False,         0,  65535, "bytes back from the next instruction"),
+)}
+
+# What an instruction is for the structure of a program; `verify` has a rule for each role.
+ROLES = {
+    "value":     "part of an expression",
+    "join":      "part of an expression; what the left side decides goes on at `to`",
+    "read":      "takes a reading; stands between instructions and in the check of an UNTIL",
+    "plain":     "an instruction: leaves the stack empty",
+    "watch":     "begins the check of an UNTIL",
+    "until":     "ends the check of an UNTIL",
+    "if":        "opens a block that ends at `to`, or leaves the loop that ends there",
+    "else":      "ends the block before it and opens one that ends at `to`",
+    "repeat":    "opens a loop that does not count",
+    "count":     "opens a loop that counts",
+    "again":     "closes a loop that does not count",
+    "next":      "closes a loop that counts",
+    "break":     "leaves the innermost loop, one that does not count",
+    "drop":      "leaves the innermost loop, one that counts",
+    "def":       "opens a procedure that ends at `to`",
+    "return":    "closes a procedure",
+    "call":      "calls a procedure that lies before it",
+    "end":       "ends the program",
+}
+
+
+def _op(code: int, name: str, operands: str, picture: str, role: str, meaning: str) -> Op:
+    parts = []
+    for text in operands.split():
+        label, _, kind = text.partition(":")
+        parts.append(Operand(label, OPERAND_KINDS[kind]))
+    taken, _, left = picture.partition("--")
+    size = 1 + sum(operand.kind.size for operand in parts)
+    return Op(code, name, tuple(parts), picture, role, meaning,
+              size, len(taken.split()), len(left.split()))
+
+
+_MOVES = ("F", "forward"), ("B", "backward"), ("L", "left"), ("R", "right")
+COMPARATORS = ("EQ", "="), ("NE", "<>"), ("LT", "<"), ("LE", "<="), ("GT", ">"), ("GE", ">=")
+
+OPS = (
+    #    code  name              operands               stack picture      role     meaning
+    _op(0x00, "END",             "",                    "--",              "end",   "The program is finished. No code holds it: a machine puts it behind."),
+    # values
+    _op(0x01, "PUSH8",           "n:i8",                "-- n",            "value", "Push the whole number `n`."),
+    _op(0x02, "PUSH16",          "n:i16",               "-- n",            "value", "Push the whole number `n`."),
+    _op(0x03, "PUSH_MILLI",      "n:milli16",           "-- n",            "value", "Push `n` thousandths."),
+    _op(0x04, "PUSH32",          "n:milli32",           "-- n",            "value", "Push `n` thousandths."),
+    _op(0x05, "PUSH_FALSE",      "",                    "-- no",           "value", "Push FALSE."),
+    _op(0x06, "PUSH_TRUE",       "",                    "-- yes",          "value", "Push TRUE."),
+    _op(0x07, "PUSH_VAR",        "v:variable",          "-- value",        "value", "Push what variable `v` holds."),
+    _op(0x08, "PUSH_SENSOR",     "s:sensor",            "-- reading",      "value", "Push the kept reading of sensor `s`."),
+    _op(0x09, "PUSH_READ",       "s:sensor",            "-- reading",      "value", "Take a reading of sensor `s`, keep it and push it."),
+    _op(0x0A, "TIME",            "",                    "-- seconds",      "value", "Push the time since the program started."),
+    _op(0x0B, "RANDOM",          "",                    "low high -- n",   "value", "Push a whole number from `low` to `high`."),
+    _op(0x10, "ADD",             "",                    "a b -- a+b",      "value", "Add."),
+    _op(0x11, "SUB",             "",                    "a b -- a-b",      "value", "Subtract."),
+    _op(0x12, "MUL",             "",                    "a b -- a*b",      "value", "Multiply; round half away from zero."),
+    _op(0x13, "DIV",             "",                    "a b -- a/b",      "value", "Divide; round half away from zero."),
+    _op(0x14, "MOD",             "",                    "a b -- a%b",      "value", "The exact remainder, with the sign of `b`."),
+    _op(0x15, "NEG",             "",                    "a -- -a",         "value", "Change the sign."),
+    _op(0x16, "ABS",             "",                    "a -- |a|",        "value", "Drop the sign."),
+    _op(0x17, "MIN",             "",                    "a b -- least",    "value", "The smaller one."),
+    _op(0x18, "MAX",             "",                    "a b -- most",     "value", "The larger one."),
+    _op(0x19, "ROUND",           "",                    "a places -- n",   "value", "Round `a` half away from zero to `places` decimals."),
+    *(_op(0x20 + i, name,        "",                    f"a b -- a{sign}b", "value", f"Push TRUE if `a {sign} b`, else FALSE.")
+      for i, (name, sign) in enumerate(COMPARATORS)),
+    _op(0x26, "NOT",             "",                    "a -- not-a",      "value", "Exchange TRUE and FALSE."),
+    _op(0x27, "AND",             "",                    "a b -- a-and-b",  "value", "TRUE if both are."),
+    _op(0x28, "OR",              "",                    "a b -- a-or-b",   "value", "TRUE if one is."),
+    _op(0x2A, "AND_THEN",        "to:fwd8",             "a --",            "join",  "If `a` is FALSE leave it and go to `to`."),
+    _op(0x2B, "AND_THEN_FAR",    "to:fwd16",            "a --",            "join",  "The same, further."),
+    _op(0x2C, "OR_ELSE",         "to:fwd8",             "a --",            "join",  "If `a` is TRUE leave it and go to `to`."),
+    _op(0x2D, "OR_ELSE_FAR",     "to:fwd16",            "a --",            "join",  "The same, further."),
+    # variables
+    _op(0x30, "SET_VAR",         "v:variable",          "value --",        "plain", "Put the value into variable `v`."),
+    _op(0x31, "SET_VAR8",        "v:variable n:i8",     "--",              "plain", "Put the whole number `n` into `v`."),
+    _op(0x32, "ADD_VAR8",        "v:variable n:i8",     "--",              "plain", "Add the whole number `n` to `v`."),
+    _op(0x33, "ADD_VAR",         "v:variable w:variable", "--",            "plain", "Add what `w` holds to `v`."),
+    # the robot
+    _op(0x38, "READ",            "s:sensor",            "--",              "read",  "Take a reading of sensor `s` and keep it."),
+    _op(0x39, "SHOW",            "",                    "number --",       "plain", "Send a number to whoever is listening."),
+    _op(0x3A, "SHOW_YES_NO",     "",                    "yes --",          "plain", "Send TRUE or FALSE."),
+    _op(0x3B, "SET",             "a:actuator",          "value --",        "plain", "Set actuator `a`, rounded and limited to its range."),
+    *(_op(0x40 + i, f"MOVE_{d}", "",                    "time power --",   "plain", f"Drive {way} for `time`, then motors off.")
+      for i, (d, way) in enumerate(_MOVES)),
+    *(_op(0x44 + i, f"MOVE8_{d}", "time:tenths power:power", "--",         "plain", f"Drive {way} for `time`, then motors off.")
+      for i, (d, way) in enumerate(_MOVES)),
+    *(_op(0x48 + i, f"WATCH_{d}", "",                   "time power --",   "watch", f"Prepare to drive {way} for `time` while checks fail.")
+      for i, (d, way) in enumerate(_MOVES)),
+    *(_op(0x4C + i, f"WATCH_FOREVER_{d}", "",           "power --",        "watch", f"Prepare to drive {way} while checks fail.")
+      for i, (d, way) in enumerate(_MOVES)),
+    _op(0x50, "WAIT",            "",                    "time --",         "plain", "Wait."),
+    _op(0x51, "WAIT8",           "time:tenths",         "--",              "plain", "Wait."),
+    _op(0x52, "WATCH_WAIT",      "",                    "time --",         "watch", "Prepare to wait for `time` while checks fail."),
+    _op(0x53, "WATCH_FOREVER_WAIT", "",                 "--",              "watch", "Prepare to wait while checks fail."),
+    _op(0x54, "UNTIL",           "to:back8",            "stop --",         "until", "End the move if `stop`; else go on with it and to `to` after 20 ms."),
+    _op(0x55, "UNTIL_FAR",       "to:back16",           "stop --",         "until", "The same, further."),
+    _op(0x58, "STOP",            "",                    "--",              "plain", "Motors off."),
+    _op(0x59, "MOTORS",          "",                    "left right --",   "plain", "Set both motors and go on at once."),
+    _op(0x5A, "MOTORS8",         "left:percent right:percent", "--",       "plain", "Set both motors and go on at once."),
+    _op(0x5B, "BEEP",            "",                    "time hertz --",   "plain", "Sound the buzzer and wait for it."),
+    # control
+    _op(0x60, "IF",              "to:fwd8",             "yes --",          "if",    "Go to `to` if it is FALSE."),
+    _op(0x61, "IF_FAR",          "to:fwd16",            "yes --",          "if",    "The same, further."),
+    _op(0x62, "IF_NOT",          "to:fwd8",             "no --",           "if",    "Go to `to` if it is TRUE."),
+    _op(0x63, "IF_NOT_FAR",      "to:fwd16",            "no --",           "if",    "The same, further."),
+    _op(0x64, "ELSE",            "to:fwd8",             "--",              "else",  "Go to `to`."),
+    _op(0x65, "ELSE_FAR",        "to:fwd16",            "--",              "else",  "The same, further."),
+    _op(0x68, "FOREVER",         "",                    "--",              "repeat", "A loop begins here."),
+    _op(0x69, "WHILE",           "to:fwd8",             "--",              "repeat", "A loop begins here; it ends at `to`, where checks may go."),
+    _op(0x6A, "WHILE_FAR",       "to:fwd16",            "--",              "repeat", "The same, further."),
+    _op(0x6B, "AGAIN",           "to:back8",            "--",              "again", "Go back to `to`, the loop's first instruction."),
+    _op(0x6C, "AGAIN_FAR",       "to:back16",           "--",              "again", "The same, further."),
+    _op(0x6D, "LOOP8",           "n:count",             "--",              "count", "A loop begins here; it runs `n` times."),
+    _op(0x6E, "LOOP",            "to:fwd8",             "n --",            "count", "The same; if `n` rounds to less than 1 go to `to`, its end."),
+    _op(0x6F, "LOOP_FAR",        "to:fwd16",            "n --",            "count", "The same, further."),
+    _op(0x70, "NEXT",            "to:back8",            "--",              "next",  "Count; go back to `to` or drop the counter."),
+    _op(0x71, "NEXT_FAR",        "to:back16",           "--",              "next",  "The same, further."),
+    _op(0x72, "BREAK",           "to:fwd8",             "--",              "break", "Go to `to`, the end of the loop."),
+    _op(0x73, "BREAK_FAR",       "to:fwd16",            "--",              "break", "The same, further."),
+    _op(0x74, "BREAK_LOOP",      "to:fwd8",             "--",              "drop",  "Drop the counter and go to `to`, the end of the loop."),
+    _op(0x75, "BREAK_LOOP_FAR",  "to:fwd16",            "--",              "drop",  "The same, further."),
+    _op(0x78, "DEF",             "to:fwd8",             "--",              "def",   "A procedure begins here; go to `to`, its end."),
+    _op(0x79, "DEF_FAR",         "to:fwd16",            "--",              "def",   "The same, further."),
+    _op(0x7A, "RETURN",          "",                    "--",              "return", "Go back behind the call."),
+    _op(0x7B, "CALL",            "to:back8",            "--",              "call",  "Call the procedure whose first instruction is at `to`."),
+    _op(0x7C, "CALL_FAR",        "to:back16",           "--",              "call",  "The same, further."),
+    # compare and branch: 80 + 10 for each source + 8 for the wide constant + the comparator
+    *(_op(0x80 + 0x10 * s + 8 * w + i, f"IF_{source}{bits}_{name}", f"{operand} n:{kind} to:fwd8", "--", "if",
+          f"{prefix}o to `to` unless {what} {sign} `n`.")
+      for s, (source, operand, prefix, what) in enumerate((
+          ("VAR", "v:variable", "G", "variable `v`"),
+          ("SENSOR", "s:sensor", "G", "the kept reading of `s`"),
+          ("READ", "s:sensor", "Take a reading of `s` and keep it; g", "it is")))
+      for w, (bits, kind) in enumerate((("8", "u8"), ("16", "i16")))
+      for i, (name, sign) in enumerate(COMPARATORS)),
+)
+
+FAULTS = (
+    # number, name, meaning: what stops a running program
+    (1, "OVERFLOW",       "A result is outside -2147483.648 to 2147483.647."),
+    (2, "DIVIDE_BY_ZERO", "A division or a remainder by 0."),
+)
+# fmt: on
+
+# Limits, the same on every machine.
+BLOCKS = 16  # nested in a text, those open around a call included
+CODE_BYTES = 32767
+STACK_VALUES = 16
+VARIABLES = 32
+COUNTERS = 16  # counted loops open at once, those around a call included
+CALLS = 8
+DEFS = 16
+NEST_WORDS = 32  # what a verifier remembers of open blocks: a word for an IF, two for a loop
+JOINS = 16  # AND_THEN and OR_ELSE open at once
+CHECK_MS = 20  # between two checks of an UNTIL
+
+BY_NAME = {op.name: op for op in OPS}
+BY_CODE: list[Op | None] = [None] * 256
+for _each in OPS:
+    assert BY_CODE[_each.code] is None, f"code {_each.code:02x} is used twice"
+    BY_CODE[_each.code] = _each
+assert len(BY_NAME) == len(OPS), "a name is used twice"
+
+
+def instruction_text(op: Op, operands: tuple[int, ...], next_offset: int) -> str:
+    """Return `IF_VAR8_LT v0 10 -> 0012`: an instruction as listings print it."""
+    words = [op.name]
+    for operand, value in zip(op.operands, operands, strict=True):
+        kind = operand.kind.name
+        if kind.startswith("fwd"):
+            words.append(f"-> {next_offset + value:04x}")
+        elif kind.startswith("back"):
+            words.append(f"-> {next_offset - value:04x}")
+        elif kind in ("variable", "sensor", "actuator"):
+            words.append(f"{kind[0]}{value}")
+        else:
+            words.append(str(value))
+    return " ".join(words)
+
+
+_LETTERS = {(1, False): "B", (1, True): "b", (2, False): "H", (2, True): "h", (4, True): "i"}
+_LAYOUTS = {
+    op.code: Struct(
+        "<" + "".join(_LETTERS[each.kind.size, each.kind.signed] for each in op.operands)
+    )
+    for op in OPS
+}
+
+
+def read_operands(op: Op, code: bytes, offset: int) -> tuple[int, ...]:
+    """Return the operands of the instruction `op` at `offset`, all of whose bytes are there."""
+    return _LAYOUTS[op.code].unpack_from(code, offset + 1)

@@ -1,0 +1,78 @@
+"""Source text and places in it.
+
+Knows how bytes become text and where a line begins. Knows nothing of the language.
+Places are counted in characters from 0; people see lines and columns from 1.
+"""
+
+from __future__ import annotations
+
+import re
+from bisect import bisect_right
+from typing import NamedTuple
+
+LARGEST_SOURCE = 1_000_000  # bytes
+
+_LINE_END = re.compile(r"\r\n|\n|\r")
+
+
+class Span(NamedTuple):
+    """The characters from `start` up to, not including, `end`."""
+
+    start: int
+    end: int
+
+
+class Source:
+    """A program's text, and the name under which messages speak of it."""
+
+    def __init__(self, text: str, name: str = "") -> None:
+        self.text = text
+        self.name = name
+        self._line_starts: list[int] | None = None
+
+    def position(self, offset: int) -> tuple[int, int]:
+        """Return the line and the column, both from 1, of the character at `offset`."""
+        starts = self._starts()
+        line = bisect_right(starts, offset)
+        return line, offset - starts[line - 1] + 1
+
+    def line_text(self, line: int) -> str:
+        """Return the text of a line, from 1, without its end."""
+        starts = self._starts()
+        end = starts[line] if line < len(starts) else len(self.text)
+        return self.text[starts[line - 1] : end].rstrip("\r\n")
+
+    def __getitem__(self, span: Span) -> str:
+        return self.text[span.start : span.end]
+
+    def _starts(self) -> list[int]:
+        if self._line_starts is None:
+            self._line_starts = [0, *(match.end() for match in _LINE_END.finditer(self.text))]
+        return self._line_starts
+
+
+class Unreadable(Exception):
+    """Bytes that are no text: `reason` is too_large, binary or encoding; `offset` in bytes."""
+
+    def __init__(self, reason: str, offset: int = 0) -> None:
+        super().__init__(reason)
+        self.reason = reason
+        self.offset = offset
+
+
+def decode(data: bytes) -> str:
+    """Return the text of a file: UTF-8, with or without a byte order mark.
+
+    Raises Unreadable where it is too large, holds NUL bytes or is no UTF-8.
+    """
+    if len(data) > LARGEST_SOURCE:
+        raise Unreadable("too_large", LARGEST_SOURCE)
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError as trouble:
+        nul = data.find(b"\0", 0, 4096)
+        raise Unreadable("encoding" if nul < 0 else "binary", trouble.start) from None
+    nul = text.find("\0")
+    if nul >= 0:
+        raise Unreadable("binary", len(text[:nul].encode()))
+    return text

@@ -1,0 +1,123 @@
+"""The numbers of TiniScript: signed 32-bit counts of thousandths.
+
+Knows arithmetic, its rounding and its faults. Knows nothing of programs. The machine and
+the optimiser both calculate with these functions, so that folding cannot change a result.
+Every argument and result is a count of thousandths unless a name says otherwise.
+"""
+
+from __future__ import annotations
+
+ONE = 1000
+LOWEST = -(2**31)
+HIGHEST = 2**31 - 1
+
+
+class Fault(Exception):
+    """A calculation that has no result; its `name` is in the fault table of `bytecode`."""
+
+    def __init__(self, name: str) -> None:
+        super().__init__(name)
+        self.name = name
+
+
+def in_range(value: int) -> int:
+    """Return `value`, or raise the fault OVERFLOW where 32 bits do not hold it."""
+    if LOWEST <= value <= HIGHEST:
+        return value
+    raise Fault("OVERFLOW")
+
+
+def divided(numerator: int, denominator: int) -> int:
+    """Return the quotient of two integers rounded half away from zero."""
+    if (numerator < 0) != (denominator < 0):
+        return -((2 * abs(numerator) + abs(denominator)) // (2 * abs(denominator)))
+    return (2 * abs(numerator) + abs(denominator)) // (2 * abs(denominator))
+
+
+def add(a: int, b: int) -> int:
+    return in_range(a + b)
+
+
+def subtract(a: int, b: int) -> int:
+    return in_range(a - b)
+
+
+def multiply(a: int, b: int) -> int:
+    return in_range(divided(a * b, ONE))
+
+
+def divide(a: int, b: int) -> int:
+    if b == 0:
+        raise Fault("DIVIDE_BY_ZERO")
+    return in_range(divided(a * ONE, b))
+
+
+def modulo(a: int, b: int) -> int:
+    """Return the exact remainder; it takes the sign of `b`."""
+    if b == 0:
+        raise Fault("DIVIDE_BY_ZERO")
+    return a % b
+
+
+def negate(a: int) -> int:
+    return in_range(-a)
+
+
+def absolute(a: int) -> int:
+    return in_range(abs(a))
+
+
+def whole(a: int) -> int:
+    """Return the nearest whole number (not thousandths), half away from zero. Never faults."""
+    return (a + 500) // ONE if a >= 0 else -((500 - a) // ONE)
+
+
+def round_to(a: int, decimals: int) -> int:
+    """ROUND(a, decimals): `decimals` is rounded to a whole number first; 3 or more keep `a`."""
+    places = whole(decimals)
+    if places >= 3:
+        return a
+    if places < -6:  # half of 10**7 is more than any number
+        return 0
+    unit: int = 10 ** (3 - places)
+    return in_range(divided(a, unit) * unit)
+
+
+def limited(value: int, low: int, high: int) -> int:
+    """Return the number nearest to `value` from `low` to `high`."""
+    return low if value < low else high if value > high else value
+
+
+def read_literal(text: str) -> tuple[int, bool]:
+    """Return the thousandths of `5`, `0.5` or `.5`, and whether they are exact.
+
+    The result is not limited to 32 bits: whether a minus belongs to it is the parser's to say.
+    More than ten digits before the point are far out of range, whatever they are.
+    """
+    digits, _, places = text.partition(".")
+    digits = digits.lstrip("0")
+    value = int(digits[:11] or "0") * ONE + int((places + "000")[:3])
+    rest = places[3:]
+    if rest and rest[0] >= "5":
+        value += 1
+    return value, not rest.strip("0")
+
+
+def as_text(value: int) -> str:
+    """Return the shortest decimal: `12.5`, `-0.001`, `7`."""
+    sign = "-" if value < 0 else ""
+    units, rest = divmod(abs(value), ONE)
+    return f"{sign}{units}.{rest:03d}".rstrip("0") if rest else f"{sign}{units}"
+
+
+# xorshift32, shifts 13, 17, 5 (Marsaglia 2003): the state is never 0.
+def next_random(state: int) -> int:
+    state ^= state << 13 & 0xFFFFFFFF
+    state ^= state >> 17
+    return state ^ (state << 5 & 0xFFFFFFFF)
+
+
+def random_between(low: int, high: int, state: int) -> int:
+    """Return a whole number from `low` to `high`, for a `state` that has just been stepped."""
+    first, last = sorted((whole(low), whole(high)))
+    return in_range((first + state % (last - first + 1)) * ONE)
