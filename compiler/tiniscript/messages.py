@@ -1,0 +1,229 @@
+"""Problems become words: in English or Spanish, for people and for editors.
+
+Knows how the texts of `problems.toml` are filled, and how a line of a program is shown with the
+place marked under it. Knows no single problem: what is said of each is in that file, which is
+read when there is something to say. Prints nothing.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Iterable, Mapping
+from functools import lru_cache
+from typing import Any, NamedTuple
+
+from tiniscript.problems import CODES, Problem
+from tiniscript.source import Source, Span
+
+LINE_COLUMNS = 100  # of a program's line; of a longer one a window is shown
+COLUMNS_BEFORE = 40  # of that window, before the place
+ROW_CHARACTERS = 110  # a longer message has what to try in a row of its own
+VALUE_CHARACTERS = 60  # of a program's text within a message
+TAB = "    "
+
+_GAP = re.compile(r"\{(@?)(\w+)\}")
+_TERM_WORD = re.compile(r"[A-Za-z_]+")
+_RED, _YELLOW, _DIM, _PLAIN = "\033[1;31m", "\033[1;33m", "\033[2m", "\033[0m"
+
+
+class Message(NamedTuple):
+    """A problem in words. Lines and columns count from 1, columns in characters.
+
+    The end is exclusive. The range is never empty, except in a text that is.
+    """
+
+    code: str
+    severity: str  # "mistake" or "warning"
+    line: int
+    column: int
+    end_line: int
+    end_column: int
+    message: str
+    fix: str
+
+
+def message(problem: Problem, source: Source, lang: str) -> Message:
+    """Return what is said of a problem, and where."""
+    texts = _texts()[problem.code.number]
+    start, end = _shown_range(source.text, problem.span)
+    line, column = source.position(start)
+    end_line, end_column = line, column
+    if end > start:
+        end_line, last_column = source.position(end - 1)
+        end_column = last_column + 1
+    return Message(
+        problem.code.number,
+        "mistake" if problem.is_mistake else "warning",
+        line,
+        column,
+        end_line,
+        end_column,
+        _filled(texts[lang], problem.values, lang),
+        _filled(texts[lang + "_try"], problem.values, lang),
+    )
+
+
+def as_json(messages: Iterable[Message]) -> list[dict[str, object]]:
+    """Return messages as the data that `--json` prints."""
+    return [each._asdict() for each in messages]
+
+
+def as_text(message: Message, source: Source, lang: str, color: bool = False) -> str:
+    """Return a message with its line of the program above, as a terminal shows it."""
+    is_warning = message.severity == "warning"
+    mark, dim, plain = (_YELLOW if is_warning else _RED, _DIM, _PLAIN) if color else ("", "", "")
+    rows = []
+    if source.text:
+        label = f"{_label('line', lang)} {message.line}:  "
+        line = source.line_text(message.line)
+        end = message.end_column - 1 if message.end_line == message.line else len(line)
+        shown, blanks, carets = _picture(line, message.column - 1, end)
+        rows.append((label + shown).rstrip())
+        rows.append(" " * (len(label) + blanks) + mark + "^" * carets + plain)
+    said = f"{_label('warns', lang)} {message.message}" if is_warning else message.message
+    code = f"   {dim}[{message.code}]{plain}"
+    if not message.fix:
+        return "\n".join((*rows, said + code))
+    fix = f"{_label('try', lang)}  {message.fix}"
+    fits = len(said) + len(fix) + len(message.code) <= ROW_CHARACTERS
+    rows += [f"{said}   {fix}{code}"] if fits else [said, fix + code]
+    return "\n".join(rows)
+
+
+def explain(code: str, lang: str) -> str | None:
+    """Return the longer explanation of a code (`TS017`, `ts017` or `017`), None for no code."""
+    from textwrap import fill, indent
+
+    number = code.strip().upper()
+    number = number if number.startswith("TS") else "TS" + number
+    if number not in CODES:
+        return None
+    texts = _texts()[number]
+    severity = _label("mistake" if CODES[number].is_mistake else "warning", lang)
+    parts = [
+        f"{number} ({severity}): {texts[lang + '_title']}",
+        fill(" ".join(texts[lang + "_more"].split()), 88, break_on_hyphens=False),
+    ]
+    for example in ("wrong", "right"):
+        if example in texts:
+            parts.append(_label(example, lang) + "\n\n" + indent(texts[example].strip(), "    "))
+    return "\n\n".join(parts)
+
+
+def titles(lang: str) -> list[tuple[str, str]]:
+    """Return every code with its problem in general words."""
+    return [(number, _texts()[number][lang + "_title"]) for number in sorted(CODES)]
+
+
+# -- words --------------------------------------------------------------------------------------
+
+
+@lru_cache(maxsize=1)
+def _texts() -> dict[str, dict[str, Any]]:
+    from pathlib import Path
+
+    if sys.version_info >= (3, 11):
+        import tomllib
+    else:
+        import tomli as tomllib
+    return tomllib.loads(Path(__file__).with_name("problems.toml").read_text(encoding="utf-8"))
+
+
+def _label(name: str, lang: str) -> str:
+    label: str = _texts()["labels"][name][lang]
+    return label
+
+
+def _term(word: str, lang: str) -> str | None:
+    term: dict[str, str] | None = _texts()["terms"].get(word)
+    return None if term is None else term[lang]
+
+
+def _filled(texts: str | list[str], values: Mapping[str, str], lang: str) -> str:
+    """Return the first text whose gaps all have a value, else the last one, filled."""
+    chosen = ""
+    for chosen in [texts] if isinstance(texts, str) else texts:
+        if all(values.get(name) for _, name in _GAP.findall(chosen)):
+            break
+
+    def gap(match: re.Match[str]) -> str:
+        return _value(values.get(match[2], ""), match[1] == "@", lang)
+
+    return _GAP.sub(gap, chosen)
+
+
+def _value(value: str, is_translated: bool, lang: str) -> str:
+    """Return a value as a message can hold it: translated, short, in one row, printable."""
+    term = _term(value.removeprefix("@"), lang) if is_translated or value[:1] == "@" else None
+    if term is not None:
+        return term
+    if is_translated:
+        value = _TERM_WORD.sub(lambda match: _term(match[0], lang) or match[0], value)
+    value = " ".join(value[: VALUE_CHARACTERS * 4].split())
+    if len(value) > VALUE_CHARACTERS:
+        value = value[:VALUE_CHARACTERS] + "…"
+    return "".join(_cell(character)[0] for character in value)
+
+
+# -- places -------------------------------------------------------------------------------------
+
+
+def _shown_range(text: str, span: Span) -> tuple[int, int]:
+    """Return the start and the end of what to point at: something, wherever there is something.
+
+    Line ends at the end are left out; an empty place becomes the character there or, at the end
+    of a line, the last one before that can be seen.
+    """
+    start = min(max(span.start, 0), len(text))
+    end = min(max(span.end, start), len(text))
+    if start < end:
+        return start, start + max(1, len(text[start:end].rstrip("\r\n")))
+    if start < len(text) and text[start] not in "\r\n":
+        return start, start + 1
+    end = len(text[:start].rstrip())
+    return (end - 1, end) if end else (0, min(1, len(text)))
+
+
+def _picture(line: str, start: int, end: int) -> tuple[str, int, int]:
+    """Return what is shown of a line, the columns before the carets, and how many carets.
+
+    `start` and `end` count characters of the line from 0.
+    """
+    offset = max(0, start - LINE_COLUMNS)
+    cells = [_cell(character) for character in line[offset : start + LINE_COLUMNS]]
+    at = start - offset
+    left, right = 0, len(cells)
+    if len(cells) < len(line) or sum(width for _, width in cells) > LINE_COLUMNS:
+        left, used = at, 0
+        while left and used + cells[left - 1][1] <= COLUMNS_BEFORE:
+            left -= 1
+            used += cells[left][1]
+        right = at
+        while right < len(cells) and used + cells[right][1] <= LINE_COLUMNS:
+            used += cells[right][1]
+            right += 1
+    before = "…" if offset + left > 0 else ""
+    after = "…" if offset + right < len(line) else ""
+    shown = before + "".join(shown for shown, _ in cells[left:right]) + after
+    blanks = len(before) + sum(width for _, width in cells[left:at])
+    carets = sum(width for _, width in cells[at : min(max(end - offset, at), right)])
+    return shown, blanks, max(1, carets)
+
+
+def _cell(character: str) -> tuple[str, int]:
+    """Return how a character is shown, and in how many columns of a terminal."""
+    if " " <= character <= "~":
+        return character, 1
+    if character == "\t":
+        return TAB, len(TAB)
+    from unicodedata import category, east_asian_width
+
+    kind = category(character)
+    width = 2 if east_asian_width(character) in "WF" else 1
+    if kind == "Zs":
+        return " " * width, width
+    if not character.isprintable():
+        code = ord(character)
+        return chr(0x2400 + code) if code < 32 else "␡" if code == 127 else "\ufffd", 1
+    return character, 0 if kind in ("Mn", "Me") else width

@@ -1,0 +1,146 @@
+"""Everything we can tell a person about a program, with its code, as data.
+
+Knows which problems there are. Their words, in English and Spanish, are in `problems.toml`,
+which `messages` reads when there is something to say.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from tiniscript.source import Span
+
+
+class Code(NamedTuple):
+    number: str
+    is_mistake: bool
+
+
+class Problem(NamedTuple):
+    """One problem in one place. `values` fill the gaps in its message."""
+
+    code: Code
+    span: Span
+    values: Mapping[str, str] = {}
+
+    @property
+    def is_mistake(self) -> bool:
+        return self.code.is_mistake
+
+
+CODES: dict[str, Code] = {}
+
+
+def _mistake(number: str) -> Code:
+    return CODES.setdefault(number, Code(number, True))
+
+
+def _warning(number: str) -> Code:
+    return CODES.setdefault(number, Code(number, False))
+
+
+# the text as a whole
+TOO_LARGE = _mistake("TS001")
+BINARY = _mistake("TS002")
+NOT_UTF8 = _mistake("TS003")
+# characters, numbers and names
+ODD_CHARACTER = _mistake("TS005")
+QUOTE = _mistake("TS006")
+HASH_COMMENT = _mistake("TS007")
+BAD_NUMBER = _mistake("TS008")
+BAD_NAME = _mistake("TS009")
+OTHER_SIGN = _mistake("TS010")
+NUMBER_TOO_BIG = _mistake("TS011")
+# the shape of instructions
+DECIMAL_COMMA = _mistake("TS012")
+MISSING_SEPARATOR = _mistake("TS013")
+HEADER_SEPARATOR = _mistake("TS014")
+MISSING_OPEN = _mistake("TS015")
+MISSING_CLOSE = _mistake("TS016")
+MISSING_COMMA = _mistake("TS017")
+MISSING_VALUE = _mistake("TS018")
+SEMICOLON_INSIDE = _mistake("TS019")
+ARGUMENT_COUNT = _mistake("TS020")
+ELSE_IF = _mistake("TS021")
+END_SPLIT = _mistake("TS022")
+END_ALONE = _mistake("TS023")
+NEVER_ENDS = _mistake("TS024")
+NOT_OPEN = _mistake("TS025")
+WRONG_END = _mistake("TS026")
+AFTER_ELSE = _mistake("TS027")
+EMPTY_BRACKETS = _mistake("TS028")
+UNTIL_ALONE = _mistake("TS029")
+UNTIL_NOT_HERE = _mistake("TS030")
+FOREVER_NEEDS_UNTIL = _mistake("TS031")
+FOREVER_NOT_HERE = _mistake("TS032")
+SETUP_TWICE = _mistake("TS033")
+SETUP_UNKNOWN = _mistake("TS034")
+PING_ALONE = _mistake("TS035")
+SETUP_NEEDS_BAR = _mistake("TS036")
+CHAINED = _mistake("TS037")
+NOT_NEEDS_BRACKETS = _mistake("TS038")
+NO_BRACKETS_HERE = _mistake("TS039")
+DEF_NEEDS_NAME = _mistake("TS040")
+EXTRA_CLOSE = _mistake("TS041")
+NOT_AN_INSTRUCTION = _mistake("TS042")
+LATER_WORD = _mistake("TS043")
+EXTRA_WORD = _mistake("TS044")
+SPANISH_IF = _mistake("TS045")
+NO_FUNCTION = _mistake("TS046")
+# names
+UNKNOWN_WORD = _mistake("TS101")
+OTHER_LANGUAGE = _mistake("TS102")
+UNKNOWN_NAME = _mistake("TS103")
+USED_BEFORE_SET = _mistake("TS104")
+RESERVED = _mistake("TS105")
+SENSOR_SET = _mistake("TS106")
+ACTUATOR_SET = _mistake("TS107")
+ACTUATOR_READ = _mistake("TS108")
+DEF_READ = _mistake("TS109")
+NAME_TAKEN = _mistake("TS110")
+DEF_TWICE = _mistake("TS111")
+CALL_BEFORE_DEF = _mistake("TS112")
+CALLS_ITSELF = _mistake("TS113")
+DEF_NOT_TOP = _mistake("TS114")
+BREAK_OUTSIDE = _mistake("TS115")
+VARIABLE_ALONE = _mistake("TS116")
+ACTUATOR_ALONE = _mistake("TS117")
+NOT_CALLABLE = _mistake("TS118")
+# values
+WANTS_NUMBER = _mistake("TS201")
+WANTS_CONDITION = _mistake("TS202")
+MIXED_COMPARE = _mistake("TS203")
+YES_NO_ORDER = _mistake("TS204")
+KIND_CHANGES = _mistake("TS205")
+OUT_OF_RANGE = _mistake("TS206")
+# limits
+TOO_MANY_VARIABLES = _mistake("TS301")
+BLOCKS_TOO_DEEP = _mistake("TS302")
+VALUES_TOO_DEEP = _mistake("TS303")
+TOO_MANY_DEFS = _mistake("TS304")
+CALLS_TOO_DEEP = _mistake("TS305")
+CODE_TOO_LONG = _mistake("TS306")
+BOARD_TOO_SMALL = _mistake("TS307")
+# what a teacher would say
+ROUNDED = _warning("TS801")
+NEVER_REACHED = _warning("TS802")
+MOVE_OF_NO_TIME = _warning("TS803")
+BUSY_LOOP = _warning("TS804")
+LATE_CHECK = _warning("TS805")
+UNUSED_VARIABLE = _warning("TS806")
+UNUSED_DEF = _warning("TS807")
+WILL_FAULT = _warning("TS808")
+BOARD_MAY_BE_TOO_SMALL = _warning("TS809")
+
+
+def in_order(found: list[Problem]) -> list[Problem]:
+    """Return problems by place, without what is said twice of the same place."""
+    seen = set()
+    kept = []
+    for problem in sorted(found, key=lambda each: (each.span, each.code.number)):
+        key = (problem.code, problem.span)
+        if key not in seen:
+            seen.add(key)
+            kept.append(problem)
+    return kept

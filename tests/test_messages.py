@@ -1,0 +1,342 @@
+"""What a person is told: each code has its words, and each example its problem."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import Any
+
+import pytest
+from tiniscript import check_text, compile_text, messages, problems
+from tiniscript.kit import NUMBER, YES_NO, Device, Kit
+from tiniscript.messages import Message, as_json, as_text, explain, message, titles
+from tiniscript.problems import CODES, Problem
+from tiniscript.source import Source, Span
+
+KIT = Kit(
+    sensors=(
+        Device("LIGHT_R", NUMBER, "", 0, 1_023_000),
+        Device("LIGHT_L", NUMBER, "", 0, 1_023_000),
+        Device("DISTANCE", NUMBER, "cm", 0, 400_000),
+        Device("BUTTON", YES_NO, "", 0, 1),
+    ),
+    actuators=(
+        Device("GRIPPER", NUMBER, "°", 0, 180_000),
+        Device("LED", YES_NO, "", 0, 1),
+    ),
+)
+LANGUAGES = ("en", "es")
+TEXTS: dict[str, dict[str, Any]] = {
+    code: texts for code, texts in messages._texts().items() if code.startswith("TS")
+}
+EXAMPLES = sorted(code for code, texts in TEXTS.items() if "wrong" in texts)
+BOARD = {"robot": "TINIBOT", "limit": "900", "code": "1000", "over": "100"}
+WITHOUT_EXAMPLE: dict[str, Mapping[str, str]] = {
+    "TS001": {},
+    "TS002": {},
+    "TS003": {},
+    "TS306": {"limit": "32767", "over": "100"},
+    "TS307": BOARD,
+    "TS809": BOARD,
+}
+
+
+def gaps(code: str) -> set[str]:
+    """Return the names of all gaps in a code's message and thing to try."""
+    texts = TEXTS[code]
+    both = "".join(str(texts[lang + end]) for lang in LANGUAGES for end in ("", "_try"))
+    return set(re.findall(r"\{@?(\w+)\}", both))
+
+
+def first(text: str, lang: str = "en") -> tuple[Message, Source]:
+    found = compile_text(text, KIT)
+    return message(found.problems[0], found.source, lang), found.source
+
+
+def shown(text: str, lang: str = "en") -> list[str]:
+    """Return the rows that the first problem of a text is shown in."""
+    said, source = first(text, lang)
+    return as_text(said, source, lang).split("\n")
+
+
+# -- the table ------------------------------------------------------------------------------------
+
+
+def test_each_code_has_its_words_and_no_words_lack_a_code() -> None:
+    assert set(TEXTS) == set(CODES)
+    assert set(messages._texts()) - set(TEXTS) == {"terms", "labels"}
+
+
+@pytest.mark.parametrize("code", sorted(TEXTS))
+def test_each_code_has_all_texts_in_both_languages(code: str) -> None:
+    texts = TEXTS[code]
+    wanted = {lang + end for lang in LANGUAGES for end in ("", "_title", "_try", "_more")}
+    examples = set() if code in WITHOUT_EXAMPLE else {"wrong", "right"}
+    assert set(texts) == wanted | examples
+    for name in wanted:
+        assert texts[name], name
+        assert "{" not in texts[name] or not name.endswith(("_title", "_more"))
+
+
+def test_each_term_and_label_is_in_both_languages() -> None:
+    for table in ("terms", "labels"):
+        for name, term in messages._texts()[table].items():
+            assert set(term) == set(LANGUAGES), name
+
+
+@pytest.mark.parametrize("code", EXAMPLES)
+def test_the_wrong_example_has_its_problem_first(code: str) -> None:
+    found = compile_text(TEXTS[code]["wrong"], KIT).problems
+    assert [problem.code.number for problem in found][:1] == [code]
+
+
+@pytest.mark.parametrize("code", EXAMPLES)
+def test_the_right_example_has_no_problem(code: str) -> None:
+    assert compile_text(TEXTS[code]["right"], KIT).problems == []
+
+
+@pytest.mark.parametrize("code", EXAMPLES)
+def test_the_examples_fill_all_gaps_of_their_messages(code: str) -> None:
+    found = compile_text(TEXTS[code]["wrong"], KIT)
+    assert gaps(code) <= set(found.problems[0].values)
+    for lang in LANGUAGES:
+        said = message(found.problems[0], found.source, lang)
+        assert "{" not in said.message + said.fix
+        assert "@" not in said.message + said.fix
+
+
+@pytest.mark.parametrize("code", sorted(WITHOUT_EXAMPLE))
+def test_messages_without_an_example_have_gaps_that_are_filled(code: str) -> None:
+    assert gaps(code) <= set(WITHOUT_EXAMPLE[code])
+    problem = Problem(CODES[code], Span(0, 0), WITHOUT_EXAMPLE[code])
+    for lang in LANGUAGES:
+        said = message(problem, Source(""), lang)
+        assert said[2:6] == (1, 1, 1, 1)
+        assert as_text(said, Source(""), lang).startswith(("Warning: ", "Aviso: ", said.message))
+        assert "{" not in said.message + said.fix
+
+
+def test_a_program_that_is_too_long_for_any_robot_says_by_how_much() -> None:
+    said, source = first("SHOW(DISTANCE * 1.125 + 2.25)\n" * 5000)
+    assert said.code == "TS306"
+    assert re.search(r"\d+ bytes too long: a robot takes at most 32767$", said.message)
+    assert (said.line, said.column) == (5000, 29)
+    assert "{" not in as_text(said, source, "en")
+
+
+# -- gaps -----------------------------------------------------------------------------------------
+
+
+def test_a_text_with_an_empty_gap_gives_way_to_the_next() -> None:
+    known = Problem(problems.UNKNOWN_NAME, Span(0, 1), {"found": "Y", "near": "YY"})
+    unknown = known._replace(values={"found": "Y", "near": ""})
+    source = Source("Y")
+    assert message(known, source, "en").message.endswith("Did you mean YY?")
+    assert message(unknown, source, "en").message == "There is no variable or sensor Y"
+    assert message(unknown, source, "en").fix.startswith("Write Y = 0 before")
+
+
+def test_braces_ats_and_line_ends_in_a_program_are_only_shown() -> None:
+    for text in ("{fix}", "{0.__class__}", "{", "}", "%s", "@", "@number?", "a\nb\tc", "\x07"):
+        values = {"by": "W", "found": text}
+        said = message(Problem(problems.WANTS_NUMBER, Span(0, 0), values), Source("W"), "en")
+        plain = text.replace("\n", " ").replace("\t", " ").replace("\x07", "␇")
+        assert said.fix == f"Write a number in place of {plain}"
+
+
+def test_terms_and_units_are_translated() -> None:
+    assert first("X = 1;X = TRUE;SHOW(X)", "es")[0].message == (
+        "X empezó como un número y no puede volverse un sí o no"
+    )
+    assert "F(tiempo, potencia)" in first("F(1)", "es")[0].message
+    assert first("GRIPPER(181)", "es")[0].message.endswith("de 0 a 180 grados")
+    assert first("M(101, 0)", "es")[0].message.endswith("de -100 a 100 %")
+    assert first("SHOW(1000000 * 1000000)", "es")[0].message.endswith("es demasiado grande")
+
+
+def test_long_pieces_of_a_program_are_shortened() -> None:
+    said, _ = first("SHOW(" + "DISTANCE < 1 AND " * 5000 + "TRUE + 1)")
+    assert len(said.message) < 200
+    assert len(said.fix) < 200
+    said, _ = first("A" * 100_000)
+    assert len(said.message) < 200
+
+
+# -- whole messages -------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("text", "en", "es"),
+    [
+        (
+            "SI|F(1,5, 80)",
+            [
+                "line 1:  SI|F(1,5, 80)",
+                "            ^^^^^^^^^^",
+                "A decimal number has a point, not a comma.   Try:  1.5, 80   [TS012]",
+            ],
+            [
+                "línea 1:  SI|F(1,5, 80)",
+                "             ^^^^^^^^^^",
+                "Los decimales se escriben con punto, no con coma.   Prueba:  1.5, 80   [TS012]",
+            ],
+        ),
+        (
+            "SI|\nF 2 80\n",
+            [
+                "line 2:  F 2 80",
+                "         ^^^^^^",
+                "After F come brackets: ( )   Try:  F(2, 80)   [TS015]",
+            ],
+            [
+                "línea 2:  F 2 80",
+                "          ^^^^^^",
+                "Después de F van paréntesis: ( )   Prueba:  F(2, 80)   [TS015]",
+            ],
+        ),
+        (
+            "IF(DISTENCE < 10);S;ENDIF",
+            [
+                "line 1:  IF(DISTENCE < 10);S;ENDIF",
+                "            ^^^^^^^^",
+                "There is no variable or sensor DISTENCE. Did you mean DISTANCE?   "
+                "Try:  DISTANCE   [TS103]",
+            ],
+            [
+                "línea 1:  IF(DISTENCE < 10);S;ENDIF",
+                "             ^^^^^^^^",
+                "No hay ninguna variable ni sensor DISTENCE. ¿Quisiste decir DISTANCE?   "
+                "Prueba:  DISTANCE   [TS103]",
+            ],
+        ),
+        (
+            "SI|SI(DISTANCE < 10);S;ENDIF",
+            [
+                "line 1:  SI|SI(DISTANCE < 10);S;ENDIF",
+                "            ^^",
+                "SI starts a program. To ask a question the word is IF.   Try:  IF   [TS045]",
+            ],
+            [
+                "línea 1:  SI|SI(DISTANCE < 10);S;ENDIF",
+                "             ^^",
+                "SI sirve para empezar el programa. Para preguntar se usa IF.   "
+                "Prueba:  IF   [TS045]",
+            ],
+        ),
+        (
+            "SI|F(0, 80)",
+            [
+                "line 1:  SI|F(0, 80)",
+                "            ^^^^^^^^",
+                "Warning: This F takes 0 seconds, so nothing happens.   "
+                "Try:  Write a time above 0, such as 1 or 0.5.   [TS803]",
+            ],
+            [
+                "línea 1:  SI|F(0, 80)",
+                "             ^^^^^^^^",
+                "Aviso: Este F dura 0 segundos, así que no pasa nada.   "
+                "Prueba:  Escribe un tiempo mayor que 0, como 1 o 0.5.   [TS803]",
+            ],
+        ),
+        (
+            "IF(DISTANCE);S;ENDIF",
+            [
+                "line 1:  IF(DISTANCE);S;ENDIF",
+                "            ^^^^^^^^",
+                "IF needs a yes or no, and DISTANCE is a number.",
+                "Try:  Write a comparison, TRUE or FALSE in place of DISTANCE   [TS202]",
+            ],
+            [
+                "línea 1:  IF(DISTANCE);S;ENDIF",
+                "             ^^^^^^^^",
+                "IF necesita un sí o no, y DISTANCE es un número.",
+                "Prueba:  Escribe una comparación, TRUE o FALSE en lugar de DISTANCE   [TS202]",
+            ],
+        ),
+    ],
+)
+def test_whole_messages(text: str, en: list[str], es: list[str]) -> None:
+    assert shown(text, "en") == en
+    assert shown(text, "es") == es
+
+
+def test_colors_change_nothing_but_colors() -> None:
+    for text in ("F(2 80)", "W(0.12345)"):
+        said, source = first(text)
+        colored = as_text(said, source, "en", color=True)
+        assert colored != as_text(said, source, "en")
+        assert re.sub(r"\033\[[0-9;]*m", "", colored) == as_text(said, source, "en")
+
+
+def test_as_json() -> None:
+    found = check_text("F(2 80)\nX = 0.0001\nSHOW(X)", KIT)
+    said = [message(problem, found.source, "en") for problem in found.problems]
+    assert as_json(said) == [
+        {
+            "code": "TS017",
+            "severity": "mistake",
+            "line": 1,
+            "column": 3,
+            "end_line": 1,
+            "end_column": 7,
+            "message": "Two values in brackets need a comma between them.",
+            "fix": said[0].fix,
+        },
+        {
+            "code": "TS801",
+            "severity": "warning",
+            "line": 2,
+            "column": 5,
+            "end_line": 2,
+            "end_column": 11,
+            "message": "Numbers have three decimals at most, so 0.0001 becomes 0",
+            "fix": "0",
+        },
+    ]
+
+
+# -- explanations and languages -------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("code", sorted(TEXTS))
+@pytest.mark.parametrize("lang", LANGUAGES)
+def test_each_code_is_explained(code: str, lang: str) -> None:
+    text = explain(code, lang)
+    assert text is not None
+    assert TEXTS[code][lang + "_title"] in text
+    assert " ".join(TEXTS[code][lang + "_more"].split()) in " ".join(text.split())
+    for example in ("wrong", "right"):
+        for row in TEXTS[code].get(example, "").strip().split("\n"):
+            assert row in text
+    assert max(map(len, text.split("\n"))) <= 100
+
+
+def test_an_explanation_whole() -> None:
+    assert explain("012", "es") == (
+        "TS012 (error): Un decimal con coma\n"
+        "\n"
+        "En TiniScript la coma separa los valores; por eso F(1,5, 80) tiene tres: 1, 5 y 80. Uno\n"
+        "y medio se escribe con punto: 1.5.\n"
+        "\n"
+        "Mal:\n"
+        "\n"
+        "    SI|F(1,5, 80)\n"
+        "\n"
+        "Bien:\n"
+        "\n"
+        "    SI|F(1.5, 80)"
+    )
+
+
+def test_a_code_is_found_however_it_is_written() -> None:
+    whole = explain("TS017", "en")
+    assert whole is not None
+    assert explain("ts017", "en") == explain(" 017 ", "en") == whole
+    for code in ("TS999", "", "TS", "terms", "labels", "TSTS017", "٢٠٥", "hello"):
+        assert explain(code, "en") is None
+
+
+@pytest.mark.parametrize("lang", ["en", "es"])
+def test_titles_list_every_code(lang: str) -> None:
+    assert [code for code, _ in titles(lang)] == sorted(CODES)
+    assert all(title for _, title in titles(lang))
