@@ -1,0 +1,98 @@
+"""The syntax tree: what was written, and where. Nothing else.
+
+Blocks are nested, at most as deep as the language allows. An expression is flat: its parts in
+the order in which a stack machine meets them, so that no depth of brackets that somebody
+types can exhaust anything. Between the two sides of an AND or OR stands AND_LEFT or OR_LEFT.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from tiniscript.source import Span
+
+
+class Part(NamedTuple):
+    """`op` is NUMBER, NAME, TRUE, FALSE, TIME, FOREVER, or what is done to the parts before."""
+
+    op: str
+    value: int | str
+    start: int
+    end: int
+
+
+Expression = tuple[Part, ...]
+
+
+class Argument(NamedTuple):
+    """`is_plain`: just one number, with or without a minus, and no brackets around it."""
+
+    expression: Expression
+    span: Span
+    is_plain: bool
+
+
+class Command(NamedTuple):
+    """`WORD(a, b) UNTIL(c)` or a word alone; `arguments` is None where no bracket is."""
+
+    word: str
+    word_span: Span
+    arguments: tuple[Argument, ...] | None
+    until: Argument | None
+    span: Span
+
+
+class Assign(NamedTuple):
+    name: str
+    name_span: Span
+    value: Argument
+    span: Span
+
+
+class Arm(NamedTuple):
+    """IF or ELSEIF: `condition` is None where it could not be read."""
+
+    condition: Argument | None
+    body: tuple[Instruction, ...]
+    span: Span
+
+
+class If(NamedTuple):
+    arms: tuple[Arm, ...]
+    otherwise: tuple[Instruction, ...]
+    span: Span
+
+
+class Loop(NamedTuple):
+    """`times` is None for FOREVER."""
+
+    times: Argument | None
+    body: tuple[Instruction, ...]
+    span: Span
+
+
+class While(NamedTuple):
+    condition: Argument | None
+    body: tuple[Instruction, ...]
+    span: Span
+
+
+class Break(NamedTuple):
+    span: Span
+
+
+class Def(NamedTuple):
+    name: str
+    name_span: Span
+    body: tuple[Instruction, ...]
+    span: Span
+
+
+Instruction = Command | Assign | If | Loop | While | Break | Def
+
+
+class Program(NamedTuple):
+    """`start` is SI, SB or PING."""
+
+    start: str
+    body: tuple[Instruction, ...]
