@@ -1,0 +1,159 @@
+"""What a teacher would say about a program that is right.
+
+Knows the checked program, before it is optimised. Gives warnings, never mistakes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from tiniscript import problems
+from tiniscript.kit import Kit
+from tiniscript.optimizer import constant, fold, sure_fault
+from tiniscript.problems import Code, Problem
+from tiniscript.program import (
+    Assign,
+    Beep,
+    Body,
+    Call,
+    Expression,
+    If,
+    Loop,
+    Motors,
+    Move,
+    Program,
+    Read,
+    Statement,
+    While,
+    bodies,
+    expressions,
+    goes_on,
+    walk,
+)
+from tiniscript.source import Span
+from tiniscript.thousandths import as_text
+
+LONG_MOVE = 500  # ms: a robot goes a hand's breadth in this time
+_SIGNS = {"EQ": "=", "NE": "<>", "LT": "<", "LE": "<=", "GT": ">", "GE": ">="}
+
+
+def advice(program: Program, kit: Kit) -> list[Problem]:
+    """Return the warnings for a program that has no mistakes."""
+    found: list[Problem] = []
+    routines = [*(procedure.body for procedure in program.procedures), program.body]
+    for body in routines:
+        _look_at(body, program, kit, found)
+    statements = [statement for body in routines for statement in walk(body)]
+    found += _unused(program, statements)
+    return found
+
+
+def _report(found: list[Problem], code: Code, span: Span, **values: str) -> None:
+    found.append(Problem(code, span, values))
+
+
+def _look_at(body: Body, program: Program, kit: Kit, found: list[Problem]) -> None:
+    for k, statement in enumerate(body):
+        if k + 1 < len(body) and not goes_on((statement,)):
+            _report(found, problems.NEVER_REACHED, body[k + 1].span)
+            break
+    for statement in body:
+        _expressions(statement, found)
+        if isinstance(statement, Move) and statement.until is None:
+            time = None if statement.time is None else constant(fold(statement.time))
+            if time is not None and time <= 0:
+                _report(found, problems.MOVE_OF_NO_TIME, statement.span, word=statement.direction)
+        if isinstance(statement, (Loop, While)):
+            _late_checks(statement.body, kit, found)
+            if _is_forever(statement) and not _takes_time(statement.body, program):
+                word = "LOOP(FOREVER)" if isinstance(statement, Loop) else "WHILE"
+                head = Span(statement.span.start, statement.span.start + len(word))
+                _report(found, problems.BUSY_LOOP, head, word=word)
+        for inner in bodies(statement):
+            _look_at(inner, program, kit, found)
+
+
+def _expressions(statement: Statement, found: list[Problem]) -> None:
+    for expression in expressions(statement):
+        fault = sure_fault(fold(expression))
+        if fault:
+            _report(found, problems.WILL_FAULT, statement.span, fault=fault)
+            return
+
+
+def _is_forever(statement: Loop | While) -> bool:
+    if isinstance(statement, Loop):
+        return statement.times is None
+    return constant(fold(statement.condition)) == 1
+
+
+def _takes_time(body: Body, program: Program) -> bool:
+    """Whether a body moves, waits or beeps, or calls something that does."""
+    for statement in walk(body):
+        if isinstance(statement, (Move, Beep, Motors)):
+            return True
+        if isinstance(statement, Call):
+            if _takes_time(program.procedures[statement.procedure].body, program):
+                return True
+    return False
+
+
+def _late_checks(body: Body, kit: Kit, found: list[Problem]) -> None:
+    """Find a long move, then a look at a distance: the robot drives blind in between."""
+    for k, statement in enumerate(body):
+        if not isinstance(statement, Move) or statement.direction not in ("F", "B"):
+            continue
+        time = None if statement.time is None else constant(fold(statement.time))
+        if statement.until is not None or time is None or time < LONG_MOVE:
+            continue
+        following = next((each for each in body[k + 1 :] if not isinstance(each, Read)), None)
+        if not isinstance(following, If):
+            continue
+        condition = following.arms[0].condition
+        sensor = next((term.value for term in condition if _is_distance(term.op, term.value, kit)),
+                      None)  # fmt: skip
+        if sensor is not None:
+            power = None if statement.power is None else constant(fold(statement.power))
+            shown = "80" if power is None else as_text(power)
+            fix = (
+                f"{statement.direction}({as_text(time)}, {shown}) "
+                f"UNTIL({_comparison(condition, kit) or kit.sensors[sensor].name + ' < 10'})"
+            )
+            _report(found, problems.LATE_CHECK, statement.span, word=statement.direction,
+                    time=as_text(time), sensor=kit.sensors[sensor].name, fix=fix)  # fmt: skip
+
+
+def _is_distance(op: str, sensor: int, kit: Kit) -> bool:
+    return op == "SENSOR" and kit.sensors[sensor].unit in ("cm", "mm", "m")
+
+
+def _comparison(condition: Expression, kit: Kit) -> str:
+    """Return `DISTANCE < 10` for a condition that is just that, else nothing."""
+    if len(condition) != 3 or condition[2].op not in _SIGNS:
+        return ""
+    texts = [
+        kit.sensors[term.value].name if term.op == "SENSOR" else as_text(term.value)
+        for term in condition[:2]
+        if term.op in ("SENSOR", "NUMBER")
+    ]
+    return f" {_SIGNS[condition[2].op]} ".join(texts) if len(texts) == 2 else ""
+
+
+def _unused(program: Program, statements: list[Statement]) -> Iterator[Problem]:
+    used = {
+        term.value
+        for statement in statements
+        for expression in expressions(statement)
+        for term in expression
+        if term.op == "VARIABLE"
+    }
+    for statement in statements:
+        if isinstance(statement, Assign) and statement.variable not in used:
+            used.add(statement.variable)  # said once
+            name = program.variables[statement.variable]
+            yield Problem(problems.UNUSED_VARIABLE, statement.span, {"name": name})
+    called = {each.procedure for each in statements if isinstance(each, Call)}
+    for number, procedure in enumerate(program.procedures):
+        if number not in called:
+            span = Span(procedure.span.start, procedure.span.start + len("DEF"))
+            yield Problem(problems.UNUSED_DEF, span, {"name": procedure.name})

@@ -1,0 +1,395 @@
+"""The syntax tree becomes a checked program.
+
+Knows every rule that a person can break once the shape is right: names, argument counts,
+ranges, kinds, limits; and the rule which reading a sensor's name means. Does not know bytes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+from tiniscript import problems, program, tree
+from tiniscript.arguments import count_problem
+from tiniscript.bytecode import BLOCKS, CALLS, DEFS, STACK_VALUES, VARIABLES
+from tiniscript.kit import Kit
+from tiniscript.kinds import ANY, Kinds, Value
+from tiniscript.problems import Code, Problem
+from tiniscript.program import Expression, Statement, Term
+from tiniscript.source import Source, Span
+from tiniscript.thousandths import as_text
+from tiniscript.words import WORDS, Argument, Word, meant_by, nearest
+
+
+class Checked(NamedTuple):
+    """`program` is a whole program only where no problem is a mistake."""
+
+    program: program.Program
+    problems: list[Problem]
+
+
+def check(source: Source, parsed: tree.Program, kit: Kit) -> Checked:
+    """Return what a program means on a robot with this kit, and all that is wrong with it."""
+    checker = _Checker(source, kit, parsed)
+    body = checker.body(parsed.body)
+    meaning = program.Program(
+        parsed.start, tuple(checker.variables), tuple(checker.procedures), body
+    )
+    return Checked(meaning, checker.problems)
+
+
+class _Name(NamedTuple):
+    """What a name stands for: a sensor, an actuator, a variable or a DEF, by its number."""
+
+    what: str
+    number: int
+
+
+class _Procedure(NamedTuple):
+    """What a call of a DEF brings with it."""
+
+    surely_read: int
+    blocks: int
+    calls: int
+
+
+
+
+class _Checker:
+    def __init__(self, source: Source, kit: Kit, parsed: tree.Program) -> None:
+        self.source = source
+        self.kit = kit
+        self.problems: list[Problem] = []
+        self.variables: list[str] = []
+        self.procedures: list[program.Procedure] = []
+        self.facts: list[_Procedure] = []
+        self.names = {device.name: _Name("sensor", i) for i, device in enumerate(kit.sensors)}
+        for i, device in enumerate(kit.actuators):
+            self.names[device.name] = _Name("actuator", i)
+        self.kinds = Kinds(self, kit)
+        self.set_somewhere = set(_assigned(parsed.body))
+        self.def_names = {each.name for each in parsed.body if isinstance(each, tree.Def)}
+        self.inside: str | None = None  # the DEF whose body is being checked
+        self.surely_read = 0  # a bit for each sensor
+        self.loops = 0
+        self.depth = 0
+        self.deepest = 0  # blocks open at once in the routine that is being checked
+        self.calls = 0  # calls open at once in it
+
+    def report(self, code: Code, span: Span, **values: str) -> None:
+        self.problems.append(Problem(code, span, values))
+
+    def body(self, instructions: Sequence[tree.Instruction]) -> program.Body:
+        made: list[Statement] = []
+        for instruction in instructions:
+            _CHECKS[type(instruction)](self, instruction, made)
+        return tuple(made)
+
+    # -- readings -----------------------------------------------------------------------------
+
+    def take(self, values: Sequence[Value], span: Span, made: list[Statement]) -> int:
+        """Add the readings that come before an instruction; return them as bits."""
+        taken = 0
+        for sensor in self.missing(values, self.surely_read):
+            made.append(program.Read(sensor, span))
+            taken |= 1 << sensor
+        return taken
+
+    @staticmethod
+    def missing(values: Sequence[Value], read: int) -> tuple[int, ...]:
+        """Return the sensors in `values`, each once, in order, that `read` does not hold."""
+        wanted: list[int] = []
+        for value in values:
+            for sensor in value.sensors:
+                if not read >> sensor & 1 and sensor not in wanted:
+                    wanted.append(sensor)
+        return tuple(wanted)
+
+    # -- instructions -------------------------------------------------------------------------
+
+    def assign(self, node: tree.Assign, made: list[Statement]) -> None:
+        name = self.names.get(node.name)
+        if name is not None and name.what in ("sensor", "actuator"):
+            sensor = name.what == "sensor"
+            shown = self.source[node.value.span]
+            self.report(problems.SENSOR_SET if sensor else problems.ACTUATOR_SET, node.name_span,
+                        name=node.name, value=shown)  # fmt: skip
+            return
+        if node.name in self.def_names:
+            self.report(problems.NAME_TAKEN, node.name_span, name=node.name)
+            return
+        value = self.kinds.value(node.value, node.name if name is None else None)
+        self.stack_fits([value], node.span)
+        number = self.variable(node, value) if name is None else name.number
+        known = self.kinds.of_variables[number]
+        if ANY not in (known, value.kind) and known != value.kind:
+            self.report(problems.KIND_CHANGES, node.value.span, name=node.name,
+                        old="@" + known, new="@" + value.kind)  # fmt: skip
+        self.take([value], node.span, made)
+        made.append(program.Assign(number, value.terms, node.span))
+
+    def variable(self, node: tree.Assign, value: Value) -> int:
+        """Make a new variable; its kind is that of its first assignment."""
+        number = len(self.variables)
+        if number == VARIABLES:
+            self.report(problems.TOO_MANY_VARIABLES, node.name_span, limit=str(VARIABLES))
+        self.names[node.name] = _Name("variable", number)
+        self.variables.append(node.name)
+        self.kinds.of_variables.append(value.kind)
+        return number
+
+    def command(self, node: tree.Command, made: list[Statement]) -> None:
+        word = WORDS.get(node.word)
+        if node.until is not None and (word is None or word.role not in ("move", "wait")):
+            self.report(problems.UNTIL_NOT_HERE, node.until.span, word=node.word)
+            node = node._replace(until=None)
+        if word is None:
+            self.kit_or_def(node, made)
+            return
+        if word.role == "stop":
+            made.append(program.Stop(node.span))
+            return
+        arguments = node.arguments or ()
+        span = node.span
+        if len(arguments) != len(word.arguments):
+            self.count(word, arguments, span)
+            return
+        forever = word.role in ("move", "wait") and arguments[0].expression[0].op == "FOREVER"
+        if forever and node.until is None:
+            self.report(problems.FOREVER_NEEDS_UNTIL, arguments[0].span, word=word.text,
+                        fix=self.source[node.span] + " UNTIL(DISTANCE < 10)")  # fmt: skip
+        values = [
+            self.kinds.value(each) if word.role == "show" else self.number(each, its, word.text)
+            for each, its in zip(arguments[forever:], word.arguments[forever:], strict=True)
+        ]
+        self.stack_fits(values, span)
+        self.take(values, span, made)
+        if word.role in ("move", "wait"):
+            until = None if node.until is None else self.until(node.until)
+            made.append(program.Move(
+                node.word,
+                None if forever else values[0].terms,
+                values[-1].terms if word.role == "move" else None,
+                until,
+                span,
+            ))  # fmt: skip
+        elif word.role == "motors":
+            made.append(program.Motors(values[0].terms, values[1].terms, span))
+        elif word.role == "beep":
+            made.append(program.Beep(values[0].terms, values[1].terms, span))
+        else:
+            made.append(program.Show(values[0].terms, values[0].kind == "yes_no", span))
+
+    def count(self, word: Word, arguments: tuple[tree.Argument, ...], span: Span) -> None:
+        spans = [argument.span for argument in arguments]
+        self.problems.append(count_problem(self.source, word, spans, span))
+
+    def number(self, argument: tree.Argument, its: Argument, word: str) -> Value:
+        """Check an argument that is a number; a plain one must be in range."""
+        if argument.is_plain:
+            part = argument.expression[0]
+            assert isinstance(part.value, int)
+            if not its.low <= part.value <= its.high:
+                low, high = as_text(its.low), as_text(its.high)
+                self.report(problems.OUT_OF_RANGE, argument.span, word=word, name=its.name,
+                            unit=its.unit, low=low, high=high,
+                            found=as_text(part.value))  # fmt: skip
+        value = self.kinds.value(argument)
+        if value.kind == "yes_no":
+            self.report(problems.WANTS_NUMBER, argument.span, by=word,
+                        found=self.source[argument.span])  # fmt: skip
+        return value
+
+    def until(self, argument: tree.Argument) -> program.Until:
+        value = self.condition(argument, "UNTIL")
+        return program.Until(self.missing([value], 0), value.terms)
+
+    def condition(self, argument: tree.Argument, word: str) -> Value:
+        value = self.kinds.value(argument)
+        if value.kind == "number":
+            self.report(problems.WANTS_CONDITION, argument.span, by=word,
+                        found=self.source[argument.span])  # fmt: skip
+        self.stack_fits([value], argument.span)
+        return value
+
+    def stack_fits(self, values: Sequence[Value], span: Span) -> None:
+        if any(value.depth + i > STACK_VALUES for i, value in enumerate(values)):
+            self.report(problems.VALUES_TOO_DEEP, span, limit=str(STACK_VALUES))
+
+    # -- names as instructions ----------------------------------------------------------------
+
+    def kit_or_def(self, node: tree.Command, made: list[Statement]) -> None:
+        name = self.names.get(node.word)
+        if name is None:
+            self.unknown(node)
+        elif name.what == "actuator":
+            self.actuator(node, name.number, made)
+        elif node.arguments is not None:
+            self.report(problems.NOT_CALLABLE, node.span, name=node.word)
+        elif name.what == "sensor":
+            made.append(program.Read(name.number, node.span))
+            self.surely_read |= 1 << name.number
+        elif name.what == "def":
+            self.call(node, name.number, made)
+        else:
+            self.report(problems.VARIABLE_ALONE, node.span, name=node.word)
+
+    def actuator(self, node: tree.Command, number: int, made: list[Statement]) -> None:
+        device = self.kit.actuators[number]
+        its = Argument(device.name, device.unit, device.low, device.high)
+        example = f"{device.name}(TRUE)" if device.is_yes_no else (
+            f"{device.name}({as_text(device.low + (device.high - device.low) // 2000 * 1000)})"
+        )  # fmt: skip
+        if node.arguments is None:
+            self.report(problems.ACTUATOR_ALONE, node.span, name=device.name, fix=example)
+            return
+        if len(node.arguments) != 1:
+            word = Word(device.name, "actuator", (its._replace(name="value"),))
+            self.count(word, node.arguments, node.span)
+            return
+        argument = node.arguments[0]
+        if device.is_yes_no:
+            value = self.kinds.value(argument)
+            if value.kind == "number":
+                self.report(problems.WANTS_CONDITION, argument.span, by=device.name,
+                            found=self.source[argument.span])  # fmt: skip
+        else:
+            value = self.number(argument, its, device.name)
+        self.stack_fits([value], node.span)
+        self.take([value], node.span, made)
+        made.append(program.Set(number, value.terms, node.span))
+
+    def call(self, node: tree.Command, number: int, made: list[Statement]) -> None:
+        facts = self.facts[number]
+        if facts.calls + 1 > CALLS:
+            self.report(problems.CALLS_TOO_DEEP, node.span, name=node.word, limit=str(CALLS))
+        if self.depth + facts.blocks > BLOCKS:
+            self.report(problems.BLOCKS_TOO_DEEP, node.span, limit=str(BLOCKS))
+        self.calls = max(self.calls, facts.calls + 1)
+        self.deepest = max(self.deepest, self.depth + facts.blocks)
+        self.surely_read |= facts.surely_read
+        made.append(program.Call(number, node.span))
+
+    def unknown(self, node: tree.Command) -> None:
+        word, span = node.word, node.word_span
+        if word == self.inside:
+            self.report(problems.CALLS_ITSELF, span, name=word)
+        elif word in self.def_names:
+            self.report(problems.CALL_BEFORE_DEF, span, name=word)
+        elif word in self.set_somewhere:
+            self.report(problems.VARIABLE_ALONE, span, name=word)
+        else:
+            meant = meant_by(word)
+            if meant is not None and (meant in WORDS or meant in self.names):
+                fix = WORDS[meant].example if meant in WORDS else meant
+                self.report(problems.OTHER_LANGUAGE, span, found=word, right=meant, fix=fix)
+                return
+            commands = [each.text for each in WORDS.values() if each.role not in
+                        ("setup", "later", "value", "operator", "function", "forever")]  # fmt: skip
+            close = nearest(word, [*commands, *self.names, *self.def_names])
+            self.report(problems.UNKNOWN_WORD, span, found=word, near=close or "")
+
+    # -- blocks -------------------------------------------------------------------------------
+
+    def deeper(self, instructions: Sequence[tree.Instruction], is_loop: bool) -> program.Body:
+        self.depth += 1
+        self.loops += is_loop
+        self.deepest = max(self.deepest, self.depth)
+        made = self.body(instructions)
+        self.depth -= 1
+        self.loops -= is_loop
+        return made
+
+    def if_(self, node: tree.If, made: list[Statement]) -> None:
+        before, chain = self.surely_read, 0
+        after = -1  # what all arms make surely read
+        arms: list[program.Arm] = []
+        for arm in node.arms:
+            value = self.kinds.nothing
+            if arm.condition is not None:
+                value = self.condition(arm.condition, "ELSEIF" if arms else "IF")
+            reads: tuple[int, ...] = ()
+            if arms:
+                reads = self.missing([value], before | chain)
+                for sensor in reads:
+                    chain |= 1 << sensor
+            else:
+                chain = self.take([value], arm.span, made)
+            body = self.deeper(arm.body, False)
+            after &= self.surely_read
+            self.surely_read = before
+            arms.append(program.Arm(reads, value.terms, body, arm.span))
+        otherwise = self.deeper(node.otherwise, False)
+        self.surely_read &= after
+        made.append(program.If(tuple(arms), otherwise, node.span))
+
+    def loop(self, node: tree.Loop, made: list[Statement]) -> None:
+        count = None
+        if node.times is not None:
+            value = self.number(node.times, Argument("n", ""), "LOOP")
+            self.stack_fits([value], node.times.span)
+            self.take([value], node.span, made)
+            count = value.terms
+        before, self.surely_read = self.surely_read, 0
+        body = self.deeper(node.body, True)
+        self.surely_read = before
+        made.append(program.Loop(count, body, node.span))
+
+    def while_(self, node: tree.While, made: list[Statement]) -> None:
+        value = self.kinds.nothing
+        if node.condition is not None:
+            value = self.condition(node.condition, "WHILE")
+        before, self.surely_read = self.surely_read, 0
+        body = self.deeper(node.body, True)
+        self.surely_read = before
+        reads = self.missing([value], 0)
+        made.append(program.While(reads, value.terms, body, node.span))
+
+    def break_(self, node: tree.Break, made: list[Statement]) -> None:
+        if not self.loops:
+            self.report(problems.BREAK_OUTSIDE, node.span)
+        made.append(program.Break(node.span))
+
+    def def_(self, node: tree.Def, made: list[Statement]) -> None:
+        known = self.names.get(node.name)
+        if known is not None:
+            code = problems.DEF_TWICE if known.what == "def" else problems.NAME_TAKEN
+            self.report(code, node.name_span, name=node.name)
+        if len(self.procedures) == DEFS:
+            self.report(problems.TOO_MANY_DEFS, node.name_span, limit=str(DEFS))
+        outside = self.surely_read, self.deepest, self.calls
+        self.surely_read = self.deepest = self.calls = 0
+        self.inside = node.name
+        body = self.body(node.body)
+        self.inside = None
+        self.facts.append(_Procedure(self.surely_read, self.deepest, self.calls))
+        self.surely_read, self.deepest, self.calls = outside
+        if known is None:
+            self.names[node.name] = _Name("def", len(self.procedures))
+        self.procedures.append(program.Procedure(node.name, body, node.span))
+
+
+_CHECKS: dict[type, Callable[..., None]] = {
+    tree.Command: _Checker.command,
+    tree.Assign: _Checker.assign,
+    tree.If: _Checker.if_,
+    tree.Loop: _Checker.loop,
+    tree.While: _Checker.while_,
+    tree.Break: _Checker.break_,
+    tree.Def: _Checker.def_,
+}
+
+
+def _assigned(body: Sequence[tree.Instruction]) -> list[str]:
+    """Return the names that a program sets anywhere."""
+    found: list[str] = []
+    for node in body:
+        if isinstance(node, tree.Assign):
+            found.append(node.name)
+        elif isinstance(node, tree.If):
+            for arm in node.arms:
+                found += _assigned(arm.body)
+            found += _assigned(node.otherwise)
+        elif isinstance(node, (tree.Loop, tree.While, tree.Def)):
+            found += _assigned(node.body)
+    return found

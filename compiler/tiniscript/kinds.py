@@ -1,0 +1,158 @@
+"""The checker's half that looks into expressions.
+
+Knows which kinds operators take and give, how deep the stack gets, and what names in
+expressions mean. Gives terms, and the sensors whose readings they use.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+from tiniscript import problems
+from tiniscript.kit import Kit
+from tiniscript.program import Expression, Term
+from tiniscript.source import Span
+from tiniscript.tree import Argument, Part
+from tiniscript.words import nearest
+
+if TYPE_CHECKING:
+    from tiniscript.checker import _Checker
+
+NUMBER, YES_NO, ANY = "number", "yes_no", "any"  # ANY: a mistake was already reported there
+
+
+class Value(NamedTuple):
+    """An expression that has been looked into. `depth` counts values on the stack."""
+
+    terms: Expression
+    kind: str
+    depth: int
+    sensors: tuple[int, ...]  # in order of appearance, perhaps several times
+
+
+class _Operand(NamedTuple):
+    kind: str
+    depth: int
+    start: int
+    end: int
+
+
+_ARITHMETIC = {"ADD": "+", "SUB": "-", "MUL": "*", "DIV": "/", "MOD": "%", "MIN": "MIN",
+               "MAX": "MAX", "RANDOM": "RANDOM", "ROUND": "ROUND"}  # fmt: skip
+_ORDER = {"LT": "<", "LE": "<=", "GT": ">", "GE": ">="}
+_EQUAL = {"EQ": "=", "NE": "<>"}
+_UNARY = {"NEG": "-", "ABS": "ABS"}
+_LEAVES = {"TRUE": Term("YES_NO", 1), "FALSE": Term("YES_NO", 0), "TIME": Term("TIME")}
+
+
+class Kinds:
+    def __init__(self, checker: _Checker, kit: Kit) -> None:
+        self.checker = checker
+        self.kit = kit
+        self.of_variables: list[str] = []
+        self.nothing = Value((Term("YES_NO", 0),), ANY, 1, ())
+
+    def value(self, argument: Argument, target: str | None = None) -> Value:
+        """Return what an expression means. `target` is the new variable that it is put into."""
+        terms: list[Term] = []
+        stack: list[_Operand] = []
+        sensors: list[int] = []
+        for part in argument.expression:
+            op = part.op
+            if op == "NUMBER":
+                assert isinstance(part.value, int)
+                terms.append(Term(op, part.value))
+                stack.append(_Operand(NUMBER, 1, part.start, part.end))
+            elif op == "NAME":
+                terms.append(self._name(part, target, stack, sensors))
+            elif op in _LEAVES:
+                terms.append(_LEAVES[op])
+                kind = NUMBER if op == "TIME" else YES_NO
+                stack.append(_Operand(kind, 1, part.start, part.end))
+            elif op == "FOREVER":
+                self.checker.report(problems.FOREVER_NOT_HERE, Span(part.start, part.end))
+                return self.nothing
+            else:
+                terms.append(Term(op))
+                if not op.endswith("_LEFT"):
+                    self._apply(part, stack)
+        result = stack[-1]
+        return Value(tuple(terms), result.kind, result.depth, tuple(sensors))
+
+    def _name(
+        self, part: Part, target: str | None, stack: list[_Operand], sensors: list[int]
+    ) -> Term:
+        checker = self.checker
+        assert isinstance(part.value, str)
+        kind, term = ANY, Term("NUMBER", 0)
+        name = checker.names.get(part.value)
+        if name is None:
+            self._unknown(part, part.value, target)
+        elif name.what == "variable":
+            kind, term = self.of_variables[name.number], Term("VARIABLE", name.number)
+        elif name.what == "sensor":
+            sensors.append(name.number)
+            kind = YES_NO if self.kit.sensors[name.number].is_yes_no else NUMBER
+            term = Term("SENSOR", name.number)
+        else:
+            code = problems.DEF_READ if name.what == "def" else problems.ACTUATOR_READ
+            checker.report(code, Span(part.start, part.end), name=part.value)
+        stack.append(_Operand(kind, 1, part.start, part.end))
+        return term
+
+    def _unknown(self, part: Part, name: str, target: str | None) -> None:
+        checker, span = self.checker, Span(part.start, part.end)
+        if name in checker.def_names:
+            checker.report(problems.DEF_READ, span, name=name)
+            return
+        known = [each for each, its in checker.names.items() if its.what in ("sensor", "variable")]
+        near = nearest(name, known) or ""
+        if name == target or name in checker.set_somewhere:
+            checker.report(problems.USED_BEFORE_SET, span, name=name, near=near)
+        else:
+            checker.report(problems.UNKNOWN_NAME, span, found=name, near=near)
+
+    def _apply(self, part: Part, stack: list[_Operand]) -> None:
+        """Take the operands of an operator from `stack` and put its result there."""
+        op = part.op
+        right = stack.pop()
+        if op == "NOT":
+            self._wants_yes_no("NOT", right)
+            stack.append(_Operand(YES_NO, right.depth, part.start, right.end))
+            return
+        if op in _UNARY:
+            self._wants_number(_UNARY[op], right)
+            end = max(right.end, part.end)
+            stack.append(_Operand(NUMBER, right.depth, part.start, end))
+            return
+        left = stack.pop()
+        depth = max(left.depth, right.depth + 1)
+        start, end = min(left.start, part.start), max(right.end, part.end)
+        kind = YES_NO
+        if op in _ARITHMETIC:
+            self._wants_number(_ARITHMETIC[op], left)
+            self._wants_number(_ARITHMETIC[op], right)
+            kind = NUMBER
+        elif op in ("AND", "OR"):
+            self._wants_yes_no(op, left)
+            self._wants_yes_no(op, right)
+        elif left.kind != right.kind:
+            if ANY not in (left.kind, right.kind):
+                sign = _ORDER.get(op) or _EQUAL[op]
+                self.checker.report(problems.MIXED_COMPARE, Span(start, end), sign=sign,
+                                    left="@" + left.kind, right="@" + right.kind)  # fmt: skip
+        elif left.kind == YES_NO and op in _ORDER:
+            self.checker.report(problems.YES_NO_ORDER, Span(start, end), sign=_ORDER[op])
+        stack.append(_Operand(kind, depth, start, end))
+
+    def _wants_number(self, by: str, operand: _Operand) -> None:
+        if operand.kind == YES_NO:
+            span = Span(operand.start, operand.end)
+            found = self.checker.source[span]
+            self.checker.report(problems.WANTS_NUMBER, span, by=by, found=found)
+
+    def _wants_yes_no(self, by: str, operand: _Operand) -> None:
+        if operand.kind == NUMBER:
+            span = Span(operand.start, operand.end)
+            found = self.checker.source[span]
+            self.checker.report(problems.WANTS_CONDITION, span, by=by, found=found)

@@ -1,0 +1,251 @@
+"""The checked program: what a program means, with every reading in its place.
+
+The checker writes it, the optimiser rewrites it, `lower` turns it into instructions. Names are
+numbers here: variables, sensors, actuators and DEFs by their order. Numbers are thousandths,
+TRUE is 1 and FALSE is 0. Nothing in here can be wrong any more.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from tiniscript.source import Span
+from tiniscript.thousandths import as_text
+
+# An expression is flat, in the order in which a stack machine meets it. `op` is NUMBER, YES_NO,
+# VARIABLE, SENSOR, TIME, AND_LEFT, OR_LEFT, AND, OR or the name of a value instruction that
+# takes its operands from the stack (ADD, NEG, ROUND, ...).
+
+
+class Term(NamedTuple):
+    op: str
+    value: int = 0
+
+
+Expression = tuple[Term, ...]
+
+
+class Read(NamedTuple):
+    sensor: int
+    span: Span
+
+
+class Until(NamedTuple):
+    """The check of a move: its readings, then its condition."""
+
+    reads: tuple[int, ...]
+    condition: Expression
+
+
+class Move(NamedTuple):
+    """`direction` is F, B, L, R or W; a wait has no power. `time` is None for FOREVER."""
+
+    direction: str
+    time: Expression | None
+    power: Expression | None
+    until: Until | None
+    span: Span
+
+
+class Motors(NamedTuple):
+    left: Expression
+    right: Expression
+    span: Span
+
+
+class Stop(NamedTuple):
+    span: Span
+
+
+class Beep(NamedTuple):
+    time: Expression
+    hertz: Expression
+    span: Span
+
+
+class Show(NamedTuple):
+    value: Expression
+    is_yes_no: bool
+    span: Span
+
+
+class Set(NamedTuple):
+    actuator: int
+    value: Expression
+    span: Span
+
+
+class Assign(NamedTuple):
+    variable: int
+    value: Expression
+    span: Span
+
+
+class Arm(NamedTuple):
+    reads: tuple[int, ...]
+    condition: Expression
+    body: tuple[Statement, ...]
+    span: Span
+
+
+class If(NamedTuple):
+    arms: tuple[Arm, ...]
+    otherwise: tuple[Statement, ...]
+    span: Span
+
+
+class Loop(NamedTuple):
+    """`times` is None for FOREVER."""
+
+    times: Expression | None
+    body: tuple[Statement, ...]
+    span: Span
+
+
+class While(NamedTuple):
+    reads: tuple[int, ...]
+    condition: Expression
+    body: tuple[Statement, ...]
+    span: Span
+
+
+class Break(NamedTuple):
+    span: Span
+
+
+class Call(NamedTuple):
+    procedure: int
+    span: Span
+
+
+Statement = (
+    Read | Move | Motors | Stop | Beep | Show | Set | Assign | If | Loop | While | Break | Call
+)
+Body = tuple[Statement, ...]
+
+
+class Procedure(NamedTuple):
+    name: str
+    body: Body
+    span: Span
+
+
+class Program(NamedTuple):
+    """`variables` are names in the order of their numbers; `start` is SI, SB or PING."""
+
+    start: str
+    variables: tuple[str, ...]
+    procedures: tuple[Procedure, ...]
+    body: Body
+
+
+def bodies(statement: Statement) -> tuple[Body, ...]:
+    """Return the blocks that a statement holds."""
+    if isinstance(statement, If):
+        return (*(arm.body for arm in statement.arms), statement.otherwise)
+    if isinstance(statement, (Loop, While)):
+        return (statement.body,)
+    return ()
+
+
+def walk(body: Body) -> Iterator[Statement]:
+    """Yield every statement of `body`, those of its blocks included, in order of the text."""
+    for statement in body:
+        yield statement
+        for inner in bodies(statement):
+            yield from walk(inner)
+
+
+def expressions(statement: Statement) -> Iterator[Expression]:
+    """Yield the expressions of a statement itself, not those of its blocks' bodies."""
+    if isinstance(statement, Move):
+        if statement.time is not None:
+            yield statement.time
+        if statement.power is not None:
+            yield statement.power
+        if statement.until is not None:
+            yield statement.until.condition
+    elif isinstance(statement, Motors):
+        yield statement.left
+        yield statement.right
+    elif isinstance(statement, Beep):
+        yield statement.time
+        yield statement.hertz
+    elif isinstance(statement, (Show, Set, Assign)):
+        yield statement.value
+    elif isinstance(statement, If):
+        for arm in statement.arms:
+            yield arm.condition
+    elif isinstance(statement, Loop):
+        if statement.times is not None:
+            yield statement.times
+    elif isinstance(statement, While):
+        yield statement.condition
+
+
+def loops_end(body: Body) -> bool:
+    """Whether a BREAK in `body` leaves the loop around it."""
+    for statement in body:
+        if isinstance(statement, Break):
+            return True
+        if isinstance(statement, If) and any(map(loops_end, bodies(statement))):
+            return True
+    return False
+
+
+def goes_on(body: Body) -> bool:
+    """Whether what follows `body` can be reached, whatever its conditions say."""
+    for statement in body:
+        if isinstance(statement, Break):
+            return False
+        if isinstance(statement, Loop) and statement.times is None:
+            if not loops_end(statement.body):
+                return False
+        elif isinstance(statement, If) and not any(map(goes_on, bodies(statement))):
+            return False
+    return True
+
+
+def expression_text(expression: Expression) -> str:
+    """Return `n5 v0 ADD`: an expression for people who debug the compiler."""
+    letters = {"VARIABLE": "v", "SENSOR": "s", "YES_NO": "yes_no"}
+    words = []
+    for op, value in expression:
+        if op == "NUMBER":
+            words.append(as_text(value))
+        elif op in letters:
+            words.append(f"{letters[op]}{value}")
+        else:
+            words.append(op)
+    return " ".join(words)
+
+
+def program_text(program: Program) -> str:
+    """Return the whole program as lines of text, blocks indented."""
+    lines = [program.start]
+    for procedure in program.procedures:
+        lines += [f"DEF {procedure.name}", *_body_lines(procedure.body, "  ")]
+    return "\n".join([*lines, *_body_lines(program.body, "")]) + "\n"
+
+
+def _body_lines(body: Body, indent: str) -> Iterator[str]:
+    for statement in body:
+        words = [type(statement).__name__]
+        for name, value in statement._asdict().items():
+            if name in ("time", "power", "left", "right", "hertz", "value", "times", "condition"):
+                words.append("FOREVER" if value is None else expression_text(value))
+            elif name in ("direction", "sensor", "actuator", "variable", "procedure", "reads"):
+                words.append(str(value))
+        yield indent + " ".join(words)
+        if isinstance(statement, Move) and statement.until is not None:
+            reads, condition = statement.until
+            yield f"{indent}  until {reads} {expression_text(condition)}"
+        if isinstance(statement, If):
+            for arm in statement.arms:
+                yield f"{indent}  arm {arm.reads} {expression_text(arm.condition)}"
+                yield from _body_lines(arm.body, indent + "    ")
+            yield f"{indent}  else"
+            yield from _body_lines(statement.otherwise, indent + "    ")
+        elif isinstance(statement, (Loop, While)):
+            yield from _body_lines(statement.body, indent + "  ")
