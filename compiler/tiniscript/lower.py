@@ -1,0 +1,314 @@
+"""A checked program becomes instructions, and instructions become code bytes.
+
+Knows which instruction says a thing in the fewest bytes, and lays out jumps: each starts
+short, and becomes far where its target is. Does not know what an image is.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from tiniscript.bytecode import CODE_BYTES
+from tiniscript.lower_expression import Emitter, Item, add_value, number_of, tests
+from tiniscript.optimizer import constant
+from tiniscript.program import (
+    Assign,
+    Beep,
+    Body,
+    Break,
+    Call,
+    Expression,
+    If,
+    Loop,
+    Motors,
+    Move,
+    Program,
+    Read,
+    Set,
+    Show,
+    Statement,
+    Stop,
+    While,
+    goes_on,
+)
+from tiniscript.source import Span
+from tiniscript.thousandths import limited, whole
+
+
+class Place(NamedTuple):
+    """The instruction at `offset` comes from the text at `span`."""
+
+    offset: int
+    span: Span
+
+
+class Lowered(NamedTuple):
+    """`code` is longer than a machine takes where `bytecode.CODE_BYTES` says so."""
+
+    code: bytes
+    places: tuple[Place, ...]
+
+
+def lower(program: Program) -> Lowered:
+    """Return the code bytes of a program, and where in the text they come from."""
+    lowering = _Lowering()
+    for procedure in program.procedures:
+        lowering.procedure(procedure.body, procedure.span)
+    lowering.body(program.body)
+    return _assembled(lowering.out)
+
+
+class _LoopEnd(NamedTuple):
+    label: int
+    counts: bool
+
+
+class _Lowering:
+    def __init__(self) -> None:
+        self.out = Emitter()
+        self.entries: list[int] = []  # the label of each DEF's first instruction
+        self.loops: list[_LoopEnd] = []
+
+    def procedure(self, body: Body, span: Span) -> None:
+        out = self.out
+        out.span = span
+        end = out.new_label()
+        out.add("DEF", to=end)
+        self.entries.append(out.mark_here())
+        self.body(body)
+        out.add("RETURN")
+        out.mark(end)
+
+    def body(self, body: Body) -> None:
+        for statement in body:
+            self.statement(statement)
+
+    def statement(self, statement: Statement) -> None:
+        out = self.out
+        out.span = statement.span
+        if isinstance(statement, Read):
+            out.add("READ", statement.sensor)
+        elif isinstance(statement, Move):
+            self.move(statement)
+        elif isinstance(statement, Stop):
+            out.add("STOP")
+        elif isinstance(statement, Assign):
+            self.assign(statement)
+        elif isinstance(statement, If):
+            self.if_(statement)
+        elif isinstance(statement, Loop):
+            self.loop(statement)
+        elif isinstance(statement, While):
+            self.while_(statement)
+        elif isinstance(statement, Break):
+            loop = self.loops[-1]
+            out.add("BREAK_LOOP" if loop.counts else "BREAK", to=loop.label)
+        elif isinstance(statement, Call):
+            out.add("CALL", to=self.entries[statement.procedure])
+        elif isinstance(statement, Motors):
+            self.motors(statement)
+        elif isinstance(statement, Beep):
+            add_value(out, statement.time)
+            add_value(out, statement.hertz)
+            out.add("BEEP")
+        elif isinstance(statement, Show):
+            add_value(out, statement.value)
+            out.add("SHOW_YES_NO" if statement.is_yes_no else "SHOW")
+        elif isinstance(statement, Set):
+            add_value(out, statement.value)
+            out.add("SET", statement.actuator)
+
+    # -- moves --------------------------------------------------------------------------------
+
+    def move(self, move: Move) -> None:
+        out = self.out
+        time = None if move.time is None else _at_least_0(move.time)
+        power = None if move.power is None else _percentage(move.power, 0)
+        if move.until is None:
+            assert time is not None
+            tenths = _tenths(time)
+            name = "WAIT" if power is None else f"MOVE_{move.direction}"
+            short = "WAIT8" if power is None else f"MOVE8_{move.direction}"
+            value = None if power is None else constant(power)
+            if tenths is not None and (power is None or value is not None):
+                out.add(short, tenths, *(() if value is None else (value // 1000,)))
+                return
+            add_value(out, time)
+            if power is not None:
+                add_value(out, power)
+            out.add(name)
+            return
+        if time is not None:
+            add_value(out, time)
+        if power is not None:
+            add_value(out, power)
+        forever = "_FOREVER" if time is None else ""
+        out.add(f"WATCH{forever}_{'WAIT' if power is None else move.direction}")
+        check = out.mark_here()
+        for sensor in move.until.reads:
+            out.add("READ", sensor)
+        add_value(out, move.until.condition)
+        out.add("UNTIL", to=check)
+
+    def motors(self, motors: Motors) -> None:
+        left, right = _percentage(motors.left, -100), _percentage(motors.right, -100)
+        left_value, right_value = constant(left), constant(right)
+        if left_value is not None and right_value is not None:
+            self.out.add("MOTORS8", left_value // 1000, right_value // 1000)
+        else:
+            add_value(self.out, left)
+            add_value(self.out, right)
+            self.out.add("MOTORS")
+
+    # -- variables ----------------------------------------------------------------------------
+
+    def assign(self, assign: Assign) -> None:
+        """`X = 5`, `X = X + 5`, `X = X + Y` have instructions of their own."""
+        out, variable, value = self.out, assign.variable, assign.value
+        if len(value) == 1 and value[0].op == "NUMBER":
+            number = number_of(value[0], -128, 127)
+            if number is not None:
+                out.add("SET_VAR8", variable, number)
+                return
+        if len(value) == 3 and value[2].op in ("ADD", "SUB"):
+            left, right, operator = value
+            if operator.op == "ADD" and left != ("VARIABLE", variable):
+                left, right = right, left
+            if left == ("VARIABLE", variable):
+                if right.op == "NUMBER":
+                    sign = 1 if operator.op == "ADD" else -1
+                    number = number_of(right._replace(value=sign * right.value), -128, 127)
+                    if number is not None:
+                        out.add("ADD_VAR8", variable, number)
+                        return
+                elif right.op == "VARIABLE" and operator.op == "ADD":
+                    out.add("ADD_VAR", variable, right.value)
+                    return
+        add_value(out, value)
+        out.add("SET_VAR", variable)
+
+    # -- blocks -------------------------------------------------------------------------------
+
+    def if_(self, statement: If) -> None:
+        out = self.out
+        end = out.new_label()
+        for k, arm in enumerate(statement.arms):
+            is_last = k == len(statement.arms) - 1 and not statement.otherwise
+            following = end if is_last else out.new_label()
+            out.span = arm.span
+            for sensor in arm.reads:
+                out.add("READ", sensor)
+            tests(out, arm.condition, following)
+            self.body(arm.body)
+            if not is_last:
+                if goes_on(arm.body):
+                    out.add("ELSE", to=end)
+                out.mark(following)
+        self.body(statement.otherwise)
+        out.mark(end)
+
+    def loop(self, loop: Loop) -> None:
+        out = self.out
+        end = out.new_label()
+        if loop.times is None:
+            out.add("FOREVER")
+        else:
+            value = constant(loop.times)
+            count = None if value is None else whole(value)
+            if count is not None and 1 <= count <= 255:
+                out.add("LOOP8", count)
+            else:
+                add_value(out, loop.times)
+                out.add("LOOP", to=end)
+        self.repeated(loop.body, end, loop.times is not None, loop.span)
+
+    def while_(self, loop: While) -> None:
+        out = self.out
+        end = out.new_label()
+        out.add("WHILE", to=end)
+        start = out.mark_here()
+        for sensor in loop.reads:
+            out.add("READ", sensor)
+        tests(out, loop.condition, end)
+        self.repeated(loop.body, end, False, loop.span, start)
+
+    def repeated(
+        self, body: Body, end: int, counts: bool, span: Span, start: int | None = None
+    ) -> None:
+        """Add a loop's body, the jump back to `start` (here if None) and the label `end`."""
+        out = self.out
+        if start is None:
+            start = out.mark_here()
+        self.loops.append(_LoopEnd(end, counts))
+        self.body(body)
+        self.loops.pop()
+        out.span = span
+        out.add("NEXT" if counts else "AGAIN", to=start)
+        out.mark(end)
+
+
+def _at_least_0(time: Expression) -> Expression:
+    value = constant(time)
+    return (time[0]._replace(value=0),) if value is not None and value < 0 else time
+
+
+def _tenths(time: Expression) -> int | None:
+    value = constant(time)
+    if value is None or value % 100 or value > 25_500:
+        return None
+    return value // 100
+
+
+def _percentage(power: Expression, low: int) -> Expression:
+    value = constant(power)
+    if value is None:
+        return power
+    return (power[0]._replace(value=limited(whole(value), low, 100) * 1000),)
+
+
+# -- layout -----------------------------------------------------------------------------------
+
+
+def _assembled(out: Emitter) -> Lowered:
+    """Choose for each jump the form that reaches its target, and write the bytes.
+
+    A jump only ever gets longer, so this ends. Comparing branches have no far form: one that
+    does not reach becomes a comparison and an IF_FAR.
+    """
+    while True:
+        starts, offset = [], 0
+        for item in out.items:
+            starts.append(offset)
+            offset += item.op.size
+        starts.append(offset)
+        targets = [starts[index] for index in out.labels]
+        short = {
+            k
+            for k, item in enumerate(out.items)
+            if item.to is not None and not _reaches(item, starts[k], targets[item.to])
+        }
+        if not short or offset > 2 * CODE_BYTES:  # then it is refused, however long it is
+            break
+        out.widen(short)
+    code = bytearray()
+    places: list[Place] = []
+    for item, start in zip(out.items, starts, strict=False):
+        if not places or places[-1].span != item.span:
+            places.append(Place(start, item.span))
+        _write(code, item, None if item.to is None else targets[item.to])
+    return Lowered(bytes(code), tuple(places))
+
+
+def _reaches(item: Item, start: int, target: int) -> bool:
+    distance = abs(target - (start + item.op.size))
+    return distance <= item.op.operands[-1].kind.high
+
+
+def _write(code: bytearray, item: Item, target: int | None) -> None:
+    operands = item.operands
+    if target is not None:
+        distance = abs(target - (len(code) + item.op.size))
+        operands = (*operands, min(distance, item.op.operands[-1].kind.high))
+    code.append(item.op.code)
+    for operand, value in zip(item.op.operands, operands, strict=True):
+        code += value.to_bytes(operand.kind.size, "little", signed=operand.kind.signed)

@@ -1,0 +1,211 @@
+"""Expressions become instructions, and conditions become branches.
+
+Knows the shortest push of a constant, when both sides of an AND may simply be evaluated, and
+which conditions a single comparing branch says.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from tiniscript.bytecode import BY_NAME, Op
+from tiniscript.optimizer import is_safe
+from tiniscript.program import Expression, Term
+from tiniscript.source import Span
+
+NEGATED = {"EQ": "NE", "NE": "EQ", "LT": "GE", "GE": "LT", "LE": "GT", "GT": "LE"}
+_SWAPPED = {"EQ": "EQ", "NE": "NE", "LT": "GT", "GT": "LT", "LE": "GE", "GE": "LE"}
+_SHORT_SIDE = 6  # terms up to which evaluating a needless side costs less than a jump
+
+
+class Item(NamedTuple):
+    """An instruction that is not yet laid out; `to` is a label and stands for the last operand."""
+
+    op: Op
+    operands: tuple[int, ...]
+    to: int | None
+    span: Span
+
+
+class Emitter:
+    """Collects instructions and labels."""
+
+    def __init__(self) -> None:
+        self.items: list[Item] = []
+        self.labels: list[int] = []  # the index of the item that each label stands before
+        self.span = Span(0, 0)
+        self._last_mark = -1
+
+    def add(self, name: str, *operands: int, to: int | None = None) -> None:
+        self.items.append(Item(BY_NAME[name], operands, to, self.span))
+
+    def new_label(self) -> int:
+        self.labels.append(-1)
+        return len(self.labels) - 1
+
+    def mark(self, label: int) -> None:
+        self.labels[label] = self._last_mark = len(self.items)
+
+    def mark_here(self) -> int:
+        label = self.new_label()
+        self.mark(label)
+        return label
+
+    def pops_read(self, sensor: int) -> bool:
+        """Take back `READ sensor` if it is the last instruction and nothing jumps behind it."""
+        if not self.items or self._last_mark == len(self.items):
+            return False
+        last = self.items[-1]
+        if last.op.name != "READ" or last.operands != (sensor,):
+            return False
+        self.span = last.span
+        del self.items[-1]
+        return True
+
+    def widen(self, which: set[int]) -> None:
+        """Give the jumps at the indexes `which` their far forms."""
+        made: list[Item] = []
+        moved = []
+        for k, item in enumerate(self.items):
+            moved.append(len(made))
+            made += _far(item) if k in which else (item,)
+        moved.append(len(made))
+        self.labels = [moved[index] for index in self.labels]
+        self.items = made
+
+
+def _far(item: Item) -> tuple[Item, ...]:
+    far = BY_NAME.get(item.op.name + "_FAR")
+    if far is not None:
+        return (item._replace(op=far),)
+    _, source, comparator = item.op.name.split("_")
+    name = {"VAR": "PUSH_VAR", "SENSOR": "PUSH_SENSOR", "READ": "PUSH_READ"}[source.rstrip("168")]
+    index, number = item.operands
+    return (
+        Item(BY_NAME[name], (index,), None, item.span),
+        Item(*_push(number * 1000), None, item.span),
+        Item(BY_NAME[comparator], (), None, item.span),
+        Item(BY_NAME["IF_FAR"], (), item.to, item.span),
+    )
+
+
+def number_of(term: Term, low: int, high: int) -> int | None:
+    """Return the whole number that a term is, if it lies from `low` to `high`."""
+    if term.op != "NUMBER" or term.value % 1000 or not low <= term.value // 1000 <= high:
+        return None
+    return term.value // 1000
+
+
+def _push(value: int) -> tuple[Op, tuple[int, ...]]:
+    """Return the shortest instruction that pushes `value` thousandths."""
+    units = value // 1000
+    if value % 1000 == 0 and -128 <= units <= 127:
+        return BY_NAME["PUSH8"], (units,)
+    if value % 1000 == 0 and -32768 <= units <= 32767:
+        return BY_NAME["PUSH16"], (units,)
+    return BY_NAME["PUSH_MILLI" if -32768 <= value <= 32767 else "PUSH32"], (value,)
+
+
+def push(out: Emitter, term: Term) -> None:
+    """Add the instruction for a term that is no operator between two sides."""
+    op, value = term
+    if op == "NUMBER":
+        instruction, operands = _push(value)
+        out.items.append(Item(instruction, operands, None, out.span))
+    elif op == "YES_NO":
+        out.add("PUSH_TRUE" if value else "PUSH_FALSE")
+    elif op == "VARIABLE":
+        out.add("PUSH_VAR", value)
+    elif op == "SENSOR":
+        span = out.span
+        out.add("PUSH_READ" if out.pops_read(value) else "PUSH_SENSOR", value)
+        out.span = span
+    else:
+        out.add(op)
+
+
+def add_value(out: Emitter, expression: Expression) -> None:
+    """Add instructions that leave the value of `expression` on the stack."""
+    joins: list[int | None] = []
+    for k, term in enumerate(expression):
+        if term.op in ("AND_LEFT", "OR_LEFT"):
+            right = _right_side(expression, k)
+            if is_safe(right) and len(right) <= _SHORT_SIDE:
+                joins.append(None)
+            else:
+                joins.append(out.new_label())
+                out.add("AND_THEN" if term.op == "AND_LEFT" else "OR_ELSE", to=joins[-1])
+        elif term.op in ("AND", "OR"):
+            join = joins.pop()
+            if join is None:
+                out.add(term.op)
+            else:
+                out.mark(join)
+        else:
+            push(out, term)
+
+
+def tests(out: Emitter, condition: Expression, otherwise: int) -> None:
+    """Add branches to the label `otherwise` that are taken where `condition` is FALSE."""
+    pending = [(condition, False)]  # an expression, and whether its being TRUE branches
+    while pending:
+        expression, when = pending.pop()
+        operator = expression[-1].op
+        if operator == "NOT":
+            pending.append((expression[:-1], not when))
+        elif operator == ("OR" if when else "AND"):
+            split = _split(expression)
+            pending.append((expression[split + 1 : -1], when))
+            pending.append((expression[:split], when))
+        else:
+            _test(out, expression, when, otherwise)
+
+
+def _test(out: Emitter, expression: Expression, when: bool, to: int) -> None:
+    if len(expression) == 3 and expression[2].op in NEGATED:
+        left, right, operator = expression
+        comparator = operator.op
+        if left.op == "NUMBER":
+            left, right, comparator = right, left, _SWAPPED[comparator]
+        number = number_of(right, -32768, 32767)
+        if number is not None and left.op in ("VARIABLE", "SENSOR"):
+            if when:
+                comparator = NEGATED[comparator]
+            bits = 8 if 0 <= number <= 255 else 16
+            span = out.span
+            source = "VAR"
+            if left.op == "SENSOR":
+                source = "READ" if out.pops_read(left.value) else "SENSOR"
+            out.add(f"IF_{source}{bits}_{comparator}", left.value, number, to=to)
+            out.span = span
+            return
+    add_value(out, expression)
+    out.add("IF_NOT" if when else "IF", to=to)
+
+
+def _right_side(expression: Expression, left_mark: int) -> Expression:
+    """Return the right side of the AND or OR whose left side ends at `left_mark`."""
+    depth = 0
+    for k in range(left_mark + 1, len(expression)):
+        op = expression[k].op
+        if op in ("AND_LEFT", "OR_LEFT"):
+            depth += 1
+        elif op in ("AND", "OR"):
+            if depth == 0:
+                return expression[left_mark + 1 : k]
+            depth -= 1
+    raise AssertionError("an AND_LEFT without its AND")
+
+
+def _split(expression: Expression) -> int:
+    """Return the index of the AND_LEFT or OR_LEFT that belongs to the last term."""
+    depth = 0
+    for k in range(len(expression) - 2, -1, -1):
+        op = expression[k].op
+        if op in ("AND", "OR"):
+            depth += 1
+        elif op in ("AND_LEFT", "OR_LEFT"):
+            if depth == 0:
+                return k
+            depth -= 1
+    raise AssertionError("an AND without its AND_LEFT")

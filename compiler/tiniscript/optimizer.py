@@ -1,0 +1,280 @@
+"""A checked program becomes a shorter one that does the same.
+
+Folds constants, drops what is never reached and DEFs that nobody calls. Never changes a trace
+or a fault: what would fault is left to fault, and readings stay where they are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from tiniscript import thousandths
+from tiniscript.program import (
+    Arm,
+    Assign,
+    Beep,
+    Body,
+    Call,
+    Expression,
+    If,
+    Loop,
+    Motors,
+    Move,
+    Procedure,
+    Program,
+    Read,
+    Set,
+    Show,
+    Statement,
+    Term,
+    Until,
+    While,
+    goes_on,
+    walk,
+)
+from tiniscript.thousandths import Fault, whole
+
+YES, NO = (Term("YES_NO", 1),), (Term("YES_NO", 0),)
+
+_BINARY: dict[str, Callable[[int, int], int]] = {
+    "ADD": thousandths.add, "SUB": thousandths.subtract, "MUL": thousandths.multiply,
+    "DIV": thousandths.divide, "MOD": thousandths.modulo, "MIN": min, "MAX": max,
+    "ROUND": thousandths.round_to,
+    "EQ": int.__eq__, "NE": int.__ne__, "LT": int.__lt__, "LE": int.__le__, "GT": int.__gt__,
+    "GE": int.__ge__,
+}  # fmt: skip
+_UNARY: dict[str, Callable[[int], int]] = {"NEG": thousandths.negate, "ABS": thousandths.absolute, "NOT": (1).__sub__}
+_YES_NO = frozenset(("EQ", "NE", "LT", "LE", "GT", "GE", "NOT"))
+# What cannot fault, so that evaluating it or not makes no difference.
+SAFE = frozenset(("NUMBER", "YES_NO", "VARIABLE", "SENSOR", "EQ", "NE", "LT", "LE", "GT", "GE",
+                  "NOT", "AND", "OR", "AND_LEFT", "OR_LEFT", "MIN", "MAX"))  # fmt: skip
+
+
+def optimized(program: Program) -> Program:
+    """Return a program with the same traces and faults, no longer than `program`."""
+    procedures = [
+        procedure._replace(body=_body(procedure.body)) for procedure in program.procedures
+    ]
+    return _without_unused(program._replace(procedures=tuple(procedures), body=_body(program.body)))
+
+
+def fold(expression: Expression) -> Expression:
+    """Return an expression whose constant parts are calculated, where they do not fault."""
+    if len(expression) == 1:
+        return expression
+    # each entry is an operand so far; a decided AND or OR waits with its left side
+    stack: list[list[Term]] = []
+    for term in expression:
+        op = term.op
+        if op in ("AND_LEFT", "OR_LEFT"):
+            continue
+        if op in ("AND", "OR"):
+            right, left = stack.pop(), stack.pop()
+            stack.append(_decided(op, left, right))
+        elif op in _UNARY:
+            if len(stack[-1]) == 1 and stack[-1][0].op in ("NUMBER", "YES_NO"):
+                stack[-1] = _calculated(op, stack[-1], None) or [*stack[-1], term]
+            else:
+                stack[-1].append(term)
+        elif op in _BINARY or op == "RANDOM":
+            right, left = stack.pop(), stack.pop()
+            folded = None
+            if op in _BINARY and _is_constant(left) and _is_constant(right):
+                folded = _calculated(op, left, right)
+            if folded is None:
+                left.extend(right)
+                left.append(term)
+                folded = left
+            stack.append(folded)
+        else:
+            stack.append([term])
+    return tuple(stack[0])
+
+
+def constant(expression: Expression) -> int | None:
+    """Return the value of a folded expression, or None where only the robot knows it."""
+    return expression[0].value if _is_constant(expression) else None
+
+
+def is_safe(terms: Expression) -> bool:
+    """Whether evaluating it can neither fault nor change anything."""
+    return all(term.op in SAFE for term in terms)
+
+
+def sure_fault(expression: Expression) -> str:
+    """Return the fault that a folded expression is sure to make when it is reached, or ""."""
+    stack: list[int | None] = []
+    for term in expression:
+        op = term.op
+        if op in ("NUMBER", "YES_NO"):
+            stack.append(term.value)
+        elif op in _UNARY or op in _BINARY or op in ("RANDOM", "AND", "OR"):
+            right = stack.pop()
+            left = right if op in _UNARY else stack.pop()
+            if left is not None and right is not None:
+                try:
+                    _ = _UNARY[op](right) if op in _UNARY else _BINARY[op](left, right)
+                except Fault as fault:
+                    return fault.name
+                except KeyError:  # RANDOM
+                    pass
+            stack.append(None)
+        elif not op.endswith("_LEFT"):
+            stack.append(None)
+    return ""
+
+
+def _is_constant(terms: Expression | list[Term]) -> bool:
+    return len(terms) == 1 and terms[0].op in ("NUMBER", "YES_NO")
+
+
+def _calculated(op: str, left: list[Term], right: list[Term] | None) -> list[Term] | None:
+    """Return the result of an operator on constants, or None where it faults."""
+    try:
+        if right is None:
+            value = _UNARY[op](left[0].value)
+        else:
+            value = _BINARY[op](left[0].value, right[0].value)
+    except Fault:
+        return None
+    return [Term("YES_NO" if op in _YES_NO else "NUMBER", int(value))]
+
+
+def _decided(op: str, left: list[Term], right: list[Term]) -> list[Term]:
+    """Return `left op right`, without what a constant side makes needless."""
+    decides = 0 if op == "AND" else 1
+    if _is_constant(left):
+        return left if left[0].value == decides else right
+    if _is_constant(right):
+        if right[0].value != decides:
+            return left
+        if is_safe(tuple(left)):
+            return right
+    left.append(Term(op + "_LEFT"))
+    left.extend(right)
+    left.append(Term(op))
+    return left
+
+
+def _body(body: Body) -> Body:
+    made: list[Statement] = []
+    for statement in body:
+        made += _statement(statement)
+        if made and not goes_on(tuple(made[-1:])):
+            break
+    return tuple(made)
+
+
+def _statement(statement: Statement) -> tuple[Statement, ...]:
+    if isinstance(statement, Assign):
+        return (statement._replace(value=fold(statement.value)),)
+    if isinstance(statement, Move):
+        return (_move(statement),)
+    if isinstance(statement, If):
+        return _if(statement)
+    if isinstance(statement, Loop):
+        return _loop(statement)
+    if isinstance(statement, While):
+        return _while(statement)
+    if isinstance(statement, Motors):
+        return (statement._replace(left=fold(statement.left), right=fold(statement.right)),)
+    if isinstance(statement, Beep):
+        return (statement._replace(time=fold(statement.time), hertz=fold(statement.hertz)),)
+    if isinstance(statement, (Show, Set)):
+        return (statement._replace(value=fold(statement.value)),)
+    return (statement,)
+
+
+def _move(move: Move) -> Move:
+    return move._replace(
+        time=None if move.time is None else fold(move.time),
+        power=None if move.power is None else fold(move.power),
+        until=None if move.until is None else Until(move.until.reads, fold(move.until.condition)),
+    )
+
+
+def _if(statement: If) -> tuple[Statement, ...]:
+    arms: list[Arm] = []
+    otherwise = _body(statement.otherwise)
+    for arm in statement.arms:
+        condition = fold(arm.condition)
+        value = constant(condition)
+        if value == 0 and not arm.reads:
+            continue
+        body = _body(arm.body)
+        if value == 1 and not arm.reads:
+            otherwise = body
+            break
+        arms.append(Arm(arm.reads, condition, body, arm.span))
+        if value == 1:
+            otherwise = ()
+            break
+    if not arms:
+        return otherwise
+    if arms[0].reads:  # an ELSEIF that has become the IF: its readings come first
+        reads = tuple(Read(sensor, arms[0].span) for sensor in arms[0].reads)
+        rest = If((arms[0]._replace(reads=()), *arms[1:]), otherwise, statement.span)
+        return (*reads, *_if(rest))
+    if not otherwise and not any(arm.body or arm.reads for arm in arms):
+        if all(is_safe(arm.condition) for arm in arms):
+            return ()
+    return (If(tuple(arms), otherwise, statement.span),)
+
+
+def _loop(loop: Loop) -> tuple[Statement, ...]:
+    if loop.times is None:
+        return (loop._replace(body=_body(loop.body)),)
+    count = fold(loop.times)
+    value = constant(count)
+    if value is not None and whole(value) <= 0:
+        return ()
+    return (loop._replace(times=count, body=_body(loop.body)),)
+
+
+def _while(loop: While) -> tuple[Statement, ...]:
+    condition = fold(loop.condition)
+    value = constant(condition)
+    if value == 0:
+        return tuple(Read(sensor, loop.span) for sensor in loop.reads)
+    if value == 1:
+        reads = tuple(Read(sensor, loop.span) for sensor in loop.reads)
+        return (Loop(None, _body((*reads, *loop.body)), loop.span),)
+    return (loop._replace(condition=condition, body=_body(loop.body)),)
+
+
+def _without_unused(program: Program) -> Program:
+    """Drop the DEFs that are never called, and number the others again."""
+    called: set[int] = set()
+    waiting = [program.body]
+    while waiting:
+        for statement in walk(waiting.pop()):
+            if isinstance(statement, Call) and statement.procedure not in called:
+                called.add(statement.procedure)
+                waiting.append(program.procedures[statement.procedure].body)
+    if len(called) == len(program.procedures):
+        return program
+    numbers = {old: new for new, old in enumerate(sorted(called))}
+    procedures = tuple(
+        Procedure(each.name, _renumbered(each.body, numbers), each.span)
+        for number, each in enumerate(program.procedures)
+        if number in called
+    )
+    body = _renumbered(program.body, numbers)
+    return program._replace(procedures=procedures, body=body)
+
+
+def _renumbered(body: Body, numbers: dict[int, int]) -> Body:
+    made: list[Statement] = []
+    for statement in body:
+        if isinstance(statement, Call):
+            statement = statement._replace(procedure=numbers[statement.procedure])
+        elif isinstance(statement, If):
+            arms = tuple(
+                arm._replace(body=_renumbered(arm.body, numbers)) for arm in statement.arms
+            )
+            otherwise = _renumbered(statement.otherwise, numbers)
+            statement = statement._replace(arms=arms, otherwise=otherwise)
+        elif isinstance(statement, (Loop, While)):
+            statement = statement._replace(body=_renumbered(statement.body, numbers))
+        made.append(statement)
+    return tuple(made)
