@@ -1,0 +1,90 @@
+"""Code as a listing, and a listing as code.
+
+The text that `tsc show` prints and that cases compare: offset, bytes, instruction. Reading one
+takes the bytes; the words behind them are for people.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from tiniscript.bytecode import BY_CODE, Op, instruction_text, read_operands
+from tiniscript.kit import Kit
+
+_ROW = re.compile(r"([0-9a-f]{4})  ((?:[0-9a-f]{2} )*[0-9a-f]{2})(?:  |$)")
+_BYTES_WIDTH = 18  # room for six bytes
+
+
+class Row(NamedTuple):
+    """One instruction; `op` is None where the bytes are none."""
+
+    offset: int
+    data: bytes
+    op: Op | None
+    operands: tuple[int, ...]
+
+    @property
+    def text(self) -> str:
+        if self.op is None:
+            return "?"
+        return instruction_text(self.op, self.operands, self.offset + len(self.data))
+
+
+def rows(code: bytes) -> list[Row]:
+    """Return the instructions of `code`, verified or not; what is none stands alone."""
+    made = []
+    at = 0
+    while at < len(code):
+        op = BY_CODE[code[at]]
+        if op is None or at + op.size > len(code):
+            data = code[at : at + 1] if op is None else code[at:]
+            made.append(Row(at, data, None, ()))
+        else:
+            data = code[at : at + op.size]
+            made.append(Row(at, data, op, read_operands(op, code, at)))
+        at += len(data)
+    return made
+
+
+def listing(code: bytes, remarks: Mapping[int, str] | None = None, kit: Kit | None = None) -> str:
+    """Return `code` as text, a line for each instruction.
+
+    `remarks` stand behind the instruction at their offset; a kit gives devices their names.
+    """
+    lines = []
+    for row in rows(code):
+        text = row.text
+        names = [] if kit is None or row.op is None else _names(row, kit)
+        remark = "  ".join([*names, *([remarks[row.offset]] if remarks and row.offset in remarks
+                                      else [])])  # fmt: skip
+        line = f"{row.offset:04x}  {row.data.hex(' '):<{_BYTES_WIDTH}} {text}"
+        lines.append(f"{line:<55} ; {remark}" if remark else line)
+    return "".join(line.rstrip() + "\n" for line in lines)
+
+
+def _names(row: Row, kit: Kit) -> list[str]:
+    assert row.op is not None
+    devices = {"sensor": kit.sensors, "actuator": kit.actuators}
+    return [
+        devices[operand.kind.name][value].name
+        for operand, value in zip(row.op.operands, row.operands, strict=True)
+        if operand.kind.name in devices and value < len(devices[operand.kind.name])
+    ]
+
+
+def read_listing(text: str) -> bytes:
+    """Return the bytes of a listing.
+
+    Raises ValueError where a line is none, or its offset is not where it stands.
+    """
+    code = bytearray()
+    for line in text.splitlines():
+        if not line.strip():
+            continue
+        match = _ROW.match(line.strip())
+        if match is None or int(match[1], 16) != len(code):
+            raise ValueError(f"no line of a listing at offset {len(code):04x}: {line!r}")
+        code += bytes.fromhex(match[2])
+    return bytes(code)
