@@ -1,0 +1,127 @@
+"""Runs a program without a robot, and says what the robot did.
+
+The clock is simulated: only moves, waits and beeps move it. Yields the trace, one line for
+each thing that the robot did. Knows no files, no ports and no terminal.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+from tiniscript.kit import Kit
+from tiniscript.thousandths import as_text, limited, whole
+from tiniscript.vm import DONE, FAULT, WAITING, Machine
+
+SLICE = 1000  # instructions between two looks at the limit
+
+
+class Event(NamedTuple):
+    """What a robot did at `time_ms`: MOTORS, READ, BEEP, SHOW, SET, DONE, FAULT or LIMIT.
+
+    `values` are percent for MOTORS, hertz and milliseconds for BEEP, the number of the device
+    and thousandths for READ and SET, thousandths for SHOW; `text` is what a trace prints.
+    """
+
+    time_ms: int
+    what: str
+    values: tuple[int, ...]
+    text: str
+
+    def __str__(self) -> str:
+        return f"{self.time_ms} {self.text}"
+
+
+class Ending(NamedTuple):
+    """How a run ended: `what` is DONE, FAULT or LIMIT; `offset` is where the code was."""
+
+    what: str
+    fault: str
+    offset: int
+    steps: int
+
+
+class Senses:
+    """Readings from lists: each takes the next value, the last one repeats, no list is 0."""
+
+    def __init__(self, kit: Kit, lists: Mapping[int, Sequence[int]]) -> None:
+        """`lists` maps the number of a sensor to its readings, in thousandths."""
+        self.lists = [list(lists.get(i, ())) or [0] for i in range(len(kit.sensors))]
+        self.taken = [0] * len(kit.sensors)
+
+    def __call__(self, sensor: int) -> int:
+        values = self.lists[sensor]
+        value = values[min(self.taken[sensor], len(values) - 1)]
+        self.taken[sensor] += 1
+        return value
+
+
+class TracedRobot:
+    """A robot that does nothing but say what it did."""
+
+    def __init__(self, kit: Kit, senses: Callable[[int], int]) -> None:
+        self.kit = kit
+        self.senses = senses
+        self.now_ms = 0
+        self.events: list[Event] = []
+
+    def say(self, what: str, values: tuple[int, ...], text: str) -> None:
+        self.events.append(Event(self.now_ms, what, values, text))
+
+    def motors(self, left: int, right: int) -> None:
+        self.say("MOTORS", (left, right), f"MOTORS {left} {right}")
+
+    def off(self) -> None:
+        """The final stop is no line of a trace."""
+
+    def read(self, sensor: int) -> int | None:
+        value = self.senses(sensor)
+        device = self.kit.sensors[sensor]
+        self.say("READ", (sensor, value), f"READ {device.name} {device.text(value)}")
+        return value
+
+    def beep(self, hertz: int, duration_ms: int) -> None:
+        self.say("BEEP", (hertz, duration_ms), f"BEEP {hertz} {duration_ms}")
+
+    def show(self, value: int, is_yes_no: bool) -> bool:
+        shown = ("TRUE" if value else "FALSE") if is_yes_no else as_text(value)
+        self.say("SHOW", (value,), f"SHOW {shown}")
+        return True
+
+    def set(self, actuator: int, value: int) -> None:
+        device = self.kit.actuators[actuator]
+        if not device.is_yes_no:
+            value = limited(whole(value) * 1000, device.low, device.high)
+        self.say("SET", (actuator, value), f"SET {device.name} {device.text(value)}")
+
+
+def run(
+    code: bytes,
+    kit: Kit,
+    senses: Callable[[int], int],
+    max_ms: int = 60_000,
+    max_steps: int = 10_000_000,
+    seed: int = 1,
+) -> Iterator[Event | Ending]:
+    """Yield what a robot with this kit does with verified `code`; the last one is its Ending."""
+    robot = TracedRobot(kit, senses)
+    machine = Machine(code, robot, len(kit.sensors), seed)
+    while True:
+        status = machine.tick(robot.now_ms, min(SLICE, max_steps - machine.steps))
+        yield from robot.events
+        robot.events.clear()
+        if status in (DONE, FAULT):
+            what = status.upper()
+        elif status == WAITING and machine.task.wake_ms <= max_ms:
+            robot.now_ms = machine.task.wake_ms
+            continue
+        elif status == WAITING:
+            robot.now_ms, what = max_ms, "LIMIT"
+        elif machine.steps >= max_steps:
+            what = "LIMIT"
+        else:
+            continue
+        text = f"FAULT {machine.fault}" if what == "FAULT" else what
+        yield Event(robot.now_ms, what, (), text)
+        yield Ending(what, machine.fault, machine.at, machine.steps)
+        return
