@@ -1,0 +1,82 @@
+"""Robot profiles: which robots there are, and how one is found by name or by file.
+
+Knows where a profile comes from. What is in one, `profile` says; `reader` reads the TOML of a
+file; `shipped` holds the profiles of this folder ready to use, so that they need no TOML.
+"""
+
+from __future__ import annotations
+
+import os.path
+
+from tiniscript.robots.profile import ProfileRefused, Robot
+
+DEFAULT = "tinibot"
+FILE_BYTES = 64 * 1024
+
+
+def names() -> list[str]:
+    """Return the names of the shipped robots, the default first."""
+    from tiniscript.robots.shipped import ROBOTS
+
+    return sorted(ROBOTS, key=lambda name: (name != DEFAULT, name))
+
+
+def load(name_or_path: str) -> Robot:
+    """Return a shipped robot, in any case, or the one that a TOML file describes.
+
+    Anything else that ends in `.toml`, contains a separator or exists is a file of at most
+    FILE_BYTES bytes of UTF-8. Raises ProfileRefused and nothing else.
+    """
+    from tiniscript.robots.shipped import ROBOTS
+
+    make = ROBOTS.get(name_or_path.lower())
+    if make is not None:
+        return make()
+    if _is_path(name_or_path):
+        from pathlib import Path
+
+        from tiniscript.robots.reader import read
+
+        return read(_text_of(name_or_path), Path(name_or_path).stem)
+
+    from tiniscript.robots.refusals import shown
+    from tiniscript.words import nearest
+
+    values = {"name": shown(name_or_path), "known": ", ".join(names())}
+    raise ProfileRefused(
+        ("no_such_robot", {**values, "near": nearest(name_or_path.lower(), names()) or ""})
+    )
+
+
+def _is_path(text: str) -> bool:
+    separators = os.sep + (os.altsep or "") + "/"
+    return (
+        text.lower().endswith(".toml")
+        or any(separator in text for separator in separators)
+        or os.path.exists(text)  # noqa: PTH110 - Path raises where the name is too long
+    )
+
+
+def _text_of(path: str) -> str:
+    from pathlib import Path
+
+    from tiniscript.robots.refusals import shown
+
+    values = {"file": shown(path)}
+    try:
+        with Path(path).open("rb") as file:
+            found = file.read(FILE_BYTES + 1)
+    except FileNotFoundError:
+        raise ProfileRefused(("file_missing", values)) from None
+    except (OSError, ValueError):  # ValueError: a name that no file can have
+        is_directory = os.path.isdir(path)  # noqa: PTH112 - Path raises for those names
+        code = "file_is_directory" if is_directory else "file_unreadable"
+        raise ProfileRefused((code, values)) from None
+    if len(found) > FILE_BYTES:
+        limit = f"{FILE_BYTES // 1024} KB"
+        raise ProfileRefused(("file_too_large", {**values, "limit": limit}))
+    try:
+        return found.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = found.count(b"\n", 0, error.start) + 1
+        raise ProfileRefused(("file_not_utf8", {**values, "line": str(line)})) from None

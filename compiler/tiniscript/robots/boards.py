@@ -1,0 +1,209 @@
+"""The tables of chips and drivers: which pins can do what, and which pins a driver wants.
+
+Knows pins, timers and memory. Does not read profiles: `wiring` does, and compares.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+
+class Chip(NamedTuple):
+    """A board that the firmware runs on. Pins are numbers of its Arduino core.
+
+    `digital` pins read and write, `reading` pins only read; A0 is the number `first_analog`,
+    where the board prints such names. `pwm` gives each pin its timer. The link has
+    `link_pins`. No timer is None where the chip has enough of them.
+    """
+
+    name: str
+    program_bytes: int
+    digital: frozenset[int]
+    reading: frozenset[int]
+    analog: frozenset[int]
+    echo: frozenset[int]
+    pwm: Mapping[int, int]
+    link_pins: frozenset[int]
+    first_analog: int | None
+    servo_timer: int | None
+    tone_timer: int | None
+
+    def can(self, pin: int, need: str) -> bool:
+        """Return whether `pin` can do what NEEDS names."""
+        if need == "input":
+            return pin in self.digital or pin in self.reading
+        if need == "analog":
+            return pin in self.analog
+        if need == "pwm":
+            return pin in self.pwm
+        if need == "echo":
+            return pin in self.echo
+        return pin in self.digital  # output, pull_up, servo, tone
+
+    def pin_number(self, written: object) -> int | None:
+        """Return the number of `5` or `"A0"`, or None where the board has no such pin."""
+        number = written if isinstance(written, int) else None
+        if isinstance(written, str) and self.first_analog is not None:
+            letter, digits = written[:1].upper(), written[1:]
+            if letter == "A" and digits in ANALOG_DIGITS:
+                number = self.first_analog + int(digits)
+        every = self.digital | self.reading | self.analog | self.link_pins
+        return number if number in every else None
+
+    def pin_name(self, number: int) -> str:
+        """Return what the board prints beside a pin: `5`, `A0`."""
+        first = self.first_analog
+        return str(number) if first is None or number < first else f"A{number - first}"
+
+
+ANALOG_DIGITS = frozenset(str(number) for number in range(16))
+NEEDS = ("input", "output", "pull_up", "analog", "pwm", "echo", "servo", "tone")
+
+
+def _pins(*parts: int | range) -> frozenset[int]:
+    return frozenset(
+        pin for part in parts for pin in (part if isinstance(part, range) else (part,))
+    )
+
+
+# Data sheets of the ATmega328P and the ATmega2560. Timer 0 keeps the time and does PWM besides.
+_PWM_328P = {3: 2, 5: 0, 6: 0, 9: 1, 10: 1, 11: 2}
+# fmt: off
+_PWM_2560 = {
+    2: 3, 3: 3, 4: 0, 5: 3, 6: 4, 7: 4, 8: 4, 9: 2, 10: 2, 11: 1, 12: 1, 13: 0,
+    44: 5, 45: 5, 46: 5,
+}
+# fmt: on
+# Pins of an ESP32 that carry neither its flash memory nor the link.
+_ESP32 = _pins(0, 2, 4, 5, range(12, 20), 21, 22, 23, 25, 26, 27, 32, 33)
+
+CHIPS = {
+    chip.name: chip
+    for chip in (
+        Chip(
+            "uno",
+            program_bytes=430,
+            digital=_pins(range(2, 20)),
+            reading=frozenset(),
+            analog=_pins(range(14, 20)),
+            echo=_pins(range(2, 20)),
+            pwm=_PWM_328P,
+            link_pins=_pins(0, 1),
+            first_analog=14,
+            servo_timer=1,
+            tone_timer=2,
+        ),
+        Chip(
+            "nano",
+            program_bytes=430,
+            digital=_pins(range(2, 20)),
+            reading=frozenset(),
+            analog=_pins(range(14, 22)),  # A6 and A7 measure and do nothing else
+            echo=_pins(range(2, 20)),
+            pwm=_PWM_328P,
+            link_pins=_pins(0, 1),
+            first_analog=14,
+            servo_timer=1,
+            tone_timer=2,
+        ),
+        Chip(
+            "mega",
+            program_bytes=1900,
+            digital=_pins(range(2, 70)),
+            reading=frozenset(),
+            analog=_pins(range(54, 70)),
+            echo=_pins(2, 3, range(10, 16), range(18, 22), range(50, 54), range(62, 70)),
+            pwm=_PWM_2560,
+            link_pins=_pins(0, 1),
+            first_analog=54,
+            servo_timer=1,
+            tone_timer=2,
+        ),
+        Chip(
+            "esp32dev",
+            program_bytes=8192,
+            digital=_ESP32,
+            reading=_pins(34, 35, 36, 39),
+            analog=_pins(32, 33, 34, 35, 36, 39),
+            echo=_ESP32 | _pins(34, 35, 36, 39),
+            pwm=dict.fromkeys(sorted(_ESP32), 0),
+            link_pins=_pins(1, 3),
+            first_analog=None,
+            servo_timer=None,
+            tone_timer=None,
+        ),
+    )
+}
+
+BAUDS = (9600, 19200, 38400, 57600, 115200)
+
+
+class PinKey(NamedTuple):
+    key: str
+    need: str
+    is_optional: bool = False
+
+
+class Setting(NamedTuple):
+    """`kind` is `yes/no`, `whole` or `number`; the other numbers are thousandths for `number`."""
+
+    key: str
+    kind: str
+    default: int = 0
+    low: int = 0
+    high: int = 1
+
+
+class Driver(NamedTuple):
+    """`used_by` is the table of [board] and the kind of the device: `sensors number`."""
+
+    name: str
+    used_by: str
+    pins: tuple[PinKey, ...]
+    settings: tuple[Setting, ...] = ()
+
+
+_SIDES = ("left", "right")
+_PWM_AND_TWO = tuple(
+    PinKey(f"{side}_{key}", need)
+    for side in _SIDES
+    for key, need in (("pwm", "pwm"), ("forward", "output"), ("backward", "output"))
+)
+_TWO_WIRES = tuple(
+    PinKey(f"{side}_{key}", "pwm") for side in _SIDES for key in ("forward", "backward")
+)
+_TWO_SERVOS = tuple(PinKey(f"{side}_pin", "servo") for side in _SIDES)
+_STILL = Setting("left_still_us", "whole", 1500, 1000, 2000)
+
+# fmt: off
+DRIVERS = {(driver.used_by, driver.name): driver for driver in (
+    Driver("l298n",     "motors",           _PWM_AND_TWO),
+    Driver("l293d",     "motors",           _PWM_AND_TWO),
+    Driver("tb6612",    "motors",           (*_PWM_AND_TWO, PinKey("standby", "output", True))),
+    Driver("two_wire",  "motors",           _TWO_WIRES),
+    Driver("servos",    "motors",           _TWO_SERVOS,
+           (Setting("left_reversed", "yes/no"), Setting("right_reversed", "yes/no", 1),
+            _STILL, _STILL._replace(key="right_still_us"))),
+    Driver("analog",    "sensors number",   (PinKey("pin", "analog"),),
+           # what 0 V means and what the highest voltage does; 0 and 1023 keep the raw reading
+           (Setting("zero", "number", 0, -1_000_000_000, 1_000_000_000),
+            Setting("full", "number", 1_023_000, -1_000_000_000, 1_000_000_000))),
+    Driver("hc_sr04",   "sensors number",   (PinKey("trigger", "output"), PinKey("echo", "echo"))),
+    Driver("digital",   "sensors yes/no",   (PinKey("pin", "input"),),
+           (Setting("pull_up", "yes/no"), Setting("yes_is_low", "yes/no"))),
+    Driver("threshold", "sensors yes/no",   (PinKey("pin", "analog"),),
+           (Setting("threshold", "whole", 512, 1, 1023), Setting("yes_is_low", "yes/no"))),
+    Driver("servo",     "actuators number", (PinKey("pin", "servo"),),
+           (Setting("low_us", "whole", 1000, 500, 2500),
+            Setting("high_us", "whole", 2000, 500, 2500))),
+    Driver("pwm",       "actuators number", (PinKey("pin", "pwm"),)),
+    Driver("digital",   "actuators yes/no", (PinKey("pin", "output"),),
+           (Setting("yes_is_low", "yes/no"),)),
+)}
+# fmt: on
+
+
+def drivers_for(used_by: str) -> tuple[str, ...]:
+    """Return the names of the drivers that fit, `("analog", "hc_sr04")`."""
+    return tuple(name for use, name in DRIVERS if use == used_by)

@@ -1,0 +1,99 @@
+"""What a robot profile is once it is read, and what it means to refuse one.
+
+Knows the shapes. Knows no TOML (`reader`), no chips (`boards`) and no sentences (`refusals`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from tiniscript.kit import Kit
+
+LANGUAGES = ("en", "es")
+Reason = tuple[str, Mapping[str, str]]
+
+
+class ProfileRefused(Exception):
+    """A profile that cannot be used.
+
+    `reasons` holds every complaint as (code, values): the code is a short name that stays the
+    same, the values fill the gaps of its sentence in `refusals`. `path` among the values is the
+    place of the key, `kit.sensors[2].range`, where tables are counted from 1.
+    """
+
+    def __init__(self, *reasons: Reason) -> None:
+        super().__init__(", ".join(code for code, _ in reasons))
+        self.reasons: tuple[Reason, ...] = reasons
+
+
+class Wiring(NamedTuple):
+    """How something is connected: a driver of `boards`, its pins and its settings.
+
+    Pins are the numbers of the chip's Arduino core (A0 of an Uno is 14); one that the profile
+    leaves out is not among them. Settings are all there: yes/no as 0 and 1, `zero` and `full`
+    as thousandths, the rest as whole numbers.
+    """
+
+    driver: str
+    pins: Mapping[str, int]
+    settings: Mapping[str, int]
+
+
+class Board(NamedTuple):
+    """What the firmware must know. Sensors and actuators are in the kit's order.
+
+    `program_bytes` is the size of the largest program's code, `max_run_seconds` how long a
+    program may run with nobody connected. A pin that is None is not wired.
+    """
+
+    chip: str
+    program_bytes: int
+    baud: int
+    max_run_seconds: int
+    motors: Wiring
+    sensors: tuple[Wiring, ...]
+    actuators: tuple[Wiring, ...]
+    start_button: int
+    buzzer: int
+    status_led: int | None
+    bluetooth_state: int | None
+
+
+class Place(NamedTuple):
+    """Where a sensor sits, from the middle between the wheels, and what it notices.
+
+    `x_cm` goes forward and `y_cm` to the left; `heading` is in degrees, 0 ahead and 90 to the
+    left. `sees` is one of SEES.
+    """
+
+    x_cm: float
+    y_cm: float
+    heading: float
+    sees: str
+
+
+SEES = ("light", "distance", "line", "touch")
+
+
+class Body(NamedTuple):
+    """What a simulator must know. `speed_cm_s` is the speed of a wheel at 100 %.
+
+    A sensor that is not in `places` notices nothing of a simulated world.
+    """
+
+    wheel_base_cm: float
+    speed_cm_s: float
+    length_cm: float
+    width_cm: float
+    places: Mapping[str, Place]
+
+
+class Robot(NamedTuple):
+    """A profile. `labels[language]` names `robot` and every device, in each of LANGUAGES."""
+
+    name: str
+    kit: Kit
+    board: Board
+    body: Body
+    labels: Mapping[str, Mapping[str, str]]

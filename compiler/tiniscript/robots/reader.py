@@ -1,0 +1,173 @@
+"""The text of a profile becomes a Robot, or every complaint about it is raised at once.
+
+Knows `[kit]`, `[body]` and `[labels]`; `wiring` knows `[board]`. Opens no files.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from tiniscript.kit import NUMBER, YES_NO, Device, Kit
+from tiniscript.robots.profile import (
+    LANGUAGES,
+    SEES,
+    Body,
+    Place,
+    ProfileRefused,
+    Reason,
+    Robot,
+)
+from tiniscript.robots.refusals import shown
+from tiniscript.robots.toml_table import Table, parse_toml
+from tiniscript.robots.wiring import device_tables, read_board
+from tiniscript.thousandths import ONE
+from tiniscript.words import WORDS
+
+DEVICES = 32  # sensors, and as many actuators
+NAME_CHARACTERS = 24
+UNIT_CHARACTERS = 8
+LABEL_CHARACTERS = 60
+FARTHEST_CM = 1000 * ONE
+FASTEST_CM_S = 1000 * ONE
+
+
+def read(text: str, name: str) -> Robot:
+    """Return the robot that a profile's text describes, under `name`. Raises ProfileRefused."""
+    found = parse_toml(text)
+    if isinstance(found, tuple):
+        raise ProfileRefused(found)
+    reasons: list[Reason] = []
+    root = Table(found, "", reasons)
+    kit = _read_kit(root.table("kit", "[kit]"))
+    board = read_board(root.table("board", "[board]"), kit)
+    body = _read_body(root.table("body", "[body]"), kit)
+    labels = _read_labels(root.table("labels"), kit, shown(name))
+    root.finish()
+    if reasons:
+        raise ProfileRefused(*reasons)
+    return Robot(shown(name), kit, board, body, labels)
+
+
+def _read_kit(table: Table) -> Kit:
+    taken: set[str] = set()
+    kit = Kit(_read_devices(table, "sensors", taken), _read_devices(table, "actuators", taken))
+    table.finish()
+    return kit
+
+
+def _read_devices(table: Table, key: str, taken: set[str]) -> tuple[Device, ...]:
+    tables = table.tables(key)
+    if len(tables) > DEVICES:
+        table.complain("too_many", key, found=str(len(tables)), most=str(DEVICES))
+    return tuple(_read_device(each, key == "actuators", taken) for each in tables)
+
+
+def _read_device(table: Table, is_actuator: bool, taken: set[str]) -> Device:
+    name = _read_name(table, taken)
+    kind = table.choice("kind", (NUMBER, YES_NO), "unknown_kind")
+    unit, low, high = "", 0, 1
+    if kind == YES_NO:
+        for key in ("unit", "range"):
+            if table.has(key):
+                table.complain("not_for_yes_no", key)
+    else:
+        if table.has("unit"):
+            unit = _read_unit(table)
+        example = "range = [0, 180]" if is_actuator else "range = [0, 1023]"
+        low, high = _read_range(table, example if kind else "", is_actuator)
+    table.finish()
+    return Device(name, kind, unit, low, high)
+
+
+def _read_name(table: Table, taken: set[str]) -> str:
+    written = table.text("name", 'name = "DISTANCE"')
+    if written is None:
+        return ""
+    name = written.upper()
+    if not _is_name(written):
+        table.complain("name_bad", "name", found=shown(written))
+    elif len(name) > NAME_CHARACTERS:
+        table.complain("name_too_long", "name", found=shown(name), most=str(NAME_CHARACTERS))
+    elif name in WORDS:
+        table.complain("name_is_word", "name", found=name)
+    elif name in taken:
+        table.complain("name_twice", "name", found=name)
+    taken.add(name)
+    return name
+
+
+def _is_name(text: str) -> bool:
+    return text.isascii() and text[:1].isalpha() and text.replace("_", "a").isalnum()
+
+
+def _read_unit(table: Table) -> str:
+    unit = table.text("unit") or ""
+    if len(unit) > UNIT_CHARACTERS or not unit.isprintable() or " " in unit:
+        table.complain("unit_bad", "unit", found=shown(unit), most=str(UNIT_CHARACTERS))
+    return unit
+
+
+def _read_range(table: Table, example: str, is_actuator: bool) -> tuple[int, int]:
+    before = len(table.reasons)
+    low, high = table.pair("range", example)
+    if len(table.reasons) == before and table.has("range"):
+        if low >= high:
+            table.complain("range_empty", "range")
+        elif is_actuator and (low % ONE or high % ONE):
+            table.complain("range_not_whole", "range")
+    return low, high
+
+
+def _read_body(table: Table, kit: Kit) -> Body:
+    def size(key: str, sample: str, most: int = FARTHEST_CM) -> float:
+        return table.number(key, 1, most, f"{key} = {sample}") / ONE
+
+    wheel_base_cm = size("wheel_base_cm", "13.5")
+    speed_cm_s = size("speed_cm_s", "45", FASTEST_CM_S)
+    length_cm, width_cm = size("length_cm", "20"), size("width_cm", "15")
+    wired = device_tables(table, "sensors", kit.sensors)
+    places = {name: _read_place(wired[name]) for name, *_ in kit.sensors if name in wired}
+    table.finish()
+    return Body(wheel_base_cm, speed_cm_s, length_cm, width_cm, places)
+
+
+def _read_place(table: Table) -> Place:
+    def number(key: str, most: int, example: str = "") -> float:
+        return table.number(key, -most, most, example) / ONE
+
+    x_cm = number("x_cm", FARTHEST_CM, "x_cm = 8")
+    y_cm = number("y_cm", FARTHEST_CM, "y_cm = 0")
+    place = Place(x_cm, y_cm, number("heading", 360 * ONE), table.choice("sees", SEES))
+    table.finish()
+    return place
+
+
+def _read_labels(table: Table, kit: Kit, name: str) -> Mapping[str, Mapping[str, str]]:
+    """Return the labels. One that is missing is the other language's, or the name itself."""
+    devices = (*kit.sensors, *kit.actuators)
+    written = {language: _read_language(table, language, devices) for language in LANGUAGES}
+    table.finish()
+    found: dict[str, dict[str, str]] = {}
+    for language in LANGUAGES:
+        found[language] = {"robot": name, **{device.name: device.name for device in devices}}
+        for each in (*LANGUAGES, language):
+            found[language].update(written[each])
+    return found
+
+
+def _read_language(table: Table, language: str, devices: Sequence[Device]) -> dict[str, str]:
+    labels = table.table(language)
+    known = {device.name: device.name for device in devices}
+    found = {}
+    for key in labels.written():
+        name = "robot" if key == "robot" else known.get(key.upper())
+        if name is None:
+            labels.not_in_kit(key, tuple(known))
+            continue
+        label = labels.text(key)
+        if label is None:
+            continue
+        if not label.strip() or len(label) > LABEL_CHARACTERS or not label.isprintable():
+            labels.complain("label_bad", key, most=str(LABEL_CHARACTERS))
+        found[name] = label
+    return found

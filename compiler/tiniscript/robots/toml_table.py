@@ -1,0 +1,194 @@
+"""Reads the keys of a TOML table one by one and collects every complaint.
+
+Knows TOML's types and how exact a number is. Does not know what a profile contains: `reader`
+and `wiring` ask for it. A key that is missing or wrong is complained about and gives a
+placeholder, so that reading can go on; whoever reads refuses the file in the end.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterable, Mapping, Sequence
+
+from tiniscript.robots.profile import Reason
+from tiniscript.robots.refusals import shown
+from tiniscript.thousandths import HIGHEST, LOWEST, as_text, read_literal
+from tiniscript.words import nearest
+
+
+class Written(str):
+    """A number with a point, as it is written: a float would not keep it exactly."""
+
+
+def parse_toml(text: str) -> dict[str, object] | Reason:
+    """Return the keys of a TOML text, with decimals as Written, or why it is not TOML."""
+    if sys.version_info >= (3, 11):
+        import tomllib
+    else:
+        import tomli as tomllib
+
+    try:
+        return tomllib.loads(text, parse_float=Written)
+    except (ValueError, RecursionError) as error:  # ValueError: also an endless number
+        message = str(error)
+        line = message.rpartition("at line ")[2].partition(",")[0]
+        place = line if line.isdigit() else str(text.count("\n") + 1)
+        is_twice = message.startswith(("Cannot ", "Duplicate "))
+        return "key_twice" if is_twice else "not_toml", {"line": place}
+
+
+class Table:
+    """A table of a TOML file at `path`. `finish` complains about the keys nobody asked for."""
+
+    def __init__(self, values: Mapping[str, object], path: str, reasons: list[Reason]) -> None:
+        self.path = path
+        self.reasons = reasons
+        self._values = values
+        self._asked: list[str] = []
+
+    def path_of(self, key: str) -> str:
+        """Return `board.motors`: the place of a key in the file."""
+        return f"{self.path}.{shown(key)}" if self.path else shown(key)
+
+    def complain(self, code: str, key: str, **values: str) -> None:
+        self.reasons.append((code, {"path": self.path_of(key), **values}))
+
+    def has(self, key: str) -> bool:
+        """Return whether a key is there, and count it as known."""
+        self._asked.append(key)
+        return key in self._values
+
+    def written(self) -> Iterable[str]:
+        return self._values.keys()
+
+    def get(self, key: str, example: str) -> object:
+        """Return what stands at `key`. If nothing does, complain and suggest `example`, if any."""
+        if self.has(key):
+            return self._values[key]
+        if example:
+            self.complain("missing", key, example=example)
+        return None
+
+    def text(self, key: str, example: str = "") -> str | None:
+        value = self.get(key, example)
+        if type(value) is str:
+            return value
+        self.expect("text", key, value)
+        return None
+
+    def choice(self, key: str, choices: Sequence[str], code: str = "not_one_of") -> str:
+        """Return one of `choices`, or an empty text."""
+        value = self.text(key, f'{key} = "{choices[0]}"')
+        if value is None or value in choices:
+            return value or ""
+        self.complain(code, key, found=shown(value), choices=", ".join(choices))
+        return ""
+
+    def yes_no(self, key: str, default: bool) -> bool:
+        value = self.get(key, "")
+        if isinstance(value, bool):
+            return value
+        self.expect("yes_no", key, value)
+        return default
+
+    def whole(self, key: str, low: int, high: int, example: str = "", default: int = 0) -> int:
+        """Return a whole number (not thousandths) from `low` to `high`."""
+        value = self.get(key, example)
+        if type(value) is not int:
+            self.expect("whole", key, value)
+        elif low <= value <= high:
+            return value
+        else:
+            self.complain("out_of_range", key, found=shown(value), low=str(low), high=str(high))
+        return default
+
+    def number(self, key: str, low: int, high: int, example: str = "", default: int = 0) -> int:
+        """Return thousandths from `low` to `high`."""
+        value = self.get(key, example)
+        if value is None:
+            return default
+        return self._thousandths(key, value, low, high)
+
+    def pair(self, key: str, example: str) -> tuple[int, int]:
+        """Return the thousandths of `[low, high]`."""
+        value = self.get(key, example)
+        if not isinstance(value, list) or len(value) != 2:
+            self.expect("pair", key, value)
+            return 0, 0
+        first, second = (self._thousandths(key, each, LOWEST, HIGHEST) for each in value)
+        return first, second
+
+    def table(self, key: str, example: str = "") -> Table:
+        """Return the table at `key`; what is not there, or no table, is read as an empty one.
+
+        What is missing in one that had to be there is not worth a second complaint.
+        """
+        value = self.get(key, example)
+        if isinstance(value, dict):
+            return Table(value, self.path_of(key), self.reasons)
+        self.expect("table", key, value)
+        is_known = bool(example) or value is not None
+        return Table({}, self.path_of(key), [] if is_known else self.reasons)
+
+    def tables(self, key: str) -> list[Table]:
+        """Return the tables at `[[key]]`; their places are counted from 1."""
+        value = self.get(key, "")
+        if value is None:
+            return []
+        if not isinstance(value, list):
+            self.expect("tables", key, value)
+            return []
+        found = []
+        for number, each in enumerate(value, start=1):
+            place = f"{key}[{number}]"
+            if isinstance(each, dict):
+                found.append(Table(each, self.path_of(place), self.reasons))
+            else:
+                self.expect("table", place, each)
+        return found
+
+    def expect(self, wanted: str, key: str, value: object) -> None:
+        """Complain that `value` has another type; a missing one has its own complaint."""
+        if value is not None:
+            self.complain("wrong_type", key, wanted=wanted, found=_type_of(value))
+
+    def not_in_kit(self, key: str, known: Sequence[str]) -> None:
+        near = nearest(key.upper(), list(known)) or ""
+        self.complain("not_in_kit", key, name=shown(key), near=near)
+
+    def finish(self) -> None:
+        """Complain about every key that nobody has asked for."""
+        for key in self._values:
+            if key not in self._asked:
+                near = nearest(key, self._asked) or ""
+                self.complain("unknown_key", key, near=near, known=", ".join(self._asked))
+
+    def _thousandths(self, key: str, value: object, low: int, high: int) -> int:
+        if isinstance(value, Written):
+            digits = value.lstrip("+-").replace("_", "")
+            if not digits.replace(".", "").isdigit():  # 1e3, inf, nan
+                self.complain("number_odd", key, found=shown(value))
+                return 0
+            number, is_exact = read_literal(digits)
+            if value.startswith("-"):
+                number = -number
+            if not is_exact:
+                self.complain("too_precise", key, found=shown(value))
+                return 0
+        elif type(value) is int:
+            number = value * 1000
+        else:
+            self.expect("number", key, value)
+            return 0
+        if not low <= number <= high:
+            limits = {"low": as_text(low), "high": as_text(high)}
+            self.complain("out_of_range", key, found=shown(value), **limits)
+            return 0
+        return number
+
+
+def _type_of(value: object) -> str:
+    if isinstance(value, Written):
+        return "number"
+    names = {str: "text", bool: "yes_no", int: "number", list: "list", dict: "table"}
+    return names.get(type(value), "date")

@@ -1,0 +1,186 @@
+"""`[board]` of a profile becomes a Board; what the chip cannot do is complained about.
+
+Knows which pins and timers are in use, and by what. What chips and drivers are, `boards` says.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from tiniscript.kit import Device, Kit
+from tiniscript.robots.boards import BAUDS, CHIPS, DRIVERS, Chip, Setting, drivers_for
+from tiniscript.robots.profile import Board, Wiring
+from tiniscript.robots.refusals import shown
+from tiniscript.robots.toml_table import Table
+
+LONGEST_RUN_SECONDS = 3600
+TEN_MINUTES = 600
+NOTHING = Wiring("", {}, {})
+
+
+class Use(NamedTuple):
+    """Somebody uses a pin: the place of the key, and what it needs of `NEEDS`."""
+
+    table: Table
+    key: str
+    pin: int
+    need: str
+
+
+class Pins:
+    """The pins of a chip, and who uses them. Without a chip nothing is checked."""
+
+    def __init__(self, chip: Chip | None) -> None:
+        self._chip = chip
+        self._uses: list[Use] = []
+
+    def take(self, table: Table, key: str, need: str, is_optional: bool = False) -> int | None:
+        """Return the number of the pin at `key`, or None where there is none to use."""
+        written = table.get(key, "" if is_optional else f"{key} = 5")
+        if written is None:
+            return None
+        if type(written) not in (int, str):
+            table.expect("pin", key, written)
+            return None
+        chip = self._chip
+        if chip is None:
+            return None
+        pin = chip.pin_number(written)
+        if pin is None:
+            table.complain("no_such_pin", key, found=shown(written), chip=chip.name)
+            return None
+        named = {"pin": chip.pin_name(pin), "chip": chip.name}
+        before = next((use for use in self._uses if use.pin == pin), None)
+        if pin in chip.link_pins:
+            table.complain("pin_of_link", key, **named)
+        elif not chip.can(pin, need):
+            table.complain("pin_cannot", key, need=need, **named, choices=_choices(chip, need))
+        elif before is not None:
+            table.complain("pin_twice", key, **named, first=before.table.path_of(before.key))
+        else:
+            self._uses.append(Use(table, key, pin, need))
+        return pin
+
+    def check_timers(self) -> None:
+        """Complain about every PWM pin whose timer servos or the buzzer have."""
+        if self._chip is None:
+            return
+        owners = {"servo": self._chip.servo_timer, "tone": self._chip.tone_timer}
+        for need, timer in owners.items():
+            owner = next((use for use in self._uses if use.need == need), None)
+            if owner is None or timer is None:
+                continue
+            for use in self._uses:
+                if use.need == "pwm" and self._chip.pwm[use.pin] == timer:
+                    use.table.complain(
+                        "timer_twice",
+                        use.key,
+                        pin=self._chip.pin_name(use.pin),
+                        timer=str(timer),
+                        first=owner.table.path_of(owner.key),
+                        choices=_choices(self._chip, "pwm", frozenset(owners.values())),
+                    )
+
+
+def _choices(chip: Chip, need: str, without: frozenset[int | None] = frozenset()) -> str:
+    """Return the pins that can do what is needed, but for those of the timers `without`."""
+    every = sorted(chip.digital | chip.reading | chip.analog)
+    fit = [pin for pin in every if chip.can(pin, need) and chip.pwm.get(pin, -1) not in without]
+    return ", ".join(chip.pin_name(pin) for pin in fit)
+
+
+def read_board(table: Table, kit: Kit) -> Board:
+    """Return the board of a kit. Complaints go where those of `table` go."""
+    chip = CHIPS.get(table.choice("chip", tuple(CHIPS)))
+    pins = Pins(chip)
+    most = chip.program_bytes if chip else 0
+    program_bytes = most
+    if table.has("program_bytes") and chip:
+        program_bytes = table.whole("program_bytes", 1, most)
+    baud = table.whole("baud", BAUDS[0], BAUDS[-1], "baud = 9600")
+    if baud and baud not in BAUDS:
+        known = ", ".join(map(str, BAUDS))
+        table.complain("not_one_of", "baud", found=str(baud), choices=known)
+    max_run = table.whole("max_run_seconds", 1, LONGEST_RUN_SECONDS, default=TEN_MINUTES)
+    start_button = pins.take(table, "start_button", "pull_up")
+    buzzer = pins.take(table, "buzzer", "tone")
+    status_led = pins.take(table, "status_led", "output", is_optional=True)
+    bluetooth_state = pins.take(table, "bluetooth_state", "input", is_optional=True)
+    motors = _read_wiring(table.table("motors", "[board.motors]"), "motors", pins)
+    sensors = _read_devices(table, "sensors", kit.sensors, pins)
+    actuators = _read_devices(table, "actuators", kit.actuators, pins)
+    table.finish()
+    pins.check_timers()
+    return Board(
+        chip=chip.name if chip else "",
+        program_bytes=program_bytes,
+        baud=baud,
+        max_run_seconds=max_run,
+        motors=motors,
+        sensors=sensors,
+        actuators=actuators,
+        start_button=start_button or 0,
+        buzzer=buzzer or 0,
+        status_led=status_led,
+        bluetooth_state=bluetooth_state,
+    )
+
+
+def device_tables(table: Table, key: str, devices: Sequence[Device]) -> dict[str, Table]:
+    """Return the table `[key.NAME]` of each device that has one. Names are in any case."""
+    group = table.table(key)
+    known = tuple(device.name for device in devices if device.name)
+    found: dict[str, Table] = {}
+    for written in group.written():
+        name = written.upper()
+        if name not in known:
+            group.not_in_kit(written, known)
+        elif name in found:
+            group.complain("name_twice", written, found=name)
+        else:
+            found[name] = group.table(written)
+    return found
+
+
+def _read_devices(
+    table: Table, key: str, devices: Sequence[Device], pins: Pins
+) -> tuple[Wiring, ...]:
+    tables = device_tables(table, key, devices)
+    wirings = []
+    for device in devices:
+        wired = tables.get(device.name)
+        if wired is not None:
+            wirings.append(_read_wiring(wired, f"{key} {device.kind}", pins))
+        elif device.name:
+            path = f"{key}.{device.name}"
+            table.complain("missing", path, example=f"[{table.path}.{path}]")
+    return tuple(wirings)
+
+
+def _read_wiring(table: Table, used_by: str, pins: Pins) -> Wiring:
+    """Return how one thing is connected; what has no known kind fits no driver."""
+    fitting = drivers_for(used_by)
+    if not fitting:
+        return NOTHING
+    name = table.choice("driver", fitting)
+    if not name:
+        return NOTHING
+    driver = DRIVERS[used_by, name]
+    settings = {setting.key: _read_setting(table, setting) for setting in driver.settings}
+    taken = {}
+    for key, need, is_optional in driver.pins:
+        has_pull_up = need == "input" and settings.get("pull_up")
+        pin = pins.take(table, key, "pull_up" if has_pull_up else need, is_optional)
+        if pin is not None:
+            taken[key] = pin
+    table.finish()
+    return Wiring(name, taken, settings)
+
+
+def _read_setting(table: Table, setting: Setting) -> int:
+    key, kind, default, low, high = setting
+    if kind == "yes/no":
+        return int(table.yes_no(key, bool(default)))
+    read = table.number if kind == "number" else table.whole
+    return read(key, low, high, default=default)

@@ -1,0 +1,276 @@
+"""Refused robot profiles: each code, its sentences, trouble with files, and broken files.
+
+What a good profile gives is in `test_robots`.
+"""
+
+from __future__ import annotations
+
+import random
+import re
+from pathlib import Path
+from string import Formatter
+
+import pytest
+
+from tiniscript import robots
+from tiniscript.robots.boards import NEEDS
+from tiniscript.robots.profile import LANGUAGES, ProfileRefused, Robot
+from tiniscript.robots.reader import read
+from tiniscript.robots.refusals import SENTENCES, WORDS_FOR, describe, shown
+from tiniscript.words import WORDS
+
+FOLDER = Path(robots.__file__).parent
+TEXTS = {path.stem: path.read_text(encoding="utf-8") for path in FOLDER.glob("*.toml")}
+
+
+def edited(name: str, old: str, new: str) -> str:
+    """The text of a shipped profile with its first `old` replaced."""
+    assert old in TEXTS[name]
+    return TEXTS[name].replace(old, new, 1)
+
+
+def refusal(text: str) -> ProfileRefused:
+    with pytest.raises(ProfileRefused) as caught:
+        read(text, "test")
+    return caught.value
+
+
+def codes(refused: ProfileRefused) -> list[str]:
+    return [code for code, _ in refused.reasons]
+
+
+FULL = "\n".join(f'[[kit.sensors]]\nname = "S{i}"\nkind = "yes/no"' for i in range(33))
+
+# code, robot, what is replaced, by what, the path that the complaint names
+REFUSED = [
+    ("not_toml", "tinibot", 'chip = "uno"', 'chip = "uno', None),
+    ("not_toml", "tinibot", "baud = 9600", "baud = 9" + "9" * 5000, None),
+    ("key_twice", "tinibot", "buzzer = 11", "buzzer = 11\nbuzzer = 12", None),
+    ("key_twice", "tinibot", "[body]", "[board]", None),
+    ("missing", "tinibot", "range = [0, 1023]", "", "kit.sensors[1].range"),
+    ("missing", "tinibot", 'kind = "number"\nunit', "unit", "kit.sensors[3].kind"),
+    ("missing", "tinibot", 'name = "DISTANCE"', "", "kit.sensors[3].name"),
+    ("missing", "tinibot", "start_button = 2", "", "board.start_button"),
+    ("missing", "liner", '[board.actuators.LED]\ndriver = "digital"\npin = 3', "",
+     "board.actuators.LED"),
+    ("unknown_key", "tinibot", "baud = 9600", "baud = 9600\nzebra = 1", "board.zebra"),
+    ("unknown_key", "tinibot", "unit =", "units =", "kit.sensors[3].units"),
+    ("unknown_key", "tinibot", "[labels.es]", "[labels.qu]", "labels.qu"),
+    ("wrong_type", "tinibot", "range = [0, 400]", "range = 400", "kit.sensors[3].range"),
+    ("wrong_type", "tinibot", "range = [0, 400]", "range = [0, 4, 5]", "kit.sensors[3].range"),
+    ("wrong_type", "tinibot", "range = [0, 400]", 'range = [0, "4"]', "kit.sensors[3].range"),
+    ("wrong_type", "tinibot", 'name = "DISTANCE"', "name = 5", "kit.sensors[3].name"),
+    ("wrong_type", "tinibot", "baud = 9600", "baud = 9600.0", "board.baud"),
+    ("wrong_type", "tinibot", "baud = 9600", "baud = 1979-05-27", "board.baud"),
+    ("wrong_type", "tinibot", "buzzer = 11", "buzzer = true", "board.buzzer"),
+    ("wrong_type", "tinibot", "buzzer = 11", "buzzer = 11.0", "board.buzzer"),
+    ("wrong_type", "liner", "pull_up = true", "pull_up = 1", "board.sensors.BUTTON.pull_up"),
+    ("not_one_of", "tinibot", 'chip = "uno"', 'chip = "pico"', "board.chip"),
+    ("not_one_of", "tinibot", "baud = 9600", "baud = 9601", "board.baud"),
+    ("not_one_of", "tinibot", '"hc_sr04"', '"digital"', "board.sensors.DISTANCE.driver"),
+    ("not_one_of", "tinibot", 'sees = "light"', 'sees = "stars"', "body.sensors.LIGHT_R.sees"),
+    ("out_of_range", "tinibot", "baud = 9600", "baud = 0", "board.baud"),
+    ("out_of_range", "tinibot", "baud = 9600", "baud = 9600\nprogram_bytes = 431",
+     "board.program_bytes"),
+    ("out_of_range", "tinibot", "[0, 400]", "[0, 2147483.648]", "kit.sensors[3].range"),
+    ("out_of_range", "tinibot", "[0, 400]", f"[0, 0x{'F' * 9000}]", "kit.sensors[3].range"),
+    ("out_of_range", "tinibot", "wheel_base_cm = 13.5", "wheel_base_cm = 0", "body.wheel_base_cm"),
+    ("too_precise", "tinibot", "[0, 400]", "[0, 0.0001]", "kit.sensors[3].range"),
+    ("number_odd", "tinibot", "[0, 400]", "[0, 4e2]", "kit.sensors[3].range"),
+    ("number_odd", "tinibot", "[0, 400]", "[0, inf]", "kit.sensors[3].range"),
+    ("range_empty", "tinibot", "[0, 400]", "[400, 0]", "kit.sensors[3].range"),
+    ("range_empty", "tinibot", "[0, 400]", "[4, 4]", "kit.sensors[3].range"),
+    ("range_not_whole", "grabber", "[0, 180]", "[0.5, 180]", "kit.actuators[1].range"),
+    ("name_bad", "liner", 'name = "BATTERY"', 'name = "BATERÍA"', "kit.sensors[4].name"),
+    ("name_bad", "liner", 'name = "BATTERY"', 'name = "2BATTERY"', "kit.sensors[4].name"),
+    ("name_bad", "liner", 'name = "BATTERY"', 'name = ""', "kit.sensors[4].name"),
+    ("name_bad", "liner", 'name = "BATTERY"', 'name = "MY BATTERY"', "kit.sensors[4].name"),
+    ("name_too_long", "liner", 'name = "BATTERY"', f'name = "{"B" * 25}"', "kit.sensors[4].name"),
+    ("name_is_word", "liner", 'name = "BATTERY"', 'name = "time"', "kit.sensors[4].name"),
+    ("name_twice", "liner", 'name = "LINE_R"', 'name = "Line_L"', "kit.sensors[2].name"),
+    ("name_twice", "liner", 'name = "LED"', 'name = "BUTTON"', "kit.actuators[1].name"),
+    ("name_twice", "tinibot", "[board.sensors.LIGHT_L]", "[board.sensors.light_r]",
+     "board.sensors.light_r"),
+    ("unknown_kind", "tinibot", 'kind = "number"', 'kind = "light"', "kit.sensors[1].kind"),
+    ("not_for_yes_no", "liner", 'kind = "yes/no"', 'kind = "yes/no"\nrange = [0, 1]',
+     "kit.sensors[1].range"),
+    ("not_for_yes_no", "liner", 'kind = "yes/no"', 'kind = "yes/no"\nunit = "V"',
+     "kit.sensors[1].unit"),
+    ("unit_bad", "tinibot", 'unit = "cm"', 'unit = "c m"', "kit.sensors[3].unit"),
+    ("unit_bad", "tinibot", 'unit = "cm"', 'unit = "centimetres"', "kit.sensors[3].unit"),
+    ("too_many", "tinibot", '[[kit.sensors]]\nname = "LIGHT_R"',
+     FULL + '\n[[kit.sensors]]\nname = "LIGHT_R"', "kit.sensors"),
+    ("not_in_kit", "tinibot", "[board.sensors.DISTANCE]", "[board.sensors.SONAR]",
+     "board.sensors.SONAR"),
+    ("not_in_kit", "tinibot", "LIGHT_L = {", "LIGTH_L = {", "body.sensors.LIGTH_L"),
+    ("not_in_kit", "tinibot", 'DISTANCE = "dis', 'WHEEL = "dis', "labels.en.WHEEL"),
+    ("label_bad", "tinibot", 'robot = "TiniBot"', 'robot = " "', "labels.en.robot"),
+    ("label_bad", "tinibot", 'robot = "TiniBot"', 'robot = "a\\u001b[2J"', "labels.en.robot"),
+    ("no_such_pin", "tinibot", "buzzer = 11", "buzzer = 20", "board.buzzer"),
+    ("no_such_pin", "tinibot", 'pin = "A0"', 'pin = "A6"', "board.sensors.LIGHT_R.pin"),
+    ("no_such_pin", "tinibot", 'pin = "A0"', 'pin = "D5"', "board.sensors.LIGHT_R.pin"),
+    ("pin_of_link", "tinibot", "trigger = 4", "trigger = 1", "board.sensors.DISTANCE.trigger"),
+    ("pin_twice", "tinibot", "trigger = 4", "trigger = 11", "board.sensors.DISTANCE.trigger"),
+    ("pin_twice", "tinibot", "trigger = 4", 'trigger = "A1"', "board.sensors.DISTANCE.trigger"),
+    ("pin_cannot", "tinibot", "left_pwm = 5", "left_pwm = 4", "board.motors.left_pwm"),
+    ("pin_cannot", "tinibot", 'pin = "A0"', "pin = 10", "board.sensors.LIGHT_R.pin"),
+    ("pin_cannot", "liner", "standby = 4", 'standby = "A6"', "board.motors.standby"),
+    ("pin_cannot", "grabber", "echo = 2", "echo = 33", "board.sensors.DISTANCE.echo"),
+    ("timer_twice", "tinibot", "left_pwm = 5", "left_pwm = 3", "board.motors.left_pwm"),
+    ("timer_twice", "grabber", "left_pwm = 6", "left_pwm = 12", "board.motors.left_pwm"),
+    ("timer_twice", "grabber", "left_pwm = 6", "left_pwm = 9", "board.motors.left_pwm"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("code", "name", "old", "new", "path"), REFUSED)
+def test_refusals(code: str, name: str, old: str, new: str, path: str | None) -> None:
+    refused = refusal(edited(name, old, new))
+    if path is None:
+        assert codes(refused) == [code]
+    else:
+        assert (code, path) in [(each, values["path"]) for each, values in refused.reasons]
+    for language in LANGUAGES:
+        assert all(sentence for sentence in describe(refused, language))
+
+
+def test_every_code_has_a_test() -> None:
+    of_files = {"no_such_robot", *(code for code, *_ in FILES)}
+    tested = of_files | {code for code, *_ in REFUSED}
+    assert tested == {code for code in SENTENCES if not code.endswith("/near")}
+
+
+def test_every_sentence_is_there_in_both_languages_with_the_same_gaps() -> None:
+    for code, sentences in SENTENCES.items():
+        assert set(sentences) == set(LANGUAGES), code
+        gaps = [{gap for _, gap, _, _ in Formatter().parse(each)} for each in sentences.values()]
+        assert gaps[0] == gaps[1], code
+    for words in WORDS_FOR.values():
+        assert all(set(word) == set(LANGUAGES) for word in words.values())
+    assert set(WORDS_FOR["need"]) == set(NEEDS)
+
+
+def test_all_complaints_come_at_once() -> None:
+    text = edited("tinibot", "range = [0, 400]", "range = [4, 0]")
+    text = text.replace("trigger = 4", "trigger = 1").replace('"LIGHT_R"', '"LOOP"', 1)
+    text = text.replace("speed_cm_s = 45", "speed = 45")
+    found = codes(refusal(text))
+    assert {"range_empty", "pin_of_link", "name_is_word", "missing", "unknown_key"} <= set(found)
+
+
+def test_a_missing_table_is_one_complaint() -> None:
+    before, _, after = TEXTS["tinibot"].partition("[body]")
+    text = before + "[labels.en]" + after.partition("[labels.en]")[2]
+    assert [(code, values["path"]) for code, values in refusal(text).reasons] == [
+        ("missing", "body")
+    ]
+
+
+def test_a_refusal_says_what_to_do() -> None:
+    refused = refusal(edited("tinibot", "left_pwm = 5", "left_pwm = 4"))
+    assert describe(refused, "en") == [
+        "board.motors.left_pwm is pin 4, which cannot be a PWM output on uno."
+        " These can: 3, 5, 6, 9, 10, 11."
+    ]
+    refused = refusal(edited("tinibot", "[0, 400]", "400"))
+    assert describe(refused, "es") == [
+        "kit.sensors[3].range es un número. Escribe ahí dos números, [menor, mayor]."
+    ]
+    refused = refusal(edited("tinibot", "baud =", "buad ="))
+    assert "Did you mean baud?" in describe(refused, "en")[1]
+
+
+@pytest.mark.parametrize("word", sorted(WORDS))
+def test_no_device_takes_a_word_of_the_language(word: str) -> None:
+    assert "name_is_word" in codes(refusal(TEXTS["tinibot"].replace("LIGHT_R", word.lower())))
+
+
+def test_what_is_shown_is_short_and_printable() -> None:
+    assert shown("a\x1b[2J\n" + "b" * 99) == "a?[2J?" + "b" * 34 + "…"
+    assert shown(16**9000) == "…"
+
+
+# ---- files
+
+FILES: list[tuple[str, bytes | None]] = [
+    ("file_missing", None),
+    ("file_too_large", b"#" * (robots.FILE_BYTES + 1)),
+    ("file_not_utf8", b'[kit]\n# caf\xe9 = "x"\n'),
+    ("file_is_directory", None),
+    ("file_unreadable", None),
+]
+
+
+@pytest.mark.parametrize(("code", "content"), FILES)
+def test_trouble_with_files(code: str, content: bytes | None, tmp_path: Path) -> None:
+    path = str(tmp_path / "robot.toml")
+    if content is not None:
+        Path(path).write_bytes(content)
+    elif code == "file_is_directory":
+        path = str(tmp_path)
+    elif code == "file_unreadable":
+        path = "\0.toml"
+    with pytest.raises(ProfileRefused) as caught:
+        robots.load(path)
+    assert codes(caught.value) == [code]
+    assert all(describe(caught.value, language) for language in LANGUAGES)
+
+
+def test_a_wrong_name_gets_the_nearest_one() -> None:
+    with pytest.raises(ProfileRefused) as caught:
+        robots.load("Tinybot")
+    assert describe(caught.value, "es") == [
+        "No hay un robot Tinybot. ¿Quisiste decir tinibot? Los robots son: tinibot, grabber, liner."
+    ]
+    for name in ("", "zzz", "\0", "💥", "{path}"):
+        with pytest.raises(ProfileRefused) as caught:
+            robots.load(name)
+        assert codes(caught.value) == ["no_such_robot"]
+        assert describe(caught.value, "en")[0].endswith("or give a .toml file.")
+
+
+# ---- anything at all
+
+ODD = (
+    "0", "-1", "1e999", "nan", "-inf", "1.0000000001", "9" * 5000, "0x" + "F" * 999, "true", '""',
+    '"x"', '"A0"', '"\\u0000"', "[]", "[[]]", "[1, 2]", "[nan, {}]", "{}", "{ a = 1 }", "[{}]",
+    "1979-05-27T07:32:00Z", "07:32:00", "'''", "", "[" * 3000, '"' + "ñ" * 99 + '"', "{path}",
+)  # fmt: skip
+
+
+def mutated(text: str, chance: random.Random) -> str:
+    """A text with some lines deleted, doubled, moved, or given another value."""
+    lines = text.split("\n")
+    for _ in range(chance.choice((1, 1, 2, 5, 20))):
+        at = chance.randrange(len(lines))
+        key, equals, _ = lines[at].partition("=")
+        how = chance.randrange(6)
+        if how == 0:
+            del lines[at]
+        elif how == 1:
+            lines.insert(chance.randrange(len(lines)), lines[at])
+        elif how == 2 and lines[at]:
+            cut = chance.randrange(len(lines[at]))
+            lines[at] = lines[at][:cut] + chance.choice('"[]{}=.#\\x5\x00') + lines[at][cut + 1 :]
+        elif how == 3:
+            lines[at] = re.sub(r"-?\d+", lambda _: chance.choice(ODD), lines[at])
+        elif equals:
+            lines[at] = f"{key}= {chance.choice(ODD)}"
+        lines = lines or [""]
+    return "\n".join(lines)
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_nothing_but_a_refusal_comes_of_a_broken_profile(seed: int) -> None:
+    chance = random.Random(seed)
+    for _ in range(50):
+        name = chance.choice(sorted(TEXTS))
+        try:
+            found = read(mutated(TEXTS[name], chance), name)
+        except ProfileRefused as refused:
+            assert refused.reasons
+            for language in LANGUAGES:
+                for sentence in describe(refused, language):
+                    assert sentence.isprintable()
+        else:
+            assert isinstance(found, Robot)
+            assert 1 <= found.kit.fingerprint <= 0xFFFF

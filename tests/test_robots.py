@@ -1,0 +1,246 @@
+"""Robot profiles: those that are shipped, what a file may say, and what makes a fingerprint."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tiniscript import robots
+from tiniscript.robots.boards import CHIPS, DRIVERS, NEEDS, Chip, drivers_for
+from tiniscript.robots.profile import LANGUAGES
+from tiniscript.robots.reader import read
+
+FOLDER = Path(robots.__file__).parent
+TEXTS = {path.stem: path.read_text(encoding="utf-8") for path in FOLDER.glob("*.toml")}
+FINGERPRINTS = {"tinibot": 0x231B, "liner": 0xFC65, "grabber": 0x74B5}
+
+
+def edited(name: str, old: str, new: str) -> str:
+    """The text of a shipped profile with its first `old` replaced."""
+    assert old in TEXTS[name]
+    return TEXTS[name].replace(old, new, 1)
+
+
+# ---- the shipped robots
+
+
+def test_the_default_comes_first_and_every_toml_is_shipped() -> None:
+    assert robots.names()[0] == robots.DEFAULT
+    assert sorted(robots.names()) == sorted(TEXTS) == sorted(FINGERPRINTS)
+
+
+@pytest.mark.parametrize("name", sorted(TEXTS))
+def test_a_shipped_robot_is_what_its_toml_says(name: str) -> None:
+    assert robots.load(name) == robots.load(str(FOLDER / f"{name}.toml"))
+    assert robots.load(name.upper()) == read(TEXTS[name], name)
+
+
+@pytest.mark.parametrize("name", sorted(TEXTS))
+def test_fingerprints_of_shipped_robots_are_promises(name: str) -> None:
+    assert robots.load(name).kit.fingerprint == FINGERPRINTS[name]
+
+
+@pytest.mark.parametrize("name", sorted(TEXTS))
+def test_a_shipped_robot_is_labelled_and_placed(name: str) -> None:
+    robot = robots.load(name)
+    devices = (*robot.kit.sensors, *robot.kit.actuators)
+    for language in LANGUAGES:
+        assert set(robot.labels[language]) == {"robot", *(device.name for device in devices)}
+        assert all(robot.labels[language][device.name] != device.name for device in devices)
+    assert len(robot.board.sensors) == len(robot.kit.sensors)
+    assert len(robot.board.actuators) == len(robot.kit.actuators)
+    assert robot.board.program_bytes == CHIPS[robot.board.chip].program_bytes
+
+
+def test_the_default_is_the_robot_of_the_paper() -> None:
+    robot = robots.load(robots.DEFAULT)
+    seen = [(each.name, each.unit, each.low, each.high) for each in robot.kit.sensors]
+    assert seen == [
+        ("LIGHT_R", "", 0, 1_023_000),
+        ("LIGHT_L", "", 0, 1_023_000),
+        ("DISTANCE", "cm", 0, 400_000),
+    ]
+    assert robot.kit.actuators == ()
+    assert robot.board.motors.driver == "l298n"
+    assert robot.board.sensors[0].pins == {"pin": 14}
+
+
+def test_shipped_py_is_fresh() -> None:
+    tool = FOLDER.parents[2] / "tools" / "generate.py"
+    checked = subprocess.run(
+        [sys.executable, str(tool), "--check"], capture_output=True, text=True, check=False
+    )
+    assert "shipped.py" not in checked.stderr, checked.stderr
+
+
+def test_a_shipped_robot_needs_no_toml() -> None:
+    program = (
+        "import sys; from tiniscript import robots; robots.load(robots.DEFAULT);"
+        "print(*{'tomllib', 'tomli', 'dataclasses', 'difflib'} & set(sys.modules))"
+    )
+    environment = {**os.environ, "PYTHONPATH": str(FOLDER.parents[1])}
+    command = [sys.executable, "-c", program]
+    found = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+    assert found.stdout.strip() == ""
+
+
+# ---- the fingerprint
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ('robot = "Grabber"', 'robot = "Big hand"'),
+        ('LED = "lamp"', ""),
+        ("baud = 57600", "baud = 9600"),
+        ("left_pwm = 6", "left_pwm = 8"),
+        ("speed_cm_s = 40", "speed_cm_s = 40.5"),
+        ("x_cm = 14", "x_cm = -14"),
+        ('name = "GRIPPER"', 'name = "Gripper"'),
+        ("range = [-40, 125]", "range = [-40.000, 125.0]"),
+    ],
+)
+def test_the_fingerprint_is_blind_to_what_programs_do_not_see(old: str, new: str) -> None:
+    assert read(edited("grabber", old, new), "x").kit.fingerprint == FINGERPRINTS["grabber"]
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ('unit = "cm"', 'unit = "mm"'),
+        ('unit = "cm"', ""),
+        ("range = [0, 400]", "range = [0, 400.001]"),
+        ("range = [0, 400]", "range = [-0.001, 400]"),
+        ("range = [0, 180]", "range = [1, 180]"),
+        ("range = [0, 180]", "range = [0, 181]"),
+    ],
+)
+def test_the_fingerprint_sees_ranges_and_units(old: str, new: str) -> None:
+    assert read(edited("grabber", old, new), "x").kit.fingerprint != FINGERPRINTS["grabber"]
+
+
+def test_the_fingerprint_sees_names_kinds_and_order() -> None:
+    text = TEXTS["tinibot"]
+    swapped = text.replace("LIGHT_R", "LIGHT_X").replace("LIGHT_L", "LIGHT_R")
+    renamed = text.replace("LIGHT_R", "LAMP")
+    other_kind = text.replace('kind = "number"\nrange = [0, 1023]', 'kind = "yes/no"', 1).replace(
+        'driver = "analog"', 'driver = "digital"', 1
+    )
+    texts = [swapped.replace("LIGHT_X", "LIGHT_L"), renamed, other_kind]
+    found = {read(each, "x").kit.fingerprint for each in texts}
+    assert len(found) == 3
+    assert FINGERPRINTS["tinibot"] not in found
+
+
+# ---- reading
+
+
+def test_names_are_stored_in_capitals_everywhere() -> None:
+    robot = read(TEXTS["liner"].replace("LINE_L", "line_l"), "x")
+    assert robot.kit.sensors[0].name == "LINE_L"
+    assert robot.labels["es"]["LINE_L"] == "sensor de línea izquierdo"
+    assert "LINE_L" in robot.body.places
+
+
+def test_numbers_are_exact() -> None:
+    text = edited("tinibot", "range = [0, 400]", "range = [-2147483.648, 2147483.647]")
+    distance = read(text, "x").kit.sensors[2]
+    assert (distance.low, distance.high) == (-(2**31), 2**31 - 1)
+    text = edited("tinibot", "range = [0, 400]", "range = [+0.1000, 1_000.25]")
+    assert read(text, "x").kit.sensors[2][3:] == (100, 1_000_250)
+
+
+def test_a_label_that_is_missing_is_the_other_languages_or_the_name() -> None:
+    text = TEXTS["tinibot"].partition("[labels.en]")[0]
+    assert read(text, "mine").labels["es"] == {
+        "robot": "mine",
+        "LIGHT_R": "LIGHT_R",
+        "LIGHT_L": "LIGHT_L",
+        "DISTANCE": "DISTANCE",
+    }
+    labels = read(text + '[labels.es]\nrobot = "Mío"\n', "mine").labels
+    assert labels["en"]["robot"] == labels["es"]["robot"] == "Mío"
+
+
+def test_a_robot_may_have_no_devices() -> None:
+    board = TEXTS["tinibot"].partition("[board]")[2].partition("# Drivers of sensors")[0]
+    body = TEXTS["tinibot"].partition("[body]")[2].partition("[body.sensors]")[0]
+    text = f"[kit]\n[board]{board}[body]{body}"
+    assert read(text, "x").kit.sensors == ()
+
+
+def test_a_wire_that_is_optional_may_be_missing() -> None:
+    board = read(edited("liner", "status_led = 13\n", "").replace("standby = 4", ""), "x").board
+    assert board.status_led is None
+    assert board.bluetooth_state is None
+    assert "standby" not in board.motors.pins
+
+
+@pytest.mark.parametrize(
+    ("motors", "settings"),
+    [
+        ('driver = "l293d"', {}),
+        (
+            'driver = "two_wire"\nleft_forward = 5\nleft_backward = 6\n'
+            "right_forward = 9\nright_backward = 10",
+            {},
+        ),
+        (
+            'driver = "servos"\nleft_pin = 9\nright_pin = 10',
+            {
+                "left_reversed": 0,
+                "right_reversed": 1,
+                "left_still_us": 1500,
+                "right_still_us": 1500,
+            },
+        ),
+    ],
+)
+def test_motor_drivers(motors: str, settings: dict[str, int]) -> None:
+    before, _, after = TEXTS["tinibot"].partition("\n[board.motors]\n")
+    pins = after.partition("left_pwm")[2].partition("\n\n")
+    kept = f"left_pwm{pins[0]}" if "l293d" in motors else ""
+    text = f"{before}\n[board.motors]\n{motors}\n{kept}\n{pins[2]}"
+    assert read(text, "x").board.motors.settings == settings
+
+
+def test_a_file_may_have_any_name_a_bom_and_crlf(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    text = TEXTS["tinibot"].replace("\n", "\r\n")
+    (tmp_path / "mine").write_bytes(b"\xef\xbb\xbf" + text.encode())
+    monkeypatch.chdir(tmp_path)
+    found = robots.load("mine")
+    assert found == robots.load("tinibot")._replace(name="mine")
+
+
+# ---- tables of the boards
+
+
+def test_every_driver_is_for_something_and_needs_what_chips_know() -> None:
+    uses = {used_by for used_by, _ in DRIVERS}
+    kinds = {
+        f"{group} {kind}" for group in ("sensors", "actuators") for kind in ("number", "yes/no")
+    }
+    assert uses == {"motors", *kinds}
+    assert all(drivers_for(used_by) for used_by in uses)
+    for driver in DRIVERS.values():
+        assert all(pin.need in NEEDS for pin in driver.pins)
+        assert all(each.low <= each.default <= each.high for each in driver.settings)
+
+
+@pytest.mark.parametrize("chip", CHIPS.values(), ids=list(CHIPS))
+def test_every_need_has_a_pin_and_the_link_none(chip: Chip) -> None:
+    every = chip.digital | chip.reading | chip.analog
+    assert not every & chip.link_pins
+    assert set(chip.pwm) <= chip.digital
+    assert all(any(chip.can(pin, need) for pin in every) for need in NEEDS)
+    assert all(chip.pin_number(_written(chip.pin_name(pin))) == pin for pin in every)
+
+
+def _written(name: str) -> object:
+    return int(name) if name.isdigit() else name
