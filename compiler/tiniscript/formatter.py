@@ -1,0 +1,236 @@
+"""The canonical layout of a program's text.
+
+Knows spaces, lines, indentation and where comments go. Works on tokens and comments, so that
+numbers and brackets stay as they are written. Knows no names and looks for no mistakes: it is
+made for texts whose shape `parser` finds nothing wrong with.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from tiniscript.source import Source
+from tiniscript.tokens import END, NEWLINE, NUMBER, WORD, Scan, Token, scan
+from tiniscript.words import ALIASES, BLOCK_ENDS
+
+INDENT = "  "
+BEFORE_COMMENT = "  "
+
+_ARMS = frozenset(("ELSE", "ELSEIF"))
+_OPENS = frozenset(BLOCK_ENDS) | _ARMS  # what follows stands further right
+_CLOSES = frozenset(BLOCK_ENDS.values()) | _ARMS  # stands further left than what is before
+_OPERATORS = frozenset(("+", "-", "*", "/", "%", "=", "<", ">", "<=", ">=", "<>"))
+_WORD_OPERATORS = frozenset(("AND", "OR", "NOT"))
+
+
+def formatted(source: Source) -> str:
+    """Return the program in the canonical layout: the same instructions, the same comments.
+
+    Formatting the result again changes nothing.
+    """
+    return _text(_rows(_pieces(scan(source.text))))
+
+
+# -- what the text is made of --------------------------------------------------------------------
+
+
+class _Piece:
+    """An instruction, SETUP with its bar, or, where it has no tokens, a line of comment."""
+
+    __slots__ = ("after_blank", "comments", "first_line", "last_line", "tokens")
+
+    def __init__(self, line: int, after_blank: bool) -> None:
+        self.tokens: list[Token] = []
+        self.comments: list[str] = []  # those inside it and the one behind it
+        self.first_line = line
+        self.last_line = line
+        self.after_blank = after_blank  # an empty line stands right before it
+
+    @property
+    def is_setup(self) -> bool:
+        return bool(self.tokens) and self.tokens[-1].kind == "|"
+
+    @property
+    def is_instruction(self) -> bool:
+        return bool(self.tokens) and not self.is_setup
+
+
+def _pieces(scanned: Scan) -> list[_Piece]:
+    """Return the pieces of a text in their order. Empty instructions are none."""
+    pieces: list[_Piece] = []
+    is_open = False  # whether the last piece is an instruction that has not ended
+    brackets = 0  # open in it
+    line = 0
+    line_is_empty, after_blank = True, False
+    for token in sorted((*scanned.tokens, *scanned.comments), key=_start):
+        kind = token.kind
+        if kind is END:
+            break
+        if kind is NEWLINE:
+            if line_is_empty and not is_open:
+                after_blank = True
+            line += 1
+            line_is_empty = True
+            is_open = is_open and brackets > 0
+            continue
+        line_is_empty = False
+        if kind == ";":
+            is_open = False
+            continue
+        is_comment = kind == "comment"
+        is_behind = is_comment and bool(pieces and pieces[-1].tokens) and (
+            pieces[-1].last_line == line
+        )  # fmt: skip
+        if not is_open and not is_behind:
+            pieces.append(_Piece(line, after_blank))
+            is_open, brackets, after_blank = not is_comment, 0, False
+        piece = pieces[-1]
+        if is_comment:
+            piece.comments.append(_comment(token.text))
+            continue
+        piece.tokens.append(token)
+        piece.last_line = line
+        brackets += (kind == "(") - (kind == ")")
+        if kind == "|":
+            is_open = False
+    return pieces
+
+
+def _start(token: Token) -> int:
+    return token.start
+
+
+def _comment(text: str) -> str:
+    """Return `// comment` for `//comment`. More spaces stay, and so do rulers like `/////`."""
+    inner = text[2:].rstrip()
+    apart = not inner or inner[0] == "/" or inner[0].isspace()
+    return "//" + inner if apart else "// " + inner
+
+
+# -- where it goes -------------------------------------------------------------------------------
+
+
+class _Row(NamedTuple):
+    """A line of the result without its indentation."""
+
+    word: str  # of an instruction that stands alone, the first word
+    text: str
+    after_blank: bool
+
+
+def _rows(pieces: list[_Piece]) -> list[_Row]:
+    """Return the lines that the pieces make."""
+    one_line = _is_one_line(pieces)
+    groups: list[list[_Piece]] = []
+    for piece in pieces:
+        if groups and _goes_on(groups[-1][-1], piece, one_line):
+            groups[-1].append(piece)
+        else:
+            groups.append([piece])
+    return [_row(group, one_line) for group in groups]
+
+
+def _is_one_line(pieces: list[_Piece]) -> bool:
+    """Whether the instructions go on one line: they do already, or there is only one.
+
+    A comment between SETUP and the first of them stands in the way.
+    """
+    places = [k for k, piece in enumerate(pieces) if piece.is_instruction]
+    if not places:
+        return False
+    first, last = places[0], places[-1]
+    for piece in reversed(pieces[:first]):
+        if piece.is_setup:
+            if piece.comments or piece is not pieces[first - 1]:
+                return False
+            break
+    return first == last or pieces[first].first_line == pieces[last].last_line
+
+
+def _goes_on(before: _Piece, piece: _Piece, one_line: bool) -> bool:
+    """Whether a piece goes on the line of the one before it."""
+    if not piece.is_instruction:
+        return False
+    if one_line:
+        return bool(before.tokens)
+    return before.is_setup and not before.comments and not piece.after_blank
+
+
+def _row(group: list[_Piece], one_line: bool) -> _Row:
+    first = group[0]
+    setup = f"{first.tokens[0].text}|" if first.is_setup else ""
+    instructions = [_instruction(piece.tokens) for piece in group if piece.is_instruction]
+    text = setup + ";".join(instructions)
+    word = ""
+    if instructions and not one_line:
+        text += ";"
+        word = _first_word(group[-1].tokens)
+    comment = " ".join(group[-1].comments)
+    if text and comment:
+        text += BEFORE_COMMENT
+    return _Row(word, text + comment, first.after_blank)
+
+
+def _text(rows: list[_Row]) -> str:
+    """Return the rows with their indentation and the empty lines between them."""
+    lines: list[str] = []
+    before = ""
+    for row, depth in zip(rows, _depths(rows), strict=True):
+        if row.after_blank and lines and before not in _OPENS and row.word not in _CLOSES:
+            lines.append("")
+        lines.append(INDENT * depth + row.text)
+        before = row.word
+    return "".join(line + "\n" for line in lines)
+
+
+def _depths(rows: list[_Row]) -> list[int]:
+    """Return how many blocks are open around each row; a comment takes what follows."""
+    depths: list[int] = []
+    depth = 0
+    for row in rows:
+        depth = max(0, depth - (row.word in _CLOSES))
+        depths.append(depth)
+        depth += row.word in _OPENS
+    for k in range(len(rows) - 2, -1, -1):
+        if not rows[k].word:
+            depths[k] = depths[k + 1]
+    return depths
+
+
+# -- within an instruction -----------------------------------------------------------------------
+
+
+def _first_word(tokens: list[Token]) -> str:
+    text = tokens[0].text
+    return ALIASES.get(text, text)
+
+
+def _instruction(tokens: list[Token]) -> str:
+    """Return an instruction on one line, with spaces where they belong."""
+    parts = [_first_word(tokens)]
+    before = tokens[0]
+    is_sign = False  # whether `before` is a minus that belongs to what follows
+    for token in tokens[1:]:
+        if _space_between(before, is_sign, token):
+            parts.append(" ")
+        is_decimal = token.kind is NUMBER and token.text.startswith(".")
+        parts.append("0" + token.text if is_decimal else token.text)
+        is_sign = token.kind == "-" and not _ends_value(before)
+        before = token
+    return "".join(parts)
+
+
+def _space_between(before: Token, is_sign: bool, token: Token) -> bool:
+    """Whether a space stands between two tokens; `is_sign`: the first is the minus of -X."""
+    if is_sign or before.kind == "(" or token.kind in (")", ","):
+        return False
+    if token.kind == "(":
+        return before.kind is not WORD or before.text in _WORD_OPERATORS
+    return True
+
+
+def _ends_value(token: Token) -> bool:
+    """Whether a minus right after this token takes away from a value."""
+    if token.kind is WORD:
+        return token.text not in _WORD_OPERATORS
+    return token.kind not in _OPERATORS and token.kind not in ("(", ",")

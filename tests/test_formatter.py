@@ -1,0 +1,360 @@
+"""The formatter: layouts by hand, and what holds for every program.
+
+Programs come from the generator of `oracle`; `laid_out_anew` gives their tokens a second, wilder
+layout with comments, empty lines and empty instructions wherever the language allows them.
+"""
+
+from __future__ import annotations
+
+import random
+import time
+
+import pytest
+
+from tests.oracle.interpreter import PAPER_KIT
+from tests.oracle.interpreter import Kit as OracleKit
+from tests.oracle.programs import WIDE_KIT, broken, program
+from tiniscript import compile_text, kit
+from tiniscript.formatter import formatted
+from tiniscript.parser import parse
+from tiniscript.source import Source
+from tiniscript.tokens import END, NEWLINE, scan
+from tiniscript.words import ALIASES
+
+CHUNKS = 16
+PROGRAMS_PER_CHUNK = 150
+
+
+def after(text: str) -> str:
+    return formatted(Source(text))
+
+
+def has_mistakes(text: str) -> bool:
+    return any(problem.is_mistake for problem in parse(Source(text)).problems)
+
+
+# --- Layouts by hand --------------------------------------------------------------------------
+
+OBSTACLES = """\
+SI|LOOP(FOREVER);
+  F(1, 80);
+  DISTANCE;
+  IF(DISTANCE < 10);
+    STOP;
+    R(1, 60);
+  ENDIF;
+END_LOOP;
+"""
+
+LAYOUTS: dict[str, tuple[str, str]] = {
+    "the obstacle program, as the paper prints it": (
+        OBSTACLES.removesuffix(";\n"),
+        OBSTACLES,
+    ),
+    "the obstacle program with no layout": (
+        "si|\nloop (forever)\nf(1,80)\ndistance\nif(distance<10)\nstop\nr(1,60)\nend_if\nendloop",
+        OBSTACLES,
+    ),
+    "the obstacle program on one line": (
+        "SI|START;LOOP(FOREVER);F(1, 80);DISTANCE;IF(DISTANCE < 10);STOP;R(1, 60);ENDIF;END_LOOP",
+        "SI|START;LOOP(FOREVER);F(1, 80);DISTANCE;IF(DISTANCE < 10);STOP;R(1, 60);ENDIF;END_LOOP\n",
+    ),
+    "one line with ends and spaces to spare": (
+        "\n\n si | ;; loop ( 3 ) ;; f( 2,50 ) ; endloop ; ; //square\n\n",
+        "SI|LOOP(3);F(2, 50);END_LOOP  // square\n",
+    ),
+    "a program without SETUP": ("L(1,50); B(1,80); W(1); S;", "L(1, 50);B(1, 80);W(1);S\n"),
+    "one instruction over several lines": (
+        "SB|\n\nR(\n  3,\n\n  60) UNTIL (TRUE)",
+        "SB|R(3, 60) UNTIL(TRUE)\n",
+    ),
+    "START is an instruction": ("SI|\nSTART\nS\n", "SI|START;\nS;\n"),
+    "PING is one line": ("ping | check_connection ;\n;\n", "PING|CHECK_CONNECTION\n"),
+    "PING with comments around it": (
+        "//a\nPING|check_connection //b\n//c",
+        "// a\nPING|CHECK_CONNECTION  // b\n// c\n",
+    ),
+    "nothing": ("", ""),
+    "nothing but empty lines and instructions": ("\r\n ;;\n\u00a0\n", ""),
+    "SETUP alone": ("\n sb | ;\n\n", "SB|\n"),
+    "SETUP and comments": ("SI| //a\n\n\n//b\n\n", "SI|  // a\n\n// b\n"),
+    "comments alone": ("\n//a\n\n\n //b\n//\n//   \n", "// a\n\n// b\n//\n//\n"),
+    "operators": (
+        "X=1+2*-3/(4-.5)%7\nY=X>=1 and not(X<>2)or(true)=false\nX=-X\nX=- - 5--.5",
+        "X = 1 + 2 * -3 / (4 - 0.5) % 7;\n"
+        "Y = X >= 1 AND NOT (X <> 2) OR (TRUE) = FALSE;\n"
+        "X = -X;\n"
+        "X = --5 - -0.5;\n",
+    ),
+    "minus after words, commas and brackets": (
+        "m(-50,-(x))\nx=max(-1,-abs(-x))\nif(not-x<3 and-x>1);endif",
+        "M(-50, -(X));\nX = MAX(-1, -ABS(-X));\nIF(NOT -X < 3 AND -X > 1);\nENDIF;\n",
+    ),
+    "numbers stay as written": ("SHOW(007.500+.5)", "SHOW(007.500 + 0.5)\n"),
+    "brackets stay as written": ("X = ( ( 5 ) )", "X = ((5))\n"),
+    "dashes of a phone": ("X=5\u20133\u2212\u20141 // a\u2013b", "X = 5 - 3 - -1  // a\u2013b\n"),
+    "UNTIL": ("f(1,80)until(distance<10)", "F(1, 80) UNTIL(DISTANCE < 10)\n"),
+    "names that nobody knows": ("frobnicate ( a,c )\nzap", "FROBNICATE(A, C);\nZAP;\n"),
+    "DEF, calls and every end in its spelling": (
+        "SI|DEF dance\nloop(2)\nwhile(true)\nif(true)\nbreak\n"
+        "end_if\nendwhile\nendloop\nenddef\n\ndance",
+        "SI|DEF DANCE;\n"
+        "  LOOP(2);\n"
+        "    WHILE(TRUE);\n"
+        "      IF(TRUE);\n"
+        "        BREAK;\n"
+        "      ENDIF;\n"
+        "    END_WHILE;\n"
+        "  END_LOOP;\n"
+        "END_DEF;\n"
+        "\n"
+        "DANCE;\n",
+    ),
+    "ELSEIF and ELSE": (
+        "IF(X<1);S\nELSEIF(X<2);W(1);ELSE\nIF(TRUE)\nELSE;ENDIF\nENDIF",
+        "IF(X < 1);\n"
+        "  S;\n"
+        "ELSEIF(X < 2);\n"
+        "  W(1);\n"
+        "ELSE;\n"
+        "  IF(TRUE);\n"
+        "  ELSE;\n"
+        "  ENDIF;\n"
+        "ENDIF;\n",
+    ),
+    "empty lines": (
+        "\n\nSI|LOOP(3)\n\n\nF(1, 50)\n\n \n\t\nIF(TRUE)\n\nS\n\n"
+        "ELSE\n\nW(1)\n\nENDIF\n\nS\n\n\nEND_LOOP\n\n",
+        "SI|LOOP(3);\n"
+        "  F(1, 50);\n"
+        "\n"
+        "  IF(TRUE);\n"
+        "    S;\n"
+        "  ELSE;\n"
+        "    W(1);\n"
+        "  ENDIF;\n"
+        "\n"
+        "  S;\n"
+        "END_LOOP;\n",
+    ),
+    "a line with only an empty instruction is no empty line": ("S\n;\nS", "S;\nS;\n"),
+    "empty lines and comments": (
+        "S\n\n// a\n\n\n// b\nLOOP(3)\n\n// c\n\nS\n\n// d\n\nEND_LOOP\n\n// e\n\n",
+        "S;\n\n// a\n\n// b\nLOOP(3);\n  // c\n\n  S;\n\n// d\nEND_LOOP;\n\n// e\n",
+    ),
+    "an empty line after SETUP": ("SI|\n\n\nF(1,80)\nS", "SI|\n\nF(1, 80);\nS;\n"),
+    "a comment behind SETUP": ("SI|//a\nF(1,80)\nS", "SI|  // a\nF(1, 80);\nS;\n"),
+    "a comment below SETUP": ("SI|\n//a\nF(1,80);S", "SI|\n// a\nF(1, 80);\nS;\n"),
+    "a comment between SETUP and the one instruction": (
+        "SI|\n//a\nF(1,80)",
+        "SI|\n// a\nF(1, 80);\n",
+    ),
+    "comments above and below one line": (
+        "//a\nSI|LOOP(3);F(2,50);END_LOOP //b\n\n//c",
+        "// a\nSI|LOOP(3);F(2, 50);END_LOOP  // b\n\n// c\n",
+    ),
+    "comments everywhere": (
+        "//0\n//1\nSI|LOOP(3);//2\n//3\nF(1, //4\n//5\n80)//6\n;//7\n"
+        "IF(TRUE);S;S //8\n//9\nELSE//10\nW(1)\n  //11\nENDIF//12\nEND_LOOP//13\n//14",
+        "// 0\n"
+        "// 1\n"
+        "SI|LOOP(3);  // 2\n"
+        "  // 3\n"
+        "  F(1, 80);  // 4 // 5 // 6\n"
+        "  // 7\n"
+        "  IF(TRUE);\n"
+        "    S;\n"
+        "    S;  // 8\n"
+        "  // 9\n"
+        "  ELSE;  // 10\n"
+        "    W(1);\n"
+        "  // 11\n"
+        "  ENDIF;  // 12\n"
+        "END_LOOP;  // 13\n"
+        "// 14\n",
+    ),
+    "a comment inside an instruction swallows no code": (
+        "SI|LOOP(3);F(2, // ) 9\n50);END_LOOP",
+        "SI|LOOP(3);\n  F(2, 50);  // ) 9\nEND_LOOP;\n",
+    ),
+    "a comment inside the one instruction": ("SI|F(2, // a\n50)\n", "SI|F(2, 50)  // a\n"),
+    "spaces of comments": (
+        "//a  \n//  b\t\n//\tc\n//\n///// d /////\n// e //\n//¿?",
+        "// a\n//  b\n//\tc\n//\n///// d /////\n// e //\n// ¿?\n",
+    ),
+    "lines end in LF": (
+        "SI|F(1,80)\r\n\r\nS // a\r//b\r\nS",
+        "SI|F(1, 80);\n\nS;  // a\n// b\nS;\n",
+    ),
+    "a long line is not wrapped": ("SHOW(" + "1+" * 200 + "1)", "SHOW(" + "1 + " * 200 + "1)\n"),
+}
+
+
+@pytest.mark.parametrize(("text", "layout"), LAYOUTS.values(), ids=LAYOUTS.keys())
+def test_layout(text: str, layout: str) -> None:
+    """Is the one that stands beside the text, and formatting it again changes nothing."""
+    assert not has_mistakes(text)
+    assert after(text) == layout
+    check(text)
+
+
+# --- What holds for every program ---------------------------------------------------------------
+
+
+def compiler_kit(oracle_kit: OracleKit) -> kit.Kit:
+    """The same kit, as the compiler knows it."""
+
+    def devices(of_kind: str) -> tuple[kit.Device, ...]:
+        return tuple(
+            kit.Device(d.name, kit.YES_NO if d.is_yes_no else kit.NUMBER, "", d.low, d.high)
+            for d in getattr(oracle_kit, of_kind)
+        )
+
+    return kit.Kit(devices("sensors"), devices("actuators"))
+
+
+def code_of(text: str) -> list[tuple[str, str]]:
+    """The tokens, with one spelling for what has several and one `;` between instructions."""
+    code: list[tuple[str, str]] = []
+    brackets = 0
+    for token in scan(text).tokens:
+        brackets += (token.kind == "(") - (token.kind == ")")
+        if token.kind in (NEWLINE, ";", END):
+            if not brackets and code and code[-1][0] not in (";", "|"):
+                code.append((";", ";"))
+            continue
+        shown = ALIASES.get(token.text, token.text)
+        code.append((token.kind, "0" + shown if shown.startswith(".") else shown))
+    return code
+
+
+def comments_of(text: str) -> str:
+    """The comments with one space at least after their `//`, all in one."""
+    found = [comment.text.rstrip() for comment in scan(text).comments]
+    return " ".join(
+        each if each[2:3] in ("", "/") or each[2].isspace() else f"// {each[2:]}" for each in found
+    )
+
+
+def check(text: str) -> str:
+    """Return the layout of a text whose shape is right, with all that does not need a kit."""
+    layout = after(text)
+    assert after(layout) == layout
+    assert not has_mistakes(layout)
+    assert code_of(layout) == code_of(text)
+    assert comments_of(layout) == comments_of(text)
+    assert "\r" not in layout and "\n\n\n" not in layout
+    assert not layout or (layout[0] != "\n" and layout[-1] == "\n" and layout[-2] != "\n")
+    assert all(line == line.rstrip() for line in layout.split("\n"))
+    return layout
+
+
+def check_compiled(text: str, of: kit.Kit) -> None:
+    """Assert that a right program and its layout compile to the same."""
+    before, then = compile_text(text, of), compile_text(check(text), of)
+    assert before.is_right and then.is_right
+    assert before.image and then.image == before.image
+    assert len(then.places) == len(before.places)
+    assert [each.code for each in then.problems] == [each.code for each in before.problems]
+
+
+def laid_out_anew(rng: random.Random, text: str) -> str:
+    """The same tokens with other spaces, lines, comments and empty instructions."""
+    newline = rng.choice(("\n", "\n", "\r\n", "\r"))
+    calm = rng.choice((0.0, 0.5, 0.9))  # how rarely something odd happens
+
+    def odd(chance: float) -> bool:
+        return rng.random() >= calm and rng.random() < chance
+
+    def line_end() -> str:
+        comment = rng.choice(("//", "// a", "//b  ", "//\tc", "///", " // d // d", "//)", "//;X="))
+        return (" " + comment if odd(0.3) else rng.choice(("", "", " "))) + newline
+
+    out: list[str] = [line_end() for _ in range(3) if odd(0.3)]
+    brackets, before = 0, ""
+    for kind, written in code_of(text):
+        if kind == ";":
+            ends = [rng.choice((";", line_end(), line_end()))]
+            ends += [rng.choice((";", " ", line_end(), line_end())) for _ in range(4) if odd(0.4)]
+            out += ends
+        else:
+            if (before[-1:].isalnum() or before[-1:] == "_") and written[0].isalnum():
+                out.append(" ")
+            out.append(rng.choice("-\u2013\u2014\u2212") if written == "-" else written.lower())
+            brackets += (kind == "(") - (kind == ")")
+            if brackets and odd(0.1):
+                out += [line_end() for _ in range(rng.randint(1, 3))]
+            elif odd(0.3):
+                out.append(rng.choice((" ", "  ", "\t", "\u00a0")))
+            if kind == "|":
+                out += [rng.choice((";", line_end())) for _ in range(3) if odd(0.3)]
+        before = written
+    return "".join(out)
+
+
+@pytest.mark.parametrize("chunk", range(CHUNKS))
+def test_every_program_stays_the_same_program(chunk: int) -> None:
+    """Same image, same comments; as written by the generator and in a wilder layout."""
+    rng = random.Random(f"formatter {chunk}")
+    for _ in range(PROGRAMS_PER_CHUNK):
+        oracle_kit = rng.choice((PAPER_KIT, WIDE_KIT))
+        text = program(rng, oracle_kit).removeprefix("\ufeff")
+        of = compiler_kit(oracle_kit)
+        check_compiled(text, of)
+        if "check_connection" not in text.lower():
+            check_compiled(laid_out_anew(rng, text), of)
+
+
+def test_one_line_stays_one_line_and_several_stay_several() -> None:
+    """However much stands on it. Several lines have one instruction on each."""
+    rng = random.Random("lines")
+    seen = {True: 0, False: 0}
+    for _ in range(500):
+        text = program(rng, WIDE_KIT).removeprefix("\ufeff").strip()
+        instructions = code_of(text).count((";", ";"))
+        is_one_line = "\n" not in text
+        if instructions < 2 or (not is_one_line and ";" in text):
+            continue
+        seen[is_one_line] += 1
+        lines = [line.strip() for line in after(text).split("\n")]
+        code_lines = [line for line in lines if line not in ("", "SI|", "SB|") and line[:2] != "//"]
+        assert len(code_lines) == (1 if is_one_line else instructions)
+    assert min(seen.values()) > 50
+
+
+def test_texts_with_other_mistakes_are_formatted_too() -> None:
+    """Where the shape is right, names, kinds and ranges may be wrong; and nothing ever raises."""
+    rng = random.Random("broken")
+    checked = 0
+    for _ in range(3000):
+        text = broken(rng, program(rng, WIDE_KIT))
+        after(text)
+        if not has_mistakes(text):
+            check(text)
+            checked += 1
+    assert checked > 200
+
+
+@pytest.mark.parametrize(
+    "unit",
+    ["F(1,80);", "F(1,80)\n", "//\n", "\n", ";", "X=1+2-3//a\nS\n\n", "IF(TRUE)\nENDIF\n"],
+)
+def test_time_grows_with_the_text_and_no_faster(unit: str) -> None:
+    """Four times the text takes about four times as long, not sixteen."""
+
+    def seconds(size: int) -> float:
+        source = Source(unit * (size // len(unit)))
+        start = time.perf_counter()
+        formatted(source)
+        return time.perf_counter() - start
+
+    assert seconds(400_000) < 8 * seconds(100_000) + 0.3
+
+
+@pytest.mark.parametrize("inner", ["(", "-", "NOT ", "ABS(", "1+(", "//a\n"])
+def test_depth_exhausts_nothing(inner: str) -> None:
+    """An instruction may hold as much as it likes."""
+    count = 20_000
+    text = "SHOW(" + inner * count + "1" + ")" * (inner.count("(") * count) + ")"
+    assert code_of(after(text)) == code_of(text)
+    assert after(after(text)) == after(text)
