@@ -1,0 +1,114 @@
+"""TiniScript: from a line of text to what a robot does.
+
+`compile_text` is the whole road, a line for each stage: text, tokens, tree, program,
+instructions, image. It prints nothing, opens nothing and needs the standard library alone.
+"""
+
+from __future__ import annotations
+
+import gc
+from typing import NamedTuple
+
+__version__ = "0.1.0"
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from tiniscript.kit import Kit
+    from tiniscript.lower import Place
+    from tiniscript.problems import Problem
+    from tiniscript.program import Program
+    from tiniscript.robots.profile import Robot
+    from tiniscript.source import Source
+    from tiniscript.verify import Verdict
+
+
+class Compiled(NamedTuple):
+    """What became of a text. Where a problem is a mistake, `image` is empty.
+
+    `program` is the checked program, as written; `places` says where in the text each
+    instruction comes from.
+    """
+
+    source: Source
+    problems: list[Problem]
+    program: Program | None = None
+    code: bytes = b""
+    places: tuple[Place, ...] = ()
+    verdict: Verdict | None = None
+    image: bytes = b""
+
+    @property
+    def is_right(self) -> bool:
+        return not any(problem.is_mistake for problem in self.problems)
+
+
+def check_text(text: str, kit: Kit, name: str = "") -> Compiled:
+    """Return the checked program of a text, and all that is wrong with it."""
+    from tiniscript.advice import advice
+    from tiniscript.checker import check
+    from tiniscript.parser import parse
+    from tiniscript.problems import in_order
+    from tiniscript.source import Source
+
+    source = Source(text, name)
+    parsed = parse(source)
+    checked = check(source, parsed.program, kit)
+    found = [*parsed.problems, *checked.problems]
+    if not any(problem.is_mistake for problem in found):
+        found += advice(checked.program, kit)
+    return Compiled(source, in_order(found), checked.program)
+
+
+def fitting(compiled: Compiled, robot: Robot, is_mistake: bool) -> Compiled:
+    """Return `compiled` with what there is to say where the robot's memory is too small."""
+    from tiniscript import problems
+    from tiniscript.source import Span
+
+    over = len(compiled.code) - robot.board.program_bytes
+    if over <= 0:
+        return compiled
+    code = problems.BOARD_TOO_SMALL if is_mistake else problems.BOARD_MAY_BE_TOO_SMALL
+    values = {"robot": robot.name, "limit": str(robot.board.program_bytes),
+              "code": str(len(compiled.code)), "over": str(over)}  # fmt: skip
+    end = len(compiled.source.text)
+    problem = problems.Problem(code, Span(end, end), values)
+    return compiled._replace(problems=[*compiled.problems, problem])
+
+
+def compile_text(text: str, kit: Kit, name: str = "", optimize: bool = True) -> Compiled:
+    """Return the image of a text for robots with this kit, or all that is wrong with it.
+
+    The garbage collector pauses meanwhile: there are many small values and no cycles among
+    them, and looking for some would make long texts slower than in proportion.
+    """
+    was_enabled = gc.isenabled()
+    gc.disable()
+    try:
+        return _compiled(text, kit, name, optimize)
+    finally:
+        if was_enabled:
+            gc.enable()
+
+
+def _compiled(text: str, kit: Kit, name: str, optimize: bool) -> Compiled:
+    from tiniscript import problems
+    from tiniscript.bytecode import CODE_BYTES
+    from tiniscript.image import pack
+    from tiniscript.lower import lower
+    from tiniscript.optimizer import optimized
+    from tiniscript.source import Span
+    from tiniscript.verify import verify
+
+    compiled = check_text(text, kit, name)
+    program = compiled.program
+    if program is None or not compiled.is_right:
+        return compiled
+    lowered = lower(optimized(program) if optimize else program)
+    if len(lowered.code) > CODE_BYTES:
+        over = {"limit": str(CODE_BYTES), "over": str(len(lowered.code) - CODE_BYTES)}
+        place = Span(len(text), len(text))
+        problem = problems.Problem(problems.CODE_TOO_LONG, place, over)
+        return compiled._replace(problems=[*compiled.problems, problem])
+    verdict = verify(lowered.code, len(kit.sensors), len(kit.actuators))
+    image = pack(program.start, kit.fingerprint if verdict.uses_kit else 0, lowered.code)
+    return compiled._replace(code=lowered.code, places=lowered.places, verdict=verdict, image=image)

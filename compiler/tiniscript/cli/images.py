@@ -1,0 +1,90 @@
+"""A program that is ready to run: compiled now, or read from an image and verified."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+from tiniscript.cli import inputs, outputs
+from tiniscript.cli.trouble import Trouble
+
+if TYPE_CHECKING:
+    from tiniscript.image import Image
+    from tiniscript.maps import Map
+    from tiniscript.robots.profile import Robot
+
+
+class Ready(NamedTuple):
+    """`places` is None where nobody knows the text any more."""
+
+    image: Image
+    image_bytes: int
+    places: Map | None
+
+
+def ready(given: inputs.Input, robot: Robot, language: str) -> Ready | None:
+    """Return the program of an input, or None where its mistakes have just been printed.
+
+    Raises Trouble where an image is refused.
+    """
+    from tiniscript import maps
+
+    if given.is_image:
+        image = _read(given, robot.kit.fingerprint, robot.name)
+        _verify(given, image, robot)
+        return Ready(image, len(given.data), maps.recall(image.checksum))
+    compiled = inputs.compiled(given, robot, is_strict=False)
+    outputs.print_problems(compiled, language)
+    if not compiled.is_right:
+        return None
+    from tiniscript.bytecode import ISA_MAJOR, ISA_MINOR
+    from tiniscript.image import Image, checksum
+
+    assert compiled.program is not None and compiled.verdict is not None
+    kit = robot.kit.fingerprint if compiled.verdict.uses_kit else 0
+    image = Image(compiled.program.start, kit, compiled.code, checksum(compiled.image),
+                  (ISA_MAJOR, ISA_MINOR))  # fmt: skip
+    return Ready(image, len(compiled.image), maps.from_compiled(compiled))
+
+
+def _read(given: inputs.Input, kit: int | None, robot: str) -> Image:
+    from tiniscript.image import ImageRefused, unpack
+
+    try:
+        return unpack(given.data, kit)
+    except ImageRefused as refused:
+        values = {"file": inputs.shown(given.name), "robot": robot, **refused.values}
+        if refused.name == "OTHER_KIT":
+            values["theirs"] = robot_of_kit(int(refused.values["theirs"], 16)) or "FILE"
+        raise Trouble(1, f"image_{refused.name}", **values) from None
+
+
+def _verify(given: inputs.Input, image: Image, robot: Robot) -> None:
+    from tiniscript.verify import Refused, verify
+
+    kit = robot.kit if image.kit else None
+    try:
+        verify(image.code, len(kit.sensors) if kit else 0, len(kit.actuators) if kit else 0)
+    except Refused as refused:
+        values = {"name": refused.name, "number": str(refused.number)}
+        where = f"{refused.offset:04x}"
+        file = inputs.shown(given.name)
+        raise Trouble(1, "image_code", file=file, offset=where, **values) from None
+
+
+def robot_for(given: inputs.Input, robot: Robot) -> Robot:
+    """Return the shipped robot whose kit an image names, or `robot` where none does."""
+    from tiniscript import robots
+
+    image = _read(given, None, robot.name)
+    name = robot_of_kit(image.kit) if image.kit else None
+    return robot if name is None else robots.load(name)
+
+
+def robot_of_kit(fingerprint: int) -> str | None:
+    """Return the shipped robot that has this kit."""
+    from tiniscript import robots
+
+    for name in robots.names():
+        if robots.load(name).kit.fingerprint == fingerprint:
+            return name
+    return None

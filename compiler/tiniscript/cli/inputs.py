@@ -1,0 +1,119 @@
+"""What a verb works on: a program from a file, standard input or the command line; a robot."""
+
+from __future__ import annotations
+
+import sys
+from argparse import Namespace
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+from tiniscript.cli.trouble import Trouble
+from tiniscript.source import LARGEST_SOURCE, Unreadable, decode
+
+if TYPE_CHECKING:
+    from tiniscript import Compiled
+    from tiniscript.robots.profile import Robot
+
+
+class Input(NamedTuple):
+    """The bytes of a program. `path` is None where they come from no file."""
+
+    name: str
+    data: bytes
+    path: Path | None
+
+    @property
+    def is_image(self) -> bool:
+        """Whether these bytes are, or are called, a compiled program."""
+        is_binary = self.data[:2] == b"TS" and self.data[2:3] < b" " and len(self.data) > 2
+        called_so = self.path is not None and self.path.suffix.lower() == ".bin"
+        return called_so or (is_binary and self.data[2:3] not in (b"\t", b"\n", b"\r"))
+
+
+def program(options: Namespace) -> Input:
+    """Return the program that the options name. Raises Trouble where there is none."""
+    if options.program is None and options.text is None:
+        raise Trouble(2, "no_program")
+    if options.program is not None and options.text is not None:
+        raise Trouble(2, "two_programs")
+    if options.text is not None:
+        return Input("-e", options.text.encode("utf-8", "surrogateescape"), None)
+    if options.program == "-":
+        return Input("-", sys.stdin.buffer.read(LARGEST_SOURCE + 1), None)
+    path = Path(options.program)
+    try:
+        with path.open("rb") as file:
+            return Input(options.program, file.read(LARGEST_SOURCE + 1), path)
+    except FileNotFoundError:
+        raise Trouble(2, "file_missing", file=shown(options.program)) from None
+    except IsADirectoryError:
+        raise Trouble(2, "file_directory", file=shown(options.program)) from None
+    except PermissionError:
+        key = "file_directory" if path.is_dir() else "file_forbidden"
+        raise Trouble(2, key, file=shown(options.program)) from None
+    except (OSError, ValueError) as why:  # ValueError: a name that no file can have
+        reason = why.strerror if isinstance(why, OSError) and why.strerror else str(why)
+        raise Trouble(2, "file_unreadable", file=shown(options.program), why=reason) from None
+
+
+def shown(name: str) -> str:
+    """Return a file's name as a message can print it."""
+    text = "".join(letter if letter.isprintable() else "?" for letter in name)
+    return text if len(text) <= 200 else text[:200] + "…"
+
+
+def robot(options: Namespace, language: str) -> Robot:
+    """Return the robot that `--robot` names, or the default one."""
+    from tiniscript import robots
+    from tiniscript.robots.profile import ProfileRefused
+
+    try:
+        return robots.load(options.robot or robots.DEFAULT)
+    except ProfileRefused as refused:
+        from tiniscript.robots.refusals import describe
+
+        lines = describe(refused, language)
+        if len(lines) == 1:
+            raise Trouble(2, "plain", said=lines[0]) from None
+        reasons = "\n".join("  " + line for line in lines)
+        raise Trouble(2, "profile_refused", file=shown(options.robot), reasons=reasons) from None
+
+
+def compiled(given: Input, robot: Robot, is_strict: bool) -> Compiled:
+    """Return what became of a program's text.
+
+    `is_strict`: a program that is too large for the robot is a mistake, else a warning.
+    """
+    from tiniscript import compile_text, fitting
+
+    source = _source(given)
+    if isinstance(source, str):
+        return fitting(compile_text(source, robot.kit, given.name), robot, is_strict)
+    return source
+
+
+def parsed(given: Input) -> Compiled:
+    """Return what is wrong with the shape of a program's text, and nothing more."""
+    from tiniscript import Compiled
+    from tiniscript.parser import parse
+    from tiniscript.problems import in_order
+    from tiniscript.source import Source
+
+    text = _source(given)
+    if not isinstance(text, str):
+        return text
+    source = Source(text, given.name)
+    return Compiled(source, in_order(parse(source).problems))
+
+
+def _source(given: Input) -> str | Compiled:
+    """Return a program's text; where the bytes are no text, that as its one problem."""
+    from tiniscript import Compiled, problems
+    from tiniscript.source import Source, Span
+
+    try:
+        return decode(given.data)
+    except Unreadable as unreadable:
+        codes = {"too_large": problems.TOO_LARGE, "binary": problems.BINARY}
+        code = codes.get(unreadable.reason, problems.NOT_UTF8)
+        return Compiled(Source("", given.name), [problems.Problem(code, Span(0, 0))])
