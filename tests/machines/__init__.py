@@ -1,0 +1,23 @@
+"""The machines that must agree: each runs an image with given senses and returns the trace."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import NamedTuple
+
+from tests.machines.python import run_python
+from tiniscript.kit import Kit
+
+
+class Senses(NamedTuple):
+    """What a run is told: readings in thousandths by sensor name, and its limits."""
+
+    readings: Mapping[str, Sequence[int]] = {}
+    max_ms: int = 60_000
+    max_steps: int = 10_000_000
+    seed: int = 1
+
+
+Machine = Callable[[bytes, Kit, Senses], str]
+
+MACHINES: dict[str, Machine] = {"python": run_python}
