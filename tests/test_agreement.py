@@ -1,0 +1,129 @@
+"""Random programs: the compiler and the machine agree with the oracle, trace by trace.
+
+The oracle is an interpreter of its own, written from the language reference alone: it shares no
+line with the compiler. `python -m tests.test_agreement 100000` runs a campaign.
+"""
+
+from __future__ import annotations
+
+import random
+import sys
+from collections.abc import Iterator
+
+import pytest
+
+from tests.kits import KITS
+from tests.machines import MACHINES, Senses
+from tests.oracle import interpreter, programs
+from tiniscript import compile_text
+from tiniscript.formatter import formatted
+from tiniscript.listing import listing, read_listing
+from tiniscript.messages import as_text, message
+from tiniscript.source import Source
+from tiniscript.verify import verify
+
+MAX_MS, MAX_STEPS = 20_000, 20_000
+BATCH = 500
+BATCHES = 40  # in the tests; a campaign runs more
+
+
+def same(want: str, got: str) -> bool:
+    """Whether two traces mean the same: where `max-steps` cuts is not part of the meaning."""
+    if want == got:
+        return True
+    ours, theirs = got.splitlines(), want.splitlines()
+    if not any(_is_cut(lines[-1]) for lines in (ours, theirs)):
+        return False
+    shorter = min(len(ours), len(theirs)) - 1
+    return ours[:shorter] == theirs[:shorter]
+
+
+def _is_cut(line: str) -> bool:
+    return line.endswith(" LIMIT") and line != f"{MAX_MS} LIMIT"
+
+
+def check_program(seed: int) -> None:
+    """Everything that must hold for one random program."""
+    rng = random.Random(seed)
+    oracle_kit, kit = KITS[seed % len(KITS)]
+    text = programs.program(rng, oracle_kit)
+    readings = programs.senses(rng, oracle_kit)
+    want = interpreter.run(text, oracle_kit, readings, MAX_MS, MAX_STEPS, seed + 1)
+    senses = Senses(readings, MAX_MS, MAX_STEPS, seed + 1)
+    short = compile_text(text, kit)
+    plain = compile_text(text, kit, optimize=False)
+    assert short.is_right, text
+    for name, machine in MACHINES.items():
+        assert same(want, machine(short.image, kit, senses)), f"{name}, seed {seed}:\n{text}"
+        assert same(want, machine(plain.image, kit, senses)), f"{name}, seed {seed}, plain:\n{text}"
+    assert len(short.code) <= len(plain.code)
+    assert read_listing(listing(short.code)) == short.code
+    laid_out = formatted(Source(text))
+    assert compile_text(laid_out, kit).image == short.image, f"seed {seed}, formatted:\n{text}"
+    assert formatted(Source(laid_out)) == laid_out
+
+
+def check_broken(seed: int) -> None:
+    """A broken text is refused by both, or by neither, and always said in words."""
+    rng = random.Random(seed)
+    oracle_kit, kit = KITS[seed % len(KITS)]
+    text = programs.broken(rng, programs.program(rng, oracle_kit))
+    try:
+        want = interpreter.run(text, oracle_kit, {}, MAX_MS, MAX_STEPS, 1)
+    except interpreter.Mistake:
+        want = None
+    compiled = compile_text(text, kit)
+    for language in ("en", "es"):
+        for problem in compiled.problems[:5]:
+            assert as_text(message(problem, compiled.source, language), compiled.source, language)
+    if want is None:
+        assert not compiled.is_right or reads_more(text), f"seed {seed}, oracle refuses:\n{text}"
+    else:
+        assert compiled.is_right, f"seed {seed}, oracle accepts:\n{text}"
+        verify(compiled.code, len(kit.sensors), len(kit.actuators))
+
+
+def reads_more(text: str) -> bool:
+    """Whether a text has what the compiler reads and the oracle leaves alone: phones' dashes."""
+    return any(letter in text for letter in "\u2010\u2011\u2012\u2013\u2014\u2015\u2212\f\v\u2028")
+
+
+def batches() -> Iterator[range]:
+    for number in range(BATCHES):
+        yield range(number * BATCH, (number + 1) * BATCH)
+
+
+@pytest.mark.parametrize("seeds", batches(), ids=lambda seeds: f"from {seeds.start}")
+def test_random_programs(seeds: range) -> None:
+    for seed in seeds:
+        check_program(seed)
+
+
+@pytest.mark.parametrize("seeds", batches(), ids=lambda seeds: f"from {seeds.start}")
+def test_broken_programs(seeds: range) -> None:
+    for seed in seeds:
+        check_broken(seed)
+
+
+@pytest.mark.parametrize("part", range(16))
+def test_the_compiler_never_makes_what_verify_refuses(part: int) -> None:
+    """10^5 random programs in all, optimised or not."""
+    for number in range(6250):
+        seed = 1_000_000 + part * 6250 + number
+        rng = random.Random(seed)
+        oracle_kit, kit = KITS[seed % len(KITS)]
+        compiled = compile_text(programs.program(rng, oracle_kit), kit, optimize=seed % 3 > 0)
+        assert compiled.is_right
+        verify(compiled.code, len(kit.sensors), len(kit.actuators))
+
+
+def campaign(first: int, count: int) -> None:
+    for seed in range(first, first + count):
+        check_program(seed)
+        check_broken(seed)
+        if seed % 1000 == 999:
+            print(f"{seed + 1 - first} programs agree", flush=True)
+
+
+if __name__ == "__main__":
+    campaign(BATCH * BATCHES, int(sys.argv[1]) if len(sys.argv) > 1 else 100_000)

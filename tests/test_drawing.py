@@ -1,0 +1,285 @@
+"""`tsc run --show` on a real pseudo-terminal: what a person sees, and what a file gets.
+
+`pyte` plays the terminal. Nothing here measures time: what depends on it has a clock of its own.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import struct
+import subprocess
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+from tiniscript import compile_text, robots
+from tiniscript.cli import drawing
+from tiniscript.run import Ending, Event, Senses, run
+
+NO_PTY = "Windows has no pseudo-terminals of this kind"
+pty = pytest.importorskip("pty", reason=NO_PTY)
+fcntl = pytest.importorskip("fcntl", reason=NO_PTY)
+termios = pytest.importorskip("termios", reason=NO_PTY)
+pyte = pytest.importorskip("pyte", reason="pyte, a terminal for tests, is not installed")
+
+OBSTACLES = (
+    "SI|START;LOOP(FOREVER);F(1, 80) UNTIL(DISTANCE < 10);IF(DISTANCE < 10);STOP;R(1, 60);"
+    "ENDIF;END_LOOP"
+)
+SEEN = ["--sensor", "DISTANCE=50,9,50,30,8,50", "--max-time", "4"]
+GRABBER = (
+    "SI|LED(TRUE);GRIPPER(90);M(50, 80);W(1);TEMPERATURE;BUTTON;SHOW(1.5);SHOW(BUTTON);"
+    "BEEP(0.5, 440);B(0.5, 30)"
+)
+HIDE, REVEAL = b"\x1b[?25l", b"\x1b[?25h"
+
+
+def on_terminal(
+    *arguments: str,
+    size: tuple[int, int] = (80, 24),
+    output: Path | None = None,
+    interrupt_at: bytes | None = None,
+    environ: dict[str, str] | None = None,
+) -> tuple[int, bytes]:
+    """Run `tsc run` on a terminal of so many columns and rows; return its exit code and bytes.
+
+    Standard output is the same terminal, or a file. Ctrl-C is sent once `interrupt_at` arrives.
+    """
+    ours, theirs = pty.openpty()
+    fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", size[1], size[0], 0, 0))
+    hidden = ("COLUMNS", "LINES", "NO_COLOR", "FORCE_COLOR", "TTY_COMPATIBLE", "TTY_INTERACTIVE")
+    env = {name: value for name, value in os.environ.items() if name not in hidden}
+    env |= {"TERM": "xterm-256color", **(environ or {})}
+    out = output.open("wb") if output else None
+    process = subprocess.Popen(
+        [sys.executable, "-m", "tiniscript", "run", *arguments, "--show"],
+        stdin=subprocess.DEVNULL, stdout=out or theirs, stderr=theirs, env=env,
+    )  # fmt: skip
+    os.close(theirs)
+    if out:
+        out.close()
+    written = b""
+    while True:
+        try:
+            part = os.read(ours, 65536)
+        except OSError:  # Linux: the other end is closed
+            break
+        if not part:
+            break
+        written += part
+        if interrupt_at is not None and interrupt_at in written:
+            process.send_signal(signal.SIGINT)
+            interrupt_at = None
+    os.close(ours)
+    return process.wait(), written
+
+
+def plain(*arguments: str) -> bytes:
+    """What `tsc run` prints with no terminal."""
+    command = [sys.executable, "-m", "tiniscript", "run", *arguments]
+    return subprocess.run(command, stdout=subprocess.PIPE, check=False).stdout
+
+
+def screen(written: bytes, size: tuple[int, int] = (80, 24)) -> list[str]:
+    """What is to be seen at the end, with all that has scrolled away, line by line."""
+    terminal = pyte.HistoryScreen(*size, history=100_000)
+    pyte.ByteStream(terminal).feed(written)
+    gone = ["".join(line[k].data for k in range(size[0])) for line in terminal.history.top]
+    return [line.rstrip() for line in [*gone, *terminal.display]]
+
+
+def row(lines: list[str], name: str) -> list[str]:
+    """The words of the line that begins with `name`, of all that stands beside the way."""
+    return next(line[line.index(name) :].split() for line in lines if f"{name} " in line)
+
+
+def picture(lines: list[str]) -> list[str]:
+    """The last picture: from its title on."""
+    return lines[max(k for k, line in enumerate(lines) if line.startswith("──")) :]
+
+
+# ---- what is drawn
+
+
+@pytest.mark.parametrize("pace", ["0", "20"])
+def test_the_picture_shows_the_way_and_the_values(pace: str) -> None:
+    code, written = on_terminal("-e", OBSTACLES, *SEEN, "--pace", pace)
+    assert code == 0
+    seen = picture(screen(written))
+    assert any(arrow in "".join(seen) for arrow in drawing.ARROWS)
+    assert any("⠀" < c <= "⣿" for c in "".join(seen))
+    assert row(seen, "DISTANCE")[:2] == ["DISTANCE", "50"]
+    assert row(seen, "DISTANCE")[2:] == ["cm", "distance", "sensor"]
+    assert row(seen, "time") == ["time", "4", "s", "cut", "at", "the", "limit"]
+    assert row(seen, "left motor")[2] == "0"
+
+
+@pytest.mark.parametrize("pace", ["0", "20"])
+@pytest.mark.parametrize("size", [(80, 24), (40, 15), (24, 6)])
+def test_the_trace_stands_above_the_picture(pace: str, size: tuple[int, int]) -> None:
+    _, written = on_terminal("-e", OBSTACLES, *SEEN, "--pace", pace, size=size)
+    seen = screen(written, size)
+    trace = plain("-e", OBSTACLES, *SEEN).decode().splitlines()
+    top = next(k for k in range(len(seen)) if seen[k].startswith("0 "))
+    assert seen[top : top + len(trace)] == trace
+    assert seen[top + len(trace)].startswith("── TiniBot")
+
+
+@pytest.mark.parametrize("pace", ["0", "20"])
+def test_a_file_gets_the_trace_byte_for_byte(pace: str, tmp_path: Path) -> None:
+    file = tmp_path / "trace"
+    code, written = on_terminal("-e", OBSTACLES, *SEEN, "--pace", pace, output=file)
+    assert code == 0
+    assert file.read_bytes() == plain("-e", OBSTACLES, *SEEN)
+    assert b"MOTORS" not in written
+    assert picture(screen(written))[0].startswith("── TiniBot")
+
+
+@pytest.mark.parametrize("pace", ["0", "20"])
+def test_a_narrow_terminal_has_the_values_below_the_way(pace: str) -> None:
+    _, written = on_terminal("-e", OBSTACLES, *SEEN, "--pace", pace, size=(40, 15))
+    seen = picture(screen(written, (40, 15)))
+    assert "DISTANCE    50 cm  distance sensor" in seen
+    assert any(any(arrow in line for arrow in drawing.ARROWS) for line in seen[1:8])
+
+
+def test_actuators_shown_values_and_yes_no_are_drawn() -> None:
+    _, written = on_terminal("-e", GRABBER, "--robot", "grabber", "--pace", "10")
+    seen = picture(screen(written))
+    assert row(seen, "GRIPPER") == ["GRIPPER", "90", "°", "gripper"]
+    assert row(seen, "LED") == ["LED", "TRUE", "lamp"]
+    assert row(seen, "BUTTON")[:2] == ["BUTTON", "FALSE"]
+    assert row(seen, "SHOW") == ["SHOW", "FALSE", "before:", "1.5"]
+    assert row(seen, "time")[-1] == "done"
+    assert "♪ 440 Hz".encode() in written  # while it sounded
+    assert not any("♪" in line for line in seen)
+
+
+def test_the_reader_s_language_is_used() -> None:
+    _, written = on_terminal("-e", OBSTACLES, *SEEN, "--pace", "0", "--lang", "es")
+    seen = picture(screen(written))
+    assert row(seen, "tiempo")[-3:] == ["en", "el", "límite"]
+    assert row(seen, "DISTANCE")[-3:] == ["sensor", "de", "distancia"]
+
+
+def test_a_fault_is_in_the_picture_and_explained_below_it() -> None:
+    code, written = on_terminal("-e", "SI|F(1, 50);X = 0;Y = 1 / X", "--pace", "10")
+    assert code == 1
+    seen = picture(screen(written))
+    assert row(seen, "time")[-1] == "fault"
+    assert any(line.startswith("fault DIVIDE_BY_ZERO") for line in seen)
+
+
+def test_no_color_is_respected() -> None:
+    _, written = on_terminal("-e", OBSTACLES, *SEEN, "--pace", "0")
+    assert b"\x1b[36m" in written
+    _, written = on_terminal("-e", OBSTACLES, *SEEN, "--pace", "0", environ={"NO_COLOR": "1"})
+    assert b"[36m" not in written
+
+
+def test_a_terminal_without_braille_gets_plain_signs() -> None:
+    environ = {"PYTHONIOENCODING": "latin-1"}
+    _, written = on_terminal("-e", OBSTACLES, *SEEN, "--pace", "10", environ=environ)
+    assert b"\\u28" not in written
+    assert b"*" in written
+
+
+def test_without_a_terminal_there_is_no_picture() -> None:
+    command = [sys.executable, "-m", "tiniscript", "run", "-e", OBSTACLES, *SEEN, "--show"]
+    done = subprocess.run(command, capture_output=True, check=True)
+    assert done.stdout == plain("-e", OBSTACLES, *SEEN)
+    assert b"TiniBot" not in done.stderr
+
+
+# ---- how it ends
+
+
+def test_the_cursor_comes_back() -> None:
+    _, written = on_terminal("-e", OBSTACLES, *SEEN, "--pace", "20")
+    assert written.count(HIDE) == 1
+    assert written.rindex(REVEAL) > written.rindex(HIDE)
+
+
+@pytest.mark.parametrize("to_a_file", [False, True])
+def test_ctrl_c_leaves_a_clean_terminal(to_a_file: bool, tmp_path: Path) -> None:
+    code, written = on_terminal(
+        "-e", "SI|LOOP(FOREVER);F(1, 80);END_LOOP", "--max-time", "1000000",
+        interrupt_at="↑".encode(), output=tmp_path / "trace" if to_a_file else None,
+    )  # fmt: skip
+    assert code == 2
+    assert written.rindex(REVEAL) > written.rindex(HIDE)
+    seen = screen(written)
+    assert seen[-seen[::-1].index("Stopped.") - 1 :].count("Stopped.") == 1
+    assert not any("Traceback" in line for line in seen)
+
+
+# ---- in pieces, with a clock of its own
+
+
+def events_of(program: str, robot_name: str = "tinibot") -> list[Event | Ending]:
+    robot = robots.load(robot_name)
+    compiled = compile_text(program, robot.kit)
+    assert compiled.is_right
+    number = [device.name for device in robot.kit.sensors].index("DISTANCE")
+    return list(run(compiled.code, robot.kit, Senses(robot.kit, {number: [50_000]}), 3000))
+
+
+def frames(events: list[Event | Ending], pace: float, monkeypatch: pytest.MonkeyPatch) -> int:
+    """Watch these events with a clock that only sleeping moves; return how often it is drawn."""
+    clock = SimpleNamespace(now_s=100.0)
+    clock.monotonic = lambda: clock.now_s
+    clock.sleep = lambda seconds: setattr(clock, "now_s", clock.now_s + seconds)
+    drawn: list[float] = []
+    monkeypatch.setattr(drawing, "time", clock)
+    monkeypatch.setattr(drawing.Screen, "draw", lambda self, seen, now_ms: drawn.append(now_ms))
+    assert drawing.watch(iter(events), robots.load("tinibot"), pace, "en") == events[-1]
+    assert drawn == sorted(drawn)
+    if pace:
+        passed_ms = (clock.now_s - 100) * 1000 * pace
+        assert 3000 <= passed_ms <= 3000 + 1000 * pace * drawing.FRAME_S * 1.01
+    return len(drawn)
+
+
+def test_the_checks_of_until_do_not_add_frames(monkeypatch: pytest.MonkeyPatch) -> None:
+    watched = events_of("SI|F(3, 80) UNTIL(DISTANCE < 10)")
+    assert len(watched) > 150
+    assert frames(watched, 1, monkeypatch) == frames(events_of("SI|F(3, 80)"), 1, monkeypatch)
+    assert frames(watched, 1, monkeypatch) in (46, 47)
+    assert frames(watched, 10, monkeypatch) <= 6
+    assert frames(watched, 0, monkeypatch) == 1
+
+
+@pytest.mark.parametrize("language", ["en", "es"])
+def test_every_picture_fits_its_terminal(language: str) -> None:
+    robot = robots.load("grabber")
+    for width in (1, 2, 5, 19, 20, 39, 40, 59, 60, 61, 80, 200):
+        for height in (1, 2, 3, 4, 5, 8, 12, 18, 50):
+            seen = drawing.Picture(robot, language)
+            for event in events_of(GRABBER, "grabber")[:-1]:
+                assert isinstance(event, Event)
+                seen.take(event)
+                lines = seen.lines(width, height, event.time_ms)
+                assert 1 <= len(lines) <= height
+                assert all(line.cell_len <= width for line in lines)
+
+
+def test_a_long_way_stays_in_view_and_in_memory(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(drawing, "CORNERS", 100)
+    sketch = drawing.Sketch(robots.load("tinibot"))
+    for k in range(3000):
+        sketch.set_motors(k * 500, 60 + k % 30, 90 - k % 41)
+        if k % 10 == 0:
+            drawn = "\n".join(line.plain for line in sketch.drawn(30, 12, k * 500))
+            assert any(arrow in drawn for arrow in drawing.ARROWS)
+            assert len(sketch.way.corners) <= 100
+
+
+@pytest.mark.parametrize(("percent", "bar"), [
+    (0, "     │     "), (100, "     │█████"), (-100, "█████│     "), (1, "     │▌    "),
+    (-50, "  ▐██│     "), (80, "     │████ "),
+])  # fmt: skip
+def test_a_bar_shows_how_much_and_which_way(percent: int, bar: str) -> None:
+    assert drawing._bar(percent) == bar

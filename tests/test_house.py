@@ -1,0 +1,129 @@
+"""The road runs one way: every room looks only into rooms upstream of it."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+HOUSE = Path(__file__).resolve().parent.parent / "compiler" / "tiniscript"
+
+TABLES = {"source", "thousandths", "bytecode", "kit", "words", "problems"}
+ROOMS = {
+    "source": set(),
+    "thousandths": set(),
+    "bytecode": set(),
+    "kit": {"thousandths"},
+    "words": {"thousandths"},
+    "problems": {"source"},
+    "tokens": TABLES,
+    "tree": {"source"},
+    "arguments": TABLES,
+    "expressions": TABLES | {"tokens", "tree", "arguments"},
+    "parser": TABLES | {"tokens", "tree", "expressions"},
+    "formatter": TABLES | {"tokens"},
+    "program": TABLES,
+    "kinds": TABLES | {"tree", "program"},
+    "checker": TABLES | {"tree", "program", "kinds", "arguments"},
+    "optimizer": TABLES | {"program"},
+    "advice": TABLES | {"program", "optimizer"},
+    "duration": TABLES | {"program", "optimizer"},
+    "lower_expression": TABLES | {"program", "optimizer"},
+    "lower": TABLES | {"program", "optimizer", "lower_expression"},
+    "verify": {"bytecode"},
+    "image": {"bytecode"},
+    "listing": {"bytecode", "kit"},
+    "vm": {"bytecode", "thousandths"},
+    "vm_instructions": {"bytecode", "thousandths", "vm"},
+    "run": TABLES | {"vm"},
+    "messages": TABLES,
+    "maps": {"image"},
+}
+
+
+def looked_into(path: Path) -> set[str]:
+    """Return the rooms that a file imports when it runs; imports for types alone don't count."""
+    found = set()
+    skipped: set[ast.AST] = set()
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    for node in ast.walk(tree):
+        if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING":
+            skipped |= set(ast.walk(node))
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and node not in skipped:
+            module = node.module or ""
+            if module == "tiniscript":
+                found |= {alias.name for alias in node.names}
+            elif module.startswith("tiniscript."):
+                found.add(module.split(".")[1])
+    return found
+
+
+@pytest.mark.parametrize("path", sorted(HOUSE.glob("*.py")), ids=lambda path: path.stem)
+def test_room_looks_upstream_only(path: Path) -> None:
+    if path.stem.startswith("__"):
+        return  # the whole road, by design
+    allowed = ROOMS[path.stem]
+    found = looked_into(path) - {path.stem}
+    # `vm` starts the instructions that it runs
+    if path.stem == "vm":
+        found -= {"vm_instructions"}
+    assert found <= allowed, f"{path.stem} looks into {sorted(found - allowed)}"
+
+
+def test_every_room_has_its_place() -> None:
+    rooms = {path.stem for path in HOUSE.glob("*.py") if not path.stem.startswith("__")}
+    assert rooms == set(ROOMS)
+
+
+def test_only_the_command_prints() -> None:
+    for path in HOUSE.rglob("*.py"):
+        if path.parent.name != "cli":
+            calls = [
+                node
+                for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+                if isinstance(node, ast.Call) and ast.unparse(node.func) == "print"
+            ]
+            assert not calls, f"{path.name} prints"
+
+
+def test_rooms_have_one_screenful_of_job() -> None:
+    """Four hundred lines is a full room; tables may be longer."""
+    for path in HOUSE.rglob("*.py"):
+        if path.name not in ("shipped.py",):
+            lines = len(path.read_text(encoding="utf-8").splitlines())
+            assert lines <= 460, f"{path.name} has {lines} lines: where is the wall?"
+
+
+def imported_by(statement: str) -> set[str]:
+    code = f"import sys; {statement}; print(' '.join(sys.modules))"
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=HOUSE.parent
+    )
+    return set(done.stdout.split())
+
+
+def test_the_road_needs_the_standard_library_alone() -> None:
+    """So that it runs in a browser, and starts fast."""
+    modules = imported_by(
+        "from tiniscript import compile_text, robots; "
+        "assert compile_text('SI|F(5,80)', robots.load('tinibot').kit).image"
+    )
+    unwanted = {"construct", "tomllib", "tomli", "rich", "platformdirs", "serial", "dataclasses",
+                "argparse", "json", "difflib", "tiniscript.messages",
+                "tiniscript.vm"}  # fmt: skip
+    assert not unwanted & modules
+
+
+def test_compile_imports_no_other_verb(tmp_path: Path) -> None:
+    program = tmp_path / "drive.ts"
+    program.write_text("SI|F(5,80)")
+    modules = imported_by(
+        f"from tiniscript.cli import main; assert main(['compile', {str(program)!r}]) == 0"
+    )
+    unwanted = {"construct", "tomllib", "tomli", "rich", "dataclasses", "tiniscript.vm",
+                "tiniscript.run", "tiniscript.listing", "tiniscript.formatter"}  # fmt: skip
+    assert not unwanted & modules

@@ -1,0 +1,56 @@
+"""Words that are no words of the language are names: of variables, DEFs, sensors, actuators.
+
+What beginners type by mistake is looked for only where it is one: a DEF may be called END, a
+variable Y, a sensor RIGHT.
+"""
+
+from __future__ import annotations
+
+import pytest
+
+from tiniscript import compile_text
+from tiniscript.kit import NUMBER, YES_NO, Device, Kit
+from tiniscript.words import OTHER_WORDS, WORDS
+
+FOREIGN = sorted({word for words in OTHER_WORDS.values() for word in words.split()} - {"DISTANCE"})
+SLIPS = ["END", "Y", "O", "THEN", "DO", "BEGIN", "NO", "YES", "IS", "LET", "VAR", "INT", "CALL",
+         "F2", "B50", "L90", "R1", "W1", "S1", "M2", "CM", "SEC", "FIN", "REM", "ON", "OFF", "X",
+         "SI_", "IF_", "ELSE_IF", "SQRT", "TINI", "N", "E5"]  # fmt: skip
+NAMES = sorted({*FOREIGN, *SLIPS} - set(WORDS))
+
+NO_KIT = Kit((), ())
+
+
+def is_right(text: str, kit: Kit = NO_KIT) -> bool:
+    found = compile_text(text, kit)
+    return not [problem.code.number for problem in found.problems if problem.is_mistake]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_variable_may_be_called_so(name: str) -> None:
+    assert is_right(f"{name} = 2;IF({name} > 1 AND {name} < 5);{name} = {name} + 1;ENDIF")
+    assert is_right(f"{name} = TRUE\nWHILE({name});{name} = NOT {name};END_WHILE")
+    assert is_right(f"{name} = 50;F({name} / 100, {name});SHOW({name}) ; M({name}, -{name})")
+    assert is_right(f"Q=3\n{name}=4;LOOP({name});Q={name};END_LOOP;SHOW(Q)")
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_def_may_be_called_so(name: str) -> None:
+    assert is_right(f"DEF {name};S;END_DEF;{name};LOOP(2);{name};END_LOOP")
+    assert is_right(f"DEF {name}\nS\nEND_DEF\n{name}\nIF(TRUE)\n{name}\nENDIF")
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("kind", [NUMBER, YES_NO])
+def test_a_sensor_may_be_called_so(name: str, kind: str) -> None:
+    kit = Kit((Device(name, kind, "", 0, 1 if kind == YES_NO else 1000),), ())
+    condition = name if kind == YES_NO else f"{name} > 0"
+    assert is_right(f"{name};IF({condition});W(1) UNTIL({condition});ENDIF;SHOW({name})", kit)
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("kind", [NUMBER, YES_NO])
+def test_an_actuator_may_be_called_so(name: str, kind: str) -> None:
+    kit = Kit((), (Device(name, kind, "", 0, 1 if kind == YES_NO else 180_000),))
+    value = "TRUE" if kind == YES_NO else "90"
+    assert is_right(f"{name}({value});IF(TRUE);{name}({value});ENDIF;W(1)\n{name}({value})", kit)

@@ -1,0 +1,149 @@
+"""The geometry of two wheels: where a robot gets to, and the points that show its way."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+
+import pytest
+
+from tiniscript.robots.profile import Body
+from tiniscript.robots.way import START, STEP, Pose, Way, moved, points
+
+BODY = Body(wheel_base_cm=10, speed_cm_s=40, length_cm=20, width_cm=15, places={})
+SETTINGS = [(50, 50), (-80, -80), (60, -60), (-30, 30), (20, 70), (70, 20), (0, 50), (-10, -90),
+            (90, -20), (100, 99), (0, 0)]  # fmt: skip
+QUARTER_MS = 1000 * (math.pi / 2 * BODY.wheel_base_cm / 2) / BODY.speed_cm_s  # at 100 %
+
+
+def near(pose: Pose) -> Pose:
+    return pytest.approx(pose, abs=1e-9)  # type: ignore[return-value]
+
+
+def test_ahead_is_along_x() -> None:
+    assert moved(BODY, START, 50, 50, 2000) == near(Pose(40, 0, 0))
+    assert moved(BODY, START, -50, -50, 500) == near(Pose(-10, 0, 0))
+
+
+def test_the_way_begins_where_and_as_the_robot_stands() -> None:
+    assert moved(BODY, Pose(3, 4, 90), 100, 100, 1000) == near(Pose(3, 44, 90))
+    assert moved(BODY, Pose(3, 4, -180), 100, 100, 1000) == near(Pose(-37, 4, -180))
+
+
+def test_opposite_wheels_turn_on_the_spot() -> None:
+    assert moved(BODY, START, -100, 100, QUARTER_MS) == near(Pose(0, 0, 90))
+    assert moved(BODY, START, 100, -100, QUARTER_MS) == near(Pose(0, 0, -90))
+
+
+def test_one_wheel_alone_turns_the_robot_around_the_other() -> None:
+    half_turn_ms = 4 * QUARTER_MS
+    assert moved(BODY, START, 0, 100, half_turn_ms) == near(Pose(0, BODY.wheel_base_cm, 180))
+
+
+def test_an_arc_stays_on_its_circle() -> None:
+    # the inner wheel at half the speed of the outer: 1.5 bases from the outer to the middle
+    radius_cm = 1.5 * BODY.wheel_base_cm
+    for pose in points(BODY, START, 40, 80, 3000):
+        assert math.dist(pose[:2], (0, radius_cm)) == pytest.approx(radius_cm)
+
+
+def test_a_square_ends_where_it_began() -> None:
+    pose = START
+    for _ in range(4):
+        pose = moved(BODY, pose, 80, 80, 1000)
+        pose = moved(BODY, pose, 100, -100, QUARTER_MS)
+    assert pose == near(Pose(0, 0, -360))
+
+
+@pytest.mark.parametrize(("left", "right"), SETTINGS)
+def test_exchanged_motors_drive_the_mirrored_way(left: int, right: int) -> None:
+    one, other = moved(BODY, START, left, right, 1700), moved(BODY, START, right, left, 1700)
+    assert other == near(Pose(one.x_cm, -one.y_cm, -one.heading))
+
+
+@pytest.mark.parametrize(("left", "right"), SETTINGS)
+def test_no_time_is_no_way(left: int, right: int) -> None:
+    assert moved(BODY, Pose(1, 2, 33), left, right, 0) == near(Pose(1, 2, 33))
+    assert points(BODY, Pose(1, 2, 33), left, right, 0) == [near(Pose(1, 2, 33))]
+
+
+@pytest.mark.parametrize(("left", "right"), SETTINGS)
+def test_a_time_in_parts_is_the_same_way(left: int, right: int) -> None:
+    pose = Pose(5, -3, 20)
+    for part_ms in (20, 0, 333, 1, 646):
+        pose = moved(BODY, pose, left, right, part_ms)
+    assert pose == near(moved(BODY, Pose(5, -3, 20), left, right, 1000))
+
+
+@pytest.mark.parametrize(("left", "right"), SETTINGS)
+def test_backwards_undoes_forwards(left: int, right: int) -> None:
+    there = moved(BODY, START, left, right, 800)
+    assert moved(BODY, there, -left, -right, 800) == near(START)
+
+
+def test_a_tiny_bend_is_no_different_from_straight() -> None:
+    straight = moved(BODY, START, 100, 100, 10)
+    bent = moved(BODY._replace(wheel_base_cm=1e12), START, 100, 99, 10)
+    assert math.dist(straight[:2], bent[:2]) < 0.003
+
+
+# ---- points
+
+
+@pytest.mark.parametrize(("left", "right"), SETTINGS)
+def test_points_end_where_the_way_ends_and_are_close_enough(left: int, right: int) -> None:
+    way = [START, *points(BODY, START, left, right, 1500)]
+    assert way[-1] == moved(BODY, START, left, right, 1500)
+    if left != -right:
+        for a, b in pairwise(way):
+            turn = abs(b.heading - a.heading) % 360
+            assert min(turn, 360 - turn) <= STEP + 1e-9
+
+
+def test_straight_and_on_the_spot_need_one_point() -> None:
+    assert len(points(BODY, START, 50, 50, 10**12)) == 1
+    assert len(points(BODY, START, 50, -50, 10**12)) == 1
+
+
+def test_many_rounds_are_one_circle_and_the_way_to_the_end() -> None:
+    way = points(BODY, START, 20, 80, 10**9)
+    assert len(way) <= 2 * 360 / STEP
+    assert way[-1] == moved(BODY, START, 20, 80, 10**9)
+    assert math.dist(way[-1][:2], way[-2][:2]) < 1
+
+
+# ---- a way of several settings
+
+
+def test_a_way_knows_its_corners_and_where_the_robot_is() -> None:
+    way = Way(BODY)
+    way.set_motors(0, 50, 50)
+    way.set_motors(1000, 0, 0)
+    way.set_motors(2000, -100, 100)
+    way.set_motors(2000 + QUARTER_MS, 50, 50)
+    assert way.pose(3000 + QUARTER_MS) == near(Pose(20, 20, 90))
+    assert way.corners == [START, near(Pose(20, 0, 0))]
+    assert way.ahead(3000 + QUARTER_MS) == [near(Pose(20, 20, 90))]
+
+
+def test_the_same_setting_again_is_no_corner() -> None:
+    way = Way(BODY)
+    for now_ms in range(0, 1000, 20):
+        way.set_motors(now_ms, 50, 50)
+    assert way.corners == [START]
+    assert way.pose(1000) == near(Pose(20, 0, 0))
+
+
+def test_thinned_out_corners_keep_the_shape() -> None:
+    way = Way(BODY)
+    for k in range(1000):
+        way.set_motors(k, 100, 100 - k % 2)
+    here, last = way.pose(1000), way.corners[-1]
+    way.thin_out(800)
+    assert len(way.corners) < 800
+    assert way.corners[0] == START
+    assert way.corners[-1] == last
+    assert way.pose(1000) == here
+    way.thin_out(10)
+    assert len(way.corners) == 10
+    assert way.corners[-1] == last
