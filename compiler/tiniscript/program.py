@@ -229,12 +229,19 @@ def program_text(program: Program) -> str:
     return "\n".join([*lines, *_body_lines(program.body, "")]) + "\n"
 
 
+_EXPRESSIONS = frozenset(
+    ("time", "power", "left", "right", "hertz", "value", "times", "condition")
+)
+
+
 def _body_lines(body: Body, indent: str) -> Iterator[str]:
     for statement in body:
         words = [type(statement).__name__]
         for name, value in statement._asdict().items():
-            if name in ("time", "power", "left", "right", "hertz", "value", "times", "condition"):
-                words.append("FOREVER" if value is None else expression_text(value))
+            if value is None and name in ("time", "times"):
+                words.append("FOREVER")
+            elif value is not None and name in _EXPRESSIONS:
+                words.append(expression_text(value))
             elif name in ("direction", "sensor", "actuator", "variable", "procedure", "reads"):
                 words.append(str(value))
         yield indent + " ".join(words)
