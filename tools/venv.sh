@@ -1,0 +1,47 @@
+# Makes the virtual environment .venv beside this folder, for try.sh and test.sh.
+# Sets PYTHON to its interpreter. Says what it installs.
+
+ROOT=$(cd "$(dirname "$0")/.." && pwd)
+PYTHON="$ROOT/.venv/bin/python"
+
+say() { printf '\033[1m%s\033[0m\n' "$*" >&2; }
+fail() { printf '%s\n' "$*" >&2; exit 2; }
+
+find_python() {
+    for name in python3 python3.13 python3.12 python3.11 python3.10 python; do
+        if command -v "$name" >/dev/null 2>&1 &&
+            "$name" -c 'import sys; sys.exit(sys.version_info < (3, 10))' 2>/dev/null; then
+            command -v "$name"
+            return
+        fi
+    done
+    fail "TiniScript needs Python 3.10 or newer. On Debian and Ubuntu: sudo apt-get install python3-venv"
+}
+
+# Debian and Ubuntu keep a part of venv in a package of its own.
+install_venv() {
+    command -v apt-get >/dev/null 2>&1 ||
+        fail "This Python cannot make virtual environments (no ensurepip). Install that part of it."
+    if [ "$(id -u)" = 0 ]; then sudo=""; else sudo="sudo"; fi
+    say "Installing python3-venv with apt-get"
+    { $sudo apt-get update -qq && $sudo apt-get install -y -qq python3-venv; } >&2 ||
+        fail "That did not work. Try yourself:  sudo apt-get install python3-venv"
+}
+
+# make_venv EXTRAS: installs this repo, with EXTRAS such as [test], if anything changed since.
+make_venv() {
+    if ! "$PYTHON" -m pip --version >/dev/null 2>&1; then
+        found=$(find_python)
+        "$found" -c 'import ensurepip' 2>/dev/null || install_venv
+        say "Making a virtual environment in .venv"
+        rm -rf "$ROOT/.venv"
+        "$found" -m venv "$ROOT/.venv" || fail "python -m venv failed; see above."
+    fi
+    stamp="$ROOT/.venv/installed$1"
+    if [ ! -f "$stamp" ] || [ "$ROOT/pyproject.toml" -nt "$stamp" ]; then
+        say "Installing TiniScript and what it needs from PyPI into .venv"
+        "$PYTHON" -m pip install --quiet --disable-pip-version-check --editable "$ROOT$1" ||
+            fail "pip could not install; is this computer online?"
+        touch "$stamp"
+    fi
+}
