@@ -10,8 +10,9 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from tiniscript.kit import Kit
+from tiniscript.task import DONE, FAULT, WAITING
 from tiniscript.thousandths import as_text, limited, whole
-from tiniscript.vm import DONE, FAULT, WAITING, Machine
+from tiniscript.vm import Machine
 
 SLICE = 1000  # instructions between two looks at the limit
 

@@ -9,11 +9,15 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 from tiniscript import thousandths
 from tiniscript.bytecode import BY_CODE, COMPARATORS, OPS, read_operands
+from tiniscript.task import DONE, FOREVER, MOVE, PAUSE, Task
 from tiniscript.thousandths import ONE, in_range, limited, next_random, random_between, whole
-from tiniscript.vm import DONE, FOREVER, MOVE, PAUSE, Machine, Task
+
+if TYPE_CHECKING:
+    from tiniscript.vm import Machine
 
 Result = bool | None
 Handler = Callable[..., Result]
