@@ -6,6 +6,8 @@ are thousandths. The words of a kit (its sensors and actuators) come from `kit`,
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from functools import cache
 from typing import NamedTuple
 
 from tiniscript.thousandths import HIGHEST, LOWEST
@@ -47,6 +49,7 @@ LEFT = Argument("left", "%", -100_000, 100_000, "50")
 RIGHT = Argument("right", "%", -100_000, 100_000, "80")
 HERTZ = Argument("hertz", "Hz", 31_000, 20_000_000, "440")
 VALUE = Argument("value", "", sample="DISTANCE")
+QUESTION = Argument("c", "", sample="DISTANCE < 10")
 A, B = Argument("a", "", sample="5"), Argument("b", "", sample="DISTANCE")
 LOW, HIGH = Argument("low", "", sample="1"), Argument("high", "", sample="6")
 
@@ -59,10 +62,12 @@ WORDS = {word.text: word for word in (
     Word("S", "stop"), Word("STOP", "stop"), Word("START", "start"),
     Word("BEEP", "beep", (SECONDS, HERTZ)),
     Word("SHOW", "show", (VALUE,)),
-    Word("UNTIL", "until"), Word("FOREVER", "forever"),
-    Word("IF", "block"), Word("ELSEIF", "arm"), Word("ELSE", "arm"), Word("ENDIF", "end"),
-    Word("LOOP", "block"), Word("END_LOOP", "end"),
-    Word("WHILE", "block"), Word("END_WHILE", "end"), Word("BREAK", "break"),
+    Word("UNTIL", "until", (QUESTION,)), Word("FOREVER", "forever"),
+    Word("IF", "block", (QUESTION,)), Word("ELSEIF", "arm", (QUESTION,)), Word("ELSE", "arm"),
+    Word("ENDIF", "end"),
+    Word("LOOP", "block", (Argument("n", "", sample="3"),)), Word("END_LOOP", "end"),
+    Word("WHILE", "block", (Argument("c", "", sample="DISTANCE > 10"),)), Word("END_WHILE", "end"),
+    Word("BREAK", "break"),
     Word("DEF", "block"), Word("END_DEF", "end"),
     Word("TRUE", "value"), Word("FALSE", "value"), Word("TIME", "value"),
     Word("AND", "operator"), Word("OR", "operator"), Word("NOT", "operator"),
@@ -93,11 +98,13 @@ OTHER_WORDS = {
     "ELSE": "SINO SI_NO OTHERWISE",
     "ENDIF": "FI FIN_SI FINSI",
     "LOOP": "REPEAT FOR DO TIMES REPETIR REPITE BUCLE CICLO PARA_CADA VECES",
-    "END_LOOP": "FIN_BUCLE FIN_REPETIR NEXT",
+    "END_LOOP": "FIN_BUCLE FIN_REPETIR FIN_REPITE FIN_CICLO FIN_PARA END_REPEAT ENDREPEAT END_FOR ENDFOR NEXT",
     "WHILE": "MIENTRAS",
+    "END_WHILE": "FIN_MIENTRAS FINMIENTRAS WEND",
     "FOREVER": "SIEMPRE INFINITO PARA_SIEMPRE",
     "BREAK": "EXIT LEAVE SALIR ROMPER",
     "DEF": "FUNCTION PROCEDURE SUB FUNCION PROCEDIMIENTO",
+    "END_DEF": "END_FUNCTION FIN_FUNCION FIN_DEF END_SUB RETURN",
     "UNTIL": "HASTA HASTA_QUE",
     "TRUE": "YES VERDADERO CIERTO",
     "FALSE": "NO FALSO",
@@ -108,20 +115,61 @@ OTHER_WORDS = {
     "LIGHT_R": "LUZ_D LUZ_DERECHA LIGHT_RIGHT",
     "LIGHT_L": "LUZ_I LUZ_IZQUIERDA LIGHT_LEFT",
 }
+
+# What people write behind a number, which has none here.
+UNITS = frozenset(
+    "S SEC SECS SECOND SECONDS SEG SEGS SEGUNDO SEGUNDOS MS CM MM M HZ HERTZ DEG DEGREES GRADOS"
+    " PERCENT PORCIENTO V ° °C %".split()
+)
 # fmt: on
 
 
 def meant_by(word: str) -> str | None:
     """Return the word of the language that `word` says in another one, or None."""
-    for ours, others in OTHER_WORDS.items():
-        if word in others.split():
-            return ours
-    return None
+    return _meanings().get(word)
 
 
-def nearest(word: str, known: list[str]) -> str | None:
-    """Return the word among `known` that a typing slip away is `word`, or None."""
-    from difflib import get_close_matches
+@cache
+def _meanings() -> dict[str, str]:
+    return {other: ours for ours, others in OTHER_WORDS.items() for other in others.split()}
 
-    close = get_close_matches(word[:40], known, n=1, cutoff=0.6)
-    return close[0] if close else None
+
+def other_name(word: str) -> str:
+    """Return a name that a variable or a DEF may have in place of a word of the language."""
+    return word + "_1" if len(word) == 1 else "MY_" + word
+
+
+def nearest(word: str, known: Iterable[str]) -> str | None:
+    """Return the word among `known` that a slip of the finger away is `word`, or None.
+
+    A slip is a letter that is wrong, missing, doubled or exchanged with the next: one in short
+    words, two in longer ones. A wrong suggestion is worse than none, so in a word of three
+    letters no letter is taken for another.
+    """
+    if not 1 < len(word) <= 40:
+        return None
+    allowed = 1 if len(word) <= 5 else 2
+    best, its_edits = None, allowed + 1
+    for other in known:
+        if len(other) > 1 and abs(len(other) - len(word)) <= allowed:
+            edits = _edits(word, other)
+            if edits == 1 and len(word) <= 3 and len(other) == len(word):
+                edits += sorted(word) != sorted(other)
+            if edits < its_edits:
+                best, its_edits = other, edits
+    return best
+
+
+def _edits(one: str, other: str) -> int:
+    """Return how many slips lead from one word to the other; an exchange of neighbours is one."""
+    before_last: list[int] = []
+    last = list(range(len(other) + 1))
+    for i, letter in enumerate(one, 1):
+        row = [i]
+        for k, its in enumerate(other, 1):
+            least = min(last[k] + 1, row[k - 1] + 1, last[k - 1] + (letter != its))
+            if i > 1 and k > 1 and letter == other[k - 2] and its == one[i - 2]:
+                least = min(least, before_last[k - 2] + 1)
+            row.append(least)
+        before_last, last = last, row
+    return last[-1]

@@ -8,6 +8,7 @@ from tiniscript.cli import inputs, outputs
 from tiniscript.cli.options import Options
 from tiniscript.cli.texts import text
 from tiniscript.cli.trouble import Trouble
+from tiniscript.source import LARGEST_SOURCE
 
 HELP = (
     """\
@@ -44,6 +45,8 @@ def run(arguments: list[str], language: str) -> int:
         outputs.print_problems(parsed, language)
         return 1
     laid_out = formatted(parsed.source)
+    if len(laid_out.encode()) > LARGEST_SOURCE:
+        raise Trouble(2, "fmt_too_large", file=inputs.shown(given.name))
     name = inputs.shown(given.name)
     is_same = laid_out.encode() == given.data
     if options.check:

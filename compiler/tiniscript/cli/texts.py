@@ -151,6 +151,8 @@ TEXTS: dict[str, tuple[str, str]] = {
     "would_format": ("{file}: not in the usual layout. Try:  tsc fmt {file}",
                      "{file}: no tiene la forma usual. Prueba:  tsc fmt {file}"),
     "is_formatted": ("{file}: is in the usual layout.", "{file}: tiene la forma usual."),
+    "fmt_too_large": ("tsc: laid out, {file} would be larger than 1 MB. Split the program; it is as it was.",
+                      "tsc: ordenado, {file} pasaría de 1 MB. Divide el programa; quedó como estaba."),
     "head": ("{file}: starts {start}, {robot}, {code} bytes of code, {image} bytes in all, checksum {checksum}",
              "{file}: inicia {start}, {robot}, {code} bytes de código, {image} bytes en total, suma {checksum}"),
     "any_robot": ("any robot", "cualquier robot"),
