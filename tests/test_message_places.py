@@ -6,12 +6,12 @@ import random
 import re
 
 import pytest
+
+from tests.test_messages import KIT, LANGUAGES, gaps
 from tiniscript import Compiled, check_text, problems
 from tiniscript.messages import Message, as_text, message
 from tiniscript.problems import Code, Problem
 from tiniscript.source import Source, Span
-
-from tests.test_messages import KIT, LANGUAGES, gaps
 
 
 def at(text: str, start: int, end: int, code: Code = problems.EXTRA_CLOSE) -> Message:
@@ -114,6 +114,9 @@ PIECES = """
     DISTANCE LIGHT_R BUTTON GRIPPER GRIPPER( LED LED( 0 1 2 80 1.5 1,5 0.12345 99999999999 2s 1.2.3
     THEN Y O FORWARD ADELANTE PARAR SI( REPEAT año círculo _X [ ] { } {found} @ @number # // " ' ‘ ”
     机器 🤖 é é $ ! && || ≠ – TASK WHEN check_connection START
+    （ ） ， += ++ -- := <- /* */ REPEAT REPEAT( FOR END_REPEAT FIN SINO ELIF( MIENTRAS(
+    FUNCTION SIEMPRE HASTA( AZAR( TIEMPO TURN LEFT NO IS LESS THAN cm s 80% 90° F2 W1 LET CALL
+    REM t=2 "80" “F(1,5)”
 """
 BLANKS = ("", "", " ", " ", "\t", "\n", "\n", "\r\n", "\r", "\u00a0", "\0", "\x1b", "\u2028")
 

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 import pytest
+
 from tiniscript import check_text, compile_text, messages, problems
 from tiniscript.kit import NUMBER, YES_NO, Device, Kit
 from tiniscript.messages import Message, as_json, as_text, explain, message, titles
@@ -173,12 +174,12 @@ def test_long_pieces_of_a_program_are_shortened() -> None:
             [
                 "line 1:  SI|F(1,5, 80)",
                 "            ^^^^^^^^^^",
-                "A decimal number has a point, not a comma.   Try:  1.5, 80   [TS012]",
+                "A decimal number has a point, not a comma.   Try:  F(1.5, 80)   [TS012]",
             ],
             [
                 "línea 1:  SI|F(1,5, 80)",
                 "             ^^^^^^^^^^",
-                "Los decimales se escriben con punto, no con coma.   Prueba:  1.5, 80   [TS012]",
+                "Los decimales se escriben con punto, no con coma.   Prueba:  F(1.5, 80)   [TS012]",
             ],
         ),
         (
@@ -243,14 +244,13 @@ def test_long_pieces_of_a_program_are_shortened() -> None:
             [
                 "line 1:  IF(DISTANCE);S;ENDIF",
                 "            ^^^^^^^^",
-                "IF needs a yes or no, and DISTANCE is a number.",
-                "Try:  Write a comparison, TRUE or FALSE in place of DISTANCE   [TS202]",
+                "IF needs a yes or no, and DISTANCE is a number.   Try:  DISTANCE < 10   [TS202]",
             ],
             [
                 "línea 1:  IF(DISTANCE);S;ENDIF",
                 "             ^^^^^^^^",
-                "IF necesita un sí o no, y DISTANCE es un número.",
-                "Prueba:  Escribe una comparación, TRUE o FALSE en lugar de DISTANCE   [TS202]",
+                "IF necesita un sí o no, y DISTANCE es un número.   "
+                "Prueba:  DISTANCE < 10   [TS202]",
             ],
         ),
     ],

@@ -51,7 +51,7 @@ def check_text(text: str, kit: Kit, name: str = "") -> Compiled:
     from tiniscript.source import Source
 
     source = Source(text, name)
-    parsed = parse(source)
+    parsed = parse(source, kit)
     checked = check(source, parsed.program, kit)
     found = [*parsed.problems, *checked.problems]
     if not any(problem.is_mistake for problem in found):

@@ -10,15 +10,17 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 from tiniscript import problems, program, tree
-from tiniscript.arguments import count_problem
+from tiniscript.arguments import actuator_word, call_of, count_problem, glued_call
 from tiniscript.bytecode import BLOCKS, CALLS, DEFS, STACK_VALUES, VARIABLES
-from tiniscript.kit import Kit
 from tiniscript.kinds import ANY, Kinds, Value
+from tiniscript.kit import Kit
 from tiniscript.problems import Code, Problem
-from tiniscript.program import Expression, Statement, Term
+from tiniscript.program import Statement
 from tiniscript.source import Source, Span
-from tiniscript.thousandths import as_text
+from tiniscript.thousandths import HIGHEST, as_text
 from tiniscript.words import WORDS, Argument, Word, meant_by, nearest
+
+ENOUGH = 100  # mistakes after which a suggestion helps nobody
 
 
 class Checked(NamedTuple):
@@ -51,8 +53,6 @@ class _Procedure(NamedTuple):
     surely_read: int
     blocks: int
     calls: int
-
-
 
 
 class _Checker:
@@ -111,12 +111,16 @@ class _Checker:
         name = self.names.get(node.name)
         if name is not None and name.what in ("sensor", "actuator"):
             sensor = name.what == "sensor"
-            shown = self.source[node.value.span]
+            shown = "5" if node.value is None else self.source[node.value.span]
             self.report(problems.SENSOR_SET if sensor else problems.ACTUATOR_SET, node.name_span,
                         name=node.name, value=shown)  # fmt: skip
             return
         if node.name in self.def_names:
             self.report(problems.NAME_TAKEN, node.name_span, name=node.name)
+            return
+        if node.value is None:
+            if name is None:
+                self.variable(node, self.kinds.nothing)
             return
         value = self.kinds.value(node.value, node.name if name is None else None)
         self.stack_fits([value], node.span)
@@ -141,7 +145,9 @@ class _Checker:
     def command(self, node: tree.Command, made: list[Statement]) -> None:
         word = WORDS.get(node.word)
         if node.until is not None and (word is None or word.role not in ("move", "wait")):
-            self.report(problems.UNTIL_NOT_HERE, node.until.span, word=node.word)
+            before = self.source[Span(node.span.start, node.until.span.start)]
+            start = node.span.start + before.upper().rfind("UNTIL")
+            self.report(problems.UNTIL_NOT_HERE, Span(start, node.span.end), word=node.word)
             node = node._replace(until=None)
         if word is None:
             self.kit_or_def(node, made)
@@ -158,10 +164,13 @@ class _Checker:
         if forever and node.until is None:
             self.report(problems.FOREVER_NEEDS_UNTIL, arguments[0].span, word=word.text,
                         fix=self.source[node.span] + " UNTIL(DISTANCE < 10)")  # fmt: skip
+        said = len(self.problems)
         values = [
             self.kinds.value(each) if word.role == "show" else self.number(each, its, word.text)
             for each, its in zip(arguments[forever:], word.arguments[forever:], strict=True)
         ]
+        if len(self.problems) > said:
+            self.named_arguments(node, word, arguments, said)
         self.stack_fits(values, span)
         self.take(values, span, made)
         if word.role in ("move", "wait"):
@@ -184,13 +193,30 @@ class _Checker:
         spans = [argument.span for argument in arguments]
         self.problems.append(count_problem(self.source, word, spans, span))
 
+    def named_arguments(
+        self, node: tree.Command, word: Word, arguments: Sequence[tree.Argument], said: int
+    ) -> None:
+        """`F(t=2, p=80)`: values have no names here."""
+        unknown = {each.span for each in self.problems[said:] if each.code is problems.UNKNOWN_NAME}
+        values = []
+        for argument in arguments:
+            first, last = argument.expression[0], argument.expression[-1]
+            is_named = last.op == "EQ" and Span(first.start, first.end) in unknown
+            start = last.end if is_named else argument.span.start
+            values.append(self.source[Span(start, argument.span.end)].strip())
+            if not is_named:
+                return
+        del self.problems[said:]
+        fix = f"{word.text}({', '.join(values)})"
+        self.report(problems.NAMED_ARGUMENT, node.span, word=word.text, fix=fix)
+
     def number(self, argument: tree.Argument, its: Argument, word: str) -> Value:
         """Check an argument that is a number; a plain one must be in range."""
         if argument.is_plain:
             part = argument.expression[0]
             assert isinstance(part.value, int)
             if not its.low <= part.value <= its.high:
-                low, high = as_text(its.low), as_text(its.high)
+                low, high = as_text(its.low), "" if its.high == HIGHEST else as_text(its.high)
                 self.report(problems.OUT_OF_RANGE, argument.span, word=word, name=its.name,
                             unit=its.unit, low=low, high=high,
                             found=as_text(part.value))  # fmt: skip
@@ -207,10 +233,14 @@ class _Checker:
     def condition(self, argument: tree.Argument, word: str) -> Value:
         value = self.kinds.value(argument)
         if value.kind == "number":
-            self.report(problems.WANTS_CONDITION, argument.span, by=word,
-                        found=self.source[argument.span])  # fmt: skip
+            self.wants_condition(argument, word)
         self.stack_fits([value], argument.span)
         return value
+
+    def wants_condition(self, argument: tree.Argument, by: str) -> None:
+        found = self.source[argument.span]
+        self.report(problems.WANTS_CONDITION, argument.span, by=by, found=found,
+                    fix=self.kinds.question(found))  # fmt: skip
 
     def stack_fits(self, values: Sequence[Value], span: Span) -> None:
         if any(value.depth + i > STACK_VALUES for i, value in enumerate(values)):
@@ -236,25 +266,20 @@ class _Checker:
 
     def actuator(self, node: tree.Command, number: int, made: list[Statement]) -> None:
         device = self.kit.actuators[number]
-        its = Argument(device.name, device.unit, device.low, device.high)
-        example = f"{device.name}(TRUE)" if device.is_yes_no else (
-            f"{device.name}({as_text(device.low + (device.high - device.low) // 2000 * 1000)})"
-        )  # fmt: skip
+        word = actuator_word(device)
         if node.arguments is None:
-            self.report(problems.ACTUATOR_ALONE, node.span, name=device.name, fix=example)
+            self.report(problems.ACTUATOR_ALONE, node.span, name=device.name, fix=word.example)
             return
         if len(node.arguments) != 1:
-            word = Word(device.name, "actuator", (its._replace(name="value"),))
             self.count(word, node.arguments, node.span)
             return
         argument = node.arguments[0]
         if device.is_yes_no:
             value = self.kinds.value(argument)
             if value.kind == "number":
-                self.report(problems.WANTS_CONDITION, argument.span, by=device.name,
-                            found=self.source[argument.span])  # fmt: skip
+                self.wants_condition(argument, device.name)
         else:
-            value = self.number(argument, its, device.name)
+            value = self.number(argument, word.arguments[0], device.name)
         self.stack_fits([value], node.span)
         self.take([value], node.span, made)
         made.append(program.Set(number, value.terms, node.span))
@@ -279,15 +304,30 @@ class _Checker:
         elif word in self.set_somewhere:
             self.report(problems.VARIABLE_ALONE, span, name=word)
         else:
-            meant = meant_by(word)
-            if meant is not None and (meant in WORDS or meant in self.names):
-                fix = WORDS[meant].example if meant in WORDS else meant
-                self.report(problems.OTHER_LANGUAGE, span, found=word, right=meant, fix=fix)
-                return
-            commands = [each.text for each in WORDS.values() if each.role not in
-                        ("setup", "later", "value", "operator", "function", "forever")]  # fmt: skip
-            close = nearest(word, [*commands, *self.names, *self.def_names])
-            self.report(problems.UNKNOWN_WORD, span, found=word, near=close or "")
+            self.unknown_word(node)
+
+    def unknown_word(self, node: tree.Command) -> None:
+        word, span = node.word, node.word_span
+        meant = meant_by(word)
+        if meant is not None and (meant in WORDS or meant in self.names):
+            fix = meant
+            if meant in WORDS:
+                spans = [each.span for each in node.arguments or ()]
+                fix = call_of(self.source, WORDS[meant], spans)
+            self.report(problems.OTHER_LANGUAGE, span, found=word, right=meant, fix=fix)
+            return
+        glued = glued_call(word)
+        if glued is not None and node.arguments is None:
+            self.report(problems.MISSING_OPEN, span, word=glued.partition("(")[0], fix=glued)
+            return
+        commands = [each.text for each in WORDS.values() if each.role not in
+                    ("setup", "later", "value", "operator", "function", "forever")]  # fmt: skip
+        near = self.near(word, [*commands, *self.names, *self.def_names])
+        self.report(problems.UNKNOWN_WORD, span, found=word, near=near)
+
+    def near(self, word: str, known: Sequence[str]) -> str:
+        """Return the nearest known word for a message, as long as messages help."""
+        return (nearest(word, known) or "") if len(self.problems) < ENOUGH else ""
 
     # -- blocks -------------------------------------------------------------------------------
 

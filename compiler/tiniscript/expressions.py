@@ -10,13 +10,14 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from tiniscript import problems
-from tiniscript.arguments import count_problem
+from tiniscript.arguments import call_in, count_problem, ends_value, starts_value
 from tiniscript.problems import Code, Problem
+from tiniscript.slips import operator_words
 from tiniscript.source import Source, Span
 from tiniscript.thousandths import HIGHEST, LOWEST, as_text, read_literal
 from tiniscript.tokens import END, NEWLINE, NUMBER, ODD, WORD, Token
 from tiniscript.tree import Argument, Part
-from tiniscript.words import WORDS, Word
+from tiniscript.words import UNITS, WORDS, Word, meant_by, other_name
 
 _BINARY = {
     "OR": (1, "OR"), "AND": (2, "AND"),
@@ -26,7 +27,8 @@ _BINARY = {
 }  # fmt: skip
 _NOT, _COMPARE, _MINUS, _OPEN = 3, 4, 7, 0
 _FUNCTIONS = frozenset(word.text for word in WORDS.values() if word.role == "function")
-_SPANISH_OPERATORS = {"Y": "AND", "O": "OR"}
+_ENDS = frozenset((";", NEWLINE, END))
+_AFTER_VALUE = frozenset((",", ")", *_ENDS))
 
 
 class Failed(Exception):
@@ -47,13 +49,15 @@ class _Operator:
 
 
 class Expressions:
-    """Reads from `tokens` at `i`; adds to `problems`."""
+    """Reads from `tokens` at `i`; adds to `problems`. Mends tokens that are slips as it goes."""
 
     def __init__(self, source: Source, tokens: list[Token], found: list[Problem]) -> None:
         self.source = source
         self.tokens = tokens
         self.problems = found
         self.i = 0
+        self.answered: set[int] = set()  # places of odd signs of which more is known now
+        self.reserved: set[str] = set()  # words that were set like variables: said there, once
 
     def report(self, code: Code, span: Span, **values: str) -> None:
         self.problems.append(Problem(code, span, values))
@@ -66,6 +70,7 @@ class Expressions:
 
     def arguments(self) -> tuple[Argument, ...]:
         """Read `(a, b)` from the bracket on, and return its arguments."""
+        bracket = self.i
         self.i += 1
         if self._inner().kind == ")":
             self._to_inner()
@@ -77,7 +82,7 @@ class Expressions:
             self.i += 1
             arguments.append(self._argument_or_forever())
         if self._inner().kind != ")":
-            self._no_close(self.tokens[self.i - 1])
+            self._no_close(bracket)
         self._to_inner()
         self.i += 1
         return tuple(arguments)
@@ -157,6 +162,8 @@ class Expressions:
                 continue
             elif kind is WORD and token.text in ("TRUE", "FALSE", "TIME"):
                 self.i += 1
+                if tokens[self.i].kind == "(":
+                    self._call_of_a_name(token)
                 out.append(Part(token.text, 0, token.start, token.end))
             elif kind is WORD and token.text == "NOT":
                 if waiting and waiting[-1].precedence > _NOT:
@@ -193,10 +200,13 @@ class Expressions:
                     self._push_binary(token, binary, waiting, out)
                     self.i += 1
                     break
+                if token.kind not in _AFTER_VALUE and self._mended(token, brackets, out):
+                    if out[-1].op != "NAME" or tokens[self.i].text != "NOT":
+                        continue
+                    out.pop()  # the NO that is a NOT now: an operand is wanted again
+                    break
                 bracket = self._reduce_to_bracket(waiting, out)
                 if bracket is None:
-                    if token.kind is WORD and token.text in _SPANISH_OPERATORS:
-                        self._spanish_operator(token)
                     return tuple(out)
                 if token.kind == ")":
                     self._to_inner()
@@ -211,7 +221,7 @@ class Expressions:
                     self._to_inner()
                     self.i += 1
                     break
-                self._no_close(tokens[self.i - 1])
+                self._no_close(bracket.index)
 
     def _push_binary(
         self, token: Token, binary: tuple[int, str], waiting: list[_Operator], out: list[Part]
@@ -267,7 +277,11 @@ class Expressions:
     def _number(self, token: Token, index: int, waiting: list[_Operator]) -> Part:
         value, exact = read_literal(token.text)
         start = token.start
-        if waiting and waiting[-1].precedence == _MINUS and waiting[-1].index == self._before(index):
+        if (
+            waiting
+            and waiting[-1].precedence == _MINUS
+            and waiting[-1].index == self._before(index)
+        ):
             start = waiting.pop().at.start
             value = -value
         if not LOWEST <= value <= HIGHEST:
@@ -288,60 +302,143 @@ class Expressions:
 
     # -- what can be wrong --------------------------------------------------------------------
 
+    def _mended(self, token: Token, brackets: int, out: list[Part]) -> bool:
+        """Name what stands where an operator is wanted, and mend it if it is clear what it means.
+
+        Then reading goes on at `i`, where an operator is now.
+        """
+        tokens = self.tokens
+        if token.kind is not WORD and not starts_value(token):
+            return False
+        k = self.i
+        while tokens[k].kind is NEWLINE:
+            k += 1
+        said = operator_words(tokens, k)
+        if said is not None and (brackets or not self._begins_line(k)):
+            end, right = said
+            span = Span(token.start, tokens[end - 1].end)
+            self.report(problems.OTHER_SIGN, span, found=self.source[span], right=right)
+            kind = WORD if right.isalpha() else right
+            tokens[end - 1] = Token(kind, right, span.start, span.end)
+            self.i = end - 1
+            return True
+        last = self._before(k)
+        before = tokens[last]
+        is_name = before.kind is WORD and token.text not in WORDS and bool(brackets)
+        if token.text in UNITS and (before.kind is NUMBER or is_name):
+            after = tokens[k + 1].kind
+            wanted = _AFTER_VALUE if brackets else _ENDS
+            if (after in wanted and (brackets or token.text not in WORDS)) or after in _BINARY:
+                span = Span(before.start, token.end)
+                self.report(problems.UNIT, span, found=self.source[span], right=before.text)
+                self.i = k + 1
+                return True
+        if before.kind is WORD and before.text == "NO" and out[-1].op == "NAME" and brackets:
+            self.report(problems.OTHER_SIGN, before.span, found=before.text, right="NOT")
+            tokens[last] = Token(WORD, "NOT", before.start, before.end)
+            self.i = last
+            return True
+        return False
+
+    def _begins_line(self, k: int) -> bool:
+        """Whether the word at `k` is rather a name: `X = 3 Y = 4`, `X = 3 Y(4)`."""
+        return self.tokens[k + 1].kind in ("=", "(", *_ENDS)
+
     def _no_value(self, token: Token, waiting: list[_Operator]) -> NoReturn:
+        """Say what is wrong with a token that stands where a value is wanted."""
         if token.kind is ODD:
             raise Failed
-        if token.kind is WORD and token.text == "FOREVER":
-            self.fail(problems.FOREVER_NOT_HERE, token.span)
-        before = self.tokens[self.i - 1]
+        before = self.tokens[self._before(self.i)]
+        at_end = token.kind in _ENDS
+        if before.kind == "%" and token.kind in _AFTER_VALUE:
+            number = self.tokens[self._before(self.i) - 1]
+            span = Span(number.start, before.end)
+            self.fail(problems.UNIT, span, found=self.source[span], right=number.text)
         if token.kind is WORD and WORDS[token.text].role != "operator":
-            self.fail(problems.RESERVED, token.span, word=token.text, right="MY_" + token.text)
-        at_end = token.kind in (END, NEWLINE, ";")
-        span = Span(before.start, before.end) if at_end else token.span
+            self._no_value_word(token)
+        span = before.span if at_end else token.span
         found = "" if at_end else token.text
-        self.fail(problems.MISSING_VALUE, span, found=found, before=before.text.strip())
+        self.fail(problems.MISSING_VALUE, span, found=found, before=before.text)
 
-    def _call_of_a_name(self, name: Token) -> NoReturn:
+    def _no_value_word(self, token: Token) -> NoReturn:
+        word = WORDS[token.text]
+        if word.role == "forever":
+            self.fail(problems.FOREVER_NOT_HERE, token.span)
+        if word.role == "until":
+            self.fail(problems.UNTIL_ALONE, token.span, fix="")
+        if word.role in ("move", "wait", "motors", "beep", "show"):
+            if self.tokens[self.i + 1].kind == "(":
+                self.fail(problems.NO_VALUE, token.span, word=word.text)
+        if word.text in self.reserved:
+            raise Failed
+        self.fail(problems.RESERVED, token.span, word=word.text, right=other_name(word.text))
+
+    def _call_of_a_name(self, name: Token) -> None:
         """`DISTANCE()` or `SQRT(4)` in an expression: no name of a program is a function."""
+        meant = WORDS.get(meant_by(name.text) or "")
+        if meant is not None and meant.arguments:
+            fix = call_in(meant, self._in_brackets(self.i))
+            self.fail(
+                problems.OTHER_LANGUAGE, name.span, found=name.text, right=meant.text, fix=fix
+            )
         close = self.tokens[self.i + 1]
-        if close.kind == ")":
-            self.fail(problems.EMPTY_BRACKETS, Span(name.start, close.end), word=name.text)
-        self.fail(problems.NO_FUNCTION, name.span, found=name.text)
+        if close.kind != ")":
+            self.fail(problems.NO_FUNCTION, name.span, found=name.text)
+        self.report(problems.EMPTY_BRACKETS, Span(name.start, close.end), word=name.text)
+        self.i += 2
 
-    def _spanish_operator(self, token: Token) -> NoReturn:
-        right = _SPANISH_OPERATORS[token.text]
-        self.fail(problems.OTHER_SIGN, token.span, found=token.text, right=right)
+    def _in_brackets(self, bracket: int) -> list[Token]:
+        """Return the tokens after a `(` up to its `)`, or to where the instruction ends."""
+        depth, k = 1, bracket + 1
+        while self.tokens[k].kind not in (";", END):
+            depth += (self.tokens[k].kind == "(") - (self.tokens[k].kind == ")")
+            if not depth:
+                break
+            k += 1
+        return self.tokens[bracket + 1 : k]
 
-    def _no_close(self, last: Token) -> NoReturn:
+    def _no_close(self, bracket: int) -> NoReturn:
         """A bracket is open and what comes cannot stand in it: say what is missing."""
         token = self._inner()
+        last = self.tokens[self._before(self.i)]
         same_line = self.tokens[self.i] is token
-        span = Span(last.start, last.end)
-        if token.kind is ODD:
+        if token.kind is ODD and token.text != ":":
             raise Failed
         if token.kind == ";" and self._close_comes():
             while self.tokens[self.i].kind != ")":
                 self.i += 1
             self.i += 1
             self.fail(problems.SEMICOLON_INSIDE, token.span)
-        if token.kind is WORD and token.text in _SPANISH_OPERATORS:
-            self._spanish_operator(token)
         if token.kind == "=":
             self.fail(problems.MISSING_VALUE, token.span, found="=", before=last.text)
-        names_value = token.kind is NUMBER or token.kind == "(" or (
-            token.kind is WORD and (token.text not in WORDS or WORDS[token.text].role == "value")
-        )  # fmt: skip
-        if same_line and names_value and self._close_comes():
-            span = Span(last.start, token.end)
-            fix = f"{last.text}, {token.text}"
+        if same_line and starts_value(token) and ends_value(last) and self._close_comes():
+            self._nothing_between(last, token, bracket)
+        if token.kind is ODD:
+            self.answered.add(token.start)
+        self.fail(problems.MISSING_CLOSE, last.span, last=last.text)
+
+    def _nothing_between(self, last: Token, token: Token, bracket: int) -> NoReturn:
+        """Two values in brackets with only a space between them."""
+        span = Span(last.start, token.end)
+        owner = self.tokens[bracket - 1] if bracket else self.tokens[bracket]
+        word = self.word_of(owner)
+        if word is not None and len(word.arguments) > 1:
+            fix = call_in(word, self._in_brackets(bracket))
             self.fail(problems.MISSING_COMMA, span, fix=fix)
-        self.fail(problems.MISSING_CLOSE, span, last=last.text)
+        sign = "<" if last.kind is WORD or last.kind == ")" else "+"
+        fix = f"{last.text} {sign} {token.text}" if last.kind != ")" and token.kind != "(" else ""
+        self.fail(problems.MISSING_SIGN, span, before=last.text, found=token.text, fix=fix)
+
+    def word_of(self, token: Token) -> Word | None:
+        """Return the word of the language that takes values in brackets here."""
+        return WORDS.get(token.text) if token.kind is WORD else None
 
     def _close_comes(self) -> bool:
         """Whether a `)` comes on this line before another bracket opens."""
-        for token in self.tokens[self.i :]:
-            if token.kind in ("(", NEWLINE, END):
+        for k in range(self.i, len(self.tokens)):
+            kind = self.tokens[k].kind
+            if kind in ("(", NEWLINE, END):
                 return False
-            if token.kind == ")":
+            if kind == ")":
                 return True
         return False

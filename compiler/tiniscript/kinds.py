@@ -6,6 +6,7 @@ expressions mean. Gives terms, and the sensors whose readings they use.
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, NamedTuple
 
 from tiniscript import problems
@@ -13,7 +14,7 @@ from tiniscript.kit import Kit
 from tiniscript.program import Expression, Term
 from tiniscript.source import Span
 from tiniscript.tree import Argument, Part
-from tiniscript.words import nearest
+from tiniscript.words import WORDS, meant_by
 
 if TYPE_CHECKING:
     from tiniscript.checker import _Checker
@@ -41,6 +42,7 @@ _ARITHMETIC = {"ADD": "+", "SUB": "-", "MUL": "*", "DIV": "/", "MOD": "%", "MIN"
                "MAX": "MAX", "RANDOM": "RANDOM", "ROUND": "ROUND"}  # fmt: skip
 _ORDER = {"LT": "<", "LE": "<=", "GT": ">", "GE": ">="}
 _EQUAL = {"EQ": "=", "NE": "<>"}
+_COMPARED = re.compile(r"[^<>=]{1,40}?\s*(?:<=|>=|<>|[<>=])(?=[^<>=]*$)")  # `X =` of `X = 5`
 _UNARY = {"NEG": "-", "ABS": "ABS"}
 _LEAVES = {"TRUE": Term("YES_NO", 1), "FALSE": Term("YES_NO", 0), "TIME": Term("TIME")}
 
@@ -105,8 +107,14 @@ class Kinds:
         if name in checker.def_names:
             checker.report(problems.DEF_READ, span, name=name)
             return
+        meant = meant_by(name) or ""
+        if name not in checker.set_somewhere and name != target and (
+            (meant in WORDS and WORDS[meant].role in ("value", "forever")) or meant in checker.names
+        ):  # fmt: skip
+            checker.report(problems.OTHER_LANGUAGE, span, found=name, right=meant, fix=meant)
+            return
         known = [each for each, its in checker.names.items() if its.what in ("sensor", "variable")]
-        near = nearest(name, known) or ""
+        near = checker.near(name, known)
         if name == target or name in checker.set_somewhere:
             checker.report(problems.USED_BEFORE_SET, span, name=name, near=near)
         else:
@@ -135,12 +143,13 @@ class Kinds:
             kind = NUMBER
         elif op in ("AND", "OR"):
             self._wants_yes_no(op, left)
-            self._wants_yes_no(op, right)
+            self._wants_yes_no(op, right, left)
         elif left.kind != right.kind:
             if ANY not in (left.kind, right.kind):
                 sign = _ORDER.get(op) or _EQUAL[op]
                 self.checker.report(problems.MIXED_COMPARE, Span(start, end), sign=sign,
-                                    left="@" + left.kind, right="@" + right.kind)  # fmt: skip
+                                    left="@" + left.kind, right="@" + right.kind,
+                                    fix=self._yes_no_alone(op, left, right))  # fmt: skip
         elif left.kind == YES_NO and op in _ORDER:
             self.checker.report(problems.YES_NO_ORDER, Span(start, end), sign=_ORDER[op])
         stack.append(_Operand(kind, depth, start, end))
@@ -151,8 +160,30 @@ class Kinds:
             found = self.checker.source[span]
             self.checker.report(problems.WANTS_NUMBER, span, by=by, found=found)
 
-    def _wants_yes_no(self, by: str, operand: _Operand) -> None:
+    def _wants_yes_no(self, by: str, operand: _Operand, left: _Operand | None = None) -> None:
+        """`left` stands before an AND or OR: `X = 5 OR 6` means `X = 5 OR X = 6`."""
         if operand.kind == NUMBER:
             span = Span(operand.start, operand.end)
             found = self.checker.source[span]
-            self.checker.report(problems.WANTS_CONDITION, span, by=by, found=found)
+            fix = self.question(found)
+            if left is not None and left.end - left.start <= 80:
+                asked = _COMPARED.match(self.checker.source[Span(left.start, left.end)])
+                fix = f"{asked[0]} {found}" if asked else fix
+            self.checker.report(problems.WANTS_CONDITION, span, by=by, found=found, fix=fix)
+
+    def question(self, found: str) -> str:
+        """Return the question that was probably meant with a number alone."""
+        word = found.upper()
+        name = self.checker.names.get(word)
+        if name is not None:
+            return f"{word} < 10" if name.what == "sensor" else f"{word} > 0"
+        return {"0": "FALSE", "1": "TRUE"}.get(word, "")
+
+    def _yes_no_alone(self, op: str, left: _Operand, right: _Operand) -> str:
+        """`BUTTON = 1` is `BUTTON`, and `BUTTON = 0` is `NOT BUTTON`."""
+        number, answer = (left, right) if left.kind == NUMBER else (right, left)
+        digit = self.checker.source[Span(number.start, number.end)]
+        found = self.checker.source[Span(answer.start, answer.end)]
+        if digit not in ("0", "1") or op not in _EQUAL or not found.isidentifier():
+            return ""
+        return found.upper() if (digit == "1") == (op == "EQ") else f"NOT {found.upper()}"

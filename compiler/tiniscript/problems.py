@@ -47,7 +47,7 @@ NOT_UTF8 = _mistake("TS003")
 # characters, numbers and names
 ODD_CHARACTER = _mistake("TS005")
 QUOTE = _mistake("TS006")
-HASH_COMMENT = _mistake("TS007")
+OTHER_NOTE = _mistake("TS007")
 BAD_NUMBER = _mistake("TS008")
 BAD_NAME = _mistake("TS009")
 OTHER_SIGN = _mistake("TS010")
@@ -88,6 +88,12 @@ LATER_WORD = _mistake("TS043")
 EXTRA_WORD = _mistake("TS044")
 SPANISH_IF = _mistake("TS045")
 NO_FUNCTION = _mistake("TS046")
+BRACES = _mistake("TS047")
+MISSING_SIGN = _mistake("TS048")
+UNIT = _mistake("TS049")
+OTHER_ASSIGNMENT = _mistake("TS050")
+NO_VALUE = _mistake("TS051")
+NAMED_ARGUMENT = _mistake("TS052")
 # names
 UNKNOWN_WORD = _mistake("TS101")
 OTHER_LANGUAGE = _mistake("TS102")
@@ -135,12 +141,20 @@ BOARD_MAY_BE_TOO_SMALL = _warning("TS809")
 
 
 def in_order(found: list[Problem]) -> list[Problem]:
-    """Return problems by place, without what is said twice of the same place."""
-    seen = set()
+    """Return problems by place, and of several mistakes in one place the first that was found.
+
+    What begins where another mistake begins is most often its consequence.
+    """
     kept = []
-    for problem in sorted(found, key=lambda each: (each.span, each.code.number)):
+    mistaken = set()
+    seen = set()
+    for problem in found:
+        start = problem.span.start
         key = (problem.code, problem.span)
-        if key not in seen:
-            seen.add(key)
-            kept.append(problem)
-    return kept
+        if key in seen or (problem.is_mistake and start in mistaken):
+            continue
+        seen.add(key)
+        kept.append(problem)
+        if problem.is_mistake:
+            mistaken.add(start)
+    return sorted(kept, key=lambda each: (each.span, each.code.number))

@@ -10,8 +10,9 @@ import re
 from typing import NamedTuple
 
 from tiniscript import problems
-from tiniscript.problems import Problem
+from tiniscript.problems import Code, Problem
 from tiniscript.source import Span
+from tiniscript.words import UNITS
 
 WORD = "word"
 NUMBER = "number"
@@ -42,16 +43,20 @@ class Scan(NamedTuple):
 _PATTERN = re.compile(
     r"""(?P<space>[ \t\f\v\u00a0\u2000-\u200b\u202f\u3000\ufeff]+)
       | (?P<word>[A-Za-z][A-Za-z0-9_]*)(?!\w)
-      | (?P<number>(?:[0-9]+(?:\.[0-9]+)?|\.[0-9]+)(?![\w.]))
+      | (?P<number>(?:[0-9]+(?:\.[0-9]+)?|\.[0-9]+)(?![\w.\u00b0]))
       | (?P<newline>\r\n|\n|\r)
       | (?P<comment>//[^\r\n]*)
-      | (?P<slip>==|!=|=>|=<|><|&&|\|\||!|[\u2264\u2265\u2260\u00d7\u00f7])
+      | (?P<othernote>\#[^\r\n]*|/\*[^*]*(?:\*(?!/)[^*]*)*(?:\*/)?)
+      | (?P<slip>==|!=|=>|=<|><|&&|\|\||!(?=[ \t]*[\w(])|[\u2264\u2265\u2260\u00d7\u00f7])
       | (?P<sign><=|>=|<>|[-+*/%=<>(),;|])
       | (?P<dash>[\u2010-\u2015\u2212])
-      | (?P<badnumber>\.?[0-9][\w.]*)
+      | (?P<badnumber>\.?[0-9][\w.\u00b0]*)
       | (?P<badword>\w+)
-      | (?P<quote>["'`\u00b4\u2018-\u201f\u00ab\u00bb]+)
-      | (?P<hash>\#[^\r\n]*)
+      | (?P<quote>["'`\u00b4\u2018-\u201f\u00ab\u00bb]+
+            (?:[^"'`\u00b4\u2018-\u201f\u00ab\u00bb\r\n]*["'`\u00b4\u2018-\u201f\u00ab\u00bb]+)?)
+      | (?P<wide>[\uff08\uff09\uff0c\uff1b\uff1d\uff1c\uff1e\uff5c\uff0b\uff0d])
+      | (?P<bracket>[][])
+      | (?P<brace>[{}])
       | (?P<odd>.)
     """,
     re.VERBOSE | re.DOTALL,
@@ -61,14 +66,17 @@ _PATTERN = re.compile(
 _SLIPS = {
     "==": "=", "!=": "<>", "=>": ">=", "=<": "<=", "><": "<>", "&&": "AND", "||": "OR",
     "!": "NOT", "≤": "<=", "≥": ">=", "≠": "<>", "×": "*", "÷": "/",
+    "（": "(", "）": ")", "，": ",", "；": ";", "＝": "=", "＜": "<", "＞": ">", "｜": "|",
+    "＋": "+", "－": "-", "[": "(", "]": ")",
 }  # fmt: skip
+QUOTES = "\"'`´‘’‚‛“”„‟«»"
 
 
 def scan(text: str) -> Scan:
     """Return the tokens of `text`, its comments and what could not be read."""
     tokens: list[Token] = []
     comments: list[Token] = []
-    found: list[Problem] = []
+    odd = _Odd()
     add = tokens.append
     for match in _PATTERN.finditer(text):
         group = match.lastgroup
@@ -88,38 +96,91 @@ def scan(text: str) -> Scan:
             add(Token("-", "-", start, end))
         elif group == "comment":
             comments.append(Token("comment", match.group(), start, end))
+        elif group == "othernote":
+            odd.note(match.group(), Span(start, end))
         else:
             assert group is not None
-            add(_odd(group, match.group(), start, end, found))
+            add(getattr(odd, group)(match.group(), Span(start, end)))
     add(Token(END, "", len(text), len(text)))
-    return Scan(tokens, comments, found)
+    return Scan(tokens, comments, odd.problems)
 
 
-def _odd(group: str, text: str, start: int, end: int, found: list[Problem]) -> Token:
-    """Name what is wrong with `text` and return the token to go on with."""
-    span = Span(start, end)
-    if group == "slip":
+class _Odd:
+    """Names what is wrong with a piece of text and returns the token to go on with.
+
+    A method for each group of the pattern. What comes in pairs, or again and again, is named
+    once.
+    """
+
+    def __init__(self) -> None:
+        self.problems: list[Problem] = []
+        self.open_brackets = 0
+        self.has_wide = False
+        self.has_braces = False
+
+    def report(self, code: Code, span: Span, **values: str) -> None:
+        self.problems.append(Problem(code, span, values))
+
+    def slip(self, text: str, span: Span) -> Token:
         right = _SLIPS[text]
-        found.append(Problem(problems.OTHER_SIGN, span, {"found": text, "right": right}))
-        return Token(WORD if right.isalpha() else right, right, start, end)
-    if group == "badnumber":
-        found.append(Problem(problems.BAD_NUMBER, span, {"found": text, "right": _number_in(text)}))
-        return Token(NUMBER, _number_in(text), start, end)
-    if group == "badword":
+        self.report(problems.OTHER_SIGN, span, found=text, right=right)
+        return Token(WORD if right.isalpha() else right, right, *span)
+
+    def wide(self, text: str, span: Span) -> Token:
+        if not self.has_wide:
+            self.has_wide = True
+            return self.slip(text, span)
+        return Token(_SLIPS[text], _SLIPS[text], *span)
+
+    def bracket(self, text: str, span: Span) -> Token:
+        if text == "]" and self.open_brackets:
+            self.open_brackets -= 1
+            return Token(")", ")", *span)
+        self.open_brackets += text == "["
+        return self.slip(text, span)
+
+    def brace(self, text: str, span: Span) -> Token:
+        if not self.has_braces:
+            self.has_braces = True
+            self.report(problems.BRACES, span, found=text)
+        return Token(text, text, *span)
+
+    def badnumber(self, text: str, span: Span) -> Token:
+        number = _number_in(text)
+        is_unit = text[len(number) :].upper() in UNITS and text.startswith(number)
+        code = problems.UNIT if is_unit else problems.BAD_NUMBER
+        self.report(code, span, found=text, right=number)
+        return Token(NUMBER, number, *span)
+
+    def badword(self, text: str, span: Span) -> Token:
         plain = _plain(text)
-        found.append(Problem(problems.BAD_NAME, span, {"found": text, "right": plain}))
-        return Token(WORD, plain.upper(), start, end)
-    if group == "quote":
-        found.append(Problem(problems.QUOTE, span, {"found": text}))
-    elif group == "hash":
-        comment = "//" + text[1:]
-        found.append(Problem(problems.HASH_COMMENT, span, {"right": comment[:40]}))
-    elif not found or found[-1].code is not problems.ODD_CHARACTER or found[-1].span.end != start:
-        shown = text if text.isprintable() else f"U+{ord(text):04X}"
-        found.append(Problem(problems.ODD_CHARACTER, span, {"found": shown}))
-    else:  # one problem for a run of them
-        found[-1] = found[-1]._replace(span=Span(found[-1].span.start, end))
-    return Token(ODD, text, start, end)
+        self.report(problems.BAD_NAME, span, found=text, right=plain)
+        return Token(WORD, plain.upper(), *span)
+
+    def quote(self, text: str, span: Span) -> Token:
+        inside = text.strip(QUOTES).strip()
+        number = re.fullmatch(r"[0-9]+(?:\.[0-9]+)?", inside)
+        is_program = number or "(" in inside or inside.isupper()
+        self.report(problems.QUOTE, span, found=text[0], right=inside if is_program else "")
+        if number:
+            return Token(NUMBER, inside, *span)
+        if re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", inside):
+            return Token(WORD, inside.upper(), *span)
+        return Token(ODD, text, *span)
+
+    def note(self, text: str, span: Span) -> None:
+        sign = "#" if text[0] == "#" else "/*"
+        inside = text[len(sign) :].removesuffix("*/").strip()[:40]
+        self.report(problems.OTHER_NOTE, span, found=sign, right=f"// {inside}")
+
+    def odd(self, text: str, span: Span) -> Token:
+        last = self.problems[-1] if self.problems else None
+        if last is None or last.code is not problems.ODD_CHARACTER or last.span.end != span.start:
+            shown = text if text.isprintable() else f"U+{ord(text):04X}"
+            self.report(problems.ODD_CHARACTER, span, found=shown)
+        else:  # one problem for a run of them
+            self.problems[-1] = last._replace(span=Span(last.span.start, span.end))
+        return Token(ODD, text, *span)
 
 
 def _number_in(text: str) -> str:
@@ -129,9 +190,13 @@ def _number_in(text: str) -> str:
 
 
 def _plain(text: str) -> str:
-    """Return the nearest name in plain letters: `ANO` for `AÑO`, `PASOS` for `_PASOS`."""
+    """Return the nearest name in plain letters: `ANIO` for `AÑO`, `PASOS` for `_PASOS`."""
     from unicodedata import normalize
 
-    letters = normalize("NFD", text).encode("ascii", "ignore").decode()
+    composed = normalize("NFC", text[:1000])
+    composed = re.sub("ñ(?![ií])", "ni", composed).replace("ñ", "n")
+    capitals = "NI" if composed[1:].isupper() or len(composed) == 1 else "Ni"
+    composed = re.sub("Ñ(?![IÍií])", capitals, composed).replace("Ñ", "N")
+    letters = normalize("NFD", composed).encode("ascii", "ignore").decode()
     plain = re.sub(r"^[^A-Za-z]+|\W", "", letters)
     return plain or "X"

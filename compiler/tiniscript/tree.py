@@ -43,9 +43,11 @@ class Command(NamedTuple):
 
 
 class Assign(NamedTuple):
+    """`value` is None where it could not be read."""
+
     name: str
     name_span: Span
-    value: Argument
+    value: Argument | None
     span: Span
 
 

@@ -1,0 +1,165 @@
+"""What beginners type by mistake, and where what they meant goes on.
+
+Knows habits from other languages, from Spanish and from talking. Works on tokens, and is asked
+only where a text is wrong already: nothing here makes a program right or wrong.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from tiniscript.arguments import LONGEST, ends_value, starts_value, written
+from tiniscript.tokens import END, NEWLINE, NUMBER, ODD, WORD, Token
+from tiniscript.words import WORDS, Word, meant_by, other_name
+
+SIGNS = frozenset(("+", "-", "*", "/", "%", "=", "<", ">", "<=", ">=", "<>"))
+COMPARISONS = frozenset(("=", "<", ">", "<=", ">=", "<>"))
+
+# Words in the place of an operator, and those that go with them.
+OPERATOR_WORDS = {
+    "Y": "AND", "E": "AND", "O": "OR", "U": "OR",
+    "IS": "=", "ES": "=", "EQUALS": "=", "EQUAL": "=", "IGUAL": "=",
+    "LESS": "<", "MENOR": "<", "GREATER": ">", "MORE": ">", "MAYOR": ">", "BIGGER": ">",
+    "MOD": "%",
+}  # fmt: skip
+_OPERATOR_TAILS = frozenset(("THAN", "QUE", "TO", "A"))
+
+AFTER_HEADER = frozenset(("THEN", "DO", "BEGIN", "TIMES", "ENTONCES", "HACER", "HAZ", "VECES"))
+BETWEEN = frozenset(("AND", "Y", "THEN", "ENTONCES", "LUEGO", "DESPUES", "NEXT"))
+BEFORE_NAME = frozenset(("LET", "VAR", "SET", "INT", "FLOAT", "CONST", "GLOBAL", "DIM", "BOOL"))
+BEFORE_CALL = frozenset(("CALL", "RUN", "GOSUB", "LLAMAR", "LLAMA", "EJECUTAR", "EJECUTA"))
+BEFORE_NOTE = frozenset(("REM", "NOTE", "NOTA"))
+
+COUNTING = frozenset(("FOR", "PARA_CADA"))  # a variable and its values come after these
+BLOCKS = frozenset(("IF", "LOOP", "WHILE"))
+ENDS = {"ENDIF": "IF", "END_LOOP": "LOOP", "END_WHILE": "WHILE", "END_DEF": "DEF"}
+ENDS_OF_ANY = frozenset(("END", "FIN", "DONE"))
+
+
+def foreign_block(word: str) -> str | None:
+    """Return the word of a block (IF, ELSE, END_LOOP, DEF …) that `word` says elsewhere."""
+    meant = meant_by(word)
+    if meant is None or WORDS.get(meant) is None:
+        return "END" if word in ENDS_OF_ANY else None
+    return meant if WORDS[meant].role in ("block", "arm", "end", "forever") else None
+
+
+def head_in(word: Word, tokens: Sequence[Token]) -> str:
+    """Return the header that `word` and the tokens after it were meant to be."""
+    inside = written(tokens[:LONGEST])
+    return f"{word.text}({inside})" if inside and len(tokens) <= LONGEST else word.example
+
+
+def body_begins(tokens: Sequence[Token], start: int, names_end: bool = True) -> int:
+    """Return where the values end that follow a word without brackets, on the same line.
+
+    They end where an instruction or a block's end begins, or at a word or a sign that other
+    languages put before a body. `names_end`: whether a name right after a value does too.
+    """
+    k = start
+    while True:
+        token = tokens[k]
+        kind = token.kind
+        if kind in (";", NEWLINE, END, "{", "}", "|"):
+            return k
+        if kind is ODD and token.text == ":":
+            return k
+        if kind is WORD and _begins_body(tokens, k, start, names_end):
+            return k
+        k += 1
+
+
+def _begins_body(tokens: Sequence[Token], k: int, start: int, names_end: bool) -> bool:
+    token, following = tokens[k], tokens[k + 1]
+    if following.kind in SIGNS and following.kind not in ("=", "-"):
+        return False
+    word = WORDS.get(token.text)
+    after_value = k > start and ends_value(tokens[k - 1])
+    if word is None:
+        if token.text in AFTER_HEADER:
+            return k > start
+        if not after_value or token.text in _OPERATOR_TAILS:
+            return False
+        if token.text in OPERATOR_WORDS:
+            return following.kind == "="
+        if tokens[k - 1].kind is WORD and tokens[k - 1].text == "NO":
+            return False
+        return names_end or following.kind in ("=", "(")
+    if word.role in ("value", "function", "operator", "forever"):
+        return False
+    if following.kind == "=":
+        return after_value
+    if word.role in ("move", "wait", "motors", "beep", "show"):
+        return following.kind in ("(", NUMBER, "-")
+    return True
+
+
+def after_bracket(tokens: Sequence[Token], start: int) -> int | None:
+    """Return the place after the `)` of the `(` at `start`, None where none is near on its line."""
+    depth = 0
+    for k in range(start, min(start + 1000, len(tokens))):
+        kind = tokens[k].kind
+        depth += (kind == "(") - (kind == ")")
+        if not depth:
+            return k + 1
+        if kind in (NEWLINE, END):
+            break
+    return None
+
+
+def is_question(tokens: Sequence[Token], start: int) -> bool:
+    """Whether a comparison follows and no instruction: `DISTANCE < 10` after SI."""
+    end = body_begins(tokens, start)
+    signs = [token.kind for token in tokens[start:end] if token.kind in COMPARISONS]
+    return bool(signs) and starts_value(tokens[start]) and (
+        any(sign != "=" for sign in signs) or tokens[end].text in AFTER_HEADER
+    )  # fmt: skip
+
+
+def operator_words(tokens: Sequence[Token], k: int) -> tuple[int, str] | None:
+    """Return where words such as `Y` or `IS LESS THAN` end, and the operator that they say."""
+    end, said = k, ""
+    while tokens[end].kind is WORD:
+        text = tokens[end].text
+        if text in OPERATOR_WORDS:
+            if said in ("AND", "OR"):
+                break
+            said = OPERATOR_WORDS[text]
+        elif not (said and text in _OPERATOR_TAILS):
+            break
+        end += 1
+    operand = tokens[end].kind == "-" or starts_value(tokens[end]) or tokens[end].text == "NOT"
+    return (end, said) if said and operand else None
+
+
+def is_assignment(tokens: Sequence[Token], k: int) -> bool:
+    """Whether `NAME =` stands at `k`."""
+    return tokens[k].kind is WORD and tokens[k + 1].kind == "="
+
+
+def update(name: Token, tokens: Sequence[Token], k: int) -> tuple[str, str] | None:
+    """Return how `X += 1`, `X++`, `X := 5` or `X <- 5` is written here, and the sign used.
+
+    `k` is the place after the name.
+    """
+    sign, second = tokens[k], tokens[min(k + 1, len(tokens) - 1)]
+    if sign.end != second.start:
+        return None
+    found = sign.text + second.text
+    if found in ("++", "--") and tokens[k + 2].kind in (";", NEWLINE, END, ")"):
+        return f"{name.text} = {name.text} {sign.text} 1", found
+    if found not in ("+=", "-=", "*=", "/=", "%=", ":=", "<-"):
+        return None
+    end = k + 2
+    while tokens[end].kind not in (";", NEWLINE, END, "{", "}"):
+        end += 1
+    target = other_name(name.text) if name.text in WORDS else name.text
+    value = written(tokens[k + 2 : min(end, k + 2 + LONGEST)])
+    if not value:
+        return None
+    if found in (":=", "<-"):
+        return f"{target} = {value}", found
+    single = end == k + 3 or (sign.text in ("+", "-") and not {"+", "-"} & {
+        token.kind for token in tokens[k + 2 : end]
+    })  # fmt: skip
+    return f"{target} = {target} {sign.text} {value if single else f'({value})'}", found
