@@ -104,21 +104,31 @@ def run(
     max_steps: int = 10_000_000,
     seed: int = 1,
 ) -> Iterator[Event | Ending]:
-    """Yield what a robot with this kit does with verified `code`; the last one is its Ending."""
+    """Yield what a robot with this kit does with verified `code`; the last one is its Ending.
+
+    `max_ms` cuts a wait that would pass it. `max_steps` is how many instructions may run while no
+    time passes: it cuts loops that take none.
+    """
     robot = TracedRobot(kit, senses)
     machine = Machine(code, robot, len(kit.sensors), seed)
+    before = 0  # instructions that ran before the clock last moved
     while True:
-        status = machine.tick(robot.now_ms, min(SLICE, max_steps - machine.steps))
+        left = max_steps - (machine.steps - before)
+        status = machine.tick(robot.now_ms, min(SLICE, left))
         yield from robot.events
         robot.events.clear()
         if status in (DONE, FAULT):
             what = status.upper()
         elif status == WAITING and machine.task.wake_ms <= max_ms:
+            if machine.task.wake_ms > robot.now_ms:
+                before = machine.steps
             robot.now_ms = machine.task.wake_ms
-            continue
+            if machine.steps - before < max_steps:
+                continue
+            what = "LIMIT"
         elif status == WAITING:
             robot.now_ms, what = max_ms, "LIMIT"
-        elif machine.steps >= max_steps:
+        elif machine.steps - before >= max_steps:
             what = "LIMIT"
         else:
             continue

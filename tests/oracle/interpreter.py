@@ -131,6 +131,8 @@ class Robot:
             self.now = self.max_time
             raise Ending("LIMIT")
         self.now += duration
+        if duration:
+            self.steps = 0
 
     def motors(self, left: int, right: int) -> None:
         """Sets both motors."""
