@@ -147,18 +147,19 @@ def add_value(out: Emitter, expression: Expression) -> None:
 
 def tests(out: Emitter, condition: Expression, otherwise: int) -> None:
     """Add branches to the label `otherwise` that are taken where `condition` is FALSE."""
-    pending = [(condition, False)]  # an expression, and whether its being TRUE branches
+    # where a part of it begins and ends, and whether its being TRUE branches
+    pending = [(0, len(condition), False)]
     while pending:
-        expression, when = pending.pop()
-        operator = expression[-1].op
+        start, end, when = pending.pop()
+        operator = condition[end - 1].op
         if operator == "NOT":
-            pending.append((expression[:-1], not when))
+            pending.append((start, end - 1, not when))
         elif operator == ("OR" if when else "AND"):
-            split = _split(expression)
-            pending.append((expression[split + 1 : -1], when))
-            pending.append((expression[:split], when))
+            split = _split(condition, end)
+            pending.append((split + 1, end - 1, when))
+            pending.append((start, split, when))
         else:
-            _test(out, expression, when, otherwise)
+            _test(out, condition[start:end], when, otherwise)
 
 
 def _test(out: Emitter, expression: Expression, when: bool, to: int) -> None:
@@ -197,10 +198,10 @@ def _right_side(expression: Expression, left_mark: int) -> Expression:
     raise AssertionError("an AND_LEFT without its AND")
 
 
-def _split(expression: Expression) -> int:
-    """Return the index of the AND_LEFT or OR_LEFT that belongs to the last term."""
+def _split(expression: Expression, end: int) -> int:
+    """Return the index of the AND_LEFT or OR_LEFT of the AND or OR right before `end`."""
     depth = 0
-    for k in range(len(expression) - 2, -1, -1):
+    for k in range(end - 2, -1, -1):
         op = expression[k].op
         if op in ("AND", "OR"):
             depth += 1

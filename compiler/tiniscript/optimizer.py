@@ -43,11 +43,16 @@ _BINARY: dict[str, Callable[[int, int], int]] = {
     "EQ": int.__eq__, "NE": int.__ne__, "LT": int.__lt__, "LE": int.__le__, "GT": int.__gt__,
     "GE": int.__ge__,
 }  # fmt: skip
-_UNARY: dict[str, Callable[[int], int]] = {"NEG": thousandths.negate, "ABS": thousandths.absolute, "NOT": (1).__sub__}
+_UNARY: dict[str, Callable[[int], int]] = {
+    "NEG": thousandths.negate, "ABS": thousandths.absolute, "NOT": (1).__sub__,
+}  # fmt: skip
 _YES_NO = frozenset(("EQ", "NE", "LT", "LE", "GT", "GE", "NOT"))
 # What cannot fault, so that evaluating it or not makes no difference.
 SAFE = frozenset(("NUMBER", "YES_NO", "VARIABLE", "SENSOR", "EQ", "NE", "LT", "LE", "GT", "GE",
                   "NOT", "AND", "OR", "AND_LEFT", "OR_LEFT", "MIN", "MAX"))  # fmt: skip
+
+
+_Operand = tuple[list[Term], bool]
 
 
 def optimized(program: Program) -> Program:
@@ -62,8 +67,8 @@ def fold(expression: Expression) -> Expression:
     """Return an expression whose constant parts are calculated, where they do not fault."""
     if len(expression) == 1:
         return expression
-    # each entry is an operand so far; a decided AND or OR waits with its left side
-    stack: list[list[Term]] = []
+    # each entry is an operand so far, and whether it is safe: see SAFE
+    stack: list[_Operand] = []
     for term in expression:
         op = term.op
         if op in ("AND_LEFT", "OR_LEFT"):
@@ -72,23 +77,26 @@ def fold(expression: Expression) -> Expression:
             right, left = stack.pop(), stack.pop()
             stack.append(_decided(op, left, right))
         elif op in _UNARY:
-            if len(stack[-1]) == 1 and stack[-1][0].op in ("NUMBER", "YES_NO"):
-                stack[-1] = _calculated(op, stack[-1], None) or [*stack[-1], term]
-            else:
-                stack[-1].append(term)
-        elif op in _BINARY or op == "RANDOM":
-            right, left = stack.pop(), stack.pop()
-            folded = None
-            if op in _BINARY and _is_constant(left) and _is_constant(right):
-                folded = _calculated(op, left, right)
+            terms, is_safe_so_far = stack.pop()
+            folded = _calculated(op, terms, None) if _is_constant(terms) else None
             if folded is None:
-                left.extend(right)
-                left.append(term)
-                folded = left
-            stack.append(folded)
+                terms.append(term)
+                folded, is_safe_so_far = terms, is_safe_so_far and op in SAFE
+            stack.append((folded, is_safe_so_far))
+        elif op in _BINARY or op == "RANDOM":
+            (right_terms, right_safe), (terms, left_safe) = stack.pop(), stack.pop()
+            folded = None
+            if op in _BINARY and _is_constant(terms) and _is_constant(right_terms):
+                folded = _calculated(op, terms, right_terms)
+            if folded is None:
+                terms.extend(right_terms)
+                terms.append(term)
+                stack.append((terms, left_safe and right_safe and op in SAFE))
+            else:
+                stack.append((folded, True))
         else:
-            stack.append([term])
-    return tuple(stack[0])
+            stack.append(([term], op in SAFE))
+    return tuple(stack[0][0])
 
 
 def constant(expression: Expression) -> int | None:
@@ -140,20 +148,21 @@ def _calculated(op: str, left: list[Term], right: list[Term] | None) -> list[Ter
     return [Term("YES_NO" if op in _YES_NO else "NUMBER", int(value))]
 
 
-def _decided(op: str, left: list[Term], right: list[Term]) -> list[Term]:
+def _decided(op: str, left: _Operand, right: _Operand) -> _Operand:
     """Return `left op right`, without what a constant side makes needless."""
     decides = 0 if op == "AND" else 1
-    if _is_constant(left):
-        return left if left[0].value == decides else right
-    if _is_constant(right):
-        if right[0].value != decides:
+    (terms, left_safe), (right_terms, right_safe) = left, right
+    if _is_constant(terms):
+        return left if terms[0].value == decides else right
+    if _is_constant(right_terms):
+        if right_terms[0].value != decides:
             return left
-        if is_safe(tuple(left)):
+        if left_safe:
             return right
-    left.append(Term(op + "_LEFT"))
-    left.extend(right)
-    left.append(Term(op))
-    return left
+    terms.append(Term(op + "_LEFT"))
+    terms.extend(right_terms)
+    terms.append(Term(op))
+    return terms, left_safe and right_safe
 
 
 def _body(body: Body) -> Body:
