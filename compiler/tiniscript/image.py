@@ -53,6 +53,7 @@ REFUSALS = {
     "UNKNOWN_START": (6, "Its start mode is not known."),
     "UNKNOWN_NEEDS": (7, "It needs something that this machine does not have."),
     "OTHER_KIT":     (8, "It uses words of another robot's kit."),
+    "PING_WITH_CODE": (9, "It starts with PING, and yet has code."),
 }
 # fmt: on
 
@@ -130,5 +131,7 @@ def unpack(data: bytes, kit: int | None = None) -> Image:
         raise ImageRefused("UNKNOWN_NEEDS", found=f"{parsed.needs:02x}")
     if kit is not None and parsed.kit not in (0, kit):
         raise ImageRefused("OTHER_KIT", theirs=f"{parsed.kit:04x}", ours=f"{kit:04x}")
+    if STARTS[parsed.start] == "PING" and parsed.code_length:
+        raise ImageRefused("PING_WITH_CODE")
     isa = (parsed.isa_major, parsed.isa_minor)
     return Image(STARTS[parsed.start], parsed.kit, bytes(parsed.code), parsed.checksum, isa)
