@@ -28,6 +28,7 @@ from tiniscript.program import (
     bodies,
     expressions,
     goes_on,
+    loops_end,
     walk,
 )
 from tiniscript.source import Span
@@ -65,7 +66,9 @@ def _look_at(body: Body, program: Program, kit: Kit, found: list[Problem]) -> No
                 _report(found, problems.MOVE_OF_NO_TIME, statement.span, word=statement.direction)
         if isinstance(statement, (Loop, While)):
             _late_checks(statement.body, kit, found)
-            if _is_forever(statement) and not _takes_time(statement.body, program):
+            if _is_forever(statement) and not (
+                loops_end(statement.body) or _takes_time(statement.body, program)
+            ):
                 word = "LOOP(FOREVER)" if isinstance(statement, Loop) else "WHILE"
                 head = Span(statement.span.start, statement.span.start + len(word))
                 _report(found, problems.BUSY_LOOP, head, word=word)

@@ -21,7 +21,6 @@ from tiniscript.program import (
     Statement,
     While,
     bodies,
-    goes_on,
     loops_end,
 )
 from tiniscript.thousandths import whole
@@ -90,14 +89,12 @@ def _time(time: Expression | None) -> Duration:
 def _loop(loop: Loop | While, known: list[Duration]) -> Duration:
     body = _body(loop.body, known)
     if isinstance(loop, Loop) and loop.times is None:
-        if body.never_ends or not loops_end(loop.body):
-            return Duration(0, None, True)
-        return _UNKNOWN
+        return _UNKNOWN if loops_end(loop.body) else Duration(0, None, True)
     count = None if isinstance(loop, While) or loop.times is None else constant(fold(loop.times))
     if count is None:
-        return _UNKNOWN if body.most != 0 else _NONE
+        return _UNKNOWN if isinstance(loop, While) or body.most != 0 else _NONE
     times = max(whole(count), 0)
-    if body.never_ends and times and goes_on(loop.body):
+    if body.never_ends and times and not loops_end(loop.body):
         return Duration(body.least, None, True)
     most = None if body.most is None else times * body.most
     return Duration(0 if loops_end(loop.body) else times * body.least, most)
