@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shlex
 import signal
 import subprocess
 import sys
@@ -92,6 +93,13 @@ def test_compile_goes_beside_the_source(tsc: Tsc, program: Path) -> None:
         ("LOOP(9);W(1);IF(DISTANCE < 5);BREAK;ENDIF;END_LOOP", "runs 0 to 9 s"),
         ("LOOP(FOREVER);W(1);IF(DISTANCE < 5);BREAK;ENDIF;END_LOOP", "stack 0 of 16\n"),
         ("W(DISTANCE)", "stack 1 of 16\n"),
+        ("W(5);SHOW(1 / 0);W(5)", "stack 2 of 16\n"),
+        ("WHILE(DISTANCE < 5);END_WHILE", "stack 0 of 16\n"),
+        (
+            "LOOP(FOREVER);IF(DISTANCE < 5);BREAK;ENDIF;LOOP(FOREVER);W(1);END_LOOP;END_LOOP",
+            "stack 0 of 16\n",
+        ),
+        ("LOOP(2);LOOP(FOREVER);W(1);END_LOOP;END_LOOP", "runs until it is stopped"),
     ],
 )
 def test_compile_says_how_long_it_runs(tsc: Tsc, tmp_path: Path, text: str, runs: str) -> None:
@@ -115,9 +123,17 @@ def test_compile_to_a_place_that_cannot_be_written(tsc: Tsc, program: Path) -> N
     assert tsc("compile", program, "-o", program).code == 2
     assert tsc("compile", program, "-o", "a" * 300).code == 2
     assert tsc("compile", program, "-o", "a\0b").code == 2
-    assert tsc("compile", program, "--map", folder).code == 2
     assert program.read_text(encoding="utf-8") == PROGRAM
     assert not program.with_suffix(".bin").exists()
+
+
+def test_a_map_overwrites_nothing(tsc: Tsc, program: Path) -> None:
+    image = program.with_suffix(".bin")
+    for name in (program, image, "-", program.parent):
+        done = tsc("compile", program, "--map", name)
+        assert done.code == 2
+    assert program.read_text(encoding="utf-8") == PROGRAM
+    assert not (program.parent / "-").exists()
 
 
 def test_compile_to_a_device_keeps_the_device(tsc: Tsc, program: Path) -> None:
@@ -208,6 +224,13 @@ def test_many_mistakes_are_cut_short(tsc: Tsc) -> None:
     assert "70" in done.err
 
 
+def test_json_is_json_in_any_locale() -> None:
+    environ = {**os.environ, "PYTHONIOENCODING": "ascii"}
+    command = [*TSC, "check", "--json", "--lang", "es", "-e", "año = 5"]
+    done = subprocess.run(command, capture_output=True, env=environ)
+    assert json.loads(done.stdout)[0]["severity"] == "mistake"
+
+
 # -- run ----------------------------------------------------------------------------------------
 
 
@@ -250,6 +273,14 @@ def test_run_is_repeatable_and_seeded(tsc: Tsc) -> None:
     assert first != tsc("run", "-e", text, "--seed", "2").out
 
 
+def test_max_steps_cuts_only_what_takes_no_time(tsc: Tsc) -> None:
+    text = "X = 0;LOOP(FOREVER);LOOP(20);X = X + 1;END_LOOP;W(0.1);END_LOOP"
+    done = tsc("run", "-e", text, "--max-steps", "100")
+    assert done.out == "60000 LIMIT\n"
+    done = tsc("run", "-e", "LOOP(FOREVER);W(0);END_LOOP", "--max-steps", "100")
+    assert done.out == "0 LIMIT\n"
+
+
 @pytest.mark.parametrize(
     "arguments",
     [
@@ -274,6 +305,8 @@ def test_run_is_repeatable_and_seeded(tsc: Tsc) -> None:
         ["--max-steps", "1.5"],
         ["--machine", "steam"],
         ["--robot", "nobody"],
+        ["--robot", ""],
+        ["-e", "W(1)"],
         ["--robot", "/"],
         ["--robot", "no/such.toml"],
         ["--lang", "fr"],
@@ -442,6 +475,11 @@ HOSTILE = {
     "right to left": "‮F(2,80)".encode(),
     "bars": b"SI|" * 10_000,
     "commas": b"F(" + b"1," * 100_000 + b"1)",
+    "long condition": b"A=TRUE;IF(A" + b" AND A" * 150_000 + b");S;ENDIF",
+    "decided": b"A=1;C=A/1=1" + b" AND FALSE" * 80_000 + b";SHOW(C)",
+    "not": b"A=TRUE;IF(" + b"NOT " * 200_000 + b"A);S;ENDIF",
+    "unknown names": b";".join(b"QWERTYUIO%d=Z%d" % (k, k) for k in range(40_000)),
+    "wide header": b"IF(" + b"+".join([b"1"] * 60) + b", 2);S;ENDIF",
 }
 
 
@@ -522,6 +560,33 @@ def test_a_closed_pipe_is_said() -> None:
     assert said.startswith("tsc:")
 
 
+@pytest.mark.skipif(os.name == "nt", reason="a shell of Unix closes streams")
+@pytest.mark.parametrize("closed", ["2>&-", "<&-", ">&-", ">/dev/full"])
+def test_closed_and_full_streams(closed: str) -> None:
+    """With nowhere to write there is still an exit code, and the trace stays the trace."""
+    if "full" in closed and not Path("/dev/full").exists():
+        pytest.skip("this system has no full device")
+    for program, code in (("LOOP(3);S;END_LOOP;X = 1", 0), ("F(1", 1)):
+        command = f"{shlex.join(TSC)} run -e {shlex.quote(program)} {closed}"
+        done = subprocess.run(command, shell=True, capture_output=True, text=True)
+        assert "Traceback" not in done.stderr
+        assert "was not made for" not in done.stderr
+        if "full" in closed and code == 0:
+            assert done.returncode == 2
+            assert done.stderr
+        else:
+            assert done.returncode == code
+        if closed == "2>&-":
+            assert done.stdout == ("0 MOTORS 0 0\n" * 3 + "0 DONE\n" if code == 0 else "")
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows has no such pipes")
+def test_an_image_goes_into_a_pipe(program: Path) -> None:
+    command = f"{shlex.join(TSC)} compile {shlex.quote(str(program))} -o /dev/stdout | cat"
+    done = subprocess.run(command, shell=True, capture_output=True)
+    assert done.stdout.startswith(b"TS\x01")
+
+
 @pytest.mark.skipif(os.name == "nt", reason="Windows sends Ctrl-C to whole consoles")
 def test_ctrl_c_is_said() -> None:
     command = [*TSC, "run", "-e", "LOOP(FOREVER);SHOW(1);END_LOOP", "--max-steps", "1000000000"]
@@ -561,7 +626,18 @@ def test_a_damaged_cache_is_no_trouble(tsc: Tsc, program: Path) -> None:
 
     tsc("compile", program)
     path = maps._path(unpack(program.with_suffix(".bin").read_bytes()).checksum)
-    for text in ("", "{}", "[]", '{"version": 1, "places": 5}', "nonsense", '{"version": 9}'):
+    deep = "[" * 200_000
+    huge = '{"version": 1, "name": "", "lines": [], "places": [[1e400, 1, 1, 1, 9]]}'
+    for text in (
+        deep,
+        huge,
+        "",
+        "{}",
+        "[]",
+        '{"version": 1, "places": 5}',
+        "nonsense",
+        '{"version": 9}',
+    ):
         path.write_text(text)
         assert tsc("show", program.with_suffix(".bin")).code == 0
 

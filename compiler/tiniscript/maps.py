@@ -101,7 +101,7 @@ def recall(checksum: int) -> Map | None:
     """Return the map of the image with this checksum, if it is in the cache."""
     try:
         return from_json(_path(checksum).read_text(encoding="utf-8"))
-    except (OSError, ValueError):
+    except (OSError, ValueError, OverflowError, RecursionError):
         return None
 
 

@@ -23,9 +23,7 @@ VERBS = {
 def main(arguments: list[str] | None = None) -> int:
     """Run `tsc` with these arguments (those of the process if None); return the exit code."""
     arguments = sys.argv[1:] if arguments is None else arguments
-    for stream in (sys.stdout, sys.stderr):
-        if hasattr(stream, "reconfigure"):
-            stream.reconfigure(errors="backslashreplace")
+    _mend_streams()
     from tiniscript.cli.texts import language_of, text
 
     language = language_of(arguments)
@@ -37,12 +35,30 @@ def main(arguments: list[str] | None = None) -> int:
         print("\n" + text("stopped", language), file=sys.stderr)
         return 2
     except BrokenPipeError:
-        # what is still in the buffer has nowhere to go
-        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+        _drop_output()
         print(text("closed_pipe", language), file=sys.stderr)
+        return 2
+    except OSError as trouble:  # files have sentences of their own; this is the output
+        print(text("full", language).format(why=trouble.strerror or trouble), file=sys.stderr)
+        _drop_output()
         return 2
     except Exception as bug:
         return _explain_bug(bug, language)
+
+
+def _mend_streams() -> None:
+    """Put something in place of standard streams that are closed, and print any letter."""
+    for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
+        if getattr(sys, name) is None:
+            setattr(sys, name, open(os.devnull, mode, encoding="utf-8"))  # noqa: PTH123, SIM115
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="backslashreplace")
+
+
+def _drop_output() -> None:
+    """What is still in the buffer has nowhere to go."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
 
 
 def _verb(arguments: list[str], language: str) -> int:
@@ -62,9 +78,11 @@ def _verb(arguments: list[str], language: str) -> int:
         name = arguments[0]
         if name == "--lang" or name.startswith("--lang="):  # before the verb, too
             skip = 1 if "=" in name else 2
-            return _verb([*arguments[skip:], *arguments[:skip]], language) if (
-                len(arguments) > skip
-            ) else _verb([], language)  # fmt: skip
+            found = name[7:] if "=" in name else arguments[1] if len(arguments) > 1 else ""
+            if found not in ("en", "es"):
+                raise Trouble(2, "bad_language", found=found or "''")
+            rest = arguments[skip:]
+            return _verb([*rest, *arguments[:skip]] if rest else [], language)
         if name not in VERBS:
             from tiniscript.words import nearest
 

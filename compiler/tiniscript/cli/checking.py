@@ -40,7 +40,7 @@ def run(arguments: list[str], language: str) -> int:
         from tiniscript.messages import as_json, message
 
         said = [message(problem, compiled.source, language) for problem in compiled.problems]
-        print(json.dumps(as_json(said), ensure_ascii=False, indent=2))
+        print(json.dumps(as_json(said), indent=2))
     else:
         outputs.print_problems(compiled, language)
         if compiled.is_right:

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from tiniscript.cli import inputs, outputs
 from tiniscript.cli.options import Options
 from tiniscript.cli.texts import text
 from tiniscript.cli.trouble import Trouble
+
+if TYPE_CHECKING:
+    from tiniscript import Compiled
 
 HELP = (
     """\
@@ -44,6 +48,7 @@ def run(arguments: list[str], language: str) -> int:
         return 0
     given = inputs.program(options)
     target = _target(given, options.output)
+    _map_has_a_place(options.map, given, target)
     robot = inputs.robot(options, language)
     compiled = inputs.compiled(given, robot, is_strict=True)
     outputs.print_problems(compiled, language)
@@ -52,14 +57,14 @@ def run(arguments: list[str], language: str) -> int:
     from tiniscript import maps
 
     places = maps.from_compiled(compiled)
-    if options.map is not None:
-        data = (maps.as_json(places) + "\n").encode()
-        outputs.write(Path(options.map), data, "unwritable_map")
     if target is None:
         sys.stdout.buffer.write(compiled.image)
         sys.stdout.flush()
     else:
         outputs.write(target, compiled.image, "unwritable")
+    if options.map is not None:
+        data = (maps.as_json(places) + "\n").encode(errors="backslashreplace")
+        outputs.write(Path(options.map), data, "unwritable_map")
     maps.remember(compiled.image, places)
     said = text("compiled", language).format(
         source=inputs.shown(given.name),
@@ -68,7 +73,7 @@ def run(arguments: list[str], language: str) -> int:
         code=len(compiled.code),
         stack=compiled.verdict.stack_values if compiled.verdict else 0,
         stacks=_stack_values(),
-        runs=_runs(compiled.program, language),
+        runs="" if _will_fault(compiled) else _runs(compiled.program, language),
     )
     print(said, file=sys.stderr if target is None else sys.stdout)
     return 0
@@ -89,6 +94,16 @@ def _target(given: inputs.Input, output: str | None) -> Path | None:
     return target
 
 
+def _map_has_a_place(name: str | None, given: inputs.Input, target: Path | None) -> None:
+    """Refuse a map that would overwrite the program or its image."""
+    if name is None:
+        return
+    path = Path(name)
+    over = [each for each in (given.path, target) if each is not None]
+    if name == "-" or any(path == each or _is_same(path, each) for each in over):
+        raise Trouble(2, "over_map", file=inputs.shown(name))
+
+
 def _is_same(target: Path, source: Path) -> bool:
     try:
         return target.samefile(source)
@@ -100,6 +115,12 @@ def _stack_values() -> int:
     from tiniscript.bytecode import STACK_VALUES
 
     return STACK_VALUES
+
+
+def _will_fault(compiled: Compiled) -> bool:
+    from tiniscript.problems import WILL_FAULT
+
+    return any(problem.code is WILL_FAULT for problem in compiled.problems)
 
 
 def _runs(program: object, language: str) -> str:

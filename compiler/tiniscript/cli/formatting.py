@@ -40,7 +40,7 @@ def run(arguments: list[str], language: str) -> int:
         raise Trouble(2, "needs_text", file=inputs.shown(given.name), verb="fmt")
     from tiniscript.formatter import formatted
 
-    parsed = inputs.parsed(given)
+    parsed = inputs.parsed(given, inputs.robot(options, language).kit)
     if not parsed.is_right:
         outputs.print_problems(parsed, language)
         return 1
@@ -54,7 +54,8 @@ def run(arguments: list[str], language: str) -> int:
         print(text(key, language).format(file=name), file=sys.stdout if is_same else sys.stderr)
         return 0 if is_same else 1
     if given.path is None:
-        sys.stdout.write(laid_out)
+        sys.stdout.flush()
+        sys.stdout.buffer.write(laid_out.encode())  # a program is UTF-8, whatever the locale
     elif not is_same:
         outputs.write(given.path, laid_out.encode(), "unwritable_source")
         print(text("formatted", language).format(file=name))

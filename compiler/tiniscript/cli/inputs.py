@@ -12,6 +12,7 @@ from tiniscript.source import LARGEST_SOURCE, Unreadable, decode
 
 if TYPE_CHECKING:
     from tiniscript import Compiled
+    from tiniscript.kit import Kit
     from tiniscript.robots.profile import Robot
 
 
@@ -32,12 +33,15 @@ class Input(NamedTuple):
 
 def program(options: Namespace) -> Input:
     """Return the program that the options name. Raises Trouble where there is none."""
-    if options.program is None and options.text is None:
+    texts: list[str] = options.texts
+    if options.program is None and not texts:
         raise Trouble(2, "no_program")
-    if options.program is not None and options.text is not None:
+    if options.program is not None and texts:
         raise Trouble(2, "two_programs")
-    if options.text is not None:
-        return Input("-e", options.text.encode("utf-8", "surrogateescape"), None)
+    if len(texts) > 1:
+        raise Trouble(2, "two_texts")
+    if texts:
+        return Input("-e", texts[0].encode("utf-8", "surrogateescape"), None)
     if options.program == "-":
         return Input("-", sys.stdin.buffer.read(LARGEST_SOURCE + 1), None)
     path = Path(options.program)
@@ -68,12 +72,13 @@ def robot(options: Namespace, language: str) -> Robot:
     from tiniscript.robots.profile import ProfileRefused
 
     try:
-        return robots.load(options.robot or robots.DEFAULT)
+        return robots.load(robots.DEFAULT if options.robot is None else options.robot)
     except ProfileRefused as refused:
         from tiniscript.robots.refusals import describe
 
         lines = describe(refused, language)
-        if len(lines) == 1:
+        is_none = refused.reasons[0][0].startswith(("file_", "no_such_robot"))
+        if len(lines) == 1 and is_none:
             raise Trouble(2, "plain", said=lines[0]) from None
         reasons = "\n".join("  " + line for line in lines)
         raise Trouble(2, "profile_refused", file=shown(options.robot), reasons=reasons) from None
@@ -92,7 +97,7 @@ def compiled(given: Input, robot: Robot, is_strict: bool) -> Compiled:
     return source
 
 
-def parsed(given: Input) -> Compiled:
+def parsed(given: Input, kit: Kit) -> Compiled:
     """Return what is wrong with the shape of a program's text, and nothing more."""
     from tiniscript import Compiled
     from tiniscript.parser import parse
@@ -103,7 +108,7 @@ def parsed(given: Input) -> Compiled:
     if not isinstance(text, str):
         return text
     source = Source(text, given.name)
-    return Compiled(source, in_order(parse(source).problems))
+    return Compiled(source, in_order(parse(source, kit).problems))
 
 
 def _source(given: Input) -> str | Compiled:

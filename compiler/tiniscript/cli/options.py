@@ -39,7 +39,7 @@ class Options(ArgumentParser):
     def takes_program(self) -> None:
         """Add what every verb that takes a program has."""
         self.add_argument("program", nargs="?")
-        self.add_argument("-e", dest="text")
+        self.add_argument("-e", dest="texts", action="append", default=[])
         self.add_argument("--robot")
 
     def read(self, arguments: list[str]) -> Namespace | None:

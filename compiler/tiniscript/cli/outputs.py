@@ -24,11 +24,11 @@ def write(path: Path, data: bytes, key: str) -> None:
     from tiniscript.cli.inputs import shown
 
     try:
-        target = path.resolve()
-        if target.exists() and not target.is_file():  # a device or a pipe has no old content
-            with target.open("wb") as device:
+        if path.exists() and not path.is_file():  # a device or a pipe has no old content
+            with path.open("wb") as device:
                 device.write(data)
             return
+        target = path.resolve()
         mode = target.stat().st_mode if target.exists() else None
         if mode is not None and not os.access(target, os.W_OK):
             raise PermissionError(13, os.strerror(13))

@@ -25,7 +25,7 @@ each with the milliseconds since the start. The clock is simulated, so that take
   --sensor NAME=1,2,3   what the sensor reads: the next value each time, the last one repeats;
                         0 or FALSE where nothing is said. Once for each sensor
   --max-time S          simulated seconds after which the run is cut (60)
-  --max-steps N         instructions after which it is cut (10000000)
+  --max-steps N         instructions after which a loop that takes no time is cut (10000000)
   --seed N              where RANDOM begins, 1 to 4294967295 (1)
   --show                on a terminal: draws the way and the values as they come
   --pace N              with --show: N times as fast as the robot (1); 0 is as fast as possible
@@ -41,7 +41,8 @@ cada una con los milisegundos desde el inicio. El reloj es simulado: no hay que 
   --sensor NOMBRE=1,2,3 lo que lee el sensor: cada vez el siguiente valor, el último se repite;
                         0 o FALSE si no se dice nada. Una vez por cada sensor
   --max-time S          segundos simulados después de los que se corta (60)
-  --max-steps N         instrucciones después de las que se corta (10000000)
+  --max-steps N         instrucciones después de las que se corta un bucle que no toma tiempo
+                        (10000000)
   --seed N              dónde empieza RANDOM, de 1 a 4294967295 (1)
   --show                en una terminal: dibuja el camino y los valores según llegan
   --pace N              con --show: N veces más rápido que el robot (1); 0 es lo más rápido posible
@@ -94,7 +95,8 @@ def run(arguments: list[str], language: str) -> int:
     if ending.what != "FAULT":
         return 0
     sys.stdout.flush()
-    print(fault_text(ending.fault, ending.offset, ready.places, language), file=sys.stderr)
+    said = fault_text(ending.fault, ending.offset, ready.places, given.is_image, language)
+    print(said, file=sys.stderr)
     return 1
 
 
@@ -112,8 +114,11 @@ def _print(events: object) -> Ending:
     raise AssertionError("a run without an ending")
 
 
-def fault_text(fault: str, offset: int, places: Map | None, language: str) -> str:
-    """Return what happened, and the line of the text where it did."""
+def fault_text(fault: str, offset: int, places: Map | None, is_image: bool, language: str) -> str:
+    """Return what happened, and the line of the text where it did.
+
+    An image's text is what was last compiled to it: its name is said too.
+    """
     place = places.at(offset) if places is not None else None
     if places is None or place is None:
         where = text("fault_no_line", language).format(offset=f"{offset:04x}")
@@ -121,7 +126,9 @@ def fault_text(fault: str, offset: int, places: Map | None, language: str) -> st
         line = places.line(place.line)
         end = place.end_column - 1 if place.end_line == place.line else len(line)
         shown = line[place.column - 1 : end] if len(line) > 100 else line.strip()
-        where = text("fault_line", language).format(line=place.line, shown=shown[:100])
+        key = "fault_line_of" if is_image else "fault_line"
+        name = inputs.shown(places.name)
+        where = text(key, language).format(name=name, line=place.line, shown=shown[:100])
     what = text(f"fault_{fault}", language)
     return text("fault_at", language).format(fault=fault, what=what, place=where)
 
