@@ -229,9 +229,7 @@ def program_text(program: Program) -> str:
     return "\n".join([*lines, *_body_lines(program.body, "")]) + "\n"
 
 
-_EXPRESSIONS = frozenset(
-    ("time", "power", "left", "right", "hertz", "value", "times", "condition")
-)
+_EXPRESSIONS = frozenset(("time", "power", "left", "right", "hertz", "value", "times", "condition"))
 
 
 def _body_lines(body: Body, indent: str) -> Iterator[str]:
