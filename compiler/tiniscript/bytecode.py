@@ -207,6 +207,7 @@ FAULTS = (
     # number, name, meaning: what stops a running program
     (1, "OVERFLOW",       "A result is outside -2147483.648 to 2147483.647."),
     (2, "DIVIDE_BY_ZERO", "A division or a remainder by 0."),
+    (255, "BAD_CODE",     "A check failed that verified code never fails: memory has changed."),
 )
 # fmt: on
 

@@ -325,6 +325,8 @@ class _Verifier:
         loop = next((block for block in reversed(self.blocks) if block.kind != "if"), None)
         if loop is None or loop.kind != kind:
             self.refuse("NOT_OPEN")
+        if self.target() > len(self.code):
+            self.refuse("BAD_TARGET")
         if loop.end == 0:
             loop.end = self.target()
         if loop.end != self.target():

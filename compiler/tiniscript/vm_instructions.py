@@ -132,6 +132,14 @@ def _binary(name: str, calculate: Callable[[int, int], int]) -> None:
     _HANDLERS[name] = handler
 
 
+def _comparing(name: str, compare: Callable[[int, int], bool]) -> None:
+    def handler(m: Machine, t: Task) -> None:
+        right = t.stack.pop()
+        t.stack[-1] = 1 if compare(t.stack[-1], right) else 0
+
+    _HANDLERS[name] = handler
+
+
 def _unary(name: str, calculate: Callable[[int], int]) -> None:
     def handler(m: Machine, t: Task) -> None:
         t.stack[-1] = calculate(t.stack[-1])
@@ -145,13 +153,15 @@ _COMPARE: dict[str, Callable[[int, int], bool]] = {
 _CALCULATE: dict[str, Callable[[int, int], int]] = {
     "ADD": thousandths.add, "SUB": thousandths.subtract, "MUL": thousandths.multiply,
     "DIV": thousandths.divide, "MOD": thousandths.modulo, "MIN": min, "MAX": max,
-    "ROUND": thousandths.round_to, "AND": operator.and_, "OR": operator.or_, **_COMPARE,
+    "ROUND": thousandths.round_to, "AND": operator.and_, "OR": operator.or_,
 }  # fmt: skip
 for _name, _function in _CALCULATE.items():
     _binary(_name, _function)
+for _name, _comparison in _COMPARE.items():
+    _comparing(_name, _comparison)
 _unary("NEG", thousandths.negate)
 _unary("ABS", thousandths.absolute)
-_unary("NOT", operator.not_)
+_unary("NOT", lambda a: 0 if a else 1)
 
 
 @_does("AND_THEN", "AND_THEN_FAR")

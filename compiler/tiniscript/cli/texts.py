@@ -156,6 +156,8 @@ TEXTS: dict[str, tuple[str, str]] = {
     "ended_DONE": ("done", "listo"),
     "ended_FAULT": ("fault", "falla"),
     "ended_LIMIT": ("cut at the limit", "cortado en el límite"),
+    "fault_BAD_CODE": ("the machine met code that it cannot have accepted. Compile the program again; if it stays so, report it.",
+                       "la máquina encontró código que no pudo haber aceptado. Compila el programa otra vez; si sigue así, repórtalo."),
     "formatted": ("{file}: laid out.", "{file}: ordenado."),
     "would_format": ("{file}: not in the usual layout. Try:  tsc fmt {file}",
                      "{file}: no tiene la forma usual. Prueba:  tsc fmt {file}"),
