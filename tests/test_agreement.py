@@ -84,8 +84,9 @@ def check_broken(seed: int) -> None:
 
 
 def reads_more(text: str) -> bool:
-    """Whether a text has what the compiler reads and the oracle leaves alone: dashes and blanks of phones."""
-    return any(letter in text for letter in "\u2010\u2011\u2012\u2013\u2014\u2015\u2212\f\v\u200b\u2028\u3000\ufeff")
+    """Whether a text has dashes and blanks that the compiler reads and the oracle leaves alone."""
+    dashes, blanks = "\u2010\u2011\u2012\u2013\u2014\u2015\u2212", "\f\v\u200b\u2028\u3000\ufeff"
+    return any(letter in text for letter in dashes + blanks)
 
 
 def batches() -> Iterator[range]:
