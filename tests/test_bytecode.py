@@ -108,7 +108,7 @@ def test_generated_check_notices(tmp_path: Path) -> None:
     """The check can fail: a changed byte in a copy of the repo is named."""
     from shutil import copytree, ignore_patterns
 
-    skipped = ignore_patterns(".git", ".venv", "*.pyc", "tests", "build", "*.egg-info")
+    skipped = ignore_patterns(".git", ".venv", "*.pyc", "build", "*.egg-info")
     copy = copytree(ROOT, tmp_path / "copy", ignore=skipped)
     spec = copy / "bytecode_spec.md"
     spec.write_text(

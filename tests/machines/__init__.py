@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 
+from tests.machines import host
 from tests.machines.python import run_python
 from tiniscript.kit import Kit
 
@@ -20,4 +21,7 @@ class Senses(NamedTuple):
 
 Machine = Callable[[bytes, Kit, Senses], str]
 
+# Those that are quick enough for every random program; `test_cpp_avr` runs the simulated chip.
 MACHINES: dict[str, Machine] = {"python": run_python}
+if not host.missing():
+    MACHINES["host"] = host.run_host

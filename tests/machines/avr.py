@@ -1,0 +1,82 @@
+"""The machine in C++ on a simulated ATmega328P.
+
+Builds `vm_arduino/avr` with avr-g++ once, writes each request into the built program where its
+flash waits for it, and lets `simavr` run that. What comes out of the UART is the trace.
+"""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+import tempfile
+from functools import lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tests.machines.host import (
+    REFUSAL_NAMES,
+    RULE_NAMES,
+    SOURCES,
+    WARNINGS,
+    run_request,
+)
+from tiniscript.image import ImageRefused
+from tiniscript.kit import Kit
+from tiniscript.verify import Refused
+
+if TYPE_CHECKING:
+    from tests.machines import Senses
+
+CHIP = "atmega328p"
+FLAGS = (f"-mmcu={CHIP}", "-std=c++11", "-Os", "-flto", "-fno-exceptions", "-fno-rtti")
+MARK = b"TiniScript: here is the request"
+REQUEST_BYTES = 8192
+
+
+def missing() -> str:
+    """Return why there is no simulated chip, or nothing."""
+    wanted = [name for name in ("avr-g++", "simavr") if not shutil.which(name)]
+    return (
+        f"no {' and no '.join(wanted)} on this computer: no simulated ATmega328P" if wanted else ""
+    )
+
+
+@lru_cache(maxsize=1)
+def built(sources: Path = SOURCES) -> bytes:
+    """Return the program of the chip, an ELF file."""
+    code = [str(path) for folder in ("src/vm", "avr") for path in (sources / folder).glob("*.cpp")]
+    with tempfile.TemporaryDirectory() as folder:
+        program = Path(folder) / "machine.elf"
+        done = subprocess.run(
+            ["avr-g++", *FLAGS, *WARNINGS, *sorted(code), "-o", str(program)],
+            capture_output=True,
+            text=True,
+        )
+        assert done.returncode == 0, f"avr-g++ refuses the C++ machine:\n{done.stderr[:4000]}"
+        return program.read_bytes()
+
+
+def run_avr(image: bytes, kit: Kit, senses: Senses) -> str:
+    """Return the trace of an image, which is read and verified by the simulated chip."""
+    elf = built()
+    at = elf.index(MARK)
+    request = run_request(image, kit, senses)
+    assert len(request) <= REQUEST_BYTES
+    with tempfile.TemporaryDirectory() as folder:
+        program = Path(folder) / "machine.elf"
+        program.write_bytes(elf[:at] + request + elf[at + len(request) :])
+        done = subprocess.run(
+            ["simavr", "-m", CHIP, "-f", "16000000", str(program)],
+            capture_output=True,
+            timeout=120,
+        )
+    said = re.findall(rb"\x1b\[32m(.*?)\.\s*\x1b", done.stdout + done.stderr)
+    lines = [line.decode() for line in said]
+    assert lines and lines[-1] == "END", (done.stdout + done.stderr)[-2000:]
+    words = lines[0].split()
+    if words[0] == "REFUSED":
+        raise ImageRefused(REFUSAL_NAMES[int(words[1])])
+    if words[0] == "BREAKS":
+        raise Refused(RULE_NAMES[int(words[1])], int(words[2]))
+    return "".join(f"{line}\n" for line in lines[:-1])

@@ -1,0 +1,204 @@
+"""The machine in C++ on this computer, with the sanitizers of the compiler.
+
+Builds `vm_arduino/host` with g++ and talks to one process of it: many requests, each a length
+and bytes. What C++ does wrong (an access outside its memory, undefined arithmetic) ends the
+process, and the request that was answered last is the one to look at.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import shutil
+import subprocess
+import tempfile
+from collections.abc import Iterable, Sequence
+from functools import lru_cache
+from pathlib import Path
+from struct import Struct, pack
+from typing import TYPE_CHECKING, NamedTuple
+
+from tiniscript.image import REFUSALS, ImageRefused
+from tiniscript.kit import Device, Kit
+from tiniscript.verify import RULES, Refused
+
+if TYPE_CHECKING:
+    from tests.machines import Senses
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+SOURCES = ROOT / "vm_arduino"
+WARNINGS = ("-Wall", "-Wextra", "-Wconversion", "-Wshadow", "-Werror")
+FLAGS = ("-std=c++11", "-O1", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
+
+RULE_NAMES = {number: name for name, (number, _) in RULES.items()}
+REFUSAL_NAMES = {number: name for name, (number, _) in REFUSALS.items()}
+
+
+def missing() -> str:
+    """Return why there is no host machine, or nothing."""
+    return "" if shutil.which("g++") else "no g++ on this computer: the C++ machine is not built"
+
+
+class Ran(NamedTuple):
+    """A run: where the code was at its end, instructions that ran, and the trace."""
+
+    offset: int
+    steps: int
+    trace: str
+
+
+class Host:
+    """One process. `sources` is a folder like `vm_arduino`."""
+
+    def __init__(self, sources: Path = SOURCES) -> None:
+        self._errors = tempfile.TemporaryFile()  # noqa: SIM115
+        self._process = subprocess.Popen(
+            [built(sources)],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=self._errors,
+        )
+
+    def close(self) -> None:
+        self._process.kill()
+        self._process.communicate()
+        self._errors.close()
+
+    def run(
+        self, image: bytes, kit: Kit, senses: Senses, not_ready: int = 0, begin_ms: int = 0
+    ) -> Ran:
+        """Run an image, or raise what refuses it.
+
+        Each `not_ready`th time that the robot is asked, it is not ready; `begin_ms` is what the
+        clock of the machine says at the beginning.
+        """
+        answer = self.ask(b"R", run_request(image, kit, senses, not_ready, begin_ms))
+        if answer[0]:
+            raise ImageRefused(REFUSAL_NAMES[answer[0]])
+        if answer[1]:
+            raise Refused(RULE_NAMES[answer[1]], int.from_bytes(answer[2:4], "little"))
+        return _ran(answer[4:])
+
+    def run_unverified(self, code: bytes, kit: Kit, senses: Senses) -> Ran:
+        """Run code whatever it is: it must end in a fault or go on, never outside its memory."""
+        return _ran(self.ask(b"U", run_request(code, kit, senses)))
+
+    def run_late(self, image: bytes, kit: Kit, senses: Senses, late_ms: int) -> str:
+        """Return the trace where the first ticks after each wait come up to `late_ms` late."""
+        request = pack("<I", late_ms) + run_request(image, kit, senses)
+        return self.ask(b"L", request).decode()
+
+    def verdicts(
+        self, codes: Sequence[bytes], sensors: int, actuators: int
+    ) -> list[tuple[int, int]]:
+        """Return the number of the rule that each code breaks, or 0, and the offset."""
+        answer = self.ask(b"V", bytes((sensors, actuators)) + _texts(codes))
+        return [(rule, offset) for rule, offset in Struct("<BH").iter_unpack(answer)]
+
+    def all_of_three(self, first: int, sensors: int, actuators: int) -> tuple[int, int, int]:
+        """Verify all codes of three bytes that begin with `first`, and run what is accepted.
+
+        Return how many are accepted, how many of these fail a run-time check, and the CRC-32 of
+        all verdicts: number of the rule and offset, 0 and 0 for what is accepted.
+        """
+        answer = self.ask(b"X", bytes((sensors, actuators, first)))
+        accepted, bad, checksum = Struct("<III").unpack(answer)
+        return accepted, bad, checksum
+
+    def refusals(self, images: Sequence[bytes], kit: int) -> list[int]:
+        """Return the number of the reason for which each image is refused, or 0."""
+        return list(self.ask(b"I", pack("<H", kit) + _texts(images)))
+
+    def results(self, operations: Iterable[tuple[int, int, int]]) -> list[tuple[int, int]]:
+        """Return the fault, or 0, and the result of each opcode with its two values."""
+        form = Struct("<Bii")
+        answer = self.ask(b"A", b"".join(form.pack(*each) for each in operations))
+        return [(fault, result) for fault, result in Struct("<Bi").iter_unpack(answer)]
+
+    def ask(self, letter: bytes, request: bytes) -> bytes:
+        pipe_in, pipe_out = self._process.stdin, self._process.stdout
+        assert pipe_in and pipe_out
+        try:
+            pipe_in.write(pack("<I", len(request) + 1) + letter + request)
+            pipe_in.flush()
+        except BrokenPipeError:
+            raise AssertionError(self._said()) from None
+        head = pipe_out.read(4)
+        answer = pipe_out.read(int.from_bytes(head, "little"))
+        if len(head) < 4:
+            raise AssertionError(self._said())
+        return answer
+
+    def _said(self) -> str:
+        """Return the last words of a process that has ended: the sanitizers' report."""
+        status = self._process.wait()
+        self._errors.seek(0)
+        report = self._errors.read().decode(errors="replace")
+        return f"the C++ machine ended with status {status}:\n{report[:4000]}"
+
+
+def run_request(
+    data: bytes, kit: Kit, senses: Senses, not_ready: int = 0, begin_ms: int = 0
+) -> bytes:
+    """Return the request to run an image or code with this kit, these senses and limits."""
+    limits = (kit.fingerprint, senses.max_ms, senses.max_steps, senses.seed, begin_ms)
+    parts = [pack("<HIIII", *limits), bytes((len(kit.sensors),))]
+    for sensor in kit.sensors:
+        values = senses.readings.get(sensor.name, ())
+        parts += [_named(sensor), pack(f"<H{len(values)}i", len(values), *values)]
+    parts.append(bytes((len(kit.actuators),)))
+    for actuator in kit.actuators:
+        parts += [_named(actuator), pack("<ii", actuator.low, actuator.high)]
+    return b"".join(parts) + pack("<I", not_ready) + _texts([data])
+
+
+def _named(device: Device) -> bytes:
+    return _texts([device.name.encode()]) + bytes((device.is_yes_no,))
+
+
+def _texts(texts: Iterable[bytes]) -> bytes:
+    return b"".join(part for text in texts for part in (pack("<I", len(text)), text))
+
+
+def _ran(answer: bytes) -> Ran:
+    offset, steps = Struct("<HI").unpack_from(answer)
+    return Ran(offset, steps, answer[10:].decode())
+
+
+def built(sources: Path) -> Path:
+    """Return the program made from `sources`; what was made before from the same is used again.
+
+    Workers may build at the same time: each builds for itself, and the last one stays.
+    """
+    inputs = sorted(
+        path
+        for folder in ("src", "src/vm", "host")
+        for path in (sources / folder).glob("*")
+        if path.suffix in (".h", ".cpp")
+    )
+    key = hashlib.sha256(repr((WARNINGS, FLAGS)).encode())
+    for path in inputs:
+        key.update(path.name.encode() + path.read_bytes())
+    folder = Path(tempfile.gettempdir()) / f"tiniscript-host-{os.getuid()}"
+    program = folder / key.hexdigest()[:16]
+    if not program.exists():
+        folder.mkdir(mode=0o700, exist_ok=True)
+        own = program.with_suffix(f".{os.getpid()}")
+        code = [str(path) for path in inputs if path.suffix == ".cpp"]
+        done = subprocess.run(
+            ["g++", *FLAGS, *WARNINGS, *code, "-o", str(own)], capture_output=True, text=True
+        )
+        assert done.returncode == 0, f"g++ refuses the C++ machine:\n{done.stderr[:4000]}"
+        own.replace(program)
+    return program
+
+
+@lru_cache(maxsize=1)
+def host() -> Host:
+    """Return the process that all tests of a worker share."""
+    return Host()
+
+
+def run_host(image: bytes, kit: Kit, senses: Senses) -> str:
+    """Return the trace of an image, which is read and verified by the C++ machine."""
+    return host().run(image, kit, senses).trace

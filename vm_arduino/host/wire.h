@@ -1,0 +1,78 @@
+// Numbers and bytes of a request and of its answer: little-endian, texts with their length before.
+
+#ifndef TINISCRIPT_HOST_WIRE_H_
+#define TINISCRIPT_HOST_WIRE_H_
+
+#include <stdint.h>
+#include <stdlib.h>
+
+#include <memory>
+#include <string>
+#include <utility>
+
+// Bytes of exactly their length: a look behind them is an error that a sanitizer sees.
+struct Bytes {
+  std::unique_ptr<uint8_t[]> data;
+  size_t length;
+};
+
+class Reader {
+ public:
+  explicit Reader(std::string data) : data_(std::move(data)) {}
+
+  bool at_end() const { return at_ == data_.size(); }
+
+  uint32_t number(int size) {
+    uint32_t value = 0;
+    for (int k = 0; k < size; k++) value |= static_cast<uint32_t>(next()) << (8 * k);
+    return value;
+  }
+  uint8_t u8() { return next(); }
+  uint16_t u16() { return static_cast<uint16_t>(number(2)); }
+  uint32_t u32() { return number(4); }
+  int32_t i32() { return static_cast<int32_t>(number(4)); }
+
+  std::string text() {
+    std::string found(u32(), '\0');
+    for (char& each : found) each = static_cast<char>(next());
+    return found;
+  }
+
+  // `more` zero bytes follow those that were sent.
+  Bytes bytes(size_t more = 0) {
+    const size_t length = u32();
+    Bytes found{std::unique_ptr<uint8_t[]>(new uint8_t[length + more]()), length};
+    for (size_t k = 0; k < length; k++) found.data[k] = next();
+    return found;
+  }
+
+ private:
+  uint8_t next() {
+    if (at_ >= data_.size()) abort();
+    return static_cast<uint8_t>(data_[at_++]);
+  }
+
+  std::string data_;
+  size_t at_ = 0;
+};
+
+class Writer {
+ public:
+  void number(uint32_t value, int size) {
+    for (int k = 0; k < size; k++) data_ += static_cast<char>(value >> (8 * k) & 0xff);
+  }
+  void u8(uint8_t value) { number(value, 1); }
+  void u16(uint16_t value) { number(value, 2); }
+  void u32(uint32_t value) { number(value, 4); }
+  void text(const std::string& text) {
+    u32(static_cast<uint32_t>(text.size()));
+    data_ += text;
+  }
+  void raw(const std::string& text) { data_ += text; }
+  const std::string& data() const { return data_; }
+
+ private:
+  std::string data_;
+};
+
+#endif  // TINISCRIPT_HOST_WIRE_H_

@@ -1,0 +1,30 @@
+// Tables that stay in flash.
+//
+// The AVR has an address space of its own for flash: a table there is read with an instruction of
+// its own, and any other constant takes RAM. Elsewhere a constant is just that.
+
+#ifndef TINISCRIPT_VM_FLASH_H_
+#define TINISCRIPT_VM_FLASH_H_
+
+#include <stdint.h>
+
+#ifdef __AVR__
+#include <avr/pgmspace.h>
+#define in_flash __attribute__((progmem))
+#else
+#define in_flash
+#endif
+
+namespace tiniscript {
+
+inline uint8_t flash_byte(const uint8_t* address) {
+#ifdef __AVR__
+  return pgm_read_byte(address);
+#else
+  return *address;
+#endif
+}
+
+}  // namespace tiniscript
+
+#endif  // TINISCRIPT_VM_FLASH_H_

@@ -1,0 +1,49 @@
+#include "image.h"
+
+namespace tiniscript {
+
+namespace {
+
+uint16_t word(const uint8_t* data) { return static_cast<uint16_t>(data[0] | data[1] << 8); }
+
+}  // namespace
+
+Refusal unpack(const uint8_t* data, size_t length, uint16_t kit, Image* image) {
+  if (length == 0 || data[0] != 'T' || (length > 1 && data[1] != 'S')) {
+    return Refusal::kNotAnImage;
+  }
+  if (length < kHeaderBytes) return Refusal::kTruncated;
+  image->code = data + kHeaderBytes;
+  image->code_length = word(data + kCodeLengthAt);
+  image->kit = word(data + kKitAt);
+  image->start = data[kStartAt];
+  image->checksum = word(data + kChecksumAt) | static_cast<uint32_t>(word(data + kChecksumAt + 2))
+                                                   << 16;
+  if (length - kHeaderBytes < image->code_length) return Refusal::kTruncated;
+  if (length - kHeaderBytes > image->code_length) return Refusal::kTrailing;
+  const uint32_t crc = crc32(crc32(0, data, kChecksumAt), image->code, image->code_length);
+  if (crc != image->checksum) return Refusal::kDamaged;
+  if (data[kIsaMajorAt] != kIsaMajor || data[kIsaMinorAt] > kIsaMinor) {
+    return Refusal::kOtherVersion;
+  }
+  if (image->start >= kStarts) return Refusal::kUnknownStart;
+  if (data[kNeedsAt] != 0) return Refusal::kUnknownNeeds;
+  if (image->kit != 0 && image->kit != kit) return Refusal::kOtherKit;
+  if (image->start == kStartPing && image->code_length != 0) return Refusal::kPingWithCode;
+  return Refusal::kNone;
+}
+
+uint32_t crc32(uint32_t crc, const uint8_t* data, uint16_t length) {
+  crc = ~crc;
+  while (length-- != 0) {
+    crc ^= *data++;
+    for (uint8_t bit = 0; bit < 8; bit++) {
+      const bool carry = (crc & 1) != 0;
+      crc >>= 1;
+      if (carry) crc ^= 0xedb88320;
+    }
+  }
+  return ~crc;
+}
+
+}  // namespace tiniscript

@@ -1,0 +1,29 @@
+// What a machine must refuse, and the number of each reason.
+//
+// One pass over the code from its first byte to its last, with bounded memory: what is open is a
+// few words, and a jump is right when it leads where the structure around it ends or begins. What
+// is accepted cannot leave the stack, the variables, the kit or the code while it runs.
+// The same names, order and verdicts as `verify.py`.
+
+#ifndef TINISCRIPT_VM_VERIFY_H_
+#define TINISCRIPT_VM_VERIFY_H_
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "bytecode.h"
+
+namespace tiniscript {
+
+// The first thing that breaks a rule, and the offset of its instruction; kNone: accepted.
+struct Verdict {
+  Rule rule;
+  uint16_t offset;
+};
+
+// Whether a machine with so many sensors and actuators (0 to 255) may run `code`.
+Verdict verify(const uint8_t* code, size_t length, uint8_t sensors, uint8_t actuators);
+
+}  // namespace tiniscript
+
+#endif  // TINISCRIPT_VM_VERIFY_H_
