@@ -28,6 +28,21 @@ install_venv() {
         fail "That did not work. Try yourself:  sudo apt-get install python3-venv"
 }
 
+# debian_packages NAMES: installs those that are missing, where apt-get is there to do it.
+debian_packages() {
+    command -v apt-get >/dev/null 2>&1 || return 0
+    missing=""
+    for package in "$@"; do
+        dpkg -s "$package" >/dev/null 2>&1 || missing="$missing $package"
+    done
+    [ -n "$missing" ] || return 0
+    if [ "$(id -u)" = 0 ]; then sudo=""; else sudo="sudo"; fi
+    say "Installing with apt-get:$missing"
+    # shellcheck disable=SC2086 # the names are words
+    { $sudo apt-get update -qq && $sudo apt-get install -y -qq $missing; } >&2 ||
+        say "That did not work: the tests that need them will be skipped and say so."
+}
+
 # make_venv EXTRAS: installs this repo, with EXTRAS such as [test], if anything changed since.
 make_venv() {
     if ! "$PYTHON" -m pip --version >/dev/null 2>&1; then

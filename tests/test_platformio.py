@@ -1,0 +1,296 @@
+"""PlatformIO builds the sketch and runs the tests in C++, and these fail when they should."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from functools import lru_cache
+from io import BytesIO
+from pathlib import Path
+
+import pytest
+
+from tests.casefile import ROOT
+from tiniscript import compile_text, robots
+
+OFFLINE = ROOT / "tools" / "platformio_offline.py"
+SKETCH = ROOT / "vm_arduino"
+FLASH_BYTES, RAM_BYTES = 32_256, 2048  # of an Uno
+IS_CI = bool(os.environ.get("CI"))
+
+
+@lru_cache(maxsize=1)
+def prepared() -> tuple[dict[str, str], str]:
+    """Return the variables that `pio` needs here, none where it is online, and why it cannot run.
+
+    Only in CI packages of Debian are installed.
+    """
+    if importlib.util.find_spec("platformio") is None:
+        return {}, "PlatformIO is not installed"
+    options = [] if IS_CI else ["--no-apt"]
+    done = subprocess.run(
+        [sys.executable, str(OFFLINE), *options], capture_output=True, text=True, check=False
+    )
+    exports = (shlex.split(row)[1].partition("=")[::2] for row in done.stdout.splitlines())
+    return dict(exports), done.stderr if done.returncode else ""
+
+
+@pytest.fixture(scope="module")
+def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A copy of the sketch to build and to break. Without PlatformIO: skipped, in CI a failure."""
+    _, why = prepared()
+    if why:
+        assert not IS_CI, why
+        pytest.skip(why.strip().replace("\n", "; "))
+    copy = tmp_path_factory.mktemp("platformio") / "vm_arduino"
+    return Path(shutil.copytree(SKETCH, copy, ignore=shutil.ignore_patterns(".pio")))
+
+
+def pio(project: Path, *words: str) -> tuple[int, str]:
+    """Return the exit code of `pio`, and what it printed."""
+    done = subprocess.run(
+        [sys.executable, "-m", "platformio", *words],
+        cwd=project,
+        env={**os.environ, **prepared()[0]},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        check=False,
+    )
+    return done.returncode, done.stdout
+
+
+@contextmanager
+def changed(path: Path, *changes: tuple[str, str]) -> Iterator[None]:
+    """Change a file of the copy, and put it back afterwards."""
+    before = path.read_text(encoding="utf-8")
+    after = before
+    for old, new in changes:
+        assert old in after, f"{path.name} has no {old}"
+        after = after.replace(old, new)
+    path.write_text(after, encoding="utf-8")
+    try:
+        yield
+    finally:
+        path.write_text(before, encoding="utf-8")
+
+
+def says_what_it_is(log: str) -> bool:
+    """Return whether a log names the stand-ins, or is one of PlatformIO's own platforms."""
+    return not prepared()[0] or "Offline stand-in for PlatformIO's platform" in log
+
+
+# -- the tests in C++ ---------------------------------------------------------------------------
+
+
+def test_tests_pass(project: Path) -> None:
+    code, log = pio(project, "test", "-e", "native")
+    assert code == 0, log
+    count = re.search(r"(\d+) test cases: (\d+) succeeded", log)
+    files = "".join(path.read_text(encoding="utf-8") for path in project.glob("test/test_*.cpp"))
+    assert count and int(count[1]) == int(count[2]) == files.count("\nTEST_CASE("), log
+    assert says_what_it_is(log)
+
+
+def test_wrong_opcode_fails(project: Path) -> None:
+    numbers = project / "src" / "vm" / "bytecode.h"
+    with changed(numbers, ("kAdd = 0x10,", "kAdd = 0x11,"), ("kSub = 0x11,", "kSub = 0x10,")):
+        code, log = pio(project, "test", "-e", "native")
+    assert code == 1, log
+    assert "every instruction leaves what the machine in Python leaves\t[FAILED]" in log
+    assert "logged: ADD" in log
+
+
+def test_wrong_rule_fails(project: Path) -> None:
+    verifier = project / "src" / "vm" / "verify.cpp"
+    with changed(verifier, ("Rule::kStackUnderflow", "Rule::kStackOverflow")):
+        code, log = pio(project, "test", "-e", "native")
+    assert code == 1, log
+    assert "what breaks a rule is refused with the rule and the offset\t[FAILED]" in log
+    assert "logged: An addition with one value: 25 STACK_UNDERFLOW at 0002" in log
+
+
+def test_missing_rule_fails(project: Path) -> None:
+    """A verifier that accepts everything."""
+    verifier = project / "src" / "vm" / "verify.cpp"
+    with changed(verifier, ("\nVerdict verify(", "\n[[gnu::unused]] static Verdict strict(")):
+        with verifier.open("a", encoding="utf-8") as more:
+            more.write(
+                "namespace tiniscript {\n"
+                "Verdict verify(const uint8_t*, size_t, uint8_t, uint8_t) {\n"
+                "  return {Rule::kNone, 0};\n}\n}\n"
+            )
+        code, log = pio(project, "test", "-e", "native")
+    assert code == 1, log
+    assert "what breaks a rule is refused with the rule and the offset\t[FAILED]" in log
+    assert "logged: A byte that begins no instruction: 21 UNKNOWN_OPCODE at 0000" in log
+
+
+def test_no_test_case_fails(project: Path) -> None:
+    code, log = pio(project, "test", "-e", "native", "-a", "--test-case=no such case")
+    assert code == 1, log
+    assert "no test case has run" in log
+
+
+def test_no_test_file_fails(project: Path) -> None:
+    away = project / "away"
+    away.mkdir()
+    files = [path for path in project.glob("test/test_*.cpp") if path.name != "test_main.cpp"]
+    moved = [Path(shutil.move(path, away / path.name)) for path in files]
+    try:
+        code, log = pio(project, "test", "-e", "native")
+    finally:
+        for path in moved:
+            shutil.move(path, project / "test" / path.name)
+    assert code == 1, log
+    assert "no test case has run" in log
+
+
+@pytest.mark.parametrize("ending", ["exit(0)", "abort()"])
+def test_early_end_fails(project: Path, ending: str) -> None:
+    """A run that stops in the middle is no success, whatever its exit code."""
+    broken = project / "test" / "test_number.cpp"
+    with changed(
+        broken,
+        ('TEST_CASE("a number is', f'TEST_CASE("ends") {{ {ending}; }}\nTEST_CASE("a number is'),
+        ("#include <doctest.h>", "#include <doctest.h>\n#include <stdlib.h>"),
+    ):
+        code, log = pio(project, "test", "-e", "native")
+    assert code == 1, log
+    assert ("have ended before their end" if ending == "exit(0)" else "SIGABRT") in log
+
+
+def test_compiler_error_fails(project: Path) -> None:
+    with changed(project / "src" / "vm" / "vm.cpp", ("namespace tiniscript {", "namespace {")):
+        code, log = pio(project, "test", "-e", "native")
+    assert code == 1, log
+    assert "error:" in log
+
+
+def test_tests_are_for_a_computer(project: Path) -> None:
+    code, log = pio(project, "test", "-e", "uno")
+    assert code == 1, log
+    assert "pio test -e native" in log
+
+
+# -- the sketch ---------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("board", ["uno", "nano", "mega"])
+def test_sketch_builds(project: Path, board: str) -> None:
+    code, log = pio(project, "run", "-e", board)
+    assert code == 0, log
+    assert says_what_it_is(log)
+    assert "warning" not in log, log
+    used = {name: int(size) for name, size in re.findall(r"(\w+): .*used (\d+) bytes", log)}
+    assert 0 < used["Flash"] < FLASH_BYTES
+    assert 0 < used["RAM"] < RAM_BYTES
+    assert (project / ".pio" / "build" / board / "firmware.hex").is_file()
+
+
+def test_sketch_has_the_program_of_the_paper() -> None:
+    """The bytes in `main.cpp` are what the compiler makes of it, and the kit is the robot's."""
+    kit = robots.load("tinibot").kit
+    text = (ROOT / "examples" / "obstacle.ts").read_text(encoding="utf-8")
+    source = (SKETCH / "src" / "main.cpp").read_text(encoding="utf-8")
+    array = re.search(r"program\[\] = \{(.*?)\n\};", source, re.S)
+    assert array
+    written = re.findall(r"'(.)'|(0x\w+|\d+),", re.sub(r"//.*", "", array[1]))
+    code = bytes(ord(letter) if letter else int(number, 0) for letter, number in written)
+    assert code == compile_text(text, kit).image + b"\0"
+    board = (SKETCH / "src" / "boards" / "board.h").read_text(encoding="utf-8")
+    assert f"kBoardKit = 0x{kit.fingerprint:04x};" in board
+    assert f"kBoardSensors = {len(kit.sensors)};" in board
+    assert f"kBoardActuators = {len(kit.actuators)};" in board
+
+
+# -- the bootstrap ------------------------------------------------------------------------------
+
+
+def offline(*words: str, **variables: str) -> tuple[int, str, str]:
+    done = subprocess.run(
+        [sys.executable, str(OFFLINE), "--offline", "--no-apt", *words],
+        env={**os.environ, **variables},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    return done.returncode, done.stdout, done.stderr
+
+
+def test_own_installation_is_left_alone(project: Path, tmp_path: Path) -> None:
+    manifest = tmp_path / "platforms" / "native" / "platform.json"
+    manifest.parent.mkdir(parents=True)
+    manifest.write_text("{}")
+    code, out, err = offline("--project", str(project), PLATFORMIO_CORE_DIR=str(tmp_path))
+    assert (code, out) == (0, "")
+    assert "platforms of its own (native)" in err
+    assert [path for path in tmp_path.rglob("*") if path.is_file()] == [manifest]
+
+
+def test_pinned_platform_is_refused(project: Path, tmp_path: Path) -> None:
+    with changed(project / "platformio.ini", ("= atmelavr", "= atmelavr@5.1.0")):
+        code, out, err = offline("--project", str(project), PLATFORMIO_CORE_DIR=str(tmp_path))
+    assert (code, out) == (2, "")
+    assert "wants atmelavr@5.1.0: a stand-in is no version of it" in err
+
+
+def test_other_doctest_is_refused(project: Path, tmp_path: Path) -> None:
+    runner = project / "test" / "test_custom_runner.py"
+    with changed(runner, ("doctest@^2.4.9", "doctest@^3.0.0")):
+        code, out, err = offline("--project", str(project), PLATFORMIO_CORE_DIR=str(tmp_path))
+    assert (code, out) == (2, "")
+    assert re.search(r"doctest-dev is doctest 2\.\d+\.\d+, the tests want", err)
+
+
+def test_other_scons_is_refused(project: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from platformio import dependencies
+
+    from tools import platformio_offline
+
+    monkeypatch.setattr(dependencies, "get_core_dependencies", lambda: {"tool-scons": "^5.0.0"})
+    with pytest.raises(platformio_offline.CannotStandIn, match=r"wants tool-scons \^5\.0\.0"):
+        platformio_offline.scons_wanted()
+
+
+def test_registry_is_left_to_pio(
+    project: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from tools import platformio_offline
+
+    monkeypatch.setenv("PLATFORMIO_CORE_DIR", str(tmp_path / "core"))
+    monkeypatch.setattr(platformio_offline, "registry_answers", lambda: True)
+    assert platformio_offline.settings_for(project, False, False) == {}
+    assert not (tmp_path / "core" / "platforms").exists()
+
+
+@pytest.mark.parametrize(
+    ("answer", "is_one"),
+    [(b'{"name": "native"}', True), (b"<p>blocked</p>", False), (b"[]", False)],
+)
+def test_what_is_an_answer_of_the_registry(
+    project: Path, answer: bytes, is_one: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A page that something on the way puts there is none."""
+    from tools import platformio_offline
+
+    monkeypatch.setattr("urllib.request.urlopen", lambda *_, **__: BytesIO(answer))
+    assert platformio_offline.registry_answers() == is_one
+
+
+def test_command_runs_in_the_project(project: Path) -> None:
+    code, out, _ = offline("--project", str(project), "pio", "project", "config")
+    assert code == 0
+    assert "env:native" in out
+
+
+def test_the_repo_names_no_registry() -> None:
+    for path in (OFFLINE, *OFFLINE.with_name("platformio_stand_ins").rglob("*.*")):
+        assert "registry.platformio" not in path.read_text(encoding="utf-8"), path.name

@@ -1,0 +1,335 @@
+"""Lets `pio` work where PlatformIO's registry cannot be reached, with what PyPI and Debian hold.
+
+    python tools/platformio_offline.py pio test -e native     runs a command in vm_arduino
+    eval "$(python tools/platformio_offline.py)"              for all commands of this shell
+
+Nobody who is online needs it: where the registry answers, or PlatformIO has platforms of its own,
+it changes nothing. Elsewhere it makes stand-ins for two platforms in a folder of its own (below
+.venv), from `tools/platformio_stand_ins`, SCons from PyPI, and Debian's packages. Every build
+says that it uses them. A version that does not match is refused.
+"""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import importlib.util
+import json
+import os
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import urllib.request
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).resolve().parent.parent
+PROJECT = ROOT / "vm_arduino"
+STAND_INS = ROOT / "tools" / "platformio_stand_ins"
+HOME = ROOT / ".venv" / "platformio_offline"
+REGISTRY_SECONDS = 5.0
+
+GXX = Path("/usr/bin/g++")
+AVR_GCC = Path("/usr/bin/avr-gcc")
+AVR_OBJCOPY = Path("/usr/bin/avr-objcopy")
+AVR_LIBC = Path("/usr/lib/avr/include/avr/io.h")
+ARDUINO = Path("/usr/share/arduino/hardware/arduino/avr")
+DOCTEST = Path("/usr/include/doctest/doctest.h")
+DEBIAN = {
+    GXX: "g++",
+    AVR_GCC: "gcc-avr",
+    AVR_OBJCOPY: "binutils-avr",
+    AVR_LIBC: "avr-libc",
+    ARDUINO: "arduino-core-avr",
+    DOCTEST: "doctest-dev",
+}
+
+
+class CannotStandIn(Exception):
+    """Something is missing or does not match; says what, and what to do."""
+
+
+def main(arguments: list[str] | None = None) -> int:
+    parser = argparse.ArgumentParser(
+        description="Let pio work where PlatformIO's registry cannot be reached."
+    )
+    parser.add_argument("--offline", action="store_true", help="do not ask the registry")
+    parser.add_argument("--no-apt", action="store_true", help="install no packages of Debian")
+    parser.add_argument("--project", type=Path, default=PROJECT, help="where platformio.ini is")
+    parser.add_argument("command", nargs=argparse.REMAINDER, help="what to run there")
+    options = parser.parse_args(arguments)
+    project: Path = options.project.resolve()
+    try:
+        settings = settings_for(project, options.offline, not options.no_apt)
+    except CannotStandIn as why:
+        print(f"platformio_offline: {why}", file=sys.stderr)
+        return 2
+    if options.command:
+        path = os.pathsep.join((str(Path(sys.executable).parent), os.environ.get("PATH", "")))
+        environment = {**os.environ, **settings, "PATH": path}
+        program = shutil.which(options.command[0], path=path) or options.command[0]
+        return subprocess.call([program, *options.command[1:]], cwd=project, env=environment)
+    for name, value in settings.items():
+        print(f"export {name}={shlex.quote(value)}")
+    return 0
+
+
+def settings_for(project: Path, offline: bool, may_install: bool) -> dict[str, str]:
+    """Return the environment in which `pio` works, with everything made that it needs."""
+    if importlib.util.find_spec("platformio") is None:
+        raise CannotStandIn("PlatformIO is not installed. Try:  pip install platformio")
+    if why := needless(project, offline):
+        say(f"nothing to do: {why}")
+        return {}
+    install_packages(may_install)
+    refuse_pinned(project)
+    made = stand_ins()
+    libraries = HOME / "libraries"
+    add_doctest(libraries / "native" / "doctest", project)
+    say(f"the offline stand-ins in {made.relative_to(ROOT)} are used")
+    return {
+        "PLATFORMIO_CORE_DIR": str(made),
+        "PLATFORMIO_LIBDEPS_DIR": str(libraries),
+        "PLATFORMIO_SETTING_ENABLE_TELEMETRY": "no",
+        "PLATFORMIO_DISABLE_UPGRADE_CHECK": "true",
+    }
+
+
+def say(text: str) -> None:
+    print(f"platformio_offline: {text}", file=sys.stderr)
+
+
+# -- whether there is anything to do ------------------------------------------------------------
+
+
+def needless(project: Path, offline: bool) -> str:
+    """Return why PlatformIO needs no stand-ins here, or nothing."""
+    platforms = Path(config_of(project).get("platformio", "platforms_dir")).resolve()
+    if HOME in platforms.parents:
+        return ""  # the variables are set already
+    own = sorted(path.parent.name for path in platforms.glob("*/platform.json"))
+    if own:
+        return f"PlatformIO has platforms of its own ({', '.join(own)})"
+    if not offline and registry_answers():
+        return "PlatformIO's registry answers"
+    return ""
+
+
+def config_of(project: Path) -> Any:
+    from platformio.project.config import ProjectConfig
+
+    path = project / "platformio.ini"
+    if not path.is_file():
+        raise CannotStandIn(f"there is no platformio.ini in {project}")
+    return ProjectConfig.get_instance(str(path))
+
+
+def registry_answers() -> bool:
+    """Return whether a host of the registry describes one of its packages in time."""
+    from platformio import __registry_mirror_hosts__ as hosts
+
+    answers: list[str] = []
+
+    def ask(host: str) -> None:
+        url = f"https://api.{host}/v3/packages/platformio/platform/native"
+        try:
+            with urllib.request.urlopen(url, timeout=REGISTRY_SECONDS) as answer:
+                if json.load(answer)["name"] == "native":
+                    answers.append(host)
+        except (OSError, ValueError, KeyError, TypeError):
+            return
+
+    asking = [threading.Thread(target=ask, args=(host,), daemon=True) for host in hosts]
+    for thread in asking:
+        thread.start()
+    end = time.monotonic() + REGISTRY_SECONDS
+    while not answers and any(thread.is_alive() for thread in asking) and time.monotonic() < end:
+        time.sleep(0.02)
+    return bool(answers)
+
+
+# -- what Debian has ----------------------------------------------------------------------------
+
+
+def install_packages(may_install: bool) -> None:
+    """Install those packages of Debian that are missing, or say which."""
+    names = [name for path, name in DEBIAN.items() if not path.exists()]
+    if not names:
+        return
+    install = ["apt-get", "install", "--yes", "--no-install-recommends", *names]
+    is_root = hasattr(os, "geteuid") and os.geteuid() == 0
+    command = install if is_root else ["sudo", *install]
+    if not may_install or not all(map(shutil.which, ("apt-get", command[0]))):
+        raise CannotStandIn(f"{' '.join(names)} missing. Try:  sudo {' '.join(install)}")
+    say(f"installing {' '.join(names)} with apt-get")
+    update = [*command[: command.index("install")], "update", "--quiet"]
+    for each in (update, command):
+        if subprocess.run(each, stdout=sys.stderr, check=False).returncode != 0:
+            raise CannotStandIn(f"that did not work. Try yourself:  {' '.join(each)}")
+
+
+# -- what does not match ------------------------------------------------------------------------
+
+
+def refuse_pinned(project: Path) -> None:
+    """A stand-in is no version of the platform that it stands for."""
+    from platformio.package.meta import PackageSpec
+
+    config = config_of(project)
+    for environment in config.envs():
+        platform = config.get(f"env:{environment}", "platform")
+        if PackageSpec(platform).requirements:
+            raise CannotStandIn(
+                f"[env:{environment}] wants {platform}: a stand-in is no version of it"
+            )
+
+
+def scons_wanted() -> tuple[str, str]:
+    """Return the version of the package tool-scons that PlatformIO wants, and that of SCons."""
+    from platformio.dependencies import get_core_dependencies
+
+    wanted = get_core_dependencies()["tool-scons"]
+    found = re.fullmatch(r"~(4\.(\d)(\d\d)(\d\d)\.\d+)", wanted)
+    if not found:
+        raise CannotStandIn(
+            f"PlatformIO wants tool-scons {wanted}: which SCons that is, I cannot say"
+        )
+    return found[1], ".".join(str(int(part)) for part in found.groups()[1:])
+
+
+def add_doctest(folder: Path, project: Path) -> None:
+    """Put Debian's doctest where PlatformIO looks for the library that the tests want."""
+    from platformio.package.meta import PackageSpec
+    from semantic_version import Version
+
+    text = DOCTEST.read_text(encoding="utf-8")
+    parts = [re.search(rf"DOCTEST_VERSION_{part}\s+(\d+)", text) for part in PARTS]
+    version = ".".join(found[1] for found in parts if found)
+    runner = load(project / "test" / "test_custom_runner.py").CustomTestRunner
+    wanted = next(PackageSpec(each) for each in runner.EXTRA_LIB_DEPS if "doctest" in each)
+    if Version(version) not in wanted.requirements:
+        raise CannotStandIn(
+            f"doctest-dev is doctest {version}, the tests want {wanted.requirements}"
+        )
+    if folder.exists():
+        return
+
+    def fill(new: Path) -> None:
+        (new / "include").mkdir()
+        shutil.copy(DOCTEST, new / "include" / "doctest.h")
+        describe(new, "library.json", "library", "doctest", version, wanted.owner)
+
+    make(folder, fill)
+
+
+PARTS = ("MAJOR", "MINOR", "PATCH")
+
+
+def load(path: Path) -> Any:
+    spec = importlib.util.spec_from_file_location(path.stem, path)
+    assert spec and spec.loader
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+# -- what is made -------------------------------------------------------------------------------
+
+
+def stand_ins() -> Path:
+    """Return the folder with the stand-ins; its name changes with all that they are made of."""
+    tool_version, scons_version = scons_wanted()
+    scons = HOME / f"scons-{scons_version}"
+    if not scons.exists():
+        say(f"installing SCons {scons_version} from PyPI")
+        make(scons, lambda new: install_scons(scons_version, new))
+    gcc_version = said_by(AVR_GCC, "-dumpversion")
+    arduino = re.search(r"^version=(\S+)", (ARDUINO / "platform.txt").read_text("utf-8"), re.M)
+    arduino_version = arduino[1] if arduino else "0.0.0"
+    key = hashlib.sha256(repr((tool_version, gcc_version, arduino_version)).encode())
+    for path in sorted([Path(__file__), *STAND_INS.rglob("*.*")]):
+        key.update(path.name.encode() + path.read_bytes())
+    folder = HOME / f"core-{key.hexdigest()[:12]}"
+
+    def fill(new: Path) -> None:
+        for source in sorted(STAND_INS.iterdir()):
+            platform = shutil.copytree(source, new / "platforms" / source.name)
+            version = json.loads((source / "platform.json").read_text("utf-8"))["version"]
+            describe(platform, "", "platform", source.name, version)
+        package = new / "packages" / "tool-scons"
+        package.mkdir(parents=True)
+        (package / "scons.py").write_text(
+            f"import sys\n\nsys.path.insert(0, {str(scons)!r})\n"
+            "from SCons.Script.Main import main\n\nmain()\n",
+            encoding="utf-8",
+        )
+        describe(package, "package.json", "tool", package.name, tool_version)
+        major, minor, patch = (int(part) for part in (gcc_version + ".0.0").split(".")[:3])
+        package = new / "packages" / "toolchain-atmelavr"
+        (package / "bin").mkdir(parents=True)
+        for program in AVR_GCC.parent.glob("avr-*"):
+            (package / "bin" / program.name).symlink_to(program)
+        version = f"1.{major}{minor:02}{patch:02}.0"
+        describe(package, "package.json", "tool", package.name, version)
+        package = new / "packages" / "framework-arduino-avr"
+        package.mkdir()
+        for part in ("cores", "variants", "libraries"):
+            (package / part).symlink_to(ARDUINO / part)
+        describe(package, "package.json", "tool", package.name, arduino_version)
+
+    if not folder.exists():
+        make(folder, fill)
+    return folder
+
+
+def install_scons(version: str, folder: Path) -> None:
+    pip = [sys.executable, "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
+    done = subprocess.run(
+        [*pip, "--no-deps", "--target", str(folder), f"SCons=={version}"],
+        stdout=sys.stderr,
+        check=False,
+    )
+    if done.returncode != 0:
+        raise CannotStandIn(f"pip could not install SCons {version}, the one that PlatformIO wants")
+
+
+def said_by(program: Path, option: str) -> str:
+    return subprocess.run(
+        [program, option], capture_output=True, text=True, check=True
+    ).stdout.strip()
+
+
+def describe(
+    folder: Path, manifest: str, kind: str, name: str, version: str, owner: str = "platformio"
+) -> None:
+    """Write by what PlatformIO knows an installed package: its manifest and `.piopm`."""
+    if manifest:
+        about = {"name": name, "version": version, "description": "An offline stand-in."}
+        (folder / manifest).write_text(json.dumps(about), encoding="utf-8")
+    spec = {"owner": owner, "id": None, "name": name, "requirements": None, "uri": None}
+    piopm = {"type": kind, "name": name, "version": version, "spec": spec}
+    (folder / ".piopm").write_text(json.dumps(piopm), encoding="utf-8")
+
+
+def make(folder: Path, fill: Callable[[Path], None]) -> None:
+    """Make a folder in one step, so that nobody sees half of it."""
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(dir=folder.parent) as scratch:
+        new = Path(scratch) / folder.name
+        new.mkdir()
+        fill(new)
+        try:
+            new.rename(folder)
+        except OSError:
+            if not folder.exists():  # else another process was faster
+                raise
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,105 @@
+// The header of an image: what it says, and what it is refused for.
+
+#include <doctest.h>
+
+#include <functional>
+
+#include "../src/vm/image.h"
+#include "cases.h"
+
+using namespace tiniscript;
+
+namespace {
+
+using Bytes = std::vector<uint8_t>;
+
+constexpr uint16_t kOurKit = 0x1234;
+
+// One instruction, for our kit, with a checksum that fits after `change`.
+Bytes image_with(const std::function<void(Bytes*)>& change) {
+  Bytes image(kHeaderBytes, 0);
+  image[kMagicAt] = 'T';
+  image[kMagicAt + 1] = 'S';
+  image[kIsaMajorAt] = kIsaMajor;
+  image[kIsaMinorAt] = kIsaMinor;
+  image[kKitAt] = kOurKit & 0xff;
+  image[kKitAt + 1] = kOurKit >> 8;
+  image[kCodeLengthAt] = 1;
+  image.push_back(static_cast<uint8_t>(Op::kStop));
+  change(&image);
+  const uint32_t head = crc32(0, image.data(), kChecksumAt);
+  const uint32_t checksum =
+      crc32(head, image.data() + kHeaderBytes, static_cast<uint16_t>(image.size() - kHeaderBytes));
+  for (int k = 0; k < 4; k++) {
+    image[static_cast<size_t>(kChecksumAt + k)] = static_cast<uint8_t>(checksum >> (8 * k));
+  }
+  return image;
+}
+
+Refusal refusal(const Bytes& data) {
+  Image image;
+  return unpack(data.data(), data.size(), kOurKit, &image);
+}
+
+void nothing(Bytes*) {}
+
+}  // namespace
+
+TEST_CASE("every image of a program is read") {
+  for (const cases::ProgramCase& each : cases::program_cases()) {
+    INFO(each.title);
+    Image image;
+    CHECK(unpack(each.image.data(), each.image.size(), each.kit.fingerprint, &image) ==
+          Refusal::kNone);
+    CHECK(image.code_length == each.image.size() - kHeaderBytes);
+  }
+}
+
+TEST_CASE("the checksum is the CRC-32 of zlib") {
+  const char* const text = "123456789";
+  CHECK(crc32(0, reinterpret_cast<const uint8_t*>(text), 9) == 0xcbf43926);
+}
+
+TEST_CASE("the fields of an image are where the spec says") {
+  const Bytes data = image_with([](Bytes* image) { (*image)[kStartAt] = 2; });
+  Image image;
+  REQUIRE(unpack(data.data(), data.size(), kOurKit, &image) == Refusal::kNone);
+  CHECK(image.start == 2);
+  CHECK(image.kit == kOurKit);
+  CHECK(image.code_length == 1);
+  CHECK(image.code == data.data() + kHeaderBytes);
+}
+
+TEST_CASE("an image is refused with the first reason that applies") {
+  const Bytes good = image_with(nothing);
+  CHECK(refusal(good) == Refusal::kNone);
+  CHECK(refusal({}) == Refusal::kNotAnImage);
+  CHECK(refusal(image_with([](Bytes* image) { (*image)[1] = 's'; })) == Refusal::kNotAnImage);
+  for (size_t length = 1; length < good.size(); length++) {
+    CAPTURE(length);
+    CHECK(refusal(Bytes(good.begin(), good.begin() + static_cast<long>(length))) ==
+          Refusal::kTruncated);
+  }
+  CHECK(refusal(image_with([](Bytes* image) { image->push_back(0); })) == Refusal::kTrailing);
+  for (size_t at = kIsaMajorAt; at < good.size(); at++) {
+    if (at == kCodeLengthAt || at == kCodeLengthAt + 1) continue;
+    CAPTURE(at);
+    Bytes damaged = good;
+    damaged[at] ^= 1;
+    CHECK(refusal(damaged) == Refusal::kDamaged);
+  }
+  CHECK(refusal(image_with([](Bytes* image) { (*image)[kIsaMajorAt]++; })) ==
+        Refusal::kOtherVersion);
+  CHECK(refusal(image_with([](Bytes* image) { (*image)[kIsaMinorAt]++; })) ==
+        Refusal::kOtherVersion);
+  CHECK(refusal(image_with([](Bytes* image) { (*image)[kStartAt] = kStarts; })) ==
+        Refusal::kUnknownStart);
+  CHECK(refusal(image_with([](Bytes* image) { (*image)[kNeedsAt] = 1; })) ==
+        Refusal::kUnknownNeeds);
+  CHECK(refusal(image_with([](Bytes* image) { (*image)[kKitAt]++; })) == Refusal::kOtherKit);
+}
+
+TEST_CASE("an image without a kit runs on every robot") {
+  const Bytes image = image_with([](Bytes* found) { (*found)[kKitAt] = (*found)[kKitAt + 1] = 0; });
+  CHECK(refusal(image) == Refusal::kNone);
+}

@@ -1,0 +1,59 @@
+// Arithmetic: the results and the faults of the machine in Python.
+
+#include <doctest.h>
+
+#include "../src/vm/number.h"
+#include "../src/vm/vm.h"
+#include "cases.h"
+
+using namespace tiniscript;
+
+namespace {
+
+// Code that pushes the values and calculates.
+std::vector<uint8_t> code_for(const cases::NumberCase& each) {
+  std::vector<uint8_t> code;
+  for (const int32_t value : each.values) {
+    code.push_back(static_cast<uint8_t>(Op::kPush32));
+    for (int k = 0; k < 32; k += 8) {
+      code.push_back(static_cast<uint8_t>(static_cast<uint32_t>(value) >> k & 0xff));
+    }
+  }
+  code.push_back(static_cast<uint8_t>(each.op));
+  code.push_back(static_cast<uint8_t>(Op::kEnd));
+  return code;
+}
+
+}  // namespace
+
+TEST_CASE("results and faults of arithmetic are those of Python") {
+  for (const cases::NumberCase& each : cases::number_cases()) {
+    const std::vector<uint8_t> code = code_for(each);
+    Machine machine;
+    machine.start(code.data(), static_cast<uint16_t>(code.size() - 1), 0, 1, 0);
+    machine.tick(0, static_cast<uint16_t>(each.values.size() + 1));
+    INFO(each.name);
+    CAPTURE(each.values.front());
+    CAPTURE(each.values.back());
+    CHECK(static_cast<int>(machine.fault()) == static_cast<int>(each.fault));
+    if (each.fault == Fault::kNone) {
+      CHECK(machine.task().depth == 1);
+      CHECK(machine.task().stack[0] == each.result);
+    }
+  }
+}
+
+TEST_CASE("whole numbers are rounded half away from zero") {
+  CHECK(whole(499) == 0);
+  CHECK(whole(500) == 1);
+  CHECK(whole(-499) == 0);
+  CHECK(whole(-500) == -1);
+  CHECK(whole(INT32_MAX) == 2147484);
+  CHECK(whole(INT32_MIN) == -2147484);
+}
+
+TEST_CASE("a number is limited to the nearest one of a range") {
+  CHECK(limited(101, 0, 100) == 100);
+  CHECK(limited(-1, 0, 100) == 0);
+  CHECK(limited(50, 0, 100) == 50);
+}
