@@ -14,13 +14,12 @@ from tiniscript.arguments import actuator_word, call_of, count_problem, glued_ca
 from tiniscript.bytecode import BLOCKS, CALLS, DEFS, STACK_VALUES, VARIABLES
 from tiniscript.kinds import ANY, Kinds, Value
 from tiniscript.kit import Kit
-from tiniscript.problems import Code, Problem
+from tiniscript.problems import Problem
 from tiniscript.program import Statement
+from tiniscript.scope import Name, Scope
 from tiniscript.source import Source, Span
 from tiniscript.thousandths import HIGHEST, as_text
-from tiniscript.words import WORDS, Argument, Word, meant_by, nearest
-
-ENOUGH = 100  # mistakes after which a suggestion helps nobody
+from tiniscript.words import WORDS, Argument, Word, meant_by
 
 
 class Checked(NamedTuple):
@@ -40,13 +39,6 @@ def check(source: Source, parsed: tree.Program, kit: Kit) -> Checked:
     return Checked(meaning, checker.problems)
 
 
-class _Name(NamedTuple):
-    """What a name stands for: a sensor, an actuator, a variable or a DEF, by its number."""
-
-    what: str
-    number: int
-
-
 class _Procedure(NamedTuple):
     """What a call of a DEF brings with it."""
 
@@ -55,29 +47,19 @@ class _Procedure(NamedTuple):
     calls: int
 
 
-class _Checker:
+class _Checker(Scope):
     def __init__(self, source: Source, kit: Kit, parsed: tree.Program) -> None:
-        self.source = source
-        self.kit = kit
-        self.problems: list[Problem] = []
+        super().__init__(source, kit, parsed)
+        self.kinds = Kinds(self)
         self.variables: list[str] = []
         self.procedures: list[program.Procedure] = []
         self.facts: list[_Procedure] = []
-        self.names = {device.name: _Name("sensor", i) for i, device in enumerate(kit.sensors)}
-        for i, device in enumerate(kit.actuators):
-            self.names[device.name] = _Name("actuator", i)
-        self.kinds = Kinds(self, kit)
-        self.set_somewhere = set(_assigned(parsed.body))
-        self.def_names = {each.name for each in parsed.body if isinstance(each, tree.Def)}
         self.inside: str | None = None  # the DEF whose body is being checked
         self.surely_read = 0  # a bit for each sensor
         self.loops = 0
         self.depth = 0
         self.deepest = 0  # blocks open at once in the routine that is being checked
         self.calls = 0  # calls open at once in it
-
-    def report(self, code: Code, span: Span, **values: str) -> None:
-        self.problems.append(Problem(code, span, values))
 
     def body(self, instructions: Sequence[tree.Instruction]) -> program.Body:
         made: list[Statement] = []
@@ -137,7 +119,7 @@ class _Checker:
         number = len(self.variables)
         if number == VARIABLES:
             self.report(problems.TOO_MANY_VARIABLES, node.name_span, limit=str(VARIABLES))
-        self.names[node.name] = _Name("variable", number)
+        self.names[node.name] = Name("variable", number)
         self.variables.append(node.name)
         self.kinds.of_variables.append(value.kind)
         return number
@@ -325,10 +307,6 @@ class _Checker:
         near = self.near(word, [*commands, *self.names, *self.def_names])
         self.report(problems.UNKNOWN_WORD, span, found=word, near=near)
 
-    def near(self, word: str, known: Sequence[str]) -> str:
-        """Return the nearest known word for a message, as long as messages help."""
-        return (nearest(word, known) or "") if len(self.problems) < ENOUGH else ""
-
     # -- blocks -------------------------------------------------------------------------------
 
     def deeper(self, instructions: Sequence[tree.Instruction], is_loop: bool) -> program.Body:
@@ -405,7 +383,7 @@ class _Checker:
         self.facts.append(_Procedure(self.surely_read, self.deepest, self.calls))
         self.surely_read, self.deepest, self.calls = outside
         if known is None:
-            self.names[node.name] = _Name("def", len(self.procedures))
+            self.names[node.name] = Name("def", len(self.procedures))
         self.procedures.append(program.Procedure(node.name, body, node.span))
 
 
@@ -418,18 +396,3 @@ _CHECKS: dict[type, Callable[..., None]] = {
     tree.Break: _Checker.break_,
     tree.Def: _Checker.def_,
 }
-
-
-def _assigned(body: Sequence[tree.Instruction]) -> list[str]:
-    """Return the names that a program sets anywhere."""
-    found: list[str] = []
-    for node in body:
-        if isinstance(node, tree.Assign):
-            found.append(node.name)
-        elif isinstance(node, tree.If):
-            for arm in node.arms:
-                found += _assigned(arm.body)
-            found += _assigned(node.otherwise)
-        elif isinstance(node, (tree.Loop, tree.While, tree.Def)):
-            found += _assigned(node.body)
-    return found

@@ -7,17 +7,14 @@ expressions mean. Gives terms, and the sensors whose readings they use.
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from tiniscript import problems
-from tiniscript.kit import Kit
 from tiniscript.program import Expression, Term
+from tiniscript.scope import Scope
 from tiniscript.source import Span
 from tiniscript.tree import Argument, Part
 from tiniscript.words import WORDS, meant_by
-
-if TYPE_CHECKING:
-    from tiniscript.checker import _Checker
 
 NUMBER, YES_NO, ANY = "number", "yes_no", "any"  # ANY: a mistake was already reported there
 
@@ -48,9 +45,9 @@ _LEAVES = {"TRUE": Term("YES_NO", 1), "FALSE": Term("YES_NO", 0), "TIME": Term("
 
 
 class Kinds:
-    def __init__(self, checker: _Checker, kit: Kit) -> None:
-        self.checker = checker
-        self.kit = kit
+    def __init__(self, scope: Scope) -> None:
+        self.scope = scope
+        self.kit = scope.kit
         self.of_variables: list[str] = []
         self.nothing = Value((Term("YES_NO", 0),), ANY, 1, ())
 
@@ -72,7 +69,7 @@ class Kinds:
                 kind = NUMBER if op == "TIME" else YES_NO
                 stack.append(_Operand(kind, 1, part.start, part.end))
             elif op == "FOREVER":
-                self.checker.report(problems.FOREVER_NOT_HERE, Span(part.start, part.end))
+                self.scope.report(problems.FOREVER_NOT_HERE, Span(part.start, part.end))
                 return self.nothing
             else:
                 terms.append(Term(op))
@@ -84,10 +81,10 @@ class Kinds:
     def _name(
         self, part: Part, target: str | None, stack: list[_Operand], sensors: list[int]
     ) -> Term:
-        checker = self.checker
+        scope = self.scope
         assert isinstance(part.value, str)
         kind, term = ANY, Term("NUMBER", 0)
-        name = checker.names.get(part.value)
+        name = scope.names.get(part.value)
         if name is None:
             self._unknown(part, part.value, target)
         elif name.what == "variable":
@@ -98,27 +95,27 @@ class Kinds:
             term = Term("SENSOR", name.number)
         else:
             code = problems.DEF_READ if name.what == "def" else problems.ACTUATOR_READ
-            checker.report(code, Span(part.start, part.end), name=part.value)
+            scope.report(code, Span(part.start, part.end), name=part.value)
         stack.append(_Operand(kind, 1, part.start, part.end))
         return term
 
     def _unknown(self, part: Part, name: str, target: str | None) -> None:
-        checker, span = self.checker, Span(part.start, part.end)
-        if name in checker.def_names:
-            checker.report(problems.DEF_READ, span, name=name)
+        scope, span = self.scope, Span(part.start, part.end)
+        if name in scope.def_names:
+            scope.report(problems.DEF_READ, span, name=name)
             return
         meant = meant_by(name) or ""
-        if name not in checker.set_somewhere and name != target and (
-            (meant in WORDS and WORDS[meant].role in ("value", "forever")) or meant in checker.names
+        if name not in scope.set_somewhere and name != target and (
+            (meant in WORDS and WORDS[meant].role in ("value", "forever")) or meant in scope.names
         ):  # fmt: skip
-            checker.report(problems.OTHER_LANGUAGE, span, found=name, right=meant, fix=meant)
+            scope.report(problems.OTHER_LANGUAGE, span, found=name, right=meant, fix=meant)
             return
-        known = [each for each, its in checker.names.items() if its.what in ("sensor", "variable")]
-        near = checker.near(name, known)
-        if name == target or name in checker.set_somewhere:
-            checker.report(problems.USED_BEFORE_SET, span, name=name, near=near)
+        known = [each for each, its in scope.names.items() if its.what in ("sensor", "variable")]
+        near = scope.near(name, known)
+        if name == target or name in scope.set_somewhere:
+            scope.report(problems.USED_BEFORE_SET, span, name=name, near=near)
         else:
-            checker.report(problems.UNKNOWN_NAME, span, found=name, near=near)
+            scope.report(problems.UNKNOWN_NAME, span, found=name, near=near)
 
     def _apply(self, part: Part, stack: list[_Operand]) -> None:
         """Take the operands of an operator from `stack` and put its result there."""
@@ -147,34 +144,34 @@ class Kinds:
         elif left.kind != right.kind:
             if ANY not in (left.kind, right.kind):
                 sign = _ORDER.get(op) or _EQUAL[op]
-                self.checker.report(problems.MIXED_COMPARE, Span(start, end), sign=sign,
+                self.scope.report(problems.MIXED_COMPARE, Span(start, end), sign=sign,
                                     left="@" + left.kind, right="@" + right.kind,
                                     fix=self._yes_no_alone(op, left, right))  # fmt: skip
         elif left.kind == YES_NO and op in _ORDER:
-            self.checker.report(problems.YES_NO_ORDER, Span(start, end), sign=_ORDER[op])
+            self.scope.report(problems.YES_NO_ORDER, Span(start, end), sign=_ORDER[op])
         stack.append(_Operand(kind, depth, start, end))
 
     def _wants_number(self, by: str, operand: _Operand) -> None:
         if operand.kind == YES_NO:
             span = Span(operand.start, operand.end)
-            found = self.checker.source[span]
-            self.checker.report(problems.WANTS_NUMBER, span, by=by, found=found)
+            found = self.scope.source[span]
+            self.scope.report(problems.WANTS_NUMBER, span, by=by, found=found)
 
     def _wants_yes_no(self, by: str, operand: _Operand, left: _Operand | None = None) -> None:
         """`left` stands before an AND or OR: `X = 5 OR 6` means `X = 5 OR X = 6`."""
         if operand.kind == NUMBER:
             span = Span(operand.start, operand.end)
-            found = self.checker.source[span]
+            found = self.scope.source[span]
             fix = self.question(found)
             if left is not None and left.end - left.start <= 80:
-                asked = _COMPARED.match(self.checker.source[Span(left.start, left.end)])
+                asked = _COMPARED.match(self.scope.source[Span(left.start, left.end)])
                 fix = f"{asked[0]} {found}" if asked else fix
-            self.checker.report(problems.WANTS_CONDITION, span, by=by, found=found, fix=fix)
+            self.scope.report(problems.WANTS_CONDITION, span, by=by, found=found, fix=fix)
 
     def question(self, found: str) -> str:
         """Return the question that was probably meant with a number alone."""
         word = found.upper()
-        name = self.checker.names.get(word)
+        name = self.scope.names.get(word)
         if name is not None:
             return f"{word} < 10" if name.what == "sensor" else f"{word} > 0"
         return {"0": "FALSE", "1": "TRUE"}.get(word, "")
@@ -182,8 +179,8 @@ class Kinds:
     def _yes_no_alone(self, op: str, left: _Operand, right: _Operand) -> str:
         """`BUTTON = 1` is `BUTTON`, and `BUTTON = 0` is `NOT BUTTON`."""
         number, answer = (left, right) if left.kind == NUMBER else (right, left)
-        digit = self.checker.source[Span(number.start, number.end)]
-        found = self.checker.source[Span(answer.start, answer.end)]
+        digit = self.scope.source[Span(number.start, number.end)]
+        found = self.scope.source[Span(answer.start, answer.end)]
         if digit not in ("0", "1") or op not in _EQUAL or not found.isidentifier():
             return ""
         return found.upper() if (digit == "1") == (op == "EQ") else f"NOT {found.upper()}"
