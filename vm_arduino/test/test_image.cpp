@@ -61,10 +61,10 @@ TEST_CASE("the checksum is the CRC-32 of zlib") {
 }
 
 TEST_CASE("the fields of an image are where the spec says") {
-  const Bytes data = image_with([](Bytes* image) { (*image)[kStartAt] = 2; });
+  const Bytes data = image_with([](Bytes* image) { (*image)[kStartAt] = 1; });
   Image image;
   REQUIRE(unpack(data.data(), data.size(), kOurKit, &image) == Refusal::kNone);
-  CHECK(image.start == 2);
+  CHECK(image.start == 1);
   CHECK(image.kit == kOurKit);
   CHECK(image.code_length == 1);
   CHECK(image.code == data.data() + kHeaderBytes);
@@ -97,6 +97,8 @@ TEST_CASE("an image is refused with the first reason that applies") {
   CHECK(refusal(image_with([](Bytes* image) { (*image)[kNeedsAt] = 1; })) ==
         Refusal::kUnknownNeeds);
   CHECK(refusal(image_with([](Bytes* image) { (*image)[kKitAt]++; })) == Refusal::kOtherKit);
+  CHECK(refusal(image_with([](Bytes* image) { (*image)[kStartAt] = kStartPing; })) ==
+        Refusal::kPingWithCode);
 }
 
 TEST_CASE("an image without a kit runs on every robot") {
