@@ -6,6 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.command import PROGRAM, Tsc
+
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
@@ -19,3 +21,15 @@ def own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     monkeypatch.setenv("LC_ALL", "C.UTF-8")
     monkeypatch.delenv("TINISCRIPT_DEBUG", raising=False)
+
+
+@pytest.fixture
+def tsc(capsys: pytest.CaptureFixture[str]) -> Tsc:
+    return Tsc(capsys)
+
+
+@pytest.fixture
+def program(tmp_path: Path) -> Path:
+    path = tmp_path / "drive.ts"
+    path.write_text(PROGRAM, encoding="utf-8")
+    return path

@@ -1,0 +1,43 @@
+"""The command `tsc` as tests use it: in this process, or as a process of its own."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.casefile import ROOT
+from tiniscript.cli import main
+
+PROGRAM = "SI|F(5,80)"
+OBSTACLE = (ROOT / "examples" / "obstacle.ts").read_text(encoding="utf-8")
+TSC = [sys.executable, "-m", "tiniscript"]
+
+
+class Done:
+    """What a command did: its exit code and what it printed."""
+
+    def __init__(self, code: int, out: str, err: str) -> None:
+        self.code, self.out, self.err = code, out, err
+        assert "Traceback" not in err
+        assert "was not made for" not in err
+        if code:
+            assert (err + out).strip(), "an exit code without a word"
+
+
+class Tsc:
+    def __init__(self, capsys: pytest.CaptureFixture[str]) -> None:
+        self.capsys = capsys
+
+    def __call__(self, *arguments: str | Path) -> Done:
+        code = main([str(each) for each in arguments])
+        said = self.capsys.readouterr()
+        return Done(code, said.out, said.err)
+
+
+def process(*arguments: str | Path, data: bytes = b"") -> Done:
+    """Run `tsc` as a process of its own."""
+    done = subprocess.run([*TSC, *map(str, arguments)], input=data, capture_output=True)
+    return Done(done.returncode, done.stdout.decode(), done.stderr.decode())
