@@ -45,6 +45,7 @@ ROOMS = {
     "vm_instructions": {"bytecode", "thousandths", "task"},
     "vm": {"bytecode", "thousandths", "task", "vm_instructions"},
     "run": TABLES | {"task", "vm"},
+    "wasm_machine": TABLES | {"task", "image", "verify"},
     "messages": TABLES,
     "maps": {"image"},
 }

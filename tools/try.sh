@@ -2,7 +2,7 @@
 # README's first command: sets TiniScript up in .venv and runs the paper's obstacle program.
 set -eu
 . "$(dirname "$0")/venv.sh"
-make_venv ""
+make_venv "[virtual]"
 
 cd "$ROOT"
 tsc() {

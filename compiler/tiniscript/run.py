@@ -7,10 +7,10 @@ each thing that the robot did. Knows no files, no ports and no terminal.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 from tiniscript.kit import Kit
-from tiniscript.task import DONE, FAULT, WAITING
+from tiniscript.task import DONE, FAULT, WAITING, Robot
 from tiniscript.thousandths import as_text, limited, whole
 from tiniscript.vm import Machine
 
@@ -96,6 +96,27 @@ class TracedRobot:
         self.say("SET", (actuator, value), f"SET {device.name} {device.text(value)}")
 
 
+class AnyMachine(Protocol):
+    """What a run asks of a machine: `vm.Machine` and the one in C++ both answer."""
+
+    @property
+    def wake_ms(self) -> int: ...
+
+    @property
+    def steps(self) -> int: ...
+
+    @property
+    def fault(self) -> str: ...
+
+    @property
+    def at(self) -> int: ...
+
+    def tick(self, now_ms: int, budget: int) -> str: ...
+
+
+MachineOf = Callable[[bytes, Robot, int, int], AnyMachine]  # code, robot, sensors, seed
+
+
 def run(
     code: bytes,
     kit: Kit,
@@ -103,6 +124,7 @@ def run(
     max_ms: int = 60_000,
     max_steps: int = 10_000_000,
     seed: int = 1,
+    machine_of: MachineOf = Machine,
 ) -> Iterator[Event | Ending]:
     """Yield what a robot with this kit does with verified `code`; the last one is its Ending.
 
@@ -110,7 +132,7 @@ def run(
     time passes: it cuts loops that take none.
     """
     robot = TracedRobot(kit, senses)
-    machine = Machine(code, robot, len(kit.sensors), seed)
+    machine = machine_of(code, robot, len(kit.sensors), seed)
     before = 0  # instructions that ran before the clock last moved
     while True:
         left = max_steps - (machine.steps - before)
@@ -119,10 +141,10 @@ def run(
         robot.events.clear()
         if status in (DONE, FAULT):
             what = status.upper()
-        elif status == WAITING and machine.task.wake_ms <= max_ms:
-            if machine.task.wake_ms > robot.now_ms:
+        elif status == WAITING and machine.wake_ms <= max_ms:
+            if machine.wake_ms > robot.now_ms:
                 before = machine.steps
-            robot.now_ms = machine.task.wake_ms
+            robot.now_ms = machine.wake_ms
             if machine.steps - before < max_steps:
                 continue
             what = "LIMIT"

@@ -70,6 +70,11 @@ class Machine:
         self.steps += budget - left
         return self.status
 
+    @property
+    def wake_ms(self) -> int:
+        """Before this time, a machine that waits has nothing to do."""
+        return self.task.wake_ms
+
     def wait(self, duration_ms: int, what: str) -> bool:
         """Begin a wait where the one before ended, or now where that is too long ago."""
         task = self.task

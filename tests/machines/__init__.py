@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 
-from tests.machines import host
+from tests.machines import host, wasm
 from tests.machines.python import run_python
 from tiniscript.kit import Kit
 
@@ -21,7 +21,12 @@ class Senses(NamedTuple):
 
 Machine = Callable[[bytes, Kit, Senses], str]
 
-# Those that are quick enough for every random program; `test_cpp_avr` runs the simulated chip.
+# Those that are quick enough for every case; `test_cpp_avr` runs the simulated chip.
 MACHINES: dict[str, Machine] = {"python": run_python}
 if not host.missing():
     MACHINES["host"] = host.run_host
+if not wasm.missing():
+    MACHINES["wasm"] = wasm.run_wasm
+
+# Of the random programs, a machine that is slow to call runs one in so many.
+ONE_IN = {"wasm": 5}

@@ -11,10 +11,11 @@ from tiniscript.cli.texts import text
 from tiniscript.cli.trouble import Trouble
 
 if TYPE_CHECKING:
+    from tiniscript.image import Image
     from tiniscript.kit import Device
     from tiniscript.maps import Map
     from tiniscript.robots.profile import Robot
-    from tiniscript.run import Ending
+    from tiniscript.run import Ending, MachineOf
 
 HELP = (
     """\
@@ -29,7 +30,7 @@ each with the milliseconds since the start. The clock is simulated, so that take
   --seed N              where RANDOM begins, 1 to 4294967295 (1)
   --show                on a terminal: draws the way and the values as they come
   --pace N              with --show: N times as fast as the robot (1); 0 is as fast as possible
-  --machine python      which machine runs it
+  --machine python|cpp  which machine runs it: the one in Python, or the robot's own, in C++
 Exit code: 0 when it is done or cut, 1 after a fault or mistakes.
 """,
     """\
@@ -46,7 +47,7 @@ cada una con los milisegundos desde el inicio. El reloj es simulado: no hay que 
   --seed N              dónde empieza RANDOM, de 1 a 4294967295 (1)
   --show                en una terminal: dibuja el camino y los valores según llegan
   --pace N              con --show: N veces más rápido que el robot (1); 0 es lo más rápido posible
-  --machine python      qué máquina lo ejecuta
+  --machine python|cpp  qué máquina lo ejecuta: la de Python, o la del robot mismo, en C++
 Código de salida: 0 si termina o se corta, 1 después de una falla o con errores.
 """,
 )
@@ -68,7 +69,7 @@ def run(arguments: list[str], language: str) -> int:
     options = parser.read(arguments)
     if options is None:
         return 0
-    if options.machine != "python":
+    if options.machine not in ("python", "cpp"):
         raise Trouble(2, "no_machine", found=options.machine)
     max_ms = _decimal("--max-time", options.max_time, 60_000, LONGEST, language)
     pace = _decimal("--pace", options.pace, 1000, 1_000_000, language)
@@ -80,11 +81,14 @@ def run(arguments: list[str], language: str) -> int:
     ready = images.ready(given, robot, language)
     if ready is None:
         return 1
+    machine_of = _cpp_machine(ready.image, robot) if options.machine == "cpp" else None
     from tiniscript.run import Senses
     from tiniscript.run import run as run_code
+    from tiniscript.vm import Machine
 
+    senses = Senses(robot.kit, lists)
     events = run_code(
-        ready.image.code, robot.kit, Senses(robot.kit, lists), max_ms, max_steps, seed
+        ready.image.code, robot.kit, senses, max_ms, max_steps, seed, machine_of or Machine
     )
     if options.show and sys.stderr.isatty():
         from tiniscript.cli.drawing import watch
@@ -98,6 +102,24 @@ def run(arguments: list[str], language: str) -> int:
     said = fault_text(ending.fault, ending.offset, ready.places, given.is_image, language)
     print(said, file=sys.stderr)
     return 1
+
+
+def _cpp_machine(image: Image, robot: Robot) -> MachineOf:
+    """Return the C++ machine with an image that is verified already: it must agree to that."""
+    try:
+        from tiniscript.wasm_machine import WasmImage
+    except (ImportError, OSError, RuntimeError) as why:  # not there, or not for this computer
+        raise Trouble(2, "no_wasmtime", why=str(why)) from None
+    from tiniscript.image import ImageRefused, pack
+    from tiniscript.verify import Refused
+
+    kit = robot.kit
+    data = pack(image.start, image.kit, image.code)
+    devices = (len(kit.sensors), len(kit.actuators)) if image.kit else (0, 0)
+    try:
+        return WasmImage(data, kit.fingerprint, *devices).machine
+    except (ImageRefused, Refused) as refused:
+        raise AssertionError(f"the C++ machine refuses what Python accepts: {refused}") from None
 
 
 def _print(events: object) -> Ending:

@@ -97,8 +97,12 @@ TEXTS: dict[str, tuple[str, str]] = {
     "range_yes_no": ("TRUE or FALSE", "TRUE o FALSE"),
     "bad_number": ("tsc: {option} takes {range}, not {found}.", "tsc: {option} acepta {range}, no {found}."),
     "range_whole": ("a whole number from {low} to {high}", "un número entero de {low} a {high}"),
-    "no_machine": ("tsc: there is no machine {found} here. There is: python.",
-                   "tsc: aquí no hay una máquina {found}. Hay: python."),
+    "no_machine": ("tsc: there is no machine {found} here. There are: python, cpp.",
+                   "tsc: aquí no hay una máquina {found}. Hay: python, cpp."),
+    "no_wasmtime": ("tsc: --machine cpp needs wasmtime, which cannot be used here: {why}.\n"
+                    "Install it:  pip install \"tiniscript[virtual]\"   or try:  --machine python",
+                    "tsc: --machine cpp necesita wasmtime, que aquí no se puede usar: {why}.\n"
+                    "Instálalo:  pip install \"tiniscript[virtual]\"   o prueba:  --machine python"),
     "no_code": ("tsc: there is no mistake {found}. The list:  tsc explain",
                 "tsc: no existe el error {found}. La lista:  tsc explain"),
     "profile_refused": ("tsc: the robot profile {file} cannot be used:\n{reasons}",

@@ -1,0 +1,36 @@
+"""The machine in C++ as users run it without a compiler: `machine.wasm` in wasmtime."""
+
+from __future__ import annotations
+
+from importlib.util import find_spec
+from typing import TYPE_CHECKING
+
+from tests.machines.python import lists_of
+from tiniscript.image import HEADER_BYTES
+from tiniscript.kit import Kit
+from tiniscript.run import Ending, run
+
+if TYPE_CHECKING:
+    from tests.machines import Senses
+
+
+def missing() -> str:
+    """Return why this machine cannot run, or nothing."""
+    return "" if find_spec("wasmtime") else "no wasmtime: the WebAssembly machine does not run"
+
+
+def run_wasm(image: bytes, kit: Kit, senses: Senses) -> str:
+    """Return the trace of an image, which is read and verified by the C++ machine."""
+    from tiniscript.wasm_machine import WasmImage
+
+    loaded = WasmImage(image, kit.fingerprint, len(kit.sensors), len(kit.actuators))
+    events = run(
+        image[HEADER_BYTES:],
+        kit,
+        lists_of(kit, senses),
+        senses.max_ms,
+        senses.max_steps,
+        senses.seed,
+        loaded.machine,
+    )
+    return "".join(f"{event}\n" for event in events if not isinstance(event, Ending))
