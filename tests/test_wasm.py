@@ -10,11 +10,11 @@ from pathlib import Path
 import pytest
 
 from tests.casefile import ROOT, Case
+from tests.command import Tsc
 from tests.kits import KITS
 from tests.machines import MACHINES
 from tests.machines.wasm import missing
 from tests.test_cases import having, listings_alone, robot_and_senses
-from tests.test_cli import Tsc, tsc  # noqa: F401 (a fixture)
 from tests.test_house import imported_by
 from tiniscript import compile_text, robots
 from tiniscript.bytecode import ISA_MAJOR, ISA_MINOR
@@ -102,7 +102,7 @@ def test_the_module_imports_the_robot_alone() -> None:
 # -- the command --------------------------------------------------------------------------------
 
 
-def both(tsc: Tsc, *arguments: str) -> tuple[int, str, str]:  # noqa: F811
+def both(tsc: Tsc, *arguments: str) -> tuple[int, str, str]:
     """Assert that both machines print the same and end alike; return what they do."""
     ours = tsc("run", *arguments)
     theirs = tsc("run", "--machine", "cpp", *arguments)
@@ -112,7 +112,7 @@ def both(tsc: Tsc, *arguments: str) -> tuple[int, str, str]:  # noqa: F811
 
 @needs_wasmtime
 @pytest.mark.parametrize("case", having("tiniscript", "robot"))
-def test_run_says_the_same(case: Case, tsc: Tsc) -> None:  # noqa: F811
+def test_run_says_the_same(case: Case, tsc: Tsc) -> None:
     robot, _ = robot_and_senses(case)
     options = ["--robot", robot.name]
     for row in case.parts.get("senses", "").splitlines():
@@ -128,7 +128,7 @@ def test_run_says_the_same(case: Case, tsc: Tsc) -> None:  # noqa: F811
 
 @needs_wasmtime
 @pytest.mark.parametrize("program", ["SB|F(1, 50)", "SI|F(1, 50)", "PING|check_connection"])
-def test_every_way_to_start(program: str, tsc: Tsc, tmp_path: Path) -> None:  # noqa: F811
+def test_every_way_to_start(program: str, tsc: Tsc, tmp_path: Path) -> None:
     both(tsc, "-e", program)
     image = tmp_path / "some.bin"
     assert tsc("compile", "-e", program, "-o", image).code == 0
@@ -137,7 +137,7 @@ def test_every_way_to_start(program: str, tsc: Tsc, tmp_path: Path) -> None:  # 
 
 @needs_wasmtime
 @pytest.mark.parametrize("language", ["en", "es"])
-def test_a_fault_has_its_line(language: str, tsc: Tsc) -> None:  # noqa: F811
+def test_a_fault_has_its_line(language: str, tsc: Tsc) -> None:
     code, out, err = both(tsc, "-e", "F(1, 50)\nA = 0\nSHOW(5 / A)", "--lang", language)
     assert code == 1
     assert out.endswith("1000 FAULT DIVIDE_BY_ZERO\n")
@@ -157,14 +157,14 @@ def test_a_fault_has_its_line(language: str, tsc: Tsc) -> None:  # noqa: F811
         ["-e", "", "--robot", "liner"],
     ],
 )
-def test_limits_and_seeds(arguments: list[str], tsc: Tsc) -> None:  # noqa: F811
+def test_limits_and_seeds(arguments: list[str], tsc: Tsc) -> None:
     both(tsc, *arguments)
 
 
 @pytest.mark.parametrize("language", ["en", "es"])
 def test_without_wasmtime_the_next_step_is_said(
     language: str,
-    tsc: Tsc,  # noqa: F811
+    tsc: Tsc,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setitem(sys.modules, "wasmtime", None)
