@@ -46,7 +46,7 @@ struct Task {
   bool drives;        // false: a wait, the motors stay as they are
   int8_t left;
   int8_t right;
-  int32_t stack[kStackValues];
+  int32_t stack[kStackValues + 1];  // the last one only lies behind them
   int32_t variables[kVariables];
   int32_t readings[kDevices];
   int32_t counters[kCounters];

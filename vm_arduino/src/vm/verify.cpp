@@ -1,5 +1,7 @@
 #include "verify.h"
 
+#include "shape.h"
+
 namespace tiniscript {
 
 namespace {
@@ -110,28 +112,17 @@ __attribute__((noinline)) void Verifier::refuse(Rule rule) {
 
 void Verifier::instruction() {
   arrive();
-  const uint8_t code = code_[at_];
-  uint8_t index = code;
-  if (code >= kFamilies) {
-    index = static_cast<uint8_t>(kFamilies + (code - kFamilies) / 8);
-    if (code % 8 >= kFamilyOps) index = kRows;
-  }
-  const uint8_t row_number = index < kRows ? flash_byte(kRowOf + index) : 0;
-  if (row_number == 0) return refuse(Rule::kUnknownOpcode);
-  const uint8_t* const row = kOpRows[row_number - 1];
-  const uint8_t stack_and_role = flash_byte(row);
-  const uint8_t third_and_size = flash_byte(row + 1);
-  uint8_t operands = flash_byte(row + 2);
-  const uint8_t size = third_and_size & 0x7f;
-  after_ = static_cast<uint16_t>(at_ + size);
+  const Shape shape = shape_of(code_[at_]);
+  if (shape.row == nullptr) return refuse(Rule::kUnknownOpcode);
+  after_ = static_cast<uint16_t>(at_ + shape.size());
   if (after_ > length_) return refuse(Rule::kCutOperand);
   reading_ = static_cast<uint16_t>(at_ + 1);
+  uint8_t operands = shape.operands();
   for (; operands != 0; operands = static_cast<uint8_t>(operands >> 4)) operand(operands & 15);
-  if ((third_and_size & 0x80) != 0) operand(static_cast<uint8_t>(Operand::kFwd8));
-  const uint8_t pops = stack_and_role >> 5 & 3;
-  stack(pops, static_cast<uint8_t>(stack_and_role >> 7));
+  if (shape.has_third()) operand(static_cast<uint8_t>(Operand::kFwd8));
+  stack(shape.pops(), shape.pushes());
 
-  const Role role = static_cast<Role>(stack_and_role & 0x1f);
+  const Role role = shape.role();
   // from `plain` on, but for the two that have rules of their own
   const bool is_between = role >= Role::kPlain && role != Role::kUntil && role != Role::kEnd;
   if (is_between) between();
@@ -153,9 +144,9 @@ void Verifier::instruction() {
     case Role::kElse:
       return else_();
     case Role::kRepeat:
-      return open(Kind::kRepeat, size > 1);
+      return open(Kind::kRepeat, shape.size() > 1);
     case Role::kCount:
-      open(Kind::kCount, pops != 0);
+      open(Kind::kCount, shape.pops() != 0);
       counters_++;
       return needs(counters_, most_calls_);
     case Role::kAgain:

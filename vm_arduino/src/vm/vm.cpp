@@ -17,7 +17,9 @@ void Machine::start(const uint8_t* code, uint16_t length, uint8_t sensors, uint3
   at_ = 0;
   left_ = 0;
   length_ = length;
+  depth_ = 0;
   code_ = code;
+  operands_ = code;
   now_ms_ = now_ms;
   task_ = Task();
   task_.random = seed;
@@ -93,6 +95,7 @@ void Machine::until(bool stop, uint16_t check) {
 // Runs this instruction again at the next tick: the robot is not ready.
 void Machine::retry() {
   task_.pc = at_;
+  task_.depth = depth_;
   must_stop_ = true;
 }
 

@@ -48,37 +48,30 @@ class Machine {
   void retry();
   void raise(Fault fault);
 
-  // operands
-  uint8_t byte();
-  uint16_t word();
-  int32_t whole8();
-  int32_t whole16();
-  uint16_t forward(bool is_far);
-  uint16_t back(bool is_far);
-  int32_t* variable();
+  // operands and values
+  uint16_t word(const uint8_t* operand) const;
+  uint16_t distance() const;
+  int32_t* variable(uint8_t number);
   int32_t* sensor(bool must_read);
 
-  // the stack and the counters
-  void push(int32_t value);
-  int32_t* top();
-  int32_t pop();
-  void open_counter(int32_t count);
-  int32_t* counter();
-
   // what several instructions share
-  void show(bool is_yes_no);
-  void prepare(uint32_t move_ms, bool drives);
-  void steer(uint8_t op, int8_t power);
-  void compare_and_branch(uint8_t op);
+  void go_on();
+  void go_back();
+  void move(uint8_t code, const int32_t* values);
+  void open_counter(int32_t count);
+  bool count(bool drops);
+  void compare_and_branch(uint8_t code);
 
   Status status_;
   Fault fault_;
   bool must_stop_;  // for now
   uint8_t sensors_;
+  uint8_t depth_;  // of the stack, before the instruction that runs
   uint16_t at_;
   uint16_t left_;
   uint16_t length_;
   const uint8_t* code_;
+  const uint8_t* operands_;  // of the instruction that runs
   uint32_t now_ms_;
   Task task_;
 };

@@ -4,6 +4,7 @@
 
 #include "../robot.h"
 #include "number.h"
+#include "shape.h"
 #include "vm.h"
 
 namespace tiniscript {
@@ -22,59 +23,24 @@ int8_t percent(int32_t power, int8_t low) {
 
 }  // namespace
 
-uint8_t Machine::byte() {
-  if (task_.pc > length_) {
-    raise(Fault::kBadCode);
-    return 0;
-  }
-  return code_[task_.pc++];
+// An operand of two bytes.
+uint16_t Machine::word(const uint8_t* operand) const {
+  return static_cast<uint16_t>(operand[0] | operand[1] << 8);
 }
 
-uint16_t Machine::word() {
-  const uint8_t low = byte();
-  return static_cast<uint16_t>(low | byte() << 8);
+// How far an instruction whose one operand is a distance jumps.
+uint16_t Machine::distance() const {
+  return static_cast<uint16_t>(task_.pc - at_) == 2 ? operands_[0] : word(operands_);
 }
 
-// A whole number of one byte with a sign, as thousandths.
-int32_t Machine::whole8() { return static_cast<int32_t>(static_cast<int8_t>(byte())) * kOne; }
+void Machine::go_on() { task_.pc = static_cast<uint16_t>(task_.pc + distance()); }
 
-int32_t Machine::whole16() { return static_cast<int32_t>(static_cast<int16_t>(word())) * kOne; }
+void Machine::go_back() { task_.pc = static_cast<uint16_t>(task_.pc - distance()); }
 
-// Where a jump forward leads: its operand is the last of its instruction.
-uint16_t Machine::forward(bool is_far) {
-  const uint16_t distance = is_far ? word() : byte();
-  return static_cast<uint16_t>(task_.pc + distance);
-}
-
-uint16_t Machine::back(bool is_far) {
-  const uint16_t distance = is_far ? word() : byte();
-  return static_cast<uint16_t>(task_.pc - distance);
-}
-
-void Machine::push(int32_t value) {
-  if (task_.depth >= kStackValues) return raise(Fault::kBadCode);
-  task_.stack[task_.depth++] = value;
-}
-
-int32_t* Machine::top() {
-  if (task_.depth == 0) {
-    raise(Fault::kBadCode);
-    return task_.stack;
-  }
-  return task_.stack + task_.depth - 1;
-}
-
-int32_t Machine::pop() {
-  const int32_t value = *top();
-  if (task_.depth != 0) task_.depth--;
-  return value;
-}
-
-int32_t* Machine::variable() {
-  const uint8_t number = byte();
+int32_t* Machine::variable(uint8_t number) {
   if (number >= kVariables) {
     raise(Fault::kBadCode);
-    return task_.variables;
+    number = 0;
   }
   return task_.variables + number;
 }
@@ -82,7 +48,7 @@ int32_t* Machine::variable() {
 // The kept reading of a sensor; takes a reading first where it `must_read`. Null where the robot
 // is not ready.
 int32_t* Machine::sensor(bool must_read) {
-  const uint8_t number = byte();
+  const uint8_t number = operands_[0];
   if (number >= sensors_) {
     raise(Fault::kBadCode);
     return nullptr;
@@ -95,23 +61,33 @@ int32_t* Machine::sensor(bool must_read) {
   return reading;
 }
 
-void Machine::show(bool is_yes_no) {
-  if (!robot_show(*top(), is_yes_no)) return retry();
-  pop();
-}
-
-void Machine::prepare(uint32_t move_ms, bool drives) {
-  task_.move_ms = move_ms;
-  task_.drives = drives;
-  task_.is_watching = false;
-}
-
-// Notes the powers of a move. The last two bits of an opcode say which way: F, B, L, R.
-void Machine::steer(uint8_t op, int8_t power) {
-  const int8_t reversed = static_cast<int8_t>(-power);
-  const uint8_t way = op & 3;
-  task_.left = way == 1 || way == 2 ? reversed : power;
-  task_.right = way == 1 || way == 3 ? reversed : power;
+// MOVE to WATCH_FOREVER and WAIT to WATCH_FOREVER_WAIT. Each comes in four forms: with a time from
+// the stack, with bytes, watched, and watched forever.
+void Machine::move(uint8_t code, const int32_t* values) {
+  const bool drives = code < static_cast<uint8_t>(Op::kWait);
+  const uint8_t form = (drives ? code >> 2 : code) & 3;
+  uint32_t move_ms = kForever;
+  if (form == 1) {
+    move_ms = static_cast<uint16_t>(operands_[0] * kTenthMs);
+  } else if (form != 3) {
+    move_ms = duration(*values++);
+  }
+  if (drives) {
+    const int8_t power = form == 1 ? static_cast<int8_t>(operands_[1]) : percent(*values, 0);
+    // the last two bits say which way: F, B, L, R
+    const uint8_t way = code & 3;
+    const int8_t reversed = static_cast<int8_t>(-power);
+    task_.left = way == 1 || way == 2 ? reversed : power;
+    task_.right = way == 1 || way == 3 ? reversed : power;
+  }
+  if (form >= 2) {
+    task_.move_ms = move_ms;
+    task_.drives = drives;
+    task_.is_watching = false;
+    return;
+  }
+  if (drives) robot_motors(task_.left, task_.right);
+  wait(move_ms, drives ? Wait::kMove : Wait::kPause);
 }
 
 void Machine::open_counter(int32_t count) {
@@ -119,64 +95,88 @@ void Machine::open_counter(int32_t count) {
   task_.counters[task_.looped++] = count;
 }
 
-// The counter of the innermost counted loop.
-int32_t* Machine::counter() {
+// Counts the innermost counted loop down, or drops it. Returns whether it goes on.
+bool Machine::count(bool drops) {
   if (task_.looped == 0) {
     raise(Fault::kBadCode);
-    task_.looped = 1;
+    return false;
   }
-  return task_.counters + task_.looped - 1;
+  int32_t* const counter = task_.counters + task_.looped - 1;
+  if (!drops && --*counter != 0) return true;
+  task_.looped--;
+  return false;
 }
 
 // Goes on where a comparison is TRUE, and else to its target. 80 + 10 for each source + 8 for
 // the wide constant + the comparator.
-void Machine::compare_and_branch(uint8_t op) {
-  const int32_t* const value = op < 0x90 ? variable() : sensor(op >= 0xa0);
+void Machine::compare_and_branch(uint8_t code) {
+  const int32_t* const value = code < 0x90 ? variable(operands_[0]) : sensor(code >= 0xa0);
   if (value == nullptr) return;
-  const int32_t number = (op & 8) != 0 ? whole16() : static_cast<int32_t>(byte()) * kOne;
-  const uint16_t to = forward(false);
-  if (!compare(*value, number, op)) task_.pc = to;
+  const uint8_t* last = operands_ + 2;
+  int16_t number = operands_[1];
+  if ((code & 8) != 0) number = static_cast<int16_t>(word(last++ - 1));
+  if (!compare(*value, int32_t{number} * kOne, code)) {
+    task_.pc = static_cast<uint16_t>(task_.pc + *last);
+  }
 }
 
+// Goes behind the instruction and takes its values off the stack. Where they lay its result goes:
+// `value` is the first of them, and what comes back to its place.
 __attribute__((always_inline)) inline void Machine::step() {
-  const uint8_t code = byte();
+  const uint16_t at = task_.pc;
+  at_ = at;
+  depth_ = task_.depth;
+  if (at > length_) return raise(Fault::kBadCode);
+  const uint8_t* const bytes = code_ + at;
+  const uint8_t code = *bytes;
+  operands_ = bytes + 1;
+  const Shape shape = shape_of(code);
+  if (shape.row == nullptr || depth_ < shape.pops()) return raise(Fault::kBadCode);
+  task_.pc = static_cast<uint16_t>(at + shape.size());
+  const uint8_t left = static_cast<uint8_t>(depth_ - shape.pops());
+  task_.depth = static_cast<uint8_t>(left + shape.pushes());
+  if (task_.pc > length_ + 1 || task_.depth > kStackValues) return raise(Fault::kBadCode);
+  // one room for them all, and half as large a table of the others
+  if (code >= kFamilies) return compare_and_branch(code);
+  int32_t* const values = task_.stack + left;
+  int32_t value = *values;
+  const uint8_t first = task_.pc == at + 1 ? 0 : operands_[0];
   const Op op = static_cast<Op>(code);
-  int32_t right;
-  int32_t* left;
-  uint16_t to;
+  int32_t* place;
   switch (op) {
     // values
     case Op::kPush8:
-      return push(whole8());
+      value = static_cast<int32_t>(static_cast<int8_t>(first)) * kOne;
+      break;
     case Op::kPush16:
-      return push(whole16());
+      value = static_cast<int32_t>(static_cast<int16_t>(word(operands_))) * kOne;
+      break;
     case Op::kPushMilli:
-      return push(static_cast<int16_t>(word()));
-    case Op::kPush32: {
-      const uint16_t low = word();
-      return push(static_cast<int32_t>(low | static_cast<uint32_t>(word()) << 16));
-    }
+      value = static_cast<int16_t>(word(operands_));
+      break;
+    case Op::kPush32:
+      *values =
+          static_cast<int32_t>(word(operands_) | static_cast<uint32_t>(word(operands_ + 2)) << 16);
+      return;
     case Op::kPushFalse:
-      return push(0);
     case Op::kPushTrue:
-      return push(1);
+      value = op == Op::kPushTrue;
+      break;
     case Op::kPushVar:
-      return push(*variable());
+      value = *variable(first);
+      break;
     case Op::kPushSensor:
     case Op::kPushRead:
-      left = sensor(op == Op::kPushRead);
-      if (left != nullptr) push(*left);
-      return;
-    case Op::kTime: {
-      const uint32_t gone_ms = now_ms_ - task_.started_ms;
-      if (gone_ms > 0x7fffffff) return raise(Fault::kOverflow);
-      return push(static_cast<int32_t>(gone_ms));
-    }
+      place = sensor(op == Op::kPushRead);
+      if (place != nullptr) value = *place;
+      break;
+    case Op::kTime:
+      value = static_cast<int32_t>(now_ms_ - task_.started_ms);
+      if (value < 0) raise(Fault::kOverflow);
+      break;
     case Op::kRandom:
-      right = pop();
-      left = top();
       task_.random = next_random(task_.random);
-      return raise(random_between(*left, right, task_.random, left));
+      return raise(random_between(value, values[1], task_.random, values));
     case Op::kAdd:
     case Op::kSub:
     case Op::kMul:
@@ -193,179 +193,125 @@ __attribute__((always_inline)) inline void Machine::step() {
     case Op::kGe:
     case Op::kAnd:
     case Op::kOr:
-      pop();  // it still lies behind the other one
-      return raise(calculate(op, top()));
     case Op::kNeg:
     case Op::kAbs:
     case Op::kNot:
-      return raise(calculate(op, top()));
+      return raise(calculate(op, values));
     case Op::kAndThen:
     case Op::kAndThenFar:
-      to = forward(op == Op::kAndThenFar);
-      if (*top() == 0) {
-        task_.pc = to;
-      } else {
-        pop();
-      }
-      return;
     case Op::kOrElse:
     case Op::kOrElseFar:
-      to = forward(op == Op::kOrElseFar);
-      if (*top() != 0) {
-        task_.pc = to;
-      } else {
-        pop();
+      if ((value != 0) == (op >= Op::kOrElse)) {
+        task_.depth++;
+        go_on();
       }
       return;
 
     // variables
     case Op::kSetVar:
-      left = variable();
-      *left = pop();
+      *variable(first) = value;
       return;
     case Op::kSetVar8:
-      left = variable();
-      *left = whole8();
-      return;
     case Op::kAddVar8:
-      left = variable();
-      return raise(sum(*left, whole8(), false, left));
-    case Op::kAddVar:
-      left = variable();
-      return raise(sum(*left, *variable(), false, left));
+    case Op::kAddVar: {
+      place = variable(first);
+      const uint8_t second = operands_[1];
+      const int32_t number = op == Op::kAddVar
+                                 ? *variable(second)
+                                 : static_cast<int32_t>(static_cast<int8_t>(second)) * kOne;
+      if (op != Op::kSetVar8) return raise(sum(*place, number, false, place));
+      *place = number;
+      return;
+    }
 
     // the robot
     case Op::kRead:
       sensor(true);
       return;
     case Op::kShow:
-      return show(false);
     case Op::kShowYesNo:
-      return show(true);
-    case Op::kSet: {
-      const uint8_t actuator = byte();
-      return robot_set(actuator, pop());
-    }
+      if (!robot_show(value, op == Op::kShowYesNo)) retry();
+      return;
+    case Op::kSet:
+      return robot_set(first, value);
     case Op::kMoveF:
     case Op::kMoveB:
     case Op::kMoveL:
     case Op::kMoveR:
-      steer(code, percent(pop(), 0));
-      robot_motors(task_.left, task_.right);
-      return wait(duration(pop()), Wait::kMove);
     case Op::kMove8F:
     case Op::kMove8B:
     case Op::kMove8L:
-    case Op::kMove8R: {
-      const uint16_t move_ms = static_cast<uint16_t>(byte() * kTenthMs);
-      steer(code, static_cast<int8_t>(byte()));
-      robot_motors(task_.left, task_.right);
-      return wait(move_ms, Wait::kMove);
-    }
+    case Op::kMove8R:
     case Op::kWatchF:
     case Op::kWatchB:
     case Op::kWatchL:
     case Op::kWatchR:
-      steer(code, percent(pop(), 0));
-      return prepare(duration(pop()), true);
     case Op::kWatchForeverF:
     case Op::kWatchForeverB:
     case Op::kWatchForeverL:
     case Op::kWatchForeverR:
-      steer(code, percent(pop(), 0));
-      return prepare(kForever, true);
     case Op::kWait:
-      return wait(duration(pop()), Wait::kPause);
     case Op::kWait8:
-      return wait(static_cast<uint16_t>(byte() * kTenthMs), Wait::kPause);
     case Op::kWatchWait:
-      return prepare(duration(pop()), false);
     case Op::kWatchForeverWait:
-      return prepare(kForever, false);
+      return move(code, values);
     case Op::kUntil:
     case Op::kUntilFar:
-      to = back(op == Op::kUntilFar);
-      return until(pop() != 0, to);
+      return until(value != 0, static_cast<uint16_t>(task_.pc - distance()));
     case Op::kStop:
       return robot_motors(0, 0);
-    case Op::kMotors: {
-      const int8_t power = percent(pop(), -100);
-      return robot_motors(percent(pop(), -100), power);
-    }
-    case Op::kMotors8: {
-      const int8_t power = static_cast<int8_t>(byte());
-      return robot_motors(power, static_cast<int8_t>(byte()));
-    }
+    case Op::kMotors:
+      return robot_motors(percent(value, -100), percent(values[1], -100));
+    case Op::kMotors8:
+      return robot_motors(static_cast<int8_t>(first), static_cast<int8_t>(operands_[1]));
     case Op::kBeep: {
-      const uint16_t hertz = static_cast<uint16_t>(limited(whole(pop()), 31, 20000));
-      const uint32_t sound_ms = duration(pop());
-      robot_beep(hertz, sound_ms);
+      const uint32_t sound_ms = duration(value);
+      robot_beep(static_cast<uint16_t>(limited(whole(values[1]), 31, 20000)), sound_ms);
       return wait(sound_ms, Wait::kPause);
     }
 
     // control
     case Op::kIf:
     case Op::kIfFar:
-      to = forward(op == Op::kIfFar);
-      if (pop() == 0) task_.pc = to;
-      return;
     case Op::kIfNot:
     case Op::kIfNotFar:
-      to = forward(op == Op::kIfNotFar);
-      if (pop() != 0) task_.pc = to;
-      return;
-    case Op::kElse:
-    case Op::kBreak:
-    case Op::kDef:
-      task_.pc = forward(false);
-      return;
-    case Op::kElseFar:
-    case Op::kBreakFar:
-    case Op::kDefFar:
-      task_.pc = forward(true);
-      return;
-    case Op::kForever:
-      return;
-    case Op::kWhile:
-    case Op::kWhileFar:
-      forward(op == Op::kWhileFar);
-      return;
-    case Op::kAgain:
-    case Op::kAgainFar:
-      task_.pc = back(op == Op::kAgainFar);
-      return;
-    case Op::kLoop8:
-      return open_counter(byte());
-    case Op::kLoop:
-    case Op::kLoopFar: {
-      to = forward(op == Op::kLoopFar);
-      const int32_t count = whole(pop());
-      if (count >= 1) return open_counter(count);
-      task_.pc = to;
-      return;
-    }
-    case Op::kNext:
-    case Op::kNextFar:
-      to = back(op == Op::kNextFar);
-      if (--*counter() != 0) {
-        task_.pc = to;
-      } else {
-        task_.looped--;
-      }
+      if ((value != 0) == (op >= Op::kIfNot)) go_on();
       return;
     case Op::kBreakLoop:
     case Op::kBreakLoopFar:
-      task_.pc = forward(op == Op::kBreakLoopFar);
-      counter();
-      task_.looped--;
+      count(true);
+      return go_on();
+    case Op::kElse:
+    case Op::kBreak:
+    case Op::kDef:
+    case Op::kElseFar:
+    case Op::kBreakFar:
+    case Op::kDefFar:
+      return go_on();
+    case Op::kForever:
+    case Op::kWhile:
+    case Op::kWhileFar:
+      return;
+    case Op::kAgain:
+    case Op::kAgainFar:
+      return go_back();
+    case Op::kLoop8:
+      return open_counter(first);
+    case Op::kLoop:
+    case Op::kLoopFar: {
+      const int32_t times = whole(value);
+      if (times >= 1) return open_counter(times);
+      return go_on();
+    }
+    case Op::kNext:
+    case Op::kNextFar:
+      if (count(false)) go_back();
       return;
     case Op::kCall:
     case Op::kCallFar:
-      to = back(op == Op::kCallFar);
       if (task_.called >= kCalls) return raise(Fault::kBadCode);
       task_.calls[task_.called++] = task_.pc;
-      task_.pc = to;
-      return;
+      return go_back();
     case Op::kReturn:
       if (task_.called == 0) return raise(Fault::kBadCode);
       task_.pc = task_.calls[--task_.called];
@@ -377,7 +323,7 @@ __attribute__((always_inline)) inline void Machine::step() {
       task_.pc = at_;
       return;
 
-    // compare and branch
+    // compare and branch: done above
     case Op::kIfVar8Eq:
     case Op::kIfVar8Ne:
     case Op::kIfVar8Lt:
@@ -414,16 +360,15 @@ __attribute__((always_inline)) inline void Machine::step() {
     case Op::kIfRead16Le:
     case Op::kIfRead16Gt:
     case Op::kIfRead16Ge:
-      return compare_and_branch(code);
+      return;  // it is done
   }
-  raise(Fault::kBadCode);
+  *values = value;
 }
 
 // Runs instructions until one must wait, or the budget is used up.
 void Machine::execute() {
   while (left_ != 0 && !must_stop_) {
     left_--;
-    at_ = task_.pc;
     step();
   }
 }
