@@ -4,18 +4,14 @@ namespace tiniscript {
 
 namespace {
 
+// What a comparison with 0 says, from the highest byte alone: for the AVR that is four times
+// shorter.
+bool negative(int32_t value) { return static_cast<int8_t>(value >> 24) < 0; }
+
 // -2^31 has a magnitude of its own: so magnitudes are unsigned.
 uint32_t magnitude(int32_t value) {
   const uint32_t bits = static_cast<uint32_t>(value);
   return value < 0 ? 0 - bits : bits;
-}
-
-// Puts a magnitude and its sign together, where 32 bits hold them.
-Fault in_range(uint32_t size, bool is_negative, int32_t* result) {
-  const int32_t value = static_cast<int32_t>(is_negative ? 0 - size : size);
-  if (value != 0 && (value < 0) != is_negative) return Fault::kOverflow;
-  *result = value;
-  return Fault::kNone;
 }
 
 // Returns a * b / divisor, rounded half up, of magnitudes up to 2^31; 2^32 - 1 where it is more.
@@ -53,82 +49,70 @@ uint32_t rounded(uint32_t size, int32_t places) {
   return size - size % unit;
 }
 
-// Makes `*value` a magnitude; returns whether it was negative.
-__attribute__((noinline)) bool unsign(int32_t* value) {
-  if (*value >= 0) return false;
-  *value = static_cast<int32_t>(0 - static_cast<uint32_t>(*value));
-  return true;
-}
-
 }  // namespace
 
-// a - b is a + ~b + 1; a sum leaves the range where its sign is that of neither part.
+// a - b is ~(~a + b); a sum leaves the range where its sign is that of neither part.
 Fault sum(int32_t a, int32_t b, bool is_sub, int32_t* result) {
-  uint32_t bits = static_cast<uint32_t>(a);
-  if (is_sub) {
-    b = ~b;
-    bits++;
-  }
-  bits += static_cast<uint32_t>(b);
-  const int32_t value = static_cast<int32_t>(bits);
-  if (((a ^ value) & (b ^ value)) < 0) return Fault::kOverflow;
-  *result = value;
+  if (is_sub) a = ~a;
+  const int32_t value = static_cast<int32_t>(static_cast<uint32_t>(a) + static_cast<uint32_t>(b));
+  if (negative((a ^ value) & (b ^ value))) return Fault::kOverflow;
+  *result = is_sub ? ~value : value;
   return Fault::kNone;
 }
 
 Fault calculate(Op op, int32_t* pair) {
-  // NOT, NEG and ABS leave `pair[1]` alone: it may lie behind the stack
-  if (op == Op::kNot) {
-    pair[0] = pair[0] == 0;
-    return Fault::kNone;
+  int32_t a = pair[0];
+  int32_t b = pair[1];  // NOT, NEG and ABS have none: it may lie behind the stack
+  if (op == Op::kNeg || op == Op::kAbs) {
+    if (op == Op::kAbs && a >= 0) return Fault::kNone;
+    b = a;
+    a = 0;
+    op = Op::kSub;
   }
-  if (op == Op::kAnd) {
-    pair[0] &= pair[1];
-    return Fault::kNone;
-  }
-  if (op == Op::kOr) {
-    pair[0] |= pair[1];
-    return Fault::kNone;
-  }
+  if (op < Op::kMul) return sum(a, b, op == Op::kSub, pair);
   if (op >= Op::kEq) {
-    pair[0] = compare(pair[0], pair[1], static_cast<uint8_t>(op));
-    return Fault::kNone;
-  }
-  if (op < Op::kMul) return sum(pair[0], pair[1], op == Op::kSub, pair);
-  if (op == Op::kMin || op == Op::kMax) {
-    if ((pair[0] < pair[1]) != (op == Op::kMin)) pair[0] = pair[1];
-    return Fault::kNone;
-  }
-  const int32_t places = op == Op::kRound ? whole(pair[1]) : 0;
-  bool is_negative = unsign(pair);
-  uint32_t size = static_cast<uint32_t>(pair[0]);
-  if (op == Op::kRound) {
-    size = rounded(size, places);
-  } else if (op == Op::kNeg) {
-    is_negative = !is_negative;
-  } else if (op == Op::kAbs) {
-    is_negative = false;
-  } else {
-    const bool is_other_negative = unsign(pair + 1);
-    const bool differ = is_negative != is_other_negative;
-    uint32_t factor = static_cast<uint32_t>(pair[1]);
-    uint32_t divisor = kOne;
-    if (op != Op::kMul) {
-      if (factor == 0) return Fault::kDivideByZero;
-      divisor = factor;
-      factor = kOne;
-    }
-    if (op == Op::kMod) {
-      // the exact remainder; it takes the sign of the divisor
-      size %= divisor;
-      if (size != 0 && differ) size = divisor - size;
-      is_negative = is_other_negative;
+    if (op == Op::kAnd) {
+      a &= b;
+    } else if (op == Op::kOr) {
+      a |= b;
     } else {
-      size = scaled(size, factor, divisor);
-      is_negative = differ;
+      if (op == Op::kNot) {
+        b = 0;
+        op = Op::kEq;
+      }
+      a = compare(a, b, static_cast<uint8_t>(op));
     }
+  } else if (op == Op::kMin || op == Op::kMax) {
+    if ((a < b) != (op == Op::kMin)) a = b;
+  } else {
+    bool is_negative = negative(a);
+    uint32_t size = magnitude(a);
+    if (op == Op::kRound) {
+      size = rounded(size, whole(b));
+    } else {
+      const bool differ = is_negative != negative(b);
+      uint32_t factor = magnitude(b);
+      uint32_t divisor = kOne;
+      if (op != Op::kMul) {
+        if (factor == 0) return Fault::kDivideByZero;
+        divisor = factor;
+        factor = kOne;
+      }
+      is_negative = differ;
+      if (op == Op::kMod) {
+        // the exact remainder; it takes the sign of the divisor
+        size %= divisor;
+        if (size != 0 && differ) size = divisor - size;
+        is_negative = negative(b);
+      } else {
+        size = scaled(size, factor, divisor);
+      }
+    }
+    a = static_cast<int32_t>(is_negative ? 0 - size : size);
+    if (a != 0 && negative(a) != is_negative) return Fault::kOverflow;
   }
-  return in_range(size, is_negative, pair);
+  *pair = a;
+  return Fault::kNone;
 }
 
 bool compare(int32_t a, int32_t b, uint8_t op) {
@@ -167,11 +151,11 @@ Fault random_between(int32_t low, int32_t high, uint32_t state, int32_t* result)
     first += count;
     count = -count;
   }
-  const uint32_t step = state % (static_cast<uint32_t>(count) + 1);
-  int32_t pair[] = {first + static_cast<int32_t>(step), int32_t{kOne} * kOne};
-  const Fault fault = calculate(Op::kMul, pair);
-  *result = pair[0];
-  return fault;
+  first += static_cast<int32_t>(state % (static_cast<uint32_t>(count) + 1));
+  const int32_t most = 0x7fffffff / kOne;
+  if (first > most || first < -most) return Fault::kOverflow;
+  *result = first * kOne;
+  return Fault::kNone;
 }
 
 }  // namespace tiniscript
