@@ -11,17 +11,11 @@ constexpr uint8_t kLateMs = 20;  // later than this, a program's own clock no lo
 
 void Machine::start(const uint8_t* code, uint16_t length, uint8_t sensors, uint32_t seed,
                     uint32_t now_ms) {
-  status_ = Status::kRunning;
-  fault_ = Fault::kNone;
+  *this = Machine();  // all members are 0
   sensors_ = sensors < kDevices ? sensors : kDevices;
-  at_ = 0;
-  left_ = 0;
   length_ = length;
-  depth_ = 0;
   code_ = code;
-  operands_ = code;
   now_ms_ = now_ms;
-  task_ = Task();
   task_.random = seed;
   task_.started_ms = now_ms;
   task_.clock_ms = now_ms;
@@ -83,13 +77,15 @@ void Machine::until(bool stop, uint16_t check) {
     if (task_.drives) robot_motors(task_.left, task_.right);
   }
   const uint32_t gone_ms = now_ms_ - task_.begun_ms;
-  const uint32_t next_ms = gone_ms - gone_ms % kCheckMs + kCheckMs;
-  if (task_.move_ms != kForever && next_ms >= task_.move_ms) {
-    sleep(task_.begun_ms + task_.move_ms, task_.drives ? Wait::kMove : Wait::kPause);
+  uint32_t next_ms = gone_ms - gone_ms % kCheckMs + kCheckMs;  // never as much as kForever
+  Wait what = Wait::kPause;
+  if (next_ms >= task_.move_ms) {
+    next_ms = task_.move_ms;
+    if (task_.drives) what = Wait::kMove;
   } else {
     task_.pc = check;
-    sleep(task_.begun_ms + next_ms, Wait::kPause);
   }
+  sleep(task_.begun_ms + next_ms, what);
 }
 
 // Runs this instruction again at the next tick: the robot is not ready.
