@@ -8,6 +8,8 @@ namespace {
 
 enum class Kind : uint8_t { kCode, kIf, kRepeat, kCount };
 
+constexpr uint16_t kFarAway = 0xffff;  // an offset behind any code
+
 // An open block. An IF counts as one word, a loop as two.
 struct Block {
   uint16_t end;    // 0: a loop that names none and has no BREAK yet
@@ -44,7 +46,7 @@ class Verifier {
   void between();
 
   // blocks
-  void open(Kind kind, bool has_end);
+  void open(Kind kind);
   void needs(uint8_t counters, uint8_t calls);
 
   // a rule for each role that needs one
@@ -60,9 +62,9 @@ class Verifier {
 
   Rule rule_;  // the first that is broken
   const uint8_t* code_;
+  const uint8_t* reading_;  // the next operand
   uint16_t length_;
-  uint8_t sensors_;
-  uint8_t actuators_;
+  uint8_t limits_[8];      // of operands of one byte: the first value that is too much
   uint8_t depth_;          // values on the stack
   uint8_t words_;          // of open blocks
   uint8_t counters_;       // counted loops open in this routine
@@ -70,9 +72,7 @@ class Verifier {
   uint8_t most_calls_;
   uint16_t at_;         // where the instruction that is looked at begins
   uint16_t after_;      // where the next one begins
-  uint16_t reading_;    // where the next operand begins
-  uint16_t target_;     // where the instruction jumps,
-  bool is_far_;         // or 65536 bytes further: behind any code
+  uint16_t target_;     // where the instruction jumps; 0: nowhere
   uint16_t check_;      // where the open check of an UNTIL begins, or 0
   uint16_t def_start_;  // of the open DEF
   uint16_t def_end_;    // or 0 where none is open
@@ -89,11 +89,15 @@ __attribute__((noinline)) Rule Verifier::run(const uint8_t* code, uint16_t lengt
                                              uint8_t actuators) {
   code_ = code;
   length_ = length;
-  sensors_ = sensors;
-  actuators_ = actuators;
+  limits_[static_cast<uint8_t>(Operand::kPower)] = kPowerHigh + 1;
+  limits_[static_cast<uint8_t>(Operand::kPercent)] = 2 * kPercentHigh + 1;
+  limits_[static_cast<uint8_t>(Operand::kCount)] = 255;
+  limits_[static_cast<uint8_t>(Operand::kVariable)] = kVariables;
+  limits_[static_cast<uint8_t>(Operand::kSensor)] = sensors;
+  limits_[static_cast<uint8_t>(Operand::kActuator)] = actuators;
   top_ = blocks_;
   join_ = joins_;
-  join_->target = 0xffff;
+  join_->target = kFarAway;
   def_ = defs_;
   while (at_ < length_) {
     instruction();
@@ -116,10 +120,11 @@ void Verifier::instruction() {
   if (shape.row == nullptr) return refuse(Rule::kUnknownOpcode);
   after_ = static_cast<uint16_t>(at_ + shape.size());
   if (after_ > length_) return refuse(Rule::kCutOperand);
-  reading_ = static_cast<uint16_t>(at_ + 1);
-  uint8_t operands = shape.operands();
-  for (; operands != 0; operands = static_cast<uint8_t>(operands >> 4)) operand(operands & 15);
-  if (shape.has_third()) operand(static_cast<uint8_t>(Operand::kFwd8));
+  reading_ = code_ + at_ + 1;
+  target_ = 0;
+  uint16_t operands = shape.operands();
+  if (shape.has_third()) operands |= static_cast<uint8_t>(Operand::kFwd8) << 8;
+  for (; operands != 0; operands = static_cast<uint16_t>(operands >> 4)) operand(operands & 15);
   stack(shape.pops(), shape.pushes());
 
   const Role role = shape.role();
@@ -144,17 +149,16 @@ void Verifier::instruction() {
     case Role::kElse:
       return else_();
     case Role::kRepeat:
-      return open(Kind::kRepeat, shape.size() > 1);
+      return open(Kind::kRepeat);
     case Role::kCount:
-      open(Kind::kCount, shape.pops() != 0);
+      open(Kind::kCount);
       counters_++;
       return needs(counters_, most_calls_);
+    case Role::kNext:
+      counters_--;
+      return close_loop(Kind::kCount);
     case Role::kAgain:
       return close_loop(Kind::kRepeat);
-    case Role::kNext:
-      close_loop(Kind::kCount);
-      counters_--;
-      return;
     case Role::kBreak:
       return leave(Kind::kRepeat);
     case Role::kDrop:
@@ -186,46 +190,24 @@ void Verifier::arrive() {
 
 void Verifier::operand(uint8_t kind) {
   const Operand operand = static_cast<Operand>(kind);
-  uint8_t value = code_[reading_++];
+  uint8_t value = *reading_++;
   if (operand >= Operand::kFwd8) {
     // kAny32 is skipped as it is: nothing follows it
     uint16_t distance = value;
-    if (operand >= Operand::kAny16) distance |= static_cast<uint16_t>(code_[reading_++] << 8);
+    if (operand >= Operand::kAny16) distance |= static_cast<uint16_t>(*reading_++ << 8);
     if (operand == Operand::kBack8 || operand == Operand::kBack16) {
       // where it leads to before the code, this is more than `after_`: no start of anything
       target_ = static_cast<uint16_t>(after_ - distance);
     } else {
       target_ = static_cast<uint16_t>(after_ + distance);
-      is_far_ = target_ < after_;
+      if (target_ < after_) target_ = kFarAway;
     }
     return;
   }
-  uint8_t limit;
-  switch (operand) {
-    case Operand::kPower:
-      limit = kPowerHigh + 1;
-      break;
-    case Operand::kPercent:
-      value = static_cast<uint8_t>(value + kPercentHigh);
-      limit = 2 * kPercentHigh + 1;
-      break;
-    case Operand::kCount:
-      value--;
-      limit = 255;
-      break;
-    case Operand::kVariable:
-      limit = kVariables;
-      break;
-    case Operand::kSensor:
-      limit = sensors_;
-      break;
-    case Operand::kActuator:
-      limit = actuators_;
-      break;
-    default:
-      return;  // any value
-  }
-  if (value < limit) return;
+  if (operand == Operand::kAny8) return;
+  if (operand == Operand::kPercent) value = static_cast<uint8_t>(value + kPercentHigh);
+  if (operand == Operand::kCount) value--;
+  if (value < limits_[kind]) return;
   refuse(operand >= Operand::kSensor ? Rule::kNoSuchDevice : Rule::kBadOperand);
 }
 
@@ -246,12 +228,11 @@ void Verifier::between() {
 }
 
 // Opens a block that ends at the target; an IF shares the block around it that ends there too.
-// A loop without an end ends where its first BREAK says.
-void Verifier::open(Kind kind, bool has_end) {
-  uint16_t end = 0;
-  if (has_end) {
-    end = target_;
-    if (is_far_ || end > length_) return refuse(Rule::kBadTarget);
+// A loop without a target ends where its first BREAK says.
+void Verifier::open(Kind kind) {
+  const uint16_t end = target_;
+  if (end != 0) {
+    if (end > length_) return refuse(Rule::kBadTarget);
     if (top_->end != 0 && end >= top_->end) {
       // the end of a loop lies behind what closes it
       if (end != top_->end || top_->kind != Kind::kIf) return refuse(Rule::kBadTarget);
@@ -267,7 +248,7 @@ void Verifier::open(Kind kind, bool has_end) {
 }
 
 // Notes what is open at once, and refuses what is too deep.
-void Verifier::needs(uint8_t counters, uint8_t calls) {
+__attribute__((noinline)) void Verifier::needs(uint8_t counters, uint8_t calls) {
   if (counters > kCounters || calls > kCalls) refuse(Rule::kTooDeep);
   if (most_counters_ < counters) most_counters_ = counters;
   if (most_calls_ < calls) most_calls_ = calls;
@@ -275,7 +256,7 @@ void Verifier::needs(uint8_t counters, uint8_t calls) {
 
 void Verifier::join() {
   if (join_ == joins_ + kJoins) return refuse(Rule::kTooDeep);
-  if (is_far_ || target_ >= length_ || target_ > join_->target) return refuse(Rule::kBadTarget);
+  if (target_ >= length_ || target_ > join_->target) return refuse(Rule::kBadTarget);
   join_++;
   join_->target = target_;
   join_->depth = static_cast<uint8_t>(depth_ + 1);
@@ -289,16 +270,15 @@ void Verifier::until() {
 }
 
 void Verifier::if_() {
-  if (top_->kind == Kind::kRepeat && top_->end == target_ && !is_far_)
-    return;  // it leaves the loop
-  open(Kind::kIf, true);
+  if (top_->kind == Kind::kRepeat && top_->end == target_) return;  // it leaves the loop
+  open(Kind::kIf);
 }
 
 void Verifier::else_() {
   if (top_->kind != Kind::kIf || top_->end != after_) return refuse(Rule::kNotOpen);
   top_--;
   words_--;
-  open(Kind::kIf, true);
+  open(Kind::kIf);
 }
 
 void Verifier::close_loop(Kind kind) {
@@ -314,7 +294,7 @@ void Verifier::leave(Kind kind) {
   Block* loop = top_;
   while (loop->kind == Kind::kIf) loop--;
   if (loop->kind != kind) return refuse(Rule::kNotOpen);
-  if (is_far_ || target_ > length_) return refuse(Rule::kBadTarget);
+  if (target_ > length_) return refuse(Rule::kBadTarget);
   if (loop->end == 0) loop->end = target_;
   if (loop->end != target_) refuse(Rule::kBadLoopEnd);
 }
@@ -323,7 +303,7 @@ void Verifier::def() {
   if (top_ != blocks_ || def_end_ != 0) return refuse(Rule::kBadDef);
   if (def_ == defs_ + kDefs) return refuse(Rule::kTooManyDefs);
   def_start_ = after_;
-  def_end_ = is_far_ ? 0xffff : target_;
+  def_end_ = target_;
   most_counters_ = most_calls_ = 0;
 }
 

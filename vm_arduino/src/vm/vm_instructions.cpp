@@ -140,6 +140,7 @@ __attribute__((always_inline)) inline void Machine::step() {
   if (code >= kFamilies) return compare_and_branch(code);
   int32_t* const values = task_.stack + left;
   int32_t value = *values;
+  const bool is_true = value != 0;
   const uint8_t first = task_.pc == at + 1 ? 0 : operands_[0];
   const Op op = static_cast<Op>(code);
   int32_t* place;
@@ -201,7 +202,7 @@ __attribute__((always_inline)) inline void Machine::step() {
     case Op::kAndThenFar:
     case Op::kOrElse:
     case Op::kOrElseFar:
-      if ((value != 0) == (op >= Op::kOrElse)) {
+      if (is_true == (op >= Op::kOrElse)) {
         task_.depth++;
         go_on();
       }
@@ -257,7 +258,7 @@ __attribute__((always_inline)) inline void Machine::step() {
       return move(code, values);
     case Op::kUntil:
     case Op::kUntilFar:
-      return until(value != 0, static_cast<uint16_t>(task_.pc - distance()));
+      return until(is_true, static_cast<uint16_t>(task_.pc - distance()));
     case Op::kStop:
       return robot_motors(0, 0);
     case Op::kMotors:
@@ -275,7 +276,7 @@ __attribute__((always_inline)) inline void Machine::step() {
     case Op::kIfFar:
     case Op::kIfNot:
     case Op::kIfNotFar:
-      if ((value != 0) == (op >= Op::kIfNot)) go_on();
+      if (is_true == (op >= Op::kIfNot)) go_on();
       return;
     case Op::kBreakLoop:
     case Op::kBreakLoopFar:
