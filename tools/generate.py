@@ -303,7 +303,7 @@ def operand_classes() -> list[str]:
 def op_rows() -> str:
     """Return the two tables that a verifier reads: which row an opcode has, and the rows.
 
-    A row is three bytes: pushes (1 bit), pops (2) and role (5); whether the third operand is
+    A row is three bytes: role (5 bits), pushes (1) and pops (2); whether the third operand is
     fwd8 (1) and the size (7); the second operand (4) and the first (4). From kFamilies on an
     opcode is `family of eight + comparator`, and all comparators share the row of the family.
     """
@@ -314,7 +314,7 @@ def op_rows() -> str:
     for op in bytecode.OPS:
         kinds = [classes.index(operand_class(each.kind)) + 1 for each in op.operands] + [0] * 3
         row = (
-            op.pushes << 7 | op.pops << 5 | list(bytecode.ROLES).index(op.role),
+            list(bytecode.ROLES).index(op.role) << 3 | op.pushes << 2 | op.pops,
             (kinds[2] > 0) << 7 | op.size,
             kinds[1] << 4 | kinds[0],
         )
@@ -332,7 +332,7 @@ def op_rows() -> str:
         line = ", ".join(str(index_of.get(k, 0)) for k in codes[start : start + 16])
         lines.append(f"    {line},  // {start:02x}\n")
     lines.append(
-        "};\n\n// Pushes, pops, role; whether the third is fwd8, size; second and first operand.\n"
+        "};\n\n// Role, pushes, pops; whether the third is fwd8, size; second and first operand.\n"
     )
     lines.append("static const uint8_t kOpRows[][3] in_flash = {\n")
     for row, names in rows.items():

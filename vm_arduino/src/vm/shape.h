@@ -16,9 +16,9 @@ namespace tiniscript {
 struct Shape {
   const uint8_t* row;
 
-  uint8_t pushes() const { return static_cast<uint8_t>(flash_byte(row) >> 7); }
-  uint8_t pops() const { return static_cast<uint8_t>(flash_byte(row) >> 5) & 3; }
-  Role role() const { return static_cast<Role>(flash_byte(row) & 0x1f); }
+  uint8_t pushes() const { return (flash_byte(row) & 4) != 0; }
+  uint8_t pops() const { return flash_byte(row) & 3; }
+  Role role() const { return static_cast<Role>(flash_byte(row) >> 3); }
   uint8_t size() const { return flash_byte(row + 1) & 0x7f; }
   uint8_t operands() const { return flash_byte(row + 2); }  // 4 bits for each of the first two
   bool has_third() const { return (flash_byte(row + 1) & 0x80) != 0; }

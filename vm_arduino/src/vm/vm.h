@@ -49,18 +49,14 @@ class Machine {
   void raise(Fault fault);
 
   // operands and values
-  uint16_t word(const uint8_t* operand) const;
-  uint16_t distance() const;
   int32_t* variable(uint8_t number);
-  int32_t* sensor(bool must_read);
+  int32_t* sensor(uint8_t number, bool must_read);
 
   // what several instructions share
-  void go_on();
-  void go_back();
-  void move(uint8_t code, const int32_t* values);
+  void move(uint8_t code, uint16_t operand, const int32_t* values);
   void open_counter(int32_t count);
   bool count(bool drops);
-  void compare_and_branch(uint8_t code);
+  void compare_and_branch(uint8_t code, uint16_t operand);
 
   Status status_;
   Fault fault_;
@@ -71,7 +67,6 @@ class Machine {
   uint16_t left_;
   uint16_t length_;
   const uint8_t* code_;
-  const uint8_t* operands_;  // of the instruction that runs
   uint32_t now_ms_;
   Task task_;
 };

@@ -11,6 +11,16 @@ namespace tiniscript {
 
 namespace {
 
+// The two operands of one byte that a word of operands is, and a number with a sign.
+uint8_t low(uint16_t operand) { return static_cast<uint8_t>(operand & 0xff); }
+uint8_t high(uint16_t operand) { return static_cast<uint8_t>(operand >> 8); }
+int8_t signed8(uint8_t operand) { return static_cast<int8_t>(operand); }
+
+uint16_t word(const uint8_t* bytes) { return static_cast<uint16_t>(bytes[0] | bytes[1] << 8); }
+
+// A whole number, as thousandths.
+int32_t thousandths(int16_t whole) { return int32_t{whole} * kOne; }
+
 constexpr uint8_t kTenthMs = 100;
 
 // Milliseconds: a time in thousandths of a second, not below 0.
@@ -23,20 +33,6 @@ int8_t percent(int32_t power, int8_t low) {
 
 }  // namespace
 
-// An operand of two bytes.
-uint16_t Machine::word(const uint8_t* operand) const {
-  return static_cast<uint16_t>(operand[0] | operand[1] << 8);
-}
-
-// How far an instruction whose one operand is a distance jumps.
-uint16_t Machine::distance() const {
-  return static_cast<uint16_t>(task_.pc - at_) == 2 ? operands_[0] : word(operands_);
-}
-
-void Machine::go_on() { task_.pc = static_cast<uint16_t>(task_.pc + distance()); }
-
-void Machine::go_back() { task_.pc = static_cast<uint16_t>(task_.pc - distance()); }
-
 int32_t* Machine::variable(uint8_t number) {
   if (number >= kVariables) {
     raise(Fault::kBadCode);
@@ -47,8 +43,7 @@ int32_t* Machine::variable(uint8_t number) {
 
 // The kept reading of a sensor; takes a reading first where it `must_read`. Null where the robot
 // is not ready.
-int32_t* Machine::sensor(bool must_read) {
-  const uint8_t number = operands_[0];
+int32_t* Machine::sensor(uint8_t number, bool must_read) {
   if (number >= sensors_) {
     raise(Fault::kBadCode);
     return nullptr;
@@ -63,17 +58,17 @@ int32_t* Machine::sensor(bool must_read) {
 
 // MOVE to WATCH_FOREVER and WAIT to WATCH_FOREVER_WAIT. Each comes in four forms: with a time from
 // the stack, with bytes, watched, and watched forever.
-void Machine::move(uint8_t code, const int32_t* values) {
+void Machine::move(uint8_t code, uint16_t operand, const int32_t* values) {
   const bool drives = code < static_cast<uint8_t>(Op::kWait);
   const uint8_t form = (drives ? code >> 2 : code) & 3;
   uint32_t move_ms = kForever;
   if (form == 1) {
-    move_ms = static_cast<uint16_t>(operands_[0] * kTenthMs);
+    move_ms = static_cast<uint16_t>(low(operand) * kTenthMs);
   } else if (form != 3) {
     move_ms = duration(*values++);
   }
   if (drives) {
-    const int8_t power = form == 1 ? static_cast<int8_t>(operands_[1]) : percent(*values, 0);
+    const int8_t power = form == 1 ? signed8(high(operand)) : percent(*values, 0);
     // the last two bits say which way: F, B, L, R
     const uint8_t way = code & 3;
     const int8_t reversed = static_cast<int8_t>(-power);
@@ -109,14 +104,14 @@ bool Machine::count(bool drops) {
 
 // Goes on where a comparison is TRUE, and else to its target. 80 + 10 for each source + 8 for
 // the wide constant + the comparator.
-void Machine::compare_and_branch(uint8_t code) {
-  const int32_t* const value = code < 0x90 ? variable(operands_[0]) : sensor(code >= 0xa0);
+void Machine::compare_and_branch(uint8_t code, uint16_t operand) {
+  const uint8_t number = low(operand);
+  const int32_t* const value = code < 0x90 ? variable(number) : sensor(number, code >= 0xa0);
   if (value == nullptr) return;
-  const uint8_t* last = operands_ + 2;
-  int16_t number = operands_[1];
-  if ((code & 8) != 0) number = static_cast<int16_t>(word(last++ - 1));
-  if (!compare(*value, int32_t{number} * kOne, code)) {
-    task_.pc = static_cast<uint16_t>(task_.pc + *last);
+  int16_t constant = high(operand);
+  if ((code & 8) != 0) constant = static_cast<int16_t>(word(code_ + at_ + 2));
+  if (!compare(*value, thousandths(constant), code)) {
+    task_.pc = static_cast<uint16_t>(task_.pc + code_[task_.pc - 1]);
   }
 }
 
@@ -129,46 +124,52 @@ __attribute__((always_inline)) inline void Machine::step() {
   if (at > length_) return raise(Fault::kBadCode);
   const uint8_t* const bytes = code_ + at;
   const uint8_t code = *bytes;
-  operands_ = bytes + 1;
   const Shape shape = shape_of(code);
   if (shape.row == nullptr || depth_ < shape.pops()) return raise(Fault::kBadCode);
-  task_.pc = static_cast<uint16_t>(at + shape.size());
+  const uint8_t size = shape.size();
+  const uint16_t pc = static_cast<uint16_t>(at + size);
+  task_.pc = pc;
   const uint8_t left = static_cast<uint8_t>(depth_ - shape.pops());
   task_.depth = static_cast<uint8_t>(left + shape.pushes());
-  if (task_.pc > length_ + 1 || task_.depth > kStackValues) return raise(Fault::kBadCode);
+  if (pc > length_ + 1 || task_.depth > kStackValues) return raise(Fault::kBadCode);
+  uint16_t operand = 0;  // the first one or two bytes
+  if (size > 1) operand = bytes[1];
+  if (size > 2) operand |= static_cast<uint16_t>(bytes[2] << 8);
   // one room for them all, and half as large a table of the others
-  if (code >= kFamilies) return compare_and_branch(code);
+  if (code >= kFamilies) return compare_and_branch(code, operand);
   int32_t* const values = task_.stack + left;
   int32_t value = *values;
   const bool is_true = value != 0;
-  const uint8_t first = task_.pc == at + 1 ? 0 : operands_[0];
+  const uint8_t first = low(operand);
+  // where a jump leads
+  const uint16_t to = static_cast<uint16_t>(pc + operand);
+  const uint16_t back = static_cast<uint16_t>(pc - operand);
   const Op op = static_cast<Op>(code);
   int32_t* place;
   switch (op) {
     // values
     case Op::kPush8:
-      value = static_cast<int32_t>(static_cast<int8_t>(first)) * kOne;
+      value = thousandths(signed8(first));
       break;
     case Op::kPush16:
-      value = static_cast<int32_t>(static_cast<int16_t>(word(operands_))) * kOne;
+      value = thousandths(static_cast<int16_t>(operand));
       break;
     case Op::kPushMilli:
-      value = static_cast<int16_t>(word(operands_));
+      value = static_cast<int16_t>(operand);
       break;
     case Op::kPush32:
-      *values =
-          static_cast<int32_t>(word(operands_) | static_cast<uint32_t>(word(operands_ + 2)) << 16);
-      return;
+      value = static_cast<int32_t>(operand | static_cast<uint32_t>(word(bytes + 3)) << 16);
+      break;
     case Op::kPushFalse:
     case Op::kPushTrue:
-      value = op == Op::kPushTrue;
+      value = op == Op::kPushTrue ? 1 : 0;
       break;
     case Op::kPushVar:
       value = *variable(first);
       break;
     case Op::kPushSensor:
     case Op::kPushRead:
-      place = sensor(op == Op::kPushRead);
+      place = sensor(first, op == Op::kPushRead);
       if (place != nullptr) value = *place;
       break;
     case Op::kTime:
@@ -200,12 +201,15 @@ __attribute__((always_inline)) inline void Machine::step() {
       return raise(calculate(op, values));
     case Op::kAndThen:
     case Op::kAndThenFar:
+      if (is_true) return;
+      task_.depth++;
+      task_.pc = to;
+      return;
     case Op::kOrElse:
     case Op::kOrElseFar:
-      if (is_true == (op >= Op::kOrElse)) {
-        task_.depth++;
-        go_on();
-      }
+      if (!is_true) return;
+      task_.depth++;
+      task_.pc = to;
       return;
 
     // variables
@@ -216,10 +220,8 @@ __attribute__((always_inline)) inline void Machine::step() {
     case Op::kAddVar8:
     case Op::kAddVar: {
       place = variable(first);
-      const uint8_t second = operands_[1];
-      const int32_t number = op == Op::kAddVar
-                                 ? *variable(second)
-                                 : static_cast<int32_t>(static_cast<int8_t>(second)) * kOne;
+      const uint8_t second = high(operand);
+      const int32_t number = op == Op::kAddVar ? *variable(second) : thousandths(signed8(second));
       if (op != Op::kSetVar8) return raise(sum(*place, number, false, place));
       *place = number;
       return;
@@ -227,7 +229,7 @@ __attribute__((always_inline)) inline void Machine::step() {
 
     // the robot
     case Op::kRead:
-      sensor(true);
+      sensor(first, true);
       return;
     case Op::kShow:
     case Op::kShowYesNo:
@@ -255,16 +257,16 @@ __attribute__((always_inline)) inline void Machine::step() {
     case Op::kWait8:
     case Op::kWatchWait:
     case Op::kWatchForeverWait:
-      return move(code, values);
+      return move(code, operand, values);
     case Op::kUntil:
     case Op::kUntilFar:
-      return until(is_true, static_cast<uint16_t>(task_.pc - distance()));
+      return until(is_true, back);
     case Op::kStop:
       return robot_motors(0, 0);
     case Op::kMotors:
       return robot_motors(percent(value, -100), percent(values[1], -100));
     case Op::kMotors8:
-      return robot_motors(static_cast<int8_t>(first), static_cast<int8_t>(operands_[1]));
+      return robot_motors(signed8(first), signed8(high(operand)));
     case Op::kBeep: {
       const uint32_t sound_ms = duration(value);
       robot_beep(static_cast<uint16_t>(limited(whole(values[1]), 31, 20000)), sound_ms);
@@ -274,45 +276,52 @@ __attribute__((always_inline)) inline void Machine::step() {
     // control
     case Op::kIf:
     case Op::kIfFar:
+      if (!is_true) task_.pc = to;
+      return;
     case Op::kIfNot:
     case Op::kIfNotFar:
-      if (is_true == (op >= Op::kIfNot)) go_on();
+      if (is_true) task_.pc = to;
       return;
     case Op::kBreakLoop:
     case Op::kBreakLoopFar:
       count(true);
-      return go_on();
+      task_.pc = to;
+      return;
     case Op::kElse:
     case Op::kBreak:
     case Op::kDef:
     case Op::kElseFar:
     case Op::kBreakFar:
     case Op::kDefFar:
-      return go_on();
+      task_.pc = to;
+      return;
     case Op::kForever:
     case Op::kWhile:
     case Op::kWhileFar:
       return;
     case Op::kAgain:
     case Op::kAgainFar:
-      return go_back();
+      task_.pc = back;
+      return;
     case Op::kLoop8:
       return open_counter(first);
     case Op::kLoop:
     case Op::kLoopFar: {
       const int32_t times = whole(value);
       if (times >= 1) return open_counter(times);
-      return go_on();
+      task_.pc = to;
+      return;
     }
     case Op::kNext:
     case Op::kNextFar:
-      if (count(false)) go_back();
+      if (count(false)) task_.pc = back;
       return;
     case Op::kCall:
     case Op::kCallFar:
       if (task_.called >= kCalls) return raise(Fault::kBadCode);
-      task_.calls[task_.called++] = task_.pc;
-      return go_back();
+      task_.calls[task_.called++] = pc;
+      task_.pc = back;
+      return;
     case Op::kReturn:
       if (task_.called == 0) return raise(Fault::kBadCode);
       task_.pc = task_.calls[--task_.called];
