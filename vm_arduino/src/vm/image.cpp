@@ -33,7 +33,7 @@ Refusal unpack(const uint8_t* data, size_t length, uint16_t kit, Image* image) {
   return Refusal::kNone;
 }
 
-uint32_t crc32(uint32_t crc, const uint8_t* data, uint16_t length) {
+__attribute__((noinline)) uint32_t crc32(uint32_t crc, const uint8_t* data, uint16_t length) {
   crc = ~crc;
   while (length-- != 0) {
     crc ^= *data++;

@@ -9,7 +9,7 @@ namespace {
 bool negative(int32_t value) { return static_cast<int8_t>(value >> 24) < 0; }
 
 // -2^31 has a magnitude of its own: so magnitudes are unsigned.
-uint32_t magnitude(int32_t value) {
+__attribute__((noinline)) uint32_t magnitude(int32_t value) {
   const uint32_t bits = static_cast<uint32_t>(value);
   return value < 0 ? 0 - bits : bits;
 }
@@ -115,7 +115,7 @@ Fault calculate(Op op, int32_t* pair) {
   return Fault::kNone;
 }
 
-bool compare(int32_t a, int32_t b, uint8_t op) {
+__attribute__((noinline)) bool compare(int32_t a, int32_t b, uint8_t op) {
   const uint8_t comparator = op & 7;
   const bool is_opposite = (comparator & 1) != 0;  // NE of EQ, GE of LT, LE of GT
   bool is;

@@ -42,13 +42,13 @@ Status Machine::tick(uint32_t now_ms, uint16_t budget) {
 }
 
 // Begins a wait where the one before ended, or now where that is too long ago.
-void Machine::wait(uint32_t duration_ms, Wait what) {
+__attribute__((noinline)) void Machine::wait(uint32_t duration_ms, Wait what) {
   begin();
   task_.clock_ms += duration_ms;
   sleep(task_.clock_ms, what);
 }
 
-void Machine::sleep(uint32_t wake_ms, Wait what) {
+__attribute__((noinline)) void Machine::sleep(uint32_t wake_ms, Wait what) {
   task_.clock_ms = wake_ms;
   task_.wake_ms = wake_ms;
   task_.wait = what;
@@ -57,7 +57,7 @@ void Machine::sleep(uint32_t wake_ms, Wait what) {
 }
 
 // Sets the program's clock to when a wait or a move that comes now begins.
-void Machine::begin() {
+__attribute__((noinline)) void Machine::begin() {
   if (now_ms_ - task_.clock_ms > kLateMs) task_.clock_ms = now_ms_;
 }
 
@@ -89,7 +89,7 @@ void Machine::until(bool stop, uint16_t check) {
 }
 
 // Runs this instruction again at the next tick: the robot is not ready.
-void Machine::retry() {
+__attribute__((noinline)) void Machine::retry() {
   task_.pc = at_;
   task_.depth = depth_;
   must_stop_ = true;
