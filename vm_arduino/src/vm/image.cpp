@@ -17,8 +17,8 @@ Refusal unpack(const uint8_t* data, size_t length, uint16_t kit, Image* image) {
   image->code_length = word(data + kCodeLengthAt);
   image->kit = word(data + kKitAt);
   image->start = data[kStartAt];
-  image->checksum = word(data + kChecksumAt) | static_cast<uint32_t>(word(data + kChecksumAt + 2))
-                                                   << 16;
+  image->checksum = 0;
+  for (uint8_t k = 4; k-- != 0;) image->checksum = image->checksum << 8 | data[kChecksumAt + k];
   if (length - kHeaderBytes < image->code_length) return Refusal::kTruncated;
   if (length - kHeaderBytes > image->code_length) return Refusal::kTrailing;
   const uint32_t crc = crc32(crc32(0, data, kChecksumAt), image->code, image->code_length);

@@ -118,20 +118,15 @@ Fault calculate(Op op, int32_t* pair) {
 __attribute__((noinline)) bool compare(int32_t a, int32_t b, uint8_t op) {
   const uint8_t comparator = op & 7;
   const bool is_opposite = (comparator & 1) != 0;  // NE of EQ, GE of LT, LE of GT
-  bool is;
-  if (comparator < 2) {
-    is = a == b;
-  } else if (comparator == 3 || comparator == 4) {
-    is = a > b;
-  } else {
-    is = a < b;
-  }
+  bool is = a < b;
+  if (comparator < 2) is = a == b;
+  if (comparator == 3 || comparator == 4) is = a > b;
   return is != is_opposite;
 }
 
 int32_t whole(int32_t a) {
   const int32_t units = static_cast<int32_t>((magnitude(a) + kOne / 2) / kOne);
-  return a < 0 ? -units : units;
+  return negative(a) ? -units : units;
 }
 
 int16_t limited(int32_t value, int16_t low, int16_t high) {
@@ -152,8 +147,8 @@ Fault random_between(int32_t low, int32_t high, uint32_t state, int32_t* result)
     count = -count;
   }
   first += static_cast<int32_t>(state % (static_cast<uint32_t>(count) + 1));
-  const int32_t most = 0x7fffffff / kOne;
-  if (first > most || first < -most) return Fault::kOverflow;
+  const uint32_t most = 0x7fffffff / kOne;
+  if (magnitude(first) > most) return Fault::kOverflow;
   *result = first * kOne;
   return Fault::kNone;
 }

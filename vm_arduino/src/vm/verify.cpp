@@ -311,10 +311,10 @@ void Verifier::return_() {
   if (def_end_ == 0) return refuse(Rule::kNotOpen);
   if (top_ != blocks_) return refuse(Rule::kStillOpen);
   if (def_end_ != after_) return refuse(Rule::kBadDef);
-  def_->start = def_start_;
-  def_->counters = most_counters_;
-  def_->calls = most_calls_;
-  def_++;
+  Def* const noted = def_++;
+  noted->start = def_start_;
+  noted->counters = most_counters_;
+  noted->calls = most_calls_;
   def_end_ = 0;
 }
 

@@ -44,8 +44,7 @@ Status Machine::tick(uint32_t now_ms, uint16_t budget) {
 // Begins a wait where the one before ended, or now where that is too long ago.
 __attribute__((noinline)) void Machine::wait(uint32_t duration_ms, Wait what) {
   begin();
-  task_.clock_ms += duration_ms;
-  sleep(task_.clock_ms, what);
+  sleep(task_.clock_ms + duration_ms, what);
 }
 
 __attribute__((noinline)) void Machine::sleep(uint32_t wake_ms, Wait what) {
