@@ -34,8 +34,6 @@ from tiniscript.program import (
 )
 from tiniscript.thousandths import Fault, whole
 
-YES, NO = (Term("YES_NO", 1),), (Term("YES_NO", 0),)
-
 _BINARY: dict[str, Callable[[int, int], int]] = {
     "ADD": thousandths.add, "SUB": thousandths.subtract, "MUL": thousandths.multiply,
     "DIV": thousandths.divide, "MOD": thousandths.modulo, "MIN": min, "MAX": max,

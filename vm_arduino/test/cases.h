@@ -188,6 +188,11 @@ inline const std::vector<ProgramCase>& program_cases() {
        "0 SHOW 1\n"
        "0 SHOW 1\n"
        "0 DONE\n"},
+      {"blocks: An arm that ends with BREAK needs no jump over the next one", tinibot(), {{}, {}, {50000, 9000}}, 60000, 1,
+       {84, 83, 1, 0, 0, 0, 27, 35, 11, 0, 2, 183, 84, 73, 104, 162, 2, 10, 2, 114, 4, 81, 10, 107, 10},
+       "0 READ DISTANCE 50\n"
+       "1000 READ DISTANCE 9\n"
+       "1000 DONE\n"},
       {"blocks: A DEF runs where it is called, and its definition does nothing", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 1, 0, 0, 0, 0, 0, 23, 0, 139, 245, 170, 212, 120, 4, 68, 1, 50, 122, 120, 9, 109, 2, 123, 10, 81, 1, 112, 6, 122, 81, 10, 123, 13, 123, 21},
        "1000 MOTORS 50 50\n"
@@ -462,6 +467,12 @@ inline const std::vector<ProgramCase>& program_cases() {
        "0 READ LIGHT_R 21\n"
        "0 READ LIGHT_R 22\n"
        "0 SHOW 22\n"
+       "0 DONE\n"},
+      {"readings: What only the last arm reads is not sure either", tinibot(), {{}, {}, {1000, 2000}}, 60000, 1,
+       {84, 83, 1, 0, 0, 0, 27, 35, 5, 0, 2, 201, 36, 7, 56, 2, 9, 2, 57},
+       "0 READ DISTANCE 1\n"
+       "0 READ DISTANCE 2\n"
+       "0 SHOW 2\n"
        "0 DONE\n"},
       {"readings: A WHILE looks again before every check", tinibot(), {{}, {}, {30000, 20000, 15000, 10000, 5000}}, 60000, 1,
        {84, 83, 1, 0, 0, 0, 27, 35, 16, 0, 194, 226, 234, 114, 56, 2, 105, 9, 164, 2, 10, 5, 68, 5, 50, 107, 9, 8, 2, 57},
