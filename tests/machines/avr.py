@@ -1,7 +1,7 @@
 """The machine in C++ on a simulated ATmega328P.
 
 Builds `vm_arduino/avr` with avr-g++ once, writes each request into the built program where its
-flash waits for it, and lets `simavr` run that. What comes out of the UART is the trace.
+flash waits for it, and lets `simavr` run that. What comes out of the UART is the answer.
 """
 
 from __future__ import annotations
@@ -14,16 +14,9 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tests.machines.host import (
-    REFUSAL_NAMES,
-    RULE_NAMES,
-    SOURCES,
-    WARNINGS,
-    run_request,
-)
-from tiniscript.image import ImageRefused
+from tests.machines.chips import ran
+from tests.machines.host import SOURCES, WARNINGS, run_request
 from tiniscript.kit import Kit
-from tiniscript.verify import Refused
 
 if TYPE_CHECKING:
     from tests.machines import Senses
@@ -45,7 +38,8 @@ def missing() -> str:
 @lru_cache(maxsize=1)
 def built(sources: Path = SOURCES) -> bytes:
     """Return the program of the chip, an ELF file."""
-    code = [str(path) for folder in ("src/vm", "avr") for path in (sources / folder).glob("*.cpp")]
+    folders = [sources / name for name in ("src/vm", "chip", "avr")]
+    code = [str(path) for each in folders for path in each.glob("*.cpp")]
     with tempfile.TemporaryDirectory() as folder:
         program = Path(folder) / "machine.elf"
         done = subprocess.run(
@@ -72,11 +66,5 @@ def run_avr(image: bytes, kit: Kit, senses: Senses) -> str:
             timeout=120,
         )
     said = re.findall(rb"\x1b\[32m(.*?)\.\s*\x1b", done.stdout + done.stderr)
-    lines = [line.decode() for line in said]
-    assert lines and lines[-1] == "END", (done.stdout + done.stderr)[-2000:]
-    words = lines[0].split()
-    if words[0] == "REFUSED":
-        raise ImageRefused(REFUSAL_NAMES[int(words[1])])
-    if words[0] == "BREAKS":
-        raise Refused(RULE_NAMES[int(words[1])], int(words[2]))
-    return "".join(f"{line}\n" for line in lines[:-1])
+    assert said, (done.stdout + done.stderr)[-2000:]
+    return ran("".join(f"{line.decode()}\n" for line in said)).trace

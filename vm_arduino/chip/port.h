@@ -1,0 +1,26 @@
+// What a chip lends to the tests that run on it: where a request lies, where an answer goes.
+//
+// Each chip defines these in a folder beside this one. The requests are those of
+// `tests/machines/host.py`.
+
+#ifndef TINISCRIPT_CHIP_PORT_H_
+#define TINISCRIPT_CHIP_PORT_H_
+
+#include <stddef.h>
+#include <stdint.h>
+
+namespace tiniscript {
+
+// The byte of the request at this place; 0 behind its end.
+uint8_t request_byte(size_t place);
+
+// The `length` bytes of the request from this place in RAM, and the byte behind them is 0; or
+// nullptr where the chip has no room for them.
+const uint8_t* request_bytes(size_t place, size_t length);
+
+// Adds a byte to the answer.
+void put(char letter);
+
+}  // namespace tiniscript
+
+#endif  // TINISCRIPT_CHIP_PORT_H_

@@ -1,0 +1,17 @@
+// Runs one image on a chip and says what the robot did.
+
+#ifndef TINISCRIPT_CHIP_RUNNER_H_
+#define TINISCRIPT_CHIP_RUNNER_H_
+
+#include "request.h"
+
+namespace tiniscript {
+
+// Reads and verifies the image of a request, and runs it with a simulated clock as `run.py` does.
+// The answer is the trace, and a last line: RAN and where the code was at the end and how many
+// instructions ran; REFUSED and the reason; BREAKS and the rule and the offset; or NO ROOM.
+void answer_run(Request request);
+
+}  // namespace tiniscript
+
+#endif  // TINISCRIPT_CHIP_RUNNER_H_

@@ -1,0 +1,47 @@
+// A robot that does nothing but say what it did, in memory that is counted beforehand.
+//
+// Defines what `robot.h` declares, and means the same as `../host/traced_robot.h`; its names and
+// readings stay in the request.
+
+#ifndef TINISCRIPT_CHIP_TRACED_ROBOT_H_
+#define TINISCRIPT_CHIP_TRACED_ROBOT_H_
+
+#include "request.h"
+
+namespace tiniscript {
+
+struct TracedRobot {
+  struct Sensor {
+    size_t name;      // where it begins in the request
+    size_t readings;  // where they begin
+    uint16_t count;
+    uint16_t taken;
+    bool is_yes_no;
+  };
+  struct Actuator {
+    size_t name;
+    int32_t low;
+    int32_t high;
+    bool is_yes_no;
+  };
+
+  uint32_t now_ms;
+  uint8_t sensor_count;
+  uint8_t actuator_count;
+  Sensor sensors[8];
+  Actuator actuators[4];
+
+  // Takes sensors, readings and actuators from a request, and begins at 0 milliseconds; false where
+  // there are more than it has room for.
+  bool read(Request* request);
+
+  // Begins a line of the trace: what follows is its rest.
+  void say(const char* what) const;
+};
+
+// The one robot of this program.
+extern TracedRobot robot;
+
+}  // namespace tiniscript
+
+#endif  // TINISCRIPT_CHIP_TRACED_ROBOT_H_
