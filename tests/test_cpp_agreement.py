@@ -22,7 +22,7 @@ import pytest
 from tests.casefile import Case, all_cases
 from tests.kits import KITS
 from tests.machines import MACHINES, Senses
-from tests.machines.host import host, missing
+from tests.machines.host import Process, host, missing
 from tests.oracle import programs
 from tests.test_cases import robot_and_senses
 from tiniscript import compile_text, thousandths
@@ -61,9 +61,14 @@ def python_verdict(code: bytes, sensors: int, actuators: int) -> tuple[int, int]
     return 0, 0
 
 
-def compare_verdicts(codes: list[bytes], sensors: int, actuators: int) -> list[bytes]:
-    """Assert that both machines say the same of each code; return those that are accepted."""
-    theirs = host().verdicts(codes, sensors, actuators)
+def compare_verdicts(
+    codes: list[bytes], sensors: int, actuators: int, machine: Process | None = None
+) -> list[bytes]:
+    """Assert that both machines say the same of each code; return those that are accepted.
+
+    The other machine is the host's, here and below, where none is given.
+    """
+    theirs = (machine or host()).verdicts(codes, sensors, actuators)
     accepted = []
     for code, (rule, offset) in zip(codes, theirs, strict=True):
         ours = python_verdict(code, sensors, actuators)
@@ -74,13 +79,13 @@ def compare_verdicts(codes: list[bytes], sensors: int, actuators: int) -> list[b
     return accepted
 
 
-def compare_runs(code: bytes, kit: Kit, senses: Senses) -> str:
+def compare_runs(code: bytes, kit: Kit, senses: Senses, machine: Process | None = None) -> str:
     """Assert that both machines run accepted code alike to the last step; return the ending."""
     lists = {k: senses.readings.get(each.name, ()) for k, each in enumerate(kit.sensors)}
     events = list(run(code, kit, Lists(kit, lists), senses.max_ms, senses.max_steps, senses.seed))
     ending = events.pop()
     assert isinstance(ending, Ending)
-    ran = host().run(pack("SI", kit.fingerprint, code), kit, senses)
+    ran = (machine or host()).run(pack("SI", kit.fingerprint, code), kit, senses)
     ours = "".join(f"{event}\n" for event in events)
     assert ran.trace == ours, code.hex(" ")
     assert (ran.offset, ran.steps) == (ending.offset, ending.steps), code.hex(" ")
@@ -384,19 +389,19 @@ def random_codes(seed: int, count: int) -> Iterator[bytes]:
             yield mutated(rng, rng.choice(bases), rng.choice(bases))
 
 
-def check_codes(seed: int, count: int) -> Counter[str]:
+def check_codes(seed: int, count: int, machine: Process | None = None) -> Counter[str]:
     """Compare random codes, and run what is accepted; return how often each thing happened."""
     rng = random.Random(seed)
     oracle_kit, kit = KITS[seed % 2]
     seen: Counter[str] = Counter()
     sizes = len(kit.sensors), len(kit.actuators)
     codes = list(random_codes(seed, count))
-    accepted = compare_verdicts(codes, *sizes)
+    accepted = compare_verdicts(codes, *sizes, machine)
     for number, code in enumerate(accepted):
         senses = Senses(programs.senses(rng, oracle_kit), MAX_MS, MAX_STEPS, number + 1)
-        seen[compare_runs(code, kit, senses)] += 1
+        seen[compare_runs(code, kit, senses, machine)] += 1
     seen["accepted"] = len(accepted)
-    seen.update(str(rule) for rule, _ in host().verdicts(codes, *sizes))
+    seen.update(str(rule) for rule, _ in (machine or host()).verdicts(codes, *sizes))
     return seen
 
 
@@ -514,14 +519,19 @@ def random_images(seed: int, count: int) -> Iterator[bytes]:
         yield bytes(image)
 
 
-@needs_host
-@pytest.mark.parametrize("seed", range(4))
-def test_images(seed: int) -> None:
-    images = [*random_images(seed, 25_000), b"", b"T", b"TS", b"S", b"TX"]
-    theirs = host().refusals(images, 0x1234)
+def compare_images(seed: int, count: int, machine: Process | None = None) -> None:
+    """Assert that images are refused for the same reasons, and each for some image."""
+    images = [*random_images(seed, count), b"", b"T", b"TS", b"S", b"TX"]
+    theirs = (machine or host()).refusals(images, 0x1234)
     for image, reason in zip(images, theirs, strict=True):
         assert python_refusal(image, 0x1234) == reason, image.hex(" ")
     assert {*theirs} == {0, *(number for number, _ in REFUSALS.values())}
+
+
+@needs_host
+@pytest.mark.parametrize("seed", range(4))
+def test_images(seed: int) -> None:
+    compare_images(seed, 25_000)
 
 
 @needs_host
@@ -568,9 +578,13 @@ def python_result(name: str, a: int, b: int) -> tuple[int, int]:
         return NUMBER_OF[fault.name], 0
 
 
-def compare_arithmetic(name: str, pairs: list[tuple[int, int]]) -> None:
+def compare_arithmetic(name: str, count: int, machine: Process | None = None) -> None:
+    """Compare all pairs of edges, and any others until there are `count`."""
+    rng = random.Random(name)
+    pairs = list(product(EDGES, EDGES))
+    pairs += [(any_number(rng), any_number(rng)) for _ in range(count - len(pairs))]
     code = BY_NAME[name].code
-    theirs = host().results((code, a, b) for a, b in pairs)
+    theirs = (machine or host()).results((code, a, b) for a, b in pairs)
     for (a, b), result in zip(pairs, theirs, strict=True):
         assert python_result(name, a, b) == result, f"{name} {a} {b}"
 
@@ -585,11 +599,8 @@ def any_number(rng: random.Random) -> int:
 @needs_host
 @pytest.mark.parametrize("name", OPERATIONS)
 def test_arithmetic(name: str) -> None:
-    """A million operations in all; all pairs of edges, some sizes that fit, and any others."""
-    rng = random.Random(name)
-    pairs = list(product(EDGES, EDGES))
-    pairs += [(any_number(rng), any_number(rng)) for _ in range(100_000 - len(pairs))]
-    compare_arithmetic(name, pairs)
+    """Two million operations in all."""
+    compare_arithmetic(name, 100_000)
 
 
 # -- a campaign ---------------------------------------------------------------------------------

@@ -13,8 +13,12 @@ from tests.machines.host import SOURCES, WARNINGS, missing
 
 MACHINE = SOURCES / "src" / "vm"
 PORTABLE = sorted([*MACHINE.glob("*.h"), *MACHINE.glob("*.cpp"), SOURCES / "src" / "robot.h"])
-FILES = [*PORTABLE, *sorted((SOURCES / "host").glob("*")), *sorted((SOURCES / "chip").glob("*")),
-         SOURCES / "wasm" / "main.cpp"]  # fmt: skip
+TESTED = ("host", "chip", "emulated")
+FILES = [
+    *PORTABLE,
+    *sorted(path for name in TESTED for path in (SOURCES / name).glob("*.[ch]*")),
+    SOURCES / "wasm" / "main.cpp",
+]
 STRICT = ("-std=c++11", "-pedantic", "-fno-exceptions", "-fno-rtti", *WARNINGS, "-fsyntax-only")
 ALLOWED = {"<stdint.h>", "<stddef.h>", "<avr/pgmspace.h>"}
 FORBIDDEN = ("virtual", "new", "delete", "throw", "try", "float", "double", "goto", "malloc",

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tests.machines.chips import ran
-from tests.machines.host import SOURCES, WARNINGS, run_request
+from tests.machines.host import SOURCES, WARNINGS, Ran, run_request
 from tiniscript.kit import Kit
 
 if TYPE_CHECKING:
@@ -51,8 +51,8 @@ def built(sources: Path = SOURCES) -> bytes:
         return program.read_bytes()
 
 
-def run_avr(image: bytes, kit: Kit, senses: Senses) -> str:
-    """Return the trace of an image, which is read and verified by the simulated chip."""
+def ran_on_avr(image: bytes, kit: Kit, senses: Senses) -> Ran:
+    """Run an image, which is read and verified by the simulated chip."""
     elf = built()
     at = elf.index(MARK)
     request = run_request(image, kit, senses)
@@ -67,4 +67,4 @@ def run_avr(image: bytes, kit: Kit, senses: Senses) -> str:
         )
     said = re.findall(rb"\x1b\[32m(.*?)\.\s*\x1b", done.stdout + done.stderr)
     assert said, (done.stdout + done.stderr)[-2000:]
-    return ran("".join(f"{line.decode()}\n" for line in said)).trace
+    return ran("".join(f"{line.decode()}\n" for line in said))

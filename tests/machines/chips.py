@@ -5,9 +5,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import TYPE_CHECKING, NamedTuple
+
 from tests.machines.host import REFUSAL_NAMES, RULE_NAMES, Ran
-from tiniscript.image import ImageRefused
+from tiniscript.bytecode import CODE_BYTES
+from tiniscript.image import HEADER_BYTES, ImageRefused
+from tiniscript.kit import Kit
 from tiniscript.verify import Refused
+
+if TYPE_CHECKING:
+    from tests.machines import Senses
 
 
 def ran(answer: str) -> Ran:
@@ -22,3 +30,11 @@ def ran(answer: str) -> Ran:
         raise Refused(RULE_NAMES[first], second)
     assert words[0] == "RAN", last
     return Ran(first, second, trace + "\n")
+
+
+class Chip(NamedTuple):
+    """`missing` says why there is none. `run` returns a run or raises what refuses the image."""
+
+    missing: str
+    run: Callable[[bytes, Kit, Senses], Ran]
+    most_bytes: int = CODE_BYTES + HEADER_BYTES  # of an image

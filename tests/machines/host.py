@@ -47,46 +47,33 @@ class Ran(NamedTuple):
     trace: str
 
 
-class Host:
-    """One process. `sources` is a folder like `vm_arduino`."""
+class Process:
+    """One process that answers requests about the machine; `who` it is stands in its mistakes."""
 
-    def __init__(self, sources: Path = SOURCES) -> None:
+    def __init__(self, command: Sequence[str | Path], who: str) -> None:
+        self._who = who
         self._errors = tempfile.TemporaryFile()  # noqa: SIM115
         self._process = subprocess.Popen(
-            [built(sources)],
+            command,
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=self._errors,
         )
 
-    def close(self) -> None:
+    def end(self) -> None:
         self._process.kill()
+
+    def close(self) -> None:
+        self.end()
         self._process.communicate()
         self._errors.close()
 
-    def run(
-        self, image: bytes, kit: Kit, senses: Senses, not_ready: int = 0, begin_ms: int = 0
-    ) -> Ran:
-        """Run an image, or raise what refuses it.
+    def has_ended(self) -> bool:
+        return self._process.poll() is not None
 
-        Each `not_ready`th time that the robot is asked, it is not ready; `begin_ms` is what the
-        clock of the machine says at the beginning.
-        """
-        answer = self.ask(b"R", run_request(image, kit, senses, not_ready, begin_ms))
-        if answer[0]:
-            raise ImageRefused(REFUSAL_NAMES[answer[0]])
-        if answer[1]:
-            raise Refused(RULE_NAMES[answer[1]], int.from_bytes(answer[2:4], "little"))
-        return _ran(answer[4:])
-
-    def run_unverified(self, code: bytes, kit: Kit, senses: Senses) -> Ran:
-        """Run code whatever it is: it must end in a fault or go on, never outside its memory."""
-        return _ran(self.ask(b"U", run_request(code, kit, senses)))
-
-    def run_late(self, image: bytes, kit: Kit, senses: Senses, late_ms: int) -> str:
-        """Return the trace where the first ticks after each wait come up to `late_ms` late."""
-        request = pack("<I", late_ms) + run_request(image, kit, senses)
-        return self.ask(b"L", request).decode()
+    def run(self, image: bytes, kit: Kit, senses: Senses) -> Ran:
+        """Run an image, or raise what refuses it."""
+        raise NotImplementedError
 
     def verdicts(
         self, codes: Sequence[bytes], sensors: int, actuators: int
@@ -94,16 +81,6 @@ class Host:
         """Return the number of the rule that each code breaks, or 0, and the offset."""
         answer = self.ask(b"V", bytes((sensors, actuators)) + _texts(codes))
         return [(rule, offset) for rule, offset in Struct("<BH").iter_unpack(answer)]
-
-    def all_of_three(self, first: int, sensors: int, actuators: int) -> tuple[int, int, int]:
-        """Verify all codes of three bytes that begin with `first`, and run what is accepted.
-
-        Return how many are accepted, how many of these fail a run-time check, and the CRC-32 of
-        all verdicts: number of the rule and offset, 0 and 0 for what is accepted.
-        """
-        answer = self.ask(b"X", bytes((sensors, actuators, first)))
-        accepted, bad, checksum = Struct("<III").unpack(answer)
-        return accepted, bad, checksum
 
     def refusals(self, images: Sequence[bytes], kit: int) -> list[int]:
         """Return the number of the reason for which each image is refused, or 0."""
@@ -134,7 +111,48 @@ class Host:
         status = self._process.wait()
         self._errors.seek(0)
         report = self._errors.read().decode(errors="replace")
-        return f"the C++ machine ended with status {status}:\n{report[:4000]}"
+        return f"{self._who} ended with status {status}:\n{report[:4000]}"
+
+
+class Host(Process):
+    """The process on this computer. `sources` is a folder like `vm_arduino`."""
+
+    def __init__(self, sources: Path = SOURCES) -> None:
+        super().__init__([built(sources)], "the C++ machine")
+
+    def run(
+        self, image: bytes, kit: Kit, senses: Senses, not_ready: int = 0, begin_ms: int = 0
+    ) -> Ran:
+        """Run an image, or raise what refuses it.
+
+        Each `not_ready`th time that the robot is asked, it is not ready; `begin_ms` is what the
+        clock of the machine says at the beginning.
+        """
+        answer = self.ask(b"R", run_request(image, kit, senses, not_ready, begin_ms))
+        if answer[0]:
+            raise ImageRefused(REFUSAL_NAMES[answer[0]])
+        if answer[1]:
+            raise Refused(RULE_NAMES[answer[1]], int.from_bytes(answer[2:4], "little"))
+        return _ran(answer[4:])
+
+    def run_unverified(self, code: bytes, kit: Kit, senses: Senses) -> Ran:
+        """Run code whatever it is: it must end in a fault or go on, never outside its memory."""
+        return _ran(self.ask(b"U", run_request(code, kit, senses)))
+
+    def run_late(self, image: bytes, kit: Kit, senses: Senses, late_ms: int) -> str:
+        """Return the trace where the first ticks after each wait come up to `late_ms` late."""
+        request = pack("<I", late_ms) + run_request(image, kit, senses)
+        return self.ask(b"L", request).decode()
+
+    def all_of_three(self, first: int, sensors: int, actuators: int) -> tuple[int, int, int]:
+        """Verify all codes of three bytes that begin with `first`, and run what is accepted.
+
+        Return how many are accepted, how many of these fail a run-time check, and the CRC-32 of
+        all verdicts: number of the rule and offset, 0 and 0 for what is accepted.
+        """
+        answer = self.ask(b"X", bytes((sensors, actuators, first)))
+        accepted, bad, checksum = Struct("<III").unpack(answer)
+        return accepted, bad, checksum
 
 
 def run_request(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from tests.machines.host import Ran
 from tiniscript.image import unpack
 from tiniscript.kit import Kit
 from tiniscript.run import Ending, run
@@ -14,12 +15,19 @@ if TYPE_CHECKING:
     from tests.machines import Senses
 
 
-def run_python(image: bytes, kit: Kit, senses: Senses) -> str:
-    """Return the trace of an image, which is read and verified as a machine does it."""
+def ran_python(image: bytes, kit: Kit, senses: Senses) -> Ran:
+    """Run an image, which is read and verified as a machine does it."""
     code = unpack(image, kit.fingerprint).code
     verify(code, len(kit.sensors), len(kit.actuators))
     events = run(code, kit, lists_of(kit, senses), senses.max_ms, senses.max_steps, senses.seed)
-    return "".join(f"{event}\n" for event in events if not isinstance(event, Ending))
+    *lines, ending = events
+    assert isinstance(ending, Ending)
+    return Ran(ending.offset, ending.steps, "".join(f"{event}\n" for event in lines))
+
+
+def run_python(image: bytes, kit: Kit, senses: Senses) -> str:
+    """Return the trace of an image."""
+    return ran_python(image, kit, senses).trace
 
 
 def lists_of(kit: Kit, senses: Senses) -> Lists:

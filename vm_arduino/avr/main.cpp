@@ -28,9 +28,10 @@ uint8_t request_byte(size_t place) {
   return place < kRequestBytes ? flash_byte(kRequest + place) : 0;
 }
 
-const uint8_t* request_bytes(size_t place, size_t length) {
-  if (length > kImageBytes) return nullptr;
+const uint8_t* request_bytes(size_t place, size_t length, size_t zeros) {
+  if (length + zeros > sizeof image_bytes) return nullptr;
   for (size_t k = 0; k < length; k++) image_bytes[k] = request_byte(place + k);
+  for (size_t k = 0; k < zeros; k++) image_bytes[length + k] = 0;
   return image_bytes;
 }
 

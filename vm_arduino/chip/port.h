@@ -14,9 +14,9 @@ namespace tiniscript {
 // The byte of the request at this place; 0 behind its end.
 uint8_t request_byte(size_t place);
 
-// The `length` bytes of the request from this place in RAM, and the byte behind them is 0; or
-// nullptr where the chip has no room for them.
-const uint8_t* request_bytes(size_t place, size_t length);
+// The `length` bytes of the request from this place in RAM, and `zeros` behind them; or nullptr
+// where the chip has no room for them. They stay until the next call.
+const uint8_t* request_bytes(size_t place, size_t length, size_t zeros);
 
 // Adds a byte to the answer.
 void put(char letter);

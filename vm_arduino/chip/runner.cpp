@@ -85,7 +85,7 @@ void answer_run(Request request) {
   limits.begin_ms = request.u32();
   if (!robot.read(&request)) return put_text("NO ROOM\n");
   const size_t length = static_cast<size_t>(request.u32());
-  const uint8_t* const data = request_bytes(request.place(), length);
+  const uint8_t* const data = request_bytes(request.place(), length, 1);  // END
   if (data == nullptr) return put_text("NO ROOM\n");
   Image image;
   const Refusal refusal = unpack(data, length, kit, &image);

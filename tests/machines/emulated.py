@@ -1,0 +1,77 @@
+"""The machine in C++ on the emulated chips of ESP boards: LX6, lx106 and RISC-V rv32imc.
+
+Builds `vm_arduino/emulated` for a chip and talks to one QEMU that runs it: many requests, each a
+length and bytes. A chip that faults, or does not answer, ends its emulator; the next request then
+begins another one, so that one case that is wrong is one that fails.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from functools import lru_cache
+from pathlib import Path
+from threading import Timer
+from typing import TYPE_CHECKING
+
+from tests.machines.chips import ran
+from tests.machines.host import SOURCES, WARNINGS, Process, Ran, run_request
+from tiniscript.kit import Kit
+from tools import chips
+
+if TYPE_CHECKING:
+    from tests.machines import Senses
+
+MOST_SECONDS = 60  # for one answer
+QUIET = ("-m", "16M", "-display", "none", "-serial", "none", "-monitor", "none")
+
+
+def missing(name: str) -> str:
+    """Return why there is no such chip, or nothing."""
+    return chips.missing(chips.CHIPS[name], can_run=True)
+
+
+class Emulated(Process):
+    """One emulator. `program` is what `built` returns."""
+
+    def __init__(self, name: str, program: Path) -> None:
+        load = ("-device", f"loader,file={program},cpu-num=0")
+        super().__init__([*chips.CHIPS[name].emulator, *QUIET, *load], chips.CHIPS[name].board)
+
+    def run(self, image: bytes, kit: Kit, senses: Senses) -> Ran:
+        return ran(self.ask(b"R", run_request(image, kit, senses)).decode())
+
+    def ask(self, letter: bytes, request: bytes) -> bytes:
+        watch = Timer(MOST_SECONDS, self.end)
+        watch.start()
+        try:
+            return super().ask(letter, request)
+        finally:
+            watch.cancel()
+
+
+def built(name: str, program: Path, sources: Path = SOURCES) -> Path:
+    """Build the program of a chip from `sources`, a folder like `vm_arduino`."""
+    folders = [sources / each for each in ("src/vm", "chip", "emulated")]
+    code = [path for each in folders for path in sorted(each.glob("*.cpp"))]
+    code.append(sources / "emulated" / chips.CHIPS[name].start)
+    chips.build(chips.CHIPS[name], code, program, *WARNINGS)
+    return program
+
+
+@lru_cache(maxsize=len(chips.CHIPS))
+def _program(name: str) -> tuple[Path, tempfile.TemporaryDirectory[str]]:
+    """Return a program, and the folder that is there as long as this is kept."""
+    folder = tempfile.TemporaryDirectory()
+    return built(name, Path(folder.name) / "machine.elf"), folder
+
+
+_running: dict[str, Emulated] = {}
+
+
+def emulated(name: str) -> Emulated:
+    """Return the emulator that all tests of a worker share, or a new one where it has ended."""
+    if name in _running and _running[name].has_ended():
+        _running.pop(name).close()
+    if name not in _running:
+        _running[name] = Emulated(name, _program(name)[0])
+    return _running[name]

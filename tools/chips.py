@@ -1,0 +1,149 @@
+"""Builds C++ for the chips of ESP boards with Debian's compilers, and says how large it is.
+
+Knows each chip's compiler and linker, and that no C library is needed: `vm_arduino/emulated` has
+what the compilers call. `tests/machines/emulated.py` runs what is built here.
+"""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import tempfile
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+ROOT = Path(__file__).resolve().parent.parent
+SOURCES = ROOT / "vm_arduino"
+
+USUAL = (
+    "-std=c++11", "-Os", "-fno-exceptions", "-fno-rtti", "-ffunction-sections", "-fdata-sections",
+    "-fno-asynchronous-unwind-tables",
+)  # fmt: skip
+
+
+class Chip(NamedTuple):
+    """`compiler` makes an object; `assembler` makes one of what an LLVM compiler writes."""
+
+    board: str
+    compiler: tuple[str, ...]
+    assembler: tuple[str, ...]
+    linker: tuple[str, ...]
+    measurer: str
+    emulator: tuple[str, ...]
+    ram: int  # where it begins in the emulator
+    start: str  # what comes before the program, in `vm_arduino/emulated`
+
+
+# What the LX6 of an ESP32 has: clang knows no name for all of it. QEMU's de233_fpu has no
+# `mul32high`, so that is left out.
+_LX6 = (
+    "bool", "clamps", "coprocessor", "dcache", "debug", "density", "exception", "fp",
+    "highpriinterrupts-level7", "interrupt", "loop", "mac16", "minmax", "miscsr", "mul16", "mul32",
+    "nsa", "prid", "regprotect", "rvector", "s32c1i", "sext", "threadptr", "timers3", "windowed",
+    "div32",
+)  # fmt: skip
+_SIM = ("qemu-system-xtensa", "-M", "sim", "-semihosting")
+_XTENSA_LD = ("xtensa-lx106-elf-ld", "--no-relax")
+
+CHIPS = {
+    "lx6": Chip(
+        board="ESP32: Xtensa LX6 with register windows",
+        compiler=(
+            "clang-22", "--target=xtensa-none-elf", "-nostdlibinc", "-fno-builtin", "-S",
+            *(word for name in _LX6
+              for word in ("-Xclang", "-target-feature", "-Xclang", f"+{name}")),
+        ),
+        # clang's own assembler cannot place literals
+        assembler=("llvm-mc-22", "-triple=xtensa-none-elf", "-filetype=obj",
+                   "-mattr=" + ",".join(_LX6)),
+        linker=_XTENSA_LD,
+        measurer="xtensa-lx106-elf-size",
+        emulator=(*_SIM, "-cpu", "de233_fpu"),
+        ram=0x2000,
+        start="xtensa.S",
+    ),
+    "lx106": Chip(
+        board="ESP8266: Xtensa lx106 without register windows",
+        compiler=("xtensa-lx106-elf-gcc", "-mlongcalls", "-mtext-section-literals",
+                  "-ffreestanding", "-c"),
+        assembler=(),
+        linker=_XTENSA_LD,
+        measurer="xtensa-lx106-elf-size",
+        emulator=(*_SIM, "-cpu", "lx106"),
+        ram=0x60000000,
+        start="xtensa.S",
+    ),
+    "rv32imc": Chip(
+        board="ESP32-C3: RISC-V rv32imc",
+        compiler=("riscv64-unknown-elf-gcc", "-march=rv32imc", "-mabi=ilp32", "-ffreestanding",
+                  "-c"),
+        assembler=(),
+        linker=("riscv64-unknown-elf-ld", "-m", "elf32lriscv"),
+        measurer="riscv64-unknown-elf-size",
+        emulator=("qemu-system-riscv32", "-M", "virt", "-bios", "none",
+                  "-semihosting-config", "enable=on,target=native"),
+        ram=0x80000000,
+        start="riscv.S",
+    ),
+}  # fmt: skip
+
+
+def missing(chip: Chip, can_run: bool = False) -> str:
+    """Return why nothing can be built for a chip, or run on it, or nothing."""
+    tools = [chip.compiler, chip.assembler, chip.linker, (chip.measurer,)]
+    if can_run:
+        tools.append(chip.emulator)
+    wanted = [words[0] for words in tools if words and not shutil.which(words[0])]
+    return f"no {' and no '.join(wanted)} on this computer: no {chip.board}" if wanted else ""
+
+
+def build(
+    chip: Chip, code: Iterable[Path], program: Path, *flags: str, entry: str = "_start"
+) -> None:
+    """Compile and link files into one program for the emulator."""
+    with tempfile.TemporaryDirectory() as folder:
+        objects: list[str] = []
+        for path in code:
+            objects.append(str(Path(folder) / f"{len(objects)}.o"))
+            _compile(chip, path, objects[-1], flags)
+        _command([
+            *chip.linker, "--gc-sections", "--no-warn-rwx-segments", "-z", "noexecstack",
+            f"--entry={entry}", f"--defsym=RAM={chip.ram:#x}",
+            "-T", str(SOURCES / "emulated" / "chip.ld"), *objects, "-o", str(program),
+        ])  # fmt: skip
+
+
+def size(chip: Chip, probe: str) -> tuple[int, int]:
+    """Return flash and RAM of a C++ program with a `main`, linked with what it uses of the machine.
+
+    The program includes from `vm_arduino/src`. Flash is text and data, RAM is data and bss.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        source, program = Path(folder) / "probe.cpp", Path(folder) / "probe"
+        source.write_text(probe, encoding="utf-8")
+        machine = sorted((SOURCES / "src" / "vm").glob("*.cpp"))
+        code = [source, *machine, SOURCES / "emulated" / "library.cpp"]
+        build(chip, code, program, f"-I{SOURCES / 'src'}", entry="main")
+        row = _command([chip.measurer, str(program)]).splitlines()[1]
+    text, data, bss = (int(word) for word in row.split()[:3])
+    return text + data, data + bss
+
+
+def _compile(chip: Chip, path: Path, made: str, flags: Sequence[str]) -> None:
+    usual = (*USUAL, *flags) if path.suffix == ".cpp" else ()
+    if not chip.assembler:
+        _command([*chip.compiler, *usual, str(path), "-o", made])
+        return
+    written = f"{made}.s"
+    if path.suffix == ".cpp":
+        _command([*chip.compiler, *usual, str(path), "-o", written])
+    else:
+        _command([chip.compiler[0], "-E", "-x", "assembler-with-cpp", str(path), "-o", written])
+    _command([*chip.assembler, written, "-o", made])
+
+
+def _command(words: Sequence[str]) -> str:
+    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, f"{words[0]} refuses the C++ machine:\n{done.stderr[:4000]}"
+    return done.stdout

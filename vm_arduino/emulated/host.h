@@ -1,0 +1,20 @@
+// What an emulator lends to the program on its chip: two pipes, through calls of its own.
+//
+// `xtensa.S` and `riscv.S` define these, beside what happens before `serve` and at a fault.
+
+#ifndef TINISCRIPT_EMULATED_HOST_H_
+#define TINISCRIPT_EMULATED_HOST_H_
+
+#include <stdint.h>
+
+extern "C" {
+
+// Each returns how many bytes it took: at least one, but at the end of the input.
+uint32_t host_read(uint8_t* data, uint32_t length);
+uint32_t host_write(const uint8_t* data, uint32_t length);
+
+// The program: answers requests until there are no more.
+void serve();
+}
+
+#endif  // TINISCRIPT_EMULATED_HOST_H_
