@@ -1,0 +1,65 @@
+"""Builds a program of `vm_arduino/bench`, and runs it on a simulated ATmega328P.
+
+Knows avr-g++, simavr, and the flags that users build with; nothing of what the programs do.
+"""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+import tempfile
+from functools import lru_cache
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+SOURCES = ROOT / "vm_arduino"
+CHIP = "atmega328p"
+USUAL = (
+    f"-mmcu={CHIP}", "-std=c++11", "-Os", "-fno-exceptions", "-fno-rtti",
+    "-ffunction-sections", "-fdata-sections", "-Wl,--gc-sections",
+)  # fmt: skip
+FLAGS = (*USUAL, "-flto", "-mrelax", "-mcall-prologues")  # those of platformio.ini and Arduino
+WARNINGS = ("-Wall", "-Wextra", "-Wconversion", "-Wshadow", "-Werror")
+MARK = b"TiniScript: here is the request"
+REQUEST_BYTES = 1024
+PACKAGES = "apt-get install gcc-avr avr-libc binutils-avr simavr"
+
+
+def missing() -> str:
+    """Return why there is no simulated chip, or nothing."""
+    names = [name for name in ("avr-g++", "simavr") if not shutil.which(name)]
+    return f"no {' and no '.join(names)} ({PACKAGES})" if names else ""
+
+
+@lru_cache(maxsize=8)
+def built(name: str, sources: Path = SOURCES) -> bytes:
+    """Return `bench/NAME.cpp` with the machine of `sources`, an ELF file."""
+    code = [sources / "bench" / f"{name}.cpp", *sorted((sources / "src" / "vm").glob("*.cpp"))]
+    with tempfile.TemporaryDirectory() as folder:
+        program = Path(folder) / "program.elf"
+        done = subprocess.run(
+            ["avr-g++", *FLAGS, *WARNINGS, *map(str, code), "-o", str(program)],
+            capture_output=True,
+            text=True,
+        )
+        if done.returncode != 0:
+            raise RuntimeError(f"avr-g++ refuses {name}.cpp:\n{done.stderr[:4000]}")
+        return program.read_bytes()
+
+
+def run(program: bytes, request: bytes) -> list[str]:
+    """Return the lines that a built program says about a request."""
+    at = program.index(MARK)
+    assert len(request) <= REQUEST_BYTES, len(request)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "program.elf"
+        path.write_bytes(program[:at] + request + program[at + len(request) :])
+        done = subprocess.run(
+            ["simavr", "-m", CHIP, "-f", "16000000", str(path)], capture_output=True, timeout=120
+        )
+    said = re.findall(rb"\x1b\[32m(.*?)\.\s*\x1b", done.stdout + done.stderr)
+    lines = [line.decode() for line in said]
+    if not lines or lines.pop() != "END":
+        raise RuntimeError(f"the chip did not end: {(done.stdout + done.stderr)[-2000:]!r}")
+    return lines

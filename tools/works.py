@@ -1,0 +1,121 @@
+"""The three works that the machines are measured with, and what must come out of them.
+
+Knows the programs, the figures of others for the same works, and what the machine in Python says
+of them. Does not measure. Constants come from a sensor, so that no compiler can fold them.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from functools import lru_cache
+from pathlib import Path
+from typing import NamedTuple
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path[:0] = [str(ROOT / "compiler")]
+
+from tiniscript import compile_text, robots
+from tiniscript.run import Ending, Senses, run
+
+KIT = robots.load(robots.DEFAULT).kit
+SENSOR = [each.name for each in KIT.sensors].index("DISTANCE")
+
+
+class Work(NamedTuple):
+    """A loop that runs so many `times`, between reading its constants and showing its results."""
+
+    name: str
+    before: str
+    body: str
+    times: int
+    after: str
+    readings: tuple[int, ...] = ()  # of DISTANCE, in units
+
+    @property
+    def text(self) -> str:
+        return f"{self.before} LOOP({self.times}); {self.body} END_LOOP; {self.after}"
+
+    @property
+    def thousandths(self) -> list[int]:
+        return [1000 * reading for reading in self.readings]
+
+
+class Ran(NamedTuple):
+    """What a machine made of a work: values shown in thousandths, and instructions that ran."""
+
+    shown: tuple[int, ...]
+    steps: int
+
+
+class WrongResult(Exception):
+    """A machine that is fast and wrong."""
+
+
+WORKS = (
+    Work("A", "K = DISTANCE; X = 0;", "X = X + K;", 10_000, "SHOW(X);", (3,)),
+    Work(
+        "B",
+        "D = 0; E = 0;",
+        "D = D + 1; IF(D > 500); E = E + 1; ENDIF;",
+        1000,
+        "SHOW(D); SHOW(E);",
+    ),
+    # S, M, B and L are words of the language: the sum is Y here, and what it meets P, Q and N
+    Work(
+        "C",
+        "P = DISTANCE; Q = DISTANCE; N = DISTANCE; A = 0; Y = 0;",
+        "Y = Y + A*P; Y = Y/Q; Y = Y%N; A = A + 1;",
+        1000,
+        "SHOW(Y); SHOW(A);",
+        (3, 7, 100),
+    ),
+)
+
+# Cycles of one iteration of A, B and C. The first is what a plain `switch` in C took that ran
+# code like ours; a later issue goes to the second.
+MUST = (350.0, 767.0, 4226.0)
+LATER = (64.0, 112.0, 1500.0)
+
+# The same works in other engines: its numbers, and its cycles.
+OTHERS: tuple[tuple[str, str, tuple[float, ...]], ...] = (
+    ("C, compiled, variables in RAM", "int32", (32, 47.5, 1380)),
+    ("C, compiled, float", "float", (155, 260, 1039)),
+    ("C, compiled, thousandths with int64", "thousandths", (32, 47.5, 3031)),
+    ("FlashForth 5, compiles on the chip", "int16", (125, 205, 1294)),
+    ("wasm3 0.5.0, on an ATmega1284P", "int32", (459, 737, 2454)),
+    ("Aseba", "int16", (2234, 3323, 5330)),
+    ("Snek 1.9", "float", (2877, 4815, 9598)),
+    ("NanoVM 1.5 (Java)", "int31", (2964, 4552, 8926)),
+    ("Microvium 8 (JavaScript)", "int32", (3843, 3956, 7085)),
+    ("uLisp 4.8g, on an ATmega2560", "int16", (3451, 7751, 17232)),
+    ("TinyBASIC Plus 0.15", "int16", (5513, 9571, 20084)),
+    ("Bitlash 2.0", "int32", (8270, 13361, 17418)),
+    ("uBASIC", "int16", (8893, 15836, 27855)),
+)
+
+
+@lru_cache
+def code_of(work: Work) -> bytes:
+    return compile_text(work.text, KIT).code
+
+
+@lru_cache
+def expected(work: Work) -> Ran:
+    """Return what the machine in Python says."""
+    shown: list[int] = []
+    steps = 0
+    for event in run(code_of(work), KIT, Senses(KIT, {SENSOR: work.thousandths})):
+        if isinstance(event, Ending):
+            assert event.what == "DONE", event
+            steps = event.steps
+        elif event.what == "SHOW":
+            shown += event.values
+    return Ran(tuple(shown), steps)
+
+
+def check(machine: str, work: Work, shown: Sequence[int], steps: int) -> None:
+    """Raise WrongResult where a machine does not say the same as the one in Python."""
+    ran, wanted = Ran(tuple(shown), steps), expected(work)
+    if ran != wanted:
+        raise WrongResult(f"{machine}, work {work.name}: {ran}, not {wanted}")
