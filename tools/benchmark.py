@@ -1,8 +1,9 @@
 """Prints what is measured: sizes, and times as ratios within one run.
 
-`python tools/benchmark.py` takes about half a minute. Sizes are exact. Times on a busy machine are
-noisy, so they are medians of pairs taken in turn; compare ratios, not milliseconds. The figures
-of others are those of the same programs, measured once with their own tools.
+`python tools/benchmark.py` takes about half a minute; `cpp_benchmark.py` measures the machines.
+Sizes are exact. Times on a busy machine are noisy, so they are medians of pairs taken in turn;
+compare ratios, not milliseconds. The figures of others are those of the same programs, measured
+once with their own tools.
 """
 
 from __future__ import annotations
@@ -19,7 +20,6 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "compiler"))
 
 from tiniscript import compile_text, robots
-from tiniscript.run import Ending, Senses, run
 
 KIT = robots.load(robots.DEFAULT).kit
 OBSTACLE = "SI|START;LOOP(FOREVER);F(1, 80);DISTANCE;IF(DISTANCE < 10);STOP;R(1, 60);ENDIF;END_LOOP"
@@ -53,7 +53,6 @@ def main() -> None:
     sizes()
     processes()
     by_size()
-    machine()
 
 
 def table(title: str, head: Sequence[str], rows: Sequence[Sequence[object]]) -> None:
@@ -135,36 +134,6 @@ def by_size() -> None:
         rows.append((lines, f"{times[lines] * 1000:.1f} ms", growth, len(compiled.code)))
     head = ("lines", "compile_text, warm", "against a tenth", "code_bytes")
     table("Compiling by size (must: 100 lines in 5 ms, 10x the text in 12x the time)", head, rows)
-
-
-WORKS = (
-    ("A: X = X + 3, 10,000 times", "X = 0; LOOP(10000); X = X + 3; END_LOOP", 2 * 10_000),
-    (
-        "B: D = D + 1; IF(D > 500); E = E + 1; ENDIF, 10,000 times",
-        "D = 0; E = 0; LOOP(10000); D = D + 1; IF(D > 500); E = E + 1; ENDIF; END_LOOP",
-        0,
-    ),
-    (
-        "C: Y = Y + A*3; Y = Y/7; Y = Y%100; A = A + 1, 10,000 times",
-        "Y = 0; A = 0; LOOP(10000); Y = Y + A*3; Y = Y/7; Y = Y%100; A = A + 1; END_LOOP",
-        0,
-    ),
-)
-
-
-def machine() -> None:
-    rows = []
-    for name, text, _ in WORKS:
-        code = compile_text(text, KIT).code
-        best, steps = 9e9, 0
-        for _ in range(3):
-            start = time.perf_counter()
-            *_, ending = run(code, KIT, Senses(KIT, {}))
-            best = min(best, time.perf_counter() - start)
-            assert isinstance(ending, Ending) and ending.what == "DONE"
-            steps = ending.steps
-        rows.append((name, steps, f"{steps / best / 1e6:.2f} million"))
-    table("The machine in Python", ("", "instructions", "a second"), rows)
 
 
 if __name__ == "__main__":

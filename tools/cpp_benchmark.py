@@ -8,22 +8,30 @@ tools are missing has a `-` and a sentence that says which.
 from __future__ import annotations
 
 import argparse
+import statistics
 import sys
+import tempfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
-from tools import avr_bench, chip_cycles, works
+from tools import avr_bench, chip_cycles, cpp_size, works
+from tools import speeds as timing
 
 NONE = "-"
+ROUNDS = 5
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description="Print how fast the C++ machine is.")
-    parser.add_argument("parts", nargs="*", choices=[[], *PARTS], help="some of them alone")
-    for name in parser.parse_args(arguments).parts or PARTS:
+    parser.add_argument("parts", nargs="*", metavar="part", help=f"only some of {', '.join(PARTS)}")
+    parts: list[str] = parser.parse_args(arguments).parts
+    for name in parts:
+        if name not in PARTS:
+            parser.error(f"no part is called {name}")
+    for name in parts or PARTS:
         try:
             PARTS[name]()
         except works.WrongResult as wrong:
@@ -33,19 +41,18 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def table(title: str, head: Sequence[str], rows: Sequence[Sequence[object]]) -> None:
-    """Print a table: texts to the left, numbers to the right."""
+    """Print a table of Markdown: columns of numbers to the right, others to the left."""
     lines = [list(head), *([shown(cell) for cell in row] for row in rows)]
-    widths = [max(len(line[k]) for line in lines) for k in range(len(head))]
+    columns = []
+    for name, *cells in zip(*lines, strict=True):
+        width = max(len(cell) for cell in (name, *cells))
+        right = any(cells) and all(is_number(cell) for cell in cells)
+        rule = "-" * (width - 1) + (":" if right else "-")
+        columns.append([f"{cell:{'>' if right else '<'}{width}}" for cell in (name, *cells)])
+        columns[-1].insert(1, rule)
     print(f"\n{title}\n")
-    for number, line in enumerate(lines):
-        cells = [
-            cell.rjust(width) if is_number(cell) or (number == 0 and k) else cell.ljust(width)
-            for k, (cell, width) in enumerate(zip(line, widths, strict=True))
-        ]
-        print(f"| {' | '.join(cells)} |")
-        if number == 0:
-            rules = ("-" * width for width in widths)
-            print(f"| {' | '.join(rules)} |")
+    for line in zip(*columns, strict=True):
+        print(f"| {' | '.join(line)} |")
 
 
 def shown(cell: object) -> str:
@@ -53,7 +60,7 @@ def shown(cell: object) -> str:
 
 
 def is_number(cell: str) -> bool:
-    return cell == NONE or cell[:1].isdigit()
+    return cell in ("", NONE) or cell[0].isdigit()
 
 
 def cycles() -> None:
@@ -69,16 +76,18 @@ def cycles() -> None:
     rows = [
         *ours,
         ("  must", "", *works.MUST),
-        ("  later", "", *works.LATER),
+        ("  a later aim", "", *works.LATER),
         *((name, numbers, *figures) for name, numbers, figures in works.OTHERS),
     ]
-    title = (
-        "Cycles of one iteration on an ATmega328P, simulated: A is X = X + K; B counts, and counts "
-        f"again from 501;\nC adds twice, multiplies, divides and takes a remainder. With `tick`, "
-        f"{chip_cycles.BUDGET} instructions a call; the sketch calls it for "
-        f"{chip_cycles.SKETCH_BUDGET}."
+    table("Cycles of one iteration on a simulated ATmega328P", ("", "numbers", "A", "B", "C"), rows)
+    for work in works.WORKS:
+        print(f"\n{work.name}: `{work.body[:-1]}`, {work.times:,} times.", end="")
+    print(
+        f"\nAll of `tick` is counted, {chip_cycles.BUDGET} instructions a call; the sketch calls "
+        f"it for {chip_cycles.SKETCH_BUDGET}.\nThe others were measured once, with loops of the "
+        "same work in their own languages. Fewer bits are\nless work; Snek, Microvium and uLisp "
+        "are far larger languages; TinyBASIC, Bitlash and uBASIC\nread the text of each line anew."
     )
-    table(title, ("", "numbers", "A", "B", "C"), rows)
     if avr_bench.missing():
         print(f"\n{avr_bench.missing()}")
 
@@ -91,18 +100,71 @@ def instructions() -> None:
     rows = []
     for name in chip_cycles.ARITHMETIC:
         each = chip_cycles.of_arithmetic(name)
-        rows.append((name, each[0], sum(each) / len(each), each[-1]))
+        rows.append((name, each[0], sum(each) / len(each), each[-1], works.OF_C.get(name, "")))
     title = f"Cycles of an instruction, with {len(chip_cycles.PAIRS)} pairs as in a classroom"
-    table(title, ("", "least", "mean", "most"), rows)
-    means = [
-        (work.name, name, mean)
+    table(title, ("", "least", "mean", "most", "mean of C alone"), rows)
+    print("\nC alone: thousandths in a function, with int64 where they need it, and no machine.")
+    means = {
+        name: mean
         for work in works.WORKS
         for name, mean in chip_cycles.of_instructions(work).items()
-    ]
-    table("Cycles of an instruction in the loops of the works", ("", "", "mean"), means)
+        if name not in chip_cycles.ARITHMETIC
+    }
+    table("Cycles of an instruction in these loops", ("", "mean"), sorted(means.items()))
 
 
-PARTS: dict[str, Callable[[], None]] = {"cycles": cycles, "instructions": instructions}
+def sizes() -> None:
+    rows: list[tuple[object, ...]] = []
+    said = []
+    for name in (cpp_size.AVR, *cpp_size.EMULATED):
+        if cpp_size.missing(name):
+            said.append(cpp_size.missing(name))
+            rows.append((name, NONE, NONE, NONE))
+            continue
+        small, whole = (cpp_size.size(name, use) for use in ("machine and verifier", "all"))
+        rows.append((name, small.flash, whole.flash, whole.ram))
+        if name == cpp_size.AVR:
+            rows += [("  must", cpp_size.MUST, "", ""), ("  aim", cpp_size.AIM, "", "")]
+    module = (ROOT / "compiler" / "tiniscript" / "machine.wasm").stat().st_size
+    rows.append(("WebAssembly, the whole module", NONE, module, NONE))
+    rows += [(f"{name}, {what}", flash, "", ram) for name, what, flash, ram in works.OTHER_SIZES]
+    head = ("", "machine and verifier", "with the image reader", "RAM")
+    table("Bytes of flash and of RAM, linked, with libgcc", head, rows)
+    for sentence in said:
+        print(f"\n{sentence}")
+
+
+def speeds() -> None:
+    """Print instructions a second: medians of rounds in which each machine is timed in turn."""
+    with tempfile.TemporaryDirectory() as folder:
+        machines = [timing.of_host(Path(folder) / "host"), timing.of_wasm(), timing.of_python()]
+        there = [each for each in machines if not each.missing]
+        rows = []
+        for work in works.WORKS:
+            steps = works.expected(work).steps
+            rounds = [[each.seconds(work) for each in there] for _ in range(ROUNDS)]
+            row: list[object] = [f"{work.name}, {steps:,} instructions"]
+            for each in machines:
+                if each.missing:
+                    row += [NONE, NONE]
+                    continue
+                k = there.index(each)
+                row.append(statistics.median(steps / line[k] / 1e6 for line in rounds))
+                row.append(statistics.median(line[-1] / line[k] for line in rounds))
+            rows.append(row[:-1])  # Python, the last one, is as fast as itself
+    head = ["", *(word for each in machines for word in (each.name, "times Python"))][:-1]
+    table("Million instructions a second on this computer", head, rows)
+    for each in machines:
+        if each.missing:
+            print(f"\n{each.missing}")
+
+
+PARTS: dict[str, Callable[[], None]] = {
+    "cycles": cycles,
+    "instructions": instructions,
+    "sizes": sizes,
+    "speeds": speeds,
+}
 
 if __name__ == "__main__":
     sys.exit(main())

@@ -1,7 +1,8 @@
-"""Prints how much flash and RAM the machine takes on an ATmega328P, linked, with libgcc.
+"""Prints how much flash and RAM the machine takes on the chips of robots: linked, with libgcc.
 
-Builds the same small program with and without the machine, and prints the difference. Knows
-avr-g++ and its flags. `--parts` prints the functions too, largest last.
+Builds the same small program with and without the machine, and takes the difference. Knows the
+the AVR's compiler and its flags; `chips.py` knows those of other chips, which `cpp_benchmark.py`
+prints. `--parts` prints the functions on the AVR too, largest last.
 """
 
 from __future__ import annotations
@@ -11,16 +12,19 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 ROOT = Path(__file__).resolve().parent.parent
-SOURCE = ROOT / "vm_arduino" / "src"
-MUST, AIM = 5120, 4096  # bytes of flash, machine and verifier
+sys.path[:0] = [str(ROOT)]
 
-USUAL = (
-    "-mmcu=atmega328p", "-Os", "-std=c++11", "-fno-exceptions", "-fno-rtti",
-    "-ffunction-sections", "-fdata-sections", "-Wl,--gc-sections",
-)  # fmt: skip
+from tools import avr_bench, chips
+
+SOURCE = ROOT / "vm_arduino" / "src"
+WASM = ROOT / "compiler" / "tiniscript" / "machine.wasm"
+MUST, AIM = 5120, 4096  # bytes of flash on the AVR, machine and verifier
+
 WAYS = {
     "-Os": (),
     "-Os -flto": ("-flto",),
@@ -43,58 +47,100 @@ void robot_beep(uint16_t hertz, uint32_t) { sink = hertz; }
 bool robot_show(int32_t value, bool) { sink = value; return sink; }
 void robot_set(uint8_t actuator, int32_t value) { sink = actuator; sink = value; }
 }
+uint8_t bytes[64];  // not of the machine, but here with and without it
 int main() {
   int32_t value;
   robot_motors(sink, sink); robot_off(); robot_read(sink, &value); robot_beep(sink, sink);
-  robot_show(value, sink); robot_set(sink, value);
+  robot_show(value, sink); robot_set(sink, value); bytes[sink] = sink; sink = bytes[sink];
   USE
 }
 """
+IMAGE = """{ Image image;
+        sink = (uint8_t)unpack(bytes, sink, sink, &image); sink = image.start; }"""
+VERIFY = """{ Verdict verdict = verify(bytes, sink, sink, sink);
+        sink = (uint8_t)verdict.rule; sink = verdict.offset; }"""
+MACHINE = """{ static Machine machine;
+        machine.start(bytes, sink, sink, sink, sink);
+        sink = (uint8_t)machine.tick(sink, sink); }"""
 USES = {
-    "nothing": "",
-    "image": """static uint8_t data[64]; Image image;
-        sink = (uint8_t)unpack(data, sink, sink, &image); sink = image.start;""",
-    "verify": """static uint8_t code[64];
-        Verdict verdict = verify(code, sink, sink, sink);
-        sink = (uint8_t)verdict.rule; sink = verdict.offset;""",
-    "vm and number": """static uint8_t code[64]; static Machine machine;
-        machine.start(code, sink, sink, sink, sink);
-        sink = (uint8_t)machine.tick(sink, sink);""",
+    "image": IMAGE,
+    "verify": VERIFY,
+    "vm and number": MACHINE,
+    "machine and verifier": VERIFY + MACHINE,
+    "all": IMAGE + VERIFY + MACHINE,
 }
-USES["all"] = " ".join(f"{{ {use} }}" for use in USES.values())
+
+# What the table says of a chip: what is measured, and how.
+AVR = "ATmega328P (AVR)"
+EMULATED = {f"{chip.board}": chip for chip in chips.CHIPS.values()}
+
+
+class Size(NamedTuple):
+    flash: int
+    ram: int
+
+
+def missing(name: str) -> str:
+    """Return why a chip cannot be measured here, or nothing."""
+    if name != AVR:
+        return chips.missing(EMULATED[name])
+    return "" if shutil.which("avr-g++") else f"no avr-g++ ({avr_bench.PACKAGES}): no {AVR}"
+
+
+def size(name: str, use: str, flags: Sequence[str] = avr_bench.FLAGS) -> Size:
+    """Return what a use of the machine adds to a small program; `flags` are for the AVR alone."""
+
+    def built(use: str) -> Size:
+        probe = PROBE.replace("USE", use)
+        return Size(*(chips.size(EMULATED[name], probe) if name != AVR else on_avr(probe, flags)))
+
+    with_it, without = built(USES[use]), built("")
+    return Size(with_it.flash - without.flash, with_it.ram - without.ram)
+
+
+def on_avr(probe: str, flags: Sequence[str]) -> tuple[int, int]:
+    """Return the flash and the RAM of a program, linked with the machine."""
+    with tempfile.TemporaryDirectory() as folder:
+        program = Path(folder) / "probe"
+        link(program, probe, flags)
+        said = done("avr-size", str(program))
+    text, data, bss = (int(word) for word in said.splitlines()[1].split()[:3])
+    return text + data, data + bss
+
+
+def link(program: Path, probe: str, flags: Sequence[str]) -> None:
+    source = program.with_suffix(".cpp")
+    source.write_text(probe, encoding="utf-8")
+    machine = sorted((SOURCE / "vm").glob("*.cpp"))
+    done("avr-g++", *flags, f"-I{SOURCE}", str(source), *map(str, machine), "-o", str(program))
+
+
+def done(*command: str) -> str:
+    ran = subprocess.run(command, capture_output=True, text=True)
+    if ran.returncode != 0:
+        raise RuntimeError(f"{command[0]} fails:\n{ran.stderr[:4000]}")
+    return ran.stdout
 
 
 def main() -> int:
     parser = argparse.ArgumentParser(description="Print how large the machine is on an AVR.")
     parser.add_argument("--parts", action="store_true", help="print its functions too")
     options = parser.parse_args()
-    if not shutil.which("avr-g++"):
-        print("no avr-g++: apt-get install gcc-avr avr-libc binutils-avr", file=sys.stderr)
+    if missing(AVR):
+        print(missing(AVR), file=sys.stderr)
         return 2
-    with tempfile.TemporaryDirectory() as folder:
-        program = Path(folder) / "probe"
-        print(f"| flags | {' | '.join(list(USES)[1:])} | RAM |\n|{' --- |' * (len(USES) + 1)}")
-        for name, flags in WAYS.items():
-            sizes = {use: built(program, use, flags) for use in USES}
-            row = [str(flash - sizes["nothing"][0]) for flash, _ in list(sizes.values())[1:]]
-            print(f"| `{name}` | {' | '.join(row)} | {sizes['all'][1] - sizes['nothing'][1]} |")
-        print(f"\nBytes of flash of machine and verifier: must {MUST}, aim {AIM}.")
-        if options.parts:
-            built(program, "all", ())
-            subprocess.run(["avr-nm", "-CS", "--size-sort", str(program)], check=True)
+    print(f"| flags | {' | '.join(USES)} | RAM |\n|{' --- |' * (len(USES) + 2)}")
+    for name, more in WAYS.items():
+        sizes = [size(AVR, use, (*avr_bench.USUAL, *more)) for use in USES]
+        row = " | ".join(str(each.flash) for each in sizes)
+        print(f"| `{name}` | {row} | {sizes[-1].ram} |")
+    print(f"\nBytes of flash of machine and verifier: must {MUST}, aim {AIM}.")
+    if options.parts:
+        with tempfile.TemporaryDirectory() as folder:
+            program = Path(folder) / "probe"
+            link(program, PROBE.replace("USE", USES["all"]), avr_bench.USUAL)
+            print(done("avr-nm", "-CS", "--size-sort", str(program)))
     return 0
-
-
-def built(program: Path, use: str, flags: tuple[str, ...]) -> tuple[int, int]:
-    """Build the probe with one use of the machine; return its flash and its RAM."""
-    probe = program.with_suffix(".cpp")
-    probe.write_text(PROBE.replace("USE", USES[use]), encoding="utf-8")
-    sources = [str(probe), *sorted(str(path) for path in (SOURCE / "vm").glob("*.cpp"))]
-    command = ["avr-g++", *USUAL, *flags, f"-I{SOURCE}", *sources, "-o", str(program)]
-    subprocess.run(command, check=True)
-    said = subprocess.run(["avr-size", str(program)], check=True, capture_output=True, text=True)
-    text, data, bss = (int(word) for word in said.stdout.splitlines()[1].split()[:3])
-    return text + data, data + bss
 
 
 if __name__ == "__main__":

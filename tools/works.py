@@ -1,6 +1,6 @@
 """The three works that the machines are measured with, and what must come out of them.
 
-Knows the programs, the figures of others for the same works, and what the machine in Python says
+Knows the programs, the figures of others, and what the machine in Python says
 of them. Does not measure. Constants come from a sensor, so that no compiler can fold them.
 """
 
@@ -16,6 +16,7 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT / "compiler")]
 
 from tiniscript import compile_text, robots
+from tiniscript.image import HEADER_BYTES
 from tiniscript.run import Ending, Senses, run
 
 KIT = robots.load(robots.DEFAULT).kit
@@ -94,10 +95,31 @@ OTHERS: tuple[tuple[str, str, tuple[float, ...]], ...] = (
     ("uBASIC", "int16", (8893, 15836, 27855)),
 )
 
+# Mean cycles of the same operations as functions in C, called with numbers of the same kind.
+OF_C = {"ADD": 4.0, "SUB": 4.0, "MUL": 1073.0, "DIV": 1070.0, "MOD": 606.0, "LT": 29.0}
+
+# What others take on an AVR: what is measured, bytes of flash, bytes of RAM before anything runs.
+OTHER_SIZES: tuple[tuple[str, str, int, int | str], ...] = (
+    ("Aseba", "machine, no functions", 2584, 300),
+    ("uBASIC", "core", 3040, 158),
+    ("NanoVM 1.5", "whole program", 7712, 1073),
+    ("TinyBASIC Plus 0.15", "whole program", 8132, 1375),
+    ("FlashForth 5", "whole program", 8470, ""),
+    ("Bitlash 2.0", "whole program", 15950, 996),
+    ("Microvium 8", "machine, no float", 18433, 684),
+    ("Snek 1.9", "whole program", 32204, 2048),
+    ("uLisp 4.8g", "whole program, ATmega2560", 68268, 6147),
+    ("wasm3 0.5.0", "whole program, ATmega1284P", 82266, 6250),
+)
+
 
 @lru_cache
+def image_of(work: Work) -> bytes:
+    return compile_text(work.text, KIT).image
+
+
 def code_of(work: Work) -> bytes:
-    return compile_text(work.text, KIT).code
+    return image_of(work)[HEADER_BYTES:]
 
 
 @lru_cache
