@@ -13,6 +13,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Sequence
+from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple
 
@@ -87,15 +88,17 @@ def missing(name: str) -> str:
     return "" if shutil.which("avr-g++") else f"no avr-g++ ({avr_bench.PACKAGES}): no {AVR}"
 
 
-def size(name: str, use: str, flags: Sequence[str] = avr_bench.FLAGS) -> Size:
+def size(name: str, use: str, flags: tuple[str, ...] = avr_bench.FLAGS) -> Size:
     """Return what a use of the machine adds to a small program; `flags` are for the AVR alone."""
 
-    def built(use: str) -> Size:
-        probe = PROBE.replace("USE", use)
-        return Size(*(chips.size(EMULATED[name], probe) if name != AVR else on_avr(probe, flags)))
-
-    with_it, without = built(USES[use]), built("")
+    with_it, without = (built(name, each, flags) for each in (USES[use], ""))
     return Size(with_it.flash - without.flash, with_it.ram - without.ram)
+
+
+@lru_cache
+def built(name: str, use: str, flags: tuple[str, ...]) -> Size:
+    probe = PROBE.replace("USE", use)
+    return Size(*(on_avr(probe, flags) if name == AVR else chips.size(EMULATED[name], probe)))
 
 
 def on_avr(probe: str, flags: Sequence[str]) -> tuple[int, int]:

@@ -4,11 +4,11 @@
 // what a robot calculates. The pairs are made here and in `tests/test_cpp_avr_arithmetic.py` in the
 // same way; the answer to a block of operations is one checksum, or each result where it asks so.
 
-#include "../src/robot.h"
 #include "../src/vm/image.h"
 #include "../src/vm/number.h"
 #include "../src/vm/vm.h"
-#include "chip.h"
+#include "quiet_robot.h"
+#include "simulated.h"
 
 using namespace tiniscript;
 
@@ -23,7 +23,6 @@ uint8_t op_count;
 int32_t edges[kMostEdges];
 uint8_t edge_count;
 uint32_t state;  // xorshift32, apart from that of the machine
-int32_t result;
 
 uint32_t random_bits() {
   state ^= state << 13;
@@ -55,11 +54,11 @@ uint8_t* put_push(uint8_t* code, int32_t value) {
   return code;
 }
 
-// Returns the fault. END, which calculates nothing, stands for `whole`.
-Fault calculated(uint8_t op, int32_t a, int32_t b) {
-  result = 0;
+// Puts the result into `*result`, 0 where there is a fault, which it returns. END, which calculates
+// nothing, stands for `whole`.
+Fault calculated(uint8_t op, int32_t a, int32_t b, int32_t* result) {
   if (op == static_cast<uint8_t>(Op::kEnd)) {
-    result = whole(a);
+    *result = whole(a);
     return Fault::kNone;
   }
   const bool takes_two = op != static_cast<uint8_t>(Op::kNeg) &&
@@ -73,68 +72,54 @@ Fault calculated(uint8_t op, int32_t a, int32_t b) {
   *at = static_cast<uint8_t>(Op::kEnd);
   // `b` is the seed of RANDOM too: as good as any
   machine.start(code, static_cast<uint16_t>(at - code), 0, static_cast<uint32_t>(b) | 1, 0);
+  shows = 0;
+  shown[0] = 0;
   machine.tick(0, 10);
+  *result = shown[0];
   return machine.fault();
 }
 
 void answer() {
-  state = chip::next_long();
-  const uint16_t blocks = chip::next_word();
-  const uint16_t block = chip::next_word();     // operations of each
-  const uint16_t detailed = chip::next_word();  // this one result by result, and none behind it
-  op_count = chip::next_byte();
-  for (uint8_t k = 0; k < op_count; k++) ops[k] = chip::next_byte();
-  edge_count = chip::next_byte();
-  for (uint8_t k = 0; k < edge_count; k++) edges[k] = static_cast<int32_t>(chip::next_long());
+  state = simulated::next_long();
+  const uint16_t blocks = simulated::next_word();
+  const uint16_t block = simulated::next_word();  // operations of each
+  const uint16_t detailed =
+      simulated::next_word();  // this one result by result, and none behind it
+  op_count = simulated::next_byte();
+  for (uint8_t k = 0; k < op_count; k++) ops[k] = simulated::next_byte();
+  edge_count = simulated::next_byte();
+  for (uint8_t k = 0; k < edge_count; k++) edges[k] = static_cast<int32_t>(simulated::next_long());
   uint8_t next_op = 0;
   for (uint16_t number = 0; number < blocks && number <= detailed; number++) {
     uint32_t checksum = 0;
     for (uint16_t k = 0; k < block; k++) {
       const int32_t a = any_number();
       const int32_t b = second(ops[next_op], any_number());
-      const uint8_t fault = static_cast<uint8_t>(calculated(ops[next_op], a, b));
+      int32_t result;
+      const uint8_t fault = static_cast<uint8_t>(calculated(ops[next_op], a, b, &result));
       if (++next_op == op_count) next_op = 0;
       const uint32_t bits = static_cast<uint32_t>(result);
       const uint8_t said[] = {fault, static_cast<uint8_t>(bits), static_cast<uint8_t>(bits >> 8),
                               static_cast<uint8_t>(bits >> 16), static_cast<uint8_t>(bits >> 24)};
       checksum = crc32(checksum, said, sizeof said);
       if (number == detailed) {
-        chip::put_number(fault);
-        chip::put(' ');
-        chip::put_number(result);
-        chip::put('\n');
+        simulated::put_number(fault);
+        simulated::put(' ');
+        simulated::put_number(result);
+        simulated::put('\n');
       }
     }
     if (number != detailed) {
-      chip::put_size(checksum);
-      chip::put('\n');
+      simulated::put_size(checksum);
+      simulated::put('\n');
     }
   }
 }
 
 }  // namespace
 
-namespace tiniscript {
-
-void robot_motors(int8_t, int8_t) {}
-
-void robot_off() {}
-
-bool robot_read(uint8_t, int32_t*) { return true; }
-
-void robot_beep(uint16_t, uint32_t) {}
-
-bool robot_show(int32_t value, bool) {
-  result = value;
-  return true;
-}
-
-void robot_set(uint8_t, int32_t) {}
-
-}  // namespace tiniscript
-
 int main() {
-  chip::begin();
+  simulated::begin();
   answer();
-  chip::end();
+  simulated::end();
 }

@@ -5,9 +5,9 @@
 // and taken off. With a budget of 1, each instruction is told alone. The robot costs next to
 // nothing: readings are numbers in memory, and what is shown is told at the end.
 
-#include "../src/robot.h"
 #include "../src/vm/vm.h"
-#include "chip.h"
+#include "quiet_robot.h"
+#include "simulated.h"
 
 using namespace tiniscript;
 
@@ -17,10 +17,6 @@ constexpr uint16_t kCodeBytes = 512;
 constexpr uint32_t kLongest = 200 * 1024UL;  // cycles of a tick: behind 2^18 both timers wrap
 
 uint8_t code[kCodeBytes + 1];
-int32_t readings[8];
-int32_t shown[8];
-uint8_t taken = 0;
-uint8_t shows = 0;
 Machine machine;
 
 // Volatile, so that they are read and written in this order whatever lies between.
@@ -43,11 +39,11 @@ __attribute__((always_inline)) inline uint32_t counted() {
 }
 
 void run() {
-  const uint16_t budget = chip::next_word();
-  const uint8_t count = chip::next_byte();
-  for (uint8_t k = 0; k < count; k++) readings[k] = static_cast<int32_t>(chip::next_long());
-  const uint16_t length = chip::next_word();
-  for (uint16_t k = 0; k < length; k++) code[k] = chip::next_byte();
+  const uint16_t budget = simulated::next_word();
+  const uint8_t count = simulated::next_byte();
+  for (uint8_t k = 0; k < count; k++) readings[k] = static_cast<int32_t>(simulated::next_long());
+  const uint16_t length = simulated::next_word();
+  for (uint16_t k = 0; k < length; k++) code[k] = simulated::next_byte();
   code[length] = static_cast<uint8_t>(Op::kEnd);
   machine.start(code, length, 8, 1, 0);
 
@@ -66,52 +62,30 @@ void run() {
     status = machine.tick(0, budget);
     const uint32_t cycles = counted() - nothing;
     if (budget == 1) {
-      chip::put_text("AT ");
-      chip::put_size(machine.at());
-      chip::put(' ');
-      chip::put_size(cycles - empty_tick);
-      chip::put('\n');
+      simulated::put_text("AT ");
+      simulated::put_size(machine.at());
+      simulated::put(' ');
+      simulated::put_size(cycles - empty_tick);
+      simulated::put('\n');
     }
     total += cycles;
     steps += static_cast<uint16_t>(budget - machine.left());
     if (cycles > longest) longest = cycles;
   } while (status == Status::kRunning && longest < kLongest);
-  for (uint8_t k = 0; k < shows; k++) chip::say("SHOW", shown[k]);
-  chip::say("TICK", static_cast<int32_t>(empty_tick));
-  chip::say("LONGEST", static_cast<int32_t>(longest));
-  chip::say("STEPS", static_cast<int32_t>(steps));
-  chip::say("CYCLES", static_cast<int32_t>(total));
-  chip::say("STATUS", static_cast<uint8_t>(status));
+  for (uint8_t k = 0; k < shows; k++) simulated::say("SHOW", shown[k]);
+  simulated::say("TICK", static_cast<int32_t>(empty_tick));
+  simulated::say("LONGEST", static_cast<int32_t>(longest));
+  simulated::say("STEPS", static_cast<int32_t>(steps));
+  simulated::say("CYCLES", static_cast<int32_t>(total));
+  simulated::say("STATUS", static_cast<uint8_t>(status));
 }
 
 }  // namespace
 
-namespace tiniscript {
-
-void robot_motors(int8_t, int8_t) {}
-
-void robot_off() {}
-
-bool robot_read(uint8_t, int32_t* value) {
-  *value = readings[taken++];
-  return true;
-}
-
-void robot_beep(uint16_t, uint32_t) {}
-
-bool robot_show(int32_t value, bool) {
-  shown[shows++] = value;
-  return true;
-}
-
-void robot_set(uint8_t, int32_t) {}
-
-}  // namespace tiniscript
-
 int main() {
-  chip::begin();
+  simulated::begin();
   TCCR0B = _BV(CS02) | _BV(CS00);  // a count in 1,024 cycles
   TCCR1B = _BV(CS10);              // each cycle
   run();
-  chip::end();
+  simulated::end();
 }

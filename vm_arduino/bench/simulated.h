@@ -4,8 +4,8 @@
 // it, writes the request into it and reads what it says. Ends by sleeping without interrupts:
 // that ends the simulator too.
 
-#ifndef TINISCRIPT_BENCH_CHIP_H_
-#define TINISCRIPT_BENCH_CHIP_H_
+#ifndef TINISCRIPT_BENCH_SIMULATED_H_
+#define TINISCRIPT_BENCH_SIMULATED_H_
 
 #include <avr/interrupt.h>
 #include <avr/io.h>
@@ -13,7 +13,7 @@
 #include <avr/sleep.h>
 #include <stdint.h>
 
-namespace chip {
+namespace simulated {
 
 constexpr uint16_t kRequestBytes = 1024;
 
@@ -81,6 +81,6 @@ inline void end() {
   sleep_mode();
 }
 
-}  // namespace chip
+}  // namespace simulated
 
-#endif  // TINISCRIPT_BENCH_CHIP_H_
+#endif  // TINISCRIPT_BENCH_SIMULATED_H_

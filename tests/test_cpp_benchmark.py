@@ -1,0 +1,143 @@
+"""The command that measures the C++ machine: its numbers are of runs that were right.
+
+No time is asserted here. Cycles of the simulated chip are no time: they are always the same.
+"""
+
+from __future__ import annotations
+
+import re
+import shutil
+from pathlib import Path
+
+import pytest
+
+from tests.machines.host import SOURCES
+from tools import avr_bench, chip_cycles, cpp_benchmark, cpp_size, speeds, works
+from tools.works import WORKS, Work, WrongResult, check, code_of, expected
+
+needs_chip = pytest.mark.skipif(
+    bool(avr_bench.missing()), reason=avr_bench.missing() or "there is a simulated chip"
+)
+BY_NAME = [pytest.param(work, id=work.name) for work in WORKS]
+
+
+def test_what_the_works_show() -> None:
+    """A is a sum, B counts beyond 500, and C is what its loop makes of whole thousandths."""
+    total = 0
+    for a in range(0, 1_000_000, 1000):
+        total += 3 * a
+        total = (2 * total + 7) // 14 % 100_000
+    shown = {work.name: expected(work).shown for work in WORKS}
+    assert shown == {"A": (30_000_000,), "B": (1_000_000, 500_000), "C": (total, 1_000_000)}
+
+
+def test_nothing_of_the_works_is_folded() -> None:
+    """Each time around its loop takes as many instructions as its text says."""
+    steps = {work.name: expected(work).steps // work.times for work in WORKS}
+    assert steps == {"A": 2, "B": 3, "C": 16}  # B: 3 up to 500, then 4
+
+
+@pytest.mark.parametrize("work", BY_NAME)
+def test_a_wrong_value_is_an_error(work: Work) -> None:
+    shown, steps = expected(work)
+    check("some machine", work, shown, steps)
+    wrong = (*shown[:-1], shown[-1] + 1)
+    for other, so_many in ((wrong, steps), (shown[:-1], steps), (shown, steps + 1)):
+        with pytest.raises(WrongResult, match=f"some machine, work {work.name}"):
+            check("some machine", work, other, so_many)
+
+
+def test_a_wrong_value_ends_the_command(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(cpp_benchmark, "ROUNDS", 1)
+    short = WORKS[0]._replace(times=9999)
+    monkeypatch.setattr("tools.speeds.code_of", lambda work: code_of(short))
+    assert cpp_benchmark.main(["speeds"]) == 1
+    assert "wrong result: " in capsys.readouterr().err
+
+
+def test_what_is_missing_is_said(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(shutil, "which", lambda name: None)
+    monkeypatch.setattr(speeds, "find_spec", lambda name: None)
+    monkeypatch.setattr(cpp_benchmark, "ROUNDS", 1)
+    assert cpp_benchmark.main([]) == 0
+    said = capsys.readouterr().out
+    for row in ("TiniScript ", cpp_size.AVR, *cpp_size.EMULATED):
+        assert re.search(rf"^\| {re.escape(row)}.*\| +- \|", said, re.M), row
+    for tool in ("avr-g++", "simavr", "g++", "clang-22", "xtensa-lx106-elf-gcc", "wasmtime"):
+        assert f"no {tool}" in said
+    assert re.search(r"^\| A, 20,008 instructions +\|( +- \|){4} +\d", said, re.M)
+
+
+def test_a_part_that_is_none(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        cpp_benchmark.main(["cycles", "colours"])
+    assert "no part is called colours" in capsys.readouterr().err
+
+
+def test_table(capsys: pytest.CaptureFixture[str]) -> None:
+    cpp_benchmark.table("T", ("", "n", "kind"), [("a", 1234.56, "x"), ("bc", "-", "")])
+    assert capsys.readouterr().out.splitlines()[4:] == [
+        "| -- | ------: | ---- |",
+        "| a  | 1,234.6 | x    |",
+        "| bc |       - |      |",
+    ]
+
+
+def test_the_sketch_calls_it_as_we_say() -> None:
+    sketch = (SOURCES / "src" / "main.cpp").read_text(encoding="utf-8")
+    assert f" kBudget = {chip_cycles.SKETCH_BUDGET};" in sketch
+
+
+@needs_chip
+@pytest.mark.parametrize("work", BY_NAME)
+def test_the_chip_shows_what_python_does(work: Work) -> None:
+    assert chip_cycles.per_iteration(work) > 1
+
+
+@needs_chip
+def test_only_a_tick_depends_on_the_budget() -> None:
+    """Without what a tick costs by itself, all budgets count alike: to a few cycles in each."""
+    work = WORKS[1]
+    found = {}
+    for budget in (250, 32, 7):
+        counted = chip_cycles.count(code_of(work), work.thousandths, budget)
+        ticks = -(-counted.steps // budget)
+        found[budget] = counted.cycles - ticks * counted.empty_tick
+    assert found[250] > 100 * work.times
+    assert max(found.values()) - min(found.values()) < 0.01 * found[250]
+
+
+@needs_chip
+def test_cycles_of_instructions() -> None:
+    means = chip_cycles.of_instructions(WORKS[0])
+    assert means.keys() == {"ADD_VAR", "NEXT"}
+    assert sum(means.values()) == pytest.approx(chip_cycles.per_iteration(WORKS[0]), rel=0.03)
+    least = {name: chip_cycles.of_arithmetic(name)[0] for name in ("ADD", "MUL")}
+    assert 0 < least["ADD"] < least["MUL"]
+
+
+@pytest.mark.parametrize("name", [cpp_size.AVR, *cpp_size.EMULATED])
+def test_size(name: str) -> None:
+    if cpp_size.missing(name):
+        pytest.skip(cpp_size.missing(name))
+    whole = cpp_size.size(name, "all")
+    assert 2000 < whole.flash < 20_000
+    assert 400 < whole.ram < 1000
+
+
+@needs_chip
+def test_sizes_have_parts() -> None:
+    parts = [cpp_size.size(cpp_size.AVR, use).flash for use in ("verify", "vm and number")]
+    both = cpp_size.size(cpp_size.AVR, "machine and verifier").flash
+    assert max(parts) < both <= sum(parts)
+    assert both < cpp_size.size(cpp_size.AVR, "all").flash
+
+
+def test_machines_of_this_computer_are_right(tmp_path: Path) -> None:
+    for machine in (speeds.of_host(tmp_path / "host"), speeds.of_wasm(), speeds.of_python()):
+        if not machine.missing:
+            assert machine.seconds(works.WORKS[2]) > 0
