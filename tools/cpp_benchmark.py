@@ -129,7 +129,7 @@ def sizes() -> None:
     rows.append(("WebAssembly, the whole module", NONE, module, NONE))
     rows += [(f"{name}, {what}", flash, "", ram) for name, what, flash, ram in works.OTHER_SIZES]
     head = ("", "machine and verifier", "with the image reader", "RAM")
-    table("Bytes of flash and of RAM, linked, with what is called of the compiler's library", head, rows)
+    table("Bytes of flash and of RAM, linked, with the compiler's library", head, rows)
     for sentence in said:
         print(f"\n{sentence}")
 
