@@ -194,6 +194,8 @@ def built(sources: Path) -> Path:
         for path in (sources / folder).glob("*")
         if path.suffix in (".h", ".cpp")
     )
+    shared = ("answers.cpp", "answers.h", "port.h", "request.h")
+    inputs += [sources / "chip" / name for name in shared]
     key = hashlib.sha256(repr((WARNINGS, FLAGS)).encode())
     for path in inputs:
         key.update(path.name.encode() + path.read_bytes())

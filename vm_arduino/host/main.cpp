@@ -5,8 +5,8 @@
 
 #include <stdio.h>
 
+#include "../chip/answers.h"
 #include "../src/vm/image.h"
-#include "../src/vm/number.h"
 #include "../src/vm/verify.h"
 #include "../src/vm/vm.h"
 #include "traced_robot.h"
@@ -15,6 +15,11 @@
 using namespace tiniscript;
 
 namespace {
+
+// What `../chip` reads of the request that is answered, and where its answer goes.
+std::string asked;
+std::unique_ptr<uint8_t[]> bytes_asked;
+Writer said;
 
 constexpr uint16_t kSlice = 1000;  // instructions between two looks at the limit
 
@@ -149,18 +154,6 @@ void answer_late(Reader* request, Writer* answer) {
   answer->raw(robot.trace);
 }
 
-// V: verdicts of many codes.
-void answer_verify(Reader* request, Writer* answer) {
-  const uint8_t sensors = request->u8();
-  const uint8_t actuators = request->u8();
-  while (!request->at_end()) {
-    const Bytes code = request->bytes();
-    const Verdict verdict = verify(code.data.get(), code.length, sensors, actuators);
-    answer->u8(static_cast<uint8_t>(verdict.rule));
-    answer->u16(verdict.offset);
-  }
-}
-
 // X: all codes of three bytes that begin with one byte. How many are accepted, how many of these
 // fail a run-time check, and the checksum of all verdicts.
 void answer_all(Reader* request, Writer* answer) {
@@ -176,8 +169,9 @@ void answer_all(Reader* request, Writer* answer) {
     const Verdict verdict = verify(code, 3, sensors, actuators);
     const bool is_accepted = verdict.rule == Rule::kNone;
     const uint16_t offset = is_accepted ? 0 : verdict.offset;
-    const uint8_t said[] = {static_cast<uint8_t>(verdict.rule), static_cast<uint8_t>(offset), 0};
-    checksum = crc32(checksum, said, sizeof said);
+    const uint8_t verdict_said[] = {static_cast<uint8_t>(verdict.rule),
+                                    static_cast<uint8_t>(offset), 0};
+    checksum = crc32(checksum, verdict_said, sizeof verdict_said);
     if (!is_accepted) continue;
     accepted++;
     robot = TracedRobot();
@@ -197,45 +191,6 @@ void answer_all(Reader* request, Writer* answer) {
   answer->u32(checksum);
 }
 
-// I: what is wrong with the headers of many images.
-void answer_images(Reader* request, Writer* answer) {
-  const uint16_t kit = request->u16();
-  while (!request->at_end()) {
-    const Bytes data = request->bytes();
-    Image image;
-    answer->u8(static_cast<uint8_t>(unpack(data.data.get(), data.length, kit, &image)));
-  }
-}
-
-Fault result_of(Op op, int32_t a, int32_t b, int32_t* result) {
-  // `b` is the state as well: as good as any
-  if (op == Op::kRandom) {
-    const Fault fault = random_between(a, b, static_cast<uint32_t>(b), result);
-    if (fault != Fault::kNone) *result = 0;
-    return fault;
-  }
-  if (op != Op::kEnd) {
-    int32_t pair[] = {a, b};
-    const Fault fault = calculate(op, pair);
-    if (fault == Fault::kNone) *result = pair[0];
-    return fault;
-  }
-  *result = whole(a);
-  return Fault::kNone;
-}
-
-// A: results of many operations. 0 is a result where there is a fault.
-void answer_arithmetic(Reader* request, Writer* answer) {
-  while (!request->at_end()) {
-    const Op op = static_cast<Op>(request->u8());
-    const int32_t a = request->i32();
-    const int32_t b = request->i32();
-    int32_t result = 0;
-    answer->u8(static_cast<uint8_t>(result_of(op, a, b, &result)));
-    answer->u32(static_cast<uint32_t>(result));
-  }
-}
-
 // Reads exactly `length` bytes; false at the end of the input.
 bool read_input(std::string* data, size_t length) {
   data->resize(length);
@@ -244,42 +199,58 @@ bool read_input(std::string* data, size_t length) {
 
 }  // namespace
 
+namespace tiniscript {
+
+uint8_t request_byte(size_t place) {
+  return place < asked.size() ? static_cast<uint8_t>(asked[place]) : 0;
+}
+
+// Bytes of exactly their length: a look behind them is an error that a sanitizer sees.
+const uint8_t* request_bytes(size_t place, size_t length, size_t zeros) {
+  bytes_asked.reset(new uint8_t[length + zeros]());
+  for (size_t k = 0; k < length; k++) bytes_asked[k] = request_byte(place + k);
+  return bytes_asked.get();
+}
+
+void put(char letter) { said.u8(static_cast<uint8_t>(letter)); }
+
+}  // namespace tiniscript
+
 int main() {
-  std::string data;
-  while (read_input(&data, 4)) {
-    const uint32_t length = Reader(data).u32();
-    if (!read_input(&data, length)) return 1;
-    Reader request(data);
-    Writer answer;
+  while (read_input(&asked, 4)) {
+    const uint32_t length = Reader(asked).u32();
+    if (!read_input(&asked, length)) return 1;
+    Reader request(asked);
+    said = Writer();
     switch (request.u8()) {
       case 'R':
-        answer_run(&request, true, &answer);
+        answer_run(&request, true, &said);
         break;
       case 'U':
-        answer_run(&request, false, &answer);
+        answer_run(&request, false, &said);
         break;
       case 'L':
-        answer_late(&request, &answer);
+        answer_late(&request, &said);
         break;
       case 'V':
-        answer_verify(&request, &answer);
+        answer_verdicts(Request(1), length);
         break;
       case 'X':
-        answer_all(&request, &answer);
+        answer_all(&request, &said);
         break;
       case 'I':
-        answer_images(&request, &answer);
+        answer_images(Request(1), length);
         break;
       case 'A':
-        answer_arithmetic(&request, &answer);
+        answer_arithmetic(Request(1), length);
         break;
       default:
         return 1;
     }
     Writer head;
-    head.u32(static_cast<uint32_t>(answer.data().size()));
+    head.u32(static_cast<uint32_t>(said.data().size()));
     fwrite(head.data().data(), 1, head.data().size(), stdout);
-    fwrite(answer.data().data(), 1, answer.data().size(), stdout);
+    fwrite(said.data().data(), 1, said.data().size(), stdout);
     fflush(stdout);
   }
   return 0;

@@ -20,8 +20,6 @@ class Reader {
  public:
   explicit Reader(std::string data) : data_(std::move(data)) {}
 
-  bool at_end() const { return at_ == data_.size(); }
-
   uint32_t number(int size) {
     uint32_t value = 0;
     for (int k = 0; k < size; k++) value |= static_cast<uint32_t>(next()) << (8 * k);
