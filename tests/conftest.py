@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 from pathlib import Path
 
 import pytest
@@ -13,6 +14,16 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
         "--accept", action="store_true", help="write what the machine did into the case files"
     )
+
+
+def pytest_sessionstart() -> None:
+    """Let Ctrl-C mean what it means to a person.
+
+    A shell that starts the tests in the background has it ignored, and so would every command
+    that a test starts and stops.
+    """
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture(autouse=True)
