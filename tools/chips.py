@@ -1,7 +1,7 @@
 """Builds C++ for the chips of ESP boards with Debian's compilers, and says how large it is.
 
-Knows each chip's compiler and linker, and that no C library is needed: `vm_arduino/emulated` has
-what the compilers call. `tests/machines/emulated.py` runs what is built here.
+Knows each chip's compiler, linker and emulator, and that no C library is needed:
+`vm_arduino/emulated` has what the compilers call. `tests/machines/emulated.py` runs what is built.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ USUAL = (
 
 
 class Chip(NamedTuple):
-    """`compiler` makes an object; `assembler` makes one of what an LLVM compiler writes."""
+    """`compiler` makes objects, or text of which `assembler` makes them."""
 
     board: str
     compiler: tuple[str, ...]
@@ -43,6 +43,7 @@ _LX6 = (
     "nsa", "prid", "regprotect", "rvector", "s32c1i", "sext", "threadptr", "timers3", "windowed",
     "div32",
 )  # fmt: skip
+_CLANG = ("clang-22", "--target=xtensa-none-elf")
 _SIM = ("qemu-system-xtensa", "-M", "sim", "-semihosting")
 _XTENSA_LD = ("xtensa-lx106-elf-ld", "--no-relax")
 
@@ -50,13 +51,16 @@ CHIPS = {
     "lx6": Chip(
         board="ESP32: Xtensa LX6 with register windows",
         compiler=(
-            "clang-22", "--target=xtensa-none-elf", "-nostdlibinc", "-fno-builtin", "-S",
+            *_CLANG, "-nostdlibinc", "-fno-builtin", "-S",
             *(word for name in _LX6
               for word in ("-Xclang", "-target-feature", "-Xclang", f"+{name}")),
         ),
-        # clang's own assembler cannot place literals
-        assembler=("llvm-mc-22", "-triple=xtensa-none-elf", "-filetype=obj",
-                   "-mattr=" + ",".join(_LX6)),
+        # in one step clang places literals where they cannot be loaded
+        assembler=(
+            *_CLANG, "-c",
+            *(word for name in _LX6
+              for word in ("-Xclangas", "-target-feature", "-Xclangas", f"+{name}")),
+        ),
         linker=_XTENSA_LD,
         measurer="xtensa-lx106-elf-size",
         emulator=(*_SIM, "-cpu", "de233_fpu"),

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from tests.machines import Senses
 
 MOST_SECONDS = 60  # for one answer
-QUIET = ("-m", "16M", "-display", "none", "-serial", "none", "-monitor", "none")
+QUIET = ("-m", "16M", "-nodefaults", "-display", "none", "-serial", "none", "-monitor", "none")
 
 
 def missing(name: str) -> str:
