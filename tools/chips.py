@@ -98,7 +98,8 @@ def missing(chip: Chip, can_run: bool = False) -> str:
     tools = [chip.compiler, chip.assembler, chip.linker, (chip.measurer,)]
     if can_run:
         tools.append(chip.emulator)
-    wanted = [words[0] for words in tools if words and not shutil.which(words[0])]
+    names = dict.fromkeys(words[0] for words in tools if words)
+    wanted = [name for name in names if not shutil.which(name)]
     return f"no {' and no '.join(wanted)} on this computer: no {chip.board}" if wanted else ""
 
 

@@ -21,7 +21,7 @@ class Senses(NamedTuple):
 
 Machine = Callable[[bytes, Kit, Senses], str]
 
-# Those that are quick enough for every case; `test_cpp_avr` runs the simulated chip.
+# Those that are quick enough for every case; `test_cpp_chips` runs the chips.
 MACHINES: dict[str, Machine] = {"python": run_python}
 if not host.missing():
     MACHINES["host"] = host.run_host

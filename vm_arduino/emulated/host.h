@@ -9,7 +9,7 @@
 
 extern "C" {
 
-// Each returns how many bytes it took: at least one, but at the end of the input.
+// Each returns how many bytes went through: 0 where the other side has closed the pipe.
 uint32_t host_read(uint8_t* data, uint32_t length);
 uint32_t host_write(const uint8_t* data, uint32_t length);
 

@@ -30,12 +30,15 @@ bool read_all(uint8_t* data, uint32_t length) {
   return true;
 }
 
-void write_all(const uint8_t* data, uint32_t length) {
+// False where nobody reads.
+bool write_all(const uint8_t* data, uint32_t length) {
   while (length != 0) {
     const uint32_t taken = host_write(data, length);
+    if (taken == 0) return false;
     data += taken;
     length -= taken;
   }
+  return true;
 }
 
 bool answer_one() {
@@ -65,9 +68,7 @@ bool answer_one() {
   for (uint8_t k = 0; k < sizeof head; k++) {
     head[k] = static_cast<uint8_t>(answered_length >> (8 * k));
   }
-  write_all(head, sizeof head);
-  write_all(answered, answered_length);
-  return true;
+  return write_all(head, sizeof head) && write_all(answered, answered_length);
 }
 
 }  // namespace
