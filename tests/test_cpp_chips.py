@@ -36,7 +36,7 @@ from tiniscript.image import ImageRefused, pack
 from tiniscript.kit import Kit
 from tiniscript.listing import read_listing
 from tiniscript.verify import Refused
-from tools import chips, cpp_size
+from tools import chips
 
 
 def _run_emulated(name: str, image: bytes, kit: Kit, senses: Senses) -> Ran:
@@ -146,15 +146,3 @@ def test_images(chip: str) -> None:
 @pytest.mark.parametrize("name", OPERATIONS)
 def test_arithmetic(chip: str, name: str) -> None:
     compare_arithmetic(name, 10_000, emulated(chip))
-
-
-@each_emulated
-def test_the_machine_fits_the_chip(chip: str) -> None:
-    """Flash and RAM of machine and verifier, as `tools/chips.py` measures them."""
-    sizes = [
-        chips.size(chips.CHIPS[chip], cpp_size.PROBE.replace("USE", use))
-        for use in (cpp_size.USES["nothing"], cpp_size.USES["all"])
-    ]
-    (flash_before, ram_before), (flash, ram) = sizes
-    assert 4000 < flash - flash_before < 10_000
-    assert 400 < ram - ram_before < 1000
