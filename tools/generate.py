@@ -11,6 +11,7 @@ import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import accumulate
 from pathlib import Path
+from typing import NamedTuple
 
 ROOT = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
@@ -253,12 +254,14 @@ def header() -> str:
         + enumeration("Fault", [("NONE", 0, "It runs."), *faults]),
         "// What an instruction is for the structure of a program.\n"
         + enumeration(
-            "Role", [(role, k, what) for k, (role, what) in enumerate(bytecode.ROLES.items())]
+            "Role",
+            [
+                ("none", 0, "a byte that begins no instruction"),
+                *((role, k, what) for k, (role, what) in enumerate(bytecode.ROLES.items(), 1)),
+            ],
         ),
-        "// Operands that are read and checked in the same way.\n"
-        + enumeration(
-            "Operand", [("NONE", 0, ""), *((n, k, "") for k, n in enumerate(operand_classes(), 1))]
-        ),
+        "// What a byte of operands is.\n"
+        + enumeration("Byte", [(name, k, "") for k, name in enumerate(BYTES)]),
         op_rows(),
         f"}}  // namespace tiniscript\n\n#endif  // {HEADER_GUARD}\n",
     )
@@ -286,65 +289,98 @@ def enumeration(name: str, rows: Sequence[tuple[str, int, str]]) -> str:
     return f"enum class {name} : uint8_t {{\n{''.join(lines)}}};\n"
 
 
-def operand_class(kind: bytecode.OperandKind) -> str:
-    """Return the name of what `kind` is for a verifier: any value of a size, or a range."""
-    full = 2 ** (8 * kind.size) - 1
-    if kind.name in ("sensor", "actuator") or kind.name.startswith(("fwd", "back")):
-        return kind.name
-    return f"any{8 * kind.size}" if kind.high - kind.low == full else kind.name
+# What a verifier distinguishes in the first two bytes of operands; the second is of the first four.
+BYTES = ("any", "power", "percent", "variable", "count", "back", "sensor", "actuator")
+FAMILIES = 0x80  # from here on, each eight opcodes are one family: they differ in the comparator
 
 
-def operand_classes() -> list[str]:
-    """Return the names of all operand classes: those of two bytes and more come last."""
-    kinds = sorted(bytecode.OPERAND_KINDS.values(), key=lambda kind: kind.size)
-    return list(dict.fromkeys(operand_class(kind) for kind in kinds))
+class Row(NamedTuple):
+    """What is the same for opcodes in a row, but that each second one may be a byte longer."""
+
+    role: str
+    pops: int
+    pushes: int
+    size: int
+    first: str  # two of BYTES
+    second: str
+
+
+GAP = Row("none", 0, 0, 1, "any", "any")
+
+
+def byte_of(kind: bytecode.OperandKind) -> str:
+    """Return what the first byte of an operand may be."""
+    if kind.name.startswith("back"):
+        return "back"
+    is_any = kind.size > 1 or kind.high - kind.low == 255
+    return "any" if is_any and kind.name not in BYTES else kind.name
+
+
+def row_of(op: bytecode.Op) -> Row:
+    jumps = [each.kind.name.startswith(("fwd", "back")) for each in op.operands]
+    if any(jumps):  # so a verifier knows where it is, and whether it is far
+        assert jumps.index(True) == len(jumps) - 1
+        assert (op.operands[-1].kind.size == 2) == (op.size == 3)
+    kinds = [byte_of(each.kind) for each in op.operands]
+    assert kinds[2:] in ([], ["any"])
+    first, second, *_ = [*kinds, "any", "any"]
+    return Row(op.role, op.pops, op.pushes, op.size, first, second)
+
+
+def op_runs() -> list[tuple[Row, list[str]]]:
+    """Return the rows of all opcodes in order, each with the names of those it holds for."""
+    slots = [(GAP, "")] * (FAMILIES + (256 - FAMILIES) // 8)
+    for op in bytecode.OPS:
+        at = op.code if op.code < FAMILIES else FAMILIES + (op.code - FAMILIES) // 8
+        row = row_of(op)
+        assert slots[at][0] in (GAP, row), f"{op.name} differs from its family"
+        assert op.code < FAMILIES or op.code % 8 < len(bytecode.COMPARATORS)
+        slots[at] = row, op.name
+    runs: list[tuple[Row, list[str]]] = []
+    for row, name in slots:
+        if runs:
+            same, names = runs[-1]
+            if row == same._replace(size=same.size | len(names) & 1) and len(names) < 16:
+                names.append(name)
+                continue
+        runs.append((row, [name]))
+    return runs
 
 
 def op_rows() -> str:
-    """Return the two tables that a verifier reads: which row an opcode has, and the rows.
+    """Return the tables that a verifier reads: ranges, operands, and the rows of the opcodes.
 
-    A row is three bytes: role (5 bits), pushes (1) and pops (2); whether the third operand is
-    fwd8 (1) and the size (7); the second operand (4) and the first (4). From kFamilies on an
-    opcode is `family of eight + comparator`, and all comparators share the row of the family.
+    A row is two bytes: pops (2 bits), pushes (1) and role (5); for how many more opcodes it holds
+    (4) and the number of its operands in kOperands (4). There they are one byte: the second byte
+    (2 bits), the first (3) and the size (3). Each second opcode of a row has the size | 1: it is
+    the far one.
     """
-    classes = operand_classes()
-    families = 0x80
-    rows: dict[tuple[int, int, int], list[str]] = {}
-    index_of: dict[int, int] = {}
-    for op in bytecode.OPS:
-        kinds = [classes.index(operand_class(each.kind)) + 1 for each in op.operands] + [0] * 3
-        row = (
-            list(bytecode.ROLES).index(op.role) << 3 | op.pushes << 2 | op.pops,
-            (kinds[2] > 0) << 7 | op.size,
-            kinds[1] << 4 | kinds[0],
-        )
-        assert kinds[2] in (0, classes.index("fwd8") + 1)
-        rows.setdefault(row, []).append(op.name)
-        at = op.code if op.code < families else families + (op.code - families) // 8
-        number = list(rows).index(row) + 1
-        assert index_of.setdefault(at, number) == number, f"{op.name} differs from its family"
-        assert op.code < families or op.code % 8 < len(bytecode.COMPARATORS)
-    assert len(classes) < 16 and len(bytecode.ROLES) < 32
-    codes = range(max(index_of) + 1)
-    lines = ["// The row of each opcode in kOpRows, counted from 1; 0: it is none.\n"]
-    lines.append("static const uint8_t kRowOf[] in_flash = {\n")
-    for start in range(0, len(codes), 16):
-        line = ", ".join(str(index_of.get(k, 0)) for k in codes[start : start + 16])
-        lines.append(f"    {line},  // {start:02x}\n")
-    lines.append(
-        "};\n\n// Role, pushes, pops; whether the third is fwd8, size; second and first operand.\n"
-    )
-    lines.append("static const uint8_t kOpRows[][3] in_flash = {\n")
-    for row, names in rows.items():
+    kinds = {byte_of(kind): kind for kind in bytecode.OPERAND_KINDS.values() if kind.size == 1}
+    runs = op_runs()
+    operands = list(dict.fromkeys((row.size, row.first, row.second) for row, _ in runs))
+    roles = ("none", *bytecode.ROLES)
+    lines = ["\n// The least value of a Byte, and how much more than that it may be.\n"]
+    lines.append("static const uint8_t kRanges[][2] in_flash = {\n")
+    for name in BYTES:
+        low, high = (0, 255) if name == "any" else (kinds[name].low, kinds[name].high)
+        lines.append(f"    {{{low % 256}, {high - low}}},  // {name}\n")
+    lines.append("};\n\n// What the second byte of operands is, the first one; size.\n")
+    lines.append("static const uint8_t kOperands[] in_flash = {\n")
+    for size, first, second in operands:
+        packed = BYTES.index(second) << 6 | BYTES.index(first) << 3 | size
+        lines.append(f"    0x{packed:02x},  // {second}, {first}; {size}\n")
+    lines.append("};\n\n// Pops, pushes, role; how many opcodes more, operands.\n")
+    lines.append("static const uint8_t kOpRows[] in_flash = {\n")
+    for row, names in runs:
+        effects = row.pops << 6 | row.pushes << 5 | roles.index(row.role)
+        many = len(names) - 1 << 4 | operands.index((row.size, row.first, row.second))
         shown = ", ".join(names[:3]) + (" ..." if len(names) > 3 else "")
-        lines.append(f"    {{{', '.join(f'0x{byte:02x}' for byte in row)}}},  // {shown}\n")
+        lines.append(f"    0x{effects:02x}, 0x{many:02x},  // {shown if names[0] else '--'}\n")
     lines.append("};\n")
-    head = constants(
-        ("kFamilies", families),
-        ("kFamilyOps", len(bytecode.COMPARATORS)),
-        ("kRows", len(codes)),
-    )
-    return f"// From kFamilies on, each eight opcodes are one family.\n{head}\n{''.join(lines)}"
+    assert all(row.size < 8 and BYTES.index(row.second) < 4 for row, _ in runs)
+    assert len(operands) <= 16 and len(roles) <= 32
+    head = constants(("kFamilies", FAMILIES), ("kFamilyOps", len(bytecode.COMPARATORS)))
+    return f"// From kFamilies on, each eight opcodes are one family.\n{head}{''.join(lines)}"
 
 
 def cpp_cases() -> str:

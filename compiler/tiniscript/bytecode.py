@@ -67,18 +67,23 @@ OPERAND_KINDS = {kind.name: kind for kind in (
     OperandKind("back16",   2, False,         0,  65535, "bytes back from the next instruction"),
 )}
 
-# What an instruction is for the structure of a program; `verify` has a rule for each role.
+# What an instruction is for the structure of a program; `verify` has a rule for each role. Those
+# from `plain` on stand between expressions and checks. Those of loops come in pairs: one that does
+# not count, one that does.
 ROLES = {
+    "end":       "ends the program",
     "value":     "part of an expression",
     "join":      "part of an expression; what the left side decides goes on at `to`",
     "read":      "takes a reading; stands between instructions and in the check of an UNTIL",
+    "until":     "ends the check of an UNTIL",
     "plain":     "an instruction: leaves the stack empty",
     "watch":     "begins the check of an UNTIL",
-    "until":     "ends the check of an UNTIL",
     "if":        "opens a block that ends at `to`, or leaves the loop that ends there",
     "else":      "ends the block before it and opens one that ends at `to`",
-    "repeat":    "opens a loop that does not count",
+    "forever":   "opens a loop that does not count",
     "count":     "opens a loop that counts",
+    "while":     "opens a loop that does not count and ends at `to`",
+    "loop":      "opens a loop that counts and ends at `to`",
     "again":     "closes a loop that does not count",
     "next":      "closes a loop that counts",
     "break":     "leaves the innermost loop, one that does not count",
@@ -86,7 +91,6 @@ ROLES = {
     "def":       "opens a procedure that ends at `to`",
     "return":    "closes a procedure",
     "call":      "calls a procedure that lies before it",
-    "end":       "ends the program",
 }
 
 
@@ -173,14 +177,14 @@ OPS = (
     _op(0x63, "IF_NOT_FAR",      "to:fwd16",            "no --",           "if",    "The same, further."),
     _op(0x64, "ELSE",            "to:fwd8",             "--",              "else",  "Go to `to`."),
     _op(0x65, "ELSE_FAR",        "to:fwd16",            "--",              "else",  "The same, further."),
-    _op(0x68, "FOREVER",         "",                    "--",              "repeat", "A loop begins here."),
-    _op(0x69, "WHILE",           "to:fwd8",             "--",              "repeat", "A loop begins here; it ends at `to`, where checks may go."),
-    _op(0x6A, "WHILE_FAR",       "to:fwd16",            "--",              "repeat", "The same, further."),
+    _op(0x68, "FOREVER",         "",                    "--",              "forever", "A loop begins here."),
+    _op(0x69, "WHILE",           "to:fwd8",             "--",              "while", "A loop begins here; it ends at `to`, where checks may go."),
+    _op(0x6A, "WHILE_FAR",       "to:fwd16",            "--",              "while", "The same, further."),
     _op(0x6B, "AGAIN",           "to:back8",            "--",              "again", "Go back to `to`, the loop's first instruction."),
     _op(0x6C, "AGAIN_FAR",       "to:back16",           "--",              "again", "The same, further."),
     _op(0x6D, "LOOP8",           "n:count",             "--",              "count", "A loop begins here; it runs `n` times."),
-    _op(0x6E, "LOOP",            "to:fwd8",             "n --",            "count", "The same; if `n` rounds to less than 1 go to `to`, its end."),
-    _op(0x6F, "LOOP_FAR",        "to:fwd16",            "n --",            "count", "The same, further."),
+    _op(0x6E, "LOOP",            "to:fwd8",             "n --",            "loop", "The same; if `n` rounds to less than 1 go to `to`, its end."),
+    _op(0x6F, "LOOP_FAR",        "to:fwd16",            "n --",            "loop", "The same, further."),
     _op(0x70, "NEXT",            "to:back8",            "--",              "next",  "Count; go back to `to` or drop the counter."),
     _op(0x71, "NEXT_FAR",        "to:back16",           "--",              "next",  "The same, further."),
     _op(0x72, "BREAK",           "to:fwd8",             "--",              "break", "Go to `to`, the end of the loop."),

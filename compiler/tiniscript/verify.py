@@ -4,7 +4,7 @@ One pass over the code from its first byte to its last, with bounded memory: wha
 few words, and a jump is right when it leads where the structure around it ends or begins. What
 is accepted cannot leave the stack, the variables, the kit or the code while it runs.
 
-Written to be written again in C++: same names, same order, same verdict at the same offset.
+Written to be written again in C++: same rules, same order, same verdict at the same offset.
 """
 
 from __future__ import annotations
@@ -217,6 +217,9 @@ class _Verifier:
         if around is not None and around.end and end > around.end - (around.kind != "if"):
             self.refuse("BAD_TARGET")
         self.open(_Block(kind, self.after, end), 2)
+        if kind == "count":
+            self.counters += 1
+            self.needs(self.counters, self.most_calls)
 
     def open(self, block: _Block, words: int) -> None:
         self.words += words
@@ -283,15 +286,21 @@ class _Verifier:
         self.words -= 1
         self.open_if(self.target())
 
-    def repeat(self, op: Op) -> None:
+    def forever(self, op: Op) -> None:
         self.between()
-        self.open_loop("repeat", self.target() if op.operands else 0)
+        self.open_loop("repeat", 0)
+
+    def while_(self, op: Op) -> None:
+        self.between()
+        self.open_loop("repeat", self.target())
 
     def count(self, op: Op) -> None:
         self.between()
-        self.open_loop("count", self.target() if op.pops else 0)
-        self.counters += 1
-        self.needs(self.counters, self.most_calls)
+        self.open_loop("count", 0)
+
+    def loop(self, op: Op) -> None:
+        self.between()
+        self.open_loop("count", self.target())
 
     def again(self, op: Op) -> None:
         self.close_loop("repeat")

@@ -227,118 +227,141 @@ enum class Fault : uint8_t {
 
 // What an instruction is for the structure of a program.
 enum class Role : uint8_t {
-  kValue = 0,  // part of an expression
-  kJoin = 1,  // part of an expression; what the left side decides goes on at `to`
-  kRead = 2,  // takes a reading; stands between instructions and in the check of an UNTIL
-  kPlain = 3,  // an instruction: leaves the stack empty
-  kWatch = 4,  // begins the check of an UNTIL
+  kNone = 0,  // a byte that begins no instruction
+  kEnd = 1,  // ends the program
+  kValue = 2,  // part of an expression
+  kJoin = 3,  // part of an expression; what the left side decides goes on at `to`
+  kRead = 4,  // takes a reading; stands between instructions and in the check of an UNTIL
   kUntil = 5,  // ends the check of an UNTIL
-  kIf = 6,  // opens a block that ends at `to`, or leaves the loop that ends there
-  kElse = 7,  // ends the block before it and opens one that ends at `to`
-  kRepeat = 8,  // opens a loop that does not count
-  kCount = 9,  // opens a loop that counts
-  kAgain = 10,  // closes a loop that does not count
-  kNext = 11,  // closes a loop that counts
-  kBreak = 12,  // leaves the innermost loop, one that does not count
-  kDrop = 13,  // leaves the innermost loop, one that counts
-  kDef = 14,  // opens a procedure that ends at `to`
-  kReturn = 15,  // closes a procedure
-  kCall = 16,  // calls a procedure that lies before it
-  kEnd = 17,  // ends the program
+  kPlain = 6,  // an instruction: leaves the stack empty
+  kWatch = 7,  // begins the check of an UNTIL
+  kIf = 8,  // opens a block that ends at `to`, or leaves the loop that ends there
+  kElse = 9,  // ends the block before it and opens one that ends at `to`
+  kForever = 10,  // opens a loop that does not count
+  kCount = 11,  // opens a loop that counts
+  kWhile = 12,  // opens a loop that does not count and ends at `to`
+  kLoop = 13,  // opens a loop that counts and ends at `to`
+  kAgain = 14,  // closes a loop that does not count
+  kNext = 15,  // closes a loop that counts
+  kBreak = 16,  // leaves the innermost loop, one that does not count
+  kDrop = 17,  // leaves the innermost loop, one that counts
+  kDef = 18,  // opens a procedure that ends at `to`
+  kReturn = 19,  // closes a procedure
+  kCall = 20,  // calls a procedure that lies before it
 };
 
-// Operands that are read and checked in the same way.
-enum class Operand : uint8_t {
-  kNone = 0,
-  kAny8 = 1,
-  kPower = 2,
-  kPercent = 3,
+// What a byte of operands is.
+enum class Byte : uint8_t {
+  kAny = 0,
+  kPower = 1,
+  kPercent = 2,
+  kVariable = 3,
   kCount = 4,
-  kVariable = 5,
+  kBack = 5,
   kSensor = 6,
   kActuator = 7,
-  kFwd8 = 8,
-  kBack8 = 9,
-  kAny16 = 10,
-  kFwd16 = 11,
-  kBack16 = 12,
-  kAny32 = 13,
 };
 
 // From kFamilies on, each eight opcodes are one family.
 constexpr uint8_t kFamilies = 128;
 constexpr uint8_t kFamilyOps = 6;
-constexpr uint8_t kRows = 134;
 
-// The row of each opcode in kOpRows, counted from 1; 0: it is none.
-static const uint8_t kRowOf[] in_flash = {
-    1, 2, 3, 3, 4, 5, 5, 6, 7, 7, 5, 8, 0, 0, 0, 0,  // 00
-    8, 8, 8, 8, 8, 9, 9, 8, 8, 8, 0, 0, 0, 0, 0, 0,  // 10
-    8, 8, 8, 8, 8, 8, 9, 8, 8, 0, 10, 11, 10, 11, 0, 0,  // 20
-    12, 13, 13, 14, 0, 0, 0, 0, 15, 16, 16, 17, 0, 0, 0, 0,  // 30
-    18, 18, 18, 18, 19, 19, 19, 19, 20, 20, 20, 20, 21, 21, 21, 21,  // 40
-    16, 22, 21, 23, 24, 25, 0, 0, 26, 18, 27, 18, 0, 0, 0, 0,  // 50
-    28, 29, 28, 29, 30, 31, 0, 0, 32, 33, 34, 35, 36, 37, 38, 39,  // 60
-    40, 41, 42, 43, 44, 45, 0, 0, 46, 47, 48, 49, 50, 0, 0, 0,  // 70
-    51, 52, 53, 54, 53, 54,  // 80
+// The least value of a Byte, and how much more than that it may be.
+static const uint8_t kRanges[][2] in_flash = {
+    {0, 255},  // any
+    {0, 100},  // power
+    {156, 200},  // percent
+    {0, 31},  // variable
+    {1, 254},  // count
+    {0, 255},  // back
+    {0, 255},  // sensor
+    {0, 255},  // actuator
 };
 
-// Role, pushes, pops; whether the third is fwd8, size; second and first operand.
-static const uint8_t kOpRows[][3] in_flash = {
-    {0x88, 0x01, 0x00},  // END
-    {0x04, 0x02, 0x01},  // PUSH8
-    {0x04, 0x03, 0x0a},  // PUSH16, PUSH_MILLI
-    {0x04, 0x05, 0x0d},  // PUSH32
-    {0x04, 0x01, 0x00},  // PUSH_FALSE, PUSH_TRUE, TIME
-    {0x04, 0x02, 0x05},  // PUSH_VAR
-    {0x04, 0x02, 0x06},  // PUSH_SENSOR, PUSH_READ
-    {0x06, 0x01, 0x00},  // RANDOM, ADD, SUB ...
-    {0x05, 0x01, 0x00},  // NEG, ABS, NOT
-    {0x09, 0x02, 0x08},  // AND_THEN, OR_ELSE
-    {0x09, 0x03, 0x0b},  // AND_THEN_FAR, OR_ELSE_FAR
-    {0x19, 0x02, 0x05},  // SET_VAR
-    {0x18, 0x03, 0x15},  // SET_VAR8, ADD_VAR8
-    {0x18, 0x03, 0x55},  // ADD_VAR
-    {0x10, 0x02, 0x06},  // READ
-    {0x19, 0x01, 0x00},  // SHOW, SHOW_YES_NO, WAIT
-    {0x19, 0x02, 0x07},  // SET
-    {0x1a, 0x01, 0x00},  // MOVE_F, MOVE_B, MOVE_L ...
-    {0x18, 0x03, 0x21},  // MOVE8_F, MOVE8_B, MOVE8_L ...
-    {0x22, 0x01, 0x00},  // WATCH_F, WATCH_B, WATCH_L ...
-    {0x21, 0x01, 0x00},  // WATCH_FOREVER_F, WATCH_FOREVER_B, WATCH_FOREVER_L ...
-    {0x18, 0x02, 0x01},  // WAIT8
-    {0x20, 0x01, 0x00},  // WATCH_FOREVER_WAIT
-    {0x29, 0x02, 0x09},  // UNTIL
-    {0x29, 0x03, 0x0c},  // UNTIL_FAR
-    {0x18, 0x01, 0x00},  // STOP
-    {0x18, 0x03, 0x33},  // MOTORS8
-    {0x31, 0x02, 0x08},  // IF, IF_NOT
-    {0x31, 0x03, 0x0b},  // IF_FAR, IF_NOT_FAR
-    {0x38, 0x02, 0x08},  // ELSE
-    {0x38, 0x03, 0x0b},  // ELSE_FAR
-    {0x40, 0x01, 0x00},  // FOREVER
-    {0x40, 0x02, 0x08},  // WHILE
-    {0x40, 0x03, 0x0b},  // WHILE_FAR
-    {0x50, 0x02, 0x09},  // AGAIN
-    {0x50, 0x03, 0x0c},  // AGAIN_FAR
-    {0x48, 0x02, 0x04},  // LOOP8
-    {0x49, 0x02, 0x08},  // LOOP
-    {0x49, 0x03, 0x0b},  // LOOP_FAR
-    {0x58, 0x02, 0x09},  // NEXT
-    {0x58, 0x03, 0x0c},  // NEXT_FAR
-    {0x60, 0x02, 0x08},  // BREAK
-    {0x60, 0x03, 0x0b},  // BREAK_FAR
-    {0x68, 0x02, 0x08},  // BREAK_LOOP
-    {0x68, 0x03, 0x0b},  // BREAK_LOOP_FAR
-    {0x70, 0x02, 0x08},  // DEF
-    {0x70, 0x03, 0x0b},  // DEF_FAR
-    {0x78, 0x01, 0x00},  // RETURN
-    {0x80, 0x02, 0x09},  // CALL
-    {0x80, 0x03, 0x0c},  // CALL_FAR
-    {0x30, 0x84, 0x15},  // IF_VAR8_EQ, IF_VAR8_NE, IF_VAR8_LT ...
-    {0x30, 0x85, 0xa5},  // IF_VAR16_EQ, IF_VAR16_NE, IF_VAR16_LT ...
-    {0x30, 0x84, 0x16},  // IF_SENSOR8_EQ, IF_SENSOR8_NE, IF_SENSOR8_LT ...
-    {0x30, 0x85, 0xa6},  // IF_SENSOR16_EQ, IF_SENSOR16_NE, IF_SENSOR16_LT ...
+// What the second byte of operands is, the first one; size.
+static const uint8_t kOperands[] in_flash = {
+    0x01,  // any, any; 1
+    0x02,  // any, any; 2
+    0x03,  // any, any; 3
+    0x05,  // any, any; 5
+    0x1a,  // any, variable; 2
+    0x32,  // any, sensor; 2
+    0x1b,  // any, variable; 3
+    0xdb,  // variable, variable; 3
+    0x3a,  // any, actuator; 2
+    0x43,  // power, any; 3
+    0x2a,  // any, back; 2
+    0x93,  // percent, percent; 3
+    0x22,  // any, count; 2
+    0x1c,  // any, variable; 4
+    0x34,  // any, sensor; 4
+};
+
+// Pops, pushes, role; how many opcodes more, operands.
+static const uint8_t kOpRows[] in_flash = {
+    0x01, 0x00,  // END
+    0x22, 0x11,  // PUSH8, PUSH16
+    0x22, 0x02,  // PUSH_MILLI
+    0x22, 0x03,  // PUSH32
+    0x22, 0x10,  // PUSH_FALSE, PUSH_TRUE
+    0x22, 0x04,  // PUSH_VAR
+    0x22, 0x05,  // PUSH_SENSOR
+    0x22, 0x05,  // PUSH_READ
+    0x22, 0x00,  // TIME
+    0xa2, 0x00,  // RANDOM
+    0x00, 0x30,  // --
+    0xa2, 0x40,  // ADD, SUB, MUL ...
+    0x62, 0x10,  // NEG, ABS
+    0xa2, 0x20,  // MIN, MAX, ROUND
+    0x00, 0x50,  // --
+    0xa2, 0x50,  // EQ, NE, LT ...
+    0x62, 0x00,  // NOT
+    0xa2, 0x10,  // AND, OR
+    0x00, 0x00,  // --
+    0x43, 0x31,  // AND_THEN, AND_THEN_FAR, OR_ELSE ...
+    0x00, 0x10,  // --
+    0x46, 0x04,  // SET_VAR
+    0x06, 0x16,  // SET_VAR8, ADD_VAR8
+    0x06, 0x07,  // ADD_VAR
+    0x00, 0x30,  // --
+    0x04, 0x05,  // READ
+    0x46, 0x10,  // SHOW, SHOW_YES_NO
+    0x46, 0x08,  // SET
+    0x00, 0x30,  // --
+    0x86, 0x30,  // MOVE_F, MOVE_B, MOVE_L ...
+    0x06, 0x39,  // MOVE8_F, MOVE8_B, MOVE8_L ...
+    0x87, 0x30,  // WATCH_F, WATCH_B, WATCH_L ...
+    0x47, 0x30,  // WATCH_FOREVER_F, WATCH_FOREVER_B, WATCH_FOREVER_L ...
+    0x46, 0x00,  // WAIT
+    0x06, 0x01,  // WAIT8
+    0x47, 0x00,  // WATCH_WAIT
+    0x07, 0x00,  // WATCH_FOREVER_WAIT
+    0x45, 0x1a,  // UNTIL, UNTIL_FAR
+    0x00, 0x10,  // --
+    0x06, 0x00,  // STOP
+    0x86, 0x00,  // MOTORS
+    0x06, 0x0b,  // MOTORS8
+    0x86, 0x00,  // BEEP
+    0x00, 0x30,  // --
+    0x48, 0x31,  // IF, IF_FAR, IF_NOT ...
+    0x09, 0x11,  // ELSE, ELSE_FAR
+    0x00, 0x10,  // --
+    0x0a, 0x00,  // FOREVER
+    0x0c, 0x11,  // WHILE, WHILE_FAR
+    0x0e, 0x1a,  // AGAIN, AGAIN_FAR
+    0x0b, 0x0c,  // LOOP8
+    0x4d, 0x11,  // LOOP, LOOP_FAR
+    0x0f, 0x1a,  // NEXT, NEXT_FAR
+    0x10, 0x11,  // BREAK, BREAK_FAR
+    0x11, 0x11,  // BREAK_LOOP, BREAK_LOOP_FAR
+    0x00, 0x10,  // --
+    0x12, 0x11,  // DEF, DEF_FAR
+    0x13, 0x00,  // RETURN
+    0x14, 0x1a,  // CALL, CALL_FAR
+    0x00, 0x20,  // --
+    0x08, 0x1d,  // IF_VAR8_GE, IF_VAR16_GE
+    0x08, 0x3e,  // IF_SENSOR8_GE, IF_SENSOR16_GE, IF_READ8_GE ...
+    0x00, 0x90,  // --
 };
 
 }  // namespace tiniscript

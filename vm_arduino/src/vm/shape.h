@@ -1,7 +1,6 @@
 // What the table of instructions says of an opcode: its stack, its size, its operands, its role.
 //
-// Knows how the rows of `bytecode.h` are packed, and where they lie. Verifier and machine read
-// them here.
+// Knows how the rows of `bytecode.h` are packed, and where they lie.
 
 #ifndef TINISCRIPT_VM_SHAPE_H_
 #define TINISCRIPT_VM_SHAPE_H_
@@ -12,19 +11,28 @@
 
 namespace tiniscript {
 
-// A row of kOpRows; null: this is no opcode.
-struct Shape {
-  const uint8_t* row;
+// What is no opcode has a row too: one byte, without operands or values, of the role kNone.
+struct Row {
+  uint8_t effects;
+  uint8_t bytes;
 
-  uint8_t pushes() const { return (flash_byte(row) & 4) != 0; }
-  uint8_t pops() const { return flash_byte(row) & 3; }
-  Role role() const { return static_cast<Role>(flash_byte(row) >> 3); }
-  uint8_t size() const { return flash_byte(row + 1) & 0x7f; }
-  uint8_t operands() const { return flash_byte(row + 2); }  // 4 bits for each of the first two
-  bool has_third() const { return (flash_byte(row + 1) & 0x80) != 0; }
+  uint8_t pops() const { return static_cast<uint8_t>(effects / 64); }
+  uint8_t pushes() const { return (effects & 0x20) != 0; }
+  Role role() const { return static_cast<Role>(effects & 0x1f); }
+  uint8_t size() const { return bytes & 7; }
+  uint8_t operands() const { return static_cast<uint8_t>(bytes / 8); }  // the first in 3 bits, the second in 2
+  bool jumps_back() const { return (bytes & 0x38) == static_cast<uint8_t>(Byte::kBack) << 3; }
 };
 
-Shape shape_of(uint8_t code);
+Row row_of(uint8_t code);
+
+// For the machine: `row` is null where this is no opcode.
+struct Shape : Row {
+  explicit Shape(Row its) : Row(its), row(role() == Role::kNone ? nullptr : kOpRows) {}
+  const uint8_t* row;
+};
+
+inline Shape shape_of(uint8_t code) { return Shape(row_of(code)); }
 
 }  // namespace tiniscript
 

@@ -3,7 +3,7 @@
 // One pass over the code from its first byte to its last, with bounded memory: what is open is a
 // few words, and a jump is right when it leads where the structure around it ends or begins. What
 // is accepted cannot leave the stack, the variables, the kit or the code while it runs.
-// The same names, order and verdicts as `verify.py`.
+// The same rules, order and verdicts as `verify.py`.
 
 #ifndef TINISCRIPT_VM_VERIFY_H_
 #define TINISCRIPT_VM_VERIFY_H_
