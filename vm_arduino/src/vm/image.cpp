@@ -4,6 +4,9 @@ namespace tiniscript {
 
 namespace {
 
+// The checksum of any bytes with their own checksum behind them.
+constexpr uint32_t kBehindItself = 0x2144df1c;
+
 uint16_t word(const uint8_t* data) { return static_cast<uint16_t>(data[0] | data[1] << 8); }
 
 }  // namespace
@@ -17,12 +20,11 @@ Refusal unpack(const uint8_t* data, size_t length, uint16_t kit, Image* image) {
   image->code_length = word(data + kCodeLengthAt);
   image->kit = word(data + kKitAt);
   image->start = data[kStartAt];
-  image->checksum = 0;
-  for (uint8_t k = 4; k-- != 0;) image->checksum = image->checksum << 8 | data[kChecksumAt + k];
   if (length - kHeaderBytes < image->code_length) return Refusal::kTruncated;
   if (length - kHeaderBytes > image->code_length) return Refusal::kTrailing;
-  const uint32_t crc = crc32(crc32(0, data, kChecksumAt), image->code, image->code_length);
-  if (crc != image->checksum) return Refusal::kDamaged;
+  uint32_t crc = crc32(0, data, kChecksumAt);
+  crc = crc32(crc, image->code, image->code_length);
+  if (crc32(crc, data + kChecksumAt, 4) != kBehindItself) return Refusal::kDamaged;
   if (data[kIsaMajorAt] != kIsaMajor || data[kIsaMinorAt] > kIsaMinor) {
     return Refusal::kOtherVersion;
   }
@@ -38,7 +40,7 @@ __attribute__((noinline)) uint32_t crc32(uint32_t crc, const uint8_t* data, uint
   while (length-- != 0) {
     crc ^= *data++;
     for (uint8_t bit = 0; bit < 8; bit++) {
-      const bool carry = (crc & 1) != 0;
+      const bool carry = (static_cast<uint8_t>(crc) & 1) != 0;
       crc >>= 1;
       if (carry) crc ^= 0xedb88320;
     }

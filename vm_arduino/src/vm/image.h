@@ -15,7 +15,6 @@ namespace tiniscript {
 // `code` points into the bytes of the image; `kit` is a fingerprint, or 0.
 struct Image {
   const uint8_t* code;
-  uint32_t checksum;
   uint16_t code_length;
   uint16_t kit;
   uint8_t start;
