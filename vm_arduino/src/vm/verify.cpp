@@ -24,16 +24,17 @@ struct Join {
   uint8_t depth;  // values there
 };
 
-// A procedure, and what is open at once in it, its calls included.
+// A routine, and what is open at once in it, its calls included.
 struct Def {
   uint16_t start;
+  uint16_t end;  // 0: it is the code outside of all DEFs
   uint8_t counters;
   uint8_t calls;
 };
 
 struct Memory {
   Join joins[kJoins + 1];        // the first one ends behind any code
-  Def defs[kDefs + 1];           // behind those that are closed: the routine that is looked at
+  Def defs[kDefs + 1];           // behind the closed ones: the one that is looked at
   Block blocks[kNestWords + 1];  // the first one is the code itself
 };
 
@@ -55,13 +56,12 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
   uint16_t at = 0;              // where the instruction that is looked at begins
   uint16_t after = 0;           // where the next one begins
   uint16_t check = 0;           // where the open check of an UNTIL begins, or 0
-  uint16_t def_end = 0;         // of the open DEF, or 0
   uint8_t depth = 0;            // values on the stack
   uint8_t joins = 0;            // that are open
   uint8_t defs = 0;             // that are closed
-  uint8_t counters = 0;         // counted loops open in this routine
+  uint8_t counters = 0;         // counted loops that are open in this routine
   Join* join = memory->joins;   // the one that ends first
-  Def* routine = memory->defs;
+  Def* routine = memory->defs;  // that is looked at
   Block* top = memory->blocks;  // the innermost block that is open
   join->target = kFarAway;
 
@@ -74,7 +74,7 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
     for (; top->kind == Kind::kIf && top->end <= at; top--) {
       if (top->end != at || depth != 0 || check != 0) return {Rule::kMissedTarget, at};
     }
-    if (def_end != 0 && def_end <= at) return {Rule::kBadDef, at};
+    if (routine->end != 0 && routine->end <= at) return {Rule::kBadDef, at};
     if (at >= length) break;
 
     // the operands; what begins no instruction has none
@@ -126,9 +126,7 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
         if (joins == kJoins) return {Rule::kTooDeep, at};
         if (target >= length || target > join->target) return {Rule::kBadTarget, at};
         joins++;
-        join++;
-        join->target = target;
-        join->depth = static_cast<uint8_t>(depth + 1);
+        *++join = {target, static_cast<uint8_t>(depth + 1)};
         continue;
 
       case Role::kWatch:
@@ -179,20 +177,16 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
       }
 
       case Role::kDef:
-        if (top->kind != Kind::kCode || def_end != 0) return {Rule::kBadDef, at};
+        if (top->kind != Kind::kCode || routine->end != 0) return {Rule::kBadDef, at};
         if (defs == kDefs) return {Rule::kTooManyDefs, at};
-        routine->start = after;
-        routine->counters = 0;
-        routine->calls = 0;
-        def_end = target;
+        *routine = {after, target, 0, 0};
         continue;
       case Role::kReturn:
-        if (def_end == 0) return {Rule::kNotOpen, at};
+        if (routine->end == 0) return {Rule::kNotOpen, at};
         if (top->kind != Kind::kCode) return {Rule::kStillOpen, at};
-        if (def_end != after) return {Rule::kBadDef, at};
+        if (routine->end != after) return {Rule::kBadDef, at};
         routine++;
         defs++;
-        def_end = 0;
         continue;
       case Role::kCall: {
         const Def* called = routine;
@@ -220,11 +214,7 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
     }
     const uint8_t words = static_cast<uint8_t>(top->words + (kind == Kind::kIf ? 1 : 2));
     if (words > kNestWords) return {Rule::kTooDeep, at};
-    top++;
-    top->end = target;
-    top->start = after;
-    top->kind = kind;
-    top->words = words;
+    *++top = {target, after, kind, words};
     if (kind == Kind::kCount) {
       static_assert(kNestWords / 2 <= kCounters, "no more loops are open at once");
       counters++;
@@ -234,7 +224,7 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
 
   if (depth != 0 || joins != 0) return {Rule::kStackNotEmpty, at};
   if (check != 0) return {Rule::kInsideCheck, at};
-  if (top->kind != Kind::kCode || def_end != 0) return {Rule::kStillOpen, at};
+  if (top->kind != Kind::kCode || routine->end != 0) return {Rule::kStillOpen, at};
   return {Rule::kNone, at};
 }
 
