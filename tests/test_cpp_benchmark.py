@@ -141,3 +141,17 @@ def test_machines_of_this_computer_are_right(tmp_path: Path) -> None:
     for machine in (speeds.of_host(tmp_path / "host"), speeds.of_wasm(), speeds.of_python()):
         if not machine.missing:
             assert machine.seconds(works.WORKS[2]) > 0
+
+
+@needs_chip
+@pytest.mark.parametrize(
+    ("work", "must"),
+    [pytest.param(*each, id=each[0].name) for each in zip(WORKS, works.MUST, strict=True)],
+)
+def test_cycles_are_at_most_what_they_must(work: Work, must: float) -> None:
+    assert chip_cycles.per_iteration(work) <= must
+
+
+@needs_chip
+def test_flash_is_at_most_what_it_must() -> None:
+    assert cpp_size.size(cpp_size.AVR, "machine and verifier").flash <= cpp_size.MUST

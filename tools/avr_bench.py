@@ -35,7 +35,7 @@ def missing() -> str:
 @lru_cache(maxsize=8)
 def built(name: str, sources: Path = SOURCES) -> bytes:
     """Return `bench/NAME.cpp` with the machine of `sources`, an ELF file."""
-    code = [sources / "bench" / f"{name}.cpp", *sorted((sources / "src" / "vm").glob("*.cpp"))]
+    code = [sources / "bench" / f"{name}.cpp", *sorted((sources / "src" / "vm").glob("*.[cS]*"))]
     with tempfile.TemporaryDirectory() as folder:
         program = Path(folder) / "program.elf"
         done = subprocess.run(

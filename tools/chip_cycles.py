@@ -42,7 +42,7 @@ class Counted(NamedTuple):
 
 
 def count(code: bytes, readings: Sequence[int], budget: int) -> Counted:
-    request = pack(f"<HB{len(readings)}iH", budget, len(readings), *readings, len(code)) + code
+    request = pack(f"<BB{len(readings)}iH", budget, len(readings), *readings, len(code)) + code
     said = avr_bench.run(avr_bench.built("cycles"), request)
     found: dict[str, list[list[int]]] = defaultdict(list)
     for line in said:

@@ -107,7 +107,7 @@ struct InstructionCase {
   std::string name;
   Op op;
   std::vector<uint8_t> code;
-  uint16_t steps;
+  uint8_t steps;
   uint32_t now_ms;
   int32_t reading;  // of each sensor
   std::string state;

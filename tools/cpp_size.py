@@ -114,7 +114,7 @@ def on_avr(probe: str, flags: Sequence[str]) -> tuple[int, int]:
 def link(program: Path, probe: str, flags: Sequence[str]) -> None:
     source = program.with_suffix(".cpp")
     source.write_text(probe, encoding="utf-8")
-    machine = sorted((SOURCE / "vm").glob("*.cpp"))
+    machine = sorted((SOURCE / "vm").glob("*.[cS]*"))
     done("avr-g++", *flags, f"-I{SOURCE}", str(source), *map(str, machine), "-o", str(program))
 
 

@@ -39,7 +39,7 @@ def missing() -> str:
 def built(sources: Path = SOURCES) -> bytes:
     """Return the program of the chip, an ELF file."""
     folders = [sources / name for name in ("src/vm", "chip", "avr")]
-    code = [str(path) for each in folders for path in each.glob("*.cpp")]
+    code = [str(path) for each in folders for path in each.glob("*.[cS]*")]
     with tempfile.TemporaryDirectory() as folder:
         program = Path(folder) / "machine.elf"
         done = subprocess.run(

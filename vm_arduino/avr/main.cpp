@@ -9,6 +9,7 @@
 
 #include "../chip/runner.h"
 #include "../src/vm/flash.h"
+#include "../src/vm/vm.h"
 
 namespace tiniscript {
 
@@ -20,7 +21,7 @@ constexpr size_t kImageBytes = 700;
 // What is found by its first bytes, and written over.
 const uint8_t kRequest[kRequestBytes] in_flash = {"TiniScript: here is the request"};
 
-uint8_t image_bytes[kImageBytes + 1];
+uint8_t image_bytes[kImageBytes + kEndBytes];
 
 }  // namespace
 

@@ -64,12 +64,12 @@ Fault calculated(uint8_t op, int32_t a, int32_t b, int32_t* result) {
   const bool takes_two = op != static_cast<uint8_t>(Op::kNeg) &&
                          op != static_cast<uint8_t>(Op::kAbs) &&
                          op != static_cast<uint8_t>(Op::kNot);
-  static uint8_t code[13];
+  static uint8_t code[12 + kEndBytes];
   uint8_t* at = put_push(code, a);
   if (takes_two) at = put_push(at, b);
   *at++ = op;
   *at++ = static_cast<uint8_t>(Op::kShow);
-  *at = static_cast<uint8_t>(Op::kEnd);
+  for (uint8_t k = 0; k < kEndBytes; k++) at[k] = static_cast<uint8_t>(Op::kEnd);
   // `b` is the seed of RANDOM too: as good as any
   machine.start(code, static_cast<uint16_t>(at - code), 0, static_cast<uint32_t>(b) | 1, 0);
   shows = 0;

@@ -16,7 +16,7 @@ namespace {
 constexpr uint16_t kCodeBytes = 512;
 constexpr uint32_t kLongest = 200 * 1024UL;  // cycles of a tick: behind 2^18 both timers wrap
 
-uint8_t code[kCodeBytes + 1];
+uint8_t code[kCodeBytes + kEndBytes];
 Machine machine;
 
 // Volatile, so that they are read and written in this order whatever lies between.
@@ -39,12 +39,12 @@ __attribute__((always_inline)) inline uint32_t counted() {
 }
 
 void run() {
-  const uint16_t budget = simulated::next_word();
+  const uint8_t budget = simulated::next_byte();
   const uint8_t count = simulated::next_byte();
   for (uint8_t k = 0; k < count; k++) readings[k] = static_cast<int32_t>(simulated::next_long());
   const uint16_t length = simulated::next_word();
   for (uint16_t k = 0; k < length; k++) code[k] = simulated::next_byte();
-  code[length] = static_cast<uint8_t>(Op::kEnd);
+  for (uint8_t k = 0; k < kEndBytes; k++) code[length + k] = static_cast<uint8_t>(Op::kEnd);
   machine.start(code, length, 8, 1, 0);
 
   begin_count();
@@ -69,7 +69,7 @@ void run() {
       simulated::put('\n');
     }
     total += cycles;
-    steps += static_cast<uint16_t>(budget - machine.left());
+    steps += static_cast<uint8_t>(budget - machine.left());
     if (cycles > longest) longest = cycles;
   } while (status == Status::kRunning && longest < kLongest);
   for (uint8_t k = 0; k < shows; k++) simulated::say("SHOW", shown[k]);

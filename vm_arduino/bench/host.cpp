@@ -23,7 +23,7 @@ int main(int count, char** arguments) {
     code.push_back(static_cast<uint8_t>(std::stoi(digits.substr(at, 2), nullptr, 16)));
   }
   const uint16_t length = static_cast<uint16_t>(code.size());
-  code.push_back(static_cast<uint8_t>(Op::kEnd));
+  code.resize(code.size() + kEndBytes);
   for (int k = 3; k < count; k++) readings[k - 3] = atoi(arguments[k]);
 
   static Machine machine;
@@ -35,8 +35,8 @@ int main(int count, char** arguments) {
     steps = 0;
     machine.start(code.data(), length, 8, 1, 0);
     do {
-      machine.tick(0, 0xffff);
-      steps += static_cast<unsigned long>(0xffff - machine.left());
+      machine.tick(0, 0xff);
+      steps += static_cast<unsigned long>(0xff - machine.left());
     } while (machine.status() == Status::kRunning);
     if (machine.status() != Status::kDone) return 1;
   }

@@ -30,13 +30,13 @@ Bytes next_bytes(Request* request) {
 
 Fault result_of(Op op, int32_t a, int32_t b, int32_t* result) {
   // `b` is the state as well: as good as any
-  if (op == Op::kRandom) return random_between(a, b, static_cast<uint32_t>(b), result);
   if (op == Op::kEnd) {
     *result = whole(a);
     return Fault::kNone;
   }
   int32_t pair[] = {a, b};
-  const Fault fault = calculate(op, pair);
+  const Fault fault =
+      op == Op::kRandom ? random_between(pair, static_cast<uint32_t>(b)) : calculate(op, pair);
   *result = pair[0];
   return fault;
 }

@@ -10,7 +10,7 @@ namespace tiniscript {
 
 namespace {
 
-constexpr uint16_t kSlice = 1000;  // instructions between two looks at the limit
+constexpr uint8_t kSlice = 250;  // instructions between two looks at the limit
 
 Machine machine;
 
@@ -44,9 +44,9 @@ uint32_t run(const Image& image, const Limits& limits) {
   uint32_t steps = 0;
   uint32_t left = limits.max_steps;  // before the clock must move
   for (;;) {
-    const uint16_t budget = left < kSlice ? static_cast<uint16_t>(left) : kSlice;
+    const uint8_t budget = left < kSlice ? static_cast<uint8_t>(left) : kSlice;
     const Status status = machine.tick(robot.now_ms + limits.begin_ms, budget);
-    const uint16_t ran = static_cast<uint16_t>(budget - machine.left());
+    const uint8_t ran = static_cast<uint8_t>(budget - machine.left());
     steps += ran;
     left -= ran;
     if (status == Status::kDone) {
@@ -58,7 +58,7 @@ uint32_t run(const Image& image, const Limits& limits) {
       return steps;
     }
     if (status == Status::kWaiting) {
-      const uint32_t wake_ms = machine.task().wake_ms - limits.begin_ms;
+      const uint32_t wake_ms = machine.wake_ms() - limits.begin_ms;
       if (wake_ms > limits.max_ms) {
         robot.now_ms = limits.max_ms;
         left = 0;
@@ -85,7 +85,7 @@ void answer_run(Request request) {
   limits.begin_ms = request.u32();
   if (!robot.read(&request)) return put_text("NO ROOM\n");
   const size_t length = static_cast<size_t>(request.u32());
-  const uint8_t* const data = request_bytes(request.place(), length, 1);  // END
+  const uint8_t* const data = request_bytes(request.place(), length, kEndBytes);
   if (data == nullptr) return put_text("NO ROOM\n");
   Image image;
   const Refusal refusal = unpack(data, length, kit, &image);

@@ -21,7 +21,7 @@ std::string asked;
 std::unique_ptr<uint8_t[]> bytes_asked;
 Writer said;
 
-constexpr uint16_t kSlice = 1000;  // instructions between two looks at the limit
+constexpr uint8_t kSlice = 250;  // instructions between two looks at the limit
 
 const char* name_of(Fault fault) {
   switch (fault) {
@@ -54,10 +54,10 @@ void run(const uint8_t* code, uint16_t length, const Limits& limits, Writer* ans
   std::string ending;
   while (ending.empty()) {
     const uint32_t more = limits.max_steps - (steps - before);
-    const uint16_t budget = more < kSlice ? static_cast<uint16_t>(more) : kSlice;
+    const uint8_t budget = more < kSlice ? static_cast<uint8_t>(more) : kSlice;
     const Status status = machine.tick(robot.now_ms + limits.begin_ms, budget);
     steps += static_cast<uint32_t>(budget - machine.left());
-    const uint32_t wake_ms = machine.task().wake_ms - limits.begin_ms;
+    const uint32_t wake_ms = machine.wake_ms() - limits.begin_ms;
     if (status == Status::kDone) {
       ending = "DONE";
     } else if (status == Status::kFault) {
@@ -114,7 +114,7 @@ void answer_run(Reader* request, bool is_verified, Writer* answer) {
   limits.seed = request->u32();
   limits.begin_ms = request->u32();
   read_robot(request);
-  const Bytes data = request->bytes(1);  // END behind the code
+  const Bytes data = request->bytes(kEndBytes);
   Image image;
   if (is_verified) {
     const Refusal refusal = unpack(data.data.get(), data.length, kit, &image);
@@ -138,18 +138,18 @@ void answer_late(Reader* request, Writer* answer) {
   const uint32_t late_ms = request->u32();
   request->u16();  // kit
   request->u32();  // longest time
-  const uint16_t budget = static_cast<uint16_t>(request->u32());
+  request->u32();  // most instructions
   const uint32_t seed = request->u32();
   request->u32();  // beginning
   read_robot(request);
-  const Bytes data = request->bytes(1);  // END behind the code
+  const Bytes data = request->bytes(kEndBytes);
   const size_t length = data.length - kHeaderBytes;
   Machine machine;
   machine.start(data.data.get() + kHeaderBytes, static_cast<uint16_t>(length),
                 static_cast<uint8_t>(robot.sensors.size()), seed, 0);
   for (uint32_t count = 1; count < 200; count++) {
-    if (machine.tick(robot.now_ms, budget) != Status::kWaiting) break;
-    robot.now_ms = machine.task().wake_ms + count * 7 % (late_ms + 1);
+    if (machine.tick(robot.now_ms, kSlice) != Status::kWaiting) break;
+    robot.now_ms = machine.wake_ms() + count * 7 % (late_ms + 1);
   }
   answer->raw(robot.trace);
 }
@@ -159,7 +159,7 @@ void answer_late(Reader* request, Writer* answer) {
 void answer_all(Reader* request, Writer* answer) {
   const uint8_t sensors = request->u8();
   const uint8_t actuators = request->u8();
-  uint8_t code[4] = {request->u8(), 0, 0, static_cast<uint8_t>(Op::kEnd)};
+  uint8_t code[3 + kEndBytes] = {request->u8()};
   uint32_t accepted = 0;
   uint32_t bad = 0;
   uint32_t checksum = 0;
@@ -182,7 +182,7 @@ void answer_all(Reader* request, Writer* answer) {
     machine.start(code, 3, sensors, 1, 0);
     uint32_t now_ms = 0;
     for (uint8_t k = 0; k < 20; k++) {
-      if (machine.tick(now_ms, 10) == Status::kWaiting) now_ms = machine.task().wake_ms;
+      if (machine.tick(now_ms, 10) == Status::kWaiting) now_ms = machine.wake_ms();
     }
     bad += machine.fault() == Fault::kBadCode;
   }

@@ -17,9 +17,10 @@ namespace {
 
 constexpr uint8_t kBudget = 32;  // instructions in one turn of loop()
 
-// The paper's obstacle program, and END behind it.
+// The paper's obstacle program.
 // clang-format off
-const uint8_t program[] = {
+constexpr uint8_t kProgramBytes = 28;
+const uint8_t program[kProgramBytes + kEndBytes] = {
     'T', 'S', 1, 0, 0, 0, 0x1b, 0x23, 14, 0, 0x81, 0x0a, 0x5d, 0x7e,
     0x68,                    // FOREVER
     0x44, 0x0a, 0x50,        // MOVE8_F 10 80
@@ -27,7 +28,6 @@ const uint8_t program[] = {
     0x58,                    // STOP
     0x47, 0x0a, 0x3c,        // MOVE8_R 10 60
     0x6b, 0x0d,              // AGAIN
-    0x00,
 };
 // clang-format on
 
@@ -40,7 +40,7 @@ bool is_running;
 
 void setup() {
   board_begin();
-  const bool is_image = unpack(program, sizeof program - 1, kBoardKit, &image) == Refusal::kNone;
+  const bool is_image = unpack(program, kProgramBytes, kBoardKit, &image) == Refusal::kNone;
   is_accepted =
       is_image &&
       verify(image.code, image.code_length, kBoardSensors, kBoardActuators).rule == Rule::kNone;

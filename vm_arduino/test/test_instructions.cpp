@@ -26,7 +26,7 @@ const char* name_of(Status status) {
 std::string ending(const Machine& machine) {
   switch (machine.fault()) {
     case Fault::kNone:
-      return std::to_string(machine.task().wake_ms);
+      return std::to_string(machine.wake_ms());
     case Fault::kOverflow:
       return "OVERFLOW";
     case Fault::kDivideByZero:
@@ -73,9 +73,11 @@ TEST_CASE("every instruction leaves what the machine in Python leaves") {
     robot.readings.assign(kit.sensors.size(), {each.reading});
     robot.taken.assign(kit.sensors.size(), 0);
     robot.now_ms = each.now_ms;
+    const uint16_t length = static_cast<uint16_t>(each.code.size() - 1);
+    std::vector<uint8_t> code = each.code;
+    code.resize(length + kEndBytes);
     Machine machine;
-    machine.start(each.code.data(), static_cast<uint16_t>(each.code.size() - 1),
-                  static_cast<uint8_t>(kit.sensors.size()), 1, 0);
+    machine.start(code.data(), length, static_cast<uint8_t>(kit.sensors.size()), 1, 0);
     machine.tick(each.now_ms, each.steps);
     INFO(each.name);
     CHECK(state_of(machine, robot.trace) == each.state);

@@ -20,7 +20,7 @@ std::vector<uint8_t> code_for(const cases::NumberCase& each) {
     }
   }
   code.push_back(static_cast<uint8_t>(each.op));
-  code.push_back(static_cast<uint8_t>(Op::kEnd));
+  code.resize(code.size() + kEndBytes);
   return code;
 }
 
@@ -30,8 +30,8 @@ TEST_CASE("results and faults of arithmetic are those of Python") {
   for (const cases::NumberCase& each : cases::number_cases()) {
     const std::vector<uint8_t> code = code_for(each);
     Machine machine;
-    machine.start(code.data(), static_cast<uint16_t>(code.size() - 1), 0, 1, 0);
-    machine.tick(0, static_cast<uint16_t>(each.values.size() + 1));
+    machine.start(code.data(), static_cast<uint16_t>(code.size() - kEndBytes), 0, 1, 0);
+    machine.tick(0, static_cast<uint8_t>(each.values.size() + 1));
     INFO(each.name);
     CAPTURE(each.values.front());
     CAPTURE(each.values.back());

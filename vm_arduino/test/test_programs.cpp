@@ -35,11 +35,11 @@ std::string trace_of(const std::vector<uint8_t>& code, const cases::ProgramCase&
     const Status status = machine.tick(robot.now_ms, kBudget);
     if (status == Status::kDone || status == Status::kFault) break;
     if (status == Status::kRunning) continue;
-    if (machine.task().wake_ms > program.max_ms) {
+    if (machine.wake_ms() > program.max_ms) {
       robot.now_ms = program.max_ms;
       break;
     }
-    robot.now_ms = machine.task().wake_ms;
+    robot.now_ms = machine.wake_ms();
   }
   robot.say(ending(machine));
   return robot.trace;
@@ -51,22 +51,21 @@ TEST_CASE("a robot does what tsc run prints") {
   for (const cases::ProgramCase& each : cases::program_cases()) {
     INFO(each.title);
     std::vector<uint8_t> code(each.image.begin() + kHeaderBytes, each.image.end());
-    code.push_back(static_cast<uint8_t>(Op::kEnd));
+    code.resize(code.size() + kEndBytes);
     CHECK(trace_of(code, each) == each.trace);
   }
 }
 
 TEST_CASE("a robot that is not ready is asked again") {
   const cases::ProgramCase& program = cases::program_cases().front();
-  const std::vector<uint8_t> code = {static_cast<uint8_t>(Op::kRead), 0,
-                                     static_cast<uint8_t>(Op::kEnd)};
+  const uint8_t code[2 + kEndBytes] = {static_cast<uint8_t>(Op::kRead), 0};
   robot = TracedRobot();
   robot.sensors = cases::tinibot().sensors;
   robot.readings.resize(robot.sensors.size());
   robot.taken.resize(robot.sensors.size());
   robot.not_ready = 1;  // never
   Machine machine;
-  machine.start(code.data(), 2, 1, program.seed, 0);
+  machine.start(code, 2, 1, program.seed, 0);
   CHECK(machine.tick(0, kBudget) == Status::kRunning);
   CHECK(robot.trace == "");
   robot.not_ready = 0;

@@ -26,7 +26,7 @@ namespace {
 constexpr uint32_t kRoom = 65536;  // for an image, and for some that are too long
 constexpr int64_t kNotThere = static_cast<int64_t>(1) << 32;  // what is no reading
 
-uint8_t room[kRoom + 1];
+uint8_t room[kRoom + kEndBytes];
 Image image;
 Verdict verdict;
 Machine machine;
@@ -76,15 +76,24 @@ exported("refused_at") uint32_t module_refused_at() { return verdict.offset; }
 
 // Begins the program of the image, which is verified.
 exported("start") void module_start(uint32_t sensors, uint32_t seed, uint32_t now_ms) {
-  room[kHeaderBytes + image.code_length] = static_cast<uint8_t>(Op::kEnd);
+  for (uint8_t k = 0; k < kEndBytes; k++) {
+    room[kHeaderBytes + image.code_length + k] = static_cast<uint8_t>(Op::kEnd);
+  }
   machine.start(image.code, image.code_length, static_cast<uint8_t>(sensors), seed, now_ms);
 }
 
 // Runs at most `budget` (0 to 65535) instructions. From the lowest bit: 32 of `wake_ms`, 16 of
 // how much of the budget is left, 8 of the status.
 exported("tick") uint64_t module_tick(uint32_t now_ms, uint32_t budget) {
-  const Status status = machine.tick(now_ms, static_cast<uint16_t>(budget));
-  return machine.task().wake_ms | static_cast<uint64_t>(machine.left()) << 32 |
+  Status status;
+  bool is_over;
+  do {
+    const uint8_t slice = budget < 255 ? static_cast<uint8_t>(budget) : 255;
+    status = machine.tick(now_ms, slice);
+    budget -= static_cast<uint32_t>(slice - machine.left());
+    is_over = status != Status::kRunning || machine.left() != 0;
+  } while (budget != 0 && !is_over);
+  return machine.wake_ms() | static_cast<uint64_t>(budget) << 32 |
          static_cast<uint64_t>(status) << 48;
 }
 

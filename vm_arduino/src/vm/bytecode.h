@@ -262,107 +262,79 @@ enum class Byte : uint8_t {
   kActuator = 7,
 };
 
-// From kFamilies on, each eight opcodes are one family.
+// Opcodes of one form have the same operands and the same picture of the stack, and
+// what they do begins in one place. It bears the name of the first.
+enum class Form : uint8_t {
+  kNone = 0,
+  kEnd = 1,
+  kPushFalse = 2,  // PUSH_FALSE, PUSH_TRUE, TIME
+  kRandom = 3,
+  kAdd = 4,  // ADD, SUB, MUL, DIV ...
+  kNeg = 5,  // NEG, ABS
+  kEq = 6,  // EQ, NE, LT, LE ...
+  kNot = 7,
+  kShow = 8,  // SHOW, SHOW_YES_NO
+  kMoveF = 9,  // MOVE_F, MOVE_B, MOVE_L, MOVE_R
+  kWatchF = 10,  // WATCH_F, WATCH_B, WATCH_L, WATCH_R
+  kWatchForeverF = 11,  // WATCH_FOREVER_F, WATCH_FOREVER_B, WATCH_FOREVER_L, WATCH_FOREVER_R
+  kWait = 12,
+  kWatchWait = 13,
+  kWatchForeverWait = 14,
+  kStop = 15,
+  kMotors = 16,  // MOTORS, BEEP
+  kForever = 17,
+  kReturn = 18,
+  kPush8 = 19,
+  kPushVar = 20,
+  kPushSensor = 21,  // PUSH_SENSOR, PUSH_READ
+  kSetVar = 22,
+  kRead = 23,
+  kSet = 24,
+  kWait8 = 25,
+  kLoop8 = 26,
+  kAndThen = 27,  // AND_THEN, OR_ELSE
+  kUntil = 28,
+  kIf = 29,  // IF, IF_NOT
+  kElse = 30,
+  kWhile = 31,
+  kAgain = 32,
+  kLoop = 33,
+  kNext = 34,
+  kBreak = 35,
+  kBreakLoop = 36,
+  kDef = 37,
+  kCall = 38,
+  kPush16 = 39,  // PUSH16, PUSH_MILLI
+  kPush32 = 40,
+  kSetVar8 = 41,  // SET_VAR8, ADD_VAR8
+  kAddVar = 42,
+  kMove8F = 43,  // MOVE8_F, MOVE8_B, MOVE8_L, MOVE8_R
+  kMotors8 = 44,
+};
+
+// Where forms of two bytes begin, those of them that have a far twin, and those of
+// three bytes and more. From kFarForms on, a number is that of the far twin of a
+// form from kNearForms on.
+constexpr uint8_t kTwoBytes = 19;
+constexpr uint8_t kNearForms = 27;
+constexpr uint8_t kThreeBytes = 39;
+constexpr uint8_t kFarForms = 45;
+
+// From kFamilies on, each eight are a family. Their forms follow the others.
 constexpr uint8_t kFamilies = 128;
+constexpr uint8_t kFamiliesEnd = 176;
 constexpr uint8_t kFamilyOps = 6;
 
+// Pops (2 bits) and form (6) of each opcode below kFamilies.
+constexpr uint8_t kFormMask = 63;
+extern const uint8_t kFormOf[] in_flash;
+
+// Of each form: pushes (1 bit) and role (5); what the second byte is (2), the first
+// (3), and the size (3).
+extern const uint8_t kForms[][2] in_flash;
+
 // The least value of a Byte, and how much more than that it may be.
-static const uint8_t kRanges[][2] in_flash = {
-    {0, 255},  // any
-    {0, 100},  // power
-    {156, 200},  // percent
-    {0, 31},  // variable
-    {1, 254},  // count
-    {0, 255},  // back
-    {0, 255},  // sensor
-    {0, 255},  // actuator
-};
-
-// What the second byte of operands is, the first one; size.
-static const uint8_t kOperands[] in_flash = {
-    0x01,  // any, any; 1
-    0x02,  // any, any; 2
-    0x03,  // any, any; 3
-    0x05,  // any, any; 5
-    0x1a,  // any, variable; 2
-    0x32,  // any, sensor; 2
-    0x1b,  // any, variable; 3
-    0xdb,  // variable, variable; 3
-    0x3a,  // any, actuator; 2
-    0x43,  // power, any; 3
-    0x2a,  // any, back; 2
-    0x93,  // percent, percent; 3
-    0x22,  // any, count; 2
-    0x1c,  // any, variable; 4
-    0x34,  // any, sensor; 4
-};
-
-// Pops, pushes, role; how many opcodes more, operands.
-static const uint8_t kOpRows[] in_flash = {
-    0x01, 0x00,  // END
-    0x22, 0x11,  // PUSH8, PUSH16
-    0x22, 0x02,  // PUSH_MILLI
-    0x22, 0x03,  // PUSH32
-    0x22, 0x10,  // PUSH_FALSE, PUSH_TRUE
-    0x22, 0x04,  // PUSH_VAR
-    0x22, 0x05,  // PUSH_SENSOR
-    0x22, 0x05,  // PUSH_READ
-    0x22, 0x00,  // TIME
-    0xa2, 0x00,  // RANDOM
-    0x00, 0x30,  // --
-    0xa2, 0x40,  // ADD, SUB, MUL ...
-    0x62, 0x10,  // NEG, ABS
-    0xa2, 0x20,  // MIN, MAX, ROUND
-    0x00, 0x50,  // --
-    0xa2, 0x50,  // EQ, NE, LT ...
-    0x62, 0x00,  // NOT
-    0xa2, 0x10,  // AND, OR
-    0x00, 0x00,  // --
-    0x43, 0x31,  // AND_THEN, AND_THEN_FAR, OR_ELSE ...
-    0x00, 0x10,  // --
-    0x46, 0x04,  // SET_VAR
-    0x06, 0x16,  // SET_VAR8, ADD_VAR8
-    0x06, 0x07,  // ADD_VAR
-    0x00, 0x30,  // --
-    0x04, 0x05,  // READ
-    0x46, 0x10,  // SHOW, SHOW_YES_NO
-    0x46, 0x08,  // SET
-    0x00, 0x30,  // --
-    0x86, 0x30,  // MOVE_F, MOVE_B, MOVE_L ...
-    0x06, 0x39,  // MOVE8_F, MOVE8_B, MOVE8_L ...
-    0x87, 0x30,  // WATCH_F, WATCH_B, WATCH_L ...
-    0x47, 0x30,  // WATCH_FOREVER_F, WATCH_FOREVER_B, WATCH_FOREVER_L ...
-    0x46, 0x00,  // WAIT
-    0x06, 0x01,  // WAIT8
-    0x47, 0x00,  // WATCH_WAIT
-    0x07, 0x00,  // WATCH_FOREVER_WAIT
-    0x45, 0x1a,  // UNTIL, UNTIL_FAR
-    0x00, 0x10,  // --
-    0x06, 0x00,  // STOP
-    0x86, 0x00,  // MOTORS
-    0x06, 0x0b,  // MOTORS8
-    0x86, 0x00,  // BEEP
-    0x00, 0x30,  // --
-    0x48, 0x31,  // IF, IF_FAR, IF_NOT ...
-    0x09, 0x11,  // ELSE, ELSE_FAR
-    0x00, 0x10,  // --
-    0x0a, 0x00,  // FOREVER
-    0x0c, 0x11,  // WHILE, WHILE_FAR
-    0x0e, 0x1a,  // AGAIN, AGAIN_FAR
-    0x0b, 0x0c,  // LOOP8
-    0x4d, 0x11,  // LOOP, LOOP_FAR
-    0x0f, 0x1a,  // NEXT, NEXT_FAR
-    0x10, 0x11,  // BREAK, BREAK_FAR
-    0x11, 0x11,  // BREAK_LOOP, BREAK_LOOP_FAR
-    0x00, 0x10,  // --
-    0x12, 0x11,  // DEF, DEF_FAR
-    0x13, 0x00,  // RETURN
-    0x14, 0x1a,  // CALL, CALL_FAR
-    0x00, 0x20,  // --
-    0x08, 0x1d,  // IF_VAR8_GE, IF_VAR16_GE
-    0x08, 0x3e,  // IF_SENSOR8_GE, IF_SENSOR16_GE, IF_READ8_GE ...
-    0x00, 0x90,  // --
-};
+extern const uint8_t kRanges[][2] in_flash;
 
 }  // namespace tiniscript
 

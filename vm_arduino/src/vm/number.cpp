@@ -1,121 +1,74 @@
+// For all chips but the AVR.
+
+#ifndef __AVR__
+
 #include "number.h"
 
 namespace tiniscript {
 
 namespace {
 
-// What a comparison with 0 says, from the highest byte alone: for the AVR that is four times
-// shorter.
-bool negative(int32_t value) { return static_cast<int8_t>(value >> 24) < 0; }
+struct Division {
+  uint32_t quotient;
+  uint32_t remainder;
+};
 
 // -2^31 has a magnitude of its own: so magnitudes are unsigned.
-__attribute__((noinline)) uint32_t magnitude(int32_t value) {
+uint32_t magnitude(int32_t value) {
   const uint32_t bits = static_cast<uint32_t>(value);
   return value < 0 ? 0 - bits : bits;
 }
 
-// Returns a * b / divisor, rounded half up, of magnitudes up to 2^31; 2^32 - 1 where it is more.
-// The product and then the quotient are built bit by bit in `high` and `a`: no sum has a carry,
-// and 32 bits are enough.
-uint32_t scaled(uint32_t a, uint32_t b, uint32_t divisor) {
-  uint32_t high = 0;
+// Returns a * b / divisor; the quotient is 2^32 - 1 where it is more. A chip of 32 bits may have no
+// product and has no quotient of 64: they are made of parts, and bit by bit where it must be.
+Division divided(uint32_t a, uint32_t b, uint32_t divisor) {
+  const uint32_t parts[] = {(a & 0xffff) * (b & 0xffff), (a >> 16) * (b & 0xffff),
+                            (a & 0xffff) * (b >> 16), (a >> 16) * (b >> 16)};
+  const uint32_t middle = (parts[0] >> 16) + (parts[1] & 0xffff) + (parts[2] & 0xffff);
+  uint32_t low = middle << 16 | (parts[0] & 0xffff);
+  uint32_t high = parts[3] + (parts[1] >> 16) + (parts[2] >> 16) + (middle >> 16);
+  if (high == 0) return {low / divisor, low % divisor};
+  if (high >= divisor) return {0xffffffff, 0};
   for (uint8_t bit = 32; bit != 0; bit--) {
-    if ((a & 1) != 0) high += b;
-    a >>= 1;
-    if ((high & 1) != 0) a |= 0x80000000;
-    high >>= 1;
-  }
-  if (high >= divisor) return 0xffffffff;
-  for (uint8_t bit = 32; bit != 0; bit--) {
-    high <<= 1;
-    if ((a & 0x80000000) != 0) high++;
-    a <<= 1;
+    high = high << 1 | low >> 31;
+    low <<= 1;
     if (high >= divisor) {
       high -= divisor;
-      a++;
+      low++;
     }
   }
-  if (high >= divisor - high && a != 0xffffffff) a++;
-  return a;
+  return {low, high};
 }
 
-// Rounds a magnitude to `places` decimals.
-uint32_t rounded(uint32_t size, int32_t places) {
-  if (places >= 3) return size;
-  if (places < -6) return 0;  // half of 10^7 is more than any number
-  uint32_t unit = 1;
-  for (int8_t k = static_cast<int8_t>(places); k < 3; k++) unit *= 10;
-  size += unit / 2;
-  return size - size % unit;
+// Returns a * b / divisor rounded half up, or 2^32 - 1 where it is more.
+uint32_t scaled(uint32_t a, uint32_t b, uint32_t divisor) {
+  const Division division = divided(a, b, divisor);
+  const bool is_up = division.remainder >= divisor - division.remainder;
+  return division.quotient + (is_up && division.quotient != 0xffffffff ? 1 : 0);
 }
 
-}  // namespace
-
-// a - b is ~(~a + b); a sum leaves the range where its sign is that of neither part.
-Fault sum(int32_t a, int32_t b, bool is_sub, int32_t* result) {
-  if (is_sub) a = ~a;
-  const int32_t value = static_cast<int32_t>(static_cast<uint32_t>(a) + static_cast<uint32_t>(b));
-  if (negative((a ^ value) & (b ^ value))) return Fault::kOverflow;
-  *result = is_sub ? ~value : value;
-  return Fault::kNone;
+// Puts a magnitude with its sign into `*result`, if there is such a number.
+Fault finish(uint32_t size, bool is_negative, int32_t* result) {
+  *result = static_cast<int32_t>(is_negative ? 0 - size : size);
+  return size == 0 || (*result < 0) == is_negative ? Fault::kNone : Fault::kOverflow;
 }
 
-Fault calculate(Op op, int32_t* pair) {
-  int32_t a = pair[0];
-  int32_t b = pair[1];  // NOT, NEG and ABS have none: it may lie behind the stack
-  if (op == Op::kNeg || op == Op::kAbs) {
-    if (op == Op::kAbs && a >= 0) return Fault::kNone;
-    b = a;
-    a = 0;
-    op = Op::kSub;
-  }
-  if (op < Op::kMul) return sum(a, b, op == Op::kSub, pair);
-  if (op >= Op::kEq) {
-    if (op == Op::kAnd) {
-      a &= b;
-    } else if (op == Op::kOr) {
-      a |= b;
-    } else {
-      if (op == Op::kNot) {
-        b = 0;
-        op = Op::kEq;
-      }
-      a = compare(a, b, static_cast<uint8_t>(op));
-    }
-  } else if (op == Op::kMin || op == Op::kMax) {
-    if ((a < b) != (op == Op::kMin)) a = b;
-  } else {
-    bool is_negative = negative(a);
-    uint32_t size = magnitude(a);
-    if (op == Op::kRound) {
-      size = rounded(size, whole(b));
-    } else {
-      const bool differ = is_negative != negative(b);
-      uint32_t factor = magnitude(b);
-      uint32_t divisor = kOne;
-      if (op != Op::kMul) {
-        if (factor == 0) return Fault::kDivideByZero;
-        divisor = factor;
-        factor = kOne;
-      }
-      is_negative = differ;
-      if (op == Op::kMod) {
-        // the exact remainder; it takes the sign of the divisor
-        size %= divisor;
-        if (size != 0 && differ) size = divisor - size;
-        is_negative = negative(b);
-      } else {
-        size = scaled(size, factor, divisor);
-      }
-    }
-    a = static_cast<int32_t>(is_negative ? 0 - size : size);
-    if (a != 0 && negative(a) != is_negative) return Fault::kOverflow;
-  }
-  *pair = a;
-  return Fault::kNone;
+// MUL, DIV, MOD
+Fault scale(Op op, int32_t* pair) {
+  const bool is_negative = pair[1] < 0;
+  const bool differ = is_negative != (pair[0] < 0);
+  const uint32_t first = magnitude(pair[0]);
+  const uint32_t second = magnitude(pair[1]);
+  if (op == Op::kMul) return finish(scaled(first, second, kOne), differ, pair);
+  if (second == 0) return Fault::kDivideByZero;
+  if (op == Op::kDiv) return finish(scaled(first, kOne, second), differ, pair);
+  // the exact remainder; it takes the sign of the divisor
+  const uint32_t rest = first % second;
+  return finish(rest != 0 && differ ? second - rest : rest, is_negative, pair);
 }
 
-__attribute__((noinline)) bool compare(int32_t a, int32_t b, uint8_t op) {
+// Whether `a` and `b` compare as the last three bits of `op` say.
+bool relates(int32_t a, int32_t b, uint8_t op) {
   const uint8_t comparator = op & 7;
   const bool is_opposite = (comparator & 1) != 0;  // NE of EQ, GE of LT, LE of GT
   bool is = a < b;
@@ -124,14 +77,85 @@ __attribute__((noinline)) bool compare(int32_t a, int32_t b, uint8_t op) {
   return is != is_opposite;
 }
 
-int32_t whole(int32_t a) {
-  const int32_t units = static_cast<int32_t>((magnitude(a) + kOne / 2) / kOne);
-  return negative(a) ? -units : units;
+// Rounds the first of a pair to as many decimals as the second says.
+Fault round(int32_t* pair) {
+  const int32_t places = whole(pair[1]);
+  if (places >= 3) return Fault::kNone;
+  uint32_t size = 0;
+  if (places >= -6) {  // half of 10^7 is more than any number
+    uint32_t unit = 1;
+    for (int32_t k = places; k < 3; k++) unit *= 10;
+    size = scaled(magnitude(pair[0]), 1, unit) * unit;
+  }
+  return finish(size, pair[0] < 0, pair);
 }
 
-int16_t limited(int32_t value, int16_t low, int16_t high) {
-  return value < low ? low : value > high ? high : static_cast<int16_t>(value);
+}  // namespace
+
+Fault calculate(Op op, int32_t* pair) {
+  switch (op) {
+    case Op::kAdd:
+      return add(pair, pair + 1);
+    case Op::kMul:
+    case Op::kDiv:
+    case Op::kMod:
+      return scale(op, pair);
+    case Op::kRound:
+      return round(pair);
+    case Op::kSub:
+      // a - b is ~(~a + b)
+      {
+        pair[0] = ~pair[0];
+        const Fault fault = add(pair, pair + 1);
+        pair[0] = ~pair[0];
+        return fault;
+      }
+    case Op::kAbs:
+      return finish(magnitude(pair[0]), false, pair);
+    case Op::kNeg:
+      return finish(magnitude(pair[0]), pair[0] > 0, pair);
+    case Op::kMin:
+      if (pair[1] < pair[0]) pair[0] = pair[1];
+      return Fault::kNone;
+    case Op::kMax:
+      if (pair[1] > pair[0]) pair[0] = pair[1];
+      return Fault::kNone;
+    case Op::kAnd:
+      pair[0] &= pair[1];
+      return Fault::kNone;
+    case Op::kOr:
+      pair[0] |= pair[1];
+      return Fault::kNone;
+    case Op::kNot:
+      pair[0] = pair[0] == 0 ? 1 : 0;
+      return Fault::kNone;
+    default:
+      pair[0] = relates(pair[0], pair[1], static_cast<uint8_t>(op)) ? 1 : 0;
+      return Fault::kNone;
+  }
 }
+
+// A sum leaves the range where its sign is that of neither part.
+Fault add(int32_t* place, const int32_t* number) {
+  const int32_t value =
+      static_cast<int32_t>(static_cast<uint32_t>(*place) + static_cast<uint32_t>(*number));
+  if (((*place ^ value) & (*number ^ value)) < 0) return Fault::kOverflow;
+  *place = value;
+  return Fault::kNone;
+}
+
+int32_t thousandths(int16_t whole) { return int32_t{whole} * kOne; }
+
+bool compare(const int32_t* a, int16_t whole, uint8_t op) {
+  return relates(*a, thousandths(whole), op);
+}
+
+int32_t whole(int32_t a) {
+  const int32_t units = static_cast<int32_t>(scaled(magnitude(a), 1, kOne));
+  return a < 0 ? -units : units;
+}
+
+uint32_t remainder(uint32_t size, uint32_t divisor) { return size % divisor; }
 
 uint32_t next_random(uint32_t state) {
   state ^= state << 13;
@@ -139,18 +163,15 @@ uint32_t next_random(uint32_t state) {
   return state ^ (state << 5);
 }
 
-Fault random_between(int32_t low, int32_t high, uint32_t state, int32_t* result) {
-  int32_t first = whole(low);
-  int32_t count = whole(high) - first;
-  if (count < 0) {
-    first += count;
-    count = -count;
-  }
-  first += static_cast<int32_t>(state % (static_cast<uint32_t>(count) + 1));
-  const uint32_t most = 0x7fffffff / kOne;
-  if (magnitude(first) > most) return Fault::kOverflow;
-  *result = first * kOne;
-  return Fault::kNone;
+Fault random_between(int32_t* pair, uint32_t state) {
+  const int32_t low = whole(pair[0]);
+  const int32_t high = whole(pair[1]);
+  const int32_t least = low < high ? low : high;
+  const uint32_t count = magnitude(high - low) + 1;
+  const int32_t units = least + static_cast<int32_t>(state % count);
+  return finish(divided(magnitude(units), kOne, 1).quotient, units < 0, pair);
 }
 
 }  // namespace tiniscript
+
+#endif

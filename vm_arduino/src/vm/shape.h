@@ -1,4 +1,4 @@
-// What the table of instructions says of an opcode: its stack, its size, its operands, its role.
+// What the tables say of an opcode: its stack, its size, its operands, its role.
 //
 // Knows how the rows of `bytecode.h` are packed, and where they lie.
 
@@ -11,8 +11,8 @@
 
 namespace tiniscript {
 
-// What is no opcode has a row too: one byte, without operands or values, of the role kNone.
-struct Row {
+// What is no opcode has a shape too: one byte, without operands or values, of the role kNone.
+struct Shape {
   uint8_t effects;
   uint8_t bytes;
 
@@ -20,19 +20,12 @@ struct Row {
   uint8_t pushes() const { return (effects & 0x20) != 0; }
   Role role() const { return static_cast<Role>(effects & 0x1f); }
   uint8_t size() const { return bytes & 7; }
-  uint8_t operands() const { return static_cast<uint8_t>(bytes / 8); }  // the first in 3 bits, the second in 2
+  // what the first byte is in 3 bits, the second in 2
+  uint8_t operands() const { return static_cast<uint8_t>(bytes / 8); }
   bool jumps_back() const { return (bytes & 0x38) == static_cast<uint8_t>(Byte::kBack) << 3; }
 };
 
-Row row_of(uint8_t code);
-
-// For the machine: `row` is null where this is no opcode.
-struct Shape : Row {
-  explicit Shape(Row its) : Row(its), row(role() == Role::kNone ? nullptr : kOpRows) {}
-  const uint8_t* row;
-};
-
-inline Shape shape_of(uint8_t code) { return Shape(row_of(code)); }
+Shape shape_of(uint8_t code);
 
 }  // namespace tiniscript
 

@@ -17,7 +17,7 @@ constexpr uint32_t kForever = 0xffffffff;  // the time of a move that only its U
 // What `tick` returns.
 enum class Status : uint8_t {
   kRunning,  // there is more to do now
-  kWaiting,  // nothing to do before `wake_ms`
+  kWaiting,  // nothing to do before the machine's `wake_ms`
   kDone,
   kFault,
 };
@@ -38,7 +38,6 @@ struct Task {
   uint32_t random;
   uint32_t started_ms;
   uint32_t clock_ms;  // the program's own clock: where its last wait ended
-  uint32_t wake_ms;
   // the move that an UNTIL watches
   uint32_t move_ms;   // how long it may last, or kForever
   uint32_t begun_ms;  // when it began,

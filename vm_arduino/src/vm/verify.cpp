@@ -78,11 +78,11 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
     if (at >= length) break;
 
     // the operands; what begins no instruction has none
-    const Row row = row_of(code[at]);
-    after = static_cast<uint16_t>(at + row.size());
+    const Shape shape = shape_of(code[at]);
+    after = static_cast<uint16_t>(at + shape.size());
     if (after > length) return {Rule::kCutOperand, at};
     const uint8_t* operand = code + at;
-    for (uint8_t kinds = row.operands(); kinds != 0; kinds = static_cast<uint8_t>(kinds >> 3)) {
+    for (uint8_t kinds = shape.operands(); kinds != 0; kinds = static_cast<uint8_t>(kinds >> 3)) {
       const Byte kind = static_cast<Byte>(kinds & 7);
       const uint8_t value = *++operand;
       if (!in_range(kind, value)) return {Rule::kBadOperand, at};
@@ -92,20 +92,20 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
     }
 
     // the stack
-    if (depth < row.pops()) return {Rule::kStackUnderflow, at};
-    depth = static_cast<uint8_t>(depth - row.pops() + row.pushes());
+    if (depth < shape.pops()) return {Rule::kStackUnderflow, at};
+    depth = static_cast<uint8_t>(depth - shape.pops() + shape.pushes());
     if (depth > kStackValues) return {Rule::kStackOverflow, at};
 
     // where it jumps, if it does: the last byte tells, or the last two of three
     const uint8_t* last = code + after - 1;
     uint16_t distance = *last;
-    if (row.size() == 3) distance = static_cast<uint16_t>(distance << 8 | *--last);
+    if (shape.size() == 3) distance = static_cast<uint16_t>(distance << 8 | *--last);
     uint16_t target = static_cast<uint16_t>(after + distance);
     if (target < after) target = kFarAway;
     // to before the code is more than `after`: no start of anything
-    if (row.jumps_back()) target = static_cast<uint16_t>(after - distance);
+    if (shape.jumps_back()) target = static_cast<uint16_t>(after - distance);
 
-    const Role role = row.role();
+    const Role role = shape.role();
     if (role >= Role::kRead) {
       if (role == Role::kUntil && check == 0) return {Rule::kNotOpen, at};
       if (depth != 0 || joins != 0) return {Rule::kStackNotEmpty, at};

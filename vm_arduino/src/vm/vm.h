@@ -1,7 +1,7 @@
 // The machine.
 //
 // Runs verified code. Time comes in as `now_ms`; the world is behind `robot.h`. `tick` does a
-// little and returns: nothing here waits. The same names and order as `vm.py` and
+// little and returns: nothing here waits. Means the same as `vm.py` and
 // `vm_instructions.py`.
 //
 // What verified code never does is still looked at, cheaply: stack, counters, calls, offsets,
@@ -17,14 +17,19 @@
 
 namespace tiniscript {
 
+// The first of them ends the program. The others are for damaged code, whose last instruction may
+// be cut: they are read as its operands.
+constexpr uint8_t kEndBytes = 4;
+
 class Machine {
  public:
-  // Begins a program. `code` is verified for a kit with so many sensors (0 to kDevices), and the
-  // byte behind its `length` bytes is Op::kEnd: whoever loads it puts it there. `seed` is not 0.
+  // Begins a program. `code` is verified for a kit with so many sensors (0 to kDevices), and
+  // behind its `length` bytes lie kEndBytes of Op::kEnd: whoever loads it puts them there. `seed`
+  // is not 0.
   void start(const uint8_t* code, uint16_t length, uint8_t sensors, uint32_t seed, uint32_t now_ms);
 
   // Runs at most `budget` instructions at the time `now_ms`.
-  Status tick(uint32_t now_ms, uint16_t budget);
+  Status tick(uint32_t now_ms, uint8_t budget);
 
   const Task& task() const { return task_; }
   Status status() const { return status_; }
@@ -33,38 +38,45 @@ class Machine {
   // Where the instruction that runs, or has faulted, begins.
   uint16_t at() const { return at_; }
 
+  // When there is something to do again, while the program waits.
+  uint32_t wake_ms() const { return task_.clock_ms; }
+
   // How much of the last budget is left.
-  uint16_t left() const { return left_; }
+  uint8_t left() const { return left_; }
 
  private:
-  void execute();
-  void step();
+  // What an instruction changes of where the program is. It is in the task only between ticks.
+  struct Running {
+    uint16_t next;
+    uint16_t at;
+    uint8_t depth;
+  };
 
-  // waits, and what else stops a tick
+  void execute(uint8_t budget);
+  bool step(Running* run);
+  bool goes_on(Fault fault);
+  bool fail();
+  bool stay(Running* run);
+  bool jump(Running* run, uint16_t distance);
+  bool jump_back(Running* run, uint16_t distance);
+
+  // what several instructions share
+  bool move(uint8_t code, uint16_t operand, const int32_t* values);
+  bool sense(uint8_t number, bool must_read);
+  uint16_t compare_and_branch(const uint8_t* bytes);
+
+  // waits
   void wait(uint32_t duration_ms, Wait what);
   void sleep(uint32_t wake_ms, Wait what);
   void begin();
-  void until(bool stop, uint16_t check);
-  void retry();
-  void raise(Fault fault);
-
-  // operands and values
-  int32_t* variable(uint8_t number);
-  int32_t* sensor(uint8_t number, bool must_read);
-
-  // what several instructions share
-  void move(uint8_t code, uint16_t operand, const int32_t* values);
-  void open_counter(int32_t count);
-  bool count(bool drops);
-  void compare_and_branch(uint8_t code, uint16_t operand);
+  void finish();
+  bool watch();
 
   Status status_;
   Fault fault_;
-  bool must_stop_;  // for now
   uint8_t sensors_;
-  uint8_t depth_;  // of the stack, before the instruction that runs
   uint16_t at_;
-  uint16_t left_;
+  uint8_t left_;
   uint16_t length_;
   const uint8_t* code_;
   uint32_t now_ms_;
