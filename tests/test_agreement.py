@@ -9,14 +9,16 @@ from __future__ import annotations
 import random
 import sys
 from collections.abc import Iterator
+from typing import NamedTuple
 
 import pytest
 
 from tests.kits import KITS
-from tests.machines import MACHINES, ONE_IN, Senses
+from tests.machines import MACHINES, ONE_IN, Machine, Senses
 from tests.oracle import interpreter, programs
-from tiniscript import compile_text
+from tiniscript import Compiled, compile_text
 from tiniscript.formatter import formatted
+from tiniscript.kit import Kit
 from tiniscript.listing import listing, read_listing
 from tiniscript.messages import as_text, message
 from tiniscript.source import Source
@@ -42,8 +44,19 @@ def _is_cut(line: str) -> bool:
     return line.endswith(" LIMIT") and line != f"{MAX_MS} LIMIT"
 
 
-def check_program(seed: int) -> None:
-    """Everything that must hold for one random program."""
+class RandomProgram(NamedTuple):
+    """A text, with the trace that the oracle wants."""
+
+    seed: int
+    text: str
+    kit: Kit
+    senses: Senses
+    want: str
+    short: Compiled
+    plain: Compiled  # not optimised
+
+
+def random_program(seed: int) -> RandomProgram:
     rng = random.Random(seed)
     oracle_kit, kit = KITS[seed % len(KITS)]
     text = programs.program(rng, oracle_kit)
@@ -52,12 +65,24 @@ def check_program(seed: int) -> None:
     senses = Senses(readings, MAX_MS, MAX_STEPS, seed + 1)
     short = compile_text(text, kit)
     plain = compile_text(text, kit, optimize=False)
+    return RandomProgram(seed, text, kit, senses, want, short, plain)
+
+
+def check_machine(program: RandomProgram, name: str, machine: Machine) -> None:
+    """A machine does what the oracle says."""
+    for how, image in (("", program.short.image), (", plain", program.plain.image)):
+        trace = machine(image, program.kit, program.senses)
+        assert same(program.want, trace), f"{name}, seed {program.seed}{how}:\n{program.text}"
+
+
+def check_program(seed: int) -> None:
+    """Everything that must hold for one random program."""
+    program = random_program(seed)
+    _, text, kit, _, _, short, plain = program
     assert short.is_right, text
     for name, machine in MACHINES.items():
-        if seed % ONE_IN.get(name, 1):
-            continue
-        assert same(want, machine(short.image, kit, senses)), f"{name}, seed {seed}:\n{text}"
-        assert same(want, machine(plain.image, kit, senses)), f"{name}, seed {seed}, plain:\n{text}"
+        if seed % ONE_IN.get(name, 1) == 0:
+            check_machine(program, name, machine)
     assert len(short.code) <= len(plain.code)
     assert read_listing(listing(short.code)) == short.code
     laid_out = formatted(Source(text))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.casefile import Case, accept, all_cases
-from tests.machines import MACHINES, Senses
+from tests.machines import MACHINES, Machine, Senses
 from tiniscript import Compiled, compile_text, robots
 from tiniscript.cli.options import decimal
 from tiniscript.formatter import formatted
@@ -45,6 +45,16 @@ def compiled(case: Case) -> Compiled:
     return compile_text(case.parts["tiniscript"].removesuffix("\n"), robot.kit)
 
 
+def trace_of(case: Case, machine: Machine) -> str:
+    """Return what a program or a listing that stands alone does on a machine."""
+    robot, senses = robot_and_senses(case)
+    if "tiniscript" in case.parts:
+        image = compiled(case).image
+    else:
+        image = pack("SI", robot.kit.fingerprint, read_listing(case.parts["bytecode"]))
+    return machine(image, robot.kit, senses)
+
+
 def expect(case: Case, part: str, actual: str, request: pytest.FixtureRequest) -> None:
     if actual != case.parts[part] and request.config.getoption("--accept"):
         accept(case, part, actual)
@@ -66,9 +76,7 @@ def test_program_compiles_or_its_mistake_is_stated(case: Case) -> None:
 @pytest.mark.parametrize("machine", MACHINES)
 @pytest.mark.parametrize("case", having("tiniscript", "robot"))
 def test_robot(case: Case, machine: str, request: pytest.FixtureRequest) -> None:
-    robot, senses = robot_and_senses(case)
-    trace = MACHINES[machine](compiled(case).image, robot.kit, senses)
-    expect(case, "robot", trace, request)
+    expect(case, "robot", trace_of(case, MACHINES[machine]), request)
 
 
 @pytest.mark.parametrize("case", having("tiniscript", "bytecode"))
@@ -109,9 +117,9 @@ def test_listing_runs_or_is_refused(
     case: Case, machine: str, request: pytest.FixtureRequest
 ) -> None:
     """A listing that stands alone is run as it is, or refused with the rule and the offset."""
-    robot, senses = robot_and_senses(case)
     code = read_listing(case.parts["bytecode"])
     if "refused" in case.parts:
+        robot, _ = robot_and_senses(case)
         with pytest.raises(Refused) as refused:
             verify(code, len(robot.kit.sensors), len(robot.kit.actuators))
         error = refused.value
@@ -119,5 +127,4 @@ def test_listing_runs_or_is_refused(
         return
     assert listing(code) == case.parts["bytecode"]
     if "robot" in case.parts:
-        image = pack("SI", robot.kit.fingerprint, code)
-        expect(case, "robot", MACHINES[machine](image, robot.kit, senses), request)
+        expect(case, "robot", trace_of(case, MACHINES[machine]), request)

@@ -15,8 +15,8 @@ from typing import NamedTuple
 
 import pytest
 
-from tests import test_cpp_agreement
-from tests.test_cpp_agreement import EDGES, OPERATIONS
+from tests.codes import EDGES
+from tests.cpp_checks import NUMBER_OF, OPERATIONS, python_result
 from tiniscript import thousandths
 from tiniscript.bytecode import BY_NAME
 from tools import avr_bench
@@ -37,12 +37,12 @@ class Operation(NamedTuple):
     def result(self) -> tuple[int, int]:
         """Return the number of the fault, or 0, and what Python calculates."""
         if self.name != "RANDOM":
-            return test_cpp_agreement.python_result(self.name, self.a, self.b)
+            return python_result(self.name, self.a, self.b)
         state = thousandths.next_random(self.b % 2**32 | 1)
         try:
             return 0, thousandths.random_between(self.a, self.b, state)
         except thousandths.Fault as fault:
-            return test_cpp_agreement.NUMBER_OF[fault.name], 0
+            return NUMBER_OF[fault.name], 0
 
 
 def numbers(state: int) -> Iterator[int]:

@@ -14,7 +14,9 @@ from functools import partial
 
 import pytest
 
+from tests import cpp_checks
 from tests.casefile import Case
+from tests.codes import random_codes
 from tests.kits import KITS
 from tests.machines import Senses, avr
 from tests.machines.chips import Chip
@@ -24,13 +26,6 @@ from tests.machines.host import Ran
 from tests.machines.python import ran_python
 from tests.oracle import programs
 from tests.test_cases import compiled, having, listings_alone, robot_and_senses
-from tests.test_cpp_agreement import (
-    OPERATIONS,
-    check_codes,
-    compare_arithmetic,
-    compare_images,
-    random_codes,
-)
 from tiniscript import compile_text
 from tiniscript.image import ImageRefused, pack
 from tiniscript.kit import Kit
@@ -132,17 +127,17 @@ def test_some_random_codes(chip: str, seed: int) -> None:
 @pytest.mark.parametrize("seed", range(2))
 def test_random_codes(chip: str, seed: int) -> None:
     """Rules and offsets of random and mutated codes; those that are accepted run."""
-    seen = check_codes(seed, 8000, emulated(chip))
+    seen = cpp_checks.check_codes(emulated(chip), seed, 8000)
     assert {"DONE", "LIMIT", "OVERFLOW", "DIVIDE_BY_ZERO"} <= set(seen)
     assert seen["accepted"] > 500
 
 
 @each_emulated
 def test_images(chip: str) -> None:
-    compare_images(0, 10_000, emulated(chip))
+    cpp_checks.check_images(emulated(chip), 0, 10_000)
 
 
 @each_emulated
-@pytest.mark.parametrize("name", OPERATIONS)
+@pytest.mark.parametrize("name", cpp_checks.OPERATIONS)
 def test_arithmetic(chip: str, name: str) -> None:
-    compare_arithmetic(name, 10_000, emulated(chip))
+    cpp_checks.check_arithmetic(emulated(chip), name, 10_000)
