@@ -11,7 +11,7 @@ import operator
 import random
 import zlib
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from itertools import product
 from struct import pack as struct_pack
 
@@ -23,10 +23,22 @@ from tests.machines.host import Host, Process
 from tests.oracle import programs
 from tests.test_cases import robot_and_senses
 from tiniscript import thousandths
-from tiniscript.bytecode import BY_NAME, CODE_BYTES, COMPARATORS, FAULTS, OPS
+from tiniscript.bytecode import (
+    BY_CODE,
+    BY_NAME,
+    CALLS,
+    CODE_BYTES,
+    COMPARATORS,
+    COUNTERS,
+    FAULTS,
+    OPS,
+    STACK_VALUES,
+    VARIABLES,
+)
 from tiniscript.image import REFUSALS, ImageRefused, pack, unpack
-from tiniscript.kit import Kit
+from tiniscript.kit import NUMBER, Device, Kit
 from tiniscript.listing import read_listing
+from tiniscript.robots.reader import DEVICES
 from tiniscript.run import Ending, TracedRobot, run
 from tiniscript.run import Senses as Lists
 from tiniscript.task import WAITING
@@ -178,6 +190,69 @@ def check_memory(machine: Host) -> None:
         endings[ran.trace.split()[-1]] += 1
     assert endings["BAD_CODE"] > 1000, endings
     assert endings["DONE"] > 1000, endings
+
+
+def changed_code(sensors: int) -> Iterator[tuple[bytes, int | None]]:
+    """Yield code that no verifier accepts, and where it is caught; None: it is not.
+
+    What a machine still looks at while it runs, at each edge.
+    """
+    yes, show, end = simple("PUSH_TRUE"), simple("SHOW"), simple("RETURN")
+    count = simple("LOOP8") + b"\x01"
+    for values, caught in ((STACK_VALUES, None), (STACK_VALUES + 1, STACK_VALUES)):
+        yield yes * values, caught
+    yield show, 0
+    yield yes + simple("ADD") + show, 1
+    yield yes + simple("MOTORS"), 1
+    for each, caught in ((VARIABLES - 1, None), (VARIABLES, 0), (255, 0)):
+        number = bytes([each])
+        yield simple("SET_VAR8") + number + b"\x01", caught
+        yield simple("ADD_VAR8") + number + b"\x01", caught
+        yield simple("ADD_VAR") + b"\x00" + number, caught
+        yield simple("PUSH_VAR") + number, caught
+        yield yes + simple("SET_VAR") + number, None if caught is None else 1
+        yield simple("IF_VAR8_NE") + number + b"\x07\x00", caught
+    for each, caught in ((sensors - 1, None), (sensors, 0), (255, 0)):
+        number = bytes([each])
+        for name in ("READ", "PUSH_SENSOR", "PUSH_READ"):
+            yield simple(name) + number, caught
+        for name in ("IF_SENSOR8_NE", "IF_READ8_NE"):
+            yield simple(name) + number + b"\x07\x00", caught
+    yield count * COUNTERS, None
+    yield count * (COUNTERS + 1), 2 * COUNTERS
+    close = jump("NEXT", False, 0)
+    yield count + close, None
+    yield close, 0
+    yield jump("BREAK_LOOP", False, 0), 0
+    calls = b"".join(jump("CALL", False, 0) for _ in range(CALLS + 1))
+    yield calls[:-2], None
+    yield calls, 2 * CALLS
+    yield end, 0
+    for far in (False, True):
+        skip = jump("ELSE", far, 0)
+        yield skip, None
+        yield jump("ELSE", far, 1), len(skip) + 1
+    yield jump("ELSE", True, 0x7FFF), 0x7FFF + 3
+    yield jump("AGAIN", True, 4), 0xFFFF
+    yield simple("PUSH16"), 0
+    yield simple("PUSH32") + b"\x01\x02", 0
+    for code in range(256):
+        if BY_CODE[code] is None:
+            yield bytes([code, 0, 0, 0, 0]), 0
+
+
+def check_run_time_checks(machine: Host) -> None:
+    """Code that changed after it was verified ends in BAD_CODE, and not too early."""
+    # a robot may say that it has more sensors than a machine remembers
+    for many in (DEVICES - 1, DEVICES, DEVICES + 1, 2 * DEVICES):
+        devices = (Device(f"S{number}", NUMBER, "", 0, 1000) for number in range(many))
+        kit = Kit(tuple(devices), ())
+        for code, caught in changed_code(min(many, DEVICES)):
+            ran = machine.run_unverified(code, kit, Senses(max_ms=100, max_steps=100))
+            ending = ran.trace.splitlines()[-1].split()[-1]
+            wanted = "DONE" if caught is None else "BAD_CODE"
+            assert ending == wanted, f"{code.hex(' ')}: {ending}, not {wanted}"
+            assert caught in (None, ran.offset), f"{code.hex(' ')}: at {ran.offset}, not {caught}"
 
 
 # -- time and a robot that is not ready ---------------------------------------------------------

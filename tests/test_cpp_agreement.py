@@ -98,6 +98,11 @@ def test_whatever_the_code_the_machine_keeps_to_its_memory() -> None:
     cpp_checks.check_memory(host())
 
 
+@needs_host
+def test_code_that_changed_after_it_was_verified() -> None:
+    cpp_checks.check_run_time_checks(host())
+
+
 # -- time and a robot that is not ready ---------------------------------------------------------
 
 
