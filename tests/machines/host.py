@@ -16,6 +16,7 @@ from collections.abc import Iterable, Sequence
 from functools import lru_cache
 from pathlib import Path
 from struct import Struct, pack
+from threading import get_ident
 from typing import TYPE_CHECKING, NamedTuple
 
 from tiniscript.image import REFUSALS, ImageRefused
@@ -29,6 +30,9 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 SOURCES = ROOT / "vm_arduino"
 WARNINGS = ("-Wall", "-Wextra", "-Wconversion", "-Wshadow", "-Werror")
 FLAGS = ("-std=c++11", "-O1", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
+
+USER = os.getuid() if hasattr(os, "getuid") else ""
+BUILDS = Path(tempfile.gettempdir()) / f"tiniscript-host-{USER}"
 
 RULE_NAMES = {number: name for name, (number, _) in RULES.items()}
 REFUSAL_NAMES = {number: name for name, (number, _) in REFUSALS.items()}
@@ -115,10 +119,13 @@ class Process:
 
 
 class Host(Process):
-    """The process on this computer. `sources` is a folder like `vm_arduino`."""
+    """The process on this computer.
 
-    def __init__(self, sources: Path = SOURCES) -> None:
-        super().__init__([built(sources)], "the C++ machine")
+    `sources` is a folder like `vm_arduino`; what is built from it stays in `builds`.
+    """
+
+    def __init__(self, sources: Path = SOURCES, builds: Path = BUILDS) -> None:
+        super().__init__([built(sources, builds)], "the C++ machine")
 
     def run(
         self, image: bytes, kit: Kit, senses: Senses, not_ready: int = 0, begin_ms: int = 0
@@ -183,7 +190,7 @@ def _ran(answer: bytes) -> Ran:
     return Ran(offset, steps, answer[10:].decode())
 
 
-def built(sources: Path) -> Path:
+def built(sources: Path, builds: Path = BUILDS) -> Path:
     """Return the program made from `sources`; what was made before from the same is used again.
 
     Workers may build at the same time: each builds for itself, and the last one stays.
@@ -196,21 +203,31 @@ def built(sources: Path) -> Path:
     )
     shared = ("answers.cpp", "answers.h", "port.h", "request.h")
     inputs += [sources / "chip" / name for name in shared]
+    texts = {path: path.name.encode() + path.read_bytes() for path in inputs}
+    headers = [text for path, text in texts.items() if path.suffix == ".h"]
+    objects = [
+        str(_made(builds, ".o", [*headers, text], ["-c", str(path)]))
+        for path, text in texts.items()
+        if path.suffix == ".cpp"
+    ]
+    return _made(builds, "", [name.encode() for name in objects], objects)
+
+
+def _made(builds: Path, suffix: str, made_from: Iterable[bytes], arguments: list[str]) -> Path:
+    """Return what the compiler makes of `arguments`, named after all that it is made from."""
     key = hashlib.sha256(repr((WARNINGS, FLAGS)).encode())
-    for path in inputs:
-        key.update(path.name.encode() + path.read_bytes())
-    folder = Path(tempfile.gettempdir()) / f"tiniscript-host-{os.getuid()}"
-    program = folder / key.hexdigest()[:16]
-    if not program.exists():
-        folder.mkdir(mode=0o700, exist_ok=True)
-        own = program.with_suffix(f".{os.getpid()}")
-        code = [str(path) for path in inputs if path.suffix == ".cpp"]
+    for part in made_from:
+        key.update(part)
+    made = builds / (key.hexdigest()[:16] + suffix)
+    if not made.exists():
+        builds.mkdir(mode=0o700, exist_ok=True)
+        own = made.with_suffix(f".{os.getpid()}-{get_ident()}")
         done = subprocess.run(
-            ["g++", *FLAGS, *WARNINGS, *code, "-o", str(own)], capture_output=True, text=True
+            ["g++", *FLAGS, *WARNINGS, *arguments, "-o", str(own)], capture_output=True, text=True
         )
         assert done.returncode == 0, f"g++ refuses the C++ machine:\n{done.stderr[:4000]}"
-        own.replace(program)
-    return program
+        own.replace(made)
+    return made
 
 
 @lru_cache(maxsize=1)
