@@ -1,0 +1,131 @@
+"""Breaks the C++ machine in hundreds of ways, and asks whether the tests notice each one.
+
+`python tools/mutation.py` tries all of `breaks.py`; words choose those whose names have them;
+`--all` tries a change of every operator, constant and statement too. What goes unnoticed is a gap
+in the tests, and exit code 1. Needs g++.
+"""
+
+from __future__ import annotations
+
+import argparse
+import shutil
+import sys
+import tempfile
+import time
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
+from pathlib import Path
+from typing import NamedTuple
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
+
+from tests.cpp_sample import Sample, Unfit
+from tests.machines.host import SOURCES, missing
+from tools.breaks import MACHINE, Break, Stale, breaks
+from tools.small_changes import small_changes
+
+WORKERS = 2
+BUILD = "build"  # what notices a break that does not compile without a warning
+
+
+class Result(NamedTuple):
+    """What noticed a break: a kind of check and its name, or two empty words."""
+
+    each: Break
+    kind: str
+    check: str
+    said: str
+    seconds: float
+
+
+def tried(each: Break, sample: Sample) -> Result:
+    """Build the machine with one break, and run the checks until one fails."""
+    begun = time.monotonic()
+    kind, check, said = "", "", ""
+    with tempfile.TemporaryDirectory() as folder:
+        copy = Path(folder)
+        for name in ("src", "host", "chip"):
+            shutil.copytree(SOURCES / name, copy / name)
+        (copy / MACHINE / each.file).write_text(each.text, encoding="utf-8")
+        try:
+            found = sample.failing(copy)
+        except AssertionError as error:
+            kind, check, said = BUILD, "g++", str(error)
+        else:
+            if found:
+                (kind, check, _), said = found
+    return Result(each, kind, check, said, time.monotonic() - begun)
+
+
+def results(chosen: Sequence[Break], sample: Sample) -> Iterator[Result]:
+    """Yield what becomes of each break, in their order."""
+    with ThreadPoolExecutor(WORKERS) as pool:
+        yield from pool.map(partial(tried, sample=sample), chosen)
+
+
+def main(arguments: list[str] | None = None) -> int:
+    parser = argparse.ArgumentParser(description="Break the C++ machine; say what notices it.")
+    parser.add_argument("words", nargs="*", help="only breaks whose names have one of these words")
+    parser.add_argument("--all", action="store_true", help="also every operator and constant")
+    parser.add_argument("--list", action="store_true", help="only print the names of the breaks")
+    options = parser.parse_args(arguments)
+    if missing():
+        print(missing(), file=sys.stderr)
+        return 2
+    try:
+        found = breaks(SOURCES)
+        if options.all:
+            found += small_changes(SOURCES)
+    except Stale as error:
+        print(f"The machine was rewritten. In tools/: {error}", file=sys.stderr)
+        return 2
+    chosen = [each for each in found if not options.words or _has(each, options.words)]
+    if options.list:
+        print("\n".join(f"{each.kind}: {each.name}" for each in chosen))
+        return 0
+    begun = time.monotonic()
+    try:
+        done = campaign(chosen)
+    except Unfit as error:
+        print(f"The machine as it is, unbroken, fails a check. {error}", file=sys.stderr)
+        return 2
+    return summary(done, time.monotonic() - begun)
+
+
+def campaign(chosen: Sequence[Break]) -> list[Result]:
+    """Print what becomes of each break."""
+    print("| break | noticed by | s |\n|---|---|---:|", flush=True)
+    done = []
+    with tempfile.TemporaryDirectory() as builds:
+        sample = Sample(SOURCES, Path(builds) / "builds")
+        try:
+            for result in results(chosen, sample):
+                noticed = f"{result.kind}: {result.check}" if result.kind else "**nothing**"
+                print(f"| {result.each.name} | {noticed} | {result.seconds:.1f} |", flush=True)
+                done.append(result)
+        finally:
+            sample.close()
+    return done
+
+
+def _has(each: Break, words: list[str]) -> bool:
+    return any(word in f"{each.kind}: {each.name}" for word in words)
+
+
+def summary(done: list[Result], seconds: float) -> int:
+    """Print how many breaks each kind of check noticed, and which ones none did."""
+    kinds = Counter(result.kind or "nothing" for result in done)
+    counts = ", ".join(f"{kind} {count}" for kind, count in kinds.most_common())
+    print(f"\n{len(done)} breaks in {seconds:.0f} s, noticed by: {counts}.")
+    unnoticed = [result for result in done if not result.kind]
+    for result in unnoticed:
+        print(f"unnoticed: {result.each.kind}: {result.each.name}")
+        print(f"  {result.each.was}\n  {result.each.becomes}")
+    return 1 if unnoticed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
