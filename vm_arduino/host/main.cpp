@@ -55,9 +55,15 @@ void run(const uint8_t* code, uint16_t length, const Limits& limits, Writer* ans
   while (ending.empty()) {
     const uint32_t more = limits.max_steps - (steps - before);
     const uint8_t budget = more < kSlice ? static_cast<uint8_t>(more) : kSlice;
+    robot.must_wait = false;
     const Status status = machine.tick(robot.now_ms + limits.begin_ms, budget);
     steps += static_cast<uint32_t>(budget - machine.left());
     const uint32_t wake_ms = machine.wake_ms() - limits.begin_ms;
+    if (status >= Status::kDone) {
+      if (!robot.is_off) robot.say("NOT OFF");
+      // nothing happens any more
+      if (machine.tick(wake_ms + limits.begin_ms, kSlice) != status) robot.say("GOES ON");
+    }
     if (status == Status::kDone) {
       ending = "DONE";
     } else if (status == Status::kFault) {

@@ -28,16 +28,21 @@ void TracedRobot::say(const std::string& text) {
   trace += std::to_string(now_ms) + " " + text + "\n";
 }
 
-bool TracedRobot::is_ready() { return not_ready == 0 || ++asked % not_ready != 0; }
+bool TracedRobot::is_ready() {
+  if (must_wait) say("ASKED AGAIN AT ONCE");
+  must_wait = not_ready != 0 && ++asked % not_ready == 0;
+  return !must_wait;
+}
 
 namespace tiniscript {
 
 void robot_motors(int8_t left, int8_t right) {
+  robot.is_off = false;
   robot.say("MOTORS " + std::to_string(left) + " " + std::to_string(right));
 }
 
 // The final stop is no line of a trace.
-void robot_off() {}
+void robot_off() { robot.is_off = true; }
 
 bool robot_read(uint8_t sensor, int32_t* value) {
   if (!robot.is_ready()) return false;

@@ -28,6 +28,8 @@ struct TracedRobot {
   std::string trace;
   uint32_t not_ready = 0;  // every so many questions the robot is not ready; 0: always ready
   uint32_t asked = 0;
+  bool must_wait = false;  // it was not ready, and this tick should be over
+  bool is_off = false;     // and no motor was set since
 
   void say(const std::string& text);
   bool is_ready();

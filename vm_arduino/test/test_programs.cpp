@@ -69,6 +69,7 @@ TEST_CASE("a robot that is not ready is asked again") {
   CHECK(machine.tick(0, kBudget) == Status::kRunning);
   CHECK(robot.trace == "");
   robot.not_ready = 0;
+  robot.must_wait = false;  // it has waited
   CHECK(machine.tick(7, kBudget) == Status::kDone);
   CHECK(robot.trace == "0 READ LIGHT_R 0\n");
 }
