@@ -15,7 +15,7 @@ from pathlib import Path
 from threading import Lock, Timer
 from typing import NamedTuple
 
-from tests import cpp_checks
+from tests import cpp_checks, cpp_edges
 from tests.casefile import Case, all_cases
 from tests.machines import Senses
 from tests.machines.host import Host
@@ -54,15 +54,18 @@ def checks() -> Iterator[Check]:
         yield Check("verdicts", f"{length} bytes", partial(_length, length))
     for devices in (0, 1, 32, 33, 255):
         yield Check("verdicts", f"{devices} sensors", partial(_devices, devices))
-    yield Check("verdicts", "many DEFs", cpp_checks.check_many_defs)
+    yield Check("verdicts", "many DEFs", cpp_edges.check_many_defs)
+    yield Check("verdicts", "what is closed", cpp_edges.check_what_is_closed)
+    yield Check("memory", "places", cpp_edges.check_places)
+    yield Check("time", "24 days", cpp_edges.check_long_time)
     yield Check("images", "random images", partial(_images, 0))
     yield Check("images", "long images", cpp_checks.check_long_images)
     for late_ms in (0, 19, 20, 21, 100):
         yield Check("time", f"{late_ms} ms late", partial(_late, late_ms))
-    for begin_ms in (2**31 - 500, 2**32 - 1500):
+    for begin_ms in (1, 2**31 - 500, 2**32 - 1500):
         yield Check("time", f"from {begin_ms} ms on", partial(_clock, begin_ms))
     yield Check("time", "a robot that is not ready", cpp_checks.check_not_ready)
-    yield Check("memory", "code that changed", cpp_checks.check_run_time_checks)
+    yield Check("memory", "code that changed", cpp_edges.check_run_time_checks)
     yield Check("random", "200 programs and the oracle", _programs)
     yield Check("random", "all codes of up to two bytes", cpp_checks.check_short_codes)
     for few_at in (1, 2):

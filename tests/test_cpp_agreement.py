@@ -13,7 +13,7 @@ from collections import Counter
 
 import pytest
 
-from tests import cpp_checks
+from tests import cpp_checks, cpp_edges
 from tests.casefile import Case
 from tests.machines import MACHINES
 from tests.machines.host import host, missing
@@ -90,7 +90,22 @@ def test_random_codes(seed: int) -> None:
 
 @needs_host
 def test_many_defs() -> None:
-    cpp_checks.check_many_defs(host())
+    cpp_edges.check_many_defs(host())
+
+
+@needs_host
+def test_what_is_closed_takes_no_room() -> None:
+    cpp_edges.check_what_is_closed(host())
+
+
+@needs_host
+def test_everything_has_a_place_of_its_own() -> None:
+    cpp_edges.check_places(host())
+
+
+@needs_host
+def test_a_program_may_run_for_24_days() -> None:
+    cpp_edges.check_long_time(host())
 
 
 @needs_host
@@ -100,7 +115,7 @@ def test_whatever_the_code_the_machine_keeps_to_its_memory() -> None:
 
 @needs_host
 def test_code_that_changed_after_it_was_verified() -> None:
-    cpp_checks.check_run_time_checks(host())
+    cpp_edges.check_run_time_checks(host())
 
 
 # -- time and a robot that is not ready ---------------------------------------------------------
