@@ -15,9 +15,9 @@ from typing import NamedTuple
 from tiniscript.bytecode import BY_NAME, OPS
 from tiniscript.image import REFUSALS
 from tiniscript.verify import RULES
-from tools.equivalent import EQUIVALENT
 
 MACHINE = Path("src/vm")
+SHORT_LINE = 24
 
 
 class Break(NamedTuple):
@@ -46,18 +46,10 @@ def breaks(sources: Path) -> list[Break]:
         *refusal_breaks(texts, "rule", "Rule", [*RULES]),
         *refusal_breaks(texts, "refusal", "Refusal", [*REFUSALS]),
         *limit_breaks(texts),
+        *range_breaks(texts),
         *named_breaks(texts),
     ]
-    return noticeable(found, texts)
-
-
-def noticeable(found: list[Break], texts: dict[str, str]) -> list[Break]:
-    """Return the breaks without those that change nothing."""
-    lines = {line.strip() for text in texts.values() for line in text.splitlines()}
-    for was, _ in EQUIVALENT:
-        if was not in lines:
-            raise Stale(f"equivalent.py: no line is {was!r}")
-    return [each for each in found if (each.was, each.becomes) not in EQUIVALENT]
+    return found
 
 
 def broken(
@@ -66,9 +58,12 @@ def broken(
     """Return the break that puts something else from `start` to `end`."""
     text = texts[file]
     first, last = text.rfind("\n", 0, start) + 1, text.find("\n", end)
-    line = (text[first:start] + instead + text[end:last]).strip()
+    if last - first < SHORT_LINE:  # it says little: with its neighbours
+        first = text.rfind("\n", 0, max(first - 1, 0)) + 1
+        last = text.find("\n", last + 1)
+    was, becomes = text[first:last], text[first:start] + instead + text[end:last]
     whole = text[:start] + instead + text[end:]
-    return Break(kind, name, file, whole, text[first:last].strip(), line)
+    return Break(kind, name, file, whole, " ".join(was.split()), " ".join(becomes.split()))
 
 
 def read(sources: Path) -> dict[str, str]:
@@ -173,8 +168,11 @@ def camel(name: str) -> str:
 # -- limits -------------------------------------------------------------------------------------
 
 LIMITS = ("kCodeBytes", "kStackValues", "kVariables", "kCounters", "kCalls", "kDefs", "kNestWords",
-          "kJoins", "kDevices", "kCheckMs", "kPowerHigh", "kPercentHigh", "kHeaderBytes", "kStarts",
-          "kIsaMajor", "kIsaMinor")  # fmt: skip
+          "kJoins", "kDevices", "kCheckMs", "kHeaderBytes", "kStarts", "kIsaMajor",
+          "kIsaMinor")  # fmt: skip
+# The row of an operand: its least value, and how much more it may be.
+RANGES = re.compile(r"kRanges\[\]\[2\] in_flash = \{\n(.*?)\n\};", re.S)
+RANGE = re.compile(r"\{(\d+), (\d+)\},  // (\w+)")
 
 
 def limit_breaks(texts: dict[str, str]) -> Iterator[Break]:
@@ -200,6 +198,21 @@ def limit_breaks(texts: dict[str, str]) -> Iterator[Break]:
                     name = f"{file}, {limit} {sign} 1, no. {count}"
                     instead = f"({limit} {sign} 1)"
                     yield broken("limit", name, file, texts, use.start(), use.end(), instead)
+
+
+def range_breaks(texts: dict[str, str]) -> Iterator[Break]:
+    """Yield each range of operands one longer or shorter, at both of its ends."""
+    header = texts["bytecode.h"]
+    table = RANGES.search(header)
+    if table is None:
+        raise Stale("breaks.py, RANGES: bytecode.h has no such table")
+    for row in RANGE.finditer(header, *table.span(1)):
+        for place, end in ((1, "begins"), (2, "is long")):
+            for delta in (1, -1):
+                number = int(row[place]) + delta
+                if int(row[2]) < 255 and 0 <= number <= 255:
+                    name = f"the range of {row[3]} {end} {number}"
+                    yield broken("limit", name, "bytecode.h", texts, *row.span(place), str(number))
 
 
 def _is_size_of_array(text: str, end: int) -> bool:
@@ -252,5 +265,6 @@ def named_breaks(texts: dict[str, str]) -> Iterator[Break]:
 
 
 def blanked(text: str) -> str:
-    """Return the text with blanks for its comments: what is found there lies where it lay."""
-    return re.sub(r"//[^\n]*|/\*.*?\*/", lambda found: " " * len(found[0]), text, flags=re.S)
+    """Return the text with blanks for what does nothing: what is found there lies where it lay."""
+    nothing = r"//[^\n]*|/\*.*?\*/|\bstatic_assert\(.*?\);"
+    return re.sub(nothing, lambda found: " " * len(found[0]), text, flags=re.S)

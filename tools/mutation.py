@@ -25,6 +25,7 @@ sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 from tests.cpp_sample import Sample, Unfit
 from tests.machines.host import SOURCES, missing
 from tools.breaks import MACHINE, Break, Stale, breaks
+from tools.equivalent import EQUIVALENT
 from tools.small_changes import small_changes
 
 WORKERS = 2
@@ -79,10 +80,12 @@ def main(arguments: list[str] | None = None) -> int:
         found = breaks(SOURCES)
         if options.all:
             found += small_changes(SOURCES)
+            for line in gone(found):
+                print(f"equivalent.py has what is no longer there: {line}", file=sys.stderr)
     except Stale as error:
         print(f"The machine was rewritten. In tools/: {error}", file=sys.stderr)
         return 2
-    chosen = [each for each in found if not options.words or _has(each, options.words)]
+    chosen = [each for each in noticeable(found) if _has(each, options.words)]
     if options.list:
         print("\n".join(f"{each.kind}: {each.name}" for each in chosen))
         return 0
@@ -111,8 +114,18 @@ def campaign(chosen: Sequence[Break]) -> list[Result]:
     return done
 
 
+def noticeable(found: list[Break]) -> list[Break]:
+    """Return the breaks without those that change nothing."""
+    return [each for each in found if (each.was, each.becomes) not in EQUIVALENT]
+
+
+def gone(found: list[Break]) -> list[str]:
+    """Return the lines that are listed as equivalent, and are not in the machine."""
+    return sorted({was for was, _ in EQUIVALENT} - {each.was for each in found})
+
+
 def _has(each: Break, words: list[str]) -> bool:
-    return any(word in f"{each.kind}: {each.name}" for word in words)
+    return not words or any(word in f"{each.kind}: {each.name}" for word in words)
 
 
 def summary(done: list[Result], seconds: float) -> int:

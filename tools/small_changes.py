@@ -11,7 +11,7 @@ from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 
-from tools.breaks import Break, blanked, broken, noticeable, read
+from tools.breaks import Break, blanked, broken, read
 
 OPERATORS = {
     "<": "<=", "<=": "<", ">": ">=", ">=": ">", "==": "!=", "!=": "==", "&&": "||", "||": "&&",
@@ -30,7 +30,7 @@ STATEMENT = re.compile(
 
 
 def small_changes(sources: Path) -> list[Break]:
-    """Return a break for each small change that could be noticed."""
+    """Return a break for each small change."""
     texts = read(sources)
     found: list[Break] = []
     numbers: Counter[str] = Counter()
@@ -44,7 +44,7 @@ def small_changes(sources: Path) -> list[Break]:
             if numbers[name] > 1:
                 name += f" (no. {numbers[name]})"
             found.append(each._replace(name=name))
-    return noticeable(found, texts)
+    return found
 
 
 def _changes(text: str) -> Iterator[tuple[int, int, str]]:
