@@ -11,7 +11,7 @@ from tests.codes import jump, loop, simple
 from tests.cpp_checks import WIDE, compare_runs, compare_verdicts
 from tests.machines import Senses
 from tests.machines.host import Host
-from tiniscript.bytecode import BY_CODE, CALLS, COUNTERS, JOINS, STACK_VALUES, VARIABLES
+from tiniscript.bytecode import BY_CODE, CALLS, COUNTERS, DEFS, JOINS, STACK_VALUES, VARIABLES
 from tiniscript.kit import NUMBER, Device, Kit
 from tiniscript.robots.reader import DEVICES
 
@@ -31,6 +31,17 @@ def check_many_defs(machine: Host) -> None:
             one = jump("DEF", False, len(end)) + end
             code = one * count + jump("CALL", False, 3) * (calls if count else 0)
             compare_verdicts(machine, [code], 3, 2)
+
+
+def procedure(body: bytes) -> bytes:
+    return jump("DEF", True, len(body) + 1) + body + simple("RETURN")
+
+
+def loops(inner: bytes, count: int) -> bytes:
+    """Return something in so many loops around it."""
+    for _ in range(count):
+        inner = loop(inner, 1)
+    return inner
 
 
 def calls_in_calls(count: int) -> bytes:
@@ -62,19 +73,31 @@ def check_what_is_closed(machine: Host) -> None:
         compare_verdicts(machine, [piece * count for count in range(40)], 3, 2)
         compare_runs(machine, piece * 40, WIDE, Senses(max_ms=1000, max_steps=1000))
     # what one procedure needs is not what the next one needs
-    for first in (0, 8, COUNTERS):
+    for needs in (0, 8, COUNTERS):
         for around in range(COUNTERS + 1):
-            inner = stop
-            for _ in range(first):
-                inner = loop(inner, 1)
-            code = jump("DEF", True, len(inner) + 1) + inner + simple("RETURN")
-            code += jump("DEF", True, 2) + stop + simple("RETURN")
-            inner = jump("CALL", True, 5 + 2 * around)
-            for _ in range(around):
-                inner = loop(inner, 1)
-            compare_verdicts(machine, [code + inner], 3, 2)
+            code = procedure(loops(stop, needs)) + procedure(stop)
+            code += loops(jump("CALL", True, 5 + 2 * around), around)
+            compare_verdicts(machine, [code], 3, 2)
     for count in range(CALLS + 1):
         compare_verdicts(machine, [calls_in_calls(CALLS) + calls_in_calls(count)], 3, 2)
+
+
+def check_needs(machine: Host) -> None:
+    """A procedure needs what it calls needs; loops and procedures are remembered at once."""
+    stop = simple("STOP")
+    for needs in (0, 1, 8):
+        for between in (0, 1, 7):
+            for around in range(COUNTERS + 1):
+                first = loops(stop, needs)
+                second = loops(jump("CALL", True, len(first) + 7 + 2 * between), between)
+                code = procedure(first) + procedure(second)
+                code += loops(jump("CALL", True, len(second) + 4 + 2 * around), around)
+                compare_verdicts(machine, [code], 3, 2)
+    for count in (DEFS - 1, DEFS, DEFS + 1):
+        code = procedure(stop) * count + jump("CALL", True, 5)
+        code += simple("PUSH_TRUE") + jump("IF", True, 1) + stop
+        code += loops(stop, COUNTERS)
+        compare_verdicts(machine, [code, code + loops(stop, COUNTERS + 1)], 3, 2)
 
 
 def check_places(machine: Host) -> None:
@@ -92,9 +115,7 @@ def check_places(machine: Host) -> None:
         inner += b"".join(simple(name) + bytes([k]) + simple("SHOW") for k in range(count))
     values = b"".join(simple("PUSH8") + bytes([3 * k]) for k in range(STACK_VALUES))
     inner += values + simple("SUB") * (STACK_VALUES - 1) + simple("SHOW")
-    for _ in range(COUNTERS):
-        inner = loop(inner, 1)
-    code += inner
+    code += loops(inner, COUNTERS)
     procedures = calls_in_calls(CALLS)
     last = len(calls_in_calls(CALLS)) - len(calls_in_calls(CALLS - 1)) - 3
     code += procedures + jump("CALL", True, last + 3)

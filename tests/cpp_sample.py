@@ -56,6 +56,7 @@ def checks() -> Iterator[Check]:
         yield Check("verdicts", f"{devices} sensors", partial(_devices, devices))
     yield Check("verdicts", "many DEFs", cpp_edges.check_many_defs)
     yield Check("verdicts", "what is closed", cpp_edges.check_what_is_closed)
+    yield Check("verdicts", "what procedures need", cpp_edges.check_needs)
     yield Check("memory", "places", cpp_edges.check_places)
     yield Check("time", "24 days", cpp_edges.check_long_time)
     yield Check("images", "random images", partial(_images, 0))

@@ -99,6 +99,11 @@ def test_what_is_closed_takes_no_room() -> None:
 
 
 @needs_host
+def test_a_procedure_needs_what_it_calls_needs() -> None:
+    cpp_edges.check_needs(host())
+
+
+@needs_host
 def test_everything_has_a_place_of_its_own() -> None:
     cpp_edges.check_places(host())
 
