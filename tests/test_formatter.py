@@ -7,7 +7,7 @@ layout with comments, empty lines and empty instructions wherever the language a
 from __future__ import annotations
 
 import random
-import time
+import sys
 
 import pytest
 
@@ -339,16 +339,26 @@ def test_texts_with_other_mistakes_are_formatted_too() -> None:
     "unit",
     ["F(1,80);", "F(1,80)\n", "//\n", "\n", ";", "X=1+2-3//a\nS\n\n", "IF(TRUE)\nENDIF\n"],
 )
-def test_time_grows_with_the_text_and_no_faster(unit: str) -> None:
-    """Four times the text takes about four times as long, not sixteen."""
+def test_work_grows_with_the_text_and_no_faster(unit: str) -> None:
+    """Four times the text takes about four times as many calls, not sixteen."""
 
-    def seconds(size: int) -> float:
+    def calls(size: int) -> int:
         source = Source(unit * (size // len(unit)))
-        start = time.perf_counter()
-        formatted(source)
-        return time.perf_counter() - start
+        count = 0
 
-    assert seconds(400_000) < 8 * seconds(100_000) + 0.3
+        def called(_frame: object, event: str, _argument: object) -> None:
+            nonlocal count
+            count += event in ("call", "c_call")
+
+        before = sys.getprofile()
+        sys.setprofile(called)
+        try:
+            formatted(source)
+        finally:
+            sys.setprofile(before)
+        return count
+
+    assert calls(40_000) < 5 * calls(10_000)
 
 
 @pytest.mark.parametrize("inner", ["(", "-", "NOT ", "ABS(", "1+(", "//a\n"])

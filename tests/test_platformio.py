@@ -200,11 +200,12 @@ def test_sketch_has_the_program_of_the_paper() -> None:
     kit = robots.load("tinibot").kit
     text = (ROOT / "examples" / "obstacle.ts").read_text(encoding="utf-8")
     source = (SKETCH / "src" / "main.cpp").read_text(encoding="utf-8")
-    array = re.search(r"program\[\] = \{(.*?)\n\};", source, re.S)
+    array = re.search(r"program\[kProgramBytes \+ kEndBytes\] = \{(.*?)\n\};", source, re.S)
     assert array
     written = re.findall(r"'(.)'|(0x\w+|\d+),", re.sub(r"//.*", "", array[1]))
     code = bytes(ord(letter) if letter else int(number, 0) for letter, number in written)
-    assert code == compile_text(text, kit).image + b"\0"
+    assert code == compile_text(text, kit).image
+    assert f"kProgramBytes = {len(code)};" in source
     board = (SKETCH / "src" / "boards" / "board.h").read_text(encoding="utf-8")
     assert f"kBoardKit = 0x{kit.fingerprint:04x};" in board
     assert f"kBoardSensors = {len(kit.sensors)};" in board

@@ -39,7 +39,7 @@ def breaks(sources: Path) -> list[Break]:
     """Return the breaks of a folder like `vm_arduino`."""
     texts = {
         path.name: path.read_text(encoding="utf-8")
-        for path in sorted((sources / MACHINE).glob("*"))
+        for path in sorted((sources / MACHINE).glob("*.[ch]*"))
     }
     found = [
         *opcode_breaks(texts),
@@ -68,14 +68,17 @@ def broken(
 
 def read(sources: Path) -> dict[str, str]:
     """Return the text of each file of the machine."""
-    files = sorted((sources / MACHINE).glob("*"))
+    files = sorted((sources / MACHINE).glob("*.[ch]*"))
     return {path.name: path.read_text(encoding="utf-8") for path in files}
 
 
 # -- opcodes ------------------------------------------------------------------------------------
 
-# Where the machine reads an opcode. The break stands behind it: this one opcode is another.
-OPCODE_IS_READ = re.compile(r"(?:const )?(uint8_t code = [^;]+;)")
+# Where the machine reads an opcode, and where that of compare and branch. The break stands behind
+# it: this one opcode is another.
+OPCODE_IS_READ = re.compile(r"const (uint8_t code = \*bytes;)")
+FAMILY_IS_READ = re.compile(r"const (uint8_t code = \*bytes\+\+;)")
+FAMILIES = 0x80
 
 # What each instruction does when it is broken: what another one of its size and its stack does, if
 # there is one, and the one that is hardest to tell from it.
@@ -118,20 +121,28 @@ def twins(name: str) -> Iterator[str]:
 
 
 def opcode_breaks(texts: dict[str, str]) -> Iterator[Break]:
-    found = [
-        (file, place)
-        for file, text in texts.items()
-        if file.endswith(".cpp")
-        for place in OPCODE_IS_READ.finditer(text)
-    ]
-    if len(found) != 1:
-        raise Stale(f"breaks.py, OPCODE_IS_READ stands in {len(found)} places, not in one")
-    file, place = found[0]
+    simple = _only_place(texts, OPCODE_IS_READ, "OPCODE_IS_READ")
+    family = _only_place(texts, FAMILY_IS_READ, "FAMILY_IS_READ")
     for op in OPS:
+        file, place = family if op.code >= FAMILIES else simple
         for twin in twins(op.name):
             taken_for = f"if (code == {op.code}) code = {BY_NAME[twin].code};"
             name, instead = f"{op.name} does what {twin} does", f"{place[1]} {taken_for}"
             yield broken("opcode", name, file, texts, place.start(), place.end(), instead)
+
+
+def _only_place(
+    texts: dict[str, str], pattern: re.Pattern[str], entry: str
+) -> tuple[str, re.Match[str]]:
+    found = [
+        (file, place)
+        for file, text in texts.items()
+        if file.endswith(".cpp")
+        for place in pattern.finditer(text)
+    ]
+    if len(found) != 1:
+        raise Stale(f"breaks.py, {entry} stands in {len(found)} places, not in one")
+    return found[0]
 
 
 # -- what is refused ----------------------------------------------------------------------------
@@ -202,17 +213,18 @@ def limit_breaks(texts: dict[str, str]) -> Iterator[Break]:
 
 def range_breaks(texts: dict[str, str]) -> Iterator[Break]:
     """Yield each range of operands one longer or shorter, at both of its ends."""
-    header = texts["bytecode.h"]
+    header = texts["bytecode.cpp"]
     table = RANGES.search(header)
     if table is None:
-        raise Stale("breaks.py, RANGES: bytecode.h has no such table")
+        raise Stale("breaks.py, RANGES: bytecode.cpp has no such table")
     for row in RANGE.finditer(header, *table.span(1)):
         for place, end in ((1, "begins"), (2, "is long")):
             for delta in (1, -1):
                 number = int(row[place]) + delta
                 if int(row[2]) < 255 and 0 <= number <= 255:
                     name = f"the range of {row[3]} {end} {number}"
-                    yield broken("limit", name, "bytecode.h", texts, *row.span(place), str(number))
+                    at = row.span(place)
+                    yield broken("limit", name, "bytecode.cpp", texts, *at, str(number))
 
 
 def _is_size_of_array(text: str, end: int) -> bool:
@@ -227,15 +239,16 @@ NAMED = (
     ("a program catches up with one ms more", r"kLateMs = 20", "kLateMs = 21"),
     ("a program catches up with one ms less", r"kLateMs = 20", "kLateMs = 19"),
     ("a tenth has 101 ms", r"kTenthMs = 100", "kTenthMs = 101"),
-    ("a whole number begins below a half", r"kOne / 2", "(kOne / 2 + 1)"),
-    ("a whole number begins above a half", r"kOne / 2", "(kOne / 2 - 1)"),
-    ("ROUND does not round up at a half", r"unit / 2", "(unit / 2 - 1)"),
-    ("ROUND rounds up below a half", r"unit / 2", "(unit / 2 + 1)"),
+    ("a half is not rounded up", r"(remainder) >= (divisor -)", r"\1 > \2"),
+    ("what is below a half is rounded up", r"(remainder) >= (divisor -)", r"\1 + 1 >= \2"),
+    ("ROUND cuts off", r"scaled\((magnitude\(pair\[0\]\), 1, unit)\)", r"divided(\1).quotient"),
+    ("ROUND has a unit too few", r"k < 3; k", "k < 2; k"),
+    ("a product loses a carry", r" \+ \(middle >> 16\)", ""),
     ("xorshift begins with 12", r"<< 13", "<< 12"),
     ("xorshift goes on with 16", r">> 17", ">> 16"),
     ("xorshift ends with 6", r"<< 5\b", "<< 6"),
-    ("the highest random number is left out", r"(count\)) \+ 1", r"\1 + 0"),
-    ("there is one random number too many", r"(count\)) \+ 1", r"\1 + 2"),
+    ("the highest random number is left out", r"(high - low\)) \+ 1", r"\1 + 0"),
+    ("there is one random number too many", r"(high - low\)) \+ 1", r"\1 + 2"),
     ("no power is over 99", r"low, 100", "low, 99"),
     ("a power is up to 101", r"low, 100", "low, 101"),
     ("a move has a negative power", r"(percent\(\*?\w+(?:\[1\])?), 0\)", r"\1, -100)"),

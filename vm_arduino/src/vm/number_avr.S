@@ -672,6 +672,4 @@ divide:
     brne 4b
     ret
 
-#elif defined(__linux__) && defined(__ELF__)
-    .section .note.GNU-stack, "", %progbits
 #endif

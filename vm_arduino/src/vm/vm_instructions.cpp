@@ -154,7 +154,7 @@ __attribute__((always_inline)) inline bool Machine::step(Running* run) {
   run->next = static_cast<uint16_t>(at + size);
   if (entry > kFormMask) {
     run->depth = static_cast<uint8_t>(run->depth - (entry >> 6));
-    if (run->depth > kStackValues) return fail();
+    if (static_cast<int8_t>(run->depth) < 0) return fail();
   }
   int32_t* const values = task_.stack + run->depth;
   int32_t value = *values;
