@@ -6,6 +6,7 @@
 ;
 ; Calls are those of avr-gcc: arguments from r25 down, a result in r24 or r22-r25; r2-r17, r28 and
 ; r29 are saved by whoever uses them, and r1 is 0. Functions bear the names that C++ gives them.
+; What lies in `wide_avr.S` may be far: a linker that relaxes makes its calls short.
 
 #ifdef __AVR__
 
@@ -23,31 +24,7 @@
 #define LE 3
 #define GE 5
 
-; Two numbers and a divisor.
-#define a0 r22
-#define a1 r23
-#define a2 r24
-#define a3 r25
-#define b0 r18
-#define b1 r19
-#define b2 r20
-#define b3 r21
-#define d0 r14
-#define d1 r15
-#define d2 r16
-#define d3 r17
-
-; What stands above a where a product has more than 32 bits.
-#define high0 r26
-#define high1 r27
-#define high2 r30
-#define high3 r31
-
-; For products alone.
-#define part0 r12
-#define part1 r13
-#define carry r28
-#define count r29
+#include "wide_avr.h"
 
     .section .text.tiniscript_number, "ax", @progbits
 
@@ -98,14 +75,14 @@ function _ZN10tiniscript9calculateENS_2OpEPl
     rjmp fine
 
 absolute:
-    rcall load_magnitude
+    call load_magnitude
     sbrc a3, 7
     rjmp overflow
     rjmp store
 
 negate:
-    rcall load
-    rcall negate_a
+    call load
+    call negate_a
     brvs overflow
     rjmp store
 
@@ -230,7 +207,7 @@ scale:
     eor r0, d3
     bst r0, 7
     sbrc d3, 7
-    rcall negate_d
+    call negate_d
     cpi r20, OP_MUL
     breq 3f
     mov r0, d0
@@ -240,15 +217,15 @@ scale:
     breq 4f
     cpi r20, OP_MOD
     breq 1f
-    rcall load_magnitude    ; DIV: a * 1000 / |d|
-    rcall let_b_be_1000
+    call load_magnitude    ; DIV: a * 1000 / |d|
+    call let_b_be_1000
     rjmp 5f
-1:  rcall load_magnitude    ; MOD: what is left of a, with the sign of the divisor
+1:  call load_magnitude    ; MOD: what is left of a, with the sign of the divisor
     rcall remainder_of_a
     brtc 2f
-    rcall is_a_zero
+    call is_a_zero
     breq 2f
-    rcall negate_a
+    call negate_a
     add a0, d0
     adc a1, d1
     adc a2, d2
@@ -256,19 +233,19 @@ scale:
 2:  ldd r0, Y+7
     bst r0, 7
     rjmp finish
-3:  rcall load_magnitude    ; MUL: a * |d| / 1000
+3:  call load_magnitude    ; MUL: a * |d| / 1000
     movw b0, d0
     movw b2, d2
-    rcall let_d_be_1000
-5:  rcall multiply
-    rcall divide_and_round
+    call let_d_be_1000
+5:  call multiply
+    call divide_and_round
     rjmp finish
 4:  ldi r24, FAULT_DIVIDE_BY_ZERO
     rjmp leave
 
 round:
     adiw r30, 4
-    rcall load
+    call load
     rcall let_a_be_whole    ; the places
     subi a0, -6
     sbci a1, -1
@@ -290,24 +267,24 @@ round:
     clr d3
 1:  movw r26, d0            ; ten times as much
     movw r30, d2
-    rcall double_d
-    rcall double_d
+    call double_d
+    call double_d
     add d0, r26
     adc d1, r27
     adc d2, r30
     adc d3, r31
-    rcall double_d
+    call double_d
     dec b0
     brne 1b
     movw r30, r28
-    rcall load_magnitude
+    call load_magnitude
     ldd r0, Y+3
     bst r0, 7
-    rcall widen
-    rcall divide_and_round
+    call widen
+    call divide_and_round
     movw b0, d0
     movw b2, d2
-    rcall multiply
+    call multiply
     rjmp finish
 2:  ldi a0, 0
     ldi a1, 0
@@ -338,12 +315,12 @@ function _ZN10tiniscript14random_betweenEPlm
     dec r20
     brne 1b
 2:  movw r30, r28
-    rcall load
+    call load
     rcall let_a_be_whole
     movw r30, r28
     rcall store
     adiw r30, 4
-    rcall load
+    call load
     rcall let_a_be_whole
     ld r0, Y                ; how many there are, less 1
     sub a0, r0
@@ -374,20 +351,20 @@ function _ZN10tiniscript14random_betweenEPlm
     adc a3, r0
     bst a3, 7
     sbrc a3, 7
-    rcall negate_a
-    rcall let_b_be_1000
-    rcall multiply
+    call negate_a
+    call let_b_be_1000
+    call multiply
 
 ; Stores a with the sign T at Y, if there is such a number.
 finish:
     movw r30, r28
     brtc 1f
-    rcall negate_a
+    call negate_a
 1:  bld r0, 7
     eor r0, a3
     sbrs r0, 7
     rjmp 2f
-    rcall is_a_zero
+    call is_a_zero
     breq 2f
     rcall overflow
     rjmp leave
@@ -469,207 +446,23 @@ function _ZN10tiniscript11next_randomEm
     eor a3, b3
     ret
 
-load_magnitude:
-    rcall load
-    sbrs a3, 7
-    ret
-negate_a:                   ; leaves V: there is no such number
-    com a3
-    com a2
-    com a1
-    neg a0
-    sbci a1, -1
-    sbci a2, -1
-    sbci a3, -1
-    ret
-
-load:
-    ld a0, Z
-    ldd a1, Z+1
-    ldd a2, Z+2
-    ldd a3, Z+3
-    ret
-
-is_a_zero:
-    mov r0, a0
-    or r0, a1
-    or r0, a2
-    or r0, a3
-    ret
-
-negate_d:
-    com d0
-    com d1
-    com d2
-    com d3                  ; leaves a carry
-    adc d0, r1
-    adc d1, r1
-    adc d2, r1
-    adc d3, r1
-    ret
-
-double_d:
-    lsl d0
-    rol d1
-    rol d2
-    rol d3
-    ret
-
-let_d_be_1000:
-    ldi r26, lo8(1000)
-    ldi r27, hi8(1000)
-    movw d0, r26
-    clr d2
-    clr d3
-    ret
-
-let_b_be_1000:
-    ldi b0, lo8(1000)
-    ldi b1, hi8(1000)
-    ldi b2, 0
-    ldi b3, 0
-    ret
-
 ; The nearest whole number, half away from zero.
 let_a_be_whole:
     bst a3, 7
     sbrc a3, 7
-    rcall negate_a
-    rcall let_d_be_1000
-    rcall widen
-    rcall divide_and_round
+    call negate_a
+    call let_d_be_1000
+    call widen
+    call divide_and_round
     brtc 1f
-    rjmp negate_a
+    jmp negate_a
 1:  ret
 
 remainder_of_a:
-    rcall widen
-    rcall divide
+    call widen
+    call divide
     movw a0, high0
     movw a2, high2
-    ret
-
-widen:
-    clr high0
-    clr high1
-    movw high2, high0
-    ret
-
-; high and a are a * b. Byte by byte: the lowest byte of a, times b, is added to high, and both
-; move down by a byte into the room that it leaves.
-multiply:
-    push part0
-    push part1
-    push carry
-    push count
-    rcall widen
-    ldi count, 4
-1:  clr carry
-    tst a0
-    breq 2f
-    mul a0, b0
-    movw part0, r0
-    mul a0, b2
-    add high0, part0
-    adc high1, part1
-    adc high2, r0
-    adc high3, r1
-    rol carry
-    mul a0, b1
-    movw part0, r0
-    mul a0, b3
-    add high1, part0
-    adc high2, part1
-    adc high3, r0
-    adc carry, r1
-2:  mov a0, a1
-    mov a1, a2
-    mov a2, a3
-    mov a3, high0
-    mov high0, high1
-    mov high1, high2
-    mov high2, high3
-    mov high3, carry
-    dec count
-    brne 1b
-    clr r1
-    pop count
-    pop carry
-    pop part1
-    pop part0
-    ret
-
-; As `divide`, rounded half up.
-divide_and_round:
-    rcall divide
-    lsl high0
-    rol high1
-    rol high2
-    rol high3
-    cp high0, d0
-    cpc high1, d1
-    cpc high2, d2
-    cpc high3, d3
-    brlo 1f
-    subi a0, -1
-    sbci a1, -1
-    sbci a2, -1
-    sbci a3, -1
-    brlo 1f
-    dec a3                  ; 2^32 stays out of range
-1:  ret
-
-; a is high and a, divided by d, or 0xff000000 and more where it does not fit; high is the
-; remainder, where it fits. d stays; b is lost.
-divide:
-    cp high0, d0
-    cpc high1, d1
-    cpc high2, d2
-    cpc high3, d3
-    brlo 2f
-    ldi a3, 0xff
-    ret
-; Bytes of the quotient that are 0 at its beginning come at once.
-2:  ldi b0, 32              ; bits
-3:  tst high3
-    brne 4f
-    cp a3, d0
-    cpc high0, d1
-    cpc high1, d2
-    cpc high2, d3
-    brsh 4f
-    mov high3, high2
-    mov high2, high1
-    mov high1, high0
-    mov high0, a3
-    mov a3, a2
-    mov a2, a1
-    mov a1, a0
-    clr a0
-    subi b0, 8
-    brne 3b
-    ret
-; Bit by bit.
-4:  lsl a0
-    rol a1
-    rol a2
-    rol a3
-    rol high0
-    rol high1
-    rol high2
-    rol high3
-    cp high0, d0
-    cpc high1, d1
-    cpc high2, d2
-    cpc high3, d3
-    brlo 5f
-    sub high0, d0
-    sbc high1, d1
-    sbc high2, d2
-    sbc high3, d3
-    inc a0
-5:  dec b0
-    brne 4b
     ret
 
 #endif
