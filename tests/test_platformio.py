@@ -2,69 +2,29 @@
 
 from __future__ import annotations
 
-import importlib.util
 import os
 import re
-import shlex
 import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
-from functools import lru_cache
 from io import BytesIO
 from pathlib import Path
 
 import pytest
 
 from tests.casefile import ROOT
+from tests.platformio import OFFLINE, SKETCH, copied, pio, prepared
 from tiniscript import compile_text, robots
 
-OFFLINE = ROOT / "tools" / "platformio_offline.py"
-SKETCH = ROOT / "vm_arduino"
 FLASH_BYTES, RAM_BYTES = 32_256, 2048  # of an Uno
-IS_CI = bool(os.environ.get("CI"))
-
-
-@lru_cache(maxsize=1)
-def prepared() -> tuple[dict[str, str], str]:
-    """Return the variables that `pio` needs here, none where it is online, and why it cannot run.
-
-    Only in CI packages of Debian are installed.
-    """
-    if importlib.util.find_spec("platformio") is None:
-        return {}, "PlatformIO is not installed"
-    options = [] if IS_CI else ["--no-apt"]
-    done = subprocess.run(
-        [sys.executable, str(OFFLINE), *options], capture_output=True, text=True, check=False
-    )
-    exports = (shlex.split(row)[1].partition("=")[::2] for row in done.stdout.splitlines())
-    return dict(exports), done.stderr if done.returncode else ""
 
 
 @pytest.fixture(scope="module")
 def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A copy of the sketch to build and to break. Without PlatformIO: skipped, in CI a failure."""
-    _, why = prepared()
-    if why:
-        assert not IS_CI, why
-        pytest.skip(why.strip().replace("\n", "; "))
-    copy = tmp_path_factory.mktemp("platformio") / "vm_arduino"
-    return Path(shutil.copytree(SKETCH, copy, ignore=shutil.ignore_patterns(".pio")))
-
-
-def pio(project: Path, *words: str) -> tuple[int, str]:
-    """Return the exit code of `pio`, and what it printed."""
-    done = subprocess.run(
-        [sys.executable, "-m", "platformio", *words],
-        cwd=project,
-        env={**os.environ, **prepared()[0]},
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-        check=False,
-    )
-    return done.returncode, done.stdout
+    return copied(tmp_path_factory.mktemp("platformio"))
 
 
 @contextmanager
