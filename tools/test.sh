@@ -1,12 +1,13 @@
 #!/bin/sh
 # README's second command: sets everything up in .venv and runs all tests. The C++ machine is
-# tested on this computer, on a simulated Arduino and on the emulated chips of ESP boards, with
-# compilers from Debian's packages; where those cannot be had, its tests are skipped and say so
-# (with CI=true they fail instead).
+# tested on this computer, on a simulated Arduino and on the emulated chips of ESP boards, and the
+# sketch on a simulated Uno, with compilers and simulators from Debian's packages; where those cannot
+# be had, its tests are skipped and say so (with CI=true they fail instead).
 set -eu
 . "$(dirname "$0")/venv.sh"
 make_venv "[test]"
-debian_packages g++ gcc-avr avr-libc binutils-avr simavr arduino-core-avr doctest-dev \
+debian_packages g++ gcc-avr avr-libc binutils-avr simavr libsimavr-dev libelf-dev \
+    arduino-core-avr doctest-dev \
     clang-22 gcc-xtensa-lx106 gcc-riscv64-unknown-elf qemu-system-misc
 
 cd "$ROOT"

@@ -1,0 +1,252 @@
+"""An Arduino Uno that is a process, for tests and benchmarks: the real firmware, seen at its pins.
+
+    with Uno(Path("firmware.elf"), names={"button": "D2"}) as uno:
+        uno.run_ms(5)
+        uno.press("button")
+        first = uno.run_until("D7", "high", limit_ms=5)
+        print(first.cycle, uno.pins.history("D5"))
+
+The chip stands still until it is told to run: `run_ms` and its sisters run it as fast as they can
+and return at an exact cycle, so a test sees the same each time. `go` lets it run in real time, for
+programs that open its pty. Cycle 0 is the first power-on; 16,000 are a millisecond.
+
+The C sources beside this file are built where they are used. What the simulator does not model
+stands in `tools/uno/README.md`.
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import tempfile
+import threading
+import time
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from types import TracebackType
+
+from tools.uno.build import built, missing
+from tools.uno.log import CYCLES_PER_MS, HERTZ, Byte, Event, PinChange, Pins
+
+__all__ = ["CYCLES_PER_MS", "HERTZ", "Byte", "Event", "PinChange", "Pins", "Uno", "missing"]
+
+PATIENCE_S = 120.0  # for what the simulator is asked to do
+
+
+class Uno:
+    """A board with a firmware. `names` are other words for pins, as `{"button": "D2"}`.
+
+    Without an `eeprom` file the EEPROM is that of a new chip, and lost afterwards. Where a
+    `bootloader` is given, a reset begins there.
+    """
+
+    def __init__(
+        self,
+        firmware: Path,
+        *,
+        names: Mapping[str, str] | None = None,
+        eeprom: Path | None = None,
+        bootloader: Path | None = None,
+        baud: int = 115_200,
+        resets_on_open: bool = True,
+        tells_sleep: bool = True,
+    ) -> None:
+        self.events: list[Event] = []
+        self.pins = Pins(self.events, names or {})
+        self.cycle = 0  # where it has paused
+        self._news = threading.Condition()
+        self._errors = tempfile.TemporaryFile()  # noqa: SIM115
+        options = ["--baud", str(baud)]
+        options += ["--eeprom", str(eeprom)] if eeprom else []
+        options += ["--bootloader", str(bootloader)] if bootloader else []
+        options += ["--reset-on-open"] if resets_on_open else []
+        options += [] if tells_sleep else ["--no-sleep"]
+        self._process = subprocess.Popen(
+            [built(), *options, firmware],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=self._errors,
+        )
+        self._has_ended = False
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
+        self.pty = str(self.wait_for(lambda event: event.what == "pty")["name"])
+
+    def __enter__(self) -> Uno:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        value: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Let the simulator end; what it has told stays."""
+        if not self._has_ended:
+            self._tell("quit")
+        try:
+            self._process.wait(5)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()
+        self._reader.join()
+        for pipe in (self._process.stdin, self._process.stdout, self._errors):
+            if pipe:
+                pipe.close()
+
+    def kill(self) -> None:
+        """Cut the power for good, wherever the chip is. A new Uno may take the EEPROM's file."""
+        self._process.kill()
+        self._process.wait()
+        self._reader.join()
+
+    # -- running ------------------------------------------------------------------------------
+
+    def run_ms(self, milliseconds: float) -> None:
+        self.run_to(self.cycle + round(milliseconds * CYCLES_PER_MS))
+
+    def run_to(self, cycle: int) -> None:
+        """Run until a cycle, within the instruction that is at work then."""
+        mark = len(self.events)
+        self._tell(f"run {cycle} 0")
+        self._wait_for_pause(mark)
+
+    def run_until(self, pin: str, state: str, limit_ms: float) -> PinChange:
+        """Run until a pin becomes `low`, `high`, `pwm`, `input` or `pullup`, and return when."""
+        number = self.pins.number(pin)
+        mark = len(self.events)
+        end = self.cycle + round(limit_ms * CYCLES_PER_MS)
+        self._tell(f"watch {number} {state}", f"run {end} 0")
+        why = self._wait_for_pause(mark)["why"]
+        assert why == "pin", f"{pin} has not become {state} in {limit_ms} ms"
+        return self.pins[pin]
+
+    def go(self, speed: float = 1.0) -> None:
+        """Run until `pause`; speed 1 is real time, 0 as fast as it goes."""
+        self._tell(f"run forever {speed}")
+
+    def pause(self) -> None:
+        mark = len(self.events)
+        self._tell("pause")
+        self._wait_for_pause(mark)
+
+    def wait_for(
+        self, wanted: Callable[[Event], bool], timeout_s: float = PATIENCE_S, since: int = 0
+    ) -> Event:
+        """Return the first event that is wanted, from number `since` on; wait for it if need be."""
+        end = time.monotonic() + timeout_s
+        at = since
+        while True:
+            with self._news:
+                while at >= len(self.events) and not self._has_ended:
+                    if not self._news.wait(max(0.0, end - time.monotonic())):
+                        raise TimeoutError(f"the Uno has not told it in {timeout_s} s")
+                if at >= len(self.events):
+                    raise RuntimeError(f"the Uno has ended: {self._said()}")
+                event = self.events[at]
+            at += 1
+            if event.what == "mistake":
+                raise ValueError(event["text"])
+            if wanted(event):
+                return event
+
+    # -- what is around it --------------------------------------------------------------------
+
+    def drive(self, pin: str, level: bool | None, at: int | None = None) -> None:
+        """Give a pin a level from outside, or leave it alone; at a cycle, or at once."""
+        word = {None: "none", False: "low", True: "high"}[level]
+        self._tell(_at(at) + f"pin {self.pins.number(pin)} {word}")
+
+    def press(self, pin: str, ms: float = 50.0, at: int | None = None) -> None:
+        """Connect a pin to ground for a while, as a button does; it stays so while time passes."""
+        self.drive(pin, False, at)
+        length = round(ms * CYCLES_PER_MS)
+        begin = f"after {length} " if at is None else f"at {at + length} "
+        self._tell(begin + f"pin {self.pins.number(pin)} none")
+
+    def analog(self, pin: str, count: int, at: int | None = None) -> None:
+        """Put as much voltage to an analog pin as is read as `count`, 0 to 1023."""
+        assert 0 <= count <= 1023, count
+        self._tell(_at(at) + f"analog {self.pins.number(pin)} {count}")
+
+    def sonar(
+        self, trigger: str, echo: str, distance_cm: float | None, at: int | None = None
+    ) -> None:
+        """Put an HC-SR04 at two pins, or move what is in front of it; None: nothing."""
+        numbers = f"{self.pins.number(trigger)} {self.pins.number(echo)}"
+        self._tell(_at(at) + f"sonar {numbers} {round((distance_cm or 0) * 10)}")
+
+    # -- its serial port ----------------------------------------------------------------------
+
+    def baud(self, bits_per_second: int) -> None:
+        """Say how fast `send` and `hold` are; the pty has the speed that its program sets."""
+        self._tell(f"baud {bits_per_second}")
+
+    def send(self, data: bytes, at: int | None = None, *, stop_bits_fail: bool = False) -> None:
+        """Send bytes to the chip one after the other; the first start bit at a cycle, or now."""
+        if data:
+            self._tell(_at(at) + f"send{'_bad' if stop_bits_fail else ''} {data.hex()}")
+
+    def hold(self, level: bool, bits: int, at: int | None = None) -> None:
+        """Hold the wire low (a break) or leave it alone for so many bits, after what is sent."""
+        self._tell(_at(at) + f"hold {'high' if level else 'low'} {bits}")
+
+    @property
+    def sent(self) -> list[Byte]:
+        """What the chip has sent."""
+        return [Byte.of(event) for event in list(self.events) if event.what == "sent"]
+
+    @property
+    def received(self) -> list[Byte]:
+        """What has come into the chip's buffer or shift register."""
+        return [Byte.of(event) for event in list(self.events) if event.what == "received"]
+
+    @property
+    def lost(self) -> bytes:
+        """What was received and then overwritten, because nobody fetched what was before it."""
+        return bytes(int(event["byte"]) for event in list(self.events) if event.what == "lost")
+
+    # -- resets -------------------------------------------------------------------------------
+
+    def reset(self, cause: str = "external", at: int | None = None) -> None:
+        """Reset it: `external` (button, DTR), `power-on` (a cut: RAM is lost), `brown-out`."""
+        self._tell(_at(at) + f"reset {cause}")
+
+    # -- inside -------------------------------------------------------------------------------
+
+    def _tell(self, *lines: str) -> None:
+        pipe = self._process.stdin
+        assert pipe
+        try:
+            pipe.write("".join(f"{line}\n" for line in lines).encode())
+            pipe.flush()
+        except BrokenPipeError:
+            raise RuntimeError(f"the Uno has ended: {self._said()}") from None
+
+    def _wait_for_pause(self, since: int) -> Event:
+        event = self.wait_for(lambda event: event.what == "paused", since=since)
+        self.cycle = event.cycle
+        return event
+
+    def _read(self) -> None:
+        pipe = self._process.stdout
+        assert pipe
+        for line in pipe:
+            event = Event.of(json.loads(line))
+            with self._news:
+                self.events.append(event)
+                self._news.notify_all()
+        with self._news:
+            self._has_ended = True
+            self._news.notify_all()
+
+    def _said(self) -> str:
+        self._errors.seek(0)
+        return self._errors.read().decode(errors="replace")[-2000:]
+
+
+def _at(cycle: int | None) -> str:
+    return "" if cycle is None else f"at {cycle} "

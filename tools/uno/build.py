@@ -1,0 +1,58 @@
+"""Builds the simulated Uno, where it is used and from its sources.
+
+It links libsimavr, which is under GPLv3: the program is never part of what we ship.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import shutil
+import subprocess
+import tempfile
+from functools import lru_cache
+from pathlib import Path
+
+SOURCES = Path(__file__).resolve().parent
+HEADER = Path("/usr/include/simavr/sim_avr.h")
+FLAGS = ("-std=gnu11", "-O2")
+WARNINGS = ("-Wall", "-Wextra", "-Wconversion", "-Wshadow", "-Werror")
+LIBRARIES = ("-lsimavr", "-lelf", "-lutil", "-lm")
+
+
+def missing() -> str:
+    """Return why there is no simulated Uno, or nothing."""
+    if not shutil.which("gcc"):
+        return "no gcc: the simulated Uno is not built"
+    if not HEADER.exists():
+        return "no libsimavr: no simulated Uno (apt-get install libsimavr-dev libelf-dev)"
+    return ""
+
+
+@lru_cache(maxsize=1)
+def built() -> Path:
+    """Return the program; what was made before from the same sources is used again.
+
+    Several may build at the same time: each builds for itself, and the last one stays.
+    """
+    if why := missing():
+        raise RuntimeError(why)
+    inputs = sorted(SOURCES.glob("*.[ch]"))
+    key = hashlib.sha256(repr((WARNINGS, FLAGS, LIBRARIES)).encode() + HEADER.read_bytes())
+    for path in inputs:
+        key.update(path.name.encode() + path.read_bytes())
+    folder = Path(tempfile.gettempdir()) / f"tiniscript-uno-{os.getuid()}"
+    program = folder / key.hexdigest()[:16]
+    if not program.exists():
+        folder.mkdir(mode=0o700, exist_ok=True)
+        own = program.with_suffix(f".{os.getpid()}")
+        code = [str(path) for path in inputs if path.suffix == ".c"]
+        done = subprocess.run(
+            ["gcc", *FLAGS, *WARNINGS, *code, *LIBRARIES, "-o", str(own)],
+            capture_output=True,
+            text=True,
+        )
+        if done.returncode != 0:
+            raise RuntimeError(f"gcc refuses the simulated Uno:\n{done.stderr[:4000]}")
+        own.replace(program)
+    return program

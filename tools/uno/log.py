@@ -1,0 +1,101 @@
+"""What the simulated Uno tells: events with the cycle at which they happened, and views of them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+HERTZ = 16_000_000
+CYCLES_PER_MS = HERTZ // 1000
+BOARD = [f"D{number}" for number in range(14)] + [f"A{number}" for number in range(6)]
+
+
+@dataclass(frozen=True)
+class Event:
+    """One line. `what` it is says what else it has (`tools/uno/README.md`)."""
+
+    cycle: int
+    what: str
+    rest: Mapping[str, Any]
+
+    @classmethod
+    def of(cls, line: dict[str, Any]) -> Event:
+        return cls(line.pop("cycle"), line.pop("what"), line)
+
+    def __getitem__(self, name: str) -> Any:
+        return self.rest[name]
+
+    @property
+    def ms(self) -> float:
+        return self.cycle / CYCLES_PER_MS
+
+
+@dataclass(frozen=True)
+class PinChange:
+    """What the chip does with a pin from a cycle on: `low`, `high`, `input`, `pullup` or `pwm`.
+
+    `duty` (0 to 1), `hertz` and the timer's `value` are those of `pwm`.
+    """
+
+    cycle: int
+    pin: str
+    state: str
+    duty: float = 0.0
+    hertz: float = 0.0
+    value: int = 0
+
+    @property
+    def ms(self) -> float:
+        return self.cycle / CYCLES_PER_MS
+
+
+@dataclass(frozen=True)
+class Byte:
+    """A byte on a wire: `began` is its start bit, `cycle` where whoever reads it has it."""
+
+    cycle: int
+    began: int
+    value: int
+    is_broken: bool  # the stop bit was low
+
+    @classmethod
+    def of(cls, event: Event) -> Byte:
+        return cls(event.cycle, event["began"], event["byte"], "framing_error" in event.rest)
+
+
+class Pins:
+    """The pins of a board by their names there, or by those that the test gives them."""
+
+    def __init__(self, events: Sequence[Event], names: Mapping[str, str]) -> None:
+        self._events = events
+        self._names = names
+
+    def number(self, pin: str) -> str:
+        """Return the name on the board."""
+        name = self._names.get(pin, pin)
+        assert name in BOARD, f"there is no pin {pin}"
+        return name
+
+    def history(self, pin: str) -> tuple[PinChange, ...]:
+        """Return all that the chip has done with a pin."""
+        name = self.number(pin)
+        return tuple(
+            PinChange(event.cycle, name, event["is"], **_wave(event))
+            for event in list(self._events)
+            if event.what == "pin" and event["pin"] == name
+        )
+
+    def __getitem__(self, pin: str) -> PinChange:
+        """Return what a pin is now."""
+        return self.history(pin)[-1]
+
+    def at(self, pin: str, cycle: int) -> PinChange:
+        """Return what a pin was at a cycle."""
+        return [change for change in self.history(pin) if change.cycle <= cycle][-1]
+
+
+def _wave(event: Event) -> dict[str, Any]:
+    if event["is"] != "pwm":
+        return {}
+    return {"duty": event["duty"], "hertz": event["hz"], "value": event["value"]}

@@ -1,0 +1,251 @@
+// An Arduino Uno that is a process: runs a firmware, tells what its pins and its UART do as lines
+// of JSON, and does what it is told on the standard input (commands.c). Ends when that is closed.
+//
+//     uno [options] firmware.elf|firmware.hex
+//       --run SPEED       begin at once; otherwise it waits for the command `run`
+//       --baud N          of the pty until somebody sets another, and of the commands: 115200
+//       --link PATH       also make PATH a link to the pty
+//       --eeprom FILE     where the EEPROM is kept
+//       --reset-on-open   opening the pty resets the board
+//       --bootloader HEX  where a reset begins
+//       --no-sleep        say nothing of sleeping
+
+#define _GNU_SOURCE
+#include <poll.h>
+#include <simavr/sim_elf.h>
+#include <simavr/sim_hex.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "uno.h"
+
+enum { kSlice = kHertz / 2000 };  // how often the run looks around
+
+avr_t* avr;
+
+static FILE* out;
+static bool is_paused = true;
+static bool has_ended;
+static bool tells_sleep = true;
+static Cycle run_until = UINT64_MAX;
+static double run_speed;
+static double paced_from_s;
+static Cycle paced_from;
+
+// -- what it says -------------------------------------------------------------------------------
+
+void tell(Cycle cycle, const char* what, const char* format, ...) {
+  va_list values;
+  fprintf(out, "{\"cycle\": %llu, \"what\": \"%s\", ", (unsigned long long)cycle, what);
+  va_start(values, format);
+  vfprintf(out, format, values);
+  va_end(values);
+  fputs("}\n", out);
+}
+
+void give_up(const char* format, ...) {
+  va_list values;
+  fputs("uno: ", stderr);
+  va_start(values, format);
+  vfprintf(stderr, format, values);
+  va_end(values);
+  fputc('\n', stderr);
+  exit(2);
+}
+
+static void log_error(avr_t* chip, const int level, const char* format, va_list values) {
+  (void)chip;
+  if (level <= LOG_ERROR) vfprintf(stderr, format, values);
+}
+
+// -- the run ------------------------------------------------------------------------------------
+
+static double now_s(void) {
+  struct timespec time;
+  clock_gettime(CLOCK_MONOTONIC, &time);
+  return (double)time.tv_sec + (double)time.tv_nsec / 1e9;
+}
+
+void interrupt_run(void) { avr->run_cycle_count = 0; }
+
+static void reach(Cycle when, void* what) {
+  (void)when;
+  (void)what;
+  interrupt_run();
+}
+
+static void pace(void) {
+  paced_from_s = now_s();
+  paced_from = avr->cycle;
+}
+
+void pause_run(const char* why) {
+  is_paused = true;
+  cancel(reach, NULL);
+  pins_watch(kNoPin, "");
+  interrupt_run();
+  tell(avr->cycle, "paused", "\"why\": \"%s\"", why);
+}
+
+void resume_run(Cycle until, double speed) {
+  is_paused = false;
+  run_until = until;
+  run_speed = speed;
+  cancel(reach, NULL);
+  if (until != UINT64_MAX) at_cycle(until, reach, NULL);
+  pace();
+}
+
+void quit_run(void) { has_ended = true; }
+
+// Waits until commands or bytes come, for at most so many milliseconds; -1: without an end.
+static void look(int wait_ms) {
+  fflush(out);
+  struct pollfd files[] = {{STDIN_FILENO, POLLIN, 0}, {wire_file(), POLLIN, 0}};
+  const bool has_pty = !is_paused && !(wait_ms > 0 && poll(&files[1], 1, 0) > 0);
+  if (poll(files, has_pty ? 2 : 1, wait_ms) > 0 && files[0].revents && !commands_look()) quit_run();
+  if (!is_paused) wire_look();
+}
+
+static void look_around(void) {
+  int wait_ms = 0;
+  if (run_speed > 0) {
+    const double ahead_s =
+        (double)(avr->cycle - paced_from) / (kHertz * run_speed) - (now_s() - paced_from_s);
+    if (ahead_s < -0.05) pace();  // too slow: do not race to catch up
+    if (ahead_s > 0.001) wait_ms = (int)(ahead_s * 1000);
+  }
+  look(wait_ms);
+}
+
+// Sleeping without interrupts: only what comes from outside the chip, or the watchdog, ends that.
+static void skip_sleep(void) {
+  Cycle next = avr->cycle + kSlice;
+  if (next_happening() < next) next = next_happening();
+  if (next > avr->cycle) avr->cycle = next;
+  avr->state = cpu_Sleeping;
+}
+
+static void run(void) {
+  Cycle look_at = 0;
+  bool was_asleep = false;
+  while (!has_ended) {
+    if (is_paused) {
+      look(-1);
+      continue;
+    }
+    if (reset_where_wanted()) was_asleep = false;
+    const int state = avr_run(avr);
+    if (state == cpu_Done && !is_paused && !reset_is_wanted()) skip_sleep();
+    const bool is_asleep = state == cpu_Sleeping || state == cpu_Done;
+    if (is_asleep != was_asleep && tells_sleep) {
+      tell(avr->cycle, is_asleep ? "sleep" : "wake", "\"interrupts\": %s",
+           avr->sreg[S_I] || !is_asleep ? "true" : "false");
+    }
+    was_asleep = is_asleep;
+    if (state == cpu_Crashed) {
+      tell(avr->cycle, "crash", "\"pc\": %d", (int)avr->pc);
+      quit_run();
+    }
+    if (avr->cycle >= run_until && !is_paused) pause_run("cycle");
+    if (avr->cycle >= look_at) {
+      look_at = avr->cycle + kSlice;
+      if (!is_paused) look_around();
+    }
+  }
+}
+
+// -- the board ----------------------------------------------------------------------------------
+
+static void do_nothing(avr_t* chip, avr_cycle_count_t cycles) {
+  (void)chip;
+  (void)cycles;
+}
+
+static void load(const char* name, const char* bootloader) {
+  elf_firmware_t firmware;
+  memset(&firmware, 0, sizeof firmware);
+  const size_t length = strlen(name);
+  if (length > 4 && strcmp(name + length - 4, ".hex") == 0) {
+    firmware.flash = read_ihex_file(name, &firmware.flashsize, &firmware.flashbase);
+  } else if (elf_read_firmware(name, &firmware) != 0) {
+    firmware.flash = NULL;
+  }
+  if (!firmware.flash) give_up("cannot read %s", name);
+  avr = avr_make_mcu_by_name("atmega328p");
+  if (!avr || avr_init(avr) != 0) give_up("libsimavr has no ATmega328P");
+  if (firmware.flashbase + firmware.flashsize > avr->flashend + 1) give_up("%s is too large", name);
+  avr_loadcode(avr, firmware.flash, firmware.flashsize, firmware.flashbase);
+  avr->codeend = avr->flashend;
+  avr->frequency = kHertz;
+  avr->vcc = avr->avcc = avr->aref = 5000;
+  avr->sleep = do_nothing;
+  avr->run_cycle_limit = kSlice;
+  if (!bootloader) return;
+  ihex_chunk_p parts = NULL;
+  const int count = read_ihex_chunks(bootloader, &parts);
+  if (count < 1) give_up("cannot read %s", bootloader);
+  for (int k = 0; k < count; k++) {
+    if (parts[k].baseaddr + parts[k].size > avr->flashend + 1) give_up("%s is no bootloader", name);
+    memcpy(avr->flash + parts[k].baseaddr, parts[k].data, parts[k].size);
+  }
+  avr->reset_pc = parts[0].baseaddr;
+}
+
+int main(int count, char** words) {
+  const char *firmware = NULL, *link = NULL, *eeprom = NULL, *bootloader = NULL;
+  bool resets_on_open = false;
+  int baud = 115200;
+  for (int k = 1; k < count; k++) {
+    const char* word = words[k];
+    const char* value = k + 1 < count ? words[k + 1] : NULL;
+    bool takes_value = value != NULL;
+    if (value && strcmp(word, "--run") == 0) {
+      is_paused = false;
+      run_speed = atof(value);
+    } else if (value && strcmp(word, "--baud") == 0) {
+      baud = atoi(value);
+    } else if (value && strcmp(word, "--link") == 0) {
+      link = value;
+    } else if (value && strcmp(word, "--eeprom") == 0) {
+      eeprom = value;
+    } else if (value && strcmp(word, "--bootloader") == 0) {
+      bootloader = value;
+    } else {
+      takes_value = false;
+      if (strcmp(word, "--reset-on-open") == 0) {
+        resets_on_open = true;
+      } else if (strcmp(word, "--no-sleep") == 0) {
+        tells_sleep = false;
+      } else if (word[0] != '-' && !firmware) {
+        firmware = word;
+      } else {
+        give_up("what is %s?", word);
+      }
+    }
+    k += takes_value;
+  }
+  if (!firmware) give_up("which firmware?");
+  if (baud <= 0) give_up("which baud?");
+  // What libsimavr prints is no JSON.
+  out = fdopen(dup(STDOUT_FILENO), "w");
+  if (!out || dup2(STDERR_FILENO, STDOUT_FILENO) < 0) give_up("there is no standard output");
+  avr_global_logger_set(log_error);
+  load(firmware, bootloader);
+  chip_begin();
+  pins_begin();
+  uart_begin();
+  eeprom_begin(eeprom);
+  wire_begin(link, resets_on_open, baud);
+  reset_soon(kPowerOn);
+  reset_where_wanted();
+  pace();
+  fflush(out);
+  run();
+  tell(avr->cycle, "end", "\"state\": %d", avr->state);
+  fflush(out);
+  return avr->state == cpu_Crashed ? 3 : 0;
+}

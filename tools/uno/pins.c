@@ -1,0 +1,268 @@
+// The pins as they are named on the board: what the chip does with them, and what drives them.
+//
+// Whether a timer drives a pin is read from its registers: libsimavr 1.6 makes no edges for the
+// phase-correct modes that Arduino gives to timers 1 and 2.
+
+#include <simavr/avr_adc.h>
+#include <simavr/avr_ioport.h>
+#include <string.h>
+
+#include "uno.h"
+
+enum { kAnalogPins = 6, kMilliVolts = 5000, kMostCount = 1023 };
+
+// -- timers: which registers, which pins --------------------------------------------------------
+
+struct Register {
+  const char* name;
+  uint16_t address;
+  bool is_wide;
+  int told;
+};
+
+// clang-format off
+static struct Register registers[] = {
+    {"TCCR0A", 0x44, false, 0}, {"TCCR0B", 0x45, false, 0},
+    {"OCR0A", 0x47, false, 0}, {"OCR0B", 0x48, false, 0},
+    {"TCCR1A", 0x80, false, 0}, {"TCCR1B", 0x81, false, 0}, {"ICR1", 0x86, true, 0},
+    {"OCR1A", 0x88, true, 0}, {"OCR1B", 0x8a, true, 0},
+    {"TCCR2A", 0xb0, false, 0}, {"TCCR2B", 0xb1, false, 0},
+    {"OCR2A", 0xb3, false, 0}, {"OCR2B", 0xb4, false, 0},
+};
+enum { kRegisters = sizeof registers / sizeof *registers };
+
+// An output of a timer: its pin, where its two bits are in the timer's first register.
+static const struct Output {
+  int pin, timer, shift;
+  uint16_t compare;
+} outputs[] = {
+    {6, 0, 6, 0x47}, {5, 0, 4, 0x48}, {9, 1, 6, 0x88},
+    {10, 1, 4, 0x8a}, {11, 2, 6, 0xb3}, {3, 2, 4, 0xb4},
+};
+enum { kOutputs = sizeof outputs / sizeof *outputs };
+static const uint16_t controls[] = {0x44, 0x80, 0xb0};
+static const uint16_t first_compares[] = {0x47, 0x88, 0xb3};
+static const int divisors[] = {0, 1, 8, 64, 256, 1024, 0, 0};
+static const int divisors_2[] = {0, 1, 8, 32, 64, 128, 256, 1024};
+
+// Each port: PINx, DDRx, PORTx follow each other.
+static const struct Port {
+  char letter;
+  uint16_t address;
+} ports[] = {{'D', 0x29}, {'B', 0x23}, {'C', 0x26}};
+// clang-format on
+
+static int byte_at(uint16_t address) { return avr->data[address]; }
+
+static int word_at(uint16_t address, bool is_wide) {
+  return byte_at(address) | (is_wide ? byte_at((uint16_t)(address + 1)) << 8 : 0);
+}
+
+struct Wave {
+  int value;
+  double duty;
+  double hertz;
+};
+
+// Returns what an output does, for a timer that drives its pin.
+static struct Wave wave_of(const struct Output* output) {
+  const bool is_wide = output->timer == 1;
+  const int a = byte_at(controls[output->timer]);
+  const int b = byte_at((uint16_t)(controls[output->timer] + 1));
+  const int mode = (a & 3) | (is_wide ? b >> 1 & 12 : b >> 1 & 4);
+  const int divisor = (output->timer == 2 ? divisors_2 : divisors)[b & 7];
+  const int by_compare = word_at(first_compares[output->timer], is_wide);
+  const int by_capture = word_at(0x86, true);
+  bool is_fast;
+  bool is_plain;  // counts up and begins again: the pin toggles, or changes once
+  int top;
+  if (is_wide) {
+    static const int tops[] = {65535, 255, 511, 1023};
+    is_plain = mode == 0 || mode == 4 || mode == 12;
+    is_fast = (mode >= 5 && mode <= 7) || mode >= 14;
+    top = mode < 8 ? tops[mode & 3] : mode & 1 ? by_compare : by_capture;
+    if (mode == 4) top = by_compare;
+  } else {
+    is_plain = mode == 0 || mode == 2;
+    is_fast = mode == 3 || mode == 7;
+    top = mode == 2 || mode >= 5 ? by_compare : 255;
+  }
+  const int bits = a >> output->shift & 3;
+  const int value = word_at(output->compare, is_wide);
+  struct Wave wave = {value, 0.5, 0};
+  const double counts = is_fast || is_plain ? top + 1.0 : 2.0 * top;
+  if (divisor && counts > 0) wave.hertz = kHertz / (divisor * counts);
+  if (bits == 1 || is_plain) {
+    wave.hertz /= 2;
+    return wave;
+  }
+  if (top > 0) wave.duty = is_fast ? (value + 1.0) / (top + 1.0) : (double)value / top;
+  if (wave.duty > 1) wave.duty = 1;
+  if (bits == 3) wave.duty = 1 - wave.duty;
+  return wave;
+}
+
+static const struct Output* output_of(int pin) {
+  for (int k = 0; k < kOutputs; k++) {
+    const struct Output* output = &outputs[k];
+    if (output->pin == pin && byte_at(controls[output->timer]) >> output->shift & 3) return output;
+  }
+  return NULL;
+}
+
+// -- pins ---------------------------------------------------------------------------------------
+
+static const char* const names[kPinCount] = {"D0", "D1", "D2", "D3",  "D4",  "D5",  "D6",
+                                             "D7", "D8", "D9", "D10", "D11", "D12", "D13",
+                                             "A0", "A1", "A2", "A3",  "A4",  "A5"};
+
+static struct Pin {
+  avr_irq_t* irq;
+  const char* is;
+  struct Wave wave;
+  bool level;
+  enum Drive drive;
+} pins[kPinCount];
+static int analog[kAnalogPins];
+static int watched_pin = kNoPin;
+static char watched_state[8];
+
+static const struct Port* port_of(int pin) { return &ports[pin < 8 ? 0 : pin < 14 ? 1 : 2]; }
+static int bit_of(int pin) { return pin < 8 ? pin : pin < 14 ? pin - 8 : pin - 14; }
+
+int pin_number(const char* name) {
+  for (int pin = 0; pin < kPinCount; pin++) {
+    if (!strcmp(name, names[pin])) return pin;
+  }
+  return kNoPin;
+}
+
+const char* pin_name(int pin) { return names[pin]; }
+
+static bool is_same(const struct Wave* one, const struct Wave* other) {
+  return one->value == other->value && !(one->duty < other->duty || one->duty > other->duty) &&
+         !(one->hertz < other->hertz || one->hertz > other->hertz);
+}
+
+static void refresh(int number) {
+  struct Pin* pin = &pins[number];
+  const struct Port* port = port_of(number);
+  const bool is_output = byte_at((uint16_t)(port->address + 1)) >> bit_of(number) & 1;
+  const bool is_set = byte_at((uint16_t)(port->address + 2)) >> bit_of(number) & 1;
+  const struct Output* output = is_output ? output_of(number) : NULL;
+  const char* is = is_output ? (is_set ? "high" : "low") : is_set ? "pullup" : "input";
+  struct Wave wave = {0, 0, 0};
+  if (output) {
+    is = "pwm";
+    wave = wave_of(output);
+  }
+  if (is == pin->is && is_same(&wave, &pin->wave)) return;
+  const Cycle now = avr->cycle;
+  const bool was_high = pin->level;
+  pin->is = is;
+  pin->wave = wave;
+  pin->level = is_output && is_set;
+  if (output) {
+    tell(now, "pin",
+         "\"pin\": \"%s\", \"is\": \"pwm\", \"value\": %d, \"duty\": %.5f, \"hz\": %.3f",
+         names[number], wave.value, wave.duty, wave.hertz);
+  } else {
+    tell(now, "pin", "\"pin\": \"%s\", \"is\": \"%s\"", names[number], is);
+  }
+  if (pin->level != was_high) sonar_trigger(now, number, pin->level);
+  if (watched_pin == number && !strcmp(watched_state, is)) {
+    watched_pin = kNoPin;
+    pause_run("pin");
+  }
+}
+
+static void refresh_all(void) {
+  for (int pin = 0; pin < kPinCount; pin++) refresh(pin);
+}
+
+void pins_watch(int pin, const char* state) {
+  watched_pin = pin;
+  strncpy(watched_state, state, sizeof watched_state - 1);
+}
+
+static void port_written(struct avr_irq_t* irq, uint32_t value, void* param) {
+  (void)irq;
+  (void)value;
+  for (int pin = 0; pin < kPinCount; pin++) {
+    if (port_of(pin) == param) refresh(pin);
+  }
+}
+
+static void timer_written(struct avr_irq_t* irq, uint32_t value, void* param) {
+  (void)irq;
+  (void)value;
+  struct Register* written = param;
+  const int is = word_at(written->address, written->is_wide);
+  if (is == written->told) return;
+  written->told = is;
+  tell(avr->cycle, "register", "\"register\": \"%s\", \"value\": %d", written->name, is);
+  for (int k = 0; k < kOutputs; k++) refresh(outputs[k].pin);
+}
+
+// -- what drives them ---------------------------------------------------------------------------
+
+static void apply_drive(int number) {
+  const struct Port* port = port_of(number);
+  unsigned mask = 0, value = 0;
+  for (int pin = 0; pin < kPinCount; pin++) {
+    if (port_of(pin) != port || pins[pin].drive == kReleased) continue;
+    mask |= 1u << bit_of(pin);
+    value |= (unsigned)(pins[pin].drive == kHigh) << bit_of(pin);
+  }
+  struct avr_ioport_external_t external = {.mask = mask & 0xff, .value = value & 0xff};
+  avr_ioctl(avr, (uint32_t)AVR_IOCTL_IOPORT_SET_EXTERNAL(port->letter), &external);
+  if (byte_at((uint16_t)(port->address + 1)) >> bit_of(number) & 1) return;  // the chip drives it
+  const bool is_pulled = byte_at((uint16_t)(port->address + 2)) >> bit_of(number) & 1;
+  const bool level = pins[number].drive == kReleased ? is_pulled : pins[number].drive == kHigh;
+  avr_raise_irq(pins[number].irq, level);
+}
+
+void pin_drive(int number, enum Drive drive) {
+  static const char* const drives[] = {"nothing", "low", "high"};
+  pins[number].drive = drive;
+  tell(avr->cycle, "drive", "\"pin\": \"%s\", \"by\": \"%s\"", names[number], drives[drive + 1]);
+  apply_drive(number);
+}
+
+void analog_set(int channel, int count) {
+  if (channel < 0 || channel >= kAnalogPins || count < 0 || count > kMostCount) return;
+  analog[channel] = count;
+  avr_irq_t* irq = avr_io_getirq(avr, AVR_IOCTL_ADC_GETIRQ, ADC_IRQ_ADC0 + channel);
+  const int rounded_up = (count * kMilliVolts + kMostCount - 1) / kMostCount;
+  avr_raise_irq(irq, (uint32_t)rounded_up);  // the chip rounds down
+}
+
+void pins_after_reset(void) {
+  for (int k = 0; k < kRegisters; k++) timer_written(NULL, 0, &registers[k]);
+  for (int pin = 0; pin < kPinCount; pin++) {
+    pins[pin].irq->value = 0;  // as the registers now say
+    apply_drive(pin);
+  }
+  for (int channel = 0; channel < kAnalogPins; channel++) analog_set(channel, analog[channel]);
+  refresh_all();
+}
+
+static void listen(uint16_t address, avr_irq_notify_t notify, const void* param) {
+  avr_irq_t* irq = avr_iomem_getirq(avr, address, NULL, AVR_IOMEM_IRQ_ALL);
+  avr_irq_register_notify(irq, notify, (void*)(uintptr_t)param);
+}
+
+void pins_begin(void) {
+  for (int pin = 0; pin < kPinCount; pin++) {
+    const uint32_t request = (uint32_t)AVR_IOCTL_IOPORT_GETIRQ(port_of(pin)->letter);
+    pins[pin].irq = avr_io_getirq(avr, request, bit_of(pin));
+    pins[pin].drive = kReleased;
+    pins[pin].is = "";
+  }
+  for (int k = 0; k < (int)(sizeof ports / sizeof *ports); k++) {
+    for (uint16_t each = 0; each < 3; each++) {
+      listen((uint16_t)(ports[k].address + each), port_written, &ports[k]);
+    }
+  }
+  for (int k = 0; k < kRegisters; k++) listen(registers[k].address, timer_written, &registers[k]);
+}

@@ -1,0 +1,133 @@
+// An Arduino Uno that is a process: what its parts may ask of each other.
+//
+// libsimavr runs the instructions, timers, ADC and pins. The UART, the EEPROM, the watchdog and the
+// causes of a reset are here, because libsimavr 1.6 gives them other times than silicon.
+
+#ifndef TINISCRIPT_UNO_H_
+#define TINISCRIPT_UNO_H_
+
+#include <simavr/sim_avr.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+enum { kHertz = 16000000, kPinCount = 20, kNoPin = -1 };  // D0 .. D13, A0 .. A5
+
+typedef uint64_t Cycle;
+
+extern avr_t* avr;
+
+// -- main.c: the run ----------------------------------------------------------------------------
+
+// Says a line of JSON: the cycle, what it is, and the rest, as printf does.
+void tell(Cycle cycle, const char* what, const char* format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+// Ends the run in a way that tells why; for what cannot go on.
+void give_up(const char* format, ...) __attribute__((format(printf, 1, 2), noreturn));
+
+// Lets the chip stop after the instruction that it is at, so that the run can look around.
+void interrupt_run(void);
+
+void pause_run(const char* why);
+void resume_run(Cycle until, double speed);
+void quit_run(void);
+
+// -- queue.c: what happens at a cycle -----------------------------------------------------------
+
+typedef void (*Happening)(Cycle when, void* what);
+
+void at_cycle(Cycle when, Happening happening, void* what);
+void cancel(Happening happening, void* what);
+
+// Where nothing is to happen: the end of time.
+Cycle next_happening(void);
+
+// A reset forgets the timers of libsimavr, and the one of the queue is among them.
+void queue_after_reset(void);
+
+// -- chip.c: resets, watchdog, interrupts that stay raised --------------------------------------
+
+enum Cause { kPowerOn = 1, kExternal = 2, kBrownOut = 4, kWatchdog = 8 };  // bits of MCUSR
+
+void chip_begin(void);
+
+// Resets the chip after the instruction that it is at.
+void reset_soon(enum Cause cause);
+bool reset_is_wanted(void);
+bool reset_where_wanted(void);
+
+// Calls `write` or `read` for a register instead of what libsimavr has for it.
+void take_register(uint16_t address, avr_io_read_t read, avr_io_write_t write);
+
+// An interrupt that is asked for as long as `wants` says so. `entered` may be none.
+struct Asking {
+  bool (*wants)(void);
+  void (*entered)(void);
+  avr_int_vector_t* vector;
+};
+
+void asking_begin(struct Asking* asking, uint8_t vector);
+void asking_refresh(struct Asking* asking);
+
+// -- uart.c: UART 0 as the chip sees it ---------------------------------------------------------
+
+void uart_begin(void);
+void uart_after_reset(void);
+
+// The level of the wire to the chip has changed.
+void uart_wire(Cycle when, bool level);
+
+// -- wire.c: the other end of the two wires -----------------------------------------------------
+
+void wire_begin(const char* link, bool resets_on_open, int speed);
+
+// Sends a byte after all that is waiting, from `when` on. With `stop` false its stop bit is low.
+void wire_send(Cycle when, uint8_t byte, bool stop);
+
+// Holds the wire low, or leaves it alone, for so many bits.
+void wire_hold(Cycle when, bool level, uint32_t bits);
+
+// What the commands send has this many bits in a second; the pty has those of its settings.
+void wire_set_speed(int bits_per_second);
+double wire_bit_cycles(void);
+
+// The chip has sent a byte, with bits of this length.
+void wire_receive(Cycle when, uint8_t byte, double bit_cycles);
+
+// Asks the pty for news, and returns its file.
+void wire_look(void);
+int wire_file(void);
+
+// -- pins.c -------------------------------------------------------------------------------------
+
+void pins_begin(void);
+void pins_after_reset(void);
+int pin_number(const char* name);
+const char* pin_name(int pin);
+
+// What is wired to a pin gives it a level; kReleased leaves it alone.
+enum Drive { kReleased = -1, kLow = 0, kHigh = 1 };
+void pin_drive(int pin, enum Drive drive);
+
+// Pauses the run when a pin gets into a state: "high", "low", "pwm", "input" or "pullup".
+void pins_watch(int pin, const char* state);
+
+void analog_set(int channel, int count);
+
+// -- sonar.c ------------------------------------------------------------------------------------
+
+// Puts an HC-SR04 at two pins, or moves what is in front of it. 0 mm: there is nothing.
+bool sonar_set(int trigger, int echo, int distance_mm);
+void sonar_trigger(Cycle when, int pin, bool level);
+
+// -- eeprom.c -----------------------------------------------------------------------------------
+
+void eeprom_begin(const char* file);
+void eeprom_after_reset(bool is_power_on);
+
+// -- commands.c ---------------------------------------------------------------------------------
+
+// Does what is waiting on the standard input. False: it has been closed.
+bool commands_look(void);
+
+#endif  // TINISCRIPT_UNO_H_
