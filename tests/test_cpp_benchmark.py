@@ -126,7 +126,7 @@ def test_size(name: str) -> None:
         pytest.skip(cpp_size.missing(name))
     whole = cpp_size.size(name, "all")
     assert 2000 < whole.flash < 20_000
-    assert 400 < whole.ram < 1000
+    assert 300 < whole.ram < 1000
 
 
 @needs_chip

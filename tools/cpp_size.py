@@ -60,8 +60,8 @@ IMAGE = """{ Image image;
         sink = (uint8_t)unpack(bytes, sink, sink, &image); sink = image.start; }"""
 VERIFY = """{ Verdict verdict = verify(bytes, sink, sink, sink);
         sink = (uint8_t)verdict.rule; sink = verdict.offset; }"""
-MACHINE = """{ static Machine machine;
-        machine.start(bytes, sink, sink, sink, sink);
+MACHINE = """{ static Machine machine; static int32_t readings[8];
+        machine.start(bytes, sink, readings, sink, sink, sink);
         sink = (uint8_t)machine.tick(sink, sink); }"""
 USES = {
     "image": IMAGE,

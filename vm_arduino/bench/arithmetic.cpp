@@ -71,7 +71,8 @@ Fault calculated(uint8_t op, int32_t a, int32_t b, int32_t* result) {
   *at++ = static_cast<uint8_t>(Op::kShow);
   for (uint8_t k = 0; k < kEndBytes; k++) at[k] = static_cast<uint8_t>(Op::kEnd);
   // `b` is the seed of RANDOM too: as good as any
-  machine.start(code, static_cast<uint16_t>(at - code), 0, static_cast<uint32_t>(b) | 1, 0);
+  machine.start(code, static_cast<uint16_t>(at - code), nullptr, 0, static_cast<uint32_t>(b) | 1,
+                0);
   shows = 0;
   shown[0] = 0;
   machine.tick(0, 10);

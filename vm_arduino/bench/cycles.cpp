@@ -18,6 +18,7 @@ constexpr uint32_t kLongest = 200 * 1024UL;  // cycles of a tick: behind 2^18 bo
 
 uint8_t code[kCodeBytes + kEndBytes];
 Machine machine;
+int32_t kept[8];
 
 // Volatile, so that they are read and written in this order whatever lies between.
 volatile uint8_t coarse;
@@ -45,7 +46,7 @@ void run() {
   const uint16_t length = simulated::next_word();
   for (uint16_t k = 0; k < length; k++) code[k] = simulated::next_byte();
   for (uint8_t k = 0; k < kEndBytes; k++) code[length + k] = static_cast<uint8_t>(Op::kEnd);
-  machine.start(code, length, 8, 1, 0);
+  machine.start(code, length, kept, 8, 1, 0);
 
   begin_count();
   const uint32_t nothing = counted();

@@ -27,13 +27,14 @@ int main(int count, char** arguments) {
   for (int k = 3; k < count; k++) readings[k - 3] = atoi(arguments[k]);
 
   static Machine machine;
+  static int32_t kept[8];
   unsigned long steps = 0;
   const auto begun = std::chrono::steady_clock::now();
   for (int k = 0; k < times; k++) {
     taken = 0;
     shows = 0;
     steps = 0;
-    machine.start(code.data(), length, 8, 1, 0);
+    machine.start(code.data(), length, kept, 8, 1, 0);
     do {
       machine.tick(0, 0xff);
       steps += static_cast<unsigned long>(0xff - machine.left());

@@ -13,6 +13,7 @@ namespace {
 constexpr uint8_t kSlice = 250;  // instructions between two looks at the limit
 
 Machine machine;
+int32_t readings[kDevices];
 
 struct Limits {
   uint32_t max_ms;  // less than 2^31
@@ -40,7 +41,9 @@ void say_fault() {
 
 // Runs code to its end; returns how many instructions ran.
 uint32_t run(const Image& image, const Limits& limits) {
-  machine.start(image.code, image.code_length, robot.sensor_count, limits.seed, limits.begin_ms);
+  for (int32_t& reading : readings) reading = 0;
+  machine.start(image.code, image.code_length, readings, robot.sensor_count, limits.seed,
+                limits.begin_ms);
   uint32_t steps = 0;
   uint32_t left = limits.max_steps;  // before the clock must move
   for (;;) {

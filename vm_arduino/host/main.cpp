@@ -48,7 +48,8 @@ struct Limits {
 void run(const uint8_t* code, uint16_t length, const Limits& limits, Writer* answer) {
   static Machine machine;
   const uint8_t sensors = static_cast<uint8_t>(robot.sensors.size());
-  machine.start(code, length, sensors, limits.seed, limits.begin_ms);
+  int32_t readings[kDevices] = {};
+  machine.start(code, length, readings, sensors, limits.seed, limits.begin_ms);
   uint32_t steps = 0;
   uint32_t before = 0;  // instructions that ran before the clock last moved
   std::string ending;
@@ -151,7 +152,8 @@ void answer_late(Reader* request, Writer* answer) {
   const Bytes data = request->bytes(kEndBytes);
   const size_t length = data.length - kHeaderBytes;
   Machine machine;
-  machine.start(data.data.get() + kHeaderBytes, static_cast<uint16_t>(length),
+  int32_t readings[kDevices] = {};
+  machine.start(data.data.get() + kHeaderBytes, static_cast<uint16_t>(length), readings,
                 static_cast<uint8_t>(robot.sensors.size()), seed, 0);
   for (uint32_t count = 1; count < 200; count++) {
     if (machine.tick(robot.now_ms, kSlice) != Status::kWaiting) break;
@@ -185,7 +187,8 @@ void answer_all(Reader* request, Writer* answer) {
     robot.readings.resize(sensors);
     robot.taken.resize(sensors);
     Machine machine;
-    machine.start(code, 3, sensors, 1, 0);
+    int32_t readings[kDevices] = {};
+    machine.start(code, 3, readings, sensors, 1, 0);
     uint32_t now_ms = 0;
     for (uint8_t k = 0; k < 20; k++) {
       if (machine.tick(now_ms, 10) == Status::kWaiting) now_ms = machine.wake_ms();

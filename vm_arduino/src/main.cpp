@@ -33,6 +33,7 @@ const uint8_t program[kProgramBytes + kEndBytes] = {
 
 Image image;
 Machine machine;
+int32_t readings[kBoardSensors];
 bool is_accepted;
 bool is_running;
 
@@ -54,7 +55,8 @@ void loop() {
   if (board_pressed()) {
     is_running = is_accepted && !was_running;
     if (is_running) {
-      machine.start(image.code, image.code_length, kBoardSensors, now_ms | 1, now_ms);
+      for (int32_t& reading : readings) reading = 0;
+      machine.start(image.code, image.code_length, readings, kBoardSensors, now_ms | 1, now_ms);
     } else {
       robot_off();
     }

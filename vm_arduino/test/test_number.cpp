@@ -30,7 +30,7 @@ TEST_CASE("results and faults of arithmetic are those of Python") {
   for (const cases::NumberCase& each : cases::number_cases()) {
     const std::vector<uint8_t> code = code_for(each);
     Machine machine;
-    machine.start(code.data(), static_cast<uint16_t>(code.size() - kEndBytes), 0, 1, 0);
+    machine.start(code.data(), static_cast<uint16_t>(code.size() - kEndBytes), nullptr, 0, 1, 0);
     machine.tick(0, static_cast<uint8_t>(each.values.size() + 1));
     INFO(each.name);
     CAPTURE(each.values.front());

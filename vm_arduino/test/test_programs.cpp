@@ -30,7 +30,9 @@ std::string trace_of(const std::vector<uint8_t>& code, const cases::ProgramCase&
   robot.taken.assign(program.kit.sensors.size(), 0);
   Machine machine;
   const uint8_t sensors = static_cast<uint8_t>(program.kit.sensors.size());
-  machine.start(code.data(), static_cast<uint16_t>(code.size() - 1), sensors, program.seed, 0);
+  int32_t readings[kDevices] = {};
+  machine.start(code.data(), static_cast<uint16_t>(code.size() - kEndBytes), readings, sensors,
+                program.seed, 0);
   for (uint32_t k = 0; k < kMostTicks; k++) {
     const Status status = machine.tick(robot.now_ms, kBudget);
     if (status == Status::kDone || status == Status::kFault) break;
@@ -65,7 +67,8 @@ TEST_CASE("a robot that is not ready is asked again") {
   robot.taken.resize(robot.sensors.size());
   robot.not_ready = 1;  // never
   Machine machine;
-  machine.start(code, 2, 1, program.seed, 0);
+  int32_t reading = 0;
+  machine.start(code, 2, &reading, 1, program.seed, 0);
   CHECK(machine.tick(0, kBudget) == Status::kRunning);
   CHECK(robot.trace == "");
   robot.not_ready = 0;

@@ -30,6 +30,7 @@ uint8_t room[kRoom + kEndBytes];
 Image image;
 Verdict verdict;
 Machine machine;
+int32_t readings[kDevices];
 
 }  // namespace
 
@@ -79,7 +80,9 @@ exported("start") void module_start(uint32_t sensors, uint32_t seed, uint32_t no
   for (uint8_t k = 0; k < kEndBytes; k++) {
     room[kHeaderBytes + image.code_length + k] = static_cast<uint8_t>(Op::kEnd);
   }
-  machine.start(image.code, image.code_length, static_cast<uint8_t>(sensors), seed, now_ms);
+  for (int32_t& reading : readings) reading = 0;
+  machine.start(image.code, image.code_length, readings, static_cast<uint8_t>(sensors), seed,
+                now_ms);
 }
 
 // Runs at most `budget` (0 to 65535) instructions. From the lowest bit: 32 of `wake_ms`, 16 of

@@ -47,7 +47,6 @@ struct Task {
   int8_t right;
   int32_t stack[kStackValues + 1];  // the last one only lies behind them
   int32_t variables[kVariables];
-  int32_t readings[kDevices];
   int32_t counters[kCounters];
   uint16_t calls[kCalls];  // where each open call goes on
 };

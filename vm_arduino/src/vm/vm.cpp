@@ -12,10 +12,11 @@ constexpr uint8_t kLateMs = 20;  // later than this, a program's own clock no lo
 
 }  // namespace
 
-void Machine::start(const uint8_t* code, uint16_t length, uint8_t sensors, uint32_t seed,
-                    uint32_t now_ms) {
+void Machine::start(const uint8_t* code, uint16_t length, int32_t* readings, uint8_t sensors,
+                    uint32_t seed, uint32_t now_ms) {
   *this = Machine();  // all members are 0
   sensors_ = sensors < kDevices ? sensors : kDevices;
+  readings_ = readings;
   length_ = length;
   code_ = code;
   now_ms_ = now_ms;

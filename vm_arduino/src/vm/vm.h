@@ -24,9 +24,10 @@ constexpr uint8_t kEndBytes = 4;
 class Machine {
  public:
   // Begins a program. `code` is verified for a kit with so many sensors (0 to kDevices), and
-  // behind its `length` bytes lie kEndBytes of Op::kEnd: whoever loads it puts them there. `seed`
-  // is not 0.
-  void start(const uint8_t* code, uint16_t length, uint8_t sensors, uint32_t seed, uint32_t now_ms);
+  // behind its `length` bytes lie kEndBytes of Op::kEnd: whoever loads it puts them there. The
+  // last reading of each sensor is kept in `readings`, which are 0. `seed` is not 0.
+  void start(const uint8_t* code, uint16_t length, int32_t* readings, uint8_t sensors,
+             uint32_t seed, uint32_t now_ms);
 
   // Runs at most `budget` instructions at the time `now_ms`.
   Status tick(uint32_t now_ms, uint8_t budget);
@@ -79,6 +80,7 @@ class Machine {
   uint8_t left_;
   uint16_t length_;
   const uint8_t* code_;
+  int32_t* readings_;
   uint32_t now_ms_;
   Task task_;
 };

@@ -39,7 +39,7 @@ int8_t percent(int32_t power, int8_t low) {
 // not ready, or does not have the sensor.
 one_copy bool Machine::sense(uint8_t number, bool must_read) {
   if (number >= sensors_) return fail();
-  return !must_read || robot_read(number, task_.readings + number);
+  return !must_read || robot_read(number, readings_ + number);
 }
 
 // MOVE to WATCH_FOREVER and WAIT to WATCH_FOREVER_WAIT. Each comes in four forms: with a time from
@@ -80,7 +80,7 @@ one_copy uint16_t Machine::compare_and_branch(const uint8_t* bytes) {
   const uint8_t number = *bytes++;
   const int32_t* places = task_.variables;
   if (code >= 0x90) {
-    places = task_.readings;
+    places = readings_;
     if (!sense(number, code >= 0xa0)) return 0;
   }
   if (number >= kVariables || code >= kFamiliesEnd || code % 8 >= kFamilyOps) {
@@ -190,7 +190,7 @@ __attribute__((always_inline)) inline bool Machine::step(Running* run) {
     case Form::kRead:
       if (!sense(first, op != Op::kPushSensor)) return stay(run);
       if (op == Op::kRead) return true;
-      value = task_.readings[first];
+      value = readings_[first];
       break;
     case Form::kRandom:
       run->depth++;
