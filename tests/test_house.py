@@ -128,6 +128,19 @@ def test_compile_imports_no_other_verb(tmp_path: Path) -> None:
     modules = imported_by(
         f"from tiniscript.cli import main; assert main(['compile', {str(program)!r}]) == 0"
     )
-    unwanted = {"construct", "tomllib", "tomli", "rich", "dataclasses", "tiniscript.vm",
-                "tiniscript.run", "tiniscript.listing", "tiniscript.formatter"}  # fmt: skip
+    unwanted = {"cobs", "construct", "tomllib", "tomli", "rich", "dataclasses", "tiniscript.link",
+                "tiniscript.vm", "tiniscript.run", "tiniscript.listing",
+                "tiniscript.formatter"}  # fmt: skip
     assert not unwanted & modules
+
+
+def test_the_link_has_no_port_and_no_clock() -> None:
+    """Bytes and times are arguments: so a second takes no time in a test."""
+    for path in sorted((HOUSE / "link").glob("*.py")):
+        names = set()
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Import):
+                names |= {alias.name for alias in node.names}
+            elif isinstance(node, ast.ImportFrom):
+                names.add((node.module or "").split(".")[0])
+        assert not names & {"serial", "socket", "time", "threading", "asyncio", "select"}, path.name

@@ -1,0 +1,68 @@
+"""Bytes to frames and back: a head, a payload and a checksum, through COBS.
+
+Knows nothing of what a message means. The same as `vm_arduino/src/link/frames.cpp`.
+"""
+
+from __future__ import annotations
+
+import zlib
+from typing import NamedTuple
+
+from cobs import cobs
+
+from tiniscript.link.messages import (
+    BY_NAME,
+    CRC_BYTES,
+    HEAD_BYTES,
+    LARGEST,
+    MAJOR,
+    REPLY,
+    SEALED,
+)
+
+_HELLO = BY_NAME["HELLO"].number
+
+
+class Frame(NamedTuple):
+    """`number` is that of a message; `epoch` the session's, as whoever sends it knows it."""
+
+    number: int
+    seq: int
+    epoch: int
+    payload: bytes = b""
+    is_reply: bool = False
+    is_sealed: bool = False
+
+
+def encoded(frame: Frame) -> bytes:
+    """Return the bytes on the wire, the 0x00 at the end included."""
+    kind = frame.number | REPLY * frame.is_reply | SEALED * frame.is_sealed
+    data = bytes((kind, frame.seq, frame.epoch)) + frame.payload
+    data += checksum(data).to_bytes(CRC_BYTES, "little")
+    assert len(data) <= LARGEST
+    wire: bytes = cobs.encode(data)
+    return wire + b"\0"
+
+
+def decoded(wire: bytes) -> Frame | None:
+    """Return the frame in the bytes of an item, without the 0x00, or None for a damaged one."""
+    try:
+        data: bytes = cobs.decode(wire)
+    except cobs.DecodeError:
+        return None
+    body, crc = data[:-CRC_BYTES], data[-CRC_BYTES:]
+    if len(body) < HEAD_BYTES or checksum(body) != int.from_bytes(crc, "little"):
+        return None
+    kind, seq, epoch = body[:HEAD_BYTES]
+    number = kind & ~(REPLY | SEALED)
+    return Frame(number, seq, epoch, body[HEAD_BYTES:], bool(kind & REPLY), bool(kind & SEALED))
+
+
+def checksum(data: bytes) -> int:
+    """Return the CRC-32 of a frame.
+
+    It begins with the major version, so that a peer of another one is not misunderstood. HELLO
+    begins with 0: that there is another version must be understood.
+    """
+    is_hello = data[0] & ~(REPLY | SEALED) == _HELLO
+    return zlib.crc32(data, 0 if is_hello else MAJOR)

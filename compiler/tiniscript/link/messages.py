@@ -1,0 +1,238 @@
+"""The one table of the link: messages, their fields, and every number that is sent.
+
+`frames` and `session` import it; `tools/generate.py` writes `vm_arduino/src/link/messages.h` and
+the tables of `docs/link.md` from it. Numbers on the wire are promises: a number is never used
+again for something else.
+
+Knows numbers, sizes and times. Does not know how a message is answered.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Mapping
+from typing import NamedTuple
+
+MAJOR = 1  # where it differs, a robot and a computer understand HELLO of each other, nothing else
+MINOR = 0  # a robot that knows more messages has more here
+
+LARGEST = 63  # bytes of a frame before COBS: so the first byte on the wire is 0x40 at most
+TEXT_FROM = 0x41  # from here on, the first byte of an item begins no frame
+HEAD_BYTES = 3  # type, sequence number, epoch
+CRC_BYTES = 4
+PAYLOAD_BYTES = LARGEST - HEAD_BYTES - CRC_BYTES
+WINDOW = 1  # requests that a robot takes before it has answered
+REPLY = 0x80  # of a type: it is for the computer
+SEALED = 0x40  # of a type: a counter and a MAC follow the payload. Kept for later
+NAME_BYTES = 16
+
+STOP_BYTES = 8  # zeros that a computer sends to stop a robot
+STOP_RUN = 4  # zeros in a row that stop it
+SILENCE_MS = 1000  # after so long an item begins
+TETHER_MS = 1000  # without a valid frame, a tethered program ends
+LISTEN_MS = 3000  # without one, a robot sends no more events
+
+# How a program starts and what becomes of it: one byte of LIVE, PROGRAM, BEGIN and START.
+START_BITS, RUN, SAVE, DETACHED = 0x03, 0x10, 0x20, 0x40
+MODES = (
+    (START_BITS, "START_BITS", "The start mode of an image: 0 `SI`, 1 `SB`."),
+    (RUN, "RUN", "Start it at once, if it is `SI`. LIVE has this bit and no other."),
+    (SAVE, "SAVE", "Keep it over the next power-on."),
+    (DETACHED, "DETACHED", "It goes on without the link. START may have this bit and no other."),
+)
+
+
+class Field(NamedTuple):
+    """`kind` is one of KINDS, or `rest`: all bytes that are left, `low` to `high` of them."""
+
+    name: str
+    kind: str
+    low: int
+    high: int
+
+
+class Message(NamedTuple):
+    """`request` is what a computer sends, `reply` what follows the status OK.
+
+    An event has no request, and its fields are in `reply`. A message that `acts` is stale in another epoch than the robot's.
+    """
+
+    number: int
+    name: str
+    acts: bool
+    request: tuple[Field, ...]
+    reply: tuple[Field, ...]
+    meaning: str
+
+
+KINDS = {"u8": "B", "u16": "H", "u32": "I", "u64": "Q", "i32": "i"}
+
+
+def _fields(text: str) -> tuple[Field, ...]:
+    found = []
+    for word in text.split():
+        name, _, kind = word.partition(":")
+        kind, _, range_of_rest = kind.partition("=")
+        if kind == "rest":
+            low, _, high = range_of_rest.partition("..")
+            found.append(Field(name, kind, int(low), int(high)))
+        else:
+            size = struct.calcsize(KINDS[kind])
+            found.append(Field(name, kind, size, size))
+    return tuple(found)
+
+
+def _message(number: int, name: str, acts: bool, request: str, reply: str, meaning: str) -> Message:
+    return Message(number, name, acts, _fields(request), _fields(reply), meaning)
+
+
+_RECEIPT = "program:u32 run:u8 slot:u8 saved:u8"
+
+# fmt: off
+MESSAGES = (
+    # anyone may send these at any time
+    _message(1, "HELLO", False, "major:u8 minor:u8 isa_major:u8 isa_minor:u8 kit:u16 nonce:u32",
+             "major:u8 minor:u8 isa_major:u8 isa_minor:u8 kit:u16 id:u32 nonce:u64 largest:u8 window:u8 "
+             "features:u16 room:u16 state:u8 program:u32 length:u16 fault:u8 fault_at:u16 "
+             "fault_program:u32 reset:u8 name:rest=0..16",
+             "Begins a session. The same `nonce` again is the same session."),
+    _message(2, "PING", False, "", "state:u8 run:u8", "Are you there? Also the heartbeat."),
+    _message(3, "STATUS", False, "",
+             "state:u8 run:u8 program:u32 length:u16 slot:u8 saved:u8 fault:u8 fault_at:u16 "
+             "fault_program:u32 damaged:u8 dropped:u8 uptime_ms:u32",
+             "What the robot does, its last fault, and how well it hears."),
+    _message(4, "FETCH", False, "offset:u16", "length:u16 bytes:rest=0..53",
+             "The stored program's image, from `offset` on. `length` is that of all of it."),
+    _message(5, "STOP", False, "", "", "The same as the stop sequence, and answered."),
+    # these act: they are for one epoch
+    _message(6, "CLEAR", True, "", "", "Releases the latch that a stop or a fault has set."),
+    _message(7, "START", True, "mode:u8", _RECEIPT, "Starts the program that the robot holds."),
+    _message(8, "LIVE", True, "mode:u8 code:rest=0..55", _RECEIPT,
+             "Runs code once. The program that the robot holds stays what it is."),
+    _message(9, "PROGRAM", True, "mode:u8 code:rest=0..55", _RECEIPT, "A whole program in one frame."),
+    _message(10, "BEGIN", True, "mode:u8 isa_major:u8 isa_minor:u8 start:u8 needs:u8 kit:u16 length:u16",
+             "next:u16", "Begins a longer program: what its image's header says."),
+    _message(11, "DATA", True, "offset:u16 code:rest=1..54", "next:u16",
+             "Code. What does not begin at `next` is not taken."),
+    _message(12, "COMMIT", True, "checksum:u32", _RECEIPT, "The program is whole: its image's checksum."),
+    _message(13, "ABORT", True, "", "", "Drops the program that was begun."),
+    _message(14, "NAME", True, "name:rest=1..16", "", "Names the robot: UTF-8."),
+    # events: a robot sends these without being asked
+    _message(32, "SHOW", False, "", "value:i32 is_yes_no:u8", "A value that a program shows."),
+    _message(33, "FAULT", False, "", "run:u8 fault:u8 at:u16 program:u32",
+             "The program has ended with a fault."),
+    _message(34, "STOPPED", False, "", "cause:u8", "The robot was stopped. Its epoch is another one now."),
+    _message(35, "DONE", False, "", "run:u8", "The program has ended."),
+)
+FIRST_ACTING = 6
+FIRST_EVENT = 32
+
+RESERVED = {48: "CLAIM", 49: "AUTHENTICATE", 50: "IDENTIFY", 51: "UNDO", 52: "TRIM", 53: "TEXT"}
+
+# What begins a reply. 1 to 19 are the refusals of an image, 20 to 63 the rules of the verifier:
+# `bytecode_spec.md`. The sentences are in `statuses.toml`.
+FIRST_RULE, FIRST_STATUS = 20, 64
+STATUSES = {
+    "OK": 0,
+    "UNKNOWN_MESSAGE": 64,
+    "BAD_LENGTH": 65,
+    "BAD_VALUE": 66,
+    "STALE": 67,
+    "OTHER_LINK": 68,
+    "OTHER_MACHINE": 69,
+    "WRONG_KIT": 70,
+    "TOO_LARGE": 71,
+    "BUSY": 72,
+    "LATCHED": 73,
+    "NO_PROGRAM": 74,
+    "NOT_BEGUN": 75,
+    "INCOMPLETE": 76,
+    "NOT_SEALED": 77,
+}
+# What the number that follows a status other than OK means. It is 0 where it is not here.
+DETAILS = {
+    "OTHER_LINK": "the robot's major version",
+    "OTHER_MACHINE": "the robot's instruction set: major times 256, and minor",
+    "WRONG_KIT": "the fingerprint of the robot's kit",
+    "TOO_LARGE": "bytes of code for which the robot has room",
+    "INCOMPLETE": "the offset of the first byte that is missing",
+}
+
+STATES = (
+    ("IDLE",    "Nothing runs. The button or START starts the program, if there is one."),
+    ("RUNNING", "A program runs."),
+    ("STOPPED", "It was stopped: nothing starts before CLEAR or the button."),
+    ("FAULTED", "A fault has ended the program: nothing starts before CLEAR or the button."),
+)
+SAVED = (
+    ("NOTHING", "The robot holds no program."),
+    ("MEMORY",  "The program is in RAM only: power off, and it is gone."),
+    ("SAVING",  "It is being saved."),
+    ("STORED",  "It is saved."),
+)
+CAUSES = (
+    ("NONE",     "Not stopped."),
+    ("SEQUENCE", "By the stop sequence."),
+    ("MESSAGE",  "By STOP."),
+    ("BUTTON",   "By the button."),
+    ("CABLE",    "The radio module says that nobody is connected."),
+)
+RESETS = (
+    ("UNKNOWN",   "The chip does not say."),
+    ("POWER",     "Power on."),
+    ("BUTTON",    "The reset button, or a computer that opened the port."),
+    ("BROWN_OUT", "The voltage was too low."),
+    ("WATCHDOG",  "The watchdog: the robot's own program hung."),
+)
+# Faults that no instruction makes. Those of instructions are in `bytecode.py`.
+LINK_FAULTS = (
+    (64, "LINK_LOST", "No valid frame for a second while a tethered program ran."),
+    (65, "MAX_RUN",   "A program without a tether ran longer than the robot allows."),
+    (66, "STALL",     "The robot's own program did not go on."),
+)
+# fmt: on
+
+BY_NUMBER = {message.number: message for message in MESSAGES}
+BY_NAME = {message.name: message for message in MESSAGES}
+STATUS_NAMES = {number: name for name, number in STATUSES.items()}
+
+
+class Malformed(Exception):
+    """A payload that is not what the table says."""
+
+
+def written(fields: tuple[Field, ...], values: Mapping[str, int | bytes]) -> bytes:
+    """Return the payload with these values, one for each field."""
+    assert set(values) == {field.name for field in fields}, (fields, values)
+    parts = []
+    for field in fields:
+        value = values[field.name]
+        if isinstance(value, bytes):
+            assert field.kind == "rest" and field.low <= len(value) <= field.high, field
+            parts.append(value)
+        else:
+            parts.append(struct.pack("<" + KINDS[field.kind], value))
+    return b"".join(parts)
+
+
+def read(fields: tuple[Field, ...], payload: bytes) -> dict[str, int | bytes]:
+    """Return the values in a payload. Raises Malformed where its length does not fit."""
+    found: dict[str, int | bytes] = {}
+    at = 0
+    for field in fields:
+        size = len(payload) - at if field.kind == "rest" else field.low
+        if not field.low <= size <= field.high or at + size > len(payload):
+            raise Malformed
+        piece = payload[at : at + size]
+        found[field.name] = (
+            piece if field.kind == "rest" else struct.unpack("<" + KINDS[field.kind], piece)[0]
+        )
+        at += size
+    if at != len(payload):
+        raise Malformed
+    return found
+
+
+def sizes(fields: tuple[Field, ...]) -> tuple[int, int]:
+    """Return how long a payload with these fields is at least and at most."""
+    return sum(field.low for field in fields), sum(field.high for field in fields)
