@@ -12,8 +12,11 @@ import pytest
 from tests.machines.host import SOURCES, WARNINGS, missing
 
 MACHINE = SOURCES / "src" / "vm"
-PORTABLE = sorted([*MACHINE.glob("*.h"), *MACHINE.glob("*.cpp"), SOURCES / "src" / "robot.h"])
-TESTED = ("host", "chip", "emulated")
+ROOMS = [MACHINE, SOURCES / "src" / "link"]
+PORTABLE = sorted(
+    [*(path for room in ROOMS for path in room.glob("*.[ch]*")), SOURCES / "src" / "robot.h"]
+)
+TESTED = ("host", "chip", "emulated", "link")
 FILES = [
     *PORTABLE,
     *sorted(path for name in TESTED for path in (SOURCES / name).glob("*.[ch]*")),

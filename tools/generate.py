@@ -103,6 +103,16 @@ def _parts_of(value: object) -> tuple[str, list[tuple[str, object]], str]:
     return json.dumps(value, ensure_ascii=False) if isinstance(value, str) else repr(value), [], ""
 
 
+def link_document() -> str:
+    """Return `docs/link.md` with the tables that it takes from `link/messages.py`."""
+    from tools.link_header import DOCUMENT_TABLES
+
+    text = LINK_DOCUMENT.read_text(encoding="utf-8")
+    for name, made in DOCUMENT_TABLES.items():
+        text = spliced(text, name, table(*made()))
+    return text
+
+
 def spec() -> str:
     """Return `bytecode_spec.md` with the tables that it takes from the compiler."""
     text = SPEC.read_text(encoding="utf-8")
@@ -209,6 +219,20 @@ def cpp_tables() -> str:
     return tables(COMMAND)
 
 
+def link_header() -> str:
+    """Return `messages.h`: what the C++ half of the link takes from the table of messages."""
+    from tools.link_header import header
+
+    return header(COMMAND)
+
+
+def link_tables() -> str:
+    """Return `messages.cpp`: the table that it declares."""
+    from tools.link_header import tables
+
+    return tables(COMMAND)
+
+
 def cpp_cases() -> str:
     """Return `cases.h`: what the tests in C++ expect."""
     from tools.cpp_cases import cases_header  # reads the case files
@@ -229,12 +253,17 @@ SPEC_TABLES: dict[str, Callable[[], str]] = {
 }
 
 MACHINE = ROOT / "vm_arduino" / "src" / "vm"
+LINK = ROOT / "vm_arduino" / "src" / "link"
+LINK_DOCUMENT = ROOT / "docs" / "link.md"
 
 OUTPUTS: list[tuple[Path, Callable[[], str]]] = [
     (ROBOTS / "shipped.py", shipped_robots),
     (SPEC, spec),
     (MACHINE / "bytecode.h", cpp_header),
     (MACHINE / "bytecode.cpp", cpp_tables),
+    (LINK / "messages.h", link_header),
+    (LINK / "messages.cpp", link_tables),
+    (LINK_DOCUMENT, link_document),
     (ROOT / "vm_arduino" / "test" / "cases.h", cpp_cases),
 ]
 

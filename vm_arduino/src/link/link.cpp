@@ -1,0 +1,331 @@
+#include "link.h"
+
+#include "../vm/image.h"
+#include "../vm/small.h"
+#include "../vm/verify.h"
+#include "../vm/vm.h"
+#include "port.h"
+
+namespace tiniscript {
+
+namespace {
+
+constexpr uint16_t kIsa = kIsaMajor << 8 | kIsaMinor;
+constexpr uint8_t kIsFine = static_cast<uint8_t>(Answer::kOk);
+
+uint8_t number_of(Answer answer) { return static_cast<uint8_t>(answer); }
+
+one_copy uint16_t get16(const uint8_t* bytes) {
+  return static_cast<uint16_t>(bytes[0] | static_cast<uint16_t>(bytes[1]) << 8);
+}
+
+uint32_t get32(const uint8_t* bytes) {
+  return get16(bytes) | static_cast<uint32_t>(get16(bytes + 2)) << 16;
+}
+
+bool is_latched() { return port_condition().state >= State::kStopped; }
+
+bool holds_nothing() { return port_condition().saved == Saved::kNothing; }
+
+// SI or SB, and no bit that means nothing.
+bool is_mode(uint8_t mode) {
+  return (mode & kStartBits) < kStartPing && (mode & ~(kStartBits | kRun | kSave | kDetached)) == 0;
+}
+
+bool may_start(uint8_t mode) { return (mode & (kRun | kStartBits)) != kRun || !is_latched(); }
+
+one_copy Verdict verified(const uint8_t* code, uint16_t length) {
+  const Card& card = port_card();
+  return verify(code, length, card.sensors, card.actuators);
+}
+
+// Completes an image, which has the other fields of its header and `length` bytes of code. Returns
+// its checksum.
+one_copy uint32_t seal(uint8_t* image, uint16_t length) {
+  image[kMagicAt] = 'T';
+  image[kMagicAt + 1] = 'S';
+  uint8_t* const code = image + kHeaderBytes;
+  for (uint8_t k = 0; k < kEndBytes; k++) code[length + k] = static_cast<uint8_t>(Op::kEnd);
+  const uint32_t crc = crc32(crc32(0, image, kChecksumAt), code, length);
+  uint32_t rest = crc;
+  for (uint8_t k = kChecksumAt; k < kHeaderBytes; k++) {
+    image[k] = static_cast<uint8_t>(rest);
+    rest >>= 8;
+  }
+  return crc;
+}
+
+}  // namespace
+
+void Link::begin(Receiver* receiver, uint8_t epoch) {
+  receiver_ = receiver;
+  epoch_ = epoch;
+}
+
+void Link::tick(uint32_t now_ms) {
+  now_ms_ = now_ms;
+  if (stops_ != receiver_->stops()) {
+    stops_ = receiver_->stops();
+    port_stop(0);
+    stopped(Cause::kSequence);
+  }
+  // an answer that is due first
+  if ((due_ & (kDueReply | kDueHint)) == 0 && receiver_->item() != Item::kNone) hear(now_ms);
+  const Condition& condition = port_condition();
+  if (is_tethered_ && condition.state == State::kRunning && condition.run == tethered_run_ &&
+      now_ms - heard_ms_ >= kTetherMs) {
+    port_stop(static_cast<uint8_t>(LinkFault::kLinkLost));
+    faulted();
+  }
+  if (left_ == 0) send();
+}
+
+bool Link::next(uint8_t* byte) {
+  if (left_ == 0) return false;
+  left_ = static_cast<uint8_t>(left_ - 1);
+  *byte = out_[sent_++];
+  return true;
+}
+
+void Link::hear(uint32_t now_ms) {
+  if (receiver_->item() == Item::kText) {
+    due_ |= kDueHint;
+  } else {
+    const uint8_t end = open_frame(receiver_->bytes(), receiver_->length());
+    if (end == 0) {
+      damaged_++;
+    } else if ((receiver_->bytes()[kTypeAt] & kReply) == 0) {  // else it is an echo
+      heard_ms_ = now_ms;
+      handle(end);
+      due_ |= kDueReply;
+    }
+  }
+  receiver_->release();
+}
+
+// Finds out what is answered to the frame whose payload ends at `end`.
+void Link::handle(uint8_t end) {
+  const uint8_t* const bytes = receiver_->bytes();
+  const uint8_t type = bytes[kTypeAt];
+  const uint8_t seq = bytes[kSeqAt];
+  const uint8_t epoch = bytes[kEpochAt];
+  const uint8_t* const payload = bytes + kPayloadAt;
+  const uint8_t length = static_cast<uint8_t>(end - kPayloadAt);
+  const bool is_hello = type == static_cast<uint8_t>(Message::kHello);
+
+  if (is_open_ && !is_hello && seq == last_.seq && type == last_.number && epoch == last_epoch_) {
+    said_ = last_;
+    return;
+  }
+  said_.number = type & static_cast<uint8_t>(~kSealed);
+  said_.seq = seq;
+  said_.detail = 0;
+  const bool is_next = is_open_ && epoch == epoch_ && static_cast<int8_t>(seq - last_.seq) > 0;
+  Answer refusal = Answer::kOk;
+  if ((type & kSealed) != 0) {
+    refusal = Answer::kNotSealed;
+  } else if (type == 0 || type > kLastRequest) {
+    refusal = Answer::kUnknownMessage;
+  } else if (is_hello && length != 0 && payload[kHelloMajorAt] != kLinkMajor) {
+    said_.detail = kLinkMajor;
+    refusal = Answer::kOtherLink;
+  } else if (length < flash_byte(&kRequestBytes[type - 1][0]) ||
+             length > flash_byte(&kRequestBytes[type - 1][1])) {
+    refusal = Answer::kBadLength;
+  } else if (type >= kFirstActing && !is_next) {
+    refusal = Answer::kStale;
+  }
+  said_.status = number_of(refusal);
+  if (refusal == Answer::kOk) {
+    said_.status = answer(static_cast<Message>(type), payload, length);
+  }
+  if (is_next || (is_hello && said_.status == kIsFine)) {
+    last_ = said_;
+    last_epoch_ = epoch;
+  }
+}
+
+uint8_t Link::answer(Message message, const uint8_t* payload, uint8_t length) {
+  Answer found = Answer::kOk;
+  switch (message) {
+    case Message::kHello:
+      return hello(payload);
+    case Message::kPing:
+    case Message::kStatus:
+    case Message::kShow:
+    case Message::kFault:
+    case Message::kStopped:
+    case Message::kDone:
+      break;
+    case Message::kFetch:
+      said_.detail = get16(payload + kFetchOffsetAt);
+      if (holds_nothing()) found = Answer::kNoProgram;
+      break;
+    case Message::kStop:
+      port_stop(0);
+      stopped(Cause::kMessage);
+      break;
+    case Message::kClear:
+      port_release();
+      break;
+    case Message::kStart:
+      if ((payload[kStartModeAt] & ~kDetached) != 0) {
+        found = Answer::kBadValue;
+      } else if (holds_nothing()) {
+        found = Answer::kNoProgram;
+      } else if (is_latched()) {
+        found = Answer::kLatched;
+      } else if (!port_make_way(true)) {
+        found = Answer::kBusy;
+      } else {
+        image_ = nullptr;
+        checksum_ = port_condition().program;
+        start(payload[kStartModeAt], false);
+      }
+      break;
+    case Message::kLive:
+    case Message::kProgram:
+      return take_short(message == Message::kLive, payload, length);
+    case Message::kBegin:
+      return begin_program(payload);
+    case Message::kData:
+      return add_data(payload, length);
+    case Message::kCommit:
+      return commit(payload);
+    case Message::kAbort:
+      image_ = nullptr;
+      break;
+    case Message::kName:
+      if (!port_rename(payload, length)) found = Answer::kBusy;
+      break;
+  }
+  return number_of(found);
+}
+
+uint8_t Link::hello(const uint8_t* payload) {
+  const uint32_t nonce = get32(payload + kHelloNonceAt);
+  if (!is_open_ || nonce != nonce_) renew();
+  is_open_ = true;
+  nonce_ = nonce;
+  isa_minor_ = payload[kHelloIsaMinorAt];
+  is_other_kit_ = get16(payload + kHelloKitAt) != port_card().kit;
+  is_misfit_ = payload[kHelloIsaMajorAt] != kIsaMajor || isa_minor_ > kIsaMinor;
+  return kIsFine;
+}
+
+// What was sent before is stale from now on, and so is the program on its way.
+void Link::renew() {
+  epoch_++;
+  image_ = nullptr;
+}
+
+// Says why not, and a number that belongs to it.
+uint8_t Link::refuse(Answer answer, uint16_t detail) {
+  said_.detail = detail;
+  return number_of(answer);
+}
+
+// A whole program in one frame.
+uint8_t Link::take_short(bool is_live, const uint8_t* payload, uint8_t length) {
+  const uint8_t mode = payload[kProgramModeAt];
+  const uint8_t* const code = payload + kProgramCodeAt;
+  length = static_cast<uint8_t>(length - kProgramCodeAt);
+  if (is_misfit_) return refuse(Answer::kOtherMachine, kIsa);
+  if (is_live ? mode != kRun : !is_mode(mode)) return refuse(Answer::kBadValue, 0);
+  if (!may_start(mode)) return refuse(Answer::kLatched, 0);
+
+  // what needs no device is for any kit
+  uint16_t kit = 0;
+  Verdict verdict = verify(code, length, 0, 0);
+  if (verdict.rule == Rule::kNoSuchDevice) {
+    kit = port_card().kit;
+    if (is_other_kit_) return refuse(Answer::kWrongKit, kit);
+    verdict = verified(code, length);
+  }
+  if (verdict.rule != Rule::kNone) return refuse(static_cast<Answer>(verdict.rule), verdict.offset);
+
+  uint8_t* const image = port_memory(length, is_live);
+  if (image == nullptr) return refuse(Answer::kTooLarge, port_room());
+  if (!port_make_way(is_live)) return refuse(Answer::kBusy, 0);
+  image[kIsaMajorAt] = kIsaMajor;
+  image[kIsaMinorAt] = isa_minor_;
+  image[kStartAt] = mode & kStartBits;
+  image[kNeedsAt] = 0;
+  image[kKitAt] = static_cast<uint8_t>(kit);
+  image[kKitAt + 1] = static_cast<uint8_t>(kit >> 8);
+  image[kCodeLengthAt] = length;
+  image[kCodeLengthAt + 1] = 0;
+  for (uint8_t k = 0; k < length; k++) image[kHeaderBytes + k] = code[k];
+  checksum_ = seal(image, length);
+  finish(mode, is_live);
+  return kIsFine;
+}
+
+// A longer program: nothing of the one before is lost where it is refused.
+uint8_t Link::begin_program(const uint8_t* payload) {
+  const uint8_t mode = payload[kBeginModeAt];
+  const uint8_t* const header = payload + kBeginIsaMajorAt;  // as in an image
+  const uint16_t kit = get16(payload + kBeginKitAt);
+  const uint16_t length = get16(payload + kBeginLengthAt);
+  if (header[0] != kIsaMajor || header[1] > kIsaMinor) return refuse(Answer::kOtherMachine, kIsa);
+  if (payload[kBeginNeedsAt] != 0 || !is_mode(mode) ||
+      payload[kBeginStartAt] != (mode & kStartBits)) {
+    return refuse(Answer::kBadValue, 0);
+  }
+  if (kit != 0 && kit != port_card().kit) return refuse(Answer::kWrongKit, port_card().kit);
+  if (!may_start(mode)) return refuse(Answer::kLatched, 0);
+  uint8_t* const image = port_memory(length, false);
+  if (image == nullptr) return refuse(Answer::kTooLarge, port_room());
+  if (!port_make_way(false)) return refuse(Answer::kBusy, 0);
+  image_ = image;
+  mode_ = mode;
+  length_ = length;
+  next_ = 0;
+  for (uint8_t k = kIsaMajorAt; k < kChecksumAt; k++) image[k] = header[k - kIsaMajorAt];
+  return kIsFine;
+}
+
+uint8_t Link::add_data(const uint8_t* payload, uint8_t length) {
+  length = static_cast<uint8_t>(length - kDataCodeAt);
+  if (image_ == nullptr) return refuse(Answer::kNotBegun, 0);
+  if (get16(payload + kDataOffsetAt) != next_) return kIsFine;  // the reply says where it goes on
+  if (length > length_ - next_) return refuse(Answer::kBadLength, 0);
+  uint8_t* const to = image_ + kHeaderBytes + next_;
+  for (uint8_t k = 0; k < length; k++) to[k] = payload[kDataCodeAt + k];
+  next_ = static_cast<uint16_t>(next_ + length);
+  return kIsFine;
+}
+
+uint8_t Link::commit(const uint8_t* payload) {
+  uint8_t* const image = image_;
+  if (image == nullptr) return refuse(Answer::kNotBegun, 0);
+  if (next_ != length_) return refuse(Answer::kIncomplete, next_);
+  image_ = nullptr;
+  if (!may_start(mode_)) return refuse(Answer::kLatched, 0);
+  checksum_ = seal(image, length_);
+  if (checksum_ != get32(payload + kCommitChecksumAt)) {
+    return static_cast<uint8_t>(Refusal::kDamaged);
+  }
+  // what is for no kit has no device
+  const uint8_t* const code = image + kHeaderBytes;
+  const Verdict verdict =
+      get16(image + kKitAt) == 0 ? verify(code, length_, 0, 0) : verified(code, length_);
+  if (verdict.rule != Rule::kNone) return refuse(static_cast<Answer>(verdict.rule), verdict.offset);
+  finish(mode_, false);
+  return kIsFine;
+}
+
+// The image in memory is whole and verified.
+void Link::finish(uint8_t mode, bool is_live) {
+  image_ = nullptr;
+  port_take(mode, is_live);
+  if ((mode & (kRun | kStartBits)) == kRun) start(mode, is_live);
+}
+
+void Link::start(uint8_t mode, bool is_live) {
+  port_start(is_live);
+  is_tethered_ = (mode & kDetached) == 0;
+  tethered_run_ = port_condition().run;
+}
+
+}  // namespace tiniscript

@@ -1,0 +1,117 @@
+// Answers a computer: the robot's half of the link.
+//
+// Knows what each message asks of `port.h`, and what a computer must be told. Bytes come through a
+// Receiver and go out through `next`; time comes in as `now_ms`. Nothing here waits. A request that
+// comes again is answered again and never done twice. `docs/link.md` is the contract.
+
+#ifndef TINISCRIPT_LINK_LINK_H_
+#define TINISCRIPT_LINK_LINK_H_
+
+#include <stdint.h>
+
+#include "frames.h"
+#include "messages.h"
+#include "receiver.h"
+
+namespace tiniscript {
+
+class Link {
+ public:
+  // All else is 0 at the beginning. `epoch` is any number, best another one after each reset.
+  void begin(Receiver* receiver, uint8_t epoch);
+
+  // Handles what has arrived, and sends what is due.
+  void tick(uint32_t now_ms);
+
+  // The next byte to send; false where there is none. It may be called from an interrupt.
+  bool next(uint8_t* byte);
+
+  // What the robot tells. The first three are told when there is room; a value that finds no room
+  // is not taken, and comes again.
+  void done();
+  void faulted();  // the record is in port_condition()
+  void stopped(Cause cause);
+  bool show(int32_t value, bool is_yes_no);
+
+ private:
+  // what is due, one bit each
+  static constexpr uint8_t kDueReply = 1;
+  static constexpr uint8_t kDueStopped = 2;
+  static constexpr uint8_t kDueFault = 4;
+  static constexpr uint8_t kDueDone = 8;
+  static constexpr uint8_t kDueHint = 16;
+
+  // An answer before it is written. The detail follows a status that is not OK.
+  struct Said {
+    uint8_t number;
+    uint8_t seq;
+    uint8_t status;
+    uint16_t detail;
+  };
+
+  void hear(uint32_t now_ms);
+  void handle(uint8_t end);
+  uint8_t answer(Message message, const uint8_t* payload, uint8_t length);
+  uint8_t hello(const uint8_t* payload);
+  uint8_t take_short(bool is_live, const uint8_t* payload, uint8_t length);
+  uint8_t begin_program(const uint8_t* payload);
+  uint8_t add_data(const uint8_t* payload, uint8_t length);
+  uint8_t commit(const uint8_t* payload);
+  void finish(uint8_t mode, bool is_live);
+  void start(uint8_t mode, bool is_live);
+  uint8_t refuse(Answer answer, uint16_t detail);
+  bool is_listened_to() const;
+  void renew();
+
+  // writing
+  void send();
+  void hint();
+  void reply();
+  void describe();
+  void receipt();
+  void fault_record();
+  void fetch();
+  void begin_frame(uint8_t type, uint8_t seq);
+  void begin_event(Message message);
+  void put(uint8_t byte);
+  void put16(uint16_t value);
+  void put32(uint32_t value);
+  void close();
+  void hand_over();
+
+  Receiver* receiver_;
+  uint32_t now_ms_;
+  uint32_t heard_ms_;  // when the last valid frame came
+  uint32_t nonce_;     // of the session
+  uint8_t epoch_;
+  uint8_t stops_;      // that are handled
+  uint8_t damaged_;    // frames
+  uint8_t due_;        // what there is to tell
+  uint8_t isa_minor_;  // of the computer's programs
+  bool is_open_;       // there is a session
+  bool is_misfit_;     // its programs are for another machine,
+  bool is_other_kit_;  // or for another kit
+  bool is_tethered_;   // the run `tethered_run_`, that is
+  uint8_t tethered_run_;
+  uint8_t ended_run_;
+  Cause cause_;
+  uint8_t event_seq_;
+  uint8_t last_epoch_;
+  Said last_;          // what was answered last of what is numbered
+  Said said_;          // what is answered now
+  uint32_t checksum_;  // of the image that a receipt is about
+  // the longer program that is on its way
+  uint8_t* image_;  // or nullptr
+  uint8_t mode_;
+  uint16_t length_;
+  uint16_t next_;
+  // what goes out
+  uint8_t size_;           // of what is being written
+  uint8_t sent_;           // of what is written
+  volatile uint8_t left_;  // of that
+  uint8_t out_[kWireBytes];
+};
+
+}  // namespace tiniscript
+
+#endif  // TINISCRIPT_LINK_LINK_H_

@@ -1,0 +1,211 @@
+// What the link tells: replies and events, field by field as in the table of messages.
+
+#include "../vm/bytecode.h"
+#include "../vm/flash.h"
+#include "../vm/small.h"
+#include "link.h"
+#include "port.h"
+
+namespace tiniscript {
+
+namespace {
+
+// For whoever sends a line of text. The 0x00 at its end begins an item: a frame may follow.
+const uint8_t kHint[] in_flash = "No text yet: use tsc. / Aun no hay texto: usa tsc.\r\n";
+
+static_assert(sizeof kHint <= kWireBytes, "it is sent like a frame");
+
+template <class Type>
+uint8_t byte_of(Type value) {
+  return static_cast<uint8_t>(value);
+}
+
+}  // namespace
+
+void Link::done() {
+  ended_run_ = port_condition().run;
+  due_ |= kDueDone;
+}
+
+void Link::faulted() {
+  renew();
+  ended_run_ = port_condition().run;
+  due_ |= kDueFault;
+}
+
+void Link::stopped(Cause cause) {
+  renew();
+  cause_ = cause;
+  due_ |= kDueStopped;
+}
+
+bool Link::show(int32_t value, bool is_yes_no) {
+  if (!is_listened_to()) return true;
+  if (left_ != 0 || due_ != 0) return false;
+  begin_event(Message::kShow);
+  put32(static_cast<uint32_t>(value));
+  put(is_yes_no);
+  close();
+  return true;
+}
+
+// Nobody reads what a robot tells that runs alone.
+bool Link::is_listened_to() const { return is_open_ && now_ms_ - heard_ms_ < kListenMs; }
+
+// Sends one thing of what is due. Whoever has sent the stop sequence listens.
+void Link::send() {
+  if (!is_listened_to()) due_ &= static_cast<uint8_t>(~(kDueFault | kDueDone));
+  if ((due_ & kDueStopped) != 0) {
+    due_ &= static_cast<uint8_t>(~kDueStopped);
+    begin_event(Message::kStopped);
+    put(byte_of(cause_));
+  } else if ((due_ & kDueReply) != 0) {
+    due_ &= static_cast<uint8_t>(~kDueReply);
+    reply();
+  } else if ((due_ & kDueFault) != 0) {
+    due_ &= static_cast<uint8_t>(~kDueFault);
+    begin_event(Message::kFault);
+    put(ended_run_);
+    fault_record();
+  } else if ((due_ & kDueDone) != 0) {
+    due_ &= static_cast<uint8_t>(~kDueDone);
+    begin_event(Message::kDone);
+    put(ended_run_);
+  } else if ((due_ & kDueHint) != 0) {
+    due_ &= static_cast<uint8_t>(~kDueHint);
+    for (size_ = 0; size_ < sizeof kHint; size_++) out_[size_] = flash_byte(kHint + size_);
+    hand_over();
+    return;
+  } else {
+    return;
+  }
+  close();
+}
+
+void Link::reply() {
+  begin_frame(said_.number | kReply, said_.seq);
+  put(said_.status);
+  if (said_.status != byte_of(Answer::kOk)) {
+    put16(said_.detail);
+    return;
+  }
+  const Condition& condition = port_condition();
+  switch (static_cast<Message>(said_.number)) {
+    case Message::kHello:
+      describe();
+      break;
+    case Message::kPing:
+      put(byte_of(condition.state));
+      put(condition.run);
+      break;
+    case Message::kStatus:
+      put(byte_of(condition.state));
+      put(condition.run);
+      put32(condition.program);
+      put16(condition.length);
+      put(condition.slot);
+      put(byte_of(condition.saved));
+      fault_record();
+      put(byte_of(damaged_ + receiver_->damaged()));
+      put(receiver_->dropped());
+      put32(now_ms_);
+      break;
+    case Message::kFetch:
+      fetch();
+      break;
+    case Message::kStart:
+    case Message::kLive:
+    case Message::kProgram:
+    case Message::kCommit:
+      put32(checksum_);
+      put(condition.run);
+      put(condition.slot);
+      put(byte_of(condition.saved));
+      break;
+    case Message::kBegin:
+    case Message::kData:
+      put16(next_);
+      break;
+    case Message::kStop:
+    case Message::kClear:
+    case Message::kAbort:
+    case Message::kName:
+    case Message::kShow:
+    case Message::kFault:
+    case Message::kStopped:
+    case Message::kDone:
+      break;
+  }
+}
+
+void Link::describe() {
+  const Card& card = port_card();
+  const Condition& condition = port_condition();
+  put(kLinkMajor);
+  put(kLinkMinor);
+  put(kIsaMajor);
+  put(kIsaMinor);
+  put16(card.kit);
+  put32(card.id);
+  for (uint8_t k = 0; k < sizeof card.nonce; k++) put(card.nonce[k]);
+  put(kLargestFrame);
+  put(kWindow);
+  put16(card.features);
+  put16(port_room());
+  put(byte_of(condition.state));
+  put32(condition.program);
+  put16(condition.length);
+  fault_record();
+  put(byte_of(card.reset));
+  for (uint8_t k = 0; k < card.name_length; k++) put(card.name[k]);
+}
+
+void Link::fault_record() {
+  const Condition& condition = port_condition();
+  put(condition.fault);
+  put16(condition.fault_at);
+  put32(condition.fault_program);
+}
+
+void Link::fetch() {
+  const uint16_t whole = static_cast<uint16_t>(kHeaderBytes + port_condition().length);
+  put16(whole);
+  for (uint16_t at = said_.detail; at < whole && size_ < kPayloadAt + kPayloadBytes; at++) {
+    put(port_image_byte(at));
+  }
+}
+
+void Link::begin_event(Message message) { begin_frame(byte_of(message) | kReply, event_seq_++); }
+
+void Link::begin_frame(uint8_t type, uint8_t seq) {
+  out_[kTypeAt] = type;
+  out_[kSeqAt] = seq;
+  out_[kEpochAt] = epoch_;
+  size_ = kPayloadAt;
+}
+
+one_copy void Link::put(uint8_t byte) { out_[size_++] = byte; }
+
+one_copy void Link::put16(uint16_t value) {
+  put(byte_of(value));
+  put(byte_of(value >> 8));
+}
+
+one_copy void Link::put32(uint32_t value) {
+  put16(static_cast<uint16_t>(value));
+  put16(static_cast<uint16_t>(value >> 16));
+}
+
+void Link::close() {
+  size_ = close_frame(out_, size_);
+  hand_over();
+}
+
+// An interrupt may take it from here on: all of it is written by then.
+void Link::hand_over() {
+  sent_ = 0;
+  asm volatile("" ::: "memory");
+  left_ = size_;
+}
+
+}  // namespace tiniscript
