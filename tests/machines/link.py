@@ -1,0 +1,105 @@
+"""The robot's half of the link in C++ on this computer, with the sanitizers of the compiler.
+
+Builds `vm_arduino/link` with g++ and talks to one process of it, as `host` does for the machine.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import subprocess
+import tempfile
+from collections.abc import Sequence
+from functools import lru_cache
+from pathlib import Path
+from struct import pack
+from typing import NamedTuple
+
+from tests.machines.host import FLAGS, SOURCES, WARNINGS, Process, missing
+
+__all__ = ("CppLink", "Step", "built", "cpp_link", "missing")
+
+
+class Step(NamedTuple):
+    """What the robot has sent, and what it has done, a line each."""
+
+    sent: bytes
+    did: list[str]
+
+
+class CppLink(Process):
+    """A robot with the C++ link. `sources` is a folder like `vm_arduino`."""
+
+    def __init__(self, sources: Path = SOURCES) -> None:
+        super().__init__([built(sources)], "the C++ link")
+
+    def begin(
+        self,
+        room: int = 430,
+        kit: int = 0x231B,
+        sensors: int = 3,
+        actuators: int = 0,
+        epoch: int = 9,
+    ) -> None:
+        """Switch a robot on."""
+        self.ask(b"B", pack("<HHBBB", room, kit, sensors, actuators, epoch))
+
+    def step(self, now_ms: int, data: bytes = b"", is_late: bool = False) -> Step:
+        """Bytes arrive; where the robot is late it looks at none of them before the last."""
+        answer = self.ask(b"S", pack("<IBI", now_ms, is_late, len(data)) + data)
+        sent, rest = _text(answer)
+        did, _ = _text(rest)
+        return Step(sent, did.decode().splitlines())
+
+    def happens(self, letter: str, value: int = 0) -> bool:
+        """Something happens to the robot: done, fault, show, button, run by the button, wait."""
+        return bool(self.ask(b"R", letter.encode() + pack("<I", value & 0xFFFFFFFF))[0])
+
+    def items(self, stream: Sequence[tuple[int, int]], held: int = 0) -> list[str]:
+        """Return what a receiver finds in times and bytes, as `items_of` says it."""
+        parts = b"".join(pack("<HB", now_ms & 0xFFFF, byte) for now_ms, byte in stream)
+        found, _ = _text(self.ask(b"I", pack("<BI", held, len(stream)) + parts))
+        return found.decode().splitlines()
+
+    def held(self) -> bytes:
+        """Return the image that the robot holds."""
+        return _text(self.ask(b"M", b""))[0]
+
+
+def _text(answer: bytes) -> tuple[bytes, bytes]:
+    length = int.from_bytes(answer[:4], "little")
+    return answer[4 : 4 + length], answer[4 + length :]
+
+
+def built(sources: Path) -> Path:
+    """Return the program made from `sources`; what was made before from the same is used again."""
+    inputs = sorted(
+        path
+        for folder in ("src/vm", "src/link", "link")
+        for path in (sources / folder).glob("*")
+        if path.suffix in (".h", ".cpp")
+    )
+    inputs.append(sources / "host" / "wire.h")
+    # the machine is not asked here, only its verifier and its checksum
+    left_out = ("vm.cpp", "vm_instructions.cpp", "number.cpp")
+    key = hashlib.sha256(repr((WARNINGS, FLAGS)).encode())
+    for path in inputs:
+        key.update(path.name.encode() + path.read_bytes())
+    folder = Path(tempfile.gettempdir()) / f"tiniscript-host-{os.getuid()}"
+    program = folder / f"link-{key.hexdigest()[:16]}"
+    if not program.exists():
+        folder.mkdir(mode=0o700, exist_ok=True)
+        own = program.with_suffix(f".{os.getpid()}")
+        code = [str(each) for each in inputs if each.suffix == ".cpp" and each.name not in left_out]
+        done = subprocess.run(
+            ["g++", *FLAGS, *WARNINGS, *code, "-o", str(own)], capture_output=True, text=True
+        )
+        assert done.returncode == 0, f"g++ refuses the C++ link:\n{done.stderr[:4000]}"
+        own.replace(program)
+    return program
+
+
+@lru_cache(maxsize=1)
+def cpp_link() -> CppLink:
+    """Return the process that all tests of a worker share."""
+    return CppLink()
