@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from itertools import pairwise
 
 import pytest
 
@@ -118,10 +119,11 @@ def test_some_sentences() -> None:
 
 # -- the session ----------------------------------------------------------------------------------
 
-DESCRIPTION = {
+DESCRIPTION: dict[str, int | bytes] = {
     "major": 1, "minor": 0, "isa_major": 1, "isa_minor": 0, "kit": KIT, "id": 7, "nonce": 8,
-    "largest": 63, "window": 1, "features": 0, "room": 430, "state": 0, "program": 0, "length": 0,
-    "fault": 0, "fault_at": 0, "fault_program": 0, "reset": 1, "name": b"Tini",
+    "largest": 63, "window": 1, "features": 0, "room": 430, "state": 0, "run": 0, "program": 0,
+    "length": 0, "slot": 0, "saved": 0, "fault": 0, "fault_at": 0, "fault_program": 0,
+    "reset": 1, "name": b"Tini",
 }  # fmt: skip
 
 
@@ -178,7 +180,7 @@ def test_times_of_retries_come_from_the_baud_rate(baud: int, first: int) -> None
     times = [at for at, _ in sent]
     # a byte more, the 0x00 before, from the second one on is no matter
     assert abs(times[0] - first) <= 2
-    gaps = [later - earlier for earlier, later in zip(times, times[1:], strict=False)]
+    gaps = [later - earlier for earlier, later in pairwise(times)]
     for k, gap in enumerate(gaps[:5]):
         assert abs(gap - times[0] - 80 * (k + 1)) <= 2
     assert set(gaps[5:]) == {gaps[5]}

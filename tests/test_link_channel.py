@@ -261,7 +261,7 @@ def one_upload(cpp: CppLink, seed: int) -> str:
         assert cpp.held() == new, f"seed {seed}: the upload says done, the robot has another one"
     assert cpp.held() in (old, new), f"seed {seed}: neither the old program nor the new one"
     names = [f"TAKE {unpack(image).checksum:08x}" for image in (new, old)]
-    assert set(row for row in world.did if row.startswith("TAKE")) <= set(names)
+    assert {row for row in world.did if row.startswith("TAKE")} <= set(names)
     starts = sum(row.startswith("START") for row in world.did)
     assert starts == 1 if is_done else starts <= 1, f"seed {seed}: started {starts} times"
 

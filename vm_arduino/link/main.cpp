@@ -26,12 +26,11 @@ void answer_begin(Reader* request) {
   port = SimulatedPort();
   port.room = request->u16();
   port.card.kit = request->u16();
-  port.card.sensors = request->u8();
-  port.card.actuators = request->u8();
+  port.equipment.sensors = request->u8();
+  port.equipment.actuators = request->u8();
   port.card.id = 0x54696e69;
   port.card.reset = Reset::kPower;
-  for (uint8_t k = 0; k < sizeof port.card.nonce; k++)
-    port.card.nonce[k] = static_cast<uint8_t>(k + 1);
+  port.card.nonce = 0x08070605;
   const uint8_t name[] = {'T', 'i', 'n', 'i'};
   port_rename(name, sizeof name);
   receiver = Receiver();
@@ -53,11 +52,11 @@ void answer_step(Reader* request, Writer* answer) {
       port.log += "PINS OFF\n";
     }
     if (is_late && k < data.length) continue;
-    link_half.tick(now_ms);
+    link_half.tick(static_cast<uint16_t>(now_ms));
     uint8_t byte = 0;
     for (uint8_t turns = 0; turns < 8; turns++) {
       while (link_half.next(&byte)) sent += static_cast<char>(byte);
-      link_half.tick(now_ms);
+      link_half.tick(static_cast<uint16_t>(now_ms));
     }
   }
   answer->text(sent);

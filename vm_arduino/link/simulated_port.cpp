@@ -46,6 +46,7 @@ std::string text_of(const uint8_t* image) {
 
 namespace tiniscript {
 
+const Equipment& port_equipment() { return port.equipment; }
 const Card& port_card() { return port.card; }
 const Condition& port_condition() { return port.condition; }
 uint16_t port_room() { return port.room; }
@@ -104,8 +105,8 @@ uint8_t port_image_byte(uint16_t offset) { return static_cast<uint8_t>(port.held
 
 bool port_rename(const uint8_t* name, uint8_t length) {
   if (port.is_busy) return false;
-  for (uint8_t k = 0; k < length; k++) port.card.name[k] = name[k];
-  port.card.name_length = length;
+  for (uint8_t k = 0; k < length; k++) port.equipment.name[k] = name[k];
+  port.equipment.name_length = length;
   say("NAME of %u bytes", length);
   return true;
 }

@@ -10,6 +10,7 @@
 
 struct SimulatedPort {
   tiniscript::Card card = {};
+  tiniscript::Equipment equipment = {};
   tiniscript::Condition condition = {};
   uint16_t room = 0;
   bool is_busy = false;              // it saves, and cannot make way

@@ -65,7 +65,7 @@ class Message(NamedTuple):
     meaning: str
 
 
-KINDS = {"u8": "B", "u16": "H", "u32": "I", "u64": "Q", "i32": "i"}
+KINDS = {"u8": "B", "u16": "H", "u32": "I", "i32": "i"}
 
 
 def _fields(text: str) -> tuple[Field, ...]:
@@ -86,20 +86,21 @@ def _message(number: int, name: str, acts: bool, request: str, reply: str, meani
     return Message(number, name, acts, _fields(request), _fields(reply), meaning)
 
 
+# These are records in the robot's memory too: `port.h`.
+_CARD = "kit:u16 id:u32 nonce:u32 features:u16 reset:u8"
+_CONDITION = "state:u8 run:u8 program:u32 length:u16 slot:u8 saved:u8 fault:u8 fault_at:u16 fault_program:u32"
 _RECEIPT = "program:u32 run:u8 slot:u8 saved:u8"
 
 # fmt: off
 MESSAGES = (
     # anyone may send these at any time
     _message(1, "HELLO", False, "major:u8 minor:u8 isa_major:u8 isa_minor:u8 kit:u16 nonce:u32",
-             "major:u8 minor:u8 isa_major:u8 isa_minor:u8 kit:u16 id:u32 nonce:u64 largest:u8 window:u8 "
-             "features:u16 room:u16 state:u8 program:u32 length:u16 fault:u8 fault_at:u16 "
-             "fault_program:u32 reset:u8 name:rest=0..16",
+             "major:u8 minor:u8 isa_major:u8 isa_minor:u8 largest:u8 window:u8 " + _CARD + " room:u16 "
+             + _CONDITION + " name:rest=0..16",
              "Begins a session. The same `nonce` again is the same session."),
     _message(2, "PING", False, "", "state:u8 run:u8", "Are you there? Also the heartbeat."),
     _message(3, "STATUS", False, "",
-             "state:u8 run:u8 program:u32 length:u16 slot:u8 saved:u8 fault:u8 fault_at:u16 "
-             "fault_program:u32 damaged:u8 dropped:u8 uptime_ms:u32",
+             _CONDITION + " damaged:u8 dropped:u8",
              "What the robot does, its last fault, and how well it hears."),
     _message(4, "FETCH", False, "offset:u16", "length:u16 bytes:rest=0..53",
              "The stored program's image, from `offset` on. `length` is that of all of it."),

@@ -11,6 +11,7 @@ namespace tiniscript {
 namespace {
 
 constexpr uint16_t kIsa = kIsaMajor << 8 | kIsaMinor;
+constexpr uint8_t kFirstAt = kIsaMajorAt;  // of what BEGIN brings of a header
 constexpr uint8_t kIsFine = static_cast<uint8_t>(Answer::kOk);
 
 uint8_t number_of(Answer answer) { return static_cast<uint8_t>(answer); }
@@ -27,32 +28,11 @@ bool is_latched() { return port_condition().state >= State::kStopped; }
 
 bool holds_nothing() { return port_condition().saved == Saved::kNothing; }
 
-// SI or SB, and no bit that means nothing.
-bool is_mode(uint8_t mode) {
-  return (mode & kStartBits) < kStartPing && (mode & ~(kStartBits | kRun | kSave | kDetached)) == 0;
-}
-
 bool may_start(uint8_t mode) { return (mode & (kRun | kStartBits)) != kRun || !is_latched(); }
 
 one_copy Verdict verified(const uint8_t* code, uint16_t length) {
-  const Card& card = port_card();
-  return verify(code, length, card.sensors, card.actuators);
-}
-
-// Completes an image, which has the other fields of its header and `length` bytes of code. Returns
-// its checksum.
-one_copy uint32_t seal(uint8_t* image, uint16_t length) {
-  image[kMagicAt] = 'T';
-  image[kMagicAt + 1] = 'S';
-  uint8_t* const code = image + kHeaderBytes;
-  for (uint8_t k = 0; k < kEndBytes; k++) code[length + k] = static_cast<uint8_t>(Op::kEnd);
-  const uint32_t crc = crc32(crc32(0, image, kChecksumAt), code, length);
-  uint32_t rest = crc;
-  for (uint8_t k = kChecksumAt; k < kHeaderBytes; k++) {
-    image[k] = static_cast<uint8_t>(rest);
-    rest >>= 8;
-  }
-  return crc;
+  const Equipment& equipment = port_equipment();
+  return verify(code, length, equipment.sensors, equipment.actuators);
 }
 
 }  // namespace
@@ -62,18 +42,23 @@ void Link::begin(Receiver* receiver, uint8_t epoch) {
   epoch_ = epoch;
 }
 
-void Link::tick(uint32_t now_ms) {
+void Link::tick(uint16_t now_ms) { near(this)->turn(now_ms); }
+
+void Link::turn(uint16_t now_ms) {
+  const uint16_t passed = static_cast<uint16_t>(now_ms - now_ms_);
   now_ms_ = now_ms;
+  quiet_ms_ =
+      passed < kListenMs - quiet_ms_ ? static_cast<uint16_t>(quiet_ms_ + passed) : kListenMs;
   if (stops_ != receiver_->stops()) {
     stops_ = receiver_->stops();
     port_stop(0);
     stopped(Cause::kSequence);
   }
   // an answer that is due first
-  if ((due_ & (kDueReply | kDueHint)) == 0 && receiver_->item() != Item::kNone) hear(now_ms);
+  if ((due_ & (kDueReply | kDueHint)) == 0 && receiver_->item() != Item::kNone) hear();
   const Condition& condition = port_condition();
-  if (is_tethered_ && condition.state == State::kRunning && condition.run == tethered_run_ &&
-      now_ms - heard_ms_ >= kTetherMs) {
+  if (quiet_ms_ >= kTetherMs && is_tethered_ && condition.state == State::kRunning &&
+      condition.run == tethered_run_) {
     port_stop(static_cast<uint8_t>(LinkFault::kLinkLost));
     faulted();
   }
@@ -87,7 +72,7 @@ bool Link::next(uint8_t* byte) {
   return true;
 }
 
-void Link::hear(uint32_t now_ms) {
+void Link::hear() {
   if (receiver_->item() == Item::kText) {
     due_ |= kDueHint;
   } else {
@@ -95,7 +80,7 @@ void Link::hear(uint32_t now_ms) {
     if (end == 0) {
       damaged_++;
     } else if ((receiver_->bytes()[kTypeAt] & kReply) == 0) {  // else it is an echo
-      heard_ms_ = now_ms;
+      quiet_ms_ = 0;
       handle(end);
       due_ |= kDueReply;
     }
@@ -207,9 +192,9 @@ uint8_t Link::hello(const uint8_t* payload) {
   if (!is_open_ || nonce != nonce_) renew();
   is_open_ = true;
   nonce_ = nonce;
-  isa_minor_ = payload[kHelloIsaMinorAt];
+  isa_[0] = payload[kHelloIsaMajorAt];
+  isa_[1] = payload[kHelloIsaMinorAt];
   is_other_kit_ = get16(payload + kHelloKitAt) != port_card().kit;
-  is_misfit_ = payload[kHelloIsaMajorAt] != kIsaMajor || isa_minor_ > kIsaMinor;
   return kIsFine;
 }
 
@@ -225,64 +210,77 @@ uint8_t Link::refuse(Answer answer, uint16_t detail) {
   return number_of(answer);
 }
 
+// Whether the robot may take a program at all. `header` is that of its image, from the instruction
+// set on.
+uint8_t Link::check(uint8_t mode, const uint8_t* header) {
+  if (header[kIsaMajorAt - kFirstAt] != kIsaMajor || header[kIsaMinorAt - kFirstAt] > kIsaMinor) {
+    return refuse(Answer::kOtherMachine, kIsa);
+  }
+  const uint8_t start_mode = mode & kStartBits;
+  if (header[kNeedsAt - kFirstAt] != 0 || header[kStartAt - kFirstAt] != start_mode ||
+      start_mode >= kStartPing || (mode & ~(kStartBits | kRun | kSave | kDetached)) != 0) {
+    return refuse(Answer::kBadValue, 0);
+  }
+  const uint16_t kit = get16(header + kKitAt - kFirstAt);
+  if (kit != 0 && kit != port_card().kit) return refuse(Answer::kWrongKit, port_card().kit);
+  if (!may_start(mode)) return refuse(Answer::kLatched, 0);
+  return kIsFine;
+}
+
+// Begins an image. Where it is refused, nothing of the one before is lost.
+uint8_t Link::make_room(uint8_t mode, const uint8_t* header, bool is_live) {
+  const uint16_t length = get16(header + kCodeLengthAt - kFirstAt);
+  uint8_t* const image = port_memory(length, is_live);
+  if (image == nullptr) return refuse(Answer::kTooLarge, port_room());
+  if (!port_make_way(is_live)) return refuse(Answer::kBusy, 0);
+  image_ = image;
+  mode_ = mode;
+  length_ = length;
+  next_ = 0;
+  for (uint8_t k = kFirstAt; k < kChecksumAt; k++) image[k] = *header++;
+  return kIsFine;
+}
+
+void Link::append(const uint8_t* code, uint8_t length) {
+  uint8_t* to = image_ + kHeaderBytes + next_;
+  next_ = static_cast<uint16_t>(next_ + length);
+  while (length-- != 0) *to++ = *code++;
+}
+
 // A whole program in one frame.
 uint8_t Link::take_short(bool is_live, const uint8_t* payload, uint8_t length) {
   const uint8_t mode = payload[kProgramModeAt];
   const uint8_t* const code = payload + kProgramCodeAt;
   length = static_cast<uint8_t>(length - kProgramCodeAt);
-  if (is_misfit_) return refuse(Answer::kOtherMachine, kIsa);
-  if (is_live ? mode != kRun : !is_mode(mode)) return refuse(Answer::kBadValue, 0);
-  if (!may_start(mode)) return refuse(Answer::kLatched, 0);
+  if (is_live && mode != kRun) return refuse(Answer::kBadValue, 0);
+  uint8_t header[kChecksumAt - kFirstAt] = {
+      isa_[0], isa_[1], static_cast<uint8_t>(mode & kStartBits), 0, 0, 0, length, 0};
+  const uint8_t refusal = check(mode, header);
+  if (refusal != kIsFine) return refusal;
 
   // what needs no device is for any kit
-  uint16_t kit = 0;
   Verdict verdict = verify(code, length, 0, 0);
   if (verdict.rule == Rule::kNoSuchDevice) {
-    kit = port_card().kit;
+    const uint16_t kit = port_card().kit;
     if (is_other_kit_) return refuse(Answer::kWrongKit, kit);
+    header[kKitAt - kFirstAt] = static_cast<uint8_t>(kit);
+    header[kKitAt - kFirstAt + 1] = static_cast<uint8_t>(kit >> 8);
     verdict = verified(code, length);
   }
   if (verdict.rule != Rule::kNone) return refuse(static_cast<Answer>(verdict.rule), verdict.offset);
-
-  uint8_t* const image = port_memory(length, is_live);
-  if (image == nullptr) return refuse(Answer::kTooLarge, port_room());
-  if (!port_make_way(is_live)) return refuse(Answer::kBusy, 0);
-  image[kIsaMajorAt] = kIsaMajor;
-  image[kIsaMinorAt] = isa_minor_;
-  image[kStartAt] = mode & kStartBits;
-  image[kNeedsAt] = 0;
-  image[kKitAt] = static_cast<uint8_t>(kit);
-  image[kKitAt + 1] = static_cast<uint8_t>(kit >> 8);
-  image[kCodeLengthAt] = length;
-  image[kCodeLengthAt + 1] = 0;
-  for (uint8_t k = 0; k < length; k++) image[kHeaderBytes + k] = code[k];
-  checksum_ = seal(image, length);
-  finish(mode, is_live);
+  const uint8_t found = make_room(mode, header, is_live);
+  if (found != kIsFine) return found;
+  append(code, length);
+  seal();
+  finish(is_live);
   return kIsFine;
 }
 
-// A longer program: nothing of the one before is lost where it is refused.
 uint8_t Link::begin_program(const uint8_t* payload) {
   const uint8_t mode = payload[kBeginModeAt];
-  const uint8_t* const header = payload + kBeginIsaMajorAt;  // as in an image
-  const uint16_t kit = get16(payload + kBeginKitAt);
-  const uint16_t length = get16(payload + kBeginLengthAt);
-  if (header[0] != kIsaMajor || header[1] > kIsaMinor) return refuse(Answer::kOtherMachine, kIsa);
-  if (payload[kBeginNeedsAt] != 0 || !is_mode(mode) ||
-      payload[kBeginStartAt] != (mode & kStartBits)) {
-    return refuse(Answer::kBadValue, 0);
-  }
-  if (kit != 0 && kit != port_card().kit) return refuse(Answer::kWrongKit, port_card().kit);
-  if (!may_start(mode)) return refuse(Answer::kLatched, 0);
-  uint8_t* const image = port_memory(length, false);
-  if (image == nullptr) return refuse(Answer::kTooLarge, port_room());
-  if (!port_make_way(false)) return refuse(Answer::kBusy, 0);
-  image_ = image;
-  mode_ = mode;
-  length_ = length;
-  next_ = 0;
-  for (uint8_t k = kIsaMajorAt; k < kChecksumAt; k++) image[k] = header[k - kIsaMajorAt];
-  return kIsFine;
+  const uint8_t* const header = payload + kBeginIsaMajorAt;
+  const uint8_t refusal = check(mode, header);
+  return refusal != kIsFine ? refusal : make_room(mode, header, false);
 }
 
 uint8_t Link::add_data(const uint8_t* payload, uint8_t length) {
@@ -290,9 +288,7 @@ uint8_t Link::add_data(const uint8_t* payload, uint8_t length) {
   if (image_ == nullptr) return refuse(Answer::kNotBegun, 0);
   if (get16(payload + kDataOffsetAt) != next_) return kIsFine;  // the reply says where it goes on
   if (length > length_ - next_) return refuse(Answer::kBadLength, 0);
-  uint8_t* const to = image_ + kHeaderBytes + next_;
-  for (uint8_t k = 0; k < length; k++) to[k] = payload[kDataCodeAt + k];
-  next_ = static_cast<uint16_t>(next_ + length);
+  append(payload + kDataCodeAt, length);
   return kIsFine;
 }
 
@@ -300,9 +296,8 @@ uint8_t Link::commit(const uint8_t* payload) {
   uint8_t* const image = image_;
   if (image == nullptr) return refuse(Answer::kNotBegun, 0);
   if (next_ != length_) return refuse(Answer::kIncomplete, next_);
+  seal();
   image_ = nullptr;
-  if (!may_start(mode_)) return refuse(Answer::kLatched, 0);
-  checksum_ = seal(image, length_);
   if (checksum_ != get32(payload + kCommitChecksumAt)) {
     return static_cast<uint8_t>(Refusal::kDamaged);
   }
@@ -311,15 +306,30 @@ uint8_t Link::commit(const uint8_t* payload) {
   const Verdict verdict =
       get16(image + kKitAt) == 0 ? verify(code, length_, 0, 0) : verified(code, length_);
   if (verdict.rule != Rule::kNone) return refuse(static_cast<Answer>(verdict.rule), verdict.offset);
-  finish(mode_, false);
+  finish(false);
   return kIsFine;
 }
 
+// Completes the image: it has the other fields of its header, and its code.
+void Link::seal() {
+  uint8_t* const image = image_;
+  image[kMagicAt] = 'T';
+  image[kMagicAt + 1] = 'S';
+  uint8_t* const code = image + kHeaderBytes;
+  for (uint8_t k = 0; k < kEndBytes; k++) code[length_ + k] = static_cast<uint8_t>(Op::kEnd);
+  checksum_ = crc32(crc32(0, image, kChecksumAt), code, length_);
+  uint32_t rest = checksum_;
+  for (uint8_t k = kChecksumAt; k < kHeaderBytes; k++) {
+    image[k] = static_cast<uint8_t>(rest);
+    rest >>= 8;
+  }
+}
+
 // The image in memory is whole and verified.
-void Link::finish(uint8_t mode, bool is_live) {
+void Link::finish(bool is_live) {
   image_ = nullptr;
-  port_take(mode, is_live);
-  if ((mode & (kRun | kStartBits)) == kRun) start(mode, is_live);
+  port_take(mode_, is_live);
+  if ((mode_ & (kRun | kStartBits)) == kRun) start(mode_, is_live);
 }
 
 void Link::start(uint8_t mode, bool is_live) {

@@ -20,8 +20,9 @@ class Link {
   // All else is 0 at the beginning. `epoch` is any number, best another one after each reset.
   void begin(Receiver* receiver, uint8_t epoch);
 
-  // Handles what has arrived, and sends what is due.
-  void tick(uint32_t now_ms);
+  // Handles what has arrived, and sends what is due: at least once a minute, for the lower bits of
+  // a time are enough.
+  void tick(uint16_t now_ms);
 
   // The next byte to send; false where there is none. It may be called from an interrupt.
   bool next(uint8_t* byte);
@@ -49,7 +50,8 @@ class Link {
     uint16_t detail;
   };
 
-  void hear(uint32_t now_ms);
+  void turn(uint16_t now_ms);
+  void hear();
   void handle(uint8_t end);
   uint8_t answer(Message message, const uint8_t* payload, uint8_t length);
   uint8_t hello(const uint8_t* payload);
@@ -57,9 +59,13 @@ class Link {
   uint8_t begin_program(const uint8_t* payload);
   uint8_t add_data(const uint8_t* payload, uint8_t length);
   uint8_t commit(const uint8_t* payload);
-  void finish(uint8_t mode, bool is_live);
+  void seal();
+  void finish(bool is_live);
   void start(uint8_t mode, bool is_live);
   uint8_t refuse(Answer answer, uint16_t detail);
+  uint8_t check(uint8_t mode, const uint8_t* header);
+  uint8_t make_room(uint8_t mode, const uint8_t* header, bool is_live);
+  void append(const uint8_t* code, uint8_t length);
   bool is_listened_to() const;
   void renew();
 
@@ -69,28 +75,26 @@ class Link {
   void reply();
   void describe();
   void receipt();
-  void fault_record();
   void fetch();
   void begin_frame(uint8_t type, uint8_t seq);
   void begin_event(Message message);
   void put(uint8_t byte);
   void put16(uint16_t value);
-  void put32(uint32_t value);
+  void put_all(const void* bytes, uint8_t length);
   void close();
   void hand_over();
 
   Receiver* receiver_;
-  uint32_t now_ms_;
-  uint32_t heard_ms_;  // when the last valid frame came
+  uint16_t now_ms_;
+  uint16_t quiet_ms_;  // since the last valid frame, up to kListenMs
   uint32_t nonce_;     // of the session
   uint8_t epoch_;
   uint8_t stops_;      // that are handled
   uint8_t damaged_;    // frames
   uint8_t due_;        // what there is to tell
-  uint8_t isa_minor_;  // of the computer's programs
+  uint8_t isa_[2];     // of the computer's programs, major and minor
   bool is_open_;       // there is a session
-  bool is_misfit_;     // its programs are for another machine,
-  bool is_other_kit_;  // or for another kit
+  bool is_other_kit_;  // for which they are
   bool is_tethered_;   // the run `tethered_run_`, that is
   uint8_t tethered_run_;
   uint8_t ended_run_;

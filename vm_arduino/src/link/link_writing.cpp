@@ -13,6 +13,9 @@ namespace {
 // For whoever sends a line of text. The 0x00 at its end begins an item: a frame may follow.
 const uint8_t kHint[] in_flash = "No text yet: use tsc. / Aun no hay texto: usa tsc.\r\n";
 
+constexpr uint8_t kPulseBytes = 2;  // of a Condition: state and run
+
+static_assert(sizeof(Card) == 13 && sizeof(Condition) == 17, "they are as they are sent");
 static_assert(sizeof kHint <= kWireBytes, "it is sent like a frame");
 
 template <class Type>
@@ -43,14 +46,14 @@ bool Link::show(int32_t value, bool is_yes_no) {
   if (!is_listened_to()) return true;
   if (left_ != 0 || due_ != 0) return false;
   begin_event(Message::kShow);
-  put32(static_cast<uint32_t>(value));
+  put_all(&value, sizeof value);
   put(is_yes_no);
   close();
   return true;
 }
 
 // Nobody reads what a robot tells that runs alone.
-bool Link::is_listened_to() const { return is_open_ && now_ms_ - heard_ms_ < kListenMs; }
+bool Link::is_listened_to() const { return is_open_ && quiet_ms_ < kListenMs; }
 
 // Sends one thing of what is due. Whoever has sent the stop sequence listens.
 void Link::send() {
@@ -66,7 +69,7 @@ void Link::send() {
     due_ &= static_cast<uint8_t>(~kDueFault);
     begin_event(Message::kFault);
     put(ended_run_);
-    fault_record();
+    put_all(&port_condition().fault, kFaultBytes);
   } else if ((due_ & kDueDone) != 0) {
     due_ &= static_cast<uint8_t>(~kDueDone);
     begin_event(Message::kDone);
@@ -95,20 +98,12 @@ void Link::reply() {
       describe();
       break;
     case Message::kPing:
-      put(byte_of(condition.state));
-      put(condition.run);
+      put_all(&condition, kPulseBytes);
       break;
     case Message::kStatus:
-      put(byte_of(condition.state));
-      put(condition.run);
-      put32(condition.program);
-      put16(condition.length);
-      put(condition.slot);
-      put(byte_of(condition.saved));
-      fault_record();
+      put_all(&condition, sizeof condition);
       put(byte_of(damaged_ + receiver_->damaged()));
       put(receiver_->dropped());
-      put32(now_ms_);
       break;
     case Message::kFetch:
       fetch();
@@ -117,7 +112,7 @@ void Link::reply() {
     case Message::kLive:
     case Message::kProgram:
     case Message::kCommit:
-      put32(checksum_);
+      put_all(&checksum_, sizeof checksum_);
       put(condition.run);
       put(condition.slot);
       put(byte_of(condition.saved));
@@ -139,32 +134,17 @@ void Link::reply() {
 }
 
 void Link::describe() {
-  const Card& card = port_card();
-  const Condition& condition = port_condition();
   put(kLinkMajor);
   put(kLinkMinor);
   put(kIsaMajor);
   put(kIsaMinor);
-  put16(card.kit);
-  put32(card.id);
-  for (uint8_t k = 0; k < sizeof card.nonce; k++) put(card.nonce[k]);
   put(kLargestFrame);
   put(kWindow);
-  put16(card.features);
+  put_all(&port_card(), sizeof(Card));
   put16(port_room());
-  put(byte_of(condition.state));
-  put32(condition.program);
-  put16(condition.length);
-  fault_record();
-  put(byte_of(card.reset));
-  for (uint8_t k = 0; k < card.name_length; k++) put(card.name[k]);
-}
-
-void Link::fault_record() {
-  const Condition& condition = port_condition();
-  put(condition.fault);
-  put16(condition.fault_at);
-  put32(condition.fault_program);
+  put_all(&port_condition(), sizeof(Condition));
+  const Equipment& equipment = port_equipment();
+  put_all(equipment.name, equipment.name_length);
 }
 
 void Link::fetch() {
@@ -191,9 +171,9 @@ one_copy void Link::put16(uint16_t value) {
   put(byte_of(value >> 8));
 }
 
-one_copy void Link::put32(uint32_t value) {
-  put16(static_cast<uint16_t>(value));
-  put16(static_cast<uint16_t>(value >> 16));
+one_copy void Link::put_all(const void* bytes, uint8_t length) {
+  const uint8_t* from = static_cast<const uint8_t*>(bytes);
+  while (length-- != 0) put(*from++);
 }
 
 void Link::close() {

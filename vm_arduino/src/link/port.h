@@ -11,21 +11,21 @@
 
 namespace tiniscript {
 
-// Who the robot is. It stays the same, but for the name.
-struct Card {
-  uint32_t id;
-  uint8_t nonce[8];  // another one after each reset
-  uint16_t features;
+// What is sent as it lies in memory: little-endian, one field right behind the other.
+#define as_sent __attribute__((packed))
+
+// Who the robot is. `features` are bits that mean nothing yet; `nonce` is another one after each
+// reset.
+struct as_sent Card {
   uint16_t kit;
-  uint8_t sensors;
-  uint8_t actuators;
+  uint32_t id;
+  uint32_t nonce;
+  uint16_t features;
   Reset reset;
-  uint8_t name_length;
-  uint8_t name[kNameBytes];
 };
 
 // What the robot does and holds.
-struct Condition {
+struct as_sent Condition {
   State state;
   uint8_t run;       // counts the programs that were started
   uint32_t program;  // checksum of the image that START starts
@@ -38,6 +38,17 @@ struct Condition {
   uint32_t fault_program;
 };
 
+constexpr uint8_t kFaultBytes = 7;  // of a Condition, from `fault` on
+
+// How many devices the kit has, and what the robot is called.
+struct Equipment {
+  uint8_t sensors;
+  uint8_t actuators;
+  uint8_t name_length;
+  uint8_t name[kNameBytes];
+};
+
+const Equipment& port_equipment();
 const Card& port_card();
 const Condition& port_condition();
 

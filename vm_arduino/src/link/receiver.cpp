@@ -1,5 +1,7 @@
 #include "receiver.h"
 
+#include "../vm/small.h"
+
 namespace tiniscript {
 
 namespace {
@@ -13,7 +15,9 @@ bool ends_line(uint8_t byte) { return byte == '\r' || byte == '\n'; }
 
 }  // namespace
 
-bool Receiver::put(uint8_t byte, uint16_t now_ms) {
+bool Receiver::put(uint8_t byte, uint16_t now_ms) { return near(this)->take(byte, now_ms); }
+
+bool Receiver::take(uint8_t byte, uint16_t now_ms) {
   const bool is_quiet = static_cast<uint16_t>(now_ms - last_ms_) >= kSilenceMs;
   last_ms_ = now_ms;
   if (is_quiet) {

@@ -44,6 +44,7 @@ class Receiver {
     kSkip,  // in something that is no item, up to the next 0x00
   };
 
+  bool take(uint8_t byte, uint16_t now_ms);
   bool zero();
   void cut();
   void begin(uint8_t byte);
