@@ -41,6 +41,7 @@ from tiniscript.link.session import (
     Session,
 )
 from tiniscript.verify import RULES
+from tools import cpp_size, link_size
 
 needs_host = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a host machine")
 FORWARD = bytes.fromhex("443250")  # F(5,80)
@@ -377,6 +378,15 @@ def test_a_detached_program_goes_on(name: str) -> None:
 
 
 @needs_host
+def test_a_long_silence_is_no_short_one() -> None:
+    """Times are 16 bits: after a minute a robot still knows that it has heard nothing."""
+    cpp = robot_with_session()
+    for now_ms in range(0, 200_000, 500):
+        sent = cpp.step(now_ms).sent
+        assert cpp.happens("s", 1) and (not sent or now_ms < LISTEN_MS + 1000), now_ms
+
+
+@needs_host
 def test_what_the_button_has_started_is_not_tethered() -> None:
     cpp = robot_with_session()
     live = messages.written(BY_NAME["LIVE"].request, {"mode": 0x10, "code": FORWARD})
@@ -402,3 +412,11 @@ def test_a_robot_tells_only_who_listens() -> None:
     assert not cpp.step(LISTEN_MS + 5).sent
     cpp.happens("b")
     assert cpp.step(LISTEN_MS + 10).sent  # that it was stopped it always tells
+
+
+@pytest.mark.skipif(bool(cpp_size.missing(cpp_size.AVR)), reason=cpp_size.missing(cpp_size.AVR))
+def test_the_link_keeps_to_its_size() -> None:
+    """What it takes beside the machine on an ATmega328P, with the flags of Arduino."""
+    found = link_size.size()
+    assert 2000 < found.flash <= link_size.MUST
+    assert 150 < found.ram <= 240

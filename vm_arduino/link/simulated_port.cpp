@@ -64,12 +64,19 @@ bool port_make_way(bool is_live) {
 uint8_t* port_memory(uint16_t code_length, bool is_live) {
   if (code_length > port.room) return nullptr;
   std::unique_ptr<uint8_t[]>& memory = is_live ? port.live : port.image;
-  memory.reset(new uint8_t[kHeaderBytes + code_length + kEndBytes]);
+  const size_t size = static_cast<size_t>(kHeaderBytes + code_length + kEndBytes);
+  memory.reset(new uint8_t[size]);
+  for (size_t k = 0; k < size; k++) memory[k] = 0xa5;  // what was there before
   return memory.get();
 }
 
 void port_take(uint8_t mode, bool is_live) {
-  const std::string image = text_of((is_live ? port.live : port.image).get());
+  const uint8_t* const memory = (is_live ? port.live : port.image).get();
+  const std::string image = text_of(memory);
+  for (uint8_t k = 0; k < kEndBytes; k++) {
+    if (memory[image.size() + k] != static_cast<uint8_t>(Op::kEnd))
+      say("TAKE something without END");
+  }
   Image read;
   const bool is_whole = unpack(reinterpret_cast<const uint8_t*>(image.data()), image.size(),
                                port.card.kit, &read) == Refusal::kNone;

@@ -17,6 +17,19 @@ one_copy uint32_t checksum(const uint8_t* bytes, uint8_t end) {
 
 }  // namespace
 
+one_copy void copy_bytes(const void* from, uint8_t* to, uint8_t length) {
+  const uint8_t* bytes = static_cast<const uint8_t*>(from);
+  while (length-- != 0) *to++ = *bytes++;
+}
+
+one_copy bool same_bytes(const uint32_t* number, const uint8_t* bytes) {
+  const uint8_t* here = reinterpret_cast<const uint8_t*>(number);
+  for (uint8_t k = 0; k < sizeof *number; k++) {
+    if (here[k] != bytes[k]) return false;
+  }
+  return true;
+}
+
 // Each byte that stands for a zero tells how far it is to the next one.
 uint8_t open_frame(uint8_t* bytes, uint8_t length) {
   uint8_t at = bytes[0];
@@ -28,20 +41,14 @@ uint8_t open_frame(uint8_t* bytes, uint8_t length) {
   }
   if (at != length || length < kPayloadAt + kCrcBytes) return 0;
   const uint8_t end = static_cast<uint8_t>(length - kCrcBytes);
-  uint32_t crc = checksum(bytes, end);
-  for (uint8_t k = end; k < length; k++) {
-    if (bytes[k] != static_cast<uint8_t>(crc)) return 0;
-    crc >>= 8;
-  }
-  return end;
+  const uint32_t crc = checksum(bytes, end);
+  return same_bytes(&crc, bytes + end) ? end : 0;
 }
 
 uint8_t close_frame(uint8_t* bytes, uint8_t end) {
-  uint32_t crc = checksum(bytes, end);
-  for (uint8_t k = 0; k < kCrcBytes; k++) {
-    bytes[end++] = static_cast<uint8_t>(crc);
-    crc >>= 8;
-  }
+  const uint32_t crc = checksum(bytes, end);
+  copy_bytes(&crc, bytes + end, kCrcBytes);
+  end = static_cast<uint8_t>(end + kCrcBytes);
   uint8_t zero = 0;  // where the last one was
   bytes[end] = 0;
   for (uint8_t at = 1; at <= end; at++) {

@@ -20,10 +20,6 @@ one_copy uint16_t get16(const uint8_t* bytes) {
   return static_cast<uint16_t>(bytes[0] | static_cast<uint16_t>(bytes[1]) << 8);
 }
 
-uint32_t get32(const uint8_t* bytes) {
-  return get16(bytes) | static_cast<uint32_t>(get16(bytes + 2)) << 16;
-}
-
 bool is_latched() { return port_condition().state >= State::kStopped; }
 
 bool holds_nothing() { return port_condition().saved == Saved::kNothing; }
@@ -49,8 +45,9 @@ void Link::turn(uint16_t now_ms) {
   now_ms_ = now_ms;
   quiet_ms_ =
       passed < kListenMs - quiet_ms_ ? static_cast<uint16_t>(quiet_ms_ + passed) : kListenMs;
-  if (stops_ != receiver_->stops()) {
-    stops_ = receiver_->stops();
+  const uint8_t stops = receiver_->stops();
+  if (stops_ != stops) {
+    stops_ = stops;
     port_stop(0);
     stopped(Cause::kSequence);
   }
@@ -72,7 +69,7 @@ bool Link::next(uint8_t* byte) {
   return true;
 }
 
-void Link::hear() {
+one_copy void Link::hear() {
   if (receiver_->item() == Item::kText) {
     due_ |= kDueHint;
   } else {
@@ -89,7 +86,7 @@ void Link::hear() {
 }
 
 // Finds out what is answered to the frame whose payload ends at `end`.
-void Link::handle(uint8_t end) {
+one_copy void Link::handle(uint8_t end) {
   const uint8_t* const bytes = receiver_->bytes();
   const uint8_t type = bytes[kTypeAt];
   const uint8_t seq = bytes[kSeqAt];
@@ -188,10 +185,9 @@ uint8_t Link::answer(Message message, const uint8_t* payload, uint8_t length) {
 }
 
 uint8_t Link::hello(const uint8_t* payload) {
-  const uint32_t nonce = get32(payload + kHelloNonceAt);
-  if (!is_open_ || nonce != nonce_) renew();
+  if (!is_open_ || !same_bytes(&nonce_, payload + kHelloNonceAt)) renew();
   is_open_ = true;
-  nonce_ = nonce;
+  copy_bytes(payload + kHelloNonceAt, reinterpret_cast<uint8_t*>(&nonce_), sizeof nonce_);
   isa_[0] = payload[kHelloIsaMajorAt];
   isa_[1] = payload[kHelloIsaMinorAt];
   is_other_kit_ = get16(payload + kHelloKitAt) != port_card().kit;
@@ -237,18 +233,17 @@ uint8_t Link::make_room(uint8_t mode, const uint8_t* header, bool is_live) {
   mode_ = mode;
   length_ = length;
   next_ = 0;
-  for (uint8_t k = kFirstAt; k < kChecksumAt; k++) image[k] = *header++;
+  copy_bytes(header, image + kFirstAt, kChecksumAt - kFirstAt);
   return kIsFine;
 }
 
 void Link::append(const uint8_t* code, uint8_t length) {
-  uint8_t* to = image_ + kHeaderBytes + next_;
+  copy_bytes(code, image_ + kHeaderBytes + next_, length);
   next_ = static_cast<uint16_t>(next_ + length);
-  while (length-- != 0) *to++ = *code++;
 }
 
 // A whole program in one frame.
-uint8_t Link::take_short(bool is_live, const uint8_t* payload, uint8_t length) {
+one_copy uint8_t Link::take_short(bool is_live, const uint8_t* payload, uint8_t length) {
   const uint8_t mode = payload[kProgramModeAt];
   const uint8_t* const code = payload + kProgramCodeAt;
   length = static_cast<uint8_t>(length - kProgramCodeAt);
@@ -298,7 +293,7 @@ uint8_t Link::commit(const uint8_t* payload) {
   if (next_ != length_) return refuse(Answer::kIncomplete, next_);
   seal();
   image_ = nullptr;
-  if (checksum_ != get32(payload + kCommitChecksumAt)) {
+  if (!same_bytes(&checksum_, payload + kCommitChecksumAt)) {
     return static_cast<uint8_t>(Refusal::kDamaged);
   }
   // what is for no kit has no device
@@ -318,11 +313,7 @@ void Link::seal() {
   uint8_t* const code = image + kHeaderBytes;
   for (uint8_t k = 0; k < kEndBytes; k++) code[length_ + k] = static_cast<uint8_t>(Op::kEnd);
   checksum_ = crc32(crc32(0, image, kChecksumAt), code, length_);
-  uint32_t rest = checksum_;
-  for (uint8_t k = kChecksumAt; k < kHeaderBytes; k++) {
-    image[k] = static_cast<uint8_t>(rest);
-    rest >>= 8;
-  }
+  copy_bytes(&checksum_, image + kChecksumAt, sizeof checksum_);
 }
 
 // The image in memory is whole and verified.

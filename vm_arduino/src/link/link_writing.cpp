@@ -172,8 +172,8 @@ one_copy void Link::put16(uint16_t value) {
 }
 
 one_copy void Link::put_all(const void* bytes, uint8_t length) {
-  const uint8_t* from = static_cast<const uint8_t*>(bytes);
-  while (length-- != 0) put(*from++);
+  copy_bytes(bytes, out_ + size_, length);
+  size_ = static_cast<uint8_t>(size_ + length);
 }
 
 void Link::close() {

@@ -1,0 +1,98 @@
+"""Prints how much flash and RAM the link takes on an ATmega328P: linked, beside the machine.
+
+Builds the small program of `cpp_size.py` with all of the machine, once with and once without the
+link, and takes the difference: so the verifier and the checksum, which both use, are not counted.
+"""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path[:0] = [str(ROOT)]
+
+from tools import avr_bench, cpp_size
+from tools.cpp_size import AVR, SOURCE, USES, WAYS, Size, done, missing
+
+MUST = 3500  # bytes of flash
+
+# A robot that holds nothing, and a use of each part that no optimiser can leave out.
+PORT = """
+namespace tiniscript {
+Card card; Condition condition; Equipment equipment;
+const Card& port_card() { return card; }
+const Condition& port_condition() { return condition; }
+const Equipment& port_equipment() { return equipment; }
+uint16_t port_room() { return sink; }
+bool port_make_way(bool) { return sink; }
+uint8_t* port_memory(uint16_t length, bool) { return length > 400 ? nullptr : (uint8_t*)0x200; }
+void port_take(uint8_t mode, bool) { sink = mode; }
+void port_start(bool is_live) { sink = is_live; }
+void port_stop(uint8_t fault) { sink = fault; }
+void port_release() { sink = 0; }
+uint8_t port_image_byte(uint16_t offset) { return offset; }
+bool port_rename(const uint8_t* name, uint8_t length) { sink = name[length]; return sink; }
+}
+"""
+PORT_USED = """port_card(); port_condition(); port_equipment(); sink = port_room();
+  port_make_way(sink); port_memory(sink, 0); port_take(sink, 0); port_start(sink); port_stop(sink);
+  port_release(); port_image_byte(sink); port_rename(bytes, 1);
+"""
+LINK = """{ static Receiver receiver; static Link link;
+        link.begin(&receiver, sink); sink = receiver.put(sink, sink); link.tick(sink);
+        uint8_t byte; while (link.next(&byte)) sink = byte;
+        link.done(); link.faulted(); link.stopped(Cause::kButton);
+        sink = link.show(sink, sink); }"""
+
+
+def probe(use: str) -> str:
+    """Return the program of `cpp_size.py` with a port, all of the machine, and `use`."""
+    parts = (
+        (
+            '#include "vm/vm.h"',
+            '#include "vm/vm.h"\n#include "link/link.h"\n#include "link/port.h"',
+        ),
+        ("uint8_t bytes[64];", PORT + "uint8_t bytes[64];"),
+        ("  USE\n", PORT_USED + USES["all"] + use),
+    )
+    text = cpp_size.PROBE
+    for old, new in parts:
+        assert text.count(old) == 1, old
+        text = text.replace(old, new)
+    return text
+
+
+def size(flags: tuple[str, ...] = avr_bench.FLAGS) -> Size:
+    """Return what the link adds to a program with the machine."""
+    with_it, without = (built(use, flags) for use in (LINK, ""))
+    return Size(with_it.flash - without.flash, with_it.ram - without.ram)
+
+
+def built(use: str, flags: tuple[str, ...]) -> Size:
+    code = [*sorted((SOURCE / "vm").glob("*.[cS]*")), *sorted((SOURCE / "link").glob("*.cpp"))]
+    with tempfile.TemporaryDirectory() as folder:
+        source, program = Path(folder) / "probe.cpp", Path(folder) / "probe"
+        source.write_text(probe(use), encoding="utf-8")
+        names = map(str, (source, *code))
+        done("avr-g++", *flags, f"-I{SOURCE}", *names, "-o", str(program))
+        said = done("avr-size", str(program))
+    text, data, bss = (int(word) for word in said.splitlines()[1].split()[:3])
+    return Size(text + data, data + bss)
+
+
+def main() -> int:
+    if missing(AVR):
+        print(missing(AVR), file=sys.stderr)
+        return 2
+    print("| flags | flash | RAM |\n| --- | --- | --- |")
+    for name, more in WAYS.items():
+        found = size((*avr_bench.USUAL, *more))
+        print(f"| `{name}` | {found.flash} | {found.ram} |")
+    print(f"\nBytes of flash of the link: must {MUST}.")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
