@@ -22,6 +22,7 @@ FILES = [
     *sorted(path for name in TESTED for path in (SOURCES / name).glob("*.[ch]*")),
     SOURCES / "wasm" / "main.cpp",
 ]
+BOARDS = sorted((SOURCES / "src" / "boards").glob("*.[ch]*"))
 STRICT = ("-std=c++11", "-pedantic", "-fno-exceptions", "-fno-rtti", *WARNINGS, "-fsyntax-only")
 ALLOWED = {"<stdint.h>", "<stddef.h>", "<avr/pgmspace.h>"}
 FORBIDDEN = ("virtual", "new", "delete", "throw", "try", "float", "double", "goto", "malloc",
@@ -66,7 +67,7 @@ def test_the_machine_asks_nothing_of_a_board(path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "path", [each for each in FILES if each.suffix == ".h"], ids=lambda p: p.name
+    "path", [each for each in (*FILES, *BOARDS) if each.suffix == ".h"], ids=lambda p: p.name
 )
 def test_guard_is_named_after_its_file(path: Path) -> None:
     folder = path.parent.name.replace("src", "")
@@ -74,9 +75,18 @@ def test_guard_is_named_after_its_file(path: Path) -> None:
     assert f"#ifndef {name}\n#define {name}\n" in path.read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)
+@pytest.mark.parametrize("path", [*FILES, *BOARDS], ids=lambda path: path.name)
 def test_file_is_one_room(path: Path) -> None:
     assert len(path.read_text(encoding="utf-8").splitlines()) <= 500
+
+
+@pytest.mark.parametrize("path", BOARDS, ids=lambda path: path.name)
+def test_nothing_on_a_board_waits(path: Path) -> None:
+    """Nor asks the core for what is done here by registers; it defines the clock alone."""
+    waiting = {"delay", "delayMicroseconds", "pulseIn", "_delay_ms", "_delay_us", "Serial", "tone",
+               "noTone", "analogRead", "analogWrite", "digitalWrite", "digitalRead", "pinMode",
+               "attachInterrupt", "Servo", "new", "malloc"}  # fmt: skip
+    assert not waiting & set(re.findall(r"\w+", code_of(path)))
 
 
 def test_generated_header_says_so() -> None:

@@ -17,6 +17,7 @@ import pytest
 from tests.casefile import ROOT
 from tests.platformio import OFFLINE, SKETCH, copied, pio, prepared
 from tiniscript import compile_text, robots
+from tiniscript.cli import main
 
 FLASH_BYTES, RAM_BYTES = 32_256, 2048  # of an Uno
 
@@ -143,33 +144,59 @@ def test_tests_are_for_a_computer(project: Path) -> None:
 # -- the sketch ---------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("board", ["uno", "nano", "mega"])
-def test_sketch_builds(project: Path, board: str) -> None:
-    code, log = pio(project, "run", "-e", board)
+SKETCHES = ("uno", "nano", "mega", "nano_liner", "mega_liner", "mega_grabber")
+
+
+def test_every_robot_has_a_sketch_for_its_board() -> None:
+    text = (SKETCH / "platformio.ini").read_text(encoding="utf-8")
+    named = re.findall(r"\[env:(\w+)\]", text)
+    assert set(named) == {*SKETCHES, "native"}
+    for name in robots.names():
+        board = robots.load(name).board.chip
+        assert (board if name == robots.DEFAULT else f"{board}_{name}") in SKETCHES
+
+
+@pytest.mark.parametrize("name", SKETCHES)
+def test_sketch_builds(project: Path, name: str) -> None:
+    code, log = pio(project, "run", "-e", name)
     assert code == 0, log
     assert says_what_it_is(log)
     assert "warning" not in log, log
     used = {name: int(size) for name, size in re.findall(r"(\w+): .*used (\d+) bytes", log)}
     assert 0 < used["Flash"] < FLASH_BYTES
-    assert 0 < used["RAM"] < RAM_BYTES
-    assert (project / ".pio" / "build" / board / "firmware.hex").is_file()
+    assert 0 < used["RAM"] < (RAM_BYTES if "mega" not in name else 4 * RAM_BYTES)
+    assert (project / ".pio" / "build" / name / "firmware.hex").is_file()
 
 
-def test_sketch_has_the_program_of_the_paper() -> None:
-    """The bytes in `main.cpp` are what the compiler makes of it, and the kit is the robot's."""
-    kit = robots.load("tinibot").kit
-    text = (ROOT / "examples" / "obstacle.ts").read_text(encoding="utf-8")
+def test_sketch_of_a_robot_of_ones_own(project: Path) -> None:
+    """`tsc board` writes its header, and from then on the sketch is for it."""
+    own = project / "src" / "boards" / "kits" / "own.h"
+    assert pio(project, "run", "-e", "uno")[0] == 0
+    profile = Path(robots.__file__).parent / "tinibot.toml"
+    try:
+        assert main(["board", str(profile), "-o", str(own)]) == 0
+        code, log = pio(project, "run", "-e", "uno")
+        assert code == 0 and "Compiling .pio/build/uno/src/boards/motors.cpp.o" in log
+        with changed(own, ("kBuzzer", "kNothingLikeIt")):
+            code, log = pio(project, "run", "-e", "uno")
+        assert code == 1 and "kBuzzer" in log
+        code, log = pio(project, "run", "-e", "mega")
+        assert code == 1 and "is wired to another board. It fits: uno." in log
+        assert pio(project, "run", "-e", "mega_grabber")[0] == 0
+    finally:
+        own.unlink(missing_ok=True)
+
+
+def test_sketch_has_a_program_that_every_robot_can_run() -> None:
+    """The bytes in `main.cpp` are what the compiler makes of the text above them."""
     source = (SKETCH / "src" / "main.cpp").read_text(encoding="utf-8")
-    array = re.search(r"program\[kProgramBytes \+ kEndBytes\] = \{(.*?)\n\};", source, re.S)
-    assert array
+    text = re.search(r"every\n// robot can run:  (.*)\n", source)
+    array = re.search(r"program\[.*?\] = \{(.*?)\n\};", source, re.S)
+    assert text and array
     written = re.findall(r"'(.)'|(0x\w+|\d+),", re.sub(r"//.*", "", array[1]))
     code = bytes(ord(letter) if letter else int(number, 0) for letter, number in written)
-    assert code == compile_text(text, kit).image
-    assert f"kProgramBytes = {len(code)};" in source
-    board = (SKETCH / "src" / "boards" / "board.h").read_text(encoding="utf-8")
-    assert f"kBoardKit = 0x{kit.fingerprint:04x};" in board
-    assert f"kBoardSensors = {len(kit.sensors)};" in board
-    assert f"kBoardActuators = {len(kit.actuators)};" in board
+    for name in robots.names():
+        assert code == compile_text(text[1], robots.load(name).kit).image
 
 
 # -- the bootstrap ------------------------------------------------------------------------------

@@ -7,8 +7,10 @@ from __future__ import annotations
 
 import argparse
 import json
+import re
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
 from itertools import accumulate
 from pathlib import Path
 
@@ -16,7 +18,9 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tiniscript import bytecode, image, verify
-from tiniscript.robots.profile import ProfileRefused
+from tiniscript.robots import firmware
+from tiniscript.robots.ports import AVRS
+from tiniscript.robots.profile import ProfileRefused, Robot
 from tiniscript.robots.reader import read
 from tiniscript.robots.refusals import describe
 
@@ -240,6 +244,20 @@ def cpp_cases() -> str:
     return cases_header(COMMAND)
 
 
+def robot_header(path: Path) -> str:
+    """Return the header of a robot's firmware, for all the boards that its profile fits."""
+    text = path.read_text(encoding="utf-8")
+    wired: list[Robot] = []
+    for board in AVRS:
+        changed, count = re.subn(r'^chip *= *"\w+"', f'chip = "{board}"', text, flags=re.M)
+        assert count == 1, f"{path.name} names no board"
+        try:
+            wired.append(read(changed, path.stem))
+        except ProfileRefused:
+            continue  # the board has no such pins
+    return firmware.header(wired, f"{COMMAND} from robots/{path.name}.")
+
+
 SPEC = ROOT / "bytecode_spec.md"
 SPEC_TABLES: dict[str, Callable[[], str]] = {
     "image": image_table,
@@ -255,6 +273,7 @@ SPEC_TABLES: dict[str, Callable[[], str]] = {
 MACHINE = ROOT / "vm_arduino" / "src" / "vm"
 LINK = ROOT / "vm_arduino" / "src" / "link"
 LINK_DOCUMENT = ROOT / "docs" / "link.md"
+WIRED = ROOT / "vm_arduino" / "src" / "boards" / "kits"
 
 OUTPUTS: list[tuple[Path, Callable[[], str]]] = [
     (ROBOTS / "shipped.py", shipped_robots),
@@ -265,6 +284,10 @@ OUTPUTS: list[tuple[Path, Callable[[], str]]] = [
     (LINK / "messages.cpp", link_tables),
     (LINK_DOCUMENT, link_document),
     (ROOT / "vm_arduino" / "test" / "cases.h", cpp_cases),
+    *(
+        (WIRED / f"{path.stem}.h", partial(robot_header, path))
+        for path in sorted(ROBOTS.glob("*.toml"))
+    ),
 ]
 
 

@@ -1,11 +1,15 @@
 // setup() and loop(): a program that is built in, verified at the start and run.
 //
-// The button starts and stops it; the light is on while it could start.
+// The button starts it when it is released, and stops it as soon as it is pressed. The light is on
+// while the program could start. After a reset nothing moves before the button has been pressed.
 // Empty where there is no Arduino: a build for a computer may take all of this folder.
 
 #ifdef ARDUINO
 
+#include <Arduino.h>  // declares setup() and loop()
+
 #include "boards/board.h"
+#include "boards/kit.h"
 #include "robot.h"
 #include "vm/image.h"
 #include "vm/verify.h"
@@ -17,17 +21,16 @@ namespace {
 
 constexpr uint8_t kBudget = 32;  // instructions in one turn of loop()
 
-// The paper's obstacle program.
+// A program runs from here. Until there is a way to send another one, it is this one, which every
+// robot can run:  SB|F(1, 60);B(1, 60);BEEP(0.2, 880)
 // clang-format off
-constexpr uint8_t kProgramBytes = 28;
-const uint8_t program[kProgramBytes + kEndBytes] = {
-    'T', 'S', 1, 0, 0, 0, 0x1b, 0x23, 14, 0, 0x81, 0x0a, 0x5d, 0x7e,
-    0x68,                    // FOREVER
-    0x44, 0x0a, 0x50,        // MOVE8_F 10 80
-    0xa2, 0x02, 0x0a, 0x04,  // IF_READ8_LT s2 10
-    0x58,                    // STOP
-    0x47, 0x0a, 0x3c,        // MOVE8_R 10 60
-    0x6b, 0x0d,              // AGAIN
+uint8_t program[kHeaderBytes + kProgramBytes + kEndBytes] = {
+    'T', 'S', 1, 0, 1, 0, 0, 0, 13, 0, 0x48, 0x98, 0x20, 0xf7,
+    0x44, 0x0a, 0x3c,              // MOVE8_F 10 60
+    0x45, 0x0a, 0x3c,              // MOVE8_B 10 60
+    0x03, 0xc8, 0x00,              // PUSH_MILLI 200
+    0x02, 0x70, 0x03,              // PUSH16 880
+    0x5b,                          // BEEP
 };
 // clang-format on
 
@@ -36,32 +39,55 @@ Machine machine;
 int32_t readings[kBoardSensors];
 bool is_accepted;
 bool is_running;
+bool has_stopped;  // the button, which is still down: its release starts nothing
+
+void start(uint32_t now_ms) {
+  board_forget();
+  motors_release();
+  for (int32_t& reading : readings) reading = 0;
+  machine.start(image.code, image.code_length, readings, kBoardSensors, now_ms | 1, now_ms);
+  is_running = true;
+  board_light(false);
+}
+
+void stop() {
+  motors_stop();
+  robot_off();
+  is_running = false;
+  board_light(true);
+}
 
 }  // namespace
 
 void setup() {
   board_begin();
-  const bool is_image = unpack(program, kProgramBytes, kBoardKit, &image) == Refusal::kNone;
-  is_accepted =
-      is_image &&
-      verify(image.code, image.code_length, kBoardSensors, kBoardActuators).rule == Rule::kNone;
+  const uint16_t code_length =
+      static_cast<uint16_t>(program[kCodeLengthAt] | program[kCodeLengthAt + 1] << 8);
+  is_accepted = code_length <= kProgramBytes &&
+                unpack(program, kHeaderBytes + code_length, kBoardKit, &image) == Refusal::kNone &&
+                verify(image.code, code_length, kBoardSensors, kBoardActuators).rule == Rule::kNone;
   board_light(is_accepted);
 }
 
 void loop() {
   const uint32_t now_ms = board_now_ms();
-  const bool was_running = is_running;
-  if (is_running) is_running = machine.tick(now_ms, kBudget) < Status::kDone;
-  if (board_pressed()) {
-    is_running = is_accepted && !was_running;
-    if (is_running) {
-      for (int32_t& reading : readings) reading = 0;
-      machine.start(image.code, image.code_length, readings, kBoardSensors, now_ms | 1, now_ms);
-    } else {
-      robot_off();
-    }
+  board_tick(now_ms);
+  switch (board_button(now_ms)) {
+    case Press::kNothing:
+      break;
+    case Press::kPressed:
+      has_stopped = is_running;
+      if (is_running) stop();
+      break;
+    case Press::kReleased:
+      if (is_accepted && !is_running && !has_stopped) start(now_ms);
+      break;
   }
-  if (is_running != was_running) board_light(!is_running);
+  if (is_running && machine.tick(now_ms, kBudget) >= Status::kDone) {
+    const bool is_done = machine.status() == Status::kDone;
+    stop();
+    if (is_done) board_finished();
+  }
 }
 
 #endif  // ARDUINO

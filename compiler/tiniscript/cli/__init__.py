@@ -17,6 +17,7 @@ VERBS = {
     "show": "showing",
     "fmt": "formatting",
     "explain": "explaining",
+    "board": "wiring",
 }
 
 

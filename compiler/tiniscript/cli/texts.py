@@ -14,6 +14,7 @@ tsc: TiniScript, a language of single lines for robots.
   tsc show prog.bin                  list the instructions of a program
   tsc fmt prog.ts                    lay the text out in the usual way
   tsc explain TS012                  say more about a mistake
+  tsc board myrobot.toml             tell the firmware how a robot is wired
 
 A program is a file, - (standard input) or -e 'SI|F(2, 80)'.
 tsc VERB --help says more about a verb; --lang en or --lang es chooses the language.
@@ -28,6 +29,7 @@ tsc: TiniScript, un lenguaje de una sola línea para robots.
   tsc show prog.bin                  lista las instrucciones de un programa
   tsc fmt prog.ts                    ordena el texto de la forma usual
   tsc explain TS012                  explica mejor un error
+  tsc board mirobot.toml             le dice al firmware cómo está conectado un robot
 
 Un programa es un archivo, - (entrada estándar) o -e 'SI|F(2, 80)'.
 tsc VERBO --help dice más de un verbo; --lang en o --lang es elige el idioma.
@@ -107,6 +109,10 @@ TEXTS: dict[str, tuple[str, str]] = {
                 "tsc: no existe el error {found}. La lista:  tsc explain"),
     "profile_refused": ("tsc: the robot profile {file} cannot be used:\n{reasons}",
                         "tsc: el perfil de robot {file} no se puede usar:\n{reasons}"),
+    "no_firmware": ("tsc: there is no firmware for the board {chip} yet. There is for: {known}.",
+                    "tsc: todavía no hay firmware para la placa {chip}. Hay para: {known}."),
+    "board": ("{file}: how {robot} is wired, for the board {chip}. Now:  pio run -e {chip}",
+              "{file}: cómo está conectado {robot}, para la placa {chip}. Ahora:  pio run -e {chip}"),
     # images
     "image_NOT_AN_IMAGE": ("refused: {file} is no compiled TiniScript program. Make one:  tsc compile prog.ts",
                            "rechazado: {file} no es un programa TiniScript compilado. Haz uno:  tsc compile prog.ts"),

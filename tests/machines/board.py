@@ -1,0 +1,257 @@
+"""The whole sketch on a simulated ATmega: pins and registers with the cycles of their changes.
+
+Builds the sketch for a robot with avr-g++ and Debian's Arduino core, with another program in the
+place of the one that is built in. `simulated_board.c` runs it.
+"""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import tempfile
+from collections.abc import Iterable, Sequence
+from functools import lru_cache
+from pathlib import Path
+from typing import NamedTuple
+
+from tests.machines.host import SOURCES
+from tiniscript import compile_text
+from tiniscript.robots import firmware
+from tiniscript.robots.ports import AVRS, Bit
+from tiniscript.robots.profile import Robot
+
+HERTZ = 16_000_000
+MS = HERTZ // 1000  # cycles
+ARDUINO = Path("/usr/share/arduino/hardware/arduino/avr")
+SIMAVR = Path("/usr/include/simavr/sim_avr.h")
+VARIANTS = {"uno": "standard", "nano": "eightanaloginputs", "mega": "mega"}
+CHIPS = {"uno": "atmega328p", "nano": "atmega328p", "mega": "atmega2560"}
+FLAGS = (
+    "-Os", "-flto", "-ffunction-sections", "-fdata-sections", "-mrelax", "-mcall-prologues",
+    "-DF_CPU=16000000L", "-DARDUINO=10808", "-DDECIMAL_DIG=__DECIMAL_DIG__",
+)  # fmt: skip
+CPP = ("-std=gnu++11", "-fno-exceptions", "-fno-threadsafe-statics")
+
+# The registers of PWM: control, and what connects a channel.
+CONTROLS = {0: 0x44, 1: 0x80, 2: 0xB0, 3: 0x90, 4: 0xA0, 5: 0x120}
+CONNECTIONS = {"a": 0x80, "b": 0x20, "c": 0x08}
+PORTS = {
+    "a": 0x22, "b": 0x25, "c": 0x28, "d": 0x2B, "e": 0x2E, "f": 0x31, "g": 0x34,
+    "h": 0x102, "j": 0x105, "k": 0x108, "l": 0x10B,
+}  # fmt: skip
+BUILT_IN = "SB|F(1, 60);B(1, 60);BEEP(0.2, 880)"
+
+
+def missing() -> str:
+    """Return why there is no simulated board, or nothing."""
+    names = [name for name in ("avr-g++", "gcc") if not shutil.which(name)]
+    names += [str(path) for path in (ARDUINO, SIMAVR) if not path.exists()]
+    return f"no {' and no '.join(names)} on this computer: no simulated board" if names else ""
+
+
+@lru_cache(maxsize=1)
+def _folder() -> tempfile.TemporaryDirectory[str]:
+    return tempfile.TemporaryDirectory(prefix="tiniscript-board-")
+
+
+def run(*words: object) -> str:
+    done = subprocess.run([str(word) for word in words], capture_output=True, text=True)
+    assert done.returncode == 0, f"{words[0]}: {done.stderr[:4000]}"
+    return done.stdout
+
+
+@lru_cache(maxsize=1)
+def simulator() -> Path:
+    program = Path(_folder().name) / "simulated_board"
+    source = Path(__file__).with_name("simulated_board.c")
+    run("gcc", "-O2", source, "-o", program, "-lsimavr", "-lelf")
+    return program
+
+
+@lru_cache(maxsize=8)
+def core(board: str) -> Path:
+    """Return the library of the Arduino core for a board."""
+    folder = Path(_folder().name) / f"core-{board}"
+    folder.mkdir()
+    sources = sorted((ARDUINO / "cores" / "arduino").glob("wiring*.c"))
+    sources += [ARDUINO / "cores" / "arduino" / name for name in ("main.cpp", "hooks.c")]
+    for source in sources:
+        is_cpp = source.suffix == ".cpp"
+        compiler = ("avr-g++", *CPP) if is_cpp else ("avr-gcc", "-std=gnu11")
+        target = folder / f"{source.name}.o"
+        run(*compiler, *_flags(board), "-w", "-c", source, "-o", target)
+    library = folder / "core.a"
+    run("avr-gcc-ar", "rcs", library, *sorted(folder.glob("*.o")))
+    return library
+
+
+def _flags(board: str) -> tuple[str, ...]:
+    return (
+        f"-mmcu={CHIPS[board]}",
+        *FLAGS,
+        f"-I{ARDUINO / 'cores' / 'arduino'}",
+        f"-I{ARDUINO / 'variants' / VARIANTS[board]}",
+    )
+
+
+@lru_cache(maxsize=32)
+def built(header: str, board: str, more: str = "") -> bytes:
+    """Return the sketch for the robot of a header, an ELF file; `more` is a file beside it."""
+    with tempfile.TemporaryDirectory(dir=_folder().name) as name:
+        source = Path(shutil.copytree(SOURCES / "src", Path(name) / "src"))
+        (source / "boards" / "kits" / "own.h").write_text(header, encoding="utf-8")
+        (source / "more.cpp").write_text(more, encoding="utf-8")
+        program = Path(name) / "firmware.elf"
+        run(
+            "avr-g++", *_flags(board), *CPP, "-Wall", "-Wextra", "-Werror", "-Wl,--gc-sections",
+            *sorted(source.rglob("*.cpp")), *sorted(source.rglob("*.S")), core(board),
+            "-o", program,
+        )  # fmt: skip
+        return program.read_bytes()
+
+
+class Change(NamedTuple):
+    cycle: int
+    address: int
+    value: int
+
+
+class Board:
+    """A robot's sketch and what comes to it from outside; `ran` runs it."""
+
+    def __init__(self, robot: Robot, text: str = BUILT_IN, more: str = "") -> None:
+        self.robot = robot
+        self.board = robot.board.chip
+        self.avr = AVRS[self.board]
+        elf = built(firmware.header([robot], "the tests."), self.board, more)
+        compiled = compile_text(text, robot.kit)
+        assert compiled.image, compiled.problems
+        before = compile_text(BUILT_IN, robot.kit).image
+        at = elf.index(before)
+        self.elf = elf[:at] + compiled.image + b"\0" * 4 + elf[at + len(compiled.image) + 4 :]
+        self.script: list[str] = []
+        self.watched: set[int] = set()
+        self.changes: list[Change] = []
+        self.events: list[tuple[int, int, bool]] = []
+        for pin in self.motor_pins():
+            self.watch(pin)
+        self.level(0, robot.board.start_button, True)  # by its pull-up
+
+    # -- before the run
+
+    def bit(self, pin: int) -> Bit:
+        return self.avr.bits[pin]
+
+    def watch(self, pin: int) -> None:
+        """Watch whether a pin is an output, and what the sketch writes to it."""
+        address = PORTS[self.bit(pin).port]
+        self.watched |= {address, address - 1}
+        if pin in self.avr.compares:
+            self.watched.add(CONTROLS[self.avr.compares[pin].timer])
+            self.watched.add(self.compare_address(pin))
+
+    def compare_address(self, pin: int) -> int:
+        timer, channel = self.avr.compares[pin]
+        number = "abc".index(channel)
+        return CONTROLS[timer] + (3 + number if timer in (0, 2) else 8 + 2 * number)
+
+    def level(self, ms: float, pin: int, is_high: bool) -> None:
+        self.events.append((round(ms * MS), pin, is_high))
+
+    def press(self, ms: float, release_ms: float) -> None:
+        self.level(ms, self.robot.board.start_button, False)
+        self.level(release_ms, self.robot.board.start_button, True)
+
+    def analog(self, channel: int, millivolts: int) -> None:
+        self.script.append(f"adc {channel} {millivolts}")
+
+    def echoes(
+        self, trigger: int, echo: int, widths_us: Iterable[float], delay_us: int = 460
+    ) -> None:
+        a, b = self.bit(trigger), self.bit(echo)
+        for width_us in widths_us:
+            self.script.append(
+                f"ping {a.port.upper()} {a.bit} {b.port.upper()} {b.bit} {460 * 16} "
+                f"{round(width_us * 16)}"
+            )
+
+    # -- the run, and what it was like
+
+    def ran(self, ms: float) -> Board:
+        lines = [f"watch {address}" for address in sorted(self.watched)]
+        for cycle, pin, is_high in sorted(self.events):
+            port, bit = self.bit(pin)
+            lines.append(f"pin {cycle} {port.upper()} {bit} {int(is_high)}")
+        with tempfile.TemporaryDirectory(dir=_folder().name) as name:
+            program = Path(name) / "firmware.elf"
+            program.write_bytes(self.elf)
+            done = subprocess.run(
+                [simulator(), program, CHIPS[self.board], str(round(ms * MS))],
+                input="\n".join([*lines, *self.script]) + "\n",
+                capture_output=True,
+                text=True,
+                timeout=120,
+            )
+        assert done.returncode == 0, done.stderr
+        rows = [line.split() for line in done.stdout.splitlines()]
+        self.changes = [
+            Change(*map(int, row)) for row in rows if len(row) == 3 and row[0].isdigit()
+        ]
+        ends = [row for row in rows if row[-1:] == ["END"]]
+        assert ends and int(ends[0][0]) >= round(ms * MS), done.stderr
+        return self
+
+    def register(self, address: int, ms: float) -> int:
+        """Return what was in a watched register at a time."""
+        assert address in self.watched
+        value = 0
+        for change in self.changes:
+            if change.cycle > ms * MS:
+                break
+            if change.address == address:
+                value = change.value
+        return value
+
+    def pin(self, pin: int, ms: float) -> str:
+        """Return `in`, `low`, `high` or the level of its PWM, at a time."""
+        port, bit = self.bit(pin)
+        if not self.register(PORTS[port] - 1, ms) >> bit & 1:
+            return "pull-up" if self.register(PORTS[port], ms) >> bit & 1 else "in"
+        if pin in self.avr.compares:
+            timer, channel = self.avr.compares[pin]
+            if self.register(CONTROLS[timer], ms) & CONNECTIONS[channel]:
+                return f"pwm {self.register(self.compare_address(pin), ms)}"
+        return "high" if self.register(PORTS[port], ms) >> bit & 1 else "low"
+
+    def edges(self, pin: int) -> list[int]:
+        """Return the cycles in which the sketch wrote another level to a pin."""
+        port, bit = self.bit(pin)
+        level, found = 0, []
+        for change in self.changes:
+            if change.address == PORTS[port] and change.value >> bit & 1 != level:
+                level ^= 1
+                found.append(change.cycle)
+        return found
+
+    def motor_pins(self) -> Sequence[int]:
+        return tuple(self.robot.board.motors.pins.values())
+
+    def motors(self, ms: float) -> tuple[str, ...]:
+        return tuple(self.pin(pin, ms) for pin in self.motor_pins())
+
+    def moved(self) -> list[int]:
+        """Return the cycles in which a motor pin was written high or got PWM."""
+        found = []
+        for change in self.changes:
+            for pin in self.motor_pins():
+                port, bit = self.bit(pin)
+                wrote = change.address == PORTS[port] and change.value >> bit & 1
+                compare = self.avr.compares.get(pin)
+                has_pwm = (
+                    compare is not None
+                    and change.address == CONTROLS[compare.timer]
+                    and change.value & CONNECTIONS[compare.channel]
+                )
+                if wrote or has_pwm:
+                    found.append(change.cycle)
+        return found

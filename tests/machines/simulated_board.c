@@ -1,0 +1,147 @@
+/* Runs a sketch on a simulated chip, and prints each change of the registers that are watched.
+ *
+ *   simulated_board firmware.elf atmega328p CYCLES < script
+ *
+ * Lines of the script (numbers are decimal; a port is a letter):
+ *   watch ADDRESS                    a byte of data memory
+ *   pin CYCLE PORT BIT LEVEL         what a wire from outside does
+ *   adc CHANNEL MILLIVOLTS
+ *   ping PORT BIT PORT BIT DELAY WIDTH
+ *       an HC-SR04: its trigger and its echo; the echo of the next ping begins so many cycles
+ *       after the trigger falls, and is so long. Every line is a ping; the last one repeats.
+ *
+ * Prints `CYCLE ADDRESS VALUE` for each change, and `CYCLE END` at the end.
+ */
+#include <simavr/avr_adc.h>
+#include <simavr/avr_ioport.h>
+#include <simavr/sim_avr.h>
+#include <simavr/sim_elf.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST = 256 };
+
+static avr_t* avr;
+
+static struct watch {
+  unsigned address, value;
+} watches[MOST];
+static int watch_count;
+
+/* A wire to a pin. The chip's own pull-up does not move it: so simavr has to be told. */
+struct wire {
+  char port;
+  int bit;
+};
+
+static struct change {
+  unsigned long long cycle;
+  struct wire wire;
+  int level;
+} changes[MOST];
+static int change_count;
+
+static struct ping {
+  struct wire echo;
+  unsigned long long delay, width;
+} pings[MOST];
+static int ping_count, pinged;
+
+static avr_irq_t* pin_of(struct wire wire) {
+  return avr_io_getirq(avr, AVR_IOCTL_IOPORT_GETIRQ(wire.port), wire.bit);
+}
+
+static void drive(struct wire wire, int level) {
+  static avr_ioport_external_t wires[128];
+  avr_ioport_external_t* const all = &wires[(int)wire.port];
+  const unsigned bit = 1u << wire.bit;
+  all->name = wire.port;
+  all->mask |= bit;
+  all->value = level ? all->value | bit : all->value & ~bit;
+  avr_ioctl(avr, AVR_IOCTL_IOPORT_SET_EXTERNAL(wire.port), all);
+  avr_raise_irq(pin_of(wire), level);
+}
+
+static avr_cycle_count_t falls(avr_t* chip, avr_cycle_count_t when, void* param) {
+  (void)chip, (void)when;
+  drive(((struct ping*)param)->echo, 0);
+  return 0;
+}
+
+static avr_cycle_count_t rises(avr_t* chip, avr_cycle_count_t when, void* param) {
+  struct ping* ping = param;
+  (void)when;
+  drive(ping->echo, 1);
+  avr_cycle_timer_register(chip, ping->width, falls, ping);
+  return 0;
+}
+
+/* The trigger: an echo follows where it falls after 10 us or more. */
+static void triggered(avr_irq_t* irq, uint32_t level, void* param) {
+  static unsigned long long rose;
+  static int was_high;
+  (void)irq, (void)param;
+  level &= 1;
+  if (level && !was_high) rose = avr->cycle;
+  if (!level && was_high && avr->cycle - rose >= 160) {
+    struct ping* ping = &pings[pinged < ping_count - 1 ? pinged++ : ping_count - 1];
+    if (ping->width) avr_cycle_timer_register(avr, ping->delay, rises, ping);
+  }
+  was_high = level;
+}
+
+static void read_script(void) {
+  char line[128], port, second;
+  unsigned long long cycle, width;
+  int bit, other, level;
+  while (fgets(line, sizeof line, stdin)) {
+    if (sscanf(line, "watch %u", &watches[watch_count].address) == 1) {
+      watch_count++;
+    } else if (sscanf(line, "pin %llu %c %d %d", &cycle, &port, &bit, &level) == 4) {
+      changes[change_count++] = (struct change){cycle, {port, bit}, level};
+    } else if (sscanf(line, "adc %d %d", &bit, &level) == 2) {
+      avr_raise_irq(avr_io_getirq(avr, AVR_IOCTL_ADC_GETIRQ, ADC_IRQ_ADC0 + bit), level);
+    } else if (sscanf(line, "ping %c %d %c %d %llu %llu", &port, &bit, &second, &other, &cycle,
+                      &width) == 6) {
+      if (!ping_count) avr_irq_register_notify(pin_of((struct wire){port, bit}), triggered, NULL);
+      pings[ping_count++] = (struct ping){{second, other}, cycle, width};
+    } else {
+      fprintf(stderr, "not understood: %s", line);
+      exit(2);
+    }
+    if (watch_count == MOST || change_count == MOST || ping_count == MOST) exit(2);
+  }
+}
+
+static void no_sleep(avr_t* chip, avr_cycle_count_t cycles) { (void)chip, (void)cycles; }
+
+int main(int argc, char** argv) {
+  elf_firmware_t firmware = {0};
+  if (argc != 4 || elf_read_firmware(argv[1], &firmware) || !(avr = avr_make_mcu_by_name(argv[2])))
+    return 2;
+  const unsigned long long end = strtoull(argv[3], NULL, 10);
+  avr_init(avr);
+  firmware.frequency = 16000000;
+  firmware.vcc = firmware.avcc = firmware.aref = 5000;
+  avr_load_firmware(avr, &firmware);
+  avr->sleep = no_sleep;
+  read_script();
+  int done = 0;
+  while (avr->cycle < end) {
+    while (done < change_count && changes[done].cycle <= avr->cycle) {
+      drive(changes[done].wire, changes[done].level);
+      done++;
+    }
+    const int state = avr_run(avr);
+    if (state == cpu_Done || state == cpu_Crashed) break;
+    for (int i = 0; i < watch_count; i++) {
+      const unsigned value = avr->data[watches[i].address];
+      if (value == watches[i].value) continue;
+      watches[i].value = value;
+      printf("%llu %u %u\n", (unsigned long long)avr->cycle, watches[i].address, value);
+    }
+  }
+  printf("%llu END\n", (unsigned long long)avr->cycle);
+  return 0;
+}

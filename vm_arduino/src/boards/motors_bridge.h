@@ -1,0 +1,53 @@
+// Motors behind an L298N, an L293D or a TB6612. Off: no PWM, both direction pins low.
+
+#ifndef TINISCRIPT_BOARDS_MOTORS_BRIDGE_H_
+#define TINISCRIPT_BOARDS_MOTORS_BRIDGE_H_
+
+#include "kit.h"
+
+namespace tiniscript {
+
+in_place void begin(Bridge motor) {
+  begin_output(motor.pwm.pin, false);
+  begin_output(motor.forward, false);
+  begin_output(motor.backward, false);
+}
+
+// No more than direct writes, so that it may run before anything else does.
+in_place void begin_motors() {
+  begin(kLeftMotor);
+  begin(kRightMotor);
+  if (kStandby.port != 0) begin_output(kStandby, false);
+}
+
+in_place void off(Bridge motor) {
+  disconnect(motor.pwm);
+  write(motor.forward, false);
+  write(motor.backward, false);
+}
+
+in_place void motors_off() {
+  off(kLeftMotor);
+  off(kRightMotor);
+  if (kStandby.port != 0) write(kStandby, false);
+}
+
+// `level` is 1 to 255.
+in_place void drive(Bridge motor, bool is_backward, uint8_t level) {
+  if (is_backward) {
+    write(motor.forward, false);
+    write(motor.backward, true);
+  } else {
+    write(motor.backward, false);
+    write(motor.forward, true);
+  }
+  connect(motor.pwm, level);
+}
+
+in_place void begin_drive() {
+  if (kStandby.port != 0) write(kStandby, true);
+}
+
+}  // namespace tiniscript
+
+#endif  // TINISCRIPT_BOARDS_MOTORS_BRIDGE_H_

@@ -1,0 +1,41 @@
+// Motors behind a bridge of two wires each, such as a DRV8833 or an L9110. Off: no PWM, both low.
+
+#ifndef TINISCRIPT_BOARDS_MOTORS_TWO_WIRE_H_
+#define TINISCRIPT_BOARDS_MOTORS_TWO_WIRE_H_
+
+#include "kit.h"
+
+namespace tiniscript {
+
+in_place void begin_motors() {
+  begin_output(kLeftMotor.forward.pin, false);
+  begin_output(kLeftMotor.backward.pin, false);
+  begin_output(kRightMotor.forward.pin, false);
+  begin_output(kRightMotor.backward.pin, false);
+}
+
+in_place void off(TwoWire motor) {
+  disconnect(motor.forward);
+  disconnect(motor.backward);
+}
+
+in_place void motors_off() {
+  off(kLeftMotor);
+  off(kRightMotor);
+}
+
+in_place void drive(TwoWire motor, bool is_backward, uint8_t level) {
+  if (is_backward) {
+    disconnect(motor.forward);
+    connect(motor.backward, level);
+  } else {
+    disconnect(motor.backward);
+    connect(motor.forward, level);
+  }
+}
+
+in_place void begin_drive() {}
+
+}  // namespace tiniscript
+
+#endif  // TINISCRIPT_BOARDS_MOTORS_TWO_WIRE_H_

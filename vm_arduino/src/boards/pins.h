@@ -1,0 +1,160 @@
+// Pins of an ATmega328P or an ATmega2560, and PWM on them, by their registers.
+//
+// With pins that are known when it is compiled, most of this is one instruction. Whatever changes
+// a register that an interrupt changes too does it with interrupts off: the interrupt that turns
+// the motors off may come at any time, and nothing may put back what it has cleared.
+
+#ifndef TINISCRIPT_BOARDS_PINS_H_
+#define TINISCRIPT_BOARDS_PINS_H_
+
+#include <avr/interrupt.h>
+#include <avr/io.h>
+#include <stdint.h>
+
+// For a function that is copied into its callers.
+#define in_place inline __attribute__((always_inline))
+
+namespace tiniscript {
+
+// The addresses of PORTA to PORTL. Before each lie its DDR and its PIN.
+enum Port : uint16_t {
+  kPortA = 0x22,
+  kPortB = 0x25,
+  kPortC = 0x28,
+  kPortD = 0x2b,
+  kPortE = 0x2e,
+  kPortF = 0x31,
+  kPortG = 0x34,
+  kPortH = 0x102,
+  kPortJ = 0x105,
+  kPortK = 0x108,
+  kPortL = 0x10b,
+};
+
+struct Pin {
+  uint16_t port;
+  uint8_t mask;
+};
+
+constexpr Pin kNoPin = {0, 0};
+
+enum Channel : uint8_t { kChannelA, kChannelB, kChannelC };
+
+// A pin with PWM: OC0B is timer 0, channel B. The Arduino core runs the timers with 8 bits.
+struct Pwm {
+  Pin pin;
+  uint8_t timer;
+  uint8_t channel;
+};
+
+// Interrupts are off while there is one of these.
+class NoInterrupts {
+ public:
+  in_place NoInterrupts() : before_(SREG) { cli(); }
+  in_place ~NoInterrupts() {
+    asm volatile("" ::: "memory");  // nothing moves out from between
+    SREG = before_;
+  }
+
+ private:
+  NoInterrupts(const NoInterrupts&);
+  void operator=(const NoInterrupts&);
+
+  uint8_t before_;
+};
+
+in_place volatile uint8_t& register8(uint16_t address) {
+  return *reinterpret_cast<volatile uint8_t*>(address);
+}
+
+in_place volatile uint16_t& register16(uint16_t address) {
+  return *reinterpret_cast<volatile uint16_t*>(address);
+}
+
+// Whether one instruction changes a bit there: then no interrupt comes in between.
+in_place bool is_near(uint16_t address) { return __builtin_constant_p(address) && address < 0x40; }
+
+in_place void set_bits(uint16_t address, uint8_t mask) {
+  if (is_near(address)) {
+    register8(address) |= mask;
+  } else {
+    const NoInterrupts quiet;
+    register8(address) |= mask;
+  }
+}
+
+in_place void clear_bits(uint16_t address, uint8_t mask) {
+  if (is_near(address)) {
+    register8(address) &= static_cast<uint8_t>(~mask);
+  } else {
+    const NoInterrupts quiet;
+    register8(address) &= static_cast<uint8_t>(~mask);
+  }
+}
+
+in_place void write(Pin pin, bool is_high) {
+  if (is_high) {
+    set_bits(pin.port, pin.mask);
+  } else {
+    clear_bits(pin.port, pin.mask);
+  }
+}
+
+in_place void toggle(Pin pin) { register8(static_cast<uint16_t>(pin.port - 2)) = pin.mask; }
+
+in_place bool is_high(Pin pin) {
+  return (register8(static_cast<uint16_t>(pin.port - 2)) & pin.mask) != 0;
+}
+
+in_place void begin_output(Pin pin, bool is_high) {
+  write(pin, is_high);
+  set_bits(static_cast<uint16_t>(pin.port - 1), pin.mask);
+}
+
+// Pins are inputs after a reset.
+in_place void begin_pull_up(Pin pin) { write(pin, true); }
+
+// -- PWM
+
+constexpr uint16_t control_of(Pwm pwm) {
+  return pwm.timer == 0   ? 0x44
+         : pwm.timer == 1 ? 0x80
+         : pwm.timer == 2 ? 0xb0
+         : pwm.timer == 3 ? 0x90
+         : pwm.timer == 4 ? 0xa0
+                          : 0x120;
+}
+
+constexpr bool has_8_bits(Pwm pwm) { return pwm.timer == 0 || pwm.timer == 2; }
+
+constexpr uint16_t compare_of(Pwm pwm) {
+  return static_cast<uint16_t>(control_of(pwm) +
+                               (has_8_bits(pwm) ? 3 + pwm.channel : 8 + 2 * pwm.channel));
+}
+
+// The bit that connects a channel with its pin.
+constexpr uint8_t connection_of(Pwm pwm) { return static_cast<uint8_t>(0x80 >> 2 * pwm.channel); }
+
+// Lets a timer drive a pin: 255 is always high.
+in_place void connect(Pwm pwm, uint8_t level) {
+  const NoInterrupts quiet;  // timers of 16 bits share a register for the high byte
+  if (has_8_bits(pwm)) {
+    register8(compare_of(pwm)) = level;
+  } else {
+    register16(compare_of(pwm)) = level;
+  }
+  register8(control_of(pwm)) |= connection_of(pwm);
+}
+
+// The pin is low, whatever its timer does.
+in_place void disconnect(Pwm pwm) {
+  {
+    const NoInterrupts quiet;
+    register8(control_of(pwm)) &= static_cast<uint8_t>(~connection_of(pwm));
+  }
+  write(pwm.pin, false);
+}
+
+}  // namespace tiniscript
+
+#endif  // TINISCRIPT_BOARDS_PINS_H_

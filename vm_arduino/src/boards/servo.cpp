@@ -1,0 +1,76 @@
+#include "servo.h"
+
+#include "kit.h"
+
+#ifdef tiniscript_servos
+
+namespace tiniscript {
+
+namespace {
+
+constexpr uint8_t kServoCount = sizeof kServos / sizeof *kServos;
+constexpr uint8_t kTicksPerUs = 2;       // 16 MHz / 8
+constexpr uint16_t kFrameTicks = 40000;  // 20 ms
+constexpr uint8_t kSoonTicks = 20;       // a compare that lies nearer may be missed
+constexpr uint8_t kLateTicks = 9;        // how late the interrupt ends a pulse
+constexpr uint8_t kGap = kServoCount;    // the time between the last pulse and the next frame
+
+struct Pulse {
+  uint16_t ticks;  // 0: no pulse
+  uint8_t frames;  // how many are left, or 0
+};
+
+volatile Pulse pulses[kServoCount];
+uint8_t turn = kGap;  // whose pulse it is
+
+// The end of a pulse, and the beginning of the next one.
+in_place void next_pulse() {
+  if (turn == kGap) {
+    TCNT1 = 0;
+    turn = 0;
+  } else {
+    write(kServos[turn], false);
+    turn++;
+  }
+  for (; turn < kServoCount; turn++) {
+    volatile Pulse& pulse = pulses[turn];
+    const uint16_t ticks = pulse.ticks;
+    if (ticks == 0) continue;
+    if (pulse.frames != 0 && --pulse.frames == 0) pulse.ticks = 0;
+    write(kServos[turn], true);
+    OCR1A = static_cast<uint16_t>(TCNT1 + ticks - kLateTicks);
+    return;
+  }
+  const uint16_t soon = static_cast<uint16_t>(TCNT1 + kSoonTicks);
+  OCR1A = soon < kFrameTicks ? kFrameTicks : soon;
+}
+
+}  // namespace
+
+void servo_begin() {
+  for (const Pin& pin : kServos) begin_output(pin, false);
+  const NoInterrupts quiet;
+  TCCR1A = 0;
+  TCCR1B = 1 << CS11;
+  TCNT1 = 0;
+  OCR1A = kFrameTicks;
+  TIFR1 = 1 << OCF1A;
+  TIMSK1 = 1 << OCIE1A;
+}
+
+void servo_set(uint8_t number, uint16_t pulse_us, uint8_t frames) {
+  const NoInterrupts quiet;
+  pulses[number].ticks = static_cast<uint16_t>(pulse_us * kTicksPerUs);
+  pulses[number].frames = frames;
+}
+
+bool servo_is_held(uint8_t number) {
+  const NoInterrupts quiet;
+  return pulses[number].ticks != 0 && pulses[number].frames == 0;
+}
+
+}  // namespace tiniscript
+
+ISR(TIMER1_COMPA_vect) { tiniscript::next_pulse(); }
+
+#endif
