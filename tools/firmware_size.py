@@ -1,0 +1,75 @@
+"""Prints how much flash and RAM the whole sketch takes, for each robot on each board it fits.
+
+Builds every AVR environment of `vm_arduino/platformio.ini` with PlatformIO, offline stand-ins
+included. RAM is what is there all the time; the stack comes on top.
+"""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+from typing import NamedTuple
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path[:0] = [str(ROOT)]
+
+from tools.platformio_offline import CannotStandIn, config_of
+
+PROJECT = ROOT / "vm_arduino"
+OFFLINE = ROOT / "tools" / "platformio_offline.py"
+DEFAULT = "tinibot"  # where the name of an environment has no robot
+FLASH_MUST, FLASH_AIM = 20 * 1024, 12 * 1024
+RAM_MUST, RAM_AIM = 1300, 1000
+
+
+class Sketch(NamedTuple):
+    robot: str
+    board: str
+    flash: int
+    ram: int
+
+
+def environments() -> list[str]:
+    """Return the names of the environments that build the sketch, `mega_grabber`."""
+    names: list[str] = config_of(PROJECT).envs()
+    return [name for name in names if name != "native"]
+
+
+def measured(name: str, project: Path = PROJECT) -> Sketch:
+    """Build one environment and return its sizes. Raises RuntimeError with the log."""
+    command = [sys.executable, str(OFFLINE), "--no-apt", "--project", str(project)]
+    done = subprocess.run(
+        [*command, "pio", "run", "-e", name],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        check=False,
+    )
+    used = dict(re.findall(r"(Flash|RAM): .*used (\d+) bytes", done.stdout))
+    if done.returncode != 0 or len(used) != 2:
+        raise RuntimeError(done.stdout[-4000:])
+    board, _, robot = name.partition("_")
+    return Sketch(robot or DEFAULT, board, int(used["Flash"]), int(used["RAM"]))
+
+
+def main() -> int:
+    try:
+        sketches = [measured(name) for name in environments()]
+    except (RuntimeError, CannotStandIn) as why:
+        print(why, file=sys.stderr)
+        return 2
+    print("| robot | board | flash | RAM |\n|---|---|---:|---:|")
+    for robot, board, flash, ram in sketches:
+        print(f"| {robot} | {board} | {flash:,} | {ram:,} |")
+    print(
+        f"\nBytes. On an ATmega328P (uno, nano): flash must be at most {FLASH_MUST:,} (aim "
+        f"{FLASH_AIM:,}), RAM {RAM_MUST:,} (aim {RAM_AIM:,})."
+    )
+    small = [each for each in sketches if each.board != "mega"]
+    return int(any(each.flash > FLASH_MUST or each.ram > RAM_MUST for each in small))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
