@@ -14,7 +14,6 @@ from pathlib import Path
 
 import pytest
 
-from tests.casefile import ROOT
 from tests.platformio import OFFLINE, SKETCH, copied, pio, prepared
 from tiniscript import compile_text, robots
 from tiniscript.cli import main
