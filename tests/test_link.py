@@ -398,6 +398,16 @@ def test_what_the_button_has_started_is_not_tethered() -> None:
 
 
 @needs_host
+def test_a_slow_line_back_costs_no_answer() -> None:
+    """What comes before the last answer could be sent waits."""
+    cpp = robot_with_session()
+    data = b"".join(encoded(Frame(2, seq, 10)) for seq in (2, 3, 4))
+    sent = cpp.step(10, data, is_slow=True).sent
+    frames = [decoded(part) for part in sent.split(b"\0") if part]
+    assert [frame.seq for frame in frames if frame] == [2, 3, 4]
+
+
+@needs_host
 def test_a_robot_tells_only_who_listens() -> None:
     cpp = cpp_link()
     cpp.begin(kit=KIT)

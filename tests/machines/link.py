@@ -44,9 +44,15 @@ class CppLink(Process):
         """Switch a robot on."""
         self.ask(b"B", pack("<HHBBB", room, kit, sensors, actuators, epoch))
 
-    def step(self, now_ms: int, data: bytes = b"", is_late: bool = False) -> Step:
-        """Bytes arrive; where the robot is late it looks at none of them before the last."""
-        answer = self.ask(b"S", pack("<IBI", now_ms, is_late, len(data)) + data)
+    def step(
+        self, now_ms: int, data: bytes = b"", is_late: bool = False, is_slow: bool = False
+    ) -> Step:
+        """Bytes arrive; where the robot is late it looks at none of them before the last.
+
+        Where the line back is slow, nothing leaves the robot before all have arrived.
+        """
+        how = 2 if is_slow else is_late
+        answer = self.ask(b"S", pack("<IBI", now_ms, how, len(data)) + data)
         sent, rest = _text(answer)
         did, _ = _text(rest)
         return Step(sent, did.decode().splitlines())

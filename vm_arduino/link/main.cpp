@@ -43,19 +43,20 @@ void answer_begin(Reader* request) {
 // it sends and what the robot does.
 void answer_step(Reader* request, Writer* answer) {
   const uint32_t now_ms = request->u32();
-  const bool is_late = request->u8() != 0;
+  const uint8_t how = request->u8();
   const Bytes data = request->bytes();
   port.log.clear();
   std::string sent;
   for (size_t k = 0; k <= data.length; k++) {
     if (k < data.length && receiver.put(data.data[k], static_cast<uint16_t>(now_ms))) {
-      port.log += "PINS OFF\n";
+      port.log += link_half.stop_is_due() ? "PINS OFF\n" : "the link does not know of a stop\n";
     }
-    if (is_late && k < data.length) continue;
+    const bool is_last = k == data.length;
+    if (how == 1 && !is_last) continue;
     link_half.tick(static_cast<uint16_t>(now_ms));
     uint8_t byte = 0;
     for (uint8_t turns = 0; turns < 8; turns++) {
-      while (link_half.next(&byte)) sent += static_cast<char>(byte);
+      while ((how != 2 || is_last) && link_half.next(&byte)) sent += static_cast<char>(byte);
       link_half.tick(static_cast<uint16_t>(now_ms));
     }
   }

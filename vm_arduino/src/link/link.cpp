@@ -45,9 +45,8 @@ void Link::turn(uint16_t now_ms) {
   now_ms_ = now_ms;
   quiet_ms_ =
       passed < kListenMs - quiet_ms_ ? static_cast<uint16_t>(quiet_ms_ + passed) : kListenMs;
-  const uint8_t stops = receiver_->stops();
-  if (stops_ != stops) {
-    stops_ = stops;
+  if (stop_is_due()) {
+    stops_ = receiver_->stops();
     port_stop(0);
     stopped(Cause::kSequence);
   }

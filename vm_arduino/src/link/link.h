@@ -27,6 +27,10 @@ class Link {
   // The next byte to send; false where there is none. It may be called from an interrupt.
   bool next(uint8_t* byte);
 
+  // Whether a stop has arrived that `tick` has not handled yet: until then the motors stay off,
+  // whatever else was asked. Whoever writes their pins asks this, with interrupts off.
+  bool stop_is_due() const { return stops_ != receiver_->stops(); }
+
   // What the robot tells. The first three are told when there is room; a value that finds no room
   // is not taken, and comes again.
   void done();
