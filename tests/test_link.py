@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from itertools import pairwise
 
 import pytest
 
-from tests.linkcases import KIT
+from tests.linkcases import KIT, items_of
 from tests.machines.link import CppLink, cpp_link, missing
 from tiniscript import compile_text, robots
 from tiniscript.image import REFUSALS, Image, pack, unpack
@@ -333,7 +334,22 @@ def test_a_busy_robot_is_asked_again_but_not_for_ever() -> None:
     assert now_ms <= DEADLINE_MS + 1000
 
 
+def test_a_stop_between_makes_what_waits_stale() -> None:
+    """The answer bears another epoch: what was wanted before is not wanted any more."""
+    session = Session(1, kit=KIT)
+    tasks = [session.hello(), session.live(FORWARD), session.live(FORWARD)]
+    session.receive(answer(session.poll(0), DESCRIPTION), 0)
+    assert tasks[1].outcome is None  # HELLO begins an epoch, it ends none
+    session.receive(answer(session.poll(1), receipt(1), epoch=11), 1)
+    assert tasks[1].outcome and tasks[1].outcome.status == 0
+    assert tasks[2].outcome and tasks[2].outcome.status == STATUSES["STALE"]
+
+
 # -- the robot's times ----------------------------------------------------------------------------
+
+
+def cpp_items(stream: list[tuple[int, int]]) -> list[str]:
+    return cpp_link().items(stream)
 
 
 def robot_with_session() -> CppLink:
@@ -395,6 +411,13 @@ def test_what_the_button_has_started_is_not_tethered() -> None:
     cpp.step(20)
     cpp.happens("r")
     assert ends_at(cpp, 30, 5000) is None
+
+
+@pytest.mark.parametrize("find", [items_of, pytest.param(cpp_items, marks=needs_host)])
+def test_what_is_counted_does_not_wrap(find: Callable[[list[tuple[int, int]]], list[str]]) -> None:
+    """A line that is broken for long stops a robot once, and a long text is no short one."""
+    assert find([(0, 0)] * 700) == ["stop", "damaged 0, dropped 0"]
+    assert find([(0, byte) for byte in b"A" * 300 + b"\n"])[0].startswith("text 255 41 41")
 
 
 @needs_host

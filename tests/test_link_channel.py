@@ -280,11 +280,12 @@ def one_upload(cpp: CppLink, seed: int) -> str:
     # after a stop nothing begins, whatever is still under way
     task = world.session.live(program(draw)[:54])
     world.run(None, draw.randrange(0, 200))
+    before = len(world.did)
     world.session.stop(world.now_ms)
     world.run(None, 300)
-    at = max((k for k, row in enumerate(world.did) if row == "PINS OFF"), default=None)
-    if at is not None:
-        rest = world.did[at:]
+    since = world.did[before:]
+    if "PINS OFF" in since:
+        rest = since[since.index("PINS OFF") :]
         assert not any(row.startswith("START") for row in rest), f"seed {seed}: {rest}"
     return "done" if is_done else OUTCOMES.get(status) or name_of(status)
 
