@@ -337,10 +337,9 @@ class Session:
             assert isinstance(state, int) and isinstance(run, int)
             was_running, self._state = self.is_running, state
             if was_running and not self.is_running and self._run is not None:
-                if self._ended != self._run:
-                    self._ended = self._run
-                    if name == "PING":  # how it has ended, STATUS tells
-                        self._tasks.appendleft(Task(self._end(), DEAF_MS, is_own=True))
+                self._ended = self._run
+                if name == "PING":  # how it has ended, STATUS tells
+                    self._tasks.appendleft(Task(self._end(), DEAF_MS, is_own=True))
         elif isinstance(run, int) and name in ("START", "LIVE", "PROGRAM", "COMMIT"):
             self._run = run
 
