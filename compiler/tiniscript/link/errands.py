@@ -23,7 +23,6 @@ from tiniscript.link.messages import (
 OK = STATUSES["OK"]
 SHORT_BYTES = BY_NAME["PROGRAM"].request[-1].high  # of code, in one frame
 DATA_BYTES = BY_NAME["DATA"].request[-1].high
-HEADER_BYTES = 14
 BUSY_TRIES = 200  # while the robot saves another program
 assert SHORT_BYTES == PAYLOAD_BYTES - 1
 
