@@ -12,11 +12,11 @@ import pytest
 from tests.machines.host import SOURCES, WARNINGS, missing
 
 MACHINE = SOURCES / "src" / "vm"
-ROOMS = [MACHINE, SOURCES / "src" / "link"]
+ROOMS = [SOURCES / "src" / name for name in ("vm", "link", "store")]
 PORTABLE = sorted(
     [*(path for room in ROOMS for path in room.glob("*.[ch]*")), SOURCES / "src" / "robot.h"]
 )
-TESTED = ("host", "chip", "emulated", "link")
+TESTED = ("host", "chip", "emulated", "link", "powercut")
 FILES = [
     *PORTABLE,
     *sorted(path for name in TESTED for path in (SOURCES / name).glob("*.[ch]*")),

@@ -1,0 +1,327 @@
+#include "store.h"
+
+#include "../vm/flash.h"
+#include "../vm/image.h"
+#include "../vm/small.h"
+#include "nvm.h"
+
+namespace tiniscript {
+
+namespace {
+
+// Generations go around in a circle. The mark of a generation is that of no other one; nor is it
+// what a slot has there while it is written, 0, or while it is empty.
+constexpr uint8_t kGenerations = 0x40;
+constexpr uint8_t kMarkOf = 0xa5;
+constexpr uint8_t kEmptied = 0xff;
+
+// What is known of a slot is its generation, or that it holds nothing.
+constexpr uint8_t kRefused = kGenerations;  // more than its generation: it does not count
+constexpr uint8_t kNothing = 0xff;
+
+// The checksum of any bytes with their own checksum behind them.
+constexpr uint32_t kBehindItself = 0x2144df1c;
+
+// What is done to a slot, in this order. `docs/store.md` says why it is this one.
+enum class Do : uint8_t {
+  kLook,
+  kClear,       // one of the first bytes of the slot: 0, without an erase
+  kGeneration,  // its own number
+  kMark,        // the mark of its generation
+  kEmpty,       // what empty memory holds
+  kBody,
+  kCheck,
+  kEnd,
+};
+
+constexpr uint8_t step(Do what, uint8_t at = 0) {
+  return static_cast<uint8_t>(static_cast<uint8_t>(what) * 16 + at);
+}
+
+constexpr uint8_t kSteps[] in_flash = {
+    // settles: decides what a slot holds
+    step(Do::kLook),
+    // settles: what it holds does not count, and never will
+    step(Do::kEmpty, 0),
+    step(Do::kEmpty, kBodyAt),
+    step(Do::kEmpty, 1),
+    step(Do::kEnd),
+    // saves
+    step(Do::kClear, 3),
+    step(Do::kClear, 2),
+    step(Do::kClear, 1),
+    step(Do::kGeneration),
+    step(Do::kBody),
+    step(Do::kCheck),
+    step(Do::kMark, 1),
+    step(Do::kMark, 2),
+    step(Do::kMark, 3),
+    step(Do::kEnd),
+    // settles: what it holds counts, and always will
+    step(Do::kGeneration),
+    step(Do::kMark, 1),
+    step(Do::kMark, 2),
+    step(Do::kMark, 3),
+    step(Do::kEnd),
+    // erases
+    step(Do::kClear, 3),
+    step(Do::kClear, 2),
+    step(Do::kClear, 1),
+    step(Do::kEmpty, 0),
+    step(Do::kEmpty, kBodyAt),
+    step(Do::kEmpty, 1),
+    step(Do::kEnd),
+};
+
+// Where they begin.
+constexpr uint8_t kLooking = 0;
+constexpr uint8_t kEmptying = 1;
+constexpr uint8_t kEmptyingEnd = 4;
+constexpr uint8_t kSaving = 5;
+constexpr uint8_t kCommitting = 11;  // from here on it waits for `may_commit`
+constexpr uint8_t kKeeping = 15;
+constexpr uint8_t kKeepingMarks = 17;
+constexpr uint8_t kKeepingEnd = 19;
+constexpr uint8_t kErasing = 20;
+
+static_assert(kSteps[kEmptying] == step(Do::kEmpty, 0), "emptying begins here");
+static_assert(kSteps[kEmptyingEnd] == step(Do::kEnd), "emptying ends here");
+static_assert(kSteps[kSaving - 1] == step(Do::kEnd), "saving begins here");
+static_assert(kSteps[kCommitting] == step(Do::kMark, 1), "what is saved counts from here on");
+static_assert(kSteps[kKeeping] == step(Do::kGeneration), "keeping begins here");
+static_assert(kSteps[kKeepingMarks] == step(Do::kMark, 2), "the first mark stays as it is");
+static_assert(kSteps[kKeepingEnd] == step(Do::kEnd), "keeping ends here");
+static_assert(kSteps[kErasing - 1] == step(Do::kEnd), "erasing begins here");
+
+uint16_t plus(uint16_t place, uint16_t more) { return static_cast<uint16_t>(place + more); }
+
+// A byte of the body of the slot at `place`. The first one is kept XOR the generation: under
+// another generation its checksum is wrong.
+one_copy uint8_t body_byte(uint16_t place, uint16_t at) {
+  const uint8_t byte = nvm_read(plus(place, plus(kBodyAt, at)));
+  return at == 0 ? byte ^ nvm_read(place) : byte;
+}
+
+one_copy uint32_t checksum(uint32_t crc, uint16_t place, uint16_t at, uint16_t end) {
+  while (at != end) {
+    const uint8_t byte = body_byte(place, at++);
+    crc = crc32(crc, &byte, 1);
+  }
+  return crc;
+}
+
+uint16_t image_bytes(uint8_t low, uint8_t high) {
+  const uint16_t code = static_cast<uint16_t>(low | high << 8);
+  return code > kStoredCodeBytes ? 0 : plus(code, kHeaderBytes);
+}
+
+bool is_program(uint8_t slot) { return slot < 2; }
+
+}  // namespace
+
+one_copy void Store::boot() {
+  for (uint8_t& held : held_) held = kNothing;
+  length_ = 0;
+  at_ = 0;
+  is_first_ = false;
+  state_ = StoreState::kSettling;
+  is_busy_ = true;
+  step_ = kLooking;
+  go_to(0);
+}
+
+one_copy void Store::tick(bool may_commit) {
+  if (!is_busy_ || !nvm_is_ready() || (step_ >= kCommitting && !may_commit)) return;
+  const uint8_t step = flash_byte(kSteps + step_);
+  const uint8_t at = step % 16;
+  uint8_t value = kEmptied;
+  switch (static_cast<Do>(step / 16)) {
+    case Do::kLook:
+      return near(this)->look();
+    case Do::kEnd:
+      return near(this)->finish();
+    case Do::kClear:
+      nvm_clear(plus(place_, at));
+      step_++;
+      return;
+    case Do::kBody:
+    case Do::kCheck: {
+      value = bytes_[at_];
+      const bool is_equal = body_byte(place_, at_) == value;
+      if (step == tiniscript::step(Do::kBody)) {
+        if (at_ == 0) value ^= generation_;
+        if (!is_equal || !is_stable_) nvm_write(plus(place_, plus(kBodyAt, at_)), value);
+      } else if (!is_equal) {
+        state_ = StoreState::kFailed;
+        step_ = kEmptying;
+        return;
+      }
+      if (++at_ == length_) {
+        at_ = 0;
+        step_++;
+      }
+      return;
+    }
+    case Do::kGeneration:
+      value = generation_;
+      break;
+    case Do::kMark:
+      value = generation_ ^ kMarkOf;
+      break;
+    case Do::kEmpty:
+      break;
+  }
+  nvm_write(plus(place_, at), value);
+  step_++;
+}
+
+one_copy bool Store::begin_save(const uint8_t* image) {
+  const uint16_t length = image_bytes(image[kCodeLengthAt], image[kCodeLengthAt + 1]);
+  return length != 0 && near(this)->begin_write(Area::kProgram, image, length);
+}
+
+one_copy bool Store::begin_keep(Area area, uint8_t* record) {
+  if (is_busy_) return false;
+  uint32_t check = crc32(0, record + kCheckBytes, kRecordBytes - kCheckBytes);
+  for (uint8_t k = 0; k < kCheckBytes; k++) {
+    record[k] = static_cast<uint8_t>(check);
+    check >>= 8;
+  }
+  return near(this)->begin_write(area, record, kRecordBytes);
+}
+
+one_copy bool Store::begin_erase(Area area) {
+  if (!can_begin()) return false;
+  go_beside(area, newest(area, kNothing));  // the older one first: it must not come back
+  held_[slot_] = kNothing;
+  held_[slot_ ^ 1] = kNothing;
+  is_first_ = true;
+  state_ = StoreState::kErasing;
+  begin(kErasing);
+  return true;
+}
+
+one_copy void Store::refuse() {
+  const uint8_t slot = used(Area::kProgram);
+  if (slot != kNoSlot) held_[slot] |= kRefused;
+}
+
+one_copy bool Store::fetch(Area area, uint16_t at, uint8_t* byte) const {
+  const uint8_t slot = used(area);
+  if (slot == kNoSlot || !nvm_is_ready()) return false;
+  *byte = body_byte(place_of(slot), at);
+  return true;
+}
+
+uint8_t Store::used(Area area) const { return newest(area, kRefused); }
+
+one_copy void Store::go_to(uint8_t slot) {
+  slot_ = slot;
+  place_ = place_of(slot);
+}
+
+bool Store::can_begin() const { return !is_busy_ && nvm_is_ready(); }
+
+void Store::begin(uint8_t step) {
+  step_ = step;
+  is_busy_ = true;
+}
+
+// Goes to the slot that must not be kept where `slot`, or none, must.
+void Store::go_beside(Area area, uint8_t slot) {
+  go_to(slot == kNoSlot ? static_cast<uint8_t>(2 * static_cast<uint8_t>(area)) : slot ^ 1);
+}
+
+one_copy bool Store::begin_write(Area area, const uint8_t* bytes, uint16_t length) {
+  if (!can_begin()) return false;
+  const uint8_t slot = used(area);
+  if (slot != kNoSlot) {
+    // the same up to the end of its check?
+    uint8_t count = is_program(slot) ? kHeaderBytes : kCheckBytes;
+    do {
+      if (count-- == 0) {
+        state_ = StoreState::kSaved;
+        return true;
+      }
+    } while (body_byte(place_of(slot), count) == bytes[count]);
+  }
+  const uint8_t last = newest(area, kNothing);
+  generation_ = last == kNoSlot ? 0 : (held_[last] + 1) & (kGenerations - 1);
+  go_beside(area, slot);
+  uint8_t& held = held_[slot_];
+  is_stable_ = held != kNothing;
+  held = kNothing;
+  bytes_ = bytes;
+  length_ = length;
+  at_ = 0;
+  state_ = StoreState::kSaving;
+  begin(kSaving);
+  return true;
+}
+
+// Decides what a slot holds, once: a byte whose writing was cut may be read otherwise later.
+void Store::look() {
+  const uint16_t place = place_;
+  const uint8_t generation = nvm_read(place);
+  const uint8_t first = nvm_read(place + 1);
+  const uint8_t mark = generation ^ kMarkOf;
+  generation_ = generation;
+  step_ = generation == kEmptied && first == kEmptied ? kEmptyingEnd : kEmptying;
+  if (generation >= kGenerations || first != mark || !is_sound()) return;
+  held_[slot_] = generation;
+  // The last mark that is there may be the one that was cut. With one alone, that is what counts,
+  // and the slot may have been about to be emptied. With more, what counts is left as it is.
+  step_ = nvm_read(place + 2) != mark   ? kKeeping
+          : nvm_read(place + 3) != mark ? kKeepingMarks
+                                        : kKeepingEnd;
+}
+
+// Whether the body of a slot has its checksum.
+bool Store::is_sound() const {
+  uint16_t length = kRecordBytes;
+  uint16_t check = 0;
+  if (is_program(slot_)) {
+    length = image_bytes(body_byte(place_, kCodeLengthAt), body_byte(place_, kCodeLengthAt + 1));
+    if (length == 0) return false;
+    check = kChecksumAt;
+  }
+  const uint16_t behind = plus(check, kCheckBytes);
+  uint32_t crc = checksum(0, place_, 0, check);
+  crc = checksum(crc, place_, behind, length);
+  return checksum(crc, place_, check, behind) == kBehindItself;
+}
+
+// The slot of an area whose generation is the latest of those less than `end`.
+one_copy uint8_t Store::newest(Area area, uint8_t end) const {
+  const uint8_t slot = static_cast<uint8_t>(2 * static_cast<uint8_t>(area));
+  const uint8_t first = held_[slot];
+  const uint8_t second = held_[slot + 1];
+  if (second >= end) return first >= end ? kNoSlot : slot;
+  const uint8_t ahead = static_cast<uint8_t>(second - first);
+  const bool is_first = first < end && ahead % kGenerations >= kGenerations / 2;
+  return is_first ? slot : slot ^ 1;
+}
+
+// The slot is done with.
+void Store::finish() {
+  uint8_t slot = slot_;
+  const StoreState state = state_;
+  if (state == StoreState::kSaving) {
+    held_[slot] = generation_;
+    state_ = StoreState::kSaved;
+  } else if (state == StoreState::kErasing) {
+    if (is_first_) {
+      is_first_ = false;
+      step_ = kErasing;
+      return go_to(slot ^ 1);
+    }
+    state_ = StoreState::kErased;
+  } else if (state == StoreState::kSettling) {
+    step_ = kLooking;
+    if (++slot != kSlots) return go_to(slot);
+    state_ = StoreState::kIdle;
+  }
+  is_busy_ = false;
+}
+
+}  // namespace tiniscript
