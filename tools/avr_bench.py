@@ -32,10 +32,15 @@ def missing() -> str:
     return f"no {' and no '.join(names)} ({PACKAGES})" if names else ""
 
 
+# What a program needs besides the machine.
+MORE = {"store": ("store/store.cpp", "boards/eeprom.cpp")}
+
+
 @lru_cache(maxsize=8)
 def built(name: str, sources: Path = SOURCES) -> bytes:
     """Return `bench/NAME.cpp` with the machine of `sources`, an ELF file."""
     code = [sources / "bench" / f"{name}.cpp", *sorted((sources / "src" / "vm").glob("*.[cS]*"))]
+    code += [sources / "src" / each for each in MORE.get(name, ())]
     with tempfile.TemporaryDirectory() as folder:
         program = Path(folder) / "program.elf"
         done = subprocess.run(

@@ -1,6 +1,7 @@
 """Prints how much flash and RAM the machine takes on the chips of robots: linked, with libgcc.
 
-Builds the same small program with and without the machine, and takes the difference. Knows the
+Builds the same small program with and without the machine, and takes the difference. That of the
+store is what it adds to the machine; the memory below it is not counted. Knows the
 the AVR's compiler and its flags; `chips.py` knows those of other chips, which `cpp_benchmark.py`
 prints. `--parts` prints the functions on the AVR too, largest last.
 """
@@ -35,6 +36,8 @@ WAYS = {
 # A robot that does nothing, and a use of each part that no optimiser can leave out.
 PROBE = """
 #include "robot.h"
+#include "store/nvm.h"
+#include "store/store.h"
 #include "vm/image.h"
 #include "vm/verify.h"
 #include "vm/vm.h"
@@ -47,12 +50,19 @@ bool robot_read(uint8_t sensor, int32_t* value) { *value = sensor; return sink; 
 void robot_beep(uint16_t hertz, uint32_t) { sink = hertz; }
 bool robot_show(int32_t value, bool) { sink = value; return sink; }
 void robot_set(uint8_t actuator, int32_t value) { sink = actuator; sink = value; }
+#define once __attribute__((noinline))
+once bool nvm_is_ready() { return sink; }
+once uint8_t nvm_read(uint16_t place) { sink = place; return sink; }
+once void nvm_write(uint16_t place, uint8_t value) { sink = place; sink = value; }
+once void nvm_clear(uint16_t place) { sink = place; }
 }
 uint8_t bytes[64];  // not of the machine, but here with and without it
 int main() {
   int32_t value;
   robot_motors(sink, sink); robot_off(); robot_read(sink, &value); robot_beep(sink, sink);
-  robot_show(value, sink); robot_set(sink, value); bytes[sink] = sink; sink = bytes[sink];
+  robot_show(value, sink); robot_set(sink, value);
+  sink = nvm_is_ready(); sink = nvm_read(sink); nvm_write(sink, sink); nvm_clear(sink);
+  bytes[sink] = sink; sink = bytes[sink];
   USE
 }
 """
@@ -63,6 +73,11 @@ VERIFY = """{ Verdict verdict = verify(bytes, sink, sink, sink);
 MACHINE = """{ static Machine machine; static int32_t readings[8];
         machine.start(bytes, sink, readings, sink, sink, sink);
         sink = (uint8_t)machine.tick(sink, sink); }"""
+STORE = """{ static Store store; const Area area = (Area)sink;
+        store.boot(); store.tick(sink); sink = (uint8_t)store.state(); sink = store.is_busy();
+        sink = store.left(); sink = store.begin_save(bytes); sink = store.begin_keep(area, bytes);
+        sink = store.begin_erase(area); sink = store.used(area); store.refuse();
+        sink = store.fetch(area, sink, bytes); }"""
 USES = {
     "image": IMAGE,
     "verify": VERIFY,
@@ -74,6 +89,9 @@ USES = {
 # What the table says of a chip: what is measured, and how.
 AVR = "ATmega328P (AVR)"
 EMULATED = {f"{chip.board}": chip for chip in chips.CHIPS.values()}
+
+
+STORE_MUST = 1600  # bytes of flash of the store on the AVR
 
 
 class Size(NamedTuple):
@@ -92,6 +110,12 @@ def size(name: str, use: str, flags: tuple[str, ...] = avr_bench.FLAGS) -> Size:
     """Return what a use of the machine adds to a small program; `flags` are for the AVR alone."""
 
     with_it, without = (built(name, each, flags) for each in (USES[use], ""))
+    return Size(with_it.flash - without.flash, with_it.ram - without.ram)
+
+
+def store_size(flags: tuple[str, ...] = avr_bench.FLAGS) -> Size:
+    """Return what the store adds to the machine on the AVR."""
+    with_it, without = (built(AVR, use, flags) for use in (USES["all"] + STORE, USES["all"]))
     return Size(with_it.flash - without.flash, with_it.ram - without.ram)
 
 
@@ -114,7 +138,7 @@ def on_avr(probe: str, flags: Sequence[str]) -> tuple[int, int]:
 def link(program: Path, probe: str, flags: Sequence[str]) -> None:
     source = program.with_suffix(".cpp")
     source.write_text(probe, encoding="utf-8")
-    machine = sorted((SOURCE / "vm").glob("*.[cS]*"))
+    machine = sorted(path for each in ("vm", "store") for path in (SOURCE / each).glob("*.[cS]*"))
     done("avr-g++", *flags, f"-I{SOURCE}", str(source), *map(str, machine), "-o", str(program))
 
 
@@ -132,16 +156,18 @@ def main() -> int:
     if missing(AVR):
         print(missing(AVR), file=sys.stderr)
         return 2
-    print(f"| flags | {' | '.join(USES)} | RAM |\n|{' --- |' * (len(USES) + 2)}")
+    names = [*USES, "RAM", "store", "its RAM"]
+    print(f"| flags | {' | '.join(names)} |\n|{' --- |' * (len(names) + 1)}")
     for name, more in WAYS.items():
         sizes = [size(AVR, use, (*avr_bench.USUAL, *more)) for use in USES]
         row = " | ".join(str(each.flash) for each in sizes)
-        print(f"| `{name}` | {row} | {sizes[-1].ram} |")
+        store = store_size((*avr_bench.USUAL, *more))
+        print(f"| `{name}` | {row} | {sizes[-1].ram} | {store.flash} | {store.ram} |")
     print(f"\nBytes of flash of machine and verifier: must {MUST}, aim {AIM}.")
     if options.parts:
         with tempfile.TemporaryDirectory() as folder:
             program = Path(folder) / "probe"
-            link(program, PROBE.replace("USE", USES["all"]), avr_bench.USUAL)
+            link(program, PROBE.replace("USE", USES["all"] + STORE), avr_bench.USUAL)
             print(done("avr-nm", "-CS", "--size-sort", str(program)))
     return 0
 

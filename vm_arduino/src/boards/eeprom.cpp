@@ -1,0 +1,47 @@
+// The store's memory on an AVR: its EEPROM.
+//
+// Empty for other chips. An erase and a write take 3.4 ms, clearing a byte 1.8 ms; the chip does
+// both by itself.
+
+#ifdef __AVR__
+
+#include <avr/interrupt.h>
+#include <avr/io.h>
+
+#include "../store/layout.h"
+#include "../store/nvm.h"
+
+namespace tiniscript {
+
+static_assert(kMemoryBytes == E2END + 1, "the layout is that of this chip");
+
+namespace {
+
+void begin(uint16_t place, uint8_t value, uint8_t mode) {
+  EEAR = place;
+  EEDR = value;
+  EECR = mode;
+  const uint8_t before = SREG;
+  cli();  // the second bit counts only in the four cycles behind the first
+  EECR |= _BV(EEMPE);
+  EECR |= _BV(EEPE);
+  SREG = before;
+}
+
+}  // namespace
+
+bool nvm_is_ready() { return (EECR & _BV(EEPE)) == 0; }
+
+uint8_t nvm_read(uint16_t place) {
+  EEAR = place;
+  EECR |= _BV(EERE);
+  return EEDR;
+}
+
+void nvm_write(uint16_t place, uint8_t value) { begin(place, value, 0); }
+
+void nvm_clear(uint16_t place) { begin(place, 0, _BV(EEPM1)); }  // writes without an erase
+
+}  // namespace tiniscript
+
+#endif  // __AVR__
