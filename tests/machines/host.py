@@ -191,10 +191,7 @@ def _ran(answer: bytes) -> Ran:
 
 
 def built(sources: Path, builds: Path = BUILDS) -> Path:
-    """Return the program made from `sources`; what was made before from the same is used again.
-
-    Workers may build at the same time: each builds for itself, and the last one stays.
-    """
+    """Return the program made from `sources`, a folder like `vm_arduino`."""
     inputs = sorted(
         path
         for folder in ("src", "src/vm", "host")
@@ -203,19 +200,29 @@ def built(sources: Path, builds: Path = BUILDS) -> Path:
     )
     shared = ("answers.cpp", "answers.h", "port.h", "request.h")
     inputs += [sources / "chip" / name for name in shared]
+    return compiled(inputs, FLAGS, builds)
+
+
+def compiled(inputs: Sequence[Path], flags: Sequence[str], builds: Path = BUILDS) -> Path:
+    """Return the program made from sources and headers; what has not changed is used again.
+
+    Workers may build at the same time: each builds for itself, and the last one stays.
+    """
     texts = {path: path.name.encode() + path.read_bytes() for path in inputs}
     headers = [text for path, text in texts.items() if path.suffix == ".h"]
     objects = [
-        str(_made(builds, ".o", [*headers, text], ["-c", str(path)]))
+        str(_made(builds, ".o", flags, [*headers, text], ["-c", str(path)]))
         for path, text in texts.items()
         if path.suffix == ".cpp"
     ]
-    return _made(builds, "", [name.encode() for name in objects], objects)
+    return _made(builds, "", flags, [name.encode() for name in objects], objects)
 
 
-def _made(builds: Path, suffix: str, made_from: Iterable[bytes], arguments: list[str]) -> Path:
-    """Return what the compiler makes of `arguments`, named after all that it is made from."""
-    key = hashlib.sha256(repr((WARNINGS, FLAGS)).encode())
+def _made(
+    builds: Path, suffix: str, flags: Sequence[str], made_from: Iterable[bytes], words: list[str]
+) -> Path:
+    """Return what the compiler makes of `words`, named after all that it is made from."""
+    key = hashlib.sha256(repr((WARNINGS, tuple(flags))).encode())
     for part in made_from:
         key.update(part)
     made = builds / (key.hexdigest()[:16] + suffix)
@@ -223,9 +230,9 @@ def _made(builds: Path, suffix: str, made_from: Iterable[bytes], arguments: list
         builds.mkdir(mode=0o700, exist_ok=True)
         own = made.with_suffix(f".{os.getpid()}-{get_ident()}")
         done = subprocess.run(
-            ["g++", *FLAGS, *WARNINGS, *arguments, "-o", str(own)], capture_output=True, text=True
+            ["g++", *flags, *WARNINGS, *words, "-o", str(own)], capture_output=True, text=True
         )
-        assert done.returncode == 0, f"g++ refuses the C++ machine:\n{done.stderr[:4000]}"
+        assert done.returncode == 0, f"g++ refuses the C++ sources:\n{done.stderr[:4000]}"
         own.replace(made)
     return made
 

@@ -1,0 +1,149 @@
+#include "checks.h"
+
+#include "contents.h"
+#include "memory.h"
+
+using namespace tiniscript;
+
+namespace {
+
+constexpr uint16_t kNever = 0xffff;  // ticks
+
+// Ticks until nothing is to be done, or so many times. The memory is ready in every third tick.
+void run(Store* store, bool may_commit, uint16_t most = kNever) {
+  for (uint16_t k = 0; k < most && store->is_busy(); k++) {
+    memory.is_writing = memory.is_writing && k % 3 != 0;
+    store->tick(may_commit);
+  }
+  memory.is_writing = false;
+}
+
+void start(Store* store) {
+  store->boot();
+  run(store, true);
+}
+
+bool save(Store* store, const Content& image) {
+  if (!store->begin_save(image.data())) return false;
+  run(store, true);
+  return store->state() == StoreState::kSaved && read(*store, Area::kProgram) == image;
+}
+
+bool has(const Store& store, const Content& image) { return read(store, Area::kProgram) == image; }
+
+}  // namespace
+
+// A line that is not so ends the checks, and is what they return.
+#define expect(what) \
+  if (!(what)) return #what
+
+const char* run_checks() {
+  const Content a = some_image(20);
+  const Content b = some_image(20);
+  const Content c = some_image(kStoredCodeBytes);
+  const Content large = some_image(kStoredCodeBytes + 1);
+  Content record = some_record();
+  const Content same_record = record;
+  Store store;
+  Store later;
+  memory.fill(0xff);
+
+  // an empty memory
+  store.boot();
+  expect(store.is_busy() && store.state() == StoreState::kSettling);
+  expect(!store.begin_save(a.data()) && !store.begin_erase(Area::kProgram));
+  run(&store, true);
+  expect(store.state() == StoreState::kIdle && memory.writes == 0);
+  expect(store.used(Area::kProgram) == kNoSlot && has(store, {}));
+
+  // a save waits for the motors, and says so
+  expect(store.begin_save(a.data()) && !store.begin_save(b.data()));
+  expect(!store.begin_keep(Area::kFault, record.data()));
+  expect(store.left() == a.size());
+  run(&store, false, 2000);
+  expect(store.state() == StoreState::kSaving && store.is_busy() && store.left() == a.size());
+  start(&later);
+  expect(has(later, {}));
+  memory.fill(0xff);
+  start(&store);
+  expect(save(&store, a) && save(&store, b));
+  start(&store);
+  expect(has(store, b));
+
+  // while the motors run, the old one counts
+  expect(store.begin_save(c.data()));
+  run(&store, false, 5000);
+  expect(has(store, b));
+  later = store;
+  run(&store, true);
+  expect(store.state() == StoreState::kSaved && has(store, c));
+
+  // what is stored already costs nothing
+  uint32_t writes = memory.writes;
+  expect(save(&store, c) && memory.writes == writes);
+  expect(!store.begin_save(large.data()));
+
+  // the largest program; then what was there before the last, of which hardly a byte has changed
+  start(&store);
+  expect(has(store, c));
+  writes = memory.writes;
+  expect(save(&store, b) && memory.writes - writes == 8);
+
+  // the caller's verdict: the one before counts, and is not written over
+  store.refuse();
+  expect(has(store, c));
+  writes = memory.writes;
+  expect(save(&store, a) && has(store, a));
+  store.refuse();
+  expect(has(store, c));
+  store.refuse();
+  expect(has(store, {}));
+  store.refuse();
+  expect(has(store, {}));
+  start(&store);
+  expect(has(store, a));
+  store.refuse();
+  store.refuse();
+  expect(save(&store, b));
+  start(&store);
+  expect(has(store, b));
+
+  // records: apart from each other and from programs
+  expect(store.begin_keep(Area::kIdentity, record.data()));
+  run(&store, true);
+  expect(record == same_record && read(store, Area::kIdentity) == record);
+  expect(read(store, Area::kFault).empty() && has(store, b));
+  record[kNameAt] = static_cast<uint8_t>(record[kNameAt] + 1);
+  expect(store.begin_keep(Area::kFault, record.data()));
+  run(&store, true);
+  expect(record != same_record);
+  start(&store);
+  expect(read(store, Area::kIdentity) == same_record && read(store, Area::kFault) == record);
+
+  // a byte that is worn out
+  memory.dead = static_cast<uint16_t>(place_of(store.used(Area::kProgram) ^ 1) + kBodyAt + 30);
+  expect(store.begin_save(c.data()));
+  run(&store, true);
+  expect(store.state() == StoreState::kFailed && has(store, b));
+  start(&store);
+  expect(has(store, b));
+  memory.dead = kMemoryBytes;
+
+  // an erase waits for the motors too; then nothing counts
+  expect(store.begin_erase(Area::kProgram));
+  run(&store, false, 1000);
+  start(&store);
+  expect(has(store, b));
+  expect(store.begin_erase(Area::kProgram));
+  run(&store, true);
+  expect(store.state() == StoreState::kErased && has(store, {}));
+  start(&store);
+  expect(has(store, {}) && read(store, Area::kFault) == record);
+  expect(save(&store, a));
+
+  // a byte that has changed by itself
+  memory.cells[place_of(store.used(Area::kProgram)) + kBodyAt + 20] = {1, 1};
+  start(&store);
+  expect(has(store, {}));
+  return nullptr;
+}
