@@ -186,10 +186,10 @@ def test_sketch_of_a_robot_of_ones_own(project: Path) -> None:
         own.unlink(missing_ok=True)
 
 
-def test_sketch_has_a_program_that_every_robot_can_run() -> None:
-    """The bytes in `main.cpp` are what the compiler makes of the text above them."""
-    source = (SKETCH / "src" / "main.cpp").read_text(encoding="utf-8")
-    text = re.search(r"every\n// robot can run:  (.*)\n", source)
+def test_test_sketch_has_a_program_that_every_robot_can_run() -> None:
+    """The bytes in `board_main.cpp` are what the compiler makes of the text above them."""
+    source = (SKETCH.parent / "tests" / "machines" / "board_main.cpp").read_text(encoding="utf-8")
+    text = re.search(r"Every robot can run it:  (.*)\n", source)
     array = re.search(r"program\[.*?\] = \{(.*?)\n\};", source, re.S)
     assert text and array
     written = re.findall(r"'(.)'|(0x\w+|\d+),", re.sub(r"//.*", "", array[1]))

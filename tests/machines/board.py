@@ -1,7 +1,8 @@
 """The whole sketch on a simulated ATmega: pins and registers with the cycles of their changes.
 
-Builds the sketch for a robot with avr-g++ and Debian's Arduino core, with another program in the
-place of the one that is built in. `simulated_board.c` runs it.
+Builds `boards/` for a robot with avr-g++ and Debian's Arduino core, and around it
+`board_main.cpp`, with another program in the place of the one that is built in.
+`simulated_board.c` runs it.
 """
 
 from __future__ import annotations
@@ -39,6 +40,7 @@ PORTS = {
     "a": 0x22, "b": 0x25, "c": 0x28, "d": 0x2B, "e": 0x2E, "f": 0x31, "g": 0x34,
     "h": 0x102, "j": 0x105, "k": 0x108, "l": 0x10B,
 }  # fmt: skip
+LINKED = ("uart.cpp", "eeprom.cpp")  # what only the firmware needs
 BUILT_IN = "SB|F(1, 60);B(1, 60);BEEP(0.2, 880)"
 
 
@@ -101,10 +103,17 @@ def built(header: str, board: str, more: str = "") -> bytes:
         source = Path(shutil.copytree(SOURCES / "src", Path(name) / "src"))
         (source / "boards" / "kits" / "own.h").write_text(header, encoding="utf-8")
         (source / "more.cpp").write_text(more, encoding="utf-8")
+        code = [
+            each
+            for each in sorted(
+                [source / "more.cpp", *source.rglob("boards/*"), *source.rglob("vm/*")]
+            )
+            if each.suffix in (".cpp", ".S") and each.name not in LINKED
+        ]
         program = Path(name) / "firmware.elf"
         run(
             "avr-g++", *_flags(board), *CPP, "-Wall", "-Wextra", "-Werror", "-Wl,--gc-sections",
-            *sorted(source.rglob("*.cpp")), *sorted(source.rglob("*.S")), core(board),
+            *code, Path(__file__).with_name("board_main.cpp"), f"-I{source}", core(board),
             "-o", program,
         )  # fmt: skip
         return program.read_bytes()

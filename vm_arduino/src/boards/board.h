@@ -1,10 +1,11 @@
-// What the sketch asks of the board besides `robot.h`: its clock, its button, its light, its tune.
+// What the sketch asks of the board besides what the firmware does: its clock and its button.
 
 #ifndef TINISCRIPT_BOARDS_BOARD_H_
 #define TINISCRIPT_BOARDS_BOARD_H_
 
 #include <stdint.h>
 
+#include "../firmware/board.h"
 #include "button.h"
 
 namespace tiniscript {
@@ -20,13 +21,11 @@ void board_tick(uint32_t now_ms);
 
 Press board_button(uint32_t now_ms);
 
-// A new program begins: a reading that nobody has fetched is none of its.
-void board_forget();
+// The radio module says that nobody is connected any more.
+bool board_is_left();
 
-void board_light(bool is_on);
-
-// Plays what says that a program has ended.
-void board_finished();
+// What the firmware is told of the board.
+Board board_told();
 
 }  // namespace tiniscript
 

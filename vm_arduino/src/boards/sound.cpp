@@ -9,13 +9,13 @@ namespace {
 constexpr uint32_t kClockHertz = 16000000;
 constexpr uint16_t kMostCounts = 512;  // of a period: 256 for each half
 
-// The tune: two notes.
-constexpr uint16_t kFirstHertz = 1047;
-constexpr uint16_t kSecondHertz = 1568;
+// The tunes: two notes, up and high, or down and low.
+constexpr uint16_t kFinishedHertz[] = {1047, 1568};
+constexpr uint16_t kFaultHertz[] = {220, 110};
 constexpr uint8_t kNoteMs = 120;
 
 bool is_on;
-bool has_second;  // whether the second note follows
+uint16_t next_hertz;  // the note that follows, or 0
 uint32_t end_ms;
 
 // The last count of each half of a period. They differ by one where the whole one is odd.
@@ -69,8 +69,13 @@ void sound_start(uint16_t hertz, uint32_t duration_ms, uint32_t now_ms) {
 }
 
 void sound_finished(uint32_t now_ms) {
-  sound_start(kFirstHertz, kNoteMs, now_ms);
-  has_second = true;
+  sound_start(kFinishedHertz[0], kNoteMs, now_ms);
+  next_hertz = kFinishedHertz[1];
+}
+
+void sound_faulted(uint32_t now_ms) {
+  sound_start(kFaultHertz[0], kNoteMs, now_ms);
+  next_hertz = kFaultHertz[1];
 }
 
 void sound_off() {
@@ -78,13 +83,13 @@ void sound_off() {
   TCCR2B = 0;
   write(kBuzzer, false);
   is_on = false;
-  has_second = false;
+  next_hertz = 0;
 }
 
 void sound_tick(uint32_t now_ms) {
   if (!is_on || static_cast<int32_t>(now_ms - end_ms) < 0) return;
-  if (has_second) {
-    sound_start(kSecondHertz, kNoteMs, now_ms);
+  if (next_hertz != 0) {
+    sound_start(next_hertz, kNoteMs, now_ms);
   } else {
     sound_off();
   }

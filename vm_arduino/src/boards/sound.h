@@ -12,8 +12,9 @@ void sound_begin();
 // A sound of 31 to 20000 hertz, which `sound_tick` ends; one of 0 ms is none.
 void sound_start(uint16_t hertz, uint32_t duration_ms, uint32_t now_ms);
 
-// The tune that says that a program has ended.
+// The tune that says that a program has ended, and the one that says that a fault has ended it.
 void sound_finished(uint32_t now_ms);
+void sound_faulted(uint32_t now_ms);
 
 void sound_off();
 

@@ -61,6 +61,8 @@ void Link::turn(uint16_t now_ms) {
   if (left_ == 0) send();
 }
 
+bool Link::is_tethered() const { return is_tethered_ && port_condition().run == tethered_run_; }
+
 bool Link::next(uint8_t* byte) {
   if (left_ == 0) return false;
   left_ = static_cast<uint8_t>(left_ - 1);

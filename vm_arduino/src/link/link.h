@@ -38,6 +38,9 @@ class Link {
   void stopped(Cause cause);
   bool show(int32_t value, bool is_yes_no);
 
+  // Whether what runs ends when no frame comes.
+  bool is_tethered() const;
+
  private:
   // what is due, one bit each
   static constexpr uint8_t kDueReply = 1;

@@ -36,15 +36,15 @@ constexpr uint8_t kRecordBytes = 27;
 constexpr uint8_t kIdAt = kCheckBytes;
 constexpr uint8_t kIdBytes = 4;
 constexpr uint8_t kNameAt = kIdAt + kIdBytes;
-constexpr uint8_t kNameBytes = 16;
-constexpr uint8_t kTrimAt = kNameAt + kNameBytes;  // kept free for the trim of the motors
+constexpr uint8_t kNameRoom = 16;
+constexpr uint8_t kTrimAt = kNameAt + kNameRoom;  // kept free for the trim of the motors
 constexpr uint8_t kTrimBytes = 3;
 static_assert(kTrimAt + kTrimBytes == kRecordBytes, "who the robot is fills a record");
 
 // The record kFault: the last fault. The rest of it is free.
 constexpr uint8_t kFaultAt = kCheckBytes;
-constexpr uint8_t kFaultBytes = 16;
-static_assert(kFaultAt + kFaultBytes <= kRecordBytes, "a fault fits into a record");
+constexpr uint8_t kFaultRoom = 16;
+static_assert(kFaultAt + kFaultRoom <= kRecordBytes, "a fault fits into a record");
 
 // Where the slots begin. When the voltage falls, some chips write to place 0 by mistake: nothing is
 // ever there.

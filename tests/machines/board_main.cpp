@@ -1,0 +1,95 @@
+// A sketch for the tests of `boards/`: a program that is built in, and no firmware around it.
+//
+// The button starts it when it is released, and stops it as soon as it is pressed. Whoever tests
+// puts another program in its place. The light is on while it could start.
+
+#include <Arduino.h>  // declares setup() and loop()
+
+#include "boards/board.h"
+#include "boards/kit.h"
+#include "boards/motors.h"
+#include "robot.h"
+#include "vm/image.h"
+#include "vm/verify.h"
+#include "vm/vm.h"
+
+using namespace tiniscript;
+
+namespace {
+
+constexpr uint8_t kBudget = 32;  // instructions in one turn of loop()
+
+// Every robot can run it:  SB|F(1, 60);B(1, 60);BEEP(0.2, 880)
+// clang-format off
+uint8_t program[kHeaderBytes + kProgramBytes + kEndBytes] = {
+    'T', 'S', 1, 0, 1, 0, 0, 0, 13, 0, 0x48, 0x98, 0x20, 0xf7,
+    0x44, 0x0a, 0x3c,              // MOVE8_F 10 60
+    0x45, 0x0a, 0x3c,              // MOVE8_B 10 60
+    0x03, 0xc8, 0x00,              // PUSH_MILLI 200
+    0x02, 0x70, 0x03,              // PUSH16 880
+    0x5b,                          // BEEP
+};
+// clang-format on
+
+Image image;
+Machine machine;
+int32_t readings[kBoardSensors];
+bool is_accepted;
+bool is_running;
+bool has_stopped;  // the button, which is still down: its release starts nothing
+
+void start(uint32_t now_ms) {
+  board_forget();
+  motors_release();
+  for (int32_t& reading : readings) reading = 0;
+  machine.start(image.code, image.code_length, readings, kBoardSensors, now_ms | 1, now_ms);
+  is_running = true;
+  board_light(false);
+}
+
+void stop() {
+  motors_stop();
+  robot_off();
+  is_running = false;
+  board_light(true);
+}
+
+}  // namespace
+
+namespace tiniscript {
+
+bool robot_show(int32_t, bool) { return true; }
+
+}  // namespace tiniscript
+
+void setup() {
+  board_begin();
+  const uint16_t code_length =
+      static_cast<uint16_t>(program[kCodeLengthAt] | program[kCodeLengthAt + 1] << 8);
+  is_accepted = code_length <= kProgramBytes &&
+                unpack(program, kHeaderBytes + code_length, kBoardKit, &image) == Refusal::kNone &&
+                verify(image.code, code_length, kBoardSensors, kBoardActuators).rule == Rule::kNone;
+  board_light(is_accepted);
+}
+
+void loop() {
+  const uint32_t now_ms = board_now_ms();
+  board_tick(now_ms);
+  switch (board_button(now_ms)) {
+    case Press::kNothing:
+      break;
+    case Press::kPressed:
+      has_stopped = is_running;
+      if (is_running) stop();
+      break;
+    case Press::kReleased:
+      if (is_accepted && !is_running && !has_stopped) start(now_ms);
+      break;
+  }
+  if (is_running && machine.tick(now_ms, kBudget) >= Status::kDone) {
+    const bool is_done = machine.status() == Status::kDone;
+    stop();
+    if (is_done) board_finished();
+  }
+}
+

@@ -1,0 +1,19 @@
+// The serial port that the link goes over: USART 0, without the core's `Serial`.
+//
+// What arrives goes to the firmware in the interrupt: so a stop is never behind anything.
+
+#ifndef TINISCRIPT_BOARDS_UART_H_
+#define TINISCRIPT_BOARDS_UART_H_
+
+#include <stdint.h>
+
+namespace tiniscript {
+
+void uart_begin(uint32_t baud);
+
+// Sends what the firmware has to say, as far as it is not being sent.
+void uart_tick();
+
+}  // namespace tiniscript
+
+#endif  // TINISCRIPT_BOARDS_UART_H_

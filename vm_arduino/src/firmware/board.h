@@ -1,0 +1,45 @@
+// What the firmware asks of the board besides `robot.h` and `nvm.h`.
+//
+// Plain functions: each build links one definition of them (a board, a test, a simulation). None
+// of them waits.
+
+#ifndef TINISCRIPT_FIRMWARE_BOARD_H_
+#define TINISCRIPT_FIRMWARE_BOARD_H_
+
+#include <stdint.h>
+
+#include "../link/port.h"
+
+namespace tiniscript {
+
+// The kit that the board is built for, why it began, and a number that is seldom the same twice.
+struct Board {
+  uint16_t kit;
+  uint8_t sensors;
+  uint8_t actuators;
+  int32_t* readings;  // where the last one of each sensor is kept
+  Reset reset;
+  uint32_t chance;
+  uint32_t max_run_ms;  // the longest run without a tether
+};
+
+// Closes the latch: motors off, and nothing turns them on before `board_release`.
+void board_stop();
+void board_release();
+
+// Whether the main loop stood still, since the last question: the board has turned the motors off.
+bool board_has_stalled();
+
+// A program begins: a reading that nobody has fetched is none of its.
+void board_forget();
+
+// The light is on while a press of the button would start something.
+void board_light(bool is_on);
+
+// What is heard at the end of a program, and when a fault has ended it.
+void board_finished();
+void board_faulted();
+
+}  // namespace tiniscript
+
+#endif  // TINISCRIPT_FIRMWARE_BOARD_H_

@@ -1,0 +1,39 @@
+// The robot's own program: what it does with its button, its link, its store and a program.
+//
+// Holds the one program that the robot has, runs it, and has it saved; ends a run when it must
+// end. Knows no pins. Time comes in as `now_ms`; nothing here waits. There is one robot, so these
+// are plain functions.
+
+#ifndef TINISCRIPT_FIRMWARE_FIRMWARE_H_
+#define TINISCRIPT_FIRMWARE_FIRMWARE_H_
+
+#include <stdint.h>
+
+#include "board.h"
+
+namespace tiniscript {
+
+// To be called once, after the board has begun. Nothing moves before the button or the link says
+// so.
+void firmware_begin(const Board& board);
+
+// Does a little of all that is due; to be called all the time.
+void firmware_tick(uint32_t now_ms);
+
+// The button goes down: what runs is stopped. It goes up again: what waits is started.
+void firmware_pressed();
+void firmware_released();
+
+// The radio module says that nobody is connected any more.
+void firmware_left();
+
+// A byte has arrived; a damaged one is 0. May be called from the interrupt: a run of zeros turns
+// the motors off there and then.
+void firmware_hear(uint8_t byte, uint16_t now_ms);
+
+// The next byte to send; false where there is none. May be called from an interrupt.
+bool firmware_say(uint8_t* byte);
+
+}  // namespace tiniscript
+
+#endif  // TINISCRIPT_FIRMWARE_FIRMWARE_H_
