@@ -128,15 +128,27 @@ def test_compile_imports_no_other_verb(tmp_path: Path) -> None:
     modules = imported_by(
         f"from tiniscript.cli import main; assert main(['compile', {str(program)!r}]) == 0"
     )
-    unwanted = {"cobs", "construct", "tomllib", "tomli", "rich", "dataclasses", "tiniscript.link",
+    unwanted = {"cobs", "serial", "construct", "tomllib", "tomli", "rich", "dataclasses",
+                "tiniscript.link", "tiniscript.cli.link_texts",
                 "tiniscript.vm", "tiniscript.run", "tiniscript.listing",
                 "tiniscript.formatter"}  # fmt: skip
     assert not unwanted & modules
 
 
+def test_only_two_rooms_know_pyserial() -> None:
+    for path in HOUSE.rglob("*.py"):
+        if "import serial" in path.read_text(encoding="utf-8"):
+            assert path.parent.name == "link" and path.stem in ("ports", "line"), path.name
+
+
 def test_the_link_has_no_port_and_no_clock() -> None:
-    """Bytes and times are arguments: so a second takes no time in a test."""
+    """Bytes and times are arguments: so a second takes no time in a test.
+
+    `ports` and `line` are what is around it: a real port and a real clock.
+    """
     for path in sorted((HOUSE / "link").glob("*.py")):
+        if path.stem in ("ports", "line"):
+            continue
         names = set()
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.Import):

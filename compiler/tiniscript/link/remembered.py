@@ -1,0 +1,53 @@
+"""The ports that robots have answered on, with their names, and which was used last.
+
+They lie in the user's cache: losing them loses nothing else. Opens no port.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+from typing import NamedTuple
+
+KEPT = 20  # ports; the oldest go first
+
+
+class Known(NamedTuple):
+    """`names` are those of robots by their ports, the newest first; a robot may have none."""
+
+    last: str | None
+    names: dict[str, str]
+
+
+def known() -> Known:
+    """Return what is remembered."""
+    try:
+        fields = json.loads(_path().read_text(encoding="utf-8"))
+        last = fields["last"]
+        names = {str(port): str(name) for port, name in fields["ports"]}
+    except (OSError, ValueError, TypeError, KeyError, RecursionError):
+        return Known(None, {})
+    return Known(last if isinstance(last, str) else None, names)
+
+
+def remember(port: str, name: str, is_used: bool = True) -> None:
+    """Keep the name of the robot on a port. Where the cache cannot be written, it is not kept."""
+    before = known()
+    names = {port: name, **{each: name for each, name in before.names.items() if each != port}}
+    last = port if is_used else before.last
+    path = _path()
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        new = path.with_suffix(f".{os.getpid()}")
+        fields = {"last": last, "ports": list(names.items())[:KEPT]}
+        new.write_text(json.dumps(fields), encoding="utf-8")
+        new.replace(path)
+    except (OSError, ValueError):
+        pass
+
+
+def _path() -> Path:
+    from platformdirs import user_cache_path
+
+    return user_cache_path("tiniscript", appauthor=False) / "ports.json"
