@@ -18,6 +18,16 @@ VERBS = {
     "fmt": "formatting",
     "explain": "explaining",
     "board": "wiring",
+    "ports": "finding",
+    "ping": "pinging",
+    "upload": "uploading",
+    "live": "living",
+    "stop": "stopping",
+    "start": "starting",
+    "info": "describing",
+    "monitor": "monitoring",
+    "fetch": "fetching",
+    "name": "naming",
 }
 
 

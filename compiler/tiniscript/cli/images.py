@@ -21,10 +21,13 @@ class Ready(NamedTuple):
     places: Map | None
 
 
-def ready(given: inputs.Input, robot: Robot, language: str) -> Ready | None:
+def ready(
+    given: inputs.Input, robot: Robot, language: str, is_strict: bool = False
+) -> Ready | None:
     """Return the program of an input, or None where its mistakes have just been printed.
 
-    Raises Trouble where an image is refused.
+    `is_strict`: a program that is too large for the robot is a mistake. Raises Trouble where an
+    image is refused.
     """
     from tiniscript import maps
 
@@ -32,7 +35,7 @@ def ready(given: inputs.Input, robot: Robot, language: str) -> Ready | None:
         image = _read(given, robot.kit.fingerprint, robot.name)
         _verify(given, image, robot)
         return Ready(image, len(given.data), maps.recall(image.checksum))
-    compiled = inputs.compiled(given, robot, is_strict=False)
+    compiled = inputs.compiled(given, robot, is_strict)
     outputs.print_problems(compiled, language)
     if not compiled.is_right:
         return None

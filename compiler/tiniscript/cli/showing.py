@@ -44,13 +44,13 @@ def run(arguments: list[str], language: str) -> int:
     if ready is None:
         return 1
     if options.json:
-        _print_json(ready, robot)
+        print_json(ready, robot)
     else:
-        _print(ready, robot, inputs.shown(given.name), language)
+        print_listing(ready, robot, inputs.shown(given.name), language)
     return 0
 
 
-def _print(ready: images.Ready, robot: Robot, name: str, language: str) -> None:
+def print_listing(ready: images.Ready, robot: Robot, name: str, language: str) -> None:
     from tiniscript.listing import listing
 
     image = ready.image
@@ -76,7 +76,7 @@ def _print(ready: images.Ready, robot: Robot, name: str, language: str) -> None:
     print(listing(image.code, remarks, robot.kit if image.kit else None), end="")
 
 
-def _print_json(ready: images.Ready, robot: Robot) -> None:
+def print_json(ready: images.Ready, robot: Robot) -> None:
     import json
 
     from tiniscript.listing import rows

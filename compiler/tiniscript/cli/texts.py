@@ -16,6 +16,19 @@ tsc: TiniScript, a language of single lines for robots.
   tsc explain TS012                  say more about a mistake
   tsc board myrobot.toml             tell the firmware how a robot is wired
 
+With a robot on a port (--port /dev/rfcomm0, COM5, ...; later the last used one):
+
+  tsc ports                          list the ports; --ask: which robot answers where
+  tsc ping                           who is there, and how long an answer takes
+  tsc upload prog.ts                 bring a program to the robot, start it, and stay
+  tsc live 'F(2, 80)'                do a line at once; without a line: a prompt
+  tsc stop                           stop the robot now
+  tsc start                          start the program that the robot holds
+  tsc info                           what the robot says of itself
+  tsc monitor                        print what the robot shows
+  tsc fetch                          read the robot's program back
+  tsc name TINI                      name the robot
+
 A program is a file, - (standard input) or -e 'SI|F(2, 80)'.
 tsc VERB --help says more about a verb; --lang en or --lang es chooses the language.
 Exit codes: 0 done, 1 the program is wrong, 2 wrong use of tsc, 3 the robot or the link.
@@ -30,6 +43,19 @@ tsc: TiniScript, un lenguaje de una sola línea para robots.
   tsc fmt prog.ts                    ordena el texto de la forma usual
   tsc explain TS012                  explica mejor un error
   tsc board mirobot.toml             le dice al firmware cómo está conectado un robot
+
+Con un robot en un puerto (--port /dev/rfcomm0, COM5, ...; después, el último usado):
+
+  tsc ports                          lista los puertos; --ask: qué robot responde en cuál
+  tsc ping                           quién está ahí, y cuánto tarda una respuesta
+  tsc upload prog.ts                 lleva un programa al robot, lo inicia y se queda
+  tsc live 'F(2, 80)'                hace una línea en el acto; sin línea: un diálogo
+  tsc stop                           detiene el robot ahora
+  tsc start                          inicia el programa que tiene el robot
+  tsc info                           lo que el robot dice de sí mismo
+  tsc monitor                        imprime lo que el robot muestra
+  tsc fetch                          lee de vuelta el programa del robot
+  tsc name TINI                      le pone nombre al robot
 
 Un programa es un archivo, - (entrada estándar) o -e 'SI|F(2, 80)'.
 tsc VERBO --help dice más de un verbo; --lang en o --lang es elige el idioma.
@@ -185,8 +211,20 @@ TEXTS: dict[str, tuple[str, str]] = {
 
 
 def text(key: str, language: str) -> str:
-    english, spanish = TEXTS[key]
+    """Return a sentence. Those about robots and ports are read when one is wanted."""
+    found = TEXTS.get(key)
+    if found is None:
+        from tiniscript.cli.link_texts import LINK_TEXTS
+
+        found = LINK_TEXTS[key]
+    english, spanish = found
     return spanish if language == "es" else english
+
+
+def has_text(key: str) -> bool:
+    from tiniscript.cli.link_texts import LINK_TEXTS
+
+    return key in TEXTS or key in LINK_TEXTS
 
 
 def language_of(arguments: Sequence[str], environ: Mapping[str, str] = os.environ) -> str:

@@ -1,0 +1,123 @@
+"""Staying with a program until it ends; Ctrl-C stops the robot."""
+
+from __future__ import annotations
+
+import sys
+from time import monotonic
+from typing import TYPE_CHECKING
+
+from tiniscript.cli.inputs import shown
+from tiniscript.cli.texts import text
+from tiniscript.cli.trouble import Trouble
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from tiniscript.cli.connecting import Connection
+    from tiniscript.cli.telling import Teller
+    from tiniscript.link.line import Line
+    from tiniscript.link.session import Event
+
+CONFIRM_S = 6.0  # for which a stop is sent before the person hears that nobody confirms it
+SAVE_S = 10.0  # for which a robot may save a program
+LINK_FAULT = 64  # from here on, a fault is none of the program's
+DONE, FAULTY, INTERRUPTED, LOST = 0, 1, 2, 3  # exit codes
+
+
+class Attendant:
+    """Tells what a run tells, until it ends. `hold` may keep an event back: it returns whether."""
+
+    def __init__(
+        self, connection: Connection, teller: Teller, hold: Callable[[Event], bool] | None = None
+    ) -> None:
+        self.connection = connection
+        self.teller = teller
+        self.hold = hold
+
+    def attend(self, run: int) -> int:
+        """Wait for the end of a run; return the exit code. Raises Trouble where the link ends."""
+        from tiniscript.link.line import Gone
+
+        try:
+            while True:
+                found = self.connection.line.event()
+                if found is None:
+                    continue
+                time_ms, event = found
+                if event.name == "LOST":
+                    raise Trouble(3, "link_lost", port=shown(self.connection.port))
+                if self.hold is None or not self.hold(event):
+                    self.teller.tell(time_ms, event)
+                code = _end(event, run)
+                if code is not None:
+                    return code
+        except Gone as gone:
+            raise self.connection.gone(gone.why) from None
+
+    def attend_or_stop(self, run: int) -> int:
+        """The same; Ctrl-C stops the robot first."""
+        try:
+            return self.attend(run)
+        except KeyboardInterrupt:
+            return stop_and_say(self.connection)
+
+
+def _end(event: Event, run: int) -> int | None:
+    """Return the exit code where an event ends a run, else None."""
+    name, values = event
+    if name == "DONE" and values["run"] == run:
+        return DONE
+    if name == "FAULT" and values["run"] == run:
+        fault = values["fault"]
+        assert isinstance(fault, int)
+        return LOST if fault >= LINK_FAULT else FAULTY
+    if name == "STOPPED":
+        return LOST
+    if name == "ENDED":
+        fault = values["fault"]
+        assert isinstance(fault, int)
+        if values["state"] != 3:
+            return DONE if values["state"] == 0 else LOST
+        return LOST if fault >= LINK_FAULT else FAULTY
+    return None
+
+
+def stop_and_say(connection: Connection) -> int:
+    """Stop the robot after Ctrl-C, and say whether it has confirmed; return the exit code."""
+    print(file=sys.stderr)  # the terminal has written ^C
+    if confirmed(connection.line):
+        print(text("robot_stopped", connection.language), file=sys.stderr)
+        return INTERRUPTED
+    raise Trouble(3, "not_confirmed", port=shown(connection.port))
+
+
+def confirmed(line: Line, limit_s: float = CONFIRM_S) -> bool:
+    """Stop the robot; return whether it has confirmed. A second Ctrl-C ends the waiting."""
+    from tiniscript.link.line import Gone
+
+    line.stop()
+    end_s = monotonic() + limit_s
+    try:
+        while monotonic() < end_s:
+            found = line.event()
+            if found is not None and found[1].name == "STOPPED":
+                return True
+    except (Gone, KeyboardInterrupt):
+        pass
+    return False
+
+
+def until_saved(connection: Connection) -> int | None:
+    """Wait until the robot has saved its program; return the slot, or None where it has not.
+
+    Whoever opens the port next may reset the robot, and would end the saving.
+    """
+    end_s = monotonic() + SAVE_S
+    while monotonic() < end_s:
+        values = connection.ask(lambda session: session.status()).values
+        if values["saved"] != 2:
+            slot = values["slot"]
+            assert isinstance(slot, int)
+            return slot if values["saved"] == 3 else None
+        connection.line.event(0.1)
+    return None

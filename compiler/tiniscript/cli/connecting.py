@@ -1,0 +1,241 @@
+"""The way to a robot: `--port` and `--baud`, the choice of a port, and who answers there.
+
+Every trouble on that way becomes a sentence that says what to do next.
+"""
+
+from __future__ import annotations
+
+import secrets
+import sys
+from argparse import Namespace
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from tiniscript.cli import inputs
+from tiniscript.cli.inputs import shown
+from tiniscript.cli.options import Options, whole_number
+from tiniscript.cli.texts import text
+from tiniscript.cli.trouble import Trouble
+
+if TYPE_CHECKING:
+    from tiniscript.link.errands import Reply
+    from tiniscript.link.errands import Robot as Card
+    from tiniscript.link.line import Line
+    from tiniscript.link.ports import PortTrouble
+    from tiniscript.link.session import Session, Task
+    from tiniscript.robots.profile import Robot
+
+ANSWER_MS = 6000  # for which a robot is asked who it is: an Uno that was reset takes 1.4 s
+PATIENCE_MS = 6000  # for which one that has answered may be silent, or busy with saving
+SLOWEST_BAUD, FASTEST_BAUD = 300, 2_000_000
+
+
+def takes_port(parser: Options) -> None:
+    """Add what every verb that talks to a robot has."""
+    parser.add_argument("--port")
+    parser.add_argument("--baud")
+
+
+def takes_robot(parser: Options) -> None:
+    """Add what those have that take no program."""
+    takes_port(parser)
+    parser.add_argument("--robot")
+
+
+def connected(options: Namespace, language: str) -> Connection:
+    return Connection(options, inputs.robot(options, language), language)
+
+
+def baud_of(options: Namespace, robot: Robot, language: str) -> int:
+    default = robot.board.baud
+    return whole_number("--baud", options.baud, default, SLOWEST_BAUD, FASTEST_BAUD, language)
+
+
+class Connection:
+    """An open port, and the robot on it once it has said who it is."""
+
+    def __init__(self, options: Namespace, robot: Robot, language: str) -> None:
+        """Open the port that the options name, or the last used one, or ask for one."""
+        baud = baud_of(options, robot, language)
+        self.language = language
+        self.profile = robot
+        self.port = _chosen(options.port, language)
+        self.line = opened_line(self.port, baud, robot)
+
+    def __enter__(self) -> Connection:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.line.close()
+
+    def meet(self) -> Card:
+        """Ask the robot who it is, until it answers. Raises Trouble where none does."""
+        reply = self.wait(hello(self.line, ANSWER_MS))
+        card = self.line.session.robot
+        if reply.status or card is None:
+            raise self.trouble(reply)
+        from tiniscript.link import remembered
+
+        remembered.remember(self.port, card.name)
+        return card
+
+    @property
+    def card(self) -> Card:
+        """Who the robot is; `meet` has asked."""
+        assert self.line.session.robot is not None
+        return self.line.session.robot
+
+    @property
+    def name(self) -> str:
+        """What to call the robot: its name, else that of its profile, else its port."""
+        if self.card.name:
+            return shown(self.card.name)
+        return robot_of_kit(self.card.kit) or text("robot", self.language)
+
+    def ask(self, make: Callable[[Session], Task]) -> Reply:
+        """Have something done; raise Trouble where it is not."""
+        reply = self.wait(self.do(make))
+        if reply.status:
+            raise self.trouble(reply)
+        return reply
+
+    def do(self, make: Callable[[Session], Task]) -> Task:
+        """Have something begun, for which there is a limited time."""
+
+        def limited(session: Session) -> Task:
+            task = make(session)
+            task.limit_ms = PATIENCE_MS
+            return task
+
+        return self.line.do(limited)
+
+    def wait(self, task: Task, look: Callable[[], None] | None = None) -> Reply:
+        from tiniscript.link.line import Gone
+
+        try:
+            return self.line.wait(task, look)
+        except Gone as gone:
+            raise self.gone(gone.why) from None
+
+    def trouble(self, reply: Reply) -> Trouble:
+        """Return the sentence for an outcome that is not OK."""
+        from tiniscript.link.session import CANCELLED, LOST
+
+        if reply.status == CANCELLED:
+            return Trouble(2, "stopped")
+        if reply.status != LOST:
+            return Trouble(3, "plain", said=self.said(reply))
+        if self.line.session.robot is not None:
+            return Trouble(3, "link_lost", port=shown(self.port))
+        if "ECHO" in self.line.seen:
+            return Trouble(3, "link_echo", port=shown(self.port))
+        key = "link_other" if self.line.heard else "link_silent"
+        return Trouble(3, key, port=shown(self.port))
+
+    def said(self, reply: Reply) -> str:
+        """Return what a robot's refusal means, and what to do."""
+        from tiniscript.link.messages import STATUSES
+        from tiniscript.link.statuses import sentence
+
+        said, advice = sentence(reply.status, reply.detail, self.language)
+        if reply.status == STATUSES["WRONG_KIT"]:
+            name = robot_of_kit(reply.detail)
+            if name is not None:
+                advice = text("choose_kit", self.language).format(robot=name)
+        return f"{said} {advice}".strip()
+
+    def gone(self, why: str) -> Trouble:
+        return Trouble(3, "port_gone", port=shown(self.port), why=shown(why))
+
+
+def opened_line(port: str, baud: int, robot: Robot, limit_s: float = 20) -> Line:
+    """Open a port, with a session for this kit on it. Raises Trouble."""
+    from tiniscript.link.line import Line
+    from tiniscript.link.ports import PortTrouble, opened
+    from tiniscript.link.session import Session
+
+    try:
+        device = opened(port, baud, limit_s)
+    except PortTrouble as trouble:
+        raise port_trouble(port, trouble) from None
+    return Line(device, Session(secrets.randbits(32), baud, robot.kit.fingerprint))
+
+
+def port_trouble(port: str, trouble: PortTrouble) -> Trouble:
+    """Return the sentence for a port that does not open."""
+    from tiniscript.link import ports
+
+    key = f"port_{trouble.reason}"
+    if trouble.reason == ports.FORBIDDEN and sys.platform.startswith("linux"):
+        key = "port_forbidden_linux"
+    if trouble.reason == ports.MISSING:
+        known = ", ".join(each.port for each in ports.listed())
+        if known:
+            return Trouble(3, "port_missing_but", port=shown(port), known=shown(known))
+    return Trouble(3, key, port=shown(port), why=shown(trouble.why))
+
+
+def hello(line: Line, limit_ms: int) -> Task:
+    """Begin a session. It is asked again until the robot answers: a reset takes it a while."""
+
+    def make(session: Session) -> Task:
+        task = session.hello()
+        task.limit_ms = limit_ms
+        return task
+
+    return line.do(make)
+
+
+def robot_of_kit(kit: int) -> str | None:
+    from tiniscript.cli.images import robot_of_kit as found
+
+    return found(kit)
+
+
+def _chosen(port: str | None, language: str) -> str:
+    """Return the port of `--port`, else the last used, else the one that the person chooses.
+
+    Never one that merely answers: it may be another group's robot.
+    """
+    if port is not None:
+        if not port.strip() or not port.isprintable():
+            raise Trouble(2, "no_such_port", found=shown(port) or "''")
+        return port
+    from tiniscript.link import ports, remembered
+
+    last = remembered.known().last
+    if last is not None and ports.is_there(last):
+        return last
+    if not (sys.stdin.isatty() and sys.stderr.isatty()):
+        if last is not None:
+            raise Trouble(3, "last_port_missing", port=shown(last))
+        raise Trouble(3, "which_port")
+    return _asked(language)
+
+
+def _asked(language: str) -> str:
+    """Let the person choose a port."""
+    from tiniscript.link import ports, remembered
+
+    names = remembered.known().names
+    found = ports.listed()
+    choices = [each.port for each in found]
+    choices += [port for port in names if port not in choices and ports.is_address(port)]
+    if not choices:
+        raise Trouble(3, "no_ports")
+    about = {each.port: each.description for each in found}
+    print(text("choose_port", language), file=sys.stderr)
+    for number, port in enumerate(choices, 1):
+        more = "   ".join(filter(None, (names.get(port), about.get(port))))
+        print(f"  {number}  {shown(port)}   {shown(more)}".rstrip(), file=sys.stderr)
+    while True:
+        print(text("choose_number", language).format(high=len(choices)), end="", file=sys.stderr,
+              flush=True)  # fmt: skip
+        answer = sys.stdin.readline()
+        if not answer:
+            raise Trouble(3, "which_port")
+        answer = answer.strip()
+        if answer in choices:
+            return answer
+        if answer.isascii() and answer.isdigit() and 1 <= int(answer[:9]) <= len(choices):
+            return choices[int(answer[:9]) - 1]

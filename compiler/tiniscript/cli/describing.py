@@ -1,0 +1,135 @@
+"""`tsc info`: what the robot says of itself."""
+
+from __future__ import annotations
+
+import json
+
+from tiniscript.cli.connecting import Connection, connected, robot_of_kit, takes_robot
+from tiniscript.cli.inputs import shown
+from tiniscript.cli.options import Options
+from tiniscript.cli.texts import text
+
+HELP = (
+    """\
+tsc info [--port P] [--json]
+
+Prints what the robot says of itself: name, kit, room, program, state, last fault.
+  --port P      the robot's port; the last used one where nothing is said
+  --baud N      its speed (the one of the profile that --robot NAME|FILE chooses)
+  --json        the same as data
+""",
+    """\
+tsc info [--port P] [--json]
+
+Imprime lo que el robot dice de sí mismo: nombre, kit, sitio, programa, estado, última falla.
+  --port P      el puerto del robot; el último usado si no se dice nada
+  --baud N      su velocidad (la del perfil que --robot NOMBRE|ARCHIVO elige)
+  --json        lo mismo como datos
+""",
+)
+
+
+def run(arguments: list[str], language: str) -> int:
+    parser = Options("info", language, HELP)
+    takes_robot(parser)
+    parser.add_argument("--json", action="store_true")
+    options = parser.read(arguments)
+    if options is None:
+        return 0
+    with connected(options, language) as connection:
+        connection.meet()
+        description = Description(connection)
+    print(json.dumps(description.fields(), indent=2) if options.json else description.text())
+    return 0
+
+
+class Description:
+    """What HELLO and STATUS have said."""
+
+    def __init__(self, connection: Connection) -> None:
+        self.connection = connection
+        self.card = connection.card
+        status = connection.ask(lambda session: session.status()).values
+        said = {**self.card.values, **status}
+        self.values = {key: value for key, value in said.items() if isinstance(value, int)}
+
+    def fields(self) -> dict[str, object]:
+        """Return it as data."""
+        from tiniscript.cli.telling import fault_name
+        from tiniscript.link.messages import RESETS, SAVED, STATES
+
+        values = self.values
+        has_program = values["saved"] != 0
+        fault = None
+        if values["fault"]:
+            program = f"{values['fault_program']:08x}"
+            fault = {"fault": fault_name(values["fault"]), "at": values["fault_at"],
+                     "program": program}  # fmt: skip
+        return {
+            "name": self.card.name,
+            "id": f"{self.card.id:08x}",
+            "port": self.connection.port,
+            "kit": f"{self.card.kit:04x}",
+            "robot": robot_of_kit(self.card.kit),
+            "link": f"{values['major']}.{values['minor']}",
+            "isa": f"{self.card.isa[0]}.{self.card.isa[1]}",
+            "room": self.card.room,
+            "state": _name(STATES, values["state"]),
+            "program": f"{values['program']:08x}" if has_program else None,
+            "code_bytes": values["length"] if has_program else None,
+            "saved": _name(SAVED, values["saved"]),
+            "slot": values["slot"] if values["saved"] == STORED else None,
+            "fault": fault,
+            "reset": _name(RESETS, values["reset"]),
+            "uptime_ms": values["uptime_ms"],
+            "damaged": values["damaged"],
+            "dropped": values["dropped"],
+        }
+
+    def text(self) -> str:
+        """Return it as lines."""
+        from tiniscript import maps
+
+        language, values, fields = self.connection.language, self.values, self.fields()
+        kit = f"{fields['kit']} ({fields['robot']})" if fields["robot"] else fields["kit"]
+        if values["saved"] == 0:
+            program = text("info_no_program", language)
+        else:
+            places = maps.recall(values["program"])
+            program = text("info_program", language).format(
+                checksum=fields["program"],
+                name=f" ({shown(places.name)})" if places is not None else "",
+                code=values["length"],
+                saved=text(f"saved_{fields['saved']}", language).format(slot=values["slot"]),
+            )
+        head = {"robot": self.connection.name, "port": shown(self.connection.port)}
+        state, reset = (text(f"{what}_{fields[what]}", language) for what in ("state", "reset"))
+        seconds = values["uptime_ms"] // 1000
+        lines = [
+            text("info_robot", language).format(**head, id=fields["id"]),
+            text("info_kit", language).format(kit=kit, isa=fields["isa"], room=self.card.room),
+            program,
+            text("info_state", language).format(state=state, seconds=seconds, reset=reset),
+        ]
+        if values["fault"]:
+            lines.append(self._fault())
+        if values["damaged"] or values["dropped"]:
+            counts = {name: values[name] for name in ("damaged", "dropped")}
+            lines.append(text("info_hearing", language).format(**counts))
+        return "\n".join(lines)
+
+    def _fault(self) -> str:
+        from tiniscript.cli.telling import fault_sentence
+
+        values = self.values
+        said = fault_sentence(values["fault"], values["fault_at"], values["fault_program"], None,
+                              self.connection.language)  # fmt: skip
+        return text("info_fault", self.connection.language).format(fault=said)
+
+
+STORED = 3  # of `link.messages.SAVED`
+
+
+def _name(table: tuple[tuple[str, str], ...], number: int) -> str:
+    """Return the name of a number; the first one's for what only a newer robot knows."""
+    return table[number if number < len(table) else 0][0]

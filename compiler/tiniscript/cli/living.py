@@ -1,0 +1,286 @@
+"""`tsc live`: lines that the robot does at once."""
+
+from __future__ import annotations
+
+import contextlib
+import sys
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from tiniscript.cli import inputs, outputs
+from tiniscript.cli.attending import Attendant, stop_and_say
+from tiniscript.cli.connecting import Connection, takes_robot
+from tiniscript.cli.options import Options
+from tiniscript.cli.texts import text
+from tiniscript.cli.trouble import Trouble
+
+if TYPE_CHECKING:
+    from tiniscript.cli.live_text import Known, Line
+    from tiniscript.cli.telling import Teller
+    from tiniscript.link.session import Event
+
+HELP = (
+    """\
+tsc live ['LINE'] [--port P] [--robot NAME|FILE]
+
+Does a line on the robot at once:  tsc live 'F(2, 80)'   Without a line there is a prompt, and with
+- lines come from standard input. Variables and DEFs live on until you leave: tsc keeps DEFs
+as text, and the values that a line has given when it was done. The program that the robot
+holds stays what it is. Ctrl-C stops the robot, Ctrl-D leaves.
+  --port P      the robot's port; the last used one where nothing is said
+  --baud N      its speed (the one of the robot's profile)
+  --robot R     for which robot: a name (tinibot, ...) or a profile's file
+""",
+    """\
+tsc live ['LÍNEA'] [--port P] [--robot NOMBRE|ARCHIVO]
+
+Hace una línea en el robot en el acto:  tsc live 'F(2, 80)'   Sin línea hay un diálogo, y con - las
+líneas vienen de la entrada estándar. Las variables y los DEF siguen vivos hasta que sales: tsc
+guarda los DEF como texto, y los valores que una línea ha puesto cuando terminó. El programa que
+tiene el robot queda como está. Ctrl-C detiene el robot, Ctrl-D sale.
+  --port P      el puerto del robot; el último usado si no se dice nada
+  --baud N      su velocidad (la del perfil del robot)
+  --robot R     para qué robot: un nombre (tinibot, ...) o el archivo de un perfil
+""",
+)
+
+PROMPT = "tini> "
+INTERRUPTED = 2
+
+
+def run(arguments: list[str], language: str) -> int:
+    parser = Options("live", language, HELP)
+    takes_robot(parser)
+    parser.add_argument("line", nargs="?")
+    parser.add_argument("-e", dest="text")
+    options = parser.read(arguments)
+    if options is None:
+        return 0
+    if options.line is not None and options.text is not None:
+        raise Trouble(2, "two_programs")
+    line: str | None = options.text if options.line is None else options.line
+    robot = inputs.robot(options, language)
+    from tiniscript.cli.live_text import Known
+
+    known = Known(robot.kit)
+    if line is not None and line != "-":
+        ready = _compiled(line, known, language, is_last=True)
+        if ready is None:
+            return 1
+    with Connection(options, robot, language) as connection:
+        talk = Talk(connection, known)
+        if line is None and sys.stdin.isatty():
+            return talk.prompt()
+        if line is None or line == "-":
+            connection.meet()
+            return talk.all_of(sys.stdin)
+        connection.meet()
+        return talk.do(line, is_last=True)
+
+
+def _compiled(line: str, known: Known, language: str, is_last: bool = False) -> Line | None:
+    """Compile a line and print what is wrong with it; return None where it is."""
+    from tiniscript.cli.live_text import header
+    from tiniscript.link.errands import SHORT_BYTES
+
+    if header(line) == "SB":
+        raise Trouble(1, "live_button")
+    found = known.line(line, 0 if is_last else SHORT_BYTES)
+    outputs.print_problems(found.compiled, language)
+    if not found.compiled.is_right:
+        return None
+    code = len(found.compiled.code)
+    if code > SHORT_BYTES:
+        raise Trouble(1, "live_too_long", code=str(code), room=str(SHORT_BYTES))
+    return found
+
+
+class Talk:
+    """Lines to a robot, one after the other."""
+
+    def __init__(self, connection: Connection, known: Known) -> None:
+        self.connection = connection
+        self.language = connection.language
+        self.known = known
+
+    def do(self, line: str, is_last: bool = False) -> int:
+        """Do a line; return the exit code. Ctrl-C stops the robot."""
+        from tiniscript.cli.live_text import header
+
+        if header(line) == "PING":
+            from tiniscript.cli.pinging import ping
+
+            return ping(self.connection, is_json=False)
+        found = _compiled(line, self.known, self.language, is_last)
+        if found is None:
+            return 1
+        try:
+            code = 0 if found.does_nothing else self._run(found, is_last)
+        except KeyboardInterrupt:
+            return stop_and_say(self.connection)
+        if not code and found.forgets and not is_last:
+            print(text("live_forgets", self.language), file=sys.stderr)
+        if not code and found.defs:
+            self.known.defs.update(found.defs)
+            if found.does_nothing:
+                names = ", ".join(found.defs)
+                print(text("live_known", self.language).format(names=names))
+        return code
+
+    def _run(self, found: Line, is_last: bool) -> int:
+        from tiniscript import maps
+        from tiniscript.cli.telling import Teller
+
+        places = maps.from_compiled(found.compiled)
+        maps.remember(found.compiled.image, places)  # tsc info names a fault's line later
+        reply = self.connection.ask(lambda session: session.live(found.compiled.code))
+        run = reply.values["run"]
+        assert isinstance(run, int)
+        teller = Teller(self.language, places=places)
+        catch = Catch(found.shown, self.known, teller, is_last)
+        return Attendant(self.connection, teller, catch.hold).attend(run)
+
+    def all_of(self, lines: object) -> int:
+        """Do lines from a file until one fails."""
+        from typing import TextIO, cast
+
+        for line in cast("TextIO", lines):
+            if line.strip():
+                code = self.do(line.rstrip("\r\n"))
+                if code:
+                    return code
+        return 0
+
+    def prompt(self) -> int:
+        """Let a person type lines, until they leave."""
+        self.connection.meet()
+        said = {"robot": self.connection.name, "port": inputs.shown(self.connection.port)}
+        print(text("live_hello", self.language).format(**said))
+        with _history(self.known):
+            while True:
+                self._tell_meanwhile()
+                try:
+                    line = input(PROMPT)
+                except EOFError:
+                    print()
+                    return 0
+                except KeyboardInterrupt:
+                    self._stop()
+                    continue
+                if line.strip():
+                    self._try(line)
+
+    def _try(self, line: str) -> None:
+        """Do a line; what is wrong with it or with the robot is said, and the talk goes on."""
+        try:
+            self.do(line)
+        except Trouble as trouble:
+            if trouble.key == "port_gone":
+                raise
+            print(trouble.sentence(self.language), file=sys.stderr)
+
+    def _stop(self) -> None:
+        try:
+            stop_and_say(self.connection)
+        except Trouble as trouble:
+            print(trouble.sentence(self.language), file=sys.stderr)
+
+    def _tell_meanwhile(self) -> None:
+        """Tell what the robot has told since the last line."""
+        from tiniscript.cli.telling import Teller
+        from tiniscript.link.line import Gone
+
+        teller = Teller(self.language)
+        try:
+            while True:
+                found = self.connection.line.event(0)
+                if found is None:
+                    return
+                if found[1].name == "LOST":
+                    lost = Trouble(3, "link_lost", port=inputs.shown(self.connection.port))
+                    print(lost.sentence(self.language), file=sys.stderr)
+                teller.tell(*found)
+        except Gone as gone:
+            raise self.connection.gone(gone.why) from None
+
+
+class Catch:
+    """Keeps back what a line shows of its variables, and learns their values from it."""
+
+    def __init__(
+        self, shown: tuple[str, ...], known: Known, teller: Teller, says_done: bool
+    ) -> None:
+        self.shown = shown
+        self.known = known
+        self.teller = teller
+        self.says_done = says_done
+        self.held: list[Event] = []
+
+    def hold(self, event: Event) -> bool:
+        from tiniscript.cli.live_text import MARK, Value
+
+        if event.name == "SHOW":
+            is_mark = event.values["value"] == MARK and not event.values["is_yes_no"]
+            if not self.shown or not (is_mark or self.held):
+                return False
+            if is_mark or len(self.held) > len(self.shown):
+                self._release()
+            if not is_mark and not self.held:
+                return False
+            self.held.append(event)
+            return True
+        if event.name == "DONE":
+            values = [each.values for each in self.held[1:]]
+            if len(values) == len(self.shown):
+                for name, each in zip(self.shown, values, strict=True):
+                    value = each["value"]
+                    assert isinstance(value, int)
+                    self.known.values[name] = Value(value, bool(each["is_yes_no"]))
+            else:
+                self._release()
+            return not self.says_done
+        if event.name in ("FAULT", "STOPPED", "ENDED"):
+            self._release()
+        return False
+
+    def _release(self) -> None:
+        """What was kept back is the person's own."""
+        for event in self.held:
+            self.teller.tell(0, event)
+        self.held = []
+
+
+@contextlib.contextmanager
+def _history(known: Known) -> Iterator[None]:
+    """Arrow keys bring back earlier lines, of earlier sessions too; Tab completes words."""
+    try:
+        import readline
+    except ImportError:  # Windows: its console has a history of its own
+        yield
+        return
+    from platformdirs import user_cache_path
+
+    from tiniscript.words import WORDS
+
+    path = user_cache_path("tiniscript", appauthor=False) / "live_history"
+    kit = known.kit
+
+    def complete(begun: str, number: int) -> str | None:
+        devices = [device.name for device in (*kit.sensors, *kit.actuators)]
+        words = sorted({*WORDS, *devices, *known.names()})
+        fitting = [word for word in words if word.startswith(begun.upper())]
+        return fitting[number] if number < len(fitting) else None
+
+    with contextlib.suppress(OSError):
+        readline.read_history_file(path)
+    readline.set_completer(complete)
+    readline.set_completer_delims(" \t;|()+-*/%=<>,")
+    is_libedit = "libedit" in (readline.__doc__ or "")
+    readline.parse_and_bind("bind ^I rl_complete" if is_libedit else "tab: complete")
+    try:
+        yield
+    finally:
+        readline.set_history_length(500)
+        with contextlib.suppress(OSError):
+            path.parent.mkdir(parents=True, exist_ok=True)
+            readline.write_history_file(path)

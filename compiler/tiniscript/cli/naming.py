@@ -1,0 +1,59 @@
+"""`tsc name`: the robot gets another name."""
+
+from __future__ import annotations
+
+from time import monotonic
+
+from tiniscript.cli.connecting import connected, takes_robot
+from tiniscript.cli.inputs import shown
+from tiniscript.cli.options import Options
+from tiniscript.cli.texts import text
+from tiniscript.cli.trouble import Trouble
+
+HELP = (
+    """\
+tsc name NEW [--port P]
+
+Names the robot: 1 to 16 bytes of UTF-8. It keeps its name when it is switched off.
+  --port P      the robot's port; the last used one where nothing is said
+  --baud N      its speed (the one of the profile that --robot NAME|FILE chooses)
+""",
+    """\
+tsc name NUEVO [--port P]
+
+Le pone nombre al robot: de 1 a 16 bytes de UTF-8. Lo conserva cuando se apaga.
+  --port P      el puerto del robot; el último usado si no se dice nada
+  --baud N      su velocidad (la del perfil que --robot NOMBRE|ARCHIVO elige)
+""",
+)
+
+KEEP_S = 0.6  # in which a robot writes a name down: 32 bytes, 3.4 ms each, and some to clear
+
+
+def run(arguments: list[str], language: str) -> int:
+    parser = Options("name", language, HELP)
+    takes_robot(parser)
+    parser.add_argument("name", nargs="?")
+    options = parser.read(arguments)
+    if options is None:
+        return 0
+    if options.name is None:
+        raise Trouble(2, "no_name")
+    from tiniscript.link import remembered
+    from tiniscript.link.messages import NAME_BYTES
+
+    name: str = options.name
+    data = name.encode("utf-8", "surrogateescape")
+    if not 1 <= len(data) <= NAME_BYTES or not name.isprintable() or not name.strip():
+        raise Trouble(2, "bad_name", bytes=str(len(data)))
+    with connected(options, language) as connection:
+        connection.meet()
+        connection.ask(lambda session: session.name(data))
+        remembered.remember(connection.port, name)
+        # whoever opens the port next may reset the robot, and would end its writing
+        end_s = monotonic() + KEEP_S
+        while monotonic() < end_s:
+            connection.line.event(KEEP_S)
+        said = {"port": shown(connection.port), "name": shown(name)}
+        print(text("named", language).format(**said))
+    return 0

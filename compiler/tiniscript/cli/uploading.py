@@ -1,0 +1,196 @@
+"""`tsc upload`: a program goes to the robot, starts there, and is looked after until it ends."""
+
+from __future__ import annotations
+
+import json
+from argparse import Namespace
+from typing import TYPE_CHECKING
+
+from tiniscript.cli import images, inputs
+from tiniscript.cli.attending import Attendant, stop_and_say, until_saved
+from tiniscript.cli.connecting import Connection, takes_port
+from tiniscript.cli.options import Options
+from tiniscript.cli.texts import text
+from tiniscript.cli.trouble import Trouble
+
+if TYPE_CHECKING:
+    from tiniscript.cli.progress import Progress
+    from tiniscript.link.errands import Errand, Reply
+    from tiniscript.link.session import Session, Task
+
+HELP = (
+    """\
+tsc upload PROGRAM [--port P] [--no-run] [--no-save] [--detach] [--robot NAME|FILE]
+
+Compiles a program, brings it to the robot and starts it there if it begins with SI. Stays until
+it ends: prints what it shows, and a fault with its line. Ctrl-C stops the robot. A program
+that begins with SB waits for the robot's button.
+  --port P      the robot's port (/dev/ttyUSB0, /dev/rfcomm0, COM5, socket://host:port, ...);
+                the last used one where nothing is said
+  --baud N      its speed (the one of the robot's profile)
+  --no-run      brings the program, and does not start it
+  --no-save     the robot forgets it when it is switched off
+  --detach      starts it and leaves: it goes on without tsc
+  --robot R     for which robot: a name (tinibot, ...) or a profile's file
+  --json        prints the receipt and what comes after it as lines of JSON
+Exit code: 0 when it is done, 1 after mistakes or a fault, 2 after Ctrl-C, 3 where the robot or
+the link has ended it.
+""",
+    """\
+tsc upload PROGRAMA [--port P] [--no-run] [--no-save] [--detach] [--robot NOMBRE|ARCHIVO]
+
+Compila un programa, lo lleva al robot y lo inicia ahí si empieza con SI. Se queda hasta que
+termina: imprime lo que muestra, y una falla con su línea. Ctrl-C detiene el robot. Un programa
+que empieza con SB espera el botón del robot.
+  --port P      el puerto del robot (/dev/ttyUSB0, /dev/rfcomm0, COM5, socket://host:puerto, ...);
+                el último usado si no se dice nada
+  --baud N      su velocidad (la del perfil del robot)
+  --no-run      lleva el programa y no lo inicia
+  --no-save     el robot lo olvida cuando se apaga
+  --detach      lo inicia y se va: sigue sin tsc
+  --robot R     para qué robot: un nombre (tinibot, ...) o el archivo de un perfil
+  --json        imprime el recibo y lo que viene después como líneas de JSON
+Código de salida: 0 si termina, 1 con errores o una falla, 2 después de Ctrl-C, 3 si el robot o
+la conexión lo terminó.
+""",
+)
+
+SAVING = 2  # of `link.messages.SAVED`
+
+
+def run(arguments: list[str], language: str) -> int:
+    parser = Options("upload", language, HELP)
+    parser.takes_program()
+    takes_port(parser)
+    for name in ("--no-run", "--no-save", "--detach", "--json"):
+        parser.add_argument(name, action="store_true")
+    options = parser.read(arguments)
+    if options is None:
+        return 0
+    given = inputs.program(options)
+    robot = inputs.robot(options, language)
+    ready = images.ready(given, robot, language, is_strict=True)
+    if ready is None:
+        return 1
+    if not given.is_image and ready.places is not None:
+        from tiniscript import maps
+        from tiniscript.image import pack
+
+        image = ready.image
+        maps.remember(pack(image.start, image.kit, image.code), ready.places)
+    with Connection(options, robot, language) as connection:
+        if ready.image.start == "PING":  # a program that asks who is there
+            from tiniscript.cli.pinging import ping
+
+            return ping(connection, options.json)
+        connection.meet()
+        try:
+            return _upload(connection, ready, inputs.shown(given.name), options)
+        except KeyboardInterrupt:
+            return stop_and_say(connection)
+
+
+def _upload(
+    connection: Connection, ready: images.Ready, name: str, options: Namespace
+) -> int:  # fmt: skip
+    from tiniscript.cli.progress import Progress
+    from tiniscript.cli.telling import Teller
+
+    language = connection.language
+    progress = Progress(language)
+    try:
+        task = connection.do(lambda session: _task(session, ready, options, progress))
+        reply = connection.wait(task, progress.draw)
+    finally:
+        progress.end()
+    if reply.status:
+        raise _trouble(connection, reply, ready)
+    values = {key: value for key, value in reply.values.items() if isinstance(value, int)}
+    is_running = ready.image.start == "SI" and not options.no_run
+    _print_receipt(connection, ready, name, values, is_running, options)
+    code = 0
+    if is_running and options.detach:
+        return 0
+    teller = Teller(language, options.json, places=ready.places)
+    if is_running:
+        code = Attendant(connection, teller).attend(values["run"])
+    if values["saved"] == SAVING:
+        slot = until_saved(connection)
+        if slot is None:
+            raise Trouble(3, "plain", said=text("not_saved", language))
+        teller.say(0, "SAVED", str(slot), text("now_saved", language).format(slot=slot), slot=slot)
+    return code
+
+
+def _task(session: Session, ready: images.Ready, options: Namespace, progress: Progress) -> Task:
+    task = session.upload(ready.image, not options.no_run, not options.no_save, options.detach)
+    progress.whole = len(ready.image.code)
+    task.errand = _watched(task.errand, progress)
+    return task
+
+
+def _watched(errand: Errand, progress: Progress) -> Errand:
+    """The same errand; `progress` knows how much of the program has arrived."""
+    try:
+        request = next(errand)
+        while True:
+            reply = yield request
+            done = reply.values.get("next")
+            if isinstance(done, int):
+                progress.done = done
+            request = errand.send(reply)
+    except StopIteration as over:
+        outcome: Reply = over.value
+        return outcome
+
+
+def _trouble(connection: Connection, reply: Reply, ready: images.Ready) -> Trouble:
+    from tiniscript.link.messages import STATUSES
+    from tiniscript.link.session import LOST
+
+    port = inputs.shown(connection.port)
+    if reply.status == STATUSES["TOO_LARGE"]:
+        code, room = len(ready.image.code), reply.detail
+        return Trouble(1, "too_large_by", code=str(code), over=str(code - room), room=str(room))
+    if reply.status == LOST:
+        return Trouble(3, "upload_lost", port=port)
+    return connection.trouble(reply)
+
+
+def _print_receipt(
+    connection: Connection, ready: images.Ready, name: str, values: dict[str, int],
+    is_running: bool, options: Namespace,
+) -> None:  # fmt: skip
+    from tiniscript.link.messages import SAVED
+
+    language, image = connection.language, ready.image
+    saved = SAVED[values["saved"]][0] if values["saved"] < len(SAVED) else "MEMORY"
+    if options.json:
+        print(json.dumps({
+            "event": "RECEIPT",
+            "robot": connection.card.name,
+            "port": connection.port,
+            "program": name,
+            "image_bytes": ready.image_bytes,
+            "code_bytes": len(image.code),
+            "checksum": f"{values['program']:08x}",
+            "saved": saved,
+            "slot": values["slot"] if saved == "STORED" else None,
+            "start": image.start,
+            "is_running": is_running,
+            "is_detached": is_running and bool(options.detach),
+        }), flush=True)  # fmt: skip
+        return
+    how = "how_waits"
+    if is_running:
+        how = "how_detached" if options.detach else "how_running"
+    print(text("receipt", language).format(
+        program=name,
+        robot=connection.name,
+        port=inputs.shown(connection.port),
+        image=ready.image_bytes,
+        code=len(image.code),
+        checksum=f"{values['program']:08x}",
+        saved=text(f"saved_{saved}", language).format(slot=values["slot"]),
+        how=text(how, language).format(start=image.start),
+    ), flush=True)  # fmt: skip
