@@ -15,6 +15,7 @@ from collections.abc import Callable
 from tests.machines.tabletop import EMPTY, POWER_ON, Tabletop
 from tiniscript.kit import Kit
 
+PUSHED, RELEASED = 1, 2  # flags of a step
 BEHIND_MS = 50  # more than that behind, the robot's clock goes slower
 
 
@@ -35,6 +36,7 @@ class Desk:
         self._lock = threading.Lock()
         self._robot: Tabletop | None = Tabletop(kit, memory)
         self._memory = memory
+        self._flags: list[int] = []  # what happens to the button, for each of the next steps
         self._is_over = False
         self._thread = threading.Thread(target=self._run, daemon=True)
         self._thread.start()
@@ -69,14 +71,14 @@ class Desk:
         """Let something else than the robot write to the port."""
         os.write(self._ours, data)
 
-    def ask(self, what: Callable[[Tabletop], None]) -> None:
+    def ask(self, what: Callable[[Tabletop], object]) -> None:
         with self._lock:
             assert self._robot
             what(self._robot)
 
     def push(self) -> None:
         """Push the button, and let it go."""
-        self.ask(lambda robot: robot.push(20))
+        self._flags = [PUSHED, *[0] * 20, RELEASED]
 
     def switch_off(self) -> None:
         """Only what is in its memory is kept."""
@@ -128,7 +130,8 @@ class Desk:
                     self.off_after -= len(data)
                     if self.off_after <= 0:
                         self._take_power()
-                back += self._robot.step(data) if self._robot else b""
+                flags = self._flags.pop(0) if self._flags else 0
+                back += self._robot.step(data, flags) if self._robot else b""
             sent, back = back[: self.bytes_per_ms], back[self.bytes_per_ms :]
             if sent:
                 os.write(self._ours, sent)

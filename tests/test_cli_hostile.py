@@ -12,6 +12,7 @@ import pytest
 
 from tests.command import PROGRAM, TSC, Tsc, process
 from tiniscript.cli import VERBS, main
+from tiniscript.cli.link_texts import LINK_TEXTS
 from tiniscript.cli.texts import TEXTS
 from tiniscript.image import unpack
 
@@ -107,7 +108,8 @@ def test_no_verb_and_no_such_verb(tsc: Tsc) -> None:
 def test_texts_have_the_same_gaps_in_both_languages() -> None:
     from string import Formatter
 
-    for key, both in TEXTS.items():
+    assert not set(TEXTS) & set(LINK_TEXTS)
+    for key, both in {**TEXTS, **LINK_TEXTS}.items():
         gaps = [{name for _, name, _, _ in Formatter().parse(text) if name} for text in both]
         if key != "help":
             assert gaps[0] == gaps[1], key

@@ -1,0 +1,382 @@
+"""The command and a robot: real processes, a real port, the whole firmware behind it."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.command import OBSTACLE, TSC, Done, Tsc, process
+from tests.desk import Desk
+from tests.machines.tabletop import missing
+from tiniscript import compile_text, robots
+from tiniscript.cli import connecting, finding
+from tiniscript.link import ports, remembered
+
+pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
+
+KIT = robots.load("tinibot").kit
+LONG = "LOOP(2);" + "".join(f"M({k}, 50);W(0.01);" for k in range(1, 56)) + "END_LOOP"
+FOREVER = "SI|LOOP(FOREVER);F(1, 80);END_LOOP"
+
+
+@pytest.fixture
+def desk() -> Iterator[Desk]:
+    with Desk(KIT) as found:
+        yield found
+
+
+@pytest.fixture
+def hasty(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nobody waits long for a robot that will not answer."""
+    monkeypatch.setattr(connecting, "ANSWER_MS", 800)
+    monkeypatch.setattr(connecting, "PATIENCE_MS", 800)
+    monkeypatch.setattr(finding, "ANSWER_MS", 800)
+
+
+def on(desk: Desk, *arguments: str | Path, data: bytes = b"") -> Done:
+    return process(*arguments, "--port", desk.port, data=data)
+
+
+def running(*arguments: str) -> subprocess.Popen[bytes]:
+    return subprocess.Popen(
+        [*TSC, *arguments], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    )
+
+
+def ended(command: subprocess.Popen[bytes]) -> Done:
+    out, err = command.communicate(timeout=60)
+    return Done(command.returncode, out.decode(), err.decode())
+
+
+# -- upload and start ---------------------------------------------------------------------------
+
+
+def test_upload_runs_the_program_and_stays_until_it_ends(desk: Desk, tmp_path: Path) -> None:
+    program = tmp_path / "drive.ts"
+    program.write_text("SI|F(0.2, 80)\nSHOW(DISTANCE + 1.5); SHOW(TRUE)\n", encoding="utf-8")
+    desk.ask(lambda robot: robot.sense(0, 0, 42_000))
+    done = on(desk, "upload", program)
+    assert (done.code, done.err) == (0, "")
+    receipt, *rest = done.out.splitlines()
+    image = compile_text(program.read_text(encoding="utf-8"), KIT).image
+    assert receipt.startswith(f"{program} -> tinibot ({desk.port})   {len(image)} bytes")
+    assert f"checksum {int.from_bytes(image[10:14], 'little'):08x}" in receipt
+    assert receipt.endswith("saving   SI: running")
+    assert rest == ["SHOW 43.5", "SHOW TRUE", "Done.", "Saved in slot 0."]
+    assert desk.did == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
+
+
+@pytest.mark.parametrize(
+    ("text", "trace"),
+    [
+        ("SI|F(5, 80)", ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]),
+        (
+            "SI|LOOP(3);F(2, 50);END_LOOP",
+            [*["MOTORS 50 50", "MOTORS 0 0"] * 3, "FINISHED"],
+        ),
+        (OBSTACLE, ["MOTORS 80 80", "MOTORS 0 0", "MOTORS 60 -60", "MOTORS 0 0", "MOTORS 80 80"]),
+    ],
+)
+def test_the_papers_programs_arrive_and_run(desk: Desk, text: str, trace: list[str]) -> None:
+    done = on(desk, "upload", "-e", text, "--detach")
+    assert done.code == 0
+    assert done.out.endswith("SI: running without tsc\n")
+    desk.ask(lambda robot: robot.wait(7000))
+    assert desk.did[: len(trace)] == trace
+
+
+def test_a_program_that_waits_ends_with_its_receipt(desk: Desk) -> None:
+    done = on(desk, "upload", "-e", "SB|F(0.1, 80)")
+    assert (done.code, desk.did) == (0, [])
+    assert "SB: waits for the button or tsc start\nSaved in slot" in done.out
+    desk.push()
+    desk.until(lambda: "FINISHED" in desk.did, "the button starts it")
+    done = on(desk, "start")
+    assert done.code == 0
+    assert done.out.endswith("Done.\n")
+    assert desk.did.count("FINISHED") == 2
+
+
+def test_a_longer_program_goes_in_pieces_and_comes_back(desk: Desk, tmp_path: Path) -> None:
+    ours, theirs = tmp_path / "ours.bin", tmp_path / "theirs.bin"
+    process("compile", "-e", LONG, "-o", ours)
+    done = on(desk, "upload", ours, "--no-run", "--no-save")
+    assert (done.code, desk.did) == (0, [])
+    assert "in RAM only   SI: waits" in done.out
+    done = on(desk, "fetch", "-o", theirs)
+    assert done.code == 0
+    assert theirs.read_bytes() == ours.read_bytes()
+    listing = on(desk, "fetch").out
+    assert listing.split("\n", 1)[1] == process("show", ours).out.split("\n", 1)[1]
+
+
+def test_the_receipt_is_data_too(desk: Desk) -> None:
+    done = on(desk, "upload", "-e", "SI|SHOW(0.5);SHOW(2);SHOW(FALSE);X = 0;SHOW(1 / X)", "--json")
+    assert done.code == 1
+    lines = [json.loads(line) for line in done.out.splitlines()]
+    assert [line["event"] for line in lines] == [
+        "RECEIPT",
+        "SHOW",
+        "SHOW",
+        "SHOW",
+        "FAULT",
+        "SAVED",
+    ]
+    assert [line["value"] for line in lines[1:4]] == [0.5, 2, False]
+    assert (lines[0]["start"], lines[0]["is_running"], lines[0]["saved"]) == ("SI", True, "SAVING")
+    assert (lines[4]["fault"], lines[4]["line"]) == ("DIVIDE_BY_ZERO", 1)
+
+
+def test_a_fault_names_its_line(desk: Desk, tmp_path: Path) -> None:
+    program = tmp_path / "divide.ts"
+    program.write_text("SI|F(0.1, 50)\nX = 0\nSHOW(1 / X)\n", encoding="utf-8")
+    done = on(desk, "upload", program, "--lang", "es")
+    assert done.code == 1
+    assert "falla DIVIDE_BY_ZERO" in done.err
+    assert "línea 3:  SHOW(1 / X)" in done.err
+    assert not desk.moves
+    done = on(desk, "info")  # the text is in the cache
+    assert "divide.ts, line 3:  SHOW(1 / X)" in done.out
+    assert on(desk, "start").code == 1
+
+
+def test_mistakes_keep_the_program_off_the_robot(desk: Desk) -> None:
+    done = on(desk, "upload", "-e", "F(2 80)")
+    assert done.code == 1
+    assert "TS017" in done.err
+    assert desk.heard == b""
+
+
+def test_what_does_not_fit_is_said_with_numbers(desk: Desk, tmp_path: Path) -> None:
+    target = tmp_path / "a.bin"
+    process("compile", "-e", "SHOW(TIME * 1.234);" * 90, "-o", target, "--robot", "grabber")
+    done = on(desk, "upload", target)
+    assert done.code == 1
+    assert "540 bytes of code, 110 more than the robot has room for (430)" in done.err
+    done = on(desk, "upload", "-e", "SHOW(LINE_L)", "--robot", "liner")
+    assert done.code == 3
+    assert "--robot tinibot" in done.err
+    done = on(desk, "start")
+    assert done.code == 3
+    assert "tsc upload" in done.err
+
+
+# -- endings ------------------------------------------------------------------------------------
+
+
+def test_ctrl_c_stops_the_robot_and_the_port_is_its_alone(desk: Desk) -> None:
+    command = running("upload", "-e", FOREVER, "--port", desk.port)
+    desk.until(lambda: desk.moves, "it drives")
+    done = on(desk, "stop")
+    assert done.code == 3
+    assert "another program is using the port" in done.err
+    pressed_ms = desk.robot_ms
+    command.send_signal(signal.SIGINT)
+    done = ended(command)
+    assert done.code == 2
+    assert "Stopped: the robot has confirmed it." in done.err
+    assert desk.did[-1] == "MOTORS 0 0"
+    assert int(desk.timed[-1].split()[0]) <= pressed_ms + 1000
+    assert on(desk, "upload", "-e", "SI|F(0.1, 30)").code == 0
+
+
+def test_stop_stops_what_runs_alone(desk: Desk) -> None:
+    assert on(desk, "upload", "-e", FOREVER, "--detach").code == 0
+    assert desk.moves
+    done = on(desk, "stop")
+    assert done.code == 0
+    assert "has confirmed it" in done.out
+    assert not desk.moves
+
+
+def test_the_button_ends_it_for_the_command_too(desk: Desk) -> None:
+    command = running("upload", "-e", FOREVER, "--port", desk.port)
+    desk.until(lambda: desk.moves, "it drives")
+    desk.push()
+    done = ended(command)
+    assert done.code == 3
+    assert "with its button" in done.out
+
+
+def test_a_command_that_is_killed_leaves_a_robot_that_stops(desk: Desk) -> None:
+    command = running("upload", "-e", FOREVER, "--port", desk.port)
+    desk.until(lambda: desk.moves, "it drives")
+    command.kill()
+    command.communicate()
+    desk.until(lambda: not desk.moves, "it stops by itself")
+    assert "LINK_LOST" in on(desk, "info").out
+
+
+def test_a_cable_that_is_pulled_is_said(desk: Desk) -> None:
+    command = running("upload", "-e", FOREVER, "--port", desk.port)
+    desk.until(lambda: desk.moves, "it drives")
+    desk.pull()
+    done = ended(command)
+    assert done.code == 3
+    assert "has vanished" in done.err
+
+
+def test_power_lost_in_the_middle_leaves_the_old_program(
+    tsc: Tsc, hasty: None, tmp_path: Path
+) -> None:
+    with Desk(KIT, bytes_per_ms=2) as desk:
+        old = tmp_path / "old.bin"
+        process("compile", "-e", "SB|F(0.1, 40)", "-o", old)
+        assert on(desk, "upload", old).code == 0
+        desk.off_after = 250
+        done = tsc("upload", "-e", LONG, "--port", desk.port)
+        assert done.code == 3
+        assert "lost the robot" in done.err
+        desk.switch_on()
+        assert on(desk, "fetch", "-o", tmp_path / "new.bin").code == 0
+        assert (tmp_path / "new.bin").read_bytes() == old.read_bytes()
+
+
+# -- who is there -------------------------------------------------------------------------------
+
+
+def test_a_robot_describes_itself_and_its_port_is_remembered(desk: Desk) -> None:
+    assert process("info").code == 3  # which port?
+    done = on(desk, "ping", "--count", "3")
+    assert done.code == 0
+    assert "3 round trips" in done.out
+    known = json.loads(process("info", "--json").out)
+    assert (known["port"], known["kit"], known["robot"]) == (
+        desk.port, f"{KIT.fingerprint:04x}", "tinibot",
+    )  # fmt: skip
+    assert known["program"] is None
+    assert json.loads(process("ping", "--json").out)["round_trips"] == 10
+    assert "10 round trips" in process("upload", "-e", "PING|check_connection").out
+
+
+def test_a_name_survives_power_off(desk: Desk) -> None:
+    done = on(desk, "name", "Ñandú")
+    assert (done.code, done.out) == (0, f"{desk.port}: the robot is called Ñandú now.\n")
+    desk.switch_off()
+    desk.switch_on()
+    assert json.loads(on(desk, "info", "--json").out)["name"] == "Ñandú"
+    for name in ("", " ", "a" * 17, "ñ" * 9, "a\nb"):
+        assert on(desk, "name", name).code == 2
+    assert "Ñandú, remembered   last used" in process("ports").out
+
+
+def test_ports_asks_only_when_it_is_told_to(tsc: Tsc, desk: Desk, hasty: None) -> None:
+    remembered.remember(desk.port, "TINI")
+    rows = json.loads(tsc("ports", "--json").out)
+    row = next(row for row in rows if row["port"] == desk.port)
+    assert (row["remembered"], row["is_last_used"]) == ("TINI", True)
+    assert desk.heard == b""
+    assert "robot tinibot" in tsc("ports", "--ask", "--port", desk.port).out
+    desk.switch_off()
+    assert "nothing answers" in tsc("ports", "--ask", "--port", desk.port).out
+    assert "there is no port" in tsc("ports", "--ask", "--port", "/dev/no-such").out
+
+
+def test_nobody_something_else_and_another_version(
+    tsc: Tsc, desk: Desk, hasty: None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with monkeypatch.context() as newer:
+        newer.setattr("tiniscript.link.session.MAJOR", 2)
+        done = tsc("ping", "--port", desk.port)
+        assert done.code == 3
+        assert "speaks version 1 of the link" in done.err
+    desk.switch_off()
+    done = tsc("ping", "--port", desk.port)
+    assert done.code == 3
+    assert "nothing answers" in done.err
+    for said in (b"Hello from another sketch\r\n", bytes(range(1, 256)) * 3, b"\xff" * 99):
+        timer = threading.Timer(0.3, desk.say, [said])
+        timer.start()
+        done = tsc("ping", "--port", desk.port)
+        assert done.code == 3
+        assert "not TiniScript" in done.err
+        timer.join()
+    done = tsc("ping", "--port", "loop://")
+    assert done.code == 3
+    assert "comes back what is sent" in done.err
+
+
+@pytest.mark.parametrize("verb", ["ping", "stop", "start", "info", "fetch", "monitor", "live"])
+def test_ports_that_are_none(tsc: Tsc, verb: str, tmp_path: Path) -> None:
+    for language in ("en", "es"):
+        for port in ("/dev/no-such-port", str(tmp_path), os.devnull, "nix://a", "socket://a",
+                     "socket://127.0.0.1:1", "a" * 5000):  # fmt: skip
+            done = tsc(verb, "--port", port, "--lang", language)
+            assert (done.code, done.out) == (3, "")
+            assert done.err.startswith("tsc: ")
+        for port in ("", "a\0b"):
+            assert tsc(verb, "--port", port, "--lang", language).code == 2
+        assert tsc(verb, "--lang", language).code == 3
+        assert tsc(verb, "--port", "x", "--baud", "fast", "--lang", language).code == 2
+
+
+def test_every_reason_has_a_sentence_with_a_next_step(
+    tsc: Tsc, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from serial import SerialException
+
+    for trouble, word in (
+        (SerialException(13, "Permission denied"), "dialout" if os.name == "posix" else "may not"),
+        (SerialException(16, "Device or resource busy"), "another program"),
+        (SerialException("could not open port 'COM5': PermissionError(13, 'Access')"), "another"),
+        (SerialException("could not open port 'COM5': FileNotFoundError(2, '')"), "no port"),
+        (SerialException("could not open port 'COM5': OSError(22, 'semaphore')"), "nobody"),
+        (SerialException("something new"), "something new"),
+        (OSError(112, "Host is down"), "nobody" if os.name == "posix" else ""),
+    ):
+
+        def refuse(*_: object, trouble: Exception = trouble, **__: object) -> None:
+            raise trouble
+
+        monkeypatch.setattr("serial.serial_for_url", refuse)
+        done = tsc("ping", "--port", "COM5")
+        assert done.code == 3
+        assert word in done.err
+
+
+def test_a_port_that_never_opens_is_given_up(
+    tsc: Tsc, monkeypatch: pytest.MonkeyPatch
+) -> None:  # fmt: skip
+    hangs = threading.Event()
+    monkeypatch.setattr("serial.serial_for_url", lambda *_, **__: hangs.wait(30))
+    with pytest.raises(ports.PortTrouble) as trouble:
+        ports.opened("COM5", 9600, limit_s=0.1)
+    assert trouble.value.reason == ports.SLOW
+    hangs.set()
+
+
+# -- monitor ------------------------------------------------------------------------------------
+
+
+def test_monitor_writes_what_the_robot_shows(desk: Desk, tmp_path: Path) -> None:
+    rows = tmp_path / "rows.csv"
+    assert on(desk, "upload", "-e", "SB|SHOW(1.5);W(0.1);SHOW(TRUE);X = 0;SHOW(1 / X)").code == 0
+    command = running("monitor", "--port", desk.port, "--csv", str(rows), "--json")
+    assert command.stderr
+    command.stderr.readline()  # it watches
+    desk.push()
+    desk.until(lambda: "FAULT" in rows.read_text(encoding="utf-8"), "the fault is written down")
+    command.send_signal(signal.SIGINT)
+    done = ended(command)
+    assert done.code == 0
+    events = [json.loads(line) for line in done.out.splitlines()]
+    assert [event["event"] for event in events] == ["SHOW", "SHOW", "FAULT"]
+    assert [row.split(",")[1:] for row in rows.read_text(encoding="utf-8").splitlines()] == [
+        ["event", "value"], ["SHOW", "1.5"], ["SHOW", "TRUE"], ["FAULT", "DIVIDE_BY_ZERO"],
+    ]  # fmt: skip
+
+
+def test_monitor_and_a_full_disk(desk: Desk, tmp_path: Path) -> None:
+    for file in ("/dev/full", tmp_path, tmp_path / "no" / "such"):
+        done = on(desk, "monitor", "--csv", file, "--max-time", "1")
+        assert (done.code, done.out) == (2, "")
+        assert "--csv" in done.err
+    assert on(desk, "monitor", "--max-time", "1").code == 0
