@@ -5,7 +5,7 @@ Every trouble on that way becomes a sentence that says what to do next.
 
 from __future__ import annotations
 
-import secrets
+import os
 import sys
 from argparse import Namespace
 from collections.abc import Callable
@@ -158,7 +158,9 @@ def opened_line(port: str, baud: int, robot: Robot, limit_s: float = 20) -> Line
         device = opened(port, baud, limit_s)
     except PortTrouble as trouble:
         raise port_trouble(port, trouble) from None
-    return Line(device, Session(secrets.randbits(32), baud, robot.kit.fingerprint))
+    return Line(
+        device, Session(int.from_bytes(os.urandom(4), "little"), baud, robot.kit.fingerprint)
+    )
 
 
 def port_trouble(port: str, trouble: PortTrouble) -> Trouble:

@@ -31,7 +31,7 @@ of them: opening a port resets most boards.
     """\
 tsc ports [--ask] [--json]
 
-Lista los puertos serie de este computador, y qué robots respondieron ahí antes. No abre ninguno:
+Lista los puertos serie de esta computadora, y qué robots respondieron ahí antes. No abre ninguno:
 abrir un puerto reinicia la mayoría de las placas.
   --ask         abre cada uno y dice qué robot responde ahí
   --port P      con --ask: solo este
