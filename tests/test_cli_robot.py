@@ -257,6 +257,15 @@ def test_a_robot_describes_itself_and_its_port_is_remembered(desk: Desk) -> None
     assert "10 round trips" in process("upload", "-e", "PING|check_connection").out
 
 
+def test_a_board_that_has_just_been_reset_is_waited_for(desk: Desk) -> None:
+    desk.switch_off()
+    timer = threading.Timer(2, desk.switch_on)  # python has to start, too
+    timer.start()
+    done = on(desk, "upload", "-e", "SI|F(0.1, 30)")
+    assert done.code == 0
+    timer.join()
+
+
 def test_a_name_survives_power_off(desk: Desk) -> None:
     done = on(desk, "name", "Ñandú")
     assert (done.code, done.out) == (0, f"{desk.port}: the robot is called Ñandú now.\n")
