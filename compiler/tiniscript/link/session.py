@@ -243,6 +243,8 @@ class Session:
         reply = yield Request("HELLO", values)
         if reply.status == OK:
             self._is_open = True
+            if self.robot is None or self.robot.values["nonce"] != reply.values["nonce"]:
+                self._event_seq = self._run = self._ended = None  # it was reset: it counts anew
             self.robot = errands.described(reply.values)
             state = reply.values["state"]
             assert isinstance(state, int)
