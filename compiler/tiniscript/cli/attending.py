@@ -51,8 +51,8 @@ class Attendant:
                 code = _end(event, run)
                 if code is not None:
                     return code
-        except Gone as gone:
-            raise self.connection.gone(gone.why) from None
+        except Gone:
+            raise self.connection.gone() from None
 
     def attend_or_stop(self, run: int) -> int:
         """The same; Ctrl-C stops the robot first."""

@@ -114,8 +114,8 @@ class Connection:
 
         try:
             return self.line.wait(task, look)
-        except Gone as gone:
-            raise self.gone(gone.why) from None
+        except Gone:
+            raise self.gone() from None
 
     def trouble(self, reply: Reply) -> Trouble:
         """Return the sentence for an outcome that is not OK."""
@@ -144,8 +144,8 @@ class Connection:
                 advice = text("choose_kit", self.language).format(robot=name)
         return f"{said} {advice}".strip()
 
-    def gone(self, why: str) -> Trouble:
-        return Trouble(3, "port_gone", port=shown(self.port), why=shown(why))
+    def gone(self) -> Trouble:
+        return Trouble(3, "port_gone", port=shown(self.port))
 
 
 def opened_line(port: str, baud: int, robot: Robot, limit_s: float = 20) -> Line:

@@ -36,8 +36,8 @@ LINK_TEXTS: dict[str, tuple[str, str]] = {
                      "tsc: {port} no es un puerto serie. Los puertos de aquí:  tsc ports"),
     "port_broken": ("tsc: the port {port} cannot be used: {why}. Pull its cable out, plug it in again, and try again.",
                     "tsc: no se puede usar el puerto {port}: {why}. Desconecta su cable, conéctalo otra vez y prueba otra vez."),
-    "port_gone": ("tsc: the port {port} has vanished ({why}). A program without --detach ends a second after that. Plug the cable in again and try again.",
-                  "tsc: el puerto {port} ha desaparecido ({why}). Un programa sin --detach termina un segundo después. Conecta el cable otra vez y prueba otra vez."),
+    "port_gone": ("tsc: the port {port} has vanished. A program without --detach ends a second after that. Plug the cable in again and try again.",
+                  "tsc: el puerto {port} ha desaparecido. Un programa sin --detach termina un segundo después. Conecta el cable otra vez y prueba otra vez."),
     # who answers
     "link_silent": ("tsc: nothing answers on {port}. Is the robot on, and is this its port (tsc ports)? If it has another speed:  --baud 115200",
                     "tsc: nada responde en {port}. ¿El robot está encendido y este es su puerto (tsc ports)? Si tiene otra velocidad:  --baud 115200"),

@@ -167,6 +167,7 @@ class Talk:
                 except KeyboardInterrupt:
                     self._stop()
                     continue
+                self._tell_meanwhile()
                 if line.strip():
                     self._try(line)
 
@@ -186,7 +187,10 @@ class Talk:
             print(trouble.sentence(self.language), file=sys.stderr)
 
     def _tell_meanwhile(self) -> None:
-        """Tell what the robot has told since the last line."""
+        """Tell what the robot has told since the last line.
+
+        That it was lost the next line tells, if it still is.
+        """
         from tiniscript.cli.telling import Teller
         from tiniscript.link.line import Gone
 
@@ -196,12 +200,9 @@ class Talk:
                 found = self.connection.line.event(0)
                 if found is None:
                     return
-                if found[1].name == "LOST":
-                    lost = Trouble(3, "link_lost", port=inputs.shown(self.connection.port))
-                    print(lost.sentence(self.language), file=sys.stderr)
                 teller.tell(*found)
-        except Gone as gone:
-            raise self.connection.gone(gone.why) from None
+        except Gone:
+            raise self.connection.gone() from None
 
 
 class Catch:

@@ -85,8 +85,8 @@ def _watch(connection: Connection, teller: Teller, seconds: int) -> None:
             if found[1].name == "LOST":
                 raise Trouble(3, "link_lost", port=shown(connection.port))
             teller.tell(*found)
-    except Gone as gone:
-        raise connection.gone(gone.why) from None
+    except Gone:
+        raise connection.gone() from None
 
 
 def _rows(name: str) -> TextIO:
