@@ -383,6 +383,55 @@ def test_monitor_writes_what_the_robot_shows(desk: Desk, tmp_path: Path) -> None
     ]  # fmt: skip
 
 
+def test_monitor_draws_a_curve(desk: Desk) -> None:
+    pty = pytest.importorskip("pty")
+    assert on(desk, "upload", "-e", "SB|SHOW(-2.5);W(0.3);SHOW(7);W(0.3);SHOW(TRUE)").code == 0
+    ours, theirs = pty.openpty()
+    environ = {**os.environ, "TERM": "xterm", "COLUMNS": "80", "LINES": "24"}
+    command = subprocess.Popen(
+        [*TSC, "monitor", "--port", desk.port, "--plot"],
+        stdin=subprocess.DEVNULL, stdout=theirs, stderr=theirs, env=environ,
+    )  # fmt: skip
+    os.close(theirs)
+    written = b""
+    while "── SHOW".encode() not in written:
+        written += os.read(ours, 65536)
+    desk.push()
+    while b"Done." not in written or "── SHOW 1 ".encode() not in written:
+        written += os.read(ours, 65536)
+    command.send_signal(signal.SIGINT)
+    while part := _rest(ours):
+        written += part
+    assert command.wait(30) == 0
+    os.close(ours)
+    seen = written.decode()
+    assert "SHOW -2.5" in seen and "SHOW TRUE" in seen
+    assert any("⠀" < letter <= "⣿" for letter in seen)
+    assert seen.endswith("\n")
+
+
+def _rest(terminal: int) -> bytes:
+    try:
+        return os.read(terminal, 65536)
+    except OSError:  # Linux: the other end is closed
+        return b""
+
+
+@pytest.mark.parametrize("values", [[], [(0, 5)], [(0, -5), (900, 7000), (20_000, 7000)]])
+def test_every_curve_fits_its_terminal(values: list[tuple[int, int]]) -> None:
+    from tiniscript.cli.plotting import Plot
+
+    plot = Plot()
+    for time_ms, value in values:
+        plot.take(time_ms, value, is_yes_no=False)
+    for now_ms in (20_000, 45_000, 90_000):
+        for width in (1, 2, 5, 8, 20, 80, 200):
+            for height in (1, 2, 3, 8, 50):
+                lines = plot.lines(width, height, now_ms)
+                assert 1 <= len(lines) <= height
+                assert all(line.cell_len <= width for line in lines)
+
+
 def test_monitor_and_a_full_disk(desk: Desk, tmp_path: Path) -> None:
     for file in ("/dev/full", tmp_path, tmp_path / "no" / "such"):
         done = on(desk, "monitor", "--csv", file, "--max-time", "1")

@@ -14,7 +14,7 @@ from collections import deque
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from math import floor, log10
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 from rich.console import Console
 from rich.control import Control
@@ -64,6 +64,12 @@ def watch(events: Iterator[Event | Ending], robot: Robot, pace: float, language:
         raise AssertionError("a run without an ending")
     finally:
         screen.end()
+
+
+class Drawable(Protocol):
+    """A picture: at most `height` lines of at most `width` columns."""
+
+    def lines(self, width: int, height: int, now_ms: float) -> list[Text]: ...
 
 
 class Screen:
@@ -123,7 +129,7 @@ class Screen:
         self.frame_s = now_s
         return True
 
-    def draw(self, picture: Picture, now_ms: float) -> None:
+    def draw(self, picture: Drawable, now_ms: float) -> None:
         """Print what was said, and the picture below it."""
         width, height = self.console.size
         lines = picture.lines(width - 1, height - max(3, height // 4), now_ms)

@@ -15,29 +15,32 @@ from tiniscript.cli.texts import text
 from tiniscript.cli.trouble import Trouble
 
 if TYPE_CHECKING:
+    from tiniscript.cli.plotting import Board
     from tiniscript.cli.telling import Teller
 
 HELP = (
     """\
-tsc monitor [--port P] [--csv FILE] [--json] [--max-time S]
+tsc monitor [--port P] [--plot] [--csv FILE] [--json] [--max-time S]
 
 Prints what the robot tells, each with the milliseconds since the first: values of SHOW, how a
 program ends, faults with their lines. Starts and stops nothing; Ctrl-C leaves. (Opening the
 port of an Arduino with a cable resets it: then nothing runs before its button is pressed.)
   --port P      the robot's port; the last used one where nothing is said
   --baud N      its speed (the one of the profile that --robot NAME|FILE chooses)
+  --plot        on a terminal: draws the values of the last 30 seconds as a curve
   --csv FILE    writes rows of ms,event,value, too
   --json        prints lines of JSON
   --max-time S  leaves after so many seconds
 """,
     """\
-tsc monitor [--port P] [--csv ARCHIVO] [--json] [--max-time S]
+tsc monitor [--port P] [--plot] [--csv ARCHIVO] [--json] [--max-time S]
 
 Imprime lo que el robot cuenta, cada cosa con los milisegundos desde la primera: valores de SHOW,
 cómo termina un programa, fallas con sus líneas. No inicia ni detiene nada; Ctrl-C sale. (Abrir
 el puerto de un Arduino con cable lo reinicia: nada se mueve antes de pulsar su botón.)
   --port P      el puerto del robot; el último usado si no se dice nada
   --baud N      su velocidad (la del perfil que --robot NOMBRE|ARCHIVO elige)
+  --plot        en una terminal: dibuja los valores de los últimos 30 segundos como una curva
   --csv ARCHIVO escribe además filas de ms,event,value
   --json        imprime líneas de JSON
   --max-time S  sale después de tantos segundos
@@ -48,6 +51,7 @@ el puerto de un Arduino con cable lo reinicia: nada se mueve antes de pulsar su 
 def run(arguments: list[str], language: str) -> int:
     parser = Options("monitor", language, HELP)
     takes_robot(parser)
+    parser.add_argument("--plot", action="store_true")
     parser.add_argument("--csv")
     parser.add_argument("--json", action="store_true")
     parser.add_argument("--max-time")
@@ -63,8 +67,16 @@ def run(arguments: list[str], language: str) -> int:
             connection.meet()
             said = {"robot": connection.name, "port": shown(connection.port)}
             print(text("watching", language).format(**said), file=sys.stderr)
-            teller = Teller(language, options.json, has_times=True, rows=rows)
-            _watch(connection, teller, seconds)
+            if options.plot and sys.stderr.isatty():
+                from tiniscript.cli.plotting import Board
+
+                with Board() as board:
+                    teller = Teller(language, options.json, has_times=True, rows=rows,
+                                    out=board.say, err=board.warn)  # fmt: skip
+                    _watch(connection, teller, seconds, board)
+            else:
+                teller = Teller(language, options.json, has_times=True, rows=rows)
+                _watch(connection, teller, seconds)
     except KeyboardInterrupt:  # that is how a person leaves
         print(file=sys.stderr)
     finally:
@@ -73,15 +85,21 @@ def run(arguments: list[str], language: str) -> int:
     return 0
 
 
-def _watch(connection: Connection, teller: Teller, seconds: int) -> None:
-    from tiniscript.link.line import Gone
+def _watch(
+    connection: Connection, teller: Teller, seconds: int, board: Board | None = None
+) -> None:
+    from tiniscript.link.line import Gone, now_ms
 
     end_s = monotonic() + seconds if seconds else None
     try:
         while end_s is None or monotonic() < end_s:
+            if board is not None:
+                board.draw(now_ms())
             found = connection.line.event()
             if found is None:
                 continue
+            if board is not None:
+                board.take(*found)
             if found[1].name == "LOST":
                 raise Trouble(3, "link_lost", port=shown(connection.port))
             teller.tell(*found)

@@ -14,6 +14,8 @@ from tiniscript.cli.texts import text
 from tiniscript.cli.trouble import Trouble
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from tiniscript.link.session import Event
     from tiniscript.maps import Map
 
@@ -58,8 +60,20 @@ def cause_name(number: int) -> str:
     return CAUSES[number][0] if number < len(CAUSES) else CAUSES[0][0]
 
 
+def _out(line: str) -> None:
+    print(line, flush=True)
+
+
+def _err(line: str) -> None:
+    sys.stdout.flush()
+    print(line, file=sys.stderr, flush=True)
+
+
 class Teller:
-    """Prints events. `has_times`: each with the milliseconds since the first look."""
+    """Prints events. `has_times`: each with the milliseconds since the first.
+
+    `out` and `err` print, where something else than this is on the terminal.
+    """
 
     def __init__(
         self,
@@ -68,12 +82,16 @@ class Teller:
         has_times: bool = False,
         places: Map | None = None,
         rows: TextIO | None = None,
+        out: Callable[[str], None] | None = None,
+        err: Callable[[str], None] | None = None,
     ) -> None:
         self.language = language
         self.is_json = is_json
         self.has_times = has_times
         self.places = places
         self.rows = rows
+        self.out = out or _out
+        self.err = err or _err
         self.began_ms: int | None = None
 
     def tell(self, time_ms: int, event: Event) -> None:
@@ -130,13 +148,12 @@ class Teller:
         if self.rows is not None:
             self._add_row(since_ms, name, what)
         if self.is_json:
-            print(json.dumps({"ms": since_ms, "event": name, **fields}), flush=True)
+            self.out(json.dumps({"ms": since_ms, "event": name, **fields}))
         elif is_bad or name in ("MISSED", "TEXT"):
-            sys.stdout.flush()
-            print(said, file=sys.stderr, flush=True)
+            self.err(said)
         else:
             time = f"{since_ms} " if self.has_times else ""
-            print(time + (said or f"{name} {what}"), flush=True)
+            self.out(time + (said or f"{name} {what}"))
 
     def _add_row(self, since_ms: int, name: str, what: str) -> None:
         assert self.rows is not None
