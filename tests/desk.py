@@ -29,6 +29,7 @@ class Desk:
         self.kit = kit
         self.bytes_per_ms = bytes_per_ms
         self.heard = b""  # all that has come to the port
+        self.damages = 0  # of so many bytes one changes on its way; 0: none does
         self.off_after: int | None = None  # so many bytes more, and its battery is empty
         self._ours, self._theirs = pty.openpty()
         tty.setraw(self._theirs)
@@ -37,6 +38,7 @@ class Desk:
         self._robot: Tabletop | None = Tabletop(kit, memory)
         self._memory = memory
         self._flags: list[int] = []  # what happens to the button, for each of the next steps
+        self._passed = 0  # bytes, through the noise
         self._is_over = False
         self._thread = threading.Thread(target=self._run, daemon=True)
         self._thread.start()
@@ -110,6 +112,16 @@ class Desk:
             assert time.monotonic() < end_s, f"not after {limit_s} s: {what}"
             time.sleep(0.01)
 
+    def _through_noise(self, data: bytes) -> bytes:
+        if not self.damages:
+            return data
+        noisy = bytearray(data)
+        for k in range(len(noisy)):
+            self._passed += 1
+            if self._passed % self.damages == 0:
+                noisy[k] ^= 0x24
+        return bytes(noisy)
+
     def _take_power(self) -> None:
         if self._robot:
             self._memory = self._robot.memory()
@@ -124,6 +136,7 @@ class Desk:
             ready, _, _ = select.select([self._ours], [], [], 0)
             there += os.read(self._ours, 4096) if ready else b""
             data, there = there[: self.bytes_per_ms], there[self.bytes_per_ms :]
+            data = self._through_noise(data)
             self.heard += data
             with self._lock:
                 if self.off_after is not None and data:
@@ -134,5 +147,5 @@ class Desk:
                 back += self._robot.step(data, flags) if self._robot else b""
             sent, back = back[: self.bytes_per_ms], back[self.bytes_per_ms :]
             if sent:
-                os.write(self._ours, sent)
+                os.write(self._ours, self._through_noise(sent))
             time.sleep(max(0.0, next_s - time.monotonic()))

@@ -118,6 +118,16 @@ def test_a_longer_program_goes_in_pieces_and_comes_back(desk: Desk, tmp_path: Pa
     assert listing.split("\n", 1)[1] == process("show", ours).out.split("\n", 1)[1]
 
 
+def test_noise_on_the_line_costs_time_and_nothing_else(desk: Desk, tmp_path: Path) -> None:
+    ours, theirs = tmp_path / "ours.bin", tmp_path / "theirs.bin"
+    process("compile", "-e", LONG, "-o", ours)
+    desk.damages = 211
+    assert on(desk, "upload", ours, "--no-run", "--no-save").code == 0
+    assert on(desk, "fetch", "-o", theirs).code == 0
+    assert theirs.read_bytes() == ours.read_bytes()
+    assert json.loads(on(desk, "info", "--json").out)["damaged"] > 0
+
+
 def test_the_receipt_is_data_too(desk: Desk) -> None:
     done = on(desk, "upload", "-e", "SI|SHOW(0.5);SHOW(2);SHOW(FALSE);X = 0;SHOW(1 / X)", "--json")
     assert done.code == 1
