@@ -7,13 +7,14 @@ namespace {
 constexpr uint8_t kBounceMs = 30;  // for so long a contact may chatter
 
 enum class State : uint8_t {
-  kRising,  // has gone up; may chatter
+  kUnknown,  // after a reset
+  kRising,   // has gone up; may chatter
   kUp,
   kFalling,  // has gone down; may chatter, or be a spike
   kDown,
 };
 
-State state = State::kRising;
+State state = State::kUnknown;
 uint32_t changed_ms;
 
 }  // namespace
@@ -21,8 +22,11 @@ uint32_t changed_ms;
 Press button_read(bool is_down, uint32_t now_ms) {
   const bool is_settled = now_ms - changed_ms >= kBounceMs;
   switch (state) {
-    case State::kRising:
+    case State::kUnknown:
       if (is_settled && !is_down) state = State::kUp;
+      break;
+    case State::kRising:
+      if (is_settled) state = State::kUp;
       break;
     case State::kUp:
       if (!is_down) break;

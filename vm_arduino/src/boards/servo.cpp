@@ -1,5 +1,6 @@
 #include "servo.h"
 
+#include "../vm/small.h"
 #include "kit.h"
 
 #ifdef tiniscript_servos
@@ -58,7 +59,8 @@ void servo_begin() {
   TIMSK1 = 1 << OCIE1A;
 }
 
-void servo_set(uint8_t number, uint16_t pulse_us, uint8_t frames) {
+// Not inlined: what calculates the pulse would move in between, where interrupts are off.
+one_copy void servo_set(uint8_t number, uint16_t pulse_us, uint8_t frames) {
   const NoInterrupts quiet;
   pulses[number].ticks = static_cast<uint16_t>(pulse_us * kTicksPerUs);
   pulses[number].frames = frames;
