@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from itertools import pairwise
 
 import pytest
@@ -10,6 +11,7 @@ from tests.machines import board as boards
 from tests.machines.board import HERTZ, MS, Board
 from tests.test_robots import TEXTS
 from tiniscript import robots
+from tiniscript.robots.ports import AVRS
 from tiniscript.robots.profile import Robot
 from tiniscript.robots.reader import read
 
@@ -21,12 +23,12 @@ MOVES = "SI|F(0.1, 80);B(0.1, 40);M(50, -100);W(0.1)"
 TURN = 250.0
 
 
-def robot_with(motors: str, chip: str = "uno") -> Robot:
+def robot_with(motors: str) -> Robot:
     """The robot tinibot with other motors."""
     head, _, rest = TEXTS["tinibot"].partition("[board.motors]")
     text = f"{head}[board.motors]\n{motors}\n[board.sensors.LIGHT_R]"
     text += rest.partition("[board.sensors.LIGHT_R]")[2]
-    return read(text.replace('chip = "uno"', f'chip = "{chip}"'), "test")
+    return read(text, "test")
 
 
 def bridge(driver: str, more: str = "") -> str:
@@ -59,7 +61,7 @@ DRIVERS = {
     "l298n": (bridge("l298n"), BRIDGE_STATES),
     "l293d": (bridge("l293d"), BRIDGE_STATES),
     "tb6612": (
-        bridge("tb6612", "standby = 12\n").replace("bluetooth", ""),
+        bridge("tb6612", 'standby = "A5"\n'),
         tuple((*state, "low" if state[0] == "low" else "high") for state in BRIDGE_STATES),
     ),
     "two_wire": (TWO_WIRE, TWO_WIRE_STATES),
@@ -67,10 +69,7 @@ DRIVERS = {
 
 
 def driven(name: str) -> Robot:
-    motors, _ = DRIVERS[name]
-    if name == "tb6612":
-        motors = motors.replace("standby = 12", 'standby = "A5"')
-    return robot_with(motors)
+    return robot_with(DRIVERS[name][0])
 
 
 def started(robot: Robot, text: str, more: str = "") -> Board:
@@ -87,10 +86,21 @@ def test_states_of_the_motor_pins(name: str) -> None:
     assert board.motors(START - 1) == states[-1]
 
 
-@pytest.mark.parametrize("name", sorted(robots.names()))
-def test_shipped_robots_drive(name: str) -> None:
-    """On the Arduino of the profile: a Nano, a Mega with its other ports."""
-    board = started(robots.load(name), MOVES).ran(START + OFF + 50)
+def on_board(name: str, chip: str, *changes: tuple[str, str]) -> Robot:
+    """A shipped robot on another board, or wired in another way."""
+    text = re.sub(r'^chip *= *"\w+"', f'chip = "{chip}"', TEXTS[name], flags=re.M)
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new, 1)
+    return read(text, name)
+
+
+@pytest.mark.parametrize(("name", "chip"), [
+    ("tinibot", "uno"), ("tinibot", "nano"), ("tinibot", "mega"),
+    ("liner", "nano"), ("liner", "mega"), ("grabber", "mega"),
+])  # fmt: skip
+def test_shipped_robots_drive(name: str, chip: str) -> None:
+    board = started(on_board(name, chip), MOVES).ran(START + OFF + 50)
     standby = 1 if name == "liner" else 0
     for ms, state in zip((FORWARD, BACK, TURN, OFF), BRIDGE_STATES, strict=True):
         last = ("low" if ms == OFF else "high",) * standby
@@ -129,6 +139,14 @@ def test_the_press_that_stops_does_not_start() -> None:
     for ms in (500.5, 599, 650, 899, 999):
         assert board.motors(ms) == ("low",) * 6
     assert board.motors(1001)[0] == "pwm 204"
+
+
+def test_a_press_just_after_the_release_is_a_press() -> None:
+    board = started(robots.load("tinibot"), "SI|M(80, 80);W(5)")
+    board.press(START + 10, START + 100)
+    board.ran(START + 120)
+    assert board.motors(START + 20)[0] == "pwm 204"
+    assert board.motors(START + 32)[0] == "low"
 
 
 # -- servos that turn without end
@@ -192,135 +210,28 @@ def test_the_interrupt_turns_the_pins_off_and_nothing_turns_them_on(name: str) -
     assert board.moved()[-1] > 800 * MS  # the button releases the latch
 
 
-# -- sensors
+SWEPT_CYCLES = 2000
+STOPPING = "SI|LOOP(FOREVER);M(80, 80);M(-80, 80);LAMP(TRUE);LAMP(FALSE);END_LOOP"
+LAMP = '[[kit.actuators]]\nname = "LAMP"\nkind = "yes/no"\n\n[board]\n'
 
 
-def shown_as_power(reading: str) -> str:
-    """A program that shows a reading as the power of a motor: PWM of 2.55 for each percent."""
-    return f"SI|M({reading}, 0);W(5)"
-
-
-@pytest.mark.parametrize("distance_cm", [3, 20, 50, 99])
-@pytest.mark.parametrize("name", ["tinibot", "grabber"])
-def test_an_echo_is_a_distance(name: str, distance_cm: int) -> None:
-    robot = robots.load(name)
-    board = started(robot, shown_as_power("DISTANCE"))
-    at = [each.driver for each in robot.board.sensors].index("hc_sr04")
-    pins = robot.board.sensors[at].pins
-    board.echoes(pins["trigger"], pins["echo"], [distance_cm * 2 / 0.0343])
-    board.ran(START + 60)
-    assert board.motors(START + 55)[0] == f"pwm {distance_cm * 653 >> 8}"
-
-
-@pytest.mark.parametrize("width_us", [0, 38_000])
-def test_no_echo_is_far_away_and_takes_25_ms(width_us: int) -> None:
-    """The second reading waits until the sensor has lowered its echo."""
-    robot = robots.load("tinibot")
-    text = "SI|IF(DISTANCE = 400);M(10, 0);ENDIF;IF(DISTANCE < 400);M(20, 0);ENDIF;W(5)"
-    board = started(robot, text)
-    pins = robot.board.sensors[2].pins
-    board.echoes(pins["trigger"], pins["echo"], [width_us, 50 * 2 / 0.0343])
-    board.ran(START + 100)
-    level = f"pwm {10 * 653 >> 8}"
-    assert board.motors(START + 24)[0] == "low"
-    assert board.motors(START + 27)[0] == level
-    assert board.motors(START + 99)[0] == f"pwm {20 * 653 >> 8}"
-
-
-def test_a_long_trigger() -> None:
-    """A sensor wants 10 us, and the loop does not wait for it."""
-    robot = robots.load("tinibot")
-    trigger = robot.board.sensors[2].pins["trigger"]
-    board = started(robot, shown_as_power("DISTANCE"))
-    board.watch(trigger)
-    board.ran(START + 20)
-    rose, fell = board.edges(trigger)
-    assert 10 <= (fell - rose) * 1e6 / HERTZ < 200
-
-
-@pytest.mark.parametrize(("name", "reading", "channel", "millivolts", "power"), [
-    ("tinibot", "LIGHT_R / 20", 0, 2500, 511 / 20),
-    ("tinibot", "LIGHT_L / 20", 1, 5000, 1023 / 20),
-    ("grabber", "TEMPERATURE", 0, 750, 25),
-    ("grabber", "TEMPERATURE", 0, 5000, 100),
-    ("liner", "BATTERY * 10", 7, 3700, 74),
+@pytest.mark.parametrize(("chip", "lamp", "stop_pin", "group"), [
+    ("uno", "12", 19, 1),
+    ("mega", "16", 53, 0),  # on the port of three motor pins, which no single instruction changes
 ])  # fmt: skip
-def test_a_voltage_is_a_reading(
-    name: str, reading: str, channel: int, millivolts: int, power: float
-) -> None:
-    board = started(robots.load(name), shown_as_power(reading))
-    board.analog(channel, millivolts)
-    board.ran(START + 10)
-    shown = int(board.motors(START + 9)[0].removeprefix("pwm "))
-    assert abs(shown - power * 2.55) < 3
-
-
-@pytest.mark.parametrize(("name", "sensor", "pin", "is_high", "is_true"), [
-    ("liner", "LINE_L", 15, True, True),
-    ("liner", "LINE_R", 16, False, False),
-    ("liner", "BUTTON", 12, True, False),
-    ("liner", "BUTTON", 12, False, True),
-    ("grabber", "BUTTON", 28, False, True),
-])  # fmt: skip
-def test_a_level_is_yes_or_no(
-    name: str, sensor: str, pin: int, is_high: bool, is_true: bool
-) -> None:
-    text = f"SI|IF({sensor});M(20, 0);ELSE;M(10, 0);ENDIF;W(5)"
-    board = started(robots.load(name), text)
-    board.level(0, pin, is_high)
-    board.ran(START + 5)
-    assert board.motors(START + 4)[0] == f"pwm {(20 if is_true else 10) * 653 >> 8}"
-
-
-# -- what a robot has besides
-
-
-@pytest.mark.parametrize("hertz", [31, 100, 440, 880, 3000, 12345, 19800, 20000])
-@pytest.mark.parametrize("name", ["tinibot", "grabber"])
-def test_a_beep_has_its_frequency_and_its_length(name: str, hertz: int) -> None:
-    robot = robots.load(name)
-    board = started(robot, f"SI|BEEP(0.3, {hertz})")
-    board.watch(robot.board.buzzer)
-    board.ran(START + 290)
-    edges = board.edges(robot.board.buzzer)
-    periods = (len(edges) - 1) // 2
-    found = HERTZ * periods / (edges[2 * periods] - edges[0])
-    assert abs(found / hertz - 1) < 0.01
-
-
-def test_a_program_that_has_ended_plays_its_tune() -> None:
-    robot = robots.load("tinibot")
-    board = started(robot, "SI|F(0.1, 50)")
-    board.watch(robot.board.buzzer)
-    board.ran(START + 500)
-    edges = [cycle / MS - START for cycle in board.edges(robot.board.buzzer)]
-    assert 99 < edges[0] < 102
-    assert 338 < edges[-1] < 342
-    halves = [b - a for a, b in pairwise(edges)]
-    assert halves[0] > 1.3 * halves[-2]
-
-
-def test_the_light_is_on_while_a_program_could_start() -> None:
-    robot = robots.load("tinibot")
-    light = robot.board.status_led
-    assert light is not None
-    board = started(robot, "SI|W(0.2)")
-    board.watch(light)
-    board.ran(START + 300)
-    assert [board.pin(light, START + ms) for ms in (-50, 100, 250)] == ["high", "low", "high"]
-
-
-def test_a_servo_and_a_lamp() -> None:
-    robot = robots.load("grabber")
-    board = started(
-        robot, "SI|GRIPPER(0);LED(TRUE);W(0.1);GRIPPER(90);W(0.1);GRIPPER(9 * 9 * 9);W(0.1)"
-    )
-    for pin in (11, 30):
-        board.watch(pin)
-    board.ran(START + 320)
-    found = pulses(board, 11)
-    assert found[0][0] > START
-    for after, us in ((25, 600), (125, 1500), (225, 2400)):
-        each = [length for ms, length in found if START + after < ms < START + after + 70]
-        assert each and all(abs(length - us) < 3 for length in each)
-    assert board.pin(30, START + 50) == "high"
+def test_a_stop_at_any_cycle_stops(chip: str, lamp: str, stop_pin: int, group: int) -> None:
+    """Nothing that the interrupt has turned off is turned on by what it came in between."""
+    wired = f'[board.actuators.LAMP]\ndriver = "digital"\npin = {lamp}\n\n[body]\n'
+    changes = (("[board]\n", LAMP), ("bluetooth_state = 12", ""), ("[body]\n", wired))
+    robot = on_board("tinibot", chip, *changes)
+    bit = AVRS[chip].interrupts[stop_pin].bit
+    more = STOPS.replace("PCINT1", f"PCINT{group}").replace("1 << 1", f"1 << {group}")
+    more = more.replace("PCMSK1 = 1 << 5", f"PCMSK{group} = 1 << {bit}")
+    board = started(robot, STOPPING, more)
+    board.sweep(1, SWEPT_CYCLES, STOP_US, stop_pin)  # before the program drives again
+    board.ran(START + 2)
+    edges = [cycle for cycle in board.edges(7) if cycle > (START + 1) * MS]
+    assert edges[2] - edges[0] < SWEPT_CYCLES, "not a whole turn of the program"
+    assert len(board.copies) == SWEPT_CYCLES
+    missed = [number for number, copy in enumerate(board.copies) if not board.is_off(copy)]
+    assert not missed

@@ -133,6 +133,45 @@ def test_refusals(code: str, name: str, old: str, new: str, path: str | None) ->
         assert all(sentence for sentence in describe(refused, language))
 
 
+FAN = """
+[[kit.actuators]]
+name = "FAN"
+kind = "number"
+range = [0, 100]
+
+[board.actuators.FAN]
+driver = "pwm"
+pin = {pin}
+"""
+
+
+@pytest.mark.parametrize(("motors", "pin", "timer", "first"), [
+    ("servos", 9, 1, "board.motors.left_pin"),
+    ("servos", 10, 1, "board.motors.left_pin"),
+    ("l298n", 3, 2, "board.buzzer"),
+    ("l298n", 5, None, ""),  # timer 0 keeps the time, and does PWM besides
+])  # fmt: skip
+def test_timers_of_an_uno(motors: str, pin: int, timer: int | None, first: str) -> None:
+    """Servos take PWM 9 and 10, the buzzer PWM 3 and 11; the names of both are said."""
+    before, _, after = TEXTS["tinibot"].partition("[board.motors]")
+    wired = {
+        "servos": 'driver = "servos"\nleft_pin = 7\nright_pin = 8\n',
+        "l298n": 'driver = "l298n"\nleft_pwm = 6\nleft_forward = 7\nleft_backward = 8\n'
+        'right_pwm = 9\nright_forward = "A2"\nright_backward = 10\n',
+    }[motors]
+    text = f"{before}[board.motors]\n{wired}{FAN.format(pin=pin)}"
+    text += "[board.sensors.LIGHT_R]" + after.partition("[board.sensors.LIGHT_R]")[2]
+    text = text.replace("echo = 3", 'echo = "A3"')
+    if timer is None:
+        assert read(text, "test").board.actuators[0].pins == {"pin": pin}
+        return
+    refused = refusal(text)
+    assert codes(refused) == ["timer_twice"]
+    said = describe(refused, "en")[0]
+    assert said.startswith(f"board.actuators.FAN.pin is pin {pin}: its PWM needs timer {timer}")
+    assert f"which {first} uses." in said
+
+
 def test_every_code_has_a_test() -> None:
     of_files = {"no_such_robot", *(code for code, *_ in FILES)}
     tested = of_files | {code for code, *_ in REFUSED}

@@ -10,7 +10,7 @@ from __future__ import annotations
 import shutil
 import subprocess
 import tempfile
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple
@@ -141,6 +141,8 @@ class Board:
         self.script: list[str] = []
         self.watched: set[int] = set()
         self.changes: list[Change] = []
+        self.copies: list[dict[int, int]] = []  # watched registers at the end of each
+        self.quiet_us = 0.0  # for how long interrupts were off, at most
         self.events: list[tuple[int, int, bool]] = []
         for pin in self.motor_pins():
             self.watch(pin)
@@ -186,9 +188,15 @@ class Board:
 
     # -- the run, and what it was like
 
+    def sweep(self, step: int, count: int, span_us: float, pin: int) -> None:
+        """After the run a pin goes high: `count` times, each `step` cycles later."""
+        port, bit = self.bit(pin)
+        span = round(span_us * 16)
+        self.script.append(f"sweep {step} {count} {span} {port.upper()} {bit}")
+
     def ran(self, ms: float) -> Board:
         lines = [f"watch {address}" for address in sorted(self.watched)]
-        for cycle, pin, is_high in sorted(self.events):
+        for cycle, pin, is_high in sorted(self.events, key=lambda event: event[0]):
             port, bit = self.bit(pin)
             lines.append(f"pin {cycle} {port.upper()} {bit} {int(is_high)}")
         with tempfile.TemporaryDirectory(dir=_folder().name) as name:
@@ -203,11 +211,18 @@ class Board:
             )
         assert done.returncode == 0, done.stderr
         rows = [line.split() for line in done.stdout.splitlines()]
-        self.changes = [
-            Change(*map(int, row)) for row in rows if len(row) == 3 and row[0].isdigit()
-        ]
-        ends = [row for row in rows if row[-1:] == ["END"]]
+        ends = [row for row in rows if row[1:2] == ["END"]]
         assert ends and int(ends[0][0]) >= round(ms * MS), done.stderr
+        self.changes = [
+            Change(*map(int, row))
+            for row in rows
+            if len(row) == 3 and row[0].isdigit() and row[1].isdigit()
+        ]
+        for row in rows:
+            if row[0] == "COPY":
+                numbers = [int(word) for word in row[2:]]
+                self.copies.append(dict(zip(numbers[::2], numbers[1::2], strict=True)))
+        self.quiet_us = int(ends[0][2]) * 1e6 / HERTZ
         return self
 
     def register(self, address: int, ms: float) -> int:
@@ -241,6 +256,17 @@ class Board:
                 level ^= 1
                 found.append(change.cycle)
         return found
+
+    def is_off(self, registers: Mapping[int, int]) -> bool:
+        """Return whether all motor pins are low outputs without PWM."""
+        for pin in self.motor_pins():
+            port, bit = self.bit(pin)
+            compare = self.avr.compares.get(pin)
+            if registers[PORTS[port]] >> bit & 1 or not registers[PORTS[port] - 1] >> bit & 1:
+                return False
+            if compare and registers[CONTROLS[compare.timer]] & CONNECTIONS[compare.channel]:
+                return False
+        return True
 
     def motor_pins(self) -> Sequence[int]:
         return tuple(self.robot.board.motors.pins.values())

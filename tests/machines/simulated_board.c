@@ -10,7 +10,13 @@
  *       an HC-SR04: its trigger and its echo; the echo of the next ping begins so many cycles
  *       after the trigger falls, and is so long. Every line is a ping; the last one repeats.
  *
- * Prints `CYCLE ADDRESS VALUE` for each change, and `CYCLE END` at the end.
+ *   sweep STEP COUNT SPAN PORT BIT
+ *       when the run has ended, COUNT copies of the chip go on: in the first one that wire goes
+ *       high at once, in each other one STEP cycles later; SPAN cycles later the copy ends
+ *
+ * Prints `CYCLE ADDRESS VALUE` for each change, and `CYCLE END QUIET` at the end: for how many
+ * cycles interrupts were off at most, from the first time that they were on. A copy prints
+ * `COPY NUMBER` and what its watched registers are in the end.
  */
 #include <simavr/avr_adc.h>
 #include <simavr/avr_ioport.h>
@@ -19,6 +25,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 enum { MOST = 256 };
 
@@ -47,6 +55,14 @@ static struct ping {
   unsigned long long delay, width;
 } pings[MOST];
 static int ping_count, pinged;
+
+static struct {
+  unsigned step, count, span;
+  struct wire wire;
+} sweep;
+static int is_copy;
+
+static unsigned long long since, quiet; /* how long interrupts are off */
 
 static avr_irq_t* pin_of(struct wire wire) {
   return avr_io_getirq(avr, AVR_IOCTL_IOPORT_GETIRQ(wire.port), wire.bit);
@@ -106,7 +122,8 @@ static void read_script(void) {
                       &width) == 6) {
       if (!ping_count) avr_irq_register_notify(pin_of((struct wire){port, bit}), triggered, NULL);
       pings[ping_count++] = (struct ping){{second, other}, cycle, width};
-    } else {
+    } else if (sscanf(line, "sweep %u %u %u %c %d", &sweep.step, &sweep.count, &sweep.span,
+                      &sweep.wire.port, &sweep.wire.bit) != 5) {
       fprintf(stderr, "not understood: %s", line);
       exit(2);
     }
@@ -115,6 +132,50 @@ static void read_script(void) {
 }
 
 static void no_sleep(avr_t* chip, avr_cycle_count_t cycles) { (void)chip, (void)cycles; }
+
+static void note_quiet(void) {
+  if (avr->sreg[S_I]) {
+    since = avr->cycle;
+  } else if (since && avr->cycle - since > quiet) {
+    quiet = avr->cycle - since;
+  }
+}
+
+static void note_changes(void) {
+  for (int i = 0; i < watch_count; i++) {
+    const unsigned value = avr->data[watches[i].address];
+    if (value == watches[i].value) continue;
+    watches[i].value = value;
+    printf("%llu %u %u\n", (unsigned long long)avr->cycle, watches[i].address, value);
+  }
+}
+
+static void run_until(unsigned long long end) {
+  static int done;
+  while (avr->cycle < end) {
+    while (done < change_count && changes[done].cycle <= avr->cycle) {
+      drive(changes[done].wire, changes[done].level);
+      done++;
+    }
+    const int state = avr_run(avr);
+    if (state == cpu_Done || state == cpu_Crashed) break;
+    if (is_copy) continue;
+    note_quiet();
+    note_changes();
+  }
+}
+
+static void be_copy(unsigned number) {
+  is_copy = 1;
+  run_until(avr->cycle + (unsigned long long)number * sweep.step);
+  drive(sweep.wire, 1);
+  run_until(avr->cycle + sweep.span);
+  printf("COPY %u", number);
+  for (int i = 0; i < watch_count; i++) {
+    printf(" %u %u", watches[i].address, avr->data[watches[i].address]);
+  }
+  printf("\n");
+}
 
 int main(int argc, char** argv) {
   elf_firmware_t firmware = {0};
@@ -127,21 +188,16 @@ int main(int argc, char** argv) {
   avr_load_firmware(avr, &firmware);
   avr->sleep = no_sleep;
   read_script();
-  int done = 0;
-  while (avr->cycle < end) {
-    while (done < change_count && changes[done].cycle <= avr->cycle) {
-      drive(changes[done].wire, changes[done].level);
-      done++;
+  run_until(end);
+  printf("%llu END %llu\n", (unsigned long long)avr->cycle, quiet);
+  for (unsigned number = 0; number < sweep.count; number++) {
+    fflush(stdout);
+    const pid_t child = fork();
+    if (child == 0) {
+      be_copy(number);
+      return 0;
     }
-    const int state = avr_run(avr);
-    if (state == cpu_Done || state == cpu_Crashed) break;
-    for (int i = 0; i < watch_count; i++) {
-      const unsigned value = avr->data[watches[i].address];
-      if (value == watches[i].value) continue;
-      watches[i].value = value;
-      printf("%llu %u %u\n", (unsigned long long)avr->cycle, watches[i].address, value);
-    }
+    if (child < 0 || waitpid(child, NULL, 0) < 0) return 2;
   }
-  printf("%llu END\n", (unsigned long long)avr->cycle);
   return 0;
 }
