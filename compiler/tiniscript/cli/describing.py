@@ -81,7 +81,6 @@ class Description:
             "slot": values["slot"] if values["saved"] == STORED else None,
             "fault": fault,
             "reset": _name(RESETS, values["reset"]),
-            "uptime_ms": values["uptime_ms"],
             "damaged": values["damaged"],
             "dropped": values["dropped"],
         }
@@ -104,12 +103,11 @@ class Description:
             )
         head = {"robot": self.connection.name, "port": shown(self.connection.port)}
         state, reset = (text(f"{what}_{fields[what]}", language) for what in ("state", "reset"))
-        seconds = values["uptime_ms"] // 1000
         lines = [
             text("info_robot", language).format(**head, id=fields["id"]),
             text("info_kit", language).format(kit=kit, isa=fields["isa"], room=self.card.room),
             program,
-            text("info_state", language).format(state=state, seconds=seconds, reset=reset),
+            text("info_state", language).format(state=state, reset=reset),
         ]
         if values["fault"]:
             lines.append(self._fault())

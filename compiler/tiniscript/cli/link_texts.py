@@ -109,7 +109,7 @@ LINK_TEXTS: dict[str, tuple[str, str]] = {
     "info_program": ("program {checksum}{name}, {code} bytes of code, {saved}",
                      "programa {checksum}{name}, {code} bytes de código, {saved}"),
     "info_no_program": ("no program", "sin programa"),
-    "info_state": ("{state}; on for {seconds} s, since: {reset}", "{state}; encendido hace {seconds} s, por: {reset}"),
+    "info_state": ("{state}; last started by: {reset}", "{state}; último arranque por: {reset}"),
     "info_fault": ("last fault: {fault}", "última falla: {fault}"),
     "info_hearing": ("{damaged} damaged and {dropped} dropped messages", "{damaged} mensajes dañados y {dropped} perdidos"),
     "state_IDLE": ("nothing runs", "nada en marcha"),
