@@ -1,0 +1,202 @@
+"""Prints how quick the link is, from the wire to the motor pins, on a simulated Uno, to the cycle.
+
+Builds the firmware of the robot `tinibot` for each baud, offline stand-ins included, and lets a
+session talk with it. Cycles are exact; radio modules and USB chips are not in them. The figures of
+others were measured once.
+"""
+
+from __future__ import annotations
+
+import re
+import shutil
+import sys
+import tempfile
+from pathlib import Path
+from typing import NamedTuple
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
+
+from tiniscript import compile_text, robots
+from tiniscript.image import unpack
+from tiniscript.link.session import Session, Task
+from tools import firmware_size, uno
+from tools.benchmark import PROGRAMS
+from tools.uno import CYCLES_PER_MS, Uno
+
+PROJECT = ROOT / "vm_arduino"
+BAUDS = (9600, 115_200)
+MOTORS = ("D5", "D6", "D7", "D8", "D9", "D10")
+KIT = robots.load("tinibot").kit
+SHORT = PROGRAMS[0]
+# What keeps the robot busy while it is stopped: the machine, the echo, the EEPROM, the link.
+BUSY = "SI|X = 0; LOOP(FOREVER); M(80, 80); DISTANCE; SHOW(X * 1.5 / 7); X = X + 1; END_LOOP"
+
+# At most, and what is aimed at: bytes; ms from the first start bit to the pins, by baud; us.
+MOST_BYTES = 14
+MUST_MS, AIM_MS = {9600: 25.0, 115_200: 4.0}, {9600: 15.0, 115_200: 1.4}
+MUST_US, AIM_US = 1000, 50
+
+OTHERS = (
+    ("the wire alone, 13 bytes", "13.5 ms at 9600, 1.1 ms at 115200"),
+    ("Snek 1.9, last character of a line to a pin", "2.5 ms"),
+    ("FlashForth 5, the same", "6.9 ms"),
+    ("Bitlash 2.0, the same", "0.6 ms"),
+    ("Arduino: compile and upload, at best", "2,200 ms"),
+)
+
+
+class Talk:
+    """A session and a simulated robot on one wire."""
+
+    def __init__(self, board: Uno, baud: int) -> None:
+        self.board, self.session = board, Session(1, baud, KIT.fingerprint)
+        self._read = len(board.sent)
+
+    def run(self, milliseconds: int) -> None:
+        for _ in range(milliseconds):
+            now_ms = self.board.cycle // CYCLES_PER_MS
+            data = self.session.poll(now_ms)
+            if data:
+                self.board.send(data)
+            self.board.run_ms(1)
+            sent = self.board.sent
+            arrived = bytes(byte.value for byte in sent[self._read :])
+            self._read = len(sent)
+            self.session.receive(arrived, now_ms + 1)
+
+    def until(self, task: Task) -> None:
+        for _ in range(10_000):
+            if task.outcome is not None:
+                break
+            self.run(1)
+        if task.outcome is None or task.outcome.status != 0:
+            raise RuntimeError(f"the robot did not do it: {task.outcome}")
+
+
+class Figures(NamedTuple):
+    """Of one baud: bytes of a frame; ms and us to the pins; bytes there and back by program."""
+
+    frame_bytes: int
+    start_ms: float
+    last_us: float
+    stop_us: float
+    wire: list[tuple[int, int]]
+
+
+def built(baud: int, folder: Path) -> Path:
+    """Return the firmware for a baud. Raises RuntimeError with the log."""
+    project = folder / f"vm_arduino_{baud}"
+    shutil.copytree(PROJECT, project, ignore=shutil.ignore_patterns(".pio"))
+    kits = project / "src" / "boards" / "kits"
+    header = (kits / "tinibot.h").read_text(encoding="utf-8")
+    own, count = re.subn(r"kBaud = \d+;", f"kBaud = {baud};", header)
+    if not count:
+        raise RuntimeError("tinibot.h says nothing of a baud")
+    (kits / "own.h").write_text(own, encoding="utf-8")
+    firmware_size.measured("uno", project)
+    return project / ".pio" / "build" / "uno" / "firmware.elf"
+
+
+def first_move(board: Uno, since: int) -> int:
+    """Return the cycle at which the last of the pins that a motor needs is on."""
+    changes = [
+        change.cycle
+        for pin in MOTORS
+        for change in board.pins.history(pin)
+        if change.cycle > since and change.state in ("high", "pwm")
+    ]
+    return max(changes)
+
+
+def measured(firmware: Path, baud: int) -> Figures:
+    with Uno(firmware, baud=baud) as board:
+        board.run_ms(300)
+        talk = Talk(board, baud)
+        talk.until(talk.session.hello())
+        began, heard = board.cycle, len(board.received)
+        talk.until(talk.session.upload(unpack(compile_text(SHORT, KIT).image)))
+        moved = first_move(board, began)
+        frame = [byte for byte in board.received[heard:] if byte.cycle <= moved]
+        start_ms = (moved - frame[0].began) / CYCLES_PER_MS
+        last_us = (moved - frame[-1].cycle) / CYCLES_PER_MS * 1000
+        wire = [exchanged(talk, text) for text in PROGRAMS]
+        stop_us = max(stopped(talk, wait) for wait in (203, 711, 1307))
+    return Figures(len(frame), start_ms, last_us, stop_us, wire)
+
+
+def exchanged(talk: Talk, text: str) -> tuple[int, int]:
+    """Return the bytes to the robot and back for one upload, after HELLO."""
+    talk.until(talk.session.clear())
+    heard, said = len(talk.board.received), len(talk.board.sent)
+    talk.until(talk.session.upload(unpack(compile_text(text, KIT).image)))
+    found = len(talk.board.received) - heard, len(talk.board.sent) - said
+    talk.session.stop(talk.board.cycle // CYCLES_PER_MS)
+    talk.run(300)
+    return found
+
+
+def stopped(talk: Talk, wait_ms: int) -> float:
+    """Return the microseconds from the zero that means stop to motors off, in a busy robot."""
+    talk.until(talk.session.upload(unpack(compile_text(BUSY, KIT).image)))
+    talk.run(wait_ms)
+    began = talk.board.cycle
+    talk.board.send(bytes(8))
+    talk.board.run_ms(20)
+    off = max(
+        change.cycle
+        for pin in MOTORS
+        for change in talk.board.pins.history(pin)
+        if change.cycle > began and change.state == "low"
+    )
+    zero = max(byte.cycle for byte in talk.board.received if byte.cycle <= off)
+    talk.session.stop(talk.board.cycle // CYCLES_PER_MS)
+    talk.run(300)
+    return (off - zero) / CYCLES_PER_MS * 1000
+
+
+def main() -> int:
+    if uno.missing():
+        print(uno.missing(), file=sys.stderr)
+        return 2
+    with tempfile.TemporaryDirectory() as name:
+        try:
+            found = {baud: measured(built(baud, Path(name)), baud) for baud in BAUDS}
+        except RuntimeError as why:
+            print(why, file=sys.stderr)
+            return 2
+    head = " | ".join(f"{baud} baud" for baud in BAUDS)
+    print(f"| on a simulated Uno, behind HELLO | {head} | must | aim |\n|---|---:|---:|---:|---:|")
+    row("bytes of the frame of `SI|F(5,80)`", [str(each.frame_bytes) for each in found.values()],
+        str(MOST_BYTES), str(MOST_BYTES))  # fmt: skip
+    row("its first start bit to the motor pins, ms",
+        [f"{each.start_ms:.2f}" for each in found.values()],
+        " and ".join(f"{each:g}" for each in MUST_MS.values()),
+        " and ".join(f"{each:g}" for each in AIM_MS.values()))  # fmt: skip
+    row("its last byte to the motor pins, us",
+        [f"{each.last_us:.0f}" for each in found.values()], str(MUST_US), str(AIM_US))  # fmt: skip
+    row("last byte of a stop to motors off, busy robot, us",
+        [f"{each.stop_us:.1f}" for each in found.values()], str(MUST_US), str(AIM_US))  # fmt: skip
+    for number, text in enumerate(PROGRAMS):
+        shown = text if len(text) < 40 else "the paper's obstacle program"
+        row(f"bytes to the robot and back, `{shown}`",
+            ["{} and {}".format(*each.wire[number]) for each in found.values()])  # fmt: skip
+    print("\nBeside it:\n")
+    for what, figure in OTHERS:
+        print(f"- {what}: {figure}")
+    return int(not all(is_kept(baud, each) for baud, each in found.items()))
+
+
+def row(what: str, cells: list[str], must: str = "", aim: str = "") -> None:
+    print(f"| {what.replace('|', chr(92) + '|')} | {' | '.join(cells)} | {must} | {aim} |")
+
+
+def is_kept(baud: int, found: Figures) -> bool:
+    """Return whether the figures are as they must be."""
+    slowest_us = max(found.last_us, found.stop_us)
+    is_quick = found.start_ms <= MUST_MS[baud] and slowest_us <= MUST_US
+    return is_quick and found.frame_bytes <= MOST_BYTES
+
+
+if __name__ == "__main__":
+    sys.exit(main())
