@@ -148,7 +148,8 @@ class Teller:
         if self.rows is not None:
             self._add_row(since_ms, name, what)
         if self.is_json:
-            self.out(json.dumps({"ms": since_ms, "event": name, **fields}))
+            times = {"ms": since_ms} if self.has_times else {}
+            self.out(json.dumps({**times, "event": name, **fields}))
         elif is_bad or name in ("MISSED", "TEXT"):
             self.err(said)
         else:

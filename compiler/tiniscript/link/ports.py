@@ -130,6 +130,8 @@ def _trouble(trouble: BaseException) -> PortTrouble:
         ("Connection refused", UNREACHABLE),
         ("timed out", UNREACHABLE),
         ("Could not open port", UNREACHABLE),  # of a network
+        ("RFC2217", UNREACHABLE),  # something else listens there
+        ("timeout while waiting for option", UNREACHABLE),
         ("could not open port", UNREACHABLE),
     ):
         if said in why:
