@@ -179,6 +179,27 @@ def test_what_does_not_fit_is_said_with_numbers(desk: Desk, tmp_path: Path) -> N
     assert "tsc upload" in done.err
 
 
+def test_a_long_way_has_a_bar_that_is_gone_at_the_end() -> None:
+    pty, pyte = pytest.importorskip("pty"), pytest.importorskip("pyte")
+    with Desk(KIT, bytes_per_ms=1) as desk:
+        ours, theirs = pty.openpty()
+        command = subprocess.Popen(
+            [*TSC, "upload", "-e", LONG, "--no-run", "--no-save", "--port", desk.port],
+            stdin=subprocess.DEVNULL, stdout=theirs, stderr=theirs,
+        )  # fmt: skip
+        os.close(theirs)
+        written = b""
+        while part := _rest(ours):
+            written += part
+        os.close(ours)
+        assert command.wait(30) == 0
+    assert b"sending [" in written
+    screen = pyte.Screen(200, 5)
+    pyte.ByteStream(screen).feed(written)
+    assert screen.display[0].startswith("-e -> tinibot")
+    assert "sending" not in "".join(screen.display)
+
+
 # -- endings ------------------------------------------------------------------------------------
 
 
@@ -297,6 +318,22 @@ def test_ports_asks_only_when_it_is_told_to(tsc: Tsc, desk: Desk, hasty: None) -
     desk.switch_off()
     assert "nothing answers" in tsc("ports", "--ask", "--port", desk.port).out
     assert "there is no port" in tsc("ports", "--ask", "--port", "/dev/no-such").out
+
+
+def test_a_person_without_a_port_is_asked_for_one(
+    tsc: Tsc, desk: Desk, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    found = [ports.Found("/dev/ttyS77", "a modem"), ports.Found(desk.port, "a robot")]
+    monkeypatch.setattr(ports, "listed", lambda: found)
+    answers = iter(["7\n", "what?\n", "2\n"])
+    monkeypatch.setattr("sys.stdin.isatty", lambda: True)
+    monkeypatch.setattr("sys.stdin.readline", lambda: next(answers))
+    monkeypatch.setattr("sys.stderr.isatty", lambda: True)
+    done = tsc("ping")
+    assert done.code == 0
+    assert f"  2  {desk.port}   a robot\n" in done.err
+    assert done.err.count("1 to 2: ") == 3
+    assert tsc("info").err == ""  # it is remembered
 
 
 def test_nobody_something_else_and_another_version(
@@ -443,7 +480,8 @@ def test_every_curve_fits_its_terminal(values: list[tuple[int, int]]) -> None:
 
 
 def test_monitor_and_a_full_disk(desk: Desk, tmp_path: Path) -> None:
-    for file in ("/dev/full", tmp_path, tmp_path / "no" / "such"):
+    files = [Path("/dev/full"), tmp_path, tmp_path / "no" / "such"]
+    for file in files if files[0].exists() else files[1:]:
         done = on(desk, "monitor", "--csv", file, "--max-time", "1")
         assert (done.code, done.out) == (2, "")
         assert "--csv" in done.err

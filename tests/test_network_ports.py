@@ -1,0 +1,76 @@
+"""A robot's port on another computer: `socket://` and `rfc2217://`."""
+
+from __future__ import annotations
+
+import socket
+import threading
+from collections.abc import Callable
+
+import pytest
+import serial
+from serial.rfc2217 import PortManager
+
+from tests.command import process
+from tests.desk import Desk
+from tests.machines.tabletop import missing
+from tiniscript import robots
+
+pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
+
+
+class Modemless(serial.Serial):  # type: ignore[misc]
+    """A pseudo-terminal: it has none of the lines of a modem."""
+
+    cts = dsr = ri = cd = False
+
+    def _nothing(self) -> None:
+        pass
+
+    _update_dtr_state = _update_rts_state = _update_break_state = _nothing
+
+
+class _Writer:
+    """What PortManager writes its own answers to."""
+
+    def __init__(self, write: Callable[[bytes], None]) -> None:
+        self.write = write
+
+
+def serve(tcp: socket.socket, port: str, is_rfc2217: bool) -> None:
+    """Pass bytes between one peer and a port, until the peer leaves."""
+    peer, _ = tcp.accept()
+    device = Modemless(port, 9600, timeout=0.005)
+    manager = PortManager(device, _Writer(peer.sendall)) if is_rfc2217 else None
+    has_left = threading.Event()
+
+    def back() -> None:
+        while not has_left.is_set():
+            data = device.read(200)
+            if data:
+                peer.sendall(b"".join(manager.escape(data)) if manager else data)
+
+    sender = threading.Thread(target=back, daemon=True)
+    sender.start()
+    while data := peer.recv(1000):
+        device.write(b"".join(manager.filter(data)) if manager else data)
+    has_left.set()
+    sender.join()
+    device.close()
+    peer.close()
+
+
+@pytest.mark.parametrize("protocol", ["socket", "rfc2217"])
+def test_a_robot_is_reached_over_a_network(protocol: str) -> None:
+    with Desk(robots.load("tinibot").kit) as desk, socket.create_server(("127.0.0.1", 0)) as tcp:
+        server = threading.Thread(
+            target=serve, args=(tcp, desk.port, protocol == "rfc2217"), daemon=True
+        )
+        server.start()
+        address = f"{protocol}://127.0.0.1:{tcp.getsockname()[1]}"
+        done = process("upload", "-e", "SI|F(0.2, 50);SHOW(1.5)", "--port", address)
+        assert (done.code, done.err) == (0, "")
+        assert done.out.splitlines()[1:3] == ["SHOW 1.5", "Done."]
+        assert desk.did == ["MOTORS 50 50", "MOTORS 0 0", "FINISHED"]
+        server.join(10)
+        assert process("ports").out.count(address) == 1
