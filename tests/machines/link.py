@@ -5,17 +5,13 @@ Builds `vm_arduino/link` with g++ and talks to one process of it, as `host` does
 
 from __future__ import annotations
 
-import hashlib
-import os
-import subprocess
-import tempfile
 from collections.abc import Sequence
 from functools import lru_cache
 from pathlib import Path
 from struct import pack
 from typing import NamedTuple
 
-from tests.machines.host import FLAGS, SOURCES, WARNINGS, Process, missing
+from tests.machines.host import FLAGS, SOURCES, Process, compiled, missing
 
 __all__ = ("CppLink", "Step", "built", "cpp_link", "missing")
 
@@ -88,21 +84,7 @@ def built(sources: Path) -> Path:
     inputs.append(sources / "host" / "wire.h")
     # the machine is not asked here, only its verifier and its checksum
     left_out = ("vm.cpp", "vm_instructions.cpp", "number.cpp")
-    key = hashlib.sha256(repr((WARNINGS, FLAGS)).encode())
-    for path in inputs:
-        key.update(path.name.encode() + path.read_bytes())
-    folder = Path(tempfile.gettempdir()) / f"tiniscript-host-{os.getuid()}"
-    program = folder / f"link-{key.hexdigest()[:16]}"
-    if not program.exists():
-        folder.mkdir(mode=0o700, exist_ok=True)
-        own = program.with_suffix(f".{os.getpid()}")
-        code = [str(each) for each in inputs if each.suffix == ".cpp" and each.name not in left_out]
-        done = subprocess.run(
-            ["g++", *FLAGS, *WARNINGS, *code, "-o", str(own)], capture_output=True, text=True
-        )
-        assert done.returncode == 0, f"g++ refuses the C++ link:\n{done.stderr[:4000]}"
-        own.replace(program)
-    return program
+    return compiled([each for each in inputs if each.name not in left_out], FLAGS)
 
 
 @lru_cache(maxsize=1)

@@ -200,12 +200,6 @@ void answer_all(Reader* request, Writer* answer) {
   answer->u32(checksum);
 }
 
-// Reads exactly `length` bytes; false at the end of the input.
-bool read_input(std::string* data, size_t length) {
-  data->resize(length);
-  return length == 0 || fread(&(*data)[0], 1, length, stdin) == length;
-}
-
 }  // namespace
 
 namespace tiniscript {
@@ -226,9 +220,7 @@ void put(char letter) { said.u8(static_cast<uint8_t>(letter)); }
 }  // namespace tiniscript
 
 int main() {
-  while (read_input(&asked, 4)) {
-    const uint32_t length = Reader(asked).u32();
-    if (!read_input(&asked, length)) return 1;
+  while (next_request(&asked)) {
     Reader request(asked);
     said = Writer();
     switch (request.u8()) {
@@ -242,25 +234,21 @@ int main() {
         answer_late(&request, &said);
         break;
       case 'V':
-        answer_verdicts(Request(1), length);
+        answer_verdicts(Request(1), asked.size());
         break;
       case 'X':
         answer_all(&request, &said);
         break;
       case 'I':
-        answer_images(Request(1), length);
+        answer_images(Request(1), asked.size());
         break;
       case 'A':
-        answer_arithmetic(Request(1), length);
+        answer_arithmetic(Request(1), asked.size());
         break;
       default:
         return 1;
     }
-    Writer head;
-    head.u32(static_cast<uint32_t>(said.data().size()));
-    fwrite(head.data().data(), 1, head.data().size(), stdout);
-    fwrite(said.data().data(), 1, said.data().size(), stdout);
-    fflush(stdout);
+    send_answer(said);
   }
   return 0;
 }

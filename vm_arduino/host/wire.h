@@ -4,6 +4,7 @@
 #define TINISCRIPT_HOST_WIRE_H_
 
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 #include <memory>
@@ -72,5 +73,23 @@ class Writer {
  private:
   std::string data_;
 };
+
+// Reads the next request, without its length; false at the end of the input.
+inline bool next_request(std::string* asked) {
+  unsigned char head[4];
+  if (fread(head, 1, sizeof head, stdin) != sizeof head) return false;
+  asked->resize(Reader(std::string(head, head + sizeof head)).u32());
+  if (asked->empty()) return true;
+  if (fread(&(*asked)[0], 1, asked->size(), stdin) != asked->size()) exit(1);
+  return true;
+}
+
+inline void send_answer(const Writer& said) {
+  Writer head;
+  head.u32(static_cast<uint32_t>(said.data().size()));
+  fwrite(head.data().data(), 1, head.data().size(), stdout);
+  fwrite(said.data().data(), 1, said.data().size(), stdout);
+  fflush(stdout);
+}
 
 #endif  // TINISCRIPT_HOST_WIRE_H_

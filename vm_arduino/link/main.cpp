@@ -16,11 +16,6 @@ namespace {
 Receiver receiver;
 Link link_half;
 
-bool read_input(std::string* data, size_t length) {
-  data->resize(length);
-  return length == 0 || fread(&(*data)[0], 1, length, stdin) == length;
-}
-
 // B: a robot is switched on.
 void answer_begin(Reader* request) {
   port = SimulatedPort();
@@ -140,9 +135,7 @@ void answer_image(Writer* answer) { answer->text(port.held); }
 
 int main() {
   std::string asked;
-  while (read_input(&asked, 4)) {
-    const uint32_t length = Reader(asked).u32();
-    if (!read_input(&asked, length)) return 1;
+  while (next_request(&asked)) {
     Reader request(asked);
     Writer said;
     switch (request.u8()) {
@@ -164,11 +157,7 @@ int main() {
       default:
         return 1;
     }
-    Writer head;
-    head.u32(static_cast<uint32_t>(said.data().size()));
-    fwrite(head.data().data(), 1, head.data().size(), stdout);
-    fwrite(said.data().data(), 1, said.data().size(), stdout);
-    fflush(stdout);
+    send_answer(said);
   }
   return 0;
 }

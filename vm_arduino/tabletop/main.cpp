@@ -47,11 +47,6 @@ void turn(int8_t left, int8_t right) {
   table.right = right;
 }
 
-bool read_input(std::string* data, size_t length) {
-  data->resize(length);
-  return length == 0 || fread(&(*data)[0], 1, length, stdin) == length;
-}
-
 // B: power on, with what the memory holds.
 void answer_begin(Reader* request) {
   Board board;
@@ -161,9 +156,7 @@ void nvm_clear(uint16_t place) { nvm_write(place, 0); }
 
 int main() {
   std::string asked;
-  while (read_input(&asked, 4)) {
-    const uint32_t length = Reader(asked).u32();
-    if (!read_input(&asked, length)) return 1;
+  while (next_request(&asked)) {
     Reader request(asked);
     Writer said;
     switch (request.u8()) {
@@ -182,11 +175,7 @@ int main() {
       default:
         return 1;
     }
-    Writer head;
-    head.u32(static_cast<uint32_t>(said.data().size()));
-    fwrite(head.data().data(), 1, head.data().size(), stdout);
-    fwrite(said.data().data(), 1, said.data().size(), stdout);
-    fflush(stdout);
+    send_answer(said);
   }
   return 0;
 }
