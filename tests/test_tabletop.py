@@ -291,3 +291,22 @@ def test_a_pulled_plug_leaves_one_program_or_the_other(seed: int) -> None:
         again.wait(400)
         assert happened(again)[0] in ("MOTORS 80 80", "MOTORS -60 -60")
         assert happened(again)[-1] == "FINISHED"
+
+
+def test_an_upload_that_breaks_off_while_a_fault_is_noted_leaves_the_stored_program() -> None:
+    """The memory cannot be read while it is written: what it holds must not be forgotten then."""
+    robot, session = switched_on(), computer()
+    send(robot, session, "SB|F(0.2, 80)")
+    stored(robot, session)
+    robot.talk(session, 500)
+    task = session.live(image_of("SI|X = 0; SHOW(5 / X)").code)
+    assert robot.until(session, task) == OK
+    while "FAULTED" not in happened(robot):
+        robot.talk(session, 1)
+    task = session.upload(image_of(LONG))
+    robot.talk(session, 3)
+    assert task.outcome is None
+    robot.wait(3000)
+    robot.push()
+    robot.wait(400)
+    assert happened(robot)[-3:] == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]

@@ -307,7 +307,8 @@ bool port_make_way(bool is_live) {
   if (boot != Boot::kOver) return false;
   if (condition.state == State::kRunning) end_run(State::kIdle);
   if (is_live) return load();
-  if (keeping == kKeepProgram || (to_keep & kKeepProgram) != 0) return false;
+  // what is being written cannot be read either
+  if (store.is_busy() || (to_keep & kKeepProgram) != 0) return false;
   name_stored();
   show_light();
   return true;
