@@ -10,6 +10,7 @@ from tests.machines.tabletop import EMPTY, Tabletop, missing
 from tiniscript import compile_text, robots
 from tiniscript.image import Image, unpack
 from tiniscript.link.errands import OK, Reply
+from tiniscript.link.messages import STATUSES
 from tiniscript.link.session import Session, Task
 
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
@@ -310,3 +311,19 @@ def test_an_upload_that_breaks_off_while_a_fault_is_noted_leaves_the_stored_prog
     robot.push()
     robot.wait(400)
     assert happened(robot)[-3:] == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
+
+
+def test_the_button_in_the_middle_of_an_upload_starts_what_is_stored() -> None:
+    """What is on its way must not be written into the program that runs."""
+    robot, session = switched_on(), computer()
+    send(robot, session, "SB|F(0.5, 80)")
+    stored(robot, session)
+    robot.talk(session, 500)
+    task = session.upload(image_of(LONG))
+    robot.talk(session, 3)
+    assert task.outcome is None
+    robot.step(flags=1)
+    robot.step(flags=2)
+    assert robot.until(session, task) == STATUSES["NOT_BEGUN"]
+    robot.talk(session, 600)
+    assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]

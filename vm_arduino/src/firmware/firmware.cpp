@@ -284,6 +284,7 @@ void firmware_left() {
 
 void firmware_released() {
   if (has_stopped || condition.state == State::kRunning || boot != Boot::kOver) return;
+  talk.drop();
   if (condition.saved != Saved::kNothing && load() && is_whole) begin_run(false);
 }
 

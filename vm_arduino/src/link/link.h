@@ -38,6 +38,9 @@ class Link {
   void stopped(Cause cause);
   bool show(int32_t value, bool is_yes_no);
 
+  // The button starts what the robot holds: a program on its way must not be written over it.
+  void drop() { image_ = nullptr; }
+
   // Whether what runs ends when no frame comes.
   bool is_tethered() const;
 
