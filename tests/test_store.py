@@ -47,11 +47,14 @@ class Found(NamedTuple):
     most_writes: int  # of one save
 
 
+CHECKSUM = ("crc32.cpp", "crc32.h", "image.h", "bytecode.h")
+
+
 def parts(sources: Path) -> list[Path]:
     return [
         *sorted((sources / "src" / "store").glob("*")),
         *sorted((sources / "powercut").glob("*")),
-        *(sources / "src" / "vm" / name for name in ("image.cpp", "image.h", "bytecode.h")),
+        *(sources / "src" / "vm" / name for name in CHECKSUM),
     ]
 
 

@@ -4,7 +4,7 @@
 // what a robot calculates. The pairs are made here and in `tests/test_cpp_avr_arithmetic.py` in the
 // same way; the answer to a block of operations is one checksum, or each result where it asks so.
 
-#include "../src/vm/image.h"
+#include "../src/vm/crc32.h"
 #include "../src/vm/number.h"
 #include "../src/vm/vm.h"
 #include "quiet_robot.h"

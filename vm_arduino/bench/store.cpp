@@ -8,6 +8,7 @@
 #include "../src/store/store.h"
 
 #include "../src/store/nvm.h"
+#include "../src/vm/crc32.h"
 #include "../src/vm/image.h"
 #include "simulated.h"
 

@@ -6,6 +6,7 @@
 #include <stdio.h>
 
 #include "../chip/answers.h"
+#include "../src/vm/crc32.h"
 #include "../src/vm/image.h"
 #include "../src/vm/verify.h"
 #include "../src/vm/vm.h"

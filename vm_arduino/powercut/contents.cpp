@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "../src/vm/crc32.h"
 #include "../src/vm/image.h"
 #include "memory.h"
 

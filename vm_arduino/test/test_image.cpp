@@ -4,6 +4,7 @@
 
 #include <functional>
 
+#include "../src/vm/crc32.h"
 #include "../src/vm/image.h"
 #include "cases.h"
 

@@ -5,7 +5,7 @@
 #include <Arduino.h>
 #include <avr/wdt.h>
 
-#include "../vm/image.h"
+#include "../vm/crc32.h"
 #include "motors.h"
 
 namespace tiniscript {

@@ -1,6 +1,6 @@
 #include "frames.h"
 
-#include "../vm/image.h"
+#include "../vm/crc32.h"
 #include "../vm/small.h"
 
 namespace tiniscript {

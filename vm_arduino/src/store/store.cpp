@@ -1,5 +1,6 @@
 #include "store.h"
 
+#include "../vm/crc32.h"
 #include "../vm/flash.h"
 #include "../vm/image.h"
 #include "../vm/small.h"

@@ -1,5 +1,7 @@
 #include "image.h"
 
+#include "crc32.h"
+
 namespace tiniscript {
 
 namespace {
@@ -33,19 +35,6 @@ Refusal unpack(const uint8_t* data, size_t length, uint16_t kit, Image* image) {
   if (image->kit != 0 && image->kit != kit) return Refusal::kOtherKit;
   if (image->start == kStartPing && image->code_length != 0) return Refusal::kPingWithCode;
   return Refusal::kNone;
-}
-
-__attribute__((noinline)) uint32_t crc32(uint32_t crc, const uint8_t* data, uint16_t length) {
-  crc = ~crc;
-  while (length-- != 0) {
-    crc ^= *data++;
-    for (uint8_t bit = 0; bit < 8; bit++) {
-      const bool carry = (static_cast<uint8_t>(crc) & 1) != 0;
-      crc >>= 1;
-      if (carry) crc ^= 0xedb88320;
-    }
-  }
-  return ~crc;
 }
 
 }  // namespace tiniscript

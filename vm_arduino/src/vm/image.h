@@ -24,9 +24,6 @@ struct Image {
 // not verified yet, and `*image` means nothing where it is refused.
 Refusal unpack(const uint8_t* data, size_t length, uint16_t kit, Image* image);
 
-// The CRC-32 of zlib: begin with 0, and give the result for the bytes that follow.
-uint32_t crc32(uint32_t crc, const uint8_t* data, uint16_t length);
-
 }  // namespace tiniscript
 
 #endif  // TINISCRIPT_VM_IMAGE_H_

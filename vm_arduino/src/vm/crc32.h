@@ -1,0 +1,15 @@
+// The checksum of images, frames and records: the CRC-32 of zlib.
+
+#ifndef TINISCRIPT_VM_CRC32_H_
+#define TINISCRIPT_VM_CRC32_H_
+
+#include <stdint.h>
+
+namespace tiniscript {
+
+// Begin with 0, and give the result for the bytes that follow.
+uint32_t crc32(uint32_t crc, const uint8_t* data, uint16_t length);
+
+}  // namespace tiniscript
+
+#endif  // TINISCRIPT_VM_CRC32_H_
