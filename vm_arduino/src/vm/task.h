@@ -45,8 +45,9 @@ struct Task {
   bool drives;        // false: a wait, the motors stay as they are
   int8_t left;
   int8_t right;
-  int32_t stack[kStackValues + 1];  // the last one only lies behind them
   int32_t variables[kVariables];
+  // From here on, all is written before it is read.
+  int32_t stack[kStackValues + 1];  // the last one only lies behind them
   int32_t counters[kCounters];
   uint16_t calls[kCalls];  // where each open call goes on
 };

@@ -38,6 +38,12 @@ struct Memory {
   Block blocks[kNestWords + 1];  // the first one is the code itself
 };
 
+void open(Def* routine) {
+  routine->end = 0;
+  routine->counters = 0;
+  routine->calls = 0;
+}
+
 bool in_range(Byte kind, uint8_t value) {
   const uint8_t* const range = kRanges[static_cast<uint8_t>(kind)];
   return static_cast<uint8_t>(value - flash_byte(range)) <= flash_byte(range + 1);
@@ -64,6 +70,10 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
   Def* routine = memory->defs;  // that is looked at
   Block* top = memory->blocks;  // the innermost block that is open
   join->target = kFarAway;
+  open(routine);
+  top->end = 0;
+  top->kind = Kind::kCode;
+  top->words = 0;
 
   for (;; at = after) {
     // what ends at this offset
@@ -185,7 +195,7 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
         if (routine->end == 0) return {Rule::kNotOpen, at};
         if (top->kind != Kind::kCode) return {Rule::kStillOpen, at};
         if (routine->end != after) return {Rule::kBadDef, at};
-        routine++;
+        open(++routine);
         defs++;
         continue;
       case Role::kCall: {
@@ -232,7 +242,7 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
 
 Verdict verify(const uint8_t* code, size_t length, uint8_t sensors, uint8_t actuators) {
   if (length > kCodeBytes) return {Rule::kCodeLength, 0};
-  Memory memory = Memory();  // all members are 0
+  Memory memory;  // all of it is written before it is read: to clear it takes longer than most code
   return pass(code, static_cast<uint16_t>(length), sensors, actuators, &memory);
 }
 

@@ -1,5 +1,7 @@
 #include "vm.h"
 
+#include <stddef.h>
+
 #include "../robot.h"
 #include "number.h"
 #include "small.h"
@@ -14,12 +16,12 @@ constexpr uint8_t kLateMs = 20;  // later than this, a program's own clock no lo
 
 void Machine::start(const uint8_t* code, uint16_t length, int32_t* readings, uint8_t sensors,
                     uint32_t seed, uint32_t now_ms) {
-  *this = Machine();  // all members are 0
+  constexpr uint8_t kUsed = offsetof(Machine, task_) + offsetof(Task, stack);
+  clear(this, kUsed / 4 + 1);  // all behind that is written before it is read
   sensors_ = sensors < kDevices ? sensors : kDevices;
   readings_ = readings;
   length_ = length;
   code_ = code;
-  now_ms_ = now_ms;
   task_.random = seed;
   task_.started_ms = now_ms;
   task_.clock_ms = now_ms;
