@@ -327,3 +327,32 @@ def test_the_button_in_the_middle_of_an_upload_starts_what_is_stored() -> None:
     assert robot.until(session, task) == STATUSES["NOT_BEGUN"]
     robot.talk(session, 600)
     assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
+
+
+@pytest.mark.parametrize("is_live", [False, True])
+def test_a_fault_at_once_names_the_program(is_live: bool) -> None:
+    """A program in one frame starts before its checksum is known."""
+    robot, session = switched_on(), computer()
+    image = image_of("SI|X = 1 / 0")
+    task = session.live(image.code) if is_live else session.upload(image)
+    assert robot.until(session, task) == OK
+    robot.talk(session, 300)
+    faults = [event.values for event in session.events() if event.name == "FAULT"]
+    assert [values["program"] for values in faults] == [image.checksum]
+    assert outcome(task).values["program"] == image.checksum
+    status = session.status()
+    assert robot.until(session, status) == OK
+    assert outcome(status).values["fault_program"] == image.checksum
+    assert outcome(status).values["program"] == (0 if is_live else image.checksum)
+
+
+def test_one_clear_is_enough() -> None:
+    robot, session = switched_on(), computer()
+    send(robot, session, "SI|F(1, 80)")
+    session.stop(robot.now_ms)
+    robot.talk(session, 300)
+    assert session.is_latched
+    assert robot.until(session, session.clear()) == OK
+    assert not session.is_latched
+    send(robot, session, AWAY)
+    assert happened(robot)[-1] == "MOTORS 80 80"

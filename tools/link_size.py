@@ -28,7 +28,9 @@ const Equipment& port_equipment() { return equipment; }
 uint16_t port_room() { return sink; }
 bool port_make_way(bool) { return sink; }
 uint8_t* port_memory(uint16_t length, bool) { return length > 400 ? nullptr : (uint8_t*)0x200; }
+void port_forget() { sink = 0; }
 void port_take(uint8_t mode, bool) { sink = mode; }
+void port_seal(const uint8_t* image) { sink = *image; }
 void port_start(bool is_live) { sink = is_live; }
 void port_stop(uint8_t fault) { sink = fault; }
 void port_release() { sink = 0; }
@@ -37,11 +39,12 @@ bool port_rename(const uint8_t* name, uint8_t length) { sink = name[length]; ret
 }
 """
 PORT_USED = """port_card(); port_condition(); port_equipment(); sink = port_room();
-  port_make_way(sink); port_memory(sink, 0); port_take(sink, 0); port_start(sink); port_stop(sink);
+  port_make_way(sink); port_memory(sink, 0); port_forget(); port_take(sink, 0); port_seal(bytes); port_start(sink); port_stop(sink);
   port_release(); port_image_byte(sink); port_rename(bytes, 1);
 """
 LINK = """{ static Receiver receiver; static Link link;
         link.begin(&receiver, sink); sink = receiver.put(sink, sink); link.tick(sink);
+        link.tell(); link.seal();
         uint8_t byte; while (link.next(&byte)) sink = byte;
         link.done(); link.faulted(); link.stopped(Cause::kButton);
         sink = link.show(sink, sink); }"""

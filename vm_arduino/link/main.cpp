@@ -49,10 +49,12 @@ void answer_step(Reader* request, Writer* answer) {
     const bool is_last = k == data.length;
     if (how == 1 && !is_last) continue;
     link_half.tick(static_cast<uint16_t>(now_ms));
+    link_half.tell();
     uint8_t byte = 0;
     for (uint8_t turns = 0; turns < 8; turns++) {
       while ((how != 2 || is_last) && link_half.next(&byte)) sent += static_cast<char>(byte);
       link_half.tick(static_cast<uint16_t>(now_ms));
+      link_half.tell();
     }
   }
   answer->text(sent);

@@ -2,6 +2,7 @@
 
 #include <stdio.h>
 
+#include "../src/vm/crc32.h"
 #include "../src/vm/image.h"
 #include "../src/vm/vm.h"
 
@@ -42,6 +43,15 @@ std::string text_of(const uint8_t* image) {
   return std::string(reinterpret_cast<const char*>(image), length);
 }
 
+// The image with its checksum.
+std::string sealed(std::string image) {
+  const uint8_t* const bytes = reinterpret_cast<const uint8_t*>(image.data());
+  const uint16_t code_length = static_cast<uint16_t>(image.size() - kHeaderBytes);
+  const uint32_t crc = crc32(crc32(0, bytes, kChecksumAt), bytes + kHeaderBytes, code_length);
+  image.replace(kChecksumAt, sizeof crc, reinterpret_cast<const char*>(&crc), sizeof crc);
+  return image;
+}
+
 }  // namespace
 
 namespace tiniscript {
@@ -51,15 +61,16 @@ const Card& port_card() { return port.card; }
 const Condition& port_condition() { return port.condition; }
 uint16_t port_room() { return port.room; }
 
-bool port_make_way(bool is_live) {
+bool port_make_way(bool) {
   if (port.is_busy) return false;
   if (port.condition.state == State::kRunning) {
     port.condition.state = State::kIdle;
     say("END");
   }
-  if (!is_live) hold(port.stored, Saved::kStored);
   return true;
 }
+
+void port_forget() { hold(port.stored, Saved::kStored); }
 
 uint8_t* port_memory(uint16_t code_length, bool is_live) {
   if (code_length > port.room) return nullptr;
@@ -72,7 +83,7 @@ uint8_t* port_memory(uint16_t code_length, bool is_live) {
 
 void port_take(uint8_t mode, bool is_live) {
   const uint8_t* const memory = (is_live ? port.live : port.image).get();
-  const std::string image = text_of(memory);
+  const std::string image = sealed(text_of(memory));
   for (uint8_t k = 0; k < kEndBytes; k++) {
     if (memory[image.size() + k] != static_cast<uint8_t>(Op::kEnd))
       say("TAKE something without END");
@@ -85,6 +96,10 @@ void port_take(uint8_t mode, bool is_live) {
   if (is_live) return;
   if ((mode & kSave) != 0) port.stored = image;
   hold(image, (mode & kSave) != 0 ? Saved::kStored : Saved::kMemory);
+}
+
+void port_seal(const uint8_t* image) {
+  if (text_of(image) != sealed(text_of(image))) say("SEAL something else");
 }
 
 void port_start(bool is_live) {

@@ -206,6 +206,7 @@ void end_run(State state) {
 }
 
 void fault(uint8_t number, uint16_t at) {
+  talk.seal();  // the record has the checksum of its image
   condition.fault = number;
   condition.fault_at = at;
   condition.fault_program = is_live_run ? number32(live + kChecksumAt) : condition.program;
@@ -266,6 +267,7 @@ void firmware_tick(uint32_t time_ms) {
     talk.faulted();
   }
   if (condition.state == State::kRunning) run_on();
+  talk.tell();
   tick_store();
 }
 
@@ -310,9 +312,12 @@ bool port_make_way(bool is_live) {
   if (is_live) return load();
   // what is being written cannot be read either
   if (store.is_busy() || (to_keep & kKeepProgram) != 0) return false;
+  return true;
+}
+
+void port_forget() {
   name_stored();
   show_light();
-  return true;
 }
 
 uint8_t* port_memory(uint16_t code_length, bool is_live) {
@@ -323,7 +328,6 @@ uint8_t* port_memory(uint16_t code_length, bool is_live) {
 void port_take(uint8_t mode, bool is_live) {
   if (is_live) return;
   is_whole = true;
-  condition.program = number32(program + kChecksumAt);
   condition.length = number16(program + kCodeLengthAt);
   condition.slot = kNoSlot;
   condition.saved = Saved::kMemory;
@@ -332,6 +336,10 @@ void port_take(uint8_t mode, bool is_live) {
     to_keep |= kKeepProgram;
   }
   show_light();
+}
+
+void port_seal(const uint8_t* image) {
+  if (image == program) condition.program = number32(image + kChecksumAt);
 }
 
 void port_start(bool is_live) {

@@ -1,5 +1,6 @@
 #include "link.h"
 
+#include "../vm/crc32.h"
 #include "../vm/image.h"
 #include "../vm/small.h"
 #include "../vm/verify.h"
@@ -58,7 +59,20 @@ void Link::turn(uint16_t now_ms) {
     port_stop(static_cast<uint8_t>(LinkFault::kLinkLost));
     faulted();
   }
-  if (left_ == 0) send();
+}
+
+void Link::tell() {
+  Link* const self = near(this);
+  self->seal();
+  if (self->left_ == 0) self->send();
+}
+
+one_copy void Link::seal() {
+  uint8_t* const image = unsealed_;
+  if (image == nullptr) return;
+  unsealed_ = nullptr;
+  put_checksum(image);
+  port_seal(image);
 }
 
 bool Link::is_tethered() const { return is_tethered_ && port_condition().run == tethered_run_; }
@@ -234,7 +248,11 @@ uint8_t Link::make_room(uint8_t mode, const uint8_t* header, bool is_live) {
   mode_ = mode;
   length_ = length;
   next_ = 0;
+  image[kMagicAt] = 'T';
+  image[kMagicAt + 1] = 'S';
   copy_bytes(header, image + kFirstAt, kChecksumAt - kFirstAt);
+  uint8_t* const end = image + kHeaderBytes + length;
+  for (uint8_t k = 0; k < kEndBytes; k++) end[k] = static_cast<uint8_t>(Op::kEnd);
   return kIsFine;
 }
 
@@ -267,7 +285,7 @@ one_copy uint8_t Link::take_short(bool is_live, const uint8_t* payload, uint8_t 
   const uint8_t found = make_room(mode, header, is_live);
   if (found != kIsFine) return found;
   append(code, length);
-  seal();
+  unsealed_ = image_;
   finish(is_live);
   return kIsFine;
 }
@@ -275,8 +293,10 @@ one_copy uint8_t Link::take_short(bool is_live, const uint8_t* payload, uint8_t 
 uint8_t Link::begin_program(const uint8_t* payload) {
   const uint8_t mode = payload[kBeginModeAt];
   const uint8_t* const header = payload + kBeginIsaMajorAt;
-  const uint8_t refusal = check(mode, header);
-  return refusal != kIsFine ? refusal : make_room(mode, header, false);
+  uint8_t refusal = check(mode, header);
+  if (refusal == kIsFine) refusal = make_room(mode, header, false);
+  if (refusal == kIsFine) port_forget();
+  return refusal;
 }
 
 uint8_t Link::add_data(const uint8_t* payload, uint8_t length) {
@@ -292,8 +312,8 @@ uint8_t Link::commit(const uint8_t* payload) {
   uint8_t* const image = image_;
   if (image == nullptr) return refuse(Answer::kNotBegun, 0);
   if (next_ != length_) return refuse(Answer::kIncomplete, next_);
-  seal();
   image_ = nullptr;
+  put_checksum(image);
   if (!same_bytes(&checksum_, payload + kCommitChecksumAt)) {
     return static_cast<uint8_t>(Refusal::kDamaged);
   }
@@ -303,21 +323,17 @@ uint8_t Link::commit(const uint8_t* payload) {
       get16(image + kKitAt) == 0 ? verify(code, length_, 0, 0) : verified(code, length_);
   if (verdict.rule != Rule::kNone) return refuse(static_cast<Answer>(verdict.rule), verdict.offset);
   finish(false);
+  port_seal(image);
   return kIsFine;
 }
 
-// Completes the image: it has the other fields of its header, and its code.
-void Link::seal() {
-  uint8_t* const image = image_;
-  image[kMagicAt] = 'T';
-  image[kMagicAt + 1] = 'S';
-  uint8_t* const code = image + kHeaderBytes;
-  for (uint8_t k = 0; k < kEndBytes; k++) code[length_ + k] = static_cast<uint8_t>(Op::kEnd);
-  checksum_ = crc32(crc32(0, image, kChecksumAt), code, length_);
+// Puts the checksum into the image, which has all the rest.
+void Link::put_checksum(uint8_t* image) {
+  checksum_ = crc32(crc32(0, image, kChecksumAt), image + kHeaderBytes, length_);
   copy_bytes(&checksum_, image + kChecksumAt, sizeof checksum_);
 }
 
-// The image in memory is whole and verified.
+// The image in memory is verified, and whole but for its checksum.
 void Link::finish(bool is_live) {
   image_ = nullptr;
   port_take(mode_, is_live);

@@ -20,9 +20,15 @@ class Link {
   // All else is 0 at the beginning. `epoch` is any number, best another one after each reset.
   void begin(Receiver* receiver, uint8_t epoch);
 
-  // Handles what has arrived, and sends what is due: at least once a minute, for the lower bits of
-  // a time are enough.
+  // Handles what has arrived: at least once a minute, for the lower bits of a time are enough.
   void tick(uint16_t now_ms);
+
+  // Then, for the motors come first: seals a program that came in one frame, and begins to send
+  // what is due.
+  void tell();
+
+  // Seals that program now: somebody wants to know its checksum.
+  void seal();
 
   // The next byte to send; false where there is none. It may be called from an interrupt.
   bool next(uint8_t* byte);
@@ -69,7 +75,7 @@ class Link {
   uint8_t begin_program(const uint8_t* payload);
   uint8_t add_data(const uint8_t* payload, uint8_t length);
   uint8_t commit(const uint8_t* payload);
-  void seal();
+  void put_checksum(uint8_t* image);
   void finish(bool is_live);
   void start(uint8_t mode, bool is_live);
   uint8_t refuse(Answer answer, uint16_t detail);
@@ -119,6 +125,7 @@ class Link {
   uint8_t mode_;
   uint16_t length_;
   uint16_t next_;
+  uint8_t* unsealed_;  // the image that was taken and has no checksum yet, or nullptr
   // what goes out
   uint8_t size_;           // of what is being written
   uint8_t sent_;           // of what is written

@@ -63,8 +63,14 @@ bool port_make_way(bool is_live);
 // has no room. Nothing there is lost before port_make_way has been asked.
 uint8_t* port_memory(uint16_t code_length, bool is_live);
 
-// The image in memory is whole and verified. `mode` says whether it is saved.
+// The image in memory is overwritten from here on, piece by piece: the robot holds the stored one.
+void port_forget();
+
+// The image in memory is verified and whole but for its checksum. `mode` says whether it is saved.
 void port_take(uint8_t mode, bool is_live);
+
+// The image that was taken has its checksum.
+void port_seal(const uint8_t* image);
 
 // Starts what was taken last, or the program that the robot holds.
 void port_start(bool is_live);
