@@ -328,6 +328,8 @@ class Session:
                 self._cancel_waiting(_STALE)
         if reply.status == _STALE:
             self._is_open = False  # HELLO tells what has become of the robot
+        if message.name == "CLEAR" and reply.status == OK:
+            self._state = 0
         self._learn(message.name, reply.values)
         self._advance(reply, now_ms)
 
