@@ -36,6 +36,7 @@ BUSY = "SI|X = 0; LOOP(FOREVER); M(80, 80); DISTANCE; SHOW(X * 1.5 / 7); X = X +
 MOST_BYTES = 14
 MUST_MS, AIM_MS = {9600: 25.0, 115_200: 4.0}, {9600: 15.0, 115_200: 1.4}
 MUST_US, AIM_US = 1000, 50
+UPLOADS = 20  # the main loop is elsewhere each time: the slowest counts
 
 OTHERS = (
     ("the wire alone, 13 bytes", "13.5 ms at 9600, 1.1 ms at 115200"),
@@ -75,7 +76,7 @@ class Talk:
 
 
 class Figures(NamedTuple):
-    """Of one baud: bytes of a frame; ms and us to the pins; bytes there and back by program."""
+    """Of one baud: bytes of a frame; ms and us to the pins at the slowest; bytes there and back."""
 
     frame_bytes: int
     start_ms: float
@@ -114,15 +115,28 @@ def measured(firmware: Path, baud: int) -> Figures:
         board.run_ms(300)
         talk = Talk(board, baud)
         talk.until(talk.session.hello())
-        began, heard = board.cycle, len(board.received)
-        talk.until(talk.session.upload(unpack(compile_text(SHORT, KIT).image)))
-        moved = first_move(board, began)
-        frame = [byte for byte in board.received[heard:] if byte.cycle <= moved]
-        start_ms = (moved - frame[0].began) / CYCLES_PER_MS
-        last_us = (moved - frame[-1].cycle) / CYCLES_PER_MS * 1000
+        starts = [started(talk, 300 + k) for k in range(UPLOADS)]
         wire = [exchanged(talk, text) for text in PROGRAMS]
         stop_us = max(stopped(talk, wait) for wait in (203, 711, 1307))
-    return Figures(len(frame), start_ms, last_us, stop_us, wire)
+    frame_bytes, start_ms, last_us = map(max, zip(*starts, strict=True))
+    return Figures(int(frame_bytes), start_ms, last_us, stop_us, wire)
+
+
+def started(talk: Talk, wait_ms: int) -> tuple[int, float, float]:
+    """Return a frame's bytes, ms from its first start bit and us from its end to the pins."""
+    began = talk.board.cycle
+    talk.until(talk.session.upload(unpack(compile_text(SHORT, KIT).image)))
+    moved = first_move(talk.board, began)
+    heard = [byte for byte in talk.board.received if byte.cycle <= moved]
+    ends = [k for k, byte in enumerate(heard[:-1]) if byte.value == 0]
+    frame = heard[ends[-1] + 1 :]
+    talk.session.stop(talk.board.cycle // CYCLES_PER_MS)
+    talk.run(wait_ms)
+    return (
+        len(frame),
+        (moved - frame[0].began) / CYCLES_PER_MS,
+        (moved - frame[-1].cycle) / CYCLES_PER_MS * 1000,
+    )
 
 
 def exchanged(talk: Talk, text: str) -> tuple[int, int]:
