@@ -39,7 +39,8 @@ bool port_rename(const uint8_t* name, uint8_t length) { sink = name[length]; ret
 }
 """
 PORT_USED = """port_card(); port_condition(); port_equipment(); sink = port_room();
-  port_make_way(sink); port_memory(sink, 0); port_forget(); port_take(sink, 0); port_seal(bytes); port_start(sink); port_stop(sink);
+  port_make_way(sink); port_memory(sink, 0); port_forget(); port_take(sink, 0);
+  port_seal(bytes); port_start(sink); port_stop(sink);
   port_release(); port_image_byte(sink); port_rename(bytes, 1);
 """
 LINK = """{ static Receiver receiver; static Link link;
