@@ -54,12 +54,14 @@ byte:
     ld r0, Z+
     eor crc0, r0
     clr r0
-    bld r0, 3               ; it falls out after four rounds
-two_bits:
+    bld r0, 1               ; it falls out after two rounds
+four_bits:
+    shift_bit
+    shift_bit
     shift_bit
     shift_bit
     lsr r0
-    brcc two_bits
+    brcc four_bits
 next_byte:
     subi length0, 1
     sbci length1, 0
