@@ -48,6 +48,8 @@ def header(command: str) -> str:
             ("kReply", messages.REPLY),
             ("kSealed", messages.SEALED),
             ("kNameBytes", messages.NAME_BYTES),
+            ("kMostBalance", messages.MOST_BALANCE),
+            ("kMostLeast", messages.MOST_LEAST),
             ("kStopRun", messages.STOP_RUN),
             ("kSilenceMs", messages.SILENCE_MS),
             ("kTetherMs", messages.TETHER_MS),
@@ -55,6 +57,8 @@ def header(command: str) -> str:
         ),
         "// How a program starts, in one byte.\n"
         + constants(*((f"k{camel(name)}", bits) for bits, name, _ in messages.MODES)),
+        "// How the motors are wired, in one byte.\n"
+        + constants(*((f"k{camel(name)}", bits) for bits, name, _ in messages.WHEELS)),
         enumeration("Message", named),
         "// Requests are the numbers from 1 up to this one; from kFirstActing on they act.\n"
         + constants(
@@ -167,6 +171,10 @@ DOCUMENT_TABLES: dict[str, Callable[[], Rows]] = {
     "modes": lambda: (
         ("bits", "name", "meaning"),
         [(f"0x{bits:02x}", f"`{name}`", what) for bits, name, what in messages.MODES],
+    ),
+    "wheels": lambda: (
+        ("bit", "name", "meaning"),
+        [(f"0x{bits:02x}", f"`{name}`", what) for bits, name, what in messages.WHEELS],
     ),
     "statuses": status_rows,
     "states": lambda: number_rows(messages.STATES),

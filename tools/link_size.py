@@ -16,7 +16,7 @@ sys.path[:0] = [str(ROOT)]
 from tools import avr_bench, cpp_size
 from tools.cpp_size import AVR, SOURCE, USES, WAYS, Size, done, missing
 
-MUST = 3500  # bytes of flash
+MUST = 3700  # bytes of flash
 
 # A robot that holds nothing, and a use of each part that no optimiser can leave out.
 PORT = """
@@ -24,6 +24,9 @@ namespace tiniscript {
 Card card; Condition condition; Equipment equipment;
 const Card& port_card() { return card; }
 const Condition& port_condition() { return condition; }
+Trim trim;
+const Trim& port_trim() { return trim; }
+Answer port_set_trim(const Trim& other) { trim = other; return (Answer)sink; }
 const Equipment& port_equipment() { return equipment; }
 uint16_t port_room() { return sink; }
 bool port_make_way(bool) { return sink; }
@@ -39,6 +42,7 @@ bool port_rename(const uint8_t* name, uint8_t length) { sink = name[length]; ret
 }
 """
 PORT_USED = """port_card(); port_condition(); port_equipment(); sink = port_room();
+  port_set_trim(port_trim());
   port_make_way(sink); port_memory(sink, 0); port_forget(); port_take(sink, 0);
   port_seal(bytes); port_start(sink); port_stop(sink);
   port_release(); port_image_byte(sink); port_rename(bytes, 1);

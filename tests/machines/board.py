@@ -106,7 +106,12 @@ def built(header: str, board: str, more: str = "") -> bytes:
         code = [
             each
             for each in sorted(
-                [source / "more.cpp", *source.rglob("boards/*"), *source.rglob("vm/*")]
+                [
+                    source / "more.cpp",
+                    source / "firmware" / "trim.cpp",
+                    *source.rglob("boards/*"),
+                    *source.rglob("vm/*"),
+                ]
             )
             if each.suffix in (".cpp", ".S") and each.name not in LINKED
         ]

@@ -8,6 +8,7 @@
 #include "boards/board.h"
 #include "boards/kit.h"
 #include "boards/motors.h"
+#include "firmware/trim.h"
 #include "robot.h"
 #include "vm/image.h"
 #include "vm/verify.h"
@@ -59,6 +60,11 @@ void stop() {
 namespace tiniscript {
 
 bool robot_show(int32_t, bool) { return true; }
+
+void robot_motors(int8_t left, int8_t right) {
+  const Levels levels = trimmed(Trim(), left, right);
+  board_motors(levels.left, levels.right);
+}
 
 }  // namespace tiniscript
 

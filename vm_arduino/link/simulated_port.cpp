@@ -59,6 +59,7 @@ namespace tiniscript {
 const Equipment& port_equipment() { return port.equipment; }
 const Card& port_card() { return port.card; }
 const Condition& port_condition() { return port.condition; }
+const Trim& port_trim() { return port.trim; }
 uint16_t port_room() { return port.room; }
 
 bool port_make_way(bool) {
@@ -124,6 +125,14 @@ void port_release() {
 }
 
 uint8_t port_image_byte(uint16_t offset) { return static_cast<uint8_t>(port.held.at(offset)); }
+
+Answer port_set_trim(const Trim& trim) {
+  if (port.is_busy) return Answer::kBusy;
+  if (trim.least > kMostLeast) return Answer::kBadValue;
+  port.trim = trim;
+  say("TRIM %u", trim.wheels);
+  return Answer::kOk;
+}
 
 bool port_rename(const uint8_t* name, uint8_t length) {
   if (port.is_busy) return false;

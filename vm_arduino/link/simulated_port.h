@@ -12,6 +12,7 @@ struct SimulatedPort {
   tiniscript::Card card = {};
   tiniscript::Equipment equipment = {};
   tiniscript::Condition condition = {};
+  tiniscript::Trim trim = {};
   uint16_t room = 0;
   bool is_busy = false;              // it saves, and cannot make way
   std::unique_ptr<uint8_t[]> image;  // of exactly its length: a sanitizer sees what is outside

@@ -4,6 +4,7 @@
 // letter with what it asks; an answer is four bytes of length and what was found.
 // `tests/machines/tabletop.py` is the other side. Ends with its input.
 
+#include <math.h>
 #include <stdio.h>
 
 #include <vector>
@@ -39,6 +40,8 @@ void say(const char* what, int32_t first, int32_t second) {
            static_cast<long>(second));
   table.log += line;
 }
+
+int8_t percent_of(int16_t level) { return static_cast<int8_t>(lround(level / 2.55)); }
 
 // What the motors do, not what they are told.
 void turn(int8_t left, int8_t right) {
@@ -103,8 +106,8 @@ void answer_readings(Reader* request) {
 
 namespace tiniscript {
 
-void robot_motors(int8_t left, int8_t right) {
-  if (!table.is_latched) turn(left, right);
+void board_motors(int16_t left, int16_t right) {
+  if (!table.is_latched) turn(percent_of(left), percent_of(right));
 }
 
 void robot_off() { turn(0, 0); }

@@ -42,6 +42,16 @@ MODES = (
 )
 
 
+# The trim of the motors: how they are wired, how much weaker one gets, and what moves a wheel.
+EXCHANGED, LEFT_REVERSED, RIGHT_REVERSED = 0x01, 0x02, 0x04
+MOST_BALANCE, MOST_LEAST = 40, 40  # percent
+WHEELS = (
+    (EXCHANGED, "EXCHANGED", "The left motor is where the right one should be."),
+    (LEFT_REVERSED, "LEFT_REVERSED", "The left wheel turns the wrong way round."),
+    (RIGHT_REVERSED, "RIGHT_REVERSED", "The right wheel turns the wrong way round."),
+)
+
+
 class Field(NamedTuple):
     """`kind` is one of KINDS, or `rest`: all bytes that are left, `low` to `high` of them."""
 
@@ -65,7 +75,7 @@ class Message(NamedTuple):
     meaning: str
 
 
-KINDS = {"u8": "B", "u16": "H", "u32": "I", "i32": "i"}
+KINDS = {"u8": "B", "u16": "H", "u32": "I", "i8": "b", "i32": "i"}
 
 
 def _fields(text: str) -> tuple[Field, ...]:
@@ -118,6 +128,8 @@ MESSAGES = (
     _message(12, "COMMIT", True, "checksum:u32", _RECEIPT, "The program is whole: its image's checksum."),
     _message(13, "ABORT", True, "", "", "Drops the program that was begun."),
     _message(14, "NAME", True, "name:rest=1..16", "", "Names the robot: UTF-8."),
+    _message(15, "TRIM", True, "trim:rest=0..3", "wheels:u8 balance:i8 least:u8",
+             "Sets the trim of the motors, three bytes like those of the reply, or only tells it."),
     # events: a robot sends these without being asked
     _message(32, "SHOW", False, "", "value:i32 is_yes_no:u8", "A value that a program shows."),
     _message(33, "FAULT", False, "", "run:u8 fault:u8 at:u16 program:u32",
@@ -128,7 +140,7 @@ MESSAGES = (
 FIRST_ACTING = 6
 FIRST_EVENT = 32
 
-RESERVED = {48: "CLAIM", 49: "AUTHENTICATE", 50: "IDENTIFY", 51: "UNDO", 52: "TRIM", 53: "TEXT"}
+RESERVED = {16: "CLAIM", 17: "AUTHENTICATE", 18: "IDENTIFY", 19: "UNDO", 20: "TEXT"}
 
 # What begins a reply. 1 to 19 are the refusals of an image, 20 to 63 the rules of the verifier:
 # `bytecode_spec.md`. The sentences are in `statuses.toml`.

@@ -32,6 +32,7 @@ from tiniscript.link.messages import (
     written,
 )
 from tiniscript.link.receiver import Receiver
+from tiniscript.link.trim import Trim
 
 ROUND_MS = 120  # of two radios and a robot, without the bytes
 RETRY_MS = 80  # more for each try,
@@ -146,6 +147,11 @@ class Session:
 
     def name(self, name: bytes) -> Task:
         request = Request("NAME", {"name": name})
+        return self._add(Task(self._open_then(lambda: errands.patient(request))))
+
+    def trim(self, trim: Trim | None = None) -> Task:
+        """Set the trim of the motors, or only ask for it."""
+        request = Request("TRIM", {"trim": trim.data() if trim is not None else b""})
         return self._add(Task(self._open_then(lambda: errands.patient(request))))
 
     def fetch(self) -> Task:

@@ -84,7 +84,7 @@ void board_finished() { sound_finished(millis()); }
 void board_faulted() { sound_faulted(millis()); }
 
 void robot_off() {
-  robot_motors(0, 0);
+  board_motors(0, 0);
   sound_off();
 }
 

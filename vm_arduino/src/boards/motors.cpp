@@ -1,6 +1,6 @@
 #include "motors.h"
 
-#include "../robot.h"
+#include "../firmware/board.h"
 #include "kit.h"
 
 #if defined(tiniscript_motors_bridge)
@@ -17,12 +17,7 @@ namespace {
 
 volatile bool is_released;
 
-// The power that PWM has, 0 to 255: 2.55 for each percent.
-uint8_t level_of(int8_t power) {
-  uint8_t percent = static_cast<uint8_t>(power < 0 ? -power : power);
-  if (percent > 100) percent = 100;
-  return static_cast<uint8_t>(percent * 653u >> 8);
-}
+uint8_t size_of(int16_t level) { return static_cast<uint8_t>(level < 0 ? -level : level); }
 
 }  // namespace
 
@@ -31,9 +26,9 @@ uint8_t level_of(int8_t power) {
 extern "C" void tiniscript_motors_low() __attribute__((naked, used, section(".init3")));
 void tiniscript_motors_low() { begin_motors(); }
 
-void robot_motors(int8_t left, int8_t right) {
-  const uint8_t left_level = level_of(left);
-  const uint8_t right_level = level_of(right);
+void board_motors(int16_t left, int16_t right) {
+  const uint8_t left_level = size_of(left);
+  const uint8_t right_level = size_of(right);
   const NoInterrupts quiet;  // a stop comes before this or after it, not in between
   if (!is_released || (left_level | right_level) == 0) {
     motors_off();

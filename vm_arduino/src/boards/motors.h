@@ -1,6 +1,6 @@
 // The motors: the latch that stops them, and what a motor is for each driver.
 //
-// Nothing turns a motor on but `robot_motors`, and it only while the latch is open. The latch is
+// Nothing turns a motor on but `board_motors`, and it only while the latch is open. The latch is
 // closed after a reset.
 
 #ifndef TINISCRIPT_BOARDS_MOTORS_H_

@@ -23,6 +23,10 @@ struct Board {
   uint32_t max_run_ms;  // the longest run without a tether
 };
 
+// Sets the outputs of the motor driver, -255 to 255, forward where that is more than 0. Turns none
+// on while the latch is closed.
+void board_motors(int16_t left, int16_t right);
+
 // Closes the latch: motors off, and nothing turns them on before `board_release`.
 void board_stop();
 void board_release();

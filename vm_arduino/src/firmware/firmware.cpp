@@ -6,6 +6,7 @@
 #include "../vm/image.h"
 #include "../vm/verify.h"
 #include "../vm/vm.h"
+#include "trim.h"
 
 namespace tiniscript {
 
@@ -26,6 +27,7 @@ Board board;
 Card card;
 Equipment equipment;
 Condition condition;
+Trim trim;
 Receiver receiver;
 Link talk;
 Store store;
@@ -43,6 +45,8 @@ uint8_t to_keep;
 uint8_t keeping;  // of them: what the store writes now
 uint32_t now_ms;
 uint32_t began_ms;  // the run
+
+static_assert(sizeof(Trim) == kTrimBytes, "it is kept as it is sent");
 
 uint16_t number16(const uint8_t* bytes) {
   return static_cast<uint16_t>(bytes[0] | static_cast<uint16_t>(bytes[1]) << 8);
@@ -119,6 +123,8 @@ void load_identity() {
     equipment.name[equipment.name_length] = record[kNameAt + equipment.name_length];
     equipment.name_length++;
   }
+  copy_bytes(record + kTrimAt, reinterpret_cast<uint8_t*>(&trim), sizeof trim);
+  if (!is_sound(trim)) trim = Trim();  // of other firmware
 }
 
 // A record of a fault: what, where, in which image.
@@ -160,6 +166,7 @@ void write_record() {
   if (keeping == kKeepIdentity) {
     put_number(record + kIdAt, card.id, 4);
     for (uint8_t k = 0; k < equipment.name_length; k++) record[kNameAt + k] = equipment.name[k];
+    copy_bytes(&trim, record + kTrimAt, sizeof trim);
   } else {
     record[kFaultAt] = condition.fault;
     put_number(record + kFaultAt + 1, condition.fault_at, 2);
@@ -304,6 +311,8 @@ const Card& port_card() { return card; }
 
 const Condition& port_condition() { return condition; }
 
+const Trim& port_trim() { return trim; }
+
 uint16_t port_room() { return kStoredCodeBytes; }
 
 bool port_make_way(bool is_live) {
@@ -369,6 +378,19 @@ bool port_rename(const uint8_t* name, uint8_t length) {
   for (uint8_t k = 0; k < length; k++) equipment.name[k] = name[k];
   to_keep |= kKeepIdentity;
   return true;
+}
+
+Answer port_set_trim(const Trim& found) {
+  if (!is_sound(found)) return Answer::kBadValue;
+  if (boot != Boot::kOver || keeping == kKeepIdentity) return Answer::kBusy;
+  trim = found;
+  to_keep |= kKeepIdentity;
+  return Answer::kOk;
+}
+
+void robot_motors(int8_t left, int8_t right) {
+  const Levels levels = trimmed(trim, left, right);
+  board_motors(levels.left, levels.right);
 }
 
 // What a program shows goes to whoever listens.

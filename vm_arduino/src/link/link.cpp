@@ -195,8 +195,18 @@ uint8_t Link::answer(Message message, const uint8_t* payload, uint8_t length) {
     case Message::kName:
       if (!port_rename(payload, length)) found = Answer::kBusy;
       break;
+    case Message::kTrim:
+      if (length != 0) found = set_trim(payload, length);
+      break;
   }
   return number_of(found);
+}
+
+Answer Link::set_trim(const uint8_t* payload, uint8_t length) {
+  Trim trim;
+  if (length != sizeof trim) return Answer::kBadLength;
+  copy_bytes(payload, reinterpret_cast<uint8_t*>(&trim), sizeof trim);
+  return port_set_trim(trim);
 }
 
 uint8_t Link::hello(const uint8_t* payload) {

@@ -70,6 +70,7 @@ class Link {
   void hear();
   void handle(uint8_t end);
   uint8_t answer(Message message, const uint8_t* payload, uint8_t length);
+  Answer set_trim(const uint8_t* payload, uint8_t length);
   uint8_t hello(const uint8_t* payload);
   uint8_t take_short(bool is_live, const uint8_t* payload, uint8_t length);
   uint8_t begin_program(const uint8_t* payload);

@@ -121,6 +121,9 @@ void Link::reply() {
     case Message::kData:
       put16(next_);
       break;
+    case Message::kTrim:
+      put_all(&port_trim(), sizeof(Trim));
+      break;
     case Message::kStop:
     case Message::kClear:
     case Message::kAbort:

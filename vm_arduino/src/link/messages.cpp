@@ -21,6 +21,7 @@ const uint8_t kRequestBytes[][2] in_flash = {
     {4, 4},  // COMMIT
     {0, 0},  // ABORT
     {1, 16},  // NAME
+    {0, 3},  // TRIM
 };
 
 }  // namespace tiniscript

@@ -25,6 +25,8 @@ constexpr uint8_t kWindow = 1;
 constexpr uint8_t kReply = 128;
 constexpr uint8_t kSealed = 64;
 constexpr uint8_t kNameBytes = 16;
+constexpr uint8_t kMostBalance = 40;
+constexpr uint8_t kMostLeast = 40;
 constexpr uint8_t kStopRun = 4;
 constexpr uint16_t kSilenceMs = 1000;
 constexpr uint16_t kTetherMs = 1000;
@@ -35,6 +37,11 @@ constexpr uint8_t kStartBits = 3;
 constexpr uint8_t kRun = 16;
 constexpr uint8_t kSave = 32;
 constexpr uint8_t kDetached = 64;
+
+// How the motors are wired, in one byte.
+constexpr uint8_t kExchanged = 1;
+constexpr uint8_t kLeftReversed = 2;
+constexpr uint8_t kRightReversed = 4;
 
 enum class Message : uint8_t {
   kHello = 1,  // Begins a session. The same `nonce` again is the same session.
@@ -51,6 +58,7 @@ enum class Message : uint8_t {
   kCommit = 12,  // The program is whole: its image's checksum.
   kAbort = 13,  // Drops the program that was begun.
   kName = 14,  // Names the robot: UTF-8.
+  kTrim = 15,  // Sets the trim of the motors, three bytes like those of the reply, or only tells it.
   kShow = 32,  // A value that a program shows.
   kFault = 33,  // The program has ended with a fault.
   kStopped = 34,  // The robot was stopped. Its epoch is another one now.
@@ -58,7 +66,7 @@ enum class Message : uint8_t {
 };
 
 // Requests are the numbers from 1 up to this one; from kFirstActing on they act.
-constexpr uint8_t kLastRequest = 14;
+constexpr uint8_t kLastRequest = 15;
 constexpr uint8_t kFirstActing = 6;
 
 // How long the payload of each request may be, from the first one on: least and most.
@@ -88,6 +96,7 @@ constexpr uint8_t kDataOffsetAt = 0;
 constexpr uint8_t kDataCodeAt = 2;
 constexpr uint8_t kCommitChecksumAt = 0;
 constexpr uint8_t kNameNameAt = 0;
+constexpr uint8_t kTrimTrimAt = 0;
 
 // What begins a reply. Below 64: an image's Refusal, or the verifier's Rule.
 enum class Answer : uint8_t {

@@ -38,6 +38,15 @@ struct as_sent Condition {
   uint32_t fault_program;
 };
 
+// What the motors get for the power that a program asks for: `kExchanged` and the others of
+// `wheels`; the percent by which the left wheel is too strong, or the right one where it is less
+// than 0; the percent that move a wheel.
+struct as_sent Trim {
+  uint8_t wheels;
+  int8_t balance;
+  uint8_t least;
+};
+
 constexpr uint8_t kFaultBytes = 7;  // of a Condition, from `fault` on
 
 // How many devices the kit has, and what the robot is called.
@@ -51,6 +60,7 @@ struct Equipment {
 const Equipment& port_equipment();
 const Card& port_card();
 const Condition& port_condition();
+const Trim& port_trim();
 
 // The most bytes of code for which there is room.
 uint16_t port_room();
@@ -85,6 +95,9 @@ uint8_t port_image_byte(uint16_t offset);
 
 // False while the robot has no time to save it: the link says so, and is asked again.
 bool port_rename(const uint8_t* name, uint8_t length);
+
+// Sets and keeps a trim: kOk, kBadValue, or kBusy, likewise.
+Answer port_set_trim(const Trim& trim);
 
 }  // namespace tiniscript
 

@@ -37,7 +37,7 @@ constexpr uint8_t kIdAt = kCheckBytes;
 constexpr uint8_t kIdBytes = 4;
 constexpr uint8_t kNameAt = kIdAt + kIdBytes;
 constexpr uint8_t kNameRoom = 16;
-constexpr uint8_t kTrimAt = kNameAt + kNameRoom;  // kept free for the trim of the motors
+constexpr uint8_t kTrimAt = kNameAt + kNameRoom;  // of the motors
 constexpr uint8_t kTrimBytes = 3;
 static_assert(kTrimAt + kTrimBytes == kRecordBytes, "who the robot is fills a record");
 
