@@ -28,6 +28,7 @@ VERBS = {
     "monitor": "monitoring",
     "fetch": "fetching",
     "name": "naming",
+    "trim": "trimming",
 }
 
 
