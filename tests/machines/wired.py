@@ -11,7 +11,7 @@ class Wired:
 
     def __init__(self, uno: Uno, session: Session) -> None:
         self.uno, self.session = uno, session
-        self._seen = len(uno.sent)
+        self._seen = len(uno.events)
 
     @property
     def now_ms(self) -> int:
@@ -23,9 +23,10 @@ class Wired:
             if data:
                 self.uno.send(data)
             self.uno.run_ms(1)
-            sent = self.uno.sent
-            self.session.receive(bytes(byte.value for byte in sent[self._seen :]), self.now_ms)
-            self._seen = len(sent)
+            new = self.uno.events[self._seen :]
+            self._seen += len(new)
+            sent = bytes(event["byte"] for event in new if event.what == "sent")
+            self.session.receive(sent, self.now_ms)
 
     def until(self, task: Task, limit_ms: int = 20_000) -> int:
         """Run until a task is over; return how that ended."""
