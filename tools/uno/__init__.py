@@ -1,4 +1,4 @@
-"""An Arduino Uno that is a process, for tests and benchmarks: the real firmware, seen at its pins.
+"""An Arduino Uno or Mega that is a process, for tests and benchmarks: the real firmware, at work.
 
     with Uno(Path("firmware.elf"), names={"button": "D2"}) as uno:
         uno.run_ms(5)
@@ -26,43 +26,58 @@ from pathlib import Path
 from types import TracebackType
 
 from tools.uno.build import built, missing
-from tools.uno.log import CYCLES_PER_MS, HERTZ, Byte, Event, PinChange, Pins
+from tools.uno.log import CYCLES_PER_MS, HERTZ, Byte, Event, PinChange, Pins, Stack
 
-__all__ = ["CYCLES_PER_MS", "HERTZ", "Byte", "Event", "PinChange", "Pins", "Uno", "missing"]
+__all__ = [
+    "CYCLES_PER_MS",
+    "HERTZ",
+    "Byte",
+    "Event",
+    "PinChange",
+    "Pins",
+    "Stack",
+    "Uno",
+    "missing",
+]
 
 PATIENCE_S = 120.0  # for what the simulator is asked to do
 
 
 class Uno:
-    """A board with a firmware. `names` are other words for pins, as `{"button": "D2"}`.
+    """A board with a firmware, an `uno` or a `mega`.
 
-    Without an `eeprom` file the EEPROM is that of a new chip, and lost afterwards. Where a
-    `bootloader` is given, a reset begins there.
+    `names` are other words for pins, as `{"button": "D2"}`. Without an `eeprom`
+    file the EEPROM is that of a new chip, and lost afterwards. Where a `bootloader` is given, a
+    reset begins there; it may be alone on the chip.
     """
 
     def __init__(
         self,
-        firmware: Path,
+        firmware: Path | None,
         *,
         names: Mapping[str, str] | None = None,
         eeprom: Path | None = None,
         bootloader: Path | None = None,
+        board: str = "uno",
         baud: int = 115_200,
         resets_on_open: bool = True,
         tells_sleep: bool = True,
+        watches_stack: bool = False,
     ) -> None:
+        self.board = board
         self.events: list[Event] = []
-        self.pins = Pins(self.events, names or {})
+        self.pins = Pins(self.events, names or {}, board)
         self.cycle = 0  # where it has paused
         self._news = threading.Condition()
         self._errors = tempfile.TemporaryFile()  # noqa: SIM115
-        options = ["--baud", str(baud)]
+        options = ["--board", board, "--baud", str(baud)]
         options += ["--eeprom", str(eeprom)] if eeprom else []
         options += ["--bootloader", str(bootloader)] if bootloader else []
         options += ["--reset-on-open"] if resets_on_open else []
         options += [] if tells_sleep else ["--no-sleep"]
+        options += ["--watch-stack"] if watches_stack else []
         self._process = subprocess.Popen(
-            [built(), *options, firmware],
+            [built(), *options, *([firmware] if firmware else [])],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=self._errors,
@@ -214,6 +229,17 @@ class Uno:
     def reset(self, cause: str = "external", at: int | None = None) -> None:
         """Reset it: `external` (button, DTR), `power-on` (a cut: RAM is lost), `brown-out`."""
         self._tell(_at(at) + f"reset {cause}")
+
+    # -- memory -------------------------------------------------------------------------------
+
+    def stack(self, from_address: int) -> Stack:
+        """Say how deep the stack went, in RAM that is free from an address on.
+
+        Needs `watches_stack`, which makes it about half as fast.
+        """
+        mark = len(self.events)
+        self._tell(f"stack {from_address}")
+        return Stack.of(self.wait_for(lambda event: event.what == "stack", since=mark))
 
     # -- inside -------------------------------------------------------------------------------
 

@@ -9,8 +9,7 @@
 enum {
   kMcusr = 0x54,
   kWdtcsr = 0x60,
-  kWatchdogVector = 6,
-  kEntryCycles = 4,
+  kEntryCycles = 4,   // and one more where an address has three bytes
   kChangeCycles = 4,  // for so long a change of the watchdog is allowed
   kWdif = 0x80,
   kWdie = 0x40,
@@ -60,7 +59,7 @@ void asking_begin(struct Asking* asking, uint8_t vector) {
 static void interrupt_entered(struct avr_irq_t* irq, uint32_t value, void* param) {
   (void)irq;
   (void)param;
-  if (value) avr->cycle += kEntryCycles;
+  if (value) avr->cycle += avr->address_size == 3 ? kEntryCycles + 1 : kEntryCycles;
 }
 
 // -- resets -------------------------------------------------------------------------------------
@@ -96,6 +95,7 @@ bool reset_where_wanted(void) {
       avr->data[k] = (uint8_t)(noise >> 24);
     }
   }
+  stack_after_reset(is_power_on);
   avr->data[kMcusr] = flags;
   tell(avr->cycle, "reset", "\"cause\": \"%s\", \"flags\": %d", cause_name(causes), flags);
   queue_after_reset();
@@ -204,6 +204,6 @@ void chip_begin(void) {
     avr_irq_register_notify(running, interrupt_entered, NULL);
   }
   barking = (struct Asking){barking_wants, barking_entered, NULL};
-  asking_begin(&barking, kWatchdogVector);
+  asking_begin(&barking, board->vectors.watchdog);
   take_register(kWdtcsr, control_read, control_write);
 }

@@ -10,6 +10,7 @@
 //     send HEX, send_bad HEX    bytes one after the other; bad: with a stop bit that is low
 //     hold low|high BITS        a break, or silence
 //     reset external|power-on|brown-out
+//     stack ADDRESS             tell how deep it went, and what nobody has written from there on
 //
 // `at CYCLE` before a line lets it happen then, `after CYCLES` so much later than now. Without them
 // it happens at once.
@@ -88,7 +89,11 @@ static bool is_done(Cycle when, const char* line) {
     return trigger != kNoPin && echo != kNoPin && sonar_set(trigger, echo, number);
   }
   if (sscanf(line, "analog %31s %d", first, &number) == 2 && first[0] == 'A') {
-    analog_set(first[1] - '0', number);
+    analog_set(atoi(first + 1), number);
+    return true;
+  }
+  if (sscanf(line, "stack %d", &number) == 1 && number >= 0 && number <= avr->ramend) {
+    stack_tell(number);
     return true;
   }
   if (sscanf(line, "baud %d", &number) == 1 && number > 0) {

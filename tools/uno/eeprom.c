@@ -8,12 +8,11 @@
 #include "uno.h"
 
 enum {
-  kBytes = 1024,
+  kMostBytes = 4096,
   kEecr = 0x3f,
   kEedr = 0x40,
   kEearl = 0x41,
   kEearh = 0x42,
-  kVector = 22,
   kRead = 1,
   kWrite = 2,
   kMayWrite = 4,
@@ -26,7 +25,7 @@ enum {
   kWholeCycles = kHertz / 10000 * 34,  // 3.4 ms
 };
 
-static uint8_t bytes[kBytes];
+static uint8_t bytes[kMostBytes];
 static int file = -1;
 static uint8_t control;
 static Cycle may_write_until;
@@ -55,7 +54,7 @@ static void finished(Cycle when, void* what) {
 
 static void begin_write(Cycle now) {
   const uint8_t mode = control & kMode;
-  place = (uint16_t)((avr->data[kEearl] | avr->data[kEearh] << 8) & (kBytes - 1));
+  place = (uint16_t)((avr->data[kEearl] | avr->data[kEearh] << 8) & (board->eeprom_bytes - 1));
   value = avr->data[kEedr];
   is_busy = true;
   asking_refresh(&ready);
@@ -87,7 +86,7 @@ static void control_write(avr_t* chip, avr_io_addr_t address, uint8_t bits, void
     may_write_until = chip->cycle + kMayWriteCycles + 1;
   }
   if ((bits & kRead) && !is_busy) {
-    const int from = (chip->data[kEearl] | chip->data[kEearh] << 8) & (kBytes - 1);
+    const int from = (chip->data[kEearl] | chip->data[kEearh] << 8) & (board->eeprom_bytes - 1);
     chip->data[kEedr] = bytes[from];
     chip->cycle += 4;
   }
@@ -109,13 +108,13 @@ void eeprom_after_reset(bool is_power_on) {
 void eeprom_begin(const char* name) {
   memset(bytes, 0xff, sizeof bytes);
   ready = (struct Asking){ready_wants, NULL, NULL};
-  asking_begin(&ready, kVector);
+  asking_begin(&ready, board->vectors.eeprom);
   take_register(kEecr, control_read, control_write);
   if (!name) return;
   file = open(name, O_RDWR | O_CREAT, 0600);
   if (file < 0) give_up("cannot open %s", name);
-  const ssize_t length = pread(file, bytes, sizeof bytes, 0);
-  if (length < 0 || pwrite(file, bytes, sizeof bytes, 0) != sizeof bytes) {
+  const ssize_t length = pread(file, bytes, board->eeprom_bytes, 0);
+  if (length < 0 || pwrite(file, bytes, board->eeprom_bytes, 0) != board->eeprom_bytes) {
     give_up("cannot read and write %s", name);
   }
 }

@@ -8,7 +8,7 @@ from typing import Any
 
 HERTZ = 16_000_000
 CYCLES_PER_MS = HERTZ // 1000
-BOARD = [f"D{number}" for number in range(14)] + [f"A{number}" for number in range(6)]
+PINS = {"uno": (14, 6), "mega": (54, 16)}  # of each board: digital, analog
 
 
 @dataclass(frozen=True)
@@ -64,17 +64,44 @@ class Byte:
         return cls(event.cycle, event["began"], event["byte"], "framing_error" in event.rest)
 
 
+@dataclass(frozen=True)
+class Stack:
+    """Bytes of RAM behind what is there all the time, and how much of it the stack has taken.
+
+    `untouched` are as power-on has left them. `program` and `interrupt` are the deepest that each
+    of the two went by itself.
+    """
+
+    untouched: int
+    room: int
+    program: int
+    interrupt: int
+
+    @classmethod
+    def of(cls, event: Event) -> Stack:
+        return cls(event["untouched"], event["room"], event["program"], event["interrupt"])
+
+    @property
+    def least_free(self) -> int:
+        """What is left where the deepest interrupt comes in the deepest place of the program."""
+        return self.room - self.program - self.interrupt
+
+
 class Pins:
     """The pins of a board by their names there, or by those that the test gives them."""
 
-    def __init__(self, events: Sequence[Event], names: Mapping[str, str]) -> None:
+    def __init__(
+        self, events: Sequence[Event], names: Mapping[str, str], board: str = "uno"
+    ) -> None:
         self._events = events
         self._names = names
+        digital, analog = PINS[board]
+        self._board = {f"D{pin}" for pin in range(digital)} | {f"A{pin}" for pin in range(analog)}
 
     def number(self, pin: str) -> str:
         """Return the name on the board."""
         name = self._names.get(pin, pin)
-        assert name in BOARD, f"there is no pin {pin}"
+        assert name in self._board, f"there is no pin {pin}"
         return name
 
     def history(self, pin: str) -> tuple[PinChange, ...]:

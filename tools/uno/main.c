@@ -1,19 +1,21 @@
-// An Arduino Uno that is a process: runs a firmware, tells what its pins and its UART do as lines
-// of JSON, and does what it is told on the standard input (commands.c). Ends when that is closed.
+// An Arduino Uno or Mega that is a process: runs a firmware, tells what its pins and its UART do as
+// lines of JSON, and does what it is told on the standard input (commands.c). Ends when that is
+// closed.
 //
-//     uno [options] firmware.elf|firmware.hex
+//     uno [options] [firmware.elf|firmware.hex]
+//       --board NAME      uno or mega: uno
 //       --run SPEED       begin at once; otherwise it waits for the command `run`
 //       --baud N          of the pty until somebody sets another, and of the commands: 115200
 //       --link PATH       also make PATH a link to the pty
 //       --eeprom FILE     where the EEPROM is kept
 //       --reset-on-open   opening the pty resets the board
-//       --bootloader HEX  where a reset begins
+//       --bootloader HEX  where a reset begins; without a firmware it is alone on the chip
+//       --watch-stack     tell how deep it is on the command `stack`
 //       --no-sleep        say nothing of sleeping
 
 #define _GNU_SOURCE
 #include <poll.h>
 #include <simavr/sim_elf.h>
-#include <simavr/sim_hex.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -139,6 +141,7 @@ static void run(void) {
     }
     if (reset_where_wanted()) was_asleep = false;
     const int state = avr_run(avr);
+    if (stack_is_watched()) stack_look();
     if (state == cpu_Done && !is_paused && !reset_is_wanted()) skip_sleep();
     const bool is_asleep = state == cpu_Sleeping || state == cpu_Done;
     if (is_asleep != was_asleep && tells_sleep) {
@@ -165,39 +168,46 @@ static void do_nothing(avr_t* chip, avr_cycle_count_t cycles) {
   (void)cycles;
 }
 
-static void load(const char* name, const char* bootloader) {
+static bool is_hex(const char* name) {
+  const size_t length = strlen(name);
+  return length > 4 && strcmp(name + length - 4, ".hex") == 0;
+}
+
+static void load_elf(const char* name) {
   elf_firmware_t firmware;
   memset(&firmware, 0, sizeof firmware);
-  const size_t length = strlen(name);
-  if (length > 4 && strcmp(name + length - 4, ".hex") == 0) {
-    firmware.flash = read_ihex_file(name, &firmware.flashsize, &firmware.flashbase);
-  } else if (elf_read_firmware(name, &firmware) != 0) {
-    firmware.flash = NULL;
-  }
-  if (!firmware.flash) give_up("cannot read %s", name);
-  avr = avr_make_mcu_by_name("atmega328p");
-  if (!avr || avr_init(avr) != 0) give_up("libsimavr has no ATmega328P");
+  if (elf_read_firmware(name, &firmware) != 0 || !firmware.flash) give_up("cannot read %s", name);
   if (firmware.flashbase + firmware.flashsize > avr->flashend + 1) give_up("%s is too large", name);
   avr_loadcode(avr, firmware.flash, firmware.flashsize, firmware.flashbase);
+}
+
+static void load_hex(const char* name, uint32_t* begin) {
+  if (!hex_load(name, avr->flash, avr->flashend + 1, begin)) give_up("cannot read %s", name);
+}
+
+// Without a firmware the flash is that of a new chip.
+static void load(const char* firmware, const char* bootloader) {
+  uint32_t begin;
+  avr = avr_make_mcu_by_name(board->chip);
+  if (!avr || avr_init(avr) != 0) give_up("libsimavr has no %s", board->chip);
+  if (firmware && is_hex(firmware)) {
+    load_hex(firmware, &begin);
+  } else if (firmware) {
+    load_elf(firmware);
+  }
   avr->codeend = avr->flashend;
   avr->frequency = kHertz;
   avr->vcc = avr->avcc = avr->aref = 5000;
   avr->sleep = do_nothing;
   avr->run_cycle_limit = kSlice;
   if (!bootloader) return;
-  ihex_chunk_p parts = NULL;
-  const int count = read_ihex_chunks(bootloader, &parts);
-  if (count < 1) give_up("cannot read %s", bootloader);
-  for (int k = 0; k < count; k++) {
-    if (parts[k].baseaddr + parts[k].size > avr->flashend + 1) give_up("%s is no bootloader", name);
-    memcpy(avr->flash + parts[k].baseaddr, parts[k].data, parts[k].size);
-  }
-  avr->reset_pc = parts[0].baseaddr;
+  load_hex(bootloader, &begin);
+  avr->reset_pc = begin;
 }
 
 int main(int count, char** words) {
   const char *firmware = NULL, *link = NULL, *eeprom = NULL, *bootloader = NULL;
-  bool resets_on_open = false;
+  bool resets_on_open = false, watches_stack = false;
   int baud = 115200;
   for (int k = 1; k < count; k++) {
     const char* word = words[k];
@@ -212,12 +222,16 @@ int main(int count, char** words) {
       link = value;
     } else if (value && strcmp(word, "--eeprom") == 0) {
       eeprom = value;
+    } else if (value && strcmp(word, "--board") == 0) {
+      if (!board_choose(value)) give_up("there is no board %s", value);
     } else if (value && strcmp(word, "--bootloader") == 0) {
       bootloader = value;
     } else {
       takes_value = false;
       if (strcmp(word, "--reset-on-open") == 0) {
         resets_on_open = true;
+      } else if (strcmp(word, "--watch-stack") == 0) {
+        watches_stack = true;
       } else if (strcmp(word, "--no-sleep") == 0) {
         tells_sleep = false;
       } else if (word[0] != '-' && !firmware) {
@@ -228,7 +242,7 @@ int main(int count, char** words) {
     }
     k += takes_value;
   }
-  if (!firmware) give_up("which firmware?");
+  if (!firmware && !bootloader) give_up("which firmware?");
   if (baud <= 0) give_up("which baud?");
   // What libsimavr prints is no JSON.
   out = fdopen(dup(STDOUT_FILENO), "w");
@@ -240,6 +254,7 @@ int main(int count, char** words) {
   uart_begin();
   eeprom_begin(eeprom);
   wire_begin(link, resets_on_open, baud);
+  if (watches_stack) stack_begin();
   reset_soon(kPowerOn);
   reset_where_wanted();
   pace();

@@ -5,11 +5,12 @@
 
 #include <simavr/avr_adc.h>
 #include <simavr/avr_ioport.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "uno.h"
 
-enum { kAnalogPins = 6, kMilliVolts = 5000, kMostCount = 1023 };
+enum { kMilliVolts = 5000, kMostCount = 1023, kMostAnalog = 16, kName = 4 };
 
 // -- timers: which registers, which pins --------------------------------------------------------
 
@@ -17,31 +18,30 @@ struct Register {
   const char* name;
   uint16_t address;
   bool is_wide;
+  int timer;
   int told;
 };
 
+// Of timers with 16 bits an Uno has number 1 alone, and no channel C.
 // clang-format off
 static struct Register registers[] = {
-    {"TCCR0A", 0x44, false, 0}, {"TCCR0B", 0x45, false, 0},
-    {"OCR0A", 0x47, false, 0}, {"OCR0B", 0x48, false, 0},
-    {"TCCR1A", 0x80, false, 0}, {"TCCR1B", 0x81, false, 0}, {"ICR1", 0x86, true, 0},
-    {"OCR1A", 0x88, true, 0}, {"OCR1B", 0x8a, true, 0},
-    {"TCCR2A", 0xb0, false, 0}, {"TCCR2B", 0xb1, false, 0},
-    {"OCR2A", 0xb3, false, 0}, {"OCR2B", 0xb4, false, 0},
+    {"TCCR0A", 0x44, false, 0, 0}, {"TCCR0B", 0x45, false, 0, 0},
+    {"OCR0A", 0x47, false, 0, 0}, {"OCR0B", 0x48, false, 0, 0},
+    {"TCCR1A", 0x80, false, 1, 0}, {"TCCR1B", 0x81, false, 1, 0}, {"ICR1", 0x86, true, 1, 0},
+    {"OCR1A", 0x88, true, 1, 0}, {"OCR1B", 0x8a, true, 1, 0},
+    {"TCCR2A", 0xb0, false, 2, 0}, {"TCCR2B", 0xb1, false, 2, 0},
+    {"OCR2A", 0xb3, false, 2, 0}, {"OCR2B", 0xb4, false, 2, 0},
+    {"OCR1C", 0x8c, true, 3, 0},
+    {"TCCR3A", 0x90, false, 3, 0}, {"TCCR3B", 0x91, false, 3, 0}, {"ICR3", 0x96, true, 3, 0},
+    {"OCR3A", 0x98, true, 3, 0}, {"OCR3B", 0x9a, true, 3, 0}, {"OCR3C", 0x9c, true, 3, 0},
+    {"TCCR4A", 0xa0, false, 4, 0}, {"TCCR4B", 0xa1, false, 4, 0}, {"ICR4", 0xa6, true, 4, 0},
+    {"OCR4A", 0xa8, true, 4, 0}, {"OCR4B", 0xaa, true, 4, 0}, {"OCR4C", 0xac, true, 4, 0},
+    {"TCCR5A", 0x120, false, 5, 0}, {"TCCR5B", 0x121, false, 5, 0}, {"ICR5", 0x126, true, 5, 0},
+    {"OCR5A", 0x128, true, 5, 0}, {"OCR5B", 0x12a, true, 5, 0}, {"OCR5C", 0x12c, true, 5, 0},
 };
 enum { kRegisters = sizeof registers / sizeof *registers };
 
-// An output of a timer: its pin, where its two bits are in the timer's first register.
-static const struct Output {
-  int pin, timer, shift;
-  uint16_t compare;
-} outputs[] = {
-    {6, 0, 6, 0x47}, {5, 0, 4, 0x48}, {9, 1, 6, 0x88},
-    {10, 1, 4, 0x8a}, {11, 2, 6, 0xb3}, {3, 2, 4, 0xb4},
-};
-enum { kOutputs = sizeof outputs / sizeof *outputs };
-static const uint16_t controls[] = {0x44, 0x80, 0xb0};
-static const uint16_t first_compares[] = {0x47, 0x88, 0xb3};
+static const uint16_t controls[] = {0x44, 0x80, 0xb0, 0x90, 0xa0, 0x120};
 static const int divisors[] = {0, 1, 8, 64, 256, 1024, 0, 0};
 static const int divisors_2[] = {0, 1, 8, 32, 64, 128, 256, 1024};
 
@@ -49,14 +49,28 @@ static const int divisors_2[] = {0, 1, 8, 32, 64, 128, 256, 1024};
 static const struct Port {
   char letter;
   uint16_t address;
-} ports[] = {{'D', 0x29}, {'B', 0x23}, {'C', 0x26}};
+} ports[] = {
+    {'A', 0x20}, {'B', 0x23}, {'C', 0x26}, {'D', 0x29}, {'E', 0x2c}, {'F', 0x2f}, {'G', 0x32},
+    {'H', 0x100}, {'J', 0x103}, {'K', 0x106}, {'L', 0x109},
+};
+enum { kPorts = sizeof ports / sizeof *ports };
 // clang-format on
+
+static bool is_wide_timer(int timer) { return timer != 0 && timer != 2; }
+
+static uint16_t compare_of(int timer, int channel) {
+  const int from = controls[timer] + (is_wide_timer(timer) ? 8 + 2 * channel : 3 + channel);
+  return (uint16_t)from;
+}
 
 static int byte_at(uint16_t address) { return avr->data[address]; }
 
 static int word_at(uint16_t address, bool is_wide) {
   return byte_at(address) | (is_wide ? byte_at((uint16_t)(address + 1)) << 8 : 0);
 }
+
+// Where an output's two bits are in the first register of its timer.
+static int shift_of(const struct Output* output) { return 6 - 2 * output->channel; }
 
 struct Wave {
   int value;
@@ -66,13 +80,13 @@ struct Wave {
 
 // Returns what an output does, for a timer that drives its pin.
 static struct Wave wave_of(const struct Output* output) {
-  const bool is_wide = output->timer == 1;
+  const bool is_wide = is_wide_timer(output->timer);
   const int a = byte_at(controls[output->timer]);
   const int b = byte_at((uint16_t)(controls[output->timer] + 1));
   const int mode = (a & 3) | (is_wide ? b >> 1 & 12 : b >> 1 & 4);
   const int divisor = (output->timer == 2 ? divisors_2 : divisors)[b & 7];
-  const int by_compare = word_at(first_compares[output->timer], is_wide);
-  const int by_capture = word_at(0x86, true);
+  const int by_compare = word_at(compare_of(output->timer, 0), is_wide);
+  const int by_capture = word_at((uint16_t)(controls[output->timer] + 6), true);
   bool is_fast;
   bool is_plain;  // counts up and begins again: the pin toggles, or changes once
   int top;
@@ -87,8 +101,8 @@ static struct Wave wave_of(const struct Output* output) {
     is_fast = mode == 3 || mode == 7;
     top = mode == 2 || mode >= 5 ? by_compare : 255;
   }
-  const int bits = a >> output->shift & 3;
-  const int value = word_at(output->compare, is_wide);
+  const int bits = a >> shift_of(output) & 3;
+  const int value = word_at(compare_of(output->timer, output->channel), is_wide);
   struct Wave wave = {value, 0.5, 0};
   const double counts = is_fast || is_plain ? top + 1.0 : 2.0 * top;
   if (divisor && counts > 0) wave.hertz = kHertz / (divisor * counts);
@@ -103,41 +117,37 @@ static struct Wave wave_of(const struct Output* output) {
 }
 
 static const struct Output* output_of(int pin) {
-  for (int k = 0; k < kOutputs; k++) {
-    const struct Output* output = &outputs[k];
-    if (output->pin == pin && byte_at(controls[output->timer]) >> output->shift & 3) return output;
+  for (unsigned k = 0; k < board->output_count; k++) {
+    const struct Output* output = &board->outputs[k];
+    if (output->pin != pin) continue;
+    if (byte_at(controls[output->timer]) >> shift_of(output) & 3) return output;
   }
   return NULL;
 }
 
 // -- pins ---------------------------------------------------------------------------------------
 
-static const char* const names[kPinCount] = {"D0", "D1", "D2", "D3",  "D4",  "D5",  "D6",
-                                             "D7", "D8", "D9", "D10", "D11", "D12", "D13",
-                                             "A0", "A1", "A2", "A3",  "A4",  "A5"};
-
 static struct Pin {
+  char name[kName];
   avr_irq_t* irq;
+  const struct Port* port;
+  int bit;
   const char* is;
   struct Wave wave;
   bool level;
   enum Drive drive;
-} pins[kPinCount];
-static int analog[kAnalogPins];
+} pins[kMostPins];
+static int pin_count;
+static int analog[kMostAnalog];
 static int watched_pin = kNoPin;
 static char watched_state[8];
 
-static const struct Port* port_of(int pin) { return &ports[pin < 8 ? 0 : pin < 14 ? 1 : 2]; }
-static int bit_of(int pin) { return pin < 8 ? pin : pin < 14 ? pin - 8 : pin - 14; }
-
 int pin_number(const char* name) {
-  for (int pin = 0; pin < kPinCount; pin++) {
-    if (!strcmp(name, names[pin])) return pin;
+  for (int pin = 0; pin < pin_count; pin++) {
+    if (!strcmp(name, pins[pin].name)) return pin;
   }
   return kNoPin;
 }
-
-const char* pin_name(int pin) { return names[pin]; }
 
 static bool is_same(const struct Wave* one, const struct Wave* other) {
   return one->value == other->value && !(one->duty < other->duty || one->duty > other->duty) &&
@@ -146,9 +156,9 @@ static bool is_same(const struct Wave* one, const struct Wave* other) {
 
 static void refresh(int number) {
   struct Pin* pin = &pins[number];
-  const struct Port* port = port_of(number);
-  const bool is_output = byte_at((uint16_t)(port->address + 1)) >> bit_of(number) & 1;
-  const bool is_set = byte_at((uint16_t)(port->address + 2)) >> bit_of(number) & 1;
+  const struct Port* port = pins[number].port;
+  const bool is_output = byte_at((uint16_t)(port->address + 1)) >> pins[number].bit & 1;
+  const bool is_set = byte_at((uint16_t)(port->address + 2)) >> pins[number].bit & 1;
   const struct Output* output = is_output ? output_of(number) : NULL;
   const char* is = is_output ? (is_set ? "high" : "low") : is_set ? "pullup" : "input";
   struct Wave wave = {0, 0, 0};
@@ -165,9 +175,9 @@ static void refresh(int number) {
   if (output) {
     tell(now, "pin",
          "\"pin\": \"%s\", \"is\": \"pwm\", \"value\": %d, \"duty\": %.5f, \"hz\": %.3f",
-         names[number], wave.value, wave.duty, wave.hertz);
+         pins[number].name, wave.value, wave.duty, wave.hertz);
   } else {
-    tell(now, "pin", "\"pin\": \"%s\", \"is\": \"%s\"", names[number], is);
+    tell(now, "pin", "\"pin\": \"%s\", \"is\": \"%s\"", pins[number].name, is);
   }
   if (pin->level != was_high) sonar_trigger(now, number, pin->level);
   if (watched_pin == number && !strcmp(watched_state, is)) {
@@ -177,7 +187,7 @@ static void refresh(int number) {
 }
 
 static void refresh_all(void) {
-  for (int pin = 0; pin < kPinCount; pin++) refresh(pin);
+  for (int pin = 0; pin < pin_count; pin++) refresh(pin);
 }
 
 void pins_watch(int pin, const char* state) {
@@ -188,8 +198,8 @@ void pins_watch(int pin, const char* state) {
 static void port_written(struct avr_irq_t* irq, uint32_t value, void* param) {
   (void)irq;
   (void)value;
-  for (int pin = 0; pin < kPinCount; pin++) {
-    if (port_of(pin) == param) refresh(pin);
+  for (int pin = 0; pin < pin_count; pin++) {
+    if (pins[pin].port == param) refresh(pin);
   }
 }
 
@@ -201,23 +211,23 @@ static void timer_written(struct avr_irq_t* irq, uint32_t value, void* param) {
   if (is == written->told) return;
   written->told = is;
   tell(avr->cycle, "register", "\"register\": \"%s\", \"value\": %d", written->name, is);
-  for (int k = 0; k < kOutputs; k++) refresh(outputs[k].pin);
+  for (unsigned k = 0; k < board->output_count; k++) refresh(board->outputs[k].pin);
 }
 
 // -- what drives them ---------------------------------------------------------------------------
 
 static void apply_drive(int number) {
-  const struct Port* port = port_of(number);
+  const struct Port* port = pins[number].port;
   unsigned mask = 0, value = 0;
-  for (int pin = 0; pin < kPinCount; pin++) {
-    if (port_of(pin) != port || pins[pin].drive == kReleased) continue;
-    mask |= 1u << bit_of(pin);
-    value |= (unsigned)(pins[pin].drive == kHigh) << bit_of(pin);
+  for (int pin = 0; pin < pin_count; pin++) {
+    if (pins[pin].port != port || pins[pin].drive == kReleased) continue;
+    mask |= 1u << pins[pin].bit;
+    value |= (unsigned)(pins[pin].drive == kHigh) << pins[pin].bit;
   }
   struct avr_ioport_external_t external = {.mask = mask & 0xff, .value = value & 0xff};
   avr_ioctl(avr, (uint32_t)AVR_IOCTL_IOPORT_SET_EXTERNAL(port->letter), &external);
-  if (byte_at((uint16_t)(port->address + 1)) >> bit_of(number) & 1) return;  // the chip drives it
-  const bool is_pulled = byte_at((uint16_t)(port->address + 2)) >> bit_of(number) & 1;
+  if (byte_at((uint16_t)(port->address + 1)) >> pins[number].bit & 1) return;  // the chip drives it
+  const bool is_pulled = byte_at((uint16_t)(port->address + 2)) >> pins[number].bit & 1;
   const bool level = pins[number].drive == kReleased ? is_pulled : pins[number].drive == kHigh;
   avr_raise_irq(pins[number].irq, level);
 }
@@ -225,12 +235,13 @@ static void apply_drive(int number) {
 void pin_drive(int number, enum Drive drive) {
   static const char* const drives[] = {"nothing", "low", "high"};
   pins[number].drive = drive;
-  tell(avr->cycle, "drive", "\"pin\": \"%s\", \"by\": \"%s\"", names[number], drives[drive + 1]);
+  tell(avr->cycle, "drive", "\"pin\": \"%s\", \"by\": \"%s\"", pins[number].name,
+       drives[drive + 1]);
   apply_drive(number);
 }
 
 void analog_set(int channel, int count) {
-  if (channel < 0 || channel >= kAnalogPins || count < 0 || count > kMostCount) return;
+  if (channel < 0 || channel >= board->analog_pins || count < 0 || count > kMostCount) return;
   analog[channel] = count;
   avr_irq_t* irq = avr_io_getirq(avr, AVR_IOCTL_ADC_GETIRQ, ADC_IRQ_ADC0 + channel);
   const int rounded_up = (count * kMilliVolts + kMostCount - 1) / kMostCount;
@@ -238,12 +249,15 @@ void analog_set(int channel, int count) {
 }
 
 void pins_after_reset(void) {
-  for (int k = 0; k < kRegisters; k++) timer_written(NULL, 0, &registers[k]);
-  for (int pin = 0; pin < kPinCount; pin++) {
+  for (int k = 0; k < kRegisters; k++) {
+    if (registers[k].timer < board->timers) timer_written(NULL, 0, &registers[k]);
+  }
+  for (int pin = 0; pin < pin_count; pin++) {
     pins[pin].irq->value = 0;  // as the registers now say
     apply_drive(pin);
   }
-  for (int channel = 0; channel < kAnalogPins; channel++) analog_set(channel, analog[channel]);
+  for (int channel = 0; channel < board->analog_pins; channel++)
+    analog_set(channel, analog[channel]);
   refresh_all();
 }
 
@@ -252,17 +266,31 @@ static void listen(uint16_t address, avr_irq_notify_t notify, const void* param)
   avr_irq_register_notify(irq, notify, (void*)(uintptr_t)param);
 }
 
+static void pin_begin(int number) {
+  struct Pin* pin = &pins[number];
+  const char* place = board->places + 2 * number;
+  const bool is_analog = number >= board->digital_pins;
+  const int shown = is_analog ? number - board->digital_pins : number;
+  snprintf(pin->name, kName, "%c%d", is_analog ? 'A' : 'D', shown % 100);
+  pin->port = ports;
+  while (pin->port->letter != place[0]) pin->port++;
+  pin->bit = place[1] - '0';
+  pin->irq = avr_io_getirq(avr, (uint32_t)AVR_IOCTL_IOPORT_GETIRQ(place[0]), pin->bit);
+  pin->drive = kReleased;
+  pin->is = "";
+}
+
 void pins_begin(void) {
-  for (int pin = 0; pin < kPinCount; pin++) {
-    const uint32_t request = (uint32_t)AVR_IOCTL_IOPORT_GETIRQ(port_of(pin)->letter);
-    pins[pin].irq = avr_io_getirq(avr, request, bit_of(pin));
-    pins[pin].drive = kReleased;
-    pins[pin].is = "";
-  }
-  for (int k = 0; k < (int)(sizeof ports / sizeof *ports); k++) {
+  pin_count = board->digital_pins + board->analog_pins;
+  for (int pin = 0; pin < pin_count; pin++) pin_begin(pin);
+  for (int k = 0; k < kPorts; k++) {
+    if (!strchr(board->places, ports[k].letter)) continue;
     for (uint16_t each = 0; each < 3; each++) {
       listen((uint16_t)(ports[k].address + each), port_written, &ports[k]);
     }
   }
-  for (int k = 0; k < kRegisters; k++) listen(registers[k].address, timer_written, &registers[k]);
+  for (int k = 0; k < kRegisters; k++) {
+    if (registers[k].timer >= board->timers) continue;
+    listen(registers[k].address, timer_written, &registers[k]);
+  }
 }

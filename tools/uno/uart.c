@@ -24,9 +24,6 @@ enum {
   kAsksReceived = 0x80,
   kAsksSent = 0x40,
   kAsksEmpty = 0x20,
-  kReceivedVector = 18,
-  kEmptyVector = 19,
-  kSentVector = 20,
   kDataBits = 8,
 };
 
@@ -225,9 +222,9 @@ void uart_begin(void) {
   asking_received = (struct Asking){received_wants, NULL, NULL};
   asking_empty = (struct Asking){empty_wants, NULL, NULL};
   asking_sent = (struct Asking){sent_wants, sent_entered, NULL};
-  asking_begin(&asking_received, kReceivedVector);
-  asking_begin(&asking_empty, kEmptyVector);
-  asking_begin(&asking_sent, kSentVector);
+  asking_begin(&asking_received, board->vectors.received);
+  asking_begin(&asking_empty, board->vectors.empty);
+  asking_begin(&asking_sent, board->vectors.sent);
   take_register(kUdr, data_read, data_write);
   take_register(kUcsra, status_read, status_write);
   take_register(kUcsrb, NULL, enable_write);

@@ -1,4 +1,4 @@
-// An Arduino Uno that is a process: what its parts may ask of each other.
+// An Arduino Uno or Mega that is a process: what its parts may ask of each other.
 //
 // libsimavr runs the instructions, timers, ADC and pins. The UART, the EEPROM, the watchdog and the
 // causes of a reset are here, because libsimavr 1.6 gives them other times than silicon.
@@ -10,7 +10,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-enum { kHertz = 16000000, kPinCount = 20, kNoPin = -1 };  // D0 .. D13, A0 .. A5
+enum { kHertz = 16000000, kMostPins = 70, kNoPin = -1 };
 
 typedef uint64_t Cycle;
 
@@ -31,6 +31,33 @@ void interrupt_run(void);
 void pause_run(const char* why);
 void resume_run(Cycle until, double speed);
 void quit_run(void);
+
+// -- boards.c: the Uno and the Mega --------------------------------------------------------------
+
+// An output of a timer: its pin, and its channel, 0 for A.
+struct Output {
+  int pin, timer, channel;
+};
+
+struct Board {
+  const char* name;
+  const char* chip;
+  uint16_t eeprom_bytes;
+  struct {
+    uint8_t watchdog, received, empty, sent, eeprom;
+  } vectors;
+  int digital_pins;
+  int analog_pins;
+  int timers;
+  const char* places;  // of each pin: the letter of its port, and its bit
+  const struct Output* outputs;
+  unsigned output_count;
+};
+
+extern const struct Board* board;
+
+// False: there is no such board.
+bool board_choose(const char* name);
 
 // -- queue.c: what happens at a cycle -----------------------------------------------------------
 
@@ -103,7 +130,6 @@ int wire_file(void);
 void pins_begin(void);
 void pins_after_reset(void);
 int pin_number(const char* name);
-const char* pin_name(int pin);
 
 // What is wired to a pin gives it a level; kReleased leaves it alone.
 enum Drive { kReleased = -1, kLow = 0, kHigh = 1 };
@@ -124,6 +150,23 @@ void sonar_trigger(Cycle when, int pin, bool level);
 
 void eeprom_begin(const char* file);
 void eeprom_after_reset(bool is_power_on);
+
+// -- hex.c --------------------------------------------------------------------------------------
+
+// Puts what an Intel HEX file holds into a flash with room for so many bytes, and says where it
+// begins. False: it is no such file, damaged, or larger than that.
+bool hex_load(const char* name, uint8_t* flash, uint32_t room, uint32_t* begin);
+
+// -- stack.c ------------------------------------------------------------------------------------
+
+// Watches the stack from now on, which takes its time.
+void stack_begin(void);
+bool stack_is_watched(void);
+void stack_look(void);
+void stack_after_reset(bool is_power_on);
+
+// Tells how many bytes from an address on are as power-on has left them, and how deep it went.
+void stack_tell(int from);
 
 // -- commands.c ---------------------------------------------------------------------------------
 
