@@ -1,7 +1,8 @@
 """Prints how much flash and RAM the whole sketch takes, for each robot on each board it fits.
 
 Builds every AVR environment of `vm_arduino/platformio.ini` with PlatformIO, offline stand-ins
-included. RAM is what is there all the time; the stack comes on top.
+included. RAM is what is there all the time; the stack comes on top. What the stack leaves free is
+measured on a simulated board, where that can be built; a Mega has so much that nobody asks.
 """
 
 from __future__ import annotations
@@ -13,8 +14,10 @@ from pathlib import Path
 from typing import NamedTuple
 
 ROOT = Path(__file__).resolve().parent.parent
-sys.path[:0] = [str(ROOT)]
+sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
+from tiniscript import robots
+from tools import firmware_stack, uno
 from tools.platformio_offline import CannotStandIn, config_of
 
 PROJECT = ROOT / "vm_arduino"
@@ -22,6 +25,7 @@ OFFLINE = ROOT / "tools" / "platformio_offline.py"
 DEFAULT = "tinibot"  # where the name of an environment has no robot
 FLASH_MUST, FLASH_AIM = 20 * 1024, 12 * 1024
 RAM_MUST, RAM_AIM = 1300, 1000
+LARGE = "mega"  # a board that has more of everything
 
 
 class Sketch(NamedTuple):
@@ -29,6 +33,7 @@ class Sketch(NamedTuple):
     board: str
     flash: int
     ram: int
+    firmware: Path
 
 
 def environments() -> list[str]:
@@ -51,7 +56,8 @@ def measured(name: str, project: Path = PROJECT) -> Sketch:
     if done.returncode != 0 or len(used) != 2:
         raise RuntimeError(done.stdout[-4000:])
     board, _, robot = name.partition("_")
-    return Sketch(robot or DEFAULT, board, int(used["Flash"]), int(used["RAM"]))
+    elf = project / ".pio" / "build" / name / "firmware.elf"
+    return Sketch(robot or DEFAULT, board, int(used["Flash"]), int(used["RAM"]), elf)
 
 
 def main() -> int:
@@ -60,15 +66,25 @@ def main() -> int:
     except (RuntimeError, CannotStandIn) as why:
         print(why, file=sys.stderr)
         return 2
-    print("| robot | board | flash | RAM |\n|---|---|---:|---:|")
-    for robot, board, flash, ram in sketches:
-        print(f"| {robot} | {board} | {flash:,} | {ram:,} |")
+    print("| robot | board | flash | RAM | free behind the stack |\n|---|---|---:|---:|---:|")
+    is_enough = True
+    for sketch in sketches:
+        free = "-"
+        if sketch.board != LARGE:
+            is_enough &= sketch.flash <= FLASH_MUST and sketch.ram <= RAM_MUST
+            if not uno.missing():
+                found = firmware_stack.measured(sketch.firmware, robots.load(sketch.robot))
+                is_enough &= found.least_free >= firmware_stack.LEAST_FREE
+                free = f"{found.least_free:,}"
+        print(f"| {sketch.robot} | {sketch.board} | {sketch.flash:,} | {sketch.ram:,} | {free} |")
     print(
         f"\nBytes. On an ATmega328P (uno, nano): flash must be at most {FLASH_MUST:,} (aim "
-        f"{FLASH_AIM:,}), RAM {RAM_MUST:,} (aim {RAM_AIM:,})."
+        f"{FLASH_AIM:,}), RAM {RAM_MUST:,} (aim {RAM_AIM:,}), and {firmware_stack.LEAST_FREE} must "
+        "stay free where the deepest interrupt comes in the deepest place of the program."
     )
-    small = [each for each in sketches if each.board != "mega"]
-    return int(any(each.flash > FLASH_MUST or each.ram > RAM_MUST for each in small))
+    if uno.missing():
+        print(uno.missing())
+    return int(not is_enough)
 
 
 if __name__ == "__main__":

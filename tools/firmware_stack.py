@@ -1,0 +1,143 @@
+"""What the whole sketch takes of the stack at its heaviest, on a simulated board.
+
+The RAM is painted before power-on; then everything that goes deep happens, and what nobody has
+written in the end has never been stack. The deepest place of the program and the deepest interrupt
+are measured apart too: that the one comes in the other is rare, and must not matter.
+"""
+
+from __future__ import annotations
+
+import random
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
+
+from tests.machines.wired import Wired
+from tiniscript import compile_text
+from tiniscript.image import Image, unpack
+from tiniscript.kit import NUMBER, Kit
+from tiniscript.link.session import Session, Task
+from tiniscript.robots.profile import Robot
+from tools.uno import Stack, Uno
+
+LEAST_FREE = 200  # bytes
+FREE_FROM = "_end"  # the symbol behind all variables
+RAM = 0x800000  # where avr-nm begins to count it
+BOARDS = {"uno": "uno", "nano": "uno", "mega": "mega"}  # the simulated one for each
+CALLS = 8  # at once
+DIVIDES_BY_ZERO = "X = 0; X = 5 / X"
+
+
+def measured(firmware: Path, robot: Robot) -> Stack:
+    """Run a firmware through everything that goes deep. Raises RuntimeError where it does not."""
+    baud = robot.board.baud
+    board = BOARDS[robot.board.chip]
+    with Uno(firmware, board=board, baud=baud, tells_sleep=False, watches_stack=True) as uno:
+        surround(uno, robot)
+        uno.run_ms(300)
+        wired = Wired(uno, Session(1, baud, robot.kit.fingerprint))
+        wear_out(wired, robot)
+        return uno.stack(free_from(firmware))
+
+
+def free_from(firmware: Path) -> int:
+    """Return the first address of the RAM that only the stack uses."""
+    said = subprocess.run(["avr-nm", firmware], capture_output=True, text=True, check=True).stdout
+    rows = (row.split() for row in said.splitlines())
+    (address,) = [row[0] for row in rows if row[-1] == FREE_FROM]
+    return int(address, 16) - RAM
+
+
+def surround(uno: Uno, robot: Robot) -> None:
+    """Give its sensors something to measure."""
+    for device in robot.board.sensors:
+        if device.driver == "hc_sr04":
+            uno.sonar(pin(uno, device.pins["trigger"]), pin(uno, device.pins["echo"]), 40)
+
+
+def pin(uno: Uno, number: int) -> str:
+    digital = 54 if uno.board == "mega" else 14
+    return f"D{number}" if number < digital else f"A{number - digital}"
+
+
+def wear_out(wired: Wired, robot: Robot) -> None:
+    uno, session, kit = wired.uno, wired.session, robot.kit
+    button = pin(uno, robot.board.start_button)
+    must(wired, session.hello())
+    must(wired, session.name(b"sixteen letters!"))
+    must(wired, session.upload(longest(kit, robot.board.program_bytes)))
+    noise = random.Random(1)
+    for _ in range(30):  # while it drives, measures, plays, shows and is saved
+        uno.send(noise.randbytes(20) + b"\0")
+        wired.run(40)
+    uno.send(b"SI|F(1, 80)\r\n")
+    wired.run(300)
+    uno.send(bytes(8))  # stopped in the interrupt
+    wired.run(600)
+    must(wired, session.status())
+    must(wired, session.fetch())
+    must(wired, session.start())
+    wired.run(500)
+    uno.run_ms(1300)  # and nobody is there any more
+    wired.run(500)
+    must(wired, session.live(image_of(DIVIDES_BY_ZERO, kit).code))
+    wired.run(500)
+    must(wired, session.upload(longest(kit, robot.board.program_bytes), runs=False))
+    wired.run(2500)  # it is saved
+    uno.reset("external")  # and looked at when the robot begins
+    uno.run_ms(200)
+    uno.press(button)
+    uno.run_ms(800)
+    uno.press(button)
+    uno.run_ms(200)
+
+
+def must(wired: Wired, task: Task) -> None:
+    status = wired.until(task)
+    if status != 0:
+        raise RuntimeError(f"the robot has answered {status}")
+
+
+def image_of(text: str, kit: Kit) -> Image:
+    done = compile_text(text, kit)
+    if not done.image:
+        raise RuntimeError(f"{text}: {done.problems}")
+    return unpack(done.image)
+
+
+def longest(kit: Kit, room: int) -> Image:
+    """Return a program that fills a robot, goes as deep as one can, and uses all that there is."""
+    more = 0
+    while len((larger := image_of(deep(kit, more + 1), kit)).code) <= room:
+        more += 1
+        found = larger
+    return found
+
+
+def deep(kit: Kit, more: int) -> str:
+    reads = [
+        f"Y = {each.name}" if each.kind == NUMBER else f"IF({each.name}); Y = 1; ENDIF"
+        for each in kit.sensors
+    ]
+    sets = [f"{each.name}({'X' if each.kind == NUMBER else 'TRUE'})" for each in kit.actuators]
+    lines = [
+        "X = 0; Y = 0",
+        "DEF D1",
+        *reads,
+        *sets,
+        "BEEP(0.02, 440 + X)",
+        "SHOW(X * 1.5 / 7)",
+        "END_DEF",
+    ]
+    for number in range(2, CALLS + 1):
+        lines += [f"DEF D{number}", "LOOP(1)", f"D{number - 1}", "END_LOOP", "END_DEF"]
+    sum_of_all = "X / 7 % 5"
+    for number in range(12):
+        sum_of_all = f"0.{number + 1} {'+-*'[number % 3]} ({sum_of_all})"
+    lines += ["LOOP(FOREVER)", "X = X % 100 + 1", "M(50, 0 - 50)", f"D{CALLS}"]
+    lines += [f"Z = {sum_of_all}", "F(0.05, 80) UNTIL(X > 50 AND NOT (Y < 3 OR Z > 1))"]
+    lines += [f"SHOW(X + {number})" for number in range(more)]
+    return "SI|" + "; ".join([*lines, "END_LOOP"])
