@@ -64,6 +64,12 @@ def pio(project: Path, *words: str) -> tuple[int, str]:
     return done.returncode, done.stdout
 
 
+def shared(factory: pytest.TempPathFactory) -> Path:
+    """Return the folder that all workers of a session have."""
+    base = factory.getbasetemp()
+    return base.parent if base.name.startswith("popen-") else base
+
+
 def firmware(board: str, own: Path, shared: Path) -> Path:
     """Return the sketch for a board, an ELF file, built once for all workers of a session."""
     elf = shared / f"{board}.elf"

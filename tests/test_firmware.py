@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import re
-import shutil
-import subprocess
 from pathlib import Path
 
 import pytest
 
+from tests import arduino_builder
 from tests.casefile import ROOT
 from tests.command import Tsc
 from tests.machines import board as boards
+from tests.platformio import shared
 from tests.test_robots import TEXTS
 from tiniscript import robots
 from tiniscript.robots import firmware
@@ -191,30 +191,10 @@ def test_board_refuses_what_has_no_firmware(tsc: Tsc, tmp_path: Path) -> None:
 # -- the Arduino IDE's own builder
 
 
-BUILDER = Path("/usr/share/arduino-builder")
-SKETCH = ROOT / "vm_arduino"
-
-
-@pytest.mark.skipif(
-    not shutil.which("arduino-builder") or bool(boards.missing()),
-    reason="no arduino-builder on this computer",
-)
-@pytest.mark.parametrize("board", ["uno", "mega:cpu=atmega2560"])
-def test_the_arduino_builder_builds_the_sketch(board: str, tmp_path: Path) -> None:
-    copy = tmp_path / "vm_arduino"
-    shutil.copytree(SKETCH, copy, ignore=shutil.ignore_patterns(".pio", "own.h"))
-    build = tmp_path / "build"
-    build.mkdir()
-    done = subprocess.run(
-        ["arduino-builder", "-compile", "-warnings", "all",
-         "-hardware", str(BUILDER), "-hardware", str(boards.ARDUINO.parents[1]),
-         "-tools", "/usr/bin", "-fqbn", f"arduino:avr:{board}", "-build-path", str(build),
-         "-prefs=compiler.cpp.extra_flags=-DDECIMAL_DIG=__DECIMAL_DIG__",
-         str(copy / "vm_arduino.ino")],
-        capture_output=True,
-        text=True,
-    )  # fmt: skip
-    assert done.returncode == 0, done.stderr[-4000:]
-    ours = [row for row in done.stderr.splitlines() if "warning" in row and "/src/" in row]
-    assert not ours
-    assert "Sketch uses" in done.stdout + done.stderr
+@pytest.mark.parametrize("board", sorted(arduino_builder.BOARDS))
+def test_the_arduino_builder_builds_the_sketch(
+    board: str, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    log = arduino_builder.firmware(board, tmp_path, shared(tmp_path_factory)).log
+    assert not [row for row in log.splitlines() if "warning" in row and "/src/" in row]
+    assert "Sketch uses" in log

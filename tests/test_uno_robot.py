@@ -9,7 +9,7 @@ import pytest
 
 from tests.machines.uno import needed
 from tests.machines.wired import Wired
-from tests.platformio import firmware
+from tests.platformio import firmware, shared
 from tiniscript import compile_text, robots
 from tiniscript.image import Image, unpack
 from tiniscript.link.errands import OK
@@ -33,9 +33,7 @@ AWAY = "SI|F(60, 80)"
 @pytest.fixture(scope="session")
 def sketch(tmp_path_factory: pytest.TempPathFactory) -> Path:
     needed()
-    base = tmp_path_factory.getbasetemp()
-    shared = base.parent if base.name.startswith("popen-") else base
-    return firmware("uno", tmp_path_factory.mktemp("sketch"), shared)
+    return firmware("uno", tmp_path_factory.mktemp("sketch"), shared(tmp_path_factory))
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.machines.uno import built, needed
-from tests.platformio import firmware
+from tests.platformio import firmware, shared
 from tiniscript import robots
 from tools.firmware_stack import LEAST_FREE, free_from, measured
 from tools.uno import Stack, Uno
@@ -53,9 +53,9 @@ def test_the_sketch_leaves_stack_free(
     tmp_path_factory: pytest.TempPathFactory,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    base = tmp_path_factory.getbasetemp()
-    shared = base.parent if base.name.startswith("popen-") else base
-    sketch: Path = firmware(environment, tmp_path_factory.mktemp("sketch"), shared)
+    sketch: Path = firmware(
+        environment, tmp_path_factory.mktemp("sketch"), shared(tmp_path_factory)
+    )
     stack = measured(sketch, robots.load(robot))
     with capsys.disabled():
         print(f"\n  {stack.untouched} bytes untouched, {stack.least_free} at least", end=" ")
