@@ -16,7 +16,7 @@ PRESSED = "if (press == Press::kPressed) firmware_pressed();"
 WATCHDOG = 4  # a reset in docs/link.md
 
 
-def built(folder: Path, hang: str) -> Path:
+def built(folder: Path, hang: str, environment: str = "uno") -> Path:
     """Return the firmware that hangs when the button is pressed."""
     needed()
     project = copied(folder)
@@ -24,9 +24,9 @@ def built(folder: Path, hang: str) -> Path:
     text = main.read_text(encoding="utf-8")
     assert text.count(PRESSED) == 1
     main.write_text(text.replace(PRESSED, f"if (press == Press::kPressed) {hang}"), "utf-8")
-    code, said = pio(project, "run", "-e", "uno")
+    code, said = pio(project, "run", "-e", environment)
     assert code == 0, said[-3000:]
-    return project / ".pio" / "build" / "uno" / "firmware.elf"
+    return project / ".pio" / "build" / environment / "firmware.elf"
 
 
 @pytest.mark.parametrize(

@@ -41,11 +41,9 @@ void guard_begin() {
   TIMSK0 |= 1 << OCIE0A;  // once in each turn of timer 0, about a millisecond
   wdt_reset();
   WDTCSR = 1 << WDCE | 1 << WDE;
-#ifdef ARDUINO_AVR_UNO
-  WDTCSR = 1 << WDIE | 1 << WDE | 1 << WDP2;  // 0.25 s
-#else
-  WDTCSR = 1 << WDIE | 1 << WDP2;
-#endif
+  // 0.25 s, and the second time-out resets. An old Nano's bootloader cannot turn that off again:
+  // if the program has hung with interrupts off, its motors stay off until it has no power.
+  WDTCSR = 1 << WDIE | 1 << WDE | 1 << WDP2;
   SREG = before;
 }
 

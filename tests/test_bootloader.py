@@ -1,0 +1,143 @@
+"""The sketch goes onto a board the way it goes onto a real one: by avrdude, over its bootloader."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from tests import arduino_builder
+from tests.command import process
+from tests.machines.bootloaders import Bootloader, bootloader
+from tests.machines.uno import needed
+from tests.platformio import firmware, need, shared
+from tests.test_uno_guard import built
+from tests.test_uno_robot import AWAY, BAUD, FORWARD, NAMES, OFF, computer, send, states
+from tiniscript.link.errands import OK
+from tools.uno import CYCLES_PER_MS, Uno
+
+DRIVES = "SI|F(0.3, 80)"
+HANGS, HANGS_ALONE = "for (;;) {\n }", "{ cli(); for (;;) {\n } }"
+UNKNOWN, POWER, WATCHDOG = 0, 1, 4  # resets in docs/link.md
+WAIT_MS = 2500  # so long an old Nano waits for a sketch
+
+
+@pytest.fixture(autouse=True)
+def needs_a_chip() -> None:
+    needed()
+
+
+def avrdude(uno: Uno, of: Bootloader, file: Path) -> str:
+    """Write a sketch and read it back, as the Arduino IDE and PlatformIO do."""
+    if not shutil.which("avrdude"):
+        need("no avrdude on this computer")
+    done = subprocess.run(
+        ["avrdude", "-c", of.programmer, "-p", of.part, "-P", uno.pty, "-b", str(of.baud), "-D",
+         "-U", f"flash:w:{file}:i"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        timeout=120,
+        check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stdout
+    return done.stdout
+
+
+@pytest.mark.parametrize(
+    ("board", "builder"), [("uno", "PlatformIO"), ("nano", "PlatformIO"), ("uno", "Arduino IDE")]
+)
+def test_avrdude_writes_the_sketch_and_the_robot_drives(
+    board: str, builder: str, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    """The chip has its bootloader and nothing else before."""
+    common = shared(tmp_path_factory)
+    if builder == "PlatformIO":
+        elf = firmware(board, tmp_path, common)
+        sketch = tmp_path / "firmware.hex"
+        subprocess.run(["avr-objcopy", "-O", "ihex", "-R", ".eeprom", elf, sketch], check=True)
+    else:
+        sketch = arduino_builder.firmware(board, tmp_path, common).hex
+    of = bootloader(board)
+    program = tmp_path / "drive.ts"
+    program.write_text(DRIVES, encoding="utf-8")
+    with Uno(None, bootloader=of.file, names=NAMES, baud=of.baud, tells_sleep=False) as uno:
+        uno.go()
+        assert "bytes of flash verified" in avrdude(uno, of, sketch)
+        pong = process("ping", "--port", uno.pty)
+        assert pong.code == 0, pong.err
+        assert pong.out.startswith(f"tinibot on {uno.pty}")
+        assert states(uno) == OFF
+        done = process("upload", program, "--port", uno.pty)
+        assert done.code == 0, done.err
+        uno.pause()
+        left = [change for change in uno.pins.history("left") if change.state == "pwm"]
+        assert len(left) == 1
+        off = [change for change in uno.pins.history("left") if change.cycle > left[0].cycle]
+        assert off[0].cycle - left[0].cycle == pytest.approx(300 * CYCLES_PER_MS, rel=0.02)
+        assert states(uno) == OFF
+
+
+def test_optiboot_lets_a_robot_go_on_that_has_hung(tmp_path: Path) -> None:
+    """It knows the watchdog's reset, does not wait for a sketch, and hides the cause."""
+    elf = built(tmp_path, HANGS_ALONE)
+    with Uno(elf, bootloader=bootloader("uno").file, names=NAMES, baud=BAUD) as uno:
+        hung(uno, limit_ms=550)
+        uno.run_ms(500)
+        causes = [event["cause"] for event in uno.events if event.what == "reset"]
+        assert causes == ["power-on", "watchdog"]
+        assert answered(uno) == UNKNOWN
+        assert states(uno) == OFF
+
+
+def test_an_old_nano_goes_on_without_its_bootloader(tmp_path: Path) -> None:
+    """That one would leave the watchdog on, so the robot begins anew by itself."""
+    elf = built(tmp_path, HANGS, "nano")
+    with Uno(elf, bootloader=bootloader("nano").file, names=NAMES, baud=BAUD) as uno:
+        hung(uno, limit_ms=110)
+        uno.run_ms(1000)
+        causes = [event["cause"] for event in uno.events if event.what == "reset"]
+        assert causes == ["power-on"]
+        assert answered(uno) == WATCHDOG
+        assert states(uno) == OFF
+
+
+def test_an_old_nano_that_has_hung_for_good_stays_off_until_it_has_no_power(tmp_path: Path) -> None:
+    elf = built(tmp_path, HANGS_ALONE, "nano")
+    with Uno(elf, bootloader=bootloader("nano").file, names=NAMES, baud=BAUD) as uno:
+        hung(uno, limit_ms=550)
+        began = len(uno.events)
+        uno.run_ms(300)
+        causes = {event["cause"] for event in uno.events[began:] if event.what == "reset"}
+        assert causes == {"watchdog"}
+        assert not is_on(uno)
+        uno.reset("power-on")
+        uno.run_ms(WAIT_MS)
+        assert answered(uno) == POWER
+
+
+def hung(uno: Uno, limit_ms: int) -> None:
+    """Let the robot drive and then hang: its motors must go off."""
+    uno.run_ms(WAIT_MS)
+    send(computer(uno), AWAY)
+    assert states(uno) == FORWARD
+    uno.drive("button", False)
+    uno.run_ms(limit_ms + 5)
+    assert not is_on(uno)
+    uno.drive("button", None)
+
+
+def is_on(uno: Uno) -> bool:
+    """Return whether a motor may turn. A chip that is being reset leaves all its pins alone."""
+    return any(state in ("high", "pwm") for state in states(uno).values())
+
+
+def answered(uno: Uno) -> object:
+    """Return why the robot was reset last, as it says."""
+    wired = computer(uno, 2)
+    assert wired.until(wired.session.hello()) == OK
+    robot = wired.session.robot
+    assert robot is not None
+    return robot.values["reset"]
