@@ -17,7 +17,7 @@ VERBS = {
     "show": "showing",
     "fmt": "formatting",
     "explain": "explaining",
-    "board": "wiring",
+    "board": "boarding",
     "ports": "finding",
     "ping": "pinging",
     "upload": "uploading",

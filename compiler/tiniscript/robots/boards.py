@@ -1,6 +1,6 @@
 """The tables of chips and drivers: which pins can do what, and which pins a driver wants.
 
-Knows pins, timers and memory. Does not read profiles: `wiring` does, and compares.
+Knows pins, timers and memory. Does not read profiles: `board_reader` does, and compares.
 """
 
 from __future__ import annotations

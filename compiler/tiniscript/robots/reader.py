@@ -1,6 +1,6 @@
 """The text of a profile becomes a Robot, or every complaint about it is raised at once.
 
-Knows `[kit]`, `[body]` and `[labels]`; `wiring` knows `[board]`. Opens no files.
+Knows `[kit]`, `[body]` and `[labels]`; `board_reader` knows `[board]`. Opens no files.
 """
 
 from __future__ import annotations
@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from tiniscript.kit import NUMBER, YES_NO, Device, Kit
+from tiniscript.robots.board_reader import device_tables, read_board
 from tiniscript.robots.profile import (
     LANGUAGES,
     SEES,
@@ -19,7 +20,6 @@ from tiniscript.robots.profile import (
 )
 from tiniscript.robots.refusals import shown
 from tiniscript.robots.toml_table import Table, parse_toml
-from tiniscript.robots.wiring import device_tables, read_board
 from tiniscript.thousandths import ONE
 from tiniscript.words import WORDS
 

@@ -1,7 +1,7 @@
 """Reads the keys of a TOML table one by one and collects every complaint.
 
 Knows TOML's types and how exact a number is. Does not know what a profile contains: `reader`
-and `wiring` ask for it. A key that is missing or wrong is complained about and gives a
+and `board_reader` ask for it. A key that is missing or wrong is complained about and gives a
 placeholder, so that reading can go on; whoever reads refuses the file in the end.
 """
 
