@@ -12,7 +12,7 @@ import pytest
 from tests.casefile import ROOT
 from tiniscript.cli import main
 
-DOCUMENTS = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/*.md")])
+DOCUMENTS = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md")])
 
 
 class Command(NamedTuple):

@@ -20,7 +20,7 @@ sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 from tiniscript import bytecode, image, verify
 from tiniscript.robots import firmware
 from tiniscript.robots.ports import AVRS
-from tiniscript.robots.profile import ProfileRefused, Robot
+from tiniscript.robots.profile import LANGUAGES, ProfileRefused, Robot
 from tiniscript.robots.reader import read
 from tiniscript.robots.refusals import describe
 
@@ -258,6 +258,13 @@ def robot_header(path: Path) -> str:
     return firmware.header(wired, f"{COMMAND} from robots/{path.name}.")
 
 
+def wiring_page(name: str) -> str:
+    """Return a file of `docs/wiring/`: how a shipped robot is wired."""
+    from tools.wiring_pages import pages
+
+    return pages(COMMAND)[name]
+
+
 SPEC = ROOT / "bytecode_spec.md"
 SPEC_TABLES: dict[str, Callable[[], str]] = {
     "image": image_table,
@@ -274,6 +281,7 @@ MACHINE = ROOT / "vm_arduino" / "src" / "vm"
 LINK = ROOT / "vm_arduino" / "src" / "link"
 LINK_DOCUMENT = ROOT / "docs" / "link.md"
 WIRED = ROOT / "vm_arduino" / "src" / "boards" / "kits"
+WIRING = ROOT / "docs" / "wiring"
 
 OUTPUTS: list[tuple[Path, Callable[[], str]]] = [
     (ROBOTS / "shipped.py", shipped_robots),
@@ -287,6 +295,12 @@ OUTPUTS: list[tuple[Path, Callable[[], str]]] = [
     *(
         (WIRED / f"{path.stem}.h", partial(robot_header, path))
         for path in sorted(ROBOTS.glob("*.toml"))
+    ),
+    *(
+        (WIRING / name, partial(wiring_page, name))
+        for path in sorted(ROBOTS.glob("*.toml"))
+        for language in LANGUAGES
+        for name in (f"{path.stem}.{language}.md", f"{path.stem}.{language}.svg")
     ),
 ]
 

@@ -17,6 +17,7 @@ VERBS = {
     "show": "showing",
     "fmt": "formatting",
     "explain": "explaining",
+    "wiring": "wiring",
     "board": "boarding",
     "ports": "finding",
     "ping": "pinging",

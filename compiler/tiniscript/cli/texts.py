@@ -14,6 +14,7 @@ tsc: TiniScript, a language of single lines for robots.
   tsc show prog.bin                  list the instructions of a program
   tsc fmt prog.ts                    lay the text out in the usual way
   tsc explain TS012                  say more about a mistake
+  tsc wiring                         how a robot is wired, as a list or as a page
   tsc board myrobot.toml             tell the firmware how a robot is wired
 
 With a robot on a port (--port /dev/rfcomm0, COM5, ...; later the last used one):
@@ -42,6 +43,7 @@ tsc: TiniScript, un lenguaje de una sola línea para robots.
   tsc show prog.bin                  lista las instrucciones de un programa
   tsc fmt prog.ts                    ordena el texto de la forma usual
   tsc explain TS012                  explica mejor un error
+  tsc wiring                         cómo se conecta un robot, en lista o en una página
   tsc board mirobot.toml             le dice al firmware cómo está conectado un robot
 
 Con un robot en un puerto (--port /dev/rfcomm0, COM5, ...; después, el último usado):
@@ -139,6 +141,10 @@ TEXTS: dict[str, tuple[str, str]] = {
                     "tsc: todavía no hay firmware para la placa {chip}. Hay para: {known}."),
     "board": ("{file}: how {robot} is wired, for the board {chip}. Now:  pio run -e {chip}",
               "{file}: cómo está conectado {robot}, para la placa {chip}. Ahora:  pio run -e {chip}"),
+    "wiring": ("{file}: how {robot} is wired. Open it in a browser, or print it.",
+               "{file}: cómo se conecta {robot}. Ábrelo en un navegador, o imprímelo."),
+    "wiring_page": ("As a page with a drawing:  tsc wiring -o wiring.html",
+                    "Como página con un dibujo:  tsc wiring -o conexiones.html"),
     # images
     "image_NOT_AN_IMAGE": ("refused: {file} is no compiled TiniScript program. Make one:  tsc compile prog.ts",
                            "rechazado: {file} no es un programa TiniScript compilado. Haz uno:  tsc compile prog.ts"),

@@ -1,0 +1,319 @@
+"""A plan becomes a drawing: SVG that needs nothing else, and can be read in black and white.
+
+Everything has its place from `layout`. Whatever text comes here is escaped here.
+"""
+
+from __future__ import annotations
+
+import re
+from html import escape
+from unicodedata import east_asian_width
+
+from tiniscript.wiring import layout as places
+from tiniscript.wiring.headers import ROW_AT_THE_END, SIDES
+from tiniscript.wiring.icons import ICONS
+from tiniscript.wiring.layout import LEFT, RIGHT, STEP, ZONE, Box, Layout, Pin, Route
+from tiniscript.wiring.parts import BOARD_5V, GROUND, RAILS
+from tiniscript.wiring.plan import End, Plan, Wire
+from tiniscript.wiring.texts import text
+
+INKS = {
+    "orange": "#e67300",
+    "green": "#1a8f3c",
+    "blue": "#1f5fd0",
+    "violet": "#8e35b8",
+    "yellow": "#c9a000",
+    "grey": "#777777",
+    "brown": "#7a4a21",
+}
+RAIL_INKS = {"5V": "#c81e1e", "GND": "#111111", "M+": "#a03060", "S+": "#a06000"}
+LINE = "#333333"
+LEGEND_STEP = 24
+FONT = "'DejaVu Sans', Verdana, Arial, sans-serif"
+# How far from a part's edge things are, in the zone beside it.
+AT_TAG, AT_NEAR, AT_DOT, AT_FAR = 26, 65, 94, 118
+SMALLEST = 0.65  # a text is made smaller to this part of its size, and then cut
+NARROW = frozenset("iljtfrI1.,:;'|()[] ")
+WIDE = frozenset("WFA")
+
+
+def drawing_of(plan: Plan) -> str:
+    """Return the drawing as a whole `<svg>`, with its size in units that may be scaled."""
+    layout = places.layout_of(plan)
+    bottom = layout.height + 10
+    legend = _legend(plan, bottom)
+    height = bottom + LEGEND_STEP * (len(legend)) + 6
+    title = escape(text("title", plan.language).format(robot=plan.robot))
+    parts = [
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {layout.width} {height}" '
+        f'width="{layout.width}" height="{height}" font-family="{escape(FONT)}" font-size="14" '
+        f'role="img" aria-label="{title}">',
+        f"<title>{title}</title>",
+        f'<rect width="{layout.width}" height="{height}" fill="#ffffff"/>',
+        *_board(plan, layout),
+        *(_wire(route) for route in layout.routes),
+        *(line for pin in layout.pins for line in _pin(pin, layout, plan)),
+        *(line for route in layout.routes for line in _numbers(route)),
+        *(line for box in layout.boxes for line in _box(box, plan.language)),
+        *legend,
+        "</svg>",
+    ]
+    return "\n".join(parts) + "\n"
+
+
+# -- texts
+
+
+def _width(shown: str, size: float) -> float:
+    """Return about how wide a text is, rather too wide."""
+    return sum(size * _part_of_size(sign) for sign in shown)
+
+
+def _part_of_size(sign: str) -> float:
+    if sign in NARROW:
+        return 0.4
+    if east_asian_width(sign) in WIDE:
+        return 1.1
+    return 0.78 if sign.isupper() or sign in "mw%…" else 0.67
+
+
+def _text(
+    shown: str, x: float, y: float, room: float, anchor: str = "start", size: float = 14,
+    style: str = "",
+) -> str:  # fmt: skip
+    """Return a text that takes at most `room`: smaller where it must be, and cut at the least."""
+    shown = "".join(sign for sign in shown if sign.isprintable())
+    while _width(shown, size) * SMALLEST > room:
+        shown = shown.rstrip("…")[:-1] + "…"
+    size = min(size, size * room / (_width(shown, size) or 1))
+    smaller = f' font-size="{size:.3g}"' if size != 14 else ""
+    return (
+        f'<text x="{x:g}" y="{y:g}" text-anchor="{anchor}"{smaller}{style}>{escape(shown)}</text>'
+    )
+
+
+BOLD = ' font-weight="bold"'
+FAINT = ' fill="#666666"'
+
+
+# -- the board
+
+
+def _board(plan: Plan, layout: Layout) -> list[str]:
+    left, top, width, height = layout.board
+    middle = left + width / 2
+    lines = [
+        f'<rect x="{left}" y="{top}" width="{width}" height="{height}" rx="8" '
+        f'fill="#eef4f6" stroke="{LINE}" stroke-width="2"/>',
+        f'<rect x="{middle - 22:g}" y="{top - 14}" width="44" height="24" rx="3" fill="#dddddd" '
+        f'stroke="{LINE}"/>',
+        _text("USB", middle, top + 3, 40, "middle", 13),
+        _text(
+            SIDES[plan.chip.name].name, middle, top + height - 14, width - 12, "middle", 15, BOLD
+        ),
+    ]
+    return lines
+
+
+def _pin(pin: Pin, layout: Layout, plan: Plan) -> list[str]:
+    left, _, width, _ = layout.board
+    edge = left if pin.side == LEFT else left + width
+    inward = 1 if pin.side == LEFT else -1
+    is_used = pin.wire is not None or pin.name in (BOARD_5V, GROUND)
+    fill = "#ffffff" if is_used else "#cccccc"
+    lines = [
+        f'<rect x="{edge - 5}" y="{pin.y - 5}" width="10" height="10" fill="{fill}" '
+        f'stroke="{LINE}"/>'
+    ]
+    shown = pin.name
+    if pin.number == 13 and plan.has_lamp:
+        shown = f"13 {text('lamp_on_board', plan.language)}"
+        is_used = True
+    anchor = "start" if pin.side == LEFT else "end"
+    style = BOLD if is_used else FAINT
+    lines.append(_text(shown, edge + 10 * inward, pin.y + 4.5, 62, anchor, 14, style))
+    if pin.side == LEFT and pin.name in (BOARD_5V, GROUND) and _is_first(pin, layout):
+        lines.append(_line(edge - 5, pin.y, edge - 12, pin.y, RAIL_INKS[pin.name]))
+        lines.append(_tag(pin.name, edge - 29, pin.y))
+    if pin.number in ROW_AT_THE_END and plan.chip.name == "mega":
+        first = min(
+            each.y for each in layout.pins if each.number in ROW_AT_THE_END and each.side == RIGHT
+        )
+        if pin.y == first:
+            words = text("row_at_the_end", plan.language)
+            lines.append(_text(words, edge - 10, pin.y - STEP + 5, 100, "end", 11, FAINT))
+    return lines
+
+
+def _is_first(pin: Pin, layout: Layout) -> bool:
+    same = [each.y for each in layout.pins if each.name == pin.name and each.side == pin.side]
+    return pin.y == min(same)
+
+
+# -- wires
+
+
+def _wire(route: Route) -> str:
+    points = " ".join(f"{x},{y}" for x, y in route.points)
+    ink = INKS[route.wire.colour]
+    return (
+        f'<polyline points="{points}" fill="none" stroke="#ffffff" stroke-width="6"/>'
+        f'<polyline points="{points}" fill="none" stroke="{ink}" stroke-width="2.5" '
+        f'stroke-linejoin="round"/>'
+    )
+
+
+def _numbers(route: Route) -> list[str]:
+    """Return a wire's number at both of its ends."""
+    (start, start_y), (end, end_y) = route.points[0], route.points[-1]
+    before = route.points[-2][0]
+    outward = 1 if route.points[1][0] > start else -1
+    onward = 1 if end > before else -1
+    return [
+        _number(route.wire, start + 17 * outward, start_y),
+        _number(route.wire, end + 10 * onward, end_y),
+    ]
+
+
+def _number(wire: Wire, x: int, y: int) -> str:
+    ink = INKS[wire.colour]
+    return (
+        f'<circle cx="{x}" cy="{y}" r="9" fill="#ffffff" stroke="{ink}" stroke-width="2"/>'
+        f'<text x="{x}" y="{y + 4}" text-anchor="middle" font-size="11">{wire.number}</text>'
+    )
+
+
+def _line(x1: float, y1: float, x2: float, y2: float, ink: str, width: float = 2.5) -> str:
+    return (
+        f'<line x1="{x1:g}" y1="{y1:g}" x2="{x2:g}" y2="{y2:g}" stroke="{ink}" '
+        f'stroke-width="{width}"/>'
+    )
+
+
+def _tag(rail: str, x: float, y: float) -> str:
+    """Return the tag of a rail around a point. Ground is filled, so that it is told apart."""
+    ink = RAIL_INKS[rail]
+    fill, letters = (ink, "#ffffff") if rail == GROUND else ("#ffffff", ink)
+    return (
+        f'<rect x="{x - 17:g}" y="{y - 9:g}" width="34" height="18" rx="9" fill="{fill}" '
+        f'stroke="{ink}" stroke-width="2"/>'
+        f'<text x="{x:g}" y="{y + 4:g}" text-anchor="middle" font-size="11" font-weight="bold" '
+        f'fill="{letters}">{rail}</text>'
+    )
+
+
+def _resistor(value: str, x: float, y: float) -> str:
+    return (
+        f'<rect x="{x - 20:g}" y="{y - 8:g}" width="40" height="16" fill="#fdf6e3" '
+        f'stroke="{LINE}" stroke-width="1.5"/>'
+        f'<text x="{x:g}" y="{y + 4:g}" text-anchor="middle" font-size="11">{value}</text>'
+    )
+
+
+# -- parts
+
+
+def _box(box: Box, language: str) -> list[str]:
+    part, icon = box.part, ICONS[box.part.shape.icon]
+    outer = box.x + (32 if box.side == LEFT else places.PART_WIDTH - 32)
+    middle = box.y + box.height - 30
+    inside = places.PART_WIDTH - 16
+    model = part.shape.model if part.is_device else ""
+    title = f"{part.title} ({model})" if model else part.title
+    lines = [
+        f'<rect x="{box.x}" y="{box.y}" width="{places.PART_WIDTH}" height="{box.height}" rx="6" '
+        f'fill="#fafafa" stroke="{LINE}" stroke-width="2"/>',
+        _text(title, box.x + 8, box.y + 18, inside, size=15, style=BOLD),
+        _text(part.label, box.x + 8, box.y + 36, inside, size=13) if part.label else "",
+        f'<g transform="translate({outer} {middle:g})" fill="#ffffff" stroke="{LINE}" '
+        f'stroke-width="1.5">{icon}</g>',
+    ]
+    if part.shape.motors:
+        lines += _motors(box, language)
+    for end, y in zip(part.ends, box.rows, strict=True):
+        lines += _end(end, y, box)
+    return [line for line in lines if line]
+
+
+def _end(end: End, y: int, box: Box) -> list[str]:
+    """Return a terminal, its name, and what is in its wire on the way through the zone."""
+    edge, outward = box.edge, (1 if box.side == LEFT else -1)
+
+    def at(distance: float) -> float:
+        """Return how far a point is from the part's edge, towards the board."""
+        return edge + outward * distance
+
+    lines = []
+    anchor = "end" if box.side == LEFT else "start"
+    if end.wire:
+        ink = INKS[end.wire.colour]
+        lines.append(_line(at(ZONE - 19), y, at(0), y, ink))
+        if end.to_ground:
+            below = y + STEP
+            lines += [
+                _line(at(AT_DOT), y, at(AT_DOT), below, ink),
+                _line(at(AT_DOT + 1), below, at(AT_TAG), below, ink),
+                f'<circle cx="{at(AT_DOT):g}" cy="{y}" r="4.5" fill="{ink}"/>',
+                _resistor(end.to_ground, at(AT_NEAR), below),
+                _tag(GROUND, at(AT_TAG), below),
+            ]
+        if end.series:
+            lines.append(_resistor(end.series, at(AT_FAR), y))
+        if end.beyond:
+            lines.append(_resistor(end.beyond, at(AT_NEAR), y))
+    elif end.rail:
+        lines.append(_line(at(AT_TAG), y, at(0), y, RAIL_INKS[end.rail]))
+        lines.append(_tag(end.rail, at(AT_TAG), y))
+    fill = "#ffffff" if end.wire or end.rail else "#cccccc"
+    lines.append(
+        f'<circle cx="{edge}" cy="{y}" r="5" fill="{fill}" stroke="{LINE}" stroke-width="1.5"/>'
+    )
+    if end.name in RAILS and end.wire:
+        lines.append(_tag(end.name, at(-28), y))
+    else:
+        style = "" if end.wire or end.rail else FAINT
+        lines.append(_text(end.name, at(-10), y + 4.5, 90, anchor, 13, style))
+    return lines
+
+
+def _motors(box: Box, language: str) -> list[str]:
+    lines = []
+    outward = -1 if box.side == LEFT else 1
+    outer = box.x if box.side == LEFT else box.x + places.PART_WIDTH
+    top, step = box.y + places.HEAD + 12, 100
+    for k, (key, terminals) in enumerate(zip(("left_motor", "right_motor"), box.part.shape.motors,
+                                             strict=True)):  # fmt: skip
+        x, y = outer + outward * 62, top + k * step + 18
+        for rise in (-8, 8):
+            lines.append(_line(outer, y + rise, x, y + rise, LINE))
+        lines += [
+            f'<circle cx="{x}" cy="{y}" r="24" fill="#ffffff" stroke="{LINE}" stroke-width="2"/>',
+            _text("M", x, y + 6, 40, "middle", 17, BOLD),
+            _text(text(key, language), x - outward * 10, y + 42, 98, "middle", 12),
+            _text(terminals, outer - outward * 6, y + 4, 84, "end" if outward > 0 else "start", 11),
+        ]
+    return lines
+
+
+# -- the legend
+
+
+def _legend(plan: Plan, top: int) -> list[str]:
+    lines = [
+        f'<g><circle cx="29" cy="{top + 8}" r="9" fill="#ffffff" stroke="{LINE}" '
+        f'stroke-width="2"/><text x="29" y="{top + 12}" text-anchor="middle" font-size="11">7'
+        f"</text>{_text(text('legend_number', plan.language), 58, top + 13, 900)}</g>"
+    ]
+    for rail in plan.rails:
+        y = top + 8 + LEGEND_STEP * len(lines)
+        words = text(f"legend_{rail}", plan.language)
+        lines.append(f"<g>{_tag(rail, 29, y)}{_text(words, 58, y + 5, 900)}</g>")
+    for key in ("legend_same", "legend_dot"):
+        y = top + 8 + LEGEND_STEP * len(lines)
+        lines.append(_text(text(key, plan.language), 10, y + 5, 900))
+    return lines
+
+
+def texts_in(svg: str) -> list[str]:
+    """Return the texts of a drawing, still escaped."""
+    return re.findall(r"<text[^>]*>([^<]*)</text>", svg)

@@ -1,0 +1,70 @@
+"""A wiring page as one file of HTML that needs no network and prints well on A4."""
+
+from __future__ import annotations
+
+import re
+from html import escape
+
+from tiniscript.wiring.drawing import drawing_of
+from tiniscript.wiring.page import Block, page_of
+from tiniscript.wiring.plan import Plan
+
+STYLE = """\
+@page { size: A4; margin: 11mm; }
+body { font-family: 'DejaVu Sans', Verdana, Arial, sans-serif; line-height: 1.45; color: #111;
+  background: #fff; max-width: 1150px; margin: 1em auto; padding: 0 1em; }
+h1, h2 { line-height: 1.2; break-after: avoid; }
+h2 { margin-top: 1.6em; border-bottom: 2px solid #333; }
+svg { display: block; width: 100%; height: auto; break-inside: avoid; }
+table { border-collapse: collapse; width: 100%; }
+th, td:first-child { white-space: nowrap; }
+th, td { border: 1px solid #777; padding: 0.25em 0.6em; text-align: left; vertical-align: top;
+  overflow-wrap: anywhere; }
+th { background: #eee; }
+tr, li, p { break-inside: avoid; }
+li { margin: 0.35em 0; }
+ul.checks { list-style: none; padding-left: 2em; }
+ul.checks li { text-indent: -2em; }
+ul.checks li::before { content: "\\2610"; display: inline-block; width: 1.67em; font-size: 1.2em;
+  text-indent: 0; }
+@media print {
+  body { font-size: 10.5pt; max-width: none; margin: 0; padding: 0; }
+  svg { max-height: 236mm; break-after: page; }
+}
+"""
+
+
+def html_of(plan: Plan) -> str:
+    """Return the page of a plan, with its drawing inside."""
+    blocks = page_of(plan)
+    title = escape(blocks[0].words)
+    body = "\n".join(_block(block, plan) for block in blocks)
+    return (
+        f'<!DOCTYPE html>\n<html lang="{plan.language}">\n<head>\n<meta charset="utf-8">\n'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+        f"<title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n{body}\n"
+        "</body>\n</html>\n"
+    )
+
+
+def _words(words: str) -> str:
+    return re.sub(r"\*\*([^*]+)\*\*", r"<strong>\1</strong>", escape(words))
+
+
+def _block(block: Block, plan: Plan) -> str:
+    if block.kind == "drawing":
+        return f"<p>{_words(block.words)}</p>\n{drawing_of(plan)}"
+    if block.kind == "table":
+        head, *rows = block.rows
+        lines = "\n".join(_row(row, "td") for row in rows)
+        return f"<table>\n<thead>{_row(head, 'th')}</thead>\n<tbody>\n{lines}\n</tbody>\n</table>"
+    if block.kind in ("list", "checks"):
+        items = "\n".join(f"<li>{_words(item)}</li>" for (item,) in block.rows)
+        mark = ' class="checks"' if block.kind == "checks" else ""
+        return f"<ul{mark}>\n{items}\n</ul>"
+    tag = {"title": "h1", "heading": "h2"}.get(block.kind, "p")
+    return f"<{tag}>{_words(block.words)}</{tag}>"
+
+
+def _row(cells: tuple[str, ...], tag: str) -> str:
+    return "<tr>" + "".join(f"<{tag}>{_words(cell)}</{tag}>" for cell in cells) + "</tr>"

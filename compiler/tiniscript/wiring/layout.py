@@ -1,0 +1,286 @@
+"""A plan becomes places: where the board, the parts and the wires are drawn.
+
+Pins lie on a grid, terminals half a step beside it, and every wire has a track of its own between
+the board and the parts: so wires cross, and never lie upon each other. Knows no SVG.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+from tiniscript.wiring.headers import ROW_AT_THE_END, SIDES, Slot
+from tiniscript.wiring.plan import Part, Plan, Wire
+
+LEFT, RIGHT = 0, 1
+STEP = 22  # from pin to pin
+TRACK = 9  # from wire to wire
+HEAD = 44  # the title of a part
+BOARD_WIDTH = 136
+BOARD_NAME = 44  # below its pins
+PART_WIDTH = 160
+ZONE = 158  # beside a part, where its resistors are
+NEAR_BOARD = (54, 26)  # left: what the board's 5V and GND are joined to; right: only numbers
+MOTORS_WIDTH = 100
+MARGIN = 10
+GAP = 16  # at least, from part to part
+
+
+class Pin(NamedTuple):
+    """What is drawn at a place of the board's edge. `wire` is None where nothing is joined."""
+
+    side: int
+    y: int
+    name: str
+    number: int | None
+    wire: Wire | None
+
+
+class Box(NamedTuple):
+    """A part and its place; `rows` are the heights of its terminals. `x` is its left edge."""
+
+    part: Part
+    side: int
+    x: int
+    y: int
+    height: int
+    rows: tuple[int, ...]
+
+    @property
+    def edge(self) -> int:
+        """Where its terminals are."""
+        return self.x + (PART_WIDTH if self.side == LEFT else 0)
+
+
+class Route(NamedTuple):
+    """A wire's corners, from the board's edge to the zone beside its part."""
+
+    wire: Wire
+    points: tuple[tuple[int, int], ...]
+
+
+class Layout(NamedTuple):
+    width: int
+    height: int
+    board: tuple[int, int, int, int]  # left, top, width, height
+    pins: tuple[Pin, ...]
+    boxes: tuple[Box, ...]
+    routes: tuple[Route, ...]
+
+
+def _rows_of(part: Part) -> list[int]:
+    """Return the heights of a part's terminals, from its top. A resistor to ground takes a row."""
+    rows, y = [], HEAD + STEP // 2
+    for end in part.ends:
+        rows.append(y)
+        y += STEP * (2 if end.to_ground else 1)
+    return rows
+
+
+def _height_of(part: Part) -> int:
+    last = _rows_of(part)[-1] + (STEP if part.ends[-1].to_ground else 0)
+    return max(last, HEAD + STEP + STEP // 2) + STEP // 2 + 6
+
+
+class _Channel:
+    """The wires between the board and the parts of a side, each on a track of its own.
+
+    A wire's two heights are where it comes from on the board's side, and where it goes.
+    """
+
+    def __init__(self) -> None:
+        self.spans: dict[int, tuple[int, int]] = {}
+
+    def tracks(self) -> dict[int, int]:
+        """Return the track of each wire, 0 next to the board, with few crossings."""
+        order = sorted(self.spans, key=lambda wire: self.spans[wire])
+        improved = True
+        while improved:
+            improved = False
+            for wire in tuple(order):
+                k = order.index(wire)
+                rest = order[:k] + order[k + 1 :]
+                costs = [self._cost(rest, wire, at) for at in range(len(order))]
+                best = costs.index(min(costs))
+                if costs[best] < costs[k]:
+                    order = [*rest[:best], wire, *rest[best:]]
+                    improved = True
+        return {wire: track for track, wire in enumerate(order)}
+
+    def _cost(self, rest: Sequence[int], wire: int, at: int) -> int:
+        nearer = sum(self._crossings(other, wire) for other in rest[:at])
+        return nearer + sum(self._crossings(wire, other) for other in rest[at:])
+
+    def _crossings(self, near: int, far: int) -> int:
+        """Count where two wires cross if `near` has the track that is nearer to the board."""
+        near_from, near_to = self.spans[near]
+        far_from, far_to = self.spans[far]
+        first = min(near_from, near_to) < far_from < max(near_from, near_to)
+        return first + (min(far_from, far_to) < near_to < max(far_from, far_to))
+
+
+def layout_of(plan: Plan) -> Layout:
+    """Return the places of all that `plan` has."""
+    return _Layout(plan).done()
+
+
+class _Layout:
+    def __init__(self, plan: Plan) -> None:
+        self.plan = plan
+        self.wires = {wire.pin: wire for wire in plan.wires}
+        columns = [self._slots(side) for side in (LEFT, RIGHT)]
+        self.pin_side = {pin: side for side in (LEFT, RIGHT) for pin in columns[side]}
+        parts: list[list[Part]] = [[], []]
+        for part in plan.parts:
+            parts[self._side_of(part)].append(part)
+        tall = max(len(column) for column in columns) * STEP + BOARD_NAME
+        heights = [sum(_room(part) for part in each) for each in parts]
+        whole = max(tall, *heights)
+        self.board_top = MARGIN + STEP + _snapped((whole - tall) // 2)
+        self.board_height = tall
+        self.pins: list[Pin] = []
+        for side, column in enumerate(columns):
+            for k, slot in enumerate(column):
+                if slot is not None:
+                    self.pins.append(self._pin(side, self.board_top + STEP * (k + 1), slot))
+        self.pin_y = {pin.number: pin.y for pin in self.pins if pin.number is not None}
+        self.tops: dict[int, int] = {}  # of parts, by their place in the plan
+        bottom = MARGIN + STEP + whole
+        for each in parts:
+            self._stack(each, bottom)
+
+    # -- the board
+
+    def _slots(self, side: int) -> list[Slot]:
+        sides = SIDES[self.plan.chip.name]
+        slots: list[Slot] = list(sides.left if side == LEFT else sides.right)
+        printed = {slot for slot in (*sides.left, *sides.right) if isinstance(slot, int)}
+        if side == RIGHT:
+            others = sorted(pin for pin in self.wires if pin not in printed)
+            assert all(pin in ROW_AT_THE_END for pin in others)
+            slots += [None, *others] if others else []
+        return slots
+
+    def _pin(self, side: int, y: int, slot: int | str) -> Pin:
+        if isinstance(slot, str):
+            return Pin(side, y, slot, None, None)
+        name = self.plan.chip.pin_name(slot)
+        if slot in self.plan.chip.link_pins:
+            name += " RX" if slot == 0 else " TX"
+        return Pin(side, y, name, slot, self.wires.get(slot))
+
+    # -- the parts
+
+    def _side_of(self, part: Part) -> int:
+        sides = [self.pin_side[end.wire.pin] for end in part.ends if end.wire]
+        return RIGHT if sides and 2 * sum(sides) >= len(sides) else LEFT
+
+    def _wanted(self, part: Part) -> float:
+        """Return where a part's first terminal would like to be: beside its pins."""
+        offsets = [
+            self.pin_y[end.wire.pin] - row
+            for end, row in zip(part.ends, _rows_of(part), strict=True)
+            if end.wire
+        ]
+        return sum(offsets) / len(offsets) if offsets else float("inf")
+
+    def _middle(self, part: Part) -> float:
+        pins = [self.pin_y[end.wire.pin] for end in part.ends if end.wire]
+        return sum(pins) / len(pins) if pins else float("inf")
+
+    def _stack(self, parts: Sequence[Part], bottom: int) -> None:
+        """Put the parts of a side below each other, each as near to its pins as there is room."""
+        ordered = sorted(parts, key=self._middle)
+        y = MARGIN + STEP
+        for k, part in enumerate(ordered):
+            latest = bottom - sum(_room(each) for each in ordered[k:])
+            wanted = min(self._wanted(part), latest)
+            y = max(y, _snapped(int(wanted)))
+            self.tops[id(part)] = y
+            y += _room(part)
+
+    # -- the wires
+
+    def done(self) -> Layout:
+        channels = (_Channel(), _Channel())
+        around: list[int] = []  # wires from a pin of one side to a part of the other
+        ends: dict[int, tuple[int, int]] = {}  # side and height of each wire's terminal
+        for part in self.plan.parts:
+            top = self.tops[id(part)]
+            for end, row in zip(part.ends, _rows_of(part), strict=True):
+                if end.wire:
+                    ends[end.wire.number] = (self._side_of(part), top + row)
+        below = self._below()
+        lanes: dict[int, int] = {}
+        for wire in self.plan.wires:
+            side, y = ends[wire.number]
+            home = self.pin_side[wire.pin]
+            if side == home:
+                channels[side].spans[wire.number] = (self.pin_y[wire.pin], y)
+                continue
+            lanes[wire.number] = below + STEP * len(around)
+            around.append(wire.number)
+            channels[home].spans[wire.number] = (self.pin_y[wire.pin], lanes[wire.number])
+            channels[side].spans[wire.number] = (lanes[wire.number], y)
+        widths = [TRACK * (len(each.spans) + 1) for each in channels]
+        has_motors = [
+            any(part.shape.motors and self._side_of(part) == side for part in self.plan.parts)
+            for side in (LEFT, RIGHT)
+        ]
+        left_part = MARGIN + MOTORS_WIDTH * has_motors[LEFT]
+        board_left = left_part + PART_WIDTH + ZONE + widths[LEFT] + NEAR_BOARD[LEFT]
+        board_right = board_left + BOARD_WIDTH
+        right_zone = board_right + NEAR_BOARD[RIGHT] + widths[RIGHT]
+        right_part = right_zone + ZONE
+        edges = (board_left, board_right)
+        zones = (left_part + PART_WIDTH + ZONE, right_zone)
+        tracks = [channel.tracks() for channel in channels]
+
+        def x_of(side: int, number: int) -> int:
+            distance = NEAR_BOARD[side] + TRACK * (tracks[side][number] + 1)
+            return edges[side] + (distance if side == RIGHT else -distance)
+
+        routes = tuple(
+            self._route(wire, ends[wire.number], lanes.get(wire.number), edges, zones, x_of)
+            for wire in self.plan.wires
+        )
+        boxes = tuple(self._box(part, (left_part, right_part)) for part in self.plan.parts)
+        width = right_part + PART_WIDTH + MARGIN + MOTORS_WIDTH * has_motors[RIGHT]
+        lowest = max(
+            self.board_top + self.board_height,
+            *(box.y + box.height for box in boxes),
+            *(y for route in routes for _, y in route.points),
+        )
+        board = (board_left, self.board_top, BOARD_WIDTH, self.board_height)
+        return Layout(width, lowest + MARGIN, board, tuple(self.pins), boxes, routes)
+
+    def _below(self) -> int:
+        """Return the first height below the board, a quarter step beside pins and terminals."""
+        return self.board_top + _snapped(self.board_height) + STEP + STEP // 4
+
+    def _box(self, part: Part, columns: tuple[int, int]) -> Box:
+        side, top = self._side_of(part), self.tops[id(part)]
+        rows = tuple(top + row for row in _rows_of(part))
+        return Box(part, side, columns[side], top, _height_of(part), rows)
+
+    def _route(
+        self, wire: Wire, end: tuple[int, int], lane: int | None, edges: tuple[int, int],
+        zones: tuple[int, int], x_of: Callable[[int, int], int],
+    ) -> Route:  # fmt: skip
+        side, y = end
+        home = self.pin_side[wire.pin]
+        start, x = self.pin_y[wire.pin], x_of(home, wire.number)
+        points = [(edges[home], start), (x, start)]
+        if lane is not None:
+            points += [(x, lane), (x_of(side, wire.number), lane)]
+        points += [(points[-1][0], y), (zones[side], y)]
+        return Route(wire, tuple(points))
+
+
+def _room(part: Part) -> int:
+    """Return the height that a part takes in its column, a multiple of STEP."""
+    return _snapped(_height_of(part) + GAP + STEP - 1)
+
+
+def _snapped(y: int) -> int:
+    return y - y % STEP

@@ -1,0 +1,198 @@
+"""What is said beside a drawing: what is needed, tables, what to mind, what to check.
+
+Knows a plan, and when a sentence belongs to it. Text in a block is plain, but for **bold** in
+sentences of `texts`; whoever writes it escapes it.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from tiniscript.wiring.headers import SIDES
+from tiniscript.wiring.parts import BOARD_5V, GROUND, PULL_DOWN
+from tiniscript.wiring.plan import LAMP_PIN, End, Part, Plan
+from tiniscript.wiring.texts import text
+
+
+class Block(NamedTuple):
+    """A piece of a page. `kind` is one of KINDS; a table's first row is its head."""
+
+    kind: str
+    words: str = ""
+    rows: tuple[tuple[str, ...], ...] = ()
+
+
+KINDS = ("title", "heading", "paragraph", "drawing", "list", "checks", "table")
+
+
+def page_of(plan: Plan) -> list[Block]:
+    """Return the blocks of a page, from its title to its last line."""
+    return _Page(plan).blocks()
+
+
+def wire_rows(plan: Plan) -> list[tuple[str, ...]]:
+    """Return the table of the wires, its head first: wire, pin, part, terminal, on the way."""
+    language = plan.language
+    heads = ("head_wire", "head_pin", "head_part", "head_terminal", "head_through")
+    rows = [tuple(text(head, language) for head in heads)]
+    for part in plan.parts:
+        for end in part.ends:
+            if end.wire:
+                colour = text(f"colour_{end.wire.colour}", language)
+                name = f"{end.wire.number} {colour}"
+                rows.append((name, end.wire.pin_name, part.title, end.name, _way(end, language)))
+    if plan.has_lamp:
+        lamp = text("part_lamp", language)
+        on_board = text("on_board", language)
+        rows.append(("–", str(LAMP_PIN), lamp, text("lamp_on_board", language), on_board))
+    return rows
+
+
+def _way(end: End, language: str) -> str:
+    to_ground = "to_ground_pin" if end.beyond else "to_ground"
+    pairs = (("series", end.series), ("beyond", end.beyond), (to_ground, end.to_ground))
+    return "; ".join(text(key, language).format(value=value) for key, value in pairs if value)
+
+
+class _Page:
+    def __init__(self, plan: Plan) -> None:
+        self.plan = plan
+        self.language = plan.language
+        self.board = SIDES[plan.chip.name].name
+        motors = plan.parts[0]
+        self.driver = motors.shape.need.removeprefix("need_")
+
+    def say(self, key: str, **values: object) -> str:
+        return text(key, self.language).format(**values)
+
+    def blocks(self) -> list[Block]:
+        say = self.say
+        return [
+            Block("title", say("title", robot=self.plan.robot)),
+            Block("paragraph", say("intro", board=self.board)),
+            Block("drawing", say("drawing")),
+            Block("heading", say("need")),
+            Block("list", rows=_column(self._needs())),
+            Block("heading", say("wires")),
+            Block("paragraph", say("wires_intro")),
+            Block("table", rows=tuple(wire_rows(self.plan))),
+            Block("heading", say("rails")),
+            Block("paragraph", say("rails_intro")),
+            Block("table", rows=tuple(self._rails())),
+            *(Block("paragraph", words) for words in self._others()),
+            Block("list", rows=_column(self._power())),
+            Block("heading", say("mind")),
+            Block("list", rows=_column(self._mind())),
+            Block("heading", say("bluetooth")),
+            Block("list", rows=_column(self._bluetooth())),
+            Block("heading", say("check")),
+            Block("checks", rows=_column(self._checks())),
+            Block("paragraph", say("made_by", robot=self.plan.robot)),
+        ]
+
+    def _needs(self) -> list[str]:
+        found: dict[str, list[Part]] = {}
+        for part in self.plan.parts:
+            if part.shape.need:
+                found.setdefault(part.shape.need, []).append(part)
+        needs = [self.say("need_board", board=self.board)]
+        for key, parts in found.items():
+            need = f"{len(parts)} × {self.say(key)}"
+            if any(part.is_device for part in parts):
+                need = self.say("for_part", need=need, parts=", ".join(p.title for p in parts))
+            needs.append(need)
+        values = ", ".join(f"{count} × {value}" for value, count in self.plan.resistors.items())
+        needs.append(self.say("need_resistors", values=values))
+        needs.append(self.say("need_breadboard"))
+        return needs
+
+    def _rails(self) -> list[tuple[str, ...]]:
+        rows = [tuple(self.say(key) for key in ("head_tag", "head_colour", "head_joined"))]
+        for rail in self.plan.rails:
+            colour = self.say("colour_black" if rail == GROUND else "colour_red")
+            joined = []
+            if rail in (BOARD_5V, GROUND):
+                joined.append(self.say("the_board", pin=rail))
+            for part in self.plan.parts:
+                joined += [
+                    f"{part.title}: {end.name}"
+                    for end in part.ends
+                    if end.rail == rail or (end.name == rail and end.wire)
+                ]
+            rows.append((rail, colour, ", ".join(joined)))
+        return rows
+
+    def _others(self) -> list[str]:
+        """Return what is joined to no pin and no rail: motors, and what stays free."""
+        said = []
+        motors = self.plan.parts[0].shape.motors
+        if motors:
+            ends = [
+                self.say("motors_join", motor=self.say(key), terminals=terminals)
+                for key, terminals in zip(("left_motor", "right_motor"), motors, strict=True)
+            ]
+            said.append(self.say("motor_wires", ends=", ".join(ends)))
+        free = [
+            f"{part.title} {end.name}"
+            for part in self.plan.parts
+            for end in part.ends
+            if not end.wire and not end.rail
+        ]
+        if free:
+            said.append(self.say("free", ends=", ".join(free)))
+        return said
+
+    def _power(self) -> list[str]:
+        said = [self.say("power_own"), self.say("power_common"), self.say("power_not_5v")]
+        if self.driver != "servos":
+            said.append(self.say(f"power_volts_{self.driver}"))
+        return said
+
+    def _pull_downs(self) -> str:
+        ends = self.plan.parts[0].ends
+        return ", ".join(end.name for end in ends if end.to_ground == PULL_DOWN)
+
+    def _mind(self) -> list[str]:
+        said = []
+        if self._pull_downs():
+            said.append(self.say("mind_floating", ends=self._pull_downs()))
+        for part in self.plan.parts:
+            for key in part.shape.notes:
+                sentence = self.say(key, part=part.title)
+                if sentence not in said:
+                    said.append(sentence)
+        return said
+
+    def _bluetooth(self) -> list[str]:
+        speed = "bluetooth_speed" if self.plan.baud == 9600 else "bluetooth_other_speed"
+        state = "bluetooth_state" if self.plan.has_state else "bluetooth_no_state"
+        return [
+            self.say("bluetooth_flash"),
+            self.say("bluetooth_divider"),
+            self.say(speed, baud=self.plan.baud),
+            self.say(state),
+        ]
+
+    def _checks(self) -> list[str]:
+        grounded = ", ".join(part.title for part in self.plan.parts if _is_grounded(part))
+        said = [
+            self.say("check_wheels"),
+            self.say("check_polarity"),
+            self.say("check_ground", parts=grounded),
+            self.say("check_5v"),
+        ]
+        if self._pull_downs():
+            said.append(self.say("check_pull_downs", ends=self._pull_downs()))
+        if self.driver == "l298n":
+            said.append(self.say("check_jumpers"))
+        said += [self.say(key) for key in ("check_divider", "check_bare", "check_unplugged")]
+        way = "check_way_servos" if self.driver == "servos" else "check_way"
+        return [*said, self.say("check_hot"), self.say(way)]
+
+
+def _is_grounded(part: Part) -> bool:
+    return any(end.rail == GROUND or end.to_ground for end in part.ends)
+
+
+def _column(lines: list[str]) -> tuple[tuple[str, ...], ...]:
+    return tuple((line,) for line in lines)

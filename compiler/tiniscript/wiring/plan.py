@@ -1,0 +1,190 @@
+"""A robot becomes a plan: its parts, and every wire between them and the board, numbered.
+
+Knows which pin is joined to which terminal. Does not know where things are drawn (`layout`). What
+comes from a profile is cut to a length here, and is still to be escaped by whoever writes it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import NamedTuple
+
+from tiniscript.robots.boards import CHIPS, Chip
+from tiniscript.robots.profile import Robot, Wiring
+from tiniscript.wiring import parts
+from tiniscript.wiring.parts import MOTOR_BATTERY, SERVO_SUPPLY, Shape
+from tiniscript.wiring.texts import text
+
+RECEIVE_PIN, TRANSMIT_PIN = 0, 1  # of the boards that there is firmware for
+LAMP_PIN = 13  # has a lamp on these boards, called L
+COLOURS = ("orange", "green", "blue", "violet", "yellow", "grey", "brown")
+
+
+class Wire(NamedTuple):
+    """A wire from a pin of the board. `number` begins at 1, `colour` is one of COLOURS."""
+
+    number: int
+    colour: str
+    pin: int
+    pin_name: str
+
+
+class End(NamedTuple):
+    """A terminal of a part, and what comes to it: a wire, a rail, or neither."""
+
+    name: str
+    wire: Wire | None
+    rail: str
+    series: str
+    to_ground: str
+    beyond: str
+
+
+class Part(NamedTuple):
+    """A part. `title` is its name for people, `label` says more, or is empty.
+
+    `is_device`: programs know it, and `title` is the word that they have for it.
+    """
+
+    title: str
+    label: str
+    is_device: bool
+    shape: Shape
+    ends: tuple[End, ...]
+
+
+class Plan(NamedTuple):
+    """All that is wired. `lamp` is the board's own lamp, if the robot uses it: no wire."""
+
+    robot: str
+    language: str
+    chip: Chip
+    baud: int
+    parts: tuple[Part, ...]
+    has_lamp: bool
+    has_state: bool
+
+    @property
+    def wires(self) -> list[Wire]:
+        return [end.wire for part in self.parts for end in part.ends if end.wire]
+
+    @property
+    def rails(self) -> list[str]:
+        """The rails that are used, in the order of parts.RAILS."""
+        used = {end.rail for part in self.parts for end in part.ends}
+        used |= {end.name for part in self.parts for end in part.ends}
+        return [rail for rail in parts.RAILS if rail in used]
+
+    @property
+    def resistors(self) -> dict[str, int]:
+        """How many resistors of each value are needed."""
+        found: dict[str, int] = {}
+        for part in self.parts:
+            for end in part.ends:
+                for value in (end.series, end.to_ground, end.beyond):
+                    if value:
+                        found[value] = found.get(value, 0) + 1
+        return dict(sorted(found.items(), key=lambda each: _ohms(each[0])))
+
+
+def _ohms(value: str) -> float:
+    number, unit = value.split(" ")
+    return float(number) * (1000 if unit == "kΩ" else 1)
+
+
+class _Counter:
+    """Numbers the wires, and gives neighbours different colours."""
+
+    def __init__(self, chip: Chip, language: str) -> None:
+        self._chip = chip
+        self._language = language
+        self._last = 0
+
+    def part(
+        self, title: str, label: str, shape: Shape, pins: Mapping[str, int],
+        is_device: bool = False,
+    ) -> Part:  # fmt: skip
+        ends = [self._end(terminal, pins) for terminal in shape.terminals]
+        return Part(title, label, is_device, shape, tuple(ends))
+
+    def _end(self, terminal: parts.Terminal, pins: Mapping[str, int]) -> End:
+        name, pin_key, *rest = terminal
+        pin = pins.get(pin_key)
+        wire = None
+        if pin is not None:
+            self._last += 1
+            colour = COLOURS[(self._last - 1) % len(COLOURS)]
+            wire = Wire(self._last, colour, pin, self._chip.pin_name(pin))
+        return End(text(f"terminal_{name}", self._language, name), wire, *rest)
+
+
+def plan_of(robot: Robot, language: str) -> Plan:
+    """Return the plan of a robot, in `en` or `es`. The robot's chip is one that has firmware."""
+    kit, board, body = robot.kit, robot.board, robot.body
+    chip = CHIPS[board.chip]
+    counter = _Counter(chip, language)
+
+    def named(key: str) -> str:
+        return text(key, language)
+
+    found = []
+    motors = parts.shape_of("motors", board.motors)
+    title, label = motors.model, named("part_motors")
+    if not motors.model:
+        title, label = named("part_servos"), ""
+    found.append(counter.part(title, label, motors, board.motors.pins))
+    groups = (
+        ("sensors", kit.sensors, board.sensors),
+        ("actuators", kit.actuators, board.actuators),
+    )
+    for used_by, devices, wirings in groups:
+        for device, wiring in zip(devices, wirings, strict=True):
+            place = body.places.get(device.name)
+            shape = parts.shape_of(f"{used_by} {device.kind}", wiring, device, place)
+            if board.motors.driver == "servos":
+                shape = _with_servo_supply(shape)
+            label = robot.labels[language][device.name]
+            label = "" if label == device.name else label
+            found.append(counter.part(device.name, label, shape, wiring.pins, is_device=True))
+    found.append(
+        counter.part(named("part_button"), "SB", parts.SWITCH, {"pin": board.start_button})
+    )
+    found.append(counter.part(named("part_buzzer"), "BEEP", parts.BUZZER, {"pin": board.buzzer}))
+    has_lamp = board.status_led == LAMP_PIN
+    if board.status_led is not None and not has_lamp:
+        lamp = parts.shape_of("actuators yes/no", Wiring("digital", {}, {}))
+        found.append(counter.part(named("part_lamp"), "", lamp, {"pin": board.status_led}))
+    radio = {"rx": RECEIVE_PIN, "tx": TRANSMIT_PIN}
+    if board.bluetooth_state is not None:
+        radio["state"] = board.bluetooth_state
+    found.append(counter.part("HC-05", "Bluetooth", parts.BLUETOOTH, radio))
+    rails = {end.rail for part in found for end in part.ends}
+    rails |= {end.name for part in found for end in part.ends}
+    for rail, key, supply in (
+        (MOTOR_BATTERY, "part_battery", parts.BATTERY_OF_MOTORS),
+        (SERVO_SUPPLY, "part_servo_supply", parts.SUPPLY_OF_SERVOS),
+    ):
+        if rail in rails:
+            found.append(counter.part(named(key), named(f"{key}_volts"), supply, {}))
+    return Plan(
+        robot.labels[language]["robot"], language, chip, board.baud, tuple(found), has_lamp,
+        board.bluetooth_state is not None,
+    )  # fmt: skip
+
+
+def _with_servo_supply(shape: Shape) -> Shape:
+    """Servos that drive have one supply: what measures the battery measures that."""
+    renamed = (
+        terminal._replace(name=SERVO_SUPPLY) if terminal.name == MOTOR_BATTERY else terminal
+        for terminal in shape.terminals
+    )
+    return shape._replace(terminals=tuple(renamed))
+
+
+def pins_of(robot: Robot) -> set[int]:
+    """Return every pin that the robot's [board] names."""
+    board = robot.board
+    wirings: Iterable[Wiring] = (board.motors, *board.sensors, *board.actuators)
+    pins = {pin for wiring in wirings for pin in wiring.pins.values()}
+    single = (board.start_button, board.buzzer, board.status_led, board.bluetooth_state)
+    return pins | {pin for pin in single if pin is not None}
