@@ -19,7 +19,7 @@ svg { display: block; width: 100%; height: auto; break-inside: avoid; }
 table { border-collapse: collapse; width: 100%; }
 th, td:first-child { white-space: nowrap; }
 th, td { border: 1px solid #777; padding: 0.25em 0.6em; text-align: left; vertical-align: top;
-  overflow-wrap: anywhere; }
+  overflow-wrap: break-word; }
 th { background: #eee; }
 tr, li, p { break-inside: avoid; }
 li { margin: 0.35em 0; }

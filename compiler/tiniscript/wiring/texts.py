@@ -124,7 +124,7 @@ TEXTS: dict[str, tuple[str, str]] = {
     "power_volts_l293d": ("The L293D keeps about 2 V for itself: a battery of 7 to 9 V (6 AA cells) suits motors for 6 V.",
                           "El L293D se queda con unos 2 V: una batería de 7 a 9 V (6 pilas AA) va bien con motores de 6 V."),
     "power_volts_tb6612": ("The TB6612 takes from 4.5 to 13.5 V; a battery with the volts of the motors suits it.",
-                           "El TB6612 acepta de 4,5 a 13,5 V; le va bien una batería con los voltios de los motores."),
+                           "El TB6612 acepta de 4.5 a 13.5 V; le va bien una batería con los voltios de los motores."),
     "power_volts_two_wire": ("Such a driver takes up to about 10 V (look at its page); a battery with the volts of the motors suits it.",
                              "Un controlador así acepta hasta unos 10 V (mira su hoja); le va bien una batería con los voltios de los motores."),
     # what to mind
