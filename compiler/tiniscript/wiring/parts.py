@@ -270,7 +270,7 @@ SWITCH = Shape(
 BUZZER = Shape(
     "buzzer",
     "need_buzzer",
-    (Terminal("plus", "pin", series="100 Ω"), Terminal("minus", rail=GROUND)),
+    (Terminal("plus", "pin", series="220 Ω"), Terminal("minus", rail=GROUND)),
 )
 BLUETOOTH = Shape(
     "bluetooth",

@@ -139,8 +139,8 @@ TEXTS: dict[str, tuple[str, str]] = {
                       "Only with a battery under 7 V: take that jumper off and join 5V of the module to 5V of the board. Over 12 V do the same.",
                       "L298N: deja en su lugar el puente junto a +12V y libre su 5V: el módulo hace esos 5 V para sí mismo. "
                       "Solo con una batería de menos de 7 V: quita ese puente y une el 5V del módulo con 5V de la placa. Con más de 12 V haz lo mismo."),
-    "mind_l293d": ("L293D: the number in brackets is the chip's pin; pin 1 is left of the notch. All four GND pins go to GND.",
-                   "L293D: el número entre paréntesis es el pin del integrado; el pin 1 está a la izquierda de la muesca. Los cuatro GND van a GND."),
+    "mind_l293d": ("L293D: the number in brackets is the chip's pin. With the notch at the top, pin 1 is the first one on the left, and 16 the first one on the right. All four GND pins go to GND.",
+                   "L293D: el número entre paréntesis es el pin del integrado. Con la muesca arriba, el pin 1 es el primero de la izquierda, y el 16 el primero de la derecha. Los cuatro GND van a GND."),
     "mind_tb6612_standby": ("TB6612: while STBY is low it drives no motor. The firmware raises it only to drive.",
                             "TB6612: mientras STBY está en bajo no mueve ningún motor. El firmware lo sube solo para conducir."),
     "mind_tb6612_no_standby": ("TB6612: STBY goes to 5V, or it drives no motor.", "TB6612: STBY va a 5V; si no, no mueve ningún motor."),
