@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import string
 import xml.etree.ElementTree as Tree
@@ -13,6 +14,7 @@ import pytest
 
 from tests.command import Tsc
 from tiniscript import robots
+from tiniscript.cli import wiring
 from tiniscript.kit import NUMBER, Device, Kit
 from tiniscript.robots.boards import CHIPS, DRIVERS, Chip, Driver
 from tiniscript.robots.profile import LANGUAGES, Place, Robot, Wiring
@@ -90,17 +92,22 @@ def test_every_driver_is_drawn_with_all_its_pins(driver: Driver) -> None:
     assert (driver.used_by, driver.name) in parts.SHAPES, (
         f"A wiring page cannot draw {where}: give it a shape in wiring/parts.py."
     )
-    wiring = wired(driver, CHIPS["mega"], set())
+    connected = wired(driver, CHIPS["mega"], set())
     for yes_no in ("pull_up", "yes_is_low"):
         for setting in (0, 1):
-            settings = {**wiring.settings, yes_no: setting}
+            settings = {**connected.settings, yes_no: setting}
             device = Device("X", "", "V", 0, 10 * ONE)
             for sees in ("light", "touch"):
                 shape = parts.shape_of(
-                    driver.used_by, wiring._replace(settings=settings), device, Place(0, 0, 0, sees)
+                    driver.used_by,
+                    connected._replace(settings=settings),
+                    device,
+                    Place(0, 0, 0, sees),
                 )
                 keys = [terminal.pin_key for terminal in shape.terminals if terminal.pin_key]
-                assert sorted(keys) == sorted(wiring.pins), f"{where} has pins that are not drawn"
+                assert sorted(keys) == sorted(connected.pins), (
+                    f"{where} has pins that are not drawn"
+                )
                 assert shape.icon in ICONS
                 assert all(note in TEXTS for note in (*shape.notes, shape.need) if note)
 
@@ -319,6 +326,18 @@ def test_the_command_lists_the_wires(tsc: Tsc) -> None:
     assert " ".join(rows[0].split()) == "cable pin de la placa pieza su terminal en el camino"
     assert " ".join(rows[4].split()) == "4 violeta 4 TB6612 STBY 10 kΩ del terminal a GND"
     assert rows[-1] == "Como página con un dibujo:  tsc wiring -o conexiones.html"
+
+
+def test_on_a_narrow_terminal_the_last_column_is_broken(
+    tsc: Tsc, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    whole = tsc("wiring").out
+    monkeypatch.setattr("sys.stdout.isatty", lambda: True)
+    monkeypatch.setattr(wiring, "get_terminal_size", lambda: os.terminal_size((80, 24)))
+    narrow = tsc("wiring").out
+    assert max(len(row) for row in whole.splitlines()) > 80
+    assert max(len(row) for row in narrow.splitlines()) < 80
+    assert sorted(narrow.split()) == sorted(whole.split())
 
 
 def test_the_command_writes_a_page(tsc: Tsc, tmp_path: Path) -> None:

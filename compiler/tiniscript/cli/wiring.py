@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from shutil import get_terminal_size
+from textwrap import wrap
 
 from tiniscript.cli import inputs, outputs
 from tiniscript.cli.options import Options
@@ -28,6 +30,9 @@ Muestra cómo se conecta un robot: qué cable va de qué pin a qué pieza.
                 para leerla en un navegador e imprimirla; sin esto se listan aquí los cables
 """,
 )
+
+GAP = "  "  # between columns
+NARROWEST = 16  # a column on a terminal that is too narrow for the table
 
 
 def run(arguments: list[str], language: str) -> int:
@@ -65,8 +70,16 @@ def run(arguments: list[str], language: str) -> int:
 
 
 def _print_rows(rows: list[tuple[str, ...]]) -> None:
+    """Print a table; on a terminal its last column is broken where the lines end."""
     shown = [[inputs.shown(cell) for cell in row] for row in rows]
     widths = [max(len(row[k]) for row in shown) for k in range(len(shown[0]))]
-    for row in shown:
-        cells = (cell.ljust(width) for cell, width in zip(row, widths, strict=True))
-        print("  ".join(cells).rstrip())
+    indent = sum(widths[:-1]) + len(GAP) * (len(widths) - 1)
+    room = widths[-1]
+    if sys.stdout.isatty():
+        room = min(room, max(NARROWEST, get_terminal_size().columns - indent - 1))
+    for *row, last in shown:
+        cells = GAP.join(cell.ljust(width) for cell, width in zip(row, widths, strict=False))
+        first, *rest = wrap(last, room) or [""]
+        print(f"{cells}{GAP}{first}".rstrip())
+        for line in rest:
+            print(" " * indent + line)
