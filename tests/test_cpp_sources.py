@@ -20,7 +20,7 @@ TESTED = ("host", "chip", "emulated", "link", "powercut")
 FILES = [
     *PORTABLE,
     *sorted(path for name in TESTED for path in (SOURCES / name).glob("*.[ch]*")),
-    SOURCES / "wasm" / "main.cpp",
+    *sorted((SOURCES / "wasm").glob("*.cpp")),
 ]
 BOARDS = sorted((SOURCES / "src" / "boards").glob("*.[ch]*"))
 STRICT = ("-std=c++11", "-pedantic", "-fno-exceptions", "-fno-rtti", *WARNINGS, "-fsyntax-only")

@@ -49,33 +49,38 @@ def test_the_wasm_machine_and_its_compiler_are_there() -> None:
 @needs_zig
 def test_the_module_is_made_from_these_sources(tmp_path: Path) -> None:
     """Byte for byte, wherever they are."""
-    kept = build_wasm.MODULE.read_bytes()
-    assert build_wasm.built(ROOT / "vm_arduino") == kept, f"stale. Run: {build_wasm.COMMAND}"
     copy = Path(shutil.copytree(ROOT / "vm_arduino", tmp_path / "some where" / "else"))
-    assert build_wasm.built(copy) == kept
+    for module in build_wasm.MODULES:
+        kept = (ROOT / module.path).read_bytes()
+        stale = f"{module.path} is stale. Run: {build_wasm.COMMAND}"
+        assert build_wasm.built(ROOT / "vm_arduino", module) == kept, stale
+        assert build_wasm.built(copy, module) == kept
 
 
 @needs_zig
 def test_another_machine_is_another_module(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    stale = tmp_path / "compiler" / "machine.wasm"
-    stale.parent.mkdir()
-    stale.write_bytes(b"\0asm")
+    modules = build_wasm.MODULES
+    for module in modules:
+        stale = tmp_path / module.path
+        stale.parent.mkdir(parents=True, exist_ok=True)
+        stale.write_bytes(b"\0asm")
     copy = Path(shutil.copytree(ROOT / "vm_arduino", tmp_path / "vm_arduino"))
     source = copy / "src" / "vm" / "vm.cpp"
     text = source.read_text(encoding="utf-8")
     source.write_text(text.replace("kLateMs = 20", "kLateMs = 21"), encoding="utf-8")
-    assert build_wasm.built(copy) != build_wasm.MODULE.read_bytes()
+    for module in modules:
+        assert build_wasm.built(copy, module) != (ROOT / module.path).read_bytes()
     shutil.copy(ROOT / "pyproject.toml", tmp_path)
     monkeypatch.setattr(build_wasm, "ROOT", tmp_path)
-    monkeypatch.setattr(build_wasm, "MODULE", stale)
     assert build_wasm.main(["--check"]) == 1
-    assert "stale. Run: python tools/build_wasm.py" in capsys.readouterr().err
+    said = capsys.readouterr().err
+    assert said.count("stale. Run: python tools/build_wasm.py") == len(modules) == 2
     assert build_wasm.main([]) == 0
     assert build_wasm.main(["--check"]) == 0
     source.write_text("?", encoding="utf-8")
-    with pytest.raises(SystemExit, match="refuses the machine"):
+    with pytest.raises(SystemExit, match=r"refuses wasm/main\.cpp"):
         build_wasm.main([])
 
 
@@ -90,13 +95,15 @@ def test_the_module_imports_the_robot_alone() -> None:
     """No heap, no system, and no path of the computer that made it."""
     from wasmtime import Engine, Module
 
-    data = build_wasm.MODULE.read_bytes()
-    module = Module(Engine(), data)
-    assert {each.module for each in module.imports} == {"robot"}
-    assert {each.name for each in module.imports} == {
-        "motors", "off", "read", "beep", "show", "set"
-    }  # fmt: skip
-    assert not [word for word in (b".cpp", b"zig", b"clang", b"producers") if word in data]
+    machine = {"motors", "off", "read", "beep", "show", "set"}
+    board = {"stop", "release", "light", "finished", "faulted"}
+    imported = {build_wasm.MACHINE: machine, build_wasm.ROBOT: machine | board}
+    for each, names in imported.items():
+        data = (ROOT / each.path).read_bytes()
+        module = Module(Engine(), data)
+        assert {found.module for found in module.imports} == {"robot"}
+        assert {found.name for found in module.imports} == names
+        assert not [word for word in (b".cpp", b"zig", b"clang", b"producers") if word in data]
 
 
 # -- the command --------------------------------------------------------------------------------

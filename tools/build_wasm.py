@@ -1,8 +1,8 @@
-"""Makes `machine.wasm` from the C++ machine: run `python tools/build_wasm.py` after changing that.
+"""Makes `machine.wasm` and `robot.wasm` from the C++: `python tools/build_wasm.py` after changes.
 
-`tsc run --machine cpp` runs it. Needs the compiler `ziglang` from PyPI, in the version that the
-extra `test` pins: with it, the same sources give the same bytes wherever they are. `--check`
-writes nothing, and says if the file is stale.
+`tsc run --machine cpp` runs the machine, and `tsc robot` the whole robot. Needs the compiler
+`ziglang` from PyPI, in the version that the extra `test` pins: with it, the same sources give the
+same bytes wherever they are. `--check` writes nothing, and says if a file is stale.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ import sys
 import tempfile
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
+from typing import NamedTuple
 
 ROOT = Path(__file__).resolve().parent.parent
-MODULE = ROOT / "compiler" / "tiniscript" / "machine.wasm"
 SOURCES = "vm_arduino"
 COMMAND = "python tools/build_wasm.py"
 
@@ -30,26 +30,49 @@ FLAGS = (
 )  # fmt: skip
 
 
+class Module(NamedTuple):
+    """What is made, from the root of the repository; of `files` and the `.cpp` of `folders`.
+
+    A file of `files` that includes one of these stands for it.
+    """
+
+    path: str
+    files: tuple[str, ...]
+    folders: tuple[str, ...]
+
+
+MACHINE = Module("compiler/tiniscript/machine.wasm", ("wasm/main.cpp",), ("src/vm",))
+ROBOT = Module(
+    "compiler/tiniscript/virtual/robot.wasm",
+    ("wasm/robot.cpp", "wasm/watched.cpp"),
+    ("src/firmware", "src/link", "src/store", "src/vm"),
+)
+MODULES = (MACHINE, ROBOT)
+
+
 def main(arguments: list[str] | None = None) -> int:
-    parser = argparse.ArgumentParser(description="Make the C++ machine as a WebAssembly module.")
-    parser.add_argument("--check", action="store_true", help="only say whether it is stale")
+    parser = argparse.ArgumentParser(description="Make the WebAssembly modules from the C++.")
+    parser.add_argument("--check", action="store_true", help="only say whether one is stale")
     only_check: bool = parser.parse_args(arguments).check
     if missing():
         sys.exit(missing())
-    name = MODULE.relative_to(ROOT).as_posix()
-    made = built(ROOT / SOURCES)
-    if MODULE.exists() and MODULE.read_bytes() == made:
-        return 0
-    if only_check:
-        print(f"{name} is stale. Run: {COMMAND}", file=sys.stderr)
-        return 1
-    MODULE.write_bytes(made)
-    print(f"wrote {name}: {len(made)} bytes")
-    return 0
+    code = 0
+    for module in MODULES:
+        path = ROOT / module.path
+        made = built(ROOT / SOURCES, module)
+        if path.exists() and path.read_bytes() == made:
+            continue
+        if only_check:
+            print(f"{module.path} is stale. Run: {COMMAND}", file=sys.stderr)
+            code = 1
+        else:
+            path.write_bytes(made)
+            print(f"wrote {module.path}: {len(made)} bytes")
+    return code
 
 
 def missing() -> str:
-    """Return why the module cannot be made here, or nothing."""
+    """Return why the modules cannot be made here, or nothing."""
     pin = re.search(r'"ziglang==([^"]+)"', (ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     assert pin, "pyproject.toml pins the compiler"
     try:
@@ -61,18 +84,22 @@ def missing() -> str:
     return f"ziglang {pin[1]} is needed, here is {found}. Run: pip install ziglang=={pin[1]}"
 
 
-def built(sources: Path) -> bytes:
-    """Return the module made from `sources`, a folder like `vm_arduino`.
+def built(sources: Path, module: Module) -> bytes:
+    """Return a module made from `sources`, a folder like `vm_arduino`.
 
     The compiler sees paths inside that folder alone, and keeps nothing from other builds.
     """
-    files = [sources / "wasm" / "main.cpp", *sorted((sources / "src" / "vm").glob("*.cpp"))]
+    files = [sources / name for name in module.files]
+    included = set(re.findall(r'#include "\.\./(\S+\.cpp)"', "".join(map(_text, files))))
+    for folder in module.folders:
+        found = sorted((sources / folder).glob("*.cpp"))
+        files += [path for path in found if path.relative_to(sources).as_posix() not in included]
     with tempfile.TemporaryDirectory() as folder:
-        module = Path(folder) / "machine.wasm"
+        made = Path(folder) / Path(module.path).name
         places = {"ZIG_GLOBAL_CACHE_DIR": folder, "ZIG_LOCAL_CACHE_DIR": folder}
         names = [path.relative_to(sources).as_posix() for path in files]
         done = subprocess.run(
-            [sys.executable, "-m", "ziglang", "c++", *FLAGS, *names, "-o", str(module)],
+            [sys.executable, "-m", "ziglang", "c++", *FLAGS, *names, "-o", made],
             cwd=sources,
             env={**os.environ, **places},
             capture_output=True,
@@ -80,8 +107,12 @@ def built(sources: Path) -> bytes:
             check=False,
         )
         if done.returncode != 0:
-            sys.exit(f"the compiler refuses the machine:\n{done.stderr[:4000]}")
-        return module.read_bytes()
+            sys.exit(f"the compiler refuses {module.files[0]}:\n{done.stderr[:4000]}")
+        return made.read_bytes()
+
+
+def _text(path: Path) -> str:
+    return path.read_text(encoding="utf-8")
 
 
 if __name__ == "__main__":

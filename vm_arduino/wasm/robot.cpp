@@ -1,0 +1,195 @@
+// A whole robot as a WebAssembly module: the virtual one of `tsc robot`.
+//
+// The firmware with a board that is made of numbers. Knows under which names it is called from
+// outside, keeps the time of the UART and of the EEPROM, and imports what a robot does in its
+// world. No heap and no library. One instance is one robot from power-on to power-off.
+// `virtual/module.py` is the other side.
+
+#include "../src/robot.h"
+
+#include "../src/firmware/firmware.h"
+#include "../src/store/layout.h"
+#include "../src/store/nvm.h"
+
+#define exported(name) extern "C" __attribute__((export_name(name)))
+#define imported(name) extern "C" __attribute__((import_module("robot"), import_name(name)))
+
+using namespace tiniscript;
+
+// What happens has its time: milliseconds since power-on.
+imported("motors") void host_motors(uint32_t now_ms, int32_t left, int32_t right);
+imported("off") void host_off(uint32_t now_ms);
+imported("read") int32_t host_read(uint32_t now_ms, uint32_t sensor);
+imported("beep") void host_beep(uint32_t now_ms, uint32_t hertz, uint32_t duration_ms);
+imported("show") void host_show(uint32_t now_ms, int32_t value, int32_t is_yes_no);
+imported("set") void host_set(uint32_t now_ms, uint32_t actuator, int32_t value);
+imported("stop") void host_stop(uint32_t now_ms);
+imported("release") void host_release(uint32_t now_ms);
+imported("light") void host_light(uint32_t is_on);
+imported("finished") void host_finished(uint32_t now_ms);
+imported("faulted") void host_faulted(uint32_t now_ms);
+
+namespace {
+
+// The main loop comes around so often: 32 instructions each time are about what an Uno does.
+constexpr uint32_t kTickUs = 125;
+constexpr uint32_t kBoxBytes = 4096;
+
+uint8_t inbox[kBoxBytes];   // what is on its way to the robot
+uint8_t outbox[kBoxBytes];  // what it has sent
+uint32_t heard;             // of the inbox,
+uint32_t to_hear;           // of so many bytes
+uint32_t said;              // of the outbox
+uint64_t now_us;
+uint64_t hears_us;   // when the next byte has come in,
+uint64_t says_us;    // and when the one that goes out is gone
+uint64_t writes_us;  // and when the EEPROM is ready again
+uint32_t byte_us;    // how long a byte takes on the line, both ways; 0: no time
+uint32_t write_us;   // and how long in the EEPROM
+bool is_latched = true;
+int32_t readings[256];
+uint8_t memory[kMemoryBytes];
+
+uint32_t now_ms() { return static_cast<uint32_t>(now_us / 1000); }
+
+void hear() {
+  while (heard < to_hear && hears_us <= now_us) {
+    firmware_hear(inbox[heard++], static_cast<uint16_t>(now_ms()));
+    firmware_tick(now_ms());
+    if (byte_us == 0) return;  // the next one at the next tick
+    hears_us += byte_us;
+  }
+}
+
+void say() {
+  while (said < kBoxBytes && says_us <= now_us) {
+    if (!firmware_say(outbox + said)) {
+      says_us = now_us;
+      return;
+    }
+    said++;
+    says_us += byte_us;
+  }
+}
+
+}  // namespace
+
+namespace tiniscript {
+
+void robot_motors(int8_t left, int8_t right) {
+  if (!is_latched) host_motors(now_ms(), left, right);
+}
+
+void robot_off() { host_off(now_ms()); }
+
+bool robot_read(uint8_t sensor, int32_t* value) {
+  *value = host_read(now_ms(), sensor);
+  return true;
+}
+
+void robot_beep(uint16_t hertz, uint32_t duration_ms) { host_beep(now_ms(), hertz, duration_ms); }
+
+void robot_set(uint8_t actuator, int32_t value) { host_set(now_ms(), actuator, value); }
+
+void board_stop() {
+  is_latched = true;
+  host_stop(now_ms());
+}
+
+void board_release() {
+  is_latched = false;
+  host_release(now_ms());
+}
+
+bool board_has_stalled() { return false; }
+
+void board_forget() {}
+
+void board_light(bool is_on) { host_light(is_on); }
+
+void board_finished() { host_finished(now_ms()); }
+
+void board_faulted() { host_faulted(now_ms()); }
+
+bool nvm_is_ready() { return now_us >= writes_us; }
+
+uint8_t nvm_read(uint16_t place) { return memory[place]; }
+
+void nvm_write(uint16_t place, uint8_t value) {
+  memory[place] = value;
+  writes_us = now_us + write_us;
+}
+
+void nvm_clear(uint16_t place) { nvm_write(place, 0); }
+
+}  // namespace tiniscript
+
+// What `watched.cpp` asks in place of `robot_show`.
+namespace tiniscript {
+
+bool watched_show(int32_t value, bool is_yes_no) {
+  const bool is_taken = robot_show(value, is_yes_no);
+  if (is_taken) host_show(now_ms(), value, is_yes_no);
+  return is_taken;
+}
+
+}  // namespace tiniscript
+
+// The EEPROM, to be filled before `begin`.
+exported("memory_at") uint8_t* module_memory() { return memory; }
+exported("memory_bytes") uint32_t module_memory_bytes() { return kMemoryBytes; }
+
+exported("inbox") uint8_t* module_inbox() { return inbox; }
+exported("outbox") uint8_t* module_outbox() { return outbox; }
+exported("box_bytes") uint32_t module_box_bytes() { return kBoxBytes; }
+
+// Power on. `line_us` is how long a byte takes on the line, `eeprom_us` how long in the EEPROM.
+exported("begin") void module_begin(uint32_t kit, uint32_t sensors, uint32_t actuators,
+                                    uint32_t reset, uint32_t chance, uint32_t max_run_ms,
+                                    uint32_t line_us, uint32_t eeprom_us) {
+  byte_us = line_us;
+  write_us = eeprom_us;
+  Board board;
+  board.kit = static_cast<uint16_t>(kit);
+  board.sensors = static_cast<uint8_t>(sensors);
+  board.actuators = static_cast<uint8_t>(actuators);
+  board.readings = readings;
+  board.reset = static_cast<Reset>(reset);
+  board.chance = chance;
+  board.max_run_ms = max_run_ms;
+  firmware_begin(board);
+}
+
+// So many bytes are in the inbox now, behind those that have been heard.
+exported("put") void module_put(uint32_t bytes) {
+  heard = 0;
+  to_hear = bytes;
+  if (hears_us < now_us + byte_us) hears_us = now_us + byte_us;
+}
+
+// Goes on up to a time, or until the inbox is empty where `has_more`, or the outbox is full.
+// Returns how many bytes are in the outbox: they are to be fetched now.
+exported("run") uint32_t module_run(uint64_t until_us, uint32_t has_more) {
+  said = 0;
+  while (now_us < until_us && said < kBoxBytes) {
+    if (has_more != 0 && heard == to_hear) break;
+    now_us += kTickUs;
+    hear();
+    firmware_tick(now_ms());
+    say();
+  }
+  return said;
+}
+
+exported("now_us") uint64_t module_now_us() { return now_us; }
+
+// How many bytes of the inbox have not been heard.
+exported("unheard") uint32_t module_unheard() { return to_hear - heard; }
+
+exported("press") void module_press() { firmware_pressed(); }
+exported("let_go") void module_let_go() { firmware_released(); }
+
+// The robot as its own STATUS tells it.
+exported("state") uint32_t module_state() { return static_cast<uint32_t>(port_condition().state); }
+exported("saved") uint32_t module_saved() { return static_cast<uint32_t>(port_condition().saved); }
+exported("fault") uint32_t module_fault() { return port_condition().fault; }
