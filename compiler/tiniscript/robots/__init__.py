@@ -32,12 +32,12 @@ def load(name_or_path: str) -> Robot:
     make = ROBOTS.get(name_or_path.lower())
     if make is not None:
         return make()
-    if _is_path(name_or_path):
+    if is_path(name_or_path):
         from pathlib import Path
 
         from tiniscript.robots.reader import read
 
-        return read(_text_of(name_or_path), Path(name_or_path).stem)
+        return read(text_of(name_or_path), Path(name_or_path).stem)
 
     from tiniscript.robots.refusals import shown
     from tiniscript.words import nearest
@@ -48,7 +48,8 @@ def load(name_or_path: str) -> Robot:
     )
 
 
-def _is_path(text: str) -> bool:
+def is_path(text: str) -> bool:
+    """Whether a text names a file, and not one of the shipped things."""
     separators = os.sep + (os.altsep or "") + "/"
     return (
         text.lower().endswith(".toml")
@@ -57,7 +58,8 @@ def _is_path(text: str) -> bool:
     )
 
 
-def _text_of(path: str) -> str:
+def text_of(path: str) -> str:
+    """Return what is in a file of at most FILE_BYTES bytes of UTF-8. Raises ProfileRefused."""
     from pathlib import Path
 
     from tiniscript.robots.refusals import shown

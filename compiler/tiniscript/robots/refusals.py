@@ -5,6 +5,8 @@ Knows every code that ProfileRefused may carry. Does not know when one is given.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from tiniscript.robots.profile import LANGUAGES, ProfileRefused
 
 SHOWN_CHARACTERS = 40
@@ -169,6 +171,10 @@ WORDS_FOR: dict[str, dict[str, dict[str, str]]] = {
         "yes_no": {"en": "true or false", "es": "true o false"},
         "list": {"en": "a list", "es": "una lista"},
         "pair": {"en": "two numbers, [low, high]", "es": "dos números, [menor, mayor]"},
+        "pairs": {
+            "en": "a list of points, [[20, 50], [80, 50]]",
+            "es": "una lista de puntos, [[20, 50], [80, 50]]",
+        },
         "table": {"en": "a table, [name]", "es": "una tabla, [nombre]"},
         "tables": {"en": "a list of tables, [[name]]", "es": "una lista de tablas, [[nombre]]"},
         "date": {"en": "a date or a time", "es": "una fecha o una hora"},
@@ -187,8 +193,14 @@ WORDS_FOR: dict[str, dict[str, dict[str, str]]] = {
 }
 
 
-def describe(refused: ProfileRefused, lang: str) -> list[str]:
-    """Return a sentence for each reason, in `lang` of LANGUAGES (English for any other)."""
+def describe(
+    refused: ProfileRefused, lang: str, own: Mapping[str, Mapping[str, str]] | None = None
+) -> list[str]:
+    """Return a sentence for each reason, in `lang` of LANGUAGES (English for any other).
+
+    `own` are sentences that go before these: another file than a profile has some.
+    """
+    known_sentences = {**SENTENCES, **(own or {})}
     lang = lang if lang in LANGUAGES else LANGUAGES[0]
     sentences = []
     for code, values in refused.reasons:
@@ -200,7 +212,7 @@ def describe(refused: ProfileRefused, lang: str) -> list[str]:
                 key: known[word][lang] if word in known else word for key, word in words.items()
             }
         key = f"{code}/near" if words.get("near") else code
-        sentences.append(SENTENCES[key][lang].format_map(words))
+        sentences.append(known_sentences[key][lang].format_map(words))
     return sentences
 
 

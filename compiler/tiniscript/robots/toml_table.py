@@ -118,6 +118,21 @@ class Table:
         first, second = (self._thousandths(key, each, LOWEST, HIGHEST) for each in value)
         return first, second
 
+    def pairs(self, key: str, low: int, high: int, example: str) -> list[tuple[int, int]] | None:
+        """Return the thousandths of `[[x, y], ...]`, each from `low` to `high`; None: no list."""
+        value = self.get(key, example)
+        if not isinstance(value, list) or not all(
+            isinstance(each, list) and len(each) == 2 for each in value
+        ):
+            self.expect("pairs", key, value)
+            return None
+        found = []
+        for number, (x, y) in enumerate(value, start=1):
+            place = f"{key}[{number}]"
+            first = self._thousandths(place, x, low, high)
+            found.append((first, self._thousandths(place, y, low, high)))
+        return found
+
     def table(self, key: str, example: str = "") -> Table:
         """Return the table at `key`; what is not there, or no table, is read as an empty one.
 

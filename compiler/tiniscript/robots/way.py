@@ -30,7 +30,7 @@ class Pose(NamedTuple):
 START = Pose(0.0, 0.0, 0.0)
 
 
-def moved(body: Body, pose: Pose, left: int, right: int, duration_ms: float) -> Pose:
+def moved(body: Body, pose: Pose, left: float, right: float, duration_ms: float) -> Pose:
     """Return the pose after the motors were set to `left` and `right` percent for so long."""
     left_cm, right_cm = (
         body.speed_cm_s * percent / 100 * duration_ms / 1000 for percent in (left, right)
@@ -47,7 +47,7 @@ def moved(body: Body, pose: Pose, left: int, right: int, duration_ms: float) -> 
     )
 
 
-def points(body: Body, pose: Pose, left: int, right: int, duration_ms: float) -> list[Pose]:
+def points(body: Body, pose: Pose, left: float, right: float, duration_ms: float) -> list[Pose]:
     """Return poses along the way, without its beginning; straight lines join them.
 
     A straight line and a turn on the spot need only their end. An arc has a point at least

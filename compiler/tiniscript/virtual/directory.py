@@ -1,0 +1,104 @@
+"""Which virtual robots of this user are running: a small file for each, in the user's cache.
+
+A robot that has ended without taking its file along is not believed: nobody listens on its port.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import socket
+import sys
+from pathlib import Path
+from typing import NamedTuple
+
+from tiniscript.virtual.guests import LOCAL
+
+PREFIX = f"socket://{LOCAL}:"
+
+
+class Running(NamedTuple):
+    """A robot: its port's address, its profile's name, its world's, and what it is called.
+
+    `terminal` is the path of its pseudo-terminal, if it has one.
+    """
+
+    address: str
+    robot: str
+    world: str
+    name: str
+    terminal: str
+
+
+def announce(running: Running) -> Path | None:
+    """Let others find a robot. Return the file, or None where it cannot be written."""
+    port = running.address.removeprefix(PREFIX)
+    path = _folder() / f"{port}.json"
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        new = path.with_suffix(f".{os.getpid()}")
+        new.write_text(json.dumps(running._asdict()), encoding="utf-8")
+        new.replace(path)
+    except (OSError, ValueError):
+        return None
+    return path
+
+
+def withdraw(path: Path | None) -> None:
+    if path is not None:
+        with contextlib.suppress(OSError):
+            path.unlink()
+
+
+def running() -> list[Running]:
+    """Return the robots that are there. Opens none of them: that would be a visit."""
+    found = []
+    try:
+        paths = sorted(_folder().glob("*.json"))
+    except OSError:
+        return []
+    for path in paths:
+        robot = _read(path)
+        if robot is not None and _is_listening(robot.address):
+            found.append(robot)
+        else:
+            withdraw(path)
+    return found
+
+
+def is_virtual(port: str) -> bool:
+    """Whether a port is a virtual robot's that runs."""
+    return any(port in (each.address, each.terminal) for each in running())
+
+
+def _read(path: Path) -> Running | None:
+    try:
+        fields = json.loads(path.read_text(encoding="utf-8"))
+        robot = Running(*(fields[key] for key in Running._fields))
+    except (OSError, ValueError, TypeError, KeyError, RecursionError):
+        return None
+    if not all(isinstance(each, str) and each.isprintable() for each in robot):
+        return None
+    return robot if robot.address == f"{PREFIX}{path.stem}" else None
+
+
+def _is_listening(address: str) -> bool:
+    """Whether the port is taken: then it cannot be had."""
+    digits = address.removeprefix(PREFIX)
+    if not (digits.isascii() and digits.isdigit() and 0 < int(digits[:6]) < 65536):
+        return False
+    with socket.socket() as probe:
+        if sys.platform != "win32":  # there it would take a port away from its owner
+            probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            probe.bind((LOCAL, int(digits)))
+        except OSError:
+            return True
+    return False
+
+
+def _folder() -> Path:
+    from platformdirs import user_cache_path
+
+    return user_cache_path("tiniscript", appauthor=False) / "robots"

@@ -1,0 +1,212 @@
+"""Where a robot gets to among obstacles: it slides along what it touches, and goes through nothing.
+
+Knows the geometry of bodies and walls. Knows no clock, no sensors and no friction. What it returns
+depends on when the motors were set, not on how often it is asked.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from tiniscript.robots.profile import Body
+from tiniscript.robots.way import Pose, moved, points
+from tiniscript.virtual.geometry import Point, Segment, between, distance
+
+TOUCH_CM = 0.3  # nearer than that is touching
+STEP_MS = 10.0  # of a robot that touches something
+STRIDE_MS = 100.0  # after which a place is kept
+KEPT = 20_000  # corners of the way; then every other one goes
+PUSHES = 6  # at one place, out of what is touched there
+
+
+class Contact(NamedTuple):
+    """What is touched, or nearest: how far it is, and from where to where."""
+
+    gap_cm: float
+    ours: Point  # on the middle line of the body
+    theirs: Point
+
+
+class Hull:
+    """The outline of a robot: all that is `radius_cm` from a line along its middle.
+
+    As wide as the body; as long as the body around the wheels, and further to the front or to
+    the back where a sensor sits there.
+    """
+
+    def __init__(self, body: Body) -> None:
+        places = [place.x_cm for place in body.places.values()]
+        front = max([body.length_cm / 2, *places])
+        back = min([-body.length_cm / 2, *places])
+        self.radius_cm = min(body.width_cm, body.length_cm) / 2
+        self.front_cm = front - self.radius_cm
+        self.back_cm = min(back + self.radius_cm, self.front_cm)
+        self.reach_cm = max(front, -back)  # of the point that is farthest from the wheels
+
+    def spine(self, pose: Pose) -> Segment:
+        along = math.radians(pose.heading)
+        cos, sin = math.cos(along), math.sin(along)
+        return Segment(
+            Point(pose.x_cm + self.back_cm * cos, pose.y_cm + self.back_cm * sin),
+            Point(pose.x_cm + self.front_cm * cos, pose.y_cm + self.front_cm * sin),
+        )
+
+    def contact(self, pose: Pose, obstacles: Sequence[Segment]) -> Contact | None:
+        """Return the nearest obstacle, or None where there is none at all."""
+        spine = self.spine(pose)
+        middle_x, middle_y = (spine.a.x + spine.b.x) / 2, (spine.a.y + spine.b.y) / 2
+        half = (self.front_cm - self.back_cm) / 2
+        best: Contact | None = None
+        for obstacle in obstacles:
+            # far away is known more quickly
+            least = distance(obstacle, middle_x, middle_y) - half - self.radius_cm
+            if best is not None and least >= best.gap_cm:
+                continue
+            apart, ours, theirs = between(spine, obstacle)
+            gap = apart - self.radius_cm
+            if best is None or gap < best.gap_cm:
+                best = Contact(gap, ours, theirs)
+        return best
+
+    def outline(self, pose: Pose, corners: int = 24) -> list[Point]:
+        """Return points around the robot, for a picture."""
+        back, front = self.spine(pose)
+        found = []
+        for k in range(corners):
+            middle = front if k < corners // 2 else back
+            angle = math.radians(pose.heading - 90) + math.pi * (
+                k / (corners // 2 - 1) if k < corners // 2 else (k - 1) / (corners // 2 - 1)
+            )
+            found.append(
+                Point(
+                    middle.x + self.radius_cm * math.cos(angle),
+                    middle.y + self.radius_cm * math.sin(angle),
+                )
+            )
+        return found
+
+
+class Driving:
+    """A body that drives from `start`; times only go forward."""
+
+    def __init__(self, body: Body, obstacles: Sequence[Segment], start: Pose) -> None:
+        self.body = body
+        self.hull = Hull(body)
+        self.obstacles = obstacles
+        self.left = self.right = 0.0  # percent of full speed that the wheels really make
+        self.corners = [start]  # straight lines join them; they show the way
+        self.bumps = 0  # how often it has begun to touch something
+        self.driven_cm = 0.0
+        self._pose = start
+        self._kept_ms = 0.0  # when it was there
+        self._is_touching = self.is_touching(start)
+
+    def is_blocked(self) -> bool:
+        """Whether the robot is inside an obstacle."""
+        found = self.hull.contact(self._pose, self.obstacles)
+        return found is not None and found.gap_cm < 0
+
+    def is_touching(self, pose: Pose) -> bool:
+        found = self.hull.contact(pose, self.obstacles)
+        return found is not None and found.gap_cm < TOUCH_CM
+
+    def set_motors(self, now_ms: float, left: float, right: float) -> None:
+        self.go_on(now_ms)
+        self.left, self.right = left, right
+
+    def go_on(self, now_ms: float) -> Pose:
+        """Return where the robot is, and go on from there."""
+        while self._kept_ms + STRIDE_MS <= now_ms:
+            self._keep(STRIDE_MS)
+        if self._kept_ms < now_ms:
+            self._keep(now_ms - self._kept_ms)
+        return self._pose
+
+    def look(self, now_ms: float) -> Pose:
+        """Return where the robot is. This changes nothing of where it gets to."""
+        while self._kept_ms + STRIDE_MS <= now_ms:
+            self._keep(STRIDE_MS)
+        return self._driven(self._pose, now_ms - self._kept_ms)[-1]
+
+    def _keep(self, duration_ms: float) -> None:
+        way = self._driven(self._pose, duration_ms)
+        self._kept_ms += duration_ms
+        before = self._pose
+        self._pose = way[-1]
+        if not self.left and not self.right:
+            return
+        for pose in way:
+            self.driven_cm += math.dist(pose[:2], before[:2])
+            before = pose
+            last = self.corners[-1]
+            if len(self.corners) > 1 and self._is_straight(self.corners[-2], last, pose):
+                self.corners[-1] = pose
+            elif pose[:2] != last[:2]:
+                self.corners.append(pose)
+        if len(self.corners) > KEPT:
+            self.corners = [*self.corners[:-1:2], self.corners[-1]]
+        is_touching = self.is_touching(self._pose)
+        self.bumps += is_touching and not self._is_touching
+        self._is_touching = is_touching
+
+    @staticmethod
+    def _is_straight(first: Pose, second: Pose, third: Pose) -> bool:
+        """Whether a corner between two others is not to be seen: the way there goes straight on."""
+        return (
+            abs(
+                (second.x_cm - first.x_cm) * (third.y_cm - second.y_cm)
+                - (second.y_cm - first.y_cm) * (third.x_cm - second.x_cm)
+            )
+            < 1e-6
+            and (second.x_cm - first.x_cm) * (third.x_cm - second.x_cm)
+            + (second.y_cm - first.y_cm) * (third.y_cm - second.y_cm)
+            >= 0
+        )
+
+    def _driven(self, pose: Pose, duration_ms: float) -> list[Pose]:
+        """Return points of the way from a pose, with its end; straight lines join them."""
+        if (not self.left and not self.right) or duration_ms <= 0:
+            return [pose]
+        speed = self._fastest_cm_ms()
+        way: list[Pose] = []
+        left_ms = duration_ms
+        while left_ms > 0:
+            contact = self.hull.contact(pose, self.obstacles)
+            free_ms = left_ms if contact is None else max(0.0, contact.gap_cm) / speed
+            step_ms = min(left_ms, max(free_ms, STEP_MS))
+            if free_ms >= step_ms:
+                way += points(self.body, pose, self.left, self.right, step_ms)
+            else:
+                way.append(
+                    self._pushed(pose, moved(self.body, pose, self.left, self.right, step_ms))
+                )
+            pose = way[-1]
+            left_ms -= step_ms
+        return way
+
+    def _fastest_cm_ms(self) -> float:
+        """Return how fast the fastest point of the body can be."""
+        full = self.body.speed_cm_s / 100 / 1000
+        ahead = abs(self.left + self.right) / 2 * full
+        turning = abs(self.right - self.left) * full / self.body.wheel_base_cm
+        return ahead + turning * self.hull.reach_cm
+
+    def _pushed(self, before: Pose, pose: Pose) -> Pose:
+        """Return where a robot comes to that wants to be at `pose`: out of every obstacle."""
+        for _ in range(PUSHES):
+            contact = self.hull.contact(pose, self.obstacles)
+            if contact is None or contact.gap_cm >= 0:
+                return pose
+            apart = math.dist(contact.ours, contact.theirs)
+            if apart < self.hull.radius_cm / 2:  # deeper than a step leads: it was forced in
+                return before
+            scale = -contact.gap_cm / apart
+            pose = Pose(
+                pose.x_cm + (contact.ours.x - contact.theirs.x) * scale,
+                pose.y_cm + (contact.ours.y - contact.theirs.y) * scale,
+                pose.heading,
+            )
+        contact = self.hull.contact(pose, self.obstacles)
+        return pose if contact is None or contact.gap_cm > -1e-6 else before

@@ -1,0 +1,139 @@
+"""The robot's firmware, as the WebAssembly module `robot.wasm`: one instance is one power-on.
+
+Knows how to call the module (`vm_arduino/wasm/robot.cpp` is the other side). Does not know what a
+robot does in its world: a `Board` is told. Importing this fails where `wasmtime` is not
+installed, or cannot run on this computer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, NamedTuple, Protocol
+
+from wasmtime import Engine, Func, FuncType, Instance, Memory, Module, Store, ValType
+
+PATH = Path(__file__).with_name("robot.wasm")
+
+POWER_ON, RESET_BUTTON = 1, 2  # why it begins
+
+
+class Board(Protocol):
+    """What the firmware does; `now_ms` is since its power-on. Numbers are thousandths."""
+
+    def motors(self, now_ms: int, left: int, right: int) -> None: ...
+    def off(self, now_ms: int) -> None: ...
+    def read(self, now_ms: int, sensor: int) -> int: ...
+    def beep(self, now_ms: int, hertz: int, duration_ms: int) -> None: ...
+    def show(self, now_ms: int, value: int, is_yes_no: int) -> None: ...
+    def set(self, now_ms: int, actuator: int, value: int) -> None: ...
+    def stop(self, now_ms: int) -> None: ...
+    def release(self, now_ms: int) -> None: ...
+    def light(self, is_on: int) -> None: ...
+    def finished(self, now_ms: int) -> None: ...
+    def faulted(self, now_ms: int) -> None: ...
+
+
+class Circumstances(NamedTuple):
+    """What a firmware is switched on with.
+
+    `byte_us` is how long a byte takes on the line, both ways (0: none); `eeprom_us` how long one
+    takes in the memory that keeps programs.
+    """
+
+    kit: int
+    sensors: int
+    actuators: int
+    reset: int
+    chance: int
+    max_run_ms: int
+    byte_us: int
+    eeprom_us: int
+
+
+class Firmware:
+    """The firmware from power-on on. `memory` is what its EEPROM holds; None: it is new."""
+
+    def __init__(self, board: Board, what: Circumstances, memory: bytes | None = None) -> None:
+        self._store = Store(_engine())
+        module = _module()
+        functions = self._board_functions(board)
+        imports = [functions[each.name or ""] for each in module.imports]
+        exports = Instance(self._store, module, imports).exports(self._store)
+        self._functions: dict[str, Func] = {}
+        for each in module.exports:
+            found = exports[each.name]
+            if isinstance(found, Func):
+                self._functions[each.name] = found
+        found = exports["memory"]
+        assert isinstance(found, Memory)
+        self._memory = found
+        self._inbox, self._outbox = self.call("inbox"), self.call("outbox")
+        self._room = self.call("box_bytes")
+        self._eeprom, size = self.call("memory_at"), self.call("memory_bytes")
+        self.memory_bytes = size
+        self._waiting = bytearray()  # bytes behind those in the inbox
+        whole = ((memory or b"") + bytes(size).replace(b"\0", b"\xff"))[:size]
+        self._memory.write(self._store, whole, self._eeprom)
+        self.call("begin", *what)
+
+    def run(self, until_us: int, data: bytes = b"") -> bytes:
+        """Go on up to a time; bytes arrive from now on. Return what is sent meanwhile."""
+        self._waiting += data
+        sent = bytearray()
+        while True:
+            if self._waiting and not self.call("unheard"):
+                part = bytes(self._waiting[: self._room])
+                del self._waiting[: self._room]
+                self._memory.write(self._store, part, self._inbox)
+                self.call("put", len(part))
+            count = self.call("run", until_us, int(bool(self._waiting)))
+            if count:
+                sent += self._memory.read(self._store, self._outbox, self._outbox + count)
+            if self.call("now_us") >= until_us:
+                return bytes(sent)
+
+    @property
+    def unheard(self) -> int:
+        return len(self._waiting) + self.call("unheard")
+
+    def memory(self) -> bytes:
+        """Return what the EEPROM holds."""
+        end = self._eeprom + self.memory_bytes
+        return bytes(self._memory.read(self._store, self._eeprom, end))
+
+    def call(self, name: str, *values: int) -> int:
+        return int(self._functions[name](self._store, *values) or 0)
+
+    def _board_functions(self, board: Board) -> dict[str, Func]:
+        i32 = ValType.i32()
+        table: dict[str, tuple[int, int, Callable[..., Any]]] = {
+            # how many numbers it takes and gives
+            "motors": (3, 0, board.motors),
+            "off": (1, 0, board.off),
+            "read": (2, 1, board.read),
+            "beep": (3, 0, board.beep),
+            "show": (3, 0, board.show),
+            "set": (3, 0, board.set),
+            "stop": (1, 0, board.stop),
+            "release": (1, 0, board.release),
+            "light": (1, 0, board.light),
+            "finished": (1, 0, board.finished),
+            "faulted": (1, 0, board.faulted),
+        }
+        return {
+            name: Func(self._store, FuncType([i32] * takes, [i32] * gives), function)
+            for name, (takes, gives, function) in table.items()
+        }
+
+
+@lru_cache(maxsize=1)
+def _engine() -> Engine:
+    return Engine()
+
+
+@lru_cache(maxsize=1)
+def _module() -> Module:
+    """Compiling it takes a moment: once for each process."""
+    return Module(_engine(), PATH.read_bytes())

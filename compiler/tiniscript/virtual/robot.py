@@ -1,0 +1,239 @@
+"""A robot in its world: its firmware, its body and its sensors.
+
+Time and bytes are arguments: knows no clock and no port. The same settings, bytes and times give
+the same run.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from random import Random
+from typing import NamedTuple
+
+from tiniscript.bytecode import FAULTS
+from tiniscript.robots.profile import Robot
+from tiniscript.robots.way import Pose
+from tiniscript.run import Event, TracedRobot
+from tiniscript.virtual.driving import Driving
+from tiniscript.virtual.module import POWER_ON, RESET_BUTTON, Circumstances, Firmware
+from tiniscript.virtual.sensing import Sensing
+from tiniscript.virtual.world import World, WorldRefused
+
+__all__ = ("POWER_ON", "RESET_BUTTON", "Settings", "VirtualRobot")
+
+_FAULT_NAMES = {number: name for number, name, _ in FAULTS}
+BITS = 10  # of a byte on the line
+EVENTS = 100_000  # that are kept until somebody takes them
+_CLOCK = 1 << 32
+
+
+class Settings(NamedTuple):
+    """What is not as in the profile.
+
+    `seed` is for all that is left to chance. `noise` is a part: 0.05 is 5 %. `motors` are percent
+    of the speed that each should have. `baud` of 0: a byte takes no time; None: as in the profile.
+    `eeprom_us` is what a byte takes that is saved. `told` are readings of single sensors.
+    """
+
+    seed: int = 1
+    noise: float = 0.0
+    motors: tuple[float, float] = (100.0, 100.0)
+    baud: int | None = None
+    eeprom_us: int = 3400
+    told: Mapping[int, Sequence[int]] = {}
+
+
+PLAIN = Settings()
+
+
+class VirtualRobot:
+    """A robot that is switched on, and stands at the start of its world.
+
+    Raises WorldRefused where it does not fit there.
+    """
+
+    def __init__(
+        self,
+        profile: Robot,
+        world: World,
+        settings: Settings = PLAIN,
+        memory: bytes | None = None,
+    ) -> None:
+        self.profile = profile
+        self.world = world
+        self.settings = settings
+        self.now_ms = 0
+        self.chance = Random(settings.seed)
+        self.driving = Driving(profile.body, world.obstacles(), world.start)
+        if self.driving.is_blocked():
+            place = f"x_cm = {world.start.x_cm:g}, y_cm = {world.start.y_cm:g}"
+            raise WorldRefused(("start_blocked", {"path": "start", "place": place}))
+        self.sensing = Sensing(profile, world, settings.noise, self.chance, settings.told)
+        self.is_running = False
+        self.is_lit = False  # the light says that the button would start something
+        self.fault = ""  # that has ended the last program
+        self._traced = TracedRobot(profile.kit, self._noticed)
+        self._ended = ""  # how the program has ended, as far as it is known
+        self._began_ms = 0  # when it was switched on
+        self._firmware = self._switched_on(POWER_ON, memory)
+
+    # -- what happens to it -----------------------------------------------------------------------
+
+    def step(self, now_ms: int, data: bytes = b"") -> bytes:
+        """Go on up to a time; bytes arrive from now on. Return what the robot sends meanwhile."""
+        sent = self._firmware.run((now_ms - self._began_ms) * 1000, data)
+        self.now_ms = now_ms
+        self._settle()
+        return sent
+
+    def press(self) -> None:
+        """The start button goes down."""
+        self._firmware.call("press")
+        self._settle()
+
+    def let_go(self) -> None:
+        """The start button comes up."""
+        self._firmware.call("let_go")
+        self._settle()
+
+    def power_cycle(self, reset: int = POWER_ON) -> None:
+        """Off and on: it stands where it stood, and knows what it has saved."""
+        memory = self._firmware.memory()
+        self.driving.set_motors(self.now_ms, 0, 0)
+        if self.is_running:
+            self._say("OFF")
+        self.is_running = False
+        self._ended = ""
+        self._firmware = self._switched_on(reset, memory)
+
+    def _switched_on(self, reset: int, memory: bytes | None) -> Firmware:
+        self._began_ms = self.now_ms
+        kit, board = self.profile.kit, self.profile.board
+        baud = board.baud if self.settings.baud is None else self.settings.baud
+        return Firmware(
+            self,
+            Circumstances(
+                kit=kit.fingerprint,
+                sensors=len(kit.sensors),
+                actuators=len(kit.actuators),
+                reset=reset,
+                chance=self.chance.getrandbits(32),
+                max_run_ms=board.max_run_seconds * 1000,
+                byte_us=round(BITS * 1_000_000 / baud) if baud else 0,
+                eeprom_us=self.settings.eeprom_us,
+            ),
+            memory,
+        )
+
+    # -- what it does -----------------------------------------------------------------------------
+
+    def take_events(self) -> list[Event]:
+        """Return what it has done since the last time: a run's events, START, STOP and OFF."""
+        found, self._traced.events = self._traced.events, []
+        return found
+
+    @property
+    def pose(self) -> Pose:
+        return self.driving.look(self.now_ms)
+
+    @property
+    def unheard(self) -> int:
+        """How many bytes that have come to it are still to be heard."""
+        return self._firmware.unheard
+
+    @property
+    def memory(self) -> bytes:
+        """What its EEPROM holds."""
+        return self._firmware.memory()
+
+    def motors(self, now_ms: int, left: int, right: int) -> None:
+        self._set_motors(now_ms, left, right)
+        self._traced.motors(left, right)
+
+    def off(self, now_ms: int) -> None:
+        pass  # `stop` says it
+
+    def read(self, now_ms: int, sensor: int) -> int:
+        self._at(now_ms)
+        return self._traced.read(sensor) or 0
+
+    def beep(self, now_ms: int, hertz: int, duration_ms: int) -> None:
+        self._at(now_ms)
+        self._traced.beep(hertz, duration_ms)
+
+    def show(self, now_ms: int, value: int, is_yes_no: int) -> None:
+        self._at(now_ms)
+        value = (value + _CLOCK // 2) % _CLOCK - _CLOCK // 2
+        self._traced.show(value, bool(is_yes_no))
+
+    def set(self, now_ms: int, actuator: int, value: int) -> None:
+        self._at(now_ms)
+        self._traced.set(actuator, value)
+
+    def stop(self, now_ms: int) -> None:
+        self._set_motors(now_ms, 0, 0)
+        if self.is_running:
+            self.is_running = False
+            self._ended = "STOP"
+
+    def release(self, now_ms: int) -> None:
+        self._settle()
+        self._at(now_ms)
+        self.is_running = True
+        self.fault = ""
+        self._say("START")
+
+    def light(self, is_on: int) -> None:
+        self.is_lit = bool(is_on)
+
+    def finished(self, now_ms: int) -> None:
+        self._ended = "DONE"
+
+    def faulted(self, now_ms: int) -> None:
+        self._ended = "FAULT"
+
+    # ---------------------------------------------------------------------------------------------
+
+    def _at(self, now_ms: int) -> None:
+        self.now_ms = self._began_ms + now_ms
+        self._traced.now_ms = self.now_ms
+
+    def _set_motors(self, now_ms: int, left: int, right: int) -> None:
+        self._at(now_ms)
+        made = []
+        for power, percent in zip((left, right), self.settings.motors, strict=True):
+            off = self.chance.gauss(0.0, self.settings.noise) if self.settings.noise else 0.0
+            made.append(power * percent / 100 * (1 + off))
+        self.driving.set_motors(self.now_ms, *made)
+
+    def _noticed(self, sensor: int) -> int:
+        return self.sensing.read(sensor, self.driving.go_on(self.now_ms))
+
+    def _settle(self) -> None:
+        """Say how a program has ended: only now is it known whether by itself."""
+        if not self._ended:
+            return
+        what, self._ended = self._ended, ""
+        if what == "FAULT":
+            number = self._firmware.call("fault")
+            self.fault = _FAULT_NAMES.get(number) or _link_fault(number)
+            what = f"FAULT {self.fault}"
+        self._say(what)
+
+    def _say(self, text: str) -> None:
+        self._traced.say(text.partition(" ")[0], (), text)
+        if len(self._traced.events) > EVENTS:
+            del self._traced.events[: EVENTS // 2]
+
+    @property
+    def held(self) -> str:
+        """Where its program is: NOTHING, MEMORY, SAVING or STORED."""
+        from tiniscript.link.messages import SAVED
+
+        return SAVED[self._firmware.call("saved")][0]
+
+
+def _link_fault(number: int) -> str:
+    from tiniscript.link.messages import LINK_FAULTS
+
+    return next((name for code, name, _ in LINK_FAULTS if code == number), str(number))

@@ -1,0 +1,143 @@
+"""What the sensors of a robot say, from where it is in a world.
+
+Knows what light, distance, a line and a touch are to a sensor. Readings are thousandths, as a
+machine has them. A sensor that has no place in the robot's body says what it is told to.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from random import Random
+
+from tiniscript.kit import Device
+from tiniscript.robots.profile import Place, Robot
+from tiniscript.robots.way import Pose
+from tiniscript.thousandths import ONE
+from tiniscript.virtual.driving import TOUCH_CM, Hull
+from tiniscript.virtual.geometry import Point, Segment, crosses, distance, joined, seen
+from tiniscript.virtual.world import World
+
+NEAREST_CM, FARTHEST_CM = 2.0, 400.0  # of an HC-SR04
+CONE = math.radians(15)  # to both sides
+BUMPER = math.radians(60)  # to both sides
+ROOM_CELSIUS = 20_000
+LEVELS = 50  # a range of more steps than these has whole numbers
+
+
+class Sensing:
+    """The sensors of a robot in a world.
+
+    `noise` is how far a reading is off, of its range (of the distance itself, where that is what
+    is read), one time in three. `told` are readings for single sensors, by their number: each
+    takes the next one, the last one stays.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        world: World,
+        noise: float = 0.0,
+        chance: Random | None = None,
+        told: Mapping[int, Sequence[int]] | None = None,
+    ) -> None:
+        self.robot = robot
+        self.world = world
+        self.noise = noise
+        self.obstacles = world.obstacles()
+        self.lines = [(joined(list(line.points)), line.width_cm) for line in world.lines]
+        self.hull = Hull(robot.body)
+        self._chance = chance or Random(1)
+        self._told = {number: list(values) for number, values in (told or {}).items()}
+
+    def read(self, number: int, pose: Pose) -> int:
+        """Return what a sensor says to a robot that is at `pose`."""
+        told = self._told.get(number)
+        if told:
+            return told.pop(0) if len(told) > 1 else told[0]
+        return self._noticed(number, pose, self.noise)
+
+    def look(self, number: int, pose: Pose) -> int:
+        """Return what it would say, without noise. This changes nothing of what it will say."""
+        told = self._told.get(number)
+        return told[0] if told else self._noticed(number, pose, 0.0)
+
+    def _noticed(self, number: int, pose: Pose, noise: float) -> int:
+        device = self.robot.kit.sensors[number]
+        place = self.robot.body.places.get(device.name)
+        if place is None:
+            return _nothing(device)
+        return _in_range(device, self._found(device, place, pose, noise))
+
+    def _found(self, device: Device, place: Place, pose: Pose, noise: float) -> float:
+        """Return a reading in thousandths, which may be out of range."""
+        eye, heading = _stood(place, pose)
+        span = device.high - device.low
+        off = self._chance.gauss(0.0, noise) if noise else 0.0
+        if place.sees == "distance":
+            return round(self._distance_cm(eye, heading) * (1 + off), 1) * ONE
+        if place.sees == "light":
+            value = device.low + (self._light(eye, heading) + off) * span
+            return round(value / ONE) * ONE if span > LEVELS * ONE else value
+        is_there = self._is_black(eye) if place.sees == "line" else self._is_touched(place, pose)
+        return float(device.high if is_there else device.low)
+
+    def _distance_cm(self, eye: Point, heading: float) -> float:
+        found = [seen(each, eye, heading, CONE) for each in self.obstacles]
+        nearest = min((each for each in found if each is not None), default=FARTHEST_CM)
+        return min(max(nearest, NEAREST_CM), FARTHEST_CM)
+
+    def _light(self, eye: Point, heading: float) -> float:
+        """Return 0 to 1: lamps by their distance and angle, none through an obstacle."""
+        level = self.world.ambient
+        for lamp in self.world.lamps:
+            ray = Segment(eye, lamp.place)
+            if any(crosses(ray, each) for each in self.obstacles):
+                continue
+            away = math.dist(eye, lamp.place)
+            angle = math.atan2(lamp.place.y - eye.y, lamp.place.x - eye.x) - heading
+            facing = max(0.0, math.cos(angle)) if away else 1.0
+            level += facing / (1 + (away / lamp.reach_cm) ** 2)
+        return min(1.0, level)
+
+    def _is_black(self, eye: Point) -> bool:
+        return any(
+            distance(each, *eye) <= width_cm / 2
+            for segments, width_cm in self.lines
+            for each in segments
+        )
+
+    def _is_touched(self, place: Place, pose: Pose) -> bool:
+        """A bumper notices what the body touches on the side where it sits."""
+        contact = self.hull.contact(pose, self.obstacles)
+        if contact is None or contact.gap_cm >= TOUCH_CM:
+            return False
+        (_, _, heading), point = pose, contact.theirs
+        sits = math.atan2(place.y_cm, place.x_cm) if place.x_cm or place.y_cm else 0.0
+        side = math.atan2(point.y - contact.ours.y, point.x - contact.ours.x)
+        off = (side - sits - math.radians(heading) + math.pi) % (2 * math.pi) - math.pi
+        return abs(off) <= BUMPER
+
+
+def _stood(place: Place, pose: Pose) -> tuple[Point, float]:
+    """Return where a sensor is on the floor, and where it looks."""
+    along = math.radians(pose.heading)
+    cos, sin = math.cos(along), math.sin(along)
+    eye = Point(
+        pose.x_cm + place.x_cm * cos - place.y_cm * sin,
+        pose.y_cm + place.x_cm * sin + place.y_cm * cos,
+    )
+    return eye, along + math.radians(place.heading)
+
+
+def _nothing(device: Device) -> int:
+    """Return what a sensor says that notices nothing of this world."""
+    if device.is_yes_no:
+        return 0
+    if device.unit == "°C" and device.low <= ROOM_CELSIUS <= device.high:
+        return ROOM_CELSIUS
+    return round((device.low + device.high) / 2)
+
+
+def _in_range(device: Device, value: float) -> int:
+    return min(max(round(value), device.low), device.high)

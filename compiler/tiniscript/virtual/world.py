@@ -1,0 +1,62 @@
+"""What a world is once it is read: a floor with walls, boxes, black lines and lamps.
+
+Lengths are centimetres: x goes to the right and y up, from the lower left corner of the floor.
+Knows the shapes. Knows no TOML (`world_reader`), no files (`worlds`) and no robots.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from tiniscript.robots.profile import ProfileRefused
+from tiniscript.robots.way import Pose
+from tiniscript.virtual.geometry import Point, Segment, joined
+
+
+class WorldRefused(ProfileRefused):
+    """A world that cannot be used; its reasons are like those of a profile."""
+
+
+class Line(NamedTuple):
+    """A black line on the floor."""
+
+    points: tuple[Point, ...]
+    width_cm: float
+
+
+class Lamp(NamedTuple):
+    """A lamp. In the distance `reach_cm` a sensor that looks at it gives half of its range."""
+
+    place: Point
+    reach_cm: float
+
+
+class World(NamedTuple):
+    """A world. `walls` are rows of points, `boxes` corners; the robot begins at `start`.
+
+    `ambient` is what light there is without lamps, 0 to 1. `labels` has its name in each language.
+    """
+
+    name: str
+    labels: Mapping[str, str]
+    width_cm: float
+    height_cm: float
+    has_border: bool
+    start: Pose
+    walls: tuple[tuple[Point, ...], ...]
+    boxes: tuple[tuple[Point, ...], ...]
+    lines: tuple[Line, ...]
+    lamps: tuple[Lamp, ...]
+    ambient: float
+
+    def obstacles(self) -> list[Segment]:
+        """Return everything that a robot cannot drive through."""
+        found = [each for wall in self.walls for each in joined(list(wall))]
+        for box in self.boxes:
+            found += joined([*box, box[0]])
+        if self.has_border:
+            right, top = self.width_cm, self.height_cm
+            corners = [Point(0, 0), Point(right, 0), Point(right, top), Point(0, top)]
+            found += joined([*corners, corners[0]])
+        return found
