@@ -14,6 +14,7 @@ from tests.command import PROGRAM, TSC, Tsc, process
 from tiniscript.cli import VERBS, main
 from tiniscript.cli.link_texts import LINK_TEXTS
 from tiniscript.cli.texts import TEXTS
+from tiniscript.cli.virtual_texts import VIRTUAL_TEXTS
 from tiniscript.image import unpack
 
 # -- anything whatever --------------------------------------------------------------------------
@@ -108,8 +109,10 @@ def test_no_verb_and_no_such_verb(tsc: Tsc) -> None:
 def test_texts_have_the_same_gaps_in_both_languages() -> None:
     from string import Formatter
 
-    assert not set(TEXTS) & set(LINK_TEXTS)
-    for key, both in {**TEXTS, **LINK_TEXTS}.items():
+    tables = (TEXTS, LINK_TEXTS, VIRTUAL_TEXTS)
+    together = {key: both for table in tables for key, both in table.items()}
+    assert len(together) == sum(map(len, tables)), "no key is in two tables"
+    for key, both in together.items():
         gaps = [{name for _, name, _, _ in Formatter().parse(text) if name} for text in both]
         if key != "help":
             assert gaps[0] == gaps[1], key

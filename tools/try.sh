@@ -1,5 +1,6 @@
 #!/bin/sh
-# README's first command: sets TiniScript up in .venv and runs the paper's obstacle program.
+# README's first command: sets TiniScript up in .venv; then the paper's obstacle program is compiled,
+# uploaded to the virtual robot, and drives around the obstacles. Ends by itself.
 set -eu
 . "$(dirname "$0")/venv.sh"
 make_venv "[virtual]"
@@ -11,17 +12,14 @@ tsc() {
     echo
 }
 
-out=$(mktemp -d)
-trap 'rm -rf "$out"' EXIT
 say "The program: examples/obstacle.ts"
 cat examples/obstacle.ts
 echo
-tsc compile examples/obstacle.ts -o "$out/obstacle.bin"
-tsc show "$out/obstacle.bin"
-say "What the robot does: milliseconds, then what. It meets walls at 9 and at 7 cm."
-if [ -t 2 ] && [ -z "${CI:-}" ]; then
-    tsc run "$out/obstacle.bin" --sensor DISTANCE=50,9,50,30,7,60 --max-time 10 --show
+if [ -t 1 ] && [ -t 2 ] && [ -z "${CI:-}" ]; then
+    say "For 30 seconds a virtual robot does it here. Ctrl-C stops it earlier."
+    tsc upload examples/obstacle.ts --virtual --for 30 --plot way.png
 else
-    tsc run "$out/obstacle.bin" --sensor DISTANCE=50,9,50,30,7,60 --max-time 10
+    tsc upload examples/obstacle.ts --virtual --for 30 --hurry 20 --plot way.png
 fi
-say "Now yours:  . .venv/bin/activate   and   tsc run -e 'SI|F(2, 80)'"
+say "Its way is drawn in way.png, in this folder."
+say "Now yours:  . .venv/bin/activate   and   tsc upload -e 'SI|F(2, 80)' --virtual"

@@ -30,6 +30,7 @@ VERBS = {
     "fetch": "fetching",
     "name": "naming",
     "trim": "trimming",
+    "robot": "hosting",
 }
 
 

@@ -41,6 +41,8 @@ class Attendant:
         try:
             while True:
                 found = self.connection.line.event()
+                if self.connection.is_time_over:
+                    return self._stop_in_time()
                 if found is None:
                     continue
                 time_ms, event = found
@@ -53,6 +55,14 @@ class Attendant:
                     return code
         except Gone:
             raise self.connection.gone() from None
+
+    def _stop_in_time(self) -> int:
+        """Stop a virtual robot whose time is over."""
+        if not confirmed(self.connection.line):
+            raise Trouble(3, "not_confirmed", port=shown(self.connection.port))
+        language = self.connection.language
+        self.teller.say(0, "TIME_OVER", "", text("time_over", language))
+        return DONE
 
     def attend_or_stop(self, run: int) -> int:
         """The same; Ctrl-C stops the robot first."""
@@ -84,6 +94,8 @@ def _end(event: Event, run: int) -> int | None:
 
 def stop_and_say(connection: Connection) -> int:
     """Stop the robot after Ctrl-C, and say whether it has confirmed; return the exit code."""
+    if connection.company is not None:
+        connection.company.unwatch()
     print(file=sys.stderr)  # the terminal has written ^C
     if confirmed(connection.line):
         print(text("robot_stopped", connection.language), file=sys.stderr)

@@ -18,15 +18,20 @@ from tiniscript.cli.texts import text
 from tiniscript.cli.trouble import Trouble
 
 if TYPE_CHECKING:
+    from tiniscript.cli.telling import Teller
+    from tiniscript.cli.virtual_company import Company
     from tiniscript.link.errands import Reply
     from tiniscript.link.errands import Robot as Card
     from tiniscript.link.line import Line
     from tiniscript.link.ports import PortTrouble
     from tiniscript.link.session import Session, Task
+    from tiniscript.maps import Map
     from tiniscript.robots.profile import Robot
 
 ANSWER_MS = 6000  # for which a robot is asked who it is: an Uno that was reset takes 1.4 s
 PATIENCE_MS = 6000  # for which one that has answered may be silent, or busy with saving
+PSEUDO = "/dev/"  # where pseudo-terminals are
+VIRTUAL = ""  # no port: a virtual robot that this command brings along
 SLOWEST_BAUD, FASTEST_BAUD = 300, 2_000_000
 
 
@@ -34,6 +39,7 @@ def takes_port(parser: Options) -> None:
     """Add what every verb that talks to a robot has."""
     parser.add_argument("--port")
     parser.add_argument("--baud")
+    parser.add_argument("--virtual", action="store_true")
 
 
 def takes_robot(parser: Options) -> None:
@@ -59,14 +65,45 @@ class Connection:
         baud = baud_of(options, robot, language)
         self.language = language
         self.profile = robot
-        self.port = _chosen(options.port, language)
-        self.line = opened_line(self.port, baud, robot)
+        self.company: Company | None = None  # a virtual robot that is here for this command
+        found = _chosen(options, language)
+        if found == VIRTUAL:
+            from tiniscript.cli.virtual_company import Company
+
+            self.company = Company(options, robot, language)
+            found = self.company.port
+        self.port = found
+        try:
+            self.line = opened_line(self.port, baud, robot)
+        except BaseException:
+            self._end_company()
+            raise
 
     def __enter__(self) -> Connection:
         return self
 
     def __exit__(self, *_: object) -> None:
         self.line.close()
+        self._end_company()
+
+    @property
+    def is_time_over(self) -> bool:
+        """Whether the command has to end, because it was told so."""
+        return self.company is not None and self.company.is_time_over
+
+    def teller(self, is_json: bool = False, places: Map | None = None) -> Teller:
+        """Return who prints events: around the picture of a virtual robot that is drawn here."""
+        from tiniscript.cli.telling import Teller
+
+        if self.company is None:
+            return Teller(self.language, is_json, places=places)
+        return Teller(
+            self.language, is_json, places=places, out=self.company.say, err=self.company.complain
+        )
+
+    def _end_company(self) -> None:
+        if self.company is not None:
+            self.company.close()
 
     def meet(self) -> Card:
         """Ask the robot who it is, until it answers. Raises Trouble where none does."""
@@ -74,10 +111,21 @@ class Connection:
         card = self.line.session.robot
         if reply.status or card is None:
             raise self.trouble(reply)
-        from tiniscript.link import remembered
-
-        remembered.remember(self.port, card.name)
+        self.remember(card.name)
         return card
+
+    def remember(self, name: str) -> None:
+        """Keep the port for the next time, and what the robot on it is called."""
+        from tiniscript.link import ports, remembered
+
+        if self.company is not None:
+            return  # it has no next time
+        if ports.is_address(self.port) or self.port.startswith(PSEUDO):
+            from tiniscript.virtual import directory
+
+            if directory.is_virtual(self.port):
+                return
+        remembered.remember(self.port, name)
 
     @property
     def card(self) -> Card:
@@ -145,6 +193,8 @@ class Connection:
         return f"{said} {advice}".strip()
 
     def gone(self) -> Trouble:
+        if self.line.heard and self.line.session.robot is None:  # said so, and hung up
+            return Trouble(3, "port_busy", port=shown(self.port))
         return Trouble(3, "port_gone", port=shown(self.port))
 
 
@@ -194,11 +244,24 @@ def robot_of_kit(kit: int) -> str | None:
     return found(kit)
 
 
-def _chosen(port: str | None, language: str) -> str:
+def _chosen(options: Namespace, language: str) -> str:
     """Return the port of `--port`, else the last used, else the one that the person chooses.
 
-    Never one that merely answers: it may be another group's robot.
+    Never one that merely answers: it may be another group's robot. A virtual robot that runs here
+    is this person's own. VIRTUAL: one that the command brings along.
     """
+    port: str | None = options.port
+    can_bring = hasattr(options, "world")
+    if options.virtual:
+        if port is not None:
+            raise Trouble(2, "virtual_and_port")
+        from tiniscript.cli.virtual_company import running_address
+
+        return running_address(options) or VIRTUAL
+    if can_bring:
+        from tiniscript.cli.virtual_options import refuse_real
+
+        refuse_real(options)
     if port is not None:
         if not port.strip() or not port.isprintable():
             raise Trouble(2, "no_such_port", found=shown(port) or "''")
@@ -208,14 +271,19 @@ def _chosen(port: str | None, language: str) -> str:
     last = remembered.known().last
     if last is not None and ports.is_there(last):
         return last
+    from tiniscript.virtual import directory
+
+    virtual = directory.running()
+    if len(virtual) == 1:
+        return virtual[0].address
     if not (sys.stdin.isatty() and sys.stderr.isatty()):
         if last is not None:
             raise Trouble(3, "last_port_missing", port=shown(last))
-        raise Trouble(3, "which_port")
-    return _asked(language)
+        raise Trouble(3, "which_port_or_virtual" if can_bring else "which_port")
+    return _asked(language, can_bring)
 
 
-def _asked(language: str) -> str:
+def _asked(language: str, can_bring: bool) -> str:
     """Let the person choose a port."""
     from tiniscript.link import ports, remembered
 
@@ -224,6 +292,11 @@ def _asked(language: str) -> str:
     choices = [each.port for each in found]
     choices += [port for port in names if port not in choices and ports.is_address(port)]
     if not choices:
+        if can_bring:
+            from tiniscript.cli.virtual_company import offered
+
+            if offered(language):
+                return VIRTUAL
         raise Trouble(3, "no_ports")
     about = {each.port: each.description for each in found}
     print(text("choose_port", language), file=sys.stderr)

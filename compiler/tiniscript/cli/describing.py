@@ -16,6 +16,7 @@ tsc info [--port P] [--json]
 Prints what the robot says of itself: name, kit, room, program, state, last fault.
   --port P      the robot's port; the last used one where nothing is said
   --baud N      its speed (the one of the profile that --robot NAME|FILE chooses)
+  --virtual     the virtual robot of tsc robot, which runs in another terminal
   --json        the same as data
 """,
     """\
@@ -24,6 +25,7 @@ tsc info [--port P] [--json]
 Imprime lo que el robot dice de sí mismo: nombre, kit, sitio, programa, estado, última falla.
   --port P      el puerto del robot; el último usado si no se dice nada
   --baud N      su velocidad (la del perfil que --robot NOMBRE|ARCHIVO elige)
+  --virtual     el robot virtual de tsc robot, que está en marcha en otra terminal
   --json        lo mismo como datos
 """,
 )

@@ -16,6 +16,7 @@ tsc fetch [--port P] [-o FILE] [--json]
 Reads back the program that the robot holds and lists it, beside its lines where they are known.
   --port P      the robot's port; the last used one where nothing is said
   --baud N      its speed (the one of the profile that --robot NAME|FILE chooses)
+  --virtual     the virtual robot of tsc robot, which runs in another terminal
   -o FILE       writes its image instead
   --json        the listing as data
 """,
@@ -25,6 +26,7 @@ tsc fetch [--port P] [-o ARCHIVO] [--json]
 Lee de vuelta el programa que tiene el robot y lo lista, junto a sus líneas si se conocen.
   --port P      el puerto del robot; el último usado si no se dice nada
   --baud N      su velocidad (la del perfil que --robot NOMBRE|ARCHIVO elige)
+  --virtual     el robot virtual de tsc robot, que está en marcha en otra terminal
   -o ARCHIVO    escribe su imagen en vez de eso
   --json        la lista como datos
 """,

@@ -16,6 +16,7 @@ from tiniscript.cli.trouble import Trouble
 
 if TYPE_CHECKING:
     from tiniscript.robots.profile import Robot
+    from tiniscript.virtual.directory import Running
 
 HELP = (
     """\
@@ -57,7 +58,7 @@ def run(arguments: list[str], language: str) -> int:
         return 0
     robot = inputs.robot(options, language)
     baud = baud_of(options, robot, language)
-    rows = _rows(options)
+    rows = _rows(options, language)
     if options.ask:
         with ThreadPoolExecutor(AT_ONCE) as pool:
             answers = pool.map(lambda row: _ask(str(row["port"]), baud, robot, language), rows)
@@ -72,24 +73,35 @@ def run(arguments: list[str], language: str) -> int:
     return 0
 
 
-def _rows(options: Namespace) -> list[dict[str, object]]:
+def _rows(options: Namespace, language: str) -> list[dict[str, object]]:
     """Return the ports of the system, and those that it does not list but a robot had."""
     from tiniscript.link import ports, remembered
+    from tiniscript.virtual import directory
 
     known = remembered.known()
+    virtual = {each.address: each for each in directory.running()}
     about = {each.port: each.description for each in ports.listed()}
     names = [options.port] if options.port is not None else list(about)
     if options.port is None:
         names += [port for port in known.names if port not in about and ports.is_there(port)]
+        names += [port for port in virtual if port not in names]
+    about |= {port: _virtual(each, language) for port, each in virtual.items()}
     return [
         {
             "port": port,
             "description": about.get(port, ""),
             "remembered": known.names.get(port),
             "is_last_used": known.last == port,
+            "is_virtual": port in virtual,
         }
         for port in names
     ]
+
+
+def _virtual(running: Running, language: str) -> str:
+    """Return what a virtual robot is."""
+    said = text("virtual_port", language).format(robot=running.robot, world=running.world)
+    return f"{running.name}: {said}" if running.name else said
 
 
 def _ask(port: str, baud: int, robot: Robot, language: str) -> dict[str, object]:

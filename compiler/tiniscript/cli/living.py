@@ -13,6 +13,7 @@ from tiniscript.cli.connecting import Connection, takes_robot
 from tiniscript.cli.options import Options
 from tiniscript.cli.texts import text
 from tiniscript.cli.trouble import Trouble
+from tiniscript.cli.virtual_options import takes_world
 
 if TYPE_CHECKING:
     from tiniscript.cli.live_text import Known, Line
@@ -30,6 +31,7 @@ holds stays what it is. Ctrl-C stops the robot, Ctrl-D leaves.
   --port P      the robot's port; the last used one where nothing is said
   --baud N      its speed (the one of the robot's profile)
   --robot R     for which robot: a name (tinibot, ...) or a profile's file
+  --virtual     no robot: a virtual one does it here; --world, --plot, --seed, ... as tsc robot
 """,
     """\
 tsc live ['LÍNEA'] [--port P] [--robot NOMBRE|ARCHIVO]
@@ -41,6 +43,7 @@ tiene el robot queda como está. Ctrl-C detiene el robot, Ctrl-D sale.
   --port P      el puerto del robot; el último usado si no se dice nada
   --baud N      su velocidad (la del perfil del robot)
   --robot R     para qué robot: un nombre (tinibot, ...) o el archivo de un perfil
+  --virtual     sin robot: lo hace aquí uno virtual; --world, --plot, --seed, ... como tsc robot
 """,
 )
 
@@ -51,6 +54,7 @@ INTERRUPTED = 2
 def run(arguments: list[str], language: str) -> int:
     parser = Options("live", language, HELP)
     takes_robot(parser)
+    takes_world(parser)
     parser.add_argument("line", nargs="?")
     parser.add_argument("-e", dest="text")
     options = parser.read(arguments)
@@ -129,16 +133,22 @@ class Talk:
 
     def _run(self, found: Line, is_last: bool) -> int:
         from tiniscript import maps
-        from tiniscript.cli.telling import Teller
 
         places = maps.from_compiled(found.compiled)
         maps.remember(found.compiled.image, places)  # tsc info names a fault's line later
         reply = self.connection.ask(lambda session: session.live(found.compiled.code))
         run = reply.values["run"]
         assert isinstance(run, int)
-        teller = Teller(self.language, places=places)
+        teller = self.connection.teller(places=places)
         catch = Catch(found.shown, self.known, teller, is_last)
-        return Attendant(self.connection, teller, catch.hold).attend(run)
+        company = self.connection.company
+        if company is not None:
+            company.watch()
+        try:
+            return Attendant(self.connection, teller, catch.hold).attend(run)
+        finally:
+            if company is not None:
+                company.unwatch()
 
     def all_of(self, lines: object) -> int:
         """Do lines from a file until one fails."""

@@ -27,6 +27,7 @@ program ends, faults with their lines. Starts and stops nothing; Ctrl-C leaves. 
 port of an Arduino with a cable resets it: then nothing runs before its button is pressed.)
   --port P      the robot's port; the last used one where nothing is said
   --baud N      its speed (the one of the profile that --robot NAME|FILE chooses)
+  --virtual     the virtual robot of tsc robot, which runs in another terminal
   --plot        on a terminal: draws the values of the last 30 seconds as a curve
   --csv FILE    writes rows of ms,event,value, too
   --json        prints lines of JSON
@@ -40,6 +41,7 @@ cómo termina un programa, fallas con sus líneas. No inicia ni detiene nada; Ct
 el puerto de un Arduino con cable lo reinicia: nada se mueve antes de pulsar su botón.)
   --port P      el puerto del robot; el último usado si no se dice nada
   --baud N      su velocidad (la del perfil que --robot NOMBRE|ARCHIVO elige)
+  --virtual     el robot virtual de tsc robot, que está en marcha en otra terminal
   --plot        en una terminal: dibuja los valores de los últimos 30 segundos como una curva
   --csv ARCHIVO escribe además filas de ms,event,value
   --json        imprime líneas de JSON

@@ -17,6 +17,7 @@ tsc ping [--port P] [--count N] [--json]
 Says who answers on the port, and how long a round trip takes: at least, in the middle, at most.
   --port P      the robot's port; the last used one where nothing is said
   --baud N      its speed (the one of the profile that --robot NAME|FILE chooses)
+  --virtual     the virtual robot of tsc robot, which runs in another terminal
   --count N     so many round trips (10)
 """,
     """\
@@ -25,6 +26,7 @@ tsc ping [--port P] [--count N] [--json]
 Dice quién responde en el puerto, y cuánto tarda una ida y vuelta: mínimo, medio y máximo.
   --port P      el puerto del robot; el último usado si no se dice nada
   --baud N      su velocidad (la del perfil que --robot NOMBRE|ARCHIVO elige)
+  --virtual     el robot virtual de tsc robot, que está en marcha en otra terminal
   --count N     tantas idas y vueltas (10)
 """,
 )

@@ -77,7 +77,7 @@ def run(arguments: list[str], language: str) -> int:
     seed = whole_number("--seed", options.seed, 1, 1, 2**32 - 1, language)
     given = inputs.program(options)
     robot = inputs.robot(options, language)
-    lists = _sensors(options.sensor, robot, language)
+    lists = sensor_lists(options.sensor, robot, language)
     ready = images.ready(given, robot, language)
     if ready is None:
         return 1
@@ -166,7 +166,7 @@ def _decimal(option: str, found: str | None, default: int, highest: int, languag
     return value
 
 
-def _sensors(texts: list[str], robot: Robot, language: str) -> dict[int, list[int]]:
+def sensor_lists(texts: list[str], robot: Robot, language: str) -> dict[int, list[int]]:
     """Return the readings that `--sensor NAME=1,2,3` say, by the sensor's number."""
     sensors = robot.kit.sensors
     names = [device.name for device in sensors]

@@ -15,6 +15,7 @@ Starts the program that the robot holds and stays until it ends, as tsc upload d
 the robot.
   --port P      the robot's port; the last used one where nothing is said
   --baud N      its speed (the one of the profile that --robot NAME|FILE chooses)
+  --virtual     the virtual robot of tsc robot, which runs in another terminal
   --detach      starts it and leaves: it goes on without tsc
   --json        prints what it tells as lines of JSON
 """,
@@ -25,6 +26,7 @@ Inicia el programa que tiene el robot y se queda hasta que termina, como tsc upl
 detiene el robot.
   --port P      el puerto del robot; el último usado si no se dice nada
   --baud N      su velocidad (la del perfil que --robot NOMBRE|ARCHIVO elige)
+  --virtual     el robot virtual de tsc robot, que está en marcha en otra terminal
   --detach      lo inicia y se va: sigue sin tsc
   --json        imprime lo que cuenta como líneas de JSON
 """,

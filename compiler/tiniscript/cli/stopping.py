@@ -17,6 +17,7 @@ Stops the robot now, and says when it has confirmed that. Asks nothing before, s
 robot of another version or kit, too. The robot stays stopped until a new start or its button.
   --port P      the robot's port; the last used one where nothing is said
   --baud N      its speed (the one of the profile that --robot NAME|FILE chooses)
+  --virtual     the virtual robot of tsc robot, which runs in another terminal
 """,
     """\
 tsc stop [--port P]
@@ -25,6 +26,7 @@ Detiene el robot ahora, y dice cuándo lo ha confirmado. No pregunta nada antes,
 detiene un robot de otra versión o de otro kit. Queda detenido hasta otro inicio o su botón.
   --port P      el puerto del robot; el último usado si no se dice nada
   --baud N      su velocidad (la del perfil que --robot NOMBRE|ARCHIVO elige)
+  --virtual     el robot virtual de tsc robot, que está en marcha en otra terminal
 """,
 )
 

@@ -30,6 +30,11 @@ With a robot on a port (--port /dev/rfcomm0, COM5, ...; later the last used one)
   tsc fetch                          read the robot's program back
   tsc name TINI                      name the robot
 
+Without one:
+
+  tsc upload prog.ts --virtual       a virtual robot drives here, in a world of its own
+  tsc robot                          a virtual robot with a port, for other terminals
+
 A program is a file, - (standard input) or -e 'SI|F(2, 80)'.
 tsc VERB --help says more about a verb; --lang en or --lang es chooses the language.
 Exit codes: 0 done, 1 the program is wrong, 2 wrong use of tsc, 3 the robot or the link.
@@ -58,6 +63,11 @@ Con un robot en un puerto (--port /dev/rfcomm0, COM5, ...; después, el último 
   tsc monitor                        imprime lo que el robot muestra
   tsc fetch                          lee de vuelta el programa del robot
   tsc name TINI                      le pone nombre al robot
+
+Sin robot:
+
+  tsc upload prog.ts --virtual       un robot virtual se mueve aquí, en un mundo propio
+  tsc robot                          un robot virtual con un puerto, para otras terminales
 
 Un programa es un archivo, - (entrada estándar) o -e 'SI|F(2, 80)'.
 tsc VERBO --help dice más de un verbo; --lang en o --lang es elige el idioma.
@@ -222,15 +232,20 @@ def text(key: str, language: str) -> str:
     if found is None:
         from tiniscript.cli.link_texts import LINK_TEXTS
 
-        found = LINK_TEXTS[key]
+        found = LINK_TEXTS.get(key)
+    if found is None:
+        from tiniscript.cli.virtual_texts import VIRTUAL_TEXTS
+
+        found = VIRTUAL_TEXTS[key]
     english, spanish = found
     return spanish if language == "es" else english
 
 
 def has_text(key: str) -> bool:
     from tiniscript.cli.link_texts import LINK_TEXTS
+    from tiniscript.cli.virtual_texts import VIRTUAL_TEXTS
 
-    return key in TEXTS or key in LINK_TEXTS
+    return key in TEXTS or key in LINK_TEXTS or key in VIRTUAL_TEXTS
 
 
 def language_of(arguments: Sequence[str], environ: Mapping[str, str] = os.environ) -> str:

@@ -12,6 +12,7 @@ from tiniscript.cli.connecting import Connection, takes_port
 from tiniscript.cli.options import Options
 from tiniscript.cli.texts import text
 from tiniscript.cli.trouble import Trouble
+from tiniscript.cli.virtual_options import takes_world
 
 if TYPE_CHECKING:
     from tiniscript.cli.progress import Progress
@@ -33,6 +34,14 @@ that begins with SB waits for the robot's button.
   --detach      starts it and leaves: it goes on without tsc
   --robot R     for which robot: a name (tinibot, ...) or a profile's file
   --json        prints the receipt and what comes after it as lines of JSON
+  --virtual     no robot: a virtual one drives here, until the program ends or Ctrl-C; the one of
+                tsc robot, if that runs in another terminal
+With --virtual:
+  --world W     its world: obstacles, line, light, or a file (obstacles)
+  --plot F.png  draws the world and the way when it ends
+  --for S       ends after so many seconds of the robot's time
+  --hurry N     N times as fast; max: as fast as this computer can
+  --seed N, --noise X, --motors L,R, --faults X, --sensor NAME=1,2,3    as tsc robot --help says
 Exit code: 0 when it is done, 1 after mistakes or a fault, 2 after Ctrl-C, 3 where the robot or
 the link has ended it.
 """,
@@ -50,6 +59,14 @@ que empieza con SB espera el botón del robot.
   --detach      lo inicia y se va: sigue sin tsc
   --robot R     para qué robot: un nombre (tinibot, ...) o el archivo de un perfil
   --json        imprime el recibo y lo que viene después como líneas de JSON
+  --virtual     sin robot: uno virtual se mueve aquí, hasta que el programa termina o Ctrl-C; el
+                de tsc robot, si está en marcha en otra terminal
+Con --virtual:
+  --world W     su mundo: obstacles, line, light, o un archivo (obstacles)
+  --plot F.png  dibuja el mundo y el camino cuando termina
+  --for S       termina después de tantos segundos del tiempo del robot
+  --hurry N     N veces más rápido; max: lo más rápido que esta computadora pueda
+  --seed N, --noise X, --motors I,D, --faults X, --sensor NOMBRE=1,2,3    como en tsc robot --help
 Código de salida: 0 si termina, 1 con errores o una falla, 2 después de Ctrl-C, 3 si el robot o
 la conexión lo terminó.
 """,
@@ -62,6 +79,7 @@ def run(arguments: list[str], language: str) -> int:
     parser = Options("upload", language, HELP)
     parser.takes_program()
     takes_port(parser)
+    takes_world(parser)
     for name in ("--no-run", "--no-save", "--detach", "--json"):
         parser.add_argument(name, action="store_true")
     options = parser.read(arguments)
@@ -94,7 +112,6 @@ def _upload(
     connection: Connection, ready: images.Ready, name: str, options: Namespace
 ) -> int:  # fmt: skip
     from tiniscript.cli.progress import Progress
-    from tiniscript.cli.telling import Teller
 
     language = connection.language
     progress = Progress(language)
@@ -111,8 +128,10 @@ def _upload(
     code = 0
     if is_running and options.detach:
         return 0
-    teller = Teller(language, options.json, places=ready.places)
+    teller = connection.teller(options.json, ready.places)
     if is_running:
+        if connection.company is not None:
+            connection.company.watch()
         code = Attendant(connection, teller).attend(values["run"])
     if values["saved"] == SAVING:
         slot = until_saved(connection)

@@ -1,0 +1,63 @@
+"""Single keys of the person at the terminal, without waiting for one."""
+
+from __future__ import annotations
+
+import os
+import sys
+from types import TracebackType
+
+INTERRUPT = "\x03"
+
+
+class Keys:
+    """Where there is no terminal, there are no keys."""
+
+    def __init__(self) -> None:
+        self._saved: object = None
+        self._file = -1
+
+    def __enter__(self) -> Keys:
+        if sys.stdin.isatty() and sys.platform != "win32":
+            import termios
+            import tty
+
+            self._file = sys.stdin.fileno()
+            self._saved = termios.tcgetattr(self._file)
+            tty.setcbreak(self._file)
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        value: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        if self._saved is not None and sys.platform != "win32":
+            import termios
+
+            termios.tcsetattr(self._file, termios.TCSADRAIN, self._saved)  # type: ignore[arg-type]
+
+    def pressed(self) -> str:
+        """Return the keys that were pressed since the last time."""
+        if sys.platform == "win32":
+            return _pressed_on_windows()
+        if self._file < 0:
+            return ""
+        import select
+
+        if not select.select([self._file], [], [], 0)[0]:
+            return ""
+        return os.read(self._file, 100).decode("utf-8", "replace")
+
+
+def _pressed_on_windows() -> str:
+    if sys.platform != "win32" or not sys.stdin.isatty():
+        return ""
+    import msvcrt
+
+    found = ""
+    while msvcrt.kbhit():
+        found += msvcrt.getwch()
+    if INTERRUPT in found:
+        raise KeyboardInterrupt
+    return found

@@ -1,0 +1,162 @@
+"""A virtual robot for one command: it lives beside it, and is drawn on its terminal.
+
+The command talks to it over a socket as to any other robot. Or the one that is running already is
+found: `tsc robot` in another terminal.
+"""
+
+from __future__ import annotations
+
+import sys
+from argparse import Namespace
+from threading import Lock, Thread
+from time import monotonic
+from typing import TYPE_CHECKING
+
+from tiniscript.cli import virtual_options
+from tiniscript.cli.texts import text
+from tiniscript.cli.trouble import Trouble
+
+if TYPE_CHECKING:
+    from tiniscript.cli.drawing import Screen
+    from tiniscript.cli.world_drawing import WorldPicture
+    from tiniscript.robots.profile import Robot
+
+JOIN_S = 5.0
+
+
+def running_address(options: Namespace) -> str | None:
+    """Return where the one virtual robot is that runs, or None where a new one is wanted.
+
+    Raises Trouble where none runs and the verb can bring none, or several do.
+    """
+    from tiniscript.virtual import directory
+
+    can_bring = hasattr(options, "world")
+    if can_bring and virtual_options.wants_own(options):
+        return None
+    found = directory.running()
+    if not found and not can_bring:
+        raise Trouble(3, "no_virtual")
+    if len(found) > 1:
+        raise Trouble(3, "which_virtual", known=", ".join(each.address for each in found))
+    return found[0].address if found else None
+
+
+class Company:
+    """The robot. It is there when this is made, until `close`. Raises Trouble."""
+
+    def __init__(self, options: Namespace, profile: Robot, language: str) -> None:
+        hurry = virtual_options.hurry_of(options, language)
+        faults = virtual_options.faults_of(options, language)
+        self.end_ms = virtual_options.end_ms(options, language)
+        self.options = options
+        self.language = language
+        self.robot = virtual_options.made(options, profile, language)
+        from tiniscript.virtual.guests import Guests
+        from tiniscript.virtual.host import Host
+
+        self.guests = Guests()
+        self.port = self.guests.address
+        self.host = Host(self.robot, self.guests, hurry, faults)
+        self.screen: Screen | None = None
+        self._picture: WorldPicture | None = None
+        self._began_ms: int | None = None  # when the command began to look at it
+        self._bug: BaseException | None = None
+        self._is_over = False
+        self._frame_s = 0.0
+        self._drawing = Lock()
+        self._thread = Thread(target=self._live, name="virtual robot", daemon=True)
+        self._thread.start()
+
+    @property
+    def is_time_over(self) -> bool:
+        """Whether the time of `--for` is over, since `watch`."""
+        if self.end_ms is None or self._began_ms is None:
+            return False
+        return self.robot.now_ms >= self._began_ms + self.end_ms
+
+    def watch(self) -> None:
+        """Draw it from now on, where there is a terminal."""
+        if self._began_ms is None:
+            self._began_ms = self.robot.now_ms
+            if self.end_ms is not None:
+                self.host.calm_from_ms = self._began_ms + self.end_ms
+        if not sys.stderr.isatty() or getattr(self.options, "json", False):
+            return
+        from tiniscript.cli.drawing import Screen
+        from tiniscript.cli.world_drawing import WorldPicture
+
+        with self._drawing:
+            self.screen = Screen()
+            if self._picture is None:
+                self._picture = WorldPicture(self.robot, self.language)
+            self.screen.begin()
+
+    def say(self, line: str) -> None:
+        """Print a line, around the picture where there is one."""
+        with self._drawing:
+            if self.screen is not None:
+                self.screen.say(line)
+                return
+        print(line, flush=True)
+
+    def complain(self, line: str) -> None:
+        with self._drawing:
+            if self.screen is not None and self.screen.is_shared:
+                self.screen.say(line)
+                return
+        sys.stdout.flush()
+        print(line, file=sys.stderr, flush=True)
+
+    def unwatch(self) -> None:
+        """Leave the last picture standing."""
+        with self._drawing:
+            screen, self.screen = self.screen, None
+            if screen is not None:
+                self._draw(screen)
+                screen.end()
+
+    def close(self) -> None:
+        """The robot's life ends; what it has done is said, and drawn into the file of `--plot`."""
+        self.unwatch()
+        self._is_over = True
+        self._thread.join(JOIN_S)
+        self.guests.close()
+        if self._bug is not None:
+            raise self._bug
+        if self._began_ms is None:
+            return
+        if self.options.plot is not None:
+            virtual_options.draw_picture(self.options, self.robot, self.language)
+        is_json = getattr(self.options, "json", False)
+        said = virtual_options.summary(self.options, self.robot, self.language)
+        print(said, file=sys.stderr if is_json else sys.stdout, flush=True)
+
+    def _live(self) -> None:
+        from tiniscript.cli.drawing import FRAME_S
+
+        try:
+            while not self._is_over:
+                self.host.turn(FRAME_S)
+                with self._drawing:
+                    events = self.robot.take_events()
+                    for event in events if self._picture is not None else []:
+                        assert self._picture is not None
+                        self._picture.take(event)
+                    if self.screen is not None and monotonic() >= self._frame_s:
+                        self._frame_s = monotonic() + FRAME_S
+                        self._draw(self.screen)
+        except BaseException as bug:
+            self._bug = bug
+            self.guests.close()
+
+    def _draw(self, screen: Screen) -> None:
+        if self._picture is not None:
+            screen.draw(self._picture, self.robot.now_ms)
+
+
+def offered(language: str) -> bool:
+    """Ask whether the virtual robot will do; an empty answer is yes."""
+    print(text("offer_virtual", language), end="", file=sys.stderr, flush=True)
+    answer = sys.stdin.readline()
+    return bool(answer) and answer.strip().lower()[:1] in ("", "y", "s")

@@ -1,0 +1,69 @@
+"""What `tsc` says of the virtual robot, in English and Spanish."""
+
+from __future__ import annotations
+
+# fmt: off
+VIRTUAL_TEXTS: dict[str, tuple[str, str]] = {
+    # key: (English, Spanish)
+    # options
+    "virtual_needs_wasmtime": ("tsc: the virtual robot needs wasmtime, which cannot be used here: {why}.\n"
+                               "Install it:  pip install \"tiniscript[virtual]\"",
+                               "tsc: el robot virtual necesita wasmtime, que aquí no se puede usar: {why}.\n"
+                               "Instálalo:  pip install \"tiniscript[virtual]\""),
+    "plot_needs_pillow": ("tsc: --plot needs Pillow, which cannot be used here: {why}.\n"
+                          "Install it:  pip install \"tiniscript[virtual]\"",
+                          "tsc: --plot necesita Pillow, que aquí no se puede usar: {why}.\n"
+                          "Instálalo:  pip install \"tiniscript[virtual]\""),
+    "bad_plot": ("tsc: --plot takes a file in a folder that is there, such as way.png, not {found}.",
+                 "tsc: --plot acepta un archivo en una carpeta que existe, como camino.png, no {found}."),
+    "bad_hurry": ("tsc: --hurry takes how many times as fast the robot is, such as 10, or max; not {found}.",
+                  "tsc: --hurry acepta cuántas veces más rápido va el robot, como 10, o max; no {found}."),
+    "bad_motors": ("tsc: --motors takes two numbers, left and right, such as 100,90; not {found}.",
+                   "tsc: --motors acepta dos números, izquierdo y derecho, como 100,90; no {found}."),
+    "bad_button": ("tsc: --button-at takes seconds, such as 2 or 2,10; not {found}.",
+                   "tsc: --button-at acepta segundos, como 2 o 2,10; no {found}."),
+    "world_refused": ("tsc: the world {file} cannot be used:\n{reasons}",
+                      "tsc: el mundo {file} no se puede usar:\n{reasons}"),
+    "unwritable_picture": ("tsc: {file} cannot be written: {why}. Choose another place with --plot.",
+                           "tsc: no se puede escribir {file}: {why}. Elige otro lugar con --plot."),
+    "unwritable_memory": ("tsc: {file} cannot be written: {why}. Choose another place with --memory.",
+                          "tsc: no se puede escribir {file}: {why}. Elige otro lugar con --memory."),
+    "unreadable_memory": ("tsc: {file} cannot be read: {why}. Choose another file with --memory.",
+                          "tsc: no se puede leer {file}: {why}. Elige otro archivo con --memory."),
+    "bad_memory": ("tsc: {file} is not the memory of a robot: that has {bytes} bytes. Choose another file with --memory.",
+                   "tsc: {file} no es la memoria de un robot: esa tiene {bytes} bytes. Elige otro archivo con --memory."),
+    "listen_taken": ("tsc: the port {port} cannot be had: {why}. Choose another with --listen, or leave it out.",
+                     "tsc: no se puede usar el puerto {port}: {why}. Elige otro con --listen, o quita esa opción."),
+    "no_pty": ("tsc: this system has no pseudo-terminals. Leave --pty out and use the address of the robot.",
+               "tsc: este sistema no tiene pseudoterminales. Quita --pty y usa la dirección del robot."),
+    # what it says
+    "robot_here": ("{robot} in the world \"{world}\". Another terminal:  tsc upload prog.ts --port {port}   Ctrl-C ends.",
+                   "{robot} en el mundo \"{world}\". Otra terminal:  tsc upload prog.ts --port {port}   Ctrl-C termina."),
+    "robot_keys": ("b: start button   r: reset   p: off and on   q: end",
+                   "b: botón de inicio   r: reinicio   p: apagar y encender   q: terminar"),
+    "drove": ("The virtual robot drove {cm} cm in {seconds} s and touched nothing.",
+              "El robot virtual recorrió {cm} cm en {seconds} s y no tocó nada."),
+    "drove_touching": ("The virtual robot drove {cm} cm in {seconds} s and ran into something {n} times.",
+                       "El robot virtual recorrió {cm} cm en {seconds} s y chocó {n} veces."),
+    "drove_picture": ("Picture: {file}", "Imagen: {file}"),
+    "time_over": ("The time of --for is over.", "El tiempo de --for terminó."),
+    "ended_READY": ("ready", "listo para empezar"),
+    "ended_STOP": ("stopped", "detenido"),
+    "ended_OFF": ("switched off", "apagado"),
+    "virtual_port": ("virtual robot {robot}, world \"{world}\"", "robot virtual {robot}, mundo \"{world}\""),
+    # with other verbs
+    "offer_virtual": ("There is no robot here. Try the virtual one? [Y/n] ",
+                      "Aquí no hay ningún robot. ¿Probar el virtual? [S/n] "),
+    "choice_virtual": ("the virtual robot", "el robot virtual"),
+    "which_port_or_virtual": ("tsc: which port? Name it once with --port; then it is remembered. The ports here:  tsc ports   Without a robot:  --virtual",
+                              "tsc: ¿qué puerto? Nómbralo una vez con --port; después se recuerda. Los puertos de aquí:  tsc ports   Sin robot:  --virtual"),
+    "no_virtual": ("tsc: no virtual robot is running. Start one in another terminal:  tsc robot",
+                   "tsc: no hay ningún robot virtual en marcha. Inicia uno en otra terminal:  tsc robot"),
+    "which_virtual": ("tsc: several virtual robots are running. Name one with --port: {known}",
+                      "tsc: hay varios robots virtuales en marcha. Nombra uno con --port: {known}"),
+    "virtual_and_port": ("tsc: --virtual and --port do not go together. Leave one of them out.",
+                         "tsc: --virtual y --port no van juntos. Quita uno de los dos."),
+    "only_virtual": ("tsc: {option} is for the virtual robot alone. Add --virtual, or leave {option} out.",
+                     "tsc: {option} es solo para el robot virtual. Agrega --virtual, o quita {option}."),
+}
+# fmt: on
