@@ -203,12 +203,20 @@ def test_a_long_way_has_a_bar_that_is_gone_at_the_end() -> None:
 # -- endings ------------------------------------------------------------------------------------
 
 
-def test_ctrl_c_stops_the_robot_and_the_port_is_its_alone(desk: Desk) -> None:
+def test_a_port_that_another_program_uses_is_said(desk: Desk) -> None:
+    import serial
+
+    with serial.Serial(desk.port, exclusive=True):
+        for verb in ("stop", "monitor"):
+            done = on(desk, verb)
+            assert done.code == 3
+            assert "another program is using the port" in done.err
+    assert desk.heard == b""
+
+
+def test_ctrl_c_stops_the_robot(desk: Desk) -> None:
     command = running("upload", "-e", FOREVER, "--port", desk.port)
     desk.until(lambda: desk.moves, "it drives")
-    done = on(desk, "stop")
-    assert done.code == 3
-    assert "another program is using the port" in done.err
     pressed_ms = desk.robot_ms
     command.send_signal(signal.SIGINT)
     done = ended(command)

@@ -77,13 +77,13 @@ def driven(robot: Tabletop, session: Session, left: int, right: int) -> list[str
 )
 def test_motors_get_what_the_trim_makes_of_it(trim: Trim, found: str) -> None:
     robot, session = switched_on(), computer()
-    assert robot.until(session, session.trim(trim)) == OK
+    assert robot.until(session, session.trim(trim.data())) == OK
     assert driven(robot, session, 80, 40) == [found, "0 0"]
 
 
 def test_one_percent_moves_and_none_is_none() -> None:
     robot, session = switched_on(), computer()
-    assert robot.until(session, session.trim(Trim(balance=10, least=30))) == OK
+    assert robot.until(session, session.trim(Trim(balance=10, least=30).data())) == OK
     assert driven(robot, session, 1, -1) == ["30 -30", "0 0"]
     assert driven(robot, session, 100, -100) == ["90 -100", "0 0"]
     assert driven(robot, session, 0, 0) == []
@@ -100,7 +100,7 @@ def test_a_trim_survives_and_so_does_the_name() -> None:
     trim = Trim(True, False, True, -7, 12)
     assert robot.until(session, session.name(b"TINI")) == OK
     robot.talk(session, 1000)
-    assert robot.until(session, session.trim(trim)) == OK
+    assert robot.until(session, session.trim(trim.data())) == OK
     robot.talk(session, 1000)
     again, other = switched_on(robot.memory()), computer(2)
     asked = other.trim()
@@ -113,14 +113,10 @@ def test_a_trim_survives_and_so_does_the_name() -> None:
     "data", [b"\x08\0\0", b"\0\x29\0", b"\0\xd7\0", b"\0\x80\0", b"\0\0\x29", b"\0\0", b"\0"]
 )
 def test_a_trim_that_makes_no_sense_is_refused(data: bytes) -> None:
-    class Nonsense(Trim):
-        def data(self) -> bytes:
-            return data
-
     robot, session = switched_on(), computer()
-    assert robot.until(session, session.trim(Trim(balance=3))) == OK
+    assert robot.until(session, session.trim(Trim(balance=3).data())) == OK
     expected = "BAD_VALUE" if len(data) == 3 else "BAD_LENGTH"
-    assert robot.until(session, session.trim(Nonsense())) == STATUSES[expected]
+    assert robot.until(session, session.trim(data)) == STATUSES[expected]
     asked = session.trim()
     assert robot.until(session, asked) == OK
     assert asked.outcome is not None and told(asked.outcome.values) == Trim(balance=3)

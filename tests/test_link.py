@@ -32,12 +32,11 @@ from tiniscript.link.messages import (
     TEXT_FROM,
     sizes,
 )
+from tiniscript.link.outcomes import CANCELLED, LOST
 from tiniscript.link.session import (
     BEAT_MS,
-    CANCELLED,
     DEADLINE_MS,
     IDLE_BEAT_MS,
-    LOST,
     STOP_MS,
     Session,
 )

@@ -21,7 +21,8 @@ from tests.machines.link import CppLink, cpp_link, missing
 from tiniscript.bytecode import BY_NAME
 from tiniscript.image import pack, unpack
 from tiniscript.link.frames import Frame, decoded, encoded
-from tiniscript.link.session import CANCELLED, LOST, Session, Task
+from tiniscript.link.outcomes import CANCELLED, LOST
+from tiniscript.link.session import Session, Task
 from tiniscript.link.statuses import name_of
 
 needs_host = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a host machine")

@@ -23,6 +23,7 @@ VERBS = {
     "ping": "pinging",
     "upload": "uploading",
     "live": "living",
+    "link": "linking",
     "stop": "stopping",
     "start": "starting",
     "info": "describing",

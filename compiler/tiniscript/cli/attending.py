@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 
     from tiniscript.cli.connecting import Connection
     from tiniscript.cli.telling import Teller
-    from tiniscript.link.line import Line
-    from tiniscript.link.session import Event
+    from tiniscript.link.asking import Way
+    from tiniscript.link.outcomes import Event
 
 CONFIRM_S = 6.0  # for which a stop is sent before the person hears that nobody confirms it
 SAVE_S = 10.0  # for which a robot may save a program
@@ -36,8 +36,9 @@ class Attendant:
 
     def attend(self, run: int) -> int:
         """Wait for the end of a run; return the exit code. Raises Trouble where the link ends."""
-        from tiniscript.link.line import Gone
+        from tiniscript.link.outcomes import Gone
 
+        has_begun = False  # what comes before was about another run
         try:
             while True:
                 found = self.connection.line.event()
@@ -48,13 +49,19 @@ class Attendant:
                 time_ms, event = found
                 if event.name == "LOST":
                     raise Trouble(3, "link_lost", port=shown(self.connection.port))
+                if event.name == "STARTED":
+                    if event.values["run"] != run and has_begun:
+                        raise Trouble(3, "replaced", port=shown(self.connection.port))
+                    has_begun = has_begun or event.values["run"] == run
+                if event.name in ("STOPPED", "ENDED") and not has_begun:
+                    continue
                 if self.hold is None or not self.hold(event):
                     self.teller.tell(time_ms, event)
                 code = _end(event, run)
                 if code is not None:
                     return code
-        except Gone:
-            raise self.connection.gone() from None
+        except Gone as gone:
+            raise self.connection.gone(gone) from None
 
     def _stop_in_time(self) -> int:
         """Stop a virtual robot whose time is over."""
@@ -103,9 +110,9 @@ def stop_and_say(connection: Connection) -> int:
     raise Trouble(3, "not_confirmed", port=shown(connection.port))
 
 
-def confirmed(line: Line, limit_s: float = CONFIRM_S) -> bool:
+def confirmed(line: Way, limit_s: float = CONFIRM_S) -> bool:
     """Stop the robot; return whether it has confirmed. A second Ctrl-C ends the waiting."""
-    from tiniscript.link.line import Gone
+    from tiniscript.link.outcomes import Gone
 
     line.stop()
     end_s = monotonic() + limit_s

@@ -9,9 +9,9 @@ import os
 import sys
 from argparse import Namespace
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import IO, TYPE_CHECKING
 
-from tiniscript.cli import inputs
+from tiniscript.cli import inputs, joining
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import Options, whole_number
 from tiniscript.cli.texts import text
@@ -20,11 +20,12 @@ from tiniscript.cli.trouble import Trouble
 if TYPE_CHECKING:
     from tiniscript.cli.telling import Teller
     from tiniscript.cli.virtual_company import Company
+    from tiniscript.link.asking import Asked, Asks, Way
     from tiniscript.link.errands import Reply
     from tiniscript.link.errands import Robot as Card
     from tiniscript.link.line import Line
+    from tiniscript.link.outcomes import Gone
     from tiniscript.link.ports import PortTrouble
-    from tiniscript.link.session import Session, Task
     from tiniscript.maps import Map
     from tiniscript.robots.profile import Robot
 
@@ -32,6 +33,7 @@ ANSWER_MS = 6000  # for which a robot is asked who it is: an Uno that was reset 
 PATIENCE_MS = 6000  # for which one that has answered may be silent, or busy with saving
 PSEUDO = "/dev/"  # where pseudo-terminals are
 VIRTUAL = ""  # no port: a virtual robot that this command brings along
+STOP_S = 1.5  # for which the run of a guest is stopped by a holder that leaves
 SLOWEST_BAUD, FASTEST_BAUD = 300, 2_000_000
 
 
@@ -58,10 +60,10 @@ def baud_of(options: Namespace, robot: Robot, language: str) -> int:
 
 
 class Connection:
-    """An open port, and the robot on it once it has said who it is."""
+    """The way to a port, and the robot on it once it has said who it is."""
 
     def __init__(self, options: Namespace, robot: Robot, language: str) -> None:
-        """Open the port that the options name, or the last used one, or ask for one."""
+        """Go to the port that the options name, or the last used one, or ask for one."""
         baud = baud_of(options, robot, language)
         self.language = language
         self.profile = robot
@@ -74,7 +76,8 @@ class Connection:
             found = self.company.port
         self.port = found
         try:
-            self.line = opened_line(self.port, baud, robot)
+            self.line = opened_way(self.port, baud, robot, options.verb)
+            self.host = joining.shared(self.line, self.port, baud, options.verb)
         except BaseException:
             self._end_company()
             raise
@@ -83,6 +86,13 @@ class Connection:
         return self
 
     def __exit__(self, *_: object) -> None:
+        if self.host is not None:
+            has_run = self.host.has_run
+            self.host.close()
+            if has_run:  # of a guest, who can no longer stop it
+                from tiniscript.cli.attending import confirmed
+
+                confirmed(self.line, STOP_S)
         self.line.close()
         self._end_company()
 
@@ -108,7 +118,7 @@ class Connection:
     def meet(self) -> Card:
         """Ask the robot who it is, until it answers. Raises Trouble where none does."""
         reply = self.wait(hello(self.line, ANSWER_MS))
-        card = self.line.session.robot
+        card = self.line.robot
         if reply.status or card is None:
             raise self.trouble(reply)
         self.remember(card.name)
@@ -116,11 +126,12 @@ class Connection:
 
     def remember(self, name: str) -> None:
         """Keep the port for the next time, and what the robot on it is called."""
-        from tiniscript.link import ports, remembered
+        from tiniscript.link import remembered
+        from tiniscript.link.names import is_address
 
         if self.company is not None:
             return  # it has no next time
-        if ports.is_address(self.port) or self.port.startswith(PSEUDO):
+        if is_address(self.port) or self.port.startswith(PSEUDO):
             from tiniscript.virtual import directory
 
             if directory.is_virtual(self.port):
@@ -130,8 +141,8 @@ class Connection:
     @property
     def card(self) -> Card:
         """Who the robot is; `meet` has asked."""
-        assert self.line.session.robot is not None
-        return self.line.session.robot
+        assert self.line.robot is not None
+        return self.line.robot
 
     @property
     def name(self) -> str:
@@ -140,42 +151,42 @@ class Connection:
             return shown(self.card.name)
         return robot_of_kit(self.card.kit) or text("robot", self.language)
 
-    def ask(self, make: Callable[[Session], Task]) -> Reply:
+    def ask(self, make: Callable[[Asks], Asked]) -> Reply:
         """Have something done; raise Trouble where it is not."""
         reply = self.wait(self.do(make))
         if reply.status:
             raise self.trouble(reply)
         return reply
 
-    def do(self, make: Callable[[Session], Task]) -> Task:
+    def do(self, make: Callable[[Asks], Asked]) -> Asked:
         """Have something begun, for which there is a limited time."""
 
-        def limited(session: Session) -> Task:
+        def limited(session: Asks) -> Asked:
             task = make(session)
             task.limit_ms = PATIENCE_MS
             return task
 
         return self.line.do(limited)
 
-    def wait(self, task: Task, look: Callable[[], None] | None = None) -> Reply:
-        from tiniscript.link.line import Gone
+    def wait(self, task: Asked, look: Callable[[], None] | None = None) -> Reply:
+        from tiniscript.link.outcomes import Gone
 
         try:
             return self.line.wait(task, look)
-        except Gone:
-            raise self.gone() from None
+        except Gone as gone:
+            raise self.gone(gone) from None
 
     def trouble(self, reply: Reply) -> Trouble:
         """Return the sentence for an outcome that is not OK."""
-        from tiniscript.link.session import CANCELLED, LOST
+        from tiniscript.link.outcomes import CANCELLED, LOST
 
         if reply.status == CANCELLED:
-            return Trouble(2, "stopped")
+            return Trouble(3, "stopped_elsewhere", port=shown(self.port))
         if reply.status != LOST:
             return Trouble(3, "plain", said=self.said(reply))
-        if self.line.session.robot is not None:
+        if self.line.robot is not None:
             return Trouble(3, "link_lost", port=shown(self.port))
-        if "ECHO" in self.line.seen:
+        if self.line.is_echoed:
             return Trouble(3, "link_echo", port=shown(self.port))
         key = "link_other" if self.line.heard else "link_silent"
         return Trouble(3, key, port=shown(self.port))
@@ -192,13 +203,23 @@ class Connection:
                 advice = text("choose_kit", self.language).format(robot=name)
         return f"{said} {advice}".strip()
 
-    def gone(self) -> Trouble:
-        if self.line.heard and self.line.session.robot is None:  # said so, and hung up
+    def gone(self, gone: Gone) -> Trouble:
+        """Return the sentence for a way that has ended."""
+        if gone.is_holder:
+            return Trouble(3, "holder_ended", port=shown(self.port), verb=self.line.held_by)
+        if self.line.heard and self.line.robot is None:  # said so, and hung up
             return Trouble(3, "port_busy", port=shown(self.port))
         return Trouble(3, "port_gone", port=shown(self.port))
 
 
-def opened_line(port: str, baud: int, robot: Robot, limit_s: float = 20) -> Line:
+def opened_way(port: str, baud: int, robot: Robot, verb: str, limit_s: float = 20) -> Way:
+    """Go to a port through its holder, or open it. Raises Trouble."""
+    return joining.way_to(port, verb, lambda lock: opened_line(port, baud, robot, limit_s, lock))
+
+
+def opened_line(
+    port: str, baud: int, robot: Robot, limit_s: float = 20, lock: IO[bytes] | None = None
+) -> Line:
     """Open a port, with a session for this kit on it. Raises Trouble."""
     from tiniscript.link.line import Line
     from tiniscript.link.ports import PortTrouble, opened
@@ -207,10 +228,11 @@ def opened_line(port: str, baud: int, robot: Robot, limit_s: float = 20) -> Line
     try:
         device = opened(port, baud, limit_s)
     except PortTrouble as trouble:
+        if lock is not None:
+            lock.close()
         raise port_trouble(port, trouble) from None
-    return Line(
-        device, Session(int.from_bytes(os.urandom(4), "little"), baud, robot.kit.fingerprint)
-    )
+    session = Session(int.from_bytes(os.urandom(4), "little"), baud, robot.kit.fingerprint)
+    return Line(device, session, lock)
 
 
 def port_trouble(port: str, trouble: PortTrouble) -> Trouble:
@@ -227,10 +249,10 @@ def port_trouble(port: str, trouble: PortTrouble) -> Trouble:
     return Trouble(3, key, port=shown(port), why=shown(trouble.why))
 
 
-def hello(line: Line, limit_ms: int) -> Task:
+def hello(line: Way, limit_ms: int) -> Asked:
     """Begin a session. It is asked again until the robot answers: a reset takes it a while."""
 
-    def make(session: Session) -> Task:
+    def make(session: Asks) -> Asked:
         task = session.hello()
         task.limit_ms = limit_ms
         return task
@@ -266,10 +288,10 @@ def _chosen(options: Namespace, language: str) -> str:
         if not port.strip() or not port.isprintable():
             raise Trouble(2, "no_such_port", found=shown(port) or "''")
         return port
-    from tiniscript.link import ports, remembered
+    from tiniscript.link import names, remembered
 
     last = remembered.known().last
-    if last is not None and ports.is_there(last):
+    if last is not None and names.is_there(last):
         return last
     from tiniscript.virtual import directory
 
@@ -286,11 +308,12 @@ def _chosen(options: Namespace, language: str) -> str:
 def _asked(language: str, can_bring: bool) -> str:
     """Let the person choose a port."""
     from tiniscript.link import ports, remembered
+    from tiniscript.link.names import is_address
 
     names = remembered.known().names
     found = ports.listed()
     choices = [each.port for each in found]
-    choices += [port for port in names if port not in choices and ports.is_address(port)]
+    choices += [port for port in names if port not in choices and is_address(port)]
     if not choices:
         if can_bring:
             from tiniscript.cli.virtual_company import offered

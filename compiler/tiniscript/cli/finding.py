@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING
 
 from tiniscript.cli import inputs
-from tiniscript.cli.connecting import baud_of, hello, opened_line, robot_of_kit
+from tiniscript.cli.connecting import baud_of, hello, opened_way, robot_of_kit
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import Options
 from tiniscript.cli.texts import text
@@ -22,8 +22,8 @@ HELP = (
     """\
 tsc ports [--ask] [--json]
 
-Lists the serial ports of this computer, and which robots have answered there before. Opens none
-of them: opening a port resets most boards.
+Lists the serial ports of this computer, which robots have answered there before, and which tsc
+holds one. Opens none of them: opening a port resets most boards.
   --ask         opens each and says which robot answers there
   --port P      with --ask: this one alone
   --baud N      with --ask: their speed (the one of the profile that --robot NAME|FILE chooses)
@@ -32,8 +32,8 @@ of them: opening a port resets most boards.
     """\
 tsc ports [--ask] [--json]
 
-Lista los puertos serie de esta computadora, y qué robots respondieron ahí antes. No abre ninguno:
-abrir un puerto reinicia la mayoría de las placas.
+Lista los puertos serie de esta computadora, qué robots respondieron ahí antes, y qué tsc tiene
+uno. No abre ninguno: abrir un puerto reinicia la mayoría de las placas.
   --ask         abre cada uno y dice qué robot responde ahí
   --port P      con --ask: solo este
   --baud N      con --ask: su velocidad (la del perfil que --robot NOMBRE|ARCHIVO elige)
@@ -76,15 +76,21 @@ def run(arguments: list[str], language: str) -> int:
 def _rows(options: Namespace, language: str) -> list[dict[str, object]]:
     """Return the ports of the system, and those that it does not list but a robot had."""
     from tiniscript.link import ports, remembered
+    from tiniscript.link.names import is_there, same_for_all
+    from tiniscript.sharing.guest import is_alive
+    from tiniscript.sharing.holders import all_found
     from tiniscript.virtual import directory
 
     known = remembered.known()
     virtual = {each.address: each for each in directory.running()}
     about = {each.port: each.description for each in ports.listed()}
+    held = {holder.port: holder.verb for holder in all_found() if is_alive(holder)}
     names = [options.port] if options.port is not None else list(about)
     if options.port is None:
-        names += [port for port in known.names if port not in about and ports.is_there(port)]
+        names += [port for port in known.names if port not in about and is_there(port)]
         names += [port for port in virtual if port not in names]
+        listed = {same_for_all(port) for port in names}
+        names += [port for port in held if port not in listed]
     about |= {port: _virtual(each, language) for port, each in virtual.items()}
     return [
         {
@@ -93,6 +99,7 @@ def _rows(options: Namespace, language: str) -> list[dict[str, object]]:
             "remembered": known.names.get(port),
             "is_last_used": known.last == port,
             "is_virtual": port in virtual,
+            "held_by": held.get(same_for_all(port)),
         }
         for port in names
     ]
@@ -106,13 +113,15 @@ def _virtual(running: Running, language: str) -> str:
 
 def _ask(port: str, baud: int, robot: Robot, language: str) -> dict[str, object]:
     """Return who answers on a port, or why nobody does."""
+    from contextlib import closing
+
     from tiniscript.link import remembered
-    from tiniscript.link.line import Gone
+    from tiniscript.link.outcomes import Gone
 
     try:
-        with opened_line(port, baud, robot, OPEN_S) as line:
+        with closing(opened_way(port, baud, robot, "ports", OPEN_S)) as line:
             reply = line.wait(hello(line, ANSWER_MS))
-            card = line.session.robot
+            card = line.robot
             heard = line.heard
     except Trouble as trouble:
         return {"answer": None, "said": trouble.sentence(language).removeprefix("tsc: ")}
@@ -134,6 +143,8 @@ def _line(row: dict[str, object], language: str) -> str:
     elif row["remembered"]:
         name = shown(str(row["remembered"]))
         parts.append(text("port_remembered", language).format(name=name))
+    if row["held_by"]:
+        parts.append(text("port_held", language).format(verb=row["held_by"]))
     if row["is_last_used"]:
         parts.append(text("port_last", language))
     return "   ".join(part for part in parts if part)

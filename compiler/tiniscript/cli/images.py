@@ -8,6 +8,7 @@ from tiniscript.cli import inputs, outputs
 from tiniscript.cli.trouble import Trouble
 
 if TYPE_CHECKING:
+    from tiniscript import Compiled
     from tiniscript.image import Image
     from tiniscript.maps import Map
     from tiniscript.robots.profile import Robot
@@ -42,11 +43,17 @@ def ready(
     from tiniscript.bytecode import ISA_MAJOR, ISA_MINOR
     from tiniscript.image import Image, checksum
 
-    assert compiled.program is not None and compiled.verdict is not None
-    kit = robot.kit.fingerprint if compiled.verdict.uses_kit else 0
+    assert compiled.program is not None
+    kit = kit_of(compiled, robot)
     image = Image(compiled.program.start, kit, compiled.code, checksum(compiled.image),
                   (ISA_MAJOR, ISA_MINOR))  # fmt: skip
     return Ready(image, len(compiled.image), maps.from_compiled(compiled))
+
+
+def kit_of(compiled: Compiled, robot: Robot) -> int:
+    """Return the fingerprint of the kit whose words a program uses, or 0 for none."""
+    assert compiled.verdict is not None
+    return robot.kit.fingerprint if compiled.verdict.uses_kit else 0
 
 
 def _read(given: inputs.Input, kit: int | None, robot: str) -> Image:

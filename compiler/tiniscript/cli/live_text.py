@@ -11,6 +11,7 @@ import re
 from typing import NamedTuple
 
 from tiniscript import Compiled, compile_text, tree
+from tiniscript.cli.live_mark import MARK
 from tiniscript.kit import Kit
 from tiniscript.lower import Place
 from tiniscript.parser import parse
@@ -19,7 +20,6 @@ from tiniscript.source import Source, Span
 from tiniscript.thousandths import as_text
 from tiniscript.tokens import WORD, scan
 
-MARK = -(2**31)  # the smallest number there is
 _HEADER = re.compile(r"[ \t]*(SI|SB|PING)[ \t]*\|", re.IGNORECASE | re.ASCII)
 
 

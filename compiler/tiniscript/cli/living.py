@@ -7,7 +7,7 @@ import sys
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from tiniscript.cli import inputs, outputs
+from tiniscript.cli import images, inputs, outputs
 from tiniscript.cli.attending import Attendant, stop_and_say
 from tiniscript.cli.connecting import Connection, takes_robot
 from tiniscript.cli.options import Options
@@ -18,7 +18,7 @@ from tiniscript.cli.virtual_options import takes_world
 if TYPE_CHECKING:
     from tiniscript.cli.live_text import Known, Line
     from tiniscript.cli.telling import Teller
-    from tiniscript.link.session import Event
+    from tiniscript.link.outcomes import Event
 
 HELP = (
     """\
@@ -136,7 +136,8 @@ class Talk:
 
         places = maps.from_compiled(found.compiled)
         maps.remember(found.compiled.image, places)  # tsc info names a fault's line later
-        reply = self.connection.ask(lambda session: session.live(found.compiled.code))
+        kit = images.kit_of(found.compiled, self.connection.profile)
+        reply = self.connection.ask(lambda session: session.live(found.compiled.code, kit))
         run = reply.values["run"]
         assert isinstance(run, int)
         teller = self.connection.teller(places=places)
@@ -186,7 +187,7 @@ class Talk:
         try:
             self.do(line)
         except Trouble as trouble:
-            if trouble.key == "port_gone":
+            if trouble.key in ("port_gone", "holder_ended"):
                 raise
             print(trouble.sentence(self.language), file=sys.stderr)
 
@@ -202,7 +203,7 @@ class Talk:
         That it was lost the next line tells, if it still is.
         """
         from tiniscript.cli.telling import Teller
-        from tiniscript.link.line import Gone
+        from tiniscript.link.outcomes import Gone
 
         teller = Teller(self.language)
         try:
@@ -211,8 +212,8 @@ class Talk:
                 if found is None:
                     return
                 teller.tell(*found)
-        except Gone:
-            raise self.connection.gone() from None
+        except Gone as gone:
+            raise self.connection.gone(gone) from None
 
 
 class Catch:
@@ -228,7 +229,8 @@ class Catch:
         self.held: list[Event] = []
 
     def hold(self, event: Event) -> bool:
-        from tiniscript.cli.live_text import MARK, Value
+        from tiniscript.cli.live_mark import MARK
+        from tiniscript.cli.live_text import Value
 
         if event.name == "SHOW":
             is_mark = event.values["value"] == MARK and not event.values["is_yes_no"]

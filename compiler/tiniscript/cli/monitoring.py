@@ -90,23 +90,25 @@ def run(arguments: list[str], language: str) -> int:
 def _watch(
     connection: Connection, teller: Teller, seconds: int, board: Board | None = None
 ) -> None:
-    from tiniscript.link.line import Gone, now_ms
+    from tiniscript.cli.telling import Bookkeeping
+    from tiniscript.link.outcomes import Gone
 
+    bookkeeping = Bookkeeping()
     end_s = monotonic() + seconds if seconds else None
     try:
         while end_s is None or monotonic() < end_s:
             if board is not None:
-                board.draw(now_ms())
+                board.draw(int(monotonic() * 1000))
             found = connection.line.event()
-            if found is None:
+            if found is None or bookkeeping.hides(found[1]):
                 continue
             if board is not None:
                 board.take(*found)
             if found[1].name == "LOST":
                 raise Trouble(3, "link_lost", port=shown(connection.port))
             teller.tell(*found)
-    except Gone:
-        raise connection.gone() from None
+    except Gone as gone:
+        raise connection.gone(gone) from None
 
 
 def _rows(name: str) -> TextIO:

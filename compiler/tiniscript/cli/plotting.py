@@ -15,7 +15,7 @@ from tiniscript.cli.drawing import DOTS, FRAME_S, Screen
 from tiniscript.thousandths import as_text
 
 if TYPE_CHECKING:
-    from tiniscript.link.session import Event
+    from tiniscript.link.outcomes import Event
 
 SECONDS = 30  # from the left edge to the right one
 ROWS = 12  # at most

@@ -14,18 +14,19 @@ COLUMNS = 30
 class Progress:
     """Draws nothing before the blink is over, and nothing where nobody looks."""
 
-    def __init__(self, language: str) -> None:
+    def __init__(self, language: str, whole: int) -> None:
+        """`whole` is how much there is, in whatever unit."""
         self.label = text("sending", language)
-        self.done, self.whole = 0, 0
+        self.whole = whole
         self._begin_s = monotonic()
         self._is_seen = sys.stderr.isatty()
         self._drawn = ""
 
-    def draw(self) -> None:
+    def draw(self, done: int) -> None:
         if not self._is_seen or not self.whole or monotonic() - self._begin_s < BLINK_S:
             return
-        full = COLUMNS * self.done // self.whole
-        percent = 100 * self.done // self.whole
+        full = COLUMNS * done // self.whole
+        percent = 100 * done // self.whole
         line = f"{self.label} [{'#' * full}{'.' * (COLUMNS - full)}] {percent:3} %"
         if line != self._drawn:
             self._drawn = line

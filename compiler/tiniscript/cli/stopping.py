@@ -37,8 +37,12 @@ def run(arguments: list[str], language: str) -> int:
     options = parser.read(arguments)
     if options is None:
         return 0
-    with connected(options, language) as connection:
-        if not confirmed(connection.line):
-            raise Trouble(3, "not_confirmed", port=shown(connection.port))
-        print(text("stopped_on", language).format(port=shown(connection.port)))
-    return 0
+    while True:
+        with connected(options, language) as connection:
+            port = connection.port
+            if confirmed(connection.line):
+                print(text("stopped_on", language).format(port=shown(port)))
+                return 0
+            if not (connection.line.held_by and connection.line.has_ended):
+                raise Trouble(3, "not_confirmed", port=shown(port))
+        options.port = port  # its holder has ended in the middle: now it can be opened

@@ -16,7 +16,7 @@ from tiniscript.cli.trouble import Trouble
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from tiniscript.link.session import Event
+    from tiniscript.link.outcomes import Event
     from tiniscript.maps import Map
 
 FAULTED = 3  # a state of `link.messages`
@@ -166,6 +166,22 @@ class Teller:
             reason = why.strerror if isinstance(why, OSError) and why.strerror else str(why)
             file = shown(str(self.rows.name))
             raise Trouble(2, "unwritable_rows", file=file, why=reason) from None
+
+
+class Bookkeeping:
+    """Knows which values of a run are for `tsc live` alone, that keeps its variables so."""
+
+    def __init__(self) -> None:
+        self.is_on = False
+
+    def hides(self, event: Event) -> bool:
+        from tiniscript.cli.live_mark import MARK
+
+        if event.name != "SHOW":
+            self.is_on = False
+        elif event.values["value"] == MARK and not event.values["is_yes_no"]:
+            self.is_on = True
+        return self.is_on
 
 
 def json_value(numbers: dict[str, int]) -> object:

@@ -24,6 +24,7 @@ With a robot on a port (--port /dev/rfcomm0, COM5, ...; later the last used one)
   tsc upload prog.ts                 bring a program to the robot, start it, and stay
   tsc live 'F(2, 80)'                do a line at once; without a line: a prompt
   tsc stop                           stop the robot now
+  tsc link                           hold the port, so that other commands share it
   tsc start                          start the program that the robot holds
   tsc info                           what the robot says of itself
   tsc monitor                        print what the robot shows
@@ -58,6 +59,7 @@ Con un robot en un puerto (--port /dev/rfcomm0, COM5, ...; después, el último 
   tsc upload prog.ts                 lleva un programa al robot, lo inicia y se queda
   tsc live 'F(2, 80)'                hace una línea en el acto; sin línea: un diálogo
   tsc stop                           detiene el robot ahora
+  tsc link                           tiene el puerto, para que otros comandos lo compartan
   tsc start                          inicia el programa que tiene el robot
   tsc info                           lo que el robot dice de sí mismo
   tsc monitor                        imprime lo que el robot muestra

@@ -72,7 +72,7 @@ def run(arguments: list[str], language: str) -> int:
             return 0
         if options.reset or given:
             trim = (Trim() if options.reset else before)._replace(**given)
-            connection.ask(lambda session: session.trim(trim))
+            connection.ask(lambda session: session.trim(trim.data()))
         else:
             from tiniscript.cli.guiding import guided
 

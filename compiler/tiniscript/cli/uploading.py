@@ -15,9 +15,8 @@ from tiniscript.cli.trouble import Trouble
 from tiniscript.cli.virtual_options import takes_world
 
 if TYPE_CHECKING:
-    from tiniscript.cli.progress import Progress
-    from tiniscript.link.errands import Errand, Reply
-    from tiniscript.link.session import Session, Task
+    from tiniscript.link.asking import Asked, Asks
+    from tiniscript.link.errands import Reply
 
 HELP = (
     """\
@@ -114,10 +113,10 @@ def _upload(
     from tiniscript.cli.progress import Progress
 
     language = connection.language
-    progress = Progress(language)
+    progress = Progress(language, len(ready.image.code))
     try:
-        task = connection.do(lambda session: _task(session, ready, options, progress))
-        reply = connection.wait(task, progress.draw)
+        task = connection.do(lambda session: _task(session, ready, options))
+        reply = connection.wait(task, lambda: progress.draw(task.done_bytes))
     finally:
         progress.end()
     if reply.status:
@@ -141,31 +140,13 @@ def _upload(
     return code
 
 
-def _task(session: Session, ready: images.Ready, options: Namespace, progress: Progress) -> Task:
-    task = session.upload(ready.image, not options.no_run, not options.no_save, options.detach)
-    progress.whole = len(ready.image.code)
-    task.errand = _watched(task.errand, progress)
-    return task
-
-
-def _watched(errand: Errand, progress: Progress) -> Errand:
-    """The same errand; `progress` knows how much of the program has arrived."""
-    try:
-        request = next(errand)
-        while True:
-            reply = yield request
-            done = reply.values.get("next")
-            if isinstance(done, int):
-                progress.done = done
-            request = errand.send(reply)
-    except StopIteration as over:
-        outcome: Reply = over.value
-        return outcome
+def _task(session: Asks, ready: images.Ready, options: Namespace) -> Asked:
+    return session.upload(ready.image, not options.no_run, not options.no_save, options.detach)
 
 
 def _trouble(connection: Connection, reply: Reply, ready: images.Ready) -> Trouble:
     from tiniscript.link.messages import STATUSES
-    from tiniscript.link.session import LOST
+    from tiniscript.link.outcomes import LOST
 
     port = inputs.shown(connection.port)
     if reply.status == STATUSES["TOO_LARGE"]:

@@ -77,10 +77,12 @@ def single(name: str, **values: int | bytes) -> Errand:
     return (yield Request(name, values))
 
 
-def live(code: bytes, is_latched: bool) -> Errand:
+def live(code: bytes, is_latched: bool, kit: int, robot: Robot) -> Errand:
     """Run code once. Where a stop has latched the robot, this is the new run that may begin."""
     if len(code) > SHORT_BYTES:
         return Reply(STATUSES["TOO_LARGE"], SHORT_BYTES)
+    if kit not in (0, robot.kit):
+        return Reply(STATUSES["WRONG_KIT"], robot.kit)
     if is_latched:
         reply = yield Request("CLEAR")
         if reply.status != OK:

@@ -11,21 +11,16 @@ from collections.abc import Callable
 from contextlib import suppress
 from threading import Condition, Thread
 from time import monotonic
+from typing import IO
 
 import serial
 
-from tiniscript.link.errands import Reply
-from tiniscript.link.session import Event, Session, Task
+from tiniscript.link.asking import Asked, Asks
+from tiniscript.link.errands import OK, Reply, Robot
+from tiniscript.link.outcomes import LOOK_S, Event, Gone
+from tiniscript.link.session import Session
 
-LOOK_S = 0.1  # between two looks at what has come: Windows lets Ctrl-C through only then
-
-
-class Gone(Exception):
-    """The port is not there any more; `why` is what the system says."""
-
-    def __init__(self, why: str) -> None:
-        super().__init__(why)
-        self.why = why
+Told = tuple[int, Event]  # when it came (ms), and what
 
 
 def now_ms() -> int:
@@ -33,28 +28,53 @@ def now_ms() -> int:
 
 
 class Line:
-    """An open port and the session on it; all methods are for the thread that has made it."""
+    """An open port and the session on it.
 
-    def __init__(self, port: serial.SerialBase, session: Session) -> None:
+    `event` and `close` are for the thread that has made it, the rest is for any.
+    """
+
+    held_by = ""  # this process
+
+    def __init__(
+        self, port: serial.SerialBase, session: Session, lock: IO[bytes] | None = None
+    ) -> None:
+        """`lock` is closed after the port."""
         self.session = session
         self.heard = 0  # bytes
-        self.seen: set[str] = set()  # names of all events
+        self.is_echoed = False
         self._port = port
+        self._lock = lock
         self._news = Condition()
-        self._events: deque[tuple[int, Event]] = deque()
+        self._events: deque[Told] = deque()
+        self._under_way: list[Asked] = []
+        self._listener: Callable[[list[Told]], None] | None = None
         self._gone: str | None = None
         self._is_closing = False
         self._thread = Thread(target=self._run, name="link", daemon=True)
         self._thread.start()
 
-    def do(self, make: Callable[[Session], Task]) -> Task:
+    @property
+    def robot(self) -> Robot | None:
+        return self.session.robot
+
+    @property
+    def gone(self) -> str | None:
+        """Return why the port is not there any more, or None while it is."""
+        return self._gone
+
+    @property
+    def has_ended(self) -> bool:
+        return self._gone is not None
+
+    def do(self, make: Callable[[Asks], Asked]) -> Asked:
         """Have something done; it is under way when this returns."""
         with self._news:
             task = make(self.session)
+            self._under_way.append(task)
         self._wake()
         return task
 
-    def wait(self, task: Task, look: Callable[[], None] | None = None) -> Reply:
+    def wait(self, task: Asked, look: Callable[[], None] | None = None) -> Reply:
         """Wait for the outcome of a task, and call `look` now and then. Raises Gone."""
         while True:
             with self._news:
@@ -67,10 +87,7 @@ class Line:
             if look is not None:
                 look()
 
-    def ask(self, make: Callable[[Session], Task]) -> Reply:
-        return self.wait(self.do(make))
-
-    def event(self, limit_s: float = LOOK_S) -> tuple[int, Event] | None:
+    def event(self, limit_s: float = LOOK_S) -> Told | None:
         """Return the next event and when it came, or None where none comes. Raises Gone."""
         with self._news:
             if not self._events and self._gone is None:
@@ -87,6 +104,25 @@ class Line:
             self.session.stop(now_ms())
         self._wake()
 
+    def tell(self, event: Event) -> None:
+        """Add an event of this process to those that `event` returns."""
+        with self._news:
+            self._events.append((now_ms(), event))
+            self._news.notify_all()
+
+    def listen(self, listener: Callable[[list[Told]], None]) -> None:
+        """Have somebody called with new events, and when a task is over or the port is gone.
+
+        The thread of the line calls it, which waits meanwhile.
+        """
+        with self._news:
+            self._listener = listener
+
+    def runs(self, run: int) -> bool:
+        """Whether a run that was started here still goes on."""
+        with self._news:
+            return self.session.is_running and self.session.run == run
+
     def close(self) -> None:
         with self._news:
             self._is_closing = True
@@ -94,6 +130,8 @@ class Line:
         self._thread.join(2 * LOOK_S)
         with suppress(OSError):  # it is gone already
             self._port.close()
+        if self._lock is not None:
+            self._lock.close()
 
     def __enter__(self) -> Line:
         return self
@@ -128,6 +166,8 @@ class Line:
             with self._news:
                 self._gone = str(why)
                 self._news.notify_all()
+                if self._listener is not None:
+                    self._listener([])
 
     def _read(self) -> bytes:
         found = bytes(self._port.read(1))
@@ -142,8 +182,23 @@ class Line:
             self._port.write(data)
 
     def _tell(self) -> None:
+        """Pass on what has happened: to who waits here, and to who listens."""
         time_ms = now_ms()
-        for event in self.session.events():
-            self.seen.add(event.name)
-            self._events.append((time_ms, event))
+        told = [(time_ms, event) for event in self.session.events()]
+        over = [task for task in self._under_way if task.outcome is not None]
+        if over:
+            self._under_way = [task for task in self._under_way if task.outcome is None]
+            told += [(time_ms, event) for task in over for event in _start(task)]
+        self.is_echoed = self.is_echoed or any(event.name == "ECHO" for _, event in told)
+        self._events += told
         self._news.notify_all()
+        if self._listener is not None and (told or over):
+            self._listener(told)
+
+
+def _start(task: Asked) -> list[Event]:
+    """Return the event that a task has become a run, if it has."""
+    outcome = task.outcome
+    if not task.starts or outcome is None or outcome.status != OK:
+        return []
+    return [Event("STARTED", {name: outcome.values[name] for name in ("run", "program")})]

@@ -25,6 +25,7 @@ WINDOW = 1  # requests that a robot takes before it has answered
 REPLY = 0x80  # of a type: it is for the computer
 SEALED = 0x40  # of a type: a counter and a MAC follow the payload. Kept for later
 NAME_BYTES = 16
+TRIM_BYTES = 3
 
 STOP_BYTES = 8  # zeros that a computer sends to stop a robot
 STOP_RUN = 4  # zeros in a row that stop it
@@ -128,7 +129,7 @@ MESSAGES = (
     _message(12, "COMMIT", True, "checksum:u32", _RECEIPT, "The program is whole: its image's checksum."),
     _message(13, "ABORT", True, "", "", "Drops the program that was begun."),
     _message(14, "NAME", True, "name:rest=1..16", "", "Names the robot: UTF-8."),
-    _message(15, "TRIM", True, "trim:rest=0..3", "wheels:u8 balance:i8 least:u8",
+    _message(15, "TRIM", True, f"trim:rest=0..{TRIM_BYTES}", "wheels:u8 balance:i8 least:u8",
              "Sets the trim of the motors, three bytes like those of the reply, or only tells it."),
     # events: a robot sends these without being asked
     _message(32, "SHOW", False, "", "value:i32 is_yes_no:u8", "A value that a program shows."),

@@ -8,8 +8,6 @@ goes wrong has a name.
 from __future__ import annotations
 
 import errno
-import sys
-from pathlib import Path
 from threading import Thread
 from typing import NamedTuple
 
@@ -65,21 +63,6 @@ def listed() -> list[Found]:
         description = each.description if each.description != "n/a" else ""
         found.append(Found(each.device, description))
     return sorted(found)
-
-
-def is_address(port: str) -> bool:
-    """Whether a port is reached over a network: no system lists it."""
-    return "://" in port
-
-
-def is_there(port: str) -> bool:
-    """Whether it makes sense to open a port."""
-    if is_address(port) or sys.platform == "win32":
-        return True
-    try:
-        return Path(port).exists()
-    except (OSError, ValueError):
-        return False
 
 
 def opened(port: str, baud: int, limit_s: float = OPEN_S) -> serial.SerialBase:

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Mapping
-from typing import NamedTuple
 
 from tiniscript.bytecode import ISA_MAJOR, ISA_MINOR
 from tiniscript.image import Image
@@ -31,8 +30,8 @@ from tiniscript.link.messages import (
     read,
     written,
 )
+from tiniscript.link.outcomes import CANCELLED, LOST, Event
 from tiniscript.link.receiver import Receiver
-from tiniscript.link.trim import Trim
 
 ROUND_MS = 120  # of two radios and a robot, without the bytes
 RETRY_MS = 80  # more for each try,
@@ -43,22 +42,9 @@ BEAT_MS = 200  # between two frames while something runs
 IDLE_BEAT_MS = 1000  # while nothing does
 DEAF_MS = 3000  # a heartbeat without an answer for so long: the link is lost
 STOP_MS = 100  # between two stop sequences
-LOST, CANCELLED = -1, -2  # outcomes that no robot sends
 
 RUNNING = [name for name, _ in STATES].index("RUNNING")
 _STALE = STATUSES["STALE"]
-
-
-class Event(NamedTuple):
-    """What there is to tell: an event of the robot by its name, or one of these.
-
-    TEXT (`text`): a line of text came. MISSED (`count`): so many events did not arrive.
-    LOST: nothing is heard of the robot any more. ECHO: what is sent comes back.
-    ENDED: the program has ended, and the event that says how did not arrive.
-    """
-
-    name: str
-    values: Mapping[str, int | bytes]
 
 
 class Task:
@@ -76,6 +62,7 @@ class Task:
         self.deadline_ms = 0
         self.starts = starts  # a program runs when it is done
         self.is_own = is_own  # nobody has asked for it
+        self.done_bytes = 0  # of a program, that have arrived
         self.outcome: Reply | None = None
 
 
@@ -130,8 +117,9 @@ class Session:
         errand = self._open_then(lambda: errands.start(is_detached, self.is_latched))
         return self._add(Task(errand, starts=True))
 
-    def live(self, code: bytes) -> Task:
-        errand = self._open_then(lambda: errands.live(code, self.is_latched))
+    def live(self, code: bytes, kit: int = 0) -> Task:
+        """`kit` is the one whose words the code uses, or 0 for none."""
+        errand = self._open_then(lambda: self._live(code, kit))
         return self._add(Task(errand, starts=True))
 
     def upload(
@@ -146,12 +134,11 @@ class Session:
         return self._add(Task(errand, starts=runs and image.start == "SI"))
 
     def name(self, name: bytes) -> Task:
-        request = Request("NAME", {"name": name})
-        return self._add(Task(self._open_then(lambda: errands.patient(request))))
+        return self._add(Task(self._open_then(lambda: self._name(name))))
 
-    def trim(self, trim: Trim | None = None) -> Task:
+    def trim(self, trim: bytes = b"") -> Task:
         """Set the trim of the motors, or only ask for it."""
-        request = Request("TRIM", {"trim": trim.data() if trim is not None else b""})
+        request = Request("TRIM", {"trim": trim})
         return self._add(Task(self._open_then(lambda: errands.patient(request))))
 
     def fetch(self) -> Task:
@@ -170,6 +157,16 @@ class Session:
     @property
     def is_running(self) -> bool:
         return self._state == RUNNING
+
+    @property
+    def is_open(self) -> bool:
+        """Whether the robot has answered HELLO, and was not lost since."""
+        return self._is_open
+
+    @property
+    def run(self) -> int | None:
+        """The last run that this session has started."""
+        return self._run
 
     # -- bytes in, bytes out ----------------------------------------------------------------------
 
@@ -265,9 +262,32 @@ class Session:
                 return reply
         return (yield from make())
 
+    def _live(self, code: bytes, kit: int) -> Errand:
+        assert self.robot
+        yield from self._speak_for(kit)
+        return (yield from errands.live(code, self.is_latched, kit, self.robot))
+
     def _upload(self, image: Image, mode: int) -> Errand:
         assert self.robot
-        return errands.upload(image, mode, self.robot, self._isa, self.is_latched)
+        yield from self._speak_for(image.kit)
+        return (yield from errands.upload(image, mode, self.robot, self._isa, self.is_latched))
+
+    def _name(self, name: bytes) -> Errand:
+        reply = yield from errands.patient(Request("NAME", {"name": name}))
+        if reply.status == OK and self.robot:
+            self.robot = errands.described({**self.robot.values, "name": name})
+        return reply
+
+    def _speak_for(self, kit: int) -> Errand:
+        """Say that our programs are for the robot's kit, if HELLO has said another one.
+
+        Those who share a session may have chosen different robots.
+        """
+        assert self.robot
+        if kit == self._kit or kit != self.robot.kit:
+            return Reply(OK)
+        self._kit = kit
+        return (yield from self._hello())
 
     def _next_task(self, now_ms: int) -> None:
         if self._tasks:
@@ -337,6 +357,9 @@ class Session:
         if message.name == "CLEAR" and reply.status == OK:
             self._state = 0
         self._learn(message.name, reply.values)
+        done = reply.values.get("next")
+        if self._task and isinstance(done, int):
+            self._task.done_bytes = done
         self._advance(reply, now_ms)
 
     def _learn(self, name: str, values: Mapping[str, int | bytes]) -> None:

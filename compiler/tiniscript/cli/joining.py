@@ -1,0 +1,89 @@
+"""The way to a port: through the command that holds it, else by opening it.
+
+Two commands may want the same port at once. The port's own lock decides, and for an address, which
+has none, a file's; whoever loses looks for the winner for a moment before it says that the port is
+busy.
+"""
+
+from __future__ import annotations
+
+from time import monotonic, sleep
+from typing import IO, TYPE_CHECKING
+
+from tiniscript.cli.inputs import shown
+from tiniscript.cli.trouble import Trouble
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from tiniscript.link.asking import Way
+    from tiniscript.link.line import Line
+    from tiniscript.sharing.guest import Guest
+    from tiniscript.sharing.host import Host
+
+BUSY_S = 1.5  # for which a port may be busy: another command is just leaving, or will share it
+AGAIN_S = 0.05
+SHARED = ("link", "live", "monitor", "start", "upload")  # verbs that stay on a port, and share it
+
+
+def way_to(port: str, verb: str, open_line: Callable[[IO[bytes] | None], Line]) -> Way:
+    """Return the way to a port. Raises Trouble where it is busy or does not open.
+
+    `open_line` opens the port; what it is given is closed with the line.
+    """
+    from tiniscript.sharing import holders
+
+    end_s = monotonic() + BUSY_S
+    while True:
+        guest = _joined(port, verb)
+        if guest is not None:
+            return guest
+        try:
+            line = open_line(_claimed(port))
+            holders.forget(port)  # the port is ours: whoever held it has crashed
+            return line
+        except Trouble as trouble:
+            if trouble.key != "port_busy" or monotonic() > end_s:
+                raise
+        sleep(AGAIN_S)
+
+
+def shared(way: Way, port: str, baud: int, verb: str) -> Host | None:
+    """Let others use a way, if this verb does so and they can be told."""
+    if verb not in SHARED or way.held_by:
+        return None
+    from tiniscript.link.line import Line
+    from tiniscript.sharing.host import Host
+
+    assert isinstance(way, Line)
+    try:
+        return Host(way, port, baud, verb)
+    except OSError:
+        return None
+
+
+def _joined(port: str, verb: str) -> Guest | None:
+    from tiniscript.sharing.guest import OtherVersion, joined
+
+    try:
+        return joined(port, verb)
+    except OtherVersion as other:
+        values = {"verb": other.holder.verb, "theirs": shown(other.version)}
+        raise Trouble(3, "holder_other", port=shown(port), **values) from None
+
+
+def _claimed(port: str) -> IO[bytes] | None:
+    """Return the lock of an address; for other ports, and where there are no locks, nothing."""
+    from tiniscript.link.names import is_address
+
+    if not is_address(port):
+        return None
+    from tiniscript.sharing import holders
+
+    try:
+        lock = holders.claimed(port)
+    except OSError:
+        return None
+    if lock is None:
+        raise Trouble(3, "port_busy", port=shown(port), why="")
+    return lock
