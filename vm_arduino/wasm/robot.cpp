@@ -76,7 +76,7 @@ void say() {
 
 namespace tiniscript {
 
-void robot_motors(int8_t left, int8_t right) {
+void board_motors(int16_t left, int16_t right) {
   if (!is_latched) host_motors(now_ms(), left, right);
 }
 

@@ -22,6 +22,7 @@ from tiniscript.virtual.world import World, WorldRefused
 __all__ = ("POWER_ON", "RESET_BUTTON", "Settings", "VirtualRobot")
 
 _FAULT_NAMES = {number: name for number, name, _ in FAULTS}
+LEVELS_PER_PERCENT = 2.55  # of a motor's power
 BITS = 10  # of a byte on the line
 EVENTS = 100_000  # that are kept until somebody takes them
 _CLOCK = 1 << 32
@@ -147,8 +148,10 @@ class VirtualRobot:
         return self._firmware.memory()
 
     def motors(self, now_ms: int, left: int, right: int) -> None:
-        self._set_motors(now_ms, left, right)
-        self._traced.motors(left, right)
+        """Set what the motors get, -255 to 255: the trim has been looked at."""
+        powers = (left / LEVELS_PER_PERCENT, right / LEVELS_PER_PERCENT)
+        self._set_motors(now_ms, *powers)
+        self._traced.motors(*(round(power) for power in powers))
 
     def off(self, now_ms: int) -> None:
         pass  # `stop` says it
@@ -198,7 +201,7 @@ class VirtualRobot:
         self.now_ms = self._began_ms + now_ms
         self._traced.now_ms = self.now_ms
 
-    def _set_motors(self, now_ms: int, left: int, right: int) -> None:
+    def _set_motors(self, now_ms: int, left: float, right: float) -> None:
         self._at(now_ms)
         made = []
         for power, percent in zip((left, right), self.settings.motors, strict=True):
