@@ -70,6 +70,18 @@ def shared(factory: pytest.TempPathFactory) -> Path:
     return base.parent if base.name.startswith("popen-") else base
 
 
+def changed(folder: Path, name: str, old: str, new: str, environment: str = "uno") -> Path:
+    """Return the sketch with a change in a file of `src/`, built in a folder."""
+    project = copied(folder)
+    file = project / "src" / name
+    text = file.read_text(encoding="utf-8")
+    assert text.count(old) == 1, f"{name} has another {old!r} now"
+    file.write_text(text.replace(old, new), encoding="utf-8")
+    code, said = pio(project, "run", "-e", environment)
+    assert code == 0, said[-3000:]
+    return project / ".pio" / "build" / environment / "firmware.elf"
+
+
 def firmware(board: str, own: Path, shared: Path) -> Path:
     """Return the sketch for a board, an ELF file, built once for all workers of a session."""
     elf = shared / f"{board}.elf"

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.machines.uno import needed
-from tests.platformio import copied, pio
+from tests.platformio import changed
 from tests.test_uno_robot import AWAY, BAUD, FORWARD, NAMES, OFF, computer, send, states
 from tiniscript.link.errands import OK
 from tools.uno import CYCLES_PER_MS, Uno
@@ -19,14 +19,8 @@ WATCHDOG = 4  # a reset in docs/link.md
 def built(folder: Path, hang: str, environment: str = "uno") -> Path:
     """Return the firmware that hangs when the button is pressed."""
     needed()
-    project = copied(folder)
-    main = project / "src" / "main.cpp"
-    text = main.read_text(encoding="utf-8")
-    assert text.count(PRESSED) == 1
-    main.write_text(text.replace(PRESSED, f"if (press == Press::kPressed) {hang}"), "utf-8")
-    code, said = pio(project, "run", "-e", environment)
-    assert code == 0, said[-3000:]
-    return project / ".pio" / "build" / environment / "firmware.elf"
+    hangs = f"if (press == Press::kPressed) {hang}"
+    return changed(folder, "main.cpp", PRESSED, hangs, environment)
 
 
 @pytest.mark.parametrize(
