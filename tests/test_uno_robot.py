@@ -22,7 +22,7 @@ BAUD = 9600
 NAMES = {
     "left": "D5", "left forward": "D7", "left backward": "D8",
     "right": "D6", "right forward": "D9", "right backward": "D10",
-    "button": "D2", "echo": "D3", "trigger": "D4", "light": "D13",
+    "button": "D2", "echo": "D3", "trigger": "D4", "light": "D13", "radio": "D12",
 }  # fmt: skip
 MOTORS = [name for name in NAMES if "left" in name or "right" in name]
 OFF = dict.fromkeys(MOTORS, "low")
@@ -180,6 +180,23 @@ def test_the_button_stops(uno: Uno) -> None:
     wired.run(500)
     assert states(uno) == OFF
     assert "STOPPED" in [event.name for event in wired.session.events()]
+
+
+def test_a_radio_that_nobody_is_connected_to_any_more_stops_the_robot(uno: Uno) -> None:
+    """Also where the program needs no tether: the HC-05's STATE pin says so."""
+    uno.drive("radio", True)
+    wired = computer(uno)
+    send(wired, AWAY, is_detached=True)
+    uno.run_ms(1500)
+    assert states(uno) == FORWARD
+    left = uno.cycle
+    uno.drive("radio", False)
+    uno.run_ms(5)
+    assert states(uno) == OFF
+    assert max(uno.pins[name].cycle for name in MOTORS) - left < CYCLES_PER_MS
+    uno.drive("radio", True)
+    uno.run_ms(500)
+    assert states(uno) == OFF
 
 
 def test_a_person_at_a_terminal_is_told(uno: Uno) -> None:
