@@ -17,12 +17,12 @@ static const struct Output mega_outputs[] = {
 
 static const struct Board boards[] = {
     {
-        "uno", "atmega328p", 1024, {6, 18, 19, 20, 22}, 14, 6, 3,
+        "uno", "atmega328p", 1024, {6, 18, 19, 20, 22}, 14, 6, 3, 2,
         "D0D1D2D3D4D5D6D7B0B1B2B3B4B5" "C0C1C2C3C4C5",
         uno_outputs, sizeof uno_outputs / sizeof *uno_outputs,
     },
     {
-        "mega", "atmega2560", 4096, {12, 25, 26, 27, 30}, 54, 16, 6,
+        "mega", "atmega2560", 4096, {12, 25, 26, 27, 30}, 54, 16, 6, 8,
         "E0E1E4E5G5E3H3H4H5H6B4B5B6B7J1J0H1H0D3D2D1D0A0A1A2A3A4A5A6A7C7C6C5C4C3C2C1C0"
         "D7G2G1G0L7L6L5L4L3L2L1L0B3B2B1B0" "F0F1F2F3F4F5F6F7K0K1K2K3K4K5K6K7",
         mega_outputs, sizeof mega_outputs / sizeof *mega_outputs,

@@ -4,6 +4,7 @@
 // phase-correct modes that Arduino gives to timers 1 and 2.
 
 #include <simavr/avr_adc.h>
+#include <simavr/avr_extint.h>
 #include <simavr/avr_ioport.h>
 #include <stdio.h>
 #include <string.h>
@@ -248,7 +249,16 @@ void analog_set(int channel, int count) {
   avr_raise_irq(irq, (uint32_t)rounded_up);  // the chip rounds down
 }
 
+// Where a low level asks for an interrupt again and again, libsimavr looks at the pin all the time,
+// also while nobody wants that interrupt: ten times slower. So it asks once.
+static void levels_ask_once(void) {
+  for (uint8_t number = 0; number < board->external_interrupts; number++) {
+    avr_extint_set_strict_lvl_trig(avr, number, 0);
+  }
+}
+
 void pins_after_reset(void) {
+  levels_ask_once();  // a reset has forgotten it
   for (int k = 0; k < kRegisters; k++) {
     if (registers[k].timer < board->timers) timer_written(NULL, 0, &registers[k]);
   }

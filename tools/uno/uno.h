@@ -49,6 +49,7 @@ struct Board {
   int digital_pins;
   int analog_pins;
   int timers;
+  uint8_t external_interrupts;
   const char* places;  // of each pin: the letter of its port, and its bit
   const struct Output* outputs;
   unsigned output_count;
