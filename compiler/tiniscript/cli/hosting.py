@@ -176,7 +176,6 @@ class _Stage:
         said = text("robot_here", language).format(
             robot=shown(self.options.name or "") or robot.profile.labels[language]["robot"],
             world=robot.world.labels[language],
-            port=guests.terminal or guests.address,
         )
         print(said, file=sys.stderr, flush=True)
 

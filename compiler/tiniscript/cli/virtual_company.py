@@ -139,10 +139,9 @@ class Company:
             while not self._is_over:
                 self.host.turn(FRAME_S)
                 with self._drawing:
-                    events = self.robot.take_events()
-                    for event in events if self._picture is not None else []:
-                        assert self._picture is not None
-                        self._picture.take(event)
+                    if self._picture is not None:
+                        for event in self.robot.take_events():
+                            self._picture.take(event)
                     if self.screen is not None and monotonic() >= self._frame_s:
                         self._frame_s = monotonic() + FRAME_S
                         self._draw(self.screen)

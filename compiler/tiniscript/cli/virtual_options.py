@@ -129,7 +129,7 @@ def check_picture(options: Namespace) -> None:
     except (OSError, ValueError):
         is_folder, has_folder = False, False
     if not options.plot or is_folder or not has_folder:
-        raise Trouble(2, "bad_plot", file=shown(options.plot) or "''")
+        raise Trouble(2, "bad_plot", found=shown(options.plot) or "''")
     try:
         import PIL.Image  # noqa: F401
     except ImportError as why:

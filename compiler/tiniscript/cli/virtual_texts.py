@@ -37,8 +37,8 @@ VIRTUAL_TEXTS: dict[str, tuple[str, str]] = {
     "no_pty": ("tsc: this system has no pseudo-terminals. Leave --pty out and use the address of the robot.",
                "tsc: este sistema no tiene pseudoterminales. Quita --pty y usa la dirección del robot."),
     # what it says
-    "robot_here": ("{robot} in the world \"{world}\". Another terminal:  tsc upload prog.ts --port {port}   Ctrl-C ends.",
-                   "{robot} en el mundo \"{world}\". Otra terminal:  tsc upload prog.ts --port {port}   Ctrl-C termina."),
+    "robot_here": ("{robot} in the world \"{world}\". In another terminal:  tsc upload prog.ts --virtual   Ctrl-C ends.",
+                   "{robot} en el mundo \"{world}\". En otra terminal:  tsc upload prog.ts --virtual   Ctrl-C termina."),
     "robot_keys": ("b: start button   r: reset   p: off and on   q: end",
                    "b: botón de inicio   r: reinicio   p: apagar y encender   q: terminar"),
     "drove": ("The virtual robot drove {cm} cm in {seconds} s and touched nothing.",

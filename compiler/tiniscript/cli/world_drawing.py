@@ -8,10 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
+from math import floor, log10
 
 from rich.text import Text
 
-from tiniscript.cli.drawing import ARROWS, DOTS, Picture, Sketch
+from tiniscript.cli.drawing import ARROWS, DOTS, ROUND, Picture, Sketch
 from tiniscript.cli.texts import text
 from tiniscript.robots.way import Pose
 from tiniscript.run import Event
@@ -76,31 +77,30 @@ class WorldSketch(Sketch):
     def ruler(self) -> str:
         if self.floor is None:
             return ""
-        cm = 20 * self.floor.cm_per_dot
-        return f" ├────────┤ {cm:.3g} cm "
+        return f" ├────────┤ {20 * self.floor.cm_per_dot:g} cm "
 
     def drawn(self, columns: int, rows: int, now_ms: float) -> list[Text]:
-        floor = self.floor
-        if floor is None or (floor.columns, floor.rows) != (columns, rows):
-            floor = self.floor = Floor(self.world, columns, rows)
+        ground = self.floor
+        if ground is None or (ground.columns, ground.rows) != (columns, rows):
+            ground = self.floor = Floor(self.world, columns, rows)
         driving = self.robot.driving
         pose = self.robot.pose
-        way = floor.way(driving.corners, pose)
+        way = ground.way(driving.corners, pose)
         hull = bytearray(columns * rows)
         outline = driving.hull.outline(pose, 16)
-        floor.join(hull, [*outline, outline[0]])
+        ground.join(hull, [*outline, outline[0]])
         lines = []
         for row in range(rows):
             line = Text()
             for k in range(row * columns, (row + 1) * columns):
-                bits = floor.walls[k] | way[k] | hull[k]
+                bits = ground.walls[k] | way[k] | hull[k]
                 style = ROBOT if hull[k] else WAY if way[k] else WALLS
                 line.append(chr(0x2800 + bits) if bits else " ", style=style)
             lines.append(line)
         for lamp in self.world.lamps:
-            floor.mark(lines, lamp.place, "*", LAMP)
+            ground.mark(lines, lamp.place, "*", LAMP)
         arrow = ARROWS[round((pose.heading - 90) / 45) % 8]
-        floor.mark(lines, pose, arrow, ROBOT)
+        ground.mark(lines, pose, arrow, ROBOT)
         return lines
 
 
@@ -109,9 +109,11 @@ class Floor:
 
     def __init__(self, world: World, columns: int, rows: int) -> None:
         self.columns, self.rows = columns, rows
-        self.cm_per_dot = max(
+        needed = max(
             world.width_cm / max(1, 2 * columns - 1), world.height_cm / max(1, 4 * rows - 1)
         )
+        tens = 10.0 ** floor(log10(needed))
+        self.cm_per_dot = next(each * tens for each in (*ROUND, 20) if each * tens >= needed)
         self.height_cm = world.height_cm
         self.walls = bytearray(columns * rows)
         self._way = bytearray(columns * rows)
