@@ -326,6 +326,9 @@ def _asked(language: str, can_bring: bool) -> str:
     for number, port in enumerate(choices, 1):
         more = "   ".join(filter(None, (names.get(port), about.get(port))))
         print(f"  {number}  {shown(port)}   {shown(more)}".rstrip(), file=sys.stderr)
+    if can_bring:
+        choices.append(VIRTUAL)
+        print(f"  {len(choices)}  {text('choice_virtual', language)}", file=sys.stderr)
     while True:
         print(text("choose_number", language).format(high=len(choices)), end="", file=sys.stderr,
               flush=True)  # fmt: skip
@@ -333,7 +336,7 @@ def _asked(language: str, can_bring: bool) -> str:
         if not answer:
             raise Trouble(3, "which_port")
         answer = answer.strip()
-        if answer in choices:
+        if answer and answer in choices:
             return answer
         if answer.isascii() and answer.isdigit() and 1 <= int(answer[:9]) <= len(choices):
             return choices[int(answer[:9]) - 1]

@@ -1,0 +1,135 @@
+"""The virtual robot on a real pseudo-terminal: what a person sees, and what keys do.
+
+`pyte` plays the terminal.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import struct
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.virtual import missing
+
+NO_PTY = "Windows has no pseudo-terminals of this kind"
+pty = pytest.importorskip("pty", reason=NO_PTY)
+fcntl = pytest.importorskip("fcntl", reason=NO_PTY)
+termios = pytest.importorskip("termios", reason=NO_PTY)
+pyte = pytest.importorskip("pyte", reason="pyte, a terminal for tests, is not installed")
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
+
+COLUMNS, ROWS = 90, 30
+GLANCE = 1000  # bytes
+
+
+class Terminal:
+    """A command on a terminal of its own."""
+
+    def __init__(self, *arguments: str | Path) -> None:
+        self._ours, theirs = pty.openpty()
+        fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", ROWS, COLUMNS, 0, 0))
+        hidden = ("COLUMNS", "LINES", "NO_COLOR", "FORCE_COLOR", "CI", "TTY_COMPATIBLE")
+        env = {name: value for name, value in os.environ.items() if name not in hidden}
+        env |= {"TERM": "xterm-256color"}
+        self._process = subprocess.Popen(
+            [sys.executable, "-m", "tiniscript", *map(str, arguments)],
+            stdin=theirs, stdout=theirs, stderr=theirs, env=env,
+        )  # fmt: skip
+        os.close(theirs)
+        self._screen = pyte.Screen(COLUMNS, ROWS)
+        self._stream = pyte.ByteStream(self._screen)
+        self.written = b""
+        self._unseen = b""
+
+    def lines(self) -> list[str]:
+        return [line.rstrip() for line in self._screen.display]
+
+    def until(self, pattern: str) -> re.Match[str]:
+        """Wait until something is to be seen."""
+        while True:
+            found = re.search(pattern, "\n".join(self.lines()))
+            if found:
+                return found
+            assert self._take(), f"it ends without {pattern}: {self.lines()}"
+
+    def type(self, keys: str) -> None:
+        os.write(self._ours, keys.encode())
+
+    def end(self) -> int:
+        while self._take():
+            pass
+        os.close(self._ours)
+        return self._process.wait()
+
+    def _take(self) -> bool:
+        """Draw a part of what was written: small, so that nothing is missed that is seen briefly."""
+        if not self._unseen:
+            try:
+                self._unseen = os.read(self._ours, 65536)
+            except OSError:  # Linux: the other end is closed
+                return False
+            self.written += self._unseen
+        part, self._unseen = self._unseen[:GLANCE], self._unseen[GLANCE:]
+        self._stream.feed(part)
+        return bool(part)
+
+
+def test_upload_draws_the_world_and_the_way(tmp_path: Path) -> None:
+    program = tmp_path / "drive.ts"
+    program.write_text("SI|F(0.6, 80)\nSHOW(DISTANCE)\nX = 0; SHOW(1 / X)", encoding="utf-8")
+    terminal = Terminal("upload", program, "--virtual", "--world", "light")
+    terminal.until(r"left motor +80 %")
+    assert terminal.end() == 1
+    lines = terminal.lines()
+    drawn = "\n".join(lines)
+    assert "── TiniBot ── lamps in the dark ──" in drawn
+    assert re.search(r"time +0\.6 s +fault", drawn)
+    assert re.search(r"DISTANCE +154\.5 cm +distance sensor", drawn)
+    assert re.search(r"SHOW +154\.5", drawn)
+    assert "→" in drawn
+    assert drawn.count("*") == 2  # the lamps
+    assert "The virtual robot drove 22 cm" in drawn
+    assert "fault DIVIDE_BY_ZERO" in drawn
+    assert terminal.written.count(b"\x1b[?25l") == terminal.written.count(b"\x1b[?25h")
+
+
+def test_keys_push_the_buttons_of_the_robot(tmp_path: Path) -> None:
+    memory = tmp_path / "kept.bin"
+    first = Terminal("upload", "-e", "SB|LOOP(FOREVER);L(1, 40);END_LOOP", "--virtual")
+    assert first.end() == 0
+    terminal = Terminal("robot", "--memory", memory, "--lang", "es")
+    terminal.until(r"b: botón de inicio")
+    upload = [sys.executable, "-m", "tiniscript", "upload", "--virtual", "-e",
+              "SB|LOOP(FOREVER);L(1, 40);END_LOOP"]  # fmt: skip
+    assert subprocess.run(upload, capture_output=True, check=False).returncode == 0
+    terminal.type("b")
+    terminal.until(r"motor der\. +40 %")
+    terminal.type("b")
+    terminal.until(r"s +detenido")
+    terminal.type("r")
+    terminal.type("b")
+    terminal.until(r"motor der\. +40 %")
+    terminal.type("p")
+    terminal.until(r"s +apagado")
+    terminal.type("q")
+    assert terminal.end() == 0
+    assert "El robot virtual recorrió 0 cm" in "\n".join(terminal.lines())
+
+
+@pytest.mark.parametrize("is_wanted", [True, False])
+def test_without_a_robot_the_virtual_one_is_offered(is_wanted: bool) -> None:
+    """On a computer without any port with a question, else as one of the ports."""
+    terminal = Terminal("upload", "-e", "SI|F(0.1, 50)")
+    asked = terminal.until(r"\[Y/n\]|1 to (\d+):")
+    if asked[1]:
+        terminal.type(f"{asked[1]}\n" if is_wanted else "\x04")
+    else:
+        terminal.type("\n" if is_wanted else "n\n")
+    assert terminal.end() == (0 if is_wanted else 3)
+    drawn = "\n".join(terminal.lines())
+    assert ("The virtual robot drove" in drawn) == is_wanted
