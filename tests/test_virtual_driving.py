@@ -53,7 +53,7 @@ def test_segments_cross_or_have_a_distance() -> None:
     ],
 )
 def test_a_cone_sees_the_nearest_point_inside(heading: float, half: float, found: float) -> None:
-    least = seen(ACROSS, Point(0, 0), math.radians(heading), math.radians(half))
+    least = seen([ACROSS], Point(0, 0), math.radians(heading), math.radians(half))
     assert least == pytest.approx(found)
 
 

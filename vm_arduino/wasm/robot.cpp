@@ -1,7 +1,7 @@
 // A whole robot as a WebAssembly module: the virtual one of `tsc robot`.
 //
 // The firmware with a board that is made of numbers. Knows under which names it is called from
-// outside, keeps the time of the UART and of the EEPROM, and imports what a robot does in its
+// outside, keeps the time of the UART and of the EEPROM, and notes what the robot does in its
 // world. No heap and no library. One instance is one robot from power-on to power-off.
 // `virtual/module.py` is the other side.
 
@@ -16,18 +16,8 @@
 
 using namespace tiniscript;
 
-// What happens has its time: milliseconds since power-on.
-imported("motors") void host_motors(uint32_t now_ms, int32_t left, int32_t right);
-imported("off") void host_off(uint32_t now_ms);
-imported("read") int32_t host_read(uint32_t now_ms, uint32_t sensor);
-imported("beep") void host_beep(uint32_t now_ms, uint32_t hertz, uint32_t duration_ms);
-imported("show") void host_show(uint32_t now_ms, int32_t value, int32_t is_yes_no);
-imported("set") void host_set(uint32_t now_ms, uint32_t actuator, int32_t value);
-imported("stop") void host_stop(uint32_t now_ms);
-imported("release") void host_release(uint32_t now_ms);
-imported("light") void host_light(uint32_t is_on);
-imported("finished") void host_finished(uint32_t now_ms);
-imported("faulted") void host_faulted(uint32_t now_ms);
+// There are notes to be read. Where the last one is about a sensor, `reading` is to be filled.
+imported("look") void host_look();
 
 namespace {
 
@@ -50,7 +40,39 @@ bool is_latched = true;
 int32_t readings[256];
 uint8_t memory[kMemoryBytes];
 
+// What the robot does, and when: milliseconds since power-on. `what` is one of kMotors to kFaulted.
+struct Note {
+  uint32_t now_ms;
+  uint32_t what;
+  int32_t first;
+  int32_t second;
+};
+
+enum What : uint32_t {
+  kMotors = 1,
+  kRead,
+  kBeep,
+  kShow,
+  kSet,
+  kStop,
+  kRelease,
+  kLight,
+  kFinished,
+  kFaulted,
+};
+
+constexpr uint32_t kNotes = 256;
+
+Note notes[kNotes];
+uint32_t noted;
+int32_t reading;
+
 uint32_t now_ms() { return static_cast<uint32_t>(now_us / 1000); }
+
+void note(What what, int32_t first = 0, int32_t second = 0) {
+  if (noted == kNotes) host_look();
+  notes[noted++] = {now_ms(), what, first, second};
+}
 
 void hear() {
   while (heard < to_hear && hears_us <= now_us) {
@@ -77,39 +99,43 @@ void say() {
 namespace tiniscript {
 
 void board_motors(int16_t left, int16_t right) {
-  if (!is_latched) host_motors(now_ms(), left, right);
+  if (!is_latched) note(kMotors, left, right);
 }
 
-void robot_off() { host_off(now_ms()); }
+void robot_off() {}  // `board_stop` says it
 
 bool robot_read(uint8_t sensor, int32_t* value) {
-  *value = host_read(now_ms(), sensor);
+  note(kRead, sensor);
+  host_look();
+  *value = reading;
   return true;
 }
 
-void robot_beep(uint16_t hertz, uint32_t duration_ms) { host_beep(now_ms(), hertz, duration_ms); }
+void robot_beep(uint16_t hertz, uint32_t duration_ms) {
+  note(kBeep, hertz, static_cast<int32_t>(duration_ms));
+}
 
-void robot_set(uint8_t actuator, int32_t value) { host_set(now_ms(), actuator, value); }
+void robot_set(uint8_t actuator, int32_t value) { note(kSet, actuator, value); }
 
 void board_stop() {
   is_latched = true;
-  host_stop(now_ms());
+  note(kStop);
 }
 
 void board_release() {
   is_latched = false;
-  host_release(now_ms());
+  note(kRelease);
 }
 
 bool board_has_stalled() { return false; }
 
 void board_forget() {}
 
-void board_light(bool is_on) { host_light(is_on); }
+void board_light(bool is_on) { note(kLight, is_on); }
 
-void board_finished() { host_finished(now_ms()); }
+void board_finished() { note(kFinished); }
 
-void board_faulted() { host_faulted(now_ms()); }
+void board_faulted() { note(kFaulted); }
 
 bool nvm_is_ready() { return now_us >= writes_us; }
 
@@ -129,7 +155,7 @@ namespace tiniscript {
 
 bool watched_show(int32_t value, bool is_yes_no) {
   const bool is_taken = robot_show(value, is_yes_no);
-  if (is_taken) host_show(now_ms(), value, is_yes_no);
+  if (is_taken) note(kShow, value, is_yes_no);
   return is_taken;
 }
 
@@ -142,6 +168,11 @@ exported("memory_bytes") uint32_t module_memory_bytes() { return kMemoryBytes; }
 exported("inbox") uint8_t* module_inbox() { return inbox; }
 exported("outbox") uint8_t* module_outbox() { return outbox; }
 exported("box_bytes") uint32_t module_box_bytes() { return kBoxBytes; }
+
+// What there is to be seen, and how many notes; whoever looks makes that 0.
+exported("notes") Note* module_notes() { return notes; }
+exported("noted") uint32_t* module_noted() { return &noted; }
+exported("reading") int32_t* module_reading() { return &reading; }
 
 // Power on. `line_us` is how long a byte takes on the line, `eeprom_us` how long in the EEPROM.
 exported("begin") void module_begin(uint32_t kit, uint32_t sensors, uint32_t actuators,

@@ -18,6 +18,7 @@ TOUCH_CM = 0.3  # nearer than that is touching
 STEP_MS = 10.0  # of a robot that touches something
 STRIDE_MS = 100.0  # after which a place is kept
 KEPT = 20_000  # corners of the way; then every other one goes
+EXACT_CM = 1e-6  # less than that inside is not inside
 PUSHES = 6  # at one place, out of what is touched there
 
 
@@ -57,12 +58,11 @@ class Hull:
         """Return the nearest obstacle, or None where there is none at all."""
         spine = self.spine(pose)
         middle_x, middle_y = (spine.a.x + spine.b.x) / 2, (spine.a.y + spine.b.y) / 2
-        half = (self.front_cm - self.back_cm) / 2
+        reach = (self.front_cm - self.back_cm) / 2 + self.radius_cm
         best: Contact | None = None
         for obstacle in obstacles:
             # far away is known more quickly
-            least = distance(obstacle, middle_x, middle_y) - half - self.radius_cm
-            if best is not None and least >= best.gap_cm:
+            if best is not None and distance(obstacle, middle_x, middle_y) >= best.gap_cm + reach:
                 continue
             apart, ours, theirs = between(spine, obstacle)
             gap = apart - self.radius_cm
@@ -88,6 +88,13 @@ class Hull:
         return found
 
 
+class Drive(NamedTuple):
+    """Points of a way, joined by straight lines, and how far at least it is free from its end."""
+
+    way: list[Pose]
+    free_cm: float
+
+
 class Driving:
     """A body that drives from `start`; times only go forward."""
 
@@ -101,6 +108,7 @@ class Driving:
         self.driven_cm = 0.0
         self._pose = start
         self._kept_ms = 0.0  # when it was there
+        self._free_cm = 0.0  # no point of the body touches anything before it has gone so far
         self._is_touching = self.is_touching(start)
 
     def is_blocked(self) -> bool:
@@ -128,16 +136,16 @@ class Driving:
         """Return where the robot is. This changes nothing of where it gets to."""
         while self._kept_ms + STRIDE_MS <= now_ms:
             self._keep(STRIDE_MS)
-        return self._driven(self._pose, now_ms - self._kept_ms)[-1]
+        return self._driven(self._pose, self._free_cm, now_ms - self._kept_ms).way[-1]
 
     def _keep(self, duration_ms: float) -> None:
-        way = self._driven(self._pose, duration_ms)
+        drive = self._driven(self._pose, self._free_cm, duration_ms)
         self._kept_ms += duration_ms
         before = self._pose
-        self._pose = way[-1]
+        self._pose, self._free_cm = drive.way[-1], drive.free_cm
         if not self.left and not self.right:
             return
-        for pose in way:
+        for pose in drive.way:
             self.driven_cm += math.dist(pose[:2], before[:2])
             before = pose
             last = self.corners[-1]
@@ -147,7 +155,7 @@ class Driving:
                 self.corners.append(pose)
         if len(self.corners) > KEPT:
             self.corners = [*self.corners[:-1:2], self.corners[-1]]
-        is_touching = self.is_touching(self._pose)
+        is_touching = self._free_cm < TOUCH_CM and self.is_touching(self._pose)
         self.bumps += is_touching and not self._is_touching
         self._is_touching = is_touching
 
@@ -165,26 +173,31 @@ class Driving:
             >= 0
         )
 
-    def _driven(self, pose: Pose, duration_ms: float) -> list[Pose]:
-        """Return points of the way from a pose, with its end; straight lines join them."""
+    def _driven(self, pose: Pose, free_cm: float, duration_ms: float) -> Drive:
+        """Return the way from a pose on, of which `free_cm` are known to be free."""
         if (not self.left and not self.right) or duration_ms <= 0:
-            return [pose]
+            return Drive([pose], free_cm)
         speed = self._fastest_cm_ms()
         way: list[Pose] = []
         left_ms = duration_ms
+        is_known = False  # how much is free, exactly
         while left_ms > 0:
-            contact = self.hull.contact(pose, self.obstacles)
-            free_ms = left_ms if contact is None else max(0.0, contact.gap_cm) / speed
-            step_ms = min(left_ms, max(free_ms, STEP_MS))
-            if free_ms >= step_ms:
+            if free_cm < speed * left_ms and not is_known:
+                contact = self.hull.contact(pose, self.obstacles)
+                free_cm = math.inf if contact is None else max(0.0, contact.gap_cm)
+            step_ms = min(left_ms, max(free_cm / speed, STEP_MS))
+            if free_cm >= speed * step_ms:
                 way += points(self.body, pose, self.left, self.right, step_ms)
+                free_cm -= speed * step_ms
+                is_known = False
             else:
-                way.append(
-                    self._pushed(pose, moved(self.body, pose, self.left, self.right, step_ms))
-                )
+                wanted = moved(self.body, pose, self.left, self.right, step_ms)
+                pushed, free_cm = self._pushed(pose, wanted)
+                way.append(pushed)
+                is_known = True
             pose = way[-1]
             left_ms -= step_ms
-        return way
+        return Drive(way, free_cm)
 
     def _fastest_cm_ms(self) -> float:
         """Return how fast the fastest point of the body can be."""
@@ -193,20 +206,24 @@ class Driving:
         turning = abs(self.right - self.left) * full / self.body.wheel_base_cm
         return ahead + turning * self.hull.reach_cm
 
-    def _pushed(self, before: Pose, pose: Pose) -> Pose:
-        """Return where a robot comes to that wants to be at `pose`: out of every obstacle."""
+    def _pushed(self, before: Pose, pose: Pose) -> tuple[Pose, float]:
+        """Return where a robot comes to that wants to be at `pose`, and how much is free there.
+
+        It is pushed out of every obstacle; where that is not possible it stays where it was.
+        """
         for _ in range(PUSHES):
             contact = self.hull.contact(pose, self.obstacles)
-            if contact is None or contact.gap_cm >= 0:
-                return pose
+            if contact is None:
+                return pose, math.inf
+            if contact.gap_cm > -EXACT_CM:
+                return pose, max(0.0, contact.gap_cm)
             apart = math.dist(contact.ours, contact.theirs)
             if apart < self.hull.radius_cm / 2:  # deeper than a step leads: it was forced in
-                return before
+                break
             scale = -contact.gap_cm / apart
             pose = Pose(
                 pose.x_cm + (contact.ours.x - contact.theirs.x) * scale,
                 pose.y_cm + (contact.ours.y - contact.theirs.y) * scale,
                 pose.heading,
             )
-        contact = self.hull.contact(pose, self.obstacles)
-        return pose if contact is None or contact.gap_cm > -1e-6 else before
+        return before, 0.0

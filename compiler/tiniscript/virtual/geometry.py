@@ -6,6 +6,7 @@ All lengths are centimetres, all angles radians. Knows no robots and no worlds.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -40,22 +41,28 @@ def nearest(segment: Segment, x: float, y: float) -> Point:
 
 
 def distance(segment: Segment, x: float, y: float) -> float:
-    point = nearest(segment, x, y)
-    return math.hypot(point.x - x, point.y - y)
+    (ax, ay), (bx, by) = segment
+    dx, dy = bx - ax, by - ay
+    length = dx * dx + dy * dy
+    along = ((x - ax) * dx + (y - ay) * dy) / length if length else 0.0
+    if along > 1:
+        return math.hypot(bx - x, by - y)
+    return (
+        math.hypot(ax - x, ay - y)
+        if along < 0
+        else math.hypot(ax + along * dx - x, ay + along * dy - y)
+    )
 
 
 def crosses(one: Segment, other: Segment) -> bool:
     """Whether two segments have a point in common, where neither only touches the other's end."""
     (ax, ay), (bx, by) = one
     (cx, cy), (dx, dy) = other
-
-    def side(px: float, py: float, qx: float, qy: float, rx: float, ry: float) -> float:
-        return (qx - px) * (ry - py) - (qy - py) * (rx - px)
-
-    return (
-        side(ax, ay, bx, by, cx, cy) * side(ax, ay, bx, by, dx, dy) < 0
-        and side(cx, cy, dx, dy, ax, ay) * side(cx, cy, dx, dy, bx, by) < 0
-    )
+    # on which side of one line the ends of the other are
+    ux, uy, vx, vy = bx - ax, by - ay, dx - cx, dy - cy
+    if (ux * (cy - ay) - uy * (cx - ax)) * (ux * (dy - ay) - uy * (dx - ax)) >= 0:
+        return False
+    return (vx * (ay - cy) - vy * (ax - cx)) * (vx * (by - cy) - vy * (bx - cx)) < 0
 
 
 def between(one: Segment, other: Segment) -> tuple[float, Point, Point]:
@@ -65,35 +72,48 @@ def between(one: Segment, other: Segment) -> tuple[float, Point, Point]:
     """
     if crosses(one, other):
         return 0.0, one.a, one.a
-    pairs = [(end, nearest(other, *end)) for end in one]
-    pairs += [(nearest(one, *end), end) for end in other]
-    return min((math.dist(ours, theirs), ours, theirs) for ours, theirs in pairs)
+    ends = (
+        (distance(other, *one.a), 0),
+        (distance(other, *one.b), 1),
+        (distance(one, *other.a), 2),
+        (distance(one, *other.b), 3),
+    )
+    apart, which = min(ends)
+    if which < 2:
+        return apart, one[which], nearest(other, *one[which])
+    end = other[which - 2]
+    return apart, nearest(one, *end), end
 
 
-def seen(segment: Segment, eye: Point, heading: float, half_angle: float) -> float | None:
-    """Return how near a segment comes to an eye inside its cone, or None where it is outside.
+def seen(
+    segments: Iterable[Segment], eye: Point, heading: float, half_angle: float
+) -> float | None:
+    """Return how near segments come to an eye inside its cone, or None where none is in it.
 
     The cone is `half_angle` (less than a quarter turn) to both sides of `heading`. The nearest
-    of all segments hides nothing and is hidden by nothing, so the least of these is what an echo
-    tells.
+    of all segments hides nothing and is hidden by nothing, so it is what an echo tells.
     """
-    low, high = 0.0, 1.0  # the part of the segment inside
-    (ax, ay), (bx, by) = segment
-    ax, ay, bx, by = ax - eye.x, ay - eye.y, bx - eye.x, by - eye.y
-    for angle, sign in ((heading - half_angle, 1), (heading + half_angle, -1)):
-        # on which side of this border of the cone each end is; 0 or more is inside
-        cos, sin = math.cos(angle), math.sin(angle)
-        at_a, at_b = sign * (cos * ay - sin * ax), sign * (cos * by - sin * bx)
-        if at_a < 0 and at_b < 0:
-            return None
-        if at_a < 0 or at_b < 0:
-            border = at_a / (at_a - at_b)
+    right_cos, right_sin = math.cos(heading - half_angle), math.sin(heading - half_angle)
+    left_cos, left_sin = math.cos(heading + half_angle), math.sin(heading + half_angle)
+    best: float | None = None
+    for (ax, ay), (bx, by) in segments:
+        ax, ay, bx, by = ax - eye.x, ay - eye.y, bx - eye.x, by - eye.y
+        # on which side of each border of the cone each end is; 0 or more is inside
+        right_a, right_b = right_cos * ay - right_sin * ax, right_cos * by - right_sin * bx
+        left_a, left_b = left_sin * ax - left_cos * ay, left_sin * bx - left_cos * by
+        if (right_a < 0 and right_b < 0) or (left_a < 0 and left_b < 0):
+            continue
+        low, high = 0.0, 1.0  # the part of the segment inside
+        for at_a, at_b in ((right_a, right_b), (left_a, left_b)):
             if at_a < 0:
-                low = max(low, border)
-            else:
-                high = min(high, border)
-    if low > high:
-        return None
-    dx, dy = bx - ax, by - ay
-    inside = Segment(Point(ax + low * dx, ay + low * dy), Point(ax + high * dx, ay + high * dy))
-    return distance(inside, 0.0, 0.0)
+                low = max(low, at_a / (at_a - at_b))
+            elif at_b < 0:
+                high = min(high, at_a / (at_a - at_b))
+        if low > high:
+            continue
+        dx, dy = bx - ax, by - ay
+        first, last = Point(ax + low * dx, ay + low * dy), Point(ax + high * dx, ay + high * dy)
+        found = distance(Segment(first, last), 0.0, 0.0)
+        if best is None or found < best:
+            best = found
+    return best

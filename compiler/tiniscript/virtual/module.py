@@ -7,12 +7,12 @@ installed, or cannot run on this computer.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from ctypes import addressof, c_ubyte
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, NamedTuple, Protocol
+from typing import NamedTuple, Protocol
 
-from wasmtime import Engine, Func, FuncType, Instance, Memory, Module, Store, ValType
+from wasmtime import Engine, Func, FuncType, Instance, Memory, Module, Store
 
 PATH = Path(__file__).with_name("robot.wasm")
 
@@ -23,16 +23,23 @@ class Board(Protocol):
     """What the firmware does; `now_ms` is since its power-on. Numbers are thousandths."""
 
     def motors(self, now_ms: int, left: int, right: int) -> None: ...
-    def off(self, now_ms: int) -> None: ...
     def read(self, now_ms: int, sensor: int) -> int: ...
     def beep(self, now_ms: int, hertz: int, duration_ms: int) -> None: ...
     def show(self, now_ms: int, value: int, is_yes_no: int) -> None: ...
     def set(self, now_ms: int, actuator: int, value: int) -> None: ...
     def stop(self, now_ms: int) -> None: ...
     def release(self, now_ms: int) -> None: ...
-    def light(self, is_on: int) -> None: ...
+    def light(self, now_ms: int, is_on: int) -> None: ...
     def finished(self, now_ms: int) -> None: ...
     def faulted(self, now_ms: int) -> None: ...
+
+
+# What a note says, from 1 on, and with how many numbers. As `What` in `robot.cpp`.
+_WHAT = (("motors", 2), ("read", 1), ("beep", 2), ("show", 2), ("set", 2), ("stop", 0),
+         ("release", 0), ("light", 1), ("finished", 0), ("faulted", 0))  # fmt: skip
+_READ = 2
+_CLOCK = 1 << 32
+_NOTE = 4  # numbers of 32 bits
 
 
 class Circumstances(NamedTuple):
@@ -58,9 +65,8 @@ class Firmware:
     def __init__(self, board: Board, what: Circumstances, memory: bytes | None = None) -> None:
         self._store = Store(_engine())
         module = _module()
-        functions = self._board_functions(board)
-        imports = [functions[each.name or ""] for each in module.imports]
-        exports = Instance(self._store, module, imports).exports(self._store)
+        look = Func(self._store, FuncType([], []), self._look)
+        exports = Instance(self._store, module, [look]).exports(self._store)
         self._functions: dict[str, Func] = {}
         for each in module.exports:
             found = exports[each.name]
@@ -74,9 +80,17 @@ class Firmware:
         self._eeprom, size = self.call("memory_at"), self.call("memory_bytes")
         self.memory_bytes = size
         self._waiting = bytearray()  # bytes behind those in the inbox
+        # the module's memory, which does not grow, as numbers of 32 bits
+        room = found.data_len(self._store)
+        base = addressof(found.data_ptr(self._store).contents)
+        self._numbers = memoryview((c_ubyte * room).from_address(base)).cast("B").cast("i")
+        self._notes, self._noted = self.call("notes") // 4, self.call("noted") // 4
+        self._reading = self.call("reading") // 4
+        self._told = [(getattr(board, name), count) for name, count in _WHAT]
         whole = ((memory or b"") + bytes(size).replace(b"\0", b"\xff"))[:size]
         self._memory.write(self._store, whole, self._eeprom)
         self.call("begin", *what)
+        self._look()
 
     def run(self, until_us: int, data: bytes = b"") -> bytes:
         """Go on up to a time; bytes arrive from now on. Return what is sent meanwhile."""
@@ -89,6 +103,7 @@ class Firmware:
                 self._memory.write(self._store, part, self._inbox)
                 self.call("put", len(part))
             count = self.call("run", until_us, int(bool(self._waiting)))
+            self._look()
             if count:
                 sent += self._memory.read(self._store, self._outbox, self._outbox + count)
             if self.call("now_us") >= until_us:
@@ -106,26 +121,27 @@ class Firmware:
     def call(self, name: str, *values: int) -> int:
         return int(self._functions[name](self._store, *values) or 0)
 
-    def _board_functions(self, board: Board) -> dict[str, Func]:
-        i32 = ValType.i32()
-        table: dict[str, tuple[int, int, Callable[..., Any]]] = {
-            # how many numbers it takes and gives
-            "motors": (3, 0, board.motors),
-            "off": (1, 0, board.off),
-            "read": (2, 1, board.read),
-            "beep": (3, 0, board.beep),
-            "show": (3, 0, board.show),
-            "set": (3, 0, board.set),
-            "stop": (1, 0, board.stop),
-            "release": (1, 0, board.release),
-            "light": (1, 0, board.light),
-            "finished": (1, 0, board.finished),
-            "faulted": (1, 0, board.faulted),
-        }
-        return {
-            name: Func(self._store, FuncType([i32] * takes, [i32] * gives), function)
-            for name, (takes, gives, function) in table.items()
-        }
+    def press(self) -> None:
+        """The start button goes down."""
+        self.call("press")
+        self._look()
+
+    def let_go(self) -> None:
+        """The start button comes up."""
+        self.call("let_go")
+        self._look()
+
+    def _look(self) -> None:
+        """Tell the board what the firmware has noted."""
+        numbers = self._numbers
+        count = numbers[self._noted]
+        numbers[self._noted] = 0
+        for k in range(self._notes, self._notes + count * _NOTE, _NOTE):
+            now_ms, what, *values = numbers[k : k + _NOTE]
+            tell, takes = self._told[what - 1]
+            found = tell(now_ms % _CLOCK, *values[:takes])
+            if what == _READ:
+                numbers[self._reading] = found
 
 
 @lru_cache(maxsize=1)

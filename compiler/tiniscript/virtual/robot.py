@@ -25,7 +25,6 @@ _FAULT_NAMES = {number: name for number, name, _ in FAULTS}
 LEVELS_PER_PERCENT = 2.55  # of a motor's power
 BITS = 10  # of a byte on the line
 EVENTS = 100_000  # that are kept until somebody takes them
-_CLOCK = 1 << 32
 
 
 class Settings(NamedTuple):
@@ -89,12 +88,12 @@ class VirtualRobot:
 
     def press(self) -> None:
         """The start button goes down."""
-        self._firmware.call("press")
+        self._firmware.press()
         self._settle()
 
     def let_go(self) -> None:
         """The start button comes up."""
-        self._firmware.call("let_go")
+        self._firmware.let_go()
         self._settle()
 
     def power_cycle(self, reset: int = POWER_ON) -> None:
@@ -153,9 +152,6 @@ class VirtualRobot:
         self._set_motors(now_ms, *powers)
         self._traced.motors(*(round(power) for power in powers))
 
-    def off(self, now_ms: int) -> None:
-        pass  # `stop` says it
-
     def read(self, now_ms: int, sensor: int) -> int:
         self._at(now_ms)
         return self._traced.read(sensor) or 0
@@ -166,7 +162,6 @@ class VirtualRobot:
 
     def show(self, now_ms: int, value: int, is_yes_no: int) -> None:
         self._at(now_ms)
-        value = (value + _CLOCK // 2) % _CLOCK - _CLOCK // 2
         self._traced.show(value, bool(is_yes_no))
 
     def set(self, now_ms: int, actuator: int, value: int) -> None:
@@ -180,13 +175,13 @@ class VirtualRobot:
             self._ended = "STOP"
 
     def release(self, now_ms: int) -> None:
-        self._settle()
+        self._settle()  # two programs may follow each other in one step
         self._at(now_ms)
         self.is_running = True
         self.fault = ""
         self._say("START")
 
-    def light(self, is_on: int) -> None:
+    def light(self, now_ms: int, is_on: int) -> None:
         self.is_lit = bool(is_on)
 
     def finished(self, now_ms: int) -> None:

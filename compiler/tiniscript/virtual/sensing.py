@@ -45,7 +45,11 @@ class Sensing:
         self.world = world
         self.noise = noise
         self.obstacles = world.obstacles()
-        self.lines = [(joined(list(line.points)), line.width_cm) for line in world.lines]
+        self.lines = [
+            (segment, line.width_cm / 2)
+            for line in world.lines
+            for segment in joined(list(line.points))
+        ]
         self.hull = Hull(robot.body)
         self._chance = chance or Random(1)
         self._told = {number: list(values) for number, values in (told or {}).items()}
@@ -83,9 +87,8 @@ class Sensing:
         return float(device.high if is_there else device.low)
 
     def _distance_cm(self, eye: Point, heading: float) -> float:
-        found = [seen(each, eye, heading, CONE) for each in self.obstacles]
-        nearest = min((each for each in found if each is not None), default=FARTHEST_CM)
-        return min(max(nearest, NEAREST_CM), FARTHEST_CM)
+        nearest = seen(self.obstacles, eye, heading, CONE)
+        return FARTHEST_CM if nearest is None else min(max(nearest, NEAREST_CM), FARTHEST_CM)
 
     def _light(self, eye: Point, heading: float) -> float:
         """Return 0 to 1: lamps by their distance and angle, none through an obstacle."""
@@ -101,11 +104,16 @@ class Sensing:
         return min(1.0, level)
 
     def _is_black(self, eye: Point) -> bool:
-        return any(
-            distance(each, *eye) <= width_cm / 2
-            for segments, width_cm in self.lines
-            for each in segments
-        )
+        x, y = eye
+        for segment, half_cm in self.lines:
+            (ax, ay), (bx, by) = segment
+            if (
+                min(ax, bx) - half_cm <= x <= max(ax, bx) + half_cm
+                and min(ay, by) - half_cm <= y <= max(ay, by) + half_cm
+                and distance(segment, x, y) <= half_cm
+            ):
+                return True
+        return False
 
     def _is_touched(self, place: Place, pose: Pose) -> bool:
         """A bumper notices what the body touches on the side where it sits."""
