@@ -11,6 +11,8 @@ import struct
 import subprocess
 import sys
 from pathlib import Path
+from queue import Queue
+from threading import Thread
 
 import pytest
 
@@ -45,6 +47,9 @@ class Terminal:
         self._stream = pyte.ByteStream(self._screen)
         self.written = b""
         self._unseen = b""
+        self._read: Queue[bytes] = Queue()
+        self._reader = Thread(target=self._read_on, daemon=True)
+        self._reader.start()
 
     def lines(self) -> list[str]:
         return [line.rstrip() for line in self._screen.display]
@@ -57,22 +62,30 @@ class Terminal:
                 return found
             assert self._take(), f"it ends without {pattern}: {self.lines()}"
 
+    def _read_on(self) -> None:
+        """Read at once: whoever writes to a terminal that is full waits."""
+        part = b"begun"
+        while part:
+            try:
+                part = os.read(self._ours, 65536)
+            except OSError:  # Linux: the other end is closed
+                part = b""
+            self._read.put(part)
+
     def type(self, keys: str) -> None:
         os.write(self._ours, keys.encode())
 
     def end(self) -> int:
         while self._take():
             pass
+        self._reader.join()
         os.close(self._ours)
         return self._process.wait()
 
     def _take(self) -> bool:
         """Draw a small part of what was written: nothing is missed that is seen briefly."""
         if not self._unseen:
-            try:
-                self._unseen = os.read(self._ours, 65536)
-            except OSError:  # Linux: the other end is closed
-                return False
+            self._unseen = self._read.get()
             self.written += self._unseen
         part, self._unseen = self._unseen[:GLANCE], self._unseen[GLANCE:]
         self._stream.feed(part)
