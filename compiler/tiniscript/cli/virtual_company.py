@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import sys
 from argparse import Namespace
-from threading import Lock, Thread
+from threading import Condition, Thread
 from time import monotonic
 from typing import TYPE_CHECKING
 
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from tiniscript.robots.profile import Robot
 
 JOIN_S = 5.0
+ROUND_S = 1.0  # the longest, of a robot that draws at least 15 pictures in a second
 
 
 def running_address(options: Namespace) -> str | None:
@@ -64,7 +65,8 @@ class Company:
         self._bug: BaseException | None = None
         self._is_over = False
         self._frame_s = 0.0
-        self._drawing = Lock()
+        self._drawing = Condition()
+        self._rounds = 0  # after which the picture has known all that had happened
         self._thread = Thread(target=self._live, name="virtual robot", daemon=True)
         self._thread.start()
 
@@ -111,6 +113,9 @@ class Company:
     def unwatch(self) -> None:
         """Leave the last picture standing."""
         with self._drawing:
+            if self.screen is not None:
+                due = self._rounds + 1  # what has just happened is still to be taken
+                self._drawing.wait_for(lambda: self._rounds >= due, ROUND_S)
             screen, self.screen = self.screen, None
             if screen is not None:
                 self._draw(screen)
@@ -145,6 +150,8 @@ class Company:
                     if self.screen is not None and monotonic() >= self._frame_s:
                         self._frame_s = monotonic() + FRAME_S
                         self._draw(self.screen)
+                    self._rounds += 1
+                    self._drawing.notify_all()
         except BaseException as bug:
             self._bug = bug
             self.guests.close()
