@@ -113,13 +113,13 @@ def test_upload_draws_the_world_and_the_way(tmp_path: Path) -> None:
 
 def test_keys_push_the_buttons_of_the_robot(tmp_path: Path) -> None:
     memory = tmp_path / "kept.bin"
-    first = Terminal("upload", "-e", "SB|LOOP(FOREVER);L(1, 40);END_LOOP", "--virtual")
-    assert first.end() == 0
     terminal = Terminal("robot", "--memory", memory, "--lang", "es")
     terminal.until(r"b: botón de inicio")
     upload = [sys.executable, "-m", "tiniscript", "upload", "--virtual", "-e",
               "SB|LOOP(FOREVER);L(1, 40);END_LOOP"]  # fmt: skip
+    terminal.until("todavía sin programa")
     assert subprocess.run(upload, capture_output=True, check=False).returncode == 0
+    terminal.until("su botón lo inicia")
     terminal.type("b")
     terminal.until(r"motor der\. +40 %")
     terminal.type("b")

@@ -32,11 +32,12 @@ class WorldPicture(Picture):
         self.footer = footer
         self.sketch: WorldSketch = WorldSketch(robot)
         self.began_ms = 0
-        self.ending = text("ended_READY", language)
+        self.is_new = True  # nothing has run yet
 
     def take(self, event: Event) -> None:
         if event.what == "START":
             self.began_ms, self.now_ms, self.ending = event.time_ms, 0, ""
+            self.is_new = False
             self.shown.clear()
             self.settings.clear()
             return
@@ -45,6 +46,9 @@ class WorldPicture(Picture):
     def lines(self, width: int, height: int, now_ms: float) -> list[Text]:
         """Return at most `height` lines of at most `width` columns."""
         robot = self.virtual
+        if self.is_new:
+            self.ending = text("robot_waits" if robot.is_lit else "robot_empty", self.language)
+            self.now_ms = 0
         for number in range(len(robot.profile.kit.sensors)):
             self.readings[number] = robot.sensing.look(number, robot.pose)
         has_footer = bool(self.footer) and height > 4
