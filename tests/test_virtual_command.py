@@ -105,8 +105,9 @@ def test_another_terminal_finds_it_and_it_says_what_it_does(tmp_path: Path) -> N
     assert "which port?" in done.err
 
 
-def test_a_computer_that_vanishes_stops_the_robot() -> None:
-    with robot() as found:
+@pytest.mark.parametrize("hurry", ["1", "50"])
+def test_a_computer_that_vanishes_stops_the_robot(hurry: str) -> None:
+    with robot("--hurry", hurry) as found:
         command = [*TSC, "upload", "--port", found.port, "-e", FOREVER]
         upload = subprocess.Popen(command, stdout=subprocess.DEVNULL)
         found.until("0 MOTORS -30 30")

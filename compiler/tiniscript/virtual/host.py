@@ -52,9 +52,14 @@ class Host:
             self.robot.press()
             self._let_go_ms = self.robot.now_ms + PUSH_MS
 
+    @property
+    def waiting(self) -> int:
+        """How many bytes the robot has still to hear."""
+        return self.robot.unheard + self.there.waiting
+
     def turn(self, limit_s: float = CALM_S) -> None:
         """Wait for what comes, at most for so long; then the robot goes on to now."""
-        is_full = self.robot.unheard >= FULL_BYTES
+        is_full = self.waiting >= FULL_BYTES
         self.guests.wait(min(limit_s, self._pause_s()), is_full)
         wall_s = monotonic()
         passed_s = min(wall_s - self._wall_s, BEHIND_S)

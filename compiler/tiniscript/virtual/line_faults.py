@@ -55,6 +55,11 @@ class BadLine:
             found.append(self._late.popleft()[1])
         return bytes(found)
 
+    @property
+    def waiting(self) -> int:
+        """How many bytes are on their way."""
+        return len(self._late)
+
     def clear(self) -> None:
         """What is on its way arrives nowhere."""
         self._late.clear()
