@@ -36,32 +36,27 @@ class Attendant:
 
     def attend(self, run: int) -> int:
         """Wait for the end of a run; return the exit code. Raises Trouble where the link ends."""
-        from tiniscript.link.outcomes import Gone
-
         has_begun = False  # what comes before was about another run
-        try:
-            while True:
-                found = self.connection.line.event()
-                if self.connection.is_time_over:
-                    return self._stop_in_time()
-                if found is None:
-                    continue
-                time_ms, event = found
-                if event.name == "LOST":
-                    raise Trouble(3, "link_lost", port=shown(self.connection.port))
-                if event.name == "STARTED":
-                    if event.values["run"] != run and has_begun:
-                        raise Trouble(3, "replaced", port=shown(self.connection.port))
-                    has_begun = has_begun or event.values["run"] == run
-                if event.name in ("STOPPED", "ENDED") and not has_begun:
-                    continue
-                if self.hold is None or not self.hold(event):
-                    self.teller.tell(time_ms, event)
-                code = _end(event, run)
-                if code is not None:
-                    return code
-        except Gone as gone:
-            raise self.connection.gone(gone) from None
+        while True:
+            found = self.connection.event()
+            if self.connection.is_time_over:
+                return self._stop_in_time()
+            if found is None:
+                continue
+            time_ms, event = found
+            if event.name == "LOST":
+                raise Trouble(3, "link_lost", port=shown(self.connection.port))
+            if event.name == "STARTED":
+                if event.values["run"] != run and has_begun:
+                    raise Trouble(3, "replaced", port=shown(self.connection.port))
+                has_begun = has_begun or event.values["run"] == run
+            if event.name in ("STOPPED", "ENDED") and not has_begun:
+                continue
+            if self.hold is None or not self.hold(event):
+                self.teller.tell(time_ms, event)
+            code = _end(event, run)
+            if code is not None:
+                return code
 
     def _stop_in_time(self) -> int:
         """Stop a virtual robot whose time is over."""
@@ -138,5 +133,5 @@ def until_saved(connection: Connection) -> int | None:
             slot = values["slot"]
             assert isinstance(slot, int)
             return slot if values["saved"] == 3 else None
-        connection.line.event(0.1)
+        connection.event()
     return None

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from tiniscript.link.errands import Reply
     from tiniscript.link.errands import Robot as Card
     from tiniscript.link.line import Line
-    from tiniscript.link.outcomes import Gone
+    from tiniscript.link.outcomes import Event, Gone
     from tiniscript.link.ports import PortTrouble
     from tiniscript.maps import Map
     from tiniscript.robots.profile import Robot
@@ -62,8 +62,15 @@ def baud_of(options: Namespace, robot: Robot, language: str) -> int:
 class Connection:
     """The way to a port, and the robot on it once it has said who it is."""
 
-    def __init__(self, options: Namespace, robot: Robot, language: str) -> None:
-        """Go to the port that the options name, or the last used one, or ask for one."""
+    def __init__(
+        self, options: Namespace, robot: Robot, language: str, is_one_of_many: bool = False
+    ) -> None:
+        """Go to the port that the options name, or the last used one, or ask for one.
+
+        `is_one_of_many`: whoever looks after all of them remembers the ports.
+        """
+        self.is_one_of_many = is_one_of_many
+        self.is_interrupted = False
         baud = baud_of(options, robot, language)
         self.language = language
         self.profile = robot
@@ -121,7 +128,8 @@ class Connection:
         card = self.line.robot
         if reply.status or card is None:
             raise self.trouble(reply)
-        self.remember(card.name)
+        if not self.is_one_of_many:
+            self.remember(card.name)
         return card
 
     def remember(self, name: str) -> None:
@@ -171,10 +179,37 @@ class Connection:
     def wait(self, task: Asked, look: Callable[[], None] | None = None) -> Reply:
         from tiniscript.link.outcomes import Gone
 
+        def watch() -> None:
+            self._heed()
+            if look is not None:
+                look()
+
         try:
-            return self.line.wait(task, look)
+            return self.line.wait(task, watch)
         except Gone as gone:
             raise self.gone(gone) from None
+
+    def event(self) -> tuple[int, Event] | None:
+        """Return the next event and when it came (ms), or None where none comes for a moment.
+
+        Raises Trouble where the way has ended.
+        """
+        from tiniscript.link.outcomes import Gone
+
+        self._heed()
+        try:
+            return self.line.event()
+        except Gone as gone:
+            raise self.gone(gone) from None
+
+    def interrupt(self) -> None:
+        """Let the thread that waits here see a Ctrl-C, which Python shows only the first one."""
+        self.is_interrupted = True
+
+    def _heed(self) -> None:
+        if self.is_interrupted:
+            self.is_interrupted = False
+            raise KeyboardInterrupt
 
     def trouble(self, reply: Reply) -> Trouble:
         """Return the sentence for an outcome that is not OK."""

@@ -3,27 +3,35 @@
 from __future__ import annotations
 
 import json
+from typing import TYPE_CHECKING
 
-from tiniscript.cli.connecting import Connection, connected, robot_of_kit, takes_robot
+from tiniscript.cli import inputs
+from tiniscript.cli.connecting import Connection, robot_of_kit
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import Options
+from tiniscript.cli.roster import are_many, takes_ports
 from tiniscript.cli.texts import text
+
+if TYPE_CHECKING:
+    from tiniscript.cli.crew import Member, Result
 
 HELP = (
     """\
-tsc info [--port P] [--json]
+tsc info [--port P ...] [--all] [--json]
 
 Prints what the robot says of itself: name, kit, room, program, state, last fault.
-  --port P      the robot's port; the last used one where nothing is said
+  --port P      the robot's port; the last used one where nothing is said; several for several
+  --all         every robot that answers, a line each
   --baud N      its speed (the one of the profile that --robot NAME|FILE chooses)
   --virtual     the virtual robot of tsc robot, which runs in another terminal
   --json        the same as data
 """,
     """\
-tsc info [--port P] [--json]
+tsc info [--port P ...] [--all] [--json]
 
 Imprime lo que el robot dice de sí mismo: nombre, kit, sitio, programa, estado, última falla.
-  --port P      el puerto del robot; el último usado si no se dice nada
+  --port P      el puerto del robot; el último usado si no se dice nada; varios para varios
+  --all         todos los robots que responden, una línea por cada uno
   --baud N      su velocidad (la del perfil que --robot NOMBRE|ARCHIVO elige)
   --virtual     el robot virtual de tsc robot, que está en marcha en otra terminal
   --json        lo mismo como datos
@@ -33,16 +41,30 @@ Imprime lo que el robot dice de sí mismo: nombre, kit, sitio, programa, estado,
 
 def run(arguments: list[str], language: str) -> int:
     parser = Options("info", language, HELP)
-    takes_robot(parser)
+    takes_ports(parser)
+    parser.add_argument("--robot")
     parser.add_argument("--json", action="store_true")
     options = parser.read(arguments)
     if options is None:
         return 0
-    with connected(options, language) as connection:
+    robot = inputs.robot(options, language)
+    if are_many(options):
+        from tiniscript.cli.crew import together
+
+        return together(options, robot, language, _one_of_many)
+    with Connection(options, robot, language) as connection:
         connection.meet()
         description = Description(connection)
     print(json.dumps(description.fields(), indent=2) if options.json else description.text())
     return 0
+
+
+def _one_of_many(connection: Connection, member: Member) -> Result:
+    from tiniscript.cli.crew import Result
+
+    member.meet(connection)
+    description = Description(connection)
+    return Result(True, description.line(), description.fields())
 
 
 class Description:
@@ -87,28 +109,35 @@ class Description:
             "dropped": values["dropped"],
         }
 
-    def text(self) -> str:
-        """Return it as lines."""
+    def line(self) -> str:
+        """Return the most important of it in one line."""
+        state = text(f"state_{self.fields()['state']}", self.connection.language)
+        return f"{self._program()}; {state}"
+
+    def _program(self) -> str:
         from tiniscript import maps
 
         language, values, fields = self.connection.language, self.values, self.fields()
-        kit = f"{fields['kit']} ({fields['robot']})" if fields["robot"] else fields["kit"]
         if values["saved"] == 0:
-            program = text("info_no_program", language)
-        else:
-            places = maps.recall(values["program"])
-            program = text("info_program", language).format(
-                checksum=fields["program"],
-                name=f" ({shown(places.name)})" if places is not None else "",
-                code=values["length"],
-                saved=text(f"saved_{fields['saved']}", language).format(slot=values["slot"]),
-            )
+            return text("info_no_program", language)
+        places = maps.recall(values["program"])
+        return text("info_program", language).format(
+            checksum=fields["program"],
+            name=f" ({shown(places.name)})" if places is not None else "",
+            code=values["length"],
+            saved=text(f"saved_{fields['saved']}", language).format(slot=values["slot"]),
+        )
+
+    def text(self) -> str:
+        """Return it as lines."""
+        language, values, fields = self.connection.language, self.values, self.fields()
+        kit = f"{fields['kit']} ({fields['robot']})" if fields["robot"] else fields["kit"]
         head = {"robot": self.connection.name, "port": shown(self.connection.port)}
         state, reset = (text(f"{what}_{fields[what]}", language) for what in ("state", "reset"))
         lines = [
             text("info_robot", language).format(**head, id=fields["id"]),
             text("info_kit", language).format(kit=kit, isa=fields["isa"], room=self.card.room),
-            program,
+            self._program(),
             text("info_state", language).format(state=state, reset=reset),
         ]
         if values["fault"]:

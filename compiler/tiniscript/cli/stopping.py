@@ -2,29 +2,41 @@
 
 from __future__ import annotations
 
+import json
+from typing import TYPE_CHECKING
+
+from tiniscript.cli import inputs
 from tiniscript.cli.attending import confirmed
-from tiniscript.cli.connecting import connected, takes_robot
+from tiniscript.cli.connecting import Connection
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import Options
+from tiniscript.cli.roster import are_many, takes_ports
 from tiniscript.cli.texts import text
 from tiniscript.cli.trouble import Trouble
 
+if TYPE_CHECKING:
+    from tiniscript.cli.crew import Member, Result
+
 HELP = (
     """\
-tsc stop [--port P]
+tsc stop [--port P ...] [--all] [--json]
 
 Stops the robot now, and says when it has confirmed that. Asks nothing before, so it stops a
 robot of another version or kit, too. The robot stays stopped until a new start or its button.
-  --port P      the robot's port; the last used one where nothing is said
+  --port P      the robot's port; the last used one where nothing is said; several for several
+  --all         stops every robot that there is, all at once
+  --json        prints a line of JSON for each robot
   --baud N      its speed (the one of the profile that --robot NAME|FILE chooses)
   --virtual     the virtual robot of tsc robot, which runs in another terminal
 """,
     """\
-tsc stop [--port P]
+tsc stop [--port P ...] [--all] [--json]
 
 Detiene el robot ahora, y dice cuándo lo ha confirmado. No pregunta nada antes, así que también
 detiene un robot de otra versión o de otro kit. Queda detenido hasta otro inicio o su botón.
-  --port P      el puerto del robot; el último usado si no se dice nada
+  --port P      el puerto del robot; el último usado si no se dice nada; varios para varios
+  --all         detiene todos los robots que hay, todos a la vez
+  --json        imprime una línea de JSON por cada robot
   --baud N      su velocidad (la del perfil que --robot NOMBRE|ARCHIVO elige)
   --virtual     el robot virtual de tsc robot, que está en marcha en otra terminal
 """,
@@ -33,16 +45,42 @@ detiene un robot de otra versión o de otro kit. Queda detenido hasta otro inici
 
 def run(arguments: list[str], language: str) -> int:
     parser = Options("stop", language, HELP)
-    takes_robot(parser)
+    takes_ports(parser)
+    parser.add_argument("--robot")
+    parser.add_argument("--json", action="store_true")
     options = parser.read(arguments)
     if options is None:
         return 0
+    robot = inputs.robot(options, language)
+    if are_many(options):
+        from tiniscript.cli.crew import together
+
+        return together(options, robot, language, _one_of_many)
     while True:
-        with connected(options, language) as connection:
+        with Connection(options, robot, language) as connection:
             port = connection.port
             if confirmed(connection.line):
-                print(text("stopped_on", language).format(port=shown(port)))
+                if options.json:
+                    print(json.dumps({"port": port, "is_done": True}))
+                else:
+                    print(text("stopped_on", language).format(port=shown(port)))
                 return 0
-            if not (connection.line.held_by and connection.line.has_ended):
+            if not _may_be_opened(connection):
                 raise Trouble(3, "not_confirmed", port=shown(port))
-        options.port = port  # its holder has ended in the middle: now it can be opened
+        options.port = port
+
+
+def _may_be_opened(connection: Connection) -> bool:
+    """Whether the holder of the port has ended in the middle: now the port can be opened."""
+    return bool(connection.line.held_by) and connection.line.has_ended
+
+
+def _one_of_many(connection: Connection, member: Member) -> Result:
+    from tiniscript.cli.crew import Again, Result
+
+    member.tell("crew_stopping")
+    if confirmed(connection.line):
+        return Result(True, text("robot_stopped", connection.language))
+    if _may_be_opened(connection):
+        raise Again
+    raise Trouble(3, "not_confirmed", port=shown(connection.port))

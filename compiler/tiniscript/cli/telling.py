@@ -14,7 +14,7 @@ from tiniscript.cli.texts import text
 from tiniscript.cli.trouble import Trouble
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
     from tiniscript.link.outcomes import Event
     from tiniscript.maps import Map
@@ -72,7 +72,8 @@ def _err(line: str) -> None:
 class Teller:
     """Prints events. `has_times`: each with the milliseconds since the first.
 
-    `out` and `err` print, where something else than this is on the terminal.
+    `out` and `err` print, where something else than this is on the terminal. JSON gets what
+    `about` says, too.
     """
 
     def __init__(
@@ -84,6 +85,7 @@ class Teller:
         rows: TextIO | None = None,
         out: Callable[[str], None] | None = None,
         err: Callable[[str], None] | None = None,
+        about: Mapping[str, object] | None = None,
     ) -> None:
         self.language = language
         self.is_json = is_json
@@ -92,6 +94,7 @@ class Teller:
         self.rows = rows
         self.out = out or _out
         self.err = err or _err
+        self.about = about or {}
         self.began_ms: int | None = None
 
     def tell(self, time_ms: int, event: Event) -> None:
@@ -149,7 +152,7 @@ class Teller:
             self._add_row(since_ms, name, what)
         if self.is_json:
             times = {"ms": since_ms} if self.has_times else {}
-            self.out(json.dumps({**times, "event": name, **fields}))
+            self.out(json.dumps({**times, "event": name, **self.about, **fields}))
         elif is_bad or name in ("MISSED", "TEXT"):
             self.err(said)
         else:

@@ -8,25 +8,31 @@ from typing import TYPE_CHECKING
 
 from tiniscript.cli import images, inputs
 from tiniscript.cli.attending import Attendant, stop_and_say, until_saved
-from tiniscript.cli.connecting import Connection, takes_port
+from tiniscript.cli.connecting import Connection
 from tiniscript.cli.options import Options
+from tiniscript.cli.roster import are_many, takes_ports
 from tiniscript.cli.texts import text
 from tiniscript.cli.trouble import Trouble
 from tiniscript.cli.virtual_options import takes_world
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from tiniscript.cli.telling import Teller
     from tiniscript.link.asking import Asked, Asks
     from tiniscript.link.errands import Reply
 
 HELP = (
     """\
-tsc upload PROGRAM [--port P] [--no-run] [--no-save] [--detach] [--robot NAME|FILE]
+tsc upload PROGRAM [--port P ...] [--all] [--no-run] [--no-save] [--detach]
+                   [--robot NAME|FILE]
 
 Compiles a program, brings it to the robot and starts it there if it begins with SI. Stays until
 it ends: prints what it shows, and a fault with its line. Ctrl-C stops the robot. A program
 that begins with SB waits for the robot's button.
   --port P      the robot's port (/dev/ttyUSB0, /dev/rfcomm0, COM5, socket://host:port, ...);
-                the last used one where nothing is said
+                the last used one where nothing is said; several for several robots
+  --all         every robot that answers, all at once
   --baud N      its speed (the one of the robot's profile)
   --no-run      brings the program, and does not start it
   --no-save     the robot forgets it when it is switched off
@@ -45,13 +51,15 @@ Exit code: 0 when it is done, 1 after mistakes or a fault, 2 after Ctrl-C, 3 whe
 the link has ended it.
 """,
     """\
-tsc upload PROGRAMA [--port P] [--no-run] [--no-save] [--detach] [--robot NOMBRE|ARCHIVO]
+tsc upload PROGRAMA [--port P ...] [--all] [--no-run] [--no-save] [--detach]
+                    [--robot NOMBRE|ARCHIVO]
 
 Compila un programa, lo lleva al robot y lo inicia ahí si empieza con SI. Se queda hasta que
 termina: imprime lo que muestra, y una falla con su línea. Ctrl-C detiene el robot. Un programa
 que empieza con SB espera el botón del robot.
   --port P      el puerto del robot (/dev/ttyUSB0, /dev/rfcomm0, COM5, socket://host:puerto, ...);
-                el último usado si no se dice nada
+                el último usado si no se dice nada; varios para varios robots
+  --all         todos los robots que responden, todos a la vez
   --baud N      su velocidad (la del perfil del robot)
   --no-run      lleva el programa y no lo inicia
   --no-save     el robot lo olvida cuando se apaga
@@ -77,7 +85,7 @@ SAVING = 2  # of `link.messages.SAVED`
 def run(arguments: list[str], language: str) -> int:
     parser = Options("upload", language, HELP)
     parser.takes_program()
-    takes_port(parser)
+    takes_ports(parser)
     takes_world(parser)
     for name in ("--no-run", "--no-save", "--detach", "--json"):
         parser.add_argument(name, action="store_true")
@@ -95,6 +103,10 @@ def run(arguments: list[str], language: str) -> int:
 
         image = ready.image
         maps.remember(pack(image.start, image.kit, image.code), ready.places)
+    if are_many(options):
+        from tiniscript.cli.uploading_many import upload_to_many
+
+        return upload_to_many(options, robot, language, ready, inputs.shown(given.name))
     with Connection(options, robot, language) as connection:
         if ready.image.start == "PING":  # a program that asks who is there
             from tiniscript.cli.pinging import ping
@@ -115,20 +127,43 @@ def _upload(
     language = connection.language
     progress = Progress(language, len(ready.image.code))
     try:
-        task = connection.do(lambda session: _task(session, ready, options))
-        reply = connection.wait(task, lambda: progress.draw(task.done_bytes))
+        values = brought(connection, ready, options, progress.draw)
     finally:
         progress.end()
+    if options.json:
+        print(json.dumps(receipt(connection, ready, name, values, options)), flush=True)
+    else:
+        print(_receipt_line(connection, ready, name, values, options), flush=True)
+    teller = connection.teller(options.json, ready.places)
+    return looked_after(connection, ready, values, options, teller)
+
+
+def brought(
+    connection: Connection, ready: images.Ready, options: Namespace, draw: Callable[[int], None]
+) -> dict[str, int]:
+    """Bring a program to the robot; return what it says of it. `draw` is given the bytes of code
+    that have arrived. Raises Trouble."""
+
+    def make(session: Asks) -> Asked:
+        return session.upload(ready.image, not options.no_run, not options.no_save, options.detach)
+
+    task = connection.do(make)
+    reply = connection.wait(task, lambda: draw(task.done_bytes))
     if reply.status:
         raise _trouble(connection, reply, ready)
-    values = {key: value for key, value in reply.values.items() if isinstance(value, int)}
-    is_running = ready.image.start == "SI" and not options.no_run
-    _print_receipt(connection, ready, name, values, is_running, options)
+    return {key: value for key, value in reply.values.items() if isinstance(value, int)}
+
+
+def looked_after(
+    connection: Connection, ready: images.Ready, values: dict[str, int], options: Namespace,
+    teller: Teller,
+) -> int:  # fmt: skip
+    """Stay with a program until it has ended and is saved; return the exit code. Raises Trouble."""
+    language = connection.language
     code = 0
-    if is_running and options.detach:
-        return 0
-    teller = connection.teller(options.json, ready.places)
-    if is_running:
+    if is_running(ready, options):
+        if options.detach:
+            return 0
         if connection.company is not None:
             connection.company.watch()
         code = Attendant(connection, teller).attend(values["run"])
@@ -140,8 +175,9 @@ def _upload(
     return code
 
 
-def _task(session: Asks, ready: images.Ready, options: Namespace) -> Asked:
-    return session.upload(ready.image, not options.no_run, not options.no_save, options.detach)
+def is_running(ready: images.Ready, options: Namespace) -> bool:
+    """Whether a program runs once it has arrived."""
+    return ready.image.start == "SI" and not options.no_run
 
 
 def _trouble(connection: Connection, reply: Reply, ready: images.Ready) -> Trouble:
@@ -157,40 +193,50 @@ def _trouble(connection: Connection, reply: Reply, ready: images.Ready) -> Troub
     return connection.trouble(reply)
 
 
-def _print_receipt(
+def receipt(
     connection: Connection, ready: images.Ready, name: str, values: dict[str, int],
-    is_running: bool, options: Namespace,
-) -> None:  # fmt: skip
-    from tiniscript.link.messages import SAVED
+    options: Namespace,
+) -> dict[str, object]:  # fmt: skip
+    """Return what has arrived and what becomes of it, as data."""
+    image, runs, saved = ready.image, is_running(ready, options), saved_name(values)
+    return {
+        "event": "RECEIPT",
+        "robot": connection.card.name,
+        "port": connection.port,
+        "program": name,
+        "image_bytes": ready.image_bytes,
+        "code_bytes": len(image.code),
+        "checksum": f"{values['program']:08x}",
+        "saved": saved,
+        "slot": values["slot"] if saved == "STORED" else None,
+        "start": image.start,
+        "is_running": runs,
+        "is_detached": runs and bool(options.detach),
+    }
 
-    language, image = connection.language, ready.image
-    saved = SAVED[values["saved"]][0] if values["saved"] < len(SAVED) else "MEMORY"
-    if options.json:
-        print(json.dumps({
-            "event": "RECEIPT",
-            "robot": connection.card.name,
-            "port": connection.port,
-            "program": name,
-            "image_bytes": ready.image_bytes,
-            "code_bytes": len(image.code),
-            "checksum": f"{values['program']:08x}",
-            "saved": saved,
-            "slot": values["slot"] if saved == "STORED" else None,
-            "start": image.start,
-            "is_running": is_running,
-            "is_detached": is_running and bool(options.detach),
-        }), flush=True)  # fmt: skip
-        return
+
+def _receipt_line(
+    connection: Connection, ready: images.Ready, name: str, values: dict[str, int],
+    options: Namespace,
+) -> str:  # fmt: skip
+    language = connection.language
     how = "how_waits"
-    if is_running:
+    if is_running(ready, options):
         how = "how_detached" if options.detach else "how_running"
-    print(text("receipt", language).format(
+    return text("receipt", language).format(
         program=name,
         robot=connection.name,
         port=inputs.shown(connection.port),
         image=ready.image_bytes,
-        code=len(image.code),
+        code=len(ready.image.code),
         checksum=f"{values['program']:08x}",
-        saved=text(f"saved_{saved}", language).format(slot=values["slot"]),
-        how=text(how, language).format(start=image.start),
-    ), flush=True)  # fmt: skip
+        saved=text(f"saved_{saved_name(values)}", language).format(slot=values["slot"]),
+        how=text(how, language).format(start=ready.image.start),
+    )
+
+
+def saved_name(values: dict[str, int]) -> str:
+    """Return where the robot has its program, by the name of `link.messages`."""
+    from tiniscript.link.messages import SAVED
+
+    return SAVED[values["saved"]][0] if values["saved"] < len(SAVED) else "MEMORY"

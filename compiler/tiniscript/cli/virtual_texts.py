@@ -62,8 +62,8 @@ VIRTUAL_TEXTS: dict[str, tuple[str, str]] = {
                    "tsc: no hay ningún robot virtual en marcha. Inicia uno en otra terminal:  tsc robot"),
     "which_virtual": ("tsc: several virtual robots are running. Name one with --port: {known}",
                       "tsc: hay varios robots virtuales en marcha. Nombra uno con --port: {known}"),
-    "virtual_and_port": ("tsc: --virtual and --port do not go together. Leave one of them out.",
-                         "tsc: --virtual y --port no van juntos. Quita uno de los dos."),
+    "virtual_and_port": ("tsc: --virtual does not go together with --port or --all. Leave one of them out.",
+                         "tsc: --virtual no va junto con --port ni con --all. Quita uno de los dos."),
     "only_virtual": ("tsc: {option} is for the virtual robot alone. Add --virtual, or leave {option} out.",
                      "tsc: {option} es solo para el robot virtual. Agrega --virtual, o quita {option}."),
 }

@@ -10,7 +10,7 @@ import os
 from pathlib import Path
 from typing import NamedTuple
 
-KEPT = 20  # ports; the oldest go first
+KEPT = 100  # ports; the oldest go first
 
 
 class Known(NamedTuple):
@@ -34,6 +34,9 @@ def known() -> Known:
 def remember(port: str, name: str, is_used: bool = True) -> None:
     """Keep the name of the robot on a port. Where the cache cannot be written, it is not kept."""
     before = known()
+    first = next(iter(before.names.items()), None)
+    if first == (port, name) and (before.last == port or not is_used):
+        return
     names = {port: name, **{each: name for each, name in before.names.items() if each != port}}
     last = port if is_used else before.last
     path = _path()
