@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from string import Formatter
 
 import pytest
 
+from tests.casefile import ROOT
 from tests.command import Tsc
 from tests.virtual import floor, missing, robot_in
 from tiniscript import robots
@@ -75,6 +77,22 @@ def test_a_world_is_read() -> None:
     assert Segment(Point(200, 0), Point(200, 100)) in obstacles
     without = read(RIGHT.replace("[start]", "border = false\n[start]"), "some")
     assert without.obstacles() == []
+
+
+@pytest.mark.parametrize("name", ["worlds.en.md", "mundos.es.md"])
+def test_the_world_of_the_documents_is_one(name: str) -> None:
+    text = (ROOT / "docs" / name).read_text(encoding="utf-8")
+    _, fence, _ = re.split(r"```toml\n|```\n", text)
+    world = read(fence, "mine")
+    assert world.labels == {"en": "my classroom", "es": "mi aula"}
+    parts = (world.walls, world.boxes, world.lines, world.lamps)
+    assert [len(each) for each in parts] == [1, 1, 1, 1]
+    for shipped in worlds.names():
+        assert f"| `{shipped}` |" in text
+    for command in re.findall(r"`tsc (upload examples/[^`]*)`", text):
+        options = command.split()
+        assert (ROOT / options[1]).exists()
+        assert "--world" not in options or options[options.index("--world") + 1] in worlds.names()
 
 
 @pytest.mark.parametrize(
