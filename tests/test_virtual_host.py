@@ -140,6 +140,16 @@ def test_a_hurried_robot_hears_the_last_whole_frame_again() -> None:
     assert heart.due(40_000, 7.0) == b""
 
 
+def test_a_new_guest_does_not_speak_with_the_words_of_the_one_before(host: Host) -> None:
+    with visit(host) as guest:
+        guest.sendall(PING + b"\5half")
+        until(host, lambda: bool(host._heartbeat._open))
+    with visit(host):
+        until(host, lambda: host.guests.visits == 2)
+        until(host, lambda: not host._heartbeat._open)
+        assert host._heartbeat.due(10**6, host._heartbeat._heard_s) == b""
+
+
 def test_the_heartbeat_keeps_nothing_endless() -> None:
     heart = Heartbeat()
     for _ in range(1000):
