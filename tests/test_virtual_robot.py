@@ -146,6 +146,16 @@ def test_a_program_that_is_detached_goes_on() -> None:
     assert robot.take_events()[-1].text == "STOP"
 
 
+def test_a_program_that_another_one_ends_ends_before_it() -> None:
+    robot = robot_in()
+    talk = Talk(robot)
+    talk.upload("SI|LOOP(FOREVER);L(5, 50);END_LOOP", is_detached=True)
+    robot.take_events()
+    talk.session.start(True)
+    robot.step(robot.now_ms + 500, talk.session.poll(robot.now_ms))  # all in one step
+    assert [each.what for each in robot.take_events()] == ["STOP", "START", "MOTORS"]
+
+
 def test_a_saved_program_is_there_after_a_power_cycle() -> None:
     robot = robot_in()
     talk = Talk(robot)

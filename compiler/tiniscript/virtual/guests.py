@@ -17,8 +17,8 @@ LOCAL = "127.0.0.1"
 READ_BYTES = 1024
 KEPT_BYTES = 65_536  # for a guest who does not read; more is lost, as on a serial line
 TAKEN = b"Port already in use: another program is talking to this robot.\r\n"
-LISTEN_S = 0.3  # after which a guest who has said nothing hears that
-FAREWELL_S = 2.0  # for which it may be read
+PATIENT_S = 0.3  # for which one who comes second stands at the door
+FAREWELL_S = 2.5  # after which it has left
 
 
 class Guests:
@@ -39,7 +39,7 @@ class Guests:
                 self._server.close()
                 raise
         self._guest: socket.socket | None = None
-        self._leaving: list[_Leaver] = []
+        self._callers: list[_Caller] = []
         self._unsent = bytearray()
 
     @property
@@ -49,7 +49,9 @@ class Guests:
 
     def wait(self, limit_s: float, is_full: bool = False) -> None:
         """Wait until something comes, at most for so long. `is_full`: nothing more is wanted."""
-        watched: list[socket.socket | int] = [self._server, *(each.guest for each in self._leaving)]
+        watched: list[socket.socket | int] = [self._server]
+        watched += [each.guest for each in self._callers if each.is_told]
+        limit_s = min(limit_s, PATIENT_S) if self._callers else limit_s
         if not is_full:
             if self._guest is not None:
                 watched.append(self._guest)
@@ -59,8 +61,11 @@ class Guests:
 
     def receive(self) -> bytes:
         """Return what has come. Lets guests in and out."""
+        data = self._heard()
         self._let_in()
-        self._see_off()
+        return data
+
+    def _heard(self) -> bytes:
         if self._guest is not None:
             try:
                 data = self._guest.recv(READ_BYTES)
@@ -96,7 +101,7 @@ class Guests:
 
     def close(self) -> None:
         self._part()
-        for each in self._leaving:
+        for each in self._callers:
             each.guest.close()
         self._server.close()
         for end in (self._ours, self._theirs):
@@ -113,26 +118,24 @@ class Guests:
         self.terminal = os.ttyname(self._theirs)
 
     def _let_in(self) -> None:
-        for guest in self._knocking():
-            guest.setblocking(False)
-            if self._guest is None:
-                guest.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-                self._guest = guest
+        """Let the next one in where there is room, and tell the others that there is none."""
+        self._callers += [_Caller(each, monotonic()) for each in self._knocking()]
+        self._callers = [each for each in self._callers if not each.has_left()]
+        for caller in self._callers:
+            if self._guest is None and not caller.is_told:
+                self._guest = caller.guest
                 self._unsent.clear()
                 self.visits += 1
-            else:
-                self._leaving.append(_Leaver(guest, monotonic()))
+        self._callers = [each for each in self._callers if each.guest is not self._guest]
+        for caller in self._callers:
+            caller.tell()
 
     def _knocking(self) -> Iterator[socket.socket]:
         while True:
             try:
                 yield self._server.accept()[0]
-            except OSError:
+            except OSError:  # nobody, or gone already
                 return
-
-    def _see_off(self) -> None:
-        """Let those leave who cannot stay."""
-        self._leaving = [each for each in self._leaving if not each.has_left()]
 
     def _part(self) -> None:
         if self._guest is not None:
@@ -141,34 +144,42 @@ class Guests:
         self._unsent.clear()
 
 
-class _Leaver:
-    """A guest who has to leave, and is told so when it has said something.
+class _Caller:
+    """Somebody at the door. Who has stood there for a while is told to leave.
 
-    pyserial throws away what it hears before; and closing at once would take the word back.
+    Not at once: the one before may be about to go, and pyserial throws away what it hears first.
+    Whoever is told has time to read it: closing at once would take the word back.
     """
 
     def __init__(self, guest: socket.socket, came_s: float) -> None:
+        guest.setblocking(False)
+        with contextlib.suppress(OSError):  # it has gone already
+            guest.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self.guest = guest
+        self.is_told = False
         self._came_s = came_s
-        self._is_told = False
 
     def has_left(self) -> bool:
-        here_s = monotonic() - self._came_s
         try:
-            data: bytes | None = self.guest.recv(READ_BYTES)
+            is_gone = not self.guest.recv(1, socket.MSG_PEEK)
+            if self.is_told and not is_gone:
+                self.guest.recv(READ_BYTES)
         except BlockingIOError:
-            data = None
+            is_gone = False
         except OSError:
-            data = b""
-        if data == b"" or here_s > FAREWELL_S:
+            is_gone = True
+        if is_gone or monotonic() > self._came_s + FAREWELL_S:
             self.guest.close()
             return True
-        if not self._is_told and (data or here_s > LISTEN_S):
-            self._is_told = True
-            with contextlib.suppress(OSError):  # it has gone already
-                self.guest.send(TAKEN)
-                self.guest.shutdown(socket.SHUT_WR)
         return False
+
+    def tell(self) -> None:
+        if self.is_told or monotonic() < self._came_s + PATIENT_S:
+            return
+        self.is_told = True
+        with contextlib.suppress(OSError):  # it has gone already
+            self.guest.send(TAKEN)
+            self.guest.shutdown(socket.SHUT_WR)
 
 
 def can_have_terminal() -> bool:
