@@ -68,6 +68,11 @@ def test_each_code_has_its_words_and_no_words_lack_a_code() -> None:
     assert set(messages._texts()) - set(TEXTS) == {"terms", "labels"}
 
 
+def test_one_table_alone_is_what_it_is_among_all() -> None:
+    for name, table in messages._texts().items():
+        assert messages._table(name) == table
+
+
 @pytest.mark.parametrize("code", sorted(TEXTS))
 def test_each_code_has_all_texts_in_both_languages(code: str) -> None:
     texts = TEXTS[code]

@@ -214,6 +214,21 @@ def test_monitor_shows_what_live_does_and_not_its_bookkeeping(desk: Desk, link: 
     assert monitor.ended().out == ""
 
 
+def test_an_upload_through_a_holder_imports_no_more_than_it_needs() -> None:
+    """So the robot moves before a person has let go of the key."""
+    code = (
+        "import sys; from tiniscript.cli import main; assert main(sys.argv[1:]) == 0; "
+        "print(' '.join(sys.modules))"
+    )
+    with Shared() as (desk, _):
+        command = Command("upload", "-e", "SI|F(0.1, 30)", "--port", desk.port, code=code)
+        modules = set(command.ended().out.splitlines()[-1].split())
+    unwanted = {"serial", "cobs", "construct", "tomllib", "tomli", "rich", "threading",
+                "tiniscript.link.session", "tiniscript.link.ports", "tiniscript.cli.crew",
+                "tiniscript.messages"}  # fmt: skip
+    assert sorted(unwanted & modules) == []
+
+
 # -- whose run it is ------------------------------------------------------------------------------
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 import sys
 from collections.abc import Iterable, Mapping
-from functools import lru_cache
+from functools import cache
 from typing import Any, NamedTuple
 
 from tiniscript.problems import CODES, Problem
@@ -45,7 +45,7 @@ class Message(NamedTuple):
 
 def message(problem: Problem, source: Source, lang: str) -> Message:
     """Return what is said of a problem, and where."""
-    texts = _texts()[problem.code.number]
+    texts = _table(problem.code.number)
     start, end = _shown_range(source.text, problem.span)
     line, column = source.position(start)
     end_line, end_column = line, column
@@ -99,7 +99,7 @@ def explain(code: str, lang: str) -> str | None:
     number = number if number.startswith("TS") else "TS" + number
     if number not in CODES:
         return None
-    texts = _texts()[number]
+    texts = _table(number)
     severity = _label("mistake" if CODES[number].is_mistake else "warning", lang)
     parts = [
         f"{number} ({severity}): {texts[lang + '_title']}",
@@ -113,30 +113,48 @@ def explain(code: str, lang: str) -> str | None:
 
 def titles(lang: str) -> list[tuple[str, str]]:
     """Return every code with its problem in general words."""
-    return [(number, _texts()[number][lang + "_title"]) for number in sorted(CODES)]
+    texts = _texts()
+    return [(number, texts[number][lang + "_title"]) for number in sorted(CODES)]
 
 
 # -- words --------------------------------------------------------------------------------------
 
 
-@lru_cache(maxsize=1)
 def _texts() -> dict[str, dict[str, Any]]:
+    """Return all tables of `problems.toml`."""
+    return _read(_file())
+
+
+@cache
+def _table(name: str) -> dict[str, Any]:
+    """Return one table of `problems.toml`: reading all takes as long as compiling."""
+    begin = _file().index(f"\n[{name}]\n") + 1
+    end = _file().find("\n[", begin)
+    return _read(_file()[begin : end if end >= 0 else None])[name]
+
+
+@cache
+def _file() -> str:
     from pathlib import Path
 
+    return Path(__file__).with_name("problems.toml").read_text(encoding="utf-8")
+
+
+def _read(toml: str) -> dict[str, dict[str, Any]]:
     if sys.version_info >= (3, 11):
         import tomllib
     else:
         import tomli as tomllib
-    return tomllib.loads(Path(__file__).with_name("problems.toml").read_text(encoding="utf-8"))
+    return tomllib.loads(toml)
 
 
 def _label(name: str, lang: str) -> str:
-    label: str = _texts()["labels"][name][lang]
+    label: str = _table("labels")[name][lang]
     return label
 
 
 def _term(word: str, lang: str) -> str | None:
-    term: dict[str, str] | None = _texts()["terms"].get(word)
+    term: dict[str, str] | None = _table("terms").get(word)
     return None if term is None else term[lang]
 
 

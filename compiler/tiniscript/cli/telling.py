@@ -180,8 +180,10 @@ class Bookkeeping:
     def hides(self, event: Event) -> bool:
         from tiniscript.cli.live_mark import MARK
 
-        if event.name != "SHOW":
+        if event.name in ("STARTED", "DONE", "FAULT", "STOPPED", "ENDED"):
             self.is_on = False
+        elif event.name != "SHOW":
+            return False
         elif event.values["value"] == MARK and not event.values["is_yes_no"]:
             self.is_on = True
         return self.is_on

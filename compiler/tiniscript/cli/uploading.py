@@ -97,13 +97,8 @@ def run(arguments: list[str], language: str) -> int:
     ready = images.ready(given, robot, language, is_strict=True)
     if ready is None:
         return 1
-    if not given.is_image and ready.places is not None:
-        from tiniscript import maps
-        from tiniscript.image import pack
-
-        image = ready.image
-        maps.remember(pack(image.start, image.kit, image.code), ready.places)
     if are_many(options):
+        _keep_map(ready)
         from tiniscript.cli.uploading_many import upload_to_many
 
         return upload_to_many(options, robot, language, ready, inputs.shown(given.name))
@@ -134,8 +129,19 @@ def _upload(
         print(json.dumps(receipt(connection, ready, name, values, options)), flush=True)
     else:
         print(_receipt_line(connection, ready, name, values, options), flush=True)
+    _keep_map(ready)  # now that it moves
     teller = connection.teller(options.json, ready.places)
     return looked_after(connection, ready, values, options, teller)
+
+
+def _keep_map(ready: images.Ready) -> None:
+    """Let other commands know which instruction comes from which line."""
+    if ready.places is not None:
+        from tiniscript import maps
+        from tiniscript.image import pack
+
+        image = ready.image
+        maps.remember(pack(image.start, image.kit, image.code), ready.places)
 
 
 def brought(

@@ -16,7 +16,7 @@ from typing import IO
 import serial
 
 from tiniscript.link.asking import Asked, Asks
-from tiniscript.link.errands import OK, Reply, Robot
+from tiniscript.link.errands import Reply, Robot
 from tiniscript.link.outcomes import LOOK_S, Event, Gone
 from tiniscript.link.session import Session
 
@@ -40,6 +40,7 @@ class Line:
     ) -> None:
         """`lock` is closed after the port."""
         self.session = session
+        session.tells_starts = True  # others may share the line
         self.heard = 0  # bytes
         self.is_echoed = False
         self._port = port
@@ -188,17 +189,8 @@ class Line:
         over = [task for task in self._under_way if task.outcome is not None]
         if over:
             self._under_way = [task for task in self._under_way if task.outcome is None]
-            told += [(time_ms, event) for task in over for event in _start(task)]
         self.is_echoed = self.is_echoed or any(event.name == "ECHO" for _, event in told)
         self._events += told
         self._news.notify_all()
         if self._listener is not None and (told or over):
             self._listener(told)
-
-
-def _start(task: Asked) -> list[Event]:
-    """Return the event that a task has become a run, if it has."""
-    outcome = task.outcome
-    if not task.starts or outcome is None or outcome.status != OK:
-        return []
-    return [Event("STARTED", {name: outcome.values[name] for name in ("run", "program")})]

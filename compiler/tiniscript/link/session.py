@@ -77,6 +77,7 @@ class Session:
         """`nonce` is a random number of 32 bits; `kit` and `isa` are those of our programs."""
         self.robot: Robot | None = None
         self.is_attached = True  # events are wanted, so there is a heartbeat while nothing runs
+        self.tells_starts = False  # STARTED is wanted
         self.damaged = 0  # frames
         self._nonce, self._baud, self._kit, self._isa = nonce, baud, kit, isa
         self._receiver = Receiver()
@@ -412,7 +413,12 @@ class Session:
 
     def _finish(self, task: Task, outcome: Reply) -> None:
         task.outcome = outcome
-        if task.starts and outcome.status == OK and outcome.values["run"] != self._ended:
+        if not task.starts or outcome.status != OK:
+            return
+        if self.tells_starts:
+            started = {name: outcome.values[name] for name in ("run", "program")}
+            self._events.append(Event("STARTED", started))
+        if outcome.values["run"] != self._ended:
             self._state = RUNNING
 
     # -- endings ----------------------------------------------------------------------------------

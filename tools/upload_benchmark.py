@@ -1,0 +1,119 @@
+"""How long a new `tsc upload` takes until the robot moves.
+
+    python tools/upload_benchmark.py [runs]
+
+The paper's obstacle program, from the start of the process to the first motor command in the robot:
+where the command opens the port itself, and where `tsc link` holds it; beside a process that does
+nothing, in turn. The robot is the whole firmware on this computer, behind a pseudo-terminal.
+"""
+
+from __future__ import annotations
+
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
+
+from tests.desk import Desk
+from tests.machines.tabletop import missing
+from tiniscript import robots
+from tools.benchmark import table
+
+RUNS = 15
+MUST = 10  # times a process that does nothing, and the wire
+LIMIT_S = 20.0
+UPLOAD = ("upload", str(ROOT / "examples" / "obstacle.ts"), "--detach", "--no-save")
+BYTES_PER_MS = 12  # about 115200 baud
+OTHERS = (
+    ("Arduino: compile and upload, warm", "2200 ms", "", "measured elsewhere, modelled board"),
+    ("  the same, cold", "3100 ms", "", "measured elsewhere, modelled board"),
+    ("mpremote run, the computer's half", "50 ms", "", "measured elsewhere, a board without delay"),
+    ("opening an Uno's port, which resets it", "1400 ms", "", "measured elsewhere"),
+)  # fmt: skip
+
+
+class Bench:
+    """A robot on a port, and processes that are timed."""
+
+    def __init__(self, desk: Desk, folder: str) -> None:
+        self.desk = desk
+        self.environ = {
+            "PYTHONPATH": str(ROOT / "compiler"), "XDG_CACHE_HOME": folder, "LC_ALL": "C.UTF-8",
+        }  # fmt: skip
+
+    def start(self, *arguments: str) -> subprocess.Popen[bytes]:
+        command = [sys.executable, "-m", "tiniscript", *arguments, "--port", self.desk.port]
+        return subprocess.Popen(
+            command, env=self.environ, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
+        )
+
+    def nothing_ms(self) -> float:
+        begin_s = time.perf_counter()
+        subprocess.run([sys.executable, "-c", "pass"], env=self.environ, check=True)
+        return (time.perf_counter() - begin_s) * 1000
+
+    def moves_ms(self) -> tuple[float, int]:
+        """Return the time from the start of an upload to motion, and the bytes to the robot."""
+        if self.start("stop").wait():
+            raise RuntimeError("the robot did not stop")
+        heard = len(self.desk.heard)
+        begin_s = time.perf_counter()
+        upload = self.start(*UPLOAD)
+        while not self.desk.moves:
+            time.sleep(0.0003)
+            if time.perf_counter() - begin_s > LIMIT_S:
+                raise RuntimeError("the robot did not move")
+        took_ms = (time.perf_counter() - begin_s) * 1000
+        sent = len(self.desk.heard) - heard
+        if upload.wait():
+            raise RuntimeError("the upload failed")
+        return took_ms, sent
+
+
+def measured(bench: Bench, runs: int) -> tuple[float, float, float, int]:
+    """Return the medians of an upload (ms), of nothing (ms), of their ratio, and of the bytes."""
+    rows = []
+    bench.moves_ms()  # what is cached is cached now
+    for _ in range(runs):
+        nothing_ms = bench.nothing_ms()
+        moves_ms, sent = bench.moves_ms()
+        rows.append((moves_ms, nothing_ms, moves_ms / nothing_ms, sent))
+    moves_ms, nothing_ms, ratio, sent = (
+        statistics.median(each) for each in zip(*rows, strict=True)
+    )
+    return moves_ms, nothing_ms, ratio, int(sent)
+
+
+def main() -> int:
+    if missing():
+        print(missing(), file=sys.stderr)
+        return 2
+    runs = int(sys.argv[1]) if len(sys.argv) > 1 else RUNS
+    rows: list[tuple[object, ...]] = []
+    kit = robots.load("tinibot").kit
+    with tempfile.TemporaryDirectory() as folder, Desk(kit, bytes_per_ms=BYTES_PER_MS) as desk:
+        bench = Bench(desk, folder)
+        for name in ("tsc upload, opens the port", "tsc upload, tsc link holds it"):
+            link = bench.start("link") if "link" in name else None
+            if link is not None:
+                assert link.stdout
+                link.stdout.readline()
+            moves_ms, nothing_ms, ratio, sent = measured(bench, runs)
+            rows.append((name, f"{moves_ms:.0f} ms", f"{ratio:.1f}x", f"{sent} bytes on the wire"))
+            if link is not None:
+                link.terminate()
+                link.wait()
+    rows.append((f"  must {MUST}x and the wire, with tsc link", "", "", ""))
+    rows.append(("python -c pass", f"{nothing_ms:.0f} ms", "1x", ""))
+    head = ("to the first motor command", "median", "against pass", "")
+    table(f"A new process, obstacle program, {runs} runs", head, [*rows, *OTHERS])
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
