@@ -6,6 +6,7 @@ import json
 import os
 import signal
 import subprocess
+from collections import deque
 from collections.abc import Iterator
 
 import pytest
@@ -14,6 +15,9 @@ from tests.classroom import Classroom
 from tests.command import TSC, Done, Tsc, process
 from tests.machines.tabletop import missing
 from tiniscript import robots
+from tiniscript.cli.crew import Member, Result
+from tiniscript.cli.roll import Roll
+from tiniscript.cli.roster import Post
 from tiniscript.link import remembered
 
 pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
@@ -192,8 +196,28 @@ def test_the_table_shows_every_robot_and_leaves_plain_rows(class_: Classroom) ->
     assert command.wait(30) == 0
     assert seen == {"values", "running"}
     rows = [line.rstrip() for line in screen.display if line.strip()]
+    assert "4 of 4 robots: done." in rows
     assert sum(row.endswith("Done.") for row in rows) == 4
     assert not any("running" in row for row in rows)
+
+
+@pytest.mark.parametrize("count", [0, 1, 2, 5, 30])
+def test_every_table_fits_its_terminal(count: int) -> None:
+    members = [
+        Member(Post(f"/dev/ttyUSB{k}", "ÑANDÚ" * k, False, True), deque()) for k in range(count)
+    ]
+    for k, member in enumerate(members):
+        member.result = [None, Result(True, "fine"), Result(False, "what is wrong " * 9)][k % 3]
+    roll = Roll(members, "es")
+    for width in (1, 2, 20, 80, 200):
+        for height in (1, 2, 3, 8, 50):
+            lines = roll.lines(width, height, 0)
+            assert len(lines) <= height
+            assert all(line.cell_len <= width for line in lines)
+            if count > height > 2:
+                shown = "".join(line.plain for line in lines[1:-1])
+                assert "fine" not in shown or shown.count("\n") >= count // 3
+                assert lines[-1].plain.startswith("…")
 
 
 def _rest(terminal: int) -> bytes:

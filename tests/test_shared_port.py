@@ -147,6 +147,9 @@ def test_all_names_of_a_port_lead_to_its_holder(desk: Desk, link: Command, tmp_p
     assert {row["port"]: row["held_by"] for row in rows}[desk.port] == "link"
     done = process("ports", "--ask", "--port", name)
     assert "robot" in done.out and "held by tsc link" in done.out
+    done = process("info", "--port", name, "--baud", "115200")
+    assert done.code == 3
+    assert "held by tsc link, at 9600 baud" in done.err
     done = process("link", "--port", name)
     assert done.code == 3
     assert "shared already, by tsc link" in done.err
@@ -417,13 +420,13 @@ def test_only_the_user_may_come_in(desk: Desk, link: Command) -> None:
         with visitor(holder) as peer:
             peer.sendall(data)
             assert is_let_go(peer)
+    assert desk.moves
     silent = [visitor(holder) for _ in range(100)]
+    assert on(desk, "stop").code == 0
+    assert command.ended().code == 3
     for peer in silent:
         assert is_let_go(peer)
         peer.close()
-    assert desk.moves
-    assert on(desk, "stop").code == 0
-    assert command.ended().code == 3
 
 
 @pytest.mark.parametrize(

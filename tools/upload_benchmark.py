@@ -5,6 +5,8 @@
 The paper's obstacle program, from the start of the process to the first motor command in the robot:
 where the command opens the port itself, and where `tsc link` holds it; beside a process that does
 nothing, in turn. The robot is the whole firmware on this computer, behind a pseudo-terminal.
+
+Then thirty robots, against one: until the last of them moves, and until the last has stopped.
 """
 
 from __future__ import annotations
@@ -19,6 +21,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
+from tests.classroom import Classroom
 from tests.desk import Desk
 from tests.machines.tabletop import missing
 from tiniscript import robots
@@ -27,6 +30,7 @@ from tools.benchmark import table
 RUNS = 15
 MUST = 10  # times a process that does nothing, and the wire
 LIMIT_S = 20.0
+CROWDS = (1, 30)
 UPLOAD = ("upload", str(ROOT / "examples" / "obstacle.ts"), "--detach", "--no-save")
 BYTES_PER_MS = 12  # about 115200 baud
 OTHERS = (
@@ -89,6 +93,31 @@ def measured(bench: Bench, runs: int) -> tuple[float, float, float, int]:
     return moves_ms, nothing_ms, ratio, int(sent)
 
 
+def crowd(count: int, runs: int, folder: str) -> tuple[float, float]:
+    """Return how long (ms) until all of some robots move, and until all have stopped; medians."""
+    environ = {"PYTHONPATH": str(ROOT / "compiler"), "XDG_CACHE_HOME": folder, "LC_ALL": "C.UTF-8"}
+    moving, stopping = [], []
+    with Classroom([robots.load("tinibot").kit] * count) as room:
+        ports = [word for pupil in room.pupils for word in ("--port", pupil.port)]
+
+        def took_ms(verb: tuple[str, ...], moves: bool) -> float:
+            begin_s = time.perf_counter()
+            command = subprocess.Popen(
+                [sys.executable, "-m", "tiniscript", *verb, *ports], env=environ,
+                stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+            )  # fmt: skip
+            room.until(lambda: all(each.moves is moves for each in room.pupils), "all do it")
+            took_s = time.perf_counter() - begin_s
+            if command.wait():
+                raise RuntimeError(f"tsc {verb[0]} failed")
+            return took_s * 1000
+
+        for _ in range(runs):
+            moving.append(took_ms(UPLOAD, True))
+            stopping.append(took_ms(("stop",), False))
+    return statistics.median(moving), statistics.median(stopping)
+
+
 def main() -> int:
     if missing():
         print(missing(), file=sys.stderr)
@@ -112,6 +141,13 @@ def main() -> int:
     rows.append(("python -c pass", f"{nothing_ms:.0f} ms", "1x", ""))
     head = ("to the first motor command", "median", "against pass", "")
     table(f"A new process, obstacle program, {runs} runs", head, [*rows, *OTHERS])
+    rows = []
+    with tempfile.TemporaryDirectory() as folder:
+        for count in CROWDS:
+            moving_ms, stopping_ms = crowd(count, max(1, runs // 3), folder)
+            name = "1 robot" if count == 1 else f"{count} robots"
+            rows.append((name, f"{moving_ms:.0f} ms", f"{stopping_ms:.0f} ms"))
+    table("Many robots, a new process", ("", "tsc upload: all move", "tsc stop: all stand"), rows)
     return 0
 
 

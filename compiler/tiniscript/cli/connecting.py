@@ -82,8 +82,9 @@ class Connection:
             self.company = Company(options, robot, language)
             found = self.company.port
         self.port = found
+        asked_baud = None if options.baud is None else baud
         try:
-            self.line = opened_way(self.port, baud, robot, options.verb)
+            self.line = opened_way(self.port, baud, robot, options.verb, asked_baud=asked_baud)
             self.host = joining.shared(self.line, self.port, baud, options.verb)
         except BaseException:
             self._end_company()
@@ -247,9 +248,16 @@ class Connection:
         return Trouble(3, "port_gone", port=shown(self.port))
 
 
-def opened_way(port: str, baud: int, robot: Robot, verb: str, limit_s: float = 20) -> Way:
+def opened_way(
+    port: str, baud: int, robot: Robot, verb: str, limit_s: float = 20,
+    asked_baud: int | None = None,
+) -> Way:  # fmt: skip
     """Go to a port through its holder, or open it. Raises Trouble."""
-    return joining.way_to(port, verb, lambda lock: opened_line(port, baud, robot, limit_s, lock))
+
+    def open_line(lock: IO[bytes] | None) -> Line:
+        return opened_line(port, baud, robot, limit_s, lock)
+
+    return joining.way_to(port, verb, open_line, asked_baud)
 
 
 def opened_line(

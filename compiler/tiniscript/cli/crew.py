@@ -6,6 +6,7 @@ Knows no verb: each says what is done with one robot, and gets a `Connection` of
 from __future__ import annotations
 
 import json
+import re
 import sys
 from argparse import Namespace
 from collections import deque
@@ -124,7 +125,7 @@ def together(options: Namespace, robot: Robot, language: str, work: Work) -> int
         if sys.stderr.isatty() and not options.json:
             from tiniscript.cli.roll import Roll
 
-            with Roll(crew.members, language) as roll:
+            with Roll(crew.in_order(), language) as roll:
                 crew.watch(roll)
         else:
             crew.watch(None)
@@ -175,8 +176,10 @@ class Crew:
                     self._print(member)
             self._print_lines(roll)
         if roll is not None:
-            roll.end(member.row for member in self.members if not member.is_absent)
-        self._print_absent()
+            there = [member for member in self.in_order() if not member.is_absent]
+            there.sort(key=lambda member: member.mark == "bad")  # what went wrong is seen last
+            roll.end(member.row for member in there)
+        self._print_sum()
 
     def interrupt(self) -> None:
         """Have every robot stopped."""
@@ -264,12 +267,28 @@ class Crew:
         for member in strangers:
             member.result = Result(False, said, {}, is_absent=True)
 
-    def _print_absent(self) -> None:
-        absent = [member for member in self.members if member.is_absent]
-        if absent and len(absent) < len(self.members) and not self.options.json:
+    def in_order(self) -> list[Member]:
+        """Return the robots by their ports, `COM9` before `COM10`."""
+
+        def key(member: Member) -> list[tuple[int, str]]:
+            parts = re.split(r"(\d+)", member.post.port)
+            return [(int(part), "") if part.isdecimal() else (-1, part) for part in parts]
+
+        return sorted(self.members, key=key)
+
+    def _print_sum(self) -> None:
+        """Say how many it went well with, and where no robot is."""
+        absent = [member for member in self.in_order() if member.is_absent]
+        there = len(self.members) - len(absent)
+        if self.options.json or not there:
+            return
+        sys.stdout.flush()
+        done = sum(member.mark == "ok" for member in self.members)
+        lines = [text("crew_sum", self.language).format(done=done, all=there)]
+        if absent:
             ports = ", ".join(shown(member.post.port) for member in absent)
-            said = text("crew_absent", self.language).format(ports=ports)
-            print(said, file=sys.stderr, flush=True)
+            lines.append(text("crew_absent", self.language).format(ports=ports))
+        print("\n".join(lines), file=sys.stderr, flush=True)
 
 
 def _is_stranger(member: Member) -> bool:

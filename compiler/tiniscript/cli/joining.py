@@ -26,16 +26,19 @@ AGAIN_S = 0.05
 SHARED = ("link", "live", "monitor", "start", "upload")  # verbs that stay on a port, and share it
 
 
-def way_to(port: str, verb: str, open_line: Callable[[IO[bytes] | None], Line]) -> Way:
+def way_to(
+    port: str, verb: str, open_line: Callable[[IO[bytes] | None], Line], baud: int | None = None
+) -> Way:
     """Return the way to a port. Raises Trouble where it is busy or does not open.
 
-    `open_line` opens the port; what it is given is closed with the line.
+    `open_line` opens the port; what it is given is closed with the line. `baud` is the speed that
+    the person has asked for.
     """
     from tiniscript.sharing import holders
 
     end_s = monotonic() + BUSY_S
     while True:
-        guest = _joined(port, verb)
+        guest = _joined(port, verb, baud)
         if guest is not None:
             return guest
         try:
@@ -62,14 +65,19 @@ def shared(way: Way, port: str, baud: int, verb: str) -> Host | None:
         return None
 
 
-def _joined(port: str, verb: str) -> Guest | None:
+def _joined(port: str, verb: str, baud: int | None) -> Guest | None:
     from tiniscript.sharing.guest import OtherVersion, joined
 
     try:
-        return joined(port, verb)
+        guest = joined(port, verb)
     except OtherVersion as other:
         values = {"verb": other.holder.verb, "theirs": shown(other.version)}
         raise Trouble(3, "holder_other", port=shown(port), **values) from None
+    if guest is not None and baud not in (None, guest.baud) and verb != "stop":
+        guest.close()
+        values = {"verb": guest.held_by, "baud": str(guest.baud)}
+        raise Trouble(3, "holder_baud", port=shown(port), **values)
+    return guest
 
 
 def _claimed(port: str) -> IO[bytes] | None:

@@ -40,6 +40,8 @@ LINK_TEXTS: dict[str, tuple[str, str]] = {
                   "tsc: el puerto {port} ha desaparecido. Un programa sin --detach termina un segundo después. Conecta el cable otra vez y prueba otra vez."),
     "holder_ended": ("tsc: the command that held the port {port} has ended (tsc {verb}), and with it a program without --detach. Try again: now this command opens the port itself.",
                      "tsc: el comando que tenía el puerto {port} terminó (tsc {verb}), y con él un programa sin --detach. Prueba otra vez: ahora este comando abre el puerto."),
+    "holder_baud": ("tsc: the port {port} is held by tsc {verb}, at {baud} baud. Leave --baud out, or end that one and try again.",
+                    "tsc: el puerto {port} lo tiene tsc {verb}, a {baud} baudios. Quita --baud, o termina ese comando y prueba otra vez."),
     "holder_other": ("tsc: the port {port} is held by a tsc of another version, {theirs} (tsc {verb}). End that one, and try again. (tsc stop works.)",
                      "tsc: el puerto {port} lo tiene un tsc de otra versión, {theirs} (tsc {verb}). Termina ese comando y prueba otra vez. (tsc stop funciona.)"),
     "replaced": ("tsc: another command has started another program on the robot on {port}, which ended this one. To watch the new one:  tsc monitor",
@@ -192,6 +194,8 @@ LINK_TEXTS: dict[str, tuple[str, str]] = {
     "crew_running": ("running", "en marcha"),
     "crew_uploaded": ("program {checksum}, {code} bytes of code. {how}", "programa {checksum}, {code} bytes de código. {how}"),
     "crew_saving": ("saving", "guardando"),
+    "crew_more": ("… and {n} more", "… y {n} más"),
+    "crew_sum": ("{done} of {all} robots: done.", "{done} de {all} robots: listo."),
     "crew_absent": ("No robot answers on {ports}.", "Ningún robot responde en {ports}."),
     # link
     "linked": ("{robot} on {port}. Other tsc commands share this port now; Ctrl-C ends that.",

@@ -202,16 +202,17 @@ class Talk:
 
         That it was lost the next line tells, if it still is.
         """
-        from tiniscript.cli.telling import Teller
+        from tiniscript.cli.telling import Bookkeeping, Teller
         from tiniscript.link.outcomes import Gone
 
-        teller = Teller(self.language)
+        teller, bookkeeping = Teller(self.language), Bookkeeping()
         try:
             while True:
                 found = self.connection.line.event(0)
                 if found is None:
                     return
-                teller.tell(*found)
+                if not bookkeeping.hides(found[1]):
+                    teller.tell(*found)
         except Gone as gone:
             raise self.connection.gone(gone) from None
 

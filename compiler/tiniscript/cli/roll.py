@@ -51,22 +51,28 @@ class Roll:
         self.screen.draw(self, time.monotonic() * 1000)
 
     def lines(self, width: int, height: int, now_ms: float) -> list[Text]:
-        """Return at most `height` lines: those that are not over first, where not all fit."""
+        """Return at most `height` lines: those that are not done first, where not all fit."""
         if not self.members:
             return []
         over = sum(member.result is not None for member in self.members)
         title = text("crew_title", self.language).format(over=over, all=len(self.members))
         lines = [Text(f"── {title} ".ljust(width, "─"), style="dim")]
         rows = list(self.members)
+        hidden = 0
         if len(rows) > height - 1:
-            rows.sort(key=lambda member: member.result is not None)  # sorting keeps the order else
+            rows.sort(key=lambda member: member.mark == "ok")  # the others stay in their order
+            hidden = len(rows) - max(0, height - 2)
+            rows = rows[: len(rows) - hidden]
         names = [shown(member.name or "?") for member in rows]
         ports = [shown(member.post.port) for member in rows]
-        wide = max(map(len, names)), max(map(len, ports))
-        room = max(0, height - 1)
-        for member, name, port in list(zip(rows, names, ports, strict=True))[:room]:
+        wide = [max(map(len, column), default=0) for column in (names, ports)]
+        for member, name, port in zip(rows, names, ports, strict=True):
             line = Text(f"{name:{wide[0]}}  {port:{wide[1]}}  ")
             line.append(member.said(self.language), style=STYLES[member.mark])
-            line.truncate(max(1, width), overflow="ellipsis")
             lines.append(line)
+        if hidden:
+            more = text("crew_more", self.language).format(n=hidden)
+            lines.append(Text(more, style="dim"))
+        for line in lines:
+            line.truncate(max(1, width), overflow="ellipsis")
         return lines[: max(1, height)]

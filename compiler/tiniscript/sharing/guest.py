@@ -43,6 +43,7 @@ class Guest:
         self.heard = 0
         self.is_echoed = False
         self.held_by = holder.verb
+        self.baud = holder.baud
         self._peer = peer
         self._notes = rest
         self._wishes = Wishes()

@@ -30,7 +30,7 @@ from tiniscript.sharing.notes import BadNote, Note
 from tiniscript.sharing.wishes import asked_for, is_detached
 
 GREETING_S = 2.0  # in which whoever comes must say who it is
-GUESTS = 64  # at a time
+GUESTS = 64  # at a time, and as many who have not said who they are
 TASKS = 8  # of one guest, at a time
 FULL_BYTES = 200_000  # that wait for a slow guest: from here on it misses values,
 TOO_FULL_BYTES = 1_000_000  # and here it is let go
@@ -143,9 +143,12 @@ class Host:
     def _let_in(self) -> None:
         with suppress(OSError):
             peer, _ = self._server.accept()
-            if len(self._guests) >= GUESTS:
+            strangers = [guest for guest in self._guests if not guest.verb]
+            if len(self._guests) - len(strangers) >= GUESTS:
                 peer.close()
                 return
+            if len(strangers) >= GUESTS:
+                self._drop(strangers[0])
             peer.setblocking(False)
             peer.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
             guest = Guest(peer)
