@@ -7,6 +7,7 @@ ranges, kinds, limits; and the rule which reading a sensor's name means. Does no
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from itertools import chain
 from typing import NamedTuple
 
 from tiniscript import problems, program, tree
@@ -304,7 +305,7 @@ class _Checker(Scope):
             return
         commands = [each.text for each in WORDS.values() if each.role not in
                     ("setup", "later", "value", "operator", "function", "forever")]  # fmt: skip
-        near = self.near(word, [*commands, *self.names, *self.def_names])
+        near = self.near(word, chain(commands, self.names, self.def_names))
         self.report(problems.UNKNOWN_WORD, span, found=word, near=near)
 
     # -- blocks -------------------------------------------------------------------------------

@@ -110,7 +110,7 @@ class Kinds:
         ):  # fmt: skip
             scope.report(problems.OTHER_LANGUAGE, span, found=name, right=meant, fix=meant)
             return
-        known = [each for each, its in scope.names.items() if its.what in ("sensor", "variable")]
+        known = (each for each, its in scope.names.items() if its.what in ("sensor", "variable"))
         near = scope.near(name, known)
         if name == target or name in scope.set_somewhere:
             scope.report(problems.USED_BEFORE_SET, span, name=name, near=near)

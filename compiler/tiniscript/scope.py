@@ -6,7 +6,7 @@ checker fills in what it has come past; `kinds` asks.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 from tiniscript import tree
@@ -39,8 +39,11 @@ class Scope:
     def report(self, code: Code, span: Span, **values: str) -> None:
         self.problems.append(Problem(code, span, values))
 
-    def near(self, word: str, known: Sequence[str]) -> str:
-        """Return the nearest known word for a message, as long as messages help."""
+    def near(self, word: str, known: Iterable[str]) -> str:
+        """Return the nearest known word for a message, as long as messages help.
+
+        Then `known` is not looked at, so that many mistakes in a long program take no longer.
+        """
         return (nearest(word, known) or "") if len(self.problems) < ENOUGH else ""
 
 
