@@ -18,6 +18,8 @@ from tiniscript.link.messages import (
     RUN,
     SAVE,
     STATUSES,
+    Malformed,
+    read,
 )
 
 OK = STATUSES["OK"]
@@ -55,6 +57,18 @@ class Robot(NamedTuple):
     kit: int
     room: int
     values: Mapping[str, int | bytes]
+
+
+def reply_of(name: str, payload: bytes) -> Reply | None:
+    """Return what a reply says, or None where it has no such payload."""
+    if not payload:
+        return None
+    if payload[0] != OK:
+        return Reply(payload[0], int.from_bytes(payload[1:3], "little"))
+    try:
+        return Reply(OK, 0, read(BY_NAME[name].reply, payload[1:]))
+    except Malformed:
+        return None
 
 
 def described(values: Mapping[str, int | bytes]) -> Robot:

@@ -14,7 +14,7 @@ from collections.abc import Callable, Mapping
 from tiniscript.bytecode import ISA_MAJOR, ISA_MINOR
 from tiniscript.image import Image
 from tiniscript.link import errands
-from tiniscript.link.errands import OK, Errand, Reply, Request, Robot
+from tiniscript.link.errands import OK, Errand, Reply, Request, Robot, reply_of
 from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.messages import (
     BY_NAME,
@@ -344,7 +344,7 @@ class Session:
         if ours is None or (frame.number, frame.seq) != (ours.number, ours.seq):
             return  # a second answer
         message = BY_NUMBER[frame.number]
-        reply = _reply(message.name, frame.payload)
+        reply = reply_of(message.name, frame.payload)
         if reply is None:
             self.damaged += 1
             return
@@ -450,15 +450,3 @@ class Session:
 
     def _tell(self, name: str, **values: int | bytes) -> None:
         self._events.append(Event(name, values))
-
-
-def _reply(name: str, payload: bytes) -> Reply | None:
-    """Return what a reply says, or None where it has no such payload."""
-    if not payload:
-        return None
-    if payload[0] != OK:
-        return Reply(payload[0], int.from_bytes(payload[1:3], "little"))
-    try:
-        return Reply(OK, 0, read(BY_NAME[name].reply, payload[1:]))
-    except Malformed:
-        return None
