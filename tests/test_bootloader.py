@@ -141,3 +141,16 @@ def answered(uno: Uno) -> object:
     robot = wired.session.robot
     assert robot is not None
     return robot.values["reset"]
+
+
+def test_a_mega_that_was_reset_is_waited_for(
+    tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    """What it hears too early keeps it in its bootloader, and its profile is that of an Uno."""
+    elf = firmware("mega", tmp_path, shared(tmp_path_factory))
+    file = bootloader("mega").file
+    with Uno(elf, board="mega", bootloader=file, baud=BAUD, tells_sleep=False) as mega:
+        mega.go()
+        pong = process("ping", "--port", mega.pty)
+        assert pong.code == 0, pong.err
+        assert pong.out.startswith(f"tinibot on {mega.pty}")

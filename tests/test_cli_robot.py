@@ -37,6 +37,8 @@ def desk() -> Iterator[Desk]:
 def hasty(monkeypatch: pytest.MonkeyPatch) -> None:
     """Nobody waits long for a robot that will not answer."""
     monkeypatch.setattr(connecting, "ANSWER_MS", 800)
+    monkeypatch.setattr(connecting, "CABLE_ANSWER_MS", 800)
+    monkeypatch.setattr(connecting, "LONG_QUIET_S", 0.1)
     monkeypatch.setattr(connecting, "PATIENCE_MS", 800)
     monkeypatch.setattr(finding, "ANSWER_MS", 800)
 

@@ -1,10 +1,11 @@
-"""A robot's port on another computer: `socket://` and `rfc2217://`."""
+"""A robot's port on another computer: `socket://` and `rfc2217://`; and which ports are radios."""
 
 from __future__ import annotations
 
 import socket
 import threading
 from collections.abc import Callable
+from types import SimpleNamespace
 
 import pytest
 import serial
@@ -14,6 +15,7 @@ from tests.command import process
 from tests.desk import Desk
 from tests.machines.tabletop import missing
 from tiniscript import robots
+from tiniscript.link import ports
 
 pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
@@ -74,3 +76,23 @@ def test_a_robot_is_reached_over_a_network(protocol: str) -> None:
         assert desk.did == ["MOTORS 50 50", "MOTORS 0 0", "FINISHED"]
         server.join(10)
         assert process("ports").out.count(address) == 1
+
+
+@pytest.mark.parametrize(("system", "port", "is_radio"), [
+    ("linux", "/dev/ttyUSB0", False),
+    ("linux", "/dev/rfcomm0", True),
+    ("linux", "socket://localhost:1", True),
+    ("darwin", "/dev/tty.usbserial-1410", False),
+    ("darwin", "/dev/cu.wchusbserial1410", False),
+    ("darwin", "/dev/tty.HC-05", True),
+    ("win32", "COM3", False),
+    ("win32", "COM5", True),
+])  # fmt: skip
+def test_a_radio_is_known_by_its_port(
+    system: str, port: str, is_radio: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    wires = [SimpleNamespace(device="COM3", hwid="USB VID:PID=1A86:7523"),
+             SimpleNamespace(device="COM5", hwid="BTHENUM\\{00001101-0000}")]  # fmt: skip
+    monkeypatch.setattr("serial.tools.list_ports.comports", lambda: wires)
+    monkeypatch.setattr(ports, "sys", SimpleNamespace(platform=system))
+    assert ports.is_radio(port) == is_radio

@@ -9,6 +9,7 @@ import os
 import sys
 from argparse import Namespace
 from collections.abc import Callable
+from time import sleep
 from typing import IO, TYPE_CHECKING
 
 from tiniscript.cli import inputs, joining
@@ -29,7 +30,13 @@ if TYPE_CHECKING:
     from tiniscript.maps import Map
     from tiniscript.robots.profile import Robot
 
-ANSWER_MS = 6000  # for which a robot is asked who it is: an Uno that was reset takes 1.4 s
+ANSWER_MS = 6000  # for which a robot is asked through the air who it is
+# At a cable it is asked for less, and twice: an Uno that was reset takes 1.4 s.
+CABLE_ANSWER_MS = 2000
+# A Mega that was reset begins after 0.9 s. What it hears before that keeps it in its bootloader
+# until it has heard nothing for 4.2 s.
+QUIET_S = {"mega": 1.2}  # by board
+LONG_QUIET_S = 4.5
 PATIENCE_MS = 6000  # for which one that has answered may be silent, or busy with saving
 PSEUDO = "/dev/"  # where pseudo-terminals are
 VIRTUAL = ""  # no port: a virtual robot that this command brings along
@@ -123,15 +130,32 @@ class Connection:
         if self.company is not None:
             self.company.close()
 
-    def meet(self) -> Card:
-        """Ask the robot who it is, until it answers. Raises Trouble where none does."""
-        reply = self.wait(hello(self.line, ANSWER_MS))
+    def meet(self, board: str | None = None) -> Card:
+        """Ask the robot who it is, until it answers. Raises Trouble where none does.
+
+        `board` is what it is on, where that is not the one of its profile.
+        """
+        reply = self._asked_patiently(board or self.profile.board.chip)
         card = self.line.robot
         if reply.status or card is None:
             raise self.trouble(reply)
         if not self.is_one_of_many:
             self.remember(card.name)
         return card
+
+    def _asked_patiently(self, board: str) -> Reply:
+        """Ask who is there, but not so early that a board stays in its bootloader."""
+        if not self.line.held_by:  # else the port is open already
+            from tiniscript.link import ports
+
+            if not ports.is_radio(self.port):
+                sleep(QUIET_S.get(board, 0.0))
+                reply = self.wait(hello(self.line, CABLE_ANSWER_MS))
+                if self.line.heard:
+                    return reply
+                sleep(LONG_QUIET_S)
+                return self.wait(hello(self.line, CABLE_ANSWER_MS))
+        return self.wait(hello(self.line, ANSWER_MS))
 
     def remember(self, name: str) -> None:
         """Keep the port for the next time, and what the robot on it is called."""

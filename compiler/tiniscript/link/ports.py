@@ -8,11 +8,14 @@ goes wrong has a name.
 from __future__ import annotations
 
 import errno
+import sys
 from threading import Thread
 from typing import NamedTuple
 
 import serial
 from serial.tools import list_ports
+
+from tiniscript.link.names import is_address
 
 READ_S = 0.02  # for which a read waits: on some systems nothing can wake it earlier
 WRITE_S = 1.0  # for which a port may refuse to take bytes; the session sends them again
@@ -63,6 +66,19 @@ def listed() -> list[Found]:
         description = each.description if each.description != "n/a" else ""
         found.append(Found(each.device, description))
     return sorted(found)
+
+
+def is_radio(port: str) -> bool:
+    """Whether a port leads to a robot through the air: opening it does not reset a board."""
+    name = port.lower()
+    if is_address(port) or "rfcomm" in name:
+        return True
+    if sys.platform == "darwin":
+        return "usb" not in name
+    if sys.platform == "win32":
+        known = {each.device.lower(): each.hwid or "" for each in list_ports.comports()}
+        return "BTHENUM" in known.get(name, "")
+    return False
 
 
 def opened(port: str, baud: int, limit_s: float = OPEN_S) -> serial.SerialBase:
