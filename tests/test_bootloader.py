@@ -11,6 +11,7 @@ import pytest
 from tests import arduino_builder
 from tests.command import process
 from tests.machines.bootloaders import Bootloader, bootloader
+from tests.machines.uno import built as nothing_but
 from tests.machines.uno import needed
 from tests.platformio import firmware, need, shared
 from tests.test_uno_guard import built
@@ -52,7 +53,6 @@ def avrdude(uno: Uno, of: Bootloader, file: Path) -> str:
 def test_avrdude_writes_the_sketch_and_the_robot_drives(
     board: str, builder: str, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
-    """The chip has its bootloader and nothing else before."""
     common = shared(tmp_path_factory)
     if builder == "PlatformIO":
         elf = firmware(board, tmp_path, common)
@@ -63,7 +63,9 @@ def test_avrdude_writes_the_sketch_and_the_robot_drives(
     of = bootloader(board)
     program = tmp_path / "drive.ts"
     program.write_text(DRIVES, encoding="utf-8")
-    with Uno(None, bootloader=of.file, names=NAMES, baud=of.baud, tells_sleep=False) as uno:
+    with Uno(
+        nothing_but("nothing"), bootloader=of.file, names=NAMES, baud=of.baud, tells_sleep=False
+    ) as uno:
         uno.go()
         assert "bytes of flash verified" in avrdude(uno, of, sketch)
         pong = process("ping", "--port", uno.pty)
@@ -150,7 +152,7 @@ def test_a_mega_that_was_reset_is_waited_for(
     elf = firmware("mega", tmp_path, shared(tmp_path_factory))
     file = bootloader("mega").file
     with Uno(elf, board="mega", bootloader=file, baud=BAUD, tells_sleep=False) as mega:
-        mega.go()
+        mega.go(speed=3.0)  # real time is at least that, on a busy computer too
         pong = process("ping", "--port", mega.pty)
         assert pong.code == 0, pong.err
         assert pong.out.startswith(f"tinibot on {mega.pty}")

@@ -39,14 +39,21 @@ def _folder() -> tempfile.TemporaryDirectory[str]:
     return tempfile.TemporaryDirectory()
 
 
-@lru_cache(maxsize=1)
-def _optiboot() -> Path:
-    elf, file = (Path(_folder().name) / f"optiboot.{kind}" for kind in ("elf", "hex"))
-    source = FOLDER / "optiboot" / "optiboot.c"
-    subprocess.run(["avr-gcc", *FLAGS, source, "-o", elf], check=True)
+def optiboot(folder: Path, text: str) -> Path:
+    """Return what becomes of a source of Optiboot."""
+    source, elf, file = (folder / f"optiboot.{kind}" for kind in ("c", "elf", "hex"))
+    source.write_text(text, encoding="utf-8")
+    beside = f"-I{FOLDER / 'optiboot'}"
+    subprocess.run(["avr-gcc", *FLAGS, beside, source, "-o", elf], check=True)
     sections = ("-j", ".text", "-j", ".version", "--set-section-flags", ".version=alloc,load")
     subprocess.run(["avr-objcopy", *sections, "-O", "ihex", elf, file], check=True)
     return file
+
+
+@lru_cache(maxsize=1)
+def _optiboot() -> Path:
+    source = FOLDER / "optiboot" / "optiboot.c"
+    return optiboot(Path(_folder().name), source.read_text(encoding="utf-8", errors="replace"))
 
 
 def bootloader(board: str) -> Bootloader:

@@ -48,12 +48,12 @@ class Uno:
 
     `names` are other words for pins, as `{"button": "D2"}`. Without an `eeprom`
     file the EEPROM is that of a new chip, and lost afterwards. Where a `bootloader` is given, a
-    reset begins there; it may be alone on the chip.
+    reset begins there.
     """
 
     def __init__(
         self,
-        firmware: Path | None,
+        firmware: Path,
         *,
         names: Mapping[str, str] | None = None,
         eeprom: Path | None = None,
@@ -77,7 +77,7 @@ class Uno:
         options += [] if tells_sleep else ["--no-sleep"]
         options += ["--watch-stack"] if watches_stack else []
         self._process = subprocess.Popen(
-            [built(), *options, *([firmware] if firmware else [])],
+            [built(), *options, firmware],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=self._errors,

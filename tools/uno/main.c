@@ -2,14 +2,14 @@
 // lines of JSON, and does what it is told on the standard input (commands.c). Ends when that is
 // closed.
 //
-//     uno [options] [firmware.elf|firmware.hex]
+//     uno [options] firmware.elf|firmware.hex
 //       --board NAME      uno or mega: uno
 //       --run SPEED       begin at once; otherwise it waits for the command `run`
 //       --baud N          of the pty until somebody sets another, and of the commands: 115200
 //       --link PATH       also make PATH a link to the pty
 //       --eeprom FILE     where the EEPROM is kept
 //       --reset-on-open   opening the pty resets the board
-//       --bootloader HEX  where a reset begins; without a firmware it is alone on the chip
+//       --bootloader HEX  where a reset begins
 //       --watch-stack     tell how deep it is on the command `stack`
 //       --no-sleep        say nothing of sleeping
 
@@ -185,14 +185,13 @@ static void load_hex(const char* name, uint32_t* begin) {
   if (!hex_load(name, avr->flash, avr->flashend + 1, begin)) give_up("cannot read %s", name);
 }
 
-// Without a firmware the flash is that of a new chip.
 static void load(const char* firmware, const char* bootloader) {
   uint32_t begin;
   avr = avr_make_mcu_by_name(board->chip);
   if (!avr || avr_init(avr) != 0) give_up("libsimavr has no %s", board->chip);
-  if (firmware && is_hex(firmware)) {
+  if (is_hex(firmware)) {
     load_hex(firmware, &begin);
-  } else if (firmware) {
+  } else {
     load_elf(firmware);
   }
   avr->codeend = avr->flashend;
@@ -242,7 +241,7 @@ int main(int count, char** words) {
     }
     k += takes_value;
   }
-  if (!firmware && !bootloader) give_up("which firmware?");
+  if (!firmware) give_up("which firmware?");
   if (baud <= 0) give_up("which baud?");
   // What libsimavr prints is no JSON.
   out = fdopen(dup(STDOUT_FILENO), "w");
