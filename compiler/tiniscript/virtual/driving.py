@@ -17,6 +17,7 @@ from tiniscript.virtual.geometry import Point, Segment, between, distance
 TOUCH_CM = 0.3  # nearer than that is touching
 STEP_MS = 10.0  # of a robot that touches something
 STRIDE_MS = 100.0  # after which a place is kept
+NEAR_CM = 20.0  # what is further away than this is looked at again later
 KEPT = 20_000  # corners of the way; then every other one goes
 EXACT_CM = 1e-6  # less than that inside is not inside
 PUSHES = 6  # at one place, out of what is touched there
@@ -107,6 +108,8 @@ class Driving:
         self.bumps = 0  # how often it has begun to touch something
         self.driven_cm = 0.0
         self._pose = start
+        self._near: Sequence[Segment] = obstacles  # all that may come near,
+        self._near_from: Pose | None = None  # to a robot that is here
         self._kept_ms = 0.0  # when it was there
         self._free_cm = 0.0  # no point of the body touches anything before it has gone so far
         self._is_touching = self.is_touching(start)
@@ -117,8 +120,18 @@ class Driving:
         return found is not None and found.gap_cm < 0
 
     def is_touching(self, pose: Pose) -> bool:
-        found = self.hull.contact(pose, self.obstacles)
+        found = self._contact(pose)
         return found is not None and found.gap_cm < TOUCH_CM
+
+    def _contact(self, pose: Pose) -> Contact | None:
+        """Return the nearest obstacle, or None where each is further away than NEAR_CM."""
+        centre = self._near_from
+        if centre is None or math.dist(centre[:2], pose[:2]) > NEAR_CM:
+            least_cm = self.hull.reach_cm + 2 * NEAR_CM
+            self._near = [each for each in self.obstacles if distance(each, *pose[:2]) < least_cm]
+            self._near_from = pose
+        found = self.hull.contact(pose, self._near)
+        return None if found is None or found.gap_cm > NEAR_CM else found
 
     def set_motors(self, now_ms: float, left: float, right: float) -> None:
         self.go_on(now_ms)
@@ -183,8 +196,8 @@ class Driving:
         is_known = False  # how much is free, exactly
         while left_ms > 0:
             if free_cm < speed * left_ms and not is_known:
-                contact = self.hull.contact(pose, self.obstacles)
-                free_cm = math.inf if contact is None else max(0.0, contact.gap_cm)
+                contact = self._contact(pose)
+                free_cm = NEAR_CM if contact is None else max(0.0, contact.gap_cm)
             step_ms = min(left_ms, max(free_cm / speed, STEP_MS))
             if free_cm >= speed * step_ms:
                 way += points(self.body, pose, self.left, self.right, step_ms)
@@ -212,9 +225,9 @@ class Driving:
         It is pushed out of every obstacle; where that is not possible it stays where it was.
         """
         for _ in range(PUSHES):
-            contact = self.hull.contact(pose, self.obstacles)
+            contact = self._contact(pose)
             if contact is None:
-                return pose, math.inf
+                return pose, NEAR_CM
             if contact.gap_cm > -EXACT_CM:
                 return pose, max(0.0, contact.gap_cm)
             apart = math.dist(contact.ours, contact.theirs)
