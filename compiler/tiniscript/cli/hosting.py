@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from tiniscript.cli import inputs, outputs, virtual_options
 from tiniscript.cli.inputs import shown
+from tiniscript.cli.keys import Keys, is_in_front
 from tiniscript.cli.options import Options, decimal, whole_number
 from tiniscript.cli.texts import text
 from tiniscript.cli.trouble import Trouble
@@ -140,8 +141,6 @@ class _Stage:
 
     def show(self, pushes_ms: list[int], end_ms: int | None) -> None:
         """Let the robot live until its time is over, or the person ends it."""
-        from tiniscript.cli.keys import Keys
-
         robot = self.host.robot
         self._introduce()
         try:
@@ -180,7 +179,7 @@ class _Stage:
         print(said, file=sys.stderr, flush=True)
 
     def _begin(self) -> None:
-        if not sys.stderr.isatty():
+        if not (sys.stderr.isatty() and is_in_front()):
             return
         from tiniscript.cli.drawing import Screen
         from tiniscript.cli.world_drawing import WorldPicture

@@ -17,7 +17,7 @@ class Keys:
         self._file = -1
 
     def __enter__(self) -> Keys:
-        if sys.stdin.isatty() and sys.platform != "win32":
+        if sys.stdin.isatty() and sys.platform != "win32" and is_in_front():
             import termios
             import tty
 
@@ -48,6 +48,16 @@ class Keys:
         if not select.select([self._file], [], [], 0)[0]:
             return ""
         return os.read(self._file, 100).decode("utf-8", "replace")
+
+
+def is_in_front() -> bool:
+    """Whether this command has the terminal: `tsc robot &` leaves it to the shell."""
+    if sys.platform == "win32":
+        return True
+    try:
+        return os.tcgetpgrp(sys.stdin.fileno()) == os.getpgrp()
+    except (OSError, ValueError):  # no terminal of a shell's
+        return True
 
 
 def _pressed_on_windows() -> str:
