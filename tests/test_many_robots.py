@@ -18,7 +18,7 @@ from tiniscript import robots
 from tiniscript.cli.crew import Member, Result
 from tiniscript.cli.roll import Roll
 from tiniscript.cli.roster import Post
-from tiniscript.link import remembered
+from tiniscript.link import ports, remembered
 
 pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
@@ -128,25 +128,48 @@ def test_robots_stop_when_the_command_of_all_is_killed(class_: Classroom) -> Non
 
 def test_info_and_ping_have_a_row_for_each(class_: Classroom) -> None:
     assert process("upload", "-e", "SB|S", "--all").code == 0
-    ports = [pupil.port for pupil in class_.pupils]
+    names = [pupil.port for pupil in class_.pupils]
     done = process("info", "--all")
     assert done.code == 0
     assert sorted(line.split("(")[1].split(")")[0] for line in done.out.splitlines()) == sorted(
-        ports
+        names
     )
-    assert done.out.count("nothing runs") == len(ports)
-    done = process("ping", "--count", "3", "--json", "--port", ports[0], "--port", ports[2])
+    assert done.out.count("nothing runs") == len(names)
+    done = process("ping", "--count", "3", "--json", "--port", names[0], "--port", names[2])
     rows = results(done)
-    assert set(rows) == {ports[0], ports[2]}
+    assert set(rows) == {names[0], names[2]}
     assert all(row["round_trips"] == 3 for row in rows.values())
 
 
 def test_ports_that_are_named_must_have_robots(class_: Classroom) -> None:
-    ports = [pupil.port for pupil in class_.pupils]
-    done = process("ping", "--port", ports[0], "--port", "/dev/no-such", "--lang", "es")
+    name = class_.pupils[0].port
+    done = process("ping", "--port", name, "--port", "/dev/no-such", "--lang", "es")
     assert done.code == 3
     assert "no existe el puerto /dev/no-such" in done.out
-    assert "3" in process("ping", "--count", "3", "--port", ports[0], "--port", ports[0]).out
+    assert "3" in process("ping", "--count", "3", "--port", name, "--port", name).out
+
+
+def test_a_port_that_never_had_a_robot_is_no_failure(
+    tsc: Tsc, class_: Classroom, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pty = pytest.importorskip("pty")
+    ends = [end for _ in range(2) for end in pty.openpty()]
+    port, known = os.ttyname(ends[1]), os.ttyname(ends[3])
+    monkeypatch.setattr("tiniscript.link.ports.listed", lambda: [ports.Found(port, "")])
+    monkeypatch.setattr("tiniscript.cli.crew.STRANGER_S", 1.0)
+    done = tsc("ping", "--all", "--count", "1")
+    assert done.code == 0
+    assert len(done.out.splitlines()) == 4
+    assert done.err == f"4 of 4 robots: done.\nNo robot answers on {port}.\n"
+    monkeypatch.setattr("tiniscript.link.ports.listed", list)
+    monkeypatch.setattr("tiniscript.cli.connecting.ANSWER_MS", 1000)
+    remembered.remember(known, "R9", is_used=False)
+    done = tsc("ping", "--all", "--count", "1")
+    assert done.code == 3
+    assert f"R9 ({known}): nothing answers" in done.out
+    assert "4 of 5 robots: done." in done.err
+    for end in ends:
+        os.close(end)
 
 
 def test_a_program_with_mistakes_reaches_nobody(class_: Classroom) -> None:

@@ -78,6 +78,7 @@ class Connection:
         """
         self.is_one_of_many = is_one_of_many
         self.is_interrupted = False
+        self.starts_nothing = options.verb not in ("upload", "start", "live")
         baud = baud_of(options, robot, language)
         self.language = language
         self.profile = robot
@@ -135,7 +136,11 @@ class Connection:
 
         `board` is what it is on, where that is not the one of its profile.
         """
+        from tiniscript.link.outcomes import CANCELLED
+
         reply = self._asked_patiently(board or self.profile.board.chip)
+        while reply.status == CANCELLED and self.starts_nothing:  # a stop came first
+            reply = self.wait(hello(self.line, ANSWER_MS))
         card = self.line.robot
         if reply.status or card is None:
             raise self.trouble(reply)

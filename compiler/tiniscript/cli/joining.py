@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from tiniscript.sharing.guest import Guest
     from tiniscript.sharing.host import Host
 
-BUSY_S = 1.5  # for which a port may be busy: another command is just leaving, or will share it
+BUSY_S = 3.0  # for which a port may be busy: another command is just leaving, or will share it
 AGAIN_S = 0.05
 SHARED = ("link", "live", "monitor", "start", "upload")  # verbs that stay on a port, and share it
 

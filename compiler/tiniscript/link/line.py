@@ -50,6 +50,7 @@ class Line:
         self._under_way: list[Asked] = []
         self._listener: Callable[[list[Told]], None] | None = None
         self._gone: str | None = None
+        self._bug: Exception | None = None
         self._is_closing = False
         self._thread = Thread(target=self._run, name="link", daemon=True)
         self._thread.start()
@@ -84,7 +85,7 @@ class Line:
                 if task.outcome is not None:
                     return task.outcome
                 if self._gone is not None:
-                    raise Gone(self._gone)
+                    raise self._bug or Gone(self._gone)
             if look is not None:
                 look()
 
@@ -96,7 +97,7 @@ class Line:
             if self._events:
                 return self._events.popleft()
             if self._gone is not None:
-                raise Gone(self._gone)
+                raise self._bug or Gone(self._gone)
         return None
 
     def stop(self) -> None:
@@ -110,6 +111,11 @@ class Line:
         with self._news:
             self._events.append((now_ms(), event))
             self._news.notify_all()
+
+    def fail(self, bug: Exception) -> None:
+        """End the line because of a mistake of ours, which whoever waits here is to hear of."""
+        self._bug = bug
+        self._end(str(bug))
 
     def listen(self, listener: Callable[[list[Told]], None]) -> None:
         """Have somebody called with new events, and when a task is over or the port is gone.
@@ -164,11 +170,16 @@ class Line:
                         self.session.receive(heard, now_ms())
                         self._tell()
         except (OSError, TypeError) as why:  # TypeError: pyserial's, where a port is closed
-            with self._news:
-                self._gone = str(why)
-                self._news.notify_all()
-                if self._listener is not None:
-                    self._listener([])
+            self._end(str(why))
+        except Exception as bug:
+            self.fail(bug)
+
+    def _end(self, why: str) -> None:
+        with self._news:
+            self._gone = why
+            self._news.notify_all()
+            if self._listener is not None:
+                self._listener([])
 
     def _read(self) -> bytes:
         found = bytes(self._port.read(1))

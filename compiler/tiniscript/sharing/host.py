@@ -118,6 +118,8 @@ class Host:
         try:
             while not self._is_closing and self._line.gone is None:
                 self._attend()
+        except Exception as bug:
+            self._line.fail(bug)
         finally:
             holders.remove(self.holder)
             self._part()
