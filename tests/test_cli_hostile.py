@@ -12,6 +12,7 @@ import pytest
 
 from tests.command import PROGRAM, TSC, Tsc, process
 from tiniscript.cli import VERBS, main
+from tiniscript.cli.flash_texts import FLASH_TEXTS
 from tiniscript.cli.link_texts import LINK_TEXTS
 from tiniscript.cli.texts import TEXTS
 from tiniscript.cli.virtual_texts import VIRTUAL_TEXTS
@@ -109,7 +110,7 @@ def test_no_verb_and_no_such_verb(tsc: Tsc) -> None:
 def test_texts_have_the_same_gaps_in_both_languages() -> None:
     from string import Formatter
 
-    tables = (TEXTS, LINK_TEXTS, VIRTUAL_TEXTS)
+    tables = (TEXTS, LINK_TEXTS, VIRTUAL_TEXTS, FLASH_TEXTS)
     together = {key: both for table in tables for key, both in table.items()}
     assert len(together) == sum(map(len, tables)), "no key is in two tables"
     for key, both in together.items():

@@ -19,6 +19,7 @@ VERBS = {
     "explain": "explaining",
     "wiring": "wiring",
     "board": "boarding",
+    "firmware": "flashing",
     "ports": "finding",
     "ping": "pinging",
     "upload": "uploading",

@@ -16,6 +16,7 @@ tsc: TiniScript, a language of single lines for robots.
   tsc explain TS012                  say more about a mistake
   tsc wiring                         how a robot is wired, as a list or as a page
   tsc board myrobot.toml             tell the firmware how a robot is wired
+  tsc firmware --port /dev/ttyUSB0   put the firmware of a robot on its board
 
 With a robot on a port (--port /dev/rfcomm0, COM5, ...; later the last used one):
 
@@ -51,6 +52,7 @@ tsc: TiniScript, un lenguaje de una sola línea para robots.
   tsc explain TS012                  explica mejor un error
   tsc wiring                         cómo se conecta un robot, en lista o en una página
   tsc board mirobot.toml             le dice al firmware cómo está conectado un robot
+  tsc firmware --port /dev/ttyUSB0   pone el firmware de un robot en su placa
 
 Con un robot en un puerto (--port /dev/rfcomm0, COM5, ...; después, el último usado):
 
@@ -238,7 +240,11 @@ def text(key: str, language: str) -> str:
     if found is None:
         from tiniscript.cli.virtual_texts import VIRTUAL_TEXTS
 
-        found = VIRTUAL_TEXTS[key]
+        found = VIRTUAL_TEXTS.get(key)
+    if found is None:
+        from tiniscript.cli.flash_texts import FLASH_TEXTS
+
+        found = FLASH_TEXTS[key]
     english, spanish = found
     return spanish if language == "es" else english
 

@@ -1,0 +1,48 @@
+"""What `tsc firmware` says, in English and Spanish."""
+
+from __future__ import annotations
+
+# fmt: off
+FLASH_TEXTS: dict[str, tuple[str, str]] = {
+    # key: (English, Spanish)
+    "flash_writing": ("writing", "escribiendo"),
+    "flash_reading": ("reading back", "leyendo de vuelta"),
+    "flash_older": ("Nobody answers yet; now as an older Nano.", "Todavía nadie responde; ahora como un Nano más antiguo."),
+    "flash_done": ("{robot} on the {board}: {bytes} bytes written, read back and compared.",
+                   "{robot} en el {board}: {bytes} bytes escritos, leídos de vuelta y comparados."),
+    "flash_row": ("{robot} on {board}: {bytes} bytes", "{robot} en {board}: {bytes} bytes"),
+    # wrong use
+    "flash_no_port": ("tsc: on which port is the board? Name it with --port. The ports here:  tsc ports",
+                      "tsc: ¿en qué puerto está la placa? Nómbralo con --port. Los puertos de aquí:  tsc ports"),
+    "flash_address": ("tsc: a firmware goes over the board's USB cable, and {port} is on a network. Plug the board into this computer; the ports here:  tsc ports",
+                      "tsc: un firmware va por el cable USB de la placa, y {port} está en una red. Conecta la placa a esta computadora; los puertos de aquí:  tsc ports"),
+    "flash_bad_board": ("tsc: --board takes {known}, not {found}.", "tsc: --board acepta {known}, no {found}."),
+    "flash_own": ("tsc: firmware is ready only for {known}. For a robot of your own, in a clone of TiniScript:  tsc board {robot} -o vm_arduino/src/boards/kits/own.h   and then  pio run -d vm_arduino -e {board} -t upload",
+                  "tsc: solo hay firmware listo para {known}. Para un robot propio, en un clon de TiniScript:  tsc board {robot} -o vm_arduino/src/boards/kits/own.h   y después  pio run -d vm_arduino -e {board} -t upload"),
+    "flash_no_fit": ("tsc: the robot {robot} does not fit the board {board}. Its firmware is ready for: {known}.",
+                     "tsc: el robot {robot} no va con la placa {board}. Su firmware está listo para: {known}."),
+    "flash_none": ("tsc: this tsc was installed without firmware. In a clone of TiniScript, where avr-gcc is:  {command}   and then  pip install .",
+                   "tsc: este tsc se instaló sin firmware. En un clon de TiniScript, donde esté avr-gcc:  {command}   y después  pip install ."),
+    "flash_no_avrdude": ("tsc: the program avrdude writes firmware, and it is not on this computer. Install it:  {how}   The one of the Arduino IDE does too.",
+                         "tsc: el programa avrdude escribe el firmware, y no está en esta computadora. Instálalo:  {how}   El del Arduino IDE también sirve."),
+    # it was not written
+    "flash_nobody": ("tsc: no bootloader answers on {port}; the board is as it was. Is this the port of its USB cable (tsc ports)? Is it a {board} (--board)? And whatever is on pins 0 and 1, such as the HC-05, must be unplugged while the firmware is written.",
+                     "tsc: ningún cargador de arranque responde en {port}; la placa quedó como estaba. ¿Es el puerto de su cable USB (tsc ports)? ¿Es un {board} (--board)? Y lo que esté en los pines 0 y 1, como el HC-05, se desconecta mientras se escribe el firmware."),
+    "flash_other_chip": ("tsc: the board on {port} is no {board}: its chip is another one. It is as it was. Say which board it is with --board.",
+                         "tsc: la placa en {port} no es un {board}: su chip es otro. Quedó como estaba. Di qué placa es con --board."),
+    "flash_port": ("tsc: avrdude cannot open the port {port}. Close what else uses it, or unplug the board and plug it in again; then try again.",
+                   "tsc: avrdude no puede abrir el puerto {port}. Cierra lo que lo esté usando, o desconecta la placa y conéctala otra vez; después prueba otra vez."),
+    "flash_failed": ("tsc: avrdude could not write the firmware: {why}. Unplug the board, plug it in again, and try again.",
+                     "tsc: avrdude no pudo escribir el firmware: {why}. Desconecta la placa, conéctala otra vez y prueba otra vez."),
+    # it was written in part
+    "flash_differs": ("tsc: what was read back from the board is not what was written. Unplug what is on pins 0 and 1 and write it again; if that does not help, the board's memory is worn out.",
+                      "tsc: lo que se leyó de la placa no es lo que se escribió. Desconecta lo que esté en los pines 0 y 1 y escríbelo otra vez; si eso no ayuda, la memoria de la placa está gastada."),
+    "flash_broken_off": ("tsc: the board on {port} fell silent in the middle, and has half a firmware now. Look at its cable, unplug what is on pins 0 and 1, and do the same again: it can still be written.",
+                         "tsc: la placa en {port} calló a la mitad, y ahora tiene medio firmware. Mira su cable, desconecta lo que esté en los pines 0 y 1 y haz lo mismo otra vez: todavía se puede escribir."),
+    "flash_stopped": ("tsc: stopped in the middle: the board has half a firmware now. Do the same again: it can still be written.",
+                      "tsc: detenido a la mitad: la placa ahora tiene medio firmware. Haz lo mismo otra vez: todavía se puede escribir."),
+    # it was written
+    "flash_silent": ("tsc: the firmware is on the board, but no robot answers on {port} yet. Press the board's reset button, and then:  tsc ping --port {port}",
+                     "tsc: el firmware está en la placa, pero todavía ningún robot responde en {port}. Pulsa el botón de reinicio de la placa, y después:  tsc ping --port {port}"),
+}
+# fmt: on

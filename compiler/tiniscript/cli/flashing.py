@@ -1,0 +1,205 @@
+"""`tsc firmware`: puts a shipped robot's firmware on a board, and asks who is there then."""
+
+from __future__ import annotations
+
+import sys
+from argparse import Namespace
+from typing import TYPE_CHECKING
+
+from tiniscript.cli import inputs
+from tiniscript.cli.connecting import Connection, port_trouble
+from tiniscript.cli.inputs import shown
+from tiniscript.cli.options import Options
+from tiniscript.cli.progress import Progress
+from tiniscript.cli.texts import text
+from tiniscript.cli.trouble import Trouble
+
+if TYPE_CHECKING:
+    from tiniscript.flash.avrdude import Ended, Seen
+    from tiniscript.flash.bootloaders import Bootloader
+    from tiniscript.flash.ready import Ready
+    from tiniscript.robots.profile import Robot
+
+HELP = (
+    """\
+tsc firmware --port P [--robot NAME] [--board BOARD]
+tsc firmware --list
+
+Writes the firmware of a robot on its board, over the USB cable, and reads it back. Unplug the
+HC-05, or whatever else is on pins 0 and 1, as long as that takes.
+  --port P      the port of the board's USB cable: tsc ports lists them
+  --robot NAME  tinibot (if none is named), liner or grabber
+  --board BOARD uno, nano, nano-old (with the bootloader of before 2018) or mega; if none is
+                named, the one that the robot has
+  --list        lists the firmware that came with tsc
+
+It needs avrdude. The firmware of a robot of your own: tsc board --help
+""",
+    """\
+tsc firmware --port P [--robot NOMBRE] [--board PLACA]
+tsc firmware --list
+
+Escribe el firmware de un robot en su placa, por el cable USB, y lo lee de vuelta. Desconecta el
+HC-05, o lo que esté en los pines 0 y 1, mientras eso dure.
+  --port P      el puerto del cable USB de la placa: tsc ports los lista
+  --robot NOMBRE tinibot (si no se nombra ninguno), liner o grabber
+  --board PLACA uno, nano, nano-old (con el cargador de arranque de antes de 2018) o mega; si no
+                se nombra ninguna, la que tiene el robot
+  --list        lista el firmware que vino con tsc
+
+Necesita avrdude. El firmware de un robot propio: tsc board --help
+""",
+)
+
+INSTALLS = {
+    "win32": "pip install avrdude-windows",
+    "darwin": "brew install avrdude",
+    "linux": "sudo apt install avrdude",
+}
+
+
+def run(arguments: list[str], language: str) -> int:
+    parser = Options("firmware", language, HELP)
+    parser.add_argument("--port")
+    parser.add_argument("--robot")
+    parser.add_argument("--board")
+    parser.add_argument("--list", action="store_true")
+    options = parser.read(arguments)
+    if options is None:
+        return 0
+    if options.list:
+        return _list(language)
+    robot = inputs.robot(options, language)
+    firmware, bootloaders = _chosen(options, robot)
+    command = _avrdude()
+    port = _port(options)
+    _write(command, bootloaders, port, firmware, language)
+    size = f"{firmware.bytes:,}"
+    values = {"robot": firmware.robot, "board": firmware.board, "bytes": size}
+    print(text("flash_done", language).format(**values), flush=True)
+    _introduce(port, robot, firmware.board, language)
+    return 0
+
+
+def _list(language: str) -> int:
+    for each in _files():
+        values = {"robot": each.robot, "board": each.board, "bytes": f"{each.bytes:,}"}
+        print(text("flash_row", language).format(**values))
+    return 0
+
+
+def _files() -> list[Ready]:
+    from tiniscript.flash import ready
+
+    found = ready.files()
+    if not found:
+        raise Trouble(2, "flash_none", command=ready.BUILD_COMMAND)
+    return found
+
+
+def _chosen(options: Namespace, robot: Robot) -> tuple[Ready, tuple[Bootloader, ...]]:
+    """Return the firmware that the options name, and how it may be written."""
+    from tiniscript import robots
+    from tiniscript.flash.bootloaders import BOARDS
+
+    if options.board is not None and options.board not in BOARDS:
+        raise Trouble(2, "flash_bad_board", known=", ".join(BOARDS), found=shown(options.board))
+    name = robots.DEFAULT if options.robot is None else options.robot
+    if name.lower() not in robots.names():
+        values = {"robot": shown(name), "board": robot.board.chip}
+        raise Trouble(2, "flash_own", known=", ".join(robots.names()), **values)
+    board, bootloaders = BOARDS[options.board or robot.board.chip]
+    mine = {each.board: each for each in _files() if each.robot == name.lower()}
+    if board not in mine:
+        raise Trouble(2, "flash_no_fit", robot=name, board=board, known=", ".join(mine))
+    return mine[board], bootloaders
+
+
+def _avrdude() -> list[str]:
+    from tiniscript.flash import avrdude
+
+    command = avrdude.found()
+    if command is None:
+        raise Trouble(2, "flash_no_avrdude", how=INSTALLS.get(sys.platform, INSTALLS["linux"]))
+    return command
+
+
+def _port(options: Namespace) -> str:
+    """Return the port, which can be opened. Never the last used one: that may be a radio's."""
+    from tiniscript.flash.bootloaders import UNO
+    from tiniscript.link import ports
+
+    port: str | None = options.port
+    if port is None:
+        raise Trouble(2, "flash_no_port")
+    if not port.strip() or not port.isprintable():
+        raise Trouble(2, "no_such_port", found=shown(port) or "''")
+    if ports.is_address(port):
+        raise Trouble(2, "flash_address", port=shown(port))
+    try:
+        ports.opened(port, UNO.baud).close()
+    except ports.PortTrouble as trouble:
+        raise port_trouble(port, trouble) from None
+    return port
+
+
+def _write(
+    command: list[str],
+    bootloaders: tuple[Bootloader, ...],
+    port: str,
+    firmware: Ready,
+    language: str,
+) -> None:
+    """Write a firmware with the first bootloader that answers. Raises Trouble."""
+    from tiniscript.flash import avrdude
+
+    for bootloader in bootloaders:
+        if bootloader is not bootloaders[0]:
+            print(text("flash_older", language), file=sys.stderr)
+        ended = _written(command, bootloader, port, firmware, language)
+        if ended.how != avrdude.NOBODY:
+            break
+    if ended.how != avrdude.DONE:
+        values = {"port": shown(port), "board": firmware.board, "why": shown(ended.said)}
+        raise Trouble(3, f"flash_{ended.how}", **values)
+
+
+def _written(
+    command: list[str], bootloader: Bootloader, port: str, firmware: Ready, language: str
+) -> Ended:
+    from tiniscript.flash import avrdude
+
+    progress = Progress(language)
+    progress.whole = 100
+    has_begun = False
+
+    def look(seen: Seen | None) -> None:
+        nonlocal has_begun
+        if seen is not None:
+            has_begun = True
+            label = "flash_writing" if seen.phase == avrdude.WRITING else "flash_reading"
+            progress.label, progress.done = text(label, language), seen.percent
+            progress.draw()
+
+    try:
+        return avrdude.write(command, bootloader, port, firmware.path, look)
+    except KeyboardInterrupt:
+        if not has_begun:
+            raise
+        raise Trouble(2, "flash_stopped") from None
+    finally:
+        progress.end()
+
+
+def _introduce(port: str, robot: Robot, board: str, language: str) -> None:
+    """Ask the robot who it is, and print that."""
+    from tiniscript.cli.describing import Description
+
+    try:
+        with Connection(Namespace(port=port, baud=None), robot, language) as connection:
+            connection.meet(board)
+            print(Description(connection).text())
+    except Trouble as trouble:
+        if trouble.exit_code != 3:
+            raise
+        raise Trouble(3, "flash_silent", port=shown(port)) from None

@@ -1,0 +1,177 @@
+"""avrdude, which writes a firmware over a bootloader: where it is, how it does, what it says.
+
+Knows its messages from version 6.3 on. Prints nothing: how far it is and how it ended are data.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from queue import Empty, SimpleQueue
+from threading import Thread
+from typing import NamedTuple
+
+from tiniscript.flash.bootloaders import Bootloader
+
+# For which it may say nothing: as long as no bootloader has answered, and then.
+NOBODY_S, SILENCE_S = 15.0, 30.0
+LOOK_S = 0.1
+MOST_ATTEMPTS = 2  # of its ten, which take five seconds each
+MARKS = 50  # of a whole bar
+
+WRITING, READING = "writing", "reading"
+# How it may end.
+DONE, NOBODY, OTHER_CHIP, DIFFERS = "done", "nobody", "other_chip", "differs"
+PORT, BROKEN_OFF, FAILED = "port", "broken_off", "failed"
+ENDS = (DONE, NOBODY, OTHER_CHIP, DIFFERS, PORT, BROKEN_OFF, FAILED)
+
+_BAR = re.compile(r"(Writing|Reading)[^|\n]*\|[ \r]*(#*)")
+_ATTEMPT = re.compile(r"attempt (\d+) of")
+_CAUSES = (
+    (OTHER_CHIP, r"expected signature|invalid device signature|signature .*(?:mismatch|wrong)"),
+    (DIFFERS, r"verification (?:error|mismatch)|content mismatch|failed to verify"),
+    (PORT, r"(?:can't|cannot|unable to) open (?:device|port|serial)|permission denied"),
+    (NOBODY, r"not in sync|not responding|timeout|cannot set sck|unable to open programmer"
+     r"|initialization failed|protocol error|can't communicate"),
+)  # fmt: skip
+
+
+class Ended(NamedTuple):
+    """How it ended, by a name from above; and what it has said last, where that helps."""
+
+    how: str
+    said: str = ""
+
+
+class Seen(NamedTuple):
+    """What it is at, and how many percent of that are done."""
+
+    phase: str
+    percent: int
+
+
+def found() -> list[str] | None:
+    """Return the command that runs avrdude: from PATH, or where other programs have put it."""
+    on_path = shutil.which("avrdude")
+    if on_path:
+        return [on_path]
+    if sys.platform == "win32":  # comes as a package of its own
+        try:
+            from avrdude_windows import get_avrdude_path
+        except ImportError:
+            pass
+        else:
+            return [str(get_avrdude_path())]
+    for program in _elsewhere(Path.home()):
+        for settings in (program.parent.parent / "etc", program.parent):
+            if (settings / "avrdude.conf").is_file():
+                return [str(program), "-C", str(settings / "avrdude.conf")]
+    return None
+
+
+def _elsewhere(home: Path) -> list[Path]:
+    """Return the avrdudes of the Arduino IDE and of PlatformIO, the newest first."""
+    name = "avrdude.exe" if sys.platform == "win32" else "avrdude"
+    folders = [home / ".arduino15", home / "Library" / "Arduino15"]
+    if os.environ.get("LOCALAPPDATA"):
+        folders.append(Path(os.environ["LOCALAPPDATA"]) / "Arduino15")
+    programs: list[Path] = []
+    for folder in folders:
+        tools = folder / "packages" / "arduino" / "tools" / "avrdude"
+        programs += sorted(tools.glob(f"*/bin/{name}"), reverse=True)
+    platformio = home / ".platformio" / "packages" / "tool-avrdude"
+    return [*programs, *sorted(platformio.glob(f"**/{name}"))]
+
+
+def write(
+    command: list[str],
+    to: Bootloader,
+    port: str,
+    firmware: Path,
+    look: Callable[[Seen | None], None],
+) -> Ended:
+    """Write a firmware, read it back, and compare. `look` is called now and then."""
+    words = [*command, "-c", to.programmer, "-p", to.part, "-P", port, "-b", str(to.baud), "-D"]
+    try:
+        running = subprocess.Popen(
+            [*words, "-U", f"flash:w:{firmware}:i"],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+        )
+    except OSError as why:
+        return Ended(FAILED, str(why.strerror or why))
+    try:
+        return _watched(running, look)
+    finally:
+        running.kill()
+        running.wait()
+
+
+def _watched(running: subprocess.Popen[bytes], look: Callable[[Seen | None], None]) -> Ended:
+    assert running.stdout
+    heard: SimpleQueue[bytes] = SimpleQueue()
+    Thread(target=_listen, args=(running.stdout.fileno(), heard), daemon=True).start()
+    said, silent_s = "", 0.0
+    while True:
+        try:
+            data = heard.get(timeout=LOOK_S)
+        except Empty:
+            silent_s += LOOK_S
+            look(seen(said))
+            has_begun = seen(said) is not None
+            if silent_s >= (SILENCE_S if has_begun else NOBODY_S):
+                return Ended(BROKEN_OFF if has_begun else NOBODY)
+            continue
+        if not data:
+            return outcome(running.wait(), said)
+        silent_s = 0.0
+        said += data.decode(errors="replace")
+        look(seen(said))
+        attempts = [int(number) for number in _ATTEMPT.findall(said)]
+        if attempts and attempts[-1] >= MOST_ATTEMPTS and seen(said) is None:
+            return Ended(NOBODY)
+
+
+def _listen(file: int, heard: SimpleQueue[bytes]) -> None:
+    """Pass on what it says, piece by piece; nothing at the end."""
+    while True:
+        try:
+            data = os.read(file, 4096)
+        except OSError:
+            data = b""
+        heard.put(data)
+        if not data:
+            return
+
+
+def seen(said: str) -> Seen | None:
+    """Return how far it is, from all that it has said."""
+    bars = _BAR.findall(said)
+    names = [name for name, _ in bars]
+    if "Writing" not in names:
+        return None  # the bar before that is for the signature
+    name, marks = bars[-1]
+    phase = READING if name == "Reading" else WRITING
+    return Seen(phase, min(100, 100 * len(marks) // MARKS))
+
+
+def outcome(code: int, said: str) -> Ended:
+    """Return how it ended, from its exit code and all that it has said."""
+    if code == 0:
+        return Ended(DONE)
+    began_to_write = seen(said) is not None
+    for how, pattern in _CAUSES:
+        if re.search(pattern, said, re.IGNORECASE):
+            if began_to_write and how != DIFFERS:
+                return Ended(BROKEN_OFF)
+            return Ended(how)
+    rows = [row.strip() for row in said.splitlines() if row.strip() and "done." not in row]
+    if began_to_write:
+        return Ended(BROKEN_OFF)
+    return Ended(FAILED, rows[-1].removeprefix("avrdude: ") if rows else f"exit code {code}")
