@@ -56,7 +56,7 @@ def test_the_sketch_leaves_stack_free(
     sketch: Path = firmware(
         environment, tmp_path_factory.mktemp("sketch"), shared(tmp_path_factory)
     )
-    stack = measured(sketch, robots.load(robot))
+    stack = measured(sketch, robots.load(robot), environment.partition("_")[0])
     with capsys.disabled():
         print(f"\n  {stack.untouched} bytes untouched, {stack.least_free} at least", end=" ")
     assert stack.untouched >= LEAST_FREE

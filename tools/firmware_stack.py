@@ -31,11 +31,15 @@ CALLS = 8  # at once
 DIVIDES_BY_ZERO = "X = 0; X = 5 / X"
 
 
-def measured(firmware: Path, robot: Robot) -> Stack:
-    """Run a firmware through everything that goes deep. Raises RuntimeError where it does not."""
+def measured(firmware: Path, robot: Robot, board: str) -> Stack:
+    """Run a firmware through everything that goes deep. Raises RuntimeError where it does not.
+
+    `board` is that of the firmware: it may be another one than that of the robot's profile.
+    """
     baud = robot.board.baud
-    board = BOARDS[robot.board.chip]
-    with Uno(firmware, board=board, baud=baud, tells_sleep=False, watches_stack=True) as uno:
+    with Uno(
+        firmware, board=BOARDS[board], baud=baud, tells_sleep=False, watches_stack=True
+    ) as uno:
         surround(uno, robot)
         uno.run_ms(300)
         wired = Wired(uno, Session(1, baud, robot.kit.fingerprint))
