@@ -128,13 +128,14 @@ def _port(options: Namespace) -> str:
     """Return the port, which can be opened. Never the last used one: that may be a radio's."""
     from tiniscript.flash.bootloaders import UNO
     from tiniscript.link import ports
+    from tiniscript.link.names import is_address
 
     port: str | None = options.port
     if port is None:
         raise Trouble(2, "flash_no_port")
     if not port.strip() or not port.isprintable():
         raise Trouble(2, "no_such_port", found=shown(port) or "''")
-    if ports.is_address(port):
+    if is_address(port):
         raise Trouble(2, "flash_address", port=shown(port))
     try:
         ports.opened(port, UNO.baud).close()
@@ -169,8 +170,7 @@ def _written(
 ) -> Ended:
     from tiniscript.flash import avrdude
 
-    progress = Progress(language)
-    progress.whole = 100
+    progress = Progress(language, 100)
     has_begun = False
 
     def look(seen: Seen | None) -> None:
@@ -178,8 +178,8 @@ def _written(
         if seen is not None:
             has_begun = True
             label = "flash_writing" if seen.phase == avrdude.WRITING else "flash_reading"
-            progress.label, progress.done = text(label, language), seen.percent
-            progress.draw()
+            progress.label = text(label, language)
+            progress.draw(seen.percent)
 
     try:
         return avrdude.write(command, bootloader, port, firmware.path, look)
@@ -196,7 +196,8 @@ def _introduce(port: str, robot: Robot, board: str, language: str) -> None:
     from tiniscript.cli.describing import Description
 
     try:
-        with Connection(Namespace(port=port, baud=None), robot, language) as connection:
+        options = Namespace(verb="firmware", port=port, baud=None, virtual=False)
+        with Connection(options, robot, language) as connection:
             connection.meet(board)
             print(Description(connection).text())
     except Trouble as trouble:
