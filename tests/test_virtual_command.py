@@ -315,7 +315,7 @@ def test_without_a_robot_the_virtual_one_is_named() -> None:
         (["robot", "--sensor", "EYES=1"], "has no sensor EYES"),
         (["robot", "--robot", "r2d2"], "There is no robot r2d2"),
         (["upload", "-e", "SI|S", "--world", "line"], "--world is for the virtual robot alone"),
-        (["live", "S", "--port", "COM1", "--virtual"], "--virtual and --port do not go together"),
+        (["live", "S", "--port", "COM1", "--virtual"], "--virtual does not go together"),
     ],
 )
 def test_wrong_options_are_said(tsc: Tsc, arguments: list[str], said: str) -> None:
