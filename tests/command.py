@@ -41,3 +41,16 @@ def process(*arguments: str | Path, data: bytes = b"") -> Done:
     """Run `tsc` as a process of its own."""
     done = subprocess.run([*TSC, *map(str, arguments)], input=data, capture_output=True)
     return Done(done.returncode, done.stdout.decode(), done.stderr.decode())
+
+
+def running(*arguments: str) -> subprocess.Popen[bytes]:
+    """Start `tsc` as a process of its own, for `ended`."""
+    return subprocess.Popen(
+        [*TSC, *arguments], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    )
+
+
+def ended(command: subprocess.Popen[bytes]) -> Done:
+    """Wait until a process has ended."""
+    out, err = command.communicate(timeout=60)
+    return Done(command.returncode, out.decode(), err.decode())

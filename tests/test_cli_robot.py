@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.command import OBSTACLE, TSC, Done, Tsc, process
+from tests.command import OBSTACLE, TSC, Done, Tsc, ended, process, running
 from tests.desk import Desk
 from tests.machines.tabletop import missing
 from tiniscript import compile_text, robots
@@ -45,17 +45,6 @@ def hasty(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def on(desk: Desk, *arguments: str | Path, data: bytes = b"") -> Done:
     return process(*arguments, "--port", desk.port, data=data)
-
-
-def running(*arguments: str) -> subprocess.Popen[bytes]:
-    return subprocess.Popen(
-        [*TSC, *arguments], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE
-    )
-
-
-def ended(command: subprocess.Popen[bytes]) -> Done:
-    out, err = command.communicate(timeout=60)
-    return Done(command.returncode, out.decode(), err.decode())
 
 
 # -- upload and start ---------------------------------------------------------------------------

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 import pytest
 
 from tests.classroom import Classroom
-from tests.command import TSC, Done, Tsc, process
+from tests.command import TSC, Done, Tsc, ended, process, running
 from tests.machines.tabletop import missing
 from tiniscript import robots
 from tiniscript.cli.crew import Member, Result
@@ -38,17 +38,6 @@ def class_() -> Iterator[Classroom]:
         for pupil in found.pupils:
             remembered.remember(pupil.port, f"R{pupil.number}", is_used=False)
         yield found
-
-
-def running(*arguments: str) -> subprocess.Popen[bytes]:
-    return subprocess.Popen(
-        [*TSC, *arguments], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE
-    )
-
-
-def ended(command: subprocess.Popen[bytes]) -> Done:
-    out, err = command.communicate(timeout=60)
-    return Done(command.returncode, out.decode(), err.decode())
 
 
 def results(done: Done) -> dict[str, dict[str, object]]:

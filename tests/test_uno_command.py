@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 import signal
-import subprocess
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -12,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from tests.casefile import ROOT
-from tests.command import TSC, Done, process
+from tests.command import Done, process, running
 from tests.machines.uno import needed
 from tests.platformio import changed
 from tests.test_cli_robot import FOREVER, LONG
@@ -37,13 +36,6 @@ def at_work(elf: Path, memory: Path) -> Uno:
 
 def on(uno: Uno, *arguments: str) -> Done:
     return process(*arguments, "--port", uno.pty)
-
-
-def running(uno: Uno, *arguments: str) -> subprocess.Popen[bytes]:
-    return subprocess.Popen(
-        [*TSC, *arguments, "--port", uno.pty],
-        stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-    )  # fmt: skip
 
 
 def until(is_so: Callable[[], bool], what: str, limit_s: float = 60) -> None:
@@ -73,7 +65,7 @@ def test_upload_shows_and_finds_the_line_of_a_fault(uno: Uno, tmp_path: Path) ->
 
 def test_the_papers_obstacle_program_drives_around_an_obstacle(uno: Uno) -> None:
     uno.sonar("trigger", "echo", 50)
-    command = running(uno, "upload", str(ROOT / "examples" / "obstacle.ts"))
+    command = running("upload", "--port", uno.pty, str(ROOT / "examples" / "obstacle.ts"))
     until(lambda: drives(uno) >= 2, "it drives on where nothing is in the way")
     assert states(uno) == FORWARD
     uno.sonar("trigger", "echo", 6)
@@ -87,7 +79,7 @@ def test_the_papers_obstacle_program_drives_around_an_obstacle(uno: Uno) -> None
 def test_live_lines_and_a_stop_from_another_terminal(uno: Uno) -> None:
     assert on(uno, "live", "L(0.2, 50)").code == 0
     assert any(change.state == "high" for change in uno.pins.history("left backward"))
-    command = running(uno, "upload", "-e", FOREVER)
+    command = running("upload", "--port", uno.pty, "-e", FOREVER)
     until(lambda: states(uno) == FORWARD, "it drives")
     resets = sum(event.what == "reset" for event in uno.events)
     stopped = on(uno, "stop")
@@ -99,7 +91,7 @@ def test_live_lines_and_a_stop_from_another_terminal(uno: Uno) -> None:
 
 
 def test_a_command_that_is_killed_takes_the_motors_with_it(uno: Uno) -> None:
-    command = running(uno, "upload", "-e", FOREVER)
+    command = running("upload", "--port", uno.pty, "-e", FOREVER)
     until(lambda: states(uno) == FORWARD, "it drives")
     command.kill()
     command.communicate()
@@ -142,7 +134,7 @@ def test_what_does_not_fit_leaves_the_program_that_is_there(uno: Uno) -> None:
 
 
 def test_noise_on_the_line_costs_time_and_nothing_else(uno: Uno) -> None:
-    command = running(uno, "monitor")
+    command = running("monitor", "--port", uno.pty)
     until(lambda: len(uno.received) > 10, "they talk")
     uno.send(b"OK+LOST\r\n" + bytes(range(1, 64)) * 2)
     done = on(uno, "upload", "-e", DRIVES)
