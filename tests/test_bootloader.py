@@ -156,3 +156,5 @@ def test_a_mega_that_was_reset_is_waited_for(
         pong = process("ping", "--port", mega.pty)
         assert pong.code == 0, pong.err
         assert pong.out.startswith(f"tinibot on {mega.pty}")
+        found = process("ports", "--ask", "--port", mega.pty)
+        assert "tinibot" in found.out, found.out

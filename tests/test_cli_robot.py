@@ -16,7 +16,7 @@ from tests.command import OBSTACLE, TSC, Done, Tsc, ended, process, running
 from tests.desk import Desk
 from tests.machines.tabletop import missing
 from tiniscript import compile_text, robots
-from tiniscript.cli import connecting, finding
+from tiniscript.cli import connecting
 from tiniscript.link import ports, remembered
 
 pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
@@ -40,7 +40,6 @@ def hasty(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(connecting, "CABLE_ANSWER_MS", 800)
     monkeypatch.setattr(connecting, "LONG_QUIET_S", 0.1)
     monkeypatch.setattr(connecting, "PATIENCE_MS", 800)
-    monkeypatch.setattr(finding, "ANSWER_MS", 800)
 
 
 def on(desk: Desk, *arguments: str | Path, data: bytes = b"") -> Done:

@@ -138,7 +138,7 @@ class Connection:
         """
         from tiniscript.link.outcomes import CANCELLED
 
-        reply = self._asked_patiently(board or self.profile.board.chip)
+        reply = asked(self.line, self.port, board or self.profile.board.chip, self.wait)
         while reply.status == CANCELLED and self.starts_nothing:  # a stop came first
             reply = self.wait(hello(self.line, ANSWER_MS))
         card = self.line.robot
@@ -147,20 +147,6 @@ class Connection:
         if not self.is_one_of_many:
             self.remember(card.name)
         return card
-
-    def _asked_patiently(self, board: str) -> Reply:
-        """Ask who is there, but not so early that a board stays in its bootloader."""
-        if not self.line.held_by:  # else the port is open already
-            from tiniscript.link import ports
-
-            if not ports.is_radio(self.port):
-                sleep(QUIET_S.get(board, 0.0))
-                reply = self.wait(hello(self.line, CABLE_ANSWER_MS))
-                if self.line.heard:
-                    return reply
-                sleep(LONG_QUIET_S)
-                return self.wait(hello(self.line, CABLE_ANSWER_MS))
-        return self.wait(hello(self.line, ANSWER_MS))
 
     def remember(self, name: str) -> None:
         """Keep the port for the next time, and what the robot on it is called."""
@@ -319,6 +305,21 @@ def port_trouble(port: str, trouble: PortTrouble) -> Trouble:
         if known:
             return Trouble(3, "port_missing_but", port=shown(port), known=shown(known))
     return Trouble(3, key, port=shown(port), why=shown(trouble.why))
+
+
+def asked(line: Way, port: str, board: str, wait: Callable[[Asked], Reply]) -> Reply:
+    """Ask who is there, but not so early that a board stays in its bootloader."""
+    if not line.held_by:  # else the port is open already
+        from tiniscript.link import ports
+
+        if not ports.is_radio(port):
+            sleep(QUIET_S.get(board, 0.0))
+            reply = wait(hello(line, CABLE_ANSWER_MS))
+            if line.heard:
+                return reply
+            sleep(LONG_QUIET_S)
+            return wait(hello(line, CABLE_ANSWER_MS))
+    return wait(hello(line, ANSWER_MS))
 
 
 def hello(line: Way, limit_ms: int) -> Asked:

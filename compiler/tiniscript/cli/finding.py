@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING
 
 from tiniscript.cli import inputs
-from tiniscript.cli.connecting import baud_of, hello, opened_way, robot_of_kit
+from tiniscript.cli.connecting import asked, baud_of, opened_way, robot_of_kit
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import Options
 from tiniscript.cli.texts import text
@@ -41,7 +41,6 @@ uno. No abre ninguno: abrir un puerto reinicia la mayoría de las placas.
 """,
 )
 
-ANSWER_MS = 4000  # for which a robot may take to answer; one that was reset takes 1.4 s
 OPEN_S = 12.0
 AT_ONCE = 16  # ports that are asked at the same time
 
@@ -120,7 +119,7 @@ def _ask(port: str, baud: int, robot: Robot, language: str) -> dict[str, object]
 
     try:
         with closing(opened_way(port, baud, robot, "ports", OPEN_S)) as line:
-            reply = line.wait(hello(line, ANSWER_MS))
+            reply = asked(line, port, robot.board.chip, line.wait)
             card = line.robot
             heard = line.heard
     except Trouble as trouble:
