@@ -13,6 +13,9 @@ from tiniscript.cli import main
 
 PROGRAM = "SI|F(5,80)"
 OBSTACLE = (ROOT / "examples" / "obstacle.ts").read_text(encoding="utf-8")
+FOREVER = "SI|LOOP(FOREVER);F(1, 80);END_LOOP"
+# more than one frame, and of many short moves
+LONG = "LOOP(2);" + "".join(f"M({k}, 50);W(0.01);" for k in range(1, 56)) + "END_LOOP"
 TSC = [sys.executable, "-m", "tiniscript"]
 
 
@@ -54,3 +57,29 @@ def ended(command: subprocess.Popen[bytes]) -> Done:
     """Wait until a process has ended."""
     out, err = command.communicate(timeout=60)
     return Done(command.returncode, out.decode(), err.decode())
+
+
+class Command:
+    """A `tsc` that stays."""
+
+    def __init__(self, *arguments: str, code: str = "") -> None:
+        words = [sys.executable, "-c", code] if code else TSC
+        self.process = subprocess.Popen(
+            [*words, *arguments], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+        )  # fmt: skip
+
+    def until(self, said: str) -> None:
+        """Wait until it has printed a line with these words."""
+        assert self.process.stdout
+        for line in self.process.stdout:
+            if said in line.decode():
+                return
+        raise AssertionError(f"never printed: {said}. {self.ended().err}")
+
+    def signal(self, number: int) -> None:
+        self.process.send_signal(number)
+
+    def ended(self) -> Done:
+        out, err = self.process.communicate(timeout=30)
+        return Done(self.process.returncode, out.decode(), err.decode())

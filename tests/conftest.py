@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import os
 import signal
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from tests.command import PROGRAM, Tsc
+from tests.command import PROGRAM, Command, Tsc
+from tests.desk import Desk
+from tiniscript import robots
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -56,3 +59,20 @@ def program(tmp_path: Path) -> Path:
     path = tmp_path / "drive.ts"
     path.write_text(PROGRAM, encoding="utf-8")
     return path
+
+
+@pytest.fixture
+def desk() -> Iterator[Desk]:
+    """A robot of the kit `tinibot`."""
+    with Desk(robots.load("tinibot").kit) as found:
+        yield found
+
+
+@pytest.fixture
+def link(desk: Desk) -> Iterator[Command]:
+    """`tsc link` on the desk's port."""
+    command = Command("link", "--port", desk.port)
+    command.until("share this port")
+    yield command
+    command.process.kill()
+    command.process.communicate()

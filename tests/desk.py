@@ -11,7 +11,9 @@ import select
 import threading
 import time
 from collections.abc import Callable
+from pathlib import Path
 
+from tests.command import FOREVER, Command, Done, process
 from tests.machines.tabletop import EMPTY, POWER_ON, Tabletop
 from tiniscript.kit import Kit
 
@@ -149,3 +151,16 @@ class Desk:
             if sent:
                 os.write(self._ours, self._through_noise(sent))
             time.sleep(max(0.0, next_s - time.monotonic()))
+
+
+def on(desk: Desk, *arguments: str | Path, data: bytes = b"") -> Done:
+    """Run `tsc` on the robot's port."""
+    return process(*arguments, "--port", desk.port, data=data)
+
+
+def uploading(desk: Desk, text: str = FOREVER) -> Command:
+    """A program that runs, and the command that attends to it."""
+    command = Command("upload", "-e", text, "--port", desk.port)
+    command.until("running")
+    desk.until(lambda: desk.moves, "it drives")
+    return command

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import subprocess
 import time
-from collections.abc import Iterator
 
 import pytest
 
@@ -20,12 +19,6 @@ pyte = pytest.importorskip("pyte", reason="pyte, a terminal for tests, is not in
 
 KIT = robots.load("tinibot").kit
 needs_robot = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
-
-
-@pytest.fixture
-def desk() -> Iterator[Desk]:
-    with Desk(KIT) as found:
-        yield found
 
 
 @needs_robot

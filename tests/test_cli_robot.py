@@ -7,13 +7,12 @@ import os
 import signal
 import subprocess
 import threading
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from tests.command import OBSTACLE, TSC, Done, Tsc, ended, process, running
-from tests.desk import Desk
+from tests.command import FOREVER, LONG, OBSTACLE, TSC, Tsc, ended, process, running
+from tests.desk import Desk, on
 from tests.machines.tabletop import missing
 from tiniscript import compile_text, robots
 from tiniscript.cli import connecting
@@ -23,14 +22,6 @@ pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind"
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 KIT = robots.load("tinibot").kit
-LONG = "LOOP(2);" + "".join(f"M({k}, 50);W(0.01);" for k in range(1, 56)) + "END_LOOP"
-FOREVER = "SI|LOOP(FOREVER);F(1, 80);END_LOOP"
-
-
-@pytest.fixture
-def desk() -> Iterator[Desk]:
-    with Desk(KIT) as found:
-        yield found
 
 
 @pytest.fixture
@@ -40,10 +31,6 @@ def hasty(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(connecting, "CABLE_ANSWER_MS", 800)
     monkeypatch.setattr(connecting, "LONG_QUIET_S", 0.1)
     monkeypatch.setattr(connecting, "PATIENCE_MS", 800)
-
-
-def on(desk: Desk, *arguments: str | Path, data: bytes = b"") -> Done:
-    return process(*arguments, "--port", desk.port, data=data)
 
 
 # -- upload and start ---------------------------------------------------------------------------

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import signal
 import subprocess
-from collections.abc import Iterator
 
 import pytest
 
@@ -22,12 +21,6 @@ pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind"
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 KIT = robots.load("tinibot").kit
-
-
-@pytest.fixture
-def desk() -> Iterator[Desk]:
-    with Desk(KIT) as found:
-        yield found
 
 
 def on(desk: Desk, *arguments: str, data: str = "") -> Done:

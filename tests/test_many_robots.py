@@ -12,7 +12,7 @@ from collections.abc import Iterator
 import pytest
 
 from tests.classroom import Classroom
-from tests.command import TSC, Done, Tsc, ended, process, running
+from tests.command import FOREVER, TSC, Done, Tsc, ended, process, running
 from tests.machines.tabletop import missing
 from tiniscript import robots
 from tiniscript.cli.crew import Member, Result
@@ -25,7 +25,6 @@ pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a
 
 TINIBOT, LINER = robots.load("tinibot").kit, robots.load("liner").kit
 SHORT = "SI|F(0.3, 80);SHOW(DISTANCE)"
-FOREVER = "SI|LOOP(FOREVER);F(1, 80);END_LOOP"
 ROBOTS = 30
 SILENT, OTHER_KIT, DEAF = 3, 7, 11  # robots with which something is wrong
 NOISY = (5, 13, 17, 21)

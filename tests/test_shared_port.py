@@ -3,92 +3,24 @@
 from __future__ import annotations
 
 import json
-import os
 import signal
 import socket
-import stat
-import subprocess
-import sys
 import time
-from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, cast
 
 import pytest
 
-from tests.command import TSC, Done, Tsc, process
-from tests.desk import Desk
+from tests.command import FOREVER, LONG, Command, process
+from tests.desk import Desk, on, uploading
 from tests.machines.tabletop import missing
-from tiniscript import __version__, robots
+from tests.shared_desk import Shared
+from tiniscript import __version__
 from tiniscript.link.frames import decoded
-from tiniscript.link.line import Line
-from tiniscript.link.outcomes import Event
-from tiniscript.link.ports import opened
-from tiniscript.link.session import Session, Task
 from tiniscript.sharing import holders, notes
 from tiniscript.sharing.holders import Holder
-from tiniscript.sharing.host import FULL_BYTES, Host
 
 pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
-
-KIT = robots.load("tinibot").kit
-FOREVER = "SI|LOOP(FOREVER);F(1, 80);END_LOOP"
-LONG = "LOOP(2);" + "".join(f"M({k}, 50);W(0.01);" for k in range(1, 56)) + "END_LOOP"
-
-
-@pytest.fixture
-def desk() -> Iterator[Desk]:
-    with Desk(KIT) as found:
-        yield found
-
-
-class Command:
-    """A `tsc` that stays."""
-
-    def __init__(self, *arguments: str, code: str = "") -> None:
-        words = [sys.executable, "-c", code] if code else TSC
-        self.process = subprocess.Popen(
-            [*words, *arguments], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-        )  # fmt: skip
-
-    def until(self, said: str) -> None:
-        """Wait until it has printed a line with these words."""
-        assert self.process.stdout
-        for line in self.process.stdout:
-            if said in line.decode():
-                return
-        raise AssertionError(f"never printed: {said}. {self.ended().err}")
-
-    def signal(self, number: int) -> None:
-        self.process.send_signal(number)
-
-    def ended(self) -> Done:
-        out, err = self.process.communicate(timeout=30)
-        return Done(self.process.returncode, out.decode(), err.decode())
-
-
-@pytest.fixture
-def link(desk: Desk) -> Iterator[Command]:
-    """`tsc link` on the desk's port."""
-    command = Command("link", "--port", desk.port)
-    command.until("share this port")
-    yield command
-    command.process.kill()
-    command.process.communicate()
-
-
-def on(desk: Desk, *arguments: str | Path) -> Done:
-    return process(*arguments, "--port", desk.port)
-
-
-def uploading(desk: Desk, text: str = FOREVER) -> Command:
-    """A program that runs, and the command that attends to it."""
-    command = Command("upload", "-e", text, "--port", desk.port)
-    command.until("running")
-    desk.until(lambda: desk.moves, "it drives")
-    return command
 
 
 def hellos(desk: Desk) -> int:
@@ -404,185 +336,3 @@ def test_a_tsc_of_another_version_can_be_stopped(desk: Desk) -> None:
         assert words in done.err
     assert on(desk, "stop").code == 0
     assert command.ended().code == 3
-
-
-# -- who may come in ------------------------------------------------------------------------------
-
-
-def greeting(holder: Holder, **other: object) -> bytes:
-    note = {"tsc": __version__, "token": holder.token, "verb": "upload"}
-    return notes.written({**note, **other})
-
-
-def visitor(holder: Holder) -> socket.socket:
-    return socket.create_connection((notes.HOST, holder.number), 10)
-
-
-def is_let_go(peer: socket.socket) -> bool:
-    """Whether a holder closes a connection without a word."""
-    try:
-        return peer.recv(100) == b""
-    except ConnectionError:
-        return True
-
-
-def test_only_the_user_may_come_in(desk: Desk, link: Command) -> None:
-    holder = holders.found(desk.port)
-    assert holder is not None
-    folder = holders._folder()
-    assert stat.S_IMODE(folder.stat().st_mode) == 0o700
-    for path in folder.iterdir():
-        assert stat.S_IMODE(path.stat().st_mode) == 0o600
-    command = uploading(desk)
-    rude = (
-        greeting(holder, token="0" * 32),
-        greeting(holder, token="é"),
-        greeting(holder, token=5),
-        greeting(holder, verb="x" * 99),
-        notes.written({"do": "stop"}),
-        b"GET / HTTP/1.1\r\n\r\n",
-        b"[" * 900 + b"\n",
-        b"\0" * 100 + b"\n",
-        b"a" * 5000,
-    )
-    for data in rude:
-        with visitor(holder) as peer:
-            peer.sendall(data)
-            assert is_let_go(peer)
-    assert desk.moves
-    silent = [visitor(holder) for _ in range(100)]
-    assert on(desk, "stop").code == 0
-    assert command.ended().code == 3
-    for peer in silent:
-        assert is_let_go(peer)
-        peer.close()
-
-
-@pytest.mark.parametrize(
-    "wrong",
-    [
-        {"do": "fly"},
-        {"do": "name", "name": ""},
-        {"do": "name", "name": "zz"},
-        {"do": "name", "name": "00" * 17},
-        {"do": "live", "code": "00", "kit": "5"},
-        {"do": "live", "code": 7, "kit": 0},
-        {"do": "start", "is_detached": 1},
-        {"do": "upload", "start": "PING", "kit": 0, "code": "", "checksum": 0, "isa": "0100",
-         "runs": True, "saves": False, "is_detached": False},
-        {"do": "upload", "start": "SI", "kit": -1, "code": "", "checksum": 0, "isa": "0100",
-         "runs": True, "saves": False, "is_detached": False},
-        {"do": "ping", "id": "1"},
-        {"do": 5},
-    ],
-)  # fmt: skip
-def test_wrong_notes_of_a_guest_end_its_visit_alone(wrong: dict[str, object]) -> None:
-    with Shared() as (desk, holder), visitor(holder) as peer:
-        peer.sendall(greeting(holder) + notes.written({"id": 1, "limit_ms": 100, **wrong}))
-        said = b""
-        while part := _rest(peer):
-            said += part
-        assert said == notes.written({"tsc": __version__, "answer": holder.answer})
-        assert "SHOW 1" in on(desk, "live", "SHOW(1)").out
-
-
-def _rest(peer: socket.socket) -> bytes:
-    try:
-        return peer.recv(65536)
-    except ConnectionError:
-        return b""
-
-
-class Shared:
-    """A line of this process that is shared."""
-
-    def __enter__(self) -> tuple[Desk, Holder]:
-        self.desk = Desk(KIT)
-        device = opened(self.desk.port, 9600)
-        self.line = Line(device, Session(1, 9600, KIT.fingerprint))
-        self.host = Host(self.line, self.desk.port, 9600, "link")
-        return self.desk, self.host.holder
-
-    def __exit__(self, *_: object) -> None:
-        self.host.close()
-        self.line.close()
-        self.desk.clear_away()
-
-
-def test_whoever_reads_slowly_misses_values_and_holds_up_nobody() -> None:
-    shared = Shared()
-    with shared as (desk, holder), visitor(holder) as peer:
-        peer.sendall(greeting(holder))
-        reader = notes.Notes(notes.LINE_BYTES)
-        found = reader.put(peer.recv(65536))
-        count = 50 * FULL_BYTES // 60
-        for k in range(count):
-            shared.host._hear([(k, Event("SHOW", {"value": k, "is_yes_no": 0}))])
-        shared.host._hear([(count, Event("DONE", {"run": 9}))])
-        assert "SHOW 1" in on(desk, "live", "SHOW(1)").out
-        while not any(note.get("event") == "DONE" for note in found):
-            data = peer.recv(65536)
-            assert data, "it was let go"
-            found += reader.put(data)
-        found = found[: [note.get("event") for note in found].index("DONE")]
-        missed = [notes.values(note)["count"] for note in found if note.get("event") == "MISSED"]
-        shown = sum(note.get("event") == "SHOW" for note in found)
-        assert sum(int(each) for each in missed) + shown == count
-        assert missed
-
-
-def test_nothing_is_shared_where_nothing_can_be_written(
-    tsc: Tsc, desk: Desk, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    blocked = tmp_path / "file"
-    blocked.write_text("")
-    monkeypatch.setenv("XDG_CACHE_HOME", str(blocked))
-    assert tsc("upload", "-e", "SI|F(0.1, 30)", "--port", desk.port).code == 0
-    done = tsc("link", "--port", desk.port)
-    assert done.code == 3
-    assert "cannot be shared" in done.err
-
-
-@pytest.mark.parametrize("text", ["", "{", "[]", "{}", '{"port": 5}', "[" * 5000, "\0"])
-def test_a_file_that_says_nothing_is_no_holder(desk: Desk, text: str) -> None:
-    with Shared() as (other, holder):
-        path = holders._path(other.port)
-        path.write_text(text)
-        assert holders.found(other.port) is None
-        assert holders.all_found() == []
-    path.write_text(json.dumps(holder._replace(port=desk.port)._asdict()))
-    assert holders.found(other.port) is None
-    if os.name == "posix":
-        path.write_text(json.dumps(holder._asdict()))
-        assert holders.found(other.port) == holder
-        path.parent.chmod(0o755)
-        assert holders.found(other.port) is None
-
-
-def test_somebody_else_at_the_number_of_a_crashed_holder_is_no_holder(desk: Desk) -> None:
-    with socket.create_server((notes.HOST, 0)) as stranger:
-        number = stranger.getsockname()[1]
-        holders.write(Holder(desk.port, number, "a", "b", "link", 9600, 1))
-        command = Command("info", "--port", desk.port)
-        peer, _ = stranger.accept()
-        with peer:
-            peer.recv(1000)
-            peer.sendall(notes.written({"tsc": __version__, "answer": "c"}))
-            done = command.ended()
-    assert (done.code, done.err) == (0, "")
-    assert holders.found(desk.port) is None
-
-
-def test_a_bug_of_ours_in_a_thread_is_raised_where_somebody_waits() -> None:
-    for part in ("session", "host"):
-        shared = Shared()
-        with shared as (_, holder), visitor(holder) as peer:
-            if part == "session":
-                shared.line.session._tasks.append(cast("Task", None))
-            else:
-                shared.host._orphans.append(cast("Any", None))
-            with pytest.raises(AttributeError):
-                while True:
-                    shared.line.event()
-            peer.settimeout(10)
-            assert is_let_go(peer)

@@ -11,10 +11,9 @@ from pathlib import Path
 import pytest
 
 from tests.casefile import ROOT
-from tests.command import Done, process, running
+from tests.command import FOREVER, LONG, Done, process, running
 from tests.machines.uno import needed
 from tests.platformio import changed
-from tests.test_cli_robot import FOREVER, LONG
 from tests.test_uno_robot import BAUD, FORWARD, NAMES, OFF, sketch, states  # noqa: F401
 from tools.uno import CYCLES_PER_MS, Uno
 
