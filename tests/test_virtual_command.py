@@ -121,7 +121,9 @@ def test_a_computer_that_vanishes_stops_the_robot(hurry: str) -> None:
 
 
 def test_a_second_computer_is_told_that_the_port_is_taken() -> None:
-    with robot() as found, visitor(found.port):
+    with robot() as found, visitor(found.port) as first:
+        first.sendall(b"SHOW(1)\n")
+        assert first.recv(1000)  # it is heard
         done = process("info", "--port", found.port)
         assert done.code == 3
         assert f"another program is using the port {found.port}" in done.err

@@ -141,10 +141,18 @@ class Guest:
         del self._tasks[number]
         assert isinstance(task, Wish)
         if task.note["do"] == "hello" and task.outcome.status == OK:
-            self.robot = described(values)
+            self.robot = _described(values)
         elif task.outcome.status == OK and task.note["do"] == "name" and self.robot is not None:
             name = bytes.fromhex(str(task.note["name"]))
             self.robot = described({**self.robot.values, "name": name})
+
+
+def _described(values: dict[str, int | bytes]) -> Robot:
+    """Return what a robot has said of itself. Raises BadNote where something is missing."""
+    try:
+        return described(values)
+    except (KeyError, AssertionError):
+        raise BadNote from None
 
 
 def joined(port: str, verb: str) -> Guest | None:
@@ -196,7 +204,8 @@ def _joined(holder: Holder, verb: str) -> Guest | None:
 def _first(peer: socket.socket, rest: notes.Notes) -> list[Note]:
     """Return the greeting of a holder and what follows it."""
     end_s = monotonic() + ANSWER_S
-    while monotonic() < end_s:
+    while (left_s := end_s - monotonic()) > 0:
+        peer.settimeout(left_s)
         data = peer.recv(65536)
         if not data:
             raise ConnectionError

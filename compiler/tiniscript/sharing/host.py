@@ -15,7 +15,7 @@ import socket
 from collections import deque
 from contextlib import suppress
 from threading import Thread
-from time import monotonic
+from time import monotonic, sleep
 from typing import NamedTuple
 
 from tiniscript import __version__
@@ -34,6 +34,7 @@ GUESTS = 64  # at a time, and as many who have not said who they are
 TASKS = 8  # of one guest, at a time
 FULL_BYTES = 200_000  # that wait for a slow guest: from here on it misses values,
 TOO_FULL_BYTES = 1_000_000  # and here it is let go
+FULL_S = 0.02  # after which there may be room for one more open file
 PAUSE_S = 0.1  # between two looks at a run or a task of a guest
 REST_S = 1.0  # between two looks at nothing
 _ENDS = ("DONE", "FAULT", "STOPPED", "ENDED", "LOST")
@@ -46,8 +47,9 @@ class Guest:
     def __init__(self, peer: socket.socket) -> None:
         self.peer = peer
         self.verb = ""
-        self.heard_s = monotonic()
-        self.notes = notes.Notes(notes.GREETING_BYTES)
+        self.greeting = b""  # as far as it has come
+        self.heard_s = monotonic()  # of a stranger: when it came
+        self.notes = notes.Notes(notes.LINE_BYTES)
         self.tasks: dict[int, Task] = {}
         self.out = bytearray()
         self.missed = 0  # events
@@ -143,27 +145,42 @@ class Host:
         self._look_after()
 
     def _let_in(self) -> None:
-        with suppress(OSError):
+        try:
             peer, _ = self._server.accept()
-            strangers = [guest for guest in self._guests if not guest.verb]
-            if len(self._guests) - len(strangers) >= GUESTS:
-                peer.close()
-                return
-            if len(strangers) >= GUESTS:
-                self._drop(strangers[0])
-            peer.setblocking(False)
+        except (BlockingIOError, ConnectionError):  # it has gone already
+            return
+        except OSError:  # this process has too many files open
+            self._drop_oldest_stranger()
+            sleep(FULL_S)
+            return
+        strangers = [guest for guest in self._guests if not guest.verb]
+        if len(self._guests) - len(strangers) >= GUESTS:
+            peer.close()
+            return
+        if len(strangers) >= GUESTS:
+            self._drop_oldest_stranger()
+        peer.setblocking(False)
+        with suppress(OSError):  # it has gone already
             peer.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-            guest = Guest(peer)
-            self._guests.append(guest)
-            self._selector.register(peer, selectors.EVENT_READ, guest)
+        guest = Guest(peer)
+        self._guests.append(guest)
+        self._selector.register(peer, selectors.EVENT_READ, guest)
+
+    def _drop_oldest_stranger(self) -> None:
+        stranger = next((guest for guest in self._guests if not guest.verb), None)
+        if stranger is not None:
+            self._drop(stranger)
 
     def _read(self, guest: Guest) -> None:
         try:
-            data = guest.peer.recv(65536)
+            data = guest.peer.recv(65536 if guest.verb else notes.GREETING_BYTES)
             if not data:
                 raise ConnectionError
-            guest.heard_s = monotonic()
-            for note in guest.notes.put(data):
+            if not guest.verb:
+                data = self._greet(guest, data)
+            else:
+                guest.heard_s = monotonic()
+            for note in guest.notes.put(data) if guest.verb else ():
                 self._take(guest, note)
         except BlockingIOError:
             pass
@@ -171,9 +188,6 @@ class Host:
             self._drop(guest)
 
     def _take(self, guest: Guest, note: Note) -> None:
-        if not guest.verb:
-            self._greet(guest, note)
-            return
         wish = notes.word(note, "do")
         if wish == "stop":
             self._line.stop()
@@ -182,15 +196,22 @@ class Host:
         else:
             self._begin(guest, note)
 
-    def _greet(self, guest: Guest, note: Note) -> None:
-        token, verb = notes.word(note, "token"), notes.word(note, "verb")
-        is_known = secrets.compare_digest(token.encode(), self.holder.token.encode())
-        if not is_known or not verb.isascii() or not verb.isalpha() or len(verb) > 20:
+    def _greet(self, guest: Guest, data: bytes) -> bytes:
+        """Take what somebody says before it is known; return what follows its greeting.
+
+        Until the token was right nothing else of it is looked at. Raises BadNote.
+        """
+        guest.greeting += data
+        greeting = notes.greeting(guest.greeting)
+        if greeting is None:
+            return b""
+        if not secrets.compare_digest(greeting.token, self.holder.token.encode()):
             raise BadNote
-        guest.verb = verb
-        guest.notes.limit_bytes = notes.LINE_BYTES
+        guest.verb, guest.greeting = greeting.verb, b""
+        guest.heard_s = monotonic()
         self._send(guest, {"tsc": __version__, "answer": self.holder.answer})
         self._tell_holder("JOINED", guest)
+        return greeting.rest
 
     def _begin(self, guest: Guest, note: Note) -> None:
         """Have something done for a guest."""

@@ -12,15 +12,18 @@
     {"do": "beat"}                               {"beat": true}
                                                  {"over": "ended", "why": ""}
 
-Whoever does not begin with the right token is not answered. The greeting and `stop` stay as they
-are in every version, so that each tsc can stop what another one holds. Bytes are written in hex.
+Whoever does not begin with the right token is not answered, and nothing that it says is read as
+JSON: a greeting has one form, to the byte. The greeting and `stop` stay as they are in every
+version, so that each tsc can stop what another one holds. Bytes are written in hex.
 Knows no socket.
 """
 
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Mapping
+from typing import NamedTuple
 
 from tiniscript.link.outcomes import Event
 
@@ -33,9 +36,32 @@ TETHER_S = 1.0  # a run ends when the guest that has started it is silent for so
 
 Note = dict[str, object]
 
+_GREETING = re.compile(
+    rb'{"tsc":"[0-9A-Za-z.+-]{1,40}","token":"([0-9a-f]{32})","verb":"([A-Za-z]{1,20})"}\n'
+)
+
 
 class BadNote(Exception):
     """What came is no note, or not the one that was expected."""
+
+
+class Greeting(NamedTuple):
+    token: bytes
+    verb: str
+    rest: bytes  # what follows it
+
+
+def greeting(data: bytes) -> Greeting | None:
+    """Return the greeting that data begins with, or None while it may still become one.
+
+    Raises BadNote.
+    """
+    found = _GREETING.match(data)
+    if found is not None:
+        return Greeting(found[1], found[2].decode("ascii"), data[found.end() :])
+    if data[:1] != b"{" or b"\n" in data or len(data) > GREETING_BYTES:
+        raise BadNote
+    return None
 
 
 class Notes:
