@@ -191,6 +191,55 @@ def test_output_that_is_not_unicode() -> None:
     assert b"l\\xednea 1:" in done.stderr
 
 
+def test_input_that_is_no_text() -> None:
+    for encoding in ("ascii", "utf-8", "cp1252"):
+        environ = {**os.environ, "PYTHONIOENCODING": encoding}
+        done = subprocess.run(
+            [*TSC, "live", "--virtual"], input=b"F(\xff\x81\n", capture_output=True, env=environ
+        )
+        assert done.returncode == 1
+        assert b"was not made for" not in done.stderr
+        assert b"[TS" in done.stderr
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="Windows has no such files")
+@pytest.mark.parametrize("kind", ["pipe", "folder", "device", "circle", "huge"])
+def test_files_of_the_cache_may_be_anything(kind: str) -> None:
+    """No command waits for them, or reads for ever: they say nothing."""
+    from tiniscript import maps
+    from tiniscript.link import remembered
+    from tiniscript.sharing import holders
+    from tiniscript.virtual import directory
+
+    port = "socket://127.0.0.1:4000"
+    robot = directory._folder() / "4000.json"
+    paths = [remembered._path(), robot, holders._path(port), maps._path(5)]
+    for path in paths:
+        path.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
+        path.parent.chmod(0o700)
+        if kind == "pipe":
+            os.mkfifo(path)
+        elif kind == "folder":
+            path.mkdir()
+        elif kind == "huge":
+            with path.open("wb") as file:
+                file.truncate(1 << 40)
+        else:
+            path.symlink_to("/dev/zero" if kind == "device" else path)
+    assert remembered.known() == remembered.Known(None, {})
+    assert directory.running() == []
+    assert holders.found(port) is None
+    assert holders.all_found() == []
+    assert maps.recall(5) is None
+
+
+@pytest.mark.parametrize("number", ["0000801234", "99999", "00000", "٣٣٣٣", "-1", "4" * 5000])
+def test_a_number_that_no_port_has_is_no_robot(number: str) -> None:
+    from tiniscript.virtual import directory
+
+    assert not directory._is_listening(f"socket://127.0.0.1:{number}")
+
+
 def test_a_cache_that_cannot_be_written_is_no_trouble(
     tsc: Tsc, program: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -47,7 +47,8 @@ ROOMS = {
     "run": TABLES | {"task", "vm"},
     "wasm_machine": TABLES | {"task", "image", "verify"},
     "messages": TABLES,
-    "maps": {"image"},
+    "cache_file": set(),
+    "maps": {"image", "cache_file"},
 }
 
 

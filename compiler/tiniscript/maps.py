@@ -11,11 +11,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from tiniscript import image as images
+from tiniscript.cache_file import contents
 
 if TYPE_CHECKING:
     from tiniscript import Compiled
 
 VERSION = 1
+FILE_BYTES = 32_000_000
 KEPT = 1000  # maps in the cache; the oldest go first
 
 
@@ -100,7 +102,7 @@ def remember(image: bytes, places: Map) -> None:
 def recall(checksum: int) -> Map | None:
     """Return the map of the image with this checksum, if it is in the cache."""
     try:
-        return from_json(_path(checksum).read_text(encoding="utf-8"))
+        return from_json(contents(_path(checksum), FILE_BYTES).decode("utf-8"))
     except (OSError, ValueError, OverflowError, RecursionError):
         return None
 

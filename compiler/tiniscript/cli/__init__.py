@@ -63,13 +63,15 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _mend_streams() -> None:
-    """Put something in place of standard streams that are closed, and print any letter."""
+    """Put something in place of standard streams that are closed, and take any letter."""
     for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
         if getattr(sys, name) is None:
             setattr(sys, name, open(os.devnull, mode, encoding="utf-8"))  # noqa: PTH123, SIM115
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="backslashreplace")
+    if hasattr(sys.stdin, "reconfigure"):
+        sys.stdin.reconfigure(errors="backslashreplace")  # what is no text is a mistake as any
 
 
 def _drop_output() -> None:

@@ -10,6 +10,9 @@ import os
 from pathlib import Path
 from typing import NamedTuple
 
+from tiniscript.cache_file import contents
+
+FILE_BYTES = 1_000_000
 KEPT = 100  # ports; the oldest go first
 
 
@@ -23,7 +26,7 @@ class Known(NamedTuple):
 def known() -> Known:
     """Return what is remembered."""
     try:
-        fields = json.loads(_path().read_text(encoding="utf-8"))
+        fields = json.loads(contents(_path(), FILE_BYTES))
         last = fields["last"]
         names = {str(port): str(name) for port, name in fields["ports"]}
     except (OSError, ValueError, TypeError, KeyError, RecursionError):

@@ -16,6 +16,7 @@ from socket import gethostname
 from typing import IO, NamedTuple
 from zlib import crc32
 
+from tiniscript.cache_file import contents
 from tiniscript.link.names import same_for_all
 
 FILE_BYTES = 4096
@@ -110,8 +111,7 @@ def _read(path: Path) -> Holder | None:
             about = path.parent.stat()
             if about.st_uid != os.geteuid() or about.st_mode & 0o077:
                 return None
-        with path.open("rb") as file:
-            fields = json.loads(file.read(FILE_BYTES))
+        fields = json.loads(contents(path, FILE_BYTES))
         holder = Holder(*(fields[name] for name in Holder._fields))
     except (OSError, ValueError, TypeError, KeyError, RecursionError):
         return None

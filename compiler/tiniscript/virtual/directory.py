@@ -13,8 +13,10 @@ import sys
 from pathlib import Path
 from typing import NamedTuple
 
+from tiniscript.cache_file import contents
 from tiniscript.virtual.guests import LOCAL
 
+FILE_BYTES = 10_000
 PREFIX = f"socket://{LOCAL}:"
 
 
@@ -74,7 +76,7 @@ def is_virtual(port: str) -> bool:
 
 def _read(path: Path) -> Running | None:
     try:
-        fields = json.loads(path.read_text(encoding="utf-8"))
+        fields = json.loads(contents(path, FILE_BYTES))
         robot = Running(*(fields[key] for key in Running._fields))
     except (OSError, ValueError, TypeError, KeyError, RecursionError):
         return None
@@ -86,7 +88,8 @@ def _read(path: Path) -> Running | None:
 def _is_listening(address: str) -> bool:
     """Whether the port is taken: then it cannot be had."""
     digits = address.removeprefix(PREFIX)
-    if not (digits.isascii() and digits.isdigit() and 0 < int(digits[:6]) < 65536):
+    is_number = digits.isascii() and digits.isdigit() and len(digits) <= 5
+    if not (is_number and 0 < int(digits) < 65536):
         return False
     with socket.socket() as probe:
         if sys.platform != "win32":  # there it would take a port away from its owner
