@@ -7,9 +7,11 @@ fault can name its line and a listing can show it. Losing a map loses nothing el
 from __future__ import annotations
 
 import os
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
+from tiniscript import files
 from tiniscript import image as images
 from tiniscript.cache_file import contents
 
@@ -91,9 +93,7 @@ def remember(image: bytes, places: Map) -> None:
     path = _path(images.checksum(image))
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        new = path.with_suffix(f".{os.getpid()}")
-        new.write_text(as_json(places), encoding="utf-8", errors="backslashreplace")
-        new.replace(path)
+        files.replace(path, as_json(places).encode(errors="backslashreplace"))
         _forget_oldest(path.parent)
     except OSError:
         pass
@@ -101,9 +101,14 @@ def remember(image: bytes, places: Map) -> None:
 
 def recall(checksum: int) -> Map | None:
     """Return the map of the image with this checksum, if it is in the cache."""
+    path = _path(checksum)
     try:
-        return from_json(contents(_path(checksum), FILE_BYTES).decode("utf-8"))
-    except (OSError, ValueError, OverflowError, RecursionError):
+        return from_json(contents(path, FILE_BYTES).decode("utf-8"))
+    except OSError:
+        return None
+    except (ValueError, OverflowError, RecursionError):
+        with suppress(OSError):  # nobody can use it: a full disk has cut it, perhaps
+            path.unlink()
         return None
 
 
@@ -115,7 +120,17 @@ def _path(checksum: int) -> Path:
 
 def _forget_oldest(folder: Path) -> None:
     names = os.listdir(folder)  # noqa: PTH208 - a thousand Paths cost more than their names
-    if len(names) > KEPT:
-        paths = sorted((folder / name for name in names), key=lambda path: path.stat().st_mtime)
-        for path in paths[: len(names) - KEPT]:
-            path.unlink(missing_ok=True)
+    files.remove_abandoned(folder, names)
+    known = [name for name in names if name.endswith(".json")]
+    if len(known) > KEPT:
+        found = sorted((_changed_s(folder / name), name) for name in known)
+        for _, name in found[: len(known) - KEPT]:
+            with suppress(OSError):
+                (folder / name).unlink()
+
+
+def _changed_s(path: Path) -> float:
+    try:
+        return path.stat().st_mtime
+    except OSError:  # another command has just removed it
+        return 0.0

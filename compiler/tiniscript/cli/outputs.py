@@ -21,27 +21,11 @@ def write(path: Path, data: bytes, key: str) -> None:
 
     Raises Trouble with the sentence `key` where that is not possible.
     """
+    from tiniscript import files
     from tiniscript.cli.inputs import shown
 
     try:
-        if path.exists() and not path.is_file():  # a device or a pipe has no old content
-            with path.open("wb") as device:
-                device.write(data)
-            return
-        target = path.resolve()
-        mode = target.stat().st_mode if target.exists() else None
-        if mode is not None and not os.access(target, os.W_OK):
-            raise PermissionError(13, os.strerror(13))
-        new = target.with_name(f".{target.name[:100]}.{os.getpid()}.new")
-        try:
-            with new.open("wb") as file:
-                file.write(data)
-            if mode is not None:
-                new.chmod(mode & 0o7777)
-            new.replace(target)
-        except BaseException:
-            new.unlink(missing_ok=True)
-            raise
+        files.replace(path, data)
     except (OSError, ValueError, RuntimeError) as why:  # RuntimeError: a link to itself
         if isinstance(why, BrokenPipeError):
             raise

@@ -6,10 +6,10 @@ They lie in the user's cache: losing them loses nothing else. Opens no port.
 from __future__ import annotations
 
 import json
-import os
 from pathlib import Path
 from typing import NamedTuple
 
+from tiniscript import files
 from tiniscript.cache_file import contents
 
 FILE_BYTES = 1_000_000
@@ -45,10 +45,8 @@ def remember(port: str, name: str, is_used: bool = True) -> None:
     path = _path()
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        new = path.with_suffix(f".{os.getpid()}")
         fields = {"last": last, "ports": list(names.items())[:KEPT]}
-        new.write_text(json.dumps(fields), encoding="utf-8")
-        new.replace(path)
+        files.replace(path, json.dumps(fields).encode())
     except (OSError, ValueError):
         pass
 

@@ -2,7 +2,7 @@
 
 It says where the holder listens and what proves that a command is of the same user. A file may
 outlive its holder: whoever reads it must hear the right answer from there, or the port is free.
-Knows files. Talks to nobody.
+Knows files, and whether a TCP port is taken. Talks to nobody.
 """
 
 from __future__ import annotations
@@ -10,16 +10,20 @@ from __future__ import annotations
 import json
 import os
 import sys
+from collections.abc import Callable
 from contextlib import suppress
+from io import FileIO
 from pathlib import Path
-from socket import gethostname
+from socket import SO_REUSEADDR, SOL_SOCKET, gethostname, socket
 from typing import IO, NamedTuple
 from zlib import crc32
 
+from tiniscript import files
 from tiniscript.cache_file import contents
 from tiniscript.link.names import same_for_all
 
 FILE_BYTES = 4096
+_LOCK_FLAGS = os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0)
 
 
 class Holder(NamedTuple):
@@ -46,6 +50,7 @@ def found(port: str) -> Holder | None:
 
 def all_found() -> list[Holder]:
     """Return what is written of the holders of all ports."""
+    tidy()
     with suppress(OSError):
         paths = sorted(_folder().glob(f"{_computer()}-*.json"))
         return [holder for holder in map(_read, paths) if holder is not None]
@@ -54,24 +59,64 @@ def all_found() -> list[Holder]:
 
 def write(holder: Holder) -> None:
     """Let others find a holder. Raises OSError where nothing can be written."""
-    path = _path(holder.port)
     _make_folder()
-    new = path.with_suffix(f".{os.getpid()}")
-    with suppress(OSError):
-        new.unlink()  # of another process that had this number
-    file = os.open(new, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
-    try:
-        os.write(file, json.dumps(holder._asdict()).encode())
-    finally:
-        os.close(file)
-    new.replace(path)
+    tidy()
+    files.replace(_path(holder.port), json.dumps(holder._asdict()).encode(), 0o600)
 
 
 def remove(holder: Holder) -> None:
     """Take back what is written of a holder, unless another one has written since."""
-    if _read(_path(holder.port)) == holder:
-        with suppress(OSError):
-            _path(holder.port).unlink()
+    _remove(_path(holder.port), lambda found: found == holder)
+
+
+def _remove(path: Path, is_meant: Callable[[Holder | None], bool]) -> None:
+    """Remove a file if it says what is meant, and never another one that was written meanwhile.
+
+    It is taken aside before it is read for the last time, and put back where it is another one.
+    """
+    if not is_meant(_read(path)):
+        return
+    aside = path.with_name(f".{path.name}.{os.urandom(8).hex()}{files.NEW}")
+    with suppress(OSError):
+        path.rename(aside)
+        if not is_meant(_read(aside)) and not path.exists():
+            aside.rename(path)
+        else:
+            aside.unlink()
+
+
+def tidy() -> None:
+    """Remove what killed commands of this computer have left: nobody listens where they did.
+
+    A living holder listens before it writes its file, and removes the file before it stops.
+    """
+    folder = _folder()
+    with suppress(OSError):
+        names = os.listdir(folder)
+        files.remove_abandoned(folder, names, (".json", ".lock"))
+        for name in names:
+            if name.startswith(f"{_computer()}-") and name.endswith(".json"):
+                _remove(folder / name, _is_dead)
+            elif name.startswith(f"{_computer()}-") and name.endswith(".lock"):
+                lock = _locked(folder / name)
+                if lock is not None:
+                    lock.close()
+
+
+def _is_dead(holder: Holder | None) -> bool:
+    return holder is not None and not is_taken(holder.number)
+
+
+def is_taken(number: int) -> bool:
+    """Whether somebody listens on a TCP port of this computer; nobody is visited for that."""
+    with socket() as probe:
+        if sys.platform != "win32":  # there it would take a port away from its owner
+            probe.setsockopt(SOL_SOCKET, SO_REUSEADDR, 1)
+        try:
+            probe.bind(("127.0.0.1", number))
+        except OSError:
+            return True
+    return False
 
 
 def forget(port: str) -> None:
@@ -87,7 +132,58 @@ def claimed(port: str) -> IO[bytes] | None:
     ends with the file, or with the process. Raises OSError where nothing can be locked.
     """
     _make_folder()
-    file = _path(port).with_suffix(".lock").open("ab")
+    return _locked(_path(port).with_suffix(".lock"))
+
+
+class _Lock(FileIO):
+    """A locked file, which goes when it is closed; whoever is killed leaves it to `tidy`."""
+
+    def __init__(self, path: Path) -> None:
+        super().__init__(os.open(path, _LOCK_FLAGS, 0o600), "r+")
+        self.path = path
+        self.is_ours = False
+
+    @property
+    def is_there(self) -> bool:
+        """Whether the file of this lock is still the one at its path."""
+        try:
+            return os.path.samestat(os.fstat(self.fileno()), self.path.stat())
+        except OSError:
+            return False
+
+    def close(self) -> None:
+        if self.closed:
+            return
+        is_unlinked = False
+        if self.is_ours and self.is_there:
+            with suppress(OSError):  # Windows keeps a file that is open
+                self.path.unlink()
+                is_unlinked = True
+        super().close()
+        if self.is_ours and not is_unlinked and sys.platform == "win32":
+            with suppress(OSError):  # another process has it open, and will remove it
+                self.path.unlink()
+
+
+def _locked(path: Path) -> _Lock | None:
+    """Return a locked file, or None where another process has it.
+
+    Whoever had it may have removed it between our opening and our locking it: then it locks
+    nothing, and the next one at its place is tried.
+    """
+    while True:
+        file = _Lock(path)
+        if not _lock(file):
+            file.close()
+            return None
+        if file.is_there:
+            file.is_ours = True
+            return file
+        file.close()
+
+
+def _lock(file: FileIO) -> bool:
+    """Lock a file for this process; return whether nobody else had done so."""
     try:
         if sys.platform == "win32":
             import msvcrt
@@ -99,9 +195,11 @@ def claimed(port: str) -> IO[bytes] | None:
 
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except (BlockingIOError, PermissionError):
+        return False
+    except OSError:
         file.close()
-        return None
-    return file
+        raise
+    return True
 
 
 def _read(path: Path) -> Holder | None:

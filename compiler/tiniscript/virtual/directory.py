@@ -8,12 +8,12 @@ from __future__ import annotations
 import contextlib
 import json
 import os
-import socket
-import sys
 from pathlib import Path
 from typing import NamedTuple
 
+from tiniscript import files
 from tiniscript.cache_file import contents
+from tiniscript.sharing.holders import is_taken
 from tiniscript.virtual.guests import LOCAL
 
 FILE_BYTES = 10_000
@@ -39,9 +39,8 @@ def announce(running: Running) -> Path | None:
     path = _folder() / f"{port}.json"
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        new = path.with_suffix(f".{os.getpid()}")
-        new.write_text(json.dumps(running._asdict()), encoding="utf-8")
-        new.replace(path)
+        files.remove_abandoned(path.parent, os.listdir(path.parent))
+        files.replace(path, json.dumps(running._asdict()).encode())
     except (OSError, ValueError):
         return None
     return path
@@ -91,14 +90,7 @@ def _is_listening(address: str) -> bool:
     is_number = digits.isascii() and digits.isdigit() and len(digits) <= 5
     if not (is_number and 0 < int(digits) < 65536):
         return False
-    with socket.socket() as probe:
-        if sys.platform != "win32":  # there it would take a port away from its owner
-            probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        try:
-            probe.bind((LOCAL, int(digits)))
-        except OSError:
-            return True
-    return False
+    return is_taken(int(digits))
 
 
 def _folder() -> Path:

@@ -1,0 +1,74 @@
+"""Files that are whole or not there: the one place where a file gets new content at once.
+
+The new content is written beside the file, under a name that nobody can foresee, into a file that
+was not there before; then it takes the file's place. So nobody who may write to the folder can have
+another file changed, and whoever reads meanwhile reads the old content or the new.
+
+A symbolic link stays one: what it leads to is replaced, as by a shell's `>`. Another hard link to
+the file keeps the old content.
+"""
+
+from __future__ import annotations
+
+import os
+import stat
+from contextlib import suppress
+from pathlib import Path
+from time import time
+
+NEW = ".new"  # the end of the name of a file that is not yet whole
+NAME_CHARACTERS = 100  # of a file's name in that of its new one
+ABANDONED_S = 3600.0  # a new file that is older has lost its command
+
+
+def replace(path: Path, data: bytes, mode: int | None = None) -> None:
+    """Give a file this content, or leave it as it was. Raises OSError or ValueError.
+
+    `mode` is what its permissions become; else they stay, and a new file has what the umask
+    leaves. A device or a pipe, which has no old content, is written to.
+    """
+    found = _found(path)
+    if found is not None and not stat.S_ISREG(found.st_mode):
+        with path.open("wb") as device:
+            device.write(data)
+        return
+    target = path.resolve()
+    if found is not None:
+        if not os.access(target, os.W_OK):
+            raise PermissionError(13, os.strerror(13))
+        mode = stat.S_IMODE(found.st_mode) & 0o777 if mode is None else mode
+    new = target.with_name(f".{target.name[:NAME_CHARACTERS]}.{os.urandom(8).hex()}{NEW}")
+    flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL
+    flags |= getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)
+    # nobody else may read what replaces a file that nobody else may read
+    try:
+        file = os.open(new, flags, 0o666 if mode is None else 0o600)
+        with open(file, "wb") as stream:  # noqa: PTH123 - a number, not a path
+            stream.write(data)
+        if mode is not None:
+            new.chmod(mode)
+        new.replace(target)
+    except BaseException:
+        with suppress(OSError):
+            new.unlink()
+        raise
+
+
+def remove_abandoned(folder: Path, names: list[str], kept: tuple[str, ...] = (".json",)) -> None:
+    """Remove what killed commands have left in a folder of ours; `kept` is what names may end in.
+
+    `names` are those of the folder. A file that may still become whole is left alone.
+    """
+    for name in names:
+        if not name.endswith(kept):
+            with suppress(OSError):
+                if (folder / name).lstat().st_mtime < time() - ABANDONED_S:
+                    (folder / name).unlink()
+
+
+def _found(path: Path) -> os.stat_result | None:
+    """Return what is at a path, behind a link; None where nothing is."""
+    try:
+        return path.stat()
+    except FileNotFoundError:
+        return None
