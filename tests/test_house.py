@@ -19,6 +19,8 @@ ROOMS = {
     "kit": {"thousandths"},
     "words": {"thousandths"},
     "problems": {"source"},
+    "printable": set(),
+    "files": set(),
     "tokens": TABLES,
     "tree": {"source"},
     "arguments": TABLES | {"tokens"},
@@ -48,7 +50,7 @@ ROOMS = {
     "wasm_machine": TABLES | {"task", "image", "verify"},
     "messages": TABLES,
     "cache_file": set(),
-    "maps": {"image", "cache_file"},
+    "maps": {"image", "cache_file", "files"},
 }
 
 

@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tiniscript.cli import inputs, outputs
+from tiniscript.cli import inputs, outputs, paths
 from tiniscript.cli.options import Options
 from tiniscript.cli.texts import text
 from tiniscript.cli.trouble import Trouble
@@ -48,7 +48,8 @@ def run(arguments: list[str], language: str) -> int:
         return 0
     given = inputs.program(options)
     target = _target(given, options.output)
-    _map_has_a_place(options.map, given, target)
+    if options.map == "-":
+        raise Trouble(2, "over_map", file="-")
     robot = inputs.robot(options, language)
     compiled = inputs.compiled(given, robot, is_strict=True)
     outputs.print_problems(compiled, language)
@@ -85,30 +86,7 @@ def _target(given: inputs.Input, output: str | None) -> Path | None:
         return None
     if output is None and given.path is None:
         raise Trouble(2, "needs_output")
-    target = Path(output) if output is not None else given.path
-    assert target is not None
-    if output is None:
-        target = target.with_suffix(".bin")
-    if given.path is not None and _is_same(target, given.path):
-        raise Trouble(2, "over_source", file=inputs.shown(given.name))
-    return target
-
-
-def _map_has_a_place(name: str | None, given: inputs.Input, target: Path | None) -> None:
-    """Refuse a map that would overwrite the program or its image."""
-    if name is None:
-        return
-    path = Path(name)
-    over = [each for each in (given.path, target) if each is not None]
-    if name == "-" or any(path == each or _is_same(path, each) for each in over):
-        raise Trouble(2, "over_map", file=inputs.shown(name))
-
-
-def _is_same(target: Path, source: Path) -> bool:
-    try:
-        return target.samefile(source)
-    except (OSError, ValueError):  # no such file yet, or a name that none can have
-        return False
+    return Path(paths.default_output(given.name) if output is None else output)
 
 
 def _stack_values() -> int:

@@ -50,6 +50,9 @@ class Options(ArgumentParser):
         options = self.parse_args(arguments, Namespace(verb=self.verb))
         if options.lang is not None and options.lang not in ("en", "es"):
             raise Trouble(2, "bad_language", found=options.lang)
+        from tiniscript.cli import paths
+
+        paths.check(options, self.language)
         return options
 
     def error(self, message: str) -> NoReturn:

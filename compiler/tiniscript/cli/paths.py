@@ -1,0 +1,184 @@
+"""Which options name files, and the one check of what a command writes.
+
+No output may be a file that the same command reads, or another output of it: that is looked at
+before anything is read, sent or written. Knows files by what they are, not by how they are called:
+a link, another hard link, `./`, other capitals, `/dev/stdin` are the same file. A terminal or
+`/dev/null` may be read and written at once; the port of a robot may not.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import stat
+import sys
+from argparse import Namespace
+from collections.abc import Iterator
+from contextlib import suppress
+from typing import NamedTuple
+
+from tiniscript.cli.texts import text
+from tiniscript.cli.trouble import Trouble
+
+# Every option that takes a value is in one of these three, by its name in `Namespace`.
+# What is read: the sentence that says what it is.
+READS = {
+    "program": "path_program",
+    "robot": "path_robot",
+    "world": "path_world",
+    "memory": "path_memory",
+    "port": "path_port",
+    "ports": "path_port",
+}
+# What is written: how the option is called, and the sentence where that is impossible.
+WRITES = {
+    "output": ("-o", "unwritable"),
+    "map": ("--map", "unwritable_map"),
+    "plot": ("--plot", "unwritable_picture"),
+    "csv": ("--csv", "unwritable_rows"),
+    "memory": ("--memory", "unwritable_memory"),
+}
+NO_FILES = {
+    "lang", "texts", "text", "line", "sensor", "max_time", "max_steps", "seed", "pace", "machine",
+    "code", "board", "baud", "count", "name", "exchange", "reverse_left", "reverse_right",
+    "balance", "least", "noise", "motors", "faults", "hurry", "for", "listen", "button_at",
+}  # fmt: skip
+
+
+class Named(NamedTuple):
+    """A file that a command reads or writes; `dest` is the name of its option."""
+
+    dest: str
+    path: str
+    label: str  # how the option is called, or what the file is
+
+
+def check(options: Namespace, language: str) -> None:
+    """Refuse outputs that cannot be, before anything is done. Raises Trouble."""
+    outputs = list(_written(options))
+    if not outputs:
+        return
+    found = [_identity(each) for each in outputs]
+    for number, (output, identity) in enumerate(zip(outputs, found, strict=True)):
+        for other, its_own in zip(outputs[:number], found, strict=False):
+            if identity is not None and identity == its_own:
+                raise Trouble(2, "same_outputs", option=other.label, file=other.path,
+                              second=output.label, other=output.path)  # fmt: skip
+    for read in _read(options, language):
+        identity = _identity(read, may_be_device=read.dest in ("port", "ports"))
+        for output, its_own in zip(outputs, found, strict=True):
+            if output.dest == read.dest:
+                continue  # in place
+            if read.dest in ("port", "ports"):
+                its_own = _identity(output, may_be_device=True)
+            if identity is not None and identity == its_own:
+                raise Trouble(2, "over_input", option=output.label, file=output.path,
+                              what=read.label, other=read.path)  # fmt: skip
+    for output in outputs:
+        if getattr(options, output.dest) is not None and output.dest in WRITES:
+            _refuse_unwritable(output.path, WRITES[output.dest][1])
+
+
+def default_output(program: str) -> str:
+    """Return where `tsc compile` puts the image of a program."""
+    stem, _ = os.path.splitext(program)  # noqa: PTH122 - a Path would change the name
+    return f"{stem}.bin"
+
+
+def _written(options: Namespace) -> Iterator[Named]:
+    values = vars(options)
+    for dest, (label, _) in WRITES.items():
+        path = values.get(dest)
+        if isinstance(path, str) and not (dest == "output" and path == "-"):
+            yield Named(dest, path, label)
+    program = values.get("program")
+    if program is not None and program != "-":
+        if options.verb == "compile" and options.output is None:
+            yield Named("output", default_output(program), "-o")
+        if options.verb == "fmt" and not options.check:
+            yield Named("program", program, "tsc fmt")
+
+
+def _read(options: Namespace, language: str) -> Iterator[Named]:
+    values = vars(options)
+    for dest, key in READS.items():
+        found = values.get(dest)
+        for path in found if isinstance(found, list) else [found]:
+            if isinstance(path, str) and path != "-" and not _is_shipped(dest, path):
+                yield Named(dest, path, text(key, language))
+    if "port" in values and values["port"] is None and not values.get("virtual"):
+        from tiniscript.link import remembered
+
+        last = remembered.known().last
+        if last is not None:
+            yield Named("port", last, text("path_port", language))
+    with suppress(OSError, ValueError):  # it is closed
+        if stat.S_ISREG(os.fstat(0).st_mode):
+            yield Named("stdin", "/dev/stdin", text("path_stdin", language))
+
+
+def _is_shipped(dest: str, name: str) -> bool:
+    """Whether a name is that of a robot or a world that comes with tsc."""
+    if dest == "robot":
+        from tiniscript import robots
+
+        return name.lower() in robots.names()
+    if dest == "world":
+        from tiniscript.virtual import worlds
+
+        return name.lower() in worlds.names()
+    return False
+
+
+def _identity(named: Named, may_be_device: bool = False) -> tuple[object, ...] | None:
+    """Return what is the same for all names of a file, or None where it may be several things.
+
+    A file that is not there yet is its name in its folder; capitals do not count, since they may
+    not where it will be.
+    """
+    try:
+        found = os.fstat(0) if named.dest == "stdin" else os.stat(named.path)  # noqa: PTH116
+        is_device = stat.S_ISCHR(found.st_mode)
+        return None if is_device and not may_be_device else (found.st_dev, found.st_ino)
+    except (FileNotFoundError, NotADirectoryError):
+        folder, name = os.path.split(os.path.realpath(named.path))
+        with suppress(OSError):
+            found = os.stat(folder)  # noqa: PTH116 - a name that no file can have gets no Path
+            return found.st_dev, found.st_ino, _folded(name)
+    except (OSError, ValueError):  # whoever opens it says why
+        pass
+    return None
+
+
+def _folded(name: str) -> str:
+    """Return what is the same for all names that a folder may take for one."""
+    if name.isascii():
+        return name.lower()
+    from unicodedata import normalize
+
+    return normalize("NFC", normalize("NFC", name).casefold())
+
+
+def _refuse_unwritable(path: str, key: str) -> None:
+    """Say at the beginning what would go wrong with a file at the end. Raises Trouble."""
+    number = 0
+    try:
+        try:
+            found = os.stat(path)  # noqa: PTH116 - a name that no file can have gets no Path
+            if stat.S_ISDIR(found.st_mode):
+                number = errno.EISDIR
+            elif not os.access(path, os.W_OK):
+                number = errno.EACCES
+            is_replaced = stat.S_ISREG(found.st_mode) and key != "unwritable_rows"
+        except FileNotFoundError:
+            is_replaced = True
+        folder = os.path.dirname(os.path.realpath(path))  # noqa: PTH120
+        if is_replaced and not number:
+            os.stat(folder)  # noqa: PTH116
+            if sys.platform != "win32" and not os.access(folder, os.W_OK | os.X_OK):
+                number = errno.EACCES
+    except (OSError, ValueError) as why:
+        reason = why.strerror if isinstance(why, OSError) and why.strerror else str(why)
+        raise Trouble(2, key, file=path, why=reason) from None
+    if number or not path:
+        raise Trouble(2, key, file=path or "''", why=os.strerror(number or errno.ENOENT))
