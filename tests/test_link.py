@@ -329,8 +329,20 @@ def test_a_busy_robot_is_asked_again_but_not_for_ever() -> None:
         if data:
             session.receive(answer(data, {}, STATUSES["BUSY"]), now_ms)
         now_ms += 10
-    assert task.outcome and task.outcome.status == LOST
+    assert task.outcome and task.outcome.status == STATUSES["BUSY"], "it answers: it is not lost"
     assert now_ms <= DEADLINE_MS + 1000
+
+
+def test_a_robot_that_was_busy_and_then_falls_silent_is_lost() -> None:
+    session = greeted()
+    task = session.upload(unpack(pack("SI", 0, FORWARD)))
+    now_ms = 0
+    while task.outcome is None and now_ms < 3 * DEADLINE_MS:
+        data = session.poll(now_ms)
+        if data and now_ms < 1000:
+            session.receive(answer(data, {}, STATUSES["BUSY"]), now_ms)
+        now_ms += 10
+    assert task.outcome and task.outcome.status == LOST
 
 
 def test_a_stop_between_makes_what_waits_stale() -> None:

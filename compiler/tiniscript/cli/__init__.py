@@ -1,7 +1,8 @@
 """The command `tsc`.
 
 Finds the verb, runs it, and turns whatever goes wrong into a sentence and an exit code:
-0 done, 1 the program is wrong, 2 wrong use of `tsc`, 3 the robot or the link.
+0 done, 1 the program is wrong, 2 wrong use of `tsc`, 3 the robot or the link. Where whoever read
+the output has gone, it is CLOSED, without a word, as a shell has it from any other command.
 """
 
 from __future__ import annotations
@@ -36,8 +37,19 @@ VERBS = {
 }
 
 
+CLOSED = 141  # 128 and the number of SIGPIPE
+
+
 def main(arguments: list[str] | None = None) -> int:
     """Run `tsc` with these arguments (those of the process if None); return the exit code."""
+    try:
+        return _main(arguments)
+    except BrokenPipeError:
+        _drop_output()
+        return CLOSED
+
+
+def _main(arguments: list[str] | None) -> int:
     arguments = sys.argv[1:] if arguments is None else arguments
     _mend_streams()
     from tiniscript.cli.texts import language_of, text
@@ -51,11 +63,10 @@ def main(arguments: list[str] | None = None) -> int:
         print("\n" + text("stopped", language), file=sys.stderr)
         return 2
     except BrokenPipeError:
-        _drop_output()
-        print(text("closed_pipe", language), file=sys.stderr)
-        return 2
+        raise
     except OSError as trouble:  # files have sentences of their own; this is the output
-        print(text("full", language).format(why=trouble.strerror or trouble), file=sys.stderr)
+        why = str(trouble.strerror or trouble)
+        print(text("full", language).format(why=why), file=sys.stderr, flush=True)
         _drop_output()
         return 2
     except Exception as bug:
@@ -75,8 +86,10 @@ def _mend_streams() -> None:
 
 
 def _drop_output() -> None:
-    """What is still in the buffer has nowhere to go."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+    """What is still in the buffers has nowhere to go."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, 1)
+    os.dup2(nowhere, 2)
 
 
 def _verb(arguments: list[str], language: str) -> int:
@@ -119,6 +132,6 @@ def _explain_bug(bug: Exception, language: str) -> int:
 
     if os.environ.get("TINISCRIPT_DEBUG"):
         raise bug
-    what = f"{type(bug).__name__}: {bug}"
+    what = " ".join(f"{type(bug).__name__}: {bug}".split())
     print(text("bug", language).format(what=what[:300]), file=sys.stderr)
     return 2

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from tiniscript.link.outcomes import Event
 
 CONFIRM_S = 6.0  # for which a stop is sent before the person hears that nobody confirms it
+STOP_S = 1.5  # the same for a command that leaves, and that nobody may look at
 SAVE_S = 10.0  # for which a robot may save a program
 LINK_FAULT = 64  # from here on, a fault is none of the program's
 DONE, FAULTY, INTERRUPTED, LOST = 0, 1, 2, 3  # exit codes

@@ -9,6 +9,7 @@ import os
 import sys
 from argparse import Namespace
 from collections.abc import Callable
+from contextlib import suppress
 from time import sleep
 from typing import IO, TYPE_CHECKING
 
@@ -40,7 +41,6 @@ LONG_QUIET_S = 4.5
 PATIENCE_MS = 6000  # for which one that has answered may be silent, or busy with saving
 PSEUDO = ("/dev/pts/", "/dev/ttys")  # pseudo-terminals
 VIRTUAL = ""  # no port: a virtual robot that this command brings along
-STOP_S = 1.5  # for which the run of a guest is stopped by a holder that leaves
 SLOWEST_BAUD, FASTEST_BAUD = 300, 2_000_000
 
 
@@ -79,6 +79,8 @@ class Connection:
         self.is_one_of_many = is_one_of_many
         self.is_interrupted = False
         self.starts_nothing = options.verb not in ("upload", "start", "live")
+        is_detached = getattr(options, "detach", False)
+        self.drives = options.verb in ("upload", "start", "live", "trim") and not is_detached
         baud = baud_of(options, robot, language)
         self.language = language
         self.profile = robot
@@ -101,16 +103,27 @@ class Connection:
     def __enter__(self) -> Connection:
         return self
 
-    def __exit__(self, *_: object) -> None:
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
+        if kind is not None and issubclass(kind, OSError) and self.drives:
+            self._stop_unseen()
         if self.host is not None:
             has_run = self.host.has_run
             self.host.close()
             if has_run:  # of a guest, who can no longer stop it
-                from tiniscript.cli.attending import confirmed
+                from tiniscript.cli.attending import STOP_S, confirmed
 
                 confirmed(self.line, STOP_S)
         self.line.close()
         self._end_company()
+
+    def _stop_unseen(self) -> None:
+        """Stop the robot because nobody reads any more, or can, what it does."""
+        from tiniscript.cli.attending import STOP_S, confirmed
+
+        key = "output_stopped" if confirmed(self.line, STOP_S) else "not_confirmed"
+        with suppress(OSError):
+            said = text(key, self.language).format(port=shown(self.port))
+            print(said, file=sys.stderr, flush=True)
 
     @property
     def is_time_over(self) -> bool:

@@ -129,6 +129,10 @@ def together(options: Namespace, robot: Robot, language: str, work: Work) -> int
                 crew.watch(roll)
         else:
             crew.watch(None)
+    except OSError:  # nobody reads any more, or can, what the robots do
+        crew.interrupt()
+        crew.wait(CONFIRM_S)
+        raise
     finally:
         crew.remember()
     return crew.exit_code()
@@ -180,6 +184,13 @@ class Crew:
             there.sort(key=lambda member: member.mark == "bad")  # what went wrong is seen last
             roll.end(member.row for member in there)
         self._print_sum()
+
+    def wait(self, limit_s: float) -> None:
+        """Wait until it is known of all how it went."""
+        end_s = monotonic() + limit_s
+        while monotonic() < end_s and any(member.result is None for member in self.members):
+            self._news.wait(LOOK_S)
+            self._news.clear()
 
     def interrupt(self) -> None:
         """Have every robot stopped."""

@@ -39,6 +39,8 @@ FLASH_TEXTS: dict[str, tuple[str, str]] = {
                       "tsc: lo que se leyó de la placa no es lo que se escribió. Desconecta lo que esté en los pines 0 y 1 y escríbelo otra vez; si eso no ayuda, la memoria de la placa está gastada."),
     "flash_broken_off": ("tsc: the board on {port} fell silent in the middle, and has half a firmware now. Look at its cable, unplug what is on pins 0 and 1, and do the same again: it can still be written.",
                          "tsc: la placa en {port} calló a la mitad, y ahora tiene medio firmware. Mira su cable, desconecta lo que esté en los pines 0 y 1 y haz lo mismo otra vez: todavía se puede escribir."),
+    "flash_endless": ("tsc: avrdude came to no end on {port} and was stopped; the board may have half a firmware now. Unplug the board, plug it in again, and do the same again: it can still be written. If that happens again, install another avrdude.",
+                      "tsc: avrdude no llegó a un final en {port} y se detuvo; la placa quizá tiene ahora medio firmware. Desconecta la placa, conéctala otra vez y haz lo mismo otra vez: todavía se puede escribir. Si vuelve a pasar, instala otro avrdude."),
     "flash_stopped": ("tsc: stopped in the middle: the board has half a firmware now. Do the same again: it can still be written.",
                       "tsc: detenido a la mitad: la placa ahora tiene medio firmware. Haz lo mismo otra vez: todavía se puede escribir."),
     # it was written

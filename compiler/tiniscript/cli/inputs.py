@@ -7,13 +7,18 @@ from argparse import Namespace
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
+from tiniscript.cli.texts import Said
 from tiniscript.cli.trouble import Trouble
+from tiniscript.printable import printable
 from tiniscript.source import LARGEST_SOURCE, Unreadable, decode
 
 if TYPE_CHECKING:
     from tiniscript import Compiled
     from tiniscript.kit import Kit
     from tiniscript.robots.profile import Robot
+
+
+SHOWN = 200  # characters of a file's name
 
 
 class Input(NamedTuple):
@@ -62,8 +67,7 @@ def program(options: Namespace) -> Input:
 
 def shown(name: str) -> str:
     """Return a file's name as a message can print it."""
-    text = "".join(letter if letter.isprintable() else "?" for letter in name)
-    return text if len(text) <= 200 else text[:200] + "…"
+    return printable(name, SHOWN)
 
 
 def robot(options: Namespace, language: str) -> Robot:
@@ -80,7 +84,7 @@ def robot(options: Namespace, language: str) -> Robot:
         is_none = refused.reasons[0][0].startswith(("file_", "no_such_robot"))
         if len(lines) == 1 and is_none:
             raise Trouble(2, "plain", said=lines[0]) from None
-        reasons = "\n".join("  " + line for line in lines)
+        reasons = Said("\n".join("  " + line for line in lines))
         raise Trouble(2, "profile_refused", file=shown(options.robot), reasons=reasons) from None
 
 

@@ -118,6 +118,8 @@ LINK_TEXTS: dict[str, tuple[str, str]] = {
     # how a program ends
     "robot_done": ("Done.", "Listo."),
     "robot_stopped": ("Stopped: the robot has confirmed it.", "Detenido: el robot lo ha confirmado."),
+    "output_stopped": ("tsc: what tsc prints has nowhere to go any more, so the robot on {port} was stopped: it has confirmed it.",
+                       "tsc: lo que tsc imprime ya no tiene a dónde ir, así que el robot en {port} se detuvo: lo ha confirmado."),
     "not_confirmed": ("tsc: the robot on {port} has not confirmed the stop. If it still moves, press its button or switch it off.",
                       "tsc: el robot en {port} no ha confirmado que se detuvo. Si todavía se mueve, pulsa su botón o apágalo."),
     "stopped_NONE": ("The robot was stopped.", "El robot se detuvo."),

@@ -50,7 +50,7 @@ def run(arguments: list[str], language: str) -> int:
         # whoever opens the port next may reset the robot, and would end its writing
         end_s = monotonic() + KEEP_S
         while monotonic() < end_s:
-            connection.line.event(KEEP_S)
+            connection.event()
         said = {"port": shown(connection.port), "name": shown(name)}
         print(text("named", language).format(**said))
     return 0

@@ -148,6 +148,7 @@ def fault_text(fault: str, offset: int, places: Map | None, is_image: bool, lang
         line = places.line(place.line)
         end = place.end_column - 1 if place.end_line == place.line else len(line)
         shown = line[place.column - 1 : end] if len(line) > 100 else line.strip()
+        shown = shown.replace("\t", " ")
         key = "fault_line_of" if is_image else "fault_line"
         name = inputs.shown(places.name)
         where = text(key, language).format(name=name, line=place.line, shown=shown[:100])

@@ -71,6 +71,7 @@ def print_listing(ready: images.Ready, robot: Robot, name: str, language: str) -
                 line = ready.places.line(place.line)
                 end = place.end_column - 1 if place.end_line == place.line else len(line)
                 shown = line[place.column - 1 : end][:60]
+            shown = shown.replace("\t", " ")
             remark = text("line", language).format(line=place.line, shown=shown)
             remarks[place.offset] = remark
     print(listing(image.code, remarks, robot.kit if image.kit else None), end="")

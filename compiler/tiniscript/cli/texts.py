@@ -5,6 +5,10 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 
+from tiniscript.printable import printable
+
+LONGEST = 2000  # characters of what is put into a sentence
+
 _HELP_EN = """\
 tsc: TiniScript, a language of single lines for robots.
 
@@ -84,8 +88,6 @@ TEXTS: dict[str, tuple[str, str]] = {
     "help": (_HELP_EN, _HELP_ES),
     "did_you_mean": ("Did you mean {near}?", "¿Quisiste decir {near}?"),
     "stopped": ("Stopped.", "Detenido."),
-    "closed_pipe": ("tsc: whoever read the output has gone; the rest was not written.",
-                    "tsc: quien leía la salida ya no está; el resto no se escribió."),
     "bug": ("tsc met something it was not made for. That is our mistake, not yours.\n"
             "Please report it with your program and this line:  {what}\n"
             "(TINISCRIPT_DEBUG=1 shows more.)",
@@ -238,8 +240,28 @@ TEXTS: dict[str, tuple[str, str]] = {
 # fmt: on
 
 
+class Said(str):
+    """A sentence, or what is made of some: all that `format` puts into it can be printed.
+
+    What is put in is a text of others, in which nothing may move the cursor or begin a line; but
+    for another sentence, which stays as it is.
+    """
+
+    __slots__ = ()
+
+    def format(self, *values: object, **named: object) -> Said:
+        plain = {key: _plain(value) for key, value in named.items()}
+        return Said(str.format(self, *map(_plain, values), **plain))
+
+
+def _plain(value: object) -> object:
+    if isinstance(value, str) and not isinstance(value, Said):
+        return printable(value, LONGEST)
+    return value
+
+
 def text(key: str, language: str) -> str:
-    """Return a sentence. Those about robots and ports are read when one is wanted."""
+    """Return a sentence, `Said`. Those about robots and ports are read when one is wanted."""
     found = TEXTS.get(key)
     if found is None:
         from tiniscript.cli.link_texts import LINK_TEXTS
@@ -254,7 +276,7 @@ def text(key: str, language: str) -> str:
 
         found = FLASH_TEXTS[key]
     english, spanish = found
-    return spanish if language == "es" else english
+    return Said(spanish if language == "es" else english)
 
 
 def has_text(key: str) -> bool:

@@ -109,7 +109,7 @@ def _wait_until_kept(connection: Connection) -> None:
     """Whoever opens the port next may reset the robot, and would end its writing."""
     end_s = monotonic() + KEEP_S
     while monotonic() < end_s:
-        connection.line.event(KEEP_S)
+        connection.event()
 
 
 def _print(connection: Connection, key: str, trim: Trim, is_json: bool) -> None:

@@ -147,6 +147,8 @@ class Company:
                     if self._picture is not None:
                         for event in self.robot.take_events():
                             self._picture.take(event)
+                    elif not sys.stderr.isatty():
+                        self.robot.take_events()  # nobody will draw them
                     if self.screen is not None and monotonic() >= self._frame_s:
                         self._frame_s = monotonic() + FRAME_S
                         self._draw(self.screen)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import Options, decimal, whole_number
-from tiniscript.cli.texts import text
+from tiniscript.cli.texts import Said, text
 from tiniscript.cli.trouble import Trouble
 
 if TYPE_CHECKING:
@@ -95,7 +95,8 @@ def _refused(name: str, refused: Exception, language: str) -> Trouble:
     lines = describe(refused, language)
     if len(lines) == 1 and refused.reasons[0][0].startswith(("file_", "no_such_world")):
         return Trouble(2, "plain", said=lines[0])
-    return Trouble(2, "world_refused", file=shown(name), reasons="\n".join("  " + s for s in lines))
+    reasons = Said("\n".join("  " + line for line in lines))
+    return Trouble(2, "world_refused", file=shown(name), reasons=reasons)
 
 
 def hurry_of(options: Namespace, language: str) -> float:

@@ -8,18 +8,24 @@ from __future__ import annotations
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from queue import Empty, SimpleQueue
 from threading import Thread
+from time import monotonic
 from typing import NamedTuple
 
 from tiniscript.flash.bootloaders import Bootloader
 
 # For which it may say nothing: as long as no bootloader has answered, and then.
 NOBODY_S, SILENCE_S = 15.0, 30.0
+WHOLE_S = 300.0  # that it may take: a Mega's 256 KB take 50 s, there and back
+MOST_BYTES = 200_000  # that it may say; it says about 2,000
+LEAVE_S = 5.0  # for which it may go on when it has said all
 LOOK_S = 0.1
 MOST_ATTEMPTS = 2  # of its ten, which take five seconds each
 MARKS = 50  # of a whole bar
@@ -27,8 +33,8 @@ MARKS = 50  # of a whole bar
 WRITING, READING = "writing", "reading"
 # How it may end.
 DONE, NOBODY, OTHER_CHIP, DIFFERS = "done", "nobody", "other_chip", "differs"
-PORT, BROKEN_OFF, FAILED = "port", "broken_off", "failed"
-ENDS = (DONE, NOBODY, OTHER_CHIP, DIFFERS, PORT, BROKEN_OFF, FAILED)
+PORT, BROKEN_OFF, FAILED, ENDLESS = "port", "broken_off", "failed", "endless"
+ENDS = (DONE, NOBODY, OTHER_CHIP, DIFFERS, PORT, BROKEN_OFF, FAILED, ENDLESS)
 
 _BAR = re.compile(r"(Writing|Reading)[^|\n]*\|[ \r]*(#*)")
 _ATTEMPT = re.compile(r"attempt (\d+) of")
@@ -103,22 +109,36 @@ def write(
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
+            start_new_session=sys.platform != "win32",  # so that its children end with it
         )
     except OSError as why:
         return Ended(FAILED, str(why.strerror or why))
     try:
         return _watched(running, look)
     finally:
-        running.kill()
-        running.wait()
+        _kill(running)
+
+
+def _kill(running: subprocess.Popen[bytes]) -> None:
+    """End it and all that it has started: a child would keep the port."""
+    with suppress(OSError):  # it has ended, and nothing is left of it
+        if sys.platform != "win32":
+            os.killpg(running.pid, signal.SIGKILL)
+        elif running.poll() is None:
+            words = ["taskkill", "/F", "/T", "/PID", str(running.pid)]
+            subprocess.run(words, capture_output=True, check=False)
+    running.kill()
+    running.wait()
 
 
 def _watched(running: subprocess.Popen[bytes], look: Callable[[Seen | None], None]) -> Ended:
     assert running.stdout
     heard: SimpleQueue[bytes] = SimpleQueue()
     Thread(target=_listen, args=(running.stdout.fileno(), heard), daemon=True).start()
-    said, silent_s = "", 0.0
+    said, silent_s, end_s = "", 0.0, monotonic() + WHOLE_S
     while True:
+        if monotonic() >= end_s or len(said) > MOST_BYTES:
+            return Ended(ENDLESS)
         try:
             data = heard.get(timeout=LOOK_S)
         except Empty:
@@ -129,7 +149,10 @@ def _watched(running: subprocess.Popen[bytes], look: Callable[[Seen | None], Non
                 return Ended(BROKEN_OFF if has_begun else NOBODY)
             continue
         if not data:
-            return outcome(running.wait(), said)
+            try:
+                return outcome(running.wait(LEAVE_S), said)
+            except subprocess.TimeoutExpired:
+                return Ended(ENDLESS)
         silent_s = 0.0
         said += data.decode(errors="replace")
         look(seen(said))
@@ -139,13 +162,18 @@ def _watched(running: subprocess.Popen[bytes], look: Callable[[Seen | None], Non
 
 
 def _listen(file: int, heard: SimpleQueue[bytes]) -> None:
-    """Pass on what it says, piece by piece; nothing at the end."""
-    while True:
+    """Pass on what it says, piece by piece; nothing at the end.
+
+    Not more than it may say: nobody reads the rest, and it waits until it is killed.
+    """
+    said_bytes = 0
+    while said_bytes <= MOST_BYTES:
         try:
             data = os.read(file, 4096)
         except OSError:
             data = b""
         heard.put(data)
+        said_bytes += len(data)
         if not data:
             return
 

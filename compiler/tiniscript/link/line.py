@@ -6,7 +6,6 @@ what is said, `session` knows, and what a port is, `ports`.
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
 from threading import Condition, Thread
@@ -16,11 +15,10 @@ from typing import IO
 import serial
 
 from tiniscript.link.asking import Asked, Asks
+from tiniscript.link.backlog import Backlog, Told
 from tiniscript.link.errands import Reply, Robot
 from tiniscript.link.outcomes import LOOK_S, Event, Gone
 from tiniscript.link.session import Session
-
-Told = tuple[int, Event]  # when it came (ms), and what
 
 
 def now_ms() -> int:
@@ -46,7 +44,7 @@ class Line:
         self._port = port
         self._lock = lock
         self._news = Condition()
-        self._events: deque[Told] = deque()
+        self._events = Backlog()
         self._under_way: list[Asked] = []
         self._listener: Callable[[list[Told]], None] | None = None
         self._gone: str | None = None
@@ -95,7 +93,7 @@ class Line:
             if not self._events and self._gone is None:
                 self._news.wait(limit_s)
             if self._events:
-                return self._events.popleft()
+                return self._events.take()
             if self._gone is not None:
                 raise self._bug or Gone(self._gone)
         return None
@@ -109,7 +107,7 @@ class Line:
     def tell(self, event: Event) -> None:
         """Add an event of this process to those that `event` returns."""
         with self._news:
-            self._events.append((now_ms(), event))
+            self._events.put([(now_ms(), event)])
             self._news.notify_all()
 
     def fail(self, bug: Exception) -> None:
@@ -201,7 +199,7 @@ class Line:
         if over:
             self._under_way = [task for task in self._under_way if task.outcome is None]
         self.is_echoed = self.is_echoed or any(event.name == "ECHO" for _, event in told)
-        self._events += told
+        self._events.put(told)
         self._news.notify_all()
         if self._listener is not None and (told or over):
             self._listener(told)

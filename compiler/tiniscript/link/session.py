@@ -44,7 +44,7 @@ DEAF_MS = 3000  # a heartbeat without an answer for so long: the link is lost
 STOP_MS = 100  # between two stop sequences
 
 RUNNING = [name for name, _ in STATES].index("RUNNING")
-_STALE = STATUSES["STALE"]
+_STALE, _BUSY = STATUSES["STALE"], STATUSES["BUSY"]
 
 
 class Task:
@@ -63,6 +63,7 @@ class Task:
         self.starts = starts  # a program runs when it is done
         self.is_own = is_own  # nobody has asked for it
         self.done_bytes = 0  # of a program, that have arrived
+        self.is_busy = False  # the robot's last answer was that it is
         self.outcome: Reply | None = None
 
 
@@ -312,6 +313,7 @@ class Session:
         """Go on with the errand: give it the reply, and send its next request."""
         task = self._task
         assert task
+        task.is_busy = reply is not None and reply.status == _BUSY
         try:
             request = next(task.errand) if reply is None else task.errand.send(reply)
         except StopIteration as over:
@@ -424,10 +426,12 @@ class Session:
     # -- endings ----------------------------------------------------------------------------------
 
     def _lose(self) -> None:
-        """Give up: the robot does not answer."""
+        """Give up: the robot does not answer, or is busy."""
         task, self._task, self._frame = self._task, None, None
         assert task
-        task.outcome = Reply(LOST)
+        # one that answers, and is busy for too long, is not lost
+        is_busy = task.is_busy and self._tries <= 1
+        task.outcome = Reply(_BUSY if is_busy else LOST)
         if task.is_own:
             self._close()
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from tiniscript.printable import printable
 from tiniscript.robots.profile import LANGUAGES, ProfileRefused
 
 SHOWN_CHARACTERS = 40
@@ -204,7 +205,7 @@ def describe(
     lang = lang if lang in LANGUAGES else LANGUAGES[0]
     sentences = []
     for code, values in refused.reasons:
-        words = dict(values)
+        words = {key: printable(value) for key, value in values.items()}
         group = {"wrong_type": "type", "pin_cannot": "need"}.get(code)
         if group:
             known = WORDS_FOR[group]
@@ -220,5 +221,4 @@ def shown(value: object) -> str:
     """Return what a file or a person wrote as a sentence can hold it: short and printable."""
     if isinstance(value, int) and value.bit_length() > 100:
         return "…"  # Python itself refuses to write out endless numbers
-    text = "".join(each if each.isprintable() else "?" for each in str(value)[:SHOWN_CHARACTERS])
-    return text + "…" if len(str(value)) > SHOWN_CHARACTERS else text
+    return printable(str(value), SHOWN_CHARACTERS)

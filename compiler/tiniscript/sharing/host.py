@@ -21,7 +21,8 @@ from typing import NamedTuple
 from tiniscript import __version__
 from tiniscript.link.asking import Asked
 from tiniscript.link.errands import OK, Reply
-from tiniscript.link.line import Line, Told
+from tiniscript.link.backlog import Told
+from tiniscript.link.line import Line
 from tiniscript.link.names import same_for_all
 from tiniscript.link.outcomes import Event
 from tiniscript.sharing import holders, notes
