@@ -1,0 +1,169 @@
+"""Whoever reads what tsc prints has gone: one exit code, and no robot that drives unseen."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from tests.classroom import Classroom
+from tests.command import FOREVER, PROGRAM, TSC, Tsc
+from tests.desk import Desk
+from tests.machines.tabletop import missing
+from tiniscript import robots
+from tiniscript.cli import CLOSED, connecting
+from tiniscript.link.messages import STOP_RUN
+
+pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
+
+KIT = robots.load("tinibot").kit
+SHOWS = "SI|LOOP(FOREVER);F(0.1, 80);SHOW(1);END_LOOP"
+
+
+def after_lines(count: int, *words: str, both: bool = False) -> tuple[int, str]:
+    """Read so many lines of a command, close its output; return its exit code and its errors."""
+    err = subprocess.STDOUT if both else subprocess.PIPE
+    with subprocess.Popen([*TSC, *words], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                          stderr=err) as running:  # fmt: skip
+        assert running.stdout
+        for _ in range(count):
+            assert running.stdout.readline()
+        running.stdout.close()
+        said = running.stderr.read().decode() if running.stderr else ""
+        return running.wait(60), said
+
+
+@pytest.mark.parametrize("lines", [0, 1, 3])
+@pytest.mark.parametrize("extra", [[], ["--json"]])
+def test_upload_into_a_pipe_that_closes_stops_the_robot(
+    desk: Desk, lines: int, extra: list[str]
+) -> None:
+    code, said = after_lines(lines, "upload", "-e", SHOWS, "--port", desk.port, *extra)
+    assert code == CLOSED
+    assert said.count("\n") == 1 and "was stopped" in said
+    desk.until(lambda: not desk.moves, "it stands")
+
+
+def test_start_live_and_both_streams(desk: Desk) -> None:
+    assert after_lines(1, "upload", "-e", SHOWS, "--port", desk.port, both=True) == (CLOSED, "")
+    desk.until(lambda: not desk.moves, "it stands")
+    code, said = after_lines(2, "start", "--port", desk.port)
+    assert code == CLOSED and "was stopped" in said
+    code, said = after_lines(1, "live", "LOOP(FOREVER);F(0.1, 80);SHOW(1);END_LOOP",
+                             "--port", desk.port)  # fmt: skip
+    assert code == CLOSED and "was stopped" in said
+    desk.until(lambda: not desk.moves, "it stands")
+
+
+def test_what_goes_on_alone_goes_on(desk: Desk) -> None:
+    code, said = after_lines(0, "upload", "-e", FOREVER, "--detach", "--port", desk.port)
+    assert (code, said) == (CLOSED, "")
+    assert desk.moves
+    code, said = after_lines(0, "info", "--port", desk.port)
+    assert (code, said) == (CLOSED, "")
+    assert desk.moves
+
+
+def test_a_monitor_that_nobody_reads_leaves_and_stops_nothing(desk: Desk) -> None:
+    words = ["upload", "-e", SHOWS, "--detach", "--port", desk.port]
+    assert subprocess.run([*TSC, *words], capture_output=True).returncode == 0
+    code, said = after_lines(2, "monitor", "--port", desk.port)
+    assert code == CLOSED and "stopped" not in said
+    desk.until(lambda: desk.moves, "it drives on")
+
+
+def test_many_robots_are_stopped() -> None:
+    """At once, and not only by themselves a second later."""
+    with Classroom([KIT] * 3) as room:
+        ports = [word for pupil in room.pupils for word in ("--port", pupil.port)]
+        code, _ = after_lines(4, "upload", "-e", SHOWS, *ports)
+        assert code == CLOSED
+        room.until(lambda: not any(pupil.moves for pupil in room.pupils), "all stand")
+        for pupil in room.pupils:
+            assert any(line.startswith("MOTORS") for line in pupil.did)
+            assert bytes(STOP_RUN) in pupil.heard
+
+
+def test_a_full_disk_stops_the_robot_too(desk: Desk) -> None:
+    if not Path("/dev/full").exists():
+        pytest.skip("this system has no full device")
+    with Path("/dev/full").open("wb") as full:
+        done = subprocess.run([*TSC, "upload", "-e", SHOWS, "--port", desk.port],
+                              stdout=full, stderr=subprocess.PIPE, timeout=60)  # fmt: skip
+    assert done.returncode == 2
+    said = done.stderr.decode()
+    assert "was stopped" in said and "cannot be written" in said and "Traceback" not in said
+
+
+@pytest.mark.parametrize(
+    "words",
+    [["explain"], ["ports", "--json"], ["wiring"], ["board", "tinibot"], ["fmt", "-e", PROGRAM],
+     ["check", "-e", "W(1)"], ["show", "-e", PROGRAM], ["--help"], ["upload", "--help"],
+     ["compile", "-e", PROGRAM, "-o", "-"], ["check", "-e", "F(1"], ["complie"]],
+)  # fmt: skip
+def test_every_verb_has_the_same_exit_code(words: list[str]) -> None:
+    """Nothing is read of what it prints, not even what is wrong."""
+    ours, theirs = os.pipe()
+    os.close(ours)
+    try:
+        done = subprocess.run([*TSC, *words], stdin=subprocess.DEVNULL, stdout=theirs,
+                              stderr=theirs, timeout=60)  # fmt: skip
+    finally:
+        os.close(theirs)
+    assert done.returncode == CLOSED
+
+
+# -- a port that vanishes -----------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("words", "asks"), [(["name", "TINI"], 1), (["trim", "--reset"], 2)])
+def test_a_port_that_vanishes_is_no_bug(
+    tsc: Tsc, desk: Desk, monkeypatch: pytest.MonkeyPatch, words: list[str], asks: int
+) -> None:
+    """The cable is pulled while the robot writes down what it was told."""
+    real = connecting.Connection.ask
+    asked = []
+
+    def ask(self: connecting.Connection, make: object) -> object:
+        reply = real(self, make)  # type: ignore[arg-type]
+        asked.append(reply)
+        if len(asked) == asks:
+            desk.pull()
+        return reply
+
+    monkeypatch.setattr(connecting.Connection, "ask", ask)
+    done = tsc(*words, "--port", desk.port)
+    assert done.code == 3
+    assert "has vanished" in done.err
+
+
+def test_a_robot_that_is_busy_for_too_long_is_not_lost(
+    tsc: Tsc, desk: Desk, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whoever waits hears that it saves, and what to do."""
+    from tiniscript.link import session
+    from tiniscript.link.errands import Reply
+
+    real = session.reply_of
+
+    def busy(name: str, payload: bytes) -> Reply | None:
+        reply = real(name, payload)
+        return Reply(session.STATUSES["BUSY"]) if name in ("PROGRAM", "START") else reply
+
+    monkeypatch.setattr(session, "reply_of", busy)
+    monkeypatch.setattr(connecting, "PATIENCE_MS", 600)
+    for language, said in (("en", "still saving"), ("es", "está guardando")):
+        for words in (["upload", "-e", PROGRAM], ["start"]):
+            done = tsc(*words, "--port", desk.port, "--lang", language)
+            assert done.code == 3
+            assert said in done.err and "lost" not in done.err and "perdió" not in done.err
+
+
+def test_json_stays_json_until_the_end(desk: Desk) -> None:
+    done = subprocess.run([*TSC, "upload", "-e", "SI|SHOW(1)", "--json", "--port", desk.port],
+                          capture_output=True, timeout=60)  # fmt: skip
+    assert [json.loads(line)["event"] for line in done.stdout.splitlines()][0] == "RECEIPT"

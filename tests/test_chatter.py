@@ -1,0 +1,93 @@
+"""A device that chatters for ever, while nobody looks, costs no more than one that does not."""
+
+from __future__ import annotations
+
+import threading
+import tracemalloc
+
+from tiniscript.link.backlog import KEPT, Backlog
+from tiniscript.link.line import Line
+from tiniscript.link.outcomes import Event
+from tiniscript.link.session import Session
+
+CHATTER = b"debug: the battery has 7.4 V and all is well\r\n" * 20
+PIECES = 2000  # of it, 1.8 MB: three minutes at 115200 baud
+MOST_BYTES = 500_000  # that what is kept of that may take
+
+
+class Chatterbox:
+    """A port at which something talks, as fast as it is heard, and ends."""
+
+    def __init__(self) -> None:
+        self.pieces = PIECES
+        self.is_over = threading.Event()
+
+    @property
+    def in_waiting(self) -> int:
+        return len(CHATTER) - 1
+
+    def read(self, count: int) -> bytes:
+        if count == 1:
+            self.pieces -= 1
+            if self.pieces < 0:
+                self.is_over.set()
+                self.is_over.wait(0.01)
+                return b""
+            return CHATTER[:1]
+        return CHATTER[1:]
+
+    def write(self, data: bytes) -> int:
+        return len(data)
+
+    def close(self) -> None:
+        pass
+
+
+def test_a_line_that_nobody_looks_at_keeps_little() -> None:
+    """So it is at the prompt of `tsc live`, and where `tsc monitor` writes into a full pipe."""
+    port = Chatterbox()
+    tracemalloc.start()
+    try:
+        line = Line(port, Session(1))
+        assert port.is_over.wait(120)
+        kept_bytes, _ = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    found = []
+    while (told := line.event(0.5)) is not None:
+        found.append(told[1])
+    line.close()
+    assert kept_bytes < MOST_BYTES
+    assert len(found) <= KEPT + 1
+    assert found[0].name == "MISSED"
+    missed = found[0].values["count"]
+    assert isinstance(missed, int) and missed + len(found) - 1 == 20 * PIECES
+
+
+def told(name: str, number: int = 0) -> tuple[int, Event]:
+    return number, Event(name, {"value": number})
+
+
+def test_what_the_robot_does_is_kept_before_what_it_shows() -> None:
+    backlog = Backlog()
+    backlog.put([told("STARTED"), told("SHOW", 0)])
+    backlog.put(told("SHOW", number) for number in range(1, 10 * KEPT))
+    backlog.put([told("FAULT")])
+    found = [backlog.take()[1] for _ in range(len(backlog))]
+    assert [each.name for each in found[:3]] == ["MISSED", "STARTED", "SHOW"]
+    assert found[-1].name == "FAULT" and len(found) == KEPT + 1
+    assert found[-2].values["value"] == 10 * KEPT - 1, "the newest is there"
+    assert found[0].values["count"] == 10 * KEPT + 2 - KEPT
+    assert len(backlog) == 0
+
+
+def test_what_has_room_is_not_missed() -> None:
+    backlog = Backlog()
+    backlog.put(told("SHOW", number) for number in range(KEPT))
+    assert [backlog.take()[0] for _ in range(KEPT)] == list(range(KEPT))
+
+
+def test_a_robot_that_only_tells_how_programs_end_is_bounded_too() -> None:
+    backlog = Backlog()
+    backlog.put(told("DONE", number) for number in range(5 * KEPT))
+    assert len(backlog) == KEPT + 1

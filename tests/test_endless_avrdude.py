@@ -1,0 +1,87 @@
+"""An avrdude that comes to no end: it is ended, with all that it has started."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from time import sleep as sleep_s
+
+import pytest
+
+from tiniscript.cli.flash_texts import FLASH_TEXTS
+from tiniscript.flash import avrdude
+from tiniscript.flash.avrdude import Ended, Seen
+from tiniscript.flash.bootloaders import UNO
+
+WRITES = "import sys\nwhile True: sys.stdout.write({said!r}); sys.stdout.flush()\n"
+HALF = "Reading | ### |\\nWriting | " + "#" * 25
+
+
+def ended(folder: Path, body: str) -> tuple[Ended, list[Seen | None]]:
+    """Let this avrdude write a firmware; return how it ended and what was seen of it."""
+    program = folder / "avrdude.py"
+    program.write_text(body, encoding="utf-8")
+    found: list[Seen | None] = []
+    return avrdude.write([sys.executable, str(program)], UNO, "x", folder, found.append), found
+
+
+@pytest.mark.parametrize("said", ["avrdude: warning\n", "x" * 4096, "\x1b[31m", "é", "\n", "#"])
+def test_one_that_writes_for_ever(tmp_path: Path, said: str) -> None:
+    assert ended(tmp_path, WRITES.format(said=said))[0].how == avrdude.ENDLESS
+
+
+def test_its_progress_is_kept_until_then(tmp_path: Path) -> None:
+    body = f'print("{HALF}", flush=True)\n' + WRITES.format(said=" waiting\n")
+    how, found = ended(tmp_path, body)
+    assert how.how == avrdude.ENDLESS
+    assert Seen(avrdude.WRITING, 50) in found
+
+
+def test_one_that_says_a_little_for_ever(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is never silent, and its time is over all the same."""
+    now_s = [0.0]
+
+    def monotonic() -> float:
+        now_s[0] += 10
+        return now_s[0]
+
+    monkeypatch.setattr(avrdude, "monotonic", monotonic)
+    body = 'import time\nwhile True: print(".", flush=True); time.sleep(0.02)\n'
+    assert ended(tmp_path, body)[0].how == avrdude.ENDLESS
+    assert now_s[0] <= avrdude.WHOLE_S + 20
+
+
+def test_one_that_has_said_all_and_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(avrdude, "LEAVE_S", 0.1)
+    body = "import os, time\nos.close(1); os.close(2); time.sleep(600)\n"
+    assert ended(tmp_path, body)[0].how == avrdude.ENDLESS
+
+
+@pytest.mark.skipif(not Path("/proc/self").exists(), reason="looks at processes as Linux has them")
+@pytest.mark.parametrize("rest", [WRITES.format(said="x"), "sys.exit(1)"])
+def test_its_children_end_with_it(tmp_path: Path, rest: str) -> None:
+    note = tmp_path / "child"
+    sleep = f"[{sys.executable!r}, '-c', 'import time; time.sleep(600)']"
+    body = (
+        f"import subprocess, sys\nchild = subprocess.Popen({sleep}, stdout=subprocess.DEVNULL,"
+        f" stderr=subprocess.DEVNULL)\nopen({str(note)!r}, 'w').write(str(child.pid))\n{rest}\n"
+    )
+    ended(tmp_path, body)
+    child = Path(f"/proc/{note.read_text()}/stat")
+    for _ in range(1000):  # it is killed, and the system takes it away when it has time
+        if state_of(child) in ("gone", "Z"):
+            return
+        sleep_s(0.02)
+    raise AssertionError("it goes on")
+
+
+def state_of(process: Path) -> str:
+    try:
+        return process.read_text().rpartition(")")[2].split()[0]
+    except (FileNotFoundError, ProcessLookupError):
+        return "gone"
+
+
+def test_the_sentence_says_what_to_do() -> None:
+    for said in FLASH_TEXTS["flash_endless"]:
+        assert "avrdude" in said and "{port}" in said
