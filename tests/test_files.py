@@ -11,6 +11,7 @@ import subprocess
 import sys
 from pathlib import Path
 from time import time
+from typing import IO
 
 import pytest
 
@@ -267,7 +268,7 @@ def test_a_lock_that_was_removed_in_between_locks_nothing(monkeypatch: pytest.Mo
     first = holders.claimed("socket://x:1")
     assert first is not None
     real = holders._lock
-    others = []
+    others: list[IO[bytes] | None] = []
 
     def lock(file: holders._Lock) -> bool:
         if not others:

@@ -113,11 +113,11 @@ def test_a_line_of_a_program_is_shown_plainly_where_it_faults(tsc: Tsc, tmp_path
     program = tmp_path / "a.ts"
     program.write_text("X = 1/(TIME - TIME)  // \x1b[31m\u202e\x9b\tred", encoding="utf-8")
     assert tsc("compile", program).code == 0
-    for words in (["run", program], ["run", program.with_suffix(".bin")],
-                  ["show", program.with_suffix(".bin")], ["check", program]):  # fmt: skip
-        done = tsc(*words)
+    image = program.with_suffix(".bin")
+    for verb, file in (("run", program), ("run", image), ("show", image), ("check", program)):
+        done = tsc(verb, file)
         assert_plain(done.out, done.err)
-        assert words[0] == "check" or "TIME" in done.out + done.err
+        assert verb == "check" or "TIME" in done.out + done.err
 
 
 def test_a_bug_is_told_in_plain_text(tsc: Tsc, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:  # fmt: skip # noqa: E501

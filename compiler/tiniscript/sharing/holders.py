@@ -92,7 +92,7 @@ def tidy() -> None:
     """
     folder = _folder()
     with suppress(OSError):
-        names = os.listdir(folder)
+        names = [path.name for path in folder.iterdir()]
         files.remove_abandoned(folder, names, (".json", ".lock"))
         for name in names:
             if name.startswith(f"{_computer()}-") and name.endswith(".json"):

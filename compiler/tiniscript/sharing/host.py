@@ -20,8 +20,8 @@ from typing import NamedTuple
 
 from tiniscript import __version__
 from tiniscript.link.asking import Asked
-from tiniscript.link.errands import OK, Reply
 from tiniscript.link.backlog import Told
+from tiniscript.link.errands import OK, Reply
 from tiniscript.link.line import Line
 from tiniscript.link.names import same_for_all
 from tiniscript.link.outcomes import Event

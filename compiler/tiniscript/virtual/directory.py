@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import contextlib
 import json
-import os
 from pathlib import Path
 from typing import NamedTuple
 
@@ -39,7 +38,7 @@ def announce(running: Running) -> Path | None:
     path = _folder() / f"{port}.json"
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        files.remove_abandoned(path.parent, os.listdir(path.parent))
+        files.remove_abandoned(path.parent, [each.name for each in path.parent.iterdir()])
         files.replace(path, json.dumps(running._asdict()).encode())
     except (OSError, ValueError):
         return None
