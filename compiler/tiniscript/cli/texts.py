@@ -43,7 +43,8 @@ Without one:
 
 A program is a file, - (standard input) or -e 'SI|F(2, 80)'.
 tsc VERB --help says more about a verb; --lang en or --lang es chooses the language.
-Exit codes: 0 done, 1 the program is wrong, 2 wrong use of tsc, 3 the robot or the link.
+Exit codes: 0 done, 1 the program is wrong, 2 wrong use of tsc, 3 the robot or the link; 141 where
+whoever read the output has gone, which stops the robot that the command drives.
 """
 _HELP_ES = """\
 tsc: TiniScript, un lenguaje de una sola línea para robots.
@@ -79,7 +80,8 @@ Sin robot:
 
 Un programa es un archivo, - (entrada estándar) o -e 'SI|F(2, 80)'.
 tsc VERBO --help dice más de un verbo; --lang en o --lang es elige el idioma.
-Códigos de salida: 0 listo, 1 el programa está mal, 2 mal uso de tsc, 3 el robot o la conexión.
+Códigos de salida: 0 listo, 1 el programa está mal, 2 mal uso de tsc, 3 el robot o la conexión; 141
+si quien leía la salida ya no está, y eso detiene el robot que el comando mueve.
 """
 
 # fmt: off

@@ -121,16 +121,9 @@ def end_ms(options: Namespace, language: str) -> int | None:
 
 
 def check_picture(options: Namespace) -> None:
-    """Say at the beginning what would go wrong with the picture at the end."""
+    """Say at the beginning that no picture can be drawn; `paths` has looked at its place."""
     if options.plot is None:
         return
-    path = Path(options.plot)
-    try:
-        is_folder, has_folder = path.is_dir(), path.absolute().parent.is_dir()
-    except (OSError, ValueError):
-        is_folder, has_folder = False, False
-    if not options.plot or is_folder or not has_folder:
-        raise Trouble(2, "bad_plot", found=shown(options.plot) or "''")
     try:
         import PIL.Image  # noqa: F401
     except ImportError as why:

@@ -14,8 +14,6 @@ VIRTUAL_TEXTS: dict[str, tuple[str, str]] = {
                           "Install it:  pip install \"tiniscript[virtual]\"",
                           "tsc: --plot necesita Pillow, que aquí no se puede usar: {why}.\n"
                           "Instálalo:  pip install \"tiniscript[virtual]\""),
-    "bad_plot": ("tsc: --plot takes a file in a folder that is there, such as way.png, not {found}.",
-                 "tsc: --plot acepta un archivo en una carpeta que existe, como camino.png, no {found}."),
     "bad_hurry": ("tsc: --hurry takes how many times as fast the robot is, such as 10, or max; not {found}.",
                   "tsc: --hurry acepta cuántas veces más rápido va el robot, como 10, o max; no {found}."),
     "bad_motors": ("tsc: --motors takes two numbers, left and right, such as 100,90; not {found}.",
