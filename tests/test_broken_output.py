@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import subprocess
+from argparse import Namespace
 from pathlib import Path
 
 import pytest
@@ -14,7 +15,7 @@ from tests.command import FOREVER, PROGRAM, TSC, Tsc
 from tests.desk import Desk
 from tests.machines.tabletop import missing
 from tiniscript import robots
-from tiniscript.cli import CLOSED, connecting
+from tiniscript.cli import CLOSED, connecting, crew
 from tiniscript.link.messages import STOP_RUN
 
 pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
@@ -86,6 +87,29 @@ def test_many_robots_are_stopped() -> None:
         for pupil in room.pupils:
             assert any(line.startswith("MOTORS") for line in pupil.did)
             assert bytes(STOP_RUN) in pupil.heard
+
+
+@pytest.mark.parametrize(("verb", "is_detached", "is_stopped"), [
+    ("upload", False, True), ("upload", True, False), ("info", False, False),
+    ("ping", False, False),
+])  # fmt: skip
+def test_only_robots_that_a_command_drives_are_stopped(
+    monkeypatch: pytest.MonkeyPatch, verb: str, is_detached: bool, is_stopped: bool
+) -> None:
+    """`tsc info --all | head` leaves running robots alone."""
+    stopped: list[str] = []
+
+    def broken(self: crew.Crew, roll: object) -> None:
+        raise BrokenPipeError
+
+    monkeypatch.setattr(crew.Crew, "begin", lambda self, work: None)
+    monkeypatch.setattr(crew.Crew, "watch", broken)
+    monkeypatch.setattr(crew.Crew, "interrupt", lambda self: stopped.append(verb))
+    monkeypatch.setattr(crew, "CONFIRM_S", 0.0)
+    options = Namespace(verb=verb, detach=is_detached, json=True, ports=["/x", "/y"], all=False)
+    with pytest.raises(BrokenPipeError):
+        crew.together(options, robots.load("tinibot"), "en", lambda *_: pytest.fail("begun"))
+    assert bool(stopped) == is_stopped
 
 
 def test_a_full_disk_stops_the_robot_too(desk: Desk) -> None:

@@ -130,8 +130,9 @@ def together(options: Namespace, robot: Robot, language: str, work: Work) -> int
         else:
             crew.watch(None)
     except OSError:  # nobody reads any more, or can, what the robots do
-        crew.interrupt()
-        crew.wait(CONFIRM_S)
+        if options.verb == "upload" and not options.detach:
+            crew.interrupt()
+            crew.wait(CONFIRM_S)
         raise
     finally:
         crew.remember()
