@@ -49,8 +49,7 @@ ROOMS = {
     "run": TABLES | {"task", "vm"},
     "wasm_machine": TABLES | {"task", "image", "verify"},
     "messages": TABLES,
-    "cache_file": set(),
-    "maps": {"image", "cache_file", "files"},
+    "maps": {"image", "files"},
 }
 
 

@@ -66,6 +66,23 @@ def remove_abandoned(folder: Path, names: list[str], kept: tuple[str, ...] = (".
                     (folder / name).unlink()
 
 
+def contents(path: Path, limit_bytes: int) -> bytes:
+    """Return the bytes of a file that anything may lie at: this ends soon, whatever it is.
+
+    A pipe would be waited for, and a device or a huge file would fill the memory. Raises OSError
+    where there is no regular file, or more than so many bytes.
+    """
+    flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
+    number = os.open(path, flags)
+    with os.fdopen(number, "rb") as file:
+        if not stat.S_ISREG(os.fstat(number).st_mode):
+            raise OSError("no file")
+        data = file.read(limit_bytes + 1)
+    if len(data) > limit_bytes:
+        raise OSError("too large")
+    return data
+
+
 def _found(path: Path) -> os.stat_result | None:
     """Return what is at a path, behind a link; None where nothing is."""
     try:

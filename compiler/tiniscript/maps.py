@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from tiniscript import files
 from tiniscript import image as images
-from tiniscript.cache_file import contents
+from tiniscript.files import contents
 
 if TYPE_CHECKING:
     from tiniscript import Compiled

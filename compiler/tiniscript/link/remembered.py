@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tiniscript import files
-from tiniscript.cache_file import contents
+from tiniscript.files import contents
 
 FILE_BYTES = 1_000_000
 KEPT = 100  # ports; the oldest go first

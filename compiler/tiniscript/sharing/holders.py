@@ -19,7 +19,7 @@ from typing import IO, NamedTuple
 from zlib import crc32
 
 from tiniscript import files
-from tiniscript.cache_file import contents
+from tiniscript.files import contents
 from tiniscript.link.names import same_for_all
 
 FILE_BYTES = 4096

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tiniscript import files
-from tiniscript.cache_file import contents
+from tiniscript.files import contents
 from tiniscript.sharing.holders import is_taken
 from tiniscript.virtual.guests import LOCAL
 
