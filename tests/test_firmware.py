@@ -163,7 +163,7 @@ def test_two_echoes_have_their_vectors_once() -> None:
 def test_board_writes_the_header(tsc: Tsc, tmp_path: Path) -> None:
     target = tmp_path / "own.h"
     done = tsc("board", "liner", "-o", target)
-    assert done.code == 0 and "pio run -e nano" in done.out
+    assert done.code == 0 and "pio run -d vm_arduino -e nano" in done.out
     header = target.read_text(encoding="utf-8")
     assert header == tsc("board", "liner").out == tsc("board", "liner", "-o", "-").out
     assert header == firmware.header([robots.load("liner")], "tsc board, from a robot profile.")

@@ -50,6 +50,7 @@ ROOMS = {
     "wasm_machine": TABLES | {"task", "image", "verify"},
     "messages": TABLES,
     "maps": {"image", "files"},
+    "other_kits": TABLES | {"tokens"},
 }
 
 

@@ -36,6 +36,7 @@ WITHOUT_EXAMPLE: dict[str, Mapping[str, str]] = {
     "TS001": {},
     "TS002": {},
     "TS003": {},
+    "TS119": {**dict.fromkeys(("first", "second", "third"), "LINER"), "own": "A", "found": "B"},
     "TS306": {"limit": "32767", "over": "100"},
     "TS307": BOARD,
     "TS809": BOARD,

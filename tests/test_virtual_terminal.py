@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 import re
+import signal
 import struct
 import subprocess
 import sys
@@ -74,6 +75,10 @@ class Terminal:
 
     def type(self, keys: str) -> None:
         os.write(self._ours, keys.encode())
+
+    def interrupt(self) -> None:
+        """Do what Ctrl-C does on the terminal of a shell."""
+        self._process.send_signal(signal.SIGINT)
 
     def end(self) -> int:
         while self._take():
@@ -146,3 +151,58 @@ def test_without_a_robot_the_virtual_one_is_offered(is_wanted: bool) -> None:
     assert terminal.end() == (0 if is_wanted else 3)
     drawn = "\n".join(terminal.lines())
     assert ("The virtual robot drove" in drawn) == is_wanted
+
+
+def test_the_button_of_a_program_that_waits_is_a_key() -> None:
+    terminal = Terminal("upload", "-e", "SB|F(30, 80)", "--virtual", "--lang", "es")
+    terminal.until(r"s +su botón lo inicia")
+    terminal.until("b: botón de inicio +q: terminar")
+    terminal.type("b")
+    terminal.until(r"motor izq\. +80 %")
+    terminal.type("b")
+    terminal.until(r"s +detenido")
+    terminal.until("El robot se detuvo con su botón")
+    terminal.type("b")  # and again
+    terminal.until(r"motor izq\. +80 %")
+    terminal.type("q")
+    assert terminal.end() == 0
+    drawn = "\n".join(terminal.lines())
+    assert re.search(r"motor izq\. +0 %", drawn)
+    assert re.search(r"s +apagado", drawn)
+    assert "b: botón" not in drawn  # the key does nothing any more
+
+
+def test_a_program_that_waits_ends_when_it_has_ended_or_its_time_is_over() -> None:
+    terminal = Terminal("upload", "-e", "SB|F(0.2, 80)", "--virtual")
+    terminal.until("q: end")
+    terminal.type("xb")
+    assert terminal.end() == 0
+    assert "Done." in "\n".join(terminal.lines())
+    terminal = Terminal("upload", "-e", "SB|F(0.2, 80)", "--virtual", "--for", "1")
+    assert terminal.end() == 0  # nobody has pushed it
+    assert "The virtual robot drove 0 cm in 0.0 s" in "\n".join(terminal.lines())
+
+
+def test_after_ctrl_c_the_motors_are_off_in_the_picture_too() -> None:
+    terminal = Terminal("upload", "-e", "SI|F(30, 80)", "--virtual")
+    terminal.until(r"left motor +80 %")
+    terminal.interrupt()
+    assert terminal.end() == 2
+    drawn = "\n".join(terminal.lines())
+    assert re.search(r"left motor +0 %", drawn)
+    assert re.search(r"s +stopped", drawn)
+    assert "80 %" not in drawn
+
+
+def test_the_prompt_shows_what_a_person_shows_and_nothing_else() -> None:
+    terminal = Terminal("live", "--virtual")
+    terminal.until("tini>")
+    terminal.type("X = 5; SHOW(7)\n")
+    terminal.until("SHOW +7")
+    terminal.until(r"tini>\s*$")
+    terminal.type("help\n")
+    terminal.until("The robot has LIGHT_R, LIGHT_L, DISTANCE")
+    terminal.type("quit\n")
+    assert terminal.end() == 0
+    assert b"2147483" not in terminal.written
+    assert b"before" not in terminal.written

@@ -123,6 +123,19 @@ def test_the_world_of_the_documents_is_one(name: str) -> None:
         (RIGHT + "[[walls", "Line 7 is not TOML."),
         (RIGHT + "a = " + "[" * 5000, "is not TOML"),
         (RIGHT + "[labels]\nen = '\t'\n", "labels.en is empty or cannot be printed."),
+        (
+            RIGHT.replace("y_cm = 50", "y_cm = 200.5"),
+            "Line 6: the robot starts outside the floor. start.y_cm is 200.5; write a number"
+            " from 0 to 100.",
+        ),
+        (
+            RIGHT.replace("x_cm = 50", " x_cm=-0.5 # left"),
+            "Line 5: the robot starts outside the floor. start.x_cm is -0.5;",
+        ),
+        (
+            "start = {x_cm = 300, y_cm = 1}\n[floor]\nwidth_cm = 9\nheight_cm = 9",
+            "Line 1: the robot starts outside the floor. start.x_cm is 300;",
+        ),
     ],
 )
 def test_what_is_wrong_in_a_world_is_said_with_its_place(text: str, said: str) -> None:

@@ -21,5 +21,7 @@ if [ -t 1 ] && [ -t 2 ] && [ -z "${CI:-}" ]; then
 else
     tsc upload examples/obstacle.ts --virtual --for 30 --hurry 20 --plot way.png
 fi
+say "The warning above: for a second at a time this robot drives without looking. In the room of the
+virtual robot that is soon enough; examples/obstacle_until.ts looks 50 times a second."
 say "Its way is drawn in way.png, in this folder."
 say "Now yours:  . .venv/bin/activate   and   tsc upload -e 'SI|F(2, 80)' --virtual"

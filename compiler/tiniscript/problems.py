@@ -113,6 +113,7 @@ BREAK_OUTSIDE = _mistake("TS115")
 VARIABLE_ALONE = _mistake("TS116")
 ACTUATOR_ALONE = _mistake("TS117")
 NOT_CALLABLE = _mistake("TS118")
+OTHER_ROBOT = _mistake("TS119")
 # values
 WANTS_NUMBER = _mistake("TS201")
 WANTS_CONDITION = _mistake("TS202")

@@ -97,7 +97,12 @@ def _verb(arguments: list[str], language: str) -> int:
     from tiniscript.cli.trouble import Trouble
 
     words = [word for word in arguments if not word.startswith("-")]
-    if not arguments or arguments[0] in ("-h", "--help", "help"):
+    if arguments and arguments[0] in ("help", "ayuda"):
+        from tiniscript.cli.verbless import asked_about
+
+        verb = asked_about(arguments[1:])
+        arguments = [verb, "--help"] if verb else []
+    if not arguments or arguments[0] in ("-h", "--help"):
         print(text("help", language), end="")
         return 0
     if arguments[0] in ("-V", "--version"):
@@ -115,8 +120,10 @@ def _verb(arguments: list[str], language: str) -> int:
             rest = arguments[skip:]
             return _verb([*rest, *arguments[:skip]] if rest else [], language)
         if name not in VERBS:
+            from tiniscript.cli.verbless import refuse_program
             from tiniscript.words import nearest
 
+            refuse_program(name)
             near = nearest(name, list(VERBS)) or ""
             raise Trouble(2, "no_verb", found=name, near=near, example=words[0] if words else "")
         from importlib import import_module

@@ -41,7 +41,7 @@ class Attendant:
         while True:
             found = self.connection.event()
             if self.connection.is_time_over:
-                return self._stop_in_time()
+                return self.stop_in_time()
             if found is None:
                 continue
             time_ms, event = found
@@ -55,12 +55,12 @@ class Attendant:
                 continue
             if self.hold is None or not self.hold(event):
                 self.teller.tell(time_ms, event)
-            code = _end(event, run)
+            code = ended(event, run)
             if code is not None:
                 return code
 
-    def _stop_in_time(self) -> int:
-        """Stop a virtual robot whose time is over."""
+    def stop_in_time(self) -> int:
+        """Stop a virtual robot whose time is over: it stands already, its firmware goes on."""
         if not confirmed(self.connection.line):
             raise Trouble(3, "not_confirmed", port=shown(self.connection.port))
         language = self.connection.language
@@ -75,12 +75,12 @@ class Attendant:
             return stop_and_say(self.connection)
 
 
-def _end(event: Event, run: int) -> int | None:
-    """Return the exit code where an event ends a run, else None."""
+def ended(event: Event, run: int | None) -> int | None:
+    """Return the exit code where an event ends a run, else None. A `run` of None is any."""
     name, values = event
-    if name == "DONE" and values["run"] == run:
+    if name == "DONE" and run in (None, values["run"]):
         return DONE
-    if name == "FAULT" and values["run"] == run:
+    if name == "FAULT" and run in (None, values["run"]):
         fault = values["fault"]
         assert isinstance(fault, int)
         return LOST if fault >= LINK_FAULT else FAULTY
@@ -97,10 +97,11 @@ def _end(event: Event, run: int) -> int | None:
 
 def stop_and_say(connection: Connection) -> int:
     """Stop the robot after Ctrl-C, and say whether it has confirmed; return the exit code."""
+    is_confirmed = confirmed(connection.line)
     if connection.company is not None:
-        connection.company.unwatch()
+        connection.company.unwatch()  # now that the robot stands in the picture, too
     print(file=sys.stderr)  # the terminal has written ^C
-    if confirmed(connection.line):
+    if is_confirmed:
         print(text("robot_stopped", connection.language), file=sys.stderr)
         return INTERRUPTED
     raise Trouble(3, "not_confirmed", port=shown(connection.port))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os.path
 import sys
 from pathlib import Path
 
@@ -9,6 +10,8 @@ from tiniscript.cli import inputs, outputs
 from tiniscript.cli.options import Options
 from tiniscript.cli.texts import text
 from tiniscript.cli.trouble import Trouble
+
+SKETCH, HOME = Path("vm_arduino"), Path("src/boards/kits/own.h")  # and the place in it
 
 HELP = (
     """\
@@ -47,7 +50,34 @@ def run(arguments: list[str], language: str) -> int:
         sys.stdout.write(header)
         return 0
     outputs.write(Path(options.output), header.encode(), "unwritable")
+    now = _next(options.robot, Path(options.output), robot.board.chip, language)
     print(text("board", language).format(
-        file=inputs.shown(options.output), robot=robot.name, chip=robot.board.chip
+        file=inputs.shown(options.output), robot=robot.name, chip=robot.board.chip, now=now
     ))  # fmt: skip
     return 0
+
+
+def _next(robot: str, output: Path, chip: str, language: str) -> str:
+    """Return what to do with a header: the build finds it in one place alone."""
+    path = output.absolute()
+    folder = path.parents[3] if len(path.parents) > 3 else path.parent
+    if path == folder / HOME and (folder / "platformio.ini").is_file():
+        build = f"pio run -d {_name(_from_here(folder))} -e {chip}"
+        return text("board_here", language).format(build=build)
+    build = f"pio run -d {SKETCH} -e {chip}"
+    return text("board_elsewhere", language).format(
+        robot=_name(Path(robot)), home=(SKETCH / HOME).as_posix(), build=build
+    )
+
+
+def _from_here(folder: Path) -> Path:
+    try:
+        return Path(os.path.relpath(folder))
+    except ValueError:  # Windows: it is on another drive
+        return folder
+
+
+def _name(path: Path) -> str:
+    """Return a path as it can be copied into a command."""
+    found = inputs.shown(str(path))
+    return f'"{found}"' if " " in found else found

@@ -16,6 +16,7 @@ from typing import IO, TYPE_CHECKING
 from tiniscript.cli import inputs, joining
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import Options, whole_number
+from tiniscript.cli.own_kit import remember as remember_profile
 from tiniscript.cli.texts import text
 from tiniscript.cli.trouble import Trouble
 
@@ -77,6 +78,7 @@ class Connection:
         `is_one_of_many`: whoever looks after all of them remembers the ports.
         """
         self.is_one_of_many = is_one_of_many
+        self.options = options
         self.is_interrupted = False
         self.starts_nothing = options.verb not in ("upload", "start", "live")
         is_detached = getattr(options, "detach", False)
@@ -157,23 +159,14 @@ class Connection:
         card = self.line.robot
         if reply.status or card is None:
             raise self.trouble(reply)
+        remember_profile(self.options, self.profile, card.kit)
         if not self.is_one_of_many:
             self.remember(card.name)
         return card
 
     def remember(self, name: str) -> None:
         """Keep the port for the next time, and what the robot on it is called."""
-        from tiniscript.link import remembered
-        from tiniscript.link.names import is_address
-
-        if self.company is not None:
-            return  # it has no next time
-        if is_address(self.port) or self.port.startswith(PSEUDO):
-            from tiniscript.virtual import directory
-
-            if directory.is_virtual(self.port):
-                return
-        remembered.remember(self.port, name)
+        remember(self.port, name)
 
     @property
     def card(self) -> Card:
@@ -346,6 +339,19 @@ def hello(line: Way, limit_ms: int) -> Asked:
     return line.do(make)
 
 
+def remember(port: str, name: str, is_used: bool = True) -> None:
+    """Keep a port and what the robot on it is called. A virtual robot has no next time."""
+    from tiniscript.link import remembered
+    from tiniscript.link.names import is_address
+
+    if is_address(port) or port.startswith(PSEUDO):
+        from tiniscript.virtual import directory
+
+        if directory.is_virtual(port):
+            return
+    remembered.remember(port, name, is_used)
+
+
 def robot_of_kit(kit: int) -> str | None:
     from tiniscript.cli.images import robot_of_kit as found
 
@@ -377,14 +383,14 @@ def _chosen(options: Namespace, language: str) -> str:
     from tiniscript.link import names, remembered
 
     last = remembered.known().last
-    if last is not None and names.is_there(last):
-        return last
     from tiniscript.virtual import directory
 
-    virtual = directory.running()
+    if last is not None and names.is_there(last) and not directory.is_gone(last):
+        return last
+    virtual = directory.for_all() if can_bring else directory.running()
     if len(virtual) == 1:
         return virtual[0].address
-    if not (sys.stdin.isatty() and sys.stderr.isatty()):
+    if not (sys.stdin.isatty() and sys.stderr.isatty()) or getattr(options, "asks_nothing", False):
         if last is not None:
             raise Trouble(3, "last_port_missing", port=shown(last))
         raise Trouble(3, "which_port_or_virtual" if can_bring else "which_port")
@@ -395,11 +401,13 @@ def _asked(language: str, can_bring: bool) -> str:
     """Let the person choose a port."""
     from tiniscript.link import ports, remembered
     from tiniscript.link.names import is_address
+    from tiniscript.virtual.directory import is_gone
 
     names = remembered.known().names
     found = ports.listed()
     choices = [each.port for each in found]
-    choices += [port for port in names if port not in choices and is_address(port)]
+    choices += [port for port in names if port not in choices and is_address(port)
+                and not is_gone(port)]  # fmt: skip
     if not choices:
         if can_bring:
             from tiniscript.cli.virtual_company import offered

@@ -16,7 +16,7 @@ from time import monotonic
 from typing import TYPE_CHECKING, NamedTuple
 
 from tiniscript.cli.attending import CONFIRM_S, confirmed
-from tiniscript.cli.connecting import Connection
+from tiniscript.cli.connecting import Connection, remember
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.roster import Post, posts
 from tiniscript.cli.texts import text
@@ -202,13 +202,11 @@ class Crew:
 
     def remember(self) -> None:
         """Keep the names of all that have answered, for the next time."""
-        from tiniscript.link import remembered
-
         for member in self.members:
             connection = member.connection
             if connection is not None and connection.line.robot is not None:
                 name = connection.card.name
-                remembered.remember(member.post.port, name, is_used=False)
+                remember(member.post.port, name, is_used=False)
 
     def exit_code(self) -> int:
         if self.is_interrupted:

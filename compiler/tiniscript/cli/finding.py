@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING
 
 from tiniscript.cli import inputs
-from tiniscript.cli.connecting import asked, baud_of, opened_way, robot_of_kit
+from tiniscript.cli.connecting import asked, baud_of, opened_way, remember, robot_of_kit
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import Options
 from tiniscript.cli.texts import text
@@ -86,7 +86,8 @@ def _rows(options: Namespace, language: str) -> list[dict[str, object]]:
     held = {holder.port: holder.verb for holder in all_found() if is_alive(holder)}
     names = [options.port] if options.port is not None else list(about)
     if options.port is None:
-        names += [port for port in known.names if port not in about and is_there(port)]
+        names += [port for port in known.names if port not in about and is_there(port)
+                  and not directory.is_gone(port)]  # fmt: skip
         names += [port for port in virtual if port not in names]
         listed = {same_for_all(port) for port in names}
         names += [port for port in held if port not in listed]
@@ -114,7 +115,6 @@ def _ask(port: str, baud: int, robot: Robot, language: str) -> dict[str, object]
     """Return who answers on a port, or why nobody does."""
     from contextlib import closing
 
-    from tiniscript.link import remembered
     from tiniscript.link.outcomes import Gone
 
     try:
@@ -127,7 +127,7 @@ def _ask(port: str, baud: int, robot: Robot, language: str) -> dict[str, object]
     except Gone as gone:
         return {"answer": None, "said": gone.why}
     if reply.status == 0 and card is not None:
-        remembered.remember(port, card.name, is_used=False)
+        remember(port, card.name, is_used=False)
         called = shown(card.name) or robot_of_kit(card.kit) or f"{card.id:08x}"
         said = text("port_robot", language).format(name=called)
         return {"answer": card.name, "id": f"{card.id:08x}", "kit": f"{card.kit:04x}", "said": said}

@@ -15,6 +15,7 @@ from tiniscript.cli import inputs, outputs, virtual_options
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.keys import Keys, is_in_front
 from tiniscript.cli.options import Options, decimal, whole_number
+from tiniscript.cli.telling import Bookkeeping
 from tiniscript.cli.texts import text
 from tiniscript.cli.trouble import Trouble
 
@@ -116,7 +117,7 @@ def run(arguments: list[str], language: str) -> int:
         )  # fmt: skip
         note = directory.announce(running)
         host = Host(robot, guests, hurry, faults)
-        host.calm_from_ms = end_ms
+        host.end_ms = end_ms
         stage = _Stage(host, options, language)
         stage.show(pushes_ms, end_ms)
     finally:
@@ -135,6 +136,7 @@ class _Stage:
         self.screen: Screen | None = None
         self.picture: WorldPicture | None = None
         self.began_ms = 0  # when the program began whose lines are printed
+        self._bookkeeping = Bookkeeping()
         self._kept = host.robot.memory
         self._look_s = monotonic()
         self._frame_s = 0.0
@@ -159,6 +161,9 @@ class _Stage:
             pass
         finally:
             if self.screen is not None and self.picture is not None:
+                robot.switch_off()
+                for event in robot.take_events():
+                    self.picture.take(event)
                 self.screen.draw(self.picture, robot.now_ms)
                 self.screen.end()
             self._save(is_due=True)
@@ -202,6 +207,8 @@ class _Stage:
     def _tell(self, events: list[Event]) -> None:
         is_plain = self.screen is None or not sys.stdout.isatty()
         for event in events:
+            if self._bookkeeping.hides_trace(event):
+                continue
             if event.what == "START":
                 self.began_ms = event.time_ms
             if self.picture is not None:

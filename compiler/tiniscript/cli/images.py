@@ -22,13 +22,22 @@ class Ready(NamedTuple):
     places: Map | None
 
 
+class OtherRobot(Exception):
+    """A program has words of another robot; its mistakes have not been printed."""
+
+    def __init__(self, compiled: Compiled) -> None:
+        super().__init__()
+        self.compiled = compiled
+
+
 def ready(
-    given: inputs.Input, robot: Robot, language: str, is_strict: bool = False
-) -> Ready | None:
+    given: inputs.Input, robot: Robot, language: str, is_strict: bool = False,
+    is_open: bool = False,
+) -> Ready | None:  # fmt: skip
     """Return the program of an input, or None where its mistakes have just been printed.
 
-    `is_strict`: a program that is too large for the robot is a mistake. Raises Trouble where an
-    image is refused.
+    `is_strict`: a program that is too large for the robot is a mistake. `is_open`: it may be for
+    another robot; then OtherRobot is raised. Raises Trouble where an image is refused.
     """
     from tiniscript import maps
 
@@ -37,6 +46,11 @@ def ready(
         _verify(given, image, robot)
         return Ready(image, len(given.data), maps.recall(image.checksum))
     compiled = inputs.compiled(given, robot, is_strict)
+    if is_open and not compiled.is_right:
+        from tiniscript.cli.own_kit import is_other_robots
+
+        if is_other_robots(compiled):
+            raise OtherRobot(compiled)
     outputs.print_problems(compiled, language)
     if not compiled.is_right:
         return None

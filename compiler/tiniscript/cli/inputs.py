@@ -7,6 +7,7 @@ from argparse import Namespace
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
+from tiniscript.cli.paths import real_name
 from tiniscript.cli.texts import Said
 from tiniscript.cli.trouble import Trouble
 from tiniscript.printable import printable
@@ -49,10 +50,16 @@ def program(options: Namespace) -> Input:
         return Input("-e", texts[0].encode("utf-8", "surrogateescape"), None)
     if options.program == "-":
         return Input("-", sys.stdin.buffer.read(LARGEST_SOURCE + 1), None)
-    path = Path(options.program)
+    name = real_name(options.program)
+    path = Path(name)
+    if name != options.program:
+        from tiniscript.cli.texts import text
+
+        said = text("file_really", options.language)
+        print(said.format(file=options.program, real=name), file=sys.stderr)
     try:
         with path.open("rb") as file:
-            return Input(options.program, file.read(LARGEST_SOURCE + 1), path)
+            return Input(name, file.read(LARGEST_SOURCE + 1), path)
     except FileNotFoundError:
         raise Trouble(2, "file_missing", file=shown(options.program)) from None
     except IsADirectoryError:
@@ -97,7 +104,12 @@ def compiled(given: Input, robot: Robot, is_strict: bool) -> Compiled:
 
     source = _source(given)
     if isinstance(source, str):
-        return fitting(compile_text(source, robot.kit, given.name), robot, is_strict)
+        found = compile_text(source, robot.kit, given.name)
+        if not found.is_right:
+            from tiniscript.cli.own_kit import naming
+
+            return naming(found, robot)
+        return fitting(found, robot, is_strict)
     return source
 
 

@@ -17,6 +17,7 @@ LINK_TEXTS: dict[str, tuple[str, str]] = {
                           "tsc: el último puerto usado, {port}, no está. Conecta el robot o elige otro con --port; la lista:  tsc ports"),
     "choose_port": ("On which port is the robot?", "¿En qué puerto está el robot?"),
     "choose_number": ("1 to {high}: ", "1 a {high}: "),
+    "own_kit": ("The robot here: {robot}. tsc compiles for it.", "El robot de aquí: {robot}. tsc compila para él."),
     # a port that does not open
     "port_missing": ("tsc: there is no port {port}, nor any other. Plug in the cable, or pair the robot's Bluetooth, and try again.",
                      "tsc: no existe el puerto {port}, ni ningún otro. Conecta el cable, o empareja el Bluetooth del robot, y prueba otra vez."),
@@ -143,8 +144,23 @@ LINK_TEXTS: dict[str, tuple[str, str]] = {
                       "tsc: esta línea tiene {code} bytes de código, y una línea en vivo tiene sitio para {room}. Como programa cabe:  tsc upload --no-save"),
     "live_button": ("tsc: SB waits for the button, and a live line starts at once. Leave SB| out, or send it as a program:  tsc upload",
                     "tsc: SB espera el botón, y una línea en vivo inicia en el acto. Quita SB|, o envíala como programa:  tsc upload"),
-    "live_hello": ("{robot} on {port}. A line is done at once; Ctrl-C stops the robot, Ctrl-D leaves.",
-                   "{robot} en {port}. Una línea se hace en el acto; Ctrl-C detiene el robot, Ctrl-D sale."),
+    "live_hello": ("{robot} on {port}. A line is done at once; Ctrl-C stops the robot, exit leaves, help helps.",
+                   "{robot} en {port}. Una línea se hace en el acto; Ctrl-C detiene el robot, salir termina, ayuda ayuda."),
+    "live_help": ("F(2, 80)          forward for 2 seconds with 80 % power; B back, L left, R right\n"
+                  "S                 the motors stop; so does Ctrl-C, while a line lasts\n"
+                  "{show:18}shows what a sensor measures\n"
+                  "X = 5             X is 5 in the lines after this one\n"
+                  "DEF TURN; R(0.5, 60); END_DEF     from now on TURN does that\n"
+                  "The robot has {names}.\n"
+                  "Arrow up brings back an earlier line, Tab completes a word. exit, quit or Ctrl-D leaves.",
+                  "F(2, 80)          adelante por 2 segundos con 80 % de potencia; B atrás, L izquierda, R derecha\n"
+                  "S                 los motores se detienen; también Ctrl-C, mientras dura una línea\n"
+                  "{show:18}muestra lo que mide un sensor\n"
+                  "X = 5             X vale 5 en las líneas que siguen\n"
+                  "DEF GIRA; R(0.5, 60); END_DEF     desde ahora GIRA hace eso\n"
+                  "El robot tiene {names}.\n"
+                  "Flecha arriba trae una línea anterior, Tab completa una palabra. salir, exit o Ctrl-D sale."),
+    "live_nothing": ("no sensors and no actuators", "ni sensores ni actuadores"),
     "live_known": ("{names}: known from now on.", "{names}: conocido desde ahora."),
     "live_forgets": ("What this line sets is not kept: there is no room in it to tell.",
                      "Lo que esta línea pone no se conserva: no queda sitio en ella para contarlo."),

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import contextlib
+import re
 import sys
+from argparse import Namespace
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from tiniscript.cli import images, inputs, outputs
+from tiniscript.cli import images, inputs, outputs, own_kit
 from tiniscript.cli.attending import Attendant, stop_and_say
 from tiniscript.cli.connecting import Connection, takes_robot
 from tiniscript.cli.options import Options
@@ -19,6 +21,7 @@ if TYPE_CHECKING:
     from tiniscript.cli.live_text import Known, Line
     from tiniscript.cli.telling import Teller
     from tiniscript.link.outcomes import Event
+    from tiniscript.robots.profile import Robot
 
 HELP = (
     """\
@@ -48,7 +51,15 @@ tiene el robot queda como está. Ctrl-C detiene el robot, Ctrl-D sale.
 )
 
 PROMPT = "tini> "
-INTERRUPTED = 2
+LEAVE, HELP_ME = "leave", "help"
+WISHES = {
+    "EXIT": LEAVE,
+    "QUIT": LEAVE,
+    "SALIR": LEAVE,
+    "HELP": HELP_ME,
+    "AYUDA": HELP_ME,
+    "?": HELP_ME,
+}
 
 
 def run(arguments: list[str], language: str) -> int:
@@ -67,22 +78,33 @@ def run(arguments: list[str], language: str) -> int:
     from tiniscript.cli.live_text import Known
 
     known = Known(robot.kit)
-    if line is not None and line != "-":
-        ready = _compiled(line, known, language, is_last=True)
-        if ready is None:
-            return 1
+    if line is not None and line != "-" and not _may_be_done(line, known, robot, options):
+        return 1
     with Connection(options, robot, language) as connection:
-        talk = Talk(connection, known)
+        talk = Talk(connection, known, options)
         if line is None and sys.stdin.isatty():
             return talk.prompt()
+        talk.meet()
         if line is None or line == "-":
-            connection.meet()
             return talk.all_of(sys.stdin)
-        connection.meet()
         return talk.do(line, is_last=True)
 
 
-def _compiled(line: str, known: Known, language: str, is_last: bool = False) -> Line | None:
+def _may_be_done(line: str, known: Known, robot: Robot, options: Namespace) -> bool:
+    """Whether a line is right, perhaps for the robot that answers; else say what is wrong."""
+    language: str = options.language
+    if options.robot is None:
+        compiled = own_kit.naming(known.line(line, 0).compiled, robot)
+        if own_kit.is_other_robots(compiled):
+            found = own_kit.of_answering(options, robot, language)
+            if found is not None:
+                return True  # it is compiled again, for that one
+    return _compiled(line, known, robot, language, is_last=True) is not None
+
+
+def _compiled(
+    line: str, known: Known, robot: Robot, language: str, is_last: bool = False
+) -> Line | None:
     """Compile a line and print what is wrong with it; return None where it is."""
     from tiniscript.cli.live_text import header
     from tiniscript.link.errands import SHORT_BYTES
@@ -90,7 +112,7 @@ def _compiled(line: str, known: Known, language: str, is_last: bool = False) -> 
     if header(line) == "SB":
         raise Trouble(1, "live_button")
     found = known.line(line, 0 if is_last else SHORT_BYTES)
-    outputs.print_problems(found.compiled, language)
+    outputs.print_problems(own_kit.naming(found.compiled, robot), language)
     if not found.compiled.is_right:
         return None
     code = len(found.compiled.code)
@@ -102,10 +124,17 @@ def _compiled(line: str, known: Known, language: str, is_last: bool = False) -> 
 class Talk:
     """Lines to a robot, one after the other."""
 
-    def __init__(self, connection: Connection, known: Known) -> None:
+    def __init__(self, connection: Connection, known: Known, options: Namespace) -> None:
         self.connection = connection
+        self.options = options
         self.language = connection.language
         self.known = known
+
+    def meet(self) -> None:
+        """Ask the robot who it is, and take its kit. Raises Trouble where none answers."""
+        self.connection.meet()
+        if own_kit.take(self.connection, self.options):
+            self.known.kit = self.connection.profile.kit
 
     def do(self, line: str, is_last: bool = False) -> int:
         """Do a line; return the exit code. Ctrl-C stops the robot."""
@@ -115,7 +144,8 @@ class Talk:
             from tiniscript.cli.pinging import ping
 
             return ping(self.connection, is_json=False)
-        found = _compiled(line, self.known, self.language, is_last)
+        robot = self.connection.profile
+        found = _compiled(line, self.known, robot, self.language, is_last)
         if found is None:
             return 1
         try:
@@ -157,14 +187,31 @@ class Talk:
 
         for line in cast("TextIO", lines):
             if line.strip():
+                if self._says_time_over():
+                    return 0
                 code = self.do(line.rstrip("\r\n"))
-                if code:
+                if code or self.connection.is_time_over:
                     return code
         return 0
 
+    def _says_time_over(self) -> bool:
+        """Say it where the time of a virtual robot has passed between two lines."""
+        if self.connection.is_time_over:
+            print(text("time_over", self.language))
+            return True
+        return False
+
+    def _help(self) -> str:
+        kit = self.known.kit
+        names = ", ".join(device.name for device in (*kit.sensors, *kit.actuators))
+        return text("live_help", self.language).format(
+            show=f"SHOW({kit.sensors[0].name if kit.sensors else 'TIME'})",
+            names=names or text("live_nothing", self.language),
+        )
+
     def prompt(self) -> int:
         """Let a person type lines, until they leave."""
-        self.connection.meet()
+        self.meet()
         said = {"robot": self.connection.name, "port": inputs.shown(self.connection.port)}
         print(text("live_hello", self.language).format(**said))
         with _history(self.known):
@@ -178,9 +225,18 @@ class Talk:
                 except KeyboardInterrupt:
                     self._stop()
                     continue
+                if self._says_time_over():
+                    return 0
                 self._tell_meanwhile()
-                if line.strip():
+                wish = wished(line, self.known)
+                if wish == LEAVE:
+                    return 0
+                if wish == HELP_ME:
+                    print(self._help())
+                elif line.strip():
                     self._try(line)
+                    if self.connection.is_time_over:  # that line has said it
+                        return 0
 
     def _try(self, line: str) -> None:
         """Do a line; what is wrong with it or with the robot is said, and the talk goes on."""
@@ -217,6 +273,16 @@ class Talk:
             raise self.connection.gone(gone) from None
 
 
+def wished(line: str, known: Known) -> str:
+    """Return what a whole line asks of tsc and not of the robot, or nothing.
+
+    A name that the robot or the person has given means what it means there.
+    """
+    word = re.sub(r"\s*(\(\s*\))?[\s;]*$", "", line.lstrip()).upper()
+    devices = (device.name for device in (*known.kit.sensors, *known.kit.actuators))
+    return "" if word in (*known.defs, *devices) else WISHES.get(word, "")
+
+
 class Catch:
     """Keeps back what a line shows of its variables, and learns their values from it."""
 
@@ -228,6 +294,7 @@ class Catch:
         self.teller = teller
         self.says_done = says_done
         self.held: list[Event] = []
+        self.has_missed = False  # events of this line
 
     def hold(self, event: Event) -> bool:
         from tiniscript.cli.live_mark import MARK
@@ -250,11 +317,15 @@ class Catch:
                     value = each["value"]
                     assert isinstance(value, int)
                     self.known.values[name] = Value(value, bool(each["is_yes_no"]))
-            else:
+            elif not self.has_missed:
                 self._release()
+            self.held = []
             return not self.says_done
-        if event.name in ("FAULT", "STOPPED", "ENDED"):
+        if event.name == "FAULT":  # what shows the values has none
             self._release()
+        elif event.name in ("STOPPED", "ENDED"):
+            self.held = []
+        self.has_missed = self.has_missed or event.name == "MISSED"
         return False
 
     def _release(self) -> None:

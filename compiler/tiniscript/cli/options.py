@@ -47,7 +47,7 @@ class Options(ArgumentParser):
         if "-h" in arguments or "--help" in arguments:
             print(self.help_text, end="")
             return None
-        options = self.parse_args(arguments, Namespace(verb=self.verb))
+        options = self.parse_args(arguments, Namespace(verb=self.verb, language=self.language))
         if options.lang is not None and options.lang not in ("en", "es"):
             raise Trouble(2, "bad_language", found=options.lang)
         from tiniscript.cli import paths

@@ -81,8 +81,22 @@ def check(options: Namespace, language: str) -> None:
 
 def default_output(program: str) -> str:
     """Return where `tsc compile` puts the image of a program."""
-    stem, _ = os.path.splitext(program)  # noqa: PTH122 - a Path would change the name
+    name = program[: -len(".txt")] if program.lower().endswith(".ts.txt") else program
+    stem, _ = os.path.splitext(name)  # noqa: PTH122 - a Path would change the name
     return f"{stem}.bin"
+
+
+def real_name(program: str) -> str:
+    """Return what a program's file is called where there is none of this name.
+
+    Editors of Windows add `.txt` to a name, and its folders do not show the end of one.
+    """
+    if os.path.exists(program):  # noqa: PTH110 - a name that no file can have gets no Path
+        return program
+    for real in (f"{program}.txt", f"{program}.ts", f"{program}.ts.txt"):
+        if os.path.isfile(real):  # noqa: PTH113
+            return real
+    return program
 
 
 def _written(options: Namespace) -> Iterator[Named]:
@@ -93,6 +107,7 @@ def _written(options: Namespace) -> Iterator[Named]:
             yield Named(dest, path, label)
     program = values.get("program")
     if program is not None and program != "-":
+        program = real_name(program)
         if options.verb == "compile" and options.output is None:
             yield Named("output", default_output(program), "-o")
         if options.verb == "fmt" and not options.check:
@@ -105,7 +120,8 @@ def _read(options: Namespace, language: str) -> Iterator[Named]:
         found = values.get(dest)
         for path in found if isinstance(found, list) else [found]:
             if isinstance(path, str) and path != "-" and not _is_shipped(dest, path):
-                yield Named(dest, path, text(key, language))
+                name = real_name(path) if dest == "program" else path
+                yield Named(dest, name, text(key, language))
     if "port" in values and values["port"] is None and not values.get("virtual"):
         from tiniscript.link import remembered
 

@@ -54,10 +54,10 @@ def posts(options: Namespace) -> list[Post]:
     if options.all:
         from tiniscript.link.ports import listed
         from tiniscript.sharing.holders import all_found
-        from tiniscript.virtual.directory import running
+        from tiniscript.virtual.directory import is_gone, running
 
         ports = [holder.port for holder in all_found()]
-        ports += [port for port in known if is_there(port)]
+        ports += [port for port in known if is_there(port) and not is_gone(port)]
         ports += [found.port for found in listed()]
         ports += [robot.address for robot in running()]
     names = {same_for_all(port): name for port, name in reversed(known.items())}

@@ -23,22 +23,26 @@ tsc stop [--port P ...] [--all] [--json]
 
 Stops the robot now, and says when it has confirmed that. Asks nothing before, so it stops a
 robot of another version or kit, too. The robot stays stopped until a new start or its button.
-  --port P      the robot's port; the last used one where nothing is said; several for several
+Where no port is named it stops every robot that a tsc on this computer has now, virtual ones
+too, and the last used one.
+  --port P      the robot's port; several for several
   --all         stops every robot that there is, all at once
   --json        prints a line of JSON for each robot
   --baud N      its speed (the one of the profile that --robot NAME|FILE chooses)
-  --virtual     the virtual robot of tsc robot, which runs in another terminal
+  --virtual     virtual robots alone: those of tsc robot, and of commands with --virtual
 """,
     """\
 tsc stop [--port P ...] [--all] [--json]
 
 Detiene el robot ahora, y dice cuándo lo ha confirmado. No pregunta nada antes, así que también
 detiene un robot de otra versión o de otro kit. Queda detenido hasta otro inicio o su botón.
-  --port P      el puerto del robot; el último usado si no se dice nada; varios para varios
+Si no se nombra un puerto, detiene todos los robots que un tsc tiene ahora en esta computadora,
+también los virtuales, y el último usado.
+  --port P      el puerto del robot; varios para varios
   --all         detiene todos los robots que hay, todos a la vez
   --json        imprime una línea de JSON por cada robot
   --baud N      su velocidad (la del perfil que --robot NOMBRE|ARCHIVO elige)
-  --virtual     el robot virtual de tsc robot, que está en marcha en otra terminal
+  --virtual     solo robots virtuales: los de tsc robot, y los de comandos con --virtual
 """,
 )
 
@@ -52,7 +56,14 @@ def run(arguments: list[str], language: str) -> int:
     if options is None:
         return 0
     robot = inputs.robot(options, language)
-    if are_many(options):
+    is_many = are_many(options)
+    if not is_many and options.port is None:
+        from tiniscript.cli import in_use
+
+        options.ports = in_use.to_stop(options.virtual)
+        options.virtual = options.virtual and not options.ports
+        is_many = are_many(options)
+    if is_many:
         from tiniscript.cli.crew import together
 
         return together(options, robot, language, _one_of_many)

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
     from tiniscript.link.outcomes import Event
     from tiniscript.maps import Map
+    from tiniscript.run import Event as Traced
 
 FAULTED = 3  # a state of `link.messages`
 
@@ -187,6 +188,16 @@ class Bookkeeping:
         elif event.values["value"] == MARK and not event.values["is_yes_no"]:
             self.is_on = True
         return self.is_on
+
+    def hides_trace(self, event: Traced) -> bool:
+        """The same for what a virtual robot says that it does."""
+        from tiniscript.cli.live_mark import MARK
+
+        if event.what in ("START", "DONE", "FAULT", "STOP", "OFF"):
+            self.is_on = False
+        elif event.what == "SHOW" and event.values == (MARK,):
+            self.is_on = True
+        return self.is_on and event.what == "SHOW"
 
 
 def json_value(numbers: dict[str, int]) -> object:

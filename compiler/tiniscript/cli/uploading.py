@@ -6,7 +6,7 @@ import json
 from argparse import Namespace
 from typing import TYPE_CHECKING
 
-from tiniscript.cli import images, inputs
+from tiniscript.cli import images, inputs, outputs, own_kit
 from tiniscript.cli.attending import Attendant, stop_and_say, until_saved
 from tiniscript.cli.connecting import Connection
 from tiniscript.cli.options import Options
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from tiniscript.cli.telling import Teller
     from tiniscript.link.asking import Asked, Asks
     from tiniscript.link.errands import Reply
+    from tiniscript.robots.profile import Robot
 
 HELP = (
     """\
@@ -40,7 +41,8 @@ that begins with SB waits for the robot's button.
   --robot R     for which robot: a name (tinibot, ...) or a profile's file
   --json        prints the receipt and what comes after it as lines of JSON
   --virtual     no robot: a virtual one drives here, until the program ends or Ctrl-C; the one of
-                tsc robot, if that runs in another terminal
+                tsc robot, if that runs in another terminal. The key b is the button of one here;
+                where nobody is at a terminal, it is pushed at once
 With --virtual:
   --world W     its world: obstacles, line, light, or a file (obstacles)
   --plot F.png  draws the world and the way when it ends
@@ -67,7 +69,8 @@ que empieza con SB espera el botón del robot.
   --robot R     para qué robot: un nombre (tinibot, ...) o el archivo de un perfil
   --json        imprime el recibo y lo que viene después como líneas de JSON
   --virtual     sin robot: uno virtual se mueve aquí, hasta que el programa termina o Ctrl-C; el
-                de tsc robot, si está en marcha en otra terminal
+                de tsc robot, si está en marcha en otra terminal. La tecla b es el botón del de
+                aquí; si no hay nadie en una terminal, se pulsa enseguida
 Con --virtual:
   --world W     su mundo: obstacles, line, light, o un archivo (obstacles)
   --plot F.png  dibuja el mundo y el camino cuando termina
@@ -94,24 +97,54 @@ def run(arguments: list[str], language: str) -> int:
         return 0
     given = inputs.program(options)
     robot = inputs.robot(options, language)
-    ready = images.ready(given, robot, language, is_strict=True)
+    is_many = are_many(options)
+    # the robot that answers may be another one than the default
+    is_open = options.robot is None and not is_many and not given.is_image
+    ready = _ready(given, robot, options, is_open)
     if ready is None:
         return 1
-    if are_many(options):
+    if is_many:
         _keep_map(ready)
         from tiniscript.cli.uploading_many import upload_to_many
 
         return upload_to_many(options, robot, language, ready, inputs.shown(given.name))
     with Connection(options, robot, language) as connection:
+        if connection.company is not None and options.detach:
+            raise Trouble(2, "virtual_and_detach")
         if ready.image.start == "PING":  # a program that asks who is there
             from tiniscript.cli.pinging import ping
 
             return ping(connection, options.json)
         connection.meet()
+        is_kit_wrong = ready.image.kit and connection.card.kit != robot.kit.fingerprint
+        if is_open and is_kit_wrong and own_kit.take(connection, options):
+            ready = images.ready(given, connection.profile, language, is_strict=True)
+            if ready is None:
+                return 1
         try:
             return _upload(connection, ready, inputs.shown(given.name), options)
         except KeyboardInterrupt:
             return stop_and_say(connection)
+
+
+def _ready(
+    given: inputs.Input, robot: Robot, options: Namespace, is_open: bool
+) -> images.Ready | None:  # fmt: skip
+    """Return the program, or None where its mistakes have just been printed.
+
+    One with words of another robot is compiled for the robot that answers, if there is one.
+    """
+    language: str = options.language
+    if not is_open:
+        return images.ready(given, robot, language, is_strict=True)
+    try:
+        return images.ready(given, robot, language, is_strict=True, is_open=True)
+    except images.OtherRobot as other:
+        found = own_kit.of_answering(options, robot, language)
+        if found is not None:
+            return images.ready(given, found, language, is_strict=True)
+        outputs.print_problems(other.compiled, language)
+        return None
 
 
 def _upload(
@@ -173,6 +206,10 @@ def looked_after(
         if connection.company is not None:
             connection.company.watch()
         code = Attendant(connection, teller).attend(values["run"])
+    elif has_button(connection, ready, options):
+        from tiniscript.cli.pushing import attend_button
+
+        code = attend_button(connection, teller, values["program"])
     if values["saved"] == SAVING:
         slot = until_saved(connection)
         if slot is None:
@@ -184,6 +221,11 @@ def looked_after(
 def is_running(ready: images.Ready, options: Namespace) -> bool:
     """Whether a program runs once it has arrived."""
     return ready.image.start == "SI" and not options.no_run
+
+
+def has_button(connection: Connection, ready: images.Ready, options: Namespace) -> bool:
+    """Whether the button of a virtual robot that is here for this command starts the program."""
+    return connection.company is not None and ready.image.start == "SB" and not options.no_run
 
 
 def _trouble(connection: Connection, reply: Reply, ready: images.Ready) -> Trouble:
@@ -229,6 +271,10 @@ def _receipt_line(
     how = "how_waits"
     if is_running(ready, options):
         how = "how_detached" if options.detach else "how_running"
+    elif has_button(connection, ready, options):
+        from tiniscript.cli.pushing import has_keys
+
+        how = "how_key" if has_keys(connection) else "how_pushed"
     return text("receipt", language).format(
         program=name,
         robot=connection.name,

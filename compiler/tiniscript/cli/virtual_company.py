@@ -13,6 +13,7 @@ from time import monotonic
 from typing import TYPE_CHECKING
 
 from tiniscript.cli import virtual_options
+from tiniscript.cli.telling import Bookkeeping
 from tiniscript.cli.texts import text
 from tiniscript.cli.trouble import Trouble
 
@@ -35,7 +36,7 @@ def running_address(options: Namespace) -> str | None:
     can_bring = hasattr(options, "world")
     if can_bring and virtual_options.wants_own(options):
         return None
-    found = directory.running()
+    found = directory.for_all() if can_bring else directory.running()
     if not found and not can_bring:
         raise Trouble(3, "no_virtual")
     if len(found) > 1:
@@ -53,37 +54,50 @@ class Company:
         self.options = options
         self.language = language
         self.robot = virtual_options.made(options, profile, language)
+        from tiniscript.virtual import directory
         from tiniscript.virtual.guests import Guests
         from tiniscript.virtual.host import Host
 
         self.guests = Guests()
         self.port = self.guests.address
         self.host = Host(self.robot, self.guests, hurry, faults)
+        self.host.lasts_ms = self.end_ms
         self.screen: Screen | None = None
         self._picture: WorldPicture | None = None
-        self._began_ms: int | None = None  # when the command began to look at it
+        self._is_watched = False  # the command has begun to look at it
         self._bug: BaseException | None = None
-        self._is_over = False
+        self._is_over = self._is_pushed = False
+        self._bookkeeping = Bookkeeping()
         self._frame_s = 0.0
         self._drawing = Condition()
         self._rounds = 0  # after which the picture has known all that had happened
+        world = self.robot.world.name
+        self._note = directory.announce(
+            directory.Running(self.port, profile.name, world, "", "", options.verb)
+        )
         self._thread = Thread(target=self._live, name="virtual robot", daemon=True)
         self._thread.start()
 
     @property
     def is_time_over(self) -> bool:
-        """Whether the time of `--for` is over, since `watch`."""
-        if self.end_ms is None or self._began_ms is None:
-            return False
-        return self.robot.now_ms >= self._began_ms + self.end_ms
+        """Whether the time of `--for` is over.
 
-    def watch(self) -> None:
-        """Draw it from now on, where there is a terminal."""
-        if self._began_ms is None:
-            self._began_ms = self.robot.now_ms
+        It begins with the first program; before that, for one that waits, when it is watched.
+        """
+        return self._is_watched and self.host.is_over
+
+    @property
+    def is_drawn(self) -> bool:
+        """Whether it is drawn where somebody watches it."""
+        return sys.stderr.isatty() and not getattr(self.options, "json", False)
+
+    def watch(self, keys: str = "") -> None:
+        """Draw it from now on, where there is a terminal. `keys` says what keys do."""
+        if not self._is_watched:
+            self._is_watched = True
             if self.end_ms is not None:
-                self.host.calm_from_ms = self._began_ms + self.end_ms
-        if not sys.stderr.isatty() or getattr(self.options, "json", False):
+                self.host.end_ms = self.robot.now_ms + self.end_ms
+        if not self.is_drawn:
             return
         from tiniscript.cli.drawing import Screen
         from tiniscript.cli.world_drawing import WorldPicture
@@ -91,8 +105,12 @@ class Company:
         with self._drawing:
             self.screen = Screen()
             if self._picture is None:
-                self._picture = WorldPicture(self.robot, self.language)
+                self._picture = WorldPicture(self.robot, self.language, keys)
             self.screen.begin()
+
+    def push(self) -> None:
+        """Have the robot's start button pushed: its own thread does that."""
+        self._is_pushed = True
 
     def say(self, line: str) -> None:
         """Print a line, around the picture where there is one."""
@@ -118,35 +136,55 @@ class Company:
                 self._drawing.wait_for(lambda: self._rounds >= due, ROUND_S)
             screen, self.screen = self.screen, None
             if screen is not None:
+                if self._picture is not None:
+                    self._picture.footer = ""  # of keys that do nothing now
                 self._draw(screen)
                 screen.end()
 
     def close(self) -> None:
         """The robot's life ends; what it has done is said, and drawn into the file of `--plot`."""
-        self.unwatch()
+        from tiniscript.virtual import directory
+
+        directory.withdraw(self._note)
         self._is_over = True
         self._thread.join(JOIN_S)
+        self.unwatch()
         self.guests.close()
         if self._bug is not None:
             raise self._bug
-        if self._began_ms is None:
+        if not self._is_watched:
             return
         if self.options.plot is not None:
             virtual_options.draw_picture(self.options, self.robot, self.language)
         is_json = getattr(self.options, "json", False)
-        said = virtual_options.summary(self.options, self.robot, self.language)
+        said = virtual_options.summary(self.options, self.robot, self.language, self._driven_ms())
         print(said, file=sys.stderr if is_json else sys.stdout, flush=True)
+
+    def _driven_ms(self) -> int:
+        """Return how long there were programs, from the first one's beginning on."""
+        began_ms, ended_ms = self.robot.started_ms, self.robot.ended_ms
+        if began_ms is None:
+            return 0
+        return (self.robot.now_ms if ended_ms is None else ended_ms) - began_ms
 
     def _live(self) -> None:
         from tiniscript.cli.drawing import FRAME_S
 
         try:
-            while not self._is_over:
-                self.host.turn(FRAME_S)
+            while True:
+                is_over = self._is_over
+                if is_over:
+                    self.robot.switch_off()
+                else:
+                    if self._is_pushed:
+                        self._is_pushed = False
+                        self.host.push()
+                    self.host.turn(FRAME_S)
                 with self._drawing:
                     if self._picture is not None:
                         for event in self.robot.take_events():
-                            self._picture.take(event)
+                            if not self._bookkeeping.hides_trace(event):
+                                self._picture.take(event)
                     elif not sys.stderr.isatty():
                         self.robot.take_events()  # nobody will draw them
                     if self.screen is not None and monotonic() >= self._frame_s:
@@ -154,6 +192,8 @@ class Company:
                         self._draw(self.screen)
                     self._rounds += 1
                     self._drawing.notify_all()
+                if is_over:
+                    return
         except BaseException as bug:
             self._bug = bug
             self.guests.close()

@@ -142,12 +142,15 @@ def draw_picture(options: Namespace, robot: VirtualRobot, language: str) -> None
     outputs.write(Path(options.plot), image, "unwritable_picture")
 
 
-def summary(options: Namespace, robot: VirtualRobot, language: str) -> str:
-    """Return how far the robot has come, and where the picture is."""
+def summary(
+    options: Namespace, robot: VirtualRobot, language: str, passed_ms: int | None = None
+) -> str:
+    """Return how far the robot has come, in all its time or in `passed_ms`, and its picture."""
     driving = robot.driving
+    passed_ms = robot.now_ms if passed_ms is None else passed_ms
     key = "drove_touching" if driving.bumps else "drove"
     said = text(key, language).format(
-        cm=round(driving.driven_cm), seconds=f"{robot.now_ms / 1000:.1f}", n=driving.bumps
+        cm=round(driving.driven_cm), seconds=f"{passed_ms / 1000:.1f}", n=driving.bumps
     )
     if options.plot is not None:
         said += " " + text("drove_picture", language).format(file=shown(options.plot))

@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 from tiniscript import files
 from tiniscript.files import contents
+from tiniscript.link.names import same_for_all
 from tiniscript.sharing.holders import is_taken
 from tiniscript.virtual.guests import LOCAL
 
@@ -22,7 +23,8 @@ PREFIX = f"socket://{LOCAL}:"
 class Running(NamedTuple):
     """A robot: its port's address, its profile's name, its world's, and what it is called.
 
-    `terminal` is the path of its pseudo-terminal, if it has one.
+    `terminal` is the path of its pseudo-terminal, if it has one. `verb` is the command that it
+    lives in: `robot` is one for all; with any other it belongs to that command.
     """
 
     address: str
@@ -30,6 +32,7 @@ class Running(NamedTuple):
     world: str
     name: str
     terminal: str
+    verb: str = "robot"
 
 
 def announce(running: Running) -> Path | None:
@@ -67,9 +70,21 @@ def running() -> list[Running]:
     return found
 
 
+def for_all() -> list[Running]:
+    """Return those to which any command may bring a program."""
+    return [each for each in running() if each.verb == "robot"]
+
+
 def is_virtual(port: str) -> bool:
     """Whether a port is a virtual robot's that runs."""
-    return any(port in (each.address, each.terminal) for each in running())
+    known = {port, same_for_all(port)}
+    return any(known & {each.address, each.terminal} for each in running())
+
+
+def is_gone(port: str) -> bool:
+    """Whether a port is an address on this computer where nobody listens (any more)."""
+    number = port.lower().removeprefix(PREFIX)
+    return number != port.lower() and number.isdecimal() and not _is_listening(PREFIX + number)
 
 
 def _read(path: Path) -> Running | None:

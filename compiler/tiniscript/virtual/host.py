@@ -37,7 +37,8 @@ class Host:
         self.robot = robot
         self.guests = guests
         self.hurry = hurry
-        self.calm_from_ms: int | None = None  # of the robot's time: from then on it hurries no more
+        self.end_ms: int | None = None  # of the robot's time: then it is over
+        self.lasts_ms: int | None = None  # or so long after its first program has begun
         chance = Random(robot.settings.seed ^ 0x5A5A)
         self.there, self.back = BadLine(faults, chance), BadLine(faults, chance)
         self._heartbeat = Heartbeat()
@@ -45,12 +46,30 @@ class Host:
         self._owed_ms = 0.0  # of the robot's time, less than one
         self._visits = 0
         self._let_go_ms: int | None = None
+        self._is_wanted = False  # a push that has to wait
+        self._up_until_ms = 0  # a button that was let go stays up so long
+
+    @property
+    def over_ms(self) -> int | None:
+        """When the robot's time is over, if that is known."""
+        began_ms = self.robot.started_ms
+        if self.lasts_ms is not None and began_ms is not None:
+            return began_ms + self.lasts_ms
+        return self.end_ms
+
+    @property
+    def is_over(self) -> bool:
+        over_ms = self.over_ms
+        return over_ms is not None and self.robot.now_ms >= over_ms
 
     def push(self) -> None:
-        """Push the start button and let it go."""
-        if self._let_go_ms is None:
+        """Push the start button and let it go; where it is down or just was, a moment later."""
+        now_ms = self.robot.now_ms
+        self._is_wanted = self._let_go_ms is not None or now_ms < self._up_until_ms
+        if not self._is_wanted:
             self.robot.press()
-            self._let_go_ms = self.robot.now_ms + PUSH_MS
+            self._let_go_ms = now_ms + PUSH_MS
+            self._up_until_ms = now_ms + 2 * PUSH_MS
 
     @property
     def waiting(self) -> int:
@@ -82,13 +101,16 @@ class Host:
             return 0.0 if not self.hurry else BUSY_S
         if self._wall_s - self._traffic_s < TRAFFIC_S or self.robot.unheard:
             return BUSY_S
-        if self.robot.is_running or self.guests.is_connected or self._let_go_ms is not None:
+        if self.robot.is_running or self.guests.is_connected or self._is_pushing:
             return NEAR_S
         return CALM_S
 
+    @property
+    def _is_pushing(self) -> bool:
+        return self._is_wanted or self._let_go_ms is not None
+
     def _is_hurrying(self) -> bool:
-        is_late = self.calm_from_ms is not None and self.robot.now_ms >= self.calm_from_ms
-        return self.robot.is_running and self.hurry != 1 and not is_late
+        return self.robot.is_running and self.hurry != 1 and not self.is_over
 
     def _go_on(self, passed_s: float) -> None:
         self._owed_ms += passed_s * 1000 * (self.hurry if self._is_hurrying() and self.hurry else 1)
@@ -98,8 +120,7 @@ class Host:
             step_ms = STRIDE_MS if is_hurrying else int(self._owed_ms)
             if is_hurrying and self.hurry:
                 step_ms = min(step_ms, int(self._owed_ms))
-            if is_hurrying and self.calm_from_ms is not None:
-                step_ms = min(step_ms, self.calm_from_ms - self.robot.now_ms)
+            step_ms = self._until_over(step_ms)
             if step_ms < 1:
                 break
             self._step(step_ms, is_hurrying)
@@ -110,11 +131,24 @@ class Host:
             if not is_hurrying:
                 break
 
+    def _until_over(self, step_ms: int) -> int:
+        """Return how far a step may go: a program ends with the robot's time, to the ms."""
+        if self.lasts_ms is not None and self.is_over and self.robot.is_running:
+            self.robot.rest()
+        over_ms = self.over_ms
+        if self.lasts_ms is not None and self.robot.started_ms is None:
+            return min(step_ms, STRIDE_MS, self.lasts_ms)  # a program may begin in this step
+        if over_ms is None or self.is_over:
+            return step_ms
+        return min(step_ms, over_ms - self.robot.now_ms)
+
     def _step(self, step_ms: int, is_hurrying: bool) -> None:
         now_ms = self.robot.now_ms
         if self._let_go_ms is not None and now_ms >= self._let_go_ms:
             self._let_go_ms = None
             self.robot.let_go()
+        elif self._is_wanted:
+            self.push()
         data = self.there.take(now_ms)
         if is_hurrying and self.guests.is_connected and not data:
             data = self._heartbeat.due(now_ms, self._wall_s)

@@ -70,6 +70,10 @@ class VirtualRobot:
             raise WorldRefused(("start_blocked", {"path": "start", "place": place}))
         self.sensing = Sensing(profile, world, settings.noise, self.chance, settings.told)
         self.is_running = False
+        self.started_ms: int | None = None  # when its first program began
+        self.ended_ms: int | None = None  # when its newest program ended
+        self.is_at_rest = False
+        self._told = 0  # events that are true of a robot at rest
         self.is_lit = False  # the light says that the button would start something
         self.fault = ""  # that has ended the last program
         self._traced = TracedRobot(profile.kit, self._noticed)
@@ -84,6 +88,8 @@ class VirtualRobot:
         sent = self._firmware.run((now_ms - self._began_ms) * 1000, data)
         self.now_ms = now_ms
         self._settle()
+        if self.is_at_rest:
+            del self._traced.events[self._told :]
         return sent
 
     def press(self) -> None:
@@ -99,12 +105,30 @@ class VirtualRobot:
     def power_cycle(self, reset: int = POWER_ON) -> None:
         """Off and on: it stands where it stood, and knows what it has saved."""
         memory = self._firmware.memory()
+        self.switch_off()
+        self._firmware = self._switched_on(reset, memory)
+
+    def rest(self) -> None:
+        """Its time is over: it stands from now on, whatever its firmware still does."""
         self.driving.set_motors(self.now_ms, 0, 0)
+        self._traced.now_ms = self.now_ms
         if self.is_running:
-            self._say("OFF")
+            self._say("STOP")
+            self.ended_ms = self.now_ms
         self.is_running = False
         self._ended = ""
-        self._firmware = self._switched_on(reset, memory)
+        self.is_at_rest = True
+        self._told = len(self._traced.events)
+
+    def switch_off(self) -> None:
+        """It stands now. Until it is switched on again, its clock must not go on."""
+        self.driving.set_motors(self.now_ms, 0, 0)
+        if self.is_running:
+            self._traced.now_ms = self.now_ms
+            self._say("OFF")
+            self.ended_ms = self.now_ms
+        self.is_running = False
+        self._ended = ""
 
     def _switched_on(self, reset: int, memory: bytes | None) -> Firmware:
         self._began_ms = self.now_ms
@@ -129,7 +153,7 @@ class VirtualRobot:
 
     def take_events(self) -> list[Event]:
         """Return what it has done since the last time: a run's events, START, STOP and OFF."""
-        found, self._traced.events = self._traced.events, []
+        found, self._traced.events, self._told = self._traced.events, [], 0
         return found
 
     @property
@@ -172,12 +196,18 @@ class VirtualRobot:
         self._set_motors(now_ms, 0, 0)
         if self.is_running:
             self.is_running = False
+            self.ended_ms = self.now_ms
             self._ended = "STOP"
 
     def release(self, now_ms: int) -> None:
         self._settle()  # two programs may follow each other in one step
         self._at(now_ms)
+        if self.is_at_rest:
+            return
         self.is_running = True
+        if self.started_ms is None:
+            self.started_ms = self.now_ms
+        self.ended_ms = None
         self.fault = ""
         self._say("START")
 
@@ -198,6 +228,8 @@ class VirtualRobot:
 
     def _set_motors(self, now_ms: int, left: float, right: float) -> None:
         self._at(now_ms)
+        if self.is_at_rest:
+            return
         made = []
         for power, percent in zip((left, right), self.settings.motors, strict=True):
             off = self.chance.gauss(0.0, self.settings.noise) if self.settings.noise else 0.0

@@ -33,7 +33,29 @@ def read(text: str, name: str) -> World:
         raise WorldRefused(*refused.reasons) from None
     if reasons:
         raise WorldRefused(*reasons)
+    x_cm, y_cm, _ = world.start
+    for key, at_cm, most_cm in (("x_cm", x_cm, world.width_cm), ("y_cm", y_cm, world.height_cm)):
+        if not 0 <= at_cm <= most_cm:
+            values = {"path": f"start.{key}", "found": f"{at_cm:g}", "most": f"{most_cm:g}"}
+            reasons.append(("start_outside", {**values, "line": str(_line_of(text, "start", key))}))
+    if reasons:
+        raise WorldRefused(*reasons)
     return world
+
+
+def _line_of(text: str, table: str, key: str) -> int:
+    """Return the line of a key in a table of a TOML text, or that of the table."""
+    place, is_inside = 1, False
+    for number, line in enumerate(text.splitlines(), 1):
+        row = line.replace(" ", "").replace("\t", "")
+        if row.startswith("["):
+            is_inside = row.startswith(f"[{table}]")
+        if row.startswith((f"[{table}]", f"{table}=")):
+            place = number
+        is_key = row.startswith((f"{key}=", f'"{key}"=', f"'{key}'="))
+        if row.startswith(f"{table}.{key}=") or (is_inside and is_key):
+            return number
+    return place
 
 
 def _read(root: Table, name: str) -> World:

@@ -38,6 +38,12 @@ SENTENCES: dict[str, dict[str, str]] = {
         "en": "{path} has {found} points. Write 2 to {most} points, such as [[20, 50], [80, 50]].",
         "es": "{path} tiene {found} puntos. Escribe de 2 a {most}, como [[20, 50], [80, 50]].",
     },
+    "start_outside": {
+        "en": "Line {line}: the robot starts outside the floor. {path} is {found};"
+        " write a number from 0 to {most}.",
+        "es": "Línea {line}: el robot empieza fuera del piso. {path} es {found};"
+        " escribe un número de 0 a {most}.",
+    },
     "start_blocked": {
         "en": "The robot does not fit where it starts, at {place}. Move [start] off the walls.",
         "es": "El robot no cabe donde empieza, en {place}. Aleja [start] de las paredes.",

@@ -1,0 +1,57 @@
+"""Which robots are in use on this computer: on a port that a command holds, or virtual ones.
+
+Opens no port, and no robot's.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from tiniscript.sharing.holders import Holder
+
+AT_ONCE = 16  # commands that are asked at the same time whether they are still there
+
+
+def ports(is_virtual: bool = False) -> list[str]:
+    """Return the port of each robot that is in use, once; `is_virtual`: of virtual ones alone."""
+    from tiniscript.link.names import same_for_all
+    from tiniscript.sharing.holders import all_found
+    from tiniscript.virtual.directory import running
+
+    held = _alive(all_found())
+    found = [] if is_virtual else held[:]
+    for robot in running():
+        names = [robot.address, *([robot.terminal] if robot.terminal else [])]
+        through = [port for port in names if same_for_all(port) in held]
+        found.append(through[0] if through else robot.address)  # one robot, one port
+    return list({same_for_all(port): port for port in found}.values())
+
+
+def _alive(holders: list[Holder]) -> list[str]:
+    """Return the ports of the holders that are still there: one that hangs delays no other."""
+    from tiniscript.sharing.guest import is_alive
+
+    if len(holders) < 2:  # threads take longer to import than one to answer
+        return [holder.port for holder in holders if is_alive(holder)]
+    from concurrent.futures import ThreadPoolExecutor
+
+    with ThreadPoolExecutor(AT_ONCE) as pool:
+        alive = list(pool.map(is_alive, holders))
+    return [holder.port for holder, is_there in zip(holders, alive, strict=True) if is_there]
+
+
+def to_stop(is_virtual: bool = False) -> list[str]:
+    """Return the ports that `tsc stop` means where no port is named.
+
+    The last used robot is among them: it may drive on without any command.
+    """
+    from tiniscript.link import remembered
+    from tiniscript.link.names import is_there, same_for_all
+    from tiniscript.virtual.directory import is_gone
+
+    found = ports(is_virtual)
+    last = remembered.known().last
+    if not is_virtual and last is not None and is_there(last) and not is_gone(last):
+        found.append(last)
+    return list({same_for_all(port): port for port in found}.values())

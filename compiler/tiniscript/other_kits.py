@@ -1,0 +1,50 @@
+"""Words of a program that other robots know: their kits have them, and that of its robot does not.
+
+Knows the problems of a program and the kits of other robots. Opens no profile.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from tiniscript import problems
+from tiniscript.kit import Kit
+from tiniscript.problems import Problem
+from tiniscript.tokens import WORD, scan
+
+_UNKNOWN = (problems.UNKNOWN_NAME, problems.UNKNOWN_WORD)
+_NUMBERS = ("first", "second", "third")
+
+
+def is_unknown(problem: Problem) -> bool:
+    """Whether a word is not known to the program's robot: another kit may have it."""
+    return problem.code in (*_UNKNOWN, problems.OTHER_ROBOT)
+
+
+def naming_robots(
+    found: Sequence[Problem], text: str, own: tuple[str, Kit], others: Mapping[str, Kit]
+) -> list[Problem]:
+    """Return problems that name the robots that have an unknown word; at most three of them.
+
+    Where a robot has all kit words of the program, those that lack one are not named.
+    """
+    known = {robot: words(kit) for robot, kit in others.items() if robot != own[0]}
+    of_kits = words(own[1]).union(*known.values())
+    used = {token.text for token in scan(text).tokens if token.kind is WORD} & of_kits
+    whole = [robot for robot, its in known.items() if used <= its]
+    named = []
+    for problem in found:
+        word = problem.values.get("found", "")
+        having = [robot for robot, its in known.items() if word in its]
+        if problem.code in _UNKNOWN and having:
+            robots = [robot for robot in having if robot in whole] or having
+            numbered = dict(zip(_NUMBERS, robots, strict=False))
+            values = {"found": word, "own": own[0], **numbered}
+            problem = Problem(problems.OTHER_ROBOT, problem.span, values)
+        named.append(problem)
+    return named
+
+
+def words(kit: Kit) -> frozenset[str]:
+    """Return the names that a kit has."""
+    return frozenset(device.name for device in (*kit.sensors, *kit.actuators))

@@ -1,0 +1,69 @@
+"""Profiles that a robot was used with before, by the fingerprints of their kits.
+
+They lie in the user's cache, as paths: a profile that has changed or is gone is not believed.
+Losing them loses nothing else.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import tempfile
+from pathlib import Path
+
+from tiniscript import robots
+from tiniscript.robots.profile import ProfileRefused, Robot
+
+KEPT = 20  # profiles; the oldest go first
+
+
+def remember(path: str, kit: int) -> None:
+    """Keep where a profile is. Where the cache cannot be written, it is not kept."""
+    known = _known()
+    entry = (kit, os.path.abspath(path))  # noqa: PTH100 - Path raises for some names
+    if known[:1] == [entry]:
+        return
+    kept = [entry, *(each for each in known if each != entry)][:KEPT]
+    new = None
+    try:
+        target = _path()
+        target.parent.mkdir(parents=True, exist_ok=True)
+        file, new = tempfile.mkstemp(dir=target.parent, suffix=".new")
+        with os.fdopen(file, "w", encoding="utf-8") as out:
+            json.dump(kept, out)
+        Path(new).replace(target)
+    except (OSError, ValueError):
+        if new is not None:
+            with contextlib.suppress(OSError):
+                Path(new).unlink()
+
+
+def recall(kit: int) -> Robot | None:
+    """Return the profile that has this kit, if it is known and still has it."""
+    return next((robot for _, robot in profiles() if robot.kit.fingerprint == kit), None)
+
+
+def profiles() -> list[tuple[str, Robot]]:
+    """Return the profiles that are still there with their paths, the newest first."""
+    found: list[tuple[str, Robot]] = []
+    for kit, path in _known():
+        with contextlib.suppress(ProfileRefused):
+            robot = robots.load(path)
+            if robot.kit.fingerprint == kit:
+                found.append((path, robot))
+    return found
+
+
+def _known() -> list[tuple[int, str]]:
+    try:
+        entries = json.loads(_path().read_text(encoding="utf-8"))
+        return [(int(kit), str(path)) for kit, path in entries if str(path).isprintable()]
+    except (OSError, ValueError, TypeError, RecursionError):
+        return []
+
+
+def _path() -> Path:
+    from platformdirs import user_cache_path
+
+    return user_cache_path("tiniscript", appauthor=False) / "profiles.json"
