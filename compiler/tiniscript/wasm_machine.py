@@ -8,12 +8,14 @@ mean. Does not know what instructions do, nor what a robot is. Importing this fa
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import lru_cache
 from pathlib import Path
+from types import TracebackType
 from typing import Any
+from weakref import ref
 
-from wasmtime import Engine, Func, FuncType, Instance, Memory, Module, Store, ValType
+from wasmtime import Func, FuncType, Instance, Memory, ValType
 
+from tiniscript import wasm_store
 from tiniscript.bytecode import FAULTS
 from tiniscript.image import REFUSALS, ImageRefused
 from tiniscript.task import DONE, FAULT, RUNNING, WAITING, Robot
@@ -32,7 +34,10 @@ _NOT_THERE = 1 << 32  # what is no reading
 
 
 class WasmImage:
-    """An image in the memory of a C++ machine of its own, which has read and verified it."""
+    """An image in the memory of a C++ machine of its own, which has read and verified it.
+
+    `close`, the end of a `with`, or the last reference to it ends that, and frees the memory.
+    """
 
     def __init__(self, data: bytes, kit: int, sensors: int, actuators: int) -> None:
         """`kit` is the fingerprint of the robot that shall run it.
@@ -40,10 +45,18 @@ class WasmImage:
         Raises ImageRefused or Refused with the name of the reason.
         """
         self.robot: Robot | None = None
-        self._store = Store(_engine())
+        self._store = wasm_store.store()
+        try:
+            self._load(data, kit, sensors, actuators)
+        except BaseException:
+            self.close()
+            raise
+
+    def _load(self, data: bytes, kit: int, sensors: int, actuators: int) -> None:
+        module = wasm_store.module(MODULE)
         functions = self._robot_functions()
-        imports = [functions[each.name or ""] for each in _module().imports]
-        self._exports = Instance(self._store, _module(), imports).exports(self._store)
+        imports = [functions[each.name or ""] for each in module.imports]
+        self._exports = Instance(self._store, module, imports).exports(self._store)
         if len(data) > self.call("room_bytes"):
             raise ImageRefused("TRAILING")  # longer than any image
         memory = self._exports["memory"]
@@ -67,6 +80,21 @@ class WasmImage:
         self.call("start", sensors, seed, now_ms % _CLOCK)
         return WasmMachine(self, now_ms)
 
+    def close(self) -> None:
+        """Free its memory. It does nothing more then."""
+        self._store.close()
+
+    def __enter__(self) -> WasmImage:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        raised: BaseException | None,
+        where: TracebackType | None,
+    ) -> None:
+        self.close()
+
     def call(self, name: str, *values: int) -> int:
         return int(self.function(name)(*values) or 0)
 
@@ -79,10 +107,12 @@ class WasmImage:
     def _robot_functions(self) -> dict[str, Func]:
         """Return what the module imports: `robot.h`, under the names of `task.Robot`."""
         i32, i64 = ValType.i32(), ValType.i64()
+        owner = ref(self)  # no more: else it would live for ever, `wasm_store` says why
 
         def there() -> Robot:
-            assert self.robot is not None, "nothing runs yet"
-            return self.robot
+            image = owner()
+            assert image is not None and image.robot is not None, "nothing runs yet"
+            return image.robot
 
         def read(sensor: int) -> int:
             value = there().read(sensor)
@@ -130,14 +160,3 @@ class WasmMachine:
     def at(self) -> int:
         """Where the instruction that runs, or has faulted, begins."""
         return self._image.call("at")
-
-
-@lru_cache(maxsize=1)
-def _engine() -> Engine:
-    return Engine()
-
-
-@lru_cache(maxsize=1)
-def _module() -> Module:
-    """Compiling it takes a moment: once for each process."""
-    return Module(_engine(), MODULE.read_bytes())

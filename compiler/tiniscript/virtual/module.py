@@ -8,11 +8,13 @@ installed, or cannot run on this computer.
 from __future__ import annotations
 
 from ctypes import addressof, c_ubyte
-from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple, Protocol
+from weakref import WeakMethod
 
-from wasmtime import Engine, Func, FuncType, Instance, Memory, Module, Store
+from wasmtime import Func, FuncType, Instance, Memory
+
+from tiniscript import wasm_store
 
 PATH = Path(__file__).with_name("robot.wasm")
 
@@ -63,9 +65,16 @@ class Firmware:
     """The firmware from power-on on. `memory` is what its EEPROM holds; None: it is new."""
 
     def __init__(self, board: Board, what: Circumstances, memory: bytes | None = None) -> None:
-        self._store = Store(_engine())
-        module = _module()
-        look = Func(self._store, FuncType([], []), self._look)
+        self._store = wasm_store.store()
+        module = wasm_store.module(PATH)
+        looks = WeakMethod(self._look)  # `wasm_store` says why
+
+        def look_now() -> None:
+            look = looks()
+            assert look is not None, "switched off"
+            look()
+
+        look = Func(self._store, FuncType([], []), look_now)
         exports = Instance(self._store, module, [look]).exports(self._store)
         self._functions: dict[str, Func] = {}
         for each in module.exports:
@@ -121,6 +130,13 @@ class Firmware:
     def call(self, name: str, *values: int) -> int:
         return int(self._functions[name](self._store, *values) or 0)
 
+    def close(self) -> None:
+        """Switch it off, and free its memory. It does nothing more then."""
+        self._functions = {}
+        self._numbers.release()  # it shows what is no longer there
+        self._told = []
+        self._store.close()
+
     def press(self) -> None:
         """The start button goes down."""
         self.call("press")
@@ -142,14 +158,3 @@ class Firmware:
             found = tell(now_ms % _CLOCK, *values[:takes])
             if what == _READ:
                 numbers[self._reading] = found
-
-
-@lru_cache(maxsize=1)
-def _engine() -> Engine:
-    return Engine()
-
-
-@lru_cache(maxsize=1)
-def _module() -> Module:
-    """Compiling it takes a moment: once for each process."""
-    return Module(_engine(), PATH.read_bytes())

@@ -106,6 +106,7 @@ class VirtualRobot:
         """Off and on: it stands where it stood, and knows what it has saved."""
         memory = self._firmware.memory()
         self.switch_off()
+        self._firmware.close()
         self._firmware = self._switched_on(reset, memory)
 
     def rest(self) -> None:

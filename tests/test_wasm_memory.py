@@ -1,0 +1,75 @@
+"""Machines and virtual robots that are done with give back their memory and their addresses."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+
+from tests.machines.wasm import missing
+
+pytest.importorskip("resource", reason="Windows has no limit for an address space")
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
+
+LIMIT_BYTES = 1 << 30  # of addresses: less than wasmtime by itself takes for one memory
+MACHINES = """
+from tiniscript import compile_text, robots
+from tiniscript.image import ImageRefused
+from tiniscript.wasm_machine import WasmImage
+kit = robots.load("tinibot").kit
+image = compile_text("F(1, 50)", kit).image
+
+def loaded(data=image):
+    return WasmImage(data, kit.fingerprint, len(kit.sensors), len(kit.actuators))
+"""
+ROBOTS = """
+from tiniscript import robots
+from tiniscript.virtual.robot import VirtualRobot
+from tiniscript.virtual.worlds import load
+profile, world = robots.load("tinibot"), load("obstacles")
+"""
+
+
+def limited(code: str) -> str:
+    """Return what Python code prints that has LIMIT_BYTES for its addresses."""
+    limit = f"import resource\nresource.setrlimit(resource.RLIMIT_AS, ({LIMIT_BYTES},) * 2)\n"
+    done = subprocess.run(
+        [sys.executable, "-c", limit + code], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr[-2000:]
+    return done.stdout
+
+
+@pytest.mark.parametrize("each", [
+    "loaded()",
+    "loaded().machine(image, None)",
+    "with loaded() as one: one.machine(image, None)",
+    "try: loaded(image[:-1])\n    except ImageRefused: pass",
+    "one = loaded(); one.myself = one; one.close()",
+])  # fmt: skip
+def test_two_thousand_machines_after_each_other(each: str) -> None:
+    """However one ends: forgotten, refused, or closed while something still knows it."""
+    code = f"{MACHINES}\nfor k in range(2000):\n    {each}\nprint(k + 1)"
+    assert limited(code) == "2000\n"
+
+
+def test_two_hundred_machines_at_once() -> None:
+    assert limited(f"{MACHINES}\nprint(len([loaded() for k in range(200)]))") == "200\n"
+
+
+def test_a_virtual_robot_is_switched_off_and_on() -> None:
+    code = f"""{ROBOTS}
+robot = VirtualRobot(profile, world)
+for k in range(1000):
+    robot.power_cycle()
+    robot.step(robot.now_ms + 10)
+print(k + 1)"""
+    assert limited(code) == "1000\n"
+
+
+def test_many_virtual_robots_after_each_other() -> None:
+    code = (
+        f"{ROBOTS}\nfor k in range(1000):\n    VirtualRobot(profile, world).step(10)\nprint(k + 1)"
+    )
+    assert limited(code) == "1000\n"
