@@ -46,7 +46,7 @@ def need(why: str) -> None:
 def copied(folder: Path) -> Path:
     """Return a copy of the sketch in a folder, to build and to break."""
     need(prepared()[1])
-    ignored = shutil.ignore_patterns(".pio")
+    ignored = shutil.ignore_patterns(".pio", "__pycache__", "own.h")
     return Path(shutil.copytree(SKETCH, folder / "vm_arduino", ignore=ignored))
 
 

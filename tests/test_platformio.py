@@ -272,6 +272,20 @@ def test_what_is_an_answer_of_the_registry(
     assert platformio_offline.registry_answers() == is_one
 
 
+def test_a_file_that_has_just_changed_is_read_anew(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of the same length in the same second: nothing but its text tells it from the one before."""
+    from tools import platformio_offline
+
+    monkeypatch.setattr(sys, "dont_write_bytecode", False)
+    file = tmp_path / "some_module.py"
+    for value in ("1", "2"):
+        file.write_text(f"VALUE = {value}\n", encoding="utf-8")
+        os.utime(file, (1_000_000_000, 1_000_000_000))
+        assert str(platformio_offline.load(file).VALUE) == value
+
+
 def test_command_runs_in_the_project(project: Path) -> None:
     code, out, _ = offline("--project", str(project), "pio", "project", "config")
     assert code == 0

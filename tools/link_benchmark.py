@@ -88,7 +88,7 @@ class Figures(NamedTuple):
 def built(baud: int, folder: Path) -> Path:
     """Return the firmware for a baud. Raises RuntimeError with the log."""
     project = folder / f"vm_arduino_{baud}"
-    shutil.copytree(PROJECT, project, ignore=shutil.ignore_patterns(".pio"))
+    shutil.copytree(PROJECT, project, ignore=shutil.ignore_patterns(".pio", "own.h"))
     kits = project / "src" / "boards" / "kits"
     header = (kits / "tinibot.h").read_text(encoding="utf-8")
     own, count = re.subn(r"kBaud = \d+;", f"kBaud = {baud};", header)

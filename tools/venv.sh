@@ -63,11 +63,14 @@ make_venv() {
         rm -rf "$ROOT/.venv"
         "$found" -m venv "$ROOT/.venv" || fail "python -m venv failed; see above."
     fi
+    # What was installed, and from where: times of files say neither in the second of a change, nor
+    # where a folder has been moved or an older state of it has been taken out.
     stamp="$ROOT/.venv/installed$1"
-    if [ ! -f "$stamp" ] || [ "$ROOT/pyproject.toml" -nt "$stamp" ]; then
+    wanted="$(cksum <"$ROOT/pyproject.toml") $ROOT"
+    if [ "$(cat "$stamp" 2>/dev/null)" != "$wanted" ]; then
         say "Installing TiniScript and what it needs from PyPI into .venv"
         "$PYTHON" -m pip install --quiet --disable-pip-version-check --editable "$ROOT$1" ||
             fail "pip could not install; is this computer online?"
-        touch "$stamp"
+        printf '%s\n' "$wanted" >"$stamp"
     fi
 }
