@@ -18,6 +18,7 @@ import pytest
 
 from tests.command import OBSTACLE, TSC, Done, Tsc, process
 from tests.virtual import missing
+from tiniscript.cli import installing
 from tiniscript.virtual import directory
 
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
@@ -352,4 +353,4 @@ def test_what_is_not_installed_is_said(
     monkeypatch.setitem(sys.modules, name, None)
     done = tsc("upload", "--virtual", "-e", "SI|S", "--plot", tmp_path / "way.png")
     assert done.code == 2
-    assert 'pip install "tiniscript[virtual]"' in done.err
+    assert installing.command("virtual") in done.err

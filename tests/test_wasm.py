@@ -18,7 +18,7 @@ from tests.test_cases import having, listings_alone, robot_and_senses
 from tests.test_house import imported_by
 from tiniscript import compile_text, robots
 from tiniscript.bytecode import ISA_MAJOR, ISA_MINOR
-from tiniscript.cli import running
+from tiniscript.cli import installing, running
 from tiniscript.image import Image, ImageRefused, pack, unpack
 from tiniscript.listing import read_listing
 from tiniscript.run import AnyMachine
@@ -177,7 +177,7 @@ def test_without_wasmtime_the_next_step_is_said(
     monkeypatch.delitem(sys.modules, "tiniscript.wasm_machine", raising=False)
     done = tsc("run", "-e", "F(1, 50)", "--machine", "cpp", "--lang", language)
     assert (done.code, done.out) == (2, "")
-    assert 'pip install "tiniscript[virtual]"' in done.err
+    assert installing.command("virtual") in done.err
     assert "--machine python" in done.err
 
 

@@ -1,15 +1,16 @@
-"""Builds the firmware of the shipped robots for the package: `tsc firmware` writes it on boards.
+"""Builds the firmware of the shipped robots for a package, so that nobody has to build it again.
 
     python tools/build_firmware.py
 
 puts a file for each robot on each board that it fits, and the notices of what is in them, where
-the package is made from. It builds with PlatformIO, offline stand-ins included, in a folder of its
-own: the same files come out wherever that is, with the same compiler.
+the package is made from. It builds as `tsc firmware` does, with PlatformIO, offline stand-ins
+included: the same files come out wherever that is, with the same compiler.
 """
 
 from __future__ import annotations
 
 import argparse
+import os
 import shutil
 import sys
 import tempfile
@@ -18,9 +19,13 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
+from tiniscript import robots
+from tiniscript.cli import installing
+from tiniscript.cli.building import on_boards
+from tiniscript.flash import building
 from tiniscript.flash.ready import FOLDER, NOTICE, name_of
-from tools.firmware_size import PROJECT, environments, measured
-from tools.platformio_offline import CannotStandIn
+from tiniscript.robots.profile import Robot
+from tools.platformio_offline import PROJECT, CannotStandIn, settings_for
 
 LICENCE = Path("/usr/share/common-licenses/LGPL-2.1")  # Debian's copy
 LICENCE_NAME = "LGPL-2.1.txt"
@@ -45,15 +50,17 @@ class CannotBuild(Exception):
     """Something is missing; says what, and what to do."""
 
 
-def build(name: str, target: Path) -> Path:
-    """Build one environment of `vm_arduino/platformio.ini` into a folder; return the file."""
-    with tempfile.TemporaryDirectory() as folder:
-        project = Path(folder) / "vm_arduino"
-        ignored = shutil.ignore_patterns(".pio", "own.h")
-        shutil.copytree(PROJECT, project, ignore=ignored)
-        sketch = measured(name, project)
-        made = target / name_of(sketch.robot, sketch.board)
-        shutil.copy(sketch.firmware.with_suffix(".hex"), made)
+def shipped() -> list[Robot]:
+    """Return each shipped robot on each board that it fits."""
+    return [robot for name in robots.names() for robot in on_boards(name)]
+
+
+def build(robot: Robot, target: Path) -> Path:
+    """Build the firmware of a robot on its board into a folder; return the file."""
+    sources = building.sources()
+    assert sources is not None, "no vm_arduino beside this folder"
+    made = target / name_of(robot.name, robot.board.chip, sources.digest(robot))
+    made.write_bytes(building.build(sources, robot, lambda seen: None))
     return made
 
 
@@ -64,11 +71,15 @@ def build_all(target: Path, licence: Path) -> list[Path]:
             f"there is no {licence}: name a copy of the GNU LGPL 2.1 with --licence; "
             "https://www.gnu.org/licenses/old-licenses/lgpl-2.1.txt is one"
         )
+    if building.platformio() is None:
+        how = installing.command(installing.FIRMWARE)
+        raise CannotBuild(f"PlatformIO is not installed. Install it:  {how}")
+    os.environ.update(settings_for(PROJECT, offline=False, may_install=False))
     target.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=target.parent) as scratch:
         new = Path(scratch) / "ready"
         new.mkdir()
-        made = [build(name, new) for name in environments()]
+        made = [build(robot, new) for robot in shipped()]
         (new / NOTICE).write_text(NOTICE_TEXT, encoding="utf-8")
         shutil.copy(licence, new / LICENCE_NAME)
         shutil.rmtree(target, ignore_errors=True)
@@ -82,7 +93,10 @@ def main(arguments: list[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     try:
         made = build_all(FOLDER, options.licence)
-    except (CannotBuild, CannotStandIn, RuntimeError) as why:
+    except building.CannotBuild as why:
+        print(f"build_firmware: {why.log or why}", file=sys.stderr)
+        return 2
+    except (CannotBuild, CannotStandIn) as why:
         print(f"build_firmware: {why}", file=sys.stderr)
         return 2
     for path in made:

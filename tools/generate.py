@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import re
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
@@ -249,10 +248,8 @@ def robot_header(path: Path) -> str:
     text = path.read_text(encoding="utf-8")
     wired: list[Robot] = []
     for board in AVRS:
-        changed, count = re.subn(r'^chip *= *"\w+"', f'chip = "{board}"', text, flags=re.M)
-        assert count == 1, f"{path.name} names no board"
         try:
-            wired.append(read(changed, path.stem))
+            wired.append(read(text, path.stem, board))
         except ProfileRefused:
             continue  # the board has no such pins
     return firmware.header(wired, f"{COMMAND} from robots/{path.name}.")

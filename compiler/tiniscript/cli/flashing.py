@@ -1,4 +1,4 @@
-"""`tsc firmware`: puts a shipped robot's firmware on a board, and asks who is there then."""
+"""`tsc firmware`: puts a robot's firmware on a board, and asks who is there then."""
 
 from __future__ import annotations
 
@@ -22,32 +22,38 @@ if TYPE_CHECKING:
 
 HELP = (
     """\
-tsc firmware --port P [--robot NAME] [--board BOARD]
+tsc firmware --port P [--robot NAME|FILE] [--board BOARD]
+tsc firmware --build [--robot NAME|FILE] [--board BOARD]
 tsc firmware --list
 
 Writes the firmware of a robot on its board, over the USB cable, and reads it back. Unplug the
-HC-05, or whatever else is on pins 0 and 1, as long as that takes.
+HC-05, or whatever else is on pins 0 and 1, as long as that takes. Firmware that is not ready yet is
+built first, with PlatformIO; the first time that needs the internet.
   --port P      the port of the board's USB cable: tsc ports lists them
-  --robot NAME  tinibot (if none is named), liner or grabber
+  --robot NAME|FILE tinibot (if none is named), liner, grabber, or a profile of your own
   --board BOARD uno, nano, nano-old (with the bootloader of before 2018) or mega; if none is
                 named, the one that the robot has
-  --list        lists the firmware that came with tsc
+  --build       makes the firmware ready and writes nothing: for later, without internet
+  --list        lists which firmware is ready
 
-It needs avrdude. The firmware of a robot of your own: tsc board --help
+It needs avrdude.
 """,
     """\
-tsc firmware --port P [--robot NOMBRE] [--board PLACA]
+tsc firmware --port P [--robot NOMBRE|ARCHIVO] [--board PLACA]
+tsc firmware --build [--robot NOMBRE|ARCHIVO] [--board PLACA]
 tsc firmware --list
 
 Escribe el firmware de un robot en su placa, por el cable USB, y lo lee de vuelta. Desconecta el
-HC-05, o lo que esté en los pines 0 y 1, mientras eso dure.
+HC-05, o lo que esté en los pines 0 y 1, mientras eso dure. Si el firmware todavía no está listo,
+primero se construye, con PlatformIO; la primera vez hace falta internet.
   --port P      el puerto del cable USB de la placa: tsc ports los lista
-  --robot NOMBRE tinibot (si no se nombra ninguno), liner o grabber
+  --robot NOMBRE|ARCHIVO tinibot (si no se nombra ninguno), liner, grabber, o un perfil propio
   --board PLACA uno, nano, nano-old (con el cargador de arranque de antes de 2018) o mega; si no
                 se nombra ninguna, la que tiene el robot
-  --list        lista el firmware que vino con tsc
+  --build       deja listo el firmware y no escribe nada: para después, sin internet
+  --list        lista qué firmware está listo
 
-Necesita avrdude. El firmware de un robot propio: tsc board --help
+Necesita avrdude.
 """,
 )
 
@@ -63,56 +69,47 @@ def run(arguments: list[str], language: str) -> int:
     parser.add_argument("--port")
     parser.add_argument("--robot")
     parser.add_argument("--board")
+    parser.add_argument("--build", action="store_true")
     parser.add_argument("--list", action="store_true")
     options = parser.read(arguments)
     if options is None:
         return 0
+    from tiniscript.cli import building
+
     if options.list:
-        return _list(language)
-    robot = inputs.robot(options, language)
-    firmware, bootloaders = _chosen(options, robot)
+        building.print_list(language)
+        return 0
+    robot, bootloaders = _chosen(options, language)
+    if options.build:
+        print(building.row(robot, building.firmware(robot, language), language))
+        return 0
     command = _avrdude()
     port = _port(options)
+    firmware = building.firmware(robot, language)
     _write(command, bootloaders, port, firmware, language)
     size = f"{firmware.bytes:,}"
-    values = {"robot": firmware.robot, "board": firmware.board, "bytes": size}
+    values = {"robot": robot.name, "board": firmware.board, "bytes": size}
     print(text("flash_done", language).format(**values), flush=True)
     _introduce(port, robot, firmware.board, language)
     return 0
 
 
-def _list(language: str) -> int:
-    for each in _files():
-        values = {"robot": each.robot, "board": each.board, "bytes": f"{each.bytes:,}"}
-        print(text("flash_row", language).format(**values))
-    return 0
-
-
-def _files() -> list[Ready]:
-    from tiniscript.flash import ready
-
-    found = ready.files()
-    if not found:
-        raise Trouble(2, "flash_none", command=ready.BUILD_COMMAND)
-    return found
-
-
-def _chosen(options: Namespace, robot: Robot) -> tuple[Ready, tuple[Bootloader, ...]]:
-    """Return the firmware that the options name, and how it may be written."""
-    from tiniscript import robots
+def _chosen(options: Namespace, language: str) -> tuple[Robot, tuple[Bootloader, ...]]:
+    """Return the robot that the options name, on its board, and how that may be written."""
+    from tiniscript.cli import building
     from tiniscript.flash.bootloaders import BOARDS
 
     if options.board is not None and options.board not in BOARDS:
         raise Trouble(2, "flash_bad_board", known=", ".join(BOARDS), found=shown(options.board))
-    name = robots.DEFAULT if options.robot is None else options.robot
-    if name.lower() not in robots.names():
-        values = {"robot": shown(name), "board": robot.board.chip}
-        raise Trouble(2, "flash_own", known=", ".join(robots.names()), **values)
-    board, bootloaders = BOARDS[options.board or robot.board.chip]
-    mine = {each.board: each for each in _files() if each.robot == name.lower()}
-    if board not in mine:
-        raise Trouble(2, "flash_no_fit", robot=name, board=board, known=", ".join(mine))
-    return mine[board], bootloaders
+    robot = inputs.robot(options, language)
+    board, bootloaders = BOARDS.get(options.board or robot.board.chip, ("", ()))
+    if not board:
+        raise Trouble(2, "no_firmware", chip=robot.board.chip, known=", ".join(building.BOARDS))
+    there = building.on_boards(options.robot, [board])
+    if not there:
+        fits = ", ".join(each.board.chip for each in building.on_boards(options.robot))
+        raise Trouble(2, "flash_no_fit", robot=robot.name, board=board, known=fits)
+    return there[0], bootloaders
 
 
 def _avrdude() -> list[str]:

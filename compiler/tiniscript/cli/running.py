@@ -109,7 +109,10 @@ def _cpp_machine(image: Image, robot: Robot) -> MachineOf:
     try:
         from tiniscript.wasm_machine import WasmImage
     except (ImportError, OSError, RuntimeError) as why:  # not there, or not for this computer
-        raise Trouble(2, "no_wasmtime", why=str(why)) from None
+        from tiniscript.cli import installing
+
+        how = installing.command(installing.VIRTUAL)
+        raise Trouble(2, "no_wasmtime", why=str(why), how=how) from None
     from tiniscript.image import ImageRefused, pack
     from tiniscript.verify import Refused
 

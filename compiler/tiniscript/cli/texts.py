@@ -162,9 +162,9 @@ TEXTS: dict[str, tuple[str, str]] = {
     "no_machine": ("tsc: there is no machine {found} here. There are: python, cpp.",
                    "tsc: aquí no hay una máquina {found}. Hay: python, cpp."),
     "no_wasmtime": ("tsc: --machine cpp needs wasmtime, which cannot be used here: {why}.\n"
-                    "Install it:  pip install \"tiniscript[virtual]\"   or try:  --machine python",
+                    "Install it:  {how}   or try:  --machine python",
                     "tsc: --machine cpp necesita wasmtime, que aquí no se puede usar: {why}.\n"
-                    "Instálalo:  pip install \"tiniscript[virtual]\"   o prueba:  --machine python"),
+                    "Instálalo:  {how}   o prueba:  --machine python"),
     "no_code": ("tsc: there is no mistake {found}. The list:  tsc explain",
                 "tsc: no existe el error {found}. La lista:  tsc explain"),
     "profile_refused": ("tsc: the robot profile {file} cannot be used:\n{reasons}",

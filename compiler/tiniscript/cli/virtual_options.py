@@ -67,7 +67,7 @@ def made(
     try:
         from tiniscript.virtual.robot import Settings, VirtualRobot
     except (ImportError, OSError, RuntimeError) as why:  # not there, or not for this computer
-        raise Trouble(2, "virtual_needs_wasmtime", why=str(why)) from None
+        raise _not_installed("virtual_needs_wasmtime", why) from None
     settings = Settings(seed=seed, noise=noise, motors=motors, told=told, baud=baud)
     try:
         return VirtualRobot(profile, world, settings, memory)
@@ -127,7 +127,7 @@ def check_picture(options: Namespace) -> None:
     try:
         import PIL.Image  # noqa: F401
     except ImportError as why:
-        raise Trouble(2, "plot_needs_pillow", why=str(why)) from None
+        raise _not_installed("plot_needs_pillow", why) from None
 
 
 def draw_picture(options: Namespace, robot: VirtualRobot, language: str) -> None:
@@ -182,3 +182,9 @@ def _motors(found: str | None, language: str) -> tuple[float, float]:
         number("--motors", each.strip(), 0, MOTOR_LOW, MOTOR_HIGH, language) for each in parts
     )
     return left, right
+
+
+def _not_installed(key: str, why: Exception) -> Trouble:
+    from tiniscript.cli import installing
+
+    return Trouble(2, key, why=str(why), how=installing.command(installing.VIRTUAL))

@@ -7,13 +7,13 @@ VIRTUAL_TEXTS: dict[str, tuple[str, str]] = {
     # key: (English, Spanish)
     # options
     "virtual_needs_wasmtime": ("tsc: the virtual robot needs wasmtime, which cannot be used here: {why}.\n"
-                               "Install it:  pip install \"tiniscript[virtual]\"",
+                               "Install it:  {how}",
                                "tsc: el robot virtual necesita wasmtime, que aquí no se puede usar: {why}.\n"
-                               "Instálalo:  pip install \"tiniscript[virtual]\""),
+                               "Instálalo:  {how}"),
     "plot_needs_pillow": ("tsc: --plot needs Pillow, which cannot be used here: {why}.\n"
-                          "Install it:  pip install \"tiniscript[virtual]\"",
+                          "Install it:  {how}",
                           "tsc: --plot necesita Pillow, que aquí no se puede usar: {why}.\n"
-                          "Instálalo:  pip install \"tiniscript[virtual]\""),
+                           "Instálalo:  {how}"),
     "bad_hurry": ("tsc: --hurry takes how many times as fast the robot is, such as 10, or max; not {found}.",
                   "tsc: --hurry acepta cuántas veces más rápido va el robot, como 10, o max; no {found}."),
     "bad_motors": ("tsc: --motors takes two numbers, left and right, such as 100,90; not {found}.",

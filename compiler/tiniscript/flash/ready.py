@@ -1,17 +1,22 @@
-"""The firmware that the package brings: a file for each robot on each board that it fits.
+"""Firmware that is ready to be written: files, named after the robot, the board and a digest.
 
-`tools/build_firmware.py` makes them. A package that was made without them has none.
+The digest is of all that a firmware is made from, so that an old file is never taken for a new
+one. A package may bring files (`tools/build_firmware.py` makes them); others are built when they
+are first wanted, and kept in the user's cache.
 """
 
 from __future__ import annotations
 
+import os
+import tempfile
 from pathlib import Path
 from typing import NamedTuple
 
 FOLDER = Path(__file__).resolve().parent / "ready"
 NOTICE = "NOTICE.txt"
-DATA = "00"  # in the row of a HEX file
-BUILD_COMMAND = "python tools/build_firmware.py"
+KEPT = 30  # files in the cache; the oldest go first
+NAME_CHARACTERS = 24  # of a robot's name, in a file's name
+DATA, END = "00", "01"  # in the row of a HEX file
 
 
 class Ready(NamedTuple):
@@ -19,6 +24,7 @@ class Ready(NamedTuple):
 
     robot: str
     board: str
+    digest: str
     path: Path
 
     @property
@@ -28,14 +34,62 @@ class Ready(NamedTuple):
         return sum(int(row[1:3], 16) for row in rows if row[7:9] == DATA)
 
 
-def name_of(robot: str, board: str) -> str:
-    return f"{robot}-{board}.hex"
+def cache() -> Path:
+    """Return the user's folder for what was built."""
+    from platformdirs import user_cache_path
+
+    return user_cache_path("tiniscript", appauthor=False) / "firmware"
+
+
+def name_of(robot: str, board: str, digest: str) -> str:
+    plain = "".join(letter if letter.isalnum() else "_" for letter in robot)
+    return f"{plain[:NAME_CHARACTERS]}-{board}-{digest}.hex"
 
 
 def files(folder: Path = FOLDER) -> list[Ready]:
-    """Return what the package brings, by robot and board."""
+    """Return what is in a folder, by robot and board. A file that has no end is left out."""
     found = []
-    for path in sorted(folder.glob("*-*.hex")):
-        robot, _, board = path.stem.rpartition("-")
-        found.append(Ready(robot, board, path))
+    for path in sorted(folder.glob("*-*-*.hex")):
+        if is_whole(path):
+            robot, board, digest = path.stem.rsplit("-", 2)
+            found.append(Ready(robot, board, digest, path))
     return found
+
+
+def find(robot: str, board: str, digest: str) -> Ready | None:
+    """Return the file with this digest, from the package or the cache."""
+    name = name_of(robot, board, digest)
+    for folder in (FOLDER, cache()):
+        if is_whole(folder / name):
+            return Ready(robot, board, digest, folder / name)
+    return None
+
+
+def is_whole(path: Path) -> bool:
+    """Whether every row of a HEX file has its sum, and the last one says that it is the last."""
+    try:
+        rows = path.read_text(encoding="ascii").split()
+        sums = [sum(bytes.fromhex(row[1:])) % 256 for row in rows if row[0] == ":"]
+    except (OSError, ValueError):
+        return False
+    return bool(rows) and rows[-1][7:9] == END and sums == [0] * len(rows)
+
+
+def keep(robot: str, board: str, digest: str, data: bytes) -> Ready:
+    """Put a firmware into the cache, all of it or nothing. Raises OSError."""
+    folder = cache()
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / name_of(robot, board, digest)
+    number, new = tempfile.mkstemp(dir=folder, suffix=".new")
+    try:
+        with os.fdopen(number, "wb") as file:
+            file.write(data)
+        Path(new).replace(path)
+    except BaseException:
+        Path(new).unlink(missing_ok=True)
+        raise
+    kept = sorted(folder.glob("*.hex"), key=lambda each: each.stat().st_mtime_ns)
+    for old in kept[:-KEPT]:
+        if old != path:
+            old.unlink(missing_ok=True)
+    return Ready(robot, board, digest, path)

@@ -21,23 +21,27 @@ def names() -> list[str]:
     return sorted(ROBOTS, key=lambda name: (name != DEFAULT, name))
 
 
-def load(name_or_path: str) -> Robot:
+def load(name_or_path: str, chip: str | None = None) -> Robot:
     """Return a shipped robot, in any case, or the one that a TOML file describes.
 
-    Anything else that ends in `.toml`, contains a separator or exists is a file of at most
-    FILE_BYTES bytes of UTF-8. Raises ProfileRefused and nothing else.
+    `chip`: as if its profile named this board. Anything else that ends in `.toml`, contains a
+    separator or exists is a file of at most FILE_BYTES bytes of UTF-8. Raises ProfileRefused and
+    nothing else.
     """
     from tiniscript.robots.shipped import ROBOTS
 
     make = ROBOTS.get(name_or_path.lower())
     if make is not None:
-        return make()
+        robot = make()
+        if chip in (None, robot.board.chip):
+            return robot
+        name_or_path = f"{__path__[0]}{os.sep}{robot.name}.toml"
     if is_path(name_or_path):
         from pathlib import Path
 
         from tiniscript.robots.reader import read
 
-        return read(text_of(name_or_path), Path(name_or_path).stem)
+        return read(text_of(name_or_path), Path(name_or_path).stem, chip)
 
     from tiniscript.robots.refusals import shown
     from tiniscript.words import nearest

@@ -31,11 +31,17 @@ FARTHEST_CM = 1000 * ONE
 FASTEST_CM_S = 1000 * ONE
 
 
-def read(text: str, name: str) -> Robot:
-    """Return the robot that a profile's text describes, under `name`. Raises ProfileRefused."""
+def read(text: str, name: str, chip: str | None = None) -> Robot:
+    """Return the robot that a profile's text describes, under `name`.
+
+    `chip`: as if the profile named this board. Raises ProfileRefused.
+    """
     found = parse_toml(text)
     if isinstance(found, tuple):
         raise ProfileRefused(found)
+    named = found.get("board")
+    if chip is not None and isinstance(named, dict):
+        named["chip"] = chip
     reasons: list[Reason] = []
     root = Table(found, "", reasons)
     kit = _read_kit(root.table("kit", "[kit]"))

@@ -1,0 +1,200 @@
+"""Builds the firmware of a robot with PlatformIO, from the sources that are in `vm_arduino`.
+
+Knows where sources and PlatformIO are, and what PlatformIO says while it builds. Prints nothing:
+how far it is, is data. What it builds is for one robot on one board; the robot is the header
+`own.h`, whether it is a shipped one or not.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Mapping
+from importlib.util import find_spec
+from pathlib import Path
+from typing import NamedTuple
+
+from tiniscript.flash.ready import is_whole
+from tiniscript.robots import firmware
+from tiniscript.robots.profile import Robot
+
+PACKAGE = Path(__file__).resolve().parent.parent
+# A wheel brings the sources; in a clone they are beside `compiler`.
+PLACES = (PACKAGE / "flash" / "vm_arduino", PACKAGE.parent.parent / "vm_arduino")
+SETTINGS = "platformio.ini"
+HEADER = "src/boards/kits/own.h"
+MADE_BY = "tsc firmware, from a robot profile."
+
+FETCHING, COMPILING = "fetching", "compiling"
+CORE_FILES = 26  # of Arduino's core, about
+LOG_BYTES = 1 << 20  # of what PlatformIO says; the last ones
+KILLED_AFTER_S = 5.0  # that PlatformIO has to end by itself
+
+# Of the person's own settings of PlatformIO, those that would build something else, or elsewhere.
+_UNWANTED = re.compile(
+    r"PLATFORMIO_(.*FLAGS|EXTRA_SCRIPTS|DEFAULT_ENVS|FORCE_ANSI"
+    r"|(SRC|INCLUDE|LIB|DATA|TEST|BUILD|WORKSPACE|SHARED|BUILD_CACHE)_DIR)"
+)
+_COMPILING = re.compile(r"^Compiling ", re.M)
+_INSTALLING = re.compile(r"^.*Manager: Installing (\S+)", re.M)
+_PERCENT = re.compile(r"(\d+)%")
+
+
+class Seen(NamedTuple):
+    """What it is at, and how many percent of that are done; what it fetches, by name."""
+
+    phase: str
+    percent: int
+    what: str = ""
+
+
+class CannotBuild(Exception):
+    """Why, by a name from below; what PlatformIO has said last, and all of it."""
+
+    NO_SOURCES, NO_PLATFORMIO = "no_sources", "no_platformio"
+    UNREACHABLE, FAILED = "unreachable", "build_failed"
+
+    def __init__(self, why: str, said: str = "", log: str = "") -> None:
+        super().__init__(said or why)
+        self.why = why
+        self.said = said
+        self.log = log
+
+
+class Sources(NamedTuple):
+    """All that a firmware is made from but the robot: bytes, by their path."""
+
+    files: Mapping[str, bytes]
+
+    def digest(self, robot: Robot) -> str:
+        """Return what no other sources, robot or board have."""
+        key = hashlib.sha256(f"{robot.board.chip}\n{header(robot)}".encode())
+        for name, data in self.files.items():
+            key.update(f"{name}\n{len(data)}\n".encode() + data)
+        return key.hexdigest()[:16]
+
+
+def sources() -> Sources | None:
+    """Return the sources, or None where this package has none."""
+    for place in PLACES:
+        if (place / SETTINGS).is_file():
+            found = [place / SETTINGS, *sorted((place / "src").rglob("*"))]
+            names = {path.relative_to(place).as_posix(): path for path in found if path.is_file()}
+            names.pop(HEADER, None)
+            return Sources({name: path.read_bytes() for name, path in names.items()})
+    return None
+
+
+def header(robot: Robot) -> str:
+    return firmware.header([robot], MADE_BY)
+
+
+def platformio() -> list[str] | None:
+    """Return the command that runs PlatformIO: of this Python, on PATH, or of its editor."""
+    if find_spec("platformio"):
+        return [sys.executable, "-m", "platformio"]
+    home = Path.home() / ".platformio" / "penv"
+    for name in ("pio", "platformio", str(home / "bin" / "pio"), str(home / "Scripts" / "pio.exe")):
+        found = shutil.which(name)
+        if found:
+            return [found]
+    return None
+
+
+def build(made_from: Sources, robot: Robot, look: Callable[[Seen], None]) -> bytes:
+    """Return the firmware of a robot for its board, an Intel HEX file. `look` is called often.
+
+    Raises CannotBuild, and OSError where there is no room to build.
+    """
+    command = platformio()
+    if command is None:
+        raise CannotBuild(CannotBuild.NO_PLATFORMIO)
+    with tempfile.TemporaryDirectory(prefix="tiniscript-", ignore_cleanup_errors=True) as folder:
+        project = Path(folder)
+        for name, data in {**made_from.files, HEADER: header(robot).encode()}.items():
+            (project / name).parent.mkdir(parents=True, exist_ok=True)
+            (project / name).write_bytes(data)
+        environment = robot.board.chip
+        code, log = _run([*command, "run", "-d", folder, "-e", environment], look, made_from)
+        made = project / ".pio" / "build" / environment / "firmware.hex"
+        if code != 0 or not is_whole(made):
+            began = _COMPILING.search(log)
+            why = CannotBuild.FAILED if began else CannotBuild.UNREACHABLE
+            raise CannotBuild(why, _reason(log) or f"exit code {code}", log)
+        return made.read_bytes()
+
+
+def _run(command: list[str], look: Callable[[Seen], None], made_from: Sources) -> tuple[int, str]:
+    """Return the exit code of PlatformIO, and what it has said."""
+    files = sum(name.endswith((".cpp", ".S")) for name in made_from.files) + CORE_FILES
+    running = subprocess.Popen(
+        command,
+        env=_environment(),
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        start_new_session=True,  # it has children, which end with it
+    )
+    assert running.stdout
+    said = b""
+    try:
+        while data := os.read(running.stdout.fileno(), 1 << 16):
+            said = (said + data)[-LOG_BYTES:]
+            found = seen(said.decode(errors="replace"), files)
+            if found:
+                look(found)
+        code = running.wait()
+    except BaseException:
+        _end(running)
+        raise
+    finally:
+        running.stdout.close()
+    return code, said.decode(errors="replace")
+
+
+def _environment() -> dict[str, str]:
+    own = {name: value for name, value in os.environ.items() if not _UNWANTED.fullmatch(name)}
+    return {**own, "PLATFORMIO_SETTING_ENABLE_TELEMETRY": "no"}
+
+
+def _end(running: subprocess.Popen[bytes]) -> None:
+    """End PlatformIO and its children: it may be in the middle of keeping what it has fetched."""
+    for gently in (True, False):
+        try:
+            if sys.platform == "win32":
+                running.kill()
+            else:
+                os.killpg(running.pid, signal.SIGINT if gently else signal.SIGKILL)
+            running.wait(KILLED_AFTER_S)
+        except subprocess.TimeoutExpired:
+            continue
+        except OSError:
+            pass
+        return
+
+
+def seen(said: str, files: int) -> Seen | None:
+    """Return how far it is, from all that it has said; `files` are as many as there are."""
+    compiled = len(_COMPILING.findall(said))
+    if compiled:
+        return Seen(COMPILING, min(99, 100 * compiled // files))
+    installing = list(_INSTALLING.finditer(said))
+    if installing:
+        percents = _PERCENT.findall(said, installing[-1].end())
+        return Seen(FETCHING, min(100, int(percents[-1])) if percents else 0, installing[-1][1])
+    return None
+
+
+def _reason(log: str) -> str:
+    """Return the row of a log that says most: the first error, else the last words."""
+    rows = [row.strip() for row in log.splitlines() if re.search(r"\w", row)]
+    errors = [row for row in rows if re.search(r"\berror\b", row, re.IGNORECASE)]
+    others = [row for row in rows if "Error" in row]
+    chosen = (errors or others or rows[-1:] or [""])[0]
+    return chosen[-200:].rstrip(": ")
