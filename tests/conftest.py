@@ -20,6 +20,18 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     )
 
 
+def pytest_configure(config: pytest.Config) -> None:
+    """In CI what will stop working is a failure: of pytest, and of Python in our own code."""
+    if os.environ.get("CI"):
+        for warned in (
+            "pytest.PytestDeprecationWarning",
+            "pytest.PytestCollectionWarning",
+            "pytest.PytestUnknownMarkWarning",
+            r"DeprecationWarning:(tiniscript|tests|tools)\b",
+        ):
+            config.addinivalue_line("filterwarnings", f"error::{warned}")
+
+
 def pytest_sessionstart() -> None:
     """Let Ctrl-C mean what it means to a person.
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import random
 import sys
-from collections.abc import Iterator
 from typing import NamedTuple
 
 import pytest
@@ -116,9 +115,8 @@ def reads_more(text: str) -> bool:
     return any(letter in text for letter in dashes + blanks)
 
 
-def batches() -> Iterator[range]:
-    for number in range(BATCHES):
-        yield range(number * BATCH, (number + 1) * BATCH)
+def batches() -> list[range]:
+    return [range(number * BATCH, (number + 1) * BATCH) for number in range(BATCHES)]
 
 
 @pytest.mark.parametrize("seeds", batches(), ids=lambda seeds: f"from {seeds.start}")
