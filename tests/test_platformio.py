@@ -17,6 +17,7 @@ import pytest
 from tests.platformio import OFFLINE, SKETCH, copied, pio, prepared
 from tiniscript import compile_text, robots
 from tiniscript.cli import main
+from tools.firmware_size import environments
 
 FLASH_BYTES, RAM_BYTES = 32_256, 2048  # of an Uno
 
@@ -145,11 +146,14 @@ def test_tests_are_for_a_computer(project: Path) -> None:
 
 SKETCHES = ("uno", "nano", "mega", "nano_liner", "mega_liner", "mega_grabber")
 
+NEW_NANOS = {"nano_new": "nano", "nano_new_liner": "nano_liner"}
+
 
 def test_every_robot_has_a_sketch_for_its_board() -> None:
     text = (SKETCH / "platformio.ini").read_text(encoding="utf-8")
     named = re.findall(r"\[env:(\w+)\]", text)
-    assert set(named) == {*SKETCHES, "native"}
+    assert set(named) == {*SKETCHES, *NEW_NANOS, "native"}
+    assert not {*NEW_NANOS, "native"} & set(environments())
     for name in robots.names():
         board = robots.load(name).board.chip
         assert (board if name == robots.DEFAULT else f"{board}_{name}") in SKETCHES
@@ -165,6 +169,20 @@ def test_sketch_builds(project: Path, name: str) -> None:
     assert 0 < used["Flash"] < FLASH_BYTES
     assert 0 < used["RAM"] < (RAM_BYTES if "mega" not in name else 4 * RAM_BYTES)
     assert (project / ".pio" / "build" / name / "firmware.hex").is_file()
+
+
+@pytest.mark.parametrize(("new", "old"), NEW_NANOS.items())
+def test_a_nano_with_a_new_bootloader_gets_the_same_sketch(
+    project: Path, new: str, old: str
+) -> None:
+    """What differs is how it is uploaded: as PlatformIO's board for such Nanos."""
+    made = []
+    for name in (new, old):
+        code, log = pio(project, "run", "-e", name)
+        assert code == 0, log
+        made.append((project / ".pio" / "build" / name / "firmware.hex").read_bytes())
+    assert made[0] == made[1]
+    assert "nanoatmega328new" in pio(project, "project", "config")[1].partition(f"env:{new}\n")[2]
 
 
 def test_sketch_of_a_robot_of_ones_own(project: Path) -> None:

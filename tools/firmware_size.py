@@ -25,6 +25,7 @@ OFFLINE = ROOT / "tools" / "platformio_offline.py"
 DEFAULT = "tinibot"  # where the name of an environment has no robot
 FLASH_MUST, FLASH_AIM = 20 * 1024, 12 * 1024
 RAM_MUST, RAM_AIM = 1300, 1000
+NEW_NANO = "nano_new"
 LARGE = "mega"  # a board that has more of everything
 
 
@@ -37,9 +38,12 @@ class Sketch(NamedTuple):
 
 
 def environments() -> list[str]:
-    """Return the names of the environments that build the sketch, `mega_grabber`."""
+    """Return the names of the environments that build the sketch, `mega_grabber`.
+
+    Those of a Nano with a new bootloader build what the others of a Nano do.
+    """
     names: list[str] = config_of(PROJECT).envs()
-    return [name for name in names if name != "native"]
+    return [name for name in names if name != "native" and not name.startswith(NEW_NANO)]
 
 
 def measured(name: str, project: Path = PROJECT) -> Sketch:
