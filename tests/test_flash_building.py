@@ -160,11 +160,11 @@ def pretending(folder: Path, body: str) -> dict[str, str]:
     package.mkdir(parents=True)
     (package / "__init__.py").write_text("")
     (package / "__main__.py").write_text(f"import os, subprocess, sys, time\n{body}\n")
-    return {"PYTHONPATH": f"{package.parent}{os.pathsep}"}
+    return {"PYTHONPATH": str(package.parent)}
 
 
 def built(clone: Path, variables: dict[str, str], *words: str) -> tuple[int, str, str]:
-    path = variables["PYTHONPATH"] + str(clone)
+    path = variables["PYTHONPATH"] + os.pathsep + str(clone)
     done = tsc(clone, "--build", *words, **{**variables, "PYTHONPATH": path})
     return done.code, done.out, done.err
 
@@ -225,6 +225,23 @@ def test_own_settings_build_nothing_else(clone: Path, tmp_path: Path) -> None:
     assert not [name for name in seen if re.search("FLAGS|SRC|BUILD|WORKSPACE|ENVS", name)]
 
 
+def test_a_pupils_files_are_not_taken_for_platformios(clone: Path, tmp_path: Path) -> None:
+    """A folder with programs may have a `serial.py` of the pupil's own."""
+    mine = tmp_path / "mine"
+    mine.mkdir()
+    (mine / "serial.py").write_text('print("Compiling my own"); raise SystemExit(1)')
+    done = subprocess.run(
+        command("--build"),
+        cwd=mine,
+        env={**os.environ, **pretending(tmp_path, "import serial\nprint(serial.__file__)")},
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 2
+    log = (ready.cache() / "build.log").read_text()
+    assert "my own" not in log and "serial" in log
+
+
 def test_where_nothing_can_be_kept_it_says_so(clone: Path, tmp_path: Path) -> None:
     body = """
 made = os.path.join(sys.argv[sys.argv.index("-d") + 1], ".pio", "build", "uno")
@@ -246,7 +263,7 @@ os.rename({str(told)!r} + ".new", {str(told)!r})
 time.sleep(600)
 """
     variables = pretending(tmp_path, body)
-    variables["PYTHONPATH"] += str(clone)
+    variables["PYTHONPATH"] += os.pathsep + str(clone)
     running = subprocess.Popen(
         command("--build"), env={**os.environ, **variables}, stderr=subprocess.PIPE, text=True
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -28,6 +29,17 @@ def test_ci_runs_the_tests_as_users_do(tmp_path: Path) -> None:
     seen = dict(row.partition("=")[::2] for row in done.stdout.splitlines())
     assert not set(SPECIAL) & set(seen)
     assert (seen["CI"], seen["PIP_INDEX_URL"]) == ("true", "file:///none")
+
+
+def test_readme_says_what_stays_in_the_folder_for_temporary_files() -> None:
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    kept = set()
+    for path in [*ROOT.glob("tests/**/*.py"), *ROOT.glob("tools/**/*.py")]:
+        text = path.read_text(encoding="utf-8")
+        kept |= set(re.findall(r'gettempdir\(\)\) / f"([\w-]+-)\{', text))
+    assert kept == {"tiniscript-host-", "tiniscript-uno-"}
+    for name in kept:
+        assert f"`{name}…`" in readme
 
 
 # -- the virtual environment

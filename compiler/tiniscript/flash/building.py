@@ -43,6 +43,7 @@ _UNWANTED = re.compile(
 )
 _COMPILING = re.compile(r"^Compiling ", re.M)
 _INSTALLING = re.compile(r"^.*Manager: Installing (\S+)", re.M)
+_ONLINE = re.compile(r"Installing|HTTP|Internet|[Cc]onnection")  # what needs the internet
 _PERCENT = re.compile(r"(\d+)%")
 
 
@@ -121,20 +122,25 @@ def build(made_from: Sources, robot: Robot, look: Callable[[Seen], None]) -> byt
             (project / name).parent.mkdir(parents=True, exist_ok=True)
             (project / name).write_bytes(data)
         environment = robot.board.chip
-        code, log = _run([*command, "run", "-d", folder, "-e", environment], look, made_from)
+        code, log = _run(
+            [*command, "run", "-d", folder, "-e", environment], folder, look, made_from
+        )
         made = project / ".pio" / "build" / environment / "firmware.hex"
         if code != 0 or not is_whole(made):
-            began = _COMPILING.search(log)
-            why = CannotBuild.FAILED if began else CannotBuild.UNREACHABLE
+            has_begun = _COMPILING.search(log) or not _ONLINE.search(log)
+            why = CannotBuild.FAILED if has_begun else CannotBuild.UNREACHABLE
             raise CannotBuild(why, _reason(log) or f"exit code {code}", log)
         return made.read_bytes()
 
 
-def _run(command: list[str], look: Callable[[Seen], None], made_from: Sources) -> tuple[int, str]:
+def _run(
+    command: list[str], folder: str, look: Callable[[Seen], None], made_from: Sources
+) -> tuple[int, str]:
     """Return the exit code of PlatformIO, and what it has said."""
     files = sum(name.endswith((".cpp", ".S")) for name in made_from.files) + CORE_FILES
     running = subprocess.Popen(
         command,
+        cwd=folder,  # Python finds modules in the folder where it begins: not in a pupil's
         env=_environment(),
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
