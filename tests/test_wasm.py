@@ -174,7 +174,8 @@ def test_without_wasmtime_the_next_step_is_said(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setitem(sys.modules, "wasmtime", None)
-    monkeypatch.delitem(sys.modules, "tiniscript.wasm_machine", raising=False)
+    for module in ("wasm_store", "wasm_machine"):
+        monkeypatch.delitem(sys.modules, f"tiniscript.{module}", raising=False)
     done = tsc("run", "-e", "F(1, 50)", "--machine", "cpp", "--lang", language)
     assert (done.code, done.out) == (2, "")
     assert installing.command("virtual") in done.err
