@@ -6,7 +6,7 @@ import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from tiniscript import robots
+from tiniscript import files, robots
 from tiniscript.cli import installing
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.progress import Progress
@@ -103,7 +103,7 @@ def _trouble(why: CannotBuild, values: dict[str, str]) -> Trouble:
     if why.log:
         try:
             log.parent.mkdir(parents=True, exist_ok=True)
-            log.write_text(why.log, encoding="utf-8", errors="replace")
+            files.replace(log, why.log.encode("utf-8", "replace"))
         except OSError:
             pass  # then the sentence has to do
     how = installing.command(installing.FIRMWARE)

@@ -7,10 +7,10 @@ are first wanted, and kept in the user's cache.
 
 from __future__ import annotations
 
-import os
-import tempfile
 from pathlib import Path
 from typing import NamedTuple
+
+from tiniscript.files import replace
 
 FOLDER = Path(__file__).resolve().parent / "ready"
 NOTICE = "NOTICE.txt"
@@ -80,14 +80,7 @@ def keep(robot: str, board: str, digest: str, data: bytes) -> Ready:
     folder = cache()
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / name_of(robot, board, digest)
-    number, new = tempfile.mkstemp(dir=folder, suffix=".new")
-    try:
-        with os.fdopen(number, "wb") as file:
-            file.write(data)
-        Path(new).replace(path)
-    except BaseException:
-        Path(new).unlink(missing_ok=True)
-        raise
+    replace(path, data)
     kept = sorted(folder.glob("*.hex"), key=lambda each: each.stat().st_mtime_ns)
     for old in kept[:-KEPT]:
         if old != path:
