@@ -16,6 +16,7 @@ from tiniscript.link import messages, statuses
 from tiniscript.link.errands import DATA_BYTES, SHORT_BYTES
 from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.messages import (
+    AGAIN_MS,
     BY_NAME,
     FIRST_ACTING,
     FIRST_EVENT,
@@ -35,6 +36,7 @@ from tiniscript.link.messages import (
 from tiniscript.link.outcomes import CANCELLED, LOST
 from tiniscript.link.session import (
     BEAT_MS,
+    CONFIRM_MS,
     DEADLINE_MS,
     IDLE_BEAT_MS,
     STOP_MS,
@@ -237,8 +239,52 @@ def test_a_stop_that_nobody_answers_is_told() -> None:
     session = greeted()
     session.stop(0)
     sent = sending(session, 2 * DEADLINE_MS)
-    assert len(sent) == DEADLINE_MS // STOP_MS
+    assert len(sent) == CONFIRM_MS // STOP_MS
     assert [each.name for each in session.events()] == ["LOST"]
+
+
+def test_a_stop_that_nobody_answers_holds_up_others_for_a_few_seconds() -> None:
+    session = greeted()
+    session.stop(0)
+    early = session.ping()
+    sending(session, CONFIRM_MS)
+    assert early.outcome and early.outcome.status == LOST
+    late = session.ping()
+    data = session.poll(CONFIRM_MS + 1)
+    session.receive(answer(data, {"state": 0, "run": 0}), CONFIRM_MS + 2)
+    assert late.outcome and late.outcome.status == 0
+
+
+def test_what_came_before_a_stop_was_sent_confirms_nothing() -> None:
+    """The robot may have been started again since."""
+    session = greeted()
+    session.stop(3)
+    session.receive(event("STOPPED", 0, {"cause": 3}), 3)
+    assert session.poll(3) == bytes(8)
+    session.events()
+    session.receive(event("STOPPED", 1, {"cause": 1}, epoch=12), 30)
+    assert [each.name for each in session.events()] == ["STOPPED"]
+    assert sending(session, 500) == []
+
+
+def test_a_stop_that_is_confirmed_twice_ends_nothing_that_is_wanted_since() -> None:
+    """The radio was slow: two stop sequences were sent before the first was confirmed."""
+    session = greeted()
+    session.stop(0)
+    assert len(sending(session, 150)) == 2
+    session.receive(event("STOPPED", 0, {"cause": 1}), 160)
+    assert [each.name for each in session.events()] == ["STOPPED"]
+    tasks = [session.clear(), session.live(FORWARD)]
+    session.poll(170)
+    session.receive(event("STOPPED", 1, {"cause": 1}), 180)
+    assert session.events() == []
+    assert [task.outcome for task in tasks] == [None, None]
+    session.stop(200)
+    session.poll(200)
+    session.receive(event("STOPPED", 2, {"cause": 1}), 300)
+    assert [each.name for each in session.events()] == ["STOPPED"]
+    session.receive(event("STOPPED", 3, {"cause": 1}, epoch=12), 400)
+    assert [each.name for each in session.events()] == ["STOPPED"]
 
 
 def test_an_old_answer_is_none() -> None:
@@ -426,9 +472,58 @@ def test_what_the_button_has_started_is_not_tethered() -> None:
 
 @pytest.mark.parametrize("find", [items_of, pytest.param(cpp_items, marks=needs_host)])
 def test_what_is_counted_does_not_wrap(find: Callable[[list[tuple[int, int]]], list[str]]) -> None:
-    """A line that is broken for long stops a robot once, and a long text is no short one."""
-    assert find([(0, 0)] * 700) == ["stop", "damaged 0, dropped 0"]
+    """A line that is broken for long stops a robot all the time, and a long text is no short one."""
+    assert find([(0, 0)] * 1402) == [*["stop"] * 350, "damaged 0, dropped 0"]
     assert find([(0, byte) for byte in b"A" * 300 + b"\n"])[0].startswith("text 255 41 41")
+
+
+@needs_host
+def test_a_line_that_is_held_low_neither_runs_the_epoch_round_nor_fills_the_line_back() -> None:
+    cpp = robot_with_session()
+    sent = b"".join(cpp.step(now_ms, b"\0").sent for now_ms in range(10, 70_010))
+    told = [decoded(part) for part in sent.split(b"\0") if part]
+    assert {each.epoch for each in told if each} == {11}
+    assert {each.number for each in told if each} == {BY_NAME["STOPPED"].number}
+    assert 1000 < len(told) <= 70_000 // AGAIN_MS + 1, len(told)
+
+
+@needs_host
+def test_many_stops_that_nobody_has_looked_at_are_not_none() -> None:
+    cpp = robot_with_session()
+    for count in (1, 255, 256, 257, 512):
+        assert "STOP" in cpp.step(10, bytes(4 * count), is_late=True).did
+
+
+@needs_host
+@pytest.mark.parametrize("late_ms", [0, 300, 1500, 2900, 4000])
+@pytest.mark.parametrize(("piece_bytes", "gap_ms"), [(99, 0), (10, 0), (7, 1100), (45, 1100)])
+@pytest.mark.parametrize("before", [b"", b"> "], ids=["plain", "prompt"])
+def test_an_echo_of_everything_starts_no_endless_conversation(
+    late_ms: int, piece_bytes: int, gap_ms: int, before: bytes
+) -> None:
+    """A terminal or a radio module that sends back what it gets, whole and in pieces."""
+    cpp = cpp_link()
+    cpp.begin(kit=KIT)
+    under_way = [(0, b"F(2,80)\r\n")]
+    hints = 0
+    for now_ms in range(0, 60_000, 10):
+        came = b"".join(data for at, data in under_way if at == now_ms)
+        under_way = [each for each in under_way if each[0] > now_ms]
+        sent = cpp.step(now_ms, came).sent.replace(b"\0", b"")
+        hints += sent.count(b"use tsc.")
+        echo = before + sent if sent else b""
+        for k in range(-(-len(echo) // piece_bytes)):
+            piece = echo[k * piece_bytes : (k + 1) * piece_bytes]
+            under_way.append((now_ms + 10 + late_ms + k * gap_ms, piece))
+    assert hints == 1
+
+
+@needs_host
+def test_a_module_that_answers_each_line_gets_few_hints() -> None:
+    cpp = cpp_link()
+    cpp.begin(kit=KIT)
+    hints = [cpp.step(now_ms, b"ERROR:(0)\r\n").sent for now_ms in range(0, 60_000, 500)]
+    assert sum(bool(each) for each in hints) == 1
 
 
 @needs_host

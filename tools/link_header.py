@@ -54,6 +54,7 @@ def header(command: str) -> str:
             ("kSilenceMs", messages.SILENCE_MS),
             ("kTetherMs", messages.TETHER_MS),
             ("kListenMs", messages.LISTEN_MS),
+            ("kAgainMs", messages.AGAIN_MS),
         ),
         "// How a program starts, in one byte.\n"
         + constants(*((f"k{camel(name)}", bits) for bits, name, _ in messages.MODES)),

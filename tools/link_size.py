@@ -16,7 +16,7 @@ sys.path[:0] = [str(ROOT)]
 from tools import avr_bench, cpp_size
 from tools.cpp_size import AVR, SOURCE, USES, WAYS, Size, done, missing
 
-MUST = 3700  # bytes of flash
+MUST = 4100  # bytes of flash
 
 # A robot that holds nothing, and a use of each part that no optimiser can leave out.
 PORT = """
@@ -28,6 +28,7 @@ Trim trim;
 const Trim& port_trim() { return trim; }
 Answer port_set_trim(const Trim& other) { trim = other; return (Answer)sink; }
 const Equipment& port_equipment() { return equipment; }
+LineErrors port_line_errors() { return {0, 0}; }
 uint16_t port_room() { return sink; }
 bool port_make_way(bool) { return sink; }
 uint8_t* port_memory(uint16_t length, bool) { return length > 400 ? nullptr : (uint8_t*)0x200; }
@@ -42,6 +43,7 @@ bool port_rename(const uint8_t* name, uint8_t length) { sink = name[length]; ret
 }
 """
 PORT_USED = """port_card(); port_condition(); port_equipment(); sink = port_room();
+  sink = port_line_errors().framing;
   port_set_trim(port_trim());
   port_make_way(sink); port_memory(sink, 0); port_forget(); port_take(sink, 0);
   port_seal(bytes); port_start(sink); port_stop(sink);

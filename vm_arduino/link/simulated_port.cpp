@@ -60,6 +60,7 @@ const Equipment& port_equipment() { return port.equipment; }
 const Card& port_card() { return port.card; }
 const Condition& port_condition() { return port.condition; }
 const Trim& port_trim() { return port.trim; }
+LineErrors port_line_errors() { return {0, 0}; }
 uint16_t port_room() { return port.room; }
 
 bool port_make_way(bool) {

@@ -129,6 +129,8 @@ void board_release() {
 
 bool board_has_stalled() { return false; }
 
+LineErrors board_line_errors() { return {0, 0}; }  // its bytes come whole, or not at all
+
 void board_forget() {}
 
 void board_light(bool is_on) { note(kLight, is_on); }

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from tiniscript.link.asking import Way
     from tiniscript.link.outcomes import Event
 
-CONFIRM_S = 6.0  # for which a stop is sent before the person hears that nobody confirms it
+CONFIRM_S = 7.0  # for which a stop is waited for, a little longer than it is sent
 STOP_S = 1.5  # the same for a command that leaves, and that nobody may look at
 SAVE_S = 10.0  # for which a robot may save a program
 LINK_FAULT = 64  # from here on, a fault is none of the program's
@@ -108,16 +108,21 @@ def stop_and_say(connection: Connection) -> int:
 
 
 def confirmed(line: Way, limit_s: float = CONFIRM_S) -> bool:
-    """Stop the robot; return whether it has confirmed. A second Ctrl-C ends the waiting."""
+    """Stop the robot; return whether it has confirmed. A second Ctrl-C ends the waiting.
+
+    What was told before that is about something else.
+    """
     from tiniscript.link.outcomes import Gone
 
+    began_s = monotonic()
     line.stop()
-    end_s = monotonic() + limit_s
     try:
-        while monotonic() < end_s:
+        while monotonic() < began_s + limit_s:
             found = line.event()
-            if found is not None and found[1].name == "STOPPED":
-                return True
+            if found is None or found[0] < int(began_s * 1000):
+                continue
+            if found[1].name in ("STOPPED", "LOST"):
+                return found[1].name == "STOPPED"
     except (Gone, KeyboardInterrupt):
         pass
     return False

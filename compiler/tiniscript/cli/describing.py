@@ -107,6 +107,8 @@ class Description:
             "reset": _name(RESETS, values["reset"]),
             "damaged": values["damaged"],
             "dropped": values["dropped"],
+            "framing": values["framing"],
+            "overrun": values["overrun"],
         }
 
     def line(self) -> str:
@@ -142,8 +144,8 @@ class Description:
         ]
         if values["fault"]:
             lines.append(self._fault())
-        if values["damaged"] or values["dropped"]:
-            counts = {name: values[name] for name in ("damaged", "dropped")}
+        counts = {name: values[name] for name in ("damaged", "dropped", "framing", "overrun")}
+        if any(counts.values()):
             lines.append(text("info_hearing", language).format(**counts))
         return "\n".join(lines)
 

@@ -32,6 +32,7 @@ STOP_RUN = 4  # zeros in a row that stop it
 SILENCE_MS = 1000  # after so long an item begins
 TETHER_MS = 1000  # without a valid frame, a tethered program ends
 LISTEN_MS = 3000  # without one, a robot sends no more events
+AGAIN_MS = 50  # between two times that a robot says that it is stopped
 
 # How a program starts and what becomes of it: one byte of LIVE, PROGRAM, BEGIN and START.
 START_BITS, RUN, SAVE, DETACHED = 0x03, 0x10, 0x20, 0x40
@@ -111,7 +112,7 @@ MESSAGES = (
              "Begins a session. The same `nonce` again is the same session."),
     _message(2, "PING", False, "", "state:u8 run:u8", "Are you there? Also the heartbeat."),
     _message(3, "STATUS", False, "",
-             _CONDITION + " damaged:u8 dropped:u8",
+             _CONDITION + " damaged:u8 dropped:u8 framing:u8 overrun:u8",
              "What the robot does, its last fault, and how well it hears."),
     _message(4, "FETCH", False, "offset:u16", "length:u16 bytes:rest=0..53",
              "The stored program's image, from `offset` on. `length` is that of all of it."),
@@ -135,7 +136,7 @@ MESSAGES = (
     _message(32, "SHOW", False, "", "value:i32 is_yes_no:u8", "A value that a program shows."),
     _message(33, "FAULT", False, "", "run:u8 fault:u8 at:u16 program:u32",
              "The program has ended with a fault."),
-    _message(34, "STOPPED", False, "", "cause:u8", "The robot was stopped. Its epoch is another one now."),
+    _message(34, "STOPPED", False, "", "cause:u8", "The robot was stopped: its epoch is another one. Or again: it still is."),
     _message(35, "DONE", False, "", "run:u8", "The program has ended."),
 )
 FIRST_ACTING = 6

@@ -17,9 +17,17 @@ LONGEST = 255  # a longer text counts as this long
 # places in the stream
 _BEGIN = "begin"  # the next byte begins an item
 _AFTER_TEXT = "after text"  # the same, but for white space
+_BLANK = "blank"  # after white space, which may begin a frame too
+_HEAD = "head"  # after the first byte of a frame or of a line of text
+_LINE = "line"  # in a line of text, as far as it looks; else in a frame
 _FRAME = "frame"
+_OTHER = "other"  # in a line of text, as far as it looks; else in noise
 _TEXT = "text"
-_SKIP = "skip"  # in something that is no item, up to the next 0x00
+_SKIP = "skip"  # in noise, up to the next 0x00
+
+_MAYBE_FRAME = (_BLANK, _HEAD, _LINE, _FRAME)
+_LETTERS = b"abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+_DELETE = 0x7F
 
 
 class Item(NamedTuple):
@@ -48,9 +56,9 @@ class Receiver:
         return item
 
     def put(self, byte: int, now_ms: int) -> bool:
-        """Take a byte; return whether it completes a run of zeros that means stop.
+        """Take a byte; return whether it completes a run of four zeros, which means stop.
 
-        A byte that came damaged (a framing error) is 0.
+        Eight zeros are two stops. A byte that came damaged (a framing error) is 0.
         """
         is_quiet = (now_ms - self._last_ms) % 0x10000 >= SILENCE_MS
         self._last_ms = now_ms
@@ -60,37 +68,63 @@ class Receiver:
         if byte == 0:
             return self._zero()
         self._zeros = 0
+        if self._place == _BLANK:
+            # the second byte of a request is its type, and no frame of a robot begins like this
+            self._place = _AFTER_TEXT if _is_printable(byte) and byte < 0x80 else _FRAME
+            self.dropped += self._place == _FRAME and self._is_dropping
         if self._place == _AFTER_TEXT and byte in b" \t\r\n":
             return False
         if self._place in (_BEGIN, _AFTER_TEXT):
             self._begin(byte)
-        if self._place == _FRAME:
-            if self._length == ITEM_BYTES and not self._is_dropping:
-                self.damaged += 1
-                self._place = _SKIP
-                return False
-            self._add(byte)
-        elif self._place == _TEXT:
-            if byte in b"\r\n":
-                self._end(is_text=True)
-                self._place = _AFTER_TEXT
-            else:
-                self._add(byte)
+        else:
+            self._go_on(byte)
         return False
 
     def _begin(self, byte: int) -> None:
+        """Find out what an item is by its first byte, as far as that says it."""
         self._is_dropping = self.item is not None
         self._data.clear()
         self._length = 0
-        if byte < TEXT_FROM:
-            self._place = _FRAME
-        elif chr(byte).isascii() and chr(byte).isalpha():
-            self._place = _TEXT
-        else:
-            self.damaged += 1
-            self._place = _SKIP
+        if byte == _DELETE:
+            self._skip()
             return
-        self.dropped += self._is_dropping
+        if byte in _LETTERS:
+            self._place = _TEXT
+        elif byte >= TEXT_FROM:
+            self._place = _OTHER
+        elif byte in b" \t\r\n":
+            self._place = _BLANK
+        else:
+            self._place = _HEAD if byte > 0x20 else _FRAME
+        self.dropped += self._place != _BLANK and self._is_dropping
+        self._add(byte)
+
+    def _go_on(self, byte: int) -> None:
+        """Take a byte of an item that has begun."""
+        is_text = _is_printable(byte) or byte == 0x09
+        if self._place == _SKIP:
+            return
+        if self._place == _HEAD:  # the type of a request is less
+            self._place = _LINE if _is_printable(byte) else _FRAME
+        elif self._place != _FRAME and byte in b"\r\n":
+            self._end(is_text=True)
+            self._place = _AFTER_TEXT
+            return
+        elif self._place == _LINE and not is_text:
+            self._place = _FRAME
+        elif self._place == _OTHER and not is_text:
+            self._skip()
+            return
+        if self._length == ITEM_BYTES and not self._is_dropping:
+            if self._place == _FRAME:
+                self._skip()
+                return
+            self._place = _TEXT
+        self._add(byte)
+
+    def _skip(self) -> None:
+        self.damaged += 1
+        self._place = _SKIP
 
     def _add(self, byte: int) -> None:
         if len(self._data) < ITEM_BYTES:
@@ -98,19 +132,24 @@ class Receiver:
         self._length = min(self._length + 1, LONGEST)
 
     def _zero(self) -> bool:
-        if self._place == _FRAME:
+        if self._place in _MAYBE_FRAME:
             self._end(is_text=False)
             self._place = _BEGIN
         else:
             self._cut()
-        self._zeros = min(self._zeros + 1, STOP_RUN + 1)
-        return self._zeros == STOP_RUN
+        self._zeros = (self._zeros + 1) % STOP_RUN  # the next four are another stop
+        return self._zeros == 0
 
     def _cut(self) -> None:
         """Begin anew; what is open has no end of its own."""
-        self.damaged += self._place in (_FRAME, _TEXT)
+        self.damaged += self._place in (*_MAYBE_FRAME, _OTHER, _TEXT)
         self._place = _BEGIN
 
     def _end(self, is_text: bool) -> None:
         if not self._is_dropping:
             self.item = Item(is_text, bytes(self._data), self._length)
+
+
+def _is_printable(byte: int) -> bool:
+    """Whether a byte is in a line of text; what is not ASCII is UTF-8."""
+    return byte >= 0x20 and byte != _DELETE

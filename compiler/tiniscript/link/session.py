@@ -42,6 +42,7 @@ BEAT_MS = 200  # between two frames while something runs
 IDLE_BEAT_MS = 1000  # while nothing does
 DEAF_MS = 3000  # a heartbeat without an answer for so long: the link is lost
 STOP_MS = 100  # between two stop sequences
+CONFIRM_MS = 6000  # for which they are sent: then others have their turn again
 
 RUNNING = [name for name, _ in STATES].index("RUNNING")
 _STALE, _BUSY = STATUSES["STALE"], STATUSES["BUSY"]
@@ -100,6 +101,7 @@ class Session:
         self._ended: int | None = None  # the last run whose end we know
         self._stop_ms: int | None = None  # when the stop sequence is sent next
         self._stop_until = 0
+        self._is_stop_sent = False  # at least once: what came before confirms nothing
 
     # -- errands ----------------------------------------------------------------------------------
 
@@ -147,10 +149,14 @@ class Session:
         return self._add(Task(errands.fetch()))
 
     def stop(self, now_ms: int) -> None:
-        """Stop the robot now, whatever else is going on; all errands are off."""
+        """Stop the robot now, whatever else is going on; all errands are off.
+
+        STOPPED is told when it has confirmed that, LOST where it has not in CONFIRM_MS.
+        """
         self._cancel(CANCELLED)
         self._stop_ms = now_ms
-        self._stop_until = now_ms + DEADLINE_MS
+        self._stop_until = now_ms + CONFIRM_MS
+        self._is_stop_sent = False
 
     @property
     def is_latched(self) -> bool:
@@ -337,6 +343,7 @@ class Session:
             return b""
         self._stop_ms = self._sent_ms = now_ms
         self._stop_ms += STOP_MS
+        self._is_stop_sent = True
         return bytes(STOP_BYTES)
 
     # -- what arrives -----------------------------------------------------------------------------
@@ -399,9 +406,14 @@ class Session:
             if missed:
                 self._tell("MISSED", count=missed)
         self._event_seq = frame.seq
-        if message.name in ("STOPPED", "FAULT"):
-            if message.name == "STOPPED":
+        if message.name == "STOPPED":
+            is_confirmed = self._stop_ms is not None and self._is_stop_sent
+            is_old = self._is_open and self.is_latched and frame.epoch == self._epoch
+            if is_confirmed:
                 self._stop_ms = None
+            elif is_old:
+                return  # a second answer to one stop
+        if message.name in ("STOPPED", "FAULT"):
             self._epoch = frame.epoch
             self._state = RUNNING + 1
             self._cancel_waiting(_STALE)

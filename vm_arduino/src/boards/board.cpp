@@ -14,6 +14,7 @@
 #include "motors.h"
 #include "servo.h"
 #include "sound.h"
+#include "uart.h"
 
 namespace tiniscript {
 
@@ -69,6 +70,8 @@ void board_release() { motors_release(); }
 bool board_has_stalled() { return guard_has_stalled(); }
 
 Press board_button(uint32_t now_ms) { return button_read(!is_high(kStartButton), now_ms); }
+
+LineErrors board_line_errors() { return uart_errors(); }
 
 void board_forget() {
   analog_forget();

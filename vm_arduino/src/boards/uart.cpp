@@ -5,6 +5,7 @@
 #include <Arduino.h>
 
 #include "../firmware/firmware.h"
+#include "kit.h"
 
 #ifdef USART_RX_vect
 #define uart_receive_vect USART_RX_vect
@@ -16,23 +17,77 @@
 
 namespace tiniscript {
 
+namespace {
+
+#ifdef __AVR_ATmega2560__
+constexpr Pin kReceive = {kPortE, 1 << 0};
+#else
+constexpr Pin kReceive = {kPortD, 1 << 0};
+#endif
+
+// A byte that was on its way is over after so many turns of timer 0, about a millisecond each: if
+// the line is low in all of them and nothing has come, it is held.
+constexpr uint8_t kHeldTurns = static_cast<uint8_t>(10000 / kBaud + 3);
+
+volatile uint8_t framing;
+volatile uint8_t overrun;
+bool was_high;      // the line: one that is low since the reset has no sender
+uint8_t low_turns;  // since the last byte, which had a framing error
+
+// The interrupt of timer 0 that looks at the line. It is on only after a framing error.
+in_place void watch_line() {
+  low_turns = 0;
+  if (!was_high) return;
+  TIFR0 = _BV(OCF0B);  // one that has waited since long ago
+  TIMSK0 |= _BV(OCIE0B);
+}
+
+in_place void leave_line() { TIMSK0 &= static_cast<uint8_t>(~_BV(OCIE0B)); }
+
+}  // namespace
+
 void uart_begin(uint32_t baud) {
+  begin_pull_up(kReceive);  // where nothing is connected it stays high
   UCSR0A = _BV(U2X0);
   UBRR0 = static_cast<uint16_t>((F_CPU / 4 / baud - 1) / 2);  // rounded
   UCSR0C = _BV(UCSZ01) | _BV(UCSZ00);                         // 8N1
   UCSR0B = _BV(RXEN0) | _BV(TXEN0) | _BV(RXCIE0);
 }
 
-void uart_tick() { UCSR0B |= _BV(UDRIE0); }
+void uart_tick() {
+  if (is_high(kReceive)) was_high = true;
+  UCSR0B |= _BV(UDRIE0);
+}
+
+LineErrors uart_errors() { return {framing, overrun}; }
 
 }  // namespace tiniscript
 
 // A byte that came damaged says nothing but that the line is bad: it counts as 0.
 ISR(uart_receive_vect) {
+  using namespace tiniscript;
   const uint8_t status = UCSR0A;
-  const uint8_t byte = UDR0;
-  const bool is_damaged = (status & _BV(FE0)) != 0;
-  tiniscript::firmware_hear(is_damaged ? 0 : byte, static_cast<uint16_t>(millis()));
+  uint8_t byte = UDR0;
+  if ((status & (_BV(FE0) | _BV(DOR0))) != 0) {
+    if ((status & _BV(DOR0)) != 0) overrun = static_cast<uint8_t>(overrun + 1);
+    if ((status & _BV(FE0)) != 0) {
+      framing = static_cast<uint8_t>(framing + 1);
+      byte = 0;
+      watch_line();
+    }
+  }
+  if ((status & _BV(FE0)) == 0) leave_line();
+  firmware_hear(byte, static_cast<uint16_t>(millis()));
+}
+
+ISR(TIMER0_COMPB_vect) {
+  using namespace tiniscript;
+  if (is_high(kReceive)) return leave_line();
+  if (low_turns < kHeldTurns) {
+    low_turns = static_cast<uint8_t>(low_turns + 1);
+    return;
+  }
+  firmware_hear(0, static_cast<uint16_t>(millis()));
 }
 
 ISR(uart_send_vect) {

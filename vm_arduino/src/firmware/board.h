@@ -34,6 +34,8 @@ void board_release();
 // Whether the main loop stood still, since the last question: the board has turned the motors off.
 bool board_has_stalled();
 
+LineErrors board_line_errors();
+
 // A program begins: a reading that nobody has fetched is none of its.
 void board_forget();
 

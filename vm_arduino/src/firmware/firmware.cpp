@@ -40,7 +40,7 @@ uint8_t record[kRecordBytes];
 Boot boot;
 bool is_whole;     // `program` is the one that `condition` names
 bool is_live_run;  // `live` runs
-bool has_stopped;  // the button, which is still down: when it goes up that starts nothing
+bool may_start;    // the button is down; nothing has run or was stopped since: going up, it starts
 uint8_t to_keep;
 uint8_t keeping;  // of them: what the store writes now
 uint32_t now_ms;
@@ -208,6 +208,7 @@ void tick_store() {
 void end_run(State state) {
   board_stop();
   robot_off();
+  may_start = false;
   condition.state = state;
   show_light();
 }
@@ -225,6 +226,7 @@ void begin_run(bool is_live) {
   const uint8_t* const image = is_live ? live : program;
   is_live_run = is_live;
   began_ms = now_ms;
+  may_start = false;
   condition.state = State::kRunning;
   condition.run++;
   for (uint8_t k = 0; k < board.sensors; k++) board.readings[k] = 0;
@@ -279,8 +281,8 @@ void firmware_tick(uint32_t time_ms) {
 }
 
 void firmware_pressed() {
-  has_stopped = condition.state == State::kRunning;
-  if (!has_stopped) return;
+  may_start = condition.state != State::kRunning;
+  if (may_start) return;
   end_run(State::kStopped);
   talk.stopped(Cause::kButton);
 }
@@ -292,7 +294,7 @@ void firmware_left() {
 }
 
 void firmware_released() {
-  if (has_stopped || condition.state == State::kRunning || boot != Boot::kOver) return;
+  if (!may_start || talk.stop_is_due() || boot != Boot::kOver) return;
   talk.drop();
   if (condition.saved != Saved::kNothing && load() && is_whole) begin_run(false);
 }
@@ -312,6 +314,8 @@ const Card& port_card() { return card; }
 const Condition& port_condition() { return condition; }
 
 const Trim& port_trim() { return trim; }
+
+LineErrors port_line_errors() { return board_line_errors(); }
 
 uint16_t port_room() { return kStoredCodeBytes; }
 

@@ -20,7 +20,8 @@ void firmware_begin(const Board& board);
 // Does a little of all that is due; to be called all the time.
 void firmware_tick(uint32_t now_ms);
 
-// The button goes down: what runs is stopped. It goes up again: what waits is started.
+// The button goes down: what runs is stopped. It goes up again: what waits is started, where
+// nothing has run and nothing was stopped since it went down.
 void firmware_pressed();
 void firmware_released();
 

@@ -46,10 +46,12 @@ void Link::turn(uint16_t now_ms) {
   now_ms_ = now_ms;
   quiet_ms_ =
       passed < kListenMs - quiet_ms_ ? static_cast<uint16_t>(quiet_ms_ + passed) : kListenMs;
+  text_ms_ = passed < text_ms_ ? static_cast<uint16_t>(text_ms_ - passed) : 0;
+  stopped_ms_ =
+      passed < kAgainMs - stopped_ms_ ? static_cast<uint8_t>(stopped_ms_ + passed) : kAgainMs;
   if (stop_is_due()) {
-    stops_ = receiver_->stops();
-    port_stop(0);
-    stopped(Cause::kSequence);
+    receiver_->take_stop();  // before it is handled: one that comes meanwhile is another one
+    halt(Cause::kSequence);
   }
   // an answer that is due first
   if ((due_ & (kDueReply | kDueHint)) == 0 && receiver_->item() != Item::kNone) hear();
@@ -84,9 +86,24 @@ bool Link::next(uint8_t* byte) {
   return true;
 }
 
+// Stops the robot. Where it was stopped already, that is told again, but not all the time; the
+// epoch stays, or a line that is held low would run it round. What waits is from before the stop.
+one_copy void Link::halt(Cause cause) {
+  const bool was_stopped = port_condition().state == State::kStopped;
+  port_stop(0);
+  const bool has_stale = cause == Cause::kSequence && receiver_->item() != Item::kNone;
+  if (!was_stopped || has_stale) return stopped(cause);
+  if (stopped_ms_ < kAgainMs) return;
+  stopped_ms_ = 0;
+  due_ |= kDueStopped;
+}
+
+// A line of text is answered where nobody sends frames, no other line has come for a while, and it
+// is none of ours: so nothing that answers or echoes each line talks to the robot for ever.
 one_copy void Link::hear() {
   if (receiver_->item() == Item::kText) {
-    due_ |= kDueHint;
+    if (text_ms_ == 0 && !is_listened_to() && !is_own_hint()) due_ |= kDueHint;
+    text_ms_ = kListenMs;
   } else {
     const uint8_t end = open_frame(receiver_->bytes(), receiver_->length());
     if (end == 0) {
@@ -110,7 +127,8 @@ one_copy void Link::handle(uint8_t end) {
   const uint8_t length = static_cast<uint8_t>(end - kPayloadAt);
   const bool is_hello = type == static_cast<uint8_t>(Message::kHello);
 
-  if (is_open_ && !is_hello && seq == last_.seq && type == last_.number && epoch == last_epoch_) {
+  const bool is_known = seq == last_.seq && type == last_.number && epoch == last_epoch_;
+  if (is_open_ && is_known && !is_hello && type != static_cast<uint8_t>(Message::kStop)) {
     said_ = last_;
     return;
   }
@@ -159,8 +177,7 @@ uint8_t Link::answer(Message message, const uint8_t* payload, uint8_t length) {
       if (holds_nothing()) found = Answer::kNoProgram;
       break;
     case Message::kStop:
-      port_stop(0);
-      stopped(Cause::kMessage);
+      halt(Cause::kMessage);
       break;
     case Message::kClear:
       port_release();

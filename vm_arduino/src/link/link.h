@@ -35,7 +35,7 @@ class Link {
 
   // Whether a stop has arrived that `tick` has not handled yet: until then the motors stay off,
   // whatever else was asked. Whoever writes their pins asks this, with interrupts off.
-  bool stop_is_due() const { return stops_ != receiver_->stops(); }
+  bool stop_is_due() const { return receiver_->stop_is_due(); }
 
   // What the robot tells. The first three are told when there is room; a value that finds no room
   // is not taken, and comes again.
@@ -68,6 +68,7 @@ class Link {
 
   void turn(uint16_t now_ms);
   void hear();
+  void halt(Cause cause);
   void handle(uint8_t end);
   uint8_t answer(Message message, const uint8_t* payload, uint8_t length);
   Answer set_trim(const uint8_t* payload, uint8_t length);
@@ -88,7 +89,7 @@ class Link {
 
   // writing
   void send();
-  void hint();
+  bool is_own_hint() const;
   void reply();
   void describe();
   void receipt();
@@ -103,10 +104,11 @@ class Link {
 
   Receiver* receiver_;
   uint16_t now_ms_;
-  uint16_t quiet_ms_;  // since the last valid frame, up to kListenMs
-  uint32_t nonce_;     // of the session
+  uint16_t quiet_ms_;   // since the last valid frame, up to kListenMs
+  uint32_t nonce_;      // of the session
+  uint16_t text_ms_;    // for which no line of text may come before one is answered again
+  uint8_t stopped_ms_;  // since STOPPED was due last, up to kAgainMs
   uint8_t epoch_;
-  uint8_t stops_;      // that are handled
   uint8_t damaged_;    // frames
   uint8_t due_;        // what there is to tell
   uint8_t isa_[2];     // of the computer's programs, major and minor

@@ -13,6 +13,8 @@ namespace {
 // For whoever sends a line of text. The 0x00 at its end begins an item: a frame may follow.
 const uint8_t kHint[] in_flash = "No text yet: use tsc. / Aun no hay texto: usa tsc.\r\n";
 
+constexpr uint8_t kTailBytes = 8;  // of the hint, by which an echo of it or of its end is known
+
 constexpr uint8_t kPulseBytes = 2;  // of a Condition: state and run
 
 static_assert(sizeof(Card) == 13 && sizeof(Condition) == 17, "they are as they are sent");
@@ -39,6 +41,7 @@ void Link::faulted() {
 void Link::stopped(Cause cause) {
   renew();
   cause_ = cause;
+  stopped_ms_ = 0;
   due_ |= kDueStopped;
 }
 
@@ -54,6 +57,17 @@ bool Link::show(int32_t value, bool is_yes_no) {
 
 // Nobody reads what a robot tells that runs alone.
 bool Link::is_listened_to() const { return is_open_ && quiet_ms_ < kListenMs; }
+
+// Whether the line of text that waits ends like the hint, or is the end of it.
+bool Link::is_own_hint() const {
+  const uint8_t* hint = kHint + sizeof kHint - 3;  // without CR, LF and 0x00
+  uint8_t at = receiver_->length();
+  if (at > kItemBytes) return false;
+  for (uint8_t k = 0; k < kTailBytes && at != 0; k++) {
+    if (receiver_->bytes()[--at] != flash_byte(--hint)) return false;
+  }
+  return true;
+}
 
 // Sends one thing of what is due. Whoever has sent the stop sequence listens.
 void Link::send() {
@@ -104,6 +118,8 @@ void Link::reply() {
       put_all(&condition, sizeof condition);
       put(byte_of(damaged_ + receiver_->damaged()));
       put(receiver_->dropped());
+      put(port_line_errors().framing);
+      put(port_line_errors().overrun);
       break;
     case Message::kFetch:
       fetch();

@@ -31,6 +31,7 @@ constexpr uint8_t kStopRun = 4;
 constexpr uint16_t kSilenceMs = 1000;
 constexpr uint16_t kTetherMs = 1000;
 constexpr uint16_t kListenMs = 3000;
+constexpr uint8_t kAgainMs = 50;
 
 // How a program starts, in one byte.
 constexpr uint8_t kStartBits = 3;
@@ -61,7 +62,7 @@ enum class Message : uint8_t {
   kTrim = 15,  // Sets the trim of the motors, three bytes like those of the reply, or only tells it.
   kShow = 32,  // A value that a program shows.
   kFault = 33,  // The program has ended with a fault.
-  kStopped = 34,  // The robot was stopped. Its epoch is another one now.
+  kStopped = 34,  // The robot was stopped: its epoch is another one. Or again: it still is.
   kDone = 35,  // The program has ended.
 };
 

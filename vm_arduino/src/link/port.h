@@ -38,6 +38,13 @@ struct as_sent Condition {
   uint32_t fault_program;
 };
 
+// What the UART has noticed: bytes without a stop bit, and how often bytes were lost because nobody
+// fetched them. They begin again at 0; where there is no UART, they stay 0.
+struct LineErrors {
+  uint8_t framing;
+  uint8_t overrun;
+};
+
 // What the motors get for the power that a program asks for: `kExchanged` and the others of
 // `wheels`; the percent by which the left wheel is too strong, or the right one where it is less
 // than 0; the percent that move a wheel.
@@ -61,6 +68,7 @@ const Equipment& port_equipment();
 const Card& port_card();
 const Condition& port_condition();
 const Trim& port_trim();
+LineErrors port_line_errors();
 
 // The most bytes of code for which there is room.
 uint16_t port_room();

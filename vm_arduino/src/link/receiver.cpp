@@ -13,6 +13,11 @@ bool is_letter(uint8_t byte) {
 
 bool ends_line(uint8_t byte) { return byte == '\r' || byte == '\n'; }
 
+bool is_blank(uint8_t byte) { return byte == ' ' || byte == '\t' || ends_line(byte); }
+
+// In a line of text; what is not ASCII is UTF-8.
+bool is_printable(uint8_t byte) { return byte >= ' ' && byte != 0x7f; }
+
 }  // namespace
 
 bool Receiver::put(uint8_t byte, uint16_t now_ms) { return near(this)->take(byte, now_ms); }
@@ -26,39 +31,68 @@ bool Receiver::take(uint8_t byte, uint16_t now_ms) {
   }
   if (byte == 0) return zero();
   zeros_ = 0;
-  if (place_ == Place::kAfterText && (byte == ' ' || byte == '\t' || ends_line(byte))) return false;
-  if (place_ <= Place::kAfterText) begin(byte);
-  if (place_ == Place::kFrame) {
-    if (length_ == kItemBytes && !is_dropping_) {
-      damaged_ = static_cast<uint8_t>(damaged_ + 1);
-      place_ = Place::kSkip;
-    } else {
-      add(byte);
-    }
-  } else if (place_ == Place::kText) {
-    if (ends_line(byte)) {
-      end(Item::kText);
-      place_ = Place::kAfterText;
-    } else {
-      add(byte);
-    }
+  if (place_ == Place::kBlank) {
+    // the second byte of a request is its type, and no frame of a robot begins like this
+    place_ = is_printable(byte) && byte < 0x80 ? Place::kAfterText : Place::kFrame;
+    if (place_ == Place::kFrame) drop();
+  }
+  if (place_ == Place::kAfterText && is_blank(byte)) return false;
+  if (place_ <= Place::kAfterText) {
+    begin(byte);
+  } else {
+    go_on(byte);
   }
   return false;
 }
 
+// Finds out what an item is by its first byte, as far as that says it.
 void Receiver::begin(uint8_t byte) {
   is_dropping_ = item_ != Item::kNone;
-  if (byte >= kTextFrom && !is_letter(byte)) {
-    damaged_ = static_cast<uint8_t>(damaged_ + 1);
-    place_ = Place::kSkip;
-    return;
-  }
-  place_ = byte < kTextFrom ? Place::kFrame : Place::kText;
-  if (is_dropping_) {
-    dropped_ = static_cast<uint8_t>(dropped_ + 1);
+  if (!is_dropping_) length_ = 0;
+  if (byte == 0x7f) return skip();
+  if (is_letter(byte)) {
+    place_ = Place::kText;
+  } else if (byte >= kTextFrom) {
+    place_ = Place::kOther;
+  } else if (is_blank(byte)) {
+    place_ = Place::kBlank;
   } else {
-    length_ = 0;
+    place_ = byte > ' ' ? Place::kHead : Place::kFrame;
   }
+  if (place_ != Place::kBlank) drop();
+  add(byte);
+}
+
+// Takes a byte of an item that has begun.
+void Receiver::go_on(uint8_t byte) {
+  const bool is_text = is_printable(byte) || byte == '\t';
+  if (place_ == Place::kSkip) return;
+  if (place_ == Place::kHead) {
+    place_ = is_printable(byte) ? Place::kLine : Place::kFrame;  // the type of a request is less
+  } else if (place_ != Place::kFrame && ends_line(byte)) {
+    end(Item::kText);
+    place_ = Place::kAfterText;
+    return;
+  } else if (place_ == Place::kLine && !is_text) {
+    place_ = Place::kFrame;
+  } else if (place_ == Place::kOther && !is_text) {
+    return skip();
+  }
+  if (length_ == kItemBytes && !is_dropping_) {
+    if (place_ == Place::kFrame) return skip();
+    place_ = Place::kText;
+  }
+  add(byte);
+}
+
+void Receiver::skip() {
+  damaged_ = static_cast<uint8_t>(damaged_ + 1);
+  place_ = Place::kSkip;
+}
+
+// Counts an item that begins while another one waits.
+void Receiver::drop() {
+  if (is_dropping_) dropped_ = static_cast<uint8_t>(dropped_ + 1);
 }
 
 // What waits, and its length, stay as they are.
@@ -69,21 +103,21 @@ void Receiver::add(uint8_t byte) {
 }
 
 bool Receiver::zero() {
-  if (place_ == Place::kFrame) {
+  if (place_ >= Place::kBlank && place_ <= Place::kFrame) {
     end(Item::kFrame);
     place_ = Place::kBegin;
   } else {
     cut();
   }
-  if (zeros_ > kStopRun) return false;
   if (++zeros_ != kStopRun) return false;
-  stops_ = static_cast<uint8_t>(stops_ + 1);
+  zeros_ = 0;  // the next four are another stop
+  stop_is_due_ = true;
   return true;
 }
 
 // Begins anew; what is open has no end of its own.
 void Receiver::cut() {
-  if (place_ == Place::kFrame || place_ == Place::kText) {
+  if (place_ >= Place::kBlank && place_ <= Place::kText) {
     damaged_ = static_cast<uint8_t>(damaged_ + 1);
   }
   place_ = Place::kBegin;
