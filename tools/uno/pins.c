@@ -241,6 +241,11 @@ void pin_drive(int number, enum Drive drive) {
   apply_drive(number);
 }
 
+void pin_wire(bool level) {
+  pins[kReceivePin].drive = level ? kHigh : kLow;
+  apply_drive(kReceivePin);
+}
+
 void analog_set(int channel, int count) {
   if (channel < 0 || channel >= board->analog_pins || count < 0 || count > kMostCount) return;
   analog[channel] = count;

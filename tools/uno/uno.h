@@ -136,6 +136,10 @@ int pin_number(const char* name);
 enum Drive { kReleased = -1, kLow = 0, kHigh = 1 };
 void pin_drive(int pin, enum Drive drive);
 
+// The same for the pin that the UART receives with, untold: `received` tells it better.
+enum { kReceivePin = 0 };
+void pin_wire(bool level);
+
 // Pauses the run when a pin gets into a state: "high", "low", "pwm", "input" or "pullup".
 void pins_watch(int pin, const char* state);
 

@@ -55,6 +55,7 @@ static void next_bit(Cycle when, void* what) {
   const bool now = item->is_held ? item->levels & 1 : item->levels >> item_bit & 1;
   if (now != level) {
     level = now;
+    pin_wire(level);
     uart_wire(when, level);
   }
   item_bit = item->is_held ? item->count : item_bit + 1;
@@ -170,5 +171,6 @@ void wire_begin(const char* link, bool resets_on_open, int speed) {
     link_name = link;
     atexit(remove_link);
   }
+  pin_wire(level);
   tell(0, "pty", "\"name\": \"%s\"", name);
 }
