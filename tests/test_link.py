@@ -472,7 +472,7 @@ def test_what_the_button_has_started_is_not_tethered() -> None:
 
 @pytest.mark.parametrize("find", [items_of, pytest.param(cpp_items, marks=needs_host)])
 def test_what_is_counted_does_not_wrap(find: Callable[[list[tuple[int, int]]], list[str]]) -> None:
-    """A line that is broken for long stops a robot all the time, and a long text is no short one."""
+    """A line that is broken for long stops a robot all the time; a long text is no short one."""
     assert find([(0, 0)] * 1402) == [*["stop"] * 350, "damaged 0, dropped 0"]
     assert find([(0, byte) for byte in b"A" * 300 + b"\n"])[0].startswith("text 255 41 41")
 

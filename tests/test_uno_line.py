@@ -77,7 +77,6 @@ def test_bytes_that_nobody_fetches_damage_a_message(tmp_path: Path) -> None:
         assert overrun >= 1
 
 
-
 def driving(uno: Uno) -> Wired:
     """Let a program run that needs no computer."""
     wired = computer(uno)

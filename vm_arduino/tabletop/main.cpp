@@ -68,19 +68,23 @@ void answer_begin(Reader* request) {
 }
 
 // S: bytes arrive at a time, the button goes down (1) or up (2), the main loop stood still (4),
-// nobody is connected (8); so many ticks follow. Says what the robot sends and what it does.
+// nobody is connected (8), the bytes come before all that (16); so many ticks follow. Says what the
+// robot sends and what it does.
 void answer_step(Reader* request, Writer* answer) {
   const uint32_t now_ms = request->u32();
   const uint8_t flags = request->u8();
   const uint16_t ticks = request->u16();
   const Bytes heard = request->bytes();
+  size_t next = 0;
+  while ((flags & 16) != 0 && next < heard.length) {
+    firmware_hear(heard.data[next++], static_cast<uint16_t>(now_ms));
+  }
   table.log.clear();
   table.has_stalled = (flags & 4) != 0;
   if ((flags & 1) != 0) firmware_pressed();
   if ((flags & 2) != 0) firmware_released();
   if ((flags & 8) != 0) firmware_left();
   std::string sent;
-  size_t next = 0;
   for (uint16_t k = 0; k < ticks || next < heard.length; k++) {
     if (next < heard.length) firmware_hear(heard.data[next++], static_cast<uint16_t>(now_ms));
     firmware_tick(now_ms);

@@ -294,7 +294,7 @@ void firmware_left() {
 }
 
 void firmware_released() {
-  if (!may_start || talk.stop_is_due() || boot != Boot::kOver) return;
+  if (!may_start || boot != Boot::kOver) return;
   talk.drop();
   if (condition.saved != Saved::kNothing && load() && is_whole) begin_run(false);
 }
