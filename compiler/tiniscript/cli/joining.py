@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from tiniscript.sharing.host import Host
 
 BUSY_S = 3.0  # for which a port may be busy: another command is just leaving, or will share it
+STOP_BUSY_S = 10.0  # the same for a stop: one that asks a silent robot takes a while to give up
 AGAIN_S = 0.05
 SHARED = ("link", "live", "monitor", "start", "upload")  # verbs that stay on a port, and share it
 
@@ -36,7 +37,7 @@ def way_to(
     """
     from tiniscript.sharing import holders
 
-    end_s = monotonic() + BUSY_S
+    end_s = monotonic() + (STOP_BUSY_S if verb == "stop" else BUSY_S)
     while True:
         guest = _joined(port, verb, baud)
         if guest is not None:

@@ -101,7 +101,6 @@ class Session:
         self._ended: int | None = None  # the last run whose end we know
         self._stop_ms: int | None = None  # when the stop sequence is sent next
         self._stop_until = 0
-        self._is_stop_sent = False  # at least once: what came before confirms nothing
 
     # -- errands ----------------------------------------------------------------------------------
 
@@ -156,7 +155,6 @@ class Session:
         self._cancel(CANCELLED)
         self._stop_ms = now_ms
         self._stop_until = now_ms + CONFIRM_MS
-        self._is_stop_sent = False
 
     @property
     def is_latched(self) -> bool:
@@ -343,7 +341,6 @@ class Session:
             return b""
         self._stop_ms = self._sent_ms = now_ms
         self._stop_ms += STOP_MS
-        self._is_stop_sent = True
         return bytes(STOP_BYTES)
 
     # -- what arrives -----------------------------------------------------------------------------
@@ -407,11 +404,10 @@ class Session:
                 self._tell("MISSED", count=missed)
         self._event_seq = frame.seq
         if message.name == "STOPPED":
-            is_confirmed = self._stop_ms is not None and self._is_stop_sent
-            is_old = self._is_open and self.is_latched and frame.epoch == self._epoch
-            if is_confirmed:
+            # what came before a stop was sent does not confirm it
+            if self._stop_ms is not None and self._stop_ms > self._stop_until - CONFIRM_MS:
                 self._stop_ms = None
-            elif is_old:
+            elif self._is_open and self.is_latched and frame.epoch == self._epoch:
                 return  # a second answer to one stop
         if message.name in ("STOPPED", "FAULT"):
             self._epoch = frame.epoch
