@@ -90,10 +90,8 @@ static void sample(Cycle when, void* what) {
   }
 }
 
-void uart_wire(Cycle when, bool level) {
-  const bool falls = wire_level && !level;
-  wire_level = level;
-  if (!falls || bit_number >= 0 || !(enabled & kReceives)) return;
+static void begin_byte(Cycle when) {
+  if (bit_number >= 0 || !(enabled & kReceives)) return;
   if (is_waiting) {
     tell(when, "lost", "\"byte\": %d", shifted.byte);
     is_waiting = false;
@@ -103,6 +101,12 @@ void uart_wire(Cycle when, bool level) {
   begun = (double)when;
   period = bit_cycles();
   sample_next();
+}
+
+void uart_wire(Cycle when, bool level) {
+  const bool falls = wire_level && !level;
+  wire_level = level;
+  if (falls) begin_byte(when);
 }
 
 static void receiver_off(void) {
@@ -200,8 +204,10 @@ static void status_write(avr_t* chip, avr_io_addr_t address, uint8_t value, void
 
 static void enable_write(avr_t* chip, avr_io_addr_t address, uint8_t value, void* param) {
   (void)param;
+  const bool begins = !(enabled & kReceives) && (value & kReceives);
   enabled = value;
   chip->data[address] = value;
+  if (begins && !wire_level) begin_byte(chip->cycle);
   if (!(value & kReceives)) receiver_off();
   asking_refresh(&asking_received);
   asking_refresh(&asking_empty);

@@ -47,8 +47,7 @@ void Link::turn(uint16_t now_ms) {
   quiet_ms_ =
       passed < kListenMs - quiet_ms_ ? static_cast<uint16_t>(quiet_ms_ + passed) : kListenMs;
   text_ms_ = passed < text_ms_ ? static_cast<uint16_t>(text_ms_ - passed) : 0;
-  stopped_ms_ =
-      passed < kAgainMs - stopped_ms_ ? static_cast<uint8_t>(stopped_ms_ + passed) : kAgainMs;
+  again_ms_ = passed < again_ms_ ? static_cast<uint8_t>(again_ms_ - passed) : 0;
   if (stop_is_due()) {
     receiver_->take_stop();  // before it is handled: one that comes meanwhile is another one
     halt(Cause::kSequence);
@@ -93,8 +92,8 @@ one_copy void Link::halt(Cause cause) {
   port_stop(0);
   const bool has_stale = cause == Cause::kSequence && receiver_->item() != Item::kNone;
   if (!was_stopped || has_stale) return stopped(cause);
-  if (stopped_ms_ < kAgainMs) return;
-  stopped_ms_ = 0;
+  if (again_ms_ != 0) return;
+  again_ms_ = kAgainMs;
   due_ |= kDueStopped;
 }
 

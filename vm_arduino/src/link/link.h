@@ -104,10 +104,10 @@ class Link {
 
   Receiver* receiver_;
   uint16_t now_ms_;
-  uint16_t quiet_ms_;   // since the last valid frame, up to kListenMs
-  uint32_t nonce_;      // of the session
-  uint16_t text_ms_;    // for which no line of text may come before one is answered again
-  uint8_t stopped_ms_;  // since STOPPED was due last, up to kAgainMs
+  uint16_t quiet_ms_;  // since the last valid frame, up to kListenMs
+  uint32_t nonce_;     // of the session
+  uint16_t text_ms_;   // for which no line of text may come before one is answered again
+  uint8_t again_ms_;   // for which STOPPED is not told again
   uint8_t epoch_;
   uint8_t damaged_;    // frames
   uint8_t due_;        // what there is to tell

@@ -41,7 +41,7 @@ void Link::faulted() {
 void Link::stopped(Cause cause) {
   renew();
   cause_ = cause;
-  stopped_ms_ = 0;
+  again_ms_ = kAgainMs;
   due_ |= kDueStopped;
 }
 
