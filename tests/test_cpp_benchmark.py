@@ -12,7 +12,17 @@ from pathlib import Path
 import pytest
 
 from tests.machines.host import SOURCES
-from tools import avr_bench, chip_cycles, cpp_benchmark, cpp_size, speeds, works
+from tests.platformio import firmware, shared
+from tools import (
+    avr_bench,
+    chip_cycles,
+    cpp_benchmark,
+    cpp_size,
+    firmware_size,
+    sketch_cycles,
+    speeds,
+    works,
+)
 from tools.works import WORKS, Work, WrongResult, check, code_of, expected
 
 needs_chip = pytest.mark.skipif(
@@ -96,6 +106,63 @@ def test_the_sketch_calls_it_as_we_say() -> None:
 @pytest.mark.parametrize("work", BY_NAME)
 def test_the_chip_shows_what_python_does(work: Work) -> None:
     assert chip_cycles.per_iteration(work) > 1
+
+
+@pytest.fixture(scope="module")
+def sketch(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    if sketch_cycles.missing():
+        pytest.skip(sketch_cycles.missing())
+    return firmware("uno", tmp_path_factory.mktemp("sketch"), shared(tmp_path_factory))
+
+
+def test_the_sketch_runs_the_same_loop() -> None:
+    """What is measured in it differs before and behind the loop alone."""
+    for work in WORKS:
+        text = sketch_cycles.text_of(work)
+        assert f"LOOP({work.times}); {work.body} END_LOOP;" in text and "DISTANCE" not in text
+        assert "LOOP" not in sketch_cycles.text_of(work, has_loop=False)
+    assert "P = LIGHT_L; Q = LIGHT_L + 4; N = LIGHT_L + 97;" in sketch_cycles.text_of(WORKS[2])
+
+
+@needs_chip
+@pytest.mark.parametrize("work", BY_NAME)
+def test_the_shipped_sketch_takes_its_main_loop_more(work: Work, sketch: Path) -> None:
+    """Its values are right; and nothing that it counts is less than the machine alone."""
+    short = work._replace(times=400)
+    alone = chip_cycles.per_iteration(short, chip_cycles.SKETCH_BUDGET)
+    assert alone < sketch_cycles.per_iteration(sketch, short) < 2 * alone
+
+
+@needs_chip
+def test_the_cycles_of_the_sketch_are_those_of_its_loop(sketch: Path) -> None:
+    """Twice as many times around take twice as long: nothing else is counted."""
+    short = [WORKS[0]._replace(times=times) for times in (2000, 4000)]
+    once, twice = (sketch_cycles.per_iteration(sketch, work) for work in short)
+    assert once == pytest.approx(twice, rel=0.005)
+    assert once == sketch_cycles.per_iteration(sketch, short[0])
+
+
+def test_a_wrong_value_of_the_sketch_is_an_error(
+    sketch: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(avr_bench, "missing", lambda: "no chip but the one on the board")
+    monkeypatch.setattr(sketch_cycles, "built", lambda: sketch)
+    monkeypatch.setattr("tools.sketch_cycles.pin_of_sensor", lambda: "A5")
+    assert cpp_benchmark.main(["cycles"]) == 1
+    assert "wrong result: the sketch, work A" in capsys.readouterr().err
+
+
+def test_a_sketch_that_is_not_built_ends_the_command(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def refuse(name: str) -> firmware_size.Sketch:
+        raise RuntimeError(f"avr-g++ does not like {name}")
+
+    monkeypatch.setattr(avr_bench, "missing", lambda: "no chip")
+    monkeypatch.setattr(sketch_cycles, "missing", lambda: "")
+    monkeypatch.setattr(firmware_size, "measured", refuse)
+    assert cpp_benchmark.main(["cycles"]) == 2
+    assert "avr-g++ does not like uno" in capsys.readouterr().err
 
 
 @needs_chip

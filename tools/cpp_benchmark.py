@@ -17,7 +17,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
-from tools import avr_bench, chip_cycles, cpp_size, works
+from tools import avr_bench, chip_cycles, cpp_size, sketch_cycles, works
 from tools import speeds as timing
 
 NONE = "-"
@@ -37,6 +37,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         except works.WrongResult as wrong:
             print(f"wrong result: {wrong}", file=sys.stderr)
             return 1
+        except RuntimeError as why:  # the firmware is not built
+            print(why, file=sys.stderr)
+            return 2
     return 0
 
 
@@ -73,6 +76,10 @@ def cycles() -> None:
         ):
             found = [round(chip_cycles.per_iteration(work, budget), 1) for work in works.WORKS]
             ours.append((name, "thousandths", *found))
+    if not sketch_cycles.missing():
+        firmware = sketch_cycles.built()
+        found = [round(sketch_cycles.per_iteration(firmware, work), 1) for work in works.WORKS]
+        ours.append(("TiniScript, in the shipped sketch", "thousandths", *found))
     rows = [
         *ours,
         ("  must", "", *works.MUST),
@@ -84,12 +91,14 @@ def cycles() -> None:
         print(f"\n{work.name}: `{work.body[:-1]}`, {work.times:,} times.", end="")
     print(
         f"\nAll of `tick` is counted, {chip_cycles.BUDGET} instructions a call; the sketch calls "
-        f"it for {chip_cycles.SKETCH_BUDGET}.\nThe others were measured once, with loops of the "
-        "same work in their own languages. Fewer bits are\nless work; Snek, Microvium and uLisp "
-        "are far larger languages; TinyBASIC, Bitlash and uBASIC\nread the text of each line anew."
+        f"it for {chip_cycles.SKETCH_BUDGET}.\nIn the shipped sketch all is counted that comes "
+        "between, its main loop and its interrupts.\nThe others were measured once, with loops "
+        "of the same work in their own languages. Fewer bits\nare less work; Snek, Microvium and "
+        "uLisp are far larger languages; TinyBASIC, Bitlash and\nuBASIC read the text of each line "
+        "anew."
     )
-    if avr_bench.missing():
-        print(f"\n{avr_bench.missing()}")
+    for why in filter(None, (avr_bench.missing(), sketch_cycles.missing())):
+        print(f"\n{why}")
 
 
 def instructions() -> None:

@@ -1,0 +1,106 @@
+"""Counts cycles of the works in the shipped sketch, on a simulated Uno.
+
+The firmware is the one that users put on their boards: the whole of `loop()` comes between the
+machine's instructions, and the interrupts do. A work's loop runs between two changes of a motor
+pin; what these take without the loop is measured too, and taken off. The program goes on without
+tsc, so no frame comes in between. Constants come from a light sensor.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
+
+from tests.machines.wired import Wired
+from tiniscript import compile_text, robots
+from tiniscript.image import unpack
+from tiniscript.link.session import Session, Task
+from tools import firmware_size, uno
+from tools.platformio_offline import CannotStandIn
+from tools.uno import Uno
+from tools.works import Work, WrongResult, expected
+
+ROBOT = robots.load(robots.DEFAULT)
+SENSOR = "LIGHT_L"  # the one for which the constants are
+FIRST_ANALOG = 14  # of an Uno's pins
+BOOT_MS, WORK_MS, SHOW_MS = 300, 10_000, 500
+
+
+def missing() -> str:
+    """Return why there is no simulated Uno, or nothing."""
+    return uno.missing()
+
+
+def built() -> Path:
+    """Return the firmware of an Uno. Raises RuntimeError with the log."""
+    try:
+        return firmware_size.measured("uno").firmware
+    except CannotStandIn as why:
+        raise RuntimeError(str(why)) from None
+
+
+def text_of(work: Work, has_loop: bool = True) -> str:
+    """Return a work as it is measured here: a motor turns for as long as its loop does.
+
+    The sensor always says the first of its readings; what is missing to the others is added.
+    """
+    readings = iter(work.readings)
+
+    def constant(_: re.Match[str]) -> str:
+        more = next(readings) - work.readings[0]
+        return f"{SENSOR} + {more}" if more else SENSOR
+
+    before = re.sub(r"\bDISTANCE\b", constant, work.before)
+    loop = f"LOOP({work.times}); {work.body} END_LOOP;" if has_loop else ""
+    return f"SI|{before} M(50, 50); {loop} M(0, 0); {work.after}"
+
+
+def pin_of_sensor() -> str:
+    number = [each.name for each in ROBOT.kit.sensors].index(SENSOR)
+    return f"A{ROBOT.board.sensors[number].pins['pin'] - FIRST_ANALOG}"
+
+
+def per_iteration(firmware: Path, work: Work) -> float:
+    """Return the cycles of one time around the loop of a work. Raises WrongResult."""
+    with Uno(firmware, baud=ROBOT.board.baud, tells_sleep=False) as board:
+        board.run_ms(BOOT_MS)
+        wired = Wired(board, Session(1, ROBOT.board.baud, ROBOT.kit.fingerprint))
+        if work.readings:
+            board.analog(pin_of_sensor(), work.readings[0])
+        with_loop, shown = _cycles(wired, text_of(work))
+        if tuple(shown) != expected(work).shown:
+            raise WrongResult(f"the sketch, work {work.name}: {shown}, not {expected(work).shown}")
+        without, _ = _cycles(wired, text_of(work, has_loop=False))
+        return (with_loop - without) / work.times
+
+
+def _cycles(wired: Wired, text: str) -> tuple[int, list[object]]:
+    """Return how long a motor turns while a program runs, and what it shows."""
+    board, session = wired.uno, wired.session
+    motor = f"D{ROBOT.board.motors.pins['left_pwm']}"
+    image = unpack(compile_text(text, ROBOT.kit).image)
+    session.events()
+    since = len(board.events)
+    _done(wired, session.upload(image, saves=False, is_detached=True))
+    if board.pins[motor].state == "pwm":
+        board.run_until(motor, "low", WORK_MS)
+    wired.run(SHOW_MS)
+    shown: list[object] = [
+        event.values["value"] for event in session.events() if event.name == "SHOW"
+    ]
+    began, ended = (
+        next(event.cycle for event in board.events[since:]
+             if event.what == "pin" and event["pin"] == motor and event["is"] == state)
+        for state in ("pwm", "low")
+    )  # fmt: skip
+    return ended - began, shown
+
+
+def _done(wired: Wired, task: Task) -> None:
+    status = wired.until(task)
+    if status:
+        raise RuntimeError(f"the robot has answered {status}")
