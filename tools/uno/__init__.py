@@ -187,6 +187,11 @@ class Uno:
         assert 0 <= count <= 1023, count
         self._tell(_at(at) + f"analog {self.pins.number(pin)} {count}")
 
+    def supply(self, volts: float, at: int | None = None) -> None:
+        """Let the chip have another voltage than 5 V. Only its analog converter knows of that."""
+        assert 2 <= volts <= 6, volts
+        self._tell(_at(at) + f"supply {round(volts * 1000)}")
+
     def sonar(
         self, trigger: str, echo: str, distance_cm: float | None, at: int | None = None
     ) -> None:

@@ -5,6 +5,7 @@
 //     pause, quit
 //     pin PIN low|high|none     what is wired to it gives it a level, or leaves it alone
 //     analog PIN COUNT          0 to 1023, as the chip will read it
+//     supply MILLIVOLTS         of the chip, as its converter sees it
 //     sonar TRIGGER ECHO MM     an HC-SR04 and what is before it; 0: nothing
 //     baud N                    for the following
 //     send HEX, send_bad HEX    bytes one after the other; bad: with a stop bit that is low
@@ -90,6 +91,10 @@ static bool is_done(Cycle when, const char* line) {
   }
   if (sscanf(line, "analog %31s %d", first, &number) == 2 && first[0] == 'A') {
     analog_set(atoi(first + 1), number);
+    return true;
+  }
+  if (sscanf(line, "supply %d", &number) == 1 && number >= 2000 && number <= 6000) {
+    supply_set(number);
     return true;
   }
   if (sscanf(line, "stack %d", &number) == 1 && number >= 0 && number <= avr->ramend) {

@@ -11,7 +11,15 @@
 
 #include "uno.h"
 
-enum { kMilliVolts = 5000, kMostCount = 1023, kMostAnalog = 16, kName = 4 };
+enum {
+  kUsualMilliVolts = 5000,
+  kBandGapMilliVolts = 1100,
+  kBandGapCycles = kHertz / 1000,  // for so long it is not what it should be
+  kAdmux = 0x7c,
+  kMostCount = 1023,
+  kMostAnalog = 16,
+  kName = 4,
+};
 
 // -- timers: which registers, which pins --------------------------------------------------------
 
@@ -140,6 +148,9 @@ static struct Pin {
 } pins[kMostPins];
 static int pin_count;
 static int analog[kMostAnalog];
+static int supply_mv = kUsualMilliVolts;
+static avr_adc_mux_t* band_gap;
+static int mux;  // where ADMUX was
 static int watched_pin = kNoPin;
 static char watched_state[8];
 
@@ -250,8 +261,47 @@ void analog_set(int channel, int count) {
   if (channel < 0 || channel >= board->analog_pins || count < 0 || count > kMostCount) return;
   analog[channel] = count;
   avr_irq_t* irq = avr_io_getirq(avr, AVR_IOCTL_ADC_GETIRQ, ADC_IRQ_ADC0 + channel);
-  const int rounded_up = (count * kMilliVolts + kMostCount - 1) / kMostCount;
+  const int rounded_up = (count * supply_mv + kMostCount - 1) / kMostCount;
   avr_raise_irq(irq, (uint32_t)rounded_up);  // the chip rounds down
+}
+
+// What is read as a count is a part of the supply, and stays that part.
+void supply_set(int millivolts) {
+  supply_mv = millivolts;
+  avr->vcc = avr->avcc = avr->aref = (uint32_t)millivolts;
+  for (int channel = 0; channel < board->analog_pins; channel++)
+    analog_set(channel, analog[channel]);
+}
+
+static void band_gap_settled(Cycle when, void* what) {
+  (void)when;
+  (void)what;
+  band_gap->src = kBandGapMilliVolts;
+}
+
+// The band gap is a weak source: behind a change of the channel it has to load the converter first,
+// which still holds next to nothing.
+static void mux_written(struct avr_irq_t* irq, uint32_t value, void* param) {
+  (void)irq;
+  (void)param;
+  const int now = (int)value & 0x1f;
+  if (now == mux) return;
+  mux = now;
+  band_gap->src = 0;
+  cancel(band_gap_settled, NULL);
+  at_cycle(avr->cycle + kBandGapCycles, band_gap_settled, NULL);
+}
+
+static void band_gap_begin(void) {
+  for (avr_io_t* part = avr->io_port; part; part = part->next) {
+    if (strcmp(part->kind, "adc") != 0) continue;
+    avr_adc_t* adc = (avr_adc_t*)part;
+    for (int k = 0; k < 32; k++) {
+      if (adc->muxmode[k].kind == ADC_MUX_REF && adc->muxmode[k].src == kBandGapMilliVolts)
+        band_gap = &adc->muxmode[k];
+    }
+  }
+  if (!band_gap) give_up("libsimavr has no band gap");
 }
 
 // Where a low level asks for an interrupt again and again, libsimavr looks at the pin all the time,
@@ -296,6 +346,7 @@ static void pin_begin(int number) {
 }
 
 void pins_begin(void) {
+  band_gap_begin();
   pin_count = board->digital_pins + board->analog_pins;
   for (int pin = 0; pin < pin_count; pin++) pin_begin(pin);
   for (int k = 0; k < kPorts; k++) {
@@ -308,4 +359,5 @@ void pins_begin(void) {
     if (registers[k].timer >= board->timers) continue;
     listen(registers[k].address, timer_written, &registers[k]);
   }
+  listen(kAdmux, mux_written, NULL);
 }

@@ -145,6 +145,9 @@ void pins_watch(int pin, const char* state);
 
 void analog_set(int channel, int count);
 
+// The voltage of the chip's supply; 5 V at first. The converter alone knows of it.
+void supply_set(int millivolts);
+
 // -- sonar.c ------------------------------------------------------------------------------------
 
 // Puts an HC-SR04 at two pins, or moves what is in front of it. 0 mm: there is nothing.
