@@ -299,7 +299,7 @@ class CppSide:
 
     def happens(self, words: list[str]) -> None:
         letters = {"done": "d", "fault": "f", "show": "s", "button": "b", "released": "r",
-                   "busy": "w", "off": "!"}  # fmt: skip
+                   "busy": "w", "saving": "k", "off": "!"}  # fmt: skip
         if letters[words[0]] == "!":
             self.cpp.begin(kit=KIT, epoch=77)
         else:

@@ -30,7 +30,7 @@ Answer port_set_trim(const Trim& other) { trim = other; return (Answer)sink; }
 const Equipment& port_equipment() { return equipment; }
 LineErrors port_line_errors() { return {0, 0}; }
 uint16_t port_room() { return sink; }
-bool port_make_way(bool) { return sink; }
+Answer port_make_way(bool) { return (Answer)sink; }
 uint8_t* port_memory(uint16_t length, bool) { return length > 400 ? nullptr : (uint8_t*)0x200; }
 void port_forget() { sink = 0; }
 void port_take(uint8_t mode, bool) { sink = mode; }
@@ -38,8 +38,8 @@ void port_seal(const uint8_t* image) { sink = *image; }
 void port_start(bool is_live) { sink = is_live; }
 void port_stop(uint8_t fault) { sink = fault; }
 void port_release() { sink = 0; }
-uint8_t port_image_byte(uint16_t offset) { return offset; }
-bool port_rename(const uint8_t* name, uint8_t length) { sink = name[length]; return sink; }
+Answer port_image_byte(uint16_t offset, uint8_t* byte) { *byte = offset; return (Answer)sink; }
+Answer port_rename(const uint8_t* name, uint8_t at) { sink = name[at]; return (Answer)sink; }
 }
 """
 PORT_USED = """port_card(); port_condition(); port_equipment(); sink = port_room();
@@ -47,7 +47,7 @@ PORT_USED = """port_card(); port_condition(); port_equipment(); sink = port_room
   port_set_trim(port_trim());
   port_make_way(sink); port_memory(sink, 0); port_forget(); port_take(sink, 0);
   port_seal(bytes); port_start(sink); port_stop(sink);
-  port_release(); port_image_byte(sink); port_rename(bytes, 1);
+  port_release(); port_image_byte(sink, bytes); port_rename(bytes, 1);
 """
 LINK = """{ static Receiver receiver; static Link link;
         link.begin(&receiver, sink); sink = receiver.put(sink, sink); link.tick(sink);

@@ -81,6 +81,14 @@ class Tabletop(Process):
         """Let the sensors say so many thousandths."""
         self.ask(b"V", pack(f"<{len(readings)}i", *readings))
 
+    def supply(self, is_low: bool) -> None:
+        """Let the voltage be too low to save anything, or enough."""
+        self.ask(b"L", pack("<B", is_low))
+
+    def wear_out(self, place: int) -> None:
+        """Let a byte of the memory keep what it is."""
+        self.ask(b"D", pack("<H", place))
+
     def memory(self) -> bytes:
         return _text(self.ask(b"E", b""))[0]
 

@@ -89,6 +89,9 @@ void answer_robot(Reader* request, Writer* answer) {
     case 'w':
       port.is_busy = value != 0;
       break;
+    case 'k':
+      port.is_saving = value != 0;
+      break;
     default:
       abort();
   }

@@ -63,13 +63,13 @@ const Trim& port_trim() { return port.trim; }
 LineErrors port_line_errors() { return {0, 0}; }
 uint16_t port_room() { return port.room; }
 
-bool port_make_way(bool) {
-  if (port.is_busy) return false;
+Answer port_make_way(bool) {
+  if (port.is_busy) return Answer::kBusy;
   if (port.condition.state == State::kRunning) {
     port.condition.state = State::kIdle;
     say("END");
   }
-  return true;
+  return Answer::kOk;
 }
 
 void port_forget() { hold(port.stored, Saved::kStored); }
@@ -125,22 +125,25 @@ void port_release() {
   say("RELEASE");
 }
 
-uint8_t port_image_byte(uint16_t offset) { return static_cast<uint8_t>(port.held.at(offset)); }
+Answer port_image_byte(uint16_t offset, uint8_t* byte) {
+  *byte = static_cast<uint8_t>(port.held.at(offset));
+  return port.is_busy ? Answer::kBusy : Answer::kOk;
+}
 
 Answer port_set_trim(const Trim& trim) {
   if (port.is_busy) return Answer::kBusy;
   if (trim.least > kMostLeast) return Answer::kBadValue;
   port.trim = trim;
   say("TRIM %u", trim.wheels);
-  return Answer::kOk;
+  return port.is_saving ? Answer::kSaving : Answer::kOk;
 }
 
-bool port_rename(const uint8_t* name, uint8_t length) {
-  if (port.is_busy) return false;
+Answer port_rename(const uint8_t* name, uint8_t length) {
+  if (port.is_busy) return Answer::kBusy;
   for (uint8_t k = 0; k < length; k++) port.equipment.name[k] = name[k];
   port.equipment.name_length = length;
   say("NAME of %u bytes", length);
-  return true;
+  return port.is_saving ? Answer::kSaving : Answer::kOk;
 }
 
 }  // namespace tiniscript

@@ -15,6 +15,7 @@ struct SimulatedPort {
   tiniscript::Trim trim = {};
   uint16_t room = 0;
   bool is_busy = false;              // it saves, and cannot make way
+  bool is_saving = false;            // it has not kept yet what it was given
   std::unique_ptr<uint8_t[]> image;  // of exactly its length: a sanitizer sees what is outside
   std::unique_ptr<uint8_t[]> live;
   std::string held;    // the image that START starts

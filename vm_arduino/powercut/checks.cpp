@@ -78,6 +78,33 @@ const char* run_checks() {
   run(&store, true);
   expect(store.state() == StoreState::kSaved && has(store, c));
 
+  // what is given up was never there, and the next save is whole; only what waits is given up
+  start(&store);
+  expect(store.begin_save(a.data()));
+  store.give_up();
+  expect(store.is_busy());
+  run(&store, false, 5000);
+  expect(store.is_ready_to_commit() && !store.is_committing());
+  store.give_up();
+  expect(!store.is_busy() && has(store, c) && !store.is_ready_to_commit());
+  start(&later);
+  expect(has(later, c));
+  expect(store.begin_save(a.data()));
+  run(&store, false, 5000);
+  store.tick(true);
+  expect(store.is_committing() && !store.is_ready_to_commit());
+  store.give_up();
+  expect(store.is_committing());  // not while a byte is being written
+  memory.is_writing = false;
+  expect(!store.is_committing());
+  store.give_up();
+  expect(!store.is_busy() && has(store, c));
+  start(&later);
+  expect(has(later, a));
+  memory.is_writing = false;
+  start(&store);
+  expect(save(&store, c) && save(&store, b) && save(&store, c));
+
   // what is stored already costs nothing
   uint32_t writes = memory.writes;
   expect(save(&store, c) && memory.writes == writes);

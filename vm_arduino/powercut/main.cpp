@@ -192,7 +192,7 @@ void second_cuts(const World& world, const Expected& expected, const Task& next,
 
 // Everything that can happen to one task, in a world whose store is idle.
 void cut_everything(const char* name, World world, Task task, const std::vector<Content>& nexts,
-                    uint32_t stride) {
+                    uint32_t stride, const std::vector<Content>& also = {}) {
   history = name;
   memory = world.memory;
   Expected expected;
@@ -204,6 +204,7 @@ void cut_everything(const char* name, World world, Task task, const std::vector<
   memset(erases, 0, sizeof erases);
   if (!begin(&world.store, &task)) wrong("a save is refused");
   expected.allowed = {old, task.content};
+  expected.allowed.insert(expected.allowed.end(), also.begin(), also.end());
 
   // once without a cut, for the wear
   World whole = world;
@@ -238,6 +239,24 @@ World after(uint8_t fill, std::vector<Task> tasks) {
     if (read(world.store, task.area) != task.content) wrong("a save before does not save");
   }
   start(&world.store);
+  world.memory = memory;
+  return world;
+}
+
+// A world in which a save was given up after so many of its marks.
+World given_up(World world, Content content, uint8_t marks) {
+  memory = world.memory;
+  Task task = {Area::kProgram, content};
+  if (!begin(&world.store, &task)) wrong("a save before is refused");
+  for (uint32_t ticks = 0; ticks < kMostTicks; ticks++) {
+    memory.is_writing = false;
+    const bool is_ready = world.store.is_ready_to_commit();
+    if (is_ready && marks == 0) break;
+    if (is_ready) marks--;
+    world.store.tick(is_ready);
+  }
+  world.store.give_up();
+  if (world.store.is_busy()) wrong("it is not given up");
   world.memory = memory;
   return world;
 }
@@ -280,6 +299,14 @@ void programs(uint16_t size, uint32_t stride) {
   cut_everything("the 65th save", after(0xff, many), {area, c}, {d, b}, stride);
   cut_everything("a memory of zeros", after(0, {}), {area, a}, {b, a}, stride);
   cut_everything("a memory of anything", after(1, {}), {area, a}, {b, a}, stride);
+  const World two = after(0xff, {{area, a}, {area, b}});
+  cut_everything("a save behind one that was given up", given_up(two, c, 0), {area, d}, {c, d, b},
+                 stride);
+  cut_everything("a save behind one with a mark that was given up", given_up(two, c, 1), {area, d},
+                 {c, d, b}, stride, {c});
+  cut_everything("a save behind one with two marks that was given up", given_up(two, c, 2),
+                 {area, d}, {c, d, b}, stride, {c});
+  cut_everything("what was given up", given_up(two, c, 0), {area, c}, {d, c, b}, stride);
 }
 
 void records(Area area, uint32_t stride) {

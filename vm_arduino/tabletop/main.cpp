@@ -12,6 +12,7 @@
 #include "../host/wire.h"
 #include "../src/firmware/firmware.h"
 #include "../src/robot.h"
+#include "../src/store/layout.h"
 #include "../src/store/nvm.h"
 
 using namespace tiniscript;
@@ -28,6 +29,10 @@ struct Tabletop {
   bool is_latched = true;
   bool is_lit = false;
   bool has_stalled = false;
+  bool is_low = false;  // the supply
+  bool writes_mark = false;
+  uint8_t measures = 0;     // of it, each fourth says something
+  uint16_t dead = 0xffff;   // a place of the memory that keeps what it is
   uint8_t busy_ticks = 0;   // for which a byte is being written,
   uint8_t write_ticks = 0;  // as many as this
 };
@@ -43,8 +48,20 @@ void say(const char* what, int32_t first, int32_t second) {
 
 int8_t percent_of(int16_t level) { return static_cast<int8_t>(lround(level / 2.55)); }
 
+// Whether a byte makes something count: the marks of a slot, 0 aside.
+bool is_mark(uint16_t place, uint8_t value) {
+  for (uint8_t slot = 0; slot < kSlots; slot++) {
+    const int at = place - place_of(slot);
+    if (at > 0 && at <= kMarks && value != 0 && value != 0xff) return true;
+  }
+  return false;
+}
+
 // What the motors do, not what they are told.
 void turn(int8_t left, int8_t right) {
+  if ((left != 0 || right != 0) && table.busy_ticks != 0 && table.writes_mark) {
+    table.log += "MARK and a motor starts\n";
+  }
   if (left != table.left || right != table.right) say("MOTORS", left, right);
   table.left = left;
   table.right = right;
@@ -101,6 +118,12 @@ void answer_step(Reader* request, Writer* answer) {
 // E: what the memory holds.
 void answer_memory(Writer* answer) { answer->text(table.memory); }
 
+// L: whether the supply is too low.
+void answer_supply(Reader* request) { table.is_low = request->u8() != 0; }
+
+// D: a byte of the memory that keeps what it is.
+void answer_dead(Reader* request) { table.dead = request->u16(); }
+
 // V: what the sensors say.
 void answer_readings(Reader* request) {
   for (int32_t& reading : table.readings) reading = request->i32();
@@ -144,6 +167,12 @@ LineErrors board_line_errors() { return {0, 0}; }
 
 void board_forget() {}
 
+Supply board_supply() {
+  if (table.left != 0 || table.right != 0) table.log += "MEASURED while a motor is on\n";
+  if (table.measures++ % 4 != 3) return Supply::kMeasuring;
+  return table.is_low ? Supply::kLow : Supply::kEnough;
+}
+
 void board_light(bool is_on) { table.is_lit = is_on; }
 
 void board_finished() { table.log += "FINISHED\n"; }
@@ -155,7 +184,12 @@ bool nvm_is_ready() { return table.busy_ticks == 0; }
 uint8_t nvm_read(uint16_t place) { return static_cast<uint8_t>(table.memory[place]); }
 
 void nvm_write(uint16_t place, uint8_t value) {
-  table.memory[place] = static_cast<char>(value);
+  table.writes_mark = is_mark(place, value);
+  if (table.writes_mark && (table.left != 0 || table.right != 0)) {
+    table.log += "MARK while a motor is on\n";
+  }
+  if (table.writes_mark && table.is_low) table.log += "MARK while the supply is low\n";
+  if (place != table.dead) table.memory[place] = static_cast<char>(value);
   table.busy_ticks = table.write_ticks;
 }
 
@@ -177,6 +211,12 @@ int main() {
         break;
       case 'E':
         answer_memory(&said);
+        break;
+      case 'L':
+        answer_supply(&request);
+        break;
+      case 'D':
+        answer_dead(&request);
         break;
       case 'V':
         answer_readings(&request);

@@ -133,6 +133,8 @@ LineErrors board_line_errors() { return {0, 0}; }  // its bytes come whole, or n
 
 void board_forget() {}
 
+Supply board_supply() { return Supply::kEnough; }
+
 void board_light(bool is_on) { note(kLight, is_on); }
 
 void board_finished() { note(kFinished); }

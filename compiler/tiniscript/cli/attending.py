@@ -11,35 +11,49 @@ from tiniscript.cli.texts import text
 from tiniscript.cli.trouble import Trouble
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
     from tiniscript.cli.connecting import Connection
     from tiniscript.cli.telling import Teller
-    from tiniscript.link.asking import Way
+    from tiniscript.link.asking import Asked, Way
+    from tiniscript.link.errands import Reply
     from tiniscript.link.outcomes import Event
 
 CONFIRM_S = 7.0  # for which a stop is waited for, a little longer than it is sent
 STOP_S = 1.5  # the same for a command that leaves, and that nobody may look at
 SAVE_S = 10.0  # for which a robot may save a program
+LOW_S = 2.0  # for which its voltage may be too low for that: it looks every half second
+ASK_S = 1.0  # between two questions whether it has, while the program runs
+SAVING, STORED, LOW_SUPPLY = 2, 3, 4  # of `link.messages.SAVED`
 LINK_FAULT = 64  # from here on, a fault is none of the program's
 DONE, FAULTY, INTERRUPTED, LOST = 0, 1, 2, 3  # exit codes
 
 
 class Attendant:
-    """Tells what a run tells, until it ends. `hold` may keep an event back: it returns whether."""
+    """Tells what a run tells, until it ends. `hold` may keep an event back: it returns whether.
+
+    `look` is called now and then.
+    """
 
     def __init__(
-        self, connection: Connection, teller: Teller, hold: Callable[[Event], bool] | None = None
+        self,
+        connection: Connection,
+        teller: Teller,
+        hold: Callable[[Event], bool] | None = None,
+        look: Callable[[], None] | None = None,
     ) -> None:
         self.connection = connection
         self.teller = teller
         self.hold = hold
+        self.look = look
 
     def attend(self, run: int) -> int:
         """Wait for the end of a run; return the exit code. Raises Trouble where the link ends."""
         has_begun = False  # what comes before was about another run
         while True:
             found = self.connection.event()
+            if self.look is not None:
+                self.look()
             if self.connection.is_time_over:
                 return self.stop_in_time()
             if found is None:
@@ -128,17 +142,65 @@ def confirmed(line: Way, limit_s: float = CONFIRM_S) -> bool:
     return False
 
 
-def until_saved(connection: Connection) -> int | None:
-    """Wait until the robot has saved its program; return the slot, or None where it has not.
+class Saving:
+    """Follows how the robot saves the program that it was given, and says once that it has.
 
     Whoever opens the port next may reset the robot, and would end the saving.
     """
-    end_s = monotonic() + SAVE_S
-    while monotonic() < end_s:
-        values = connection.ask(lambda session: session.status()).values
-        if values["saved"] != 2:
+
+    def __init__(self, connection: Connection, teller: Teller, values: Mapping[str, int]) -> None:
+        """`values` are those of the program's receipt."""
+        self.connection = connection
+        self.teller = teller
+        self.run, self.program, self.saved = (values[key] for key in ("run", "program", "saved"))
+        self._asked: Asked | None = None
+        self._asked_s = monotonic()
+
+    @property
+    def is_over(self) -> bool:
+        return self.saved not in (SAVING, LOW_SUPPLY)
+
+    def look(self) -> None:
+        """Ask every second, and wait for nothing."""
+        if self._asked is not None and self._asked.outcome is not None:
+            self._learn(self._asked.outcome, is_running=True)
+            self._asked = None
+        elif self._asked is None and not self.is_over and monotonic() - self._asked_s > ASK_S:
+            self._asked_s = monotonic()
+            self._asked = self.connection.do(lambda session: session.status())
+
+    def wait(self) -> None:
+        """Wait until it is saved. Raises Trouble where it is not."""
+        if self.is_over:
+            return
+        begun_s = monotonic()
+        low_s: float | None = None
+        while not self.is_over and monotonic() < begun_s + SAVE_S:
+            self._learn(self.connection.ask(lambda session: session.status()), is_running=False)
+            if self.saved == LOW_SUPPLY:
+                low_s = low_s or monotonic()
+                if monotonic() > low_s + LOW_S:
+                    break
+            else:
+                low_s = None
+            if not self.is_over:
+                self.connection.event()
+        if self.saved != STORED:
+            key = {SAVING: "saves_later", LOW_SUPPLY: "low_supply"}.get(self.saved, "not_saved")
+            raise Trouble(3, "plain", said=text(key, self.connection.language))
+
+    def _learn(self, status: Reply, is_running: bool) -> None:
+        values = {key: each for key, each in status.values.items() if isinstance(each, int)}
+        if status.status or self.is_over:
+            return
+        if values["program"] != self.program:  # somebody has sent another one
+            self.saved = STORED
+            return
+        was_low, self.saved = self.saved == LOW_SUPPLY, values["saved"]
+        language = self.connection.language
+        if self.saved == STORED:
             slot = values["slot"]
-            assert isinstance(slot, int)
-            return slot if values["saved"] == 3 else None
-        connection.event()
-    return None
+            said = text("now_saved", language).format(slot=slot)
+            self.teller.say(0, "SAVED", str(slot), said, slot=slot)
+        elif self.saved == LOW_SUPPLY and not was_low and is_running:
+            self.teller.say(0, "LOW_SUPPLY", "", text("low_supply", language), is_bad=True)

@@ -188,6 +188,16 @@ class Connection:
             raise self.trouble(reply)
         return reply
 
+    def give(self, make: Callable[[Asks], Asked]) -> Reply:
+        """Have the robot take something; raise Trouble where it does not. Where the reply is not
+        OK, it has not kept it yet."""
+        from tiniscript.link.errands import TAKEN
+
+        reply = self.wait(self.do(make))
+        if reply.status and reply.status not in TAKEN:
+            raise self.trouble(reply)
+        return reply
+
     def do(self, make: Callable[[Asks], Asked]) -> Asked:
         """Have something begun, for which there is a limited time."""
 

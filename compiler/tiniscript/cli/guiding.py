@@ -34,7 +34,7 @@ def guided(connection: Connection, before: Trim) -> Trim:
             print(file=sys.stderr)
             confirmed(connection.line)
         if not isinstance(why, Trouble) or why.key.startswith("trim_"):
-            connection.ask(lambda session: session.trim(before.data()))
+            connection.give(lambda session: session.trim(before.data()))
         raise
 
 
@@ -99,7 +99,7 @@ class Guide:
             self._set(found)
 
     def _set(self, trim: Trim) -> None:
-        self.connection.ask(lambda session: session.trim(trim.data()))
+        self.connection.give(lambda session: session.trim(trim.data()))  # kept at the end
 
     def _drive(self, line: str) -> None:
         from tiniscript import compile_text

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from time import monotonic
-
 from tiniscript.cli.connecting import connected, takes_robot
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import Options
@@ -29,8 +27,6 @@ Le pone nombre al robot: de 1 a 16 bytes de UTF-8. Lo conserva cuando se apaga.
 """,
 )
 
-KEEP_S = 0.6  # in which a robot writes a name down: 32 bytes, 3.4 ms each, and some to clear
-
 
 def run(arguments: list[str], language: str) -> int:
     parser = Options("name", language, HELP)
@@ -45,12 +41,10 @@ def run(arguments: list[str], language: str) -> int:
     data = name_bytes(name)
     with connected(options, language) as connection:
         connection.meet()
-        connection.ask(lambda session: session.name(data))
+        reply = connection.give(lambda session: session.name(data))
         connection.remember(name)
-        # whoever opens the port next may reset the robot, and would end its writing
-        end_s = monotonic() + KEEP_S
-        while monotonic() < end_s:
-            connection.event()
+        if reply.status:  # it is called so, and may forget it
+            raise connection.trouble(reply)
         said = {"port": shown(connection.port), "name": shown(name)}
         print(text("named", language).format(**said))
     return 0

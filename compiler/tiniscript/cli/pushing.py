@@ -16,6 +16,7 @@ from tiniscript.cli.texts import text
 from tiniscript.cli.trouble import Trouble
 
 if TYPE_CHECKING:
+    from tiniscript.cli.attending import Saving
     from tiniscript.cli.connecting import Connection
     from tiniscript.cli.telling import Teller
     from tiniscript.link.outcomes import Event
@@ -30,7 +31,7 @@ def has_keys(connection: Connection) -> bool:
     return company is not None and company.is_drawn and sys.stdin.isatty() and is_in_front()
 
 
-def attend_button(connection: Connection, teller: Teller, program: int) -> int:
+def attend_button(connection: Connection, teller: Teller, saving: Saving) -> int:
     """Stay until a program has ended by itself; return the exit code.
 
     The button stops it, too; then it starts it again. Raises Trouble where the link ends.
@@ -49,11 +50,12 @@ def attend_button(connection: Connection, teller: Teller, program: int) -> int:
                 if key in PUSH:
                     company.push()
             found = connection.event()
+            saving.look()
             if connection.is_time_over:
                 return Attendant(connection, teller).stop_in_time()
             if found is None:
                 continue
-            _mind(connection, found[1], program)
+            _mind(connection, found[1], saving.program)
             if found[1].name != "STARTED":
                 teller.tell(*found)
             code = ended(found[1], None)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from argparse import Namespace
-from time import monotonic
 from typing import Any
 
 from tiniscript.cli.connecting import Connection, connected, takes_robot
@@ -50,8 +49,6 @@ resulta en su propia memoria, con cualquier programa. No se cambia ningún cable
 """,
 )
 
-KEEP_S = 0.6  # in which a robot writes a trim down: 32 bytes, 3.4 ms each, and some to clear
-
 
 def run(arguments: list[str], language: str) -> int:
     parser = Options("trim", language, HELP)
@@ -72,12 +69,12 @@ def run(arguments: list[str], language: str) -> int:
             return 0
         if options.reset or given:
             trim = (Trim() if options.reset else before)._replace(**given)
-            connection.ask(lambda session: session.trim(trim.data()))
         else:
             from tiniscript.cli.guiding import guided
 
             trim = guided(connection, before)
-        _wait_until_kept(connection)
+        # The one that may have been set already: OK says that it is kept.
+        connection.ask(lambda session: session.trim(trim.data()))
         _print(connection, "trim_keeps", trim, options.json)
     return 0
 
@@ -103,13 +100,6 @@ def _given(options: Namespace, language: str) -> dict[str, Any]:
     if options.least is not None:
         found["least"] = whole_number("--least", options.least, 0, 0, MOST_LEAST, language)
     return found
-
-
-def _wait_until_kept(connection: Connection) -> None:
-    """Whoever opens the port next may reset the robot, and would end its writing."""
-    end_s = monotonic() + KEEP_S
-    while monotonic() < end_s:
-        connection.event()
 
 
 def _print(connection: Connection, key: str, trim: Trim, is_json: bool) -> None:

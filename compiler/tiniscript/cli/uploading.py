@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import json
+import sys
 from argparse import Namespace
 from typing import TYPE_CHECKING
 
 from tiniscript.cli import images, inputs, outputs, own_kit
-from tiniscript.cli.attending import Attendant, stop_and_say, until_saved
+from tiniscript.cli.attending import Attendant, Saving, stop_and_say
 from tiniscript.cli.connecting import Connection
 from tiniscript.cli.options import Options
 from tiniscript.cli.roster import are_many, takes_ports
@@ -81,8 +82,6 @@ Código de salida: 0 si termina, 1 con errores o una falla, 2 después de Ctrl-C
 la conexión lo terminó.
 """,
 )
-
-SAVING = 2  # of `link.messages.SAVED`
 
 
 def run(arguments: list[str], language: str) -> int:
@@ -158,13 +157,22 @@ def _upload(
         values = brought(connection, ready, options, progress.draw)
     finally:
         progress.end()
-    if options.json:
-        print(json.dumps(receipt(connection, ready, name, values, options)), flush=True)
-    else:
-        print(_receipt_line(connection, ready, name, values, options), flush=True)
-    _keep_map(ready)  # now that it moves
     teller = connection.teller(options.json, ready.places)
-    return looked_after(connection, ready, values, options, teller)
+    saving = Saving(connection, teller, values)
+    try:
+        if options.json:
+            print(json.dumps(receipt(connection, ready, name, values, options)), flush=True)
+        else:
+            print(_receipt_line(connection, ready, name, values, options), flush=True)
+        _keep_map(ready)  # now that it moves
+        return looked_after(connection, ready, saving, options, teller)
+    except KeyboardInterrupt:
+        code = stop_and_say(connection)
+        try:
+            saving.wait()  # now that its motors stand, it is not long
+        except Trouble as trouble:
+            print(trouble.sentence(language), file=sys.stderr)
+        return code
 
 
 def _keep_map(ready: images.Ready) -> None:
@@ -194,27 +202,22 @@ def brought(
 
 
 def looked_after(
-    connection: Connection, ready: images.Ready, values: dict[str, int], options: Namespace,
+    connection: Connection, ready: images.Ready, saving: Saving, options: Namespace,
     teller: Teller,
 ) -> int:  # fmt: skip
     """Stay with a program until it has ended and is saved; return the exit code. Raises Trouble."""
-    language = connection.language
     code = 0
     if is_running(ready, options):
         if options.detach:
             return 0
         if connection.company is not None:
             connection.company.watch()
-        code = Attendant(connection, teller).attend(values["run"])
+        code = Attendant(connection, teller, look=saving.look).attend(saving.run)
     elif has_button(connection, ready, options):
         from tiniscript.cli.pushing import attend_button
 
-        code = attend_button(connection, teller, values["program"])
-    if values["saved"] == SAVING:
-        slot = until_saved(connection)
-        if slot is None:
-            raise Trouble(3, "plain", said=text("not_saved", language))
-        teller.say(0, "SAVED", str(slot), text("now_saved", language).format(slot=slot), slot=slot)
+        code = attend_button(connection, teller, saving)
+    saving.wait()
     return code
 
 

@@ -8,6 +8,7 @@ from argparse import Namespace
 from typing import TYPE_CHECKING
 
 from tiniscript.cli import uploading
+from tiniscript.cli.attending import Saving
 from tiniscript.cli.crew import Member, Result, together
 from tiniscript.cli.telling import Teller
 from tiniscript.cli.texts import text
@@ -55,7 +56,8 @@ class Upload:
         runs = uploading.is_running(ready, options)
         member.tell("crew_running" if runs and not options.detach else "crew_saving")
         teller = MemberTeller(connection, ready, member, options.json, self.has_table)
-        code = uploading.looked_after(connection, ready, values, options, teller)
+        saving = Saving(connection, teller, values)
+        code = uploading.looked_after(connection, ready, saving, options, teller)
         if not runs or options.detach:
             key = "how_waits" if not runs else "how_detached"
             teller.end = text(key, language).format(start=ready.image.start)

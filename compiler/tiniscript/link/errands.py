@@ -26,6 +26,11 @@ OK = STATUSES["OK"]
 SHORT_BYTES = BY_NAME["PROGRAM"].request[-1].high  # of code, in one frame
 DATA_BYTES = BY_NAME["DATA"].request[-1].high
 BUSY_TRIES = 200  # while the robot saves another program
+KEPT_TRIES = 12  # while it has not kept what it was given,
+LOW_TRIES = 4  # and while its voltage is too low for that: it looks every half second
+KEPT_PAUSE_MS = 200
+# What it was given it has, but not yet over the next power-on.
+TAKEN = (STATUSES["SAVING"], STATUSES["LOW_SUPPLY"], STATUSES["NOT_KEPT"])
 assert SHORT_BYTES == PAYLOAD_BYTES - 1
 
 
@@ -165,7 +170,7 @@ def fetch() -> Errand:
     """Read back the image that the robot holds: the `image` of the reply."""
     image = b""
     while True:
-        reply = yield Request("FETCH", {"offset": len(image)})
+        reply = yield from patient(Request("FETCH", {"offset": len(image)}))
         if reply.status != OK:
             return reply
         piece = reply.values["bytes"]
@@ -182,6 +187,20 @@ def patient(request: Request) -> Errand:
         if reply.status != STATUSES["BUSY"]:
             break
         reply = yield request._replace(pause_ms=100)
+    return reply
+
+
+def kept(request: Request) -> Errand:
+    """Have the robot keep something, and wait a while until it says that it has.
+
+    Where it has not, the outcome says what is in the way: a program that drives, a low voltage.
+    """
+    reply = yield from patient(request)
+    tries = low = 0
+    while reply.status in TAKEN[:2] and tries < KEPT_TRIES and low < LOW_TRIES:
+        tries += 1
+        reply = yield from patient(request._replace(pause_ms=KEPT_PAUSE_MS))
+        low = low + 1 if reply.status == STATUSES["LOW_SUPPLY"] else 0
     return reply
 
 

@@ -129,9 +129,9 @@ MESSAGES = (
              "Code. What does not begin at `next` is not taken."),
     _message(12, "COMMIT", True, "checksum:u32", _RECEIPT, "The program is whole: its image's checksum."),
     _message(13, "ABORT", True, "", "", "Drops the program that was begun."),
-    _message(14, "NAME", True, "name:rest=1..16", "", "Names the robot: UTF-8."),
+    _message(14, "NAME", True, "name:rest=1..16", "", "Names the robot: UTF-8. OK when it is kept, before that SAVING or LOW_SUPPLY: ask again."),
     _message(15, "TRIM", True, f"trim:rest=0..{TRIM_BYTES}", "wheels:u8 balance:i8 least:u8",
-             "Sets the trim of the motors, three bytes like those of the reply, or only tells it."),
+             "Sets the trim of the motors, three bytes like those of the reply, or only tells it. OK as for NAME."),
     # events: a robot sends these without being asked
     _message(32, "SHOW", False, "", "value:i32 is_yes_no:u8", "A value that a program shows."),
     _message(33, "FAULT", False, "", "run:u8 fault:u8 at:u16 program:u32",
@@ -163,6 +163,9 @@ STATUSES = {
     "NOT_BEGUN": 75,
     "INCOMPLETE": 76,
     "NOT_SEALED": 77,
+    "SAVING": 78,
+    "LOW_SUPPLY": 79,
+    "NOT_KEPT": 80,
 }
 # What the number that follows a status other than OK means. It is 0 where it is not here.
 DETAILS = {
@@ -180,10 +183,11 @@ STATES = (
     ("FAULTED", "A fault has ended the program: nothing starts before CLEAR or the button."),
 )
 SAVED = (
-    ("NOTHING", "The robot holds no program."),
-    ("MEMORY",  "The program is in RAM only: power off, and it is gone."),
-    ("SAVING",  "It is being saved."),
-    ("STORED",  "It is saved."),
+    ("NOTHING",    "The robot holds no program."),
+    ("MEMORY",     "The program is in RAM only: power off, and it is gone."),
+    ("SAVING",     "It is being saved: it is when the motors have stood for a moment."),
+    ("STORED",     "It is saved."),
+    ("LOW_SUPPLY", "It is in RAM only: the voltage is too low to save it. It is saved as soon as it is not."),
 )
 CAUSES = (
     ("NONE",     "Not stopped."),

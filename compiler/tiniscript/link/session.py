@@ -142,7 +142,7 @@ class Session:
     def trim(self, trim: bytes = b"") -> Task:
         """Set the trim of the motors, or only ask for it."""
         request = Request("TRIM", {"trim": trim})
-        return self._add(Task(self._open_then(lambda: errands.patient(request))))
+        return self._add(Task(self._open_then(lambda: errands.kept(request))))
 
     def fetch(self) -> Task:
         return self._add(Task(errands.fetch()))
@@ -279,8 +279,8 @@ class Session:
         return (yield from errands.upload(image, mode, self.robot, self._isa, self.is_latched))
 
     def _name(self, name: bytes) -> Errand:
-        reply = yield from errands.patient(Request("NAME", {"name": name}))
-        if reply.status == OK and self.robot:
+        reply = yield from errands.kept(Request("NAME", {"name": name}))
+        if reply.status in (OK, *errands.TAKEN) and self.robot:
             self.robot = errands.described({**self.robot.values, "name": name})
         return reply
 

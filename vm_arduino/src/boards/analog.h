@@ -5,6 +5,8 @@
 
 #include <stdint.h>
 
+#include "../firmware/board.h"
+
 namespace tiniscript {
 
 // Puts 0 to 1023 into `*value` and returns true where a channel has been measured since the last
@@ -13,6 +15,12 @@ bool analog_read(uint8_t channel, int32_t* value);
 
 // A measurement that is under way is nobody's any more.
 void analog_forget();
+
+// The same for the supply: its voltage against the band gap of the chip. It takes some 3 ms, and a
+// channel waits for so long. To be asked in every turn of the main loop; `analog_tick`, once in
+// each, gives up a measurement that was not.
+Supply analog_supply();
+void analog_tick();
 
 // What a count means: `zero`, and for each count `step` and so many parts of 1023 that `rest` is
 // (0 to 1022), rounded.

@@ -40,6 +40,7 @@ uint32_t board_now_ms() { return millis(); }
 
 void board_tick(uint32_t now_ms) {
   guard_calm();
+  analog_tick();
   sound_tick(now_ms);
 }
 
@@ -77,6 +78,8 @@ void board_forget() {
   analog_forget();
   echo_forget();
 }
+
+Supply board_supply() { return analog_supply(); }
 
 void board_light(bool is_on) {
   if (kLight.port != 0) write(kLight, is_on);

@@ -39,6 +39,12 @@ LineErrors board_line_errors();
 // A program begins: a reading that nobody has fetched is none of its.
 void board_forget();
 
+// Whether there is enough voltage to write what must not be spoilt. Begins a measurement where none
+// is under way, and says once what it has found. To be asked in every tick until then: a
+// measurement that nobody asks for is given up.
+enum class Supply : uint8_t { kMeasuring, kLow, kEnough };
+Supply board_supply();
+
 // The light is on while a press of the button would start something.
 void board_light(bool is_on);
 

@@ -15,6 +15,8 @@ namespace {
 constexpr uint8_t kBudget = 32;  // instructions in one tick
 constexpr uint8_t kLiveBytes = kPayloadBytes - kLiveCodeAt;
 
+constexpr uint16_t kLowMs = 500;  // between two looks at a supply that is too low
+
 // What is read from the store after a reset, one after the other.
 enum class Boot : uint8_t { kSettling, kIdentity, kFault, kProgram, kOver };
 
@@ -42,7 +44,12 @@ bool is_whole;     // `program` is the one that `condition` names
 bool is_live_run;  // `live` runs
 bool may_start;    // the button is down; nothing has run or was stopped since: going up, it starts
 uint8_t to_keep;
-uint8_t keeping;  // of them: what the store writes now
+uint8_t keeping;    // of them: what the store writes now
+bool is_driving;    // a motor is on
+bool is_low;        // what is to be kept waits for more voltage
+uint16_t low_ms;    // since then
+bool is_worn;       // the memory has not kept who the robot is
+bool is_start_due;  // the button went up, and the program was not to be had at once
 uint32_t now_ms;
 uint32_t began_ms;  // the run
 
@@ -175,6 +182,19 @@ void write_record() {
   }
 }
 
+// Whether what makes something count may be written: motors off, and enough voltage.
+bool may_commit() {
+  if (is_driving || !store.is_ready_to_commit()) return false;
+  if (is_low && static_cast<uint16_t>(now_ms - low_ms) < kLowMs) return false;
+  const Supply supply = board_supply();
+  if (supply == Supply::kMeasuring) return false;
+  is_low = supply == Supply::kLow;
+  low_ms = static_cast<uint16_t>(now_ms);
+  return !is_low;
+}
+
+void tell_saving() { condition.saved = is_low ? Saved::kLowSupply : Saved::kSaving; }
+
 // Begins to keep what is next; a program first.
 void keep_next() {
   keeping = static_cast<uint8_t>(to_keep & -to_keep);
@@ -190,16 +210,44 @@ void keep_next() {
 }
 
 void tick_store() {
-  store.tick(condition.state != State::kRunning);
-  if (boot != Boot::kOver) return load_next();
-  if (store.is_busy()) return;
-  if (keeping == kKeepProgram) {
-    const bool is_stored = store.state() == StoreState::kSaved;
-    condition.saved = is_stored ? Saved::kStored : Saved::kMemory;
-    if (is_stored) condition.slot = store.used(Area::kProgram);
+  store.tick(may_commit());
+  const bool is_busy = store.is_busy();
+  const bool is_kept = store.state() == StoreState::kSaved;
+  if (boot != Boot::kOver) {
+    if (is_low) tell_saving();
+    return load_next();
   }
+  if (!is_busy && keeping == kKeepProgram) {
+    condition.saved = is_kept ? Saved::kStored : Saved::kMemory;
+    if (is_kept) condition.slot = store.used(Area::kProgram);
+  } else if (((to_keep | keeping) & kKeepProgram) != 0) {
+    tell_saving();
+  }
+  if (is_busy) return;
+  if (keeping == kKeepIdentity) is_worn = !is_kept;
   keeping = 0;
   if (to_keep != 0) keep_next();
+}
+
+// What is not to be had now: why.
+Answer not_now() { return is_low ? Answer::kLowSupply : Answer::kBusy; }
+
+// Takes over what a computer says of who the robot is.
+void change(uint8_t* to, const uint8_t* from, uint8_t length) {
+  for (uint8_t k = 0; k < length; k++) {
+    if (to[k] != from[k]) to_keep |= kKeepIdentity;
+    to[k] = from[k];
+  }
+}
+
+// Whether that is kept. What a worn memory has not kept is tried again.
+Answer identity_kept() {
+  if (((to_keep | keeping) & kKeepIdentity) != 0) {
+    return is_low ? Answer::kLowSupply : Answer::kSaving;
+  }
+  if (!is_worn) return Answer::kOk;
+  to_keep |= kKeepIdentity;
+  return Answer::kNotKept;
 }
 
 // -- a run --------------------------------------------------------------------------------------
@@ -208,7 +256,7 @@ void tick_store() {
 void end_run(State state) {
   board_stop();
   robot_off();
-  may_start = false;
+  may_start = is_driving = is_start_due = false;
   condition.state = state;
   show_light();
 }
@@ -225,6 +273,7 @@ void fault(uint8_t number, uint16_t at) {
 void begin_run(bool is_live) {
   const uint8_t* const image = is_live ? live : program;
   is_live_run = is_live;
+  is_start_due = false;
   began_ms = now_ms;
   may_start = false;
   condition.state = State::kRunning;
@@ -275,7 +324,12 @@ void firmware_tick(uint32_t time_ms) {
     port_stop(static_cast<uint8_t>(LinkFault::kStall));
     talk.faulted();
   }
-  if (condition.state == State::kRunning) run_on();
+  if (is_start_due && load() && is_start_due) {
+    is_start_due = false;
+    if (is_whole) begin_run(false);
+  }
+  // No motor starts while a byte is written that makes something count.
+  if (condition.state == State::kRunning && !store.is_committing()) run_on();
   talk.tell();
   tick_store();
 }
@@ -296,7 +350,7 @@ void firmware_left() {
 void firmware_released() {
   if (!may_start || boot != Boot::kOver) return;
   talk.drop();
-  if (condition.saved != Saved::kNothing && load() && is_whole) begin_run(false);
+  is_start_due = condition.saved != Saved::kNothing;
 }
 
 void firmware_hear(uint8_t byte, uint16_t time_ms) {
@@ -319,13 +373,23 @@ LineErrors port_line_errors() { return board_line_errors(); }
 
 uint16_t port_room() { return kStoredCodeBytes; }
 
-bool port_make_way(bool is_live) {
-  if (boot != Boot::kOver) return false;
+Answer port_make_way(bool is_live) {
+  if (boot != Boot::kOver) return not_now();
   if (condition.state == State::kRunning) end_run(State::kIdle);
-  if (is_live) return load();
-  // what is being written cannot be read either
-  if (store.is_busy() || (to_keep & kKeepProgram) != 0) return false;
-  return true;
+  is_start_due = false;
+  if (is_live) return load() ? Answer::kOk : Answer::kBusy;
+  if (is_low) {
+    // a program that waits for other batteries may wait for ever: the next one is worth more
+    if (keeping == kKeepProgram) {
+      store.give_up();
+      keeping = 0;
+      is_low = false;
+    }
+    to_keep &= static_cast<uint8_t>(~kKeepProgram);
+  } else if (store.is_busy() || (to_keep & kKeepProgram) != 0) {
+    return Answer::kBusy;  // what is being written cannot be read either
+  }
+  return Answer::kOk;
 }
 
 void port_forget() {
@@ -345,7 +409,7 @@ void port_take(uint8_t mode, bool is_live) {
   condition.slot = kNoSlot;
   condition.saved = Saved::kMemory;
   if ((mode & kSave) != 0) {
-    condition.saved = Saved::kSaving;
+    tell_saving();
     to_keep |= kKeepProgram;
   }
   show_light();
@@ -369,31 +433,30 @@ void port_release() {
   if (condition.state >= State::kStopped) condition.state = State::kIdle;
 }
 
-uint8_t port_image_byte(uint16_t offset) {
-  if (is_whole) return program[offset];
-  uint8_t byte = 0;
-  store.fetch(Area::kProgram, offset, &byte);
-  return byte;
+Answer port_image_byte(uint16_t offset, uint8_t* byte) {
+  *byte = program[offset];
+  const bool is_there =
+      is_whole || (boot == Boot::kOver && store.fetch(Area::kProgram, offset, byte));
+  return is_there ? Answer::kOk : not_now();
 }
 
-bool port_rename(const uint8_t* name, uint8_t length) {
-  if (boot != Boot::kOver || keeping == kKeepIdentity) return false;
-  equipment.name_length = length;
-  for (uint8_t k = 0; k < length; k++) equipment.name[k] = name[k];
-  to_keep |= kKeepIdentity;
-  return true;
+Answer port_rename(const uint8_t* name, uint8_t length) {
+  if (boot != Boot::kOver) return not_now();
+  change(&equipment.name_length, &length, 1);
+  change(equipment.name, name, length);
+  return identity_kept();
 }
 
 Answer port_set_trim(const Trim& found) {
   if (!is_sound(found)) return Answer::kBadValue;
-  if (boot != Boot::kOver || keeping == kKeepIdentity) return Answer::kBusy;
-  trim = found;
-  to_keep |= kKeepIdentity;
-  return Answer::kOk;
+  if (boot != Boot::kOver) return not_now();
+  change(reinterpret_cast<uint8_t*>(&trim), reinterpret_cast<const uint8_t*>(&found), sizeof trim);
+  return identity_kept();
 }
 
 void robot_motors(int8_t left, int8_t right) {
   const Levels levels = trimmed(trim, left, right);
+  is_driving = (left | right) != 0;
   board_motors(levels.left, levels.right);
 }
 

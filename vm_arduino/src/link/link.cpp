@@ -188,9 +188,7 @@ uint8_t Link::answer(Message message, const uint8_t* payload, uint8_t length) {
         found = Answer::kNoProgram;
       } else if (is_latched()) {
         found = Answer::kLatched;
-      } else if (!port_make_way(true)) {
-        found = Answer::kBusy;
-      } else {
+      } else if ((found = port_make_way(true)) == Answer::kOk) {
         image_ = nullptr;
         checksum_ = port_condition().program;
         start(payload[kStartModeAt], false);
@@ -209,7 +207,7 @@ uint8_t Link::answer(Message message, const uint8_t* payload, uint8_t length) {
       image_ = nullptr;
       break;
     case Message::kName:
-      if (!port_rename(payload, length)) found = Answer::kBusy;
+      found = port_rename(payload, length);
       break;
     case Message::kTrim:
       if (length != 0) found = set_trim(payload, length);
@@ -269,7 +267,8 @@ uint8_t Link::make_room(uint8_t mode, const uint8_t* header, bool is_live) {
   const uint16_t length = get16(header + kCodeLengthAt - kFirstAt);
   uint8_t* const image = port_memory(length, is_live);
   if (image == nullptr) return refuse(Answer::kTooLarge, port_room());
-  if (!port_make_way(is_live)) return refuse(Answer::kBusy, 0);
+  const Answer way = port_make_way(is_live);
+  if (way != Answer::kOk) return refuse(way, 0);
   image_ = image;
   mode_ = mode;
   length_ = length;

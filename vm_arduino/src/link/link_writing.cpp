@@ -170,7 +170,13 @@ void Link::fetch() {
   const uint16_t whole = static_cast<uint16_t>(kHeaderBytes + port_condition().length);
   put16(whole);
   for (uint16_t at = said_.detail; at < whole && size_ < kPayloadAt + kPayloadBytes; at++) {
-    put(port_image_byte(at));
+    const Answer found = port_image_byte(at, out_ + size_++);
+    if (found != Answer::kOk) {
+      size_ = kPayloadAt;
+      put(byte_of(found));
+      put16(0);
+      return;
+    }
   }
 }
 

@@ -58,8 +58,8 @@ enum class Message : uint8_t {
   kData = 11,  // Code. What does not begin at `next` is not taken.
   kCommit = 12,  // The program is whole: its image's checksum.
   kAbort = 13,  // Drops the program that was begun.
-  kName = 14,  // Names the robot: UTF-8.
-  kTrim = 15,  // Sets the trim of the motors, three bytes like those of the reply, or only tells it.
+  kName = 14,  // Names the robot: UTF-8. OK when it is kept, before that SAVING or LOW_SUPPLY: ask again.
+  kTrim = 15,  // Sets the trim of the motors, three bytes like those of the reply, or only tells it. OK as for NAME.
   kShow = 32,  // A value that a program shows.
   kFault = 33,  // The program has ended with a fault.
   kStopped = 34,  // The robot was stopped: its epoch is another one. Or again: it still is.
@@ -116,6 +116,9 @@ enum class Answer : uint8_t {
   kNotBegun = 75,  // The robot no longer waits for this program: something came between.
   kIncomplete = 76,  // The program did not arrive whole: from byte {detail} on it is missing.
   kNotSealed = 77,  // The robot does not take sealed messages.
+  kSaving = 78,  // The robot has it, and keeps it as soon as its motors stand; switched off before, it forgets it.
+  kLowSupply = 79,  // The robot's batteries are too weak to save anything; switched off, it forgets what is not saved.
+  kNotKept = 80,  // The robot's memory has not kept it; switched off, it forgets it.
 };
 
 enum class State : uint8_t {
@@ -128,8 +131,9 @@ enum class State : uint8_t {
 enum class Saved : uint8_t {
   kNothing = 0,  // The robot holds no program.
   kMemory = 1,  // The program is in RAM only: power off, and it is gone.
-  kSaving = 2,  // It is being saved.
+  kSaving = 2,  // It is being saved: it is when the motors have stood for a moment.
   kStored = 3,  // It is saved.
+  kLowSupply = 4,  // It is in RAM only: the voltage is too low to save it. It is saved as soon as it is not.
 };
 
 enum class Cause : uint8_t {

@@ -73,9 +73,10 @@ LineErrors port_line_errors();
 // The most bytes of code for which there is room.
 uint16_t port_room();
 
-// Ends the running program, and has the one in memory saved if it shall be. False where that is not
-// finished: the link says so, and is asked again. What is_live comes beside the program in memory.
-bool port_make_way(bool is_live);
+// Ends the running program, and has the one in memory saved if it shall be. kBusy where that is not
+// finished: the link says so, and is asked again. kLowSupply: nothing goes on before there is
+// enough voltage. What is_live comes beside the program in memory.
+Answer port_make_way(bool is_live);
 
 // Where an image with so many bytes of code goes, kEndBytes behind it included; nullptr where it
 // has no room. Nothing there is lost before port_make_way has been asked.
@@ -98,13 +99,16 @@ void port_start(bool is_live);
 void port_stop(uint8_t fault);
 void port_release();
 
-// A byte of the image that the robot holds.
-uint8_t port_image_byte(uint16_t offset);
+// Puts a byte of the image that the robot holds into `*byte`. kBusy or kLowSupply where it is not
+// to be had now: the link says so, and is asked again.
+Answer port_image_byte(uint16_t offset, uint8_t* byte);
 
-// False while the robot has no time to save it: the link says so, and is asked again.
-bool port_rename(const uint8_t* name, uint8_t length);
+// Sets the name, and has it kept. kOk where it is kept; kSaving and kLowSupply where it is set, and
+// will be; kNotKept where the memory is worn out, kBusy where nothing is done. The link says so,
+// and is asked again.
+Answer port_rename(const uint8_t* name, uint8_t length);
 
-// Sets and keeps a trim: kOk, kBadValue, or kBusy, likewise.
+// The same with a trim; and kBadValue.
 Answer port_set_trim(const Trim& trim);
 
 }  // namespace tiniscript

@@ -132,8 +132,9 @@ one_copy void Store::boot() {
 }
 
 one_copy void Store::tick(bool may_commit) {
-  if (!is_busy_ || !nvm_is_ready() || (step_ >= kCommitting && !may_commit)) return;
+  if (!is_busy_ || !nvm_is_ready()) return;
   const uint8_t step = flash_byte(kSteps + step_);
+  if (step_ >= kCommitting && !may_commit && step != tiniscript::step(Do::kEnd)) return;
   const uint8_t at = step % 16;
   uint8_t value = kEmptied;
   switch (static_cast<Do>(step / 16)) {
@@ -174,6 +175,19 @@ one_copy void Store::tick(bool may_commit) {
   }
   nvm_write(plus(place_, at), value);
   step_++;
+}
+
+bool Store::is_ready_to_commit() const {
+  return is_busy_ && step_ >= kCommitting && nvm_is_ready();
+}
+
+// One has been written, or it is.
+bool Store::is_committing() const { return is_busy_ && !nvm_is_ready() && step_ > kCommitting; }
+
+one_copy void Store::give_up() {
+  if (!is_ready_to_commit() || state_ != StoreState::kSaving) return;
+  state_ = StoreState::kIdle;
+  is_busy_ = false;
 }
 
 one_copy bool Store::begin_save(const uint8_t* image) {

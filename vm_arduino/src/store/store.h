@@ -42,6 +42,16 @@ class Store {
   // Whether `tick` has something to do. Nothing else begins until it has not.
   bool is_busy() const { return is_busy_; }
 
+  // Whether the next byte waits for `may_commit`, if there is one, and the memory is ready for it.
+  bool is_ready_to_commit() const;
+
+  // Whether such a byte is being written.
+  bool is_committing() const;
+
+  // Gives up a save that waits so: what counted before still does, and the next save goes into the
+  // same slot. After a start before that, what was given up counts if its first mark was written.
+  void give_up();
+
   // How many bytes of what is saved are still to be written, and then again to be read back.
   uint16_t left() const { return static_cast<uint16_t>(length_ - at_); }
 
@@ -64,7 +74,7 @@ class Store {
   void refuse();
 
   // Puts a byte of the image or record that counts into `*byte`; `at` lies in it. False: there is
-  // none, or the memory is writing (ask again).
+  // none, or the memory is writing (ask again); while nothing is busy, it is not.
   bool fetch(Area area, uint16_t at, uint8_t* byte) const;
 
  private:
