@@ -8,6 +8,7 @@
 #include "boards/board.h"
 #include "boards/kit.h"
 #include "boards/motors.h"
+#include "firmware/firmware.h"
 #include "firmware/trim.h"
 #include "robot.h"
 #include "vm/image.h"
@@ -48,8 +49,9 @@ void start(uint32_t now_ms) {
   board_light(false);
 }
 
-void stop() {
+void stop(bool is_done) {
   motors_stop();
+  if (!is_done) board_actuators_off();
   robot_off();
   is_running = false;
   board_light(true);
@@ -58,6 +60,9 @@ void stop() {
 }  // namespace
 
 namespace tiniscript {
+
+// No firmware, so nothing that a watchdog could note.
+bool firmware_runs(Place*) { return false; }
 
 bool robot_show(int32_t, bool) { return true; }
 
@@ -83,10 +88,11 @@ void loop() {
   board_tick(now_ms);
   switch (board_button(now_ms)) {
     case Press::kNothing:
+    case Press::kHeld:
       break;
     case Press::kPressed:
       has_stopped = is_running;
-      if (is_running) stop();
+      if (is_running) stop(false);
       break;
     case Press::kReleased:
       if (is_accepted && !is_running && !has_stopped) start(now_ms);
@@ -94,7 +100,7 @@ void loop() {
   }
   if (is_running && machine.tick(now_ms, kBudget) >= Status::kDone) {
     const bool is_done = machine.status() == Status::kDone;
-    stop();
+    stop(is_done);
     if (is_done) board_finished();
   }
 }

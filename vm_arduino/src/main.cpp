@@ -24,6 +24,7 @@ void loop() {
   board_tick(now_ms);
   const Press press = board_button(now_ms);
   if (press == Press::kPressed) firmware_pressed();
+  if (press == Press::kHeld) firmware_held();
   if (press == Press::kReleased) firmware_released();
   if (board_is_left()) firmware_left();
   firmware_tick(now_ms);

@@ -33,6 +33,9 @@ struct Tabletop {
   bool writes_mark = false;
   uint8_t measures = 0;     // of it, each fourth says something
   uint16_t dead = 0xffff;   // a place of the memory that keeps what it is
+  bool has_set = false;  // an actuator, and no stop since
+  bool has_hung = false;
+  Place hung = {};
   uint8_t busy_ticks = 0;   // for which a byte is being written,
   uint8_t write_ticks = 0;  // as many as this
 };
@@ -148,7 +151,15 @@ void robot_beep(uint16_t hertz, uint32_t duration_ms) {
   say("BEEP", hertz, static_cast<int32_t>(duration_ms));
 }
 
-void robot_set(uint8_t actuator, int32_t value) { say("SET", actuator, value); }
+void robot_set(uint8_t actuator, int32_t value) {
+  say("SET", actuator, value);
+  table.has_set = true;
+}
+
+void board_actuators_off() {
+  if (table.has_set) table.log += "ACTUATORS OFF\n";
+  table.has_set = false;
+}
 
 void board_stop() {
   table.is_latched = true;
@@ -156,6 +167,13 @@ void board_stop() {
 }
 
 void board_release() { table.is_latched = false; }
+
+bool board_has_hung(Place* place) {
+  const bool found = table.has_hung;
+  table.has_hung = false;
+  *place = table.hung;
+  return found;
+}
 
 bool board_has_stalled() {
   const bool found = table.has_stalled;

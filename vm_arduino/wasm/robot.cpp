@@ -40,7 +40,7 @@ bool is_latched = true;
 int32_t readings[256];
 uint8_t memory[kMemoryBytes];
 
-// What the robot does, and when: milliseconds since power-on. `what` is one of kMotors to kFaulted.
+// What the robot does, and when: milliseconds since power-on. `what` is one of kMotors to kActuatorsOff.
 struct Note {
   uint32_t now_ms;
   uint32_t what;
@@ -59,6 +59,7 @@ enum What : uint32_t {
   kLight,
   kFinished,
   kFaulted,
+  kActuatorsOff,
 };
 
 constexpr uint32_t kNotes = 256;
@@ -127,9 +128,13 @@ void board_release() {
   note(kRelease);
 }
 
+void board_actuators_off() { note(kActuatorsOff); }
+
 bool board_has_stalled() { return false; }
 
 LineErrors board_line_errors() { return {0, 0}; }  // its bytes come whole, or not at all
+
+bool board_has_hung(Place*) { return false; }
 
 void board_forget() {}
 

@@ -176,6 +176,8 @@ class Picture:
             self.readings[values[0]] = values[1]
         elif what == "SET":
             self.settings[values[0]] = values[1]
+        elif what == "RELEASE":
+            self.settings.pop(values[0], None)
         elif what == "SHOW":
             self.shown.append(said.removeprefix("SHOW "))
         elif what == "BEEP":

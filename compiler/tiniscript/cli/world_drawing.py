@@ -39,7 +39,7 @@ class WorldPicture(Picture):
             self.began_ms, self.now_ms, self.ending = event.time_ms, 0, ""
             self.is_new = False
             self.shown.clear()
-            self.settings.clear()
+            self.settings = dict(self.virtual.actuators)
             return
         super().take(event._replace(time_ms=event.time_ms - self.began_ms))
 

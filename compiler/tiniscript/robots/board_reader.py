@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from tiniscript.kit import Device, Kit
-from tiniscript.robots.boards import BAUDS, CHIPS, DRIVERS, Chip, Setting, drivers_for
+from tiniscript.robots.boards import AT_STOP, BAUDS, CHIPS, DRIVERS, Chip, Setting, drivers_for
 from tiniscript.robots.profile import Board, Wiring
 from tiniscript.robots.refusals import shown
 from tiniscript.robots.toml_table import Table
@@ -167,6 +167,10 @@ def _read_wiring(table: Table, used_by: str, pins: Pins) -> Wiring:
     if not name:
         return NOTHING
     driver = DRIVERS[used_by, name]
+    is_actuator = used_by.startswith("actuators")
+    if is_actuator and name != "servo" and AT_STOP in table.written():
+        table.has(AT_STOP)  # this complaint is enough
+        table.complain("at_stop_of_no_servo", AT_STOP)
     settings = {setting.key: _read_setting(table, setting) for setting in driver.settings}
     taken = {}
     for key, need, is_optional in driver.pins:
@@ -179,7 +183,10 @@ def _read_wiring(table: Table, used_by: str, pins: Pins) -> Wiring:
 
 
 def _read_setting(table: Table, setting: Setting) -> int:
-    key, kind, default, low, high = setting
+    key, kind, default, low, high, _ = setting
+    if kind == "choice":
+        written = table.choice(key, setting.words) if table.has(key) else ""
+        return setting.words.index(written) if written else default
     if kind == "yes/no":
         return int(table.yes_no(key, bool(default)))
     read = table.number if kind == "number" else table.whole

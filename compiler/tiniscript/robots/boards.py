@@ -146,13 +146,17 @@ class PinKey(NamedTuple):
 
 
 class Setting(NamedTuple):
-    """`kind` is `yes/no`, `whole` or `number`; the other numbers are thousandths for `number`."""
+    """`kind` is `yes/no`, `whole`, `number` or `choice`; thousandths for `number`.
+
+    A choice is the place of its word among `words`.
+    """
 
     key: str
     kind: str
     default: int = 0
     low: int = 0
     high: int = 1
+    words: tuple[str, ...] = ()
 
 
 class Driver(NamedTuple):
@@ -176,6 +180,9 @@ _TWO_WIRES = tuple(
 _TWO_SERVOS = tuple(PinKey(f"{side}_pin", "servo") for side in _SIDES)
 _STILL = Setting("left_still_us", "whole", 1500, 1000, 2000)
 
+AT_STOP = "at_stop"  # what a stop does with a servo; all else it turns off
+HOLD = 1
+
 # fmt: off
 DRIVERS = {(driver.used_by, driver.name): driver for driver in (
     Driver("l298n",     "motors",           _PWM_AND_TWO),
@@ -196,7 +203,8 @@ DRIVERS = {(driver.used_by, driver.name): driver for driver in (
            (Setting("threshold", "whole", 512, 1, 1023), Setting("yes_is_low", "yes/no"))),
     Driver("servo",     "actuators number", (PinKey("pin", "servo"),),
            (Setting("low_us", "whole", 1000, 500, 2500),
-            Setting("high_us", "whole", 2000, 500, 2500))),
+            Setting("high_us", "whole", 2000, 500, 2500),
+            Setting(AT_STOP, "choice", words=("release", "hold")))),
     Driver("pwm",       "actuators number", (PinKey("pin", "pwm"),)),
     Driver("digital",   "actuators yes/no", (PinKey("pin", "output"),),
            (Setting("yes_is_low", "yes/no"),)),

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tiniscript.kit import Device
-from tiniscript.robots.boards import CHIPS
+from tiniscript.robots.boards import CHIPS, HOLD
 from tiniscript.robots.ports import AVRS, Avr
 from tiniscript.robots.profile import Robot, Wiring
 from tiniscript.thousandths import ONE
@@ -63,6 +63,8 @@ class _Part:
         self.avr: Avr = AVRS[robot.board.chip]
         self.vectors: list[str] = []
         self.servos: list[int] = []
+        self.echoes: list[str] = []
+        self.off: list[str] = []  # what a stop does with actuators
         self.begin: list[str] = []
 
     def text(self) -> str:
@@ -103,6 +105,7 @@ class _Part:
             pins = ", ".join(self._pin(pin) for pin in self.servos)
             lines.append(f"constexpr Pin kServos[] = {{{pins}}};")
         lines += [
+            *self._echoes(),
             "",
             "inline void begin_devices() {",
             *(f"  {line}" for line in self.begin),
@@ -111,6 +114,8 @@ class _Part:
             *_switch("bool read_sensor", "int32_t* value", sensors, "  return true;"),
             "",
             *_switch("void set_actuator", "int32_t value", actuators, ""),
+            "",
+            *self._actuators_off(),
             "",
             f"}}  // namespace {SPACE}",
             "",
@@ -194,10 +199,25 @@ class _Part:
             self.vectors.append(vector)
         self.begin.append(f"begin_output({self._pin(trigger)}, false);")
         wired = f"{{{self._pin(trigger)}, {self._pin(echo)}, {group}, 1 << {bit}}}"
+        self.echoes.append(wired)
         return [
-            f"      if (!echo_read(Echo{wired}, value)) return false;",
+            f"      if (!echo_read({len(self.echoes) - 1}, value)) return false;",
             *_limits(device, 0, FARTHEST),
             "      return true;",
+        ]
+
+    def _echoes(self) -> list[str]:
+        """Return how many there are and how each is wired: where it is one, by constants."""
+        if not self.echoes:
+            return []
+        *others, last = self.echoes
+        return [
+            f"constexpr uint8_t kEchoes = {len(self.echoes)};",
+            "",
+            f"in_place Echo echo_at(uint8_t{' number' if others else ''}) {{",
+            *(f"  if (number == {k}) return {wired};" for k, wired in enumerate(others)),
+            f"  return {last};",
+            "}",
         ]
 
     # -- actuators
@@ -208,16 +228,33 @@ class _Part:
         if driver == "digital":
             off = "true" if settings["yes_is_low"] else "false"
             self.begin.append(f"begin_output({self._pin(pin)}, {off});")
+            self.off.append(f"write({self._pin(pin)}, {off});  // {device.name}")
             condition = "value == 0" if settings["yes_is_low"] else "value != 0"
             return [f"      write({self._pin(pin)}, {condition});", "      return;"]
         low, high = device.low // ONE, device.high // ONE
         if driver == "pwm":
             self.begin.append(f"begin_output({self._pin(pin)}, false);")
+            self.off.append(f"disconnect(Pwm{self._pwm(pin)});  // {device.name}")
             part = f"part_of_range(value, {low}, {high}, 0, 255)"
             return [f"      connect(Pwm{self._pwm(pin)}, {part});", "      return;"]
         self.servos.append(pin)
         pulse = f"part_of_range(value, {low}, {high}, {settings['low_us']}, {settings['high_us']})"
-        return [f"      servo_set({len(self.servos) - 1}, {pulse}, 0);", "      return;"]
+        number = len(self.servos) - 1
+        condition = "if (is_stalled) " if settings["at_stop"] == HOLD else ""
+        self.off.append(f"{condition}servo_set({number}, 0, 0);  // {device.name}")
+        return [f"      servo_set({number}, {pulse}, 0);", "      return;"]
+
+    def _actuators_off(self) -> list[str]:
+        """Return the function that a stop calls, and a main loop that stands still."""
+        if not self.off:
+            return ["inline void actuators_off(bool) {}"]
+        is_asked = any("is_stalled" in line for line in self.off)
+        argument = "bool is_stalled" if is_asked else "bool"
+        return [
+            f"inline void actuators_off({argument}) {{",
+            *(f"  {line}" for line in self.off),
+            "}",
+        ]
 
 
 _WAYS = ("forward", "backward")

@@ -138,6 +138,12 @@ SENTENCES: dict[str, dict[str, str]] = {
         "en": "{path} is empty or cannot be printed. Write 1 to {most} characters in one line.",
         "es": "{path} está vacío o no se puede mostrar. Escribe de 1 a {most} caracteres.",
     },
+    "at_stop_of_no_servo": {
+        "en": "{path}: a stop always turns this off, whatever the profile says. Take the line out;"
+        " only a servo can hold on.",
+        "es": "{path}: una parada siempre apaga esto, diga lo que diga el perfil. Quita esa línea;"
+        " solo un servo puede mantenerse.",
+    },
     # pins and timers
     "no_such_pin": {
         "en": "{path} is {found}, and the board {chip} has no such pin. Look at its pin map.",

@@ -54,7 +54,11 @@ def _grabber() -> Robot:
                 ),
             ),
             actuators=(
-                Wiring(driver="servo", pins={"pin": 11}, settings={"low_us": 600, "high_us": 2400}),
+                Wiring(
+                    driver="servo",
+                    pins={"pin": 11},
+                    settings={"low_us": 600, "high_us": 2400, "at_stop": 0},
+                ),
                 Wiring(driver="digital", pins={"pin": 30}, settings={"yes_is_low": 0}),
             ),
             start_button=3,

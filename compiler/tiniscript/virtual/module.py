@@ -34,11 +34,13 @@ class Board(Protocol):
     def light(self, now_ms: int, is_on: int) -> None: ...
     def finished(self, now_ms: int) -> None: ...
     def faulted(self, now_ms: int) -> None: ...
+    def actuators_off(self, now_ms: int) -> None: ...
 
 
 # What a note says, from 1 on, and with how many numbers. As `What` in `robot.cpp`.
 _WHAT = (("motors", 2), ("read", 1), ("beep", 2), ("show", 2), ("set", 2), ("stop", 0),
-         ("release", 0), ("light", 1), ("finished", 0), ("faulted", 0))  # fmt: skip
+         ("release", 0), ("light", 1), ("finished", 0), ("faulted", 0),
+         ("actuators_off", 0))  # fmt: skip
 _READ = 2
 _CLOCK = 1 << 32
 _NOTE = 4  # numbers of 32 bits

@@ -11,6 +11,7 @@ from random import Random
 from typing import NamedTuple
 
 from tiniscript.bytecode import FAULTS
+from tiniscript.robots.boards import AT_STOP, HOLD
 from tiniscript.robots.profile import Robot
 from tiniscript.robots.way import Pose
 from tiniscript.run import Event, TracedRobot
@@ -76,6 +77,7 @@ class VirtualRobot:
         self._told = 0  # events that are true of a robot at rest
         self.is_lit = False  # the light says that the button would start something
         self.fault = ""  # that has ended the last program
+        self.actuators: dict[int, int] = {}  # what each was set to, and still is
         self._traced = TracedRobot(profile.kit, self._noticed)
         self._ended = ""  # how the program has ended, as far as it is known
         self._began_ms = 0  # when it was switched on
@@ -130,6 +132,7 @@ class VirtualRobot:
             self.ended_ms = self.now_ms
         self.is_running = False
         self._ended = ""
+        self.actuators.clear()
 
     def _switched_on(self, reset: int, memory: bytes | None) -> Firmware:
         self._began_ms = self.now_ms
@@ -153,7 +156,10 @@ class VirtualRobot:
     # -- what it does -----------------------------------------------------------------------------
 
     def take_events(self) -> list[Event]:
-        """Return what it has done since the last time: a run's events, START, STOP and OFF."""
+        """Return what it has done since the last time.
+
+        These are a run's events, START, STOP, RELEASE of an actuator, and OFF.
+        """
         found, self._traced.events, self._told = self._traced.events, [], 0
         return found
 
@@ -192,6 +198,21 @@ class VirtualRobot:
     def set(self, now_ms: int, actuator: int, value: int) -> None:
         self._at(now_ms)
         self._traced.set(actuator, value)
+        self.actuators[actuator] = self._traced.events[-1].values[1]
+
+    def actuators_off(self, now_ms: int) -> None:
+        """What is on goes off; a servo gets no more pulses, unless its profile holds it."""
+        self._at(now_ms)
+        board, kit = self.profile.board, self.profile.kit
+        for number, value in sorted(self.actuators.items()):
+            if kit.actuators[number].is_yes_no:
+                if value:
+                    self._traced.set(number, 0)
+                    self.actuators[number] = 0
+            elif board.actuators[number].settings.get(AT_STOP) != HOLD:
+                name = kit.actuators[number].name
+                self._traced.say("RELEASE", (number,), f"RELEASE {name}")
+                del self.actuators[number]
 
     def stop(self, now_ms: int) -> None:
         self._set_motors(now_ms, 0, 0)

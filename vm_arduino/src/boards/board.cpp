@@ -20,13 +20,17 @@ namespace tiniscript {
 
 namespace {
 
-bool was_connected;
+constexpr uint16_t kSteadyUs = 50000;  // a change of the STATE pin counts then
+
+bool is_connected;
+uint32_t agreed_us;  // when the STATE pin said last what `is_connected` says
 int32_t readings[kBoardSensors];
 
 }  // namespace
 
 void board_begin() {
   begin_pull_up(kStartButton);
+  if (kBluetoothState.port != 0) begin_pull_up(kBluetoothState);  // it may hang in the air
   if (kLight.port != 0) begin_output(kLight, false);
   begin_devices();
   sound_begin();
@@ -46,10 +50,13 @@ void board_tick(uint32_t now_ms) {
 
 bool board_is_left() {
   if (kBluetoothState.port == 0) return false;
-  const bool is_connected = is_high(kBluetoothState);
-  const bool is_left = was_connected && !is_connected;
-  was_connected = is_connected;
-  return is_left;
+  const uint32_t now_us = micros();
+  const bool is_now = is_high(kBluetoothState);
+  if (is_now == is_connected) agreed_us = now_us;
+  if (now_us - agreed_us < kSteadyUs) return false;
+  agreed_us = now_us;
+  is_connected = is_now;
+  return !is_now;
 }
 
 Board board_told() {
@@ -68,7 +75,16 @@ void board_stop() { motors_stop(); }
 
 void board_release() { motors_release(); }
 
-bool board_has_stalled() { return guard_has_stalled(); }
+void board_actuators_off() { actuators_off(false); }
+
+// What the timer has turned off may have been set once more since.
+bool board_has_stalled() {
+  const bool found = guard_has_stalled();
+  if (found) actuators_off(true);
+  return found;
+}
+
+bool board_has_hung(Place* place) { return guard_has_hung(place); }
 
 Press board_button(uint32_t now_ms) { return button_read(!is_high(kStartButton), now_ms); }
 
@@ -98,6 +114,9 @@ bool robot_read(uint8_t sensor, int32_t* value) { return read_sensor(sensor, val
 
 void robot_beep(uint16_t hertz, uint32_t duration_ms) { sound_start(hertz, duration_ms, millis()); }
 
-void robot_set(uint8_t actuator, int32_t value) { set_actuator(actuator, value); }
+// A program that is being stopped sets nothing any more.
+void robot_set(uint8_t actuator, int32_t value) {
+  if (!motors_are_stopped()) set_actuator(actuator, value);
+}
 
 }  // namespace tiniscript

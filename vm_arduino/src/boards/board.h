@@ -21,7 +21,8 @@ void board_tick(uint32_t now_ms);
 
 Press board_button(uint32_t now_ms);
 
-// The radio module says that nobody is connected any more.
+// The radio module's STATE pin says that nobody is connected any more: it was high for 50 ms, and
+// then low for 50 ms. A pin that nothing drives stays high.
 bool board_is_left();
 
 // What the firmware is told of the board.

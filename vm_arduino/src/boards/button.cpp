@@ -4,45 +4,40 @@ namespace tiniscript {
 
 namespace {
 
-constexpr uint8_t kBounceMs = 30;  // for so long a contact may chatter
+constexpr uint8_t kSteadyMs = 30;  // chatter and spikes are shorter than that, or not steady
 
 enum class State : uint8_t {
   kUnknown,  // after a reset
-  kRising,   // has gone up; may chatter
   kUp,
-  kFalling,  // has gone down; may chatter, or be a spike
+  kEdge,  // has gone down: chatters, or it was a spike
   kDown,
 };
 
 State state = State::kUnknown;
-uint32_t changed_ms;
+bool was_down;
+uint8_t steady_ms;  // for how long it has been as it is, counted in milliseconds that were looked at
+uint8_t last_ms;
 
 }  // namespace
 
 Press button_read(bool is_down, uint32_t now_ms) {
-  const bool is_settled = now_ms - changed_ms >= kBounceMs;
-  switch (state) {
-    case State::kUnknown:
-      if (is_settled && !is_down) state = State::kUp;
-      break;
-    case State::kRising:
-      if (is_settled) state = State::kUp;
-      break;
-    case State::kUp:
-      if (!is_down) break;
-      state = State::kFalling;
-      changed_ms = now_ms;
-      return Press::kPressed;
-    case State::kFalling:
-      if (is_settled) state = is_down ? State::kDown : State::kUp;
-      break;
-    case State::kDown:
-      if (is_down) break;
-      state = State::kRising;
-      changed_ms = now_ms;
-      return Press::kReleased;
+  const uint8_t time_ms = static_cast<uint8_t>(now_ms);
+  if (is_down != was_down) {
+    was_down = is_down;
+    steady_ms = 0;
+  } else if (time_ms != last_ms && steady_ms < kSteadyMs) {
+    steady_ms++;
   }
-  return Press::kNothing;
+  last_ms = time_ms;
+  if (state == State::kUp && is_down) {
+    state = State::kEdge;
+    return Press::kPressed;
+  }
+  if (steady_ms < kSteadyMs || (is_down && state != State::kEdge)) return Press::kNothing;
+  const State before = state;
+  state = is_down ? State::kDown : State::kUp;
+  if (is_down) return Press::kHeld;
+  return before == State::kDown ? Press::kReleased : Press::kNothing;
 }
 
 }  // namespace tiniscript

@@ -1,13 +1,13 @@
 // What looks after the main loop, and what is known of the last reset.
 //
-// While the main loop stands still, a timer turns the motors off after 0.1 s; the watchdog restarts
-// the chip, on an Uno also where interrupts are off. A bootloader of an old Nano or Mega would not
-// come out of a reset by the watchdog: there the restart is a jump.
+// While the main loop stands still, a timer turns motors and actuators off after 0.1 s; after
+// 0.125 s the watchdog restarts the chip, after 0.25 s also where interrupts are off. A bootloader of
+// an old Nano or Mega would not come out of a reset by the watchdog: there the restart is a jump.
 
 #ifndef TINISCRIPT_BOARDS_GUARD_H_
 #define TINISCRIPT_BOARDS_GUARD_H_
 
-#include "../link/port.h"
+#include "../firmware/board.h"
 
 namespace tiniscript {
 
@@ -19,9 +19,13 @@ void guard_calm();
 // Whether it stood still, since the last question.
 bool guard_has_stalled();
 
+// Whether the watchdog has restarted the chip, and what ran then; it is told once.
+bool guard_has_hung(Place* place);
+
 Reset guard_reset();
 
-// A number from memory as it was found, seldom the same twice.
+// A number from memory as it was found and from a count of the resets since power-on: another one
+// after each reset.
 uint32_t guard_noise();
 
 }  // namespace tiniscript

@@ -66,6 +66,13 @@ one_copy void servo_set(uint8_t number, uint16_t pulse_us, uint8_t frames) {
   pulses[number].frames = frames;
 }
 
+void servos_low() {
+  for (uint8_t number = 0; number < kServoCount; number++) {
+    pulses[number].ticks = 0;
+    write(kServos[number], false);
+  }
+}
+
 bool servo_is_held(uint8_t number) {
   const NoInterrupts quiet;
   return pulses[number].ticks != 0 && pulses[number].frames == 0;

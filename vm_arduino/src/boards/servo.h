@@ -14,6 +14,9 @@ void servo_begin();
 // `frames` is 0. May be called in an interrupt.
 void servo_set(uint8_t number, uint16_t pulse_us, uint8_t frames);
 
+// No pulses, and the one that is under way ends: for an interrupt behind which no other comes.
+void servos_low();
+
 // Whether a servo has a pulse without end.
 bool servo_is_held(uint8_t number);
 

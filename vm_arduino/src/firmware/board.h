@@ -23,6 +23,12 @@ struct Board {
   uint32_t max_run_ms;  // the longest run without a tether
 };
 
+// A place in a program: the checksum of its image, and the offset of an instruction.
+struct Place {
+  uint32_t program;
+  uint16_t at;
+};
+
 // Sets the outputs of the motor driver, -255 to 255, forward where that is more than 0. Turns none
 // on while the latch is closed.
 void board_motors(int16_t left, int16_t right);
@@ -31,10 +37,18 @@ void board_motors(int16_t left, int16_t right);
 void board_stop();
 void board_release();
 
+// Turns off what a stop turns off besides: yes/no actuators FALSE, servos without pulses. To be
+// called while the latch is closed: then no program sets them meanwhile.
+void board_actuators_off();
+
 // Whether the main loop stood still, since the last question: the board has turned the motors off.
 bool board_has_stalled();
 
 LineErrors board_line_errors();
+
+// Whether the watchdog has ended the last run before this reset, and what ran there: zeros where
+// that was nothing. It tells it once.
+bool board_has_hung(Place* place);
 
 // A program begins: a reading that nobody has fetched is none of its.
 void board_forget();

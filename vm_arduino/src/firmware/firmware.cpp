@@ -3,6 +3,7 @@
 #include "../link/link.h"
 #include "../robot.h"
 #include "../store/store.h"
+#include "../vm/crc32.h"
 #include "../vm/image.h"
 #include "../vm/verify.h"
 #include "../vm/vm.h"
@@ -134,8 +135,16 @@ void load_identity() {
   if (!is_sound(trim)) trim = Trim();  // of other firmware
 }
 
-// A record of a fault: what, where, in which image.
+// A record of a fault: what, where, in which image. What the watchdog has ended is a newer one.
 void load_fault() {
+  Place hung;
+  if (board_has_hung(&hung)) {
+    condition.fault = static_cast<uint8_t>(LinkFault::kStall);
+    condition.fault_at = hung.at;
+    condition.fault_program = hung.program;
+    to_keep |= kKeepFault;
+    return;
+  }
   if (!fetch(Area::kFault, 0, record, kRecordBytes)) return;
   condition.fault = record[kFaultAt];
   condition.fault_at = number16(record + kFaultAt + 1);
@@ -252,9 +261,10 @@ Answer identity_kept() {
 
 // -- a run --------------------------------------------------------------------------------------
 
-// Motors off before anything else.
-void end_run(State state) {
+// Motors off before anything else. Where a program has not come to its own end, actuators follow.
+void end_run(State state, bool is_done = false) {
   board_stop();
+  if (!is_done) board_actuators_off();
   robot_off();
   may_start = is_driving = is_start_due = false;
   condition.state = state;
@@ -290,7 +300,7 @@ void begin_run(bool is_live) {
 void run_on() {
   const Status status = machine.tick(now_ms, kBudget);
   if (status == Status::kDone) {
-    end_run(State::kIdle);
+    end_run(State::kIdle, true);
     board_finished();
     talk.done();
   } else if (status == Status::kFault) {
@@ -341,8 +351,12 @@ void firmware_pressed() {
   talk.stopped(Cause::kButton);
 }
 
+void firmware_held() {
+  if (condition.state == State::kRunning) firmware_pressed();
+}
+
 void firmware_left() {
-  if (condition.state != State::kRunning) return;
+  if (condition.state != State::kRunning || !talk.is_tethered()) return;
   end_run(State::kStopped);
   talk.stopped(Cause::kCable);
 }
@@ -355,6 +369,18 @@ void firmware_released() {
 
 void firmware_hear(uint8_t byte, uint16_t time_ms) {
   if (receiver.put(byte, time_ms)) board_stop();
+}
+
+// The checksum may not be in the image yet.
+bool firmware_runs(Place* place) {
+  if (condition.state != State::kRunning) return false;
+  const uint8_t* const image = is_live_run ? live : program;
+  const uint16_t most = is_live_run ? kLiveBytes : kStoredCodeBytes;
+  const uint16_t length = number16(image + kCodeLengthAt);
+  place->program =
+      crc32(crc32(0, image, kChecksumAt), image + kHeaderBytes, length < most ? length : most);
+  place->at = machine.at();
+  return true;
 }
 
 bool firmware_say(uint8_t* byte) { return talk.next(byte); }

@@ -25,8 +25,16 @@ void firmware_tick(uint32_t now_ms);
 void firmware_pressed();
 void firmware_released();
 
-// The radio module says that nobody is connected any more.
+// The button has been down for a while: what was started between its first edge and now is
+// stopped, too.
+void firmware_held();
+
+// The radio module says that nobody is connected any more: that ends a tethered run.
 void firmware_left();
+
+// Whether a program runs, in which image and where. May be called in an interrupt, and after a reset
+// before memory is set up anew: it changes nothing.
+bool firmware_runs(Place* place);
 
 // A byte has arrived; a damaged one is 0. May be called from the interrupt: a run of zeros turns
 // the motors off there and then.

@@ -27,6 +27,11 @@ constexpr Bridge kRightMotor =
     {{{kPortH, 1 << 4}, 4, kChannelB}, {kPortA, 1 << 2}, {kPortA, 1 << 3}};
 constexpr Pin kStandby = kNoPin;
 constexpr Pin kServos[] = {{kPortB, 1 << 5}};
+constexpr uint8_t kEchoes = 1;
+
+in_place Echo echo_at(uint8_t) {
+  return {{kPortA, 1 << 4}, {kPortE, 1 << 4}, 3, 1 << 4};
+}
 
 inline void begin_devices() {
   begin_output({kPortA, 1 << 4}, false);
@@ -37,7 +42,7 @@ inline void begin_devices() {
 inline bool read_sensor(uint8_t number, int32_t* value) {
   switch (number) {
     case 0:  // DISTANCE
-      if (!echo_read(Echo{{kPortA, 1 << 4}, {kPortE, 1 << 4}, 3, 1 << 4}, value)) return false;
+      if (!echo_read(0, value)) return false;
       return true;
     case 1:  // TEMPERATURE
       if (!analog_read(0, value)) return false;
@@ -60,6 +65,11 @@ inline void set_actuator(uint8_t number, int32_t value) {
       write({kPortC, 1 << 7}, value != 0);
       return;
   }
+}
+
+inline void actuators_off(bool) {
+  servo_set(0, 0, 0);  // GRIPPER
+  write({kPortC, 1 << 7}, false);  // LED
 }
 
 }  // namespace tiniscript

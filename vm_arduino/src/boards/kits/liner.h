@@ -57,6 +57,10 @@ inline void set_actuator(uint8_t number, int32_t value) {
   }
 }
 
+inline void actuators_off(bool) {
+  write({kPortD, 1 << 3}, false);  // LED
+}
+
 }  // namespace tiniscript
 
 #elif defined(__AVR_ATmega2560__)  // mega
@@ -112,6 +116,10 @@ inline void set_actuator(uint8_t number, int32_t value) {
       write({kPortE, 1 << 5}, value != 0);
       return;
   }
+}
+
+inline void actuators_off(bool) {
+  write({kPortE, 1 << 5}, false);  // LED
 }
 
 }  // namespace tiniscript

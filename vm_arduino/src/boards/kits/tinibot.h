@@ -25,6 +25,11 @@ constexpr Bridge kLeftMotor =
 constexpr Bridge kRightMotor =
     {{{kPortD, 1 << 6}, 0, kChannelA}, {kPortB, 1 << 1}, {kPortB, 1 << 2}};
 constexpr Pin kStandby = kNoPin;
+constexpr uint8_t kEchoes = 1;
+
+in_place Echo echo_at(uint8_t) {
+  return {{kPortD, 1 << 4}, {kPortD, 1 << 3}, 2, 1 << 3};
+}
 
 inline void begin_devices() {
   begin_output({kPortD, 1 << 4}, false);
@@ -41,13 +46,15 @@ inline bool read_sensor(uint8_t number, int32_t* value) {
       *value = analog_scaled(*value, 0, 1000, 0);
       return true;
     case 2:  // DISTANCE
-      if (!echo_read(Echo{{kPortD, 1 << 4}, {kPortD, 1 << 3}, 2, 1 << 3}, value)) return false;
+      if (!echo_read(0, value)) return false;
       return true;
   }
   return true;
 }
 
 inline void set_actuator(uint8_t, int32_t) {}
+
+inline void actuators_off(bool) {}
 
 }  // namespace tiniscript
 
@@ -74,6 +81,11 @@ constexpr Bridge kLeftMotor =
 constexpr Bridge kRightMotor =
     {{{kPortH, 1 << 3}, 4, kChannelA}, {kPortH, 1 << 6}, {kPortB, 1 << 4}};
 constexpr Pin kStandby = kNoPin;
+constexpr uint8_t kEchoes = 1;
+
+in_place Echo echo_at(uint8_t) {
+  return {{kPortG, 1 << 5}, {kPortE, 1 << 5}, 3, 1 << 5};
+}
 
 inline void begin_devices() {
   begin_output({kPortG, 1 << 5}, false);
@@ -90,13 +102,15 @@ inline bool read_sensor(uint8_t number, int32_t* value) {
       *value = analog_scaled(*value, 0, 1000, 0);
       return true;
     case 2:  // DISTANCE
-      if (!echo_read(Echo{{kPortG, 1 << 5}, {kPortE, 1 << 5}, 3, 1 << 5}, value)) return false;
+      if (!echo_read(0, value)) return false;
       return true;
   }
   return true;
 }
 
 inline void set_actuator(uint8_t, int32_t) {}
+
+inline void actuators_off(bool) {}
 
 }  // namespace tiniscript
 
