@@ -65,9 +65,9 @@ PCICR, PCMSK0 = 0x68, 0x6B
 
 @pytest.mark.parametrize("width_us", [0, 38_000])
 def test_no_echo_is_far_away_and_takes_25_ms(width_us: int) -> None:
-    """The second reading waits until the sensor has lowered its echo."""
+    """A later reading waits until the sensor has lowered its echo."""
     robot = robots.load("tinibot")
-    text = "SI|IF(DISTANCE = 400);M(10, 0);ENDIF;IF(DISTANCE < 400);M(20, 0);ENDIF;W(5)"
+    text = "SI|IF(DISTANCE = 400);M(10, 0);ENDIF;W(0.04);IF(DISTANCE < 400);M(20, 0);ENDIF;W(5)"
     board = started(robot, text)
     pins = robot.board.sensors[2].pins
     board.echoes(pins["trigger"], pins["echo"], [width_us, 50 * 2 / 0.0343])
@@ -227,8 +227,8 @@ def test_a_reading_of_the_last_program_is_none_of_the_next() -> None:
     board.echoes(pins["trigger"], pins["echo"], [2000, 80 * 2 / 0.0343])
     board.press(START + 51, START + 100)
     board.press(START + 150, START + 200)
-    board.ran(START + 290)
-    assert board.motors(START + 280)[0] == f"pwm {80 * 653 >> 8}"
+    board.ran(START + 320)
+    assert board.motors(START + 310)[0] == f"pwm {80 * 653 >> 8}"
 
 
 @pytest.mark.parametrize("name", ["tinibot", "grabber"])

@@ -17,7 +17,8 @@ from tiniscript.robots.reader import read
 
 pytestmark = pytest.mark.skipif(bool(boards.missing()), reason=boards.missing() or "there is one")
 
-PRESS, START = 100.0, 200.0  # ms: when the button goes down, and up
+STEADY = 29.8  # ms after its release a button is surely up
+PRESS, START = 100.0, 200.0  # ms: when the button goes down, and when it is surely up again
 FORWARD, BACK, OFF = 50.0, 150.0, 350.0  # ms after the start of MOVES
 MOVES = "SI|F(0.1, 80);B(0.1, 40);M(50, -100);W(0.1)"
 TURN = 250.0
@@ -74,7 +75,7 @@ def driven(name: str) -> Robot:
 
 def started(robot: Robot, text: str, more: str = "") -> Board:
     board = Board(robot, text, more)
-    board.press(PRESS, START)
+    board.press(PRESS, START - STEADY)
     return board
 
 
@@ -136,20 +137,32 @@ def test_the_press_that_stops_does_not_start() -> None:
     board.press(900, 1000)
     board.ran(1100)
     assert board.motors(499)[0] == "pwm 204"
-    for ms in (500.5, 599, 650, 899, 999):
+    for ms in (500.5, 599, 650, 899, 999, 1020):
         assert board.motors(ms) == ("low",) * 6
-    assert board.motors(1001)[0] == "pwm 204"
+    assert board.motors(1032)[0] == "pwm 204"
 
 
-def test_a_press_just_after_the_release_is_a_press() -> None:
+def test_a_press_just_after_the_start_stops_at_once() -> None:
     board = started(robots.load("tinibot"), "SI|M(80, 80);W(5)")
-    board.press(START + 10, START + 100)
+    board.press(START + 3, START + 100)
     board.ran(START + 120)
-    assert board.motors(START + 20)[0] == "pwm 204"
-    assert board.motors(START + 32)[0] == "low"
+    assert board.motors(START + 2.9)[0] == "pwm 204"
+    assert board.motors(START + 3.5)[0] == "low"
+
+
+def test_a_release_that_does_not_last_starts_nothing() -> None:
+    """A spike while the button is down, and a finger that slips."""
+    board = Board(robots.load("tinibot"), MOVES)
+    board.level(100, robots.load("tinibot").board.start_button, False)
+    for ms, up_ms in ((200, 0.15), (229, 0.15), (300, 5), (340, 28)):
+        board.press(ms + up_ms, 2000)
+        board.level(ms, board.robot.board.start_button, True)
+    assert board.ran(500).moved() == []
 
 
 # -- servos that turn without end
+
+LATE_US = 6  # a pulse ends when no other interrupt is at work
 
 
 def pulses(board: Board, pin: int) -> list[tuple[float, float]]:
@@ -164,17 +177,17 @@ def test_servos_turn_and_stand_for_a_second() -> None:
     left, right = (pulses(board, pin) for pin in board.motor_pins())
     assert left[0][0] >= START and right[0][0] >= START
     forward = [us for ms, us in left if START + 25 < ms < START + 200]
-    assert forward and all(abs(us - (1500 + 408)) < 3 for us in forward)
+    assert forward and all(abs(us - (1500 + 408)) < LATE_US for us in forward)
     forward = [us for ms, us in right if START + 25 < ms < START + 200]
-    assert forward and all(abs(us - (1480 - 408)) < 3 for us in forward)
+    assert forward and all(abs(us - (1480 - 408)) < LATE_US for us in forward)
     still = [us for ms, us in left if ms > START + 225]
-    assert all(abs(us - 1500) < 3 for us in still)
+    assert all(abs(us - 1500) < LATE_US for us in still)
     assert 48 <= len(still) <= 50
     assert 1150 < left[-1][0] - START < 1230
     full = [us for ms, us in right if START + 225 < ms < START + 400]
-    assert full and all(abs(us - (1480 - 510)) < 3 for us in full)
+    assert full and all(abs(us - (1480 - 510)) < LATE_US for us in full)
     still = [us for ms, us in right if ms > START + 425]
-    assert all(abs(us - 1480) < 3 for us in still)
+    assert all(abs(us - 1480) < LATE_US for us in still)
     assert 48 <= len(still) <= 51
     gaps = [b[0] - a[0] for a, b in pairwise(left)]
     assert all(abs(gap - 20) < 0.1 for gap in gaps)

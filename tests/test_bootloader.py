@@ -14,13 +14,12 @@ from tests.machines.bootloaders import Bootloader, bootloader
 from tests.machines.uno import built as nothing_but
 from tests.machines.uno import needed
 from tests.platformio import firmware, need, shared
-from tests.test_uno_guard import built
-from tests.test_uno_robot import AWAY, BAUD, FORWARD, NAMES, OFF, computer, send, states
+from tests.test_uno_guard import HANGS, HANGS_ALONE, STALL, TIMER_MS, WATCHDOG_MS, built, is_on
+from tests.test_uno_robot import AWAY, BAUD, FORWARD, NAMES, OFF, computer, image_of, send, states
 from tiniscript.link.errands import OK
 from tools.uno import CYCLES_PER_MS, Uno
 
 DRIVES = "SI|F(0.3, 80)"
-HANGS, HANGS_ALONE = "for (;;) {\n }", "{ cli(); for (;;) {\n } }"
 UNKNOWN, POWER, WATCHDOG = 0, 1, 4  # resets in docs/link.md
 WAIT_MS = 2500  # so long an old Nano waits for a sketch
 
@@ -83,14 +82,28 @@ def test_avrdude_writes_the_sketch_and_the_robot_drives(
 
 
 def test_optiboot_lets_a_robot_go_on_that_has_hung(tmp_path: Path) -> None:
-    """It knows the watchdog's reset, does not wait for a sketch, and hides the cause."""
+    """It knows the watchdog's reset, does not wait for a sketch, and hides the cause.
+
+    With interrupts off nothing but the cause would tell: that is not known then.
+    """
     elf = built(tmp_path, HANGS_ALONE)
     with Uno(elf, bootloader=bootloader("uno").file, names=NAMES, baud=BAUD) as uno:
-        hung(uno, limit_ms=550)
+        hung(uno, limit_ms=WATCHDOG_MS)
         uno.run_ms(500)
         causes = [event["cause"] for event in uno.events if event.what == "reset"]
         assert causes == ["power-on", "watchdog"]
-        assert answered(uno) == UNKNOWN
+        assert answered(uno) == (UNKNOWN, 0, 0)
+        assert states(uno) == OFF
+
+
+def test_optiboot_does_not_hide_a_hang_that_was_noted(tmp_path: Path) -> None:
+    elf = built(tmp_path, HANGS)
+    with Uno(elf, bootloader=bootloader("uno").file, names=NAMES, baud=BAUD) as uno:
+        hung(uno, limit_ms=TIMER_MS)
+        uno.run_ms(700)
+        causes = [event["cause"] for event in uno.events if event.what == "reset"]
+        assert causes == ["power-on", "watchdog"]
+        assert answered(uno) == (WATCHDOG, STALL, image_of(AWAY).checksum)
         assert states(uno) == OFF
 
 
@@ -98,18 +111,18 @@ def test_an_old_nano_goes_on_without_its_bootloader(tmp_path: Path) -> None:
     """That one would leave the watchdog on, so the robot begins anew by itself."""
     elf = built(tmp_path, HANGS, "nano")
     with Uno(elf, bootloader=bootloader("nano").file, names=NAMES, baud=BAUD) as uno:
-        hung(uno, limit_ms=110)
+        hung(uno, limit_ms=TIMER_MS)
         uno.run_ms(1000)
         causes = [event["cause"] for event in uno.events if event.what == "reset"]
         assert causes == ["power-on"]
-        assert answered(uno) == WATCHDOG
+        assert answered(uno) == (WATCHDOG, STALL, image_of(AWAY).checksum)
         assert states(uno) == OFF
 
 
 def test_an_old_nano_that_has_hung_for_good_stays_off_until_it_has_no_power(tmp_path: Path) -> None:
     elf = built(tmp_path, HANGS_ALONE, "nano")
     with Uno(elf, bootloader=bootloader("nano").file, names=NAMES, baud=BAUD) as uno:
-        hung(uno, limit_ms=550)
+        hung(uno, limit_ms=WATCHDOG_MS)
         began = len(uno.events)
         uno.run_ms(300)
         causes = {event["cause"] for event in uno.events[began:] if event.what == "reset"}
@@ -117,7 +130,7 @@ def test_an_old_nano_that_has_hung_for_good_stays_off_until_it_has_no_power(tmp_
         assert not is_on(uno)
         uno.reset("power-on")
         uno.run_ms(WAIT_MS)
-        assert answered(uno) == POWER
+        assert answered(uno) == (POWER, 0, 0)
 
 
 def hung(uno: Uno, limit_ms: int) -> None:
@@ -131,18 +144,13 @@ def hung(uno: Uno, limit_ms: int) -> None:
     uno.drive("button", None)
 
 
-def is_on(uno: Uno) -> bool:
-    """Return whether a motor may turn. A chip that is being reset leaves all its pins alone."""
-    return any(state in ("high", "pwm") for state in states(uno).values())
-
-
-def answered(uno: Uno) -> object:
-    """Return why the robot was reset last, as it says."""
+def answered(uno: Uno) -> tuple[object, ...]:
+    """Return why the robot was reset last, its last fault and in which program, as it says."""
     wired = computer(uno, 2)
     assert wired.until(wired.session.hello()) == OK
     robot = wired.session.robot
     assert robot is not None
-    return robot.values["reset"]
+    return tuple(robot.values[key] for key in ("reset", "fault", "fault_program"))
 
 
 def test_a_mega_that_was_reset_is_waited_for(

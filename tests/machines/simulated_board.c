@@ -8,7 +8,8 @@
  *   adc CHANNEL MILLIVOLTS
  *   ping PORT BIT PORT BIT DELAY WIDTH
  *       an HC-SR04: its trigger and its echo; the echo of the next ping begins so many cycles
- *       after the trigger falls, and is so long. Every line is a ping; the last one repeats.
+ *       after the trigger falls, and is so long. Every line is a ping of that trigger; its last one
+ *       repeats. A trigger that falls while the echo is high is not seen.
  *
  *   sweep STEP COUNT SPAN PORT BIT
  *       when the run has ended, COUNT copies of the chip go on: in the first one that wire goes
@@ -51,10 +52,19 @@ static struct change {
 static int change_count;
 
 static struct ping {
-  struct wire echo;
+  struct wire trigger, echo;
   unsigned long long delay, width;
+  int is_done;
 } pings[MOST];
-static int ping_count, pinged;
+static int ping_count;
+
+/* A sensor: its trigger, and whether its echo is on its way or high. */
+static struct sonar {
+  struct wire trigger;
+  unsigned long long rose;
+  int was_high, is_busy;
+} sonars[8];
+static int sonar_count;
 
 static struct {
   unsigned step, count, span;
@@ -79,9 +89,19 @@ static void drive(struct wire wire, int level) {
   avr_raise_irq(pin_of(wire), level);
 }
 
+static int is_same(struct wire a, struct wire b) { return a.port == b.port && a.bit == b.bit; }
+
+static struct sonar* sonar_of(struct wire trigger) {
+  struct sonar* sonar = sonars;
+  while (sonar < sonars + sonar_count && !is_same(sonar->trigger, trigger)) sonar++;
+  return sonar;
+}
+
 static avr_cycle_count_t falls(avr_t* chip, avr_cycle_count_t when, void* param) {
+  struct ping* ping = param;
   (void)chip, (void)when;
-  drive(((struct ping*)param)->echo, 0);
+  drive(ping->echo, 0);
+  sonar_of(ping->trigger)->is_busy = 0;
   return 0;
 }
 
@@ -95,16 +115,32 @@ static avr_cycle_count_t rises(avr_t* chip, avr_cycle_count_t when, void* param)
 
 /* The trigger: an echo follows where it falls after 10 us or more. */
 static void triggered(avr_irq_t* irq, uint32_t level, void* param) {
-  static unsigned long long rose;
-  static int was_high;
-  (void)irq, (void)param;
+  struct sonar* const sonar = param;
+  (void)irq;
   level &= 1;
-  if (level && !was_high) rose = avr->cycle;
-  if (!level && was_high && avr->cycle - rose >= 160) {
-    struct ping* ping = &pings[pinged < ping_count - 1 ? pinged++ : ping_count - 1];
+  if (level && !sonar->was_high) sonar->rose = avr->cycle;
+  if (!level && sonar->was_high && !sonar->is_busy && avr->cycle - sonar->rose >= 160) {
+    struct ping* ping = NULL;
+    for (struct ping* each = pings; each < pings + ping_count; each++) {
+      if (!is_same(each->trigger, sonar->trigger)) continue;
+      ping = each;
+      if (!each->is_done) break;
+    }
+    ping->is_done = 1;
+    sonar->is_busy = ping->width != 0;
     if (ping->width) avr_cycle_timer_register(avr, ping->delay, rises, ping);
   }
-  was_high = level;
+  sonar->was_high = level;
+}
+
+static void add_ping(struct ping ping) {
+  struct sonar* const sonar = sonar_of(ping.trigger);
+  if (sonar == sonars + sonar_count) {
+    if (sonar_count++ == sizeof sonars / sizeof *sonars) exit(2);
+    sonar->trigger = ping.trigger;
+    avr_irq_register_notify(pin_of(ping.trigger), triggered, sonar);
+  }
+  pings[ping_count++] = ping;
 }
 
 static void read_script(void) {
@@ -120,8 +156,7 @@ static void read_script(void) {
       avr_raise_irq(avr_io_getirq(avr, AVR_IOCTL_ADC_GETIRQ, ADC_IRQ_ADC0 + bit), level);
     } else if (sscanf(line, "ping %c %d %c %d %llu %llu", &port, &bit, &second, &other, &cycle,
                       &width) == 6) {
-      if (!ping_count) avr_irq_register_notify(pin_of((struct wire){port, bit}), triggered, NULL);
-      pings[ping_count++] = (struct ping){{second, other}, cycle, width};
+      add_ping((struct ping){{port, bit}, {second, other}, cycle, width, 0});
     } else if (sscanf(line, "sweep %u %u %u %c %d", &sweep.step, &sweep.count, &sweep.span,
                       &sweep.wire.port, &sweep.wire.bit) != 5) {
       fprintf(stderr, "not understood: %s", line);
