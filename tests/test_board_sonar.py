@@ -8,7 +8,7 @@ import pytest
 
 from tests.machines import board as boards
 from tests.machines.board import MS, Board
-from tests.test_boards import START, STEADY, on_board, started
+from tests.test_boards import START, on_board, started
 from tiniscript import robots
 from tiniscript.robots.profile import Robot
 
@@ -122,7 +122,10 @@ TWO = (
         "[[kit.sensors]]",
     ),
     ("bluetooth_state = 12", ""),
-    ("[body]\n", '[board.sensors.BEHIND]\ndriver = "hc_sr04"\ntrigger = 12\necho = "A2"\n\n[body]\n'),
+    (
+        "[body]\n",
+        '[board.sensors.BEHIND]\ndriver = "hc_sr04"\ntrigger = 12\necho = "A2"\n\n[body]\n',
+    ),
 )
 
 
@@ -141,7 +144,7 @@ def test_two_sensors_never_hear_each_other(text: str) -> None:
         board.echoes(trigger, echo, [each * US_PER_CM for each in distances])
     board.ran(START + 600)
     each = [pings(board, wire(robot, number)[0]) for number, _ in rows]
-    both = sorted(sum(each, []))
+    both = sorted(ms for times in each for ms in times)
     assert min(b - a for a, b in pairwise(both)) >= SPACING_MS
     assert min(len(times) for times in each) >= 4
     driven = driven_ms(board, 2)

@@ -47,6 +47,16 @@ REFUSED = [
     ("not_toml", "tinibot", "baud = 9600", "baud = 9" + "9" * 5000, None),
     ("key_twice", "tinibot", "buzzer = 11", "buzzer = 11\nbuzzer = 12", None),
     ("key_twice", "tinibot", "[body]", "[board]", None),
+    ("at_stop_of_no_servo", "grabber", "pin = 30", 'pin = 30\nat_stop = "hold"',
+     "board.actuators.LED.at_stop"),
+    ("at_stop_of_no_servo", "liner", "pin = 3\n", 'pin = 3\nat_stop = "release"\n',
+     "board.actuators.LED.at_stop"),
+    ("not_one_of", "grabber", 'at_stop = "release"', 'at_stop = "keep"',
+     "board.actuators.GRIPPER.at_stop"),
+    ("wrong_type", "grabber", 'at_stop = "release"', "at_stop = true",
+     "board.actuators.GRIPPER.at_stop"),
+    ("unknown_key", "tinibot", "echo = 3", 'echo = 3\nat_stop = "hold"',
+     "board.sensors.DISTANCE.at_stop"),
     ("missing", "tinibot", "range = [0, 1023]", "", "kit.sensors[1].range"),
     ("missing", "tinibot", 'kind = "number"\nunit', "unit", "kit.sensors[3].kind"),
     ("missing", "tinibot", 'name = "DISTANCE"', "", "kit.sensors[3].name"),
@@ -202,6 +212,13 @@ def test_a_missing_table_is_one_complaint() -> None:
     assert [(code, values["path"]) for code, values in refusal(text).reasons] == [
         ("missing", "body")
     ]
+
+
+def test_a_lamp_cannot_be_held() -> None:
+    refused = refusal(edited("grabber", "pin = 30", 'pin = 30\nat_stop = "hold"'))
+    assert codes(refused) == ["at_stop_of_no_servo"]
+    assert describe(refused, "en")[0].endswith("Take the line out; only a servo can hold on.")
+    assert "Quita esa línea" in describe(refused, "es")[0]
 
 
 def test_a_refusal_says_what_to_do() -> None:

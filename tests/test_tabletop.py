@@ -251,12 +251,38 @@ def test_a_main_loop_that_stood_still_is_a_fault() -> None:
     assert (event.name, event.values["fault"]) == ("FAULT", 66)
 
 
-def test_nobody_is_connected_any_more() -> None:
+@pytest.mark.parametrize("is_detached", [False, True])
+def test_nobody_is_connected_any_more(is_detached: bool) -> None:
+    """That ends a tethered run at once, and no other."""
     robot, session = switched_on(), computer()
-    send(robot, session, AWAY, is_detached=True)
-    robot.wait(2000)
-    assert happened(robot) == ["MOTORS 80 80"]
+    send(robot, session, AWAY, is_detached=is_detached)
+    robot.talk(session, 500)
+    robot.talk(session, 1, flags=8)
+    robot.talk(session, 500)
+    assert happened(robot) == ["MOTORS 80 80"] + ["MOTORS 0 0"] * (not is_detached)
+    causes = [event.values["cause"] for event in session.events() if event.name == "STOPPED"]
+    assert causes == [4] * (not is_detached)
+
+
+def test_a_run_of_the_button_needs_nobody() -> None:
+    robot, session = switched_on(), computer()
+    send(robot, session, AWAY, runs=False)
+    robot.talk(session, 1500)
+    robot.push()
     robot.step(flags=8)
+    robot.wait(1500)
+    assert happened(robot) == ["MOTORS 80 80"]
+
+
+def test_a_press_that_lasts_stops_what_began_meanwhile() -> None:
+    """Its first edge came before the start, as after a spike on the wire."""
+    robot, session = switched_on(), computer()
+    robot.step(flags=1)
+    send(robot, session, AWAY)
+    robot.step(flags=16)
+    assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
+    robot.step(flags=2)
+    robot.wait(100)
     assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
 
 

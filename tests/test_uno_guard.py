@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from tests.machines.uno import needed
-from tests.platformio import changed
 from tests.machines.wired import Wired
+from tests.platformio import changed
 from tests.test_uno_robot import (
     AWAY,
     BAUD,

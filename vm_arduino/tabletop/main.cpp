@@ -88,8 +88,8 @@ void answer_begin(Reader* request) {
 }
 
 // S: bytes arrive at a time, the button goes down (1) or up (2), the main loop stood still (4),
-// nobody is connected (8), the bytes come before all that (16); so many ticks follow. Says what the
-// robot sends and what it does.
+// nobody is connected (8), the bytes come before all that (16), the button has been down for a while
+// (32); so many ticks follow. Says what the robot sends and what it does.
 void answer_step(Reader* request, Writer* answer) {
   const uint32_t now_ms = request->u32();
   const uint8_t flags = request->u8();
@@ -104,6 +104,7 @@ void answer_step(Reader* request, Writer* answer) {
   if ((flags & 1) != 0) firmware_pressed();
   if ((flags & 2) != 0) firmware_released();
   if ((flags & 8) != 0) firmware_left();
+  if ((flags & 32) != 0) firmware_held();
   std::string sent;
   for (uint16_t k = 0; k < ticks || next < heard.length; k++) {
     if (next < heard.length) firmware_hear(heard.data[next++], static_cast<uint16_t>(now_ms));

@@ -177,8 +177,8 @@ TEXTS: dict[str, tuple[str, str]] = {
                         "Este robot habla a {baud} baudios, la velocidad con que suele venir un HC-05."),
     "bluetooth_other_speed": ("This robot speaks at {baud} baud; an HC-05 usually comes with 9600. It is set once, in its set-up mode (hold its small button while it gets power; it then listens at 38400 baud) with the line AT+UART={baud},0,0",
                               "Este robot habla a {baud} baudios; un HC-05 suele venir con 9600. Se cambia una vez, en su modo de configuración (mantén su botón pequeño mientras recibe energía; entonces escucha a 38400 baudios) con la línea AT+UART={baud},0,0"),
-    "bluetooth_state": ("STATE tells the robot when nobody is connected any more: a program then stops at once.",
-                        "STATE le avisa al robot cuando ya no hay nadie conectado: un programa se detiene entonces de inmediato."),
+    "bluetooth_state": ("STATE tells the robot when nobody is connected any more: a program that a computer has started, and not with --detach, then stops.",
+                        "STATE le avisa al robot cuando ya no hay nadie conectado: se detiene entonces el programa que inició una computadora, si no fue con --detach."),
     "bluetooth_no_state": ("STATE stays free: the profile gives it no pin.", "STATE queda libre: el perfil no le da un pin."),
     # before switching on
     "check": ("Before you switch on", "Antes de encender"),
