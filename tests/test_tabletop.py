@@ -279,7 +279,7 @@ def test_a_press_that_lasts_stops_what_began_meanwhile() -> None:
     robot, session = switched_on(), computer()
     robot.step(flags=1)
     send(robot, session, AWAY)
-    robot.step(flags=16)
+    robot.step(flags=32)
     assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
     robot.step(flags=2)
     robot.wait(100)

@@ -5,6 +5,7 @@
 #include <Arduino.h>
 
 #include "../firmware/firmware.h"
+#include "../link/messages.h"
 #include "kit.h"
 
 #ifdef USART_RX_vect
@@ -31,7 +32,9 @@ constexpr uint8_t kHeldTurns = static_cast<uint8_t>(10000 / kBaud + 3);
 
 volatile uint8_t framing;
 volatile uint8_t overrun;
-bool was_high;      // the line: one that is low since the reset has no sender
+// Whether the line was high since the reset, and since it was held low: else it has no sender. A
+// USB chip whose cable was pulled out holds it low for good, and the button must start the robot.
+volatile bool was_high;
 uint8_t low_turns;  // since the last byte, which had a framing error
 
 // The interrupt of timer 0 that looks at the line. It is on only after a framing error.
@@ -83,11 +86,12 @@ ISR(uart_receive_vect) {
 ISR(TIMER0_COMPB_vect) {
   using namespace tiniscript;
   if (is_high(kReceive)) return leave_line();
-  if (low_turns < kHeldTurns) {
-    low_turns = static_cast<uint8_t>(low_turns + 1);
-    return;
-  }
+  low_turns = static_cast<uint8_t>(low_turns + 1);
+  if (low_turns <= kHeldTurns) return;
   firmware_hear(0, static_cast<uint16_t>(millis()));
+  if (low_turns < kHeldTurns + kStopRun) return;
+  was_high = false;
+  leave_line();
 }
 
 ISR(uart_send_vect) {
