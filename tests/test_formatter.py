@@ -15,10 +15,10 @@ from tests.oracle.interpreter import PAPER_KIT
 from tests.oracle.interpreter import Kit as OracleKit
 from tests.oracle.programs import WIDE_KIT, broken, program
 from tiniscript import compile_text, kit
-from tiniscript.formatter import formatted
-from tiniscript.parser import parse
 from tiniscript.source import Source
-from tiniscript.tokens import END, NEWLINE, scan
+from tiniscript.syntax.formatter import formatted
+from tiniscript.syntax.lexer import END, NEWLINE, scan
+from tiniscript.syntax.parser import parse
 from tiniscript.words import ALIASES
 
 CHUNKS = 16

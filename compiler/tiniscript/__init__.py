@@ -46,9 +46,9 @@ def check_text(text: str, kit: Kit, name: str = "") -> Compiled:
     """Return the checked program of a text, and all that is wrong with it."""
     from tiniscript.advice import advice
     from tiniscript.checker import check
-    from tiniscript.parser import parse
     from tiniscript.problems import in_order
     from tiniscript.source import Source
+    from tiniscript.syntax.parser import parse
 
     source = Source(text, name)
     parsed = parse(source, kit)

@@ -10,8 +10,7 @@ from collections.abc import Callable, Sequence
 from itertools import chain
 from typing import NamedTuple
 
-from tiniscript import problems, program, tree
-from tiniscript.arguments import actuator_word, call_of, count_problem, glued_call
+from tiniscript import problems, program
 from tiniscript.bytecode import BLOCKS, CALLS, DEFS, STACK_VALUES, VARIABLES
 from tiniscript.kinds import ANY, Kinds, Value
 from tiniscript.kit import Kit
@@ -19,6 +18,8 @@ from tiniscript.problems import Problem
 from tiniscript.program import Statement
 from tiniscript.scope import Name, Scope
 from tiniscript.source import Source, Span
+from tiniscript.syntax import ast
+from tiniscript.syntax.call_suggestions import actuator_word, call_of, count_problem, glued_call
 from tiniscript.thousandths import HIGHEST, as_text
 from tiniscript.words import WORDS, Argument, Word, meant_by
 
@@ -30,7 +31,7 @@ class Checked(NamedTuple):
     problems: list[Problem]
 
 
-def check(source: Source, parsed: tree.Program, kit: Kit) -> Checked:
+def check(source: Source, parsed: ast.Program, kit: Kit) -> Checked:
     """Return what a program means on a robot with this kit, and all that is wrong with it."""
     checker = _Checker(source, kit, parsed)
     body = checker.body(parsed.body)
@@ -49,7 +50,7 @@ class _Procedure(NamedTuple):
 
 
 class _Checker(Scope):
-    def __init__(self, source: Source, kit: Kit, parsed: tree.Program) -> None:
+    def __init__(self, source: Source, kit: Kit, parsed: ast.Program) -> None:
         super().__init__(source, kit, parsed)
         self.kinds = Kinds(self)
         self.variables: list[str] = []
@@ -62,7 +63,7 @@ class _Checker(Scope):
         self.deepest = 0  # blocks open at once in the routine that is being checked
         self.calls = 0  # calls open at once in it
 
-    def body(self, instructions: Sequence[tree.Instruction]) -> program.Body:
+    def body(self, instructions: Sequence[ast.Instruction]) -> program.Body:
         made: list[Statement] = []
         for instruction in instructions:
             _CHECKS[type(instruction)](self, instruction, made)
@@ -90,7 +91,7 @@ class _Checker(Scope):
 
     # -- instructions -------------------------------------------------------------------------
 
-    def assign(self, node: tree.Assign, made: list[Statement]) -> None:
+    def assign(self, node: ast.Assign, made: list[Statement]) -> None:
         name = self.names.get(node.name)
         if name is not None and name.what in ("sensor", "actuator"):
             sensor = name.what == "sensor"
@@ -115,7 +116,7 @@ class _Checker(Scope):
         self.take([value], node.span, made)
         made.append(program.Assign(number, value.terms, node.span))
 
-    def variable(self, node: tree.Assign, value: Value) -> int:
+    def variable(self, node: ast.Assign, value: Value) -> int:
         """Make a new variable; its kind is that of its first assignment."""
         number = len(self.variables)
         if number == VARIABLES:
@@ -125,7 +126,7 @@ class _Checker(Scope):
         self.kinds.of_variables.append(value.kind)
         return number
 
-    def command(self, node: tree.Command, made: list[Statement]) -> None:
+    def command(self, node: ast.Command, made: list[Statement]) -> None:
         word = WORDS.get(node.word)
         if node.until is not None and (word is None or word.role not in ("move", "wait")):
             before = self.source[Span(node.span.start, node.until.span.start)]
@@ -172,12 +173,12 @@ class _Checker(Scope):
         else:
             made.append(program.Show(values[0].terms, values[0].kind == "yes_no", span))
 
-    def count(self, word: Word, arguments: tuple[tree.Argument, ...], span: Span) -> None:
+    def count(self, word: Word, arguments: tuple[ast.Argument, ...], span: Span) -> None:
         spans = [argument.span for argument in arguments]
         self.problems.append(count_problem(self.source, word, spans, span))
 
     def named_arguments(
-        self, node: tree.Command, word: Word, arguments: Sequence[tree.Argument], said: int
+        self, node: ast.Command, word: Word, arguments: Sequence[ast.Argument], said: int
     ) -> None:
         """`F(t=2, p=80)`: values have no names here."""
         unknown = {each.span for each in self.problems[said:] if each.code is problems.UNKNOWN_NAME}
@@ -193,7 +194,7 @@ class _Checker(Scope):
         fix = f"{word.text}({', '.join(values)})"
         self.report(problems.NAMED_ARGUMENT, node.span, word=word.text, fix=fix)
 
-    def number(self, argument: tree.Argument, its: Argument, word: str) -> Value:
+    def number(self, argument: ast.Argument, its: Argument, word: str) -> Value:
         """Check an argument that is a number; a plain one must be in range."""
         if argument.is_plain:
             part = argument.expression[0]
@@ -209,18 +210,18 @@ class _Checker(Scope):
                         found=self.source[argument.span])  # fmt: skip
         return value
 
-    def until(self, argument: tree.Argument) -> program.Until:
+    def until(self, argument: ast.Argument) -> program.Until:
         value = self.condition(argument, "UNTIL")
         return program.Until(self.missing([value], 0), value.terms)
 
-    def condition(self, argument: tree.Argument, word: str) -> Value:
+    def condition(self, argument: ast.Argument, word: str) -> Value:
         value = self.kinds.value(argument)
         if value.kind == "number":
             self.wants_condition(argument, word)
         self.stack_fits([value], argument.span)
         return value
 
-    def wants_condition(self, argument: tree.Argument, by: str) -> None:
+    def wants_condition(self, argument: ast.Argument, by: str) -> None:
         found = self.source[argument.span]
         self.report(problems.WANTS_CONDITION, argument.span, by=by, found=found,
                     fix=self.kinds.question(found))  # fmt: skip
@@ -231,7 +232,7 @@ class _Checker(Scope):
 
     # -- names as instructions ----------------------------------------------------------------
 
-    def kit_or_def(self, node: tree.Command, made: list[Statement]) -> None:
+    def kit_or_def(self, node: ast.Command, made: list[Statement]) -> None:
         name = self.names.get(node.word)
         if name is None:
             self.unknown(node)
@@ -247,7 +248,7 @@ class _Checker(Scope):
         else:
             self.report(problems.VARIABLE_ALONE, node.span, name=node.word)
 
-    def actuator(self, node: tree.Command, number: int, made: list[Statement]) -> None:
+    def actuator(self, node: ast.Command, number: int, made: list[Statement]) -> None:
         device = self.kit.actuators[number]
         word = actuator_word(device)
         if node.arguments is None:
@@ -267,7 +268,7 @@ class _Checker(Scope):
         self.take([value], node.span, made)
         made.append(program.Set(number, value.terms, node.span))
 
-    def call(self, node: tree.Command, number: int, made: list[Statement]) -> None:
+    def call(self, node: ast.Command, number: int, made: list[Statement]) -> None:
         facts = self.facts[number]
         if facts.calls + 1 > CALLS:
             self.report(problems.CALLS_TOO_DEEP, node.span, name=node.word, limit=str(CALLS))
@@ -278,7 +279,7 @@ class _Checker(Scope):
         self.surely_read |= facts.surely_read
         made.append(program.Call(number, node.span))
 
-    def unknown(self, node: tree.Command) -> None:
+    def unknown(self, node: ast.Command) -> None:
         word, span = node.word, node.word_span
         if word == self.inside:
             self.report(problems.CALLS_ITSELF, span, name=word)
@@ -289,7 +290,7 @@ class _Checker(Scope):
         else:
             self.unknown_word(node)
 
-    def unknown_word(self, node: tree.Command) -> None:
+    def unknown_word(self, node: ast.Command) -> None:
         word, span = node.word, node.word_span
         meant = meant_by(word)
         if meant is not None and (meant in WORDS or meant in self.names):
@@ -310,7 +311,7 @@ class _Checker(Scope):
 
     # -- blocks -------------------------------------------------------------------------------
 
-    def deeper(self, instructions: Sequence[tree.Instruction], is_loop: bool) -> program.Body:
+    def deeper(self, instructions: Sequence[ast.Instruction], is_loop: bool) -> program.Body:
         self.depth += 1
         self.loops += is_loop
         self.deepest = max(self.deepest, self.depth)
@@ -319,7 +320,7 @@ class _Checker(Scope):
         self.loops -= is_loop
         return made
 
-    def if_(self, node: tree.If, made: list[Statement]) -> None:
+    def if_(self, node: ast.If, made: list[Statement]) -> None:
         before, chain = self.surely_read, 0
         after = -1  # what all arms make surely read
         arms: list[program.Arm] = []
@@ -342,7 +343,7 @@ class _Checker(Scope):
         self.surely_read &= after
         made.append(program.If(tuple(arms), otherwise, node.span))
 
-    def loop(self, node: tree.Loop, made: list[Statement]) -> None:
+    def loop(self, node: ast.Loop, made: list[Statement]) -> None:
         count = None
         if node.times is not None:
             value = self.number(node.times, Argument("n", ""), "LOOP")
@@ -354,7 +355,7 @@ class _Checker(Scope):
         self.surely_read = before
         made.append(program.Loop(count, body, node.span))
 
-    def while_(self, node: tree.While, made: list[Statement]) -> None:
+    def while_(self, node: ast.While, made: list[Statement]) -> None:
         value = self.kinds.nothing
         if node.condition is not None:
             value = self.condition(node.condition, "WHILE")
@@ -364,12 +365,12 @@ class _Checker(Scope):
         reads = self.missing([value], 0)
         made.append(program.While(reads, value.terms, body, node.span))
 
-    def break_(self, node: tree.Break, made: list[Statement]) -> None:
+    def break_(self, node: ast.Break, made: list[Statement]) -> None:
         if not self.loops:
             self.report(problems.BREAK_OUTSIDE, node.span)
         made.append(program.Break(node.span))
 
-    def def_(self, node: tree.Def, made: list[Statement]) -> None:
+    def def_(self, node: ast.Def, made: list[Statement]) -> None:
         known = self.names.get(node.name)
         if known is not None:
             code = problems.DEF_TWICE if known.what == "def" else problems.NAME_TAKEN
@@ -389,11 +390,11 @@ class _Checker(Scope):
 
 
 _CHECKS: dict[type, Callable[..., None]] = {
-    tree.Command: _Checker.command,
-    tree.Assign: _Checker.assign,
-    tree.If: _Checker.if_,
-    tree.Loop: _Checker.loop,
-    tree.While: _Checker.while_,
-    tree.Break: _Checker.break_,
-    tree.Def: _Checker.def_,
+    ast.Command: _Checker.command,
+    ast.Assign: _Checker.assign,
+    ast.If: _Checker.if_,
+    ast.Loop: _Checker.loop,
+    ast.While: _Checker.while_,
+    ast.Break: _Checker.break_,
+    ast.Def: _Checker.def_,
 }

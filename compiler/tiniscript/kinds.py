@@ -13,7 +13,7 @@ from tiniscript import problems
 from tiniscript.program import Expression, Term
 from tiniscript.scope import Scope
 from tiniscript.source import Span
-from tiniscript.tree import Argument, Part
+from tiniscript.syntax.ast import Argument, Part
 from tiniscript.words import WORDS, meant_by
 
 NUMBER, YES_NO, ANY = "number", "yes_no", "any"  # ANY: a mistake was already reported there

@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from tiniscript import problems
 from tiniscript.kit import Kit
 from tiniscript.problems import Problem
-from tiniscript.tokens import WORD, scan
+from tiniscript.syntax.lexer import WORD, scan
 
 _UNKNOWN = (problems.UNKNOWN_NAME, problems.UNKNOWN_WORD)
 _NUMBERS = ("first", "second", "third")

@@ -9,10 +9,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
-from tiniscript import tree
 from tiniscript.kit import Kit
 from tiniscript.problems import Code, Problem
 from tiniscript.source import Source, Span
+from tiniscript.syntax import ast
 from tiniscript.words import nearest
 
 ENOUGH = 100  # mistakes after which a suggestion helps nobody
@@ -26,7 +26,7 @@ class Name(NamedTuple):
 
 
 class Scope:
-    def __init__(self, source: Source, kit: Kit, parsed: tree.Program) -> None:
+    def __init__(self, source: Source, kit: Kit, parsed: ast.Program) -> None:
         self.source = source
         self.kit = kit
         self.problems: list[Problem] = []
@@ -34,7 +34,7 @@ class Scope:
         for i, device in enumerate(kit.actuators):
             self.names[device.name] = Name("actuator", i)
         self.set_somewhere = set(_assigned(parsed.body))
-        self.def_names = {each.name for each in parsed.body if isinstance(each, tree.Def)}
+        self.def_names = {each.name for each in parsed.body if isinstance(each, ast.Def)}
 
     def report(self, code: Code, span: Span, **values: str) -> None:
         self.problems.append(Problem(code, span, values))
@@ -47,16 +47,16 @@ class Scope:
         return (nearest(word, known) or "") if len(self.problems) < ENOUGH else ""
 
 
-def _assigned(body: Sequence[tree.Instruction]) -> list[str]:
+def _assigned(body: Sequence[ast.Instruction]) -> list[str]:
     """Return the names that a program sets anywhere."""
     found: list[str] = []
     for node in body:
-        if isinstance(node, tree.Assign):
+        if isinstance(node, ast.Assign):
             found.append(node.name)
-        elif isinstance(node, tree.If):
+        elif isinstance(node, ast.If):
             for arm in node.arms:
                 found += _assigned(arm.body)
             found += _assigned(node.otherwise)
-        elif isinstance(node, (tree.Loop, tree.While, tree.Def)):
+        elif isinstance(node, (ast.Loop, ast.While, ast.Def)):
             found += _assigned(node.body)
     return found

@@ -38,7 +38,7 @@ def run(arguments: list[str], language: str) -> int:
     given = inputs.program(options)
     if given.is_image:
         raise Trouble(2, "needs_text", file=inputs.shown(given.name), verb="fmt")
-    from tiniscript.formatter import formatted
+    from tiniscript.syntax.formatter import formatted
 
     parsed = inputs.parsed(given, inputs.robot(options, language).kit)
     if not parsed.is_right:

@@ -116,9 +116,9 @@ def compiled(given: Input, robot: Robot, is_strict: bool) -> Compiled:
 def parsed(given: Input, kit: Kit) -> Compiled:
     """Return what is wrong with the shape of a program's text, and nothing more."""
     from tiniscript import Compiled
-    from tiniscript.parser import parse
     from tiniscript.problems import in_order
     from tiniscript.source import Source
+    from tiniscript.syntax.parser import parse
 
     text = _source(given)
     if not isinstance(text, str):

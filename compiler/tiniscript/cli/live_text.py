@@ -10,15 +10,16 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
-from tiniscript import Compiled, compile_text, tree
+from tiniscript import Compiled, compile_text
 from tiniscript.cli.live_mark import MARK
 from tiniscript.kit import Kit
 from tiniscript.lower import Place
-from tiniscript.parser import parse
 from tiniscript.program import Assign, walk
 from tiniscript.source import Source, Span
+from tiniscript.syntax import ast
+from tiniscript.syntax.lexer import WORD, scan
+from tiniscript.syntax.parser import parse
 from tiniscript.thousandths import as_text
-from tiniscript.tokens import WORD, scan
 
 _HEADER = re.compile(r"[ \t]*(SI|SB|PING)[ \t]*\|", re.IGNORECASE | re.ASCII)
 
@@ -71,14 +72,14 @@ class Known:
         body = " " * found.end() + text[found.end() :] if found else text
         parsed = parse(Source(body), self.kit).program.body
         own = {node.name: body[node.span.start : node.span.end] for node in parsed
-               if isinstance(node, tree.Def)}  # fmt: skip
+               if isinstance(node, ast.Def)}  # fmt: skip
         values, defs = self._before(body, own)
         before = values + defs
         plain = compile_text(f"{before}{body}", self.kit)
         if not plain.is_right:
             return Line(_behind(plain, len(before)), (), own)
         shown = _assigned(plain, len(values))
-        if all(isinstance(node, tree.Def) for node in parsed):
+        if all(isinstance(node, ast.Def) for node in parsed):
             return Line(_behind(plain, len(before)), (), own, does_nothing=True)
         if shown:
             behind = "".join(f"\nSHOW({name})" for name in (as_text(MARK), *shown))

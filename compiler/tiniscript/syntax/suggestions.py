@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tiniscript.arguments import LONGEST, ends_value, starts_value, written
-from tiniscript.tokens import END, NEWLINE, NUMBER, ODD, WORD, Token
+from tiniscript.syntax.call_suggestions import LONGEST, ends_value, starts_value, written
+from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, Token
 from tiniscript.words import WORDS, Word, meant_by, other_name
 
 SIGNS = frozenset(("+", "-", "*", "/", "%", "=", "<", ">", "<=", ">=", "<>"))

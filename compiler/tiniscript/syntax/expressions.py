@@ -10,13 +10,13 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from tiniscript import problems
-from tiniscript.arguments import call_in, count_problem, ends_value, starts_value
 from tiniscript.problems import Code, Problem
-from tiniscript.slips import operator_words
 from tiniscript.source import Source, Span
+from tiniscript.syntax.ast import Argument, Part
+from tiniscript.syntax.call_suggestions import call_in, count_problem, ends_value, starts_value
+from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, Token
+from tiniscript.syntax.suggestions import operator_words
 from tiniscript.thousandths import HIGHEST, LOWEST, as_text, read_literal
-from tiniscript.tokens import END, NEWLINE, NUMBER, ODD, WORD, Token
-from tiniscript.tree import Argument, Part
 from tiniscript.words import UNITS, WORDS, Word, meant_by, other_name
 
 _BINARY = {

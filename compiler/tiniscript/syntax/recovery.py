@@ -9,11 +9,14 @@ from __future__ import annotations
 from typing import NoReturn
 
 from tiniscript import problems
-from tiniscript.arguments import actuator_word, call_in, glued_call, written
-from tiniscript.blocks import Blocks, GoesOn
-from tiniscript.expressions import Failed
 from tiniscript.problems import Code
-from tiniscript.slips import (
+from tiniscript.source import Span
+from tiniscript.syntax.ast import Assign, Command
+from tiniscript.syntax.blocks import Blocks, GoesOn
+from tiniscript.syntax.call_suggestions import actuator_word, call_in, glued_call, written
+from tiniscript.syntax.expressions import Failed
+from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, QUOTES, WORD, Token
+from tiniscript.syntax.suggestions import (
     AFTER_HEADER,
     BEFORE_CALL,
     BEFORE_NAME,
@@ -32,9 +35,6 @@ from tiniscript.slips import (
     is_question,
     update,
 )
-from tiniscript.source import Span
-from tiniscript.tokens import END, NEWLINE, NUMBER, ODD, QUOTES, WORD, Token
-from tiniscript.tree import Assign, Command
 from tiniscript.words import WORDS, Word, meant_by
 
 _AT_END = frozenset((";", NEWLINE, END))

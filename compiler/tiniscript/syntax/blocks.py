@@ -11,12 +11,12 @@ from typing import NoReturn
 
 from tiniscript import problems
 from tiniscript.bytecode import BLOCKS
-from tiniscript.expressions import Expressions, Failed
 from tiniscript.kit import Kit
-from tiniscript.slips import AFTER_HEADER, ENDS, after_bracket, body_begins, head_in
 from tiniscript.source import Source, Span
-from tiniscript.tokens import NEWLINE, ODD, WORD, Scan, Token
-from tiniscript.tree import Argument, Arm, Command, Def, If, Instruction, Loop, While
+from tiniscript.syntax.ast import Argument, Arm, Command, Def, If, Instruction, Loop, While
+from tiniscript.syntax.expressions import Expressions, Failed
+from tiniscript.syntax.lexer import NEWLINE, ODD, WORD, Scan, Token
+from tiniscript.syntax.suggestions import AFTER_HEADER, ENDS, after_bracket, body_begins, head_in
 from tiniscript.words import ALIASES, BLOCK_ENDS, WORDS, nearest, other_name
 
 

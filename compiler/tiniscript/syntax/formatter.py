@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from tiniscript.source import Source
-from tiniscript.tokens import END, NEWLINE, NUMBER, WORD, Scan, Token, scan
+from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Scan, Token, scan
 from tiniscript.words import ALIASES, BLOCK_ENDS
 
 INDENT = "  "

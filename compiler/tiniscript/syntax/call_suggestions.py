@@ -14,8 +14,8 @@ from tiniscript import problems
 from tiniscript.kit import Device
 from tiniscript.problems import Problem
 from tiniscript.source import Source, Span
+from tiniscript.syntax.lexer import NEWLINE, NUMBER, ODD, QUOTES, WORD, Token
 from tiniscript.thousandths import as_text
-from tiniscript.tokens import NEWLINE, NUMBER, ODD, QUOTES, WORD, Token
 from tiniscript.words import UNITS, WORDS, Argument, Word
 
 LONGEST = 60  # tokens of which a suggestion is made

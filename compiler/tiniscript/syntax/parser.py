@@ -10,15 +10,15 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from tiniscript import problems
-from tiniscript.arguments import call_in, starts_value
-from tiniscript.blocks import GoesOn
-from tiniscript.expressions import Failed
 from tiniscript.kit import Kit
-from tiniscript.mistakes import Mistakes
-from tiniscript.slips import BLOCKS, body_begins, head_in
 from tiniscript.source import Source, Span
-from tiniscript.tokens import END, NEWLINE, WORD, Scan, Token, scan
-from tiniscript.tree import Argument, Assign, Break, Command, Program
+from tiniscript.syntax.ast import Argument, Assign, Break, Command, Program
+from tiniscript.syntax.blocks import GoesOn
+from tiniscript.syntax.call_suggestions import call_in, starts_value
+from tiniscript.syntax.expressions import Failed
+from tiniscript.syntax.lexer import END, NEWLINE, WORD, Scan, Token, scan
+from tiniscript.syntax.recovery import Mistakes
+from tiniscript.syntax.suggestions import BLOCKS, body_begins, head_in
 from tiniscript.words import ALIASES, BLOCK_ENDS, WORDS, Word, meant_by, other_name
 
 ENOUGH = 100  # mistakes after which reading on helps nobody

@@ -1,0 +1,1 @@
+"""The front end: text becomes tokens, tokens become an abstract syntax tree (AST)."""
