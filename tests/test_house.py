@@ -12,7 +12,15 @@ import pytest
 HOUSE = Path(__file__).resolve().parent.parent / "compiler" / "tiniscript"
 
 TABLES = {"source", "thousandths", "bytecode", "kit", "words", "problems"}
-SUGGESTIONS = {"syntax.lexer", "syntax.suggestions", "syntax.call_suggestions"}
+SUGGESTIONS = {"syntax.suggestions", "syntax.call_suggestions"}
+READING = {  # what grammar and recovery share
+    "syntax.lexer",
+    "syntax.ast",
+    "syntax.cursor",
+    "syntax.reporter",
+    "syntax.operators",
+    "syntax.blocks",
+}
 ROOMS = {
     "source": set(),
     "thousandths": set(),
@@ -26,12 +34,16 @@ ROOMS = {
     "syntax.ast": {"source"},
     "syntax.call_suggestions": TABLES | {"syntax.lexer"},
     "syntax.suggestions": TABLES | {"syntax.lexer", "syntax.call_suggestions"},
-    "syntax.expressions": TABLES | SUGGESTIONS | {"syntax.ast"},
-    "syntax.blocks": TABLES | SUGGESTIONS | {"syntax.ast", "syntax.expressions"},
-    "syntax.recovery": TABLES | SUGGESTIONS | {"syntax.ast", "syntax.expressions", "syntax.blocks"},
-    "syntax.parser": TABLES
-    | SUGGESTIONS
-    | {"syntax.ast", "syntax.expressions", "syntax.blocks", "syntax.recovery"},
+    "syntax.cursor": {"source", "syntax.lexer"},
+    "syntax.reporter": {"source", "problems", "syntax.lexer"},
+    "syntax.operators": {"source", "syntax.lexer", "syntax.ast"},
+    "syntax.blocks": TABLES | {"syntax.lexer", "syntax.ast", "syntax.reporter"},
+    "syntax.expression_recovery": TABLES | READING | SUGGESTIONS,
+    "syntax.expressions": TABLES | READING | {"syntax.expression_recovery"},
+    "syntax.block_recovery": TABLES | READING | SUGGESTIONS,
+    "syntax.foreign": TABLES | READING | SUGGESTIONS,
+    "syntax.recovery": TABLES | READING | SUGGESTIONS | {"syntax.block_recovery", "syntax.foreign"},
+    "syntax.parser": TABLES | READING | SUGGESTIONS | {"syntax.expressions", "syntax.recovery"},
     "syntax.formatter": TABLES | {"syntax.lexer"},
     "program": TABLES,
     "scope": TABLES | {"syntax.ast"},
@@ -136,8 +148,9 @@ def test_the_road_needs_the_standard_library_alone() -> None:
         "assert compile_text('SI|F(5,80)', robots.load('tinibot').kit).image"
     )
     unwanted = {"construct", "tomllib", "tomli", "rich", "platformdirs", "serial", "dataclasses",
-                "argparse", "json", "difflib", "tiniscript.messages",
-                "tiniscript.vm"}  # fmt: skip
+                "argparse", "json", "difflib", "tiniscript.messages", "tiniscript.vm",
+                "tiniscript.syntax.recovery",
+                "tiniscript.syntax.expression_recovery"}  # fmt: skip
     assert not unwanted & modules
 
 

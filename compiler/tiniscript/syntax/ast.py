@@ -1,4 +1,4 @@
-"""The syntax tree: what was written, and where. Nothing else.
+"""The abstract syntax tree (AST): what was written, and where. Nothing else.
 
 Blocks are nested, at most as deep as the language allows. An expression is flat: its parts in
 the order in which a stack machine meets them, so that no depth of brackets that somebody

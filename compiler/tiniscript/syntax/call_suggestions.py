@@ -1,8 +1,8 @@
-"""What somebody probably meant to put into brackets.
+"""What a beginner probably meant to put into brackets.
 
 Knows how values are told apart where commas, points or brackets are not where they belong.
-Looks at what was written, in spans or tokens, and gives texts to suggest. The parser asks for
-functions and headers, the checker for instructions.
+Looks at what was written, in spans or tokens, and gives texts to suggest. Recovery asks for
+functions and headers, the checker for commands.
 """
 
 from __future__ import annotations

@@ -1,29 +1,55 @@
-"""Tokens become a syntax tree.
+"""The grammar: tokens become an AST.
 
-Knows the shape of instructions. Does not know what a name stands for, how many arguments a word
-takes or which kinds fit: `checker` does. Names what is wrong and goes on with the next
-instruction. Works with stacks of its own, so no depth of input exhausts Python's.
+    program     = [ ("SI" | "SB") "|" ] { [ instruction ] separator }
+                | "PING" "|" "CHECK_CONNECTION"
+    separator   = ";" | end of line
+    instruction = assignment | command | "BREAK" | definition | header | arm | block end
+    assignment  = NAME "=" expression
+    command     = (WORD | NAME) [ arguments ] [ until ]
+    until       = "UNTIL" "(" argument ")"
+    definition  = "DEF" NAME
+    header      = ("IF" | "LOOP" | "WHILE") "(" argument ")"
+    arm         = "ELSEIF" "(" argument ")" | "ELSE"
+    block end   = "ENDIF" | "END_LOOP" | "END_WHILE" | "END_DEF"
+    arguments   = "(" [ argument { "," argument } ] ")"
+    argument    = "FOREVER" | expression
+    expression  = operand { operator operand }
+    operator    = "OR" | "AND" | "=" | "<>" | "<" | "<=" | ">" | ">=" | "+" | "-" | "*" | "/" | "%"
+    operand     = { "-" | "NOT" } ( NUMBER | NAME | "TRUE" | "FALSE" | "TIME"
+                                  | FUNCTION arguments | "(" expression ")" )
+
+Each rule is a method of its name: here, and from `arguments` on in `expressions`. In brackets an
+end of line is white space. Headers, arms and block ends are matched on a stack (`blocks`), so that
+no depth of input exhausts Python's. Does not know what a name stands for, how many arguments a
+command takes or which types fit: the checker does. Where a text is wrong a rule asks `recovery`,
+which reports it and repairs the tokens or raises Failed; then the next instruction is read.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
 
 from tiniscript import problems
 from tiniscript.kit import Kit
 from tiniscript.source import Source, Span
 from tiniscript.syntax.ast import Argument, Assign, Break, Command, Program
-from tiniscript.syntax.blocks import GoesOn
-from tiniscript.syntax.call_suggestions import call_in, starts_value
-from tiniscript.syntax.expressions import Failed
+from tiniscript.syntax.blocks import ENDS, HEADERS, Blocks
+from tiniscript.syntax.cursor import AT_END, Cursor
+from tiniscript.syntax.expressions import ExpressionParser
 from tiniscript.syntax.lexer import END, NEWLINE, WORD, Scan, Token, scan
-from tiniscript.syntax.recovery import Mistakes
-from tiniscript.syntax.suggestions import BLOCKS, body_begins, head_in
-from tiniscript.words import ALIASES, BLOCK_ENDS, WORDS, Word, meant_by, other_name
+from tiniscript.syntax.reporter import Failed, Reporter, Resumed
+from tiniscript.syntax.suggestions import foreign_block
+from tiniscript.words import BLOCK_ENDS, WORDS, Word, other_name
 
-ENOUGH = 100  # mistakes after which reading on helps nobody
+if TYPE_CHECKING:
+    from tiniscript.syntax.recovery import Recovery
 
-_AT_END = frozenset((";", NEWLINE, END))
+ENOUGH = 100  # diagnostics after which reading on helps nobody
+
+_SETUPS = frozenset(("SI", "SB", "PING"))
+_AFTER_NAME = frozenset(("(", *AT_END))
+_COMMANDS = frozenset(("move", "wait", "motors", "stop", "start", "beep", "show"))  # roles
 
 
 class Parsed(NamedTuple):
@@ -33,188 +59,255 @@ class Parsed(NamedTuple):
 
 
 def parse(source: Source, kit: Kit | None = None) -> Parsed:
-    """Return the tree of a program with all that is wrong in its shape.
+    """Return the AST of a program with all that is wrong in its shape.
 
-    The names of `kit` are no slips. Without a kit a name may be anything.
+    The names of `kit` are taken for what they are. Without a kit a name may be anything.
     """
-    parser = _Parser(source, scan(source.text), kit)
+    scanned = scan(source.text)
+    parser = Parser(source, scanned, kit)
     program = parser.program()
-    return Parsed(program, parser.scan, parser.found())
+    return Parsed(program, scanned, parser.reporter.found())
 
 
-class _Parser(Mistakes):
+class Parser:
     def __init__(self, source: Source, scanned: Scan, kit: Kit | None) -> None:
-        super().__init__(source, scanned, kit)
-        self.scan = scanned
+        self.cursor = Cursor(source, scanned.tokens)
+        self.reporter = Reporter(scanned.problems)
+        self.blocks = Blocks(self.reporter)
+        self.expressions = ExpressionParser(self.cursor, self.reporter, kit)
+        self._kit = kit
 
-    def found(self) -> list[problems.Problem]:
-        """Return the problems, without odd signs of which the parser knew more."""
-        odd = self.scan.problems
-        found = [each for each in odd if each.span.start not in self.answered]
-        found += self.problems[len(odd) :]
-        return found if any(each.is_mistake for each in found) else self.problems
+    @cached_property
+    def recovery(self) -> Recovery:
+        """What is asked where a text is wrong. A right program never loads it."""
+        from tiniscript.syntax.recovery import Recovery
+
+        return Recovery(self.cursor, self.reporter, self.blocks, self._kit)
 
     # -- the program ------------------------------------------------------------------------
 
     def program(self) -> Program:
-        start = self._setup()
-        while self.tokens[self.i].kind is not END and len(self.problems) <= ENOUGH:
-            kind = self.tokens[self.i].kind
+        cursor, found = self.cursor, self.reporter.diagnostics
+        tokens = cursor.tokens
+        start = self.setup()
+        while (kind := tokens[cursor.i].kind) is not END and len(found) <= ENOUGH:
             if kind is NEWLINE or kind == ";":
-                self.i += 1
+                cursor.i += 1
                 continue
             try:
-                self._instruction()
-            except GoesOn:
+                self.instruction()
+            except Resumed:
                 continue
             except Failed:
-                self.skip()
-        self.never_end()
-        return Program(start, tuple(self.body))
+                cursor.skip_instruction()
+        if self.blocks.open:
+            self.recovery.in_block.never_ended()
+        return Program(start, tuple(self.blocks.program))
 
-    def _setup(self) -> str:
-        while self.tokens[self.i].kind is NEWLINE:
-            self.i += 1
-        word, bar = self.tokens[self.i], self.tokens[min(self.i + 1, len(self.tokens) - 1)]
+    def setup(self) -> str:
+        cursor = self.cursor
+        cursor.to_inner()
+        word, bar = cursor.token, cursor.following
         if word.kind is not WORD:
             return "SI"
         if bar.kind != "|":
-            if not self._is_like_a_bar(word, bar):
+            if word.text not in _SETUPS or not self.recovery.is_taken_for_bar(word, bar):
                 return "SI"
-            span = Span(word.start, bar.end)
-            self.instead(bar, problems.SETUP_NEEDS_BAR, span, found=word.text)
-        self.i += 2
+        cursor.i += 2
         if word.text == "PING":
-            self._ping(word)
-            return "PING"
-        if word.text not in ("SI", "SB"):
-            right = "SI|START;" if word.text == "START" else "SI|"
-            self.report(problems.SETUP_UNKNOWN, word.span, found=word.text, right=right)
-            return "SI"
+            self.check_connection(word)
+        elif word.text not in ("SI", "SB"):
+            return self.recovery.unknown_setup(word)
         return word.text
 
-    def _is_like_a_bar(self, word: Token, bar: Token) -> bool:
-        """Whether `SI:` or `SI||` begins the program."""
-        sign = self.source[bar.span]
-        return word.text in ("SI", "SB", "PING") and sign in (":", "||", "/", "\\", "¦")
-
-    def _ping(self, ping: Token) -> None:
-        """Read `check_connection`, after which nothing may come."""
-        token = self.tokens[self.i]
+    def check_connection(self, ping: Token) -> None:
+        cursor = self.cursor
+        token = cursor.token
         if token.kind is WORD and token.text == "CHECK_CONNECTION":
-            self.i += 1
-            while (token := self.tokens[self.i]).kind is NEWLINE or token.kind == ";":
-                self.i += 1
+            cursor.i += 1
+            cursor.skip_separators()
+            token = cursor.token
             if token.kind is END:
                 return
-        self.report(problems.PING_ALONE, ping.span if token.kind is END else token.span)
-        self.i = len(self.tokens) - 1
+        self.recovery.not_alone(ping, token)
 
-    # -- instructions -----------------------------------------------------------------------
-
-    def _instruction(self) -> None:
-        token = self.tokens[self.i]
+    def instruction(self) -> None:
+        cursor = self.cursor
+        tokens = cursor.tokens
+        token = tokens[cursor.i]
         if token.kind is not WORD:
-            return self.no_word(token)
-        following = self.tokens[self.i + 1]
+            return self.recovery.no_word(token)
+        following = tokens[cursor.i + 1]
         text = token.text
         if following.kind == "=":
-            self._assign(token)
-        elif text in BLOCKS:
+            self.assignment(token)
+        elif text in HEADERS:
             self.header(token)
         elif text == "DEF":
-            self.define(token)
+            self.definition(token)
         elif text in ("ELSE", "ELSEIF"):
             self.arm(token)
-        elif text in ALIASES or text in BLOCK_ENDS.values():
-            self.i += 1
-            self.no_brackets(token)
-            self.end(ALIASES.get(text, text), token.span)
+        elif text in ENDS:
+            self.block_end(token)
         elif text == "BREAK":
-            self.i += 1
-            self.no_brackets(token)
-            self.here.append(Break(token.span))
+            cursor.i += 1
+            self.no_arguments(token)
+            self.blocks.here.append(Break(token.span))
         elif text == "END" and following.kind is WORD and following.text in BLOCK_ENDS:
-            self.end_in_two_words(token, following)
+            self.recovery.in_block.end_in_two_words(token, following)
         else:
-            self._command(token)
-        if self.tokens[self.i].kind not in _AT_END:
-            self.no_separator(token)
+            self.command(token)
+        if tokens[cursor.i].kind not in AT_END:
+            self.recovery.no_separator(token)
 
-    def _assign(self, name: Token) -> None:
-        reserved = name.text in WORDS
-        if reserved:
-            self._reserved(name)
-        self.i += 2
+    # -- simple instructions ----------------------------------------------------------------
+
+    def assignment(self, name: Token) -> None:
+        is_reserved = name.text in WORDS
+        if is_reserved:
+            self.recovery.reserved_name(name)
+        self.cursor.i += 2
         try:
-            value = self.argument(inside=False)
+            value = self.expressions.expression(in_brackets=False)
         except Failed:
-            self.set_somehow(name)
+            self.recovery.unread_assignment(name)
             raise
-        if reserved:
+        if is_reserved:
             raise Failed
         span = Span(name.start, value.span.end)
-        self.here.append(Assign(name.text, name.span, value, span))
+        self.blocks.here.append(Assign(name.text, name.span, value, span))
 
-    def _reserved(self, name: Token) -> None:
-        """`S = 5`; but `F = 2, 80` is F without brackets."""
-        word = WORDS[name.text]
-        end = body_begins(self.tokens, self.i + 2, names_end=False)
-        rest = self.tokens[self.i + 2 : end]
-        if len(word.arguments) > 1 and any(token.kind == "," for token in rest):
-            span = Span(name.start, rest[-1].end)
-            self.i = end
-            self.fail(problems.MISSING_OPEN, span, word=name.text, fix=call_in(word, rest))
-        self.reserved.add(name.text)
-        right = other_name(name.text)
-        self.report(problems.RESERVED, name.span, word=name.text, right=right)
-
-    def _command(self, word: Token) -> None:
+    def command(self, word: Token) -> None:
+        cursor = self.cursor
+        tokens = cursor.tokens
         known = WORDS.get(word.text)
-        following = self.tokens[self.i + 1]
-        if known is not None:
-            self.refuse_if_no_command(word, known.role, following)
-        elif following.kind not in _AT_END or self.kit is not None or word.text == "END":
-            self.refuse_if_slip(word, following)
-        self.i += 1
-        arguments = None
+        following = tokens[cursor.i + 1]
+        if known is None:
+            if following.kind not in _AFTER_NAME or foreign_block(word.text):
+                self.recovery.unknown_word(self, word, following)
+        elif known.role not in _COMMANDS:
+            self.recovery.no_command(self, word, known.role)
+        cursor.i += 1
+        arguments = until = None
         if following.kind == "(":
-            arguments = self._arguments_of(word, known)
+            arguments = self.arguments_of(word, known)
         elif known is not None and known.arguments:
-            self.no_open_after(word, known)
-        until = None
-        if self.tokens[self.i].kind is WORD or self.tokens[self.i].kind == ",":
-            until = self._until(word)
-        span = Span(word.start, self.tokens[self.i - 1].end)
+            self.recovery.no_bracket(word, known)
+        if tokens[cursor.i].kind not in AT_END:
+            until = self.until(word)
         if known is None or known.role != "start":
-            self.here.append(Command(word.text, word.span, arguments, until, span))
+            span = cursor.span_from(word)
+            self.blocks.here.append(Command(word.text, word.span, arguments, until, span))
 
-    def _arguments_of(self, word: Token, known: Word | None) -> tuple[Argument, ...] | None:
+    def arguments_of(self, word: Token, known: Word | None) -> tuple[Argument, ...] | None:
         if known is not None and not known.arguments:
-            self.no_brackets(word)
+            self.no_arguments(word)
             return None
-        arguments = self.arguments()
+        arguments = self.expressions.arguments()
         if arguments or known is not None:
             return arguments
-        span = Span(word.start, self.tokens[self.i - 1].end)
-        self.report(problems.EMPTY_BRACKETS, span, word=word.text)
+        span = self.cursor.span_from(word)
+        self.reporter.report(problems.EMPTY_BRACKETS, span, word=word.text)
         return None
 
-    def _until(self, word: Token) -> Argument | None:
-        """Read `UNTIL(c)`, where it comes: right after the instruction."""
-        token = self.tokens[self.i]
-        following = self.tokens[min(self.i + 1, len(self.tokens) - 1)]
-        if token.kind == ",":
-            if following.kind is not WORD or following.text != "UNTIL":
-                return None
-            self.i += 1
-            self.until_alone(following, self.source[Span(word.start, token.start)])
-        elif token.text != "UNTIL":
-            if meant_by(token.text) != "UNTIL" or not starts_value(following):
-                return None
-            fix = head_in(WORDS["UNTIL"], self.inside(self.i + 1))
-            self.report(problems.OTHER_LANGUAGE, token.span, found=token.text, right="UNTIL",
-                        fix=fix)  # fmt: skip
-        self.i += 1
-        until = Token(WORD, "UNTIL", *self.tokens[self.i - 1].span)
-        return self.one_argument(until, is_told=token.text != "UNTIL")
+    def until(self, word: Token) -> Argument | None:
+        cursor = self.cursor
+        is_said_so = cursor.token.kind is WORD and cursor.token.text == "UNTIL"
+        if not is_said_so and not self.recovery.is_taken_for_until(word):
+            return None
+        until = Token(WORD, "UNTIL", *cursor.token.span)
+        cursor.i += 1
+        return self.argument_of(until, is_reported=not is_said_so)
+
+    # -- blocks -----------------------------------------------------------------------------
+
+    def header(self, word: Token) -> None:
+        """The block opens even where its header is wrong, so that its end is no other mistake."""
+        self.cursor.i += 1
+        try:
+            head = self.argument_of(word)
+        except Failed:
+            self.recovery.in_block.unread_header(word)
+        self.blocks.begin(word.text, self.cursor.span_from(word), head)
+
+    def definition(self, word: Token) -> None:
+        cursor = self.cursor
+        cursor.i += 1
+        name = cursor.token
+        if name.kind is not WORD:
+            self.recovery.in_block.no_name(word)
+        cursor.i += 1
+        if name.text in WORDS:
+            right = other_name(name.text)
+            self.reporter.report(problems.RESERVED, name.span, word=name.text, right=right)
+        block = self.blocks.begin("DEF", Span(word.start, name.end), name=name)
+        if cursor.token.kind == "(":
+            block.is_reported = True
+            self.no_arguments(name)
+            block.span = cursor.span_from(word)
+
+    def arm(self, word: Token, is_reported: bool = False) -> None:
+        """`is_reported`: `word` has a diagnostic already, and may lack its brackets."""
+        cursor = self.cursor
+        block = self.blocks.innermost
+        cursor.i += 1
+        if word.text == "ELSE" and cursor.token.kind is WORD and cursor.token.text == "IF":
+            word, is_reported = self.recovery.in_block.else_if(word), True
+        head, is_read, span = None, True, word.span
+        if word.text == "ELSE":
+            self.no_arguments(word, "ELSEIF")
+        else:
+            try:
+                head = self.argument_of(word, is_reported)
+            except Failed:
+                is_read = False
+            span = Span(word.start, max(word.end, cursor.last.end))
+        if block is None or block.word != "IF":
+            block = self.recovery.in_block.misplaced_arm(word.text, span)
+        if block.otherwise is not None:
+            self.reporter.report(problems.AFTER_ELSE, span, found=word.text)
+            block.otherwise.clear()
+        else:
+            block.next_arm(head, span)
+            if word.text == "ELSE":
+                block.otherwise = []
+        if not is_read:
+            self.recovery.in_block.go_on()
+
+    def block_end(self, word: Token) -> None:
+        self.cursor.i += 1
+        self.no_arguments(word)
+        block = self.blocks.innermost
+        if block is not None and block.word == ENDS[word.text]:
+            self.blocks.end(word.span)
+        else:
+            self.recovery.in_block.wrong_end(ENDS[word.text], word)
+
+    def argument_of(self, word: Token, is_reported: bool = False) -> Argument:
+        """Read the `(argument)` of a header, an ELSEIF or an UNTIL.
+
+        Where that fails the cursor stands where a body may begin. `is_reported`: `word` has a
+        diagnostic already, so that it needs none where brackets are missing.
+        """
+        cursor = self.cursor
+        start = cursor.i
+        if cursor.token.kind != "(":
+            self.recovery.in_block.no_bracket(word, is_reported)
+        try:
+            arguments = self.expressions.arguments()
+            if len(arguments) != 1:
+                spans = [each.span for each in arguments]
+                span = cursor.span_from(cursor.tokens[start])
+                self.expressions.recovery.wrong_count(WORDS[word.text], spans, span)
+        except Failed:
+            self.recovery.in_block.to_body(start)
+            raise
+        return arguments[0]
+
+    def no_arguments(self, word: Token, other: str = "") -> None:
+        """Go past brackets after a word that takes none. `other` is one that does."""
+        if self.cursor.token.kind == "(":
+            bracket = self.cursor.token
+            self.recovery.in_block.needless_brackets(
+                word, bracket, self.expressions.arguments(), other
+            )

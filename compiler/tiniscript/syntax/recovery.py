@@ -1,401 +1,400 @@
-"""The parser's half that speaks where there is no instruction to read.
+"""Recovery where an instruction is wanted, or where one must end.
 
-Knows what can stand in the place of an instruction, or where one must end, and how to go on
-after it. Asked only where a text is wrong already; what beginners mean, `slips` knows.
+Knows what people write there, how to report it and where to go on. What they meant by it
+`suggestions` says; the parser is passed where reading goes on with a rule of the grammar.
 """
 
 from __future__ import annotations
 
-from typing import NoReturn
+from typing import TYPE_CHECKING, NoReturn
 
 from tiniscript import problems
-from tiniscript.problems import Code
+from tiniscript.kit import Kit
 from tiniscript.source import Span
 from tiniscript.syntax.ast import Assign, Command
-from tiniscript.syntax.blocks import Blocks, GoesOn
-from tiniscript.syntax.call_suggestions import actuator_word, call_in, glued_call, written
-from tiniscript.syntax.expressions import Failed
-from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, QUOTES, WORD, Token
+from tiniscript.syntax.block_recovery import BlockRecovery
+from tiniscript.syntax.blocks import Block, Blocks
+from tiniscript.syntax.call_suggestions import (
+    actuator_word,
+    call_in,
+    glued_call,
+    starts_value,
+    written,
+)
+from tiniscript.syntax.cursor import AT_END, Cursor
+from tiniscript.syntax.foreign import foreign_header, foreign_word, forever_alone
+from tiniscript.syntax.lexer import NUMBER, ODD, QUOTES, WORD, Token
+from tiniscript.syntax.reporter import Failed, Reporter, Resumed
 from tiniscript.syntax.suggestions import (
     AFTER_HEADER,
     BEFORE_CALL,
     BEFORE_NAME,
     BEFORE_NOTE,
     BETWEEN,
-    BLOCKS,
     COMPARISONS,
-    COUNTING,
-    ENDS,
     SIGNS,
-    after_bracket,
     body_begins,
     foreign_block,
     head_in,
+    inside,
     is_assignment,
     is_question,
+    shortened,
     update,
 )
-from tiniscript.words import WORDS, Word, meant_by
+from tiniscript.words import WORDS, Word, meant_by, other_name
 
-_AT_END = frozenset((";", NEWLINE, END))
+if TYPE_CHECKING:
+    from tiniscript.syntax.parser import Parser
+
 _TIMED = ("move", "wait")
 
 
-class Mistakes(Blocks):
-    # -- going on ---------------------------------------------------------------------------
+class Recovery:
+    def __init__(self, cursor: Cursor, reporter: Reporter, blocks: Blocks, kit: Kit | None) -> None:
+        self.cursor = cursor
+        self.reporter = reporter
+        self.blocks = blocks
+        self.kit = kit
+        self.in_block = BlockRecovery(cursor, reporter, blocks, kit)
 
-    def instead(self, token: Token, code: Code, span: Span, **values: str) -> None:
-        """Report a problem in place of what the scan says about an odd sign."""
-        self.answered.add(token.start)
-        self.report(code, span, **values)
+    # -- SETUP --------------------------------------------------------------------------------
 
-    def skip(self) -> None:
-        """Go to the end of an instruction that could not be read."""
-        while self.tokens[self.i].kind not in _AT_END:
-            self.i += 1
+    def is_taken_for_bar(self, word: Token, sign: Token) -> bool:
+        """Whether `SI:` or `SI||` begins the program."""
+        found = self.cursor.source[sign.span]
+        if found not in (":", "||", "/", "\\", "¦"):
+            return False
+        self.reporter.answer(sign)
+        span = Span(word.start, sign.end)
+        self.reporter.report(problems.SETUP_NEEDS_BAR, span, found=word.text)
+        return True
 
-    def _skip_line(self) -> None:
-        while self.tokens[self.i].kind not in (NEWLINE, END):
-            self.i += 1
+    def unknown_setup(self, word: Token) -> str:
+        """`START|F(2, 80)`, `GO|F(2, 80)`: go on as after `SI|`."""
+        right = "SI|START;" if word.text == "START" else "SI|"
+        self.reporter.report(problems.SETUP_UNKNOWN, word.span, found=word.text, right=right)
+        return "SI"
 
-    def set_somehow(self, name: Token) -> None:
-        """Remember that a variable is set here, to a value that cannot be read."""
-        if name.text not in WORDS:
-            self.here.append(Assign(name.text, name.span, None, name.span))
+    def not_alone(self, ping: Token, token: Token) -> None:
+        """`PING|F(2, 80)`: nothing after it is read."""
+        cursor = self.cursor
+        at_end = token is cursor.tokens[-1]
+        self.reporter.report(problems.PING_ALONE, ping.span if at_end else token.span)
+        cursor.i = len(cursor.tokens) - 1
 
     # -- what is no instruction ---------------------------------------------------------------
 
     def no_word(self, token: Token) -> None:
-        """Something begins with a sign or a number."""
-        self.i += 1
-        if token.kind == "{":
-            return
+        """An instruction begins with a sign or a number."""
+        cursor = self.cursor
+        cursor.i += 1
         if token.kind == "}":
-            self.close_brace(token)
+            self.in_block.close_brace(token)
+        if token.kind in ("{", "}"):
             return
         if token.kind is ODD:
             raise Failed
-        if token.kind == "-" and self.tokens[self.i].kind == "-":
-            self._other_note(token.start, "--", self.tokens[self.i].end)
+        if token.kind == "-" and cursor.token.kind == "-":
+            self._other_note(token.start, "--", cursor.token.end)
         code = problems.EXTRA_CLOSE if token.kind == ")" else problems.NOT_AN_INSTRUCTION
-        self.fail(code, token.span, found=token.text, fix="")
+        self.reporter.fail(code, token.span, found=token.text, fix="")
+
+    def no_command(self, parser: Parser, word: Token, role: str) -> NoReturn:
+        """A word of the language that is no command begins an instruction."""
+        if role == "setup":
+            self._setup_word(parser, word)
+        if role == "until":
+            self._until_after_its_move(parser, word)
+        if role == "forever":
+            self.reporter.report(problems.FOREVER_NOT_HERE, word.span)
+            forever_alone(parser, word)
+        if role == "later":
+            self.reporter.fail(problems.LATER_WORD, word.span, word=word.text)
+        self._not_an_instruction(word)
+
+    def _setup_word(self, parser: Parser, word: Token) -> NoReturn:
+        """`SI|SI|F(2, 80)`; but `SI(DISTANCE < 10)` asks a question."""
+        cursor = self.cursor
+        following = cursor.following
+        if word.text == "CHECK_CONNECTION":
+            self.reporter.fail(problems.PING_ALONE, word.span)
+        if word.text == "SI" and following.kind != "|":
+            if following.kind == "(" or is_question(cursor.tokens, cursor.i + 1):
+                self.reporter.report(problems.SPANISH_IF, word.span)
+                foreign_header(parser, word, "IF")
+        code = problems.SETUP_TWICE if following.kind == "|" else problems.SETUP_NEEDS_BAR
+        self.reporter.fail(code, word.span, found=word.text)
+
+    def _not_an_instruction(self, first: Token) -> NoReturn:
+        """`DISTANCE < 10` alone: suggest the question."""
+        tokens, start = self.cursor.tokens, self.cursor.i
+        tokens = tokens[start : body_begins(tokens, start, names_end=False)]
+        asks = any(token.kind in COMPARISONS or token.text == "NOT" for token in tokens)
+        sign = next((token for token in tokens if token.kind in SIGNS), first)
+        place = sign if asks else first
+        fix = head_in(WORDS["IF"], tokens) if asks else ""
+        self.reporter.fail(problems.NOT_AN_INSTRUCTION, place.span, found=place.text, fix=fix)
 
     def _other_note(self, start: int, sign: str, text_start: int) -> NoReturn:
         """`-- go` or `REM go`: the rest of the line is a note."""
-        self._skip_line()
-        span = Span(start, self.tokens[self.i].start)
-        note = "// " + self.source[Span(text_start, span.end)].strip()[:40]
-        self.fail(problems.OTHER_NOTE, span, found=sign, right=note)
+        cursor = self.cursor
+        cursor.skip_line()
+        span = Span(start, cursor.token.start)
+        note = "// " + cursor.source[Span(text_start, span.end)].strip()[:40]
+        self.reporter.fail(problems.OTHER_NOTE, span, found=sign, right=note)
 
-    def refuse_if_no_command(self, word: Token, role: str, following: Token) -> None:
-        if role == "setup":
-            if word.text == "CHECK_CONNECTION":
-                self.fail(problems.PING_ALONE, word.span)
-            if word.text == "SI" and following.kind != "|":
-                if following.kind == "(" or is_question(self.tokens, self.i + 1):
-                    self.report(problems.SPANISH_IF, word.span)
-                    self._foreign_header(word, "IF")
-            code = problems.SETUP_TWICE if following.kind == "|" else problems.SETUP_NEEDS_BAR
-            self.fail(code, word.span, found=word.text)
-        if role == "until":
-            self._until_after_its_move(word)
-        if role == "forever":
-            self.report(problems.FOREVER_NOT_HERE, word.span)
-            self._forever(word)
-        if role == "later":
-            self.fail(problems.LATER_WORD, word.span, word=word.text)
-        if role in ("value", "function", "operator"):
-            self._no_instruction(word)
+    # -- UNTIL --------------------------------------------------------------------------------
 
-    def _until_after_its_move(self, word: Token) -> NoReturn:
+    def is_taken_for_until(self, word: Token) -> bool:
+        """Whether `F(2, 80), UNTIL(c)` or `F(2, 80) HASTA(c)` is meant; then go to that word."""
+        cursor = self.cursor
+        token, following = cursor.token, cursor.following
+        if token.kind == ",":
+            if following.kind is not WORD or following.text != "UNTIL":
+                return False
+            cursor.i += 1
+            self._until_alone(following, cursor.source[Span(word.start, token.start)])
+            return True
+        if token.kind is not WORD or meant_by(token.text) != "UNTIL":
+            return False
+        if not starts_value(following):
+            return False
+        fix = head_in(WORDS["UNTIL"], inside(cursor.tokens, cursor.i + 1))
+        self.reporter.report(
+            problems.OTHER_LANGUAGE, token.span, found=token.text, right="UNTIL", fix=fix
+        )
+        return True
+
+    def _until_after_its_move(self, parser: Parser, word: Token) -> NoReturn:
         """`F(2, 80);UNTIL(c)`: the move has its UNTIL, only not where it belongs."""
-        last = self.here[-1] if self.here else None
+        here = self.blocks.here
+        last = here[-1] if here else None
         known = WORDS.get(last.word) if isinstance(last, Command) else None
         if not isinstance(last, Command) or known is None or known.role not in _TIMED or last.until:
-            self.fail(problems.UNTIL_ALONE, word.span, fix="")
-        self.until_alone(word, self.source[last.span])
-        self.i += 1
-        self.here[-1] = last._replace(until=self.one_argument(word, is_told=True))
+            self.reporter.fail(problems.UNTIL_ALONE, word.span, fix="")
+        self._until_alone(word, self.cursor.source[last.span])
+        self.cursor.i += 1
+        here[-1] = last._replace(until=parser.argument_of(word, is_reported=True))
         raise Failed
 
-    def _no_instruction(self, first: Token) -> NoReturn:
-        """`DISTANCE < 10` alone: suggest the question."""
-        start = self.i
-        end = body_begins(self.tokens, start, names_end=False)
-        tokens = self.tokens[start:end]
-        is_question = any(token.kind in COMPARISONS or token.text == "NOT" for token in tokens)
-        fix = head_in(WORDS["IF"], tokens) if is_question else ""
-        sign = next((token for token in tokens if token.kind in SIGNS), first)
-        place = first if sign is first or not is_question else sign
-        self.fail(problems.NOT_AN_INSTRUCTION, place.span, found=place.text, fix=fix)
+    def _until_alone(self, until: Token, before: str) -> None:
+        values = inside(self.cursor.tokens, self.cursor.i + 1)
+        fix = f"{before} {head_in(WORDS['UNTIL'], values)}" if before else ""
+        self.reporter.report(problems.UNTIL_ALONE, until.span, fix=fix)
 
-    def no_open_after(self, word: Token, known: Word) -> NoReturn:
+    # -- a command without brackets -----------------------------------------------------------
+
+    def no_bracket(self, word: Token, known: Word) -> NoReturn:
         """`F 2 80`: suggest the same with brackets and commas."""
-        start = self.i
-        first = self.tokens[start]
-        if self.source.text[first.start : first.start + 1] in tuple(QUOTES):
+        cursor = self.cursor
+        start = cursor.i
+        first = cursor.source.text[cursor.token.start : cursor.token.start + 1]
+        if first in tuple(QUOTES):
             raise Failed
-        self.i = end = body_begins(self.tokens, start, names_end=False)
-        rest = self.tokens[start:end]
+        cursor.i = body_begins(cursor.tokens, start, names_end=False)
+        rest = cursor.tokens[start : cursor.i]
+        if not rest and cursor.token.kind == "{":
+            self._braces_for_brackets(word, known)
         span = Span(word.start, rest[-1].end if rest else word.end)
-        self._pair_braces(word, known, rest)
-        self.report(problems.MISSING_OPEN, span, word=word.text, fix=call_in(known, rest))
-        if self.tokens[end].kind is WORD and self.tokens[end].text != "UNTIL":
-            self.go_on()
+        fix = call_in(known, rest)
+        self.reporter.report(problems.MISSING_OPEN, span, word=word.text, fix=fix)
+        if cursor.token.kind is WORD and cursor.token.text != "UNTIL":
+            self.in_block.go_on()
         raise Failed
 
-    def _pair_braces(self, word: Token, known: Word, rest: list[Token]) -> None:
-        """`F{2, 80}` has brackets, only not these."""
-        brace = self.tokens[self.i]
-        if rest or brace.kind != "{":
-            return
-        start = self.i + 1
-        while self.tokens[self.i].kind not in ("}", *_AT_END):
-            self.i += 1
-        fix = call_in(known, self.tokens[start : self.i])
-        self.instead(brace, problems.MISSING_OPEN, word.span, word=word.text, fix=fix)
-        raise Failed
+    def _braces_for_brackets(self, word: Token, known: Word) -> NoReturn:
+        """`F{2, 80}`."""
+        cursor = self.cursor
+        start = cursor.i + 1
+        self.reporter.answer(cursor.token)
+        while cursor.token.kind not in ("}", *AT_END):
+            cursor.i += 1
+        fix = call_in(known, cursor.tokens[start : cursor.i])
+        self.reporter.fail(problems.MISSING_OPEN, word.span, word=word.text, fix=fix)
 
-    # -- slips that begin with a name ---------------------------------------------------------
+    # -- what begins with a name --------------------------------------------------------------
 
-    def refuse_if_slip(self, word: Token, following: Token) -> None:
-        """Name what no name of a program can be; a name alone may be one of its DEFs."""
+    def reserved_name(self, name: Token) -> None:
+        """`S = 5`; but `F = 2, 80` is F without brackets."""
+        cursor = self.cursor
+        word, start = WORDS[name.text], cursor.i + 2
+        end = body_begins(cursor.tokens, start, names_end=False)
+        rest = cursor.tokens[start:end]
+        if len(word.arguments) > 1 and any(token.kind == "," for token in rest):
+            span = Span(name.start, rest[-1].end)
+            cursor.i = end
+            fix = call_in(word, rest)
+            self.reporter.fail(problems.MISSING_OPEN, span, word=name.text, fix=fix)
+        self.reporter.reserved_words.add(name.text)
+        right = other_name(name.text)
+        self.reporter.report(problems.RESERVED, name.span, word=name.text, right=right)
+
+    def unread_assignment(self, name: Token) -> None:
+        """Remember that a variable is set here, to a value that cannot be read."""
+        if name.text not in WORDS:
+            self.blocks.here.append(Assign(name.text, name.span, None, name.span))
+
+    def unknown_word(self, parser: Parser, word: Token, following: Token) -> None:
+        """Report what no name of a program can be; a name alone may be one of its DEFs."""
         kind = following.kind
+        is_alone = kind in AT_END
         if kind == "|":
-            self.fail(problems.SETUP_TWICE, word.span, found=word.text)
-        if kind not in _AT_END and kind != "(":
-            self._refuse_what_follows(word, following)
-        if self.kit is not None or (word.text == "END" and kind in _AT_END):
+            self.reporter.fail(problems.SETUP_TWICE, word.span, found=word.text)
+        if not is_alone and kind != "(":
+            self._what_follows_a_name(word, following)
+        if self.kit is not None or (word.text == "END" and is_alone):
             meant = foreign_block(word.text)
-            if meant is not None and not self.is_name(word.text):
-                self._foreign(word, meant)
+            if meant is not None and not self.in_block.is_name(word.text):
+                foreign_word(parser, word, meant)
         if self.kit is not None:
             if kind is NUMBER or kind is WORD:
-                self._refuse_actuator_without_brackets(word)
-            if kind is WORD and following.text != "UNTIL" and not self.is_name(word.text):
-                self._refuse_two_words(word, following)
+                self._actuator_without_brackets(word, self.kit)
+            if kind is WORD and following.text != "UNTIL":
+                if not self.in_block.is_name(word.text):
+                    self._two_words(word, following)
 
-    def _refuse_what_follows(self, word: Token, following: Token) -> None:
-        kind, start = following.kind, self.i
-        changed = update(word, self.tokens, start + 1)
+    def _what_follows_a_name(self, word: Token, following: Token) -> None:
+        cursor, kind = self.cursor, following.kind
+        changed = update(word, cursor.tokens, cursor.i + 1)
         if changed is not None:
             fix, found = changed
-            self.answered.add(following.start)
-            self.set_somehow(word)
-            self.fail(problems.OTHER_ASSIGNMENT, word.span, found=found, fix=fix)
-        if kind is WORD and word.text in BEFORE_NAME and is_assignment(self.tokens, start + 1):
-            end = body_begins(self.tokens, start + 3, names_end=False)
-            fix = f"{following.text} = {written(self.tokens[start + 3 : min(end, start + 40)])}"
-            self.report(problems.EXTRA_WORD, word.span, found=word.text, fix=fix)
-            self.i += 1
-            raise GoesOn
-        if kind is WORD and word.text in BEFORE_CALL:
-            self.report(problems.EXTRA_WORD, word.span, found=word.text, fix=following.text)
-            self.i += 1
-            raise GoesOn
+            self.reporter.answer(following)
+            self.unread_assignment(word)
+            self.reporter.fail(problems.OTHER_ASSIGNMENT, word.span, found=found, fix=fix)
+        if kind is WORD:
+            self._word_before(word, following)
         if word.text in BEFORE_NOTE and (kind is WORD or kind is ODD):
             self._other_note(word.start, word.text, word.end)
         if kind in SIGNS:
-            self._no_instruction(word)
+            self._not_an_instruction(word)
         if kind is NUMBER or kind == ",":
-            end = body_begins(self.tokens, start + 1, names_end=False)
-            rest = self.tokens[start + 1 : end]
-            span = Span(word.start, rest[-1].end)
-            glued = glued_call(word.text, rest)
-            if glued is not None:
-                self.i = end
-                self.fail(problems.MISSING_OPEN, span, word=glued.partition("(")[0], fix=glued)
-            meant = WORDS.get(meant_by(word.text) or "")
-            if meant is not None and kind is NUMBER and meant.role in (*_TIMED, "show"):
-                self.i = end
-                self.fail(problems.OTHER_LANGUAGE, word.span, found=word.text, right=meant.text,
-                          fix=call_in(meant, rest))  # fmt: skip
+            self._values_without_brackets(word, following)
 
-    def _refuse_actuator_without_brackets(self, word: Token) -> None:
+    def _word_before(self, word: Token, following: Token) -> None:
+        """`LET X = 5`, `CALL DANCE`: go on with what is right."""
+        cursor, start = self.cursor, self.cursor.i
+        fix = ""
+        if word.text in BEFORE_NAME and is_assignment(cursor.tokens, start + 1):
+            end = body_begins(cursor.tokens, start + 3, names_end=False)
+            value = written(cursor.tokens[start + 3 : min(end, start + 40)])
+            fix = f"{following.text} = {value}"
+        elif word.text in BEFORE_CALL:
+            fix = following.text
+        if fix:
+            self.reporter.report(problems.EXTRA_WORD, word.span, found=word.text, fix=fix)
+            cursor.i += 1
+            raise Resumed
+
+    def _values_without_brackets(self, word: Token, following: Token) -> None:
+        """`F2, 80`, `FORWARD 2 80`."""
+        cursor, start = self.cursor, self.cursor.i + 1
+        end = body_begins(cursor.tokens, start, names_end=False)
+        rest = cursor.tokens[start:end]
+        span = Span(word.start, rest[-1].end)
+        glued = glued_call(word.text, rest)
+        if glued is not None:
+            cursor.i = end
+            name = glued.partition("(")[0]
+            self.reporter.fail(problems.MISSING_OPEN, span, word=name, fix=glued)
+        meant = WORDS.get(meant_by(word.text) or "")
+        if meant is not None and following.kind is NUMBER and meant.role in (*_TIMED, "show"):
+            cursor.i = end
+            self._say_in_other_words(word.span, word.text, meant, rest)
+
+    def _actuator_without_brackets(self, word: Token, kit: Kit) -> None:
         """`LED ON`, `GRIPPER 90`."""
-        assert self.kit is not None
-        device = next((each for each in self.kit.actuators if each.name == word.text), None)
+        device = next((each for each in kit.actuators if each.name == word.text), None)
         if device is not None:
-            self.i += 1
-            self.no_open_after(word, actuator_word(device))
+            self.cursor.i += 1
+            self.no_bracket(word, actuator_word(device))
 
-    def _refuse_two_words(self, word: Token, following: Token) -> None:
-        """`TURN LEFT`; and of `hello world` only the first word is a problem."""
+    def _two_words(self, word: Token, following: Token) -> None:
+        """`TURN LEFT`; and of `hello world` only the first word is a mistake."""
+        tokens, start = self.cursor.tokens, self.cursor.i + 2
         meant = WORDS.get(meant_by(f"{word.text}_{following.text}") or "")
-        span = Span(word.start, following.end)
         if meant is not None and meant.role != "block":
-            rest = self.tokens[self.i + 2 : body_begins(self.tokens, self.i + 2, names_end=False)]
-            fix = call_in(meant, rest) if meant.arguments else meant.text
-            self.fail(problems.OTHER_LANGUAGE, span, found=self.source[span], right=meant.text,
-                      fix=fix)  # fmt: skip
-        after = self.tokens[self.i + 2]
-        if following.text not in WORDS and (after.kind in _AT_END or after.kind is WORD):
-            self.here.append(Command(word.text, word.span, None, None, word.span))
-            self.i += 1
+            span = Span(word.start, following.end)
+            rest = tokens[start : body_begins(tokens, start, names_end=False)]
+            self._say_in_other_words(span, self.cursor.source[span], meant, rest)
+        after = tokens[start].kind
+        if following.text not in WORDS and (after in AT_END or after is WORD):
+            self.blocks.here.append(Command(word.text, word.span, None, None, word.span))
+            self.cursor.i += 1
             raise Failed
 
-    def word_of(self, token: Token) -> Word | None:
-        known = super().word_of(token)
-        if known is None and token.kind is WORD and self.kit is not None:
-            found = (each for each in self.kit.actuators if each.name == token.text)
-            known = next((actuator_word(each) for each in found), None)
-        return known
+    def _say_in_other_words(
+        self, span: Span, found: str, meant: Word, values: list[Token]
+    ) -> NoReturn:
+        fix = call_in(meant, values) if meant.arguments else meant.text
+        self.reporter.fail(problems.OTHER_LANGUAGE, span, found=found, right=meant.text, fix=fix)
 
-    # -- blocks in other languages ------------------------------------------------------------
-
-    def _foreign(self, word: Token, meant: str) -> None:
-        """`REPEAT(3)`, `SINO`, `FIN`: name the word, and read the block as ours."""
-        if meant == "END":
-            self.end_of_any(word)
-            raise Failed
-        if meant == "FOREVER":
-            self._say_foreign(word, meant, "LOOP(FOREVER)")
-            self._forever(word)
-        if meant in ENDS:
-            if self.blocks and self.blocks[-1].is_told:
-                self.end_of_any(word)
-            else:
-                self._say_foreign(word, meant, meant)
-                self.i += 1
-                self.end(meant, word.span)
-            raise Failed
-        if meant in BLOCKS:
-            self._say_foreign(word, meant, self._foreign_fix(word, meant))
-            self._foreign_header(word, meant)
-        if meant == "DEF":
-            name = self.tokens[self.i + 1]
-            fix = f"DEF {name.text}" if name.kind is WORD else "DEF DANCE"
-            self._say_foreign(word, meant, fix)
-            said = len(self.problems)
-            try:
-                self.define(word)
-            except Failed:
-                self.skip()
-            del self.problems[said:]
-            self.blocks[-1].is_told = True
-            self.go_on()
-        inside = self.inside(self.i + 1)
-        self._say_foreign(word, meant, head_in(WORDS[meant], inside) if meant != "ELSE" else meant)
-        self.arm(Token(WORD, meant, *word.span), is_told=True)
-        self.go_on()
-
-    def _forever(self, word: Token) -> NoReturn:
-        """`FOREVER` alone on its line begins a block elsewhere."""
-        self.i += 1
-        if self.tokens[self.i].kind in ("{", *_AT_END) or self.tokens[self.i].text == ":":
-            self.open("LOOP", word.span, None, None).is_told = True
-        self.go_on()
-
-    def _say_foreign(self, word: Token, meant: str, fix: str) -> None:
-        self.report(problems.OTHER_LANGUAGE, word.span, found=word.text, right=meant, fix=fix)
-
-    def _foreign_fix(self, word: Token, meant: str) -> str:
-        inside = self.inside(self.i + 1)
-        is_for = word.text in COUNTING or any(token.kind in (";", ",", "=") for token in inside)
-        return WORDS[meant].example if is_for and meant == "LOOP" else head_in(WORDS[meant], inside)
-
-    def _foreign_header(self, word: Token, meant: str) -> NoReturn:
-        """Open the block of a header whose word is a problem already."""
-        self.i += 1
-        if word.text in COUNTING and self.tokens[self.i].kind != "(":
-            while self.tokens[self.i].kind not in ("{", *_AT_END):
-                if self.tokens[self.i].text in (":", *AFTER_HEADER):
-                    break
-                self.i += 1
-        head, before = None, len(self.problems)
-        try:
-            head = self.one_argument(Token(WORD, meant, *word.span), is_told=True)
-        except Failed:
-            del self.problems[before:]
-        span = Span(word.start, self.tokens[self.i - 1].end)
-        self.open(meant, span, head, None).is_told = True
-        self.go_on()
-
-    # -- what comes after an instruction ------------------------------------------------------
+    # -- where an instruction must end --------------------------------------------------------
 
     def no_separator(self, first: Token) -> None:
-        """Name what stands where an instruction must end, and go on after it if that helps."""
-        token, before = self.tokens[self.i], self.tokens[self.i - 1]
+        """Report what stands where an instruction must end, and go on after it if that helps."""
+        cursor, fail = self.cursor, self.reporter.fail
+        token, before, after = cursor.token, cursor.last, cursor.following
         kind, text = token.kind, token.text
         if kind in ("{", "}"):
             return
-        after = self.tokens[self.i + 1]
-        is_header = bool(self.blocks) and self.blocks[-1].span.end == before.end
-        if (text == ":" and kind is ODD and is_header) or (
-            (kind == "," or text in (".", ":")) and after.kind is WORD
-        ):  # fmt: skip
-            if not (is_header and self.blocks[-1].is_told):
-                self._separator_missing(first, token, before, is_header)
-            self.answered.add(token.start)
-            self.i += 1
-            raise GoesOn
+        block = self.blocks.innermost
+        header = block if block is not None and block.span.end == before.end else None
+        is_colon = kind is ODD and text == ":" and header is not None
+        if is_colon or ((kind == "," or text in (".", ":")) and after.kind is WORD):
+            if header is None or not header.is_reported:
+                self._separator_missing(first, token, before, header)
+            self.reporter.answer(token)
+            cursor.i += 1
+            raise Resumed
         if kind is ODD:
             raise Failed
         if kind == ")":
-            self.i += 1
-            self.fail(problems.EXTRA_CLOSE, token.span, found=")")
+            cursor.i += 1
+            fail(problems.EXTRA_CLOSE, token.span, found=")")
         if kind == "|":
-            self.fail(problems.SETUP_TWICE, token.span, found=first.text)
+            fail(problems.SETUP_TWICE, token.span, found=first.text)
         if kind == "-" and after.kind == "-" and after.start == token.end:
             self._other_note(token.start, "--", after.end)
-        if is_header and first.text in WORDS and WORDS[first.text].arguments:
+        if header is not None and first.text in WORDS and WORDS[first.text].arguments:
             if kind in SIGNS or text in ("AND", "OR"):
-                self._question_goes_on(first)
+                self._question_goes_on(first, header)
         if kind in SIGNS:
-            self.fail(problems.NOT_AN_INSTRUCTION, token.span, found=text, fix="")
+            fail(problems.NOT_AN_INSTRUCTION, token.span, found=text, fix="")
         if kind == "," and before.kind is NUMBER and after.kind is NUMBER:
-            span = Span(before.start, after.end)
-            fix = f"{self.source[Span(first.start, before.end)]}.{after.text}"
-            self.fail(problems.DECIMAL_COMMA, span, fix=fix)
-        if kind is WORD and text in (AFTER_HEADER if is_header else BETWEEN):
-            if is_header or (after.kind is WORD and not self.is_name(text)):
-                self.report(problems.EXTRA_WORD, token.span, found=text, fix="")
-                self.i += 1
-                self.go_on()
-        self._separator_missing(first, token, before, is_header)
+            whole = cursor.source[Span(first.start, before.end)]
+            fix = f"{whole}.{after.text}"
+            fail(problems.DECIMAL_COMMA, Span(before.start, after.end), fix=fix)
+        if kind is WORD and text in (BETWEEN if header is None else AFTER_HEADER):
+            if header is not None or (after.kind is WORD and not self.in_block.is_name(text)):
+                self.reporter.report(problems.EXTRA_WORD, token.span, found=text, fix="")
+                cursor.i += 1
+                self.in_block.go_on()
+        self._separator_missing(first, token, before, header)
         if kind is not WORD:
             raise Failed
 
     def _separator_missing(
-        self, first: Token, token: Token, before: Token, is_header: bool
+        self, first: Token, token: Token, before: Token, header: Block | None
     ) -> None:
-        line = self.source.position(token.start)[0]
-        if is_header:
-            self.blocks[-1].is_told = True
-        if line != self.crowded_line:
-            self.crowded_line = line
-            code = problems.HEADER_SEPARATOR if is_header else problems.MISSING_SEPARATOR
-            shown = self.source.text[first.start : before.end]
-            self.report(code, token.span, found=token.text, before=_short(shown))
+        line = self.cursor.line_of(token)
+        if header is not None:
+            header.is_reported = True
+        if line != self.reporter.crowded_line:
+            self.reporter.crowded_line = line
+            code = problems.MISSING_SEPARATOR if header is None else problems.HEADER_SEPARATOR
+            shown = shortened(self.cursor.source.text[first.start : before.end])
+            self.reporter.report(code, token.span, found=token.text, before=shown)
 
-    def _question_goes_on(self, first: Token) -> NoReturn:
+    def _question_goes_on(self, first: Token, header: Block) -> NoReturn:
         """`IF (A) AND (B)`: the brackets go around the whole question."""
-        start = self.i
-        while self.tokens[start] is not first:
+        cursor = self.cursor
+        start = cursor.i
+        while cursor.tokens[start] is not first:
             start -= 1
-        end = body_begins(self.tokens, self.i)
-        fix = head_in(WORDS[first.text], self.tokens[start + 1 : end])
-        span = Span(first.start, self.tokens[end - 1].end)
-        self.blocks[-1].is_told = True
-        self.i = end
-        self.report(problems.MISSING_OPEN, span, word=first.text, fix=fix)
-        self.go_on()
-
-    def until_alone(self, until: Token, before: str) -> None:
-        fix = f"{before} {head_in(WORDS['UNTIL'], self.inside(self.i + 1))}" if before else ""
-        self.report(problems.UNTIL_ALONE, until.span, fix=fix)
-
-    def inside(self, start: int) -> list[Token]:
-        """Return the tokens of the values that begin at `start`, in brackets or not."""
-        if self.tokens[start].kind == "(":
-            end = after_bracket(self.tokens, start)
-            if end is not None:
-                return self.tokens[start + 1 : end - 1]
-            start += 1
-        return self.tokens[start : body_begins(self.tokens, start)]
-
-
-def _short(text: str) -> str:
-    """Return text that fits into a message."""
-    text = " ".join(text.split())
-    return text if len(text) <= 40 else text[:37] + "..."
+        cursor.i = body_begins(cursor.tokens, cursor.i)
+        fix = head_in(WORDS[first.text], cursor.tokens[start + 1 : cursor.i])
+        header.is_reported = True
+        span = cursor.span_from(first)
+        self.reporter.report(problems.MISSING_OPEN, span, word=first.text, fix=fix)
+        self.in_block.go_on()

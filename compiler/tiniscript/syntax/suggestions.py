@@ -1,7 +1,7 @@
-"""What beginners type by mistake, and where what they meant goes on.
+"""What a beginner probably meant, and where it goes on.
 
-Knows habits from other languages, from Spanish and from talking. Works on tokens, and is asked
-only where a text is wrong already: nothing here makes a program right or wrong.
+Knows habits from other languages, from Spanish and from talking. Looks at tokens and gives texts to
+suggest. Reports nothing: whether a text is wrong is known before it is asked.
 """
 
 from __future__ import annotations
@@ -31,8 +31,6 @@ BEFORE_CALL = frozenset(("CALL", "RUN", "GOSUB", "LLAMAR", "LLAMA", "EJECUTAR", 
 BEFORE_NOTE = frozenset(("REM", "NOTE", "NOTA"))
 
 COUNTING = frozenset(("FOR", "PARA_CADA"))  # a variable and its values come after these
-BLOCKS = frozenset(("IF", "LOOP", "WHILE"))
-ENDS = {"ENDIF": "IF", "END_LOOP": "LOOP", "END_WHILE": "WHILE", "END_DEF": "DEF"}
 ENDS_OF_ANY = frozenset(("END", "FIN", "DONE"))
 
 
@@ -107,6 +105,16 @@ def after_bracket(tokens: Sequence[Token], start: int) -> int | None:
     return None
 
 
+def inside(tokens: Sequence[Token], start: int) -> Sequence[Token]:
+    """Return the tokens of the values that begin at `start`, in brackets or not."""
+    if tokens[start].kind == "(":
+        end = after_bracket(tokens, start)
+        if end is not None:
+            return tokens[start + 1 : end - 1]
+        start += 1
+    return tokens[start : body_begins(tokens, start)]
+
+
 def is_question(tokens: Sequence[Token], start: int) -> bool:
     """Whether a comparison follows and no instruction: `DISTANCE < 10` after SI."""
     end = body_begins(tokens, start)
@@ -163,3 +171,9 @@ def update(name: Token, tokens: Sequence[Token], k: int) -> tuple[str, str] | No
         token.kind for token in tokens[k + 2 : end]
     })  # fmt: skip
     return f"{target} = {target} {sign.text} {value if single else f'({value})'}", found
+
+
+def shortened(text: str) -> str:
+    """Return text that fits into a message."""
+    text = " ".join(text.split())
+    return text if len(text) <= 40 else text[:37] + "..."

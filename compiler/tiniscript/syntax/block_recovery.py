@@ -1,0 +1,223 @@
+"""Recovery of headers, arms and block ends.
+
+Knows which end was meant for which block. Where a header cannot be read its block opens all the
+same, so that its end is no second mistake.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import NoReturn
+
+from tiniscript import problems
+from tiniscript.kit import Kit
+from tiniscript.source import Span
+from tiniscript.syntax.ast import Argument, Command
+from tiniscript.syntax.blocks import Block, Blocks
+from tiniscript.syntax.cursor import Cursor
+from tiniscript.syntax.lexer import ODD, WORD, Token
+from tiniscript.syntax.reporter import Failed, Reporter, Resumed
+from tiniscript.syntax.suggestions import AFTER_HEADER, after_bracket, body_begins, head_in
+from tiniscript.words import ALIASES, BLOCK_ENDS, WORDS, nearest
+
+
+class BlockRecovery:
+    def __init__(self, cursor: Cursor, reporter: Reporter, blocks: Blocks, kit: Kit | None) -> None:
+        self.cursor = cursor
+        self.reporter = reporter
+        self.blocks = blocks
+        self.kit = kit
+        self._names: set[str] | None = None  # of the kit and of all DEFs, once somebody asks
+        self._owed = 0  # blocks that were closed by another one's end: their own may still come
+
+    # -- headers ------------------------------------------------------------------------------
+
+    def no_bracket(self, word: Token, is_reported: bool) -> NoReturn:
+        """`IF DISTANCE < 10`: suggest the same with brackets."""
+        cursor = self.cursor
+        start = cursor.i
+        cursor.i = body_begins(cursor.tokens, start)
+        if is_reported:
+            raise Failed
+        written = cursor.tokens[start : cursor.i]
+        span = Span(word.start, written[-1].end if written else word.end)
+        fix = head_in(WORDS[word.text], written)
+        self.reporter.fail(problems.MISSING_OPEN, span, word=word.text, fix=fix)
+
+    def to_body(self, bracket: int) -> None:
+        """Go to where the body begins behind the `(` at `bracket`, which cannot be read."""
+        cursor = self.cursor
+        end = after_bracket(cursor.tokens, bracket)
+        cursor.i = end or body_begins(cursor.tokens, max(cursor.i, bracket + 1))
+
+    def unread_header(self, word: Token) -> NoReturn:
+        """Open the block of a header that cannot be read."""
+        span = Span(word.start, max(word.end, self.cursor.last.end))
+        self.begin_reported(word.text, span)
+        self.go_on()
+
+    def no_name(self, word: Token) -> NoReturn:
+        """`DEF` alone."""
+        self.begin_reported("DEF", word.span)
+        self.reporter.fail(problems.DEF_NEEDS_NAME, word.span)
+
+    def begin_reported(self, word: str, span: Span, head: Argument | None = None) -> None:
+        """Open a block whose header has a diagnostic already."""
+        self.blocks.begin(word, span, head).is_reported = True
+
+    def go_on(self) -> NoReturn:
+        """Go on with what follows on this line, in silence about what stands between."""
+        cursor = self.cursor
+        token = cursor.token
+        while token.text in AFTER_HEADER or (token.kind is ODD and token.text == ":"):
+            self.reporter.answer(token)
+            cursor.i += 1
+            token = cursor.token
+        self.reporter.crowded_line = cursor.line_of(cursor.last)
+        raise Resumed
+
+    def needless_brackets(
+        self, word: Token, bracket: Token, arguments: Sequence[Argument], other: str
+    ) -> None:
+        """`ENDIF()`, `ELSE(DISTANCE < 10)`."""
+        cursor = self.cursor
+        if not arguments:
+            span = cursor.span_from(word)
+            self.reporter.report(problems.EMPTY_BRACKETS, span, word=word.text)
+            return
+        inside = cursor.source[Span(arguments[0].span.start, arguments[-1].span.end)]
+        fix = f"{other}({inside})" if other else word.text
+        span = cursor.span_from(bracket)
+        self.reporter.report(problems.NO_BRACKETS_HERE, span, word=word.text, fix=fix)
+
+    # -- arms ---------------------------------------------------------------------------------
+
+    def else_if(self, word: Token) -> Token:
+        """`ELSE IF(c)`: suggest the whole header in one word, and go on with that word."""
+        cursor = self.cursor
+        span = Span(word.start, cursor.token.end)
+        cursor.i += 1
+        start = cursor.i
+        end = after_bracket(cursor.tokens, start) if cursor.token.kind == "(" else None
+        written = cursor.tokens[start : end or body_begins(cursor.tokens, start)]
+        if written and written[0].kind == "(" and written[-1].kind == ")":
+            written = written[1:-1]
+        fix = head_in(WORDS["ELSEIF"], written)
+        self.reporter.report(problems.ELSE_IF, span, fix=fix)
+        return Token(WORD, "ELSEIF", *span)
+
+    def misplaced_arm(self, arm: str, span: Span) -> Block:
+        """Close what is open inside the IF that an arm belongs to, and return that IF."""
+        innermost = self.blocks.innermost
+        if innermost is None or not self._is_open("IF"):
+            right = "IF(DISTANCE < 10)"
+            self.reporter.fail(problems.NOT_OPEN, span, found=arm, right=right)
+        self._report_wrong_end(span, arm, innermost)
+        return self._end_until("IF", span)
+
+    # -- ends ---------------------------------------------------------------------------------
+
+    def end(self, word: str, end: Token) -> None:
+        """Close the block of `word` that `end` ends."""
+        block = self.blocks.innermost
+        if block is not None and block.word == word:
+            self.blocks.end(end.span)
+        else:
+            self.wrong_end(word, end)
+
+    def wrong_end(self, word: str, end: Token) -> None:
+        """The innermost block is not one of `word`: close the one that is, and all inside it.
+
+        An end that closes nothing else closes the innermost block: it is probably meant.
+        """
+        block, span = self.blocks.innermost, end.span
+        found = self.cursor.source[span].upper()
+        found = found if found in ALIASES else BLOCK_ENDS[word]
+        if block is not None and self._is_open(word):
+            self._report_wrong_end(span, found, block)
+            self._end_until(word, span)
+            self.blocks.end(span)
+        elif self._owed:
+            self._owed -= 1
+        elif block is not None:
+            self._report_wrong_end(span, found, block, fix=BLOCK_ENDS[block.word])
+            self._owed += 1
+            self.blocks.end(span)
+        else:
+            right = WORDS[word].example if word != "DEF" else "DEF DANCE"
+            self.reporter.report(problems.NOT_OPEN, span, found=found, right=right)
+
+    def end_in_two_words(self, end: Token, following: Token) -> None:
+        """`END LOOP`."""
+        right = BLOCK_ENDS[following.text]
+        whole = Token(WORD, right, end.start, following.end)
+        found = self.cursor.source[whole.span]
+        self.reporter.report(problems.END_SPLIT, whole.span, found=found, right=right)
+        self.cursor.i += 2
+        self.end(following.text, whole)
+
+    def end_of_any(self, end: Token) -> None:
+        """`END` or `FIN` alone: it ends the innermost block."""
+        self.cursor.i += 1
+        block = self.blocks.innermost
+        if block is None:
+            self.reporter.report(problems.EXTRA_WORD, end.span, found=end.text, fix="")
+            return
+        if not block.is_reported:
+            right = BLOCK_ENDS[block.word]
+            self.reporter.report(problems.END_ALONE, end.span, found=end.text, right=right)
+        self.blocks.end(end.span)
+
+    def close_brace(self, brace: Token) -> None:
+        """`}` ends the innermost block, except before ELSE. The lexer has reported it."""
+        cursor = self.cursor
+        following = cursor.inner()
+        if self.blocks.open and following.text not in ("ELSE", "ELSEIF", "SINO", "ELIF"):
+            self.blocks.end(brace.span)
+            self._owed += 1
+
+    def never_ended(self) -> None:
+        """Report the blocks that are still open at the end of the text."""
+        for block in self.blocks.open:
+            if not block.is_reported and not self._is_misspelt(block):
+                right = BLOCK_ENDS[block.word]
+                self.reporter.report(problems.NEVER_ENDS, block.span, word=block.word, right=right)
+
+    def _is_open(self, word: str) -> bool:
+        return any(block.word == word for block in self.blocks.open)
+
+    def _end_until(self, word: str, span: Span) -> Block:
+        """Close blocks until one of `word` is the innermost."""
+        while self.blocks.open[-1].word != word:
+            self.blocks.end(span)
+            self._owed += 1
+        return self.blocks.open[-1]
+
+    def _report_wrong_end(self, span: Span, found: str, block: Block, fix: str = "") -> None:
+        if self._is_misspelt(block):
+            return
+        line = self.cursor.source.position(block.span.start)[0]
+        self.reporter.report(problems.WRONG_END, span, found=found, word=block.word,
+                             line=str(line), right=BLOCK_ENDS[block.word], fix=fix)  # fmt: skip
+
+    def _is_misspelt(self, block: Block) -> bool:
+        """Report what is probably the end of a block, with a letter of it wrong."""
+        right = BLOCK_ENDS[block.word]
+        for each in block.here:
+            if isinstance(each, Command) and each.arguments is None and each.word not in WORDS:
+                if nearest(each.word, (right,)) and not self.is_name(each.word):
+                    span = each.span
+                    self.reporter.report(problems.UNKNOWN_WORD, span, found=each.word, near=right)
+                    return True
+        return False
+
+    def is_name(self, word: str) -> bool:
+        """Whether the kit or a DEF anywhere in the text has this name."""
+        if self._names is None:
+            pairs = pairwise(self.cursor.tokens)
+            self._names = {name.text for first, name in pairs if first.text == "DEF"}
+            if self.kit is not None:
+                devices = (*self.kit.sensors, *self.kit.actuators)
+                self._names |= {each.name for each in devices}
+        return word in self._names

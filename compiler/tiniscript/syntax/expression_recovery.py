@@ -1,0 +1,238 @@
+"""Recovery inside expressions and brackets.
+
+Knows what may stand where an operand, an operator or a bracket is wanted, and reports it. What is
+clear it repairs among the tokens, and the grammar reads on from there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NoReturn
+
+from tiniscript import problems
+from tiniscript.kit import Kit
+from tiniscript.source import Span
+from tiniscript.syntax.call_suggestions import (
+    actuator_word,
+    call_in,
+    count_problem,
+    ends_value,
+    starts_value,
+)
+from tiniscript.syntax.cursor import AFTER_VALUE, AT_END, Cursor
+from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, Token
+from tiniscript.syntax.operators import BINARY, Operator, Postfix
+from tiniscript.syntax.reporter import Failed, Reporter
+from tiniscript.syntax.suggestions import operator_words
+from tiniscript.thousandths import HIGHEST, LOWEST, as_text
+from tiniscript.words import UNITS, WORDS, Word, meant_by, other_name
+
+
+class ExpressionRecovery:
+    def __init__(self, cursor: Cursor, reporter: Reporter, kit: Kit | None) -> None:
+        self.cursor = cursor
+        self.reporter = reporter
+        self.kit = kit
+
+    # -- where an operand is wanted -----------------------------------------------------------
+
+    def no_value(self, token: Token) -> NoReturn:
+        """Say what is wrong with a token that stands where a value is wanted."""
+        if token.kind is ODD:
+            raise Failed
+        cursor, fail = self.cursor, self.reporter.fail
+        place = cursor.before(cursor.i)
+        before = cursor.tokens[place]
+        if before.kind == "%" and token.kind in AFTER_VALUE:
+            number = cursor.tokens[place - 1]
+            span = Span(number.start, before.end)
+            fail(problems.UNIT, span, found=cursor.source[span], right=number.text)
+        if token.kind is WORD and WORDS[token.text].role != "operator":
+            self._no_value_word(token)
+        is_at_end = token.kind in AT_END
+        span = before.span if is_at_end else token.span
+        found = "" if is_at_end else token.text
+        fail(problems.MISSING_VALUE, span, found=found, before=before.text)
+
+    def _no_value_word(self, token: Token) -> NoReturn:
+        word, fail = WORDS[token.text], self.reporter.fail
+        if word.role == "forever":
+            fail(problems.FOREVER_NOT_HERE, token.span)
+        if word.role == "until":
+            fail(problems.UNTIL_ALONE, token.span, fix="")
+        if word.role in ("move", "wait", "motors", "beep", "show"):
+            if self.cursor.following.kind == "(":
+                fail(problems.NO_VALUE, token.span, word=word.text)
+        if word.text in self.reporter.reserved_words:
+            raise Failed
+        fail(problems.RESERVED, token.span, word=word.text, right=other_name(word.text))
+
+    def literal(self, number: Token, span: Span, value: int) -> int:
+        """Report a number that is out of range or too exact, and return what is read for it."""
+        if LOWEST <= value <= HIGHEST:
+            found, right = number.text[:20], as_text(value)
+            self.reporter.report(problems.ROUNDED, span, found=found, right=right)
+            return value
+        limit = as_text(HIGHEST if value > 0 else LOWEST)
+        self.reporter.report(problems.NUMBER_TOO_BIG, span, limit=limit)
+        return 0
+
+    def called(self, name: Token) -> None:
+        """`DISTANCE()` or `SQRT(4)`: no name of a program is a function."""
+        cursor, reporter = self.cursor, self.reporter
+        meant = WORDS.get(meant_by(name.text) or "")
+        if meant is not None and meant.arguments:
+            fix = call_in(meant, self._in_brackets(cursor.i))
+            reporter.fail(
+                problems.OTHER_LANGUAGE, name.span, found=name.text, right=meant.text, fix=fix
+            )
+        close = cursor.following
+        if close.kind != ")":
+            reporter.fail(problems.NO_FUNCTION, name.span, found=name.text)
+        cursor.i += 2
+        reporter.report(problems.EMPTY_BRACKETS, cursor.span_from(name), word=name.text)
+
+    def no_bracket(self, name: Token, function: Word) -> NoReturn:
+        """`ABS 5`."""
+        fix = function.example
+        self.reporter.fail(problems.MISSING_OPEN, name.span, word=name.text, fix=fix)
+
+    def wrong_count(self, word: Word, arguments: Sequence[Span], span: Span) -> NoReturn:
+        """`word` does not take so many arguments."""
+        found = count_problem(self.cursor.source, word, arguments, span)
+        self.reporter.fail(found.code, found.span, **found.values)
+
+    # -- where an operator is wanted ----------------------------------------------------------
+
+    def is_repaired(self, token: Token, read: Postfix) -> bool:
+        """Report what stands where an operator is wanted; whether it is clear what it means.
+
+        Then the tokens say so, and the cursor stands at the operator, or at the NOT that was
+        taken for an operand.
+        """
+        if token.kind is not WORD and not starts_value(token):
+            return False
+        in_brackets = bool(read.brackets)
+        k = self.cursor.after_newlines(self.cursor.i)
+        return (
+            self._is_said_in_words(token, k, in_brackets)
+            or self._is_unit(token, k, in_brackets)
+            or (in_brackets and self._is_no(k, read))
+        )
+
+    def _is_said_in_words(self, token: Token, k: int, in_brackets: bool) -> bool:
+        """`X IS LESS THAN 5`, `A Y B`. On a line of its own a word is rather a name."""
+        cursor, tokens = self.cursor, self.cursor.tokens
+        said = operator_words(tokens, k)
+        begins_instruction = tokens[k + 1].kind in ("=", "(", *AT_END)
+        if said is None or (begins_instruction and not in_brackets):
+            return False
+        end, right = said
+        span = Span(token.start, tokens[end - 1].end)
+        found = cursor.source[span]
+        self.reporter.report(problems.OTHER_SIGN, span, found=found, right=right)
+        tokens[end - 1] = Token(WORD if right.isalpha() else right, right, *span)
+        cursor.i = end - 1
+        return True
+
+    def _is_unit(self, token: Token, k: int, in_brackets: bool) -> bool:
+        """`W(2 s)`, `IF(DISTANCE < 10 cm)`."""
+        cursor, tokens = self.cursor, self.cursor.tokens
+        before, after = tokens[cursor.before(k)], tokens[k + 1].kind
+        is_name = before.kind is WORD and before.text not in WORDS and in_brackets
+        if token.text not in UNITS or not (before.kind is NUMBER or is_name):
+            return False
+        ends_here = after in (AFTER_VALUE if in_brackets else AT_END)
+        if not (ends_here and (in_brackets or token.text not in WORDS)) and after not in BINARY:
+            return False
+        span = Span(before.start, token.end)
+        found = cursor.source[span]
+        self.reporter.report(problems.UNIT, span, found=found, right=before.text)
+        cursor.i = k + 1
+        return True
+
+    def _is_no(self, k: int, read: Postfix) -> bool:
+        """`IF(NO BUTTON)`: the operand before was a NOT."""
+        cursor = self.cursor
+        place = cursor.before(k)
+        no = cursor.tokens[place]
+        if no.kind is not WORD or no.text != "NO" or read.parts[-1].op != "NAME":
+            return False
+        self.reporter.report(problems.OTHER_SIGN, no.span, found=no.text, right="NOT")
+        cursor.tokens[place] = Token(WORD, "NOT", no.start, no.end)
+        cursor.i = place
+        read.parts.pop()
+        return True
+
+    def chained(self, first: Operator, second: Token) -> NoReturn:
+        """`1 < X < 5`: suggest `1 < X AND X < 5`."""
+        cursor = self.cursor
+        left = cursor.tokens[first.index - 1]
+        middle = cursor.source.text[first.token.end : second.start].strip()
+        right = cursor.following
+        fix = f"{left.text} {first.token.text} {middle} AND {middle} {second.text} {right.text}"
+        self.reporter.fail(problems.CHAINED, Span(first.token.start, second.end), fix=fix)
+
+    # -- where a bracket is wanted ------------------------------------------------------------
+
+    def no_close(self, bracket: int) -> NoReturn:
+        """A bracket is open and what comes cannot stand in it: say what is missing."""
+        cursor, fail = self.cursor, self.reporter.fail
+        token = cursor.inner()
+        last = cursor.tokens[cursor.before(cursor.i)]
+        if token.kind is ODD and token.text != ":":
+            raise Failed
+        if token.kind == ";" and self._close_comes():
+            while cursor.token.kind != ")":
+                cursor.i += 1
+            cursor.i += 1
+            fail(problems.SEMICOLON_INSIDE, token.span)
+        if token.kind == "=":
+            fail(problems.MISSING_VALUE, token.span, found="=", before=last.text)
+        if cursor.token is token and starts_value(token) and ends_value(last):
+            if self._close_comes():
+                self._nothing_between(last, token, bracket)
+        if token.kind is ODD:
+            self.reporter.answer(token)
+        fail(problems.MISSING_CLOSE, last.span, last=last.text)
+
+    def _nothing_between(self, last: Token, token: Token, bracket: int) -> NoReturn:
+        """Two values in brackets with only a space between them."""
+        span = Span(last.start, token.end)
+        owner = self.cursor.tokens[bracket - 1] if bracket else self.cursor.tokens[bracket]
+        word = self._word_of(owner)
+        if word is not None and len(word.arguments) > 1:
+            fix = call_in(word, self._in_brackets(bracket))
+            self.reporter.fail(problems.MISSING_COMMA, span, fix=fix)
+        sign = "<" if last.kind is WORD or last.kind == ")" else "+"
+        fix = f"{last.text} {sign} {token.text}" if last.kind != ")" and token.kind != "(" else ""
+        self.reporter.fail(problems.MISSING_SIGN, span, before=last.text, found=token.text, fix=fix)
+
+    def _word_of(self, token: Token) -> Word | None:
+        """Return the word of the language or of the kit that takes values in brackets here."""
+        if token.kind is not WORD or self.kit is None:
+            return WORDS.get(token.text)
+        found = (each for each in self.kit.actuators if each.name == token.text)
+        return WORDS.get(token.text) or next((actuator_word(each) for each in found), None)
+
+    def _in_brackets(self, bracket: int) -> list[Token]:
+        """Return the tokens after a `(` up to its `)`, or to where the instruction ends."""
+        tokens = self.cursor.tokens
+        depth, k = 1, bracket + 1
+        while tokens[k].kind not in (";", END):
+            depth += (tokens[k].kind == "(") - (tokens[k].kind == ")")
+            if not depth:
+                break
+            k += 1
+        return tokens[bracket + 1 : k]
+
+    def _close_comes(self) -> bool:
+        """Whether a `)` comes on this line before another bracket opens."""
+        tokens = self.cursor.tokens
+        for k in range(self.cursor.i, len(tokens)):
+            kind = tokens[k].kind
+            if kind in ("(", NEWLINE, END):
+                return False
+            if kind == ")":
+                return True
+        return False

@@ -1,0 +1,106 @@
+"""Recovery of what other languages, and Spanish, write for the blocks of this one.
+
+Knows which rule of the grammar was meant. Reports the word, and goes on with that rule as if the
+right word stood there.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NoReturn
+
+from tiniscript import problems
+from tiniscript.syntax.blocks import ENDS, HEADERS
+from tiniscript.syntax.cursor import AT_END
+from tiniscript.syntax.lexer import WORD, Token
+from tiniscript.syntax.reporter import Failed
+from tiniscript.syntax.suggestions import AFTER_HEADER, COUNTING, head_in, inside
+from tiniscript.words import WORDS
+
+if TYPE_CHECKING:
+    from tiniscript.syntax.parser import Parser
+
+
+def foreign_word(parser: Parser, word: Token, meant: str) -> NoReturn:
+    """Read `REPEAT(3)`, `SINO`, `FIN` … `meant` is the word of the language, or END."""
+    if meant == "END":
+        parser.recovery.in_block.end_of_any(word)
+        raise Failed
+    if meant == "FOREVER":
+        _report(parser, word, meant, "LOOP(FOREVER)")
+        forever_alone(parser, word)
+    if meant in ENDS:
+        _end(parser, word, meant)
+    if meant in HEADERS:
+        _report(parser, word, meant, _header_fix(parser, word, meant))
+        foreign_header(parser, word, meant)
+    if meant == "DEF":
+        _definition(parser, word)
+    values = inside(parser.cursor.tokens, parser.cursor.i + 1)
+    _report(parser, word, meant, meant if meant == "ELSE" else head_in(WORDS[meant], values))
+    parser.arm(Token(WORD, meant, *word.span), is_reported=True)
+    parser.recovery.in_block.go_on()
+
+
+def foreign_header(parser: Parser, word: Token, meant: str) -> NoReturn:
+    """Open the block of a header whose word has a diagnostic already."""
+    cursor, reporter = parser.cursor, parser.reporter
+    cursor.i += 1
+    if word.text in COUNTING and cursor.token.kind != "(":
+        while cursor.token.kind not in ("{", *AT_END):
+            if cursor.token.text in (":", *AFTER_HEADER):
+                break
+            cursor.i += 1
+    head, count = None, len(reporter.diagnostics)
+    try:
+        head = parser.argument_of(Token(WORD, meant, *word.span), is_reported=True)
+    except Failed:
+        reporter.withdraw(count)
+    parser.recovery.in_block.begin_reported(meant, cursor.span_from(word), head)
+    parser.recovery.in_block.go_on()
+
+
+def forever_alone(parser: Parser, word: Token) -> NoReturn:
+    """`FOREVER` alone on its line begins a block elsewhere."""
+    cursor = parser.cursor
+    cursor.i += 1
+    if cursor.token.kind in ("{", *AT_END) or cursor.token.text == ":":
+        parser.recovery.in_block.begin_reported("LOOP", word.span)
+    parser.recovery.in_block.go_on()
+
+
+def _end(parser: Parser, word: Token, meant: str) -> NoReturn:
+    block = parser.blocks.innermost
+    if block is not None and block.is_reported:
+        parser.recovery.in_block.end_of_any(word)
+    else:
+        _report(parser, word, meant, meant)
+        parser.cursor.i += 1
+        parser.recovery.in_block.end(ENDS[meant], word)
+    raise Failed
+
+
+def _definition(parser: Parser, word: Token) -> NoReturn:
+    name = parser.cursor.following
+    _report(parser, word, "DEF", f"DEF {name.text}" if name.kind is WORD else "DEF DANCE")
+    count = len(parser.reporter.diagnostics)
+    try:
+        parser.definition(word)
+    except Failed:
+        parser.cursor.skip_instruction()
+    parser.reporter.withdraw(count)
+    parser.blocks.open[-1].is_reported = True
+    parser.recovery.in_block.go_on()
+
+
+def _report(parser: Parser, word: Token, meant: str, fix: str) -> None:
+    parser.reporter.report(
+        problems.OTHER_LANGUAGE, word.span, found=word.text, right=meant, fix=fix
+    )
+
+
+def _header_fix(parser: Parser, word: Token, meant: str) -> str:
+    values = inside(parser.cursor.tokens, parser.cursor.i + 1)
+    counts = word.text in COUNTING or any(token.kind in (";", ",", "=") for token in values)
+    if meant == "LOOP" and counts:  # `for (i = 0; i < 3; i++)`
+        return WORDS[meant].example
+    return head_in(WORDS[meant], values)

@@ -1,0 +1,70 @@
+"""Operators, how tightly they bind, and an expression while it is read.
+
+Knows the order of a stack machine: what an operator is applied to stands before it. Reads no
+tokens itself.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from tiniscript.source import Source, Span
+from tiniscript.syntax.ast import Part
+from tiniscript.syntax.lexer import Token
+
+# From loosest to tightest. An open bracket holds back all that waits before it.
+OPEN, OR, AND, NOT, COMPARISON, SUM, PRODUCT, MINUS = range(8)
+
+BINARY: Final = {
+    "OR": (OR, "OR"), "AND": (AND, "AND"),
+    "=": (COMPARISON, "EQ"), "<>": (COMPARISON, "NE"), "<": (COMPARISON, "LT"),
+    "<=": (COMPARISON, "LE"), ">": (COMPARISON, "GT"), ">=": (COMPARISON, "GE"),
+    "+": (SUM, "ADD"), "-": (SUM, "SUB"),
+    "*": (PRODUCT, "MUL"), "/": (PRODUCT, "DIV"), "%": (PRODUCT, "MOD"),
+}  # fmt: skip
+
+
+class Operator:
+    """An operator, an open bracket or an open function call that waits for what follows."""
+
+    __slots__ = ("arguments", "index", "name", "precedence", "token")
+
+    def __init__(self, precedence: int, name: str, token: Token, index: int) -> None:
+        self.precedence = precedence
+        self.name = name
+        self.token = token
+        self.index = index  # its place among the tokens; of a call, that of its bracket
+        self.arguments: list[Span] = []  # of a function call, for messages
+
+    def end_argument(self, source: Source, bracket: Token, last: Token) -> None:
+        """Note where an argument of this call stands: it ends with the token `last`."""
+        begin = self.arguments[-1].end + 1 if self.arguments else bracket.end
+        text = source.text[begin : last.end]
+        self.arguments.append(Span(begin + len(text) - len(text.lstrip()), last.end))
+
+
+class Postfix:
+    """`parts` in postfix order, the operators that wait, and how many brackets are open."""
+
+    __slots__ = ("brackets", "parts", "waiting")
+
+    def __init__(self, brackets: int) -> None:
+        self.parts: list[Part] = []
+        self.waiting: list[Operator] = []
+        self.brackets = brackets
+
+    def wait(self, precedence: int, name: str, token: Token, index: int) -> None:
+        self.waiting.append(Operator(precedence, name, token, index))
+
+    def apply(self) -> None:
+        """The operator that has waited last has all that it is applied to."""
+        operator = self.waiting.pop()
+        token = operator.token
+        self.parts.append(Part(operator.name, 0, token.start, token.end))
+
+    def reduce(self) -> Operator | None:
+        """Apply what waits since the innermost open bracket, and return that bracket."""
+        waiting = self.waiting
+        while waiting and waiting[-1].precedence != OPEN:
+            self.apply()
+        return waiting[-1] if waiting else None

@@ -1,0 +1,56 @@
+"""The diagnostics of one parse, and what they have settled already.
+
+Knows how the parser gives up a rule: it reports why, and raises Failed. Knows no grammar.
+"""
+
+from __future__ import annotations
+
+from typing import NoReturn
+
+from tiniscript.problems import Code, Problem
+from tiniscript.source import Span
+from tiniscript.syntax.lexer import Token
+
+
+class Failed(Exception):
+    """An instruction cannot be read on. Why is reported already; the rest of it is skipped."""
+
+
+class Resumed(Failed):
+    """What could not be read ends here: the next instruction begins at the cursor's place."""
+
+
+class Reporter:
+    """`diagnostics` begins with those of the lexer."""
+
+    def __init__(self, of_lexer: list[Problem]) -> None:
+        self._of_lexer = of_lexer
+        self.diagnostics = list(of_lexer)
+        self._answered: set[int] = set()
+        self.reserved_words: set[str] = set()  # that are assigned: reported there, and only there
+        self.crowded_line = -1  # the last line with a separator missing, which is reported once
+
+    def report(self, code: Code, span: Span, **values: str) -> None:
+        self.diagnostics.append(Problem(code, span, values))
+
+    def fail(self, code: Code, span: Span, **values: str) -> NoReturn:
+        self.report(code, span, **values)
+        raise Failed
+
+    def withdraw(self, count: int) -> None:
+        """Drop all diagnostics but the first `count`: what they say follows from those."""
+        del self.diagnostics[count:]
+
+    def answer(self, odd: Token) -> None:
+        """Drop what the lexer said about an odd sign: the parser knows more."""
+        self._answered.add(odd.start)
+
+    def found(self) -> list[Problem]:
+        """Return the diagnostics without those that are answered.
+
+        Where nothing else is wrong they stay: an odd sign is never right.
+        """
+        odd = self._of_lexer
+        found = [each for each in odd if each.span.start not in self._answered]
+        found += self.diagnostics[len(odd) :]
+        return found if any(each.is_mistake for each in found) else self.diagnostics
