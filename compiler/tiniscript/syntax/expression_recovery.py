@@ -139,7 +139,7 @@ class ExpressionRecovery:
         """`W(2 s)`, `IF(DISTANCE < 10 cm)`."""
         cursor, tokens = self.cursor, self.cursor.tokens
         before, after = tokens[cursor.before(k)], tokens[k + 1].kind
-        is_name = before.kind is WORD and before.text not in WORDS and in_brackets
+        is_name = before.kind is WORD and token.text not in WORDS and in_brackets
         if token.text not in UNITS or not (before.kind is NUMBER or is_name):
             return False
         ends_here = after in (AFTER_VALUE if in_brackets else AT_END)

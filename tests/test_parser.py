@@ -1,0 +1,383 @@
+"""The parser: the AST of each construct with its spans, and what goes on after a mistake.
+
+An AST is drawn as an outline: a row for each node, `name arguments «its text»`, and deeper rows for
+what is inside. An expression is drawn in brackets, its parts in the order of the AST.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator
+from functools import cache
+from textwrap import dedent
+
+import pytest
+
+from tests.oracle.interpreter import PAPER_KIT
+from tests.oracle.programs import broken, program
+from tiniscript import robots
+from tiniscript.kit import Kit
+from tiniscript.source import Source, Span
+from tiniscript.syntax.ast import (
+    Argument,
+    Assign,
+    Break,
+    Command,
+    Def,
+    If,
+    Instruction,
+    Loop,
+    While,
+)
+from tiniscript.syntax.parser import ENOUGH, parse
+from tiniscript.thousandths import as_text
+
+KIT = robots.load(robots.DEFAULT).kit
+
+
+def value(argument: Argument | None) -> str:
+    """Return `[DISTANCE 10 LT]`, with a `!` after a plain number, or `?` for what was not read."""
+    if argument is None:
+        return "?"
+    parts = (
+        as_text(int(part.value)) if part.op == "NUMBER" else str(part.value or part.op)
+        for part in argument.expression
+    )
+    return f"[{' '.join(parts)}]" + "!" * argument.is_plain
+
+
+def rows(body: tuple[Instruction, ...], text: str, depth: int = 0) -> Iterator[str]:
+    def row(name: str, span: Span) -> str:
+        written = " ".join(text[span.start : span.end].split())
+        return f"{'  ' * depth}{name} «{written}»"
+
+    for node in body:
+        if isinstance(node, Command):
+            values = "".join(" " + value(each) for each in node.arguments or ())
+            brackets = " ()" if node.arguments == () else ""
+            until = f" UNTIL {value(node.until)}" if node.until else ""
+            yield row(f"{node.word}{brackets}{values}{until}", node.span)
+        elif isinstance(node, Assign):
+            yield row(f"{node.name} = {value(node.value)}", node.span)
+        elif isinstance(node, If):
+            yield row("if", node.span)
+            for arm in node.arms:
+                yield "  " + row(f"arm {value(arm.condition)}", arm.span)
+                yield from rows(arm.body, text, depth + 2)
+            if node.otherwise:
+                yield f"{'  ' * depth}  else"
+                yield from rows(node.otherwise, text, depth + 2)
+        elif isinstance(node, Loop):
+            yield row(f"loop {value(node.times) if node.times else 'forever'}", node.span)
+            yield from rows(node.body, text, depth + 1)
+        elif isinstance(node, While):
+            yield row(f"while {value(node.condition)}", node.span)
+            yield from rows(node.body, text, depth + 1)
+        elif isinstance(node, Break):
+            yield row("break", node.span)
+        else:
+            yield row(f"def {node.name}", node.span)
+            yield from rows(node.body, text, depth + 1)
+
+
+def outline(text: str, kit: Kit | None = KIT) -> str:
+    return "\n".join(rows(parse(Source(text), kit).program.body, text))
+
+
+def reported(text: str, kit: Kit | None = KIT) -> list[str]:
+    """Return each diagnostic as its code and what it points at."""
+    return [
+        f"{each.code.number} {text[each.span.start : each.span.end]}"
+        for each in parse(Source(text), kit).problems
+    ]
+
+
+# -- instructions ---------------------------------------------------------------------------------
+
+CONSTRUCTS = {
+    "SI|": "",
+    "F(2, 80)": "F [2]! [80]! «F(2, 80)»",
+    "f ( 2 ,\n\n -80 )": "F [2]! [-80]! «f ( 2 , -80 )»",
+    "S": "S «S»",
+    "SI|START;STOP": "STOP «STOP»",
+    "DISTANCE": "DISTANCE «DISTANCE»",
+    "LED(TRUE)": "LED [TRUE] «LED(TRUE)»",
+    "F()": "F () «F()»",
+    "F(FOREVER, 80) UNTIL(DISTANCE < 10)": (
+        "F [FOREVER] [80]! UNTIL [DISTANCE 10 LT] «F(FOREVER, 80) UNTIL(DISTANCE < 10)»"
+    ),
+    "X = 3 * -Y": "X = [3 Y NEG MUL] «X = 3 * -Y»",
+    "S;;\n;\r\nS": "S «S»\nS «S»",
+    "SB|S // stop": "S «S»",
+    "IF(X < 1);S;ENDIF": """\
+        if «IF(X < 1);S;ENDIF»
+          arm [X 1 LT] «IF(X < 1)»
+            S «S»""",
+    "IF(A)\nS\nELSEIF(Q)\nELSE\nW(1)\nEND_IF": """\
+        if «ELSE W(1) END_IF»
+          arm [A] «IF(A)»
+            S «S»
+          arm [Q] «ELSEIF(Q)»
+          else
+            W [1]! «W(1)»""",
+    "LOOP(2 + N);BREAK;END_LOOP": """\
+        loop [2 N ADD] «LOOP(2 + N);BREAK;END_LOOP»
+          break «BREAK»""",
+    "LOOP(FOREVER);WHILE(TRUE);S;END_WHILE;ENDLOOP": """\
+        loop forever «LOOP(FOREVER);WHILE(TRUE);S;END_WHILE;ENDLOOP»
+          while [TRUE] «WHILE(TRUE);S;END_WHILE»
+            S «S»""",
+    "DEF DANCE;L(1, 50);END_DEF;DANCE": """\
+        def DANCE «DEF DANCE;L(1, 50);END_DEF»
+          L [1]! [50]! «L(1, 50)»
+        DANCE «DANCE»""",
+}
+
+
+@pytest.mark.parametrize("text", CONSTRUCTS)
+def test_each_construct_has_its_node_with_the_text_that_it_spans(text: str) -> None:
+    assert outline(text) == dedent(CONSTRUCTS[text])
+    assert reported(text) == []
+
+
+@pytest.mark.parametrize(
+    ("text", "start"),
+    [("S", "SI"), ("SI|S", "SI"), ("\n\n sb |S", "SB"), ("PING|check_connection;\n", "PING")],
+)
+def test_setup_says_how_a_program_starts(text: str, start: str) -> None:
+    assert parse(Source(text), KIT).program.start == start
+    assert reported(text) == []
+
+
+def test_spans_of_a_command_an_assignment_and_a_definition() -> None:
+    text = "X = (1);F(X, 80) UNTIL(TRUE);DEF A;END_DEF"
+    assign, command, definition = parse(Source(text)).program.body
+    assert isinstance(assign, Assign) and assign.value is not None
+    assert (assign.name_span, assign.value.span, assign.span) == ((0, 1), (4, 7), (0, 7))
+    assert isinstance(command, Command) and command.arguments and command.until
+    assert (command.word_span, command.span) == ((8, 9), (8, 28))
+    assert [each.span for each in command.arguments] == [(10, 11), (13, 15)]
+    assert command.until.span == (23, 27)
+    assert isinstance(definition, Def)
+    assert (definition.name_span, definition.span) == ((33, 34), (29, 42))
+
+
+# -- expressions ----------------------------------------------------------------------------------
+
+EXPRESSIONS = {
+    # from loosest to tightest: OR, AND, NOT, comparisons, + -, * / %, minus
+    "A OR Q AND C": "[A OR_LEFT Q AND_LEFT C AND OR]",
+    "A AND Q OR C": "[A AND_LEFT Q AND OR_LEFT C OR]",
+    "NOT A AND Q": "[A NOT AND_LEFT Q AND]",
+    "NOT A < 1": "[A 1 LT NOT]",
+    "NOT NOT A": "[A NOT NOT]",
+    "A + 1 < Q - 1": "[A 1 ADD Q 1 SUB LT]",
+    "A + Q * C": "[A Q C MUL ADD]",
+    "-A * Q": "[A NEG Q MUL]",
+    "A - -Q": "[A Q NEG SUB]",
+    # of equals, from left to right
+    "A - Q - C": "[A Q SUB C SUB]",
+    "A / Q * C % D": "[A Q DIV C MUL D MOD]",
+    "A OR Q OR C": "[A OR_LEFT Q OR OR_LEFT C OR]",
+    # brackets and functions
+    "(A + Q) * C": "[A Q ADD C MUL]",
+    "A = (Q <> C)": "[A Q C NE EQ]",
+    "NOT (A OR Q)": "[A OR_LEFT Q OR NOT]",
+    "MIN(A + 1, ABS(Q)) + C": "[A 1 ADD Q ABS MIN C ADD]",
+    "ROUND(\n  A,\n  2\n)": "[A 2 ROUND]",
+    # a minus right before a number belongs to it
+    "-5": "[-5]!",
+    "- 5": "[-5]!",
+    "5": "[5]!",
+    "(5)": "[5]",
+    "-(5)": "[5 NEG]",
+    "--5": "[-5 NEG]",
+    "3 - 5": "[3 5 SUB]",
+    "-2147483.648": "[-2147483.648]!",
+    "TIME >= .5": "[TIME 0.5 GE]",
+}
+
+
+@pytest.mark.parametrize("text", EXPRESSIONS)
+def test_parts_stand_in_the_order_of_a_stack_machine(text: str) -> None:
+    assert outline(f"X = {text}").partition(" «")[0] == f"X = {EXPRESSIONS[text]}"
+    assert outline(f"SHOW(\n{text}\n)").partition(" «")[0] == f"SHOW {EXPRESSIONS[text]}"
+    assert reported(f"X = {text}") == []
+
+
+def test_each_part_of_an_expression_says_where_it_stands() -> None:
+    text = "X = -1 + MAX(A, -Q)"
+    (assign,) = parse(Source(text)).program.body
+    assert isinstance(assign, Assign) and assign.value is not None
+    assert [(each.op, text[each.start : each.end]) for each in assign.value.expression] == [
+        ("NUMBER", "-1"),
+        ("NAME", "A"),
+        ("NAME", "Q"),
+        ("NEG", "-"),
+        ("MAX", "MAX(A, -Q)"),
+        ("ADD", "+"),
+    ]
+
+
+# -- recovery -------------------------------------------------------------------------------------
+
+RECOVERIES: dict[str, tuple[list[str], str]] = {
+    # the rest of the instruction is skipped
+    "F(2 80);S": (["TS017 2 80"], "S «S»"),
+    "F(2,;S": (["TS018 ,"], "S «S»"),
+    "F(2, 80;S": (["TS016 80"], "S «S»"),
+    "F 2 80;S": (["TS015 F 2 80"], "S «S»"),
+    "F(2, 80));S": (["TS041 )"], "F [2]! [80]! «F(2, 80)»\nS «S»"),
+    "* 5;S": (["TS042 *"], "S «S»"),
+    "DISTANCE < 10;S": (["TS042 <"], "S «S»"),
+    "X = 1 < 2 < 3;S": (["TS037 < 2 <"], "X = ? «X»\nS «S»"),
+    "X += 1;S": (["TS050 X"], "X = ? «X»\nS «S»"),
+    "S = 5;S": (["TS105 S"], "S «S»"),
+    "PING|F(2, 80)": (["TS035 F"], ""),
+    # what is clear is read as it is meant
+    "SI:S": (["TS036 SI:"], "S «S»"),
+    "GO|S": (["TS034 GO"], "S «S»"),
+    "X = (A Y Q)": (["TS010 Y"], "X = [A AND_LEFT Q AND] «X = (A Y Q)»"),
+    "IF(A IS LESS THAN 5);ENDIF": (
+        ["TS010 IS LESS THAN"],
+        "if «IF(A IS LESS THAN 5);ENDIF»\n  arm [A 5 LT] «IF(A IS LESS THAN 5)»",
+    ),
+    "W(2 s)": (["TS049 2 s"], "W [2] «W(2 s)»"),
+    "IF(NO BUTTON);ENDIF": (
+        ["TS010 NO"],
+        "if «IF(NO BUTTON);ENDIF»\n  arm [BUTTON NOT] «IF(NO BUTTON)»",
+    ),
+    "DANCE();S": (["TS028 DANCE()"], "DANCE «DANCE()»\nS «S»"),
+    "LET X = 5": (["TS044 LET"], "X = [5]! «X = 5»"),
+    "F(2, 80), UNTIL(A)": (["TS029 UNTIL"], "F [2]! [80]! UNTIL [A] «F(2, 80), UNTIL(A)»"),
+    "F(2, 80);UNTIL(A)": (["TS029 UNTIL"], "F [2]! [80]! UNTIL [A] «F(2, 80)»"),
+    "F(2, 80) HASTA(A)": (["TS102 HASTA"], "F [2]! [80]! UNTIL [A] «F(2, 80) HASTA(A)»"),
+    "S S": (["TS013 S"], "S «S»\nS «S»"),
+    # a block opens even where its header is wrong, and its end is no other mistake
+    "IF DISTANCE < 10;S;ENDIF": (
+        ["TS015 IF DISTANCE < 10"],
+        "if «IF DISTANCE < 10;S;ENDIF»\n  arm ? «IF DISTANCE < 10»\n    S «S»",
+    ),
+    "LOOP();S;END_LOOP": (["TS020 ()"], "loop forever «LOOP();S;END_LOOP»\n  S «S»"),
+    "WHILE(;S;END_WHILE": (["TS018 ("], "while ? «WHILE(;S;END_WHILE»\n  S «S»"),
+    "IF(A): S;ENDIF": (
+        ["TS014 :"],
+        "if «IF(A): S;ENDIF»\n  arm [A] «IF(A)»\n    S «S»",
+    ),
+    "DEF;S;END_DEF": (["TS040 DEF"], ""),
+    "IF(A);ELSE IF(Q);S;ENDIF": (
+        ["TS021 ELSE IF"],
+        "if «ELSE IF(Q);S;ENDIF»\n  arm [A] «IF(A)»\n  arm [Q] «ELSE IF(Q)»\n    S «S»",
+    ),
+    "REPEAT(3);S;FIN": (["TS102 REPEAT"], "loop [3]! «REPEAT(3);S;FIN»\n  S «S»"),
+    "SI(A);S;SINO;W(1);FIN_SI": (
+        ["TS045 SI", "TS102 SINO"],
+        "if «SINO;W(1);FIN_SI»\n  arm [A] «SI(A)»\n    S «S»\n  else\n    W [1]! «W(1)»",
+    ),
+    "if (A) { S; } else { W(1); }": (
+        ["TS047 {"],
+        "if «else { W(1); }»\n  arm [A] «if (A)»\n    S «S»\n  else\n    W [1]! «W(1)»",
+    ),
+    # ends that belong to no block, or to another one
+    "S;ENDIF;S": (["TS025 ENDIF"], "S «S»\nS «S»"),
+    "IF(A);S": (["TS024 IF(A)"], ""),
+    "LOOP(2);IF(A);S;END_LOOP;S": (
+        ["TS026 END_LOOP"],
+        "loop [2]! «LOOP(2);IF(A);S;END_LOOP»\n  if «IF(A);S;END_LOOP»\n    arm [A] «IF(A)»\n"
+        "      S «S»\nS «S»",
+    ),
+    "IF(A);S;END IF": (["TS022 END IF"], "if «IF(A);S;END IF»\n  arm [A] «IF(A)»\n    S «S»"),
+    "LOOP(2);S;ENDIF;S": (["TS026 ENDIF"], "loop [2]! «LOOP(2);S;ENDIF»\n  S «S»\nS «S»"),
+    "ELSE;S": (["TS025 ELSE"], "S «S»"),
+    "IF(A);ELSE;S;ELSE;W(1);ENDIF": (
+        ["TS027 ELSE"],
+        "if «ELSE;S;ELSE;W(1);ENDIF»\n  arm [A] «IF(A)»\n  else\n    W [1]! «W(1)»",
+    ),
+}
+
+
+@pytest.mark.parametrize("text", RECOVERIES)
+def test_a_mistake_is_reported_once_and_reading_goes_on(text: str) -> None:
+    diagnostics, tree = RECOVERIES[text]
+    assert (reported(text), outline(text)) == (diagnostics, tree)
+
+
+def test_without_a_kit_any_name_may_stand_alone() -> None:
+    assert reported("REPETIR;FIN;GO", None) == []
+    assert reported("REPETIR;FIN;GO")[0] == "TS102 REPETIR"
+
+
+def test_a_def_may_be_called_by_a_word_of_another_language() -> None:
+    assert reported("DEF FIN;S;END_DEF;FIN") == []
+
+
+def test_reading_ends_where_more_diagnostics_help_nobody() -> None:
+    found = parse(Source("*;" * 5000), KIT)
+    assert len(found.problems) == ENOUGH + 1
+
+
+# -- any text -------------------------------------------------------------------------------------
+
+DEEP = 100_000
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "X = " + "(" * DEEP + "1" + ")" * DEEP,
+        "X = " + "(" * DEEP,
+        "X = " + "-" * DEEP + "A",
+        "X = " + "NOT " * DEEP + "A",
+        "X = " + "ABS(" * DEEP + "A" + ")" * DEEP,
+        "X = " + "1 + (" * DEEP + "A",
+        "IF(A);" * DEEP + "ENDIF;" * DEEP,
+        "LOOP(2);" * DEEP,
+        "IF(A);" + "ELSEIF(A);" * DEEP + "ENDIF",
+        "}" * DEEP + "{" * DEEP,
+        "F(" * DEEP,
+    ],
+    ids=lambda text: text[:12],
+)
+def test_no_depth_of_input_exhausts_the_stack(text: str) -> None:
+    parsed = parse(Source(text), KIT)
+    assert parsed.scan.tokens[-1].end == len(text)
+
+
+@cache
+def broken_programs() -> list[str]:
+    rng = random.Random(20)
+    return [broken(rng, program(rng, PAPER_KIT)) for _ in range(600)]
+
+
+def spans(body: tuple[Instruction, ...]) -> Iterator[tuple[Span, tuple[Instruction, ...]]]:
+    for node in body:
+        span, inside = node.span, getattr(node, "body", ())
+        if isinstance(node, If):  # its span begins with its last arm
+            span = Span(node.arms[0].span.start, span.end)
+            inside = (*(each for arm in node.arms for each in arm.body), *node.otherwise)
+        yield span, inside
+        yield from spans(inside)
+
+
+def test_nodes_of_any_text_follow_one_another_inside_their_blocks() -> None:
+    for text in broken_programs():
+        body = parse(Source(text), KIT).program.body
+        for outer, inside in ((Span(0, len(text)), body), *spans(body)):
+            at = outer.start
+            for node in inside:
+                assert at <= node.span.start <= node.span.end <= outer.end, text
+                at = node.span.start
+
+
+def test_diagnostics_of_any_text_point_into_it() -> None:
+    found = [(text, parse(Source(text), KIT).problems) for text in broken_programs()]
+    assert sum(bool(problems) for _, problems in found) > len(found) // 2
+    for text, problems in found:
+        for each in problems:
+            assert 0 <= each.span.start <= each.span.end <= len(text), text
+
+
+def test_an_answered_sign_is_reported_by_the_parser_alone() -> None:
+    """The lexer has reported `:` as a sign that it does not know; the parser knows more."""
+    assert reported("IF(A):\nS\nENDIF") == ["TS014 :"]
+    assert reported("S\n:") == ["TS005 :"]
