@@ -228,11 +228,7 @@ class ExpressionRecovery:
 
     def _close_comes(self) -> bool:
         """Whether a `)` comes on this line before another bracket opens."""
-        tokens = self.cursor.tokens
-        for k in range(self.cursor.i, len(tokens)):
-            kind = tokens[k].kind
-            if kind in ("(", NEWLINE, END):
-                return False
-            if kind == ")":
-                return True
-        return False
+        tokens, k = self.cursor.tokens, self.cursor.i
+        while tokens[k].kind not in ("(", ")", NEWLINE, END):
+            k += 1
+        return tokens[k].kind == ")"
