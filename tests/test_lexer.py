@@ -105,6 +105,10 @@ REPAIRS: dict[str, tuple[list[str], list[tuple[str, str, str | None]]]] = {
         ["word 'F'", "(", "number '2'", ",", "number '80'", ")"],
         [("TS010", "[", "(")],  # once for the pair
     ),
+    "f[2]]": (
+        ["word 'F'", "(", "number '2'", ")", ")"],
+        [("TS010", "[", "("), ("TS010", "]", ")")],
+    ),
     "w（1）;w（2）": (
         ["word 'W'", "(", "number '1'", ")", ";", "word 'W'", "(", "number '2'", ")"],
         [("TS010", "（", "(")],  # once for the text

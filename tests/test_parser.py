@@ -252,11 +252,26 @@ RECOVERIES: dict[str, tuple[list[str], str]] = {
     "F(2, 80), UNTIL(A)": (["TS029 UNTIL"], "F [2]! [80]! UNTIL [A] «F(2, 80), UNTIL(A)»"),
     "F(2, 80);UNTIL(A)": (["TS029 UNTIL"], "F [2]! [80]! UNTIL [A] «F(2, 80)»"),
     "F(2, 80) HASTA(A)": (["TS102 HASTA"], "F [2]! [80]! UNTIL [A] «F(2, 80) HASTA(A)»"),
-    "S S": (["TS013 S"], "S «S»\nS «S»"),
+    "S S S": (["TS013 S"], "S «S»\nS «S»\nS «S»"),  # once for a line
+    "IF(A Y ES < 5);ENDIF": (
+        ["TS010 Y"],
+        "if «IF(A Y ES < 5);ENDIF»\n  arm [A AND_LEFT ES 5 LT AND] «IF(A Y ES < 5)»",
+    ),
+    # brackets hold back the end of a line, and no longer than that
+    "X = (A)\n+ 1": (["TS042 +"], "X = [A] «X = (A)»"),
+    # S is a unit and a word of the language
+    "IF(DISTANCE S;ENDIF": (
+        ["TS016 DISTANCE"],
+        "if «IF(DISTANCE S;ENDIF»\n  arm ? «IF(DISTANCE»\n    S «S»",
+    ),
     # a block opens even where its header is wrong, and its end is no other mistake
     "IF DISTANCE < 10;S;ENDIF": (
         ["TS015 IF DISTANCE < 10"],
         "if «IF DISTANCE < 10;S;ENDIF»\n  arm ? «IF DISTANCE < 10»\n    S «S»",
+    ),
+    "IF DISTANCE < 10: S;ENDIF": (
+        ["TS015 IF DISTANCE < 10"],
+        "if «IF DISTANCE < 10: S;ENDIF»\n  arm ? «IF DISTANCE < 10»\n    S «S»",
     ),
     "LOOP();S;END_LOOP": (["TS020 ()"], "loop forever «LOOP();S;END_LOOP»\n  S «S»"),
     "WHILE(;S;END_WHILE": (["TS018 ("], "while ? «WHILE(;S;END_WHILE»\n  S «S»"),
@@ -270,6 +285,7 @@ RECOVERIES: dict[str, tuple[list[str], str]] = {
         "if «ELSE IF(Q);S;ENDIF»\n  arm [A] «IF(A)»\n  arm [Q] «ELSE IF(Q)»\n    S «S»",
     ),
     "REPEAT(3);S;FIN": (["TS102 REPEAT"], "loop [3]! «REPEAT(3);S;FIN»\n  S «S»"),
+    "REPEAT(1, 2);S;FIN": (["TS102 REPEAT"], "loop forever «REPEAT(1, 2);S;FIN»\n  S «S»"),
     "SI(A);S;SINO;W(1);FIN_SI": (
         ["TS045 SI", "TS102 SINO"],
         "if «SINO;W(1);FIN_SI»\n  arm [A] «SI(A)»\n    S «S»\n  else\n    W [1]! «W(1)»",
@@ -288,6 +304,11 @@ RECOVERIES: dict[str, tuple[list[str], str]] = {
     ),
     "IF(A);S;END IF": (["TS022 END IF"], "if «IF(A);S;END IF»\n  arm [A] «IF(A)»\n    S «S»"),
     "LOOP(2);S;ENDIF;S": (["TS026 ENDIF"], "loop [2]! «LOOP(2);S;ENDIF»\n  S «S»\nS «S»"),
+    "LOOP(2);S;ENDIF;END_LOOP": (["TS026 ENDIF"], "loop [2]! «LOOP(2);S;ENDIF»\n  S «S»"),
+    "LOOP(2);IF(A);END_LOOP;ENDIF": (
+        ["TS026 END_LOOP"],
+        "loop [2]! «LOOP(2);IF(A);END_LOOP»\n  if «IF(A);END_LOOP»\n    arm [A] «IF(A)»",
+    ),
     "ELSE;S": (["TS025 ELSE"], "S «S»"),
     "IF(A);ELSE;S;ELSE;W(1);ENDIF": (
         ["TS027 ELSE"],
@@ -300,6 +321,12 @@ RECOVERIES: dict[str, tuple[list[str], str]] = {
 def test_a_mistake_is_reported_once_and_reading_goes_on(text: str) -> None:
     diagnostics, tree = RECOVERIES[text]
     assert (reported(text), outline(text)) == (diagnostics, tree)
+
+
+def test_blocks_that_are_nested_too_deep_are_reported_once_and_left_out() -> None:
+    text = "LOOP(2);" * 20 + "S;" + "END_LOOP;" * 20
+    assert reported(text) == ["TS302 LOOP(2)"]
+    assert [row.strip().partition(" ")[0] for row in outline(text).split("\n")] == ["loop"] * 16
 
 
 def test_without_a_kit_any_name_may_stand_alone() -> None:
