@@ -18,24 +18,14 @@ from tests.oracle.programs import broken, program
 from tiniscript import robots
 from tiniscript.kit import Kit
 from tiniscript.source import Source, Span
-from tiniscript.syntax.ast import (
-    Argument,
-    Assign,
-    Break,
-    Command,
-    Def,
-    If,
-    Instruction,
-    Loop,
-    While,
-)
+from tiniscript.syntax import ast
 from tiniscript.syntax.parser import ENOUGH, parse
 from tiniscript.thousandths import as_text
 
 KIT = robots.load(robots.DEFAULT).kit
 
 
-def value(argument: Argument | None) -> str:
+def value(argument: ast.Argument | None) -> str:
     """Return `[DISTANCE 10 LT]`, with a `!` after a plain number, or `?` for what was not read."""
     if argument is None:
         return "?"
@@ -46,20 +36,20 @@ def value(argument: Argument | None) -> str:
     return f"[{' '.join(parts)}]" + "!" * argument.is_plain
 
 
-def rows(body: tuple[Instruction, ...], text: str, depth: int = 0) -> Iterator[str]:
+def rows(body: tuple[ast.Instruction, ...], text: str, depth: int = 0) -> Iterator[str]:
     def row(name: str, span: Span) -> str:
         written = " ".join(text[span.start : span.end].split())
         return f"{'  ' * depth}{name} «{written}»"
 
     for node in body:
-        if isinstance(node, Command):
+        if isinstance(node, ast.Command):
             values = "".join(" " + value(each) for each in node.arguments or ())
             brackets = " ()" if node.arguments == () else ""
             until = f" UNTIL {value(node.until)}" if node.until else ""
             yield row(f"{node.word}{brackets}{values}{until}", node.span)
-        elif isinstance(node, Assign):
+        elif isinstance(node, ast.Assign):
             yield row(f"{node.name} = {value(node.value)}", node.span)
-        elif isinstance(node, If):
+        elif isinstance(node, ast.If):
             yield row("if", node.span)
             for arm in node.arms:
                 yield "  " + row(f"arm {value(arm.condition)}", arm.span)
@@ -67,13 +57,13 @@ def rows(body: tuple[Instruction, ...], text: str, depth: int = 0) -> Iterator[s
             if node.otherwise:
                 yield f"{'  ' * depth}  else"
                 yield from rows(node.otherwise, text, depth + 2)
-        elif isinstance(node, Loop):
+        elif isinstance(node, ast.Loop):
             yield row(f"loop {value(node.times) if node.times else 'forever'}", node.span)
             yield from rows(node.body, text, depth + 1)
-        elif isinstance(node, While):
+        elif isinstance(node, ast.While):
             yield row(f"while {value(node.condition)}", node.span)
             yield from rows(node.body, text, depth + 1)
-        elif isinstance(node, Break):
+        elif isinstance(node, ast.Break):
             yield row("break", node.span)
         else:
             yield row(f"def {node.name}", node.span)
@@ -152,13 +142,13 @@ def test_setup_says_how_a_program_starts(text: str, start: str) -> None:
 def test_spans_of_a_command_an_assignment_and_a_definition() -> None:
     text = "X = (1);F(X, 80) UNTIL(TRUE);DEF A;END_DEF"
     assign, command, definition = parse(Source(text)).program.body
-    assert isinstance(assign, Assign) and assign.value is not None
+    assert isinstance(assign, ast.Assign) and assign.value is not None
     assert (assign.name_span, assign.value.span, assign.span) == ((0, 1), (4, 7), (0, 7))
-    assert isinstance(command, Command) and command.arguments and command.until
+    assert isinstance(command, ast.Command) and command.arguments and command.until
     assert (command.word_span, command.span) == ((8, 9), (8, 28))
     assert [each.span for each in command.arguments] == [(10, 11), (13, 15)]
     assert command.until.span == (23, 27)
-    assert isinstance(definition, Def)
+    assert isinstance(definition, ast.Def)
     assert (definition.name_span, definition.span) == ((33, 34), (29, 42))
 
 
@@ -208,7 +198,7 @@ def test_parts_stand_in_the_order_of_a_stack_machine(text: str) -> None:
 def test_each_part_of_an_expression_says_where_it_stands() -> None:
     text = "X = -1 + MAX(A, -Q)"
     (assign,) = parse(Source(text)).program.body
-    assert isinstance(assign, Assign) and assign.value is not None
+    assert isinstance(assign, ast.Assign) and assign.value is not None
     assert [(each.op, text[each.start : each.end]) for each in assign.value.expression] == [
         ("NUMBER", "-1"),
         ("NAME", "A"),
@@ -376,10 +366,10 @@ def broken_programs() -> list[str]:
     return [broken(rng, program(rng, PAPER_KIT)) for _ in range(600)]
 
 
-def spans(body: tuple[Instruction, ...]) -> Iterator[tuple[Span, tuple[Instruction, ...]]]:
+def spans(body: tuple[ast.Instruction, ...]) -> Iterator[tuple[Span, tuple[ast.Instruction, ...]]]:
     for node in body:
         span, inside = node.span, getattr(node, "body", ())
-        if isinstance(node, If):  # its span begins with its last arm
+        if isinstance(node, ast.If):  # its span begins with its last arm
             span = Span(node.arms[0].span.start, span.end)
             inside = (*(each for arm in node.arms for each in arm.body), *node.otherwise)
         yield span, inside
