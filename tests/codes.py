@@ -16,8 +16,8 @@ from tests.kits import KITS
 from tests.machines import Senses
 from tests.oracle import programs
 from tiniscript import compile_text
-from tiniscript.bytecode import BY_NAME, OPS, Op
-from tiniscript.image import HEADER_BYTES, pack
+from tiniscript.bytecode.image import HEADER_BYTES, pack
+from tiniscript.bytecode.opcodes import BY_NAME, OPS, Op
 from tiniscript.kit import Kit
 
 _NEAR = (0, 1, 2, 3, 5, 499, 500, 501, 999, 1000, 1001, 1499, 1500, 1501, 2500, 46_340, 46_341,

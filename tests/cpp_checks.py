@@ -22,22 +22,22 @@ from tests.machines import Senses
 from tests.machines.host import Host, Process
 from tests.oracle import programs
 from tests.test_cases import robot_and_senses
-from tiniscript import thousandths
-from tiniscript.bytecode import (
+from tiniscript import fixed_point
+from tiniscript.bytecode.disassembly import read_listing
+from tiniscript.bytecode.image import REFUSALS, ImageRefused, pack, unpack
+from tiniscript.bytecode.opcodes import (
     BY_NAME,
     CODE_BYTES,
     COMPARATORS,
     FAULTS,
     OPS,
 )
-from tiniscript.image import REFUSALS, ImageRefused, pack, unpack
+from tiniscript.bytecode.verify import RULES, Refused, verify
 from tiniscript.kit import Kit
-from tiniscript.listing import read_listing
-from tiniscript.run import Ending, TracedRobot, run
-from tiniscript.run import Senses as Lists
-from tiniscript.task import WAITING
-from tiniscript.verify import RULES, Refused, verify
-from tiniscript.vm import Machine
+from tiniscript.vm.machine import Machine
+from tiniscript.vm.state import WAITING
+from tiniscript.vm.trace import Ending, TracedRobot, run
+from tiniscript.vm.trace import Senses as Lists
 
 WIDE = KITS[1][1]
 SIZES = len(WIDE.sensors), len(WIDE.actuators)
@@ -254,22 +254,22 @@ def check_long_images(machine: Host) -> None:
 # -- arithmetic ---------------------------------------------------------------------------------
 
 OPERATIONS: dict[str, Callable[[int, int], int]] = {
-    "ADD": thousandths.add,
-    "SUB": thousandths.subtract,
-    "MUL": thousandths.multiply,
-    "DIV": thousandths.divide,
-    "MOD": thousandths.modulo,
-    "NEG": lambda a, b: thousandths.negate(a),
-    "ABS": lambda a, b: thousandths.absolute(a),
-    "ROUND": thousandths.round_to,
+    "ADD": fixed_point.add,
+    "SUB": fixed_point.subtract,
+    "MUL": fixed_point.multiply,
+    "DIV": fixed_point.divide,
+    "MOD": fixed_point.modulo,
+    "NEG": lambda a, b: fixed_point.negate(a),
+    "ABS": lambda a, b: fixed_point.absolute(a),
+    "ROUND": fixed_point.round_to,
     "MIN": min,
     "MAX": max,
     "AND": operator.and_,
     "OR": operator.or_,
     "NOT": lambda a, b: int(not a),
     **{name: getattr(operator, name.lower()) for name, _ in COMPARATORS},
-    "RANDOM": lambda a, b: thousandths.random_between(a, b, b % 2**32),
-    "END": lambda a, b: thousandths.whole(a),  # of no use here: stands for `whole`
+    "RANDOM": lambda a, b: fixed_point.random_between(a, b, b % 2**32),
+    "END": lambda a, b: fixed_point.whole(a),  # of no use here: stands for `whole`
 }
 # 2^32 thousandths, after they are rounded: products and quotients
 ROUNDED_TOO_LARGE = [
@@ -283,7 +283,7 @@ NUMBER_OF = {name: number for number, name, _ in FAULTS}
 def python_result(name: str, a: int, b: int) -> tuple[int, int]:
     try:
         return 0, OPERATIONS[name](a, b)
-    except thousandths.Fault as fault:
+    except fixed_point.Fault as fault:
         return NUMBER_OF[fault.name], 0
 
 

@@ -11,7 +11,15 @@ from tests.codes import jump, loop, simple
 from tests.cpp_checks import WIDE, compare_runs, compare_verdicts
 from tests.machines import Senses
 from tests.machines.host import Host
-from tiniscript.bytecode import BY_CODE, CALLS, COUNTERS, DEFS, JOINS, STACK_VALUES, VARIABLES
+from tiniscript.bytecode.opcodes import (
+    BY_CODE,
+    CALLS,
+    COUNTERS,
+    DEFS,
+    JOINS,
+    STACK_VALUES,
+    VARIABLES,
+)
 from tiniscript.kit import NUMBER, Device, Kit
 from tiniscript.robots.reader import DEVICES
 

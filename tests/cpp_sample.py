@@ -21,7 +21,7 @@ from tests.machines import Senses
 from tests.machines.host import Host
 from tests.test_agreement import check_machine, random_program
 from tests.test_cases import trace_of
-from tiniscript.bytecode import CODE_BYTES
+from tiniscript.bytecode.opcodes import CODE_BYTES
 from tiniscript.kit import Kit
 
 MAX_STEPS = 20_000  # no case needs more while no time passes

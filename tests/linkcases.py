@@ -22,7 +22,7 @@ from typing import NamedTuple, Protocol
 
 from tests.casefile import ROOT
 from tests.machines.link import CppLink, Step
-from tiniscript.image import pack, unpack
+from tiniscript.bytecode.image import pack, unpack
 from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.messages import BY_NAME, BY_NUMBER, FIRST_EVENT, Malformed, read, written
 from tiniscript.link.receiver import ITEM_BYTES, Receiver

@@ -11,8 +11,8 @@ from tests.machines.tabletop import missing as no_compiler
 from tests.test_robots import TEXTS
 from tests.virtual import Talk, missing
 from tiniscript import compile_text, robots
+from tiniscript.bytecode.image import Image, unpack
 from tiniscript.cli.drawing import Picture
-from tiniscript.image import Image, unpack
 from tiniscript.link.errands import OK
 from tiniscript.link.session import Session
 from tiniscript.robots.reader import read

@@ -16,12 +16,12 @@ from tests.kits import KITS
 from tests.machines import MACHINES, ONE_IN, Machine, Senses
 from tests.oracle import interpreter, programs
 from tiniscript import Compiled, compile_text
+from tiniscript.bytecode.disassembly import listing, read_listing
+from tiniscript.bytecode.verify import verify
+from tiniscript.diagnostics.rendering import as_text, message
 from tiniscript.kit import Kit
-from tiniscript.listing import listing, read_listing
-from tiniscript.messages import as_text, message
 from tiniscript.source import Source
 from tiniscript.syntax.formatter import formatted
-from tiniscript.verify import verify
 
 MAX_MS, MAX_STEPS = 20_000, 20_000
 BATCH = 500

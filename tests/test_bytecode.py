@@ -9,11 +9,11 @@ from pathlib import Path
 import pytest
 
 from tests.casefile import ROOT, read
-from tiniscript import bytecode
-from tiniscript.bytecode import BY_NAME, OPS, Op, read_operands
-from tiniscript.listing import listing, read_listing, rows
-from tiniscript.verify import RULES
-from tiniscript.vm import Machine
+from tiniscript.bytecode import opcodes
+from tiniscript.bytecode.disassembly import listing, read_listing, rows
+from tiniscript.bytecode.opcodes import BY_NAME, OPS, Op, read_operands
+from tiniscript.bytecode.verify import RULES
+from tiniscript.vm.machine import Machine
 
 
 class Nothing:
@@ -77,7 +77,7 @@ def test_codes_and_numbers_are_used_once() -> None:
     assert len({op.code for op in OPS}) == len(OPS) == len({op.name for op in OPS})
     numbers = [number for number, _ in RULES.values()]
     assert len(set(numbers)) == len(numbers)
-    assert {op.role for op in OPS} == set(bytecode.ROLES)
+    assert {op.role for op in OPS} == set(opcodes.ROLES)
 
 
 def test_listing_of_every_instruction_reads_back() -> None:

@@ -7,13 +7,13 @@ import pytest
 from tests.casefile import Case, accept, all_cases
 from tests.machines import MACHINES, Machine, Senses
 from tiniscript import Compiled, compile_text, robots
+from tiniscript.bytecode.disassembly import listing, read_listing
+from tiniscript.bytecode.image import pack
+from tiniscript.bytecode.verify import Refused, verify
 from tiniscript.cli.options import decimal
-from tiniscript.image import pack
-from tiniscript.listing import listing, read_listing
-from tiniscript.messages import as_text, message
+from tiniscript.diagnostics.rendering import as_text, message
 from tiniscript.robots.profile import Robot
 from tiniscript.syntax.formatter import formatted
-from tiniscript.verify import Refused, verify
 
 CASES = all_cases()
 

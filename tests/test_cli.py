@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 from tests.command import OBSTACLE, PROGRAM, TSC, Tsc, process
-from tiniscript.bytecode import CODE_BYTES
-from tiniscript.image import unpack
+from tiniscript.bytecode.image import unpack
+from tiniscript.bytecode.opcodes import CODE_BYTES
 
 # -- compile ------------------------------------------------------------------------------------
 
@@ -310,7 +310,7 @@ def test_damaged_images_are_refused_by_name(tsc: Tsc, tmp_path: Path, verb: str)
 
 
 def test_code_that_breaks_a_rule_is_refused_by_number(tsc: Tsc, tmp_path: Path) -> None:
-    from tiniscript.image import pack
+    from tiniscript.bytecode.image import pack
 
     target = tmp_path / "a.bin"
     for code, rule in ((b"\xff", "21"), (bytes.fromhex("3800"), "24"), (b"\x39", "25")):

@@ -11,12 +11,12 @@ from pathlib import Path
 import pytest
 
 from tests.command import PROGRAM, TSC, Tsc, process
+from tiniscript.bytecode.image import unpack
 from tiniscript.cli import CLOSED, VERBS, main
 from tiniscript.cli.flash_texts import FLASH_TEXTS
 from tiniscript.cli.link_texts import LINK_TEXTS
 from tiniscript.cli.texts import TEXTS
 from tiniscript.cli.virtual_texts import VIRTUAL_TEXTS
-from tiniscript.image import unpack
 
 # -- anything whatever --------------------------------------------------------------------------
 
@@ -204,14 +204,14 @@ def test_input_that_is_no_text() -> None:
 @pytest.mark.parametrize("kind", ["pipe", "folder", "device", "circle", "huge"])
 def test_files_of_the_cache_may_be_anything(kind: str) -> None:
     """No command waits for them, or reads for ever: they say nothing."""
-    from tiniscript import maps
+    from tiniscript.codegen import source_map
     from tiniscript.link import remembered
     from tiniscript.sharing import holders
     from tiniscript.virtual import directory
 
     port = "socket://127.0.0.1:4000"
     robot = directory._folder() / "4000.json"
-    paths = [remembered._path(), robot, holders._path(port), maps._path(5)]
+    paths = [remembered._path(), robot, holders._path(port), source_map._path(5)]
     for path in paths:
         path.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
         path.parent.chmod(0o700)
@@ -228,7 +228,7 @@ def test_files_of_the_cache_may_be_anything(kind: str) -> None:
     assert directory.running() == []
     assert holders.found(port) is None
     assert holders.all_found() == []
-    assert maps.recall(5) is None
+    assert source_map.recall(5) is None
 
 
 @pytest.mark.parametrize("number", ["0000801234", "99999", "00000", "٣٣٣٣", "-1", "4" * 5000])
@@ -251,10 +251,10 @@ def test_a_cache_that_cannot_be_written_is_no_trouble(
 
 
 def test_a_damaged_cache_is_no_trouble(tsc: Tsc, program: Path) -> None:
-    from tiniscript import maps
+    from tiniscript.codegen import source_map
 
     tsc("compile", program)
-    path = maps._path(unpack(program.with_suffix(".bin").read_bytes()).checksum)
+    path = source_map._path(unpack(program.with_suffix(".bin").read_bytes()).checksum)
     deep = "[" * 200_000
     huge = '{"version": 1, "name": "", "lines": [], "places": [[1e400, 1, 1, 1, 9]]}'
     for text in (
@@ -274,12 +274,12 @@ def test_a_damaged_cache_is_no_trouble(tsc: Tsc, program: Path) -> None:
 def test_the_cache_keeps_a_thousand_maps(
     tsc: Tsc, program: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from tiniscript import maps
+    from tiniscript.codegen import source_map
 
-    monkeypatch.setattr(maps, "KEPT", 3)
+    monkeypatch.setattr(source_map, "KEPT", 3)
     for seconds in range(1, 7):
         tsc("compile", "-e", f"W({seconds})", "-o", program.with_suffix(".bin"))
-    assert len(list(maps._path(0).parent.iterdir())) == 3
+    assert len(list(source_map._path(0).parent.iterdir())) == 3
 
 
 def test_the_module_is_the_command() -> None:

@@ -18,7 +18,7 @@ from tests.casefile import Case
 from tests.machines import MACHINES
 from tests.machines.host import host, missing
 from tests.test_cases import listings_alone
-from tiniscript.bytecode import BY_NAME, CODE_BYTES
+from tiniscript.bytecode.opcodes import BY_NAME, CODE_BYTES
 
 needs_host = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a host machine")
 BATCH = 25_000

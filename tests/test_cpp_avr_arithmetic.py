@@ -17,8 +17,8 @@ import pytest
 
 from tests.codes import EDGES
 from tests.cpp_checks import NUMBER_OF, OPERATIONS, python_result
-from tiniscript import thousandths
-from tiniscript.bytecode import BY_NAME
+from tiniscript import fixed_point
+from tiniscript.bytecode.opcodes import BY_NAME
 from tools import avr_bench
 
 BLOCK, BLOCKS = 500, 50  # of one seed
@@ -38,19 +38,19 @@ class Operation(NamedTuple):
         """Return the number of the fault, or 0, and what Python calculates."""
         if self.name != "RANDOM":
             return python_result(self.name, self.a, self.b)
-        state = thousandths.next_random(self.b % 2**32 | 1)
+        state = fixed_point.next_random(self.b % 2**32 | 1)
         try:
-            return 0, thousandths.random_between(self.a, self.b, state)
-        except thousandths.Fault as fault:
+            return 0, fixed_point.random_between(self.a, self.b, state)
+        except fixed_point.Fault as fault:
             return NUMBER_OF[fault.name], 0
 
 
 def numbers(state: int) -> Iterator[int]:
     """Yield numbers of any size, as many small ones as large ones; one in 8 is an edge."""
     while True:
-        state = thousandths.next_random(state)
+        state = fixed_point.next_random(state)
         choice = state >> 24
-        state = thousandths.next_random(state)
+        state = fixed_point.next_random(state)
         if choice < 32:
             yield EDGES[(state >> 8) % len(EDGES)]
         else:

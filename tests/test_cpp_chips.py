@@ -27,10 +27,10 @@ from tests.machines.python import ran_python
 from tests.oracle import programs
 from tests.test_cases import compiled, having, listings_alone, robot_and_senses
 from tiniscript import compile_text
-from tiniscript.image import ImageRefused, pack
+from tiniscript.bytecode.disassembly import read_listing
+from tiniscript.bytecode.image import ImageRefused, pack
+from tiniscript.bytecode.verify import Refused
 from tiniscript.kit import Kit
-from tiniscript.listing import read_listing
-from tiniscript.verify import Refused
 from tools import chips
 
 

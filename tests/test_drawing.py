@@ -17,7 +17,7 @@ import pytest
 
 from tiniscript import compile_text, robots
 from tiniscript.cli import drawing
-from tiniscript.run import Ending, Event, Senses, run
+from tiniscript.vm.trace import Ending, Event, Senses, run
 
 NO_PTY = "Windows has no pseudo-terminals of this kind"
 pty = pytest.importorskip("pty", reason=NO_PTY)

@@ -16,7 +16,8 @@ from typing import IO
 import pytest
 
 from tests.command import PROGRAM, Tsc, process
-from tiniscript import files, maps
+from tiniscript import files
+from tiniscript.codegen import source_map
 from tiniscript.sharing import holders
 from tiniscript.sharing.holders import Holder
 
@@ -183,7 +184,7 @@ def test_an_empty_map_goes(cache: Path) -> None:
     path = cache / "maps" / "00000001.json"
     path.parent.mkdir(parents=True)
     path.write_bytes(b"")
-    assert maps.recall(1) is None
+    assert source_map.recall(1) is None
     assert not path.exists()
 
 

@@ -13,8 +13,8 @@ import pytest
 from tests.test_virtual_host import PING, until, visit
 from tests.virtual import floor, missing, robot_in
 from tiniscript import compile_text, robots
-from tiniscript.bytecode import ISA_MAJOR, ISA_MINOR
-from tiniscript.image import unpack
+from tiniscript.bytecode.image import unpack
+from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.messages import BY_NAME, MAJOR, MINOR, PAYLOAD_BYTES, RUN, written
 from tiniscript.link.session import Session

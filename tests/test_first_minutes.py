@@ -22,13 +22,13 @@ from tiniscript.cli.living import HELP_ME, LEAVE, Catch, wished
 from tiniscript.cli.telling import Bookkeeping, Teller
 from tiniscript.link import remembered
 from tiniscript.link.outcomes import Event
-from tiniscript.other_kits import naming_robots
 from tiniscript.robots import given
-from tiniscript.run import Event as Traced
+from tiniscript.semantics.other_kits import naming_robots
 from tiniscript.virtual import directory
 from tiniscript.virtual.directory import Running
 from tiniscript.virtual.guests import Guests
 from tiniscript.virtual.host import Host
+from tiniscript.vm.trace import Event as Traced
 
 needs_robot = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
 FOREVER = "SI|LOOP(FOREVER);L(1, 30);END_LOOP"

@@ -9,7 +9,7 @@ from struct import pack as struct_pack
 import pytest
 
 from tiniscript import compile_text, robots
-from tiniscript.image import (
+from tiniscript.bytecode.image import (
     FIELDS,
     HEADER_BYTES,
     ImageRefused,

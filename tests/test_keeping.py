@@ -16,7 +16,7 @@ from tests.test_tabletop import (
     stored,
     switched_on,
 )
-from tiniscript.image import pack
+from tiniscript.bytecode.image import pack
 from tiniscript.link.errands import OK, Errand, Request
 from tiniscript.link.messages import SAVED, STATUSES
 from tiniscript.link.session import Session, Task

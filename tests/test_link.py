@@ -11,7 +11,8 @@ import pytest
 from tests.linkcases import KIT, items_of
 from tests.machines.link import CppLink, cpp_link, missing
 from tiniscript import compile_text, robots
-from tiniscript.image import REFUSALS, Image, pack, unpack
+from tiniscript.bytecode.image import REFUSALS, Image, pack, unpack
+from tiniscript.bytecode.verify import RULES
 from tiniscript.link import messages, statuses
 from tiniscript.link.errands import DATA_BYTES, SHORT_BYTES
 from tiniscript.link.frames import Frame, decoded, encoded
@@ -42,7 +43,6 @@ from tiniscript.link.session import (
     STOP_MS,
     Session,
 )
-from tiniscript.verify import RULES
 from tools import cpp_size, link_size
 
 needs_host = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a host machine")

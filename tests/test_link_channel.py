@@ -18,8 +18,8 @@ import pytest
 
 from tests.linkcases import KIT, items_of
 from tests.machines.link import CppLink, cpp_link, missing
-from tiniscript.bytecode import BY_NAME
-from tiniscript.image import pack, unpack
+from tiniscript.bytecode.image import pack, unpack
+from tiniscript.bytecode.opcodes import BY_NAME
 from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.outcomes import CANCELLED, LOST
 from tiniscript.link.session import Session, Task

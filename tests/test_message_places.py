@@ -8,13 +8,14 @@ import re
 import pytest
 
 from tests.test_messages import KIT, LANGUAGES, gaps
-from tiniscript import Compiled, check_text, problems
-from tiniscript.messages import Message, as_text, message
-from tiniscript.problems import Code, Problem
+from tiniscript import Compiled, check_text
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Code, Problem
+from tiniscript.diagnostics.rendering import Message, as_text, message
 from tiniscript.source import Source, Span
 
 
-def at(text: str, start: int, end: int, code: Code = problems.EXTRA_CLOSE) -> Message:
+def at(text: str, start: int, end: int, code: Code = codes.EXTRA_CLOSE) -> Message:
     """Return the message of a problem that is put at a place by hand."""
     return message(Problem(code, Span(start, end)), Source(text), "en")
 

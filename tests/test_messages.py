@@ -8,10 +8,11 @@ from typing import Any
 
 import pytest
 
-from tiniscript import check_text, compile_text, messages, problems
+from tiniscript import check_text, compile_text
+from tiniscript.diagnostics import codes, rendering
+from tiniscript.diagnostics.codes import CODES, Problem
+from tiniscript.diagnostics.rendering import Message, as_json, as_text, explain, message, titles
 from tiniscript.kit import NUMBER, YES_NO, Device, Kit
-from tiniscript.messages import Message, as_json, as_text, explain, message, titles
-from tiniscript.problems import CODES, Problem
 from tiniscript.source import Source, Span
 
 KIT = Kit(
@@ -28,7 +29,7 @@ KIT = Kit(
 )
 LANGUAGES = ("en", "es")
 TEXTS: dict[str, dict[str, Any]] = {
-    code: texts for code, texts in messages._texts().items() if code.startswith("TS")
+    code: texts for code, texts in rendering._texts().items() if code.startswith("TS")
 }
 EXAMPLES = sorted(code for code, texts in TEXTS.items() if "wrong" in texts)
 BOARD = {"robot": "TINIBOT", "limit": "900", "code": "1000", "over": "100"}
@@ -66,12 +67,12 @@ def shown(text: str, lang: str = "en") -> list[str]:
 
 def test_each_code_has_its_words_and_no_words_lack_a_code() -> None:
     assert set(TEXTS) == set(CODES)
-    assert set(messages._texts()) - set(TEXTS) == {"terms", "labels"}
+    assert set(rendering._texts()) - set(TEXTS) == {"terms", "labels"}
 
 
 def test_one_table_alone_is_what_it_is_among_all() -> None:
-    for name, table in messages._texts().items():
-        assert messages._table(name) == table
+    for name, table in rendering._texts().items():
+        assert rendering._table(name) == table
 
 
 @pytest.mark.parametrize("code", sorted(TEXTS))
@@ -87,7 +88,7 @@ def test_each_code_has_all_texts_in_both_languages(code: str) -> None:
 
 def test_each_term_and_label_is_in_both_languages() -> None:
     for table in ("terms", "labels"):
-        for name, term in messages._texts()[table].items():
+        for name, term in rendering._texts()[table].items():
             assert set(term) == set(LANGUAGES), name
 
 
@@ -135,7 +136,7 @@ def test_a_program_that_is_too_long_for_any_robot_says_by_how_much() -> None:
 
 
 def test_a_text_with_an_empty_gap_gives_way_to_the_next() -> None:
-    known = Problem(problems.UNKNOWN_NAME, Span(0, 1), {"found": "Y", "near": "YY"})
+    known = Problem(codes.UNKNOWN_NAME, Span(0, 1), {"found": "Y", "near": "YY"})
     unknown = known._replace(values={"found": "Y", "near": ""})
     source = Source("Y")
     assert message(known, source, "en").message.endswith("Did you mean YY?")
@@ -146,7 +147,7 @@ def test_a_text_with_an_empty_gap_gives_way_to_the_next() -> None:
 def test_braces_ats_and_line_ends_in_a_program_are_only_shown() -> None:
     for text in ("{fix}", "{0.__class__}", "{", "}", "%s", "@", "@number?", "a\nb\tc", "\x07"):
         values = {"by": "W", "found": text}
-        said = message(Problem(problems.WANTS_NUMBER, Span(0, 0), values), Source("W"), "en")
+        said = message(Problem(codes.WANTS_NUMBER, Span(0, 0), values), Source("W"), "en")
         plain = text.replace("\n", " ").replace("\t", " ").replace("\x07", "␇")
         assert said.fix == f"Write a number in place of {plain}"
 

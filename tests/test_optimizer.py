@@ -8,9 +8,9 @@ from __future__ import annotations
 import pytest
 
 from tiniscript import check_text, robots
-from tiniscript.advice import advice
-from tiniscript.optimizer import optimized
-from tiniscript.program import program_text
+from tiniscript.semantics.ir import program_text
+from tiniscript.semantics.lint import advice
+from tiniscript.semantics.optimizer import optimized
 
 KIT = robots.load("tinibot").kit
 

@@ -16,11 +16,11 @@ import pytest
 from tests.oracle.interpreter import PAPER_KIT
 from tests.oracle.programs import broken, program
 from tiniscript import robots
+from tiniscript.fixed_point import as_text
 from tiniscript.kit import Kit
 from tiniscript.source import Source, Span
 from tiniscript.syntax import ast
 from tiniscript.syntax.parser import ENOUGH, parse
-from tiniscript.thousandths import as_text
 
 KIT = robots.load(robots.DEFAULT).kit
 

@@ -161,7 +161,7 @@ def test_an_upload_through_a_holder_imports_no_more_than_it_needs() -> None:
         modules = set(command.ended().out.splitlines()[-1].split())
     unwanted = {"serial", "cobs", "construct", "tomllib", "tomli", "rich", "threading",
                 "tiniscript.link.session", "tiniscript.link.ports", "tiniscript.cli.crew",
-                "tiniscript.messages"}  # fmt: skip
+                "tiniscript.diagnostics.rendering"}  # fmt: skip
     assert sorted(unwanted & modules) == []
 
 

@@ -20,7 +20,7 @@ from zlib import crc32
 import pytest
 
 from tests.machines.host import FLAGS, ROOT, SOURCES, WARNINGS, compiled, missing
-from tiniscript.image import HEADER_BYTES, pack
+from tiniscript.bytecode.image import HEADER_BYTES, pack
 from tools import avr_bench, cpp_size
 
 needs_host = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")

@@ -8,7 +8,7 @@ import pytest
 
 from tests.machines.tabletop import EMPTY, Tabletop, missing
 from tiniscript import compile_text, robots
-from tiniscript.image import Image, unpack
+from tiniscript.bytecode.image import Image, unpack
 from tiniscript.link.errands import OK, Reply
 from tiniscript.link.messages import STATUSES
 from tiniscript.link.session import Session, Task

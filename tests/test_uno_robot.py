@@ -11,7 +11,7 @@ from tests.machines.uno import needed
 from tests.machines.wired import Wired
 from tests.platformio import firmware, shared
 from tiniscript import compile_text, robots
-from tiniscript.image import Image, unpack
+from tiniscript.bytecode.image import Image, unpack
 from tiniscript.link.errands import OK
 from tiniscript.link.session import Session
 from tools.uno import CYCLES_PER_MS, Uno

@@ -12,7 +12,7 @@ from tests.casefile import ROOT, Case, read
 from tests.machines import MACHINES
 from tests.test_cases import compiled, robot_and_senses
 from tests.test_uno_robot import MOTORS, computer, send, sketch, switched_on  # noqa: F401
-from tiniscript.image import unpack
+from tiniscript.bytecode.image import unpack
 from tiniscript.link.errands import OK
 from tools.uno import CYCLES_PER_MS, Uno
 

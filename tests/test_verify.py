@@ -12,9 +12,9 @@ from tests.kits import KITS
 from tests.oracle.programs import program
 from tests.test_bytecode import Nothing
 from tiniscript import compile_text
-from tiniscript.bytecode import CODE_BYTES, OPS, STACK_VALUES
-from tiniscript.verify import RULES, Refused, verify
-from tiniscript.vm import Machine
+from tiniscript.bytecode.opcodes import CODE_BYTES, OPS, STACK_VALUES
+from tiniscript.bytecode.verify import RULES, Refused, verify
+from tiniscript.vm.machine import Machine
 
 SENSORS, ACTUATORS = 3, 2
 

@@ -8,11 +8,11 @@ from tests.casefile import ROOT
 from tests.command import OBSTACLE
 from tests.virtual import Talk, floor, missing, robot_in, trace
 from tiniscript import compile_text, robots
-from tiniscript.image import unpack
+from tiniscript.bytecode.image import unpack
 from tiniscript.link.messages import STATUSES
 from tiniscript.link.trim import Trim
-from tiniscript.run import Ending, Senses, run
 from tiniscript.virtual import worlds
+from tiniscript.vm.trace import Ending, Senses, run
 
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
 

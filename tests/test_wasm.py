@@ -17,14 +17,14 @@ from tests.machines.wasm import missing
 from tests.test_cases import having, listings_alone, robot_and_senses
 from tests.test_house import imported_by
 from tiniscript import compile_text, robots
-from tiniscript.bytecode import ISA_MAJOR, ISA_MINOR
+from tiniscript.bytecode.disassembly import read_listing
+from tiniscript.bytecode.image import Image, ImageRefused, pack, unpack
+from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
+from tiniscript.bytecode.verify import Refused, verify
 from tiniscript.cli import installing, running
-from tiniscript.image import Image, ImageRefused, pack, unpack
-from tiniscript.listing import read_listing
-from tiniscript.run import AnyMachine
-from tiniscript.task import WAITING
-from tiniscript.verify import Refused, verify
-from tiniscript.vm import Machine
+from tiniscript.vm.machine import Machine
+from tiniscript.vm.state import WAITING
+from tiniscript.vm.trace import AnyMachine
 from tools import build_wasm
 
 needs_wasmtime = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
@@ -187,8 +187,8 @@ def test_python_runs_without_wasmtime() -> None:
     modules = imported_by(
         "from tiniscript.cli import main; assert main(['run', '-e', 'F(1, 50)']) == 0"
     )
-    assert "tiniscript.vm" in modules
-    assert not {"wasmtime", "tiniscript.wasm_machine"} & modules
+    assert "tiniscript.vm.machine" in modules
+    assert not {"wasmtime", "tiniscript.vm.wasm"} & modules
 
 
 # -- what it refuses ----------------------------------------------------------------------------
@@ -197,7 +197,7 @@ def test_python_runs_without_wasmtime() -> None:
 @needs_wasmtime
 @pytest.mark.parametrize("case", listings_alone())
 def test_verdict_of_a_listing(case: Case) -> None:
-    from tiniscript.wasm_machine import WasmImage
+    from tiniscript.vm.wasm import WasmImage
 
     kit = robot_and_senses(case)[0].kit
     sizes = len(kit.sensors), len(kit.actuators)
@@ -218,7 +218,7 @@ def test_verdict_of_a_listing(case: Case) -> None:
 
 @needs_wasmtime
 def test_refused_images() -> None:
-    from tiniscript.wasm_machine import WasmImage
+    from tiniscript.vm.wasm import WasmImage
 
     good = compile_text("SHOW(DISTANCE)", KIT).image
     broken = [good[:length] for length in range(len(good))]
@@ -285,7 +285,7 @@ PROGRAM = "B(0.3, 80); BEEP(0.2, 440); GRIPPER(90); SHOW(DISTANCE); SHOW(DISTANC
 @pytest.mark.parametrize("budget", [1, 3, 100_000])
 def test_a_slow_robot_and_any_beginning(begin_ms: int, budget: int) -> None:
     """Tick by tick the same, where the clock wraps around too."""
-    from tiniscript.wasm_machine import WasmImage
+    from tiniscript.vm.wasm import WasmImage
 
     kit = robots.load("grabber").kit
     compiled = compile_text(PROGRAM, kit)
@@ -309,7 +309,7 @@ def test_a_slow_robot_and_any_beginning(begin_ms: int, budget: int) -> None:
 
 @needs_wasmtime
 def test_what_a_robot_raises_comes_out() -> None:
-    from tiniscript.wasm_machine import WasmImage
+    from tiniscript.vm.wasm import WasmImage
 
     class Broken(Slow):
         def motors(self, left: int, right: int) -> None:

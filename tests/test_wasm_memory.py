@@ -15,8 +15,8 @@ pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is w
 LIMIT_BYTES = 1 << 30  # of addresses: less than wasmtime by itself takes for one memory
 MACHINES = """
 from tiniscript import compile_text, robots
-from tiniscript.image import ImageRefused
-from tiniscript.wasm_machine import WasmImage
+from tiniscript.bytecode.image import ImageRefused
+from tiniscript.vm.wasm import WasmImage
 kit = robots.load("tinibot").kit
 image = compile_text("F(1, 50)", kit).image
 

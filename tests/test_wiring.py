@@ -15,11 +15,11 @@ import pytest
 from tests.command import Tsc
 from tiniscript import robots
 from tiniscript.cli import wiring
+from tiniscript.fixed_point import ONE
 from tiniscript.kit import NUMBER, Device, Kit
 from tiniscript.robots.boards import CHIPS, DRIVERS, Chip, Driver
 from tiniscript.robots.profile import LANGUAGES, Place, Robot, Wiring
 from tiniscript.robots.reader import read
-from tiniscript.thousandths import ONE
 from tiniscript.wiring import parts
 from tiniscript.wiring.drawing import drawing_of
 from tiniscript.wiring.headers import SIDES

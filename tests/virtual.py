@@ -6,13 +6,13 @@ from collections.abc import Sequence
 
 from tests.machines.wasm import missing
 from tiniscript import compile_text, robots
-from tiniscript.image import unpack
+from tiniscript.bytecode.image import unpack
 from tiniscript.link.errands import Reply
 from tiniscript.link.session import Session, Task
-from tiniscript.run import Event
 from tiniscript.virtual.robot import Settings, VirtualRobot
 from tiniscript.virtual.world import World
 from tiniscript.virtual.world_reader import read
+from tiniscript.vm.trace import Event
 
 __all__ = ("Talk", "floor", "missing", "robot_in", "trace")
 

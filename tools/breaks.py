@@ -12,9 +12,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-from tiniscript.bytecode import BY_NAME, OPS
-from tiniscript.image import REFUSALS
-from tiniscript.verify import RULES
+from tiniscript.bytecode.image import REFUSALS
+from tiniscript.bytecode.opcodes import BY_NAME, OPS
+from tiniscript.bytecode.verify import RULES
 
 MACHINE = Path("src/vm")
 SHORT_LINE = 24

@@ -41,7 +41,7 @@ class Module(NamedTuple):
     folders: tuple[str, ...]
 
 
-MACHINE = Module("compiler/tiniscript/machine.wasm", ("wasm/main.cpp",), ("src/vm",))
+MACHINE = Module("compiler/tiniscript/vm/machine.wasm", ("wasm/main.cpp",), ("src/vm",))
 ROBOT = Module(
     "compiler/tiniscript/virtual/robot.wasm",
     ("wasm/robot.cpp", "wasm/watched.cpp"),

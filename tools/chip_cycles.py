@@ -12,8 +12,8 @@ from typing import NamedTuple
 ROOT = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
-from tiniscript.bytecode import BY_NAME
-from tiniscript.listing import rows
+from tiniscript.bytecode.disassembly import rows
+from tiniscript.bytecode.opcodes import BY_NAME
 from tools import avr_bench
 from tools.works import Work, check, code_of
 

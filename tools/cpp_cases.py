@@ -18,14 +18,14 @@ sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tests.casefile import Case, read
 from tests.test_cases import compiled, robot_and_senses
-from tiniscript import robots, thousandths
-from tiniscript.bytecode import BY_NAME, OPS, Op
-from tiniscript.image import pack
+from tiniscript import fixed_point, robots
+from tiniscript.bytecode.disassembly import read_listing
+from tiniscript.bytecode.image import pack
+from tiniscript.bytecode.opcodes import BY_NAME, OPS, Op
 from tiniscript.kit import Device, Kit
-from tiniscript.listing import read_listing
-from tiniscript.run import Senses, TracedRobot
-from tiniscript.task import FOREVER
-from tiniscript.vm import Machine
+from tiniscript.vm.machine import Machine
+from tiniscript.vm.state import FOREVER
+from tiniscript.vm.trace import Senses, TracedRobot
 
 CASES = ROOT / "tests" / "cases"
 GUARD = "TINISCRIPT_TEST_CASES_H_"
@@ -182,7 +182,7 @@ def instruction_rows(kit: Kit) -> Iterator[str]:
             parts = [*before(op, near), *pushed]
             code = b"".join(parts) + tried(op) + bytes([BY_NAME["STOP"].code]) * 3
             steps = len(parts) + 1 + (op.role == "return")
-            reading = near * thousandths.ONE
+            reading = near * fixed_point.ONE
             state = state_after(code, steps, reading, kit)
             name = f"{text(op.name)}, Op::{constant(op.name)}"
             yield f"{name}, {numbers(code)}, {steps}, {NOW_MS}, {reading}, {text(state)}"

@@ -17,7 +17,7 @@ sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tests.machines.wired import Wired
 from tiniscript import compile_text
-from tiniscript.image import Image, unpack
+from tiniscript.bytecode.image import Image, unpack
 from tiniscript.kit import NUMBER, Kit
 from tiniscript.link.session import Session, Task
 from tiniscript.robots.profile import Robot

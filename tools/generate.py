@@ -16,7 +16,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
-from tiniscript import bytecode, image, verify
+from tiniscript.bytecode import image, opcodes, verify
 from tiniscript.robots import firmware
 from tiniscript.robots.ports import AVRS
 from tiniscript.robots.profile import LANGUAGES, ProfileRefused, Robot
@@ -158,7 +158,7 @@ def refusal_table() -> str:
 
 def instruction_table() -> str:
     rows = []
-    for op in bytecode.OPS:
+    for op in opcodes.OPS:
         words = [op.name, *(f"{each.name}:{each.kind.name}" for each in op.operands)]
         rows.append((f"`{op.code:02x}`", f"`{' '.join(words)}`", f"`{op.picture}`", op.meaning))
     return table(("code", "instruction", "stack", "meaning"), rows)
@@ -167,7 +167,7 @@ def instruction_table() -> str:
 def operand_table() -> str:
     rows = [
         (f"`{kind.name}`", kind.size, f"{kind.low} to {kind.high}", kind.meaning)
-        for kind in bytecode.OPERAND_KINDS.values()
+        for kind in opcodes.OPERAND_KINDS.values()
     ]
     return table(("operand", "bytes", "range", "meaning"), rows)
 
@@ -179,8 +179,8 @@ def rule_table() -> str:
 
 def role_table() -> str:
     rows = []
-    for role, meaning in bytecode.ROLES.items():
-        names = [op.name for op in bytecode.OPS if op.role == role]
+    for role, meaning in opcodes.ROLES.items():
+        names = [op.name for op in opcodes.OPS if op.role == role]
         shown = ", ".join(f"`{name}`" for name in names[:6]) + (" ..." if len(names) > 6 else "")
         rows.append((role, shown, meaning))
     return table(("role", "instructions", "meaning"), rows)
@@ -188,22 +188,22 @@ def role_table() -> str:
 
 def fault_table() -> str:
     return table(
-        ("number", "fault", "when"), ((n, f"`{name}`", what) for n, name, what in bytecode.FAULTS)
+        ("number", "fault", "when"), ((n, f"`{name}`", what) for n, name, what in opcodes.FAULTS)
     )
 
 
 def limit_table() -> str:
     rows = (
-        ("code", bytecode.CODE_BYTES, "bytes"),
-        ("blocks nested in a text, those open around a call included", bytecode.BLOCKS, ""),
-        ("stack", bytecode.STACK_VALUES, "values"),
-        ("variables", bytecode.VARIABLES, ""),
-        ("counted loops open at once, those around a call included", bytecode.COUNTERS, ""),
-        ("calls open at once", bytecode.CALLS, ""),
-        ("procedures", bytecode.DEFS, ""),
-        ("open blocks of one routine", bytecode.NEST_WORDS, "words: 1 for an IF, 2 for a loop"),
-        ("open joins", bytecode.JOINS, ""),
-        ("between two checks of an UNTIL", bytecode.CHECK_MS, "ms"),
+        ("code", opcodes.CODE_BYTES, "bytes"),
+        ("blocks nested in a text, those open around a call included", opcodes.BLOCKS, ""),
+        ("stack", opcodes.STACK_VALUES, "values"),
+        ("variables", opcodes.VARIABLES, ""),
+        ("counted loops open at once, those around a call included", opcodes.COUNTERS, ""),
+        ("calls open at once", opcodes.CALLS, ""),
+        ("procedures", opcodes.DEFS, ""),
+        ("open blocks of one routine", opcodes.NEST_WORDS, "words: 1 for an IF, 2 for a loop"),
+        ("open joins", opcodes.JOINS, ""),
+        ("between two checks of an UNTIL", opcodes.CHECK_MS, "ms"),
     )
     return table(("what", "at most", ""), rows)
 

@@ -18,7 +18,7 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tiniscript import compile_text, robots
-from tiniscript.image import unpack
+from tiniscript.bytecode.image import unpack
 from tiniscript.link.session import Session, Task
 from tools import firmware_size, uno
 from tools.benchmark import PROGRAMS

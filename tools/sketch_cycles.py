@@ -17,7 +17,7 @@ sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tests.machines.wired import Wired
 from tiniscript import compile_text, robots
-from tiniscript.image import unpack
+from tiniscript.bytecode.image import unpack
 from tiniscript.link.session import Session, Task
 from tools import firmware_size, uno
 from tools.platformio_offline import CannotStandIn

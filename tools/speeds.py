@@ -18,10 +18,10 @@ from typing import NamedTuple
 ROOT = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
-from tiniscript.image import HEADER_BYTES
-from tiniscript.run import AnyMachine
-from tiniscript.task import DONE, RUNNING
-from tiniscript.vm import Machine
+from tiniscript.bytecode.image import HEADER_BYTES
+from tiniscript.vm.machine import Machine
+from tiniscript.vm.state import DONE, RUNNING
+from tiniscript.vm.trace import AnyMachine
 from tools.works import KIT, Work, check, code_of, image_of
 
 BENCH = ROOT / "vm_arduino" / "bench" / "host.cpp"
@@ -81,7 +81,7 @@ def of_wasm() -> Timed:
     why = "" if find_spec("wasmtime") else "no wasmtime: the WebAssembly machine does not run"
 
     def seconds(work: Work) -> float:
-        from tiniscript.wasm_machine import WasmImage
+        from tiniscript.vm.wasm import WasmImage
 
         image = image_of(work)
         loaded = WasmImage(image, KIT.fingerprint, SENSORS, len(KIT.actuators))

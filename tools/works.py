@@ -16,8 +16,8 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT / "compiler")]
 
 from tiniscript import compile_text, robots
-from tiniscript.image import HEADER_BYTES
-from tiniscript.run import Ending, Senses, run
+from tiniscript.bytecode.image import HEADER_BYTES
+from tiniscript.vm.trace import Ending, Senses, run
 
 KIT = robots.load(robots.DEFAULT).kit
 SENSOR = [each.name for each in KIT.sensors].index("DISTANCE")

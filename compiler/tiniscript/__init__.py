@@ -13,13 +13,13 @@ __version__ = "0.1.0"
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from tiniscript.bytecode.verify import Verdict
+    from tiniscript.codegen.lower import Place
+    from tiniscript.diagnostics.codes import Problem
     from tiniscript.kit import Kit
-    from tiniscript.lower import Place
-    from tiniscript.problems import Problem
-    from tiniscript.program import Program
     from tiniscript.robots.profile import Robot
+    from tiniscript.semantics.ir import Program
     from tiniscript.source import Source
-    from tiniscript.verify import Verdict
 
 
 class Compiled(NamedTuple):
@@ -44,9 +44,9 @@ class Compiled(NamedTuple):
 
 def check_text(text: str, kit: Kit, name: str = "") -> Compiled:
     """Return the checked program of a text, and all that is wrong with it."""
-    from tiniscript.advice import advice
-    from tiniscript.checker import check
-    from tiniscript.problems import in_order
+    from tiniscript.diagnostics.codes import in_order
+    from tiniscript.semantics.checker import check
+    from tiniscript.semantics.lint import advice
     from tiniscript.source import Source
     from tiniscript.syntax.parser import parse
 
@@ -61,17 +61,17 @@ def check_text(text: str, kit: Kit, name: str = "") -> Compiled:
 
 def fitting(compiled: Compiled, robot: Robot, is_mistake: bool) -> Compiled:
     """Return `compiled` with what there is to say where the robot's memory is too small."""
-    from tiniscript import problems
+    from tiniscript.diagnostics import codes
     from tiniscript.source import Span
 
     over = len(compiled.code) - robot.board.program_bytes
     if over <= 0:
         return compiled
-    code = problems.BOARD_TOO_SMALL if is_mistake else problems.BOARD_MAY_BE_TOO_SMALL
+    code = codes.BOARD_TOO_SMALL if is_mistake else codes.BOARD_MAY_BE_TOO_SMALL
     values = {"robot": robot.name, "limit": str(robot.board.program_bytes),
               "code": str(len(compiled.code)), "over": str(over)}  # fmt: skip
     end = len(compiled.source.text)
-    problem = problems.Problem(code, Span(end, end), values)
+    problem = codes.Problem(code, Span(end, end), values)
     return compiled._replace(problems=[*compiled.problems, problem])
 
 
@@ -91,13 +91,13 @@ def compile_text(text: str, kit: Kit, name: str = "", optimize: bool = True) -> 
 
 
 def _compiled(text: str, kit: Kit, name: str, optimize: bool) -> Compiled:
-    from tiniscript import problems
-    from tiniscript.bytecode import CODE_BYTES
-    from tiniscript.image import pack
-    from tiniscript.lower import lower
-    from tiniscript.optimizer import optimized
+    from tiniscript.bytecode.image import pack
+    from tiniscript.bytecode.opcodes import CODE_BYTES
+    from tiniscript.bytecode.verify import verify
+    from tiniscript.codegen.lower import lower
+    from tiniscript.diagnostics import codes
+    from tiniscript.semantics.optimizer import optimized
     from tiniscript.source import Span
-    from tiniscript.verify import verify
 
     compiled = check_text(text, kit, name)
     program = compiled.program
@@ -107,7 +107,7 @@ def _compiled(text: str, kit: Kit, name: str, optimize: bool) -> Compiled:
     if len(lowered.code) > CODE_BYTES:
         over = {"limit": str(CODE_BYTES), "over": str(len(lowered.code) - CODE_BYTES)}
         place = Span(len(text), len(text))
-        problem = problems.Problem(problems.CODE_TOO_LONG, place, over)
+        problem = codes.Problem(codes.CODE_TOO_LONG, place, over)
         return compiled._replace(problems=[*compiled.problems, problem])
     verdict = verify(lowered.code, len(kit.sensors), len(kit.actuators))
     image = pack(program.start, kit.fingerprint if verdict.uses_kit else 0, lowered.code)

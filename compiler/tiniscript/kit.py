@@ -9,7 +9,7 @@ from __future__ import annotations
 import zlib
 from typing import NamedTuple
 
-from tiniscript.thousandths import as_text
+from tiniscript.fixed_point import as_text
 
 NUMBER = "number"
 YES_NO = "yes/no"

@@ -10,7 +10,7 @@ from collections.abc import Iterable
 from functools import cache
 from typing import NamedTuple
 
-from tiniscript.thousandths import HIGHEST, LOWEST
+from tiniscript.fixed_point import HIGHEST, LOWEST
 
 
 class Argument(NamedTuple):

@@ -19,9 +19,9 @@ from struct import Struct, pack
 from threading import get_ident
 from typing import TYPE_CHECKING, NamedTuple
 
-from tiniscript.image import REFUSALS, ImageRefused
+from tiniscript.bytecode.image import REFUSALS, ImageRefused
+from tiniscript.bytecode.verify import RULES, Refused
 from tiniscript.kit import Device, Kit
-from tiniscript.verify import RULES, Refused
 
 if TYPE_CHECKING:
     from tests.machines import Senses

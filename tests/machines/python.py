@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from tests.machines.host import Ran
-from tiniscript.image import unpack
+from tiniscript.bytecode.image import unpack
+from tiniscript.bytecode.verify import verify
 from tiniscript.kit import Kit
-from tiniscript.run import Ending, run
-from tiniscript.run import Senses as Lists
-from tiniscript.verify import verify
+from tiniscript.vm.trace import Ending, run
+from tiniscript.vm.trace import Senses as Lists
 
 if TYPE_CHECKING:
     from tests.machines import Senses

@@ -6,9 +6,9 @@ from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
 from tests.machines.python import lists_of
-from tiniscript.image import HEADER_BYTES
+from tiniscript.bytecode.image import HEADER_BYTES
 from tiniscript.kit import Kit
-from tiniscript.run import Ending, run
+from tiniscript.vm.trace import Ending, run
 
 if TYPE_CHECKING:
     from tests.machines import Senses
@@ -21,7 +21,7 @@ def missing() -> str:
 
 def run_wasm(image: bytes, kit: Kit, senses: Senses) -> str:
     """Return the trace of an image, which is read and verified by the C++ machine."""
-    from tiniscript.wasm_machine import WasmImage
+    from tiniscript.vm.wasm import WasmImage
 
     loaded = WasmImage(image, kit.fingerprint, len(kit.sensors), len(kit.actuators))
     events = run(

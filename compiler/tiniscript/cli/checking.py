@@ -54,7 +54,7 @@ def run(arguments: list[str], language: str) -> int:
     if options.json:
         import json
 
-        from tiniscript.messages import as_json, message
+        from tiniscript.diagnostics.rendering import as_json, message
 
         said = [message(problem, compiled.source, language) for problem in compiled.problems]
         print(json.dumps(as_json(said), indent=2))

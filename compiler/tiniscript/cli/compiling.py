@@ -55,18 +55,18 @@ def run(arguments: list[str], language: str) -> int:
     outputs.print_problems(compiled, language)
     if not compiled.is_right:
         return 1
-    from tiniscript import maps
+    from tiniscript.codegen import source_map
 
-    places = maps.from_compiled(compiled)
+    places = source_map.from_compiled(compiled)
     if target is None:
         sys.stdout.buffer.write(compiled.image)
         sys.stdout.flush()
     else:
         outputs.write(target, compiled.image, "unwritable")
     if options.map is not None:
-        data = (maps.as_json(places) + "\n").encode(errors="backslashreplace")
+        data = (source_map.as_json(places) + "\n").encode(errors="backslashreplace")
         outputs.write(Path(options.map), data, "unwritable_map")
-    maps.remember(compiled.image, places)
+    source_map.remember(compiled.image, places)
     said = text("compiled", language).format(
         source=inputs.shown(given.name),
         target=inputs.shown(str(target or "-")),
@@ -90,22 +90,22 @@ def _target(given: inputs.Input, output: str | None) -> Path | None:
 
 
 def _stack_values() -> int:
-    from tiniscript.bytecode import STACK_VALUES
+    from tiniscript.bytecode.opcodes import STACK_VALUES
 
     return STACK_VALUES
 
 
 def _will_fault(compiled: Compiled) -> bool:
-    from tiniscript.problems import WILL_FAULT
+    from tiniscript.diagnostics.codes import WILL_FAULT
 
     return any(problem.code is WILL_FAULT for problem in compiled.problems)
 
 
 def _runs(program: object, language: str) -> str:
-    from tiniscript.duration import duration
-    from tiniscript.optimizer import optimized
-    from tiniscript.program import Program
-    from tiniscript.thousandths import as_text
+    from tiniscript.fixed_point import as_text
+    from tiniscript.semantics.duration import duration
+    from tiniscript.semantics.ir import Program
+    from tiniscript.semantics.optimizer import optimized
 
     assert isinstance(program, Program)
     how = duration(optimized(program))

@@ -23,13 +23,13 @@ from tiniscript.cli.trouble import Trouble
 if TYPE_CHECKING:
     from tiniscript.cli.telling import Teller
     from tiniscript.cli.virtual_company import Company
+    from tiniscript.codegen.source_map import Map
     from tiniscript.link.asking import Asked, Asks, Way
     from tiniscript.link.errands import Reply
     from tiniscript.link.errands import Robot as Card
     from tiniscript.link.line import Line
     from tiniscript.link.outcomes import Event, Gone
     from tiniscript.link.ports import PortTrouble
-    from tiniscript.maps import Map
     from tiniscript.robots.profile import Robot
 
 ANSWER_MS = 6000  # for which a robot is asked through the air who it is

@@ -117,12 +117,12 @@ class Description:
         return f"{self._program()}; {state}"
 
     def _program(self) -> str:
-        from tiniscript import maps
+        from tiniscript.codegen import source_map
 
         language, values, fields = self.connection.language, self.values, self.fields()
         if values["saved"] == 0:
             return text("info_no_program", language)
-        places = maps.recall(values["program"])
+        places = source_map.recall(values["program"])
         return text("info_program", language).format(
             checksum=fields["program"],
             name=f" ({shown(places.name)})" if places is not None else "",

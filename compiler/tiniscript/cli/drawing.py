@@ -23,10 +23,10 @@ from rich.segment import ControlType
 from rich.text import Text
 
 from tiniscript.cli.texts import text
+from tiniscript.fixed_point import as_text
 from tiniscript.robots.profile import Robot
 from tiniscript.robots.way import START, Pose, Way
-from tiniscript.run import Ending, Event
-from tiniscript.thousandths import as_text
+from tiniscript.vm.trace import Ending, Event
 
 FRAME_S = 1 / 15
 SLOWEST_S = 0.2  # a frame that took longer (a long computation, Ctrl-Z) does not skip a move

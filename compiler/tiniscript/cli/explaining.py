@@ -25,7 +25,7 @@ def run(arguments: list[str], language: str) -> int:
     options = parser.read(arguments)
     if options is None:
         return 0
-    from tiniscript.messages import explain, titles
+    from tiniscript.diagnostics.rendering import explain, titles
 
     if options.code is None:
         for code, title in titles(language):
@@ -33,7 +33,7 @@ def run(arguments: list[str], language: str) -> int:
         return 0
     said = explain(options.code, language)
     if said is None:
-        from tiniscript.problems import CODES
+        from tiniscript.diagnostics.codes import CODES
         from tiniscript.words import nearest
 
         near = nearest(options.code.upper(), list(CODES)) or ""

@@ -103,8 +103,8 @@ class Guide:
 
     def _drive(self, line: str) -> None:
         from tiniscript import compile_text
+        from tiniscript.bytecode.image import unpack
         from tiniscript.cli.telling import Teller
-        from tiniscript.image import unpack
 
         code = unpack(compile_text(f"SI|{line}", self.connection.profile.kit).image).code
         run = self.connection.ask(lambda session: session.live(code)).values["run"]

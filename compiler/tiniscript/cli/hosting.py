@@ -22,10 +22,10 @@ from tiniscript.cli.trouble import Trouble
 if TYPE_CHECKING:
     from tiniscript.cli.drawing import Screen
     from tiniscript.cli.world_drawing import WorldPicture
-    from tiniscript.run import Event
     from tiniscript.virtual.guests import Guests
     from tiniscript.virtual.host import Host
     from tiniscript.virtual.robot import VirtualRobot
+    from tiniscript.vm.trace import Event
 
 HELP = (
     """\

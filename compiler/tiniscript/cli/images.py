@@ -9,8 +9,8 @@ from tiniscript.cli.trouble import Trouble
 
 if TYPE_CHECKING:
     from tiniscript import Compiled
-    from tiniscript.image import Image
-    from tiniscript.maps import Map
+    from tiniscript.bytecode.image import Image
+    from tiniscript.codegen.source_map import Map
     from tiniscript.robots.profile import Robot
 
 
@@ -39,12 +39,12 @@ def ready(
     `is_strict`: a program that is too large for the robot is a mistake. `is_open`: it may be for
     another robot; then OtherRobot is raised. Raises Trouble where an image is refused.
     """
-    from tiniscript import maps
+    from tiniscript.codegen import source_map
 
     if given.is_image:
         image = _read(given, robot.kit.fingerprint, robot.name)
         _verify(given, image, robot)
-        return Ready(image, len(given.data), maps.recall(image.checksum))
+        return Ready(image, len(given.data), source_map.recall(image.checksum))
     compiled = inputs.compiled(given, robot, is_strict)
     if is_open and not compiled.is_right:
         from tiniscript.cli.own_kit import is_other_robots
@@ -54,14 +54,14 @@ def ready(
     outputs.print_problems(compiled, language)
     if not compiled.is_right:
         return None
-    from tiniscript.bytecode import ISA_MAJOR, ISA_MINOR
-    from tiniscript.image import Image, checksum
+    from tiniscript.bytecode.image import Image, checksum
+    from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 
     assert compiled.program is not None
     kit = kit_of(compiled, robot)
     image = Image(compiled.program.start, kit, compiled.code, checksum(compiled.image),
                   (ISA_MAJOR, ISA_MINOR))  # fmt: skip
-    return Ready(image, len(compiled.image), maps.from_compiled(compiled))
+    return Ready(image, len(compiled.image), source_map.from_compiled(compiled))
 
 
 def kit_of(compiled: Compiled, robot: Robot) -> int:
@@ -71,7 +71,7 @@ def kit_of(compiled: Compiled, robot: Robot) -> int:
 
 
 def _read(given: inputs.Input, kit: int | None, robot: str) -> Image:
-    from tiniscript.image import ImageRefused, unpack
+    from tiniscript.bytecode.image import ImageRefused, unpack
 
     try:
         return unpack(given.data, kit)
@@ -83,7 +83,7 @@ def _read(given: inputs.Input, kit: int | None, robot: str) -> Image:
 
 
 def _verify(given: inputs.Input, image: Image, robot: Robot) -> None:
-    from tiniscript.verify import Refused, verify
+    from tiniscript.bytecode.verify import Refused, verify
 
     kit = robot.kit if image.kit else None
     try:

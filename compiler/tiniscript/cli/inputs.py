@@ -116,7 +116,7 @@ def compiled(given: Input, robot: Robot, is_strict: bool) -> Compiled:
 def parsed(given: Input, kit: Kit) -> Compiled:
     """Return what is wrong with the shape of a program's text, and nothing more."""
     from tiniscript import Compiled
-    from tiniscript.problems import in_order
+    from tiniscript.diagnostics.codes import in_order
     from tiniscript.source import Source
     from tiniscript.syntax.parser import parse
 
@@ -129,12 +129,13 @@ def parsed(given: Input, kit: Kit) -> Compiled:
 
 def _source(given: Input) -> str | Compiled:
     """Return a program's text; where the bytes are no text, that as its one problem."""
-    from tiniscript import Compiled, problems
+    from tiniscript import Compiled
+    from tiniscript.diagnostics import codes
     from tiniscript.source import Source, Span
 
     try:
         return decode(given.data)
     except Unreadable as unreadable:
-        codes = {"too_large": problems.TOO_LARGE, "binary": problems.BINARY}
-        code = codes.get(unreadable.reason, problems.NOT_UTF8)
-        return Compiled(Source("", given.name), [problems.Problem(code, Span(0, 0))])
+        reasons = {"too_large": codes.TOO_LARGE, "binary": codes.BINARY}
+        code = reasons.get(unreadable.reason, codes.NOT_UTF8)
+        return Compiled(Source("", given.name), [codes.Problem(code, Span(0, 0))])

@@ -12,14 +12,14 @@ from typing import NamedTuple
 
 from tiniscript import Compiled, compile_text
 from tiniscript.cli.live_mark import MARK
+from tiniscript.codegen.lower import Place
+from tiniscript.fixed_point import as_text
 from tiniscript.kit import Kit
-from tiniscript.lower import Place
-from tiniscript.program import Assign, walk
+from tiniscript.semantics.ir import Assign, walk
 from tiniscript.source import Source, Span
 from tiniscript.syntax import ast
 from tiniscript.syntax.lexer import WORD, scan
 from tiniscript.syntax.parser import parse
-from tiniscript.thousandths import as_text
 
 _HEADER = re.compile(r"[ \t]*(SI|SB|PING)[ \t]*\|", re.IGNORECASE | re.ASCII)
 

@@ -162,10 +162,10 @@ class Talk:
         return code
 
     def _run(self, found: Line, is_last: bool) -> int:
-        from tiniscript import maps
+        from tiniscript.codegen import source_map
 
-        places = maps.from_compiled(found.compiled)
-        maps.remember(found.compiled.image, places)  # tsc info names a fault's line later
+        places = source_map.from_compiled(found.compiled)
+        source_map.remember(found.compiled.image, places)  # tsc info names a fault's line later
         kit = images.kit_of(found.compiled, self.connection.profile)
         reply = self.connection.ask(lambda session: session.live(found.compiled.code, kit))
         run = reply.values["run"]

@@ -82,7 +82,7 @@ def whole_number(option: str, found: str | None, default: int, low: int, high: i
 
 def decimal(found: str) -> int | None:
     """Return the thousandths of a decimal, rounded; None where it is none or far too large."""
-    from tiniscript.thousandths import read_literal
+    from tiniscript.fixed_point import read_literal
 
     digits = found[1:] if found[:1] == "-" else found
     if not re.fullmatch(r"[0-9]+(\.[0-9]+)?|\.[0-9]+", digits, re.ASCII):

@@ -37,7 +37,7 @@ def print_problems(compiled: Compiled, language: str) -> None:
     """Print what is wrong with a program, the first problems in full, to standard error."""
     if not compiled.problems:
         return
-    from tiniscript.messages import as_text, message
+    from tiniscript.diagnostics.rendering import as_text, message
 
     color = sys.stderr.isatty() and not os.environ.get("NO_COLOR")
     for problem in compiled.problems[:SHOWN]:

@@ -25,7 +25,7 @@ SHOWN_CHARACTERS = 60  # of a path in a message: a longer one could not be copie
 
 def naming(compiled: Compiled, robot: Robot) -> Compiled:
     """Return `compiled` with the robots named that have a word which this robot does not have."""
-    from tiniscript import other_kits
+    from tiniscript.semantics import other_kits
 
     problems = compiled.problems
     if not any(map(other_kits.is_unknown, problems)):
@@ -37,9 +37,9 @@ def naming(compiled: Compiled, robot: Robot) -> Compiled:
 
 def is_other_robots(compiled: Compiled) -> bool:
     """Whether a program has words of another robot: its problems have been through `naming`."""
-    from tiniscript import other_kits
-    from tiniscript.problems import OTHER_ROBOT
+    from tiniscript.diagnostics.codes import OTHER_ROBOT
     from tiniscript.robots import given
+    from tiniscript.semantics import other_kits
 
     unknown = [problem for problem in compiled.problems if other_kits.is_unknown(problem)]
     if any(problem.code is OTHER_ROBOT for problem in unknown):

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from rich.text import Text
 
 from tiniscript.cli.drawing import DOTS, FRAME_S, Screen
-from tiniscript.thousandths import as_text
+from tiniscript.fixed_point import as_text
 
 if TYPE_CHECKING:
     from tiniscript.link.outcomes import Event

@@ -11,11 +11,11 @@ from tiniscript.cli.texts import text
 from tiniscript.cli.trouble import Trouble
 
 if TYPE_CHECKING:
-    from tiniscript.image import Image
+    from tiniscript.bytecode.image import Image
+    from tiniscript.codegen.source_map import Map
     from tiniscript.kit import Device
-    from tiniscript.maps import Map
     from tiniscript.robots.profile import Robot
-    from tiniscript.run import Ending, MachineOf
+    from tiniscript.vm.trace import Ending, MachineOf
 
 HELP = (
     """\
@@ -82,9 +82,9 @@ def run(arguments: list[str], language: str) -> int:
     if ready is None:
         return 1
     machine_of = _cpp_machine(ready.image, robot) if options.machine == "cpp" else None
-    from tiniscript.run import Senses
-    from tiniscript.run import run as run_code
-    from tiniscript.vm import Machine
+    from tiniscript.vm.machine import Machine
+    from tiniscript.vm.trace import Senses
+    from tiniscript.vm.trace import run as run_code
 
     senses = Senses(robot.kit, lists)
     events = run_code(
@@ -107,14 +107,14 @@ def run(arguments: list[str], language: str) -> int:
 def _cpp_machine(image: Image, robot: Robot) -> MachineOf:
     """Return the C++ machine with an image that is verified already: it must agree to that."""
     try:
-        from tiniscript.wasm_machine import WasmImage
+        from tiniscript.vm.wasm import WasmImage
     except (ImportError, OSError, RuntimeError) as why:  # not there, or not for this computer
         from tiniscript.cli import installing
 
         how = installing.command(installing.VIRTUAL)
         raise Trouble(2, "no_wasmtime", why=str(why), how=how) from None
-    from tiniscript.image import ImageRefused, pack
-    from tiniscript.verify import Refused
+    from tiniscript.bytecode.image import ImageRefused, pack
+    from tiniscript.bytecode.verify import Refused
 
     kit = robot.kit
     data = pack(image.start, image.kit, image.code)
@@ -129,7 +129,7 @@ def _print(events: object) -> Ending:
     from collections.abc import Iterator
     from typing import cast
 
-    from tiniscript.run import Ending, Event
+    from tiniscript.vm.trace import Ending, Event
 
     write = sys.stdout.write
     for event in cast("Iterator[Event | Ending]", events):

@@ -51,7 +51,7 @@ def run(arguments: list[str], language: str) -> int:
 
 
 def print_listing(ready: images.Ready, robot: Robot, name: str, language: str) -> None:
-    from tiniscript.listing import listing
+    from tiniscript.bytecode.disassembly import listing
 
     image = ready.image
     key = "for_robot" if image.kit else "any_robot"
@@ -80,7 +80,7 @@ def print_listing(ready: images.Ready, robot: Robot, name: str, language: str) -
 def print_json(ready: images.Ready, robot: Robot) -> None:
     import json
 
-    from tiniscript.listing import rows
+    from tiniscript.bytecode.disassembly import rows
 
     image = ready.image
     instructions = []

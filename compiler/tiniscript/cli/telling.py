@@ -16,16 +16,16 @@ from tiniscript.cli.trouble import Trouble
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
+    from tiniscript.codegen.source_map import Map
     from tiniscript.link.outcomes import Event
-    from tiniscript.maps import Map
-    from tiniscript.run import Event as Traced
+    from tiniscript.vm.trace import Event as Traced
 
 FAULTED = 3  # a state of `link.messages`
 
 
 def fault_name(number: int) -> str:
     """Return the name of a fault: of the machine's, or of the link's."""
-    from tiniscript.bytecode import FAULTS
+    from tiniscript.bytecode.opcodes import FAULTS
     from tiniscript.link.messages import LINK_FAULTS
 
     names = {each: name for each, name, _ in (*FAULTS, *LINK_FAULTS)}
@@ -34,12 +34,12 @@ def fault_name(number: int) -> str:
 
 def fault_sentence(number: int, at: int, program: int, places: Map | None, language: str) -> str:
     """Return what a fault is, and the line of the program where it was, if its text is known."""
-    from tiniscript import maps
     from tiniscript.cli.running import fault_text
     from tiniscript.cli.texts import has_text
+    from tiniscript.codegen import source_map
 
     is_other = places is None
-    places = maps.recall(program) if places is None else places
+    places = source_map.recall(program) if places is None else places
     name = fault_name(number)
     if not has_text(f"fault_{name}"):
         return text("fault_unknown", language).format(number=number)
@@ -47,7 +47,7 @@ def fault_sentence(number: int, at: int, program: int, places: Map | None, langu
 
 
 def value_text(value: int, is_yes_no: bool) -> str:
-    from tiniscript.thousandths import as_text
+    from tiniscript.fixed_point import as_text
 
     if is_yes_no:
         return "TRUE" if value else "FALSE"
@@ -132,13 +132,13 @@ class Teller:
             key = "robot_done" if ended == "DONE" else "stopped_NONE"
             self.say(since_ms, ended, "", text(key, self.language))
             return
-        from tiniscript import maps
+        from tiniscript.codegen import source_map
 
         fault = fault_name(numbers["fault"])
         at = numbers["at" if name == "FAULT" else "fault_at"]
         program = numbers["program" if name == "FAULT" else "fault_program"]
         said = fault_sentence(numbers["fault"], at, program, self.places, self.language)
-        places = self.places or maps.recall(program)
+        places = self.places or source_map.recall(program)
         place = places.at(at) if places is not None else None
         more = {} if place is None else {"line": place.line}
         self.say(since_ms, "FAULT", fault, said, is_bad=True, fault=fault, at=at,

@@ -178,11 +178,11 @@ def _upload(
 def _keep_map(ready: images.Ready) -> None:
     """Let other commands know which instruction comes from which line."""
     if ready.places is not None:
-        from tiniscript import maps
-        from tiniscript.image import pack
+        from tiniscript.bytecode.image import pack
+        from tiniscript.codegen import source_map
 
         image = ready.image
-        maps.remember(pack(image.start, image.kit, image.code), ready.places)
+        source_map.remember(pack(image.start, image.kit, image.code), ready.places)
 
 
 def brought(

@@ -165,7 +165,7 @@ def number(
         return default / ONE
     value = decimal(found)
     if value is None or not low <= value <= high:
-        from tiniscript.thousandths import as_text
+        from tiniscript.fixed_point import as_text
 
         allowed = text("range_number", language).format(low=as_text(low), high=as_text(high))
         raise Trouble(2, "bad_number", option=option, range=allowed, found=shown(found) or "''")

@@ -15,10 +15,10 @@ from rich.text import Text
 from tiniscript.cli.drawing import ARROWS, DOTS, ROUND, Picture, Sketch
 from tiniscript.cli.texts import text
 from tiniscript.robots.way import Pose
-from tiniscript.run import Event
 from tiniscript.virtual.geometry import Point
 from tiniscript.virtual.robot import VirtualRobot
 from tiniscript.virtual.world import World
+from tiniscript.vm.trace import Event
 
 WALLS, WAY, LAMP, ROBOT = "", "cyan", "bold yellow", "bold green"
 

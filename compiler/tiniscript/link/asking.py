@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Protocol
 
-from tiniscript.image import Image
+from tiniscript.bytecode.image import Image
 from tiniscript.link.errands import Reply, Robot
 from tiniscript.link.outcomes import Event
 

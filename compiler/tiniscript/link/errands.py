@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Generator, Mapping
 from typing import NamedTuple
 
-from tiniscript.image import STARTS, Image
+from tiniscript.bytecode.image import STARTS, Image
 from tiniscript.link.messages import (
     BY_NAME,
     DETACHED,

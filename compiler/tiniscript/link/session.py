@@ -11,8 +11,8 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Mapping
 
-from tiniscript.bytecode import ISA_MAJOR, ISA_MINOR
-from tiniscript.image import Image
+from tiniscript.bytecode.image import Image
+from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.link import errands
 from tiniscript.link.errands import OK, Errand, Reply, Request, Robot, reply_of
 from tiniscript.link.frames import Frame, decoded, encoded

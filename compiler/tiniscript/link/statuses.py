@@ -10,9 +10,9 @@ from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple
 
-from tiniscript.image import REFUSALS
+from tiniscript.bytecode.image import REFUSALS
+from tiniscript.bytecode.verify import RULES
 from tiniscript.link.messages import FIRST_RULE, FIRST_STATUS, STATUS_NAMES
-from tiniscript.verify import RULES
 
 
 class Sentence(NamedTuple):

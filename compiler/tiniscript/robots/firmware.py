@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from tiniscript.fixed_point import ONE
 from tiniscript.kit import Device
 from tiniscript.robots.boards import CHIPS, HOLD
 from tiniscript.robots.ports import AVRS, Avr
 from tiniscript.robots.profile import Robot, Wiring
-from tiniscript.thousandths import ONE
 
 FULL_COUNT = 1023  # what the converter gives for the highest voltage
 BRIDGES = ("l298n", "l293d", "tb6612")

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from tiniscript.fixed_point import ONE
 from tiniscript.kit import NUMBER, YES_NO, Device, Kit
 from tiniscript.robots.board_reader import device_tables, read_board
 from tiniscript.robots.profile import (
@@ -20,7 +21,6 @@ from tiniscript.robots.profile import (
 )
 from tiniscript.robots.refusals import shown
 from tiniscript.robots.toml_table import Table, parse_toml
-from tiniscript.thousandths import ONE
 from tiniscript.words import WORDS
 
 DEVICES = 32  # sensors, and as many actuators

@@ -10,9 +10,9 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterable, Mapping, Sequence
 
+from tiniscript.fixed_point import HIGHEST, LOWEST, as_text, read_literal
 from tiniscript.robots.profile import Reason
 from tiniscript.robots.refusals import shown
-from tiniscript.thousandths import HIGHEST, LOWEST, as_text, read_literal
 from tiniscript.words import nearest
 
 

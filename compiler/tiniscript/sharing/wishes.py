@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from tiniscript.image import STARTS, Image
+from tiniscript.bytecode.image import STARTS, Image
 from tiniscript.link.asking import Asked, Asks
 from tiniscript.link.errands import Reply
 from tiniscript.link.messages import NAME_BYTES, TRIM_BYTES

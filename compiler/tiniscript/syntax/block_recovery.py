@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import NoReturn
 
-from tiniscript import problems
+from tiniscript.diagnostics import codes
 from tiniscript.kit import Kit
 from tiniscript.source import Span
 from tiniscript.syntax.ast import Argument, Command
@@ -43,7 +43,7 @@ class BlockRecovery:
         written = cursor.tokens[start : cursor.i]
         span = Span(word.start, written[-1].end if written else word.end)
         fix = head_in(WORDS[word.text], written)
-        self.reporter.fail(problems.MISSING_OPEN, span, word=word.text, fix=fix)
+        self.reporter.fail(codes.MISSING_OPEN, span, word=word.text, fix=fix)
 
     def to_body(self, bracket: int) -> None:
         """Go to where the body begins behind the `(` at `bracket`, which cannot be read."""
@@ -60,7 +60,7 @@ class BlockRecovery:
     def no_name(self, word: Token) -> NoReturn:
         """`DEF` alone."""
         self.begin_reported("DEF", word.span)
-        self.reporter.fail(problems.DEF_NEEDS_NAME, word.span)
+        self.reporter.fail(codes.DEF_NEEDS_NAME, word.span)
 
     def begin_reported(self, word: str, span: Span, head: Argument | None = None) -> None:
         """Open a block whose header has a diagnostic already."""
@@ -84,12 +84,12 @@ class BlockRecovery:
         cursor = self.cursor
         if not arguments:
             span = cursor.span_from(word)
-            self.reporter.report(problems.EMPTY_BRACKETS, span, word=word.text)
+            self.reporter.report(codes.EMPTY_BRACKETS, span, word=word.text)
             return
         inside = cursor.source[Span(arguments[0].span.start, arguments[-1].span.end)]
         fix = f"{other}({inside})" if other else word.text
         span = cursor.span_from(bracket)
-        self.reporter.report(problems.NO_BRACKETS_HERE, span, word=word.text, fix=fix)
+        self.reporter.report(codes.NO_BRACKETS_HERE, span, word=word.text, fix=fix)
 
     # -- arms ---------------------------------------------------------------------------------
 
@@ -104,7 +104,7 @@ class BlockRecovery:
         if written and written[0].kind == "(" and written[-1].kind == ")":
             written = written[1:-1]
         fix = head_in(WORDS["ELSEIF"], written)
-        self.reporter.report(problems.ELSE_IF, span, fix=fix)
+        self.reporter.report(codes.ELSE_IF, span, fix=fix)
         return Token(WORD, "ELSEIF", *span)
 
     def misplaced_arm(self, arm: str, span: Span) -> Block:
@@ -112,7 +112,7 @@ class BlockRecovery:
         innermost = self.blocks.innermost
         if innermost is None or not self._is_open("IF"):
             right = "IF(DISTANCE < 10)"
-            self.reporter.fail(problems.NOT_OPEN, span, found=arm, right=right)
+            self.reporter.fail(codes.NOT_OPEN, span, found=arm, right=right)
         self._report_wrong_end(span, arm, innermost)
         return self._end_until("IF", span)
 
@@ -146,14 +146,14 @@ class BlockRecovery:
             self.blocks.end(span)
         else:
             right = WORDS[word].example if word != "DEF" else "DEF DANCE"
-            self.reporter.report(problems.NOT_OPEN, span, found=found, right=right)
+            self.reporter.report(codes.NOT_OPEN, span, found=found, right=right)
 
     def end_in_two_words(self, end: Token, following: Token) -> None:
         """`END LOOP`."""
         right = BLOCK_ENDS[following.text]
         whole = Token(WORD, right, end.start, following.end)
         found = self.cursor.source[whole.span]
-        self.reporter.report(problems.END_SPLIT, whole.span, found=found, right=right)
+        self.reporter.report(codes.END_SPLIT, whole.span, found=found, right=right)
         self.cursor.i += 2
         self.end(following.text, whole)
 
@@ -162,11 +162,11 @@ class BlockRecovery:
         self.cursor.i += 1
         block = self.blocks.innermost
         if block is None:
-            self.reporter.report(problems.EXTRA_WORD, end.span, found=end.text, fix="")
+            self.reporter.report(codes.EXTRA_WORD, end.span, found=end.text, fix="")
             return
         if not block.is_reported:
             right = BLOCK_ENDS[block.word]
-            self.reporter.report(problems.END_ALONE, end.span, found=end.text, right=right)
+            self.reporter.report(codes.END_ALONE, end.span, found=end.text, right=right)
         self.blocks.end(end.span)
 
     def close_brace(self, brace: Token) -> None:
@@ -182,7 +182,7 @@ class BlockRecovery:
         for block in self.blocks.open:
             if not block.is_reported and not self._is_misspelt(block):
                 right = BLOCK_ENDS[block.word]
-                self.reporter.report(problems.NEVER_ENDS, block.span, word=block.word, right=right)
+                self.reporter.report(codes.NEVER_ENDS, block.span, word=block.word, right=right)
 
     def _is_open(self, word: str) -> bool:
         return any(block.word == word for block in self.blocks.open)
@@ -198,7 +198,7 @@ class BlockRecovery:
         if self._is_misspelt(block):
             return
         line = self.cursor.source.position(block.span.start)[0]
-        self.reporter.report(problems.WRONG_END, span, found=found, word=block.word,
+        self.reporter.report(codes.WRONG_END, span, found=found, word=block.word,
                              line=str(line), right=BLOCK_ENDS[block.word], fix=fix)  # fmt: skip
 
     def _is_misspelt(self, block: Block) -> bool:
@@ -208,7 +208,7 @@ class BlockRecovery:
             if isinstance(each, Command) and each.arguments is None and each.word not in WORDS:
                 if nearest(each.word, (right,)) and not self.is_name(each.word):
                     span = each.span
-                    self.reporter.report(problems.UNKNOWN_WORD, span, found=each.word, near=right)
+                    self.reporter.report(codes.UNKNOWN_WORD, span, found=each.word, near=right)
                     return True
         return False
 

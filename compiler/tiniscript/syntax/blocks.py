@@ -5,8 +5,8 @@ Knows which instructions belong to which block. Knows no tokens but the names of
 
 from __future__ import annotations
 
-from tiniscript import problems
-from tiniscript.bytecode import BLOCKS
+from tiniscript.bytecode.opcodes import BLOCKS
+from tiniscript.diagnostics import codes
 from tiniscript.source import Span
 from tiniscript.syntax.ast import Argument, Arm, Def, If, Instruction, Loop, While
 from tiniscript.syntax.lexer import Token
@@ -66,11 +66,11 @@ class Blocks:
     ) -> Block:
         if word == "DEF":
             if self.open:
-                self._reporter.report(problems.DEF_NOT_TOP, span)
+                self._reporter.report(codes.DEF_NOT_TOP, span)
         else:
             self._depth += 1
             if self._depth == BLOCKS + 1:
-                self._reporter.report(problems.BLOCKS_TOO_DEEP, span, limit=str(BLOCKS))
+                self._reporter.report(codes.BLOCKS_TOO_DEEP, span, limit=str(BLOCKS))
         self.open.append(Block(word, span, head, name))
         return self.open[-1]
 

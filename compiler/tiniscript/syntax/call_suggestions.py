@@ -10,12 +10,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import pairwise
 
-from tiniscript import problems
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Problem
+from tiniscript.fixed_point import as_text
 from tiniscript.kit import Device
-from tiniscript.problems import Problem
 from tiniscript.source import Source, Span
 from tiniscript.syntax.lexer import NEWLINE, NUMBER, ODD, QUOTES, WORD, Token
-from tiniscript.thousandths import as_text
 from tiniscript.words import UNITS, WORDS, Argument, Word
 
 LONGEST = 60  # tokens of which a suggestion is made
@@ -42,7 +42,7 @@ def count_problem(source: Source, word: Word, arguments: Sequence[Span], span: S
     texts = [source[each] for each in arguments]
     fixed = _with_points(texts, arguments, word)
     if fixed is not None:
-        return Problem(problems.DECIMAL_COMMA, span, {"fix": _call(word, fixed)})
+        return Problem(codes.DECIMAL_COMMA, span, {"fix": _call(word, fixed)})
     wanted = len(word.arguments)
     fix = word.example
     if len(texts) > wanted == 1:
@@ -55,7 +55,7 @@ def count_problem(source: Source, word: Word, arguments: Sequence[Span], span: S
         "wanted": str(wanted),
         "found": str(len(arguments)),
     }
-    return Problem(problems.ARGUMENT_COUNT, span, values)
+    return Problem(codes.ARGUMENT_COUNT, span, values)
 
 
 def call_of(source: Source, word: Word, arguments: Sequence[Span]) -> str:

@@ -9,7 +9,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NoReturn
 
-from tiniscript import problems
+from tiniscript.diagnostics import codes
+from tiniscript.fixed_point import HIGHEST, LOWEST, as_text
 from tiniscript.kit import Kit
 from tiniscript.source import Span
 from tiniscript.syntax.call_suggestions import (
@@ -24,7 +25,6 @@ from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, Token
 from tiniscript.syntax.operators import BINARY, Operator, Postfix
 from tiniscript.syntax.reporter import Failed, Reporter
 from tiniscript.syntax.suggestions import operator_words
-from tiniscript.thousandths import HIGHEST, LOWEST, as_text
 from tiniscript.words import UNITS, WORDS, Word, meant_by, other_name
 
 
@@ -46,35 +46,35 @@ class ExpressionRecovery:
         if before.kind == "%" and token.kind in AFTER_VALUE:
             number = cursor.tokens[place - 1]
             span = Span(number.start, before.end)
-            fail(problems.UNIT, span, found=cursor.source[span], right=number.text)
+            fail(codes.UNIT, span, found=cursor.source[span], right=number.text)
         if token.kind is WORD and WORDS[token.text].role != "operator":
             self._no_value_word(token)
         is_at_end = token.kind in AT_END
         span = before.span if is_at_end else token.span
         found = "" if is_at_end else token.text
-        fail(problems.MISSING_VALUE, span, found=found, before=before.text)
+        fail(codes.MISSING_VALUE, span, found=found, before=before.text)
 
     def _no_value_word(self, token: Token) -> NoReturn:
         word, fail = WORDS[token.text], self.reporter.fail
         if word.role == "forever":
-            fail(problems.FOREVER_NOT_HERE, token.span)
+            fail(codes.FOREVER_NOT_HERE, token.span)
         if word.role == "until":
-            fail(problems.UNTIL_ALONE, token.span, fix="")
+            fail(codes.UNTIL_ALONE, token.span, fix="")
         if word.role in ("move", "wait", "motors", "beep", "show"):
             if self.cursor.following.kind == "(":
-                fail(problems.NO_VALUE, token.span, word=word.text)
+                fail(codes.NO_VALUE, token.span, word=word.text)
         if word.text in self.reporter.reserved_words:
             raise Failed
-        fail(problems.RESERVED, token.span, word=word.text, right=other_name(word.text))
+        fail(codes.RESERVED, token.span, word=word.text, right=other_name(word.text))
 
     def literal(self, number: Token, span: Span, value: int) -> int:
         """Report a number that is out of range or too exact, and return what is read for it."""
         if LOWEST <= value <= HIGHEST:
             found, right = number.text[:20], as_text(value)
-            self.reporter.report(problems.ROUNDED, span, found=found, right=right)
+            self.reporter.report(codes.ROUNDED, span, found=found, right=right)
             return value
         limit = as_text(HIGHEST if value > 0 else LOWEST)
-        self.reporter.report(problems.NUMBER_TOO_BIG, span, limit=limit)
+        self.reporter.report(codes.NUMBER_TOO_BIG, span, limit=limit)
         return 0
 
     def called(self, name: Token) -> None:
@@ -84,18 +84,18 @@ class ExpressionRecovery:
         if meant is not None and meant.arguments:
             fix = call_in(meant, self._in_brackets(cursor.i))
             reporter.fail(
-                problems.OTHER_LANGUAGE, name.span, found=name.text, right=meant.text, fix=fix
+                codes.OTHER_LANGUAGE, name.span, found=name.text, right=meant.text, fix=fix
             )
         close = cursor.following
         if close.kind != ")":
-            reporter.fail(problems.NO_FUNCTION, name.span, found=name.text)
+            reporter.fail(codes.NO_FUNCTION, name.span, found=name.text)
         cursor.i += 2
-        reporter.report(problems.EMPTY_BRACKETS, cursor.span_from(name), word=name.text)
+        reporter.report(codes.EMPTY_BRACKETS, cursor.span_from(name), word=name.text)
 
     def no_bracket(self, name: Token, function: Word) -> NoReturn:
         """`ABS 5`."""
         fix = function.example
-        self.reporter.fail(problems.MISSING_OPEN, name.span, word=name.text, fix=fix)
+        self.reporter.fail(codes.MISSING_OPEN, name.span, word=name.text, fix=fix)
 
     def wrong_count(self, word: Word, arguments: Sequence[Span], span: Span) -> NoReturn:
         """`word` does not take so many arguments."""
@@ -130,7 +130,7 @@ class ExpressionRecovery:
         end, right = said
         span = Span(token.start, tokens[end - 1].end)
         found = cursor.source[span]
-        self.reporter.report(problems.OTHER_SIGN, span, found=found, right=right)
+        self.reporter.report(codes.OTHER_SIGN, span, found=found, right=right)
         tokens[end - 1] = Token(WORD if right.isalpha() else right, right, *span)
         cursor.i = end - 1
         return True
@@ -147,7 +147,7 @@ class ExpressionRecovery:
             return False
         span = Span(before.start, token.end)
         found = cursor.source[span]
-        self.reporter.report(problems.UNIT, span, found=found, right=before.text)
+        self.reporter.report(codes.UNIT, span, found=found, right=before.text)
         cursor.i = k + 1
         return True
 
@@ -158,7 +158,7 @@ class ExpressionRecovery:
         no = cursor.tokens[place]
         if no.kind is not WORD or no.text != "NO" or read.parts[-1].op != "NAME":
             return False
-        self.reporter.report(problems.OTHER_SIGN, no.span, found=no.text, right="NOT")
+        self.reporter.report(codes.OTHER_SIGN, no.span, found=no.text, right="NOT")
         cursor.tokens[place] = Token(WORD, "NOT", no.start, no.end)
         cursor.i = place
         read.parts.pop()
@@ -171,7 +171,7 @@ class ExpressionRecovery:
         middle = cursor.source.text[first.token.end : second.start].strip()
         right = cursor.following
         fix = f"{left.text} {first.token.text} {middle} AND {middle} {second.text} {right.text}"
-        self.reporter.fail(problems.CHAINED, Span(first.token.start, second.end), fix=fix)
+        self.reporter.fail(codes.CHAINED, Span(first.token.start, second.end), fix=fix)
 
     # -- where a bracket is wanted ------------------------------------------------------------
 
@@ -186,15 +186,15 @@ class ExpressionRecovery:
             while cursor.token.kind != ")":
                 cursor.i += 1
             cursor.i += 1
-            fail(problems.SEMICOLON_INSIDE, token.span)
+            fail(codes.SEMICOLON_INSIDE, token.span)
         if token.kind == "=":
-            fail(problems.MISSING_VALUE, token.span, found="=", before=last.text)
+            fail(codes.MISSING_VALUE, token.span, found="=", before=last.text)
         if cursor.token is token and starts_value(token) and ends_value(last):
             if self._close_comes():
                 self._nothing_between(last, token, bracket)
         if token.kind is ODD:
             self.reporter.answer(token)
-        fail(problems.MISSING_CLOSE, last.span, last=last.text)
+        fail(codes.MISSING_CLOSE, last.span, last=last.text)
 
     def _nothing_between(self, last: Token, token: Token, bracket: int) -> NoReturn:
         """Two values in brackets with only a space between them."""
@@ -203,10 +203,10 @@ class ExpressionRecovery:
         word = self._word_of(owner)
         if word is not None and len(word.arguments) > 1:
             fix = call_in(word, self._in_brackets(bracket))
-            self.reporter.fail(problems.MISSING_COMMA, span, fix=fix)
+            self.reporter.fail(codes.MISSING_COMMA, span, fix=fix)
         sign = "<" if last.kind is WORD or last.kind == ")" else "+"
         fix = f"{last.text} {sign} {token.text}" if last.kind != ")" and token.kind != "(" else ""
-        self.reporter.fail(problems.MISSING_SIGN, span, before=last.text, found=token.text, fix=fix)
+        self.reporter.fail(codes.MISSING_SIGN, span, before=last.text, found=token.text, fix=fix)
 
     def _word_of(self, token: Token) -> Word | None:
         """Return the word of the language or of the kit that takes values in brackets here."""

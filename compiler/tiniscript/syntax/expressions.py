@@ -9,7 +9,8 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from tiniscript import problems
+from tiniscript.diagnostics import codes
+from tiniscript.fixed_point import HIGHEST, LOWEST, read_literal
 from tiniscript.kit import Kit
 from tiniscript.source import Span
 from tiniscript.syntax.ast import Argument, Part
@@ -17,7 +18,6 @@ from tiniscript.syntax.cursor import AFTER_VALUE, Cursor
 from tiniscript.syntax.lexer import NEWLINE, NUMBER, ODD, WORD, Token
 from tiniscript.syntax.operators import AND, BINARY, COMPARISON, MINUS, NOT, OPEN, Operator, Postfix
 from tiniscript.syntax.reporter import Reporter
-from tiniscript.thousandths import HIGHEST, LOWEST, read_literal
 from tiniscript.words import WORDS, Word
 
 if TYPE_CHECKING:
@@ -126,7 +126,7 @@ class ExpressionParser:
             return True
         if token.text == "NOT":
             if read.waiting and read.waiting[-1].precedence > NOT:
-                self.reporter.fail(problems.NOT_NEEDS_BRACKETS, token.span)
+                self.reporter.fail(codes.NOT_NEEDS_BRACKETS, token.span)
             read.wait(NOT, "NOT", token, cursor.i)
             cursor.i += 1
         elif known.role == "function":

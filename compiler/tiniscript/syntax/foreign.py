@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NoReturn
 
-from tiniscript import problems
+from tiniscript.diagnostics import codes
 from tiniscript.syntax.blocks import ENDS, HEADERS
 from tiniscript.syntax.cursor import AT_END
 from tiniscript.syntax.lexer import WORD, Token
@@ -93,9 +93,7 @@ def _definition(parser: Parser, word: Token) -> NoReturn:
 
 
 def _report(parser: Parser, word: Token, meant: str, fix: str) -> None:
-    parser.reporter.report(
-        problems.OTHER_LANGUAGE, word.span, found=word.text, right=meant, fix=fix
-    )
+    parser.reporter.report(codes.OTHER_LANGUAGE, word.span, found=word.text, right=meant, fix=fix)
 
 
 def _header_fix(parser: Parser, word: Token, meant: str) -> str:

@@ -9,8 +9,8 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
-from tiniscript import problems
-from tiniscript.problems import Code, Problem
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Code, Problem
 from tiniscript.source import Span
 from tiniscript.words import UNITS
 
@@ -124,7 +124,7 @@ class _Repairs:
 
     def othersign(self, text: str, span: Span) -> Token:
         right = _OTHER_SIGNS[text]
-        self.report(problems.OTHER_SIGN, span, found=text, right=right)
+        self.report(codes.OTHER_SIGN, span, found=text, right=right)
         return Token(WORD if right.isalpha() else right, right, *span)
 
     def wide(self, text: str, span: Span) -> Token:
@@ -143,26 +143,26 @@ class _Repairs:
     def brace(self, text: str, span: Span) -> Token:
         if not self.has_braces:
             self.has_braces = True
-            self.report(problems.BRACES, span, found=text)
+            self.report(codes.BRACES, span, found=text)
         return Token(text, text, *span)
 
     def badnumber(self, text: str, span: Span) -> Token:
         number = _number_in(text)
         is_unit = text[len(number) :].upper() in UNITS and text.startswith(number)
-        code = problems.UNIT if is_unit else problems.BAD_NUMBER
+        code = codes.UNIT if is_unit else codes.BAD_NUMBER
         self.report(code, span, found=text, right=number)
         return Token(NUMBER, number, *span)
 
     def badword(self, text: str, span: Span) -> Token:
         plain = _plain(text)
-        self.report(problems.BAD_NAME, span, found=text, right=plain)
+        self.report(codes.BAD_NAME, span, found=text, right=plain)
         return Token(WORD, plain.upper(), *span)
 
     def quote(self, text: str, span: Span) -> Token:
         inside = text.strip(QUOTES).strip()
         number = re.fullmatch(r"[0-9]+(?:\.[0-9]+)?", inside)
         is_program = number or "(" in inside or inside.isupper()
-        self.report(problems.QUOTE, span, found=text[0], right=inside if is_program else "")
+        self.report(codes.QUOTE, span, found=text[0], right=inside if is_program else "")
         if number:
             return Token(NUMBER, inside, *span)
         if re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", inside):
@@ -172,13 +172,13 @@ class _Repairs:
     def note(self, text: str, span: Span) -> None:
         sign = "#" if text[0] == "#" else "/*"
         inside = text[len(sign) :].removesuffix("*/").strip()[:40]
-        self.report(problems.OTHER_NOTE, span, found=sign, right=f"// {inside}")
+        self.report(codes.OTHER_NOTE, span, found=sign, right=f"// {inside}")
 
     def odd(self, text: str, span: Span) -> Token:
         last = self.problems[-1] if self.problems else None
-        if last is None or last.code is not problems.ODD_CHARACTER or last.span.end != span.start:
+        if last is None or last.code is not codes.ODD_CHARACTER or last.span.end != span.start:
             shown = text if text.isprintable() else f"U+{ord(text):04X}"
-            self.report(problems.ODD_CHARACTER, span, found=shown)
+            self.report(codes.ODD_CHARACTER, span, found=shown)
         else:  # one problem for a run of them
             self.problems[-1] = last._replace(span=Span(last.span.start, span.end))
         return Token(ODD, text, *span)

@@ -30,7 +30,7 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
-from tiniscript import problems
+from tiniscript.diagnostics import codes
 from tiniscript.kit import Kit
 from tiniscript.source import Source, Span
 from tiniscript.syntax.ast import Argument, Assign, Break, Command, Program
@@ -55,7 +55,7 @@ _COMMANDS = frozenset(("move", "wait", "motors", "stop", "start", "beep", "show"
 class Parsed(NamedTuple):
     program: Program
     scan: Scan
-    problems: list[problems.Problem]
+    problems: list[codes.Problem]
 
 
 def parse(source: Source, kit: Kit | None = None) -> Parsed:
@@ -207,7 +207,7 @@ class Parser:
         if arguments or known is not None:
             return arguments
         span = self.cursor.span_from(word)
-        self.reporter.report(problems.EMPTY_BRACKETS, span, word=word.text)
+        self.reporter.report(codes.EMPTY_BRACKETS, span, word=word.text)
         return None
 
     def until(self, word: Token) -> Argument | None:
@@ -239,7 +239,7 @@ class Parser:
         cursor.i += 1
         if name.text in WORDS:
             right = other_name(name.text)
-            self.reporter.report(problems.RESERVED, name.span, word=name.text, right=right)
+            self.reporter.report(codes.RESERVED, name.span, word=name.text, right=right)
         block = self.blocks.begin("DEF", Span(word.start, name.end), name=name)
         if cursor.token.kind == "(":
             block.is_reported = True
@@ -265,7 +265,7 @@ class Parser:
         if block is None or block.word != "IF":
             block = self.recovery.in_block.misplaced_arm(word.text, span)
         if block.otherwise is not None:
-            self.reporter.report(problems.AFTER_ELSE, span, found=word.text)
+            self.reporter.report(codes.AFTER_ELSE, span, found=word.text)
             block.otherwise.clear()
         else:
             block.next_arm(head, span)

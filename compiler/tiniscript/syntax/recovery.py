@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NoReturn
 
-from tiniscript import problems
+from tiniscript.diagnostics import codes
 from tiniscript.kit import Kit
 from tiniscript.source import Span
 from tiniscript.syntax.ast import Assign, Command
@@ -67,20 +67,20 @@ class Recovery:
             return False
         self.reporter.answer(sign)
         span = Span(word.start, sign.end)
-        self.reporter.report(problems.SETUP_NEEDS_BAR, span, found=word.text)
+        self.reporter.report(codes.SETUP_NEEDS_BAR, span, found=word.text)
         return True
 
     def unknown_setup(self, word: Token) -> str:
         """`START|F(2, 80)`, `GO|F(2, 80)`: go on as after `SI|`."""
         right = "SI|START;" if word.text == "START" else "SI|"
-        self.reporter.report(problems.SETUP_UNKNOWN, word.span, found=word.text, right=right)
+        self.reporter.report(codes.SETUP_UNKNOWN, word.span, found=word.text, right=right)
         return "SI"
 
     def not_alone(self, ping: Token, token: Token) -> None:
         """`PING|F(2, 80)`: nothing after it is read."""
         cursor = self.cursor
         at_end = token is cursor.tokens[-1]
-        self.reporter.report(problems.PING_ALONE, ping.span if at_end else token.span)
+        self.reporter.report(codes.PING_ALONE, ping.span if at_end else token.span)
         cursor.i = len(cursor.tokens) - 1
 
     # -- what is no instruction ---------------------------------------------------------------
@@ -97,7 +97,7 @@ class Recovery:
             raise Failed
         if token.kind == "-" and cursor.token.kind == "-":
             self._other_note(token.start, "--", cursor.token.end)
-        code = problems.EXTRA_CLOSE if token.kind == ")" else problems.NOT_AN_INSTRUCTION
+        code = codes.EXTRA_CLOSE if token.kind == ")" else codes.NOT_AN_INSTRUCTION
         self.reporter.fail(code, token.span, found=token.text, fix="")
 
     def no_command(self, parser: Parser, word: Token, role: str) -> NoReturn:
@@ -107,10 +107,10 @@ class Recovery:
         if role == "until":
             self._until_after_its_move(parser, word)
         if role == "forever":
-            self.reporter.report(problems.FOREVER_NOT_HERE, word.span)
+            self.reporter.report(codes.FOREVER_NOT_HERE, word.span)
             forever_alone(parser, word)
         if role == "later":
-            self.reporter.fail(problems.LATER_WORD, word.span, word=word.text)
+            self.reporter.fail(codes.LATER_WORD, word.span, word=word.text)
         self._not_an_instruction(word)
 
     def _setup_word(self, parser: Parser, word: Token) -> NoReturn:
@@ -118,12 +118,12 @@ class Recovery:
         cursor = self.cursor
         following = cursor.following
         if word.text == "CHECK_CONNECTION":
-            self.reporter.fail(problems.PING_ALONE, word.span)
+            self.reporter.fail(codes.PING_ALONE, word.span)
         if word.text == "SI" and following.kind != "|":
             if following.kind == "(" or is_question(cursor.tokens, cursor.i + 1):
-                self.reporter.report(problems.SPANISH_IF, word.span)
+                self.reporter.report(codes.SPANISH_IF, word.span)
                 foreign_header(parser, word, "IF")
-        code = problems.SETUP_TWICE if following.kind == "|" else problems.SETUP_NEEDS_BAR
+        code = codes.SETUP_TWICE if following.kind == "|" else codes.SETUP_NEEDS_BAR
         self.reporter.fail(code, word.span, found=word.text)
 
     def _not_an_instruction(self, first: Token) -> NoReturn:
@@ -134,7 +134,7 @@ class Recovery:
         sign = next((token for token in tokens if token.kind in SIGNS), first)
         place = sign if asks else first
         fix = head_in(WORDS["IF"], tokens) if asks else ""
-        self.reporter.fail(problems.NOT_AN_INSTRUCTION, place.span, found=place.text, fix=fix)
+        self.reporter.fail(codes.NOT_AN_INSTRUCTION, place.span, found=place.text, fix=fix)
 
     def _other_note(self, start: int, sign: str, text_start: int) -> NoReturn:
         """`-- go` or `REM go`: the rest of the line is a note."""
@@ -142,7 +142,7 @@ class Recovery:
         cursor.skip_line()
         span = Span(start, cursor.token.start)
         note = "// " + cursor.source[Span(text_start, span.end)].strip()[:40]
-        self.reporter.fail(problems.OTHER_NOTE, span, found=sign, right=note)
+        self.reporter.fail(codes.OTHER_NOTE, span, found=sign, right=note)
 
     # -- UNTIL --------------------------------------------------------------------------------
 
@@ -162,7 +162,7 @@ class Recovery:
             return False
         fix = head_in(WORDS["UNTIL"], inside(cursor.tokens, cursor.i + 1))
         self.reporter.report(
-            problems.OTHER_LANGUAGE, token.span, found=token.text, right="UNTIL", fix=fix
+            codes.OTHER_LANGUAGE, token.span, found=token.text, right="UNTIL", fix=fix
         )
         return True
 
@@ -172,7 +172,7 @@ class Recovery:
         last = here[-1] if here else None
         known = WORDS.get(last.word) if isinstance(last, Command) else None
         if not isinstance(last, Command) or known is None or known.role not in _TIMED or last.until:
-            self.reporter.fail(problems.UNTIL_ALONE, word.span, fix="")
+            self.reporter.fail(codes.UNTIL_ALONE, word.span, fix="")
         self._until_alone(word, self.cursor.source[last.span])
         self.cursor.i += 1
         here[-1] = last._replace(until=parser.argument_of(word, is_reported=True))
@@ -181,7 +181,7 @@ class Recovery:
     def _until_alone(self, until: Token, before: str) -> None:
         values = inside(self.cursor.tokens, self.cursor.i + 1)
         fix = f"{before} {head_in(WORDS['UNTIL'], values)}" if before else ""
-        self.reporter.report(problems.UNTIL_ALONE, until.span, fix=fix)
+        self.reporter.report(codes.UNTIL_ALONE, until.span, fix=fix)
 
     # -- a command without brackets -----------------------------------------------------------
 
@@ -198,7 +198,7 @@ class Recovery:
             self._braces_for_brackets(word, known)
         span = Span(word.start, rest[-1].end if rest else word.end)
         fix = call_in(known, rest)
-        self.reporter.report(problems.MISSING_OPEN, span, word=word.text, fix=fix)
+        self.reporter.report(codes.MISSING_OPEN, span, word=word.text, fix=fix)
         if cursor.token.kind is WORD and cursor.token.text != "UNTIL":
             self.in_block.go_on()
         raise Failed
@@ -211,7 +211,7 @@ class Recovery:
         while cursor.token.kind not in ("}", *AT_END):
             cursor.i += 1
         fix = call_in(known, cursor.tokens[start : cursor.i])
-        self.reporter.fail(problems.MISSING_OPEN, word.span, word=word.text, fix=fix)
+        self.reporter.fail(codes.MISSING_OPEN, word.span, word=word.text, fix=fix)
 
     # -- what begins with a name --------------------------------------------------------------
 
@@ -225,10 +225,10 @@ class Recovery:
             span = Span(name.start, rest[-1].end)
             cursor.i = end
             fix = call_in(word, rest)
-            self.reporter.fail(problems.MISSING_OPEN, span, word=name.text, fix=fix)
+            self.reporter.fail(codes.MISSING_OPEN, span, word=name.text, fix=fix)
         self.reporter.reserved_words.add(name.text)
         right = other_name(name.text)
-        self.reporter.report(problems.RESERVED, name.span, word=name.text, right=right)
+        self.reporter.report(codes.RESERVED, name.span, word=name.text, right=right)
 
     def unread_assignment(self, name: Token) -> None:
         """Remember that a variable is set here, to a value that cannot be read."""
@@ -240,7 +240,7 @@ class Recovery:
         kind = following.kind
         is_alone = kind in AT_END
         if kind == "|":
-            self.reporter.fail(problems.SETUP_TWICE, word.span, found=word.text)
+            self.reporter.fail(codes.SETUP_TWICE, word.span, found=word.text)
         if not is_alone and kind != "(":
             self._what_follows_a_name(word, following)
         if self.kit is not None or (word.text == "END" and is_alone):
@@ -261,7 +261,7 @@ class Recovery:
             fix, found = changed
             self.reporter.answer(following)
             self.unread_assignment(word)
-            self.reporter.fail(problems.OTHER_ASSIGNMENT, word.span, found=found, fix=fix)
+            self.reporter.fail(codes.OTHER_ASSIGNMENT, word.span, found=found, fix=fix)
         if kind is WORD:
             self._word_before(word, following)
         if word.text in BEFORE_NOTE and (kind is WORD or kind is ODD):
@@ -282,7 +282,7 @@ class Recovery:
         elif word.text in BEFORE_CALL:
             fix = following.text
         if fix:
-            self.reporter.report(problems.EXTRA_WORD, word.span, found=word.text, fix=fix)
+            self.reporter.report(codes.EXTRA_WORD, word.span, found=word.text, fix=fix)
             cursor.i += 1
             raise Resumed
 
@@ -296,7 +296,7 @@ class Recovery:
         if glued is not None:
             cursor.i = end
             name = glued.partition("(")[0]
-            self.reporter.fail(problems.MISSING_OPEN, span, word=name, fix=glued)
+            self.reporter.fail(codes.MISSING_OPEN, span, word=name, fix=glued)
         meant = WORDS.get(meant_by(word.text) or "")
         if meant is not None and following.kind is NUMBER and meant.role in (*_TIMED, "show"):
             cursor.i = end
@@ -327,7 +327,7 @@ class Recovery:
         self, span: Span, found: str, meant: Word, values: list[Token]
     ) -> NoReturn:
         fix = call_in(meant, values) if meant.arguments else meant.text
-        self.reporter.fail(problems.OTHER_LANGUAGE, span, found=found, right=meant.text, fix=fix)
+        self.reporter.fail(codes.OTHER_LANGUAGE, span, found=found, right=meant.text, fix=fix)
 
     # -- where an instruction must end --------------------------------------------------------
 
@@ -351,23 +351,23 @@ class Recovery:
             raise Failed
         if kind == ")":
             cursor.i += 1
-            fail(problems.EXTRA_CLOSE, token.span, found=")")
+            fail(codes.EXTRA_CLOSE, token.span, found=")")
         if kind == "|":
-            fail(problems.SETUP_TWICE, token.span, found=first.text)
+            fail(codes.SETUP_TWICE, token.span, found=first.text)
         if kind == "-" and after.kind == "-" and after.start == token.end:
             self._other_note(token.start, "--", after.end)
         if header is not None and first.text in WORDS and WORDS[first.text].arguments:
             if kind in SIGNS or text in ("AND", "OR"):
                 self._question_goes_on(first, header)
         if kind in SIGNS:
-            fail(problems.NOT_AN_INSTRUCTION, token.span, found=text, fix="")
+            fail(codes.NOT_AN_INSTRUCTION, token.span, found=text, fix="")
         if kind == "," and before.kind is NUMBER and after.kind is NUMBER:
             whole = cursor.source[Span(first.start, before.end)]
             fix = f"{whole}.{after.text}"
-            fail(problems.DECIMAL_COMMA, Span(before.start, after.end), fix=fix)
+            fail(codes.DECIMAL_COMMA, Span(before.start, after.end), fix=fix)
         if kind is WORD and text in (BETWEEN if header is None else AFTER_HEADER):
             if header is not None or (after.kind is WORD and not self.in_block.is_name(text)):
-                self.reporter.report(problems.EXTRA_WORD, token.span, found=text, fix="")
+                self.reporter.report(codes.EXTRA_WORD, token.span, found=text, fix="")
                 cursor.i += 1
                 self.in_block.go_on()
         self._separator_missing(first, token, before, header)
@@ -382,7 +382,7 @@ class Recovery:
             header.is_reported = True
         if line != self.reporter.crowded_line:
             self.reporter.crowded_line = line
-            code = problems.MISSING_SEPARATOR if header is None else problems.HEADER_SEPARATOR
+            code = codes.MISSING_SEPARATOR if header is None else codes.HEADER_SEPARATOR
             shown = shortened(self.cursor.source.text[first.start : before.end])
             self.reporter.report(code, token.span, found=token.text, before=shown)
 
@@ -396,5 +396,5 @@ class Recovery:
         fix = head_in(WORDS[first.text], cursor.tokens[start + 1 : cursor.i])
         header.is_reported = True
         span = cursor.span_from(first)
-        self.reporter.report(problems.MISSING_OPEN, span, word=first.text, fix=fix)
+        self.reporter.report(codes.MISSING_OPEN, span, word=first.text, fix=fix)
         self.in_block.go_on()

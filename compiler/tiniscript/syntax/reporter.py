@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import NoReturn
 
-from tiniscript.problems import Code, Problem
+from tiniscript.diagnostics.codes import Code, Problem
 from tiniscript.source import Span
 from tiniscript.syntax.lexer import Token
 

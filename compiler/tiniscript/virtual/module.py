@@ -14,7 +14,7 @@ from weakref import WeakMethod
 
 from wasmtime import Func, FuncType, Instance, Memory
 
-from tiniscript import wasm_store
+from tiniscript.vm import wasm_store
 
 PATH = Path(__file__).with_name("robot.wasm")
 

@@ -10,15 +10,15 @@ from collections.abc import Mapping, Sequence
 from random import Random
 from typing import NamedTuple
 
-from tiniscript.bytecode import FAULTS
+from tiniscript.bytecode.opcodes import FAULTS
 from tiniscript.robots.boards import AT_STOP, HOLD
 from tiniscript.robots.profile import Robot
 from tiniscript.robots.way import Pose
-from tiniscript.run import Event, TracedRobot
 from tiniscript.virtual.driving import Driving
 from tiniscript.virtual.module import POWER_ON, RESET_BUTTON, Circumstances, Firmware
 from tiniscript.virtual.sensing import Sensing
 from tiniscript.virtual.world import World, WorldRefused
+from tiniscript.vm.trace import Event, TracedRobot
 
 __all__ = ("POWER_ON", "RESET_BUTTON", "Settings", "VirtualRobot")
 

@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import math
 
+from tiniscript.fixed_point import ONE
 from tiniscript.robots.profile import LANGUAGES, ProfileRefused, Reason
 from tiniscript.robots.refusals import shown
 from tiniscript.robots.toml_table import Table, parse_toml
 from tiniscript.robots.way import Pose
-from tiniscript.thousandths import ONE
 from tiniscript.virtual.geometry import Point
 from tiniscript.virtual.world import Lamp, Line, World, WorldRefused
 

@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
+from tiniscript.fixed_point import ONE
 from tiniscript.kit import Device
 from tiniscript.robots.profile import Place, Wiring
-from tiniscript.thousandths import ONE
 
 # Rails: all that is joined to one of them is joined together.
 BOARD_5V, GROUND, MOTOR_BATTERY, SERVO_SUPPLY = "5V", "GND", "M+", "S+"

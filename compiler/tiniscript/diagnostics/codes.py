@@ -1,6 +1,6 @@
 """Everything we can tell a person about a program, with its code, as data.
 
-Knows which problems there are. Their words, in English and Spanish, are in `problems.toml`,
+Knows which problems there are. Their words, in English and Spanish, are in `catalogue.toml`,
 which `messages` reads when there is something to say.
 """
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from typing import NamedTuple, NoReturn
 
-from tiniscript.bytecode import (
+from tiniscript.bytecode.opcodes import (
     BY_CODE,
     CALLS,
     CODE_BYTES,

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from tiniscript.bytecode import VARIABLES
+from tiniscript.bytecode.opcodes import VARIABLES
 
 FOREVER = -1  # the time of a move that only its UNTIL ends
 

@@ -9,9 +9,9 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
-from tiniscript import problems
-from tiniscript.program import Expression, Term
-from tiniscript.scope import Scope
+from tiniscript.diagnostics import codes
+from tiniscript.semantics.ir import Expression, Term
+from tiniscript.semantics.symbols import Scope
 from tiniscript.source import Span
 from tiniscript.syntax.ast import Argument, Part
 from tiniscript.words import WORDS, meant_by
@@ -69,7 +69,7 @@ class Kinds:
                 kind = NUMBER if op == "TIME" else YES_NO
                 stack.append(_Operand(kind, 1, part.start, part.end))
             elif op == "FOREVER":
-                self.scope.report(problems.FOREVER_NOT_HERE, Span(part.start, part.end))
+                self.scope.report(codes.FOREVER_NOT_HERE, Span(part.start, part.end))
                 return self.nothing
             else:
                 terms.append(Term(op))
@@ -94,7 +94,7 @@ class Kinds:
             kind = YES_NO if self.kit.sensors[name.number].is_yes_no else NUMBER
             term = Term("SENSOR", name.number)
         else:
-            code = problems.DEF_READ if name.what == "def" else problems.ACTUATOR_READ
+            code = codes.DEF_READ if name.what == "def" else codes.ACTUATOR_READ
             scope.report(code, Span(part.start, part.end), name=part.value)
         stack.append(_Operand(kind, 1, part.start, part.end))
         return term
@@ -102,20 +102,20 @@ class Kinds:
     def _unknown(self, part: Part, name: str, target: str | None) -> None:
         scope, span = self.scope, Span(part.start, part.end)
         if name in scope.def_names:
-            scope.report(problems.DEF_READ, span, name=name)
+            scope.report(codes.DEF_READ, span, name=name)
             return
         meant = meant_by(name) or ""
         if name not in scope.set_somewhere and name != target and (
             (meant in WORDS and WORDS[meant].role in ("value", "forever")) or meant in scope.names
         ):  # fmt: skip
-            scope.report(problems.OTHER_LANGUAGE, span, found=name, right=meant, fix=meant)
+            scope.report(codes.OTHER_LANGUAGE, span, found=name, right=meant, fix=meant)
             return
         known = (each for each, its in scope.names.items() if its.what in ("sensor", "variable"))
         near = scope.near(name, known)
         if name == target or name in scope.set_somewhere:
-            scope.report(problems.USED_BEFORE_SET, span, name=name, near=near)
+            scope.report(codes.USED_BEFORE_SET, span, name=name, near=near)
         else:
-            scope.report(problems.UNKNOWN_NAME, span, found=name, near=near)
+            scope.report(codes.UNKNOWN_NAME, span, found=name, near=near)
 
     def _apply(self, part: Part, stack: list[_Operand]) -> None:
         """Take the operands of an operator from `stack` and put its result there."""
@@ -144,18 +144,18 @@ class Kinds:
         elif left.kind != right.kind:
             if ANY not in (left.kind, right.kind):
                 sign = _ORDER.get(op) or _EQUAL[op]
-                self.scope.report(problems.MIXED_COMPARE, Span(start, end), sign=sign,
+                self.scope.report(codes.MIXED_COMPARE, Span(start, end), sign=sign,
                                     left="@" + left.kind, right="@" + right.kind,
                                     fix=self._yes_no_alone(op, left, right))  # fmt: skip
         elif left.kind == YES_NO and op in _ORDER:
-            self.scope.report(problems.YES_NO_ORDER, Span(start, end), sign=_ORDER[op])
+            self.scope.report(codes.YES_NO_ORDER, Span(start, end), sign=_ORDER[op])
         stack.append(_Operand(kind, depth, start, end))
 
     def _wants_number(self, by: str, operand: _Operand) -> None:
         if operand.kind == YES_NO:
             span = Span(operand.start, operand.end)
             found = self.scope.source[span]
-            self.scope.report(problems.WANTS_NUMBER, span, by=by, found=found)
+            self.scope.report(codes.WANTS_NUMBER, span, by=by, found=found)
 
     def _wants_yes_no(self, by: str, operand: _Operand, left: _Operand | None = None) -> None:
         """`left` stands before an AND or OR: `X = 5 OR 6` means `X = 5 OR X = 6`."""
@@ -166,7 +166,7 @@ class Kinds:
             if left is not None and left.end - left.start <= 80:
                 asked = _COMPARED.match(self.scope.source[Span(left.start, left.end)])
                 fix = f"{asked[0]} {found}" if asked else fix
-            self.scope.report(problems.WANTS_CONDITION, span, by=by, found=found, fix=fix)
+            self.scope.report(codes.WANTS_CONDITION, span, by=by, found=found, fix=fix)
 
     def question(self, found: str) -> str:
         """Return the question that was probably meant with a number alone."""

@@ -9,10 +9,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import NamedTuple, Protocol
 
+from tiniscript.fixed_point import as_text, limited, whole
 from tiniscript.kit import Kit
-from tiniscript.task import DONE, FAULT, WAITING, Robot
-from tiniscript.thousandths import as_text, limited, whole
-from tiniscript.vm import Machine
+from tiniscript.vm.machine import Machine
+from tiniscript.vm.state import DONE, FAULT, WAITING, Robot
 
 SLICE = 1000  # instructions between two looks at the limit
 

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from tiniscript import thousandths
-from tiniscript.program import (
+from tiniscript import fixed_point
+from tiniscript.fixed_point import Fault, whole
+from tiniscript.semantics.ir import (
     Arm,
     Assign,
     Beep,
@@ -32,17 +33,16 @@ from tiniscript.program import (
     goes_on,
     walk,
 )
-from tiniscript.thousandths import Fault, whole
 
 _BINARY: dict[str, Callable[[int, int], int]] = {
-    "ADD": thousandths.add, "SUB": thousandths.subtract, "MUL": thousandths.multiply,
-    "DIV": thousandths.divide, "MOD": thousandths.modulo, "MIN": min, "MAX": max,
-    "ROUND": thousandths.round_to,
+    "ADD": fixed_point.add, "SUB": fixed_point.subtract, "MUL": fixed_point.multiply,
+    "DIV": fixed_point.divide, "MOD": fixed_point.modulo, "MIN": min, "MAX": max,
+    "ROUND": fixed_point.round_to,
     "EQ": int.__eq__, "NE": int.__ne__, "LT": int.__lt__, "LE": int.__le__, "GT": int.__gt__,
     "GE": int.__ge__,
 }  # fmt: skip
 _UNARY: dict[str, Callable[[int], int]] = {
-    "NEG": thousandths.negate, "ABS": thousandths.absolute, "NOT": (1).__sub__,
+    "NEG": fixed_point.negate, "ABS": fixed_point.absolute, "NOT": (1).__sub__,
 }  # fmt: skip
 _YES_NO = frozenset(("EQ", "NE", "LT", "LE", "GT", "GE", "NOT"))
 # What cannot fault, so that evaluating it or not makes no difference.

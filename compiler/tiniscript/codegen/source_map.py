@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from tiniscript import files
-from tiniscript import image as images
+from tiniscript.bytecode import image as images
 from tiniscript.files import contents
 
 if TYPE_CHECKING:

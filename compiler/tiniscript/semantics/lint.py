@@ -7,11 +7,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from tiniscript import problems
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Code, Problem
+from tiniscript.fixed_point import as_text
 from tiniscript.kit import Kit
-from tiniscript.optimizer import constant, fold, sure_fault
-from tiniscript.problems import Code, Problem
-from tiniscript.program import (
+from tiniscript.semantics.ir import (
     Assign,
     Beep,
     Body,
@@ -31,8 +31,8 @@ from tiniscript.program import (
     loops_end,
     walk,
 )
+from tiniscript.semantics.optimizer import constant, fold, sure_fault
 from tiniscript.source import Span
-from tiniscript.thousandths import as_text
 
 LONG_MOVE = 500  # ms: a robot goes a hand's breadth in this time
 _SIGNS = {"EQ": "=", "NE": "<>", "LT": "<", "LE": "<=", "GT": ">", "GE": ">="}
@@ -56,14 +56,14 @@ def _report(found: list[Problem], code: Code, span: Span, **values: str) -> None
 def _look_at(body: Body, program: Program, kit: Kit, found: list[Problem]) -> None:
     for k, statement in enumerate(body):
         if k + 1 < len(body) and not goes_on((statement,)):
-            _report(found, problems.NEVER_REACHED, body[k + 1].span)
+            _report(found, codes.NEVER_REACHED, body[k + 1].span)
             break
     for statement in body:
         _expressions(statement, found)
         if isinstance(statement, Move) and statement.until is None:
             time = None if statement.time is None else constant(fold(statement.time))
             if time is not None and time <= 0:
-                _report(found, problems.MOVE_OF_NO_TIME, statement.span, word=statement.direction)
+                _report(found, codes.MOVE_OF_NO_TIME, statement.span, word=statement.direction)
         if isinstance(statement, (Loop, While)):
             _late_checks(statement.body, kit, found)
             if _is_forever(statement) and not (
@@ -71,7 +71,7 @@ def _look_at(body: Body, program: Program, kit: Kit, found: list[Problem]) -> No
             ):
                 word = "LOOP(FOREVER)" if isinstance(statement, Loop) else "WHILE"
                 head = Span(statement.span.start, statement.span.start + len(word))
-                _report(found, problems.BUSY_LOOP, head, word=word)
+                _report(found, codes.BUSY_LOOP, head, word=word)
         for inner in bodies(statement):
             _look_at(inner, program, kit, found)
 
@@ -80,7 +80,7 @@ def _expressions(statement: Statement, found: list[Problem]) -> None:
     for expression in expressions(statement):
         fault = sure_fault(fold(expression))
         if fault:
-            _report(found, problems.WILL_FAULT, statement.span, fault=fault)
+            _report(found, codes.WILL_FAULT, statement.span, fault=fault)
             return
 
 
@@ -122,7 +122,7 @@ def _late_checks(body: Body, kit: Kit, found: list[Problem]) -> None:
                 f"{statement.direction}({as_text(time)}, {shown}) "
                 f"UNTIL({_comparison(condition, kit) or kit.sensors[sensor].name + ' < 10'})"
             )
-            _report(found, problems.LATE_CHECK, statement.span, word=statement.direction,
+            _report(found, codes.LATE_CHECK, statement.span, word=statement.direction,
                     time=as_text(time), sensor=kit.sensors[sensor].name, fix=fix)  # fmt: skip
 
 
@@ -154,9 +154,9 @@ def _unused(program: Program, statements: list[Statement]) -> Iterator[Problem]:
         if isinstance(statement, Assign) and statement.variable not in used:
             used.add(statement.variable)  # said once
             name = program.variables[statement.variable]
-            yield Problem(problems.UNUSED_VARIABLE, statement.span, {"name": name})
+            yield Problem(codes.UNUSED_VARIABLE, statement.span, {"name": name})
     called = {each.procedure for each in statements if isinstance(each, Call)}
     for number, procedure in enumerate(program.procedures):
         if number not in called:
             span = Span(procedure.span.start, procedure.span.start + len("DEF"))
-            yield Problem(problems.UNUSED_DEF, span, {"name": procedure.name})
+            yield Problem(codes.UNUSED_DEF, span, {"name": procedure.name})

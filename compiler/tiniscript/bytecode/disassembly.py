@@ -10,7 +10,7 @@ import re
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from tiniscript.bytecode import BY_CODE, Op, instruction_text, read_operands
+from tiniscript.bytecode.opcodes import BY_CODE, Op, instruction_text, read_operands
 from tiniscript.kit import Kit
 
 _ROW = re.compile(r"([0-9a-f]{4})  ((?:[0-9a-f]{2} )*[0-9a-f]{2})(?:  |$)")

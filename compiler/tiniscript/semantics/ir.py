@@ -10,8 +10,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from tiniscript.fixed_point import as_text
 from tiniscript.source import Span
-from tiniscript.thousandths import as_text
 
 # An expression is flat, in the order in which a stack machine meets it. `op` is NUMBER, YES_NO,
 # VARIABLE, SENSOR, TIME, AND_LEFT, OR_LEFT, AND, OR or the name of a value instruction that

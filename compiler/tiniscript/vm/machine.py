@@ -7,8 +7,10 @@ The C++ machine has the same names and the same order.
 
 from __future__ import annotations
 
-from tiniscript.bytecode import CHECK_MS
-from tiniscript.task import (
+from tiniscript.bytecode.opcodes import CHECK_MS
+from tiniscript.fixed_point import Fault
+from tiniscript.vm.instructions import decoded
+from tiniscript.vm.state import (
     DONE,
     FAULT,
     FOREVER,
@@ -20,8 +22,6 @@ from tiniscript.task import (
     Robot,
     Task,
 )
-from tiniscript.thousandths import Fault
-from tiniscript.vm_instructions import decoded
 
 LATE_MS = 20  # later than this, a program's own clock no longer catches up
 

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from tiniscript.bytecode import BY_NAME, Op
-from tiniscript.optimizer import is_safe
-from tiniscript.program import Expression, Term
+from tiniscript.bytecode.opcodes import BY_NAME, Op
+from tiniscript.semantics.ir import Expression, Term
+from tiniscript.semantics.optimizer import is_safe
 from tiniscript.source import Span
 
 NEGATED = {"EQ": "NE", "NE": "EQ", "LT": "GE", "GE": "LT", "LE": "GT", "GT": "LE"}

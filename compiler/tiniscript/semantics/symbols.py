@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
+from tiniscript.diagnostics.codes import Code, Problem
 from tiniscript.kit import Kit
-from tiniscript.problems import Code, Problem
 from tiniscript.source import Source, Span
 from tiniscript.syntax import ast
 from tiniscript.words import nearest

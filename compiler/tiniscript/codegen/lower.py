@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from tiniscript.bytecode import CODE_BYTES
-from tiniscript.lower_expression import Emitter, Item, add_value, number_of, tests
-from tiniscript.optimizer import constant
-from tiniscript.program import (
+from tiniscript.bytecode.opcodes import CODE_BYTES
+from tiniscript.codegen.lower_expression import Emitter, Item, add_value, number_of, tests
+from tiniscript.fixed_point import limited, whole
+from tiniscript.semantics.ir import (
     Assign,
     Beep,
     Body,
@@ -31,8 +31,8 @@ from tiniscript.program import (
     While,
     goes_on,
 )
+from tiniscript.semantics.optimizer import constant
 from tiniscript.source import Span
-from tiniscript.thousandths import limited, whole
 
 
 class Place(NamedTuple):

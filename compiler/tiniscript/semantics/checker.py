@@ -10,24 +10,25 @@ from collections.abc import Callable, Sequence
 from itertools import chain
 from typing import NamedTuple
 
-from tiniscript import problems, program
-from tiniscript.bytecode import BLOCKS, CALLS, DEFS, STACK_VALUES, VARIABLES
-from tiniscript.kinds import ANY, Kinds, Value
+from tiniscript.bytecode.opcodes import BLOCKS, CALLS, DEFS, STACK_VALUES, VARIABLES
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Problem
+from tiniscript.fixed_point import HIGHEST, as_text
 from tiniscript.kit import Kit
-from tiniscript.problems import Problem
-from tiniscript.program import Statement
-from tiniscript.scope import Name, Scope
+from tiniscript.semantics import ir
+from tiniscript.semantics.ir import Statement
+from tiniscript.semantics.symbols import Name, Scope
+from tiniscript.semantics.types import ANY, Kinds, Value
 from tiniscript.source import Source, Span
 from tiniscript.syntax import ast
 from tiniscript.syntax.call_suggestions import actuator_word, call_of, count_problem, glued_call
-from tiniscript.thousandths import HIGHEST, as_text
 from tiniscript.words import WORDS, Argument, Word, meant_by
 
 
 class Checked(NamedTuple):
     """`program` is a whole program only where no problem is a mistake."""
 
-    program: program.Program
+    program: ir.Program
     problems: list[Problem]
 
 
@@ -35,9 +36,7 @@ def check(source: Source, parsed: ast.Program, kit: Kit) -> Checked:
     """Return what a program means on a robot with this kit, and all that is wrong with it."""
     checker = _Checker(source, kit, parsed)
     body = checker.body(parsed.body)
-    meaning = program.Program(
-        parsed.start, tuple(checker.variables), tuple(checker.procedures), body
-    )
+    meaning = ir.Program(parsed.start, tuple(checker.variables), tuple(checker.procedures), body)
     return Checked(meaning, checker.problems)
 
 
@@ -54,7 +53,7 @@ class _Checker(Scope):
         super().__init__(source, kit, parsed)
         self.kinds = Kinds(self)
         self.variables: list[str] = []
-        self.procedures: list[program.Procedure] = []
+        self.procedures: list[ir.Procedure] = []
         self.facts: list[_Procedure] = []
         self.inside: str | None = None  # the DEF whose body is being checked
         self.surely_read = 0  # a bit for each sensor
@@ -63,7 +62,7 @@ class _Checker(Scope):
         self.deepest = 0  # blocks open at once in the routine that is being checked
         self.calls = 0  # calls open at once in it
 
-    def body(self, instructions: Sequence[ast.Instruction]) -> program.Body:
+    def body(self, instructions: Sequence[ast.Instruction]) -> ir.Body:
         made: list[Statement] = []
         for instruction in instructions:
             _CHECKS[type(instruction)](self, instruction, made)
@@ -75,7 +74,7 @@ class _Checker(Scope):
         """Add the readings that come before an instruction; return them as bits."""
         taken = 0
         for sensor in self.missing(values, self.surely_read):
-            made.append(program.Read(sensor, span))
+            made.append(ir.Read(sensor, span))
             taken |= 1 << sensor
         return taken
 
@@ -96,11 +95,11 @@ class _Checker(Scope):
         if name is not None and name.what in ("sensor", "actuator"):
             sensor = name.what == "sensor"
             shown = "5" if node.value is None else self.source[node.value.span]
-            self.report(problems.SENSOR_SET if sensor else problems.ACTUATOR_SET, node.name_span,
+            self.report(codes.SENSOR_SET if sensor else codes.ACTUATOR_SET, node.name_span,
                         name=node.name, value=shown)  # fmt: skip
             return
         if node.name in self.def_names:
-            self.report(problems.NAME_TAKEN, node.name_span, name=node.name)
+            self.report(codes.NAME_TAKEN, node.name_span, name=node.name)
             return
         if node.value is None:
             if name is None:
@@ -111,16 +110,16 @@ class _Checker(Scope):
         number = self.variable(node, value) if name is None else name.number
         known = self.kinds.of_variables[number]
         if ANY not in (known, value.kind) and known != value.kind:
-            self.report(problems.KIND_CHANGES, node.value.span, name=node.name,
+            self.report(codes.KIND_CHANGES, node.value.span, name=node.name,
                         old="@" + known, new="@" + value.kind)  # fmt: skip
         self.take([value], node.span, made)
-        made.append(program.Assign(number, value.terms, node.span))
+        made.append(ir.Assign(number, value.terms, node.span))
 
     def variable(self, node: ast.Assign, value: Value) -> int:
         """Make a new variable; its kind is that of its first assignment."""
         number = len(self.variables)
         if number == VARIABLES:
-            self.report(problems.TOO_MANY_VARIABLES, node.name_span, limit=str(VARIABLES))
+            self.report(codes.TOO_MANY_VARIABLES, node.name_span, limit=str(VARIABLES))
         self.names[node.name] = Name("variable", number)
         self.variables.append(node.name)
         self.kinds.of_variables.append(value.kind)
@@ -131,13 +130,13 @@ class _Checker(Scope):
         if node.until is not None and (word is None or word.role not in ("move", "wait")):
             before = self.source[Span(node.span.start, node.until.span.start)]
             start = node.span.start + before.upper().rfind("UNTIL")
-            self.report(problems.UNTIL_NOT_HERE, Span(start, node.span.end), word=node.word)
+            self.report(codes.UNTIL_NOT_HERE, Span(start, node.span.end), word=node.word)
             node = node._replace(until=None)
         if word is None:
             self.kit_or_def(node, made)
             return
         if word.role == "stop":
-            made.append(program.Stop(node.span))
+            made.append(ir.Stop(node.span))
             return
         arguments = node.arguments or ()
         span = node.span
@@ -146,7 +145,7 @@ class _Checker(Scope):
             return
         forever = word.role in ("move", "wait") and arguments[0].expression[0].op == "FOREVER"
         if forever and node.until is None:
-            self.report(problems.FOREVER_NEEDS_UNTIL, arguments[0].span, word=word.text,
+            self.report(codes.FOREVER_NEEDS_UNTIL, arguments[0].span, word=word.text,
                         fix=self.source[node.span] + " UNTIL(DISTANCE < 10)")  # fmt: skip
         said = len(self.problems)
         values = [
@@ -159,7 +158,7 @@ class _Checker(Scope):
         self.take(values, span, made)
         if word.role in ("move", "wait"):
             until = None if node.until is None else self.until(node.until)
-            made.append(program.Move(
+            made.append(ir.Move(
                 node.word,
                 None if forever else values[0].terms,
                 values[-1].terms if word.role == "move" else None,
@@ -167,11 +166,11 @@ class _Checker(Scope):
                 span,
             ))  # fmt: skip
         elif word.role == "motors":
-            made.append(program.Motors(values[0].terms, values[1].terms, span))
+            made.append(ir.Motors(values[0].terms, values[1].terms, span))
         elif word.role == "beep":
-            made.append(program.Beep(values[0].terms, values[1].terms, span))
+            made.append(ir.Beep(values[0].terms, values[1].terms, span))
         else:
-            made.append(program.Show(values[0].terms, values[0].kind == "yes_no", span))
+            made.append(ir.Show(values[0].terms, values[0].kind == "yes_no", span))
 
     def count(self, word: Word, arguments: tuple[ast.Argument, ...], span: Span) -> None:
         spans = [argument.span for argument in arguments]
@@ -181,7 +180,7 @@ class _Checker(Scope):
         self, node: ast.Command, word: Word, arguments: Sequence[ast.Argument], said: int
     ) -> None:
         """`F(t=2, p=80)`: values have no names here."""
-        unknown = {each.span for each in self.problems[said:] if each.code is problems.UNKNOWN_NAME}
+        unknown = {each.span for each in self.problems[said:] if each.code is codes.UNKNOWN_NAME}
         values = []
         for argument in arguments:
             first, last = argument.expression[0], argument.expression[-1]
@@ -192,7 +191,7 @@ class _Checker(Scope):
                 return
         del self.problems[said:]
         fix = f"{word.text}({', '.join(values)})"
-        self.report(problems.NAMED_ARGUMENT, node.span, word=word.text, fix=fix)
+        self.report(codes.NAMED_ARGUMENT, node.span, word=word.text, fix=fix)
 
     def number(self, argument: ast.Argument, its: Argument, word: str) -> Value:
         """Check an argument that is a number; a plain one must be in range."""
@@ -201,18 +200,18 @@ class _Checker(Scope):
             assert isinstance(part.value, int)
             if not its.low <= part.value <= its.high:
                 low, high = as_text(its.low), "" if its.high == HIGHEST else as_text(its.high)
-                self.report(problems.OUT_OF_RANGE, argument.span, word=word, name=its.name,
+                self.report(codes.OUT_OF_RANGE, argument.span, word=word, name=its.name,
                             unit=its.unit, low=low, high=high,
                             found=as_text(part.value))  # fmt: skip
         value = self.kinds.value(argument)
         if value.kind == "yes_no":
-            self.report(problems.WANTS_NUMBER, argument.span, by=word,
+            self.report(codes.WANTS_NUMBER, argument.span, by=word,
                         found=self.source[argument.span])  # fmt: skip
         return value
 
-    def until(self, argument: ast.Argument) -> program.Until:
+    def until(self, argument: ast.Argument) -> ir.Until:
         value = self.condition(argument, "UNTIL")
-        return program.Until(self.missing([value], 0), value.terms)
+        return ir.Until(self.missing([value], 0), value.terms)
 
     def condition(self, argument: ast.Argument, word: str) -> Value:
         value = self.kinds.value(argument)
@@ -223,12 +222,12 @@ class _Checker(Scope):
 
     def wants_condition(self, argument: ast.Argument, by: str) -> None:
         found = self.source[argument.span]
-        self.report(problems.WANTS_CONDITION, argument.span, by=by, found=found,
+        self.report(codes.WANTS_CONDITION, argument.span, by=by, found=found,
                     fix=self.kinds.question(found))  # fmt: skip
 
     def stack_fits(self, values: Sequence[Value], span: Span) -> None:
         if any(value.depth + i > STACK_VALUES for i, value in enumerate(values)):
-            self.report(problems.VALUES_TOO_DEEP, span, limit=str(STACK_VALUES))
+            self.report(codes.VALUES_TOO_DEEP, span, limit=str(STACK_VALUES))
 
     # -- names as instructions ----------------------------------------------------------------
 
@@ -239,20 +238,20 @@ class _Checker(Scope):
         elif name.what == "actuator":
             self.actuator(node, name.number, made)
         elif node.arguments is not None:
-            self.report(problems.NOT_CALLABLE, node.span, name=node.word)
+            self.report(codes.NOT_CALLABLE, node.span, name=node.word)
         elif name.what == "sensor":
-            made.append(program.Read(name.number, node.span))
+            made.append(ir.Read(name.number, node.span))
             self.surely_read |= 1 << name.number
         elif name.what == "def":
             self.call(node, name.number, made)
         else:
-            self.report(problems.VARIABLE_ALONE, node.span, name=node.word)
+            self.report(codes.VARIABLE_ALONE, node.span, name=node.word)
 
     def actuator(self, node: ast.Command, number: int, made: list[Statement]) -> None:
         device = self.kit.actuators[number]
         word = actuator_word(device)
         if node.arguments is None:
-            self.report(problems.ACTUATOR_ALONE, node.span, name=device.name, fix=word.example)
+            self.report(codes.ACTUATOR_ALONE, node.span, name=device.name, fix=word.example)
             return
         if len(node.arguments) != 1:
             self.count(word, node.arguments, node.span)
@@ -266,27 +265,27 @@ class _Checker(Scope):
             value = self.number(argument, word.arguments[0], device.name)
         self.stack_fits([value], node.span)
         self.take([value], node.span, made)
-        made.append(program.Set(number, value.terms, node.span))
+        made.append(ir.Set(number, value.terms, node.span))
 
     def call(self, node: ast.Command, number: int, made: list[Statement]) -> None:
         facts = self.facts[number]
         if facts.calls + 1 > CALLS:
-            self.report(problems.CALLS_TOO_DEEP, node.span, name=node.word, limit=str(CALLS))
+            self.report(codes.CALLS_TOO_DEEP, node.span, name=node.word, limit=str(CALLS))
         if self.depth + facts.blocks > BLOCKS:
-            self.report(problems.BLOCKS_TOO_DEEP, node.span, limit=str(BLOCKS))
+            self.report(codes.BLOCKS_TOO_DEEP, node.span, limit=str(BLOCKS))
         self.calls = max(self.calls, facts.calls + 1)
         self.deepest = max(self.deepest, self.depth + facts.blocks)
         self.surely_read |= facts.surely_read
-        made.append(program.Call(number, node.span))
+        made.append(ir.Call(number, node.span))
 
     def unknown(self, node: ast.Command) -> None:
         word, span = node.word, node.word_span
         if word == self.inside:
-            self.report(problems.CALLS_ITSELF, span, name=word)
+            self.report(codes.CALLS_ITSELF, span, name=word)
         elif word in self.def_names:
-            self.report(problems.CALL_BEFORE_DEF, span, name=word)
+            self.report(codes.CALL_BEFORE_DEF, span, name=word)
         elif word in self.set_somewhere:
-            self.report(problems.VARIABLE_ALONE, span, name=word)
+            self.report(codes.VARIABLE_ALONE, span, name=word)
         else:
             self.unknown_word(node)
 
@@ -298,20 +297,20 @@ class _Checker(Scope):
             if meant in WORDS:
                 spans = [each.span for each in node.arguments or ()]
                 fix = call_of(self.source, WORDS[meant], spans)
-            self.report(problems.OTHER_LANGUAGE, span, found=word, right=meant, fix=fix)
+            self.report(codes.OTHER_LANGUAGE, span, found=word, right=meant, fix=fix)
             return
         glued = glued_call(word)
         if glued is not None and node.arguments is None:
-            self.report(problems.MISSING_OPEN, span, word=glued.partition("(")[0], fix=glued)
+            self.report(codes.MISSING_OPEN, span, word=glued.partition("(")[0], fix=glued)
             return
         commands = [each.text for each in WORDS.values() if each.role not in
                     ("setup", "later", "value", "operator", "function", "forever")]  # fmt: skip
         near = self.near(word, chain(commands, self.names, self.def_names))
-        self.report(problems.UNKNOWN_WORD, span, found=word, near=near)
+        self.report(codes.UNKNOWN_WORD, span, found=word, near=near)
 
     # -- blocks -------------------------------------------------------------------------------
 
-    def deeper(self, instructions: Sequence[ast.Instruction], is_loop: bool) -> program.Body:
+    def deeper(self, instructions: Sequence[ast.Instruction], is_loop: bool) -> ir.Body:
         self.depth += 1
         self.loops += is_loop
         self.deepest = max(self.deepest, self.depth)
@@ -323,7 +322,7 @@ class _Checker(Scope):
     def if_(self, node: ast.If, made: list[Statement]) -> None:
         before, chain = self.surely_read, 0
         after = -1  # what all arms make surely read
-        arms: list[program.Arm] = []
+        arms: list[ir.Arm] = []
         for arm in node.arms:
             value = self.kinds.nothing
             if arm.condition is not None:
@@ -338,10 +337,10 @@ class _Checker(Scope):
             body = self.deeper(arm.body, False)
             after &= self.surely_read
             self.surely_read = before
-            arms.append(program.Arm(reads, value.terms, body, arm.span))
+            arms.append(ir.Arm(reads, value.terms, body, arm.span))
         otherwise = self.deeper(node.otherwise, False)
         self.surely_read &= after
-        made.append(program.If(tuple(arms), otherwise, node.span))
+        made.append(ir.If(tuple(arms), otherwise, node.span))
 
     def loop(self, node: ast.Loop, made: list[Statement]) -> None:
         count = None
@@ -353,7 +352,7 @@ class _Checker(Scope):
         before, self.surely_read = self.surely_read, 0
         body = self.deeper(node.body, True)
         self.surely_read = before
-        made.append(program.Loop(count, body, node.span))
+        made.append(ir.Loop(count, body, node.span))
 
     def while_(self, node: ast.While, made: list[Statement]) -> None:
         value = self.kinds.nothing
@@ -363,20 +362,20 @@ class _Checker(Scope):
         body = self.deeper(node.body, True)
         self.surely_read = before
         reads = self.missing([value], 0)
-        made.append(program.While(reads, value.terms, body, node.span))
+        made.append(ir.While(reads, value.terms, body, node.span))
 
     def break_(self, node: ast.Break, made: list[Statement]) -> None:
         if not self.loops:
-            self.report(problems.BREAK_OUTSIDE, node.span)
-        made.append(program.Break(node.span))
+            self.report(codes.BREAK_OUTSIDE, node.span)
+        made.append(ir.Break(node.span))
 
     def def_(self, node: ast.Def, made: list[Statement]) -> None:
         known = self.names.get(node.name)
         if known is not None:
-            code = problems.DEF_TWICE if known.what == "def" else problems.NAME_TAKEN
+            code = codes.DEF_TWICE if known.what == "def" else codes.NAME_TAKEN
             self.report(code, node.name_span, name=node.name)
         if len(self.procedures) == DEFS:
-            self.report(problems.TOO_MANY_DEFS, node.name_span, limit=str(DEFS))
+            self.report(codes.TOO_MANY_DEFS, node.name_span, limit=str(DEFS))
         outside = self.surely_read, self.deepest, self.calls
         self.surely_read = self.deepest = self.calls = 0
         self.inside = node.name
@@ -386,7 +385,7 @@ class _Checker(Scope):
         self.surely_read, self.deepest, self.calls = outside
         if known is None:
             self.names[node.name] = Name("def", len(self.procedures))
-        self.procedures.append(program.Procedure(node.name, body, node.span))
+        self.procedures.append(ir.Procedure(node.name, body, node.span))
 
 
 _CHECKS: dict[type, Callable[..., None]] = {

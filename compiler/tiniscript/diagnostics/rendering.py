@@ -1,6 +1,6 @@
 """Problems become words: in English or Spanish, for people and for editors.
 
-Knows how the texts of `problems.toml` are filled, and how a line of a program is shown with the
+Knows how the texts of `catalogue.toml` are filled, and how a line of a program is shown with the
 place marked under it. Knows no single problem: what is said of each is in that file, which is
 read when there is something to say. Prints nothing.
 """
@@ -13,7 +13,7 @@ from collections.abc import Iterable, Mapping
 from functools import cache
 from typing import Any, NamedTuple
 
-from tiniscript.problems import CODES, Problem
+from tiniscript.diagnostics.codes import CODES, Problem
 from tiniscript.source import Source, Span
 
 LINE_COLUMNS = 100  # of a program's line; of a longer one a window is shown
@@ -121,13 +121,13 @@ def titles(lang: str) -> list[tuple[str, str]]:
 
 
 def _texts() -> dict[str, dict[str, Any]]:
-    """Return all tables of `problems.toml`."""
+    """Return all tables of `catalogue.toml`."""
     return _read(_file())
 
 
 @cache
 def _table(name: str) -> dict[str, Any]:
-    """Return one table of `problems.toml`: reading all takes as long as compiling."""
+    """Return one table of `catalogue.toml`: reading all takes as long as compiling."""
     begin = _file().index(f"\n[{name}]\n") + 1
     end = _file().find("\n[", begin)
     return _read(_file()[begin : end if end >= 0 else None])[name]
@@ -137,7 +137,7 @@ def _table(name: str) -> dict[str, Any]:
 def _file() -> str:
     from pathlib import Path
 
-    return Path(__file__).with_name("problems.toml").read_text(encoding="utf-8")
+    return Path(__file__).with_name("catalogue.toml").read_text(encoding="utf-8")
 
 
 def _read(toml: str) -> dict[str, dict[str, Any]]:

@@ -11,13 +11,13 @@ import operator
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from tiniscript import thousandths
-from tiniscript.bytecode import BY_CODE, COMPARATORS, OPS, read_operands
-from tiniscript.task import DONE, FOREVER, MOVE, PAUSE, Task
-from tiniscript.thousandths import ONE, in_range, limited, next_random, random_between, whole
+from tiniscript import fixed_point
+from tiniscript.bytecode.opcodes import BY_CODE, COMPARATORS, OPS, read_operands
+from tiniscript.fixed_point import ONE, in_range, limited, next_random, random_between, whole
+from tiniscript.vm.state import DONE, FOREVER, MOVE, PAUSE, Task
 
 if TYPE_CHECKING:
-    from tiniscript.vm import Machine
+    from tiniscript.vm.machine import Machine
 
 Result = bool | None
 Handler = Callable[..., Result]
@@ -151,16 +151,16 @@ _COMPARE: dict[str, Callable[[int, int], bool]] = {
     name: getattr(operator, name.lower()) for name, _ in COMPARATORS
 }
 _CALCULATE: dict[str, Callable[[int, int], int]] = {
-    "ADD": thousandths.add, "SUB": thousandths.subtract, "MUL": thousandths.multiply,
-    "DIV": thousandths.divide, "MOD": thousandths.modulo, "MIN": min, "MAX": max,
-    "ROUND": thousandths.round_to, "AND": operator.and_, "OR": operator.or_,
+    "ADD": fixed_point.add, "SUB": fixed_point.subtract, "MUL": fixed_point.multiply,
+    "DIV": fixed_point.divide, "MOD": fixed_point.modulo, "MIN": min, "MAX": max,
+    "ROUND": fixed_point.round_to, "AND": operator.and_, "OR": operator.or_,
 }  # fmt: skip
 for _name, _function in _CALCULATE.items():
     _binary(_name, _function)
 for _name, _comparison in _COMPARE.items():
     _comparing(_name, _comparison)
-_unary("NEG", thousandths.negate)
-_unary("ABS", thousandths.absolute)
+_unary("NEG", fixed_point.negate)
+_unary("ABS", fixed_point.absolute)
 _unary("NOT", lambda a: 0 if a else 1)
 
 

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from tiniscript.optimizer import constant, fold
-from tiniscript.program import (
+from tiniscript.fixed_point import whole
+from tiniscript.semantics.ir import (
     Beep,
     Body,
     Call,
@@ -23,7 +23,7 @@ from tiniscript.program import (
     bodies,
     loops_end,
 )
-from tiniscript.thousandths import whole
+from tiniscript.semantics.optimizer import constant, fold
 
 
 class Duration(NamedTuple):

@@ -15,11 +15,11 @@ from weakref import ref
 
 from wasmtime import Func, FuncType, Instance, Memory, ValType
 
-from tiniscript import wasm_store
-from tiniscript.bytecode import FAULTS
-from tiniscript.image import REFUSALS, ImageRefused
-from tiniscript.task import DONE, FAULT, RUNNING, WAITING, Robot
-from tiniscript.verify import RULES, Refused
+from tiniscript.bytecode.image import REFUSALS, ImageRefused
+from tiniscript.bytecode.opcodes import FAULTS
+from tiniscript.bytecode.verify import RULES, Refused
+from tiniscript.vm import wasm_store
+from tiniscript.vm.state import DONE, FAULT, RUNNING, WAITING, Robot
 
 MODULE = Path(__file__).with_name("machine.wasm")
 

@@ -12,7 +12,7 @@ from functools import lru_cache
 from struct import pack as struct_pack
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from tiniscript.bytecode import CODE_BYTES, ISA_MAJOR, ISA_MINOR
+from tiniscript.bytecode.opcodes import CODE_BYTES, ISA_MAJOR, ISA_MINOR
 
 if TYPE_CHECKING:
     from construct import Construct

@@ -7,18 +7,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from tiniscript import problems
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Problem
 from tiniscript.kit import Kit
-from tiniscript.problems import Problem
 from tiniscript.syntax.lexer import WORD, scan
 
-_UNKNOWN = (problems.UNKNOWN_NAME, problems.UNKNOWN_WORD)
+_UNKNOWN = (codes.UNKNOWN_NAME, codes.UNKNOWN_WORD)
 _NUMBERS = ("first", "second", "third")
 
 
 def is_unknown(problem: Problem) -> bool:
     """Whether a word is not known to the program's robot: another kit may have it."""
-    return problem.code in (*_UNKNOWN, problems.OTHER_ROBOT)
+    return problem.code in (*_UNKNOWN, codes.OTHER_ROBOT)
 
 
 def naming_robots(
@@ -40,7 +40,7 @@ def naming_robots(
             robots = [robot for robot in having if robot in whole] or having
             numbered = dict(zip(_NUMBERS, robots, strict=False))
             values = {"found": word, "own": own[0], **numbered}
-            problem = Problem(problems.OTHER_ROBOT, problem.span, values)
+            problem = Problem(codes.OTHER_ROBOT, problem.span, values)
         named.append(problem)
     return named
 

@@ -1,0 +1,1 @@
+"""The contract of compiler and machine: opcodes, images, the verifier, disassembly."""

@@ -1,0 +1,1 @@
+"""A checked program becomes instructions, and code bytes."""
