@@ -7,8 +7,8 @@ from tiniscript import robots
 from tiniscript.link.line import Line
 from tiniscript.link.ports import opened
 from tiniscript.link.session import Session
-from tiniscript.sharing.holders import Holder
-from tiniscript.sharing.host import Host
+from tiniscript.sharing.registry import Holder
+from tiniscript.sharing.server import Host
 
 KIT = robots.load("tinibot").kit
 

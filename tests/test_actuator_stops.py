@@ -13,7 +13,7 @@ from tests.virtual import Talk, missing
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import Image, unpack
 from tiniscript.cli.drawing import Picture
-from tiniscript.link.errands import OK
+from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 from tiniscript.robots.reader import read
 from tiniscript.virtual import worlds

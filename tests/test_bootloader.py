@@ -16,7 +16,7 @@ from tests.machines.uno import needed
 from tests.platformio import firmware, need, shared
 from tests.test_uno_guard import HANGS, HANGS_ALONE, STALL, TIMER_MS, WATCHDOG_MS, built, is_on
 from tests.test_uno_robot import AWAY, BAUD, FORWARD, NAMES, OFF, computer, image_of, send, states
-from tiniscript.link.errands import OK
+from tiniscript.link.requests import OK
 from tools.uno import CYCLES_PER_MS, Uno
 
 DRIVES = "SI|F(0.3, 80)"

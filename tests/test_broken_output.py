@@ -169,8 +169,8 @@ def test_a_robot_that_is_busy_for_too_long_is_not_lost(
     tsc: Tsc, desk: Desk, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Whoever waits hears that it saves, and what to do."""
-    from tiniscript.link.errands import Reply, reply_of
     from tiniscript.link.messages import STATUSES
+    from tiniscript.link.requests import Reply, reply_of
 
     def busy(name: str, payload: bytes) -> Reply | None:
         reply = reply_of(name, payload)

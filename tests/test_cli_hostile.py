@@ -205,13 +205,13 @@ def test_input_that_is_no_text() -> None:
 def test_files_of_the_cache_may_be_anything(kind: str) -> None:
     """No command waits for them, or reads for ever: they say nothing."""
     from tiniscript.codegen import source_map
-    from tiniscript.link import remembered
-    from tiniscript.sharing import holders
+    from tiniscript.link import known_ports
+    from tiniscript.sharing import registry
     from tiniscript.virtual import directory
 
     port = "socket://127.0.0.1:4000"
     robot = directory._folder() / "4000.json"
-    paths = [remembered._path(), robot, holders._path(port), source_map._path(5)]
+    paths = [known_ports._path(), robot, registry._path(port), source_map._path(5)]
     for path in paths:
         path.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
         path.parent.chmod(0o700)
@@ -224,10 +224,10 @@ def test_files_of_the_cache_may_be_anything(kind: str) -> None:
                 file.truncate(1 << 40)
         else:
             path.symlink_to("/dev/zero" if kind == "device" else path)
-    assert remembered.known() == remembered.Known(None, {})
+    assert known_ports.known() == known_ports.Known(None, {})
     assert directory.running() == []
-    assert holders.found(port) is None
-    assert holders.all_found() == []
+    assert registry.found(port) is None
+    assert registry.all_found() == []
     assert source_map.recall(5) is None
 
 

@@ -16,7 +16,7 @@ from tests.desk import Desk, on
 from tests.machines.tabletop import missing
 from tiniscript import compile_text, robots
 from tiniscript.cli import connecting
-from tiniscript.link import ports, remembered
+from tiniscript.link import known_ports, ports
 
 pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
@@ -293,7 +293,7 @@ def test_a_name_survives_power_off(desk: Desk) -> None:
 
 
 def test_ports_asks_only_when_it_is_told_to(tsc: Tsc, desk: Desk, hasty: None) -> None:
-    remembered.remember(desk.port, "TINI")
+    known_ports.remember(desk.port, "TINI")
     rows = json.loads(tsc("ports", "--json").out)
     row = next(row for row in rows if row["port"] == desk.port)
     assert (row["remembered"], row["is_last_used"]) == ("TINI", True)

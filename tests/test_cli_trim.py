@@ -12,8 +12,8 @@ from tests.command import TSC, Done, process
 from tests.desk import Desk
 from tests.machines.tabletop import EMPTY, Tabletop, missing
 from tiniscript import robots
-from tiniscript.link.errands import OK
 from tiniscript.link.messages import STATUSES
+from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 from tiniscript.link.trim import Trim, told
 

@@ -18,8 +18,8 @@ import pytest
 from tests.command import PROGRAM, Tsc, process
 from tiniscript import files
 from tiniscript.codegen import source_map
-from tiniscript.sharing import holders
-from tiniscript.sharing.holders import Holder
+from tiniscript.sharing import registry
+from tiniscript.sharing.registry import Holder
 
 HERE = Path(files.__file__).parent
 unix = pytest.mark.skipif(os.name == "nt", reason="permissions and links of Unix")
@@ -199,19 +199,19 @@ def free_number() -> int:
 
 
 def names() -> set[str]:
-    return {each.name for each in holders._folder().iterdir()}
+    return {each.name for each in registry._folder().iterdir()}
 
 
 def test_the_notes_of_killed_holders_go_and_those_of_living_ones_stay() -> None:
     dead = holder_at("/dev/dead", free_number())
     with socket.create_server(("127.0.0.1", 0)) as server:
         living = holder_at("/dev/living", server.getsockname()[1])
-        holders.write(living)
-        holders.write(dead)
-        assert holders.found("/dev/dead") == dead
-        assert holders.all_found() == [living]
-        assert holders.found("/dev/dead") is None
-        assert holders.found("/dev/living") == living
+        registry.write(living)
+        registry.write(dead)
+        assert registry.found("/dev/dead") == dead
+        assert registry.all_found() == [living]
+        assert registry.found("/dev/dead") is None
+        assert registry.found("/dev/living") == living
         assert len(names()) == 1
 
 
@@ -220,8 +220,8 @@ def test_one_who_comes_while_a_note_is_removed_keeps_its_own(
 ) -> None:
     """The port was taken again between looking at the note and removing it."""
     before, now = holder_at("/dev/x", 1), holder_at("/dev/x", 2)
-    holders.write(now)
-    real = holders._read
+    registry.write(now)
+    real = registry._read
     asked = []
 
     def read(path: Path) -> Holder | None:
@@ -229,18 +229,18 @@ def test_one_who_comes_while_a_note_is_removed_keeps_its_own(
         return before if len(asked) == 1 else real(path)
 
     with monkeypatch.context() as patch:
-        patch.setattr(holders, "_read", read)
-        holders.remove(before)
+        patch.setattr(registry, "_read", read)
+        registry.remove(before)
     assert len(asked) == 2
-    assert holders.found("/dev/x") == now
+    assert registry.found("/dev/x") == now
 
 
 def test_a_lock_goes_with_its_command() -> None:
-    lock = holders.claimed("socket://127.0.0.1:1")
+    lock = registry.claimed("socket://127.0.0.1:1")
     assert lock is not None
-    assert holders.claimed("socket://127.0.0.1:1") is None
-    holders.tidy()
-    assert holders.claimed("socket://127.0.0.1:1") is None, "it is held"
+    assert registry.claimed("socket://127.0.0.1:1") is None
+    registry.tidy()
+    assert registry.claimed("socket://127.0.0.1:1") is None, "it is held"
     assert len(names()) == 1
     lock.close()
     lock.close()
@@ -256,30 +256,30 @@ def test_the_lock_of_a_killed_command_goes() -> None:
         [sys.executable, "-c", code], stdin=subprocess.PIPE, stdout=subprocess.PIPE
     ) as running:
         assert running.stdout and running.stdout.readline() == b"held\n"
-        assert holders.claimed("socket://x:1") is None
+        assert registry.claimed("socket://x:1") is None
         running.kill()
     assert len(names()) == 1
-    holders.tidy()
+    registry.tidy()
     assert names() == set()
 
 
 @unix
 def test_a_lock_that_was_removed_in_between_locks_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     """Its holder left between our opening and our locking its file; another one came."""
-    first = holders.claimed("socket://x:1")
+    first = registry.claimed("socket://x:1")
     assert first is not None
-    real = holders._lock
+    real = registry._lock
     others: list[IO[bytes] | None] = []
 
-    def lock(file: holders._Lock) -> bool:
+    def lock(file: registry._Lock) -> bool:
         if not others:
             others.append(None)
             first.close()
-            others.append(holders.claimed("socket://x:1"))
+            others.append(registry.claimed("socket://x:1"))
         return real(file)
 
-    monkeypatch.setattr(holders, "_lock", lock)
-    assert holders.claimed("socket://x:1") is None
+    monkeypatch.setattr(registry, "_lock", lock)
+    assert registry.claimed("socket://x:1") is None
     assert others[1] is not None, "one has it"
     others[1].close()
 

@@ -18,10 +18,10 @@ from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.messages import BY_NAME, MAJOR, MINOR, PAYLOAD_BYTES, RUN, written
 from tiniscript.link.session import Session
-from tiniscript.virtual import guests as guests_room
+from tiniscript.virtual import transports as guests_room
 from tiniscript.virtual.first_bytes import LONGEST, is_for_robot
-from tiniscript.virtual.guests import CALLERS, Guests
-from tiniscript.virtual.host import Host
+from tiniscript.virtual.simulator import Host
+from tiniscript.virtual.transports import CALLERS, Guests
 
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
 

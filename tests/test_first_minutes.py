@@ -20,14 +20,14 @@ from tiniscript.cli.live_mark import MARK
 from tiniscript.cli.live_text import Known
 from tiniscript.cli.living import HELP_ME, LEAVE, Catch, wished
 from tiniscript.cli.telling import Bookkeeping, Teller
-from tiniscript.link import remembered
+from tiniscript.link import known_ports
 from tiniscript.link.outcomes import Event
 from tiniscript.robots import given
 from tiniscript.semantics.other_kits import naming_robots
 from tiniscript.virtual import directory
 from tiniscript.virtual.directory import Running
-from tiniscript.virtual.guests import Guests
-from tiniscript.virtual.host import Host
+from tiniscript.virtual.simulator import Host
+from tiniscript.virtual.transports import Guests
 from tiniscript.vm.trace import Event as Traced
 
 needs_robot = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
@@ -185,7 +185,7 @@ def test_the_last_used_port_is_stopped_with_those_that_are_in_use(
     from tiniscript.cli import in_use
 
     usb = tmp_path / "usb"
-    remembered.remember(str(usb), "TINI")
+    known_ports.remember(str(usb), "TINI")
     here = [Running("socket://127.0.0.1:5", "tinibot", "light", "", "", "upload")]
     monkeypatch.setattr(directory, "running", lambda: here)
     assert in_use.to_stop() == ["socket://127.0.0.1:5"]  # the cable is out
@@ -203,7 +203,7 @@ def test_a_virtual_robot_that_is_gone_is_no_port() -> None:
         assert process("ping", "--port", local).code == 0
         assert found.port in process("ports").out
     assert "socket" not in process("ports").out
-    remembered.remember(found.port, "KAT")  # by a tsc that did
+    known_ports.remember(found.port, "KAT")  # by a tsc that did
     assert "socket" not in process("ports").out
     done = process("ping")
     assert done.code == 3

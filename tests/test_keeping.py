@@ -17,8 +17,8 @@ from tests.test_tabletop import (
     switched_on,
 )
 from tiniscript.bytecode.image import pack
-from tiniscript.link.errands import OK, Errand, Request
 from tiniscript.link.messages import SAVED, STATUSES
+from tiniscript.link.requests import OK, Errand, Request
 from tiniscript.link.session import Session, Task
 
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")

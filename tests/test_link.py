@@ -14,7 +14,6 @@ from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import REFUSALS, Image, pack, unpack
 from tiniscript.bytecode.verify import RULES
 from tiniscript.link import messages, statuses
-from tiniscript.link.errands import DATA_BYTES, SHORT_BYTES
 from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.messages import (
     AGAIN_MS,
@@ -35,6 +34,7 @@ from tiniscript.link.messages import (
     sizes,
 )
 from tiniscript.link.outcomes import CANCELLED, LOST
+from tiniscript.link.requests import DATA_BYTES, SHORT_BYTES
 from tiniscript.link.session import (
     BEAT_MS,
     CONFIRM_MS,

@@ -18,7 +18,7 @@ from tiniscript import robots
 from tiniscript.cli.crew import Member, Result
 from tiniscript.cli.roll import Roll
 from tiniscript.cli.roster import Post
-from tiniscript.link import ports, remembered
+from tiniscript.link import known_ports, ports
 
 pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
@@ -35,7 +35,7 @@ def class_() -> Iterator[Classroom]:
     """Four robots, whose ports are remembered."""
     with Classroom([TINIBOT] * 4) as found:
         for pupil in found.pupils:
-            remembered.remember(pupil.port, f"R{pupil.number}", is_used=False)
+            known_ports.remember(pupil.port, f"R{pupil.number}", is_used=False)
         yield found
 
 
@@ -53,7 +53,7 @@ def test_thirty_robots_get_a_program_and_three_cannot_hold_them_up() -> None:
         for number in NOISY:
             pupils[number].damages = 97
         for pupil in pupils:
-            remembered.remember(pupil.port, f"R{pupil.number}", is_used=False)
+            known_ports.remember(pupil.port, f"R{pupil.number}", is_used=False)
         done = process("upload", "-e", SHORT, "--all", "--json")
         assert done.code == 3
         rows = results(done)
@@ -151,7 +151,7 @@ def test_a_port_that_never_had_a_robot_is_no_failure(
     assert done.err == f"4 of 4 robots: done.\nNo robot answers on {port}.\n"
     monkeypatch.setattr("tiniscript.link.ports.listed", list)
     monkeypatch.setattr("tiniscript.cli.connecting.ANSWER_MS", 1000)
-    remembered.remember(known, "R9", is_used=False)
+    known_ports.remember(known, "R9", is_used=False)
     done = tsc("ping", "--all", "--count", "1")
     assert done.code == 3
     assert f"R9 ({known}): nothing answers" in done.out

@@ -13,9 +13,9 @@ from tests.command import process
 from tests.virtual import missing
 from tiniscript import robots
 from tiniscript.virtual import directory, worlds
-from tiniscript.virtual.guests import Guests
-from tiniscript.virtual.host import Host
 from tiniscript.virtual.robot import Settings, VirtualRobot
+from tiniscript.virtual.simulator import Host
+from tiniscript.virtual.transports import Guests
 
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
 

@@ -6,8 +6,8 @@ import pytest
 
 from tests.machines.tabletop import Tabletop, missing
 from tiniscript import compile_text, robots
-from tiniscript.link.errands import OK
 from tiniscript.link.messages import STATUSES
+from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 
 KIT = robots.load("tinibot").kit

@@ -16,8 +16,8 @@ from tests.machines.tabletop import missing
 from tests.shared_desk import Shared
 from tiniscript import __version__
 from tiniscript.link.frames import decoded
-from tiniscript.sharing import holders, notes
-from tiniscript.sharing.holders import Holder
+from tiniscript.sharing import protocol, registry
+from tiniscript.sharing.registry import Holder
 
 pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
@@ -224,7 +224,7 @@ def test_a_holder_that_leaves_stops_the_run_of_its_guest(desk: Desk, link: Comma
     done = command.ended()
     assert done.code == 3
     assert "has ended (tsc link)" in done.err
-    assert holders.found(desk.port) is None
+    assert registry.found(desk.port) is None
     assert on(desk, "upload", "-e", "SI|F(0.1, 30)").code == 0
     assert hellos(desk) == 2
 
@@ -236,13 +236,13 @@ def test_a_holder_that_is_killed_blocks_nobody(desk: Desk, link: Command) -> Non
     assert done.code == 3
     assert "has ended (tsc link)" in done.err
     desk.until(lambda: not desk.moves, "it stops by itself")
-    assert holders.found(desk.port) is not None
+    assert registry.found(desk.port) is not None
     assert desk.port not in [row["port"] for row in json.loads(process("ports", "--json").out)
                              if row["held_by"]]  # fmt: skip
     done = on(desk, "info")
     assert (done.code, done.err) == (0, "")
     assert "LINK_LOST" in done.out
-    assert holders.found(desk.port) is None
+    assert registry.found(desk.port) is None
 
 
 def test_a_stop_gets_through_while_its_holder_ends(desk: Desk) -> None:
@@ -257,14 +257,14 @@ def test_a_stop_gets_through_while_its_holder_ends(desk: Desk) -> None:
         assert not desk.moves
         holder.process.communicate()
     assert on(desk, "upload", "-e", FOREVER, "--detach").code == 0
-    with socket.create_server((notes.HOST, 0)) as holding:
+    with socket.create_server((protocol.HOST, 0)) as holding:
         found = Holder(desk.port, holding.getsockname()[1], "a", "b", "link", 9600, 1)
-        holders.write(found)
+        registry.write(found)
         stop = Command("stop", "--port", desk.port)
         peer, _ = holding.accept()
         with peer:
             peer.recv(1000)
-            peer.sendall(notes.written({"tsc": __version__, "answer": "b"}))
+            peer.sendall(protocol.written({"tsc": __version__, "answer": "b"}))
             assert b"stop" in peer.recv(1000)
     assert stop.ended().code == 0
     assert not desk.moves

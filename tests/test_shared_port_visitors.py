@@ -18,9 +18,9 @@ from tests.shared_desk import Shared
 from tiniscript import __version__
 from tiniscript.link.outcomes import Event
 from tiniscript.link.session import Task
-from tiniscript.sharing import holders, notes
-from tiniscript.sharing.holders import Holder
-from tiniscript.sharing.host import FULL_BYTES
+from tiniscript.sharing import protocol, registry
+from tiniscript.sharing.registry import Holder
+from tiniscript.sharing.server import FULL_BYTES
 
 pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
@@ -28,11 +28,11 @@ pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a
 
 def greeting(holder: Holder, **other: object) -> bytes:
     note = {"tsc": __version__, "token": holder.token, "verb": "upload"}
-    return notes.written({**note, **other})
+    return protocol.written({**note, **other})
 
 
 def visitor(holder: Holder) -> socket.socket:
-    return socket.create_connection((notes.HOST, holder.number), 10)
+    return socket.create_connection((protocol.HOST, holder.number), 10)
 
 
 def is_let_go(peer: socket.socket) -> bool:
@@ -44,9 +44,9 @@ def is_let_go(peer: socket.socket) -> bool:
 
 
 def test_only_the_user_may_come_in(desk: Desk, link: Command) -> None:
-    holder = holders.found(desk.port)
+    holder = registry.found(desk.port)
     assert holder is not None
-    folder = holders._folder()
+    folder = registry._folder()
     assert stat.S_IMODE(folder.stat().st_mode) == 0o700
     for path in folder.iterdir():
         assert stat.S_IMODE(path.stat().st_mode) == 0o600
@@ -56,7 +56,7 @@ def test_only_the_user_may_come_in(desk: Desk, link: Command) -> None:
         greeting(holder, token="é"),
         greeting(holder, token=5),
         greeting(holder, verb="x" * 99),
-        notes.written({"do": "stop"}),
+        protocol.written({"do": "stop"}),
         b"GET / HTTP/1.1\r\n\r\n",
         b"[" * 900 + b"\n",
         b"\0" * 100 + b"\n",
@@ -95,11 +95,11 @@ def test_only_the_user_may_come_in(desk: Desk, link: Command) -> None:
 )  # fmt: skip
 def test_wrong_notes_of_a_guest_end_its_visit_alone(wrong: dict[str, object]) -> None:
     with Shared() as (desk, holder), visitor(holder) as peer:
-        peer.sendall(greeting(holder) + notes.written({"id": 1, "limit_ms": 100, **wrong}))
+        peer.sendall(greeting(holder) + protocol.written({"id": 1, "limit_ms": 100, **wrong}))
         said = b""
         while part := _rest(peer):
             said += part
-        assert said == notes.written({"tsc": __version__, "answer": holder.answer})
+        assert said == protocol.written({"tsc": __version__, "answer": holder.answer})
         assert "SHOW 1" in on(desk, "live", "SHOW(1)").out
 
 
@@ -114,7 +114,7 @@ def test_whoever_reads_slowly_misses_values_and_holds_up_nobody() -> None:
     shared = Shared()
     with shared as (desk, holder), visitor(holder) as peer:
         peer.sendall(greeting(holder))
-        reader = notes.Notes(notes.LINE_BYTES)
+        reader = protocol.Notes(protocol.LINE_BYTES)
         found = reader.put(peer.recv(65536))
         count = 50 * FULL_BYTES // 60
         for k in range(count):
@@ -126,7 +126,7 @@ def test_whoever_reads_slowly_misses_values_and_holds_up_nobody() -> None:
             assert data, "it was let go"
             found += reader.put(data)
         found = found[: [note.get("event") for note in found].index("DONE")]
-        missed = [notes.values(note)["count"] for note in found if note.get("event") == "MISSED"]
+        missed = [protocol.values(note)["count"] for note in found if note.get("event") == "MISSED"]
         shown = sum(note.get("event") == "SHOW" for note in found)
         assert sum(int(each) for each in missed) + shown == count
         assert missed
@@ -147,31 +147,31 @@ def test_nothing_is_shared_where_nothing_can_be_written(
 @pytest.mark.parametrize("text", ["", "{", "[]", "{}", '{"port": 5}', "[" * 5000, "\0"])
 def test_a_file_that_says_nothing_is_no_holder(desk: Desk, text: str) -> None:
     with Shared() as (other, holder):
-        path = holders._path(other.port)
+        path = registry._path(other.port)
         path.write_text(text)
-        assert holders.found(other.port) is None
-        assert holders.all_found() == []
+        assert registry.found(other.port) is None
+        assert registry.all_found() == []
     path.write_text(json.dumps(holder._replace(port=desk.port)._asdict()))
-    assert holders.found(other.port) is None
+    assert registry.found(other.port) is None
     if os.name == "posix":
         path.write_text(json.dumps(holder._asdict()))
-        assert holders.found(other.port) == holder
+        assert registry.found(other.port) == holder
         path.parent.chmod(0o755)
-        assert holders.found(other.port) is None
+        assert registry.found(other.port) is None
 
 
 def test_somebody_else_at_the_number_of_a_crashed_holder_is_no_holder(desk: Desk) -> None:
-    with socket.create_server((notes.HOST, 0)) as stranger:
+    with socket.create_server((protocol.HOST, 0)) as stranger:
         number = stranger.getsockname()[1]
-        holders.write(Holder(desk.port, number, "a", "b", "link", 9600, 1))
+        registry.write(Holder(desk.port, number, "a", "b", "link", 9600, 1))
         command = Command("info", "--port", desk.port)
         peer, _ = stranger.accept()
         with peer:
             peer.recv(1000)
-            peer.sendall(notes.written({"tsc": __version__, "answer": "c"}))
+            peer.sendall(protocol.written({"tsc": __version__, "answer": "c"}))
             done = command.ended()
     assert (done.code, done.err) == (0, "")
-    assert holders.found(desk.port) is None
+    assert registry.found(desk.port) is None
 
 
 def test_a_bug_of_ours_in_a_thread_is_raised_where_somebody_waits() -> None:

@@ -17,8 +17,8 @@ from tests.command import FOREVER, TSC, Command, process
 from tests.desk import Desk, on, uploading
 from tests.machines.tabletop import missing
 from tiniscript import __version__
-from tiniscript.sharing import holders, notes
-from tiniscript.sharing.holders import Holder
+from tiniscript.sharing import protocol, registry
+from tiniscript.sharing.registry import Holder
 
 pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
@@ -43,7 +43,7 @@ STRANGE = (
     GREETING.decode().encode("utf-16"),
     GREETING * 50,
     GREETING[:-1],
-    notes.written({"do": "stop"}),
+    protocol.written({"do": "stop"}),
     b"\n" * 1000,
     b"\0" * 1000,
     b"GET / HTTP/1.1\r\nUpgrade: websocket\r\n\r\n",
@@ -72,7 +72,7 @@ def mutated(chance: Random) -> bytes:
 
 def say(holder: Holder, data: bytes, chance: Random) -> None:
     """Say something in one or more pieces, and leave in one of several ways."""
-    with socket.create_connection((notes.HOST, holder.number), 10) as peer, suppress(OSError):
+    with socket.create_connection((protocol.HOST, holder.number), 10) as peer, suppress(OSError):
         cut = chance.randrange(len(data) + 1)
         for piece in (data[:cut], data[cut:]) if chance.random() < 0.3 else (data,):
             peer.sendall(piece)
@@ -83,7 +83,7 @@ def say(holder: Holder, data: bytes, chance: Random) -> None:
 
 
 def holder_of(port: str) -> Holder:
-    found = holders.found(port)
+    found = registry.found(port)
     assert found is not None
     return found
 

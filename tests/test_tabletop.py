@@ -9,8 +9,8 @@ import pytest
 from tests.machines.tabletop import EMPTY, Tabletop, missing
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import Image, unpack
-from tiniscript.link.errands import OK, Reply
 from tiniscript.link.messages import STATUSES
+from tiniscript.link.requests import OK, Reply
 from tiniscript.link.session import Session, Task
 
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")

@@ -8,9 +8,9 @@ import pytest
 
 from tests.machines.tabletop import Tabletop, missing
 from tests.test_tabletop import AWAY, computer, happened, image_of, send, switched_on
-from tiniscript.link.errands import OK
 from tiniscript.link.frames import Frame, encoded
 from tiniscript.link.messages import BY_NAME
+from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")

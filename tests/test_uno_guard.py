@@ -23,7 +23,7 @@ from tests.test_uno_robot import (
     states,
     uno,
 )
-from tiniscript.link.errands import OK
+from tiniscript.link.requests import OK
 from tools.uno import CYCLES_PER_MS, Uno
 
 __all__ = ("memory", "sketch", "uno")  # fixtures

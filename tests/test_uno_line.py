@@ -25,9 +25,9 @@ from tests.test_uno_robot import (
     switched_on,
     uno,
 )
-from tiniscript.link.errands import OK
 from tiniscript.link.frames import Frame, decoded
 from tiniscript.link.messages import BY_NAME
+from tiniscript.link.requests import OK
 from tools.uno import CYCLES_PER_MS, Uno
 
 __all__ = ("memory", "sketch", "uno")  # fixtures

@@ -12,7 +12,7 @@ from tests.machines.wired import Wired
 from tests.platformio import firmware, shared
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import Image, unpack
-from tiniscript.link.errands import OK
+from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 from tools.uno import CYCLES_PER_MS, Uno
 

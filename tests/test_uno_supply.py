@@ -12,8 +12,8 @@ from tests.machines.uno import needed
 from tests.machines.wired import Wired
 from tests.platformio import firmware, shared
 from tests.test_uno_robot import computer, image_of, saved, send, sketch, switched_on
-from tiniscript.link.errands import OK
 from tiniscript.link.messages import SAVED, STATUSES
+from tiniscript.link.requests import OK
 from tools.uno import CYCLES_PER_MS, Uno
 
 __all__ = ["sketch"]

@@ -13,7 +13,7 @@ from tests.machines import MACHINES
 from tests.test_cases import compiled, robot_and_senses
 from tests.test_uno_robot import MOTORS, computer, send, sketch, switched_on  # noqa: F401
 from tiniscript.bytecode.image import unpack
-from tiniscript.link.errands import OK
+from tiniscript.link.requests import OK
 from tools.uno import CYCLES_PER_MS, Uno
 
 SHORT_MS = 30  # settings that are over sooner: between two instructions, or while a sensor is read

@@ -10,8 +10,8 @@ import pytest
 from tests.virtual import floor
 from tiniscript import robots
 from tiniscript.fixed_point import ONE
+from tiniscript.robots.kinematics import Pose, moved
 from tiniscript.robots.profile import Robot
-from tiniscript.robots.way import Pose, moved
 from tiniscript.virtual.driving import TOUCH_CM, Driving, Hull
 from tiniscript.virtual.geometry import Point, Segment, between, crosses, nearest, seen
 from tiniscript.virtual.sensing import Sensing

@@ -11,10 +11,10 @@ import pytest
 from tests.virtual import floor, missing, robot_in
 from tiniscript.link.frames import Frame, encoded
 from tiniscript.link.messages import BY_NAME
-from tiniscript.virtual import guests as guests_room
-from tiniscript.virtual.guests import Guests
+from tiniscript.virtual import transports as guests_room
 from tiniscript.virtual.heartbeat import BEAT_MS, SILENT_S, Heartbeat
-from tiniscript.virtual.host import FULL_BYTES, Host
+from tiniscript.virtual.simulator import FULL_BYTES, Host
+from tiniscript.virtual.transports import Guests
 
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
 

@@ -7,8 +7,8 @@ from itertools import pairwise
 
 import pytest
 
+from tiniscript.robots.kinematics import START, STEP, Pose, Way, moved, points
 from tiniscript.robots.profile import Body
-from tiniscript.robots.way import START, STEP, Pose, Way, moved, points
 
 BODY = Body(wheel_base_cm=10, speed_cm_s=40, length_cm=20, width_cm=15, places={})
 SETTINGS = [(50, 50), (-80, -80), (60, -60), (-30, 30), (20, 70), (70, 20), (0, 50), (-10, -90),

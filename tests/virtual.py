@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from tests.machines.wasm import missing
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import unpack
-from tiniscript.link.errands import Reply
+from tiniscript.link.requests import Reply
 from tiniscript.link.session import Session, Task
 from tiniscript.virtual.robot import Settings, VirtualRobot
 from tiniscript.virtual.world import World

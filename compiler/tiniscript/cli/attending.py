@@ -15,9 +15,9 @@ if TYPE_CHECKING:
 
     from tiniscript.cli.connecting import Connection
     from tiniscript.cli.telling import Teller
-    from tiniscript.link.asking import Asked, Way
-    from tiniscript.link.errands import Reply
+    from tiniscript.link.connection import Asked, Way
     from tiniscript.link.outcomes import Event
+    from tiniscript.link.requests import Reply
 
 CONFIRM_S = 7.0  # for which a stop is waited for, a little longer than it is sent
 STOP_S = 1.5  # the same for a command that leaves, and that nobody may look at

@@ -24,12 +24,12 @@ if TYPE_CHECKING:
     from tiniscript.cli.telling import Teller
     from tiniscript.cli.virtual_company import Company
     from tiniscript.codegen.source_map import Map
-    from tiniscript.link.asking import Asked, Asks, Way
-    from tiniscript.link.errands import Reply
-    from tiniscript.link.errands import Robot as Card
+    from tiniscript.link.connection import Asked, Asks, Way
     from tiniscript.link.line import Line
     from tiniscript.link.outcomes import Event, Gone
     from tiniscript.link.ports import PortTrouble
+    from tiniscript.link.requests import Reply
+    from tiniscript.link.requests import Robot as Card
     from tiniscript.robots.profile import Robot
 
 ANSWER_MS = 6000  # for which a robot is asked through the air who it is
@@ -191,7 +191,7 @@ class Connection:
     def give(self, make: Callable[[Asks], Asked]) -> Reply:
         """Have the robot take something; raise Trouble where it does not. Where the reply is not
         OK, it has not kept it yet."""
-        from tiniscript.link.errands import TAKEN
+        from tiniscript.link.requests import TAKEN
 
         reply = self.wait(self.do(make))
         if reply.status and reply.status not in TAKEN:
@@ -351,15 +351,15 @@ def hello(line: Way, limit_ms: int) -> Asked:
 
 def remember(port: str, name: str, is_used: bool = True) -> None:
     """Keep a port and what the robot on it is called. A virtual robot has no next time."""
-    from tiniscript.link import remembered
-    from tiniscript.link.names import is_address
+    from tiniscript.link import known_ports
+    from tiniscript.link.port_names import is_address
 
     if is_address(port) or port.startswith(PSEUDO):
         from tiniscript.virtual import directory
 
         if directory.is_virtual(port):
             return
-    remembered.remember(port, name, is_used)
+    known_ports.remember(port, name, is_used)
 
 
 def robot_of_kit(kit: int) -> str | None:
@@ -390,12 +390,12 @@ def _chosen(options: Namespace, language: str) -> str:
         if not port.strip() or not port.isprintable():
             raise Trouble(2, "no_such_port", found=shown(port) or "''")
         return port
-    from tiniscript.link import names, remembered
+    from tiniscript.link import known_ports, port_names
 
-    last = remembered.known().last
+    last = known_ports.known().last
     from tiniscript.virtual import directory
 
-    if last is not None and names.is_there(last) and not directory.is_gone(last):
+    if last is not None and port_names.is_there(last) and not directory.is_gone(last):
         return last
     virtual = directory.for_all() if can_bring else directory.running()
     if len(virtual) == 1:
@@ -409,11 +409,11 @@ def _chosen(options: Namespace, language: str) -> str:
 
 def _asked(language: str, can_bring: bool) -> str:
     """Let the person choose a port."""
-    from tiniscript.link import ports, remembered
-    from tiniscript.link.names import is_address
+    from tiniscript.link import known_ports, ports
+    from tiniscript.link.port_names import is_address
     from tiniscript.virtual.directory import is_gone
 
-    names = remembered.known().names
+    names = known_ports.known().names
     found = ports.listed()
     choices = [each.port for each in found]
     choices += [port for port in names if port not in choices and is_address(port)

@@ -24,8 +24,8 @@ from rich.text import Text
 
 from tiniscript.cli.texts import text
 from tiniscript.fixed_point import as_text
+from tiniscript.robots.kinematics import START, Pose, Way
 from tiniscript.robots.profile import Robot
-from tiniscript.robots.way import START, Pose, Way
 from tiniscript.vm.trace import Ending, Event
 
 FRAME_S = 1 / 15

@@ -74,13 +74,13 @@ def run(arguments: list[str], language: str) -> int:
 
 def _rows(options: Namespace, language: str) -> list[dict[str, object]]:
     """Return the ports of the system, and those that it does not list but a robot had."""
-    from tiniscript.link import ports, remembered
-    from tiniscript.link.names import is_there, same_for_all
-    from tiniscript.sharing.guest import is_alive
-    from tiniscript.sharing.holders import all_found
+    from tiniscript.link import known_ports, ports
+    from tiniscript.link.port_names import is_there, same_for_all
+    from tiniscript.sharing.client import is_alive
+    from tiniscript.sharing.registry import all_found
     from tiniscript.virtual import directory
 
-    known = remembered.known()
+    known = known_ports.known()
     virtual = {each.address: each for each in directory.running()}
     about = {each.port: each.description for each in ports.listed()}
     held = {holder.port: holder.verb for holder in all_found() if is_alive(holder)}

@@ -125,7 +125,7 @@ def _port(options: Namespace) -> str:
     """Return the port, which can be opened. Never the last used one: that may be a radio's."""
     from tiniscript.flash.bootloaders import UNO
     from tiniscript.link import ports
-    from tiniscript.link.names import is_address
+    from tiniscript.link.port_names import is_address
 
     port: str | None = options.port
     if port is None:

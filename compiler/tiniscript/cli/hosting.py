@@ -22,9 +22,9 @@ from tiniscript.cli.trouble import Trouble
 if TYPE_CHECKING:
     from tiniscript.cli.drawing import Screen
     from tiniscript.cli.world_drawing import WorldPicture
-    from tiniscript.virtual.guests import Guests
-    from tiniscript.virtual.host import Host
     from tiniscript.virtual.robot import VirtualRobot
+    from tiniscript.virtual.simulator import Host
+    from tiniscript.virtual.transports import Guests
     from tiniscript.vm.trace import Event
 
 HELP = (
@@ -106,7 +106,7 @@ def run(arguments: list[str], language: str) -> int:
     if options.name is not None:
         _name(robot, options.name)
     from tiniscript.virtual import directory
-    from tiniscript.virtual.host import Host
+    from tiniscript.virtual.simulator import Host
 
     guests = _guests(port, options.pty)
     note = None
@@ -197,7 +197,7 @@ class _Stage:
     def _limit_s(self, pushes_ms: list[int], end_ms: int | None) -> float:
         """Return how long nothing has to happen."""
         from tiniscript.cli.drawing import FRAME_S
-        from tiniscript.virtual.host import CALM_S
+        from tiniscript.virtual.simulator import CALM_S
 
         limits = [FRAME_S if self.screen else CALM_S]
         for due_ms in (*pushes_ms[:1], *([end_ms] if end_ms is not None else [])):
@@ -266,7 +266,7 @@ def _ended_by_signal() -> Iterator[None]:
 
 
 def _guests(port: int, has_terminal: bool) -> Guests:
-    from tiniscript.virtual.guests import Guests, can_have_terminal
+    from tiniscript.virtual.transports import Guests, can_have_terminal
 
     if has_terminal and not can_have_terminal():
         raise Trouble(2, "no_pty")

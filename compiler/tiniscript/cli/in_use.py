@@ -8,15 +8,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from tiniscript.sharing.holders import Holder
+    from tiniscript.sharing.registry import Holder
 
 AT_ONCE = 16  # commands that are asked at the same time whether they are still there
 
 
 def ports(is_virtual: bool = False) -> list[str]:
     """Return the port of each robot that is in use, once; `is_virtual`: of virtual ones alone."""
-    from tiniscript.link.names import same_for_all
-    from tiniscript.sharing.holders import all_found
+    from tiniscript.link.port_names import same_for_all
+    from tiniscript.sharing.registry import all_found
     from tiniscript.virtual.directory import running
 
     held = _alive(all_found())
@@ -30,7 +30,7 @@ def ports(is_virtual: bool = False) -> list[str]:
 
 def _alive(holders: list[Holder]) -> list[str]:
     """Return the ports of the holders that are still there: one that hangs delays no other."""
-    from tiniscript.sharing.guest import is_alive
+    from tiniscript.sharing.client import is_alive
 
     if len(holders) < 2:  # threads take longer to import than one to answer
         return [holder.port for holder in holders if is_alive(holder)]
@@ -46,12 +46,12 @@ def to_stop(is_virtual: bool = False) -> list[str]:
 
     The last used robot is among them: it may drive on without any command.
     """
-    from tiniscript.link import remembered
-    from tiniscript.link.names import is_there, same_for_all
+    from tiniscript.link import known_ports
+    from tiniscript.link.port_names import is_there, same_for_all
     from tiniscript.virtual.directory import is_gone
 
     found = ports(is_virtual)
-    last = remembered.known().last
+    last = known_ports.known().last
     if not is_virtual and last is not None and is_there(last) and not is_gone(last):
         found.append(last)
     return list({same_for_all(port): port for port in found}.values())

@@ -16,10 +16,10 @@ from tiniscript.cli.trouble import Trouble
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from tiniscript.link.asking import Way
+    from tiniscript.link.connection import Way
     from tiniscript.link.line import Line
-    from tiniscript.sharing.guest import Guest
-    from tiniscript.sharing.host import Host
+    from tiniscript.sharing.client import Guest
+    from tiniscript.sharing.server import Host
 
 BUSY_S = 3.0  # for which a port may be busy: another command is just leaving, or will share it
 STOP_BUSY_S = 10.0  # the same for a stop: one that asks a silent robot takes a while to give up
@@ -35,7 +35,7 @@ def way_to(
     `open_line` opens the port; what it is given is closed with the line. `baud` is the speed that
     the person has asked for.
     """
-    from tiniscript.sharing import holders
+    from tiniscript.sharing import registry
 
     end_s = monotonic() + (STOP_BUSY_S if verb == "stop" else BUSY_S)
     while True:
@@ -44,7 +44,7 @@ def way_to(
             return guest
         try:
             line = open_line(_claimed(port))
-            holders.forget(port)  # the port is ours: whoever held it has crashed
+            registry.forget(port)  # the port is ours: whoever held it has crashed
             return line
         except Trouble as trouble:
             if trouble.key != "port_busy" or monotonic() > end_s:
@@ -57,7 +57,7 @@ def shared(way: Way, port: str, baud: int, verb: str) -> Host | None:
     if verb not in SHARED or way.held_by:
         return None
     from tiniscript.link.line import Line
-    from tiniscript.sharing.host import Host
+    from tiniscript.sharing.server import Host
 
     assert isinstance(way, Line)
     try:
@@ -67,7 +67,7 @@ def shared(way: Way, port: str, baud: int, verb: str) -> Host | None:
 
 
 def _joined(port: str, verb: str, baud: int | None) -> Guest | None:
-    from tiniscript.sharing.guest import OtherVersion, joined
+    from tiniscript.sharing.client import OtherVersion, joined
 
     try:
         guest = joined(port, verb)
@@ -83,14 +83,14 @@ def _joined(port: str, verb: str, baud: int | None) -> Guest | None:
 
 def _claimed(port: str) -> IO[bytes] | None:
     """Return the lock of an address; for other ports, and where there are no locks, nothing."""
-    from tiniscript.link.names import is_address
+    from tiniscript.link.port_names import is_address
 
     if not is_address(port):
         return None
-    from tiniscript.sharing import holders
+    from tiniscript.sharing import registry
 
     try:
-        lock = holders.claimed(port)
+        lock = registry.claimed(port)
     except OSError:
         return None
     if lock is None:

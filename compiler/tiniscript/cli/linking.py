@@ -13,7 +13,7 @@ from tiniscript.cli.texts import text
 from tiniscript.cli.trouble import Trouble
 
 if TYPE_CHECKING:
-    from tiniscript.link.asking import Asked
+    from tiniscript.link.connection import Asked
     from tiniscript.link.outcomes import Event
 
 HELP = (

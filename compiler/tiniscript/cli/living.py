@@ -107,7 +107,7 @@ def _compiled(
 ) -> Line | None:
     """Compile a line and print what is wrong with it; return None where it is."""
     from tiniscript.cli.live_text import header
-    from tiniscript.link.errands import SHORT_BYTES
+    from tiniscript.link.requests import SHORT_BYTES
 
     if header(line) == "SB":
         raise Trouble(1, "live_button")

@@ -123,9 +123,9 @@ def _read(options: Namespace, language: str) -> Iterator[Named]:
                 name = real_name(path) if dest == "program" else path
                 yield Named(dest, name, text(key, language))
     if "port" in values and values["port"] is None and not values.get("virtual"):
-        from tiniscript.link import remembered
+        from tiniscript.link import known_ports
 
-        last = remembered.known().last
+        last = known_ports.known().last
         if last is not None:
             yield Named("port", last, text("path_port", language))
     with suppress(OSError, ValueError):  # it is closed

@@ -43,17 +43,17 @@ def posts(options: Namespace) -> list[Post]:
 
     Ports that are held come first, then those of robots that are known. None is opened.
     """
-    from tiniscript.link import remembered
-    from tiniscript.link.names import is_there, same_for_all
+    from tiniscript.link import known_ports
+    from tiniscript.link.port_names import is_there, same_for_all
 
-    known = remembered.known().names
+    known = known_ports.known().names
     for port in options.ports:
         if not port.strip() or not port.isprintable():
             raise Trouble(2, "no_such_port", found=shown(port) or "''")
     ports = options.ports
     if options.all:
         from tiniscript.link.ports import listed
-        from tiniscript.sharing.holders import all_found
+        from tiniscript.sharing.registry import all_found
         from tiniscript.virtual.directory import is_gone, running
 
         ports = [holder.port for holder in all_found()]

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from tiniscript.cli.telling import Teller
-    from tiniscript.link.asking import Asked, Asks
-    from tiniscript.link.errands import Reply
+    from tiniscript.link.connection import Asked, Asks
+    from tiniscript.link.requests import Reply
     from tiniscript.robots.profile import Robot
 
 HELP = (

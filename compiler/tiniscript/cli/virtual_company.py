@@ -55,8 +55,8 @@ class Company:
         self.language = language
         self.robot = virtual_options.made(options, profile, language)
         from tiniscript.virtual import directory
-        from tiniscript.virtual.guests import Guests
-        from tiniscript.virtual.host import Host
+        from tiniscript.virtual.simulator import Host
+        from tiniscript.virtual.transports import Guests
 
         self.guests = Guests()
         self.port = self.guests.address

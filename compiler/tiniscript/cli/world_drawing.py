@@ -14,7 +14,7 @@ from rich.text import Text
 
 from tiniscript.cli.drawing import ARROWS, DOTS, ROUND, Picture, Sketch
 from tiniscript.cli.texts import text
-from tiniscript.robots.way import Pose
+from tiniscript.robots.kinematics import Pose
 from tiniscript.virtual.geometry import Point
 from tiniscript.virtual.robot import VirtualRobot
 from tiniscript.virtual.world import World

@@ -14,10 +14,10 @@ from typing import IO
 
 import serial
 
-from tiniscript.link.asking import Asked, Asks
 from tiniscript.link.backlog import Backlog, Told
-from tiniscript.link.errands import Reply, Robot
+from tiniscript.link.connection import Asked, Asks
 from tiniscript.link.outcomes import LOOK_S, Event, Gone
+from tiniscript.link.requests import Reply, Robot
 from tiniscript.link.session import Session
 
 

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import serial
 from serial.tools import list_ports
 
-from tiniscript.link.names import is_address
+from tiniscript.link.port_names import is_address
 
 READ_S = 0.02  # for which a read waits: on some systems nothing can wake it earlier
 WRITE_S = 1.0  # for which a port may refuse to take bytes; the session sends them again

@@ -13,8 +13,7 @@ from collections.abc import Callable, Mapping
 
 from tiniscript.bytecode.image import Image
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
-from tiniscript.link import errands
-from tiniscript.link.errands import OK, Errand, Reply, Request, Robot, reply_of
+from tiniscript.link import requests
 from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.messages import (
     BY_NAME,
@@ -32,6 +31,7 @@ from tiniscript.link.messages import (
 )
 from tiniscript.link.outcomes import CANCELLED, LOST, Event
 from tiniscript.link.receiver import Receiver
+from tiniscript.link.requests import OK, Errand, Reply, Request, Robot, reply_of
 
 ROUND_MS = 120  # of two radios and a robot, without the bytes
 RETRY_MS = 80  # more for each try,
@@ -108,16 +108,16 @@ class Session:
         return self._add(Task(self._hello()))
 
     def ping(self) -> Task:
-        return self._add(Task(errands.single("PING")))
+        return self._add(Task(requests.single("PING")))
 
     def status(self) -> Task:
-        return self._add(Task(errands.single("STATUS")))
+        return self._add(Task(requests.single("STATUS")))
 
     def clear(self) -> Task:
-        return self._add(Task(self._open_then(lambda: errands.single("CLEAR"))))
+        return self._add(Task(self._open_then(lambda: requests.single("CLEAR"))))
 
     def start(self, is_detached: bool = False) -> Task:
-        errand = self._open_then(lambda: errands.start(is_detached, self.is_latched))
+        errand = self._open_then(lambda: requests.start(is_detached, self.is_latched))
         return self._add(Task(errand, starts=True))
 
     def live(self, code: bytes, kit: int = 0) -> Task:
@@ -132,7 +132,7 @@ class Session:
         saves: bool = True,
         is_detached: bool = False,
     ) -> Task:
-        mode = errands.mode_of(image, runs, saves, is_detached)
+        mode = requests.mode_of(image, runs, saves, is_detached)
         errand = self._open_then(lambda: self._upload(image, mode))
         return self._add(Task(errand, starts=runs and image.start == "SI"))
 
@@ -142,10 +142,10 @@ class Session:
     def trim(self, trim: bytes = b"") -> Task:
         """Set the trim of the motors, or only ask for it."""
         request = Request("TRIM", {"trim": trim})
-        return self._add(Task(self._open_then(lambda: errands.kept(request))))
+        return self._add(Task(self._open_then(lambda: requests.kept(request))))
 
     def fetch(self) -> Task:
-        return self._add(Task(errands.fetch()))
+        return self._add(Task(requests.fetch()))
 
     def stop(self, now_ms: int) -> None:
         """Stop the robot now, whatever else is going on; all errands are off.
@@ -254,7 +254,7 @@ class Session:
             self._is_open = True
             if self.robot is None or self.robot.values["nonce"] != reply.values["nonce"]:
                 self._event_seq = self._run = self._ended = None  # it was reset: it counts anew
-            self.robot = errands.described(reply.values)
+            self.robot = requests.described(reply.values)
             state = reply.values["state"]
             assert isinstance(state, int)
             self._state = state
@@ -271,17 +271,17 @@ class Session:
     def _live(self, code: bytes, kit: int) -> Errand:
         assert self.robot
         yield from self._speak_for(kit)
-        return (yield from errands.live(code, self.is_latched, kit, self.robot))
+        return (yield from requests.live(code, self.is_latched, kit, self.robot))
 
     def _upload(self, image: Image, mode: int) -> Errand:
         assert self.robot
         yield from self._speak_for(image.kit)
-        return (yield from errands.upload(image, mode, self.robot, self._isa, self.is_latched))
+        return (yield from requests.upload(image, mode, self.robot, self._isa, self.is_latched))
 
     def _name(self, name: bytes) -> Errand:
-        reply = yield from errands.kept(Request("NAME", {"name": name}))
-        if reply.status in (OK, *errands.TAKEN) and self.robot:
-            self.robot = errands.described({**self.robot.values, "name": name})
+        reply = yield from requests.kept(Request("NAME", {"name": name}))
+        if reply.status in (OK, *requests.TAKEN) and self.robot:
+            self.robot = requests.described({**self.robot.values, "name": name})
         return reply
 
     def _speak_for(self, kit: int) -> Errand:
@@ -302,7 +302,7 @@ class Session:
             beat_ms = self._beat_ms()
             if beat_ms is None or now_ms < self._sent_ms + beat_ms:
                 return
-            self._task = Task(errands.single("PING"), DEAF_MS, is_own=True)
+            self._task = Task(requests.single("PING"), DEAF_MS, is_own=True)
         self._task.deadline_ms = now_ms + self._task.limit_ms
         self._advance(None, now_ms)
 

@@ -10,8 +10,8 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from tiniscript.robots.kinematics import Pose, moved, points
 from tiniscript.robots.profile import Body
-from tiniscript.robots.way import Pose, moved, points
 from tiniscript.virtual.geometry import Point, Segment, between, distance
 
 TOUCH_CM = 0.3  # nearer than that is touching

@@ -10,7 +10,7 @@ from io import BytesIO
 
 from PIL import Image, ImageDraw, ImageFont
 
-from tiniscript.robots.way import Pose
+from tiniscript.robots.kinematics import Pose
 from tiniscript.virtual.driving import Hull
 from tiniscript.virtual.geometry import Point
 from tiniscript.virtual.world import World

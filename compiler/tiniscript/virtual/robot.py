@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 from tiniscript.bytecode.opcodes import FAULTS
 from tiniscript.robots.boards import AT_STOP, HOLD
+from tiniscript.robots.kinematics import Pose
 from tiniscript.robots.profile import Robot
-from tiniscript.robots.way import Pose
 from tiniscript.virtual.driving import Driving
 from tiniscript.virtual.module import POWER_ON, RESET_BUTTON, Circumstances, Firmware
 from tiniscript.virtual.sensing import Sensing

@@ -12,8 +12,8 @@ from random import Random
 
 from tiniscript.fixed_point import ONE
 from tiniscript.kit import Device
+from tiniscript.robots.kinematics import Pose
 from tiniscript.robots.profile import Place, Robot
-from tiniscript.robots.way import Pose
 from tiniscript.virtual.driving import TOUCH_CM, Hull
 from tiniscript.virtual.geometry import Point, Segment, crosses, distance, joined, seen
 from tiniscript.virtual.world import World

@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import NamedTuple
 
+from tiniscript.robots.kinematics import Pose
 from tiniscript.robots.profile import ProfileRefused
-from tiniscript.robots.way import Pose
 from tiniscript.virtual.geometry import Point, Segment, joined
 
 

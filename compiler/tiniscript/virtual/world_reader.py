@@ -8,10 +8,10 @@ from __future__ import annotations
 import math
 
 from tiniscript.fixed_point import ONE
+from tiniscript.robots.kinematics import Pose
 from tiniscript.robots.profile import LANGUAGES, ProfileRefused, Reason
 from tiniscript.robots.refusals import shown
 from tiniscript.robots.toml_table import Table, parse_toml
-from tiniscript.robots.way import Pose
 from tiniscript.virtual.geometry import Point
 from tiniscript.virtual.world import Lamp, Line, World, WorldRefused
 

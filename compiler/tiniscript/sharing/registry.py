@@ -20,7 +20,7 @@ from zlib import crc32
 
 from tiniscript import files
 from tiniscript.files import contents
-from tiniscript.link.names import same_for_all
+from tiniscript.link.port_names import same_for_all
 
 FILE_BYTES = 4096
 _LOCK_FLAGS = os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0)

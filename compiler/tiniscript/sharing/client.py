@@ -13,13 +13,13 @@ from contextlib import suppress
 from time import monotonic
 
 from tiniscript import __version__
-from tiniscript.link.asking import Asked, Asks
-from tiniscript.link.errands import OK, Reply, Robot, described
+from tiniscript.link.connection import Asked, Asks
 from tiniscript.link.outcomes import LOOK_S, Event, Gone
-from tiniscript.sharing import holders, notes
-from tiniscript.sharing.holders import Holder
-from tiniscript.sharing.notes import BadNote, Note
-from tiniscript.sharing.wishes import Wish, Wishes
+from tiniscript.link.requests import OK, Reply, Robot, described
+from tiniscript.sharing import protocol, registry
+from tiniscript.sharing.protocol import BadNote, Note
+from tiniscript.sharing.registry import Holder
+from tiniscript.sharing.requests import Wish, Wishes
 
 ANSWER_S = 2.0  # for which a holder may take to greet
 SEND_S = 2.0  # for which it may take no bytes
@@ -38,7 +38,7 @@ class OtherVersion(Exception):
 class Guest:
     """The way through a holder that has greeted."""
 
-    def __init__(self, peer: socket.socket, holder: Holder, rest: notes.Notes) -> None:
+    def __init__(self, peer: socket.socket, holder: Holder, rest: protocol.Notes) -> None:
         self.robot: Robot | None = None
         self.heard = 0
         self.is_echoed = False
@@ -91,7 +91,7 @@ class Guest:
     def _send(self, note: Note) -> None:
         try:
             self._peer.settimeout(SEND_S)
-            self._peer.sendall(notes.written(note))
+            self._peer.sendall(protocol.written(note))
         except OSError as why:
             # what has come before may say more
             self._over = self._over or Gone(str(why), is_holder=True)
@@ -99,7 +99,7 @@ class Guest:
     def _listen(self, limit_s: float) -> None:
         """Take what has come, or comes in time."""
         now_s = monotonic()
-        if now_s - self._beat_s >= notes.BEAT_S:
+        if now_s - self._beat_s >= protocol.BEAT_S:
             self._beat_s = now_s
             if self._unanswered_s is None:
                 self._unanswered_s = now_s
@@ -121,23 +121,28 @@ class Guest:
     def _take(self, note: Note) -> None:
         if "over" in note:
             is_holder = note["over"] != "gone"
-            self._over = Gone(notes.word(note, "why"), is_holder)
+            self._over = Gone(protocol.word(note, "why"), is_holder)
         elif "event" in note:
-            self._events.append(notes.event(note))
+            self._events.append(protocol.event(note))
         elif "id" in note:
             self._take_outcome(note)
 
     def _take_outcome(self, note: Note) -> None:
-        number = notes.number(note, "id")
+        number = protocol.number(note, "id")
         task = self._tasks.get(number)
         if task is None:
             raise BadNote
         if "done_bytes" in note:
-            task.done_bytes = notes.number(note, "done_bytes")
+            task.done_bytes = protocol.number(note, "done_bytes")
             return
-        values = notes.values(note)
-        self.heard, self.is_echoed = notes.number(note, "heard"), notes.answer(note, "is_echoed")
-        task.outcome = Reply(notes.number(note, "status"), notes.number(note, "detail"), values)
+        values = protocol.values(note)
+        self.heard, self.is_echoed = (
+            protocol.number(note, "heard"),
+            protocol.answer(note, "is_echoed"),
+        )
+        task.outcome = Reply(
+            protocol.number(note, "status"), protocol.number(note, "detail"), values
+        )
         del self._tasks[number]
         assert isinstance(task, Wish)
         if task.note["do"] == "hello" and task.outcome.status == OK:
@@ -160,14 +165,14 @@ def joined(port: str, verb: str) -> Guest | None:
 
     Raises OtherVersion where the holder is another tsc; `stop` gets through to that, too.
     """
-    holder = holders.found(port)
+    holder = registry.found(port)
     return None if holder is None else _joined(holder, verb)
 
 
 def is_alive(holder: Holder) -> bool:
     """Whether a holder is still there."""
     try:
-        guest = _joined(holder, notes.LOOKER)
+        guest = _joined(holder, protocol.LOOKER)
     except OtherVersion:
         return True
     if guest is not None:
@@ -178,14 +183,14 @@ def is_alive(holder: Holder) -> bool:
 def _joined(holder: Holder, verb: str) -> Guest | None:
     peer = None
     try:
-        peer = socket.create_connection((notes.HOST, holder.number), ANSWER_S)
+        peer = socket.create_connection((protocol.HOST, holder.number), ANSWER_S)
         peer.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        peer.sendall(notes.written({"tsc": __version__, "token": holder.token, "verb": verb}))
-        rest = notes.Notes(notes.LINE_BYTES)
+        peer.sendall(protocol.written({"tsc": __version__, "token": holder.token, "verb": verb}))
+        rest = protocol.Notes(protocol.LINE_BYTES)
         found = _first(peer, rest)
-        if notes.word(found[0], "answer") != holder.answer:
+        if protocol.word(found[0], "answer") != holder.answer:
             raise BadNote  # somebody else listens there now
-        version = notes.word(found[0], "tsc")
+        version = protocol.word(found[0], "tsc")
         if version != __version__ and verb != "stop":
             raise OtherVersion(holder, version)
         guest = Guest(peer, holder, rest)
@@ -201,7 +206,7 @@ def _joined(holder: Holder, verb: str) -> Guest | None:
         return None
 
 
-def _first(peer: socket.socket, rest: notes.Notes) -> list[Note]:
+def _first(peer: socket.socket, rest: protocol.Notes) -> list[Note]:
     """Return the greeting of a holder and what follows it."""
     end_s = monotonic() + ANSWER_S
     while (left_s := end_s - monotonic()) > 0:

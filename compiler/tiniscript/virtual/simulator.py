@@ -9,10 +9,10 @@ from __future__ import annotations
 from random import Random
 from time import monotonic
 
-from tiniscript.virtual.guests import Guests
 from tiniscript.virtual.heartbeat import Heartbeat
 from tiniscript.virtual.line_faults import BadLine
 from tiniscript.virtual.robot import VirtualRobot
+from tiniscript.virtual.transports import Guests
 
 BEHIND_S = 0.25  # more than that behind, the robot's clock goes slower
 BUSY_S = 0.002  # between two looks while bytes are under way,

@@ -19,16 +19,16 @@ from time import monotonic, sleep
 from typing import NamedTuple
 
 from tiniscript import __version__
-from tiniscript.link.asking import Asked
 from tiniscript.link.backlog import Told
-from tiniscript.link.errands import OK, Reply
+from tiniscript.link.connection import Asked
 from tiniscript.link.line import Line
-from tiniscript.link.names import same_for_all
 from tiniscript.link.outcomes import Event
-from tiniscript.sharing import holders, notes
-from tiniscript.sharing.holders import Holder
-from tiniscript.sharing.notes import BadNote, Note
-from tiniscript.sharing.wishes import asked_for, is_detached
+from tiniscript.link.port_names import same_for_all
+from tiniscript.link.requests import OK, Reply
+from tiniscript.sharing import protocol, registry
+from tiniscript.sharing.protocol import BadNote, Note
+from tiniscript.sharing.registry import Holder
+from tiniscript.sharing.requests import asked_for, is_detached
 
 GREETING_S = 2.0  # in which whoever comes must say who it is
 GUESTS = 64  # at a time, and as many who have not said who they are
@@ -50,7 +50,7 @@ class Guest:
         self.verb = ""
         self.greeting = b""  # as far as it has come
         self.heard_s = monotonic()  # of a stranger: when it came
-        self.notes = notes.Notes(notes.LINE_BYTES)
+        self.notes = protocol.Notes(protocol.LINE_BYTES)
         self.tasks: dict[int, Task] = {}
         self.out = bytearray()
         self.missed = 0  # events
@@ -67,7 +67,7 @@ class Host:
 
     def __init__(self, line: Line, port: str, baud: int, verb: str) -> None:
         self._line = line
-        self._server = socket.create_server((notes.HOST, 0))
+        self._server = socket.create_server((protocol.HOST, 0))
         self._server.setblocking(False)
         number = self._server.getsockname()[1]
         token, answer = secrets.token_hex(16), secrets.token_hex(16)
@@ -85,7 +85,7 @@ class Host:
         self._selector.register(self._server, selectors.EVENT_READ)
         self._selector.register(self._wire, selectors.EVENT_READ)
         try:
-            holders.write(self.holder)
+            registry.write(self.holder)
         except OSError:
             self._close_all()
             raise
@@ -124,7 +124,7 @@ class Host:
         except Exception as bug:
             self._line.fail(bug)
         finally:
-            holders.remove(self.holder)
+            registry.remove(self.holder)
             self._part()
             self._close_all()
 
@@ -174,7 +174,7 @@ class Host:
 
     def _read(self, guest: Guest) -> None:
         try:
-            data = guest.peer.recv(65536 if guest.verb else notes.GREETING_BYTES)
+            data = guest.peer.recv(65536 if guest.verb else protocol.GREETING_BYTES)
             if not data:
                 raise ConnectionError
             if not guest.verb:
@@ -189,7 +189,7 @@ class Host:
             self._drop(guest)
 
     def _take(self, guest: Guest, note: Note) -> None:
-        wish = notes.word(note, "do")
+        wish = protocol.word(note, "do")
         if wish == "stop":
             self._line.stop()
         elif wish == "beat":
@@ -203,7 +203,7 @@ class Host:
         Until the token was right nothing else of it is looked at. Raises BadNote.
         """
         guest.greeting += data
-        greeting = notes.greeting(guest.greeting)
+        greeting = protocol.greeting(guest.greeting)
         if greeting is None:
             return b""
         if not secrets.compare_digest(greeting.token, self.holder.token.encode()):
@@ -216,8 +216,8 @@ class Host:
 
     def _begin(self, guest: Guest, note: Note) -> None:
         """Have something done for a guest."""
-        number = notes.number(note, "id")
-        limit_ms = min(max(1, notes.number(note, "limit_ms")), 60_000)
+        number = protocol.number(note, "id")
+        limit_ms = min(max(1, protocol.number(note, "limit_ms")), 60_000)
         if number in guest.tasks or len(guest.tasks) >= TASKS:
             raise BadNote
         robot = self._line.robot
@@ -261,7 +261,7 @@ class Host:
             "id": number,
             "status": outcome.status,
             "detail": outcome.detail,
-            "values": notes.plain(outcome.values),
+            "values": protocol.plain(outcome.values),
             "heard": self._line.heard,
             "is_echoed": self._line.is_echoed,
         })  # fmt: skip
@@ -286,7 +286,7 @@ class Host:
         if guest.missed:
             missed, guest.missed = guest.missed, 0
             self._tell_event(guest, time_ms, Event("MISSED", {"count": missed}))
-        note = {"event": event.name, "ms": time_ms, "values": notes.plain(event.values)}
+        note = {"event": event.name, "ms": time_ms, "values": protocol.plain(event.values)}
         self._send(guest, note)
 
     def _look_after(self) -> None:
@@ -294,7 +294,7 @@ class Host:
         for guest in list(self._guests):
             if not guest.verb and now_s - guest.heard_s > GREETING_S:
                 self._drop(guest)
-        if self._owner is not None and now_s - self._owner[0].heard_s > notes.TETHER_S:
+        if self._owner is not None and now_s - self._owner[0].heard_s > protocol.TETHER_S:
             self._end_run()
 
     def _end_run(self) -> None:
@@ -315,13 +315,13 @@ class Host:
         self._tell_holder("LEFT", guest)
 
     def _tell_holder(self, name: str, guest: Guest) -> None:
-        if guest.verb not in ("", notes.LOOKER):
+        if guest.verb not in ("", protocol.LOOKER):
             self._line.tell(Event(name, {"verb": guest.verb.encode()}))
 
     # -- what guests are told ---------------------------------------------------------------------
 
     def _send(self, guest: Guest, note: Note) -> None:
-        guest.out += notes.written(note)
+        guest.out += protocol.written(note)
         if len(guest.out) > TOO_FULL_BYTES:
             self._drop(guest)
         else:

@@ -10,8 +10,8 @@ from collections.abc import Callable
 from typing import Protocol
 
 from tiniscript.bytecode.image import Image
-from tiniscript.link.errands import Reply, Robot
 from tiniscript.link.outcomes import Event
+from tiniscript.link.requests import Reply, Robot
 
 
 class Asked(Protocol):

@@ -9,11 +9,11 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from tiniscript.bytecode.image import STARTS, Image
-from tiniscript.link.asking import Asked, Asks
-from tiniscript.link.errands import Reply
+from tiniscript.link.connection import Asked, Asks
 from tiniscript.link.messages import NAME_BYTES, TRIM_BYTES
-from tiniscript.sharing import notes
-from tiniscript.sharing.notes import BadNote, Note
+from tiniscript.link.requests import Reply
+from tiniscript.sharing import protocol
+from tiniscript.sharing.protocol import BadNote, Note
 
 CODE_BYTES = 0x7FFF  # as an image's header can say
 _PLAIN = ("hello", "ping", "status", "clear", "fetch")
@@ -95,29 +95,29 @@ def is_detached(note: Note) -> bool:
 
 
 def _asked_for(note: Note) -> Callable[[Asks], Asked]:
-    do = notes.word(note, "do")
+    do = protocol.word(note, "do")
     if do in _PLAIN:
         return lambda session: _plain(session, do)
     if do == "name":
-        name = notes.data(note, "name")
+        name = protocol.data(note, "name")
         if not 1 <= len(name) <= NAME_BYTES:
             raise BadNote
         return lambda session: session.name(name)
     if do == "trim":
-        trim = notes.data(note, "trim")
+        trim = protocol.data(note, "trim")
         if len(trim) not in (0, TRIM_BYTES):
             raise BadNote
         return lambda session: session.trim(trim)
     if do == "start":
-        is_alone = notes.answer(note, "is_detached")
+        is_alone = protocol.answer(note, "is_detached")
         return lambda session: session.start(is_alone)
     if do == "live":
-        code, kit = notes.data(note, "code"), notes.number(note, "kit")
+        code, kit = protocol.data(note, "code"), protocol.number(note, "kit")
         return lambda session: session.live(code, kit)
     if do == "upload":
         image = _image(note)
         runs, saves, is_alone = (
-            notes.answer(note, name) for name in ("runs", "saves", "is_detached")
+            protocol.answer(note, name) for name in ("runs", "saves", "is_detached")
         )
         return lambda session: session.upload(image, runs, saves, is_alone)
     raise BadNote
@@ -129,8 +129,12 @@ def _plain(session: Asks, do: str) -> Asked:
 
 
 def _image(note: Note) -> Image:
-    start, code, isa = notes.word(note, "start"), notes.data(note, "code"), notes.data(note, "isa")
-    kit, checksum = notes.number(note, "kit"), notes.number(note, "checksum")
+    start, code, isa = (
+        protocol.word(note, "start"),
+        protocol.data(note, "code"),
+        protocol.data(note, "isa"),
+    )
+    kit, checksum = protocol.number(note, "kit"), protocol.number(note, "checksum")
     is_sound = start in STARTS[:2] and len(code) <= CODE_BYTES and len(isa) == 2
     if not is_sound or not 0 <= kit < 1 << 16 or not 0 <= checksum < 1 << 32:
         raise BadNote
