@@ -12,7 +12,7 @@ from tests.test_robots import TEXTS
 from tests.virtual import Talk, missing
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import Image, unpack
-from tiniscript.cli.drawing import Picture
+from tiniscript.cli.terminal.run_drawing import Picture
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 from tiniscript.robots.reader import read

@@ -15,7 +15,8 @@ from tests.command import FOREVER, PROGRAM, TSC, Tsc
 from tests.desk import Desk
 from tests.machines.tabletop import missing
 from tiniscript import robots
-from tiniscript.cli import CLOSED, connecting, crew
+from tiniscript.cli import CLOSED
+from tiniscript.cli.robot import connect, fleet
 from tiniscript.link.messages import STOP_RUN
 
 pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
@@ -99,16 +100,16 @@ def test_only_robots_that_a_command_drives_are_stopped(
     """`tsc info --all | head` leaves running robots alone."""
     stopped: list[str] = []
 
-    def broken(self: crew.Crew, roll: object) -> None:
+    def broken(self: fleet.Crew, roll: object) -> None:
         raise BrokenPipeError
 
-    monkeypatch.setattr(crew.Crew, "begin", lambda self, work: None)
-    monkeypatch.setattr(crew.Crew, "watch", broken)
-    monkeypatch.setattr(crew.Crew, "interrupt", lambda self: stopped.append(verb))
-    monkeypatch.setattr(crew, "CONFIRM_S", 0.0)
+    monkeypatch.setattr(fleet.Crew, "begin", lambda self, work: None)
+    monkeypatch.setattr(fleet.Crew, "watch", broken)
+    monkeypatch.setattr(fleet.Crew, "interrupt", lambda self: stopped.append(verb))
+    monkeypatch.setattr(fleet, "CONFIRM_S", 0.0)
     options = Namespace(verb=verb, detach=is_detached, json=True, ports=["/x", "/y"], all=False)
     with pytest.raises(BrokenPipeError):
-        crew.together(options, robots.load("tinibot"), "en", lambda *_: pytest.fail("begun"))
+        fleet.together(options, robots.load("tinibot"), "en", lambda *_: pytest.fail("begun"))
     assert bool(stopped) == is_stopped
 
 
@@ -149,17 +150,17 @@ def test_a_port_that_vanishes_is_no_bug(
     tsc: Tsc, desk: Desk, monkeypatch: pytest.MonkeyPatch, words: list[str], asks: int
 ) -> None:
     """The cable is pulled while the robot writes down what it was told."""
-    real = connecting.Connection.ask
+    real = connect.Connection.ask
     asked = []
 
-    def ask(self: connecting.Connection, make: object) -> object:
+    def ask(self: connect.Connection, make: object) -> object:
         reply = real(self, make)  # type: ignore[arg-type]
         asked.append(reply)
         if len(asked) == asks:
             desk.pull()
         return reply
 
-    monkeypatch.setattr(connecting.Connection, "ask", ask)
+    monkeypatch.setattr(connect.Connection, "ask", ask)
     done = tsc(*words, "--port", desk.port)
     assert done.code == 3
     assert "has vanished" in done.err
@@ -177,7 +178,7 @@ def test_a_robot_that_is_busy_for_too_long_is_not_lost(
         return Reply(STATUSES["BUSY"]) if name in ("PROGRAM", "START") else reply
 
     monkeypatch.setattr("tiniscript.link.session.reply_of", busy)
-    monkeypatch.setattr(connecting, "PATIENCE_MS", 600)
+    monkeypatch.setattr(connect, "PATIENCE_MS", 600)
     for language, said in (("en", "still saving"), ("es", "está guardando")):
         for words in (["upload", "-e", PROGRAM], ["start"]):
             done = tsc(*words, "--port", desk.port, "--lang", language)

@@ -13,10 +13,10 @@ import pytest
 from tests.command import PROGRAM, TSC, Tsc, process
 from tiniscript.bytecode.image import unpack
 from tiniscript.cli import CLOSED, VERBS, main
-from tiniscript.cli.flash_texts import FLASH_TEXTS
-from tiniscript.cli.link_texts import LINK_TEXTS
-from tiniscript.cli.texts import TEXTS
-from tiniscript.cli.virtual_texts import VIRTUAL_TEXTS
+from tiniscript.cli.texts.common import TEXTS
+from tiniscript.cli.texts.firmware import FLASH_TEXTS
+from tiniscript.cli.texts.robot import LINK_TEXTS
+from tiniscript.cli.texts.simulator import VIRTUAL_TEXTS
 
 # -- anything whatever --------------------------------------------------------------------------
 
@@ -295,7 +295,7 @@ def test_a_bug_is_ours(
     def broken(arguments: list[str], language: str) -> int:
         raise RuntimeError("the moon")
 
-    monkeypatch.setattr("tiniscript.cli.checking.run", broken)
+    monkeypatch.setattr("tiniscript.cli.commands.check.run", broken)
     assert main(["check"]) == 2
     said = capsys.readouterr().err
     assert "RuntimeError: the moon" in said

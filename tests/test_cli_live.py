@@ -12,7 +12,7 @@ from tests.command import TSC, process
 from tests.desk import Desk
 from tests.machines.tabletop import missing
 from tiniscript import robots
-from tiniscript.cli.live_text import Known, Value
+from tiniscript.cli.robot.live_state import Known, Value
 
 pty = pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
 pyte = pytest.importorskip("pyte", reason="pyte, a terminal for tests, is not installed")

@@ -15,7 +15,7 @@ from tests.command import FOREVER, LONG, OBSTACLE, TSC, Tsc, ended, process, run
 from tests.desk import Desk, on
 from tests.machines.tabletop import missing
 from tiniscript import compile_text, robots
-from tiniscript.cli import connecting
+from tiniscript.cli.robot import connect
 from tiniscript.link import known_ports, ports
 
 pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
@@ -27,10 +27,10 @@ KIT = robots.load("tinibot").kit
 @pytest.fixture
 def hasty(monkeypatch: pytest.MonkeyPatch) -> None:
     """Nobody waits long for a robot that will not answer."""
-    monkeypatch.setattr(connecting, "ANSWER_MS", 800)
-    monkeypatch.setattr(connecting, "CABLE_ANSWER_MS", 800)
-    monkeypatch.setattr(connecting, "LONG_QUIET_S", 0.1)
-    monkeypatch.setattr(connecting, "PATIENCE_MS", 800)
+    monkeypatch.setattr(connect, "ANSWER_MS", 800)
+    monkeypatch.setattr(connect, "CABLE_ANSWER_MS", 800)
+    monkeypatch.setattr(connect, "LONG_QUIET_S", 0.1)
+    monkeypatch.setattr(connect, "PATIENCE_MS", 800)
 
 
 # -- upload and start ---------------------------------------------------------------------------
@@ -363,7 +363,7 @@ def test_every_reason_has_a_sentence_with_a_next_step(
 ) -> None:
     from serial import SerialException
 
-    monkeypatch.setattr("tiniscript.cli.joining.BUSY_S", 0)
+    monkeypatch.setattr("tiniscript.cli.robot.shared_port.BUSY_S", 0)
     for trouble, word in (
         (SerialException(13, "Permission denied"), "dialout" if os.name == "posix" else "may not"),
         (SerialException(16, "Device or resource busy"), "another program"),
@@ -451,7 +451,7 @@ def _rest(terminal: int) -> bytes:
 
 @pytest.mark.parametrize("values", [[], [(0, 5)], [(0, -5), (900, 7000), (20_000, 7000)]])
 def test_every_curve_fits_its_terminal(values: list[tuple[int, int]]) -> None:
-    from tiniscript.cli.plotting import Plot
+    from tiniscript.cli.terminal.plot import Plot
 
     plot = Plot()
     for time_ms, value in values:

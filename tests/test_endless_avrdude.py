@@ -8,7 +8,7 @@ from time import sleep as sleep_s
 
 import pytest
 
-from tiniscript.cli.flash_texts import FLASH_TEXTS
+from tiniscript.cli.texts.firmware import FLASH_TEXTS
 from tiniscript.flash import avrdude
 from tiniscript.flash.avrdude import Ended, Seen
 from tiniscript.flash.bootloaders import UNO

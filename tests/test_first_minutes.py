@@ -16,10 +16,10 @@ from tests.command import OBSTACLE, TSC, Tsc, process
 from tests.test_virtual_command import Robot, robot
 from tests.virtual import Talk, missing, robot_in
 from tiniscript import compile_text, robots
-from tiniscript.cli.live_mark import MARK
-from tiniscript.cli.live_text import Known
-from tiniscript.cli.living import HELP_ME, LEAVE, Catch, wished
-from tiniscript.cli.telling import Bookkeeping, Teller
+from tiniscript.cli.commands.live import HELP_ME, LEAVE, Catch, wished
+from tiniscript.cli.robot.event_printer import Bookkeeping, Teller
+from tiniscript.cli.robot.live_mark import MARK
+from tiniscript.cli.robot.live_state import Known
 from tiniscript.link import known_ports
 from tiniscript.link.outcomes import Event
 from tiniscript.robots import given
@@ -182,7 +182,7 @@ def test_stop_stops_all_that_are_in_use() -> None:
 def test_the_last_used_port_is_stopped_with_those_that_are_in_use(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    from tiniscript.cli import in_use
+    from tiniscript.cli.robot import in_use
 
     usb = tmp_path / "usb"
     known_ports.remember(str(usb), "TINI")

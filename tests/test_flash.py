@@ -19,8 +19,8 @@ from tests.machines.bootloaders import FOLDER, Bootloader, bootloader, optiboot
 from tests.machines.uno import built, needed
 from tests.platformio import firmware, need, prepared, shared
 from tiniscript import robots
-from tiniscript.cli import flashing
-from tiniscript.cli.flash_texts import FLASH_TEXTS
+from tiniscript.cli.commands import firmware as firmware_command
+from tiniscript.cli.texts.firmware import FLASH_TEXTS
 from tiniscript.flash import avrdude, ready
 from tiniscript.flash.bootloaders import BOARDS, UNO
 from tools import build_firmware, firmware_size
@@ -218,7 +218,7 @@ def test_ctrl_c_in_the_middle_says_what_is_on_the_board(
 def test_without_avrdude_it_says_where_to_get_it(package: Path, tmp_path: Path) -> None:
     done = tsc(package, "--port", "x", PATH=str(tmp_path), HOME=str(tmp_path))
     assert done.code == 2
-    assert "avrdude" in done.err and flashing.INSTALLS[sys.platform] in done.err
+    assert "avrdude" in done.err and firmware_command.INSTALLS[sys.platform] in done.err
 
 
 # -- avrdude

@@ -21,8 +21,8 @@ from tests.desk import Desk
 from tests.machines.tabletop import missing
 from tiniscript import robots
 from tiniscript.cli import main
-from tiniscript.cli.link_texts import LINK_TEXTS
-from tiniscript.cli.texts import TEXTS
+from tiniscript.cli.texts.common import TEXTS
+from tiniscript.cli.texts.robot import LINK_TEXTS
 from tiniscript.link import ports, statuses
 from tiniscript.link.ports import Found
 

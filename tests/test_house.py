@@ -158,7 +158,7 @@ def test_compile_imports_no_other_verb(tmp_path: Path) -> None:
         f"from tiniscript.cli import main; assert main(['compile', {str(program)!r}]) == 0"
     )
     unwanted = {"cobs", "serial", "construct", "tomllib", "tomli", "rich", "dataclasses",
-                "tiniscript.link", "tiniscript.cli.link_texts",
+                "tiniscript.link", "tiniscript.cli.texts.robot",
                 "tiniscript.vm.machine", "tiniscript.vm.trace", "tiniscript.bytecode.disassembly",
                 "tiniscript.syntax.formatter"}  # fmt: skip
     assert not unwanted & modules

@@ -11,15 +11,15 @@ from pathlib import Path
 import pytest
 
 from tests.casefile import ROOT
-from tiniscript.cli import installing
+from tiniscript.cli import install_advice
 
-EXTRAS = (installing.VIRTUAL, installing.FIRMWARE)
+EXTRAS = (install_advice.VIRTUAL, install_advice.FIRMWARE)
 
 
 @pytest.fixture(autouse=True)
 def plain(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A virtual environment that is active, and no clone."""
-    monkeypatch.setattr(installing, "CLONE", tmp_path)
+    monkeypatch.setattr(install_advice, "CLONE", tmp_path)
     monkeypatch.setattr(sys, "prefix", str(tmp_path / "env"))
     monkeypatch.setenv("VIRTUAL_ENV", str(tmp_path / "env"))
     rows = ["cobs>=1", 'pillow>=10.1; extra == "virtual"', 'wasmtime>=20; extra == "virtual"',
@@ -31,7 +31,7 @@ def clone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     folder = tmp_path / "a clone"
     (folder / "compiler" / "tiniscript").mkdir(parents=True)
     (folder / "pyproject.toml").touch()
-    monkeypatch.setattr(installing, "CLONE", folder)
+    monkeypatch.setattr(install_advice, "CLONE", folder)
     return folder
 
 
@@ -39,12 +39,12 @@ def test_a_clone_is_installed_with_its_extra(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     folder = clone(tmp_path, monkeypatch)
-    assert installing.command("virtual") == f'pip install -e "{folder}[virtual]"'
+    assert install_advice.command("virtual") == f'pip install -e "{folder}[virtual]"'
 
 
 def test_a_package_names_what_pypi_has() -> None:
-    assert installing.command("virtual") == 'pip install "pillow>=10.1" "wasmtime>=20"'
-    assert installing.command("firmware") == 'pip install "platformio>=6.1"'
+    assert install_advice.command("virtual") == 'pip install "pillow>=10.1" "wasmtime>=20"'
+    assert install_advice.command("firmware") == 'pip install "platformio>=6.1"'
 
 
 def test_pipx_puts_it_into_its_own_environment(
@@ -53,14 +53,17 @@ def test_pipx_puts_it_into_its_own_environment(
     clone(tmp_path, monkeypatch)
     (tmp_path / "env").mkdir()
     (tmp_path / "env" / "pipx_metadata.json").touch()
-    assert installing.command("firmware") == 'pipx inject tiniscript "platformio>=6.1"'
+    assert install_advice.command("firmware") == 'pipx inject tiniscript "platformio>=6.1"'
 
 
 def test_an_environment_that_is_not_active_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     """`pip` alone would be that of another Python."""
     monkeypatch.delenv("VIRTUAL_ENV")
     monkeypatch.setattr(sys, "executable", "/some where/python")
-    assert installing.command("firmware") == '"/some where/python" -m pip install "platformio>=6.1"'
+    assert (
+        install_advice.command("firmware")
+        == '"/some where/python" -m pip install "platformio>=6.1"'
+    )
 
 
 def test_where_pip_is_refused_it_is_pipx(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -68,7 +71,7 @@ def test_where_pip_is_refused_it_is_pipx(tmp_path: Path, monkeypatch: pytest.Mon
     monkeypatch.setattr(sys, "base_prefix", sys.prefix)
     monkeypatch.setattr("sysconfig.get_path", lambda name: str(tmp_path))
     (tmp_path / "EXTERNALLY-MANAGED").touch()
-    assert installing.command("virtual") == f'pipx install "{folder}[virtual]"'
+    assert install_advice.command("virtual") == f'pipx install "{folder}[virtual]"'
 
 
 def test_nothing_known_is_no_crash(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -76,12 +79,12 @@ def test_nothing_known_is_no_crash(monkeypatch: pytest.MonkeyPatch) -> None:
         raise metadata.PackageNotFoundError(name)
 
     monkeypatch.setattr(metadata, "requires", nothing)
-    assert installing.command("virtual") == 'pip install "tiniscript[virtual]"'
+    assert install_advice.command("virtual") == 'pip install "tiniscript[virtual]"'
 
 
 @pytest.mark.parametrize("word", ["plain", "a b", 'a"b', "a$HOME[x]", "a`b`", "a\\b", "x>=1", "!"])
 def test_a_shell_reads_the_word_that_was_meant(word: str) -> None:
-    assert shlex.split(installing.quoted(word)) == [word]
+    assert shlex.split(install_advice.quoted(word)) == [word]
 
 
 def test_the_extras_are_those_of_the_package() -> None:

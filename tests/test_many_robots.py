@@ -15,9 +15,9 @@ from tests.classroom import Classroom
 from tests.command import FOREVER, TSC, Done, Tsc, ended, process, running
 from tests.machines.tabletop import missing
 from tiniscript import robots
-from tiniscript.cli.crew import Member, Result
-from tiniscript.cli.roll import Roll
-from tiniscript.cli.roster import Post
+from tiniscript.cli.robot.fleet import Member, Result
+from tiniscript.cli.robot.targets import Post
+from tiniscript.cli.terminal.fleet_table import Roll
 from tiniscript.link import known_ports, ports
 
 pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
@@ -144,13 +144,13 @@ def test_a_port_that_never_had_a_robot_is_no_failure(
     ends = [end for _ in range(2) for end in pty.openpty()]
     port, known = os.ttyname(ends[1]), os.ttyname(ends[3])
     monkeypatch.setattr("tiniscript.link.ports.listed", lambda: [ports.Found(port, "")])
-    monkeypatch.setattr("tiniscript.cli.crew.STRANGER_S", 1.0)
+    monkeypatch.setattr("tiniscript.cli.robot.fleet.STRANGER_S", 1.0)
     done = tsc("ping", "--all", "--count", "1")
     assert done.code == 0
     assert len(done.out.splitlines()) == 4
     assert done.err == f"4 of 4 robots: done.\nNo robot answers on {port}.\n"
     monkeypatch.setattr("tiniscript.link.ports.listed", list)
-    monkeypatch.setattr("tiniscript.cli.connecting.ANSWER_MS", 1000)
+    monkeypatch.setattr("tiniscript.cli.robot.connect.ANSWER_MS", 1000)
     known_ports.remember(known, "R9", is_used=False)
     done = tsc("ping", "--all", "--count", "1")
     assert done.code == 3

@@ -10,8 +10,8 @@ import pytest
 from tests.command import PROGRAM, Tsc
 from tests.test_outputs import PROFILE, WORLD
 from tests.verbs import parsers, values_of
-from tiniscript.cli.texts import LONGEST, Said, text
-from tiniscript.cli.trouble import Trouble
+from tiniscript.cli.errors import Trouble
+from tiniscript.cli.texts.common import LONGEST, Said, text
 from tiniscript.printable import printable
 
 # ESC and a colour, a C1 control, a line of its own, backspaces, and marks that turn the direction
@@ -126,7 +126,7 @@ def test_a_bug_is_told_in_plain_text(tsc: Tsc, monkeypatch: pytest.MonkeyPatch, 
     def broken(arguments: list[str], language: str) -> int:
         raise RuntimeError(EVIL)
 
-    monkeypatch.setattr("tiniscript.cli.checking.run", broken)
+    monkeypatch.setattr("tiniscript.cli.commands.check.run", broken)
     assert main(["check"]) == 2
     assert_plain(capsys.readouterr().err)
 

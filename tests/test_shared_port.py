@@ -160,7 +160,7 @@ def test_an_upload_through_a_holder_imports_no_more_than_it_needs() -> None:
         command = Command("upload", "-e", "SI|F(0.1, 30)", "--port", desk.port, code=code)
         modules = set(command.ended().out.splitlines()[-1].split())
     unwanted = {"serial", "cobs", "construct", "tomllib", "tomli", "rich", "threading",
-                "tiniscript.link.session", "tiniscript.link.ports", "tiniscript.cli.crew",
+                "tiniscript.link.session", "tiniscript.link.ports", "tiniscript.cli.robot.fleet",
                 "tiniscript.diagnostics.rendering"}  # fmt: skip
     assert sorted(unwanted & modules) == []
 

@@ -11,9 +11,9 @@ import pytest
 from tests.command import Command
 from tests.desk import Desk, on, uploading
 from tests.machines.tabletop import missing
-from tiniscript.cli import joining
-from tiniscript.cli.texts import text
-from tiniscript.cli.trouble import Trouble
+from tiniscript.cli.errors import Trouble
+from tiniscript.cli.robot import shared_port
+from tiniscript.cli.texts.common import text
 from tiniscript.link.line import Line
 from tiniscript.link.session import CONFIRM_MS
 
@@ -82,8 +82,8 @@ def test_a_stop_waits_for_a_port_longer_than_others(
 ) -> None:
     """Another command has it that looks for a silent robot for 8.5 s, and does not share it."""
     now_s = [0.0]
-    monkeypatch.setattr(joining, "monotonic", lambda: now_s[0])
-    monkeypatch.setattr(joining, "sleep", lambda wait_s: now_s.append(now_s.pop() + wait_s))
+    monkeypatch.setattr(shared_port, "monotonic", lambda: now_s[0])
+    monkeypatch.setattr(shared_port, "sleep", lambda wait_s: now_s.append(now_s.pop() + wait_s))
     line = cast(Line, object())
 
     def open_line(_: object) -> Line:
@@ -92,10 +92,10 @@ def test_a_stop_waits_for_a_port_longer_than_others(
         return line
 
     if is_patient:
-        assert joining.way_to("/dev/ttyUSB7", verb, open_line) is line
+        assert shared_port.way_to("/dev/ttyUSB7", verb, open_line) is line
     else:
         with pytest.raises(Trouble):
-            joining.way_to("/dev/ttyUSB7", verb, open_line)
+            shared_port.way_to("/dev/ttyUSB7", verb, open_line)
 
 
 @pytest.mark.parametrize("language", ["en", "es"])

@@ -18,7 +18,7 @@ import pytest
 
 from tests.command import OBSTACLE, TSC, Done, Tsc, process
 from tests.virtual import missing
-from tiniscript.cli import installing
+from tiniscript.cli import install_advice
 from tiniscript.virtual import directory
 
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
@@ -354,4 +354,4 @@ def test_what_is_not_installed_is_said(
     monkeypatch.setitem(sys.modules, name, None)
     done = tsc("upload", "--virtual", "-e", "SI|S", "--plot", tmp_path / "way.png")
     assert done.code == 2
-    assert installing.command("virtual") in done.err
+    assert install_advice.command("virtual") in done.err

@@ -21,7 +21,8 @@ from tiniscript.bytecode.disassembly import read_listing
 from tiniscript.bytecode.image import Image, ImageRefused, pack, unpack
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.bytecode.verify import Refused, verify
-from tiniscript.cli import installing, running
+from tiniscript.cli import install_advice
+from tiniscript.cli.commands import run
 from tiniscript.vm.machine import Machine
 from tiniscript.vm.state import WAITING
 from tiniscript.vm.trace import AnyMachine
@@ -178,7 +179,7 @@ def test_without_wasmtime_the_next_step_is_said(
         monkeypatch.delitem(sys.modules, f"tiniscript.{module}", raising=False)
     done = tsc("run", "-e", "F(1, 50)", "--machine", "cpp", "--lang", language)
     assert (done.code, done.out) == (2, "")
-    assert installing.command("virtual") in done.err
+    assert install_advice.command("virtual") in done.err
     assert "--machine python" in done.err
 
 
@@ -238,7 +239,7 @@ def test_refused_images() -> None:
 def test_two_verdicts_are_our_mistake() -> None:
     bad = Image("SI", 0, b"\xff", 0, (ISA_MAJOR, ISA_MINOR))
     with pytest.raises(AssertionError, match="refuses what Python accepts: UNKNOWN_OPCODE"):
-        running._cpp_machine(bad, robots.load("tinibot"))
+        run._cpp_machine(bad, robots.load("tinibot"))
 
 
 # -- the machine --------------------------------------------------------------------------------

@@ -14,7 +14,7 @@ import pytest
 
 from tests.command import Tsc
 from tiniscript import robots
-from tiniscript.cli import wiring
+from tiniscript.cli.commands import wiring
 from tiniscript.fixed_point import ONE
 from tiniscript.kit import NUMBER, Device, Kit
 from tiniscript.robots.boards import CHIPS, DRIVERS, Chip, Driver

@@ -20,8 +20,8 @@ def parsers() -> dict[str, options.Options]:
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(options.Options, "read", read)
-        for module in VERBS.values():
-            assert import_module(f"tiniscript.cli.{module}").run([], "en") == 0
+        for verb in VERBS:
+            assert import_module(f"tiniscript.cli.commands.{verb}").run([], "en") == 0
     assert set(found) == set(VERBS)
     return found
 

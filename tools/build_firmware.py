@@ -20,8 +20,8 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tiniscript import robots
-from tiniscript.cli import installing
-from tiniscript.cli.building import on_boards
+from tiniscript.cli import install_advice
+from tiniscript.cli.firmware_build import on_boards
 from tiniscript.flash import building
 from tiniscript.flash.ready import FOLDER, NOTICE, name_of
 from tiniscript.robots.profile import Robot
@@ -72,7 +72,7 @@ def build_all(target: Path, licence: Path) -> list[Path]:
             "https://www.gnu.org/licenses/old-licenses/lgpl-2.1.txt is one"
         )
     if building.platformio() is None:
-        how = installing.command(installing.FIRMWARE)
+        how = install_advice.command(install_advice.FIRMWARE)
         raise CannotBuild(f"PlatformIO is not installed. Install it:  {how}")
     os.environ.update(settings_for(PROJECT, offline=False, may_install=False))
     target.parent.mkdir(parents=True, exist_ok=True)

@@ -10,31 +10,31 @@ from __future__ import annotations
 import os
 import sys
 
-# verb -> the module of this package that does it
-VERBS = {
-    "compile": "compiling",
-    "check": "checking",
-    "run": "running",
-    "show": "showing",
-    "fmt": "formatting",
-    "explain": "explaining",
-    "wiring": "wiring",
-    "board": "boarding",
-    "firmware": "flashing",
-    "ports": "finding",
-    "ping": "pinging",
-    "upload": "uploading",
-    "live": "living",
-    "link": "linking",
-    "stop": "stopping",
-    "start": "starting",
-    "info": "describing",
-    "monitor": "monitoring",
-    "fetch": "fetching",
-    "name": "naming",
-    "trim": "trimming",
-    "robot": "hosting",
-}
+# each is a module of `commands`
+VERBS = (
+    "compile",
+    "check",
+    "run",
+    "show",
+    "fmt",
+    "explain",
+    "wiring",
+    "board",
+    "firmware",
+    "ports",
+    "ping",
+    "upload",
+    "live",
+    "link",
+    "stop",
+    "start",
+    "info",
+    "monitor",
+    "fetch",
+    "name",
+    "trim",
+    "robot",
+)
 
 
 CLOSED = 141  # 128 and the number of SIGPIPE
@@ -52,7 +52,7 @@ def main(arguments: list[str] | None = None) -> int:
 def _main(arguments: list[str] | None) -> int:
     arguments = sys.argv[1:] if arguments is None else arguments
     _mend_streams()
-    from tiniscript.cli.texts import language_of, text
+    from tiniscript.cli.texts.common import language_of, text
 
     language = language_of(arguments)
     try:
@@ -93,8 +93,8 @@ def _drop_output() -> None:
 
 
 def _verb(arguments: list[str], language: str) -> int:
-    from tiniscript.cli.texts import text
-    from tiniscript.cli.trouble import Trouble
+    from tiniscript.cli.errors import Trouble
+    from tiniscript.cli.texts.common import text
 
     words = [word for word in arguments if not word.startswith("-")]
     if arguments and arguments[0] in ("help", "ayuda"):
@@ -124,18 +124,18 @@ def _verb(arguments: list[str], language: str) -> int:
             from tiniscript.words import nearest
 
             refuse_program(name)
-            near = nearest(name, list(VERBS)) or ""
+            near = nearest(name, VERBS) or ""
             raise Trouble(2, "no_verb", found=name, near=near, example=words[0] if words else "")
         from importlib import import_module
 
-        return int(import_module(f"tiniscript.cli.{VERBS[name]}").run(arguments[1:], language))
+        return int(import_module(f"tiniscript.cli.commands.{name}").run(arguments[1:], language))
     except Trouble as trouble:
         print(trouble.sentence(language), file=sys.stderr)
         return trouble.exit_code
 
 
 def _explain_bug(bug: Exception, language: str) -> int:
-    from tiniscript.cli.texts import text
+    from tiniscript.cli.texts.common import text
 
     if os.environ.get("TINISCRIPT_DEBUG"):
         raise bug

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from tiniscript.cli import inputs, outputs
-from tiniscript.cli.trouble import Trouble
+from tiniscript.cli.errors import Trouble
 
 if TYPE_CHECKING:
     from tiniscript import Compiled
@@ -47,7 +47,7 @@ def ready(
         return Ready(image, len(given.data), source_map.recall(image.checksum))
     compiled = inputs.compiled(given, robot, is_strict)
     if is_open and not compiled.is_right:
-        from tiniscript.cli.own_kit import is_other_robots
+        from tiniscript.cli.robot.own_kit import is_other_robots
 
         if is_other_robots(compiled):
             raise OtherRobot(compiled)

@@ -7,9 +7,9 @@ from argparse import Namespace
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
+from tiniscript.cli.errors import Trouble
 from tiniscript.cli.paths import real_name
-from tiniscript.cli.texts import Said
-from tiniscript.cli.trouble import Trouble
+from tiniscript.cli.texts.common import Said
 from tiniscript.printable import printable
 from tiniscript.source import LARGEST_SOURCE, Unreadable, decode
 
@@ -53,7 +53,7 @@ def program(options: Namespace) -> Input:
     name = real_name(options.program)
     path = Path(name)
     if name != options.program:
-        from tiniscript.cli.texts import text
+        from tiniscript.cli.texts.common import text
 
         said = text("file_really", options.language)
         print(said.format(file=options.program, real=name), file=sys.stderr)
@@ -106,7 +106,7 @@ def compiled(given: Input, robot: Robot, is_strict: bool) -> Compiled:
     if isinstance(source, str):
         found = compile_text(source, robot.kit, given.name)
         if not found.is_right:
-            from tiniscript.cli.own_kit import naming
+            from tiniscript.cli.robot.own_kit import naming
 
             return naming(found, robot)
         return fitting(found, robot, is_strict)

@@ -6,7 +6,7 @@ import re
 from argparse import ArgumentParser, HelpFormatter, Namespace
 from typing import NoReturn
 
-from tiniscript.cli.trouble import Trouble
+from tiniscript.cli.errors import Trouble
 
 # What argparse says, and how Spanish says it.
 _SPANISH = (
@@ -73,7 +73,7 @@ def whole_number(option: str, found: str | None, default: int, low: int, high: i
     else:
         value = int(found)
     if not low <= value <= high:
-        from tiniscript.cli.texts import text
+        from tiniscript.cli.texts.common import text
 
         allowed = text("range_whole", language).format(low=low, high=high)
         raise Trouble(2, "bad_number", option=option, range=allowed, found=found)

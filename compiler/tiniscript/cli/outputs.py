@@ -7,8 +7,8 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tiniscript.cli.texts import text
-from tiniscript.cli.trouble import Trouble
+from tiniscript.cli.errors import Trouble
+from tiniscript.cli.texts.common import text
 
 if TYPE_CHECKING:
     from tiniscript import Compiled

@@ -17,8 +17,8 @@ from collections.abc import Iterator
 from contextlib import suppress
 from typing import NamedTuple
 
-from tiniscript.cli.texts import text
-from tiniscript.cli.trouble import Trouble
+from tiniscript.cli.errors import Trouble
+from tiniscript.cli.texts.common import text
 
 # Every option that takes a value is in one of these three, by its name in `Namespace`.
 # What is read: the sentence that says what it is.

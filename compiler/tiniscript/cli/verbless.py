@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from tiniscript.cli.errors import Trouble
 from tiniscript.cli.inputs import shown
-from tiniscript.cli.trouble import Trouble
 
 PROGRAMS = (".ts", ".ts.txt", ".bin")
 

@@ -1,0 +1,372 @@
+"""`tsc live`: lines that the robot does at once."""
+
+from __future__ import annotations
+
+import contextlib
+import re
+import sys
+from argparse import Namespace
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from tiniscript.cli import images, inputs, outputs
+from tiniscript.cli.errors import Trouble
+from tiniscript.cli.options import Options
+from tiniscript.cli.robot import own_kit
+from tiniscript.cli.robot.connect import Connection, takes_robot
+from tiniscript.cli.robot.run_monitor import Attendant, stop_and_say
+from tiniscript.cli.robot.simulator_options import takes_world
+from tiniscript.cli.texts.common import text
+
+if TYPE_CHECKING:
+    from tiniscript.cli.robot.event_printer import Teller
+    from tiniscript.cli.robot.live_state import Known, Line
+    from tiniscript.link.outcomes import Event
+    from tiniscript.robots.profile import Robot
+
+HELP = (
+    """\
+tsc live ['LINE'] [--port P] [--robot NAME|FILE]
+
+Does a line on the robot at once:  tsc live 'F(2, 80)'   Without a line there is a prompt, and with
+- lines come from standard input. Variables and DEFs live on until you leave: tsc keeps DEFs
+as text, and the values that a line has given when it was done. The program that the robot
+holds stays what it is. Ctrl-C stops the robot, Ctrl-D leaves.
+  --port P      the robot's port; the last used one where nothing is said
+  --baud N      its speed (the one of the robot's profile)
+  --robot R     for which robot: a name (tinibot, ...) or a profile's file
+  --virtual     no robot: a virtual one does it here; --world, --plot, --seed, ... as tsc robot
+""",
+    """\
+tsc live ['LÍNEA'] [--port P] [--robot NOMBRE|ARCHIVO]
+
+Hace una línea en el robot en el acto:  tsc live 'F(2, 80)'   Sin línea hay un diálogo, y con - las
+líneas vienen de la entrada estándar. Las variables y los DEF siguen vivos hasta que sales: tsc
+guarda los DEF como texto, y los valores que una línea ha puesto cuando terminó. El programa que
+tiene el robot queda como está. Ctrl-C detiene el robot, Ctrl-D sale.
+  --port P      el puerto del robot; el último usado si no se dice nada
+  --baud N      su velocidad (la del perfil del robot)
+  --robot R     para qué robot: un nombre (tinibot, ...) o el archivo de un perfil
+  --virtual     sin robot: lo hace aquí uno virtual; --world, --plot, --seed, ... como tsc robot
+""",
+)
+
+PROMPT = "tini> "
+LEAVE, HELP_ME = "leave", "help"
+WISHES = {
+    "EXIT": LEAVE,
+    "QUIT": LEAVE,
+    "SALIR": LEAVE,
+    "HELP": HELP_ME,
+    "AYUDA": HELP_ME,
+    "?": HELP_ME,
+}
+
+
+def run(arguments: list[str], language: str) -> int:
+    parser = Options("live", language, HELP)
+    takes_robot(parser)
+    takes_world(parser)
+    parser.add_argument("line", nargs="?")
+    parser.add_argument("-e", dest="text")
+    options = parser.read(arguments)
+    if options is None:
+        return 0
+    if options.line is not None and options.text is not None:
+        raise Trouble(2, "two_programs")
+    line: str | None = options.text if options.line is None else options.line
+    robot = inputs.robot(options, language)
+    from tiniscript.cli.robot.live_state import Known
+
+    known = Known(robot.kit)
+    if line is not None and line != "-" and not _may_be_done(line, known, robot, options):
+        return 1
+    with Connection(options, robot, language) as connection:
+        talk = Talk(connection, known, options)
+        if line is None and sys.stdin.isatty():
+            return talk.prompt()
+        talk.meet()
+        if line is None or line == "-":
+            return talk.all_of(sys.stdin)
+        return talk.do(line, is_last=True)
+
+
+def _may_be_done(line: str, known: Known, robot: Robot, options: Namespace) -> bool:
+    """Whether a line is right, perhaps for the robot that answers; else say what is wrong."""
+    language: str = options.language
+    if options.robot is None:
+        compiled = own_kit.naming(known.line(line, 0).compiled, robot)
+        if own_kit.is_other_robots(compiled):
+            found = own_kit.of_answering(options, robot, language)
+            if found is not None:
+                return True  # it is compiled again, for that one
+    return _compiled(line, known, robot, language, is_last=True) is not None
+
+
+def _compiled(
+    line: str, known: Known, robot: Robot, language: str, is_last: bool = False
+) -> Line | None:
+    """Compile a line and print what is wrong with it; return None where it is."""
+    from tiniscript.cli.robot.live_state import header
+    from tiniscript.link.requests import SHORT_BYTES
+
+    if header(line) == "SB":
+        raise Trouble(1, "live_button")
+    found = known.line(line, 0 if is_last else SHORT_BYTES)
+    outputs.print_problems(own_kit.naming(found.compiled, robot), language)
+    if not found.compiled.is_right:
+        return None
+    code = len(found.compiled.code)
+    if code > SHORT_BYTES:
+        raise Trouble(1, "live_too_long", code=str(code), room=str(SHORT_BYTES))
+    return found
+
+
+class Talk:
+    """Lines to a robot, one after the other."""
+
+    def __init__(self, connection: Connection, known: Known, options: Namespace) -> None:
+        self.connection = connection
+        self.options = options
+        self.language = connection.language
+        self.known = known
+
+    def meet(self) -> None:
+        """Ask the robot who it is, and take its kit. Raises Trouble where none answers."""
+        self.connection.meet()
+        if own_kit.take(self.connection, self.options):
+            self.known.kit = self.connection.profile.kit
+
+    def do(self, line: str, is_last: bool = False) -> int:
+        """Do a line; return the exit code. Ctrl-C stops the robot."""
+        from tiniscript.cli.robot.live_state import header
+
+        if header(line) == "PING":
+            from tiniscript.cli.commands.ping import ping
+
+            return ping(self.connection, is_json=False)
+        robot = self.connection.profile
+        found = _compiled(line, self.known, robot, self.language, is_last)
+        if found is None:
+            return 1
+        try:
+            code = 0 if found.does_nothing else self._run(found, is_last)
+        except KeyboardInterrupt:
+            return stop_and_say(self.connection)
+        if not code and found.forgets and not is_last:
+            print(text("live_forgets", self.language), file=sys.stderr)
+        if not code and found.defs:
+            self.known.defs.update(found.defs)
+            if found.does_nothing:
+                names = ", ".join(found.defs)
+                print(text("live_known", self.language).format(names=names))
+        return code
+
+    def _run(self, found: Line, is_last: bool) -> int:
+        from tiniscript.codegen import source_map
+
+        places = source_map.from_compiled(found.compiled)
+        source_map.remember(found.compiled.image, places)  # tsc info names a fault's line later
+        kit = images.kit_of(found.compiled, self.connection.profile)
+        reply = self.connection.ask(lambda session: session.live(found.compiled.code, kit))
+        run = reply.values["run"]
+        assert isinstance(run, int)
+        teller = self.connection.teller(places=places)
+        catch = Catch(found.shown, self.known, teller, is_last)
+        company = self.connection.company
+        if company is not None:
+            company.watch()
+        try:
+            return Attendant(self.connection, teller, catch.hold).attend(run)
+        finally:
+            if company is not None:
+                company.unwatch()
+
+    def all_of(self, lines: object) -> int:
+        """Do lines from a file until one fails."""
+        from typing import TextIO, cast
+
+        for line in cast("TextIO", lines):
+            if line.strip():
+                if self._says_time_over():
+                    return 0
+                code = self.do(line.rstrip("\r\n"))
+                if code or self.connection.is_time_over:
+                    return code
+        return 0
+
+    def _says_time_over(self) -> bool:
+        """Say it where the time of a virtual robot has passed between two lines."""
+        if self.connection.is_time_over:
+            print(text("time_over", self.language))
+            return True
+        return False
+
+    def _help(self) -> str:
+        kit = self.known.kit
+        names = ", ".join(device.name for device in (*kit.sensors, *kit.actuators))
+        return text("live_help", self.language).format(
+            show=f"SHOW({kit.sensors[0].name if kit.sensors else 'TIME'})",
+            names=names or text("live_nothing", self.language),
+        )
+
+    def prompt(self) -> int:
+        """Let a person type lines, until they leave."""
+        self.meet()
+        said = {"robot": self.connection.name, "port": inputs.shown(self.connection.port)}
+        print(text("live_hello", self.language).format(**said))
+        with _history(self.known):
+            while True:
+                self._tell_meanwhile()
+                try:
+                    line = input(PROMPT)
+                except EOFError:
+                    print()
+                    return 0
+                except KeyboardInterrupt:
+                    self._stop()
+                    continue
+                if self._says_time_over():
+                    return 0
+                self._tell_meanwhile()
+                wish = wished(line, self.known)
+                if wish == LEAVE:
+                    return 0
+                if wish == HELP_ME:
+                    print(self._help())
+                elif line.strip():
+                    self._try(line)
+                    if self.connection.is_time_over:  # that line has said it
+                        return 0
+
+    def _try(self, line: str) -> None:
+        """Do a line; what is wrong with it or with the robot is said, and the talk goes on."""
+        try:
+            self.do(line)
+        except Trouble as trouble:
+            if trouble.key in ("port_gone", "holder_ended"):
+                raise
+            print(trouble.sentence(self.language), file=sys.stderr)
+
+    def _stop(self) -> None:
+        try:
+            stop_and_say(self.connection)
+        except Trouble as trouble:
+            print(trouble.sentence(self.language), file=sys.stderr)
+
+    def _tell_meanwhile(self) -> None:
+        """Tell what the robot has told since the last line.
+
+        That it was lost the next line tells, if it still is.
+        """
+        from tiniscript.cli.robot.event_printer import Bookkeeping, Teller
+        from tiniscript.link.outcomes import Gone
+
+        teller, bookkeeping = Teller(self.language), Bookkeeping()
+        try:
+            while True:
+                found = self.connection.line.event(0)
+                if found is None:
+                    return
+                if not bookkeeping.hides(found[1]):
+                    teller.tell(*found)
+        except Gone as gone:
+            raise self.connection.gone(gone) from None
+
+
+def wished(line: str, known: Known) -> str:
+    """Return what a whole line asks of tsc and not of the robot, or nothing.
+
+    A name that the robot or the person has given means what it means there.
+    """
+    word = re.sub(r"\s*(\(\s*\))?[\s;]*$", "", line.lstrip()).upper()
+    devices = (device.name for device in (*known.kit.sensors, *known.kit.actuators))
+    return "" if word in (*known.defs, *devices) else WISHES.get(word, "")
+
+
+class Catch:
+    """Keeps back what a line shows of its variables, and learns their values from it."""
+
+    def __init__(
+        self, shown: tuple[str, ...], known: Known, teller: Teller, says_done: bool
+    ) -> None:
+        self.shown = shown
+        self.known = known
+        self.teller = teller
+        self.says_done = says_done
+        self.held: list[Event] = []
+        self.has_missed = False  # events of this line
+
+    def hold(self, event: Event) -> bool:
+        from tiniscript.cli.robot.live_mark import MARK
+        from tiniscript.cli.robot.live_state import Value
+
+        if event.name == "SHOW":
+            is_mark = event.values["value"] == MARK and not event.values["is_yes_no"]
+            if not self.shown or not (is_mark or self.held):
+                return False
+            if is_mark or len(self.held) > len(self.shown):
+                self._release()
+            if not is_mark and not self.held:
+                return False
+            self.held.append(event)
+            return True
+        if event.name == "DONE":
+            values = [each.values for each in self.held[1:]]
+            if len(values) == len(self.shown):
+                for name, each in zip(self.shown, values, strict=True):
+                    value = each["value"]
+                    assert isinstance(value, int)
+                    self.known.values[name] = Value(value, bool(each["is_yes_no"]))
+            elif not self.has_missed:
+                self._release()
+            self.held = []
+            return not self.says_done
+        if event.name == "FAULT":  # what shows the values has none
+            self._release()
+        elif event.name in ("STOPPED", "ENDED"):
+            self.held = []
+        self.has_missed = self.has_missed or event.name == "MISSED"
+        return False
+
+    def _release(self) -> None:
+        """What was kept back is the person's own."""
+        for event in self.held:
+            self.teller.tell(0, event)
+        self.held = []
+
+
+@contextlib.contextmanager
+def _history(known: Known) -> Iterator[None]:
+    """Arrow keys bring back earlier lines, of earlier sessions too; Tab completes words."""
+    try:
+        import readline
+    except ImportError:  # Windows: its console has a history of its own
+        yield
+        return
+    from platformdirs import user_cache_path
+
+    from tiniscript.words import WORDS
+
+    path = user_cache_path("tiniscript", appauthor=False) / "live_history"
+    kit = known.kit
+
+    def complete(begun: str, number: int) -> str | None:
+        devices = [device.name for device in (*kit.sensors, *kit.actuators)]
+        words = sorted({*WORDS, *devices, *known.names()})
+        fitting = [word for word in words if word.startswith(begun.upper())]
+        return fitting[number] if number < len(fitting) else None
+
+    with contextlib.suppress(OSError):
+        readline.read_history_file(path)
+    readline.set_completer(complete)
+    readline.set_completer_delims(" \t;|()+-*/%=<>,")
+    is_libedit = "libedit" in (readline.__doc__ or "")
+    readline.parse_and_bind("bind ^I rl_complete" if is_libedit else "tab: complete")
+    try:
+        yield
+    finally:
+        readline.set_history_length(500)
+        with contextlib.suppress(OSError):
+            path.parent.mkdir(parents=True, exist_ok=True)
+            readline.write_history_file(path)

@@ -1,0 +1,110 @@
+"""`tsc show`: the listing of a program."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from tiniscript.cli import images, inputs
+from tiniscript.cli.options import Options
+from tiniscript.cli.texts.common import text
+
+if TYPE_CHECKING:
+    from tiniscript.robots.profile import Robot
+
+HELP = (
+    """\
+tsc show PROGRAM [--json] [--robot NAME|FILE]
+
+Lists the instructions of a program (image or text): offsets, bytes, names, and source lines
+where they are known.
+  --json        the same as data: code_bytes, image_bytes, start, robot, instructions, ...
+""",
+    """\
+tsc show PROGRAMA [--json] [--robot NOMBRE|ARCHIVO]
+
+Lista las instrucciones de un programa (imagen o texto): posiciones, bytes, nombres, y las
+líneas del texto si se conocen.
+  --json        lo mismo como datos: code_bytes, image_bytes, start, robot, instructions, ...
+""",
+)
+
+
+def run(arguments: list[str], language: str) -> int:
+    parser = Options("show", language, HELP)
+    parser.takes_program()
+    parser.add_argument("--json", action="store_true")
+    options = parser.read(arguments)
+    if options is None:
+        return 0
+    given = inputs.program(options)
+    robot = inputs.robot(options, language)
+    if given.is_image and options.robot is None:
+        robot = images.robot_for(given, robot)
+    ready = images.ready(given, robot, language)
+    if ready is None:
+        return 1
+    if options.json:
+        print_json(ready, robot)
+    else:
+        print_listing(ready, robot, inputs.shown(given.name), language)
+    return 0
+
+
+def print_listing(ready: images.Ready, robot: Robot, name: str, language: str) -> None:
+    from tiniscript.bytecode.disassembly import listing
+
+    image = ready.image
+    key = "for_robot" if image.kit else "any_robot"
+    print(text("head", language).format(
+        file=name,
+        start=image.start,
+        robot=text(key, language).format(robot=robot.name),
+        code=len(image.code),
+        image=ready.image_bytes,
+        checksum=f"{image.checksum:08x}",
+    ))  # fmt: skip
+    remarks = {}
+    if ready.places is not None:
+        for place in ready.places.places:
+            shown = ready.places.line(place.line).strip()
+            if len(shown) > 60:  # a long line: the instruction alone
+                line = ready.places.line(place.line)
+                end = place.end_column - 1 if place.end_line == place.line else len(line)
+                shown = line[place.column - 1 : end][:60]
+            shown = shown.replace("\t", " ")
+            remark = text("line", language).format(line=place.line, shown=shown)
+            remarks[place.offset] = remark
+    print(listing(image.code, remarks, robot.kit if image.kit else None), end="")
+
+
+def print_json(ready: images.Ready, robot: Robot) -> None:
+    import json
+
+    from tiniscript.bytecode.disassembly import rows
+
+    image = ready.image
+    instructions = []
+    for row in rows(image.code):
+        assert row.op is not None
+        fields: dict[str, object] = {
+            "offset": row.offset,
+            "bytes": row.data.hex(),
+            "name": row.op.name,
+            "operands": list(row.operands),
+            "text": row.text,
+        }
+        place = ready.places.at(row.offset) if ready.places is not None else None
+        if place is not None:
+            fields["line"] = place.line
+            fields["column"] = place.column
+        instructions.append(fields)
+    print(json.dumps({
+        "code_bytes": len(image.code),
+        "image_bytes": ready.image_bytes,
+        "start": image.start,
+        "robot": robot.name if image.kit else None,
+        "kit": f"{image.kit:04x}",
+        "checksum": f"{image.checksum:08x}",
+        "isa": f"{image.isa[0]}.{image.isa[1]}",
+        "instructions": instructions,
+    }, indent=2))  # fmt: skip

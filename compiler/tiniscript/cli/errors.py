@@ -1,0 +1,24 @@
+"""What stops a command: a sentence in the reader's language, and an exit code."""
+
+from __future__ import annotations
+
+from tiniscript.cli.texts.common import text
+
+
+class Trouble(Exception):
+    """`key` names a sentence of `texts`; `values` fill its gaps.
+
+    A value `near` that is not empty adds a suggestion.
+    """
+
+    def __init__(self, exit_code: int, key: str, **values: str) -> None:
+        super().__init__(key)
+        self.exit_code = exit_code
+        self.key = key
+        self.values = values
+
+    def sentence(self, language: str) -> str:
+        said = text(self.key, language).format(**self.values)
+        if self.values.get("near"):
+            said += " " + text("did_you_mean", language).format(near=self.values["near"])
+        return said

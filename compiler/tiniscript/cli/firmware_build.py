@@ -1,0 +1,128 @@
+"""The firmware that `tsc firmware` writes: ready already, or built while somebody waits."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from tiniscript import files, robots
+from tiniscript.cli import install_advice
+from tiniscript.cli.errors import Trouble
+from tiniscript.cli.inputs import shown
+from tiniscript.cli.terminal.progress import Progress
+from tiniscript.cli.texts.common import text
+from tiniscript.robots.firmware import BOARDS
+
+if TYPE_CHECKING:
+    from tiniscript.flash.building import CannotBuild, Seen, Sources
+    from tiniscript.flash.ready import Ready
+    from tiniscript.robots.profile import Robot
+
+__all__ = ("BOARDS", "firmware", "on_boards", "print_list", "row")
+
+LOG = "build.log"  # what the last build that failed has said, beside the files that are ready
+
+
+def on_boards(name: str | None, boards: Sequence[str] = BOARDS) -> list[Robot]:
+    """Return a robot once for each of the boards that its profile fits."""
+    from tiniscript.robots.profile import ProfileRefused
+
+    found = []
+    for board in boards:
+        try:
+            found.append(robots.load(robots.DEFAULT if name is None else name, board))
+        except ProfileRefused:
+            continue  # the board has no such pins
+    return found
+
+
+def firmware(robot: Robot, language: str) -> Ready:
+    """Return the firmware of a robot on its board. Raises Trouble where it cannot be built."""
+    from tiniscript.flash import building, ready
+
+    sources = building.sources()
+    found = _ready(robot, sources)
+    if found is not None:
+        return found
+    if sources is None:
+        raise Trouble(2, "flash_no_sources")
+    values = {"robot": robot.name, "board": robot.board.chip}
+    try:
+        data = _built(robot, sources, language)
+        return ready.keep(robot.name, robot.board.chip, sources.digest(robot), data)
+    except building.CannotBuild as why:
+        raise _trouble(why, values) from None
+    except OSError as why:
+        folder = shown(str(ready.cache()))
+        raise Trouble(2, "flash_no_room", why=str(why.strerror or why), folder=folder) from None
+
+
+def _ready(robot: Robot, sources: Sources | None) -> Ready | None:
+    """Return the file for a robot. Without sources nothing can be newer than what was brought."""
+    from tiniscript.flash import ready
+
+    if sources is not None:
+        return ready.find(robot.name, robot.board.chip, sources.digest(robot))
+    for each in ready.files():
+        if (each.robot, each.board) == (robot.name, robot.board.chip):
+            return each if robot.name in robots.names() else None
+    return None
+
+
+def _built(robot: Robot, sources: Sources, language: str) -> bytes:
+    from tiniscript.flash import building
+
+    values = {"robot": robot.name, "board": robot.board.chip}
+    if building.platformio() is not None:
+        print(text("flash_builds", language).format(**values), file=sys.stderr, flush=True)
+    progress = Progress(language, 100)
+    fetched = ""
+
+    def look(seen: Seen) -> None:
+        nonlocal fetched
+        progress.label = text(f"flash_{seen.phase}", language)
+        if seen.what and seen.what != fetched:
+            progress.end()
+            what = shown(seen.what)
+            print(text("flash_fetches", language).format(what=what), file=sys.stderr, flush=True)
+            fetched = seen.what
+        progress.draw(seen.percent)
+
+    try:
+        return building.build(sources, robot, look)
+    finally:
+        progress.end()
+
+
+def _trouble(why: CannotBuild, values: dict[str, str]) -> Trouble:
+    """Return the sentence for a build that came to nothing, and keep what was said."""
+    from tiniscript.flash import ready
+
+    log = ready.cache() / LOG
+    if why.log:
+        try:
+            log.parent.mkdir(parents=True, exist_ok=True)
+            files.replace(log, why.log.encode("utf-8", "replace"))
+        except OSError:
+            pass  # then the sentence has to do
+    how = install_advice.command(install_advice.FIRMWARE)
+    said = {"why": shown(why.said), "log": shown(str(log)), "how": how}
+    return Trouble(2, f"flash_{why.why}", **said, **values)
+
+
+def print_list(language: str) -> None:
+    """Print each shipped robot on each board that it fits, and whether its firmware is ready."""
+    from tiniscript.flash import building
+
+    sources = building.sources()
+    for name in robots.names():
+        for robot in on_boards(name):
+            print(row(robot, _ready(robot, sources), language))
+
+
+def row(robot: Robot, found: Ready | None, language: str) -> str:
+    values = {"robot": robot.name, "board": robot.board.chip}
+    if found is None:
+        return text("flash_row_none", language).format(**values)
+    return text("flash_row", language).format(bytes=f"{found.bytes:,}", **values)

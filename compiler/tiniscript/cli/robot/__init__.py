@@ -1,0 +1,1 @@
+"""What verbs that talk to a robot share."""

@@ -1,0 +1,94 @@
+"""`tsc upload` to many robots: each gets the program, and is looked after until it ends there."""
+
+from __future__ import annotations
+
+import json
+import sys
+from argparse import Namespace
+from typing import TYPE_CHECKING
+
+from tiniscript.cli.commands import upload
+from tiniscript.cli.robot.event_printer import Teller
+from tiniscript.cli.robot.fleet import Member, Result, together
+from tiniscript.cli.robot.run_monitor import Saving
+from tiniscript.cli.texts.common import text
+
+if TYPE_CHECKING:
+    from tiniscript.cli.images import Ready
+    from tiniscript.cli.robot.connect import Connection
+    from tiniscript.robots.profile import Robot
+
+
+def upload_to_many(
+    options: Namespace, robot: Robot, language: str, ready: Ready, name: str
+) -> int:  # fmt: skip
+    """Bring a program to many robots; return the exit code."""
+    if ready.image.start == "PING":  # a program that asks who is there
+        from tiniscript.cli.commands.ping import COUNT, one_of_many
+
+        return together(options, robot, language, one_of_many(COUNT))
+    return together(options, robot, language, Upload(options, ready, name).one_of_many)
+
+
+class Upload:
+    """A program for many robots."""
+
+    def __init__(self, options: Namespace, ready: Ready, name: str) -> None:
+        self.options = options
+        self.ready = ready
+        self.name = name
+        self.has_table = sys.stderr.isatty() and not options.json
+
+    def one_of_many(self, connection: Connection, member: Member) -> Result:
+        options, ready, language = self.options, self.ready, connection.language
+        whole = max(1, len(ready.image.code))
+        member.meet(connection)
+
+        def draw(done: int) -> None:
+            member.tell("crew_sending", percent=100 * done // whole)
+
+        draw(0)
+        values = upload.brought(connection, ready, options, draw)
+        receipt = upload.receipt(connection, ready, self.name, values, options)
+        if options.json:
+            member.print(json.dumps(receipt))
+        runs = upload.is_running(ready, options)
+        member.tell("crew_running" if runs and not options.detach else "crew_saving")
+        teller = MemberTeller(connection, ready, member, options.json, self.has_table)
+        saving = Saving(connection, teller, values)
+        code = upload.looked_after(connection, ready, saving, options, teller)
+        if not runs or options.detach:
+            key = "how_waits" if not runs else "how_detached"
+            teller.end = text(key, language).format(start=ready.image.start)
+        said = text("crew_uploaded", language).format(
+            checksum=receipt["checksum"], code=receipt["code_bytes"], how=teller.end
+        )
+        return Result(code == 0, said, {"checksum": receipt["checksum"]})
+
+
+class MemberTeller(Teller):
+    """Tells what one of many robots tells. `end` is how its program has ended, in one line."""
+
+    def __init__(
+        self, connection: Connection, ready: Ready, member: Member, is_json: bool, has_table: bool
+    ) -> None:
+        about = {"port": connection.port}
+        super().__init__(connection.language, is_json, places=ready.places, about=about,
+                         out=member.print)  # fmt: skip
+        self.member = member
+        self.has_table = has_table
+        self.end = ""
+
+    def say(
+        self, since_ms: int, name: str, what: str, said: str = "", /, is_bad: bool = False,
+        **fields: object,
+    ) -> None:  # fmt: skip
+        line = said or f"{name} {what}"
+        if name == "SHOW":
+            self.member.value = line
+        elif name != "SAVED":
+            self.end = "  ".join(each.strip() for each in line.splitlines())
+        if self.is_json:
+            super().say(since_ms, name, what, said, is_bad=is_bad, **fields)
+        elif name == "SHOW" and not self.has_table:
+            self.out(f"{self.member.name} ({self.member.post.port}): {line}")

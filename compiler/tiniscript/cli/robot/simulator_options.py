@@ -1,0 +1,190 @@
+"""The virtual robot as options describe it: its world, its chance, its speed and its picture."""
+
+from __future__ import annotations
+
+from argparse import Namespace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tiniscript.cli.errors import Trouble
+from tiniscript.cli.inputs import shown
+from tiniscript.cli.options import Options, decimal, whole_number
+from tiniscript.cli.texts.common import Said, text
+
+if TYPE_CHECKING:
+    from tiniscript.robots.profile import Robot
+    from tiniscript.virtual.robot import VirtualRobot
+    from tiniscript.virtual.world import World
+
+ONE = 1000  # thousandths
+MOST_NOISE = 50 * ONE  # percent
+MOST_FAULTS = 200 * ONE  # of 1000 bytes
+FASTEST = 10_000 * ONE
+LONGEST_S = 1_000_000 * ONE
+MOTOR_LOW, MOTOR_HIGH = 10 * ONE, 200 * ONE  # percent
+
+NAMES = ("world", "seed", "noise", "motors", "faults", "hurry", "for", "plot")
+
+
+def takes_world(parser: Options) -> None:
+    """Add what every verb has that brings a virtual robot along."""
+    for name in NAMES:
+        parser.add_argument(f"--{name}")
+    parser.add_argument("--sensor", action="append", default=[])
+
+
+def wants_own(options: Namespace) -> bool:
+    """Whether something is said that only a robot of one's own can do."""
+    return any(getattr(options, name, None) is not None for name in NAMES) or bool(
+        getattr(options, "sensor", [])
+    )
+
+
+def refuse_real(options: Namespace) -> None:
+    """Refuse what a real robot cannot do."""
+    for name in (*NAMES, "sensor"):
+        if getattr(options, name):
+            raise Trouble(2, "only_virtual", option=f"--{name}")
+
+
+def made(
+    options: Namespace,
+    profile: Robot,
+    language: str,
+    memory: bytes | None = None,
+    baud: int | None = None,
+) -> VirtualRobot:
+    """Return the robot in its world. Raises Trouble."""
+    check_picture(options)
+    world = world_of(options, language)
+    seed = whole_number("--seed", options.seed, 1, 1, 2**32 - 1, language)
+    noise = number("--noise", options.noise, 0, 0, MOST_NOISE, language) / 100
+    motors = _motors(options.motors, language)
+    from tiniscript.cli.commands.run import sensor_lists
+    from tiniscript.virtual.world import WorldRefused
+
+    told = sensor_lists(options.sensor, profile, language)
+    try:
+        from tiniscript.virtual.robot import Settings, VirtualRobot
+    except (ImportError, OSError, RuntimeError) as why:  # not there, or not for this computer
+        raise _not_installed("virtual_needs_wasmtime", why) from None
+    settings = Settings(seed=seed, noise=noise, motors=motors, told=told, baud=baud)
+    try:
+        return VirtualRobot(profile, world, settings, memory)
+    except WorldRefused as refused:
+        raise _refused(world.name, refused, language) from None
+
+
+def world_of(options: Namespace, language: str) -> World:
+    """Return the world that `--world` names, or the default one."""
+    from tiniscript.virtual import worlds
+    from tiniscript.virtual.world import WorldRefused
+
+    name = worlds.DEFAULT if options.world is None else options.world
+    try:
+        return worlds.load(name)
+    except WorldRefused as refused:
+        raise _refused(name, refused, language) from None
+
+
+def _refused(name: str, refused: Exception, language: str) -> Trouble:
+    from tiniscript.virtual.world import WorldRefused
+    from tiniscript.virtual.world_refusals import describe
+
+    assert isinstance(refused, WorldRefused)
+    lines = describe(refused, language)
+    if len(lines) == 1 and refused.reasons[0][0].startswith(("file_", "no_such_world")):
+        return Trouble(2, "plain", said=lines[0])
+    reasons = Said("\n".join("  " + line for line in lines))
+    return Trouble(2, "world_refused", file=shown(name), reasons=reasons)
+
+
+def hurry_of(options: Namespace, language: str) -> float:
+    """Return how many times as fast a program goes; 0 is as fast as possible."""
+    if options.hurry == "max":
+        return 0.0
+    if options.hurry is not None and decimal(options.hurry) is None:
+        raise Trouble(2, "bad_hurry", found=shown(options.hurry) or "''")
+    return number("--hurry", options.hurry, ONE, ONE // 10, FASTEST, language)
+
+
+def faults_of(options: Namespace, language: str) -> float:
+    return number("--faults", options.faults, 0, 0, MOST_FAULTS, language)
+
+
+def end_ms(options: Namespace, language: str) -> int | None:
+    """Return after how many milliseconds of the robot's time it ends, or None."""
+    found = getattr(options, "for")
+    if found is None:
+        return None
+    return round(number("--for", found, 0, ONE // 10, LONGEST_S, language) * 1000)
+
+
+def check_picture(options: Namespace) -> None:
+    """Say at the beginning that no picture can be drawn; `paths` has looked at its place."""
+    if options.plot is None:
+        return
+    try:
+        import PIL.Image  # noqa: F401
+    except ImportError as why:
+        raise _not_installed("plot_needs_pillow", why) from None
+
+
+def draw_picture(options: Namespace, robot: VirtualRobot, language: str) -> None:
+    """Write the world and the way into the file of `--plot`."""
+    from tiniscript.cli import outputs
+    from tiniscript.virtual.picture import png
+
+    driving = robot.driving
+    label = robot.profile.labels[language]["robot"]
+    title = f"{label} - {robot.world.labels[language]}"
+    image = png(robot.world, driving.hull, driving.corners, robot.pose, title)
+    outputs.write(Path(options.plot), image, "unwritable_picture")
+
+
+def summary(
+    options: Namespace, robot: VirtualRobot, language: str, passed_ms: int | None = None
+) -> str:
+    """Return how far the robot has come, in all its time or in `passed_ms`, and its picture."""
+    driving = robot.driving
+    passed_ms = robot.now_ms if passed_ms is None else passed_ms
+    key = "drove_touching" if driving.bumps else "drove"
+    said = text(key, language).format(
+        cm=round(driving.driven_cm), seconds=f"{passed_ms / 1000:.1f}", n=driving.bumps
+    )
+    if options.plot is not None:
+        said += " " + text("drove_picture", language).format(file=shown(options.plot))
+    return said
+
+
+def number(
+    option: str, found: str | None, default: int, low: int, high: int, language: str
+) -> float:
+    """Return the decimal that an option says; `default`, `low` and `high` are thousandths."""
+    if found is None:
+        return default / ONE
+    value = decimal(found)
+    if value is None or not low <= value <= high:
+        from tiniscript.fixed_point import as_text
+
+        allowed = text("range_number", language).format(low=as_text(low), high=as_text(high))
+        raise Trouble(2, "bad_number", option=option, range=allowed, found=shown(found) or "''")
+    return value / ONE
+
+
+def _motors(found: str | None, language: str) -> tuple[float, float]:
+    if found is None:
+        return 100.0, 100.0
+    parts = found.split(",")
+    if len(parts) != 2:
+        raise Trouble(2, "bad_motors", found=shown(found) or "''")
+    left, right = (
+        number("--motors", each.strip(), 0, MOTOR_LOW, MOTOR_HIGH, language) for each in parts
+    )
+    return left, right
+
+
+def _not_installed(key: str, why: Exception) -> Trouble:
+    from tiniscript.cli import install_advice
+
+    return Trouble(2, key, why=str(why), how=install_advice.command(install_advice.VIRTUAL))

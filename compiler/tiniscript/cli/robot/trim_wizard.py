@@ -1,0 +1,128 @@
+"""What `tsc trim` asks a person: it turns motors, and the answers say how they are.
+
+Whatever ends it early leaves the robot the trim that it had.
+"""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING
+
+from tiniscript.cli.errors import Trouble
+from tiniscript.cli.robot.connect import Connection
+from tiniscript.cli.robot.run_monitor import Attendant, confirmed
+from tiniscript.cli.texts.common import text
+from tiniscript.link.messages import MOST_BALANCE, MOST_LEAST
+from tiniscript.link.trim import Trim
+
+if TYPE_CHECKING:
+    from tiniscript.cli.robot.event_printer import Teller
+
+TURNING = 60  # percent, of a motor that is looked at
+STRAIGHT = "F(2, 60)"
+LEAST_STEP = 5  # percent
+FIRST_STEP = 16  # percent of balance; half of it each time that the robot goes to the other side
+YES, AGAIN = 1, 4
+
+
+def guided(connection: Connection, before: Trim) -> Trim:
+    """Ask until the robot drives straight; return the trim that it keeps then."""
+    try:
+        return Guide(connection).trim()
+    except BaseException as why:
+        if isinstance(why, KeyboardInterrupt):
+            print(file=sys.stderr)
+            confirmed(connection.line)
+        if not isinstance(why, Trouble) or why.key.startswith("trim_"):
+            connection.give(lambda session: session.trim(before.data()))
+        raise
+
+
+class Guide:
+    def __init__(self, connection: Connection) -> None:
+        self.connection = connection
+        self.language = connection.language
+
+    def trim(self) -> Trim:
+        self._ask_line("trim_lift")
+        self._set(Trim())
+        left, left_forward = self._turned(f"M({TURNING}, 0)")
+        right, right_forward = self._turned(f"M(0, {TURNING})")
+        if left == right:
+            raise Trouble(3, "trim_same_wheel")
+        is_exchanged = left == 2
+        ways = {left: left_forward, right: right_forward}
+        found = Trim(is_exchanged, not ways[1], not ways[2])
+        self._set(found)
+        found = found._replace(least=self._least())
+        self._set(found)
+        self._ask_line("trim_floor")
+        return self._straight(found)
+
+    def _turned(self, motors: str) -> tuple[int, bool]:
+        """Turn a motor; return the wheel, 1 left or 2 right, and whether it turned forward."""
+        wheel = AGAIN
+        while wheel == AGAIN:
+            self._drive(f"{motors}; W(1); M(0, 0)")
+            wheel = self._choice("trim_which", AGAIN)
+        if wheel == 3:
+            raise Trouble(3, "trim_no_wheel")
+        return wheel, self._choice("trim_way", 2) == YES
+
+    def _least(self) -> int:
+        """Return the smallest power that moves both wheels, or 0 where the smallest step does."""
+        for power in range(LEAST_STEP, MOST_LEAST + 1, LEAST_STEP):
+            self._drive(f"M({power}, {power}); W(1); M(0, 0)")
+            if self._choice("trim_moves", 2, n=str(power)) == YES:
+                return power if power > LEAST_STEP else 0
+        raise Trouble(3, "trim_too_weak", n=str(MOST_LEAST))
+
+    def _straight(self, found: Trim) -> Trim:
+        """Balance the wheels until the robot goes straight."""
+        step, last = FIRST_STEP, 0
+        while True:
+            self._drive(STRAIGHT)
+            answer = self._choice("trim_straight", AGAIN)
+            if answer == 1:
+                return found
+            if answer == AGAIN:
+                continue
+            # to its left: the right wheel is too strong
+            side = -1 if answer == 2 else 1
+            if last and side != last:
+                step = max(1, step // 2)
+            last = side
+            balance = found.balance + side * step
+            if abs(balance) > MOST_BALANCE:
+                raise Trouble(3, "trim_too_uneven", n=str(MOST_BALANCE))
+            found = found._replace(balance=balance)
+            self._set(found)
+
+    def _set(self, trim: Trim) -> None:
+        self.connection.give(lambda session: session.trim(trim.data()))  # kept at the end
+
+    def _drive(self, line: str) -> None:
+        from tiniscript import compile_text
+        from tiniscript.bytecode.image import unpack
+        from tiniscript.cli.robot.event_printer import Teller
+
+        code = unpack(compile_text(f"SI|{line}", self.connection.profile.kit).image).code
+        run = self.connection.ask(lambda session: session.live(code)).values["run"]
+        assert isinstance(run, int)
+        teller: Teller = Teller(self.language)
+        if Attendant(self.connection, teller, lambda event: True).attend(run):
+            raise Trouble(3, "trim_ended")
+
+    def _choice(self, key: str, high: int, **values: str) -> int:
+        while True:
+            answer = self._ask_line(key, **values).strip()
+            if answer.isascii() and answer.isdigit() and 1 <= int(answer[:9]) <= high:
+                return int(answer)
+            print(text("trim_number", self.language).format(high=high), file=sys.stderr)
+
+    def _ask_line(self, key: str, **values: str) -> str:
+        print(text(key, self.language).format(**values), end="", file=sys.stderr, flush=True)
+        answer = sys.stdin.readline()
+        if not answer:
+            raise Trouble(3, "trim_no_answer")
+        return answer

@@ -1,0 +1,78 @@
+"""Many robots on the terminal: a line for each, with what it does now."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING
+
+from rich.text import Text
+
+from tiniscript.cli.inputs import shown
+from tiniscript.cli.terminal.run_drawing import Screen
+from tiniscript.cli.texts.common import text
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from tiniscript.cli.robot.fleet import Member
+
+STYLES = {"": "", "ok": "green", "bad": "red", "absent": "dim"}
+
+
+class Roll:
+    """The terminal while robots work: the table, and above it what is said."""
+
+    def __init__(self, members: Sequence[Member], language: str) -> None:
+        self.members = members
+        self.language = language
+        self.screen = Screen()
+
+    def __enter__(self) -> Roll:
+        self.screen.begin()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.screen.end()
+
+    def say(self, line: str) -> None:
+        self.screen.say(line)
+
+    def end(self, rows: Iterable[str]) -> None:
+        """Leave plain rows in place of the table."""
+        self.members = []
+        self.draw()
+        self.screen.end()
+        for row in rows:
+            self.screen.say(row)
+
+    def draw(self) -> None:
+        """Wait for the next frame, and draw it."""
+        self.screen.rest()
+        self.screen.draw(self, time.monotonic() * 1000)
+
+    def lines(self, width: int, height: int, now_ms: float) -> list[Text]:
+        """Return at most `height` lines: those that are not done first, where not all fit."""
+        if not self.members:
+            return []
+        over = sum(member.result is not None for member in self.members)
+        title = text("crew_title", self.language).format(over=over, all=len(self.members))
+        lines = [Text(f"── {title} ".ljust(width, "─"), style="dim")]
+        rows = list(self.members)
+        hidden = 0
+        if len(rows) > height - 1:
+            rows.sort(key=lambda member: member.mark == "ok")  # the others stay in their order
+            hidden = len(rows) - max(0, height - 2)
+            rows = rows[: len(rows) - hidden]
+        names = [shown(member.name or "?") for member in rows]
+        ports = [shown(member.post.port) for member in rows]
+        wide = [max(map(len, column), default=0) for column in (names, ports)]
+        for member, name, port in zip(rows, names, ports, strict=True):
+            line = Text(f"{name:{wide[0]}}  {port:{wide[1]}}  ")
+            line.append(member.said(self.language), style=STYLES[member.mark])
+            lines.append(line)
+        if hidden:
+            more = text("crew_more", self.language).format(n=hidden)
+            lines.append(Text(more, style="dim"))
+        for line in lines:
+            line.truncate(max(1, width), overflow="ellipsis")
+        return lines[: max(1, height)]

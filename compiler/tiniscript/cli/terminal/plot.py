@@ -1,0 +1,119 @@
+"""`tsc monitor --plot`: the values that a robot shows, as a curve that moves with the time.
+
+Drawn in braille, below what is printed. Knows values and times; a terminal is known by `drawing`.
+"""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from typing import TYPE_CHECKING
+
+from rich.text import Text
+
+from tiniscript.cli.terminal.run_drawing import DOTS, FRAME_S, Screen
+from tiniscript.fixed_point import as_text
+
+if TYPE_CHECKING:
+    from tiniscript.link.outcomes import Event
+
+SECONDS = 30  # from the left edge to the right one
+ROWS = 12  # at most
+KEPT = 5000  # values, the newest
+
+
+class Board:
+    """The terminal while values come: what is told, and below it the curve."""
+
+    def __init__(self) -> None:
+        self.screen = Screen()
+        self.plot = Plot()
+        self.drawn_s = 0.0
+
+    def __enter__(self) -> Board:
+        self.screen.begin()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.screen.end()
+
+    def say(self, line: str) -> None:
+        self.screen.say(line)
+
+    def warn(self, line: str) -> None:
+        self.screen.flush()
+        self.screen.console.print(Text(line), soft_wrap=True)
+
+    def take(self, time_ms: int, event: Event) -> None:
+        if event.name == "SHOW":
+            value = event.values["value"]
+            assert isinstance(value, int)
+            self.plot.take(time_ms, value, bool(event.values["is_yes_no"]))
+
+    def draw(self, now_ms: int) -> None:
+        """Draw the curve as it is now, where the last frame is over."""
+        if time.monotonic() - self.drawn_s >= FRAME_S:
+            self.drawn_s = time.monotonic()
+            self.screen.draw(self.plot, now_ms)
+
+
+class Plot:
+    """`now_ms` is the time of the newest value."""
+
+    def __init__(self) -> None:
+        self.now_ms = 0
+        self.values: deque[tuple[int, int]] = deque(maxlen=KEPT)  # when, and thousandths
+
+    def take(self, time_ms: int, value: int, is_yes_no: bool) -> None:
+        self.now_ms = time_ms
+        self.values.append((time_ms, value * 1000 if is_yes_no else value))
+
+    def lines(self, width: int, height: int, now_ms: float) -> list[Text]:
+        """Return at most `height` lines of at most `width` columns: a title and the curve."""
+        width -= 2  # the ^C of the terminal stands behind the last line
+        begin_ms = now_ms - SECONDS * 1000
+        while len(self.values) > 1 and self.values[1][0] < begin_ms:
+            self.values.popleft()
+        known = [value for _, value in self.values]
+        low, high = (min(known), max(known)) if known else (0, 1000)
+        if low == high:
+            low, high = low - 1000, high + 1000
+        labels = as_text(high), as_text(low)
+        margin = max(map(len, labels)) + 1
+        rows, columns = min(ROWS, height - 1), width - margin
+        newest = as_text(known[-1]) if known else ""
+        title = Text(f"── SHOW {newest} ".ljust(width - 6, "─") + f" {SECONDS} s ", style="dim")
+        title.truncate(max(1, width))
+        if rows < 2 or columns < 4:
+            return [title]
+        cells = self._cells(columns, rows, begin_ms, low, high)
+        lines = [title]
+        for row in range(rows):
+            label = labels[0] if row == 0 else labels[1] if row == rows - 1 else ""
+            drawn = cells[row * columns : (row + 1) * columns]
+            line = Text(f"{label:>{margin - 1}} ", style="dim")
+            curve = "".join(chr(0x2800 + bits) if bits else " " for bits in drawn)
+            lines.append(line.append(curve, style="not dim cyan"))
+        return lines
+
+    def _cells(self, columns: int, rows: int, begin_ms: float, low: int, high: int) -> bytearray:
+        """Return the braille of the curve: each value holds until the next one."""
+        cells = bytearray(columns * rows)
+        if not self.values:
+            return cells
+        right, bottom = 2 * columns - 1, 4 * rows - 1
+        before: int | None = None
+        ends = [*[time_ms for time_ms, _ in self.values][1:], begin_ms + SECONDS * 1000]
+        for (time_ms, value), end_ms in zip(self.values, ends, strict=True):
+            x, end = (
+                round(min(1.0, max(0.0, (each - begin_ms) / (SECONDS * 1000))) * right)
+                for each in (time_ms, end_ms)
+            )
+            y = round((high - value) / (high - low) * bottom)
+            low_y, high_y = (y, y) if before is None else (min(y, before), max(y, before))
+            dots = [(x, each) for each in range(low_y, high_y + 1)]
+            dots += [(each, y) for each in range(x, end + 1)]
+            for dot_x, dot_y in dots:
+                cells[dot_y // 4 * columns + dot_x // 2] |= DOTS[dot_y % 4][dot_x % 2]
+            before = y
+        return cells

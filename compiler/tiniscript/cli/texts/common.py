@@ -1,0 +1,323 @@
+"""What `tsc` itself says, in English and Spanish. What it says of programs is in `messages`."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+
+from tiniscript.printable import printable
+
+LONGEST = 2000  # characters of what is put into a sentence
+
+_HELP_EN = """\
+tsc: TiniScript, a language of single lines for robots.
+
+  tsc compile prog.ts -o prog.bin    compile a program into an image for the robot
+  tsc check prog.ts                  show all mistakes and warnings
+  tsc run prog.ts                    run it without a robot and print what the robot does
+  tsc show prog.bin                  list the instructions of a program
+  tsc fmt prog.ts                    lay the text out in the usual way
+  tsc explain TS012                  say more about a mistake
+  tsc wiring                         how a robot is wired, as a list or as a page
+  tsc board myrobot.toml             tell the firmware how a robot is wired
+  tsc firmware --port /dev/ttyUSB0   put the firmware of a robot on its board
+
+With a robot on a port (--port /dev/rfcomm0, COM5, ...; later the last used one):
+
+  tsc ports                          list the ports; --ask: which robot answers where
+  tsc ping                           who is there, and how long an answer takes
+  tsc upload prog.ts                 bring a program to the robot, start it, and stay
+  tsc live 'F(2, 80)'                do a line at once; without a line: a prompt
+  tsc stop                           stop the robot now
+  tsc link                           hold the port, so that other commands share it
+  tsc start                          start the program that the robot holds
+  tsc info                           what the robot says of itself
+  tsc monitor                        print what the robot shows
+  tsc fetch                          read the robot's program back
+  tsc name TINI                      name the robot
+
+Without one:
+
+  tsc upload prog.ts --virtual       a virtual robot drives here, in a world of its own
+  tsc robot                          a virtual robot with a port, for other terminals
+
+A program is a file, - (standard input) or -e 'SI|F(2, 80)'.
+tsc VERB --help says more about a verb; --lang en or --lang es chooses the language.
+Exit codes: 0 done, 1 the program is wrong, 2 wrong use of tsc, 3 the robot or the link; 141 where
+whoever read the output has gone, which stops the robot that the command drives.
+"""
+_HELP_ES = """\
+tsc: TiniScript, un lenguaje de una sola línea para robots.
+
+  tsc compile prog.ts -o prog.bin    compila un programa en una imagen para el robot
+  tsc check prog.ts                  muestra todos los errores y avisos
+  tsc run prog.ts                    lo ejecuta sin robot e imprime lo que haría el robot
+  tsc show prog.bin                  lista las instrucciones de un programa
+  tsc fmt prog.ts                    ordena el texto de la forma usual
+  tsc explain TS012                  explica mejor un error
+  tsc wiring                         cómo se conecta un robot, en lista o en una página
+  tsc board mirobot.toml             le dice al firmware cómo está conectado un robot
+  tsc firmware --port /dev/ttyUSB0   pone el firmware de un robot en su placa
+
+Con un robot en un puerto (--port /dev/rfcomm0, COM5, ...; después, el último usado):
+
+  tsc ports                          lista los puertos; --ask: qué robot responde en cuál
+  tsc ping                           quién está ahí, y cuánto tarda una respuesta
+  tsc upload prog.ts                 lleva un programa al robot, lo inicia y se queda
+  tsc live 'F(2, 80)'                hace una línea en el acto; sin línea: un diálogo
+  tsc stop                           detiene el robot ahora
+  tsc link                           tiene el puerto, para que otros comandos lo compartan
+  tsc start                          inicia el programa que tiene el robot
+  tsc info                           lo que el robot dice de sí mismo
+  tsc monitor                        imprime lo que el robot muestra
+  tsc fetch                          lee de vuelta el programa del robot
+  tsc name TINI                      le pone nombre al robot
+
+Sin robot:
+
+  tsc upload prog.ts --virtual       un robot virtual se mueve aquí, en un mundo propio
+  tsc robot                          un robot virtual con un puerto, para otras terminales
+
+Un programa es un archivo, - (entrada estándar) o -e 'SI|F(2, 80)'.
+tsc VERBO --help dice más de un verbo; --lang en o --lang es elige el idioma.
+Códigos de salida: 0 listo, 1 el programa está mal, 2 mal uso de tsc, 3 el robot o la conexión; 141
+si quien leía la salida ya no está, y eso detiene el robot que el comando mueve.
+"""
+
+# fmt: off
+TEXTS: dict[str, tuple[str, str]] = {
+    # key: (English, Spanish)
+    "help": (_HELP_EN, _HELP_ES),
+    "did_you_mean": ("Did you mean {near}?", "¿Quisiste decir {near}?"),
+    "stopped": ("Stopped.", "Detenido."),
+    "bug": ("tsc met something it was not made for. That is our mistake, not yours.\n"
+            "Please report it with your program and this line:  {what}\n"
+            "(TINISCRIPT_DEBUG=1 shows more.)",
+            "tsc encontró algo para lo que no está hecho. El error es nuestro, no tuyo.\n"
+            "Por favor repórtalo con tu programa y esta línea:  {what}\n"
+            "(TINISCRIPT_DEBUG=1 muestra más.)"),
+    # wrong use
+    "plain": ("tsc: {said}", "tsc: {said}"),
+    "no_verb": ("tsc: there is no verb {found}. Try:  tsc --help",
+                "tsc: no existe el verbo {found}. Prueba:  tsc --help"),
+    "file_without_verb": ("tsc: what shall be done with {found}? Try:  tsc upload {found} --virtual   or:  tsc run {found}   or, with a robot:  tsc upload {found}",
+                          "tsc: ¿qué hago con {found}? Prueba:  tsc upload {found} --virtual   o:  tsc run {found}   o, con un robot:  tsc upload {found}"),
+    "text_without_verb": ("tsc: what shall be done with this program? Try:  tsc upload -e {found} --virtual   or, with a robot:  tsc live {found}",
+                          "tsc: ¿qué hago con este programa? Prueba:  tsc upload -e {found} --virtual   o, con un robot:  tsc live {found}"),
+    "file_really": ("tsc: there is no file {file}; {real} is taken, which is its real name.",
+                    "tsc: no existe el archivo {file}; se toma {real}, que es su verdadero nombre."),
+    "no_program": ("tsc: which program? Give a file, - for standard input, or -e 'SI|F(2, 80)'.",
+                   "tsc: ¿qué programa? Da un archivo, - para la entrada estándar, o -e 'SI|F(2, 80)'."),
+    "two_programs": ("tsc: one program at a time: a file, - or -e.",
+                     "tsc: un programa a la vez: un archivo, - o -e."),
+    "bad_option": ("tsc: {detail}. Try:  tsc {verb} --help", "tsc: {detail}. Prueba:  tsc {verb} --help"),
+    "bad_language": ("tsc: --lang takes en or es, not {found}.", "tsc: --lang acepta en o es, no {found}."),
+    "file_missing": ("tsc: there is no file {file}. Check its name and the folder you are in.",
+                     "tsc: no existe el archivo {file}. Revisa su nombre y la carpeta en la que estás."),
+    "file_directory": ("tsc: {file} is a folder. Give a file in it.",
+                       "tsc: {file} es una carpeta. Da un archivo que esté dentro."),
+    "file_forbidden": ("tsc: {file} may not be read. Ask its owner, or copy it to a folder of yours.",
+                       "tsc: no tienes permiso para leer {file}. Pídeselo a su dueño o cópialo a una carpeta tuya."),
+    "file_unreadable": ("tsc: {file} cannot be read: {why}. Copy it to another folder and try again.",
+                        "tsc: no se puede leer {file}: {why}. Cópialo a otra carpeta y prueba otra vez."),
+    "unwritable": ("tsc: {file} cannot be written: {why}. Choose another place with -o; nothing was changed.",
+                   "tsc: no se puede escribir {file}: {why}. Elige otro lugar con -o; no se cambió nada."),
+    "unwritable_map": ("tsc: {file} cannot be written: {why}. Choose another place with --map.",
+                       "tsc: no se puede escribir {file}: {why}. Elige otro lugar con --map."),
+    "unwritable_source": ("tsc: {file} cannot be written: {why}. It is as it was.",
+                          "tsc: no se puede escribir {file}: {why}. Quedó como estaba."),
+    "needs_output": ("tsc: where to? Without a file there is no name for the image. Try:  -o prog.bin",
+                     "tsc: ¿a dónde? Sin un archivo la imagen no tiene nombre. Prueba:  -o prog.bin"),
+    "over_map": ("tsc: the map wants a file of its own, not {file}. Choose another name with --map.",
+                 "tsc: el mapa quiere un archivo propio, no {file}. Elige otro nombre con --map."),
+    "over_input": ("tsc: {option} would overwrite {file}, which is {what} of this command: {other}. Choose another name with {option}; nothing was changed.",
+                   "tsc: {option} borraría {file}, que es {what} de este comando: {other}. Elige otro nombre con {option}; no se cambió nada."),
+    "same_outputs": ("tsc: {option} {file} and {second} {other} are the same file. Give each its own name; nothing was changed.",
+                     "tsc: {option} {file} y {second} {other} son el mismo archivo. Dale a cada uno su propio nombre; no se cambió nada."),
+    "path_program": ("the program", "el programa"),
+    "path_robot": ("the robot profile", "el perfil de robot"),
+    "path_world": ("the world", "el mundo"),
+    "path_memory": ("the memory", "la memoria"),
+    "path_port": ("the port", "el puerto"),
+    "path_stdin": ("the standard input", "la entrada estándar"),
+    "full": ("tsc: the output cannot be written: {why}. Make room, or send it elsewhere.",
+             "tsc: no se puede escribir la salida: {why}. Haz espacio o envíala a otro lugar."),
+    "two_texts": ("tsc: one -e at a time. Put the lines into one program, with ; between them.",
+                  "tsc: un solo -e a la vez. Pon las líneas en un programa, con ; entre ellas."),
+    "needs_text": ("tsc: {file} is a compiled program; tsc {verb} wants its text. Try:  tsc show {file}",
+                   "tsc: {file} es un programa compilado; tsc {verb} quiere su texto. Prueba:  tsc show {file}"),
+    "no_sensor": ("tsc: {robot} has no sensor {found}. It has: {known}.",
+                  "tsc: {robot} no tiene el sensor {found}. Tiene: {known}."),
+    "no_sensors": ("no sensors", "ningún sensor"),
+    "sensor_form": ("tsc: --sensor wants a name and readings. Try:  --sensor {example}",
+                    "tsc: --sensor quiere un nombre y lecturas. Prueba:  --sensor {example}"),
+    "sensor_twice": ("tsc: {name} has two lists of readings. Put all of them into one:  --sensor {name}=1,2,3",
+                     "tsc: {name} tiene dos listas de lecturas. Ponlas todas en una:  --sensor {name}=1,2,3"),
+    "sensor_value": ("tsc: {found} is no reading of {name}. {name} gives {range}.",
+                     "tsc: {found} no es una lectura de {name}. {name} da {range}."),
+    "range_number": ("a number from {low} to {high}", "un número de {low} a {high}"),
+    "range_yes_no": ("TRUE or FALSE", "TRUE o FALSE"),
+    "bad_number": ("tsc: {option} takes {range}, not {found}.", "tsc: {option} acepta {range}, no {found}."),
+    "range_whole": ("a whole number from {low} to {high}", "un número entero de {low} a {high}"),
+    "no_machine": ("tsc: there is no machine {found} here. There are: python, cpp.",
+                   "tsc: aquí no hay una máquina {found}. Hay: python, cpp."),
+    "no_wasmtime": ("tsc: --machine cpp needs wasmtime, which cannot be used here: {why}.\n"
+                    "Install it:  {how}   or try:  --machine python",
+                    "tsc: --machine cpp necesita wasmtime, que aquí no se puede usar: {why}.\n"
+                    "Instálalo:  {how}   o prueba:  --machine python"),
+    "no_code": ("tsc: there is no mistake {found}. The list:  tsc explain",
+                "tsc: no existe el error {found}. La lista:  tsc explain"),
+    "profile_refused": ("tsc: the robot profile {file} cannot be used:\n{reasons}",
+                        "tsc: el perfil de robot {file} no se puede usar:\n{reasons}"),
+    "no_firmware": ("tsc: there is no firmware for the board {chip} yet. There is for: {known}.",
+                    "tsc: todavía no hay firmware para la placa {chip}. Hay para: {known}."),
+    "board": ("{file}: how {robot} is wired, for the board {chip}. {now}",
+              "{file}: cómo está conectado {robot}, para la placa {chip}. {now}"),
+    "board_here": ("Now:  {build}", "Ahora:  {build}"),
+    "board_elsewhere": ("The build reads it only as src/boards/kits/own.h in the folder vm_arduino. Put it there:  tsc board {robot} -o {home}   Then:  {build}",
+                        "La compilación solo lo lee como src/boards/kits/own.h en la carpeta vm_arduino. Ponlo ahí:  tsc board {robot} -o {home}   Después:  {build}"),
+    "wiring": ("{file}: how {robot} is wired. Open it in a browser, or print it.",
+               "{file}: cómo se conecta {robot}. Ábrelo en un navegador, o imprímelo."),
+    "wiring_page": ("As a page with a drawing:  tsc wiring -o wiring.html",
+                    "Como página con un dibujo:  tsc wiring -o conexiones.html"),
+    # images
+    "image_NOT_AN_IMAGE": ("refused: {file} is no compiled TiniScript program. Make one:  tsc compile prog.ts",
+                           "rechazado: {file} no es un programa TiniScript compilado. Haz uno:  tsc compile prog.ts"),
+    "image_TRUNCATED": ("refused: the end of {file} is missing. Compile the program again.",
+                        "rechazado: a {file} le falta el final. Compila el programa otra vez."),
+    "image_TRAILING": ("refused: {file} is longer than the program in it. Compile the program again.",
+                       "rechazado: {file} es más largo que el programa que contiene. Compila el programa otra vez."),
+    "image_DAMAGED": ("refused: {file} is damaged, its checksum does not fit. Compile the program again.",
+                      "rechazado: {file} está dañado, su suma de control no coincide. Compila el programa otra vez."),
+    "image_OTHER_VERSION": ("refused: {file} is for version {theirs} of the machine, this is {ours}. Compile the program again.",
+                            "rechazado: {file} es para la versión {theirs} de la máquina, esta es {ours}. Compila el programa otra vez."),
+    "image_UNKNOWN_START": ("refused: {file} has a start mode that this tsc does not know. Compile the program again.",
+                            "rechazado: {file} tiene un modo de inicio que este tsc no conoce. Compila el programa otra vez."),
+    "image_UNKNOWN_NEEDS": ("refused: {file} needs something that this tsc does not have. Install a newer tsc.",
+                            "rechazado: {file} necesita algo que este tsc no tiene. Instala un tsc más nuevo."),
+    "image_OTHER_KIT": ("refused: {file} is for another robot than {robot}. Name it:  --robot {theirs}",
+                        "rechazado: {file} es para otro robot, no para {robot}. Nómbralo:  --robot {theirs}"),
+    "image_PING_WITH_CODE": ("refused: {file} starts with PING, and yet has instructions. Compile the program again.",
+                             "rechazado: {file} inicia con PING y sin embargo tiene instrucciones. Compila el programa otra vez."),
+    "image_code": ("refused: the code in {file} breaks rule {number} ({name}) at offset {offset}. Compile the program again.",
+                   "rechazado: el código de {file} rompe la regla {number} ({name}) en la posición {offset}. Compila el programa otra vez."),
+    # what the verbs say
+    "compiled": ("{source} -> {target}   {image} bytes ({code} of code)   stack {stack} of {stacks}{runs}",
+                 "{source} -> {target}   {image} bytes ({code} de código)   pila {stack} de {stacks}{runs}"),
+    "runs": ("   runs {how}", "   dura {how}"),
+    "runs_exactly": ("{least} s", "{least} s"),
+    "runs_between": ("{least} to {most} s", "de {least} a {most} s"),
+    "runs_at_least": ("at least {least} s", "al menos {least} s"),
+    "runs_forever": ("until it is stopped", "hasta que lo detengan"),
+    "no_mistakes": ("{file}: no mistakes.", "{file}: sin errores."),
+    "count_mistake": ("1 mistake", "1 error"),
+    "count_mistakes": ("{n} mistakes", "{n} errores"),
+    "count_warning": ("1 warning", "1 aviso"),
+    "count_warnings": ("{n} warnings", "{n} avisos"),
+    "and_more": ("… and {n} more.", "… y {n} más."),
+    "fault_at": ("fault {fault}: {what}\n{place}", "falla {fault}: {what}\n{place}"),
+    "fault_line": ("line {line}:  {shown}", "línea {line}:  {shown}"),
+    "fault_line_of": ("{name}, line {line}:  {shown}", "{name}, línea {line}:  {shown}"),
+    "fault_no_line": ("at offset {offset} of the code; its text is not known here.",
+                      "en la posición {offset} del código; su texto no se conoce aquí."),
+    "fault_OVERFLOW": ("a result does not fit into a number (-2147483.648 to 2147483.647). Use smaller numbers.",
+                       "un resultado no cabe en un número (de -2147483.648 a 2147483.647). Usa números más pequeños."),
+    "fault_DIVIDE_BY_ZERO": ("something is divided by 0. Check with IF that it is not 0 before you divide.",
+                             "algo se divide entre 0. Comprueba con IF que no sea 0 antes de dividir."),
+    # what --show draws
+    "time": ("time", "tiempo"),
+    "motor_left": ("left motor", "motor izq."),
+    "motor_right": ("right motor", "motor der."),
+    "motors": ("motors", "motores"),
+    "before": ("before: {values}", "antes: {values}"),
+    "ended_DONE": ("done", "listo"),
+    "ended_FAULT": ("fault", "falla"),
+    "ended_LIMIT": ("cut at the limit", "cortado en el límite"),
+    "fault_BAD_CODE": ("the machine met code that it cannot have accepted. Compile the program again; if it stays so, report it.",
+                       "la máquina encontró código que no pudo haber aceptado. Compila el programa otra vez; si sigue así, repórtalo."),
+    "formatted": ("{file}: laid out.", "{file}: ordenado."),
+    "would_format": ("{file}: not in the usual layout. Try:  tsc fmt {file}",
+                     "{file}: no tiene la forma usual. Prueba:  tsc fmt {file}"),
+    "is_formatted": ("{file}: is in the usual layout.", "{file}: tiene la forma usual."),
+    "fmt_too_large": ("tsc: laid out, {file} would be larger than 1 MB. Split the program; it is as it was.",
+                      "tsc: ordenado, {file} pasaría de 1 MB. Divide el programa; quedó como estaba."),
+    "head": ("{file}: starts {start}, {robot}, {code} bytes of code, {image} bytes in all, checksum {checksum}",
+             "{file}: inicia {start}, {robot}, {code} bytes de código, {image} bytes en total, suma {checksum}"),
+    "any_robot": ("any robot", "cualquier robot"),
+    "for_robot": ("for {robot}", "para {robot}"),
+    "unknown_robot": ("for an unknown robot ({kit})", "para un robot desconocido ({kit})"),
+    "line": ("line {line}: {shown}", "línea {line}: {shown}"),
+}
+# fmt: on
+
+
+class Said(str):
+    """A sentence, or what is made of some: all that `format` puts into it can be printed.
+
+    What is put in is a text of others, in which nothing may move the cursor or begin a line; but
+    for another sentence, which stays as it is.
+    """
+
+    __slots__ = ()
+
+    def format(self, *values: object, **named: object) -> Said:
+        plain = {key: _plain(value) for key, value in named.items()}
+        return Said(str.format(self, *map(_plain, values), **plain))
+
+
+def _plain(value: object) -> object:
+    if isinstance(value, str) and not isinstance(value, Said):
+        return printable(value, LONGEST)
+    return value
+
+
+def text(key: str, language: str) -> str:
+    """Return a sentence, `Said`. Those about robots and ports are read when one is wanted."""
+    found = TEXTS.get(key)
+    if found is None:
+        from tiniscript.cli.texts.robot import LINK_TEXTS
+
+        found = LINK_TEXTS.get(key)
+    if found is None:
+        from tiniscript.cli.texts.simulator import VIRTUAL_TEXTS
+
+        found = VIRTUAL_TEXTS.get(key)
+    if found is None:
+        from tiniscript.cli.texts.firmware import FLASH_TEXTS
+
+        found = FLASH_TEXTS[key]
+    english, spanish = found
+    return Said(spanish if language == "es" else english)
+
+
+def has_text(key: str) -> bool:
+    from tiniscript.cli.texts.robot import LINK_TEXTS
+    from tiniscript.cli.texts.simulator import VIRTUAL_TEXTS
+
+    return key in TEXTS or key in LINK_TEXTS or key in VIRTUAL_TEXTS
+
+
+def language_of(arguments: Sequence[str], environ: Mapping[str, str] = os.environ) -> str:
+    """Return en or es: what `--lang` says, else what the locale says, else en."""
+    for k, word in enumerate(arguments):
+        value = word[7:] if word.startswith("--lang=") else None
+        if word == "--lang" and k + 1 < len(arguments):
+            value = arguments[k + 1]
+        if value in ("en", "es"):
+            return value
+    for name in ("LC_ALL", "LC_MESSAGES", "LANG"):
+        if environ.get(name):
+            return "es" if environ[name].lower().startswith("es") else "en"
+    return "es" if _system_language().startswith("es") else "en"
+
+
+def _system_language() -> str:
+    """Return the language of Windows' own settings, which no variable names."""
+    import sys
+
+    if sys.platform != "win32":
+        return ""
+    import locale
+
+    name = (locale.getlocale()[0] or "").lower()
+    return "es" if name.startswith(("es", "spanish")) else name
