@@ -12,15 +12,16 @@ import pytest
 from tests.machines.host import SOURCES, WARNINGS, missing
 
 MACHINE = SOURCES / "src" / "vm"
+EXTRAS = SOURCES / "extras"
 ROOMS = [SOURCES / "src" / name for name in ("vm", "link", "store")]
 PORTABLE = sorted(
     [*(path for room in ROOMS for path in room.glob("*.[ch]*")), SOURCES / "src" / "robot.h"]
 )
-TESTED = ("host", "chip", "emulated", "link", "powercut")
+TESTED = ("host", "host_firmware", "chip", "qemu", "link", "powercut")
 FILES = [
     *PORTABLE,
-    *sorted(path for name in TESTED for path in (SOURCES / name).glob("*.[ch]*")),
-    *sorted((SOURCES / "wasm").glob("*.cpp")),
+    *sorted(path for name in TESTED for path in (EXTRAS / name).glob("*.[ch]*")),
+    *sorted((EXTRAS / "wasm").glob("*.cpp")),
 ]
 BOARDS = sorted((SOURCES / "src" / "boards").glob("*.[ch]*"))
 STRICT = ("-std=c++11", "-pedantic", "-fno-exceptions", "-fno-rtti", *WARNINGS, "-fsyntax-only")

@@ -1,7 +1,8 @@
 """The store of the robot: whenever the plug is pulled, the old program is there or the new one.
 
-`vm_arduino/powercut` pulls it at every write, in every way in which a byte may be torn, and looks
-at the next starts. `python -m tests.test_store 10000000` looks at more cases than the tests.
+`vm_arduino/extras/powercut` pulls it at every write, in every way in which a byte may be torn,
+and looks at the next starts. `python -m tests.test_store 10000000` looks at more cases than the
+tests.
 """
 
 from __future__ import annotations
@@ -53,7 +54,7 @@ CHECKSUM = ("crc32.cpp", "crc32.h", "image.h", "bytecode.h")
 def parts(sources: Path) -> list[Path]:
     return [
         *sorted((sources / "src" / "store").glob("*")),
-        *sorted((sources / "powercut").glob("*")),
+        *sorted((sources / "extras" / "powercut").glob("*")),
         *(sources / "src" / "vm" / name for name in CHECKSUM),
     ]
 

@@ -349,7 +349,7 @@ def test_what_is_not_installed_is_said(
 ) -> None:
     for module in [each for each in sys.modules if each.split(".")[0] == name]:
         monkeypatch.delitem(sys.modules, module)
-    for module in ("wasm_store", "virtual.robot", "virtual.module", "virtual.picture"):
+    for module in ("vm.wasm_store", "virtual.robot", "virtual.module", "virtual.picture"):
         monkeypatch.delitem(sys.modules, f"tiniscript.{module}", raising=False)
     monkeypatch.setitem(sys.modules, name, None)
     done = tsc("upload", "--virtual", "-e", "SI|S", "--plot", tmp_path / "way.png")

@@ -81,7 +81,7 @@ def test_another_machine_is_another_module(
     assert build_wasm.main([]) == 0
     assert build_wasm.main(["--check"]) == 0
     source.write_text("?", encoding="utf-8")
-    with pytest.raises(SystemExit, match=r"refuses wasm/main\.cpp"):
+    with pytest.raises(SystemExit, match=r"refuses extras/wasm/main\.cpp"):
         build_wasm.main([])
 
 
@@ -175,7 +175,7 @@ def test_without_wasmtime_the_next_step_is_said(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setitem(sys.modules, "wasmtime", None)
-    for module in ("wasm_store", "wasm_machine"):
+    for module in ("vm.wasm_store", "vm.wasm"):
         monkeypatch.delitem(sys.modules, f"tiniscript.{module}", raising=False)
     done = tsc("run", "-e", "F(1, 50)", "--machine", "cpp", "--lang", language)
     assert (done.code, done.out) == (2, "")

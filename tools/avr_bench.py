@@ -1,4 +1,4 @@
-"""Builds a program of `vm_arduino/bench`, and runs it on a simulated ATmega328P.
+"""Builds a program of `vm_arduino/extras/bench`, and runs it on a simulated ATmega328P.
 
 Knows avr-g++, simavr, and the flags that users build with; nothing of what the programs do.
 """
@@ -39,7 +39,10 @@ MORE = {"store": ("store/store.cpp", "boards/eeprom.cpp")}
 @lru_cache(maxsize=8)
 def built(name: str, sources: Path = SOURCES) -> bytes:
     """Return `bench/NAME.cpp` with the machine of `sources`, an ELF file."""
-    code = [sources / "bench" / f"{name}.cpp", *sorted((sources / "src" / "vm").glob("*.[cS]*"))]
+    code = [
+        sources / "extras" / "bench" / f"{name}.cpp",
+        *sorted((sources / "src" / "vm").glob("*.[cS]*")),
+    ]
     code += [sources / "src" / each for each in MORE.get(name, ())]
     with tempfile.TemporaryDirectory() as folder:
         program = Path(folder) / "program.elf"

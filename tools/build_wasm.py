@@ -41,10 +41,10 @@ class Module(NamedTuple):
     folders: tuple[str, ...]
 
 
-MACHINE = Module("compiler/tiniscript/vm/machine.wasm", ("wasm/main.cpp",), ("src/vm",))
+MACHINE = Module("compiler/tiniscript/vm/machine.wasm", ("extras/wasm/main.cpp",), ("src/vm",))
 ROBOT = Module(
     "compiler/tiniscript/virtual/robot.wasm",
-    ("wasm/robot.cpp", "wasm/watched.cpp"),
+    ("extras/wasm/robot.cpp", "extras/wasm/watched.cpp"),
     ("src/firmware", "src/link", "src/store", "src/vm"),
 )
 MODULES = (MACHINE, ROBOT)
@@ -90,7 +90,7 @@ def built(sources: Path, module: Module) -> bytes:
     The compiler sees paths inside that folder alone, and keeps nothing from other builds.
     """
     files = [sources / name for name in module.files]
-    included = set(re.findall(r'#include "\.\./(\S+\.cpp)"', "".join(map(_text, files))))
+    included = set(re.findall(r'#include "\.\./\.\./(\S+\.cpp)"', "".join(map(_text, files))))
     for folder in module.folders:
         found = sorted((sources / folder).glob("*.cpp"))
         files += [path for path in found if path.relative_to(sources).as_posix() not in included]

@@ -1,4 +1,7 @@
-"""Counts cycles of the machine on a simulated ATmega328P, with `vm_arduino/bench/cycles.cpp`."""
+"""Counts cycles of the machine on a simulated ATmega328P.
+
+`vm_arduino/extras/bench/cycles.cpp` is the program that is measured.
+"""
 
 from __future__ import annotations
 

@@ -1,7 +1,8 @@
 """Builds C++ for the chips of ESP boards with Debian's compilers, and says how large it is.
 
 Knows each chip's compiler, linker and emulator, and that no C library is needed:
-`vm_arduino/emulated` has what the compilers call. `tests/machines/emulated.py` runs what is built.
+`vm_arduino/extras/qemu` has what the compilers call. `tests/machines/emulated.py` runs what is
+built.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ class Chip(NamedTuple):
     measurer: str
     emulator: tuple[str, ...]
     ram: int  # where it begins in the emulator
-    start: str  # what comes before the program, in `vm_arduino/emulated`
+    start: str  # what comes before the program, in `vm_arduino/extras/qemu`
 
 
 # What the LX6 of an ESP32 has: clang knows no name for all of it. QEMU's de233_fpu has no
@@ -115,7 +116,7 @@ def build(
         _command([
             *chip.linker, "--gc-sections", "--no-warn-rwx-segments", "-z", "noexecstack",
             f"--entry={entry}", f"--defsym=RAM={chip.ram:#x}",
-            "-T", str(SOURCES / "emulated" / "chip.ld"), *objects, "-o", str(program),
+            "-T", str(SOURCES / "extras" / "qemu" / "chip.ld"), *objects, "-o", str(program),
         ])  # fmt: skip
 
 
@@ -128,7 +129,7 @@ def size(chip: Chip, probe: str) -> tuple[int, int]:
         source, program = Path(folder) / "probe.cpp", Path(folder) / "probe"
         source.write_text(probe, encoding="utf-8")
         machine = sorted((SOURCES / "src" / "vm").glob("*.cpp"))
-        code = [source, *machine, SOURCES / "emulated" / "library.cpp"]
+        code = [source, *machine, SOURCES / "extras" / "qemu" / "library.cpp"]
         build(chip, code, program, f"-I{SOURCES / 'src'}", entry="main")
         row = _command([chip.measurer, str(program)]).splitlines()[1]
     text, data, bss = (int(word) for word in row.split()[:3])

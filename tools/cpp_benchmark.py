@@ -134,7 +134,7 @@ def sizes() -> None:
         rows.append((name, small.flash, whole.flash, whole.ram))
         if name == cpp_size.AVR:
             rows += [("  must", cpp_size.MUST, "", ""), ("  aim", cpp_size.AIM, "", "")]
-    module = (ROOT / "compiler" / "tiniscript" / "machine.wasm").stat().st_size
+    module = (ROOT / "compiler" / "tiniscript" / "vm" / "machine.wasm").stat().st_size
     rows.append(("WebAssembly, the whole module", NONE, module, NONE))
     rows += [(f"{name}, {what}", flash, "", ram) for name, what, flash, ram in works.OTHER_SIZES]
     head = ("", "machine and verifier", "with the image reader", "RAM")

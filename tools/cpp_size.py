@@ -24,7 +24,7 @@ sys.path[:0] = [str(ROOT)]
 from tools import avr_bench, chips
 
 SOURCE = ROOT / "vm_arduino" / "src"
-WASM = ROOT / "compiler" / "tiniscript" / "machine.wasm"
+WASM = ROOT / "compiler" / "tiniscript" / "vm" / "machine.wasm"
 MUST, AIM = 5120, 4096  # bytes of flash on the AVR, machine and verifier
 
 WAYS = {

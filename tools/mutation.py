@@ -48,7 +48,7 @@ def tried(each: Break, sample: Sample) -> Result:
     kind, check, said = "", "", ""
     with tempfile.TemporaryDirectory() as folder:
         copy = Path(folder)
-        for name in ("src", "host", "chip"):
+        for name in ("src", "extras/host", "extras/chip"):
             shutil.copytree(SOURCES / name, copy / name)
         (copy / MACHINE / each.file).write_text(each.text, encoding="utf-8")
         try:

@@ -24,7 +24,7 @@ from tiniscript.vm.state import DONE, RUNNING
 from tiniscript.vm.trace import AnyMachine
 from tools.works import KIT, Work, check, code_of, image_of
 
-BENCH = ROOT / "vm_arduino" / "bench" / "host.cpp"
+BENCH = ROOT / "vm_arduino" / "extras" / "bench" / "host.cpp"
 MACHINE = ROOT / "vm_arduino" / "src" / "vm"
 SENSORS = len(KIT.sensors)
 BUDGET = 0xFFFF  # instructions in a tick: as many as there can be

@@ -1,7 +1,7 @@
 """The machine in C++ on a simulated ATmega328P.
 
-Builds `vm_arduino/avr` with avr-g++ once, writes each request into the built program where its
-flash waits for it, and lets `simavr` run that. What comes out of the UART is the answer.
+Builds `vm_arduino/extras/avr` with avr-g++ once, writes each request into the built program where
+its flash waits for it, and lets `simavr` run that. What comes out of the UART is the answer.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ def missing() -> str:
 @lru_cache(maxsize=1)
 def built(sources: Path = SOURCES) -> bytes:
     """Return the program of the chip, an ELF file."""
-    folders = [sources / name for name in ("src/vm", "chip", "avr")]
+    folders = [sources / name for name in ("src/vm", "extras/chip", "extras/avr")]
     code = [str(path) for each in folders for path in each.glob("*.[cS]*")]
     with tempfile.TemporaryDirectory() as folder:
         program = Path(folder) / "machine.elf"

@@ -1,6 +1,6 @@
 """What a chip answers to the request to run an image, whichever chip it is.
 
-`vm_arduino/chip/runner.cpp` is the other side.
+`vm_arduino/extras/chip/runner.cpp` is the other side.
 """
 
 from __future__ import annotations

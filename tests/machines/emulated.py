@@ -1,6 +1,6 @@
 """The machine in C++ on the emulated chips of ESP boards: LX6, lx106 and RISC-V rv32imc.
 
-Builds `vm_arduino/emulated` for a chip and talks to one QEMU that runs it: many requests, each a
+Builds `vm_arduino/extras/qemu` for a chip and talks to one QEMU that runs it: many requests, each a
 length and bytes. A chip that faults, or does not answer, ends its emulator; the next request then
 begins another one, so that one case that is wrong is one that fails.
 """
@@ -51,9 +51,9 @@ class Emulated(Process):
 
 def built(name: str, program: Path, sources: Path = SOURCES) -> Path:
     """Build the program of a chip from `sources`, a folder like `vm_arduino`."""
-    folders = [sources / each for each in ("src/vm", "chip", "emulated")]
+    folders = [sources / each for each in ("src/vm", "extras/chip", "extras/qemu")]
     code = [path for each in folders for path in sorted(each.glob("*.cpp"))]
-    code.append(sources / "emulated" / chips.CHIPS[name].start)
+    code.append(sources / "extras/qemu" / chips.CHIPS[name].start)
     chips.build(chips.CHIPS[name], code, program, *WARNINGS)
     return program
 

@@ -1,8 +1,8 @@
 """The machine in C++ on this computer, with the sanitizers of the compiler.
 
-Builds `vm_arduino/host` with g++ and talks to one process of it: many requests, each a length
-and bytes. What C++ does wrong (an access outside its memory, undefined arithmetic) ends the
-process, and the request that was answered last is the one to look at.
+Builds `vm_arduino/extras/host` with g++ and talks to one process of it: many requests, each a
+length and bytes. What C++ does wrong (an access outside its memory, undefined arithmetic) ends
+the process, and the request that was answered last is the one to look at.
 """
 
 from __future__ import annotations
@@ -194,12 +194,12 @@ def built(sources: Path, builds: Path = BUILDS) -> Path:
     """Return the program made from `sources`, a folder like `vm_arduino`."""
     inputs = sorted(
         path
-        for folder in ("src", "src/vm", "host")
+        for folder in ("src", "src/vm", "extras/host")
         for path in (sources / folder).glob("*")
         if path.suffix in (".h", ".cpp")
     )
     shared = ("answers.cpp", "answers.h", "port.h", "request.h")
-    inputs += [sources / "chip" / name for name in shared]
+    inputs += [sources / "extras/chip" / name for name in shared]
     return compiled(inputs, FLAGS, builds)
 
 

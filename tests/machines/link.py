@@ -1,6 +1,7 @@
 """The robot's half of the link in C++ on this computer, with the sanitizers of the compiler.
 
-Builds `vm_arduino/link` with g++ and talks to one process of it, as `host` does for the machine.
+Builds `vm_arduino/extras/link` with g++ and talks to one process of it, as `host` does for the
+machine.
 """
 
 from __future__ import annotations
@@ -77,11 +78,11 @@ def built(sources: Path) -> Path:
     """Return the program made from `sources`; what was made before from the same is used again."""
     inputs = sorted(
         path
-        for folder in ("src/vm", "src/link", "link")
+        for folder in ("src/vm", "src/link", "extras/link")
         for path in (sources / folder).glob("*")
         if path.suffix in (".h", ".cpp")
     )
-    inputs.append(sources / "host" / "wire.h")
+    inputs.append(sources / "extras/host" / "wire.h")
     # the machine is not asked here, only its verifier and its checksum
     left_out = ("vm.cpp", "vm_instructions.cpp", "number.cpp")
     return compiled([each for each in inputs if each.name not in left_out], FLAGS)

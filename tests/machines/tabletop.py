@@ -1,7 +1,7 @@
 """A whole robot in C++ on this computer: its firmware, with the sanitizers of the compiler.
 
-Builds `vm_arduino/tabletop` with g++. One process is one robot, from power-on to power-off; what
-its memory holds goes on to the next one.
+Builds `vm_arduino/extras/host_firmware` with g++. One process is one robot, from power-on to
+power-off; what its memory holds goes on to the next one.
 """
 
 from __future__ import annotations
@@ -114,14 +114,14 @@ def _text(answer: bytes) -> tuple[bytes, bytes]:
 @lru_cache
 def built(sources: Path) -> Path:
     """Return the program made from `sources`; what was made before from the same is used again."""
-    folders = ("src", "src/vm", "src/link", "src/store", "src/firmware", "tabletop")
+    folders = ("src", "src/vm", "src/link", "src/store", "src/firmware", "extras/host_firmware")
     inputs = sorted(
         path
         for folder in folders
         for path in (sources / folder).glob("*")
         if path.suffix in (".h", ".cpp")
     )
-    return compiled([*inputs, sources / "host" / "wire.h"], FLAGS)
+    return compiled([*inputs, sources / "extras/host" / "wire.h"], FLAGS)
 
 
 def drives(did: Sequence[str]) -> list[str]:

@@ -1,7 +1,7 @@
 """The robot's firmware, as the WebAssembly module `robot.wasm`: one instance is one power-on.
 
-Knows how to call the module (`vm_arduino/wasm/robot.cpp` is the other side). Does not know what a
-robot does in its world: a `Board` is told. Importing this fails where `wasmtime` is not
+Knows how to call the module (`vm_arduino/extras/wasm/robot.cpp` is the other side). Does not know
+what a robot does in its world: a `Board` is told. Importing this fails where `wasmtime` is not
 installed, or cannot run on this computer.
 """
 

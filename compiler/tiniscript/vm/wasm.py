@@ -1,7 +1,7 @@
 """The C++ machine, as the WebAssembly module `machine.wasm`.
 
-Knows how to call the module (`vm_arduino/wasm/main.cpp` is the other side) and what its numbers
-mean. Does not know what instructions do, nor what a robot is. Importing this fails where
+Knows how to call the module (`vm_arduino/extras/wasm/main.cpp` is the other side) and what its
+numbers mean. Does not know what instructions do, nor what a robot is. Importing this fails where
 `wasmtime` is not installed, or cannot run on this computer.
 """
 

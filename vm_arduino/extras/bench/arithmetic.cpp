@@ -1,0 +1,126 @@
+// Calculates on a simulated ATmega328P what instructions make of many pairs of numbers.
+//
+// Each operation is a program of its own, `PUSH32 a; PUSH32 b; OP; SHOW`, so what is looked at is
+// what a robot calculates. The pairs are made here and in `tests/test_cpp_avr_arithmetic.py` in the
+// same way; the answer to a block of operations is one checksum, or each result where it asks so.
+
+#include "../../src/vm/crc32.h"
+#include "../../src/vm/number.h"
+#include "../../src/vm/vm.h"
+#include "quiet_robot.h"
+#include "simulated.h"
+
+using namespace tiniscript;
+
+namespace {
+
+constexpr uint8_t kMostOps = 32;
+constexpr uint8_t kMostEdges = 100;
+
+Machine machine;
+uint8_t ops[kMostOps];
+uint8_t op_count;
+int32_t edges[kMostEdges];
+uint8_t edge_count;
+uint32_t state;  // xorshift32, apart from that of the machine
+
+uint32_t random_bits() {
+  state ^= state << 13;
+  state ^= state >> 17;
+  state ^= state << 5;
+  return state;
+}
+
+// A number of any size, as many small ones as large ones; one in 8 is an edge.
+int32_t any_number() {
+  const uint8_t choice = static_cast<uint8_t>(random_bits() >> 24);
+  const uint32_t bits = random_bits();
+  if (choice < 32) return edges[(bits >> 8) % edge_count];
+  return static_cast<int32_t>(bits) >> (choice & 31);
+}
+
+// The second value of an operation: of ROUND, every other time from -8 to 8 decimals.
+int32_t second(uint8_t op, int32_t b) {
+  const bool is_places = op == static_cast<uint8_t>(Op::kRound) && (b & 1) != 0;
+  return is_places ? (b & 0x3fff) - 0x2000 : b;
+}
+
+uint8_t* put_push(uint8_t* code, int32_t value) {
+  *code++ = static_cast<uint8_t>(Op::kPush32);
+  for (uint8_t k = 0; k < 4; k++) {
+    *code++ = static_cast<uint8_t>(value & 0xff);
+    value >>= 8;
+  }
+  return code;
+}
+
+// Puts the result into `*result`, 0 where there is a fault, which it returns. END, which calculates
+// nothing, stands for `whole`.
+Fault calculated(uint8_t op, int32_t a, int32_t b, int32_t* result) {
+  if (op == static_cast<uint8_t>(Op::kEnd)) {
+    *result = whole(a);
+    return Fault::kNone;
+  }
+  const bool takes_two = op != static_cast<uint8_t>(Op::kNeg) &&
+                         op != static_cast<uint8_t>(Op::kAbs) &&
+                         op != static_cast<uint8_t>(Op::kNot);
+  static uint8_t code[12 + kEndBytes];
+  uint8_t* at = put_push(code, a);
+  if (takes_two) at = put_push(at, b);
+  *at++ = op;
+  *at++ = static_cast<uint8_t>(Op::kShow);
+  for (uint8_t k = 0; k < kEndBytes; k++) at[k] = static_cast<uint8_t>(Op::kEnd);
+  // `b` is the seed of RANDOM too: as good as any
+  machine.start(code, static_cast<uint16_t>(at - code), nullptr, 0, static_cast<uint32_t>(b) | 1,
+                0);
+  shows = 0;
+  shown[0] = 0;
+  machine.tick(0, 10);
+  *result = shown[0];
+  return machine.fault();
+}
+
+void answer() {
+  state = simulated::next_long();
+  const uint16_t blocks = simulated::next_word();
+  const uint16_t block = simulated::next_word();  // operations of each
+  const uint16_t detailed =
+      simulated::next_word();  // this one result by result, and none behind it
+  op_count = simulated::next_byte();
+  for (uint8_t k = 0; k < op_count; k++) ops[k] = simulated::next_byte();
+  edge_count = simulated::next_byte();
+  for (uint8_t k = 0; k < edge_count; k++) edges[k] = static_cast<int32_t>(simulated::next_long());
+  uint8_t next_op = 0;
+  for (uint16_t number = 0; number < blocks && number <= detailed; number++) {
+    uint32_t checksum = 0;
+    for (uint16_t k = 0; k < block; k++) {
+      const int32_t a = any_number();
+      const int32_t b = second(ops[next_op], any_number());
+      int32_t result;
+      const uint8_t fault = static_cast<uint8_t>(calculated(ops[next_op], a, b, &result));
+      if (++next_op == op_count) next_op = 0;
+      const uint32_t bits = static_cast<uint32_t>(result);
+      const uint8_t said[] = {fault, static_cast<uint8_t>(bits), static_cast<uint8_t>(bits >> 8),
+                              static_cast<uint8_t>(bits >> 16), static_cast<uint8_t>(bits >> 24)};
+      checksum = crc32(checksum, said, sizeof said);
+      if (number == detailed) {
+        simulated::put_number(fault);
+        simulated::put(' ');
+        simulated::put_number(result);
+        simulated::put('\n');
+      }
+    }
+    if (number != detailed) {
+      simulated::put_size(checksum);
+      simulated::put('\n');
+    }
+  }
+}
+
+}  // namespace
+
+int main() {
+  simulated::begin();
+  answer();
+  simulated::end();
+}

@@ -1,0 +1,94 @@
+// Saves two programs in the EEPROM of a simulated ATmega328P, and says what is there.
+//
+// The request has two images, each behind its length. The first is saved. Of the save of the second
+// one so many steps are done as the request says, then the robot starts anew; then it is saved.
+// Says after each start how many bytes are kept and their checksum, and at the end how many cycles
+// the longest call of `tick` took: after a start, and in a save.
+
+#include "../../src/store/store.h"
+
+#include "../../src/store/nvm.h"
+#include "../../src/vm/crc32.h"
+#include "../../src/vm/image.h"
+#include "simulated.h"
+
+using namespace tiniscript;
+
+namespace {
+
+constexpr uint16_t kMostBytes = kImageBytes;
+
+uint8_t image[kMostBytes];
+uint16_t length;
+Store store;
+uint32_t longest_start;
+uint32_t longest_save;
+
+void read_image() {
+  length = simulated::next_word();
+  for (uint16_t at = 0; at < length; at++) image[at] = simulated::next_byte();
+}
+
+// Ticks so many times, or to the end.
+void run(uint16_t ticks, uint32_t* longest) {
+  while (ticks-- != 0 && store.is_busy()) {
+    TCNT1 = 0;
+    store.tick(true);
+    const uint32_t cycles = TCNT1 * 8UL;
+    if (cycles > *longest) *longest = cycles;
+    while (!nvm_is_ready()) {
+    }
+  }
+}
+
+void start() {
+  store.boot();
+  run(0xffff, &longest_start);
+  uint16_t count = 0;
+  uint16_t end = store.used(Area::kProgram) == kNoSlot ? 0 : kHeaderBytes;
+  uint32_t crc = 0;
+  while (count != end) {
+    uint8_t byte = 0;
+    if (!store.fetch(Area::kProgram, count, &byte)) break;
+    if (count == kCodeLengthAt) end = static_cast<uint16_t>(end + byte);
+    if (count == kCodeLengthAt + 1) end = static_cast<uint16_t>(end + byte * 256U);
+    crc = crc32(crc, &byte, 1);
+    count++;
+  }
+  simulated::say("KEPT", count);
+  simulated::put_text("CRC ");
+  simulated::put_size(crc);
+  simulated::put('\n');
+}
+
+void save(uint16_t ticks) {
+  if (!store.begin_save(image)) simulated::put_text("REFUSED\n");
+  run(ticks, &longest_save);
+  simulated::say("STATE", static_cast<uint8_t>(store.state()));
+}
+
+}  // namespace
+
+int main() {
+  simulated::begin();
+  TCCR1B = _BV(CS11);  // a count in eight cycles
+  const uint16_t ticks = simulated::next_word();
+  const uint16_t first = simulated::reading_at;
+  start();
+  read_image();
+  save(0xffff);
+  start();
+  simulated::reading_at = first;
+  read_image();
+  read_image();
+  save(ticks);
+  start();
+  simulated::reading_at = first;
+  read_image();
+  read_image();
+  save(0xffff);
+  start();
+  simulated::say("LONGEST_START", static_cast<int32_t>(longest_start));
+  simulated::say("LONGEST_SAVE", static_cast<int32_t>(longest_save));
+  simulated::end();
+}

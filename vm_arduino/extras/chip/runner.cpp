@@ -1,0 +1,105 @@
+#include "runner.h"
+
+#include "../../src/vm/image.h"
+#include "../../src/vm/verify.h"
+#include "../../src/vm/vm.h"
+#include "text.h"
+#include "traced_robot.h"
+
+namespace tiniscript {
+
+namespace {
+
+constexpr uint8_t kSlice = 250;  // instructions between two looks at the limit
+
+Machine machine;
+int32_t readings[kDevices];
+
+struct Limits {
+  uint32_t max_ms;  // less than 2^31
+  uint32_t max_steps;
+  uint32_t seed;
+  uint32_t begin_ms;  // what the machine's clock says at the beginning
+};
+
+// Adds the last line of an answer.
+void end(const char* what, uint32_t first, uint32_t second) {
+  put_text(what);
+  put(' ');
+  put_size(first);
+  put(' ');
+  put_size(second);
+  put('\n');
+}
+
+void say_fault() {
+  robot.say("FAULT ");
+  if (machine.fault() == Fault::kOverflow) return put_text("OVERFLOW\n");
+  if (machine.fault() == Fault::kDivideByZero) return put_text("DIVIDE_BY_ZERO\n");
+  put_text("BAD_CODE\n");
+}
+
+// Runs code to its end; returns how many instructions ran.
+uint32_t run(const Image& image, const Limits& limits) {
+  for (int32_t& reading : readings) reading = 0;
+  machine.start(image.code, image.code_length, readings, robot.sensor_count, limits.seed,
+                limits.begin_ms);
+  uint32_t steps = 0;
+  uint32_t left = limits.max_steps;  // before the clock must move
+  for (;;) {
+    const uint8_t budget = left < kSlice ? static_cast<uint8_t>(left) : kSlice;
+    const Status status = machine.tick(robot.now_ms + limits.begin_ms, budget);
+    const uint8_t ran = static_cast<uint8_t>(budget - machine.left());
+    steps += ran;
+    left -= ran;
+    if (status == Status::kDone) {
+      robot.say("DONE\n");
+      return steps;
+    }
+    if (status == Status::kFault) {
+      say_fault();
+      return steps;
+    }
+    if (status == Status::kWaiting) {
+      const uint32_t wake_ms = machine.wake_ms() - limits.begin_ms;
+      if (wake_ms > limits.max_ms) {
+        robot.now_ms = limits.max_ms;
+        left = 0;
+      } else {
+        if (wake_ms > robot.now_ms) left = limits.max_steps;
+        robot.now_ms = wake_ms;
+      }
+    }
+    if (left == 0) {
+      robot.say("LIMIT\n");
+      return steps;
+    }
+  }
+}
+
+}  // namespace
+
+void answer_run(Request request) {
+  const uint16_t kit = request.u16();
+  Limits limits;
+  limits.max_ms = request.u32();
+  limits.max_steps = request.u32();
+  limits.seed = request.u32();
+  limits.begin_ms = request.u32();
+  if (!robot.read(&request)) return put_text("NO ROOM\n");
+  const size_t length = static_cast<size_t>(request.u32());
+  const uint8_t* const data = request_bytes(request.place(), length, kEndBytes);
+  if (data == nullptr) return put_text("NO ROOM\n");
+  Image image;
+  const Refusal refusal = unpack(data, length, kit, &image);
+  if (refusal != Refusal::kNone) return end("REFUSED", static_cast<uint8_t>(refusal), 0);
+  const Verdict verdict =
+      verify(image.code, image.code_length, robot.sensor_count, robot.actuator_count);
+  if (verdict.rule != Rule::kNone) {
+    return end("BREAKS", static_cast<uint8_t>(verdict.rule), verdict.offset);
+  }
+  const uint32_t steps = run(image, limits);
+  end("RAN", machine.at(), steps);
+}
+
+}  // namespace tiniscript

@@ -1,0 +1,104 @@
+#include "traced_robot.h"
+
+#include "../../src/robot.h"
+#include "../../src/vm/number.h"
+#include "text.h"
+
+namespace tiniscript {
+
+TracedRobot robot;
+
+namespace {
+
+// Adds the name of a device and what it reads or is set to, and ends the line.
+void put_device(size_t name, int32_t value, bool is_yes_no) {
+  Request letters(name);
+  for (uint32_t left = letters.u32(); left != 0; left--) put(static_cast<char>(letters.u8()));
+  put(' ');
+  put_value(value, is_yes_no);
+  put('\n');
+}
+
+}  // namespace
+
+bool TracedRobot::read(Request* request) {
+  now_ms = 0;
+  sensor_count = request->u8();
+  if (sensor_count > sizeof sensors / sizeof sensors[0]) return false;
+  for (uint8_t k = 0; k < sensor_count; k++) {
+    Sensor& sensor = sensors[k];
+    sensor.name = request->text();
+    sensor.is_yes_no = request->u8() != 0;
+    sensor.count = request->u16();
+    sensor.taken = 0;
+    sensor.readings = request->place();
+    request->skip(sizeof(int32_t) * sensor.count);
+  }
+  actuator_count = request->u8();
+  if (actuator_count > sizeof actuators / sizeof actuators[0]) return false;
+  for (uint8_t k = 0; k < actuator_count; k++) {
+    Actuator& actuator = actuators[k];
+    actuator.name = request->text();
+    actuator.is_yes_no = request->u8() != 0;
+    actuator.low = request->i32();
+    actuator.high = request->i32();
+  }
+  request->u32();  // this robot is always ready
+  return true;
+}
+
+void TracedRobot::say(const char* what) const {
+  put_size(now_ms);
+  put(' ');
+  put_text(what);
+}
+
+void robot_motors(int8_t left, int8_t right) {
+  robot.say("MOTORS ");
+  put_number(left);
+  put(' ');
+  put_number(right);
+  put('\n');
+}
+
+// The final stop is no line of a trace.
+void robot_off() {}
+
+bool robot_read(uint8_t sensor, int32_t* value) {
+  TracedRobot::Sensor& from = robot.sensors[sensor];
+  const uint16_t last = static_cast<uint16_t>(from.count - 1);
+  const uint16_t index = from.taken < last ? from.taken : last;
+  from.taken++;
+  *value = from.count == 0 ? 0 : Request(from.readings + sizeof(int32_t) * index).i32();
+  robot.say("READ ");
+  put_device(from.name, *value, from.is_yes_no);
+  return true;
+}
+
+void robot_beep(uint16_t hertz, uint32_t duration_ms) {
+  robot.say("BEEP ");
+  put_size(hertz);
+  put(' ');
+  put_size(duration_ms);
+  put('\n');
+}
+
+bool robot_show(int32_t value, bool is_yes_no) {
+  robot.say("SHOW ");
+  put_value(value, is_yes_no);
+  put('\n');
+  return true;
+}
+
+void robot_set(uint8_t actuator, int32_t value) {
+  const TracedRobot::Actuator& to = robot.actuators[actuator];
+  if (!to.is_yes_no) {
+    // its limits are whole units, and within them a product has 32 bits
+    const int32_t units = whole(value);
+    value = units <= to.low / kOne ? to.low : units >= to.high / kOne ? to.high : units * kOne;
+  }
+  robot.say("SET ");
+  put_device(to.name, value, to.is_yes_no);
+}
+
+}  // namespace tiniscript

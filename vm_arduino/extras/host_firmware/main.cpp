@@ -1,0 +1,249 @@
+// A whole robot on a computer, for tests: its firmware with a board that is made of variables.
+//
+// One process is one robot from power-on to power-off. A request is four bytes of length and a
+// letter with what it asks; an answer is four bytes of length and what was found.
+// `tests/machines/tabletop.py` is the other side. Ends with its input.
+
+#include <math.h>
+#include <stdio.h>
+
+#include <vector>
+
+#include "../host/wire.h"
+#include "../../src/firmware/firmware.h"
+#include "../../src/robot.h"
+#include "../../src/store/layout.h"
+#include "../../src/store/nvm.h"
+
+using namespace tiniscript;
+
+namespace {
+
+struct Tabletop {
+  std::string memory;  // the EEPROM
+  std::vector<int32_t> readings;
+  std::vector<int32_t> kept;  // the firmware's
+  std::string log;
+  int8_t left = 0;
+  int8_t right = 0;
+  bool is_latched = true;
+  bool is_lit = false;
+  bool has_stalled = false;
+  bool is_low = false;  // the supply
+  bool writes_mark = false;
+  uint8_t measures = 0;     // of it, each fourth says something
+  uint16_t dead = 0xffff;   // a place of the memory that keeps what it is
+  bool has_set = false;  // an actuator, and no stop since
+  bool has_hung = false;
+  Place hung = {};
+  uint8_t busy_ticks = 0;   // for which a byte is being written,
+  uint8_t write_ticks = 0;  // as many as this
+};
+
+Tabletop table;
+
+void say(const char* what, int32_t first, int32_t second) {
+  char line[60];
+  snprintf(line, sizeof line, "%s %ld %ld\n", what, static_cast<long>(first),
+           static_cast<long>(second));
+  table.log += line;
+}
+
+int8_t percent_of(int16_t level) { return static_cast<int8_t>(lround(level / 2.55)); }
+
+// Whether a byte makes something count: the marks of a slot, 0 aside.
+bool is_mark(uint16_t place, uint8_t value) {
+  for (uint8_t slot = 0; slot < kSlots; slot++) {
+    const int at = place - place_of(slot);
+    if (at > 0 && at <= kMarks && value != 0 && value != 0xff) return true;
+  }
+  return false;
+}
+
+// What the motors do, not what they are told.
+void turn(int8_t left, int8_t right) {
+  if ((left != 0 || right != 0) && table.busy_ticks != 0 && table.writes_mark) {
+    table.log += "MARK and a motor starts\n";
+  }
+  if (left != table.left || right != table.right) say("MOTORS", left, right);
+  table.left = left;
+  table.right = right;
+}
+
+// B: power on, with what the memory holds.
+void answer_begin(Reader* request) {
+  Board board;
+  board.kit = request->u16();
+  board.sensors = request->u8();
+  board.actuators = request->u8();
+  board.reset = static_cast<Reset>(request->u8());
+  board.chance = request->u32();
+  board.max_run_ms = request->u32();
+  table.write_ticks = request->u8();
+  table.readings.resize(board.sensors);
+  table.kept.resize(board.sensors);
+  board.readings = table.kept.data();
+  table.memory = request->text();
+  firmware_begin(board);
+}
+
+// S: bytes arrive at a time, the button goes down (1) or up (2), the main loop stood still (4),
+// nobody is connected (8), the bytes come before all that (16), the button has been down for a while
+// (32); so many ticks follow. Says what the robot sends and what it does.
+void answer_step(Reader* request, Writer* answer) {
+  const uint32_t now_ms = request->u32();
+  const uint8_t flags = request->u8();
+  const uint16_t ticks = request->u16();
+  const Bytes heard = request->bytes();
+  size_t next = 0;
+  while ((flags & 16) != 0 && next < heard.length) {
+    firmware_hear(heard.data[next++], static_cast<uint16_t>(now_ms));
+  }
+  table.log.clear();
+  table.has_stalled = (flags & 4) != 0;
+  if ((flags & 1) != 0) firmware_pressed();
+  if ((flags & 2) != 0) firmware_released();
+  if ((flags & 8) != 0) firmware_left();
+  if ((flags & 32) != 0) firmware_held();
+  std::string sent;
+  for (uint16_t k = 0; k < ticks || next < heard.length; k++) {
+    if (next < heard.length) firmware_hear(heard.data[next++], static_cast<uint16_t>(now_ms));
+    firmware_tick(now_ms);
+    if (table.busy_ticks != 0) table.busy_ticks--;
+    uint8_t byte = 0;
+    while (firmware_say(&byte)) sent += static_cast<char>(byte);
+  }
+  answer->text(sent);
+  answer->text(table.log);
+  answer->u8(table.is_lit);
+  answer->u8(table.is_latched);
+}
+
+// E: what the memory holds.
+void answer_memory(Writer* answer) { answer->text(table.memory); }
+
+// L: whether the supply is too low.
+void answer_supply(Reader* request) { table.is_low = request->u8() != 0; }
+
+// D: a byte of the memory that keeps what it is.
+void answer_dead(Reader* request) { table.dead = request->u16(); }
+
+// V: what the sensors say.
+void answer_readings(Reader* request) {
+  for (int32_t& reading : table.readings) reading = request->i32();
+}
+
+}  // namespace
+
+namespace tiniscript {
+
+void board_motors(int16_t left, int16_t right) {
+  if (!table.is_latched) turn(percent_of(left), percent_of(right));
+}
+
+void robot_off() { turn(0, 0); }
+
+bool robot_read(uint8_t sensor, int32_t* value) {
+  *value = table.readings[sensor];
+  return true;
+}
+
+void robot_beep(uint16_t hertz, uint32_t duration_ms) {
+  say("BEEP", hertz, static_cast<int32_t>(duration_ms));
+}
+
+void robot_set(uint8_t actuator, int32_t value) {
+  say("SET", actuator, value);
+  table.has_set = true;
+}
+
+void board_actuators_off() {
+  if (table.has_set) table.log += "ACTUATORS OFF\n";
+  table.has_set = false;
+}
+
+void board_stop() {
+  table.is_latched = true;
+  turn(0, 0);
+}
+
+void board_release() { table.is_latched = false; }
+
+bool board_has_hung(Place* place) {
+  const bool found = table.has_hung;
+  table.has_hung = false;
+  *place = table.hung;
+  return found;
+}
+
+bool board_has_stalled() {
+  const bool found = table.has_stalled;
+  table.has_stalled = false;
+  return found;
+}
+
+LineErrors board_line_errors() { return {0, 0}; }
+
+void board_forget() {}
+
+Supply board_supply() {
+  if (table.left != 0 || table.right != 0) table.log += "MEASURED while a motor is on\n";
+  if (table.measures++ % 4 != 3) return Supply::kMeasuring;
+  return table.is_low ? Supply::kLow : Supply::kEnough;
+}
+
+void board_light(bool is_on) { table.is_lit = is_on; }
+
+void board_finished() { table.log += "FINISHED\n"; }
+
+void board_faulted() { table.log += "FAULTED\n"; }
+
+bool nvm_is_ready() { return table.busy_ticks == 0; }
+
+uint8_t nvm_read(uint16_t place) { return static_cast<uint8_t>(table.memory[place]); }
+
+void nvm_write(uint16_t place, uint8_t value) {
+  table.writes_mark = is_mark(place, value);
+  if (table.writes_mark && (table.left != 0 || table.right != 0)) {
+    table.log += "MARK while a motor is on\n";
+  }
+  if (table.writes_mark && table.is_low) table.log += "MARK while the supply is low\n";
+  if (place != table.dead) table.memory[place] = static_cast<char>(value);
+  table.busy_ticks = table.write_ticks;
+}
+
+void nvm_clear(uint16_t place) { nvm_write(place, 0); }
+
+}  // namespace tiniscript
+
+int main() {
+  std::string asked;
+  while (next_request(&asked)) {
+    Reader request(asked);
+    Writer said;
+    switch (request.u8()) {
+      case 'B':
+        answer_begin(&request);
+        break;
+      case 'S':
+        answer_step(&request, &said);
+        break;
+      case 'E':
+        answer_memory(&said);
+        break;
+      case 'L':
+        answer_supply(&request);
+        break;
+      case 'D':
+        answer_dead(&request);
+        break;
+      case 'V':
+        answer_readings(&request);
+        break;
+      default:
+        return 1;
+    }
+    send_answer(said);
+  }
+  return 0;
+}

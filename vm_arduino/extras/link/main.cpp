@@ -1,0 +1,168 @@
+// The robot's half of the link on a computer, for tests: many requests to one process.
+//
+// A request is four bytes of length and a letter with what it asks; an answer is four bytes of
+// length and what was found. `tests/machines/link.py` is the other side. Ends with its input.
+
+#include <stdio.h>
+
+#include "../host/wire.h"
+#include "../../src/link/link.h"
+#include "simulated_port.h"
+
+using namespace tiniscript;
+
+namespace {
+
+Receiver receiver;
+Link link_half;
+
+// B: a robot is switched on.
+void answer_begin(Reader* request) {
+  port = SimulatedPort();
+  port.room = request->u16();
+  port.card.kit = request->u16();
+  port.equipment.sensors = request->u8();
+  port.equipment.actuators = request->u8();
+  port.card.id = 0x54696e69;
+  port.card.reset = Reset::kPower;
+  port.card.nonce = 0x08070605;
+  const uint8_t name[] = {'T', 'i', 'n', 'i'};
+  port_rename(name, sizeof name);
+  receiver = Receiver();
+  link_half = Link();
+  link_half.begin(&receiver, request->u8());
+  port.log.clear();
+}
+
+// S: bytes arrive at a time; the link looks at them after each one, or only at the end. Says what
+// it sends and what the robot does.
+void answer_step(Reader* request, Writer* answer) {
+  const uint32_t now_ms = request->u32();
+  const uint8_t how = request->u8();
+  const Bytes data = request->bytes();
+  port.log.clear();
+  std::string sent;
+  for (size_t k = 0; k <= data.length; k++) {
+    if (k < data.length && receiver.put(data.data[k], static_cast<uint16_t>(now_ms))) {
+      port.log += link_half.stop_is_due() ? "PINS OFF\n" : "the link does not know of a stop\n";
+    }
+    const bool is_last = k == data.length;
+    if (how == 1 && !is_last) continue;
+    link_half.tick(static_cast<uint16_t>(now_ms));
+    link_half.tell();
+    uint8_t byte = 0;
+    for (uint8_t turns = 0; turns < 8; turns++) {
+      while ((how != 2 || is_last) && link_half.next(&byte)) sent += static_cast<char>(byte);
+      link_half.tick(static_cast<uint16_t>(now_ms));
+      link_half.tell();
+    }
+  }
+  answer->text(sent);
+  answer->text(port.log);
+}
+
+// R: what happens to the robot: its program is done, has a fault, shows something; its button.
+void answer_robot(Reader* request, Writer* answer) {
+  const uint8_t what = request->u8();
+  const uint32_t value = request->u32();
+  bool is_taken = true;
+  switch (what) {
+    case 'd':
+      port.condition.state = State::kIdle;
+      link_half.done();
+      break;
+    case 'f':
+      port_stop(static_cast<uint8_t>(value));
+      link_half.faulted();
+      break;
+    case 's':
+      is_taken = link_half.show(static_cast<int32_t>(value), false);
+      break;
+    case 'b':
+      port_stop(0);
+      link_half.stopped(Cause::kButton);
+      break;
+    case 'r':
+      port_release();
+      port_start(false);
+      break;
+    case 'w':
+      port.is_busy = value != 0;
+      break;
+    case 'k':
+      port.is_saving = value != 0;
+      break;
+    default:
+      abort();
+  }
+  answer->u8(is_taken);
+}
+
+// I: bytes and times to a receiver alone: what it finds, a line each. An item is released after
+// `held` more bytes.
+void answer_items(Reader* request, Writer* answer) {
+  receiver = Receiver();
+  std::string lines;
+  const uint8_t held = request->u8();
+  uint8_t left = 0;
+  for (uint32_t count = request->u32(); count > 0; count--) {
+    const uint16_t now_ms = request->u16();
+    if (left > 0 && --left == 0) receiver.release();
+    if (receiver.put(request->u8(), now_ms)) lines += "stop\n";
+    if (receiver.item() == Item::kNone || left > 0) continue;
+    char row[40];
+    snprintf(row, sizeof row, "%s %u", receiver.item() == Item::kText ? "text" : "frame",
+             receiver.length());
+    lines += row;
+    for (uint8_t k = 0; k < receiver.length() && k < kItemBytes; k++) {
+      snprintf(row, sizeof row, " %02x", receiver.bytes()[k]);
+      lines += row;
+    }
+    if (receiver.item() == Item::kFrame) {
+      lines += open_frame(receiver.bytes(), receiver.length()) != 0 ? " whole" : " damaged";
+    }
+    lines += "\n";
+    left = static_cast<uint8_t>(held + 1);
+    if (held == 0) {
+      receiver.release();
+      left = 0;
+    }
+  }
+  char row[40];
+  snprintf(row, sizeof row, "damaged %u, dropped %u\n", receiver.damaged(), receiver.dropped());
+  answer->text(lines + row);
+}
+
+// M: the image that the robot holds, and whether it is what a robot may run.
+void answer_image(Writer* answer) { answer->text(port.held); }
+
+}  // namespace
+
+int main() {
+  std::string asked;
+  while (next_request(&asked)) {
+    Reader request(asked);
+    Writer said;
+    switch (request.u8()) {
+      case 'B':
+        answer_begin(&request);
+        break;
+      case 'S':
+        answer_step(&request, &said);
+        break;
+      case 'R':
+        answer_robot(&request, &said);
+        break;
+      case 'I':
+        answer_items(&request, &said);
+        break;
+      case 'M':
+        answer_image(&said);
+        break;
+      default:
+        return 1;
+    }
+    send_answer(said);
+  }
+  return 0;
+}

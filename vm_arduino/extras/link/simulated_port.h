@@ -1,0 +1,29 @@
+// A robot that writes down what the link asks of it. Defines what `port.h` declares.
+
+#ifndef TINISCRIPT_LINK_SIMULATED_PORT_H_
+#define TINISCRIPT_LINK_SIMULATED_PORT_H_
+
+#include <memory>
+#include <string>
+
+#include "../../src/link/port.h"
+
+struct SimulatedPort {
+  tiniscript::Card card = {};
+  tiniscript::Equipment equipment = {};
+  tiniscript::Condition condition = {};
+  tiniscript::Trim trim = {};
+  uint16_t room = 0;
+  bool is_busy = false;              // it saves, and cannot make way
+  bool is_saving = false;            // it has not kept yet what it was given
+  std::unique_ptr<uint8_t[]> image;  // of exactly its length: a sanitizer sees what is outside
+  std::unique_ptr<uint8_t[]> live;
+  std::string held;    // the image that START starts
+  std::string stored;  // the one that is saved: what is held again where an upload breaks off
+  std::string log;
+};
+
+// The one robot of this program.
+extern SimulatedPort port;
+
+#endif  // TINISCRIPT_LINK_SIMULATED_PORT_H_

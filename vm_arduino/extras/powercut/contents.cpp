@@ -1,0 +1,65 @@
+#include "contents.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "../../src/vm/crc32.h"
+#include "../../src/vm/image.h"
+#include "memory.h"
+
+namespace tiniscript {
+
+namespace {
+
+void put(Content* content, size_t at, uint32_t check) {
+  for (size_t k = 0; k < kCheckBytes; k++)
+    (*content)[at + k] = static_cast<uint8_t>(check >> 8 * k);
+}
+
+uint8_t any_byte() { return static_cast<uint8_t>(random_below(0x100)); }
+
+}  // namespace
+
+Content checked(Content image) {
+  const uint32_t head = crc32(0, image.data(), kChecksumAt);
+  const uint16_t code_bytes = static_cast<uint16_t>(image.size() - kHeaderBytes);
+  put(&image, kChecksumAt, crc32(head, image.data() + kHeaderBytes, code_bytes));
+  return image;
+}
+
+Content some_image(uint16_t code_bytes) {
+  Content image = {'T', 'S', kIsaMajor, kIsaMinor, 0, 0, 0x1b, 0x23};
+  image.push_back(static_cast<uint8_t>(code_bytes));
+  image.push_back(static_cast<uint8_t>(code_bytes >> 8));
+  image.resize(kHeaderBytes);
+  for (uint16_t k = 0; k < code_bytes; k++) image.push_back(any_byte());
+  return checked(image);
+}
+
+Content some_record() {
+  Content record(kRecordBytes);
+  for (uint8_t& byte : record) byte = any_byte();
+  put(&record, 0, crc32(0, record.data() + kCheckBytes, kRecordBytes - kCheckBytes));
+  return record;
+}
+
+Content read(const Store& store, Area area) {
+  Content found;
+  if (store.used(area) == kNoSlot) return found;
+  size_t length = kRecordBytes;
+  if (area == Area::kProgram) length = kHeaderBytes;
+  while (found.size() < length) {
+    uint8_t byte;
+    if (!store.fetch(area, static_cast<uint16_t>(found.size()), &byte)) {
+      printf("MISUSE what counts cannot be read\n");
+      exit(3);
+    }
+    found.push_back(byte);
+    if (area == Area::kProgram && found.size() == kHeaderBytes) {
+      length += found[kCodeLengthAt] + found[kCodeLengthAt + 1] * 256U;
+    }
+  }
+  return found;
+}
+
+}  // namespace tiniscript

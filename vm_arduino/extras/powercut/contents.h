@@ -1,0 +1,30 @@
+// Images and records to keep.
+
+#ifndef TINISCRIPT_POWERCUT_CONTENTS_H_
+#define TINISCRIPT_POWERCUT_CONTENTS_H_
+
+#include <stdint.h>
+
+#include <vector>
+
+#include "../../src/store/store.h"
+
+namespace tiniscript {
+
+using Content = std::vector<uint8_t>;  // empty: nothing
+
+// Puts the checksum of an image into it.
+Content checked(Content image);
+
+// An image with so many bytes of code, any ones.
+Content some_image(uint16_t code_bytes);
+
+// A record of anything, with its check.
+Content some_record();
+
+// What counts in an area, all of it. Where it cannot be read the program ends.
+Content read(const Store& store, Area area);
+
+}  // namespace tiniscript
+
+#endif  // TINISCRIPT_POWERCUT_CONTENTS_H_

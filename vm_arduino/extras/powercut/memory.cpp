@@ -1,0 +1,103 @@
+#include "memory.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "../../src/store/nvm.h"
+
+namespace tiniscript {
+
+Memory memory;
+uint16_t erases[kMemoryBytes];
+
+namespace {
+
+uint32_t state = 1;
+
+void expect(bool is_so, const char* what) {
+  if (is_so) return;
+  printf("MISUSE %s\n", what);
+  exit(3);
+}
+
+uint8_t old_value(const Memory::Cell& cell) {
+  return random_below(2) == 0 ? cell.value : cell.other;
+}
+
+// Any byte; often one that means something in the slot around it: nature is no friend.
+uint8_t nasty_byte(uint16_t place) {
+  if (random_below(2) == 0) return static_cast<uint8_t>(random_below(0x100));
+  const uint32_t near = (place + kMemoryBytes - 3U + random_below(7)) % kMemoryBytes;
+  return memory.cells[near].value ^ (random_below(2) == 0 ? 0 : 0xa5);
+}
+
+void write(uint16_t place, uint8_t value) {
+  expect(place < kMemoryBytes, "a write behind the end");
+  expect(!memory.is_writing, "a write while another one goes on");
+  if (memory.is_off) return;
+  memory.is_writing = true;
+  memory.writes++;
+  if (place == memory.dead) return;
+  Memory::Cell& cell = memory.cells[place];
+  if (!memory.is_cut_next) {
+    cell = {value, value};
+    return;
+  }
+  memory.is_off = true;
+  memory.cut_place = place;
+  switch (memory.torn) {
+    case Torn::kNotStarted:
+      return;
+    case Torn::kDone:
+      break;
+    case Torn::kAllOnes:
+      value = 0xff;
+      break;
+    case Torn::kAllZeros:
+      value = 0;
+      break;
+    case Torn::kRandom:
+      value = nasty_byte(place);
+      break;
+    case Torn::kBoth:
+      value &= old_value(cell);
+      break;
+    case Torn::kUnstable:
+      cell = {old_value(cell), value};
+      return;
+  }
+  cell = {value, value};
+}
+
+}  // namespace
+
+void Memory::fill(uint8_t value) {
+  for (Cell& cell : cells) cell = {value, value};
+}
+
+void seed_random(uint32_t seed) { state = seed * 2654435761U | 1; }
+
+uint32_t random_below(uint32_t end) {
+  state ^= state << 13;
+  state ^= state >> 17;
+  state ^= state << 5;
+  return static_cast<uint32_t>(static_cast<uint64_t>(state) * end >> 32);
+}
+
+bool nvm_is_ready() { return !memory.is_writing; }
+
+uint8_t nvm_read(uint16_t place) {
+  expect(place < kMemoryBytes, "a look behind the end");
+  expect(!memory.is_writing, "a look while a write goes on");
+  const Memory::Cell& cell = memory.cells[place];
+  return cell.value == cell.other ? cell.value : old_value(cell);
+}
+
+void nvm_write(uint16_t place, uint8_t value) {
+  write(place, value);
+  erases[place]++;
+}
+
+void nvm_clear(uint16_t place) { write(place, 0); }
+
+}  // namespace tiniscript

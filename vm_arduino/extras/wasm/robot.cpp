@@ -1,0 +1,235 @@
+// A whole robot as a WebAssembly module: the virtual one of `tsc robot`.
+//
+// The firmware with a board that is made of numbers. Knows under which names it is called from
+// outside, keeps the time of the UART and of the EEPROM, and notes what the robot does in its
+// world. No heap and no library. One instance is one robot from power-on to power-off.
+// `virtual/module.py` is the other side.
+
+#include "../../src/robot.h"
+
+#include "../../src/firmware/firmware.h"
+#include "../../src/store/layout.h"
+#include "../../src/store/nvm.h"
+
+#define exported(name) extern "C" __attribute__((export_name(name)))
+#define imported(name) extern "C" __attribute__((import_module("robot"), import_name(name)))
+
+using namespace tiniscript;
+
+// There are notes to be read. Where the last one is about a sensor, `reading` is to be filled.
+imported("look") void host_look();
+
+namespace {
+
+// The main loop comes around so often: 32 instructions each time are about what an Uno does.
+constexpr uint32_t kTickUs = 125;
+constexpr uint32_t kBoxBytes = 4096;
+
+uint8_t inbox[kBoxBytes];   // what is on its way to the robot
+uint8_t outbox[kBoxBytes];  // what it has sent
+uint32_t heard;             // of the inbox,
+uint32_t to_hear;           // of so many bytes
+uint32_t said;              // of the outbox
+uint64_t now_us;
+uint64_t hears_us;   // when the next byte has come in,
+uint64_t says_us;    // and when the one that goes out is gone
+uint64_t writes_us;  // and when the EEPROM is ready again
+uint32_t byte_us;    // how long a byte takes on the line, both ways; 0: no time
+uint32_t write_us;   // and how long in the EEPROM
+bool is_latched = true;
+int32_t readings[256];
+uint8_t memory[kMemoryBytes];
+
+// What the robot does, and when: milliseconds since power-on. `what` is one of kMotors to kActuatorsOff.
+struct Note {
+  uint32_t now_ms;
+  uint32_t what;
+  int32_t first;
+  int32_t second;
+};
+
+enum What : uint32_t {
+  kMotors = 1,
+  kRead,
+  kBeep,
+  kShow,
+  kSet,
+  kStop,
+  kRelease,
+  kLight,
+  kFinished,
+  kFaulted,
+  kActuatorsOff,
+};
+
+constexpr uint32_t kNotes = 256;
+
+Note notes[kNotes];
+uint32_t noted;
+int32_t reading;
+
+uint32_t now_ms() { return static_cast<uint32_t>(now_us / 1000); }
+
+void note(What what, int32_t first = 0, int32_t second = 0) {
+  if (noted == kNotes) host_look();
+  notes[noted++] = {now_ms(), what, first, second};
+}
+
+void hear() {
+  while (heard < to_hear && hears_us <= now_us) {
+    firmware_hear(inbox[heard++], static_cast<uint16_t>(now_ms()));
+    firmware_tick(now_ms());
+    if (byte_us == 0) return;  // the next one at the next tick
+    hears_us += byte_us;
+  }
+}
+
+void say() {
+  while (said < kBoxBytes && says_us <= now_us) {
+    if (!firmware_say(outbox + said)) {
+      says_us = now_us;
+      return;
+    }
+    said++;
+    says_us += byte_us;
+  }
+}
+
+}  // namespace
+
+namespace tiniscript {
+
+void board_motors(int16_t left, int16_t right) {
+  if (!is_latched) note(kMotors, left, right);
+}
+
+void robot_off() {}  // `board_stop` says it
+
+bool robot_read(uint8_t sensor, int32_t* value) {
+  note(kRead, sensor);
+  host_look();
+  *value = reading;
+  return true;
+}
+
+void robot_beep(uint16_t hertz, uint32_t duration_ms) {
+  note(kBeep, hertz, static_cast<int32_t>(duration_ms));
+}
+
+void robot_set(uint8_t actuator, int32_t value) { note(kSet, actuator, value); }
+
+void board_stop() {
+  is_latched = true;
+  note(kStop);
+}
+
+void board_release() {
+  is_latched = false;
+  note(kRelease);
+}
+
+void board_actuators_off() { note(kActuatorsOff); }
+
+bool board_has_stalled() { return false; }
+
+LineErrors board_line_errors() { return {0, 0}; }  // its bytes come whole, or not at all
+
+bool board_has_hung(Place*) { return false; }
+
+void board_forget() {}
+
+Supply board_supply() { return Supply::kEnough; }
+
+void board_light(bool is_on) { note(kLight, is_on); }
+
+void board_finished() { note(kFinished); }
+
+void board_faulted() { note(kFaulted); }
+
+bool nvm_is_ready() { return now_us >= writes_us; }
+
+uint8_t nvm_read(uint16_t place) { return memory[place]; }
+
+void nvm_write(uint16_t place, uint8_t value) {
+  memory[place] = value;
+  writes_us = now_us + write_us;
+}
+
+void nvm_clear(uint16_t place) { nvm_write(place, 0); }
+
+}  // namespace tiniscript
+
+// What `watched.cpp` asks in place of `robot_show`.
+namespace tiniscript {
+
+bool watched_show(int32_t value, bool is_yes_no) {
+  const bool is_taken = robot_show(value, is_yes_no);
+  if (is_taken) note(kShow, value, is_yes_no);
+  return is_taken;
+}
+
+}  // namespace tiniscript
+
+// The EEPROM, to be filled before `begin`.
+exported("memory_at") uint8_t* module_memory() { return memory; }
+exported("memory_bytes") uint32_t module_memory_bytes() { return kMemoryBytes; }
+
+exported("inbox") uint8_t* module_inbox() { return inbox; }
+exported("outbox") uint8_t* module_outbox() { return outbox; }
+exported("box_bytes") uint32_t module_box_bytes() { return kBoxBytes; }
+
+// What there is to be seen, and how many notes; whoever looks makes that 0.
+exported("notes") Note* module_notes() { return notes; }
+exported("noted") uint32_t* module_noted() { return &noted; }
+exported("reading") int32_t* module_reading() { return &reading; }
+
+// Power on. `line_us` is how long a byte takes on the line, `eeprom_us` how long in the EEPROM.
+exported("begin") void module_begin(uint32_t kit, uint32_t sensors, uint32_t actuators,
+                                    uint32_t reset, uint32_t chance, uint32_t max_run_ms,
+                                    uint32_t line_us, uint32_t eeprom_us) {
+  byte_us = line_us;
+  write_us = eeprom_us;
+  Board board;
+  board.kit = static_cast<uint16_t>(kit);
+  board.sensors = static_cast<uint8_t>(sensors);
+  board.actuators = static_cast<uint8_t>(actuators);
+  board.readings = readings;
+  board.reset = static_cast<Reset>(reset);
+  board.chance = chance;
+  board.max_run_ms = max_run_ms;
+  firmware_begin(board);
+}
+
+// So many bytes are in the inbox now, behind those that have been heard.
+exported("put") void module_put(uint32_t bytes) {
+  heard = 0;
+  to_hear = bytes;
+  if (hears_us < now_us + byte_us) hears_us = now_us + byte_us;
+}
+
+// Goes on up to a time, or until the inbox is empty where `has_more`, or the outbox is full.
+// Returns how many bytes are in the outbox: they are to be fetched now.
+exported("run") uint32_t module_run(uint64_t until_us, uint32_t has_more) {
+  said = 0;
+  while (now_us < until_us && said < kBoxBytes) {
+    if (has_more != 0 && heard == to_hear) break;
+    now_us += kTickUs;
+    hear();
+    firmware_tick(now_ms());
+    say();
+  }
+  return said;
+}
+
+exported("now_us") uint64_t module_now_us() { return now_us; }
+
+// How many bytes of the inbox have not been heard.
+exported("unheard") uint32_t module_unheard() { return to_hear - heard; }
+
+exported("press") void module_press() { firmware_pressed(); }
+exported("let_go") void module_let_go() { firmware_released(); }
+
+// The robot as its own STATUS tells it.
+exported("state") uint32_t module_state() { return static_cast<uint32_t>(port_condition().state); }
+exported("saved") uint32_t module_saved() { return static_cast<uint32_t>(port_condition().saved); }
+exported("fault") uint32_t module_fault() { return port_condition().fault; }

@@ -1,8 +1,0 @@
-// The machine's instructions, of which a virtual robot sees what they show.
-//
-// Stands for `vm_instructions.cpp` in its module. What a program shows goes over the link, and the
-// firmware tells nobody else: so it is asked in between, by another name.
-
-#define robot_show watched_show
-
-#include "../src/vm/vm_instructions.cpp"
