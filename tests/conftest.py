@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.command import PROGRAM, Command, Tsc
-from tests.desk import Desk
+from tests.support.command import PROGRAM, Command, Tsc
+from tests.support.pty_robot import PtyRobot
 from tiniscript import robots
 
 
@@ -74,16 +74,16 @@ def program(tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def desk() -> Iterator[Desk]:
+def pty_robot() -> Iterator[PtyRobot]:
     """A robot of the kit `tinibot`."""
-    with Desk(robots.load("tinibot").kit) as found:
+    with PtyRobot(robots.load("tinibot").kit) as found:
         yield found
 
 
 @pytest.fixture
-def link(desk: Desk) -> Iterator[Command]:
-    """`tsc link` on the desk's port."""
-    command = Command("link", "--port", desk.port)
+def link(pty_robot: PtyRobot) -> Iterator[Command]:
+    """`tsc link` on the robot's port."""
+    command = Command("link", "--port", pty_robot.port)
     command.until("share this port")
     yield command
     command.process.kill()

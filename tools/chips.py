@@ -1,7 +1,7 @@
 """Builds C++ for the chips of ESP boards with Debian's compilers, and says how large it is.
 
 Knows each chip's compiler, linker and emulator, and that no C library is needed:
-`vm_arduino/extras/qemu` has what the compilers call. `tests/machines/emulated.py` runs what is
+`vm_arduino/extras/qemu` has what the compilers call. `tests/machines/qemu.py` runs what is
 built.
 """
 

@@ -16,8 +16,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
-from tests.casefile import Case, read
-from tests.test_cases import compiled, robot_and_senses
+from tests.support.casefile import Case, read
+from tests.vm.test_cases import compiled, robot_and_senses
 from tiniscript import fixed_point, robots
 from tiniscript.bytecode.disassembly import read_listing
 from tiniscript.bytecode.image import pack

@@ -22,8 +22,8 @@ from typing import NamedTuple
 ROOT = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
-from tests.cpp_sample import Sample, Unfit
 from tests.machines.host import SOURCES, missing
+from tests.support.cpp_sample import Sample, Unfit
 from tools.breaks import MACHINE, Break, Stale, breaks
 from tools.equivalent import EQUIVALENT
 from tools.small_changes import small_changes

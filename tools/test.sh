@@ -24,5 +24,6 @@ run pytest -n 2 --dist worksteal "$@"
 
 # Every branch of what decides whether a robot may run an image is taken by a test.
 run coverage run --branch --include="compiler/tiniscript/bytecode/verify.py,compiler/tiniscript/bytecode/image.py" \
-    -m pytest tests/test_image.py tests/test_verify.py tests/test_cases.py -k "not host" -p no:xdist
+    -m pytest tests/bytecode/test_image.py tests/bytecode/test_verify.py tests/vm/test_cases.py \
+    -k "not host" -p no:xdist
 run coverage report --show-missing --fail-under=100

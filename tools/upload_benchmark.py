@@ -21,9 +21,9 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
-from tests.classroom import Classroom
-from tests.desk import Desk
-from tests.machines.tabletop import missing
+from tests.machines.host_firmware import missing
+from tests.support.pty_robot import PtyRobot
+from tests.support.robot_fleet import RobotFleet
 from tiniscript import robots
 from tools.benchmark import table
 
@@ -44,14 +44,14 @@ OTHERS = (
 class Bench:
     """A robot on a port, and processes that are timed."""
 
-    def __init__(self, desk: Desk, folder: str) -> None:
-        self.desk = desk
+    def __init__(self, pty_robot: PtyRobot, folder: str) -> None:
+        self.pty_robot = pty_robot
         self.environ = {
             "PYTHONPATH": str(ROOT / "compiler"), "XDG_CACHE_HOME": folder, "LC_ALL": "C.UTF-8",
         }  # fmt: skip
 
     def start(self, *arguments: str) -> subprocess.Popen[bytes]:
-        command = [sys.executable, "-m", "tiniscript", *arguments, "--port", self.desk.port]
+        command = [sys.executable, "-m", "tiniscript", *arguments, "--port", self.pty_robot.port]
         return subprocess.Popen(
             command, env=self.environ, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
         )
@@ -65,15 +65,15 @@ class Bench:
         """Return the time from the start of an upload to motion, and the bytes to the robot."""
         if self.start("stop").wait():
             raise RuntimeError("the robot did not stop")
-        heard = len(self.desk.heard)
+        heard = len(self.pty_robot.heard)
         begin_s = time.perf_counter()
         upload = self.start(*UPLOAD)
-        while not self.desk.moves:
+        while not self.pty_robot.moves:
             time.sleep(0.0003)
             if time.perf_counter() - begin_s > LIMIT_S:
                 raise RuntimeError("the robot did not move")
         took_ms = (time.perf_counter() - begin_s) * 1000
-        sent = len(self.desk.heard) - heard
+        sent = len(self.pty_robot.heard) - heard
         if upload.wait():
             raise RuntimeError("the upload failed")
         return took_ms, sent
@@ -97,7 +97,7 @@ def crowd(count: int, runs: int, folder: str) -> tuple[float, float]:
     """Return how long (ms) until all of some robots move, and until all have stopped; medians."""
     environ = {"PYTHONPATH": str(ROOT / "compiler"), "XDG_CACHE_HOME": folder, "LC_ALL": "C.UTF-8"}
     moving, stopping = [], []
-    with Classroom([robots.load("tinibot").kit] * count) as room:
+    with RobotFleet([robots.load("tinibot").kit] * count) as room:
         ports = [word for pupil in room.pupils for word in ("--port", pupil.port)]
 
         def took_ms(verb: tuple[str, ...], moves: bool) -> float:
@@ -125,8 +125,11 @@ def main() -> int:
     runs = int(sys.argv[1]) if len(sys.argv) > 1 else RUNS
     rows: list[tuple[object, ...]] = []
     kit = robots.load("tinibot").kit
-    with tempfile.TemporaryDirectory() as folder, Desk(kit, bytes_per_ms=BYTES_PER_MS) as desk:
-        bench = Bench(desk, folder)
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        PtyRobot(kit, bytes_per_ms=BYTES_PER_MS) as pty_robot,
+    ):
+        bench = Bench(pty_robot, folder)
         for name in ("tsc upload, opens the port", "tsc upload, tsc link holds it"):
             link = bench.start("link") if "link" in name else None
             if link is not None:

@@ -15,7 +15,7 @@ from time import perf_counter, process_time
 ROOT = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
-from tests.virtual import Talk
+from tests.support.virtual_robot import Talk
 from tiniscript import robots
 from tiniscript.virtual import worlds
 from tiniscript.virtual.robot import VirtualRobot

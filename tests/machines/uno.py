@@ -10,7 +10,7 @@ from pathlib import Path
 from tests.machines.avr import FLAGS
 from tests.machines.avr import missing as no_compiler
 from tests.machines.host import WARNINGS
-from tests.platformio import need
+from tests.support.platformio import need
 from tools import uno
 
 SOURCES = Path(__file__).resolve().parent.parent / "uno"

@@ -2,7 +2,7 @@
 //
 // One process is one robot from power-on to power-off. A request is four bytes of length and a
 // letter with what it asks; an answer is four bytes of length and what was found.
-// `tests/machines/tabletop.py` is the other side. Ends with its input.
+// `tests/machines/host_firmware.py` is the other side. Ends with its input.
 
 #include <math.h>
 #include <stdio.h>

@@ -1,0 +1,196 @@
+"""Whoever reads what tsc prints has gone: one exit code, and no robot that drives unseen."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+from argparse import Namespace
+from pathlib import Path
+
+import pytest
+
+from tests.machines.host_firmware import missing
+from tests.support.command import FOREVER, PROGRAM, TSC, Tsc
+from tests.support.pty_robot import PtyRobot
+from tests.support.robot_fleet import RobotFleet
+from tiniscript import robots
+from tiniscript.cli import CLOSED
+from tiniscript.cli.robot import connect, fleet
+from tiniscript.link.messages import STOP_RUN
+
+pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
+
+KIT = robots.load("tinibot").kit
+SHOWS = "SI|LOOP(FOREVER);F(0.1, 80);SHOW(1);END_LOOP"
+
+
+def after_lines(count: int, *words: str, both: bool = False) -> tuple[int, str]:
+    """Read so many lines of a command, close its output; return its exit code and its errors."""
+    err = subprocess.STDOUT if both else subprocess.PIPE
+    with subprocess.Popen([*TSC, *words], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                          stderr=err) as running:  # fmt: skip
+        assert running.stdout
+        for _ in range(count):
+            assert running.stdout.readline()
+        running.stdout.close()
+        said = running.stderr.read().decode() if running.stderr else ""
+        return running.wait(60), said
+
+
+@pytest.mark.parametrize("lines", [0, 1, 3])
+@pytest.mark.parametrize("extra", [[], ["--json"]])
+def test_upload_into_a_pipe_that_closes_stops_the_robot(
+    pty_robot: PtyRobot, lines: int, extra: list[str]
+) -> None:
+    code, said = after_lines(lines, "upload", "-e", SHOWS, "--port", pty_robot.port, *extra)
+    assert code == CLOSED
+    assert said.count("\n") == 1 and "was stopped" in said
+    pty_robot.until(lambda: not pty_robot.moves, "it stands")
+
+
+def test_start_live_and_both_streams(pty_robot: PtyRobot) -> None:
+    assert after_lines(1, "upload", "-e", SHOWS, "--port", pty_robot.port, both=True) == (
+        CLOSED,
+        "",
+    )
+    pty_robot.until(lambda: not pty_robot.moves, "it stands")
+    code, said = after_lines(2, "start", "--port", pty_robot.port)
+    assert code == CLOSED and "was stopped" in said
+    code, said = after_lines(1, "live", "LOOP(FOREVER);F(0.1, 80);SHOW(1);END_LOOP",
+                             "--port", pty_robot.port)  # fmt: skip
+    assert code == CLOSED and "was stopped" in said
+    pty_robot.until(lambda: not pty_robot.moves, "it stands")
+
+
+def test_what_goes_on_alone_goes_on(pty_robot: PtyRobot) -> None:
+    code, said = after_lines(0, "upload", "-e", FOREVER, "--detach", "--port", pty_robot.port)
+    assert (code, said) == (CLOSED, "")
+    assert pty_robot.moves
+    code, said = after_lines(0, "info", "--port", pty_robot.port)
+    assert (code, said) == (CLOSED, "")
+    assert pty_robot.moves
+
+
+def test_a_monitor_that_nobody_reads_leaves_and_stops_nothing(pty_robot: PtyRobot) -> None:
+    words = ["upload", "-e", SHOWS, "--detach", "--port", pty_robot.port]
+    assert subprocess.run([*TSC, *words], capture_output=True).returncode == 0
+    code, said = after_lines(2, "monitor", "--port", pty_robot.port)
+    assert code == CLOSED and "stopped" not in said
+    pty_robot.until(lambda: pty_robot.moves, "it drives on")
+
+
+def test_many_robots_are_stopped() -> None:
+    """At once, and not only by themselves a second later."""
+    with RobotFleet([KIT] * 3) as room:
+        ports = [word for pupil in room.pupils for word in ("--port", pupil.port)]
+        code, _ = after_lines(4, "upload", "-e", SHOWS, *ports)
+        assert code == CLOSED
+        room.until(lambda: not any(pupil.moves for pupil in room.pupils), "all stand")
+        for pupil in room.pupils:
+            assert any(line.startswith("MOTORS") for line in pupil.did)
+            assert bytes(STOP_RUN) in pupil.heard
+
+
+@pytest.mark.parametrize(("verb", "is_detached", "is_stopped"), [
+    ("upload", False, True), ("upload", True, False), ("info", False, False),
+    ("ping", False, False),
+])  # fmt: skip
+def test_only_robots_that_a_command_drives_are_stopped(
+    monkeypatch: pytest.MonkeyPatch, verb: str, is_detached: bool, is_stopped: bool
+) -> None:
+    """`tsc info --all | head` leaves running robots alone."""
+    stopped: list[str] = []
+
+    def broken(self: fleet.Crew, roll: object) -> None:
+        raise BrokenPipeError
+
+    monkeypatch.setattr(fleet.Crew, "begin", lambda self, work: None)
+    monkeypatch.setattr(fleet.Crew, "watch", broken)
+    monkeypatch.setattr(fleet.Crew, "interrupt", lambda self: stopped.append(verb))
+    monkeypatch.setattr(fleet, "CONFIRM_S", 0.0)
+    options = Namespace(verb=verb, detach=is_detached, json=True, ports=["/x", "/y"], all=False)
+    with pytest.raises(BrokenPipeError):
+        fleet.together(options, robots.load("tinibot"), "en", lambda *_: pytest.fail("begun"))
+    assert bool(stopped) == is_stopped
+
+
+def test_a_full_disk_stops_the_robot_too(pty_robot: PtyRobot) -> None:
+    if not Path("/dev/full").exists():
+        pytest.skip("this system has no full device")
+    with Path("/dev/full").open("wb") as full:
+        done = subprocess.run([*TSC, "upload", "-e", SHOWS, "--port", pty_robot.port],
+                              stdout=full, stderr=subprocess.PIPE, timeout=60)  # fmt: skip
+    assert done.returncode == 2
+    said = done.stderr.decode()
+    assert "was stopped" in said and "cannot be written" in said and "Traceback" not in said
+
+
+@pytest.mark.parametrize(
+    "words",
+    [["explain"], ["ports", "--json"], ["wiring"], ["board", "tinibot"], ["fmt", "-e", PROGRAM],
+     ["check", "-e", "W(1)"], ["show", "-e", PROGRAM], ["--help"], ["upload", "--help"],
+     ["compile", "-e", PROGRAM, "-o", "-"], ["check", "-e", "F(1"], ["complie"]],
+)  # fmt: skip
+def test_every_verb_has_the_same_exit_code(words: list[str]) -> None:
+    """Nothing is read of what it prints, not even what is wrong."""
+    ours, theirs = os.pipe()
+    os.close(ours)
+    try:
+        done = subprocess.run([*TSC, *words], stdin=subprocess.DEVNULL, stdout=theirs,
+                              stderr=theirs, timeout=60)  # fmt: skip
+    finally:
+        os.close(theirs)
+    assert done.returncode == CLOSED
+
+
+# -- a port that vanishes -----------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("words", "asks"), [(["name", "TINI"], 1), (["trim", "--reset"], 2)])
+def test_a_port_that_vanishes_is_no_bug(
+    tsc: Tsc, pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch, words: list[str], asks: int
+) -> None:
+    """The cable is pulled while the robot writes down what it was told."""
+    real = connect.Connection.ask
+    asked = []
+
+    def ask(self: connect.Connection, make: object) -> object:
+        reply = real(self, make)  # type: ignore[arg-type]
+        asked.append(reply)
+        if len(asked) == asks:
+            pty_robot.pull()
+        return reply
+
+    monkeypatch.setattr(connect.Connection, "ask", ask)
+    done = tsc(*words, "--port", pty_robot.port)
+    assert done.code == 3
+    assert "has vanished" in done.err
+
+
+def test_a_robot_that_is_busy_for_too_long_is_not_lost(
+    tsc: Tsc, pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whoever waits hears that it saves, and what to do."""
+    from tiniscript.link.messages import STATUSES
+    from tiniscript.link.requests import Reply, reply_of
+
+    def busy(name: str, payload: bytes) -> Reply | None:
+        reply = reply_of(name, payload)
+        return Reply(STATUSES["BUSY"]) if name in ("PROGRAM", "START") else reply
+
+    monkeypatch.setattr("tiniscript.link.session.reply_of", busy)
+    monkeypatch.setattr(connect, "PATIENCE_MS", 600)
+    for language, said in (("en", "still saving"), ("es", "está guardando")):
+        for words in (["upload", "-e", PROGRAM], ["start"]):
+            done = tsc(*words, "--port", pty_robot.port, "--lang", language)
+            assert done.code == 3
+            assert said in done.err and "lost" not in done.err and "perdió" not in done.err
+
+
+def test_json_stays_json_until_the_end(pty_robot: PtyRobot) -> None:
+    done = subprocess.run([*TSC, "upload", "-e", "SI|SHOW(1)", "--json", "--port", pty_robot.port],
+                          capture_output=True, timeout=60)  # fmt: skip
+    events = [json.loads(line)["event"] for line in done.stdout.splitlines()]
+    assert events[:2] == ["RECEIPT", "SHOW"]

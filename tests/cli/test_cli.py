@@ -1,0 +1,395 @@
+"""The command: what a person types, what they see, and the exit code."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from tests.support.command import OBSTACLE, PROGRAM, TSC, Tsc, process
+from tiniscript.bytecode.image import unpack
+from tiniscript.bytecode.opcodes import CODE_BYTES
+
+# -- compile ------------------------------------------------------------------------------------
+
+
+def test_compile_writes_the_image_and_nothing_else(tsc: Tsc, program: Path) -> None:
+    target = program.with_name("out.bin")
+    done = tsc("compile", program, "-o", target)
+    assert done.code == 0
+    assert done.err == ""
+    assert "17 bytes (3 of code)   stack 0 of 16   runs 5 s" in done.out
+    assert unpack(target.read_bytes()).code.hex() == "443250"
+    assert sorted(each.name for each in program.parent.glob("*.*")) == ["drive.ts", "out.bin"]
+
+
+def test_compile_goes_beside_the_source(tsc: Tsc, program: Path) -> None:
+    assert tsc("compile", program).code == 0
+    assert program.with_suffix(".bin").exists()
+
+
+@pytest.mark.parametrize(
+    ("text", "runs"),
+    [
+        ("W(1.5);BEEP(0.25, 440)", "runs 1.75 s"),
+        ("LOOP(3);F(2,50);END_LOOP", "runs 6 s"),
+        ("IF(DISTANCE < 5);W(2);ELSE;W(8);ENDIF", "runs 2 to 8 s"),
+        ("F(5,80) UNTIL(DISTANCE < 5)", "runs 0 to 5 s"),
+        ("W(1);W(DISTANCE)", "runs at least 1 s"),
+        ("LOOP(FOREVER);W(1);END_LOOP", "runs until it is stopped"),
+        ("DEF A;W(1);END_DEF;LOOP(2);A;A;END_LOOP", "runs 4 s"),
+        ("LOOP(9);W(1);IF(DISTANCE < 5);BREAK;ENDIF;END_LOOP", "runs 0 to 9 s"),
+        ("LOOP(FOREVER);W(1);IF(DISTANCE < 5);BREAK;ENDIF;END_LOOP", "stack 0 of 16\n"),
+        ("W(DISTANCE)", "stack 1 of 16\n"),
+        ("W(5);SHOW(1 / 0);W(5)", "stack 2 of 16\n"),
+        ("WHILE(DISTANCE < 5);END_WHILE", "stack 0 of 16\n"),
+        (
+            "LOOP(FOREVER);IF(DISTANCE < 5);BREAK;ENDIF;LOOP(FOREVER);W(1);END_LOOP;END_LOOP",
+            "stack 0 of 16\n",
+        ),
+        ("LOOP(2);LOOP(FOREVER);W(1);END_LOOP;END_LOOP", "runs until it is stopped"),
+    ],
+)
+def test_compile_says_how_long_it_runs(tsc: Tsc, tmp_path: Path, text: str, runs: str) -> None:
+    assert runs in tsc("compile", "-e", text, "-o", tmp_path / "a.bin").out
+
+
+def test_a_failed_compile_leaves_the_old_image(tsc: Tsc, tmp_path: Path) -> None:
+    target = tmp_path / "old.bin"
+    target.write_bytes(b"old")
+    done = tsc("compile", "-e", "S = 5", "-o", target)
+    assert done.code == 1
+    assert "TS" in done.err
+    assert target.read_bytes() == b"old"
+    assert [each.name for each in tmp_path.glob("*.*")] == ["old.bin"]
+
+
+def test_compile_to_a_place_that_cannot_be_written(tsc: Tsc, program: Path) -> None:
+    folder = program.parent
+    assert tsc("compile", program, "-o", folder).code == 2
+    assert tsc("compile", program, "-o", folder / "no" / "such" / "a.bin").code == 2
+    assert tsc("compile", program, "-o", program).code == 2
+    assert tsc("compile", program, "-o", "a" * 300).code == 2
+    assert tsc("compile", program, "-o", "a\0b").code == 2
+    assert program.read_text(encoding="utf-8") == PROGRAM
+    assert not program.with_suffix(".bin").exists()
+
+
+def test_a_map_overwrites_nothing(tsc: Tsc, program: Path) -> None:
+    image = program.with_suffix(".bin")
+    for name in (program, image, "-", program.parent):
+        done = tsc("compile", program, "--map", name)
+        assert done.code == 2
+    assert program.read_text(encoding="utf-8") == PROGRAM
+    assert not (program.parent / "-").exists()
+
+
+def test_compile_to_a_device_keeps_the_device(tsc: Tsc, program: Path) -> None:
+    if not Path(os.devnull).is_char_device():
+        pytest.skip("this system has no devices among its files")
+    assert tsc("compile", program, "-o", os.devnull).code == 0
+    assert Path(os.devnull).is_char_device()
+
+
+def test_compile_to_standard_output(program: Path) -> None:
+    done = subprocess.run([*TSC, "compile", str(program), "-o", "-"], capture_output=True)
+    assert unpack(done.stdout).code.hex() == "443250"
+    assert b"17 bytes" in done.stderr
+
+
+def test_compile_needs_a_name_for_the_image(tsc: Tsc) -> None:
+    assert tsc("compile", "-e", PROGRAM).code == 2
+
+
+def test_map_says_which_line(tsc: Tsc, tmp_path: Path) -> None:
+    source, places = tmp_path / "a.ts", tmp_path / "a.map"
+    source.write_text("// hello\nW(1)\nX = 0; SHOW(1 / X)\n", encoding="utf-8")
+    assert tsc("compile", source, "--map", places).code == 0
+    known = json.loads(places.read_text(encoding="utf-8"))
+    assert known["lines"][1] == "W(1)"
+    assert [place[:3] for place in known["places"]] == [[0, 2, 1], [2, 3, 1], [5, 3, 8]]
+    done = tsc("run", tmp_path / "a.bin")
+    assert (done.code, done.out) == (1, "1000 FAULT DIVIDE_BY_ZERO\n")
+    assert "line 3:  X = 0; SHOW(1 / X)" in done.err
+
+
+def test_the_board_has_less_memory_than_the_language(tsc: Tsc, tmp_path: Path) -> None:
+    text = "SHOW(TIME * 1.234);" * 90
+    done = tsc("compile", "-e", text, "-o", tmp_path / "a.bin")
+    assert done.code == 1
+    assert "430" in done.err
+    assert "110" in done.err  # by how much
+    for verb in ("check", "run"):
+        done = tsc(verb, "-e", text)
+        assert done.code == 0
+        assert "110" in done.err
+    assert tsc("compile", "-e", text, "-o", tmp_path / "a.bin", "--robot", "grabber").code == 0
+
+
+def test_code_has_a_limit_on_every_robot(tsc: Tsc, tmp_path: Path) -> None:
+    for instructions, code in ((CODE_BYTES // 3, 0), (CODE_BYTES // 3 + 1, 1)):
+        done = tsc("run", "-e", "M(1,1);" * instructions, "--max-steps", "1")
+        assert done.code == code
+
+
+# -- check --------------------------------------------------------------------------------------
+
+
+def test_check_says_all_mistakes_in_both_languages(tsc: Tsc) -> None:
+    text = "F(2 80);S = 5\nIF(DISTANCE < 10) STOP ENDIF"
+    english, spanish = tsc("check", "-e", text), tsc("check", "--lang", "es", "-e", text)
+    assert english.code == spanish.code == 1
+    assert english.out == spanish.out == ""
+    assert "line 2:" in english.err
+    assert "3 mistakes." in english.err
+    assert "línea 2:" in spanish.err
+    assert "3 errores." in spanish.err
+
+
+def test_check_json(tsc: Tsc) -> None:
+    done = tsc("check", "--json", "-e", "W(1)\n  ñ = 5; F(1,5, 80)")
+    assert done.code == 1
+    first, second = json.loads(done.out)
+    assert set(first) == {"code", "severity", "line", "column", "end_line", "end_column",
+                          "message", "fix"}  # fmt: skip
+    place = {key: first[key] for key in ("line", "column", "end_line", "end_column")}
+    assert place == {"line": 2, "column": 3, "end_line": 2, "end_column": 4}
+    assert (second["line"], second["column"], second["severity"]) == (2, 10, "mistake")
+    assert "1.5, 80" in second["fix"]
+    assert json.loads(tsc("check", "--json", "-e", PROGRAM).out) == []
+
+
+def test_check_warns_and_is_content(tsc: Tsc) -> None:
+    done = tsc("check", "-e", OBSTACLE)
+    assert done.code == 0
+    assert "F(1, 80) UNTIL(DISTANCE < 10)" in done.err
+    assert "no mistakes" in done.out
+
+
+def test_many_mistakes_are_cut_short(tsc: Tsc) -> None:
+    done = tsc("check", "-e", "S = 5;" * 90)
+    assert done.err.count("TS") == 20
+    assert "70" in done.err
+
+
+def test_json_is_json_in_any_locale() -> None:
+    environ = {**os.environ, "PYTHONIOENCODING": "ascii"}
+    command = [*TSC, "check", "--json", "--lang", "es", "-e", "año = 5"]
+    done = subprocess.run(command, capture_output=True, env=environ)
+    assert json.loads(done.stdout)[0]["severity"] == "mistake"
+
+
+# -- run ----------------------------------------------------------------------------------------
+
+
+def test_run_prints_the_trace_and_nothing_else(tsc: Tsc) -> None:
+    done = tsc("run", "-e", OBSTACLE, "--sensor", "distance=50,9", "--max-time", "2.5")
+    assert done.code == 0
+    assert done.out.splitlines() == [
+        "0 MOTORS 80 80", "1000 MOTORS 0 0", "1000 READ DISTANCE 50", "1000 MOTORS 80 80",
+        "2000 MOTORS 0 0", "2000 READ DISTANCE 9", "2000 MOTORS 0 0", "2000 MOTORS 60 -60",
+        "2500 LIMIT",
+    ]  # fmt: skip
+
+
+def test_run_takes_an_image(tsc: Tsc, program: Path) -> None:
+    tsc("compile", program)
+    done = tsc("run", program.with_suffix(".bin"))
+    assert done.out == "0 MOTORS 80 80\n5000 MOTORS 0 0\n5000 DONE\n"
+
+
+def test_run_takes_standard_input() -> None:
+    assert process("run", "-", data=PROGRAM.encode()).out.endswith("5000 DONE\n")
+    assert process("check", "-", data=b"S = 5").code == 1
+
+
+def test_run_shows_nothing_where_the_program_is_wrong(tsc: Tsc) -> None:
+    done = tsc("run", "-e", "F(2,80);S = 5")
+    assert (done.code, done.out) == (1, "")
+
+
+def test_run_stops_a_loop_that_takes_no_time(tsc: Tsc) -> None:
+    done = tsc("run", "-e", "W(2);LOOP(FOREVER);X = 1;SHOW(X);END_LOOP", "--max-steps", "50")
+    assert done.code == 0
+    assert done.out.splitlines()[-1] == "2000 LIMIT"
+
+
+def test_run_is_repeatable_and_seeded(tsc: Tsc) -> None:
+    text = "LOOP(5);SHOW(RANDOM(1,1000));END_LOOP"
+    first = tsc("run", "-e", text).out
+    assert first == tsc("run", "-e", text, "--seed", "1").out
+    assert first != tsc("run", "-e", text, "--seed", "2").out
+
+
+def test_max_steps_cuts_only_what_takes_no_time(tsc: Tsc) -> None:
+    text = "X = 0;LOOP(FOREVER);LOOP(20);X = X + 1;END_LOOP;W(0.1);END_LOOP"
+    done = tsc("run", "-e", text, "--max-steps", "100")
+    assert done.out == "60000 LIMIT\n"
+    done = tsc("run", "-e", "LOOP(FOREVER);W(0);END_LOOP", "--max-steps", "100")
+    assert done.out == "0 LIMIT\n"
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["--sensor", "DISTANC=5"],
+        ["--sensor", "DISTANCE"],
+        ["--sensor", "DISTANCE="],
+        ["--sensor", "=5"],
+        ["--sensor", "DISTANCE=5,,6"],
+        ["--sensor", "DISTANCE=400.001"],
+        ["--sensor", "DISTANCE=-1"],
+        ["--sensor", "DISTANCE=TRUE"],
+        ["--sensor", "DISTANCE=1e2"],
+        ["--sensor", "DISTANCE=5", "--sensor", "distance=6"],
+        ["--sensor"],
+        ["--seed", "0"],
+        ["--seed", "4294967296"],
+        ["--seed", "x"],
+        ["--seed", "9" * 5000],
+        ["--max-time", "-1"],
+        ["--max-time", "soon"],
+        ["--max-time", "9" * 5000],
+        ["--max-steps", "1.5"],
+        ["--machine", "steam"],
+        ["--robot", "nobody"],
+        ["--robot", ""],
+        ["-e", "W(1)"],
+        ["--robot", "/"],
+        ["--robot", "no/such.toml"],
+        ["--lang", "fr"],
+        ["--nonsense"],
+        ["another.ts"],
+    ],
+)
+def test_wrong_use_of_run(tsc: Tsc, arguments: list[str]) -> None:
+    for language in ([], ["--lang", "es"]):
+        done = tsc("run", "-e", "DISTANCE", *language, *arguments)
+        assert (done.code, done.out) == (2, "")
+
+
+def test_sensor_of_another_robot(tsc: Tsc) -> None:
+    done = tsc("run", "-e", "SHOW(LINE_L)", "--robot", "LINER", "--sensor", "LINE_L=TRUE")
+    assert done.out == "0 READ LINE_L TRUE\n0 SHOW TRUE\n0 DONE\n"
+    wrong = tsc("run", "-e", "SHOW(LINE_L)", "--robot", "liner", "--sensor", "LINE_L=2")
+    assert wrong.code == 2
+
+
+# -- images -------------------------------------------------------------------------------------
+
+
+def test_an_image_for_another_robot_is_refused(tsc: Tsc, tmp_path: Path) -> None:
+    target = tmp_path / "line.bin"
+    tsc("compile", "-e", "LINE_L", "-o", target, "--robot", "liner")
+    done = tsc("run", target)
+    assert done.code == 1
+    assert "--robot liner" in done.err
+    assert tsc("run", target, "--robot", "liner").code == 0
+    assert "LINE_L" in tsc("show", target).out
+
+
+@pytest.mark.parametrize("verb", ["run", "show"])
+def test_damaged_images_are_refused_by_name(tsc: Tsc, tmp_path: Path, verb: str) -> None:
+    target = tmp_path / "a.bin"
+    tsc("compile", "-e", OBSTACLE, "-o", target)
+    whole = target.read_bytes()
+    for data, word in (
+        (whole[:-1], "missing"),
+        (whole + b"x", "longer"),
+        (whole[:-1] + b"\xff", "damaged"),
+        (b"", "no compiled"),
+        (b"SI|F(2,80)", "no compiled"),
+    ):
+        target.write_bytes(data)
+        done = tsc(verb, target)
+        assert (done.code, done.out) == (1, "")
+        assert word in done.err
+
+
+def test_code_that_breaks_a_rule_is_refused_by_number(tsc: Tsc, tmp_path: Path) -> None:
+    from tiniscript.bytecode.image import pack
+
+    target = tmp_path / "a.bin"
+    for code, rule in ((b"\xff", "21"), (bytes.fromhex("3800"), "24"), (b"\x39", "25")):
+        target.write_bytes(pack("SI", 0, code))
+        done = tsc("run", target)
+        assert done.code == 1
+        assert rule in done.err
+
+
+# -- show ---------------------------------------------------------------------------------------
+
+
+def test_show_lists_with_lines(tsc: Tsc, tmp_path: Path) -> None:
+    target = tmp_path / "a.bin"
+    tsc("compile", "-e", "SI|\nF(5, 80)\nDISTANCE", "-o", target)
+    done = tsc("show", target)
+    assert "0000  44 32 50           MOVE8_F 50 80" in done.out
+    assert "line 2: F(5, 80)" in done.out
+    assert "READ s2" in done.out
+    assert "DISTANCE  line 3: DISTANCE" in done.out
+    assert (
+        tsc("show", "-e", "SI|\nF(5, 80)\nDISTANCE").out.split("\n", 1)[1]
+        == (done.out.split("\n", 1)[1])
+    )
+
+
+def test_show_json(tsc: Tsc, program: Path) -> None:
+    tsc("compile", program)
+    known = json.loads(tsc("show", program.with_suffix(".bin"), "--json").out)
+    assert (known["code_bytes"], known["image_bytes"], known["start"]) == (3, 17, "SI")
+    assert known["robot"] is None
+    assert [each["name"] for each in known["instructions"]] == ["MOVE8_F"]
+    known = json.loads(tsc("show", "-e", "SB|DISTANCE", "--json").out)
+    assert (known["robot"], known["start"]) == ("tinibot", "SB")
+
+
+@pytest.mark.parametrize(
+    ("text", "code"),
+    [("SI|F(5,80)", 3), ("SI|LOOP(3);F(2,50);END_LOOP", 7), (OBSTACLE, 14)],
+)
+def test_the_papers_programs_are_small(tsc: Tsc, text: str, code: int) -> None:
+    known = json.loads(tsc("show", "-e", text, "--json").out)
+    assert known["code_bytes"] == code
+    assert known["image_bytes"] == code + 14
+
+
+# -- fmt and explain ----------------------------------------------------------------------------
+
+
+def test_fmt_lays_out_in_place(tsc: Tsc, program: Path) -> None:
+    program.write_text("si|loop( 3 )\nf(2,50) // go\nendloop", encoding="utf-8")
+    assert tsc("fmt", "--check", program).code == 1
+    assert tsc("fmt", program).code == 0
+    laid_out = "SI|LOOP(3);\n  F(2, 50);  // go\nEND_LOOP;\n"
+    assert program.read_text(encoding="utf-8") == laid_out
+    assert tsc("fmt", "--check", program).code == 0
+    assert tsc("fmt", program).out == ""
+    assert tsc("fmt", "-e", laid_out).out == laid_out
+
+
+def test_fmt_leaves_what_is_wrong(tsc: Tsc, program: Path) -> None:
+    program.write_text("f(2 80)", encoding="utf-8")
+    assert tsc("fmt", program).code == 1
+    assert program.read_text(encoding="utf-8") == "f(2 80)"
+    assert tsc("compile", "-e", PROGRAM, "-o", program.with_suffix(".bin")).code == 0
+    assert tsc("fmt", program.with_suffix(".bin")).code == 2
+
+
+def test_fmt_keeps_a_program_that_it_would_make_too_large(tsc: Tsc, program: Path) -> None:
+    text = "S\n" * 499_999
+    program.write_text(text, encoding="utf-8")
+    assert tsc("fmt", program).code == 2
+    assert program.read_text(encoding="utf-8") == text
+
+
+def test_explain(tsc: Tsc) -> None:
+    done = tsc("explain", "TS012")
+    assert done.code == 0
+    assert "TS012" in done.out
+    assert tsc("explain", "ts012", "--lang", "es").out != done.out
+    assert tsc("explain").out.count("\nTS") > 50
+    assert tsc("explain", "TS999").code == 2

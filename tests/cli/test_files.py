@@ -1,0 +1,299 @@
+"""Files that get new content at once, and what killed commands leave behind."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import socket
+import stat
+import subprocess
+import sys
+from pathlib import Path
+from time import time
+from typing import IO
+
+import pytest
+
+from tests.support.command import PROGRAM, Tsc, process
+from tiniscript import files
+from tiniscript.codegen import source_map
+from tiniscript.sharing import registry
+from tiniscript.sharing.registry import Holder
+
+HERE = Path(files.__file__).parent
+unix = pytest.mark.skipif(os.name == "nt", reason="permissions and links of Unix")
+
+
+@pytest.fixture(autouse=True)
+def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    return tmp_path / "cache" / "tiniscript"
+
+
+def mode_of(path: Path) -> int:
+    return stat.S_IMODE(path.stat().st_mode)
+
+
+@unix
+@pytest.mark.parametrize("umask", [0o022, 0o077, 0o002])
+def test_a_new_file_has_the_mode_of_the_umask(tmp_path: Path, umask: int) -> None:
+    before = os.umask(umask)
+    try:
+        files.replace(tmp_path / "x", b"1")
+    finally:
+        os.umask(before)
+    assert mode_of(tmp_path / "x") == 0o666 & ~umask
+
+
+@unix
+@pytest.mark.parametrize("mode", [0o600, 0o644, 0o755, 0o666])
+def test_a_file_that_is_replaced_keeps_its_mode(tmp_path: Path, mode: int) -> None:
+    (tmp_path / "x").write_bytes(b"1")
+    (tmp_path / "x").chmod(mode)
+    files.replace(tmp_path / "x", b"2")
+    assert mode_of(tmp_path / "x") == mode and (tmp_path / "x").read_bytes() == b"2"
+
+
+@unix
+def test_a_private_file_is_never_open_to_others(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    seen = []
+    real = Path.chmod
+
+    def chmod(self: Path, mode: int) -> None:
+        seen.append(mode_of(self))
+        real(self, mode)
+
+    (tmp_path / "x").write_bytes(b"1")
+    real(tmp_path / "x", 0o640)
+    monkeypatch.setattr(Path, "chmod", chmod)
+    files.replace(tmp_path / "x", b"2")
+    assert seen == [0o600]
+
+
+@unix
+def test_a_link_that_was_laid_for_the_new_file_is_not_followed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Even one who knew its name could only keep the file from being written."""
+    precious = tmp_path / "precious"
+    precious.write_bytes(b"mine")
+    monkeypatch.setattr(os, "urandom", lambda count: bytes(count))
+    (tmp_path / f".x.{'00' * 8}.new").symlink_to(precious)
+    with pytest.raises(FileExistsError):
+        files.replace(tmp_path / "x", b"2")
+    assert precious.read_bytes() == b"mine"
+    assert not (tmp_path / "x").exists()
+
+
+def test_the_name_of_a_new_file_is_another_each_time(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    names = []
+    real = Path.replace
+
+    def replace(self: Path, target: Path) -> Path:
+        names.append(self.name)
+        return real(self, target)
+
+    monkeypatch.setattr(Path, "replace", replace)
+    for _ in range(20):
+        files.replace(tmp_path / "x", b"2")
+    assert len(set(names)) == 20
+    assert not any(str(os.getpid()) == part for name in names for part in name.split("."))
+
+
+@unix
+def test_a_link_stays_a_link(tmp_path: Path) -> None:
+    (tmp_path / "folder").mkdir()
+    target, link = tmp_path / "folder" / "x", tmp_path / "link"
+    target.write_bytes(b"1")
+    link.symlink_to(target)
+    files.replace(link, b"2")
+    assert link.is_symlink() and target.read_bytes() == b"2"
+    assert [each.name for each in (tmp_path / "folder").iterdir()] == ["x"]
+
+
+@pytest.mark.parametrize("trouble", [OSError(28, "No space left on device"), KeyboardInterrupt()])
+def test_what_goes_wrong_leaves_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, trouble: BaseException
+) -> None:
+    (tmp_path / "x").write_bytes(b"1")
+
+    def fail(*_: object) -> None:
+        raise trouble
+
+    monkeypatch.setattr(Path, "replace", fail)
+    with pytest.raises(type(trouble)):
+        files.replace(tmp_path / "x", b"2")
+    assert [each.name for each in tmp_path.iterdir()] == ["x"]
+    assert (tmp_path / "x").read_bytes() == b"1"
+
+
+@unix
+def test_a_full_disk_leaves_nothing(tmp_path: Path) -> None:
+    """A limit of the size of files is the disk that is full."""
+    program = tmp_path / "a.ts"
+    program.write_text(PROGRAM)
+    code = (
+        "import resource, signal, sys; signal.signal(signal.SIGXFSZ, signal.SIG_IGN);"
+        "resource.setrlimit(resource.RLIMIT_FSIZE, (8, 8));"
+        "from tiniscript.cli import main; sys.exit(main(sys.argv[1:]))"
+    )
+    output = tmp_path / "a.bin"
+    output.write_bytes(b"mine")
+    done = subprocess.run(
+        [sys.executable, "-B", "-c", code, "compile", str(program), "-o", str(output)],
+        capture_output=True,
+    )
+    assert done.returncode == 2 and b"cannot be written" in done.stderr
+    assert output.read_bytes() == b"mine"
+    left = sorted(each.name for each in tmp_path.rglob("*") if each.is_file())
+    assert left == ["a.bin", "a.ts"], "nor is there an empty map"
+
+
+def test_one_place_replaces_files() -> None:
+    for path in HERE.rglob("*.py"):
+        text = path.read_text(encoding="utf-8")
+        if path.name != "files.py":
+            for word in ("write_text(", "write_bytes(", "O_EXCL", "mkstemp", ".replace(path)"):
+                assert word not in text, f"{path.name}: {word}"
+
+
+# -- what killed commands leave -----------------------------------------------------------------
+
+
+def test_abandoned_files_of_the_cache_go(tsc: Tsc, cache: Path, tmp_path: Path) -> None:
+    folder = cache / "maps"
+    folder.mkdir(parents=True)
+    old, new = folder / ".x.json.00.new", folder / ".y.json.00.new"
+    older = folder / "0badcafe.1234"  # as older versions called them
+    for each in (old, new, older):
+        each.write_bytes(b"")
+    for each in (old, older):
+        os.utime(each, (time() - 7200, time() - 7200))
+    assert tsc("compile", "-e", PROGRAM, "-o", tmp_path / "x.bin").code == 0
+    left = {each.name for each in folder.iterdir()}
+    assert {old.name, older.name} & left == set()
+    assert new.name in left, "another command may be writing it now"
+
+
+def test_an_empty_map_goes(cache: Path) -> None:
+    path = cache / "maps" / "00000001.json"
+    path.parent.mkdir(parents=True)
+    path.write_bytes(b"")
+    assert source_map.recall(1) is None
+    assert not path.exists()
+
+
+def holder_at(port: str, number: int) -> Holder:
+    return Holder(port, number, "token", "answer", "link", 9600, os.getpid())
+
+
+def free_number() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])
+
+
+def names() -> set[str]:
+    return {each.name for each in registry._folder().iterdir()}
+
+
+def test_the_notes_of_killed_holders_go_and_those_of_living_ones_stay() -> None:
+    dead = holder_at("/dev/dead", free_number())
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        living = holder_at("/dev/living", server.getsockname()[1])
+        registry.write(living)
+        registry.write(dead)
+        assert registry.found("/dev/dead") == dead
+        assert registry.all_found() == [living]
+        assert registry.found("/dev/dead") is None
+        assert registry.found("/dev/living") == living
+        assert len(names()) == 1
+
+
+def test_one_who_comes_while_a_note_is_removed_keeps_its_own(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The port was taken again between looking at the note and removing it."""
+    before, now = holder_at("/dev/x", 1), holder_at("/dev/x", 2)
+    registry.write(now)
+    real = registry._read
+    asked = []
+
+    def read(path: Path) -> Holder | None:
+        asked.append(path)
+        return before if len(asked) == 1 else real(path)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(registry, "_read", read)
+        registry.remove(before)
+    assert len(asked) == 2
+    assert registry.found("/dev/x") == now
+
+
+def test_a_lock_goes_with_its_command() -> None:
+    lock = registry.claimed("socket://127.0.0.1:1")
+    assert lock is not None
+    assert registry.claimed("socket://127.0.0.1:1") is None
+    registry.tidy()
+    assert registry.claimed("socket://127.0.0.1:1") is None, "it is held"
+    assert len(names()) == 1
+    lock.close()
+    lock.close()
+    assert names() == set()
+
+
+def test_the_lock_of_a_killed_command_goes() -> None:
+    code = (
+        "from tiniscript.sharing import holders; lock = holders.claimed('socket://x:1');"
+        "print('held', flush=True); input()"
+    )
+    with subprocess.Popen(
+        [sys.executable, "-c", code], stdin=subprocess.PIPE, stdout=subprocess.PIPE
+    ) as running:
+        assert running.stdout and running.stdout.readline() == b"held\n"
+        assert registry.claimed("socket://x:1") is None
+        running.kill()
+    assert len(names()) == 1
+    registry.tidy()
+    assert names() == set()
+
+
+@unix
+def test_a_lock_that_was_removed_in_between_locks_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its holder left between our opening and our locking its file; another one came."""
+    first = registry.claimed("socket://x:1")
+    assert first is not None
+    real = registry._lock
+    others: list[IO[bytes] | None] = []
+
+    def lock(file: registry._Lock) -> bool:
+        if not others:
+            others.append(None)
+            first.close()
+            others.append(registry.claimed("socket://x:1"))
+        return real(file)
+
+    monkeypatch.setattr(registry, "_lock", lock)
+    assert registry.claimed("socket://x:1") is None
+    assert others[1] is not None, "one has it"
+    others[1].close()
+
+
+@unix
+def test_a_killed_link_leaves_nothing_for_long(cache: Path) -> None:
+    """A command that was killed is forgotten by the next one that looks."""
+    code = (
+        "import os, signal; from tiniscript.sharing import holders;"
+        "lock = holders.claimed('socket://x:1');"
+        f"holders.write(holders.Holder('socket://x:1', {free_number()}, 't', 'a', 'link', 1, 2));"
+        "os.kill(os.getpid(), signal.SIGKILL)"
+    )
+    assert subprocess.run([sys.executable, "-c", code]).returncode == -signal.SIGKILL
+    assert len(names()) == 2
+    assert json.loads(process("ports", "--json").out) is not None
+    assert names() == set()

@@ -1,0 +1,421 @@
+"""What a person meets in the first minutes: the button, the other terminal, other robots, slips."""
+
+from __future__ import annotations
+
+import json
+import re
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.cli.test_virtual_command import Robot, robot
+from tests.support.casefile import ROOT
+from tests.support.command import OBSTACLE, TSC, Tsc, process
+from tests.support.virtual_robot import Talk, missing, robot_in
+from tiniscript import compile_text, robots
+from tiniscript.cli.commands.live import HELP_ME, LEAVE, Catch, wished
+from tiniscript.cli.robot.event_printer import Bookkeeping, Teller
+from tiniscript.cli.robot.live_mark import MARK
+from tiniscript.cli.robot.live_state import Known
+from tiniscript.link import known_ports
+from tiniscript.link.outcomes import Event
+from tiniscript.robots import given
+from tiniscript.semantics.other_kits import naming_robots
+from tiniscript.virtual import directory
+from tiniscript.virtual.directory import Running
+from tiniscript.virtual.simulator import Host
+from tiniscript.virtual.transports import Guests
+from tiniscript.vm.trace import Event as Traced
+
+needs_robot = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
+FOREVER = "SI|LOOP(FOREVER);L(1, 30);END_LOOP"
+LINE = ROOT / "examples" / "line.ts"
+
+
+# -- a program that a button starts ---------------------------------------------------------------
+
+
+@needs_robot
+def test_without_a_terminal_the_button_is_pushed_at_once(tmp_path: Path) -> None:
+    picture = tmp_path / "way.png"
+    done = process("upload", "--virtual", "-e", "SB|F(1, 80);SHOW(1.5)", "--plot", picture)
+    receipt, *rest = done.out.splitlines()
+    assert done.code == 0
+    assert receipt.endswith("SB: its button is pushed at once, since nobody is at a terminal here")
+    assert rest[:3] == ["SHOW 1.5", "Done.", "Saved in slot 0."]
+    assert rest[3].startswith("The virtual robot drove 36 cm in 1.0 s and touched nothing.")
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    done = process("upload", "--virtual", "-e", "SB|X = 0;SHOW(1 / X)", "--lang", "es")
+    assert done.code == 1
+    assert "su botón se pulsa enseguida" in done.out
+    assert "DIVIDE_BY_ZERO" in done.err
+
+
+@needs_robot
+def test_a_program_with_a_button_ends_when_it_is_told() -> None:
+    """By the time of `--for`, to the millisecond, and by Ctrl-C."""
+    text = FOREVER.replace("SI", "SB")
+    done = process("upload", "--virtual", "-e", text, "--for", "3", "--hurry", "max", "--json")
+    assert done.code == 0
+    events = [json.loads(line)["event"] for line in done.out.splitlines()]
+    assert events == ["RECEIPT", "TIME_OVER", "SAVED"]
+    assert "drove 0 cm in 3.0 s" in done.err
+    command = [*TSC, "upload", "--virtual", "-e", text.replace("L(1", "SHOW(1);L(1")]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as up:
+        assert up.stdout and up.stderr
+        assert "its button is pushed" in up.stdout.readline()
+        assert up.stdout.readline() == "SHOW 1\n"
+        up.send_signal(signal.SIGINT)
+        assert "Stopped: the robot has confirmed it." in up.communicate(timeout=60)[1]
+    assert up.returncode == 2
+
+
+@needs_robot
+def test_what_only_brings_a_program_pushes_no_button(tsc: Tsc) -> None:
+    done = process("upload", "--virtual", "--no-run", "-e", "SB|F(1, 80)")
+    assert (done.code, done.err) == (0, "")
+    assert "SB: waits for the button" in done.out
+    done = process("upload", "--virtual", "--detach", "-e", "SI|F(1, 80)")
+    assert done.code == 2
+    assert "Leave --detach out" in done.err
+
+
+@needs_robot
+@pytest.mark.parametrize("hurry", ["1", "50", "max"])
+def test_the_time_of_for_is_that_of_the_program(hurry: str) -> None:
+    done = process("upload", "--virtual", "-e", OBSTACLE, "--for", "2.5", "--hurry", hurry)
+    assert done.code == 0
+    # 2.5 s at 80 % of 45 cm a second, to the millisecond
+    assert done.out.splitlines()[1:] == [
+        "The time of --for is over.", "Saved in slot 0.",
+        "The virtual robot drove 90 cm in 2.5 s and touched nothing.",
+    ]  # fmt: skip
+
+
+@needs_robot
+def test_a_live_session_ends_with_the_robots_time() -> None:
+    lines = b"F(0.1, 50)\nSHOW(1)\nLOOP(FOREVER);F(1, 50);END_LOOP\nSHOW(2)\n"
+    done = process("live", "-", "--virtual", "--for", "5", "--hurry", "50", data=lines)
+    assert done.code == 0
+    assert done.out.splitlines()[:2] == ["SHOW 1", "The time of --for is over."]
+    assert "SHOW 2" not in done.out
+
+
+@needs_robot
+@pytest.mark.parametrize("hurry", [1.0, 20.0, 0.0])
+def test_time_ends_to_the_millisecond(hurry: float) -> None:
+    """The robot stands then, whatever its firmware still does, and says nothing more."""
+    guests = Guests()
+    host = Host(robot_in(), guests, hurry)
+    host.lasts_ms = 1500
+    robot = host.robot
+    Talk(robot).upload("SI|LOOP(FOREVER);F(0.3, 80);SHOW(1);END_LOOP", is_detached=True)
+    assert robot.started_ms is not None
+    while not robot.is_at_rest:
+        host.turn(0.01)
+    assert host.over_ms == robot.started_ms + 1500 == robot.ended_ms
+    place, events = robot.pose, robot.take_events()
+    assert events[-1].text == "STOP"
+    assert events[-1].time_ms == robot.ended_ms
+    for _ in range(30):
+        host.turn(0.01)
+    assert robot.pose == place
+    assert robot.take_events() == []
+    guests.close()
+
+
+# -- the other terminal ---------------------------------------------------------------------------
+
+
+class Upload(Robot):
+    """A `tsc upload --virtual` that drives."""
+
+    def __init__(self, *arguments: str) -> None:
+        command = [*TSC, "upload", "--virtual", "-e", FOREVER, *arguments]
+        self._process = subprocess.Popen(
+            command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+            text=True,
+        )  # fmt: skip
+        receipt = self.line()
+        self.port = re.search(r"\((socket://.*?)\)", receipt)[1]  # type: ignore[index]
+
+
+@needs_robot
+@pytest.mark.parametrize("options", [[], ["--virtual"]])
+def test_stop_finds_the_one_robot_that_is_in_use(options: list[str]) -> None:
+    upload = Upload()
+    # a command that brings a robot along does not take that of another one
+    other = process("upload", "--virtual", "-e", "SI|SHOW(1)")
+    assert "SHOW 1" in other.out and upload.port not in other.out
+    assert process("info", "--virtual").code == 0
+    done = process("stop", *options)
+    assert (done.code, done.out) == (
+        0, f"Stopped: the robot on {upload.port} has confirmed it.\n",
+    )  # fmt: skip
+    ended = upload._process.communicate(timeout=60)
+    assert upload._process.returncode == 3
+    assert "The robot was stopped from a computer." in ended[0]
+    done = process("stop", *options)
+    assert done.code == 3  # there is none any more
+    assert directory.running() == []
+
+
+@needs_robot
+def test_stop_stops_all_that_are_in_use() -> None:
+    """Rather one too many than one too few; the last used one, too, where it is there."""
+    with robot() as found:
+        first, second = Upload("--seed", "1"), Upload("--seed", "2")
+        process("upload", "--port", found.port, "-e", FOREVER, "--detach")
+        done = process("stop")
+        assert done.code == 0
+        assert done.err == "3 of 3 robots: done.\n"
+        assert {found.port, first.port, second.port} <= set(re.findall(r"socket:\S*\d", done.out))
+        for each in (first, second):
+            each._process.communicate(timeout=60)
+            assert each._process.returncode == 3
+        assert found.until("STOP")
+
+
+def test_the_last_used_port_is_stopped_with_those_that_are_in_use(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    from tiniscript.cli.robot import in_use
+
+    usb = tmp_path / "usb"
+    known_ports.remember(str(usb), "TINI")
+    here = [Running("socket://127.0.0.1:5", "tinibot", "light", "", "", "upload")]
+    monkeypatch.setattr(directory, "running", lambda: here)
+    assert in_use.to_stop() == ["socket://127.0.0.1:5"]  # the cable is out
+    usb.touch()
+    assert in_use.to_stop() == ["socket://127.0.0.1:5", str(usb)]
+    assert in_use.to_stop(is_virtual=True) == ["socket://127.0.0.1:5"]
+
+
+@needs_robot
+def test_a_virtual_robot_that_is_gone_is_no_port() -> None:
+    with robot("--name", "KAT") as found:
+        assert process("ports", "--ask").code == 0
+        assert process("ping", "--all").code == 0
+        local = found.port.replace("127.0.0.1", "localhost")
+        assert process("ping", "--port", local).code == 0
+        assert found.port in process("ports").out
+    assert "socket" not in process("ports").out
+    known_ports.remember(found.port, "KAT")  # by a tsc that did
+    assert "socket" not in process("ports").out
+    done = process("ping")
+    assert done.code == 3
+    assert "is not there" in done.err
+
+
+# -- a program for another robot ------------------------------------------------------------------
+
+
+def test_the_robots_that_have_a_word_are_named(tsc: Tsc) -> None:
+    done = tsc("check", LINE)
+    assert done.code == 1
+    assert "tinibot has no LINE_L; the robot liner has it.   Try:  Add --robot liner" in done.err
+    assert "LINE_L = 0" not in done.err
+    for verb in (["run"], ["compile", "-o", "-"], ["upload", "--virtual"], ["upload"]):
+        assert "the robot liner has it" in tsc(*verb, LINE).err, verb
+    done = tsc("check", LINE, "--lang", "es")
+    assert "tinibot no tiene LINE_L; lo tiene el robot liner." in done.err
+    assert "Agrega --robot liner al comando" in done.err
+    done = tsc("check", "-e", "LED(BUTTON)", "--json")
+    (found,) = [each for each in json.loads(done.out) if each["column"] == 1]
+    assert found["code"] == "TS119"
+    assert found["fix"] == "Add --robot grabber or --robot liner to the command"
+    # where one robot has all words, the others are not named
+    assert "--robot liner to the command" in tsc("check", "-e", "LED(LINE_L)").err
+    assert "--robot grabber to" in tsc("check", "-e", "LED(DISTANCE > 5)").err
+    # a name that no kit has
+    assert "Write LINE_X = 0 before this" in tsc("check", "-e", "SHOW(LINE_X)").err
+    assert tsc("live", "LED(TRUE)", "--virtual").err.count("TS119") == 1
+
+
+def test_up_to_three_robots_are_named() -> None:
+    kit = robots.load("liner").kit
+    own = "tinibot", robots.load("tinibot").kit
+    found = compile_text("LED(TRUE)", own[1])
+    others = {f"R{k}": kit for k in range(5)}
+    (named,) = naming_robots(found.problems, found.source.text, own, others)
+    assert named.values == {
+        "found": "LED", "own": "tinibot", "first": "R0", "second": "R1", "third": "R2",
+    }  # fmt: skip
+
+
+@needs_robot
+def test_the_robot_that_answers_says_which_kit_it_has() -> None:
+    with robot("--robot", "liner", "--world", "line") as found:
+        here = "The robot here: liner. tsc compiles for it.\n"
+        done = process("check", LINE, "--virtual")
+        assert (done.code, done.err) == (0, here)
+        done = process("upload", LINE, "--port", found.port, "--no-run")
+        assert (done.code, done.err) == (0, here)
+        done = process("live", "SHOW(LINE_L)", "--lang", "es")
+        assert done.code == 0
+        assert done.err == "El robot de aquí: liner. tsc compila para él.\n"
+        # a program of the default robot would be for another kit than the robot has
+        done = process("upload", "-e", "SHOW(DISTANCE)")
+        assert done.code == 1
+        assert "liner has no DISTANCE" in done.err
+        # nothing is said of a program that any robot can do, and no robot is asked about a slip
+        assert process("upload", "-e", "SI|S").err == ""
+        assert "TS103" in process("upload", "-e", "SHOW(LIN)").err
+        # who names a robot gets that one
+        done = process("upload", LINE, "--robot", "grabber")
+        assert done.code == 1
+        assert "grabber has no LINE_L" in done.err
+
+
+@needs_robot
+def test_a_profile_that_was_given_before_is_known_again(tmp_path: Path) -> None:
+    shipped = ROOT / "compiler" / "tiniscript" / "robots" / "tinibot.toml"
+    profile = tmp_path / "own.toml"
+    profile.write_text(shipped.read_text(encoding="utf-8").replace("LIGHT_R", "SIREN"))
+    with robot("--robot", profile):
+        text = "SI|SHOW(SIREN)"
+        assert "TS103" in process("upload", "-e", text).err  # nobody knows it yet
+        assert process("info", "--robot", profile).code == 0
+        done = process("upload", "-e", text)
+        assert (done.code, done.err) == (0, "The robot here: own. tsc compiles for it.\n")
+    [(path, found)] = given.profiles()
+    assert path == str(profile)
+    profile.write_text("")  # it has changed
+    assert given.recall(found.kit.fingerprint) is None
+    given._path().write_text('[[1], 2, "x"]')
+    assert given.profiles() == []
+
+
+# -- the prompt -----------------------------------------------------------------------------------
+
+
+def test_whole_lines_at_the_prompt_that_are_for_tsc() -> None:
+    known = Known(robots.load("tinibot").kit)
+    for line in ("exit", "QUIT", " Salir ", "exit;", "exit()", "quit ( ) ;"):
+        assert wished(line, known) == LEAVE, line
+    for line in ("help", "ayuda", "?", "HELP;"):
+        assert wished(line, known) == HELP_ME, line
+    for line in ("", "S", "EXIT = 5", "SHOW(EXIT)", "exit 5", "QUIT; S"):
+        assert wished(line, known) == "", line
+    known.defs["EXIT"] = "DEF EXIT; S; END_DEF"
+    assert wished("exit", known) == ""  # it is the person's own
+
+
+def test_the_mark_of_live_reaches_nobody(capsys: pytest.CaptureFixture[str]) -> None:
+    def show(value: int) -> Event:
+        return Event("SHOW", {"value": value, "is_yes_no": 0})
+
+    known = Known(robots.load("tinibot").kit)
+    for end in ("STOPPED", "ENDED", "DONE"):
+        catch = Catch(("X", "Y"), known, Teller("en"), says_done=False)
+        assert not catch.hold(show(7))
+        told = [show(MARK), show(5000), Event("MISSED", {"count": 1})]
+        assert [catch.hold(each) for each in told] == [True, True, False]
+        catch.hold(Event(end, {"cause": 0, "state": 2, "fault": 0, "run": 1}))
+        assert capsys.readouterr().out == ""
+    # what a person shows is shown
+    catch = Catch(("X",), known, Teller("en"), says_done=False)
+    for event in (show(MARK), show(MARK), show(5000), Event("DONE", {"run": 1})):
+        catch.hold(event)
+    assert capsys.readouterr().out == "SHOW -2147483.648\n"
+    assert known.values["X"].value == 5000
+    # nor the picture or the lines of a virtual robot
+    bookkeeping = Bookkeeping()
+    hidden = [
+        bookkeeping.hides_trace(Traced(0, what, values, ""))
+        for what, values in (
+            ("START", ()), ("SHOW", (1,)), ("SHOW", (MARK,)), ("SHOW", (5000,)), ("MOTORS", (0, 0)),
+            ("DONE", ()), ("START", ()), ("SHOW", (5000,)),
+        )
+    ]  # fmt: skip
+    assert hidden == [False, False, True, True, False, False, False, False]
+
+
+@needs_robot
+def test_a_virtual_robot_does_not_print_what_live_keeps() -> None:
+    with robot() as found:
+        done = process("live", "-", "--port", found.port, data=b"X = 5;SHOW(X)\nS\n")
+        assert (done.code, done.out) == (0, "SHOW 5\n")
+        lines = found.until("DONE") + found.until("DONE")
+        assert sum("SHOW" in line for line in lines) == 1
+
+
+# -- slips with names -----------------------------------------------------------------------------
+
+
+def test_help_is_a_verb_too(tsc: Tsc) -> None:
+    assert tsc("help", "upload").out == tsc("upload", "--help").out
+    assert tsc("--lang", "es", "ayuda", "run").out == tsc("run", "--help", "--lang", "es").out
+    assert tsc("help", "--lang", "es").out == tsc("--help", "--lang", "es").out
+    assert tsc("help").out == tsc("--help").out
+    done = tsc("help", "uplod")
+    assert done.code == 2
+    assert "Did you mean upload?" in done.err
+
+
+def test_a_program_without_a_verb(tsc: Tsc, tmp_path: Path) -> None:
+    done = tsc("prog.ts")
+    assert done.code == 2
+    assert "tsc upload prog.ts --virtual   or:  tsc run prog.ts" in done.err
+    assert "¿qué hago con prog.ts?" in tsc("prog.ts", "--lang", "es").err
+    named = tmp_path / "my robot"
+    named.write_text("S")
+    assert f'tsc run "{named}"' in tsc(named).err
+    done = tsc("SI|F(2, 80)")
+    assert done.code == 2
+    assert 'tsc live "SI|F(2, 80)"' in done.err
+    assert "there is no verb nix" in tsc("nix").err
+    assert tsc("x" * 5000).code == 2
+
+
+@pytest.mark.parametrize(
+    ("real", "said"), [("prog.ts.txt", "prog.ts"), ("prog.ts", "prog"), ("prog.ts.txt", "prog")]
+)
+def test_a_file_is_found_by_the_name_that_a_folder_shows(
+    tsc: Tsc, tmp_path: Path, real: str, said: str
+) -> None:
+    path = tmp_path / real
+    path.write_text("SI|F(1, 80)")
+    done = tsc("check", tmp_path / said)
+    assert done.code == 0
+    assert done.out == f"{path}: no mistakes.\n"
+    assert f"{path} is taken, which is its real name" in done.err
+    assert tsc("compile", tmp_path / said).code == 0
+    assert (tmp_path / "prog.bin").exists()
+    assert "su verdadero nombre" in tsc("run", tmp_path / said, "--lang", "es").err
+    (tmp_path / said).write_text("SI|S")
+    assert tsc("check", tmp_path / said).err == ""
+
+
+def test_board_says_where_the_build_looks(
+    tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    home = tmp_path / "vm_arduino" / "src" / "boards" / "kits"
+    home.mkdir(parents=True)
+    (tmp_path / "vm_arduino" / "platformio.ini").touch()
+    monkeypatch.chdir(tmp_path)
+    done = tsc("board", "liner", "-o", "own.h")
+    assert "tsc board liner -o vm_arduino/src/boards/kits/own.h   Then:  pio run -d vm_arduino -e" \
+        in done.out  # fmt: skip
+    assert "Ponlo ahí:" in tsc("board", "liner", "-o", "own.h", "--lang", "es").out
+    done = tsc("board", "liner", "-o", "vm_arduino/src/boards/kits/own.h")
+    assert done.out.endswith("Now:  pio run -d vm_arduino -e nano\n")
+    monkeypatch.chdir(home)
+    up = str(Path("../../.."))
+    assert tsc("board", "liner", "-o", "own.h").out.endswith(f"Now:  pio run -d {up} -e nano\n")
+
+
+def test_the_first_run_explains_its_warning(tsc: Tsc) -> None:
+    done = tsc("check", ROOT / "examples" / "obstacle.ts")
+    assert done.err.count("Warning") == 1
+    assert tsc("check", ROOT / "examples" / "obstacle_until.ts").err == ""
+    for path in ("README.md", "tools/try.sh", "examples/obstacle.ts"):
+        said = (ROOT / path).read_text(encoding="utf-8")
+        assert "warn" in said and "obstacle_until.ts" in said, path
+
+
+if sys.platform == "win32":  # nobody sends Ctrl-C to one process there
+    pytestmark = pytest.mark.skip(reason="Windows sends no signal to one process")

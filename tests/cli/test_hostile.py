@@ -1,0 +1,302 @@
+"""The command and whatever comes: any input, any stream, any locale gets an answer."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import signal
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from tests.support.command import PROGRAM, TSC, Tsc, process
+from tiniscript.bytecode.image import unpack
+from tiniscript.cli import CLOSED, VERBS, main
+from tiniscript.cli.texts.common import TEXTS
+from tiniscript.cli.texts.firmware import FLASH_TEXTS
+from tiniscript.cli.texts.robot import LINK_TEXTS
+from tiniscript.cli.texts.simulator import VIRTUAL_TEXTS
+
+# -- anything whatever --------------------------------------------------------------------------
+
+HOSTILE = {
+    "empty": b"",
+    "binary": bytes(range(256)) * 100,
+    "nul": b"SI|F(2,80)\0",
+    "latin-1": "SI|AÑO = 5".encode("latin-1"),
+    "utf-16": "SI|F(2,80)".encode("utf-16"),
+    "too large": b"W(1);" * 200_001,
+    "ten megabytes": b"x" * 10_000_000,
+    "parentheses": b"X = " + b"(" * 100_000 + b"1" + b")" * 100_000,
+    "open parentheses": b"X = " + b"(" * 100_000,
+    "functions": b"X = " + b"ABS(" * 30_000 + b"1" + b")" * 30_000,
+    "minus": b"X = " + b"-" * 100_000 + b"TIME",
+    "sum": b"X = 0" + b"+TIME" * 100_000,
+    "and": b"X = TRUE" + b" AND TRUE" * 50_000,
+    "nested": b"IF(TRUE);" * 50_000,
+    "nested and closed": b"IF(TRUE);" * 20_000 + b"ENDIF;" * 20_000,
+    "defs": b"DEF A;" * 50_000,
+    "ends": b"ENDIF;" * 50_000,
+    "elses": b"IF(TRUE);" + b"ELSEIF(TRUE);" * 30_000 + b"ENDIF",
+    "quotes": b'"' * 500_000,
+    "letters": "é".encode() * 400_000,
+    "digits": b"X = " + b"9" * 900_000,
+    "name": b"X" * 900_000 + b" = 1",
+    "lines": b"\n" * 900_000,
+    "separators": b";" * 900_000,
+    "emoji": "🤖".encode() * 1000,
+    "right to left": "‮F(2,80)".encode(),
+    "bars": b"SI|" * 10_000,
+    "commas": b"F(" + b"1," * 100_000 + b"1)",
+    "long condition": b"A=TRUE;IF(A" + b" AND A" * 150_000 + b");S;ENDIF",
+    "decided": b"A=1;C=A/1=1" + b" AND FALSE" * 80_000 + b";SHOW(C)",
+    "not": b"A=TRUE;IF(" + b"NOT " * 200_000 + b"A);S;ENDIF",
+    "unknown names": b";".join(b"QWERTYUIO%d=Z%d" % (k, k) for k in range(40_000)),
+    "wide header": b"IF(" + b"+".join([b"1"] * 60) + b", 2);S;ENDIF",
+}
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+@pytest.mark.parametrize("verb", ["compile", "check", "run", "show", "fmt"])
+def test_any_input_gets_an_answer(tsc: Tsc, tmp_path: Path, verb: str, name: str) -> None:
+    program = tmp_path / "any.ts"
+    program.write_bytes(HOSTILE[name])
+    extra = ["--max-steps", "1000"] if verb == "run" else []
+    for language in ("en", "es"):
+        done = tsc(verb, program, "--lang", language, *extra)
+        assert done.code in (0, 1)
+        if name in ("too large", "ten megabytes", "binary", "nul", "latin-1", "utf-16"):
+            assert done.code == 1
+
+
+@pytest.mark.parametrize("verb", ["compile", "check", "run", "show", "fmt"])
+def test_files_that_are_none(tsc: Tsc, tmp_path: Path, verb: str) -> None:
+    for name in (tmp_path, tmp_path / "missing.ts", "a\0b", "a" * 5000, ""):
+        done = tsc(verb, name)
+        assert done.code == 2
+    assert tsc(verb).code == 2
+    assert tsc(verb, "-e", PROGRAM, "a.ts").code == 2
+
+
+def test_a_file_that_may_not_be_read(
+    tsc: Tsc, program: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(*_: object, **__: object) -> None:
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(Path, "open", refuse)  # root may read everything, so nothing else would do
+    done = tsc("check", program)
+    assert done.code == 2
+    assert "may not be read" in done.err
+
+
+def test_no_verb_and_no_such_verb(tsc: Tsc) -> None:
+    assert tsc().code == 0
+    assert tsc("--help").out == TEXTS["help"][0]
+    assert tsc("--lang", "es", "--help").out == TEXTS["help"][1]
+    assert tsc("--version").out.startswith("tsc (TiniScript) ")
+    done = tsc("complie")
+    assert done.code == 2
+    assert "compile" in done.err
+    assert tsc("--lang", "es", "check", "-e", "W(1)").out == "-e: sin errores.\n"
+    for verb in VERBS:
+        for language in ("en", "es"):
+            done = tsc(verb, "--help", "--lang", language)
+            assert done.code == 0
+            assert done.out.startswith(f"tsc {verb}")
+
+
+def test_texts_have_the_same_gaps_in_both_languages() -> None:
+    from string import Formatter
+
+    tables = (TEXTS, LINK_TEXTS, VIRTUAL_TEXTS, FLASH_TEXTS)
+    together = {key: both for table in tables for key, both in table.items()}
+    assert len(together) == sum(map(len, tables)), "no key is in two tables"
+    for key, both in together.items():
+        gaps = [{name for _, name, _, _ in Formatter().parse(text) if name} for text in both]
+        if key != "help":
+            assert gaps[0] == gaps[1], key
+
+
+def test_the_language_comes_from_the_locale(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name, value, word in (
+        ("LC_ALL", "es_PE.UTF-8", "errores"),
+        ("LC_ALL", "en_US.UTF-8", "mistakes"),
+        ("LC_ALL", "C", "mistakes"),
+    ):
+        monkeypatch.setenv(name, value)
+        assert word in tsc("check", "-e", "S = 5;S = 6").err
+
+
+def test_a_closed_pipe_ends_the_command_as_any_other() -> None:
+    text = "LOOP(100000);SHOW(1);END_LOOP"
+    command = [*TSC, "run", "-e", text]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as running:
+        assert running.stdout and running.stderr
+        running.stdout.readline()
+        running.stdout.close()
+        said = running.stderr.read().decode()
+    assert (running.returncode, said) == (CLOSED, "")
+
+
+@pytest.mark.skipif(os.name == "nt", reason="a shell of Unix closes streams")
+@pytest.mark.parametrize("closed", ["2>&-", "<&-", ">&-", ">/dev/full"])
+def test_closed_and_full_streams(closed: str) -> None:
+    """With nowhere to write there is still an exit code, and the trace stays the trace."""
+    if "full" in closed and not Path("/dev/full").exists():
+        pytest.skip("this system has no full device")
+    for program, code in (("LOOP(3);S;END_LOOP;X = 1", 0), ("F(1", 1)):
+        command = f"{shlex.join(TSC)} run -e {shlex.quote(program)} {closed}"
+        done = subprocess.run(command, shell=True, capture_output=True, text=True)
+        assert "Traceback" not in done.stderr
+        assert "was not made for" not in done.stderr
+        if "full" in closed and code == 0:
+            assert done.returncode == 2
+            assert done.stderr
+        else:
+            assert done.returncode == code
+        if closed == "2>&-":
+            assert done.stdout == ("0 MOTORS 0 0\n" * 3 + "0 DONE\n" if code == 0 else "")
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows has no such pipes")
+def test_an_image_goes_into_a_pipe(program: Path) -> None:
+    command = f"{shlex.join(TSC)} compile {shlex.quote(str(program))} -o /dev/stdout | cat"
+    done = subprocess.run(command, shell=True, capture_output=True)
+    assert done.stdout.startswith(b"TS\x01")
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows sends Ctrl-C to whole consoles")
+def test_ctrl_c_is_said() -> None:
+    command = [*TSC, "run", "-e", "LOOP(FOREVER);SHOW(1);END_LOOP", "--max-steps", "1000000000"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as running:
+        assert running.stdout and running.stderr
+        running.stdout.readline()  # it runs
+        running.send_signal(signal.SIGINT)
+        running.stdout.read()
+        said = running.stderr.read().decode()
+    assert said.endswith("\nStopped.\n")
+    assert running.returncode == 2
+
+
+def test_output_that_is_not_unicode() -> None:
+    environ = {**os.environ, "PYTHONIOENCODING": "ascii"}
+    done = subprocess.run(
+        [*TSC, "check", "--lang", "es", "-e", "año = 5"], capture_output=True, env=environ
+    )
+    assert done.returncode == 1
+    assert b"l\\xednea 1:" in done.stderr
+
+
+def test_input_that_is_no_text() -> None:
+    for encoding in ("ascii", "utf-8", "cp1252"):
+        environ = {**os.environ, "PYTHONIOENCODING": encoding}
+        done = subprocess.run(
+            [*TSC, "live", "--virtual"], input=b"F(\xff\x81\n", capture_output=True, env=environ
+        )
+        assert done.returncode == 1
+        assert b"was not made for" not in done.stderr
+        assert b"[TS" in done.stderr
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="Windows has no such files")
+@pytest.mark.parametrize("kind", ["pipe", "folder", "device", "circle", "huge"])
+def test_files_of_the_cache_may_be_anything(kind: str) -> None:
+    """No command waits for them, or reads for ever: they say nothing."""
+    from tiniscript.codegen import source_map
+    from tiniscript.link import known_ports
+    from tiniscript.sharing import registry
+    from tiniscript.virtual import directory
+
+    port = "socket://127.0.0.1:4000"
+    robot = directory._folder() / "4000.json"
+    paths = [known_ports._path(), robot, registry._path(port), source_map._path(5)]
+    for path in paths:
+        path.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
+        path.parent.chmod(0o700)
+        if kind == "pipe":
+            os.mkfifo(path)
+        elif kind == "folder":
+            path.mkdir()
+        elif kind == "huge":
+            with path.open("wb") as file:
+                file.truncate(1 << 40)
+        else:
+            path.symlink_to("/dev/zero" if kind == "device" else path)
+    assert known_ports.known() == known_ports.Known(None, {})
+    assert directory.running() == []
+    assert registry.found(port) is None
+    assert registry.all_found() == []
+    assert source_map.recall(5) is None
+
+
+@pytest.mark.parametrize("number", ["0000801234", "99999", "00000", "٣٣٣٣", "-1", "4" * 5000])
+def test_a_number_that_no_port_has_is_no_robot(number: str) -> None:
+    from tiniscript.virtual import directory
+
+    assert not directory._is_listening(f"socket://127.0.0.1:{number}")
+
+
+def test_a_cache_that_cannot_be_written_is_no_trouble(
+    tsc: Tsc, program: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    blocked = program.with_name("blocked")
+    blocked.write_text("")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(blocked))
+    assert tsc("compile", program).code == 0
+    done = tsc("show", program.with_suffix(".bin"))
+    assert done.code == 0
+    assert "line" not in done.out
+
+
+def test_a_damaged_cache_is_no_trouble(tsc: Tsc, program: Path) -> None:
+    from tiniscript.codegen import source_map
+
+    tsc("compile", program)
+    path = source_map._path(unpack(program.with_suffix(".bin").read_bytes()).checksum)
+    deep = "[" * 200_000
+    huge = '{"version": 1, "name": "", "lines": [], "places": [[1e400, 1, 1, 1, 9]]}'
+    for text in (
+        deep,
+        huge,
+        "",
+        "{}",
+        "[]",
+        '{"version": 1, "places": 5}',
+        "nonsense",
+        '{"version": 9}',
+    ):
+        path.write_text(text)
+        assert tsc("show", program.with_suffix(".bin")).code == 0
+
+
+def test_the_cache_keeps_a_thousand_maps(
+    tsc: Tsc, program: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from tiniscript.codegen import source_map
+
+    monkeypatch.setattr(source_map, "KEPT", 3)
+    for seconds in range(1, 7):
+        tsc("compile", "-e", f"W({seconds})", "-o", program.with_suffix(".bin"))
+    assert len(list(source_map._path(0).parent.iterdir())) == 3
+
+
+def test_the_module_is_the_command() -> None:
+    done = process("run", "-e", "W(1)")
+    assert (done.code, done.out) == (0, "1000 DONE\n")
+
+
+def test_a_bug_is_ours(
+    tsc: Tsc, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Should anything else go wrong, a person still gets a sentence."""
+
+    def broken(arguments: list[str], language: str) -> int:
+        raise RuntimeError("the moon")
+
+    monkeypatch.setattr("tiniscript.cli.commands.check.run", broken)
+    assert main(["check"]) == 2
+    said = capsys.readouterr().err
+    assert "RuntimeError: the moon" in said
+    assert "Traceback" not in said

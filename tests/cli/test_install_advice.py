@@ -1,0 +1,104 @@
+"""What tsc says to type where a part of it is missing, before anything of it is on PyPI."""
+
+from __future__ import annotations
+
+import re
+import shlex
+import sys
+from importlib import metadata
+from pathlib import Path
+
+import pytest
+
+from tests.support.casefile import ROOT
+from tiniscript.cli import install_advice
+
+EXTRAS = (install_advice.VIRTUAL, install_advice.FIRMWARE)
+
+
+@pytest.fixture(autouse=True)
+def plain(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A virtual environment that is active, and no clone."""
+    monkeypatch.setattr(install_advice, "CLONE", tmp_path)
+    monkeypatch.setattr(sys, "prefix", str(tmp_path / "env"))
+    monkeypatch.setenv("VIRTUAL_ENV", str(tmp_path / "env"))
+    rows = ["cobs>=1", 'pillow>=10.1; extra == "virtual"', 'wasmtime>=20; extra == "virtual"',
+            'platformio>=6.1; extra == "firmware"']  # fmt: skip
+    monkeypatch.setattr(metadata, "requires", lambda name: rows)
+
+
+def clone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    folder = tmp_path / "a clone"
+    (folder / "compiler" / "tiniscript").mkdir(parents=True)
+    (folder / "pyproject.toml").touch()
+    monkeypatch.setattr(install_advice, "CLONE", folder)
+    return folder
+
+
+def test_a_clone_is_installed_with_its_extra(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = clone(tmp_path, monkeypatch)
+    assert install_advice.command("virtual") == f'pip install -e "{folder}[virtual]"'
+
+
+def test_a_package_names_what_pypi_has() -> None:
+    assert install_advice.command("virtual") == 'pip install "pillow>=10.1" "wasmtime>=20"'
+    assert install_advice.command("firmware") == 'pip install "platformio>=6.1"'
+
+
+def test_pipx_puts_it_into_its_own_environment(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    clone(tmp_path, monkeypatch)
+    (tmp_path / "env").mkdir()
+    (tmp_path / "env" / "pipx_metadata.json").touch()
+    assert install_advice.command("firmware") == 'pipx inject tiniscript "platformio>=6.1"'
+
+
+def test_an_environment_that_is_not_active_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    """`pip` alone would be that of another Python."""
+    monkeypatch.delenv("VIRTUAL_ENV")
+    monkeypatch.setattr(sys, "executable", "/some where/python")
+    assert (
+        install_advice.command("firmware")
+        == '"/some where/python" -m pip install "platformio>=6.1"'
+    )
+
+
+def test_where_pip_is_refused_it_is_pipx(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = clone(tmp_path, monkeypatch)
+    monkeypatch.setattr(sys, "base_prefix", sys.prefix)
+    monkeypatch.setattr("sysconfig.get_path", lambda name: str(tmp_path))
+    (tmp_path / "EXTERNALLY-MANAGED").touch()
+    assert install_advice.command("virtual") == f'pipx install "{folder}[virtual]"'
+
+
+def test_nothing_known_is_no_crash(monkeypatch: pytest.MonkeyPatch) -> None:
+    def nothing(name: str) -> list[str]:
+        raise metadata.PackageNotFoundError(name)
+
+    monkeypatch.setattr(metadata, "requires", nothing)
+    assert install_advice.command("virtual") == 'pip install "tiniscript[virtual]"'
+
+
+@pytest.mark.parametrize("word", ["plain", "a b", 'a"b', "a$HOME[x]", "a`b`", "a\\b", "x>=1", "!"])
+def test_a_shell_reads_the_word_that_was_meant(word: str) -> None:
+    assert shlex.split(install_advice.quoted(word)) == [word]
+
+
+def test_the_extras_are_those_of_the_package() -> None:
+    text = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
+    for extra in EXTRAS:
+        assert re.search(rf"^{extra} = \[", text, re.M)
+
+
+def test_no_other_place_knows_how_to_install_an_extra() -> None:
+    """`flash_texts` does where the sources are missing: then there is no other way."""
+    folder = ROOT / "compiler" / "tiniscript"
+    found = {
+        path.name
+        for path in folder.rglob("*.py")
+        if re.search(r"install[^\n]*\[(virtual|firmware)\]", path.read_text(encoding="utf-8"))
+    }
+    assert found <= {"flash_texts.py", "installing.py"}

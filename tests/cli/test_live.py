@@ -1,0 +1,135 @@
+"""`tsc live`: lines that a robot does at once, and what lives on between them."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import time
+
+import pytest
+
+from tests.machines.host_firmware import missing
+from tests.support.command import TSC, process
+from tests.support.pty_robot import PtyRobot
+from tiniscript import robots
+from tiniscript.cli.robot.live_state import Known, Value
+
+pty = pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
+pyte = pytest.importorskip("pyte", reason="pyte, a terminal for tests, is not installed")
+
+KIT = robots.load("tinibot").kit
+needs_robot = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
+
+
+@needs_robot
+def test_a_line_is_done_at_once_and_the_program_stays(pty_robot: PtyRobot) -> None:
+    assert process("upload", "-e", "SB|W(1)", "--port", pty_robot.port).code == 0
+    done = process("live", "F(0.2, 80);SHOW(1.5)", "--port", pty_robot.port)
+    assert (done.code, done.out) == (0, "SHOW 1.5\nDone.\n")
+    assert pty_robot.did == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
+    assert "SB" in process("fetch").out
+    assert process("live", "F(2 80)").code == 1
+    assert process("live", "SB|F(2, 80)").code == 1
+    done = process("live", "SHOW(TIME * 1.234);" * 12)
+    assert done.code == 1
+    assert "room for 55" in done.err
+    assert process("live", "X = 0;SHOW(1 / X)").code == 1
+
+
+@needs_robot
+def test_variables_and_defs_live_on(pty_robot: PtyRobot) -> None:
+    pty_robot.ask(lambda robot: robot.sense(0, 0, 30_000))
+    lines = (
+        "X = DISTANCE + 0.5; READY = TRUE",
+        "DEF TELL; SHOW(X); END_DEF",
+        "TELL; X = X + 1; TELL",
+        "SHOW(X);SHOW(READY)",
+        "DEF TELL; SHOW(-X); END_DEF; TELL",
+        "X = 1 / 0",
+        "SHOW(9)",
+    )
+    done = process("live", "-", "--port", pty_robot.port, data="\n".join(lines).encode())
+    assert done.code == 1  # the fault ends it
+    assert done.out.splitlines() == [
+        "TELL: known from now on.", "SHOW 30.5", "SHOW 31.5", "SHOW 31.5", "SHOW TRUE",
+        "SHOW -31.5",
+    ]  # fmt: skip
+    assert "DIVIDE_BY_ZERO" in done.err
+
+
+@needs_robot
+def test_a_person_at_the_prompt(pty_robot: PtyRobot) -> None:
+    """Types lines, makes a mistake, presses Ctrl-C while it drives, and leaves with Ctrl-D."""
+    ours, theirs = pty.openpty()
+    environ = {**os.environ, "TERM": "xterm", "COLUMNS": "80", "LINES": "24"}
+    command = subprocess.Popen(
+        [*TSC, "live", "--port", pty_robot.port], stdin=theirs, stdout=theirs, stderr=theirs,
+        env=environ, start_new_session=True, preexec_fn=_take_terminal,
+    )  # fmt: skip
+    os.close(theirs)
+    screen = pyte.Screen(80, 24)
+    stream = pyte.ByteStream(screen)
+
+    def see(text: str, times: int = 1) -> None:
+        end_s = time.monotonic() + 30
+        while "\n".join(screen.display).count(text) < times:
+            assert time.monotonic() < end_s, (text, screen.display)
+            stream.feed(os.read(ours, 4096))
+
+    see("tini> ")
+    os.write(ours, b"SPEED = 55\n")
+    see("tini> ", 2)
+    os.write(ours, b"F(1 SPEED)\n")
+    see("need a comma")
+    see("tini> ", 3)
+    os.write(ours, b"LOOP(FOREVER);F(1, SPE\t);END_LOOP\n")
+    pty_robot.until(lambda: pty_robot.moves, "it drives")
+    assert pty_robot.did[-1] == "MOTORS 55 55"
+    os.write(ours, b"\x03")
+    see("the robot has confirmed it.")
+    assert not pty_robot.moves
+    see("tini> ", 4)
+    os.write(ours, b"SHOW(SPEED)\n")
+    see("SHOW 55")
+    see("tini> ", 5)
+    os.write(ours, b"\x04")
+    assert command.wait(30) == 0
+    os.close(ours)
+
+
+def _take_terminal() -> None:
+    """Make standard input the terminal whose Ctrl-C this process gets."""
+    import fcntl
+    import termios
+
+    fcntl.ioctl(0, termios.TIOCSCTTY, 0)
+
+
+def test_what_a_line_needs_goes_with_it_and_nothing_else() -> None:
+    known = Known(KIT)
+    known.values = {"X": Value(5000, False), "Y": Value(1, True), "Z": Value(-1500, False)}
+    known.defs = {"HOP": "DEF HOP; F(1, Z); SKIP; END_DEF", "SKIP": "DEF SKIP; W(X); END_DEF"}
+    known.defs = dict(sorted(known.defs.items(), reverse=True))  # what is called stands first
+    line = known.line("HOP", 55)
+    assert line.compiled.is_right
+    assert line.compiled.program is not None
+    assert line.compiled.program.variables == ("X", "Z")
+    assert line.shown == ()
+    line = known.line("SI|Y = NOT Y", 55)
+    assert line.shown == ("Y",)
+    assert line.compiled.source.text.strip() == "Y = NOT Y"
+    assert known.line("Y = NOT Y", 5).forgets
+
+
+def test_mistakes_and_warnings_are_those_of_the_line() -> None:
+    known = Known(KIT)
+    known.values = {"X": Value(5000, False)}
+    line = known.line("X = X + 1; F(X 2)", 55)
+    (problem,) = line.compiled.problems
+    assert line.compiled.source[problem.span].strip("() ") != ""
+    assert line.compiled.source.position(problem.span.start)[0] == 1
+    assert known.line("A = 5", 55).compiled.problems == []
+    assert known.line("DEF A; S; END_DEF", 55).compiled.problems == []
+    (warning,) = known.line("LOOP(FOREVER); X = 1; END_LOOP", 55).compiled.problems
+    assert warning.code.number == "TS804"
+    assert [each.code.number for each in known.line("SHOW(NEW)", 55).compiled.problems] == ["TS103"]

@@ -1,0 +1,238 @@
+"""Thirty robots at once, some of them with bad links; one of them never holds up the others."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+from collections import deque
+from collections.abc import Iterator
+
+import pytest
+
+from tests.machines.host_firmware import missing
+from tests.support.command import FOREVER, TSC, Done, Tsc, ended, process, running
+from tests.support.robot_fleet import RobotFleet
+from tiniscript import robots
+from tiniscript.cli.robot.fleet import Member, Result
+from tiniscript.cli.robot.targets import Post
+from tiniscript.cli.terminal.fleet_table import Roll
+from tiniscript.link import known_ports, ports
+
+pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
+
+TINIBOT, LINER = robots.load("tinibot").kit, robots.load("liner").kit
+SHORT = "SI|F(0.3, 80);SHOW(DISTANCE)"
+ROBOTS = 30
+SILENT, OTHER_KIT, DEAF = 3, 7, 11  # robots with which something is wrong
+NOISY = (5, 13, 17, 21)
+
+
+@pytest.fixture
+def class_() -> Iterator[RobotFleet]:
+    """Four robots, whose ports are remembered."""
+    with RobotFleet([TINIBOT] * 4) as found:
+        for pupil in found.pupils:
+            known_ports.remember(pupil.port, f"R{pupil.number}", is_used=False)
+        yield found
+
+
+def results(done: Done) -> dict[str, dict[str, object]]:
+    rows = [json.loads(line) for line in done.out.splitlines()]
+    return {row["port"]: row for row in rows if row["event"] == "RESULT"}
+
+
+def test_thirty_robots_get_a_program_and_three_cannot_hold_them_up() -> None:
+    kits = [LINER if number == OTHER_KIT else TINIBOT for number in range(ROBOTS)]
+    with RobotFleet(kits) as room:
+        pupils = room.pupils
+        pupils[SILENT].deaf_after = 0
+        pupils[DEAF].deaf_after = 30  # in the middle of the program
+        for number in NOISY:
+            pupils[number].damages = 97
+        for pupil in pupils:
+            known_ports.remember(pupil.port, f"R{pupil.number}", is_used=False)
+        done = process("upload", "-e", SHORT, "--all", "--json")
+        assert done.code == 3
+        rows = results(done)
+        bad = {pupils[number].port for number in (SILENT, OTHER_KIT, DEAF)}
+        named = {port: row for port, row in rows.items() if not row["is_absent"]}
+        assert set(named) == {pupil.port for pupil in pupils}
+        assert {port for port, row in named.items() if not row["is_done"]} == bad
+        assert "nothing answers" in str(rows[pupils[SILENT].port]["said"])
+        assert "--robot liner" in str(rows[pupils[OTHER_KIT].port]["said"])
+        for pupil in pupils:
+            if pupil.port not in bad:
+                assert pupil.did == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
+        events = [json.loads(line) for line in done.out.splitlines()]
+        receipts = [row["port"] for row in events if row["event"] == "RECEIPT"]
+        assert len(receipts) == len(set(receipts)) >= ROBOTS - 3
+        shown = [row["port"] for row in events if row["event"] == "SHOW"]
+        assert set(shown) == set(named) - bad
+        # the silent one is over last
+        assert events[-1]["port"] in bad | {port for port, row in rows.items() if row["is_absent"]}
+
+        done = process("upload", "-e", FOREVER, "--all", "--detach")
+        assert done.code == 3
+        assert sum(pupil.moves for pupil in pupils) == ROBOTS - 2  # it uses no device of a kit
+        done = process("stop", "--all")
+        assert done.code == 3
+        assert not any(pupil.moves for pupil in pupils)
+        assert done.out.count("the robot has confirmed it") == ROBOTS - 2  # the other kit, too
+
+
+def test_stop_all_stops_what_another_command_drives(class_: RobotFleet) -> None:
+    command = running("upload", "-e", FOREVER, "--all")
+    class_.until(lambda: all(pupil.moves for pupil in class_.pupils), "all drive")
+    done = process("stop", "--all", "--json")
+    assert done.code == 0
+    assert not any(pupil.moves for pupil in class_.pupils)
+    rows = [row for row in results(done).values() if not row["is_absent"]]
+    assert len(rows) == len(class_.pupils)
+    done = ended(command)
+    assert done.code == 3
+    assert done.out.count("The robot was stopped from a computer.") == len(class_.pupils)
+
+
+def test_ctrl_c_stops_all(class_: RobotFleet) -> None:
+    command = running("upload", "-e", FOREVER, "--all")
+    class_.until(lambda: all(pupil.moves for pupil in class_.pupils), "all drive")
+    command.send_signal(signal.SIGINT)
+    done = ended(command)
+    assert done.code == 2
+    assert not any(pupil.moves for pupil in class_.pupils)
+    assert done.out.count("the robot has confirmed it") == len(class_.pupils)
+
+
+def test_robots_stop_when_the_command_of_all_is_killed(class_: RobotFleet) -> None:
+    command = running("upload", "-e", FOREVER, "--all")
+    class_.until(lambda: all(pupil.moves for pupil in class_.pupils), "all drive")
+    command.kill()
+    command.communicate()
+    class_.until(lambda: not any(pupil.moves for pupil in class_.pupils), "they stop")
+
+
+def test_info_and_ping_have_a_row_for_each(class_: RobotFleet) -> None:
+    assert process("upload", "-e", "SB|S", "--all").code == 0
+    names = [pupil.port for pupil in class_.pupils]
+    done = process("info", "--all")
+    assert done.code == 0
+    assert sorted(line.split("(")[1].split(")")[0] for line in done.out.splitlines()) == sorted(
+        names
+    )
+    assert done.out.count("nothing runs") == len(names)
+    done = process("ping", "--count", "3", "--json", "--port", names[0], "--port", names[2])
+    rows = results(done)
+    assert set(rows) == {names[0], names[2]}
+    assert all(row["round_trips"] == 3 for row in rows.values())
+
+
+def test_ports_that_are_named_must_have_robots(class_: RobotFleet) -> None:
+    name = class_.pupils[0].port
+    done = process("ping", "--port", name, "--port", "/dev/no-such", "--lang", "es")
+    assert done.code == 3
+    assert "no existe el puerto /dev/no-such" in done.out
+    assert "3" in process("ping", "--count", "3", "--port", name, "--port", name).out
+
+
+def test_a_port_that_never_had_a_robot_is_no_failure(
+    tsc: Tsc, class_: RobotFleet, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pty = pytest.importorskip("pty")
+    ends = [end for _ in range(2) for end in pty.openpty()]
+    port, known = os.ttyname(ends[1]), os.ttyname(ends[3])
+    monkeypatch.setattr("tiniscript.link.ports.listed", lambda: [ports.Found(port, "")])
+    monkeypatch.setattr("tiniscript.cli.robot.fleet.STRANGER_S", 1.0)
+    done = tsc("ping", "--all", "--count", "1")
+    assert done.code == 0
+    assert len(done.out.splitlines()) == 4
+    assert done.err == f"4 of 4 robots: done.\nNo robot answers on {port}.\n"
+    monkeypatch.setattr("tiniscript.link.ports.listed", list)
+    monkeypatch.setattr("tiniscript.cli.robot.connect.ANSWER_MS", 1000)
+    known_ports.remember(known, "R9", is_used=False)
+    done = tsc("ping", "--all", "--count", "1")
+    assert done.code == 3
+    assert f"R9 ({known}): nothing answers" in done.out
+    assert "4 of 5 robots: done." in done.err
+    for end in ends:
+        os.close(end)
+
+
+def test_a_program_with_mistakes_reaches_nobody(class_: RobotFleet) -> None:
+    assert process("upload", "-e", "F(2 80)", "--all").code == 1
+    assert not any(pupil.heard for pupil in class_.pupils)
+    assert process("upload", "-e", "PING|check_connection", "--all").out.count("10 round") == 4
+
+
+def test_a_fault_is_a_row_of_its_robot(class_: RobotFleet) -> None:
+    text = "SI|X = DISTANCE;SHOW(1 / X)"
+    done = process("upload", "-e", text, "--all", "--no-save")
+    assert done.code == 3
+    assert done.out.count("DIVIDE_BY_ZERO") == 4
+    assert done.out.count("line 1") == 4
+
+
+def test_nobody_and_wrong_use(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tiniscript.link.ports.listed", list)
+    for language, words in (("en", "no robot answers"), ("es", "ningún robot responde")):
+        done = tsc("stop", "--all", "--lang", language)
+        assert done.code == 3
+        assert words in done.err
+        assert tsc("stop", "--all", "--port", "x", "--lang", language).code == 2
+        assert tsc("info", "--port", "a\0b", "--port", "x", "--lang", language).code == 2
+
+
+def test_the_table_shows_every_robot_and_leaves_plain_rows(class_: RobotFleet) -> None:
+    pty, pyte = pytest.importorskip("pty"), pytest.importorskip("pyte")
+    ours, theirs = pty.openpty()
+    environ = {**os.environ, "TERM": "xterm", "COLUMNS": "100", "LINES": "24"}
+    command = subprocess.Popen(
+        [*TSC, "upload", "-e", "SI|F(1, 80);SHOW(7);F(1, 80)", "--all", "--no-save"],
+        stdin=subprocess.DEVNULL, stdout=theirs, stderr=theirs, env=environ,
+    )  # fmt: skip
+    os.close(theirs)
+    screen = pyte.Screen(100, 24)
+    stream = pyte.ByteStream(screen)
+    seen = set()
+    while part := _rest(ours):
+        stream.feed(part)
+        text = "\n".join(screen.display)
+        if text.count("running   SHOW 7") == 4:
+            seen.add("values")
+        if text.count("running") == 4:
+            seen.add("running")
+    os.close(ours)
+    assert command.wait(30) == 0
+    assert seen == {"values", "running"}
+    rows = [line.rstrip() for line in screen.display if line.strip()]
+    assert "4 of 4 robots: done." in rows
+    assert sum(row.endswith("Done.") for row in rows) == 4
+    assert not any("running" in row for row in rows)
+
+
+@pytest.mark.parametrize("count", [0, 1, 2, 5, 30])
+def test_every_table_fits_its_terminal(count: int) -> None:
+    members = [
+        Member(Post(f"/dev/ttyUSB{k}", "ÑANDÚ" * k, False, True), deque()) for k in range(count)
+    ]
+    for k, member in enumerate(members):
+        member.result = [None, Result(True, "fine"), Result(False, "what is wrong " * 9)][k % 3]
+    roll = Roll(members, "es")
+    for width in (1, 2, 20, 80, 200):
+        for height in (1, 2, 3, 8, 50):
+            lines = roll.lines(width, height, 0)
+            assert len(lines) <= height
+            assert all(line.cell_len <= width for line in lines)
+            if count > height > 2:
+                shown = "".join(line.plain for line in lines[1:-1])
+                assert "fine" not in shown or shown.count("\n") >= count // 3
+                assert lines[-1].plain.startswith("…")
+
+
+def _rest(terminal: int) -> bytes:
+    try:
+        return os.read(terminal, 65536)
+    except OSError:  # Linux: the other end is closed
+        return b""

@@ -1,0 +1,228 @@
+"""What a command writes is never what it reads: every output of every verb, by every name."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.support.command import PROGRAM, TSC, Done, Tsc
+from tests.support.verbs import parsers, values_of
+from tiniscript.cli import paths
+from tiniscript.robots import DEFAULT
+
+HERE = Path(sys.modules["tiniscript"].__file__ or "").parent
+PROFILE = (HERE / "robots" / f"{DEFAULT}.toml").read_text(encoding="utf-8")
+WORLD = (HERE / "virtual" / "worlds" / "obstacles.toml").read_text(encoding="utf-8")
+TEXTS = {"program": PROGRAM, "robot": PROFILE, "world": WORLD, "memory": "m" * 1024}
+PARSERS = parsers()
+
+# every output of every verb beside everything that this verb reads, and beside its other outputs
+PAIRS = [
+    (verb, output, other)
+    for verb, parser in PARSERS.items()
+    for output in values_of(parser)
+    for other in values_of(parser)
+    if output in paths.WRITES and other != output and {other} & {*paths.READS, *paths.WRITES}
+    if not (verb == "monitor" and output == "plot")
+]
+needs_links = pytest.mark.skipif(os.name == "nt", reason="Windows wants a right for links")
+
+
+def arguments(verb: str, files: dict[str, Path]) -> list[str]:
+    """Return the words of a command with these files for its options."""
+    known = values_of(PARSERS[verb])
+    words = [verb]
+    if "program" in known and "program" not in files:
+        words += ["-e", PROGRAM]
+    for dest, path in files.items():
+        words += [known[dest], str(path)] if known[dest] else [str(path)]
+    return [*words, "--virtual"] if {"plot"} & set(files) and verb != "robot" else words
+
+
+def test_every_option_that_takes_a_value_is_known_to_name_a_file_or_not() -> None:
+    """Whoever adds an option says what it is; else it is refused here."""
+    groups = (set(paths.READS), set(paths.WRITES), paths.NO_FILES)
+    for verb, parser in PARSERS.items():
+        for dest in values_of(parser):
+            found = sum(dest in group for group in groups)
+            assert found == (2 if dest == "memory" else 1), f"{verb}: {dest}"
+
+
+def test_every_file_that_the_command_writes_comes_from_such_an_option() -> None:
+    """Whoever writes a file elsewhere adds its option to `WRITES`, and then its line here."""
+    places = {
+        "outputs.write(target,": "output",  # of compile
+        "outputs.write(Path(options.output),": "output",
+        "outputs.write(Path(options.map),": "map",
+        "outputs.write(Path(options.plot),": "plot",
+        "outputs.write(Path(self.options.memory),": "memory",
+        "outputs.write(given.path,": "program",  # fmt, in place
+        'Path(name).open("w"': "csv",
+    }
+    found = set()
+    for file in sorted((HERE / "cli").rglob("*.py")):
+        for line in file.read_text(encoding="utf-8").splitlines():
+            is_writing = "outputs.write(" in line or any(
+                word in line for word in ('.open("w', '.open("a', "write_text(", "write_bytes(")
+            )
+            if is_writing:
+                known = [place for place in places if place in line]
+                assert known, f"{file.name}: {line.strip()}"
+                found |= set(known)
+    assert found == set(places)
+    assert {places[each] for each in found} == {*paths.WRITES, "program"}
+
+
+@pytest.mark.parametrize("how", ["same", "dot", "link", "hard"])
+@pytest.mark.parametrize(("verb", "output", "other"), PAIRS)
+def test_no_output_is_another_file_of_its_command(
+    tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, verb: str, output: str, other: str,
+    how: str,
+) -> None:  # fmt: skip
+    monkeypatch.chdir(tmp_path)
+    text = TEXTS.get(other, "what was there")
+    precious = tmp_path / "precious.ts"
+    precious.write_text(text, encoding="utf-8")
+    path = {"same": precious, "dot": Path("./precious.ts")}.get(how, tmp_path / "other name")
+    if how == "link":
+        if os.name == "nt":
+            pytest.skip("Windows wants a right for links")
+        path.symlink_to(precious)
+    elif how == "hard":
+        os.link(precious, path)
+    before = sorted(os.listdir(tmp_path))  # noqa: PTH208
+    for language in ("en", "es"):
+        done = tsc(*arguments(verb, {other: precious, output: path}), "--lang", language)
+        assert done.code == 2, done.err
+        assert str(path) in done.err and precious.name in done.err
+        assert paths.WRITES[output][0] in done.err
+    assert precious.read_text(encoding="utf-8") == text
+    assert sorted(os.listdir(tmp_path)) == before  # noqa: PTH208 - nothing was made either
+
+
+def test_there_are_outputs_to_be_looked_at() -> None:
+    assert {
+        ("upload", "plot", "program"), ("live", "plot", "world"), ("robot", "plot", "memory"),
+        ("compile", "output", "program"), ("compile", "output", "robot"),
+        ("compile", "map", "robot"), ("compile", "map", "output"), ("board", "output", "robot"),
+        ("wiring", "output", "robot"), ("fetch", "output", "port"), ("fetch", "output", "robot"),
+        ("monitor", "csv", "port"), ("monitor", "csv", "robot"),
+    } <= set(PAIRS)  # fmt: skip
+
+
+def test_the_image_that_nobody_names_is_an_output_too(tsc: Tsc, tmp_path: Path) -> None:
+    program = tmp_path / "a.ts"
+    program.write_text(PROGRAM)
+    image = tmp_path / "a.bin"
+    assert tsc("compile", program, "--map", image).code == 2
+    profile = tmp_path / "a.bin"
+    profile.write_text(PROFILE, encoding="utf-8")
+    done = tsc("compile", program, "--robot", profile)
+    assert done.code == 2 and "-o would overwrite" in done.err
+    assert profile.read_text(encoding="utf-8") == PROFILE
+
+
+@pytest.mark.parametrize("second", ["x", "./x", "X", "folder/../x"])
+def test_two_outputs_that_are_not_there_yet_are_told_apart(
+    tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, second: str
+) -> None:
+    """Capitals do not count: on many systems they do not once the files are there."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "folder").mkdir()
+    done = tsc("compile", "-e", PROGRAM, "-o", "x", "--map", second)
+    assert done.code == 2 and "the same file" in done.err
+    assert not (tmp_path / "x").exists()
+    assert tsc("compile", "-e", PROGRAM, "-o", "x", "--map", "y").code == 0
+    assert tsc("compile", "-e", PROGRAM, "-o", "x", "--map", "y").code == 0  # there they are
+
+
+@needs_links
+def test_links_to_what_is_not_there_yet(
+    tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "link").symlink_to("x")
+    assert tsc("compile", "-e", PROGRAM, "-o", "link", "--map", "x").code == 2
+    (tmp_path / "loop").symlink_to("loop")
+    assert tsc("compile", "-e", PROGRAM, "-o", "loop").code == 2
+
+
+def run(command: str, folder: Path) -> Done:
+    done = subprocess.run(["sh", "-c", command], cwd=folder, capture_output=True, timeout=60)
+    return Done(done.returncode, done.stdout.decode(errors="replace"), done.stderr.decode())
+
+
+@pytest.mark.skipif(os.name == "nt", reason="a shell of Unix")
+@pytest.mark.parametrize("words", [
+    "compile - -o a.ts < a.ts", "compile /dev/stdin -o a.ts < a.ts",
+    "compile a.ts -o /dev/stdout >> a.ts", "compile a.ts -o /dev/fd/3 3>> a.ts",
+    "live --virtual --plot a.ts < a.ts",
+])  # fmt: skip
+def test_a_file_behind_a_standard_stream_is_a_file(tmp_path: Path, words: str) -> None:
+    (tmp_path / "a.ts").write_text(PROGRAM)
+    tsc = " ".join(TSC)
+    assert run(f"{tsc} {words}", tmp_path).code == 2
+    assert (tmp_path / "a.ts").read_text() == PROGRAM
+
+
+@pytest.mark.skipif(os.name == "nt", reason="devices of Unix")
+def test_devices_and_pipes_may_be_written(tmp_path: Path) -> None:
+    (tmp_path / "a.ts").write_text(PROGRAM)
+    tsc = " ".join(TSC)
+    for words in ("compile a.ts -o /dev/null --map /dev/null", "compile /dev/null -o /dev/null"):
+        assert run(f"{tsc} {words}", tmp_path).code == 0
+    done = run(f"mkfifo p; cat p & {tsc} compile a.ts -o p >/dev/null; wait", tmp_path)
+    assert done.code == 0 and done.out.startswith("TS\x01")
+    assert (tmp_path / "p").is_fifo()
+    if Path("/dev/full").exists():
+        done = run(f"{tsc} compile a.ts -o /dev/full", tmp_path)
+        assert done.code == 2 and "-o" in done.err
+
+
+def test_a_file_called_as_a_shipped_robot_is_no_input(
+    tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    for _ in range(2):
+        assert tsc("board", "tinibot", "-o", "tinibot").code == 0
+
+
+OUTPUTS = [
+    (verb, output)
+    for verb, parser in PARSERS.items()
+    for output in values_of(parser)
+    if output in paths.WRITES and not (verb == "monitor" and output == "plot")
+]
+
+
+@pytest.mark.parametrize(("verb", "output"), OUTPUTS)
+def test_what_cannot_be_written_is_said_before_anything_is_done(
+    tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, verb: str, output: str
+) -> None:
+    """No robot drives for a picture that has no place."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("tiniscript.cli.inputs.robot", lambda *_: pytest.fail("something is done"))
+    files = {"robot": Path("tinibot")} if verb == "board" else {}
+    for path in (tmp_path, tmp_path / "none" / "x", Path("a\0b"), Path("x" * 5000)):
+        words = arguments(verb, {**files, output: path})
+        done = tsc(*words)
+        assert done.code == 2
+        assert paths.WRITES[output][0] in done.err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_file_that_may_not_be_written(
+    tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    output = tmp_path / "x.bin"
+    output.write_bytes(b"mine")
+    real = os.access
+    monkeypatch.setattr(  # root may write everything, so nothing else would do
+        os, "access", lambda path, mode: Path(path) != output and real(path, mode)
+    )
+    assert tsc("compile", "-e", PROGRAM, "-o", output).code == 2
+    assert output.read_bytes() == b"mine"

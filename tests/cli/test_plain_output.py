@@ -1,0 +1,147 @@
+"""Nothing of others moves the cursor of a person's terminal, hides text or begins a line there."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from tests.cli.test_outputs import PROFILE, WORLD
+from tests.support.command import PROGRAM, Tsc
+from tests.support.verbs import parsers, values_of
+from tiniscript.cli.errors import Trouble
+from tiniscript.cli.texts.common import LONGEST, Said, text
+from tiniscript.printable import printable
+
+# ESC and a colour, a C1 control, a line of its own, backspaces, and marks that turn the direction
+EVIL = "\x1b[31mx\x9b2J\r\ntsc: done\x08\x7f\u202e\u2066\u200f\u2028"
+BAD = re.compile(r"[\x00-\x09\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2028\u2029\u2066-\u2069]")
+PARSERS = parsers()
+ENDS = {  # what keeps a verb from waiting for something
+    "robot": ["--for", "0.1", "--hurry", "max"],
+    "link": ["--port", "/none"], "start": ["--port", "/none"], "trim": ["--port", "/none"],
+    "monitor": ["--port", "/none"], "fetch": ["--port", "/none"], "name": ["X", "--port", "/none"],
+    "ping": ["--port", "/none"], "info": ["--port", "/none"], "stop": ["--port", "/none"],
+    "upload": ["-e", PROGRAM, "--port", "/none"], "live": ["F(1, 80)", "--port", "/none"],
+    "firmware": ["--port", "/none"],
+}  # fmt: skip
+CASES = [(verb, dest) for verb, parser in PARSERS.items() for dest in values_of(parser)]
+
+
+def assert_plain(*said: str) -> None:
+    for each in said:
+        found = BAD.search(each)
+        assert found is None, f"{found[0]!r} in {each!r}"
+        assert "tsc: done" not in each.splitlines(), "a line that tsc has not said"
+
+
+@pytest.fixture(autouse=True)
+def alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    (tmp_path / "here").mkdir()
+    monkeypatch.chdir(tmp_path / "here")
+
+
+@pytest.mark.parametrize("language", ["en", "es"])
+@pytest.mark.parametrize(("verb", "dest"), CASES)
+def test_no_argument_of_any_verb_reaches_the_terminal_raw(
+    tsc: Tsc, verb: str, dest: str, language: str
+) -> None:
+    option = values_of(PARSERS[verb])[dest]
+    ends = ENDS.get(verb, [])
+    if dest in ("port", "ports"):
+        ends = ends[:-2]
+    if dest in ("name", "line", "texts", "program", "text"):
+        ends = [each for each in ends if each not in ("X", "-e", PROGRAM, "F(1, 80)")]
+    for evil in (EVIL, f"DISTANCE={EVIL}", f"{EVIL}.toml", f"/{EVIL}/x"):
+        words = [option, evil] if option else [evil]
+        done = tsc(verb, *words, *ends, "--lang", language)
+        assert_plain(done.out, done.err)
+
+
+@pytest.mark.parametrize("words", [
+    [EVIL], [EVIL, "x"], ["--lang", EVIL], [f"--lang={EVIL}", "check"], ["check", f"--{EVIL}"],
+    ["check", "-e", "W(1)", EVIL], ["run", "-e", "W(1)", f"--show={EVIL}"], ["help", EVIL],
+    ["run", "-e", "W(1)", "--sensor", "DISTANCE=1", "--sensor", f"DISTANCE={EVIL}"],
+])  # fmt: skip
+def test_unknown_verbs_and_options_are_said_plainly(tsc: Tsc, words: list[str]) -> None:
+    for language in ("en", "es"):
+        done = tsc(*words, *([] if "--lang" in words[0] else ["--lang", language]))
+        assert_plain(done.out, done.err)
+        assert done.code == 2 or words[0] == "help"
+
+
+def in_toml(said: str) -> str:
+    return '"' + "".join(f"\\U{ord(letter):08x}" for letter in said) + '"'
+
+
+def spoiled(toml: str) -> list[str]:
+    """Return a text for each of its strings, and for each of its keys, with that one spoiled."""
+    values = [match.span() for match in re.finditer(r'"[^"\n]*"', toml)]
+    keys = [match.span(1) for match in re.finditer(r"^([a-z_A-Z]+) *=", toml, re.MULTILINE)]
+    return [toml[:a] + in_toml(EVIL) + toml[b:] for a, b in values + keys]
+
+
+@pytest.mark.parametrize("verb", ["check", "run", "wiring", "board", "robot"])
+def test_no_string_of_a_profile_reaches_the_terminal_raw(tsc: Tsc, verb: str) -> None:
+    texts = spoiled(PROFILE)
+    assert len(texts) > 30
+    for number, toml in enumerate(texts):
+        if verb in ("run", "robot") and number % 7:
+            continue  # they read it as the others do
+        Path("evil.toml").write_text(toml, encoding="utf-8")
+        words = ["evil.toml"] if verb == "board" else ["--robot", "evil.toml"]
+        words += ["-e", "X = DISTANCE"] if verb in ("check", "run") else []
+        for language in ("en", "es"):
+            done = tsc(verb, *words, *ENDS.get(verb, []), "--lang", language)
+            assert_plain(done.out, done.err)
+
+
+def test_no_string_of_a_world_reaches_the_terminal_raw(tsc: Tsc) -> None:
+    texts = spoiled(WORLD)
+    assert len(texts) > 3
+    for toml in texts:
+        Path("evil.toml").write_text(toml, encoding="utf-8")
+        for language in ("en", "es"):
+            done = tsc("robot", "--world", "evil.toml", *ENDS["robot"], "--lang", language)
+            assert_plain(done.out, done.err)
+
+
+def test_a_line_of_a_program_is_shown_plainly_where_it_faults(tsc: Tsc, tmp_path: Path) -> None:
+    """The text of a program is data; a fault and a listing quote it."""
+    program = tmp_path / "a.ts"
+    program.write_text("X = 1/(TIME - TIME)  // \x1b[31m\u202e\x9b\tred", encoding="utf-8")
+    assert tsc("compile", program).code == 0
+    image = program.with_suffix(".bin")
+    for verb, file in (("run", program), ("run", image), ("show", image), ("check", program)):
+        done = tsc(verb, file)
+        assert_plain(done.out, done.err)
+        assert verb == "check" or "TIME" in done.out + done.err
+
+
+def test_a_bug_is_told_in_plain_text(tsc: Tsc, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:  # fmt: skip # noqa: E501
+    from tiniscript.cli import main
+
+    def broken(arguments: list[str], language: str) -> int:
+        raise RuntimeError(EVIL)
+
+    monkeypatch.setattr("tiniscript.cli.commands.check.run", broken)
+    assert main(["check"]) == 2
+    assert_plain(capsys.readouterr().err)
+
+
+def test_a_sentence_keeps_the_lines_of_other_sentences_alone() -> None:
+    said = Said("{a}|{b}").format(a="x\ny", b=Said("x\ny"))
+    assert said == "x?y|x\ny"
+    assert Said("{a}").format(a="x" * 10_000) == "x" * LONGEST + "…"
+    assert Said("{a:>3}").format(a=1) == "  1"
+    assert isinstance(text("no_verb", "en"), Said)
+    assert Trouble(2, "no_verb", found=EVIL, near=EVIL).sentence("es").isprintable()
+
+
+def test_what_is_printable_stays() -> None:
+    for good in ("", "Tini", "año ñandú", "机器人", "🤖", "a b", "-e 'SI|F(2, 80)'"):
+        assert printable(good) == good
+    assert printable("abc", 2) == "ab…"
+    assert printable("a\x1b[31m") == "a?[31m"

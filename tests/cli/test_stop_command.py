@@ -1,0 +1,115 @@
+"""`tsc stop` as people use it: twice, at the same time, and where nobody answers."""
+
+from __future__ import annotations
+
+import json
+import re
+from typing import cast
+
+import pytest
+
+from tests.machines.host_firmware import missing
+from tests.support.command import Command
+from tests.support.pty_robot import PtyRobot, on, uploading
+from tiniscript.cli.errors import Trouble
+from tiniscript.cli.robot import shared_port
+from tiniscript.cli.texts.common import text
+from tiniscript.link.line import Line
+from tiniscript.link.session import CONFIRM_MS
+
+pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
+
+
+def passed_ms(pty_robot: PtyRobot, *arguments: str) -> tuple[int, int]:
+    """Run `tsc` on the robot's port; return its exit code, and how long that took the robot."""
+    began_ms = pty_robot.robot_ms
+    done = on(pty_robot, *arguments)
+    return done.code, pty_robot.robot_ms - began_ms
+
+
+def test_a_second_stop_is_confirmed_like_the_first(pty_robot: PtyRobot) -> None:
+    for _ in range(3):
+        code, took_ms = passed_ms(pty_robot, "stop")
+        assert code == 0
+        assert took_ms < CONFIRM_MS // 2
+
+
+def test_a_second_stop_through_a_holder_is_too(pty_robot: PtyRobot, link: Command) -> None:
+    for _ in range(3):
+        code, took_ms = passed_ms(pty_robot, "stop")
+        assert code == 0
+        assert took_ms < CONFIRM_MS // 2
+    assert on(pty_robot, "info").code == 0
+
+
+def test_a_robot_that_its_button_has_started_again_is_stopped(pty_robot: PtyRobot) -> None:
+    assert on(pty_robot, "upload", "-e", "SB|F(60, 80)").code == 0
+    for _ in range(2):
+        assert on(pty_robot, "stop").code == 0
+        pty_robot.push()
+        pty_robot.until(lambda: pty_robot.moves, "its button starts it")
+        assert on(pty_robot, "stop").code == 0
+        assert not pty_robot.moves
+
+
+@pytest.mark.parametrize("is_shared", [False, True])
+def test_who_stops_at_the_same_time_is_told_so(pty_robot: PtyRobot, is_shared: bool) -> None:
+    holder = uploading(pty_robot) if is_shared else None
+    stops = [Command("stop", "--port", pty_robot.port) for _ in range(3)]
+    done = [each.ended() for each in stops]
+    assert [(each.code, each.err) for each in done] == [(0, "")] * 3
+    assert not pty_robot.moves
+    if holder is not None:
+        assert holder.ended().code == 3
+
+
+def test_a_stop_that_nobody_confirms_holds_up_nobody_for_long(
+    pty_robot: PtyRobot, link: Command
+) -> None:
+    pty_robot.switch_off()
+    done = on(pty_robot, "stop")
+    assert done.code == 3
+    assert "has not confirmed" in done.err
+    pty_robot.switch_on()
+    link.until("is there again")
+    code, took_ms = passed_ms(pty_robot, "info")
+    assert (code, took_ms < CONFIRM_MS // 2) == (0, True)
+    assert on(pty_robot, "stop").code == 0
+
+
+@pytest.mark.parametrize(("verb", "is_patient"), [("stop", True), ("info", False)])
+def test_a_stop_waits_for_a_port_longer_than_others(
+    verb: str, is_patient: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Another command has it that looks for a silent robot for 8.5 s, and does not share it."""
+    now_s = [0.0]
+    monkeypatch.setattr(shared_port, "monotonic", lambda: now_s[0])
+    monkeypatch.setattr(shared_port, "sleep", lambda wait_s: now_s.append(now_s.pop() + wait_s))
+    line = cast(Line, object())
+
+    def open_line(_: object) -> Line:
+        if now_s[0] < 8.5:
+            raise Trouble(3, "port_busy", port="/dev/ttyUSB7", why="")
+        return line
+
+    if is_patient:
+        assert shared_port.way_to("/dev/ttyUSB7", verb, open_line) is line
+    else:
+        with pytest.raises(Trouble):
+            shared_port.way_to("/dev/ttyUSB7", verb, open_line)
+
+
+@pytest.mark.parametrize("language", ["en", "es"])
+def test_nobody_is_told_to_push_the_button_of_a_robot_that_may_stand(language: str) -> None:
+    said = text("not_confirmed", language)
+    assert not re.search(r"press its button|pulsa su botón", said)
+    assert re.search(r"batter|bater", said)
+
+
+def test_info_tells_what_the_uart_has_noticed(pty_robot: PtyRobot) -> None:
+    fields = json.loads(on(pty_robot, "info", "--json").out)
+    assert (fields["framing"], fields["overrun"]) == (0, 0)
+    assert "framing" not in on(pty_robot, "info").out
+    fields = json.loads(on(pty_robot, "ping", "--json", "--count", "1").out)
+    assert (fields["framing"], fields["overrun"]) == (0, 0)

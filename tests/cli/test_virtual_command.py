@@ -1,0 +1,357 @@
+"""`tsc robot` and `--virtual`: real processes, real sockets, the whole firmware behind them."""
+
+from __future__ import annotations
+
+import json
+import re
+import signal
+import socket
+import subprocess
+import sys
+from collections import Counter
+from collections.abc import Iterator
+from contextlib import contextmanager
+from io import BytesIO
+from pathlib import Path
+
+import pytest
+
+from tests.support.command import OBSTACLE, TSC, Done, Tsc, process
+from tests.support.virtual_robot import missing
+from tiniscript.cli import install_advice
+from tiniscript.virtual import directory
+
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
+
+FOREVER = "SI|LOOP(FOREVER);L(1, 30);END_LOOP"
+NO_PTY = "Windows has no pseudo-terminals of this kind"
+
+
+class Robot:
+    """A `tsc robot` that runs."""
+
+    def __init__(self, *arguments: str | Path) -> None:
+        self._process = subprocess.Popen(
+            [*TSC, "robot", *map(str, arguments)],
+            stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        )  # fmt: skip
+        self.port = self.line()
+
+    def line(self) -> str:
+        assert self._process.stdout
+        return self._process.stdout.readline().removesuffix("\n")
+
+    def until(self, said: str) -> list[str]:
+        """Return the lines up to one that ends so."""
+        lines: list[str] = []
+        while not lines or not lines[-1].endswith(said):
+            lines.append(self.line())
+            assert lines[-1], f"it ends without {said}: {lines}"
+        return lines
+
+    def kill(self) -> None:
+        self._process.kill()
+        self._process.communicate()
+
+    def end(self, number: int = signal.SIGINT) -> Done:
+        if self._process.poll() is None:
+            self._process.send_signal(number)
+        out, err = self._process.communicate(timeout=60)
+        return Done(self._process.returncode, out, err)
+
+
+@contextmanager
+def robot(*arguments: str | Path) -> Iterator[Robot]:
+    found = Robot(*arguments)
+    try:
+        yield found
+    finally:
+        found.end(signal.SIGTERM)
+
+
+def visitor(port: str) -> socket.socket:
+    return socket.create_connection(("127.0.0.1", int(port.rpartition(":")[2])))
+
+
+# -- a robot with a port --------------------------------------------------------------------------
+
+
+def test_another_terminal_finds_it_and_it_says_what_it_does(tmp_path: Path) -> None:
+    picture = tmp_path / "way.png"
+    with robot("--name", "KAT", "--world", "light", "--plot", picture) as found:
+        assert found.port.startswith("socket://127.0.0.1:")
+        listed = json.loads(process("ports", "--json").out)
+        [row] = [each for each in listed if each["port"] == found.port]
+        assert row["is_virtual"]
+        assert row["description"] == 'KAT: virtual robot tinibot, world "light"'
+        done = process("upload", "--virtual", "-e", "SI|F(0.2, 50);SHOW(1.5);BEEP(0.1, 440)")
+        assert (done.code, done.err) == (0, "")
+        receipt, *rest = done.out.splitlines()
+        assert receipt.startswith(f"-e -> KAT ({found.port})")
+        assert rest == ["SHOW 1.5", "Done.", "Saved in slot 0."]
+        # a value is shown when there is room for it on the line
+        lines = [re.sub(r"^\d+ (SHOW|BEEP|DONE)", r"\1", line) for line in found.until("DONE")]
+        assert lines == ["0 START", "0 MOTORS 50 50", "200 MOTORS 0 0", "SHOW 1.5", "BEEP 440 100",
+                         "DONE"]  # fmt: skip
+        # where nothing is said it is found, too; and it is no port for another day
+        assert process("start").out.startswith("KAT: started")
+        assert json.loads(process("info", "--virtual", "--json").out)["name"] == "KAT"
+        for _ in range(3):
+            assert process("stop", "--virtual").code == 0
+        ended = found.end()
+        assert ended.code == 0
+        assert "The virtual robot drove 9 cm" in ended.err
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    assert directory.running() == []
+    done = process("info")
+    assert done.code == 3
+    assert "which port?" in done.err
+
+
+@pytest.mark.parametrize("hurry", ["1", "50"])
+def test_a_computer_that_vanishes_stops_the_robot(hurry: str) -> None:
+    with robot("--hurry", hurry) as found:
+        command = [*TSC, "upload", "--port", found.port, "-e", FOREVER]
+        upload = subprocess.Popen(command, stdout=subprocess.DEVNULL)
+        found.until("0 MOTORS -30 30")
+        upload.kill()
+        upload.wait()
+        line = "MOTORS"
+        while "MOTORS" in line:
+            line = found.line()
+        assert line.endswith(" FAULT LINK_LOST")
+
+
+def test_a_second_computer_is_told_that_the_port_is_taken() -> None:
+    with robot() as found, visitor(found.port) as first:
+        first.sendall(b"SHOW(1)\n")
+        assert first.recv(1000)  # it is heard
+        done = process("info", "--port", found.port)
+        assert done.code == 3
+        assert f"another program is using the port {found.port}" in done.err
+        with visitor(found.port) as third:
+            assert third.recv(1000).startswith(b"Port already in use")
+            assert third.recv(1000) == b""
+
+
+def test_the_next_computer_has_it_alone() -> None:
+    """What the one before it has begun to say is none of its words."""
+    with robot() as found:
+        with visitor(found.port) as first:
+            first.sendall(b"\x05half a frame")
+        done = process("upload", "--port", found.port, "-e", "SI|F(0.1, 50)")
+        assert (done.code, done.err) == (0, "")
+
+
+def test_what_it_keeps_may_be_in_a_file(tmp_path: Path) -> None:
+    memory = tmp_path / "kept.bin"
+    with robot("--memory", memory) as found:
+        assert process("upload", "--virtual", "-e", "SB|F(0.1, 60)").code == 0
+        assert process("name", "INTI", "--virtual").code == 0
+        found.end(signal.SIGTERM)
+    assert len(memory.read_bytes()) == 1024
+    with robot("--memory", memory, "--button-at", "0.5", "--hurry", "max", "--for", "3") as found:
+        assert found.until("100 DONE")[0] == "0 START"
+        assert found.end().code == 0
+    with robot("--memory", memory):
+        assert json.loads(process("info", "--virtual", "--json").out)["name"] == "INTI"
+
+
+def test_it_ends_by_itself_and_chance_begins_with_its_seed(tmp_path: Path) -> None:
+    """The button starts it at the same millisecond, so all is the same."""
+    memory = tmp_path / "kept.bin"
+    with robot("--memory", memory):
+        text = OBSTACLE.replace("SI|", "SB|")
+        assert process("upload", "--virtual", "-e", text).code == 0
+    options = [
+        "--memory",
+        str(memory),
+        "--button-at",
+        "1",
+        "--for",
+        "20",
+        "--hurry",
+        "max",
+        "--noise",
+    ]
+    first, second, other = (
+        process("robot", *options, "5", "--seed", seed, "--lang", "es") for seed in "112"
+    )
+    assert first.code == 0
+    assert first.out.count("READ DISTANCE") > 10
+    assert first.out.splitlines()[1:] == second.out.splitlines()[1:] != other.out.splitlines()[1:]
+    assert "El robot virtual recorrió" in first.err
+
+
+def test_a_pseudo_terminal_is_a_port_too() -> None:
+    pytest.importorskip("pty", reason=NO_PTY)
+    with robot("--pty") as found:
+        port = found.line()
+        assert port.startswith("/dev/")
+        assert process("upload", "--port", port, "-e", "SI|F(0.1, 50)").code == 0
+        assert found.until("100 DONE")
+
+
+def test_a_note_of_a_robot_that_is_gone_is_not_believed() -> None:
+    found = Robot()
+    assert len(directory.running()) == 1
+    found.kill()
+    [note] = directory._folder().glob("*.json")
+    assert directory.running() == []
+    assert not note.exists()
+    for text in ("", "[]", "{}", '{"address": 5}', "[" * 10_000):
+        note.write_text(text, encoding="utf-8")
+        assert directory.running() == []
+    assert process("stop", "--virtual").code == 3
+
+
+def test_of_several_robots_one_is_named() -> None:
+    with robot(), robot() as second:
+        done = process("info", "--virtual")
+        assert done.code == 3
+        assert second.port in done.err
+        assert process("info", "--port", second.port).code == 0
+
+
+# -- a robot for one command ----------------------------------------------------------------------
+
+
+def colours(data: bytes) -> dict[str, int]:
+    """Return how many pixels of a picture have about the colour of something."""
+    from PIL import Image
+
+    from tiniscript.virtual import picture
+
+    with Image.open(BytesIO(data)) as image:
+        assert image.format == "PNG"
+        assert max(image.size) < 1400
+        data = image.convert("RGB").tobytes()
+        pixels = Counter(data[k : k + 3] for k in
+                         range(0, 3 * image.width * image.height, 3))  # fmt: skip
+    names = {"way": picture.WAY, "box": picture.BOX, "robot": picture.ROBOT}
+    found = dict.fromkeys(names, 0)
+    for name, colour in names.items():
+        wanted = bytes.fromhex(colour[1:])
+        for pixel, count in pixels.items():  # the borders of lines are mixed
+            is_like = max(abs(a - b) for a, b in zip(pixel, wanted, strict=True)) < 70
+            found[name] += count * is_like
+    return found
+
+
+def test_upload_drives_a_virtual_robot_and_draws_its_way(tmp_path: Path) -> None:
+    still, way = tmp_path / "still.png", tmp_path / "way.png"
+    done = process("upload", "--virtual", "-e", "SI|S", "--plot", still)
+    assert done.code == 0
+    done = process("upload", "--virtual", "-e", OBSTACLE, "--for", "30", "--hurry", "100",
+                   "--plot", way)  # fmt: skip
+    assert done.code == 0
+    assert "The time of --for is over.\nSaved in slot 0.\n" in done.out
+    assert f"and touched nothing. Picture: {way}\n" in done.out
+    before, after = colours(still.read_bytes()), colours(way.read_bytes())
+    assert before["way"] < 20 < 4000 < after["way"]
+    assert before["robot"] > 200
+    assert before["box"] > 10_000
+    assert directory.running() == []
+
+
+def test_a_hurried_robot_is_not_lost_and_a_bad_line_only_costs_time() -> None:
+    text = "SI|LOOP(20);F(1, 50);B(1, 50);END_LOOP;SHOW(TIME)"
+    done = process("upload", "--virtual", "-e", text, "--hurry", "max", "--faults", "3")
+    assert done.code == 0  # what a radio has written into the line is said, too
+    assert done.out.splitlines()[1:3] in (["SHOW 40", "Done."], ["Done.", "Saved in slot 0."])
+
+
+def test_upload_and_live_say_what_they_say_of_any_robot() -> None:
+    done = process("upload", "--virtual", "-e", "SI|X = 0;SHOW(1 / X)", "--json", "--seed", "7")
+    assert done.code == 1
+    events = [json.loads(line)["event"] for line in done.out.splitlines()]
+    assert events == ["RECEIPT", "FAULT", "SAVED"]
+    assert "The virtual robot drove 0 cm" in done.err
+    done = process("live", "--virtual", "F(0.1, 80);SHOW(BATTERY)", "--robot", "liner",
+                   "--sensor", "BATTERY=7.4")  # fmt: skip
+    assert done.code == 0
+    assert done.out.startswith("SHOW 7.4\nDone.\nThe virtual robot drove 5 cm")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows sends no Ctrl-C to one process")
+def test_ctrl_c_stops_the_virtual_robot_and_draws_what_there_was(tmp_path: Path) -> None:
+    picture = tmp_path / "way.png"
+    command = [*TSC, "upload", "--virtual", "-e", "SI|LOOP(FOREVER);F(0.1, 30);SHOW(1);END_LOOP",
+               "--plot", str(picture)]  # fmt: skip
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as up:
+        assert up.stdout and up.stderr
+        assert "SI: running" in up.stdout.readline()
+        assert up.stdout.readline() == "SHOW 1\n"
+        up.send_signal(signal.SIGINT)
+        out, err = up.communicate(timeout=60)
+    assert up.returncode == 2
+    assert "Stopped: the robot has confirmed it." in err
+    assert str(picture) in out
+    assert picture.read_bytes().startswith(b"\x89PNG")
+
+
+def test_without_a_robot_the_virtual_one_is_named() -> None:
+    done = process("upload", "-e", "SI|S")
+    assert done.code == 3
+    assert "Without a robot:  --virtual" in done.err
+    done = process("monitor", "--virtual")
+    assert done.code == 3
+    assert "tsc robot" in done.err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["robot", "--listen", "70000"], "--listen takes a whole number from 0 to 65535"),
+        (["robot", "--noise", "51"], "--noise takes a number from 0 to 50, not 51"),
+        (["robot", "--faults", "-1"], "--faults takes a number from 0 to 200"),
+        (["robot", "--hurry", "fast"], "--hurry takes how many times as fast"),
+        (["robot", "--hurry", "0"], "--hurry takes a number from 0.1 to 10000, not 0"),
+        (["robot", "--motors", "100"], "--motors takes two numbers"),
+        (["robot", "--motors", "100,1"], "--motors takes a number from 10 to 200, not 1"),
+        (["robot", "--for", "0"], "--for takes a number from 0.1"),
+        (["robot", "--seed", "0"], "--seed takes a whole number from 1"),
+        (["robot", "--button-at", "2,x"], "--button-at takes seconds"),
+        (["robot", "--name", "a" * 17], "a name has 1 to 16 bytes"),
+        (["robot", "--plot", "no/such/folder/way.png"], "Choose another place with --plot"),
+        (["robot", "--plot", ""], "Choose another place with --plot"),
+        (["robot", "--memory", "."], "Choose another place with --memory"),
+        (["robot", "--sensor", "EYES=1"], "has no sensor EYES"),
+        (["robot", "--robot", "r2d2"], "There is no robot r2d2"),
+        (["upload", "-e", "SI|S", "--world", "line"], "--world is for the virtual robot alone"),
+        (["live", "S", "--port", "COM1", "--virtual"], "--virtual does not go together"),
+    ],
+)
+def test_wrong_options_are_said(tsc: Tsc, arguments: list[str], said: str) -> None:
+    done = tsc(*arguments)
+    assert done.code == 2
+    assert said in done.err
+    spanish = tsc(*arguments, "--lang", "es")
+    assert spanish.code == 2
+    assert said not in spanish.err or said.startswith("There")
+
+
+def test_a_port_that_is_taken_and_a_memory_that_is_none(tsc: Tsc, tmp_path: Path) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        done = tsc("robot", "--listen", str(taken.getsockname()[1]))
+    assert done.code == 3
+    assert "Choose another with --listen" in done.err
+    small = tmp_path / "small.bin"
+    small.write_bytes(b"TS")
+    done = tsc("robot", "--memory", small)
+    assert done.code == 2
+    assert "that has 1024 bytes" in done.err
+
+
+@pytest.mark.parametrize("name", ["wasmtime", "PIL"])
+def test_what_is_not_installed_is_said(
+    tsc: Tsc, name: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    for module in [each for each in sys.modules if each.split(".")[0] == name]:
+        monkeypatch.delitem(sys.modules, module)
+    for module in ("vm.wasm_store", "virtual.robot", "virtual.module", "virtual.picture"):
+        monkeypatch.delitem(sys.modules, f"tiniscript.{module}", raising=False)
+    monkeypatch.setitem(sys.modules, name, None)
+    done = tsc("upload", "--virtual", "-e", "SI|S", "--plot", tmp_path / "way.png")
+    assert done.code == 2
+    assert install_advice.command("virtual") in done.err

@@ -1,0 +1,208 @@
+"""The virtual robot on a real pseudo-terminal: what a person sees, and what keys do.
+
+`pyte` plays the terminal.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import signal
+import struct
+import subprocess
+import sys
+from pathlib import Path
+from queue import Queue
+from threading import Thread
+
+import pytest
+
+from tests.support.virtual_robot import missing
+
+NO_PTY = "Windows has no pseudo-terminals of this kind"
+pty = pytest.importorskip("pty", reason=NO_PTY)
+fcntl = pytest.importorskip("fcntl", reason=NO_PTY)
+termios = pytest.importorskip("termios", reason=NO_PTY)
+pyte = pytest.importorskip("pyte", reason="pyte, a terminal for tests, is not installed")
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
+
+COLUMNS, ROWS = 90, 30
+GLANCE = 1000  # bytes
+
+
+class Terminal:
+    """A command on a terminal of its own."""
+
+    def __init__(self, *arguments: str | Path) -> None:
+        self._ours, theirs = pty.openpty()
+        fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", ROWS, COLUMNS, 0, 0))
+        hidden = ("COLUMNS", "LINES", "NO_COLOR", "FORCE_COLOR", "CI", "TTY_COMPATIBLE")
+        env = {name: value for name, value in os.environ.items() if name not in hidden}
+        env |= {"TERM": "xterm-256color"}
+        self._process = subprocess.Popen(
+            [sys.executable, "-m", "tiniscript", *map(str, arguments)],
+            stdin=theirs, stdout=theirs, stderr=theirs, env=env,
+        )  # fmt: skip
+        os.close(theirs)
+        self._screen = pyte.Screen(COLUMNS, ROWS)
+        self._stream = pyte.ByteStream(self._screen)
+        self.written = b""
+        self._unseen = b""
+        self._read: Queue[bytes] = Queue()
+        self._reader = Thread(target=self._read_on, daemon=True)
+        self._reader.start()
+
+    def lines(self) -> list[str]:
+        return [line.rstrip() for line in self._screen.display]
+
+    def until(self, pattern: str) -> re.Match[str]:
+        """Wait until something is to be seen."""
+        while True:
+            found = re.search(pattern, "\n".join(self.lines()))
+            if found:
+                return found
+            assert self._take(), f"it ends without {pattern}: {self.lines()}"
+
+    def _read_on(self) -> None:
+        """Read at once: whoever writes to a terminal that is full waits."""
+        part = b"begun"
+        while part:
+            try:
+                part = os.read(self._ours, 65536)
+            except OSError:  # Linux: the other end is closed
+                part = b""
+            self._read.put(part)
+
+    def type(self, keys: str) -> None:
+        os.write(self._ours, keys.encode())
+
+    def interrupt(self) -> None:
+        """Do what Ctrl-C does on the terminal of a shell."""
+        self._process.send_signal(signal.SIGINT)
+
+    def end(self) -> int:
+        while self._take():
+            pass
+        self._reader.join()
+        os.close(self._ours)
+        return self._process.wait()
+
+    def _take(self) -> bool:
+        """Draw a small part of what was written: nothing is missed that is seen briefly."""
+        if not self._unseen:
+            self._unseen = self._read.get()
+            self.written += self._unseen
+        part, self._unseen = self._unseen[:GLANCE], self._unseen[GLANCE:]
+        self._stream.feed(part)
+        return bool(part)
+
+
+def test_upload_draws_the_world_and_the_way(tmp_path: Path) -> None:
+    program = tmp_path / "drive.ts"
+    program.write_text("SI|F(0.6, 80)\nSHOW(DISTANCE)\nX = 0; SHOW(1 / X)", encoding="utf-8")
+    terminal = Terminal("upload", program, "--virtual", "--world", "light")
+    terminal.until(r"left motor +80 %")
+    assert terminal.end() == 1
+    lines = terminal.lines()
+    drawn = "\n".join(lines)
+    assert "── TiniBot ── lamps in the dark ──" in drawn
+    assert re.search(r"time +0\.6\d* s +fault", drawn)
+    assert re.search(r"DISTANCE +154\.5 cm +distance sensor", drawn)
+    assert re.search(r"SHOW +154\.5", drawn)
+    assert "→" in drawn
+    assert drawn.count("*") == 2  # the lamps
+    assert "The virtual robot drove 22 cm" in drawn
+    assert "fault DIVIDE_BY_ZERO" in drawn
+    assert terminal.written.rfind(b"\x1b[?25h") > terminal.written.rfind(b"\x1b[?25l")  # cursor
+
+
+def test_keys_push_the_buttons_of_the_robot(tmp_path: Path) -> None:
+    memory = tmp_path / "kept.bin"
+    terminal = Terminal("robot", "--memory", memory, "--lang", "es")
+    terminal.until(r"b: botón de inicio")
+    upload = [sys.executable, "-m", "tiniscript", "upload", "--virtual", "-e",
+              "SB|LOOP(FOREVER);L(1, 40);END_LOOP"]  # fmt: skip
+    terminal.until("todavía sin programa")
+    assert subprocess.run(upload, capture_output=True, check=False).returncode == 0
+    terminal.until("su botón lo inicia")
+    terminal.type("b")
+    terminal.until(r"motor der\. +40 %")
+    terminal.type("b")
+    terminal.until(r"s +detenido")
+    terminal.type("r")
+    terminal.type("b")
+    terminal.until(r"motor der\. +40 %")
+    terminal.type("p")
+    terminal.until(r"s +apagado")
+    terminal.type("q")
+    assert terminal.end() == 0
+    assert "El robot virtual recorrió 0 cm" in "\n".join(terminal.lines())
+
+
+@pytest.mark.parametrize("is_wanted", [True, False])
+def test_without_a_robot_the_virtual_one_is_offered(is_wanted: bool) -> None:
+    """On a computer without any port with a question, else as one of the ports."""
+    terminal = Terminal("upload", "-e", "SI|F(0.1, 50)")
+    asked = terminal.until(r"\[Y/n\]|1 to (\d+):")
+    if asked[1]:
+        terminal.type(f"{asked[1]}\n" if is_wanted else "\x04")
+    else:
+        terminal.type("\n" if is_wanted else "n\n")
+    assert terminal.end() == (0 if is_wanted else 3)
+    drawn = "\n".join(terminal.lines())
+    assert ("The virtual robot drove" in drawn) == is_wanted
+
+
+def test_the_button_of_a_program_that_waits_is_a_key() -> None:
+    terminal = Terminal("upload", "-e", "SB|F(30, 80)", "--virtual", "--lang", "es")
+    terminal.until(r"s +su botón lo inicia")
+    terminal.until("b: botón de inicio +q: terminar")
+    terminal.type("b")
+    terminal.until(r"motor izq\. +80 %")
+    terminal.type("b")
+    terminal.until(r"s +detenido")
+    terminal.until("El robot se detuvo con su botón")
+    terminal.type("b")  # and again
+    terminal.until(r"motor izq\. +80 %")
+    terminal.type("q")
+    assert terminal.end() == 0
+    drawn = "\n".join(terminal.lines())
+    assert re.search(r"motor izq\. +0 %", drawn)
+    assert re.search(r"s +apagado", drawn)
+    assert "b: botón" not in drawn  # the key does nothing any more
+
+
+def test_a_program_that_waits_ends_when_it_has_ended_or_its_time_is_over() -> None:
+    terminal = Terminal("upload", "-e", "SB|F(0.2, 80)", "--virtual")
+    terminal.until("q: end")
+    terminal.type("xb")
+    assert terminal.end() == 0
+    assert "Done." in "\n".join(terminal.lines())
+    terminal = Terminal("upload", "-e", "SB|F(0.2, 80)", "--virtual", "--for", "1")
+    assert terminal.end() == 0  # nobody has pushed it
+    assert "The virtual robot drove 0 cm in 0.0 s" in "\n".join(terminal.lines())
+
+
+def test_after_ctrl_c_the_motors_are_off_in_the_picture_too() -> None:
+    terminal = Terminal("upload", "-e", "SI|F(30, 80)", "--virtual")
+    terminal.until(r"left motor +80 %")
+    terminal.interrupt()
+    assert terminal.end() == 2
+    drawn = "\n".join(terminal.lines())
+    assert re.search(r"left motor +0 %", drawn)
+    assert re.search(r"s +stopped", drawn)
+    assert "80 %" not in drawn
+
+
+def test_the_prompt_shows_what_a_person_shows_and_nothing_else() -> None:
+    terminal = Terminal("live", "--virtual")
+    terminal.until("tini>")
+    terminal.type("X = 5; SHOW(7)\n")
+    terminal.until("SHOW +7")
+    terminal.until(r"tini>\s*$")
+    terminal.type("help\n")
+    terminal.until("The robot has LIGHT_R, LIGHT_L, DISTANCE")
+    terminal.type("quit\n")
+    assert terminal.end() == 0
+    assert b"2147483" not in terminal.written
+    assert b"before" not in terminal.written

@@ -1,0 +1,118 @@
+"""What becomes of actuators when a program ends: in the firmware, and as the virtual robot says."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+
+from tests.machines.host_firmware import HostFirmware
+from tests.machines.host_firmware import missing as no_compiler
+from tests.robots.test_robots import TEXTS
+from tests.support.virtual_robot import Talk, missing
+from tiniscript import compile_text, robots
+from tiniscript.bytecode.image import Image, unpack
+from tiniscript.cli.terminal.run_drawing import Picture
+from tiniscript.link.requests import OK
+from tiniscript.link.session import Session
+from tiniscript.robots.reader import read
+from tiniscript.virtual import worlds
+from tiniscript.virtual.robot import VirtualRobot
+
+GRABBER = robots.load("grabber")
+KIT = GRABBER.kit
+WAITS = "SI|LED(TRUE);GRIPPER(90);W(60)"
+SET = ["SET 1 1", "SET 0 90000"]
+
+
+def image_of(text: str) -> Image:
+    return unpack(compile_text(text, KIT).image, KIT.fingerprint)
+
+
+def started(text: str, **how: bool) -> tuple[HostFirmware, Session]:
+    robot = HostFirmware(KIT)
+    robot.wait(200)
+    session = Session(1, 9600, KIT.fingerprint)
+    assert robot.until(session, session.upload(image_of(text), **how)) == OK
+    robot.talk(session, 50)
+    return robot, session
+
+
+def sequence(robot: HostFirmware, session: Session) -> None:
+    robot.talk(session, 1)
+    robot.wait(50, bytes(8))
+
+
+def message(robot: HostFirmware, session: Session) -> None:
+    session.stop(robot.now_ms)
+    robot.talk(session, 300)
+
+
+def replaced(robot: HostFirmware, session: Session) -> None:
+    assert robot.until(session, session.upload(image_of("SI|W(60)"))) == OK
+
+
+ENDS: dict[str, Callable[[HostFirmware, Session], object]] = {
+    "the stop sequence": sequence,
+    "a stop of the computer": message,
+    "the button": lambda robot, session: robot.push(),
+    "a lost link": lambda robot, session: robot.wait(1200),
+    "nobody connected": lambda robot, session: robot.step(flags=8),
+    "a stall": lambda robot, session: robot.step(flags=4),
+    "another program": replaced,
+}
+
+
+@pytest.mark.skipif(bool(no_compiler()), reason=no_compiler() or "there is a compiler")
+@pytest.mark.parametrize("end", ENDS)
+def test_what_does_not_come_to_its_own_end_lets_go(end: str) -> None:
+    robot, session = started(WAITS)
+    ENDS[end](robot, session)
+    robot.wait(5)
+    did = [line.split(" ", 1)[1] for line in robot.did]
+    assert [line for line in did if "SET" in line or "ACT" in line] == [*SET, "ACTUATORS OFF"]
+
+
+@pytest.mark.skipif(bool(no_compiler()), reason=no_compiler() or "there is a compiler")
+@pytest.mark.parametrize(("text", "lets_go"), [
+    ("SI|LED(TRUE);GRIPPER(90);W(0.1)", False),
+    ("SI|LED(TRUE);GRIPPER(90);X = 0;SHOW(1 / X)", True),
+])  # fmt: skip
+def test_its_own_end_leaves_them_and_a_fault_does_not(text: str, lets_go: bool) -> None:
+    robot, session = started(text)
+    robot.talk(session, 500)
+    assert ("ACTUATORS OFF" in "".join(robot.did)) == lets_go
+    assert any("FINISHED" in line or "FAULTED" in line for line in robot.did)
+    sequence(robot, session)  # a stop reaches a robot that stands, too
+    assert "ACTUATORS OFF" in "".join(robot.did)
+
+
+# -- the virtual robot
+
+HOLDS = read(TEXTS["grabber"].replace('at_stop = "release"', 'at_stop = "hold"'), "holds")
+
+
+@pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
+@pytest.mark.parametrize(("robot_name", "said", "drawn"), [
+    ("grabber", ["RELEASE GRIPPER", "SET LED FALSE"], {1: 0}),
+    ("holds", ["SET LED FALSE"], {0: 90000, 1: 0}),
+])  # fmt: skip
+def test_the_virtual_robot_says_and_draws_it(
+    robot_name: str, said: list[str], drawn: dict[int, int]
+) -> None:
+    profile = {"grabber": GRABBER, "holds": HOLDS}[robot_name]
+    robot = VirtualRobot(profile, worlds.load("obstacles"))
+    talk = Talk(robot)
+    assert talk.upload(WAITS).status == 0
+    talk.wait(100)
+    robot.press()
+    robot.let_go()
+    events = robot.take_events()
+    assert [event.text for event in events][-len(said) - 1 :] == [*said, "STOP"]
+    picture = Picture(profile, "en")
+    for event in events:
+        if event.what != "START":
+            picture.take(event)
+    assert picture.settings == drawn == robot.actuators
+    robot.press()
+    assert not [each for each in robot.take_events() if each.what in ("SET", "RELEASE")]

@@ -1,0 +1,246 @@
+"""What the sketch does with sensors, buzzer, lamps and servos: seen on a simulated board."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import pytest
+
+from tests.firmware.test_boards import LAMP, START, on_board, pulses, started
+from tests.machines import board as boards
+from tests.machines.board import HERTZ, MS
+from tiniscript import robots
+
+pytestmark = pytest.mark.skipif(bool(boards.missing()), reason=boards.missing() or "there is one")
+
+# -- sensors
+
+
+def shown_as_power(reading: str) -> str:
+    """A program that shows a reading as the power of a motor: PWM of 2.55 for each percent."""
+    return f"SI|M({reading}, 0);W(5)"
+
+
+@pytest.mark.parametrize("distance_cm", [3, 20, 50, 99])
+@pytest.mark.parametrize("name", ["tinibot", "grabber"])
+def test_an_echo_is_a_distance(name: str, distance_cm: int) -> None:
+    robot = robots.load(name)
+    board = started(robot, shown_as_power("DISTANCE"))
+    at = [each.driver for each in robot.board.sensors].index("hc_sr04")
+    pins = robot.board.sensors[at].pins
+    board.echoes(pins["trigger"], pins["echo"], [distance_cm * 2 / 0.0343])
+    board.ran(START + 60)
+    assert board.motors(START + 55)[0] == f"pwm {distance_cm * 653 >> 8}"
+
+
+@pytest.mark.parametrize("echo", ["10", "53", "2", "18", "21"])  # changes of port B; INT
+def test_an_echo_on_other_pins_of_a_mega(echo: str) -> None:
+    robot = on_board("tinibot", "mega", ("echo = 3", f"echo = {echo}"), ("= 2 ", "= 4 "),
+                     ("trigger = 4", "trigger = 20"),
+                     ("right_backward = 10", "right_backward = 40"))  # fmt: skip
+    board = started(robot, shown_as_power("DISTANCE"))
+    pins = robot.board.sensors[2].pins
+    board.echoes(pins["trigger"], pins["echo"], [50 * 2 / 0.0343])
+    board.ran(START + 30)
+    assert board.motors(START + 25)[0] == f"pwm {50 * 653 >> 8}"
+
+
+@pytest.mark.parametrize(
+    ("echo", "group", "mask"), [("14", 1, 2), ("15", 1, 1), ("A8", 2, 0), ("A15", 2, 7)]
+)
+def test_interrupts_that_are_not_simulated(echo: str, group: int, mask: int) -> None:
+    """Port J and K of a Mega: what is on while the sketch listens."""
+    robot = on_board(
+        "tinibot", "mega", ("echo = 3", f'echo = "{echo}"' if "A" in echo else f"echo = {echo}")
+    )
+    board = started(robot, shown_as_power("DISTANCE"))
+    board.watched |= {PCICR, PCMSK0 + group}
+    board.ran(START + 10)
+    assert board.register(PCICR, START + 5) == 1 << group
+    assert board.register(PCMSK0 + group, START + 5) == 1 << mask
+
+
+PCICR, PCMSK0 = 0x68, 0x6B
+
+
+@pytest.mark.parametrize("width_us", [0, 38_000])
+def test_no_echo_is_far_away_and_takes_25_ms(width_us: int) -> None:
+    """A later reading waits until the sensor has lowered its echo."""
+    robot = robots.load("tinibot")
+    text = "SI|IF(DISTANCE = 400);M(10, 0);ENDIF;W(0.04);IF(DISTANCE < 400);M(20, 0);ENDIF;W(5)"
+    board = started(robot, text)
+    pins = robot.board.sensors[2].pins
+    board.echoes(pins["trigger"], pins["echo"], [width_us, 50 * 2 / 0.0343])
+    board.ran(START + 100)
+    level = f"pwm {10 * 653 >> 8}"
+    assert board.motors(START + 24)[0] == "low"
+    assert board.motors(START + 27)[0] == level
+    assert board.motors(START + 99)[0] == f"pwm {20 * 653 >> 8}"
+
+
+def test_a_long_trigger() -> None:
+    """A sensor wants 10 us, and the loop does not wait for it."""
+    robot = robots.load("tinibot")
+    trigger = robot.board.sensors[2].pins["trigger"]
+    board = started(robot, shown_as_power("DISTANCE"))
+    board.watch(trigger)
+    board.ran(START + 20)
+    rose, fell = board.edges(trigger)
+    assert 10 <= (fell - rose) * 1e6 / HERTZ < 200
+
+
+@pytest.mark.parametrize(("name", "reading", "channel", "millivolts", "power"), [
+    ("tinibot", "LIGHT_R / 20", 0, 2500, 511 / 20),
+    ("tinibot", "LIGHT_L / 20", 1, 5000, 1023 / 20),
+    ("grabber", "TEMPERATURE", 0, 750, 25),
+    ("grabber", "TEMPERATURE", 0, 5000, 100),
+    ("liner", "BATTERY * 10", 7, 3700, 74),
+])  # fmt: skip
+def test_a_voltage_is_a_reading(
+    name: str, reading: str, channel: int, millivolts: int, power: float
+) -> None:
+    board = started(robots.load(name), shown_as_power(reading))
+    board.analog(channel, millivolts)
+    board.ran(START + 10)
+    shown = int(board.motors(START + 9)[0].removeprefix("pwm "))
+    assert abs(shown - power * 2.55) < 3
+
+
+@pytest.mark.parametrize(("name", "sensor", "pin", "is_high", "is_true"), [
+    ("liner", "LINE_L", 15, True, True),
+    ("liner", "LINE_R", 16, False, False),
+    ("liner", "BUTTON", 12, True, False),
+    ("liner", "BUTTON", 12, False, True),
+    ("grabber", "BUTTON", 28, False, True),
+])  # fmt: skip
+def test_a_level_is_yes_or_no(
+    name: str, sensor: str, pin: int, is_high: bool, is_true: bool
+) -> None:
+    text = f"SI|IF({sensor});M(20, 0);ELSE;M(10, 0);ENDIF;W(5)"
+    board = started(robots.load(name), text)
+    board.level(0, pin, is_high)
+    board.ran(START + 5)
+    assert board.motors(START + 4)[0] == f"pwm {(20 if is_true else 10) * 653 >> 8}"
+
+
+# -- what a robot has besides
+
+
+@pytest.mark.parametrize("hertz", [31, 100, 440, 880, 3000, 12345, 19800, 20000])
+@pytest.mark.parametrize("name", ["tinibot", "grabber"])
+def test_a_beep_has_its_frequency_and_its_length(name: str, hertz: int) -> None:
+    robot = robots.load(name)
+    board = started(robot, f"SI|BEEP(0.3, {hertz})")
+    board.watch(robot.board.buzzer)
+    board.ran(START + 290)
+    edges = board.edges(robot.board.buzzer)
+    periods = (len(edges) - 1) // 2
+    found = HERTZ * periods / (edges[2 * periods] - edges[0])
+    assert abs(found / hertz - 1) < 0.01
+
+
+def test_a_program_that_has_ended_plays_its_tune() -> None:
+    robot = robots.load("tinibot")
+    board = started(robot, "SI|F(0.1, 50)")
+    board.watch(robot.board.buzzer)
+    board.ran(START + 500)
+    edges = [cycle / MS - START for cycle in board.edges(robot.board.buzzer)]
+    assert 99 < edges[0] < 102
+    assert 338 < edges[-1] < 342
+    halves = [b - a for a, b in pairwise(edges)]
+    assert halves[0] > 1.3 * halves[-2]
+
+
+def test_the_light_is_on_while_a_program_could_start() -> None:
+    robot = robots.load("tinibot")
+    light = robot.board.status_led
+    assert light is not None
+    board = started(robot, "SI|W(0.2)")
+    board.watch(light)
+    board.ran(START + 300)
+    assert [board.pin(light, START + ms) for ms in (-50, 100, 250)] == ["high", "low", "high"]
+
+
+def test_a_servo_and_a_lamp() -> None:
+    robot = robots.load("grabber")
+    board = started(
+        robot, "SI|GRIPPER(0);LED(TRUE);W(0.1);GRIPPER(90);W(0.1);GRIPPER(9 * 9 * 9);W(0.1)"
+    )
+    for pin in (11, 30):
+        board.watch(pin)
+    board.ran(START + 320)
+    found = pulses(board, 11)
+    assert found[0][0] > START
+    for after, us in ((25, 600), (125, 1500), (225, 2400)):
+        each = [length for ms, length in found if START + after < ms < START + after + 70]
+        assert each and all(abs(length - us) < 3 for length in each)
+    assert board.pin(30, START + 50) == "high"
+
+
+FAN = '[[kit.actuators]]\nname = "FAN"\nkind = "number"\nrange = [-20, 180]\n\n'
+
+# what the shipped robots do not have: a lamp that is on when its pin is low, a fan, a threshold
+WORKSHOP = (
+    ("[[kit.sensors]]", '[[kit.sensors]]\nname = "BRIGHT"\nkind = "yes/no"\n\n[[kit.sensors]]'),
+    (
+        "[board]\n",
+        '[[kit.actuators]]\nname = "FAN"\nkind = "number"\nrange = [-20, 180]\n\n' + LAMP,
+    ),
+    ("bluetooth_state = 12", ""),
+    ("right_forward = 9", "right_forward = 12"),
+    (
+        "[body]\n",
+        '[board.actuators.FAN]\ndriver = "pwm"\npin = 9\n\n'
+        '[board.actuators.LAMP]\ndriver = "digital"\npin = "A5"\nyes_is_low = true\n\n'
+        '[board.sensors.BRIGHT]\ndriver = "threshold"\npin = "A2"\nthreshold = 600\n'
+        "yes_is_low = true\n\n[body]\n",
+    ),
+)
+
+
+def test_a_fan_and_a_lamp_that_is_on_when_low() -> None:
+    robot = on_board("tinibot", "uno", *WORKSHOP)
+    board = started(robot, "SI|FAN(-20);LAMP(TRUE);W(0.1);FAN(80);LAMP(FALSE);W(0.1);FAN(999 * 9)")
+    for pin in (9, 19):
+        board.watch(pin)
+    board.ran(START + 250)
+    assert [board.pin(9, START + ms) for ms in (-1, 50, 150, 240)] == [
+        "low", "pwm 0", "pwm 128", "pwm 255",
+    ]  # fmt: skip
+    assert [board.pin(19, START + ms) for ms in (-1, 50, 150)] == ["high", "low", "high"]
+
+
+@pytest.mark.parametrize(("millivolts", "is_true"), [(2910, True), (2950, False)])
+def test_a_threshold(millivolts: int, is_true: bool) -> None:
+    text = "SI|IF(BRIGHT);M(20, 0);ELSE;M(10, 0);ENDIF;W(5)"
+    board = started(on_board("tinibot", "uno", *WORKSHOP), text)
+    board.analog(2, millivolts)
+    board.ran(START + 5)
+    assert board.motors(START + 4)[0] == f"pwm {(20 if is_true else 10) * 653 >> 8}"
+
+
+def test_a_reading_of_the_last_program_is_none_of_the_next() -> None:
+    """A program is stopped while it measures; the next one measures again."""
+    robot = robots.load("tinibot")
+    pins = robot.board.sensors[2].pins
+    board = started(robot, "SI|W(0.05);M(DISTANCE, 0);W(5)")
+    board.echoes(pins["trigger"], pins["echo"], [2000, 80 * 2 / 0.0343])
+    board.press(START + 51, START + 100)
+    board.press(START + 150, START + 200)
+    board.ran(START + 320)
+    assert board.motors(START + 310)[0] == f"pwm {80 * 653 >> 8}"
+
+
+@pytest.mark.parametrize("name", ["tinibot", "grabber"])
+def test_interrupts_are_never_off_for_long(name: str) -> None:
+    """The link must not lose a byte: at 115,200 baud two of them take 174 us."""
+    robot = robots.load(name)
+    text = "SI|LOOP(30);M(80, 80);BEEP(0.001, 20000);A = DISTANCE;END_LOOP"
+    if name == "grabber":
+        text = text.replace("A = DIS", "GRIPPER(90);A = DIS")
+    at = [each.driver for each in robot.board.sensors].index("hc_sr04")
+    pins = robot.board.sensors[at].pins
+    board = started(robot, text)
+    board.echoes(pins["trigger"], pins["echo"], [1000])
+    board.ran(START + 200)
+    assert 0 < board.quiet_us < 25

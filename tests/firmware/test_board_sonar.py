@@ -1,0 +1,223 @@
+"""When a distance sensor pings, and what it hears: seen on a simulated board, with a bad wire."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import pytest
+
+from tests.firmware.test_boards import START, on_board, started
+from tests.machines import board as boards
+from tests.machines.board import MS, Board
+from tiniscript import robots
+from tiniscript.robots.profile import Robot
+
+pytestmark = pytest.mark.skipif(bool(boards.missing()), reason=boards.missing() or "there is one")
+
+SPACING_MS, FRESH_MS = 30.0, 60.0
+DELAY_US = 460  # from the trigger to the echo
+US_PER_CM = 2 / 0.0343
+
+
+def wire(robot: Robot, number: int = 2) -> tuple[int, int]:
+    pins = robot.board.sensors[number].pins
+    return pins["trigger"], pins["echo"]
+
+
+def pings(board: Board, trigger: int) -> list[float]:
+    """Return when pings left, in ms."""
+    return [cycle / MS for cycle in board.edges(trigger)[1::2]]
+
+
+def looking(text: str, *distances_cm: float, robot: Robot | None = None) -> Board:
+    robot = robot or robots.load("tinibot")
+    trigger, echo = wire(robot)
+    board = started(robot, text)
+    board.watch(trigger)
+    board.echoes(trigger, echo, [each * US_PER_CM for each in distances_cm])
+    return board
+
+
+def driven_ms(board: Board, motors: int) -> list[float]:
+    """Return the times at which so many motors have just been turned on."""
+    times = [cycle / MS for cycle in board.moved()]
+    return [ms for ms in times if sum("pwm" in pin for pin in board.motors(ms)) == motors]
+
+
+def shown(board: Board, ms: float) -> int:
+    """Return the whole centimetres that the power of the left motor stands for."""
+    level = board.motors(ms)[0]
+    return 0 if level == "low" else round(int(level.removeprefix("pwm ")) / 2.55)
+
+
+@pytest.mark.parametrize("name", ["tinibot", "grabber"])
+@pytest.mark.parametrize("distance_cm", [5, 90, 399])
+def test_pings_leave_30_ms_apart(name: str, distance_cm: int) -> None:
+    """A program that does nothing but look does not look more often."""
+    robot = robots.load(name)
+    at = [each.driver for each in robot.board.sensors].index("hc_sr04")
+    trigger, echo = wire(robot, at)
+    board = started(robot, "SI|LOOP(FOREVER);A = DISTANCE;END_LOOP")
+    board.watch(trigger)
+    board.echoes(trigger, echo, [distance_cm * US_PER_CM])
+    board.ran(START + 400)
+    gaps = [b - a for a, b in pairwise(pings(board, trigger))]
+    assert len(gaps) >= 10
+    assert min(gaps) >= SPACING_MS
+    assert max(gaps) < SPACING_MS + 2
+
+
+def test_a_reading_is_used_again_until_the_next_ping_may_leave() -> None:
+    text = "SI|LOOP(FOREVER);M(DISTANCE, 0);W(0.01);END_LOOP"
+    board = looking(text, 20, 60).ran(START + 70)
+    first, second, *_ = pings(board, wire(board.robot)[0])
+    assert SPACING_MS <= second - first < SPACING_MS + 11  # the program asks every 10 ms
+    assert shown(board, first + 5) == shown(board, second) == 20
+    assert shown(board, second + 5) == 60
+
+
+def test_until_looks_again_every_40_ms() -> None:
+    """It checks every 20 ms; in between the last reading is fresh."""
+    text = "SI|F(1, 20)UNTIL(DISTANCE < 10)"
+    board = looking(text, 50, 50, 8).ran(START + 200)
+    left = [ms - START for ms in pings(board, wire(board.robot)[0])]
+    assert [round(ms / 10) for ms in left] == [0, 4, 8]
+    assert board.motors(START + 79)[0] == "pwm 51"
+    assert board.motors(START + 83)[0] == "low"
+
+
+AGAIN = """
+#include <avr/interrupt.h>
+#include "boards/board.h"
+// A change of A5 does what the start of a program does with readings.
+ISR(PCINT1_vect) { tiniscript::board_forget(); }
+__attribute__((constructor)) static void begin() { PCICR = 1 << 1; PCMSK1 = 1 << 5; }
+"""
+
+
+@pytest.mark.parametrize("after_ms", [0.05, 0.3, 1.0, 5.0, 20.0])
+def test_a_start_forgets_readings_but_not_the_spacing(after_ms: float) -> None:
+    """At any time of a measurement: the next reading is one of its own ping, 30 ms later."""
+    robot = robots.load("tinibot")
+    trigger, echo = wire(robot)
+    text = "SI|LOOP(FOREVER);M(DISTANCE, 0);W(0.002);S;END_LOOP"
+    plain = looking(text, 20, 70).ran(START + 40)
+    left = plain.edges(trigger)[0] / MS
+    board = started(robot, text, AGAIN)
+    board.watch(trigger)
+    board.echoes(trigger, echo, [20 * US_PER_CM, 70 * US_PER_CM])
+    board.level(left + after_ms, 19, True)
+    board.ran(START + 80)
+    first, second, *_ = pings(board, trigger)
+    assert SPACING_MS <= second - first < SPACING_MS + 2
+    driven = driven_ms(board, 1)
+    assert not [ms for ms in driven if left + after_ms + 0.5 < ms < second + 3]
+    assert {shown(board, ms) for ms in driven if ms > second} == {70}
+
+
+TWO = (
+    (
+        "[[kit.sensors]]",
+        '[[kit.sensors]]\nname = "BEHIND"\nkind = "number"\nunit = "cm"\nrange = [0, 400]\n\n'
+        "[[kit.sensors]]",
+    ),
+    ("bluetooth_state = 12", ""),
+    (
+        "[body]\n",
+        '[board.sensors.BEHIND]\ndriver = "hc_sr04"\ntrigger = 12\necho = "A2"\n\n[body]\n',
+    ),
+)
+
+
+@pytest.mark.parametrize("text", [
+    "SI|LOOP(FOREVER);M(DISTANCE, BEHIND);W(0.005);S;END_LOOP",
+    "SI|LOOP(FOREVER);M(DISTANCE, BEHIND);W(0.005);S;W(0.02);END_LOOP",
+])  # fmt: skip
+def test_two_sensors_never_hear_each_other(text: str) -> None:
+    """Pings of both keep the distance, none is forgotten, and no reading is older than 60 ms."""
+    robot = on_board("tinibot", "uno", *TWO)
+    board = started(robot, text)
+    rows = [(3, range(20, 60)), (0, range(60, 100))]  # what comes nearer with each ping
+    for number, distances in rows:
+        trigger, echo = wire(robot, number)
+        board.watch(trigger)
+        board.echoes(trigger, echo, [each * US_PER_CM for each in distances])
+    board.ran(START + 600)
+    each = [pings(board, wire(robot, number)[0]) for number, _ in rows]
+    both = sorted(ms for times in each for ms in times)
+    assert min(b - a for a, b in pairwise(both)) >= SPACING_MS
+    assert min(len(times) for times in each) >= 4
+    driven = driven_ms(board, 2)
+    assert len(driven) > 10
+    for motor, (times, (_, distances)) in enumerate(zip(each, rows, strict=True)):
+        for ms in driven:
+            level = board.motors(ms)[3 * motor]
+            cm = round(int(level.removeprefix("pwm ")) / 2.55)
+            assert 0 < ms - times[cm - distances[0]] <= FRESH_MS
+
+
+# -- a bad wire
+
+GLITCH_US = 30.0
+ECHO_US = 50 * US_PER_CM
+EDGE_US = 100.0  # so near to an end of the echo a glitch may be taken for it
+PHASES = [
+    *range(5, 440, 29),  # before the echo
+    *(DELAY_US + at for at in (-60, -31, -20, -5, 5, 20, 40, 71, 95, 130)),
+    *range(DELAY_US + 150, DELAY_US + 2900, 149),
+    *(DELAY_US + round(ECHO_US) + at for at in (-120, -95, -60, -31, -15, -5, 5, 20, 69, 90, 120)),
+    *range(DELAY_US + 3100, 24_000, 1501),
+]
+
+
+def glitched(width_us: float) -> list[tuple[int, int]]:
+    """Return each phase at which the wire says for a moment the opposite, and what is read."""
+    board = looking("SI|LOOP(FOREVER);M(DISTANCE, 0);W(0.032);END_LOOP", 50)
+    trigger, echo = wire(board.robot)
+    length = START + 33 * len(PHASES)
+    board.ran(length)
+    times = pings(board, trigger)
+    for ms, phase in zip(times, PHASES, strict=False):
+        is_echo = DELAY_US <= phase < DELAY_US + ECHO_US
+        board.level(ms + phase / 1000, echo, not is_echo)
+        ends_in_it = DELAY_US <= phase + width_us < DELAY_US + ECHO_US
+        board.level(ms + (phase + width_us) / 1000, echo, ends_in_it)
+    board.ran(length)
+    after = pings(board, trigger)
+    assert max(abs(a - b) for a, b in zip(times, after, strict=False)) < 1
+    return [(phase, shown(board, ms + 31)) for ms, phase in zip(after, PHASES, strict=False)]
+
+
+@pytest.mark.parametrize("width_us", [2.0, 10.0, GLITCH_US, 80.0])
+def test_a_glitch_at_any_phase_is_no_echo(width_us: float) -> None:
+    found = glitched(width_us)
+    assert len(found) == len(PHASES)
+    for phase, cm in found:
+        nearest = min(
+            abs(phase + part - edge)
+            for part in (0, width_us)
+            for edge in (DELAY_US, DELAY_US + ECHO_US)
+        )
+        assert abs(cm - 50) <= (0 if nearest > EDGE_US else 3), (phase, cm)
+
+
+def test_a_glitch_without_an_echo_is_far_away() -> None:
+    robot = robots.load("tinibot")
+    _, echo = wire(robot)
+    text = "SI|IF(DISTANCE = 400);M(10, 0);ELSE;M(90, 0);ENDIF;W(5)"
+    board = looking(text, 0)
+    for ms in (1.0, 3.0, 10.0, 20.0):
+        board.level(START + ms, echo, True)
+        board.level(START + ms + 0.06, echo, False)
+    board.ran(START + 40)
+    assert shown(board, START + 35) == 10
+
+
+def test_an_echo_line_that_is_stuck_is_far_away() -> None:
+    robot = robots.load("tinibot")
+    _, echo = wire(robot)
+    board = looking("SI|IF(DISTANCE = 400);M(10, 0);ENDIF;W(5)", 50)
+    board.level(50, echo, True)
+    board.ran(START + 40)
+    assert shown(board, START + 24) == 0
+    assert shown(board, START + 28) == 10

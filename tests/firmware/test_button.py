@@ -1,0 +1,123 @@
+"""The start button and its wire: a stop is early, a start is late, and a spike starts nothing."""
+
+from __future__ import annotations
+
+import random
+import subprocess
+from collections.abc import Iterable, Sequence
+
+import pytest
+
+from tests.firmware.test_uno_robot import AWAY, OFF, computer, memory, send, sketch, states, uno
+from tests.machines.host import FLAGS, SOURCES, compiled, missing
+from tests.machines.uno import needed
+from tests.support.casefile import ROOT
+from tools.uno import CYCLES_PER_MS, Uno
+
+__all__ = ("memory", "sketch", "uno")  # fixtures
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
+
+Told = list[tuple[int, str]]  # when in us, and P, H or R
+SPIKE_US = 150
+TURNS_US = (100, 370, 1000, 2900, 8000)  # of the main loop
+STEADY_US = 30_000
+
+
+def told(cases: Iterable[tuple[int, int, Sequence[int]]]) -> list[Told]:
+    """Return what the button tells in each case: the turn, the first look, and the edges."""
+    button = SOURCES / "src" / "boards" / "button.cpp"
+    program = compiled([button, ROOT / "tests" / "button" / "main.cpp"], FLAGS)
+    lines = "\n".join(" ".join(map(str, (turn, first, *edges))) for turn, first, edges in cases)
+    done = subprocess.run([program], input=lines + "\n", capture_output=True, text=True, check=True)
+    rows = [row.split() for row in done.stdout.splitlines()]
+    return [list(zip(map(int, row[::2]), row[1::2], strict=True)) for row in rows]
+
+
+def letters(told: Told) -> str:
+    return "".join(letter for _, letter in told)
+
+
+def spikes(count: int, spacing_us: int) -> list[int]:
+    return [us for k in range(count) for us in (k * spacing_us, k * spacing_us + SPIKE_US)]
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 4, 5])
+def test_spikes_start_nothing_whatever_their_spacing(count: int) -> None:
+    cases = [
+        (turn, first, spikes(count, spacing_ms * 1000))
+        for turn in TURNS_US
+        for first in range(0, turn, max(50, turn // 5))
+        for spacing_ms in range(1, 201)
+    ]
+    found = told(cases)
+    assert len(found) == len(cases) > 1000
+    assert not [each for each in found if "R" in letters(each) or "H" in letters(each)]
+    assert any(letters(each) for each in found), "the spikes fell between all looks"
+
+
+@pytest.mark.parametrize("turn", TURNS_US)
+def test_a_press_is_told_at_once_and_its_release_late(turn: int) -> None:
+    chance = random.Random(turn)
+    cases = []
+    for _ in range(200):
+        chatter = sorted(chance.sample(range(1, 5000), 4))
+        up_us = chance.randrange(300_000, 500_000)
+        cases.append((turn, 0, [0, *chatter, up_us, *(up_us + each for each in chatter)]))
+    for (_, _, edges), found in zip(cases, told(cases), strict=True):
+        assert letters(found) == "PHR"
+        pressed, held, released = (us for us, _ in found)
+        assert pressed <= 5000 + turn
+        assert held >= pressed + STEADY_US - 1000
+        assert released >= edges[5] + STEADY_US - 1000
+        if turn <= 1000:
+            assert released <= edges[-1] + STEADY_US + 3000
+
+
+def test_a_release_that_does_not_last_is_none() -> None:
+    """Spikes while the button is held down, at all spacings."""
+    cases = [
+        (turn, 0, [0, *(100_000 + us for us in spikes(5, spacing_ms * 1000)), 2_000_000])
+        for turn in TURNS_US
+        for spacing_ms in range(1, 201)
+    ]
+    for found in told(cases):
+        assert letters(found) == "PHR"
+        assert found[-1][0] >= 2_000_000 + STEADY_US - 1000
+
+
+def test_a_press_after_a_spike_is_told() -> None:
+    """Its first edge may be taken for the spike's chatter: then it is told when it has lasted."""
+    cases = [(100, 0, [0, SPIKE_US, gap_us, 500_000]) for gap_us in range(200, 60_000, 700)]
+    for (_, _, edges), found in zip(cases, told(cases), strict=True):
+        assert letters(found) in ("PHR", "PPHR")
+        first = min(us for us, letter in found[1:] if letter in "PH")
+        assert edges[2] <= first <= edges[2] + STEADY_US + 1000
+
+
+def test_an_uno_is_not_started_by_spikes(uno: Uno) -> None:
+    """The whole firmware holds a program; spikes come in twos and fives."""
+    needed()
+    wired = computer(uno)
+    send(wired, AWAY.replace("SI", "SB"))
+    wired.run(300)
+    for spacing_ms in (1, 3, 10, 20, 25, *range(28, 36), 60, 100, 200):
+        for count in (2, 5):
+            for k in range(count):
+                at = uno.cycle + (1 + k * spacing_ms) * CYCLES_PER_MS
+                uno.drive("button", False, at=at)
+                uno.drive("button", None, at=at + SPIKE_US * CYCLES_PER_MS // 1000)
+            uno.run_ms(count * spacing_ms + 80)
+            assert states(uno) == OFF, (spacing_ms, count)
+    assert not [change for change in uno.pins.history("left") if change.state == "pwm"]
+
+
+def test_an_uno_that_runs_is_stopped_by_the_first_edge(uno: Uno) -> None:
+    wired = computer(uno)
+    send(wired, AWAY)
+    wired.run(100)
+    at = uno.cycle + CYCLES_PER_MS
+    uno.drive("button", False, at=at)
+    uno.run_ms(3)
+    assert states(uno) == OFF
+    off = max(uno.pins[name].cycle for name in OFF)
+    assert off - at < CYCLES_PER_MS

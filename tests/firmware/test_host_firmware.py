@@ -1,0 +1,384 @@
+"""The whole robot: what a computer, a button and a pulled plug make of its firmware."""
+
+from __future__ import annotations
+
+import random
+
+import pytest
+
+from tests.machines.host_firmware import EMPTY, HostFirmware, missing
+from tiniscript import compile_text, robots
+from tiniscript.bytecode.image import Image, unpack
+from tiniscript.link.messages import STATUSES
+from tiniscript.link.requests import OK, Reply
+from tiniscript.link.session import Session, Task
+
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
+
+KIT = robots.load("tinibot").kit
+LONG = "SI|" + "F(0.1, 80); B(0.1, 60); SHOW(1); " * 20
+AWAY = "SI|F(60, 80)"
+
+
+def image_of(text: str) -> Image:
+    compiled = compile_text(text, KIT)
+    assert compiled.image, text
+    return unpack(compiled.image)
+
+
+def switched_on(memory: bytes = EMPTY, **options: float) -> HostFirmware:
+    """Return a robot that has looked at what it keeps."""
+    robot = HostFirmware(KIT, memory, **options)  # type: ignore[arg-type]
+    robot.wait(200)
+    assert robot.did == []
+    assert robot.is_latched
+    return robot
+
+
+def computer(nonce: int = 1) -> Session:
+    return Session(nonce, 9600, KIT.fingerprint)
+
+
+def send(robot: HostFirmware, session: Session, text: str, **how: bool) -> None:
+    assert robot.until(session, session.upload(image_of(text), **how)) == OK
+
+
+def outcome(task: Task) -> Reply:
+    assert task.outcome is not None
+    return task.outcome
+
+
+def stored(robot: HostFirmware, session: Session, limit_ms: int = 10_000) -> int:
+    """Wait until the robot says that its program is saved; return how long that took."""
+    begun_ms = robot.now_ms
+    while robot.now_ms < begun_ms + limit_ms:
+        task = session.status()
+        assert robot.until(session, task) == OK
+        if outcome(task).values["saved"] == 3:
+            return robot.now_ms - begun_ms
+        robot.talk(session, 50)
+    raise AssertionError("the program is not saved")
+
+
+def happened(robot: HostFirmware) -> list[str]:
+    return [line.split(" ", 1)[1] for line in robot.did]
+
+
+def test_a_program_in_one_frame_drives_at_once() -> None:
+    robot, session = switched_on(), computer()
+    send(robot, session, "SI|F(1, 80)")
+    robot.talk(session, 1200)
+    assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
+    first, last = (int(line.split()[0]) for line in robot.did[:2])
+    assert last - first == 1000
+    assert [event.name for event in session.events()] == ["DONE"]
+    assert robot.is_latched
+
+
+def test_a_longer_program_drives_and_shows() -> None:
+    robot, session = switched_on(), computer()
+    assert len(image_of(LONG).code) > 100
+    send(robot, session, LONG)
+    robot.talk(session, 5000)
+    assert happened(robot)[-1] == "FINISHED"
+    assert happened(robot).count("MOTORS 80 80") == 20
+    names = [event.name for event in session.events()]
+    assert names == ["SHOW"] * 20 + ["DONE"]
+
+
+def test_after_power_on_nothing_moves_and_the_button_starts_what_is_stored() -> None:
+    robot, session = switched_on(), computer()
+    assert not robot.is_lit
+    send(robot, session, "SI|F(0.5, 80)")
+    robot.talk(session, 700)
+    stored(robot, session)
+    again = switched_on(robot.memory())
+    assert again.is_lit
+    again.wait(2000)
+    assert again.did == []
+    again.push()
+    again.wait(600)
+    assert happened(again) == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
+
+
+def test_what_is_not_saved_is_gone_and_what_was_saved_is_there() -> None:
+    robot, session = switched_on(), computer()
+    send(robot, session, "SI|F(0.2, 80)")
+    robot.talk(session, 400)
+    stored(robot, session)
+    send(robot, session, "SI|B(0.2, 60)", saves=False)
+    robot.talk(session, 2000)
+    again = switched_on(robot.memory())
+    again.push()
+    again.wait(400)
+    assert happened(again)[0] == "MOTORS 80 80"
+
+
+def test_sb_waits_for_the_button() -> None:
+    robot, session = switched_on(), computer()
+    send(robot, session, "SB|F(0.2, 80)")
+    robot.talk(session, 1000)
+    assert robot.did == []
+    assert robot.is_lit
+    robot.push()
+    robot.wait(400)
+    assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
+
+
+def test_the_button_stops_and_the_next_push_starts() -> None:
+    robot, session = switched_on(), computer()
+    send(robot, session, AWAY)
+    robot.talk(session, 300)
+    robot.talk(session, 1, flags=1)
+    assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
+    robot.talk(session, 100)
+    robot.talk(session, 1, flags=2)
+    robot.talk(session, 2000)
+    assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0"], "letting go starts nothing"
+    assert [event.name for event in session.events()] == ["STOPPED"]
+    robot.push()
+    assert happened(robot)[-1] == "MOTORS 80 80"
+    robot.wait(5000)
+    assert happened(robot)[-1] == "MOTORS 80 80", "what the button starts has no tether"
+
+
+def test_the_stop_sequence_stops_and_latches() -> None:
+    robot, session = switched_on(), computer()
+    send(robot, session, AWAY)
+    robot.talk(session, 300)
+    session.stop(robot.now_ms)
+    robot.talk(session, 2)
+    assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
+    robot.talk(session, 500)
+    assert [event.name for event in session.events()] == ["STOPPED"]
+    assert session.is_latched
+    # what was sent before the stop is stale: the same frames again move nothing
+    robot.wait(3000)
+    assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
+    send(robot, session, AWAY)
+    robot.talk(session, 50)
+    assert happened(robot)[-1] == "MOTORS 80 80"
+
+
+def test_without_frames_the_motors_go_off_in_time() -> None:
+    robot, session = switched_on(), computer()
+    send(robot, session, AWAY)
+    robot.talk(session, 700)
+    silent_ms = robot.now_ms
+    robot.wait(2000)
+    assert happened(robot)[1:] == ["MOTORS 0 0", "FAULTED"]
+    off_ms = int(robot.did[1].split()[0])
+    assert off_ms - silent_ms <= 1050
+    task = session.status()
+    assert robot.until(session, task) == OK
+    assert outcome(task).values["fault"] == 64
+
+
+def test_what_is_detached_goes_on_alone_until_its_longest_time() -> None:
+    robot, session = switched_on(max_run_ms=5000), computer()
+    send(robot, session, AWAY, is_detached=True)
+    robot.wait(4800)
+    assert happened(robot) == ["MOTORS 80 80"]
+    robot.wait(400)
+    assert happened(robot)[1:] == ["MOTORS 0 0", "FAULTED"]
+
+
+def test_a_fault_stops_and_is_remembered() -> None:
+    robot, session = switched_on(), computer()
+    send(robot, session, "SI|F(0.1, 50); X = 0; MOVE = 5 / X; SHOW(MOVE)")
+    robot.talk(session, 3000)
+    assert happened(robot) == ["MOTORS 50 50", "MOTORS 0 0", "FAULTED"]
+    (event,) = session.events()
+    assert event.name == "FAULT"
+    assert event.values["fault"] == 2
+    again = switched_on(robot.memory())
+    other = computer(2)
+    task = other.status()
+    assert again.until(other, task) == OK
+    values = outcome(task).values
+    assert (values["fault"], values["fault_at"]) == (2, event.values["at"])
+    assert values["fault_program"] == values["program"]
+
+
+def test_a_live_line_leaves_the_program_as_it_is() -> None:
+    robot, session = switched_on(), computer()
+    send(robot, session, "SB|B(0.2, 60)")
+    stored(robot, session)
+    task = session.live(image_of("SI|F(0.1, 80)").code)
+    assert robot.until(session, task) == OK
+    robot.talk(session, 300)
+    robot.push()
+    robot.wait(300)
+    drives = [line for line in happened(robot) if line != "FINISHED"]
+    assert drives == ["MOTORS 80 80", "MOTORS 0 0", "MOTORS -60 -60", "MOTORS 0 0"]
+
+
+def test_an_upload_that_breaks_off_leaves_the_stored_program() -> None:
+    robot, session = switched_on(), computer()
+    send(robot, session, "SI|F(0.2, 80)")
+    robot.talk(session, 400)
+    stored(robot, session)
+    robot.did.clear()
+    task = session.upload(image_of(LONG))
+    robot.talk(session, 3)
+    assert task.outcome is None
+    robot.wait(3000)
+    robot.push()
+    robot.wait(400)
+    assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
+
+
+def test_nothing_is_finished_while_it_drives() -> None:
+    """Motors pull at the supply: what is saved counts only when they are off."""
+    robot, session = switched_on(), computer()
+    send(robot, session, "SI|F(3, 80)")
+    robot.talk(session, 2500)
+    task = session.status()
+    assert robot.until(session, task) == OK
+    assert outcome(task).values["saved"] == 2
+    robot.talk(session, 800)
+    stored(robot, session)
+
+
+def test_a_main_loop_that_stood_still_is_a_fault() -> None:
+    robot, session = switched_on(), computer()
+    send(robot, session, AWAY)
+    robot.talk(session, 100)
+    robot.talk(session, 1, flags=4)
+    robot.talk(session, 100)
+    assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0", "FAULTED"]
+    (event,) = session.events()
+    assert (event.name, event.values["fault"]) == ("FAULT", 66)
+
+
+@pytest.mark.parametrize("is_detached", [False, True])
+def test_nobody_is_connected_any_more(is_detached: bool) -> None:
+    """That ends a tethered run at once, and no other."""
+    robot, session = switched_on(), computer()
+    send(robot, session, AWAY, is_detached=is_detached)
+    robot.talk(session, 500)
+    robot.talk(session, 1, flags=8)
+    robot.talk(session, 500)
+    assert happened(robot) == ["MOTORS 80 80"] + ["MOTORS 0 0"] * (not is_detached)
+    causes = [event.values["cause"] for event in session.events() if event.name == "STOPPED"]
+    assert causes == [4] * (not is_detached)
+
+
+def test_a_run_of_the_button_needs_nobody() -> None:
+    robot, session = switched_on(), computer()
+    send(robot, session, AWAY, runs=False)
+    robot.talk(session, 1500)
+    robot.push()
+    robot.step(flags=8)
+    robot.wait(1500)
+    assert happened(robot) == ["MOTORS 80 80"]
+
+
+def test_a_press_that_lasts_stops_what_began_meanwhile() -> None:
+    """Its first edge came before the start, as after a spike on the wire."""
+    robot, session = switched_on(), computer()
+    robot.step(flags=1)
+    send(robot, session, AWAY)
+    robot.step(flags=32)
+    assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
+    robot.step(flags=2)
+    robot.wait(100)
+    assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
+
+
+def test_a_name_survives() -> None:
+    robot, session = switched_on(), computer()
+    assert robot.until(session, session.name("Ñandú".encode())) == OK
+    robot.talk(session, 1000)
+    again, other = switched_on(robot.memory()), computer(2)
+    assert again.until(other, other.hello()) == OK
+    assert other.robot is not None
+    assert other.robot.name == "Ñandú"
+    assert session.robot is not None
+    assert other.robot.id == session.robot.id
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_pulled_plug_leaves_one_program_or_the_other(seed: int) -> None:
+    """Whenever it is pulled: while it arrives, while it drives, while it is saved."""
+    rng = random.Random(seed)
+    robot, session = switched_on(), computer()
+    send(robot, session, "SI|F(0.2, 80)")
+    robot.talk(session, 400)
+    stored(robot, session)
+    memory = robot.memory()
+    for _ in range(6):
+        robot, session = switched_on(memory), computer(rng.getrandbits(32))
+        session.upload(image_of("SI|B(0.1, 60); " + "SHOW(1); " * rng.randrange(30)))
+        robot.talk(session, rng.randrange(1, 1500))
+        memory = robot.memory()
+        again = switched_on(memory)
+        assert again.is_lit
+        again.push()
+        again.wait(400)
+        assert happened(again)[0] in ("MOTORS 80 80", "MOTORS -60 -60")
+        assert happened(again)[-1] == "FINISHED"
+
+
+def test_an_upload_that_breaks_off_while_a_fault_is_noted_leaves_the_stored_program() -> None:
+    """The memory cannot be read while it is written: what it holds must not be forgotten then."""
+    robot, session = switched_on(), computer()
+    send(robot, session, "SB|F(0.2, 80)")
+    stored(robot, session)
+    robot.talk(session, 500)
+    task = session.live(image_of("SI|X = 0; SHOW(5 / X)").code)
+    assert robot.until(session, task) == OK
+    while "FAULTED" not in happened(robot):
+        robot.talk(session, 1)
+    task = session.upload(image_of(LONG))
+    robot.talk(session, 3)
+    assert task.outcome is None
+    robot.wait(3000)
+    robot.push()
+    robot.wait(400)
+    assert happened(robot)[-3:] == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
+
+
+def test_the_button_in_the_middle_of_an_upload_starts_what_is_stored() -> None:
+    """What is on its way must not be written into the program that runs."""
+    robot, session = switched_on(), computer()
+    send(robot, session, "SB|F(0.5, 80)")
+    stored(robot, session)
+    robot.talk(session, 500)
+    task = session.upload(image_of(LONG))
+    robot.talk(session, 3)
+    assert task.outcome is None
+    robot.step(flags=1)
+    robot.step(flags=2)
+    assert robot.until(session, task) == STATUSES["NOT_BEGUN"]
+    robot.talk(session, 600)
+    assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
+
+
+@pytest.mark.parametrize("is_live", [False, True])
+def test_a_fault_at_once_names_the_program(is_live: bool) -> None:
+    """A program in one frame starts before its checksum is known."""
+    robot, session = switched_on(), computer()
+    image = image_of("SI|X = 1 / 0")
+    task = session.live(image.code) if is_live else session.upload(image)
+    assert robot.until(session, task) == OK
+    robot.talk(session, 300)
+    faults = [event.values for event in session.events() if event.name == "FAULT"]
+    assert [values["program"] for values in faults] == [image.checksum]
+    assert outcome(task).values["program"] == image.checksum
+    status = session.status()
+    assert robot.until(session, status) == OK
+    assert outcome(status).values["fault_program"] == image.checksum
+    assert outcome(status).values["program"] == (0 if is_live else image.checksum)
+
+
+def test_one_clear_is_enough() -> None:
+    robot, session = switched_on(), computer()
+    send(robot, session, "SI|F(1, 80)")
+    session.stop(robot.now_ms)
+    robot.talk(session, 300)
+    assert session.is_latched
+    assert robot.until(session, session.clear()) == OK
+    assert not session.is_latched
+    send(robot, session, AWAY)
+    assert happened(robot)[-1] == "MOTORS 80 80"

@@ -1,0 +1,321 @@
+"""When a robot writes down what it keeps: while its motors stand, with enough voltage, and never
+says that it has before it has."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.firmware.test_host_firmware import (
+    KIT,
+    computer,
+    happened,
+    image_of,
+    outcome,
+    send,
+    stored,
+    switched_on,
+)
+from tests.machines.host_firmware import EMPTY, HostFirmware, missing
+from tiniscript.bytecode.image import pack
+from tiniscript.link.messages import SAVED, STATUSES
+from tiniscript.link.requests import OK, Errand, Request
+from tiniscript.link.session import Session, Task
+
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
+
+WAITS = "SI|LOOP(FOREVER);W(1);END_LOOP"
+DRIVES = "SI|LOOP(FOREVER);F(1, 80);END_LOOP"
+PAUSES = "SI|LOOP(FOREVER);F(0.05, 80);W(0.004);END_LOOP"
+LONG = "SI|" + "F(0.1, 80); B(0.1, 60); SHOW(1); " * 20
+FIRST, SECOND, EACH = 128, 576, 31  # where the slots of the program lie, and bytes of a record's
+
+
+def saved(robot: HostFirmware, session: Session) -> str:
+    task = session.status()
+    assert robot.until(session, task) == OK
+    found = outcome(task).values["saved"]
+    assert isinstance(found, int)
+    return SAVED[found][0]
+
+
+def name_after_power_off(robot: HostFirmware) -> str:
+    again, session = switched_on(robot.memory()), computer(77)
+    assert again.until(session, session.hello()) == OK
+    assert session.robot is not None
+    return session.robot.name
+
+
+def program_after_power_off(robot: HostFirmware) -> bytes:
+    again, session = switched_on(robot.memory()), computer(78)
+    task = session.fetch()
+    if again.until(session, task) != OK:
+        return b""
+    image = outcome(task).values["image"]
+    assert isinstance(image, bytes)
+    return image
+
+
+def bytes_of(text: str) -> bytes:
+    image = image_of(text)
+    return pack(image.start, image.kit, image.code)
+
+
+def marks(robot: HostFirmware) -> list[str]:
+    return [line for line in happened(robot) if "MARK" in line or "MEASURED" in line]
+
+
+# -- motors ---------------------------------------------------------------------------------------
+
+
+def test_a_program_that_stands_is_saved_while_it_runs() -> None:
+    robot, session = switched_on(), computer()
+    send(robot, session, WAITS)
+    assert saved(robot, session) == "SAVING"
+    stored(robot, session, 2000)
+    assert session.is_running
+    assert program_after_power_off(robot) == bytes_of(WAITS)
+
+
+def test_a_program_that_drives_without_a_pause_is_saved_when_it_ends() -> None:
+    robot, session = switched_on(), computer()
+    send(robot, session, DRIVES)
+    robot.talk(session, 5000)
+    assert saved(robot, session) == "SAVING"
+    assert program_after_power_off(robot) == b""
+    session.stop(robot.now_ms)
+    robot.talk(session, 300)
+    assert saved(robot, session) == "STORED"
+    assert program_after_power_off(robot) == bytes_of(DRIVES)
+
+
+@pytest.mark.parametrize("wait", [1, 2, 3, 4, 5, 7])
+def test_a_program_is_saved_in_its_pauses_and_no_motor_runs_meanwhile(wait: int) -> None:
+    """A motor that starts waits for the byte: it may pull the voltage down. So it is at most three
+    bytes late, once."""
+    robot, session = switched_on(), computer()
+    text = PAUSES.replace("0.004", f"0.00{wait}")
+    send(robot, session, text)
+    stored(robot, session, 5000)
+    assert session.is_running
+    assert marks(robot) == []
+    assert program_after_power_off(robot) == bytes_of(text)
+
+
+# -- names and trims ------------------------------------------------------------------------------
+
+
+def test_a_name_is_ok_when_it_is_kept() -> None:
+    """The plug is pulled as soon as the robot has said OK."""
+    robot, session = switched_on(), computer()
+    for name in (b"TINI", b"TIN", b"ANA"):
+        assert robot.until(session, session.name(name)) == OK
+        assert name_after_power_off(robot) == name.decode()
+        assert session.robot is not None and session.robot.name == name.decode()
+
+
+@pytest.mark.parametrize("cut_ms", range(1, 240, 17))
+def test_a_name_that_is_not_ok_yet_is_the_old_one_or_the_new_one(cut_ms: int) -> None:
+    robot, session = switched_on(), computer()
+    assert robot.until(session, session.name(b"OLD")) == OK
+    task = session.name(b"NEW")
+    robot.talk(session, cut_ms)
+    found = name_after_power_off(robot)
+    assert found in ("OLD", "NEW")
+    assert task.outcome is None or found == "NEW"
+
+
+def test_a_name_given_while_it_drives_is_told_to_be_kept_later() -> None:
+    robot, session = switched_on(), computer()
+    assert robot.until(session, session.name(b"OLD")) == OK
+    send(robot, session, DRIVES, saves=False)
+    begun_ms = robot.now_ms
+    assert robot.until(session, session.name(b"NEW")) == STATUSES["SAVING"]
+    assert robot.now_ms - begun_ms < 6000  # for which a command waits
+    assert session.is_running
+    assert name_after_power_off(robot) == "OLD"
+    session.stop(robot.now_ms)
+    robot.talk(session, 500)
+    assert name_after_power_off(robot) == "NEW"
+    assert robot.until(session, session.name(b"NEW")) == OK
+
+
+def test_a_name_given_while_it_stands_in_a_program_is_kept() -> None:
+    robot, session = switched_on(), computer()
+    send(robot, session, WAITS)
+    assert robot.until(session, session.name(b"NEW")) == OK
+    assert session.is_running
+    assert name_after_power_off(robot) == "NEW"
+
+
+def test_a_trim_is_ok_when_it_is_kept() -> None:
+    robot, session = switched_on(), computer()
+    for trim in (b"\1\5\7", b"\1\5\1", b"\0\0\0"):
+        assert robot.until(session, session.trim(trim)) == OK
+        again, other = switched_on(robot.memory()), computer(2)
+        task = other.trim()
+        assert again.until(other, task) == OK
+        values = outcome(task).values
+        assert bytes((values["wheels"], values["balance"], values["least"])) == trim  # type: ignore[arg-type]
+    send(robot, session, DRIVES, saves=False)
+    assert robot.until(session, session.trim(b"\1\2\3")) == STATUSES["SAVING"]
+
+
+def test_a_worn_memory_is_told() -> None:
+    robot, session = switched_on(), computer()
+    assert robot.until(session, session.name(b"OLD")) == OK
+    for slot in range(2):
+        robot.wear_out(4 + EACH * slot + 4 + 8)  # the first letter of the name
+        name = b"NEW" if slot == 0 else b"WEN"
+        found = [robot.until(session, session.name(each)) for each in (name, b"XYZ", name)]
+        if STATUSES["NOT_KEPT"] in found:
+            assert name_after_power_off(robot) != "XYZ" or found[-1] == OK
+            break
+    else:
+        raise AssertionError("a byte that keeps what it is was taken for one that does not")
+
+
+# -- the supply -----------------------------------------------------------------------------------
+
+
+def test_a_low_supply_is_told_and_waited_for() -> None:
+    robot, session = switched_on(), computer()
+    robot.supply(is_low=True)
+    send(robot, session, "SI|SHOW(1)")
+    robot.talk(session, 1500)
+    assert saved(robot, session) == "LOW_SUPPLY"
+    assert robot.until(session, session.name(b"NEW")) == STATUSES["LOW_SUPPLY"]
+    assert program_after_power_off(robot) == b""
+    assert marks(robot) == []
+    robot.supply(is_low=False)
+    robot.talk(session, 1500)
+    assert saved(robot, session) == "STORED"
+    assert robot.until(session, session.name(b"NEW")) == OK
+    assert program_after_power_off(robot) == bytes_of("SI|SHOW(1)")
+    assert name_after_power_off(robot) == "NEW"
+
+
+def test_with_a_low_supply_another_program_can_still_be_tried() -> None:
+    """What counted before is kept, what was to be kept is given up for the new one."""
+    robot, session = switched_on(), computer()
+    send(robot, session, "SB|F(0.2, 80)")
+    stored(robot, session)
+    robot.supply(is_low=True)
+    for power in (20, 30, 40):
+        text = f"SI|F(0.1, {power}); " + "SHOW(1); " * 20
+        send(robot, session, text)
+        robot.talk(session, 800)
+        assert f"MOTORS {power} {power}" in happened(robot)
+        assert saved(robot, session) == "LOW_SUPPLY"
+    assert program_after_power_off(robot) == bytes_of("SB|F(0.2, 80)")
+    task = session.upload(image_of(LONG))  # breaks off
+    robot.talk(session, 3)
+    assert task.outcome is None
+    robot.wait(3000)
+    robot.did.clear()
+    robot.push()
+    robot.wait(400)
+    assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
+    robot.supply(is_low=False)
+    robot.talk(session, 3000)
+    assert saved(robot, session) == "STORED"
+    assert marks(robot) == []
+
+
+def test_a_low_supply_after_a_cut_in_a_save_is_told() -> None:
+    """What a cut has left is put in order with enough voltage only; until then nothing is known."""
+    robot, session = switched_on(), computer()
+    send(robot, session, "SB|F(0.2, 80)")
+    stored(robot, session)
+    memory = bytearray(robot.memory())
+    assert memory[FIRST] == 0
+    memory[FIRST + 3] = 0  # the third mark was not written
+    robot, session = HostFirmware(KIT, bytes(memory)), computer()
+    robot.supply(is_low=True)
+    robot.wait(500)
+    assert saved(robot, session) == "LOW_SUPPLY"
+    low = STATUSES["LOW_SUPPLY"]
+    assert robot.until(session, session.fetch()) == low
+    assert robot.until(session, session.upload(image_of("SI|F(0.1, 50)"))) == low
+    assert robot.until(session, session.name(b"NEW")) == low
+    robot.supply(is_low=False)
+    robot.wait(1000)
+    assert saved(robot, session) == "STORED"
+    assert program_after_power_off(robot) == bytes_of("SB|F(0.2, 80)")
+
+
+# -- reading while it is written ------------------------------------------------------------------
+
+
+def broken_upload(robot: HostFirmware, session: Session) -> None:
+    """Let the robot hold what is stored, and nothing of it in memory."""
+    task = session.upload(image_of(LONG))
+    robot.talk(session, 3)
+    assert task.outcome is None
+    robot.wait(3000)
+
+
+def test_a_program_is_fetched_whole_while_a_name_is_written() -> None:
+    robot, session = switched_on(), computer()
+    text = "SB|" + "F(0.2, 80); " * 30
+    send(robot, session, text)
+    stored(robot, session)
+    broken_upload(robot, session)
+    other = computer(3)
+    assert robot.until(other, other.hello()) == OK
+    other.name(b"A LONG NAME")
+    robot.talk(other, 5)  # the robot has it, and writes
+    another = computer(4)
+    task = another.fetch()
+    assert robot.until(another, task) == OK
+    assert outcome(task).values["image"] == bytes_of(text)
+
+
+def test_a_robot_that_writes_says_busy_to_fetch() -> None:
+    robot, session = switched_on(), computer()
+    send(robot, session, "SB|F(0.2, 80)")
+    stored(robot, session)
+    broken_upload(robot, session)
+    other = computer(3)
+    assert robot.until(other, other.hello()) == OK
+
+    def once(request: Request) -> Errand:
+        return (yield request)
+
+    naming = other._add(Task(once(Request("NAME", {"name": b"NEW"}))))
+    assert robot.until(other, naming) == STATUSES["SAVING"]
+    task = other._add(Task(once(Request("FETCH", {"offset": 0}))))
+    assert robot.until(other, task) == STATUSES["BUSY"]
+
+
+def test_the_button_starts_the_program_while_something_is_written() -> None:
+    robot, session = switched_on(), computer()
+    send(robot, session, "SB|F(0.2, 80)")
+    stored(robot, session)
+    broken_upload(robot, session)
+    other = computer(3)
+    assert robot.until(other, other.hello()) == OK
+    other.name(b"A LONG NAME")
+    robot.talk(other, 5)
+    robot.push(1)
+    robot.talk(other, 500)
+    assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
+
+
+def test_a_stop_ends_a_start_that_waits_for_the_memory() -> None:
+    robot, session = switched_on(write_ms=12), computer()
+    send(robot, session, "SB|F(0.2, 80)")
+    robot.talk(session, 2000)
+    broken_upload(robot, session)
+    other = computer(3)
+    assert robot.until(other, other.hello()) == OK
+    other.name(b"A LONG NAME")
+    robot.talk(other, 5)
+    robot.push(1)
+    other.stop(robot.now_ms)
+    robot.talk(other, 2000)
+    assert [line for line in happened(robot) if line.startswith("MOTORS")] == []
+
+
+def test_an_empty_memory_is_no_program() -> None:
+    robot, session = switched_on(EMPTY), computer()
+    assert robot.until(session, session.fetch()) == STATUSES["NO_PROGRAM"]

@@ -1,0 +1,197 @@
+"""A bad line to a robot on an Uno: what its chip notices is in the counts that STATUS tells.
+
+A line that stays low stops the robot.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from tests.firmware.test_uno_robot import (
+    AWAY,
+    BAUD,
+    FORWARD,
+    MOTORS,
+    NAMES,
+    OFF,
+    computer,
+    memory,
+    saved,
+    send,
+    sketch,
+    states,
+    switched_on,
+    uno,
+)
+from tests.firmware.test_uno_watchdog import built
+from tests.machines.wired import Wired
+from tiniscript.link.frames import Frame, decoded
+from tiniscript.link.messages import BY_NAME
+from tiniscript.link.requests import OK
+from tools.uno import CYCLES_PER_MS, Uno
+
+__all__ = ("memory", "sketch", "uno")  # fixtures
+BUSY = "{ cli(); for (uint16_t k = 0; k < 2000; k++) delayMicroseconds(5); sei(); }"  # over 10 ms
+
+
+def counted(wired: Wired) -> tuple[int, ...]:
+    """Return the damaged and dropped messages, framing errors and overruns that the robot tells."""
+    task = wired.session.status()
+    assert wired.until(task) == OK
+    assert task.outcome
+    values = task.outcome.values
+    found = [values[name] for name in ("damaged", "dropped", "framing", "overrun")]
+    return tuple(each for each in found if isinstance(each, int))
+
+
+def test_a_byte_without_its_stop_bit_damages_a_message(uno: Uno) -> None:
+    wired = computer(uno)
+    assert counted(wired) == (0, 0, 0, 0)
+    ping = wired.session.ping()
+    frame = wired.session.poll(wired.now_ms)
+    assert len(frame) > 4
+    uno.send(frame[:3])
+    uno.send(frame[3:4], stop_bits_fail=True)
+    uno.send(frame[4:])
+    wired.run(30)
+    assert wired.until(ping) == OK  # sent again
+    damaged, dropped, framing, overrun = counted(wired)
+    assert damaged >= 1
+    assert (dropped, framing, overrun) == (0, 1, 0)
+
+
+def test_bytes_that_nobody_fetches_damage_a_message(tmp_path: Path) -> None:
+    """Interrupts are off for 10 ms: nothing in the firmware does that."""
+    elf = built(tmp_path, BUSY)
+    with Uno(elf, names=NAMES, baud=BAUD) as uno:
+        uno.run_ms(300)
+        wired = computer(uno)
+        assert wired.until(wired.session.hello()) == OK
+        assert counted(wired) == (0, 0, 0, 0)
+        ping = wired.session.ping()
+        uno.press("button", at=uno.cycle + 2 * CYCLES_PER_MS)
+        assert wired.until(ping) == OK  # sent again
+        assert len(uno.lost) >= 3
+        damaged, dropped, framing, overrun = counted(wired)
+        assert (damaged, dropped, framing) == (1, 0, 0)
+        assert overrun >= 1
+
+
+def driving(uno: Uno) -> Wired:
+    """Let a program run that needs no computer."""
+    wired = computer(uno)
+    send(wired, AWAY, is_detached=True)
+    uno.run_ms(1500)
+    assert states(uno) == FORWARD
+    return wired
+
+
+def told(uno: Uno, since: int) -> list[Frame]:
+    """Return the frames that the robot has sent since a cycle."""
+    sent = bytes(byte.value for byte in uno.sent if byte.cycle > since)
+    return [frame for part in sent.split(b"\0") if (frame := decoded(part)) is not None]
+
+
+def test_a_line_that_is_held_low_stops_a_robot_that_needs_no_computer(uno: Uno) -> None:
+    wired = driving(uno)
+    began = uno.cycle
+    uno.hold(False, 2 * BAUD)
+    uno.run_ms(20)
+    assert states(uno) == OFF
+    off = max(uno.pins[name].cycle for name in MOTORS)
+    assert off - began < 10 * CYCLES_PER_MS
+    # the chip has told it once, and so does the robot
+    uno.run_ms(980)
+    assert [byte.cycle > began for byte in uno.received].count(True) == 1
+    assert [frame.number for frame in told(uno, began)] == [BY_NAME["STOPPED"].number]
+    # a cable that was pulled out stays as it is, and the robot has its button
+    uno.press("button", ms=100)
+    uno.run_ms(300)
+    assert states(uno) == FORWARD
+    uno.run_ms(1000)
+    wired.run(100)
+    uno.press("button", ms=100)
+    uno.run_ms(100)
+    assert states(uno) == OFF
+    wired.run(100)
+    send(wired, AWAY)
+    assert states(uno) == FORWARD
+    assert counted(wired)[2] == 1
+    uno.send(bytes(4))
+    uno.run_ms(10)
+    assert states(uno) == OFF
+
+
+def test_a_short_disturbance_stops_no_robot(uno: Uno) -> None:
+    """Each byte with a framing error is a zero, and what the line does meanwhile is none."""
+    driving(uno)
+    uno.hold(False, 25)  # longer than two bytes
+    uno.run_ms(50)
+    assert states(uno) == FORWARD
+    uno.send(b"\x55")  # what came before does not count any more
+    for _ in range(3):
+        uno.send(b"\0", stop_bits_fail=True)
+    uno.run_ms(50)
+    assert states(uno) == FORWARD
+    uno.send(b"\x55")
+    for _ in range(4):
+        uno.send(b"\0", stop_bits_fail=True)
+    uno.run_ms(50)
+    assert states(uno) == OFF
+
+
+def test_bytes_after_a_framing_error_are_no_line_that_is_held(uno: Uno) -> None:
+    driving(uno)
+    uno.send(b"\x10", stop_bits_fail=True)
+    uno.send(b"\x01\x02\x04\x08" * 200)
+    uno.run_ms(1000)
+    assert states(uno) == FORWARD
+
+
+def test_a_line_that_nobody_has_ever_pulled_up_keeps_no_button_from_starting(
+    sketch: Path, memory: Path
+) -> None:
+    """A Nano on batteries: its USB chip has no power, and holds the line low from the beginning."""
+    with switched_on(sketch, memory) as first:
+        wired = computer(first)
+        send(wired, "SB|F(60, 80)")
+        while saved(wired) != 3:
+            wired.run(50)
+    with Uno(sketch, names=NAMES, eeprom=memory, baud=BAUD) as uno:
+        uno.hold(False, 60 * BAUD, at=0)
+        uno.run_ms(500)
+        uno.press("button", ms=100)
+        uno.run_ms(1000)
+        assert states(uno) == FORWARD
+
+
+def test_a_stop_a_button_and_a_stop(uno: Uno) -> None:
+    """The computer repeats its zeros all the time, as it does where nothing comes back."""
+    wired = computer(uno)
+    send(wired, "SB|F(60, 80)")
+    for _ in range(3):
+        uno.send(bytes(8))
+        uno.run_ms(100)
+        assert states(uno) == OFF
+        uno.press("button", ms=60)
+        uno.run_ms(120)
+        assert states(uno) == FORWARD
+        uno.send(bytes(8))
+        uno.run_ms(20)
+        assert states(uno) == OFF
+        assert told(uno, uno.cycle - 20 * CYCLES_PER_MS)[-1].number == BY_NAME["STOPPED"].number
+
+
+def test_a_button_that_was_down_during_a_stop_starts_nothing(uno: Uno) -> None:
+    wired = computer(uno)
+    send(wired, "SB|F(60, 80)")
+    uno.drive("button", False)
+    wired.run(100)
+    uno.send(bytes(4))
+    wired.run(100)
+    uno.drive("button", None)
+    wired.run(300)
+    assert states(uno) == OFF
+    uno.press("button", ms=60)
+    uno.run_ms(150)
+    assert states(uno) == FORWARD

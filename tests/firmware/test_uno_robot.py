@@ -1,0 +1,274 @@
+"""The firmware as it goes onto an Uno, seen from its pins, its wire and its EEPROM."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.machines.uno import needed
+from tests.machines.wired import Wired
+from tests.support.platformio import firmware, shared
+from tiniscript import compile_text, robots
+from tiniscript.bytecode.image import Image, unpack
+from tiniscript.link.requests import OK
+from tiniscript.link.session import Session
+from tools.uno import CYCLES_PER_MS, Uno
+
+KIT = robots.load("tinibot").kit
+BAUD = 9600
+# The wiring of the profile `tinibot`.
+NAMES = {
+    "left": "D5", "left forward": "D7", "left backward": "D8",
+    "right": "D6", "right forward": "D9", "right backward": "D10",
+    "button": "D2", "echo": "D3", "trigger": "D4", "light": "D13", "radio": "D12",
+}  # fmt: skip
+MOTORS = [name for name in NAMES if "left" in name or "right" in name]
+OFF = dict.fromkeys(MOTORS, "low")
+FORWARD = OFF | {"left": "pwm", "right": "pwm", "left forward": "high", "right forward": "high"}
+AWAY = "SI|F(60, 80)"
+CABLE = 4  # a cause in docs/link.md
+
+
+@pytest.fixture(scope="session")
+def sketch(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    needed()
+    return firmware("uno", tmp_path_factory.mktemp("sketch"), shared(tmp_path_factory))
+
+
+@pytest.fixture
+def memory(tmp_path: Path) -> Path:
+    return tmp_path / "eeprom"
+
+
+@pytest.fixture
+def uno(sketch: Path, memory: Path) -> Iterator[Uno]:
+    with switched_on(sketch, memory) as found:
+        yield found
+
+
+def switched_on(sketch: Path, memory: Path) -> Uno:
+    uno = Uno(sketch, names=NAMES, eeprom=memory, baud=BAUD)
+    uno.run_ms(300)
+    assert states(uno) == OFF
+    return uno
+
+
+def states(uno: Uno) -> dict[str, str]:
+    return {name: uno.pins[name].state for name in MOTORS}
+
+
+def image_of(text: str) -> Image:
+    return unpack(compile_text(text, KIT).image)
+
+
+def computer(uno: Uno, nonce: int = 1) -> Wired:
+    return Wired(uno, Session(nonce, BAUD, KIT.fingerprint))
+
+
+def send(wired: Wired, text: str, **how: bool) -> None:
+    assert wired.until(wired.session.upload(image_of(text), **how)) == OK
+
+
+def saved(wired: Wired) -> int:
+    """Return how the robot's program is kept."""
+    task = wired.session.status()
+    assert wired.until(task) == OK
+    assert task.outcome
+    found = task.outcome.values["saved"]
+    assert isinstance(found, int)
+    return found
+
+
+def test_a_program_drives(uno: Uno) -> None:
+    wired = computer(uno)
+    begun_ms = wired.now_ms
+    send(wired, "SI|F(1, 80)")
+    assert states(uno) == FORWARD
+    assert wired.now_ms - begun_ms < 500
+    assert uno.pins["left"].duty == pytest.approx(0.8, abs=0.02)
+    wired.run(1100)
+    assert states(uno) == OFF
+    assert [event.name for event in wired.session.events()] == ["DONE"]
+    assert not uno.lost
+
+
+def test_what_is_saved_is_there_after_a_power_cut(sketch: Path, memory: Path) -> None:
+    uno = switched_on(sketch, memory)
+    wired = computer(uno)
+    send(wired, "SI|F(0.2, 80); " + "SHOW(1); " * 20)
+    wired.run(600)
+    while saved(wired) != 3:
+        wired.run(50)
+        assert wired.now_ms < 5000
+    uno.kill()
+    with switched_on(sketch, memory) as again:
+        assert again.pins["light"].state == "high"
+        again.run_ms(500)
+        assert states(again) == OFF
+        again.press("button")
+        again.run_ms(130)
+        assert states(again) == FORWARD
+        again.run_ms(300)
+        assert states(again) == OFF
+
+
+def test_a_power_cut_in_the_middle_of_a_save(sketch: Path, memory: Path) -> None:
+    uno = switched_on(sketch, memory)
+    wired = computer(uno)
+    send(wired, "SI|F(0.2, 80)")
+    wired.run(300)
+    while saved(wired) != 3:
+        wired.run(20)
+    send(wired, "SI|B(0.2, 60); " + "SHOW(1); " * 20)
+    wired.run(40)
+    uno.kill()
+    with switched_on(sketch, memory) as again:
+        again.press("button")
+        again.run_ms(130)
+        driven = states(again)
+        assert driven["left"] == driven["right"] == "pwm"
+        assert (driven["left forward"], driven["left backward"]) in (
+            ("high", "low"),
+            ("low", "high"),
+        )
+
+
+def test_the_stop_sequence_is_at_once(uno: Uno, capsys: pytest.CaptureFixture[str]) -> None:
+    wired = computer(uno)
+    send(wired, AWAY)
+    wired.run(300)
+    assert states(uno) == FORWARD
+    begun = uno.cycle
+    uno.send(bytes(8))
+    uno.run_ms(10)
+    assert states(uno) == OFF
+    off = max(uno.pins[name].cycle for name in MOTORS)
+    zero = max(byte.cycle for byte in uno.received if byte.cycle < off)
+    with capsys.disabled():
+        print(f"\n  last zero to pins off: {(off - zero) / CYCLES_PER_MS * 1000:.1f} us", end=" ")
+    assert begun < zero
+    assert off - zero < CYCLES_PER_MS
+    wired.run(500)
+    assert "STOPPED" in [event.name for event in wired.session.events()]
+    uno.run_ms(2000)
+    assert states(uno) == OFF
+
+
+def test_the_motors_go_off_without_frames(uno: Uno) -> None:
+    wired = computer(uno)
+    send(wired, AWAY)
+    wired.run(500)
+    last = max(byte.cycle for byte in uno.received)
+    assert states(uno) == FORWARD
+    uno.run_ms(1500)
+    assert states(uno) == OFF
+    off = max(uno.pins[name].cycle for name in MOTORS)
+    assert off - last <= 1050 * CYCLES_PER_MS
+    wired.run(1500)
+    assert wired.session.is_latched
+
+
+def test_the_button_stops(uno: Uno) -> None:
+    wired = computer(uno)
+    send(wired, AWAY)
+    wired.run(200)
+    uno.drive("button", False)
+    wired.run(2)
+    assert states(uno) == OFF
+    uno.drive("button", None)
+    wired.run(500)
+    assert states(uno) == OFF
+    assert "STOPPED" in [event.name for event in wired.session.events()]
+
+
+def low_for(uno: Uno, ms: float) -> None:
+    """Nobody is connected for so long, as the HC-05's STATE pin says."""
+    at = uno.cycle + CYCLES_PER_MS
+    uno.drive("radio", False, at=at)
+    uno.drive("radio", True, at=at + round(ms * CYCLES_PER_MS))
+
+
+def test_a_radio_that_nobody_is_connected_to_any_more_ends_a_tethered_run(uno: Uno) -> None:
+    uno.drive("radio", True)
+    wired = computer(uno)
+    send(wired, AWAY)
+    low_for(uno, 49)
+    wired.run(150)
+    assert states(uno) == FORWARD
+    left = uno.cycle + CYCLES_PER_MS
+    low_for(uno, 51)
+    wired.run(100)
+    assert states(uno) == OFF
+    off = max(uno.pins[name].cycle for name in MOTORS)
+    assert 49.5 * CYCLES_PER_MS <= off - left < 53 * CYCLES_PER_MS
+    wired.run(300)
+    stops = [event.values for event in wired.session.events() if event.name == "STOPPED"]
+    assert [values["cause"] for values in stops] == [CABLE]
+    assert states(uno) == OFF
+
+
+def test_a_glitch_of_the_radio_ends_nothing(uno: Uno) -> None:
+    """Neither one alone nor one after the other: high or low for 50 ms is what counts."""
+    uno.drive("radio", True)
+    wired = computer(uno)
+    send(wired, AWAY)
+    for pause_ms in (1, 5, 30, 49, 60):
+        for _ in range(4):
+            low_for(uno, 0.3)
+            wired.run(pause_ms)
+    assert states(uno) == FORWARD
+    uno.drive("radio", False)
+    wired.run(40)
+    uno.drive("radio", True)
+    wired.run(1)
+    uno.drive("radio", False)
+    wired.run(40)
+    assert states(uno) == FORWARD
+
+
+def test_a_radio_that_is_not_there_ends_nothing(uno: Uno) -> None:
+    """Nothing is wired to the pin, or a radio that nobody has been connected to."""
+    assert uno.pins["radio"].state == "pullup"
+    wired = computer(uno)
+    send(wired, AWAY)
+    wired.run(300)
+    assert states(uno) == FORWARD
+    uno.press("button")
+    wired.run(100)
+    uno.drive("radio", False)
+    wired.run(100)
+    assert wired.until(wired.session.clear()) == OK
+    send(wired, AWAY)
+    wired.run(300)
+    assert states(uno) == FORWARD
+
+
+@pytest.mark.parametrize("starts", ["detached", "button"])
+def test_a_run_without_a_tether_needs_nobody(uno: Uno, starts: str) -> None:
+    uno.drive("radio", True)
+    wired = computer(uno)
+    if starts == "detached":
+        send(wired, AWAY, is_detached=True)
+    else:
+        send(wired, AWAY.replace("SI", "SB"))
+        wired.run(100)
+        uno.press("button")
+        uno.run_ms(150)
+    assert states(uno) == FORWARD
+    uno.drive("radio", False)
+    uno.run_ms(1500)
+    assert states(uno) == FORWARD
+    uno.drive("radio", True)
+    uno.run_ms(200)
+    assert states(uno) == FORWARD
+
+
+def test_a_person_at_a_terminal_is_told(uno: Uno) -> None:
+    uno.send(b"SI|F(1, 80)\r\n")
+    uno.run_ms(500)
+    assert states(uno) == OFF
+    said = bytes(byte.value for byte in uno.sent)
+    assert b"tsc" in said
+    send(computer(uno), "SI|F(0.1, 80)")

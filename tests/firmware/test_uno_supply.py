@@ -1,0 +1,160 @@
+"""The supply of the simulated Uno and Mega: the firmware measures it before it saves."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+
+from tests.firmware.test_uno_robot import computer, image_of, saved, send, sketch, switched_on
+from tests.machines.uno import needed
+from tests.machines.wired import Wired
+from tests.support.platformio import firmware, shared
+from tiniscript.link.messages import SAVED, STATUSES
+from tiniscript.link.requests import OK
+from tools.uno import CYCLES_PER_MS, Uno
+
+__all__ = ["sketch"]
+
+LOW = [name for name, _ in SAVED].index("LOW_SUPPLY")
+STORED = [name for name, _ in SAVED].index("STORED")
+SAVES = "SI|SHOW(1)"
+
+
+@pytest.fixture
+def uno(sketch: Path, tmp_path: Path) -> Iterator[Uno]:
+    with switched_on(sketch, tmp_path / "eeprom") as found:
+        yield found
+
+
+def until_saved(wired: Wired, limit_ms: int = 4000) -> int:
+    """Return how the program is kept, when that is decided."""
+    end_ms = wired.now_ms + limit_ms
+    while wired.now_ms < end_ms:
+        found = saved(wired)
+        if found in (LOW, STORED):
+            return found
+        wired.run(20)
+    raise AssertionError("still saving")
+
+
+@pytest.mark.parametrize(("volts", "found"), [(5, STORED), (4.05, STORED), (3.95, LOW), (3, LOW)])
+def test_it_saves_from_four_volts_on(uno: Uno, volts: float, found: int) -> None:
+    wired = computer(uno)
+    uno.supply(volts)
+    send(wired, SAVES)
+    assert until_saved(wired) == found
+
+
+def marks(uno: Uno, since: int) -> list[int]:
+    """Return when bytes of the program's first slots were written that make it count."""
+    places = (129, 130, 131, 577, 578, 579)
+    return [
+        event.cycle
+        for event in uno.events
+        if event.what == "eeprom" and event["address"] in places and event["value"] not in (0, 255)
+        if event.cycle >= since
+    ]
+
+
+def test_a_supply_that_falls_between_two_marks_is_noticed(uno: Uno) -> None:
+    """It is measured before each of the three."""
+    wired = computer(uno)
+    begun = uno.cycle
+    send(wired, SAVES)
+    while len(marks(uno, begun)) < 1:
+        wired.run(1)
+    uno.supply(3.5)
+    assert until_saved(wired) == LOW
+    wired.run(1500)
+    assert len(marks(uno, begun)) == 1
+    uno.supply(4.5)
+    wired.run(1500)
+    assert saved(wired) == STORED
+    assert len(marks(uno, begun)) == 3
+
+
+def test_what_waits_for_the_supply_is_kept_when_there_is_enough(uno: Uno) -> None:
+    wired = computer(uno)
+    uno.supply(3.5)
+    send(wired, SAVES)
+    assert until_saved(wired) == LOW
+    assert wired.until(wired.session.name(b"TINI")) == STATUSES["LOW_SUPPLY"]
+    uno.supply(5)
+    wired.run(1000)
+    assert until_saved(wired) == STORED
+    assert wired.until(wired.session.name(b"TINI")) == OK
+
+
+LIGHT = "SI|LOOP(FOREVER);SHOW(LIGHT_L);SHOW(LIGHT_R);END_LOOP"
+
+
+@pytest.mark.parametrize("volts", [5.0, 3.5])
+def test_sensors_and_the_supply_take_turns(uno: Uno, volts: float) -> None:
+    """A program that reads two analog sensors all the time reads them right, and is saved."""
+    uno.analog("A0", 200)
+    uno.analog("A1", 800)
+    wired = computer(uno)
+    uno.supply(volts)
+    send(wired, LIGHT)
+    shown: list[int] = []
+    for _ in range(150):
+        wired.run(10)
+        shown += [int(event.values["value"]) for event in wired.session.events()
+                  if event.name == "SHOW"]  # fmt: skip
+    assert len(shown) > 50
+    assert set(shown) == {200_000, 800_000}
+    assert all(one != other for one, other in pairwise(shown))
+    assert until_saved(wired) == (STORED if volts > 4 else LOW)
+
+
+def test_a_program_that_measures_all_the_time_is_saved(uno: Uno) -> None:
+    wired = computer(uno)
+    send(wired, "SI|LOOP(FOREVER); X = LIGHT_L; END_LOOP")
+    assert until_saved(wired) == STORED
+
+
+def test_a_measurement_that_a_motor_ends_leaves_the_converter_to_the_sensors(uno: Uno) -> None:
+    """The pauses are shorter than a measurement: each of them is given up, and nothing is saved."""
+    uno.analog("A1", 800)
+    wired = computer(uno)
+    begun = uno.cycle
+    pushes = "W(0.001); M(50, 50); SHOW(LIGHT_L); W(0.02); M(0, 0);"
+    send(wired, f"SI|LOOP(FOREVER); {pushes} END_LOOP")
+    wired.run(2000)
+    shown = [event.values["value"] for event in wired.session.events() if event.name == "SHOW"]
+    assert len(shown) > 50 and set(shown) == {800_000}
+    assert marks(uno, begun) == []
+
+
+def test_a_program_that_drives_in_short_pushes_is_saved_in_between(uno: Uno) -> None:
+    wired = computer(uno)
+    begun = uno.cycle
+    send(wired, "SI|LOOP(FOREVER);F(0.1, 80);W(0.05);END_LOOP")
+    assert until_saved(wired) == STORED
+    driving = uno.pins.history("left forward")
+    for cycle in marks(uno, begun):
+        before = [change for change in driving if change.cycle <= cycle]
+        assert before[-1].state == "low"
+        # 3.4 ms from its beginning, of which the event comes in the middle
+        after = [change.cycle for change in driving if change.cycle > cycle]
+        assert not after or after[0] - cycle >= 1.5 * CYCLES_PER_MS
+    assert wired.session.is_running
+
+
+def test_a_mega_measures_its_supply_too(
+    tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    needed()
+    elf = firmware("mega", tmp_path_factory.mktemp("mega"), shared(tmp_path_factory))
+    with Uno(elf, board="mega", baud=9600) as mega:
+        mega.run_ms(300)
+        wired = computer(mega)
+        mega.supply(3.9)
+        assert wired.until(wired.session.upload(image_of("SI|W(0.1)"))) == OK
+        assert until_saved(wired) == LOW
+        mega.supply(4.1)
+        wired.run(1000)
+        assert until_saved(wired) == STORED

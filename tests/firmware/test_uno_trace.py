@@ -1,0 +1,165 @@
+"""What the pins of a simulated Uno do is what `tsc run` prints: in its order, at its times."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+from tests.firmware.test_uno_robot import MOTORS, computer, send, sketch, switched_on  # noqa: F401
+from tests.machines import MACHINES
+from tests.support.casefile import ROOT, Case, read
+from tests.vm.test_cases import compiled, robot_and_senses
+from tiniscript.bytecode.image import unpack
+from tiniscript.link.requests import OK
+from tools.uno import CYCLES_PER_MS, Uno
+
+SHORT_MS = 30  # settings that are over sooner: between two instructions, or while a sensor is read
+OFF_MS = 5  # that a change may be from its time in the trace,
+READING_MS = 25  # and so much more for each reading before it
+TELLING_MS = 200  # for which SHOW and DONE may be on the wire at the end
+
+PAPER = [case for case in read(ROOT / "tests" / "cases" / "paper.md") if "robot" in case.parts]
+OTHERS = [
+    "SI|F(0.3, 80) UNTIL(DISTANCE < 20); B(0.2, 40); SHOW(TIME)",
+    "SI|X = 3; LOOP(X); M(X * 10, -50); W(0.15); X = X - 1; END_LOOP",
+    "SI|BEEP(0.2, 440); F(0.2, 100); BEEP(0.1, 880); L(0.1, 30); SHOW(TRUE)",
+    "SI|DEF TURN; R(0.12, 60); W(0.05); END_DEF; LOOP(3); TURN; F(0.2, 70); END_LOOP",
+]
+
+
+class Setting(NamedTuple):
+    """What the motors get from a time on, in percent."""
+
+    ms: float
+    left: int
+    right: int
+
+
+def program(text: str) -> Case:
+    return Case(Path(__file__), 0, text, {"tiniscript": text, "senses": "DISTANCE = 60"})
+
+
+def seen(uno: Uno, since: int) -> list[Setting]:
+    """Return what the pins have told the motors since a cycle."""
+    changes = [
+        change
+        for name in MOTORS
+        for change in uno.pins.history(name)
+        if change.cycle > since
+    ]  # fmt: skip
+    found = []
+    for cycle in sorted({change.cycle for change in changes}):
+        powers = (power(uno, side, cycle) for side in ("left", "right"))
+        found.append(Setting((cycle - since) / CYCLES_PER_MS, *powers))
+    return lasting(found)
+
+
+def power(uno: Uno, side: str, cycle: int) -> int:
+    strength = uno.pins.at(side, cycle)
+    if strength.state == "low":
+        return 0
+    level = strength.value if strength.state == "pwm" else 255
+    is_backward = uno.pins.at(f"{side} backward", cycle).state == "high"
+    return round(-level / 2.55 if is_backward else level / 2.55)
+
+
+def told(trace: str) -> tuple[list[Setting], list[float]]:
+    """Return the motors and the times of readings that a trace has; its end turns them off."""
+    rows = [line.split() for line in trace.splitlines()]
+    settings = [
+        Setting(float(row[0]), int(row[2]), int(row[3])) for row in rows if row[1] == "MOTORS"
+    ]
+    end_ms = float(rows[-1][0])
+    if rows[-1][1] == "DONE":
+        settings.append(Setting(end_ms, 0, 0))
+    return lasting(settings), [float(row[0]) for row in rows if row[1] == "READ"]
+
+
+def lasting(settings: list[Setting]) -> list[Setting]:
+    """Return the settings that are different from the one before, and last; the last one does."""
+    ends = [each.ms for each in settings[1:]] + [float("inf")]
+    found = [Setting(-1.0, 0, 0)]
+    for each, end_ms in zip(settings, ends[: len(settings)], strict=True):
+        if end_ms - each.ms >= SHORT_MS and each[1:] != found[-1][1:]:
+            found.append(each)
+    return found[1:]
+
+
+@pytest.mark.parametrize("case", [*PAPER, *map(program, OTHERS)], ids=lambda case: case.title)
+def test_the_pins_follow_the_trace(case: Case, sketch: Path, tmp_path: Path) -> None:  # noqa: F811
+    robot, senses = robot_and_senses(case)
+    image = unpack(compiled(case).image, robot.kit.fingerprint)
+    trace = MACHINES["python"](compiled(case).image, robot.kit, senses)
+    expected, reads = told(trace)
+    end_ms = float(trace.splitlines()[-1].split()[0])
+    is_over = not trace.endswith("LIMIT\n")
+    distances = [each / 1000 for each in senses.readings.get("DISTANCE", [0])]
+    with switched_on(sketch, tmp_path / "eeprom") as uno:
+        for pin, name in (("A0", "LIGHT_R"), ("A1", "LIGHT_L")):
+            uno.analog(pin, senses.readings.get(name, [0])[0] // 1000)
+        uno.sonar("trigger", "echo", distances[0])
+        wired = computer(uno)
+        if image.start == "PING":
+            assert wired.until(wired.session.hello()) == OK
+            assert seen(uno, 0) == []
+            return
+        heard = len(uno.received)
+        assert wired.until(wired.session.upload(image, is_detached=True)) == OK
+        began = last_zero(uno, heard)
+        if image.start == "SB":
+            wired.run(300)
+            assert seen(uno, began) == []
+            uno.press("button", 60)
+            began = uno.run_until("left forward", "high", limit_ms=500).cycle - 1
+        triggers = 0
+        while (uno.cycle - began) / CYCLES_PER_MS < end_ms + READING_MS * len(reads) + TELLING_MS:
+            wired.run(2)
+            pulses = [each for each in uno.pins.history("trigger") if each.state == "high"]
+            if len(pulses) > triggers:
+                triggers = len(pulses)
+                wired.run(READING_MS)
+                uno.sonar("trigger", "echo", distances[min(triggers, len(distances) - 1)])
+        found = seen(uno, began)
+        events = wired.session.events()
+    if not is_over:
+        found = [each for each in found if each.ms < end_ms]
+        expected = [each for each in expected if each.ms < end_ms]
+    assert [each[1:] for each in found] == [each[1:] for each in expected]
+    for pins, line in zip(found, expected, strict=True):
+        late_ms = OFF_MS + READING_MS * sum(read_ms <= line.ms for read_ms in reads)
+        assert -OFF_MS <= pins.ms - line.ms <= late_ms, (pins, line)
+    if is_over:
+        said = [line.split(" ", 1)[1] for line in trace.splitlines()]
+        shown = [line for line in said if line.startswith("SHOW") or line == "DONE"]
+        names = [each.name for each in events]
+        assert [name for name in names if name in ("SHOW", "DONE")] == [
+            line.split()[0] for line in shown
+        ]
+
+
+def last_zero(uno: Uno, since: int) -> int:
+    """Return when the last frame was there from which something has begun to move."""
+    heard = uno.received[since:]
+    moved = [change.cycle for name in MOTORS for change in uno.pins.history(name)
+             if change.state in ("high", "pwm") and change.cycle > heard[0].cycle]  # fmt: skip
+    end = min(moved, default=heard[-1].cycle + 1)
+    return max(byte.cycle for byte in heard if byte.cycle < end and byte.value == 0)
+
+
+def test_a_thousand_short_waits_take_a_minute(sketch: Path, tmp_path: Path) -> None:  # noqa: F811
+    """A wait begins where the one before has ended, not when the machine comes to it."""
+    with switched_on(sketch, tmp_path / "eeprom") as uno:
+        heard = len(uno.received)
+        send(computer(uno), "SI|LOOP(500); F(0.06, 50); W(0.06); END_LOOP; M(90, 90)",
+             is_detached=True)  # fmt: skip
+        began = last_zero(uno, heard)
+        uno.run_ms(60_000)
+        changes = [each.cycle for each in uno.pins.history("left") if each.cycle > began]
+    times = [(cycle - began) / CYCLES_PER_MS for cycle in changes]
+    assert len(times) == 1002  # on and off 500 times, and once more at the end
+    assert all(abs(after - before - 60) < 2 for before, after in pairwise(times[:-1]))
+    assert max(abs(time_ms - 60 * k) for k, time_ms in enumerate(times[:-1])) < OFF_MS
+    assert abs(times[-2] - 60_000) < OFF_MS

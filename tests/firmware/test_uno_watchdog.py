@@ -1,0 +1,131 @@
+"""A main loop that stands still: the motors go off, the chip starts anew and says why."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.firmware.test_uno_robot import (
+    AWAY,
+    BAUD,
+    FORWARD,
+    NAMES,
+    OFF,
+    computer,
+    image_of,
+    memory,
+    send,
+    sketch,
+    states,
+    uno,
+)
+from tests.machines.uno import needed
+from tests.machines.wired import Wired
+from tests.support.platformio import changed
+from tiniscript.link.requests import OK
+from tools.uno import CYCLES_PER_MS, Uno
+
+__all__ = ("memory", "sketch", "uno")  # fixtures
+
+PRESSED = "if (press == Press::kPressed) firmware_pressed();"
+WATCHDOG, STALL = 4, 66  # a reset and a fault in docs/link.md
+HANGS, HANGS_ALONE = "for (;;) {\n }", "{ cli(); for (;;) {\n } }"
+TIMER_MS, WATCHDOG_MS = 110, 300
+MOVE_AT = 4  # the offset in AWAY, behind what it takes
+
+
+def built(folder: Path, hang: str, environment: str = "uno") -> Path:
+    """Return the firmware that hangs when the button is pressed."""
+    needed()
+    hangs = f"if (press == Press::kPressed) {hang}"
+    return changed(folder, "main.cpp", PRESSED, hangs, environment)
+
+
+def told(wired: Wired) -> dict[str, object]:
+    """Return what HELLO says of the robot."""
+    assert wired.until(wired.session.hello()) == OK
+    robot = wired.session.robot
+    assert robot is not None
+    return dict(robot.values)
+
+
+def is_on(uno: Uno) -> bool:
+    """Return whether a motor may turn. A chip that is being reset leaves all its pins alone."""
+    return any(state in ("high", "pwm") for state in states(uno).values())
+
+
+@pytest.mark.parametrize("board", ["uno", "nano", "mega"])
+@pytest.mark.parametrize(
+    ("hang", "limit_ms"),
+    [
+        pytest.param(HANGS, TIMER_MS, id="the timer turns the motors off"),
+        pytest.param(HANGS_ALONE, WATCHDOG_MS, id="the watchdog, with interrupts off"),
+    ],
+)
+def test_a_main_loop_that_hangs(hang: str, limit_ms: int, board: str, tmp_path: Path) -> None:
+    """What ran is the last fault of the robot, also after it was without power."""
+    elf = built(tmp_path, hang, board)
+    kept = tmp_path / "eeprom"
+    chip = "mega" if board == "mega" else "uno"
+    with Uno(elf, names=NAMES, board=chip, baud=BAUD, eeprom=kept) as uno:
+        uno.run_ms(300)
+        wired = computer(uno)
+        send(wired, AWAY)
+        wired.run(300)
+        assert states(uno) == FORWARD
+        began = uno.cycle
+        uno.drive("button", False)
+        uno.run_ms(limit_ms)
+        assert not is_on(uno)
+        changes = (change for name in ("left", "right") for change in uno.pins.history(name))
+        assert max(change.cycle for change in changes) - began <= limit_ms * CYCLES_PER_MS
+        uno.drive("button", None)
+        uno.run_ms(1000)
+        assert states(uno) == OFF
+        found = told(computer(uno, 2))
+        assert found["reset"] == WATCHDOG
+        what = (found["fault"], found["fault_program"], found["fault_at"])
+        assert what == (STALL, image_of(AWAY).checksum, MOVE_AT)
+        uno.run_ms(500)
+        assert states(uno) == OFF
+    with Uno(elf, names=NAMES, board=chip, baud=BAUD, eeprom=kept) as again:
+        again.run_ms(300)
+        found = told(computer(again, 3))
+        assert (found["reset"], found["fault"]) == (1, STALL)
+        assert found["fault_program"] == image_of(AWAY).checksum
+
+
+def test_a_hang_without_a_program_is_a_fault_of_none(tmp_path: Path) -> None:
+    with Uno(built(tmp_path, HANGS), names=NAMES, baud=BAUD) as uno:
+        uno.run_ms(300)
+        uno.press("button")
+        uno.run_ms(600)
+        found = told(computer(uno))
+        what = tuple(found[key] for key in ("reset", "fault", "fault_program", "fault_at"))
+        assert what == (WATCHDOG, STALL, 0, 0)
+
+
+def test_a_reset_that_is_no_hang_is_no_fault(uno: Uno) -> None:
+    """Not in the middle of a program either; and the next nonce is another one each time."""
+    nonces = set()
+    for number in range(5):
+        wired = computer(uno, number + 1)
+        found = told(wired)
+        assert found["fault"] == 0
+        nonces.add(found["nonce"])
+        send(wired, AWAY)
+        assert states(uno) == FORWARD
+        uno.reset()
+        uno.run_ms(300)
+    assert len(nonces) == 5
+
+
+def test_five_equal_resets_have_five_nonces(uno: Uno) -> None:
+    """Nothing happens in between, and each takes the same number of cycles."""
+    nonces = []
+    for _ in range(5):
+        uno.reset()
+        uno.run_ms(200)
+        nonces.append(told(computer(uno, 7))["nonce"])
+    assert len(set(nonces)) == 5

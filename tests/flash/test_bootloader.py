@@ -1,0 +1,186 @@
+"""The sketch goes onto a board the way it goes onto a real one: by avrdude, over its bootloader."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from tests.firmware.test_uno_robot import (
+    AWAY,
+    BAUD,
+    FORWARD,
+    NAMES,
+    OFF,
+    computer,
+    image_of,
+    send,
+    states,
+)
+from tests.firmware.test_uno_watchdog import (
+    HANGS,
+    HANGS_ALONE,
+    STALL,
+    TIMER_MS,
+    WATCHDOG_MS,
+    built,
+    is_on,
+)
+from tests.machines.bootloaders import Bootloader, bootloader
+from tests.machines.uno import built as nothing_but
+from tests.machines.uno import needed
+from tests.support import arduino_builder
+from tests.support.command import process
+from tests.support.platformio import firmware, need, shared
+from tiniscript.link.requests import OK
+from tools.uno import CYCLES_PER_MS, Uno
+
+DRIVES = "SI|F(0.3, 80)"
+UNKNOWN, POWER, WATCHDOG = 0, 1, 4  # resets in docs/link.md
+WAIT_MS = 2500  # so long an old Nano waits for a sketch
+
+
+@pytest.fixture(autouse=True)
+def needs_a_chip() -> None:
+    needed()
+
+
+def avrdude(uno: Uno, of: Bootloader, file: Path) -> str:
+    """Write a sketch and read it back, as the Arduino IDE and PlatformIO do."""
+    if not shutil.which("avrdude"):
+        need("no avrdude on this computer")
+    done = subprocess.run(
+        ["avrdude", "-c", of.programmer, "-p", of.part, "-P", uno.pty, "-b", str(of.baud), "-D",
+         "-U", f"flash:w:{file}:i"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        timeout=120,
+        check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stdout
+    return done.stdout
+
+
+@pytest.mark.parametrize(
+    ("board", "builder"), [("uno", "PlatformIO"), ("nano", "PlatformIO"), ("uno", "Arduino IDE")]
+)
+def test_avrdude_writes_the_sketch_and_the_robot_drives(
+    board: str, builder: str, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    common = shared(tmp_path_factory)
+    if builder == "PlatformIO":
+        elf = firmware(board, tmp_path, common)
+        sketch = tmp_path / "firmware.hex"
+        subprocess.run(["avr-objcopy", "-O", "ihex", "-R", ".eeprom", elf, sketch], check=True)
+    else:
+        sketch = arduino_builder.firmware(board, tmp_path, common).hex
+    of = bootloader(board)
+    program = tmp_path / "drive.ts"
+    program.write_text(DRIVES, encoding="utf-8")
+    with Uno(
+        nothing_but("nothing"), bootloader=of.file, names=NAMES, baud=of.baud, tells_sleep=False
+    ) as uno:
+        uno.go()
+        assert "bytes of flash verified" in avrdude(uno, of, sketch)
+        pong = process("ping", "--port", uno.pty)
+        assert pong.code == 0, pong.err
+        assert pong.out.startswith(f"tinibot on {uno.pty}")
+        assert states(uno) == OFF
+        done = process("upload", program, "--port", uno.pty)
+        assert done.code == 0, done.err
+        uno.pause()
+        left = [change for change in uno.pins.history("left") if change.state == "pwm"]
+        assert len(left) == 1
+        off = [change for change in uno.pins.history("left") if change.cycle > left[0].cycle]
+        assert off[0].cycle - left[0].cycle == pytest.approx(300 * CYCLES_PER_MS, rel=0.02)
+        assert states(uno) == OFF
+
+
+def test_optiboot_lets_a_robot_go_on_that_has_hung(tmp_path: Path) -> None:
+    """It knows the watchdog's reset, does not wait for a sketch, and hides the cause.
+
+    With interrupts off nothing but the cause would tell: that is not known then.
+    """
+    elf = built(tmp_path, HANGS_ALONE)
+    with Uno(elf, bootloader=bootloader("uno").file, names=NAMES, baud=BAUD) as uno:
+        hung(uno, limit_ms=WATCHDOG_MS)
+        uno.run_ms(500)
+        causes = [event["cause"] for event in uno.events if event.what == "reset"]
+        assert causes == ["power-on", "watchdog"]
+        assert answered(uno) == (UNKNOWN, 0, 0)
+        assert states(uno) == OFF
+
+
+def test_optiboot_does_not_hide_a_hang_that_was_noted(tmp_path: Path) -> None:
+    elf = built(tmp_path, HANGS)
+    with Uno(elf, bootloader=bootloader("uno").file, names=NAMES, baud=BAUD) as uno:
+        hung(uno, limit_ms=TIMER_MS)
+        uno.run_ms(700)
+        causes = [event["cause"] for event in uno.events if event.what == "reset"]
+        assert causes == ["power-on", "watchdog"]
+        assert answered(uno) == (WATCHDOG, STALL, image_of(AWAY).checksum)
+        assert states(uno) == OFF
+
+
+def test_an_old_nano_goes_on_without_its_bootloader(tmp_path: Path) -> None:
+    """That one would leave the watchdog on, so the robot begins anew by itself."""
+    elf = built(tmp_path, HANGS, "nano")
+    with Uno(elf, bootloader=bootloader("nano").file, names=NAMES, baud=BAUD) as uno:
+        hung(uno, limit_ms=TIMER_MS)
+        uno.run_ms(1000)
+        causes = [event["cause"] for event in uno.events if event.what == "reset"]
+        assert causes == ["power-on"]
+        assert answered(uno) == (WATCHDOG, STALL, image_of(AWAY).checksum)
+        assert states(uno) == OFF
+
+
+def test_an_old_nano_that_has_hung_for_good_stays_off_until_it_has_no_power(tmp_path: Path) -> None:
+    elf = built(tmp_path, HANGS_ALONE, "nano")
+    with Uno(elf, bootloader=bootloader("nano").file, names=NAMES, baud=BAUD) as uno:
+        hung(uno, limit_ms=WATCHDOG_MS)
+        began = len(uno.events)
+        uno.run_ms(300)
+        causes = {event["cause"] for event in uno.events[began:] if event.what == "reset"}
+        assert causes == {"watchdog"}
+        assert not is_on(uno)
+        uno.reset("power-on")
+        uno.run_ms(WAIT_MS)
+        assert answered(uno) == (POWER, 0, 0)
+
+
+def hung(uno: Uno, limit_ms: int) -> None:
+    """Let the robot drive and then hang: its motors must go off."""
+    uno.run_ms(WAIT_MS)
+    send(computer(uno), AWAY)
+    assert states(uno) == FORWARD
+    uno.drive("button", False)
+    uno.run_ms(limit_ms + 5)
+    assert not is_on(uno)
+    uno.drive("button", None)
+
+
+def answered(uno: Uno) -> tuple[object, ...]:
+    """Return why the robot was reset last, its last fault and in which program, as it says."""
+    wired = computer(uno, 2)
+    assert wired.until(wired.session.hello()) == OK
+    robot = wired.session.robot
+    assert robot is not None
+    return tuple(robot.values[key] for key in ("reset", "fault", "fault_program"))
+
+
+def test_a_mega_that_was_reset_is_waited_for(
+    tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    """What it hears too early keeps it in its bootloader, and its profile is that of an Uno."""
+    elf = firmware("mega", tmp_path, shared(tmp_path_factory))
+    file = bootloader("mega").file
+    with Uno(elf, board="mega", bootloader=file, baud=BAUD, tells_sleep=False) as mega:
+        mega.go(speed=3.0)  # real time is at least that, on a busy computer too
+        pong = process("ping", "--port", mega.pty)
+        assert pong.code == 0, pong.err
+        assert pong.out.startswith(f"tinibot on {mega.pty}")
+        found = process("ports", "--ask", "--port", mega.pty)
+        assert "tinibot" in found.out, found.out

@@ -1,0 +1,328 @@
+"""`tsc firmware` builds what is not ready, never writes what is old, and says why it cannot."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.flash.test_flash import command, copied, new_board, tsc
+from tests.machines.bootloaders import bootloader
+from tests.machines.uno import needed
+from tests.robots.test_robots import TEXTS
+from tests.support.casefile import ROOT
+from tests.support.command import Tsc, process
+from tests.support.platformio import need, prepared
+from tiniscript import robots
+from tiniscript.flash import building, ready
+from tiniscript.flash.building import COMPILING, FETCHING, Seen
+
+pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
+
+
+@pytest.fixture
+def clone(tmp_path: Path) -> Path:
+    """A copy of what a clone has of the package and the firmware's sources: its `compiler`."""
+    ignored = shutil.ignore_patterns(".pio", "own.h", "__pycache__")
+    folder = tmp_path / "clone"
+    shutil.copytree(ROOT / "vm_arduino", folder / "vm_arduino", ignore=ignored)
+    return copied(folder)
+
+
+@pytest.fixture
+def own(tmp_path: Path) -> Path:
+    """A profile of one's own: the paper's robot with another name for a sensor."""
+    profile = tmp_path / "mine.toml"
+    profile.write_text(TEXTS["tinibot"].replace("LIGHT_R", "LIGHT_X"), encoding="utf-8")
+    return profile
+
+
+# -- PlatformIO builds
+
+
+def test_a_robot_of_ones_own_is_built_and_written(clone: Path, own: Path) -> None:
+    """Once: then it is ready, until anything that it is made from is another."""
+    needed()
+    variables, why = prepared()
+    need(why or ("" if shutil.which("avrdude") else "no avrdude on this computer"))
+    with new_board(bootloader("uno")) as uno:
+        done = tsc(clone, "--port", uno.pty, "--robot", str(own), **variables)
+        assert done.code == 0, done.err
+        assert "PlatformIO builds the firmware of mine for the uno" in done.err
+        first = done.out.splitlines()[0]
+        assert first.startswith("mine on the uno: ") and "read back and compared" in first
+        card = process("info", "--json", "--port", uno.pty)
+        assert f'"kit": "{robots.load(str(own)).kit.fingerprint:04x}"' in card.out, card.err
+    kept = ready.files(ready.cache())
+    assert [(each.robot, each.board) for each in kept] == [("mine", "uno")]
+    again = tsc(clone, "--build", "--robot", str(own))  # PlatformIO could build nothing now
+    assert (again.code, again.err) == (0, "")
+    assert again.out == f"mine on uno: ready, {kept[0].bytes:,} bytes\n"
+    source = clone.parent / "vm_arduino" / "src" / "main.cpp"
+    source.write_text("?", encoding="utf-8")
+    broken = tsc(clone, "--build", "--robot", str(own), **variables)
+    assert broken.code == 2
+    assert "could not be built" in broken.err and "error" in broken.err
+    log = broken.err.split()[-1]
+    assert "main.cpp" in Path(log).read_text(encoding="utf-8")
+
+
+# -- what is old is not written
+
+
+def test_sources_robot_and_board_make_the_digest(clone: Path, own: Path) -> None:
+    sources = building.sources()
+    assert sources is not None
+    digests = {
+        sources.digest(robot)
+        for robot in (robots.load("tinibot"), robots.load("tinibot", "nano"), robots.load(str(own)))
+    }
+    assert len(digests) == 3
+    for name in sources.files:
+        changed = building.Sources({**sources.files, name: sources.files[name] + b"\n"})
+        digests.add(changed.digest(robots.load("tinibot")))
+        fewer = {each: data for each, data in sources.files.items() if each != name}
+        digests.add(building.Sources(fewer).digest(robots.load("tinibot")))
+    assert len(digests) == 3 + 2 * len(sources.files) > 100
+
+
+def test_the_header_that_somebody_has_made_is_not_the_robot(
+    clone: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(building, "PLACES", [clone.parent / "vm_arduino"])
+    before = building.sources()
+    (clone.parent / "vm_arduino" / building.HEADER).write_text("#error", encoding="utf-8")
+    assert before and building.sources() == before
+
+
+def test_a_file_of_the_package_that_is_old_is_not_taken(clone: Path) -> None:
+    """`ready` is a folder of the clone, and a pull changes the sources beside it."""
+    folder = clone / "tiniscript" / "flash" / "ready"
+    folder.mkdir()
+    digest = building.Sources(source_bytes(clone)).digest(robots.load("tinibot"))
+    (folder / ready.name_of("tinibot", "uno", digest)).write_text(":00000001FF\n")
+    (folder / ready.name_of("tinibot", "nano", digest)).write_text(":00000001FF\n")
+    rows = tsc(clone, "--list").out.splitlines()
+    assert rows[:2] == [
+        "tinibot on uno: ready, 0 bytes", "tinibot on nano: is built when it is first written"
+    ]  # fmt: skip
+
+
+def source_bytes(clone: Path) -> dict[str, bytes]:
+    project = clone.parent / "vm_arduino"
+    files = [project / "platformio.ini", *sorted((project / "src").rglob("*"))]
+    return {
+        path.relative_to(project).as_posix(): path.read_bytes() for path in files if path.is_file()
+    }
+
+
+ROW = ":0400000001020304F2\n"
+
+
+@pytest.mark.parametrize(("text", "whole"), [
+    (ROW + ":00000001FF\n", True),
+    (ROW, False),  # a disk that was full
+    ("", False),
+    (ROW.replace("F2", "F3") + ":00000001FF\n", False),
+    (ROW + ":0000", False),
+    ("<p>no file</p>", False),
+])  # fmt: skip
+def test_a_file_that_is_not_whole_is_built_anew(text: str, whole: bool) -> None:
+    folder = ready.cache()
+    folder.mkdir(parents=True)
+    (folder / ready.name_of("mine", "uno", "12")).write_text(text)
+    assert (ready.find("mine", "uno", "12") is not None) == whole
+    assert ready.find("mine", "uno", "13") is None
+    assert len(ready.files(folder)) == whole
+
+
+def test_the_cache_does_not_grow_for_ever() -> None:
+    for number in range(ready.KEPT + 5):
+        kept = ready.keep("a/robot of mine", "uno", f"{number:016x}", b":00000001FF\n")
+        os.utime(kept.path, ns=(number, number))
+    found = ready.files(ready.cache())
+    assert len(found) == ready.KEPT and found[-1].digest == f"{ready.KEPT + 4:016x}"
+    assert {path.suffix for path in ready.cache().iterdir()} == {".hex"}
+
+
+# -- with a PlatformIO that says what it is told
+
+
+def pretending(folder: Path, body: str) -> dict[str, str]:
+    """Return the variables with which a Python has this for its PlatformIO."""
+    package = folder / "pretending" / "platformio"
+    package.mkdir(parents=True)
+    (package / "__init__.py").write_text("")
+    (package / "__main__.py").write_text(f"import os, subprocess, sys, time\n{body}\n")
+    return {"PYTHONPATH": str(package.parent)}
+
+
+def built(clone: Path, variables: dict[str, str], *words: str) -> tuple[int, str, str]:
+    path = variables["PYTHONPATH"] + os.pathsep + str(clone)
+    done = tsc(clone, "--build", *words, **{**variables, "PYTHONPATH": path})
+    return done.code, done.out, done.err
+
+
+OFFLINE = 'print("Platform Manager: Installing atmelavr\\nHTTPClientError: "); sys.exit(1)'
+
+
+@pytest.mark.parametrize(("words", "said"), [
+    ([], "Is this computer online?"), (["--lang", "es"], "¿Tiene internet esta computadora?"),
+])  # fmt: skip
+def test_offline_it_says_what_to_do(
+    words: list[str], said: str, clone: Path, tmp_path: Path
+) -> None:
+    code, out, err = built(clone, pretending(tmp_path, OFFLINE), *words)
+    assert (code, out) == (2, "")
+    assert said in err and "(HTTPClientError)" in err
+    log = Path(err.split()[-1])
+    assert log.parent == ready.cache() and "Installing atmelavr" in log.read_text()
+    assert not ready.files(ready.cache())
+
+
+@pytest.mark.parametrize(("body", "said"), [
+    ('print("Compiling a\\nsrc/a.cpp:3:1: error: no such thing"); sys.exit(1)', "no such thing"),
+    ('print("Compiling a\\nLinking"); sys.exit(0)', "Linking"),  # and there is no file
+    ("sys.exit(7)", "exit code 7"),
+    ('os.write(1, b"Compiling \\xff\\x1b[2J error\\n" * 100_000); sys.exit(1)', "error"),
+])  # fmt: skip
+def test_a_build_that_fails_has_its_reason(
+    body: str, said: str, clone: Path, tmp_path: Path
+) -> None:
+    code, out, err = built(clone, pretending(tmp_path, body))
+    assert (code, out) == (2, "")
+    assert said in err and "\x1b" not in err
+
+
+def test_half_a_file_from_platformio_is_not_kept(clone: Path, tmp_path: Path) -> None:
+    body = """
+made = os.path.join(sys.argv[sys.argv.index("-d") + 1], ".pio", "build", "uno")
+os.makedirs(made)
+print("Compiling a", flush=True)
+open(os.path.join(made, "firmware.hex"), "w").write(":0400")
+"""
+    code, _, err = built(clone, pretending(tmp_path, body))
+    assert code == 2 and "could not be built" in err
+    assert not list(ready.cache().glob("*.hex"))
+
+
+def test_own_settings_build_nothing_else(clone: Path, tmp_path: Path) -> None:
+    """Settings for a project of the person's own would change what is built, or where."""
+    body = 'print("Compiling", *sorted(n for n in os.environ if "PLATFORMIO" in n)); sys.exit(1)'
+    variables = pretending(tmp_path, body)
+    for name in ("BUILD_FLAGS", "SRC_DIR", "BUILD_DIR", "WORKSPACE_DIR", "DEFAULT_ENVS"):
+        variables[f"PLATFORMIO_{name}"] = "other"
+    variables["PLATFORMIO_CORE_DIR"] = "kept"
+    built(clone, variables)
+    seen = (ready.cache() / "build.log").read_text().split()[1:]
+    assert "PLATFORMIO_CORE_DIR" in seen and "PLATFORMIO_SETTING_ENABLE_TELEMETRY" in seen
+    assert not [name for name in seen if re.search("FLAGS|SRC|BUILD|WORKSPACE|ENVS", name)]
+
+
+def test_a_pupils_files_are_not_taken_for_platformios(clone: Path, tmp_path: Path) -> None:
+    """A folder with programs may have a `serial.py` of the pupil's own."""
+    mine = tmp_path / "mine"
+    mine.mkdir()
+    (mine / "serial.py").write_text('print("Compiling my own"); raise SystemExit(1)')
+    done = subprocess.run(
+        command("--build"),
+        cwd=mine,
+        env={**os.environ, **pretending(tmp_path, "import serial\nprint(serial.__file__)")},
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 2
+    log = (ready.cache() / "build.log").read_text()
+    assert "my own" not in log and "serial" in log
+
+
+def test_where_nothing_can_be_kept_it_says_so(clone: Path, tmp_path: Path) -> None:
+    body = """
+made = os.path.join(sys.argv[sys.argv.index("-d") + 1], ".pio", "build", "uno")
+os.makedirs(made)
+open(os.path.join(made, "firmware.hex"), "w").write(":00000001FF\\n")
+"""
+    (tmp_path / "cache").write_text("a file")
+    code, _, err = built(clone, pretending(tmp_path, body))
+    assert code == 2
+    assert "make room there" in err and str(tmp_path / "cache") in err
+
+
+def test_ctrl_c_ends_platformio_and_its_children(clone: Path, tmp_path: Path) -> None:
+    told = tmp_path / "told"
+    body = f"""
+child = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(600)"])
+open({str(told)!r} + ".new", "w").write(f"{{os.getpid()}} {{child.pid}}")
+os.rename({str(told)!r} + ".new", {str(told)!r})
+time.sleep(600)
+"""
+    variables = pretending(tmp_path, body)
+    variables["PYTHONPATH"] += os.pathsep + str(clone)
+    running = subprocess.Popen(
+        command("--build"), env={**os.environ, **variables}, stderr=subprocess.PIPE, text=True
+    )
+    while not told.exists():
+        assert running.poll() is None
+    running.send_signal(signal.SIGINT)
+    _, said = running.communicate(timeout=60)
+    assert running.returncode == 2 and "Traceback" not in said
+    for number in told.read_text().split():
+        stat = Path(f"/proc/{number}/stat")
+        assert not stat.exists() or stat.read_text().rpartition(")")[2].split()[0] == "Z"
+
+
+# -- what is missing
+
+
+@pytest.mark.parametrize("language", ["en", "es"])
+def test_without_platformio_it_says_how_to_get_it(
+    language: str, tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(building, "find_spec", lambda name: None)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.setenv("HOME", str(tmp_path))
+    done = tsc("firmware", "--build", "--lang", language)
+    assert (done.code, done.out) == (2, "")
+    assert f'pip install -e "{ROOT}[firmware]"' in done.err.replace(f"{sys.executable} -m ", "")
+    assert "PlatformIO" in done.err
+
+
+@pytest.mark.parametrize("place", ["bin/pio", ".platformio/penv/bin/pio"])
+def test_the_platformio_of_the_editor_is_found(
+    place: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(building, "find_spec", lambda name: None)
+    monkeypatch.setenv("PATH", str(tmp_path / "bin"))
+    monkeypatch.setenv("HOME", str(tmp_path))
+    assert building.platformio() is None
+    (tmp_path / place).parent.mkdir(parents=True)
+    (tmp_path / place).touch(mode=0o755)
+    assert building.platformio() == [str(tmp_path / place)]
+
+
+def test_a_package_without_sources_says_how_to_get_them(tmp_path: Path) -> None:
+    done = tsc(copied(tmp_path), "--build")
+    assert done.code == 2 and 'pip install ".[firmware]"' in done.err
+
+
+# -- how far it is
+
+
+@pytest.mark.parametrize(("said", "seen"), [
+    ("Processing uno (board: uno)\n", None),
+    ("Platform Manager: Installing atmelavr\n", Seen(FETCHING, 0, "atmelavr")),
+    ("Tool Manager: Installing platformio/toolchain-atmelavr @ ~1.70300.0\nDownloading 0% 10%",
+     Seen(FETCHING, 10, "platformio/toolchain-atmelavr")),
+    ("Tool Manager: Installing a\nDownloading 100%\nTool Manager: Installing b\n",
+     Seen(FETCHING, 0, "b")),
+    ("Building in release mode\nCompiling a\nCompiling b\n", Seen(COMPILING, 20)),
+    ("Compiling a\n" * 50, Seen(COMPILING, 99)),
+])  # fmt: skip
+def test_how_far_it_is(said: str, seen: Seen | None) -> None:
+    assert building.seen(said, 10) == seen

@@ -1,0 +1,344 @@
+"""`tsc firmware`: a robot's firmware gets onto a board, or a sentence says why it does not."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+import serial
+
+from tests.machines.bootloaders import FOLDER, Bootloader, bootloader, optiboot
+from tests.machines.uno import built, needed
+from tests.support.casefile import ROOT
+from tests.support.command import Done
+from tests.support.platformio import firmware, need, prepared, shared
+from tiniscript import robots
+from tiniscript.cli.commands import firmware as firmware_command
+from tiniscript.cli.texts.firmware import FLASH_TEXTS
+from tiniscript.flash import avrdude, ready
+from tiniscript.flash.bootloaders import BOARDS, UNO
+from tools import build_firmware, firmware_size
+from tools.uno import Uno
+
+pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
+FILES = {"tinibot-uno": "uno", "tinibot-nano": "nano", "grabber-mega": "mega_grabber"}
+
+
+@pytest.fixture(scope="module")
+def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A copy of the package that has come with firmware."""
+    needed()
+    if not shutil.which("avrdude"):
+        need("no avrdude on this computer")
+    copy = copied(tmp_path_factory.mktemp("package"))
+    folder = copy / "tiniscript" / "flash" / "ready"
+    folder.mkdir()
+    for name, environment in FILES.items():
+        elf = firmware(environment, tmp_path_factory.mktemp("sketch"), shared(tmp_path_factory))
+        to_hex(elf, folder / f"{name}-digest.hex")
+    return copy
+
+
+@pytest.fixture
+def with_platformio(monkeypatch: pytest.MonkeyPatch) -> None:
+    """PlatformIO works here, with the offline stand-ins where it needs them."""
+    variables, why = prepared()
+    need(why)
+    for name, value in variables.items():
+        monkeypatch.setenv(name, value)
+
+
+def copied(folder: Path) -> Path:
+    ignored = shutil.ignore_patterns("__pycache__", "ready")
+    return Path(shutil.copytree(ROOT / "compiler", folder / "compiler", ignore=ignored))
+
+
+def to_hex(elf: Path, file: Path) -> None:
+    subprocess.run(["avr-objcopy", "-O", "ihex", "-R", ".eeprom", elf, file], check=True)
+
+
+def command(*words: str) -> list[str]:
+    return [sys.executable, "-m", "tiniscript", "firmware", *words]
+
+
+def tsc(package: Path, *words: str, **variables: str) -> Done:
+    done = subprocess.run(
+        command(*words),
+        env={**os.environ, "PYTHONPATH": str(package), **variables},
+        capture_output=True,
+        text=True,
+        timeout=180,
+        check=False,
+    )
+    return Done(done.returncode, done.stdout, done.stderr)
+
+
+def new_board(of: Bootloader) -> Uno:
+    """Return a board as it comes: a bootloader, and no sketch worth the name."""
+    uno = Uno(built("nothing"), board=of.board, bootloader=of.file, baud=of.baud, tells_sleep=False)
+    uno.go(speed=1.5 if of.board == "mega" else 1.0)  # a Mega is given its time to begin
+    return uno
+
+
+# -- onto a board
+
+
+@pytest.mark.parametrize(
+    ("board", "robot", "option", "bytes_least"),
+    [("uno", "tinibot", "uno", 10_000), ("nano", "tinibot", "nano-old", 10_000),
+     ("mega", "grabber", "mega", 10_000)],
+)  # fmt: skip
+def test_a_new_board_becomes_a_robot(
+    board: str, robot: str, option: str, bytes_least: int, package: Path
+) -> None:
+    with new_board(bootloader(board)) as uno:
+        done = tsc(package, "--port", uno.pty, "--robot", robot, "--board", option)
+        assert done.code == 0, done.err
+        first, second = done.out.splitlines()[:2]
+        name, _, rest = first.partition(" on the ")
+        size = int(rest.split()[1].replace(",", ""))
+        assert (name, rest.split()[0]) == (robot, f"{board}:") and size > bytes_least
+        assert second.startswith(f"{robot} on {uno.pty}, id ")
+
+
+def test_a_board_without_a_bootloader_stays_as_it_is(
+    package: Path, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    """The robot's own firmware answers nothing that avrdude says."""
+    with Uno(firmware("uno", tmp_path, shared(tmp_path_factory)), tells_sleep=False) as uno:
+        uno.go()
+        done = tsc(package, "--port", uno.pty)
+        assert done.code == 3
+        assert f"no bootloader answers on {uno.pty}" in done.err and "HC-05" in done.err
+        uno.pause()
+        assert not [event for event in uno.events if event.what == "crash"]
+
+
+def changed_optiboot(folder: Path, old: str, new: str) -> Bootloader:
+    source = (FOLDER / "optiboot" / "optiboot.c").read_text(encoding="utf-8", errors="replace")
+    assert old in source
+    return bootloader("uno")._replace(file=optiboot(folder, source.replace(old, new)))
+
+
+def test_another_chip_is_refused(package: Path, tmp_path: Path) -> None:
+    of = changed_optiboot(tmp_path, "putch(SIGNATURE_1)", "putch(0x94)")  # an ATmega168P's
+    with new_board(of) as uno:
+        done = tsc(package, "--port", uno.pty, "--lang", "es")
+        assert done.code == 3
+        assert f"la placa en {uno.pty} no es un uno" in done.err
+
+
+def test_a_memory_that_does_not_keep_it_is_seen(package: Path, tmp_path: Path) -> None:
+    of = changed_optiboot(tmp_path, "__boot_page_write_short(", "(void)(")
+    with new_board(of) as uno:
+        done = tsc(package, "--port", uno.pty)
+        assert done.code == 3
+        assert "is not what was written" in done.err
+
+
+def test_a_port_in_use_is_said(package: Path) -> None:
+    with new_board(bootloader("uno")) as uno, serial.Serial(uno.pty, exclusive=True):
+        done = tsc(package, "--port", uno.pty)
+        assert done.code == 3
+        assert "another program is using the port" in done.err
+
+
+# -- with an avrdude that says what it is told
+
+
+FAKE = """\
+#!{python}
+import sys, time
+baud = sys.argv[sys.argv.index("-b") + 1]
+{body}
+"""
+PROGRESS = 'print("Writing | #########", end="", flush=True)'
+
+
+@pytest.fixture
+def board() -> Iterator[Uno]:
+    needed()
+    with Uno(built("nothing"), bootloader=bootloader("uno").file, tells_sleep=False) as uno:
+        uno.go()
+        yield uno
+
+
+def fake(folder: Path, body: str) -> dict[str, str]:
+    """Return the variables with which this avrdude is found."""
+    program = folder / "avrdude"
+    program.write_text(FAKE.format(python=sys.executable, body=body), encoding="utf-8")
+    program.chmod(0o755)
+    return {"PATH": f"{folder}{os.pathsep}{os.environ['PATH']}"}
+
+
+def test_a_nano_is_tried_with_both_of_its_bootloaders(
+    package: Path, board: Uno, tmp_path: Path
+) -> None:
+    silent = 'print("avrdude: stk500_getsync() attempt 1 of 10: not in sync: resp=0x00")'
+    body = f'{silent}\nopen({str(tmp_path / "bauds")!r}, "a").write(baud + " ")\nsys.exit(1)'
+    done = tsc(package, "--port", board.pty, "--board", "nano", **fake(tmp_path, body))
+    assert done.code == 3
+    assert "now as an older Nano" in done.err and "Is it a nano" in done.err
+    assert (tmp_path / "bauds").read_text() == "115200 57600 "
+
+
+def test_half_a_firmware_is_said(package: Path, board: Uno, tmp_path: Path) -> None:
+    body = f'{PROGRESS}\nprint("avrdude: programmer is not responding")\nsys.exit(1)'
+    done = tsc(package, "--port", board.pty, **fake(tmp_path, body))
+    assert done.code == 3
+    assert "half a firmware" in done.err
+
+
+def test_ctrl_c_in_the_middle_says_what_is_on_the_board(
+    package: Path, board: Uno, tmp_path: Path
+) -> None:
+    told = tmp_path / "told"
+    body = (
+        f'{PROGRESS}\nimport os\nopen({str(told)!r}, "w").write(str(os.getpid()))\ntime.sleep(60)'
+    )
+    variables = {**os.environ, "PYTHONPATH": str(package), **fake(tmp_path, body)}
+    running = subprocess.Popen(
+        command("--port", board.pty), env=variables, stderr=subprocess.PIPE, text=True
+    )
+    while not (told.exists() and told.read_text()):
+        assert running.poll() is None
+    running.send_signal(signal.SIGINT)
+    _, said = running.communicate(timeout=30)
+    assert running.returncode == 2
+    assert "half a firmware" in said or said == "Stopped.\n"  # it may not have read that far
+    assert not Path(f"/proc/{told.read_text()}").exists()
+
+
+def test_without_avrdude_it_says_where_to_get_it(package: Path, tmp_path: Path) -> None:
+    done = tsc(package, "--port", "x", PATH=str(tmp_path), HOME=str(tmp_path))
+    assert done.code == 2
+    assert "avrdude" in done.err and firmware_command.INSTALLS[sys.platform] in done.err
+
+
+# -- avrdude
+
+
+@pytest.mark.parametrize("place", [
+    ".arduino15/packages/arduino/tools/avrdude/6.3.0-arduino17/bin/avrdude",
+    "Library/Arduino15/packages/arduino/tools/avrdude/6.3.0-arduino17/bin/avrdude",
+    ".platformio/packages/tool-avrdude/avrdude",
+])  # fmt: skip
+def test_the_avrdude_of_another_program_is_found(
+    place: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("HOME", str(tmp_path))
+    monkeypatch.setenv("PATH", str(tmp_path / "bin"))
+    assert avrdude.found() is None
+    program = tmp_path / place
+    program.parent.mkdir(parents=True)
+    program.touch(mode=0o755)
+    assert avrdude.found() is None  # without its settings it does nothing
+    inside = program.parent.parent / "etc" if program.parent.name == "bin" else program.parent
+    inside.mkdir(exist_ok=True)
+    (inside / "avrdude.conf").touch()
+    assert avrdude.found() == [str(program), "-C", str(inside / "avrdude.conf")]
+
+
+@pytest.mark.parametrize(("how", "said"), [
+    (avrdude.NOBODY, "avrdude: stk500_getsync() attempt 10 of 10: not in sync: resp=0xc9"),
+    (avrdude.NOBODY, "avrdude: stk500v2_ReceiveMessage(): timeout"),
+    (avrdude.NOBODY, "avrdude error: unable to open programmer arduino on port /dev/ttyUSB0"),
+    (avrdude.OTHER_CHIP, "avrdude: Expected signature for ATmega328P is 1E 95 0F"),
+    (avrdude.OTHER_CHIP, "avrdude: Yikes!  Invalid device signature."),
+    (avrdude.PORT, 'avrdude: ser_open(): can\'t open device "/dev/ttyUSB0": Permission denied'),
+    (avrdude.PORT, "avrdude error: cannot open port /dev/ttyUSB0: No such file or directory"),
+    (avrdude.BROKEN_OFF, "Writing | ####avrdude: stk500_recv(): programmer is not responding"),
+    (avrdude.DIFFERS, "Writing | #### | 100% 1.68s\navrdude: verification error, first mismatch"),
+    (avrdude.FAILED, "avrdude: cannot find its settings"),
+    (avrdude.FAILED, ""),
+])  # fmt: skip
+def test_what_avrdude_says_has_a_name(how: str, said: str) -> None:
+    assert avrdude.outcome(1, said).how == how
+
+
+def test_every_end_has_its_sentence() -> None:
+    for how in avrdude.ENDS:
+        assert f"flash_{how}" in FLASH_TEXTS
+
+
+@pytest.mark.parametrize(("said", "seen"), [
+    ("", None),
+    ("Reading | ##################### | 100% 0.00s\n", None),  # the signature
+    ("Reading | ##### | 100% 0.00s\nWriting | ", ("writing", 0)),
+    ("Writing | #########################", ("writing", 50)),
+    ("Writing | ################################################## | 100%\nReading | #",
+     ("reading", 2)),
+    ("Writing 15630 bytes flash | #####", ("writing", 10)),
+])  # fmt: skip
+def test_how_far_it_is(said: str, seen: object) -> None:
+    assert avrdude.seen(said) == seen
+
+
+def test_what_cannot_be_run_is_no_crash(tmp_path: Path) -> None:
+    ended = avrdude.write([str(tmp_path / "none")], UNO, "x", tmp_path, lambda seen: None)
+    assert ended.how == avrdude.FAILED and "No such file" in ended.said
+
+
+# -- the files
+
+
+def test_a_firmware_is_the_same_however_it_is_built(
+    package: Path, tmp_path: Path, with_platformio: None
+) -> None:
+    """As `pio run` builds a shipped robot, and as `tsc firmware` builds any, in another folder."""
+    made = build_firmware.build(robots.load("tinibot"), tmp_path)
+    assert made.name.startswith("tinibot-uno-")
+    one, other = (file.read_text().split() for file in (
+        made, package / "tiniscript" / "flash" / "ready" / "tinibot-uno-digest.hex"))  # fmt: skip
+    assert one == other
+
+
+def test_every_board_of_the_option_is_one_that_is_built() -> None:
+    built = {name.partition("_")[0] for name in firmware_size.environments()}
+    assert {board for board, _ in BOARDS.values()} == built
+    brought = {(robot.name, robot.board.chip) for robot in build_firmware.shipped()}
+    assert brought == {
+        (robot or robots.DEFAULT, board)
+        for board, _, robot in (name.partition("_") for name in firmware_size.environments())
+    }
+
+
+def test_the_licence_of_the_core_goes_with_it(tmp_path: Path) -> None:
+    with pytest.raises(build_firmware.CannotBuild, match="--licence"):
+        build_firmware.build_all(tmp_path / "ready", tmp_path / "none")
+    assert not (tmp_path / "ready").exists()
+    assert build_firmware.LICENCE_NAME in build_firmware.NOTICE_TEXT
+    assert "https://github.com/arduino/ArduinoCore-avr" in build_firmware.NOTICE_TEXT
+
+
+def test_what_came_with_the_package_is_listed(package: Path) -> None:
+    done = tsc(package, "--list")
+    assert done.code == 0
+    files = ready.files(package / "tiniscript" / "flash" / "ready")
+    assert [(each.robot, each.board) for each in files] == [
+        ("grabber", "mega"), ("tinibot", "nano"), ("tinibot", "uno")
+    ]  # fmt: skip
+    for each in files:
+        assert f"{each.robot} on {each.board}: ready, {each.bytes:,} bytes" in done.out
+    assert "liner on nano: is built when it is first written" in done.out
+
+
+@pytest.mark.parametrize(("words", "said"), [
+    ([], "on which port"),
+    (["--port", ""], "--port takes the name of a port"),
+    (["--port", "socket://localhost:1"], "is on a network"),
+    (["--port", "/dev/none"], "there is no port /dev/none"),
+    (["--port", "x", "--board", "teensy"], "uno, nano, nano-old, mega, not teensy"),
+    (["--port", "x", "--robot", "grabber", "--board", "uno"], "does not fit the board uno"),
+    (["--port", "x", "--robot", "mine.toml"], "There is no file mine.toml"),
+    (["--build", "--robot", "nobody"], "nobody"),
+])  # fmt: skip
+def test_wrong_use_is_said(words: list[str], said: str, package: Path) -> None:
+    done = tsc(package, *words)
+    assert done.code in (2, 3) and said in done.err

@@ -1,0 +1,315 @@
+"""PlatformIO builds the sketch and runs the tests in C++, and these fail when they should."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from io import BytesIO
+from pathlib import Path
+
+import pytest
+
+from tests.support.platformio import OFFLINE, SKETCH, copied, pio, prepared
+from tiniscript import compile_text, robots
+from tiniscript.cli import main
+from tools.firmware_size import environments
+
+FLASH_BYTES, RAM_BYTES = 32_256, 2048  # of an Uno
+
+
+@pytest.fixture(scope="module")
+def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A copy of the sketch to build and to break. Without PlatformIO: skipped, in CI a failure."""
+    return copied(tmp_path_factory.mktemp("platformio"))
+
+
+@contextmanager
+def changed(path: Path, *changes: tuple[str, str]) -> Iterator[None]:
+    """Change a file of the copy, and put it back afterwards."""
+    before = path.read_text(encoding="utf-8")
+    after = before
+    for old, new in changes:
+        assert old in after, f"{path.name} has no {old}"
+        after = after.replace(old, new)
+    path.write_text(after, encoding="utf-8")
+    try:
+        yield
+    finally:
+        path.write_text(before, encoding="utf-8")
+
+
+def says_what_it_is(log: str) -> bool:
+    """Return whether a log names the stand-ins, or is one of PlatformIO's own platforms."""
+    return not prepared()[0] or "Offline stand-in for PlatformIO's platform" in log
+
+
+# -- the tests in C++ ---------------------------------------------------------------------------
+
+
+def test_tests_pass(project: Path) -> None:
+    code, log = pio(project, "test", "-e", "native")
+    assert code == 0, log
+    count = re.search(r"(\d+) test cases: (\d+) succeeded", log)
+    files = "".join(path.read_text(encoding="utf-8") for path in project.glob("test/test_*.cpp"))
+    assert count and int(count[1]) == int(count[2]) == files.count("\nTEST_CASE("), log
+    assert says_what_it_is(log)
+
+
+def test_wrong_opcode_fails(project: Path) -> None:
+    numbers = project / "src" / "vm" / "bytecode.h"
+    with changed(numbers, ("kAdd = 0x10,", "kAdd = 0x11,"), ("kSub = 0x11,", "kSub = 0x10,")):
+        code, log = pio(project, "test", "-e", "native")
+    assert code == 1, log
+    assert "every instruction leaves what the machine in Python leaves\t[FAILED]" in log
+    assert "logged: ADD" in log
+
+
+def test_wrong_rule_fails(project: Path) -> None:
+    verifier = project / "src" / "vm" / "verify.cpp"
+    with changed(verifier, ("Rule::kStackUnderflow", "Rule::kStackOverflow")):
+        code, log = pio(project, "test", "-e", "native")
+    assert code == 1, log
+    assert "what breaks a rule is refused with the rule and the offset\t[FAILED]" in log
+    assert "logged: An addition with one value: 25 STACK_UNDERFLOW at 0002" in log
+
+
+def test_missing_rule_fails(project: Path) -> None:
+    """A verifier that accepts everything."""
+    verifier = project / "src" / "vm" / "verify.cpp"
+    with changed(verifier, ("\nVerdict verify(", "\n[[gnu::unused]] static Verdict strict(")):
+        with verifier.open("a", encoding="utf-8") as more:
+            more.write(
+                "namespace tiniscript {\n"
+                "Verdict verify(const uint8_t*, size_t, uint8_t, uint8_t) {\n"
+                "  return {Rule::kNone, 0};\n}\n}\n"
+            )
+        code, log = pio(project, "test", "-e", "native")
+    assert code == 1, log
+    assert "what breaks a rule is refused with the rule and the offset\t[FAILED]" in log
+    assert "logged: A byte that begins no instruction: 21 UNKNOWN_OPCODE at 0000" in log
+
+
+def test_no_test_case_fails(project: Path) -> None:
+    code, log = pio(project, "test", "-e", "native", "-a", "--test-case=no such case")
+    assert code == 1, log
+    assert "no test case has run" in log
+
+
+def test_no_test_file_fails(project: Path) -> None:
+    away = project / "away"
+    away.mkdir()
+    files = [path for path in project.glob("test/test_*.cpp") if path.name != "test_main.cpp"]
+    moved = [Path(shutil.move(path, away / path.name)) for path in files]
+    try:
+        code, log = pio(project, "test", "-e", "native")
+    finally:
+        for path in moved:
+            shutil.move(path, project / "test" / path.name)
+    assert code == 1, log
+    assert "no test case has run" in log
+
+
+@pytest.mark.parametrize("ending", ["exit(0)", "abort()"])
+def test_early_end_fails(project: Path, ending: str) -> None:
+    """A run that stops in the middle is no success, whatever its exit code."""
+    broken = project / "test" / "test_number.cpp"
+    with changed(
+        broken,
+        ('TEST_CASE("a number is', f'TEST_CASE("ends") {{ {ending}; }}\nTEST_CASE("a number is'),
+        ("#include <doctest.h>", "#include <doctest.h>\n#include <stdlib.h>"),
+    ):
+        code, log = pio(project, "test", "-e", "native")
+    assert code == 1, log
+    assert ("have ended before their end" if ending == "exit(0)" else "SIGABRT") in log
+
+
+def test_compiler_error_fails(project: Path) -> None:
+    with changed(project / "src" / "vm" / "vm.cpp", ("namespace tiniscript {", "namespace {")):
+        code, log = pio(project, "test", "-e", "native")
+    assert code == 1, log
+    assert "error:" in log
+
+
+def test_tests_are_for_a_computer(project: Path) -> None:
+    code, log = pio(project, "test", "-e", "uno")
+    assert code == 1, log
+    assert "pio test -e native" in log
+
+
+# -- the sketch ---------------------------------------------------------------------------------
+
+
+SKETCHES = ("uno", "nano", "mega", "nano_liner", "mega_liner", "mega_grabber")
+
+NEW_NANOS = {"nano_new": "nano", "nano_new_liner": "nano_liner"}
+
+
+def test_every_robot_has_a_sketch_for_its_board() -> None:
+    text = (SKETCH / "platformio.ini").read_text(encoding="utf-8")
+    named = re.findall(r"\[env:(\w+)\]", text)
+    assert set(named) == {*SKETCHES, *NEW_NANOS, "native"}
+    assert not {*NEW_NANOS, "native"} & set(environments())
+    for name in robots.names():
+        board = robots.load(name).board.chip
+        assert (board if name == robots.DEFAULT else f"{board}_{name}") in SKETCHES
+
+
+@pytest.mark.parametrize("name", SKETCHES)
+def test_sketch_builds(project: Path, name: str) -> None:
+    code, log = pio(project, "run", "-e", name)
+    assert code == 0, log
+    assert says_what_it_is(log)
+    assert "warning" not in log, log
+    used = {name: int(size) for name, size in re.findall(r"(\w+): .*used (\d+) bytes", log)}
+    assert 0 < used["Flash"] < FLASH_BYTES
+    assert 0 < used["RAM"] < (RAM_BYTES if "mega" not in name else 4 * RAM_BYTES)
+    assert (project / ".pio" / "build" / name / "firmware.hex").is_file()
+
+
+@pytest.mark.parametrize(("new", "old"), NEW_NANOS.items())
+def test_a_nano_with_a_new_bootloader_gets_the_same_sketch(
+    project: Path, new: str, old: str
+) -> None:
+    """What differs is how it is uploaded: as PlatformIO's board for such Nanos."""
+    made = []
+    for name in (new, old):
+        code, log = pio(project, "run", "-e", name)
+        assert code == 0, log
+        made.append((project / ".pio" / "build" / name / "firmware.hex").read_bytes())
+    assert made[0] == made[1]
+    assert "nanoatmega328new" in pio(project, "project", "config")[1].partition(f"env:{new}\n")[2]
+
+
+def test_sketch_of_a_robot_of_ones_own(project: Path) -> None:
+    """`tsc board` writes its header, and from then on the sketch is for it."""
+    own = project / "src" / "boards" / "kits" / "own.h"
+    assert pio(project, "run", "-e", "uno")[0] == 0
+    profile = Path(robots.__file__).parent / "tinibot.toml"
+    try:
+        assert main(["board", str(profile), "-o", str(own)]) == 0
+        code, log = pio(project, "run", "-e", "uno")
+        assert code == 0 and "Compiling .pio/build/uno/src/boards/motors.cpp.o" in log
+        with changed(own, ("kBuzzer", "kNothingLikeIt")):
+            code, log = pio(project, "run", "-e", "uno")
+        assert code == 1 and "kBuzzer" in log
+        code, log = pio(project, "run", "-e", "mega")
+        assert code == 1 and "is wired to another board. It fits: uno." in log
+        assert pio(project, "run", "-e", "mega_grabber")[0] == 0
+    finally:
+        own.unlink(missing_ok=True)
+
+
+def test_test_sketch_has_a_program_that_every_robot_can_run() -> None:
+    """The bytes in `board_main.cpp` are what the compiler makes of the text above them."""
+    source = (SKETCH.parent / "tests" / "machines" / "board_main.cpp").read_text(encoding="utf-8")
+    text = re.search(r"Every robot can run it:  (.*)\n", source)
+    array = re.search(r"program\[.*?\] = \{(.*?)\n\};", source, re.S)
+    assert text and array
+    written = re.findall(r"'(.)'|(0x\w+|\d+),", re.sub(r"//.*", "", array[1]))
+    code = bytes(ord(letter) if letter else int(number, 0) for letter, number in written)
+    for name in robots.names():
+        assert code == compile_text(text[1], robots.load(name).kit).image
+
+
+# -- the bootstrap ------------------------------------------------------------------------------
+
+
+def offline(*words: str, **variables: str) -> tuple[int, str, str]:
+    done = subprocess.run(
+        [sys.executable, str(OFFLINE), "--offline", "--no-apt", *words],
+        env={**os.environ, **variables},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    return done.returncode, done.stdout, done.stderr
+
+
+def test_own_installation_is_left_alone(project: Path, tmp_path: Path) -> None:
+    manifest = tmp_path / "platforms" / "native" / "platform.json"
+    manifest.parent.mkdir(parents=True)
+    manifest.write_text("{}")
+    code, out, err = offline("--project", str(project), PLATFORMIO_CORE_DIR=str(tmp_path))
+    assert (code, out) == (0, "")
+    assert "platforms of its own (native)" in err
+    assert [path for path in tmp_path.rglob("*") if path.is_file()] == [manifest]
+
+
+def test_pinned_platform_is_refused(project: Path, tmp_path: Path) -> None:
+    with changed(project / "platformio.ini", ("= atmelavr", "= atmelavr@5.1.0")):
+        code, out, err = offline("--project", str(project), PLATFORMIO_CORE_DIR=str(tmp_path))
+    assert (code, out) == (2, "")
+    assert "wants atmelavr@5.1.0: a stand-in is no version of it" in err
+
+
+def test_other_doctest_is_refused(project: Path, tmp_path: Path) -> None:
+    runner = project / "test" / "test_custom_runner.py"
+    with changed(runner, ("doctest@^2.4.9", "doctest@^3.0.0")):
+        code, out, err = offline("--project", str(project), PLATFORMIO_CORE_DIR=str(tmp_path))
+    assert (code, out) == (2, "")
+    assert re.search(r"doctest-dev is doctest 2\.\d+\.\d+, the tests want", err)
+
+
+def test_other_scons_is_refused(project: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from platformio import dependencies
+
+    from tools import platformio_offline
+
+    monkeypatch.setattr(dependencies, "get_core_dependencies", lambda: {"tool-scons": "^5.0.0"})
+    with pytest.raises(platformio_offline.CannotStandIn, match=r"wants tool-scons \^5\.0\.0"):
+        platformio_offline.scons_wanted()
+
+
+def test_registry_is_left_to_pio(
+    project: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from tools import platformio_offline
+
+    monkeypatch.setenv("PLATFORMIO_CORE_DIR", str(tmp_path / "core"))
+    monkeypatch.setattr(platformio_offline, "registry_answers", lambda: True)
+    assert platformio_offline.settings_for(project, False, False) == {}
+    assert not (tmp_path / "core" / "platforms").exists()
+
+
+@pytest.mark.parametrize(
+    ("answer", "is_one"),
+    [(b'{"name": "native"}', True), (b"<p>blocked</p>", False), (b"[]", False)],
+)
+def test_what_is_an_answer_of_the_registry(
+    project: Path, answer: bytes, is_one: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A page that something on the way puts there is none."""
+    from tools import platformio_offline
+
+    monkeypatch.setattr("urllib.request.urlopen", lambda *_, **__: BytesIO(answer))
+    assert platformio_offline.registry_answers() == is_one
+
+
+def test_a_file_that_has_just_changed_is_read_anew(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of the same length in the same second: nothing but its text tells it from the one before."""
+    from tools import platformio_offline
+
+    monkeypatch.setattr(sys, "dont_write_bytecode", False)
+    file = tmp_path / "some_module.py"
+    for value in ("1", "2"):
+        file.write_text(f"VALUE = {value}\n", encoding="utf-8")
+        os.utime(file, (1_000_000_000, 1_000_000_000))
+        assert str(platformio_offline.load(file).VALUE) == value
+
+
+def test_command_runs_in_the_project(project: Path) -> None:
+    code, out, _ = offline("--project", str(project), "pio", "project", "config")
+    assert code == 0
+    assert "env:native" in out
+
+
+def test_the_repo_names_no_registry() -> None:
+    for path in (OFFLINE, *OFFLINE.with_name("platformio_stand_ins").rglob("*.*")):
+        assert "registry.platformio" not in path.read_text(encoding="utf-8"), path.name

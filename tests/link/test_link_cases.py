@@ -1,0 +1,66 @@
+"""The cases of the link: each half against the written bytes of the other."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.machines.link import cpp_link, missing
+from tests.support.link_cases import (
+    CppSide,
+    LinkCase,
+    SessionSide,
+    Written,
+    accept,
+    computer_of,
+    has_session,
+    items_of,
+    link_cases,
+    play,
+    stream_of,
+    with_found,
+)
+
+needs_host = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a host machine")
+TALKS = link_cases("link")
+SESSIONS = [case for case in TALKS if has_session(case)]
+ITEMS = link_cases("items")
+
+
+@pytest.mark.parametrize("case", SESSIONS, ids=lambda case: case.id)
+def test_the_computer(case: LinkCase, request: pytest.FixtureRequest) -> None:
+    if request.config.getoption("--accept"):
+        pytest.skip("both halves are written by the next test")
+    assert play(case.rows, SessionSide(), Written(case.rows)) == case.rows
+
+
+@needs_host
+@pytest.mark.parametrize("case", TALKS, ids=lambda case: case.id)
+def test_the_robot(case: LinkCase, request: pytest.FixtureRequest) -> None:
+    if request.config.getoption("--accept"):
+        found = play(case.rows, computer_of(case), CppSide(cpp_link()))
+        if found != case.rows:
+            accept(case, found)
+        return
+    assert play(case.rows, Written(case.rows), CppSide(cpp_link())) == case.rows
+
+
+@pytest.mark.parametrize("case", ITEMS, ids=lambda case: case.id)
+def test_the_receiver(case: LinkCase, request: pytest.FixtureRequest) -> None:
+    found = with_found(case, items_of(*stream_of(case)))
+    if request.config.getoption("--accept"):
+        if found != case.rows:
+            accept(case, found)
+        return
+    assert found == case.rows
+
+
+@needs_host
+@pytest.mark.parametrize("case", ITEMS, ids=lambda case: case.id)
+def test_the_receiver_in_cpp(case: LinkCase, request: pytest.FixtureRequest) -> None:
+    if request.config.getoption("--accept"):
+        pytest.skip("written by the one in Python")
+    assert with_found(case, cpp_link().items(*stream_of(case))) == case.rows
+
+
+def test_there_are_cases() -> None:
+    assert len(TALKS) >= 25 and len(ITEMS) >= 12

@@ -1,0 +1,320 @@
+"""The link on a bad line: bytes lost, changed, doubled, swapped, put in, and radios that drop out.
+
+`python -m tests.link.test_link_channel 10000` plays more uploads than the tests; `--frames
+10000000` damages more frames. Everything is drawn from a seed that is printed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import random
+import sys
+import time
+from collections import Counter, deque
+from collections.abc import Callable
+from typing import NamedTuple
+
+import pytest
+
+from tests.machines.link import CppLink, cpp_link, missing
+from tests.support.link_cases import KIT, items_of
+from tiniscript.bytecode.image import pack, unpack
+from tiniscript.bytecode.opcodes import BY_NAME
+from tiniscript.link.frames import Frame, decoded, encoded
+from tiniscript.link.outcomes import CANCELLED, LOST
+from tiniscript.link.session import Session, Task
+from tiniscript.link.statuses import name_of
+
+needs_host = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a host machine")
+FRAMES = 100_000  # damaged ones, in the tests
+BATCH = 20_000
+UPLOADS = 300
+SEED = 4
+OUTCOMES = {LOST: "lost", CANCELLED: "cancelled"}
+
+# -- damage ---------------------------------------------------------------------------------------
+
+
+def lost(data: bytes, at: int, draw: random.Random) -> bytes:
+    return data[:at] + data[at + 1 :]
+
+
+def changed(data: bytes, at: int, draw: random.Random) -> bytes:
+    return data[:at] + bytes([data[at] ^ draw.randrange(1, 256)]) + data[at + 1 :]
+
+
+def doubled(data: bytes, at: int, draw: random.Random) -> bytes:
+    return data[: at + 1] + data[at:]
+
+
+def swapped(data: bytes, at: int, draw: random.Random) -> bytes:
+    return data[:at] + data[at : at + 2][::-1] + data[at + 2 :]
+
+
+def inserted(data: bytes, at: int, draw: random.Random) -> bytes:
+    return data[:at] + bytes([draw.randrange(256)]) + data[at:]
+
+
+def cut(data: bytes, at: int, draw: random.Random) -> bytes:
+    return data[:at] + data[at + draw.randrange(1, 20) :]
+
+
+def talked_over(data: bytes, at: int, draw: random.Random) -> bytes:
+    """What radio modules write into the stream."""
+    return data[:at] + draw.choice((b"OK+LOST", b"OK+LOST\r\n", b"+DISC:SUCCESS\r\n")) + data[at:]
+
+
+DAMAGES: tuple[Callable[[bytes, int, random.Random], bytes], ...] = (
+    lost, changed, doubled, swapped, inserted, cut, talked_over,
+)  # fmt: skip
+
+
+def damaged(data: bytes, draw: random.Random) -> bytes:
+    """Return the bytes of a frame with one to three damages."""
+    for _ in range(draw.choice((1, 1, 2, 3))):
+        if data:
+            data = draw.choice(DAMAGES)(data, draw.randrange(len(data)), draw)
+    return data
+
+
+class Line(NamedTuple):
+    """A stream of frames: those that were sent, and which of them were damaged on the way."""
+
+    data: bytes
+    frames: list[Frame]
+    is_damaged: list[bool]
+
+
+def line(count: int, draw: random.Random) -> Line:
+    """Return a stream in which about `count` frames are damaged."""
+    parts, frames, marks = [], [], []
+    for number in range(2 * count):
+        payload = number.to_bytes(4, "little") + draw.randbytes(draw.randrange(0, 30))
+        frame = Frame(draw.randrange(2, 15), draw.randrange(256), draw.randrange(256), payload)
+        wire = encoded(frame)
+        way = damaged(wire, draw) if draw.random() < 0.5 else wire
+        frames.append(frame)
+        marks.append(way != wire)
+        parts.append(way)
+    return Line(b"".join(parts), frames, marks)
+
+
+def accepted(rows: list[str]) -> list[Frame]:
+    """Return the whole frames in what a receiver has found."""
+    found = []
+    for row in rows:
+        if row.endswith(" whole"):
+            frame = decoded(bytes.fromhex(row.split(" ", 2)[2].removesuffix(" whole")))
+            assert frame
+            found.append(frame)
+    return found
+
+
+def judge(sent: Line, rows: list[str]) -> None:
+    """Assert that nothing wrong was accepted, and that damage costs one more frame at most."""
+    numbers = {frame: number for number, frame in enumerate(sent.frames)}
+    got = []
+    for frame in accepted(rows):
+        assert frame in numbers, f"a frame that nobody has sent was accepted: {frame}"
+        got.append(numbers[frame])
+    assert got == sorted(set(got)), "a frame came twice, or before one that was sent earlier"
+    here = set(got)
+    for number, is_damaged in enumerate(sent.is_damaged):
+        if not is_damaged and (number == 0 or not sent.is_damaged[number - 1]):
+            assert number in here, f"frame {number} is lost without damage to it or the one before"
+
+
+def damage_frames(count: int, seed: int, cpp: CppLink | None) -> int:
+    """Send lines until so many frames are damaged; return how many were."""
+    draw = random.Random(seed)
+    done = 0
+    while done < count:
+        sent = line(min(BATCH, count), draw)
+        stream = [(0, byte) for byte in sent.data]
+        rows = items_of(stream)
+        judge(sent, rows)
+        if cpp:
+            assert cpp.items(stream) == rows
+        done += sum(sent.is_damaged)
+    return done
+
+
+def test_no_wrong_frame_of_many_damaged_ones() -> None:
+    """And both receivers find the same in them, byte by byte."""
+    assert damage_frames(FRAMES, SEED, None if missing() else cpp_link()) >= FRAMES
+
+
+def test_a_wrong_frame_would_be_seen() -> None:
+    frame = Frame(8, 1, 1, b"abcd")
+    sent = Line(encoded(frame), [frame], [False])
+    wire = encoded(frame._replace(payload=b"abce"))[:-1]
+    row = f"frame {len(wire)} {wire.hex(' ')} whole"
+    with pytest.raises(AssertionError, match="nobody has sent"):
+        judge(sent, [row])
+    with pytest.raises(AssertionError, match="without damage"):
+        judge(sent, [])
+
+
+# -- a radio --------------------------------------------------------------------------------------
+
+
+class Radio:
+    """One direction: bytes arrive later, in order, and not all of them as they were sent."""
+
+    def __init__(self, draw: random.Random, baud: int, faults: float) -> None:
+        self.draw, self.byte_ms, self.faults = draw, 10_000 / baud, faults
+        self.is_out = False
+        self._queue: deque[tuple[float, int]] = deque()
+        self._last_ms = 0.0
+
+    def send(self, data: bytes, now_ms: int) -> None:
+        if self.is_out:
+            return
+        at = 0
+        while at < len(data):
+            if self.draw.random() < self.faults:
+                data = self.draw.choice(DAMAGES)(data, at, self.draw)
+            at += 1
+        late_ms = self.draw.uniform(15, 40) + (self.draw.random() < 0.02) * self.draw.uniform(
+            200, 600
+        )
+        self._last_ms = max(self._last_ms, now_ms + late_ms)
+        for byte in data:
+            self._last_ms += self.byte_ms
+            self._queue.append((self._last_ms, byte))
+
+    def arrived(self, now_ms: int) -> bytes:
+        found = bytearray()
+        while self._queue and self._queue[0][0] <= now_ms:
+            found.append(self._queue.popleft()[1])
+        return bytes(found)
+
+
+class World:
+    """A computer, a robot and two radios. A disconnect takes both radios out for a while."""
+
+    STEP_MS = 5
+
+    def __init__(self, cpp: CppLink, draw: random.Random, faults: float, drops: float) -> None:
+        self.cpp, self.draw, self.drops = cpp, draw, drops
+        baud = draw.choice((9600, 9600, 57600, 115200))
+        self.there = Radio(draw, baud, faults)
+        self.back = Radio(draw, baud, faults)
+        self.now_ms = 0
+        self.session = Session(draw.getrandbits(32), baud, KIT)
+        self.did: list[str] = []
+        self._out_until = 0
+        cpp.begin(kit=KIT, epoch=draw.randrange(256))
+
+    def again(self) -> None:
+        """Another session with the same robot."""
+        self.session = Session(self.draw.getrandbits(32), 9600, KIT)
+
+    def run(self, task: Task | None, most_ms: int = 30_000) -> None:
+        """Let time pass until the task is over."""
+        end_ms = self.now_ms + most_ms
+        while self.now_ms < end_ms and (task is None or task.outcome is None):
+            if self.draw.random() < self.drops:
+                self._out_until = self.now_ms + self.draw.randrange(100, 3000)
+            self.there.is_out = self.back.is_out = self.now_ms < self._out_until
+            data = self.session.poll(self.now_ms)
+            if data:
+                self.there.send(data, self.now_ms)
+            came = self.there.arrived(self.now_ms)
+            if came or self.now_ms % 50 == 0:
+                step = self.cpp.step(self.now_ms, came)
+                self.did += step.did
+                if step.sent:
+                    self.back.send(step.sent, self.now_ms)
+            self.session.receive(self.back.arrived(self.now_ms), self.now_ms)
+            self.now_ms += self.STEP_MS
+
+
+def program(draw: random.Random) -> bytes:
+    """Return code that no other program of the test has: moves of random times and powers."""
+    move = BY_NAME["MOVE8_F"].code
+    count = draw.choice((1, 3, 12, 18, 19, 40, 143))
+    return b"".join(bytes((move, draw.randrange(256), draw.randrange(101))) for _ in range(count))
+
+
+def one_upload(cpp: CppLink, seed: int) -> str:
+    """Upload a program over another one, then send lines and stop; return how the upload went."""
+    draw = random.Random(seed)
+    faults = draw.choice((0, 0.001, 0.01))
+    world = World(cpp, draw, faults, drops=draw.choice((0, 0.0002, 0.002)))
+    old = pack("SI", 0, program(draw))
+    world.there.faults = world.back.faults = 0
+    drops, world.drops = world.drops, 0
+    first = world.session.upload(unpack(old), runs=False)
+    world.run(first)
+    assert first.outcome and first.outcome.status == 0 and cpp.held() == old
+    world.there.faults = world.back.faults = faults
+    world.drops = drops
+
+    new = pack("SI", 0, program(draw))
+    world.again()
+    task = world.session.upload(unpack(new))
+    world.run(task)
+    assert task.outcome, f"seed {seed}: an upload has no end"
+    status = task.outcome.status
+    is_done = status == 0
+    if is_done:
+        assert cpp.held() == new, f"seed {seed}: the upload says done, the robot has another one"
+    assert cpp.held() in (old, new), f"seed {seed}: neither the old program nor the new one"
+    names = [f"TAKE {unpack(image).checksum:08x}" for image in (new, old)]
+    assert {row for row in world.did if row.startswith("TAKE")} <= set(names)
+    starts = sum(row.startswith("START") for row in world.did)
+    assert starts == 1 if is_done else starts <= 1, f"seed {seed}: started {starts} times"
+
+    # each line runs once or not at all, and once if the computer says so
+    lines = []
+    for _ in range(4):
+        code = program(draw)[:54]
+        task = world.session.live(code)
+        world.run(task)
+        assert task.outcome
+        lines.append((f"TAKE live {unpack(pack('SI', 0, code)).checksum:08x}", task.outcome.status))
+    times = Counter(world.did)
+    for row, answer in lines:
+        assert times[row] == 1 if answer == 0 else times[row] <= 1, f"seed {seed}: {row}"
+
+    # after a stop nothing begins, whatever is still under way
+    task = world.session.live(program(draw)[:54])
+    world.run(None, draw.randrange(0, 200))
+    before = len(world.did)
+    world.session.stop(world.now_ms)
+    world.run(None, 300)
+    since = world.did[before:]
+    if "PINS OFF" in since:
+        rest = since[since.index("PINS OFF") :]
+        assert not any(row.startswith("START") for row in rest), f"seed {seed}: {rest}"
+    return "done" if is_done else OUTCOMES.get(status) or name_of(status)
+
+
+@needs_host
+def test_uploads_over_a_bad_radio() -> None:
+    """No upload says done that is not, and nothing is done twice."""
+    found = Counter(one_upload(cpp_link(), seed) for seed in range(UPLOADS))
+    assert found["done"] > UPLOADS * 0.9, found
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description="Play the link on a bad line for long.")
+    parser.add_argument("uploads", type=int, nargs="?", default=10_000)
+    parser.add_argument("--frames", type=int, default=1_000_000, help="damaged ones")
+    parser.add_argument("--seed", type=int, default=1_000_000)
+    options = parser.parse_args()
+    begun = time.monotonic()
+    count = damage_frames(options.frames, options.seed, cpp_link())
+    print(f"{count} damaged frames, 0 wrong accepted: {time.monotonic() - begun:.0f} s")
+    begun = time.monotonic()
+    found: Counter[str] = Counter()
+    for seed in range(options.seed, options.seed + options.uploads):
+        found[one_upload(cpp_link(), seed)] += 1
+    print(f"{options.uploads} uploads, {dict(found)}, 0 false, 0 double: "
+          f"{time.monotonic() - begun:.0f} s")  # fmt: skip
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

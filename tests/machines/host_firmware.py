@@ -1,0 +1,128 @@
+"""A whole robot in C++ on this computer: its firmware, with the sanitizers of the compiler.
+
+Builds `vm_arduino/extras/host_firmware` with g++. One process is one robot, from power-on to
+power-off; what its memory holds goes on to the next one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import lru_cache
+from pathlib import Path
+from struct import pack
+from typing import NamedTuple
+
+from tests.machines.host import FLAGS, SOURCES, Process, compiled, missing
+from tiniscript.kit import Kit
+from tiniscript.link.session import Session, Task
+
+__all__ = ("EMPTY", "HostFirmware", "Seen", "missing")
+
+EMPTY = bytes(1024).replace(b"\0", b"\xff")  # what a new EEPROM holds
+TICKS = 20  # in a millisecond
+POWER_ON, RESET_BUTTON = 1, 2
+
+
+class Seen(NamedTuple):
+    """What the robot has sent, what it has done at which time, and its light and latch."""
+
+    sent: bytes
+    did: list[str]
+    is_lit: bool
+    is_latched: bool
+
+
+class HostFirmware(Process):
+    """A robot that is switched on. `write_ms` is how long its memory takes for a byte."""
+
+    def __init__(
+        self,
+        kit: Kit,
+        memory: bytes = EMPTY,
+        reset: int = POWER_ON,
+        chance: int = 0x12345678,
+        max_run_ms: int = 600_000,
+        write_ms: float = 3.4,
+        sources: Path = SOURCES,
+    ) -> None:
+        super().__init__([built(sources)], "the C++ robot")
+        self.now_ms = 0
+        self.did: list[str] = []
+        self.is_lit, self.is_latched = False, True
+        head = pack("<HBBB", kit.fingerprint, len(kit.sensors), len(kit.actuators), reset)
+        times = pack("<IIB", chance, max_run_ms, int(write_ms * TICKS))
+        self.ask(b"B", head + times + pack("<I", len(memory)) + memory)
+
+    def step(self, data: bytes = b"", flags: int = 0, ticks: int = TICKS) -> bytes:
+        """Let a millisecond pass in which bytes arrive; return what is sent."""
+        self.now_ms += 1
+        head = pack("<IBHI", self.now_ms, flags, ticks, len(data))
+        answer = self.ask(b"S", head + data)
+        sent, rest = _text(answer)
+        did, rest = _text(rest)
+        self.did += [f"{self.now_ms} {line}" for line in did.decode().splitlines()]
+        self.is_lit, self.is_latched = bool(rest[0]), bool(rest[1])
+        return sent
+
+    def wait(self, milliseconds: int, data: bytes = b"") -> bytes:
+        """Let time pass; the bytes arrive at its beginning."""
+        sent = self.step(data)
+        for _ in range(milliseconds - 1):
+            sent += self.step()
+        return sent
+
+    def push(self, milliseconds: int = 100) -> None:
+        """Push the start button, and let it go."""
+        self.step(flags=1)
+        self.wait(milliseconds)
+        self.step(flags=2)
+
+    def sense(self, *readings: int) -> None:
+        """Let the sensors say so many thousandths."""
+        self.ask(b"V", pack(f"<{len(readings)}i", *readings))
+
+    def supply(self, is_low: bool) -> None:
+        """Let the voltage be too low to save anything, or enough."""
+        self.ask(b"L", pack("<B", is_low))
+
+    def wear_out(self, place: int) -> None:
+        """Let a byte of the memory keep what it is."""
+        self.ask(b"D", pack("<H", place))
+
+    def memory(self) -> bytes:
+        return _text(self.ask(b"E", b""))[0]
+
+    def talk(self, session: Session, milliseconds: int, flags: int = 0) -> None:
+        """Let a computer talk with the robot for a while."""
+        for _ in range(milliseconds):
+            session.receive(self.step(session.poll(self.now_ms), flags), self.now_ms)
+
+    def until(self, session: Session, task: Task, limit_ms: int = 30_000) -> int:
+        """Let a computer talk until its task is over; return how that ended."""
+        for _ in range(limit_ms):
+            if task.outcome is not None:
+                return task.outcome.status
+            self.talk(session, 1)
+        raise AssertionError(f"the task is not over after {limit_ms} ms: {self.did[-5:]}")
+
+
+def _text(answer: bytes) -> tuple[bytes, bytes]:
+    length = int.from_bytes(answer[:4], "little")
+    return answer[4 : 4 + length], answer[4 + length :]
+
+
+@lru_cache
+def built(sources: Path) -> Path:
+    """Return the program made from `sources`; what was made before from the same is used again."""
+    folders = ("src", "src/vm", "src/link", "src/store", "src/firmware", "extras/host_firmware")
+    inputs = sorted(
+        path
+        for folder in folders
+        for path in (sources / folder).glob("*")
+        if path.suffix in (".h", ".cpp")
+    )
+    return compiled([*inputs, sources / "extras/host" / "wire.h"], FLAGS)
+
+
+def drives(did: Sequence[str]) -> list[str]:
+    return [line for line in did if " MOTORS " in line]

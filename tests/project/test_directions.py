@@ -1,0 +1,187 @@
+"""Imports point one way: a stage knows its input, its output and the shared tables."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+PACKAGE = Path(__file__).resolve().parent.parent.parent / "compiler" / "tiniscript"
+FULL = 400  # lines of a file, as CONTRIBUTING says
+# What is to be split; it gets no longer.
+TOO_FULL = {"session.py": 464, "connect.py": 447, "instructions.py": 421}
+
+SHARED = {"fixed_point", "kit", "words", "files", "printable"}
+TEXT = {"source", "diagnostics", *SHARED}
+# Each stage, and each table that stages share: what it may import besides itself.
+UPSTREAM: dict[str, set[str]] = {
+    "source": set(),
+    "files": set(),
+    "printable": set(),
+    "fixed_point": set(),
+    "kit": {"fixed_point"},
+    "words": {"fixed_point"},
+    "diagnostics": {"source"},
+    "bytecode": {"kit"},
+    "syntax": {*TEXT, "bytecode"},  # of the bytecode its limits alone
+    "semantics": {*TEXT, "bytecode", "syntax"},
+    "codegen": {"source", "files", "fixed_point", "bytecode", "semantics"},
+    "vm": {"fixed_point", "kit", "bytecode"},
+    "robots": SHARED,
+    "wiring": {"fixed_point", "kit", "robots"},
+    "flash": {"files", "robots"},
+    "link": {"files", "bytecode"},
+    "sharing": {"files", "bytecode", "link"},
+    "virtual": {*SHARED, "bytecode", "vm", "robots", "link", "sharing"},
+}
+WHOLE = {"__init__", "__main__", "cli"}  # what puts the stages together
+
+
+def modules_of(path: Path) -> set[str]:
+    """Return what a file imports of this package when it runs: not what is for types alone."""
+    found = set()
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    skipped: set[ast.AST] = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING":
+            skipped |= set(ast.walk(node))
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and node not in skipped and node.module:
+            for each in node.names:
+                found.add(f"{node.module}.{each.name}")
+        elif isinstance(node, ast.Import) and node not in skipped:
+            found |= {each.name for each in node.names}
+    return {each for each in found if each.startswith("tiniscript.")}
+
+
+def stage_of(path: Path) -> str:
+    return path.relative_to(PACKAGE).parts[0].removesuffix(".py")
+
+
+FILES = sorted(PACKAGE.rglob("*.py"))
+STAGES = [path for path in FILES if stage_of(path) not in WHOLE]
+
+
+@pytest.mark.parametrize("path", STAGES, ids=lambda path: str(path.relative_to(PACKAGE)))
+def test_stage_looks_upstream_only(path: Path) -> None:
+    stage = stage_of(path)
+    found = {name.split(".")[1] for name in modules_of(path)} - {stage, "__version__"}
+    assert found <= UPSTREAM[stage], f"{path.name} looks into {sorted(found - UPSTREAM[stage])}"
+
+
+def test_every_stage_has_its_place() -> None:
+    assert {stage_of(path) for path in STAGES} == set(UPSTREAM)
+
+
+def test_the_table_points_one_way() -> None:
+    """Every stage stands below all that it may import: so no circle of stages is possible."""
+    above: set[str] = set()
+    for stage, upstream in UPSTREAM.items():
+        assert upstream <= above, stage
+        above.add(stage)
+
+
+def test_no_module_imports_itself_by_a_detour() -> None:
+    def name_of(path: Path) -> str:
+        return ".".join(("tiniscript", *path.relative_to(PACKAGE).with_suffix("").parts))
+
+    names = {name_of(path): path for path in FILES}
+    graph = {
+        name: {(each if each in names else each.rpartition(".")[0]) for each in top_level(path)}
+        for name, path in names.items()
+    }
+    done: set[str] = set()
+    while left := {name for name in graph if name not in done}:
+        ready = {name for name in left if not (graph[name] & left) - {name}}
+        assert ready, f"a circle among {sorted(left)}"
+        done |= ready
+
+
+def top_level(path: Path) -> set[str]:
+    """Return what a file imports of this package as it is imported itself."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    found = set()
+    for node in tree.body:
+        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("tiniscript"):
+            found |= {f"{node.module}.{each.name}" for each in node.names}
+    return found
+
+
+def test_only_the_command_prints() -> None:
+    for path in PACKAGE.rglob("*.py"):
+        if stage_of(path) != "cli":
+            calls = [
+                node
+                for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+                if isinstance(node, ast.Call) and ast.unparse(node.func) == "print"
+            ]
+            assert not calls, f"{path.name} prints"
+
+
+def test_no_file_is_too_full() -> None:
+    for path in PACKAGE.rglob("*.py"):
+        if path.name != "shipped.py":  # a table that is made
+            lines = len(path.read_text(encoding="utf-8").splitlines())
+            most = TOO_FULL.get(path.name, FULL)
+            assert lines <= most, f"{path.name} has {lines} lines: where is the wall?"
+
+
+def imported_by(statement: str) -> set[str]:
+    code = f"import sys; {statement}; print(' '.join(sys.modules))"
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=PACKAGE.parent
+    )
+    return set(done.stdout.split())
+
+
+def test_the_road_needs_the_standard_library_alone() -> None:
+    """So that it runs in a browser, and starts fast."""
+    modules = imported_by(
+        "from tiniscript import compile_text, robots; "
+        "assert compile_text('SI|F(5,80)', robots.load('tinibot').kit).image"
+    )
+    unwanted = {"construct", "tomllib", "tomli", "rich", "platformdirs", "serial", "dataclasses",
+                "argparse", "json", "difflib",
+                "tiniscript.diagnostics.rendering", "tiniscript.vm.machine",
+                "tiniscript.syntax.recovery",
+                "tiniscript.syntax.expression_recovery"}  # fmt: skip
+    assert not unwanted & modules
+
+
+def test_compile_imports_no_other_verb(tmp_path: Path) -> None:
+    program = tmp_path / "drive.ts"
+    program.write_text("SI|F(5,80)")
+    modules = imported_by(
+        f"from tiniscript.cli import main; assert main(['compile', {str(program)!r}]) == 0"
+    )
+    unwanted = {"cobs", "serial", "construct", "tomllib", "tomli", "rich", "dataclasses",
+                "tiniscript.link", "tiniscript.cli.texts.robot",
+                "tiniscript.vm.machine", "tiniscript.vm.trace", "tiniscript.bytecode.disassembly",
+                "tiniscript.syntax.formatter"}  # fmt: skip
+    assert not unwanted & modules
+
+
+def test_only_two_rooms_know_pyserial() -> None:
+    for path in PACKAGE.rglob("*.py"):
+        if "import serial" in path.read_text(encoding="utf-8"):
+            assert path.parent.name == "link" and path.stem in ("ports", "line"), path.name
+
+
+def test_the_link_has_no_port_and_no_clock() -> None:
+    """Bytes and times are arguments: so a second takes no time in a test.
+
+    `ports` and `line` are what is around it: a real port and a real clock.
+    """
+    for path in sorted((PACKAGE / "link").glob("*.py")):
+        if path.stem in ("ports", "line"):
+            continue
+        names = set()
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Import):
+                names |= {alias.name for alias in node.names}
+            elif isinstance(node, ast.ImportFrom):
+                names.add((node.module or "").split(".")[0])
+        assert not names & {"serial", "socket", "time", "threading", "asyncio", "select"}, path.name

@@ -1,0 +1,157 @@
+"""The guides for teachers keep their word: what they type at a robot prints what they show.
+
+A fence `console robot` needs one: here it is the firmware behind a port, which has the name that
+the guide has used last. The commands of a guide run in their order, on one robot; a program that
+the guide has the reader save (`course.ts`, named before its fence) is saved. What a guide says that
+`tsc` says, `tsc` can say.
+"""
+
+from __future__ import annotations
+
+import re
+import shlex
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+from tests.machines.host_firmware import missing
+from tests.support.casefile import ROOT
+from tests.support.pty_robot import PtyRobot
+from tiniscript import robots
+from tiniscript.cli import main
+from tiniscript.cli.texts.common import TEXTS
+from tiniscript.cli.texts.robot import LINK_TEXTS
+from tiniscript.link import ports, statuses
+from tiniscript.link.ports import Found
+
+GUIDES = {"en": ROOT / "docs" / "monday.en.md", "es": ROOT / "docs" / "lunes.es.md"}
+# The robot's port by cable, then by Bluetooth, and what Windows says of them.
+PORTS = {
+    "COM3": "Arduino Uno (COM3)",
+    "COM5": "Standard Serial over Bluetooth link (COM5)",
+}
+LIGHT, DISTANCE = 500_000, 42_000  # thousandths
+
+each_guide = pytest.mark.parametrize(("language", "guide"), GUIDES.items(), ids=list(GUIDES))
+
+
+class Step(NamedTuple):
+    """A command and what is shown under it, or a file (`name`) and its `text`.
+
+    `first` and `last` are the rows of the guide that show something.
+    """
+
+    name: str
+    words: list[str]
+    text: str
+    first: int
+    last: int
+
+
+def steps(guide: Path) -> list[Step]:
+    found: list[Step] = []
+    fence, name = "", ""
+    for number, row in enumerate(guide.read_text(encoding="utf-8").splitlines()):
+        if row.startswith("```"):
+            fence = "" if fence else row[3:].strip() or "text"
+            if fence == "tiniscript":
+                assert name, f"{guide.name}:{number + 1}: what is this program called?"
+                found.append(Step(name, [], "", number + 1, number + 1))
+                name = ""
+        elif fence == "console robot" and row.startswith("$ tsc "):
+            found.append(Step("", shlex.split(row)[2:], "", number + 1, number + 1))
+        elif fence in ("console robot", "tiniscript"):
+            found[-1] = found[-1]._replace(text=f"{found[-1].text}{row}\n", last=number + 1)
+        elif not fence:
+            named = re.findall(r"`(\w+\.ts)`", row)
+            name = named[-1] if named else name
+    return found
+
+
+def masked(said: str) -> str:
+    """Return what a command prints, without what is different each time."""
+    rows = [row.rstrip() for row in said.splitlines()]
+    for varies in (
+        r"\d+\.\d (?=ms)",
+        r"127\.0\.0\.1:\d+",
+        r"\d+ cm in \d+\.\d s",
+        r"\d+ cm en \d+\.\d s",
+    ):
+        rows = [re.sub(varies, "…", row) for row in rows]
+    return "\n".join(row for row in rows if row)
+
+
+@pytest.fixture
+def pty_robot(monkeypatch: pytest.MonkeyPatch) -> Iterator[PtyRobot]:
+    pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
+    if missing():
+        pytest.skip(missing())
+    with PtyRobot(robots.load("tinibot").kit, bytes_per_ms=1) as found:
+        found.ask(lambda robot: robot.sense(LIGHT, LIGHT, DISTANCE))
+        yield found
+
+
+@each_guide
+def test_what_a_guide_types_prints_what_it_shows(
+    pty_robot: PtyRobot, language: str, guide: Path, capsys: pytest.CaptureFixture[str],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest,
+) -> None:  # fmt: skip
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("LC_ALL", f"{language}_MX.UTF-8")
+    rows = guide.read_text(encoding="utf-8").splitlines()
+    name = "COM3"
+    monkeypatch.setattr(ports, "listed", lambda: [Found(pty_robot.port, PORTS[name])])
+    printed: list[tuple[Step, str]] = []
+    for step in steps(guide):
+        if step.name:
+            Path(step.name).write_text(step.text, encoding="utf-8")
+            continue
+        name = next((word for word in step.words if word in PORTS), name)
+        main([pty_robot.port if word in PORTS else word for word in step.words])
+        said = capsys.readouterr()
+        printed.append((step, (said.err + said.out).replace(pty_robot.port, name)))
+    assert len(printed) >= 10
+    if request.config.getoption("--accept"):
+        for step, said_now in reversed(printed):  # from the end on: the rows before stay in place
+            if masked(step.text) != masked(said_now):
+                rows[step.first : step.last] = [row for row in said_now.splitlines() if row]
+        guide.write_text("\n".join(rows) + "\n", encoding="utf-8")
+        return
+    for step, said_now in printed:
+        assert masked(said_now) == masked(step.text), f"{guide.name}:{step.first}"
+
+
+# -- what the guides say of tsc
+
+
+def _sentences(language: str) -> list[str]:
+    """Return all that `tsc` says of robots and ports, with `{}` for each gap."""
+    said = [both[language == "es"] for both in (*TEXTS.values(), *LINK_TEXTS.values())]
+    said += [words[language] for words in statuses.texts().values()]
+    return [re.sub(r"\{\w+\}", "{}", each) for each in said]
+
+
+@each_guide
+def test_the_sentences_of_the_table_are_those_of_tsc(language: str, guide: Path) -> None:
+    *_, table = guide.read_text(encoding="utf-8").split("\n## ")
+    quoted = re.findall(r"^\| `([^`]+)` \|", table, re.M)
+    assert len(quoted) >= 10
+    for each in quoted:
+        gaps = re.sub(r"COM\d|/dev/ttyUSB0", "{}", each)
+        assert any(gaps in sentence for sentence in _sentences(language)), each
+
+
+def test_both_guides_type_the_same() -> None:
+    english, spanish = (steps(GUIDES[language]) for language in ("en", "es"))
+    assert len(english) == len(spanish)
+    for step, other in zip(english, spanish, strict=True):
+        assert step.words[:1] == other.words[:1]
+        assert bool(step.name) == bool(other.name)
+    headings = [
+        len(re.findall(r"^## ", guide.read_text(encoding="utf-8"), re.M))
+        for guide in GUIDES.values()
+    ]
+    assert headings[0] == headings[1]

@@ -1,0 +1,137 @@
+"""The tests notice what is wrong: a fair sample of the breaks of `tools/mutation.py`.
+
+One for each rule and each reason to refuse, one of every six opcodes, and what arithmetic and time
+come to. All of them: `python tools/mutation.py`.
+"""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.machines.host import SOURCES, missing
+from tests.support.cpp_sample import Sample, Unfit
+from tools import mutation
+from tools.breaks import MACHINE, Break, Stale, breaks
+from tools.small_changes import small_changes
+
+needs_host = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
+ONE_OPCODE_IN = 6
+ONE_CHANGE_IN = 3  # of limits, arithmetic and time
+
+
+def sampled() -> Iterator[Break]:
+    """Yield breaks of every kind; for each rule and reason the first place that refuses for it."""
+    seen: dict[str, int] = {}
+    for each in mutation.noticeable(breaks(SOURCES)):
+        if each.file.endswith(".h"):
+            continue  # all is built again, for each of them: too long for a test
+        if each.kind in ("rule", "refusal"):
+            constant = each.name.split()[1]
+            seen[constant] = seen.get(constant, 0) + 1
+            if seen[constant] == 1:
+                yield each
+        else:
+            seen[each.kind] = seen.get(each.kind, -1) + 1
+            if seen[each.kind] % (ONE_OPCODE_IN if each.kind == "opcode" else ONE_CHANGE_IN) == 0:
+                yield each
+
+
+SAMPLE = list(sampled())
+
+
+@pytest.fixture(scope="module")
+def builds(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("builds")
+
+
+@pytest.fixture(scope="module")
+def sample(builds: Path) -> Iterator[Sample]:
+    found = Sample(SOURCES, builds)
+    yield found
+    found.close()
+
+
+@needs_host
+@pytest.mark.parametrize("each", SAMPLE, ids=lambda each: each.name)
+def test_break_is_noticed(each: Break, sample: Sample) -> None:
+    result = mutation.tried(each, sample)
+    assert result.kind, "every check passes"
+    assert result.kind != mutation.BUILD, result.said
+
+
+def test_the_sample_is_fair() -> None:
+    kinds = {each.kind for each in SAMPLE}
+    assert kinds == {"opcode", "rule", "refusal", "limit", "arithmetic"}
+    assert len(SAMPLE) >= 40
+
+
+def test_no_two_breaks_have_one_name() -> None:
+    names = [each.name for each in breaks(SOURCES)]
+    assert len({*names}) == len(names) > 300
+
+
+def test_every_small_change_has_a_name_of_its_own() -> None:
+    found = small_changes(SOURCES)
+    assert len({each.name for each in found}) == len(found) > 500
+
+
+@pytest.mark.parametrize(
+    ("was", "becomes", "said"),
+    [
+        ("uint8_t code = ", "uint8_t codes = ", "OPCODE_IS_READ stands in 0 places"),
+        ("Rule::kBadCall", "Rule::kBadDef", "Rule::kBadCall refuses nowhere"),
+        ("kLateMs = 20", "kLateMs = 30", "'a program catches up with one ms more'"),
+        ("kJoins = 16", "kJoins = kDefs", "does not say what kJoins is"),
+    ],
+)
+def test_a_place_that_is_not_there_is_said(
+    was: str, becomes: str, said: str, tmp_path: Path
+) -> None:
+    """No break is left out silently because the machine was rewritten."""
+    copy = Path(shutil.copytree(SOURCES / MACHINE, tmp_path / MACHINE))
+    for path in copy.glob("*"):
+        text = path.read_text(encoding="utf-8")
+        path.write_text(text.replace(was, becomes), encoding="utf-8")
+    with pytest.raises(Stale, match=said):
+        breaks(tmp_path)
+
+
+@needs_host
+def test_a_break_that_nothing_notices_is_said(capsys: pytest.CaptureFixture[str]) -> None:
+    each = Break("opcode", "some", "vm.cpp", "", "a < b;", "a <= b;")
+    results = [mutation.Result(each, "", "", "", 1), mutation.Result(each, "case", "a", "", 1)]
+    assert mutation.summary(results[1:], 1) == 0
+    assert mutation.summary(results, 1) == 1
+    assert "unnoticed: opcode: some\n  a < b;\n  a <= b;\n" in capsys.readouterr().out
+
+
+def test_what_is_equivalent_is_a_change(monkeypatch: pytest.MonkeyPatch) -> None:
+    each = Break("change", "some", "vm.cpp", "", "a < b;", "a <= b;")
+    monkeypatch.setattr(mutation, "EQUIVALENT", {("a < b;", "a <= b;"): "", ("c;", ";"): ""})
+    assert mutation.noticeable([each, each._replace(becomes="a > b;")]) == [
+        each._replace(becomes="a > b;")
+    ]
+    assert mutation.gone([each]) == ["c;"]
+
+
+@needs_host
+def test_a_machine_that_is_wrong_already_proves_nothing(tmp_path: Path, builds: Path) -> None:
+    copy = Path(shutil.copytree(SOURCES, tmp_path / "vm_arduino"))
+    each = next(each for each in breaks(SOURCES) if each.kind == "opcode")
+    (copy / MACHINE / each.file).write_text(each.text, encoding="utf-8")
+    wrong = Sample(copy, builds)
+    with pytest.raises(Unfit, match="case: "):
+        wrong.failing(SOURCES)
+    wrong.close()
+
+
+def test_a_compiler_is_needed(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(mutation, "missing", lambda: "no g++")
+    assert mutation.main([]) == 2
+    assert capsys.readouterr().err == "no g++\n"

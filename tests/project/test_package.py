@@ -1,0 +1,141 @@
+"""The packages: a wheel that builds its own firmware, and sources whose tests run."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+import zipfile
+from importlib.metadata import version
+from pathlib import Path
+
+import pytest
+
+from tests.support.casefile import ROOT
+from tests.support.platformio import need, prepared
+
+SKIPPED = (".git", ".venv", "build", "dist", "ready", "*.egg-info", "__pycache__", "*.pyc", ".pio",
+           ".*_cache", ".coverage", "own.h", "*.bin", "way.png")  # fmt: skip
+ADDED = {"PKG-INFO", "setup.cfg"}  # by setuptools
+SOURCES = "tiniscript/flash/vm_arduino/"
+BUILD = "import sys; from setuptools import build_meta; print(build_meta.{0}(sys.argv[1]))"
+
+
+def files_of(folder: Path) -> set[str]:
+    return {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
+
+
+@pytest.fixture(scope="module")
+def repo(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A copy of the repository in which somebody has worked for a while."""
+    if int(version("setuptools").partition(".")[0]) < 77:
+        need("setuptools is older than 77")
+    folder = tmp_path_factory.mktemp("package") / "repo"
+    shutil.copytree(ROOT, folder, ignore=shutil.ignore_patterns(*SKIPPED))
+    return folder
+
+
+@pytest.fixture(scope="module")
+def kept(repo: Path) -> set[str]:
+    """What is in the repository, before anything is built there."""
+    return files_of(repo)
+
+
+def built(repo: Path, what: str, target: Path) -> Path:
+    done = subprocess.run(
+        [sys.executable, "-c", BUILD.format(what), str(target)],
+        cwd=repo, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr[-3000:]
+    assert "deprecated" not in (done.stdout + done.stderr).lower()
+    return target / done.stdout.split()[-1]
+
+
+@pytest.fixture(scope="module")
+def wheel(repo: Path, kept: set[str], tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A wheel, unpacked: what pip installs."""
+    stale = repo / "build" / "lib"
+    for name in (
+        "tiniscript/stale.py",
+        "tiniscript/flash/ready/stale.hex",
+        f"{SOURCES}src/stale.h",
+    ):
+        (stale / name).parent.mkdir(parents=True, exist_ok=True)
+        (stale / name).touch()
+    own = repo / "vm_arduino" / "src" / "boards" / "kits" / "own.h"
+    own.write_text("#error")
+    folder = tmp_path_factory.mktemp("wheel")
+    with zipfile.ZipFile(built(repo, "build_wheel", folder)) as packed:
+        packed.extractall(folder / "unpacked")
+    own.unlink()
+    return folder / "unpacked"
+
+
+@pytest.fixture(scope="module")
+def unpacked(repo: Path, kept: set[str], tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A source package, unpacked."""
+    folder = tmp_path_factory.mktemp("sdist")
+    shutil.unpack_archive(built(repo, "build_sdist", folder), folder / "unpacked")
+    found: Path
+    (found,) = (folder / "unpacked").iterdir()
+    return found
+
+
+def python(*words: str, folder: Path, **variables: str) -> subprocess.CompletedProcess[str]:
+    environment = {**os.environ, **variables}
+    return subprocess.run(
+        [sys.executable, *words],
+        cwd=folder, env=environment, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+
+
+# -- the wheel
+
+
+def test_a_wheel_has_what_is_in_the_repository_and_nothing_stale(
+    wheel: Path, kept: set[str]
+) -> None:
+    found = {name for name in files_of(wheel) if name.startswith("tiniscript/")}
+    package = {name.removeprefix("compiler/") for name in kept if name.startswith("compiler/")}
+    sources = {
+        SOURCES + name.removeprefix("vm_arduino/")
+        for name in kept
+        if name.startswith("vm_arduino/src/") or name == "vm_arduino/platformio.ini"
+    }
+    assert found == package | sources
+    assert len(sources) > 50
+
+
+def test_a_wheel_says_its_licence(wheel: Path) -> None:
+    (about,) = wheel.glob("*.dist-info")
+    assert "License-Expression: MIT\n" in (about / "METADATA").read_text(encoding="utf-8")
+    assert (about / "licenses" / "LICENSE").read_text() == (ROOT / "LICENSE").read_text()
+
+
+def test_a_wheel_builds_its_own_firmware(wheel: Path, tmp_path: Path) -> None:
+    variables, why = prepared()
+    need(why)
+    words = ("-m", "tiniscript", "firmware", "--build", "--robot", "liner")
+    done = python(*words, folder=tmp_path, PYTHONPATH=str(wheel), **variables)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith("liner on nano: ready, ")
+
+
+# -- the source package
+
+
+def test_a_source_package_has_the_whole_repository(unpacked: Path, kept: set[str]) -> None:
+    found = {name for name in files_of(unpacked) if ".egg-info/" not in name}
+    assert found - ADDED == kept - ADDED
+
+
+def test_the_tests_of_a_source_package_run(unpacked: Path) -> None:
+    pytest_here = ("-m", "pytest", "-p", "no:cacheprovider", "-p", "no:xdist")
+    every = python(*pytest_here, "--collect-only", "-qq", folder=unpacked, PYTEST_ADDOPTS="")
+    assert every.returncode == 0, every.stdout[-3000:]
+    some = ("tests/project/test_directions.py", "tests/bytecode/test_image.py",
+            "tests/robots/test_robots.py",
+            "tests/project/test_documents.py", "tests/project/test_setup.py")  # fmt: skip
+    done = python(*pytest_here, *some, folder=unpacked)
+    assert done.returncode == 0, done.stdout[-3000:]

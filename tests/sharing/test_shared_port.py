@@ -1,0 +1,352 @@
+"""One port, many commands: whoever holds it lets the others use its session."""
+
+from __future__ import annotations
+
+import json
+import signal
+import socket
+import time
+from pathlib import Path
+
+import pytest
+
+from tests.machines.host_firmware import missing
+from tests.support.command import FOREVER, LONG, Command, process
+from tests.support.pty_robot import PtyRobot, on, uploading
+from tests.support.shared_pty_robot import Shared
+from tiniscript import __version__
+from tiniscript.link.frames import decoded
+from tiniscript.sharing import protocol, registry
+from tiniscript.sharing.registry import Holder
+
+pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
+
+
+def hellos(pty_robot: PtyRobot) -> int:
+    """Return how often a session was begun: as often as the port was opened."""
+    frames = map(decoded, pty_robot.heard.split(b"\0"))
+    return sum(frame is not None and frame.number == 1 for frame in frames)
+
+
+# -- what others can do -------------------------------------------------------------------------
+
+
+def test_stop_works_while_another_terminal_drives(pty_robot: PtyRobot) -> None:
+    command = uploading(pty_robot)
+    done = on(pty_robot, "stop")
+    assert (done.code, done.out) == (
+        0, f"Stopped: the robot on {pty_robot.port} has confirmed it.\n",
+    )  # fmt: skip
+    assert not pty_robot.moves
+    done = command.ended()
+    assert done.code == 3
+    assert "The robot was stopped from a computer." in done.out
+    assert hellos(pty_robot) == 1
+
+
+def test_commands_share_a_session_that_is_begun_once(
+    pty_robot: PtyRobot, link: Command, tmp_path: Path
+) -> None:
+    done = on(pty_robot, "upload", "-e", "SI|F(0.1, 80);SHOW(1.5)")
+    assert (done.code, done.err) == (0, "")
+    assert done.out.splitlines()[1:] == ["SHOW 1.5", "Done.", "Saved in slot 0."]
+    assert on(pty_robot, "upload", "-e", "SI|F(0.1, 30)").code == 0
+    assert on(pty_robot, "live", "X = 1 / 0").code == 1
+    assert "3 round trips" in on(pty_robot, "ping", "--count", "3").out
+    ours, theirs = tmp_path / "ours.bin", tmp_path / "theirs.bin"
+    process("compile", "-e", LONG, "-o", ours)
+    assert on(pty_robot, "upload", ours, "--no-run", "--no-save").code == 0
+    assert on(pty_robot, "fetch", "-o", theirs).code == 0
+    assert theirs.read_bytes() == ours.read_bytes()
+    assert on(pty_robot, "name", "Ñandú").code == 0
+    assert json.loads(on(pty_robot, "info", "--json").out)["name"] == "Ñandú"
+    assert on(pty_robot, "start").out.endswith("Done.\n")
+    assert hellos(pty_robot) == 1
+    link.signal(signal.SIGINT)
+    done = link.ended()
+    assert done.code == 0
+    assert "tsc upload: has come." in done.out
+    assert "SHOW 1.5" in done.out
+
+
+def test_all_names_of_a_port_lead_to_its_holder(
+    pty_robot: PtyRobot, link: Command, tmp_path: Path
+) -> None:
+    name = tmp_path / "by-id"
+    name.symlink_to(pty_robot.port)
+    assert process("stop", "--port", name).code == 0
+    assert "SHOW 2" in process("live", "SHOW(2)", "--port", name).out
+    assert hellos(pty_robot) == 1
+    rows = json.loads(process("ports", "--json").out)
+    assert {row["port"]: row["held_by"] for row in rows}[pty_robot.port] == "link"
+    done = process("ports", "--ask", "--port", name)
+    assert "robot" in done.out and "held by tsc link" in done.out
+    done = process("info", "--port", name, "--baud", "115200")
+    assert done.code == 3
+    assert "held by tsc link, at 9600 baud" in done.err
+    done = process("link", "--port", name)
+    assert done.code == 3
+    assert "shared already, by tsc link" in done.err
+
+
+def test_an_address_is_held_like_a_port(pty_robot: PtyRobot) -> None:
+    bridge = Command(code=BRIDGE.format(port=pty_robot.port))
+    assert bridge.process.stdout
+    address = f"socket://localhost:{int(bridge.process.stdout.readline())}"
+    command = Command("upload", "-e", FOREVER, "--port", address)
+    command.until("running")
+    assert process("stop", "--port", address.replace("localhost", "127.0.0.1")).code == 0
+    assert command.ended().code == 3
+    assert hellos(pty_robot) == 1
+    bridge.process.kill()
+    bridge.process.communicate()
+
+
+BRIDGE = """
+import socket, threading, serial
+tcp = socket.create_server(("127.0.0.1", 0))
+print(tcp.getsockname()[1], flush=True)
+peer, _ = tcp.accept()
+device = serial.Serial({port!r}, timeout=0.005)
+def back():
+    while True:
+        peer.sendall(device.read(200))
+threading.Thread(target=back, daemon=True).start()
+while data := peer.recv(1000):
+    device.write(data)
+"""
+
+
+def test_a_guest_may_have_chosen_another_robot(pty_robot: PtyRobot) -> None:
+    command = Command("monitor", "--port", pty_robot.port, "--robot", "grabber")
+    assert command.process.stderr
+    command.process.stderr.readline()  # it watches
+    pty_robot.ask(lambda robot: robot.sense(0, 0, 42_000))
+    assert "SHOW 42" in on(pty_robot, "live", "SHOW(DISTANCE)").out
+    done = on(pty_robot, "live", "GRIPPER(90)", "--robot", "grabber")
+    assert done.code == 3
+    assert "--robot tinibot" in done.err
+    done = on(pty_robot, "upload", "-e", "SHOW(LINE_L)", "--robot", "liner")
+    assert done.code == 3
+    assert "--robot tinibot" in done.err
+    command.signal(signal.SIGINT)
+    assert command.ended().code == 0
+
+
+def test_monitor_shows_what_live_does_and_not_its_bookkeeping(
+    pty_robot: PtyRobot, link: Command
+) -> None:
+    monitor = Command("monitor", "--port", pty_robot.port, "--json")
+    assert monitor.process.stderr
+    monitor.process.stderr.readline()
+    live = Command("live", "--port", pty_robot.port)
+    assert live.process.stdin and live.process.stdout
+    live.process.stdin.write(b"X = 3; SHOW(X)\nX = X + 1\nSHOW(X)\n")
+    done = live.ended()
+    assert [line for line in done.out.splitlines() if line != "Done."] == ["SHOW 3", "SHOW 4"]
+    assert monitor.process.stdout
+    rows = [json.loads(monitor.process.stdout.readline()) for _ in range(5)]
+    assert [(row["event"], row.get("value")) for row in rows] == [
+        ("SHOW", 3), ("DONE", None), ("DONE", None), ("SHOW", 4), ("DONE", None),
+    ]  # fmt: skip
+    monitor.signal(signal.SIGINT)
+    assert monitor.ended().out == ""
+
+
+def test_an_upload_through_a_holder_imports_no_more_than_it_needs() -> None:
+    """So the robot moves before a person has let go of the key."""
+    code = (
+        "import sys; from tiniscript.cli import main; assert main(sys.argv[1:]) == 0; "
+        "print(' '.join(sys.modules))"
+    )
+    with Shared() as (pty_robot, _):
+        command = Command("upload", "-e", "SI|F(0.1, 30)", "--port", pty_robot.port, code=code)
+        modules = set(command.ended().out.splitlines()[-1].split())
+    unwanted = {"serial", "cobs", "construct", "tomllib", "tomli", "rich", "threading",
+                "tiniscript.link.session", "tiniscript.link.ports", "tiniscript.cli.robot.fleet",
+                "tiniscript.diagnostics.rendering"}  # fmt: skip
+    assert sorted(unwanted & modules) == []
+
+
+# -- whose run it is ------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM, signal.SIGSTOP])
+def test_a_robot_stops_without_the_command_that_has_started_it(
+    pty_robot: PtyRobot, link: Command, number: int
+) -> None:
+    command = uploading(pty_robot)
+    gone_ms = pty_robot.robot_ms
+    command.signal(number)
+    pty_robot.until(lambda: not pty_robot.moves, "it stops by itself")
+    # at once, if the holder sees it go
+    assert int(pty_robot.timed[-1].split()[0]) <= gone_ms + (
+        1500 if number == signal.SIGSTOP else 900
+    )
+    assert on(pty_robot, "upload", "-e", "SI|F(0.1, 30)").code == 0
+    command.process.kill()
+    command.process.communicate()
+
+
+def test_ctrl_c_in_a_guest_stops_the_robot(pty_robot: PtyRobot, link: Command) -> None:
+    command = uploading(pty_robot)
+    command.signal(signal.SIGINT)
+    done = command.ended()
+    assert done.code == 2
+    assert "the robot has confirmed it" in done.err
+    assert not pty_robot.moves
+
+
+def test_a_program_that_needs_nobody_outlives_its_command(
+    pty_robot: PtyRobot, link: Command
+) -> None:
+    assert on(pty_robot, "upload", "-e", FOREVER, "--detach").code == 0
+    pty_robot.ask(lambda robot: robot.wait(1500))
+    assert pty_robot.moves
+    assert on(pty_robot, "stop").code == 0
+    assert not pty_robot.moves
+
+
+def test_a_second_program_ends_the_first_and_both_know(pty_robot: PtyRobot) -> None:
+    first = uploading(pty_robot)
+    second = Command("upload", "-e", "SI|LOOP(20);F(0.1, 30);END_LOOP", "--port", pty_robot.port)
+    second.until("running")
+    done = first.ended()  # it held the port
+    assert done.code == 3
+    assert "another program" in done.err
+    done = second.ended()
+    assert done.code == 3
+    assert "has ended (tsc upload)" in done.err
+    pty_robot.until(lambda: not pty_robot.moves, "nobody is left who attends")
+
+
+# -- endings of a holder --------------------------------------------------------------------------
+
+
+def test_a_holder_that_leaves_stops_the_run_of_its_guest(
+    pty_robot: PtyRobot, link: Command
+) -> None:
+    command = uploading(pty_robot)
+    link.signal(signal.SIGINT)
+    assert link.ended().code == 0
+    assert not pty_robot.moves
+    done = command.ended()
+    assert done.code == 3
+    assert "has ended (tsc link)" in done.err
+    assert registry.found(pty_robot.port) is None
+    assert on(pty_robot, "upload", "-e", "SI|F(0.1, 30)").code == 0
+    assert hellos(pty_robot) == 2
+
+
+def test_a_holder_that_is_killed_blocks_nobody(pty_robot: PtyRobot, link: Command) -> None:
+    command = uploading(pty_robot)
+    link.process.kill()
+    done = command.ended()
+    assert done.code == 3
+    assert "has ended (tsc link)" in done.err
+    pty_robot.until(lambda: not pty_robot.moves, "it stops by itself")
+    assert registry.found(pty_robot.port) is not None
+    assert pty_robot.port not in [row["port"] for row in json.loads(process("ports", "--json").out)
+                             if row["held_by"]]  # fmt: skip
+    done = on(pty_robot, "info")
+    assert (done.code, done.err) == (0, "")
+    assert "LINK_LOST" in done.out
+    assert registry.found(pty_robot.port) is None
+
+
+def test_a_stop_gets_through_while_its_holder_ends(pty_robot: PtyRobot) -> None:
+    """Whoever comes in the middle opens the port itself."""
+    for wait_s in (0, 0.1):
+        holder = uploading(pty_robot)
+        stop = Command("stop", "--port", pty_robot.port)
+        time.sleep(wait_s)
+        holder.process.kill()
+        done = stop.ended()
+        assert (done.code, done.err) == (0, "")
+        assert not pty_robot.moves
+        holder.process.communicate()
+    assert on(pty_robot, "upload", "-e", FOREVER, "--detach").code == 0
+    with socket.create_server((protocol.HOST, 0)) as holding:
+        found = Holder(pty_robot.port, holding.getsockname()[1], "a", "b", "link", 9600, 1)
+        registry.write(found)
+        stop = Command("stop", "--port", pty_robot.port)
+        peer, _ = holding.accept()
+        with peer:
+            peer.recv(1000)
+            peer.sendall(protocol.written({"tsc": __version__, "answer": "b"}))
+            assert b"stop" in peer.recv(1000)
+    assert stop.ended().code == 0
+    assert not pty_robot.moves
+
+
+def test_a_cable_that_is_pulled_is_said_to_all(pty_robot: PtyRobot, link: Command) -> None:
+    command = uploading(pty_robot)
+    pty_robot.pull()
+    for each in (command, link):
+        done = each.ended()
+        assert done.code == 3
+        assert "has vanished" in done.err
+
+
+def test_a_robot_that_was_lost_is_found_again(pty_robot: PtyRobot, link: Command) -> None:
+    pty_robot.switch_off()
+    link.until("Looking for it")
+    pty_robot.switch_on()
+    link.until("is there again")
+    assert "SHOW 7" in on(pty_robot, "live", "SHOW(7)").out
+
+
+def test_of_two_who_want_a_port_one_gets_it(pty_robot: PtyRobot) -> None:
+    commands = [Command("link", "--port", pty_robot.port) for _ in range(3)]
+    held: list[str] = []
+    pty_robot.until(
+        lambda: sum(each.process.poll() is not None for each in commands) == 2, "one stays"
+    )
+    for each in commands:
+        if each.process.poll() is None:
+            assert on(pty_robot, "stop").code == 0
+            each.signal(signal.SIGINT)
+            done = each.ended()
+            assert (done.code, done.err) == (0, "\n")
+        else:
+            done = each.ended()
+            assert done.code == 3
+            held.append(done.err)
+    assert all("shared already" in said for said in held)
+
+
+def test_of_two_who_want_an_address_one_gets_it(pty_robot: PtyRobot) -> None:
+    bridge = Command(code=BRIDGE.format(port=pty_robot.port))
+    assert bridge.process.stdout
+    address = f"socket://127.0.0.1:{int(bridge.process.stdout.readline())}"
+    commands = [Command("link", "--port", address) for _ in range(3)]
+    pty_robot.until(
+        lambda: sum(each.process.poll() is not None for each in commands) == 2, "one stays"
+    )
+    losers = [each.ended() for each in commands if each.process.poll() is not None]
+    assert [done.code for done in losers] == [3, 3]
+    assert all("shared already" in done.err for done in losers)
+    for each in (*commands, bridge):
+        each.process.kill()
+        each.process.communicate()
+
+
+def test_commands_that_come_at_once_are_all_served(pty_robot: PtyRobot) -> None:
+    commands = [Command("info", "--port", pty_robot.port) for _ in range(3)]
+    commands.append(Command("upload", "-e", "SB|S", "--port", pty_robot.port))
+    assert [each.ended().err for each in commands] == ["", "", "", ""]
+
+
+def test_a_tsc_of_another_version_can_be_stopped(pty_robot: PtyRobot) -> None:
+    newer = "import sys, tiniscript; tiniscript.__version__ = '9.1'; " + (
+        "from tiniscript.cli import main; sys.exit(main(sys.argv[1:]))"
+    )
+    command = Command("upload", "-e", FOREVER, "--port", pty_robot.port, code=newer)
+    command.until("running")
+    for language, words in (("en", "another version, 9.1"), ("es", "otra versión, 9.1")):
+        done = on(pty_robot, "info", "--lang", language)
+        assert done.code == 3
+        assert words in done.err
+    assert on(pty_robot, "stop").code == 0
+    assert command.ended().code == 3

@@ -1,0 +1,207 @@
+"""Whatever somebody without the token says to a shared port, the session there goes on."""
+
+from __future__ import annotations
+
+import json
+import signal
+import socket
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from random import Random
+
+import pytest
+
+from tests.machines.host_firmware import missing
+from tests.support.command import FOREVER, TSC, Command, process
+from tests.support.pty_robot import PtyRobot, on, uploading
+from tiniscript import __version__
+from tiniscript.sharing import protocol, registry
+from tiniscript.sharing.registry import Holder
+
+pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
+
+GREETING = b'{"tsc":"%s","token":"%s","verb":"link"}\n' % (__version__.encode(), b"0" * 32)
+STRANGE = (
+    b'{"token":"\\ud800","verb":"x"}\n',
+    b'{"tsc":"0.1.0","token":"\\ud800","verb":"x"}\n',
+    b'{"tsc":"0.1.0","token":"' + b"0" * 32 + b'","verb":"\\udfff"}\n',
+    '{"token":"é","verb":"x"}\n'.encode(),
+    b'{"token":"\xff\xfe","verb":"x"}\n',
+    b'{"token":NaN,"verb":Infinity}\n',
+    b'{"token":' + b"9" * 900 + b',"verb":true}\n',
+    b'{"token":1e999,"verb":-1e999}\n',
+    b'{"token":null,"token":"a","token":[]}\n',
+    b'{"token":' + b"[" * 900 + b"\n",
+    b'{"a":' * 180 + b"\n",
+    b"9" * 5000 + b"\n",
+    b"[" * 100_000,
+    b'{"tsc":"' + b"0" * 1_000_000,
+    b"\xef\xbb\xbf" + GREETING,
+    GREETING.decode().encode("utf-16"),
+    GREETING * 50,
+    GREETING[:-1],
+    protocol.written({"do": "stop"}),
+    b"\n" * 1000,
+    b"\0" * 1000,
+    b"GET / HTTP/1.1\r\nUpgrade: websocket\r\n\r\n",
+    b"\x16\x03\x01\x00\xf0\x01",
+    b"",
+)
+
+
+def mutated(chance: Random) -> bytes:
+    """Return something strange that is a little otherwise."""
+    data = bytearray(chance.choice(STRANGE)[:1200] or b"{")
+    for _ in range(chance.randrange(1, 6)):
+        at = chance.randrange(len(data))
+        kind = chance.randrange(4)
+        if kind == 0:
+            data[at] = chance.randrange(256)
+        elif kind == 1:
+            data[at:at] = chance.choice((b'"', b"\\ud8", b"\n", b"\0", b"{", b"[", b"\xff", b"1e9"))
+        elif kind == 2:
+            del data[at : at + chance.randrange(20)]
+        else:
+            data += chance.choice(STRANGE)[:200]
+        data = data or bytearray(b"{")
+    return bytes(data)
+
+
+def say(holder: Holder, data: bytes, chance: Random) -> None:
+    """Say something in one or more pieces, and leave in one of several ways."""
+    with socket.create_connection((protocol.HOST, holder.number), 10) as peer, suppress(OSError):
+        cut = chance.randrange(len(data) + 1)
+        for piece in (data[:cut], data[cut:]) if chance.random() < 0.3 else (data,):
+            peer.sendall(piece)
+        if chance.random() < 0.5:
+            peer.shutdown(socket.SHUT_WR)
+            said = peer.recv(1000)
+            assert said == b"", "a stranger is answered"
+
+
+def holder_of(port: str) -> Holder:
+    found = registry.found(port)
+    assert found is not None
+    return found
+
+
+def test_no_bytes_of_a_stranger_end_a_run(pty_robot: PtyRobot) -> None:
+    """The command that has started it holds the port; its heartbeat goes on."""
+    chance = Random(14)
+    command = uploading(pty_robot)
+    holder = holder_of(pty_robot.port)
+    for data in STRANGE:
+        say(holder, data, chance)
+    for _ in range(1500):
+        say(holder, mutated(chance), chance)
+    assert pty_robot.moves
+    assert not [line for line in pty_robot.did if "FAULT" in line or "STOP" in line]
+    assert json.loads(on(pty_robot, "info", "--json").out)["state"] == "RUNNING"
+    command.signal(signal.SIGINT)
+    done = command.ended()
+    assert done.code == 2
+    assert "the robot has confirmed it" in done.err
+
+
+def test_no_bytes_of_a_stranger_end_a_guest_of_link(pty_robot: PtyRobot, link: Command) -> None:
+    chance = Random(15)
+    command = uploading(pty_robot)
+    holder = holder_of(pty_robot.port)
+    for data in STRANGE:
+        say(holder, data, chance)
+    for _ in range(500):
+        say(holder, mutated(chance), chance)
+    assert pty_robot.moves
+    assert not [line for line in pty_robot.did if "FAULT" in line or "STOP" in line]
+    assert on(pty_robot, "stop").code == 0
+    assert command.ended().code == 3
+    link.signal(signal.SIGINT)
+    done = link.ended()
+    assert (done.code, done.err) == (0, "\n")
+    assert done.out.count("has come") == 2  # strangers are not told of
+
+
+# -- many of them -------------------------------------------------------------------------------
+
+CROWD = """
+import socket, sys
+ports, say = [int(each) for each in sys.argv[1].split(",")], bytes.fromhex(sys.argv[2])
+peers = []
+for k in range(1000):
+    for port in ports:
+        peer = socket.socket()
+        peer.setblocking(False)
+        peer.connect_ex(("127.0.0.1", port))
+        peers.append(peer)
+print("here", flush=True)
+while sys.stdin.buffer.read(1):
+    for peer in peers:
+        try:
+            peer.send(say)
+        except OSError:
+            pass
+"""
+
+
+@contextmanager
+def crowd(*ports: int, says: bytes = b"") -> Iterator[None]:
+    """A thousand connections to each port that stay."""
+    code = ["sh", "-c", 'ulimit -n 4000; exec "$@"', "sh", sys.executable, "-c", CROWD]
+    numbers = ",".join(map(str, ports))
+    with subprocess.Popen(
+        [*code, numbers, says.hex()], stdin=subprocess.PIPE, stdout=subprocess.PIPE
+    ) as process:
+        try:
+            assert process.stdout and process.stdin
+            assert process.stdout.readline() == b"here\n"
+            process.stdin.write(b"!")
+            process.stdin.flush()
+            yield
+        finally:
+            process.kill()
+            process.communicate()
+
+
+FEW = ["sh", "-c", 'ulimit -n 256; exec "$@"', "sh", *TSC]  # files, as on macOS
+
+
+@contextmanager
+def few(*arguments: str) -> Iterator[subprocess.Popen[bytes]]:
+    """A `tsc` that may have few files open."""
+    process = subprocess.Popen(
+        [*FEW, *arguments], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    )
+    try:
+        yield process
+    finally:
+        process.kill()
+        process.communicate()
+
+
+@pytest.mark.parametrize(("there", "here"), [(b"", b""), (b"\0", b'{"tsc"'), (b"POS", b"POST")])
+def test_a_stop_gets_through_a_thousand_connections(there: bytes, here: bytes) -> None:
+    """At the port of the robot, and at that of the command that holds it."""
+    with few("robot") as robot:
+        assert robot.stdout
+        port = robot.stdout.readline().decode().strip()
+        number = int(port.rpartition(":")[2])
+        with crowd(number, says=there):
+            done = process("stop", "--port", port)
+            assert (done.code, done.err) == (0, "")
+        with few("upload", "--port", port, "-e", FOREVER) as command:
+            assert command.stdout
+            assert b"running" in command.stdout.readline()
+            held = holder_of(port).number
+            with crowd(number, says=there), crowd(held, says=here):
+                done = process("info", "--port", port, "--json")
+                assert json.loads(done.out)["state"] == "RUNNING"
+                assert process("stop", "--port", port).code == 0
+            out, err = command.communicate(timeout=60)
+            assert command.returncode == 3
+            assert b"was stopped from a computer" in out + err
+        robot.send_signal(signal.SIGINT)
+        did = robot.communicate(timeout=60)[0].decode()
+    assert "FAULT" not in did

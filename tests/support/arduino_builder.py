@@ -1,0 +1,56 @@
+"""The Arduino IDE's own builder for tests: what it needs here, and the sketch that it builds."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+from pathlib import Path
+from typing import NamedTuple
+
+from tests.machines import board as boards
+from tests.support.platformio import SKETCH, need
+
+BUILDER = Path("/usr/share/arduino-builder")
+BOARDS = {"uno": "uno", "mega": "mega:cpu=atmega2560"}
+
+
+class Built(NamedTuple):
+    hex: Path
+    log: str  # what the builder printed, warnings included
+
+
+def firmware(board: str, own: Path, shared: Path) -> Built:
+    """Return the sketch for a board, built once for all workers of a session."""
+    found = Built(shared / f"builder-{board}.hex", "")
+    log = found.hex.with_suffix(".log")
+    if not log.exists():
+        made = _build(board, own)
+        mine = shared / f"builder-{board}.{os.getpid()}"
+        for text, target in ((made.hex.read_text(), found.hex), (made.log, log)):
+            mine.write_text(text, encoding="utf-8")
+            mine.replace(target)
+    return found._replace(log=log.read_text(encoding="utf-8"))
+
+
+def _build(board: str, folder: Path) -> Built:
+    if not shutil.which("arduino-builder"):
+        need("no arduino-builder on this computer")
+    need(boards.missing())
+    copy = folder / "vm_arduino"
+    shutil.copytree(SKETCH, copy, ignore=shutil.ignore_patterns(".pio", "own.h"))
+    build = folder / "build"
+    build.mkdir()
+    done = subprocess.run(
+        ["arduino-builder", "-compile", "-warnings", "all",
+         "-hardware", BUILDER, "-hardware", boards.ARDUINO.parents[1],
+         "-tools", "/usr/bin", "-fqbn", f"arduino:avr:{BOARDS[board]}", "-build-path", build,
+         "-prefs=compiler.cpp.extra_flags=-DDECIMAL_DIG=__DECIMAL_DIG__",
+         copy / "vm_arduino.ino"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stdout[-4000:]
+    return Built(build / "vm_arduino.ino.hex", done.stdout)

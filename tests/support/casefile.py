@@ -1,0 +1,79 @@
+"""Reads case files: a Markdown chapter whose fences run.
+
+Each heading `## sentence` that has fences is a case; each fence states one thing about it. The
+language of the fence says which: `tiniscript` (the program), `senses` (readings and limits),
+`robot` (the trace), `bytecode` (the listing), `mistake` and `warning` (what is said),
+`refused` (the rule that a listing breaks). Fences of other languages are for people.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import NamedTuple
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+PARTS = ("tiniscript", "senses", "robot", "bytecode", "mistake", "warning", "refused", "formatted")
+
+
+class Case(NamedTuple):
+    """`parts` maps a fence's language to its text."""
+
+    path: Path
+    line: int
+    title: str
+    parts: dict[str, str]
+
+    @property
+    def id(self) -> str:
+        return f"{self.path.stem}: {self.title}"
+
+
+def documents() -> list[Path]:
+    """Return every file that holds cases. They are found, never listed."""
+    found = [*ROOT.glob("tests/cases/**/*.md"), *ROOT.glob("docs/**/*.md")]
+    return sorted([*found, ROOT / "bytecode_spec.md", ROOT / "README.md"])
+
+
+def read(path: Path) -> list[Case]:
+    """Return the cases of one file. A case whose fences repeat continues in a case of its own."""
+    cases: list[Case] = []
+    title, fence, count = "", "", 0
+    lines: list[str] = []
+    for number, row in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+        if row.startswith("```"):
+            language = row[3:].strip()
+            if fence:
+                if fence in PARTS:
+                    cases[-1].parts[fence] = "".join(line + "\n" for line in lines)
+                fence = ""
+            else:
+                fence, lines = language or "text", []
+                if fence in PARTS:
+                    # a new program, or a listing that is not the program's, begins a new case
+                    starts = fence in ("tiniscript",) or not cases or fence in cases[-1].parts
+                    if starts or cases[-1].title.split(" #")[0] != title:
+                        count += 1
+                        name = title if count == 1 else f"{title} #{count}"
+                        cases.append(Case(path, number, name, {}))
+        elif fence:
+            lines.append(row)
+        elif row.startswith("#"):
+            title, count = row.lstrip("#").strip(), 0
+    assert not fence, f"{path.name}: a fence is not closed"
+    return cases
+
+
+def all_cases() -> list[Case]:
+    return [case for path in documents() for case in read(path)]
+
+
+def accept(case: Case, part: str, actual: str) -> None:
+    """Write `actual` where the case says something else; git shows what changed."""
+    rows = case.path.read_text(encoding="utf-8").splitlines(keepends=True)
+    # where the case stands now: what was accepted before may have moved it
+    line = next(each.line for each in read(case.path) if each.title == case.title)
+    fence = f"```{part}"
+    start = next(k for k, row in enumerate(rows) if k >= line - 1 and row.rstrip() == fence)
+    end = next(k for k in range(start + 1, len(rows)) if rows[k].startswith("```"))
+    rows[start + 1 : end] = [actual]
+    case.path.write_text("".join(rows), encoding="utf-8")

@@ -1,0 +1,85 @@
+"""The command `tsc` as tests use it: in this process, or as a process of its own."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.support.casefile import ROOT
+from tiniscript.cli import main
+
+PROGRAM = "SI|F(5,80)"
+OBSTACLE = (ROOT / "examples" / "obstacle.ts").read_text(encoding="utf-8")
+FOREVER = "SI|LOOP(FOREVER);F(1, 80);END_LOOP"
+# more than one frame, and of many short moves
+LONG = "LOOP(2);" + "".join(f"M({k}, 50);W(0.01);" for k in range(1, 56)) + "END_LOOP"
+TSC = [sys.executable, "-m", "tiniscript"]
+
+
+class Done:
+    """What a command did: its exit code and what it printed."""
+
+    def __init__(self, code: int, out: str, err: str) -> None:
+        self.code, self.out, self.err = code, out, err
+        assert "Traceback" not in err
+        assert "was not made for" not in err
+        if code:
+            assert (err + out).strip(), "an exit code without a word"
+
+
+class Tsc:
+    def __init__(self, capsys: pytest.CaptureFixture[str]) -> None:
+        self.capsys = capsys
+
+    def __call__(self, *arguments: str | Path) -> Done:
+        code = main([str(each) for each in arguments])
+        said = self.capsys.readouterr()
+        return Done(code, said.out, said.err)
+
+
+def process(*arguments: str | Path, data: bytes = b"") -> Done:
+    """Run `tsc` as a process of its own."""
+    done = subprocess.run([*TSC, *map(str, arguments)], input=data, capture_output=True)
+    return Done(done.returncode, done.stdout.decode(), done.stderr.decode())
+
+
+def running(*arguments: str) -> subprocess.Popen[bytes]:
+    """Start `tsc` as a process of its own, for `ended`."""
+    return subprocess.Popen(
+        [*TSC, *arguments], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    )
+
+
+def ended(command: subprocess.Popen[bytes]) -> Done:
+    """Wait until a process has ended."""
+    out, err = command.communicate(timeout=60)
+    return Done(command.returncode, out.decode(), err.decode())
+
+
+class Command:
+    """A `tsc` that stays."""
+
+    def __init__(self, *arguments: str, code: str = "") -> None:
+        words = [sys.executable, "-c", code] if code else TSC
+        self.process = subprocess.Popen(
+            [*words, *arguments], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+        )  # fmt: skip
+
+    def until(self, said: str) -> None:
+        """Wait until it has printed a line with these words."""
+        assert self.process.stdout
+        for line in self.process.stdout:
+            if said in line.decode():
+                return
+        raise AssertionError(f"never printed: {said}. {self.ended().err}")
+
+    def signal(self, number: int) -> None:
+        self.process.send_signal(number)
+
+    def ended(self) -> Done:
+        out, err = self.process.communicate(timeout=30)
+        return Done(self.process.returncode, out.decode(), err.decode())

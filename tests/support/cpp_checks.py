@@ -1,0 +1,307 @@
+"""What holds of the machine in C++: each check asks one process, and compares with Python.
+
+`test_cpp_agreement` runs these on this computer, `test_cpp_chips` on chips, `tools/mutation.py` on
+machines that it has broken. Nothing asked depends on time or chance: the same machine gives the
+same answers.
+"""
+
+from __future__ import annotations
+
+import operator
+import random
+import zlib
+from collections import Counter
+from collections.abc import Callable, Sequence
+from itertools import product
+from struct import pack as struct_pack
+
+from tests.machines import Senses
+from tests.machines.host import Host, Process
+from tests.oracle import programs
+from tests.support.casefile import Case
+from tests.support.kits import KITS
+from tests.support.random_codes import (
+    EDGES,
+    any_number,
+    random_codes,
+    random_images,
+    simple,
+    some_programs,
+)
+from tests.vm.test_cases import robot_and_senses
+from tiniscript import fixed_point
+from tiniscript.bytecode.disassembly import read_listing
+from tiniscript.bytecode.image import REFUSALS, ImageRefused, pack, unpack
+from tiniscript.bytecode.opcodes import (
+    BY_NAME,
+    CODE_BYTES,
+    COMPARATORS,
+    FAULTS,
+    OPS,
+)
+from tiniscript.bytecode.verify import RULES, Refused, verify
+from tiniscript.kit import Kit
+from tiniscript.vm.machine import Machine
+from tiniscript.vm.state import WAITING
+from tiniscript.vm.trace import Ending, TracedRobot, run
+from tiniscript.vm.trace import Senses as Lists
+
+WIDE = KITS[1][1]
+SIZES = len(WIDE.sensors), len(WIDE.actuators)
+MAX_MS, MAX_STEPS = 3000, 300  # of the random codes that are accepted
+
+
+def python_verdict(code: bytes, sensors: int, actuators: int) -> tuple[int, int]:
+    try:
+        verify(code, sensors, actuators)
+    except Refused as refused:
+        return refused.number, refused.offset
+    return 0, 0
+
+
+def compare_verdicts(
+    machine: Process, codes: Sequence[bytes], sensors: int, actuators: int
+) -> list[bytes]:
+    """Assert that both machines say the same of each code; return those that are accepted."""
+    theirs = machine.verdicts(codes, sensors, actuators)
+    accepted = []
+    for code, (rule, offset) in zip(codes, theirs, strict=True):
+        ours = python_verdict(code, sensors, actuators)
+        # the offset of what is accepted is its length
+        said = (rule, offset if rule else 0)
+        assert ours == said, f"{code.hex(' ')} for {sensors}, {actuators}: {ours}, not {said}"
+        if not rule:
+            accepted.append(code)
+    return accepted
+
+
+def compare_runs(machine: Process, code: bytes, kit: Kit, senses: Senses) -> str:
+    """Assert that both machines run accepted code alike to the last step; return the ending."""
+    lists = {k: senses.readings.get(each.name, ()) for k, each in enumerate(kit.sensors)}
+    events = list(run(code, kit, Lists(kit, lists), senses.max_ms, senses.max_steps, senses.seed))
+    ending = events.pop()
+    assert isinstance(ending, Ending)
+    ran = machine.run(pack("SI", kit.fingerprint, code), kit, senses)
+    ours = "".join(f"{event}\n" for event in events)
+    assert ran.trace == ours, f"{code.hex(' ')}:\n{ours}not\n{ran.trace}"
+    assert (ran.offset, ran.steps) == (ending.offset, ending.steps), code.hex(" ")
+    return ending.fault or ending.what
+
+
+# -- code ---------------------------------------------------------------------------------------
+
+
+def check_listing(machine: Host, case: Case) -> None:
+    """The listing of a case has the same verdict, and so has each beginning of it."""
+    kit = robot_and_senses(case)[0].kit
+    code = read_listing(case.parts["bytecode"])
+    beginnings = [code[:length] for length in range(len(code) + 1)]
+    compare_verdicts(machine, beginnings, len(kit.sensors), len(kit.actuators))
+
+
+def check_length(machine: Host, length: int) -> None:
+    compare_verdicts(machine, [simple("STOP") * length], 3, 2)
+
+
+def check_devices(machine: Host, devices: int) -> None:
+    """Sensors and actuators of every number, for a kit that has so many sensors."""
+    codes = [simple("READ") + bytes([k]) for k in range(256)]
+    codes += [simple("PUSH_TRUE") + simple("SET") + bytes([k]) for k in range(256)]
+    compare_verdicts(machine, codes, devices, 255 - devices)
+
+
+def check_short_codes(machine: Host) -> None:
+    """All codes of up to two bytes."""
+    every = [bytes(each) for size in range(3) for each in product(range(256), repeat=size)]
+    for code in compare_verdicts(machine, every, *SIZES):
+        compare_runs(machine, code, WIDE, Senses(max_ms=100, max_steps=50))
+
+
+def check_pairs(machine: Host, few_at: int) -> None:
+    """All pairs of opcodes; the byte at `few_at` is one of the edges of its ranges."""
+    opcodes = [op.code for op in OPS]
+    few = (0, 1, 2, 3, 31, 32, 100, 101, 127, 128, 156, 255)
+    sets = [opcodes, opcodes, opcodes]
+    sets[few_at] = list(few)
+    codes = [bytes(each) for each in product(*sets)]
+    for code in compare_verdicts(machine, codes, *SIZES):
+        compare_runs(machine, code, WIDE, Senses(max_ms=100, max_steps=50))
+
+
+def check_runs_safely(machine: Host, first: int) -> None:
+    """In C++ alone: what its verifier accepts never fails a run-time check."""
+    for byte in range(first, first + 16):
+        accepted, bad, _ = machine.all_of_three(byte, 3, 2)
+        assert bad == 0, f"{bad} of {accepted} codes that begin with {byte:02x}"
+
+
+def check_three(machine: Host, first: int) -> int:
+    """All codes of three bytes that begin with `first` have the same verdict.
+
+    Return how many are accepted.
+    """
+    accepted, bad, checksum = machine.all_of_three(first, 3, 2)
+    ours = 0
+    for rest in product(range(256), repeat=2):
+        verdict = python_verdict(bytes((first, *rest)), 3, 2)
+        ours = zlib.crc32(struct_pack("<BH", *verdict), ours)
+    assert (bad, checksum) == (0, ours), f"{first:02x}"
+    return accepted
+
+
+def check_codes(machine: Process, seed: int, count: int) -> Counter[str]:
+    """Compare random codes, and run what is accepted; return how often each thing happened."""
+    rng = random.Random(seed)
+    oracle_kit, kit = KITS[seed % 2]
+    seen: Counter[str] = Counter()
+    sizes = len(kit.sensors), len(kit.actuators)
+    codes = list(random_codes(seed, count))
+    accepted = compare_verdicts(machine, codes, *sizes)
+    for number, code in enumerate(accepted):
+        senses = Senses(programs.senses(rng, oracle_kit), MAX_MS, MAX_STEPS, number + 1)
+        seen[compare_runs(machine, code, kit, senses)] += 1
+    seen["accepted"] = len(accepted)
+    seen.update(str(rule) for rule, _ in machine.verdicts(codes, *sizes))
+    return seen
+
+
+def check_a_batch(machine: Host, seed: int, count: int) -> None:
+    """A batch of random codes breaks every rule and comes to every ending."""
+    seen = check_codes(machine, seed, count)
+    rules = {str(number) for name, (number, _) in RULES.items() if name != "CODE_LENGTH"}
+    assert rules <= set(seen), sorted(rules - set(seen))
+    assert {"DONE", "LIMIT", "OVERFLOW", "DIVIDE_BY_ZERO"} <= set(seen), seen
+    assert "BAD_CODE" not in seen, seen
+
+
+def check_memory(machine: Host) -> None:
+    """Code that no verifier has seen: it ends, waits or faults; sanitizers see what else."""
+    endings: Counter[str] = Counter()
+    for code in random_codes(1, 20_000):
+        ran = machine.run_unverified(code, WIDE, Senses(max_ms=MAX_MS, max_steps=MAX_STEPS))
+        endings[ran.trace.split()[-1]] += 1
+    assert endings["BAD_CODE"] > 1000, endings
+    assert endings["DONE"] > 1000, endings
+
+
+# -- time and a robot that is not ready ---------------------------------------------------------
+
+
+def check_clock(machine: Host, begin_ms: int) -> None:
+    """The clock of the machine may begin anywhere, and wrap around."""
+    for image, kit, senses in some_programs():
+        ran = machine.run(image, kit, senses)
+        assert machine.run(image, kit, senses, begin_ms=begin_ms) == ran, ran.trace
+
+
+LATE_BUDGET = 250  # instructions, as many as the host machine runs in a tick
+
+
+def run_late(image: bytes, kit: Kit, senses: Senses, late_ms: int) -> str:
+    """Return the trace of Python's machine where each tick after a wait comes late."""
+    lists = {k: senses.readings.get(each.name, ()) for k, each in enumerate(kit.sensors)}
+    robot = TracedRobot(kit, Lists(kit, lists))
+    machine = Machine(unpack(image).code, robot, len(kit.sensors), senses.seed)
+    for count in range(1, 200):
+        if machine.tick(robot.now_ms, LATE_BUDGET) != WAITING:
+            break
+        robot.now_ms = machine.task.wake_ms + count * 7 % (late_ms + 1)
+    return "".join(f"{event}\n" for event in robot.events)
+
+
+def check_late(machine: Host, late_ms: int) -> None:
+    """A program's own clock catches up with a delay of up to 20 ms, and not with more."""
+    for image, kit, senses in some_programs():
+        theirs = machine.run_late(image, kit, senses, late_ms)
+        assert theirs == run_late(image, kit, senses, late_ms), theirs
+
+
+def check_not_ready(machine: Host) -> None:
+    """A robot that is not ready is asked again: the trace is the same, only the tries are more."""
+    tries = 0
+    for image, kit, senses in some_programs():
+        ready = machine.run(image, kit, senses)
+        if not ready.trace.endswith(" LIMIT\n") or ready.steps < senses.max_steps:
+            slow = machine.run(image, kit, senses._replace(max_steps=20_000), not_ready=2)
+            assert slow.trace == ready.trace, f"{ready.trace}not\n{slow.trace}"
+            tries += slow.steps - ready.steps
+    assert tries > 500, tries
+
+
+# -- images -------------------------------------------------------------------------------------
+
+
+def python_refusal(data: bytes, kit: int) -> int:
+    try:
+        unpack(data, kit)
+    except ImageRefused as refused:
+        return refused.number
+    return 0
+
+
+def check_images(machine: Process, seed: int, count: int) -> None:
+    """Images are refused for the same reasons, and each for some image."""
+    images = [*random_images(seed, count), b"", b"T", b"TS", b"S", b"TX"]
+    theirs = machine.refusals(images, 0x1234)
+    for image, reason in zip(images, theirs, strict=True):
+        ours = python_refusal(image, 0x1234)
+        assert ours == reason, f"{image.hex(' ')}: {ours}, not {reason}"
+    assert {*theirs} == {0, *(number for number, _ in REFUSALS.values())}
+
+
+def check_long_images(machine: Host) -> None:
+    for length in (CODE_BYTES, 40_000, 65_535):
+        head = b"TS\x01\x00\x00\x00\x00\x00" + struct_pack("<H", length)
+        code = bytes(length)
+        image = head + struct_pack("<I", zlib.crc32(head + code)) + code
+        said = machine.refusals([image, image[:-1], image + b"x"], 0)
+        assert said == [0, 2, 3], f"{length} bytes: {said}"
+
+
+# -- arithmetic ---------------------------------------------------------------------------------
+
+OPERATIONS: dict[str, Callable[[int, int], int]] = {
+    "ADD": fixed_point.add,
+    "SUB": fixed_point.subtract,
+    "MUL": fixed_point.multiply,
+    "DIV": fixed_point.divide,
+    "MOD": fixed_point.modulo,
+    "NEG": lambda a, b: fixed_point.negate(a),
+    "ABS": lambda a, b: fixed_point.absolute(a),
+    "ROUND": fixed_point.round_to,
+    "MIN": min,
+    "MAX": max,
+    "AND": operator.and_,
+    "OR": operator.or_,
+    "NOT": lambda a, b: int(not a),
+    **{name: getattr(operator, name.lower()) for name, _ in COMPARATORS},
+    "RANDOM": lambda a, b: fixed_point.random_between(a, b, b % 2**32),
+    "END": lambda a, b: fixed_point.whole(a),  # of no use here: stands for `whole`
+}
+# 2^32 thousandths, after they are rounded: products and quotients
+ROUNDED_TOO_LARGE = [
+    (a * sign, b)
+    for a, b in ((2047, 2_098_176_500), (2832, 1_516_584_497), (304_942_678, 71), (420_906_795, 98))
+    for sign in (1, -1)
+]
+NUMBER_OF = {name: number for number, name, _ in FAULTS}
+
+
+def python_result(name: str, a: int, b: int) -> tuple[int, int]:
+    try:
+        return 0, OPERATIONS[name](a, b)
+    except fixed_point.Fault as fault:
+        return NUMBER_OF[fault.name], 0
+
+
+def check_arithmetic(machine: Process, name: str, count: int) -> None:
+    """All pairs of edges, some sizes that fit, and any others: so many operations in all."""
+    rng = random.Random(name)
+    pairs = list(product(EDGES, EDGES))
+    pairs += ROUNDED_TOO_LARGE
+    pairs += [(any_number(rng), any_number(rng)) for _ in range(count - len(pairs))]
+    code = BY_NAME[name].code
+    theirs = machine.results((code, a, b) for a, b in pairs)
+    for (a, b), result in zip(pairs, theirs, strict=True):
+        ours = python_result(name, a, b)
+        assert ours == result, f"{name} {a} {b}: {ours}, not {result}"

@@ -1,0 +1,212 @@
+"""What holds at the limits of the C++ machine: that it has so much room and uses no other.
+
+Checks like those of `cpp_checks`, of code that is made to come to one limit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from tests.machines import Senses
+from tests.machines.host import Host
+from tests.support.cpp_checks import WIDE, compare_runs, compare_verdicts
+from tests.support.random_codes import jump, loop, simple
+from tiniscript.bytecode.opcodes import (
+    BY_CODE,
+    CALLS,
+    COUNTERS,
+    DEFS,
+    JOINS,
+    STACK_VALUES,
+    VARIABLES,
+)
+from tiniscript.kit import NUMBER, Device, Kit
+from tiniscript.robots.reader import DEVICES
+
+
+def show(number: int) -> bytes:
+    return simple("PUSH8") + bytes([number]) + simple("SHOW")
+
+
+def kit_of(sensors: int) -> Kit:
+    return Kit(tuple(Device(f"S{number}", NUMBER, "", 0, 1000) for number in range(sensors)), ())
+
+
+def check_many_defs(machine: Host) -> None:
+    for count in range(20):
+        for calls in range(12):
+            end = simple("RETURN")
+            one = jump("DEF", False, len(end)) + end
+            code = one * count + jump("CALL", False, 3) * (calls if count else 0)
+            compare_verdicts(machine, [code], 3, 2)
+
+
+def procedure(body: bytes) -> bytes:
+    return jump("DEF", True, len(body) + 1) + body + simple("RETURN")
+
+
+def loops(inner: bytes, count: int) -> bytes:
+    """Return something in so many loops around it."""
+    for _ in range(count):
+        inner = loop(inner, 1)
+    return inner
+
+
+def calls_in_calls(count: int) -> bytes:
+    """Return procedures, each of which calls the one before it and then shows a number."""
+    code, distance = b"", 0
+    for number in range(count):
+        body = jump("CALL", True, distance + 6) if number else b""
+        body += show(number) + simple("RETURN")
+        code += jump("DEF", True, len(body)) + body
+        distance = len(body)
+    return code
+
+
+def check_what_is_closed(machine: Host) -> None:
+    """Blocks and procedures that have ended take no more room: there may be any number."""
+    yes, stop = simple("PUSH_TRUE"), simple("STOP")
+    leave = jump("BREAK", True, 3)
+    pieces = (
+        yes + jump("IF", True, 1) + stop,
+        yes + jump("IF", True, 4) + stop + jump("ELSE", True, 1) + stop,
+        yes + jump("IF", True, 5) + yes + jump("IF", True, 1) + stop,
+        simple("FOREVER") + leave + jump("AGAIN", True, 6),
+        jump("WHILE", True, 6) + leave + jump("AGAIN", True, 6),
+        loop(stop, 1),
+        yes + jump("AND_THEN", True, 1) + yes + simple("SHOW_YES_NO"),
+        simple("WATCH_FOREVER_WAIT") + yes + jump("UNTIL", True, 4),
+    )
+    for piece in pieces:
+        compare_verdicts(machine, [piece * count for count in range(40)], 3, 2)
+        compare_runs(machine, piece * 40, WIDE, Senses(max_ms=1000, max_steps=1000))
+    # what one procedure needs is not what the next one needs
+    for needs in (0, 8, COUNTERS):
+        for around in range(COUNTERS + 1):
+            code = procedure(loops(stop, needs)) + procedure(stop)
+            code += loops(jump("CALL", True, 5 + 2 * around), around)
+            compare_verdicts(machine, [code], 3, 2)
+    for count in range(CALLS + 1):
+        compare_verdicts(machine, [calls_in_calls(CALLS) + calls_in_calls(count)], 3, 2)
+
+
+def check_needs(machine: Host) -> None:
+    """A procedure needs what it calls needs; loops and procedures are remembered at once."""
+    stop = simple("STOP")
+    for needs in (0, 1, 8):
+        for between in (0, 1, 7):
+            for around in range(COUNTERS + 1):
+                first = loops(stop, needs)
+                second = loops(jump("CALL", True, len(first) + 7 + 2 * between), between)
+                code = procedure(first) + procedure(second)
+                code += loops(jump("CALL", True, len(second) + 4 + 2 * around), around)
+                compare_verdicts(machine, [code], 3, 2)
+    for count in (DEFS - 1, DEFS, DEFS + 1):
+        code = procedure(stop) * count + jump("CALL", True, 5)
+        code += simple("PUSH_TRUE") + jump("IF", True, 1) + stop
+        code += loops(stop, COUNTERS)
+        compare_verdicts(machine, [code, code + loops(stop, COUNTERS + 1)], 3, 2)
+
+
+def check_places(machine: Host) -> None:
+    """Every variable, reading, counter, value and call has a place of its own."""
+    kit = kit_of(DEVICES)
+    readings = {each.name: [1000 * k + 500] for k, each in enumerate(kit.sensors)}
+    senses = Senses(readings, max_ms=1000, max_steps=5000)
+    code = b""
+    for k in range(VARIABLES):
+        code += simple("SET_VAR8") + bytes([k, 100 - k])
+    for k in range(DEVICES):
+        code += simple("READ") + bytes([k])
+    inner = b""
+    for name, count in (("PUSH_VAR", VARIABLES), ("PUSH_SENSOR", DEVICES)):
+        inner += b"".join(simple(name) + bytes([k]) + simple("SHOW") for k in range(count))
+    values = b"".join(simple("PUSH8") + bytes([3 * k]) for k in range(STACK_VALUES))
+    inner += values + simple("SUB") * (STACK_VALUES - 1) + simple("SHOW")
+    code += loops(inner, COUNTERS)
+    procedures = calls_in_calls(CALLS)
+    last = len(calls_in_calls(CALLS)) - len(calls_in_calls(CALLS - 1)) - 3
+    code += procedures + jump("CALL", True, last + 3)
+    for k in range(VARIABLES):
+        code += simple("PUSH_VAR") + bytes([k]) + simple("SHOW")
+    compare_verdicts(machine, [code], DEVICES, 0)
+    ending = compare_runs(machine, code, kit, senses)
+    assert ending == "DONE", ending
+    # joins beside a procedure
+    code = calls_in_calls(1)
+    for k in reversed(range(JOINS)):
+        code += simple("PUSH_TRUE") + jump("AND_THEN", True, 4 * k + 1)
+    code += simple("PUSH_TRUE") + simple("SHOW_YES_NO")
+    compare_verdicts(machine, [code + jump("CALL", True, len(code))], 3, 2)
+
+
+def check_long_time(machine: Host) -> None:
+    """TIME is too large for a number after 24 days."""
+    most = simple("PUSH32") + (2**31 - 1).to_bytes(4, "little") + simple("WAIT")
+    time = simple("TIME") + simple("SHOW")
+    senses = Senses(max_ms=2**31 + 1000, max_steps=100)
+    ending = compare_runs(machine, most + time + simple("WAIT8") + b"\x01" + time, WIDE, senses)
+    assert ending == "OVERFLOW", ending
+
+
+def changed_code(sensors: int) -> Iterator[tuple[bytes, int | None]]:
+    """Yield code that no verifier accepts, and where it is caught; None: it is not.
+
+    What a machine still looks at while it runs, at each edge.
+    """
+    yes, show, end = simple("PUSH_TRUE"), simple("SHOW"), simple("RETURN")
+    count = simple("LOOP8") + b"\x01"
+    for values, caught in ((STACK_VALUES, None), (STACK_VALUES + 1, STACK_VALUES)):
+        yield yes * values, caught
+    yield show, 0
+    yield yes + simple("ADD") + show, 1
+    yield yes + simple("MOTORS"), 1
+    for each, caught in ((VARIABLES - 1, None), (VARIABLES, 0), (255, 0)):
+        number = bytes([each])
+        yield simple("SET_VAR8") + number + b"\x01", caught
+        yield simple("ADD_VAR8") + number + b"\x01", caught
+        yield simple("ADD_VAR") + b"\x00" + number, caught
+        yield simple("PUSH_VAR") + number, caught
+        yield yes + simple("SET_VAR") + number, None if caught is None else 1
+        yield simple("IF_VAR8_NE") + number + b"\x07\x00", caught
+    for each, caught in ((sensors - 1, None), (sensors, 0), (255, 0)):
+        number = bytes([each])
+        for name in ("READ", "PUSH_SENSOR", "PUSH_READ"):
+            yield simple(name) + number, caught
+        for name in ("IF_SENSOR8_NE", "IF_READ8_NE"):
+            yield simple(name) + number + b"\x07\x00", caught
+    yield count * COUNTERS, None
+    yield count * (COUNTERS + 1), 2 * COUNTERS
+    close = jump("NEXT", False, 0)
+    yield count + close, None
+    yield close, 0
+    yield jump("BREAK_LOOP", False, 0), 0
+    calls = b"".join(jump("CALL", False, 0) for _ in range(CALLS + 1))
+    yield calls[:-2], None
+    yield calls, 2 * CALLS
+    yield end, 0
+    for far in (False, True):
+        skip = jump("ELSE", far, 0)
+        yield skip, None
+        yield jump("ELSE", far, 1), len(skip) + 1
+    yield jump("ELSE", True, 0x7FFF), 0x7FFF + 3
+    yield jump("AGAIN", True, 4), 0xFFFF
+    # an instruction that is cut takes what lies behind the code for the rest of it
+    yield simple("PUSH16"), 3
+    yield simple("PUSH32") + b"\x01\x02", 5
+    for code in range(256):
+        if BY_CODE[code] is None:
+            yield bytes([code, 0, 0, 0, 0]), 0
+
+
+def check_run_time_checks(machine: Host) -> None:
+    """Code that changed after it was verified ends in BAD_CODE, and not too early."""
+    # a robot may say that it has more sensors than a machine remembers
+    for many in (DEVICES - 1, DEVICES, DEVICES + 1, 2 * DEVICES):
+        kit = kit_of(many)
+        for code, caught in changed_code(min(many, DEVICES)):
+            ran = machine.run_unverified(code, kit, Senses(max_ms=100, max_steps=100))
+            ending = ran.trace.splitlines()[-1].split()[-1]
+            wanted = "DONE" if caught is None else "BAD_CODE"
+            assert ending == wanted, f"{code.hex(' ')}: {ending}, not {wanted}"
+            assert caught in (None, ran.offset), f"{code.hex(' ')}: at {ran.offset}, not {caught}"

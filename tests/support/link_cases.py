@@ -1,0 +1,395 @@
+"""Reads and plays the cases of the link: `link` and `items` fences of Markdown files.
+
+A `link` fence is a conversation. Rows without a time say what is wanted: `host ...` of the
+session, `robot ...` what happens to the robot, `wait N` milliseconds, `lose >` and `lose <` the
+next bytes from either side, `late` that the robot looks at nothing before all has arrived. Where a
+row is `host sends` (a frame) or `host bytes`, there is no session, and only the robot is played.
+Rows with a time say what comes of it: `>` the bytes from the computer, `<` those from the robot
+(with `x` where they are lost) and what they mean, `did` what the robot's link asks of the robot,
+`tells` and `outcome` what the session says. Each side is played against the written bytes of the
+other.
+
+An `items` fence is for a receiver alone: `> bytes`, `wait N`, `held N` (bytes before an item is
+taken), and `=` what it finds.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import NamedTuple, Protocol
+
+from tests.machines.link import CppLink, Step
+from tests.support.casefile import ROOT
+from tiniscript.bytecode.image import pack, unpack
+from tiniscript.link.frames import Frame, decoded, encoded
+from tiniscript.link.messages import BY_NAME, BY_NUMBER, FIRST_EVENT, Malformed, read, written
+from tiniscript.link.receiver import ITEM_BYTES, Receiver
+from tiniscript.link.session import Session, Task
+from tiniscript.link.statuses import name_of
+
+STEP_MS = 10
+KIT = 0x231B
+SHOWN_BYTES = 24  # of a longer item, the first ones are written
+KINDS = ("link", "items")
+
+
+class LinkCase(NamedTuple):
+    path: Path
+    line: int  # of the fence
+    kind: str
+    title: str
+    rows: list[str]
+
+    @property
+    def id(self) -> str:
+        return f"{self.path.stem}: {self.title}"
+
+
+def documents() -> list[Path]:
+    return [*sorted(ROOT.glob("tests/cases/link*.md")), ROOT / "docs" / "link.md"]
+
+
+def link_cases(kind: str) -> list[LinkCase]:
+    """Return the cases of one kind. They are found, never listed."""
+    return [case for path in documents() for case in _read(path) if case.kind == kind]
+
+
+def _read(path: Path) -> list[LinkCase]:
+    cases: list[LinkCase] = []
+    title, fence = "", ""
+    for number, row in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+        if row.startswith("```"):
+            fence = "" if fence else row[3:].strip() or "text"
+            if fence in KINDS:
+                cases.append(LinkCase(path, number, fence, title, []))
+        elif fence in KINDS:
+            cases[-1].rows.append(row)
+        elif not fence and row.startswith("#"):
+            title = row.lstrip("# ")
+    return cases
+
+
+def accept(case: LinkCase, rows: list[str]) -> None:
+    """Write what was found where the case says something else; git shows what changed."""
+    old = case.path.read_text(encoding="utf-8")
+    before = "```" + case.kind + "\n" + "".join(row + "\n" for row in case.rows) + "```"
+    after = "```" + case.kind + "\n" + "".join(row + "\n" for row in rows) + "```"
+    assert old.count(before) == 1, case.id
+    case.path.write_text(old.replace(before, after), encoding="utf-8")
+
+
+# -- conversations --------------------------------------------------------------------------------
+
+
+class Computer(Protocol):
+    def asked(self, words: list[str]) -> None: ...
+    def poll(self, now_ms: int) -> bytes: ...
+    def receive(self, data: bytes, now_ms: int) -> None: ...
+    def said(self) -> list[str]: ...
+
+
+class Robot(Protocol):
+    def happens(self, words: list[str]) -> None: ...
+    def step(self, now_ms: int, data: bytes, is_late: bool) -> Step: ...
+
+
+def play(rows: Iterable[str], computer: Computer, robot: Robot) -> list[str]:
+    """Return the rows of a conversation: what is wanted, and what comes of it."""
+    found = []
+    now_ms = 0
+    is_late = False
+    lost = {">": 0, "<": 0}
+    for row in rows:
+        words = row.split()
+        if not words or words[0].isdigit():
+            continue
+        found.append(row)
+        steps = 1
+        if words[0] == "host":
+            computer.asked(words[1:])
+        elif words[0] == "robot":
+            robot.happens(words[1:])
+        elif words[0] == "lose":
+            lost[words[1]] += 1
+            continue
+        elif words[0] == "late":
+            is_late = True
+            steps = 0
+        else:
+            assert words[0] == "wait", row
+            steps = int(words[1]) // STEP_MS
+        for _ in range(steps):
+            data = computer.poll(now_ms)
+            mark = _mark(">", data, lost)
+            step = robot.step(now_ms, b"" if mark == ">x" else data, is_late)
+            back = _mark("<", step.sent, lost)
+            computer.receive(b"" if back == "<x" else step.sent, now_ms)
+            if data:
+                found += wire_rows(now_ms, mark, data)
+            found += [f"{now_ms:6} did {row}" for row in step.did]
+            if step.sent:
+                found += wire_rows(now_ms, back, step.sent)
+            found += [f"{now_ms:6} {row}" for row in computer.said()]
+            now_ms += STEP_MS
+            is_late = False
+    return found
+
+
+def _mark(side: str, data: bytes, lost: dict[str, int]) -> str:
+    if data and lost[side]:
+        lost[side] -= 1
+        return side + "x"
+    return side
+
+
+def wire_rows(now_ms: int, mark: str, data: bytes) -> list[str]:
+    """Return the rows of some bytes: one for each item."""
+    rows = []
+    for item in re.findall(rb"\0+|[^\0]+\0?", data):
+        shown = item.hex(" ")
+        rows.append(f"{now_ms:6} {mark} {shown}    {meaning(item)}".rstrip())
+    return rows
+
+
+def meaning(item: bytes) -> str:
+    """Return what the bytes of an item mean, in words."""
+    body = item.rstrip(b"\0")
+    if not body:
+        return ""
+    if body[0] >= 0x41:
+        return repr(body.decode("latin-1"))
+    frame = decoded(body)
+    return "damaged" if frame is None else frame_text(frame)
+
+
+def frame_text(frame: Frame) -> str:
+    message = BY_NUMBER.get(frame.number)
+    if message is None:
+        name, fields = f"message {frame.number}", None
+    elif frame.is_reply:
+        name, fields = message.name, message.reply
+    else:
+        name, fields = message.name, message.request
+    words = [name]
+    payload = frame.payload
+    if frame.is_reply and frame.number < FIRST_EVENT:
+        words.append(f"-> {name_of(payload[0])}")
+        if payload[0]:
+            return " ".join([*words, str(int.from_bytes(payload[1:3], "little"))])
+        payload = payload[1:]
+    if fields is None:
+        return " ".join([*words, payload.hex(" ")]).strip()
+    try:
+        values = read(fields, payload)
+    except Malformed:
+        return " ".join([*words, "with a payload that does not fit"])
+    return " ".join([*words, *(f"{name}={shown(value)}" for name, value in values.items())])
+
+
+def shown(value: int | bytes) -> str:
+    if isinstance(value, int):
+        return str(value)
+    short = value[:SHOWN_BYTES].hex() + ("..." if len(value) > SHOWN_BYTES else "")
+    return short or "-"
+
+
+class SessionSide:
+    """The computer's half, for real."""
+
+    def __init__(self) -> None:
+        self.session = Session(nonce=0x01020304, kit=KIT)
+        self.tasks: list[Task] = []
+        self.now_ms = 0
+
+    def asked(self, words: list[str]) -> None:
+        session, rest = self.session, words[1:]
+        data = bytes.fromhex(" ".join(word for word in rest if "=" not in word))
+        flags = dict(word.split("=") for word in rest if "=" in word)
+        if words[0] == "stop":
+            session.stop(self.now_ms)
+            return
+        actions: dict[str, Callable[[], Task]] = {
+            "hello": session.hello,
+            "ping": session.ping,
+            "status": session.status,
+            "clear": session.clear,
+            "fetch": session.fetch,
+            "start": lambda: session.start("detached" in flags),
+            "live": lambda: session.live(data),
+            "name": lambda: session.name(data),
+            "upload": lambda: session.upload(
+                unpack(pack(flags.get("start", "SI"), int(flags.get("kit", "0")), data)),
+                runs=flags.get("run") != "no",
+                saves=flags.get("save") != "no",
+            ),
+        }
+        self.tasks.append(actions[words[0]]())
+
+    def poll(self, now_ms: int) -> bytes:
+        self.now_ms = now_ms
+        return self.session.poll(now_ms)
+
+    def receive(self, data: bytes, now_ms: int) -> None:
+        self.session.receive(data, now_ms)
+
+    def said(self) -> list[str]:
+        rows = [_said("tells " + each.name, each.values) for each in self.session.events()]
+        for task in [each for each in self.tasks if each.outcome]:
+            assert task.outcome
+            name = {-1: "LOST", -2: "CANCELLED"}.get(task.outcome.status)
+            name = name or name_of(task.outcome.status)
+            detail = f" {task.outcome.detail}" if task.outcome.detail else ""
+            rows.append(_said(f"outcome {name}{detail}", task.outcome.values))
+            self.tasks.remove(task)
+        return rows
+
+
+def _said(head: str, values: object) -> str:
+    assert isinstance(values, dict)
+    return " ".join([head, *(f"{name}={shown(value)}" for name, value in values.items())])
+
+
+class Sender:
+    """No session: frames and bytes as the rows want them."""
+
+    def __init__(self) -> None:
+        self.data = b""
+
+    def asked(self, words: list[str]) -> None:
+        if words[0] == "bytes":
+            self.data = bytes.fromhex(" ".join(words[1:]))
+            return
+        seq, epoch, name, *rest = words[1:]
+        message = BY_NAME[name]
+        texts = dict(word.split("=") for word in rest)
+        values = {
+            field.name: bytes.fromhex(texts[field.name].replace("-", ""))
+            if field.kind == "rest"
+            else int(texts[field.name])
+            for field in message.request
+        }
+        payload = written(message.request, values)
+        self.data = encoded(Frame(message.number, int(seq), int(epoch), payload))
+
+    def poll(self, now_ms: int) -> bytes:
+        data, self.data = self.data, b""
+        return data
+
+    def receive(self, data: bytes, now_ms: int) -> None: ...
+    def said(self) -> list[str]:
+        return []
+
+
+def computer_of(case: LinkCase) -> Sender | SessionSide:
+    return SessionSide() if has_session(case) else Sender()
+
+
+def has_session(case: LinkCase) -> bool:
+    return not any(row.split()[:2] in (["host", "sends"], ["host", "bytes"]) for row in case.rows)
+
+
+class CppSide:
+    """The robot's half, for real."""
+
+    def __init__(self, cpp: CppLink) -> None:
+        self.cpp = cpp
+        cpp.begin(kit=KIT)
+
+    def happens(self, words: list[str]) -> None:
+        letters = {"done": "d", "fault": "f", "show": "s", "button": "b", "released": "r",
+                   "busy": "w", "saving": "k", "off": "!"}  # fmt: skip
+        if letters[words[0]] == "!":
+            self.cpp.begin(kit=KIT, epoch=77)
+        else:
+            self.cpp.happens(letters[words[0]], int(words[1]) if len(words) > 1 else 0)
+
+    def step(self, now_ms: int, data: bytes, is_late: bool) -> Step:
+        return self.cpp.step(now_ms, data, is_late)
+
+
+class Written:
+    """Either half, as the rows of a case say it."""
+
+    def __init__(self, rows: list[str]) -> None:
+        self.rows = [row.split() for row in rows if row.split() and row.split()[0].isdigit()]
+
+    def _data(self, now_ms: int, side: str) -> bytes:
+        parts = []
+        for time, mark, *words in self.rows:
+            if int(time) == now_ms and mark.rstrip("x") == side:
+                parts.append(re.match(r"(?:[0-9a-f]{2} )*(?:[0-9a-f]{2}\b)", " ".join(words)))
+        return b"".join(bytes.fromhex(part[0]) for part in parts if part)
+
+    def _rows(self, now_ms: int, *kinds: str) -> list[str]:
+        rows = [row for row in self.rows if int(row[0]) == now_ms and row[1] in kinds]
+        return [" ".join(row[1:]) for row in rows]
+
+    # as a computer
+    def asked(self, words: list[str]) -> None: ...
+    def poll(self, now_ms: int) -> bytes:
+        self.now_ms = now_ms
+        return self._data(now_ms, ">")
+
+    def receive(self, data: bytes, now_ms: int) -> None: ...
+    def said(self) -> list[str]:
+        return self._rows(self.now_ms, "tells", "outcome")
+
+    # as a robot
+    def happens(self, words: list[str]) -> None: ...
+    def step(self, now_ms: int, data: bytes, is_late: bool) -> Step:
+        did = [row.removeprefix("did ") for row in self._rows(now_ms, "did")]
+        return Step(self._data(now_ms, "<"), did)
+
+
+# -- a receiver alone -----------------------------------------------------------------------------
+
+
+def stream_of(case: LinkCase) -> tuple[list[tuple[int, int]], int]:
+    """Return the times and bytes of an `items` fence, and how long an item is held."""
+    stream = []
+    now_ms = held = 0
+    for row in case.rows:
+        words = row.split()
+        if words[0] == ">":
+            for word in re.findall(r'"[^"]*"|\S+', row[1:]):
+                data = word[1:-1].encode() if word[0] == '"' else bytes.fromhex(word)
+                stream += [(now_ms, byte) for byte in data]
+        elif words[0] == "wait":
+            now_ms += int(words[1])
+        elif words[0] == "held":
+            held = int(words[1])
+    return stream, held
+
+
+def items_of(stream: Iterable[tuple[int, int]], held: int = 0) -> list[str]:
+    """Return what the receiver in Python finds: the same rows as the one in C++."""
+    receiver = Receiver()
+    rows = []
+    left = 0
+    for now_ms, byte in stream:
+        if left:
+            left -= 1
+            if not left:
+                receiver.take()
+        if receiver.put(byte, now_ms):
+            rows.append("stop")
+        item = receiver.item
+        if item is None or left:
+            continue
+        row = f"{'text' if item.is_text else 'frame'} {item.length} {item.data.hex(' ')}"
+        if not item.is_text:
+            row += " damaged" if decoded(item.data) is None else " whole"
+        rows.append(row)
+        left = held + 1
+        if not held:
+            receiver.take()
+            left = 0
+    assert all(len(bytes.fromhex(" ".join(re.findall(r"\b[0-9a-f]{2}\b", row.split(" ", 2)[2]))))
+               <= ITEM_BYTES for row in rows if row[0] in "ft")  # fmt: skip
+    return [*rows, f"damaged {receiver.damaged % 256}, dropped {receiver.dropped % 256}"]
+
+
+def with_found(case: LinkCase, found: list[str]) -> list[str]:
+    return [*(row for row in case.rows if row[:1] != "="), *(f"= {row}" for row in found)]

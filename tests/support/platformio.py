@@ -1,0 +1,95 @@
+"""PlatformIO for tests: what it needs here, and the sketch that it builds."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import shlex
+import shutil
+import subprocess
+import sys
+from functools import lru_cache
+from pathlib import Path
+
+import pytest
+
+from tests.support.casefile import ROOT
+
+OFFLINE = ROOT / "tools" / "platformio_offline.py"
+SKETCH = ROOT / "vm_arduino"
+IS_CI = bool(os.environ.get("CI"))
+
+
+@lru_cache(maxsize=1)
+def prepared() -> tuple[dict[str, str], str]:
+    """Return the variables that `pio` needs here, none where it is online, and why it cannot run.
+
+    Only in CI packages of Debian are installed.
+    """
+    if importlib.util.find_spec("platformio") is None:
+        return {}, "PlatformIO is not installed"
+    options = [] if IS_CI else ["--no-apt"]
+    done = subprocess.run(
+        [sys.executable, str(OFFLINE), *options], capture_output=True, text=True, check=False
+    )
+    exports = (shlex.split(row)[1].partition("=")[::2] for row in done.stdout.splitlines())
+    return dict(exports), done.stderr if done.returncode else ""
+
+
+def need(why: str) -> None:
+    """Skip a test where something is missing; in CI that is a failure."""
+    if why:
+        assert not IS_CI, why
+        pytest.skip(why.strip().replace("\n", "; "))
+
+
+def copied(folder: Path) -> Path:
+    """Return a copy of the sketch in a folder, to build and to break."""
+    need(prepared()[1])
+    ignored = shutil.ignore_patterns(".pio", "__pycache__", "own.h")
+    return Path(shutil.copytree(SKETCH, folder / "vm_arduino", ignore=ignored))
+
+
+def pio(project: Path, *words: str) -> tuple[int, str]:
+    """Return the exit code of `pio`, and what it printed."""
+    done = subprocess.run(
+        [sys.executable, "-m", "platformio", *words],
+        cwd=project,
+        env={**os.environ, **prepared()[0]},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        check=False,
+    )
+    return done.returncode, done.stdout
+
+
+def shared(factory: pytest.TempPathFactory) -> Path:
+    """Return the folder that all workers of a session have."""
+    base = factory.getbasetemp()
+    return base.parent if base.name.startswith("popen-") else base
+
+
+def changed(folder: Path, name: str, old: str, new: str, environment: str = "uno") -> Path:
+    """Return the sketch with a change in a file of `src/`, built in a folder."""
+    project = copied(folder)
+    file = project / "src" / name
+    text = file.read_text(encoding="utf-8")
+    assert text.count(old) == 1, f"{name} has another {old!r} now"
+    file.write_text(text.replace(old, new), encoding="utf-8")
+    code, said = pio(project, "run", "-e", environment)
+    assert code == 0, said[-3000:]
+    return project / ".pio" / "build" / environment / "firmware.elf"
+
+
+def firmware(board: str, own: Path, shared: Path) -> Path:
+    """Return the sketch for a board, an ELF file, built once for all workers of a session."""
+    elf = shared / f"{board}.elf"
+    if not elf.exists():
+        project = copied(own)
+        code, log = pio(project, "run", "-e", board)
+        assert code == 0, log
+        mine = shared / f"{board}.{os.getpid()}"
+        shutil.copy(project / ".pio" / "build" / board / "firmware.elf", mine)
+        mine.replace(elf)
+    return elf

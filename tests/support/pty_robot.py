@@ -1,0 +1,166 @@
+"""A robot behind a pseudo-terminal: the whole firmware in C++, in real time.
+
+What a computer opens as a port is `port`; in between is the terminal driver of this system, as
+with a cable. Time goes by on the robot as on the wall, or slower where this computer is busy.
+"""
+
+from __future__ import annotations
+
+import os
+import select
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+from tests.machines.host_firmware import EMPTY, POWER_ON, HostFirmware
+from tests.support.command import FOREVER, Command, Done, process
+from tiniscript.kit import Kit
+
+PUSHED, RELEASED = 1, 2  # flags of a step
+BEHIND_MS = 50  # more than that behind, the robot's clock goes slower
+
+
+class PtyRobot:
+    """A robot and its port; its UART takes and sends `bytes_per_ms`, 1 at 9600 baud."""
+
+    def __init__(self, kit: Kit, memory: bytes = EMPTY, bytes_per_ms: int = 12) -> None:
+        import pty
+        import tty
+
+        self.kit = kit
+        self.bytes_per_ms = bytes_per_ms
+        self.heard = b""  # all that has come to the port
+        self.damages = 0  # of so many bytes one changes on its way; 0: none does
+        self.off_after: int | None = None  # so many bytes more, and its battery is empty
+        self._ours, self._theirs = pty.openpty()
+        tty.setraw(self._theirs)
+        self.port = os.ttyname(self._theirs)
+        self._lock = threading.Lock()
+        self._robot: HostFirmware | None = HostFirmware(kit, memory)
+        self._memory = memory
+        self._flags: list[int] = []  # what happens to the button, for each of the next steps
+        self._passed = 0  # bytes, through the noise
+        self._is_over = False
+        self._thread = threading.Thread(target=self._run, daemon=True)
+        self._thread.start()
+
+    def __enter__(self) -> PtyRobot:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.clear_away()
+
+    @property
+    def did(self) -> list[str]:
+        """What the robot has done since it was switched on, without the times."""
+        return [line.split(" ", 1)[1] for line in self.timed]
+
+    @property
+    def timed(self) -> list[str]:
+        assert self._robot
+        return list(self._robot.did)
+
+    @property
+    def moves(self) -> bool:
+        driven = [line for line in self.did if line.startswith("MOTORS")]
+        return bool(driven) and driven[-1] != "MOTORS 0 0"
+
+    @property
+    def robot_ms(self) -> int:
+        assert self._robot
+        return self._robot.now_ms
+
+    def say(self, data: bytes) -> None:
+        """Let something else than the robot write to the port."""
+        os.write(self._ours, data)
+
+    def ask(self, what: Callable[[HostFirmware], object]) -> None:
+        with self._lock:
+            assert self._robot
+            what(self._robot)
+
+    def push(self) -> None:
+        """Push the button, and let it go."""
+        self._flags = [PUSHED, *[0] * 20, RELEASED]
+
+    def switch_off(self) -> None:
+        """Only what is in its memory is kept."""
+        with self._lock:
+            self._take_power()
+
+    def switch_on(self) -> None:
+        with self._lock:
+            self.off_after = None
+            self._robot = HostFirmware(self.kit, self._memory, POWER_ON, chance=0x9ABCDEF1)
+
+    def pull(self) -> None:
+        """Pull the cable out: the port is not there any more."""
+        self._is_over = True
+        self._thread.join()
+        for end in (self._ours, self._theirs):
+            os.close(end)
+
+    def clear_away(self) -> None:
+        if not self._is_over:
+            self.pull()
+        if self._robot:
+            self._robot.close()
+
+    def until(self, is_so: Callable[[], bool], what: str, limit_s: float = 20) -> None:
+        """Wait until something is so."""
+        end_s = time.monotonic() + limit_s
+        while not is_so():
+            assert time.monotonic() < end_s, f"not after {limit_s} s: {what}"
+            time.sleep(0.01)
+
+    def _through_noise(self, data: bytes) -> bytes:
+        if not self.damages:
+            return data
+        noisy = bytearray(data)
+        for k in range(len(noisy)):
+            self._passed += 1
+            if self._passed % self.damages == 0:
+                noisy[k] ^= 0x24
+        return bytes(noisy)
+
+    def _take_power(self) -> None:
+        if self._robot:
+            self._memory = self._robot.memory()
+            self._robot.close()
+        self._robot = None
+
+    def _run(self) -> None:
+        next_s = time.monotonic()
+        there, back = b"", b""  # on their way
+        while not self._is_over:
+            next_s = max(next_s + 0.001, time.monotonic() - BEHIND_MS / 1000)
+            ready, _, _ = select.select([self._ours], [], [], 0)
+            there += os.read(self._ours, 4096) if ready else b""
+            data, there = there[: self.bytes_per_ms], there[self.bytes_per_ms :]
+            data = self._through_noise(data)
+            self.heard += data
+            with self._lock:
+                if self.off_after is not None and data:
+                    self.off_after -= len(data)
+                    if self.off_after <= 0:
+                        self._take_power()
+                flags = self._flags.pop(0) if self._flags else 0
+                back += self._robot.step(data, flags) if self._robot else b""
+            sent, back = back[: self.bytes_per_ms], back[self.bytes_per_ms :]
+            if sent:
+                os.write(self._ours, self._through_noise(sent))
+            time.sleep(max(0.0, next_s - time.monotonic()))
+
+
+def on(pty_robot: PtyRobot, *arguments: str | Path, data: bytes = b"") -> Done:
+    """Run `tsc` on the robot's port."""
+    return process(*arguments, "--port", pty_robot.port, data=data)
+
+
+def uploading(pty_robot: PtyRobot, text: str = FOREVER) -> Command:
+    """A program that runs, and the command that attends to it."""
+    command = Command("upload", "-e", text, "--port", pty_robot.port)
+    command.until("running")
+    pty_robot.until(lambda: pty_robot.moves, "it drives")
+    return command

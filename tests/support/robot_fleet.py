@@ -1,0 +1,110 @@
+"""A fleet of robots: each the whole firmware, all of them attended to by one thread.
+
+Like `tests.support.pty_robot`, at a price that lets 30 of them be on one computer: a robot goes
+on when bytes come for it, and else every few milliseconds, in one longer step.
+"""
+
+from __future__ import annotations
+
+import os
+import select
+import threading
+import time
+from collections.abc import Callable, Sequence
+
+from tests.machines.host_firmware import EMPTY, TICKS, HostFirmware
+from tiniscript.kit import Kit
+
+STEP_MS = 10  # between two steps of a robot for which nothing comes
+
+
+class Pupil:
+    """A robot and its port. What is wrong with it is chosen before something is sent."""
+
+    def __init__(self, kit: Kit, number: int) -> None:
+        import pty
+        import tty
+
+        self.number = number
+        self.robot = HostFirmware(kit, EMPTY, chance=0x1000 + number)
+        self.ours, self._theirs = pty.openpty()
+        tty.setraw(self._theirs)
+        self.port = os.ttyname(self._theirs)
+        self.damages = 0  # of so many bytes one changes on its way; 0: none does
+        self.deaf_after: int | None = None  # so many bytes more, and it hears and says nothing
+        self.heard = b""
+        self._passed = 0
+
+    @property
+    def did(self) -> list[str]:
+        return [line.split(" ", 1)[1] for line in self.robot.did]
+
+    @property
+    def moves(self) -> bool:
+        driven = [line for line in self.did if line.startswith("MOTORS")]
+        return bool(driven) and driven[-1] != "MOTORS 0 0"
+
+    def go_on(self, data: bytes, passed_ms: int) -> None:
+        """Let time pass in which bytes arrive."""
+        self.heard += data
+        if self.deaf_after is not None:
+            data = data[: self.deaf_after]
+            self.deaf_after -= len(data)
+        robot = self.robot
+        robot.now_ms += passed_ms - 1
+        sent = robot.step(self._through_noise(data), 0, TICKS * passed_ms)
+        if sent and self.deaf_after != 0:
+            os.write(self.ours, self._through_noise(sent))
+
+    def close(self) -> None:
+        self.robot.close()
+        os.close(self.ours)
+        os.close(self._theirs)
+
+    def _through_noise(self, data: bytes) -> bytes:
+        noisy = bytearray(data)
+        for k in range(len(noisy)):
+            self._passed += 1
+            if self.damages and self._passed % self.damages == 0:
+                noisy[k] ^= 0x24
+        return bytes(noisy)
+
+
+class RobotFleet:
+    """So many robots; their time is that of the wall."""
+
+    def __init__(self, kits: Sequence[Kit]) -> None:
+        self.pupils = [Pupil(kit, number) for number, kit in enumerate(kits)]
+        self._is_over = False
+        self._thread = threading.Thread(target=self._run, daemon=True)
+        self._thread.start()
+
+    def __enter__(self) -> RobotFleet:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._is_over = True
+        self._thread.join()
+        for pupil in self.pupils:
+            pupil.close()
+
+    def until(self, is_so: Callable[[], bool], what: str, limit_s: float = 30) -> None:
+        """Wait until something is so."""
+        end_s = time.monotonic() + limit_s
+        while not is_so():
+            assert time.monotonic() < end_s, f"not after {limit_s} s: {what}"
+            time.sleep(0.02)
+
+    def _run(self) -> None:
+        by_end = {pupil.ours: pupil for pupil in self.pupils}
+        lasts = dict.fromkeys(by_end, time.monotonic())
+        while not self._is_over:
+            ready, _, _ = select.select(list(by_end), [], [], STEP_MS / 2000)
+            now_s = time.monotonic()
+            for end, pupil in by_end.items():
+                passed_ms = int((now_s - lasts[end]) * 1000)
+                if passed_ms < (1 if end in ready else STEP_MS):
+                    continue
+                data = os.read(end, 4096) if end in ready else b""
+                lasts[end] += passed_ms / 1000
+                pupil.go_on(data, min(passed_ms, 5 * STEP_MS))

@@ -1,0 +1,29 @@
+"""A robot behind a pseudo-terminal whose port this process shares, as `tsc link` does."""
+
+from __future__ import annotations
+
+from tests.support.pty_robot import PtyRobot
+from tiniscript import robots
+from tiniscript.link.line import Line
+from tiniscript.link.ports import opened
+from tiniscript.link.session import Session
+from tiniscript.sharing.registry import Holder
+from tiniscript.sharing.server import Host
+
+KIT = robots.load("tinibot").kit
+
+
+class Shared:
+    """A line of this process that is shared."""
+
+    def __enter__(self) -> tuple[PtyRobot, Holder]:
+        self.pty_robot = PtyRobot(KIT)
+        device = opened(self.pty_robot.port, 9600)
+        self.line = Line(device, Session(1, 9600, KIT.fingerprint))
+        self.host = Host(self.line, self.pty_robot.port, 9600, "link")
+        return self.pty_robot, self.host.holder
+
+    def __exit__(self, *_: object) -> None:
+        self.host.close()
+        self.line.close()
+        self.pty_robot.clear_away()

@@ -1,0 +1,237 @@
+"""A body among obstacles, and what its sensors say there: worked out by hand."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+
+import pytest
+
+from tests.support.virtual_robot import floor
+from tiniscript import robots
+from tiniscript.fixed_point import ONE
+from tiniscript.robots.kinematics import Pose, moved
+from tiniscript.robots.profile import Robot
+from tiniscript.virtual.driving import TOUCH_CM, Driving, Hull
+from tiniscript.virtual.geometry import Point, Segment, between, crosses, nearest, seen
+from tiniscript.virtual.sensing import Sensing
+from tiniscript.virtual.world import World
+
+TINIBOT = robots.load("tinibot")
+LINER = robots.load("liner")
+GRABBER = robots.load("grabber")
+RIGHT, LEFT, DISTANCE = range(3)  # of tinibot's sensors
+NOSE_CM = 13  # its distance sensor, from its wheels
+ACROSS = Segment(Point(10, -5), Point(10, 5))
+
+
+# -- geometry -------------------------------------------------------------------------------------
+
+
+def test_the_nearest_point_is_inside_or_an_end() -> None:
+    assert nearest(ACROSS, 3, 2) == (10, 2)
+    assert nearest(ACROSS, 3, 9) == (10, 5)
+    assert nearest(Segment(Point(1, 1), Point(1, 1)), 4, 5) == (1, 1)
+
+
+def test_segments_cross_or_have_a_distance() -> None:
+    assert crosses(ACROSS, Segment(Point(0, 0), Point(20, 0)))
+    assert not crosses(ACROSS, Segment(Point(0, 0), Point(9, 0)))
+    assert between(ACROSS, Segment(Point(0, 0), Point(20, 0)))[0] == 0
+    assert between(ACROSS, Segment(Point(0, 0), Point(6, 3))) == (4, Point(10, 3), Point(6, 3))
+
+
+@pytest.mark.parametrize(
+    ("heading", "half", "found"),
+    [
+        (0, 15, 10.0),
+        (20, 15, 10 / math.cos(math.radians(5))),  # its border is 5 degrees off
+        (90, 15, None),
+        (180, 15, None),
+        (45, 15, None),  # the end is at 26.6 degrees
+        (45, 20, math.hypot(10, 10 * math.tan(math.radians(25)))),
+    ],
+)
+def test_a_cone_sees_the_nearest_point_inside(heading: float, half: float, found: float) -> None:
+    least = seen([ACROSS], Point(0, 0), math.radians(heading), math.radians(half))
+    assert least == pytest.approx(found)
+
+
+# -- driving --------------------------------------------------------------------------------------
+
+
+def driving(world: World, start: Pose | None = None, robot: Robot = TINIBOT) -> Driving:
+    return Driving(robot.body, world.obstacles(), start or world.start)
+
+
+def test_where_nothing_is_in_the_way_the_way_is_that_of_the_wheels() -> None:
+    found = driving(floor(size=2000, start="x_cm = 1000\ny_cm = 1000"))
+    pose = Pose(1000, 1000, 0)
+    now_ms = 0.0
+    for left, right, duration_ms in (
+        (80, 80, 1000),
+        (60, -60, 500),
+        (100, 30, 2500),
+        (-50, 20, 700),
+    ):
+        found.set_motors(now_ms, left, right)
+        now_ms += duration_ms
+        pose = moved(TINIBOT.body, pose, left, right, duration_ms)
+        assert found.go_on(now_ms) == pytest.approx(pose, abs=1e-6)
+    assert found.bumps == 0
+
+
+def test_a_robot_stops_at_a_wall_that_it_drives_into() -> None:
+    found = driving(floor())
+    found.set_motors(0, 100, 100)
+    pose = found.go_on(10_000)
+    assert pose == pytest.approx((200 - NOSE_CM, 100, 0), abs=0.01)
+    assert found.bumps == 1
+    assert found.driven_cm == pytest.approx(100 - NOSE_CM, abs=0.1)
+    found.set_motors(10_000, -100, -100)
+    assert found.go_on(11_000).x_cm == pytest.approx(200 - NOSE_CM - 45, abs=0.01)
+
+
+def test_a_robot_slides_along_a_wall() -> None:
+    found = driving(floor(start="x_cm = 100\ny_cm = 100\nheading = 30"))
+    found.set_motors(0, 100, 100)
+    pose = found.go_on(6000)
+    hull = found.hull
+    assert pose.heading == 30
+    assert pose.x_cm + hull.front_cm * math.cos(math.radians(30)) == pytest.approx(
+        200 - hull.radius_cm, abs=0.01
+    )
+    assert 150 < pose.y_cm < 200 - hull.radius_cm
+
+
+@pytest.mark.parametrize("robot", [TINIBOT, LINER, GRABBER], ids=lambda robot: robot.name)
+@pytest.mark.parametrize("powers", [(100, 100), (100, 90), (-100, -80), (100, -100), (90, 0)])
+def test_nothing_is_driven_through(robot: Robot, powers: tuple[int, int]) -> None:
+    """Not in a corner, not past the end of a wall, however long it pushes."""
+    world = floor("[[walls]]\npoints = [[20, 140], [120, 140], [120, 160]]\n")
+    for heading in range(0, 360, 40):
+        found = driving(world, Pose(60, 100, heading), robot)
+        found.set_motors(0, *powers)
+        before = found.go_on(0)
+        for now_ms in range(250, 15_000, 250):
+            pose = found.go_on(now_ms)
+            contact = found.hull.contact(pose, found.obstacles)
+            assert contact and contact.gap_cm > -0.01
+            assert not any(
+                crosses(Segment(Point(*before[:2]), Point(*pose[:2])), each)
+                for each in found.obstacles
+            )
+            before = pose
+
+
+def test_looking_changes_nothing() -> None:
+    """A picture of it may be drawn whenever one likes."""
+    ends = []
+    for looks in ([], [1, 99, 100, 101, 5432, 7000], list(range(0, 8000, 7))):
+        found = driving(
+            floor("[[boxes]]\nx_cm=150\ny_cm=95\nlength_cm=20\nwidth_cm=20\nheading=20")
+        )
+        found.set_motors(0, 90, 80)
+        for now_ms in looks:
+            found.look(now_ms)
+        ends.append(found.go_on(8000))
+    assert ends[0] == ends[1] == ends[2]
+
+
+def test_the_way_has_no_gaps_and_few_corners() -> None:
+    found = driving(floor())
+    found.set_motors(0, 50, 50)
+    found.set_motors(3000, 30, -30)
+    found.set_motors(4000, 50, 50)
+    found.go_on(20_000)
+    assert len(found.corners) < 60
+    length_cm = sum(math.dist(a[:2], b[:2]) for a, b in pairwise(found.corners))
+    assert length_cm == pytest.approx(found.driven_cm, rel=1e-6)
+    assert found.corners[-1][:2] == found.go_on(20_000)[:2]
+
+
+def test_the_hull_reaches_to_the_sensors() -> None:
+    hull = Hull(TINIBOT.body)
+    assert hull.front_cm + hull.radius_cm == NOSE_CM
+    spine = hull.spine(Pose(0, 0, 90))
+    assert spine.b == pytest.approx((0, hull.front_cm))
+    for point in hull.outline(Pose(0, 0, 90)):
+        assert abs(point.x) <= 7.5 + 1e-9 and -10.5 - 1e-9 <= point.y <= NOSE_CM + 1e-9
+
+
+# -- sensing --------------------------------------------------------------------------------------
+
+
+def read(world: World, number: int, pose: Pose, robot: Robot = TINIBOT) -> float:
+    return Sensing(robot, world).read(number, pose) / ONE
+
+
+def test_distance_is_that_of_the_nearest_wall_in_the_cone() -> None:
+    world = floor()
+    assert read(world, DISTANCE, Pose(100, 100, 0)) == 100 - NOSE_CM
+    assert read(world, DISTANCE, Pose(100, 100, 90)) == 100 - NOSE_CM
+    # 20 degrees off: the border of the cone is 5 degrees off
+    eye_cm = 100 - NOSE_CM * math.cos(math.radians(20))
+    expected = eye_cm / math.cos(math.radians(5))
+    assert read(world, DISTANCE, Pose(100, 100, 20)) == pytest.approx(expected, abs=0.05)
+
+
+def test_distance_has_the_limits_of_its_sensor() -> None:
+    assert read(floor(), DISTANCE, Pose(200 - NOSE_CM - 1, 100, 0)) == 2
+    far = floor(size=2000, start="x_cm = 1000\ny_cm = 1000")
+    assert read(far, DISTANCE, Pose(1000, 1000, 0)) == 400
+
+
+def test_a_lamp_is_brighter_near_and_ahead_and_not_through_a_wall() -> None:
+    lamp = "[light]\nambient_percent = 0\n[[lamps]]\nx_cm = 112\ny_cm = 195\nreach_cm = 50\n"
+    world = floor(lamp)
+    # the left sensor is at (112, 105) and looks 30 degrees to the left: the lamp is 60 off
+    expected = math.cos(math.radians(60)) / (1 + (90 / 50) ** 2)
+    assert read(world, LEFT, Pose(100, 100, 0)) == round(1023 * expected)
+    assert read(world, RIGHT, Pose(100, 100, 0)) == 0  # 120 degrees off
+    wall = "[[walls]]\npoints = [[60, 150], [160, 150]]\n"
+    assert read(floor(lamp + wall), LEFT, Pose(100, 100, 0)) == 0
+    bright = floor(lamp.replace("ambient_percent = 0", "ambient_percent = 100"))
+    assert read(bright, LEFT, Pose(100, 100, 0)) == 1023
+
+
+def test_a_line_sensor_is_over_a_line_or_not() -> None:
+    line = floor("[[lines]]\npoints = [[107.5, 20], [107.5, 180]]\nwidth_cm = 2\n")
+    left = 0
+    for x, y, is_black in ((100, 100, 1), (101, 100, 1), (101.1, 100, 0), (100, 190, 0)):
+        assert read(line, left, Pose(x, y, 0), LINER) * ONE == is_black
+
+
+@pytest.mark.parametrize(
+    ("heading", "is_touched"), [(0, True), (30, True), (80, False), (180, False)]
+)
+def test_a_bumper_notices_what_is_in_front(heading: float, is_touched: bool) -> None:
+    hull = Hull(LINER.body)
+    cos = math.cos(math.radians(heading))
+    along = max(hull.front_cm * cos, hull.back_cm * cos)
+    touching = Pose(200 - hull.radius_cm - along, 100, heading)
+    bumper = 2
+    assert read(floor(), bumper, touching, LINER) * ONE == is_touched
+    off = touching._replace(x_cm=touching.x_cm - TOUCH_CM - 0.01)
+    assert read(floor(), bumper, off, LINER) == 0
+
+
+def test_a_sensor_without_a_place_says_something_sensible_or_what_it_is_told() -> None:
+    pose = Pose(100, 100, 0)
+    assert read(floor(), 3, pose, LINER) == 5  # BATTERY, 0 to 10 V
+    assert read(floor(), 1, pose, GRABBER) == 20  # TEMPERATURE
+    told = Sensing(LINER, floor(), told={3: [7000, 6500], 0: [1]})
+    assert [told.read(3, pose) for _ in range(3)] == [7000, 6500, 6500]
+    assert told.read(0, pose) == 1
+    assert told.look(3, pose) == 6500
+
+
+def test_noise_is_about_as_large_as_it_is_said_to_be() -> None:
+    from random import Random
+
+    sensing = Sensing(TINIBOT, floor(), 0.05, Random(1))
+    pose = Pose(100, 100, 0)
+    readings = [sensing.read(DISTANCE, pose) / ONE / 87 for _ in range(400)]
+    spread = math.sqrt(sum((each - 1) ** 2 for each in readings) / len(readings))
+    assert 0.04 < spread < 0.06
+    assert sensing.look(DISTANCE, pose) == 87_000

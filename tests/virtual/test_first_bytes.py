@@ -1,0 +1,317 @@
+"""What a browser begins with never reaches a virtual robot; what `tsc` or a person says, does."""
+
+from __future__ import annotations
+
+import contextlib
+import socket
+import ssl
+from collections.abc import Iterator
+from random import Random
+
+import pytest
+
+from tests.support.virtual_robot import floor, missing, robot_in
+from tests.virtual.test_simulator import PING, until, visit
+from tiniscript import compile_text, robots
+from tiniscript.bytecode.image import unpack
+from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
+from tiniscript.link.frames import Frame, decoded, encoded
+from tiniscript.link.messages import BY_NAME, MAJOR, MINOR, PAYLOAD_BYTES, RUN, written
+from tiniscript.link.session import Session
+from tiniscript.virtual import transports as guests_room
+from tiniscript.virtual.first_bytes import LONGEST, is_for_robot
+from tiniscript.virtual.simulator import Host
+from tiniscript.virtual.transports import CALLERS, Guests
+
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
+
+
+def verdicts(data: bytes) -> list[bool | None]:
+    """Return what is found of all beginnings of data, the shortest first."""
+    return [is_for_robot(data[:k]) for k in range(len(data) + 1)]
+
+
+def tls_hello() -> bytes:
+    """What a browser says first for https."""
+    there, back = ssl.MemoryBIO(), ssl.MemoryBIO()
+    tls = ssl.create_default_context().wrap_bio(there, back, server_hostname="localhost")
+    with contextlib.suppress(ssl.SSLWantReadError):
+        tls.do_handshake()
+    return back.read()
+
+
+def frame(name: str, epoch: int = 0, seq: int = 1, **values: int | bytes) -> bytes:
+    message = BY_NAME[name]
+    return encoded(Frame(message.number, seq, epoch, written(message.request, values)))
+
+
+def program() -> bytes:
+    """A session and a program that moves, as a page would put them into the body of a POST.
+
+    A page has to guess the epoch that a robot will have; this one knows it.
+    """
+    kit = robots.load("tinibot").kit
+    versions = {"major": MAJOR, "minor": MINOR, "isa_major": ISA_MAJOR, "isa_minor": ISA_MINOR}
+    hello = b"\0" + frame("HELLO", **versions, kit=kit.fingerprint, nonce=9)
+    said = robot_in(floor()).step(500, hello)
+    epochs = {each.epoch for each in map(decoded, said.split(b"\0")) if each is not None}
+    code = unpack(compile_text("SI|F(5,80)", kit).image, kit.fingerprint).code
+    return hello + frame("LIVE", epochs.pop(), 2, mode=RUN, code=code)
+
+
+STUN = bytes.fromhex("2112a442") + bytes(range(1, 13))  # its cookie and a transaction
+NOT_FOR_ROBOTS = {
+    "get": b"GET / HTTP/1.1\r\nHost: localhost\r\n\r\n",
+    "get of old": b"GET /\r\n",
+    "post": b"POST /any?a=b HTTP/1.1\r\nContent-Length: 5\r\n\r\n",
+    "lower case": b"post / http/1.1\r\n",
+    "options": b"OPTIONS * HTTP/1.1\r\n",
+    "head": b"HEAD / HTTP/1.0\n",
+    "connect": b"CONNECT localhost:80 HTTP/1.1\r\n",
+    "proxy": b"GET http://localhost/ HTTP/1.1\r\n",
+    "any method": b"PING| / HTTP/1.1\r\n",
+    "a method like a program": b"SI|F / HTTP/1.1\r\n",
+    "http 2": b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n",
+    "tabs": b"POST\t/\tHTTP/1.1\r\n",
+    "empty lines": b"\r\n\r\nPOST / HTTP/1.1\r\n",
+    "after a zero": b"\0POST / HTTP/1.1\r\n",
+    "a long address": b"ANY /" + b"a" * 10_000 + b" HTTP/1.1\r\n",
+    "tls": tls_hello(),
+    "ssl 3": b"\x16\x03\x00\x00\x50\x01",
+    "stun": b"\0\1\0\x14" + STUN,
+    "turn": b"\0\3\0\x08" + STUN,
+    "framed stun": b"\0\x28\0\1\0\x14" + STUN,
+    "long framed stun": b"\2\x28\0\1\2\x14" + STUN,
+}
+
+
+@pytest.mark.parametrize("name", NOT_FOR_ROBOTS)
+def test_no_beginning_of_a_browser_is_for_a_robot(name: str) -> None:
+    """However slowly it comes, byte by byte."""
+    data = NOT_FOR_ROBOTS[name]
+    found = verdicts(data)
+    assert True not in found
+    assert found[-1] is False
+
+
+def test_all_frames_of_a_computer_are_for_a_robot() -> None:
+    chance = Random(3)
+    session = Session(7, 9600, 5)
+    session.hello()
+    firsts = [session.poll(0), bytes(8), bytes(2)]
+    numbers = [each.number for each in BY_NAME.values() if each.number < 32]
+    for _ in range(20_000):
+        payload = chance.randbytes(chance.randrange(PAYLOAD_BYTES))
+        if chance.random() < 0.5:
+            payload = bytes(chance.choice((0, 0, 3, 22)) for _ in payload)
+        number = chance.choice(numbers)
+        if number == BY_NAME["STATUS"].number:
+            payload = b""
+        data = encoded(Frame(number, chance.randrange(256), chance.randrange(256), payload))
+        firsts += [data, b"\0" + data]
+    for data in firsts:
+        assert is_for_robot(data) is True, data.hex()
+        assert False not in [is_for_robot(data[:k]) for k in range(4)], data.hex()
+
+
+@pytest.mark.parametrize(
+    ("text", "after"),
+    [
+        ("SI|F(2,80)\n", 5),
+        ("W(1)\r\n", 2),
+        ("PING|\n", 6),  # a method may be called so: at the end of the line it is none
+        ("POST = 5\n", 6),
+        ("S // stop\n", 10),
+        ("S\r", 2),
+        ("S\0", 2),
+        ("// HTTP/1.1\n", 3),
+        ("año = 5\n", 2),
+        ("SHOW(1) \n", 5),
+        ('SHOW("GET / HTTP/1.1")\n', 5),
+    ],
+)
+def test_a_line_of_text_is_for_a_robot_as_soon_as_it_can_be_told(text: str, after: int) -> None:
+    found = verdicts(text.encode())
+    assert False not in found
+    assert found.index(True) == after
+    assert None not in found[after:]
+
+
+def test_a_first_line_has_an_end() -> None:
+    assert is_for_robot(b"A" * LONGEST) is None
+    assert is_for_robot(b"A" * (LONGEST + 1)) is False
+    assert is_for_robot(b"") is is_for_robot(b"\0") is None
+
+
+# -- at the port --------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def host() -> Iterator[Host]:
+    guests = Guests()
+    yield Host(robot_in(floor()), guests)
+    guests.close()
+
+
+def is_let_go(host: Host, guest: socket.socket) -> bool:
+    """Whether it was hung up on without a word."""
+    said = b"?"
+    with contextlib.suppress(BlockingIOError, ConnectionError):
+        said = guest.recv(1000)
+        assert said == b""
+    with contextlib.suppress(BlockingIOError):
+        try:
+            guest.send(b"x")
+        except ConnectionError:
+            return True
+    return said == b""
+
+
+def _has_moved(host: Host) -> bool:
+    return any(each.what == "MOTORS" for each in host.robot.take_events())
+
+
+def test_what_a_page_would_send_moves_a_robot_only_without_its_header(host: Host) -> None:
+    for header in (NOT_FOR_ROBOTS["post"], NOT_FOR_ROBOTS["any method"], tls_hello(), b""):
+        with visit(host) as guest:
+            for part in (header[:3], header[3:], program()):
+                with contextlib.suppress(ConnectionError):
+                    guest.sendall(part)
+                host.turn(0.01)
+            if header:
+                until(host, lambda guest=guest: is_let_go(host, guest))  # type: ignore[misc]
+                assert host.guests.visits == 0
+                assert host.robot.take_events() == []
+            else:
+                until(host, lambda: _has_moved(host))
+
+
+def test_a_page_does_not_come_in_after_another_guest_either(host: Host) -> None:
+    with visit(host) as first:
+        first.sendall(PING)
+        until(host, lambda: host.guests.visits == 1)
+        with visit(host) as page:
+            page.sendall(NOT_FOR_ROBOTS["post"] + program())
+            host.turn(0.01)
+            until(host, lambda: is_let_go(host, page))
+    until(host, lambda: not host.guests.is_connected)
+    assert not _has_moved(host)
+
+
+def test_a_line_that_comes_letter_by_letter_is_answered(host: Host) -> None:
+    with visit(host) as guest:
+        heard = bytearray()
+        for letter in b"PING|\r\n":
+            guest.send(bytes([letter]))
+            for _ in range(3):
+                host.turn(0.01)
+
+        def is_answered() -> bool:
+            with contextlib.suppress(BlockingIOError):
+                heard.extend(guest.recv(1000))
+            return b"\n" in heard
+
+        until(host, is_answered)
+        assert host.guests.visits == 1
+
+
+# -- many of them -------------------------------------------------------------------------------
+
+
+def crowd(host: Host, count: int, says: bytes = b"") -> list[socket.socket]:
+    """Return connections that are there, or on their way."""
+    found = []
+    for _ in range(count):
+        guest = socket.socket()
+        guest.setblocking(False)
+        guest.connect_ex(("127.0.0.1", host.guests.port))
+        found.append(guest)
+        if says:
+            host.turn(0)
+            with contextlib.suppress(OSError):
+                guest.send(says)
+    return found
+
+
+@pytest.mark.parametrize("says", [b"", b"\0", b"POS"])
+def test_many_who_say_nothing_keep_nobody_out(host: Host, says: bytes) -> None:
+    idle = crowd(host, 300, says)
+    [guest] = crowd(host, 1)
+    is_said, most, heard = False, 0, bytearray()
+
+    def is_answered() -> bool:
+        nonlocal is_said, most
+        most = max(most, len(host.guests._callers))
+        with contextlib.suppress(BlockingIOError, BrokenPipeError):  # it does not stand yet
+            if not is_said:
+                is_said = guest.send(PING) > 0
+        with contextlib.suppress(BlockingIOError):
+            heard.extend(guest.recv(1000) if is_said else b"")
+        return b"\0" in heard
+
+    until(host, is_answered)
+    assert CALLERS / 2 < most <= CALLERS
+    for each in (guest, *idle):
+        each.close()
+
+
+def test_whoever_says_nothing_has_to_leave(host: Host, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(guests_room, "SILENT_S", 0.05)
+    monkeypatch.setattr(guests_room, "OPENING_S", 0.0)
+    for says in (b"", b"GE"):
+        with visit(host) as guest:
+            guest.sendall(says)
+            until(host, lambda guest=guest: is_let_go(host, guest))  # type: ignore[misc]
+
+
+def test_a_silent_guest_leaves_its_place_to_one_who_speaks(
+    host: Host, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with visit(host) as first, visit(host) as second:
+        first.sendall(PING)
+        until(host, lambda: host.guests.visits == 1)
+        monkeypatch.setattr(guests_room, "PATIENT_S", 1000.0)
+        second.sendall(PING)
+        for _ in range(20):
+            host.turn(0.01)
+        assert host.guests.visits == 1
+        monkeypatch.setattr(guests_room, "IDLE_S", 0.0)
+        until(host, lambda: host.guests.visits == 2)
+        heard = bytearray()
+
+        def is_answered() -> bool:
+            with contextlib.suppress(BlockingIOError):
+                heard.extend(second.recv(1000))
+            return b"\0" in heard
+
+        until(host, is_answered)
+
+
+def test_too_many_open_files_of_this_process_are_no_end(
+    host: Host, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    idle = crowd(host, 5)
+    until(host, lambda: len(host.guests._callers) == 5)
+    server = host.guests._server
+    looks = 0
+
+    class Full:
+        """A server whose process has no room for one more file."""
+
+        def accept(self) -> tuple[socket.socket, object]:
+            nonlocal looks
+            looks += 1
+            raise OSError(24, "Too many open files")
+
+        def fileno(self) -> int:
+            return server.fileno()
+
+    host.guests._server = Full()  # type: ignore[assignment]
+    with visit(host) as guest:
+        guest.sendall(PING)
+        until(host, lambda: looks > 1)
+        assert len(host.guests._callers) < 5
+        host.guests._server = server
+        until(host, lambda: host.guests.is_connected)
+    for each in idle:
+        each.close()

@@ -1,0 +1,314 @@
+"""The virtual robot without a clock: its firmware, its world and a computer, in its own time."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.support.casefile import ROOT
+from tests.support.command import OBSTACLE
+from tests.support.virtual_robot import Talk, floor, missing, robot_in, trace
+from tiniscript import compile_text, robots
+from tiniscript.bytecode.image import unpack
+from tiniscript.link.messages import STATUSES
+from tiniscript.link.trim import Trim
+from tiniscript.virtual import worlds
+from tiniscript.vm.trace import Ending, Senses, run
+
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
+
+KIT = robots.load("tinibot").kit
+PROGRAMS = {
+    "drive": "SI|F(5,80)",
+    "loop": "SI|LOOP(3);F(2,50);END_LOOP",
+    "values": "SI|A = 1.5;SHOW(A * 2);SHOW(A > 1);BEEP(0.2, 440);B(0.3, 40);L(0.25, 70)",
+    "until": "SI|F(5, 80) UNTIL(DISTANCE < 40);SHOW(TIME);R(0.5, 60)",
+    "fault": "SI|F(0.2, 50);X = 0;SHOW(1 / X)",
+    "obstacle": "SI|LOOP(6);F(1, 80);DISTANCE;IF(DISTANCE < 10);STOP;R(1, 60);ENDIF;END_LOOP",
+}
+
+
+@pytest.mark.parametrize("name", PROGRAMS)
+def test_it_does_what_tsc_run_says(name: str) -> None:
+    """With the readings that it had itself, each line of the trace and each time.
+
+    On a line that takes no time: else what it shows waits until the receipt is gone.
+    """
+    robot = robot_in(worlds.load("obstacles"), baud=0)
+    talk = Talk(robot)
+    assert talk.upload(PROGRAMS[name]).status == 0
+    talk.wait(20_000)
+    events = robot.take_events()
+    said = trace(events)
+    readings: dict[int, list[int]] = {}
+    for event in events:
+        if event.what == "READ":
+            readings.setdefault(event.values[0], []).append(event.values[1])
+    code = unpack(compile_text(PROGRAMS[name], KIT).image, KIT.fingerprint).code
+    expected = [str(each) for each in run(code, KIT, Senses(KIT, readings))
+                if not isinstance(each, Ending)]  # fmt: skip
+    assert said == expected
+
+
+@pytest.mark.parametrize("name", ["drive", "until", "obstacle"])
+def test_a_run_repeats_with_its_seed(name: str) -> None:
+    def went(seed: int, noise: float) -> tuple[list[str], list[tuple[float, ...]]]:
+        robot = robot_in(worlds.load("obstacles"), seed=seed, noise=noise)
+        talk = Talk(robot)
+        talk.upload(PROGRAMS[name], is_detached=True)
+        robot.step(robot.now_ms + 20_000)
+        return trace(robot.take_events()), [tuple(each) for each in robot.driving.corners]
+
+    assert went(1, 0.03) == went(1, 0.03)
+    assert went(1, 0.03)[1] != went(2, 0.03)[1]
+    assert went(1, 0.0)[1] == went(2, 0.0)[1]
+
+
+def test_unequal_motors_drive_a_curve() -> None:
+    robot = robot_in(floor(size=400, start="x_cm = 100\ny_cm = 100"), motors=(100, 90))
+    Talk(robot).upload("SI|F(2, 100)")
+    robot.step(robot.now_ms + 900)
+    assert robot.pose.heading == pytest.approx(-0.1 * 45 * 0.9 / 13.5 * 57.2958, rel=0.1)
+
+
+def test_its_trim_makes_unequal_motors_drive_straight() -> None:
+    """The numbers are those that a robot with pins keeps: its right motor is a tenth too weak."""
+    robot = robot_in(floor(size=400, start="x_cm = 100\ny_cm = 100"), motors=(100, 90))
+    talk = Talk(robot)
+    assert talk.until(talk.session.trim(Trim(balance=10).data())).status == 0
+    talk.upload("SI|F(2, 100)")
+    robot.step(robot.now_ms + 900)
+    assert robot.pose.heading == pytest.approx(0, abs=0.5)
+    assert robot.pose.x_cm > 130
+
+
+def test_the_papers_program_drives_around_the_obstacles_and_touches_none() -> None:
+    robot = robot_in(worlds.load("obstacles"))
+    Talk(robot).upload(OBSTACLE, is_detached=True)
+    robot.step(robot.now_ms + 40_000)
+    turns = [each for each in robot.take_events() if each.text == "MOTORS 60 -60"]
+    assert robot.driving.bumps == 0
+    assert len(turns) >= 7
+    assert robot.driving.driven_cm > 900
+
+
+def test_the_line_example_stays_on_its_line() -> None:
+    robot = robot_in(worlds.load("line"), "liner")
+    text = (ROOT / "examples" / "line.ts").read_text(encoding="utf-8")
+    Talk(robot).upload(text, is_detached=True)
+    off = 0
+    places = []
+    for _ in range(300):
+        robot.step(robot.now_ms + 100)
+        pose = robot.pose
+        places.append(pose)
+        off += not any(robot.sensing.look(number, pose) for number in (0, 1))
+    assert off < 30
+    assert robot.driving.driven_cm > 400
+    assert max(each.x_cm for each in places) > 150  # all around
+    assert min(each.x_cm for each in places) < 45
+    assert max(each.y_cm for each in places) > 95
+
+
+def test_the_light_example_finds_a_lamp() -> None:
+    robot = robot_in(worlds.load("light"))
+    text = (ROOT / "examples" / "light.ts").read_text(encoding="utf-8")
+    Talk(robot).upload(text, is_detached=True)
+    nearest = 1e9
+    for _ in range(80):
+        robot.step(robot.now_ms + 100)
+        x, y, _heading = robot.pose
+        nearest = min(nearest, ((x - 190) ** 2 + (y - 130) ** 2) ** 0.5)
+    assert nearest < 25
+
+
+# -- the link -------------------------------------------------------------------------------------
+
+
+def test_a_robot_whose_computer_is_silent_stops_after_a_second() -> None:
+    robot = robot_in()
+    Talk(robot).upload("SI|LOOP(FOREVER);L(5, 50);END_LOOP")
+    began_ms = robot.now_ms
+    robot.step(began_ms + 2000)
+    last = robot.take_events()[-1]
+    assert last.text == "FAULT LINK_LOST"
+    assert 900 < last.time_ms - began_ms <= 1050
+    assert (robot.driving.left, robot.driving.right) == (0, 0)
+
+
+def test_a_program_that_is_detached_goes_on() -> None:
+    robot = robot_in()
+    Talk(robot).upload("SI|LOOP(FOREVER);L(5, 50);END_LOOP", is_detached=True)
+    robot.step(robot.now_ms + 5000)
+    assert robot.is_running
+    robot.press()
+    robot.let_go()
+    assert not robot.is_running
+    assert robot.take_events()[-1].text == "STOP"
+
+
+def test_a_program_that_another_one_ends_ends_before_it() -> None:
+    robot = robot_in()
+    talk = Talk(robot)
+    talk.upload("SI|LOOP(FOREVER);L(5, 50);END_LOOP", is_detached=True)
+    robot.take_events()
+    talk.session.start(True)
+    robot.step(robot.now_ms + 500, talk.session.poll(robot.now_ms))  # all in one step
+    assert [each.what for each in robot.take_events()] == ["STOP", "START", "MOTORS"]
+
+
+def test_a_saved_program_is_there_after_a_power_cycle() -> None:
+    robot = robot_in()
+    talk = Talk(robot)
+    talk.upload("SB|F(0.1, 50)", runs=False)
+    talk.wait(300)
+    assert robot.held == "STORED"
+    memory = robot.memory
+    robot.power_cycle()
+    robot.step(robot.now_ms + 300)
+    assert robot.is_lit
+    robot.press()
+    robot.let_go()
+    robot.step(robot.now_ms + 200)
+    expected = ["0 MOTORS 50 50", "100 MOTORS 0 0", "100 DONE"]
+    assert trace(robot.take_events()) == expected
+    # and in another robot with the same memory
+    other = robot_in(memory=memory)
+    other.step(300)
+    other.press()
+    other.let_go()
+    other.step(600)
+    assert trace(other.take_events()) == expected
+
+
+def test_a_byte_that_is_saved_takes_its_time() -> None:
+    """A power cut in the middle: the program before is still there."""
+    robot = robot_in(eeprom_us=3400)
+    talk = Talk(robot)
+    talk.upload("SB|F(0.1, 50)", runs=False)
+    talk.wait(300)
+    talk.upload("SB|B(0.2, 70)", runs=False)
+    assert robot.held == "SAVING"
+    robot.step(robot.now_ms + 20)
+    robot.power_cycle()
+    robot.step(robot.now_ms + 300)
+    robot.press()
+    robot.let_go()
+    robot.step(robot.now_ms + 200)
+    assert trace(robot.take_events())[0] == "0 MOTORS 50 50"
+
+
+def test_off_and_on_ends_what_runs_where_it_is() -> None:
+    robot = robot_in()
+    Talk(robot).upload("SI|F(5, 80)")
+    robot.step(robot.now_ms + 500)
+    pose = robot.pose
+    robot.power_cycle()
+    assert robot.take_events()[-1].text == "OFF"
+    robot.step(robot.now_ms + 1000)
+    assert robot.pose == pytest.approx(pose)
+    assert not robot.is_running
+
+
+def test_another_kit_is_refused_by_the_robot_itself() -> None:
+    robot = robot_in(name="liner")
+    talk = Talk(robot)
+    talk.until(talk.session.hello())
+    image = unpack(compile_text("SI|DISTANCE", KIT).image, KIT.fingerprint)
+    talk.session._kit = KIT.fingerprint  # as a tsc with another --robot
+    reply = talk.until(talk.session.upload(image, True, True, False))
+    assert reply.status == STATUSES["WRONG_KIT"]
+
+
+@pytest.mark.parametrize("seed", range(1, 6))
+def test_on_a_bad_line_everything_arrives_or_ends(seed: int) -> None:
+    from random import Random
+
+    from tiniscript.virtual.line_faults import BadLine
+
+    robot = robot_in(seed=seed)
+    chance = Random(seed)
+    there, back = BadLine(15, chance), BadLine(15, chance)
+    talk = Talk(robot)
+    session = talk.session
+
+    def wait() -> None:
+        now_ms = robot.now_ms + 1
+        there.put(session.poll(now_ms), now_ms)
+        back.put(robot.step(now_ms, there.take(now_ms)), now_ms)
+        session.receive(back.take(now_ms), now_ms)
+
+    long = "SI|" + "".join(f"M({k}, 50);W(0.01);" for k in range(1, 31)) + "S"
+    image = unpack(compile_text(long, KIT).image, KIT.fingerprint)
+    for task in (session.hello(), session.upload(image, True, True, False)):
+        while task.outcome is None:
+            wait()
+        assert task.outcome.status == 0
+    for _ in range(3000):
+        wait()
+    assert there.faults + back.faults > 1
+    said = trace(robot.take_events())
+    assert [each.split(" ", 1)[1] for each in said][-1] == "DONE"
+    assert [each.split()[2] for each in said if " MOTORS " in each][:3] == ["1", "2", "3"]
+
+
+def test_a_bad_line_is_the_same_with_the_same_seed_and_loses_nothing_in_order() -> None:
+    from random import Random
+
+    from tiniscript.virtual.line_faults import BadLine
+
+    def through(rate: float, seed: int) -> bytes:
+        line = BadLine(rate, Random(seed))
+        line.put(bytes(range(256)) * 8, 0)
+        return line.take(10_000_000)
+
+    assert through(0, 1) == bytes(range(256)) * 8
+    assert through(20, 1) == through(20, 1) != through(20, 2)
+    assert b"OK+LOST\r\n" in through(50, 1)
+
+
+def test_a_running_robot_goes_on_by_itself() -> None:
+    """Nothing is asked of Python while nothing happens."""
+    robot = robot_in(worlds.load("obstacles"))
+    Talk(robot).upload("SI|F(50, 1)", is_detached=True)
+    asked = 0
+    run_on = robot._firmware.call
+
+    def counted(name: str, *values: int) -> int:
+        nonlocal asked
+        asked += name == "run"
+        return run_on(name, *values)
+
+    robot._firmware.call = counted  # type: ignore[method-assign]
+    robot.step(robot.now_ms + 40_000)
+    assert asked == 1
+
+
+def test_every_stop_stops_and_is_confirmed() -> None:
+    """Also one after its button, while the computer goes on to send zeros."""
+    robot = robot_in()
+    talk = Talk(robot)
+    assert talk.upload("SB|F(60, 80)").status == 0
+    for _ in range(3):
+        robot.press()
+        robot.let_go()
+        talk.wait(300)
+        assert robot.is_running
+        for _ in range(2):
+            talk.session.events()
+            talk.session.stop(robot.now_ms)
+            talk.wait(300)
+            assert "STOPPED" in [event.name for event in talk.session.events()]
+            assert not robot.is_running
+
+
+def test_a_button_that_was_down_during_a_stop_starts_nothing() -> None:
+    robot = robot_in()
+    talk = Talk(robot)
+    assert talk.upload("SB|F(60, 80)").status == 0
+    robot.press()
+    talk.wait(50)
+    talk.session.stop(robot.now_ms)
+    talk.wait(300)
+    robot.let_go()
+    talk.wait(300)
+    assert not robot.is_running

@@ -1,0 +1,185 @@
+"""World files: those that are shipped, and those that people write."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from string import Formatter
+
+import pytest
+
+from tests.support.casefile import ROOT
+from tests.support.command import Tsc
+from tests.support.virtual_robot import floor, missing, robot_in
+from tiniscript import robots
+from tiniscript.robots.profile import LANGUAGES
+from tiniscript.virtual import world_refusals, worlds
+from tiniscript.virtual.geometry import Point, Segment
+from tiniscript.virtual.world import WorldRefused
+from tiniscript.virtual.world_reader import read
+
+needs_wasmtime = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
+RIGHT = "[floor]\nwidth_cm = 200\nheight_cm = 100\n[start]\nx_cm = 50\ny_cm = 50\n"
+
+
+def refused(text: str) -> list[str]:
+    """Return what is said of a world, in English; it is said in Spanish, too."""
+    with pytest.raises(WorldRefused) as found:
+        read(text, "some")
+    lines = {language: world_refusals.describe(found.value, language) for language in LANGUAGES}
+    assert len(lines["es"]) == len(lines["en"]) > 0
+    assert not set(lines["es"]) & set(lines["en"])
+    return lines["en"]
+
+
+def test_three_worlds_are_shipped_and_have_names_in_both_languages() -> None:
+    assert worlds.names() == ["obstacles", "light", "line"]
+    for name in worlds.names():
+        world = worlds.load(name.upper())
+        assert world.name == name
+        assert set(world.labels) == set(LANGUAGES)
+        assert world.labels["en"] != world.labels["es"]
+
+
+@needs_wasmtime
+@pytest.mark.parametrize("world", worlds.names())
+@pytest.mark.parametrize("robot", robots.names())
+def test_every_robot_fits_into_every_world(world: str, robot: str) -> None:
+    robot_in(worlds.load(world), robot)
+
+
+def test_a_world_is_read() -> None:
+    world = read(
+        RIGHT + "heading = 90\n"
+        "[light]\nambient_percent = 12.5\n"
+        "[[walls]]\npoints = [[10, 20], [30.5, 20], [30.5, 0]]\n"
+        "[[boxes]]\nx_cm = 100\ny_cm = 50\nlength_cm = 20\nwidth_cm = 10\nheading = 90\n"
+        "[[lines]]\npoints = [[0, 0], [9, 9]]\nwidth_cm = 1.5\n"
+        "[[lamps]]\nx_cm = 7\ny_cm = 8\n[labels]\nen = 'mine'\n",
+        "some",
+    )
+    assert (world.width_cm, world.height_cm, world.has_border) == (200, 100, True)
+    assert world.start == (50, 50, 90)
+    assert world.ambient == 0.125
+    assert world.walls == (((10, 20), (30.5, 20), (30.5, 0)),)
+    [box] = world.boxes
+    assert [(round(x, 9), round(y, 9)) for x, y in box] == [
+        (95, 60),
+        (95, 40),
+        (105, 40),
+        (105, 60),
+    ]
+    assert world.lines == ((((0, 0), (9, 9)), 1.5),)
+    assert world.lamps == (((7, 8), 100),)
+    assert world.labels == {"en": "mine", "es": "mine"}
+    obstacles = world.obstacles()
+    assert len(obstacles) == 2 + 4 + 4
+    assert Segment(Point(200, 0), Point(200, 100)) in obstacles
+    without = read(RIGHT.replace("[start]", "border = false\n[start]"), "some")
+    assert without.obstacles() == []
+
+
+@pytest.mark.parametrize("name", ["worlds.en.md", "mundos.es.md"])
+def test_the_world_of_the_documents_is_one(name: str) -> None:
+    text = (ROOT / "docs" / name).read_text(encoding="utf-8")
+    _, fence, _ = re.split(r"```toml\n|```\n", text)
+    world = read(fence, "mine")
+    assert world.labels == {"en": "my classroom", "es": "mi aula"}
+    parts = (world.walls, world.boxes, world.lines, world.lamps)
+    assert [len(each) for each in parts] == [1, 1, 1, 1]
+    for shipped in worlds.names():
+        assert f"| `{shipped}` |" in text
+    for command in re.findall(r"`tsc (upload examples/[^`]*)`", text):
+        options = command.split()
+        assert (ROOT / options[1]).exists()
+        assert "--world" not in options or options[options.index("--world") + 1] in worlds.names()
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("", "floor is missing. Add it, for example: [floor]"),
+        (RIGHT + "[[wall]]\n", "wall means nothing in a world. Did you mean walls?"),
+        (RIGHT + "[[walls]]\n", "walls[1].points is missing. Add it, for example: points ="),
+        (RIGHT + "[[walls]]\npoints = 7\n", "walls[1].points is a number. Write a list of points"),
+        (RIGHT + "[[walls]]\npoints = [[1, 2], 3]\n", "walls[1].points is a list. Write a list of"),
+        (RIGHT + "[[walls]]\npoints = [[1, 2]]\n", "walls[1].points has 1 points. Write 2 to 200"),
+        (
+            RIGHT + "[[walls]]\npoints = [[1, 2], ['a', 3]]\n",
+            "walls[1].points[2] is a text in quotes. Write a number there.",
+        ),
+        (
+            RIGHT + "[[lines]]\npoints = [[1, 2], [1, 9e9]]\n",
+            "lines[1].points[2] is 9e9. Write the number with digits",
+        ),
+        (
+            RIGHT + "[[lamps]]\nx_cm = 1\ny_cm = 99999\n",
+            "lamps[1].y_cm is 99999. Write a number from -2000 to 2000.",
+        ),
+        (RIGHT + "[[boxes]]\nx_cm = nan\ny_cm = 1\nlength_cm = 1\nwidth_cm = 1\n", "digits"),
+        (RIGHT.replace("200", "0"), "floor.width_cm is 0. Write a number from 1 to 2000."),
+        (RIGHT + "[[walls]]\npoints = [[0, 0], [1, 1]]\n" * 101, "walls has 101 parts. Leave"),
+        (RIGHT + f"[[walls]]\npoints = {[[k, k] for k in range(201)]}", "has 201 points"),
+        (RIGHT + "[[walls", "Line 7 is not TOML."),
+        (RIGHT + "a = " + "[" * 5000, "is not TOML"),
+        (RIGHT + "[labels]\nen = '\t'\n", "labels.en is empty or cannot be printed."),
+        (
+            RIGHT.replace("y_cm = 50", "y_cm = 200.5"),
+            "Line 6: the robot starts outside the floor. start.y_cm is 200.5; write a number"
+            " from 0 to 100.",
+        ),
+        (
+            RIGHT.replace("x_cm = 50", " x_cm=-0.5 # left"),
+            "Line 5: the robot starts outside the floor. start.x_cm is -0.5;",
+        ),
+        (
+            "start = {x_cm = 300, y_cm = 1}\n[floor]\nwidth_cm = 9\nheight_cm = 9",
+            "Line 1: the robot starts outside the floor. start.x_cm is 300;",
+        ),
+    ],
+)
+def test_what_is_wrong_in_a_world_is_said_with_its_place(text: str, said: str) -> None:
+    assert any(said in line for line in refused(text)), refused(text)
+
+
+def test_all_that_is_wrong_is_said_at_once() -> None:
+    text = RIGHT.replace("x_cm = 50", "x_cm = true") + "[[lamps]]\nz_cm = 1\n"
+    assert len(refused(text)) == 4  # the start, x, y and z of the lamp
+
+
+def test_sentences_have_the_same_gaps_in_both_languages() -> None:
+    for code, both in world_refusals.SENTENCES.items():
+        gaps = [{name for _, name, _, _ in Formatter().parse(both[lang])} for lang in LANGUAGES]
+        assert gaps[0] == gaps[1], code
+
+
+@needs_wasmtime
+def test_a_robot_that_does_not_fit_is_refused() -> None:
+    with pytest.raises(WorldRefused) as found:
+        robot_in(floor(start="x_cm = 5\ny_cm = 50"))
+    [said] = world_refusals.describe(found.value, "en")
+    assert said.startswith("The robot does not fit where it starts, at x_cm = 5, y_cm = 50. Move")
+
+
+@needs_wasmtime
+@pytest.mark.parametrize("verb", [["robot"], ["upload", "--virtual", "-e", "SI|S"]])
+def test_files_that_are_no_worlds(tsc: Tsc, tmp_path: Path, verb: list[str]) -> None:
+    binary, large, wrong = tmp_path / "b.toml", tmp_path / "l.toml", tmp_path / "w.toml"
+    binary.write_bytes(bytes(range(256)))
+    large.write_bytes(b"#" * 70_000)
+    wrong.write_text(RIGHT + "[[lamps]]\n", encoding="utf-8")
+    for name, said in (
+        ("obstacle", "Did you mean obstacles?"),
+        ("nowhere", "Take one of these: obstacles, light, line"),
+        ("", "There is no world"),
+        (str(tmp_path), "is a folder"),
+        (str(tmp_path / "missing.toml"), "There is no file"),
+        (str(binary), "is not UTF-8"),
+        (str(large), "Check that it is a world"),
+        (str(wrong), "w.toml cannot be used:\n  lamps[1].x_cm is missing"),
+        ("a\0b.toml", "cannot be read"),
+    ):
+        for language in LANGUAGES:
+            done = tsc(*verb, "--world", name, "--lang", language)
+            assert done.code == 2
+            assert (said in done.err) == (language == "en"), done.err

@@ -1,0 +1,155 @@
+"""Random programs: the compiler and the machine agree with the oracle, trace by trace.
+
+The oracle is an interpreter of its own, written from the language reference alone: it shares no
+line with the compiler. `python -m tests.vm.test_agreement 100000` runs a campaign.
+"""
+
+from __future__ import annotations
+
+import random
+import sys
+from typing import NamedTuple
+
+import pytest
+
+from tests.machines import MACHINES, ONE_IN, Machine, Senses
+from tests.oracle import interpreter, programs
+from tests.support.kits import KITS
+from tiniscript import Compiled, compile_text
+from tiniscript.bytecode.disassembly import listing, read_listing
+from tiniscript.bytecode.verify import verify
+from tiniscript.diagnostics.rendering import as_text, message
+from tiniscript.kit import Kit
+from tiniscript.source import Source
+from tiniscript.syntax.formatter import formatted
+
+MAX_MS, MAX_STEPS = 20_000, 20_000
+BATCH = 500
+BATCHES = 40  # in the tests; a campaign runs more
+
+
+def same(want: str, got: str) -> bool:
+    """Whether two traces mean the same: where `max-steps` cuts is not part of the meaning."""
+    if want == got:
+        return True
+    ours, theirs = got.splitlines(), want.splitlines()
+    if not any(_is_cut(lines[-1]) for lines in (ours, theirs)):
+        return False
+    shorter = min(len(ours), len(theirs)) - 1
+    return ours[:shorter] == theirs[:shorter]
+
+
+def _is_cut(line: str) -> bool:
+    return line.endswith(" LIMIT") and line != f"{MAX_MS} LIMIT"
+
+
+class RandomProgram(NamedTuple):
+    """A text, with the trace that the oracle wants."""
+
+    seed: int
+    text: str
+    kit: Kit
+    senses: Senses
+    want: str
+    short: Compiled
+    plain: Compiled  # not optimised
+
+
+def random_program(seed: int) -> RandomProgram:
+    rng = random.Random(seed)
+    oracle_kit, kit = KITS[seed % len(KITS)]
+    text = programs.program(rng, oracle_kit)
+    readings = programs.senses(rng, oracle_kit)
+    want = interpreter.run(text, oracle_kit, readings, MAX_MS, MAX_STEPS, seed + 1)
+    senses = Senses(readings, MAX_MS, MAX_STEPS, seed + 1)
+    short = compile_text(text, kit)
+    plain = compile_text(text, kit, optimize=False)
+    return RandomProgram(seed, text, kit, senses, want, short, plain)
+
+
+def check_machine(program: RandomProgram, name: str, machine: Machine) -> None:
+    """A machine does what the oracle says."""
+    for how, image in (("", program.short.image), (", plain", program.plain.image)):
+        trace = machine(image, program.kit, program.senses)
+        assert same(program.want, trace), f"{name}, seed {program.seed}{how}:\n{program.text}"
+
+
+def check_program(seed: int) -> None:
+    """Everything that must hold for one random program."""
+    program = random_program(seed)
+    _, text, kit, _, _, short, plain = program
+    assert short.is_right, text
+    for name, machine in MACHINES.items():
+        if seed % ONE_IN.get(name, 1) == 0:
+            check_machine(program, name, machine)
+    assert len(short.code) <= len(plain.code)
+    assert read_listing(listing(short.code)) == short.code
+    laid_out = formatted(Source(text))
+    assert compile_text(laid_out, kit).image == short.image, f"seed {seed}, formatted:\n{text}"
+    assert formatted(Source(laid_out)) == laid_out
+
+
+def check_broken(seed: int) -> None:
+    """A broken text is refused by both, or by neither, and always said in words."""
+    rng = random.Random(seed)
+    oracle_kit, kit = KITS[seed % len(KITS)]
+    text = programs.broken(rng, programs.program(rng, oracle_kit))
+    try:
+        want = interpreter.run(text, oracle_kit, {}, MAX_MS, MAX_STEPS, 1)
+    except interpreter.Mistake:
+        want = None
+    compiled = compile_text(text, kit)
+    for language in ("en", "es"):
+        for problem in compiled.problems[:5]:
+            assert as_text(message(problem, compiled.source, language), compiled.source, language)
+    if want is None:
+        assert not compiled.is_right or reads_more(text), f"seed {seed}, oracle refuses:\n{text}"
+    else:
+        assert compiled.is_right, f"seed {seed}, oracle accepts:\n{text}"
+        verify(compiled.code, len(kit.sensors), len(kit.actuators))
+
+
+def reads_more(text: str) -> bool:
+    """Whether a text has dashes and blanks that the compiler reads and the oracle leaves alone."""
+    dashes, blanks = "\u2010\u2011\u2012\u2013\u2014\u2015\u2212", "\f\v\u200b\u2028\u3000\ufeff"
+    return any(letter in text for letter in dashes + blanks)
+
+
+def batches() -> list[range]:
+    return [range(number * BATCH, (number + 1) * BATCH) for number in range(BATCHES)]
+
+
+@pytest.mark.parametrize("seeds", batches(), ids=lambda seeds: f"from {seeds.start}")
+def test_random_programs(seeds: range) -> None:
+    for seed in seeds:
+        check_program(seed)
+
+
+@pytest.mark.parametrize("seeds", batches(), ids=lambda seeds: f"from {seeds.start}")
+def test_broken_programs(seeds: range) -> None:
+    for seed in seeds:
+        check_broken(seed)
+
+
+@pytest.mark.parametrize("part", range(16))
+def test_the_compiler_never_makes_what_verify_refuses(part: int) -> None:
+    """10^5 random programs in all, optimised or not."""
+    for number in range(6250):
+        seed = 1_000_000 + part * 6250 + number
+        rng = random.Random(seed)
+        oracle_kit, kit = KITS[seed % len(KITS)]
+        compiled = compile_text(programs.program(rng, oracle_kit), kit, optimize=seed % 3 > 0)
+        assert compiled.is_right
+        verify(compiled.code, len(kit.sensors), len(kit.actuators))
+
+
+def campaign(first: int, count: int) -> None:
+    for seed in range(first, first + count):
+        check_program(seed)
+        check_broken(seed)
+        if seed % 1000 == 999:
+            print(f"{seed + 1 - first} programs agree", flush=True)
+
+
+if __name__ == "__main__":
+    campaign(BATCH * BATCHES, int(sys.argv[1]) if len(sys.argv) > 1 else 100_000)

@@ -1,0 +1,130 @@
+"""Every case of every document, on every machine that must agree about it."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.machines import MACHINES, Machine, Senses
+from tests.support.casefile import Case, accept, all_cases
+from tiniscript import Compiled, compile_text, robots
+from tiniscript.bytecode.disassembly import listing, read_listing
+from tiniscript.bytecode.image import pack
+from tiniscript.bytecode.verify import Refused, verify
+from tiniscript.cli.options import decimal
+from tiniscript.diagnostics.rendering import as_text, message
+from tiniscript.robots.profile import Robot
+from tiniscript.syntax.formatter import formatted
+
+CASES = all_cases()
+
+
+def robot_and_senses(case: Case) -> tuple[Robot, Senses]:
+    """Return what the fence `senses` says: `robot`, `max-time`, `seed`, and a list a sensor."""
+    readings: dict[str, list[int]] = {}
+    options = {"robot": robots.DEFAULT, "max-time": "60", "seed": "1"}
+    for row in case.parts.get("senses", "").splitlines():
+        name, _, values = (part.strip() for part in row.partition("="))
+        if name in options:
+            options[name] = values
+        else:
+            words = {"TRUE": 1, "FALSE": 0}
+            read = [words.get(text.strip(), decimal(text.strip())) for text in values.split(",")]
+            readings[name] = [value for value in read if value is not None]
+            assert len(readings[name]) == len(read), f"{case.id}: {row}"
+    max_ms = decimal(options["max-time"])
+    assert max_ms is not None
+    return robots.load(options["robot"]), Senses(readings, max_ms, seed=int(options["seed"]))
+
+
+def language_of(case: Case) -> str:
+    return "es" if case.path.stem.endswith("es") else "en"
+
+
+def compiled(case: Case) -> Compiled:
+    robot, _ = robot_and_senses(case)
+    return compile_text(case.parts["tiniscript"].removesuffix("\n"), robot.kit)
+
+
+def trace_of(case: Case, machine: Machine) -> str:
+    """Return what a program or a listing that stands alone does on a machine."""
+    robot, senses = robot_and_senses(case)
+    if "tiniscript" in case.parts:
+        image = compiled(case).image
+    else:
+        image = pack("SI", robot.kit.fingerprint, read_listing(case.parts["bytecode"]))
+    return machine(image, robot.kit, senses)
+
+
+def expect(case: Case, part: str, actual: str, request: pytest.FixtureRequest) -> None:
+    if actual != case.parts[part] and request.config.getoption("--accept"):
+        accept(case, part, actual)
+        return
+    assert actual == case.parts[part], f"{case.path.name}:{case.line}"
+
+
+def having(*parts: str) -> list[pytest.ParameterSet]:
+    return [pytest.param(each, id=each.id) for each in CASES if all(p in each.parts for p in parts)]
+
+
+@pytest.mark.parametrize("case", having("tiniscript"))
+def test_program_compiles_or_its_mistake_is_stated(case: Case) -> None:
+    """A program without a `mistake` fence has none; nothing in a document is wrong by accident."""
+    found = compiled(case)
+    assert found.is_right == ("mistake" not in case.parts), [p.code for p in found.problems]
+
+
+@pytest.mark.parametrize("machine", MACHINES)
+@pytest.mark.parametrize("case", having("tiniscript", "robot"))
+def test_robot(case: Case, machine: str, request: pytest.FixtureRequest) -> None:
+    expect(case, "robot", trace_of(case, MACHINES[machine]), request)
+
+
+@pytest.mark.parametrize("case", having("tiniscript", "bytecode"))
+def test_bytecode_of_a_program(case: Case, request: pytest.FixtureRequest) -> None:
+    expect(case, "bytecode", listing(compiled(case).code), request)
+
+
+@pytest.mark.parametrize(
+    "case", [*having("tiniscript", "mistake"), *having("tiniscript", "warning")]
+)
+def test_what_is_said(case: Case, request: pytest.FixtureRequest) -> None:
+    found = compiled(case)
+    for part, is_mistake in (("mistake", True), ("warning", False)):
+        if part in case.parts:
+            said = [
+                as_text(
+                    message(each, found.source, language_of(case)), found.source, language_of(case)
+                )
+                for each in found.problems
+                if each.is_mistake == is_mistake
+            ]
+            expect(case, part, "\n\n".join(said) + "\n", request)
+
+
+@pytest.mark.parametrize("case", having("tiniscript", "formatted"))
+def test_formatted(case: Case, request: pytest.FixtureRequest) -> None:
+    expect(case, "formatted", formatted(compiled(case).source), request)
+
+
+def listings_alone() -> list[pytest.ParameterSet]:
+    alone = [case for case in CASES if "tiniscript" not in case.parts and "bytecode" in case.parts]
+    return [pytest.param(case, id=case.id) for case in alone]
+
+
+@pytest.mark.parametrize("machine", MACHINES)
+@pytest.mark.parametrize("case", listings_alone())
+def test_listing_runs_or_is_refused(
+    case: Case, machine: str, request: pytest.FixtureRequest
+) -> None:
+    """A listing that stands alone is run as it is, or refused with the rule and the offset."""
+    code = read_listing(case.parts["bytecode"])
+    if "refused" in case.parts:
+        robot, _ = robot_and_senses(case)
+        with pytest.raises(Refused) as refused:
+            verify(code, len(robot.kit.sensors), len(robot.kit.actuators))
+        error = refused.value
+        expect(case, "refused", f"{error.number} {error.name} at {error.offset:04x}\n", request)
+        return
+    assert listing(code) == case.parts["bytecode"]
+    if "robot" in case.parts:
+        expect(case, "robot", trace_of(case, MACHINES[machine]), request)

@@ -1,0 +1,192 @@
+"""Python and C++ agree: verdicts, refusals, arithmetic, and every line of every run.
+
+`python -m tests.vm.test_cpp_agreement 10000000` compares more random codes than the tests, and
+`--three` all codes of three bytes.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import time
+from collections import Counter
+
+import pytest
+
+from tests.machines import MACHINES
+from tests.machines.host import host, missing
+from tests.support import cpp_checks, cpp_edges
+from tests.support.casefile import Case
+from tests.vm.test_cases import listings_alone
+from tiniscript.bytecode.opcodes import BY_NAME, CODE_BYTES
+
+needs_host = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a host machine")
+BATCH = 25_000
+BATCHES = 40  # in the tests
+
+
+def test_the_host_machine_is_there() -> None:
+    """Without a compiler this leg is left out, and says so; in CI that is a failure."""
+    if missing():
+        assert not os.environ.get("CI"), missing()
+        pytest.skip(missing())
+    assert "host" in MACHINES
+
+
+# -- code ---------------------------------------------------------------------------------------
+
+
+@needs_host
+@pytest.mark.parametrize("case", listings_alone())
+def test_listing_has_the_same_verdict(case: Case) -> None:
+    cpp_checks.check_listing(host(), case)
+
+
+@needs_host
+@pytest.mark.parametrize("length", [0, 1, CODE_BYTES - 1, CODE_BYTES, CODE_BYTES + 1, 100_000])
+def test_length_of_code(length: int) -> None:
+    cpp_checks.check_length(host(), length)
+
+
+@needs_host
+@pytest.mark.parametrize("devices", [0, 1, 32, 33, 255])
+def test_number_of_devices(devices: int) -> None:
+    cpp_checks.check_devices(host(), devices)
+
+
+@needs_host
+def test_all_codes_of_up_to_two_bytes() -> None:
+    cpp_checks.check_short_codes(host())
+
+
+@needs_host
+@pytest.mark.parametrize("few_at", [1, 2])
+def test_codes_of_three_bytes_with_two_opcodes(few_at: int) -> None:
+    cpp_checks.check_pairs(host(), few_at)
+
+
+@needs_host
+@pytest.mark.parametrize("first", range(0, 256, 16), ids=lambda first: f"from {first:02x}")
+def test_all_codes_of_three_bytes_run_safely(first: int) -> None:
+    cpp_checks.check_runs_safely(host(), first)
+
+
+@needs_host
+@pytest.mark.parametrize(
+    "name",
+    ["PUSH_TRUE", "PUSH_VAR", "ADD_VAR", "READ", "MOVE8_F", "MOTORS8", "STOP", "FOREVER", "DEF"],
+)
+def test_codes_of_three_bytes_that_begin_alike(name: str) -> None:
+    """A sample of `--three`: what begins with an instruction of one, two or three bytes."""
+    assert cpp_checks.check_three(host(), BY_NAME[name].code) > 0
+
+
+@needs_host
+@pytest.mark.parametrize("seed", range(BATCHES))
+def test_random_codes(seed: int) -> None:
+    """A million in all."""
+    cpp_checks.check_a_batch(host(), seed, BATCH)
+
+
+@needs_host
+def test_many_defs() -> None:
+    cpp_edges.check_many_defs(host())
+
+
+@needs_host
+def test_what_is_closed_takes_no_room() -> None:
+    cpp_edges.check_what_is_closed(host())
+
+
+@needs_host
+def test_a_procedure_needs_what_it_calls_needs() -> None:
+    cpp_edges.check_needs(host())
+
+
+@needs_host
+def test_everything_has_a_place_of_its_own() -> None:
+    cpp_edges.check_places(host())
+
+
+@needs_host
+def test_a_program_may_run_for_24_days() -> None:
+    cpp_edges.check_long_time(host())
+
+
+@needs_host
+def test_whatever_the_code_the_machine_keeps_to_its_memory() -> None:
+    cpp_checks.check_memory(host())
+
+
+@needs_host
+def test_code_that_changed_after_it_was_verified() -> None:
+    cpp_edges.check_run_time_checks(host())
+
+
+# -- time and a robot that is not ready ---------------------------------------------------------
+
+
+@needs_host
+@pytest.mark.parametrize("begin_ms", [1, 2**31 - 500, 2**31, 2**32 - 1, 2**32 - 1500])
+def test_the_clock_may_wrap_around(begin_ms: int) -> None:
+    cpp_checks.check_clock(host(), begin_ms)
+
+
+@needs_host
+@pytest.mark.parametrize("late_ms", [0, 1, 19, 20, 21, 25, 100, 3000])
+def test_ticks_may_come_late(late_ms: int) -> None:
+    cpp_checks.check_late(host(), late_ms)
+
+
+@needs_host
+def test_a_robot_that_is_not_ready_is_asked_again() -> None:
+    cpp_checks.check_not_ready(host())
+
+
+# -- images and arithmetic ----------------------------------------------------------------------
+
+
+@needs_host
+@pytest.mark.parametrize("seed", range(4))
+def test_images(seed: int) -> None:
+    cpp_checks.check_images(host(), seed, BATCH)
+
+
+@needs_host
+def test_long_images() -> None:
+    cpp_checks.check_long_images(host())
+
+
+@needs_host
+@pytest.mark.parametrize("name", cpp_checks.OPERATIONS)
+def test_arithmetic(name: str) -> None:
+    """Two million operations in all."""
+    cpp_checks.check_arithmetic(host(), name, 100_000)
+
+
+# -- a campaign ---------------------------------------------------------------------------------
+
+
+def campaign(count: int) -> None:
+    begun = time.monotonic()
+    total: Counter[str] = Counter()
+    done = 0
+    for seed in range(BATCHES, BATCHES + -(-count // BATCH)):
+        total += cpp_checks.check_codes(host(), seed, BATCH)
+        done += BATCH
+        print(f"{done} codes agree, {done / (time.monotonic() - begun):.0f} a second", flush=True)
+    print(", ".join(f"{what}: {times}" for what, times in sorted(total.items())))
+
+
+def all_of_three() -> None:
+    for first in range(256):
+        accepted = cpp_checks.check_three(host(), first)
+        print(f"{first:02x}: {accepted} accepted", flush=True)
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("count", nargs="?", type=int, default=1_000_000)
+    parser.add_argument("--three", action="store_true", help="all codes of three bytes instead")
+    options = parser.parse_args()
+    all_of_three() if options.three else campaign(options.count)

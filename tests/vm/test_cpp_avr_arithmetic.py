@@ -1,0 +1,131 @@
+"""A hundred thousand operations on a simulated ATmega328P, against `thousandths.py`.
+
+The chip makes the numbers itself, in the way that `pairs` does, and says a checksum for each block
+of results. Where one differs, the chip is asked for that block again, result by result.
+"""
+
+from __future__ import annotations
+
+import os
+import zlib
+from collections.abc import Iterator, Sequence
+from itertools import cycle, islice
+from struct import pack
+from typing import NamedTuple
+
+import pytest
+
+from tests.support.cpp_checks import NUMBER_OF, OPERATIONS, python_result
+from tests.support.random_codes import EDGES
+from tiniscript import fixed_point
+from tiniscript.bytecode.opcodes import BY_NAME
+from tools import avr_bench
+
+BLOCK, BLOCKS = 500, 50  # of one seed
+NO_BLOCK = 0xFFFF
+
+needs_chip = pytest.mark.skipif(
+    bool(avr_bench.missing()), reason=avr_bench.missing() or "there is a simulated chip"
+)
+
+
+class Operation(NamedTuple):
+    name: str
+    a: int
+    b: int
+
+    def result(self) -> tuple[int, int]:
+        """Return the number of the fault, or 0, and what Python calculates."""
+        if self.name != "RANDOM":
+            return python_result(self.name, self.a, self.b)
+        state = fixed_point.next_random(self.b % 2**32 | 1)
+        try:
+            return 0, fixed_point.random_between(self.a, self.b, state)
+        except fixed_point.Fault as fault:
+            return NUMBER_OF[fault.name], 0
+
+
+def numbers(state: int) -> Iterator[int]:
+    """Yield numbers of any size, as many small ones as large ones; one in 8 is an edge."""
+    while True:
+        state = fixed_point.next_random(state)
+        choice = state >> 24
+        state = fixed_point.next_random(state)
+        if choice < 32:
+            yield EDGES[(state >> 8) % len(EDGES)]
+        else:
+            yield (state - (state >> 31 << 32)) >> (choice & 31)
+
+
+def operations(seed: int, blocks: int) -> list[Operation]:
+    made = numbers(seed)
+    names = islice(cycle(OPERATIONS), BLOCK * blocks)
+    return [Operation(name, next(made), second(name, next(made))) for name in names]
+
+
+def second(name: str, b: int) -> int:
+    """Return the second value: of ROUND, every other time from -8 to 8 decimals."""
+    return (b & 0x3FFF) - 0x2000 if name == "ROUND" and b & 1 else b
+
+
+def chip(seed: int, blocks: int, detailed: int = NO_BLOCK) -> list[str]:
+    """Return the checksum of each block; or those before `detailed`, and each of its results."""
+    codes = [BY_NAME[name].code for name in OPERATIONS]
+    request = pack("<IHHH", seed, blocks, BLOCK, detailed)
+    request += bytes((len(codes), *codes, len(EDGES))) + pack(f"<{len(EDGES)}i", *EDGES)
+    return avr_bench.run(avr_bench.built("arithmetic"), request)
+
+
+def checksum(block: Sequence[Operation]) -> int:
+    return zlib.crc32(b"".join(pack("<Bi", *each.result()) for each in block))
+
+
+def compare(seed: int, blocks: int = BLOCKS) -> None:
+    """Assert that the chip calculates what Python does; name the operation where it does not."""
+    every = operations(seed, blocks)
+    said = [int(line) for line in chip(seed, blocks)]
+    assert len(said) == blocks
+    for number, theirs in enumerate(said):
+        block = every[number * BLOCK : (number + 1) * BLOCK]
+        if checksum(block) == theirs:
+            continue
+        for each, line in zip(block, chip(seed, blocks, number)[number:], strict=True):
+            fault, result = map(int, line.split())
+            assert each.result() == (fault, result), f"{each.name} {each.a} {each.b}"
+        raise AssertionError(f"the checksum of block {number} alone is wrong")
+
+
+def test_there_are_operations_of_every_kind() -> None:
+    every = operations(1, BLOCKS)
+    pairs = {(each.a, each.b) for each in every}
+    assert len(pairs) > 0.95 * len(every)
+    assert {each.a for each in every} >= set(EDGES)
+    for name in OPERATIONS:
+        sizes = {abs(each.a).bit_length() for each in every if each.name == name}
+        assert sizes >= set(range(32)), name
+    faults = {(each.name, each.result()[0]) for each in every}
+    assert {("MUL", 1), ("DIV", 1), ("DIV", 2), ("MOD", 2), ("NEG", 1)} <= faults
+
+
+@needs_chip
+@pytest.mark.parametrize("seed", range(1, 5))
+def test_arithmetic(seed: int) -> None:
+    """25,000 operations for each seed; a hundred thousand in all."""
+    compare(seed)
+
+
+@needs_chip
+@pytest.mark.parametrize("name", ["MUL", "ROUND", "LE", "END"])
+def test_a_wrong_result_is_named(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where one of sixteen results differs, and only by one, it is found."""
+    right = OPERATIONS[name]
+    monkeypatch.setitem(OPERATIONS, name, lambda a, b: int(right(a, b)) ^ (b % 16 == 7))
+    with pytest.raises(AssertionError, match=rf"^{name} -?\d+ -?\d+"):
+        compare(1, blocks=4)
+
+
+def test_the_simulated_chip_is_there() -> None:
+    """Without its tools this leg is left out, and says so; in CI that is a failure."""
+    if avr_bench.missing():
+        assert not os.environ.get("CI"), avr_bench.missing()
+        pytest.skip(avr_bench.missing())

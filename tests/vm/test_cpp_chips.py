@@ -1,0 +1,143 @@
+"""The cases, and samples of random programs, codes, images and numbers, on simulated chips.
+
+The ATmega328P (`avr`) is started for each image: it runs 400 programs and some 2,000 codes. The
+chips of ESP boards (`lx6`, `lx106`, `rv32imc`) run in emulators that answer nearly as quickly as
+the host's process: each also judges 16,000 codes and runs those that are accepted, judges 10,000
+images, and does 210,000 operations.
+"""
+
+from __future__ import annotations
+
+import os
+import random
+from functools import partial
+
+import pytest
+
+from tests.machines import Senses, avr
+from tests.machines.chips import Chip
+from tests.machines.host import Ran
+from tests.machines.python import ran_python
+from tests.machines.qemu import emulated
+from tests.machines.qemu import missing as emulator_missing
+from tests.oracle import programs
+from tests.support import cpp_checks
+from tests.support.casefile import Case
+from tests.support.kits import KITS
+from tests.support.random_codes import random_codes
+from tests.vm.test_cases import compiled, having, listings_alone, robot_and_senses
+from tiniscript import compile_text
+from tiniscript.bytecode.disassembly import read_listing
+from tiniscript.bytecode.image import ImageRefused, pack
+from tiniscript.bytecode.verify import Refused
+from tiniscript.kit import Kit
+from tools import chips
+
+
+def _run_emulated(name: str, image: bytes, kit: Kit, senses: Senses) -> Ran:
+    return emulated(name).run(image, kit, senses)
+
+
+CHIPS = {"avr": Chip(avr.missing(), avr.ran_on_avr, 700)}
+CHIPS |= {name: Chip(emulator_missing(name), partial(_run_emulated, name)) for name in chips.CHIPS}
+
+
+def some_chips(*names: str) -> pytest.MarkDecorator:
+    """Run a test once for each of these chips, or skip it and say what is missing."""
+    marks = {
+        name: pytest.mark.skipif(bool(CHIPS[name].missing), reason=CHIPS[name].missing or "here")
+        for name in names
+    }
+    return pytest.mark.parametrize("chip", [pytest.param(n, marks=marks[n]) for n in names])
+
+
+each_chip = some_chips(*CHIPS)
+each_emulated = some_chips(*chips.CHIPS)
+
+
+@pytest.mark.parametrize("chip", CHIPS)
+def test_the_simulated_chip_is_there(chip: str) -> None:
+    """Without its tools this leg is left out, and says so; in CI that is a failure."""
+    if CHIPS[chip].missing:
+        assert not os.environ.get("CI"), CHIPS[chip].missing
+        pytest.skip(CHIPS[chip].missing)
+
+
+def same_on_the_chip(chip: str, image: bytes, kit: Kit, senses: Senses) -> str:
+    """Assert that the chip says and does the same as Python; return the last line."""
+    want: Ran | str
+    got: Ran | str
+    try:
+        want = ran_python(image, kit, senses)
+    except (Refused, ImageRefused) as refused:
+        want = repr(refused)
+    try:
+        got = CHIPS[chip].run(image, kit, senses)
+    except (Refused, ImageRefused) as refused:
+        got = repr(refused)
+    assert got == want, image.hex(" ")
+    return want if isinstance(want, str) else want.trace.splitlines()[-1]
+
+
+@each_chip
+@pytest.mark.parametrize("case", having("tiniscript", "robot"))
+def test_robot(case: Case, chip: str) -> None:
+    robot, senses = robot_and_senses(case)
+    ran = CHIPS[chip].run(compiled(case).image, robot.kit, senses)
+    assert ran.trace == case.parts["robot"], case.id
+
+
+@each_chip
+@pytest.mark.parametrize("case", listings_alone())
+def test_listing_runs_or_is_refused(case: Case, chip: str) -> None:
+    robot, senses = robot_and_senses(case)
+    image = pack("SI", robot.kit.fingerprint, read_listing(case.parts["bytecode"]))
+    limited = senses._replace(max_ms=min(senses.max_ms, 5000), max_steps=5000)
+    ending = same_on_the_chip(chip, image, robot.kit, limited)
+    assert ("Refused" in ending) == ("refused" in case.parts)
+
+
+@each_chip
+@pytest.mark.parametrize("seed", range(4))
+def test_random_programs(chip: str, seed: int) -> None:
+    for number in range(100):
+        rng = random.Random(seed * 1000 + number)
+        oracle_kit, kit = KITS[number % 2]
+        image = compile_text(programs.program(rng, oracle_kit), kit).image
+        if len(image) <= CHIPS[chip].most_bytes:
+            readings = programs.senses(rng, oracle_kit)
+            same_on_the_chip(chip, image, kit, Senses(readings, 3000, 2000, number + 1))
+
+
+@some_chips("avr")
+@pytest.mark.parametrize("seed", range(4))
+def test_some_random_codes(chip: str, seed: int) -> None:
+    endings = set()
+    kit = KITS[seed % 2][1]
+    for number, code in enumerate(random_codes(seed, 8000)):
+        if number % 20 < 1 or number % 40 == 16:  # deep blocks and expressions among them
+            if len(code) <= 680:
+                image = pack("SB", kit.fingerprint, code)
+                ending = same_on_the_chip(chip, image, kit, Senses(max_ms=3000, max_steps=300))
+                endings.add(ending.split(" ", 1)[-1])
+    assert {"DONE", "FAULT OVERFLOW"} <= endings
+
+
+@each_emulated
+@pytest.mark.parametrize("seed", range(2))
+def test_random_codes(chip: str, seed: int) -> None:
+    """Rules and offsets of random and mutated codes; those that are accepted run."""
+    seen = cpp_checks.check_codes(emulated(chip), seed, 8000)
+    assert {"DONE", "LIMIT", "OVERFLOW", "DIVIDE_BY_ZERO"} <= set(seen)
+    assert seen["accepted"] > 500
+
+
+@each_emulated
+def test_images(chip: str) -> None:
+    cpp_checks.check_images(emulated(chip), 0, 10_000)
+
+
+@each_emulated
+@pytest.mark.parametrize("name", cpp_checks.OPERATIONS)
+def test_arithmetic(chip: str, name: str) -> None:
+    cpp_checks.check_arithmetic(emulated(chip), name, 10_000)

@@ -1,0 +1,322 @@
+"""`machine.wasm`: made from the sources that are here, and the same machine as Python's."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.machines import MACHINES
+from tests.machines.wasm import missing
+from tests.project.test_directions import imported_by
+from tests.support.casefile import ROOT, Case
+from tests.support.command import Tsc
+from tests.support.kits import KITS
+from tests.vm.test_cases import having, listings_alone, robot_and_senses
+from tiniscript import compile_text, robots
+from tiniscript.bytecode.disassembly import read_listing
+from tiniscript.bytecode.image import Image, ImageRefused, pack, unpack
+from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
+from tiniscript.bytecode.verify import Refused, verify
+from tiniscript.cli import install_advice
+from tiniscript.cli.commands import run
+from tiniscript.vm.machine import Machine
+from tiniscript.vm.state import WAITING
+from tiniscript.vm.trace import AnyMachine
+from tools import build_wasm
+
+needs_wasmtime = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
+needs_zig = pytest.mark.skipif(
+    bool(build_wasm.missing()), reason=build_wasm.missing() or "there is a compiler"
+)
+KIT = robots.load("tinibot").kit
+
+
+def test_the_wasm_machine_and_its_compiler_are_there() -> None:
+    """Without them this leg is left out, and says so; in CI that is a failure."""
+    reason = missing() or build_wasm.missing()
+    if reason:
+        assert not os.environ.get("CI"), reason
+        pytest.skip(reason)
+    assert "wasm" in MACHINES
+
+
+# -- the module ---------------------------------------------------------------------------------
+
+
+@needs_zig
+def test_the_module_is_made_from_these_sources(tmp_path: Path) -> None:
+    """Byte for byte, wherever they are."""
+    copy = Path(shutil.copytree(ROOT / "vm_arduino", tmp_path / "some where" / "else"))
+    for module in build_wasm.MODULES:
+        kept = (ROOT / module.path).read_bytes()
+        stale = f"{module.path} is stale. Run: {build_wasm.COMMAND}"
+        assert build_wasm.built(ROOT / "vm_arduino", module) == kept, stale
+        assert build_wasm.built(copy, module) == kept
+
+
+@needs_zig
+def test_another_machine_is_another_module(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    modules = build_wasm.MODULES
+    for module in modules:
+        stale = tmp_path / module.path
+        stale.parent.mkdir(parents=True, exist_ok=True)
+        stale.write_bytes(b"\0asm")
+    copy = Path(shutil.copytree(ROOT / "vm_arduino", tmp_path / "vm_arduino"))
+    source = copy / "src" / "vm" / "vm.cpp"
+    text = source.read_text(encoding="utf-8")
+    source.write_text(text.replace("kLateMs = 20", "kLateMs = 21"), encoding="utf-8")
+    for module in modules:
+        assert build_wasm.built(copy, module) != (ROOT / module.path).read_bytes()
+    shutil.copy(ROOT / "pyproject.toml", tmp_path)
+    monkeypatch.setattr(build_wasm, "ROOT", tmp_path)
+    assert build_wasm.main(["--check"]) == 1
+    said = capsys.readouterr().err
+    assert said.count("stale. Run: python tools/build_wasm.py") == len(modules) == 2
+    assert build_wasm.main([]) == 0
+    assert build_wasm.main(["--check"]) == 0
+    source.write_text("?", encoding="utf-8")
+    with pytest.raises(SystemExit, match=r"refuses extras/wasm/main\.cpp"):
+        build_wasm.main([])
+
+
+def test_another_compiler_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(build_wasm, "version", lambda name: "0.1.0")
+    with pytest.raises(SystemExit, match=r"here is 0\.1\.0\. Run: pip install ziglang=="):
+        build_wasm.main([])
+
+
+@needs_wasmtime
+def test_the_module_imports_the_robot_alone() -> None:
+    """No heap, no system, and no path of the computer that made it."""
+    from wasmtime import Engine, Module
+
+    machine = {"motors", "off", "read", "beep", "show", "set"}
+    imported = {build_wasm.MACHINE: machine, build_wasm.ROBOT: {"look"}}
+    for each, names in imported.items():
+        data = (ROOT / each.path).read_bytes()
+        module = Module(Engine(), data)
+        assert {found.module for found in module.imports} == {"robot"}
+        assert {found.name for found in module.imports} == names
+        assert not [word for word in (b".cpp", b"zig", b"clang", b"producers") if word in data]
+
+
+# -- the command --------------------------------------------------------------------------------
+
+
+def both(tsc: Tsc, *arguments: str) -> tuple[int, str, str]:
+    """Assert that both machines print the same and end alike; return what they do."""
+    ours = tsc("run", *arguments)
+    theirs = tsc("run", "--machine", "cpp", *arguments)
+    assert (theirs.code, theirs.out, theirs.err) == (ours.code, ours.out, ours.err)
+    return theirs.code, theirs.out, theirs.err
+
+
+@needs_wasmtime
+@pytest.mark.parametrize("case", having("tiniscript", "robot"))
+def test_run_says_the_same(case: Case, tsc: Tsc) -> None:
+    robot, _ = robot_and_senses(case)
+    options = ["--robot", robot.name]
+    for row in case.parts.get("senses", "").splitlines():
+        name, _, values = (part.strip() for part in row.partition("="))
+        if name in ("max-time", "seed"):
+            options += [f"--{name}", values]
+        elif name != "robot":
+            options += ["--sensor", f"{name}={values}"]
+    code, out, _ = both(tsc, "-e", case.parts["tiniscript"].removesuffix("\n"), *options)
+    assert out == case.parts["robot"]
+    assert code == (" FAULT " in out)
+
+
+@needs_wasmtime
+@pytest.mark.parametrize("program", ["SB|F(1, 50)", "SI|F(1, 50)", "PING|check_connection"])
+def test_every_way_to_start(program: str, tsc: Tsc, tmp_path: Path) -> None:
+    both(tsc, "-e", program)
+    image = tmp_path / "some.bin"
+    assert tsc("compile", "-e", program, "-o", image).code == 0
+    assert both(tsc, str(image))[1].endswith(" DONE\n")
+
+
+@needs_wasmtime
+@pytest.mark.parametrize("language", ["en", "es"])
+def test_a_fault_has_its_line(language: str, tsc: Tsc) -> None:
+    code, out, err = both(tsc, "-e", "F(1, 50)\nA = 0\nSHOW(5 / A)", "--lang", language)
+    assert code == 1
+    assert out.endswith("1000 FAULT DIVIDE_BY_ZERO\n")
+    assert "SHOW(5 / A)" in err
+    assert "3" in err
+
+
+@needs_wasmtime
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["-e", "FOREVER; A = A + 1; END_FOREVER", "--max-steps", "5001"],
+        ["-e", "FOREVER; A = A + 1; END_FOREVER", "--max-steps", "0"],
+        ["-e", "FOREVER; W(2000000); TIME; END_FOREVER", "--max-time", "9000000"],
+        ["-e", "SHOW(RANDOM(1, 1000))", "--seed", "4294967295"],
+        ["-e", "F(2, 80)", "--max-time", "1.5"],
+        ["-e", "", "--robot", "liner"],
+    ],
+)
+def test_limits_and_seeds(arguments: list[str], tsc: Tsc) -> None:
+    both(tsc, *arguments)
+
+
+@pytest.mark.parametrize("language", ["en", "es"])
+def test_without_wasmtime_the_next_step_is_said(
+    language: str,
+    tsc: Tsc,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setitem(sys.modules, "wasmtime", None)
+    for module in ("vm.wasm_store", "vm.wasm"):
+        monkeypatch.delitem(sys.modules, f"tiniscript.{module}", raising=False)
+    done = tsc("run", "-e", "F(1, 50)", "--machine", "cpp", "--lang", language)
+    assert (done.code, done.out) == (2, "")
+    assert install_advice.command("virtual") in done.err
+    assert "--machine python" in done.err
+
+
+def test_python_runs_without_wasmtime() -> None:
+    """Nobody waits for what they did not ask for."""
+    modules = imported_by(
+        "from tiniscript.cli import main; assert main(['run', '-e', 'F(1, 50)']) == 0"
+    )
+    assert "tiniscript.vm.machine" in modules
+    assert not {"wasmtime", "tiniscript.vm.wasm"} & modules
+
+
+# -- what it refuses ----------------------------------------------------------------------------
+
+
+@needs_wasmtime
+@pytest.mark.parametrize("case", listings_alone())
+def test_verdict_of_a_listing(case: Case) -> None:
+    from tiniscript.vm.wasm import WasmImage
+
+    kit = robot_and_senses(case)[0].kit
+    sizes = len(kit.sensors), len(kit.actuators)
+    code = read_listing(case.parts["bytecode"])
+    said = []
+    for accept in (
+        lambda: verify(code, *sizes),
+        lambda: WasmImage(pack("SI", 0, code), kit.fingerprint, *sizes),
+    ):
+        try:
+            accept()
+            said.append("")
+        except Refused as refused:
+            said.append(f"{refused.number} {refused}")
+    assert said[0] == said[1]
+    assert bool(said[0]) == ("refused" in case.parts)
+
+
+@needs_wasmtime
+def test_refused_images() -> None:
+    from tiniscript.vm.wasm import WasmImage
+
+    good = compile_text("SHOW(DISTANCE)", KIT).image
+    broken = [good[:length] for length in range(len(good))]
+    broken += [good[:k] + bytes([good[k] ^ 255]) + good[k + 1 :] for k in range(len(good))]
+    broken += [good + b"?", good + bytes(60_000), good + bytes(100_000)]
+    for data in broken:
+        with pytest.raises(ImageRefused) as ours:
+            unpack(data, KIT.fingerprint)
+        with pytest.raises(ImageRefused) as theirs:
+            WasmImage(data, KIT.fingerprint, len(KIT.sensors), len(KIT.actuators))
+        assert theirs.value.name == ours.value.name
+    with pytest.raises(ImageRefused, match="OTHER_KIT"):
+        WasmImage(good, KIT.fingerprint ^ 1, len(KIT.sensors), len(KIT.actuators))
+
+
+@needs_wasmtime
+def test_two_verdicts_are_our_mistake() -> None:
+    bad = Image("SI", 0, b"\xff", 0, (ISA_MAJOR, ISA_MINOR))
+    with pytest.raises(AssertionError, match="refuses what Python accepts: UNKNOWN_OPCODE"):
+        run._cpp_machine(bad, robots.load("tinibot"))
+
+
+# -- the machine --------------------------------------------------------------------------------
+
+
+class Slow:
+    """A robot that is ready each third time that it is asked."""
+
+    def __init__(self) -> None:
+        self.asked = 0
+        self.said: list[object] = []
+
+    def is_ready(self) -> bool:
+        self.asked += 1
+        return self.asked % 3 == 0
+
+    def motors(self, left: int, right: int) -> None:
+        self.said.append((left, right))
+
+    def off(self) -> None:
+        self.said.append("off")
+
+    def read(self, sensor: int) -> int | None:
+        return (sensor - 1) * 2_147_483_000 if self.is_ready() else None
+
+    def beep(self, hertz: int, duration_ms: int) -> None:
+        self.said.append(("beep", hertz, duration_ms))
+
+    def show(self, value: int, is_yes_no: bool) -> bool:
+        if self.is_ready():
+            self.said.append((value, is_yes_no))
+            return True
+        return False
+
+    def set(self, actuator: int, value: int) -> None:
+        self.said.append(("set", actuator, value))
+
+
+PROGRAM = "B(0.3, 80); BEEP(0.2, 440); GRIPPER(90); SHOW(DISTANCE); SHOW(DISTANCE < 0); F(1, 50)"
+
+
+@needs_wasmtime
+@pytest.mark.parametrize("begin_ms", [0, 5, 2**31 - 100, 2**32 - 500])
+@pytest.mark.parametrize("budget", [1, 3, 100_000])
+def test_a_slow_robot_and_any_beginning(begin_ms: int, budget: int) -> None:
+    """Tick by tick the same, where the clock wraps around too."""
+    from tiniscript.vm.wasm import WasmImage
+
+    kit = robots.load("grabber").kit
+    compiled = compile_text(PROGRAM, kit)
+    assert compiled.is_right, compiled.problems
+    loaded = WasmImage(compiled.image, kit.fingerprint, len(kit.sensors), len(kit.actuators))
+    found = []
+    for make in (Machine, loaded.machine):
+        robot = Slow()
+        machine: AnyMachine = make(compiled.code, robot, len(kit.sensors), 1, begin_ms)
+        now_ms, seen = begin_ms, []
+        for _ in range(200):
+            status = machine.tick(now_ms, budget)
+            seen.append((status, now_ms, machine.wake_ms, machine.steps, machine.at))
+            if status == WAITING:
+                machine.tick(machine.wake_ms - 1, budget)  # too early: that changes nothing
+                now_ms = machine.wake_ms
+        found.append((seen, robot.said, machine.fault))
+    assert found[0] == found[1]
+    assert found[0][1][-1] == "off"
+
+
+@needs_wasmtime
+def test_what_a_robot_raises_comes_out() -> None:
+    from tiniscript.vm.wasm import WasmImage
+
+    class Broken(Slow):
+        def motors(self, left: int, right: int) -> None:
+            raise OSError("no motors")
+
+    compiled = compile_text("F(1, 50)", KITS[0][1])
+    machine = WasmImage(compiled.image, 0, 0, 0).machine(compiled.code, Broken())
+    with pytest.raises(OSError, match="no motors"):
+        machine.tick(0, 10)

@@ -1,0 +1,376 @@
+"""Wiring pages: every driver is drawn, every pin is there, and no profile can break a page."""
+
+from __future__ import annotations
+
+import os
+import re
+import string
+import xml.etree.ElementTree as Tree
+from html.parser import HTMLParser
+from itertools import combinations
+from pathlib import Path
+
+import pytest
+
+from tests.support.command import Tsc
+from tiniscript import robots
+from tiniscript.cli.commands import wiring
+from tiniscript.fixed_point import ONE
+from tiniscript.kit import NUMBER, Device, Kit
+from tiniscript.robots.boards import CHIPS, DRIVERS, Chip, Driver
+from tiniscript.robots.profile import LANGUAGES, Place, Robot, Wiring
+from tiniscript.robots.reader import read
+from tiniscript.wiring import parts
+from tiniscript.wiring.drawing import drawing_of
+from tiniscript.wiring.headers import SIDES
+from tiniscript.wiring.html import html_of
+from tiniscript.wiring.icons import ICONS
+from tiniscript.wiring.layout import BOARD_WIDTH, PART_WIDTH, Layout, layout_of
+from tiniscript.wiring.page import page_of, wire_rows
+from tiniscript.wiring.plan import Plan, pins_of, plan_of
+from tiniscript.wiring.texts import TEXTS
+
+DRIVER_IDS = [f"{used_by} {name}" for used_by, name in DRIVERS]
+SVG = "{http://www.w3.org/2000/svg}"
+
+
+def wired(driver: Driver, chip: Chip, taken: set[int], is_whole: bool = True) -> Wiring:
+    """Wire a driver to the first pins that fit. `is_whole`: with what is optional, too."""
+    pins = {}
+    for key, need, is_optional in driver.pins:
+        if is_optional and not is_whole:
+            continue
+        every = sorted(chip.digital | chip.analog, key=lambda pin: (-pin % 7, pin))
+        pins[key] = next(pin for pin in every if chip.can(pin, need) and pin not in taken)
+        taken.add(pins[key])
+    return Wiring(driver.name, pins, {each.key: each.default for each in driver.settings})
+
+
+def robot_with(motors: str, devices: list[Driver], chip_name: str = "mega", is_whole: bool = True,
+               label: str = "something") -> Robot:  # fmt: skip
+    """Return a robot that has these drivers, on pins all over its board."""
+    chip, tinibot = CHIPS[chip_name], robots.load("tinibot")
+    taken = {0, 1, 2, 11, 13}
+    motors_wiring = wired(DRIVERS["motors", motors], chip, taken, is_whole)
+    made: dict[str, list[tuple[Device, Wiring]]] = {"sensors": [], "actuators": []}
+    for number, driver in enumerate(devices):
+        table, kind = driver.used_by.split()
+        device = Device(f"D{number}", kind, "", 0, 5 * ONE if kind == NUMBER else 1)
+        made[table].append((device, wired(driver, chip, taken)))
+    kit = Kit(*(tuple(device for device, _ in made[table]) for table in ("sensors", "actuators")))
+    board = tinibot.board._replace(
+        chip=chip_name,
+        motors=motors_wiring,
+        sensors=tuple(wiring for _, wiring in made["sensors"]),
+        actuators=tuple(wiring for _, wiring in made["actuators"]),
+        bluetooth_state=None,
+        status_led=13,
+    )
+    names = [device.name for device in (*kit.sensors, *kit.actuators)]
+    labels = {each: {"robot": label, **dict.fromkeys(names, label)} for each in LANGUAGES}
+    body = tinibot.body._replace(places={"D0": Place(0, 0, 0, "light")})
+    return Robot("many", kit, board, body, labels)
+
+
+DEVICES = [driver for (used_by, _), driver in DRIVERS.items() if used_by != "motors"]
+MOTORS = [name for used_by, name in DRIVERS if used_by == "motors"]
+ROBOTS = {
+    **{name: robots.load(name) for name in robots.names()},
+    **{f"mega {motors}": robot_with(motors, DEVICES) for motors in MOTORS},
+    **{f"nano {motors}": robot_with(motors, DEVICES[:3], "nano", False) for motors in MOTORS},
+    "mega, many": robot_with("two_wire", DEVICES * 4),
+}
+each_robot = pytest.mark.parametrize("robot", ROBOTS.values(), ids=list(ROBOTS))
+
+
+# -- every driver
+
+
+@pytest.mark.parametrize("driver", DRIVERS.values(), ids=DRIVER_IDS)
+def test_every_driver_is_drawn_with_all_its_pins(driver: Driver) -> None:
+    where = f"the driver {driver.name} of {driver.used_by}"
+    assert (driver.used_by, driver.name) in parts.SHAPES, (
+        f"A wiring page cannot draw {where}: give it a shape in wiring/parts.py."
+    )
+    connected = wired(driver, CHIPS["mega"], set())
+    for yes_no in ("pull_up", "yes_is_low"):
+        for setting in (0, 1):
+            settings = {**connected.settings, yes_no: setting}
+            device = Device("X", "", "V", 0, 10 * ONE)
+            for sees in ("light", "touch"):
+                shape = parts.shape_of(
+                    driver.used_by,
+                    connected._replace(settings=settings),
+                    device,
+                    Place(0, 0, 0, sees),
+                )
+                keys = [terminal.pin_key for terminal in shape.terminals if terminal.pin_key]
+                assert sorted(keys) == sorted(connected.pins), (
+                    f"{where} has pins that are not drawn"
+                )
+                assert shape.icon in ICONS
+                assert all(note in TEXTS for note in (*shape.notes, shape.need) if note)
+
+
+def test_every_board_that_has_firmware_is_drawn_with_all_its_pins() -> None:
+    for name, sides in SIDES.items():
+        chip = CHIPS[name]
+        drawn = {slot for slot in (*sides.left, *sides.right) if isinstance(slot, int)}
+        drawn |= set(range(22, 54)) if name == "mega" else set()
+        assert drawn == chip.digital | chip.analog | chip.link_pins
+
+
+# -- every pin, in both languages
+
+
+@each_robot
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_every_pin_of_the_board_is_in_the_table_and_in_the_drawing(
+    robot: Robot, language: str
+) -> None:
+    plan = plan_of(robot, language)
+    chip = plan.chip
+    names = {chip.pin_name(pin) for pin in pins_of(robot) | set(chip.link_pins)}
+    assert {row[1] for row in wire_rows(plan)[1:]} == names
+    shown = [text.split(" ")[0] for text in texts_of(drawing_of(plan))]
+    assert names <= set(shown)
+    wires = [wire.number for wire in plan.wires]
+    assert wires == list(range(1, len(names) + (not plan.has_lamp)))
+    for number in wires:
+        assert shown.count(str(number)) >= 2, "a wire has its number at both ends"
+
+
+@each_robot
+def test_both_languages_have_the_same_rows(robot: Robot) -> None:
+    english, spanish = (page_of(plan_of(robot, language)) for language in ("en", "es"))
+    assert [(block.kind, len(block.rows)) for block in english] == [
+        (block.kind, len(block.rows)) for block in spanish
+    ]
+    tables = [(block.rows, other.rows) for block, other in zip(english, spanish, strict=True)
+              if block.kind == "table"]  # fmt: skip
+    for ours, theirs in tables:
+        for row, other in zip(ours, theirs, strict=True):
+            assert re.findall(r"\d+ k?Ω", " ".join(row)) == re.findall(r"\d+ k?Ω", " ".join(other))
+    (wires, same), (rails, _) = tables
+    assert [row[1] for row in wires[1:]] == [row[1] for row in same[1:]]
+    assert [row[0].split(" ")[0] for row in wires[1:]] == [row[0].split(" ")[0] for row in same[1:]]
+    assert {"5V", "GND"} <= {row[0] for row in rails}
+
+
+def test_every_text_has_the_same_gaps_in_both_languages() -> None:
+    for key, (english, spanish) in TEXTS.items():
+        gaps = [
+            sorted(name for _, name, _, _ in string.Formatter().parse(each) if name)
+            for each in (english, spanish)
+        ]
+        assert gaps[0] == gaps[1], key
+        assert english.strip()
+        assert spanish.strip()
+
+
+def test_what_a_robot_does_not_have_is_not_said() -> None:
+    said = {name: " ".join(_sentences(name)) for name in robots.names()}
+    assert "jumpers at ENA" in said["tinibot"]
+    assert "jumpers at ENA" not in said["liner"]
+    assert "S+" not in said["tinibot"]
+    assert "S+" in said["grabber"]
+    assert "AT+UART=57600,0,0" in said["grabber"]
+    assert "AT+UART" not in said["tinibot"]
+    assert "STATE tells" in said["tinibot"]
+    assert "STATE stays free" in said["liner"]
+    assert "resistors of 10 kΩ at STBY" in said["liner"]
+    assert "Unplug the HC-05" in said["liner"]
+
+
+def _sentences(name: str) -> list[str]:
+    blocks = page_of(plan_of(robots.load(name), "en"))
+    return [" ".join([block.words, *(" ".join(row) for row in block.rows)]) for block in blocks]
+
+
+def test_a_battery_has_the_resistors_that_its_range_asks_for() -> None:
+    text = (Path(robots.__file__).parent / "liner.toml").read_text(encoding="utf-8")
+    for full, ohms in (("10", "10 kΩ"), ("15", "20 kΩ"), ("12.5", "15 kΩ")):
+        plan = plan_of(read(text.replace("full = 10", f"full = {full}"), "x"), "en")
+        (row,) = [row for row in wire_rows(plan) if row[2] == "BATTERY"]
+        assert row[3:] == ("M+", f"{ohms} in the wire; 10 kΩ from the pin to GND")
+
+
+# -- the drawing
+
+
+def texts_of(svg: str) -> list[str]:
+    return [each.text or "" for each in Tree.fromstring(svg).iter(f"{SVG}text")]
+
+
+@each_robot
+def test_wires_never_lie_upon_each_other_nor_on_parts(robot: Robot) -> None:
+    layout = layout_of(plan_of(robot, "en"))
+    lines = [
+        (route.wire.number, *start, *end)
+        for route in layout.routes
+        for start, end in zip(route.points, route.points[1:], strict=False)
+        if start != end
+    ]
+    for one, other in combinations(lines, 2):
+        if one[0] != other[0]:
+            assert not _lie_upon_each_other(one[1:], other[1:]), f"wires {one[0]} and {other[0]}"
+    for left, top, right, bottom in _solid(layout):
+        for number, x1, y1, x2, y2 in lines:
+            is_outside = (
+                max(x1, x2) <= left or min(x1, x2) >= right or max(y1, y2) <= top
+                or min(y1, y2) >= bottom
+            )  # fmt: skip
+            assert is_outside, f"wire {number} runs through something"
+
+
+def _lie_upon_each_other(one: tuple[int, ...], other: tuple[int, ...]) -> bool:
+    for across in (0, 1):  # both upright, or both level
+        along = 1 - across
+        if len({one[across], one[across + 2], other[across], other[across + 2]}) == 1:
+            low = max(min(one[along], one[along + 2]), min(other[along], other[along + 2]))
+            high = min(max(one[along], one[along + 2]), max(other[along], other[along + 2]))
+            return low <= high
+    return False
+
+
+def _solid(layout: Layout) -> list[tuple[int, int, int, int]]:
+    left, top, width, height = layout.board
+    boxes = [(box.x, box.y, box.x + PART_WIDTH, box.y + box.height) for box in layout.boxes]
+    return [(left, top, left + width, top + height), *boxes]
+
+
+@each_robot
+def test_parts_have_room_and_stay_on_the_sheet(robot: Robot) -> None:
+    layout = layout_of(plan_of(robot, "en"))
+    for one, other in combinations(_solid(layout), 2):
+        is_apart = (
+            one[2] <= other[0] or other[2] <= one[0] or one[3] <= other[1] or other[3] <= one[1]
+        )
+        assert is_apart
+    for left, top, right, bottom in _solid(layout):
+        assert left >= 0
+        assert top >= 0
+        assert right <= layout.width
+        assert bottom <= layout.height
+    assert layout.board[2] == BOARD_WIDTH
+
+
+# -- hostile profiles
+
+
+class Elements(HTMLParser):
+    """What elements a page has, and what they refer to."""
+
+    def __init__(self, page: str) -> None:
+        super().__init__()
+        self.found: list[str] = []
+        self.referred: list[str] = []
+        self.feed(page)
+        self.close()
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.found.append(tag)
+        self.referred += [value or "" for name, value in attrs
+                          if name in ("src", "href", "xlink:href", "style", "onload")]  # fmt: skip
+
+
+HOSTILE = "</text></svg><script src=//x>&amp;\"'**|`](http://x) \u202e{robot}"
+
+
+def test_a_hostile_label_is_only_text() -> None:
+    page = (Path(robots.__file__).parent / "grabber.toml").read_text(encoding="utf-8")
+    quoted = HOSTILE[:60].replace("\\", "\\\\").replace('"', '\\"').replace("\u202e", "")
+    robot = read(
+        page.replace('"thermometer"', f'"{quoted}"').replace('"Grabber"', f'"{quoted}"'), "x"
+    )
+    assert "<script" in robot.labels["en"]["TEMPERATURE"]
+    plain = plan_of(robots.load("grabber"), "en")
+    for language in LANGUAGES:
+        plan = plan_of(robot, language)
+        whole = html_of(plan)
+        elements = Elements(whole)
+        assert "script" not in elements.found
+        assert elements.found.count("svg") == 1
+        assert elements.referred == []
+        assert Elements(html_of(plain)).found.count("tr") == elements.found.count("tr")
+        assert Tree.fromstring(drawing_of(plan)).tag == f"{SVG}svg"
+    assert "http" not in html_of(plain).replace("http://www.w3.org/2000/svg", "")
+
+
+@pytest.mark.parametrize("label", ["W" * 60, "漢" * 60, "i" * 60, "a\u0301" * 30, "\u200f" * 60])
+def test_a_long_label_is_made_to_fit(label: str) -> None:
+    robot = robot_with("l298n", DEVICES, label=label)
+    svg = drawing_of(plan_of(robot, "es"))
+    sizes = [float(size) for size in re.findall(r'font-size="([\d.]+)"', svg)]
+    assert min(sizes) >= 8
+    longest = max(
+        len(each.text or "") for each in Tree.fromstring(svg).iter(f"{SVG}text")
+        if (each.text or "").startswith(label[:3])
+    ) if label[0] in "W漢" else 0  # fmt: skip
+    assert longest <= 30
+
+
+def test_a_profile_full_of_devices_is_drawn() -> None:
+    plan: Plan = plan_of(ROBOTS["mega, many"], "en")
+    assert len(plan.wires) >= 40
+    assert len(layout_of(plan).routes) == len(plan.wires)
+
+
+# -- the command
+
+
+def test_the_command_lists_the_wires(tsc: Tsc) -> None:
+    done = tsc("wiring", "--robot", "liner", "--lang", "es")
+    assert (done.code, done.err) == (0, "")
+    rows = done.out.splitlines()
+    assert " ".join(rows[0].split()) == "cable pin de la placa pieza su terminal en el camino"
+    assert " ".join(rows[4].split()) == "4 violeta 4 TB6612 STBY 10 kΩ del terminal a GND"
+    assert rows[-1] == "Como página con un dibujo:  tsc wiring -o conexiones.html"
+
+
+def test_on_a_narrow_terminal_the_last_column_is_broken(
+    tsc: Tsc, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    whole = tsc("wiring").out
+    monkeypatch.setattr("sys.stdout.isatty", lambda: True)
+    monkeypatch.setattr(wiring, "get_terminal_size", lambda: os.terminal_size((80, 24)))
+    narrow = tsc("wiring").out
+    assert max(len(row) for row in whole.splitlines()) > 80
+    assert max(len(row) for row in narrow.splitlines()) < 80
+    assert sorted(narrow.split()) == sorted(whole.split())
+
+
+def test_the_command_writes_a_page(tsc: Tsc, tmp_path: Path) -> None:
+    page = tmp_path / "page.html"
+    done = tsc("wiring", "-o", page)
+    assert (done.code, done.err) == (0, "")
+    assert done.out == f"{page}: how TiniBot is wired. Open it in a browser, or print it.\n"
+    assert page.read_text(encoding="utf-8") == html_of(plan_of(robots.load("tinibot"), "en"))
+    assert tsc("wiring", "-o", "-").out == page.read_text(encoding="utf-8")
+
+
+def test_what_cannot_be_drawn_or_written_is_said(tsc: Tsc, tmp_path: Path) -> None:
+    text = (Path(robots.__file__).parent / "tinibot.toml").read_text(encoding="utf-8")
+    text = (
+        text.replace('chip = "uno"', 'chip = "esp32dev"')
+        .replace('"A0"', "32")
+        .replace('"A1"', "33")
+    )
+    for old, new in (("_pwm = 6", "_pwm = 16"), ("forward = 7", "forward = 17"), ("= 8", "= 18"),
+                     ("= 9\n", "= 19\n"), ("= 10\n", "= 21\n"), ("buzzer = 11", "buzzer = 22"),
+                     ("led = 13", "led = 23"), ("echo = 3", "echo = 25"),
+                     ("state = 12", "state = 26")):  # fmt: skip
+        text = text.replace(old, new)
+    profile = tmp_path / "mine.toml"
+    profile.write_text(text, encoding="utf-8")
+    done = tsc("wiring", "--robot", profile)
+    assert done.code == 2
+    assert "no firmware for the board esp32dev" in done.err
+    for arguments, sentence in (
+        (("-o", tmp_path / "no" / "page.html"), "cannot be written"),
+        (("--robot", "tinybot"), "Did you mean tinibot?"),
+        (("--robot", tmp_path / "missing.toml"), "There is no file"),
+    ):
+        done = tsc("wiring", *arguments)
+        assert done.code == 2
+        assert sentence in done.err
