@@ -19,7 +19,7 @@ run() {
 run ruff check .
 run ruff format --check .
 run mypy
-"$PYTHON" tools/generate.py --check
+run tools.generate --check
 run pytest -n 2 --dist worksteal "$@"
 
 # Every branch of what decides whether a robot may run an image is taken by a test.

@@ -99,7 +99,10 @@ def test_what_is_no_listing_is_no_listing(text: str) -> None:
 
 def test_generated_files_are_fresh() -> None:
     done = subprocess.run(
-        [sys.executable, "tools/generate.py", "--check"], cwd=ROOT, capture_output=True, text=True
+        [sys.executable, "-m", "tools.generate", "--check"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
     )
     assert done.returncode == 0, done.stderr
 
@@ -115,7 +118,10 @@ def test_generated_check_notices(tmp_path: Path) -> None:
         spec.read_text(encoding="utf-8").replace("`MOVE8_F ", "`MOVE9_F "), encoding="utf-8"
     )
     done = subprocess.run(
-        [sys.executable, "tools/generate.py", "--check"], cwd=copy, capture_output=True, text=True
+        [sys.executable, "-m", "tools.generate", "--check"],
+        cwd=copy,
+        capture_output=True,
+        text=True,
     )
     assert done.returncode == 1
     assert "bytecode_spec.md" in done.stderr

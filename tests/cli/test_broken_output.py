@@ -6,6 +6,7 @@ import json
 import os
 import subprocess
 from argparse import Namespace
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -17,6 +18,7 @@ from tests.support.robot_fleet import RobotFleet
 from tiniscript import robots
 from tiniscript.cli import CLOSED
 from tiniscript.cli.robot import connect, fleet
+from tiniscript.link.connection import Asked, Asks
 from tiniscript.link.messages import STOP_RUN
 
 pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
@@ -148,23 +150,23 @@ def test_every_verb_has_the_same_exit_code(words: list[str]) -> None:
 # -- a port that vanishes -----------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("words", "asks"), [(["name", "TINI"], 1), (["trim", "--reset"], 2)])
+@pytest.mark.parametrize(("words", "which"), [(["name", "TINI"], 1), (["trim", "--reset"], 2)])
 def test_a_port_that_vanishes_is_no_bug(
-    tsc: Tsc, pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch, words: list[str], asks: int
+    tsc: Tsc, pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch, words: list[str], which: int
 ) -> None:
-    """The cable is pulled while the robot writes down what it was told."""
-    real = connect.Connection.ask
+    """The cable is pulled before the robot has said that it has kept what it was told."""
+    real = connect.Connection.do
     asked = []
 
-    def ask(self: connect.Connection, make: object) -> object:
-        reply = real(self, make)  # type: ignore[arg-type]
-        asked.append(reply)
-        if len(asked) == asks:
+    def do(self: connect.Connection, make: Callable[[Asks], Asked]) -> Asked:
+        asked.append(make)
+        if len(asked) == which:
             pty_robot.pull()
-        return reply
+        return real(self, make)
 
-    monkeypatch.setattr(connect.Connection, "ask", ask)
+    monkeypatch.setattr(connect.Connection, "do", do)
     done = tsc(*words, "--port", pty_robot.port)
+    assert len(asked) == which
     assert done.code == 3
     assert "has vanished" in done.err
 

@@ -157,7 +157,7 @@ def test_a_full_disk_leaves_nothing(tmp_path: Path) -> None:
 def test_one_place_replaces_files() -> None:
     for path in HERE.rglob("*.py"):
         text = path.read_text(encoding="utf-8")
-        if path.name != "files.py":
+        if path.name not in ("files.py", "building.py"):  # which builds in a folder of its own
             for word in ("write_text(", "write_bytes(", "O_EXCL", "mkstemp", ".replace(path)"):
                 assert word not in text, f"{path.name}: {word}"
 
@@ -249,7 +249,7 @@ def test_a_lock_goes_with_its_command() -> None:
 
 def test_the_lock_of_a_killed_command_goes() -> None:
     code = (
-        "from tiniscript.sharing import holders; lock = holders.claimed('socket://x:1');"
+        "from tiniscript.sharing import registry; lock = registry.claimed('socket://x:1');"
         "print('held', flush=True); input()"
     )
     with subprocess.Popen(
@@ -288,9 +288,9 @@ def test_a_lock_that_was_removed_in_between_locks_nothing(monkeypatch: pytest.Mo
 def test_a_killed_link_leaves_nothing_for_long(cache: Path) -> None:
     """A command that was killed is forgotten by the next one that looks."""
     code = (
-        "import os, signal; from tiniscript.sharing import holders;"
-        "lock = holders.claimed('socket://x:1');"
-        f"holders.write(holders.Holder('socket://x:1', {free_number()}, 't', 'a', 'link', 1, 2));"
+        "import os, signal; from tiniscript.sharing import registry;"
+        "lock = registry.claimed('socket://x:1');"
+        f"registry.write(registry.Holder('socket://x:1', {free_number()}, 't', 'a', 'link', 1, 2));"
         "os.kill(os.getpid(), signal.SIGKILL)"
     )
     assert subprocess.run([sys.executable, "-c", code]).returncode == -signal.SIGKILL

@@ -22,7 +22,7 @@ import pytest
 
 from tests.machines.host import FLAGS, ROOT, SOURCES, WARNINGS, compiled, missing
 from tiniscript.bytecode.image import HEADER_BYTES, pack
-from tools import avr_bench, cpp_size
+from tools.bench import avr_bench, machine_size
 
 needs_host = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 needs_chip = pytest.mark.skipif(
@@ -237,8 +237,8 @@ def test_on_a_chip(size: int, ticks: int) -> None:
 
 @needs_chip
 def test_size() -> None:
-    size = cpp_size.store_size()
-    assert size.flash <= cpp_size.STORE_MUST
+    size = machine_size.store_size()
+    assert size.flash <= machine_size.STORE_MUST
     assert size.ram <= 24
 
 

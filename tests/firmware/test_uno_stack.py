@@ -9,7 +9,7 @@ import pytest
 from tests.machines.uno import built, needed
 from tests.support.platformio import firmware, shared
 from tiniscript import robots
-from tools.firmware_stack import LEAST_FREE, free_from, measured
+from tools.bench.firmware_stack import LEAST_FREE, free_from, measured
 from tools.uno import Stack, Uno
 
 

@@ -23,7 +23,8 @@ from tiniscript.cli.commands import firmware as firmware_command
 from tiniscript.cli.texts.firmware import FLASH_TEXTS
 from tiniscript.flash import avrdude, ready
 from tiniscript.flash.bootloaders import BOARDS, UNO
-from tools import build_firmware, firmware_size
+from tools.bench import firmware_size
+from tools.build import firmware_files
 from tools.uno import Uno
 
 pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
@@ -292,7 +293,7 @@ def test_a_firmware_is_the_same_however_it_is_built(
     package: Path, tmp_path: Path, with_platformio: None
 ) -> None:
     """As `pio run` builds a shipped robot, and as `tsc firmware` builds any, in another folder."""
-    made = build_firmware.build(robots.load("tinibot"), tmp_path)
+    made = firmware_files.build(robots.load("tinibot"), tmp_path)
     assert made.name.startswith("tinibot-uno-")
     one, other = (file.read_text().split() for file in (
         made, package / "tiniscript" / "flash" / "ready" / "tinibot-uno-digest.hex"))  # fmt: skip
@@ -302,7 +303,7 @@ def test_a_firmware_is_the_same_however_it_is_built(
 def test_every_board_of_the_option_is_one_that_is_built() -> None:
     built = {name.partition("_")[0] for name in firmware_size.environments()}
     assert {board for board, _ in BOARDS.values()} == built
-    brought = {(robot.name, robot.board.chip) for robot in build_firmware.shipped()}
+    brought = {(robot.name, robot.board.chip) for robot in firmware_files.shipped()}
     assert brought == {
         (robot or robots.DEFAULT, board)
         for board, _, robot in (name.partition("_") for name in firmware_size.environments())
@@ -310,11 +311,11 @@ def test_every_board_of_the_option_is_one_that_is_built() -> None:
 
 
 def test_the_licence_of_the_core_goes_with_it(tmp_path: Path) -> None:
-    with pytest.raises(build_firmware.CannotBuild, match="--licence"):
-        build_firmware.build_all(tmp_path / "ready", tmp_path / "none")
+    with pytest.raises(firmware_files.CannotBuild, match="--licence"):
+        firmware_files.build_all(tmp_path / "ready", tmp_path / "none")
     assert not (tmp_path / "ready").exists()
-    assert build_firmware.LICENCE_NAME in build_firmware.NOTICE_TEXT
-    assert "https://github.com/arduino/ArduinoCore-avr" in build_firmware.NOTICE_TEXT
+    assert firmware_files.LICENCE_NAME in firmware_files.NOTICE_TEXT
+    assert "https://github.com/arduino/ArduinoCore-avr" in firmware_files.NOTICE_TEXT
 
 
 def test_what_came_with_the_package_is_listed(package: Path) -> None:

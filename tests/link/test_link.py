@@ -43,7 +43,7 @@ from tiniscript.link.session import (
     STOP_MS,
     Session,
 )
-from tools import cpp_size, link_size
+from tools.bench import link_size, machine_size
 
 needs_host = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a host machine")
 FORWARD = bytes.fromhex("443250")  # F(5,80)
@@ -553,7 +553,9 @@ def test_a_robot_tells_only_who_listens() -> None:
     assert cpp.step(LISTEN_MS + 10).sent  # that it was stopped it always tells
 
 
-@pytest.mark.skipif(bool(cpp_size.missing(cpp_size.AVR)), reason=cpp_size.missing(cpp_size.AVR))
+@pytest.mark.skipif(
+    bool(machine_size.missing(machine_size.AVR)), reason=machine_size.missing(machine_size.AVR)
+)
 def test_the_link_keeps_to_its_size() -> None:
     """What it takes beside the machine on an ATmega328P, with the flags of Arduino."""
     found = link_size.size()

@@ -13,17 +13,17 @@ import pytest
 
 from tests.machines.host import SOURCES
 from tests.support.platformio import firmware, shared
-from tools import (
+from tools.bench import (
     avr_bench,
-    chip_cycles,
-    cpp_benchmark,
-    cpp_size,
     firmware_size,
+    machine,
+    machine_cycles,
+    machine_size,
+    machine_speed,
     sketch_cycles,
-    speeds,
-    works,
+    workloads,
 )
-from tools.works import WORKS, Work, WrongResult, check, code_of, expected
+from tools.bench.workloads import WORKS, Work, WrongResult, check, code_of, expected
 
 needs_chip = pytest.mark.skipif(
     bool(avr_bench.missing()), reason=avr_bench.missing() or "there is a simulated chip"
@@ -60,10 +60,10 @@ def test_a_wrong_value_is_an_error(work: Work) -> None:
 def test_a_wrong_value_ends_the_command(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(cpp_benchmark, "ROUNDS", 1)
+    monkeypatch.setattr(machine, "ROUNDS", 1)
     short = WORKS[0]._replace(times=9999)
-    monkeypatch.setattr("tools.speeds.code_of", lambda work: code_of(short))
-    assert cpp_benchmark.main(["speeds"]) == 1
+    monkeypatch.setattr("tools.bench.machine_speed.code_of", lambda work: code_of(short))
+    assert machine.main(["speeds"]) == 1
     assert "wrong result: " in capsys.readouterr().err
 
 
@@ -71,11 +71,11 @@ def test_what_is_missing_is_said(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(shutil, "which", lambda name: None)
-    monkeypatch.setattr(speeds, "find_spec", lambda name: None)
-    monkeypatch.setattr(cpp_benchmark, "ROUNDS", 1)
-    assert cpp_benchmark.main([]) == 0
+    monkeypatch.setattr(machine_speed, "find_spec", lambda name: None)
+    monkeypatch.setattr(machine, "ROUNDS", 1)
+    assert machine.main([]) == 0
     said = capsys.readouterr().out
-    for row in ("TiniScript ", cpp_size.AVR, *cpp_size.EMULATED):
+    for row in ("TiniScript ", machine_size.AVR, *machine_size.EMULATED):
         assert re.search(rf"^\| {re.escape(row)}.*\| +- \|", said, re.M), row
     for tool in ("avr-g++", "simavr", "g++", "clang-22", "xtensa-lx106-elf-gcc", "wasmtime"):
         assert f"no {tool}" in said
@@ -84,12 +84,12 @@ def test_what_is_missing_is_said(
 
 def test_a_part_that_is_none(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit):
-        cpp_benchmark.main(["cycles", "colours"])
+        machine.main(["cycles", "colours"])
     assert "no part is called colours" in capsys.readouterr().err
 
 
 def test_table(capsys: pytest.CaptureFixture[str]) -> None:
-    cpp_benchmark.table("T", ("", "n", "kind"), [("a", 1234.56, "x"), ("bc", "-", "")])
+    machine.table("T", ("", "n", "kind"), [("a", 1234.56, "x"), ("bc", "-", "")])
     assert capsys.readouterr().out.splitlines()[4:] == [
         "| -- | ------: | ---- |",
         "| a  | 1,234.6 | x    |",
@@ -99,13 +99,13 @@ def test_table(capsys: pytest.CaptureFixture[str]) -> None:
 
 def test_the_sketch_calls_it_as_we_say() -> None:
     sketch = (SOURCES / "src" / "firmware" / "firmware.cpp").read_text(encoding="utf-8")
-    assert f" kBudget = {chip_cycles.SKETCH_BUDGET};" in sketch
+    assert f" kBudget = {machine_cycles.SKETCH_BUDGET};" in sketch
 
 
 @needs_chip
 @pytest.mark.parametrize("work", BY_NAME)
 def test_the_chip_shows_what_python_does(work: Work) -> None:
-    assert chip_cycles.per_iteration(work) > 1
+    assert machine_cycles.per_iteration(work) > 1
 
 
 @pytest.fixture(scope="module")
@@ -129,7 +129,7 @@ def test_the_sketch_runs_the_same_loop() -> None:
 def test_the_shipped_sketch_takes_its_main_loop_more(work: Work, sketch: Path) -> None:
     """Its values are right; and nothing that it counts is less than the machine alone."""
     short = work._replace(times=400)
-    alone = chip_cycles.per_iteration(short, chip_cycles.SKETCH_BUDGET)
+    alone = machine_cycles.per_iteration(short, machine_cycles.SKETCH_BUDGET)
     assert alone < sketch_cycles.per_iteration(sketch, short) < 2 * alone
 
 
@@ -147,8 +147,8 @@ def test_a_wrong_value_of_the_sketch_is_an_error(
 ) -> None:
     monkeypatch.setattr(avr_bench, "missing", lambda: "no chip but the one on the board")
     monkeypatch.setattr(sketch_cycles, "built", lambda: sketch)
-    monkeypatch.setattr("tools.sketch_cycles.pin_of_sensor", lambda: "A5")
-    assert cpp_benchmark.main(["cycles"]) == 1
+    monkeypatch.setattr("tools.bench.sketch_cycles.pin_of_sensor", lambda: "A5")
+    assert machine.main(["cycles"]) == 1
     assert "wrong result: the sketch, work A" in capsys.readouterr().err
 
 
@@ -161,7 +161,7 @@ def test_a_sketch_that_is_not_built_ends_the_command(
     monkeypatch.setattr(avr_bench, "missing", lambda: "no chip")
     monkeypatch.setattr(sketch_cycles, "missing", lambda: "")
     monkeypatch.setattr(firmware_size, "measured", refuse)
-    assert cpp_benchmark.main(["cycles"]) == 2
+    assert machine.main(["cycles"]) == 2
     assert "avr-g++ does not like uno" in capsys.readouterr().err
 
 
@@ -171,7 +171,7 @@ def test_only_a_tick_depends_on_the_budget() -> None:
     work = WORKS[1]
     found = {}
     for budget in (250, 32, 7):
-        counted = chip_cycles.count(code_of(work), work.thousandths, budget)
+        counted = machine_cycles.count(code_of(work), work.thousandths, budget)
         ticks = -(-counted.steps // budget)
         found[budget] = counted.cycles - ticks * counted.empty_tick
     assert found[250] > 100 * work.times
@@ -180,45 +180,49 @@ def test_only_a_tick_depends_on_the_budget() -> None:
 
 @needs_chip
 def test_cycles_of_instructions() -> None:
-    means = chip_cycles.of_instructions(WORKS[0])
+    means = machine_cycles.of_instructions(WORKS[0])
     assert means.keys() == {"ADD_VAR", "NEXT"}
-    assert sum(means.values()) == pytest.approx(chip_cycles.per_iteration(WORKS[0]), rel=0.03)
-    least = {name: chip_cycles.of_arithmetic(name)[0] for name in ("ADD", "MUL")}
+    assert sum(means.values()) == pytest.approx(machine_cycles.per_iteration(WORKS[0]), rel=0.03)
+    least = {name: machine_cycles.of_arithmetic(name)[0] for name in ("ADD", "MUL")}
     assert 0 < least["ADD"] < least["MUL"]
 
 
-@pytest.mark.parametrize("name", [cpp_size.AVR, *cpp_size.EMULATED])
+@pytest.mark.parametrize("name", [machine_size.AVR, *machine_size.EMULATED])
 def test_size(name: str) -> None:
-    if cpp_size.missing(name):
-        pytest.skip(cpp_size.missing(name))
-    whole = cpp_size.size(name, "all")
+    if machine_size.missing(name):
+        pytest.skip(machine_size.missing(name))
+    whole = machine_size.size(name, "all")
     assert 2000 < whole.flash < 20_000
     assert 300 < whole.ram < 1000
 
 
 @needs_chip
 def test_sizes_have_parts() -> None:
-    parts = [cpp_size.size(cpp_size.AVR, use).flash for use in ("verify", "vm and number")]
-    both = cpp_size.size(cpp_size.AVR, "machine and verifier").flash
+    parts = [machine_size.size(machine_size.AVR, use).flash for use in ("verify", "vm and number")]
+    both = machine_size.size(machine_size.AVR, "machine and verifier").flash
     assert max(parts) < both <= sum(parts)
-    assert both < cpp_size.size(cpp_size.AVR, "all").flash
+    assert both < machine_size.size(machine_size.AVR, "all").flash
 
 
 def test_machines_of_this_computer_are_right(tmp_path: Path) -> None:
-    for machine in (speeds.of_host(tmp_path / "host"), speeds.of_wasm(), speeds.of_python()):
-        if not machine.missing:
-            assert machine.seconds(works.WORKS[2]) > 0
+    for each in (
+        machine_speed.of_host(tmp_path / "host"),
+        machine_speed.of_wasm(),
+        machine_speed.of_python(),
+    ):
+        if not each.missing:
+            assert each.seconds(workloads.WORKS[2]) > 0
 
 
 @needs_chip
 @pytest.mark.parametrize(
     ("work", "must"),
-    [pytest.param(*each, id=each[0].name) for each in zip(WORKS, works.MUST, strict=True)],
+    [pytest.param(*each, id=each[0].name) for each in zip(WORKS, workloads.MUST, strict=True)],
 )
 def test_cycles_are_at_most_what_they_must(work: Work, must: float) -> None:
-    assert chip_cycles.per_iteration(work) <= must
+    assert machine_cycles.per_iteration(work) <= must
 
 
 @needs_chip
 def test_flash_is_at_most_what_it_must() -> None:
-    assert cpp_size.size(cpp_size.AVR, "machine and verifier").flash <= cpp_size.MUST
+    assert machine_size.size(machine_size.AVR, "machine and verifier").flash <= machine_size.MUST

@@ -1,7 +1,7 @@
-"""The tests notice what is wrong: a fair sample of the breaks of `tools/mutation.py`.
+"""The tests notice what is wrong: a fair sample of the breaks of `python -m tools.mutation`.
 
 One for each rule and each reason to refuse, one of every six opcodes, and what arithmetic and time
-come to. All of them: `python tools/mutation.py`.
+come to. All of them: `python -m tools.mutation`.
 """
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ import pytest
 
 from tests.machines.host import SOURCES, missing
 from tests.support.cpp_sample import Sample, Unfit
-from tools import mutation
-from tools.breaks import MACHINE, Break, Stale, breaks
-from tools.small_changes import small_changes
+from tools.mutation import __main__
+from tools.mutation.mutants import MACHINE, Break, Stale, breaks
+from tools.mutation.operators import small_changes
 
 needs_host = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 ONE_OPCODE_IN = 6
@@ -26,7 +26,7 @@ ONE_CHANGE_IN = 3  # of limits, arithmetic and time
 def sampled() -> Iterator[Break]:
     """Yield breaks of every kind; for each rule and reason the first place that refuses for it."""
     seen: dict[str, int] = {}
-    for each in mutation.noticeable(breaks(SOURCES)):
+    for each in __main__.noticeable(breaks(SOURCES)):
         if each.file.endswith(".h"):
             continue  # all is built again, for each of them: too long for a test
         if each.kind in ("rule", "refusal"):
@@ -58,9 +58,9 @@ def sample(builds: Path) -> Iterator[Sample]:
 @needs_host
 @pytest.mark.parametrize("each", SAMPLE, ids=lambda each: each.name)
 def test_break_is_noticed(each: Break, sample: Sample) -> None:
-    result = mutation.tried(each, sample)
+    result = __main__.tried(each, sample)
     assert result.kind, "every check passes"
-    assert result.kind != mutation.BUILD, result.said
+    assert result.kind != __main__.BUILD, result.said
 
 
 def test_the_sample_is_fair() -> None:
@@ -103,19 +103,19 @@ def test_a_place_that_is_not_there_is_said(
 @needs_host
 def test_a_break_that_nothing_notices_is_said(capsys: pytest.CaptureFixture[str]) -> None:
     each = Break("opcode", "some", "vm.cpp", "", "a < b;", "a <= b;")
-    results = [mutation.Result(each, "", "", "", 1), mutation.Result(each, "case", "a", "", 1)]
-    assert mutation.summary(results[1:], 1) == 0
-    assert mutation.summary(results, 1) == 1
+    results = [__main__.Result(each, "", "", "", 1), __main__.Result(each, "case", "a", "", 1)]
+    assert __main__.summary(results[1:], 1) == 0
+    assert __main__.summary(results, 1) == 1
     assert "unnoticed: opcode: some\n  a < b;\n  a <= b;\n" in capsys.readouterr().out
 
 
 def test_what_is_equivalent_is_a_change(monkeypatch: pytest.MonkeyPatch) -> None:
     each = Break("change", "some", "vm.cpp", "", "a < b;", "a <= b;")
-    monkeypatch.setattr(mutation, "EQUIVALENT", {("a < b;", "a <= b;"): "", ("c;", ";"): ""})
-    assert mutation.noticeable([each, each._replace(becomes="a > b;")]) == [
+    monkeypatch.setattr(__main__, "EQUIVALENT", {("a < b;", "a <= b;"): "", ("c;", ";"): ""})
+    assert __main__.noticeable([each, each._replace(becomes="a > b;")]) == [
         each._replace(becomes="a > b;")
     ]
-    assert mutation.gone([each]) == ["c;"]
+    assert __main__.gone([each]) == ["c;"]
 
 
 @needs_host
@@ -132,6 +132,6 @@ def test_a_machine_that_is_wrong_already_proves_nothing(tmp_path: Path, builds: 
 def test_a_compiler_is_needed(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(mutation, "missing", lambda: "no g++")
-    assert mutation.main([]) == 2
+    monkeypatch.setattr(__main__, "missing", lambda: "no g++")
+    assert __main__.main([]) == 2
     assert capsys.readouterr().err == "no g++\n"

@@ -96,7 +96,7 @@ def test_shipped_headers_are_for_every_board_that_they_fit() -> None:
             except ProfileRefused:
                 continue
         assert [robot.board.chip for robot in found] == fit
-        header = firmware.header(found, f"python tools/generate.py from robots/{name}.toml.")
+        header = firmware.header(found, f"python -m tools.generate from robots/{name}.toml.")
         assert header == (KITS / f"{name}.h").read_text(encoding="utf-8")
 
 

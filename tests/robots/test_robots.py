@@ -70,11 +70,11 @@ def test_the_default_is_the_robot_of_the_paper() -> None:
 
 
 def test_shipped_py_is_fresh() -> None:
-    tool = FOLDER.parents[2] / "tools" / "generate.py"
+    command = [sys.executable, "-m", "tools.generate", "--check"]
     checked = subprocess.run(
-        [sys.executable, str(tool), "--check"], capture_output=True, text=True, check=False
+        command, cwd=FOLDER.parents[2], capture_output=True, text=True, check=False
     )
-    assert "shipped.py" not in checked.stderr, checked.stderr
+    assert checked.returncode == 0, checked.stderr
 
 
 def test_a_shipped_robot_needs_no_toml() -> None:

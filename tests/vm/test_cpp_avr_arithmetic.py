@@ -19,7 +19,7 @@ from tests.support.cpp_checks import NUMBER_OF, OPERATIONS, python_result
 from tests.support.random_codes import EDGES
 from tiniscript import fixed_point
 from tiniscript.bytecode.opcodes import BY_NAME
-from tools import avr_bench
+from tools.bench import avr_bench
 
 BLOCK, BLOCKS = 500, 50  # of one seed
 NO_BLOCK = 0xFFFF

@@ -26,18 +26,16 @@ from tiniscript.cli.commands import run
 from tiniscript.vm.machine import Machine
 from tiniscript.vm.state import WAITING
 from tiniscript.vm.trace import AnyMachine
-from tools import build_wasm
+from tools.build import wasm
 
 needs_wasmtime = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
-needs_zig = pytest.mark.skipif(
-    bool(build_wasm.missing()), reason=build_wasm.missing() or "there is a compiler"
-)
+needs_zig = pytest.mark.skipif(bool(wasm.missing()), reason=wasm.missing() or "there is a compiler")
 KIT = robots.load("tinibot").kit
 
 
 def test_the_wasm_machine_and_its_compiler_are_there() -> None:
     """Without them this leg is left out, and says so; in CI that is a failure."""
-    reason = missing() or build_wasm.missing()
+    reason = missing() or wasm.missing()
     if reason:
         assert not os.environ.get("CI"), reason
         pytest.skip(reason)
@@ -51,18 +49,18 @@ def test_the_wasm_machine_and_its_compiler_are_there() -> None:
 def test_the_module_is_made_from_these_sources(tmp_path: Path) -> None:
     """Byte for byte, wherever they are."""
     copy = Path(shutil.copytree(ROOT / "vm_arduino", tmp_path / "some where" / "else"))
-    for module in build_wasm.MODULES:
+    for module in wasm.MODULES:
         kept = (ROOT / module.path).read_bytes()
-        stale = f"{module.path} is stale. Run: {build_wasm.COMMAND}"
-        assert build_wasm.built(ROOT / "vm_arduino", module) == kept, stale
-        assert build_wasm.built(copy, module) == kept
+        stale = f"{module.path} is stale. Run: {wasm.COMMAND}"
+        assert wasm.built(ROOT / "vm_arduino", module) == kept, stale
+        assert wasm.built(copy, module) == kept
 
 
 @needs_zig
 def test_another_machine_is_another_module(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    modules = build_wasm.MODULES
+    modules = wasm.MODULES
     for module in modules:
         stale = tmp_path / module.path
         stale.parent.mkdir(parents=True, exist_ok=True)
@@ -72,23 +70,23 @@ def test_another_machine_is_another_module(
     text = source.read_text(encoding="utf-8")
     source.write_text(text.replace("kLateMs = 20", "kLateMs = 21"), encoding="utf-8")
     for module in modules:
-        assert build_wasm.built(copy, module) != (ROOT / module.path).read_bytes()
+        assert wasm.built(copy, module) != (ROOT / module.path).read_bytes()
     shutil.copy(ROOT / "pyproject.toml", tmp_path)
-    monkeypatch.setattr(build_wasm, "ROOT", tmp_path)
-    assert build_wasm.main(["--check"]) == 1
+    monkeypatch.setattr(wasm, "ROOT", tmp_path)
+    assert wasm.main(["--check"]) == 1
     said = capsys.readouterr().err
-    assert said.count("stale. Run: python tools/build_wasm.py") == len(modules) == 2
-    assert build_wasm.main([]) == 0
-    assert build_wasm.main(["--check"]) == 0
+    assert said.count("stale. Run: python -m tools.build.wasm") == len(modules) == 2
+    assert wasm.main([]) == 0
+    assert wasm.main(["--check"]) == 0
     source.write_text("?", encoding="utf-8")
     with pytest.raises(SystemExit, match=r"refuses extras/wasm/main\.cpp"):
-        build_wasm.main([])
+        wasm.main([])
 
 
 def test_another_compiler_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(build_wasm, "version", lambda name: "0.1.0")
+    monkeypatch.setattr(wasm, "version", lambda name: "0.1.0")
     with pytest.raises(SystemExit, match=r"here is 0\.1\.0\. Run: pip install ziglang=="):
-        build_wasm.main([])
+        wasm.main([])
 
 
 @needs_wasmtime
@@ -97,7 +95,7 @@ def test_the_module_imports_the_robot_alone() -> None:
     from wasmtime import Engine, Module
 
     machine = {"motors", "off", "read", "beep", "show", "set"}
-    imported = {build_wasm.MACHINE: machine, build_wasm.ROBOT: {"look"}}
+    imported = {wasm.MACHINE: machine, wasm.ROBOT: {"look"}}
     for each, names in imported.items():
         data = (ROOT / each.path).read_bytes()
         module = Module(Engine(), data)

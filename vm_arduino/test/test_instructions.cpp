@@ -44,7 +44,7 @@ std::string row(const std::string& name, const Value* values, size_t count) {
   return text + "\n";
 }
 
-// All that an instruction can change, as `tools/cpp_cases.py` writes it.
+// All that an instruction can change, as `tools/generate/cpp_cases.py` writes it.
 std::string state_of(const Machine& machine, const int32_t* readings, const std::string& trace) {
   const Task& task = machine.task();
   std::string text = "pc " + std::to_string(task.pc) + "\n";

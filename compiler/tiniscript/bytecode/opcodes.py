@@ -1,7 +1,7 @@
 """The one table of TiniScript bytecode.
 
 Everything that must know an instruction reads it from here: `lower`, `listing`, `verify` and
-`vm` import it; `tools/generate.py` writes the tables of `bytecode_spec.md` from it. Codes on
+`vm` import it; `python -m tools.generate` writes the tables of `bytecode_spec.md` from it. Codes on
 the wire are promises: a code is never used again for something else.
 
 Knows numbers, operands, stack pictures, faults and limits. Does not know what anything does.

@@ -1,8 +1,8 @@
 """Firmware that is ready to be written: files, named after the robot, the board and a digest.
 
 The digest is of all that a firmware is made from, so that an old file is never taken for a new
-one. A package may bring files (`tools/build_firmware.py` makes them); others are built when they
-are first wanted, and kept in the user's cache.
+one. A package may bring files (`tools/build/firmware_files.py` makes them); others are built when
+they are first wanted, and kept in the user's cache.
 """
 
 from __future__ import annotations

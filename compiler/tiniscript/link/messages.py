@@ -1,6 +1,6 @@
 """The one table of the link: messages, their fields, and every number that is sent.
 
-`frames` and `session` import it; `tools/generate.py` writes `vm_arduino/src/link/messages.h` and
+`frames` and `session` import it; `python -m tools.generate` writes `vm_arduino/src/link/messages.h` and
 the tables of `docs/link.md` from it. Numbers on the wire are promises: a number is never used
 again for something else.
 

@@ -9,13 +9,13 @@ from __future__ import annotations
 import contextlib
 import json
 import os
-import tempfile
 from pathlib import Path
 
-from tiniscript import robots
+from tiniscript import files, robots
 from tiniscript.robots.profile import ProfileRefused, Robot
 
 KEPT = 20  # profiles; the oldest go first
+FILE_BYTES = 200_000
 
 
 def remember(path: str, kit: int) -> None:
@@ -25,18 +25,10 @@ def remember(path: str, kit: int) -> None:
     if known[:1] == [entry]:
         return
     kept = [entry, *(each for each in known if each != entry)][:KEPT]
-    new = None
-    try:
+    with contextlib.suppress(OSError, ValueError):
         target = _path()
         target.parent.mkdir(parents=True, exist_ok=True)
-        file, new = tempfile.mkstemp(dir=target.parent, suffix=".new")
-        with os.fdopen(file, "w", encoding="utf-8") as out:
-            json.dump(kept, out)
-        Path(new).replace(target)
-    except (OSError, ValueError):
-        if new is not None:
-            with contextlib.suppress(OSError):
-                Path(new).unlink()
+        files.replace(target, json.dumps(kept).encode())
 
 
 def recall(kit: int) -> Robot | None:
@@ -57,7 +49,7 @@ def profiles() -> list[tuple[str, Robot]]:
 
 def _known() -> list[tuple[int, str]]:
     try:
-        entries = json.loads(_path().read_text(encoding="utf-8"))
+        entries = json.loads(files.contents(_path(), FILE_BYTES))
         return [(int(kit), str(path)) for kit, path in entries if str(path).isprintable()]
     except (OSError, ValueError, TypeError, RecursionError):
         return []

@@ -12,13 +12,13 @@ from pathlib import Path
 from struct import pack
 from typing import NamedTuple
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tiniscript.bytecode.disassembly import rows
 from tiniscript.bytecode.opcodes import BY_NAME
-from tools import avr_bench
-from tools.works import Work, check, code_of
+from tools.bench import avr_bench
+from tools.bench.workloads import Work, check, code_of
 
 BUDGET = 250  # instructions in a call of `tick`
 SKETCH_BUDGET = 32  # as kBudget in src/main.cpp

@@ -11,7 +11,7 @@ from itertools import accumulate
 from tiniscript.link import messages
 from tiniscript.link.messages import MESSAGES, Field
 from tiniscript.link.statuses import texts
-from tools.cpp_header import array, camel, constants, enumeration
+from tools.generate.cpp_header import array, camel, constants, enumeration
 
 HEADER_GUARD = "TINISCRIPT_LINK_MESSAGES_H_"
 

@@ -18,10 +18,11 @@ from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT)]
 
-from tools import avr_bench, chips
+from tools.bench import avr_bench
+from tools.build import chips
 
 SOURCE = ROOT / "vm_arduino" / "src"
 WASM = ROOT / "compiler" / "tiniscript" / "vm" / "machine.wasm"

@@ -1,9 +1,9 @@
 """Prints what is measured: sizes, and times as ratios within one run.
 
-`python tools/benchmark.py` takes about half a minute; `cpp_benchmark.py` measures the machines.
-Sizes are exact. Times on a busy machine are noisy, so they are medians of pairs taken in turn;
-compare ratios, not milliseconds. The figures of others are those of the same programs, measured
-once with their own tools.
+`python -m tools.bench.compiler` takes about half a minute; `cpp_benchmark.py` measures the
+machines. Sizes are exact. Times on a busy machine are noisy, so they are medians of pairs taken
+in turn; compare ratios, not milliseconds. The figures of others are those of the same programs,
+measured once with their own tools.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "compiler"))
 
 from tiniscript import compile_text, robots

@@ -1,4 +1,4 @@
-"""Prints how fast the C++ machine is: `python tools/cpp_benchmark.py`.
+"""Prints how fast the C++ machine is: `python -m tools.bench.machine`.
 
 Cycles come from a simulated ATmega328P and are exact: the same sources give the same ones. Every
 run is checked: a machine that shows a wrong value ends the command with an error. A chip whose
@@ -14,11 +14,11 @@ import tempfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
-from tools import avr_bench, chip_cycles, cpp_size, sketch_cycles, works
-from tools import speeds as timing
+from tools.bench import avr_bench, machine_cycles, machine_size, sketch_cycles, workloads
+from tools.bench import machine_speed as timing
 
 NONE = "-"
 ROUNDS = 5
@@ -34,7 +34,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for name in parts or PARTS:
         try:
             PARTS[name]()
-        except works.WrongResult as wrong:
+        except workloads.WrongResult as wrong:
             print(f"wrong result: {wrong}", file=sys.stderr)
             return 1
         except RuntimeError as why:  # the firmware is not built
@@ -71,29 +71,32 @@ def cycles() -> None:
     if not avr_bench.missing():
         ours = []
         for name, budget in (
-            ("TiniScript", chip_cycles.BUDGET),
-            ("TiniScript, as the sketch calls it", chip_cycles.SKETCH_BUDGET),
+            ("TiniScript", machine_cycles.BUDGET),
+            ("TiniScript, as the sketch calls it", machine_cycles.SKETCH_BUDGET),
         ):
-            found = [round(chip_cycles.per_iteration(work, budget), 1) for work in works.WORKS]
+            found = [
+                round(machine_cycles.per_iteration(work, budget), 1) for work in workloads.WORKS
+            ]
             ours.append((name, "thousandths", *found))
     if not sketch_cycles.missing():
         firmware = sketch_cycles.built()
-        found = [round(sketch_cycles.per_iteration(firmware, work), 1) for work in works.WORKS]
+        found = [round(sketch_cycles.per_iteration(firmware, work), 1) for work in workloads.WORKS]
         ours.append(("TiniScript, in the shipped sketch", "thousandths", *found))
     rows = [
         *ours,
-        ("  must", "", *works.MUST),
-        ("  a later aim", "", *works.LATER),
-        *((name, numbers, *figures) for name, numbers, figures in works.OTHERS),
+        ("  must", "", *workloads.MUST),
+        ("  a later aim", "", *workloads.LATER),
+        *((name, numbers, *figures) for name, numbers, figures in workloads.OTHERS),
     ]
     table("Cycles of one iteration on a simulated ATmega328P", ("", "numbers", "A", "B", "C"), rows)
-    for work in works.WORKS:
+    for work in workloads.WORKS:
         print(f"\n{work.name}: `{work.body[:-1]}`, {work.times:,} times.", end="")
     print(
-        f"\nAll of `tick` is counted, {chip_cycles.BUDGET} instructions a call; the sketch calls "
-        f"it for {chip_cycles.SKETCH_BUDGET}.\nIn the shipped sketch all is counted that comes "
-        "between, its main loop and its interrupts.\nThe others were measured once, with loops "
-        "of the same work in their own languages. Fewer bits\nare less work; Snek, Microvium and "
+        f"\nAll of `tick` is counted, {machine_cycles.BUDGET} instructions a call; the sketch "
+        f"calls it for {machine_cycles.SKETCH_BUDGET}.\nIn the shipped sketch all is counted that "
+        "comes between, its main loop and its interrupts.\nThe others were measured once, with "
+        "loops of the same work in their own languages. Fewer bits\nare less work; Snek, "
+        "Microvium and "
         "uLisp are far larger languages; TinyBASIC, Bitlash and\nuBASIC read the text of each line "
         "anew."
     )
@@ -107,17 +110,17 @@ def instructions() -> None:
         print(f"\nCycles of an instruction: {avr_bench.missing()}")
         return
     rows = []
-    for name in chip_cycles.ARITHMETIC:
-        each = chip_cycles.of_arithmetic(name)
-        rows.append((name, each[0], sum(each) / len(each), each[-1], works.OF_C.get(name, "")))
-    title = f"Cycles of an instruction, with {len(chip_cycles.PAIRS)} pairs as in a classroom"
+    for name in machine_cycles.ARITHMETIC:
+        each = machine_cycles.of_arithmetic(name)
+        rows.append((name, each[0], sum(each) / len(each), each[-1], workloads.OF_C.get(name, "")))
+    title = f"Cycles of an instruction, with {len(machine_cycles.PAIRS)} pairs as in a classroom"
     table(title, ("", "least", "mean", "most", "mean of C alone"), rows)
     print("\nC alone: thousandths in a function, with int64 where they need it, and no machine.")
     means = {
         name: mean
-        for work in works.WORKS
-        for name, mean in chip_cycles.of_instructions(work).items()
-        if name not in chip_cycles.ARITHMETIC
+        for work in workloads.WORKS
+        for name, mean in machine_cycles.of_instructions(work).items()
+        if name not in machine_cycles.ARITHMETIC
     }
     table("Cycles of an instruction in these loops", ("", "mean"), sorted(means.items()))
 
@@ -125,18 +128,20 @@ def instructions() -> None:
 def sizes() -> None:
     rows: list[tuple[object, ...]] = []
     said = []
-    for name in (cpp_size.AVR, *cpp_size.EMULATED):
-        if cpp_size.missing(name):
-            said.append(cpp_size.missing(name))
+    for name in (machine_size.AVR, *machine_size.EMULATED):
+        if machine_size.missing(name):
+            said.append(machine_size.missing(name))
             rows.append((name, NONE, NONE, NONE))
             continue
-        small, whole = (cpp_size.size(name, use) for use in ("machine and verifier", "all"))
+        small, whole = (machine_size.size(name, use) for use in ("machine and verifier", "all"))
         rows.append((name, small.flash, whole.flash, whole.ram))
-        if name == cpp_size.AVR:
-            rows += [("  must", cpp_size.MUST, "", ""), ("  aim", cpp_size.AIM, "", "")]
+        if name == machine_size.AVR:
+            rows += [("  must", machine_size.MUST, "", ""), ("  aim", machine_size.AIM, "", "")]
     module = (ROOT / "compiler" / "tiniscript" / "vm" / "machine.wasm").stat().st_size
     rows.append(("WebAssembly, the whole module", NONE, module, NONE))
-    rows += [(f"{name}, {what}", flash, "", ram) for name, what, flash, ram in works.OTHER_SIZES]
+    rows += [
+        (f"{name}, {what}", flash, "", ram) for name, what, flash, ram in workloads.OTHER_SIZES
+    ]
     head = ("", "machine and verifier", "with the image reader", "RAM")
     table("Bytes of flash and of RAM, linked, with the compiler's library", head, rows)
     for sentence in said:
@@ -149,8 +154,8 @@ def speeds() -> None:
         machines = [timing.of_host(Path(folder) / "host"), timing.of_wasm(), timing.of_python()]
         there = [each for each in machines if not each.missing]
         rows = []
-        for work in works.WORKS:
-            steps = works.expected(work).steps
+        for work in workloads.WORKS:
+            steps = workloads.expected(work).steps
             rounds = [[each.seconds(work) for each in there] for _ in range(ROUNDS)]
             row: list[object] = [f"{work.name}, {steps:,} instructions"]
             for each in machines:

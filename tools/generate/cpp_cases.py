@@ -13,7 +13,7 @@ from collections.abc import Iterator, Sequence
 from itertools import product
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tests.support.casefile import Case, read
@@ -62,7 +62,7 @@ def cases_header(command: str) -> str:
         "// What the machine must refuse, do, leave behind and calculate.\n"
         f"\n#ifndef {GUARD}\n#define {GUARD}\n"
         "\n#include <stdint.h>\n\n#include <string>\n#include <vector>\n"
-        '\n#include "../host/traced_robot.h"\n#include "../src/vm/bytecode.h"\n'
+        '\n#include "../extras/host/traced_robot.h"\n#include "../src/vm/bytecode.h"\n'
         "\n// clang-format off\n"
         "\nnamespace cases {\n\nusing tiniscript::Fault;\nusing tiniscript::Op;\n"
         f"using tiniscript::Rule;\n\n{STRUCTS}",

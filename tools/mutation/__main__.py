@@ -1,6 +1,6 @@
 """Breaks the C++ machine in hundreds of ways, and asks whether the tests notice each one.
 
-`python tools/mutation.py` tries all of `breaks.py`; words choose those whose names have them;
+`python -m tools.mutation` tries all of `breaks.py`; words choose those whose names have them;
 `--all` tries a change of every operator, constant and statement too. What goes unnoticed is a gap
 in the tests, and exit code 1. Needs g++.
 """
@@ -19,14 +19,14 @@ from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tests.machines.host import SOURCES, missing
 from tests.support.cpp_sample import Sample, Unfit
-from tools.breaks import MACHINE, Break, Stale, breaks
-from tools.equivalent import EQUIVALENT
-from tools.small_changes import small_changes
+from tools.mutation.equivalent import EQUIVALENT
+from tools.mutation.mutants import MACHINE, Break, Stale, breaks
+from tools.mutation.operators import small_changes
 
 WORKERS = 2
 BUILD = "build"  # what notices a break that does not compile without a warning

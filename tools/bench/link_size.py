@@ -10,11 +10,11 @@ import sys
 import tempfile
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT)]
 
-from tools import avr_bench, cpp_size
-from tools.cpp_size import AVR, SOURCE, USES, WAYS, Size, done, missing
+from tools.bench import avr_bench, machine_size
+from tools.bench.machine_size import AVR, SOURCE, USES, WAYS, Size, done, missing
 
 MUST = 4100  # bytes of flash
 
@@ -67,7 +67,7 @@ def probe(use: str) -> str:
         ("uint8_t bytes[64];", PORT + "uint8_t bytes[64];"),
         ("  USE\n", PORT_USED + USES["all"] + use),
     )
-    text = cpp_size.PROBE
+    text = machine_size.PROBE
     for old, new in parts:
         assert text.count(old) == 1, old
         text = text.replace(old, new)

@@ -12,17 +12,18 @@ import re
 import sys
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tests.machines.wired import Wired
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import unpack
 from tiniscript.link.session import Session, Task
-from tools import firmware_size, uno
-from tools.platformio_offline import CannotStandIn
+from tools import uno
+from tools.bench import firmware_size
+from tools.bench.workloads import Work, WrongResult, expected
+from tools.build.platformio_offline import CannotStandIn
 from tools.uno import Uno
-from tools.works import Work, WrongResult, expected
 
 ROBOT = robots.load(robots.DEFAULT)
 SENSOR = "LIGHT_L"  # the one for which the constants are

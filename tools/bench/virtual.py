@@ -1,4 +1,4 @@
-"""How much faster than a real robot the virtual one is: `python tools/virtual_benchmark.py`.
+"""How much faster than a real robot the virtual one is: `python -m tools.bench.virtual`.
 
 Each program drives for a minute of the robot's time: in this process, with nobody at its port,
 in seconds of the processor; and as a whole `tsc upload --virtual --hurry max`, with the start of
@@ -12,7 +12,7 @@ import sys
 from pathlib import Path
 from time import perf_counter, process_time
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tests.support.virtual_robot import Talk

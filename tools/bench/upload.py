@@ -1,6 +1,6 @@
 """How long a new `tsc upload` takes until the robot moves.
 
-    python tools/upload_benchmark.py [runs]
+    python -m tools.bench.upload [runs]
 
 The paper's obstacle program, from the start of the process to the first motor command in the robot:
 where the command opens the port itself, and where `tsc link` holds it; beside a process that does
@@ -18,14 +18,14 @@ import tempfile
 import time
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tests.machines.host_firmware import missing
 from tests.support.pty_robot import PtyRobot
 from tests.support.robot_fleet import RobotFleet
 from tiniscript import robots
-from tools.benchmark import table
+from tools.bench.compiler import table
 
 RUNS = 15
 MUST = 10  # times a process that does nothing, and the wire

@@ -15,14 +15,14 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tiniscript.bytecode.image import HEADER_BYTES
 from tiniscript.vm.machine import Machine
 from tiniscript.vm.state import DONE, RUNNING
 from tiniscript.vm.trace import AnyMachine
-from tools.works import KIT, Work, check, code_of, image_of
+from tools.bench.workloads import KIT, Work, check, code_of, image_of
 
 BENCH = ROOT / "vm_arduino" / "extras" / "bench" / "host.cpp"
 MACHINE = ROOT / "vm_arduino" / "src" / "vm"

@@ -1,4 +1,4 @@
-"""Writes the generated files: run `python tools/generate.py` after changing what they come from.
+"""Writes the generated files: run `python -m tools.generate` after changing what they come from.
 
 Knows which files are generated and from what. `--check` writes nothing, and names what is stale.
 """
@@ -13,7 +13,7 @@ from functools import partial
 from itertools import accumulate
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tiniscript.bytecode import image, opcodes, verify
@@ -23,7 +23,7 @@ from tiniscript.robots.profile import LANGUAGES, ProfileRefused, Robot
 from tiniscript.robots.reader import read
 from tiniscript.robots.refusals import describe
 
-COMMAND = "python tools/generate.py"
+COMMAND = "python -m tools.generate"
 LINE_LENGTH = 100
 ROBOTS = ROOT / "compiler" / "tiniscript" / "robots"
 
@@ -108,7 +108,7 @@ def _parts_of(value: object) -> tuple[str, list[tuple[str, object]], str]:
 
 def link_document() -> str:
     """Return `docs/link.md` with the tables that it takes from `link/messages.py`."""
-    from tools.link_header import DOCUMENT_TABLES
+    from tools.generate.link_header import DOCUMENT_TABLES
 
     text = LINK_DOCUMENT.read_text(encoding="utf-8")
     for name, made in DOCUMENT_TABLES.items():
@@ -210,35 +210,35 @@ def limit_table() -> str:
 
 def cpp_header() -> str:
     """Return `bytecode.h`: what the C++ machine takes from the tables of the compiler."""
-    from tools.cpp_header import header
+    from tools.generate.cpp_header import header
 
     return header(COMMAND)
 
 
 def cpp_tables() -> str:
     """Return `bytecode.cpp`: the tables that it declares."""
-    from tools.cpp_header import tables
+    from tools.generate.cpp_header import tables
 
     return tables(COMMAND)
 
 
 def link_header() -> str:
     """Return `messages.h`: what the C++ half of the link takes from the table of messages."""
-    from tools.link_header import header
+    from tools.generate.link_header import header
 
     return header(COMMAND)
 
 
 def link_tables() -> str:
     """Return `messages.cpp`: the table that it declares."""
-    from tools.link_header import tables
+    from tools.generate.link_header import tables
 
     return tables(COMMAND)
 
 
 def cpp_cases() -> str:
     """Return `cases.h`: what the tests in C++ expect."""
-    from tools.cpp_cases import cases_header  # reads the case files
+    from tools.generate.cpp_cases import cases_header  # reads the case files
 
     return cases_header(COMMAND)
 
@@ -257,7 +257,7 @@ def robot_header(path: Path) -> str:
 
 def wiring_page(name: str) -> str:
     """Return a file of `docs/wiring/`: how a shipped robot is wired."""
-    from tools.wiring_pages import pages
+    from tools.generate.wiring_pages import pages
 
     return pages(COMMAND)[name]
 

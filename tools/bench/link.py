@@ -14,14 +14,15 @@ import tempfile
 from pathlib import Path
 from typing import NamedTuple
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import unpack
 from tiniscript.link.session import Session, Task
-from tools import firmware_size, uno
-from tools.benchmark import PROGRAMS
+from tools import uno
+from tools.bench import firmware_size
+from tools.bench.compiler import PROGRAMS
 from tools.uno import CYCLES_PER_MS, Uno
 
 PROJECT = ROOT / "vm_arduino"
