@@ -1,5 +1,8 @@
 """TiniScript: from a line of text to what a robot does.
 
+For programs in Python there are `compile`, `check`, `run`, `show`, `connect` and `virtual_robot`:
+`docs/api.en.md`. They are in `library/`, and are imported when they are used.
+
 `compile_text` is the whole road, a line for each stage: text, tokens, tree, program,
 instructions, image. It prints nothing, opens nothing and needs the standard library alone.
 """
@@ -17,9 +20,75 @@ if TYPE_CHECKING:
     from tiniscript.codegen.lower import Place
     from tiniscript.diagnostics.codes import Problem
     from tiniscript.kit import Kit
+    from tiniscript.library.connection import (
+        Ending,
+        Receipt,
+        RobotConnection,
+        RobotEvent,
+        RobotInfo,
+        connect,
+    )
+    from tiniscript.library.errors import (
+        ProgramError,
+        RobotError,
+        StopNotConfirmed,
+        TiniScriptError,
+        UsageError,
+    )
+    from tiniscript.library.programs import Diagnostic, Program, check, compile, show
+    from tiniscript.library.runs import Fault, Trace, TraceEvent, run
+    from tiniscript.library.simulated import VirtualRobotConnection, virtual_robot
     from tiniscript.robots.profile import Robot
-    from tiniscript.semantics.ir import Program
+    from tiniscript.semantics import ir
     from tiniscript.source import Source
+
+__all__ = (  # what `docs/api.en.md` promises
+    "Diagnostic",
+    "Ending",
+    "Fault",
+    "Program",
+    "ProgramError",
+    "Receipt",
+    "RobotConnection",
+    "RobotError",
+    "RobotEvent",
+    "RobotInfo",
+    "StopNotConfirmed",
+    "TiniScriptError",
+    "Trace",
+    "TraceEvent",
+    "UsageError",
+    "VirtualRobotConnection",
+    "check",
+    "compile",
+    "connect",
+    "run",
+    "show",
+    "virtual_robot",
+)
+_HOMES = {
+    "connection": ("Ending", "Receipt", "RobotConnection", "RobotEvent", "RobotInfo", "connect"),
+    "errors": ("ProgramError", "RobotError", "StopNotConfirmed", "TiniScriptError", "UsageError"),
+    "programs": ("Diagnostic", "Program", "check", "compile", "show"),
+    "runs": ("Fault", "Trace", "TraceEvent", "run"),
+    "simulated": ("VirtualRobotConnection", "virtual_robot"),
+}
+
+if not TYPE_CHECKING:
+
+    def __getattr__(name: str) -> object:
+        """Import what is asked for: so `import tiniscript` imports nothing else."""
+        for home, names in _HOMES.items():
+            if name in names:
+                from importlib import import_module
+
+                found = getattr(import_module(f"tiniscript.library.{home}"), name)
+                globals()[name] = found
+                return found
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+    def __dir__() -> list[str]:
+        return sorted({*globals(), *__all__})
 
 
 class Compiled(NamedTuple):
@@ -31,7 +100,7 @@ class Compiled(NamedTuple):
 
     source: Source
     problems: list[Problem]
-    program: Program | None = None
+    program: ir.Program | None = None
     code: bytes = b""
     places: tuple[Place, ...] = ()
     verdict: Verdict | None = None

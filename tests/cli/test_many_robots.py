@@ -150,7 +150,7 @@ def test_a_port_that_never_had_a_robot_is_no_failure(
     assert len(done.out.splitlines()) == 4
     assert done.err == f"4 of 4 robots: done.\nNo robot answers on {port}.\n"
     monkeypatch.setattr("tiniscript.link.ports.listed", list)
-    monkeypatch.setattr("tiniscript.cli.robot.connect.ANSWER_MS", 1000)
+    monkeypatch.setattr("tiniscript.library.way.ANSWER_MS", 1000)
     known_ports.remember(known, "R9", is_used=False)
     done = tsc("ping", "--all", "--count", "1")
     assert done.code == 3

@@ -16,6 +16,7 @@ from tests.support.command import FOREVER, LONG, OBSTACLE, TSC, Tsc, ended, proc
 from tests.support.pty_robot import PtyRobot, on
 from tiniscript import compile_text, robots
 from tiniscript.cli.robot import connect
+from tiniscript.library import way
 from tiniscript.link import known_ports, ports
 
 pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
@@ -27,9 +28,9 @@ KIT = robots.load("tinibot").kit
 @pytest.fixture
 def hasty(monkeypatch: pytest.MonkeyPatch) -> None:
     """Nobody waits long for a robot that will not answer."""
-    monkeypatch.setattr(connect, "ANSWER_MS", 800)
-    monkeypatch.setattr(connect, "CABLE_ANSWER_MS", 800)
-    monkeypatch.setattr(connect, "LONG_QUIET_S", 0.1)
+    monkeypatch.setattr(way, "ANSWER_MS", 800)
+    monkeypatch.setattr(way, "CABLE_ANSWER_MS", 800)
+    monkeypatch.setattr(way, "LONG_QUIET_S", 0.1)
     monkeypatch.setattr(connect, "PATIENCE_MS", 800)
 
 
@@ -371,7 +372,7 @@ def test_every_reason_has_a_sentence_with_a_next_step(
 ) -> None:
     from serial import SerialException
 
-    monkeypatch.setattr("tiniscript.cli.robot.shared_port.BUSY_S", 0)
+    monkeypatch.setattr("tiniscript.library.way.BUSY_S", 0)
     for trouble, word in (
         (SerialException(13, "Permission denied"), "dialout" if os.name == "posix" else "may not"),
         (SerialException(16, "Device or resource busy"), "another program"),

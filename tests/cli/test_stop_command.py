@@ -11,9 +11,9 @@ import pytest
 from tests.machines.host_firmware import missing
 from tests.support.command import Command
 from tests.support.pty_robot import PtyRobot, on, uploading
-from tiniscript.cli.errors import Trouble
-from tiniscript.cli.robot import shared_port
 from tiniscript.cli.texts.common import text
+from tiniscript.library import way
+from tiniscript.library.errors import RobotError
 from tiniscript.link.line import Line
 from tiniscript.link.session import CONFIRM_MS
 
@@ -84,20 +84,20 @@ def test_a_stop_waits_for_a_port_longer_than_others(
 ) -> None:
     """Another command has it that looks for a silent robot for 8.5 s, and does not share it."""
     now_s = [0.0]
-    monkeypatch.setattr(shared_port, "monotonic", lambda: now_s[0])
-    monkeypatch.setattr(shared_port, "sleep", lambda wait_s: now_s.append(now_s.pop() + wait_s))
+    monkeypatch.setattr(way, "monotonic", lambda: now_s[0])
+    monkeypatch.setattr(way, "sleep", lambda wait_s: now_s.append(now_s.pop() + wait_s))
     line = cast(Line, object())
 
     def open_line(_: object) -> Line:
         if now_s[0] < 8.5:
-            raise Trouble(3, "port_busy", port="/dev/ttyUSB7", why="")
+            raise RobotError("port_busy", "en", {"port": "/dev/ttyUSB7", "why": ""})
         return line
 
     if is_patient:
-        assert shared_port.way_to("/dev/ttyUSB7", verb, open_line) is line
+        assert way.way_to("/dev/ttyUSB7", verb, open_line) is line
     else:
-        with pytest.raises(Trouble):
-            shared_port.way_to("/dev/ttyUSB7", verb, open_line)
+        with pytest.raises(RobotError):
+            way.way_to("/dev/ttyUSB7", verb, open_line)
 
 
 @pytest.mark.parametrize("language", ["en", "es"])

@@ -37,7 +37,7 @@ UPSTREAM: dict[str, set[str]] = {
     "sharing": {"files", "bytecode", "link"},
     "virtual": {*SHARED, "bytecode", "vm", "robots", "link", "sharing"},
 }
-WHOLE = {"__init__", "__main__", "cli"}  # what puts the stages together
+WHOLE = {"__init__", "__main__", "library", "cli"}  # what puts the stages together
 
 
 def modules_of(path: Path) -> set[str]:
@@ -82,6 +82,14 @@ def test_the_table_points_one_way() -> None:
     for stage, upstream in UPSTREAM.items():
         assert upstream <= above, stage
         above.add(stage)
+
+
+LIBRARY = [path for path in FILES if stage_of(path) == "library"]
+
+
+@pytest.mark.parametrize("path", LIBRARY, ids=lambda path: path.stem)
+def test_the_library_does_not_know_the_command(path: Path) -> None:
+    assert not [name for name in modules_of(path) if name.startswith("tiniscript.cli")]
 
 
 def test_no_module_imports_itself_by_a_detour() -> None:
@@ -148,6 +156,22 @@ def test_the_road_needs_the_standard_library_alone() -> None:
                 "tiniscript.diagnostics.rendering", "tiniscript.vm.machine",
                 "tiniscript.syntax.recovery",
                 "tiniscript.syntax.expression_recovery"}  # fmt: skip
+    assert not unwanted & modules
+
+
+def test_importing_the_package_imports_nothing_else() -> None:
+    """What the library offers is imported when it is asked for."""
+    found = {name for name in imported_by("import tiniscript") if name.startswith("tiniscript")}
+    assert found == {"tiniscript"}
+
+
+@pytest.mark.parametrize(
+    "use", ["compile('SI|F(5,80)')", "check('SI|F(5,')", "run('SI|F(5,80)')", "show('SI|F(5,80)')"]
+)
+def test_programs_need_no_link(use: str) -> None:
+    modules = imported_by(f"import tiniscript; tiniscript.{use}")
+    unwanted = {"serial", "cobs", "wasmtime", "tiniscript.link", "tiniscript.virtual",
+                "tiniscript.cli"}  # fmt: skip
     assert not unwanted & modules
 
 

@@ -54,40 +54,31 @@ def ready(
     outputs.print_problems(compiled, language)
     if not compiled.is_right:
         return None
-    from tiniscript.bytecode.image import Image, checksum
-    from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
+    from tiniscript.library.compiling import image_of
 
-    assert compiled.program is not None
-    kit = kit_of(compiled, robot)
-    image = Image(compiled.program.start, kit, compiled.code, checksum(compiled.image),
-                  (ISA_MAJOR, ISA_MINOR))  # fmt: skip
+    image = image_of(compiled, robot)
     return Ready(image, len(compiled.image), source_map.from_compiled(compiled))
-
-
-def kit_of(compiled: Compiled, robot: Robot) -> int:
-    """Return the fingerprint of the kit whose words a program uses, or 0 for none."""
-    assert compiled.verdict is not None
-    return robot.kit.fingerprint if compiled.verdict.uses_kit else 0
 
 
 def _read(given: inputs.Input, kit: int | None, robot: str) -> Image:
     from tiniscript.bytecode.image import ImageRefused, unpack
+    from tiniscript.library.known_kits import shipped_of_kit
 
     try:
         return unpack(given.data, kit)
     except ImageRefused as refused:
         values = {"file": inputs.shown(given.name), "robot": robot, **refused.values}
         if refused.name == "OTHER_KIT":
-            values["theirs"] = robot_of_kit(int(refused.values["theirs"], 16)) or "FILE"
+            values["theirs"] = shipped_of_kit(int(refused.values["theirs"], 16)) or "FILE"
         raise Trouble(1, f"image_{refused.name}", **values) from None
 
 
 def _verify(given: inputs.Input, image: Image, robot: Robot) -> None:
-    from tiniscript.bytecode.verify import Refused, verify
+    from tiniscript.bytecode.verify import Refused
+    from tiniscript.library.compiling import verify_for
 
-    kit = robot.kit if image.kit else None
     try:
-        verify(image.code, len(kit.sensors) if kit else 0, len(kit.actuators) if kit else 0)
+        verify_for(image, robot)
     except Refused as refused:
         values = {"name": refused.name, "number": str(refused.number)}
         where = f"{refused.offset:04x}"
@@ -98,17 +89,8 @@ def _verify(given: inputs.Input, image: Image, robot: Robot) -> None:
 def robot_for(given: inputs.Input, robot: Robot) -> Robot:
     """Return the shipped robot whose kit an image names, or `robot` where none does."""
     from tiniscript import robots
+    from tiniscript.library.known_kits import shipped_of_kit
 
     image = _read(given, None, robot.name)
-    name = robot_of_kit(image.kit) if image.kit else None
+    name = shipped_of_kit(image.kit) if image.kit else None
     return robot if name is None else robots.load(name)
-
-
-def robot_of_kit(fingerprint: int) -> str | None:
-    """Return the shipped robot that has this kit."""
-    from tiniscript import robots
-
-    for name in robots.names():
-        if robots.load(name).kit.fingerprint == fingerprint:
-            return name
-    return None

@@ -11,7 +11,7 @@ from tiniscript.cli.errors import Trouble
 from tiniscript.cli.paths import real_name
 from tiniscript.cli.texts.common import Said
 from tiniscript.printable import printable
-from tiniscript.source import LARGEST_SOURCE, Unreadable, decode
+from tiniscript.source import LARGEST_SOURCE
 
 if TYPE_CHECKING:
     from tiniscript import Compiled
@@ -100,42 +100,21 @@ def compiled(given: Input, robot: Robot, is_strict: bool) -> Compiled:
 
     `is_strict`: a program that is too large for the robot is a mistake, else a warning.
     """
-    from tiniscript import compile_text, fitting
+    from tiniscript.library.compiling import compiled as compiled_data
 
-    source = _source(given)
-    if isinstance(source, str):
-        found = compile_text(source, robot.kit, given.name)
-        if not found.is_right:
-            from tiniscript.cli.robot.own_kit import naming
-
-            return naming(found, robot)
-        return fitting(found, robot, is_strict)
-    return source
+    return compiled_data(given.data, robot, given.name, is_strict)
 
 
 def parsed(given: Input, kit: Kit) -> Compiled:
     """Return what is wrong with the shape of a program's text, and nothing more."""
     from tiniscript import Compiled
     from tiniscript.diagnostics.codes import in_order
+    from tiniscript.library.compiling import text_of
     from tiniscript.source import Source
     from tiniscript.syntax.parser import parse
 
-    text = _source(given)
+    text = text_of(given.data, given.name)
     if not isinstance(text, str):
         return text
     source = Source(text, given.name)
     return Compiled(source, in_order(parse(source, kit).problems))
-
-
-def _source(given: Input) -> str | Compiled:
-    """Return a program's text; where the bytes are no text, that as its one problem."""
-    from tiniscript import Compiled
-    from tiniscript.diagnostics import codes
-    from tiniscript.source import Source, Span
-
-    try:
-        return decode(given.data)
-    except Unreadable as unreadable:
-        reasons = {"too_large": codes.TOO_LARGE, "binary": codes.BINARY}
-        code = reasons.get(unreadable.reason, codes.NOT_UTF8)
-        return Compiled(Source("", given.name), [codes.Problem(code, Span(0, 0))])

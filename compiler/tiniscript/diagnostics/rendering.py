@@ -11,7 +11,7 @@ import re
 import sys
 from collections.abc import Iterable, Mapping
 from functools import cache
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 from tiniscript.diagnostics.codes import CODES, Problem
 from tiniscript.source import Source, Span
@@ -34,7 +34,7 @@ class Message(NamedTuple):
     """
 
     code: str
-    severity: str  # "mistake" or "warning"
+    severity: Literal["mistake", "warning"]
     line: int
     column: int
     end_line: int

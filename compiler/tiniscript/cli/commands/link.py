@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 from tiniscript.cli.errors import Trouble
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import Options
-from tiniscript.cli.robot.connect import ANSWER_MS, Connection, connected, hello, takes_robot
+from tiniscript.cli.robot.connect import Connection, connected, takes_robot
 from tiniscript.cli.robot.event_printer import Bookkeeping, Teller
 from tiniscript.cli.texts.common import text
+from tiniscript.library import way
 
 if TYPE_CHECKING:
     from tiniscript.link.connection import Asked
@@ -100,7 +101,7 @@ class _Log:
             self._say(name, "link_started", program=f"{program:08x}")
         elif name == "LOST":
             self._say(name, "link_searching", port=shown(self.connection.port))
-            self.search = hello(self.connection.line, ANSWER_MS)
+            self.search = way.hello(self.connection.line, way.ANSWER_MS)
         elif not self.bookkeeping.hides(event):
             self.teller.tell(time_ms, event)
 
@@ -110,7 +111,7 @@ class _Log:
             self.search = None
             self._say("FOUND", "link_found", robot=self.connection.name)
         else:
-            self.search = hello(self.connection.line, ANSWER_MS)
+            self.search = way.hello(self.connection.line, way.ANSWER_MS)
 
     def _say(self, name: str, key: str, **values: str) -> None:
         said = text(key, self.language).format(**values)

@@ -9,7 +9,7 @@ from argparse import Namespace
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from tiniscript.cli import images, inputs, outputs
+from tiniscript.cli import inputs, outputs
 from tiniscript.cli.errors import Trouble
 from tiniscript.cli.options import Options
 from tiniscript.cli.robot import own_kit
@@ -164,10 +164,11 @@ class Talk:
 
     def _run(self, found: Line, is_last: bool) -> int:
         from tiniscript.codegen import source_map
+        from tiniscript.library.compiling import kit_of
 
         places = source_map.from_compiled(found.compiled)
         source_map.remember(found.compiled.image, places)  # tsc info names a fault's line later
-        kit = images.kit_of(found.compiled, self.connection.profile)
+        kit = kit_of(found.compiled, self.connection.profile)
         reply = self.connection.ask(lambda session: session.live(found.compiled.code, kit))
         run = reply.values["run"]
         assert isinstance(run, int)

@@ -11,8 +11,9 @@ from tiniscript.cli import inputs
 from tiniscript.cli.errors import Trouble
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import Options
-from tiniscript.cli.robot.connect import asked, baud_of, opened_way, remember, robot_of_kit
+from tiniscript.cli.robot.connect import baud_of, opened_way, robot_of_kit
 from tiniscript.cli.texts.common import text
+from tiniscript.library import way
 
 if TYPE_CHECKING:
     from tiniscript.robots.profile import Robot
@@ -119,7 +120,7 @@ def _ask(port: str, baud: int, robot: Robot, language: str) -> dict[str, object]
 
     try:
         with closing(opened_way(port, baud, robot, "ports", OPEN_S)) as line:
-            reply = asked(line, port, robot.board.chip, line.wait)
+            reply = way.met(line, port, robot.board.chip, line.wait)
             card = line.robot
             heard = line.heard
     except Trouble as trouble:
@@ -127,7 +128,7 @@ def _ask(port: str, baud: int, robot: Robot, language: str) -> dict[str, object]
     except Gone as gone:
         return {"answer": None, "said": gone.why}
     if reply.status == 0 and card is not None:
-        remember(port, card.name, is_used=False)
+        way.remember(port, card.name, is_used=False)
         called = shown(card.name) or robot_of_kit(card.kit) or f"{card.id:08x}"
         said = text("port_robot", language).format(name=called)
         return {"answer": card.name, "id": f"{card.id:08x}", "kit": f"{card.kit:04x}", "said": said}

@@ -82,14 +82,9 @@ def run(arguments: list[str], language: str) -> int:
     if ready is None:
         return 1
     machine_of = _cpp_machine(ready.image, robot) if options.machine == "cpp" else None
-    from tiniscript.vm.machine import Machine
-    from tiniscript.vm.trace import Senses
-    from tiniscript.vm.trace import run as run_code
+    from tiniscript.library.runs import begun
 
-    senses = Senses(robot.kit, lists)
-    events = run_code(
-        ready.image.code, robot.kit, senses, max_ms, max_steps, seed, machine_of or Machine
-    )
+    events = begun(ready.image, robot, lists, max_ms, max_steps, seed, machine_of)
     if options.show and sys.stderr.isatty():
         from tiniscript.cli.terminal.run_drawing import watch
 
@@ -105,24 +100,16 @@ def run(arguments: list[str], language: str) -> int:
 
 
 def _cpp_machine(image: Image, robot: Robot) -> MachineOf:
-    """Return the C++ machine with an image that is verified already: it must agree to that."""
+    """Return the C++ machine with a verified image."""
+    from tiniscript.library.runs import cpp_machine
+
     try:
-        from tiniscript.vm.wasm import WasmImage
+        return cpp_machine(image, robot)
     except (ImportError, OSError, RuntimeError) as why:  # not there, or not for this computer
         from tiniscript.cli import install_advice
 
         how = install_advice.command(install_advice.VIRTUAL)
         raise Trouble(2, "no_wasmtime", why=str(why), how=how) from None
-    from tiniscript.bytecode.image import ImageRefused, pack
-    from tiniscript.bytecode.verify import Refused
-
-    kit = robot.kit
-    data = pack(image.start, image.kit, image.code)
-    devices = (len(kit.sensors), len(kit.actuators)) if image.kit else (0, 0)
-    try:
-        return WasmImage(data, kit.fingerprint, *devices).machine
-    except (ImageRefused, Refused) as refused:
-        raise AssertionError(f"the C++ machine refuses what Python accepts: {refused}") from None
 
 
 def _print(events: object) -> Ending:

@@ -5,12 +5,10 @@ Every trouble on that way becomes a sentence that says what to do next.
 
 from __future__ import annotations
 
-import os
 import sys
 from argparse import Namespace
 from collections.abc import Callable
 from contextlib import suppress
-from time import sleep
 from typing import IO, TYPE_CHECKING
 
 from tiniscript.cli import inputs
@@ -20,6 +18,8 @@ from tiniscript.cli.options import Options, whole_number
 from tiniscript.cli.robot import shared_port
 from tiniscript.cli.robot.own_kit import remember as remember_profile
 from tiniscript.cli.texts.common import text
+from tiniscript.library import way
+from tiniscript.library.errors import RobotError
 
 if TYPE_CHECKING:
     from tiniscript.cli.robot.event_printer import Teller
@@ -33,15 +33,7 @@ if TYPE_CHECKING:
     from tiniscript.link.requests import Robot as Card
     from tiniscript.robots.profile import Robot
 
-ANSWER_MS = 6000  # for which a robot is asked through the air who it is
-# At a cable it is asked for less, and twice: an Uno that was reset takes 1.4 s.
-CABLE_ANSWER_MS = 2000
-# A Mega that was reset begins after 0.9 s. What it hears before that keeps it in its bootloader
-# until it has heard nothing for 4.2 s.
-QUIET_S = {"mega": 1.2}  # by board
-LONG_QUIET_S = 4.5
 PATIENCE_MS = 6000  # for which one that has answered may be silent, or busy with saving
-PSEUDO = ("/dev/pts/", "/dev/ttys")  # pseudo-terminals
 VIRTUAL = ""  # no port: a virtual robot that this command brings along
 SLOWEST_BAUD, FASTEST_BAUD = 300, 2_000_000
 
@@ -154,9 +146,9 @@ class Connection:
         """
         from tiniscript.link.outcomes import CANCELLED
 
-        reply = asked(self.line, self.port, board or self.profile.board.chip, self.wait)
+        reply = way.met(self.line, self.port, board or self.profile.board.chip, self.wait)
         while reply.status == CANCELLED and self.starts_nothing:  # a stop came first
-            reply = self.wait(hello(self.line, ANSWER_MS))
+            reply = self.wait(way.hello(self.line, way.ANSWER_MS))
         card = self.line.robot
         if reply.status or card is None:
             raise self.trouble(reply)
@@ -167,7 +159,7 @@ class Connection:
 
     def remember(self, name: str) -> None:
         """Keep the port for the next time, and what the robot on it is called."""
-        remember(self.port, name)
+        way.remember(self.port, name)
 
     @property
     def card(self) -> Card:
@@ -201,13 +193,7 @@ class Connection:
 
     def do(self, make: Callable[[Asks], Asked]) -> Asked:
         """Have something begun, for which there is a limited time."""
-
-        def limited(session: Asks) -> Asked:
-            task = make(session)
-            task.limit_ms = PATIENCE_MS
-            return task
-
-        return self.line.do(limited)
+        return self.line.do(way.limited(make, PATIENCE_MS))
 
     def wait(self, task: Asked, look: Callable[[], None] | None = None) -> Reply:
         from tiniscript.link.outcomes import Gone
@@ -246,18 +232,10 @@ class Connection:
 
     def trouble(self, reply: Reply) -> Trouble:
         """Return the sentence for an outcome that is not OK."""
-        from tiniscript.link.outcomes import CANCELLED, LOST
-
-        if reply.status == CANCELLED:
-            return Trouble(3, "stopped_elsewhere", port=shown(self.port))
-        if reply.status != LOST:
+        reason = way.reason_of(self.line, reply)
+        if reason == "status":
             return Trouble(3, "plain", said=self.said(reply))
-        if self.line.robot is not None:
-            return Trouble(3, "link_lost", port=shown(self.port))
-        if self.line.is_echoed:
-            return Trouble(3, "link_echo", port=shown(self.port))
-        key = "link_other" if self.line.heard else "link_silent"
-        return Trouble(3, key, port=shown(self.port))
+        return Trouble(3, reason, port=shown(self.port))
 
     def said(self, reply: Reply) -> str:
         """Return what a robot's refusal means, and what to do."""
@@ -273,11 +251,8 @@ class Connection:
 
     def gone(self, gone: Gone) -> Trouble:
         """Return the sentence for a way that has ended."""
-        if gone.is_holder:
-            return Trouble(3, "holder_ended", port=shown(self.port), verb=self.line.held_by)
-        if self.line.heard and self.line.robot is None:  # said so, and hung up
-            return Trouble(3, "port_busy", port=shown(self.port))
-        return Trouble(3, "port_gone", port=shown(self.port))
+        verb = self.line.held_by
+        return Trouble(3, way.reason_of_end(self.line, gone), port=shown(self.port), verb=verb)
 
 
 def opened_way(
@@ -287,84 +262,22 @@ def opened_way(
     """Go to a port through its holder, or open it. Raises Trouble."""
 
     def open_line(lock: IO[bytes] | None) -> Line:
-        return opened_line(port, baud, robot, limit_s, lock)
-
-    return shared_port.way_to(port, verb, open_line, asked_baud)
-
-
-def opened_line(
-    port: str, baud: int, robot: Robot, limit_s: float = 20, lock: IO[bytes] | None = None
-) -> Line:
-    """Open a port, with a session for this kit on it. Raises Trouble."""
-    from tiniscript.link.line import Line
-    from tiniscript.link.ports import PortTrouble, opened
-    from tiniscript.link.session import Session
+        return way.opened_line(port, baud, robot.kit.fingerprint, limit_s, lock)
 
     try:
-        device = opened(port, baud, limit_s)
-    except PortTrouble as trouble:
-        if lock is not None:
-            lock.close()
-        raise port_trouble(port, trouble) from None
-    session = Session(int.from_bytes(os.urandom(4), "little"), baud, robot.kit.fingerprint)
-    return Line(device, session, lock)
+        return way.way_to(port, verb, open_line, asked_baud)
+    except RobotError as error:
+        raise Trouble(3, error.reason, **error.values) from None
 
 
 def port_trouble(port: str, trouble: PortTrouble) -> Trouble:
     """Return the sentence for a port that does not open."""
-    from tiniscript.link import ports
-
-    key = f"port_{trouble.reason}"
-    if trouble.reason == ports.FORBIDDEN and sys.platform.startswith("linux"):
-        key = "port_forbidden_linux"
-    if trouble.reason == ports.MISSING:
-        known = ", ".join(each.port for each in ports.listed())
-        if known:
-            return Trouble(3, "port_missing_but", port=shown(port), known=shown(known))
-    return Trouble(3, key, port=shown(port), why=shown(trouble.why))
-
-
-def asked(line: Way, port: str, board: str, wait: Callable[[Asked], Reply]) -> Reply:
-    """Ask who is there, but not so early that a board stays in its bootloader."""
-    if not line.held_by:  # else the port is open already
-        from tiniscript.link import ports
-
-        if not ports.is_radio(port):
-            sleep(QUIET_S.get(board, 0.0))
-            reply = wait(hello(line, CABLE_ANSWER_MS))
-            if line.heard:
-                return reply
-            sleep(LONG_QUIET_S)
-            return wait(hello(line, CABLE_ANSWER_MS))
-    return wait(hello(line, ANSWER_MS))
-
-
-def hello(line: Way, limit_ms: int) -> Asked:
-    """Begin a session. It is asked again until the robot answers: a reset takes it a while."""
-
-    def make(session: Asks) -> Asked:
-        task = session.hello()
-        task.limit_ms = limit_ms
-        return task
-
-    return line.do(make)
-
-
-def remember(port: str, name: str, is_used: bool = True) -> None:
-    """Keep a port and what the robot on it is called. A virtual robot has no next time."""
-    from tiniscript.link import known_ports
-    from tiniscript.link.port_names import is_address
-
-    if is_address(port) or port.startswith(PSEUDO):
-        from tiniscript.virtual import directory
-
-        if directory.is_virtual(port):
-            return
-    known_ports.remember(port, name, is_used)
+    error = way.port_error(port, trouble)
+    return Trouble(3, error.reason, **error.values)
 
 
 def robot_of_kit(kit: int) -> str | None:
-    from tiniscript.cli.images import robot_of_kit as found
+    from tiniscript.library.known_kits import shipped_of_kit as found
 
     return found(kit)
 

@@ -17,10 +17,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from tiniscript.cli.errors import Trouble
 from tiniscript.cli.inputs import shown
-from tiniscript.cli.robot.connect import Connection, remember
+from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.run_monitor import CONFIRM_S, confirmed
 from tiniscript.cli.robot.targets import Post, posts
 from tiniscript.cli.texts.common import text
+from tiniscript.library import way
 
 if TYPE_CHECKING:
     from tiniscript.cli.terminal.fleet_table import Roll
@@ -206,7 +207,7 @@ class Crew:
             connection = member.connection
             if connection is not None and connection.line.robot is not None:
                 name = connection.card.name
-                remember(member.post.port, name, is_used=False)
+                way.remember(member.post.port, name, is_used=False)
 
     def exit_code(self) -> int:
         if self.is_interrupted:

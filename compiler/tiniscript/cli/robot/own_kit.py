@@ -6,33 +6,20 @@ the robot that answers, if its profile is known: a shipped one, or one that was 
 
 from __future__ import annotations
 
-import os
 import sys
 from argparse import Namespace
 from typing import TYPE_CHECKING
 
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.texts.common import text
+from tiniscript.library.known_kits import naming, of_kit
+
+__all__ = ("is_other_robots", "naming", "of_answering", "remember", "take")
 
 if TYPE_CHECKING:
     from tiniscript import Compiled
     from tiniscript.cli.robot.connect import Connection
-    from tiniscript.kit import Kit
     from tiniscript.robots.profile import Robot
-
-SHOWN_CHARACTERS = 60  # of a path in a message: a longer one could not be copied
-
-
-def naming(compiled: Compiled, robot: Robot) -> Compiled:
-    """Return `compiled` with the robots named that have a word which this robot does not have."""
-    from tiniscript.semantics import other_kits
-
-    problems = compiled.problems
-    if not any(map(other_kits.is_unknown, problems)):
-        return compiled
-    own = robot.name, robot.kit
-    named = other_kits.naming_robots(problems, compiled.source.text, own, _others())
-    return compiled._replace(problems=named)
 
 
 def is_other_robots(compiled: Compiled) -> bool:
@@ -47,22 +34,6 @@ def is_other_robots(compiled: Compiled) -> bool:
     words = {problem.values.get("found") for problem in unknown}
     # of profiles whose paths are too long to be named
     return bool(words) and any(words & other_kits.words(robot.kit) for _, robot in given.profiles())
-
-
-def _others() -> dict[str, Kit]:
-    """Return the kits that are known, by what `--robot` calls them."""
-    from tiniscript import robots
-    from tiniscript.robots import given
-
-    found = {name: robots.load(name).kit for name in robots.names()}
-    for path, robot in given.profiles():
-        try:
-            near = min(path, os.path.relpath(path), key=len)
-        except ValueError:  # Windows: it is on another drive
-            near = path
-        if len(near) <= SHOWN_CHARACTERS and " " not in near:
-            found[near] = robot.kit
-    return found
 
 
 def remember(options: Namespace, robot: Robot, kit: int) -> None:
@@ -85,7 +56,7 @@ def take(connection: Connection, options: Namespace) -> bool:
     kit = connection.card.kit
     if options.robot is not None or kit == connection.profile.kit.fingerprint:
         return False
-    robot = _of_kit(kit)
+    robot = of_kit(kit)
     if robot is None:
         return False
     connection.profile = robot
@@ -111,13 +82,4 @@ def of_answering(options: Namespace, robot: Robot, language: str) -> Robot | Non
             kit = connection.meet().kit
     except Trouble:
         return None
-    return None if kit == robot.kit.fingerprint else _of_kit(kit)
-
-
-def _of_kit(kit: int) -> Robot | None:
-    from tiniscript import robots
-    from tiniscript.cli.images import robot_of_kit
-    from tiniscript.robots import given
-
-    name = robot_of_kit(kit)
-    return given.recall(kit) if name is None else robots.load(name)
+    return None if kit == robot.kit.fingerprint else of_kit(kit)

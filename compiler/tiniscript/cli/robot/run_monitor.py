@@ -9,24 +9,27 @@ from typing import TYPE_CHECKING
 from tiniscript.cli.errors import Trouble
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.texts.common import text
+from tiniscript.library.endings import Follower, end_of
+from tiniscript.library.errors import RobotError
+from tiniscript.library.way import CONFIRM_S, confirmed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from tiniscript.cli.robot.connect import Connection
     from tiniscript.cli.robot.event_printer import Teller
-    from tiniscript.link.connection import Asked, Way
+    from tiniscript.link.connection import Asked
     from tiniscript.link.outcomes import Event
     from tiniscript.link.requests import Reply
 
-CONFIRM_S = 7.0  # for which a stop is waited for, a little longer than it is sent
 STOP_S = 1.5  # the same for a command that leaves, and that nobody may look at
 SAVE_S = 10.0  # for which a robot may save a program
 LOW_S = 2.0  # for which its voltage may be too low for that: it looks every half second
 ASK_S = 1.0  # between two questions whether it has, while the program runs
 SAVING, STORED, LOW_SUPPLY = 2, 3, 4  # of `link.messages.SAVED`
-LINK_FAULT = 64  # from here on, a fault is none of the program's
 DONE, FAULTY, INTERRUPTED, LOST = 0, 1, 2, 3  # exit codes
+
+__all__ = ("CONFIRM_S", "STOP_S", "Attendant", "Saving", "confirmed", "ended", "stop_and_say")
 
 
 class Attendant:
@@ -49,7 +52,7 @@ class Attendant:
 
     def attend(self, run: int) -> int:
         """Wait for the end of a run; return the exit code. Raises Trouble where the link ends."""
-        has_begun = False  # what comes before was about another run
+        follower = Follower(run)
         while True:
             found = self.connection.event()
             if self.look is not None:
@@ -59,14 +62,11 @@ class Attendant:
             if found is None:
                 continue
             time_ms, event = found
-            if event.name == "LOST":
-                raise Trouble(3, "link_lost", port=shown(self.connection.port))
-            if event.name == "STARTED":
-                if event.values["run"] != run and has_begun:
-                    raise Trouble(3, "replaced", port=shown(self.connection.port))
-                has_begun = has_begun or event.values["run"] == run
-            if event.name in ("STOPPED", "ENDED") and not has_begun:
-                continue
+            try:
+                if not follower.is_about(event, shown(self.connection.port)):
+                    continue
+            except RobotError as error:
+                raise Trouble(3, error.reason, **error.values) from None
             if self.hold is None or not self.hold(event):
                 self.teller.tell(time_ms, event)
             code = ended(event, run)
@@ -91,22 +91,12 @@ class Attendant:
 
 def ended(event: Event, run: int | None) -> int | None:
     """Return the exit code where an event ends a run, else None. A `run` of None is any."""
-    name, values = event
-    if name == "DONE" and run in (None, values["run"]):
+    end = end_of(event, run)
+    if end is None:
+        return None
+    if end.name == "DONE":
         return DONE
-    if name == "FAULT" and run in (None, values["run"]):
-        fault = values["fault"]
-        assert isinstance(fault, int)
-        return LOST if fault >= LINK_FAULT else FAULTY
-    if name == "STOPPED":
-        return LOST
-    if name == "ENDED":
-        fault = values["fault"]
-        assert isinstance(fault, int)
-        if values["state"] != 3:
-            return DONE if values["state"] == 0 else LOST
-        return LOST if fault >= LINK_FAULT else FAULTY
-    return None
+    return FAULTY if end.is_the_programs else LOST
 
 
 def stop_and_say(connection: Connection) -> int:
@@ -119,27 +109,6 @@ def stop_and_say(connection: Connection) -> int:
         print(text("robot_stopped", connection.language), file=sys.stderr)
         return INTERRUPTED
     raise Trouble(3, "not_confirmed", port=shown(connection.port))
-
-
-def confirmed(line: Way, limit_s: float = CONFIRM_S) -> bool:
-    """Stop the robot; return whether it has confirmed. A second Ctrl-C ends the waiting.
-
-    What was told before that is about something else.
-    """
-    from tiniscript.link.outcomes import Gone
-
-    began_s = monotonic()
-    line.stop()
-    try:
-        while monotonic() < began_s + limit_s:
-            found = line.event()
-            if found is None or found[0] < int(began_s * 1000):
-                continue
-            if found[1].name in ("STOPPED", "LOST"):
-                return found[1].name == "STOPPED"
-    except (Gone, KeyboardInterrupt):
-        pass
-    return False
 
 
 class Saving:

@@ -1,0 +1,264 @@
+"""Compile, check and show: programs as data."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING, NamedTuple
+
+from tiniscript.library.errors import ProgramError, UsageError
+from tiniscript.printable import printable
+
+if TYPE_CHECKING:
+    from typing import Literal
+
+    from tiniscript import Compiled
+    from tiniscript.bytecode.image import Image
+    from tiniscript.codegen.source_map import Map
+    from tiniscript.robots.profile import Robot
+
+Language = str  # "en" or "es"
+SHOWN = 200  # characters of a name or a value in a sentence
+REMARK = 60  # characters of a line in a listing
+
+
+class Diagnostic(NamedTuple):
+    """A mistake or a warning. Lines and columns count from 1, columns in characters.
+
+    The end is exclusive. `fix` is what to try, or empty.
+    """
+
+    code: str
+    severity: Literal["mistake", "warning"]
+    line: int
+    column: int
+    end_line: int
+    end_column: int
+    message: str
+    fix: str
+
+
+class Program:
+    """A program that is ready to run. It does not change.
+
+    `text` is None for one that was an image; `robot` is the name of the robot that it was compiled
+    for; `start` is SI, SB or PING; `checksum` names the image wherever it goes; `diagnostics` are
+    warnings: a program with mistakes is none.
+    """
+
+    __slots__ = ("_image", "_map", "_profile", "diagnostics", "image", "text")
+
+    def __init__(
+        self, text: str | None, image: bytes, parsed: Image, profile: Robot, places: Map | None,
+        diagnostics: tuple[Diagnostic, ...],
+    ) -> None:  # fmt: skip
+        """For the functions of this library: `compile` makes programs."""
+        self.text = text
+        self.image = image
+        self.diagnostics = diagnostics
+        self._image = parsed
+        self._profile = profile
+        self._map = places
+
+    @property
+    def robot(self) -> str:
+        return self._profile.name
+
+    @property
+    def code(self) -> bytes:
+        return self._image.code
+
+    @property
+    def start(self) -> str:
+        return self._image.start
+
+    @property
+    def checksum(self) -> int:
+        return self._image.checksum
+
+    def listing(self, language: Language = "en") -> str:
+        """Return the instructions, a line for each: offset, bytes, name, and the line of the text
+        that they come from."""
+        from tiniscript.bytecode.disassembly import listing
+
+        kit = self._profile.kit if self._image.kit else None
+        return listing(self.code, remarks(self._map, _checked(language)), kit)
+
+    def __repr__(self) -> str:
+        name = "image" if self.text is None else repr(self.text[:40])
+        return f"<Program {name}, {len(self.code)} bytes of code for {self.robot}>"
+
+
+def compile(
+    text: str, robot: str | os.PathLike[str] = "tinibot", *, name: str = "",
+    optimize: bool = True, language: Language = "en",
+) -> Program:  # fmt: skip
+    """Compile a text for a robot: the name of a shipped one, or the path of a profile.
+
+    Raises ProgramError with all diagnostics where the text has mistakes. `name` is what
+    messages and listings call it; `language` (en, es) is that of diagnostics.
+    """
+    if not isinstance(text, str):
+        raise UsageError("bad_program", _checked(language), {"found": type(text).__name__})
+    profile = profile_of(robot, language)
+    return _program(text, profile, name, optimize, language)
+
+
+def check(
+    text: str, robot: str | os.PathLike[str] = "tinibot", *, language: Language = "en"
+) -> list[Diagnostic]:
+    """Return all mistakes and warnings of a text by place; none: an empty list. Never raises
+    ProgramError. A program that is too large for the robot's board is a warning."""
+    if not isinstance(text, str):
+        raise UsageError("bad_program", _checked(language), {"found": type(text).__name__})
+    profile = profile_of(robot, language)
+    from tiniscript.library.compiling import compiled
+
+    return diagnostics_of(compiled(_data(text), profile, "", is_strict=False), language)
+
+
+def show(
+    program: Program | str | bytes, robot: str | os.PathLike[str] | None = None, *,
+    language: Language = "en",
+) -> str:  # fmt: skip
+    """Return the listing of a program, a text or an image. Raises ProgramError."""
+    return program_of(program, robot, language).listing(language)
+
+
+# -- for the other files of the library -----------------------------------------------------------
+
+
+def program_of(
+    program: Program | str | bytes, robot: str | os.PathLike[str] | Robot | None,
+    language: Language,
+) -> Program:  # fmt: skip
+    """Return a program for a robot; where none is named, for its own or the default one.
+
+    Raises ProgramError, and UsageError for what is no program.
+    """
+    if isinstance(program, Program) and robot is None:
+        return program
+    from tiniscript import robots
+
+    if robot is None or isinstance(robot, str | os.PathLike):
+        profile = profile_of(robots.DEFAULT if robot is None else robot, language)
+    else:
+        profile = robot
+    if isinstance(program, str):
+        return _program(program, profile, "", True, language)
+    if isinstance(program, Program):
+        parsed = _read(program.image, profile, language)
+        return Program(program.text, program.image, parsed, profile, program._map,
+                       program.diagnostics)  # fmt: skip
+    if not isinstance(program, bytes | bytearray):
+        raise UsageError("bad_program", _checked(language), {"found": type(program).__name__})
+    data = bytes(program)
+    if robot is None:
+        profile = _robot_for(data, profile, language)
+    parsed = _read(data, profile, language)
+    from tiniscript.codegen import source_map
+
+    return Program(None, data, parsed, profile, source_map.recall(parsed.checksum), ())
+
+
+def profile_of(robot: str | os.PathLike[str], language: Language) -> Robot:
+    """Return a robot's profile. Raises UsageError where there is none or it is refused."""
+    from tiniscript import robots
+    from tiniscript.robots.profile import ProfileRefused
+
+    _checked(language)
+    if not isinstance(robot, str | os.PathLike):
+        raise UsageError("bad_robot", language, {"found": type(robot).__name__})
+    try:
+        return robots.load(os.fspath(robot))
+    except ProfileRefused as refused:
+        from tiniscript.robots.refusals import describe
+
+        said = {"reasons": "\n".join(describe(refused, language))}
+        raise UsageError("profile_refused", language, said) from None
+
+
+def diagnostics_of(compiled: Compiled, language: Language) -> list[Diagnostic]:
+    from tiniscript.diagnostics.rendering import message
+
+    return [Diagnostic(*message(each, compiled.source, language)) for each in compiled.problems]
+
+
+def remarks(places: Map | None, language: Language) -> dict[int, str]:
+    """Return what stands in a listing behind each instruction that begins something: its line."""
+    found: dict[int, str] = {}
+    word = "línea" if language == "es" else "line"
+    for place in places.places if places is not None else ():
+        line = places.line(place.line) if places is not None else ""
+        shown = line.strip()
+        if len(shown) > REMARK:  # a long line: the instruction alone
+            end = place.end_column - 1 if place.end_line == place.line else len(line)
+            shown = line[place.column - 1 : end][:REMARK]
+        found[place.offset] = f"{word} {place.line}: {printable(shown)}"
+    return found
+
+
+def _program(text: str, profile: Robot, name: str, optimize: bool, language: Language) -> Program:
+    from tiniscript.codegen import source_map
+    from tiniscript.library.compiling import compiled, image_of
+
+    found = compiled(_data(text), profile, name, is_strict=True, optimize=optimize)
+    diagnostics = tuple(diagnostics_of(found, language))
+    if not found.is_right:
+        from tiniscript.diagnostics.rendering import as_text, message
+
+        said = [as_text(message(each, found.source, language), found.source, language)
+                for each in found.problems]  # fmt: skip
+        error = ProgramError("mistakes", language, said="\n".join(said))
+        error.diagnostics = diagnostics
+        raise error
+    places = source_map.from_compiled(found)
+    return Program(text, found.image, image_of(found, profile), profile, places, diagnostics)
+
+
+def _data(text: str) -> bytes:
+    return text.encode("utf-8", "surrogatepass")  # half a character is no UTF-8: a mistake
+
+
+def _robot_for(data: bytes, default: Robot, language: Language) -> Robot:
+    """Return the robot whose kit an image names, if it is known."""
+    from tiniscript.library.known_kits import of_kit
+
+    kit = _unpacked(data, None, language).kit
+    return (of_kit(kit) if kit else None) or default
+
+
+def _read(data: bytes, profile: Robot, language: Language) -> Image:
+    """Return an image that this robot may run. Raises ProgramError."""
+    from tiniscript.bytecode.verify import Refused
+    from tiniscript.library.compiling import verify_for
+
+    image = _unpacked(data, profile.kit.fingerprint, language)
+    try:
+        verify_for(image, profile)
+    except Refused as refused:
+        raise _refused(refused.name, refused.number, refused.offset, language) from None
+    return image
+
+
+def _unpacked(data: bytes, kit: int | None, language: Language) -> Image:
+    from tiniscript.bytecode.image import ImageRefused, unpack
+
+    try:
+        return unpack(data, kit)
+    except ImageRefused as refused:
+        raise _refused(refused.name, refused.number, 0, language) from None
+
+
+def _refused(name: str, number: int, detail: int, language: Language) -> ProgramError:
+    from tiniscript.link.statuses import sentence
+
+    said = " ".join(sentence(number, detail, _checked(language))).strip()
+    return ProgramError(name, language, said=said)
+
+
+def _checked(language: Language) -> Language:
+    from tiniscript.library.texts import LANGUAGES
+
+    if language not in LANGUAGES:
+        raise UsageError("bad_language", "en", {"found": printable(repr(language), SHOWN)})
+    return language

@@ -1,0 +1,250 @@
+"""Run a program without a robot: what it does, as data."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+from tiniscript.library.errors import UsageError
+from tiniscript.library.programs import Language, Program, program_of
+from tiniscript.printable import printable
+
+if TYPE_CHECKING:
+    from typing import Literal
+
+    from tiniscript.bytecode.image import Image
+    from tiniscript.codegen.source_map import Map
+    from tiniscript.kit import Device, Kit
+    from tiniscript.robots.profile import Robot
+    from tiniscript.vm.trace import Ending, Event, MachineOf
+
+Value = float | bool | str  # an int where a number has no decimals
+Readings = Mapping[str, "float | bool | Sequence[float | bool]"]
+
+LONGEST_S = 10**9
+MOST_STEPS = 10**15
+LARGEST_SEED = 2**32 - 1
+
+
+class TraceEvent(NamedTuple):
+    """What a robot did `ms` milliseconds after the start. `str()` is the line of `tsc run`.
+
+    name      values
+    MOTORS    left, right: percent, -100 to 100
+    READ      sensor: its name; value
+    BEEP      hertz, ms
+    SHOW      value
+    SET       actuator: its name; value
+    DONE, FAULT, LIMIT      none: the last event
+    """
+
+    ms: int
+    name: str
+    values: Mapping[str, Value]
+    text: str
+
+    def __str__(self) -> str:
+        return f"{self.ms} {self.text}"
+
+
+class Fault(NamedTuple):
+    """A fault of a program: its name, the offset in the code, and the place in the text from 1;
+    None where nobody knows the text."""
+
+    name: str
+    offset: int
+    line: int | None
+    column: int | None
+
+
+class Trace(NamedTuple):
+    """A whole run. `ending` is DONE, FAULT or LIMIT (it was cut); `ms` is how long it took by the
+    robot's clock, `steps` how many instructions ran."""
+
+    events: tuple[TraceEvent, ...]
+    ending: Literal["DONE", "FAULT", "LIMIT"]
+    fault: Fault | None
+    ms: int
+    steps: int
+
+    def __str__(self) -> str:
+        return "".join(f"{event}\n" for event in self.events)
+
+
+def run(
+    program: Program | str | bytes,
+    robot: str | os.PathLike[str] | None = None,
+    *,
+    sensors: Readings | None = None,
+    max_time: float = 60,
+    max_steps: int = 1_000_000,
+    seed: int = 1,
+    machine: Literal["python", "cpp"] = "python",
+    language: Language = "en",
+) -> Trace:
+    """Run a program (one of `compile`, a text, or an image) by a simulated clock: nothing waits.
+
+    `sensors` are readings by the sensors' names: each time the next one, the last one repeats;
+    0 or False where nothing is said. `max_time` is in simulated seconds, `max_steps` in
+    instructions while no time passes, `seed` is where RANDOM begins. Raises ProgramError for
+    mistakes, UsageError for arguments. A fault is no exception: `ending` says it.
+    """
+    ready = program_of(program, robot, language)
+    profile, image = ready._profile, ready._image
+    max_ms = round(within("max_time", max_time, 0, LONGEST_S, language) * 1000)
+    whole("max_steps", max_steps, 0, MOST_STEPS, language)
+    whole("seed", seed, 1, LARGEST_SEED, language)
+    lists = thousandths(sensors or {}, profile, language)
+    if machine not in ("python", "cpp"):
+        values = {"name": "machine", "known": "python, cpp", "found": printable(repr(machine))}
+        raise UsageError("bad_choice", language, values)
+    machine_of: MachineOf | None = None
+    if machine == "cpp":
+        try:
+            machine_of = cpp_machine(image, profile)
+        except (ImportError, OSError, RuntimeError) as why:
+            raise UsageError("no_wasmtime", language, {"why": str(why)}) from None
+    return _trace(
+        begun(image, profile, lists, max_ms, max_steps, seed, machine_of), profile.kit, ready._map
+    )
+
+
+def begun(
+    image: Image, robot: Robot, lists: Mapping[int, Sequence[int]], max_ms: int, max_steps: int,
+    seed: int, machine_of: MachineOf | None = None,
+) -> Iterator[Event | Ending]:  # fmt: skip
+    """Yield what a robot does with a verified image. `lists` are readings in thousandths."""
+    from tiniscript.vm.machine import Machine
+    from tiniscript.vm.trace import Senses
+    from tiniscript.vm.trace import run as run_code
+
+    senses = Senses(robot.kit, lists)
+    return run_code(image.code, robot.kit, senses, max_ms, max_steps, seed, machine_of or Machine)
+
+
+def cpp_machine(image: Image, robot: Robot) -> MachineOf:
+    """Return the C++ machine with an image that is verified already: it must agree to that.
+
+    Raises ImportError, OSError or RuntimeError where wasmtime is missing or not for this computer.
+    """
+    from tiniscript.bytecode.image import ImageRefused, pack
+    from tiniscript.bytecode.verify import Refused
+    from tiniscript.vm.wasm import WasmImage
+
+    kit = robot.kit
+    data = pack(image.start, image.kit, image.code)
+    devices = (len(kit.sensors), len(kit.actuators)) if image.kit else (0, 0)
+    try:
+        return WasmImage(data, kit.fingerprint, *devices).machine
+    except (ImageRefused, Refused) as refused:
+        raise AssertionError(f"the C++ machine refuses what Python accepts: {refused}") from None
+
+
+def thousandths(sensors: Readings, robot: Robot, language: Language) -> dict[int, list[int]]:
+    """Return readings as the machine has them, by the sensor's number. Raises UsageError."""
+    devices = robot.kit.sensors
+    numbers = {device.name: number for number, device in enumerate(devices)}
+    lists: dict[int, list[int]] = {}
+    for name, readings in sensors.items():
+        number = numbers.get(str(name).upper())
+        if number is None:
+            from tiniscript.library.texts import sentence
+
+            known = ", ".join(numbers) or sentence("no_sensors", language, {})
+            values = {"robot": robot.name, "found": printable(str(name), 60), "known": known}
+            raise UsageError("no_sensor", language, values)
+        several = readings if isinstance(readings, Iterable) else [readings]
+        found = [] if isinstance(several, str | bytes) else list(several)
+        if not found:
+            raise UsageError("bad_readings", language, {"name": devices[number].name})
+        lists[number] = [_reading(devices[number], each, language) for each in found]
+    return lists
+
+
+def value_of(number: int, is_yes_no: bool) -> float | bool:
+    """Return thousandths as Python has the value: a bool, an int where it is whole, or a float."""
+    if is_yes_no:
+        return bool(number)
+    return number // 1000 if number % 1000 == 0 else number / 1000
+
+
+def fault_of(name: str, offset: int, places: Map | None) -> Fault:
+    """Return a fault with its place in the text, where that is known."""
+    place = places.at(offset) if places is not None else None
+    if place is None:
+        return Fault(name, offset, None, None)
+    return Fault(name, offset, place.line, place.column)
+
+
+def _trace(events: Iterator[Event | Ending], kit: Kit, places: Map | None) -> Trace:
+    from tiniscript.vm.trace import Ending
+
+    found: list[TraceEvent] = []
+    for each in events:
+        if not isinstance(each, Ending):
+            found.append(_event(each, kit))
+            continue
+        fault = fault_of(each.fault, each.offset, places) if each.what == "FAULT" else None
+        return Trace(tuple(found), each.what, fault, found[-1].ms, each.steps)  # type: ignore[arg-type]
+    raise AssertionError("a run without an ending")
+
+
+def _event(event: Event, kit: Kit) -> TraceEvent:
+    numbers = event.values
+    values: dict[str, Value] = {}
+    if event.what == "MOTORS":
+        values = {"left": numbers[0], "right": numbers[1]}
+    elif event.what == "BEEP":
+        values = {"hertz": numbers[0], "ms": numbers[1]}
+    elif event.what == "SHOW":
+        is_yes_no = event.text.endswith(("TRUE", "FALSE"))
+        values = {"value": value_of(numbers[0], is_yes_no)}
+    elif event.what in ("READ", "SET"):
+        what, devices = {"READ": ("sensor", kit.sensors), "SET": ("actuator", kit.actuators)}[
+            event.what
+        ]
+        device = devices[numbers[0]]
+        values = {what: device.name, "value": value_of(numbers[1], device.is_yes_no)}
+    return TraceEvent(event.time_ms, event.what, values, event.text)
+
+
+def _reading(device: Device, found: object, language: Language) -> int:
+    value: int | None = None
+    if device.is_yes_no:
+        value = int(found) if found in (0, 1) and isinstance(found, int | float) else None
+    elif isinstance(found, int | float) and not isinstance(found, bool) and abs(found) < 1e9:
+        value = round(found * 1000)
+    if value is None or not device.low <= value <= device.high:
+        from tiniscript.library.texts import sentence
+
+        low, high = device.text(device.low), device.text(device.high)
+        key = "range_yes_no" if device.is_yes_no else "range"
+        allowed = sentence(key, language, {"low": low, "high": high})
+        values = {"found": printable(repr(found), 60), "name": device.name, "range": allowed}
+        raise UsageError("bad_reading", language, values)
+    return value
+
+
+def within(name: str, found: object, low: float, high: float, language: Language) -> float:
+    """Return an argument that must be a number in a range. Raises UsageError."""
+    if isinstance(found, int | float) and not isinstance(found, bool) and low <= found <= high:
+        return found
+    raise _bad_number(name, found, low, high, language)
+
+
+def whole(name: str, found: object, low: int, high: int, language: Language) -> None:
+    """The same for a whole number."""
+    if isinstance(found, float):
+        raise _bad_number(name, found, low, high, language)
+    within(name, found, low, high, language)
+
+
+def _bad_number(
+    name: str, found: object, low: float, high: float, language: Language
+) -> UsageError:
+    from tiniscript.library.texts import sentence
+
+    allowed = sentence("range", language, {"low": str(low), "high": str(high)})
+    values = {"name": name, "found": printable(repr(found), 60), "range": allowed}
+    return UsageError("bad_number", language, values)

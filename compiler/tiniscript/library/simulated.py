@@ -1,0 +1,180 @@
+"""A virtual robot in this process: its firmware, its body and its world, beside the program.
+
+A thread keeps its time; the connection talks to it over a socket, as to any other robot.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from threading import Thread
+from typing import TYPE_CHECKING, NamedTuple
+
+from tiniscript.library.connection import RobotConnection
+from tiniscript.library.errors import UsageError
+from tiniscript.library.programs import Language, profile_of
+from tiniscript.library.runs import LARGEST_SEED, Readings, thousandths, whole, within
+
+if TYPE_CHECKING:
+    from tiniscript.robots.kinematics import Pose
+    from tiniscript.robots.profile import Robot
+    from tiniscript.virtual.robot import VirtualRobot
+
+MOST_NOISE = 0.5
+SLOWEST_HURRY, FASTEST_HURRY = 0.1, 10_000
+LEAST_MOTOR, MOST_MOTOR = 10, 200  # percent
+JOIN_S = 5.0
+TURN_S = 0.05  # the longest that the robot's thread waits
+
+
+def virtual_robot(
+    robot: str | os.PathLike[str] = "tinibot",
+    *,
+    world: str | os.PathLike[str] = "obstacles",
+    hurry: float = 1,
+    seed: int = 1,
+    noise: float = 0,
+    motors: tuple[float, float] = (100, 100),
+    sensors: Readings | None = None,
+    language: Language = "en",
+) -> VirtualRobotConnection:
+    """Switch a virtual robot on, and connect to it; it is gone when the connection is left.
+
+    `world` is obstacles, line, light or the path of a file. A program goes `hurry` times as fast
+    as on a real robot, 0.1 to 10000; `math.inf` is as fast as this computer can. `seed` is for all
+    that is left to chance, `noise` the part of a reading that is (0.05 is 5 %), `motors` what
+    speed each has, in percent. `sensors` are readings that do not come from the world, as for
+    `run`. Needs the extra `virtual`. Raises UsageError, RobotError.
+    """
+    profile = profile_of(robot, language)
+    if hurry != math.inf:
+        within("hurry", hurry, SLOWEST_HURRY, FASTEST_HURRY, language)
+    whole("seed", seed, 1, LARGEST_SEED, language)
+    within("noise", noise, 0, MOST_NOISE, language)
+    left, right = motors
+    for motor in (left, right):
+        within("motors", motor, LEAST_MOTOR, MOST_MOTOR, language)
+    told = thousandths(sensors or {}, profile, language)
+    try:
+        from tiniscript.virtual.robot import Settings
+    except (ImportError, OSError, RuntimeError) as why:  # not there, or not for this computer
+        raise UsageError("no_wasmtime", language, {"why": str(why)}) from None
+    settings = Settings(seed=seed, noise=noise, motors=(left, right), told=told)
+    simulated = Simulated(
+        _made(profile, os.fspath(world), settings, language), 0.0 if hurry == math.inf else hurry
+    )
+    return VirtualRobotConnection(simulated, profile, language)
+
+
+class VirtualRobotConnection(RobotConnection):
+    """A virtual robot, and what can be seen of it from above."""
+
+    def __init__(self, simulated: Simulated, profile: Robot, language: Language) -> None:
+        """For the functions of this library: `virtual_robot` makes connections."""
+        self._simulated = simulated
+        super().__init__(simulated.address, profile, True, None, language)
+
+    @property
+    def pose(self) -> tuple[float, float, float]:
+        """Where it stands: x and y in cm from the lower left corner of the floor, and where it
+        looks in degrees, 0 to the right and 90 up."""
+        x_cm, y_cm, heading = self._simulated.seen.pose
+        return x_cm, y_cm, heading
+
+    @property
+    def driven_cm(self) -> float:
+        """How far it has driven, in cm."""
+        return self._simulated.seen.driven_cm
+
+    @property
+    def bumps(self) -> int:
+        """How often it has touched something."""
+        return self._simulated.seen.bumps
+
+    def push_button(self) -> None:
+        """Push its start button, and let it go."""
+        self._simulated.push()
+
+    def _part(self) -> None:
+        try:
+            super()._part()
+        finally:
+            self._simulated.close()
+
+
+class Seen(NamedTuple):
+    pose: Pose
+    driven_cm: float
+    bumps: int
+
+
+class Simulated:
+    """The robot, and the thread that keeps its time until `close`."""
+
+    def __init__(self, robot: VirtualRobot, hurry: float) -> None:
+        from tiniscript.library.connection import VERB
+        from tiniscript.virtual import directory
+        from tiniscript.virtual.simulator import Host
+        from tiniscript.virtual.transports import Guests
+
+        self._robot = robot
+        self._guests = Guests()
+        self.address = self._guests.address
+        self._host = Host(robot, self._guests, hurry)
+        self.seen = self._look()  # since the last turn
+        self._is_pushed = self._is_over = False
+        self._bug: BaseException | None = None
+        running = directory.Running(
+            self.address, robot.profile.name, robot.world.name, "", "", VERB
+        )
+        self._note = directory.announce(running)
+        self._thread = Thread(target=self._run, name="virtual robot", daemon=True)
+        self._thread.start()
+
+    def _look(self) -> Seen:
+        driving = self._robot.driving
+        return Seen(self._robot.pose, driving.driven_cm, driving.bumps)
+
+    def push(self) -> None:
+        self._is_pushed = True
+
+    def close(self) -> None:
+        from tiniscript.virtual import directory
+
+        directory.withdraw(self._note)
+        self._is_over = True
+        self._thread.join(JOIN_S)
+        self._guests.close()
+        if self._bug is not None:
+            raise self._bug
+
+    def _run(self) -> None:
+        try:
+            while not self._is_over:
+                if self._is_pushed:
+                    self._is_pushed = False
+                    self._host.push()
+                self._host.turn(TURN_S)
+                self._robot.take_events()  # nobody looks at them
+                self.seen = self._look()
+            self._robot.switch_off()
+        except BaseException as bug:
+            self._bug = bug
+            self._guests.close()
+
+
+def _made(profile: Robot, world: str, settings: object, language: Language) -> VirtualRobot:
+    """Return the robot in its world. Raises UsageError."""
+    from typing import cast
+
+    from tiniscript.virtual import worlds
+    from tiniscript.virtual.robot import Settings, VirtualRobot
+    from tiniscript.virtual.world import WorldRefused
+
+    try:
+        return VirtualRobot(profile, worlds.load(world), cast(Settings, settings))
+    except WorldRefused as refused:
+        from tiniscript.virtual.world_refusals import describe
+
+        said = {"reasons": "\n".join(describe(refused, language))}
+        raise UsageError("world_refused", language, said) from None
