@@ -20,14 +20,8 @@ if TYPE_CHECKING:
     from tiniscript.codegen.lower import Place
     from tiniscript.diagnostics.codes import Problem
     from tiniscript.kit import Kit
-    from tiniscript.library.connection import (
-        Ending,
-        Receipt,
-        RobotConnection,
-        RobotEvent,
-        RobotInfo,
-        connect,
-    )
+    from tiniscript.library.connecting import connect
+    from tiniscript.library.connection import Receipt, RobotConnection, RobotInfo
     from tiniscript.library.errors import (
         ProgramError,
         RobotError,
@@ -35,6 +29,7 @@ if TYPE_CHECKING:
         TiniScriptError,
         UsageError,
     )
+    from tiniscript.library.events import Ending, RobotEvent
     from tiniscript.library.programs import Diagnostic, Program, check, compile, show
     from tiniscript.library.runs import Fault, Trace, TraceEvent, run
     from tiniscript.library.simulated import VirtualRobotConnection, virtual_robot
@@ -67,7 +62,9 @@ __all__ = (  # what `docs/api.en.md` promises
     "virtual_robot",
 )
 _HOMES = {
-    "connection": ("Ending", "Receipt", "RobotConnection", "RobotEvent", "RobotInfo", "connect"),
+    "connecting": ("connect",),
+    "connection": ("Receipt", "RobotConnection", "RobotInfo"),
+    "events": ("Ending", "RobotEvent"),
     "errors": ("ProgramError", "RobotError", "StopNotConfirmed", "TiniScriptError", "UsageError"),
     "programs": ("Diagnostic", "Program", "check", "compile", "show"),
     "runs": ("Fault", "Trace", "TraceEvent", "run"),

@@ -6,24 +6,23 @@ without it is noticed by the robot, which stops within a second.
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from time import monotonic
 from types import TracebackType
 from typing import TYPE_CHECKING, NamedTuple
 
 from tiniscript.library import way
-from tiniscript.library.endings import DONE, FAULT, Follower
+from tiniscript.library.endings import Follower
 from tiniscript.library.errors import ProgramError, RobotError, StopNotConfirmed, UsageError
-from tiniscript.library.programs import Language, Program, profile_of, program_of
-from tiniscript.library.runs import Fault, Value, fault_of, value_of, whole, within
+from tiniscript.library.events import Ending, Reader, RobotEvent, ending_of
+from tiniscript.library.programs import Language, Program, program_of
+from tiniscript.library.runs import within
 from tiniscript.printable import printable
 
 if TYPE_CHECKING:
-    from typing import IO, Literal, TypeVar
+    from typing import IO, TypeVar
 
-    from tiniscript.codegen.source_map import Map
     from tiniscript.link.connection import Asked, Asks, Way
     from tiniscript.link.line import Line
     from tiniscript.link.outcomes import Event
@@ -34,7 +33,6 @@ if TYPE_CHECKING:
     Self = TypeVar("Self", bound="RobotConnection")
 
 VERB = "python"  # what other commands are told of who holds the port
-SLOWEST_BAUD, FASTEST_BAUD = 300, 2_000_000
 PATIENCE_MS = 6000  # for which a robot that has answered may be silent, or busy with saving
 LONGEST_S = 10**9
 SAVE_S = 10.0  # for which a robot may save a program when its motors stand
@@ -63,55 +61,6 @@ class Receipt(NamedTuple):
     is_running: bool
 
 
-class RobotEvent(NamedTuple):
-    """What a robot tells, `ms` milliseconds after the connection was made, by the wall clock.
-
-    name      values
-    SHOW      value
-    STARTED   checksum of the program
-    DONE      none
-    FAULT     fault: its name; offset in the code; line and column, where the text is known
-    STOPPED   cause: NONE, SEQUENCE, MESSAGE, BUTTON or CABLE
-    MISSED    count of events that did not arrive
-    TEXT      text that is no message of the link
-    """
-
-    ms: int
-    name: str
-    values: Mapping[str, Value]
-
-
-class Ending(NamedTuple):
-    """How a program has ended. `name` is DONE, FAULT or STOPPED."""
-
-    name: Literal["DONE", "FAULT", "STOPPED"]
-    fault: Fault | None = None
-    cause: str | None = None
-
-
-def connect(
-    port: str | None = None, *, robot: str | os.PathLike[str] | None = None,
-    baud: int | None = None, language: Language = "en",
-) -> RobotConnection:  # fmt: skip
-    """Connect to the robot on a port: /dev/ttyUSB0, COM5, socket://host:port, ...
-
-    Without a port it is the one that was used last, else the only virtual robot that runs.
-    `robot` is what texts are compiled for: the name or the path of a profile; without it that of
-    the robot that answers, if it is known here. `baud` is 300 to 2000000, without it the
-    profile's. Raises RobotError where the port does not open or no robot answers.
-    """
-    from tiniscript import robots
-
-    profile = profile_of(robots.DEFAULT if robot is None else robot, language)
-    if baud is not None:
-        whole("baud", baud, SLOWEST_BAUD, FASTEST_BAUD, language)
-    if port is None:
-        port = _usual_port(language)
-    elif not isinstance(port, str) or not port.strip() or not port.isprintable():
-        raise UsageError("bad_port", language, {"port": printable(repr(port), way.SHOWN)})
-    return RobotConnection(port, profile, robot is not None, baud, language)
-
-
 class RobotConnection:
     """A robot that has answered. One thread at a time uses it.
 
@@ -126,8 +75,7 @@ class RobotConnection:
         self.port = port
         self.language = language
         self._profile = profile
-        self._began_ms = int(monotonic() * 1000)
-        self._maps: dict[int, Map] = {}  # of what was sent from here, by checksum
+        self._reader = Reader()
         self._follower: Follower | None = None
         self._ending: Ending | None = None
         self._is_detached = False
@@ -229,10 +177,10 @@ class RobotConnection:
             ms, event = found
             if not follower.is_about(event, way.shown(self.port), self.language):
                 continue
-            told = self._told(ms, event)
+            told = self._reader.told(ms, event)
             end = follower.end(event)
             if end is not None and told is not None and self._follower is not None:
-                self._ending = self._ending_of(told)
+                self._ending = ending_of(told)
             if told is not None:
                 yield told
 
@@ -345,7 +293,7 @@ class RobotConnection:
         is_made = isinstance(program, Program)
         ready = program_of(program, None if is_made else self._profile, self.language)
         if ready._map is not None:
-            self._maps[ready.checksum] = ready._map
+            self._reader.maps[ready.checksum] = ready._map
         return ready
 
     def _begun(self, reply: Reply, is_running: bool, is_detached: bool, is_saving: bool) -> Receipt:
@@ -408,71 +356,6 @@ class RobotConnection:
         kind = ProgramError if name == "TOO_LARGE" else RobotError
         return kind(name, self.language, said=said)
 
-    # -- what the robot tells ---------------------------------------------------------------------
-
-    def _told(self, time_ms: int, event: Event) -> RobotEvent | None:
-        """Return an event as data, or None for one that is not for people."""
-        name, values = event
-        numbers = {key: each for key, each in values.items() if isinstance(each, int)}
-        found: dict[str, Value] = {}
-        if name == "SHOW":
-            found = {"value": value_of(numbers["value"], bool(numbers["is_yes_no"]))}
-        elif name == "STARTED":
-            found = {"checksum": numbers["program"]}
-        elif name == "ENDED":
-            return self._told_end(time_ms, numbers)
-        elif name == "FAULT":
-            found = self._fault(numbers["fault"], numbers["at"], numbers["program"])
-        elif name == "STOPPED":
-            from tiniscript.link.messages import CAUSES
-
-            cause = numbers["cause"]
-            found = {"cause": CAUSES[cause if cause < len(CAUSES) else 0][0]}
-        elif name == "MISSED":
-            found = {"count": numbers["count"]}
-        elif name == "TEXT":
-            text = values["text"]
-            assert isinstance(text, bytes)
-            found = {"text": printable(text.decode("utf-8", "replace"))}
-        elif name != DONE:
-            return None
-        return RobotEvent(time_ms - self._began_ms, name, found)
-
-    def _told_end(self, time_ms: int, numbers: Mapping[str, int]) -> RobotEvent:
-        """The end of a run of which only the robot's state is known."""
-        from tiniscript.link.messages import STATES
-
-        state, ms = numbers["state"], time_ms - self._began_ms
-        if STATES[state][0] == "FAULTED":
-            fault = self._fault(numbers["fault"], numbers["fault_at"], numbers["fault_program"])
-            return RobotEvent(ms, FAULT, fault)
-        if STATES[state][0] == "IDLE":
-            return RobotEvent(ms, DONE, {})
-        return RobotEvent(ms, "STOPPED", {"cause": "NONE"})
-
-    def _fault(self, number: int, offset: int, program: int) -> dict[str, Value]:
-        from tiniscript.bytecode.opcodes import FAULTS
-        from tiniscript.codegen import source_map
-        from tiniscript.link.messages import LINK_FAULTS
-
-        names = {each: name for each, name, _ in (*FAULTS, *LINK_FAULTS)}
-        places = self._maps.get(program) or source_map.recall(program)
-        fault = fault_of(names.get(number, str(number)), offset, places)
-        found: dict[str, Value] = {"fault": fault.name, "offset": offset}
-        if fault.line is not None and fault.column is not None:
-            found |= {"line": fault.line, "column": fault.column}
-        return found
-
-    def _ending_of(self, event: RobotEvent) -> Ending:
-        values = event.values
-        if event.name == FAULT:
-            line, column = values.get("line"), values.get("column")
-            place = (None, None) if line is None or column is None else (int(line), int(column))
-            return Ending("FAULT", Fault(str(values["fault"]), int(values["offset"]), *place))
-        if event.name == DONE:
-            return Ending("DONE")
-        return Ending("STOPPED", cause=str(values["cause"]))
-
 
 def _shared(line: Way, port: str, baud: int) -> Host | None:
     """Let other commands use the port meanwhile: so `tsc stop` gets through."""
@@ -485,22 +368,3 @@ def _shared(line: Way, port: str, baud: int) -> Host | None:
     with suppress(OSError):
         return Host(line, port, baud, VERB)
     return None
-
-
-def _usual_port(language: Language) -> str:
-    """Return the last used port, else that of the only virtual robot. Raises RobotError."""
-    from tiniscript.link import known_ports, port_names, ports
-    from tiniscript.virtual import directory
-
-    last = known_ports.known().last
-    if last is not None and port_names.is_there(last) and not directory.is_gone(last):
-        return last
-    running = directory.for_all()
-    if len(running) == 1:
-        return running[0].address
-    listed = [each.port for each in ports.listed()]
-    values = {"known": way.shown(", ".join(listed)) or "-",
-              "example": listed[0] if listed else "/dev/ttyUSB0"}  # fmt: skip
-    if last is not None:
-        raise RobotError("last_port_missing", language, {**values, "port": way.shown(last)})
-    raise RobotError("which_port", language, values)

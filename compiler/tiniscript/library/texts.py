@@ -40,8 +40,6 @@ TEXTS: dict[str, tuple[str, str]] = {
     "nothing_started": ("Nothing was started here that could end. Call upload, live or start first.",
                         "Aquí no se inició nada que pueda terminar. Llama primero a upload, live o start."),
     "closed": ("This connection is closed. Connect again.", "Esta conexión está cerrada. Conecta otra vez."),
-    # a program
-    "mistakes": ("{said}", "{said}"),
     # which port
     "which_port": ("Which port? Name it: connect(\"{example}\"). The ports here: {known}",
                    "¿Qué puerto? Nómbralo: connect(\"{example}\"). Los puertos de aquí: {known}"),

@@ -1,0 +1,56 @@
+"""Connect to the robot on a port."""
+
+from __future__ import annotations
+
+import os
+
+from tiniscript.library import way
+from tiniscript.library.connection import RobotConnection
+from tiniscript.library.errors import RobotError, UsageError
+from tiniscript.library.programs import Language, profile_of
+from tiniscript.library.runs import whole
+from tiniscript.printable import printable
+
+SLOWEST_BAUD, FASTEST_BAUD = 300, 2_000_000
+
+
+def connect(
+    port: str | None = None, *, robot: str | os.PathLike[str] | None = None,
+    baud: int | None = None, language: Language = "en",
+) -> RobotConnection:  # fmt: skip
+    """Connect to the robot on a port: /dev/ttyUSB0, COM5, socket://host:port, ...
+
+    Without a port it is the one that was used last, else the only virtual robot that runs.
+    `robot` is what texts are compiled for: the name or the path of a profile; without it that of
+    the robot that answers, if it is known here. `baud` is 300 to 2000000, without it the
+    profile's. Raises RobotError where the port does not open or no robot answers.
+    """
+    from tiniscript import robots
+
+    profile = profile_of(robots.DEFAULT if robot is None else robot, language)
+    if baud is not None:
+        whole("baud", baud, SLOWEST_BAUD, FASTEST_BAUD, language)
+    if port is None:
+        port = _usual_port(language)
+    elif not isinstance(port, str) or not port.strip() or not port.isprintable():
+        raise UsageError("bad_port", language, {"port": printable(repr(port), way.SHOWN)})
+    return RobotConnection(port, profile, robot is not None, baud, language)
+
+
+def _usual_port(language: Language) -> str:
+    """Return the last used port, else that of the only virtual robot. Raises RobotError."""
+    from tiniscript.link import known_ports, port_names, ports
+    from tiniscript.virtual import directory
+
+    last = known_ports.known().last
+    if last is not None and port_names.is_there(last) and not directory.is_gone(last):
+        return last
+    running = directory.for_all()
+    if len(running) == 1:
+        return running[0].address
+    listed = [each.port for each in ports.listed()]
+    values = {"known": way.shown(", ".join(listed)) or "-",
+              "example": listed[0] if listed else "/dev/ttyUSB0"}  # fmt: skip
+    if last is not None:
+        raise RobotError("last_port_missing", language, {**values, "port": way.shown(last)})
+    raise RobotError("which_port", language, values)

@@ -1,0 +1,117 @@
+"""What a robot tells, as data for people: from the events of the link."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from time import monotonic
+from typing import TYPE_CHECKING, NamedTuple
+
+from tiniscript.library.endings import DONE, FAULT
+from tiniscript.library.runs import Fault, Value, fault_of, value_of
+from tiniscript.printable import printable
+
+if TYPE_CHECKING:
+    from typing import Literal
+
+    from tiniscript.codegen.source_map import Map
+    from tiniscript.link.outcomes import Event
+
+
+class RobotEvent(NamedTuple):
+    """What a robot tells, `ms` milliseconds after the connection was made, by the wall clock.
+
+    name      values
+    SHOW      value
+    STARTED   checksum of the program
+    DONE      none
+    FAULT     fault: its name; offset in the code; line and column, where the text is known
+    STOPPED   cause: NONE, SEQUENCE, MESSAGE, BUTTON or CABLE
+    MISSED    count of events that did not arrive
+    TEXT      text that is no message of the link
+    """
+
+    ms: int
+    name: str
+    values: Mapping[str, Value]
+
+
+class Ending(NamedTuple):
+    """How a program has ended. `name` is DONE, FAULT or STOPPED."""
+
+    name: Literal["DONE", "FAULT", "STOPPED"]
+    fault: Fault | None = None
+    cause: str | None = None
+
+
+class Reader:
+    """Reads the events of one connection. `maps` are those of programs that were sent, by their
+    checksums."""
+
+    def __init__(self) -> None:
+        self.maps: dict[int, Map] = {}
+        self._began_ms = int(monotonic() * 1000)
+
+    def told(self, time_ms: int, event: Event) -> RobotEvent | None:
+        """Return an event as data, or None for one that is not for people."""
+        name, values = event
+        numbers = {key: each for key, each in values.items() if isinstance(each, int)}
+        found: dict[str, Value] = {}
+        if name == "SHOW":
+            found = {"value": value_of(numbers["value"], bool(numbers["is_yes_no"]))}
+        elif name == "STARTED":
+            found = {"checksum": numbers["program"]}
+        elif name == "ENDED":
+            return self._told_end(time_ms, numbers)
+        elif name == "FAULT":
+            found = self._fault(numbers["fault"], numbers["at"], numbers["program"])
+        elif name == "STOPPED":
+            from tiniscript.link.messages import CAUSES
+
+            cause = numbers["cause"]
+            found = {"cause": CAUSES[cause if cause < len(CAUSES) else 0][0]}
+        elif name == "MISSED":
+            found = {"count": numbers["count"]}
+        elif name == "TEXT":
+            text = values["text"]
+            assert isinstance(text, bytes)
+            found = {"text": printable(text.decode("utf-8", "replace"))}
+        elif name != DONE:
+            return None
+        return RobotEvent(time_ms - self._began_ms, name, found)
+
+    def _told_end(self, time_ms: int, numbers: Mapping[str, int]) -> RobotEvent:
+        """The end of a run of which only the robot's state is known."""
+        from tiniscript.link.messages import STATES
+
+        state, ms = numbers["state"], time_ms - self._began_ms
+        if STATES[state][0] == "FAULTED":
+            fault = self._fault(numbers["fault"], numbers["fault_at"], numbers["fault_program"])
+            return RobotEvent(ms, FAULT, fault)
+        if STATES[state][0] == "IDLE":
+            return RobotEvent(ms, DONE, {})
+        return RobotEvent(ms, "STOPPED", {"cause": "NONE"})
+
+    def _fault(self, number: int, offset: int, program: int) -> dict[str, Value]:
+        from tiniscript.bytecode.opcodes import FAULTS
+        from tiniscript.codegen import source_map
+        from tiniscript.link.messages import LINK_FAULTS
+
+        names = {each: name for each, name, _ in (*FAULTS, *LINK_FAULTS)}
+        places = self.maps.get(program) or source_map.recall(program)
+        fault = fault_of(names.get(number, str(number)), offset, places)
+        found: dict[str, Value] = {"fault": fault.name, "offset": offset}
+        if fault.line is not None and fault.column is not None:
+            found |= {"line": fault.line, "column": fault.column}
+        return found
+
+
+def ending_of(event: RobotEvent) -> Ending:
+    """Return how a program has ended, from the event that ends it."""
+    values = event.values
+    if event.name == FAULT:
+        line, column = values.get("line"), values.get("column")
+        place = (None, None) if line is None or column is None else (int(line), int(column))
+        return Ending("FAULT", Fault(str(values["fault"]), int(values["offset"]), *place))
+    if event.name == DONE:
+        return Ending("DONE")
+    return Ending("STOPPED", cause=str(values["cause"]))

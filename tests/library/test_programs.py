@@ -1,0 +1,251 @@
+"""`import tiniscript`: programs, diagnostics and traces as data, without a robot."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import tiniscript
+from tests.machines.wasm import missing
+from tests.support.command import OBSTACLE, Tsc
+from tiniscript.library.texts import TEXTS
+
+needs_wasmtime = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
+
+# -- compile, check, show --------------------------------------------------------------------------
+
+
+def test_a_program_has_the_image_that_tsc_compile_writes(tsc: Tsc, tmp_path: Path) -> None:
+    program = tiniscript.compile(OBSTACLE)
+    target = tmp_path / "x.bin"
+    tsc("compile", "-e", OBSTACLE, "-o", target)
+    assert program.image == target.read_bytes()
+    assert (program.text, program.robot, program.start) == (OBSTACLE, "tinibot", "SI")
+    assert len(program.code) == 14
+    assert program.image.endswith(program.code)
+    assert program.checksum == int.from_bytes(program.image[10:14], "little")
+    assert [each.code for each in program.diagnostics] == ["TS805"]
+
+
+@pytest.mark.parametrize("language", ["en", "es"])
+@pytest.mark.parametrize("text", ["SI|F(2, ", "SI|F(0,5, 80);X = 1;Q(3)", "SI|F(2, 80)", "SI|PEN"])
+def test_check_says_what_tsc_check_says(tsc: Tsc, text: str, language: str) -> None:
+    said = json.loads(tsc("check", "-e", text, "--json", "--lang", language).out)
+    assert [each._asdict() for each in tiniscript.check(text, language=language)] == said
+
+
+def test_a_diagnostic_is_data() -> None:
+    [found] = tiniscript.check("SI|W(1)\nF(2 80)")
+    assert (found.code, found.severity) == ("TS017", "mistake")
+    assert (found.line, found.column, found.end_line, found.end_column) == (2, 3, 2, 7)
+    assert "," in found.fix
+
+
+def test_a_program_with_mistakes_is_an_error_that_shows_them() -> None:
+    with pytest.raises(tiniscript.ProgramError) as raised:
+        tiniscript.compile("SI|F(2 80);Q", language="es")
+    error = raised.value
+    assert error.diagnostics == tuple(tiniscript.check("SI|F(2 80);Q", language="es"))
+    assert "línea 1:" in str(error) and "^" in str(error)
+    assert error.reason == "mistakes"
+
+
+def test_what_a_robot_of_ones_own_has_can_be_used(tmp_path: Path) -> None:
+    shipped = Path(tiniscript.__file__).parent / "robots" / "tinibot.toml"
+    profile = tmp_path / "mine.toml"
+    profile.write_text(shipped.read_text("utf-8").replace("DISTANCE", "EYES"), encoding="utf-8")
+    program = tiniscript.compile("SHOW(EYES)", robot=profile)
+    assert program.robot == "mine"
+    trace = tiniscript.run(program, sensors={"eyes": 7.5})
+    assert trace.events[0].values == {"sensor": "EYES", "value": 7.5}
+    assert tiniscript.check("SHOW(EYES)")[0].severity == "mistake"
+
+
+def test_a_listing_is_that_of_tsc_show(tsc: Tsc) -> None:
+    _, listing = tsc("show", "-e", OBSTACLE).out.split("\n", 1)
+    assert tiniscript.show(OBSTACLE) == tiniscript.compile(OBSTACLE).listing() == listing
+    # an image that was never compiled here has no lines of a text
+    assert "DISTANCE" in tiniscript.show(tiniscript.compile("SHOW(DISTANCE+1)").image)
+
+
+def test_a_text_of_half_a_character_is_a_mistake() -> None:
+    assert tiniscript.check("F(1, \ud800)")[0].severity == "mistake"
+    assert tiniscript.check("F(1, 2)\0")[0].code == "TS002"
+
+
+# -- run -------------------------------------------------------------------------------------------
+
+PROGRAM = "SI|F(1, 80);SHOW(DISTANCE);SHOW(DISTANCE > 10);BEEP(0.1, 440);SHOW(1.5)"
+
+
+@pytest.mark.parametrize("machine", ["python", pytest.param("cpp", marks=needs_wasmtime)])
+def test_a_trace_is_that_of_tsc_run(tsc: Tsc, machine: Any) -> None:
+    trace = tiniscript.run(PROGRAM, sensors={"DISTANCE": [50, 9]}, machine=machine)
+    assert str(trace) == tsc("run", "-e", PROGRAM, "--sensor", "DISTANCE=50,9").out
+    assert (trace.ending, trace.fault, trace.ms) == ("DONE", None, 1100)
+    assert [(event.ms, event.name, event.values) for event in trace.events] == [
+        (0, "MOTORS", {"left": 80, "right": 80}),
+        (1000, "MOTORS", {"left": 0, "right": 0}),
+        (1000, "READ", {"sensor": "DISTANCE", "value": 50}),
+        (1000, "SHOW", {"value": 50}),
+        (1000, "READ", {"sensor": "DISTANCE", "value": 9}),
+        (1000, "SHOW", {"value": False}),
+        (1000, "BEEP", {"hertz": 440, "ms": 100}),
+        (1100, "SHOW", {"value": 1.5}),
+        (1100, "DONE", {}),
+    ]
+
+
+def test_values_are_numbers_or_yes_and_no() -> None:
+    trace = tiniscript.run("SHOW(1 > 0);SHOW(1);SHOW(-0.5);GRIPPER(30)", "grabber")
+    values = [event.values["value"] for event in trace.events if "value" in event.values]
+    assert [(type(each), each) for each in values] == [
+        (bool, True), (int, 1), (float, -0.5), (int, 30)]  # fmt: skip
+
+
+def test_a_fault_has_its_place_and_a_cut_run_its_end() -> None:
+    trace = tiniscript.run("SI|X = 0\nSHOW(1 / X)")
+    assert (trace.ending, trace.events[-1].name) == ("FAULT", "FAULT")
+    assert trace.fault is not None
+    assert (trace.fault.name, trace.fault.line, trace.fault.column) == ("DIVIDE_BY_ZERO", 2, 1)
+    forever = "LOOP(FOREVER);W(1);END_LOOP"
+    trace = tiniscript.run(forever, max_time=2.5)
+    assert (trace.ending, trace.ms) == ("LIMIT", 2500)
+    assert tiniscript.run("LOOP(FOREVER);X = 1;END_LOOP", max_steps=500).steps == 500
+
+
+def test_a_seed_makes_a_run_repeat() -> None:
+    def shown(seed: int) -> str:
+        return str(tiniscript.run("LOOP(5);SHOW(RANDOM(1, 1000));END_LOOP", seed=seed))
+
+    assert shown(5) == shown(5) != shown(6)
+
+
+@pytest.mark.parametrize("make", [lambda image: image, tiniscript.compile], ids=["text", "program"])
+def test_texts_programs_and_images_can_be_run(make: Callable[[str], Any]) -> None:
+    expected = tiniscript.run(PROGRAM, sensors={"DISTANCE": 3})
+    assert tiniscript.run(make(PROGRAM), sensors={"DISTANCE": 3}) == expected
+    image = tiniscript.compile(PROGRAM).image
+    assert str(tiniscript.run(image, sensors={"DISTANCE": 3})) == str(expected)
+
+
+def test_an_image_runs_on_the_robot_whose_kit_it_has() -> None:
+    image = tiniscript.compile("GRIPPER(30)", "grabber").image
+    assert tiniscript.run(image).events[0].values == {"actuator": "GRIPPER", "value": 30}
+    with pytest.raises(tiniscript.ProgramError, match="OTHER_KIT"):
+        tiniscript.run(image, "tinibot")
+    with pytest.raises(tiniscript.ProgramError, match="OTHER_KIT"):
+        tiniscript.run(tiniscript.compile("GRIPPER(30)", "grabber"), "tinibot")
+
+
+def test_a_damaged_image_is_refused() -> None:
+    image = bytearray(tiniscript.compile(PROGRAM).image)
+    image[-1] ^= 1
+    with pytest.raises(tiniscript.ProgramError) as raised:
+        tiniscript.run(bytes(image))
+    assert (raised.value.reason, raised.value.diagnostics) == ("DAMAGED", ())
+
+
+# -- wrong use -------------------------------------------------------------------------------------
+
+MISUSES: dict[str, Callable[[], object]] = {
+    "bad_program": lambda: tiniscript.run(5),  # type: ignore[arg-type]
+    "bad_robot": lambda: tiniscript.compile("F(1,2)", robot=3),  # type: ignore[arg-type]
+    "profile_refused": lambda: tiniscript.compile("F(1,2)", robot="tinbot"),
+    "no_sensor": lambda: tiniscript.run("F(1,2)", sensors={"EYES": 1}),
+    "bad_readings": lambda: tiniscript.run("F(1,2)", sensors={"DISTANCE": []}),
+    "bad_reading": lambda: tiniscript.run("F(1,2)", sensors={"DISTANCE": [1e300]}),
+    "bad_number": lambda: tiniscript.run("F(1,2)", max_time=float("nan")),
+    "bad_choice": lambda: tiniscript.run("F(1,2)", machine="perl"),  # type: ignore[arg-type]
+    "bad_language": lambda: tiniscript.check("F(1,2)", language="fr"),
+    "bad_port": lambda: tiniscript.connect(" "),
+}
+
+
+@pytest.mark.parametrize("reason", MISUSES)
+def test_wrong_use_is_an_error_with_a_sentence(reason: str) -> None:
+    with pytest.raises(tiniscript.UsageError) as raised:
+        MISUSES[reason]()
+    assert raised.value.reason == reason
+    assert isinstance(raised.value, ValueError)
+    assert str(raised.value).endswith((".", "]"))
+    assert "{" not in str(raised.value)
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [{"seed": 0}, {"seed": 1.5}, {"seed": True}, {"max_time": -1}, {"max_steps": "9"},
+     {"sensors": {"DISTANCE": "50"}}, {"sensors": {"DISTANCE": True}},
+     {"sensors": {"DISTANCE": [None]}}],
+    ids=str,
+)  # fmt: skip
+def test_arguments_out_of_their_range_are_refused(arguments: Any) -> None:
+    with pytest.raises(tiniscript.UsageError):
+        tiniscript.run("F(1, 2)", **arguments)
+
+
+def test_every_sentence_has_the_same_gaps_in_both_languages() -> None:
+    from string import Formatter
+
+    for reason, said in TEXTS.items():
+        gaps = [{name for _, name, _, _ in Formatter().parse(each) if name} for each in said]
+        assert gaps[0] == gaps[1], reason
+
+
+# -- the package -----------------------------------------------------------------------------------
+
+
+def test_every_name_is_there_and_documented() -> None:
+    for name in tiniscript.__all__:
+        found = getattr(tiniscript, name)
+        assert found.__doc__, name
+        assert name in dir(tiniscript)
+    with pytest.raises(AttributeError):
+        _ = tiniscript.conect  # type: ignore[attr-defined]
+
+
+def test_the_library_prints_nothing(capfd: pytest.CaptureFixture[str]) -> None:
+    tiniscript.run(PROGRAM)
+    tiniscript.check("SI|F(2")
+    with pytest.raises(tiniscript.ProgramError):
+        tiniscript.show("SI|F(2")
+    assert capfd.readouterr() == ("", "")
+
+
+def test_a_user_has_types(tmp_path: Path) -> None:
+    """With mypy --strict, a user's program is checked: a typo is an error."""
+    pytest.importorskip("mypy")
+    program = tmp_path / "use.py"
+    program.write_text(
+        "import tiniscript\n"
+        "def main() -> None:\n"
+        "    program: tiniscript.Program = tiniscript.compile('SI|F(1, 2)')\n"
+        "    trace = tiniscript.run(program, sensors={'DISTANCE': [50, 9]})\n"
+        "    reveal_type(trace.ending)\n"
+        "    with tiniscript.virtual_robot() as robot:\n"
+        "        reveal_type(robot)\n"
+        "        reveal_type(robot.wait(5).fault)\n"
+        "    tiniscript.conect()\n",
+        encoding="utf-8",
+    )
+    done = subprocess.run(
+        [sys.executable, "-m", "mypy", "--strict", "--no-incremental", "--follow-imports=silent",
+         "--config-file=", str(program)],
+        capture_output=True, text=True, cwd=tmp_path,
+        env={**os.environ, "MYPYPATH": str(Path(tiniscript.__file__).parent.parent)},
+    )  # fmt: skip
+    said = [line.split(": ", 1)[1] for line in done.stdout.splitlines() if "use.py" in line]
+    assert said == [
+        "note: Revealed type is \"Literal['DONE'] | Literal['FAULT'] | Literal['LIMIT']\"",
+        'note: Revealed type is "tiniscript.library.simulated.VirtualRobotConnection"',
+        'note: Revealed type is "tuple[str, int, int | None, int | None,'
+        ' fallback=tiniscript.library.runs.Fault] | None"',
+        'error: Module has no attribute "conect"; maybe "connect"?  [attr-defined]',
+    ]

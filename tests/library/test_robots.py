@@ -1,0 +1,312 @@
+"""`tiniscript.connect` and `tiniscript.virtual_robot`: a robot that stops when it is left."""
+
+from __future__ import annotations
+
+import math
+import os
+import signal
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import tiniscript
+from tests.machines import host, wasm
+from tests.support.command import FOREVER, OBSTACLE, process
+from tests.support.pty_robot import PtyRobot
+from tiniscript.library import way
+from tiniscript.virtual import directory
+
+needs_wasmtime = pytest.mark.skipif(bool(wasm.missing()), reason=wasm.missing() or "it is there")
+needs_pty = pytest.mark.skipif(
+    bool(host.missing()) or sys.platform == "win32", reason=host.missing() or "no pseudo-terminals"
+)
+
+# -- a virtual robot -------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def virtual() -> Iterator[tiniscript.VirtualRobotConnection]:
+    with tiniscript.virtual_robot(hurry=math.inf) as robot:
+        yield robot
+
+
+@needs_wasmtime
+def test_a_program_runs_there_and_tells_what_it_shows(
+    virtual: tiniscript.VirtualRobotConnection,
+) -> None:
+    assert (virtual.info.robot, virtual.info.port) == ("tinibot", virtual.port)
+    assert virtual.info.room == 430
+    program = tiniscript.compile("SI|F(1, 50);SHOW(1.5);SHOW(TRUE AND 1 > 0)")
+    receipt = virtual.upload(program)
+    assert (receipt.checksum, receipt.is_running) == (program.checksum, True)
+    events = list(virtual.events())
+    assert [(each.name, each.values) for each in events] == [
+        ("STARTED", {"checksum": program.checksum}),
+        ("SHOW", {"value": 1.5}),
+        ("SHOW", {"value": True}),
+        ("DONE", {}),
+    ]
+    assert [each.ms for each in events] == sorted(each.ms for each in events)
+    assert virtual.wait() == tiniscript.Ending("DONE")
+    assert virtual.driven_cm == pytest.approx(22.5, abs=1)
+    assert (virtual.pose[2], virtual.bumps) == (0, 0)
+
+
+@needs_wasmtime
+def test_a_fault_has_the_line_of_the_program(virtual: tiniscript.VirtualRobotConnection) -> None:
+    virtual.upload("SI|X = 0\nSHOW(1 / X)", save=False)
+    ending = virtual.wait()
+    assert (ending.name, ending.cause) == ("FAULT", None)
+    assert ending.fault is not None
+    assert (ending.fault.name, ending.fault.line) == ("DIVIDE_BY_ZERO", 2)
+
+
+@needs_wasmtime
+def test_a_line_is_done_at_once_and_the_program_stays(
+    virtual: tiniscript.VirtualRobotConnection,
+) -> None:
+    stored = virtual.upload("SI|SHOW(7)")
+    virtual.wait()
+    virtual.live("SHOW(8)")
+    assert [each.values for each in virtual.events() if each.name == "SHOW"] == [{"value": 8}]
+    started = virtual.start()
+    assert (started.checksum, started.saved) == (stored.checksum, "STORED")
+    assert [each.values for each in virtual.events() if each.name == "SHOW"] == [{"value": 7}]
+
+
+@needs_wasmtime
+def test_a_line_after_a_stop_runs(virtual: tiniscript.VirtualRobotConnection) -> None:
+    virtual.upload(FOREVER, save=False)
+    virtual.stop()
+    assert virtual.wait() == tiniscript.Ending("STOPPED", cause="SEQUENCE")
+    virtual.live("SHOW(1)")
+    assert virtual.wait().name == "DONE"
+
+
+@needs_wasmtime
+def test_a_program_may_wait_for_the_button(virtual: tiniscript.VirtualRobotConnection) -> None:
+    assert not virtual.upload("SB|SHOW(3)").is_running
+    virtual.push_button()
+    assert [each.values for each in virtual.events() if each.name == "SHOW"] == [{"value": 3}]
+
+
+@needs_wasmtime
+def test_a_program_that_goes_on_is_no_ending(virtual: tiniscript.VirtualRobotConnection) -> None:
+    virtual.upload(FOREVER, save=False)
+    with pytest.raises(tiniscript.RobotError) as raised:
+        virtual.wait(0.05)
+    assert raised.value.reason == "still_running"
+    assert list(virtual.events(0)) == []
+
+
+@needs_wasmtime
+def test_its_world_and_its_readings_can_be_chosen() -> None:
+    sensors = {"DISTANCE": [100, 5]}
+    with tiniscript.virtual_robot(world="light", sensors=sensors, hurry=50) as robot:
+        robot.upload(OBSTACLE, save=False)
+        robot.live("SHOW(DISTANCE);SHOW(DISTANCE)")
+        shown = [each.values["value"] for each in robot.events() if each.name == "SHOW"]
+        assert shown[-1] == 5
+
+
+@needs_wasmtime
+@pytest.mark.parametrize(
+    ("reason", "arguments"),
+    [("world_refused", {"world": "moon"}), ("bad_number", {"hurry": 0}),
+     ("bad_number", {"noise": 2}), ("bad_number", {"motors": (100, 500)}),
+     ("no_sensor", {"sensors": {"EYES": 1}}), ("profile_refused", {"robot": "tinbot"})],
+)  # fmt: skip
+def test_a_virtual_robot_refuses_what_it_cannot_be(
+    reason: str, arguments: dict[str, object]
+) -> None:
+    with pytest.raises(tiniscript.UsageError) as raised:
+        tiniscript.virtual_robot(**arguments)  # type: ignore[arg-type]
+    assert raised.value.reason == reason
+    assert directory.running() == []
+
+
+@needs_wasmtime
+def test_wrong_use_of_a_connection_is_an_error(
+    virtual: tiniscript.VirtualRobotConnection,
+) -> None:
+    for reason, wrong in (
+        ("nothing_started", lambda: virtual.wait()),
+        ("live_button", lambda: virtual.live("SB|F(1, 50)")),
+        ("ping_program", lambda: virtual.upload("PING|check_connection")),
+        ("bad_number", lambda: list(virtual.events(-1))),
+    ):
+        with pytest.raises(tiniscript.UsageError) as raised:
+            wrong()
+        assert raised.value.reason == reason
+    with pytest.raises(tiniscript.ProgramError, match="TS"):
+        virtual.live("F(1 50)")
+    with pytest.raises(tiniscript.ProgramError) as too_long:
+        virtual.live("SHOW(1);" * 60)
+    assert (too_long.value.reason, too_long.value.diagnostics) == ("TOO_LARGE", ())
+    virtual.close()
+    virtual.close()
+    with pytest.raises(tiniscript.UsageError) as raised:
+        virtual.live("F(1, 50)")
+    assert raised.value.reason == "closed"
+
+
+@needs_wasmtime
+def test_a_virtual_robot_is_gone_when_it_is_left() -> None:
+    before = threading.active_count()
+    with tiniscript.virtual_robot() as robot:
+        assert [each.address for each in directory.running()] == [robot.port]
+    assert directory.running() == []
+    assert threading.active_count() == before
+
+
+@needs_wasmtime
+def test_without_a_port_the_virtual_robot_of_another_process_is_found() -> None:
+    command = subprocess.Popen(
+        [sys.executable, "-m", "tiniscript", "robot", "--robot", "liner"],
+        stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    try:
+        assert command.stdout is not None
+        port = command.stdout.readline().strip()
+        with tiniscript.connect() as robot:
+            assert robot.port == port
+            assert robot.info.robot == "liner"
+            robot.live("SHOW(LINE_L)")  # a word of its own
+            assert robot.wait().name == "DONE"
+    finally:
+        command.terminate()
+        command.communicate()
+    with pytest.raises(tiniscript.RobotError) as raised:
+        tiniscript.connect()
+    assert raised.value.reason == "which_port"
+
+
+# -- a robot on a port -----------------------------------------------------------------------------
+
+
+@needs_pty
+def test_leaving_stops_the_robot(pty_robot: PtyRobot) -> None:
+    with tiniscript.connect(pty_robot.port) as robot:
+        robot.upload(FOREVER)
+        pty_robot.until(lambda: pty_robot.moves, "it drives")
+    assert not pty_robot.moves
+
+
+@needs_pty
+def test_an_exception_stops_the_robot_and_goes_on(pty_robot: PtyRobot) -> None:
+    with pytest.raises(ZeroDivisionError), tiniscript.connect(pty_robot.port) as robot:
+        robot.upload(FOREVER, detached=True)
+        pty_robot.until(lambda: pty_robot.moves, "it drives")
+        _ = 1 / 0
+    assert not pty_robot.moves
+
+
+@needs_pty
+def test_ctrl_c_stops_the_robot(pty_robot: PtyRobot, tmp_path: Path) -> None:
+    program = tmp_path / "drive.py"
+    program.write_text(
+        "import sys, tiniscript\n"
+        "with tiniscript.connect(sys.argv[1]) as robot:\n"
+        f"    robot.upload({FOREVER!r}, detached=True)\n"
+        "    print('running', flush=True)\n"
+        "    robot.wait()\n"
+    )
+    command = subprocess.Popen(
+        [sys.executable, str(program), pty_robot.port], stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    assert command.stdout is not None
+    assert command.stdout.readline() == "running\n"
+    pty_robot.until(lambda: pty_robot.moves, "it drives")
+    command.send_signal(signal.SIGINT)
+    _, err = command.communicate()
+    assert not pty_robot.moves
+    assert err.rstrip().endswith("KeyboardInterrupt")  # no other error came after it
+
+
+@needs_pty
+def test_a_detached_program_goes_on(pty_robot: PtyRobot) -> None:
+    with tiniscript.connect(pty_robot.port) as robot:
+        robot.upload(FOREVER, save=False, detached=True)
+        pty_robot.until(lambda: pty_robot.moves, "it drives")
+    assert pty_robot.moves
+    with tiniscript.connect(pty_robot.port) as robot:
+        robot.stop()
+    assert not pty_robot.moves
+
+
+@needs_pty
+def test_a_stop_that_nobody_confirms_is_an_error(
+    pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(way, "CONFIRM_S", 0.5)
+    robot = tiniscript.connect(pty_robot.port)
+    with pytest.raises(tiniscript.StopNotConfirmed, match="batteries") as raised, robot:
+        robot.upload(FOREVER)
+        pty_robot.switch_off()
+        raise ZeroDivisionError
+    assert isinstance(raised.value.__context__, ZeroDivisionError)
+
+
+@needs_pty
+def test_a_cable_that_is_pulled_is_told_twice(pty_robot: PtyRobot) -> None:
+    robot = tiniscript.connect(pty_robot.port)
+    with pytest.raises(tiniscript.StopNotConfirmed) as raised, robot:
+        robot.upload(FOREVER)
+        pty_robot.pull()
+        robot.wait()
+    before = raised.value.__context__
+    assert isinstance(before, tiniscript.RobotError)
+    assert before.reason == "port_gone"
+
+
+@needs_pty
+def test_tsc_stop_gets_through(pty_robot: PtyRobot) -> None:
+    with tiniscript.connect(pty_robot.port) as robot:
+        robot.upload(FOREVER)
+        pty_robot.until(lambda: pty_robot.moves, "it drives")
+        done = process("stop", "--port", pty_robot.port)
+        assert (done.code, pty_robot.moves) == (0, False)
+        assert robot.wait() == tiniscript.Ending("STOPPED", cause="SEQUENCE")
+
+
+@needs_pty
+def test_a_button_ends_a_program(pty_robot: PtyRobot) -> None:
+    with tiniscript.connect(pty_robot.port) as robot:
+        robot.upload(FOREVER)
+        pty_robot.until(lambda: pty_robot.moves, "it drives")
+        pty_robot.push()
+        assert robot.wait() == tiniscript.Ending("STOPPED", cause="BUTTON")
+
+
+@needs_pty
+def test_a_program_of_another_kit_is_refused(pty_robot: PtyRobot) -> None:
+    with tiniscript.connect(pty_robot.port) as robot:
+        with pytest.raises(tiniscript.RobotError) as raised:
+            robot.upload(tiniscript.compile("GRIPPER(30)", "grabber"))
+        assert raised.value.reason == "WRONG_KIT"
+
+
+@needs_pty
+def test_nobody_answers(pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(way, "CABLE_ANSWER_MS", 300)
+    monkeypatch.setattr(way, "LONG_QUIET_S", 0.0)
+    pty_robot.switch_off()
+    with pytest.raises(tiniscript.RobotError) as raised:
+        tiniscript.connect(pty_robot.port, language="es")
+    assert raised.value.reason == "link_silent"
+    assert "Nada responde" in str(raised.value)
+    # and the port is free again
+    pty_robot.switch_on()
+    with tiniscript.connect(pty_robot.port) as robot:
+        assert robot.info.robot == "tinibot"
+
+
+def test_a_port_that_is_not_there_is_an_error() -> None:
+    with pytest.raises(tiniscript.RobotError) as raised:
+        tiniscript.connect("/dev/no-such-port" if os.name == "posix" else "COM199")
+    assert raised.value.reason in ("port_missing", "port_missing_but")
