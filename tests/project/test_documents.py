@@ -9,7 +9,10 @@ from typing import NamedTuple
 
 import pytest
 
-from tests.support.casefile import ROOT
+import tiniscript
+from tests.machines import host
+from tests.machines.wasm import missing
+from tests.support.casefile import ROOT, Example, examples
 from tiniscript.cli import main
 
 DOCUMENTS = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md")])
@@ -63,6 +66,37 @@ def test_console(
     shown = "\n".join(row.rstrip() for row in command.shown.splitlines() if row.strip())
     if shown:
         assert printed == shown, f"{command.document.name}:{command.line}"
+
+
+EXAMPLES = [each for path in DOCUMENTS if path.name != "CONTRIBUTING.md" for each in examples(path)]
+
+
+@pytest.mark.parametrize("example", EXAMPLES, ids=lambda each: f"{each.path.name}:{each.line}")
+def test_python(
+    example: Example, request: pytest.FixtureRequest, capsys: pytest.CaptureFixture[str],
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+) -> None:  # fmt: skip
+    """The Python of a document runs, and prints what the document shows."""
+    if "virtual_robot" in example.code and missing():
+        pytest.skip(missing())
+    if example.has_robot and host.missing():
+        pytest.skip(host.missing())
+    code = example.code
+    if example.has_robot:
+        code = code.replace("/dev/ttyUSB0", request.getfixturevalue("pty_robot").port)
+        assert code != example.code
+    monkeypatch.chdir(tmp_path)
+    exec(compile(code, f"{example.path}:{example.line}", "exec"), {"__name__": "__main__"})
+    assert capsys.readouterr().out == example.output
+
+
+def test_both_pages_of_the_library_name_all_of_it() -> None:
+    for name in ("api.en.md", "api.es.md"):
+        page = (ROOT / "docs" / name).read_text(encoding="utf-8")
+        absent = [each for each in tiniscript.__all__ if f"`{each}" not in page]
+        assert not absent, f"{name} says nothing of {absent}"
+    pages = [examples(ROOT / "docs" / name) for name in ("api.en.md", "api.es.md")]
+    assert len(pages[0]) == len(pages[1]) >= 8
 
 
 @pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.name)

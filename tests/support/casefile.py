@@ -63,6 +63,40 @@ def read(path: Path) -> list[Case]:
     return cases
 
 
+class Example(NamedTuple):
+    """A fence `python`: code that runs in a namespace of its own, and the fence `output` right
+    behind it. `has_robot`: it is `python robot`, and connects to the robot on /dev/ttyUSB0."""
+
+    path: Path
+    line: int
+    code: str
+    output: str
+    has_robot: bool
+
+
+def examples(path: Path) -> list[Example]:
+    """Return the Python of one document."""
+    found: list[Example] = []
+    fence, start, lines = "", 0, list[str]()
+    is_right_behind = False  # an example, with nothing but empty lines between
+    for number, row in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+        if not row.startswith("```"):
+            lines.append(row)
+            is_right_behind = is_right_behind and (bool(fence) or not row.strip())
+        elif not fence:
+            fence, start, lines = row[3:].strip() or "text", number, []
+        else:
+            text = "".join(f"{line}\n" for line in lines)
+            is_python = fence in ("python", "python robot")
+            if is_python:
+                found.append(Example(path, start, text, "", fence == "python robot"))
+            elif fence == "output":
+                assert is_right_behind, f"{path.name}:{start}: the output of no example"
+                found[-1] = found[-1]._replace(output=text)
+            is_right_behind, fence = is_python, ""
+    return found
+
+
 def all_cases() -> list[Case]:
     return [case for path in documents() for case in read(path)]
 

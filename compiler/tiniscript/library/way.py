@@ -157,17 +157,18 @@ def reason_of_end(line: Way, gone: Gone) -> str:
     return "port_gone"
 
 
-def confirmed(line: Way, limit_s: float = CONFIRM_S) -> bool:
+def confirmed(line: Way, limit_s: float | None = None) -> bool:
     """Stop the robot; return whether it has confirmed. A second Ctrl-C ends the waiting.
 
-    What was told before that is about something else.
+    `limit_s` is CONFIRM_S where nothing is said. What was told before is about something else.
     """
     from tiniscript.link.outcomes import Gone
 
     began_s = monotonic()
+    end_s = began_s + (CONFIRM_S if limit_s is None else limit_s)
     line.stop()
     try:
-        while monotonic() < began_s + limit_s:
+        while monotonic() < end_s:
             found = line.event()
             if found is None or found[0] < int(began_s * 1000):
                 continue
