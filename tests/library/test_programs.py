@@ -15,6 +15,8 @@ import pytest
 import tiniscript
 from tests.machines.wasm import missing
 from tests.support.command import OBSTACLE, Tsc
+from tiniscript.bytecode.image import pack
+from tiniscript.bytecode.verify import RULES
 from tiniscript.library.texts import TEXTS
 
 needs_wasmtime = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
@@ -151,6 +153,9 @@ def test_a_damaged_image_is_refused() -> None:
     with pytest.raises(tiniscript.ProgramError) as raised:
         tiniscript.run(bytes(image))
     assert (raised.value.reason, raised.value.diagnostics) == ("DAMAGED", ())
+    with pytest.raises(tiniscript.ProgramError) as raised:
+        tiniscript.run(pack("SI", 0, b"\xff"))  # whole, and no code
+    assert raised.value.reason in RULES
 
 
 # -- wrong use -------------------------------------------------------------------------------------

@@ -10,14 +10,18 @@ import sys
 import threading
 from collections.abc import Iterator
 from pathlib import Path
+from typing import cast
 
 import pytest
 
 import tiniscript
 from tests.machines import host, wasm
-from tests.support.command import FOREVER, OBSTACLE, process
+from tests.support.command import FOREVER, OBSTACLE, Command, process
 from tests.support.pty_robot import PtyRobot
 from tiniscript.library import way
+from tiniscript.library.endings import End, Follower
+from tiniscript.link.connection import Way
+from tiniscript.link.outcomes import Event
 from tiniscript.virtual import directory
 
 needs_wasmtime = pytest.mark.skipif(bool(wasm.missing()), reason=wasm.missing() or "it is there")
@@ -159,7 +163,7 @@ def test_a_virtual_robot_is_gone_when_it_is_left() -> None:
     before = threading.active_count()
     with tiniscript.virtual_robot() as robot:
         assert [each.address for each in directory.running()] == [robot.port]
-    assert directory.running() == []
+    assert not list(directory._folder().iterdir())
     assert threading.active_count() == before
 
 
@@ -252,6 +256,69 @@ def test_a_stop_that_nobody_confirms_is_an_error(
     assert isinstance(raised.value.__context__, ZeroDivisionError)
 
 
+class Teller:
+    """A way on which these events come, and then none."""
+
+    def __init__(self, *names: str) -> None:
+        self.events = [Event(name, {"cause": 1}) for name in names]
+        self.stops = 0
+
+    def stop(self) -> None:
+        self.stops += 1
+
+    def event(self, limit_s: float = 0) -> tuple[int, Event] | None:
+        return (2**60, self.events.pop(0)) if self.events else None
+
+
+def test_only_its_own_word_confirms_a_stop() -> None:
+    for names, is_confirmed in (
+        (["SHOW", "STOPPED"], True),
+        (["SHOW", "LOST"], False),
+        ([], False),
+    ):
+        line = Teller(*names)
+        assert way.confirmed(cast(Way, line), 0.01) is is_confirmed
+        assert line.stops == 1
+
+
+def test_what_ended_before_a_run_is_not_its_end() -> None:
+    follower = Follower(5)
+    stopped, ended = Event("STOPPED", {"cause": 1}), Event("ENDED", {"state": 0})
+    started = [Event("STARTED", {"run": run, "program": 1}) for run in (5, 6)]
+    assert not follower.is_about(stopped, "P")
+    assert not follower.is_about(ended, "P")
+    assert follower.end(Event("DONE", {"run": 4})) is None
+    assert follower.is_about(started[0], "P")
+    assert follower.is_about(stopped, "P")
+    assert follower.end(stopped) == End("STOPPED")
+    assert follower.end(Event("DONE", {"run": 5})) == End("DONE")
+    for event, reason in ((started[1], "replaced"), (Event("LOST", {}), "link_lost")):
+        with pytest.raises(tiniscript.RobotError) as raised:
+            follower.is_about(event, "P")
+        assert raised.value.reason == reason
+
+
+@needs_pty
+def test_an_uploaded_program_is_saved_when_waiting_is_over(pty_robot: PtyRobot) -> None:
+    with tiniscript.connect(pty_robot.port) as robot:
+        receipt = robot.upload("SI|" + "SHOW(1);" * 120)
+        assert receipt.saved == "SAVING"
+        assert robot.wait().name == "DONE"
+        assert robot.start().saved == "STORED"
+
+
+@needs_pty
+def test_a_way_through_another_command_is_a_way(pty_robot: PtyRobot, link: Command) -> None:
+    with tiniscript.connect(pty_robot.port) as robot:
+        robot.upload("SI|SHOW(4)")
+        assert [each.values for each in robot.events() if each.name == "SHOW"] == [{"value": 4}]
+        robot.upload(FOREVER)
+        pty_robot.until(lambda: pty_robot.moves, "it drives")
+    assert not pty_robot.moves
+    link.process.kill()
+    link.process.communicate()
+
+
 @needs_pty
 def test_a_cable_that_is_pulled_is_told_twice(pty_robot: PtyRobot) -> None:
     robot = tiniscript.connect(pty_robot.port)
@@ -296,8 +363,10 @@ def test_nobody_answers(pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.setattr(way, "CABLE_ANSWER_MS", 300)
     monkeypatch.setattr(way, "LONG_QUIET_S", 0.0)
     pty_robot.switch_off()
+    before = threading.active_count()
     with pytest.raises(tiniscript.RobotError) as raised:
         tiniscript.connect(pty_robot.port, language="es")
+    assert threading.active_count() == before
     assert raised.value.reason == "link_silent"
     assert "Nada responde" in str(raised.value)
     # and the port is free again
