@@ -308,6 +308,16 @@ def test_an_uploaded_program_is_saved_when_waiting_is_over(pty_robot: PtyRobot) 
 
 
 @needs_pty
+def test_a_program_is_saved_when_its_connection_is_left(pty_robot: PtyRobot) -> None:
+    with tiniscript.connect(pty_robot.port) as robot:
+        program = robot.upload("SB|" + "SHOW(1);" * 120)
+    pty_robot.switch_off()
+    pty_robot.switch_on()
+    with tiniscript.connect(pty_robot.port) as robot:
+        assert robot.start().checksum == program.checksum
+
+
+@needs_pty
 def test_a_way_through_another_command_is_a_way(pty_robot: PtyRobot, link: Command) -> None:
     with tiniscript.connect(pty_robot.port) as robot:
         robot.upload("SI|SHOW(4)")

@@ -185,15 +185,19 @@ def diagnostics_of(compiled: Compiled, language: Language) -> list[Diagnostic]:
 
 def remarks(places: Map | None, language: Language) -> dict[int, str]:
     """Return what stands in a listing behind each instruction that begins something: its line."""
+    from tiniscript.library.texts import sentence
+
     found: dict[int, str] = {}
-    word = "línea" if language == "es" else "line"
-    for place in places.places if places is not None else ():
-        line = places.line(place.line) if places is not None else ""
+    if places is None:
+        return found
+    for place in places.places:
+        line = places.line(place.line)
         shown = line.strip()
         if len(shown) > REMARK:  # a long line: the instruction alone
             end = place.end_column - 1 if place.end_line == place.line else len(line)
             shown = line[place.column - 1 : end][:REMARK]
-        found[place.offset] = f"{word} {place.line}: {printable(shown)}"
+        values = {"line": str(place.line), "shown": printable(shown.replace("\t", " "))}
+        found[place.offset] = sentence("line", language, values)
     return found
 
 

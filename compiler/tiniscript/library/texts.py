@@ -1,4 +1,4 @@
-"""The sentences of the library's errors, in English and Spanish.
+"""The sentences of the library's errors and listings, in English and Spanish.
 
 Those of diagnostics are in `diagnostics/catalogue.toml`, those of a robot's answers in
 `link/statuses.toml`. The command has sentences of its own, which name its options.
@@ -40,6 +40,8 @@ TEXTS: dict[str, tuple[str, str]] = {
     "nothing_started": ("Nothing was started here that could end. Call upload, live or start first.",
                         "Aquí no se inició nada que pueda terminar. Llama primero a upload, live o start."),
     "closed": ("This connection is closed. Connect again.", "Esta conexión está cerrada. Conecta otra vez."),
+    # a listing
+    "line": ("line {line}: {shown}", "línea {line}: {shown}"),
     # which port
     "which_port": ("Which port? Name it: connect(\"{example}\"). The ports here: {known}",
                    "¿Qué puerto? Nómbralo: connect(\"{example}\"). Los puertos de aquí: {known}"),

@@ -52,6 +52,7 @@ def run(arguments: list[str], language: str) -> int:
 
 def print_listing(ready: images.Ready, robot: Robot, name: str, language: str) -> None:
     from tiniscript.bytecode.disassembly import listing
+    from tiniscript.library.programs import remarks
 
     image = ready.image
     key = "for_robot" if image.kit else "any_robot"
@@ -63,18 +64,8 @@ def print_listing(ready: images.Ready, robot: Robot, name: str, language: str) -
         image=ready.image_bytes,
         checksum=f"{image.checksum:08x}",
     ))  # fmt: skip
-    remarks = {}
-    if ready.places is not None:
-        for place in ready.places.places:
-            shown = ready.places.line(place.line).strip()
-            if len(shown) > 60:  # a long line: the instruction alone
-                line = ready.places.line(place.line)
-                end = place.end_column - 1 if place.end_line == place.line else len(line)
-                shown = line[place.column - 1 : end][:60]
-            shown = shown.replace("\t", " ")
-            remark = text("line", language).format(line=place.line, shown=shown)
-            remarks[place.offset] = remark
-    print(listing(image.code, remarks, robot.kit if image.kit else None), end="")
+    found = remarks(ready.places, language)
+    print(listing(image.code, found, robot.kit if image.kit else None), end="")
 
 
 def print_json(ready: images.Ready, robot: Robot) -> None:

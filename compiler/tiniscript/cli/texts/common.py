@@ -246,7 +246,6 @@ TEXTS: dict[str, tuple[str, str]] = {
     "any_robot": ("any robot", "cualquier robot"),
     "for_robot": ("for {robot}", "para {robot}"),
     "unknown_robot": ("for an unknown robot ({kit})", "para un robot desconocido ({kit})"),
-    "line": ("line {line}: {shown}", "línea {line}: {shown}"),
 }
 # fmt: on
 
