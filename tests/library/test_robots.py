@@ -108,6 +108,17 @@ def test_a_program_that_goes_on_is_no_ending(virtual: tiniscript.VirtualRobotCon
 
 
 @needs_wasmtime
+def test_a_time_limit_ends_a_stream_without_end(
+    virtual: tiniscript.VirtualRobotConnection,
+) -> None:
+    virtual.upload("SI|LOOP(FOREVER);SHOW(1);W(0.01);END_LOOP", save=False)
+    assert "SHOW" in {each.name for each in virtual.events(0.3)}
+    with pytest.raises(tiniscript.RobotError) as raised:
+        virtual.wait(0.2)
+    assert raised.value.reason == "still_running"
+
+
+@needs_wasmtime
 def test_its_world_and_its_readings_can_be_chosen() -> None:
     sensors = {"DISTANCE": [100, 5]}
     with tiniscript.virtual_robot(world="light", sensors=sensors, hurry=50) as robot:
@@ -303,6 +314,7 @@ def test_an_uploaded_program_is_saved_when_waiting_is_over(pty_robot: PtyRobot) 
     with tiniscript.connect(pty_robot.port) as robot:
         receipt = robot.upload("SI|" + "SHOW(1);" * 120)
         assert receipt.saved == "SAVING"
+        robot.live("W(0.01)")
         assert robot.wait().name == "DONE"
         assert robot.start().saved == "STORED"
 

@@ -132,7 +132,8 @@ class RobotConnection:
             raise UsageError("ping_program", self.language)
         image = ready._image
         reply = self._ask(lambda session: session.upload(image, run, save, detached))
-        return self._begun(reply, run and ready.start == "SI", detached, is_saving=save)
+        self._is_saving = save
+        return self._begun(reply, run and ready.start == "SI", detached)
 
     def live(self, line: str) -> Receipt:
         """Have a line done once, at most 55 bytes of code; the stored program stays what it is.
@@ -148,13 +149,13 @@ class RobotConnection:
             )
         image = ready._image
         reply = self._ask(lambda session: session.live(image.code, image.kit))
-        return self._begun(reply, True, False, is_saving=False)
+        return self._begun(reply, True, False)
 
     def start(self, *, detached: bool = False) -> Receipt:
         """Start the program that the robot holds."""
         self._check_open()
         reply = self._ask(lambda session: session.start(detached))
-        return self._begun(reply, True, detached, is_saving=False)
+        return self._begun(reply, True, detached)
 
     def events(self, timeout: float | None = None) -> Iterator[RobotEvent]:
         """Yield what the robot tells, until the program that was started here has ended (that
@@ -170,19 +171,19 @@ class RobotConnection:
             follower = self._follower or anything
             left_s = LOOK_S if end_s is None else min(LOOK_S, end_s - monotonic())
             found = self._event(max(left_s, 0.0))
-            if found is None:
-                if end_s is not None and monotonic() >= end_s:
-                    return
-                continue
-            ms, event = found
-            if not follower.is_about(event, way.shown(self.port), self.language):
-                continue
-            told = self._reader.told(ms, event)
-            end = follower.end(event)
-            if end is not None and told is not None and self._follower is not None:
-                self._ending = ending_of(told)
+            told = None
+            if found is not None and follower.is_about(
+                found[1], way.shown(self.port), self.language
+            ):
+                told = self._reader.told(*found)
+                if told is not None and follower.end(found[1]) is not None and self._follower:
+                    self._ending = ending_of(told)
             if told is not None:
                 yield told
+            # what came in time is told, however late it is
+            last_s = monotonic() if found is None else found[0] / 1000
+            if end_s is not None and last_s >= end_s:
+                return
 
     def wait(self, timeout: float | None = None) -> Ending:
         """Wait until the program that was started here has ended, and is saved if it was uploaded.
@@ -296,7 +297,7 @@ class RobotConnection:
             self._reader.maps[ready.checksum] = ready._map
         return ready
 
-    def _begun(self, reply: Reply, is_running: bool, is_detached: bool, is_saving: bool) -> Receipt:
+    def _begun(self, reply: Reply, is_running: bool, is_detached: bool) -> Receipt:
         from tiniscript.link.messages import SAVED
 
         run, program, saved = (reply.values[name] for name in ("run", "program", "saved"))
@@ -305,7 +306,6 @@ class RobotConnection:
         self._follower = Follower(run if is_running else None)
         self._ending = None
         self._is_detached = is_detached and is_running
-        self._is_saving = is_saving
         name = SAVED[saved][0] if saved < len(SAVED) else "MEMORY"
         return Receipt(program, name, is_running)
 
