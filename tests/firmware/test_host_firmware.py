@@ -274,6 +274,26 @@ def test_a_run_of_the_button_needs_nobody() -> None:
     assert happened(robot) == ["MOTORS 80 80"]
 
 
+@pytest.mark.parametrize("starts", [1, 256])
+def test_no_run_of_the_button_is_tethered(starts: int) -> None:
+    """However often it starts: runs are counted in one byte, and one of them was tethered."""
+    robot, session = switched_on(), computer()
+    send(robot, session, AWAY)
+    robot.talk(session, 100)
+    robot.push()
+    assert happened(robot)[-1] == "MOTORS 0 0"
+    robot.wait(1500)
+    for _ in range(starts - 1):
+        robot.push()
+        robot.push()
+    robot.push()
+    robot.wait(1500)
+    assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0"] * starts + ["MOTORS 80 80"]
+    robot.step(flags=8)
+    robot.wait(100)
+    assert happened(robot)[-1] == "MOTORS 80 80"
+
+
 def test_a_press_that_lasts_stops_what_began_meanwhile() -> None:
     """Its first edge came before the start, as after a spike on the wire."""
     robot, session = switched_on(), computer()

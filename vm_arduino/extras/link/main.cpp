@@ -84,6 +84,7 @@ void answer_robot(Reader* request, Writer* answer) {
       break;
     case 'r':
       port_release();
+      link_half.drop();
       port_start(false);
       break;
     case 'w':

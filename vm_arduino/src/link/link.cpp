@@ -54,9 +54,7 @@ void Link::turn(uint16_t now_ms) {
   }
   // an answer that is due first
   if ((due_ & (kDueReply | kDueHint)) == 0 && receiver_->item() != Item::kNone) hear();
-  const Condition& condition = port_condition();
-  if (quiet_ms_ >= kTetherMs && is_tethered_ && condition.state == State::kRunning &&
-      condition.run == tethered_run_) {
+  if (quiet_ms_ >= kTetherMs && is_tethered_ && port_condition().state == State::kRunning) {
     port_stop(static_cast<uint8_t>(LinkFault::kLinkLost));
     faulted();
   }
@@ -75,8 +73,6 @@ one_copy void Link::seal() {
   put_checksum(image);
   port_seal(image);
 }
-
-bool Link::is_tethered() const { return is_tethered_ && port_condition().run == tethered_run_; }
 
 bool Link::next(uint8_t* byte) {
   if (left_ == 0) return false;
@@ -368,7 +364,6 @@ void Link::finish(bool is_live) {
 void Link::start(uint8_t mode, bool is_live) {
   port_start(is_live);
   is_tethered_ = (mode & kDetached) == 0;
-  tethered_run_ = port_condition().run;
 }
 
 }  // namespace tiniscript

@@ -44,11 +44,15 @@ class Link {
   void stopped(Cause cause);
   bool show(int32_t value, bool is_yes_no);
 
-  // The button starts what the robot holds: a program on its way must not be written over it.
-  void drop() { image_ = nullptr; }
+  // The button starts what the robot holds: a program on its way must not be written over it, and
+  // what starts has no tether.
+  void drop() {
+    image_ = nullptr;
+    is_tethered_ = false;
+  }
 
   // Whether what runs ends when no frame comes.
-  bool is_tethered() const;
+  bool is_tethered() const { return is_tethered_; }
 
  private:
   // what is due, one bit each
@@ -114,8 +118,7 @@ class Link {
   uint8_t isa_[2];     // of the computer's programs, major and minor
   bool is_open_;       // there is a session
   bool is_other_kit_;  // for which they are
-  bool is_tethered_;   // the run `tethered_run_`, that is
-  uint8_t tethered_run_;
+  bool is_tethered_;   // what runs, or ran last
   uint8_t ended_run_;
   Cause cause_;
   uint8_t event_seq_;
