@@ -8,7 +8,15 @@ from pathlib import Path
 
 import pytest
 
-from tests.firmware.test_uno_robot import NAMES, computer, image_of, saved, send, sketch, switched_on
+from tests.firmware.test_uno_robot import (
+    NAMES,
+    computer,
+    image_of,
+    saved,
+    send,
+    sketch,
+    switched_on,
+)
 from tests.machines.uno import needed
 from tests.machines.wired import Wired
 from tests.support.platformio import firmware, shared
