@@ -22,7 +22,7 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT)]
 
 from tools.bench import avr_bench
-from tools.build import chips
+from tools.builds import chips
 
 SOURCE = ROOT / "vm_arduino" / "src"
 WASM = ROOT / "compiler" / "tiniscript" / "vm" / "machine.wasm"

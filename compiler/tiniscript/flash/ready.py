@@ -1,7 +1,7 @@
 """Firmware that is ready to be written: files, named after the robot, the board and a digest.
 
 The digest is of all that a firmware is made from, so that an old file is never taken for a new
-one. A package may bring files (`tools/build/firmware_files.py` makes them); others are built when
+one. A package may bring files (`tools/builds/firmware_files.py` makes them); others are built when
 they are first wanted, and kept in the user's cache.
 """
 
