@@ -41,8 +41,8 @@ They are made from TiniScript's folder vm_arduino, which is under the MIT licenc
   https://www.nongnu.org/avr-libc/LICENSE.txt
 - parts of libgcc, under the GNU General Public License with the GCC Runtime Library Exception.
 
-To make them anew, with another core too: pio run -d vm_arduino, or tools/builds/firmware_files.py, which
-has made these, in TiniScript's source.
+To make them anew, with another core too: pio run -d vm_arduino, or
+tools/builds/firmware_files.py, which has made these, in TiniScript's source.
 """
 
 

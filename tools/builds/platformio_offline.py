@@ -5,8 +5,8 @@
 
 Nobody who is online needs it: where the registry answers, or PlatformIO has platforms of its own,
 it changes nothing. Elsewhere it makes stand-ins for two platforms in a folder of its own (below
-.venv), from `tools/builds/platformio_stand_ins`, SCons from PyPI, and Debian's packages. Every build
-says that it uses them. A version that does not match is refused.
+.venv), from `tools/builds/platformio_stand_ins`, SCons from PyPI, and Debian's packages. Every
+build says that it uses them. A version that does not match is refused.
 """
 
 from __future__ import annotations
