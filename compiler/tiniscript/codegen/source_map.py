@@ -113,9 +113,7 @@ def recall(checksum: int) -> Map | None:
 
 
 def _path(checksum: int) -> Path:
-    from platformdirs import user_cache_path
-
-    return user_cache_path("tiniscript", appauthor=False) / "maps" / f"{checksum:08x}.json"
+    return files.cache_folder() / "maps" / f"{checksum:08x}.json"
 
 
 def _forget_oldest(folder: Path) -> None:

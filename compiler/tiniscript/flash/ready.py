@@ -10,7 +10,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import NamedTuple
 
-from tiniscript.files import replace
+from tiniscript.files import cache_folder, replace
 
 FOLDER = Path(__file__).resolve().parent / "ready"
 NOTICE = "NOTICE.txt"
@@ -36,9 +36,7 @@ class Ready(NamedTuple):
 
 def cache() -> Path:
     """Return the user's folder for what was built."""
-    from platformdirs import user_cache_path
-
-    return user_cache_path("tiniscript", appauthor=False) / "firmware"
+    return cache_folder() / "firmware"
 
 
 def name_of(robot: str, board: str, digest: str) -> str:

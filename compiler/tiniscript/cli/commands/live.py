@@ -344,11 +344,10 @@ def _history(known: Known) -> Iterator[None]:
     except ImportError:  # Windows: its console has a history of its own
         yield
         return
-    from platformdirs import user_cache_path
-
+    from tiniscript import files
     from tiniscript.words import WORDS
 
-    path = user_cache_path("tiniscript", appauthor=False) / "live_history"
+    path = files.cache_folder() / "live_history"
     kit = known.kit
 
     def complete(begun: str, number: int) -> str | None:
