@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from tests.support.casefile import ROOT
+from tiniscript.link import messages
 
 PACKAGE = ROOT / "compiler" / "tiniscript"
 FILES = sorted(PACKAGE.rglob("*.py"))
@@ -38,3 +39,44 @@ def is_text(node: ast.AST, pattern: str) -> bool:
 def test_the_cache_folder_has_one_home() -> None:
     found = homes(lambda node: isinstance(node, ast.Name) and node.id == "user_cache_path")
     assert found == {"files.py"}
+
+
+FIELDS = r"state|saved|status|fault|reset|cause"  # of messages: their numbers have names
+
+
+def field_of(node: ast.expr) -> bool:
+    """Whether it is `values["state"]`, `reply.status` or a variable of such a name."""
+    if isinstance(node, ast.Subscript):
+        return is_text(node.slice, FIELDS)
+    name = node.attr if isinstance(node, ast.Attribute) else getattr(node, "id", "")
+    return re.fullmatch(FIELDS, name.lstrip("_")) is not None
+
+
+def is_number_of_a_message(node: ast.AST) -> bool:
+    """Whether a field of a message is compared with a plain number, or set to one."""
+    sides: list[ast.expr] = []
+    if isinstance(node, ast.Compare) and isinstance(node.ops[0], (ast.Eq, ast.NotEq, ast.In)):
+        sides = [node.left, *node.comparators]
+    elif isinstance(node, ast.Assign):
+        sides = [*node.targets, node.value]
+    elif isinstance(node, ast.AnnAssign) and node.value is not None:
+        sides = [node.target, node.value]
+    return any(map(field_of, sides)) and any(
+        isinstance(each, ast.Constant) and type(each.value) is int for each in sides
+    )
+
+
+def test_states_and_statuses_are_named() -> None:
+    """`values["saved"] == 3` says nothing, and stays 3 when the table changes."""
+    assert homes(is_number_of_a_message) == set()
+
+
+def test_names_of_states_are_rows_of_their_tables() -> None:
+    assert [messages.STATES[number][0] for number in (
+        messages.STATE_IDLE, messages.STATE_RUNNING, messages.STATE_STOPPED,
+        messages.STATE_FAULTED,
+    )] == ["IDLE", "RUNNING", "STOPPED", "FAULTED"]  # fmt: skip
+    assert [messages.SAVED[number][0] for number in (
+        messages.SAVED_NOTHING, messages.SAVED_SAVING, messages.SAVED_STORED,
+        messages.SAVED_LOW_SUPPLY,
+    )] == ["NOTHING", "SAVING", "STORED", "LOW_SUPPLY"]  # fmt: skip

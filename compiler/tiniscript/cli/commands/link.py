@@ -11,6 +11,7 @@ from tiniscript.cli.options import Options
 from tiniscript.cli.robot.connect import ANSWER_MS, Connection, connected, hello, takes_robot
 from tiniscript.cli.robot.event_printer import Bookkeeping, Teller
 from tiniscript.cli.texts.common import text
+from tiniscript.link.requests import OK
 
 if TYPE_CHECKING:
     from tiniscript.link.connection import Asked
@@ -106,7 +107,7 @@ class _Log:
 
     def _look_again(self) -> None:
         assert self.search is not None and self.search.outcome is not None
-        if self.search.outcome.status == 0:
+        if self.search.outcome.status == OK:
             self.search = None
             self._say("FOUND", "link_found", robot=self.connection.name)
         else:

@@ -9,6 +9,14 @@ from typing import TYPE_CHECKING
 from tiniscript.cli.errors import Trouble
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.texts.common import text
+from tiniscript.link.messages import (
+    FIRST_LINK_FAULT,
+    SAVED_LOW_SUPPLY,
+    SAVED_SAVING,
+    SAVED_STORED,
+    STATE_FAULTED,
+    STATE_IDLE,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -24,8 +32,6 @@ STOP_S = 1.5  # the same for a command that leaves, and that nobody may look at
 SAVE_S = 10.0  # for which a robot may save a program
 LOW_S = 2.0  # for which its voltage may be too low for that: it looks every half second
 ASK_S = 1.0  # between two questions whether it has, while the program runs
-SAVING, STORED, LOW_SUPPLY = 2, 3, 4  # of `link.messages.SAVED`
-LINK_FAULT = 64  # from here on, a fault is none of the program's
 DONE, FAULTY, INTERRUPTED, LOST = 0, 1, 2, 3  # exit codes
 
 
@@ -97,15 +103,15 @@ def ended(event: Event, run: int | None) -> int | None:
     if name == "FAULT" and run in (None, values["run"]):
         fault = values["fault"]
         assert isinstance(fault, int)
-        return LOST if fault >= LINK_FAULT else FAULTY
+        return LOST if fault >= FIRST_LINK_FAULT else FAULTY
     if name == "STOPPED":
         return LOST
     if name == "ENDED":
         fault = values["fault"]
         assert isinstance(fault, int)
-        if values["state"] != 3:
-            return DONE if values["state"] == 0 else LOST
-        return LOST if fault >= LINK_FAULT else FAULTY
+        if values["state"] != STATE_FAULTED:
+            return DONE if values["state"] == STATE_IDLE else LOST
+        return LOST if fault >= FIRST_LINK_FAULT else FAULTY
     return None
 
 
@@ -158,7 +164,7 @@ class Saving:
 
     @property
     def is_over(self) -> bool:
-        return self.saved not in (SAVING, LOW_SUPPLY)
+        return self.saved not in (SAVED_SAVING, SAVED_LOW_SUPPLY)
 
     def look(self) -> None:
         """Ask every second, and wait for nothing."""
@@ -177,7 +183,7 @@ class Saving:
         low_s: float | None = None
         while not self.is_over and monotonic() < begun_s + SAVE_S:
             self._learn(self.connection.ask(lambda session: session.status()), is_running=False)
-            if self.saved == LOW_SUPPLY:
+            if self.saved == SAVED_LOW_SUPPLY:
                 low_s = low_s or monotonic()
                 if monotonic() > low_s + LOW_S:
                     break
@@ -185,8 +191,9 @@ class Saving:
                 low_s = None
             if not self.is_over:
                 self.connection.event()
-        if self.saved != STORED:
-            key = {SAVING: "saves_later", LOW_SUPPLY: "low_supply"}.get(self.saved, "not_saved")
+        if self.saved != SAVED_STORED:
+            keys = {SAVED_SAVING: "saves_later", SAVED_LOW_SUPPLY: "low_supply"}
+            key = keys.get(self.saved, "not_saved")
             raise Trouble(3, "plain", said=text(key, self.connection.language))
 
     def _learn(self, status: Reply, is_running: bool) -> None:
@@ -194,13 +201,13 @@ class Saving:
         if status.status or self.is_over:
             return
         if values["program"] != self.program:  # somebody has sent another one
-            self.saved = STORED
+            self.saved = SAVED_STORED
             return
-        was_low, self.saved = self.saved == LOW_SUPPLY, values["saved"]
+        was_low, self.saved = self.saved == SAVED_LOW_SUPPLY, values["saved"]
         language = self.connection.language
-        if self.saved == STORED:
+        if self.saved == SAVED_STORED:
             slot = values["slot"]
             said = text("now_saved", language).format(slot=slot)
             self.teller.say(0, "SAVED", str(slot), said, slot=slot)
-        elif self.saved == LOW_SUPPLY and not was_low and is_running:
+        elif self.saved == SAVED_LOW_SUPPLY and not was_low and is_running:
             self.teller.say(0, "LOW_SUPPLY", "", text("low_supply", language), is_bad=True)
