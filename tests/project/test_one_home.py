@@ -9,6 +9,7 @@ from pathlib import Path
 
 from tests.support.casefile import ROOT
 from tiniscript.link import messages
+from tiniscript.syntax import operators
 
 PACKAGE = ROOT / "compiler" / "tiniscript"
 FILES = sorted(PACKAGE.rglob("*.py"))
@@ -80,3 +81,35 @@ def test_names_of_states_are_rows_of_their_tables() -> None:
         messages.SAVED_NOTHING, messages.SAVED_SAVING, messages.SAVED_STORED,
         messages.SAVED_LOW_SUPPLY,
     )] == ["NOTHING", "SAVING", "STORED", "LOW_SUPPLY"]  # fmt: skip
+
+
+def test_signs_of_operators_have_one_home() -> None:
+    """Comparisons are in the table of opcodes, the others in that of operators.
+
+    The lexer knows which signs are one token, and what other languages write in their place.
+    """
+    found = homes(lambda node: is_text(node, "<>|<="))
+    assert found == {"bytecode/opcodes.py", "syntax/lexer.py"}
+    assert homes(lambda node: is_text(node, "%")) >= {"syntax/operators.py"}
+    assert {"+", "-", "*", "/", "%", "=", "<", ">", "<=", ">=", "<>"} == operators.SIGNS
+    assert operators.SIGN_OF["MOD"] == "%"
+
+
+def test_ends_of_blocks_have_one_home() -> None:
+    found = homes(lambda node: is_text(node, "ENDIF|END_LOOP|END_WHILE|END_DEF"))
+    assert found == {"words.py"}
+
+
+def test_the_end_of_an_instruction_has_one_home() -> None:
+    """A set of tokens with `;`, a line's end and the text's end is `AT_END`."""
+
+    def is_such_a_set(node: ast.AST) -> bool:
+        parts = node.elts if isinstance(node, (ast.Tuple, ast.Set, ast.List)) else []
+        names = {each.id for each in parts if isinstance(each, ast.Name)}
+        return {"NEWLINE", "END"} <= names and any(is_text(each, ";") for each in parts)
+
+    assert homes(is_such_a_set) == {"syntax/cursor.py"}
+
+
+def test_numbers_of_diagnostics_have_one_home() -> None:
+    assert homes(lambda node: is_text(node, r"TS\d{3}")) == {"diagnostics/codes.py"}
