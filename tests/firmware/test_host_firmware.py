@@ -9,7 +9,7 @@ import pytest
 from tests.machines.host_firmware import EMPTY, HostFirmware, missing
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import Image, unpack
-from tiniscript.link.messages import STATUSES
+from tiniscript.link.messages import SAVED_SAVING, SAVED_STORED, STATUSES
 from tiniscript.link.requests import OK, Reply
 from tiniscript.link.session import Session, Task
 
@@ -54,7 +54,7 @@ def stored(robot: HostFirmware, session: Session, limit_ms: int = 10_000) -> int
     while robot.now_ms < begun_ms + limit_ms:
         task = session.status()
         assert robot.until(session, task) == OK
-        if outcome(task).values["saved"] == 3:
+        if outcome(task).values["saved"] == SAVED_STORED:
             return robot.now_ms - begun_ms
         robot.talk(session, 50)
     raise AssertionError("the program is not saved")
@@ -235,7 +235,7 @@ def test_nothing_is_finished_while_it_drives() -> None:
     robot.talk(session, 2500)
     task = session.status()
     assert robot.until(session, task) == OK
-    assert outcome(task).values["saved"] == 2
+    assert outcome(task).values["saved"] == SAVED_SAVING
     robot.talk(session, 800)
     stored(robot, session)
 

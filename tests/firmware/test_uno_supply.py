@@ -20,14 +20,13 @@ from tests.firmware.test_uno_robot import (
 from tests.machines.uno import needed
 from tests.machines.wired import Wired
 from tests.support.platformio import firmware, shared
-from tiniscript.link.messages import SAVED, STATUSES
+from tiniscript.link.messages import SAVED_LOW_SUPPLY, SAVED_STORED, STATUSES
 from tiniscript.link.requests import OK
 from tools.uno import CYCLES_PER_MS, Uno
 
 __all__ = ["sketch"]
 
-LOW = [name for name, _ in SAVED].index("LOW_SUPPLY")
-STORED = [name for name, _ in SAVED].index("STORED")
+LOW, STORED = SAVED_LOW_SUPPLY, SAVED_STORED
 SAVES = "SI|SHOW(1)"
 
 
