@@ -189,9 +189,11 @@ def test_a_comparing_branch_has_no_far_form(condition: str, short: str, far: lis
     text = f"X = 3; LIGHT_R; LIGHT_L; IF({condition}); {{}} ENDIF; SHOW(X)"
     near = instructions(text.format("S;" * 255))
     assert [each for each in near if each.startswith(short)]
-    found = instructions(text.format("S;" * 256))
+    code = compiled(text.format("S;" * 256)).code
+    found = [row.text for row in rows(code)]
     at = next(k for k, each in enumerate(found) if each.startswith("IF_FAR"))
     assert [found[at].split()[0], *found[at - 3 : at]] == [far[3], *far[:3]]
+    assert found[at].endswith(f"-> {rows(code)[-2].offset:04x}")  # to PUSH_VAR v0 of SHOW(X)
     assert found.count("READ s0") == near.count("READ s0")
 
 

@@ -44,6 +44,7 @@ def located(text: str) -> list[tuple[str, str]]:
           ("PUSH_SENSOR", "SHOW(1 - DISTANCE)"), ("SUB", "SHOW(1 - DISTANCE)"),
           ("SHOW", "SHOW(1 - DISTANCE)")]),
         ("DISTANCE; SHOW(DISTANCE)", [("PUSH_READ", "DISTANCE"), ("SHOW", "SHOW(DISTANCE)")]),
+        ("DISTANCE; IF(DISTANCE < 9); S; ENDIF", [("IF_READ8_LT", "DISTANCE"), ("STOP", "S")]),
         # the check of a move is part of the move
         ("F(1, 80) UNTIL(DISTANCE < 9)",
          [(name, "F(1, 80) UNTIL(DISTANCE < 9)")

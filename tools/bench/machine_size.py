@@ -2,7 +2,7 @@
 
 Builds the same small program with and without the machine, and takes the difference. That of the
 store is what it adds to the machine; the memory below it is not counted. Knows the
-the AVR's compiler and its flags; `chips.py` knows those of other chips, which `cpp_benchmark.py`
+the AVR's compiler and its flags; `chips.py` knows those of other chips, which `machine.py`
 prints. `--parts` prints the functions on the AVR too, largest last.
 """
 

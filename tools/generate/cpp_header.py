@@ -1,6 +1,6 @@
 """What the C++ machine takes from the tables of the compiler: `bytecode.h` and `bytecode.cpp`.
 
-Knows how the table of instructions is packed for machines with little memory. `generate.py`
+Knows how the table of instructions is packed for machines with little memory. `__main__.py`
 writes the files.
 """
 

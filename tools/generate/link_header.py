@@ -1,6 +1,6 @@
 """What the C++ half of the link takes from the table of messages: `messages.h`, `messages.cpp`.
 
-`generate.py` writes the files, and the tables of `docs/link.md`, which are here too.
+`__main__.py` writes the files, and the tables of `docs/link.md`, which are here too.
 """
 
 from __future__ import annotations

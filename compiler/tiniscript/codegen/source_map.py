@@ -1,4 +1,4 @@
-"""Which instruction comes from which line: the map of a compiled program.
+"""The source map: which instruction of a compiled program comes from which line.
 
 An image holds no text. Its map lies in the user's cache under the image's checksum, so that a
 fault can name its line and a listing can show it. Losing a map loses nothing else.

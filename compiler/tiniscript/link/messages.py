@@ -203,7 +203,7 @@ RESETS = (
     ("BROWN_OUT", "The voltage was too low."),
     ("WATCHDOG",  "The watchdog: the robot's own program hung."),
 )
-# Faults that no instruction makes. Those of instructions are in `bytecode.py`.
+# Faults that no instruction makes. Those of instructions are in `opcodes.py`.
 LINK_FAULTS = (
     (64, "LINK_LOST", "No valid frame for a second while a tethered program ran."),
     (65, "MAX_RUN",   "A program without a tether ran longer than the robot allows."),

@@ -1,9 +1,9 @@
-"""The conversation with one robot: a state machine without I/O and without a clock.
+"""The session with one robot: a state machine without I/O and without a clock.
 
 `receive` takes what has arrived, `poll` gives what to send, `wakes_at` says when to poll next,
 `events` what there is to tell. One request is on its way at a time; it is sent again until it is
 answered or its errand's time is over. Times are milliseconds. Knows how requests become
-frames, retries, the heartbeat and the stop; not which request follows which: `errands` does.
+frames, retries, the heartbeat and the stop; not which request follows which: `requests` does.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-"""What a teacher would say about a program that is right.
+"""The lint: what a teacher would say about a program that is right.
 
-Knows the checked program, before it is optimised. Gives warnings, never mistakes.
+Knows the IR, before it is optimised. Gives warnings, never mistakes.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-"""The checker's half that looks into expressions.
+"""The types of expressions: the half of the checker that looks into them.
 
-Knows which kinds operators take and give, how deep the stack gets, and what names in
+Knows which types operators take and give, how deep the stack gets, and what names in
 expressions mean. Gives terms, and the sensors whose readings they use.
 """
 

@@ -2,7 +2,7 @@
 //
 // Knows under which names the machine is called from outside, and imports the robot that
 // `robot.h` declares. No heap and no library: one image and one machine in memory of fixed size.
-// `wasm_machine.py` is the other side.
+// `vm/wasm.py` is the other side.
 
 #include "../../src/robot.h"
 #include "../../src/vm/image.h"
