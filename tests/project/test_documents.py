@@ -120,8 +120,8 @@ def test_files_that_are_named_exist(document: Path) -> None:
     known |= OTHERS_FILES | {"machine.wasm", "robot.wasm"}
     wrong = []
     for span in spans_of(document):
-        is_path = re.fullmatch(PATH, span) and span.split("/")[0] in ROOMS
-        is_path = is_path or re.fullmatch(r"(?:\w+/)+(?:" + FILE_NAME + ")?", span)
+        is_path = bool(re.fullmatch(PATH, span)) and span.split("/")[0] in ROOMS
+        is_path = is_path or bool(re.fullmatch(r"(?:\w+/)+(?:" + FILE_NAME + ")?", span))
         if is_path and "NAME" not in span and not exists(span):
             wrong.append(span)
         if document.parent == ROOT and re.fullmatch(FILE_NAME, span) and "NAME" not in span:
@@ -130,12 +130,25 @@ def test_files_that_are_named_exist(document: Path) -> None:
         assert not wrong, "\n".join(wrong)
 
 
+def test_every_stand_in_for_a_robot_has_its_row() -> None:
+    """Whoever writes a test finds all of them in one table, with what each is for."""
+    helpers = {"__init__", "chips", "bootloaders", "uno"}  # what several of them share
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| `([\w/.]+)` \|", text, flags=re.MULTILINE)
+    machines = set((ROOT / "tests" / "machines").glob("*.py"))
+    robots = set((ROOT / "tests" / "support").glob("*robot*.py"))
+    robots -= {ROOT / "tests" / "support" / "shared_pty_robot.py"}  # one that shares its port
+    expected = {path.relative_to(ROOT).as_posix() for path in machines | robots
+                if path.stem not in helpers}  # fmt: skip
+    assert {row for row in rows if "/" in row} == {*expected, "tools/uno/"}
+
+
 def test_paths_in_sources_exist() -> None:
     """A path that a docstring or a comment names, as in a document."""
     wrong = []
     for source in SOURCES:
         for span in spans_of(source):
-            is_path = re.fullmatch(PATH, span) and span.split("/")[0] in ROOMS
+            is_path = bool(re.fullmatch(PATH, span)) and span.split("/")[0] in ROOMS
             is_wrong = is_path and "NAME" not in span and not exists(span)
             if is_wrong or (re.fullmatch(r"\w+\.py", span) and not any(ROOT.rglob(span))):
                 wrong.append(f"{source.relative_to(ROOT)}: {span}")
