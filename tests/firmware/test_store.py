@@ -103,7 +103,7 @@ CLEARS = steps("Clear, 3", "Clear, 2", "Clear, 1")
 EMPTIES = steps("Empty, 0", "Empty, kBodyAt", "Empty, 1")
 
 GIVES_UP = (
-    "  state_ = StoreState::kIdle;\n  is_busy_ = false;\n}\n\none_copy bool Store::begin_save"
+    "  state_ = StoreState::kIdle;\n  is_busy_ = false;\n}\n\ntini_noinline bool Store::begin_save"
 )
 
 # What must be noticed: a change of the store.

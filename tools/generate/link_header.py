@@ -67,7 +67,7 @@ def header(command: str) -> str:
             ("kFirstActing", messages.FIRST_ACTING),
         ),
         "// How long the payload of each request may be, from the first one on: least and most.\n"
-        "extern const uint8_t kRequestBytes[][2] in_flash;\n",
+        "extern const uint8_t kRequestBytes[][2] tini_progmem;\n",
         "// Where each field of a request begins.\n" + constants(*_places()),
         "// What begins a reply. Below 64: an image's Refusal, or the verifier's Rule.\n"
         + enumeration("Answer", statuses),

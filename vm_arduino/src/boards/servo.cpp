@@ -25,7 +25,7 @@ volatile Pulse pulses[kServoCount];
 uint8_t turn = kGap;  // whose pulse it is
 
 // The end of a pulse, and the beginning of the next one.
-in_place void next_pulse() {
+tini_always_inline void next_pulse() {
   if (turn == kGap) {
     TCNT1 = 0;
     turn = 0;
@@ -60,7 +60,7 @@ void servo_begin() {
 }
 
 // Not inlined: what calculates the pulse would move in between, where interrupts are off.
-one_copy void servo_set(uint8_t number, uint16_t pulse_us, uint8_t frames) {
+tini_noinline void servo_set(uint8_t number, uint16_t pulse_us, uint8_t frames) {
   const NoInterrupts quiet;
   pulses[number].ticks = static_cast<uint16_t>(pulse_us * kTicksPerUs);
   pulses[number].frames = frames;

@@ -38,14 +38,14 @@ volatile bool was_high;
 uint8_t low_turns;  // since the last byte, which had a framing error
 
 // The interrupt of timer 0 that looks at the line. It is on only after a framing error.
-in_place void watch_line() {
+tini_always_inline void watch_line() {
   low_turns = 0;
   if (!was_high) return;
   TIFR0 = _BV(OCF0B);  // one that has waited since long ago
   TIMSK0 |= _BV(OCIE0B);
 }
 
-in_place void leave_line() { TIMSK0 &= static_cast<uint8_t>(~_BV(OCIE0B)); }
+tini_always_inline void leave_line() { TIMSK0 &= static_cast<uint8_t>(~_BV(OCIE0B)); }
 
 }  // namespace
 

@@ -17,7 +17,7 @@ constexpr uint8_t kIsFine = static_cast<uint8_t>(Answer::kOk);
 
 uint8_t number_of(Answer answer) { return static_cast<uint8_t>(answer); }
 
-one_copy uint16_t get16(const uint8_t* bytes) {
+tini_noinline uint16_t get16(const uint8_t* bytes) {
   return static_cast<uint16_t>(bytes[0] | static_cast<uint16_t>(bytes[1]) << 8);
 }
 
@@ -27,7 +27,7 @@ bool holds_nothing() { return port_condition().saved == Saved::kNothing; }
 
 bool may_start(uint8_t mode) { return (mode & (kRun | kStartBits)) != kRun || !is_latched(); }
 
-one_copy Verdict verified(const uint8_t* code, uint16_t length) {
+tini_noinline Verdict verified(const uint8_t* code, uint16_t length) {
   const Equipment& equipment = port_equipment();
   return verify(code, length, equipment.sensors, equipment.actuators);
 }
@@ -66,7 +66,7 @@ void Link::tell() {
   if (self->left_ == 0) self->send();
 }
 
-one_copy void Link::seal() {
+tini_noinline void Link::seal() {
   uint8_t* const image = unsealed_;
   if (image == nullptr) return;
   unsealed_ = nullptr;
@@ -83,7 +83,7 @@ bool Link::next(uint8_t* byte) {
 
 // Stops the robot. Where it was stopped already, that is told again, but not all the time; the
 // epoch stays, or a line that is held low would run it round. What waits is from before the stop.
-one_copy void Link::halt(Cause cause) {
+tini_noinline void Link::halt(Cause cause) {
   const bool was_stopped = port_condition().state == State::kStopped;
   port_stop(0);
   const bool has_stale = cause == Cause::kSequence && receiver_->item() != Item::kNone;
@@ -95,7 +95,7 @@ one_copy void Link::halt(Cause cause) {
 
 // A line of text is answered where nobody sends frames, no other line has come for a while, and it
 // is none of ours: so nothing that answers or echoes each line talks to the robot for ever.
-one_copy void Link::hear() {
+tini_noinline void Link::hear() {
   if (receiver_->item() == Item::kText) {
     if (text_ms_ == 0 && !is_listened_to() && !is_own_hint()) due_ |= kDueHint;
     text_ms_ = kListenMs;
@@ -113,7 +113,7 @@ one_copy void Link::hear() {
 }
 
 // Finds out what is answered to the frame whose payload ends at `end`.
-one_copy void Link::handle(uint8_t end) {
+tini_noinline void Link::handle(uint8_t end) {
   const uint8_t* const bytes = receiver_->bytes();
   const uint8_t type = bytes[kTypeAt];
   const uint8_t seq = bytes[kSeqAt];
@@ -283,7 +283,7 @@ void Link::append(const uint8_t* code, uint8_t length) {
 }
 
 // A whole program in one frame.
-one_copy uint8_t Link::take_short(bool is_live, const uint8_t* payload, uint8_t length) {
+tini_noinline uint8_t Link::take_short(bool is_live, const uint8_t* payload, uint8_t length) {
   const uint8_t mode = payload[kProgramModeAt];
   const uint8_t* const code = payload + kProgramCodeAt;
   length = static_cast<uint8_t>(length - kProgramCodeAt);

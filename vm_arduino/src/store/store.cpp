@@ -39,7 +39,7 @@ constexpr uint8_t step(Do what, uint8_t at = 0) {
   return static_cast<uint8_t>(static_cast<uint8_t>(what) * 16 + at);
 }
 
-constexpr uint8_t kSteps[] in_flash = {
+constexpr uint8_t kSteps[] tini_progmem = {
     // settles: decides what a slot holds
     step(Do::kLook),
     // settles: what it holds does not count, and never will
@@ -98,12 +98,12 @@ uint16_t plus(uint16_t place, uint16_t more) { return static_cast<uint16_t>(plac
 
 // A byte of the body of the slot at `place`. The first one is kept XOR the generation: under
 // another generation its checksum is wrong.
-one_copy uint8_t body_byte(uint16_t place, uint16_t at) {
+tini_noinline uint8_t body_byte(uint16_t place, uint16_t at) {
   const uint8_t byte = nvm_read(plus(place, plus(kBodyAt, at)));
   return at == 0 ? byte ^ nvm_read(place) : byte;
 }
 
-one_copy uint32_t checksum(uint32_t crc, uint16_t place, uint16_t at, uint16_t end) {
+tini_noinline uint32_t checksum(uint32_t crc, uint16_t place, uint16_t at, uint16_t end) {
   while (at != end) {
     const uint8_t byte = body_byte(place, at++);
     crc = crc32(crc, &byte, 1);
@@ -120,7 +120,7 @@ bool is_program(uint8_t slot) { return slot < 2; }
 
 }  // namespace
 
-one_copy void Store::boot() {
+tini_noinline void Store::boot() {
   for (uint8_t& held : held_) held = kNothing;
   length_ = 0;
   at_ = 0;
@@ -131,7 +131,7 @@ one_copy void Store::boot() {
   go_to(0);
 }
 
-one_copy void Store::tick(bool may_commit) {
+tini_noinline void Store::tick(bool may_commit) {
   if (!is_busy_ || !nvm_is_ready()) return;
   const uint8_t step = flash_byte(kSteps + step_);
   if (step_ >= kCommitting && !may_commit && step != tiniscript::step(Do::kEnd)) return;
@@ -184,18 +184,18 @@ bool Store::is_ready_to_commit() const {
 // One has been written, or it is.
 bool Store::is_committing() const { return is_busy_ && !nvm_is_ready() && step_ > kCommitting; }
 
-one_copy void Store::give_up() {
+tini_noinline void Store::give_up() {
   if (!is_ready_to_commit() || state_ != StoreState::kSaving) return;
   state_ = StoreState::kIdle;
   is_busy_ = false;
 }
 
-one_copy bool Store::begin_save(const uint8_t* image) {
+tini_noinline bool Store::begin_save(const uint8_t* image) {
   const uint16_t length = image_bytes(image[kCodeLengthAt], image[kCodeLengthAt + 1]);
   return length != 0 && near(this)->begin_write(Area::kProgram, image, length);
 }
 
-one_copy bool Store::begin_keep(Area area, uint8_t* record) {
+tini_noinline bool Store::begin_keep(Area area, uint8_t* record) {
   if (is_busy_) return false;
   uint32_t check = crc32(0, record + kCheckBytes, kRecordBytes - kCheckBytes);
   for (uint8_t k = 0; k < kCheckBytes; k++) {
@@ -205,7 +205,7 @@ one_copy bool Store::begin_keep(Area area, uint8_t* record) {
   return near(this)->begin_write(area, record, kRecordBytes);
 }
 
-one_copy bool Store::begin_erase(Area area) {
+tini_noinline bool Store::begin_erase(Area area) {
   if (!can_begin()) return false;
   go_beside(area, newest(area, kNothing));  // the older one first: it must not come back
   held_[slot_] = kNothing;
@@ -216,12 +216,12 @@ one_copy bool Store::begin_erase(Area area) {
   return true;
 }
 
-one_copy void Store::refuse() {
+tini_noinline void Store::refuse() {
   const uint8_t slot = used(Area::kProgram);
   if (slot != kNoSlot) held_[slot] |= kRefused;
 }
 
-one_copy bool Store::fetch(Area area, uint16_t at, uint8_t* byte) const {
+tini_noinline bool Store::fetch(Area area, uint16_t at, uint8_t* byte) const {
   const uint8_t slot = used(area);
   if (slot == kNoSlot || !nvm_is_ready()) return false;
   *byte = body_byte(place_of(slot), at);
@@ -230,7 +230,7 @@ one_copy bool Store::fetch(Area area, uint16_t at, uint8_t* byte) const {
 
 uint8_t Store::used(Area area) const { return newest(area, kRefused); }
 
-one_copy void Store::go_to(uint8_t slot) {
+tini_noinline void Store::go_to(uint8_t slot) {
   slot_ = slot;
   place_ = place_of(slot);
 }
@@ -247,7 +247,7 @@ void Store::go_beside(Area area, uint8_t slot) {
   go_to(slot == kNoSlot ? static_cast<uint8_t>(2 * static_cast<uint8_t>(area)) : slot ^ 1);
 }
 
-one_copy bool Store::begin_write(Area area, const uint8_t* bytes, uint16_t length) {
+tini_noinline bool Store::begin_write(Area area, const uint8_t* bytes, uint16_t length) {
   if (!can_begin()) return false;
   const uint8_t slot = used(area);
   if (slot != kNoSlot) {
@@ -307,7 +307,7 @@ bool Store::is_sound() const {
 }
 
 // The slot of an area whose generation is the latest of those less than `end`.
-one_copy uint8_t Store::newest(Area area, uint8_t end) const {
+tini_noinline uint8_t Store::newest(Area area, uint8_t end) const {
   const uint8_t slot = static_cast<uint8_t>(2 * static_cast<uint8_t>(area));
   const uint8_t first = held_[slot];
   const uint8_t second = held_[slot + 1];
