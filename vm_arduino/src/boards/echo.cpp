@@ -75,7 +75,7 @@ tini_always_inline void on_change() {
 }
 
 void listen(bool is_on) {
-  const NoInterrupts quiet;
+  const CriticalSection critical;
   const Echo sensor = echo_at(asked);
   const uint8_t group = sensor.group;
   const uint16_t masks =
@@ -118,7 +118,7 @@ bool is_over() {
   uint16_t quiet_us;
   uint32_t gone_us;
   {
-    const NoInterrupts quiet;
+    const CriticalSection critical;
     const uint32_t now_us = micros();
     gone_us = now_us - ping_us;
     found = heard;

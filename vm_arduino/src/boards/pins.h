@@ -47,18 +47,18 @@ struct Pwm {
   uint8_t channel;
 };
 
-// Interrupts are off while there is one of these.
-class NoInterrupts {
+// A critical section: interrupts are off while there is one of these.
+class CriticalSection {
  public:
-  tini_always_inline NoInterrupts() : before_(SREG) { cli(); }
-  tini_always_inline ~NoInterrupts() {
+  tini_always_inline CriticalSection() : before_(SREG) { cli(); }
+  tini_always_inline ~CriticalSection() {
     asm volatile("" ::: "memory");  // nothing moves out from between
     SREG = before_;
   }
 
  private:
-  NoInterrupts(const NoInterrupts&);
-  void operator=(const NoInterrupts&);
+  CriticalSection(const CriticalSection&);
+  void operator=(const CriticalSection&);
 
   uint8_t before_;
 };
@@ -80,7 +80,7 @@ tini_always_inline void set_bits(uint16_t address, uint8_t mask) {
   if (is_near(address)) {
     register8(address) |= mask;
   } else {
-    const NoInterrupts quiet;
+    const CriticalSection critical;
     register8(address) |= mask;
   }
 }
@@ -89,7 +89,7 @@ tini_always_inline void clear_bits(uint16_t address, uint8_t mask) {
   if (is_near(address)) {
     register8(address) &= static_cast<uint8_t>(~mask);
   } else {
-    const NoInterrupts quiet;
+    const CriticalSection critical;
     register8(address) &= static_cast<uint8_t>(~mask);
   }
 }
@@ -141,7 +141,7 @@ constexpr uint8_t connection_of(Pwm pwm) { return static_cast<uint8_t>(0x80 >> 2
 
 // Lets a timer drive a pin: 255 is always high.
 tini_always_inline void connect(Pwm pwm, uint8_t level) {
-  const NoInterrupts quiet;  // timers of 16 bits share a register for the high byte
+  const CriticalSection critical;  // timers of 16 bits share a register for the high byte
   if (has_8_bits(pwm)) {
     register8(compare_of(pwm)) = level;
   } else {
@@ -153,7 +153,7 @@ tini_always_inline void connect(Pwm pwm, uint8_t level) {
 // The pin is low, whatever its timer does.
 tini_always_inline void disconnect(Pwm pwm) {
   {
-    const NoInterrupts quiet;
+    const CriticalSection critical;
     register8(control_of(pwm)) &= static_cast<uint8_t>(~connection_of(pwm));
   }
   write(pwm.pin, false);

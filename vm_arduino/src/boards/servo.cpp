@@ -50,7 +50,7 @@ tini_always_inline void next_pulse() {
 
 void servo_begin() {
   for (const Pin& pin : kServos) begin_output(pin, false);
-  const NoInterrupts quiet;
+  const CriticalSection critical;
   TCCR1A = 0;
   TCCR1B = 1 << CS11;
   TCNT1 = 0;
@@ -61,7 +61,7 @@ void servo_begin() {
 
 // Not inlined: what calculates the pulse would move in between, where interrupts are off.
 tini_noinline void servo_set(uint8_t number, uint16_t pulse_us, uint8_t frames) {
-  const NoInterrupts quiet;
+  const CriticalSection critical;
   pulses[number].ticks = static_cast<uint16_t>(pulse_us * kTicksPerUs);
   pulses[number].frames = frames;
 }
@@ -74,7 +74,7 @@ void servos_low() {
 }
 
 bool servo_is_held(uint8_t number) {
-  const NoInterrupts quiet;
+  const CriticalSection critical;
   return pulses[number].ticks != 0 && pulses[number].frames == 0;
 }
 
