@@ -23,10 +23,10 @@ void loop() {
   const uint32_t now_ms = board_now_ms();
   board_tick(now_ms);
   const Press press = board_button(now_ms);
-  if (press == Press::kPressed) firmware_pressed();
-  if (press == Press::kHeld) firmware_held();
-  if (press == Press::kReleased) firmware_released();
-  if (board_is_left()) firmware_left();
+  if (press == Press::kPressed) firmware_on_pressed();
+  if (press == Press::kHeld) firmware_on_held();
+  if (press == Press::kReleased) firmware_on_released();
+  if (board_has_disconnected()) firmware_on_disconnect();
   firmware_tick(now_ms);
   uart_tick();
 }

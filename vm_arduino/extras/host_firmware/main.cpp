@@ -97,21 +97,21 @@ void answer_step(Reader* request, Writer* answer) {
   const Bytes heard = request->bytes();
   size_t next = 0;
   while ((flags & 16) != 0 && next < heard.length) {
-    firmware_hear(heard.data[next++], static_cast<uint16_t>(now_ms));
+    firmware_on_rx_byte(heard.data[next++], static_cast<uint16_t>(now_ms));
   }
   table.log.clear();
   table.has_stalled = (flags & 4) != 0;
-  if ((flags & 1) != 0) firmware_pressed();
-  if ((flags & 2) != 0) firmware_released();
-  if ((flags & 8) != 0) firmware_left();
-  if ((flags & 32) != 0) firmware_held();
+  if ((flags & 1) != 0) firmware_on_pressed();
+  if ((flags & 2) != 0) firmware_on_released();
+  if ((flags & 8) != 0) firmware_on_disconnect();
+  if ((flags & 32) != 0) firmware_on_held();
   std::string sent;
   for (uint16_t k = 0; k < ticks || next < heard.length; k++) {
-    if (next < heard.length) firmware_hear(heard.data[next++], static_cast<uint16_t>(now_ms));
+    if (next < heard.length) firmware_on_rx_byte(heard.data[next++], static_cast<uint16_t>(now_ms));
     firmware_tick(now_ms);
     if (table.busy_ticks != 0) table.busy_ticks--;
     uint8_t byte = 0;
-    while (firmware_say(&byte)) sent += static_cast<char>(byte);
+    while (firmware_next_tx_byte(&byte)) sent += static_cast<char>(byte);
   }
   answer->text(sent);
   answer->text(table.log);

@@ -78,7 +78,7 @@ void note(What what, int32_t first = 0, int32_t second = 0) {
 
 void hear() {
   while (heard < to_hear && hears_us <= now_us) {
-    firmware_hear(inbox[heard++], static_cast<uint16_t>(now_ms()));
+    firmware_on_rx_byte(inbox[heard++], static_cast<uint16_t>(now_ms()));
     firmware_tick(now_ms());
     if (byte_us == 0) return;  // the next one at the next tick
     hears_us += byte_us;
@@ -87,7 +87,7 @@ void hear() {
 
 void say() {
   while (said < kBoxBytes && says_us <= now_us) {
-    if (!firmware_say(outbox + said)) {
+    if (!firmware_next_tx_byte(outbox + said)) {
       says_us = now_us;
       return;
     }
@@ -227,8 +227,8 @@ tini_exported("now_us") uint64_t module_now_us() { return now_us; }
 // How many bytes of the inbox have not been heard.
 tini_exported("unheard") uint32_t module_unheard() { return to_hear - heard; }
 
-tini_exported("press") void module_press() { firmware_pressed(); }
-tini_exported("let_go") void module_let_go() { firmware_released(); }
+tini_exported("press") void module_press() { firmware_on_pressed(); }
+tini_exported("let_go") void module_let_go() { firmware_on_released(); }
 
 // The robot as its own STATUS tells it.
 tini_exported("state") uint32_t module_state() {

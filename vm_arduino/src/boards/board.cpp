@@ -48,7 +48,7 @@ void board_tick(uint32_t now_ms) {
   sound_tick(now_ms);
 }
 
-bool board_is_left() {
+bool board_has_disconnected() {
   if (kBluetoothState.port == 0) return false;
   const uint32_t now_us = micros();
   const bool is_now = is_high(kBluetoothState);

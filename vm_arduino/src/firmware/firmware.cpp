@@ -344,30 +344,30 @@ void firmware_tick(uint32_t time_ms) {
   tick_store();
 }
 
-void firmware_pressed() {
+void firmware_on_pressed() {
   may_start = condition.state != State::kRunning;
   if (may_start) return;
   end_run(State::kStopped);
   talk.stopped(Cause::kButton);
 }
 
-void firmware_held() {
-  if (condition.state == State::kRunning) firmware_pressed();
+void firmware_on_held() {
+  if (condition.state == State::kRunning) firmware_on_pressed();
 }
 
-void firmware_left() {
+void firmware_on_disconnect() {
   if (condition.state != State::kRunning || !talk.is_tethered()) return;
   end_run(State::kStopped);
   talk.stopped(Cause::kCable);
 }
 
-void firmware_released() {
+void firmware_on_released() {
   if (!may_start || boot != Boot::kOver) return;
   talk.drop();
   is_start_due = condition.saved != Saved::kNothing;
 }
 
-void firmware_hear(uint8_t byte, uint16_t time_ms) {
+void firmware_on_rx_byte(uint8_t byte, uint16_t time_ms) {
   if (receiver.put(byte, time_ms)) board_stop();
 }
 
@@ -383,7 +383,7 @@ bool firmware_runs(Place* place) {
   return true;
 }
 
-bool firmware_say(uint8_t* byte) { return talk.next(byte); }
+bool firmware_next_tx_byte(uint8_t* byte) { return talk.next(byte); }
 
 // -- what the link asks -------------------------------------------------------------------------
 
