@@ -109,7 +109,7 @@ class PtyRobot:
     def switch_on(self) -> None:
         with self._lock:
             self.off_after = None
-            self._robot = HostFirmware(self.kit, self._memory, POWER_ON, chance=0x9ABCDEF1)
+            self._robot = HostFirmware(self.kit, self._memory, POWER_ON, seed=0x9ABCDEF1)
 
     def pull(self) -> None:
         """Pull the cable out: the port is not there any more."""

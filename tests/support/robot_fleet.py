@@ -27,7 +27,7 @@ class Pupil:
         import tty
 
         self.number = number
-        self.robot = HostFirmware(kit, EMPTY, chance=0x1000 + number)
+        self.robot = HostFirmware(kit, EMPTY, seed=0x1000 + number)
         self.ours, self._theirs = pty.openpty()
         tty.setraw(self._theirs)
         self.port = os.ttyname(self._theirs)

@@ -9,11 +9,11 @@
 
 #include <vector>
 
-#include "../host/wire.h"
 #include "../../src/firmware/firmware.h"
 #include "../../src/robot.h"
 #include "../../src/store/layout.h"
 #include "../../src/store/nvm.h"
+#include "../host/wire.h"
 
 using namespace tiniscript;
 
@@ -31,9 +31,9 @@ struct Tabletop {
   bool has_stalled = false;
   bool is_low = false;  // the supply
   bool writes_mark = false;
-  uint8_t measures = 0;     // of it, each fourth says something
-  uint16_t dead = 0xffff;   // a place of the memory that keeps what it is
-  bool has_set = false;  // an actuator, and no stop since
+  uint8_t measures = 0;    // of it, each fourth says something
+  uint16_t dead = 0xffff;  // a place of the memory that keeps what it is
+  bool has_set = false;    // an actuator, and no stop since
   bool has_hung = false;
   Place hung = {};
   uint8_t busy_ticks = 0;   // for which a byte is being written,
@@ -77,7 +77,7 @@ void answer_begin(Reader* request) {
   board.sensors = request->u8();
   board.actuators = request->u8();
   board.reset = static_cast<Reset>(request->u8());
-  board.chance = request->u32();
+  board.seed = request->u32();
   board.max_run_ms = request->u32();
   table.write_ticks = request->u8();
   table.readings.resize(board.sensors);
@@ -88,8 +88,8 @@ void answer_begin(Reader* request) {
 }
 
 // S: bytes arrive at a time, the button goes down (1) or up (2), the main loop stood still (4),
-// nobody is connected (8), the bytes come before all that (16), the button has been down for a while
-// (32); so many ticks follow. Says what the robot sends and what it does.
+// nobody is connected (8), the bytes come before all that (16), the button has been down for a
+// while (32); so many ticks follow. Says what the robot sends and what it does.
 void answer_step(Reader* request, Writer* answer) {
   const uint32_t now_ms = request->u32();
   const uint8_t flags = request->u8();

@@ -186,7 +186,7 @@ tini_exported("reading") int32_t* module_reading() { return &reading; }
 
 // Power on. `line_us` is how long a byte takes on the line, `eeprom_us` how long in the EEPROM.
 tini_exported("begin") void module_begin(uint32_t kit, uint32_t sensors, uint32_t actuators,
-                                         uint32_t reset, uint32_t chance, uint32_t max_run_ms,
+                                         uint32_t reset, uint32_t seed, uint32_t max_run_ms,
                                          uint32_t line_us, uint32_t eeprom_us) {
   byte_us = line_us;
   write_us = eeprom_us;
@@ -196,7 +196,7 @@ tini_exported("begin") void module_begin(uint32_t kit, uint32_t sensors, uint32_
   board.actuators = static_cast<uint8_t>(actuators);
   board.readings = readings;
   board.reset = static_cast<Reset>(reset);
-  board.chance = chance;
+  board.seed = seed;
   board.max_run_ms = max_run_ms;
   firmware_begin(board);
 }

@@ -66,7 +66,7 @@ Board board_told() {
   told.actuators = kBoardActuators;
   told.readings = readings;
   told.reset = watchdog_reset_cause();
-  told.chance = watchdog_seed() ^ micros();
+  told.seed = watchdog_seed() ^ micros();
   told.max_run_ms = uint32_t{kMaxRunSeconds} * 1000;
   return told;
 }

@@ -122,7 +122,7 @@ bool load() {
 
 void load_identity() {
   if (!fetch(Area::kIdentity, 0, record, kRecordBytes)) {
-    card.id = board.chance;
+    card.id = board.seed;
     to_keep |= kKeepIdentity;
     return;
   }
@@ -293,7 +293,7 @@ void begin_run(bool is_live) {
   board_release();
   if (talk.stop_is_due()) board_stop();  // it came before this; one that comes now does it itself
   machine.start(image + kHeaderBytes, number16(image + kCodeLengthAt), board.readings,
-                equipment.sensors, (now_ms ^ board.chance) | 1, now_ms);
+                equipment.sensors, (now_ms ^ board.seed) | 1, now_ms);
   show_light();
 }
 
@@ -321,10 +321,10 @@ void firmware_begin(const Board& what) {
   equipment.sensors = what.sensors;
   equipment.actuators = what.actuators;
   card.reset = what.reset;
-  card.nonce = what.chance;
+  card.nonce = what.seed;
   condition.slot = kNoSlot;
   store.boot();
-  talk.begin(&receiver, static_cast<uint8_t>(what.chance & 0xff));
+  talk.begin(&receiver, static_cast<uint8_t>(what.seed & 0xff));
 }
 
 void firmware_tick(uint32_t time_ms) {

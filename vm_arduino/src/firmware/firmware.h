@@ -32,8 +32,8 @@ void firmware_on_held();
 // The radio module says that nobody is connected any more: that ends a tethered run.
 void firmware_on_disconnect();
 
-// Whether a program runs, in which image and where. May be called in an interrupt, and after a reset
-// before memory is set up anew: it changes nothing.
+// Whether a program runs, in which image and where. May be called in an interrupt, and after a
+// reset before memory is set up anew: it changes nothing.
 bool firmware_runs(Place* place);
 
 // A byte has arrived; a damaged one is 0. May be called from the interrupt: a run of zeros turns
