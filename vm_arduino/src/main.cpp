@@ -1,5 +1,9 @@
 // setup() and loop(): the firmware on its board.
 //
+// The board tells the firmware of its button, its radio module and the time; the firmware asks the
+// board for motors, sensors and light (`firmware/board.h`, `robot.h`). Bytes of the link go through
+// interrupts: `boards/uart.cpp` calls `firmware_on_rx_byte` and `firmware_next_tx_byte`.
+//
 // Empty where there is no Arduino: a build for a computer may take all of this folder.
 
 #ifdef ARDUINO

@@ -1,8 +1,8 @@
 // The robot's own program: what it does with its button, its link, its store and a program.
 //
-// Holds the one program that the robot has, runs it, and has it saved; ends a run when it must
-// end. Knows no pins. Time comes in as `now_ms`; nothing here waits. There is one robot, so these
-// are plain functions.
+// Knows no pins. Time comes in as `now_ms`; nothing here waits. There is one robot, so these are
+// plain functions. Its parts: `program` holds the images in memory, `run` runs one, `keeping` has
+// it saved, `identity` is who the robot is, `port` answers the link, `state` is what they share.
 
 #ifndef TINISCRIPT_FIRMWARE_FIRMWARE_H_
 #define TINISCRIPT_FIRMWARE_FIRMWARE_H_

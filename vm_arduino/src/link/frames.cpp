@@ -30,6 +30,16 @@ tini_noinline bool same_bytes(const uint32_t* number, const uint8_t* bytes) {
   return true;
 }
 
+tini_noinline uint16_t get16(const uint8_t* bytes) {
+  return static_cast<uint16_t>(bytes[0] | static_cast<uint16_t>(bytes[1]) << 8);
+}
+
+tini_noinline uint32_t get32(const uint8_t* bytes) {
+  uint32_t number;
+  __builtin_memcpy(&number, bytes, sizeof number);
+  return number;
+}
+
 // Each byte that stands for a zero tells how far it is to the next one.
 uint8_t open_frame(uint8_t* bytes, uint8_t length) {
   uint8_t at = bytes[0];

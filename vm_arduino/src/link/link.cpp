@@ -17,10 +17,6 @@ constexpr uint8_t kIsFine = static_cast<uint8_t>(Answer::kOk);
 
 uint8_t number_of(Answer answer) { return static_cast<uint8_t>(answer); }
 
-tini_noinline uint16_t get16(const uint8_t* bytes) {
-  return static_cast<uint16_t>(bytes[0] | static_cast<uint16_t>(bytes[1]) << 8);
-}
-
 bool is_latched() { return port_condition().state >= State::kStopped; }
 
 bool holds_nothing() { return port_condition().saved == Saved::kNothing; }

@@ -228,6 +228,13 @@ tini_noinline bool Store::fetch(Area area, uint16_t at, uint8_t* byte) const {
   return true;
 }
 
+bool Store::fetch_first(Area area, uint8_t* bytes, uint16_t length) const {
+  for (uint16_t k = 0; k < length; k++) {
+    if (!fetch(area, k, bytes + k)) return false;
+  }
+  return true;
+}
+
 uint8_t Store::used(Area area) const { return newest(area, kRefused); }
 
 tini_noinline void Store::go_to(uint8_t slot) {

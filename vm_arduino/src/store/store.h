@@ -77,6 +77,9 @@ class Store {
   // none, or the memory is writing (ask again); while nothing is busy, it is not.
   bool fetch(Area area, uint16_t at, uint8_t* byte) const;
 
+  // The same with its first `length` bytes. Where it returns false, some may have been put.
+  bool fetch_first(Area area, uint8_t* bytes, uint16_t length) const;
+
  private:
   void look();
   bool is_sound() const;
