@@ -76,8 +76,8 @@ MACHINE = """{ static Machine machine; static int32_t readings[8];
         sink = (uint8_t)machine.tick(sink, sink); }"""
 STORE = """{ static Store store; const Area area = (Area)sink;
         store.boot(); store.tick(sink); sink = (uint8_t)store.state(); sink = store.is_busy();
-        sink = store.left(); sink = store.begin_save(bytes); sink = store.begin_keep(area, bytes);
-        sink = store.begin_erase(area); sink = store.used(area); store.refuse();
+        sink = store.begin_save(bytes); sink = store.begin_keep(area, bytes);
+        sink = store.used(area); store.refuse();
         sink = store.fetch(area, sink, bytes); }"""
 USES = {
     "image": IMAGE,

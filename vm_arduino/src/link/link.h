@@ -96,7 +96,6 @@ class Link {
   bool is_own_hint() const;
   void reply();
   void describe();
-  void receipt();
   void fetch();
   void begin_frame(uint8_t type, uint8_t seq);
   void begin_event(Message message);

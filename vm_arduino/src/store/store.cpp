@@ -64,14 +64,6 @@ constexpr uint8_t kSteps[] tini_progmem = {
     step(Do::kMark, 2),
     step(Do::kMark, 3),
     step(Do::kEnd),
-    // erases
-    step(Do::kClear, 3),
-    step(Do::kClear, 2),
-    step(Do::kClear, 1),
-    step(Do::kEmpty, 0),
-    step(Do::kEmpty, kBodyAt),
-    step(Do::kEmpty, 1),
-    step(Do::kEnd),
 };
 
 // Where they begin.
@@ -83,7 +75,6 @@ constexpr uint8_t kCommitting = 11;  // from here on it waits for `may_commit`
 constexpr uint8_t kKeeping = 15;
 constexpr uint8_t kKeepingMarks = 17;
 constexpr uint8_t kKeepingEnd = 19;
-constexpr uint8_t kErasing = 20;
 
 static_assert(kSteps[kEmptying] == step(Do::kEmpty, 0), "emptying begins here");
 static_assert(kSteps[kEmptyingEnd] == step(Do::kEnd), "emptying ends here");
@@ -92,7 +83,6 @@ static_assert(kSteps[kCommitting] == step(Do::kMark, 1), "what is saved counts f
 static_assert(kSteps[kKeeping] == step(Do::kGeneration), "keeping begins here");
 static_assert(kSteps[kKeepingMarks] == step(Do::kMark, 2), "the first mark stays as it is");
 static_assert(kSteps[kKeepingEnd] == step(Do::kEnd), "keeping ends here");
-static_assert(kSteps[kErasing - 1] == step(Do::kEnd), "erasing begins here");
 
 uint16_t plus(uint16_t place, uint16_t more) { return static_cast<uint16_t>(place + more); }
 
@@ -124,7 +114,6 @@ tini_noinline void Store::boot() {
   for (uint8_t& held : held_) held = kNothing;
   length_ = 0;
   at_ = 0;
-  is_first_ = false;
   state_ = StoreState::kSettling;
   is_busy_ = true;
   step_ = kLooking;
@@ -205,17 +194,6 @@ tini_noinline bool Store::begin_keep(Area area, uint8_t* record) {
   return near(this)->begin_write(area, record, kRecordBytes);
 }
 
-tini_noinline bool Store::begin_erase(Area area) {
-  if (!can_begin()) return false;
-  go_beside(area, newest(area, kNothing));  // the older one first: it must not come back
-  held_[slot_] = kNothing;
-  held_[slot_ ^ 1] = kNothing;
-  is_first_ = true;
-  state_ = StoreState::kErasing;
-  begin(kErasing);
-  return true;
-}
-
 tini_noinline void Store::refuse() {
   const uint8_t slot = used(Area::kProgram);
   if (slot != kNoSlot) held_[slot] |= kRefused;
@@ -242,20 +220,13 @@ tini_noinline void Store::go_to(uint8_t slot) {
   place_ = place_of(slot);
 }
 
-bool Store::can_begin() const { return !is_busy_ && nvm_is_ready(); }
-
-void Store::begin(uint8_t step) {
-  step_ = step;
-  is_busy_ = true;
-}
-
 // Goes to the slot that must not be kept where `slot`, or none, must.
 void Store::go_beside(Area area, uint8_t slot) {
   go_to(slot == kNoSlot ? static_cast<uint8_t>(2 * static_cast<uint8_t>(area)) : slot ^ 1);
 }
 
 tini_noinline bool Store::begin_write(Area area, const uint8_t* bytes, uint16_t length) {
-  if (!can_begin()) return false;
+  if (is_busy_ || !nvm_is_ready()) return false;
   const uint8_t slot = used(area);
   if (slot != kNoSlot) {
     // the same up to the end of its check?
@@ -277,7 +248,8 @@ tini_noinline bool Store::begin_write(Area area, const uint8_t* bytes, uint16_t 
   length_ = length;
   at_ = 0;
   state_ = StoreState::kSaving;
-  begin(kSaving);
+  step_ = kSaving;
+  is_busy_ = true;
   return true;
 }
 
@@ -331,13 +303,6 @@ void Store::finish() {
   if (state == StoreState::kSaving) {
     held_[slot] = generation_;
     state_ = StoreState::kSaved;
-  } else if (state == StoreState::kErasing) {
-    if (is_first_) {
-      is_first_ = false;
-      step_ = kErasing;
-      return go_to(slot ^ 1);
-    }
-    state_ = StoreState::kErased;
   } else if (state == StoreState::kSettling) {
     step_ = kLooking;
     if (++slot != kSlots) return go_to(slot);
