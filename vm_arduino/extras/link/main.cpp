@@ -120,7 +120,7 @@ void answer_items(Reader* request, Writer* answer) {
       lines += row;
     }
     if (receiver.item() == Item::kFrame) {
-      lines += open_frame(receiver.bytes(), receiver.length()) != 0 ? " whole" : " damaged";
+      lines += decode_frame(receiver.bytes(), receiver.length()) != 0 ? " whole" : " damaged";
     }
     lines += "\n";
     left = static_cast<uint8_t>(held + 1);

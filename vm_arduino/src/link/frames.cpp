@@ -40,22 +40,7 @@ tini_noinline uint32_t get32(const uint8_t* bytes) {
   return number;
 }
 
-// Each byte that stands for a zero tells how far it is to the next one.
-uint8_t open_frame(uint8_t* bytes, uint8_t length) {
-  uint8_t at = bytes[0];
-  while (at < length) {
-    const uint8_t distance = bytes[at];
-    bytes[at] = 0;
-    if (distance == 0 || distance > length - at) return 0;
-    at = static_cast<uint8_t>(at + distance);
-  }
-  if (at != length || length < kPayloadAt + kCrcBytes) return 0;
-  const uint8_t end = static_cast<uint8_t>(length - kCrcBytes);
-  const uint32_t crc = checksum(bytes, end);
-  return same_bytes(&crc, bytes + end) ? end : 0;
-}
-
-uint8_t close_frame(uint8_t* bytes, uint8_t end) {
+uint8_t encode_frame(uint8_t* bytes, uint8_t end) {
   const uint32_t crc = checksum(bytes, end);
   copy_bytes(&crc, bytes + end, kCrcBytes);
   end = static_cast<uint8_t>(end + kCrcBytes);
@@ -67,6 +52,21 @@ uint8_t close_frame(uint8_t* bytes, uint8_t end) {
     zero = at;
   }
   return static_cast<uint8_t>(end + 1);
+}
+
+// Each byte that stands for a zero tells how far it is to the next one.
+uint8_t decode_frame(uint8_t* bytes, uint8_t length) {
+  uint8_t at = bytes[0];
+  while (at < length) {
+    const uint8_t distance = bytes[at];
+    bytes[at] = 0;
+    if (distance == 0 || distance > length - at) return 0;
+    at = static_cast<uint8_t>(at + distance);
+  }
+  if (at != length || length < kPayloadAt + kCrcBytes) return 0;
+  const uint8_t end = static_cast<uint8_t>(length - kCrcBytes);
+  const uint32_t crc = checksum(bytes, end);
+  return same_bytes(&crc, bytes + end) ? end : 0;
 }
 
 }  // namespace tiniscript

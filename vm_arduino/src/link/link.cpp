@@ -96,7 +96,7 @@ tini_noinline void Link::hear() {
     if (text_ms_ == 0 && !is_listened_to() && !is_own_hint()) due_ |= kDueHint;
     text_ms_ = kListenMs;
   } else {
-    const uint8_t end = open_frame(receiver_->bytes(), receiver_->length());
+    const uint8_t end = decode_frame(receiver_->bytes(), receiver_->length());
     if (end == 0) {
       damaged_++;
     } else if ((receiver_->bytes()[kTypeAt] & kReply) == 0) {  // else it is an echo

@@ -202,7 +202,7 @@ tini_noinline void Link::put_all(const void* bytes, uint8_t length) {
 }
 
 void Link::close() {
-  size_ = close_frame(out_, size_);
+  size_ = encode_frame(out_, size_);
   hand_over();
 }
 
