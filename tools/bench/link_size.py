@@ -53,7 +53,7 @@ PORT_USED = """port_card(); port_condition(); port_equipment(); sink = port_room
 LINK = """{ static Receiver receiver; static Link link;
         link.begin(&receiver, sink); sink = receiver.put(sink, sink); link.tick(sink);
         link.tell(); link.seal();
-        uint8_t byte; while (link.next(&byte)) sink = byte;
+        uint8_t byte; while (link.next_tx_byte(&byte)) sink = byte;
         link.done(); link.faulted(); link.stopped(Cause::kButton);
         sink = link.show(sink, sink); }"""
 

@@ -5,8 +5,8 @@
 
 #include <stdio.h>
 
-#include "../host/wire.h"
 #include "../../src/link/link.h"
+#include "../host/wire.h"
 #include "simulated_port.h"
 
 using namespace tiniscript;
@@ -52,7 +52,8 @@ void answer_step(Reader* request, Writer* answer) {
     link_half.tell();
     uint8_t byte = 0;
     for (uint8_t turns = 0; turns < 8; turns++) {
-      while ((how != 2 || is_last) && link_half.next(&byte)) sent += static_cast<char>(byte);
+      while ((how != 2 || is_last) && link_half.next_tx_byte(&byte))
+        sent += static_cast<char>(byte);
       link_half.tick(static_cast<uint16_t>(now_ms));
       link_half.tell();
     }

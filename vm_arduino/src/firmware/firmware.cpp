@@ -41,6 +41,6 @@ void firmware_on_rx_byte(uint8_t byte, uint16_t time_ms) {
   if (receiver.put(byte, time_ms)) board_stop();
 }
 
-bool firmware_next_tx_byte(uint8_t* byte) { return link.next(byte); }
+bool firmware_next_tx_byte(uint8_t* byte) { return link.next_tx_byte(byte); }
 
 }  // namespace tiniscript

@@ -70,7 +70,7 @@ tini_noinline void Link::seal() {
   port_seal(image);
 }
 
-bool Link::next(uint8_t* byte) {
+bool Link::next_tx_byte(uint8_t* byte) {
   if (left_ == 0) return false;
   left_ = static_cast<uint8_t>(left_ - 1);
   *byte = out_[sent_++];

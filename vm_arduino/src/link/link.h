@@ -1,8 +1,8 @@
 // Answers a computer: the robot's half of the link.
 //
 // Knows what each message asks of `port.h`, and what a computer must be told. Bytes come through a
-// Receiver and go out through `next`; time comes in as `now_ms`. Nothing here waits. A request that
-// comes again is answered again and never done twice. `docs/link.md` is the contract.
+// Receiver and go out through `next_tx_byte`; time comes in as `now_ms`. Nothing here waits. A
+// request that comes again is answered again and never done twice. `docs/link.md` is the contract.
 
 #ifndef TINISCRIPT_LINK_LINK_H_
 #define TINISCRIPT_LINK_LINK_H_
@@ -31,7 +31,7 @@ class Link {
   void seal();
 
   // The next byte to send; false where there is none. It may be called from an interrupt.
-  bool next(uint8_t* byte);
+  bool next_tx_byte(uint8_t* byte);
 
   // Whether a stop has arrived that `tick` has not handled yet: until then the motors stay off,
   // whatever else was asked. Whoever writes their pins asks this, with interrupts off.
