@@ -96,7 +96,7 @@ def test_the_layout_of_a_mega() -> None:
 
 def steps(*names: str) -> str:
     """Return steps as they stand in the store."""
-    return "\n    ".join(f"step(Do::k{name})," for name in names)
+    return "\n    ".join(f"step(WriteStep::k{name})," for name in names)
 
 
 CLEARS = steps("Clear, 3", "Clear, 2", "Clear, 1")
@@ -130,7 +130,10 @@ BREAKS = {
     "equal bytes are never written": ("is_stable_ = held != kNothing;", "is_stable_ = true;"),
     "the generation is not in the body": ("at == 0 ? byte ^ nvm_read(place) : byte;", "byte;"),
     "the mark is the same for each generation": ("generation_ ^ kMarkOf;", "kMarkOf;"),
-    "what is emptied still fits": ("step(Do::kEmpty, kBodyAt),", "step(Do::kEmpty, 0),"),
+    "what is emptied still fits": (
+        "step(WriteStep::kEmpty, kBodyAt),",
+        "step(WriteStep::kEmpty, 0),",
+    ),
     "the emptied mark comes first": (
         EMPTIES,
         steps("Empty, 1", "Empty, kBodyAt", "Empty, 0"),

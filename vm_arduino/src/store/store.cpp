@@ -23,8 +23,8 @@ constexpr uint8_t kNothing = 0xff;
 // The checksum of any bytes with their own checksum behind them.
 constexpr uint32_t kBehindItself = 0x2144df1c;
 
-// What is done to a slot, in this order. `docs/store.md` says why it is this one.
-enum class Do : uint8_t {
+// The write steps of a slot. `docs/store.md` says why they come in this order.
+enum class WriteStep : uint8_t {
   kLook,
   kClear,       // one of the first bytes of the slot: 0, without an erase
   kGeneration,  // its own number
@@ -35,35 +35,35 @@ enum class Do : uint8_t {
   kEnd,
 };
 
-constexpr uint8_t step(Do what, uint8_t at = 0) {
+constexpr uint8_t step(WriteStep what, uint8_t at = 0) {
   return static_cast<uint8_t>(static_cast<uint8_t>(what) * 16 + at);
 }
 
 constexpr uint8_t kSteps[] tini_progmem = {
     // settles: decides what a slot holds
-    step(Do::kLook),
+    step(WriteStep::kLook),
     // settles: what it holds does not count, and never will
-    step(Do::kEmpty, 0),
-    step(Do::kEmpty, kBodyAt),
-    step(Do::kEmpty, 1),
-    step(Do::kEnd),
+    step(WriteStep::kEmpty, 0),
+    step(WriteStep::kEmpty, kBodyAt),
+    step(WriteStep::kEmpty, 1),
+    step(WriteStep::kEnd),
     // saves
-    step(Do::kClear, 3),
-    step(Do::kClear, 2),
-    step(Do::kClear, 1),
-    step(Do::kGeneration),
-    step(Do::kBody),
-    step(Do::kCheck),
-    step(Do::kMark, 1),
-    step(Do::kMark, 2),
-    step(Do::kMark, 3),
-    step(Do::kEnd),
+    step(WriteStep::kClear, 3),
+    step(WriteStep::kClear, 2),
+    step(WriteStep::kClear, 1),
+    step(WriteStep::kGeneration),
+    step(WriteStep::kBody),
+    step(WriteStep::kCheck),
+    step(WriteStep::kMark, 1),
+    step(WriteStep::kMark, 2),
+    step(WriteStep::kMark, 3),
+    step(WriteStep::kEnd),
     // settles: what it holds counts, and always will
-    step(Do::kGeneration),
-    step(Do::kMark, 1),
-    step(Do::kMark, 2),
-    step(Do::kMark, 3),
-    step(Do::kEnd),
+    step(WriteStep::kGeneration),
+    step(WriteStep::kMark, 1),
+    step(WriteStep::kMark, 2),
+    step(WriteStep::kMark, 3),
+    step(WriteStep::kEnd),
 };
 
 // Where they begin.
@@ -76,13 +76,14 @@ constexpr uint8_t kKeeping = 15;
 constexpr uint8_t kKeepingMarks = 17;
 constexpr uint8_t kKeepingEnd = 19;
 
-static_assert(kSteps[kEmptying] == step(Do::kEmpty, 0), "emptying begins here");
-static_assert(kSteps[kEmptyingEnd] == step(Do::kEnd), "emptying ends here");
-static_assert(kSteps[kSaving - 1] == step(Do::kEnd), "saving begins here");
-static_assert(kSteps[kCommitting] == step(Do::kMark, 1), "what is saved counts from here on");
-static_assert(kSteps[kKeeping] == step(Do::kGeneration), "keeping begins here");
-static_assert(kSteps[kKeepingMarks] == step(Do::kMark, 2), "the first mark stays as it is");
-static_assert(kSteps[kKeepingEnd] == step(Do::kEnd), "keeping ends here");
+static_assert(kSteps[kEmptying] == step(WriteStep::kEmpty, 0), "emptying begins here");
+static_assert(kSteps[kEmptyingEnd] == step(WriteStep::kEnd), "emptying ends here");
+static_assert(kSteps[kSaving - 1] == step(WriteStep::kEnd), "saving begins here");
+static_assert(kSteps[kCommitting] == step(WriteStep::kMark, 1),
+              "what is saved counts from here on");
+static_assert(kSteps[kKeeping] == step(WriteStep::kGeneration), "keeping begins here");
+static_assert(kSteps[kKeepingMarks] == step(WriteStep::kMark, 2), "the first mark stays as it is");
+static_assert(kSteps[kKeepingEnd] == step(WriteStep::kEnd), "keeping ends here");
 
 uint16_t plus(uint16_t place, uint16_t more) { return static_cast<uint16_t>(place + more); }
 
@@ -123,23 +124,23 @@ tini_noinline void Store::boot() {
 tini_noinline void Store::tick(bool may_commit) {
   if (!is_busy_ || !nvm_is_ready()) return;
   const uint8_t step = flash_byte(kSteps + step_);
-  if (step_ >= kCommitting && !may_commit && step != tiniscript::step(Do::kEnd)) return;
+  if (step_ >= kCommitting && !may_commit && step != tiniscript::step(WriteStep::kEnd)) return;
   const uint8_t at = step % 16;
   uint8_t value = kEmptied;
-  switch (static_cast<Do>(step / 16)) {
-    case Do::kLook:
+  switch (static_cast<WriteStep>(step / 16)) {
+    case WriteStep::kLook:
       return near(this)->look();
-    case Do::kEnd:
+    case WriteStep::kEnd:
       return near(this)->finish();
-    case Do::kClear:
+    case WriteStep::kClear:
       nvm_clear(plus(place_, at));
       step_++;
       return;
-    case Do::kBody:
-    case Do::kCheck: {
+    case WriteStep::kBody:
+    case WriteStep::kCheck: {
       value = bytes_[at_];
       const bool is_equal = body_byte(place_, at_) == value;
-      if (step == tiniscript::step(Do::kBody)) {
+      if (step == tiniscript::step(WriteStep::kBody)) {
         if (at_ == 0) value ^= generation_;
         if (!is_equal || !is_stable_) nvm_write(plus(place_, plus(kBodyAt, at_)), value);
       } else if (!is_equal) {
@@ -153,13 +154,13 @@ tini_noinline void Store::tick(bool may_commit) {
       }
       return;
     }
-    case Do::kGeneration:
+    case WriteStep::kGeneration:
       value = generation_;
       break;
-    case Do::kMark:
+    case WriteStep::kMark:
       value = generation_ ^ kMarkOf;
       break;
-    case Do::kEmpty:
+    case WriteStep::kEmpty:
       break;
   }
   nvm_write(plus(place_, at), value);
