@@ -304,6 +304,19 @@ def test_whole_lines_at_the_prompt_that_are_for_tsc() -> None:
     assert wished("exit", known) == ""  # it is the person's own
 
 
+def test_a_variable_may_have_the_value_of_the_mark(capsys: pytest.CaptureFixture[str]) -> None:
+    """It is the smallest number: `Y = -2147483.647 - 0.001` gives it."""
+    known = Known(robots.load("tinibot").kit)
+    for before in (0, 1, 2):  # of the program's own, by chance
+        catch = Catch(("X", "Y"), known, Teller("en"), says_done=False)
+        for value in (*[MARK] * before, MARK, MARK, 7):
+            assert catch.hold(Event("SHOW", {"value": value, "is_yes_no": 0}))
+        assert catch.hold(Event("DONE", {"run": 1}))
+        assert {name: each.value for name, each in known.values.items()} == {"X": MARK, "Y": 7}
+        assert capsys.readouterr().out == "SHOW -2147483.648\n" * before
+        known.values.clear()
+
+
 def test_the_mark_of_live_reaches_nobody(capsys: pytest.CaptureFixture[str]) -> None:
     def show(value: int) -> Event:
         return Event("SHOW", {"value": value, "is_yes_no": 0})

@@ -427,6 +427,14 @@ def test_monitor_writes_what_the_robot_shows(pty_robot: PtyRobot, tmp_path: Path
     ]  # fmt: skip
 
 
+def test_monitor_keeps_the_last_rows_where_no_robot_answers(tmp_path: Path) -> None:
+    rows = tmp_path / "rows.csv"
+    rows.write_text("ms,event,value\n1,SHOW,5\n", encoding="utf-8")
+    done = process("monitor", "--port", tmp_path / "no-port", "--csv", rows, "--max-time", "1")
+    assert done.code == 3
+    assert rows.read_text(encoding="utf-8") == "ms,event,value\n1,SHOW,5\n"
+
+
 def test_monitor_draws_a_curve(pty_robot: PtyRobot) -> None:
     pty = pytest.importorskip("pty")
     assert on(pty_robot, "upload", "-e", "SB|SHOW(-2.5);W(0.3);SHOW(7);W(0.3);SHOW(TRUE)").code == 0
