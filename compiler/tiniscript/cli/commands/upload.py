@@ -174,6 +174,10 @@ def _upload(
         except Trouble as trouble:
             print(trouble.sentence(language), file=sys.stderr)
         return code
+    except OSError:  # nobody reads any more what tsc prints
+        if connection.stop_unseen():
+            saving.wait_unseen()
+        raise
 
 
 def _keep_map(ready: images.Ready) -> None:

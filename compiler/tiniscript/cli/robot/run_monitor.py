@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from contextlib import suppress
 from time import monotonic
 from typing import TYPE_CHECKING
 
@@ -159,6 +160,7 @@ class Saving:
         self.connection = connection
         self.teller = teller
         self.run, self.program, self.saved = (values[key] for key in ("run", "program", "saved"))
+        self.is_unseen = False
         self._asked: Asked | None = None
         self._asked_s = monotonic()
 
@@ -196,6 +198,15 @@ class Saving:
             key = keys.get(self.saved, "not_saved")
             raise Trouble(3, "plain", said=text(key, self.connection.language))
 
+    def wait_unseen(self) -> None:
+        """The same where nobody reads what tsc prints: only what went wrong is still said."""
+        self.is_unseen = True
+        try:
+            self.wait()
+        except Trouble as trouble:
+            with suppress(OSError):
+                print(trouble.sentence(self.connection.language), file=sys.stderr, flush=True)
+
     def _learn(self, status: Reply, is_running: bool) -> None:
         values = {key: each for key, each in status.values.items() if isinstance(each, int)}
         if status.status or self.is_over:
@@ -205,6 +216,8 @@ class Saving:
             return
         was_low, self.saved = self.saved == SAVED_LOW_SUPPLY, values["saved"]
         language = self.connection.language
+        if self.is_unseen:
+            return
         if self.saved == SAVED_STORED:
             slot = values["slot"]
             said = text("now_saved", language).format(slot=slot)
