@@ -23,6 +23,7 @@ STRAIGHT = "F(2, 60)"
 LEAST_STEP = 5  # percent
 FIRST_STEP = 16  # percent of balance; half of it each time that the robot goes to the other side
 YES, AGAIN = 1, 4
+STILL_THERE = ("stopped_elsewhere", "plain")  # troubles of a robot that can be told something
 
 
 def guided(connection: Connection, before: Trim) -> Trim:
@@ -33,7 +34,8 @@ def guided(connection: Connection, before: Trim) -> Trim:
         if isinstance(why, KeyboardInterrupt):
             print(file=sys.stderr)
             confirmed(connection.line)
-        if not isinstance(why, Trouble) or why.key.startswith("trim_"):
+        is_there = not isinstance(why, Trouble) or why.key in STILL_THERE
+        if is_there or why.key.startswith("trim_"):
             connection.give(lambda session: session.trim(before.data()))
         raise
 
