@@ -191,6 +191,7 @@ def test_a_stop_from_elsewhere_while_a_trim_is_set_leaves_the_one_before(
 ) -> None:
     """Another terminal stops the robot in the moment in which it is given a trim to try."""
     given: list[bytes] = []
+    stops = ["stopped_elsewhere", "plain"]  # it goes on: what is asked meanwhile is stale
 
     class Asked:
         def trim(self, data: bytes) -> None:
@@ -198,6 +199,8 @@ def test_a_stop_from_elsewhere_while_a_trim_is_set_leaves_the_one_before(
 
     class Connected:
         def give(self, make: Callable[[Asked], None]) -> None:
+            if stops:
+                raise Trouble(3, stops.pop())
             make(Asked())
 
     def stopped(guide: trim_wizard.Guide) -> Trim:
@@ -205,7 +208,7 @@ def test_a_stop_from_elsewhere_while_a_trim_is_set_leaves_the_one_before(
 
     monkeypatch.setattr(trim_wizard.Guide, "trim", stopped)
     monkeypatch.setattr(trim_wizard.Guide, "__init__", lambda guide, connection: None)
-    with pytest.raises(Trouble):
+    with pytest.raises(Trouble, match=key):
         trim_wizard.guided(cast("Connection", Connected()), Trim(balance=7))
     assert given == [Trim(balance=7).data()]
 
