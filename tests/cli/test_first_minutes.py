@@ -60,8 +60,9 @@ def test_a_program_with_a_button_ends_when_it_is_told() -> None:
     text = FOREVER.replace("SI", "SB")
     done = process("upload", "--virtual", "-e", text, "--for", "3", "--hurry", "max", "--json")
     assert done.code == 0
-    events = [json.loads(line)["event"] for line in done.out.splitlines()]
-    assert events == ["RECEIPT", "TIME_OVER", "SAVED"]
+    rows = [json.loads(line) for line in done.out.splitlines()]
+    assert [row["event"] for row in rows] == ["RECEIPT", "TIME_OVER", "SAVED"]
+    assert rows[0]["is_pushed"] is True
     assert "drove 0 cm in 3.0 s" in done.err
     command = [*TSC, "upload", "--virtual", "-e", text.replace("L(1", "SHOW(1);L(1")]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as up:

@@ -127,6 +127,7 @@ def test_the_receipt_is_data_too(pty_robot: PtyRobot) -> None:
     ]
     assert [line["value"] for line in lines[1:4]] == [0.5, 2, False]
     assert (lines[0]["start"], lines[0]["is_running"], lines[0]["saved"]) == ("SI", True, "SAVING")
+    assert lines[0]["is_pushed"] is False
     assert (lines[4]["fault"], lines[4]["line"]) == ("DIVIDE_BY_ZERO", 1)
 
 

@@ -268,6 +268,7 @@ def receipt(
         "start": image.start,
         "is_running": runs,
         "is_detached": runs and bool(options.detach),
+        "is_pushed": has_button(connection, ready, options),  # who reads JSON has no key for it
     }
 
 
