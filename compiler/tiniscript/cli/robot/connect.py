@@ -111,9 +111,8 @@ class Connection:
         if kind is not None and issubclass(kind, OSError) and self.drives:
             self.stop_unseen()
         if self.host is not None:
-            has_run = self.host.has_run
-            self.host.close()
-            if has_run:  # of a guest, who can no longer stop it
+            self.host.close()  # before it one may begin
+            if self.host.has_run:  # of a guest, who can no longer stop it
                 from tiniscript.cli.robot.run_monitor import STOP_S, confirmed
 
                 confirmed(self.line, STOP_S)
