@@ -11,7 +11,9 @@ from tiniscript.cli.robot import run_monitor
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.link.line import Line
 from tiniscript.link.outcomes import Event
-from tiniscript.sharing.server import Guest, Host
+from tiniscript.link.requests import OK, Reply, single
+from tiniscript.link.session import Task as Asked
+from tiniscript.sharing.server import Guest, Host, Task
 
 
 class FakeLine:
@@ -49,10 +51,10 @@ def test_a_run_that_begins_while_its_holder_leaves_is_stopped(
     """Two uploads at once: the first is replaced by its own guest, and leaves."""
 
     class FakeHost:
-        has_run = False
+        may_have_run = False
 
         def close(self) -> None:
-            self.has_run = True  # known only now
+            self.may_have_run = True  # known only now
 
     stopped: list[object] = []
     monkeypatch.setattr(run_monitor, "confirmed", lambda line, limit_s: stopped.append(line))
@@ -62,3 +64,18 @@ def test_a_run_that_begins_while_its_holder_leaves_is_stopped(
     connection.__exit__(None)
     assert stopped == [line]
     assert line.is_closed
+
+
+def test_a_run_that_is_about_to_begin_counts_when_its_holder_leaves() -> None:
+    host, line = Host.__new__(Host), FakeLine()
+    host._line, host._guests, host._orphans, host._owner = cast(Line, line), [], [], None
+    assert not host.may_have_run
+    for starts, is_detached, outcome, counts in (
+        (True, False, None, True), (False, False, None, False), (True, True, None, False),
+        (True, False, Reply(OK), False),
+    ):  # fmt: skip
+        asked = Asked(single("START"), starts=starts)
+        asked.outcome = outcome
+        host._orphans = [Task(asked, is_detached)]
+        assert host.may_have_run == counts
+        assert not host.has_run

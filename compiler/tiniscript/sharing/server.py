@@ -95,10 +95,19 @@ class Host:
 
     @property
     def has_run(self) -> bool:
-        """Whether a program runs that a guest has started, and that wants a tether. To be
-        asked when this is closed."""
+        """Whether a program runs that a guest has started, and that wants a tether."""
         owner = self._owner
         return owner is not None and self._line.runs(owner[1])
+
+    @property
+    def may_have_run(self) -> bool:
+        """The same, or a guest's run is about to begin: its request may be on its way. To be asked
+        when this is closed."""
+        tasks = [task for guest in self._guests for task in guest.tasks.values()]
+        return self.has_run or any(
+            task.asked.outcome is None and task.asked.starts and not task.is_detached
+            for task in (*tasks, *self._orphans)
+        )
 
     def close(self) -> None:
         """Let all guests go."""

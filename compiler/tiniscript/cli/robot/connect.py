@@ -112,7 +112,7 @@ class Connection:
             self.stop_unseen()
         if self.host is not None:
             self.host.close()  # before it one may begin
-            if self.host.has_run:  # of a guest, who can no longer stop it
+            if self.host.may_have_run:  # of a guest, who can no longer stop it
                 from tiniscript.cli.robot.run_monitor import STOP_S, confirmed
 
                 confirmed(self.line, STOP_S)
