@@ -6,6 +6,8 @@ another file changed, and whoever reads meanwhile reads the old content or the n
 
 A symbolic link stays one: what it leads to is replaced, as by a shell's `>`. Another hard link to
 the file keeps the old content.
+
+Knows where a command keeps what the next one may need. Does not know what is in a file.
 """
 
 from __future__ import annotations
@@ -19,6 +21,13 @@ from time import time
 NEW = ".new"  # the end of the name of a file that is not yet whole
 NAME_CHARACTERS = 100  # of a file's name in that of its new one
 ABANDONED_S = 3600.0  # a new file that is older has lost its command
+
+
+def cache_folder() -> Path:
+    """Return the user's folder for what a command keeps until the next one: it may be deleted."""
+    from platformdirs import user_cache_path  # here: most commands keep nothing
+
+    return user_cache_path("tiniscript", appauthor=False)
 
 
 def replace(path: Path, data: bytes, mode: int | None = None) -> None:

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from tests.machines.host_firmware import missing
-from tests.support.command import FOREVER, PROGRAM, TSC, Tsc
+from tests.support.command import FOREVER, PROGRAM, TSC, Tsc, process
 from tests.support.pty_robot import PtyRobot
 from tests.support.robot_fleet import RobotFleet
 from tiniscript import robots
@@ -50,6 +50,18 @@ def test_upload_into_a_pipe_that_closes_stops_the_robot(
     assert code == CLOSED
     assert said.count("\n") == 1 and "was stopped" in said
     pty_robot.until(lambda: not pty_robot.moves, "it stands")
+
+
+def test_what_is_being_saved_is_saved_first(pty_robot: PtyRobot) -> None:
+    """It drives without a pause, so nothing is saved before the stop."""
+    drives = "".join(f"M({k}, 50);W(0.01);" for k in range(1, 50))
+    words = ["upload", "-e", f"SI|LOOP(FOREVER);{drives}SHOW(1);END_LOOP", "--port", pty_robot.port]
+    code, said = after_lines(1, *words)
+    assert code == CLOSED and said.count("\n") == 1 and "was stopped" in said
+    pty_robot.switch_off()
+    pty_robot.switch_on()
+    fetched = process("fetch", "--port", pty_robot.port)
+    assert (fetched.code, "SHOW" in fetched.out) == (0, True), fetched.err
 
 
 def test_start_live_and_both_streams(pty_robot: PtyRobot) -> None:

@@ -60,8 +60,9 @@ def test_a_program_with_a_button_ends_when_it_is_told() -> None:
     text = FOREVER.replace("SI", "SB")
     done = process("upload", "--virtual", "-e", text, "--for", "3", "--hurry", "max", "--json")
     assert done.code == 0
-    events = [json.loads(line)["event"] for line in done.out.splitlines()]
-    assert events == ["RECEIPT", "TIME_OVER", "SAVED"]
+    rows = [json.loads(line) for line in done.out.splitlines()]
+    assert [row["event"] for row in rows] == ["RECEIPT", "TIME_OVER", "SAVED"]
+    assert rows[0]["is_pushed"] is True
     assert "drove 0 cm in 3.0 s" in done.err
     command = [*TSC, "upload", "--virtual", "-e", text.replace("L(1", "SHOW(1);L(1")]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as up:
@@ -302,6 +303,19 @@ def test_whole_lines_at_the_prompt_that_are_for_tsc() -> None:
         assert wished(line, known) == "", line
     known.defs["EXIT"] = "DEF EXIT; S; END_DEF"
     assert wished("exit", known) == ""  # it is the person's own
+
+
+def test_a_variable_may_have_the_value_of_the_mark(capsys: pytest.CaptureFixture[str]) -> None:
+    """It is the smallest number: `Y = -2147483.647 - 0.001` gives it."""
+    known = Known(robots.load("tinibot").kit)
+    for before in (0, 1, 2):  # of the program's own, by chance
+        catch = Catch(("X", "Y"), known, Teller("en"), says_done=False)
+        for value in (*[MARK] * before, MARK, MARK, 7):
+            assert catch.hold(Event("SHOW", {"value": value, "is_yes_no": 0}))
+        assert catch.hold(Event("DONE", {"run": 1}))
+        assert {name: each.value for name, each in known.values.items()} == {"X": MARK, "Y": 7}
+        assert capsys.readouterr().out == "SHOW -2147483.648\n" * before
+        known.values.clear()
 
 
 def test_the_mark_of_live_reaches_nobody(capsys: pytest.CaptureFixture[str]) -> None:

@@ -94,11 +94,11 @@ def test_the_extras_are_those_of_the_package() -> None:
 
 
 def test_no_other_place_knows_how_to_install_an_extra() -> None:
-    """`flash_texts` does where the sources are missing: then there is no other way."""
+    """The texts of `tsc firmware` do where the sources are missing: then there is no other way."""
     folder = ROOT / "compiler" / "tiniscript"
     found = {
         path.name
         for path in folder.rglob("*.py")
         if re.search(r"install[^\n]*\[(virtual|firmware)\]", path.read_text(encoding="utf-8"))
     }
-    assert found <= {"flash_texts.py", "installing.py"}
+    assert found <= {"firmware.py", "install_advice.py"}

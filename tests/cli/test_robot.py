@@ -128,6 +128,7 @@ def test_the_receipt_is_data_too(pty_robot: PtyRobot) -> None:
     ]
     assert [line["value"] for line in lines[1:4]] == [0.5, 2, False]
     assert (lines[0]["start"], lines[0]["is_running"], lines[0]["saved"]) == ("SI", True, "SAVING")
+    assert lines[0]["is_pushed"] is False
     assert (lines[4]["fault"], lines[4]["line"]) == ("DIVIDE_BY_ZERO", 1)
 
 
@@ -426,6 +427,14 @@ def test_monitor_writes_what_the_robot_shows(pty_robot: PtyRobot, tmp_path: Path
     assert [row.split(",")[1:] for row in rows.read_text(encoding="utf-8").splitlines()] == [
         ["event", "value"], ["SHOW", "1.5"], ["SHOW", "TRUE"], ["FAULT", "DIVIDE_BY_ZERO"],
     ]  # fmt: skip
+
+
+def test_monitor_keeps_the_last_rows_where_no_robot_answers(tmp_path: Path) -> None:
+    rows = tmp_path / "rows.csv"
+    rows.write_text("ms,event,value\n1,SHOW,5\n", encoding="utf-8")
+    done = process("monitor", "--port", tmp_path / "no-port", "--csv", rows, "--max-time", "1")
+    assert done.code == 3
+    assert rows.read_text(encoding="utf-8") == "ms,event,value\n1,SHOW,5\n"
 
 
 def test_monitor_draws_a_curve(pty_robot: PtyRobot) -> None:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 import signal
 import subprocess
+from collections.abc import Callable
+from typing import cast
 
 import pytest
 
@@ -12,6 +14,9 @@ from tests.machines.host_firmware import EMPTY, HostFirmware, missing
 from tests.support.command import TSC, Done, process
 from tests.support.pty_robot import PtyRobot
 from tiniscript import robots
+from tiniscript.cli.errors import Trouble
+from tiniscript.cli.robot import trim_wizard
+from tiniscript.cli.robot.connect import Connection
 from tiniscript.link.messages import STATUSES
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
@@ -178,6 +183,34 @@ def test_a_robot_that_cannot_be_trimmed_keeps_what_it_had(
     assert said in done.err
     assert keeps(pty_robot) == Trim(balance=7, least=3)
     assert not pty_robot.moves
+
+
+@pytest.mark.parametrize("key", ["stopped_elsewhere", "plain"])
+def test_a_stop_from_elsewhere_while_a_trim_is_set_leaves_the_one_before(
+    monkeypatch: pytest.MonkeyPatch, key: str
+) -> None:
+    """Another terminal stops the robot in the moment in which it is given a trim to try."""
+    given: list[bytes] = []
+    stops = ["stopped_elsewhere", "plain"]  # it goes on: what is asked meanwhile is stale
+
+    class Asked:
+        def trim(self, data: bytes) -> None:
+            given.append(data)
+
+    class Connected:
+        def give(self, make: Callable[[Asked], None]) -> None:
+            if stops:
+                raise Trouble(3, stops.pop())
+            make(Asked())
+
+    def stopped(guide: trim_wizard.Guide) -> Trim:
+        raise Trouble(3, key)
+
+    monkeypatch.setattr(trim_wizard.Guide, "trim", stopped)
+    monkeypatch.setattr(trim_wizard.Guide, "__init__", lambda guide, connection: None)
+    with pytest.raises(Trouble, match=key):
+        trim_wizard.guided(cast("Connection", Connected()), Trim(balance=7))
+    assert given == [Trim(balance=7).data()]
 
 
 def test_ctrl_c_stops_the_robot_and_it_keeps_what_it_had(pty_robot: PtyRobot) -> None:

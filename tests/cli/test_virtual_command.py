@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import json
 import re
 import signal
@@ -19,6 +20,7 @@ import pytest
 from tests.support.command import OBSTACLE, TSC, Done, Tsc, process
 from tests.support.virtual_robot import missing
 from tiniscript.cli import install_advice
+from tiniscript.cli.commands.robot import ended_by_signal
 from tiniscript.virtual import directory
 
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
@@ -120,6 +122,18 @@ def test_a_computer_that_vanishes_stops_the_robot(hurry: str) -> None:
         while "MOTORS" in line:
             line = found.line()
         assert line.endswith(" FAULT LINK_LOST")
+
+
+def test_ctrl_c_counts_wherever_it_comes(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The firmware calls Python from C, where an exception is dropped."""
+    dropped: list[object] = []
+    monkeypatch.setattr(sys, "unraisablehook", dropped.append)
+
+    inside = ctypes.CFUNCTYPE(None)(lambda: signal.raise_signal(signal.SIGINT))
+
+    with ended_by_signal() as ended:
+        inside()
+    assert len(dropped) == 1 and ended.is_set
 
 
 def test_a_second_computer_is_told_that_the_port_is_taken() -> None:

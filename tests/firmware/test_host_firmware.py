@@ -9,7 +9,7 @@ import pytest
 from tests.machines.host_firmware import EMPTY, HostFirmware, missing
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import Image, unpack
-from tiniscript.link.messages import STATUSES
+from tiniscript.link.messages import SAVED_SAVING, SAVED_STORED, STATUSES
 from tiniscript.link.requests import OK, Reply
 from tiniscript.link.session import Session, Task
 
@@ -54,7 +54,7 @@ def stored(robot: HostFirmware, session: Session, limit_ms: int = 10_000) -> int
     while robot.now_ms < begun_ms + limit_ms:
         task = session.status()
         assert robot.until(session, task) == OK
-        if outcome(task).values["saved"] == 3:
+        if outcome(task).values["saved"] == SAVED_STORED:
             return robot.now_ms - begun_ms
         robot.talk(session, 50)
     raise AssertionError("the program is not saved")
@@ -235,7 +235,7 @@ def test_nothing_is_finished_while_it_drives() -> None:
     robot.talk(session, 2500)
     task = session.status()
     assert robot.until(session, task) == OK
-    assert outcome(task).values["saved"] == 2
+    assert outcome(task).values["saved"] == SAVED_SAVING
     robot.talk(session, 800)
     stored(robot, session)
 
@@ -272,6 +272,26 @@ def test_a_run_of_the_button_needs_nobody() -> None:
     robot.step(flags=8)
     robot.wait(1500)
     assert happened(robot) == ["MOTORS 80 80"]
+
+
+@pytest.mark.parametrize("starts", [1, 256])
+def test_no_run_of_the_button_is_tethered(starts: int) -> None:
+    """However often it starts: runs are counted in one byte, and one of them was tethered."""
+    robot, session = switched_on(), computer()
+    send(robot, session, AWAY)
+    robot.talk(session, 100)
+    robot.push()
+    assert happened(robot)[-1] == "MOTORS 0 0"
+    robot.wait(1500)
+    for _ in range(starts - 1):
+        robot.push()
+        robot.push()
+    robot.push()
+    robot.wait(1500)
+    assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0"] * starts + ["MOTORS 80 80"]
+    robot.step(flags=8)
+    robot.wait(100)
+    assert happened(robot)[-1] == "MOTORS 80 80"
 
 
 def test_a_press_that_lasts_stops_what_began_meanwhile() -> None:

@@ -84,7 +84,7 @@ def test_with_the_plug_in() -> None:
 def test_no_byte_is_erased_twice_by_a_save() -> None:
     """Each of the image once, the generation and three marks; that these go away takes no erase."""
     found = run(compiled(parts(SOURCES), FLAGS), 2, (str(CODE_BYTES), "400"))
-    assert found.saves == 19
+    assert found.saves == 16
     assert found.most_erases == 1
     assert found.most_writes == CODE_BYTES + HEADER_BYTES + 1 + 3 + 3
 
@@ -96,14 +96,14 @@ def test_the_layout_of_a_mega() -> None:
 
 def steps(*names: str) -> str:
     """Return steps as they stand in the store."""
-    return "\n    ".join(f"step(Do::k{name})," for name in names)
+    return "\n    ".join(f"step(WriteStep::k{name})," for name in names)
 
 
 CLEARS = steps("Clear, 3", "Clear, 2", "Clear, 1")
 EMPTIES = steps("Empty, 0", "Empty, kBodyAt", "Empty, 1")
 
 GIVES_UP = (
-    "  state_ = StoreState::kIdle;\n  is_busy_ = false;\n}\n\none_copy bool Store::begin_save"
+    "  state_ = StoreState::kIdle;\n  is_busy_ = false;\n}\n\ntini_noinline bool Store::begin_save"
 )
 
 # What must be noticed: a change of the store.
@@ -130,7 +130,10 @@ BREAKS = {
     "equal bytes are never written": ("is_stable_ = held != kNothing;", "is_stable_ = true;"),
     "the generation is not in the body": ("at == 0 ? byte ^ nvm_read(place) : byte;", "byte;"),
     "the mark is the same for each generation": ("generation_ ^ kMarkOf;", "kMarkOf;"),
-    "what is emptied still fits": ("step(Do::kEmpty, kBodyAt),", "step(Do::kEmpty, 0),"),
+    "what is emptied still fits": (
+        "step(WriteStep::kEmpty, kBodyAt),",
+        "step(WriteStep::kEmpty, 0),",
+    ),
     "the emptied mark comes first": (
         EMPTIES,
         steps("Empty, 1", "Empty, kBodyAt", "Empty, 0"),
@@ -139,12 +142,7 @@ BREAKS = {
     "the older one counts": (">= kGenerations / 2;", "< kGenerations / 2;"),
     "generations do not go around": ("ahead % kGenerations >= kGenerations / 2", "first > second"),
     "what counts is written over": ("slot ^ 1);\n}", "slot);\n}"),
-    "an erase leaves the seals": (
-        f"// erases\n    {CLEARS}",
-        f"// erases\n    {steps('Clear, 1', 'Clear, 1', 'Clear, 1')}",
-    ),
     "what was given up counts": (GIVES_UP, f"  held_[slot_] = generation_;\n{GIVES_UP}"),
-    "an erase does not wait": ("kErasing = 20;", "kErasing = 20 + 3;"),
 }
 
 

@@ -49,7 +49,8 @@ def uno(sketch: Path, memory: Path) -> Iterator[Uno]:
 
 
 def switched_on(sketch: Path, memory: Path) -> Uno:
-    uno = Uno(sketch, names=NAMES, eeprom=memory, baud=BAUD)
+    # Nobody opens its port here, and whoever does by mistake does not reset it.
+    uno = Uno(sketch, names=NAMES, eeprom=memory, baud=BAUD, resets_on_open=False)
     uno.run_ms(300)
     assert states(uno) == OFF
     return uno

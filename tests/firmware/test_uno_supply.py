@@ -8,18 +8,25 @@ from pathlib import Path
 
 import pytest
 
-from tests.firmware.test_uno_robot import computer, image_of, saved, send, sketch, switched_on
+from tests.firmware.test_uno_robot import (
+    NAMES,
+    computer,
+    image_of,
+    saved,
+    send,
+    sketch,
+    switched_on,
+)
 from tests.machines.uno import needed
 from tests.machines.wired import Wired
 from tests.support.platformio import firmware, shared
-from tiniscript.link.messages import SAVED, STATUSES
+from tiniscript.link.messages import SAVED_LOW_SUPPLY, SAVED_STORED, STATUSES
 from tiniscript.link.requests import OK
 from tools.uno import CYCLES_PER_MS, Uno
 
 __all__ = ["sketch"]
 
-LOW = [name for name, _ in SAVED].index("LOW_SUPPLY")
-STORED = [name for name, _ in SAVED].index("STORED")
+LOW, STORED = SAVED_LOW_SUPPLY, SAVED_STORED
 SAVES = "SI|SHOW(1)"
 
 
@@ -158,3 +165,43 @@ def test_a_mega_measures_its_supply_too(
         mega.supply(4.1)
         wired.run(1000)
         assert until_saved(wired) == STORED
+
+
+LOOKS = "SI|LOOP(FOREVER);SHOW(DISTANCE);SHOW(LIGHT_L);SHOW(LIGHT_R);END_LOOP"
+STEP = 69  # thousandths of a centimetre in the 4 us of the robot's clock
+
+
+@pytest.mark.parametrize("board", ["uno", "mega"])
+@pytest.mark.parametrize("distance_cm", [3, 50, 390])
+def test_readings_are_right_while_names_are_kept_and_the_line_is_bad(
+    board: str, distance_cm: int, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    """Saving keeps a program from running, the line interrupts it: readings come late at most."""
+    needed()
+    elf = firmware(board, tmp_path_factory.mktemp(board), shared(tmp_path_factory))
+    with Uno(elf, names=NAMES, board=board, baud=9600) as uno:
+        uno.run_ms(300)
+        uno.analog("A0", 200)
+        uno.analog("A1", 800)
+        uno.sonar("trigger", "echo", distance_cm)
+        wired = computer(uno)
+        send(wired, LOOKS, is_detached=True)
+        begun, shown = uno.cycle, []
+        for turn in range(20):
+            assert wired.until(wired.session.name(b"TINI%d" % turn)) == OK
+            wired.session.name(b"TINIBOT")
+            wired.run(30)
+            uno.send(b"\x55", stop_bits_fail=True)
+            wired.run(20)
+            shown += [int(event.values["value"]) for event in wired.session.events()
+                      if event.name == "SHOW"]  # fmt: skip
+        assert wired.session.is_running
+        kept = [event for event in uno.events if event.what == "eeprom" and event.cycle > begun]
+        left = [each.cycle for each in uno.pins.history("trigger") if each.state == "low"]
+    assert len(kept) > 300
+    assert len(shown) > 30
+    distances = [value for value in shown if value not in (200_000, 800_000)]
+    assert len(distances) > 10
+    assert all(abs(value - 1000 * distance_cm) <= 3 * STEP for value in distances), distances
+    assert {200_000, 800_000} < set(shown)
+    assert min(b - a for a, b in pairwise(left) if a > begun) >= 30 * CYCLES_PER_MS

@@ -28,7 +28,7 @@ from tools.uno import CYCLES_PER_MS, Uno
 
 __all__ = ("memory", "sketch", "uno")  # fixtures
 
-PRESSED = "if (press == Press::kPressed) firmware_pressed();"
+PRESSED = "if (press == Press::kPressed) firmware_on_pressed();"
 WATCHDOG, STALL = 4, 66  # a reset and a fault in docs/link.md
 HANGS, HANGS_ALONE = "for (;;) {\n }", "{ cli(); for (;;) {\n } }"
 TIMER_MS, WATCHDOG_MS = 110, 300

@@ -24,7 +24,7 @@ from tiniscript.cli.texts.firmware import FLASH_TEXTS
 from tiniscript.flash import avrdude, ready
 from tiniscript.flash.bootloaders import BOARDS, UNO
 from tools.bench import firmware_size
-from tools.build import firmware_files
+from tools.builds import firmware_files
 from tools.uno import Uno
 
 pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
@@ -212,7 +212,7 @@ def test_ctrl_c_in_the_middle_says_what_is_on_the_board(
     running.send_signal(signal.SIGINT)
     _, said = running.communicate(timeout=30)
     assert running.returncode == 2
-    assert "half a firmware" in said or said == "Stopped.\n"  # it may not have read that far
+    assert "half a firmware" in said or said.strip() == "Stopped."  # it may not have read that far
     assert not Path(f"/proc/{told.read_text()}").exists()
 
 

@@ -258,7 +258,7 @@ def test_other_doctest_is_refused(project: Path, tmp_path: Path) -> None:
 def test_other_scons_is_refused(project: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     from platformio import dependencies
 
-    from tools.build import platformio_offline
+    from tools.builds import platformio_offline
 
     monkeypatch.setattr(dependencies, "get_core_dependencies", lambda: {"tool-scons": "^5.0.0"})
     with pytest.raises(platformio_offline.CannotStandIn, match=r"wants tool-scons \^5\.0\.0"):
@@ -268,7 +268,7 @@ def test_other_scons_is_refused(project: Path, monkeypatch: pytest.MonkeyPatch) 
 def test_registry_is_left_to_pio(
     project: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from tools.build import platformio_offline
+    from tools.builds import platformio_offline
 
     monkeypatch.setenv("PLATFORMIO_CORE_DIR", str(tmp_path / "core"))
     monkeypatch.setattr(platformio_offline, "registry_answers", lambda: True)
@@ -284,7 +284,7 @@ def test_what_is_an_answer_of_the_registry(
     project: Path, answer: bytes, is_one: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A page that something on the way puts there is none."""
-    from tools.build import platformio_offline
+    from tools.builds import platformio_offline
 
     monkeypatch.setattr("urllib.request.urlopen", lambda *_, **__: BytesIO(answer))
     assert platformio_offline.registry_answers() == is_one
@@ -294,7 +294,7 @@ def test_a_file_that_has_just_changed_is_read_anew(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Of the same length in the same second: nothing but its text tells it from the one before."""
-    from tools.build import platformio_offline
+    from tools.builds import platformio_offline
 
     monkeypatch.setattr(sys, "dont_write_bytecode", False)
     file = tmp_path / "some_module.py"

@@ -22,9 +22,7 @@ def test_a_reset_robot_runs_its_first_program_with_a_heartbeat() -> None:
     first.talk(session, 500)
     assert [event.name for event in session.events()] == ["SHOW", "DONE"]
 
-    second = HostFirmware(
-        KIT, chance=0x9ABCDEF1
-    )  # run 1 of the first has ended, this one's has not
+    second = HostFirmware(KIT, seed=0x9ABCDEF1)  # run 1 of the first has ended, this one's has not
     second.now_ms = first.now_ms
     second.wait(100)
     code = compile_text("SHOW(2);F(2, 80);SHOW(3)", KIT).code

@@ -12,6 +12,7 @@ import subprocess
 import tempfile
 from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
+from itertools import chain, repeat
 from pathlib import Path
 from typing import NamedTuple
 
@@ -182,14 +183,19 @@ class Board:
         self.script.append(f"adc {channel} {millivolts}")
 
     def echoes(
-        self, trigger: int, echo: int, widths_us: Iterable[float], delay_us: int = 460
+        self,
+        trigger: int,
+        echo: int,
+        widths_us: Iterable[float],
+        glitches_us: Iterable[tuple[float, float]] = (),
     ) -> None:
+        """Say what a sensor answers to its pings; glitches are when after a ping, and how long."""
         a, b = self.bit(trigger), self.bit(echo)
-        for width_us in widths_us:
-            self.script.append(
-                f"ping {a.port.upper()} {a.bit} {b.port.upper()} {b.bit} {460 * 16} "
-                f"{round(width_us * 16)}"
-            )
+        none = repeat((0.0, 0.0))
+        for width_us, (at_us, span_us) in zip(widths_us, chain(glitches_us, none), strict=False):
+            times = (460, width_us, at_us, span_us)
+            cycles = " ".join(str(round(us * 16)) for us in times)
+            self.script.append(f"ping {a.port.upper()} {a.bit} {b.port.upper()} {b.bit} {cycles}")
 
     # -- the run, and what it was like
 

@@ -59,6 +59,9 @@ void stop(bool is_done) {
 
 }  // namespace
 
+// What a test does in each turn of loop(), in the file beside.
+extern "C" void test_turn() __attribute__((weak));
+
 namespace tiniscript {
 
 // No firmware, so nothing that a watchdog could note.
@@ -86,6 +89,7 @@ void setup() {
 void loop() {
   const uint32_t now_ms = board_now_ms();
   board_tick(now_ms);
+  if (test_turn != nullptr) test_turn();
   switch (board_button(now_ms)) {
     case Press::kNothing:
     case Press::kHeld:
@@ -104,4 +108,3 @@ void loop() {
     if (is_done) board_finished();
   }
 }
-

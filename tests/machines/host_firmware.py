@@ -40,7 +40,7 @@ class HostFirmware(Process):
         kit: Kit,
         memory: bytes = EMPTY,
         reset: int = POWER_ON,
-        chance: int = 0x12345678,
+        seed: int = 0x12345678,
         max_run_ms: int = 600_000,
         write_ms: float = 3.4,
         sources: Path = SOURCES,
@@ -50,7 +50,7 @@ class HostFirmware(Process):
         self.did: list[str] = []
         self.is_lit, self.is_latched = False, True
         head = pack("<HBBB", kit.fingerprint, len(kit.sensors), len(kit.actuators), reset)
-        times = pack("<IIB", chance, max_run_ms, int(write_ms * TICKS))
+        times = pack("<IIB", seed, max_run_ms, int(write_ms * TICKS))
         self.ask(b"B", head + times + pack("<I", len(memory)) + memory)
 
     def step(self, data: bytes = b"", flags: int = 0, ticks: int = TICKS) -> bytes:

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 from tests.machines.chips import ran
 from tests.machines.host import SOURCES, WARNINGS, Process, Ran, run_request
 from tiniscript.kit import Kit
-from tools.build import chips
+from tools.builds import chips
 
 if TYPE_CHECKING:
     from tests.machines import Senses

@@ -6,10 +6,11 @@
  *   watch ADDRESS                    a byte of data memory
  *   pin CYCLE PORT BIT LEVEL         what a wire from outside does
  *   adc CHANNEL MILLIVOLTS
- *   ping PORT BIT PORT BIT DELAY WIDTH
+ *   ping PORT BIT PORT BIT DELAY WIDTH AT SPAN
  *       an HC-SR04: its trigger and its echo; the echo of the next ping begins so many cycles
  *       after the trigger falls, and is so long. Every line is a ping of that trigger; its last one
- *       repeats. A trigger that falls while the echo is high is not seen.
+ *       repeats. A trigger that falls while the echo is high is not seen. AT cycles after the
+ *       trigger falls the wire says the opposite for SPAN cycles.
  *
  *   sweep STEP COUNT SPAN PORT BIT
  *       when the run has ended, COUNT copies of the chip go on: in the first one that wire goes
@@ -53,8 +54,8 @@ static int change_count;
 
 static struct ping {
   struct wire trigger, echo;
-  unsigned long long delay, width;
-  int is_done;
+  unsigned long long delay, width, at, span;
+  int is_done, is_high, is_glitched;
 } pings[MOST];
 static int ping_count;
 
@@ -97,10 +98,30 @@ static struct sonar* sonar_of(struct wire trigger) {
   return sonar;
 }
 
+static void tell(const struct ping* ping) { drive(ping->echo, ping->is_high ^ ping->is_glitched); }
+
+static avr_cycle_count_t errs_no_more(avr_t* chip, avr_cycle_count_t when, void* param) {
+  struct ping* ping = param;
+  (void)chip, (void)when;
+  ping->is_glitched = 0;
+  tell(ping);
+  return 0;
+}
+
+static avr_cycle_count_t errs(avr_t* chip, avr_cycle_count_t when, void* param) {
+  struct ping* ping = param;
+  (void)when;
+  ping->is_glitched = 1;
+  tell(ping);
+  avr_cycle_timer_register(chip, ping->span, errs_no_more, ping);
+  return 0;
+}
+
 static avr_cycle_count_t falls(avr_t* chip, avr_cycle_count_t when, void* param) {
   struct ping* ping = param;
   (void)chip, (void)when;
-  drive(ping->echo, 0);
+  ping->is_high = 0;
+  tell(ping);
   sonar_of(ping->trigger)->is_busy = 0;
   return 0;
 }
@@ -108,7 +129,8 @@ static avr_cycle_count_t falls(avr_t* chip, avr_cycle_count_t when, void* param)
 static avr_cycle_count_t rises(avr_t* chip, avr_cycle_count_t when, void* param) {
   struct ping* ping = param;
   (void)when;
-  drive(ping->echo, 1);
+  ping->is_high = 1;
+  tell(ping);
   avr_cycle_timer_register(chip, ping->width, falls, ping);
   return 0;
 }
@@ -129,6 +151,7 @@ static void triggered(avr_irq_t* irq, uint32_t level, void* param) {
     ping->is_done = 1;
     sonar->is_busy = ping->width != 0;
     if (ping->width) avr_cycle_timer_register(avr, ping->delay, rises, ping);
+    if (ping->span) avr_cycle_timer_register(avr, ping->at, errs, ping);
   }
   sonar->was_high = level;
 }
@@ -145,7 +168,7 @@ static void add_ping(struct ping ping) {
 
 static void read_script(void) {
   char line[128], port, second;
-  unsigned long long cycle, width;
+  unsigned long long cycle, width, at, span;
   int bit, other, level;
   while (fgets(line, sizeof line, stdin)) {
     if (sscanf(line, "watch %u", &watches[watch_count].address) == 1) {
@@ -154,9 +177,9 @@ static void read_script(void) {
       changes[change_count++] = (struct change){cycle, {port, bit}, level};
     } else if (sscanf(line, "adc %d %d", &bit, &level) == 2) {
       avr_raise_irq(avr_io_getirq(avr, AVR_IOCTL_ADC_GETIRQ, ADC_IRQ_ADC0 + bit), level);
-    } else if (sscanf(line, "ping %c %d %c %d %llu %llu", &port, &bit, &second, &other, &cycle,
-                      &width) == 6) {
-      add_ping((struct ping){{port, bit}, {second, other}, cycle, width, 0});
+    } else if (sscanf(line, "ping %c %d %c %d %llu %llu %llu %llu", &port, &bit, &second, &other,
+                      &cycle, &width, &at, &span) == 8) {
+      add_ping((struct ping){{port, bit}, {second, other}, cycle, width, at, span, 0, 0, 0});
     } else if (sscanf(line, "sweep %u %u %u %c %d", &sweep.step, &sweep.count, &sweep.span,
                       &sweep.wire.port, &sweep.wire.bit) != 5) {
       fprintf(stderr, "not understood: %s", line);

@@ -98,7 +98,7 @@ def test_table(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_the_sketch_calls_it_as_we_say() -> None:
-    sketch = (SOURCES / "src" / "firmware" / "firmware.cpp").read_text(encoding="utf-8")
+    sketch = (SOURCES / "src" / "firmware" / "run.cpp").read_text(encoding="utf-8")
     assert f" kBudget = {machine_cycles.SKETCH_BUDGET};" in sketch
 
 

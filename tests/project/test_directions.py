@@ -26,7 +26,7 @@ UPSTREAM: dict[str, set[str]] = {
     "words": {"fixed_point"},
     "diagnostics": {"source"},
     "bytecode": {"kit"},
-    "syntax": {*TEXT, "bytecode"},  # of the bytecode its limits alone
+    "syntax": {*TEXT, "bytecode"},  # of the bytecode its limits and its comparators
     "semantics": {*TEXT, "bytecode", "syntax"},
     "codegen": {"source", "files", "fixed_point", "bytecode", "semantics"},
     "vm": {"fixed_point", "kit", "bytecode"},

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import shlex
+from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
@@ -107,12 +108,98 @@ def test_links_lead_somewhere(document: Path) -> None:
             assert (document.parent / target).exists(), f"{document.name}: {target}"
 
 
-@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.name)
+# -- names of files, folders and modules ----------------------------------------------------------
+
+SOURCES = sorted(
+    path
+    for folder in ("compiler", "tests", "tools", "vm_arduino")
+    for end in ("py", "md", "cpp", "h", "c", "S", "ini", "toml")
+    for path in (ROOT / folder).rglob(f"*.{end}")
+    if ".pio" not in path.parts
+)
+ROOMS = ("compiler", "tests", "tools", "docs", "examples", "vm_arduino")
+# Where a path in a document, a docstring or a comment begins.
+BASES = (ROOT, ROOT / "compiler" / "tiniscript", ROOT / "vm_arduino", ROOT / "vm_arduino" / "src")
+# Names of files that a person has, and of those that a build makes.
+OTHERS_FILES = {"prog.ts", "own.h", "myrobot.toml", "my.toml", "firmware.elf"}
+PATH = r"[\w.-]+(?:/[\w.-]+)+/?"
+FILE_NAME = r"[\w-]+\.(?:py|md|cpp|h|c|S|ini|toml|ts|sh|wasm|ino)"
+
+
+def spans_of(path: Path) -> list[str]:
+    """Return what stands between backquotes, outside of fences."""
+    text = path.read_text(encoding="utf-8")
+    if path.suffix == ".md":
+        text = re.sub(r"^```.*?^```", "", text, flags=re.DOTALL | re.MULTILINE)
+    return re.findall(r"`([^`\n]+)`", text)
+
+
+def modules_in(path: Path) -> list[str]:
+    return re.findall(r"python -m ((?:tools|tests|tiniscript)[\w.]*\w)", path.read_text("utf-8"))
+
+
+def exists(path: str) -> bool:
+    return any((base / path).exists() for base in BASES)
+
+
+@pytest.mark.parametrize(
+    "document", [*DOCUMENTS, ROOT / "tools" / "uno" / "README.md"], ids=lambda path: path.name
+)
 def test_files_that_are_named_exist(document: Path) -> None:
-    text = document.read_text(encoding="utf-8")
-    pattern = r"`((?:compiler|tests|tools|docs|examples|vm_arduino)/[\w./-]+)`"
-    for target in re.findall(pattern, text):
-        assert (ROOT / target).exists(), f"{document.name}: {target}"
+    """A span with a room of the repository in front is a path; a file's name alone is one's name.
+
+    `NAME.toml` and `tests/*.py` are no names.
+    """
+    known = {path.name for path in (*SOURCES, *ROOT.glob("examples/*.ts"), *ROOT.iterdir())}
+    known |= OTHERS_FILES | {"machine.wasm", "robot.wasm"}
+    wrong = []
+    for span in spans_of(document):
+        is_path = bool(re.fullmatch(PATH, span)) and span.split("/")[0] in ROOMS
+        is_path = is_path or bool(re.fullmatch(r"(?:\w+/)+(?:" + FILE_NAME + ")?", span))
+        if is_path and "NAME" not in span and not exists(span):
+            wrong.append(span)
+        if document.parent == ROOT and re.fullmatch(FILE_NAME, span) and "NAME" not in span:
+            wrong += [] if span in known else [span]
+    if document.name != "CHANGELOG.md":  # it says what was, too
+        assert not wrong, "\n".join(wrong)
+
+
+def test_every_stand_in_for_a_robot_has_its_row() -> None:
+    """Whoever writes a test finds all of them in one table, with what each is for."""
+    helpers = {"__init__", "chips", "bootloaders", "uno"}  # what several of them share
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| `([\w/.]+)` \|", text, flags=re.MULTILINE)
+    machines = set((ROOT / "tests" / "machines").glob("*.py"))
+    robots = set((ROOT / "tests" / "support").glob("*robot*.py"))
+    robots -= {ROOT / "tests" / "support" / "shared_pty_robot.py"}  # one that shares its port
+    expected = {path.relative_to(ROOT).as_posix() for path in machines | robots
+                if path.stem not in helpers}  # fmt: skip
+    assert {row for row in rows if "/" in row} == {*expected, "tools/uno/"}
+
+
+def test_paths_in_sources_exist() -> None:
+    """A path that a docstring or a comment names, as in a document."""
+    names = {path.name for path in SOURCES} | {"serial.py"}  # which a test writes
+    wrong = []
+    for source in SOURCES:
+        for span in spans_of(source):
+            is_path = bool(re.fullmatch(PATH, span)) and span.split("/")[0] in ROOMS
+            is_wrong = is_path and "NAME" not in span and not exists(span)
+            if is_wrong or (re.fullmatch(r"\w+\.py", span) and span not in names):
+                wrong.append(f"{source.relative_to(ROOT)}: {span}")
+    assert not wrong, "\n".join(wrong)
+
+
+def test_modules_that_are_named_exist() -> None:
+    """What `python -m` is to run, in documents, sources and scripts, is a module."""
+    paths = [*DOCUMENTS, *SOURCES, *ROOT.glob("tools/*.sh"), *ROOT.glob(".ci/*")]
+    named = {(path.name, module) for path in paths for module in modules_in(path)}
+    assert ("CONTRIBUTING.md", "tools.generate") in named
+    for name, module in sorted(named):
+        found = find_spec(module)
+        assert found is not None, f"{name}: {module}"
+        if found.submodule_search_locations is not None:
+            assert find_spec(module + ".__main__") is not None, f"{name}: {module}"
 
 
 def test_examples_have_no_mistakes(capsys: pytest.CaptureFixture[str]) -> None:

@@ -9,7 +9,6 @@ import pytest
 
 from tiniscript import check_text, robots
 from tiniscript.semantics.ir import program_text
-from tiniscript.semantics.lint import advice
 from tiniscript.semantics.optimizer import optimized
 
 KIT = robots.load("tinibot").kit
@@ -58,57 +57,3 @@ def short(text: str) -> str:
 )  # fmt: skip
 def test_what_becomes_of_it(text: str, expected: str) -> None:
     assert short(text) == expected
-
-
-@pytest.mark.parametrize(
-    ("text", "code"),
-    [
-        ("LOOP(FOREVER);W(1);END_LOOP;S", "TS802"),
-        ("LOOP(2);BREAK;S;END_LOOP", "TS802"),
-        ("IF(DISTANCE < 5);LOOP(FOREVER);W(1);END_LOOP;ELSE;LOOP(FOREVER);W(1);END_LOOP;ENDIF;S",
-         "TS802"),
-        ("F(0, 80)", "TS803"),
-        ("L(2 - 2, 80)", "TS803"),
-        ("LOOP(FOREVER);X = DISTANCE;SHOW(X);END_LOOP", "TS804"),
-        ("WHILE(TRUE);DISTANCE;END_WHILE", "TS804"),
-        ("DEF A;SHOW(1);END_DEF;LOOP(FOREVER);A;END_LOOP", "TS804"),
-        ("LOOP(3);F(1, 80);IF(DISTANCE < 10);S;ENDIF;END_LOOP", "TS805"),
-        ("LOOP(3);B(0.5, 80);DISTANCE;IF(5 > DISTANCE);S;ENDIF;END_LOOP", "TS805"),
-        ("X = 5", "TS806"),
-        ("DEF A;S;END_DEF", "TS807"),
-        ("SHOW(5 % (3 - 3))", "TS808"),
-        ("IF(2147483 * 2 > DISTANCE);S;ENDIF", "TS808"),
-    ],
-)  # fmt: skip
-def test_advice(text: str, code: str) -> None:
-    found = check_text(text, KIT)
-    assert found.is_right
-    assert [problem.code.number for problem in found.problems] == [code]
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
-        "LOOP(FOREVER);W(1);IF(DISTANCE < 5);BREAK;ENDIF;END_LOOP;S",
-        "F(0, 80) UNTIL(DISTANCE < 5)",
-        "LOOP(FOREVER);M(LIGHT_L / 10, LIGHT_R / 10);END_LOOP",
-        "DEF A;W(1);END_DEF;LOOP(FOREVER);A;END_LOOP",
-        "LOOP(3);F(0.4, 80);IF(DISTANCE < 10);S;ENDIF;END_LOOP",
-        "LOOP(3);F(1, 80);IF(LIGHT_L < 10);S;ENDIF;END_LOOP",
-        "LOOP(3);F(1, 80) UNTIL(DISTANCE < 10);IF(DISTANCE < 10);S;ENDIF;END_LOOP",
-        "F(1, 80);IF(DISTANCE < 10);S;ENDIF",
-        "X = 5;SHOW(X)",
-        "N = 3;WHILE(N > 0);N = N - 1;END_WHILE",
-        "X = 0;SHOW(X / X)",
-        "SHOW(FALSE AND 1 / 0 > 2)",
-    ],
-)
-def test_no_advice(text: str) -> None:
-    assert check_text(text, KIT).problems == []
-
-
-def test_advice_is_for_right_programs_alone() -> None:
-    wrong = check_text("X = 5;S = 5", KIT)
-    assert [problem.is_mistake for problem in wrong.problems] == [True]
-    assert wrong.program is not None
-    assert advice(wrong.program, KIT)

@@ -15,7 +15,7 @@ import pytest
 
 from tests.support.casefile import ROOT
 
-OFFLINE = ROOT / "tools" / "build" / "platformio_offline.py"
+OFFLINE = ROOT / "tools" / "builds" / "platformio_offline.py"
 SKETCH = ROOT / "vm_arduino"
 IS_CI = bool(os.environ.get("CI"))
 

@@ -10,7 +10,7 @@ import os
 import select
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from tests.machines.host_firmware import EMPTY, POWER_ON, HostFirmware
@@ -19,6 +19,24 @@ from tiniscript.kit import Kit
 
 PUSHED, RELEASED = 1, 2  # flags of a step
 BEHIND_MS = 50  # more than that behind, the robot's clock goes slower
+
+
+def damaged(data: bytes, every: int, passed: int) -> bytes:
+    """Return bytes of which one of `every` changes on its way, after so many have passed.
+
+    Where `every` is 0, none does.
+    """
+    noisy = bytearray(data)
+    for k in range(len(noisy)):
+        if every and (passed + k + 1) % every == 0:
+            noisy[k] ^= 0x24
+    return bytes(noisy)
+
+
+def drives_now(did: Sequence[str]) -> bool:
+    """Whether the motors turn after what a robot has done."""
+    driven = [line for line in did if line.startswith("MOTORS")]
+    return bool(driven) and driven[-1] != "MOTORS 0 0"
 
 
 class PtyRobot:
@@ -63,8 +81,7 @@ class PtyRobot:
 
     @property
     def moves(self) -> bool:
-        driven = [line for line in self.did if line.startswith("MOTORS")]
-        return bool(driven) and driven[-1] != "MOTORS 0 0"
+        return drives_now(self.did)
 
     @property
     def robot_ms(self) -> int:
@@ -92,7 +109,7 @@ class PtyRobot:
     def switch_on(self) -> None:
         with self._lock:
             self.off_after = None
-            self._robot = HostFirmware(self.kit, self._memory, POWER_ON, chance=0x9ABCDEF1)
+            self._robot = HostFirmware(self.kit, self._memory, POWER_ON, seed=0x9ABCDEF1)
 
     def pull(self) -> None:
         """Pull the cable out: the port is not there any more."""
@@ -115,14 +132,8 @@ class PtyRobot:
             time.sleep(0.01)
 
     def _through_noise(self, data: bytes) -> bytes:
-        if not self.damages:
-            return data
-        noisy = bytearray(data)
-        for k in range(len(noisy)):
-            self._passed += 1
-            if self._passed % self.damages == 0:
-                noisy[k] ^= 0x24
-        return bytes(noisy)
+        self._passed += len(data)
+        return damaged(data, self.damages, self._passed - len(data))
 
     def _take_power(self) -> None:
         if self._robot:

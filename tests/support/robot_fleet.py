@@ -13,6 +13,7 @@ import time
 from collections.abc import Callable, Sequence
 
 from tests.machines.host_firmware import EMPTY, TICKS, HostFirmware
+from tests.support.pty_robot import damaged, drives_now
 from tiniscript.kit import Kit
 
 STEP_MS = 10  # between two steps of a robot for which nothing comes
@@ -26,7 +27,7 @@ class Pupil:
         import tty
 
         self.number = number
-        self.robot = HostFirmware(kit, EMPTY, chance=0x1000 + number)
+        self.robot = HostFirmware(kit, EMPTY, seed=0x1000 + number)
         self.ours, self._theirs = pty.openpty()
         tty.setraw(self._theirs)
         self.port = os.ttyname(self._theirs)
@@ -41,8 +42,7 @@ class Pupil:
 
     @property
     def moves(self) -> bool:
-        driven = [line for line in self.did if line.startswith("MOTORS")]
-        return bool(driven) and driven[-1] != "MOTORS 0 0"
+        return drives_now(self.did)
 
     def go_on(self, data: bytes, passed_ms: int) -> None:
         """Let time pass in which bytes arrive."""
@@ -62,12 +62,8 @@ class Pupil:
         os.close(self._theirs)
 
     def _through_noise(self, data: bytes) -> bytes:
-        noisy = bytearray(data)
-        for k in range(len(noisy)):
-            self._passed += 1
-            if self.damages and self._passed % self.damages == 0:
-                noisy[k] ^= 0x24
-        return bytes(noisy)
+        self._passed += len(data)
+        return damaged(data, self.damages, self._passed - len(data))
 
 
 class RobotFleet:

@@ -37,7 +37,7 @@ def robot_and_senses(case: Case) -> tuple[Robot, Senses]:
 
 
 def language_of(case: Case) -> str:
-    return "es" if case.path.stem.endswith("es") else "en"
+    return "es" if case.path.stem.endswith(".es") else "en"  # `values.md` is English
 
 
 def compiled(case: Case) -> Compiled:

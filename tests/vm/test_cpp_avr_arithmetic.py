@@ -1,4 +1,4 @@
-"""A hundred thousand operations on a simulated ATmega328P, against `thousandths.py`.
+"""A hundred thousand operations on a simulated ATmega328P, against `fixed_point.py`.
 
 The chip makes the numbers itself, in the way that `pairs` does, and says a checksum for each block
 of results. Where one differs, the chip is asked for that block again, result by result.

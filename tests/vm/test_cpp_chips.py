@@ -31,7 +31,7 @@ from tiniscript.bytecode.disassembly import read_listing
 from tiniscript.bytecode.image import ImageRefused, pack
 from tiniscript.bytecode.verify import Refused
 from tiniscript.kit import Kit
-from tools.build import chips
+from tools.builds import chips
 
 
 def _run_emulated(name: str, image: bytes, kit: Kit, senses: Senses) -> Ran:

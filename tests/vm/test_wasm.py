@@ -26,7 +26,7 @@ from tiniscript.cli.commands import run
 from tiniscript.vm.machine import Machine
 from tiniscript.vm.state import WAITING
 from tiniscript.vm.trace import AnyMachine
-from tools.build import wasm
+from tools.builds import wasm
 
 needs_wasmtime = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
 needs_zig = pytest.mark.skipif(bool(wasm.missing()), reason=wasm.missing() or "there is a compiler")
@@ -75,7 +75,7 @@ def test_another_machine_is_another_module(
     monkeypatch.setattr(wasm, "ROOT", tmp_path)
     assert wasm.main(["--check"]) == 1
     said = capsys.readouterr().err
-    assert said.count("stale. Run: python -m tools.build.wasm") == len(modules) == 2
+    assert said.count("stale. Run: python -m tools.builds.wasm") == len(modules) == 2
     assert wasm.main([]) == 0
     assert wasm.main(["--check"]) == 0
     source.write_text("?", encoding="utf-8")

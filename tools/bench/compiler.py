@@ -1,6 +1,6 @@
 """Prints what is measured: sizes, and times as ratios within one run.
 
-`python -m tools.bench.compiler` takes about half a minute; `cpp_benchmark.py` measures the
+`python -m tools.bench.compiler` takes about half a minute; `tools.bench.machine` measures the
 machines. Sizes are exact. Times on a busy machine are noisy, so they are medians of pairs taken
 in turn; compare ratios, not milliseconds. The figures of others are those of the same programs,
 measured once with their own tools.

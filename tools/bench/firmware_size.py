@@ -19,10 +19,10 @@ sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 from tiniscript import robots
 from tools import uno
 from tools.bench import firmware_stack
-from tools.build.platformio_offline import CannotStandIn, config_of
+from tools.builds.platformio_offline import CannotStandIn, config_of
 
 PROJECT = ROOT / "vm_arduino"
-OFFLINE = ROOT / "tools" / "build" / "platformio_offline.py"
+OFFLINE = ROOT / "tools" / "builds" / "platformio_offline.py"
 DEFAULT = "tinibot"  # where the name of an environment has no robot
 FLASH_MUST, FLASH_AIM = 20 * 1024, 12 * 1024
 RAM_MUST, RAM_AIM = 1300, 1000

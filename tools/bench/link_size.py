@@ -1,7 +1,8 @@
 """Prints how much flash and RAM the link takes on an ATmega328P: linked, beside the machine.
 
-Builds the small program of `cpp_size.py` with all of the machine, once with and once without the
-link, and takes the difference: so the verifier and the checksum, which both use, are not counted.
+Builds the small program of `machine_size.py` with all of the machine, once with and once without
+the link, and takes the difference: so the verifier and the checksum, which both use, are not
+counted.
 """
 
 from __future__ import annotations
@@ -52,13 +53,13 @@ PORT_USED = """port_card(); port_condition(); port_equipment(); sink = port_room
 LINK = """{ static Receiver receiver; static Link link;
         link.begin(&receiver, sink); sink = receiver.put(sink, sink); link.tick(sink);
         link.tell(); link.seal();
-        uint8_t byte; while (link.next(&byte)) sink = byte;
+        uint8_t byte; while (link.next_tx_byte(&byte)) sink = byte;
         link.done(); link.faulted(); link.stopped(Cause::kButton);
         sink = link.show(sink, sink); }"""
 
 
 def probe(use: str) -> str:
-    """Return the program of `cpp_size.py` with a port, all of the machine, and `use`."""
+    """Return the program of `machine_size.py` with a port, all of the machine, and `use`."""
     parts = (
         (
             '#include "vm/vm.h"',

@@ -2,7 +2,7 @@
 
 Builds the same small program with and without the machine, and takes the difference. That of the
 store is what it adds to the machine; the memory below it is not counted. Knows the
-the AVR's compiler and its flags; `chips.py` knows those of other chips, which `cpp_benchmark.py`
+the AVR's compiler and its flags; `chips.py` knows those of other chips, which `machine.py`
 prints. `--parts` prints the functions on the AVR too, largest last.
 """
 
@@ -22,7 +22,7 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT)]
 
 from tools.bench import avr_bench
-from tools.build import chips
+from tools.builds import chips
 
 SOURCE = ROOT / "vm_arduino" / "src"
 WASM = ROOT / "compiler" / "tiniscript" / "vm" / "machine.wasm"
@@ -76,8 +76,8 @@ MACHINE = """{ static Machine machine; static int32_t readings[8];
         sink = (uint8_t)machine.tick(sink, sink); }"""
 STORE = """{ static Store store; const Area area = (Area)sink;
         store.boot(); store.tick(sink); sink = (uint8_t)store.state(); sink = store.is_busy();
-        sink = store.left(); sink = store.begin_save(bytes); sink = store.begin_keep(area, bytes);
-        sink = store.begin_erase(area); sink = store.used(area); store.refuse();
+        sink = store.begin_save(bytes); sink = store.begin_keep(area, bytes);
+        sink = store.used(area); store.refuse();
         sink = store.fetch(area, sink, bytes); }"""
 USES = {
     "image": IMAGE,

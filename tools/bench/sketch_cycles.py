@@ -22,7 +22,7 @@ from tiniscript.link.session import Session, Task
 from tools import uno
 from tools.bench import firmware_size
 from tools.bench.workloads import Work, WrongResult, expected
-from tools.build.platformio_offline import CannotStandIn
+from tools.builds.platformio_offline import CannotStandIn
 from tools.uno import Uno
 
 ROBOT = robots.load(robots.DEFAULT)

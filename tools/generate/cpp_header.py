@@ -1,6 +1,6 @@
 """What the C++ machine takes from the tables of the compiler: `bytecode.h` and `bytecode.cpp`.
 
-Knows how the table of instructions is packed for machines with little memory. `generate.py`
+Knows how the table of instructions is packed for machines with little memory. `__main__.py`
 writes the files.
 """
 
@@ -210,12 +210,12 @@ def form_numbers() -> str:
             ),
             "// Pops (2 bits) and form (6) of each opcode below kFamilies.\n"
             + constants(("kFormMask", (1 << FORM_BITS) - 1))
-            + "extern const uint8_t kFormOf[] in_flash;\n",
+            + "extern const uint8_t kFormOf[] tini_progmem;\n",
             "// Of each form: pushes (1 bit) and role (5); what the second byte is (2), the first\n"
             "// (3), and the size (3).\n"
-            "extern const uint8_t kForms[][2] in_flash;\n",
+            "extern const uint8_t kForms[][2] tini_progmem;\n",
             "// The least value of a Byte, and how much more than that it may be.\n"
-            "extern const uint8_t kRanges[][2] in_flash;\n",
+            "extern const uint8_t kRanges[][2] tini_progmem;\n",
         )
     )
 
@@ -256,7 +256,7 @@ def tables(command: str) -> str:
 def array(name: str, rows: Iterable[tuple[str, str]]) -> str:
     """Return a table; the second of each row is a comment."""
     lines = "".join(f"    {row},  // {comment or '--'}\n" for row, comment in rows)
-    return f"const uint8_t {name} in_flash = {{\n{lines}}};\n"
+    return f"const uint8_t {name} tini_progmem = {{\n{lines}}};\n"
 
 
 def names(same: Sequence[opcodes.Op]) -> str:

@@ -1,6 +1,6 @@
 """What the C++ half of the link takes from the table of messages: `messages.h`, `messages.cpp`.
 
-`generate.py` writes the files, and the tables of `docs/link.md`, which are here too.
+`__main__.py` writes the files, and the tables of `docs/link.md`, which are here too.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ def header(command: str) -> str:
             ("kFirstActing", messages.FIRST_ACTING),
         ),
         "// How long the payload of each request may be, from the first one on: least and most.\n"
-        "extern const uint8_t kRequestBytes[][2] in_flash;\n",
+        "extern const uint8_t kRequestBytes[][2] tini_progmem;\n",
         "// Where each field of a request begins.\n" + constants(*_places()),
         "// What begins a reply. Below 64: an image's Refusal, or the verifier's Rule.\n"
         + enumeration("Answer", statuses),

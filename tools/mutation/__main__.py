@@ -1,6 +1,6 @@
 """Breaks the C++ machine in hundreds of ways, and asks whether the tests notice each one.
 
-`python -m tools.mutation` tries all of `breaks.py`; words choose those whose names have them;
+`python -m tools.mutation` tries all of `mutants.py`; words choose those whose names have them;
 `--all` tries a change of every operator, constant and statement too. What goes unnoticed is a gap
 in the tests, and exit code 1. Needs g++.
 """

@@ -182,7 +182,7 @@ LIMITS = ("kCodeBytes", "kStackValues", "kVariables", "kCounters", "kCalls", "kD
           "kJoins", "kDevices", "kCheckMs", "kHeaderBytes", "kStarts", "kIsaMajor",
           "kIsaMinor")  # fmt: skip
 # The row of an operand: its least value, and how much more it may be.
-RANGES = re.compile(r"kRanges\[\]\[2\] in_flash = \{\n(.*?)\n\};", re.S)
+RANGES = re.compile(r"kRanges\[\]\[2\] tini_progmem = \{\n(.*?)\n\};", re.S)
 RANGE = re.compile(r"\{(\d+), (\d+)\},  // (\w+)")
 
 

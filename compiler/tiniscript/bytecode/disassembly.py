@@ -1,4 +1,4 @@
-"""Code as a listing, and a listing as code.
+"""The disassembly: code as a listing, and a listing as code.
 
 The text that `tsc show` prints and that cases compare: offset, bytes, instruction. Reading one
 takes the bytes; the words behind them are for people.

@@ -1,6 +1,6 @@
 """The one table of TiniScript bytecode.
 
-Everything that must know an instruction reads it from here: `lower`, `listing`, `verify` and
+Everything that must know an instruction reads it from here: `lower`, `disassembly`, `verify` and
 `vm` import it; `python -m tools.generate` writes the tables of `bytecode_spec.md` from it. Codes on
 the wire are promises: a code is never used again for something else.
 

@@ -1,4 +1,4 @@
-"""What a machine must refuse, and the name of each reason.
+"""The verifier: what a machine must refuse, and the name of each reason.
 
 One pass over the code from its first byte to its last, with bounded memory: what is open is a
 few words, and a jump is right when it leads where the structure around it ends or begins. What

@@ -1,1 +1,1 @@
-"""A checked program becomes instructions, and code bytes."""
+"""IR becomes instructions, and code bytes; each knows its source location."""

@@ -1,4 +1,4 @@
-"""A checked program becomes instructions, and instructions become code bytes.
+"""Lowering: IR becomes instructions, and instructions become code bytes.
 
 Knows which instruction says a thing in the fewest bytes, and lays out jumps: each starts
 short, and becomes far where its target is. Does not know what an image is.
@@ -43,7 +43,7 @@ class Place(NamedTuple):
 
 
 class Lowered(NamedTuple):
-    """`code` is longer than a machine takes where `bytecode.CODE_BYTES` says so."""
+    """`code` is longer than a machine takes where `opcodes.CODE_BYTES` says so."""
 
     code: bytes
     places: tuple[Place, ...]

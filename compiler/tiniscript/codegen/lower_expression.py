@@ -1,4 +1,4 @@
-"""Expressions become instructions, and conditions become branches.
+"""Lowering: expressions become instructions, and conditions become branches.
 
 Knows the shortest push of a constant, when both sides of an AND may simply be evaluated, and
 which conditions a single comparing branch says.

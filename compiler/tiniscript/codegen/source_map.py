@@ -1,4 +1,4 @@
-"""Which instruction comes from which line: the map of a compiled program.
+"""The source map: which instruction of a compiled program comes from which line.
 
 An image holds no text. Its map lies in the user's cache under the image's checksum, so that a
 fault can name its line and a listing can show it. Losing a map loses nothing else.
@@ -113,9 +113,7 @@ def recall(checksum: int) -> Map | None:
 
 
 def _path(checksum: int) -> Path:
-    from platformdirs import user_cache_path
-
-    return user_cache_path("tiniscript", appauthor=False) / "maps" / f"{checksum:08x}.json"
+    return files.cache_folder() / "maps" / f"{checksum:08x}.json"
 
 
 def _forget_oldest(folder: Path) -> None:

@@ -1,1 +1,1 @@
-"""What is said of a program: codes, places, and the words for them in two languages."""
+"""Diagnostics: what is said of a program, by code and span, in words of two languages."""

@@ -1,7 +1,7 @@
-"""Everything we can tell a person about a program, with its code, as data.
+"""The codes of diagnostics: everything we can tell a person about a program, as data.
 
 Knows which problems there are. Their words, in English and Spanish, are in `catalogue.toml`,
-which `messages` reads when there is something to say.
+which `rendering` reads when there is something to say.
 """
 
 from __future__ import annotations

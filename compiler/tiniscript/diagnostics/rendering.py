@@ -1,4 +1,4 @@
-"""Problems become words: in English or Spanish, for people and for editors.
+"""Diagnostics become words: in English or Spanish, for people and for editors.
 
 Knows how the texts of `catalogue.toml` are filled, and how a line of a program is shown with the
 place marked under it. Knows no single problem: what is said of each is in that file, which is

@@ -1,7 +1,7 @@
 """Firmware that is ready to be written: files, named after the robot, the board and a digest.
 
 The digest is of all that a firmware is made from, so that an old file is never taken for a new
-one. A package may bring files (`tools/build/firmware_files.py` makes them); others are built when
+one. A package may bring files (`tools/builds/firmware_files.py` makes them); others are built when
 they are first wanted, and kept in the user's cache.
 """
 
@@ -10,7 +10,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import NamedTuple
 
-from tiniscript.files import replace
+from tiniscript.files import cache_folder, replace
 
 FOLDER = Path(__file__).resolve().parent / "ready"
 NOTICE = "NOTICE.txt"
@@ -36,9 +36,7 @@ class Ready(NamedTuple):
 
 def cache() -> Path:
     """Return the user's folder for what was built."""
-    from platformdirs import user_cache_path
-
-    return user_cache_path("tiniscript", appauthor=False) / "firmware"
+    return cache_folder() / "firmware"
 
 
 def name_of(robot: str, board: str, digest: str) -> str:

@@ -18,6 +18,7 @@ from tiniscript.library.errors import ProgramError, RobotError, StopNotConfirmed
 from tiniscript.library.events import Ending, Reader, RobotEvent, ending_of
 from tiniscript.library.programs import Language, Program, program_of
 from tiniscript.library.runs import within
+from tiniscript.link.messages import SAVED_LOW_SUPPLY, SAVED_SAVING, SAVED_STORED
 from tiniscript.printable import printable
 
 if TYPE_CHECKING:
@@ -38,7 +39,6 @@ LONGEST_S = 10**9
 SAVE_S = 10.0  # for which a robot may save a program when its motors stand
 LOW_S = 2.0  # for which its voltage may be too low for that
 LOOK_S = 0.1
-SAVING, STORED, LOW_SUPPLY = 2, 3, 4  # of `link.messages.SAVED`
 
 
 class RobotInfo(NamedTuple):
@@ -255,12 +255,12 @@ class RobotConnection:
             saved = status["saved"]
             if STATES[int(status["state"])][0] == "RUNNING":  # detached: when its motors stand
                 return
-            if saved not in (SAVING, LOW_SUPPLY):
+            if saved not in (SAVED_SAVING, SAVED_LOW_SUPPLY):
                 self._is_saving = False
-                if saved != STORED:
+                if saved != SAVED_STORED:
                     raise RobotError("not_saved", self.language)
                 return
-            low_s = (low_s or monotonic()) if saved == LOW_SUPPLY else None
+            low_s = (low_s or monotonic()) if saved == SAVED_LOW_SUPPLY else None
             if low_s is not None and monotonic() > low_s + LOW_S:
                 self._is_saving = False
                 raise RobotError("low_supply", self.language)

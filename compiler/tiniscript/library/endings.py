@@ -8,23 +8,22 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from tiniscript.library.errors import RobotError
+from tiniscript.link.messages import FIRST_LINK_FAULT, STATE_FAULTED, STATE_IDLE
 from tiniscript.link.outcomes import Event
 
-LINK_FAULT = 64  # from here on, a fault is none of the program's
 DONE, FAULT, STOPPED = "DONE", "FAULT", "STOPPED"
-_IDLE, _FAULTED = 0, 3  # states of `link.messages`
 
 
 class End(NamedTuple):
-    """`name` is DONE, FAULT or STOPPED; `fault` is the number of a fault, else 0."""
+    """`name` is DONE, FAULT or STOPPED; `fault` is the number of a fault."""
 
     name: str
-    fault: int = 0
+    fault: int | None = None
 
     @property
     def is_the_programs(self) -> bool:
         """Whether the program has ended itself, if only by a fault."""
-        return self.name == DONE or (self.name == FAULT and self.fault < LINK_FAULT)
+        return self.name == DONE or (self.fault is not None and self.fault < FIRST_LINK_FAULT)
 
 
 class Follower:
@@ -54,14 +53,14 @@ def end_of(event: Event, run: int | None) -> End | None:
     """Return how a run has ended where an event ends it, else None. A `run` of None is any."""
     name, values = event
     if name in ("DONE", "FAULT") and run in (None, values["run"]):
-        return End(name, _number(event, "fault") if name == "FAULT" else 0)
+        return End(name, _number(event, "fault") if name == "FAULT" else None)
     if name == "STOPPED":
         return End(STOPPED)
     if name == "ENDED":
         state = _number(event, "state")
-        if state == _FAULTED:
+        if state == STATE_FAULTED:
             return End(FAULT, _number(event, "fault"))
-        return End(DONE if state == _IDLE else STOPPED)
+        return End(DONE if state == STATE_IDLE else STOPPED)
     return None
 
 

@@ -52,6 +52,4 @@ def remember(port: str, name: str, is_used: bool = True) -> None:
 
 
 def _path() -> Path:
-    from platformdirs import user_cache_path
-
-    return user_cache_path("tiniscript", appauthor=False) / "ports.json"
+    return files.cache_folder() / "ports.json"

@@ -203,13 +203,28 @@ RESETS = (
     ("BROWN_OUT", "The voltage was too low."),
     ("WATCHDOG",  "The watchdog: the robot's own program hung."),
 )
-# Faults that no instruction makes. Those of instructions are in `bytecode.py`.
+# Faults that no instruction makes. Those of instructions are in `opcodes.py`.
 LINK_FAULTS = (
     (64, "LINK_LOST", "No valid frame for a second while a tethered program ran."),
     (65, "MAX_RUN",   "A program without a tether ran longer than the robot allows."),
     (66, "STALL",     "The robot's own program did not go on."),
 )
 # fmt: on
+
+
+def _rows(table: tuple[tuple[str, str], ...], names: str) -> tuple[int, ...]:
+    """Return the number of each name: its row in the table. Raises ValueError where it has none."""
+    rows = [name for name, _ in table]
+    return tuple(rows.index(name) for name in names.split())
+
+
+STATE_IDLE, STATE_RUNNING, STATE_STOPPED, STATE_FAULTED = _rows(
+    STATES, "IDLE RUNNING STOPPED FAULTED"
+)
+SAVED_NOTHING, SAVED_SAVING, SAVED_STORED, SAVED_LOW_SUPPLY = _rows(
+    SAVED, "NOTHING SAVING STORED LOW_SUPPLY"
+)
+FIRST_LINK_FAULT = LINK_FAULTS[0][0]  # from here on, a fault is none of the program's
 
 BY_NUMBER = {message.number: message for message in MESSAGES}
 BY_NAME = {message.name: message for message in MESSAGES}

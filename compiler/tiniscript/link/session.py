@@ -1,9 +1,9 @@
-"""The conversation with one robot: a state machine without I/O and without a clock.
+"""The session with one robot: a state machine without I/O and without a clock.
 
 `receive` takes what has arrived, `poll` gives what to send, `wakes_at` says when to poll next,
 `events` what there is to tell. One request is on its way at a time; it is sent again until it is
 answered or its errand's time is over. Times are milliseconds. Knows how requests become
-frames, retries, the heartbeat and the stop; not which request follows which: `errands` does.
+frames, retries, the heartbeat and the stop; not which request follows which: `requests` does.
 """
 
 from __future__ import annotations
@@ -22,7 +22,9 @@ from tiniscript.link.messages import (
     LARGEST,
     MAJOR,
     MINOR,
-    STATES,
+    STATE_IDLE,
+    STATE_RUNNING,
+    STATE_STOPPED,
     STATUSES,
     STOP_BYTES,
     Malformed,
@@ -43,8 +45,6 @@ IDLE_BEAT_MS = 1000  # while nothing does
 DEAF_MS = 3000  # a heartbeat without an answer for so long: the link is lost
 STOP_MS = 100  # between two stop sequences
 CONFIRM_MS = 6000  # for which they are sent: then others have their turn again
-
-RUNNING = [name for name, _ in STATES].index("RUNNING")
 _STALE, _BUSY = STATUSES["STALE"], STATUSES["BUSY"]
 
 
@@ -96,7 +96,7 @@ class Session:
         self._due_ms: int | None = None  # when it is sent, or sent again
         self._sent_ms = 0  # when something was sent last
         # what the robot does
-        self._state = 0
+        self._state = STATE_IDLE
         self._run: int | None = None  # the run that we have started
         self._ended: int | None = None  # the last run whose end we know
         self._stop_ms: int | None = None  # when the stop sequence is sent next
@@ -158,11 +158,11 @@ class Session:
 
     @property
     def is_latched(self) -> bool:
-        return self._state > RUNNING
+        return self._state > STATE_RUNNING
 
     @property
     def is_running(self) -> bool:
-        return self._state == RUNNING
+        return self._state == STATE_RUNNING
 
     @property
     def is_open(self) -> bool:
@@ -362,7 +362,7 @@ class Session:
         if reply.status == _STALE:
             self._is_open = False  # HELLO tells what has become of the robot
         if message.name == "CLEAR" and reply.status == OK:
-            self._state = 0
+            self._state = STATE_IDLE
         self._learn(message.name, reply.values)
         done = reply.values.get("next")
         if self._task and isinstance(done, int):
@@ -411,14 +411,14 @@ class Session:
                 return  # a second answer to one stop
         if message.name in ("STOPPED", "FAULT"):
             self._epoch = frame.epoch
-            self._state = RUNNING + 1
+            self._state = STATE_STOPPED
             self._cancel_waiting(_STALE)
         if message.name in ("DONE", "FAULT"):
             run = values["run"]
             assert isinstance(run, int)
             self._ended = run
             if message.name == "DONE" and run == self._run:
-                self._state = 0
+                self._state = STATE_IDLE
         self._events.append(Event(message.name, values))
 
     def _finish(self, task: Task, outcome: Reply) -> None:
@@ -429,7 +429,7 @@ class Session:
             started = {name: outcome.values[name] for name in ("run", "program")}
             self._events.append(Event("STARTED", started))
         if outcome.values["run"] != self._ended:
-            self._state = RUNNING
+            self._state = STATE_RUNNING
 
     # -- endings ----------------------------------------------------------------------------------
 
@@ -446,7 +446,7 @@ class Session:
     def _close(self) -> None:
         self._cancel(LOST)
         self._is_open = False
-        self._state = 0
+        self._state = STATE_IDLE
         self._tell("LOST")
 
     def _cancel(self, status: int) -> None:

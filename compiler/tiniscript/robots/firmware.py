@@ -214,7 +214,7 @@ class _Part:
         return [
             f"constexpr uint8_t kEchoes = {len(self.echoes)};",
             "",
-            f"in_place Echo echo_at(uint8_t{' number' if others else ''}) {{",
+            f"tini_always_inline Echo echo_at(uint8_t{' number' if others else ''}) {{",
             *(f"  if (number == {k}) return {wired};" for k, wired in enumerate(others)),
             f"  return {last};",
             "}",

@@ -56,6 +56,4 @@ def _known() -> list[tuple[int, str]]:
 
 
 def _path() -> Path:
-    from platformdirs import user_cache_path
-
-    return user_cache_path("tiniscript", appauthor=False) / "profiles.json"
+    return files.cache_folder() / "profiles.json"

@@ -1,4 +1,4 @@
-"""The syntax tree becomes a checked program.
+"""The checker: the AST becomes IR.
 
 Knows every rule that a person can break once the shape is right: names, argument counts,
 ranges, kinds, limits; and the rule which reading a sensor's name means. Does not know bytes.

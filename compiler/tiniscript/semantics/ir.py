@@ -1,4 +1,4 @@
-"""The checked program: what a program means, with every reading in its place.
+"""The IR: what a checked program means, with every reading in its place.
 
 The checker writes it, the optimiser rewrites it, `lower` turns it into instructions. Names are
 numbers here: variables, sensors, actuators and DEFs by their order. Numbers are thousandths,

@@ -1,12 +1,13 @@
-"""What a teacher would say about a program that is right.
+"""The lint: what a teacher would say about a program that is right.
 
-Knows the checked program, before it is optimised. Gives warnings, never mistakes.
+Knows the IR, before it is optimised. Gives warnings, never mistakes.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
+from tiniscript.bytecode.opcodes import COMPARATORS
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Problem
 from tiniscript.fixed_point import as_text
@@ -33,9 +34,10 @@ from tiniscript.semantics.ir import (
 )
 from tiniscript.semantics.optimizer import constant, fold, sure_fault
 from tiniscript.source import Span
+from tiniscript.syntax.operators import SIGN_OF
 
 LONG_MOVE = 500  # ms: a robot goes a hand's breadth in this time
-_SIGNS = {"EQ": "=", "NE": "<>", "LT": "<", "LE": "<=", "GT": ">", "GE": ">="}
+_COMPARATORS = frozenset(name for name, _ in COMPARATORS)
 
 
 def advice(program: Program, kit: Kit) -> list[Problem]:
@@ -132,14 +134,14 @@ def _is_distance(op: str, sensor: int, kit: Kit) -> bool:
 
 def _comparison(condition: Expression, kit: Kit) -> str:
     """Return `DISTANCE < 10` for a condition that is just that, else nothing."""
-    if len(condition) != 3 or condition[2].op not in _SIGNS:
+    if len(condition) != 3 or condition[2].op not in _COMPARATORS:
         return ""
     texts = [
         kit.sensors[term.value].name if term.op == "SENSOR" else as_text(term.value)
         for term in condition[:2]
         if term.op in ("SENSOR", "NUMBER")
     ]
-    return f" {_SIGNS[condition[2].op]} ".join(texts) if len(texts) == 2 else ""
+    return f" {SIGN_OF[condition[2].op]} ".join(texts) if len(texts) == 2 else ""
 
 
 def _unused(program: Program, statements: list[Statement]) -> Iterator[Problem]:

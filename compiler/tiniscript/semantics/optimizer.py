@@ -1,4 +1,4 @@
-"""A checked program becomes a shorter one that does the same.
+"""The optimizer: IR becomes shorter IR that does the same.
 
 Folds constants, drops what is never reached and DEFs that nobody calls. Never changes a trace
 or a fault: what would fault is left to fault, and readings stay where they are.

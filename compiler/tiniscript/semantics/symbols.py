@@ -1,7 +1,7 @@
-"""What each name of a program stands for, and where problems go.
+"""The symbols of a program: what each name stands for; and where diagnostics go.
 
 Knows the names of the kit, and which names the text gives to variables and DEFs anywhere. The
-checker fills in what it has come past; `kinds` asks.
+checker fills in what it has come past; `types` asks.
 """
 
 from __future__ import annotations

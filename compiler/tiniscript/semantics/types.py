@@ -1,6 +1,6 @@
-"""The checker's half that looks into expressions.
+"""The types of expressions: the half of the checker that looks into them.
 
-Knows which kinds operators take and give, how deep the stack gets, and what names in
+Knows which types operators take and give, how deep the stack gets, and what names in
 expressions mean. Gives terms, and the sensors whose readings they use.
 """
 
@@ -14,6 +14,7 @@ from tiniscript.semantics.ir import Expression, Term
 from tiniscript.semantics.symbols import Scope
 from tiniscript.source import Span
 from tiniscript.syntax.ast import Argument, Part
+from tiniscript.syntax.operators import SIGN_OF
 from tiniscript.words import WORDS, meant_by
 
 NUMBER, YES_NO, ANY = "number", "yes_no", "any"  # ANY: a mistake was already reported there
@@ -35,10 +36,9 @@ class _Operand(NamedTuple):
     end: int
 
 
-_ARITHMETIC = {"ADD": "+", "SUB": "-", "MUL": "*", "DIV": "/", "MOD": "%", "MIN": "MIN",
-               "MAX": "MAX", "RANDOM": "RANDOM", "ROUND": "ROUND"}  # fmt: skip
-_ORDER = {"LT": "<", "LE": "<=", "GT": ">", "GE": ">="}
-_EQUAL = {"EQ": "=", "NE": "<>"}
+_ARITHMETIC = frozenset(("ADD", "SUB", "MUL", "DIV", "MOD", "MIN", "MAX", "RANDOM", "ROUND"))
+_ORDER = frozenset(("LT", "LE", "GT", "GE"))
+_EQUAL = frozenset(("EQ", "NE"))
 _COMPARED = re.compile(r"[^<>=]{1,40}?\s*(?:<=|>=|<>|[<>=])(?=[^<>=]*$)")  # `X =` of `X = 5`
 _UNARY = {"NEG": "-", "ABS": "ABS"}
 _LEAVES = {"TRUE": Term("YES_NO", 1), "FALSE": Term("YES_NO", 0), "TIME": Term("TIME")}
@@ -135,20 +135,19 @@ class Kinds:
         start, end = min(left.start, part.start), max(right.end, part.end)
         kind = YES_NO
         if op in _ARITHMETIC:
-            self._wants_number(_ARITHMETIC[op], left)
-            self._wants_number(_ARITHMETIC[op], right)
+            self._wants_number(SIGN_OF.get(op, op), left)
+            self._wants_number(SIGN_OF.get(op, op), right)
             kind = NUMBER
         elif op in ("AND", "OR"):
             self._wants_yes_no(op, left)
             self._wants_yes_no(op, right, left)
         elif left.kind != right.kind:
             if ANY not in (left.kind, right.kind):
-                sign = _ORDER.get(op) or _EQUAL[op]
-                self.scope.report(codes.MIXED_COMPARE, Span(start, end), sign=sign,
+                self.scope.report(codes.MIXED_COMPARE, Span(start, end), sign=SIGN_OF[op],
                                     left="@" + left.kind, right="@" + right.kind,
                                     fix=self._yes_no_alone(op, left, right))  # fmt: skip
         elif left.kind == YES_NO and op in _ORDER:
-            self.scope.report(codes.YES_NO_ORDER, Span(start, end), sign=_ORDER[op])
+            self.scope.report(codes.YES_NO_ORDER, Span(start, end), sign=SIGN_OF[op])
         stack.append(_Operand(kind, depth, start, end))
 
     def _wants_number(self, by: str, operand: _Operand) -> None:

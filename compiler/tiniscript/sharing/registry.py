@@ -228,9 +228,7 @@ def _make_folder() -> None:
 
 
 def _folder() -> Path:
-    from platformdirs import user_cache_path
-
-    return user_cache_path("tiniscript", appauthor=False) / "held"
+    return files.cache_folder() / "held"
 
 
 def _path(port: str) -> Path:

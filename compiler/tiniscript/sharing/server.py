@@ -99,6 +99,16 @@ class Host:
         owner = self._owner
         return owner is not None and self._line.runs(owner[1])
 
+    @property
+    def may_have_run(self) -> bool:
+        """The same, or a guest's run is about to begin: its request may be on its way. To be asked
+        when this is closed."""
+        tasks = [task for guest in self._guests for task in guest.tasks.values()]
+        return self.has_run or any(
+            task.asked.outcome is None and task.asked.starts and not task.is_detached
+            for task in (*tasks, *self._orphans)
+        )
+
     def close(self) -> None:
         """Let all guests go."""
         self._is_closing = True
@@ -121,6 +131,7 @@ class Host:
         try:
             while not self._is_closing and self._line.gone is None:
                 self._attend()
+            self._pass_on_outcomes()  # a run may have begun in this moment
         except Exception as bug:
             self._line.fail(bug)
         finally:
@@ -269,15 +280,12 @@ class Host:
     def _pass_on_events(self) -> None:
         while self._told:
             time_ms, event = self._told.popleft()
-            if event.name in _ENDS and event.values.get("run", -1) in (-1, self._run_of_owner):
+            # an end that is told late may be that of a run before
+            if event.name in _ENDS and self._owner is not None and not self.has_run:
                 self._owner = None
             for guest in list(self._guests):
                 if guest.verb:
                     self._tell_event(guest, time_ms, event)
-
-    @property
-    def _run_of_owner(self) -> int | None:
-        return self._owner[1] if self._owner is not None else None
 
     def _tell_event(self, guest: Guest, time_ms: int, event: Event) -> None:
         if len(guest.out) > FULL_BYTES and event.name in _MAY_MISS:

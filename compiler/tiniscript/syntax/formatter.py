@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from tiniscript.source import Source
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Scan, Token, scan
+from tiniscript.syntax.operators import SIGNS
 from tiniscript.words import ALIASES, BLOCK_ENDS
 
 INDENT = "  "
@@ -19,7 +20,6 @@ BEFORE_COMMENT = "  "
 _ARMS = frozenset(("ELSE", "ELSEIF"))
 _OPENS = frozenset(BLOCK_ENDS) | _ARMS  # what follows stands further right
 _CLOSES = frozenset(BLOCK_ENDS.values()) | _ARMS  # stands further left than what is before
-_OPERATORS = frozenset(("+", "-", "*", "/", "%", "=", "<", ">", "<=", ">=", "<>"))
 _WORD_OPERATORS = frozenset(("AND", "OR", "NOT"))
 
 
@@ -233,4 +233,4 @@ def _ends_value(token: Token) -> bool:
     """Whether a minus right after this token takes away from a value."""
     if token.kind is WORD:
         return token.text not in _WORD_OPERATORS
-    return token.kind not in _OPERATORS and token.kind not in ("(", ",")
+    return token.kind not in SIGNS and token.kind not in ("(", ",")

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import Final
 
+from tiniscript.bytecode.opcodes import COMPARATORS
 from tiniscript.source import Source, Span
 from tiniscript.syntax.ast import Part
 from tiniscript.syntax.lexer import Token
@@ -17,11 +18,13 @@ OPEN, OR, AND, NOT, COMPARISON, SUM, PRODUCT, MINUS = range(8)
 
 BINARY: Final = {
     "OR": (OR, "OR"), "AND": (AND, "AND"),
-    "=": (COMPARISON, "EQ"), "<>": (COMPARISON, "NE"), "<": (COMPARISON, "LT"),
-    "<=": (COMPARISON, "LE"), ">": (COMPARISON, "GT"), ">=": (COMPARISON, "GE"),
+    **{sign: (COMPARISON, name) for name, sign in COMPARATORS},
     "+": (SUM, "ADD"), "-": (SUM, "SUB"),
     "*": (PRODUCT, "MUL"), "/": (PRODUCT, "DIV"), "%": (PRODUCT, "MOD"),
 }  # fmt: skip
+COMPARISONS = frozenset(sign for _, sign in COMPARATORS)
+SIGNS = frozenset(sign for sign in BINARY if not sign.isalpha())
+SIGN_OF: Final = {name: sign for sign, (_, name) in BINARY.items()}
 
 
 class Operator:

@@ -24,6 +24,7 @@ from tiniscript.syntax.call_suggestions import (
 from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.foreign import foreign_header, foreign_word, forever_alone
 from tiniscript.syntax.lexer import NUMBER, ODD, QUOTES, WORD, Token
+from tiniscript.syntax.operators import COMPARISONS, SIGNS
 from tiniscript.syntax.reporter import Failed, Reporter, Resumed
 from tiniscript.syntax.suggestions import (
     AFTER_HEADER,
@@ -31,8 +32,6 @@ from tiniscript.syntax.suggestions import (
     BEFORE_NAME,
     BEFORE_NOTE,
     BETWEEN,
-    COMPARISONS,
-    SIGNS,
     body_begins,
     foreign_block,
     head_in,

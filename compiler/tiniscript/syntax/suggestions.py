@@ -9,11 +9,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tiniscript.syntax.call_suggestions import LONGEST, ends_value, starts_value, written
+from tiniscript.syntax.cursor import AT_END
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, Token
+from tiniscript.syntax.operators import COMPARISONS, SIGNS
 from tiniscript.words import WORDS, Word, meant_by, other_name
-
-SIGNS = frozenset(("+", "-", "*", "/", "%", "=", "<", ">", "<=", ">=", "<>"))
-COMPARISONS = frozenset(("=", "<", ">", "<=", ">=", "<>"))
 
 # Words in the place of an operator, and those that go with them.
 OPERATOR_WORDS = {
@@ -58,7 +57,7 @@ def body_begins(tokens: Sequence[Token], start: int, names_end: bool = True) -> 
     while True:
         token = tokens[k]
         kind = token.kind
-        if kind in (";", NEWLINE, END, "{", "}", "|"):
+        if kind in ("{", "}", "|", *AT_END):
             return k
         if kind is ODD and token.text == ":":
             return k
@@ -154,12 +153,12 @@ def update(name: Token, tokens: Sequence[Token], k: int) -> tuple[str, str] | No
     if sign.end != second.start:
         return None
     found = sign.text + second.text
-    if found in ("++", "--") and tokens[k + 2].kind in (";", NEWLINE, END, ")"):
+    if found in ("++", "--") and tokens[k + 2].kind in (")", *AT_END):
         return f"{name.text} = {name.text} {sign.text} 1", found
     if found not in ("+=", "-=", "*=", "/=", "%=", ":=", "<-"):
         return None
     end = k + 2
-    while tokens[end].kind not in (";", NEWLINE, END, "{", "}"):
+    while tokens[end].kind not in ("{", "}", *AT_END):
         end += 1
     target = other_name(name.text) if name.text in WORDS else name.text
     value = written(tokens[k + 2 : min(end, k + 2 + LONGEST)])

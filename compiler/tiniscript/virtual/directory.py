@@ -108,6 +108,4 @@ def _is_listening(address: str) -> bool:
 
 
 def _folder() -> Path:
-    from platformdirs import user_cache_path
-
-    return user_cache_path("tiniscript", appauthor=False) / "robots"
+    return files.cache_folder() / "robots"

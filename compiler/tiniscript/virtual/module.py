@@ -57,7 +57,7 @@ class Circumstances(NamedTuple):
     sensors: int
     actuators: int
     reset: int
-    chance: int
+    seed: int
     max_run_ms: int
     byte_us: int
     eeprom_us: int

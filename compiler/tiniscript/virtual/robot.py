@@ -145,7 +145,7 @@ class VirtualRobot:
                 sensors=len(kit.sensors),
                 actuators=len(kit.actuators),
                 reset=reset,
-                chance=self.chance.getrandbits(32),
+                seed=self.chance.getrandbits(32),
                 max_run_ms=board.max_run_seconds * 1000,
                 byte_us=round(BITS * 1_000_000 / baud) if baud else 0,
                 eeprom_us=self.settings.eeprom_us,

@@ -7,9 +7,9 @@
 #include <avr/io.h>
 #include <avr/sleep.h>
 
-#include "../chip/runner.h"
 #include "../../src/vm/flash.h"
 #include "../../src/vm/vm.h"
+#include "../chip/runner.h"
 
 namespace tiniscript {
 
@@ -19,7 +19,7 @@ constexpr size_t kRequestBytes = 8192;
 constexpr size_t kImageBytes = 700;
 
 // What is found by its first bytes, and written over.
-const uint8_t kRequest[kRequestBytes] in_flash = {"TiniScript: here is the request"};
+const uint8_t kRequest[kRequestBytes] tini_progmem = {"TiniScript: here is the request"};
 
 uint8_t image_bytes[kImageBytes + kEndBytes];
 

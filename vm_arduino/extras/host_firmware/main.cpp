@@ -9,11 +9,11 @@
 
 #include <vector>
 
-#include "../host/wire.h"
 #include "../../src/firmware/firmware.h"
 #include "../../src/robot.h"
 #include "../../src/store/layout.h"
 #include "../../src/store/nvm.h"
+#include "../host/wire.h"
 
 using namespace tiniscript;
 
@@ -31,9 +31,9 @@ struct Tabletop {
   bool has_stalled = false;
   bool is_low = false;  // the supply
   bool writes_mark = false;
-  uint8_t measures = 0;     // of it, each fourth says something
-  uint16_t dead = 0xffff;   // a place of the memory that keeps what it is
-  bool has_set = false;  // an actuator, and no stop since
+  uint8_t measures = 0;    // of it, each fourth says something
+  uint16_t dead = 0xffff;  // a place of the memory that keeps what it is
+  bool has_set = false;    // an actuator, and no stop since
   bool has_hung = false;
   Place hung = {};
   uint8_t busy_ticks = 0;   // for which a byte is being written,
@@ -77,7 +77,7 @@ void answer_begin(Reader* request) {
   board.sensors = request->u8();
   board.actuators = request->u8();
   board.reset = static_cast<Reset>(request->u8());
-  board.chance = request->u32();
+  board.seed = request->u32();
   board.max_run_ms = request->u32();
   table.write_ticks = request->u8();
   table.readings.resize(board.sensors);
@@ -88,8 +88,8 @@ void answer_begin(Reader* request) {
 }
 
 // S: bytes arrive at a time, the button goes down (1) or up (2), the main loop stood still (4),
-// nobody is connected (8), the bytes come before all that (16), the button has been down for a while
-// (32); so many ticks follow. Says what the robot sends and what it does.
+// nobody is connected (8), the bytes come before all that (16), the button has been down for a
+// while (32); so many ticks follow. Says what the robot sends and what it does.
 void answer_step(Reader* request, Writer* answer) {
   const uint32_t now_ms = request->u32();
   const uint8_t flags = request->u8();
@@ -97,21 +97,21 @@ void answer_step(Reader* request, Writer* answer) {
   const Bytes heard = request->bytes();
   size_t next = 0;
   while ((flags & 16) != 0 && next < heard.length) {
-    firmware_hear(heard.data[next++], static_cast<uint16_t>(now_ms));
+    firmware_on_rx_byte(heard.data[next++], static_cast<uint16_t>(now_ms));
   }
   table.log.clear();
   table.has_stalled = (flags & 4) != 0;
-  if ((flags & 1) != 0) firmware_pressed();
-  if ((flags & 2) != 0) firmware_released();
-  if ((flags & 8) != 0) firmware_left();
-  if ((flags & 32) != 0) firmware_held();
+  if ((flags & 1) != 0) firmware_on_pressed();
+  if ((flags & 2) != 0) firmware_on_released();
+  if ((flags & 8) != 0) firmware_on_disconnect();
+  if ((flags & 32) != 0) firmware_on_held();
   std::string sent;
   for (uint16_t k = 0; k < ticks || next < heard.length; k++) {
-    if (next < heard.length) firmware_hear(heard.data[next++], static_cast<uint16_t>(now_ms));
+    if (next < heard.length) firmware_on_rx_byte(heard.data[next++], static_cast<uint16_t>(now_ms));
     firmware_tick(now_ms);
     if (table.busy_ticks != 0) table.busy_ticks--;
     uint8_t byte = 0;
-    while (firmware_say(&byte)) sent += static_cast<char>(byte);
+    while (firmware_next_tx_byte(&byte)) sent += static_cast<char>(byte);
   }
   answer->text(sent);
   answer->text(table.log);

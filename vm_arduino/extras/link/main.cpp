@@ -5,8 +5,8 @@
 
 #include <stdio.h>
 
-#include "../host/wire.h"
 #include "../../src/link/link.h"
+#include "../host/wire.h"
 #include "simulated_port.h"
 
 using namespace tiniscript;
@@ -52,7 +52,8 @@ void answer_step(Reader* request, Writer* answer) {
     link_half.tell();
     uint8_t byte = 0;
     for (uint8_t turns = 0; turns < 8; turns++) {
-      while ((how != 2 || is_last) && link_half.next(&byte)) sent += static_cast<char>(byte);
+      while ((how != 2 || is_last) && link_half.next_tx_byte(&byte))
+        sent += static_cast<char>(byte);
       link_half.tick(static_cast<uint16_t>(now_ms));
       link_half.tell();
     }
@@ -84,6 +85,7 @@ void answer_robot(Reader* request, Writer* answer) {
       break;
     case 'r':
       port_release();
+      link_half.drop();
       port_start(false);
       break;
     case 'w':
@@ -119,7 +121,7 @@ void answer_items(Reader* request, Writer* answer) {
       lines += row;
     }
     if (receiver.item() == Item::kFrame) {
-      lines += open_frame(receiver.bytes(), receiver.length()) != 0 ? " whole" : " damaged";
+      lines += decode_frame(receiver.bytes(), receiver.length()) != 0 ? " whole" : " damaged";
     }
     lines += "\n";
     left = static_cast<uint8_t>(held + 1);

@@ -11,13 +11,13 @@
 #include "../../src/store/layout.h"
 #include "../../src/store/nvm.h"
 
-#define exported(name) extern "C" __attribute__((export_name(name)))
-#define imported(name) extern "C" __attribute__((import_module("robot"), import_name(name)))
+#define tini_exported(name) extern "C" __attribute__((export_name(name)))
+#define tini_imported(name) extern "C" __attribute__((import_module("robot"), import_name(name)))
 
 using namespace tiniscript;
 
 // There are notes to be read. Where the last one is about a sensor, `reading` is to be filled.
-imported("look") void host_look();
+tini_imported("look") void host_look();
 
 namespace {
 
@@ -40,7 +40,8 @@ bool is_latched = true;
 int32_t readings[256];
 uint8_t memory[kMemoryBytes];
 
-// What the robot does, and when: milliseconds since power-on. `what` is one of kMotors to kActuatorsOff.
+// What the robot does, and when: milliseconds since power-on. `what` is one of kMotors to
+// kActuatorsOff.
 struct Note {
   uint32_t now_ms;
   uint32_t what;
@@ -77,7 +78,7 @@ void note(What what, int32_t first = 0, int32_t second = 0) {
 
 void hear() {
   while (heard < to_hear && hears_us <= now_us) {
-    firmware_hear(inbox[heard++], static_cast<uint16_t>(now_ms()));
+    firmware_on_rx_byte(inbox[heard++], static_cast<uint16_t>(now_ms()));
     firmware_tick(now_ms());
     if (byte_us == 0) return;  // the next one at the next tick
     hears_us += byte_us;
@@ -86,7 +87,7 @@ void hear() {
 
 void say() {
   while (said < kBoxBytes && says_us <= now_us) {
-    if (!firmware_say(outbox + said)) {
+    if (!firmware_next_tx_byte(outbox + said)) {
       says_us = now_us;
       return;
     }
@@ -171,22 +172,22 @@ bool watched_show(int32_t value, bool is_yes_no) {
 }  // namespace tiniscript
 
 // The EEPROM, to be filled before `begin`.
-exported("memory_at") uint8_t* module_memory() { return memory; }
-exported("memory_bytes") uint32_t module_memory_bytes() { return kMemoryBytes; }
+tini_exported("memory_at") uint8_t* module_memory() { return memory; }
+tini_exported("memory_bytes") uint32_t module_memory_bytes() { return kMemoryBytes; }
 
-exported("inbox") uint8_t* module_inbox() { return inbox; }
-exported("outbox") uint8_t* module_outbox() { return outbox; }
-exported("box_bytes") uint32_t module_box_bytes() { return kBoxBytes; }
+tini_exported("inbox") uint8_t* module_inbox() { return inbox; }
+tini_exported("outbox") uint8_t* module_outbox() { return outbox; }
+tini_exported("box_bytes") uint32_t module_box_bytes() { return kBoxBytes; }
 
 // What there is to be seen, and how many notes; whoever looks makes that 0.
-exported("notes") Note* module_notes() { return notes; }
-exported("noted") uint32_t* module_noted() { return &noted; }
-exported("reading") int32_t* module_reading() { return &reading; }
+tini_exported("notes") Note* module_notes() { return notes; }
+tini_exported("noted") uint32_t* module_noted() { return &noted; }
+tini_exported("reading") int32_t* module_reading() { return &reading; }
 
 // Power on. `line_us` is how long a byte takes on the line, `eeprom_us` how long in the EEPROM.
-exported("begin") void module_begin(uint32_t kit, uint32_t sensors, uint32_t actuators,
-                                    uint32_t reset, uint32_t chance, uint32_t max_run_ms,
-                                    uint32_t line_us, uint32_t eeprom_us) {
+tini_exported("begin") void module_begin(uint32_t kit, uint32_t sensors, uint32_t actuators,
+                                         uint32_t reset, uint32_t seed, uint32_t max_run_ms,
+                                         uint32_t line_us, uint32_t eeprom_us) {
   byte_us = line_us;
   write_us = eeprom_us;
   Board board;
@@ -195,13 +196,13 @@ exported("begin") void module_begin(uint32_t kit, uint32_t sensors, uint32_t act
   board.actuators = static_cast<uint8_t>(actuators);
   board.readings = readings;
   board.reset = static_cast<Reset>(reset);
-  board.chance = chance;
+  board.seed = seed;
   board.max_run_ms = max_run_ms;
   firmware_begin(board);
 }
 
 // So many bytes are in the inbox now, behind those that have been heard.
-exported("put") void module_put(uint32_t bytes) {
+tini_exported("put") void module_put(uint32_t bytes) {
   heard = 0;
   to_hear = bytes;
   if (hears_us < now_us + byte_us) hears_us = now_us + byte_us;
@@ -209,7 +210,7 @@ exported("put") void module_put(uint32_t bytes) {
 
 // Goes on up to a time, or until the inbox is empty where `has_more`, or the outbox is full.
 // Returns how many bytes are in the outbox: they are to be fetched now.
-exported("run") uint32_t module_run(uint64_t until_us, uint32_t has_more) {
+tini_exported("run") uint32_t module_run(uint64_t until_us, uint32_t has_more) {
   said = 0;
   while (now_us < until_us && said < kBoxBytes) {
     if (has_more != 0 && heard == to_hear) break;
@@ -221,15 +222,19 @@ exported("run") uint32_t module_run(uint64_t until_us, uint32_t has_more) {
   return said;
 }
 
-exported("now_us") uint64_t module_now_us() { return now_us; }
+tini_exported("now_us") uint64_t module_now_us() { return now_us; }
 
 // How many bytes of the inbox have not been heard.
-exported("unheard") uint32_t module_unheard() { return to_hear - heard; }
+tini_exported("unheard") uint32_t module_unheard() { return to_hear - heard; }
 
-exported("press") void module_press() { firmware_pressed(); }
-exported("let_go") void module_let_go() { firmware_released(); }
+tini_exported("press") void module_press() { firmware_on_pressed(); }
+tini_exported("let_go") void module_let_go() { firmware_on_released(); }
 
 // The robot as its own STATUS tells it.
-exported("state") uint32_t module_state() { return static_cast<uint32_t>(port_condition().state); }
-exported("saved") uint32_t module_saved() { return static_cast<uint32_t>(port_condition().saved); }
-exported("fault") uint32_t module_fault() { return port_condition().fault; }
+tini_exported("state") uint32_t module_state() {
+  return static_cast<uint32_t>(port_condition().state);
+}
+tini_exported("saved") uint32_t module_saved() {
+  return static_cast<uint32_t>(port_condition().saved);
+}
+tini_exported("fault") uint32_t module_fault() { return port_condition().fault; }

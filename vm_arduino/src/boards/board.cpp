@@ -9,12 +9,12 @@
 #include "../robot.h"
 #include "analog.h"
 #include "echo.h"
-#include "guard.h"
 #include "kit.h"
 #include "motors.h"
 #include "servo.h"
 #include "sound.h"
 #include "uart.h"
+#include "watchdog.h"
 
 namespace tiniscript {
 
@@ -37,18 +37,18 @@ void board_begin() {
 #ifdef tiniscript_servos
   servo_begin();
 #endif
-  guard_begin();
+  watchdog_begin();
 }
 
 uint32_t board_now_ms() { return millis(); }
 
 void board_tick(uint32_t now_ms) {
-  guard_calm();
+  watchdog_feed();
   analog_tick();
   sound_tick(now_ms);
 }
 
-bool board_is_left() {
+bool board_has_disconnected() {
   if (kBluetoothState.port == 0) return false;
   const uint32_t now_us = micros();
   const bool is_now = is_high(kBluetoothState);
@@ -65,8 +65,8 @@ Board board_told() {
   told.sensors = kBoardSensors;
   told.actuators = kBoardActuators;
   told.readings = readings;
-  told.reset = guard_reset();
-  told.chance = guard_noise() ^ micros();
+  told.reset = watchdog_reset_cause();
+  told.seed = watchdog_seed() ^ micros();
   told.max_run_ms = uint32_t{kMaxRunSeconds} * 1000;
   return told;
 }
@@ -79,12 +79,12 @@ void board_actuators_off() { actuators_off(false); }
 
 // What the timer has turned off may have been set once more since.
 bool board_has_stalled() {
-  const bool found = guard_has_stalled();
+  const bool found = watchdog_has_stalled();
   if (found) actuators_off(true);
   return found;
 }
 
-bool board_has_hung(Place* place) { return guard_has_hung(place); }
+bool board_has_hung(Place* place) { return watchdog_has_hung(place); }
 
 Press board_button(uint32_t now_ms) { return button_read(!is_high(kStartButton), now_ms); }
 

@@ -23,7 +23,7 @@ Press board_button(uint32_t now_ms);
 
 // The radio module's STATE pin says that nobody is connected any more: it was high for 50 ms, and
 // then low for 50 ms. A pin that nothing drives stays high.
-bool board_is_left();
+bool board_has_disconnected();
 
 // What the firmware is told of the board.
 Board board_told();

@@ -4,7 +4,7 @@ namespace tiniscript {
 
 namespace {
 
-constexpr uint8_t kSteadyMs = 30;  // chatter and spikes are shorter than that, or not steady
+constexpr uint8_t kDebounceMs = 30;  // chatter and spikes are shorter than that, or not steady
 
 enum class State : uint8_t {
   kUnknown,  // after a reset
@@ -15,7 +15,7 @@ enum class State : uint8_t {
 
 State state = State::kUnknown;
 bool was_down;
-uint8_t steady_ms;  // for how long it has been as it is, counted in milliseconds that were looked at
+uint8_t steady_ms;  // for how long it has been as it is: milliseconds that were looked at
 uint8_t last_ms;
 
 }  // namespace
@@ -25,7 +25,7 @@ Press button_read(bool is_down, uint32_t now_ms) {
   if (is_down != was_down) {
     was_down = is_down;
     steady_ms = 0;
-  } else if (time_ms != last_ms && steady_ms < kSteadyMs) {
+  } else if (time_ms != last_ms && steady_ms < kDebounceMs) {
     steady_ms++;
   }
   last_ms = time_ms;
@@ -33,7 +33,7 @@ Press button_read(bool is_down, uint32_t now_ms) {
     state = State::kEdge;
     return Press::kPressed;
   }
-  if (steady_ms < kSteadyMs || (is_down && state != State::kEdge)) return Press::kNothing;
+  if (steady_ms < kDebounceMs || (is_down && state != State::kEdge)) return Press::kNothing;
   const State before = state;
   state = is_down ? State::kDown : State::kUp;
   if (is_down) return Press::kHeld;

@@ -1,4 +1,4 @@
-// The start button, without its chatter.
+// The start button, debounced.
 
 #ifndef TINISCRIPT_BOARDS_BUTTON_H_
 #define TINISCRIPT_BOARDS_BUTTON_H_

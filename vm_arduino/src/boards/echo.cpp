@@ -50,11 +50,11 @@ volatile uint16_t rose_us;
 volatile uint16_t fell_us;
 volatile uint16_t again_us;
 
-in_place uint16_t since(uint16_t now_us, uint16_t then_us) {
+tini_always_inline uint16_t since(uint16_t now_us, uint16_t then_us) {
   return static_cast<uint16_t>(now_us - then_us);
 }
 
-in_place void on_change() {
+tini_always_inline void on_change() {
   const uint16_t now_us = static_cast<uint16_t>(micros());
   const Heard before = heard;
   if (is_high(echo_at(asked).echo)) {
@@ -75,7 +75,7 @@ in_place void on_change() {
 }
 
 void listen(bool is_on) {
-  const NoInterrupts quiet;
+  const CriticalSection critical;
   const Echo sensor = echo_at(asked);
   const uint8_t group = sensor.group;
   const uint16_t masks =
@@ -118,7 +118,7 @@ bool is_over() {
   uint16_t quiet_us;
   uint32_t gone_us;
   {
-    const NoInterrupts quiet;
+    const CriticalSection critical;
     const uint32_t now_us = micros();
     gone_us = now_us - ping_us;
     found = heard;

@@ -29,7 +29,7 @@ void tiniscript_motors_low() { begin_motors(); }
 void board_motors(int16_t left, int16_t right) {
   const uint8_t left_level = size_of(left);
   const uint8_t right_level = size_of(right);
-  const NoInterrupts quiet;  // a stop comes before this or after it, not in between
+  const CriticalSection critical;  // a stop comes before this or after it, not in between
   if (!is_released || (left_level | right_level) == 0) {
     motors_off();
     return;
@@ -48,7 +48,7 @@ void board_motors(int16_t left, int16_t right) {
 }
 
 void motors_stop() {
-  const NoInterrupts quiet;
+  const CriticalSection critical;
   is_released = false;
   motors_off();
 }

@@ -7,33 +7,33 @@
 
 namespace tiniscript {
 
-in_place void begin(Bridge motor) {
+tini_always_inline void begin(Bridge motor) {
   begin_output(motor.pwm.pin, false);
   begin_output(motor.forward, false);
   begin_output(motor.backward, false);
 }
 
 // No more than direct writes, so that it may run before anything else does.
-in_place void begin_motors() {
+tini_always_inline void begin_motors() {
   begin(kLeftMotor);
   begin(kRightMotor);
   if (kStandby.port != 0) begin_output(kStandby, false);
 }
 
-in_place void off(Bridge motor) {
+tini_always_inline void off(Bridge motor) {
   disconnect(motor.pwm);
   write(motor.forward, false);
   write(motor.backward, false);
 }
 
-in_place void motors_off() {
+tini_always_inline void motors_off() {
   off(kLeftMotor);
   off(kRightMotor);
   if (kStandby.port != 0) write(kStandby, false);
 }
 
 // `level` is 1 to 255.
-in_place void drive(Bridge motor, bool is_backward, uint8_t level) {
+tini_always_inline void drive(Bridge motor, bool is_backward, uint8_t level) {
   if (is_backward) {
     write(motor.forward, false);
     write(motor.backward, true);
@@ -44,7 +44,7 @@ in_place void drive(Bridge motor, bool is_backward, uint8_t level) {
   connect(motor.pwm, level);
 }
 
-in_place void begin_drive() {
+tini_always_inline void begin_drive() {
   if (kStandby.port != 0) write(kStandby, true);
 }
 

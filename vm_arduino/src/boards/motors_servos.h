@@ -10,30 +10,30 @@ namespace tiniscript {
 
 constexpr uint8_t kStillFrames = 50;  // of 20 ms
 
-in_place void begin_motors() {
+tini_always_inline void begin_motors() {
   begin_output(kServos[kLeftMotor.number], false);
   begin_output(kServos[kRightMotor.number], false);
 }
 
 // One that stands already, or will soon, is left alone.
-in_place void off(TurningServo motor) {
+tini_always_inline void off(TurningServo motor) {
   if (servo_is_held(motor.number)) servo_set(motor.number, motor.still_us, kStillFrames);
 }
 
-in_place void motors_off() {
+tini_always_inline void motors_off() {
   off(kLeftMotor);
   off(kRightMotor);
 }
 
 // At 255 the pulse is 510 us longer or shorter.
-in_place void drive(TurningServo motor, bool is_backward, uint8_t level) {
+tini_always_inline void drive(TurningServo motor, bool is_backward, uint8_t level) {
   const uint16_t more = static_cast<uint16_t>(2 * level);
   const bool is_shorter = is_backward != motor.is_reversed;
   servo_set(motor.number,
             static_cast<uint16_t>(is_shorter ? motor.still_us - more : motor.still_us + more), 0);
 }
 
-in_place void begin_drive() {}
+tini_always_inline void begin_drive() {}
 
 }  // namespace tiniscript
 

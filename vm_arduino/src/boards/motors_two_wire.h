@@ -7,24 +7,24 @@
 
 namespace tiniscript {
 
-in_place void begin_motors() {
+tini_always_inline void begin_motors() {
   begin_output(kLeftMotor.forward.pin, false);
   begin_output(kLeftMotor.backward.pin, false);
   begin_output(kRightMotor.forward.pin, false);
   begin_output(kRightMotor.backward.pin, false);
 }
 
-in_place void off(TwoWire motor) {
+tini_always_inline void off(TwoWire motor) {
   disconnect(motor.forward);
   disconnect(motor.backward);
 }
 
-in_place void motors_off() {
+tini_always_inline void motors_off() {
   off(kLeftMotor);
   off(kRightMotor);
 }
 
-in_place void drive(TwoWire motor, bool is_backward, uint8_t level) {
+tini_always_inline void drive(TwoWire motor, bool is_backward, uint8_t level) {
   if (is_backward) {
     disconnect(motor.forward);
     connect(motor.backward, level);
@@ -34,7 +34,7 @@ in_place void drive(TwoWire motor, bool is_backward, uint8_t level) {
   }
 }
 
-in_place void begin_drive() {}
+tini_always_inline void begin_drive() {}
 
 }  // namespace tiniscript
 

@@ -12,7 +12,7 @@
 #include <stdint.h>
 
 // For a function that is copied into its callers.
-#define in_place inline __attribute__((always_inline))
+#define tini_always_inline inline __attribute__((always_inline))
 
 namespace tiniscript {
 
@@ -47,52 +47,54 @@ struct Pwm {
   uint8_t channel;
 };
 
-// Interrupts are off while there is one of these.
-class NoInterrupts {
+// A critical section: interrupts are off while there is one of these.
+class CriticalSection {
  public:
-  in_place NoInterrupts() : before_(SREG) { cli(); }
-  in_place ~NoInterrupts() {
+  tini_always_inline CriticalSection() : before_(SREG) { cli(); }
+  tini_always_inline ~CriticalSection() {
     asm volatile("" ::: "memory");  // nothing moves out from between
     SREG = before_;
   }
 
  private:
-  NoInterrupts(const NoInterrupts&);
-  void operator=(const NoInterrupts&);
+  CriticalSection(const CriticalSection&);
+  void operator=(const CriticalSection&);
 
   uint8_t before_;
 };
 
-in_place volatile uint8_t& register8(uint16_t address) {
+tini_always_inline volatile uint8_t& register8(uint16_t address) {
   return *reinterpret_cast<volatile uint8_t*>(address);
 }
 
-in_place volatile uint16_t& register16(uint16_t address) {
+tini_always_inline volatile uint16_t& register16(uint16_t address) {
   return *reinterpret_cast<volatile uint16_t*>(address);
 }
 
 // Whether one instruction changes a bit there: then no interrupt comes in between.
-in_place bool is_near(uint16_t address) { return __builtin_constant_p(address) && address < 0x40; }
+tini_always_inline bool is_near(uint16_t address) {
+  return __builtin_constant_p(address) && address < 0x40;
+}
 
-in_place void set_bits(uint16_t address, uint8_t mask) {
+tini_always_inline void set_bits(uint16_t address, uint8_t mask) {
   if (is_near(address)) {
     register8(address) |= mask;
   } else {
-    const NoInterrupts quiet;
+    const CriticalSection critical;
     register8(address) |= mask;
   }
 }
 
-in_place void clear_bits(uint16_t address, uint8_t mask) {
+tini_always_inline void clear_bits(uint16_t address, uint8_t mask) {
   if (is_near(address)) {
     register8(address) &= static_cast<uint8_t>(~mask);
   } else {
-    const NoInterrupts quiet;
+    const CriticalSection critical;
     register8(address) &= static_cast<uint8_t>(~mask);
   }
 }
 
-in_place void write(Pin pin, bool is_high) {
+tini_always_inline void write(Pin pin, bool is_high) {
   if (is_high) {
     set_bits(pin.port, pin.mask);
   } else {
@@ -100,19 +102,21 @@ in_place void write(Pin pin, bool is_high) {
   }
 }
 
-in_place void toggle(Pin pin) { register8(static_cast<uint16_t>(pin.port - 2)) = pin.mask; }
+tini_always_inline void toggle(Pin pin) {
+  register8(static_cast<uint16_t>(pin.port - 2)) = pin.mask;
+}
 
-in_place bool is_high(Pin pin) {
+tini_always_inline bool is_high(Pin pin) {
   return (register8(static_cast<uint16_t>(pin.port - 2)) & pin.mask) != 0;
 }
 
-in_place void begin_output(Pin pin, bool is_high) {
+tini_always_inline void begin_output(Pin pin, bool is_high) {
   write(pin, is_high);
   set_bits(static_cast<uint16_t>(pin.port - 1), pin.mask);
 }
 
 // Pins are inputs after a reset.
-in_place void begin_pull_up(Pin pin) { write(pin, true); }
+tini_always_inline void begin_pull_up(Pin pin) { write(pin, true); }
 
 // -- PWM
 
@@ -136,8 +140,8 @@ constexpr uint16_t compare_of(Pwm pwm) {
 constexpr uint8_t connection_of(Pwm pwm) { return static_cast<uint8_t>(0x80 >> 2 * pwm.channel); }
 
 // Lets a timer drive a pin: 255 is always high.
-in_place void connect(Pwm pwm, uint8_t level) {
-  const NoInterrupts quiet;  // timers of 16 bits share a register for the high byte
+tini_always_inline void connect(Pwm pwm, uint8_t level) {
+  const CriticalSection critical;  // timers of 16 bits share a register for the high byte
   if (has_8_bits(pwm)) {
     register8(compare_of(pwm)) = level;
   } else {
@@ -147,9 +151,9 @@ in_place void connect(Pwm pwm, uint8_t level) {
 }
 
 // The pin is low, whatever its timer does.
-in_place void disconnect(Pwm pwm) {
+tini_always_inline void disconnect(Pwm pwm) {
   {
-    const NoInterrupts quiet;
+    const CriticalSection critical;
     register8(control_of(pwm)) &= static_cast<uint8_t>(~connection_of(pwm));
   }
   write(pwm.pin, false);

@@ -25,7 +25,7 @@ volatile Pulse pulses[kServoCount];
 uint8_t turn = kGap;  // whose pulse it is
 
 // The end of a pulse, and the beginning of the next one.
-in_place void next_pulse() {
+tini_always_inline void next_pulse() {
   if (turn == kGap) {
     TCNT1 = 0;
     turn = 0;
@@ -50,7 +50,7 @@ in_place void next_pulse() {
 
 void servo_begin() {
   for (const Pin& pin : kServos) begin_output(pin, false);
-  const NoInterrupts quiet;
+  const CriticalSection critical;
   TCCR1A = 0;
   TCCR1B = 1 << CS11;
   TCNT1 = 0;
@@ -60,8 +60,8 @@ void servo_begin() {
 }
 
 // Not inlined: what calculates the pulse would move in between, where interrupts are off.
-one_copy void servo_set(uint8_t number, uint16_t pulse_us, uint8_t frames) {
-  const NoInterrupts quiet;
+tini_noinline void servo_set(uint8_t number, uint16_t pulse_us, uint8_t frames) {
+  const CriticalSection critical;
   pulses[number].ticks = static_cast<uint16_t>(pulse_us * kTicksPerUs);
   pulses[number].frames = frames;
 }
@@ -74,7 +74,7 @@ void servos_low() {
 }
 
 bool servo_is_held(uint8_t number) {
-  const NoInterrupts quiet;
+  const CriticalSection critical;
   return pulses[number].ticks != 0 && pulses[number].frames == 0;
 }
 

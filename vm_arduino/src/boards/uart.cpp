@@ -38,14 +38,14 @@ volatile bool was_high;
 uint8_t low_turns;  // since the last byte, which had a framing error
 
 // The interrupt of timer 0 that looks at the line. It is on only after a framing error.
-in_place void watch_line() {
+tini_always_inline void watch_line() {
   low_turns = 0;
   if (!was_high) return;
   TIFR0 = _BV(OCF0B);  // one that has waited since long ago
   TIMSK0 |= _BV(OCIE0B);
 }
 
-in_place void leave_line() { TIMSK0 &= static_cast<uint8_t>(~_BV(OCIE0B)); }
+tini_always_inline void leave_line() { TIMSK0 &= static_cast<uint8_t>(~_BV(OCIE0B)); }
 
 }  // namespace
 
@@ -80,7 +80,7 @@ ISR(uart_receive_vect) {
     }
   }
   if ((status & _BV(FE0)) == 0) leave_line();
-  firmware_hear(byte, static_cast<uint16_t>(millis()));
+  firmware_on_rx_byte(byte, static_cast<uint16_t>(millis()));
 }
 
 ISR(TIMER0_COMPB_vect) {
@@ -88,7 +88,7 @@ ISR(TIMER0_COMPB_vect) {
   if (is_high(kReceive)) return leave_line();
   low_turns = static_cast<uint8_t>(low_turns + 1);
   if (low_turns <= kHeldTurns) return;
-  firmware_hear(0, static_cast<uint16_t>(millis()));
+  firmware_on_rx_byte(0, static_cast<uint16_t>(millis()));
   if (low_turns < kHeldTurns + kStopRun) return;
   was_high = false;
   leave_line();
@@ -96,7 +96,7 @@ ISR(TIMER0_COMPB_vect) {
 
 ISR(uart_send_vect) {
   uint8_t byte = 0;
-  if (tiniscript::firmware_say(&byte)) {
+  if (tiniscript::firmware_next_tx_byte(&byte)) {
     UDR0 = byte;
   } else {
     UCSR0B &= static_cast<uint8_t>(~_BV(UDRIE0));

@@ -19,7 +19,7 @@ struct Board {
   uint8_t actuators;
   int32_t* readings;  // where the last one of each sensor is kept
   Reset reset;
-  uint32_t chance;
+  uint32_t seed;
   uint32_t max_run_ms;  // the longest run without a tether
 };
 

@@ -17,17 +17,13 @@ constexpr uint8_t kIsFine = static_cast<uint8_t>(Answer::kOk);
 
 uint8_t number_of(Answer answer) { return static_cast<uint8_t>(answer); }
 
-one_copy uint16_t get16(const uint8_t* bytes) {
-  return static_cast<uint16_t>(bytes[0] | static_cast<uint16_t>(bytes[1]) << 8);
-}
-
 bool is_latched() { return port_condition().state >= State::kStopped; }
 
 bool holds_nothing() { return port_condition().saved == Saved::kNothing; }
 
 bool may_start(uint8_t mode) { return (mode & (kRun | kStartBits)) != kRun || !is_latched(); }
 
-one_copy Verdict verified(const uint8_t* code, uint16_t length) {
+tini_noinline Verdict verified(const uint8_t* code, uint16_t length) {
   const Equipment& equipment = port_equipment();
   return verify(code, length, equipment.sensors, equipment.actuators);
 }
@@ -54,9 +50,7 @@ void Link::turn(uint16_t now_ms) {
   }
   // an answer that is due first
   if ((due_ & (kDueReply | kDueHint)) == 0 && receiver_->item() != Item::kNone) hear();
-  const Condition& condition = port_condition();
-  if (quiet_ms_ >= kTetherMs && is_tethered_ && condition.state == State::kRunning &&
-      condition.run == tethered_run_) {
+  if (quiet_ms_ >= kTetherMs && is_tethered_ && port_condition().state == State::kRunning) {
     port_stop(static_cast<uint8_t>(LinkFault::kLinkLost));
     faulted();
   }
@@ -68,7 +62,7 @@ void Link::tell() {
   if (self->left_ == 0) self->send();
 }
 
-one_copy void Link::seal() {
+tini_noinline void Link::seal() {
   uint8_t* const image = unsealed_;
   if (image == nullptr) return;
   unsealed_ = nullptr;
@@ -76,9 +70,7 @@ one_copy void Link::seal() {
   port_seal(image);
 }
 
-bool Link::is_tethered() const { return is_tethered_ && port_condition().run == tethered_run_; }
-
-bool Link::next(uint8_t* byte) {
+bool Link::next_tx_byte(uint8_t* byte) {
   if (left_ == 0) return false;
   left_ = static_cast<uint8_t>(left_ - 1);
   *byte = out_[sent_++];
@@ -87,7 +79,7 @@ bool Link::next(uint8_t* byte) {
 
 // Stops the robot. Where it was stopped already, that is told again, but not all the time; the
 // epoch stays, or a line that is held low would run it round. What waits is from before the stop.
-one_copy void Link::halt(Cause cause) {
+tini_noinline void Link::halt(Cause cause) {
   const bool was_stopped = port_condition().state == State::kStopped;
   port_stop(0);
   const bool has_stale = cause == Cause::kSequence && receiver_->item() != Item::kNone;
@@ -99,12 +91,12 @@ one_copy void Link::halt(Cause cause) {
 
 // A line of text is answered where nobody sends frames, no other line has come for a while, and it
 // is none of ours: so nothing that answers or echoes each line talks to the robot for ever.
-one_copy void Link::hear() {
+tini_noinline void Link::hear() {
   if (receiver_->item() == Item::kText) {
     if (text_ms_ == 0 && !is_listened_to() && !is_own_hint()) due_ |= kDueHint;
     text_ms_ = kListenMs;
   } else {
-    const uint8_t end = open_frame(receiver_->bytes(), receiver_->length());
+    const uint8_t end = decode_frame(receiver_->bytes(), receiver_->length());
     if (end == 0) {
       damaged_++;
     } else if ((receiver_->bytes()[kTypeAt] & kReply) == 0) {  // else it is an echo
@@ -117,7 +109,7 @@ one_copy void Link::hear() {
 }
 
 // Finds out what is answered to the frame whose payload ends at `end`.
-one_copy void Link::handle(uint8_t end) {
+tini_noinline void Link::handle(uint8_t end) {
   const uint8_t* const bytes = receiver_->bytes();
   const uint8_t type = bytes[kTypeAt];
   const uint8_t seq = bytes[kSeqAt];
@@ -287,7 +279,7 @@ void Link::append(const uint8_t* code, uint8_t length) {
 }
 
 // A whole program in one frame.
-one_copy uint8_t Link::take_short(bool is_live, const uint8_t* payload, uint8_t length) {
+tini_noinline uint8_t Link::take_short(bool is_live, const uint8_t* payload, uint8_t length) {
   const uint8_t mode = payload[kProgramModeAt];
   const uint8_t* const code = payload + kProgramCodeAt;
   length = static_cast<uint8_t>(length - kProgramCodeAt);
@@ -368,7 +360,6 @@ void Link::finish(bool is_live) {
 void Link::start(uint8_t mode, bool is_live) {
   port_start(is_live);
   is_tethered_ = (mode & kDetached) == 0;
-  tethered_run_ = port_condition().run;
 }
 
 }  // namespace tiniscript

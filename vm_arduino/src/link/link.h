@@ -1,8 +1,8 @@
 // Answers a computer: the robot's half of the link.
 //
 // Knows what each message asks of `port.h`, and what a computer must be told. Bytes come through a
-// Receiver and go out through `next`; time comes in as `now_ms`. Nothing here waits. A request that
-// comes again is answered again and never done twice. `docs/link.md` is the contract.
+// Receiver and go out through `next_tx_byte`; time comes in as `now_ms`. Nothing here waits. A
+// request that comes again is answered again and never done twice. `docs/link.md` is the contract.
 
 #ifndef TINISCRIPT_LINK_LINK_H_
 #define TINISCRIPT_LINK_LINK_H_
@@ -31,7 +31,7 @@ class Link {
   void seal();
 
   // The next byte to send; false where there is none. It may be called from an interrupt.
-  bool next(uint8_t* byte);
+  bool next_tx_byte(uint8_t* byte);
 
   // Whether a stop has arrived that `tick` has not handled yet: until then the motors stay off,
   // whatever else was asked. Whoever writes their pins asks this, with interrupts off.
@@ -44,11 +44,15 @@ class Link {
   void stopped(Cause cause);
   bool show(int32_t value, bool is_yes_no);
 
-  // The button starts what the robot holds: a program on its way must not be written over it.
-  void drop() { image_ = nullptr; }
+  // The button starts what the robot holds: a program on its way must not be written over it, and
+  // what starts has no tether.
+  void drop() {
+    image_ = nullptr;
+    is_tethered_ = false;
+  }
 
   // Whether what runs ends when no frame comes.
-  bool is_tethered() const;
+  bool is_tethered() const { return is_tethered_; }
 
  private:
   // what is due, one bit each
@@ -92,7 +96,6 @@ class Link {
   bool is_own_hint() const;
   void reply();
   void describe();
-  void receipt();
   void fetch();
   void begin_frame(uint8_t type, uint8_t seq);
   void begin_event(Message message);
@@ -114,8 +117,7 @@ class Link {
   uint8_t isa_[2];     // of the computer's programs, major and minor
   bool is_open_;       // there is a session
   bool is_other_kit_;  // for which they are
-  bool is_tethered_;   // the run `tethered_run_`, that is
-  uint8_t tethered_run_;
+  bool is_tethered_;   // what runs, or ran last
   uint8_t ended_run_;
   Cause cause_;
   uint8_t event_seq_;

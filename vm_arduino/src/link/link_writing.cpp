@@ -11,7 +11,7 @@ namespace tiniscript {
 namespace {
 
 // For whoever sends a line of text. The 0x00 at its end begins an item: a frame may follow.
-const uint8_t kHint[] in_flash = "No text yet: use tsc. / Aun no hay texto: usa tsc.\r\n";
+const uint8_t kHint[] tini_progmem = "No text yet: use tsc. / Aun no hay texto: usa tsc.\r\n";
 
 constexpr uint8_t kTailBytes = 8;  // of the hint, by which an echo of it or of its end is known
 
@@ -189,20 +189,20 @@ void Link::begin_frame(uint8_t type, uint8_t seq) {
   size_ = kPayloadAt;
 }
 
-one_copy void Link::put(uint8_t byte) { out_[size_++] = byte; }
+tini_noinline void Link::put(uint8_t byte) { out_[size_++] = byte; }
 
-one_copy void Link::put16(uint16_t value) {
+tini_noinline void Link::put16(uint16_t value) {
   put(byte_of(value));
   put(byte_of(value >> 8));
 }
 
-one_copy void Link::put_all(const void* bytes, uint8_t length) {
+tini_noinline void Link::put_all(const void* bytes, uint8_t length) {
   copy_bytes(bytes, out_ + size_, length);
   size_ = static_cast<uint8_t>(size_ + length);
 }
 
 void Link::close() {
-  size_ = close_frame(out_, size_);
+  size_ = encode_frame(out_, size_);
   hand_over();
 }
 

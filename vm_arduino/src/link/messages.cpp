@@ -6,7 +6,7 @@
 
 namespace tiniscript {
 
-const uint8_t kRequestBytes[][2] in_flash = {
+const uint8_t kRequestBytes[][2] tini_progmem = {
     {10, 10},  // HELLO
     {0, 0},  // PING
     {0, 0},  // STATUS

@@ -71,7 +71,7 @@ constexpr uint8_t kLastRequest = 15;
 constexpr uint8_t kFirstActing = 6;
 
 // How long the payload of each request may be, from the first one on: least and most.
-extern const uint8_t kRequestBytes[][2] in_flash;
+extern const uint8_t kRequestBytes[][2] tini_progmem;
 
 // Where each field of a request begins.
 constexpr uint8_t kHelloMajorAt = 0;

@@ -12,11 +12,11 @@
 namespace tiniscript {
 
 // What is sent as it lies in memory: little-endian, one field right behind the other.
-#define as_sent __attribute__((packed))
+#define tini_packed __attribute__((packed))
 
 // Who the robot is. `features` are bits that mean nothing yet; `nonce` is another one after each
 // reset.
-struct as_sent Card {
+struct tini_packed Card {
   uint16_t kit;
   uint32_t id;
   uint32_t nonce;
@@ -25,7 +25,7 @@ struct as_sent Card {
 };
 
 // What the robot does and holds.
-struct as_sent Condition {
+struct tini_packed Condition {
   State state;
   uint8_t run;       // counts the programs that were started
   uint32_t program;  // checksum of the image that START starts
@@ -48,7 +48,7 @@ struct LineErrors {
 // What the motors get for the power that a program asks for: `kExchanged` and the others of
 // `wheels`; the percent by which the left wheel is too strong, or the right one where it is less
 // than 0; the percent that move a wheel.
-struct as_sent Trim {
+struct tini_packed Trim {
   uint8_t wheels;
   int8_t balance;
   uint8_t least;

@@ -18,7 +18,8 @@ constexpr uint16_t kMemoryBytes = 4096;
 constexpr uint16_t kMemoryBytes = 1024;
 #endif
 
-// What is kept: each in an area of two slots. A slot has a number: those of a program are 0 and 1.
+// What is kept: each in an area of A/B slots: one holds what counts, the other one is written. A
+// slot has a number: those of a program are 0 and 1.
 enum class Area : uint8_t { kProgram, kIdentity, kFault };
 constexpr uint8_t kAreas = 3;
 constexpr uint8_t kSlots = 2 * kAreas;

@@ -23,8 +23,8 @@ constexpr uint8_t kNothing = 0xff;
 // The checksum of any bytes with their own checksum behind them.
 constexpr uint32_t kBehindItself = 0x2144df1c;
 
-// What is done to a slot, in this order. `docs/store.md` says why it is this one.
-enum class Do : uint8_t {
+// The write steps of a slot. `docs/store.md` says why they come in this order.
+enum class WriteStep : uint8_t {
   kLook,
   kClear,       // one of the first bytes of the slot: 0, without an erase
   kGeneration,  // its own number
@@ -35,43 +35,35 @@ enum class Do : uint8_t {
   kEnd,
 };
 
-constexpr uint8_t step(Do what, uint8_t at = 0) {
+constexpr uint8_t step(WriteStep what, uint8_t at = 0) {
   return static_cast<uint8_t>(static_cast<uint8_t>(what) * 16 + at);
 }
 
-constexpr uint8_t kSteps[] in_flash = {
+constexpr uint8_t kSteps[] tini_progmem = {
     // settles: decides what a slot holds
-    step(Do::kLook),
+    step(WriteStep::kLook),
     // settles: what it holds does not count, and never will
-    step(Do::kEmpty, 0),
-    step(Do::kEmpty, kBodyAt),
-    step(Do::kEmpty, 1),
-    step(Do::kEnd),
+    step(WriteStep::kEmpty, 0),
+    step(WriteStep::kEmpty, kBodyAt),
+    step(WriteStep::kEmpty, 1),
+    step(WriteStep::kEnd),
     // saves
-    step(Do::kClear, 3),
-    step(Do::kClear, 2),
-    step(Do::kClear, 1),
-    step(Do::kGeneration),
-    step(Do::kBody),
-    step(Do::kCheck),
-    step(Do::kMark, 1),
-    step(Do::kMark, 2),
-    step(Do::kMark, 3),
-    step(Do::kEnd),
+    step(WriteStep::kClear, 3),
+    step(WriteStep::kClear, 2),
+    step(WriteStep::kClear, 1),
+    step(WriteStep::kGeneration),
+    step(WriteStep::kBody),
+    step(WriteStep::kCheck),
+    step(WriteStep::kMark, 1),
+    step(WriteStep::kMark, 2),
+    step(WriteStep::kMark, 3),
+    step(WriteStep::kEnd),
     // settles: what it holds counts, and always will
-    step(Do::kGeneration),
-    step(Do::kMark, 1),
-    step(Do::kMark, 2),
-    step(Do::kMark, 3),
-    step(Do::kEnd),
-    // erases
-    step(Do::kClear, 3),
-    step(Do::kClear, 2),
-    step(Do::kClear, 1),
-    step(Do::kEmpty, 0),
-    step(Do::kEmpty, kBodyAt),
-    step(Do::kEmpty, 1),
-    step(Do::kEnd),
+    step(WriteStep::kGeneration),
+    step(WriteStep::kMark, 1),
+    step(WriteStep::kMark, 2),
+    step(WriteStep::kMark, 3),
+    step(WriteStep::kEnd),
 };
 
 // Where they begin.
@@ -83,27 +75,26 @@ constexpr uint8_t kCommitting = 11;  // from here on it waits for `may_commit`
 constexpr uint8_t kKeeping = 15;
 constexpr uint8_t kKeepingMarks = 17;
 constexpr uint8_t kKeepingEnd = 19;
-constexpr uint8_t kErasing = 20;
 
-static_assert(kSteps[kEmptying] == step(Do::kEmpty, 0), "emptying begins here");
-static_assert(kSteps[kEmptyingEnd] == step(Do::kEnd), "emptying ends here");
-static_assert(kSteps[kSaving - 1] == step(Do::kEnd), "saving begins here");
-static_assert(kSteps[kCommitting] == step(Do::kMark, 1), "what is saved counts from here on");
-static_assert(kSteps[kKeeping] == step(Do::kGeneration), "keeping begins here");
-static_assert(kSteps[kKeepingMarks] == step(Do::kMark, 2), "the first mark stays as it is");
-static_assert(kSteps[kKeepingEnd] == step(Do::kEnd), "keeping ends here");
-static_assert(kSteps[kErasing - 1] == step(Do::kEnd), "erasing begins here");
+static_assert(kSteps[kEmptying] == step(WriteStep::kEmpty, 0), "emptying begins here");
+static_assert(kSteps[kEmptyingEnd] == step(WriteStep::kEnd), "emptying ends here");
+static_assert(kSteps[kSaving - 1] == step(WriteStep::kEnd), "saving begins here");
+static_assert(kSteps[kCommitting] == step(WriteStep::kMark, 1),
+              "what is saved counts from here on");
+static_assert(kSteps[kKeeping] == step(WriteStep::kGeneration), "keeping begins here");
+static_assert(kSteps[kKeepingMarks] == step(WriteStep::kMark, 2), "the first mark stays as it is");
+static_assert(kSteps[kKeepingEnd] == step(WriteStep::kEnd), "keeping ends here");
 
 uint16_t plus(uint16_t place, uint16_t more) { return static_cast<uint16_t>(place + more); }
 
 // A byte of the body of the slot at `place`. The first one is kept XOR the generation: under
 // another generation its checksum is wrong.
-one_copy uint8_t body_byte(uint16_t place, uint16_t at) {
+tini_noinline uint8_t body_byte(uint16_t place, uint16_t at) {
   const uint8_t byte = nvm_read(plus(place, plus(kBodyAt, at)));
   return at == 0 ? byte ^ nvm_read(place) : byte;
 }
 
-one_copy uint32_t checksum(uint32_t crc, uint16_t place, uint16_t at, uint16_t end) {
+tini_noinline uint32_t checksum(uint32_t crc, uint16_t place, uint16_t at, uint16_t end) {
   while (at != end) {
     const uint8_t byte = body_byte(place, at++);
     crc = crc32(crc, &byte, 1);
@@ -120,37 +111,36 @@ bool is_program(uint8_t slot) { return slot < 2; }
 
 }  // namespace
 
-one_copy void Store::boot() {
+tini_noinline void Store::boot() {
   for (uint8_t& held : held_) held = kNothing;
   length_ = 0;
   at_ = 0;
-  is_first_ = false;
   state_ = StoreState::kSettling;
   is_busy_ = true;
   step_ = kLooking;
   go_to(0);
 }
 
-one_copy void Store::tick(bool may_commit) {
+tini_noinline void Store::tick(bool may_commit) {
   if (!is_busy_ || !nvm_is_ready()) return;
   const uint8_t step = flash_byte(kSteps + step_);
-  if (step_ >= kCommitting && !may_commit && step != tiniscript::step(Do::kEnd)) return;
+  if (step_ >= kCommitting && !may_commit && step != tiniscript::step(WriteStep::kEnd)) return;
   const uint8_t at = step % 16;
   uint8_t value = kEmptied;
-  switch (static_cast<Do>(step / 16)) {
-    case Do::kLook:
+  switch (static_cast<WriteStep>(step / 16)) {
+    case WriteStep::kLook:
       return near(this)->look();
-    case Do::kEnd:
+    case WriteStep::kEnd:
       return near(this)->finish();
-    case Do::kClear:
+    case WriteStep::kClear:
       nvm_clear(plus(place_, at));
       step_++;
       return;
-    case Do::kBody:
-    case Do::kCheck: {
+    case WriteStep::kBody:
+    case WriteStep::kCheck: {
       value = bytes_[at_];
       const bool is_equal = body_byte(place_, at_) == value;
-      if (step == tiniscript::step(Do::kBody)) {
+      if (step == tiniscript::step(WriteStep::kBody)) {
         if (at_ == 0) value ^= generation_;
         if (!is_equal || !is_stable_) nvm_write(plus(place_, plus(kBodyAt, at_)), value);
       } else if (!is_equal) {
@@ -164,13 +154,13 @@ one_copy void Store::tick(bool may_commit) {
       }
       return;
     }
-    case Do::kGeneration:
+    case WriteStep::kGeneration:
       value = generation_;
       break;
-    case Do::kMark:
+    case WriteStep::kMark:
       value = generation_ ^ kMarkOf;
       break;
-    case Do::kEmpty:
+    case WriteStep::kEmpty:
       break;
   }
   nvm_write(plus(place_, at), value);
@@ -184,18 +174,18 @@ bool Store::is_ready_to_commit() const {
 // One has been written, or it is.
 bool Store::is_committing() const { return is_busy_ && !nvm_is_ready() && step_ > kCommitting; }
 
-one_copy void Store::give_up() {
+tini_noinline void Store::give_up() {
   if (!is_ready_to_commit() || state_ != StoreState::kSaving) return;
   state_ = StoreState::kIdle;
   is_busy_ = false;
 }
 
-one_copy bool Store::begin_save(const uint8_t* image) {
+tini_noinline bool Store::begin_save(const uint8_t* image) {
   const uint16_t length = image_bytes(image[kCodeLengthAt], image[kCodeLengthAt + 1]);
   return length != 0 && near(this)->begin_write(Area::kProgram, image, length);
 }
 
-one_copy bool Store::begin_keep(Area area, uint8_t* record) {
+tini_noinline bool Store::begin_keep(Area area, uint8_t* record) {
   if (is_busy_) return false;
   uint32_t check = crc32(0, record + kCheckBytes, kRecordBytes - kCheckBytes);
   for (uint8_t k = 0; k < kCheckBytes; k++) {
@@ -205,41 +195,30 @@ one_copy bool Store::begin_keep(Area area, uint8_t* record) {
   return near(this)->begin_write(area, record, kRecordBytes);
 }
 
-one_copy bool Store::begin_erase(Area area) {
-  if (!can_begin()) return false;
-  go_beside(area, newest(area, kNothing));  // the older one first: it must not come back
-  held_[slot_] = kNothing;
-  held_[slot_ ^ 1] = kNothing;
-  is_first_ = true;
-  state_ = StoreState::kErasing;
-  begin(kErasing);
-  return true;
-}
-
-one_copy void Store::refuse() {
+tini_noinline void Store::refuse() {
   const uint8_t slot = used(Area::kProgram);
   if (slot != kNoSlot) held_[slot] |= kRefused;
 }
 
-one_copy bool Store::fetch(Area area, uint16_t at, uint8_t* byte) const {
+tini_noinline bool Store::fetch(Area area, uint16_t at, uint8_t* byte) const {
   const uint8_t slot = used(area);
   if (slot == kNoSlot || !nvm_is_ready()) return false;
   *byte = body_byte(place_of(slot), at);
   return true;
 }
 
-uint8_t Store::used(Area area) const { return newest(area, kRefused); }
-
-one_copy void Store::go_to(uint8_t slot) {
-  slot_ = slot;
-  place_ = place_of(slot);
+bool Store::fetch_first(Area area, uint8_t* bytes, uint16_t length) const {
+  for (uint16_t k = 0; k < length; k++) {
+    if (!fetch(area, k, bytes + k)) return false;
+  }
+  return true;
 }
 
-bool Store::can_begin() const { return !is_busy_ && nvm_is_ready(); }
+uint8_t Store::used(Area area) const { return newest(area, kRefused); }
 
-void Store::begin(uint8_t step) {
-  step_ = step;
-  is_busy_ = true;
+tini_noinline void Store::go_to(uint8_t slot) {
+  slot_ = slot;
+  place_ = place_of(slot);
 }
 
 // Goes to the slot that must not be kept where `slot`, or none, must.
@@ -247,8 +226,8 @@ void Store::go_beside(Area area, uint8_t slot) {
   go_to(slot == kNoSlot ? static_cast<uint8_t>(2 * static_cast<uint8_t>(area)) : slot ^ 1);
 }
 
-one_copy bool Store::begin_write(Area area, const uint8_t* bytes, uint16_t length) {
-  if (!can_begin()) return false;
+tini_noinline bool Store::begin_write(Area area, const uint8_t* bytes, uint16_t length) {
+  if (is_busy_ || !nvm_is_ready()) return false;
   const uint8_t slot = used(area);
   if (slot != kNoSlot) {
     // the same up to the end of its check?
@@ -270,7 +249,8 @@ one_copy bool Store::begin_write(Area area, const uint8_t* bytes, uint16_t lengt
   length_ = length;
   at_ = 0;
   state_ = StoreState::kSaving;
-  begin(kSaving);
+  step_ = kSaving;
+  is_busy_ = true;
   return true;
 }
 
@@ -307,7 +287,7 @@ bool Store::is_sound() const {
 }
 
 // The slot of an area whose generation is the latest of those less than `end`.
-one_copy uint8_t Store::newest(Area area, uint8_t end) const {
+tini_noinline uint8_t Store::newest(Area area, uint8_t end) const {
   const uint8_t slot = static_cast<uint8_t>(2 * static_cast<uint8_t>(area));
   const uint8_t first = held_[slot];
   const uint8_t second = held_[slot + 1];
@@ -324,13 +304,6 @@ void Store::finish() {
   if (state == StoreState::kSaving) {
     held_[slot] = generation_;
     state_ = StoreState::kSaved;
-  } else if (state == StoreState::kErasing) {
-    if (is_first_) {
-      is_first_ = false;
-      step_ = kErasing;
-      return go_to(slot ^ 1);
-    }
-    state_ = StoreState::kErased;
   } else if (state == StoreState::kSettling) {
     step_ = kLooking;
     if (++slot != kSlots) return go_to(slot);

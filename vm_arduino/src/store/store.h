@@ -21,8 +21,6 @@ enum class StoreState : uint8_t {
   kSaving,
   kSaved,
   kFailed,  // the memory does not keep what is written; what counted before still does
-  kErasing,
-  kErased,
 };
 
 constexpr uint8_t kNoSlot = 0xff;
@@ -33,8 +31,8 @@ class Store {
   void boot();
 
   // Does a little: writes at most one byte. What makes something count waits for `may_commit`, that
-  // is, motors off and enough voltage; so does erasing. After `boot` a call may take as long as the
-  // checksum of a program.
+  // is, motors off and enough voltage. After `boot` a call may take as long as the checksum of a
+  // program.
   void tick(bool may_commit);
 
   StoreState state() const { return state_; }
@@ -52,9 +50,6 @@ class Store {
   // same slot. After a start before that, what was given up counts if its first mark was written.
   void give_up();
 
-  // How many bytes of what is saved are still to be written, and then again to be read back.
-  uint16_t left() const { return static_cast<uint16_t>(length_ - at_); }
-
   // Begins to save an image that `unpack` has accepted; it must stay as it is while `is_busy`. What
   // is stored already is saved at once. False: busy, or too large.
   bool begin_save(const uint8_t* image);
@@ -62,9 +57,6 @@ class Store {
   // Begins to keep a record of kRecordBytes, and puts the check into its first bytes. On the same
   // conditions.
   bool begin_keep(Area area, uint8_t* record);
-
-  // Begins to forget what is in an area, both slots. False: busy.
-  bool begin_erase(Area area);
 
   // The slot of what counts, or kNoSlot. Means nothing while settling.
   uint8_t used(Area area) const;
@@ -77,12 +69,13 @@ class Store {
   // none, or the memory is writing (ask again); while nothing is busy, it is not.
   bool fetch(Area area, uint16_t at, uint8_t* byte) const;
 
+  // The same with its first `length` bytes. Where it returns false, some may have been put.
+  bool fetch_first(Area area, uint8_t* bytes, uint16_t length) const;
+
  private:
   void look();
   bool is_sound() const;
   void finish();
-  bool can_begin() const;
-  void begin(uint8_t step);
   bool begin_write(Area area, const uint8_t* bytes, uint16_t length);
   void go_to(uint8_t slot);
   void go_beside(Area area, uint8_t slot);
@@ -97,7 +90,6 @@ class Store {
   uint8_t slot_;
   uint16_t place_;      // of the slot
   uint8_t generation_;  // of the slot
-  bool is_first_;       // erasing: the other slot comes next
   bool is_stable_;      // equal bytes of the body need not be written
   const uint8_t* bytes_;
   uint16_t length_;

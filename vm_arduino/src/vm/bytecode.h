@@ -327,14 +327,14 @@ constexpr uint8_t kFamilyOps = 6;
 
 // Pops (2 bits) and form (6) of each opcode below kFamilies.
 constexpr uint8_t kFormMask = 63;
-extern const uint8_t kFormOf[] in_flash;
+extern const uint8_t kFormOf[] tini_progmem;
 
 // Of each form: pushes (1 bit) and role (5); what the second byte is (2), the first
 // (3), and the size (3).
-extern const uint8_t kForms[][2] in_flash;
+extern const uint8_t kForms[][2] tini_progmem;
 
 // The least value of a Byte, and how much more than that it may be.
-extern const uint8_t kRanges[][2] in_flash;
+extern const uint8_t kRanges[][2] tini_progmem;
 
 }  // namespace tiniscript
 

@@ -10,9 +10,9 @@
 
 #ifdef __AVR__
 #include <avr/pgmspace.h>
-#define in_flash __attribute__((progmem))
+#define tini_progmem __attribute__((progmem))
 #else
-#define in_flash
+#define tini_progmem
 #endif
 
 namespace tiniscript {

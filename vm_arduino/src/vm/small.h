@@ -8,9 +8,9 @@
 
 // For a function that is called more than once: without a copy for each call.
 #ifdef __AVR__
-#define one_copy __attribute__((noinline, noclone))
+#define tini_noinline __attribute__((noinline, noclone))
 #else
-#define one_copy
+#define tini_noinline
 #endif
 
 namespace tiniscript {

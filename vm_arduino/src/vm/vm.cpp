@@ -46,24 +46,24 @@ Status Machine::tick(uint32_t now_ms, uint8_t budget) {
 }
 
 // Begins a wait where the one before ended, or now where that is too long ago.
-one_copy void Machine::wait(uint32_t duration_ms, Wait what) {
+tini_noinline void Machine::wait(uint32_t duration_ms, Wait what) {
   begin();
   sleep(task_.clock_ms + duration_ms, what);
 }
 
-one_copy void Machine::sleep(uint32_t wake_ms, Wait what) {
+tini_noinline void Machine::sleep(uint32_t wake_ms, Wait what) {
   task_.clock_ms = wake_ms;
   task_.wait = what;
   status_ = Status::kWaiting;
 }
 
 // Sets the program's clock to when a wait or a move that comes now begins.
-one_copy void Machine::begin() {
+tini_noinline void Machine::begin() {
   if (now_ms_ - task_.clock_ms > kLateMs) task_.clock_ms = now_ms_;
 }
 
 // Ends the watched move.
-one_copy void Machine::finish() {
+tini_noinline void Machine::finish() {
   if (!task_.is_watching) return;
   task_.clock_ms = now_ms_;
   if (task_.drives) robot_motors(0, 0);
@@ -71,7 +71,7 @@ one_copy void Machine::finish() {
 
 // Goes on with the watched move: begins it, or waits for its next check. Returns whether there is
 // one.
-one_copy bool Machine::watch() {
+tini_noinline bool Machine::watch() {
   if (!task_.is_watching) {
     task_.is_watching = true;
     begin();

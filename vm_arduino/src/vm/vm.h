@@ -1,8 +1,8 @@
 // The machine.
 //
 // Runs verified code. Time comes in as `now_ms`; the world is behind `robot.h`. `tick` does a
-// little and returns: nothing here waits. Means the same as `vm.py` and
-// `vm_instructions.py`.
+// little and returns: nothing here waits. Means the same as `machine.py` and
+// `instructions.py`.
 //
 // What verified code never does is still looked at, cheaply: stack, counters, calls, offsets,
 // opcodes and the numbers of variables and sensors. It is the fault kBadCode, not a wild write.

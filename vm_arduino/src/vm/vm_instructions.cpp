@@ -22,7 +22,7 @@ constexpr uint8_t kTenthMs = 100;
 uint32_t duration(int32_t time) { return time < 0 ? 0 : static_cast<uint32_t>(time); }
 
 // The number nearest to `value` from `low` to `high`.
-one_copy int16_t limited(int32_t value, int16_t low, int16_t high) {
+tini_noinline int16_t limited(int32_t value, int16_t low, int16_t high) {
   const int16_t part = static_cast<int16_t>(value);
   if (part != value) return value < 0 ? low : high;
   return part < low ? low : part > high ? high : part;
@@ -37,14 +37,14 @@ int8_t percent(int32_t power, int8_t low) {
 
 // Takes a reading where it `must_read`, else leaves the kept one. Returns false where the robot is
 // not ready, or does not have the sensor.
-one_copy bool Machine::sense(uint8_t number, bool must_read) {
+tini_noinline bool Machine::sense(uint8_t number, bool must_read) {
   if (number >= sensors_) return fail();
   return !must_read || robot_read(number, readings_ + number);
 }
 
 // MOVE to WATCH_FOREVER and WAIT to WATCH_FOREVER_WAIT. Each comes in four forms: with a time from
 // the stack, with bytes, watched, and watched forever. Returns whether the program waits now.
-one_copy bool Machine::move(uint8_t code, uint16_t operand, const int32_t* values) {
+tini_noinline bool Machine::move(uint8_t code, uint16_t operand, const int32_t* values) {
   const bool drives = code < static_cast<uint8_t>(Op::kWait);
   const uint8_t form = (drives ? code >> 2 : code) & 3;
   uint32_t move_ms = kForever;
@@ -75,7 +75,7 @@ one_copy bool Machine::move(uint8_t code, uint16_t operand, const int32_t* value
 // Goes on where a comparison is TRUE, and else to its target. 80 + 10 for each source + 8 for the
 // wide constant + the comparator. Returns how far it is to the next instruction, or 0 where this
 // one cannot run.
-one_copy uint16_t Machine::compare_and_branch(const uint8_t* bytes) {
+tini_noinline uint16_t Machine::compare_and_branch(const uint8_t* bytes) {
   const uint8_t code = *bytes++;
   const uint8_t number = *bytes++;
   const int32_t* places = task_.variables;
@@ -313,7 +313,7 @@ __attribute__((always_inline)) inline bool Machine::step(Running* run) {
 }
 
 // Runs instructions until the program must wait or ends, or the budget is used up.
-one_copy void Machine::execute(uint8_t budget) {
+tini_noinline void Machine::execute(uint8_t budget) {
   Machine* self = this;
   Running run = {task_.pc, task_.pc, task_.depth};
   bool goes_on = true;

@@ -80,10 +80,10 @@ class Description:
     def fields(self) -> dict[str, object]:
         """Return it as data."""
         from tiniscript.cli.robot.event_printer import fault_name
-        from tiniscript.link.messages import RESETS, SAVED, STATES
+        from tiniscript.link.messages import RESETS, SAVED, SAVED_NOTHING, SAVED_STORED, STATES
 
         values = self.values
-        has_program = values["saved"] != 0
+        has_program = values["saved"] != SAVED_NOTHING
         fault = None
         if values["fault"]:
             program = f"{values['fault_program']:08x}"
@@ -102,7 +102,7 @@ class Description:
             "program": f"{values['program']:08x}" if has_program else None,
             "code_bytes": values["length"] if has_program else None,
             "saved": _name(SAVED, values["saved"]),
-            "slot": values["slot"] if values["saved"] == STORED else None,
+            "slot": values["slot"] if values["saved"] == SAVED_STORED else None,
             "fault": fault,
             "reset": _name(RESETS, values["reset"]),
             "damaged": values["damaged"],
@@ -118,9 +118,10 @@ class Description:
 
     def _program(self) -> str:
         from tiniscript.codegen import source_map
+        from tiniscript.link.messages import SAVED_NOTHING
 
         language, values, fields = self.connection.language, self.values, self.fields()
-        if values["saved"] == 0:
+        if values["saved"] == SAVED_NOTHING:
             return text("info_no_program", language)
         places = source_map.recall(values["program"])
         return text("info_program", language).format(
@@ -156,9 +157,6 @@ class Description:
         said = fault_sentence(values["fault"], values["fault_at"], values["fault_program"], None,
                               self.connection.language)  # fmt: skip
         return text("info_fault", self.connection.language).format(fault=said)
-
-
-STORED = 3  # of `link.messages.SAVED`
 
 
 def _name(table: tuple[tuple[str, str], ...], number: int) -> str:

@@ -12,6 +12,7 @@ from tiniscript.cli.robot.connect import Connection, connected, takes_robot
 from tiniscript.cli.robot.event_printer import Bookkeeping, Teller
 from tiniscript.cli.texts.common import text
 from tiniscript.library import way
+from tiniscript.link.requests import OK
 
 if TYPE_CHECKING:
     from tiniscript.link.connection import Asked
@@ -107,7 +108,7 @@ class _Log:
 
     def _look_again(self) -> None:
         assert self.search is not None and self.search.outcome is not None
-        if self.search.outcome.status == 0:
+        if self.search.outcome.status == OK:
             self.search = None
             self._say("FOUND", "link_found", robot=self.connection.name)
         else:

@@ -299,18 +299,16 @@ class Catch:
         self.has_missed = False  # events of this line
 
     def hold(self, event: Event) -> bool:
-        from tiniscript.cli.robot.live_mark import MARK
         from tiniscript.cli.robot.live_state import Value
 
         if event.name == "SHOW":
-            is_mark = event.values["value"] == MARK and not event.values["is_yes_no"]
-            if not self.shown or not (is_mark or self.held):
-                return False
-            if is_mark or len(self.held) > len(self.shown):
-                self._release()
-            if not is_mark and not self.held:
+            if not self.shown or not (_is_mark(event) or self.held):
                 return False
             self.held.append(event)
+            if len(self.held) > len(self.shown) + 1:  # a program shows the mark by chance
+                self._release(1)
+                while self.held and not _is_mark(self.held[0]):
+                    self._release(1)
             return True
         if event.name == "DONE":
             values = [each.values for each in self.held[1:]]
@@ -330,11 +328,18 @@ class Catch:
         self.has_missed = self.has_missed or event.name == "MISSED"
         return False
 
-    def _release(self) -> None:
-        """What was kept back is the person's own."""
-        for event in self.held:
+    def _release(self, count: int | None = None) -> None:
+        """What was kept back is the person's own: so many events, or all."""
+        own = self.held[:count]
+        del self.held[:count]
+        for event in own:
             self.teller.tell(0, event)
-        self.held = []
+
+
+def _is_mark(event: Event) -> bool:
+    from tiniscript.cli.robot.live_mark import MARK
+
+    return event.values["value"] == MARK and not event.values["is_yes_no"]
 
 
 @contextlib.contextmanager
@@ -345,11 +350,10 @@ def _history(known: Known) -> Iterator[None]:
     except ImportError:  # Windows: its console has a history of its own
         yield
         return
-    from platformdirs import user_cache_path
-
+    from tiniscript import files
     from tiniscript.words import WORDS
 
-    path = user_cache_path("tiniscript", appauthor=False) / "live_history"
+    path = files.cache_folder() / "live_history"
     kit = known.kit
 
     def complete(begun: str, number: int) -> str | None:

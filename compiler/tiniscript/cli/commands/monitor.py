@@ -61,12 +61,14 @@ def run(arguments: list[str], language: str) -> int:
     if options is None:
         return 0
     seconds = whole_number("--max-time", options.max_time, 0, 1, 10**6, language)
-    rows = _rows(options.csv) if options.csv is not None else None
+    rows: TextIO | None = None
     from tiniscript.cli.robot.event_printer import Teller
 
     try:
         with connected(options, language) as connection:
             connection.meet()
+            if options.csv is not None:  # where no robot answers, the last rows stay
+                rows = _rows(options.csv)
             said = {"robot": connection.name, "port": shown(connection.port)}
             print(text("watching", language).format(**said), file=sys.stderr)
             if options.plot and sys.stderr.isatty():

@@ -117,6 +117,7 @@ def _ask(port: str, baud: int, robot: Robot, language: str) -> dict[str, object]
     from contextlib import closing
 
     from tiniscript.link.outcomes import Gone
+    from tiniscript.link.requests import OK
 
     try:
         with closing(opened_way(port, baud, robot, "ports", OPEN_S)) as line:
@@ -127,7 +128,7 @@ def _ask(port: str, baud: int, robot: Robot, language: str) -> dict[str, object]
         return {"answer": None, "said": trouble.sentence(language).removeprefix("tsc: ")}
     except Gone as gone:
         return {"answer": None, "said": gone.why}
-    if reply.status == 0 and card is not None:
+    if reply.status == OK and card is not None:
         way.remember(port, card.name, is_used=False)
         called = shown(card.name) or robot_of_kit(card.kit) or f"{card.id:08x}"
         said = text("port_robot", language).format(name=called)

@@ -147,9 +147,9 @@ class _Stage:
         robot = self.host.robot
         self._introduce()
         try:
-            with Keys() as keys, _ended_by_signal():
+            with Keys() as keys, ended_by_signal() as ended:
                 self._begin()
-                while end_ms is None or robot.now_ms < end_ms:
+                while not ended.is_set and (end_ms is None or robot.now_ms < end_ms):
                     if pushes_ms and robot.now_ms >= pushes_ms[0]:
                         pushes_ms.pop(0)
                         self.host.push()
@@ -252,18 +252,29 @@ class _Stage:
             self._kept = memory
 
 
-@contextmanager
-def _ended_by_signal() -> Iterator[None]:
-    """Who ends this process ends it as Ctrl-C does: nothing is left lying around."""
+class Ended:
+    """Whether somebody has asked the process to end."""
 
-    def end(*_: Any) -> None:
+    def __init__(self) -> None:
+        self.is_set = False
+
+    def ask(self, *_: Any) -> None:
+        """Do what a signal means. The exception may come in a callback of C, which drops it."""
+        self.is_set = True
         raise KeyboardInterrupt
 
-    before = signal.signal(signal.SIGTERM, end)
+
+@contextmanager
+def ended_by_signal() -> Iterator[Ended]:
+    """Who ends this process ends it as Ctrl-C does: nothing is left lying around."""
+    ended = Ended()
+    numbers = (signal.SIGTERM, signal.SIGINT)
+    before = [signal.signal(number, ended.ask) for number in numbers]
     try:
-        yield
+        yield ended
     finally:
-        signal.signal(signal.SIGTERM, before)
+        for number, handler in zip(numbers, before, strict=True):
+            signal.signal(number, handler)
 
 
 def _guests(port: int, has_terminal: bool) -> Guests:

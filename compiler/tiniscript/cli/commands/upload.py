@@ -174,6 +174,10 @@ def _upload(
         except Trouble as trouble:
             print(trouble.sentence(language), file=sys.stderr)
         return code
+    except OSError:  # nobody reads any more what tsc prints
+        if connection.stop_unseen():
+            saving.wait_unseen()
+        raise
 
 
 def _keep_map(ready: images.Ready) -> None:
@@ -264,6 +268,7 @@ def receipt(
         "start": image.start,
         "is_running": runs,
         "is_detached": runs and bool(options.detach),
+        "is_pushed": has_button(connection, ready, options),  # who reads JSON has no key for it
     }
 
 

@@ -73,6 +73,7 @@ class Connection:
         self.is_one_of_many = is_one_of_many
         self.options = options
         self.is_interrupted = False
+        self._is_stopped_unseen = False
         self.starts_nothing = options.verb not in ("upload", "start", "live")
         is_detached = getattr(options, "detach", False)
         self.drives = options.verb in ("upload", "start", "live", "trim") and not is_detached
@@ -100,25 +101,30 @@ class Connection:
 
     def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
         if kind is not None and issubclass(kind, OSError) and self.drives:
-            self._stop_unseen()
+            self.stop_unseen()
         if self.host is not None:
-            has_run = self.host.has_run
-            self.host.close()
-            if has_run:  # of a guest, who can no longer stop it
+            self.host.close()  # before it one may begin
+            if self.host.may_have_run:  # of a guest, who can no longer stop it
                 from tiniscript.cli.robot.run_monitor import STOP_S, confirmed
 
                 confirmed(self.line, STOP_S)
         self.line.close()
         self._end_company()
 
-    def _stop_unseen(self) -> None:
-        """Stop the robot because nobody reads any more, or can, what it does."""
+    def stop_unseen(self) -> bool:
+        """Stop the robot, once, because nobody reads any more, or can, what it does; return whether
+        it was this time, and the robot has confirmed it."""
+        if self._is_stopped_unseen or not self.drives:
+            return False
+        self._is_stopped_unseen = True
         from tiniscript.cli.robot.run_monitor import STOP_S, confirmed
 
-        key = "output_stopped" if confirmed(self.line, STOP_S) else "not_confirmed"
+        is_confirmed = confirmed(self.line, STOP_S)
+        key = "output_stopped" if is_confirmed else "not_confirmed"
         with suppress(OSError):
             said = text(key, self.language).format(port=shown(self.port))
             print(said, file=sys.stderr, flush=True)
+        return is_confirmed
 
     @property
     def is_time_over(self) -> bool:

@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from tiniscript.link.outcomes import Event
     from tiniscript.vm.trace import Event as Traced
 
-FAULTED = 3  # a state of `link.messages`
-
 
 def fault_name(number: int) -> str:
     """Return the name of a fault: of the machine's, or of the link's."""
@@ -127,8 +125,10 @@ class Teller:
 
     def _tell_end(self, since_ms: int, name: str, numbers: dict[str, int]) -> None:
         """A fault, or the end of a run of which only the robot's state is known."""
-        if name == "ENDED" and numbers["state"] != FAULTED:
-            ended = "DONE" if numbers["state"] == 0 else "STOPPED"
+        from tiniscript.link.messages import STATE_FAULTED, STATE_IDLE
+
+        if name == "ENDED" and numbers["state"] != STATE_FAULTED:
+            ended = "DONE" if numbers["state"] == STATE_IDLE else "STOPPED"
             key = "robot_done" if ended == "DONE" else "stopped_NONE"
             self.say(since_ms, ended, "", text(key, self.language))
             return

@@ -13,6 +13,7 @@ from typing import NamedTuple
 from tiniscript import Compiled, compile_text
 from tiniscript.cli.robot.live_mark import MARK
 from tiniscript.codegen.lower import Place
+from tiniscript.diagnostics import codes
 from tiniscript.fixed_point import as_text
 from tiniscript.kit import Kit
 from tiniscript.semantics.ir import Assign, walk
@@ -22,6 +23,7 @@ from tiniscript.syntax.lexer import WORD, scan
 from tiniscript.syntax.parser import parse
 
 _HEADER = re.compile(r"[ \t]*(SI|SB|PING)[ \t]*\|", re.IGNORECASE | re.ASCII)
+_UNUSED = (codes.UNUSED_VARIABLE, codes.UNUSED_DEF)
 
 
 class Value(NamedTuple):
@@ -130,7 +132,7 @@ def _behind(compiled: Compiled, start: int, end: int | None = None) -> Compiled:
         problem._replace(span=Span(problem.span.start - start, min(problem.span.end, end) - start))
         for problem in compiled.problems
         if start <= problem.span.start <= end
-        and (problem.is_mistake or problem.code.number not in UNUSED)
+        and (problem.is_mistake or problem.code not in _UNUSED)
         and (problem.span.start < end or end == len(text))
     ]
     places = tuple(
@@ -139,6 +141,3 @@ def _behind(compiled: Compiled, start: int, end: int | None = None) -> Compiled:
     )
     source = Source(text[start:end], "live")
     return compiled._replace(source=source, problems=problems, places=places)
-
-
-UNUSED = ("TS806", "TS807")

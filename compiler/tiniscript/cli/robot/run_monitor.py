@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from contextlib import suppress
 from time import monotonic
 from typing import TYPE_CHECKING
 
@@ -12,6 +13,7 @@ from tiniscript.cli.texts.common import text
 from tiniscript.library.endings import Follower, end_of
 from tiniscript.library.errors import RobotError
 from tiniscript.library.way import CONFIRM_S, confirmed
+from tiniscript.link.messages import SAVED_LOW_SUPPLY, SAVED_SAVING, SAVED_STORED
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -26,7 +28,6 @@ STOP_S = 1.5  # the same for a command that leaves, and that nobody may look at
 SAVE_S = 10.0  # for which a robot may save a program
 LOW_S = 2.0  # for which its voltage may be too low for that: it looks every half second
 ASK_S = 1.0  # between two questions whether it has, while the program runs
-SAVING, STORED, LOW_SUPPLY = 2, 3, 4  # of `link.messages.SAVED`
 DONE, FAULTY, INTERRUPTED, LOST = 0, 1, 2, 3  # exit codes
 
 __all__ = ("CONFIRM_S", "STOP_S", "Attendant", "Saving", "confirmed", "ended", "stop_and_say")
@@ -122,12 +123,13 @@ class Saving:
         self.connection = connection
         self.teller = teller
         self.run, self.program, self.saved = (values[key] for key in ("run", "program", "saved"))
+        self.is_unseen = False
         self._asked: Asked | None = None
         self._asked_s = monotonic()
 
     @property
     def is_over(self) -> bool:
-        return self.saved not in (SAVING, LOW_SUPPLY)
+        return self.saved not in (SAVED_SAVING, SAVED_LOW_SUPPLY)
 
     def look(self) -> None:
         """Ask every second, and wait for nothing."""
@@ -146,7 +148,7 @@ class Saving:
         low_s: float | None = None
         while not self.is_over and monotonic() < begun_s + SAVE_S:
             self._learn(self.connection.ask(lambda session: session.status()), is_running=False)
-            if self.saved == LOW_SUPPLY:
+            if self.saved == SAVED_LOW_SUPPLY:
                 low_s = low_s or monotonic()
                 if monotonic() > low_s + LOW_S:
                     break
@@ -154,22 +156,34 @@ class Saving:
                 low_s = None
             if not self.is_over:
                 self.connection.event()
-        if self.saved != STORED:
-            key = {SAVING: "saves_later", LOW_SUPPLY: "low_supply"}.get(self.saved, "not_saved")
+        if self.saved != SAVED_STORED:
+            keys = {SAVED_SAVING: "saves_later", SAVED_LOW_SUPPLY: "low_supply"}
+            key = keys.get(self.saved, "not_saved")
             raise Trouble(3, "plain", said=text(key, self.connection.language))
+
+    def wait_unseen(self) -> None:
+        """The same where nobody reads what tsc prints: only what went wrong is still said."""
+        self.is_unseen = True
+        try:
+            self.wait()
+        except Trouble as trouble:
+            with suppress(OSError):
+                print(trouble.sentence(self.connection.language), file=sys.stderr, flush=True)
 
     def _learn(self, status: Reply, is_running: bool) -> None:
         values = {key: each for key, each in status.values.items() if isinstance(each, int)}
         if status.status or self.is_over:
             return
         if values["program"] != self.program:  # somebody has sent another one
-            self.saved = STORED
+            self.saved = SAVED_STORED
             return
-        was_low, self.saved = self.saved == LOW_SUPPLY, values["saved"]
+        was_low, self.saved = self.saved == SAVED_LOW_SUPPLY, values["saved"]
         language = self.connection.language
-        if self.saved == STORED:
+        if self.is_unseen:
+            return
+        if self.saved == SAVED_STORED:
             slot = values["slot"]
             said = text("now_saved", language).format(slot=slot)
             self.teller.say(0, "SAVED", str(slot), said, slot=slot)
-        elif self.saved == LOW_SUPPLY and not was_low and is_running:
+        elif self.saved == SAVED_LOW_SUPPLY and not was_low and is_running:
             self.teller.say(0, "LOW_SUPPLY", "", text("low_supply", language), is_bad=True)

@@ -23,6 +23,8 @@ STRAIGHT = "F(2, 60)"
 LEAST_STEP = 5  # percent
 FIRST_STEP = 16  # percent of balance; half of it each time that the robot goes to the other side
 YES, AGAIN = 1, 4
+STOPPED = ("stopped_elsewhere", "plain")  # troubles of a robot that was stopped meanwhile
+TRIES = 4
 
 
 def guided(connection: Connection, before: Trim) -> Trim:
@@ -33,9 +35,27 @@ def guided(connection: Connection, before: Trim) -> Trim:
         if isinstance(why, KeyboardInterrupt):
             print(file=sys.stderr)
             confirmed(connection.line)
-        if not isinstance(why, Trouble) or why.key.startswith("trim_"):
-            connection.give(lambda session: session.trim(before.data()))
+        if not isinstance(why, Trouble) or _is_there(why):
+            _give_back(connection, before)
         raise
+
+
+def _is_there(trouble: Trouble) -> bool:
+    """Whether the robot can still be told something."""
+    return trouble.key in STOPPED or trouble.key.startswith("trim_")
+
+
+def _give_back(connection: Connection, before: Trim) -> None:
+    """Have the robot keep the trim that it had: a stop that still goes on may come in between."""
+    for _ in range(TRIES - 1):
+        try:
+            connection.give(lambda session: session.trim(before.data()))
+        except Trouble as trouble:
+            if not _is_there(trouble):
+                raise
+        else:
+            return
+    connection.give(lambda session: session.trim(before.data()))
 
 
 class Guide:

@@ -2,7 +2,7 @@
 
 Knows the terminal, the time that passes in front of it, and braille: a character has 2 x 4 dots.
 The picture goes to standard error, the trace to standard output. Knows no programs and no
-machine; where a robot gets to is in `way`.
+machine; where a robot gets to is in `kinematics`.
 """
 
 from __future__ import annotations

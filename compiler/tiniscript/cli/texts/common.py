@@ -1,4 +1,4 @@
-"""What `tsc` itself says, in English and Spanish. What it says of programs is in `messages`."""
+"""What `tsc` itself says, in English and Spanish. What it says of programs is in `diagnostics`."""
 
 from __future__ import annotations
 

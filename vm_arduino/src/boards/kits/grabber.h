@@ -29,7 +29,7 @@ constexpr Pin kStandby = kNoPin;
 constexpr Pin kServos[] = {{kPortB, 1 << 5}};
 constexpr uint8_t kEchoes = 1;
 
-in_place Echo echo_at(uint8_t) {
+tini_always_inline Echo echo_at(uint8_t) {
   return {{kPortA, 1 << 4}, {kPortE, 1 << 4}, 3, 1 << 4};
 }
 

@@ -27,7 +27,7 @@ constexpr Bridge kRightMotor =
 constexpr Pin kStandby = kNoPin;
 constexpr uint8_t kEchoes = 1;
 
-in_place Echo echo_at(uint8_t) {
+tini_always_inline Echo echo_at(uint8_t) {
   return {{kPortD, 1 << 4}, {kPortD, 1 << 3}, 2, 1 << 3};
 }
 
@@ -83,7 +83,7 @@ constexpr Bridge kRightMotor =
 constexpr Pin kStandby = kNoPin;
 constexpr uint8_t kEchoes = 1;
 
-in_place Echo echo_at(uint8_t) {
+tini_always_inline Echo echo_at(uint8_t) {
   return {{kPortG, 1 << 5}, {kPortE, 1 << 5}, 3, 1 << 5};
 }
 

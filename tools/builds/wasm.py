@@ -1,4 +1,4 @@
-"""Makes `machine.wasm` and `robot.wasm` from the C++: `python -m tools.build.wasm` after changes.
+"""Makes `machine.wasm` and `robot.wasm` from the C++: `python -m tools.builds.wasm` after changes.
 
 `tsc run --machine cpp` runs the machine, and `tsc robot` the whole robot. Needs the compiler
 `ziglang` from PyPI, in the version that the extra `test` pins: with it, the same sources give the
@@ -19,7 +19,7 @@ from typing import NamedTuple
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 SOURCES = "vm_arduino"
-COMMAND = "python -m tools.build.wasm"
+COMMAND = "python -m tools.builds.wasm"
 
 # No library is linked, so what the machine calls is in its own sources or in wasm itself.
 FLAGS = (

@@ -1,12 +1,12 @@
 """Lets `pio` work where PlatformIO's registry cannot be reached, with what PyPI and Debian hold.
 
-    python -m tools.build.platformio_offline pio test -e native     runs a command in vm_arduino
-    eval "$(python -m tools.build.platformio_offline)"              for all commands of this shell
+    python -m tools.builds.platformio_offline pio test -e native     runs a command in vm_arduino
+    eval "$(python -m tools.builds.platformio_offline)"              for all commands of this shell
 
 Nobody who is online needs it: where the registry answers, or PlatformIO has platforms of its own,
 it changes nothing. Elsewhere it makes stand-ins for two platforms in a folder of its own (below
-.venv), from `tools/build/platformio_stand_ins`, SCons from PyPI, and Debian's packages. Every build
-says that it uses them. A version that does not match is refused.
+.venv), from `tools/builds/platformio_stand_ins`, SCons from PyPI, and Debian's packages. Every
+build says that it uses them. A version that does not match is refused.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from typing import Any
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 PROJECT = ROOT / "vm_arduino"
-STAND_INS = ROOT / "tools" / "build" / "platformio_stand_ins"
+STAND_INS = ROOT / "tools" / "builds" / "platformio_stand_ins"
 HOME = ROOT / ".venv" / "platformio_offline"
 REGISTRY_SECONDS = 5.0
 

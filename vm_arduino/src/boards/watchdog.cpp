@@ -1,6 +1,6 @@
 #ifdef ARDUINO
 
-#include "guard.h"
+#include "watchdog.h"
 
 #include <Arduino.h>
 #include <avr/wdt.h>
@@ -49,8 +49,8 @@ void tiniscript_note_hang() {
 // The watchdog may still run, and shortly: it is put off before memory is set up. So what ran is
 // still there too, where a hang with interrupts off has been reset without being noted. There is no
 // stack frame yet, and `main` follows behind: so it is naked, and nobody calls it.
-extern "C" void tiniscript_guard_off() __attribute__((naked, used, section(".init3")));
-void tiniscript_guard_off() {
+extern "C" void tiniscript_watchdog_off() __attribute__((naked, used, section(".init3")));
+void tiniscript_watchdog_off() {
   flags = MCUSR;
   MCUSR = 0;
   WDTCSR = 1 << WDCE | 1 << WDE;
@@ -58,7 +58,7 @@ void tiniscript_guard_off() {
   if (flags == 1 << WDRF) tiniscript_note_hang();
 }
 
-void guard_begin() {
+void watchdog_begin() {
   has_hung = last.mark == hung_mark();
   last.mark = has_hung ? last.mark : kAlive;
   const uint8_t before = SREG;
@@ -72,18 +72,18 @@ void guard_begin() {
   SREG = before;
 }
 
-void guard_calm() {
+void watchdog_feed() {
   wdt_reset();
   silent_ms = 0;
 }
 
-bool guard_has_stalled() {
+bool watchdog_has_stalled() {
   const bool found = has_stalled;
   has_stalled = false;
   return found;
 }
 
-bool guard_has_hung(Place* place) {
+bool watchdog_has_hung(Place* place) {
   if (!has_hung) return false;
   has_hung = false;
   *place = last.place;
@@ -91,7 +91,7 @@ bool guard_has_hung(Place* place) {
   return true;
 }
 
-Reset guard_reset() {
+Reset watchdog_reset_cause() {
   if (has_hung || (flags & 1 << WDRF) != 0) return Reset::kWatchdog;
   if ((flags & 1 << PORF) != 0) return Reset::kPower;
   if ((flags & 1 << BORF) != 0) return Reset::kBrownOut;
@@ -99,7 +99,7 @@ Reset guard_reset() {
   return Reset::kUnknown;  // a bootloader has looked first
 }
 
-uint32_t guard_noise() {
+uint32_t watchdog_seed() {
   const uint8_t* const end = reinterpret_cast<const uint8_t*>(RAMEND + 1);
   const uint8_t* const stack = reinterpret_cast<const uint8_t*>(SP);
   const uint8_t* const from = stack - 4 * kNoiseBytes;

@@ -1,6 +1,6 @@
 """Builds the firmware of the shipped robots for a package, so that nobody has to build it again.
 
-    python -m tools.build.firmware_files
+    python -m tools.builds.firmware_files
 
 puts a file for each robot on each board that it fits, and the notices of what is in them, where
 the package is made from. It builds as `tsc firmware` does, with PlatformIO, offline stand-ins
@@ -25,7 +25,7 @@ from tiniscript.cli.firmware_build import on_boards
 from tiniscript.flash import building
 from tiniscript.flash.ready import FOLDER, NOTICE, name_of
 from tiniscript.robots.profile import Robot
-from tools.build.platformio_offline import PROJECT, CannotStandIn, settings_for
+from tools.builds.platformio_offline import PROJECT, CannotStandIn, settings_for
 
 LICENCE = Path("/usr/share/common-licenses/LGPL-2.1")  # Debian's copy
 LICENCE_NAME = "LGPL-2.1.txt"
@@ -41,8 +41,8 @@ They are made from TiniScript's folder vm_arduino, which is under the MIT licenc
   https://www.nongnu.org/avr-libc/LICENSE.txt
 - parts of libgcc, under the GNU General Public License with the GCC Runtime Library Exception.
 
-To make them anew, with another core too: pio run -d vm_arduino, or tools/build/firmware_files.py, which
-has made these, in TiniScript's source.
+To make them anew, with another core too: pio run -d vm_arduino, or
+tools/builds/firmware_files.py, which has made these, in TiniScript's source.
 """
 
 

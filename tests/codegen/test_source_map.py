@@ -1,0 +1,148 @@
+"""Source locations: each instruction says from which piece of the text it comes."""
+
+from __future__ import annotations
+
+import itertools
+import json
+
+import pytest
+
+from tiniscript import Compiled, compile_text, robots
+from tiniscript.bytecode.disassembly import rows
+from tiniscript.codegen import source_map
+from tiniscript.codegen.source_map import Map, MapPlace
+
+KIT = robots.load("tinibot").kit
+
+
+def compiled(text: str) -> Compiled:
+    found = compile_text(text, KIT, "drive.ts")
+    assert found.is_right, [problem.code.number for problem in found.problems]
+    return found
+
+
+def located(text: str) -> list[tuple[str, str]]:
+    """Return each instruction with the piece of the text that it comes from."""
+    found = compiled(text)
+    pairs = []
+    for row in rows(found.code):
+        place = [each for each in found.places if each.offset <= row.offset][-1]
+        pairs.append((row.text.split()[0], found.source[place.span]))
+    return pairs
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("F(1, 80); S", [("MOVE8_F", "F(1, 80)"), ("STOP", "S")]),
+        # a reading belongs to the instruction that takes it, and a sensor alone to itself
+        ("SHOW(1 + DISTANCE)", [("READ", "SHOW(1 + DISTANCE)"), ("PUSH8", "SHOW(1 + DISTANCE)"),
+                                ("PUSH_SENSOR", "SHOW(1 + DISTANCE)"),
+                                ("ADD", "SHOW(1 + DISTANCE)"), ("SHOW", "SHOW(1 + DISTANCE)")]),
+        ("DISTANCE; SHOW(1 - DISTANCE)",
+         [("READ", "DISTANCE"), ("PUSH8", "SHOW(1 - DISTANCE)"),
+          ("PUSH_SENSOR", "SHOW(1 - DISTANCE)"), ("SUB", "SHOW(1 - DISTANCE)"),
+          ("SHOW", "SHOW(1 - DISTANCE)")]),
+        ("DISTANCE; SHOW(DISTANCE)", [("PUSH_READ", "DISTANCE"), ("SHOW", "SHOW(DISTANCE)")]),
+        ("DISTANCE; IF(DISTANCE < 9); S; ENDIF", [("IF_READ8_LT", "DISTANCE"), ("STOP", "S")]),
+        # the check of a move is part of the move
+        ("F(1, 80) UNTIL(DISTANCE < 9)",
+         [(name, "F(1, 80) UNTIL(DISTANCE < 9)")
+          for name in ("PUSH8", "PUSH8", "WATCH_F", "PUSH_READ", "PUSH8", "LT", "UNTIL")]),
+        # a condition belongs to its arm, and the jump behind an arm to what ends it
+        ("X = 1\nIF(X = 1); S; ELSEIF(X = 2); W(1); ENDIF",
+         [("SET_VAR8", "X = 1"), ("IF_VAR8_EQ", "IF(X = 1)"), ("STOP", "S"), ("ELSE", "S"),
+          ("IF_VAR8_EQ", "ELSEIF(X = 2)"), ("WAIT8", "W(1)")]),
+        # what begins a loop or a DEF, and the jump back, belong to all of it
+        ("LOOP(2); S; END_LOOP", [("LOOP8", "LOOP(2); S; END_LOOP"), ("STOP", "S"),
+            ("NEXT", "LOOP(2); S; END_LOOP")]),
+        ("X = 1; WHILE(X < 2); S; END_WHILE",
+         [("SET_VAR8", "X = 1"), ("WHILE", "WHILE(X < 2); S; END_WHILE"),
+          ("IF_VAR8_LT", "WHILE(X < 2); S; END_WHILE"),
+          ("STOP", "S"), ("AGAIN", "WHILE(X < 2); S; END_WHILE")]),
+        ("LOOP(FOREVER); BREAK; END_LOOP", [("FOREVER", "LOOP(FOREVER); BREAK; END_LOOP"),
+                                            ("BREAK", "BREAK"),
+                                            ("AGAIN", "LOOP(FOREVER); BREAK; END_LOOP")]),
+        ("DEF A; S; END_DEF; A", [("DEF", "DEF A; S; END_DEF"), ("STOP", "S"),
+                                  ("RETURN", "S"), ("CALL", "A")]),
+    ],
+)  # fmt: skip
+def test_where_an_instruction_comes_from(text: str, expected: list[tuple[str, str]]) -> None:
+    assert located(text) == expected
+
+
+def test_instructions_that_became_far_stay_where_they_were() -> None:
+    """A comparing branch that does not reach is four instructions of one place."""
+    row = "S;" * 256
+    found = located(f"X = 1; IF(X = 5); {row} ENDIF; W(1)")
+    assert found[:5] == [("SET_VAR8", "X = 1"), *[(name, "IF(X = 5)") for name in
+                         ("PUSH_VAR", "PUSH8", "EQ", "IF_FAR")]]  # fmt: skip
+    assert found[5:-1] == [("STOP", "S")] * 256
+    assert found[-1] == ("WAIT8", "W(1)")
+
+
+def test_what_is_folded_away_has_no_place() -> None:
+    assert located("IF(1 > 2); S; ENDIF; W(1)") == [("WAIT8", "W(1)")]
+
+
+def test_places_are_in_order_and_the_first_is_at_the_beginning() -> None:
+    text = "DEF A; S; END_DEF; LOOP(3); A; IF(DISTANCE < 5); BREAK; ENDIF; END_LOOP"
+    found = compiled(text)
+    offsets = [place.offset for place in found.places]
+    assert offsets == sorted(set(offsets)) and offsets[0] == 0
+    assert set(offsets) <= {row.offset for row in rows(found.code)}
+    spans = [place.span for place in found.places]
+    assert all(one != other for one, other in itertools.pairwise(spans))
+
+
+# -- the map of a program -------------------------------------------------------------------------
+
+
+def test_a_map_has_lines_and_columns_from_1_to_the_end() -> None:
+    found = source_map.from_compiled(compiled("S\r\n  F(1,\n 80)"))
+    assert found == Map("drive.ts", ("S", "  F(1,", " 80)"),
+                        (MapPlace(0, 1, 1, 1, 2), MapPlace(1, 2, 3, 3, 5)))  # fmt: skip
+
+
+def test_an_offset_inside_an_instruction_is_the_instruction_s() -> None:
+    found = source_map.from_compiled(compiled("S; F(1, 80); W(1)"))
+    columns = [None if (place := found.at(offset)) is None else place.column
+               for offset in range(-1, 7)]  # fmt: skip
+    assert columns == [None, 1, 4, 4, 4, 14, 14, 14]
+    assert (found.line(0), found.line(1), found.line(2)) == ("", "S; F(1, 80); W(1)", "")
+
+
+def test_a_map_comes_back_from_json_as_it_was() -> None:
+    found = source_map.from_compiled(compiled("S // ñandú 🤖\nW(1)"))
+    assert source_map.from_json(source_map.as_json(found)) == found
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        {"version": source_map.VERSION + 1},
+        {"version": None},
+        {"places": 5},
+        {"places": [[0, 1, 1]]},
+        {"places": [[0, 1, 1, 1, "x"]]},
+        {"lines": None},
+    ],
+)
+def test_what_is_no_map_is_refused(changed: dict[str, object]) -> None:
+    fields = json.loads(source_map.as_json(source_map.from_compiled(compiled("S"))))
+    assert source_map.from_json(json.dumps(fields))
+    with pytest.raises(ValueError):
+        source_map.from_json(json.dumps({**fields, **changed}))
+    del fields["places"]
+    with pytest.raises(ValueError, match="no map"):
+        source_map.from_json(json.dumps(fields))
+
+
+def test_a_map_is_found_by_its_image_alone() -> None:
+    one, other = compiled("S"), compiled("W(1)")
+    source_map.remember(one.image, source_map.from_compiled(one))
+    from tiniscript.bytecode.image import checksum
+
+    recalled = source_map.recall(checksum(one.image))
+    assert recalled == source_map.from_compiled(one)
+    assert source_map.recall(checksum(other.image)) is None

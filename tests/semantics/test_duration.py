@@ -1,0 +1,82 @@
+"""How long a program runs, from its text alone: `least`, `most` (None: no bound), `never_ends`."""
+
+from __future__ import annotations
+
+import pytest
+
+from tiniscript import check_text, robots
+from tiniscript.semantics.duration import Duration, duration
+from tiniscript.semantics.optimizer import optimized
+
+KIT = robots.load("tinibot").kit
+
+
+def lasting(text: str, is_optimized: bool = True) -> Duration:
+    found = check_text(text, KIT)
+    assert found.is_right and found.program is not None, found.problems
+    return duration(optimized(found.program) if is_optimized else found.program)
+
+
+@pytest.mark.parametrize(
+    ("text", "least", "most"),
+    [
+        ("", 0, 0),
+        ("F(2, 80)", 2000, 2000),
+        ("F(1.5, 80);W(0.25);BEEP(0.5, 440)", 2250, 2250),
+        ("W(1 + 2 * 3)", 7000, 7000),
+        ("W(1 - 3)", 0, 0),  # a time below 0 counts as 0
+        ("M(50, 50);S;SHOW(DISTANCE);X = 5;SHOW(X)", 0, 0),  # what takes no time
+        # what only the robot knows
+        ("W(DISTANCE)", 0, None),
+        ("W(1);W(DISTANCE);W(2)", 3000, None),
+        ("X = 2;W(X)", 0, None),
+        # UNTIL ends a move at any time, but not later than its time
+        ("F(2, 80) UNTIL(DISTANCE < 9)", 0, 2000),
+        ("F(FOREVER, 80) UNTIL(DISTANCE < 9)", 0, None),
+        # the shortest arm, and the longest
+        ("IF(DISTANCE < 9);W(1);ELSE;W(3);ENDIF", 1000, 3000),
+        ("IF(DISTANCE < 9);W(1);ENDIF", 0, 1000),
+        ("IF(DISTANCE < 9);W(1);ELSEIF(DISTANCE < 20);W(5);ELSE;W(3);ENDIF", 1000, 5000),
+        ("IF(DISTANCE < 9);W(1);ELSE;W(DISTANCE);ENDIF", 0, None),
+        # loops
+        ("LOOP(3);W(2);END_LOOP", 6000, 6000),
+        ("LOOP(2.5);W(2);END_LOOP", 6000, 6000),  # 3 times, as the robot does it
+        ("LOOP(3);LOOP(4);W(1);END_LOOP;END_LOOP", 12000, 12000),
+        ("LOOP(3);IF(DISTANCE < 9);BREAK;ENDIF;W(2);END_LOOP", 0, 6000),
+        ("LOOP(DISTANCE);W(2);END_LOOP", 0, None),
+        ("LOOP(DISTANCE);S;END_LOOP", 0, 0),
+        ("LOOP(0);W(2);END_LOOP", 0, 0),
+        ("LOOP(0 - 1);W(2);END_LOOP", 0, 0),
+        ("WHILE(DISTANCE > 9);W(2);END_WHILE", 0, None),
+        ("LOOP(FOREVER);W(1);IF(DISTANCE < 9);BREAK;ENDIF;END_LOOP;W(3)", 3000, None),
+        # a call takes what its DEF does
+        ("DEF A;W(2);END_DEF;A;A", 4000, 4000),
+        ("DEF A;W(2);END_DEF;DEF C;A;W(1);END_DEF;LOOP(2);C;END_LOOP", 6000, 6000),
+        ("DEF A;W(DISTANCE);END_DEF;W(1);A", 1000, None),
+    ],
+)
+@pytest.mark.parametrize("is_optimized", [True, False])
+def test_a_program_that_ends(text: str, least: int, most: int | None, is_optimized: bool) -> None:
+    assert lasting(text, is_optimized) == Duration(least, most, False)
+
+
+@pytest.mark.parametrize(
+    ("text", "least"),
+    [
+        ("LOOP(FOREVER);W(1);END_LOOP", 0),
+        ("W(2);LOOP(FOREVER);W(1);END_LOOP", 2000),
+        (
+            "IF(TIME < 9);LOOP(FOREVER);S;END_LOOP;ELSE;W(3);LOOP(FOREVER);W(1);END_LOOP;ENDIF",
+            0,
+        ),
+        ("DEF A;W(1);LOOP(FOREVER);W(1);END_LOOP;END_DEF;A", 1000),
+        ("LOOP(3);W(1);LOOP(FOREVER);S;END_LOOP;END_LOOP", 1000),
+    ],
+)
+def test_a_program_that_never_ends(text: str, least: int) -> None:
+    assert lasting(text) == Duration(least, None, True)
+
+
+def test_one_arm_that_ends_is_enough() -> None:
+    text = "IF(DISTANCE < 9);LOOP(FOREVER);W(1);END_LOOP;ENDIF;W(2)"
+    assert lasting(text) == Duration(2000, None, False)

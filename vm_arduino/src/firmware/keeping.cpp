@@ -1,0 +1,176 @@
+#include "keeping.h"
+
+#include "../link/frames.h"
+#include "identity.h"
+#include "program.h"
+#include "run.h"
+#include "state.h"
+
+namespace tiniscript {
+
+namespace {
+
+constexpr uint16_t kLowMs = 500;  // between two looks at a supply that is too low
+
+// What is read from the store after a reset, one after the other.
+enum class Boot : uint8_t { kSettling, kIdentity, kFault, kProgram, kOver };
+
+// What is to be kept, as soon as the store is free: one bit each.
+constexpr uint8_t kProgramBit = 1;
+constexpr uint8_t kFaultBit = 2;
+constexpr uint8_t kIdentityBit = 4;
+
+Boot boot;
+uint8_t record[kRecordBytes];
+uint8_t to_keep;
+uint8_t keeping;  // of them: what the store writes now
+bool is_low;      // what is to be kept waits for more voltage
+uint16_t low_ms;  // since then
+bool is_worn;     // the memory has not kept who the robot is
+
+// -- after a reset ------------------------------------------------------------------------------
+
+void load_identity() {
+  if (store.fetch_first(Area::kIdentity, record, kRecordBytes)) return read_identity(record);
+  make_identity();
+  keep_identity();
+}
+
+// A record of a fault: what, where, in which image. What the watchdog has ended is a newer one.
+void load_fault() {
+  Place hung;
+  if (board_has_hung(&hung)) {
+    condition.fault = static_cast<uint8_t>(LinkFault::kStall);
+    condition.fault_at = hung.at;
+    condition.fault_program = hung.program;
+    return keep_fault();
+  }
+  if (!store.fetch_first(Area::kFault, record, kRecordBytes)) return;
+  copy_bytes(record + kFaultAt, &condition.fault, kFaultBytes);
+}
+
+// One thing after the other, when the store is free.
+void load_next() {
+  if (store.is_busy()) return;
+  switch (boot) {
+    case Boot::kSettling:
+      boot = Boot::kIdentity;
+      return;
+    case Boot::kIdentity:
+      load_identity();
+      boot = Boot::kFault;
+      return;
+    case Boot::kFault:
+      load_fault();
+      hold_stored();
+      boot = Boot::kProgram;
+      return;
+    case Boot::kProgram:
+      if (!load_program()) return;
+      boot = Boot::kOver;
+      show_light();
+      return;
+    case Boot::kOver:
+      return;
+  }
+}
+
+// -- keeping ------------------------------------------------------------------------------------
+
+void write_record() {
+  for (uint8_t& byte : record) byte = 0;
+  if (keeping == kIdentityBit) {
+    write_identity(record);
+  } else {
+    copy_bytes(&condition.fault, record + kFaultAt, kFaultBytes);
+    record[kFaultAt + kFaultBytes] = static_cast<uint8_t>(board.reset);
+  }
+}
+
+// Whether what makes something count may be written: motors off, and enough voltage.
+bool may_commit() {
+  if (is_driving() || !store.is_ready_to_commit()) return false;
+  if (is_low && static_cast<uint16_t>(now_ms - low_ms) < kLowMs) return false;
+  const Supply supply = board_supply();
+  if (supply == Supply::kMeasuring) return false;
+  is_low = supply == Supply::kLow;
+  low_ms = static_cast<uint16_t>(now_ms);
+  return !is_low;
+}
+
+void tell_saving() { condition.saved = is_low ? Saved::kLowSupply : Saved::kSaving; }
+
+// Begins to keep what is next; a program first.
+void keep_next() {
+  keeping = static_cast<uint8_t>(to_keep & -to_keep);
+  bool has_begun;
+  if (keeping == kProgramBit) {
+    has_begun = store.begin_save(program);
+  } else {
+    write_record();
+    has_begun = store.begin_keep(keeping == kFaultBit ? Area::kFault : Area::kIdentity, record);
+  }
+  to_keep = static_cast<uint8_t>(to_keep & ~keeping);
+  if (!has_begun) keeping = 0;  // it is too large; there is no such program
+}
+
+}  // namespace
+
+void tick_keeping() {
+  store.tick(may_commit());
+  const bool is_busy = store.is_busy();
+  const bool is_kept = store.state() == StoreState::kSaved;
+  if (boot != Boot::kOver) {
+    if (is_low) tell_saving();
+    return load_next();
+  }
+  if (!is_busy && keeping == kProgramBit) {
+    condition.saved = is_kept ? Saved::kStored : Saved::kMemory;
+    if (is_kept) condition.slot = store.used(Area::kProgram);
+  } else if (((to_keep | keeping) & kProgramBit) != 0) {
+    tell_saving();
+  }
+  if (is_busy) return;
+  if (keeping == kIdentityBit) is_worn = !is_kept;
+  keeping = 0;
+  if (to_keep != 0) keep_next();
+}
+
+bool has_booted() { return boot == Boot::kOver; }
+
+void keep_program() {
+  tell_saving();
+  to_keep |= kProgramBit;
+}
+
+void keep_fault() { to_keep |= kFaultBit; }
+
+void keep_identity() { to_keep |= kIdentityBit; }
+
+Answer identity_kept() {
+  if (((to_keep | keeping) & kIdentityBit) != 0) {
+    return is_low ? Answer::kLowSupply : Answer::kSaving;
+  }
+  if (!is_worn) return Answer::kOk;
+  keep_identity();
+  return Answer::kNotKept;
+}
+
+Answer give_up_program() {
+  if (is_low) {
+    // a program that waits for other batteries may wait for ever: the next one is worth more
+    if (keeping == kProgramBit) {
+      store.give_up();
+      keeping = 0;
+      is_low = false;
+    }
+    to_keep &= static_cast<uint8_t>(~kProgramBit);
+  } else if (store.is_busy() || (to_keep & kProgramBit) != 0) {
+    return Answer::kBusy;  // what is being written cannot be read either
+  }
+  return Answer::kOk;
+}
+
+Answer not_now() { return is_low ? Answer::kLowSupply : Answer::kBusy; }
+
+}  // namespace tiniscript

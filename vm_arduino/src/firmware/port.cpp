@@ -1,0 +1,80 @@
+// What the link asks of the robot, but for who it is (`identity.cpp`).
+
+#include "../link/port.h"
+
+#include "../link/frames.h"
+#include "identity.h"
+#include "keeping.h"
+#include "program.h"
+#include "run.h"
+#include "state.h"
+#include "trim.h"
+
+namespace tiniscript {
+
+const Condition& port_condition() { return condition; }
+
+LineErrors port_line_errors() { return board_line_errors(); }
+
+uint16_t port_room() { return kStoredCodeBytes; }
+
+Answer port_make_way(bool is_live) {
+  if (!has_booted()) return not_now();
+  if (is_running()) end_run(State::kIdle);
+  forget_start();
+  if (is_live) return load_program() ? Answer::kOk : Answer::kBusy;
+  return give_up_program();
+}
+
+uint8_t* port_memory(uint16_t code_length, bool is_live) {
+  if (is_live) return code_length <= kLiveCodeBytes ? live : nullptr;
+  return code_length <= kStoredCodeBytes ? program : nullptr;
+}
+
+void port_forget() {
+  hold_stored();
+  show_light();
+}
+
+void port_take(uint8_t mode, bool is_live) {
+  if (is_live) return;
+  hold_memory();
+  if ((mode & kSave) != 0) keep_program();
+  show_light();
+}
+
+void port_seal(const uint8_t* image) {
+  if (image == program) condition.program = get32(image + kChecksumAt);
+}
+
+void port_start(bool is_live) {
+  if (is_live || is_in_memory()) begin_run(is_live);
+}
+
+void port_stop(uint8_t fault) { stop_run(fault); }
+
+void port_release() {
+  if (condition.state >= State::kStopped) condition.state = State::kIdle;
+}
+
+Answer port_image_byte(uint16_t offset, uint8_t* byte) {
+  *byte = program[offset];
+  const bool is_there =
+      is_in_memory() || (has_booted() && store.fetch(Area::kProgram, offset, byte));
+  return is_there ? Answer::kOk : not_now();
+}
+
+Answer port_rename(const uint8_t* name, uint8_t length) {
+  if (!has_booted()) return not_now();
+  if (change_name(name, length)) keep_identity();
+  return identity_kept();
+}
+
+Answer port_set_trim(const Trim& trim) {
+  if (!is_sound(trim)) return Answer::kBadValue;
+  if (!has_booted()) return not_now();
+  if (change_trim(trim)) keep_identity();
+  return identity_kept();
+}
+
+}  // namespace tiniscript

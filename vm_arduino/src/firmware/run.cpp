@@ -1,0 +1,152 @@
+#include "run.h"
+
+#include "../link/frames.h"
+#include "../robot.h"
+#include "../vm/crc32.h"
+#include "../vm/vm.h"
+#include "firmware.h"
+#include "keeping.h"
+#include "program.h"
+#include "state.h"
+#include "trim.h"
+
+namespace tiniscript {
+
+namespace {
+
+constexpr uint8_t kBudget = 32;  // instructions in one tick
+
+Machine machine;
+bool is_live_run;   // `live` runs
+bool may_start;     // the button is down; nothing has run or was stopped since: going up, it starts
+bool is_start_due;  // the button went up, and the program was not to be had at once
+bool has_motors_on;
+uint32_t began_ms;  // the run
+
+// The record of a fault.
+void fault(uint8_t number, uint16_t at) {
+  link.seal();  // the record has the checksum of its image
+  condition.fault = number;
+  condition.fault_at = at;
+  condition.fault_program = is_live_run ? get32(live + kChecksumAt) : condition.program;
+  keep_fault();
+  board_faulted();
+}
+
+void abort_run(LinkFault why) {
+  stop_run(static_cast<uint8_t>(why));
+  link.faulted();
+}
+
+void go_on() {
+  const Status status = machine.tick(now_ms, kBudget);
+  if (status == Status::kDone) {
+    end_run(State::kIdle, true);
+    board_finished();
+    link.done();
+  } else if (status == Status::kFault) {
+    end_run(State::kFaulted);
+    fault(static_cast<uint8_t>(machine.fault()), machine.at());
+    link.faulted();
+  } else if (!link.is_tethered() && now_ms - began_ms >= board.max_run_ms) {
+    abort_run(LinkFault::kMaxRun);
+  }
+}
+
+}  // namespace
+
+void begin_run(bool is_live) {
+  const uint8_t* const image = is_live ? live : program;
+  is_live_run = is_live;
+  is_start_due = false;
+  began_ms = now_ms;
+  may_start = false;
+  condition.state = State::kRunning;
+  condition.run++;
+  for (uint8_t k = 0; k < board.sensors; k++) board.readings[k] = 0;
+  board_forget();
+  board_release();
+  if (link.stop_is_due()) board_stop();  // it came before this; one that comes now does it itself
+  machine.start(image + kHeaderBytes, get16(image + kCodeLengthAt), board.readings, board.sensors,
+                (now_ms ^ board.seed) | 1, now_ms);
+  show_light();
+}
+
+void tick_run() {
+  if (board_has_stalled() && is_running()) abort_run(LinkFault::kStall);
+  if (is_start_due && load_program() && is_start_due) {
+    is_start_due = false;
+    if (is_in_memory()) begin_run(false);
+  }
+  // No motor starts while a byte is written that makes something count.
+  if (is_running() && !store.is_committing()) go_on();
+}
+
+void end_run(State state, bool is_done) {
+  board_stop();
+  if (!is_done) board_actuators_off();
+  robot_off();
+  may_start = has_motors_on = is_start_due = false;
+  condition.state = state;
+  show_light();
+}
+
+void stop_run(uint8_t number) {
+  const bool was_running = is_running();
+  end_run(number != 0 ? State::kFaulted : State::kStopped);
+  if (was_running && number != 0) fault(number, machine.at());
+}
+
+void forget_start() { is_start_due = false; }
+
+bool is_driving() { return has_motors_on; }
+
+// -- events -------------------------------------------------------------------------------------
+
+void firmware_on_pressed() {
+  may_start = !is_running();
+  if (may_start) return;
+  end_run(State::kStopped);
+  link.stopped(Cause::kButton);
+}
+
+void firmware_on_held() {
+  if (is_running()) firmware_on_pressed();
+}
+
+void firmware_on_released() {
+  if (!may_start || !has_booted()) return;
+  link.drop();
+  is_start_due = condition.saved != Saved::kNothing;
+}
+
+void firmware_on_disconnect() {
+  if (!is_running() || !link.is_tethered()) return;
+  end_run(State::kStopped);
+  link.stopped(Cause::kCable);
+}
+
+// The checksum may not be in the image yet.
+bool firmware_runs(Place* place) {
+  if (!is_running()) return false;
+  const uint8_t* const image = is_live_run ? live : program;
+  const uint16_t most = is_live_run ? kLiveCodeBytes : kStoredCodeBytes;
+  const uint16_t length = get16(image + kCodeLengthAt);
+  place->program =
+      crc32(crc32(0, image, kChecksumAt), image + kHeaderBytes, length < most ? length : most);
+  place->at = machine.at();
+  return true;
+}
+
+// -- what a program asks ------------------------------------------------------------------------
+
+void robot_motors(int8_t left, int8_t right) {
+  const Levels levels = trimmed(port_trim(), left, right);
+  has_motors_on = (left | right) != 0;
+  board_motors(levels.left, levels.right);
+}
+
+// What a program shows goes to whoever listens.
+bool robot_show(int32_t value, bool is_yes_no) { return link.show(value, is_yes_no); }
+
+}  // namespace tiniscript
