@@ -12,7 +12,7 @@ import pytest
 PACKAGE = Path(__file__).resolve().parent.parent.parent / "compiler" / "tiniscript"
 FULL = 400  # lines of a file, as CONTRIBUTING says
 # What is to be split; it gets no longer.
-TOO_FULL = {"session.py": 464, "connect.py": 447, "instructions.py": 421}
+TOO_FULL = {"session.py": 464, "instructions.py": 421}
 
 SHARED = {"fixed_point", "kit", "words", "files", "printable"}
 TEXT = {"source", "diagnostics", *SHARED}
