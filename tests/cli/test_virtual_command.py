@@ -19,8 +19,8 @@ import pytest
 
 from tests.support.command import OBSTACLE, TSC, Done, Tsc, process
 from tests.support.virtual_robot import missing
-from tiniscript.cli import install_advice
 from tiniscript.cli.commands.robot import ended_by_signal
+from tiniscript.library import install_advice
 from tiniscript.virtual import directory
 
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")

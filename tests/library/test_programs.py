@@ -17,6 +17,7 @@ from tests.machines.wasm import missing
 from tests.support.command import OBSTACLE, Tsc
 from tiniscript.bytecode.image import pack
 from tiniscript.bytecode.verify import RULES
+from tiniscript.library import install_advice
 from tiniscript.library.texts import TEXTS
 
 needs_wasmtime = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
@@ -254,3 +255,15 @@ def test_a_user_has_types(tmp_path: Path) -> None:
         ' fallback=tiniscript.library.runs.Fault] | None"',
         'error: Module has no attribute "conect"; maybe "connect"?  [attr-defined]',
     ]
+
+
+@pytest.mark.parametrize("language", ["en", "es"])
+def test_without_wasmtime_the_next_step_is_said(
+    language: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "wasmtime", None)
+    for module in ("vm.wasm_store", "vm.wasm"):
+        monkeypatch.delitem(sys.modules, f"tiniscript.{module}", raising=False)
+    with pytest.raises(tiniscript.UsageError) as found:
+        tiniscript.run("W(1)", machine="cpp", language=language)
+    assert install_advice.command("virtual") in str(found.value)

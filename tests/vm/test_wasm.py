@@ -21,8 +21,8 @@ from tiniscript.bytecode.disassembly import read_listing
 from tiniscript.bytecode.image import Image, ImageRefused, pack, unpack
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.bytecode.verify import Refused, verify
-from tiniscript.cli import install_advice
 from tiniscript.cli.commands import run
+from tiniscript.library import install_advice
 from tiniscript.vm.machine import Machine
 from tiniscript.vm.state import WAITING
 from tiniscript.vm.trace import AnyMachine

@@ -20,10 +20,10 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tiniscript import robots
-from tiniscript.cli import install_advice
 from tiniscript.cli.firmware_build import on_boards
 from tiniscript.flash import building
 from tiniscript.flash.ready import FOLDER, NOTICE, name_of
+from tiniscript.library import install_advice
 from tiniscript.robots.profile import Robot
 from tools.builds.platformio_offline import PROJECT, CannotStandIn, settings_for
 

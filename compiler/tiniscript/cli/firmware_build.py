@@ -7,11 +7,11 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from tiniscript import files, robots
-from tiniscript.cli import install_advice
 from tiniscript.cli.errors import Trouble
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.terminal.progress import Progress
 from tiniscript.cli.texts.common import text
+from tiniscript.library import install_advice
 from tiniscript.robots.firmware import BOARDS
 
 if TYPE_CHECKING:

@@ -104,7 +104,10 @@ def run(
         try:
             machine_of = cpp_machine(image, profile)
         except (ImportError, OSError, RuntimeError) as why:
-            raise UsageError("no_wasmtime", language, {"why": str(why)}) from None
+            from tiniscript.library import install_advice
+
+            how = install_advice.command(install_advice.VIRTUAL)
+            raise UsageError("no_wasmtime", language, {"why": str(why), "how": how}) from None
     return _trace(
         begun(image, profile, lists, max_ms, max_steps, seed, machine_of), profile.kit, ready._map
     )

@@ -58,7 +58,10 @@ def virtual_robot(
     try:
         from tiniscript.virtual.robot import Settings
     except (ImportError, OSError, RuntimeError) as why:  # not there, or not for this computer
-        raise UsageError("no_wasmtime", language, {"why": str(why)}) from None
+        from tiniscript.library import install_advice
+
+        how = install_advice.command(install_advice.VIRTUAL)
+        raise UsageError("no_wasmtime", language, {"why": str(why), "how": how}) from None
     settings = Settings(seed=seed, noise=noise, motors=(left, right), told=told)
     simulated = Simulated(
         _made(profile, os.fspath(world), settings, language), 0.0 if hurry == math.inf else hurry

@@ -106,7 +106,7 @@ def _cpp_machine(image: Image, robot: Robot) -> MachineOf:
     try:
         return cpp_machine(image, robot)
     except (ImportError, OSError, RuntimeError) as why:  # not there, or not for this computer
-        from tiniscript.cli import install_advice
+        from tiniscript.library import install_advice
 
         how = install_advice.command(install_advice.VIRTUAL)
         raise Trouble(2, "no_wasmtime", why=str(why), how=how) from None

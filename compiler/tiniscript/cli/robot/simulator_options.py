@@ -185,6 +185,6 @@ def _motors(found: str | None, language: str) -> tuple[float, float]:
 
 
 def _not_installed(key: str, why: Exception) -> Trouble:
-    from tiniscript.cli import install_advice
+    from tiniscript.library import install_advice
 
     return Trouble(2, key, why=str(why), how=install_advice.command(install_advice.VIRTUAL))

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from tests.support.casefile import ROOT
-from tiniscript.cli import install_advice
+from tiniscript.library import install_advice
 
 EXTRAS = (install_advice.VIRTUAL, install_advice.FIRMWARE)
 
