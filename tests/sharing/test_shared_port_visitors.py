@@ -6,6 +6,7 @@ import json
 import os
 import socket
 import stat
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, cast
 
@@ -20,7 +21,7 @@ from tiniscript.link.outcomes import Event
 from tiniscript.link.session import Task
 from tiniscript.sharing import protocol, registry
 from tiniscript.sharing.registry import Holder
-from tiniscript.sharing.server import FULL_BYTES
+from tiniscript.sharing.server import FULL_BYTES, GUESTS
 
 pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
@@ -41,6 +42,17 @@ def is_let_go(peer: socket.socket) -> bool:
         return peer.recv(100) == b""
     except ConnectionError:
         return True
+
+
+def test_too_many_who_say_nothing_let_the_oldest_go(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Long before the time for their greeting is over."""
+    monkeypatch.setattr("tiniscript.sharing.server.GREETING_S", 600.0)
+    with Shared() as (_, holder), ExitStack() as opened:
+        silent = [opened.enter_context(visitor(holder)) for _ in range(GUESTS + 10)]
+        assert all(is_let_go(peer) for peer in silent[:10])
+        silent[10].settimeout(0.2)
+        with pytest.raises(TimeoutError):
+            silent[10].recv(1)
 
 
 def test_only_the_user_may_come_in(pty_robot: PtyRobot, link: Command) -> None:
