@@ -12,6 +12,7 @@ import pytest
 from tests.support.command import OBSTACLE, PROGRAM, TSC, Tsc, process
 from tiniscript.bytecode.image import unpack
 from tiniscript.bytecode.opcodes import CODE_BYTES
+from tiniscript.cli import VERBS
 
 # -- compile ------------------------------------------------------------------------------------
 
@@ -393,3 +394,10 @@ def test_explain(tsc: Tsc) -> None:
     assert tsc("explain", "ts012", "--lang", "es").out != done.out
     assert tsc("explain").out.count("\nTS") > 50
     assert tsc("explain", "TS999").code == 2
+
+
+@pytest.mark.parametrize("language", ["en", "es"])
+def test_help_names_every_verb(tsc: Tsc, language: str) -> None:
+    said = tsc("--help", "--lang", language).out
+    assert not [verb for verb in VERBS if f"  tsc {verb} " not in said]
+    assert all(len(line) <= 100 for line in said.splitlines())

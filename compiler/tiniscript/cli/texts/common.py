@@ -35,6 +35,7 @@ With a robot on a port (--port /dev/rfcomm0, COM5, ...; later the last used one)
   tsc monitor                        print what the robot shows
   tsc fetch                          read the robot's program back
   tsc name TINI                      name the robot
+  tsc trim                           make the robot drive straight
 
 Without one:
 
@@ -72,6 +73,7 @@ Con un robot en un puerto (--port /dev/rfcomm0, COM5, ...; después, el último 
   tsc monitor                        imprime lo que el robot muestra
   tsc fetch                          lee de vuelta el programa del robot
   tsc name TINI                      le pone nombre al robot
+  tsc trim                           hace que el robot vaya derecho
 
 Sin robot:
 
