@@ -18,7 +18,8 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from tiniscript.bytecode.verify import Verdict
     from tiniscript.codegen.lower import Place
-    from tiniscript.diagnostics.codes import Problem
+    from tiniscript.diagnostics.codes import Diagnostic
+    from tiniscript.diagnostics.rendering import Message
     from tiniscript.kit import Kit
     from tiniscript.library.connecting import connect
     from tiniscript.library.connection import Receipt, RobotConnection, RobotInfo
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
         UsageError,
     )
     from tiniscript.library.events import Ending, RobotEvent
-    from tiniscript.library.programs import Diagnostic, Program, check, compile, show
+    from tiniscript.library.programs import Program, check, compile, show
     from tiniscript.library.runs import Fault, Trace, TraceEvent, run
     from tiniscript.library.simulated import VirtualRobotConnection, virtual_robot
     from tiniscript.robots.profile import Robot
@@ -38,9 +39,9 @@ if TYPE_CHECKING:
     from tiniscript.source import Source
 
 __all__ = (  # what `docs/api.en.md` promises
-    "Diagnostic",
     "Ending",
     "Fault",
+    "Message",
     "Program",
     "ProgramError",
     "Receipt",
@@ -62,13 +63,20 @@ __all__ = (  # what `docs/api.en.md` promises
     "virtual_robot",
 )
 _HOMES = {
-    "connecting": ("connect",),
-    "connection": ("Receipt", "RobotConnection", "RobotInfo"),
-    "events": ("Ending", "RobotEvent"),
-    "errors": ("ProgramError", "RobotError", "StopNotConfirmed", "TiniScriptError", "UsageError"),
-    "programs": ("Diagnostic", "Program", "check", "compile", "show"),
-    "runs": ("Fault", "Trace", "TraceEvent", "run"),
-    "simulated": ("VirtualRobotConnection", "virtual_robot"),
+    "diagnostics.rendering": ("Message",),
+    "library.connecting": ("connect",),
+    "library.connection": ("Receipt", "RobotConnection", "RobotInfo"),
+    "library.events": ("Ending", "RobotEvent"),
+    "library.errors": (
+        "ProgramError",
+        "RobotError",
+        "StopNotConfirmed",
+        "TiniScriptError",
+        "UsageError",
+    ),
+    "library.programs": ("Program", "check", "compile", "show"),
+    "library.runs": ("Fault", "Trace", "TraceEvent", "run"),
+    "library.simulated": ("VirtualRobotConnection", "virtual_robot"),
 }
 
 if not TYPE_CHECKING:
@@ -79,7 +87,7 @@ if not TYPE_CHECKING:
             if name in names:
                 from importlib import import_module
 
-                found = getattr(import_module(f"tiniscript.library.{home}"), name)
+                found = getattr(import_module(f"tiniscript.{home}"), name)
                 globals()[name] = found
                 return found
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
@@ -89,14 +97,14 @@ if not TYPE_CHECKING:
 
 
 class Compiled(NamedTuple):
-    """What became of a text. Where a problem is a mistake, `image` is empty.
+    """What became of a text. Where a diagnostic is a mistake, `image` is empty.
 
     `program` is the checked program, as written; `places` says where in the text each
     instruction comes from.
     """
 
     source: Source
-    problems: list[Problem]
+    diagnostics: list[Diagnostic]
     program: ir.Program | None = None
     code: bytes = b""
     places: tuple[Place, ...] = ()
@@ -105,7 +113,7 @@ class Compiled(NamedTuple):
 
     @property
     def is_right(self) -> bool:
-        return not any(problem.is_mistake for problem in self.problems)
+        return not any(diagnostic.is_mistake for diagnostic in self.diagnostics)
 
 
 def check_text(text: str, kit: Kit, name: str = "") -> Compiled:
@@ -119,8 +127,8 @@ def check_text(text: str, kit: Kit, name: str = "") -> Compiled:
     source = Source(text, name)
     parsed = parse(source, kit)
     checked = check(source, parsed.program, kit)
-    found = [*parsed.problems, *checked.problems]
-    if not any(problem.is_mistake for problem in found):
+    found = [*parsed.diagnostics, *checked.diagnostics]
+    if not any(diagnostic.is_mistake for diagnostic in found):
         found += advice(checked.program, kit)
     return Compiled(source, in_order(found), checked.program)
 
@@ -137,8 +145,8 @@ def fitting(compiled: Compiled, robot: Robot, is_mistake: bool) -> Compiled:
     values = {"robot": robot.name, "limit": str(robot.board.program_bytes),
               "code": str(len(compiled.code)), "over": str(over)}  # fmt: skip
     end = len(compiled.source.text)
-    problem = codes.Problem(code, Span(end, end), values)
-    return compiled._replace(problems=[*compiled.problems, problem])
+    diagnostic = codes.Diagnostic(code, Span(end, end), values)
+    return compiled._replace(diagnostics=[*compiled.diagnostics, diagnostic])
 
 
 def compile_text(text: str, kit: Kit, name: str = "", optimize: bool = True) -> Compiled:
@@ -173,8 +181,8 @@ def _compiled(text: str, kit: Kit, name: str, optimize: bool) -> Compiled:
     if len(lowered.code) > CODE_BYTES:
         over = {"limit": str(CODE_BYTES), "over": str(len(lowered.code) - CODE_BYTES)}
         place = Span(len(text), len(text))
-        problem = codes.Problem(codes.CODE_TOO_LONG, place, over)
-        return compiled._replace(problems=[*compiled.problems, problem])
+        diagnostic = codes.Diagnostic(codes.CODE_TOO_LONG, place, over)
+        return compiled._replace(diagnostics=[*compiled.diagnostics, diagnostic])
     verdict = verify(lowered.code, len(kit.sensors), len(kit.actuators))
-    image = pack(program.start, kit.fingerprint if verdict.uses_kit else 0, lowered.code)
+    image = pack(program.start, kit.hash_of_used(verdict.uses), lowered.code)
     return compiled._replace(code=lowered.code, places=lowered.places, verdict=verdict, image=image)

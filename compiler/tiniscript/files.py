@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import os
 import stat
+import sys
 from contextlib import suppress
 from pathlib import Path
 from time import time
@@ -25,7 +26,14 @@ ABANDONED_S = 3600.0  # a new file that is older has lost its command
 
 def cache_folder() -> Path:
     """Return the user's folder for what a command keeps until the next one: it may be deleted."""
-    from platformdirs import user_cache_path  # here: most commands keep nothing
+    # nearly everywhere on Linux one of two variables says it: importing platformdirs takes as long
+    # as compiling a program
+    if sys.platform == "linux" and "ANDROID_ROOT" not in os.environ:
+        chosen = os.environ.get("XDG_CACHE_HOME")
+        folder = Path(chosen) if chosen else Path(os.environ.get("HOME", "")) / ".cache"
+        if folder.is_absolute():
+            return folder / "tiniscript"
+    from platformdirs import user_cache_path
 
     return user_cache_path("tiniscript", appauthor=False)
 

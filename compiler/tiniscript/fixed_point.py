@@ -29,9 +29,11 @@ def in_range(value: int) -> int:
 
 def divided(numerator: int, denominator: int) -> int:
     """Return the quotient of two integers rounded half away from zero."""
-    if (numerator < 0) != (denominator < 0):
-        return -((2 * abs(numerator) + abs(denominator)) // (2 * abs(denominator)))
-    return (2 * abs(numerator) + abs(denominator)) // (2 * abs(denominator))
+    if denominator < 0:
+        numerator, denominator = -numerator, -denominator
+    if numerator < 0:
+        return -((denominator - 2 * numerator) // (2 * denominator))
+    return (2 * numerator + denominator) // (2 * denominator)
 
 
 def add(a: int, b: int) -> int:
@@ -43,7 +45,7 @@ def subtract(a: int, b: int) -> int:
 
 
 def multiply(a: int, b: int) -> int:
-    return in_range(divided(a * b, ONE))
+    return in_range(whole(a * b))  # of millionths, thousandths
 
 
 def divide(a: int, b: int) -> int:

@@ -1,18 +1,21 @@
 """What programs see of a robot: its sensors and actuators.
 
-Knows names, order, kinds, units and ranges, and the fingerprint made of them. Knows no pins
-and no files: `robots` reads those.
+Knows names, order, kinds, units and ranges, and the fingerprints and hashes made of them. Knows no
+pins and no files: `robots` reads those.
 """
 
 from __future__ import annotations
 
 import zlib
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from tiniscript.fixed_point import as_text
 
 NUMBER = "number"
 YES_NO = "yes/no"
+
+DEVICES_POLYNOMIAL = 0x2D  # x^16 + x^5 + x^3 + x^2 + 1 without its first term: primitive
 
 
 class Device(NamedTuple):
@@ -40,9 +43,37 @@ class Kit(NamedTuple):
     @property
     def fingerprint(self) -> int:
         """Return 16 bits, never 0, that change with everything that a program can see."""
-        lines = [
+        return _hash_of("".join(self.lines()))
+
+    @property
+    def hashes(self) -> tuple[int, ...]:
+        """Return 16 bits, never 0, for each device: the sensors, then the actuators."""
+        return tuple(map(_hash_of, self.lines()))
+
+    def hash_of_used(self, uses: Sequence[tuple[str, int]]) -> int:
+        """Return the hash of the devices that code uses, in its order; 0 for none.
+
+        A use is "sensor" or "actuator" and its number. For each one the hash is multiplied by x,
+        as a polynomial over two elements modulo a primitive one, and the device's hash is added.
+        So one device that is another one is noticed however often the code uses it.
+        """
+        hashes = self.hashes if uses else ()
+        found = 0
+        for what, number in uses:
+            found <<= 1
+            if found > 0xFFFF:
+                found ^= 0x10000 | DEVICES_POLYNOMIAL
+            found ^= hashes[number + (0 if what == "sensor" else len(self.sensors))]
+        return found
+
+    def lines(self) -> list[str]:
+        """Return what a program can see of each device, as it is hashed."""
+        return [
             f"{what} {device.name} {device.kind} {device.unit} {device.low} {device.high}\n"
             for what, devices in (("sensor", self.sensors), ("actuator", self.actuators))
             for device in devices
         ]
-        return zlib.crc32("".join(lines).encode()) & 0xFFFF or 0xFFFF
+
+
+def _hash_of(text: str) -> int:
+    return zlib.crc32(text.encode()) & 0xFFFF or 0xFFFF

@@ -69,9 +69,9 @@ def decode(data: bytes) -> str:
         raise Unreadable("too_large", LARGEST_SOURCE)
     try:
         text = data.decode("utf-8-sig")
-    except UnicodeDecodeError as trouble:
+    except UnicodeDecodeError as failure:
         nul = data.find(b"\0", 0, 4096)
-        raise Unreadable("encoding" if nul < 0 else "binary", trouble.start) from None
+        raise Unreadable("encoding" if nul < 0 else "binary", failure.start) from None
     nul = text.find("\0")
     if nul >= 0:
         raise Unreadable("binary", len(text[:nul].encode()))

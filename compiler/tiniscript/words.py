@@ -84,15 +84,16 @@ BLOCK_ENDS = {"IF": "ENDIF", "LOOP": "END_LOOP", "WHILE": "END_WHILE", "DEF": "E
 
 # How other languages, and Spanish, say it. Used for messages alone: none of them is read.
 OTHER_WORDS = {
-    "F": "FORWARD FWD FD AHEAD ADELANTE AVANZAR AVANZA AVANCE",
-    "B": "BACKWARD BACKWARDS BACK BK REVERSE ATRAS RETROCEDER RETROCEDE",
+    "F": "FORWARD FWD FD AHEAD GO MOVE WALK ADELANTE AVANZAR AVANZA AVANCE ADELANTA CAMINAR CAMINA ANDAR ANDA"
+         " MOVER MUEVE MUEVETE",
+    "B": "BACKWARD BACKWARDS BACK BK REVERSE ATRAS RETROCEDER RETROCEDE REVERSA",
     "L": "LEFT LT TURN_LEFT IZQUIERDA IZQ GIRAR_IZQUIERDA",
     "R": "RIGHT RT TURN_RIGHT DERECHA DER GIRAR_DERECHA",
-    "S": "HALT PARAR PARA PARE ALTO DETENER DETENTE FRENAR",
+    "S": "HALT PARAR PARA PARE ALTO DETENER DETENTE FRENAR FRENA DETEN PARATE",
     "W": "WAIT DELAY SLEEP PAUSE ESPERAR ESPERA PAUSA",
     "M": "MOTOR MOTORS MOTORES",
-    "BEEP": "TONE BUZZ BUZZER SOUND PITAR PITO PITIDO SONAR SONIDO TONO",
-    "SHOW": "PRINT SAY DISPLAY ECHO MOSTRAR MUESTRA IMPRIMIR IMPRIME DECIR",
+    "BEEP": "TONE BUZZ BUZZER SOUND PITAR PITA PITO PITIDO SONAR SUENA SONIDO TONO",
+    "SHOW": "PRINT SAY DISPLAY ECHO MOSTRAR MUESTRA IMPRIMIR IMPRIME DECIR DI ESCRIBIR ESCRIBE",
     "IF": "SI_ES CUANDO",
     "ELSEIF": "ELIF ELSIF SINO_SI",
     "ELSE": "SINO SI_NO OTHERWISE",
@@ -112,15 +113,37 @@ OTHER_WORDS = {
     "RANDOM": "RAND AZAR ALEATORIO",
     "ROUND": "REDONDEAR",
     "TIME": "MILLIS TIMER TIEMPO",
+    "BUTTON": "BOTON PULSADOR",
     "DISTANCE": "DISTANCIA",
     "LIGHT_R": "LUZ_D LUZ_DERECHA LIGHT_RIGHT",
     "LIGHT_L": "LUZ_I LUZ_IZQUIERDA LIGHT_LEFT",
 }
 
-# What people write behind a number, which has none here.
-UNITS = frozenset(
-    ["S", "SEC", "SECS", "SECOND", "SECONDS", "SEG", "SEGS", "SEGUNDO", "SEGUNDOS", "MS", "CM", "MM", "M", "HZ", "HERTZ", "DEG", "DEGREES", "GRADOS", "PERCENT", "PORCIENTO", "V", "°", "°C", "%"]
-)
+# What no single word says here: which way to turn, and what to switch on or off.
+TURN_WORDS = frozenset(["TURN", "ROTATE", "GIRAR", "GIRA", "GIRO", "ROTAR", "ROTA", "VOLTEAR", "VOLTEA", "DOBLAR", "DOBLA"])
+SWITCH_WORDS = {
+    **dict.fromkeys(["TURN_ON", "SWITCH_ON", "PRENDER", "PRENDE", "ENCENDER", "ENCIENDE"], "TRUE"),
+    **dict.fromkeys(["TURN_OFF", "SWITCH_OFF", "APAGAR", "APAGA"], "FALSE"),
+}
+
+# Numbers in words, of what programs often say.
+NUMBER_WORDS = {name: str(value) for value, names in (
+    (1, "ONE UNO UN UNA"), (2, "TWO DOS"), (3, "THREE TRES"), (4, "FOUR CUATRO"), (5, "FIVE CINCO"),
+    (6, "SIX SEIS"), (7, "SEVEN SIETE"), (8, "EIGHT OCHO"), (9, "NINE NUEVE"), (10, "TEN DIEZ"),
+    (20, "TWENTY VEINTE"), (30, "THIRTY TREINTA"), (40, "FORTY CUARENTA"), (50, "FIFTY CINCUENTA"),
+    (60, "SIXTY SESENTA"), (70, "SEVENTY SETENTA"), (80, "EIGHTY OCHENTA"), (90, "NINETY NOVENTA"),
+    (100, "HUNDRED CIEN"),
+) for name in names.split()}
+
+# What people write behind a number, which has none here: the unit that is meant, and how many
+# thousandths of it one is.
+UNITS = {name: (unit, thousandths) for unit, thousandths, names in (
+    ("s", 1000, "S SEC SECS SECOND SECONDS SEG SEGS SEGUNDO SEGUNDOS"),
+    ("s", 1, "MS"), ("s", 60_000, "MIN MINUTO MINUTOS"),
+    ("cm", 1000, "CM"), ("cm", 100, "MM"), ("cm", 100_000, "M METRO METROS"),
+    ("Hz", 1000, "HZ HERTZ"), ("°", 1000, "DEG DEGREES GRADO GRADOS °"), ("%", 1000, "PERCENT PORCIENTO %"),
+    ("V", 1000, "V"), ("°C", 1000, "°C"),
+) for name in names.split()}
 # fmt: on
 
 

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import random
+import re
 import zlib
-from struct import pack as struct_pack
+from pathlib import Path
 
 import pytest
 
@@ -12,101 +13,226 @@ from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import (
     FIELDS,
     HEADER_BYTES,
+    REFUSALS,
+    Image,
     ImageRefused,
     checksum,
     image_format,
     pack,
+    sealed,
     unpack,
 )
+from tiniscript.bytecode.loading import check, loaded
+from tiniscript.bytecode.opcodes import CODE_BYTES
+from tiniscript.bytecode.verify import Refused
+from tiniscript.kit import NUMBER, YES_NO, Device, Kit
 
 KIT = robots.load("tinibot").kit
-CODE = bytes.fromhex("443250")
+CODE = bytes.fromhex("448c50")
 IMAGE = pack("SI", 0, CODE)
+LATER = b"what a later version says"
+SPEC = Path(__file__).parent.parent.parent / "bytecode_spec.md"
+# `F(5, 80)`, as version 0.1.0 has compiled it.
+OLD = bytes.fromhex("54530100000000000300101604fa443250")
 
 
-def refusal(data: bytes, kit: int | None = KIT.fingerprint) -> str:
+def refusal(data: bytes) -> str:
     with pytest.raises(ImageRefused) as refused:
-        unpack(data, kit)
+        unpack(data)
     return refused.value.name
 
 
-def changed(offset: int, value: int) -> bytes:
-    """Return IMAGE with one byte changed and the checksum mended."""
-    data = bytearray(IMAGE)
+def changed(offset: int, value: int, image: bytes = IMAGE) -> bytes:
+    """Return an image with one byte changed and the checksum mended."""
+    data = bytearray(image)
     data[offset] = value
-    data[10:14] = struct_pack("<I", zlib.crc32(data[:10] + data[14:]))
-    return bytes(data)
+    return sealed(bytes(data))
 
 
 @pytest.mark.parametrize("start", ["SI", "SB", "PING"])
 @pytest.mark.parametrize("code", [b"", CODE, bytes(32767)], ids=["empty", "short", "longest"])
-def test_what_is_packed_is_read_back(start: str, code: bytes) -> None:
+@pytest.mark.parametrize("later", [b"", b"?", bytes(240)], ids=["", "1", "240"])
+def test_what_is_packed_is_read_back(start: str, code: bytes, later: bytes) -> None:
     if start == "PING" and code:
         return
-    data = pack(start, 0x1234, code)
-    image = unpack(data, 0x1234)
-    assert (image.start, image.kit, image.code, image.isa) == (start, 0x1234, code, (1, 0))
-    assert image.checksum == checksum(data) == zlib.crc32(data[:10] + code)
-    assert len(data) == HEADER_BYTES + len(code)
+    data = pack(start, 0x1234, code, later)
+    assert unpack(data) == Image(start, 0x1234, code, checksum(data), (2, 0), later)
+    assert checksum(data) == zlib.crc32(data[:10] + data[14:])
+    assert len(data) == data[5] + len(code) == HEADER_BYTES + len(later) + len(code)
 
 
 def test_the_table_and_the_format_agree() -> None:
     """`pack` and `construct` are made from the same fields."""
-    parsed = image_format().parse(IMAGE)
-    for field in FIELDS:
-        assert field.name in parsed
-    assert image_format().build(parsed) == IMAGE
-    assert image_format().parse(IMAGE).checksum == checksum(IMAGE)
+    for image in (IMAGE, pack("SB", 3, CODE, LATER)):
+        parsed = image_format().parse(image)
+        for field in FIELDS:
+            assert field.name in parsed
+        assert image_format().build(parsed) == image
+        assert parsed.checksum == checksum(image)
+        assert (parsed.later, parsed.code) == (unpack(image).later, CODE)
 
 
-@pytest.mark.parametrize("length", range(len(IMAGE)))
-def test_every_shorter_one_is_truncated(length: int) -> None:
-    assert refusal(IMAGE[:length]) == ("TRUNCATED" if length else "NOT_AN_IMAGE")
+@pytest.mark.parametrize("image", [IMAGE, pack("SI", 0, CODE, LATER)], ids=["", "later"])
+def test_every_shorter_one_is_truncated(image: bytes) -> None:
+    for length in range(len(image)):
+        assert refusal(image[:length]) == ("TRUNCATED" if length else "NOT_AN_IMAGE")
 
 
-@pytest.mark.parametrize("offset", range(len(IMAGE)))
-def test_every_changed_bit_is_noticed(offset: int) -> None:
-    for bit in range(8):
-        data = bytearray(IMAGE)
-        data[offset] ^= 1 << bit
-        expected = {"DAMAGED"}
-        if offset < 2:
-            expected = {"NOT_AN_IMAGE"}
-        elif offset in (8, 9):
-            expected = {"TRUNCATED", "TRAILING"}
-        assert refusal(bytes(data)) in expected
+@pytest.mark.parametrize("image", [IMAGE, pack("SI", 0, CODE, LATER)], ids=["", "later"])
+def test_every_changed_bit_is_noticed(image: bytes) -> None:
+    for offset in range(len(image)):
+        for bit in range(8):
+            data = bytearray(image)
+            data[offset] ^= 1 << bit
+            expected = {"DAMAGED"}
+            if offset < 2:
+                expected = {"NOT_AN_IMAGE"}
+            elif offset < 4:
+                expected = {"OTHER_VERSION"}
+            elif offset in (5, 8, 9):
+                expected = {"BAD_HEADER", "TRUNCATED", "TRAILING"}
+            assert refusal(bytes(data)) in expected
 
 
 def test_each_reason() -> None:
     assert refusal(b"") == "NOT_AN_IMAGE"
     assert refusal(b"SI|F(2,80)") == "NOT_AN_IMAGE"
     assert refusal(IMAGE + b"\0") == "TRAILING"
-    assert refusal(changed(2, 2)) == "OTHER_VERSION"
+    assert refusal(changed(2, 1)) == refusal(changed(2, 3)) == "OTHER_VERSION"
     assert refusal(changed(3, 1)) == "OTHER_VERSION"
     assert refusal(changed(4, 3)) == "UNKNOWN_START"
-    assert refusal(changed(5, 1)) == "UNKNOWN_NEEDS"
-    assert refusal(changed(6, 1)) == "OTHER_KIT"
+    assert refusal(changed(5, 14)) == refusal(changed(5, 0)) == "BAD_HEADER"
+    assert refusal(changed(9, 0x80)) == "BAD_HEADER"
     assert refusal(changed(4, 2)) == "PING_WITH_CODE"
-    assert unpack(changed(6, 1), None).kit == 1
+    assert refusal(changed(14, 1)) == "UNKNOWN_NEEDS"
 
 
-def test_an_image_that_uses_no_word_of_a_kit_runs_anywhere() -> None:
-    assert unpack(compile_text("SI|F(5,80)", KIT).image, 0x4321).kit == 0
+def test_the_first_reason_that_applies_is_said() -> None:
+    """Each change before the other one: in the order of the table, whatever is wrong besides."""
+    bad_start, bad_needs = changed(4, 3), changed(14, 1)
+    both = changed(4, 3, bad_needs)
+    damaged = both[:-1] + bytes([both[-1] ^ 1])
+    bad_header = changed(9, 0x80, damaged)
+    other = changed(2, 3, bad_header)
+    rows = [
+        (b"S" + other[:1], "NOT_AN_IMAGE"), (other[:4], "OTHER_VERSION"), (other, "OTHER_VERSION"),
+        (bad_header[:15], "BAD_HEADER"), (damaged[:-1], "TRUNCATED"), (damaged + b"?", "TRAILING"),
+        (damaged, "DAMAGED"), (both, "UNKNOWN_NEEDS"), (bad_start, "UNKNOWN_START"),
+    ]  # fmt: skip
+    for data, name in rows:
+        assert refusal(data) == name
+    numbers = [number for number, _ in REFUSALS.values()]
+    assert numbers == list(range(1, 11))
+
+
+def test_an_image_of_version_1_says_which_it_is() -> None:
+    """Whole, cut or damaged: compiling again is what helps."""
+    for data in (OLD, OLD[:9], OLD + b"?", OLD[:-1] + b"?", OLD[:4]):
+        with pytest.raises(ImageRefused) as refused:
+            unpack(data)
+        assert refused.value.name == "OTHER_VERSION"
+        assert refused.value.values == {"theirs": "1.0", "ours": "2.0"}
+
+
+# -- devices ------------------------------------------------------------------------------------
+
+
+def test_an_image_that_uses_no_device_runs_anywhere() -> None:
+    image = compile_text("SI|F(5,80)", KIT).image
+    assert loaded(image, Kit((), ())).devices == 0
     used = compile_text("DISTANCE", KIT).image
-    assert unpack(used, KIT.fingerprint).kit == KIT.fingerprint
-    assert refusal(used, KIT.fingerprint ^ 1) == "OTHER_KIT"
+    assert loaded(used, KIT).devices == KIT.hashes[2]
+    with pytest.raises(Refused, match="NO_SUCH_DEVICE"):
+        loaded(used, Kit((), ()))
+    with pytest.raises(ImageRefused, match="OTHER_KIT"):  # the code uses none, the header says so
+        loaded(pack("SI", 1, CODE), KIT)
+
+
+def test_a_kit_may_grow_behind() -> None:
+    """And anything may change that a program does not use."""
+    image = compile_text("LOOP(FOREVER);IF(DISTANCE < 10);STOP;ENDIF;END_LOOP", KIT).image
+    more = (*KIT.sensors, Device("SONAR", NUMBER, "cm", 0, 1000))
+    others = (*(each._replace(name="X" + each.name) for each in KIT.sensors[:2]), KIT.sensors[2])
+    for sensors in (more, others):
+        kit = KIT._replace(sensors=sensors)
+        assert kit.fingerprint != KIT.fingerprint
+        loaded(image, kit)
+    grown = KIT._replace(actuators=(Device("LAMP", YES_NO, "", 0, 1),))
+    loaded(image, grown)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [{"name": "DISTANCES"}, {"kind": YES_NO}, {"unit": ""}, {"low": 1}, {"high": 399_000}],
+    ids=lambda change: next(iter(change)),
+)
+@pytest.mark.parametrize("uses", [1, 2, 15, 16, 17, 255, 256, 1000])
+def test_a_device_that_is_another_one_is_noticed(change: dict[str, object], uses: int) -> None:
+    """However often it is used: no number of uses makes two devices the same."""
+    sensors = (*KIT.sensors[:2], KIT.sensors[2]._replace(**change))  # type: ignore[arg-type]
+    code = bytes.fromhex("3802") * uses
+    image = pack("SI", KIT.hash_of_used([("sensor", 2)] * uses), code)
+    loaded(image, KIT)
+    with pytest.raises(ImageRefused, match="OTHER_KIT"):
+        loaded(image, Kit(sensors, ()))
+
+
+def test_the_code_is_verified_before_its_devices() -> None:
+    with pytest.raises(Refused, match="UNKNOWN_OPCODE"):
+        loaded(pack("SI", 1, b"\xff"), KIT)
+    verdict = check(unpack(compile_text("SHOW(1 + TIME)", KIT).image), KIT)
+    assert verdict.stack_values == 2 and verdict.uses == ()
+
+
+def test_the_polynomial_is_primitive() -> None:
+    """So 65,535 uses of one device are the first number that could hide it."""
+    kit = Kit((), (Device("A", YES_NO, "", 0, 1),))
+    one = kit.hash_of_used([("actuator", 0)])
+    again = kit.hash_of_used([("actuator", 0)] * 65_536)
+    assert one == again
+    found = {kit.hash_of_used([("actuator", 0)] * uses) for uses in (1, 3, 5, 15, 17, 255, 257)}
+    assert len(found) == 7
+    assert all(kit.hash_of_used([("actuator", 0)] * (65_535 // prime)) for prime in (3, 5, 17, 257))
+
+
+def test_the_spec_has_an_example_of_hashes() -> None:
+    """The lines that are hashed, and what comes out, as `bytecode_spec.md` has it."""
+    text = SPEC.read_text(encoding="utf-8")
+    kit = robots.load("grabber").kit
+    rows = re.findall(r"^\| `(sensor|actuator) (.*)` \| `([0-9a-f]{4})` \|$", text, flags=re.M)
+    lines = [f"{what} {rest}" for what, rest, _ in rows]
+    assert lines == [line.rstrip("\n") for line in kit.lines()]
+    assert [int(number, 16) for _, _, number in rows] == list(kit.hashes)
+    whole = "".join(f"{line}\n" for line in lines).encode()
+    assert f"`{zlib.crc32(whole) & 0xFFFF:04x}`" in text
+    assert kit.fingerprint == zlib.crc32(whole) & 0xFFFF
+    source = re.search(r"```tiniscript\n(.*DISTANCE.*GRIPPER.*)\n```", text)
+    assert source
+    image = compile_text(source[1], kit).image
+    assert f"`{unpack(image).devices:04x}`" in text
+
+
+def test_the_spec_has_a_whole_image() -> None:
+    text = SPEC.read_text(encoding="utf-8")
+    found = re.search(r"The whole image:\n\n```\n([0-9a-f \n]+)```", text)
+    assert found
+    data = bytes.fromhex(found[1])
+    source = (
+        "SI|START;LOOP(FOREVER);F(1, 80);DISTANCE;IF(DISTANCE < 10);STOP;R(1, 60);ENDIF;END_LOOP"
+    )
+    assert data == compile_text(source, KIT).image
 
 
 def test_random_bytes_are_refused_and_nothing_else() -> None:
     rng = random.Random("images")
     for _ in range(20_000):
         data = bytearray(
-            rng.choice((IMAGE, rng.randbytes(rng.randrange(40)), b"TS" + rng.randbytes(20)))
+            rng.choice((IMAGE, rng.randbytes(rng.randrange(40)), b"TS\2\0" + rng.randbytes(20)))
         )
         for _ in range(rng.randrange(4)):
             if data:
                 data[rng.randrange(len(data))] = rng.randrange(256)
         try:
-            unpack(bytes(data), KIT.fingerprint)
+            assert len(unpack(bytes(data)).code) <= CODE_BYTES
         except ImageRefused as refused:
             assert refused.name

@@ -11,7 +11,18 @@ import pytest
 from tests.support.casefile import ROOT, read
 from tiniscript.bytecode import opcodes
 from tiniscript.bytecode.disassembly import listing, read_listing, rows
-from tiniscript.bytecode.opcodes import BY_NAME, OPS, Op, read_operands
+from tiniscript.bytecode.opcodes import (
+    BY_NAME,
+    ESCAPE,
+    OPS,
+    PUSHED,
+    SHORTS,
+    VARIABLES,
+    Op,
+    read_operands,
+    time8,
+    time8_ms,
+)
 from tiniscript.bytecode.verify import RULES
 from tiniscript.vm.machine import Machine
 
@@ -33,7 +44,7 @@ class Nothing:
 
 def code_with(op: Op, value: int) -> bytes:
     """Return code that pushes what `op` takes, and runs it with its smallest operands."""
-    pushes = bytes([BY_NAME["PUSH8"].code, value]) * op.pops
+    pushes = bytes([BY_NAME["PUSH_TRUE" if value else "PUSH_FALSE"].code]) * op.pops
     operands = b"".join(
         max(operand.kind.low, 0).to_bytes(operand.kind.size, "little") for operand in op.operands
     )
@@ -45,7 +56,7 @@ def code_with(op: Op, value: int) -> bytes:
 def test_stack_picture(op: Op, value: int) -> None:
     """Push what it takes, run it, count what it leaves."""
     code = code_with(op, value)
-    machine = Machine(code, Nothing(), sensors=1)
+    machine = Machine(code, Nothing(), sensors=SHORTS)
     task = machine.task
     if op.role == "next" or op.role == "drop":
         task.counters.append(2)
@@ -58,6 +69,34 @@ def test_stack_picture(op: Op, value: int) -> None:
     divides = op.name in ("DIV", "MOD") and value == 0
     assert len(task.stack) == (1 if divides else left)
     assert machine.fault == ("DIVIDE_BY_ZERO" if divides else "")
+
+
+EDGES = (-(2**31), 1 - 2**31, -1001, -1, 0, 1, 500, 1000, 2**31 - 1)
+
+
+def faults_of(op: Op) -> set[str]:
+    """Return the faults of an instruction on all pairs of values at the edges of their range."""
+    code = bytes([op.code]) + b"".join(
+        (1).to_bytes(operand.kind.size, "little") for operand in op.operands
+    )
+    found = set()
+    for first in EDGES:
+        for second in EDGES:
+            machine = Machine(code, Nothing(), sensors=8)
+            task = machine.task
+            task.stack[:] = [first, second][: op.pops]
+            task.variables[:] = [first] * VARIABLES
+            task.counters[:], task.calls[:] = [2], [0]
+            machine.tick(2**31, 1)
+            found.add(machine.fault)
+    return found - {""}
+
+
+@pytest.mark.parametrize("op", OPS, ids=lambda op: op.name)
+def test_faults(op: Op) -> None:
+    """The instructions that can fault are those that the table names."""
+    said = {fault for fault, names in opcodes.FAULTING.items() if op.name in names}
+    assert faults_of(op) == said
 
 
 @pytest.mark.parametrize("op", OPS, ids=lambda op: op.name)
@@ -78,6 +117,44 @@ def test_codes_and_numbers_are_used_once() -> None:
     numbers = [number for number, _ in RULES.values()]
     assert len(set(numbers)) == len(numbers)
     assert {op.role for op in OPS} == set(opcodes.ROLES)
+
+
+def test_an_instruction_of_one_byte_has_its_operand_in_its_last_bits() -> None:
+    short = [op for op in OPS if op.implied is not None]
+    assert len(short) == 6 * SHORTS
+    for op in short:
+        assert op.implied is not None
+        assert op.size == 1 and op.name == f"{op.family}_{op.code % SHORTS}"
+        assert op.implied.value == op.code % SHORTS
+        long = BY_NAME[op.family]
+        assert [each.kind for each in long.operands] == [op.implied.kind]
+        assert (long.picture, long.role) == (op.picture, op.role)
+
+
+def test_the_last_bits_of_a_comparison_with_a_constant_are_the_comparator() -> None:
+    for op in OPS:
+        comparator = op.name.rpartition("_")[2]
+        if comparator in dict(opcodes.COMPARATORS):
+            assert op.code % 8 == BY_NAME[comparator].code % 8
+
+
+def test_a_byte_is_kept_for_instructions_of_two() -> None:
+    assert opcodes.BY_CODE[ESCAPE] is None
+
+
+def test_numbers_of_one_byte_follow_one_another() -> None:
+    codes = [BY_NAME[f"PUSH_NUM_{n}"].code for n in PUSHED]
+    assert codes == list(range(codes[0], codes[0] + len(PUSHED)))
+
+
+def test_a_time_of_one_byte_is_a_time_of_its_own() -> None:
+    times = [time8_ms(byte) for byte in range(256)]
+    assert times == sorted({*times})
+    assert [times[byte] for byte in (0, 1, 99, 100, 101, 199, 200, 255)] == [
+        0, 10, 990, 1000, 1100, 10_900, 11_000, 66_000]  # fmt: skip
+    for byte, time_ms in enumerate(times):
+        assert time8(time_ms) == byte
+    assert [time8(time_ms) for time_ms in (-10, 5, 1010, 10_950, 11_500, 67_000)] == [None] * 6
 
 
 def test_listing_of_every_instruction_reads_back() -> None:

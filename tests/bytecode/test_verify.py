@@ -103,7 +103,7 @@ def test_devices_are_counted(sensors: int) -> None:
     for index in range(33):
         code = bytes([read_op, index])
         if index < sensors:
-            assert verify(code, sensors, 0).uses_kit
+            assert verify(code, sensors, 0).uses == (("sensor", index),)
         else:
             with pytest.raises(Refused, match="NO_SUCH_DEVICE"):
                 verify(code, sensors, 0)
@@ -117,4 +117,4 @@ def test_verdict_says_what_code_needs() -> None:
         LOOP(4); OUT; END_LOOP
     """
     verdict = compile_text(text, kit).verdict
-    assert verdict == (3, 3, 2, False)
+    assert verdict == (3, 3, 2, ())

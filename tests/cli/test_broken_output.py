@@ -8,6 +8,7 @@ import subprocess
 from argparse import Namespace
 from collections.abc import Callable
 from pathlib import Path
+from typing import TypeVar
 
 import pytest
 
@@ -18,9 +19,10 @@ from tests.support.robot_fleet import RobotFleet
 from tiniscript import robots
 from tiniscript.cli import CLOSED
 from tiniscript.cli.robot import connect, fleet
-from tiniscript.link.connection import Asked, Asks
+from tiniscript.link.connection import PendingRequest, Requester
 from tiniscript.link.messages import STOP_RUN
 
+T = TypeVar("T")
 pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
@@ -117,12 +119,12 @@ def test_only_robots_that_a_command_drives_are_stopped(
     """`tsc info --all | head` leaves running robots alone."""
     stopped: list[str] = []
 
-    def broken(self: fleet.Crew, roll: object) -> None:
+    def broken(self: fleet.Fleet, table: object) -> None:
         raise BrokenPipeError
 
-    monkeypatch.setattr(fleet.Crew, "begin", lambda self, work: None)
-    monkeypatch.setattr(fleet.Crew, "watch", broken)
-    monkeypatch.setattr(fleet.Crew, "interrupt", lambda self: stopped.append(verb))
+    monkeypatch.setattr(fleet.Fleet, "begin", lambda self, work: None)
+    monkeypatch.setattr(fleet.Fleet, "watch", broken)
+    monkeypatch.setattr(fleet.Fleet, "interrupt", lambda self: stopped.append(verb))
     monkeypatch.setattr(fleet, "CONFIRM_S", 0.0)
     options = Namespace(verb=verb, detach=is_detached, json=True, ports=["/x", "/y"], all=False)
     with pytest.raises(BrokenPipeError):
@@ -170,7 +172,9 @@ def test_a_port_that_vanishes_is_no_bug(
     real = connect.Connection.do
     asked = []
 
-    def do(self: connect.Connection, make: Callable[[Asks], Asked]) -> Asked:
+    def do(
+        self: connect.Connection, make: Callable[[Requester], PendingRequest[T]]
+    ) -> PendingRequest[T]:
         asked.append(make)
         if len(asked) == which:
             pty_robot.pull()
@@ -188,9 +192,10 @@ def test_a_robot_that_is_busy_for_too_long_is_not_lost(
 ) -> None:
     """Whoever waits hears that it saves, and what to do."""
     from tiniscript.link.messages import STATUSES
+    from tiniscript.link.payloads import SentReply
     from tiniscript.link.requests import Reply, reply_of
 
-    def busy(name: str, payload: bytes) -> Reply | None:
+    def busy(name: str, payload: bytes) -> Reply[SentReply] | None:
         reply = reply_of(name, payload)
         return Reply(STATUSES["BUSY"]) if name in ("PROGRAM", "START") else reply
 

@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 
 from tests.support.command import OBSTACLE, PROGRAM, TSC, Tsc, process
-from tiniscript.bytecode.image import unpack
+from tiniscript.bytecode.image import HEADER_BYTES, unpack
 from tiniscript.bytecode.opcodes import CODE_BYTES
-from tiniscript.cli import VERBS
+from tiniscript.cli.texts.verbs import VERBS
 
 # -- compile ------------------------------------------------------------------------------------
 
@@ -22,8 +22,8 @@ def test_compile_writes_the_image_and_nothing_else(tsc: Tsc, program: Path) -> N
     done = tsc("compile", program, "-o", target)
     assert done.code == 0
     assert done.err == ""
-    assert "17 bytes (3 of code)   stack 0 of 16   runs 5 s" in done.out
-    assert unpack(target.read_bytes()).code.hex() == "443250"
+    assert "18 bytes (3 of code)   stack 0 of 16   runs 5 s" in done.out
+    assert unpack(target.read_bytes()).code.hex() == "448c50"
     assert sorted(each.name for each in program.parent.glob("*.*")) == ["drive.ts", "out.bin"]
 
 
@@ -43,13 +43,13 @@ def test_compile_goes_beside_the_source(tsc: Tsc, program: Path) -> None:
         ("LOOP(FOREVER);W(1);END_LOOP", "runs until it is stopped"),
         ("DEF A;W(1);END_DEF;LOOP(2);A;A;END_LOOP", "runs 4 s"),
         ("LOOP(9);W(1);IF(DISTANCE < 5);BREAK;ENDIF;END_LOOP", "runs 0 to 9 s"),
-        ("LOOP(FOREVER);W(1);IF(DISTANCE < 5);BREAK;ENDIF;END_LOOP", "stack 0 of 16\n"),
+        ("LOOP(FOREVER);W(1);IF(DISTANCE < 5);BREAK;ENDIF;END_LOOP", "stack 1 of 16\n"),
         ("W(DISTANCE)", "stack 1 of 16\n"),
         ("W(5);SHOW(1 / 0);W(5)", "stack 2 of 16\n"),
-        ("WHILE(DISTANCE < 5);END_WHILE", "stack 0 of 16\n"),
+        ("WHILE(DISTANCE < 5);END_WHILE", "stack 1 of 16\n"),
         (
             "LOOP(FOREVER);IF(DISTANCE < 5);BREAK;ENDIF;LOOP(FOREVER);W(1);END_LOOP;END_LOOP",
-            "stack 0 of 16\n",
+            "stack 1 of 16\n",
         ),
         ("LOOP(2);LOOP(FOREVER);W(1);END_LOOP;END_LOOP", "runs until it is stopped"),
     ],
@@ -97,8 +97,8 @@ def test_compile_to_a_device_keeps_the_device(tsc: Tsc, program: Path) -> None:
 
 def test_compile_to_standard_output(program: Path) -> None:
     done = subprocess.run([*TSC, "compile", str(program), "-o", "-"], capture_output=True)
-    assert unpack(done.stdout).code.hex() == "443250"
-    assert b"17 bytes" in done.stderr
+    assert unpack(done.stdout).code.hex() == "448c50"
+    assert b"18 bytes" in done.stderr
 
 
 def test_compile_needs_a_name_for_the_image(tsc: Tsc) -> None:
@@ -111,7 +111,7 @@ def test_map_says_which_line(tsc: Tsc, tmp_path: Path) -> None:
     assert tsc("compile", source, "--map", places).code == 0
     known = json.loads(places.read_text(encoding="utf-8"))
     assert known["lines"][1] == "W(1)"
-    assert [place[:3] for place in known["places"]] == [[0, 2, 1], [2, 3, 1], [5, 3, 8]]
+    assert [place[:3] for place in known["places"]] == [[0, 2, 1], [2, 3, 1], [4, 3, 8]]
     done = tsc("run", tmp_path / "a.bin")
     assert (done.code, done.out) == (1, "1000 FAULT DIVIDE_BY_ZERO\n")
     assert "line 3:  X = 0; SHOW(1 / X)" in done.err
@@ -121,12 +121,12 @@ def test_the_board_has_less_memory_than_the_language(tsc: Tsc, tmp_path: Path) -
     text = "SHOW(TIME * 1.234);" * 90
     done = tsc("compile", "-e", text, "-o", tmp_path / "a.bin")
     assert done.code == 1
-    assert "430" in done.err
-    assert "110" in done.err  # by how much
+    assert "389" in done.err
+    assert "151" in done.err  # by how much
     for verb in ("check", "run"):
         done = tsc(verb, "-e", text)
         assert done.code == 0
-        assert "110" in done.err
+        assert "151" in done.err
     assert tsc("compile", "-e", text, "-o", tmp_path / "a.bin", "--robot", "grabber").code == 0
 
 
@@ -314,11 +314,34 @@ def test_code_that_breaks_a_rule_is_refused_by_number(tsc: Tsc, tmp_path: Path) 
     from tiniscript.bytecode.image import pack
 
     target = tmp_path / "a.bin"
-    for code, rule in ((b"\xff", "21"), (bytes.fromhex("3800"), "24"), (b"\x39", "25")):
+    for code, rule in ((b"\xff", "21"), (bytes.fromhex("3809"), "24"), (b"\x39", "25")):
         target.write_bytes(pack("SI", 0, code))
         done = tsc("run", target)
         assert done.code == 1
         assert rule in done.err
+
+
+@pytest.mark.parametrize("verb", ["run", "show", "upload"])
+def test_an_image_of_0_1_0_says_what_to_do(tsc: Tsc, tmp_path: Path, verb: str) -> None:
+    target = tmp_path / "a.bin"
+    target.write_bytes(bytes.fromhex("54530100000000000300101604fa443250"))
+    done = tsc(verb, target)
+    assert (done.code, done.out) == (1, "")
+    assert done.err.strip() == (
+        f"refused: {target} is for version 1.0 of the machine, this is 2.0. "
+        "Compile the program again."
+    )
+
+
+def test_an_image_of_another_robot_says_which(tsc: Tsc, tmp_path: Path) -> None:
+    target = tmp_path / "a.bin"
+    for text, robot in (("SHOW(LINE_L)", "liner"), ("GRIPPER(30)", "grabber")):
+        assert tsc("compile", "-e", text, "-o", target, "--robot", robot).code == 0
+        done = tsc("run", target)
+        assert done.code == 1
+        assert f"is for another robot than tinibot. Name it:  --robot {robot}" in done.err
+        assert tsc("run", target, "--robot", robot).code == 0
+        assert f"for {robot}" in tsc("show", target).out
 
 
 # -- show ---------------------------------------------------------------------------------------
@@ -328,9 +351,9 @@ def test_show_lists_with_lines(tsc: Tsc, tmp_path: Path) -> None:
     target = tmp_path / "a.bin"
     tsc("compile", "-e", "SI|\nF(5, 80)\nDISTANCE", "-o", target)
     done = tsc("show", target)
-    assert "0000  44 32 50           MOVE8_F 50 80" in done.out
+    assert "0000  44 8c 50           MOVE8_F 140 80" in done.out
     assert "line 2: F(5, 80)" in done.out
-    assert "READ s2" in done.out
+    assert "READ_2" in done.out
     assert "DISTANCE  line 3: DISTANCE" in done.out
     assert (
         tsc("show", "-e", "SI|\nF(5, 80)\nDISTANCE").out.split("\n", 1)[1]
@@ -341,7 +364,7 @@ def test_show_lists_with_lines(tsc: Tsc, tmp_path: Path) -> None:
 def test_show_json(tsc: Tsc, program: Path) -> None:
     tsc("compile", program)
     known = json.loads(tsc("show", program.with_suffix(".bin"), "--json").out)
-    assert (known["code_bytes"], known["image_bytes"], known["start"]) == (3, 17, "SI")
+    assert (known["code_bytes"], known["image_bytes"], known["start"]) == (3, 18, "SI")
     assert known["robot"] is None
     assert [each["name"] for each in known["instructions"]] == ["MOVE8_F"]
     known = json.loads(tsc("show", "-e", "SB|DISTANCE", "--json").out)
@@ -355,7 +378,7 @@ def test_show_json(tsc: Tsc, program: Path) -> None:
 def test_the_papers_programs_are_small(tsc: Tsc, text: str, code: int) -> None:
     known = json.loads(tsc("show", "-e", text, "--json").out)
     assert known["code_bytes"] == code
-    assert known["image_bytes"] == code + 14
+    assert known["image_bytes"] == code + HEADER_BYTES
 
 
 # -- fmt and explain ----------------------------------------------------------------------------
@@ -400,4 +423,4 @@ def test_explain(tsc: Tsc) -> None:
 def test_help_names_every_verb(tsc: Tsc, language: str) -> None:
     said = tsc("--help", "--lang", language).out
     assert not [verb for verb in VERBS if f"  tsc {verb} " not in said]
-    assert all(len(line) <= 100 for line in said.splitlines())
+    assert all(len(line) <= 80 for line in said.splitlines())

@@ -16,7 +16,8 @@ from types import SimpleNamespace
 import pytest
 
 from tiniscript import compile_text, robots
-from tiniscript.cli.terminal import run_drawing
+from tiniscript.cli.terminal import run_drawing, sketch
+from tiniscript.cli.terminal import screen as terminal_screen
 from tiniscript.vm.trace import Ending, Event, Senses, run
 
 NO_PTY = "Windows has no pseudo-terminals of this kind"
@@ -109,7 +110,7 @@ def test_the_picture_shows_the_way_and_the_values(pace: str) -> None:
     code, written = on_terminal("-e", OBSTACLES, *SEEN, "--pace", pace)
     assert code == 0
     seen = picture(screen(written))
-    assert any(arrow in "".join(seen) for arrow in run_drawing.ARROWS)
+    assert any(arrow in "".join(seen) for arrow in sketch.ARROWS)
     assert any("⠀" < c <= "⣿" for c in "".join(seen))
     assert row(seen, "DISTANCE")[:2] == ["DISTANCE", "50"]
     assert row(seen, "DISTANCE")[2:] == ["cm", "distance", "sensor"]
@@ -143,7 +144,7 @@ def test_a_narrow_terminal_has_the_values_below_the_way(pace: str) -> None:
     _, written = on_terminal("-e", OBSTACLES, *SEEN, "--pace", pace, size=(40, 15))
     seen = picture(screen(written, (40, 15)))
     assert "DISTANCE    50 cm  distance sensor" in seen
-    assert any(any(arrow in line for arrow in run_drawing.ARROWS) for line in seen[1:8])
+    assert any(any(arrow in line for arrow in sketch.ARROWS) for line in seen[1:8])
 
 
 def test_actuators_shown_values_and_yes_no_are_drawn() -> None:
@@ -233,13 +234,15 @@ def frames(events: list[Event | Ending], pace: float, monkeypatch: pytest.Monkey
     clock.monotonic = lambda: clock.now_s
     clock.sleep = lambda seconds: setattr(clock, "now_s", clock.now_s + seconds)
     drawn: list[float] = []
-    monkeypatch.setattr(run_drawing, "time", clock)
-    monkeypatch.setattr(run_drawing.Screen, "draw", lambda self, seen, now_ms: drawn.append(now_ms))
+    monkeypatch.setattr(terminal_screen, "time", clock)
+    monkeypatch.setattr(
+        terminal_screen.Screen, "draw", lambda self, seen, now_ms: drawn.append(now_ms)
+    )
     assert run_drawing.watch(iter(events), robots.load("tinibot"), pace, "en") == events[-1]
     assert drawn == sorted(drawn)
     if pace:
         passed_ms = (clock.now_s - 100) * 1000 * pace
-        assert 3000 <= passed_ms <= 3000 + 1000 * pace * run_drawing.FRAME_S * 1.01
+        assert 3000 <= passed_ms <= 3000 + 1000 * pace * terminal_screen.FRAME_S * 1.01
     return len(drawn)
 
 
@@ -267,14 +270,14 @@ def test_every_picture_fits_its_terminal(language: str) -> None:
 
 
 def test_a_long_way_stays_in_view_and_in_memory(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(run_drawing, "CORNERS", 100)
-    sketch = run_drawing.Sketch(robots.load("tinibot"))
+    monkeypatch.setattr(sketch, "CORNERS", 100)
+    way = sketch.Sketch(robots.load("tinibot"))
     for k in range(3000):
-        sketch.set_motors(k * 500, 60 + k % 30, 90 - k % 41)
+        way.set_motors(k * 500, 60 + k % 30, 90 - k % 41)
         if k % 10 == 0:
-            drawn = "\n".join(line.plain for line in sketch.drawn(30, 12, k * 500))
-            assert any(arrow in drawn for arrow in run_drawing.ARROWS)
-            assert len(sketch.way.corners) <= 100
+            drawn = "\n".join(line.plain for line in way.drawn(30, 12, k * 500))
+            assert any(arrow in drawn for arrow in sketch.ARROWS)
+            assert len(way.way.corners) <= 100
 
 
 @pytest.mark.parametrize(("percent", "bar"), [

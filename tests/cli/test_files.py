@@ -14,12 +14,13 @@ from time import time
 from typing import IO
 
 import pytest
+from platformdirs import user_cache_path
 
 from tests.support.command import PROGRAM, Tsc, process
 from tiniscript import files
 from tiniscript.codegen import source_map
 from tiniscript.sharing import registry
-from tiniscript.sharing.registry import Holder
+from tiniscript.sharing.registry import Registration
 
 HERE = Path(files.__file__).parent
 unix = pytest.mark.skipif(os.name == "nt", reason="permissions and links of Unix")
@@ -29,6 +30,20 @@ unix = pytest.mark.skipif(os.name == "nt", reason="permissions and links of Unix
 def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     return tmp_path / "cache" / "tiniscript"
+
+
+@pytest.mark.parametrize("chosen", [None, "", "part", "/elsewhere", "/elsewhere/", "~/cache"])
+@pytest.mark.parametrize("home", [None, "", "part", "/home/ada", "/"])
+def test_the_cache_is_where_platformdirs_has_it(
+    chosen: str | None, home: str | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Though on Linux it is found without that."""
+    for name, value in (("XDG_CACHE_HOME", chosen), ("HOME", home)):
+        if value is None:
+            monkeypatch.delenv(name, raising=False)
+        else:
+            monkeypatch.setenv(name, value)
+    assert files.cache_folder() == user_cache_path("tiniscript", appauthor=False)
 
 
 def mode_of(path: Path) -> int:
@@ -116,17 +131,17 @@ def test_a_link_stays_a_link(tmp_path: Path) -> None:
     assert [each.name for each in (tmp_path / "folder").iterdir()] == ["x"]
 
 
-@pytest.mark.parametrize("trouble", [OSError(28, "No space left on device"), KeyboardInterrupt()])
+@pytest.mark.parametrize("failure", [OSError(28, "No space left on device"), KeyboardInterrupt()])
 def test_what_goes_wrong_leaves_nothing(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, trouble: BaseException
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, failure: BaseException
 ) -> None:
     (tmp_path / "x").write_bytes(b"1")
 
     def fail(*_: object) -> None:
-        raise trouble
+        raise failure
 
     monkeypatch.setattr(Path, "replace", fail)
-    with pytest.raises(type(trouble)):
+    with pytest.raises(type(failure)):
         files.replace(tmp_path / "x", b"2")
     assert [each.name for each in tmp_path.iterdir()] == ["x"]
     assert (tmp_path / "x").read_bytes() == b"1"
@@ -188,8 +203,8 @@ def test_an_empty_map_goes(cache: Path) -> None:
     assert not path.exists()
 
 
-def holder_at(port: str, number: int) -> Holder:
-    return Holder(port, number, "token", "answer", "link", 9600, os.getpid())
+def registration_at(port: str, number: int) -> Registration:
+    return Registration(port, number, "token", "answer", "link", 9600, os.getpid())
 
 
 def free_number() -> int:
@@ -202,10 +217,10 @@ def names() -> set[str]:
     return {each.name for each in registry._folder().iterdir()}
 
 
-def test_the_notes_of_killed_holders_go_and_those_of_living_ones_stay() -> None:
-    dead = holder_at("/dev/dead", free_number())
+def test_the_registrations_of_killed_servers_go_and_those_of_living_ones_stay() -> None:
+    dead = registration_at("/dev/dead", free_number())
     with socket.create_server(("127.0.0.1", 0)) as server:
-        living = holder_at("/dev/living", server.getsockname()[1])
+        living = registration_at("/dev/living", server.getsockname()[1])
         registry.write(living)
         registry.write(dead)
         assert registry.found("/dev/dead") == dead
@@ -219,12 +234,12 @@ def test_one_who_comes_while_a_note_is_removed_keeps_its_own(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """The port was taken again between looking at the note and removing it."""
-    before, now = holder_at("/dev/x", 1), holder_at("/dev/x", 2)
+    before, now = registration_at("/dev/x", 1), registration_at("/dev/x", 2)
     registry.write(now)
     real = registry._read
     asked = []
 
-    def read(path: Path) -> Holder | None:
+    def read(path: Path) -> Registration | None:
         asked.append(path)
         return before if len(asked) == 1 else real(path)
 
@@ -265,7 +280,7 @@ def test_the_lock_of_a_killed_command_goes() -> None:
 
 @unix
 def test_a_lock_that_was_removed_in_between_locks_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Its holder left between our opening and our locking its file; another one came."""
+    """Whoever had it left between our opening and our locking its file; another one came."""
     first = registry.claimed("socket://x:1")
     assert first is not None
     real = registry._lock
@@ -290,7 +305,8 @@ def test_a_killed_link_leaves_nothing_for_long(cache: Path) -> None:
     code = (
         "import os, signal; from tiniscript.sharing import registry;"
         "lock = registry.claimed('socket://x:1');"
-        f"registry.write(registry.Holder('socket://x:1', {free_number()}, 't', 'a', 'link', 1, 2));"
+        "registry.write(registry.Registration("
+        f"'socket://x:1', {free_number()}, 't', 'a', 'link', 1, 2));"
         "os.kill(os.getpid(), signal.SIGKILL)"
     )
     assert subprocess.run([sys.executable, "-c", code]).returncode == -signal.SIGKILL

@@ -14,20 +14,22 @@ import pytest
 from tests.cli.test_virtual_command import Robot, robot
 from tests.support.casefile import ROOT
 from tests.support.command import OBSTACLE, TSC, Tsc, process
+from tests.support.link_events import event
 from tests.support.virtual_robot import Talk, missing, robot_in
 from tiniscript import compile_text, robots
 from tiniscript.cli.commands.live import HELP_ME, LEAVE, Catch, wished
-from tiniscript.cli.robot.event_printer import Bookkeeping, Teller
+from tiniscript.cli.robot.event_printer import Bookkeeping, EventPrinter
 from tiniscript.cli.robot.live_mark import MARK
 from tiniscript.cli.robot.live_state import Known
 from tiniscript.link import known_ports
-from tiniscript.link.outcomes import Event
+from tiniscript.link.outcomes import Event, MissedEvent
+from tiniscript.link.payloads import DoneEvent, ShowEvent
 from tiniscript.robots import given
 from tiniscript.semantics.other_kits import naming_robots
 from tiniscript.virtual import directory
 from tiniscript.virtual.directory import Running
-from tiniscript.virtual.simulator import Host
-from tiniscript.virtual.transports import Guests
+from tiniscript.virtual.simulator import Simulator
+from tiniscript.virtual.transports import Transports
 from tiniscript.vm.trace import Event as Traced
 
 needs_robot = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
@@ -109,23 +111,23 @@ def test_a_live_session_ends_with_the_robots_time() -> None:
 @pytest.mark.parametrize("hurry", [1.0, 20.0, 0.0])
 def test_time_ends_to_the_millisecond(hurry: float) -> None:
     """The robot stands then, whatever its firmware still does, and says nothing more."""
-    guests = Guests()
-    host = Host(robot_in(), guests, hurry)
-    host.lasts_ms = 1500
-    robot = host.robot
+    transports = Transports()
+    simulator = Simulator(robot_in(), transports, hurry)
+    simulator.lasts_ms = 1500
+    robot = simulator.robot
     Talk(robot).upload("SI|LOOP(FOREVER);F(0.3, 80);SHOW(1);END_LOOP", is_detached=True)
     assert robot.started_ms is not None
     while not robot.is_at_rest:
-        host.turn(0.01)
-    assert host.over_ms == robot.started_ms + 1500 == robot.ended_ms
+        simulator.turn(0.01)
+    assert simulator.over_ms == robot.started_ms + 1500 == robot.ended_ms
     place, events = robot.pose, robot.take_events()
     assert events[-1].text == "STOP"
     assert events[-1].time_ms == robot.ended_ms
     for _ in range(30):
-        host.turn(0.01)
+        simulator.turn(0.01)
     assert robot.pose == place
     assert robot.take_events() == []
-    guests.close()
+    transports.close()
 
 
 # -- the other terminal ---------------------------------------------------------------------------
@@ -241,7 +243,7 @@ def test_up_to_three_robots_are_named() -> None:
     own = "tinibot", robots.load("tinibot").kit
     found = compile_text("LED(TRUE)", own[1])
     others = {f"R{k}": kit for k in range(5)}
-    (named,) = naming_robots(found.problems, found.source.text, own, others)
+    (named,) = naming_robots(found.diagnostics, found.source.text, own, others)
     assert named.values == {
         "found": "LED", "own": "tinibot", "first": "R0", "second": "R1", "third": "R2",
     }  # fmt: skip
@@ -309,31 +311,31 @@ def test_a_variable_may_have_the_value_of_the_mark(capsys: pytest.CaptureFixture
     """It is the smallest number: `Y = -2147483.647 - 0.001` gives it."""
     known = Known(robots.load("tinibot").kit)
     for before in (0, 1, 2):  # of the program's own, by chance
-        catch = Catch(("X", "Y"), known, Teller("en"), says_done=False)
+        catch = Catch(("X", "Y"), known, EventPrinter("en"), says_done=False)
         for value in (*[MARK] * before, MARK, MARK, 7):
-            assert catch.hold(Event("SHOW", {"value": value, "is_yes_no": 0}))
-        assert catch.hold(Event("DONE", {"run": 1}))
+            assert catch.hold(ShowEvent(value, 0))
+        assert catch.hold(DoneEvent(1))
         assert {name: each.value for name, each in known.values.items()} == {"X": MARK, "Y": 7}
         assert capsys.readouterr().out == "SHOW -2147483.648\n" * before
         known.values.clear()
 
 
 def test_the_mark_of_live_reaches_nobody(capsys: pytest.CaptureFixture[str]) -> None:
-    def show(value: int) -> Event:
-        return Event("SHOW", {"value": value, "is_yes_no": 0})
+    def show(value: int) -> ShowEvent:
+        return ShowEvent(value, 0)
 
     known = Known(robots.load("tinibot").kit)
     for end in ("STOPPED", "ENDED", "DONE"):
-        catch = Catch(("X", "Y"), known, Teller("en"), says_done=False)
+        catch = Catch(("X", "Y"), known, EventPrinter("en"), says_done=False)
         assert not catch.hold(show(7))
-        told = [show(MARK), show(5000), Event("MISSED", {"count": 1})]
+        told: list[Event] = [show(MARK), show(5000), MissedEvent(1)]
         assert [catch.hold(each) for each in told] == [True, True, False]
-        catch.hold(Event(end, {"cause": 0, "state": 2, "fault": 0, "run": 1}))
+        catch.hold(event(end))
         assert capsys.readouterr().out == ""
     # what a person shows is shown
-    catch = Catch(("X",), known, Teller("en"), says_done=False)
-    for event in (show(MARK), show(MARK), show(5000), Event("DONE", {"run": 1})):
-        catch.hold(event)
+    catch = Catch(("X",), known, EventPrinter("en"), says_done=False)
+    for each in (show(MARK), show(MARK), show(5000), DoneEvent(1)):
+        catch.hold(each)
     assert capsys.readouterr().out == "SHOW -2147483.648\n"
     assert known.values["X"].value == 5000
     # nor the picture or the lines of a virtual robot

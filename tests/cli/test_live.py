@@ -125,11 +125,13 @@ def test_mistakes_and_warnings_are_those_of_the_line() -> None:
     known = Known(KIT)
     known.values = {"X": Value(5000, False)}
     line = known.line("X = X + 1; F(X 2)", 55)
-    (problem,) = line.compiled.problems
-    assert line.compiled.source[problem.span].strip("() ") != ""
-    assert line.compiled.source.position(problem.span.start)[0] == 1
-    assert known.line("A = 5", 55).compiled.problems == []
-    assert known.line("DEF A; S; END_DEF", 55).compiled.problems == []
-    (warning,) = known.line("LOOP(FOREVER); X = 1; END_LOOP", 55).compiled.problems
+    (diagnostic,) = line.compiled.diagnostics
+    assert line.compiled.source[diagnostic.span].strip("() ") != ""
+    assert line.compiled.source.position(diagnostic.span.start)[0] == 1
+    assert known.line("A = 5", 55).compiled.diagnostics == []
+    assert known.line("DEF A; S; END_DEF", 55).compiled.diagnostics == []
+    (warning,) = known.line("LOOP(FOREVER); X = 1; END_LOOP", 55).compiled.diagnostics
     assert warning.code.number == "TS804"
-    assert [each.code.number for each in known.line("SHOW(NEW)", 55).compiled.problems] == ["TS103"]
+    assert [each.code.number for each in known.line("SHOW(NEW)", 55).compiled.diagnostics] == [
+        "TS103"
+    ]

@@ -16,8 +16,8 @@ from tests.support.command import FOREVER, TSC, Done, Tsc, ended, process, runni
 from tests.support.robot_fleet import RobotFleet
 from tiniscript import robots
 from tiniscript.cli.robot.fleet import Member, Result
-from tiniscript.cli.robot.targets import Post
-from tiniscript.cli.terminal.fleet_table import Roll
+from tiniscript.cli.robot.targets import Target
+from tiniscript.cli.terminal.fleet_table import FleetTable
 from tiniscript.link import known_ports, ports
 
 pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
@@ -150,7 +150,7 @@ def test_a_port_that_never_had_a_robot_is_no_failure(
     assert len(done.out.splitlines()) == 4
     assert done.err == f"4 of 4 robots: done.\nNo robot answers on {port}.\n"
     monkeypatch.setattr("tiniscript.link.ports.listed", list)
-    monkeypatch.setattr("tiniscript.library.way.ANSWER_MS", 1000)
+    monkeypatch.setattr("tiniscript.library.opening.ANSWER_MS", 1000)
     known_ports.remember(known, "R9", is_used=False)
     done = tsc("ping", "--all", "--count", "1")
     assert done.code == 3
@@ -215,14 +215,14 @@ def test_the_table_shows_every_robot_and_leaves_plain_rows(class_: RobotFleet) -
 @pytest.mark.parametrize("count", [0, 1, 2, 5, 30])
 def test_every_table_fits_its_terminal(count: int) -> None:
     members = [
-        Member(Post(f"/dev/ttyUSB{k}", "ÑANDÚ" * k, False, True), deque()) for k in range(count)
+        Member(Target(f"/dev/ttyUSB{k}", "ÑANDÚ" * k, False, True), deque()) for k in range(count)
     ]
     for k, member in enumerate(members):
         member.result = [None, Result(True, "fine"), Result(False, "what is wrong " * 9)][k % 3]
-    roll = Roll(members, "es")
+    table = FleetTable(members, "es")
     for width in (1, 2, 20, 80, 200):
         for height in (1, 2, 3, 8, 50):
-            lines = roll.lines(width, height, 0)
+            lines = table.lines(width, height, 0)
             assert len(lines) <= height
             assert all(line.cell_len <= width for line in lines)
             if count > height > 2:

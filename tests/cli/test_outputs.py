@@ -12,6 +12,7 @@ import pytest
 from tests.support.command import PROGRAM, TSC, Done, Tsc
 from tests.support.verbs import parsers, values_of
 from tiniscript.cli import paths
+from tiniscript.cli.texts.options import of_verb
 from tiniscript.robots import DEFAULT
 
 HERE = Path(sys.modules["tiniscript"].__file__ or "").parent
@@ -44,12 +45,17 @@ def arguments(verb: str, files: dict[str, Path]) -> list[str]:
 
 
 def test_every_option_that_takes_a_value_is_known_to_name_a_file_or_not() -> None:
-    """Whoever adds an option says what it is; else it is refused here."""
-    groups = (set(paths.READS), set(paths.WRITES), paths.NO_FILES)
+    """Whoever adds an option says what it is; what names a file in one verb does in all."""
     for verb, parser in PARSERS.items():
+        kinds = {option.name: option.kind for option in of_verb(verb)}
         for dest in values_of(parser):
-            found = sum(dest in group for group in groups)
-            assert found == (2 if dest == "memory" else 1), f"{verb}: {dest}"
+            kind = kinds[dest]
+            assert kind is not None, f"{verb}: {dest}"
+            assert (kind.reads, kind.writes) == (
+                paths.READS.get(dest, ""), paths.WRITES.get(dest, ("", ""))[1]
+            ), f"{verb}: {dest}"  # fmt: skip
+            is_file = kind.name in ("program", "robot", "world", "port", "file")
+            assert is_file == bool(kind.reads or kind.writes), f"{verb}: {dest}"
 
 
 def test_every_file_that_the_command_writes_comes_from_such_an_option() -> None:
@@ -176,7 +182,7 @@ def test_devices_and_pipes_may_be_written(tmp_path: Path) -> None:
     for words in ("compile a.ts -o /dev/null --map /dev/null", "compile /dev/null -o /dev/null"):
         assert run(f"{tsc} {words}", tmp_path).code == 0
     done = run(f"mkfifo p; cat p & {tsc} compile a.ts -o p >/dev/null; wait", tmp_path)
-    assert done.code == 0 and done.out.startswith("TS\x01")
+    assert done.code == 0 and done.out.startswith("TS\x02")
     assert (tmp_path / "p").is_fifo()
     if Path("/dev/full").exists():
         done = run(f"{tsc} compile a.ts -o /dev/full", tmp_path)

@@ -10,7 +10,7 @@ import pytest
 from tests.cli.test_outputs import PROFILE, WORLD
 from tests.support.command import PROGRAM, Tsc
 from tests.support.verbs import parsers, values_of
-from tiniscript.cli.errors import Trouble
+from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts.common import LONGEST, Said, text
 from tiniscript.printable import printable
 
@@ -137,7 +137,7 @@ def test_a_sentence_keeps_the_lines_of_other_sentences_alone() -> None:
     assert Said("{a}").format(a="x" * 10_000) == "x" * LONGEST + "…"
     assert Said("{a:>3}").format(a=1) == "  1"
     assert isinstance(text("no_verb", "en"), Said)
-    assert Trouble(2, "no_verb", found=EVIL, near=EVIL).sentence("es").isprintable()
+    assert CommandError(2, "no_verb", found=EVIL, near=EVIL).sentence("es").isprintable()
 
 
 def test_what_is_printable_stays() -> None:

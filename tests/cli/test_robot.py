@@ -16,7 +16,7 @@ from tests.support.command import FOREVER, LONG, OBSTACLE, TSC, Tsc, ended, proc
 from tests.support.pty_robot import PtyRobot, on
 from tiniscript import compile_text, robots
 from tiniscript.cli.robot import connect
-from tiniscript.library import way
+from tiniscript.library import opening
 from tiniscript.link import known_ports, ports
 
 pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
@@ -28,9 +28,9 @@ KIT = robots.load("tinibot").kit
 @pytest.fixture
 def hasty(monkeypatch: pytest.MonkeyPatch) -> None:
     """Nobody waits long for a robot that will not answer."""
-    monkeypatch.setattr(way, "ANSWER_MS", 800)
-    monkeypatch.setattr(way, "CABLE_ANSWER_MS", 800)
-    monkeypatch.setattr(way, "LONG_QUIET_S", 0.1)
+    monkeypatch.setattr(opening, "ANSWER_MS", 800)
+    monkeypatch.setattr(opening, "CABLE_ANSWER_MS", 800)
+    monkeypatch.setattr(opening, "LONG_QUIET_S", 0.1)
     monkeypatch.setattr(connect, "PATIENCE_MS", 800)
 
 
@@ -157,7 +157,7 @@ def test_what_does_not_fit_is_said_with_numbers(pty_robot: PtyRobot, tmp_path: P
     process("compile", "-e", "SHOW(TIME * 1.234);" * 90, "-o", target, "--robot", "grabber")
     done = on(pty_robot, "upload", target)
     assert done.code == 1
-    assert "540 bytes of code, 110 more than the robot has room for (430)" in done.err
+    assert "540 bytes of code, 151 more than the robot has room for (389)" in done.err
     done = on(pty_robot, "upload", "-e", "SHOW(LINE_L)", "--robot", "liner")
     assert done.code == 3
     assert "--robot tinibot" in done.err
@@ -334,7 +334,7 @@ def test_nobody_something_else_and_another_version(
     tsc: Tsc, pty_robot: PtyRobot, hasty: None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with monkeypatch.context() as newer:
-        newer.setattr("tiniscript.link.session.MAJOR", 2)
+        newer.setattr("tiniscript.link.handshake.MAJOR", 2)
         done = tsc("ping", "--port", pty_robot.port)
         assert done.code == 3
         assert "speaks version 1 of the link" in done.err
@@ -373,8 +373,8 @@ def test_every_reason_has_a_sentence_with_a_next_step(
 ) -> None:
     from serial import SerialException
 
-    monkeypatch.setattr("tiniscript.library.way.BUSY_S", 0)
-    for trouble, word in (
+    monkeypatch.setattr("tiniscript.library.opening.BUSY_S", 0)
+    for failure, word in (
         (SerialException(13, "Permission denied"), "dialout" if os.name == "posix" else "may not"),
         (SerialException(16, "Device or resource busy"), "another program"),
         (SerialException("could not open port 'COM5': PermissionError(13, 'Access')"), "another"),
@@ -384,8 +384,8 @@ def test_every_reason_has_a_sentence_with_a_next_step(
         (OSError(112, "Host is down"), "nobody" if os.name == "posix" else ""),
     ):
 
-        def refuse(*_: object, trouble: Exception = trouble, **__: object) -> None:
-            raise trouble
+        def refuse(*_: object, failure: Exception = failure, **__: object) -> None:
+            raise failure
 
         monkeypatch.setattr("serial.serial_for_url", refuse)
         done = tsc("ping", "--port", "COM5")
@@ -398,9 +398,9 @@ def test_a_port_that_never_opens_is_given_up(
 ) -> None:  # fmt: skip
     hangs = threading.Event()
     monkeypatch.setattr("serial.serial_for_url", lambda *_, **__: hangs.wait(30))
-    with pytest.raises(ports.PortTrouble) as trouble:
+    with pytest.raises(ports.PortError) as failure:
         ports.opened("COM5", 9600, limit_s=0.1)
-    assert trouble.value.reason == ports.SLOW
+    assert failure.value.reason == ports.SLOW
     hangs.set()
 
 

@@ -12,10 +12,10 @@ from tests.machines.host_firmware import missing
 from tests.support.command import Command
 from tests.support.pty_robot import PtyRobot, on, uploading
 from tiniscript.cli.texts.common import text
-from tiniscript.library import way
+from tiniscript.library import opening
 from tiniscript.library.errors import RobotError
 from tiniscript.link.line import Line
-from tiniscript.link.session import CONFIRM_MS
+from tiniscript.link.stop_sequence import CONFIRM_MS
 
 pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
@@ -35,7 +35,7 @@ def test_a_second_stop_is_confirmed_like_the_first(pty_robot: PtyRobot) -> None:
         assert took_ms < CONFIRM_MS // 2
 
 
-def test_a_second_stop_through_a_holder_is_too(pty_robot: PtyRobot, link: Command) -> None:
+def test_a_second_stop_through_a_server_is_too(pty_robot: PtyRobot, link: Command) -> None:
     for _ in range(3):
         code, took_ms = passed_ms(pty_robot, "stop")
         assert code == 0
@@ -55,13 +55,13 @@ def test_a_robot_that_its_button_has_started_again_is_stopped(pty_robot: PtyRobo
 
 @pytest.mark.parametrize("is_shared", [False, True])
 def test_who_stops_at_the_same_time_is_told_so(pty_robot: PtyRobot, is_shared: bool) -> None:
-    holder = uploading(pty_robot) if is_shared else None
+    server = uploading(pty_robot) if is_shared else None
     stops = [Command("stop", "--port", pty_robot.port) for _ in range(3)]
     done = [each.ended() for each in stops]
     assert [(each.code, each.err) for each in done] == [(0, "")] * 3
     assert not pty_robot.moves
-    if holder is not None:
-        assert holder.ended().code == 3
+    if server is not None:
+        assert server.ended().code == 3
 
 
 def test_a_stop_that_nobody_confirms_holds_up_nobody_for_long(
@@ -84,8 +84,8 @@ def test_a_stop_waits_for_a_port_longer_than_others(
 ) -> None:
     """Another command has it that looks for a silent robot for 8.5 s, and does not share it."""
     now_s = [0.0]
-    monkeypatch.setattr(way, "monotonic", lambda: now_s[0])
-    monkeypatch.setattr(way, "sleep", lambda wait_s: now_s.append(now_s.pop() + wait_s))
+    monkeypatch.setattr(opening, "monotonic", lambda: now_s[0])
+    monkeypatch.setattr(opening, "sleep", lambda wait_s: now_s.append(now_s.pop() + wait_s))
     line = cast(Line, object())
 
     def open_line(_: object) -> Line:
@@ -94,10 +94,10 @@ def test_a_stop_waits_for_a_port_longer_than_others(
         return line
 
     if is_patient:
-        assert way.way_to("/dev/ttyUSB7", verb, open_line) is line
+        assert opening.connection_to("/dev/ttyUSB7", verb, open_line) is line
     else:
         with pytest.raises(RobotError):
-            way.way_to("/dev/ttyUSB7", verb, open_line)
+            opening.connection_to("/dev/ttyUSB7", verb, open_line)
 
 
 @pytest.mark.parametrize("language", ["en", "es"])

@@ -14,7 +14,7 @@ from tests.machines.host_firmware import EMPTY, HostFirmware, missing
 from tests.support.command import TSC, Done, process
 from tests.support.pty_robot import PtyRobot
 from tiniscript import robots
-from tiniscript.cli.errors import Trouble
+from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot import trim_wizard
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.link.messages import STATUSES
@@ -200,15 +200,15 @@ def test_a_stop_from_elsewhere_while_a_trim_is_set_leaves_the_one_before(
     class Connected:
         def give(self, make: Callable[[Asked], None]) -> None:
             if stops:
-                raise Trouble(3, stops.pop())
+                raise CommandError(3, stops.pop())
             make(Asked())
 
-    def stopped(guide: trim_wizard.Guide) -> Trim:
-        raise Trouble(3, key)
+    def stopped(wizard: trim_wizard.TrimWizard) -> Trim:
+        raise CommandError(3, key)
 
-    monkeypatch.setattr(trim_wizard.Guide, "trim", stopped)
-    monkeypatch.setattr(trim_wizard.Guide, "__init__", lambda guide, connection: None)
-    with pytest.raises(Trouble, match=key):
+    monkeypatch.setattr(trim_wizard.TrimWizard, "trim", stopped)
+    monkeypatch.setattr(trim_wizard.TrimWizard, "__init__", lambda wizard, connection: None)
+    with pytest.raises(CommandError, match=key):
         trim_wizard.guided(cast("Connection", Connected()), Trim(balance=7))
     assert given == [Trim(balance=7).data()]
 

@@ -16,7 +16,7 @@ KIT = robots.load("tinibot").kit
 
 def compiled(text: str) -> Compiled:
     found = compile_text(text, KIT)
-    assert found.is_right, [problem.code.number for problem in found.problems]
+    assert found.is_right, [diagnostic.code.number for diagnostic in found.diagnostics]
     return found
 
 
@@ -27,13 +27,24 @@ def instructions(text: str) -> list[str]:
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
-        # a listing has numbers as they are in the code: whole ones, thousandths, tenths of
-        # a second.
-        # A pushed number: 8 bits, 16 bits, thousandths in 16 bits, thousandths in 32 bits
-        ("SHOW(127)", ["PUSH8 127", "SHOW"]),
-        ("SHOW(128)", ["PUSH16 128", "SHOW"]),
-        ("SHOW(-128)", ["PUSH8 -128", "SHOW"]),
-        ("SHOW(-129)", ["PUSH16 -129", "SHOW"]),
+        # a listing has numbers as they are in the code: whole ones, thousandths, tenths.
+        # A pushed number: 0 to 10 and tens up to 100 in the opcode; 8 bits; tenths in 8 bits;
+        # 16 bits; thousandths in 16 bits, thousandths in 32 bits
+        ("SHOW(0)", ["PUSH_NUM_0", "SHOW"]),
+        ("SHOW(10)", ["PUSH_NUM_10", "SHOW"]),
+        ("SHOW(11)", ["PUSH8 11", "SHOW"]),
+        ("SHOW(20)", ["PUSH_NUM_20", "SHOW"]),
+        ("SHOW(100)", ["PUSH_NUM_100", "SHOW"]),
+        ("SHOW(110)", ["PUSH8 110", "SHOW"]),
+        ("SHOW(255)", ["PUSH8 255", "SHOW"]),
+        ("SHOW(256)", ["PUSH16 256", "SHOW"]),
+        ("SHOW(-12)", ["PUSH_TENTHS -120", "SHOW"]),
+        ("SHOW(-13)", ["PUSH16 -13", "SHOW"]),
+        ("SHOW(0.5)", ["PUSH_TENTHS 5", "SHOW"]),
+        ("SHOW(12.7)", ["PUSH_TENTHS 127", "SHOW"]),
+        ("SHOW(12.8)", ["PUSH_MILLI 12800", "SHOW"]),
+        ("SHOW(-12.8)", ["PUSH_TENTHS -128", "SHOW"]),
+        ("SHOW(-12.9)", ["PUSH_MILLI -12900", "SHOW"]),
         ("SHOW(32767)", ["PUSH16 32767", "SHOW"]),
         ("SHOW(32768)", ["PUSH32 32768000", "SHOW"]),
         ("SHOW(-32768)", ["PUSH16 -32768", "SHOW"]),
@@ -43,56 +54,104 @@ def instructions(text: str) -> list[str]:
         ("SHOW(-32.768)", ["PUSH_MILLI -32768", "SHOW"]),
         ("SHOW(-32.769)", ["PUSH32 -32769", "SHOW"]),
         # a variable that gets a number, and one that a number is added to
-        ("X = -128; SHOW(X)", ["SET_VAR8 v0 -128", "PUSH_VAR v0", "SHOW"]),
-        ("X = 128; SHOW(X)", ["PUSH16 128", "SET_VAR v0", "PUSH_VAR v0", "SHOW"]),
-        ("X = 0.5; SHOW(X)", ["PUSH_MILLI 500", "SET_VAR v0", "PUSH_VAR v0", "SHOW"]),
-        ("X = 1; X = X + 127", ["SET_VAR8 v0 1", "ADD_VAR8 v0 127"]),
-        ("X = 1; X = 127 + X", ["SET_VAR8 v0 1", "ADD_VAR8 v0 127"]),
-        ("X = 1; X = X - 128", ["SET_VAR8 v0 1", "ADD_VAR8 v0 -128"]),
+        ("X = -128; SHOW(X)", ["SET_VAR8 v0 -128", "PUSH_VAR_0", "SHOW"]),
+        ("X = 11; SHOW(X)", ["SET_VAR8 v0 11", "PUSH_VAR_0", "SHOW"]),
+        ("X = 100; SHOW(X)", ["PUSH_NUM_100", "SET_VAR_0", "PUSH_VAR_0", "SHOW"]),
+        ("X = 128; SHOW(X)", ["PUSH8 128", "SET_VAR_0", "PUSH_VAR_0", "SHOW"]),
+        ("X = 0.5; SHOW(X)", ["PUSH_TENTHS 5", "SET_VAR_0", "PUSH_VAR_0", "SHOW"]),
+        ("X = 1; X = X + 127", ["PUSH_NUM_1", "SET_VAR_0", "ADD_VAR8 v0 127"]),
+        ("X = 1; X = 127 + X", ["PUSH_NUM_1", "SET_VAR_0", "ADD_VAR8 v0 127"]),
+        ("X = 1; X = X - 128", ["PUSH_NUM_1", "SET_VAR_0", "ADD_VAR8 v0 -128"]),
         ("X = 1; X = X + 128",
-         ["SET_VAR8 v0 1", "PUSH_VAR v0", "PUSH16 128", "ADD", "SET_VAR v0"]),
+         ["PUSH_NUM_1", "SET_VAR_0", "PUSH_VAR_0", "PUSH8 128", "ADD", "SET_VAR_0"]),
         ("X = 1; X = X - -128",
-         ["SET_VAR8 v0 1", "PUSH_VAR v0", "PUSH8 -128", "SUB", "SET_VAR v0"]),
-        ("X = 1; X = 5 - X", ["SET_VAR8 v0 1", "PUSH8 5", "PUSH_VAR v0", "SUB", "SET_VAR v0"]),
-        ("X = 1; Y = 2; X = X + Y", ["SET_VAR8 v0 1", "SET_VAR8 v1 2", "ADD_VAR v0 v1"]),
-        ("X = 1; Y = 2; X = Y + X", ["SET_VAR8 v0 1", "SET_VAR8 v1 2", "ADD_VAR v0 v1"]),
-        ("X = 1; Y = 2; X = X - Y; SHOW(Y)",
-         ["SET_VAR8 v0 1", "SET_VAR8 v1 2", "PUSH_VAR v0", "PUSH_VAR v1", "SUB", "SET_VAR v0",
-          "PUSH_VAR v1", "SHOW"]),
-        # a move of tenths of a second, up to 25.5 s
-        ("F(25.5, 80)", ["MOVE8_F 255 80"]),
-        ("F(25.6, 80)", ["PUSH_MILLI 25600", "PUSH8 80", "MOVE_F"]),
-        ("F(0.15, 80)", ["PUSH_MILLI 150", "PUSH8 80", "MOVE_F"]),
-        ("F(1, 49.5)", ["MOVE8_F 10 50"]),
-        ("F(1, 50 + 70)", ["MOVE8_F 10 100"]),
+         ["PUSH_NUM_1", "SET_VAR_0", "PUSH_VAR_0", "PUSH16 -128", "SUB", "SET_VAR_0"]),
+        ("X = 1; X = 5 - X",
+         ["PUSH_NUM_1", "SET_VAR_0", "PUSH_NUM_5", "PUSH_VAR_0", "SUB", "SET_VAR_0"]),
+        ("X = 1; X = X + 1", ["PUSH_NUM_1", "SET_VAR_0", "INC_VAR v0"]),
+        ("X = 1; X = 1 + X", ["PUSH_NUM_1", "SET_VAR_0", "INC_VAR v0"]),
+        ("X = 1; X = X - 1", ["PUSH_NUM_1", "SET_VAR_0", "DEC_VAR v0"]),
+        ("X = 1; X = X + 2", ["PUSH_NUM_1", "SET_VAR_0", "ADD_VAR8 v0 2"]),
+        ("X = 11; Y = 12; X = X + Y", ["SET_VAR8 v0 11", "SET_VAR8 v1 12", "ADD_VAR v0 v1"]),
+        ("X = 11; Y = 12; X = Y + X", ["SET_VAR8 v0 11", "SET_VAR8 v1 12", "ADD_VAR v0 v1"]),
+        ("X = 11; Y = 12; X = X - Y; SHOW(Y)",
+         ["SET_VAR8 v0 11", "SET_VAR8 v1 12", "PUSH_VAR_0", "PUSH_VAR_1", "SUB", "SET_VAR_0",
+          "PUSH_VAR_1", "SHOW"]),
+        # variables 0 to 7 have instructions of one byte, the others have not
+        ("V=1.5;V1=V;V2=V;V3=V;V4=V;V5=V;V6=V;V7=V;V8=V7",
+         ["PUSH_TENTHS 15", "SET_VAR_0", "PUSH_VAR_0", "SET_VAR_1", "PUSH_VAR_0", "SET_VAR_2",
+          "PUSH_VAR_0", "SET_VAR_3", "PUSH_VAR_0", "SET_VAR_4", "PUSH_VAR_0", "SET_VAR_5",
+          "PUSH_VAR_0", "SET_VAR_6", "PUSH_VAR_0", "SET_VAR_7", "PUSH_VAR_7", "SET_VAR v8"]),
+        ("V=0;V1=0;V2=0;V3=0;V4=0;V5=0;V6=0;V7=0;V8=0;SHOW(V8)",
+         [*(word for v in range(8) for word in ("PUSH_NUM_0", f"SET_VAR_{v}")), "SET_VAR8 v8 0",
+          "PUSH_VAR v8", "SHOW"]),
+        # a move of hundredths of a second, then tenths, then whole seconds
+        ("F(0, 80)", ["MOVE8_F 0 80"]),
+        ("F(0.99, 80)", ["MOVE8_F 99 80"]),
+        ("F(1, 80)", ["MOVE8_F 100 80"]),
+        ("F(1.01, 80)", ["PUSH_MILLI 1010", "PUSH_NUM_80", "MOVE_F"]),
+        ("F(10.9, 80)", ["MOVE8_F 199 80"]),
+        ("F(11, 80)", ["MOVE8_F 200 80"]),
+        ("F(11.5, 80)", ["PUSH_TENTHS 115", "PUSH_NUM_80", "MOVE_F"]),
+        ("F(66, 80)", ["MOVE8_F 255 80"]),
+        ("F(67, 80)", ["PUSH8 67", "PUSH_NUM_80", "MOVE_F"]),
+        ("F(0.155, 80)", ["PUSH_MILLI 155", "PUSH_NUM_80", "MOVE_F"]),
+        ("F(1, 49.5)", ["MOVE8_F 100 50"]),
+        ("F(1, 50 + 70)", ["MOVE8_F 100 100"]),
         ("F(0 - 3, 80)", ["MOVE8_F 0 80"]),
-        ("W(25.5)", ["WAIT8 255"]),
-        ("W(25.6)", ["PUSH_MILLI 25600", "WAIT"]),
-        ("X = 5; F(1, X)", ["SET_VAR8 v0 5", "PUSH8 1", "PUSH_VAR v0", "MOVE_F"]),
+        ("W(0.02)", ["WAIT8 2"]),
+        ("W(25)", ["WAIT8 214"]),
+        ("W(25.5)", ["PUSH_MILLI 25500", "WAIT"]),
+        ("X = 11; F(1, X)", ["SET_VAR8 v0 11", "PUSH_NUM_1", "PUSH_VAR_0", "MOVE_F"]),
         ("M(-100, 100)", ["MOTORS8 -100 100"]),
         ("M(50 - 200, 1)", ["MOTORS8 -100 1"]),
+        # a sound with constants, whose frequency has two bytes
+        ("BEEP(0.1, 440)", ["BEEP8 10 440"]),
+        ("BEEP(0.1, 440.5)", ["BEEP8 10 441"]),
+        ("BEEP(11.5, 440)", ["PUSH_TENTHS 115", "PUSH16 440", "BEEP"]),
+        ("X = 11; BEEP(1, X)", ["SET_VAR8 v0 11", "PUSH_NUM_1", "PUSH_VAR_0", "BEEP"]),
+        # a watched move; UNTIL says itself what it compares with: 0 to 255 in 8 bits, else in 16
+        ("F(5, 80) UNTIL(DISTANCE < 10)",
+         ["PUSH_NUM_5", "PUSH_NUM_80", "WATCH_F", "PUSH_READ_2", "UNTIL8_LT 10"]),
+        ("F(11.5, 80) UNTIL(DISTANCE > 255)",
+         ["PUSH_TENTHS 115", "PUSH_NUM_80", "WATCH_F", "PUSH_READ_2", "UNTIL8_GT 255"]),
+        ("R(FOREVER, 80) UNTIL(256 >= DISTANCE)",
+         ["PUSH_NUM_80", "WATCH_FOREVER_R", "PUSH_READ_2", "UNTIL16_LE 256"]),
+        ("W(2) UNTIL(DISTANCE < 9.5)",
+         ["PUSH_NUM_2", "WATCH_WAIT", "PUSH_READ_2", "PUSH_TENTHS 95", "LT", "UNTIL"]),
+        ("W(FOREVER) UNTIL(LIGHT_L + LIGHT_R = -1)",
+         ["WATCH_FOREVER_WAIT", "READ_1", "READ_0", "PUSH_SENSOR_1", "PUSH_SENSOR_0", "ADD",
+          "UNTIL16_EQ -1"]),
+        ("X = 11; B(FOREVER, X) UNTIL(X > 3 AND DISTANCE <> 4)",
+         ["SET_VAR8 v0 11", "PUSH_VAR_0", "WATCH_FOREVER_B", "READ_2", "PUSH_VAR_0", "PUSH_NUM_3",
+          "GT", "PUSH_SENSOR_2", "PUSH_NUM_4", "NE", "AND", "UNTIL"]),
         # a counted loop, up to 255 times
         ("LOOP(255); S; END_LOOP", ["LOOP8 255", "STOP", "NEXT -> 0002"]),
         ("LOOP(254.5); S; END_LOOP", ["LOOP8 255", "STOP", "NEXT -> 0002"]),
         ("LOOP(256); S; END_LOOP", ["PUSH16 256", "LOOP -> 0008", "STOP", "NEXT -> 0005"]),
         # a comparing branch: 0 to 255 in 8 bits, whole numbers in 16
-        ("X = 1; IF(X < 255); S; ENDIF", ["SET_VAR8 v0 1", "IF_VAR8_LT v0 255 -> 0008", "STOP"]),
-        ("X = 1; IF(X < 256); S; ENDIF", ["SET_VAR8 v0 1", "IF_VAR16_LT v0 256 -> 0009", "STOP"]),
-        ("X = 1; IF(X < -1); S; ENDIF", ["SET_VAR8 v0 1", "IF_VAR16_LT v0 -1 -> 0009", "STOP"]),
-        ("X = 1; IF(255 < X); S; ENDIF", ["SET_VAR8 v0 1", "IF_VAR8_GT v0 255 -> 0008", "STOP"]),
-        ("X = 1; IF(NOT X <= 3); S; ENDIF", ["SET_VAR8 v0 1", "IF_VAR8_GT v0 3 -> 0008", "STOP"]),
-        ("X = 1; IF(X < 32768); S; ENDIF",
-         ["SET_VAR8 v0 1", "PUSH_VAR v0", "PUSH32 32768000", "LT", "IF -> 000e", "STOP"]),
-        ("X = 1; IF(X < 0.5); S; ENDIF",
-         ["SET_VAR8 v0 1", "PUSH_VAR v0", "PUSH_MILLI 500", "LT", "IF -> 000c", "STOP"]),
+        ("X = 11; IF(X < 255); S; ENDIF", ["SET_VAR8 v0 11", "IF_VAR8_LT v0 255 -> 0008", "STOP"]),
+        ("X = 11; IF(X < 256); S; ENDIF", ["SET_VAR8 v0 11", "IF_VAR16_LT v0 256 -> 0009", "STOP"]),
+        ("X = 11; IF(X < -1); S; ENDIF", ["SET_VAR8 v0 11", "IF_VAR16_LT v0 -1 -> 0009", "STOP"]),
+        ("X = 11; IF(255 < X); S; ENDIF", ["SET_VAR8 v0 11", "IF_VAR8_GT v0 255 -> 0008", "STOP"]),
+        ("X = 11; IF(NOT X <= 3); S; ENDIF", ["SET_VAR8 v0 11", "IF_VAR8_GT v0 3 -> 0008", "STOP"]),
+        ("X = 11; IF(X + X < 9); S; ENDIF",
+         ["SET_VAR8 v0 11", "PUSH_VAR_0", "PUSH_VAR_0", "ADD", "IF8_LT 9 -> 000a", "STOP"]),
+        ("X = 11; IF(9 < X + X); S; ENDIF",
+         ["SET_VAR8 v0 11", "PUSH_NUM_9", "PUSH_VAR_0", "PUSH_VAR_0", "ADD", "LT", "IF -> 000b",
+          "STOP"]),
+        ("X = 11; IF(X < 32768); S; ENDIF",
+         ["SET_VAR8 v0 11", "PUSH_VAR_0", "PUSH32 32768000", "LT", "IF -> 000d", "STOP"]),
+        ("X = 11; IF(X < 0.5); S; ENDIF",
+         ["SET_VAR8 v0 11", "PUSH_VAR_0", "PUSH_TENTHS 5", "LT", "IF -> 000a", "STOP"]),
         # a reading that is used at once
-        ("SHOW(DISTANCE)", ["PUSH_READ s2", "SHOW"]),
-        ("DISTANCE; SHOW(DISTANCE)", ["PUSH_READ s2", "SHOW"]),
-        ("SHOW(DISTANCE + DISTANCE)", ["PUSH_READ s2", "PUSH_SENSOR s2", "ADD", "SHOW"]),
-        ("SHOW(1 - DISTANCE)", ["READ s2", "PUSH8 1", "PUSH_SENSOR s2", "SUB", "SHOW"]),
-        ("IF(DISTANCE < 9); S; ENDIF", ["IF_READ8_LT s2 9 -> 0005", "STOP"]),
+        ("SHOW(DISTANCE)", ["PUSH_READ_2", "SHOW"]),
+        ("DISTANCE; SHOW(DISTANCE)", ["PUSH_READ_2", "SHOW"]),
+        ("SHOW(DISTANCE + DISTANCE)", ["PUSH_READ_2", "PUSH_SENSOR_2", "ADD", "SHOW"]),
+        ("SHOW(1 - DISTANCE)", ["READ_2", "PUSH_NUM_1", "PUSH_SENSOR_2", "SUB", "SHOW"]),
+        ("IF(DISTANCE < 9); S; ENDIF", ["PUSH_READ_2", "IF8_LT 9 -> 0005", "STOP"]),
         ("DISTANCE; IF(LIGHT_R < 9); SHOW(DISTANCE); ENDIF",
-         ["READ s2", "IF_READ8_LT s0 9 -> 0009", "PUSH_SENSOR s2", "SHOW"]),
+         ["READ_2", "PUSH_READ_0", "IF8_LT 9 -> 0007", "PUSH_SENSOR_2", "SHOW"]),
     ],
 )  # fmt: skip
 def test_the_shortest_instruction(text: str, expected: list[str]) -> None:
@@ -102,7 +161,7 @@ def test_the_shortest_instruction(text: str, expected: list[str]) -> None:
 def test_a_reading_before_a_label_stays_where_it_is() -> None:
     """A jump that comes to the SHOW has not passed the READ: it shows the kept reading."""
     text = "X = TRUE; DISTANCE; IF(X); DISTANCE; ENDIF; SHOW(DISTANCE)"
-    assert instructions(text)[-4:] == ["IF -> 000b", "READ s2", "PUSH_SENSOR s2", "SHOW"]
+    assert instructions(text)[-4:] == ["IF -> 0007", "READ_2", "PUSH_SENSOR_2", "SHOW"]
 
 
 # -- AND and OR -----------------------------------------------------------------------------------
@@ -139,7 +198,7 @@ JUMPS = [
     ("LOOP(3); {} END_LOOP", 253, "NEXT"),
     ("X = 3; LOOP(X); {} END_LOOP", 253, "LOOP"),
     ("LOOP(FOREVER); {} END_LOOP", 253, "AGAIN"),
-    ("X = TRUE; WHILE(X); {} END_WHILE", 249, "WHILE"),
+    ("X = TRUE; WHILE(X); {} END_WHILE", 250, "WHILE"),
     ("X = TRUE; WHILE(X); {} END_WHILE", 252, "IF"),  # the AGAIN behind it has become far before
     ("X = TRUE; LOOP(FOREVER); IF(X); BREAK; ENDIF; {} END_LOOP", 252, "BREAK"),
     ("X = TRUE; LOOP(3); IF(X); BREAK; ENDIF; {} END_LOOP", 252, "BREAK_LOOP"),
@@ -178,10 +237,10 @@ def test_jumps_go_to_the_beginning_of_an_instruction(text: str, count: int) -> N
 @pytest.mark.parametrize(
     ("condition", "short", "far"),
     [
-        ("X = 5", "IF_VAR8_EQ", ["PUSH_VAR v0", "PUSH8 5", "EQ", "IF_FAR"]),
-        ("X <> 300", "IF_VAR16_NE", ["PUSH_VAR v0", "PUSH16 300", "NE", "IF_FAR"]),
-        ("DISTANCE < 9", "IF_READ8_LT", ["PUSH_READ s2", "PUSH8 9", "LT", "IF_FAR"]),
-        ("LIGHT_R >= 300", "IF_SENSOR16_GE", ["PUSH_SENSOR s0", "PUSH16 300", "GE", "IF_FAR"]),
+        ("X = 5", "IF_VAR8_EQ", ["PUSH_VAR_0", "PUSH_NUM_5", "EQ", "IF_FAR"]),
+        ("X <> 300", "IF_VAR16_NE", ["PUSH_VAR_0", "PUSH16 300", "NE", "IF_FAR"]),
+        ("DISTANCE < 9", "IF8_LT", ["PUSH_READ_2", "PUSH_NUM_9", "LT", "IF_FAR"]),
+        ("LIGHT_R >= 300", "IF16_GE", ["PUSH_SENSOR_0", "PUSH16 300", "GE", "IF_FAR"]),
     ],
 )
 def test_a_comparing_branch_has_no_far_form(condition: str, short: str, far: list[str]) -> None:
@@ -193,27 +252,27 @@ def test_a_comparing_branch_has_no_far_form(condition: str, short: str, far: lis
     found = [row.text for row in rows(code)]
     at = next(k for k, each in enumerate(found) if each.startswith("IF_FAR"))
     assert [found[at].split()[0], *found[at - 3 : at]] == [far[3], *far[:3]]
-    assert found[at].endswith(f"-> {rows(code)[-2].offset:04x}")  # to PUSH_VAR v0 of SHOW(X)
-    assert found.count("READ s0") == near.count("READ s0")
+    assert found[at].endswith(f"-> {rows(code)[-2].offset:04x}")  # to PUSH_VAR_0 of SHOW(X)
+    assert found.count("READ_0") == near.count("READ_0")
 
 
 def test_one_jump_that_gets_longer_makes_others_longer() -> None:
     """Of nested IFs the outermost gets its far form first, and each that does moves the others."""
     opened, closed = "IF(X);" * 8, "ENDIF;" * 8
-    border = 255 - 7 * 4  # seven IFs with their PUSH_VAR lie in the outermost one, 4 bytes each
+    border = 255 - 7 * 3  # seven IFs with their PUSH_VAR lie in the outermost one, 3 bytes each
     for count in range(border - 3, 255 + 3):
         found = instructions(f"X = TRUE; {opened} {'S;' * count} {closed}")
-        bytes_of = {"IF": 4, "IF_FAR": 5}
+        bytes_of = {"IF": 3, "IF_FAR": 4}
         sizes = [bytes_of[each.split()[0]] for each in found if each.startswith("IF")]
         over = [count + sum(sizes[k + 1 :]) for k in range(8)]  # what each IF jumps over
-        assert [size == 5 for size in sizes] == [skipped > 255 for skipped in over]
+        assert [size == 4 for size in sizes] == [skipped > 255 for skipped in over]
 
 
 def test_code_that_no_machine_takes_is_refused_and_not_laid_out_for_ever() -> None:
     most = compile_text("S;" * CODE_BYTES, KIT)
     assert most.is_right and len(most.code) == CODE_BYTES
     over = compile_text("S;" * (CODE_BYTES + 1), KIT)
-    assert [problem.code.number for problem in over.problems] == ["TS306"]
-    assert over.problems[0].values["over"] == "1"
+    assert [diagnostic.code.number for diagnostic in over.diagnostics] == ["TS306"]
+    assert over.diagnostics[0].values["over"] == "1"
     nested = "X = TRUE;" + "IF(X);" + "S;" * 3 * CODE_BYTES + "ENDIF"
     assert not compile_text(nested, KIT).is_right

@@ -17,7 +17,7 @@ KIT = robots.load("tinibot").kit
 
 def compiled(text: str) -> Compiled:
     found = compile_text(text, KIT, "drive.ts")
-    assert found.is_right, [problem.code.number for problem in found.problems]
+    assert found.is_right, [diagnostic.code.number for diagnostic in found.diagnostics]
     return found
 
 
@@ -36,28 +36,31 @@ def located(text: str) -> list[tuple[str, str]]:
     [
         ("F(1, 80); S", [("MOVE8_F", "F(1, 80)"), ("STOP", "S")]),
         # a reading belongs to the instruction that takes it, and a sensor alone to itself
-        ("SHOW(1 + DISTANCE)", [("READ", "SHOW(1 + DISTANCE)"), ("PUSH8", "SHOW(1 + DISTANCE)"),
-                                ("PUSH_SENSOR", "SHOW(1 + DISTANCE)"),
+        ("SHOW(1 + DISTANCE)", [("READ_2", "SHOW(1 + DISTANCE)"),
+                                ("PUSH_NUM_1", "SHOW(1 + DISTANCE)"),
+                                ("PUSH_SENSOR_2", "SHOW(1 + DISTANCE)"),
                                 ("ADD", "SHOW(1 + DISTANCE)"), ("SHOW", "SHOW(1 + DISTANCE)")]),
         ("DISTANCE; SHOW(1 - DISTANCE)",
-         [("READ", "DISTANCE"), ("PUSH8", "SHOW(1 - DISTANCE)"),
-          ("PUSH_SENSOR", "SHOW(1 - DISTANCE)"), ("SUB", "SHOW(1 - DISTANCE)"),
+         [("READ_2", "DISTANCE"), ("PUSH_NUM_1", "SHOW(1 - DISTANCE)"),
+          ("PUSH_SENSOR_2", "SHOW(1 - DISTANCE)"), ("SUB", "SHOW(1 - DISTANCE)"),
           ("SHOW", "SHOW(1 - DISTANCE)")]),
-        ("DISTANCE; SHOW(DISTANCE)", [("PUSH_READ", "DISTANCE"), ("SHOW", "SHOW(DISTANCE)")]),
-        ("DISTANCE; IF(DISTANCE < 9); S; ENDIF", [("IF_READ8_LT", "DISTANCE"), ("STOP", "S")]),
+        ("DISTANCE; SHOW(DISTANCE)", [("PUSH_READ_2", "DISTANCE"), ("SHOW", "SHOW(DISTANCE)")]),
+        ("DISTANCE; IF(DISTANCE < 9); S; ENDIF",
+         [("PUSH_READ_2", "DISTANCE"), ("IF8_LT", "IF(DISTANCE < 9)"), ("STOP", "S")]),
         # the check of a move is part of the move
         ("F(1, 80) UNTIL(DISTANCE < 9)",
          [(name, "F(1, 80) UNTIL(DISTANCE < 9)")
-          for name in ("PUSH8", "PUSH8", "WATCH_F", "PUSH_READ", "PUSH8", "LT", "UNTIL")]),
+          for name in ("PUSH_NUM_1", "PUSH_NUM_80", "WATCH_F", "PUSH_READ_2", "UNTIL8_LT")]),
         # a condition belongs to its arm, and the jump behind an arm to what ends it
         ("X = 1\nIF(X = 1); S; ELSEIF(X = 2); W(1); ENDIF",
-         [("SET_VAR8", "X = 1"), ("IF_VAR8_EQ", "IF(X = 1)"), ("STOP", "S"), ("ELSE", "S"),
+         [("PUSH_NUM_1", "X = 1"), ("SET_VAR_0", "X = 1"), ("IF_VAR8_EQ", "IF(X = 1)"),
+          ("STOP", "S"), ("ELSE", "S"),
           ("IF_VAR8_EQ", "ELSEIF(X = 2)"), ("WAIT8", "W(1)")]),
         # what begins a loop or a DEF, and the jump back, belong to all of it
         ("LOOP(2); S; END_LOOP", [("LOOP8", "LOOP(2); S; END_LOOP"), ("STOP", "S"),
             ("NEXT", "LOOP(2); S; END_LOOP")]),
         ("X = 1; WHILE(X < 2); S; END_WHILE",
-         [("SET_VAR8", "X = 1"), ("WHILE", "WHILE(X < 2); S; END_WHILE"),
+         [("PUSH_NUM_1", "X = 1"), ("SET_VAR_0", "X = 1"), ("WHILE", "WHILE(X < 2); S; END_WHILE"),
           ("IF_VAR8_LT", "WHILE(X < 2); S; END_WHILE"),
           ("STOP", "S"), ("AGAIN", "WHILE(X < 2); S; END_WHILE")]),
         ("LOOP(FOREVER); BREAK; END_LOOP", [("FOREVER", "LOOP(FOREVER); BREAK; END_LOOP"),
@@ -75,9 +78,10 @@ def test_instructions_that_became_far_stay_where_they_were() -> None:
     """A comparing branch that does not reach is four instructions of one place."""
     row = "S;" * 256
     found = located(f"X = 1; IF(X = 5); {row} ENDIF; W(1)")
-    assert found[:5] == [("SET_VAR8", "X = 1"), *[(name, "IF(X = 5)") for name in
-                         ("PUSH_VAR", "PUSH8", "EQ", "IF_FAR")]]  # fmt: skip
-    assert found[5:-1] == [("STOP", "S")] * 256
+    assert found[:6] == [("PUSH_NUM_1", "X = 1"), ("SET_VAR_0", "X = 1"),
+                         *[(name, "IF(X = 5)") for name in
+                           ("PUSH_VAR_0", "PUSH_NUM_5", "EQ", "IF_FAR")]]  # fmt: skip
+    assert found[6:-1] == [("STOP", "S")] * 256
     assert found[-1] == ("WAIT8", "W(1)")
 
 

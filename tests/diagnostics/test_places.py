@@ -10,14 +10,14 @@ import pytest
 from tests.diagnostics.test_rendering import KIT, LANGUAGES, gaps
 from tiniscript import Compiled, check_text
 from tiniscript.diagnostics import codes
-from tiniscript.diagnostics.codes import Code, Problem
+from tiniscript.diagnostics.codes import Code, Diagnostic
 from tiniscript.diagnostics.rendering import Message, as_text, message
 from tiniscript.source import Source, Span
 
 
 def at(text: str, start: int, end: int, code: Code = codes.EXTRA_CLOSE) -> Message:
-    """Return the message of a problem that is put at a place by hand."""
-    return message(Problem(code, Span(start, end)), Source(text), "en")
+    """Return the message of a diagnostic that is put at a place by hand."""
+    return message(Diagnostic(code, Span(start, end)), Source(text), "en")
 
 
 def picture(text: str, start: int, end: int) -> list[str]:
@@ -135,11 +135,11 @@ def some_characters(dice: random.Random) -> str:
 def is_told_well(found: Compiled) -> None:
     """Check all that is true of the messages for any text."""
     text, source = found.source.text, found.source
-    for problem in found.problems:
-        assert gaps(problem.code.number) <= set(problem.values)
+    for diagnostic in found.diagnostics:
+        assert gaps(diagnostic.code.number) <= set(diagnostic.values)
         for lang in LANGUAGES:
-            said = message(problem, source, lang)
-            assert said.severity == ("mistake" if problem.is_mistake else "warning")
+            said = message(diagnostic, source, lang)
+            assert said.severity == ("mistake" if diagnostic.is_mistake else "warning")
             assert (said.line, said.column) < (said.end_line, said.end_column) or not text
             assert said.column <= len(source.line_text(said.line)) + 1
             assert said.message.isprintable()
@@ -149,7 +149,7 @@ def is_told_well(found: Compiled) -> None:
             assert all(row.isprintable() for row in rows)
             assert re.fullmatch(r" +\^+", rows[1])
             assert len(rows[1]) < 130
-            assert rows[-1].endswith(f"[{problem.code.number}]")
+            assert rows[-1].endswith(f"[{diagnostic.code.number}]")
 
 
 @pytest.mark.parametrize("seed", range(20))

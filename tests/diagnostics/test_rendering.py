@@ -1,4 +1,4 @@
-"""What a person is told: each code has its words, and each example its problem."""
+"""What a person is told: each code has its words, and each example its diagnostic."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import pytest
 
 from tiniscript import check_text, compile_text
 from tiniscript.diagnostics import codes, rendering
-from tiniscript.diagnostics.codes import CODES, Problem
+from tiniscript.diagnostics.codes import CODES, Diagnostic
 from tiniscript.diagnostics.rendering import Message, as_json, as_text, explain, message, titles
 from tiniscript.kit import NUMBER, YES_NO, Device, Kit
 from tiniscript.source import Source, Span
@@ -38,6 +38,7 @@ WITHOUT_EXAMPLE: dict[str, Mapping[str, str]] = {
     "TS002": {},
     "TS003": {},
     "TS119": {**dict.fromkeys(("first", "second", "third"), "LINER"), "own": "A", "found": "B"},
+    "TS120": {},
     "TS306": {"limit": "32767", "over": "100"},
     "TS307": BOARD,
     "TS809": BOARD,
@@ -53,11 +54,11 @@ def gaps(code: str) -> set[str]:
 
 def first(text: str, lang: str = "en") -> tuple[Message, Source]:
     found = compile_text(text, KIT)
-    return message(found.problems[0], found.source, lang), found.source
+    return message(found.diagnostics[0], found.source, lang), found.source
 
 
 def shown(text: str, lang: str = "en") -> list[str]:
-    """Return the rows that the first problem of a text is shown in."""
+    """Return the rows that the first diagnostic of a text is shown in."""
     said, source = first(text, lang)
     return as_text(said, source, lang).split("\n")
 
@@ -93,22 +94,22 @@ def test_each_term_and_label_is_in_both_languages() -> None:
 
 
 @pytest.mark.parametrize("code", EXAMPLES)
-def test_the_wrong_example_has_its_problem_first(code: str) -> None:
-    found = compile_text(TEXTS[code]["wrong"], KIT).problems
-    assert [problem.code.number for problem in found][:1] == [code]
+def test_the_wrong_example_has_its_diagnostic_first(code: str) -> None:
+    found = compile_text(TEXTS[code]["wrong"], KIT).diagnostics
+    assert [diagnostic.code.number for diagnostic in found][:1] == [code]
 
 
 @pytest.mark.parametrize("code", EXAMPLES)
-def test_the_right_example_has_no_problem(code: str) -> None:
-    assert compile_text(TEXTS[code]["right"], KIT).problems == []
+def test_the_right_example_has_no_diagnostic(code: str) -> None:
+    assert compile_text(TEXTS[code]["right"], KIT).diagnostics == []
 
 
 @pytest.mark.parametrize("code", EXAMPLES)
 def test_the_examples_fill_all_gaps_of_their_messages(code: str) -> None:
     found = compile_text(TEXTS[code]["wrong"], KIT)
-    assert gaps(code) <= set(found.problems[0].values)
+    assert gaps(code) <= set(found.diagnostics[0].values)
     for lang in LANGUAGES:
-        said = message(found.problems[0], found.source, lang)
+        said = message(found.diagnostics[0], found.source, lang)
         assert "{" not in said.message + said.fix
         assert "@" not in said.message + said.fix
 
@@ -116,9 +117,9 @@ def test_the_examples_fill_all_gaps_of_their_messages(code: str) -> None:
 @pytest.mark.parametrize("code", sorted(WITHOUT_EXAMPLE))
 def test_messages_without_an_example_have_gaps_that_are_filled(code: str) -> None:
     assert gaps(code) <= set(WITHOUT_EXAMPLE[code])
-    problem = Problem(CODES[code], Span(0, 0), WITHOUT_EXAMPLE[code])
+    diagnostic = Diagnostic(CODES[code], Span(0, 0), WITHOUT_EXAMPLE[code])
     for lang in LANGUAGES:
-        said = message(problem, Source(""), lang)
+        said = message(diagnostic, Source(""), lang)
         assert said[2:6] == (1, 1, 1, 1)
         assert as_text(said, Source(""), lang).startswith(("Warning: ", "Aviso: ", said.message))
         assert "{" not in said.message + said.fix
@@ -136,7 +137,7 @@ def test_a_program_that_is_too_long_for_any_robot_says_by_how_much() -> None:
 
 
 def test_a_text_with_an_empty_gap_gives_way_to_the_next() -> None:
-    known = Problem(codes.UNKNOWN_NAME, Span(0, 1), {"found": "Y", "near": "YY"})
+    known = Diagnostic(codes.UNKNOWN_NAME, Span(0, 1), {"found": "Y", "near": "YY"})
     unknown = known._replace(values={"found": "Y", "near": ""})
     source = Source("Y")
     assert message(known, source, "en").message.endswith("Did you mean YY?")
@@ -147,7 +148,7 @@ def test_a_text_with_an_empty_gap_gives_way_to_the_next() -> None:
 def test_braces_ats_and_line_ends_in_a_program_are_only_shown() -> None:
     for text in ("{fix}", "{0.__class__}", "{", "}", "%s", "@", "@number?", "a\nb\tc", "\x07"):
         values = {"by": "W", "found": text}
-        said = message(Problem(codes.WANTS_NUMBER, Span(0, 0), values), Source("W"), "en")
+        said = message(Diagnostic(codes.WANTS_NUMBER, Span(0, 0), values), Source("W"), "en")
         plain = text.replace("\n", " ").replace("\t", " ").replace("\x07", "␇")
         assert said.fix == f"Write a number in place of {plain}"
 
@@ -222,13 +223,14 @@ def test_long_pieces_of_a_program_are_shortened() -> None:
             [
                 "line 1:  SI|SI(DISTANCE < 10);S;ENDIF",
                 "            ^^",
-                "SI starts a program. To ask a question the word is IF.   Try:  IF   [TS045]",
+                "SI starts a program. To ask a question the word is IF.   "
+                "Try:  IF(DISTANCE < 10)   [TS045]",
             ],
             [
                 "línea 1:  SI|SI(DISTANCE < 10);S;ENDIF",
                 "             ^^",
                 "SI sirve para empezar el programa. Para preguntar se usa IF.   "
-                "Prueba:  IF   [TS045]",
+                "Prueba:  IF(DISTANCE < 10)   [TS045]",
             ],
         ),
         (
@@ -277,7 +279,7 @@ def test_colors_change_nothing_but_colors() -> None:
 
 def test_as_json() -> None:
     found = check_text("F(2 80)\nX = 0.0001\nSHOW(X)", KIT)
-    said = [message(problem, found.source, "en") for problem in found.problems]
+    said = [message(diagnostic, found.source, "en") for diagnostic in found.diagnostics]
     assert as_json(said) == [
         {
             "code": "TS017",

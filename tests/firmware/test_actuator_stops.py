@@ -26,7 +26,7 @@ SET = ["SET 1 1", "SET 0 90000"]
 
 
 def image_of(text: str) -> Image:
-    return unpack(compile_text(text, KIT).image, KIT.fingerprint)
+    return unpack(compile_text(text, KIT).image)
 
 
 def started(text: str, **how: bool) -> tuple[HostFirmware, Session]:

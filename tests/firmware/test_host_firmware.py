@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import random
+from typing import TypeVar
 
 import pytest
 
 from tests.machines.host_firmware import EMPTY, HostFirmware, missing
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import Image, unpack
+from tiniscript.link.connection import PendingRequest
 from tiniscript.link.messages import SAVED_SAVING, SAVED_STORED, STATUSES
 from tiniscript.link.requests import OK, Reply
-from tiniscript.link.session import Session, Task
+from tiniscript.link.session import Session
 
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
@@ -43,18 +45,21 @@ def send(robot: HostFirmware, session: Session, text: str, **how: bool) -> None:
     assert robot.until(session, session.upload(image_of(text), **how)) == OK
 
 
-def outcome(task: Task) -> Reply:
-    assert task.outcome is not None
-    return task.outcome
+T = TypeVar("T")
+
+
+def outcome(request: PendingRequest[T]) -> Reply[T]:
+    assert request.outcome is not None
+    return request.outcome
 
 
 def stored(robot: HostFirmware, session: Session, limit_ms: int = 10_000) -> int:
     """Wait until the robot says that its program is saved; return how long that took."""
     begun_ms = robot.now_ms
     while robot.now_ms < begun_ms + limit_ms:
-        task = session.status()
-        assert robot.until(session, task) == OK
-        if outcome(task).values["saved"] == SAVED_STORED:
+        request = session.status()
+        assert robot.until(session, request) == OK
+        if outcome(request).values.saved == SAVED_STORED:
             return robot.now_ms - begun_ms
         robot.talk(session, 50)
     raise AssertionError("the program is not saved")
@@ -169,9 +174,9 @@ def test_without_frames_the_motors_go_off_in_time() -> None:
     assert happened(robot)[1:] == ["MOTORS 0 0", "FAULTED"]
     off_ms = int(robot.did[1].split()[0])
     assert off_ms - silent_ms <= 1050
-    task = session.status()
-    assert robot.until(session, task) == OK
-    assert outcome(task).values["fault"] == 64
+    request = session.status()
+    assert robot.until(session, request) == OK
+    assert outcome(request).values.fault == 64
 
 
 def test_what_is_detached_goes_on_alone_until_its_longest_time() -> None:
@@ -190,22 +195,22 @@ def test_a_fault_stops_and_is_remembered() -> None:
     assert happened(robot) == ["MOTORS 50 50", "MOTORS 0 0", "FAULTED"]
     (event,) = session.events()
     assert event.name == "FAULT"
-    assert event.values["fault"] == 2
+    assert event.fault == 2
     again = switched_on(robot.memory())
     other = computer(2)
-    task = other.status()
-    assert again.until(other, task) == OK
-    values = outcome(task).values
-    assert (values["fault"], values["fault_at"]) == (2, event.values["at"])
-    assert values["fault_program"] == values["program"]
+    request = other.status()
+    assert again.until(other, request) == OK
+    values = outcome(request).values
+    assert (values.fault, values.fault_at) == (2, event.at)
+    assert values.fault_program == values.program
 
 
 def test_a_live_line_leaves_the_program_as_it_is() -> None:
     robot, session = switched_on(), computer()
     send(robot, session, "SB|B(0.2, 60)")
     stored(robot, session)
-    task = session.live(image_of("SI|F(0.1, 80)").code)
-    assert robot.until(session, task) == OK
+    request = session.live(image_of("SI|F(0.1, 80)").code)
+    assert robot.until(session, request) == OK
     robot.talk(session, 300)
     robot.push()
     robot.wait(300)
@@ -219,9 +224,9 @@ def test_an_upload_that_breaks_off_leaves_the_stored_program() -> None:
     robot.talk(session, 400)
     stored(robot, session)
     robot.did.clear()
-    task = session.upload(image_of(LONG))
+    request = session.upload(image_of(LONG))
     robot.talk(session, 3)
-    assert task.outcome is None
+    assert request.outcome is None
     robot.wait(3000)
     robot.push()
     robot.wait(400)
@@ -233,9 +238,9 @@ def test_nothing_is_finished_while_it_drives() -> None:
     robot, session = switched_on(), computer()
     send(robot, session, "SI|F(3, 80)")
     robot.talk(session, 2500)
-    task = session.status()
-    assert robot.until(session, task) == OK
-    assert outcome(task).values["saved"] == SAVED_SAVING
+    request = session.status()
+    assert robot.until(session, request) == OK
+    assert outcome(request).values.saved == SAVED_SAVING
     robot.talk(session, 800)
     stored(robot, session)
 
@@ -248,7 +253,7 @@ def test_a_main_loop_that_stood_still_is_a_fault() -> None:
     robot.talk(session, 100)
     assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0", "FAULTED"]
     (event,) = session.events()
-    assert (event.name, event.values["fault"]) == ("FAULT", 66)
+    assert event.name == "FAULT" and event.fault == 66
 
 
 @pytest.mark.parametrize("is_detached", [False, True])
@@ -260,7 +265,7 @@ def test_nobody_is_connected_any_more(is_detached: bool) -> None:
     robot.talk(session, 1, flags=8)
     robot.talk(session, 500)
     assert happened(robot) == ["MOTORS 80 80"] + ["MOTORS 0 0"] * (not is_detached)
-    causes = [event.values["cause"] for event in session.events() if event.name == "STOPPED"]
+    causes = [event.cause for event in session.events() if event.name == "STOPPED"]
     assert causes == [4] * (not is_detached)
 
 
@@ -346,13 +351,13 @@ def test_an_upload_that_breaks_off_while_a_fault_is_noted_leaves_the_stored_prog
     send(robot, session, "SB|F(0.2, 80)")
     stored(robot, session)
     robot.talk(session, 500)
-    task = session.live(image_of("SI|X = 0; SHOW(5 / X)").code)
-    assert robot.until(session, task) == OK
+    request = session.live(image_of("SI|X = 0; SHOW(5 / X)").code)
+    assert robot.until(session, request) == OK
     while "FAULTED" not in happened(robot):
         robot.talk(session, 1)
-    task = session.upload(image_of(LONG))
+    request = session.upload(image_of(LONG))
     robot.talk(session, 3)
-    assert task.outcome is None
+    assert request.outcome is None
     robot.wait(3000)
     robot.push()
     robot.wait(400)
@@ -365,12 +370,12 @@ def test_the_button_in_the_middle_of_an_upload_starts_what_is_stored() -> None:
     send(robot, session, "SB|F(0.5, 80)")
     stored(robot, session)
     robot.talk(session, 500)
-    task = session.upload(image_of(LONG))
+    request = session.upload(image_of(LONG))
     robot.talk(session, 3)
-    assert task.outcome is None
+    assert request.outcome is None
     robot.step(flags=1)
     robot.step(flags=2)
-    assert robot.until(session, task) == STATUSES["NOT_BEGUN"]
+    assert robot.until(session, request) == STATUSES["NOT_BEGUN"]
     robot.talk(session, 600)
     assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
 
@@ -380,16 +385,16 @@ def test_a_fault_at_once_names_the_program(is_live: bool) -> None:
     """A program in one frame starts before its checksum is known."""
     robot, session = switched_on(), computer()
     image = image_of("SI|X = 1 / 0")
-    task = session.live(image.code) if is_live else session.upload(image)
-    assert robot.until(session, task) == OK
+    request = session.live(image.code) if is_live else session.upload(image)
+    assert robot.until(session, request) == OK
     robot.talk(session, 300)
-    faults = [event.values for event in session.events() if event.name == "FAULT"]
-    assert [values["program"] for values in faults] == [image.checksum]
-    assert outcome(task).values["program"] == image.checksum
+    faults = [event.program for event in session.events() if event.name == "FAULT"]
+    assert faults == [image.checksum]
+    assert outcome(request).values.program == image.checksum
     status = session.status()
     assert robot.until(session, status) == OK
-    assert outcome(status).values["fault_program"] == image.checksum
-    assert outcome(status).values["program"] == (0 if is_live else image.checksum)
+    assert outcome(status).values.fault_program == image.checksum
+    assert outcome(status).values.program == (0 if is_live else image.checksum)
 
 
 def test_one_clear_is_enough() -> None:

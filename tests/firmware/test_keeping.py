@@ -18,8 +18,9 @@ from tests.firmware.test_host_firmware import (
 from tests.machines.host_firmware import EMPTY, HostFirmware, missing
 from tiniscript.bytecode.image import pack
 from tiniscript.link.messages import SAVED, STATUSES
-from tiniscript.link.requests import OK, Errand, Request
-from tiniscript.link.session import Session, Task
+from tiniscript.link.payloads import EmptyReply, FetchReply
+from tiniscript.link.requests import OK, Request, single
+from tiniscript.link.session import Session
 
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
@@ -31,11 +32,9 @@ FIRST, SECOND, EACH = 128, 576, 31  # where the slots of the program lie, and by
 
 
 def saved(robot: HostFirmware, session: Session) -> str:
-    task = session.status()
-    assert robot.until(session, task) == OK
-    found = outcome(task).values["saved"]
-    assert isinstance(found, int)
-    return SAVED[found][0]
+    request = session.status()
+    assert robot.until(session, request) == OK
+    return SAVED[outcome(request).values.saved][0]
 
 
 def name_after_power_off(robot: HostFirmware) -> str:
@@ -47,17 +46,15 @@ def name_after_power_off(robot: HostFirmware) -> str:
 
 def program_after_power_off(robot: HostFirmware) -> bytes:
     again, session = switched_on(robot.memory()), computer(78)
-    task = session.fetch()
-    if again.until(session, task) != OK:
+    request = session.fetch()
+    if again.until(session, request) != OK:
         return b""
-    image = outcome(task).values["image"]
-    assert isinstance(image, bytes)
-    return image
+    return outcome(request).values.image
 
 
 def bytes_of(text: str) -> bytes:
     image = image_of(text)
-    return pack(image.start, image.kit, image.code)
+    return pack(image.start, image.devices, image.code)
 
 
 def marks(robot: HostFirmware) -> list[str]:
@@ -117,11 +114,11 @@ def test_a_name_is_ok_when_it_is_kept() -> None:
 def test_a_name_that_is_not_ok_yet_is_the_old_one_or_the_new_one(cut_ms: int) -> None:
     robot, session = switched_on(), computer()
     assert robot.until(session, session.name(b"OLD")) == OK
-    task = session.name(b"NEW")
+    request = session.name(b"NEW")
     robot.talk(session, cut_ms)
     found = name_after_power_off(robot)
     assert found in ("OLD", "NEW")
-    assert task.outcome is None or found == "NEW"
+    assert request.outcome is None or found == "NEW"
 
 
 def test_a_name_given_while_it_drives_is_told_to_be_kept_later() -> None:
@@ -152,10 +149,10 @@ def test_a_trim_is_ok_when_it_is_kept() -> None:
     for trim in (b"\1\5\7", b"\1\5\1", b"\0\0\0"):
         assert robot.until(session, session.trim(trim)) == OK
         again, other = switched_on(robot.memory()), computer(2)
-        task = other.trim()
-        assert again.until(other, task) == OK
-        values = outcome(task).values
-        assert bytes((values["wheels"], values["balance"], values["least"])) == trim  # type: ignore[arg-type]
+        request = other.trim()
+        assert again.until(other, request) == OK
+        values = outcome(request).values
+        assert bytes((values.wheels, values.balance, values.least)) == trim
     send(robot, session, DRIVES, saves=False)
     assert robot.until(session, session.trim(b"\1\2\3")) == STATUSES["SAVING"]
 
@@ -207,9 +204,9 @@ def test_with_a_low_supply_another_program_can_still_be_tried() -> None:
         assert f"MOTORS {power} {power}" in happened(robot)
         assert saved(robot, session) == "LOW_SUPPLY"
     assert program_after_power_off(robot) == bytes_of("SB|F(0.2, 80)")
-    task = session.upload(image_of(LONG))  # breaks off
+    request = session.upload(image_of(LONG))  # breaks off
     robot.talk(session, 3)
-    assert task.outcome is None
+    assert request.outcome is None
     robot.wait(3000)
     robot.did.clear()
     robot.push()
@@ -248,9 +245,9 @@ def test_a_low_supply_after_a_cut_in_a_save_is_told() -> None:
 
 def broken_upload(robot: HostFirmware, session: Session) -> None:
     """Let the robot hold what is stored, and nothing of it in memory."""
-    task = session.upload(image_of(LONG))
+    request = session.upload(image_of(LONG))
     robot.talk(session, 3)
-    assert task.outcome is None
+    assert request.outcome is None
     robot.wait(3000)
 
 
@@ -265,9 +262,9 @@ def test_a_program_is_fetched_whole_while_a_name_is_written() -> None:
     other.name(b"A LONG NAME")
     robot.talk(other, 5)  # the robot has it, and writes
     another = computer(4)
-    task = another.fetch()
-    assert robot.until(another, task) == OK
-    assert outcome(task).values["image"] == bytes_of(text)
+    request = another.fetch()
+    assert robot.until(another, request) == OK
+    assert outcome(request).values.image == bytes_of(text)
 
 
 def test_a_robot_that_writes_says_busy_to_fetch() -> None:
@@ -278,13 +275,10 @@ def test_a_robot_that_writes_says_busy_to_fetch() -> None:
     other = computer(3)
     assert robot.until(other, other.hello()) == OK
 
-    def once(request: Request) -> Errand:
-        return (yield request)
-
-    naming = other._add(Task(once(Request("NAME", {"name": b"NEW"}))))
+    naming = other._add(single(Request("NAME", {"name": b"NEW"}), EmptyReply))
     assert robot.until(other, naming) == STATUSES["SAVING"]
-    task = other._add(Task(once(Request("FETCH", {"offset": 0}))))
-    assert robot.until(other, task) == STATUSES["BUSY"]
+    request = other._add(single(Request("FETCH", {"offset": 0}), FetchReply))
+    assert robot.until(other, request) == STATUSES["BUSY"]
 
 
 def test_the_button_starts_the_program_while_something_is_written() -> None:

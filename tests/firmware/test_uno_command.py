@@ -116,7 +116,7 @@ def test_what_is_saved_waits_for_the_button_after_a_power_cut(
         uno.press("button", 60, at=500 * CYCLES_PER_MS)  # a button that bounces is none
         until(lambda: drives(uno) == 1 and states(uno) == OFF, "it has driven")
         fetched = on(uno, "fetch")
-        assert (fetched.code, "MOVE8_F 3 80" in fetched.out) == (0, True), fetched.out
+        assert (fetched.code, "MOVE8_F 30 80" in fetched.out) == (0, True), fetched.out
         assert on(uno, "start").code == 0
         assert drives(uno) == 2
 
@@ -124,7 +124,7 @@ def test_what_is_saved_waits_for_the_button_after_a_power_cut(
 def test_what_does_not_fit_leaves_the_program_that_is_there(uno: Uno) -> None:
     assert on(uno, "upload", "-e", DRIVES, "--no-run").code == 0
     large = on(uno, "upload", "-e", ";".join([LONG] * 3))
-    assert large.code == 1 and "430" in large.err
+    assert large.code == 1 and "389" in large.err
     other = on(uno, "upload", "-e", "IF(LINE_L); F(1, 80); ENDIF", "--robot", "liner")
     assert other.code == 3 and "--robot tinibot" in other.err
     assert drives(uno) == 0

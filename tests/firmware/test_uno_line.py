@@ -31,17 +31,17 @@ from tiniscript.link.requests import OK
 from tools.uno import CYCLES_PER_MS, Uno
 
 __all__ = ("memory", "sketch", "uno")  # fixtures
-BUSY = "{ cli(); for (uint16_t k = 0; k < 2000; k++) delayMicroseconds(5); sei(); }"  # over 10 ms
+PHASES = 160  # the quickest turn of the main loop takes some 110 cycles
+BUSY = "{ cli(); __builtin_avr_delay_cycles(170000); sei(); }"  # over 10 ms
 
 
 def counted(wired: Wired) -> tuple[int, ...]:
     """Return the damaged and dropped messages, framing errors and overruns that the robot tells."""
-    task = wired.session.status()
-    assert wired.until(task) == OK
-    assert task.outcome
-    values = task.outcome.values
-    found = [values[name] for name in ("damaged", "dropped", "framing", "overrun")]
-    return tuple(each for each in found if isinstance(each, int))
+    request = wired.session.status()
+    assert wired.until(request) == OK
+    assert request.outcome
+    values = request.outcome.values
+    return values.damaged, values.dropped, values.framing, values.overrun
 
 
 def test_a_byte_without_its_stop_bit_damages_a_message(uno: Uno) -> None:
@@ -195,3 +195,14 @@ def test_a_button_that_was_down_during_a_stop_starts_nothing(uno: Uno) -> None:
     uno.press("button", ms=60)
     uno.run_ms(150)
     assert states(uno) == FORWARD
+
+
+def test_a_message_is_heard_wherever_the_main_loop_is(uno: Uno) -> None:
+    wired = computer(uno)
+    assert wired.until(wired.session.hello()) == OK
+    wired.run(100)
+    for turn in range(PHASES):
+        uno.run_to(uno.cycle + turn % 2 + 1)
+        other = wired.session.hello if turn % 2 else wired.session.ping  # of another length
+        assert wired.until(other()) == OK
+    assert counted(wired) == (0, 0, 0, 0)

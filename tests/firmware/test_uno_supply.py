@@ -109,7 +109,7 @@ def test_sensors_and_the_supply_take_turns(uno: Uno, volts: float) -> None:
     shown: list[int] = []
     for _ in range(150):
         wired.run(10)
-        shown += [int(event.values["value"]) for event in wired.session.events()
+        shown += [event.value for event in wired.session.events()
                   if event.name == "SHOW"]  # fmt: skip
     assert len(shown) > 50
     assert set(shown) == {200_000, 800_000}
@@ -131,7 +131,7 @@ def test_a_measurement_that_a_motor_ends_leaves_the_converter_to_the_sensors(uno
     pushes = "W(0.001); M(50, 50); SHOW(LIGHT_L); W(0.02); M(0, 0);"
     send(wired, f"SI|LOOP(FOREVER); {pushes} END_LOOP")
     wired.run(2000)
-    shown = [event.values["value"] for event in wired.session.events() if event.name == "SHOW"]
+    shown = [event.value for event in wired.session.events() if event.name == "SHOW"]
     assert len(shown) > 50 and set(shown) == {800_000}
     assert marks(uno, begun) == []
 
@@ -193,7 +193,7 @@ def test_readings_are_right_while_names_are_kept_and_the_line_is_bad(
             wired.run(30)
             uno.send(b"\x55", stop_bits_fail=True)
             wired.run(20)
-            shown += [int(event.values["value"]) for event in wired.session.events()
+            shown += [event.value for event in wired.session.events()
                       if event.name == "SHOW"]  # fmt: skip
         assert wired.session.is_running
         kept = [event for event in uno.events if event.what == "eeprom" and event.cycle > begun]
@@ -202,6 +202,7 @@ def test_readings_are_right_while_names_are_kept_and_the_line_is_bad(
     assert len(shown) > 30
     distances = [value for value in shown if value not in (200_000, 800_000)]
     assert len(distances) > 10
-    assert all(abs(value - 1000 * distance_cm) <= 3 * STEP for value in distances), distances
+    # an edge waits for up to two other interrupts: 20 us
+    assert all(abs(value - 1000 * distance_cm) <= 5 * STEP for value in distances), distances
     assert {200_000, 800_000} < set(shown)
     assert min(b - a for a, b in pairwise(left) if a > begun) >= 30 * CYCLES_PER_MS

@@ -91,7 +91,7 @@ def lasting(settings: list[Setting]) -> list[Setting]:
 @pytest.mark.parametrize("case", [*PAPER, *map(program, OTHERS)], ids=lambda case: case.title)
 def test_the_pins_follow_the_trace(case: Case, sketch: Path, tmp_path: Path) -> None:  # noqa: F811
     robot, senses = robot_and_senses(case)
-    image = unpack(compiled(case).image, robot.kit.fingerprint)
+    image = unpack(compiled(case).image)
     trace = MACHINES["python"](compiled(case).image, robot.kit, senses)
     expected, reads = told(trace)
     end_ms = float(trace.splitlines()[-1].split()[0])

@@ -23,6 +23,7 @@ from tests.firmware.test_uno_robot import (
 from tests.machines.uno import needed
 from tests.machines.wired import Wired
 from tests.support.platformio import changed
+from tiniscript.link.payloads import HelloReply
 from tiniscript.link.requests import OK
 from tools.uno import CYCLES_PER_MS, Uno
 
@@ -32,7 +33,7 @@ PRESSED = "if (press == Press::kPressed) firmware_on_pressed();"
 WATCHDOG, STALL = 4, 66  # a reset and a fault in docs/link.md
 HANGS, HANGS_ALONE = "for (;;) {\n }", "{ cli(); for (;;) {\n } }"
 TIMER_MS, WATCHDOG_MS = 110, 300
-MOVE_AT = 4  # the offset in AWAY, behind what it takes
+MOVE_AT = 2  # the offset in AWAY, behind what it takes
 
 
 def built(folder: Path, hang: str, environment: str = "uno") -> Path:
@@ -42,12 +43,12 @@ def built(folder: Path, hang: str, environment: str = "uno") -> Path:
     return changed(folder, "main.cpp", PRESSED, hangs, environment)
 
 
-def told(wired: Wired) -> dict[str, object]:
+def told(wired: Wired) -> HelloReply:
     """Return what HELLO says of the robot."""
     assert wired.until(wired.session.hello()) == OK
     robot = wired.session.robot
     assert robot is not None
-    return dict(robot.values)
+    return robot.values
 
 
 def is_on(uno: Uno) -> bool:
@@ -84,16 +85,16 @@ def test_a_main_loop_that_hangs(hang: str, limit_ms: int, board: str, tmp_path: 
         uno.run_ms(1000)
         assert states(uno) == OFF
         found = told(computer(uno, 2))
-        assert found["reset"] == WATCHDOG
-        what = (found["fault"], found["fault_program"], found["fault_at"])
+        assert found.reset == WATCHDOG
+        what = (found.fault, found.fault_program, found.fault_at)
         assert what == (STALL, image_of(AWAY).checksum, MOVE_AT)
         uno.run_ms(500)
         assert states(uno) == OFF
     with Uno(elf, names=NAMES, board=chip, baud=BAUD, eeprom=kept) as again:
         again.run_ms(300)
         found = told(computer(again, 3))
-        assert (found["reset"], found["fault"]) == (1, STALL)
-        assert found["fault_program"] == image_of(AWAY).checksum
+        assert (found.reset, found.fault) == (1, STALL)
+        assert found.fault_program == image_of(AWAY).checksum
 
 
 def test_a_hang_without_a_program_is_a_fault_of_none(tmp_path: Path) -> None:
@@ -102,7 +103,7 @@ def test_a_hang_without_a_program_is_a_fault_of_none(tmp_path: Path) -> None:
         uno.press("button")
         uno.run_ms(600)
         found = told(computer(uno))
-        what = tuple(found[key] for key in ("reset", "fault", "fault_program", "fault_at"))
+        what = (found.reset, found.fault, found.fault_program, found.fault_at)
         assert what == (WATCHDOG, STALL, 0, 0)
 
 
@@ -112,8 +113,8 @@ def test_a_reset_that_is_no_hang_is_no_fault(uno: Uno) -> None:
     for number in range(5):
         wired = computer(uno, number + 1)
         found = told(wired)
-        assert found["fault"] == 0
-        nonces.add(found["nonce"])
+        assert found.fault == 0
+        nonces.add(found.nonce)
         send(wired, AWAY)
         assert states(uno) == FORWARD
         uno.reset()
@@ -127,5 +128,5 @@ def test_five_equal_resets_have_five_nonces(uno: Uno) -> None:
     for _ in range(5):
         uno.reset()
         uno.run_ms(200)
-        nonces.append(told(computer(uno, 7))["nonce"])
+        nonces.append(told(computer(uno, 7)).nonce)
     assert len(set(nonces)) == 5

@@ -168,7 +168,7 @@ def answered(uno: Uno) -> tuple[object, ...]:
     assert wired.until(wired.session.hello()) == OK
     robot = wired.session.robot
     assert robot is not None
-    return tuple(robot.values[key] for key in ("reset", "fault", "fault_program"))
+    return robot.values.reset, robot.values.fault, robot.values.fault_program
 
 
 def test_a_mega_that_was_reset_is_waited_for(

@@ -57,8 +57,8 @@ def test_a_robot_of_ones_own_is_built_and_written(clone: Path, own: Path) -> Non
         assert "PlatformIO builds the firmware of mine for the uno" in done.err
         first = done.out.splitlines()[0]
         assert first.startswith("mine on the uno: ") and "read back and compared" in first
-        card = process("info", "--json", "--port", uno.pty)
-        assert f'"kit": "{robots.load(str(own)).kit.fingerprint:04x}"' in card.out, card.err
+        info = process("info", "--json", "--port", uno.pty)
+        assert f'"kit": "{robots.load(str(own)).kit.fingerprint:04x}"' in info.out, info.err
     kept = ready.files(ready.cache())
     assert [(each.robot, each.board) for each in kept] == [("mine", "uno")]
     again = tsc(clone, "--build", "--robot", str(own))  # PlatformIO could build nothing now

@@ -335,7 +335,7 @@ def test_what_came_with_the_package_is_listed(package: Path) -> None:
     (["--port", ""], "--port takes the name of a port"),
     (["--port", "socket://localhost:1"], "is on a network"),
     (["--port", "/dev/none"], "there is no port /dev/none"),
-    (["--port", "x", "--board", "teensy"], "uno, nano, nano-old, mega, not teensy"),
+    (["--port", "x", "--board", "teensy"], "uno, nano, nano-old or mega, not teensy"),
     (["--port", "x", "--robot", "grabber", "--board", "uno"], "does not fit the board uno"),
     (["--port", "x", "--robot", "mine.toml"], "There is no file mine.toml"),
     (["--build", "--robot", "nobody"], "nobody"),

@@ -17,11 +17,13 @@ import pytest
 import tiniscript
 from tests.machines import host, wasm
 from tests.support.command import FOREVER, OBSTACLE, Command, process
+from tests.support.link_events import event
 from tests.support.pty_robot import PtyRobot
-from tiniscript.library import way
+from tiniscript.library import opening
 from tiniscript.library.endings import End, Follower
-from tiniscript.link.connection import Way
-from tiniscript.link.outcomes import Event
+from tiniscript.link.connection import LinkConnection
+from tiniscript.link.outcomes import Event, LostEvent, StartedEvent
+from tiniscript.link.payloads import DoneEvent
 from tiniscript.virtual import directory
 
 needs_wasmtime = pytest.mark.skipif(bool(wasm.missing()), reason=wasm.missing() or "it is there")
@@ -43,7 +45,7 @@ def test_a_program_runs_there_and_tells_what_it_shows(
     virtual: tiniscript.VirtualRobotConnection,
 ) -> None:
     assert (virtual.info.robot, virtual.info.port) == ("tinibot", virtual.port)
-    assert virtual.info.room == 430
+    assert virtual.info.room == 389
     program = tiniscript.compile("SI|F(1, 50);SHOW(1.5);SHOW(TRUE AND 1 > 0)")
     receipt = virtual.upload(program)
     assert (receipt.checksum, receipt.is_running) == (program.checksum, True)
@@ -258,7 +260,7 @@ def test_a_detached_program_goes_on(pty_robot: PtyRobot) -> None:
 def test_a_stop_that_nobody_confirms_is_an_error(
     pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(way, "CONFIRM_S", 0.5)
+    monkeypatch.setattr(opening, "CONFIRM_S", 0.5)
     robot = tiniscript.connect(pty_robot.port)
     with pytest.raises(tiniscript.StopNotConfirmed, match="batteries") as raised, robot:
         robot.upload(FOREVER)
@@ -267,11 +269,11 @@ def test_a_stop_that_nobody_confirms_is_an_error(
     assert isinstance(raised.value.__context__, ZeroDivisionError)
 
 
-class Teller:
-    """A way on which these events come, and then none."""
+class ToldEvents:
+    """A connection on which these events come, and then none."""
 
     def __init__(self, *names: str) -> None:
-        self.events = [Event(name, {"cause": 1}) for name in names]
+        self.events = [event(name) for name in names]
         self.stops = 0
 
     def stop(self) -> None:
@@ -287,25 +289,25 @@ def test_only_its_own_word_confirms_a_stop() -> None:
         (["SHOW", "LOST"], False),
         ([], False),
     ):
-        line = Teller(*names)
-        assert way.confirmed(cast(Way, line), 0.01) is is_confirmed
+        line = ToldEvents(*names)
+        assert opening.confirmed(cast(LinkConnection, line), 0.01) is is_confirmed
         assert line.stops == 1
 
 
 def test_what_ended_before_a_run_is_not_its_end() -> None:
     follower = Follower(5)
-    stopped, ended = Event("STOPPED", {"cause": 1}), Event("ENDED", {"state": 0})
-    started = [Event("STARTED", {"run": run, "program": 1}) for run in (5, 6)]
+    stopped, ended = event("STOPPED"), event("ENDED")
+    started = [StartedEvent(run, 1) for run in (5, 6)]
     assert not follower.is_about(stopped, "P")
     assert not follower.is_about(ended, "P")
-    assert follower.end(Event("DONE", {"run": 4})) is None
+    assert follower.end(DoneEvent(4)) is None
     assert follower.is_about(started[0], "P")
     assert follower.is_about(stopped, "P")
     assert follower.end(stopped) == End("STOPPED")
-    assert follower.end(Event("DONE", {"run": 5})) == End("DONE")
-    for event, reason in ((started[1], "replaced"), (Event("LOST", {}), "link_lost")):
+    assert follower.end(DoneEvent(5)) == End("DONE")
+    for last, reason in ((started[1], "replaced"), (LostEvent(), "link_lost")):
         with pytest.raises(tiniscript.RobotError) as raised:
-            follower.is_about(event, "P")
+            follower.is_about(last, "P")
         assert raised.value.reason == reason
 
 
@@ -382,8 +384,8 @@ def test_a_program_of_another_kit_is_refused(pty_robot: PtyRobot) -> None:
 
 @needs_pty
 def test_nobody_answers(pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(way, "CABLE_ANSWER_MS", 300)
-    monkeypatch.setattr(way, "LONG_QUIET_S", 0.0)
+    monkeypatch.setattr(opening, "CABLE_ANSWER_MS", 300)
+    monkeypatch.setattr(opening, "LONG_QUIET_S", 0.0)
     pty_robot.switch_off()
     before = threading.active_count()
     with pytest.raises(tiniscript.RobotError) as raised:

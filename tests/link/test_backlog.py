@@ -5,9 +5,10 @@ from __future__ import annotations
 import threading
 import tracemalloc
 
-from tiniscript.link.backlog import KEPT, Backlog
+from tiniscript.link.backlog import KEPT, Backlog, Told
 from tiniscript.link.line import Line
-from tiniscript.link.outcomes import Event
+from tiniscript.link.outcomes import MissedEvent, StartedEvent
+from tiniscript.link.payloads import DoneEvent, FaultEvent, ShowEvent
 from tiniscript.link.session import Session
 
 CHATTER = b"debug: the battery has 7.4 V and all is well\r\n" * 20
@@ -60,34 +61,33 @@ def test_a_line_that_nobody_looks_at_keeps_little() -> None:
     assert kept_bytes < MOST_BYTES
     assert len(found) <= KEPT + 1
     assert found[0].name == "MISSED"
-    missed = found[0].values["count"]
-    assert isinstance(missed, int) and missed + len(found) - 1 == 20 * PIECES
+    assert found[0].count + len(found) - 1 == 20 * PIECES
 
 
-def told(name: str, number: int = 0) -> tuple[int, Event]:
-    return number, Event(name, {"value": number})
+def shown(number: int) -> Told:
+    return number, ShowEvent(number, 0)
 
 
 def test_what_the_robot_does_is_kept_before_what_it_shows() -> None:
     backlog = Backlog()
-    backlog.put([told("STARTED"), told("SHOW", 0)])
-    backlog.put(told("SHOW", number) for number in range(1, 10 * KEPT))
-    backlog.put([told("FAULT")])
+    backlog.put([(0, StartedEvent(1, 2)), shown(0)])
+    backlog.put(shown(number) for number in range(1, 10 * KEPT))
+    backlog.put([(0, FaultEvent(1, 2, 3, 4))])
     found = [backlog.take()[1] for _ in range(len(backlog))]
     assert [each.name for each in found[:3]] == ["MISSED", "STARTED", "SHOW"]
     assert found[-1].name == "FAULT" and len(found) == KEPT + 1
-    assert found[-2].values["value"] == 10 * KEPT - 1, "the newest is there"
-    assert found[0].values["count"] == 10 * KEPT + 2 - KEPT
+    assert found[-2] == ShowEvent(10 * KEPT - 1, 0), "the newest is there"
+    assert found[0] == MissedEvent(10 * KEPT + 2 - KEPT)
     assert len(backlog) == 0
 
 
 def test_what_has_room_is_not_missed() -> None:
     backlog = Backlog()
-    backlog.put(told("SHOW", number) for number in range(KEPT))
+    backlog.put(shown(number) for number in range(KEPT))
     assert [backlog.take()[0] for _ in range(KEPT)] == list(range(KEPT))
 
 
 def test_a_robot_that_only_tells_how_programs_end_is_bounded_too() -> None:
     backlog = Backlog()
-    backlog.put(told("DONE", number) for number in range(5 * KEPT))
+    backlog.put((number, DoneEvent(number)) for number in range(5 * KEPT))
     assert len(backlog) == KEPT + 1

@@ -30,6 +30,8 @@ VARIANTS = {"uno": "standard", "nano": "eightanaloginputs", "mega": "mega"}
 CHIPS = {"uno": "atmega328p", "nano": "atmega328p", "mega": "atmega2560"}
 FLAGS = (
     "-Os", "-flto", "-ffunction-sections", "-fdata-sections", "-mrelax", "-mcall-prologues",
+    "-mstrict-X", "-fno-devirtualize", "-fno-partial-inlining",
+    "-fno-gcse", "-fno-tree-sink", "-fno-move-loop-invariants",
     "-DF_CPU=16000000L", "-DARDUINO=10808", "-DDECIMAL_DIG=__DECIMAL_DIG__",
 )  # fmt: skip
 CPP = ("-std=gnu++11", "-fno-exceptions", "-fno-threadsafe-statics")
@@ -140,7 +142,7 @@ class Board:
         self.avr = AVRS[self.board]
         elf = built(firmware.header([robot], "the tests."), self.board, more)
         compiled = compile_text(text, robot.kit)
-        assert compiled.image, compiled.problems
+        assert compiled.image, compiled.diagnostics
         before = compile_text(BUILT_IN, robot.kit).image
         at = elf.index(before)
         self.elf = elf[:at] + compiled.image + b"\0" * 4 + elf[at + len(compiled.image) + 4 :]

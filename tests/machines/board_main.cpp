@@ -24,12 +24,10 @@ constexpr uint8_t kBudget = 32;  // instructions in one turn of loop()
 // Every robot can run it:  SB|F(1, 60);B(1, 60);BEEP(0.2, 880)
 // clang-format off
 uint8_t program[kHeaderBytes + kProgramBytes + kEndBytes] = {
-    'T', 'S', 1, 0, 1, 0, 0, 0, 13, 0, 0x48, 0x98, 0x20, 0xf7,
-    0x44, 0x0a, 0x3c,              // MOVE8_F 10 60
-    0x45, 0x0a, 0x3c,              // MOVE8_B 10 60
-    0x03, 0xc8, 0x00,              // PUSH_MILLI 200
-    0x02, 0x70, 0x03,              // PUSH16 880
-    0x5b,                          // BEEP
+    'T', 'S', 2, 0, 1, 15, 0, 0, 10, 0, 0xb1, 0x14, 0x8c, 0x37, 0,
+    0x44, 0x64, 0x3c,        // MOVE8_F 100 60
+    0x45, 0x64, 0x3c,        // MOVE8_B 100 60
+    0x56, 0x14, 0x70, 0x03,  // BEEP8 20 880
 };
 // clang-format on
 
@@ -80,9 +78,13 @@ void setup() {
   board_begin();
   const uint16_t code_length =
       static_cast<uint16_t>(program[kCodeLengthAt] | program[kCodeLengthAt + 1] << 8);
-  is_accepted = code_length <= kProgramBytes &&
-                unpack(program, kHeaderBytes + code_length, kBoardKit, &image) == Refusal::kNone &&
-                verify(image.code, code_length, kBoardSensors, kBoardActuators).rule == Rule::kNone;
+  uint16_t devices;
+  is_accepted =
+      code_length <= kProgramBytes &&
+      unpack(program, kHeaderBytes + code_length, &image) == Refusal::kNone &&
+      verify(image.code, code_length, kBoardSensors, kBoardActuators, &devices).rule ==
+          Rule::kNone &&
+      check_devices(image, devices) == Refusal::kNone;
   board_light(is_accepted);
 }
 

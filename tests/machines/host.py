@@ -86,9 +86,9 @@ class Process:
         answer = self.ask(b"V", bytes((sensors, actuators)) + _texts(codes))
         return [(rule, offset) for rule, offset in Struct("<BH").iter_unpack(answer)]
 
-    def refusals(self, images: Sequence[bytes], kit: int) -> list[int]:
-        """Return the number of the reason for which each image is refused, or 0."""
-        return list(self.ask(b"I", pack("<H", kit) + _texts(images)))
+    def refusals(self, images: Sequence[bytes]) -> list[int]:
+        """Return the number of the reason for which each image's header is refused, or 0."""
+        return list(self.ask(b"I", _texts(images)))
 
     def results(self, operations: Iterable[tuple[int, int, int]]) -> list[tuple[int, int]]:
         """Return the fault, or 0, and the result of each opcode with its two values."""
@@ -140,7 +140,9 @@ class Host(Process):
             raise ImageRefused(REFUSAL_NAMES[answer[0]])
         if answer[1]:
             raise Refused(RULE_NAMES[answer[1]], int.from_bytes(answer[2:4], "little"))
-        return _ran(answer[4:])
+        if answer[4]:
+            raise ImageRefused(REFUSAL_NAMES[answer[4]])
+        return _ran(answer[5:])
 
     def run_unverified(self, code: bytes, kit: Kit, senses: Senses) -> Ran:
         """Run code whatever it is: it must end in a fault or go on, never outside its memory."""
@@ -166,19 +168,20 @@ def run_request(
     data: bytes, kit: Kit, senses: Senses, not_ready: int = 0, begin_ms: int = 0
 ) -> bytes:
     """Return the request to run an image or code with this kit, these senses and limits."""
-    limits = (kit.fingerprint, senses.max_ms, senses.max_steps, senses.seed, begin_ms)
-    parts = [pack("<HIIII", *limits), bytes((len(kit.sensors),))]
+    limits = (senses.max_ms, senses.max_steps, senses.seed, begin_ms)
+    hashes = iter(kit.hashes)
+    parts = [pack("<IIII", *limits), bytes((len(kit.sensors),))]
     for sensor in kit.sensors:
         values = senses.readings.get(sensor.name, ())
-        parts += [_named(sensor), pack(f"<H{len(values)}i", len(values), *values)]
+        parts += [_named(sensor, next(hashes)), pack(f"<H{len(values)}i", len(values), *values)]
     parts.append(bytes((len(kit.actuators),)))
     for actuator in kit.actuators:
-        parts += [_named(actuator), pack("<ii", actuator.low, actuator.high)]
+        parts += [_named(actuator, next(hashes)), pack("<ii", actuator.low, actuator.high)]
     return b"".join(parts) + pack("<I", not_ready) + _texts([data])
 
 
-def _named(device: Device) -> bytes:
-    return _texts([device.name.encode()]) + bytes((device.is_yes_no,))
+def _named(device: Device, hashed: int) -> bytes:
+    return _texts([device.name.encode()]) + pack("<BH", device.is_yes_no, hashed)
 
 
 def _texts(texts: Iterable[bytes]) -> bytes:

@@ -10,11 +10,12 @@ from collections.abc import Sequence
 from functools import lru_cache
 from pathlib import Path
 from struct import pack
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from tests.machines.host import FLAGS, SOURCES, Process, compiled, missing
 from tiniscript.kit import Kit
-from tiniscript.link.session import Session, Task
+from tiniscript.link.connection import PendingRequest
+from tiniscript.link.session import Session
 
 __all__ = ("EMPTY", "HostFirmware", "Seen", "missing")
 
@@ -51,7 +52,8 @@ class HostFirmware(Process):
         self.is_lit, self.is_latched = False, True
         head = pack("<HBBB", kit.fingerprint, len(kit.sensors), len(kit.actuators), reset)
         times = pack("<IIB", seed, max_run_ms, int(write_ms * TICKS))
-        self.ask(b"B", head + times + pack("<I", len(memory)) + memory)
+        hashes = pack(f"<{len(kit.hashes)}H", *kit.hashes)
+        self.ask(b"B", head + times + hashes + pack("<I", len(memory)) + memory)
 
     def step(self, data: bytes = b"", flags: int = 0, ticks: int = TICKS) -> bytes:
         """Let a millisecond pass in which bytes arrive; return what is sent."""
@@ -97,13 +99,13 @@ class HostFirmware(Process):
         for _ in range(milliseconds):
             session.receive(self.step(session.poll(self.now_ms), flags), self.now_ms)
 
-    def until(self, session: Session, task: Task, limit_ms: int = 30_000) -> int:
-        """Let a computer talk until its task is over; return how that ended."""
+    def until(self, session: Session, request: PendingRequest[Any], limit_ms: int = 30_000) -> int:
+        """Let a computer talk until its request is over; return how that ended."""
         for _ in range(limit_ms):
-            if task.outcome is not None:
-                return task.outcome.status
+            if request.outcome is not None:
+                return request.outcome.status
             self.talk(session, 1)
-        raise AssertionError(f"the task is not over after {limit_ms} ms: {self.did[-5:]}")
+        raise AssertionError(f"the request is not over after {limit_ms} ms: {self.did[-5:]}")
 
 
 def _text(answer: bytes) -> tuple[bytes, bytes]:

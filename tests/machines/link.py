@@ -13,6 +13,7 @@ from struct import pack
 from typing import NamedTuple
 
 from tests.machines.host import FLAGS, SOURCES, Process, compiled, missing
+from tiniscript import robots
 
 __all__ = ("CppLink", "Step", "built", "cpp_link", "missing")
 
@@ -32,14 +33,16 @@ class CppLink(Process):
 
     def begin(
         self,
-        room: int = 430,
+        room: int = 389,
         kit: int = 0x231B,
         sensors: int = 3,
         actuators: int = 0,
         epoch: int = 9,
     ) -> None:
-        """Switch a robot on."""
-        self.ask(b"B", pack("<HHBBB", room, kit, sensors, actuators, epoch))
+        """Switch a robot on: its devices are those of tinibot, as far as it has them."""
+        numbers = pack("<HHBBB", room, kit, sensors, actuators, epoch)
+        hashes = (*robots.load("tinibot").kit.hashes, *range(510))[: sensors + actuators]
+        self.ask(b"B", numbers + pack(f"<{len(hashes)}H", *hashes))
 
     def step(
         self, now_ms: int, data: bytes = b"", is_late: bool = False, is_slow: bool = False
@@ -84,7 +87,7 @@ def built(sources: Path) -> Path:
     )
     inputs.append(sources / "extras/host" / "wire.h")
     # the machine is not asked here, only its verifier and its checksum
-    left_out = ("vm.cpp", "vm_instructions.cpp", "number.cpp")
+    left_out = ("vm.cpp", "vm_instructions.cpp", "vm_robot.cpp", "number.cpp")
     return compiled([each for each in inputs if each.name not in left_out], FLAGS)
 
 

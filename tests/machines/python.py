@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from tests.machines.host import Ran
-from tiniscript.bytecode.image import unpack
-from tiniscript.bytecode.verify import verify
+from tiniscript.bytecode.loading import loaded
 from tiniscript.kit import Kit
 from tiniscript.vm.trace import Ending, run
 from tiniscript.vm.trace import Senses as Lists
@@ -17,8 +16,7 @@ if TYPE_CHECKING:
 
 def ran_python(image: bytes, kit: Kit, senses: Senses) -> Ran:
     """Run an image, which is read and verified as a machine does it."""
-    code = unpack(image, kit.fingerprint).code
-    verify(code, len(kit.sensors), len(kit.actuators))
+    code = loaded(image, kit).code
     events = run(code, kit, lists_of(kit, senses), senses.max_ms, senses.max_steps, senses.seed)
     *lines, ending = events
     assert isinstance(ending, Ending)

@@ -23,7 +23,7 @@ def run_wasm(image: bytes, kit: Kit, senses: Senses) -> str:
     """Return the trace of an image, which is read and verified by the C++ machine."""
     from tiniscript.vm.wasm import WasmImage
 
-    loaded = WasmImage(image, kit.fingerprint, len(kit.sensors), len(kit.actuators))
+    loaded = WasmImage(image, kit)
     events = run(
         image[HEADER_BYTES:],
         kit,

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from tiniscript.link.session import Session, Task
+from typing import Any
+
+from tiniscript.link.connection import PendingRequest
+from tiniscript.link.session import Session
 from tools.uno import CYCLES_PER_MS, Uno
 
 
@@ -28,10 +31,10 @@ class Wired:
             sent = bytes(event["byte"] for event in new if event.what == "sent")
             self.session.receive(sent, self.now_ms)
 
-    def until(self, task: Task, limit_ms: int = 20_000) -> int:
-        """Run until a task is over; return how that ended."""
+    def until(self, request: PendingRequest[Any], limit_ms: int = 20_000) -> int:
+        """Run until a request is over; return how that ended."""
         for _ in range(limit_ms):
-            if task.outcome is not None:
-                return task.outcome.status
+            if request.outcome is not None:
+                return request.outcome.status
             self.run(1)
         raise AssertionError(f"not over after {limit_ms} ms")

@@ -117,10 +117,10 @@ def test_a_header_says_what_the_robot_is() -> None:
     for line in (
         "#if defined(__AVR_ATmega328P__)  // uno",
         "#define tiniscript_motors_bridge",
-        "#define tiniscript_echo_vectors(each) each(PCINT2_vect)",
+        "#define tiniscript_ultrasonic_vectors(each) each(PCINT2_vect)",
         f"constexpr uint16_t kBoardKit = 0x{robot.kit.fingerprint:04x};",
         "constexpr uint8_t kBoardSensors = 3;",
-        "constexpr uint16_t kProgramBytes = 430;",
+        "constexpr uint16_t kProgramBytes = 389;",
         "constexpr uint16_t kMaxRunSeconds = 600;",
         "constexpr uint32_t kBaud = 9600;",
         "constexpr Pin kStartButton = {kPortD, 1 << 2};",
@@ -154,7 +154,7 @@ def test_two_echoes_have_their_vectors_once() -> None:
         changed = changed.replace("left_forward = 7", 'left_forward = "A4"')
         changed = changed.replace("bluetooth_state = 12", 'bluetooth_state = "A5"')
         header = firmware.header([read(changed, "two")], "a test.")
-        assert f"tiniscript_echo_vectors(each) {vectors}\n" in header
+        assert f"tiniscript_ultrasonic_vectors(each) {vectors}\n" in header
 
 
 # -- the verb

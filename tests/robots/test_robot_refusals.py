@@ -1,4 +1,4 @@
-"""Refused robot profiles: each code, its sentences, trouble with files, and broken files.
+"""Refused robot profiles: each code, its sentences, failure with files, and broken files.
 
 What a good profile gives is in `test_robots`.
 """
@@ -80,7 +80,7 @@ REFUSED = [
     ("not_one_of", "tinibot", '"hc_sr04"', '"digital"', "board.sensors.DISTANCE.driver"),
     ("not_one_of", "tinibot", 'sees = "light"', 'sees = "stars"', "body.sensors.LIGHT_R.sees"),
     ("out_of_range", "tinibot", "baud = 9600", "baud = 0", "board.baud"),
-    ("out_of_range", "tinibot", "baud = 9600", "baud = 9600\nprogram_bytes = 431",
+    ("out_of_range", "tinibot", "baud = 9600", "baud = 9600\nprogram_bytes = 390",
      "board.program_bytes"),
     ("out_of_range", "tinibot", "[0, 400]", "[0, 2147483.648]", "kit.sensors[3].range"),
     ("out_of_range", "tinibot", "[0, 400]", f"[0, 0x{'F' * 9000}]", "kit.sensors[3].range"),

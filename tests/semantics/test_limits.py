@@ -63,10 +63,10 @@ def test_what_just_fits_and_what_does_not(
     made: Callable[[int], str], limit: int, code: Code
 ) -> None:
     fitting = compile_text(made(limit), KIT)
-    assert fitting.is_right and fitting.image, [each.code.number for each in fitting.problems]
+    assert fitting.is_right and fitting.image, [each.code.number for each in fitting.diagnostics]
     found = check_text(made(limit + 1), KIT)
-    assert {each.code for each in found.problems if each.is_mistake} == {code}
-    assert found.problems[0].values.get("limit", str(limit)) == str(limit)
+    assert {each.code for each in found.diagnostics if each.is_mistake} == {code}
+    assert found.diagnostics[0].values.get("limit", str(limit)) == str(limit)
 
 
 def test_the_second_value_of_an_argument_lies_above_the_first() -> None:

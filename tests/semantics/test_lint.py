@@ -33,7 +33,7 @@ KIT = robots.load("tinibot").kit
 def test_advice(text: str, code: str) -> None:
     found = check_text(text, KIT)
     assert found.is_right
-    assert [problem.code.number for problem in found.problems] == [code]
+    assert [diagnostic.code.number for diagnostic in found.diagnostics] == [code]
 
 
 @pytest.mark.parametrize(
@@ -54,11 +54,11 @@ def test_advice(text: str, code: str) -> None:
     ],
 )
 def test_no_advice(text: str) -> None:
-    assert check_text(text, KIT).problems == []
+    assert check_text(text, KIT).diagnostics == []
 
 
 def test_advice_is_for_right_programs_alone() -> None:
     wrong = check_text("X = 5;S = 5", KIT)
-    assert [problem.is_mistake for problem in wrong.problems] == [True]
+    assert [diagnostic.is_mistake for diagnostic in wrong.diagnostics] == [True]
     assert wrong.program is not None
     assert advice(wrong.program, KIT)

@@ -17,7 +17,7 @@ from tests.support.shared_pty_robot import Shared
 from tiniscript import __version__
 from tiniscript.link.frames import decoded
 from tiniscript.sharing import protocol, registry
-from tiniscript.sharing.registry import Holder
+from tiniscript.sharing.registry import Registration
 
 pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
@@ -70,7 +70,7 @@ def test_commands_share_a_session_that_is_begun_once(
     assert "SHOW 1.5" in done.out
 
 
-def test_all_names_of_a_port_lead_to_its_holder(
+def test_all_names_of_a_port_lead_to_its_server(
     pty_robot: PtyRobot, link: Command, tmp_path: Path
 ) -> None:
     name = tmp_path / "by-id"
@@ -118,7 +118,7 @@ while data := peer.recv(1000):
 """
 
 
-def test_a_guest_may_have_chosen_another_robot(pty_robot: PtyRobot) -> None:
+def test_a_client_may_have_chosen_another_robot(pty_robot: PtyRobot) -> None:
     command = Command("monitor", "--port", pty_robot.port, "--robot", "grabber")
     assert command.process.stderr
     command.process.stderr.readline()  # it watches
@@ -154,7 +154,7 @@ def test_monitor_shows_what_live_does_and_not_its_bookkeeping(
     assert monitor.ended().out == ""
 
 
-def test_an_upload_through_a_holder_imports_no_more_than_it_needs() -> None:
+def test_an_upload_through_a_server_imports_no_more_than_it_needs() -> None:
     """So the robot moves before a person has let go of the key."""
     code = (
         "import sys; from tiniscript.cli import main; assert main(sys.argv[1:]) == 0; "
@@ -180,7 +180,7 @@ def test_a_robot_stops_without_the_command_that_has_started_it(
     gone_ms = pty_robot.robot_ms
     command.signal(number)
     pty_robot.until(lambda: not pty_robot.moves, "it stops by itself")
-    # at once, if the holder sees it go
+    # at once, if the server sees it go
     assert int(pty_robot.timed[-1].split()[0]) <= gone_ms + (
         1500 if number == signal.SIGSTOP else 900
     )
@@ -189,7 +189,7 @@ def test_a_robot_stops_without_the_command_that_has_started_it(
     command.process.communicate()
 
 
-def test_ctrl_c_in_a_guest_stops_the_robot(pty_robot: PtyRobot, link: Command) -> None:
+def test_ctrl_c_in_a_client_stops_the_robot(pty_robot: PtyRobot, link: Command) -> None:
     command = uploading(pty_robot)
     command.signal(signal.SIGINT)
     done = command.ended()
@@ -221,10 +221,10 @@ def test_a_second_program_ends_the_first_and_both_know(pty_robot: PtyRobot) -> N
     pty_robot.until(lambda: not pty_robot.moves, "nobody is left who attends")
 
 
-# -- endings of a holder --------------------------------------------------------------------------
+# -- endings of a server --------------------------------------------------------------------------
 
 
-def test_a_holder_that_leaves_stops_the_run_of_its_guest(
+def test_a_server_that_leaves_stops_the_run_of_its_client(
     pty_robot: PtyRobot, link: Command
 ) -> None:
     command = uploading(pty_robot)
@@ -239,7 +239,7 @@ def test_a_holder_that_leaves_stops_the_run_of_its_guest(
     assert hellos(pty_robot) == 2
 
 
-def test_a_holder_that_is_killed_blocks_nobody(pty_robot: PtyRobot, link: Command) -> None:
+def test_a_server_that_is_killed_blocks_nobody(pty_robot: PtyRobot, link: Command) -> None:
     command = uploading(pty_robot)
     link.process.kill()
     done = command.ended()
@@ -255,20 +255,20 @@ def test_a_holder_that_is_killed_blocks_nobody(pty_robot: PtyRobot, link: Comman
     assert registry.found(pty_robot.port) is None
 
 
-def test_a_stop_gets_through_while_its_holder_ends(pty_robot: PtyRobot) -> None:
+def test_a_stop_gets_through_while_its_server_ends(pty_robot: PtyRobot) -> None:
     """Whoever comes in the middle opens the port itself."""
     for wait_s in (0, 0.1):
-        holder = uploading(pty_robot)
+        server = uploading(pty_robot)
         stop = Command("stop", "--port", pty_robot.port)
         time.sleep(wait_s)
-        holder.process.kill()
+        server.process.kill()
         done = stop.ended()
         assert (done.code, done.err) == (0, "")
         assert not pty_robot.moves
-        holder.process.communicate()
+        server.process.communicate()
     assert on(pty_robot, "upload", "-e", FOREVER, "--detach").code == 0
     with socket.create_server((protocol.HOST, 0)) as holding:
-        found = Holder(pty_robot.port, holding.getsockname()[1], "a", "b", "link", 9600, 1)
+        found = Registration(pty_robot.port, holding.getsockname()[1], "a", "b", "link", 9600, 1)
         registry.write(found)
         stop = Command("stop", "--port", pty_robot.port)
         peer, _ = holding.accept()

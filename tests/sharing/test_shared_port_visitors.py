@@ -17,27 +17,26 @@ from tests.support.command import Command, Tsc
 from tests.support.pty_robot import PtyRobot, on, uploading
 from tests.support.shared_pty_robot import Shared
 from tiniscript import __version__
-from tiniscript.link.outcomes import Event
-from tiniscript.link.session import Task
+from tiniscript.link.payloads import DoneEvent, ShowEvent
 from tiniscript.sharing import protocol, registry
-from tiniscript.sharing.registry import Holder
-from tiniscript.sharing.server import FULL_BYTES, GUESTS
+from tiniscript.sharing.registry import Registration
+from tiniscript.sharing.server import CLIENTS, FULL_BYTES
 
 pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 
-def greeting(holder: Holder, **other: object) -> bytes:
-    note = {"tsc": __version__, "token": holder.token, "verb": "upload"}
-    return protocol.written({**note, **other})
+def greeting(registration: Registration, **other: object) -> bytes:
+    message = {"tsc": __version__, "token": registration.token, "verb": "upload"}
+    return protocol.written({**message, **other})
 
 
-def visitor(holder: Holder) -> socket.socket:
-    return socket.create_connection((protocol.HOST, holder.number), 10)
+def visitor(registration: Registration) -> socket.socket:
+    return socket.create_connection((protocol.HOST, registration.number), 10)
 
 
 def is_let_go(peer: socket.socket) -> bool:
-    """Whether a holder closes a connection without a word."""
+    """Whether a server closes a connection without a word."""
     try:
         return peer.recv(100) == b""
     except ConnectionError:
@@ -47,8 +46,8 @@ def is_let_go(peer: socket.socket) -> bool:
 def test_too_many_who_say_nothing_let_the_oldest_go(monkeypatch: pytest.MonkeyPatch) -> None:
     """Long before the time for their greeting is over."""
     monkeypatch.setattr("tiniscript.sharing.server.GREETING_S", 600.0)
-    with Shared() as (_, holder), ExitStack() as opened:
-        silent = [opened.enter_context(visitor(holder)) for _ in range(GUESTS + 10)]
+    with Shared() as (_, registration), ExitStack() as opened:
+        silent = [opened.enter_context(visitor(registration)) for _ in range(CLIENTS + 10)]
         assert all(is_let_go(peer) for peer in silent[:10])
         silent[10].settimeout(0.2)
         with pytest.raises(TimeoutError):
@@ -56,18 +55,18 @@ def test_too_many_who_say_nothing_let_the_oldest_go(monkeypatch: pytest.MonkeyPa
 
 
 def test_only_the_user_may_come_in(pty_robot: PtyRobot, link: Command) -> None:
-    holder = registry.found(pty_robot.port)
-    assert holder is not None
+    registration = registry.found(pty_robot.port)
+    assert registration is not None
     folder = registry._folder()
     assert stat.S_IMODE(folder.stat().st_mode) == 0o700
     for path in folder.iterdir():
         assert stat.S_IMODE(path.stat().st_mode) == 0o600
     command = uploading(pty_robot)
     rude = (
-        greeting(holder, token="0" * 32),
-        greeting(holder, token="é"),
-        greeting(holder, token=5),
-        greeting(holder, verb="x" * 99),
+        greeting(registration, token="0" * 32),
+        greeting(registration, token="é"),
+        greeting(registration, token=5),
+        greeting(registration, verb="x" * 99),
         protocol.written({"do": "stop"}),
         b"GET / HTTP/1.1\r\n\r\n",
         b"[" * 900 + b"\n",
@@ -75,11 +74,11 @@ def test_only_the_user_may_come_in(pty_robot: PtyRobot, link: Command) -> None:
         b"a" * 5000,
     )
     for data in rude:
-        with visitor(holder) as peer:
+        with visitor(registration) as peer:
             peer.sendall(data)
             assert is_let_go(peer)
     assert pty_robot.moves
-    silent = [visitor(holder) for _ in range(100)]
+    silent = [visitor(registration) for _ in range(100)]
     assert on(pty_robot, "stop").code == 0
     assert command.ended().code == 3
     for peer in silent:
@@ -97,21 +96,23 @@ def test_only_the_user_may_come_in(pty_robot: PtyRobot, link: Command) -> None:
         {"do": "live", "code": "00", "kit": "5"},
         {"do": "live", "code": 7, "kit": 0},
         {"do": "start", "is_detached": 1},
-        {"do": "upload", "start": "PING", "kit": 0, "code": "", "checksum": 0, "isa": "0100",
-         "runs": True, "saves": False, "is_detached": False},
-        {"do": "upload", "start": "SI", "kit": -1, "code": "", "checksum": 0, "isa": "0100",
-         "runs": True, "saves": False, "is_detached": False},
+        {"do": "upload", "start": "PING", "kit": 0, "devices": 0, "code": "", "later": "",
+         "checksum": 0, "isa": "0200", "runs": True, "saves": False, "is_detached": False},
+        {"do": "upload", "start": "SI", "kit": 0, "devices": -1, "code": "", "later": "",
+         "checksum": 0, "isa": "0200", "runs": True, "saves": False, "is_detached": False},
+        {"do": "upload", "start": "SI", "kit": 0, "devices": 0, "code": "", "later": "00" * 241,
+         "checksum": 0, "isa": "0200", "runs": True, "saves": False, "is_detached": False},
         {"do": "ping", "id": "1"},
         {"do": 5},
     ],
 )  # fmt: skip
-def test_wrong_notes_of_a_guest_end_its_visit_alone(wrong: dict[str, object]) -> None:
-    with Shared() as (pty_robot, holder), visitor(holder) as peer:
-        peer.sendall(greeting(holder) + protocol.written({"id": 1, "limit_ms": 100, **wrong}))
+def test_wrong_messages_of_a_client_end_its_visit_alone(wrong: dict[str, object]) -> None:
+    with Shared() as (pty_robot, registration), visitor(registration) as peer:
+        peer.sendall(greeting(registration) + protocol.written({"id": 1, "limit_ms": 100, **wrong}))
         said = b""
         while part := _rest(peer):
             said += part
-        assert said == protocol.written({"tsc": __version__, "answer": holder.answer})
+        assert said == protocol.written({"tsc": __version__, "answer": registration.answer})
         assert "SHOW 1" in on(pty_robot, "live", "SHOW(1)").out
 
 
@@ -124,22 +125,26 @@ def _rest(peer: socket.socket) -> bytes:
 
 def test_whoever_reads_slowly_misses_values_and_holds_up_nobody() -> None:
     shared = Shared()
-    with shared as (pty_robot, holder), visitor(holder) as peer:
-        peer.sendall(greeting(holder))
-        reader = protocol.Notes(protocol.LINE_BYTES)
+    with shared as (pty_robot, registration), visitor(registration) as peer:
+        peer.sendall(greeting(registration))
+        reader = protocol.MessageReader(protocol.LINE_BYTES)
         found = reader.put(peer.recv(65536))
         count = 50 * FULL_BYTES // 60
         for k in range(count):
-            shared.host._hear([(k, Event("SHOW", {"value": k, "is_yes_no": 0}))])
-        shared.host._hear([(count, Event("DONE", {"run": 9}))])
+            shared.server._hear([(k, ShowEvent(k, 0))])
+        shared.server._hear([(count, DoneEvent(9))])
         assert "SHOW 1" in on(pty_robot, "live", "SHOW(1)").out
-        while not any(note.get("event") == "DONE" for note in found):
+        while not any(message.get("event") == "DONE" for message in found):
             data = peer.recv(65536)
             assert data, "it was let go"
             found += reader.put(data)
-        found = found[: [note.get("event") for note in found].index("DONE")]
-        missed = [protocol.values(note)["count"] for note in found if note.get("event") == "MISSED"]
-        shown = sum(note.get("event") == "SHOW" for note in found)
+        found = found[: [message.get("event") for message in found].index("DONE")]
+        missed = [
+            protocol.values(message)["count"]
+            for message in found
+            if message.get("event") == "MISSED"
+        ]
+        shown = sum(message.get("event") == "SHOW" for message in found)
         assert sum(int(each) for each in missed) + shown == count
         assert missed
 
@@ -157,25 +162,25 @@ def test_nothing_is_shared_where_nothing_can_be_written(
 
 
 @pytest.mark.parametrize("text", ["", "{", "[]", "{}", '{"port": 5}', "[" * 5000, "\0"])
-def test_a_file_that_says_nothing_is_no_holder(pty_robot: PtyRobot, text: str) -> None:
-    with Shared() as (other, holder):
+def test_a_file_that_says_nothing_is_no_server(pty_robot: PtyRobot, text: str) -> None:
+    with Shared() as (other, registration):
         path = registry._path(other.port)
         path.write_text(text)
         assert registry.found(other.port) is None
         assert registry.all_found() == []
-    path.write_text(json.dumps(holder._replace(port=pty_robot.port)._asdict()))
+    path.write_text(json.dumps(registration._replace(port=pty_robot.port)._asdict()))
     assert registry.found(other.port) is None
     if os.name == "posix":
-        path.write_text(json.dumps(holder._asdict()))
-        assert registry.found(other.port) == holder
+        path.write_text(json.dumps(registration._asdict()))
+        assert registry.found(other.port) == registration
         path.parent.chmod(0o755)
         assert registry.found(other.port) is None
 
 
-def test_somebody_else_at_the_number_of_a_crashed_holder_is_no_holder(pty_robot: PtyRobot) -> None:
+def test_somebody_else_at_the_number_of_a_crashed_server_is_no_server(pty_robot: PtyRobot) -> None:
     with socket.create_server((protocol.HOST, 0)) as stranger:
         number = stranger.getsockname()[1]
-        registry.write(Holder(pty_robot.port, number, "a", "b", "link", 9600, 1))
+        registry.write(Registration(pty_robot.port, number, "a", "b", "link", 9600, 1))
         command = Command("info", "--port", pty_robot.port)
         peer, _ = stranger.accept()
         with peer:
@@ -187,13 +192,13 @@ def test_somebody_else_at_the_number_of_a_crashed_holder_is_no_holder(pty_robot:
 
 
 def test_a_bug_of_ours_in_a_thread_is_raised_where_somebody_waits() -> None:
-    for part in ("session", "host"):
+    for part in ("session", "server"):
         shared = Shared()
-        with shared as (_, holder), visitor(holder) as peer:
+        with shared as (_, registration), visitor(registration) as peer:
             if part == "session":
-                shared.line.session._tasks.append(cast("Task", None))
+                shared.line.session._waiting.append(cast("Any", None))
             else:
-                shared.host._orphans.append(cast("Any", None))
+                shared.server._detached_requests.append(cast("Any", None))
             with pytest.raises(AttributeError):
                 while True:
                     shared.line.event()

@@ -18,7 +18,7 @@ from tests.support.command import FOREVER, TSC, Command, process
 from tests.support.pty_robot import PtyRobot, on, uploading
 from tiniscript import __version__
 from tiniscript.sharing import protocol, registry
-from tiniscript.sharing.registry import Holder
+from tiniscript.sharing.registry import Registration
 
 pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
@@ -70,9 +70,12 @@ def mutated(chance: Random) -> bytes:
     return bytes(data)
 
 
-def say(holder: Holder, data: bytes, chance: Random) -> None:
+def say(registration: Registration, data: bytes, chance: Random) -> None:
     """Say something in one or more pieces, and leave in one of several ways."""
-    with socket.create_connection((protocol.HOST, holder.number), 10) as peer, suppress(OSError):
+    with (
+        socket.create_connection((protocol.HOST, registration.number), 10) as peer,
+        suppress(OSError),
+    ):
         cut = chance.randrange(len(data) + 1)
         for piece in (data[:cut], data[cut:]) if chance.random() < 0.3 else (data,):
             peer.sendall(piece)
@@ -82,7 +85,7 @@ def say(holder: Holder, data: bytes, chance: Random) -> None:
             assert said == b"", "a stranger is answered"
 
 
-def holder_of(port: str) -> Holder:
+def registration_of(port: str) -> Registration:
     found = registry.found(port)
     assert found is not None
     return found
@@ -92,11 +95,11 @@ def test_no_bytes_of_a_stranger_end_a_run(pty_robot: PtyRobot) -> None:
     """The command that has started it holds the port; its heartbeat goes on."""
     chance = Random(14)
     command = uploading(pty_robot)
-    holder = holder_of(pty_robot.port)
+    registration = registration_of(pty_robot.port)
     for data in STRANGE:
-        say(holder, data, chance)
+        say(registration, data, chance)
     for _ in range(1500):
-        say(holder, mutated(chance), chance)
+        say(registration, mutated(chance), chance)
     assert pty_robot.moves
     assert not [line for line in pty_robot.did if "FAULT" in line or "STOP" in line]
     assert json.loads(on(pty_robot, "info", "--json").out)["state"] == "RUNNING"
@@ -106,14 +109,14 @@ def test_no_bytes_of_a_stranger_end_a_run(pty_robot: PtyRobot) -> None:
     assert "the robot has confirmed it" in done.err
 
 
-def test_no_bytes_of_a_stranger_end_a_guest_of_link(pty_robot: PtyRobot, link: Command) -> None:
+def test_no_bytes_of_a_stranger_end_a_client_of_link(pty_robot: PtyRobot, link: Command) -> None:
     chance = Random(15)
     command = uploading(pty_robot)
-    holder = holder_of(pty_robot.port)
+    registration = registration_of(pty_robot.port)
     for data in STRANGE:
-        say(holder, data, chance)
+        say(registration, data, chance)
     for _ in range(500):
-        say(holder, mutated(chance), chance)
+        say(registration, mutated(chance), chance)
     assert pty_robot.moves
     assert not [line for line in pty_robot.did if "FAULT" in line or "STOP" in line]
     assert on(pty_robot, "stop").code == 0
@@ -194,7 +197,7 @@ def test_a_stop_gets_through_a_thousand_connections(there: bytes, here: bytes) -
         with few("upload", "--port", port, "-e", FOREVER) as command:
             assert command.stdout
             assert b"running" in command.stdout.readline()
-            held = holder_of(port).number
+            held = registration_of(port).number
             with crowd(number, says=there), crowd(held, says=here):
                 done = process("info", "--port", port, "--json")
                 assert json.loads(done.out)["state"] == "RUNNING"

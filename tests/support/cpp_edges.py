@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from tests.machines import Senses
 from tests.machines.host import Host
 from tests.support.cpp_checks import WIDE, compare_runs, compare_verdicts
+from tests.support.images import image_for
 from tests.support.random_codes import jump, loop, simple
 from tiniscript.bytecode.opcodes import (
     BY_CODE,
@@ -17,6 +18,8 @@ from tiniscript.bytecode.opcodes import (
     COUNTERS,
     DEFS,
     JOINS,
+    OPS,
+    SHORTS,
     STACK_VALUES,
     VARIABLES,
 )
@@ -75,7 +78,7 @@ def check_what_is_closed(machine: Host) -> None:
         jump("WHILE", True, 6) + leave + jump("AGAIN", True, 6),
         loop(stop, 1),
         yes + jump("AND_THEN", True, 1) + yes + simple("SHOW_YES_NO"),
-        simple("WATCH_FOREVER_WAIT") + yes + jump("UNTIL", True, 4),
+        simple("WATCH_FOREVER_WAIT") + yes + simple("UNTIL"),
     )
     for piece in pieces:
         compare_verdicts(machine, [piece * count for count in range(40)], 3, 2)
@@ -140,13 +143,35 @@ def check_places(machine: Host) -> None:
     compare_verdicts(machine, [code + jump("CALL", True, len(code))], 3, 2)
 
 
+def check_shorts(machine: Host) -> None:
+    """Instructions of one byte mean the variable, sensor or actuator that is in their code."""
+    devices = kit_of(SHORTS).sensors
+    kit = Kit(devices, tuple(each._replace(name=f"A{each.name}") for each in devices))
+    code = b""
+    for family, before, behind in (
+        ("SET_VAR", "PUSH_NUM_{}", ""), ("PUSH_VAR", "", "SHOW"), ("READ", "", ""),
+        ("PUSH_SENSOR", "", "SHOW"), ("PUSH_READ", "", "SHOW"), ("SET", "PUSH_NUM_{}", ""),
+    ):  # fmt: skip
+        for n in range(SHORTS):
+            words = (before.format(n + 1), f"{family}_{n}", behind)
+            code += b"".join(simple(word) for word in words if word)
+    readings = {each.name: (1000 * k + 1, 1000 * k + 2) for k, each in enumerate(devices)}
+    compare_verdicts(machine, [code], SHORTS, SHORTS)
+    ending = compare_runs(machine, code, kit, Senses(readings, max_ms=100, max_steps=200))
+    assert ending == "DONE", ending
+
+
 def check_long_time(machine: Host) -> None:
-    """TIME is too large for a number after 24 days."""
+    """TIME is too large for a number after 24 days, and stays so: the clock of 32 bits wraps."""
     most = simple("PUSH32") + (2**31 - 1).to_bytes(4, "little") + simple("WAIT")
     time = simple("TIME") + simple("SHOW")
     senses = Senses(max_ms=2**31 + 1000, max_steps=100)
     ending = compare_runs(machine, most + time + simple("WAIT8") + b"\x01" + time, WIDE, senses)
     assert ending == "OVERFLOW", ending
+    for code in (most * 2 + simple("WAIT8") + b"\x78", most * 5):
+        image = image_for(code + time, WIDE)
+        ran = machine.run(image, WIDE, senses._replace(max_ms=2**32 - 1))
+        assert ran.trace.splitlines()[-1].endswith(" FAULT OVERFLOW"), ran.trace
 
 
 def changed_code(sensors: int) -> Iterator[tuple[bytes, int | None]]:
@@ -158,6 +183,7 @@ def changed_code(sensors: int) -> Iterator[tuple[bytes, int | None]]:
     count = simple("LOOP8") + b"\x01"
     for values, caught in ((STACK_VALUES, None), (STACK_VALUES + 1, STACK_VALUES)):
         yield yes * values, caught
+    yield yes * STACK_VALUES + simple("TIME"), STACK_VALUES
     yield show, 0
     yield yes + simple("ADD") + show, 1
     yield yes + simple("MOTORS"), 1
@@ -168,13 +194,17 @@ def changed_code(sensors: int) -> Iterator[tuple[bytes, int | None]]:
         yield simple("ADD_VAR") + b"\x00" + number, caught
         yield simple("PUSH_VAR") + number, caught
         yield yes + simple("SET_VAR") + number, None if caught is None else 1
+        yield simple("INC_VAR") + number, caught
+        yield simple("DEC_VAR") + number, caught
         yield simple("IF_VAR8_NE") + number + b"\x07\x00", caught
+        yield simple("IF_VAR16_NE") + number + b"\x07\x00\x00", caught
     for each, caught in ((sensors - 1, None), (sensors, 0), (255, 0)):
         number = bytes([each])
         for name in ("READ", "PUSH_SENSOR", "PUSH_READ"):
             yield simple(name) + number, caught
-        for name in ("IF_SENSOR8_NE", "IF_READ8_NE"):
-            yield simple(name) + number + b"\x07\x00", caught
+    for op in OPS:  # instructions of one byte name what a machine has, or may have not
+        if op.implied and op.implied.kind.name == "sensor":
+            yield bytes([op.code]), 0 if op.implied.value >= sensors else None
     yield count * COUNTERS, None
     yield count * (COUNTERS + 1), 2 * COUNTERS
     close = jump("NEXT", False, 0)
@@ -202,7 +232,7 @@ def changed_code(sensors: int) -> Iterator[tuple[bytes, int | None]]:
 def check_run_time_checks(machine: Host) -> None:
     """Code that changed after it was verified ends in BAD_CODE, and not too early."""
     # a robot may say that it has more sensors than a machine remembers
-    for many in (DEVICES - 1, DEVICES, DEVICES + 1, 2 * DEVICES):
+    for many in (3, DEVICES - 1, DEVICES, DEVICES + 1, 2 * DEVICES):
         kit = kit_of(many)
         for code, caught in changed_code(min(many, DEVICES)):
             ran = machine.run_unverified(code, kit, Senses(max_ms=100, max_steps=100))

@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 from tests.machines import Senses
 from tests.machines.host import Host
-from tests.support import cpp_checks, cpp_edges
+from tests.support import cpp_checks, cpp_edges, cpp_images
 from tests.support.casefile import Case, all_cases
 from tests.vm.test_agreement import check_machine, random_program
 from tests.vm.test_cases import trace_of
@@ -58,9 +58,11 @@ def checks() -> Iterator[Check]:
     yield Check("verdicts", "what is closed", cpp_edges.check_what_is_closed)
     yield Check("verdicts", "what procedures need", cpp_edges.check_needs)
     yield Check("memory", "places", cpp_edges.check_places)
+    yield Check("memory", "what is in a code", cpp_edges.check_shorts)
     yield Check("time", "24 days", cpp_edges.check_long_time)
     yield Check("images", "random images", partial(_images, 0))
-    yield Check("images", "long images", cpp_checks.check_long_images)
+    yield Check("images", "long images", cpp_images.check_long_images)
+    yield Check("images", "images of programs", partial(_whole_images, 0))
     for late_ms in (0, 19, 20, 21, 100):
         yield Check("time", f"{late_ms} ms late", partial(_late, late_ms))
     for begin_ms in (1, 2**31 - 500, 2**32 - 1500):
@@ -105,7 +107,11 @@ def _devices(devices: int, host: Host) -> None:
 
 
 def _images(seed: int, host: Host) -> None:
-    cpp_checks.check_images(host, seed, 10_000)
+    cpp_images.check_images(host, seed, 10_000)
+
+
+def _whole_images(seed: int, host: Host) -> None:
+    cpp_images.check_whole_images(host, seed, 1000)
 
 
 def _late(late_ms: int, host: Host) -> None:

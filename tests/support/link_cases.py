@@ -16,17 +16,20 @@ taken), and `=` what it finds.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
-from typing import NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol
 
 from tests.machines.link import CppLink, Step
 from tests.support.casefile import ROOT
 from tiniscript.bytecode.image import pack, unpack
+from tiniscript.link.connection import PendingRequest
+from tiniscript.link.fields import of_event, of_payload
 from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.messages import BY_NAME, BY_NUMBER, FIRST_EVENT, Malformed, read, written
 from tiniscript.link.receiver import ITEM_BYTES, Receiver
-from tiniscript.link.session import Session, Task
+from tiniscript.link.requests import OK
+from tiniscript.link.session import Session
 from tiniscript.link.statuses import name_of
 
 STEP_MS = 10
@@ -200,7 +203,7 @@ class SessionSide:
 
     def __init__(self) -> None:
         self.session = Session(nonce=0x01020304, kit=KIT)
-        self.tasks: list[Task] = []
+        self.pending: list[PendingRequest[Any]] = []
         self.now_ms = 0
 
     def asked(self, words: list[str]) -> None:
@@ -210,7 +213,7 @@ class SessionSide:
         if words[0] == "stop":
             session.stop(self.now_ms)
             return
-        actions: dict[str, Callable[[], Task]] = {
+        actions: dict[str, Callable[[], PendingRequest[Any]]] = {
             "hello": session.hello,
             "ping": session.ping,
             "status": session.status,
@@ -220,12 +223,13 @@ class SessionSide:
             "live": lambda: session.live(data),
             "name": lambda: session.name(data),
             "upload": lambda: session.upload(
-                unpack(pack(flags.get("start", "SI"), int(flags.get("kit", "0")), data)),
+                unpack(pack(flags.get("start", "SI"), int(flags.get("devices", "0")), data)),
                 runs=flags.get("run") != "no",
                 saves=flags.get("save") != "no",
+                kit=int(flags["kit"]) if "kit" in flags else None,
             ),
         }
-        self.tasks.append(actions[words[0]]())
+        self.pending.append(actions[words[0]]())
 
     def poll(self, now_ms: int) -> bytes:
         self.now_ms = now_ms
@@ -235,19 +239,19 @@ class SessionSide:
         self.session.receive(data, now_ms)
 
     def said(self) -> list[str]:
-        rows = [_said("tells " + each.name, each.values) for each in self.session.events()]
-        for task in [each for each in self.tasks if each.outcome]:
-            assert task.outcome
-            name = {-1: "LOST", -2: "CANCELLED"}.get(task.outcome.status)
-            name = name or name_of(task.outcome.status)
-            detail = f" {task.outcome.detail}" if task.outcome.detail else ""
-            rows.append(_said(f"outcome {name}{detail}", task.outcome.values))
-            self.tasks.remove(task)
+        rows = [_said("tells " + each.name, of_event(each)) for each in self.session.events()]
+        for request in [each for each in self.pending if each.outcome]:
+            assert request.outcome
+            name = {-1: "LOST", -2: "CANCELLED"}.get(request.outcome.status)
+            name = name or name_of(request.outcome.status)
+            detail = f" {request.outcome.detail}" if request.outcome.detail else ""
+            values = of_payload(request.outcome.values) if request.outcome.status == OK else {}
+            rows.append(_said(f"outcome {name}{detail}", values))
+            self.pending.remove(request)
         return rows
 
 
-def _said(head: str, values: object) -> str:
-    assert isinstance(values, dict)
+def _said(head: str, values: Mapping[str, int | bytes]) -> str:
     return " ".join([head, *(f"{name}={shown(value)}" for name, value in values.items())])
 
 

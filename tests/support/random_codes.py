@@ -7,16 +7,14 @@ code that is accepted is run, and code that breaks one rule shows where that rul
 from __future__ import annotations
 
 import random
-import zlib
 from collections.abc import Iterator
 from functools import lru_cache
-from struct import pack as struct_pack
 
 from tests.machines import Senses
 from tests.oracle import programs
 from tests.support.kits import KITS
 from tiniscript import compile_text
-from tiniscript.bytecode.image import HEADER_BYTES, pack
+from tiniscript.bytecode.image import HEADER_BYTES, pack, sealed
 from tiniscript.bytecode.opcodes import BY_NAME, OPS, Op
 from tiniscript.kit import Kit
 
@@ -110,10 +108,10 @@ def nested_code(rng: random.Random, levels: int) -> bytes:
             code += jump("DEF", far, len(end) + slip) + end
             code += jump("CALL", far, len(end) + (3 if far else 2) + rng.choice((0, 0, slip)))
         elif kind == 6:
-            check = bytes((BY_NAME["PUSH_READ"].code, 0, BY_NAME["PUSH8"].code, 5))
-            check += simple("LT")
-            code += simple("WATCH_FOREVER_WAIT") + check
-            code += jump("UNTIL", far, len(check) + (3 if far else 2) + slip)
+            code += simple("WATCH_FOREVER_WAIT") + bytes((BY_NAME["PUSH_READ"].code, 0))
+            compared = bytes((BY_NAME["PUSH8"].code, 5)) + simple("LT") + simple("UNTIL")
+            code += rng.choice((compared, simple("UNTIL8_LT") + b"\x05"))
+            code += simple("UNTIL") if slip == 1 else b""
         else:
             inner = jump("BREAK", far, len(inner) + (3 if far else 2)) + inner
             back = jump("AGAIN", far, len(inner) + (3 if far else 2))
@@ -175,7 +173,7 @@ def deep_code(rng: random.Random) -> bytes:
 def expression(rng: random.Random) -> bytes:
     """Return code that shows a value calculated from numbers of all sizes."""
     code, depth = b"", 0
-    ops = [op for op in OPS if op.role == "value" and not op.operands]
+    ops = [op for op in OPS if op.role == "value" and (op.pops or op.name == "TIME")]
     for _ in range(rng.randrange(1, 12)):
         op = rng.choice(ops)
         while depth < op.pops:
@@ -194,12 +192,15 @@ def branches(rng: random.Random) -> bytes:
         op = rng.choice([op for op in OPS if op.role == "if"])
         near = rng.choice((0, 1, 2, 9, 200))
         code += simple("PUSH16") + near.to_bytes(2, "little") + simple("SET_VAR") + b"\x01"
-        if op.pops:
+        *variable, compared, _ = [None, None, *(each.kind for each in op.operands)][-3:]
+        if compared is None:
             code += simple(rng.choice(("PUSH_TRUE", "PUSH_FALSE"))) + bytes([op.code])
         else:
-            code += bytes([op.code, 1])
+            is_variable = variable != [None]
+            code += b"" if is_variable else simple("PUSH_VAR_1")
+            code += bytes([op.code, 1] if is_variable else [op.code])
             number = near + rng.choice((-1, 0, 0, 1))
-            size = op.operands[1].kind.size
+            size = compared.size
             code += (number & ((1 << 8 * size) - 1)).to_bytes(size, "little")
         code += len(body).to_bytes(op.operands[-1].kind.size, "little") + body
     return code
@@ -283,19 +284,46 @@ def some_programs() -> tuple[tuple[bytes, Kit, Senses], ...]:
 
 
 def random_images(seed: int, count: int) -> Iterator[bytes]:
-    """Yield images with a change in them, the checksum mended in most of them."""
+    """Yield images with a change in their header, the checksum mended in most of them."""
     rng = random.Random(seed)
     for _ in range(count):
-        kit = rng.choice((0, 1, 0x1234))
-        image = bytearray(
-            pack(rng.choice(("SI", "SB", "PING")), kit, rng.randbytes(rng.randrange(9)))
-        )
-        for _ in range(rng.choice((0, 1, 1, 2))):
-            image[rng.randrange(min(len(image), HEADER_BYTES))] = rng.choice((0, 1, 2, 3, 255))
-        if rng.random() < 0.3:
-            del image[rng.randrange(len(image) + 1) :]
-        elif rng.random() < 0.2:
-            image += rng.randbytes(rng.randrange(3))
-        if rng.random() < 0.8 and len(image) >= HEADER_BYTES:
-            image[10:14] = struct_pack("<I", zlib.crc32(image[:10] + image[14:]))
-        yield bytes(image)
+        start, code = rng.choice(("SI", "SB", "PING")), rng.randbytes(rng.randrange(9))
+        later = rng.randbytes(rng.choice((0, 0, 1, 7, 240)))
+        yield changed_image(rng, pack(start, rng.choice((0, 1, 0x1234)), code, later))
+
+
+def images_of_programs(seed: int, count: int) -> Iterator[tuple[bytes, Kit]]:
+    """Yield images of programs, half of them with a change, and the kits that they are for."""
+    rng = random.Random(seed)
+    for number in range(count):
+        image, kit, _ = some_programs()[number % len(some_programs())]
+        yield (changed_image(rng, image) if rng.random() < 0.5 else image), kit
+
+
+def changed_kit(rng: random.Random, kit: Kit) -> Kit:
+    """Return a kit with one device that is another one, is missing, or has come."""
+    sensors = list(kit.sensors)
+    at = rng.randrange(len(sensors))
+    change = rng.randrange(4)
+    if change == 0:
+        sensors[at] = sensors[at]._replace(unit=sensors[at].unit + "x")
+    elif change == 1:
+        sensors[at] = sensors[at]._replace(low=sensors[at].low - 1)
+    elif change == 2:
+        del sensors[at]
+    else:
+        sensors.append(sensors[at]._replace(name="ANOTHER"))
+    return kit._replace(sensors=tuple(sensors))
+
+
+def changed_image(rng: random.Random, data: bytes) -> bytes:
+    image = bytearray(data)
+    for _ in range(rng.choice((0, 1, 1, 2))):
+        at = rng.randrange(min(len(image), HEADER_BYTES))
+        image[at] = rng.choice((0, 1, 2, 3, HEADER_BYTES, 127, 128, 255))
+    if rng.random() < 0.3:
+        del image[rng.randrange(len(image) + 1) :]
+    elif rng.random() < 0.2:
+        image += rng.randbytes(rng.randrange(3))
+    is_mended = rng.random() < 0.8 and len(image) >= HEADER_BYTES
+    return sealed(bytes(image)) if is_mended else bytes(image)

@@ -7,8 +7,8 @@ from tiniscript import robots
 from tiniscript.link.line import Line
 from tiniscript.link.ports import opened
 from tiniscript.link.session import Session
-from tiniscript.sharing.registry import Holder
-from tiniscript.sharing.server import Host
+from tiniscript.sharing.registry import Registration
+from tiniscript.sharing.server import Server
 
 KIT = robots.load("tinibot").kit
 
@@ -16,14 +16,14 @@ KIT = robots.load("tinibot").kit
 class Shared:
     """A line of this process that is shared."""
 
-    def __enter__(self) -> tuple[PtyRobot, Holder]:
+    def __enter__(self) -> tuple[PtyRobot, Registration]:
         self.pty_robot = PtyRobot(KIT)
         device = opened(self.pty_robot.port, 9600)
         self.line = Line(device, Session(1, 9600, KIT.fingerprint))
-        self.host = Host(self.line, self.pty_robot.port, 9600, "link")
-        return self.pty_robot, self.host.holder
+        self.server = Server(self.line, self.pty_robot.port, 9600, "link")
+        return self.pty_robot, self.server.registration
 
     def __exit__(self, *_: object) -> None:
-        self.host.close()
+        self.server.close()
         self.line.close()
         self.pty_robot.clear_away()

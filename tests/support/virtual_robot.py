@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TypeVar
 
 from tests.machines.wasm import missing
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import unpack
+from tiniscript.link.connection import PendingRequest
+from tiniscript.link.payloads import ReceiptReply
 from tiniscript.link.requests import Reply
-from tiniscript.link.session import Session, Task
+from tiniscript.link.session import Session
 from tiniscript.virtual.robot import Settings, VirtualRobot
 from tiniscript.virtual.world import World
 from tiniscript.virtual.world_reader import read
 from tiniscript.vm.trace import Event
 
 __all__ = ("Talk", "floor", "missing", "robot_in", "trace")
+T = TypeVar("T")
 
 
 def floor(parts: str = "", start: str = "x_cm = 100\ny_cm = 100", size: int = 200) -> World:
@@ -54,15 +58,17 @@ class Talk:
             sent = self.robot.step(now_ms, self.session.poll(now_ms))
             self.session.receive(sent, now_ms)
 
-    def until(self, task: Task, limit_ms: int = 60_000) -> Reply:
+    def until(self, request: PendingRequest[T], limit_ms: int = 60_000) -> Reply[T]:
         end_ms = self.robot.now_ms + limit_ms
-        while task.outcome is None:
+        while request.outcome is None:
             assert self.robot.now_ms < end_ms, "the robot does not answer"
             self.wait(1)
-        return task.outcome
+        return request.outcome
 
-    def upload(self, text: str, runs: bool = True, is_detached: bool = False) -> Reply:
+    def upload(
+        self, text: str, runs: bool = True, is_detached: bool = False
+    ) -> Reply[ReceiptReply]:
         self.until(self.session.hello())
         kit = self.robot.profile.kit
-        image = unpack(compile_text(text, kit).image, kit.fingerprint)
+        image = unpack(compile_text(text, kit).image)
         return self.until(self.session.upload(image, runs, True, is_detached))

@@ -30,7 +30,7 @@ def after(text: str) -> str:
 
 
 def has_mistakes(text: str) -> bool:
-    return any(problem.is_mistake for problem in parse(Source(text)).problems)
+    return any(diagnostic.is_mistake for diagnostic in parse(Source(text)).diagnostics)
 
 
 # --- Layouts by hand --------------------------------------------------------------------------
@@ -255,7 +255,7 @@ def check_compiled(text: str, of: kit.Kit) -> None:
     assert before.is_right and then.is_right
     assert before.image and then.image == before.image
     assert len(then.places) == len(before.places)
-    assert [each.code for each in then.problems] == [each.code for each in before.problems]
+    assert [each.code for each in then.diagnostics] == [each.code for each in before.diagnostics]
 
 
 def laid_out_anew(rng: random.Random, text: str) -> str:

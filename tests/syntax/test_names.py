@@ -23,7 +23,7 @@ NO_KIT = Kit((), ())
 
 def is_right(text: str, kit: Kit = NO_KIT) -> bool:
     found = compile_text(text, kit)
-    return not [problem.code.number for problem in found.problems if problem.is_mistake]
+    return not [diagnostic.code.number for diagnostic in found.diagnostics if diagnostic.is_mistake]
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -78,7 +78,7 @@ def reported(text: str, kit: Kit | None = KIT) -> list[str]:
     """Return each diagnostic as its code and what it points at."""
     return [
         f"{each.code.number} {text[each.span.start : each.span.end]}"
-        for each in parse(Source(text), kit).problems
+        for each in parse(Source(text), kit).diagnostics
     ]
 
 
@@ -330,7 +330,7 @@ def test_a_def_may_be_called_by_a_word_of_another_language() -> None:
 
 def test_reading_ends_where_more_diagnostics_help_nobody() -> None:
     found = parse(Source("*;" * 5000), KIT)
-    assert len(found.problems) == ENOUGH + 1
+    assert len(found.diagnostics) == ENOUGH + 1
 
 
 # -- any text -------------------------------------------------------------------------------------
@@ -387,10 +387,10 @@ def test_nodes_of_any_text_follow_one_another_inside_their_blocks() -> None:
 
 
 def test_diagnostics_of_any_text_point_into_it() -> None:
-    found = [(text, parse(Source(text), KIT).problems) for text in broken_programs()]
-    assert sum(bool(problems) for _, problems in found) > len(found) // 2
-    for text, problems in found:
-        for each in problems:
+    found = [(text, parse(Source(text), KIT).diagnostics) for text in broken_programs()]
+    assert sum(bool(diagnostics) for _, diagnostics in found) > len(found) // 2
+    for text, diagnostics in found:
+        for each in diagnostics:
             assert 0 <= each.span.start <= each.span.end <= len(text), text
 
 

@@ -18,10 +18,10 @@ from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.messages import BY_NAME, MAJOR, MINOR, PAYLOAD_BYTES, RUN, written
 from tiniscript.link.session import Session
-from tiniscript.virtual import transports as guests_room
+from tiniscript.virtual import transports as limits
 from tiniscript.virtual.first_bytes import LONGEST, is_for_robot
-from tiniscript.virtual.simulator import Host
-from tiniscript.virtual.transports import CALLERS, Guests
+from tiniscript.virtual.simulator import Simulator
+from tiniscript.virtual.transports import CALLERS, Transports
 
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
 
@@ -55,7 +55,7 @@ def program() -> bytes:
     hello = b"\0" + frame("HELLO", **versions, kit=kit.fingerprint, nonce=9)
     said = robot_in(floor()).step(500, hello)
     epochs = {each.epoch for each in map(decoded, said.split(b"\0")) if each is not None}
-    code = unpack(compile_text("SI|F(5,80)", kit).image, kit.fingerprint).code
+    code = unpack(compile_text("SI|F(5,80)", kit).image).code
     return hello + frame("LIVE", epochs.pop(), 2, mode=RUN, code=code)
 
 
@@ -147,136 +147,138 @@ def test_a_first_line_has_an_end() -> None:
 
 
 @pytest.fixture
-def host() -> Iterator[Host]:
-    guests = Guests()
-    yield Host(robot_in(floor()), guests)
-    guests.close()
+def simulator() -> Iterator[Simulator]:
+    transports = Transports()
+    yield Simulator(robot_in(floor()), transports)
+    transports.close()
 
 
-def is_let_go(host: Host, guest: socket.socket) -> bool:
+def is_let_go(simulator: Simulator, client: socket.socket) -> bool:
     """Whether it was hung up on without a word."""
     said = b"?"
     with contextlib.suppress(BlockingIOError, ConnectionError):
-        said = guest.recv(1000)
+        said = client.recv(1000)
         assert said == b""
     with contextlib.suppress(BlockingIOError):
         try:
-            guest.send(b"x")
+            client.send(b"x")
         except ConnectionError:
             return True
     return said == b""
 
 
-def _has_moved(host: Host) -> bool:
-    return any(each.what == "MOTORS" for each in host.robot.take_events())
+def _has_moved(simulator: Simulator) -> bool:
+    return any(each.what == "MOTORS" for each in simulator.robot.take_events())
 
 
-def test_what_a_page_would_send_moves_a_robot_only_without_its_header(host: Host) -> None:
+def test_what_a_page_would_send_moves_a_robot_only_without_its_header(simulator: Simulator) -> None:
     for header in (NOT_FOR_ROBOTS["post"], NOT_FOR_ROBOTS["any method"], tls_hello(), b""):
-        with visit(host) as guest:
+        with visit(simulator) as client:
             for part in (header[:3], header[3:], program()):
                 with contextlib.suppress(ConnectionError):
-                    guest.sendall(part)
-                host.turn(0.01)
+                    client.sendall(part)
+                simulator.turn(0.01)
             if header:
-                until(host, lambda guest=guest: is_let_go(host, guest))  # type: ignore[misc]
-                assert host.guests.visits == 0
-                assert host.robot.take_events() == []
+                until(simulator, lambda client=client: is_let_go(simulator, client))  # type: ignore[misc]
+                assert simulator.transports.visits == 0
+                assert simulator.robot.take_events() == []
             else:
-                until(host, lambda: _has_moved(host))
+                until(simulator, lambda: _has_moved(simulator))
 
 
-def test_a_page_does_not_come_in_after_another_guest_either(host: Host) -> None:
-    with visit(host) as first:
+def test_a_page_does_not_come_in_after_another_client_either(simulator: Simulator) -> None:
+    with visit(simulator) as first:
         first.sendall(PING)
-        until(host, lambda: host.guests.visits == 1)
-        with visit(host) as page:
+        until(simulator, lambda: simulator.transports.visits == 1)
+        with visit(simulator) as page:
             page.sendall(NOT_FOR_ROBOTS["post"] + program())
-            host.turn(0.01)
-            until(host, lambda: is_let_go(host, page))
-    until(host, lambda: not host.guests.is_connected)
-    assert not _has_moved(host)
+            simulator.turn(0.01)
+            until(simulator, lambda: is_let_go(simulator, page))
+    until(simulator, lambda: not simulator.transports.is_connected)
+    assert not _has_moved(simulator)
 
 
-def test_a_line_that_comes_letter_by_letter_is_answered(host: Host) -> None:
-    with visit(host) as guest:
+def test_a_line_that_comes_letter_by_letter_is_answered(simulator: Simulator) -> None:
+    with visit(simulator) as client:
         heard = bytearray()
         for letter in b"PING|\r\n":
-            guest.send(bytes([letter]))
+            client.send(bytes([letter]))
             for _ in range(3):
-                host.turn(0.01)
+                simulator.turn(0.01)
 
         def is_answered() -> bool:
             with contextlib.suppress(BlockingIOError):
-                heard.extend(guest.recv(1000))
+                heard.extend(client.recv(1000))
             return b"\n" in heard
 
-        until(host, is_answered)
-        assert host.guests.visits == 1
+        until(simulator, is_answered)
+        assert simulator.transports.visits == 1
 
 
 # -- many of them -------------------------------------------------------------------------------
 
 
-def crowd(host: Host, count: int, says: bytes = b"") -> list[socket.socket]:
+def crowd(simulator: Simulator, count: int, says: bytes = b"") -> list[socket.socket]:
     """Return connections that are there, or on their way."""
     found = []
     for _ in range(count):
-        guest = socket.socket()
-        guest.setblocking(False)
-        guest.connect_ex(("127.0.0.1", host.guests.port))
-        found.append(guest)
+        client = socket.socket()
+        client.setblocking(False)
+        client.connect_ex(("127.0.0.1", simulator.transports.port))
+        found.append(client)
         if says:
-            host.turn(0)
+            simulator.turn(0)
             with contextlib.suppress(OSError):
-                guest.send(says)
+                client.send(says)
     return found
 
 
 @pytest.mark.parametrize("says", [b"", b"\0", b"POS"])
-def test_many_who_say_nothing_keep_nobody_out(host: Host, says: bytes) -> None:
-    idle = crowd(host, 300, says)
-    [guest] = crowd(host, 1)
+def test_many_who_say_nothing_keep_nobody_out(simulator: Simulator, says: bytes) -> None:
+    idle = crowd(simulator, 300, says)
+    [client] = crowd(simulator, 1)
     is_said, most, heard = False, 0, bytearray()
 
     def is_answered() -> bool:
         nonlocal is_said, most
-        most = max(most, len(host.guests._callers))
+        most = max(most, len(simulator.transports._callers))
         with contextlib.suppress(BlockingIOError, BrokenPipeError):  # it does not stand yet
             if not is_said:
-                is_said = guest.send(PING) > 0
+                is_said = client.send(PING) > 0
         with contextlib.suppress(BlockingIOError):
-            heard.extend(guest.recv(1000) if is_said else b"")
+            heard.extend(client.recv(1000) if is_said else b"")
         return b"\0" in heard
 
-    until(host, is_answered)
+    until(simulator, is_answered)
     assert CALLERS / 2 < most <= CALLERS
-    for each in (guest, *idle):
+    for each in (client, *idle):
         each.close()
 
 
-def test_whoever_says_nothing_has_to_leave(host: Host, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(guests_room, "SILENT_S", 0.05)
-    monkeypatch.setattr(guests_room, "OPENING_S", 0.0)
-    for says in (b"", b"GE"):
-        with visit(host) as guest:
-            guest.sendall(says)
-            until(host, lambda guest=guest: is_let_go(host, guest))  # type: ignore[misc]
-
-
-def test_a_silent_guest_leaves_its_place_to_one_who_speaks(
-    host: Host, monkeypatch: pytest.MonkeyPatch
+def test_whoever_says_nothing_has_to_leave(
+    simulator: Simulator, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    with visit(host) as first, visit(host) as second:
+    monkeypatch.setattr(limits, "SILENT_S", 0.05)
+    monkeypatch.setattr(limits, "OPENING_S", 0.0)
+    for says in (b"", b"GE"):
+        with visit(simulator) as client:
+            client.sendall(says)
+            until(simulator, lambda client=client: is_let_go(simulator, client))  # type: ignore[misc]
+
+
+def test_a_silent_client_leaves_its_place_to_one_who_speaks(
+    simulator: Simulator, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with visit(simulator) as first, visit(simulator) as second:
         first.sendall(PING)
-        until(host, lambda: host.guests.visits == 1)
-        monkeypatch.setattr(guests_room, "PATIENT_S", 1000.0)
+        until(simulator, lambda: simulator.transports.visits == 1)
+        monkeypatch.setattr(limits, "PATIENT_S", 1000.0)
         second.sendall(PING)
         for _ in range(20):
-            host.turn(0.01)
-        assert host.guests.visits == 1
-        monkeypatch.setattr(guests_room, "IDLE_S", 0.0)
-        until(host, lambda: host.guests.visits == 2)
+            simulator.turn(0.01)
+        assert simulator.transports.visits == 1
+        monkeypatch.setattr(limits, "IDLE_S", 0.0)
+        until(simulator, lambda: simulator.transports.visits == 2)
         heard = bytearray()
 
         def is_answered() -> bool:
@@ -284,15 +286,15 @@ def test_a_silent_guest_leaves_its_place_to_one_who_speaks(
                 heard.extend(second.recv(1000))
             return b"\0" in heard
 
-        until(host, is_answered)
+        until(simulator, is_answered)
 
 
 def test_too_many_open_files_of_this_process_are_no_end(
-    host: Host, monkeypatch: pytest.MonkeyPatch
+    simulator: Simulator, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    idle = crowd(host, 5)
-    until(host, lambda: len(host.guests._callers) == 5)
-    server = host.guests._server
+    idle = crowd(simulator, 5)
+    until(simulator, lambda: len(simulator.transports._callers) == 5)
+    server = simulator.transports._server
     looks = 0
 
     class Full:
@@ -306,12 +308,12 @@ def test_too_many_open_files_of_this_process_are_no_end(
         def fileno(self) -> int:
             return server.fileno()
 
-    host.guests._server = Full()  # type: ignore[assignment]
-    with visit(host) as guest:
-        guest.sendall(PING)
-        until(host, lambda: looks > 1)
-        assert len(host.guests._callers) < 5
-        host.guests._server = server
-        until(host, lambda: host.guests.is_connected)
+    simulator.transports._server = Full()  # type: ignore[assignment]
+    with visit(simulator) as client:
+        client.sendall(PING)
+        until(simulator, lambda: looks > 1)
+        assert len(simulator.transports._callers) < 5
+        simulator.transports._server = server
+        until(simulator, lambda: simulator.transports.is_connected)
     for each in idle:
         each.close()

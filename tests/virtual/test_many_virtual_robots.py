@@ -14,8 +14,8 @@ from tests.support.virtual_robot import missing
 from tiniscript import robots
 from tiniscript.virtual import directory, worlds
 from tiniscript.virtual.robot import Settings, VirtualRobot
-from tiniscript.virtual.simulator import Host
-from tiniscript.virtual.transports import Guests
+from tiniscript.virtual.simulator import Simulator
+from tiniscript.virtual.transports import Transports
 
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
 
@@ -26,51 +26,53 @@ FOREVER = "SI|LOOP(FOREVER);F(1, 40);R(1, 60);END_LOOP"
 
 
 @contextmanager
-def robot_fleet() -> Iterator[list[Host]]:
+def robot_fleet() -> Iterator[list[Simulator]]:
     """Robots that live, each in its own world, and can be found."""
     profile = robots.load("tinibot")
     is_over = threading.Event()
-    hosts, notes = [], []
+    simulators, notes = [], []
     for number in range(ROBOTS):
         robot = VirtualRobot(profile, worlds.load("obstacles"), Settings(seed=number + 1, baud=0))
-        guests = Guests(0, False)
-        hosts.append(Host(robot, guests, faults=FAULTS if number in BAD else 0.0))
-        here = directory.Running(guests.address, "tinibot", "obstacles", "", guests.terminal)
+        transports = Transports(0, False)
+        simulators.append(Simulator(robot, transports, faults=FAULTS if number in BAD else 0.0))
+        here = directory.Running(
+            transports.address, "tinibot", "obstacles", "", transports.terminal
+        )
         notes.append(directory.announce(here))
 
-    def live(host: Host) -> None:
+    def live(simulator: Simulator) -> None:
         while not is_over.is_set():
-            host.turn(0.1)
+            simulator.turn(0.1)
 
-    threads = [threading.Thread(target=live, args=(host,)) for host in hosts]
+    threads = [threading.Thread(target=live, args=(simulator,)) for simulator in simulators]
     for thread in threads:
         thread.start()
     try:
-        yield hosts
+        yield simulators
     finally:
         is_over.set()
         for thread in threads:
             thread.join()
-        for host, note in zip(hosts, notes, strict=True):
+        for simulator, note in zip(simulators, notes, strict=True):
             directory.withdraw(note)
-            host.guests.close()
+            simulator.transports.close()
 
 
-def driven(host: Host) -> list[str]:
-    return [event.text for event in host.robot.take_events() if event.what == "MOTORS"]
+def driven(simulator: Simulator) -> list[str]:
+    return [event.text for event in simulator.robot.take_events() if event.what == "MOTORS"]
 
 
 def test_thirty_virtual_robots_get_a_program_drive_and_stop() -> None:
-    with robot_fleet() as hosts:
+    with robot_fleet() as simulators:
         done = process("upload", "-e", "SI|F(0.3, 80)", "--all", "--json")
         rows = [json.loads(line) for line in done.out.splitlines()]
         ports = {row["port"] for row in rows if row["event"] == "RESULT" and row["is_done"]}
-        assert ports >= {host.guests.address for host in hosts}, done.err
-        for host in hosts:
-            assert driven(host) == ["MOTORS 80 80", "MOTORS 0 0"]
+        assert ports >= {simulator.transports.address for simulator in simulators}, done.err
+        for simulator in simulators:
+            assert driven(simulator) == ["MOTORS 80 80", "MOTORS 0 0"]
         done = process("upload", "-e", FOREVER, "--all", "--detach")
         assert done.out.count("tinibot") >= ROBOTS, done.err
-        assert all(host.robot.is_running for host in hosts)
+        assert all(simulator.robot.is_running for simulator in simulators)
         done = process("stop", "--all")
         assert done.out.count("the robot has confirmed it") == ROBOTS, done.err
-        assert not any(host.robot.is_running for host in hosts)
+        assert not any(simulator.robot.is_running for simulator in simulators)

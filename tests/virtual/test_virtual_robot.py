@@ -20,7 +20,8 @@ KIT = robots.load("tinibot").kit
 PROGRAMS = {
     "drive": "SI|F(5,80)",
     "loop": "SI|LOOP(3);F(2,50);END_LOOP",
-    "values": "SI|A = 1.5;SHOW(A * 2);SHOW(A > 1);BEEP(0.2, 440);B(0.3, 40);L(0.25, 70)",
+    # in one frame, whose receipt is on its way while the first milliseconds run
+    "values": "SI|W(0.01);A = 1.5;SHOW(A * 2);SHOW(A > 1);BEEP(0.2, 440);B(0.3, 40);L(0.25, 70)",
     "until": "SI|F(5, 80) UNTIL(DISTANCE < 40);SHOW(TIME);R(0.5, 60)",
     "fault": "SI|F(0.2, 50);X = 0;SHOW(1 / X)",
     "obstacle": "SI|LOOP(6);F(1, 80);DISTANCE;IF(DISTANCE < 10);STOP;R(1, 60);ENDIF;END_LOOP",
@@ -43,7 +44,7 @@ def test_it_does_what_tsc_run_says(name: str) -> None:
     for event in events:
         if event.what == "READ":
             readings.setdefault(event.values[0], []).append(event.values[1])
-    code = unpack(compile_text(PROGRAMS[name], KIT).image, KIT.fingerprint).code
+    code = unpack(compile_text(PROGRAMS[name], KIT).image).code
     expected = [str(each) for each in run(code, KIT, Senses(KIT, readings))
                 if not isinstance(each, Ending)]  # fmt: skip
     assert said == expected
@@ -213,8 +214,8 @@ def test_another_kit_is_refused_by_the_robot_itself() -> None:
     robot = robot_in(name="liner")
     talk = Talk(robot)
     talk.until(talk.session.hello())
-    image = unpack(compile_text("SI|DISTANCE", KIT).image, KIT.fingerprint)
-    talk.session._kit = KIT.fingerprint  # as a tsc with another --robot
+    image = unpack(compile_text("SI|DISTANCE", KIT).image)
+    talk.session._handshake._kit = KIT.fingerprint  # as a tsc with another --robot
     reply = talk.until(talk.session.upload(image, True, True, False))
     assert reply.status == STATUSES["WRONG_KIT"]
 
@@ -238,11 +239,11 @@ def test_on_a_bad_line_everything_arrives_or_ends(seed: int) -> None:
         session.receive(back.take(now_ms), now_ms)
 
     long = "SI|" + "".join(f"M({k}, 50);W(0.01);" for k in range(1, 31)) + "S"
-    image = unpack(compile_text(long, KIT).image, KIT.fingerprint)
-    for task in (session.hello(), session.upload(image, True, True, False)):
-        while task.outcome is None:
+    image = unpack(compile_text(long, KIT).image)
+    for request in (session.hello(), session.upload(image, True, True, False)):
+        while request.outcome is None:
             wait()
-        assert task.outcome.status == 0
+        assert request.outcome.status == 0
     for _ in range(3000):
         wait()
     assert there.faults + back.faults > 1

@@ -17,6 +17,7 @@ from tests.oracle import interpreter, programs
 from tests.support.kits import KITS
 from tiniscript import Compiled, compile_text
 from tiniscript.bytecode.disassembly import listing, read_listing
+from tiniscript.bytecode.opcodes import BY_NAME
 from tiniscript.bytecode.verify import verify
 from tiniscript.diagnostics.rendering import as_text, message
 from tiniscript.kit import Kit
@@ -25,6 +26,7 @@ from tiniscript.syntax.formatter import formatted
 
 MAX_MS, MAX_STEPS = 20_000, 20_000
 BATCH = 500
+PUSH32_BYTES = BY_NAME["PUSH32"].size
 BATCHES = 40  # in the tests; a campaign runs more
 
 
@@ -82,7 +84,8 @@ def check_program(seed: int) -> None:
     for name, machine in MACHINES.items():
         if seed % ONE_IN.get(name, 1) == 0:
             check_machine(program, name, machine)
-    assert len(short.code) <= len(plain.code)
+    # a calculated constant of 32 bits may take more than the short ones that it is made of
+    assert len(short.code) <= len(plain.code) + PUSH32_BYTES
     assert read_listing(listing(short.code)) == short.code
     laid_out = formatted(Source(text))
     assert compile_text(laid_out, kit).image == short.image, f"seed {seed}, formatted:\n{text}"
@@ -100,8 +103,10 @@ def check_broken(seed: int) -> None:
         want = None
     compiled = compile_text(text, kit)
     for language in ("en", "es"):
-        for problem in compiled.problems[:5]:
-            assert as_text(message(problem, compiled.source, language), compiled.source, language)
+        for diagnostic in compiled.diagnostics[:5]:
+            assert as_text(
+                message(diagnostic, compiled.source, language), compiled.source, language
+            )
     if want is None:
         assert not compiled.is_right or reads_more(text), f"seed {seed}, oracle refuses:\n{text}"
     else:

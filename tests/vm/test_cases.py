@@ -6,9 +6,9 @@ import pytest
 
 from tests.machines import MACHINES, Machine, Senses
 from tests.support.casefile import Case, accept, all_cases
+from tests.support.images import image_for
 from tiniscript import Compiled, compile_text, robots
 from tiniscript.bytecode.disassembly import listing, read_listing
-from tiniscript.bytecode.image import pack
 from tiniscript.bytecode.verify import Refused, verify
 from tiniscript.cli.options import decimal
 from tiniscript.diagnostics.rendering import as_text, message
@@ -51,7 +51,7 @@ def trace_of(case: Case, machine: Machine) -> str:
     if "tiniscript" in case.parts:
         image = compiled(case).image
     else:
-        image = pack("SI", robot.kit.fingerprint, read_listing(case.parts["bytecode"]))
+        image = image_for(read_listing(case.parts["bytecode"]), robot.kit)
     return machine(image, robot.kit, senses)
 
 
@@ -70,7 +70,7 @@ def having(*parts: str) -> list[pytest.ParameterSet]:
 def test_program_compiles_or_its_mistake_is_stated(case: Case) -> None:
     """A program without a `mistake` fence has none; nothing in a document is wrong by accident."""
     found = compiled(case)
-    assert found.is_right == ("mistake" not in case.parts), [p.code for p in found.problems]
+    assert found.is_right == ("mistake" not in case.parts), [p.code for p in found.diagnostics]
 
 
 @pytest.mark.parametrize("machine", MACHINES)
@@ -95,7 +95,7 @@ def test_what_is_said(case: Case, request: pytest.FixtureRequest) -> None:
                 as_text(
                     message(each, found.source, language_of(case)), found.source, language_of(case)
                 )
-                for each in found.problems
+                for each in found.diagnostics
                 if each.is_mistake == is_mistake
             ]
             expect(case, part, "\n\n".join(said) + "\n", request)
@@ -118,6 +118,7 @@ def test_listing_runs_or_is_refused(
 ) -> None:
     """A listing that stands alone is run as it is, or refused with the rule and the offset."""
     code = read_listing(case.parts["bytecode"])
+    expect(case, "bytecode", listing(code), request)
     if "refused" in case.parts:
         robot, _ = robot_and_senses(case)
         with pytest.raises(Refused) as refused:
@@ -125,6 +126,5 @@ def test_listing_runs_or_is_refused(
         error = refused.value
         expect(case, "refused", f"{error.number} {error.name} at {error.offset:04x}\n", request)
         return
-    assert listing(code) == case.parts["bytecode"]
     if "robot" in case.parts:
         expect(case, "robot", trace_of(case, MACHINES[machine]), request)

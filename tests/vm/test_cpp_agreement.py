@@ -15,7 +15,7 @@ import pytest
 
 from tests.machines import MACHINES
 from tests.machines.host import host, missing
-from tests.support import cpp_checks, cpp_edges
+from tests.support import cpp_checks, cpp_edges, cpp_images
 from tests.support.casefile import Case
 from tests.vm.test_cases import listings_alone
 from tiniscript.bytecode.opcodes import BY_NAME, CODE_BYTES
@@ -109,6 +109,11 @@ def test_everything_has_a_place_of_its_own() -> None:
 
 
 @needs_host
+def test_an_instruction_of_one_byte_means_what_is_in_its_code() -> None:
+    cpp_edges.check_shorts(host())
+
+
+@needs_host
 def test_a_program_may_run_for_24_days() -> None:
     cpp_edges.check_long_time(host())
 
@@ -149,12 +154,19 @@ def test_a_robot_that_is_not_ready_is_asked_again() -> None:
 @needs_host
 @pytest.mark.parametrize("seed", range(4))
 def test_images(seed: int) -> None:
-    cpp_checks.check_images(host(), seed, BATCH)
+    cpp_images.check_images(host(), seed, BATCH)
+
+
+@needs_host
+@pytest.mark.parametrize("seed", range(2))
+def test_images_of_programs(seed: int) -> None:
+    """Header, code and devices, in this order, for robots of which some have other devices."""
+    cpp_images.check_whole_images(host(), seed, 2000)
 
 
 @needs_host
 def test_long_images() -> None:
-    cpp_checks.check_long_images(host())
+    cpp_images.check_long_images(host())
 
 
 @needs_host

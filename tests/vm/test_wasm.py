@@ -14,11 +14,12 @@ from tests.machines.wasm import missing
 from tests.project.test_directions import imported_by
 from tests.support.casefile import ROOT, Case
 from tests.support.command import Tsc
+from tests.support.images import image_for
 from tests.support.kits import KITS
 from tests.vm.test_cases import having, listings_alone, robot_and_senses
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.disassembly import read_listing
-from tiniscript.bytecode.image import Image, ImageRefused, pack, unpack
+from tiniscript.bytecode.image import Image, ImageRefused, unpack
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.bytecode.verify import Refused, verify
 from tiniscript.cli.commands import run
@@ -152,6 +153,17 @@ def test_a_fault_has_its_line(language: str, tsc: Tsc) -> None:
 
 @needs_wasmtime
 @pytest.mark.parametrize(
+    ("waits", "at_ms"),
+    [("W(2147483.647);W(0.001)", 2**31), ("W(2147483.647);W(2147483.647);W(3)", 2**32 + 2998)],
+)
+def test_time_is_over_for_good(waits: str, at_ms: int, tsc: Tsc) -> None:
+    """Once it is too large for a number, it stays so: a clock of 32 bits wraps around."""
+    _, out, _ = both(tsc, "-e", f"SI|{waits};SHOW(TIME)", "--max-time", "9999999")
+    assert out == f"{at_ms} FAULT OVERFLOW\n"
+
+
+@needs_wasmtime
+@pytest.mark.parametrize(
     "arguments",
     [
         ["-e", "FOREVER; A = A + 1; END_FOREVER", "--max-steps", "5001"],
@@ -199,12 +211,11 @@ def test_verdict_of_a_listing(case: Case) -> None:
     from tiniscript.vm.wasm import WasmImage
 
     kit = robot_and_senses(case)[0].kit
-    sizes = len(kit.sensors), len(kit.actuators)
     code = read_listing(case.parts["bytecode"])
     said = []
     for accept in (
-        lambda: verify(code, *sizes),
-        lambda: WasmImage(pack("SI", 0, code), kit.fingerprint, *sizes),
+        lambda: verify(code, len(kit.sensors), len(kit.actuators)),
+        lambda: WasmImage(image_for(code, kit), kit),
     ):
         try:
             accept()
@@ -225,12 +236,13 @@ def test_refused_images() -> None:
     broken += [good + b"?", good + bytes(60_000), good + bytes(100_000)]
     for data in broken:
         with pytest.raises(ImageRefused) as ours:
-            unpack(data, KIT.fingerprint)
+            unpack(data)
         with pytest.raises(ImageRefused) as theirs:
-            WasmImage(data, KIT.fingerprint, len(KIT.sensors), len(KIT.actuators))
+            WasmImage(data, KIT)
         assert theirs.value.name == ours.value.name
+    changed_kit = KIT._replace(sensors=tuple(each._replace(unit="x") for each in KIT.sensors))
     with pytest.raises(ImageRefused, match="OTHER_KIT"):
-        WasmImage(good, KIT.fingerprint ^ 1, len(KIT.sensors), len(KIT.actuators))
+        WasmImage(good, changed_kit)
 
 
 @needs_wasmtime
@@ -288,8 +300,8 @@ def test_a_slow_robot_and_any_beginning(begin_ms: int, budget: int) -> None:
 
     kit = robots.load("grabber").kit
     compiled = compile_text(PROGRAM, kit)
-    assert compiled.is_right, compiled.problems
-    loaded = WasmImage(compiled.image, kit.fingerprint, len(kit.sensors), len(kit.actuators))
+    assert compiled.is_right, compiled.diagnostics
+    loaded = WasmImage(compiled.image, kit)
     found = []
     for make in (Machine, loaded.machine):
         robot = Slow()
@@ -315,6 +327,6 @@ def test_what_a_robot_raises_comes_out() -> None:
             raise OSError("no motors")
 
     compiled = compile_text("F(1, 50)", KITS[0][1])
-    machine = WasmImage(compiled.image, 0, 0, 0).machine(compiled.code, Broken())
+    machine = WasmImage(compiled.image, KITS[0][1]).machine(compiled.code, Broken())
     with pytest.raises(OSError, match="no motors"):
         machine.tick(0, 10)

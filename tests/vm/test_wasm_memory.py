@@ -21,7 +21,7 @@ kit = robots.load("tinibot").kit
 image = compile_text("F(1, 50)", kit).image
 
 def loaded(data=image):
-    return WasmImage(data, kit.fingerprint, len(kit.sensors), len(kit.actuators))
+    return WasmImage(data, kit)
 """
 ROBOTS = """
 from tiniscript import robots

@@ -19,7 +19,7 @@ USUAL = (
     f"-mmcu={CHIP}", "-std=c++11", "-Os", "-fno-exceptions", "-fno-rtti",
     "-ffunction-sections", "-fdata-sections", "-Wl,--gc-sections",
 )  # fmt: skip
-FLAGS = (*USUAL, "-flto", "-mrelax", "-mcall-prologues")  # those of platformio.ini and Arduino
+FLAGS = (*USUAL, "-flto", "-mrelax", "-mcall-prologues")  # the first ones of platformio.ini
 WARNINGS = ("-Wall", "-Wextra", "-Wconversion", "-Wshadow", "-Werror")
 MARK = b"TiniScript: here is the request"
 REQUEST_BYTES = 1024

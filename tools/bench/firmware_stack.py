@@ -11,6 +11,7 @@ import random
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
@@ -19,11 +20,12 @@ from tests.machines.wired import Wired
 from tiniscript import compile_text
 from tiniscript.bytecode.image import Image, unpack
 from tiniscript.kit import NUMBER, Kit
-from tiniscript.link.session import Session, Task
+from tiniscript.link.connection import PendingRequest
+from tiniscript.link.session import Session
 from tiniscript.robots.profile import Robot
 from tools.uno import Stack, Uno
 
-LEAST_FREE = 200  # bytes
+LEAST_FREE = 320  # bytes
 FREE_FROM = "_end"  # the symbol behind all variables
 RAM = 0x800000  # where avr-nm begins to count it
 BOARDS = {"uno": "uno", "nano": "uno", "mega": "mega"}  # the simulated one for each
@@ -99,8 +101,8 @@ def wear_out(wired: Wired, robot: Robot) -> None:
     uno.run_ms(200)
 
 
-def must(wired: Wired, task: Task) -> None:
-    status = wired.until(task)
+def must(wired: Wired, request: PendingRequest[Any]) -> None:
+    status = wired.until(request)
     if status != 0:
         raise RuntimeError(f"the robot has answered {status}")
 
@@ -108,7 +110,7 @@ def must(wired: Wired, task: Task) -> None:
 def image_of(text: str, kit: Kit) -> Image:
     done = compile_text(text, kit)
     if not done.image:
-        raise RuntimeError(f"{text}: {done.problems}")
+        raise RuntimeError(f"{text}: {done.diagnostics}")
     return unpack(done.image)
 
 

@@ -17,11 +17,19 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
-from tools.bench import avr_bench, machine_cycles, machine_size, sketch_cycles, workloads
+from tools.bench import (
+    avr_bench,
+    interpreters,
+    machine_cycles,
+    machine_size,
+    sketch_cycles,
+    workloads,
+)
 from tools.bench import machine_speed as timing
 
 NONE = "-"
 ROUNDS = 5
+TIMES = 20_000  # around each loop beside other interpreters: what it takes to begin does not count
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -69,15 +77,8 @@ def is_number(cell: str) -> bool:
 def cycles() -> None:
     ours: list[tuple[object, ...]] = [("TiniScript", "thousandths", NONE, NONE, NONE)]
     if not avr_bench.missing():
-        ours = []
-        for name, budget in (
-            ("TiniScript", machine_cycles.BUDGET),
-            ("TiniScript, as the sketch calls it", machine_cycles.SKETCH_BUDGET),
-        ):
-            found = [
-                round(machine_cycles.per_iteration(work, budget), 1) for work in workloads.WORKS
-            ]
-            ours.append((name, "thousandths", *found))
+        found = [round(machine_cycles.per_iteration(work), 1) for work in workloads.WORKS]
+        ours = [("TiniScript, all of `tick`", "thousandths", *found)]
     if not sketch_cycles.missing():
         firmware = sketch_cycles.built()
         found = [round(sketch_cycles.per_iteration(firmware, work), 1) for work in workloads.WORKS]
@@ -85,18 +86,17 @@ def cycles() -> None:
     rows = [
         *ours,
         ("  must", "", *workloads.MUST),
-        ("  a later aim", "", *workloads.LATER),
+        ("  aim", "", *workloads.AIM),
         *((name, numbers, *figures) for name, numbers, figures in workloads.OTHERS),
     ]
     table("Cycles of one iteration on a simulated ATmega328P", ("", "numbers", "A", "B", "C"), rows)
     for work in workloads.WORKS:
         print(f"\n{work.name}: `{work.body[:-1]}`, {work.times:,} times.", end="")
     print(
-        f"\nAll of `tick` is counted, {machine_cycles.BUDGET} instructions a call; the sketch "
-        f"calls it for {machine_cycles.SKETCH_BUDGET}.\nIn the shipped sketch all is counted that "
-        "comes between, its main loop and its interrupts.\nThe others were measured once, with "
-        "loops of the same work in their own languages. Fewer bits\nare less work; Snek, "
-        "Microvium and "
+        f"\n`tick` is called for {machine_cycles.BUDGET} times around a loop. In the sketch "
+        "all is counted\nthat comes between, its main loop and its interrupts.\nThe others were "
+        "measured once, with loops of the same work in their own languages. Fewer bits\nare less "
+        "work; Snek, Microvium and "
         "uLisp are far larger languages; TinyBASIC, Bitlash and\nuBASIC read the text of each line "
         "anew."
     )
@@ -105,7 +105,7 @@ def cycles() -> None:
 
 
 def instructions() -> None:
-    """Print the cycles of single instructions: those of the works, and arithmetic by itself."""
+    """Print the cycles of arithmetic."""
     if avr_bench.missing():
         print(f"\nCycles of an instruction: {avr_bench.missing()}")
         return
@@ -116,13 +116,6 @@ def instructions() -> None:
     title = f"Cycles of an instruction, with {len(machine_cycles.PAIRS)} pairs as in a classroom"
     table(title, ("", "least", "mean", "most", "mean of C alone"), rows)
     print("\nC alone: thousandths in a function, with int64 where they need it, and no machine.")
-    means = {
-        name: mean
-        for work in workloads.WORKS
-        for name, mean in machine_cycles.of_instructions(work).items()
-        if name not in machine_cycles.ARITHMETIC
-    }
-    table("Cycles of an instruction in these loops", ("", "mean"), sorted(means.items()))
 
 
 def sizes() -> None:
@@ -173,11 +166,40 @@ def speeds() -> None:
             print(f"\n{each.missing}")
 
 
+def others() -> None:
+    """Print iterations a second of other interpreters' loops, and of ours in the same rounds."""
+    with tempfile.TemporaryDirectory() as folder:
+        ours = [timing.of_host(Path(folder) / "host"), timing.of_wasm(), timing.of_python()]
+        theirs = interpreters.all_of_them()
+        there = [each for each in (*ours, *theirs) if not each.missing]
+        works = [work._replace(times=TIMES) for work in workloads.WORKS]
+        rounds = [[[each.seconds(work) for work in works] for each in there] for _ in range(ROUNDS)]
+    rows = []
+    for each in (*ours, *theirs):
+        name = f"TiniScript, {each.name}" if each in ours else each.name
+        row: list[object] = [name, "thousandths" if each in ours else "whole"]
+        if each.missing:
+            rows.append([*row, *(NONE for work in works)])
+            continue
+        lines = [line[there.index(each)] for line in rounds]
+        found = [statistics.median(seconds) for seconds in zip(*lines, strict=True)]
+        rows.append([*row, *(TIMES / seconds / 1e6 for seconds in found)])
+    table("Million iterations a second on this computer", ("", "numbers", "A", "B", "C"), rows)
+    print(
+        "\nThe others run the same loops with whole numbers and local variables, and do not look "
+        "for a stop;\nLua, MicroPython and Python are far larger languages."
+    )
+    for each in (*ours, *theirs):
+        if each.missing:
+            print(f"\n{each.missing}")
+
+
 PARTS: dict[str, Callable[[], None]] = {
     "cycles": cycles,
     "instructions": instructions,
     "sizes": sizes,
     "speeds": speeds,
+    "others": others,
 }
 
 if __name__ == "__main__":

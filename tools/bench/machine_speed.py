@@ -84,7 +84,7 @@ def of_wasm() -> Timed:
         from tiniscript.vm.wasm import WasmImage
 
         image = image_of(work)
-        loaded = WasmImage(image, KIT.fingerprint, SENSORS, len(KIT.actuators))
+        loaded = WasmImage(image, KIT)
         times = []
         for _ in range(20):
             robot = Robot(work)

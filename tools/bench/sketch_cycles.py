@@ -11,6 +11,7 @@ from __future__ import annotations
 import re
 import sys
 from pathlib import Path
+from typing import Any
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
@@ -18,7 +19,8 @@ sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 from tests.machines.wired import Wired
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import unpack
-from tiniscript.link.session import Session, Task
+from tiniscript.link.connection import PendingRequest
+from tiniscript.link.session import Session
 from tools import uno
 from tools.bench import firmware_size
 from tools.bench.workloads import Work, WrongResult, expected
@@ -90,9 +92,7 @@ def _cycles(wired: Wired, text: str) -> tuple[int, list[object]]:
     if board.pins[motor].state == "pwm":
         board.run_until(motor, "low", WORK_MS)
     wired.run(SHOW_MS)
-    shown: list[object] = [
-        event.values["value"] for event in session.events() if event.name == "SHOW"
-    ]
+    shown: list[object] = [event.value for event in session.events() if event.name == "SHOW"]
     began, ended = (
         next(event.cycle for event in board.events[since:]
              if event.what == "pin" and event["pin"] == motor and event["is"] == state)
@@ -101,7 +101,7 @@ def _cycles(wired: Wired, text: str) -> tuple[int, list[object]]:
     return ended - began, shown
 
 
-def _done(wired: Wired, task: Task) -> None:
-    status = wired.until(task)
+def _done(wired: Wired, request: PendingRequest[Any]) -> None:
+    status = wired.until(request)
     if status:
         raise RuntimeError(f"the robot has answered {status}")

@@ -73,10 +73,9 @@ WORKS = (
     ),
 )
 
-# Cycles of one iteration of A, B and C. The first is what a plain `switch` in C took that ran
-# code like ours; a later issue goes to the second.
-MUST = (350.0, 767.0, 4226.0)
-LATER = (64.0, 112.0, 1500.0)
+# Cycles of one iteration of A, B and C in the shipped sketch.
+MUST = (120.0, 200.0, 2400.0)
+AIM = (72.0, 120.0, 1500.0)
 
 # The same works in other engines: its numbers, and its cycles.
 OTHERS: tuple[tuple[str, str, tuple[float, ...]], ...] = (
@@ -136,8 +135,12 @@ def expected(work: Work) -> Ran:
     return Ran(tuple(shown), steps)
 
 
-def check(machine: str, work: Work, shown: Sequence[int], steps: int) -> None:
-    """Raise WrongResult where a machine does not say the same as the one in Python."""
-    ran, wanted = Ran(tuple(shown), steps), expected(work)
+def check(machine: str, work: Work, shown: Sequence[int], steps: int | None = None) -> None:
+    """Raise WrongResult where a machine does not say the same as the one in Python.
+
+    That of the AVR does not count instructions.
+    """
+    wanted = expected(work)
+    ran = Ran(tuple(shown), wanted.steps if steps is None else steps)
     if ran != wanted:
         raise WrongResult(f"{machine}, work {work.name}: {ran}, not {wanted}")

@@ -22,6 +22,7 @@ from tiniscript.robots.ports import AVRS
 from tiniscript.robots.profile import LANGUAGES, ProfileRefused, Robot
 from tiniscript.robots.reader import read
 from tiniscript.robots.refusals import describe
+from tools.generate.command_pages import PAGES
 
 COMMAND = "python -m tools.generate"
 LINE_LENGTH = 100
@@ -147,7 +148,9 @@ def image_table() -> str:
         (at, field.size, f"`{field.name}`", field.meaning)
         for at, field in zip(offsets, image.FIELDS, strict=False)
     ]
-    rows.append((image.HEADER_BYTES, "`code_length`", "`code`", "The instructions."))
+    more = f"`header_length` - {image.HEADER_BYTES}"
+    rows.append((image.HEADER_BYTES, more, "later", "Fields of later versions."))
+    rows.append(("`header_length`", "`code_length`", "`code`", "The instructions."))
     return table(("offset", "bytes", "field", "meaning"), rows)
 
 
@@ -181,36 +184,56 @@ def role_table() -> str:
     rows = []
     for role, meaning in opcodes.ROLES.items():
         names = [op.name for op in opcodes.OPS if op.role == role]
-        shown = ", ".join(f"`{name}`" for name in names[:6]) + (" ..." if len(names) > 6 else "")
-        rows.append((role, shown, meaning))
+        rows.append((role, ", ".join(f"`{name}`" for name in names), meaning))
     return table(("role", "instructions", "meaning"), rows)
 
 
 def fault_table() -> str:
-    return table(
-        ("number", "fault", "when"), ((n, f"`{name}`", what) for n, name, what in opcodes.FAULTS)
-    )
+    rows = []
+    for number, name, what in opcodes.FAULTS:
+        faulting = ", ".join(f"`{each}`" for each in opcodes.FAULTING[name])
+        rows.append((number, f"`{name}`", what, faulting or "none, in verified code"))
+    return table(("number", "fault", "when", "instructions"), rows)
 
 
 def limit_table() -> str:
+    compiler, operand = "compiler", "verifier: `BAD_OPERAND`"
+    both = "compiler, and verifier: `{}`"
     rows = (
-        ("code", opcodes.CODE_BYTES, "bytes"),
-        ("blocks nested in a text, those open around a call included", opcodes.BLOCKS, ""),
-        ("stack", opcodes.STACK_VALUES, "values"),
-        ("variables", opcodes.VARIABLES, ""),
-        ("counted loops open at once, those around a call included", opcodes.COUNTERS, ""),
-        ("calls open at once", opcodes.CALLS, ""),
-        ("procedures", opcodes.DEFS, ""),
-        ("open blocks of one routine", opcodes.NEST_WORDS, "words: 1 for an IF, 2 for a loop"),
-        ("open joins", opcodes.JOINS, ""),
-        ("between two checks of an UNTIL", opcodes.CHECK_MS, "ms"),
+        ("code", opcodes.CODE_BYTES, "bytes", both.format("CODE_LENGTH")),
+        ("blocks in a text, those open around a call included", opcodes.BLOCKS, "", compiler),
+        ("stack", opcodes.STACK_VALUES, "values", both.format("STACK_OVERFLOW")),
+        ("variables", opcodes.VARIABLES, "", f"{compiler}, and {operand}"),
+        (
+            "counted loops open at once, those around a call included",
+            opcodes.COUNTERS,
+            "",
+            "verifier: `TOO_DEEP`",
+        ),
+        ("calls open at once", opcodes.CALLS, "", both.format("TOO_DEEP")),
+        ("procedures", opcodes.DEFS, "", both.format("TOO_MANY_DEFS")),
+        (
+            "open blocks of one routine",
+            opcodes.NEST_WORDS,
+            "words: 1 for an IF, 2 for a loop",
+            "verifier: `TOO_DEEP`",
+        ),
+        ("open joins", opcodes.JOINS, "", "verifier: `TOO_DEEP`"),
+        ("between two checks of an UNTIL", opcodes.CHECK_MS, "ms", "nobody: it is always so"),
     )
-    return table(("what", "at most", ""), rows)
+    return table(("what", "at most", "", "refused by"), rows)
 
 
 def cpp_header() -> str:
     """Return `bytecode.h`: what the C++ machine takes from the tables of the compiler."""
     from tools.generate.cpp_header import header
+
+    return header(COMMAND)
+
+
+def avr_header() -> str:
+    """Return `bytecode_avr.S`: what the machine in assembly takes from them."""
+    from tools.generate.avr_header import header
 
     return header(COMMAND)
 
@@ -234,6 +257,13 @@ def link_tables() -> str:
     from tools.generate.link_header import tables
 
     return tables(COMMAND)
+
+
+def link_payloads() -> str:
+    """Return `payloads.py`: a type for each reply and each event of the table of messages."""
+    from tools.generate.link_payloads import payloads
+
+    return payloads(COMMAND)
 
 
 def cpp_cases() -> str:
@@ -262,6 +292,13 @@ def wiring_page(name: str) -> str:
     return pages(COMMAND)[name]
 
 
+def command_page(language: str) -> str:
+    """Return a page of `docs/` that lists the verbs of `tsc` and their options."""
+    from tools.generate.command_pages import page
+
+    return page(language, COMMAND, table)
+
+
 SPEC = ROOT / "bytecode_spec.md"
 SPEC_TABLES: dict[str, Callable[[], str]] = {
     "image": image_table,
@@ -277,6 +314,7 @@ SPEC_TABLES: dict[str, Callable[[], str]] = {
 MACHINE = ROOT / "vm_arduino" / "src" / "vm"
 LINK = ROOT / "vm_arduino" / "src" / "link"
 LINK_DOCUMENT = ROOT / "docs" / "link.md"
+PAYLOADS = ROOT / "compiler" / "tiniscript" / "link" / "payloads.py"
 WIRED = ROOT / "vm_arduino" / "src" / "boards" / "kits"
 WIRING = ROOT / "docs" / "wiring"
 
@@ -285,9 +323,12 @@ OUTPUTS: list[tuple[Path, Callable[[], str]]] = [
     (SPEC, spec),
     (MACHINE / "bytecode.h", cpp_header),
     (MACHINE / "bytecode.cpp", cpp_tables),
+    (MACHINE / "bytecode_avr.S", avr_header),
     (LINK / "messages.h", link_header),
     (LINK / "messages.cpp", link_tables),
     (LINK_DOCUMENT, link_document),
+    (PAYLOADS, link_payloads),
+    *((ROOT / "docs" / name, partial(command_page, language)) for language, name in PAGES.items()),
     (ROOT / "vm_arduino" / "test" / "cases.h", cpp_cases),
     *(
         (WIRED / f"{path.stem}.h", partial(robot_header, path))

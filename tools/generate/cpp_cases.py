@@ -21,8 +21,9 @@ from tests.vm.test_cases import compiled, robot_and_senses
 from tiniscript import fixed_point, robots
 from tiniscript.bytecode.disassembly import read_listing
 from tiniscript.bytecode.image import pack
-from tiniscript.bytecode.opcodes import BY_NAME, OPS, Op
-from tiniscript.kit import Device, Kit
+from tiniscript.bytecode.opcodes import BY_NAME, OPS, SHORTS, Op
+from tiniscript.bytecode.verify import verify
+from tiniscript.kit import NUMBER, Device, Kit
 from tiniscript.vm.machine import Machine
 from tiniscript.vm.state import FOREVER
 from tiniscript.vm.trace import Senses, TracedRobot
@@ -36,17 +37,21 @@ MAX_LONG = 2**31 - 1
 
 # What operands are where an instruction is tried. A jump leads over two bytes, or to itself.
 NUMBERS = {
-    "u8": 5, "i8": -5, "i16": -300, "milli16": -1500, "milli32": 70_007, "tenths": 7, "power": 40,
-    "percent": -30, "count": 3, "sensor": 1, "actuator": 0, "fwd8": 2, "fwd16": 2,
+    "u8": 5, "i8": -5, "u16": 440, "i16": -300, "milli16": -1500, "milli32": 70_007, "tenths": -7,
+    "time8": 107, "power": 40, "percent": -30, "count": 3, "sensor": 1, "actuator": 0, "fwd8": 2,
+    "fwd16": 2,
 }  # fmt: skip
 WHOLES: tuple[tuple[tuple[int, ...], ...], ...] = (  # by how many values are taken
     ((),),
     ((3,), (-3,), (0,)),
     ((7, 2), (2, 7), (-7, 2), (2, 0), (2, 2)),
 )
-COMPARES = ("IF_VAR", "IF_SENSOR", "IF_READ")
+COMPARES = ("IF_VAR8", "IF_VAR16", "IF8", "IF16", "UNTIL8", "UNTIL16")
 COMPARED = 5  # the constant of a comparison; what it is compared with is near
 NO_KIT = Kit((), ())
+# What instructions of one byte name.
+EIGHT = Kit(tuple(Device(f"S{n}", NUMBER, "", 0, 1_000_000) for n in range(SHORTS)),
+            tuple(Device(f"A{n}", NUMBER, "", 0, 1_000_000) for n in range(SHORTS)))  # fmt: skip
 EDGES = (-MAX_LONG - 1, -1_500_500, -1, 0, 499, 1000, 2500, MAX_LONG)
 
 
@@ -66,10 +71,10 @@ def cases_header(command: str) -> str:
         "\n// clang-format off\n"
         "\nnamespace cases {\n\nusing tiniscript::Fault;\nusing tiniscript::Op;\n"
         f"using tiniscript::Rule;\n\n{STRUCTS}",
-        *(kit(name, each) for name, each in kits.items()),
+        *(kit(name, each) for name, each in {**kits, "eight": EIGHT}.items()),
         table("RefusedCase", "refused_cases", (refused_row(case) for case in refused)),
         table("ProgramCase", "program_cases", (program_row(case) for case in programs)),
-        table("InstructionCase", "instruction_cases", instruction_rows(kits["grabber"])),
+        table("InstructionCase", "instruction_cases", instruction_rows(EIGHT)),
         table("NumberCase", "number_cases", number_rows()),
         f"}}  // namespace cases\n\n#endif  // {GUARD}\n",
     )
@@ -78,7 +83,6 @@ def cases_header(command: str) -> str:
 
 STRUCTS = """\
 struct Kit {
-  uint16_t fingerprint;
   std::vector<Device> sensors;
   std::vector<Device> actuators;
 };
@@ -134,17 +138,19 @@ def table(kind: str, name: str, rows: Iterator[str]) -> str:
 
 
 def kit(name: str, found: Kit) -> str:
-    fields = f"{found.fingerprint}, {devices(found.sensors)}, {devices(found.actuators)}"
+    count = len(found.sensors)
+    sensors = devices(found.sensors, found.hashes[:count])
+    fields = f"{sensors}, {devices(found.actuators, found.hashes[count:])}"
     return (
         f"inline const Kit& {name}() {{\n  static const Kit found = {{{fields}}};\n"
         "  return found;\n}\n"
     )
 
 
-def devices(found: Sequence[Device]) -> str:
+def devices(found: Sequence[Device], hashes: Sequence[int]) -> str:
     rows = (
-        f"{text(each.name)}, {str(each.is_yes_no).lower()}, {each.low}, {each.high}"
-        for each in found
+        f"{text(each.name)}, {str(each.is_yes_no).lower()}, {each.low}, {each.high}, {hashed}"
+        for each, hashed in zip(found, hashes, strict=True)
     )
     return "{" + ", ".join(f"{{{row}}}" for row in rows) + "}"
 
@@ -164,7 +170,8 @@ def program_row(case: Case) -> str:
         image = compiled(case).image
     else:
         code = read_listing(case.parts["bytecode"])
-        image = pack("SI", robot.kit.fingerprint, code)
+        verdict = verify(code, len(robot.kit.sensors), len(robot.kit.actuators))
+        image = pack("SI", robot.kit.hash_of_used(verdict.uses), code)
     readings = ", ".join(numbers(senses.readings.get(each.name, ())) for each in robot.kit.sensors)
     return (
         f"{text(case.id)}, {robot.name}(), {{{readings}}}, {senses.max_ms}, {senses.seed},\n"
@@ -178,7 +185,7 @@ def program_row(case: Case) -> str:
 def instruction_rows(kit: Kit) -> Iterator[str]:
     """Return each instruction with the values that show what it does."""
     for op in OPS:
-        for pushed, near in product(values_for(op), near_for(op)):
+        for pushed, near in tries(op):
             parts = [*before(op, near), *pushed]
             code = b"".join(parts) + tried(op) + bytes([BY_NAME["STOP"].code]) * 3
             steps = len(parts) + 1 + (op.role == "return")
@@ -193,16 +200,18 @@ def is_boolean(op: Op) -> bool:
     return op.role in ("join", "until", "if") or op.name in ("NOT", "AND", "OR", "SHOW_YES_NO")
 
 
-def values_for(op: Op) -> list[list[bytes]]:
-    """Return instructions that push what `op` takes, in several ways."""
-    if is_boolean(op):
-        each = [simple("PUSH_FALSE"), simple("PUSH_TRUE")]
-        return [list(values) for values in product(each, repeat=op.pops)]
-    return [[simple("PUSH8", value) for value in values] for values in WHOLES[op.pops]]
-
-
-def near_for(op: Op) -> tuple[int, ...]:
-    return (COMPARED - 1, COMPARED, COMPARED + 1) if op.name.startswith(COMPARES) else (COMPARED,)
+def tries(op: Op) -> Iterator[tuple[list[bytes], int]]:
+    """Yield instructions that push what `op` takes, in several ways; and what lies near."""
+    if op.family in COMPARES:
+        for near in (COMPARED - 1, COMPARED, COMPARED + 1):
+            yield [simple("PUSH8", near)] * op.pops, near
+    elif is_boolean(op):  # anything that is not 0 counts as TRUE
+        each = [simple("PUSH_FALSE"), simple("PUSH_TRUE"), simple("PUSH_NUM_2")]
+        for values in product(each, repeat=op.pops):
+            yield list(values), COMPARED
+    else:
+        for numbers in WHOLES[op.pops]:
+            yield [simple("PUSH16", value, value >> 8) for value in numbers], COMPARED
 
 
 def before(op: Op, near: int) -> list[bytes]:
@@ -213,12 +222,14 @@ def before(op: Op, near: int) -> list[bytes]:
             (each for each in op.operands if each.kind.name == "variable"), 1
         )
     ]
-    if op.name.startswith(("IF_SENSOR", "PUSH_SENSOR")):
-        found.append(simple("READ", 1))
+    if op.family == "PUSH_SENSOR":
+        found.append(simple("READ", op.implied.value if op.implied else NUMBERS["sensor"]))
+    if op.implied and op.family == "PUSH_VAR":
+        found.append(simple("SET_VAR8", op.implied.value, near))
     if op.role in ("next", "drop"):
         found.append(simple("LOOP8", 2))
     if op.role == "until":
-        found += [simple("PUSH8", 2), simple("PUSH8", 40), simple("WATCH_F")]
+        found += [simple("PUSH_NUM_2"), simple("PUSH_NUM_40"), simple("WATCH_F")]
     if op.role == "return":
         found.append(simple("ELSE", op.size))  # over the instruction, which is called
     return found
@@ -233,7 +244,7 @@ def tried(op: Op) -> bytes:
             value = next(variables)
         elif kind.name.startswith("back"):
             value = op.size
-        elif op.name.startswith(COMPARES) and kind.name in ("u8", "i16"):
+        elif op.family in COMPARES and kind.name in ("u8", "i16"):
             value = COMPARED
         else:
             value = NUMBERS[kind.name]
@@ -242,7 +253,7 @@ def tried(op: Op) -> bytes:
 
 
 def simple(name: str, *values: int) -> bytes:
-    """Return one instruction whose operands are one byte each."""
+    """Return one instruction; `values` are its bytes."""
     return bytes([BY_NAME[name].code, *(value & 255 for value in values)])
 
 
@@ -278,7 +289,7 @@ def spaced(name: str, values: Sequence[int]) -> str:
 # -- arithmetic ---------------------------------------------------------------------------------
 
 CALCULATIONS = ("ADD", "SUB", "MUL", "DIV", "MOD", "NEG", "ABS", "MIN", "MAX", "ROUND", "RANDOM",
-                "EQ", "NE", "LT", "LE", "GT", "GE")  # fmt: skip
+                "EQ", "NE", "LT", "LE", "GT", "GE", "NOT", "AND", "OR")  # fmt: skip
 
 
 def number_rows() -> Iterator[str]:

@@ -11,15 +11,14 @@ from itertools import accumulate
 from typing import NamedTuple
 
 from tiniscript.bytecode import image, opcodes, verify
+from tiniscript.kit import DEVICES_POLYNOMIAL
 from tiniscript.robots.reader import DEVICES
 
 HEADER_GUARD = "TINISCRIPT_VM_BYTECODE_H_"
 
-# What a verifier distinguishes in the first two bytes of operands; the second is of the first four.
-BYTES = ("any", "power", "percent", "variable", "count", "back", "sensor", "actuator")
-FAMILIES = 0x80  # from here on, each eight opcodes are one family: they differ in the comparator
-FORM_BITS = 6
-FAR = "_FAR"
+# What a verifier distinguishes in the first two bytes of operands; devices come last.
+BYTES = ("any", "power", "percent", "variable", "count", "sensor", "actuator")
+FAR_BIT, BACK_BIT = 0x08, 0x10
 
 
 def header(command: str) -> str:
@@ -61,6 +60,7 @@ def header(command: str) -> str:
             ("kJoins", opcodes.JOINS),
             ("kDevices", DEVICES),
             ("kCheckMs", opcodes.CHECK_MS),
+            ("kShorts", opcodes.SHORTS),
             ("kPowerHigh", opcodes.OPERAND_KINDS["power"].high),
             ("kPercentHigh", opcodes.OPERAND_KINDS["percent"].high),
         ),
@@ -68,6 +68,8 @@ def header(command: str) -> str:
         + constants(
             *fields,
             ("kHeaderBytes", image.HEADER_BYTES),
+            ("kNeeds", image.NEEDS),
+            ("kDevicesPolynomial", DEVICES_POLYNOMIAL),
             ("kStarts", len(image.STARTS)),
             ("kStartPing", image.STARTS.index("PING")),
         ),
@@ -115,105 +117,71 @@ def enumeration(name: str, rows: Sequence[tuple[str, int, str]]) -> str:
     return f"enum class {name} : uint8_t {{\n{''.join(lines)}}};\n"
 
 
-class Form(NamedTuple):
-    """What is the same for some opcodes: they come from the same sixteen."""
+class Shape(NamedTuple):
+    """What the verifier and the machine must know of an opcode."""
 
-    sixteen: int
+    family: str
     role: str
     pops: int
     pushes: int
     size: int
+    is_far: bool
+    is_back: bool
     first: str  # two of BYTES
     second: str
 
 
-NONE = Form(0, "none", 0, 0, 1, "any", "any")
+NONE = Shape("NONE", "none", 0, 0, 1, False, False, "any", "any")
 
 
 def byte_of(kind: opcodes.OperandKind) -> str:
     """Return what the first byte of an operand may be."""
-    if kind.name.startswith("back"):
-        return "back"
     is_any = kind.size > 1 or kind.high - kind.low == 255
     return "any" if is_any and kind.name not in BYTES else kind.name
 
 
-def form_of(op: opcodes.Op) -> Form:
+def shape_of(op: opcodes.Op) -> Shape:
     jumps = [each.kind.name.startswith(("fwd", "back")) for each in op.operands]
-    if any(jumps):  # so a verifier knows where it is, and whether it is far
-        assert jumps.index(True) == len(jumps) - 1
-        assert (op.operands[-1].kind.size == 2) == (op.size == 3)
+    assert not any(jumps[:-1]), "a jump is the last operand"
     kinds = [byte_of(each.kind) for each in op.operands]
+    if op.implied is not None:
+        assert op.size == 1 and op.code % opcodes.SHORTS == op.implied.value
+        kinds = [byte_of(op.implied.kind)]
     assert kinds[2:] in ([], ["any"])
     first, second, *_ = [*kinds, "any", "any"]
-    return Form(op.code >> 4, op.role, op.pops, op.pushes, op.size, first, second)
+    is_far = any(jumps) and op.operands[-1].kind.size == 2
+    is_back = any(jumps) and op.operands[-1].kind.name.startswith("back")
+    return Shape(op.family, op.role, op.pops, op.pushes, op.size, is_far, is_back, first, second)
 
 
-def forms() -> tuple[dict[Form, list[opcodes.Op]], dict[str, int]]:
-    """Return the forms of opcodes below FAMILIES in order, and where the kinds of them begin.
-
-    Ordered by size, so that a comparison tells it. A far instruction has no form of its own: it
-    is that of the near one, and a number of its own says so.
-    """
-    ops = [op for op in opcodes.OPS if op.code < FAMILIES]
-    near = {op.name.removesuffix(FAR) for op in ops if op.name.endswith(FAR)}
-
-    def kind(op: opcodes.Op) -> int:
-        return 2 if op.name in near else min(op.size, 3) - 1 + (op.size > 2)
-
-    rows: dict[Form, list[opcodes.Op]] = {NONE: []}
-    begins: dict[str, int] = {}
-    for op in sorted(ops, key=kind):
-        if not op.name.endswith(FAR):
-            row = form_of(op)
-            rows.setdefault(row, []).append(op)
-            name = ("", "kTwoBytes", "kNearForms", "kThreeBytes")[kind(op)]
-            begins.setdefault(name, list(rows).index(row))
-    begins["kFarForms"] = len(rows)
-    return rows, begins
-
-
-def families() -> list[list[opcodes.Op]]:
-    """Return the opcodes of each family: they differ in the comparator alone."""
-    found: dict[int, list[opcodes.Op]] = {}
+def shapes() -> dict[Shape, list[opcodes.Op]]:
+    """Return the opcodes of each shape; the first one is that of what is no opcode."""
+    rows: dict[Shape, list[opcodes.Op]] = {NONE: []}
     for op in opcodes.OPS:
-        if op.code >= FAMILIES:
-            found.setdefault((op.code - FAMILIES) // 8, []).append(op)
-    assert list(found) == list(range(len(found)))
-    for same in found.values():
-        assert [op.code % 8 for op in same] == list(range(len(opcodes.COMPARATORS)))
-        assert len({form_of(op) for op in same}) == 1
-    return list(found.values())
+        rows.setdefault(shape_of(op), []).append(op)
+    return rows
+
+
+def families() -> list[str]:
+    return list(dict.fromkeys(shape.family for shape in shapes()))
 
 
 def form_numbers() -> str:
-    """Return the forms and where each kind of them begins, for the header."""
-    rows, begins = forms()
-    named = [
-        (same[0].name if same else "NONE", number, names(same) if len(same) > 1 else "")
-        for number, same in enumerate(rows.values())
-    ]
-    places = ("kTwoBytes", "kNearForms", "kThreeBytes", "kFarForms")
+    """Return the families and what is declared of the tables, for the header."""
+    named = []
+    for number, family in enumerate(families()):
+        same = [op for op in opcodes.OPS if op.family == family]
+        named.append((family, number, names(same) if len(same) > 1 else ""))
     return "\n".join(
         (
-            "// Opcodes of one form have the same operands and the same picture of the stack, and\n"
-            "// what they do begins in one place. It bears the name of the first.\n"
-            + enumeration("Form", named),
-            "// Where forms of two bytes begin, those of them that have a far twin, and those of\n"
-            "// three bytes and more. From kFarForms on, a number is that of the far twin of a\n"
-            "// form from kNearForms on.\n" + constants(*((name, begins[name]) for name in places)),
-            "// From kFamilies on, each eight are a family. Their forms follow the others.\n"
-            + constants(
-                ("kFamilies", FAMILIES),
-                ("kFamiliesEnd", FAMILIES + 8 * len(families())),
-                ("kFamilyOps", len(opcodes.COMPARATORS)),
-            ),
-            "// Pops (2 bits) and form (6) of each opcode below kFamilies.\n"
-            + constants(("kFormMask", (1 << FORM_BITS) - 1))
-            + "extern const uint8_t kFormOf[] tini_progmem;\n",
-            "// Of each form: pushes (1 bit) and role (5); what the second byte is (2), the first\n"
-            "// (3), and the size (3).\n"
-            "extern const uint8_t kForms[][2] tini_progmem;\n",
+            "// What an instruction does: it begins in one place for a whole family.\n"
+            + enumeration("Family", named),
+            "// Bits of the size of a shape.\n" + constants(("kFar", FAR_BIT), ("kBack", BACK_BIT)),
+            "// The number of each opcode's shape.\n"
+            "extern const uint8_t kShapeOf[] tini_progmem;\n",
+            "// Of each shape: pops (2 bits), pushes (1) and role (5); kBack, kFar and size (3);\n"
+            "// what the second byte is (4) and the first (4); the family.\n"
+            "extern const uint8_t kShapes[][4] tini_progmem;\n",
             "// The least value of a Byte, and how much more than that it may be.\n"
             "extern const uint8_t kRanges[][2] tini_progmem;\n",
         )
@@ -222,9 +190,9 @@ def form_numbers() -> str:
 
 def tables(command: str) -> str:
     """Return `bytecode.cpp`: the tables that the header declares."""
-    rows, _ = forms()
-    entries = form_entries()
-    listed = [*rows.items(), *((form_of(same[0]), same) for same in families())]
+    rows = shapes()
+    numbers = {op.code: number for number, same in enumerate(rows.values()) for op in same}
+    entries = [numbers.get(code, 0) for code in range(256)]
     kinds = {byte_of(kind): kind for kind in opcodes.OPERAND_KINDS.values() if kind.size == 1}
     ranges = [(0, 255) if name == "any" else (kinds[name].low, kinds[name].high) for name in BYTES]
     return "\n".join(
@@ -234,13 +202,13 @@ def tables(command: str) -> str:
             "// clang-format off\n",
             "namespace tiniscript {\n",
             array(
-                "kFormOf[]",
+                "kShapeOf[]",
                 (
                     (", ".join(f"0x{each:02x}" for each in entries[at : at + 16]), f"{at:02x}")
-                    for at in range(0, FAMILIES, 16)
+                    for at in range(0, 256, 16)
                 ),
             ),
-            array("kForms[][2]", ((packed(form), names(same)) for form, same in listed)),
+            array("kShapes[][4]", ((packed(shape), names(same)) for shape, same in rows.items())),
             array(
                 "kRanges[][2]",
                 (
@@ -263,27 +231,11 @@ def names(same: Sequence[opcodes.Op]) -> str:
     return ", ".join(op.name for op in same[:4]) + (" ..." if len(same) > 4 else "")
 
 
-def form_entries() -> list[int]:
-    """Return pops and form of each opcode below FAMILIES, or 0."""
-    rows, begins = forms()
-    entries = [0] * FAMILIES
-    for number, (form, same) in enumerate(rows.items()):
-        for op in same:
-            entries[op.code] = op.pops << FORM_BITS | number
-            far = next((each for each in opcodes.OPS if each.name == f"{op.name}{FAR}"), None)
-            if far:
-                assert form_of(far) == form._replace(size=3)
-                further = number + begins["kFarForms"] - begins["kNearForms"]
-                assert number >= begins["kNearForms"] and further < 1 << FORM_BITS
-                entries[far.code] = op.pops << FORM_BITS | further
-    for entry, op_there in zip(entries, opcodes.BY_CODE, strict=False):
-        assert (entry != 0) == (op_there is not None)
-    return entries
-
-
-def packed(form: Form) -> str:
-    """Return what is said of a form, without what it pops: that differs in no other."""
+def packed(shape: Shape) -> str:
     roles = ("none", *opcodes.ROLES)
-    assert form.size < 8 and BYTES.index(form.second) < 4 and roles.index(form.role) < 32
-    operands = BYTES.index(form.second) << 6 | BYTES.index(form.first) << 3 | form.size
-    return f"{{0x{form.pushes << 5 | roles.index(form.role):02x}, 0x{operands:02x}}}"
+    assert shape.size < 8 and shape.pops < 4 and shape.pushes < 2 and roles.index(shape.role) < 32
+    effects = shape.pops << 6 | shape.pushes << 5 | roles.index(shape.role)
+    size = shape.size | FAR_BIT * shape.is_far | BACK_BIT * shape.is_back
+    operands = BYTES.index(shape.second) << 4 | BYTES.index(shape.first)
+    family = families().index(shape.family)
+    return f"{{0x{effects:02x}, 0x{size:02x}, 0x{operands:02x}, {family}}}"

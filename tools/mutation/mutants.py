@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tiniscript.bytecode.image import REFUSALS
-from tiniscript.bytecode.opcodes import BY_NAME, OPS
+from tiniscript.bytecode.opcodes import BY_NAME, OPS, PUSHED, Op
 from tiniscript.bytecode.verify import RULES
 
 MACHINE = Path("src/vm")
@@ -74,26 +74,26 @@ def read(sources: Path) -> dict[str, str]:
 
 # -- opcodes ------------------------------------------------------------------------------------
 
-# Where the machine reads an opcode, and where that of compare and branch. The break stands behind
-# it: this one opcode is another.
+# Where the machine reads an opcode. The break stands behind it: this one opcode is another.
 OPCODE_IS_READ = re.compile(r"const (uint8_t code = \*bytes;)")
-FAMILY_IS_READ = re.compile(r"const (uint8_t code = \*bytes\+\+;)")
-FAMILIES = 0x80
 
 # What each instruction does when it is broken: what another one of its size and its stack does, if
 # there is one, and the one that is hardest to tell from it.
 TWINS = {
     "END": "STOP", "PUSH8": "PUSH_VAR", "PUSH16": "PUSH_MILLI", "PUSH_MILLI": "PUSH16",
-    "PUSH32": "PUSH16", "PUSH_FALSE": "PUSH_TRUE", "PUSH_TRUE": "PUSH_FALSE",
+    "PUSH32": "PUSH16", "PUSH_TENTHS": "PUSH8", "PUSH_FALSE": "PUSH_TRUE",
+    "PUSH_TRUE": "PUSH_FALSE",
     "PUSH_VAR": "PUSH_SENSOR", "PUSH_SENSOR": "PUSH_READ", "PUSH_READ": "PUSH_SENSOR",
     "TIME": "PUSH_FALSE", "RANDOM": "MIN", "ADD": "SUB", "SUB": "ADD", "MUL": "DIV", "DIV": "MUL",
     "MOD": "MIN", "NEG": "ABS", "ABS": "NEG", "MIN": "MAX", "MAX": "MIN", "ROUND": "MAX",
     "EQ": "LE", "NE": "LT", "LT": "LE", "LE": "LT", "GT": "GE", "GE": "GT", "NOT": "ABS",
     "AND": "MIN", "OR": "MAX", "AND_THEN": "OR_ELSE", "OR_ELSE": "AND_THEN", "SET_VAR": "SET",
-    "SET_VAR8": "ADD_VAR8", "ADD_VAR8": "SET_VAR8", "ADD_VAR": "ADD_VAR8", "READ": "WHILE",
+    "SET_VAR8": "ADD_VAR8", "ADD_VAR8": "SET_VAR8", "ADD_VAR": "ADD_VAR8", "INC_VAR": "DEC_VAR",
+    "DEC_VAR": "INC_VAR", "READ": "WHILE",
     "SHOW": "SHOW_YES_NO", "SHOW_YES_NO": "SHOW", "SET": "SET_VAR", "WAIT": "WATCH_WAIT",
-    "WAIT8": "WHILE", "WATCH_WAIT": "WAIT", "WATCH_FOREVER_WAIT": "FOREVER", "UNTIL": "IF",
+    "WAIT8": "WHILE", "WATCH_WAIT": "WAIT", "WATCH_FOREVER_WAIT": "FOREVER", "UNTIL": "SHOW",
     "STOP": "FOREVER", "MOTORS": "WATCH_F", "MOTORS8": "MOVE8_F", "BEEP": "WATCH_F",
+    "BEEP8": "IF_VAR8_EQ",
     "IF": "IF_NOT", "IF_NOT": "IF", "ELSE": "WHILE", "FOREVER": "STOP", "WHILE": "ELSE",
     "AGAIN": "WHILE", "LOOP8": "WAIT8", "LOOP": "IF", "NEXT": "AGAIN", "BREAK": "WHILE",
     "BREAK_LOOP": "BREAK", "DEF": "WHILE", "RETURN": "FOREVER", "CALL": "AGAIN",
@@ -103,29 +103,31 @@ TWINS |= {
     for what in ("MOVE", "MOVE8", "WATCH", "WATCH_FOREVER")
     for way, other in zip("FBLR", "BFRL", strict=True)
 }
-SOURCES = {"VAR": "SENSOR", "SENSOR": "READ", "READ": "SENSOR"}  # of the value that is compared
 
 
-def twins(name: str) -> Iterator[str]:
+def twins(op: Op) -> Iterator[str]:
     """Yield the instructions that one is taken for."""
-    near = name.removesuffix("_FAR")
-    compares = re.fullmatch(r"IF_([A-Z]+)\d+_(..)", name)
+    near = op.name.removesuffix("_FAR")
+    _, _, last = op.name.rpartition("_")
     if near in TWINS:
-        yield TWINS[near] + name.removeprefix(near)
-    elif compares:
-        source, comparator = compares.groups()
-        yield name.removesuffix(comparator) + TWINS[comparator]
-        yield name.replace(source, SOURCES[source])
+        yield TWINS[near] + op.name.removeprefix(near)
+    elif op.implied is not None:  # for its neighbour, and for another one with the same operand
+        yield f"{op.family}_{op.implied.value ^ 1}"
+        if f"{TWINS[op.family]}_{last}" in BY_NAME:
+            yield f"{TWINS[op.family]}_{last}"
+    elif op.family == "PUSH_NUM":
+        yield f"PUSH_NUM_{PUSHED[PUSHED.index(int(last)) - 1]}"
+    elif op.name != op.family and last in TWINS:  # a comparator
+        yield op.name.removesuffix(last) + TWINS[last]
     else:
-        raise Stale(f"breaks.py, TWINS: {name} is taken for nothing")
+        raise Stale(f"breaks.py, TWINS: {op.name} is taken for nothing")
 
 
 def opcode_breaks(texts: dict[str, str]) -> Iterator[Break]:
     simple = _only_place(texts, OPCODE_IS_READ, "OPCODE_IS_READ")
-    family = _only_place(texts, FAMILY_IS_READ, "FAMILY_IS_READ")
     for op in OPS:
-        file, place = family if op.code >= FAMILIES else simple
-        for twin in twins(op.name):
+        file, place = simple
+        for twin in twins(op):
             taken_for = f"if (code == {op.code}) code = {BY_NAME[twin].code};"
             name, instead = f"{op.name} does what {twin} does", f"{place[1]} {taken_for}"
             yield broken("opcode", name, file, texts, place.start(), place.end(), instead)
@@ -238,7 +240,12 @@ def _is_size_of_array(text: str, end: int) -> bool:
 NAMED = (
     ("a program catches up with one ms more", r"kLateMs = 20", "kLateMs = 21"),
     ("a program catches up with one ms less", r"kLateMs = 20", "kLateMs = 19"),
-    ("a tenth has 101 ms", r"kTenthMs = 100", "kTenthMs = 101"),
+    ("a hundredth has 11 ms", r"time \* 10\)", "time * 11)"),
+    ("there are 99 hundredths", r"time < 100", "time < 99"),
+    ("tenths begin at 0.9 s", r"time - 90", "time - 91"),
+    ("there are 99 tenths", r"time < 200", "time < 199"),
+    ("whole seconds begin at 10", r"time - 189", "time - 190"),
+    ("tens begin at 10", r"n - 9\) \* 10", "n - 10) * 10"),
     ("a half is not rounded up", r"(remainder) >= (divisor -)", r"\1 > \2"),
     ("what is below a half is rounded up", r"(remainder) >= (divisor -)", r"\1 + 1 >= \2"),
     ("ROUND cuts off", r"scaled\((magnitude\(pair\[0\]\), 1, unit)\)", r"divided(\1).quotient"),
@@ -251,7 +258,7 @@ NAMED = (
     ("there is one random number too many", r"(high - low\)) \+ 1", r"\1 + 2"),
     ("no power is over 99", r"low, 100", "low, 99"),
     ("a power is up to 101", r"low, 100", "low, 101"),
-    ("a move has a negative power", r"(percent\(\*?\w+(?:\[1\])?), 0\)", r"\1, -100)"),
+    ("a move has a negative power", r"(kMotors \? -100 :) 0;", r"\1 -100;"),
     ("the lowest tone is 32", r"31, 20000", "32, 20000"),
     ("the lowest tone is 30", r"31, 20000", "30, 20000"),
     ("the highest tone is 20001", r"31, 20000", "31, 20001"),

@@ -1,15 +1,17 @@
 // setup() and loop(): the firmware on its board.
 //
-// The board tells the firmware of its button, its radio module and the time; the firmware asks the
-// board for motors, sensors and light (`firmware/board.h`, `robot.h`). Bytes of the link go through
-// interrupts: `boards/uart.cpp` calls `firmware_on_rx_byte` and `firmware_next_tx_byte`.
+// The board passes button, radio module and time to the firmware; the firmware controls motors,
+// sensors and light of the board (`firmware/board.h`, `robot.h`). Interrupts carry the bytes of the
+// link: `boards/uart.cpp` calls `firmware_on_rx_byte` and `firmware_next_tx_byte`.
 //
-// Empty where there is no Arduino: a build for a computer may take all of this folder.
+// Empty without Arduino, so that a build for a computer may take this whole folder.
 
 #ifdef ARDUINO
 
 #include <Arduino.h>  // declares setup() and loop()
 
+#include "boards/attention.h"
+#include "boards/attention.h"
 #include "boards/board.h"
 #include "boards/kit.h"
 #include "boards/uart.h"
@@ -23,16 +25,28 @@ void setup() {
   uart_begin(kBaud);
 }
 
-void loop() {
+namespace {
+
+// The work for each millisecond and each move of the button; skipping it makes other turns quicker.
+void attend() {
   const uint32_t now_ms = board_now_ms();
   board_tick(now_ms);
+  uart_tick();
   const Press press = board_button(now_ms);
   if (press == Press::kPressed) firmware_on_pressed();
   if (press == Press::kHeld) firmware_on_held();
   if (press == Press::kReleased) firmware_on_released();
   if (board_has_disconnected()) firmware_on_disconnect();
-  firmware_tick(now_ms);
-  uart_tick();
+  firmware_on_time(now_ms);
+}
+
+}  // namespace
+
+void loop() {
+  pay_attention();
+  if (board_has_news()) attend();
+  firmware_turn();
+  uart_send();
 }
 
 #endif  // ARDUINO

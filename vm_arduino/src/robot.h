@@ -1,7 +1,7 @@
-// What the machine may ask of the world.
+// What the machine needs of the robot.
 //
-// Plain functions: each build links one definition of them (a board, a test, a simulation).
-// None of them waits. Numbers are thousandths, TRUE is 1.
+// Plain functions: each build links one definition of them (a board, a test, a simulation). None of
+// them blocks. Numbers are thousandths, TRUE is 1.
 
 #ifndef TINISCRIPT_ROBOT_H_
 #define TINISCRIPT_ROBOT_H_
@@ -13,20 +13,24 @@ namespace tiniscript {
 // Sets both motors, -100 to 100 percent.
 void robot_motors(int8_t left, int8_t right);
 
-// Motors off: the program has ended or faulted.
+// Turns the motors off: the program has ended or faulted.
 void robot_off();
 
-// Puts a reading into `*value`, or returns false while it is not there yet: the machine asks again.
+// Puts a reading into `*value`. False: it is not available yet, and the machine asks again.
 bool robot_read(uint8_t sensor, int32_t* value);
 
 // Starts a sound of 31 to 20000 hertz; it ends by itself.
 void robot_beep(uint16_t hertz, uint32_t duration_ms);
 
-// Sends a value; returns false while there is no room: the machine tries again.
+// Sends a value. False: there is no room, and the machine tries again.
 bool robot_show(int32_t value, bool is_yes_no);
 
 // Sets an actuator; the robot rounds and limits the value to its range.
 void robot_set(uint8_t actuator, int32_t value);
+
+// The hash of a device of the kit by its number: first the sensors, then the actuators.
+// `bytecode_spec.md` defines it.
+uint16_t robot_device_hash(uint16_t device);
 
 }  // namespace tiniscript
 

@@ -50,7 +50,7 @@ std::string state_of(const Machine& machine, const int32_t* readings, const std:
   std::string text = "pc " + std::to_string(task.pc) + "\n";
   text += row("stack", task.stack, task.depth);
   text += row("variables", task.variables + 1, 2);
-  text += row("readings", readings, cases::grabber().sensors.size());
+  text += row("readings", readings, cases::eight().sensors.size());
   text += row("counters", task.counters, task.looped);
   text += row("calls", task.calls, task.called);
   text += "watch " + std::to_string(task.move_ms);
@@ -65,7 +65,7 @@ std::string state_of(const Machine& machine, const int32_t* readings, const std:
 }  // namespace
 
 TEST_CASE("every instruction leaves what the machine in Python leaves") {
-  const cases::Kit& kit = cases::grabber();
+  const cases::Kit& kit = cases::eight();
   for (const cases::InstructionCase& each : cases::instruction_cases()) {
     robot = TracedRobot();
     robot.sensors = kit.sensors;

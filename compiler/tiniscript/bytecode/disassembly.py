@@ -67,10 +67,14 @@ def listing(code: bytes, remarks: Mapping[int, str] | None = None, kit: Kit | No
 def _names(row: Row, kit: Kit) -> list[str]:
     assert row.op is not None
     devices = {"sensor": kit.sensors, "actuator": kit.actuators}
+    kinds = [each.kind.name for each in row.op.operands]
+    named = list(zip(kinds, row.operands, strict=True))
+    if row.op.implied is not None:
+        named.append((row.op.implied.kind.name, row.op.implied.value))
     return [
-        devices[operand.kind.name][value].name
-        for operand, value in zip(row.op.operands, row.operands, strict=True)
-        if operand.kind.name in devices and value < len(devices[operand.kind.name])
+        devices[kind][value].name
+        for kind, value in named
+        if kind in devices and value < len(devices[kind])
     ]
 
 

@@ -1,8 +1,8 @@
 """An image: code with the header that tells a robot whether it may run it.
 
-FIELDS is the one declaration of the header. `pack` writes it with the standard library alone;
-reading, documents and tests use the `construct` format that is made from the same table.
-Knows nothing of what the code does: `verify` does.
+FIELDS is the one declaration of the header. `pack` and `unpack` need the standard library alone;
+documents and tests use the `construct` format that is made from the same table.
+Knows nothing of what the code does: `verify` does, and `loading` asks both.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from __future__ import annotations
 import zlib
 from functools import lru_cache
 from struct import pack as struct_pack
+from struct import unpack as struct_unpack
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tiniscript.bytecode.opcodes import CODE_BYTES, ISA_MAJOR, ISA_MINOR
@@ -28,47 +29,59 @@ class Field(NamedTuple):
 
 
 MAGIC = b"TS"
+NEEDS = 0  # that this version can be asked for
 STARTS = ("SI", "SB", "PING")
 
+# The first fields lie where they lay in version 1, so that whoever finds a stored program of any
+# version knows how long it is and whether it is whole.
 # fmt: off
 FIELDS = (
-    Field("magic",       "2s", 2, "The letters `TS`."),
-    Field("isa_major",   "B",  1, "Instruction set: a machine runs its own major version only,"),
-    Field("isa_minor",   "B",  1, "and its own minor version or an earlier one."),
-    Field("start",       "B",  1, "How the program starts: 0 `SI`, 1 `SB`, 2 `PING`."),
-    Field("needs",       "B",  1, "What the machine must be able to do beyond this version: 0."),
-    Field("kit",         "H",  2, "Fingerprint of the kit whose words it uses, or 0 for none."),
-    Field("code_length", "H",  2, "Bytes of code that follow the header, 0 to 32767."),
-    Field("checksum",    "I",  4, "CRC-32 (zlib) of the ten bytes before it and the code."),
+    Field("magic",         "2s", 2, "The letters `TS`."),
+    Field("isa_major",     "B",  1, "Instruction set: a machine runs its own major version only,"),
+    Field("isa_minor",     "B",  1, "and its own minor version or an earlier one."),
+    Field("start",         "B",  1, "How the program starts: 0 `SI`, 1 `SB`, 2 `PING`."),
+    Field("header_length", "B",  1, "Bytes before the code, 15 to 255."),
+    Field("devices",       "H",  2, "A [hash](#devices) of those that the code uses; 0 for none."),
+    Field("code_length",   "H",  2, "Bytes of code that follow the header, 0 to 32767."),
+    Field("checksum",      "I",  4, "CRC-32 (zlib) of all bytes before and behind it."),
+    Field("needs",         "B",  1, "What the machine must be able to do beyond this version: 0."),
 )
 HEADER_BYTES = sum(field.size for field in FIELDS)
 
+# In the order in which they are looked for; the code is verified before the last one.
 REFUSALS = {
-    # name           number, what is refused
-    "NOT_AN_IMAGE":  (1, "It does not begin with `TS`: it is no TiniScript program."),
-    "TRUNCATED":     (2, "Bytes are missing at its end."),
-    "TRAILING":      (3, "There are bytes after its end."),
-    "DAMAGED":       (4, "Its checksum does not fit: a byte has changed."),
-    "OTHER_VERSION": (5, "It is for another version of the machine."),
-    "UNKNOWN_START": (6, "Its start mode is not known."),
-    "UNKNOWN_NEEDS": (7, "It needs something that this machine does not have."),
-    "OTHER_KIT":     (8, "It uses words of another robot's kit."),
+    # name            number, what is refused
+    "NOT_AN_IMAGE":   (1, "It does not begin with `TS`: it is no TiniScript program."),
+    "OTHER_VERSION":  (2, "It is for another version of the machine."),
+    "BAD_HEADER":     (3, "Its header has less than 15 bytes, or its code more than 32767."),
+    "TRUNCATED":      (4, "Bytes are missing at its end."),
+    "TRAILING":       (5, "There are bytes after its end."),
+    "DAMAGED":        (6, "Its checksum does not fit: a byte has changed."),
+    "UNKNOWN_NEEDS":  (7, "It needs something that this machine does not have."),
+    "UNKNOWN_START":  (8, "Its start mode is not known."),
     "PING_WITH_CODE": (9, "It starts with PING, and yet has code."),
+    "OTHER_KIT":      (10, "It uses a sensor or an actuator that is another one here."),
 }
 # fmt: on
 
+_VERSION_BYTES = 4  # by which an image of any version is known
 _LAYOUT = "<" + "".join(field.layout for field in FIELDS)
-_CHECKED = HEADER_BYTES - FIELDS[-1].size  # bytes before the checksum
+_CHECKSUM_AT = sum(field.size for field in FIELDS[:-2])
+_BEHIND_CHECKSUM = _CHECKSUM_AT + 4
 
 
 class Image(NamedTuple):
-    """`kit` is a fingerprint, or 0; `checksum` names the program wherever it goes."""
+    """`devices` is the hash of those that the code uses; `later` are fields of later versions.
+
+    `checksum` names the program wherever it goes.
+    """
 
     start: str
-    kit: int
+    devices: int
     code: bytes
     checksum: int
     isa: tuple[int, int]
+    later: bytes = b""
 
 
 class ImageRefused(Exception):
@@ -81,17 +94,26 @@ class ImageRefused(Exception):
         self.values = values
 
 
-def pack(start: str, kit: int, code: bytes) -> bytes:
-    """Return the image of `code` (0 to 32767 bytes); `kit` is a fingerprint, or 0."""
+def pack(start: str, devices: int, code: bytes, later: bytes = b"") -> bytes:
+    """Return the image of `code` (0 to 32767 bytes); `devices` is the hash of those it uses.
+
+    `later` (0 to 240 bytes) are fields that this version does not know.
+    """
     assert len(code) <= CODE_BYTES
-    values = (MAGIC, ISA_MAJOR, ISA_MINOR, STARTS.index(start), 0, kit, len(code))
-    head = struct_pack(_LAYOUT[:-1], *values)
-    return head + struct_pack("<I", zlib.crc32(head + code)) + code
+    values = (MAGIC, ISA_MAJOR, ISA_MINOR, STARTS.index(start), HEADER_BYTES + len(later),
+              devices, len(code), 0, NEEDS)  # fmt: skip
+    return sealed(struct_pack(_LAYOUT, *values) + later + code)
+
+
+def sealed(image: bytes) -> bytes:
+    """Return an image with the checksum that fits the rest of it."""
+    head, rest = image[:_CHECKSUM_AT], image[_BEHIND_CHECKSUM:]
+    return head + struct_pack("<I", zlib.crc32(head + rest)) + rest
 
 
 def checksum(image: bytes) -> int:
     """Return the checksum in the header of a whole image."""
-    return int.from_bytes(image[_CHECKED:HEADER_BYTES], "little")
+    return int.from_bytes(image[_CHECKSUM_AT:_BEHIND_CHECKSUM], "little")
 
 
 @lru_cache(maxsize=1)
@@ -101,37 +123,44 @@ def image_format() -> Construct[Any, Any]:
 
     kinds = {"B": c.Int8ul, "H": c.Int16ul, "I": c.Int32ul, "2s": c.Bytes(2)}
     fields = [field.name / kinds[field.layout] for field in FIELDS]
-    return c.Struct(*fields, "code" / c.Bytes(c.this.code_length), "rest" / c.GreedyBytes)
+    return c.Struct(
+        *fields,
+        "later" / c.Bytes(c.this.header_length - HEADER_BYTES),
+        "code" / c.Bytes(c.this.code_length),
+        "rest" / c.GreedyBytes,
+    )
 
 
-def unpack(data: bytes, kit: int | None = None) -> Image:
-    """Return the image in `data`. Its code is not verified yet.
+def unpack(data: bytes) -> Image:
+    """Return the image in `data`. Its code and its devices are not verified yet.
 
-    `kit` is the fingerprint of the robot that shall run it; None accepts every kit. Raises
-    ImageRefused with the name of the reason.
+    Raises ImageRefused with the name of the reason.
     """
-    from construct import StreamError
-
     if data[: len(MAGIC)] != MAGIC[: len(data)] or not data:
         raise ImageRefused("NOT_AN_IMAGE")
-    try:
-        parsed = image_format().parse(data)
-    except StreamError:
-        raise ImageRefused("TRUNCATED") from None
-    if parsed.rest:
+    if len(data) < _VERSION_BYTES:
+        raise ImageRefused("TRUNCATED")
+    isa = data[2], data[3]
+    if isa[0] != ISA_MAJOR or isa[1] > ISA_MINOR:
+        theirs, ours = f"{isa[0]}.{isa[1]}", f"{ISA_MAJOR}.{ISA_MINOR}"
+        raise ImageRefused("OTHER_VERSION", theirs=theirs, ours=ours)
+    if len(data) < HEADER_BYTES:
+        raise ImageRefused("TRUNCATED")
+    values = struct_unpack(_LAYOUT, data[:HEADER_BYTES])
+    _, _, _, start, header_length, devices, code_length, found, needs = values
+    if header_length < HEADER_BYTES or code_length > CODE_BYTES:
+        raise ImageRefused("BAD_HEADER")
+    if len(data) < header_length + code_length:
+        raise ImageRefused("TRUNCATED")
+    if len(data) > header_length + code_length:
         raise ImageRefused("TRAILING")
-    if zlib.crc32(data[:_CHECKED] + data[HEADER_BYTES:]) != parsed.checksum:
+    if checksum(sealed(data)) != found:
         raise ImageRefused("DAMAGED")
-    if parsed.isa_major != ISA_MAJOR or parsed.isa_minor > ISA_MINOR:
-        theirs = f"{parsed.isa_major}.{parsed.isa_minor}"
-        raise ImageRefused("OTHER_VERSION", theirs=theirs, ours=f"{ISA_MAJOR}.{ISA_MINOR}")
-    if parsed.start >= len(STARTS):
-        raise ImageRefused("UNKNOWN_START", found=str(parsed.start))
-    if parsed.needs:
-        raise ImageRefused("UNKNOWN_NEEDS", found=f"{parsed.needs:02x}")
-    if kit is not None and parsed.kit not in (0, kit):
-        raise ImageRefused("OTHER_KIT", theirs=f"{parsed.kit:04x}", ours=f"{kit:04x}")
-    if STARTS[parsed.start] == "PING" and parsed.code_length:
+    if needs != NEEDS:
+        raise ImageRefused("UNKNOWN_NEEDS", found=f"{needs:02x}")
+    if start >= len(STARTS):
+        raise ImageRefused("UNKNOWN_START", found=str(start))
+    if STARTS[start] == "PING" and code_length:
         raise ImageRefused("PING_WITH_CODE")
-    isa = (parsed.isa_major, parsed.isa_minor)
-    return Image(STARTS[parsed.start], parsed.kit, bytes(parsed.code), parsed.checksum, isa)
+    later, code = data[HEADER_BYTES:header_length], data[header_length:]
+    return Image(STARTS[start], devices, code, found, isa, later)

@@ -4,6 +4,10 @@ Everything that must know an instruction reads it from here: `lower`, `disassemb
 `vm` import it; `python -m tools.generate` writes the tables of `bytecode_spec.md` from it. Codes on
 the wire are promises: a code is never used again for something else.
 
+A short instruction has its operand in its code: `PUSH_VAR_3` is `PUSH_VAR v3` in one byte. Such
+families are of eight, and the last three bits of the code are the operand. Families of comparators
+are of eight too, and the last three bits are the comparator.
+
 Knows numbers, operands, stack pictures, faults and limits. Does not know what anything does.
 """
 
@@ -12,8 +16,10 @@ from __future__ import annotations
 from struct import Struct
 from typing import NamedTuple
 
-ISA_MAJOR = 1  # a machine runs images of its own major version,
+ISA_MAJOR = 2  # a machine runs images of its own major version,
 ISA_MINOR = 0  # and of its own minor version or an earlier one
+ESCAPE = 0xFF  # kept for instructions of two bytes in a later minor version; none begins with it
+SHORTS = 8  # variables, sensors and actuators that instructions of one byte name
 
 
 class OperandKind(NamedTuple):
@@ -32,6 +38,13 @@ class Operand(NamedTuple):
     kind: OperandKind
 
 
+class Implied(NamedTuple):
+    """An operand that no byte holds: the code says it."""
+
+    kind: OperandKind
+    value: int
+
+
 class Op(NamedTuple):
     """One instruction. `picture` is a Forth stack picture, top of the stack on the right."""
 
@@ -44,7 +57,19 @@ class Op(NamedTuple):
     size: int
     pops: int
     pushes: int
+    implied: Implied | None = None
 
+    @property
+    def family(self) -> str:
+        """The name of what it does: MOVE of MOVE_F, IF of IF_FAR, PUSH_VAR of PUSH_VAR_3."""
+        if 0x10 <= self.code <= 0x28:
+            return "CALCULATE"
+        base, _, last = self.name.rpartition("_")
+        return base if last in _VARIANTS or last.isdigit() else self.name
+
+
+# What stands behind the name of a family, but for numbers.
+_VARIANTS = ("FAR", "F", "B", "L", "R", "EQ", "NE", "LT", "LE", "GT", "GE")
 
 # fmt: off
 OPERAND_KINDS = {kind.name: kind for kind in (
@@ -54,7 +79,9 @@ OPERAND_KINDS = {kind.name: kind for kind in (
     OperandKind("i16",      2, True,     -32768,  32767, "a whole number"),
     OperandKind("milli16",  2, True,     -32768,  32767, "thousandths"),
     OperandKind("milli32",  4, True,     -2**31, 2**31 - 1, "thousandths"),
-    OperandKind("tenths",   1, False,         0,    255, "tenths of a second"),
+    OperandKind("tenths",   1, True,       -128,    127, "tenths"),
+    OperandKind("time8",    1, False,         0,    255, "a time: 0 to 99 hundredths of a second; from 100 on 1.0 to 10.9 s, in tenths; from 200 on 11 to 66 s"),
+    OperandKind("u16",      2, False,         0,  65535, "a whole number"),
     OperandKind("power",    1, False,         0,    100, "a percentage"),
     OperandKind("percent",  1, True,       -100,    100, "a percentage, negative is backward"),
     OperandKind("count",    1, False,         1,    255, "how many times"),
@@ -105,14 +132,31 @@ def _op(code: int, name: str, operands: str, picture: str, role: str, meaning: s
               size, len(taken.split()), len(left.split()))
 
 
+def _shorts(code: int, name: str, kind: str, picture: str, role: str, meaning: str) -> list[Op]:
+    """Return the instructions of one byte that have `n` of 0 to 7 in their code."""
+    assert code % SHORTS == 0
+    return [_op(code + n, f"{name}_{n}", "", picture, role, meaning.format(n))
+            ._replace(implied=Implied(OPERAND_KINDS[kind], n)) for n in range(SHORTS)]
+
+
+def _comparing(code: int, name: str, operands: str, picture: str, role: str, meaning: str) -> list[Op]:
+    """Return the six instructions that differ in the comparator, the last three bits of the code."""
+    assert code % 8 == 0
+    return [_op(code + i, f"{name}_{each}", operands, picture, role, meaning.format(sign))
+            for i, (each, sign) in enumerate(COMPARATORS)]
+
+
 _MOVES = ("F", "forward"), ("B", "backward"), ("L", "left"), ("R", "right")
 COMPARATORS = ("EQ", "="), ("NE", "<>"), ("LT", "<"), ("LE", "<="), ("GT", ">"), ("GE", ">=")
+
+# The numbers that one byte pushes: what programs count with, and their powers.
+PUSHED = (*range(11), *range(20, 101, 10))
 
 OPS = (
     #    code  name              operands               stack picture      role     meaning
     _op(0x00, "END",             "",                    "--",              "end",   "The program is finished. No code holds it: a machine puts it behind."),
     # values
-    _op(0x01, "PUSH8",           "n:i8",                "-- n",            "value", "Push the whole number `n`."),
+    _op(0x01, "PUSH8",           "n:u8",                "-- n",            "value", "Push the whole number `n`."),
     _op(0x02, "PUSH16",          "n:i16",               "-- n",            "value", "Push the whole number `n`."),
     _op(0x03, "PUSH_MILLI",      "n:milli16",           "-- n",            "value", "Push `n` thousandths."),
     _op(0x04, "PUSH32",          "n:milli32",           "-- n",            "value", "Push `n` thousandths."),
@@ -123,6 +167,7 @@ OPS = (
     _op(0x09, "PUSH_READ",       "s:sensor",            "-- reading",      "value", "Take a reading of sensor `s`, keep it and push it."),
     _op(0x0A, "TIME",            "",                    "-- seconds",      "value", "Push the time since the program started."),
     _op(0x0B, "RANDOM",          "",                    "low high -- n",   "value", "Push a whole number from `low` to `high`."),
+    _op(0x0C, "PUSH_TENTHS",     "n:tenths",            "-- n",            "value", "Push `n` tenths."),
     _op(0x10, "ADD",             "",                    "a b -- a+b",      "value", "Add."),
     _op(0x11, "SUB",             "",                    "a b -- a-b",      "value", "Subtract."),
     _op(0x12, "MUL",             "",                    "a b -- a*b",      "value", "Multiply; round half away from zero."),
@@ -135,9 +180,9 @@ OPS = (
     _op(0x19, "ROUND",           "",                    "a places -- n",   "value", "Round `a` half away from zero to `places` decimals."),
     *(_op(0x20 + i, name,        "",                    f"a b -- a{sign}b", "value", f"Push TRUE if `a {sign} b`, else FALSE.")
       for i, (name, sign) in enumerate(COMPARATORS)),
-    _op(0x26, "NOT",             "",                    "a -- not-a",      "value", "Exchange TRUE and FALSE."),
-    _op(0x27, "AND",             "",                    "a b -- a-and-b",  "value", "TRUE if both are."),
-    _op(0x28, "OR",              "",                    "a b -- a-or-b",   "value", "TRUE if one is."),
+    _op(0x26, "NOT",             "",                    "a -- not-a",      "value", "TRUE if `a` is FALSE, else FALSE."),
+    _op(0x27, "AND",             "",                    "a b -- a-and-b",  "value", "TRUE if both are, else FALSE."),
+    _op(0x28, "OR",              "",                    "a b -- a-or-b",   "value", "TRUE if one is, else FALSE."),
     _op(0x2A, "AND_THEN",        "to:fwd8",             "a --",            "join",  "If `a` is FALSE leave it and go to `to`."),
     _op(0x2B, "AND_THEN_FAR",    "to:fwd16",            "a --",            "join",  "The same, further."),
     _op(0x2C, "OR_ELSE",         "to:fwd8",             "a --",            "join",  "If `a` is TRUE leave it and go to `to`."),
@@ -147,6 +192,8 @@ OPS = (
     _op(0x31, "SET_VAR8",        "v:variable n:i8",     "--",              "plain", "Put the whole number `n` into `v`."),
     _op(0x32, "ADD_VAR8",        "v:variable n:i8",     "--",              "plain", "Add the whole number `n` to `v`."),
     _op(0x33, "ADD_VAR",         "v:variable w:variable", "--",            "plain", "Add what `w` holds to `v`."),
+    _op(0x34, "INC_VAR",         "v:variable",          "--",              "plain", "Add 1 to `v`."),
+    _op(0x35, "DEC_VAR",         "v:variable",          "--",              "plain", "Subtract 1 from `v`."),
     # the robot
     _op(0x38, "READ",            "s:sensor",            "--",              "read",  "Take a reading of sensor `s` and keep it."),
     _op(0x39, "SHOW",            "",                    "number --",       "plain", "Send a number to whoever is listening."),
@@ -154,18 +201,18 @@ OPS = (
     _op(0x3B, "SET",             "a:actuator",          "value --",        "plain", "Set actuator `a`, rounded and limited to its range."),
     *(_op(0x40 + i, f"MOVE_{d}", "",                    "time power --",   "plain", f"Drive {way} for `time`, then motors off.")
       for i, (d, way) in enumerate(_MOVES)),
-    *(_op(0x44 + i, f"MOVE8_{d}", "time:tenths power:power", "--",         "plain", f"Drive {way} for `time`, then motors off.")
+    *(_op(0x44 + i, f"MOVE8_{d}", "time:time8 power:power", "--",          "plain", f"Drive {way} for `time`, then motors off.")
       for i, (d, way) in enumerate(_MOVES)),
     *(_op(0x48 + i, f"WATCH_{d}", "",                   "time power --",   "watch", f"Prepare to drive {way} for `time` while checks fail.")
       for i, (d, way) in enumerate(_MOVES)),
     *(_op(0x4C + i, f"WATCH_FOREVER_{d}", "",           "power --",        "watch", f"Prepare to drive {way} while checks fail.")
       for i, (d, way) in enumerate(_MOVES)),
     _op(0x50, "WAIT",            "",                    "time --",         "plain", "Wait."),
-    _op(0x51, "WAIT8",           "time:tenths",         "--",              "plain", "Wait."),
+    _op(0x51, "WAIT8",           "time:time8",          "--",              "plain", "Wait."),
     _op(0x52, "WATCH_WAIT",      "",                    "time --",         "watch", "Prepare to wait for `time` while checks fail."),
     _op(0x53, "WATCH_FOREVER_WAIT", "",                 "--",              "watch", "Prepare to wait while checks fail."),
-    _op(0x54, "UNTIL",           "to:back8",            "stop --",         "until", "End the move if `stop`; else go on with it and to `to` after 20 ms."),
-    _op(0x55, "UNTIL_FAR",       "to:back16",           "stop --",         "until", "The same, further."),
+    _op(0x54, "UNTIL",           "",                    "stop --",         "until", "End the move if `stop`; else go on with it and check again after 20 ms."),
+    _op(0x56, "BEEP8",           "time:time8 hertz:u16", "--",             "plain", "Sound the buzzer and wait for it."),
     _op(0x58, "STOP",            "",                    "--",              "plain", "Motors off."),
     _op(0x59, "MOTORS",          "",                    "left right --",   "plain", "Set both motors and go on at once."),
     _op(0x5A, "MOTORS8",         "left:percent right:percent", "--",       "plain", "Set both motors and go on at once."),
@@ -196,15 +243,21 @@ OPS = (
     _op(0x7A, "RETURN",          "",                    "--",              "return", "Go back behind the call."),
     _op(0x7B, "CALL",            "to:back8",            "--",              "call",  "Call the procedure whose first instruction is at `to`."),
     _op(0x7C, "CALL_FAR",        "to:back16",           "--",              "call",  "The same, further."),
-    # compare and branch: 80 + 10 for each source + 8 for the wide constant + the comparator
-    *(_op(0x80 + 0x10 * s + 8 * w + i, f"IF_{source}{bits}_{name}", f"{operand} n:{kind} to:fwd8", "--", "if",
-          f"{prefix}o to `to` unless {what} {sign} `n`.")
-      for s, (source, operand, prefix, what) in enumerate((
-          ("VAR", "v:variable", "G", "variable `v`"),
-          ("SENSOR", "s:sensor", "G", "the kept reading of `s`"),
-          ("READ", "s:sensor", "Take a reading of `s` and keep it; g", "it is")))
-      for w, (bits, kind) in enumerate((("8", "u8"), ("16", "i16")))
-      for i, (name, sign) in enumerate(COMPARATORS)),
+    # in one byte
+    *_shorts(0x80, "PUSH_VAR",    "variable", "-- value",   "value", "Push what variable {} holds."),
+    *_shorts(0x88, "PUSH_SENSOR", "sensor",   "-- reading", "value", "Push the kept reading of sensor {}."),
+    *_shorts(0x90, "PUSH_READ",   "sensor",   "-- reading", "value", "Take a reading of sensor {}, keep it and push it."),
+    *_shorts(0x98, "READ",        "sensor",   "--",         "read",  "Take a reading of sensor {} and keep it."),
+    *_shorts(0xA0, "SET_VAR",     "variable", "value --",   "plain", "Put the value into variable {}."),
+    *_shorts(0xA8, "SET",         "actuator", "value --",   "plain", "Set actuator {}, rounded and limited to its range."),
+    *(_op(0xB0 + i, f"PUSH_NUM_{n}", "", "-- n", "value", f"Push the whole number {n}.") for i, n in enumerate(PUSHED)),
+    # with a constant to compare to
+    *_comparing(0xC8, "UNTIL8",   "n:u8",               "a --", "until", "As UNTIL: `stop` is `a {} n`."),
+    *_comparing(0xD0, "UNTIL16",  "n:i16",              "a --", "until", "As UNTIL: `stop` is `a {} n`."),
+    *_comparing(0xD8, "IF8",      "n:u8 to:fwd8",       "a --", "if",    "Go to `to` unless `a {} n`."),
+    *_comparing(0xE0, "IF16",     "n:i16 to:fwd8",      "a --", "if",    "Go to `to` unless `a {} n`."),
+    *_comparing(0xE8, "IF_VAR8",  "v:variable n:u8 to:fwd8",  "--", "if", "Go to `to` unless variable `v` {} `n`."),
+    *_comparing(0xF0, "IF_VAR16", "v:variable n:i16 to:fwd8", "--", "if", "Go to `to` unless variable `v` {} `n`."),
 )
 
 FAULTS = (
@@ -213,6 +266,12 @@ FAULTS = (
     (2, "DIVIDE_BY_ZERO", "A division or a remainder by 0."),
     (255, "BAD_CODE",     "A check failed that verified code never fails: memory has changed."),
 )
+# Which instructions of verified code can fault.
+FAULTING = {
+    "OVERFLOW":       ("TIME", "RANDOM", "ADD", "SUB", "MUL", "DIV", "NEG", "ABS", "ROUND", "ADD_VAR8", "ADD_VAR", "INC_VAR", "DEC_VAR"),
+    "DIVIDE_BY_ZERO": ("DIV", "MOD"),
+    "BAD_CODE":       (),
+}
 # fmt: on
 
 # Limits, the same on every machine.
@@ -233,6 +292,22 @@ for _each in OPS:
     assert BY_CODE[_each.code] is None, f"code {_each.code:02x} is used twice"
     BY_CODE[_each.code] = _each
 assert len(BY_NAME) == len(OPS), "a name is used twice"
+assert BY_CODE[ESCAPE] is None
+
+
+def time8_ms(time: int) -> int:
+    """Return milliseconds of an operand of the kind `time8`."""
+    if time < 100:
+        return time * 10
+    return (time - 90) * 100 if time < 200 else (time - 189) * 1000
+
+
+_TIME8 = {time8_ms(each): each for each in range(256)}
+
+
+def time8(time_ms: int) -> int | None:
+    """Return the operand of the kind `time8` that says a time, if one does."""
+    return _TIME8.get(time_ms)
 
 
 def instruction_text(op: Op, operands: tuple[int, ...], next_offset: int) -> str:

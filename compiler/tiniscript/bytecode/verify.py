@@ -4,7 +4,8 @@ One pass over the code from its first byte to its last, with bounded memory: wha
 few words, and a jump is right when it leads where the structure around it ends or begins. What
 is accepted cannot leave the stack, the variables, the kit or the code while it runs.
 
-Written to be written again in C++: same rules, same order, same verdict at the same offset.
+`bytecode_spec.md` has the same steps in words, under "What must be refused"; `verify.cpp` has them
+in C++. Same names, same order, same verdict at the same offset: change all three.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from tiniscript.bytecode.opcodes import (
     ROLES,
     STACK_VALUES,
     Op,
+    OperandKind,
     read_operands,
 )
 
@@ -35,13 +37,13 @@ RULES = {
     "NO_SUCH_DEVICE":  (24, "A sensor or an actuator that the kit does not have."),
     "STACK_UNDERFLOW": (25, "An instruction takes more values than are on the stack."),
     "STACK_OVERFLOW":  (26, "More than 16 values on the stack."),
-    "STACK_NOT_EMPTY": (27, "Values are left on the stack between two instructions."),
-    "BAD_TARGET":      (28, "A jump forward leads out of the block around it."),
+    "STACK_NOT_EMPTY": (27, "Values are left between two instructions, or a join is reached with more or fewer than one."),
+    "BAD_TARGET":      (28, "A jump forward leads out of the block around it, or out of the code."),
     "MISSED_TARGET":   (29, "No instruction begins where a jump leads, or one that may not be reached so."),
-    "BAD_LOOP_START":  (30, "A jump back does not lead to the beginning of its loop or check."),
+    "BAD_LOOP_START":  (30, "A jump back does not lead to the beginning of its loop."),
     "BAD_LOOP_END":    (31, "A BREAK or a loop's head names an end that is not behind the loop."),
     "NOT_OPEN":        (32, "ELSE, AGAIN, NEXT, BREAK, UNTIL or RETURN without what it belongs to."),
-    "STILL_OPEN":      (33, "A block ends while another one inside it is open."),
+    "STILL_OPEN":      (33, "A loop, a procedure or the code ends while a block or a procedure in it is open."),
     "TOO_DEEP":        (34, "Blocks, counters, joins or calls deeper than a machine remembers."),
     "BAD_DEF":         (35, "A DEF that is not at the top level, or does not end with its RETURN."),
     "TOO_MANY_DEFS":   (36, "More than 16 DEFs."),
@@ -63,12 +65,15 @@ class Refused(Exception):
 
 
 class Verdict(NamedTuple):
-    """What accepted code needs: values on the stack, counters and calls open at once."""
+    """What accepted code needs: values on the stack, counters and calls open at once.
+
+    `uses` are its sensors and actuators, "sensor" or "actuator" and the number, in its order.
+    """
 
     stack_values: int
     counters: int
     calls: int
-    uses_kit: bool
+    uses: tuple[tuple[str, int], ...]
 
 
 def verify(code: bytes, sensors: int, actuators: int) -> Verdict:
@@ -81,21 +86,38 @@ def verify(code: bytes, sensors: int, actuators: int) -> Verdict:
     return _Verifier(code, sensors, actuators).run()
 
 
+class _Join(NamedTuple):
+    """Where an AND_THEN or an OR_ELSE leads, and with how many values on the stack."""
+
+    target: int
+    depth: int
+
+
+_IF, _REPEAT, _COUNT = "if", "repeat", "count"  # what a block is; a REPEAT loop does not count
+_WORDS = {_IF: 1, _REPEAT: 2, _COUNT: 2}
+
+
 class _Block:
-    """An open IF (until `end`), or an open loop from `start` to `end`; 0 while unknown."""
+    """An open IF, or an open loop that begins at `start`; it ends at `end`, or 0: unknown yet."""
 
     __slots__ = ("end", "kind", "start")
 
     def __init__(self, kind: str, start: int, end: int) -> None:
-        self.kind = kind  # "if", "repeat" or "count"
+        self.kind = kind
         self.start = start
         self.end = end
 
 
-class _Def(NamedTuple):
-    start: int
-    counters: int
-    calls: int
+class _Routine:
+    """A procedure, or the code outside of all; and what is open at once in it, its calls too."""
+
+    __slots__ = ("calls", "counters", "end", "start")
+
+    def __init__(self, start: int, end: int) -> None:
+        self.start = start
+        self.end = end  # 0: the code outside of all procedures
+        self.counters = 0
+        self.calls = 0
 
 
 class _Verifier:
@@ -104,74 +126,79 @@ class _Verifier:
         self.devices = {"sensor": sensors, "actuator": actuators}
         self.at = 0  # where the instruction that is looked at begins
         self.after = 0  # where the next one begins
+        self.target = 0  # where it jumps, if it does
         self.depth = 0  # values on the stack
-        self.blocks: list[_Block] = []
-        self.words = 0  # that `blocks` take
-        self.joins: list[tuple[int, int]] = []  # where, and with how many values there
-        self.check = 0  # where the open check of an UNTIL begins, or 0
-        self.defs: list[_Def] = []
-        self.def_start = 0  # of the open DEF, or 0
-        self.def_end = 0
-        self.counters = 0  # counted loops open in this routine
-        self.most_counters = 0  # in this routine, its calls included
-        self.most_calls = 0
+        self.joins: list[_Join] = []  # that are open, the innermost last
+        self.blocks: list[_Block] = []  # that are open, the innermost last
+        self.is_checking = False  # the check of an UNTIL is open
+        self.counters = 0  # counted loops that are open in this routine
+        self.routine = _Routine(0, 0)  # that is looked at
+        self.closed: list[_Routine] = []  # the procedures that have ended
         # what the whole code needs
         self.stack_values = 0
-        self.all_counters = 0
-        self.all_calls = 0
-        self.uses_kit = False
+        self.most_counters = 0
+        self.most_calls = 0
+        self.uses: list[tuple[str, int]] = []
 
     def run(self) -> Verdict:
-        code = self.code
-        while self.at < len(code):
+        while self.at < len(self.code):
             self.arrive()
-            op = BY_CODE[code[self.at]]
-            if op is None:
-                self.refuse("UNKNOWN_OPCODE")
-            self.after = self.at + op.size
-            if self.after > len(code):
-                self.refuse("CUT_OPERAND")
+            op = self.opcode()
             self.operands(op)
             self.stack(op)
-            _RULES_OF[op.role](self, op)
+            self.place(op)
+            _STEP_OF[op.role](self)
             self.at = self.after
         self.arrive()
-        self.between()
-        if self.blocks or self.def_end:
-            self.refuse("STILL_OPEN")
-        return Verdict(self.stack_values, self.all_counters, self.all_calls, self.uses_kit)
+        self.finish()
+        return Verdict(self.stack_values, self.most_counters, self.most_calls, tuple(self.uses))
 
     def refuse(self, name: str) -> NoReturn:
         raise Refused(name, self.at)
 
-    # -- what every instruction keeps ---------------------------------------------------------
+    # -- what is asked of every instruction ---------------------------------------------------
 
     def arrive(self) -> None:
-        """Close what ends at this offset."""
-        while self.joins and self.joins[-1][0] <= self.at:
-            target, depth = self.joins.pop()
-            if target != self.at:
+        """Drop what ends at this offset, and refuse what should have ended before it."""
+        while self.joins and self.joins[-1].target <= self.at:
+            if self.joins[-1].target != self.at:
                 self.refuse("MISSED_TARGET")
-            if self.depth != depth:
+            if self.joins[-1].depth != self.depth:
                 self.refuse("STACK_NOT_EMPTY")
-        while self.blocks and self.blocks[-1].kind == "if" and self.blocks[-1].end <= self.at:
-            if self.blocks[-1].end != self.at or self.depth or self.check:
+            self.joins.pop()
+        while self.innermost == _IF and self.blocks[-1].end <= self.at:
+            if self.blocks[-1].end != self.at or self.depth or self.joins or self.is_checking:
                 self.refuse("MISSED_TARGET")
             self.blocks.pop()
-            self.words -= 1
-        if self.def_end and self.at >= self.def_end:
+        if self.routine.end and self.routine.end <= self.at:
             self.refuse("BAD_DEF")
 
+    def opcode(self) -> Op:
+        op = BY_CODE[self.code[self.at]]
+        if op is None:
+            self.refuse("UNKNOWN_OPCODE")
+        self.after = self.at + op.size
+        if self.after > len(self.code):
+            self.refuse("CUT_OPERAND")
+        return op
+
     def operands(self, op: Op) -> None:
-        self.values = read_operands(op, self.code, self.at)
-        for operand, value in zip(op.operands, self.values, strict=True):
-            kind = operand.kind
-            if not kind.low <= value <= kind.high:
-                self.refuse("BAD_OPERAND")
-            if kind.name in self.devices:
-                if value >= self.devices[kind.name]:
-                    self.refuse("NO_SUCH_DEVICE")
-                self.uses_kit = True
+        if op.implied is not None:
+            self.operand(*op.implied)
+        for operand, value in zip(op.operands, read_operands(op, self.code, self.at), strict=True):
+            self.operand(operand.kind, value)
+
+    def operand(self, kind: OperandKind, value: int) -> None:
+        if not kind.low <= value <= kind.high:
+            self.refuse("BAD_OPERAND")
+        if kind.name in self.devices:
+            if value >= self.devices[kind.name]:
+                self.refuse("NO_SUCH_DEVICE")
+            self.uses.append((kind.name, value))
+        if kind.name.startswith("fwd"):
+            self.target = self.after + value
+        elif kind.name.startswith("back"):
+            self.target = self.after - value
 
     def stack(self, op: Op) -> None:
         if self.depth < op.pops:
@@ -181,197 +208,176 @@ class _Verifier:
             self.refuse("STACK_OVERFLOW")
         self.stack_values = max(self.stack_values, self.depth)
 
-    def between(self) -> None:
-        """Instructions but those of expressions leave the stack empty and stand in no check."""
+    def place(self, op: Op) -> None:
+        """Whether it may stand here: what is no part of an expression leaves an empty stack."""
+        if op.role in _IN_EXPRESSIONS:
+            return
         if self.depth or self.joins:
             self.refuse("STACK_NOT_EMPTY")
-        if self.check:
+        if self.is_checking and op.role not in _IN_CHECKS:
             self.refuse("INSIDE_CHECK")
+
+    def finish(self) -> None:
+        """The end of the code."""
+        if self.depth or self.joins:
+            self.refuse("STACK_NOT_EMPTY")
+        if self.is_checking:
+            self.refuse("INSIDE_CHECK")
+        if self.blocks or self.routine.end:
+            self.refuse("STILL_OPEN")
 
     # -- blocks -------------------------------------------------------------------------------
 
-    def target(self) -> int:
-        """Return where the instruction jumps: its last operand tells."""
-        return self.after + self.values[-1]
+    @property
+    def innermost(self) -> str:
+        """What the innermost open block is, or nothing."""
+        return self.blocks[-1].kind if self.blocks else ""
 
-    def start(self) -> int:
-        return self.after - self.values[-1]
-
-    def open_if(self, target: int) -> None:
-        """Open a block up to `target`, unless the block around it ends there too."""
-        around = self.blocks[-1] if self.blocks else None
-        if around is not None and around.end:
-            if around.kind == "if" and target == around.end:
-                return
-            if target >= around.end:
-                self.refuse("BAD_TARGET")
-        if target > len(self.code):
-            self.refuse("BAD_TARGET")
-        self.open(_Block("if", 0, target), 1)
-
-    def open_loop(self, kind: str, end: int) -> None:
-        """Open a loop; `end` is where it must end, or 0."""
-        around = self.blocks[-1] if self.blocks else None
+    def open(self, kind: str, end: int) -> None:
+        """Open a block that ends at `end`, or 0: unknown yet."""
         if end > len(self.code):
             self.refuse("BAD_TARGET")
-        if around is not None and around.end and end > around.end - (around.kind != "if"):
-            self.refuse("BAD_TARGET")
-        self.open(_Block(kind, self.after, end), 2)
-        if kind == "count":
-            self.counters += 1
-            self.needs(self.counters, self.most_calls)
-
-    def open(self, block: _Block, words: int) -> None:
-        self.words += words
-        if self.words > NEST_WORDS:
+        around = self.blocks[-1] if self.blocks else None
+        if around is not None and around.end:
+            # the end of a loop lies behind what closes it
+            if end > around.end - (around.kind != _IF):
+                self.refuse("BAD_TARGET")
+            if kind == _IF and end == around.end:
+                return  # it shares the block around it
+        if sum(_WORDS[each.kind] for each in self.blocks) + _WORDS[kind] > NEST_WORDS:
             self.refuse("TOO_DEEP")
-        self.blocks.append(block)
+        self.blocks.append(_Block(kind, self.after, end))
+        if kind == _COUNT:
+            self.counters += 1
+            self.needs(self.counters, 0)
+
+    def close(self, kind: str) -> None:
+        """Close the innermost block: a loop."""
+        if self.innermost == _IF:
+            self.refuse("STILL_OPEN")
+        if self.innermost != kind:
+            self.refuse("NOT_OPEN")
+        loop = self.blocks[-1]
+        if self.target != loop.start:
+            self.refuse("BAD_LOOP_START")
+        if loop.end not in (0, self.after):
+            self.refuse("BAD_LOOP_END")
+        self.blocks.pop()
+        if kind == _COUNT:
+            self.counters -= 1
+
+    def leave(self, kind: str) -> None:
+        """Leave the innermost loop; the first that leaves it may say where it ends."""
+        loop = next((each for each in reversed(self.blocks) if each.kind != _IF), None)
+        if loop is None or loop.kind != kind:
+            self.refuse("NOT_OPEN")
+        if self.target > len(self.code):
+            self.refuse("BAD_TARGET")
+        if loop.end not in (0, self.target):
+            self.refuse("BAD_LOOP_END")
+        loop.end = self.target
 
     def needs(self, counters: int, calls: int) -> None:
         """Note what is open at once, and refuse what is too deep."""
         if counters > COUNTERS or calls > CALLS:
             self.refuse("TOO_DEEP")
+        self.routine.counters = max(self.routine.counters, counters)
+        self.routine.calls = max(self.routine.calls, calls)
         self.most_counters = max(self.most_counters, counters)
         self.most_calls = max(self.most_calls, calls)
-        self.all_counters = max(self.all_counters, counters)
-        self.all_calls = max(self.all_calls, calls)
 
-    # -- a rule for each role -----------------------------------------------------------------
+    # -- a step for each role -----------------------------------------------------------------
 
-    def value(self, op: Op) -> None:
+    def end(self) -> None:
+        self.refuse("BAD_END")
+
+    def value(self) -> None:
         pass
 
-    def join(self, op: Op) -> None:
+    def join(self) -> None:
         if len(self.joins) == JOINS:
             self.refuse("TOO_DEEP")
-        target = self.target()
-        if self.joins and target > self.joins[-1][0]:
+        if self.target >= len(self.code):
             self.refuse("BAD_TARGET")
-        if target >= len(self.code):
+        if self.joins and self.target > self.joins[-1].target:
             self.refuse("BAD_TARGET")
-        self.joins.append((target, self.depth + 1))
+        self.joins.append(_Join(self.target, self.depth + 1))
 
-    def read(self, op: Op) -> None:
-        if self.depth or self.joins:
-            self.refuse("STACK_NOT_EMPTY")
+    def read(self) -> None:
+        pass
 
-    def plain(self, op: Op) -> None:
-        self.between()
-
-    def watch(self, op: Op) -> None:
-        self.between()
-        self.check = self.after
-
-    def until(self, op: Op) -> None:
-        if not self.check:
+    def until(self) -> None:
+        if not self.is_checking:
             self.refuse("NOT_OPEN")
-        if self.depth or self.joins:
-            self.refuse("STACK_NOT_EMPTY")
-        if self.start() != self.check:
-            self.refuse("BAD_LOOP_START")
-        self.check = 0
+        self.is_checking = False
 
-    def if_(self, op: Op) -> None:
-        self.between()
-        around = self.blocks[-1] if self.blocks else None
-        if around is not None and around.kind == "repeat" and self.target() == around.end:
+    def plain(self) -> None:
+        pass
+
+    def watch(self) -> None:
+        self.is_checking = True
+
+    def if_(self) -> None:
+        if self.innermost == _REPEAT and self.target == self.blocks[-1].end:
             return  # it leaves the loop
-        self.open_if(self.target())
+        self.open(_IF, self.target)
 
-    def else_(self, op: Op) -> None:
-        self.between()
-        if not self.blocks or self.blocks[-1].kind != "if" or self.blocks[-1].end != self.after:
+    def else_(self) -> None:
+        if self.innermost != _IF or self.blocks[-1].end != self.after:
             self.refuse("NOT_OPEN")
         self.blocks.pop()
-        self.words -= 1
-        self.open_if(self.target())
+        self.open(_IF, self.target)
 
-    def forever(self, op: Op) -> None:
-        self.between()
-        self.open_loop("repeat", 0)
+    def forever(self) -> None:
+        self.open(_REPEAT, 0)
 
-    def while_(self, op: Op) -> None:
-        self.between()
-        self.open_loop("repeat", self.target())
+    def count(self) -> None:
+        self.open(_COUNT, 0)
 
-    def count(self, op: Op) -> None:
-        self.between()
-        self.open_loop("count", 0)
+    def while_(self) -> None:
+        self.open(_REPEAT, self.target)
 
-    def loop(self, op: Op) -> None:
-        self.between()
-        self.open_loop("count", self.target())
+    def loop(self) -> None:
+        self.open(_COUNT, self.target)
 
-    def again(self, op: Op) -> None:
-        self.close_loop("repeat")
+    def again(self) -> None:
+        self.close(_REPEAT)
 
-    def next(self, op: Op) -> None:
-        self.close_loop("count")
-        self.counters -= 1
+    def next(self) -> None:
+        self.close(_COUNT)
 
-    def close_loop(self, kind: str) -> None:
-        self.between()
-        if not self.blocks or self.blocks[-1].kind == "if":
-            self.refuse("STILL_OPEN" if self.blocks else "NOT_OPEN")
-        loop = self.blocks[-1]
-        if loop.kind != kind:
-            self.refuse("NOT_OPEN")
-        if self.start() != loop.start:
-            self.refuse("BAD_LOOP_START")
-        if loop.end not in (0, self.after):
-            self.refuse("BAD_LOOP_END")
-        self.blocks.pop()
-        self.words -= 2
+    def break_(self) -> None:
+        self.leave(_REPEAT)
 
-    def break_(self, op: Op) -> None:
-        self.leave("repeat")
+    def drop(self) -> None:
+        self.leave(_COUNT)
 
-    def drop(self, op: Op) -> None:
-        self.leave("count")
-
-    def leave(self, kind: str) -> None:
-        self.between()
-        loop = next((block for block in reversed(self.blocks) if block.kind != "if"), None)
-        if loop is None or loop.kind != kind:
-            self.refuse("NOT_OPEN")
-        if self.target() > len(self.code):
-            self.refuse("BAD_TARGET")
-        if loop.end == 0:
-            loop.end = self.target()
-        if loop.end != self.target():
-            self.refuse("BAD_LOOP_END")
-
-    def def_(self, op: Op) -> None:
-        self.between()
-        if self.blocks or self.def_end:
+    def def_(self) -> None:
+        if self.blocks or self.routine.end:
             self.refuse("BAD_DEF")
-        if len(self.defs) == DEFS:
+        if len(self.closed) == DEFS:
             self.refuse("TOO_MANY_DEFS")
-        self.def_start, self.def_end = self.after, self.target()
-        self.most_counters = self.most_calls = 0
+        self.routine = _Routine(self.after, self.target)
 
-    def return_(self, op: Op) -> None:
-        self.between()
-        if not self.def_end:
+    def return_(self) -> None:
+        if not self.routine.end:
             self.refuse("NOT_OPEN")
         if self.blocks:
             self.refuse("STILL_OPEN")
-        if self.def_end != self.after:
+        if self.routine.end != self.after:
             self.refuse("BAD_DEF")
-        self.defs.append(_Def(self.def_start, self.most_counters, self.most_calls))
-        self.def_end = 0
+        self.closed.append(self.routine)
+        self.routine = _Routine(0, 0)
 
-    def call(self, op: Op) -> None:
-        self.between()
-        called = next((each for each in self.defs if each.start == self.start()), None)
+    def call(self) -> None:
+        called = next((each for each in self.closed if each.start == self.target), None)
         if called is None:
             self.refuse("BAD_CALL")
         self.needs(self.counters + called.counters, called.calls + 1)
 
-    def end(self, op: Op) -> None:
-        self.refuse("BAD_END")
 
-
-_RULES_OF = {
+_IN_EXPRESSIONS = ("end", "value", "join")
+_IN_CHECKS = ("read", "until")
+_STEP_OF = {
     role: getattr(_Verifier, role, None) or getattr(_Verifier, role + "_") for role in ROLES
 }

@@ -1,11 +1,11 @@
-"""What stops a command: a sentence in the reader's language, and an exit code."""
+"""The error that ends a command: a sentence in the user's language, and an exit code."""
 
 from __future__ import annotations
 
 from tiniscript.cli.texts.common import text
 
 
-class Trouble(Exception):
+class CommandError(Exception):
     """`key` names a sentence of `texts`; `values` fill its gaps.
 
     A value `near` that is not empty adds a suggestion.

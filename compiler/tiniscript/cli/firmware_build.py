@@ -1,4 +1,4 @@
-"""The firmware that `tsc firmware` writes: ready already, or built while somebody waits."""
+"""The firmware that `tsc firmware` writes: a ready file, or one that is built now."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from tiniscript import files, robots
-from tiniscript.cli.errors import Trouble
+from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.terminal.progress import Progress
 from tiniscript.cli.texts.common import text
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 __all__ = ("BOARDS", "firmware", "on_boards", "print_list", "row")
 
-LOG = "build.log"  # what the last build that failed has said, beside the files that are ready
+LOG = "build.log"  # the output of the last failed build, in the folder of the ready files
 
 
 def on_boards(name: str | None, boards: Sequence[str] = BOARDS) -> list[Robot]:
@@ -38,7 +38,7 @@ def on_boards(name: str | None, boards: Sequence[str] = BOARDS) -> list[Robot]:
 
 
 def firmware(robot: Robot, language: str) -> Ready:
-    """Return the firmware of a robot on its board. Raises Trouble where it cannot be built."""
+    """Return the firmware of a robot on its board. Raises CommandError where it cannot be built."""
     from tiniscript.flash import building, ready
 
     sources = building.sources()
@@ -46,20 +46,22 @@ def firmware(robot: Robot, language: str) -> Ready:
     if found is not None:
         return found
     if sources is None:
-        raise Trouble(2, "flash_no_sources")
+        raise CommandError(2, "flash_no_sources")
     values = {"robot": robot.name, "board": robot.board.chip}
     try:
         data = _built(robot, sources, language)
         return ready.keep(robot.name, robot.board.chip, sources.digest(robot), data)
     except building.CannotBuild as why:
-        raise _trouble(why, values) from None
+        raise _failure(why, values) from None
     except OSError as why:
         folder = shown(str(ready.cache()))
-        raise Trouble(2, "flash_no_room", why=str(why.strerror or why), folder=folder) from None
+        raise CommandError(
+            2, "flash_no_room", why=str(why.strerror or why), folder=folder
+        ) from None
 
 
 def _ready(robot: Robot, sources: Sources | None) -> Ready | None:
-    """Return the file for a robot. Without sources nothing can be newer than what was brought."""
+    """Return the file for a robot. Without sources the shipped file cannot be out of date."""
     from tiniscript.flash import ready
 
     if sources is not None:
@@ -95,8 +97,8 @@ def _built(robot: Robot, sources: Sources, language: str) -> bytes:
         progress.end()
 
 
-def _trouble(why: CannotBuild, values: dict[str, str]) -> Trouble:
-    """Return the sentence for a build that came to nothing, and keep what was said."""
+def _failure(why: CannotBuild, values: dict[str, str]) -> CommandError:
+    """Return the sentence for a failed build, and save the build's output."""
     from tiniscript.flash import ready
 
     log = ready.cache() / LOG
@@ -108,7 +110,7 @@ def _trouble(why: CannotBuild, values: dict[str, str]) -> Trouble:
             pass  # then the sentence has to do
     how = install_advice.command(install_advice.FIRMWARE)
     said = {"why": shown(why.said), "log": shown(str(log)), "how": how}
-    return Trouble(2, f"flash_{why.why}", **said, **values)
+    return CommandError(2, f"flash_{why.why}", **said, **values)
 
 
 def print_list(language: str) -> None:

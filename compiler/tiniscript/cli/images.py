@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from tiniscript.cli import inputs, outputs
-from tiniscript.cli.errors import Trouble
+from tiniscript.cli.errors import CommandError
 
 if TYPE_CHECKING:
     from tiniscript import Compiled
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class Ready(NamedTuple):
-    """`places` is None where nobody knows the text any more."""
+    """`places` is None if the text is unknown."""
 
     image: Image
     image_bytes: int
@@ -34,16 +34,16 @@ def ready(
     given: inputs.Input, robot: Robot, language: str, is_strict: bool = False,
     is_open: bool = False,
 ) -> Ready | None:  # fmt: skip
-    """Return the program of an input, or None where its mistakes have just been printed.
+    """Return the program of an input, or None if it has mistakes, which are printed.
 
-    `is_strict`: a program that is too large for the robot is a mistake. `is_open`: it may be for
-    another robot; then OtherRobot is raised. Raises Trouble where an image is refused.
+    `is_strict`: a program that is too large for the robot is a mistake. `is_open`: a program for
+    another robot raises OtherRobot. Raises CommandError if an image is refused.
     """
     from tiniscript.codegen import source_map
 
     if given.is_image:
-        image = _read(given, robot.kit.fingerprint, robot.name)
-        _verify(given, image, robot)
+        image = _read(given)
+        _check(given, image, robot)
         return Ready(image, len(given.data), source_map.recall(image.checksum))
     compiled = inputs.compiled(given, robot, is_strict)
     if is_open and not compiled.is_right:
@@ -51,7 +51,7 @@ def ready(
 
         if is_other_robots(compiled):
             raise OtherRobot(compiled)
-    outputs.print_problems(compiled, language)
+    outputs.print_diagnostics(compiled, language)
     if not compiled.is_right:
         return None
     from tiniscript.library.compiling import image_of
@@ -60,37 +60,42 @@ def ready(
     return Ready(image, len(compiled.image), source_map.from_compiled(compiled))
 
 
-def _read(given: inputs.Input, kit: int | None, robot: str) -> Image:
+def _read(given: inputs.Input) -> Image:
     from tiniscript.bytecode.image import ImageRefused, unpack
-    from tiniscript.library.known_kits import shipped_of_kit
 
     try:
-        return unpack(given.data, kit)
+        return unpack(given.data)
     except ImageRefused as refused:
-        values = {"file": inputs.shown(given.name), "robot": robot, **refused.values}
-        if refused.name == "OTHER_KIT":
-            values["theirs"] = shipped_of_kit(int(refused.values["theirs"], 16)) or "FILE"
-        raise Trouble(1, f"image_{refused.name}", **values) from None
+        values = {"file": inputs.shown(given.name), **refused.values}
+        raise CommandError(1, f"image_{refused.name}", **values) from None
 
 
-def _verify(given: inputs.Input, image: Image, robot: Robot) -> None:
+def _check(given: inputs.Input, image: Image, robot: Robot) -> None:
+    """Raise CommandError where the robot may not run an image, and say which known one may."""
+    from tiniscript.bytecode.image import ImageRefused
+    from tiniscript.bytecode.loading import check
     from tiniscript.bytecode.verify import Refused
-    from tiniscript.library.compiling import verify_for
+    from tiniscript.library.known_kits import fitting
 
+    file = inputs.shown(given.name)
     try:
-        verify_for(image, robot)
-    except Refused as refused:
+        check(image, robot.kit)
+    except (ImageRefused, Refused) as refused:
+        is_other = refused.name == "NO_SUCH_DEVICE" and image.devices  # it has fewer
+        if refused.name == "OTHER_KIT" or is_other:
+            other = fitting(image, robot)
+            theirs = "FILE" if other is None else other.name
+            raise CommandError(
+                1, "image_OTHER_KIT", file=file, robot=robot.name, theirs=theirs
+            ) from None
+        assert isinstance(refused, Refused)
         values = {"name": refused.name, "number": str(refused.number)}
         where = f"{refused.offset:04x}"
-        file = inputs.shown(given.name)
-        raise Trouble(1, "image_code", file=file, offset=where, **values) from None
+        raise CommandError(1, "image_code", file=file, offset=where, **values) from None
 
 
 def robot_for(given: inputs.Input, robot: Robot) -> Robot:
-    """Return the shipped robot whose kit an image names, or `robot` where none does."""
-    from tiniscript import robots
-    from tiniscript.library.known_kits import shipped_of_kit
+    """Return `robot`, or a known robot that has the devices of an image if `robot` lacks them."""
+    from tiniscript.library.known_kits import fitting
 
-    image = _read(given, None, robot.name)
-    name = shipped_of_kit(image.kit) if image.kit else None
-    return robot if name is None else robots.load(name)
+    return fitting(_read(given), robot) or robot

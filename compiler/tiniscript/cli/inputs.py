@@ -1,4 +1,4 @@
-"""What a verb works on: a program from a file, standard input or the command line; a robot."""
+"""The inputs of a verb: a program from a file, standard input or the command line; a robot."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from argparse import Namespace
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from tiniscript.cli.errors import Trouble
+from tiniscript.cli.errors import CommandError
 from tiniscript.cli.paths import real_name
 from tiniscript.cli.texts.common import Said
 from tiniscript.printable import printable
@@ -38,14 +38,14 @@ class Input(NamedTuple):
 
 
 def program(options: Namespace) -> Input:
-    """Return the program that the options name. Raises Trouble where there is none."""
+    """Return the program that the options name. Raises CommandError where there is none."""
     texts: list[str] = options.texts
     if options.program is None and not texts:
-        raise Trouble(2, "no_program")
+        raise CommandError(2, "no_program")
     if options.program is not None and texts:
-        raise Trouble(2, "two_programs")
+        raise CommandError(2, "two_programs")
     if len(texts) > 1:
-        raise Trouble(2, "two_texts")
+        raise CommandError(2, "two_texts")
     if texts:
         return Input("-e", texts[0].encode("utf-8", "surrogateescape"), None)
     if options.program == "-":
@@ -61,15 +61,15 @@ def program(options: Namespace) -> Input:
         with path.open("rb") as file:
             return Input(name, file.read(LARGEST_SOURCE + 1), path)
     except FileNotFoundError:
-        raise Trouble(2, "file_missing", file=shown(options.program)) from None
+        raise CommandError(2, "file_missing", file=shown(options.program)) from None
     except IsADirectoryError:
-        raise Trouble(2, "file_directory", file=shown(options.program)) from None
+        raise CommandError(2, "file_directory", file=shown(options.program)) from None
     except PermissionError:
         key = "file_directory" if path.is_dir() else "file_forbidden"
-        raise Trouble(2, key, file=shown(options.program)) from None
+        raise CommandError(2, key, file=shown(options.program)) from None
     except (OSError, ValueError) as why:  # ValueError: a name that no file can have
         reason = why.strerror if isinstance(why, OSError) and why.strerror else str(why)
-        raise Trouble(2, "file_unreadable", file=shown(options.program), why=reason) from None
+        raise CommandError(2, "file_unreadable", file=shown(options.program), why=reason) from None
 
 
 def shown(name: str) -> str:
@@ -90,13 +90,15 @@ def robot(options: Namespace, language: str) -> Robot:
         lines = describe(refused, language)
         is_none = refused.reasons[0][0].startswith(("file_", "no_such_robot"))
         if len(lines) == 1 and is_none:
-            raise Trouble(2, "plain", said=lines[0]) from None
+            raise CommandError(2, "plain", said=lines[0]) from None
         reasons = Said("\n".join("  " + line for line in lines))
-        raise Trouble(2, "profile_refused", file=shown(options.robot), reasons=reasons) from None
+        raise CommandError(
+            2, "profile_refused", file=shown(options.robot), reasons=reasons
+        ) from None
 
 
 def compiled(given: Input, robot: Robot, is_strict: bool) -> Compiled:
-    """Return what became of a program's text.
+    """Return the result of compiling a program's text.
 
     `is_strict`: a program that is too large for the robot is a mistake, else a warning.
     """
@@ -106,7 +108,7 @@ def compiled(given: Input, robot: Robot, is_strict: bool) -> Compiled:
 
 
 def parsed(given: Input, kit: Kit) -> Compiled:
-    """Return what is wrong with the shape of a program's text, and nothing more."""
+    """Return only the syntax mistakes of a program's text."""
     from tiniscript import Compiled
     from tiniscript.diagnostics.codes import in_order
     from tiniscript.library.compiling import text_of
@@ -117,4 +119,4 @@ def parsed(given: Input, kit: Kit) -> Compiled:
     if not isinstance(text, str):
         return text
     source = Source(text, given.name)
-    return Compiled(source, in_order(parse(source, kit).problems))
+    return Compiled(source, in_order(parse(source, kit).diagnostics))

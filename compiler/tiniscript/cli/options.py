@@ -1,14 +1,17 @@
-"""The options of a verb: reads them with argparse, and says what is wrong in two languages."""
+"""The options of a verb: reads them with argparse, and reports mistakes in two languages."""
 
 from __future__ import annotations
 
 import re
 from argparse import ArgumentParser, HelpFormatter, Namespace
+from collections.abc import Sequence
 from typing import NoReturn
 
-from tiniscript.cli.errors import Trouble
+from tiniscript.cli.errors import CommandError
+from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts.options import Option, of_verb
 
-# What argparse says, and how Spanish says it.
+# The messages of argparse, and their Spanish translations.
 _SPANISH = (
     (r"the following arguments are required: (.*)", r"falta \1"),
     (r"unrecognized arguments: (.*)", r"no conozco \1"),
@@ -19,52 +22,73 @@ _SPANISH = (
 
 
 def _plain_formatter(prog: str) -> HelpFormatter:
-    """argparse asks for one even where no help is printed; with a width it starts faster."""
+    """Return a formatter: argparse always needs one, and with a width it starts faster."""
     return HelpFormatter(prog, width=80)
 
 
 class Options(ArgumentParser):
-    """A verb's options. Every verb has `--lang` and `--help`."""
+    """The options of a verb, as the table of options has them."""
 
-    def __init__(self, verb: str, language: str, help_text: tuple[str, str]) -> None:
+    def __init__(self, verb: str, language: str) -> None:
         super().__init__(
             prog=f"tsc {verb}", add_help=False, allow_abbrev=False, formatter_class=_plain_formatter
         )
         self.verb = verb
         self.language = language
-        self.help_text = help_text[language == "es"]
-        self.add_argument("--lang")
-        self.add_argument("-h", "--help", action="store_true")
+        self.table = of_verb(verb)
+        for option in self.table:
+            self._take(option)
 
-    def takes_program(self) -> None:
-        """Add what every verb that takes a program has."""
-        self.add_argument("program", nargs="?")
-        self.add_argument("-e", dest="texts", action="append", default=[])
-        self.add_argument("--robot")
+    def _take(self, option: Option) -> None:
+        if option.is_argument:
+            self.add_argument(option.name, nargs=None if option.is_needed else "?")
+        elif option.kind is None:
+            self.add_argument(*option.flags.split(), action="store_true")
+        elif option.repeats:
+            self.add_argument(option.flags, dest=option.name, action="append", default=[])
+        else:
+            self.add_argument(option.flags, dest=option.name)
 
     def read(self, arguments: list[str]) -> Namespace | None:
-        """Return the options, or None where the person asked for help and has it now."""
+        """Return the options, or None after printing the help that the user has asked for."""
         if "-h" in arguments or "--help" in arguments:
-            print(self.help_text, end="")
+            from tiniscript.cli.help import show_verb
+
+            show_verb(self.verb, self.language)
             return None
         options = self.parse_args(arguments, Namespace(verb=self.verb, language=self.language))
-        if options.lang is not None and options.lang not in ("en", "es"):
-            raise Trouble(2, "bad_language", found=options.lang)
+        for option in self.table:
+            self._refuse_other(option, getattr(options, option.name))
         from tiniscript.cli import paths
 
         paths.check(options, self.language)
         return options
 
+    def _refuse_other(self, option: Option, found: str | None) -> None:
+        """Refuse a value that is not among the option's choices."""
+        known = option.kind.choices if option.kind is not None else ()
+        if known and found is not None and found not in known:
+            label = option.value[self.language == "es"] if option.is_argument else option.flags
+            raise bad_choice(label, known, found, self.language)
+
     def error(self, message: str) -> NoReturn:
         if self.language == "es":
             for pattern, spanish in _SPANISH:
                 message = re.sub(pattern, spanish, message)
-        raise Trouble(2, "bad_option", detail=message, verb=self.verb)
+        raise CommandError(2, "bad_option", detail=message, verb=self.verb)
+
+
+def bad_choice(option: str, known: Sequence[str], found: str, language: str) -> CommandError:
+    """Return the error for a value that is not among an option's choices."""
+    from tiniscript.cli.inputs import shown
+
+    allowed = f"{', '.join(known[:-1])} {text('or', language)} {known[-1]}"
+    return CommandError(2, "bad_choice", option=option, known=allowed, found=shown(found) or "''")
 
 
 def whole_number(option: str, found: str | None, default: int, low: int, high: int,
                  language: str) -> int:  # fmt: skip
-    """Return what an option says: a whole number from `low` to `high`."""
+    """Return an option's whole number, from `low` to `high`."""
     if found is None:
         return default
     digits = found[1:] if found[:1] == "-" else found
@@ -73,10 +97,8 @@ def whole_number(option: str, found: str | None, default: int, low: int, high: i
     else:
         value = int(found)
     if not low <= value <= high:
-        from tiniscript.cli.texts.common import text
-
         allowed = text("range_whole", language).format(low=low, high=high)
-        raise Trouble(2, "bad_number", option=option, range=allowed, found=found)
+        raise CommandError(2, "bad_number", option=option, range=allowed, found=found)
     return value
 
 

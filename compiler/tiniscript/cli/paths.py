@@ -1,9 +1,9 @@
-"""Which options name files, and the one check of what a command writes.
+"""The one check of a command's output files; the table of options says which options name files.
 
-No output may be a file that the same command reads, or another output of it: that is looked at
-before anything is read, sent or written. Knows files by what they are, not by how they are called:
-a link, another hard link, `./`, other capitals, `/dev/stdin` are the same file. A terminal or
-`/dev/null` may be read and written at once; the port of a robot may not.
+No output may be a file that the same command reads, or another of its outputs: the check comes
+before anything is read, sent or written. It compares files, not names: a link, another hard link,
+`./`, other capitals and `/dev/stdin` may be the same file. A terminal or `/dev/null` may be read
+and written at once; the port of a robot may not.
 """
 
 from __future__ import annotations
@@ -17,32 +17,16 @@ from collections.abc import Iterator
 from contextlib import suppress
 from typing import NamedTuple
 
-from tiniscript.cli.errors import Trouble
+from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts.options import OPTIONS
 
-# Every option that takes a value is in one of these three, by its name in `Namespace`.
-# What is read: the sentence that says what it is.
-READS = {
-    "program": "path_program",
-    "robot": "path_robot",
-    "world": "path_world",
-    "memory": "path_memory",
-    "port": "path_port",
-    "ports": "path_port",
-}
-# What is written: how the option is called, and the sentence where that is impossible.
+# Inputs by their name in `Namespace`: the sentence that describes the input.
+READS = {each.name: each.kind.reads for each in OPTIONS if each.kind and each.kind.reads}
+# Outputs: the name of the option, and the sentence for a file that cannot be written.
 WRITES = {
-    "output": ("-o", "unwritable"),
-    "map": ("--map", "unwritable_map"),
-    "plot": ("--plot", "unwritable_picture"),
-    "csv": ("--csv", "unwritable_rows"),
-    "memory": ("--memory", "unwritable_memory"),
+    each.name: (each.flags, each.kind.writes) for each in OPTIONS if each.kind and each.kind.writes
 }
-NO_FILES = {
-    "lang", "texts", "text", "line", "sensor", "max_time", "max_steps", "seed", "pace", "machine",
-    "code", "board", "baud", "count", "name", "exchange", "reverse_left", "reverse_right",
-    "balance", "least", "noise", "motors", "faults", "hurry", "for", "listen", "button_at",
-}  # fmt: skip
 
 
 class Named(NamedTuple):
@@ -54,7 +38,7 @@ class Named(NamedTuple):
 
 
 def check(options: Namespace, language: str) -> None:
-    """Refuse outputs that cannot be, before anything is done. Raises Trouble."""
+    """Refuse impossible outputs before anything is done. Raises CommandError."""
     outputs = list(_written(options))
     if not outputs:
         return
@@ -62,7 +46,7 @@ def check(options: Namespace, language: str) -> None:
     for number, (output, identity) in enumerate(zip(outputs, found, strict=True)):
         for other, its_own in zip(outputs[:number], found, strict=False):
             if identity is not None and identity == its_own:
-                raise Trouble(2, "same_outputs", option=other.label, file=other.path,
+                raise CommandError(2, "same_outputs", option=other.label, file=other.path,
                               second=output.label, other=output.path)  # fmt: skip
     for read in _read(options, language):
         identity = _identity(read, may_be_device=read.dest in ("port", "ports"))
@@ -72,7 +56,7 @@ def check(options: Namespace, language: str) -> None:
             if read.dest in ("port", "ports"):
                 its_own = _identity(output, may_be_device=True)
             if identity is not None and identity == its_own:
-                raise Trouble(2, "over_input", option=output.label, file=output.path,
+                raise CommandError(2, "over_input", option=output.label, file=output.path,
                               what=read.label, other=read.path)  # fmt: skip
     for output in outputs:
         if getattr(options, output.dest) is not None and output.dest in WRITES:
@@ -87,7 +71,7 @@ def default_output(program: str) -> str:
 
 
 def real_name(program: str) -> str:
-    """Return what a program's file is called where there is none of this name.
+    """Return the probable name of a program's file, if no file has this name.
 
     Editors of Windows add `.txt` to a name, and its folders do not show the end of one.
     """
@@ -147,10 +131,10 @@ def _is_shipped(dest: str, name: str) -> bool:
 
 
 def _identity(named: Named, may_be_device: bool = False) -> tuple[object, ...] | None:
-    """Return what is the same for all names of a file, or None where it may be several things.
+    """Return a key that is the same for all names of a file, or None for a device such as a tty.
 
-    A file that is not there yet is its name in its folder; capitals do not count, since they may
-    not where it will be.
+    The key of a missing file is its folder and its name without regard to capitals, because its
+    file system may ignore them.
     """
     try:
         found = os.fstat(0) if named.dest == "stdin" else os.stat(named.path)  # noqa: PTH116
@@ -161,13 +145,13 @@ def _identity(named: Named, may_be_device: bool = False) -> tuple[object, ...] |
         with suppress(OSError):
             found = os.stat(folder)  # noqa: PTH116 - a name that no file can have gets no Path
             return found.st_dev, found.st_ino, _folded(name)
-    except (OSError, ValueError):  # whoever opens it says why
+    except (OSError, ValueError):  # opening it reports the reason
         pass
     return None
 
 
 def _folded(name: str) -> str:
-    """Return what is the same for all names that a folder may take for one."""
+    """Return a key that is the same for all names that a file system may treat as one."""
     if name.isascii():
         return name.lower()
     from unicodedata import normalize
@@ -176,7 +160,7 @@ def _folded(name: str) -> str:
 
 
 def _refuse_unwritable(path: str, key: str) -> None:
-    """Say at the beginning what would go wrong with a file at the end. Raises Trouble."""
+    """Report early that a file cannot be written. Raises CommandError."""
     number = 0
     try:
         try:
@@ -195,6 +179,6 @@ def _refuse_unwritable(path: str, key: str) -> None:
                 number = errno.EACCES
     except (OSError, ValueError) as why:
         reason = why.strerror if isinstance(why, OSError) and why.strerror else str(why)
-        raise Trouble(2, key, file=path, why=reason) from None
+        raise CommandError(2, key, file=path, why=reason) from None
     if number or not path:
-        raise Trouble(2, key, file=path or "''", why=os.strerror(number or errno.ENOENT))
+        raise CommandError(2, key, file=path or "''", why=os.strerror(number or errno.ENOENT))

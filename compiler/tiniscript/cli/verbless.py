@@ -1,33 +1,33 @@
-"""What a person means who names no verb first: `tsc help upload`, `tsc prog.ts`."""
+"""Suggestions for a command without a verb: `tsc uplod`, `tsc prog.ts`."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
+from typing import NoReturn
 
-from tiniscript.cli.errors import Trouble
+from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
+from tiniscript.cli.texts.verbs import VERBS
+from tiniscript.words import nearest
 
 PROGRAMS = (".ts", ".ts.txt", ".bin")
 
 
-def asked_about(arguments: Sequence[str]) -> str:
-    """Return the verb that `help` is asked about, or nothing."""
-    rest = list(arguments)
-    while rest and rest[0].startswith("-"):
-        del rest[: 2 if rest[0] == "--lang" else 1]
-    return rest[0] if rest else ""
+def refuse(name: str) -> NoReturn:
+    """Raise CommandError where a word stands in place of a verb."""
+    refuse_program(name)
+    raise CommandError(2, "no_verb", found=name, near=nearest(name, VERBS) or "")
 
 
 def refuse_program(name: str) -> None:
-    """Raise Trouble that names verbs where a program stands in place of one.
+    """Raise CommandError that names verbs where a program stands in place of one.
 
-    tsc does not choose: a robot moves only where somebody has said so.
+    tsc does not choose a verb: a robot moves only when the user has asked for it.
     """
     if name.lower().endswith(PROGRAMS) or _is_file(name):
-        raise Trouble(2, "file_without_verb", found=_quoted(name))
+        raise CommandError(2, "file_without_verb", found=_quoted(name))
     if "(" in name or "|" in name:
-        raise Trouble(2, "text_without_verb", found=_quoted(name, always=True))
+        raise CommandError(2, "text_without_verb", found=_quoted(name, always=True))
 
 
 def _is_file(name: str) -> bool:

@@ -8,8 +8,16 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from tiniscript.bytecode.opcodes import CODE_BYTES
-from tiniscript.codegen.lower_expression import Emitter, Item, add_value, number_of, tests
+from tiniscript.bytecode.opcodes import CODE_BYTES, time8
+from tiniscript.codegen.lower_expression import (
+    Emitter,
+    Item,
+    add_value,
+    number_of,
+    pushes_in_one_byte,
+    stops,
+    tests,
+)
 from tiniscript.fixed_point import limited, whole
 from tiniscript.semantics.ir import (
     Assign,
@@ -43,7 +51,7 @@ class Place(NamedTuple):
 
 
 class Lowered(NamedTuple):
-    """`code` is longer than a machine takes where `opcodes.CODE_BYTES` says so."""
+    """`code` may be longer than `opcodes.CODE_BYTES`, the most that a machine takes."""
 
     code: bytes
     places: tuple[Place, ...]
@@ -108,9 +116,7 @@ class _Lowering:
         elif isinstance(statement, Motors):
             self.motors(statement)
         elif isinstance(statement, Beep):
-            add_value(out, statement.time)
-            add_value(out, statement.hertz)
-            out.add("BEEP")
+            self.beep(statement)
         elif isinstance(statement, Show):
             add_value(out, statement.value)
             out.add("SHOW_YES_NO" if statement.is_yes_no else "SHOW")
@@ -124,31 +130,37 @@ class _Lowering:
         out = self.out
         time = None if move.time is None else _at_least_0(move.time)
         power = None if move.power is None else _percentage(move.power, 0)
+        name = "WAIT" if power is None else move.direction
         if move.until is None:
             assert time is not None
-            tenths = _tenths(time)
-            name = "WAIT" if power is None else f"MOVE_{move.direction}"
-            short = "WAIT8" if power is None else f"MOVE8_{move.direction}"
+            time_ms = constant(time)
+            byte = None if time_ms is None else time8(time_ms)
             value = None if power is None else constant(power)
-            if tenths is not None and (power is None or value is not None):
-                out.add(short, tenths, *(() if value is None else (value // 1000,)))
+            if byte is not None and (power is None or value is not None):
+                short = "WAIT8" if value is None else f"MOVE8_{name}"
+                out.add(short, byte, *(() if value is None else (value // 1000,)))
                 return
-            add_value(out, time)
-            if power is not None:
-                add_value(out, power)
-            out.add(name)
-            return
         if time is not None:
             add_value(out, time)
         if power is not None:
             add_value(out, power)
-        forever = "_FOREVER" if time is None else ""
-        out.add(f"WATCH{forever}_{'WAIT' if power is None else move.direction}")
-        check = out.mark_here()
+        if move.until is None:
+            out.add("WAIT" if power is None else f"MOVE_{name}")
+            return
+        out.add(f"WATCH{'_FOREVER' if time is None else ''}_{name}")
         for sensor in move.until.reads:
             out.add("READ", sensor)
-        add_value(out, move.until.condition)
-        out.add("UNTIL", to=check)
+        stops(out, move.until.condition)
+
+    def beep(self, beep: Beep) -> None:
+        time_ms, hertz = constant(_at_least_0(beep.time)), constant(beep.hertz)
+        byte = None if time_ms is None else time8(time_ms)
+        if byte is not None and hertz is not None:
+            self.out.add("BEEP8", byte, limited(whole(hertz), 31, 20_000))
+            return
+        add_value(self.out, beep.time)
+        add_value(self.out, beep.hertz)
+        self.out.add("BEEP")
 
     def motors(self, motors: Motors) -> None:
         left, right = _percentage(motors.left, -100), _percentage(motors.right, -100)
@@ -167,7 +179,7 @@ class _Lowering:
         out, variable, value = self.out, assign.variable, assign.value
         if len(value) == 1 and value[0].op == "NUMBER":
             number = number_of(value[0], -128, 127)
-            if number is not None:
+            if number is not None and not pushes_in_one_byte(value[0], variable):
                 out.add("SET_VAR8", variable, number)
                 return
         if len(value) == 3 and value[2].op in ("ADD", "SUB"):
@@ -178,6 +190,9 @@ class _Lowering:
                 if right.op == "NUMBER":
                     sign = 1 if operator.op == "ADD" else -1
                     number = number_of(right._replace(value=sign * right.value), -128, 127)
+                    if number in (1, -1):
+                        out.add("INC_VAR" if number == 1 else "DEC_VAR", variable)
+                        return
                     if number is not None:
                         out.add("ADD_VAR8", variable, number)
                         return
@@ -250,13 +265,6 @@ class _Lowering:
 def _at_least_0(time: Expression) -> Expression:
     value = constant(time)
     return (time[0]._replace(value=0),) if value is not None and value < 0 else time
-
-
-def _tenths(time: Expression) -> int | None:
-    value = constant(time)
-    if value is None or value % 100 or value > 25_500:
-        return None
-    return value // 100
 
 
 def _percentage(power: Expression, low: int) -> Expression:

@@ -1,20 +1,21 @@
 """Lowering: expressions become instructions, and conditions become branches.
 
 Knows the shortest push of a constant, when both sides of an AND may simply be evaluated, and
-which conditions a single comparing branch says.
+which conditions compare to a constant.
 """
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
-from tiniscript.bytecode.opcodes import BY_NAME, Op
+from tiniscript.bytecode.opcodes import BY_NAME, PUSHED, SHORTS, Op
 from tiniscript.semantics.ir import Expression, Term
 from tiniscript.semantics.optimizer import is_safe
 from tiniscript.source import Span
 
 NEGATED = {"EQ": "NE", "NE": "EQ", "LT": "GE", "GE": "LT", "LE": "GT", "GT": "LE"}
 _SWAPPED = {"EQ": "EQ", "NE": "NE", "LT": "GT", "GT": "LT", "LE": "GE", "GE": "LE"}
+_SHORT = ("PUSH_VAR", "PUSH_SENSOR", "PUSH_READ", "READ", "SET_VAR", "SET")
 _SHORT_SIDE = 6  # terms up to which evaluating a needless side costs less than a jump
 
 
@@ -37,7 +38,8 @@ class Emitter:
         self._last_mark = -1
 
     def add(self, name: str, *operands: int, to: int | None = None) -> None:
-        self.items.append(Item(BY_NAME[name], operands, to, self.span))
+        op, operands = _shortest(name, *operands)
+        self.items.append(Item(op, operands, to, self.span))
 
     def new_label(self) -> int:
         self.labels.append(-1)
@@ -56,7 +58,7 @@ class Emitter:
         if not self.items or self._last_mark == len(self.items):
             return False
         last = self.items[-1]
-        if last.op.name != "READ" or last.operands != (sensor,):
+        if (last.op, last.operands) != _shortest("READ", sensor):
             return False
         self.span = last.span
         del self.items[-1]
@@ -74,17 +76,25 @@ class Emitter:
         self.items = made
 
 
+def _shortest(name: str, *operands: int) -> tuple[Op, tuple[int, ...]]:
+    """Return the instruction `name`, or the one of one byte that says the same."""
+    if name in _SHORT and operands[0] < SHORTS:
+        return BY_NAME[f"{name}_{operands[0]}"], ()
+    return BY_NAME[name], operands
+
+
 def _far(item: Item) -> tuple[Item, ...]:
     far = BY_NAME.get(item.op.name + "_FAR")
     if far is not None:
         return (item._replace(op=far),)
-    _, source, comparator = item.op.name.split("_")
-    name = {"VAR": "PUSH_VAR", "SENSOR": "PUSH_SENSOR", "READ": "PUSH_READ"}[source.rstrip("168")]
-    index, number = item.operands
+    *variable, number = item.operands
+    says = [
+        *(_shortest("PUSH_VAR", each) for each in variable),
+        _push(number * 1000),
+        (BY_NAME[item.op.name.rpartition("_")[2]], ()),
+    ]
     return (
-        Item(BY_NAME[name], (index,), None, item.span),
-        Item(*_push(number * 1000), None, item.span),
-        Item(BY_NAME[comparator], (), None, item.span),
+        *(Item(*each, None, item.span) for each in says),
         Item(BY_NAME["IF_FAR"], (), item.to, item.span),
     )
 
@@ -98,16 +108,25 @@ def number_of(term: Term, low: int, high: int) -> int | None:
 
 def _push(value: int) -> tuple[Op, tuple[int, ...]]:
     """Return the shortest instruction that pushes `value` thousandths."""
-    units = value // 1000
-    if value % 1000 == 0 and -128 <= units <= 127:
+    units, tenths = value // 1000, value // 100
+    if value % 1000 == 0 and units in PUSHED:
+        return BY_NAME[f"PUSH_NUM_{units}"], ()
+    if value % 1000 == 0 and 0 <= units <= 255:
         return BY_NAME["PUSH8"], (units,)
+    if value % 100 == 0 and -128 <= tenths <= 127:
+        return BY_NAME["PUSH_TENTHS"], (tenths,)
     if value % 1000 == 0 and -32768 <= units <= 32767:
         return BY_NAME["PUSH16"], (units,)
     return BY_NAME["PUSH_MILLI" if -32768 <= value <= 32767 else "PUSH32"], (value,)
 
 
+def pushes_in_one_byte(term: Term, variable: int) -> bool:
+    """Return whether to push a number and to set a variable takes a byte each."""
+    return variable < SHORTS and _push(term.value)[0].size == 1
+
+
 def push(out: Emitter, term: Term) -> None:
-    """Add the instruction for a term that is no operator between two sides."""
+    """Add the instruction for a term that is not a binary operator."""
     op, value = term
     if op == "NUMBER":
         instruction, operands = _push(value)
@@ -162,26 +181,54 @@ def tests(out: Emitter, condition: Expression, otherwise: int) -> None:
             _test(out, condition[start:end], when, otherwise)
 
 
+def stops(out: Emitter, condition: Expression) -> None:
+    """Add instructions that end a watched move where `condition` is TRUE."""
+    compared = _compared(condition)
+    if compared is None:
+        add_value(out, condition)
+        out.add("UNTIL")
+    else:
+        add_value(out, compared.value)
+        out.add(f"UNTIL{compared.bits}_{compared.comparator}", compared.number)
+
+
 def _test(out: Emitter, expression: Expression, when: bool, to: int) -> None:
-    if len(expression) == 3 and expression[2].op in NEGATED:
-        left, right, operator = expression
-        comparator = operator.op
-        if left.op == "NUMBER":
-            left, right, comparator = right, left, _SWAPPED[comparator]
-        number = number_of(right, -32768, 32767)
-        if number is not None and left.op in ("VARIABLE", "SENSOR"):
-            if when:
-                comparator = NEGATED[comparator]
-            bits = 8 if 0 <= number <= 255 else 16
-            span = out.span
-            source = "VAR"
-            if left.op == "SENSOR":
-                source = "READ" if out.pops_read(left.value) else "SENSOR"
-            out.add(f"IF_{source}{bits}_{comparator}", left.value, number, to=to)
-            out.span = span
-            return
-    add_value(out, expression)
-    out.add("IF_NOT" if when else "IF", to=to)
+    compared = _compared(expression)
+    if compared is None:
+        add_value(out, expression)
+        out.add("IF_NOT" if when else "IF", to=to)
+        return
+    value, bits, comparator, number = compared
+    if when:
+        comparator = NEGATED[comparator]
+    if len(value) == 1 and value[0].op == "VARIABLE":
+        out.add(f"IF_VAR{bits}_{comparator}", value[0].value, number, to=to)
+    else:
+        add_value(out, value)
+        out.add(f"IF{bits}_{comparator}", number, to=to)
+
+
+class _Compared(NamedTuple):
+    """`value` is compared to a whole number of so many bits."""
+
+    value: Expression
+    bits: int
+    comparator: str
+    number: int
+
+
+def _compared(expression: Expression) -> _Compared | None:
+    """Return the comparison to a whole number that an expression is, if it is one."""
+    comparator = expression[-1].op
+    if comparator not in NEGATED:
+        return None
+    value, right = expression[:-2], expression[-2]
+    if len(expression) == 3 and expression[0].op == "NUMBER":
+        value, right, comparator = (right,), expression[0], _SWAPPED[comparator]
+    number = number_of(right, -32768, 32767)
+    if number is None:
+        return None
+    return _Compared(value, 8 if 0 <= number <= 255 else 16, comparator, number)
 
 
 def _right_side(expression: Expression, left_mark: int) -> Expression:

@@ -75,7 +75,7 @@ def as_json(places: Map) -> str:
 
 
 def from_json(text: str) -> Map:
-    """Return the map in a text. Raises ValueError where it is none."""
+    """Return the map in a text. Raises ValueError if the text is not a map."""
     import json
 
     fields = json.loads(text)
@@ -89,7 +89,7 @@ def from_json(text: str) -> Map:
 
 
 def remember(image: bytes, places: Map) -> None:
-    """Keep a map in the cache. Where the cache cannot be written, it is not kept."""
+    """Keep a map in the cache. If the cache cannot be written, the map is not kept."""
     path = _path(images.checksum(image))
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -107,7 +107,7 @@ def recall(checksum: int) -> Map | None:
     except OSError:
         return None
     except (ValueError, OverflowError, RecursionError):
-        with suppress(OSError):  # nobody can use it: a full disk has cut it, perhaps
+        with suppress(OSError):  # the map is damaged, for example cut by a full disk
             path.unlink()
         return None
 

@@ -1,6 +1,6 @@
 """The codes of diagnostics: everything we can tell a person about a program, as data.
 
-Knows which problems there are. Their words, in English and Spanish, are in `catalogue.toml`,
+Knows which diagnostics there are. Their words, in English and Spanish, are in `catalogue.toml`,
 which `rendering` reads when there is something to say.
 """
 
@@ -17,8 +17,8 @@ class Code(NamedTuple):
     is_mistake: bool
 
 
-class Problem(NamedTuple):
-    """One problem in one place. `values` fill the gaps in its message."""
+class Diagnostic(NamedTuple):
+    """One diagnostic in one place. `values` fill the gaps in its message."""
 
     code: Code
     span: Span
@@ -94,6 +94,11 @@ UNIT = _mistake("TS049")
 OTHER_ASSIGNMENT = _mistake("TS050")
 NO_VALUE = _mistake("TS051")
 NAMED_ARGUMENT = _mistake("TS052")
+OTHER_UNIT = _mistake("TS053")
+LINE_NUMBER = _mistake("TS054")
+BAR_BETWEEN = _mistake("TS055")
+NAME_WITH_SPACE = _mistake("TS056")
+MISSING_EQUALS = _mistake("TS057")
 # names
 UNKNOWN_WORD = _mistake("TS101")
 OTHER_LANGUAGE = _mistake("TS102")
@@ -114,6 +119,9 @@ VARIABLE_ALONE = _mistake("TS116")
 ACTUATOR_ALONE = _mistake("TS117")
 NOT_CALLABLE = _mistake("TS118")
 OTHER_ROBOT = _mistake("TS119")
+NO_BUTTON = _mistake("TS120")
+WHICH_WAY = _mistake("TS121")
+SWITCH_WHAT = _mistake("TS122")
 # values
 WANTS_NUMBER = _mistake("TS201")
 WANTS_CONDITION = _mistake("TS202")
@@ -139,23 +147,24 @@ UNUSED_VARIABLE = _warning("TS806")
 UNUSED_DEF = _warning("TS807")
 WILL_FAULT = _warning("TS808")
 BOARD_MAY_BE_TOO_SMALL = _warning("TS809")
+SWAPPED = _warning("TS810")
 
 
-def in_order(found: list[Problem]) -> list[Problem]:
-    """Return problems by place, and of several mistakes in one place the first that was found.
+def in_order(found: list[Diagnostic]) -> list[Diagnostic]:
+    """Return diagnostics by place, and of several mistakes in one place the first that was found.
 
     What begins where another mistake begins is most often its consequence.
     """
     kept = []
     mistaken = set()
     seen = set()
-    for problem in found:
-        start = problem.span.start
-        key = (problem.code, problem.span)
-        if key in seen or (problem.is_mistake and start in mistaken):
+    for diagnostic in found:
+        start = diagnostic.span.start
+        key = (diagnostic.code, diagnostic.span)
+        if key in seen or (diagnostic.is_mistake and start in mistaken):
             continue
         seen.add(key)
-        kept.append(problem)
-        if problem.is_mistake:
+        kept.append(diagnostic)
+        if diagnostic.is_mistake:
             mistaken.add(start)
     return sorted(kept, key=lambda each: (each.span, each.code.number))

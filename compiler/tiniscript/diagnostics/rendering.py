@@ -1,7 +1,7 @@
 """Diagnostics become words: in English or Spanish, for people and for editors.
 
 Knows how the texts of `catalogue.toml` are filled, and how a line of a program is shown with the
-place marked under it. Knows no single problem: what is said of each is in that file, which is
+place marked under it. Knows no single diagnostic: what is said of each is in that file, which is
 read when there is something to say. Prints nothing.
 """
 
@@ -13,7 +13,7 @@ from collections.abc import Iterable, Mapping
 from functools import cache
 from typing import Any, Literal, NamedTuple
 
-from tiniscript.diagnostics.codes import CODES, Problem
+from tiniscript.diagnostics.codes import CODES, Diagnostic
 from tiniscript.source import Source, Span
 
 LINE_COLUMNS = 100  # of a program's line; of a longer one a window is shown
@@ -28,7 +28,7 @@ _RED, _YELLOW, _DIM, _PLAIN = "\033[1;31m", "\033[1;33m", "\033[2m", "\033[0m"
 
 
 class Message(NamedTuple):
-    """A problem in words. Lines and columns count from 1, columns in characters.
+    """A diagnostic in words. Lines and columns count from 1, columns in characters.
 
     The end is exclusive. The range is never empty, except in a text that is.
     """
@@ -43,24 +43,24 @@ class Message(NamedTuple):
     fix: str
 
 
-def message(problem: Problem, source: Source, lang: str) -> Message:
-    """Return what is said of a problem, and where."""
-    texts = _table(problem.code.number)
-    start, end = _shown_range(source.text, problem.span)
+def message(diagnostic: Diagnostic, source: Source, lang: str) -> Message:
+    """Return what is said of a diagnostic, and where."""
+    texts = _table(diagnostic.code.number)
+    start, end = _shown_range(source.text, diagnostic.span)
     line, column = source.position(start)
     end_line, end_column = line, column
     if end > start:
         end_line, last_column = source.position(end - 1)
         end_column = last_column + 1
     return Message(
-        problem.code.number,
-        "mistake" if problem.is_mistake else "warning",
+        diagnostic.code.number,
+        "mistake" if diagnostic.is_mistake else "warning",
         line,
         column,
         end_line,
         end_column,
-        _filled(texts[lang], problem.values, lang),
-        _filled(texts[lang + "_try"], problem.values, lang),
+        _filled(texts[lang], diagnostic.values, lang),
+        _filled(texts[lang + "_try"], diagnostic.values, lang),
     )
 
 
@@ -112,7 +112,7 @@ def explain(code: str, lang: str) -> str | None:
 
 
 def titles(lang: str) -> list[tuple[str, str]]:
-    """Return every code with its problem in general words."""
+    """Return every code with its diagnostic in general words."""
     texts = _texts()
     return [(number, texts[number][lang + "_title"]) for number in sorted(CODES)]
 

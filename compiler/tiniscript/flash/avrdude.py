@@ -1,6 +1,6 @@
-"""avrdude, which writes a firmware over a bootloader: where it is, how it does, what it says.
+"""Runs avrdude, which writes a firmware through a bootloader: finds it and reads its messages.
 
-Knows its messages from version 6.3 on. Prints nothing: how far it is and how it ended are data.
+Knows its messages from version 6.3 on. Prints nothing: progress and outcome are returned as data.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ from typing import NamedTuple
 
 from tiniscript.flash.bootloaders import Bootloader
 
-# For which it may say nothing: as long as no bootloader has answered, and then.
+# Timeouts without output: before a bootloader has answered, and after that.
 NOBODY_S, SILENCE_S = 15.0, 30.0
-WHOLE_S = 300.0  # that it may take: a Mega's 256 KB take 50 s, there and back
-MOST_BYTES = 200_000  # that it may say; it says about 2,000
-LEAVE_S = 5.0  # for which it may go on when it has said all
+WHOLE_S = 300.0  # timeout of the whole run: writing and reading back a Mega's 256 KB takes 50 s
+MOST_BYTES = 200_000  # limit of its output; about 2,000 are normal
+LEAVE_S = 5.0  # timeout of its exit after its last output
 LOOK_S = 0.1
 MOST_ATTEMPTS = 2  # of its ten, which take five seconds each
 MARKS = 50  # of a whole bar
@@ -48,14 +48,14 @@ _CAUSES = (
 
 
 class Ended(NamedTuple):
-    """How it ended, by a name from above; and what it has said last, where that helps."""
+    """The outcome, a name from above, and the last lines of output if they help."""
 
     how: str
     said: str = ""
 
 
 class Seen(NamedTuple):
-    """What it is at, and how many percent of that are done."""
+    """The current step, and its progress in percent."""
 
     phase: str
     percent: int
@@ -101,7 +101,7 @@ def write(
     firmware: Path,
     look: Callable[[Seen | None], None],
 ) -> Ended:
-    """Write a firmware, read it back, and compare. `look` is called now and then."""
+    """Write a firmware, read it back, and compare. `look` is called periodically."""
     words = [*command, "-c", to.programmer, "-p", to.part, "-P", port, "-b", str(to.baud), "-D"]
     try:
         running = subprocess.Popen(
@@ -163,9 +163,9 @@ def _watched(running: subprocess.Popen[bytes], look: Callable[[Seen | None], Non
 
 
 def _listen(file: int, heard: SimpleQueue[bytes]) -> None:
-    """Pass on what it says, piece by piece; nothing at the end.
+    """Pass its output on in pieces; an empty piece marks the end.
 
-    Not more than it may say: nobody reads the rest, and it waits until it is killed.
+    Stops after MOST_BYTES: the rest is not read, so that avrdude blocks until it is killed.
     """
     said_bytes = 0
     while said_bytes <= MOST_BYTES:
@@ -180,7 +180,7 @@ def _listen(file: int, heard: SimpleQueue[bytes]) -> None:
 
 
 def seen(said: str) -> Seen | None:
-    """Return how far it is, from all that it has said."""
+    """Return the progress, from its whole output."""
     bars = _BAR.findall(said)
     names = [name for name, _ in bars]
     if "Writing" not in names:
@@ -191,7 +191,7 @@ def seen(said: str) -> Seen | None:
 
 
 def outcome(code: int, said: str) -> Ended:
-    """Return how it ended, from its exit code and all that it has said."""
+    """Return the outcome, from its exit code and its whole output."""
     if code == 0:
         return Ended(DONE)
     began_to_write = seen(said) is not None

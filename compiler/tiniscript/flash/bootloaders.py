@@ -1,4 +1,4 @@
-"""The bootloaders of boards: what a program that writes must know of each.
+"""The bootloaders of boards: the data that avrdude needs for each.
 
 Knows no files and no ports.
 """
@@ -22,8 +22,8 @@ NANO = Bootloader("nano", "arduino", "m328p", 115_200)
 NANO_OLD = Bootloader("nano-old", "arduino", "m328p", 57_600)
 MEGA = Bootloader("mega", "wiring", "m2560", 115_200)
 
-# What `--board` says: the board that the firmware is for, and the bootloaders that are tried.
-# From outside nobody can tell which of the two a Nano has.
+# For each value of `--board`: the board of the firmware, and the bootloaders to try. Which of the
+# two a Nano has cannot be seen from outside.
 BOARDS: dict[str, tuple[str, tuple[Bootloader, ...]]] = {
     "uno": ("uno", (UNO,)),
     "nano": ("nano", (NANO, NANO_OLD)),

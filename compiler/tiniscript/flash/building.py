@@ -1,8 +1,8 @@
 """Builds the firmware of a robot with PlatformIO, from the sources that are in `vm_arduino`.
 
 Knows where sources and PlatformIO are, and what PlatformIO says while it builds. Prints nothing:
-how far it is, is data. What it builds is for one robot on one board; the robot is the header
-`own.h`, whether it is a shipped one or not.
+progress is returned as data. A build is for one robot on one board; the header `own.h` describes
+the robot, whether it is a shipped one or not.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ CORE_FILES = 26  # of Arduino's core, about
 LOG_BYTES = 1 << 20  # of what PlatformIO says; the last ones
 KILLED_AFTER_S = 5.0  # that PlatformIO has to end by itself
 
-# Of the person's own settings of PlatformIO, those that would build something else, or elsewhere.
+# The user's PlatformIO settings that would change the build or its folder.
 _UNWANTED = re.compile(
     r"PLATFORMIO_(.*FLAGS|EXTRA_SCRIPTS|DEFAULT_ENVS|FORCE_ANSI"
     r"|(SRC|INCLUDE|LIB|DATA|TEST|BUILD|WORKSPACE|SHARED|BUILD_CACHE)_DIR)"
@@ -48,7 +48,7 @@ _PERCENT = re.compile(r"(\d+)%")
 
 
 class Seen(NamedTuple):
-    """What it is at, and how many percent of that are done; what it fetches, by name."""
+    """The current step, its progress in percent, and the name of what it downloads."""
 
     phase: str
     percent: int
@@ -56,7 +56,7 @@ class Seen(NamedTuple):
 
 
 class CannotBuild(Exception):
-    """Why, by a name from below; what PlatformIO has said last, and all of it."""
+    """The reason, a name from below; the last output of PlatformIO, and the whole output."""
 
     NO_SOURCES, NO_PLATFORMIO = "no_sources", "no_platformio"
     UNREACHABLE, FAILED = "unreachable", "build_failed"
@@ -69,12 +69,12 @@ class CannotBuild(Exception):
 
 
 class Sources(NamedTuple):
-    """All that a firmware is made from but the robot: bytes, by their path."""
+    """The sources of a firmware without the robot: bytes by path."""
 
     files: Mapping[str, bytes]
 
     def digest(self, robot: Robot) -> str:
-        """Return what no other sources, robot or board have."""
+        """Return a digest that is unique to these sources, this robot and its board."""
         key = hashlib.sha256(f"{robot.board.chip}\n{header(robot)}".encode())
         for name, data in self.files.items():
             key.update(f"{name}\n{len(data)}\n".encode() + data)
@@ -186,7 +186,7 @@ def _end(running: subprocess.Popen[bytes]) -> None:
 
 
 def seen(said: str, files: int) -> Seen | None:
-    """Return how far it is, from all that it has said; `files` are as many as there are."""
+    """Return the progress, from its whole output; `files` is the total number of files."""
     compiled = len(_COMPILING.findall(said))
     if compiled:
         return Seen(COMPILING, min(99, 100 * compiled // files))
@@ -198,7 +198,7 @@ def seen(said: str, files: int) -> Seen | None:
 
 
 def _reason(log: str) -> str:
-    """Return the row of a log that says most: the first error, else the last words."""
+    """Return the most useful line of a log: the first error, else the last line."""
     rows = [row.strip() for row in log.splitlines() if re.search(r"\w", row)]
     errors = [row for row in rows if re.search(r"\berror\b", row, re.IGNORECASE)]
     others = [row for row in rows if "Error" in row]

@@ -29,7 +29,7 @@ class Ready(NamedTuple):
 
     @property
     def bytes(self) -> int:
-        """How many it puts into the flash."""
+        """How many bytes of flash it fills."""
         rows = self.path.read_text(encoding="ascii").splitlines()
         return sum(int(row[1:3], 16) for row in rows if row[7:9] == DATA)
 
@@ -45,7 +45,7 @@ def name_of(robot: str, board: str, digest: str) -> str:
 
 
 def files(folder: Path = FOLDER) -> list[Ready]:
-    """Return what is in a folder, by robot and board. A file that has no end is left out."""
+    """Return the files of a folder, by robot and board. An incomplete file is left out."""
     found = []
     for path in sorted(folder.glob("*-*-*.hex")):
         if is_whole(path):
@@ -64,7 +64,7 @@ def find(robot: str, board: str, digest: str) -> Ready | None:
 
 
 def is_whole(path: Path) -> bool:
-    """Whether every row of a HEX file has its sum, and the last one says that it is the last."""
+    """Return whether all rows of a HEX file have valid checksums and the last is an end record."""
     try:
         rows = path.read_text(encoding="ascii").split()
         sums = [sum(bytes.fromhex(row[1:])) % 256 for row in rows if row[0] == ":"]

@@ -1,6 +1,6 @@
-"""A program's bytes become what the compiler makes of them, for one robot; images are read.
+"""Compiles a program's bytes for one robot, and reads images.
 
-The command and the functions of the library both use it. As light as the compiler itself.
+The command and the functions of the library both use it. Imports no more than the compiler does.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 def compiled(
     data: bytes, robot: Robot, name: str, is_strict: bool, optimize: bool = True
 ) -> Compiled:
-    """Return what became of a program's text.
+    """Return the result of compiling a program's text.
 
     `is_strict`: a program that is too large for the robot is a mistake, else a warning.
     """
@@ -34,7 +34,7 @@ def compiled(
 
 
 def text_of(data: bytes, name: str) -> str | Compiled:
-    """Return a program's text; where the bytes are no text, that as its one problem."""
+    """Return a program's text, or a result with one diagnostic where the bytes are no text."""
     from tiniscript.source import Unreadable, decode
 
     try:
@@ -46,28 +46,34 @@ def text_of(data: bytes, name: str) -> str | Compiled:
 
         reasons = {"too_large": codes.TOO_LARGE, "binary": codes.BINARY}
         code = reasons.get(unreadable.reason, codes.NOT_UTF8)
-        return Compiled(Source("", name), [codes.Problem(code, Span(0, 0))])
+        return Compiled(Source("", name), [codes.Diagnostic(code, Span(0, 0))])
 
 
 def image_of(compiled: Compiled, robot: Robot) -> Image:
-    """Return the image of a program that is right."""
+    """Return the image of a program without mistakes."""
     from tiniscript.bytecode.image import Image, checksum
     from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 
-    assert compiled.program is not None
-    return Image(compiled.program.start, kit_of(compiled, robot), compiled.code,
+    assert compiled.program is not None and compiled.verdict is not None
+    devices = robot.kit.hash_of_used(compiled.verdict.uses)
+    return Image(compiled.program.start, devices, compiled.code,
                  checksum(compiled.image), (ISA_MAJOR, ISA_MINOR))  # fmt: skip
 
 
 def kit_of(compiled: Compiled, robot: Robot) -> int:
     """Return the fingerprint of the kit whose words a program uses, or 0 for none."""
     assert compiled.verdict is not None
-    return robot.kit.fingerprint if compiled.verdict.uses_kit else 0
+    return robot.kit.fingerprint if compiled.verdict.uses else 0
 
 
-def verify_for(image: Image, robot: Robot) -> None:
-    """Verify the code of an image for the robot whose kit it has. Raises `verify.Refused`."""
-    from tiniscript.bytecode.verify import verify
+def fits(image: Image, robot: Robot) -> bool:
+    """Return whether a robot may run an image that `unpack` has read."""
+    from tiniscript.bytecode.image import ImageRefused
+    from tiniscript.bytecode.loading import check
+    from tiniscript.bytecode.verify import Refused
 
-    kit = robot.kit if image.kit else None
-    verify(image.code, len(kit.sensors) if kit else 0, len(kit.actuators) if kit else 0)
+    try:
+        check(image, robot.kit)
+    except (ImageRefused, Refused):
+        return False
+    return True

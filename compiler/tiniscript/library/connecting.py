@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 
-from tiniscript.library import way
+from tiniscript.library import opening
 from tiniscript.library.connection import RobotConnection
 from tiniscript.library.errors import RobotError, UsageError
 from tiniscript.library.programs import Language, profile_of
@@ -20,10 +20,10 @@ def connect(
 ) -> RobotConnection:  # fmt: skip
     """Connect to the robot on a port: /dev/ttyUSB0, COM5, socket://host:port, ...
 
-    Without a port it is the one that was used last, else the only virtual robot that runs.
-    `robot` is what texts are compiled for: the name or the path of a profile; without it that of
-    the robot that answers, if it is known here. `baud` is 300 to 2000000, without it the
-    profile's. Raises RobotError where the port does not open or no robot answers.
+    The default port is the last used one, else that of the only running virtual robot.
+    `robot` is the name or the path of the profile that texts are compiled for; its default is the
+    profile of the robot that answers, if this computer knows it. `baud` is 300 to 2000000; its
+    default is in the profile. Raises RobotError if the port does not open or no robot answers.
     """
     from tiniscript import robots
 
@@ -33,7 +33,7 @@ def connect(
     if port is None:
         port = _usual_port(language)
     elif not isinstance(port, str) or not port.strip() or not port.isprintable():
-        raise UsageError("bad_port", language, {"port": printable(repr(port), way.SHOWN)})
+        raise UsageError("bad_port", language, {"port": printable(repr(port), opening.SHOWN)})
     return RobotConnection(port, profile, robot is not None, baud, language)
 
 
@@ -49,8 +49,8 @@ def _usual_port(language: Language) -> str:
     if len(running) == 1:
         return running[0].address
     listed = [each.port for each in ports.listed()]
-    values = {"known": way.shown(", ".join(listed)) or "-",
+    values = {"known": opening.shown(", ".join(listed)) or "-",
               "example": listed[0] if listed else "/dev/ttyUSB0"}  # fmt: skip
     if last is not None:
-        raise RobotError("last_port_missing", language, {**values, "port": way.shown(last)})
+        raise RobotError("last_port_missing", language, {**values, "port": opening.shown(last)})
     raise RobotError("which_port", language, values)

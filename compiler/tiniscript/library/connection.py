@@ -1,7 +1,7 @@
-"""A connection to a robot: programs and lines go there, events come back, and it stops at the end.
+"""A connection to a robot: it sends programs and lines, and receives events.
 
-Leaving the `with` block stops the robot and waits until it has confirmed that. A process that ends
-without it is noticed by the robot, which stops within a second.
+Leaving the `with` block stops the robot and waits until the robot has confirmed that. If the
+process ends without it, the robot's dead-man timer stops the robot within a second.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from time import monotonic
 from types import TracebackType
 from typing import TYPE_CHECKING, NamedTuple
 
-from tiniscript.library import way
+from tiniscript.library import opening
 from tiniscript.library.endings import Follower
 from tiniscript.library.errors import ProgramError, RobotError, StopNotConfirmed, UsageError
 from tiniscript.library.events import Ending, Reader, RobotEvent, ending_of
@@ -24,26 +24,28 @@ from tiniscript.printable import printable
 if TYPE_CHECKING:
     from typing import IO, TypeVar
 
-    from tiniscript.link.connection import Asked, Asks, Way
+    from tiniscript.link.connection import LinkConnection, PendingRequest, Requester
     from tiniscript.link.line import Line
     from tiniscript.link.outcomes import Event
+    from tiniscript.link.payloads import ReceiptReply
     from tiniscript.link.requests import Reply
     from tiniscript.robots.profile import Robot
-    from tiniscript.sharing.server import Host
+    from tiniscript.sharing.server import Server
 
     Self = TypeVar("Self", bound="RobotConnection")
+    T = TypeVar("T")
 
-VERB = "python"  # what other commands are told of who holds the port
-PATIENCE_MS = 6000  # for which a robot that has answered may be silent, or busy with saving
+VERB = "python"  # the name that other commands show for the process that holds the port
+PATIENCE_MS = 6000  # timeout for a known robot that is silent, or busy with saving
 LONGEST_S = 10**9
-SAVE_S = 10.0  # for which a robot may save a program when its motors stand
-LOW_S = 2.0  # for which its voltage may be too low for that
+SAVE_S = 10.0  # timeout for saving a program while the motors stand
+LOW_S = 2.0  # timeout while the voltage is too low for saving
 LOOK_S = 0.1
 
 
 class RobotInfo(NamedTuple):
-    """What a robot has said of itself. `name` is the one that it was given, or empty; `robot` the
-    name of its profile, or None for one that is not known here; `room` in bytes of code."""
+    """What a robot reports of itself. `name` is its given name, or empty; `robot` is the name of
+    its profile, or None if this computer does not know it; `room` is in bytes of code."""
 
     name: str
     id: int
@@ -53,7 +55,7 @@ class RobotInfo(NamedTuple):
 
 
 class Receipt(NamedTuple):
-    """What the robot holds or does now. `checksum` is that of the program's image; `saved` is
+    """The program in the robot. `checksum` is that of the program's image; `saved` is
     MEMORY, SAVING, STORED, LOW_SUPPLY or NOTHING, as in docs/link.md."""
 
     checksum: int
@@ -62,16 +64,16 @@ class Receipt(NamedTuple):
 
 
 class RobotConnection:
-    """A robot that has answered. One thread at a time uses it.
+    """A robot that has answered. Only one thread at a time may use it.
 
-    As a context manager it is left by `close`; by an exception too, Ctrl-C among them: then the
-    robot is stopped in any case.
+    The end of a `with` block calls `close`. An exception that leaves the block, Ctrl-C included,
+    stops the robot even if its program is detached.
     """
 
     def __init__(
         self, port: str, profile: Robot, is_named: bool, baud: int | None, language: Language
     ) -> None:
-        """For the functions of this library: `connect` makes connections."""
+        """Internal: use `connect` instead."""
         self.port = port
         self.language = language
         self._profile = profile
@@ -85,12 +87,12 @@ class RobotConnection:
 
         def open_line(lock: IO[bytes] | None) -> Line:
             kit = profile.kit.fingerprint
-            return way.opened_line(port, speed, kit, lock=lock, language=language)
+            return opening.opened_line(port, speed, kit, lock=lock, language=language)
 
-        self._line: Way = way.way_to(port, VERB, open_line, baud, language)
-        self._host: Host | None = None
+        self._line: LinkConnection = opening.connection_to(port, VERB, open_line, baud, language)
+        self._server: Server | None = None
         try:
-            self._host = _shared(self._line, port, speed)
+            self._server = _shared(self._line, port, speed)
             self._meet(is_named)
         except BaseException:
             self._part()
@@ -107,39 +109,49 @@ class RobotConnection:
 
     @property
     def info(self) -> RobotInfo:
-        """Who the robot is."""
-        card = self._line.robot
-        assert card is not None
+        """What the robot reports of itself."""
+        device_info = self._line.robot
+        assert device_info is not None
         from tiniscript.library.known_kits import of_kit
 
-        profile = of_kit(card.kit)
+        profile = of_kit(device_info.kit)
         name = None if profile is None else profile.name
-        return RobotInfo(printable(card.name), card.id, name, self.port, card.room)
+        return RobotInfo(
+            printable(device_info.name), device_info.id, name, self.port, device_info.room
+        )
 
     def upload(
         self, program: Program | str | bytes, *, run: bool = True, save: bool = True,
         detached: bool = False,
     ) -> Receipt:  # fmt: skip
-        """Bring a program to the robot, and start it there if it begins with SI.
+        """Send a program to the robot, and start it there if it begins with SI.
 
-        `run=False` starts nothing, `save=False`: the robot forgets it when it is switched off,
-        `detached`: it goes on when this connection is left. Returns when the robot has it, before
-        it has ended: `wait` and `events` are for that. Raises ProgramError, RobotError.
+        `run=False` starts nothing. With `save=False` the robot forgets the program when it is
+        switched off. `detached`: the program goes on after this connection is closed. Returns when
+        the robot has the program; `wait` waits for its end. Raises ProgramError, RobotError.
         """
         self._check_open()
         ready = self._ready(program)
         if ready.start == "PING":
             raise UsageError("ping_program", self.language)
-        image = ready._image
-        reply = self._ask(lambda session: session.upload(image, run, save, detached))
+        from tiniscript.library.known_kits import may_run
+        from tiniscript.link.messages import STATUSES
+        from tiniscript.link.requests import Reply
+
+        image, kit = ready._image, ready._profile.kit.fingerprint
+        card = self._line.robot
+        assert card is not None
+        if not may_run(image, ready._profile, card.kit):  # refused before any byte is sent
+            raise self._error(Reply(STATUSES["WRONG_KIT"], card.kit))
+        reply = self._ask(lambda session: session.upload(image, run, save, detached, kit))
         self._is_saving = save
         return self._begun(reply, run and ready.start == "SI", detached)
 
     def live(self, line: str) -> Receipt:
-        """Have a line done once, at most 55 bytes of code; the stored program stays what it is.
+        """Run a line once, at most 55 bytes of code; the stored program does not change.
 
-        Returns when it has begun: `wait` waits for its end. Each line stands alone: variables do
-        not outlive it. Raises ProgramError, RobotError.
+        Returns when the line has begun; `wait` waits for its end. Variables do not last from one
+        line to the next. Raises ProgramError, RobotError.
         """
         self._check_open()
         ready = self._ready(line)
@@ -147,8 +159,8 @@ class RobotConnection:
             raise UsageError(
                 "live_button" if ready.start == "SB" else "ping_program", self.language
             )
-        image = ready._image
-        reply = self._ask(lambda session: session.live(image.code, image.kit))
+        image, kit = ready._image, ready._profile.kit.fingerprint
+        reply = self._ask(lambda session: session.live(image.code, kit if image.devices else 0))
         return self._begun(reply, True, False)
 
     def start(self, *, detached: bool = False) -> Receipt:
@@ -158,9 +170,9 @@ class RobotConnection:
         return self._begun(reply, True, detached)
 
     def events(self, timeout: float | None = None) -> Iterator[RobotEvent]:
-        """Yield what the robot tells, until the program that was started here has ended (that
-        event is the last one) or `timeout` seconds have passed. Where nothing was started here,
-        only the time ends it: None is for ever. Raises RobotError where the robot is lost.
+        """Yield the robot's events until the program that this connection has started ends (that
+        event is the last one) or `timeout` seconds have passed. If it has started none, only the
+        timeout ends the events: None is for ever. Raises RobotError if the robot is lost.
         """
         self._check_open()
         if timeout is not None:
@@ -173,23 +185,24 @@ class RobotConnection:
             found = self._event(max(left_s, 0.0))
             told = None
             if found is not None and follower.is_about(
-                found[1], way.shown(self.port), self.language
+                found[1], opening.shown(self.port), self.language
             ):
                 told = self._reader.told(*found)
                 if told is not None and follower.end(found[1]) is not None and self._follower:
                     self._ending = ending_of(told)
             if told is not None:
                 yield told
-            # what came in time is told, however late it is
+            # an event that arrived before the timeout is still reported
             last_s = monotonic() if found is None else found[0] / 1000
             if end_s is not None and last_s >= end_s:
                 return
 
     def wait(self, timeout: float | None = None) -> Ending:
-        """Wait until the program that was started here has ended, and is saved if it was uploaded.
+        """Wait until the program that this connection has started ends; an uploaded one is also
+        saved then.
 
-        Raises RobotError where the robot is lost, and with the reason `still_running` after
-        `timeout` seconds: the program goes on then.
+        Raises RobotError if the robot is lost. After `timeout` seconds its reason is
+        `still_running`, and the program goes on.
         """
         self._check_open()
         if self._follower is None:
@@ -202,12 +215,12 @@ class RobotConnection:
         return self._ending
 
     def stop(self) -> None:
-        """Stop the robot now; return when it has confirmed that. Raises StopNotConfirmed."""
+        """Stop the robot now; return when it has confirmed the stop. Raises StopNotConfirmed."""
         self._check_open()
         self._stop()
 
     def close(self) -> None:
-        """Stop the robot, unless its program is detached, and leave the port. A second time does
+        """Stop the robot, unless its program is detached, and close the port. A second call does
         nothing. Raises StopNotConfirmed."""
         self._leave(is_calm=True)
 
@@ -226,34 +239,36 @@ class RobotConnection:
             self._part()
 
     def _stop(self) -> None:
-        if not way.confirmed(self._line):
-            raise StopNotConfirmed("not_confirmed", self.language, {"port": way.shown(self.port)})
+        if not opening.confirmed(self._line):
+            raise StopNotConfirmed(
+                "not_confirmed", self.language, {"port": opening.shown(self.port)}
+            )
         self._is_detached = False
         if self._follower is not None and self._ending is None:
             self._ending = Ending("STOPPED", cause="SEQUENCE")
 
     def _part(self) -> None:
-        """Leave the port. A run of another command that came through here has nobody then."""
+        """Close the port, and stop the run of a client, which ends with this server."""
         try:
-            if self._host is not None:
-                has_run = self._host.has_run
-                self._host.close()
+            if self._server is not None:
+                has_run = self._server.has_run
+                self._server.close()
                 if has_run:
-                    way.confirmed(self._line)
+                    opening.confirmed(self._line)
         finally:
             self._line.close()
 
     def _await_saving(self) -> None:
-        """Wait until the uploaded program is saved: whoever opens the port next may reset the
-        robot. Raises RobotError where it is not."""
+        """Wait until the uploaded program is saved, because the next command that opens the port
+        may reset the robot. Raises RobotError if the program is not saved."""
         from tiniscript.link.messages import STATES
 
         begun_s = monotonic()
         low_s: float | None = None
         while self._is_saving:
             status = self._ask(lambda session: session.status()).values
-            saved = status["saved"]
-            if STATES[int(status["state"])][0] == "RUNNING":  # detached: when its motors stand
+            saved = status.saved
+            if STATES[status.state][0] == "RUNNING":  # detached: it saves later
                 return
             if saved not in (SAVED_SAVING, SAVED_LOW_SUPPLY):
                 self._is_saving = False
@@ -274,17 +289,17 @@ class RobotConnection:
     def _meet(self, is_named: bool) -> None:
         from tiniscript.link.outcomes import CANCELLED
 
-        reply = way.met(self._line, self.port, self._profile.board.chip, self._wait)
+        reply = opening.met(self._line, self.port, self._profile.board.chip, self._wait)
         while reply.status == CANCELLED:  # a stop came first
-            reply = self._wait(way.hello(self._line, way.ANSWER_MS))
-        card = self._line.robot
-        if reply.status or card is None:
+            reply = self._wait(opening.hello(self._line, opening.ANSWER_MS))
+        device_info = self._line.robot
+        if reply.status or device_info is None:
             raise self._error(reply)
-        if not is_named and card.kit != self._profile.kit.fingerprint:
+        if not is_named and device_info.kit != self._profile.kit.fingerprint:
             from tiniscript.library.known_kits import of_kit
 
-            self._profile = of_kit(card.kit) or self._profile
-        way.remember(self.port, card.name)
+            self._profile = of_kit(device_info.kit) or self._profile
+        opening.remember(self.port, device_info.name)
 
     def _check_open(self) -> None:
         if self._is_closed:
@@ -297,34 +312,33 @@ class RobotConnection:
             self._reader.maps[ready.checksum] = ready._map
         return ready
 
-    def _begun(self, reply: Reply, is_running: bool, is_detached: bool) -> Receipt:
+    def _begun(self, reply: Reply[ReceiptReply], is_running: bool, is_detached: bool) -> Receipt:
         from tiniscript.link.messages import SAVED
 
-        run, program, saved = (reply.values[name] for name in ("run", "program", "saved"))
-        assert isinstance(run, int) and isinstance(program, int) and isinstance(saved, int)
-        # one that waits for the button has no number yet
-        self._follower = Follower(run if is_running else None)
+        receipt = reply.values
+        # a program that waits for the button has no run number yet
+        self._follower = Follower(receipt.run if is_running else None)
         self._ending = None
         self._is_detached = is_detached and is_running
-        name = SAVED[saved][0] if saved < len(SAVED) else "MEMORY"
-        return Receipt(program, name, is_running)
+        name = SAVED[receipt.saved][0] if receipt.saved < len(SAVED) else "MEMORY"
+        return Receipt(receipt.program, name, is_running)
 
-    def _ask(self, make: Callable[[Asks], Asked]) -> Reply:
-        with_limit = way.limited(make, PATIENCE_MS)
+    def _ask(self, make: Callable[[Requester], PendingRequest[T]]) -> Reply[T]:
+        with_limit = opening.limited(make, PATIENCE_MS)
         try:
-            task = self._line.do(with_limit)
+            request = self._line.do(with_limit)
         except Exception as gone:
             raise self._gone(gone) from None
-        reply = self._wait(task)
+        reply = self._wait(request)
         if reply.status:
             raise self._error(reply)
         return reply
 
-    def _wait(self, task: Asked) -> Reply:
+    def _wait(self, request: PendingRequest[T]) -> Reply[T]:
         from tiniscript.link.outcomes import Gone
 
         try:
-            return self._line.wait(task)
+            return self._line.wait(request)
         except Gone as gone:
             raise self._gone(gone) from None
 
@@ -341,30 +355,30 @@ class RobotConnection:
 
         if not isinstance(gone, Gone):
             return gone
-        reason = way.reason_of_end(self._line, gone)
-        values = {"port": way.shown(self.port), "verb": self._line.held_by}
+        reason = opening.reason_of_end(self._line, gone)
+        values = {"port": opening.shown(self.port), "verb": self._line.held_by}
         return RobotError(reason, self.language, values)
 
-    def _error(self, reply: Reply) -> RobotError | ProgramError:
+    def _error(self, reply: Reply[object]) -> RobotError | ProgramError:
         from tiniscript.link.statuses import name_of, sentence
 
-        reason = way.reason_of(self._line, reply)
+        reason = opening.reason_of(self._line, reply)
         if reason != "status":
-            return RobotError(reason, self.language, {"port": way.shown(self.port)})
+            return RobotError(reason, self.language, {"port": opening.shown(self.port)})
         said = " ".join(sentence(reply.status, reply.detail, self.language)).strip()
         name = name_of(reply.status)
         kind = ProgramError if name == "TOO_LARGE" else RobotError
         return kind(name, self.language, said=said)
 
 
-def _shared(line: Way, port: str, baud: int) -> Host | None:
-    """Let other commands use the port meanwhile: so `tsc stop` gets through."""
+def _shared(line: LinkConnection, port: str, baud: int) -> Server | None:
+    """Share the port with other commands, so that `tsc stop` works meanwhile."""
     if line.held_by:
         return None
     from tiniscript.link.line import Line
-    from tiniscript.sharing.server import Host
+    from tiniscript.sharing.server import Server
 
     assert isinstance(line, Line)
     with suppress(OSError):
-        return Host(line, port, baud, VERB)
+        return Server(line, port, baud, VERB)
     return None

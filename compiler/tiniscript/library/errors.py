@@ -1,7 +1,7 @@
-"""What can go wrong, as exceptions: `str()` of each is a sentence for a person.
+"""The exceptions of the library: `str()` of each is a sentence for a person.
 
-`reason` is a short name that stays the same in every language; `values` are what fills the gaps
-of the sentence.
+`reason` is a short name that is the same in every language; `values` fill the gaps of the
+sentence.
 """
 
 from __future__ import annotations
@@ -10,17 +10,17 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from tiniscript.library.programs import Diagnostic
+    from tiniscript.diagnostics.rendering import Message
 
 
 class TiniScriptError(Exception):
-    """The base of all of them."""
+    """The base of all exceptions of the library."""
 
     def __init__(
         self, reason: str, language: str = "en", values: Mapping[str, str] | None = None,
         said: str | None = None,
     ) -> None:  # fmt: skip
-        """`said` is the sentence, where it is not the one that `reason` has in `texts`."""
+        """`said` replaces the sentence that `reason` has in `texts`."""
         from tiniscript.library.texts import sentence
 
         self.reason = reason
@@ -29,21 +29,21 @@ class TiniScriptError(Exception):
 
 
 class UsageError(TiniScriptError, ValueError):
-    """A function was called with something that it does not take."""
+    """A function was called with a wrong argument."""
 
 
 class ProgramError(TiniScriptError):
     """A program is wrong. `diagnostics` has all mistakes and warnings of its text, by place.
 
-    It is empty for bytes that are no image, and for a program that has no room in the robot.
+    It is empty for bytes that are no image, and for a program that is too large for the robot.
     """
 
-    diagnostics: tuple[Diagnostic, ...] = ()
+    diagnostics: tuple[Message, ...] = ()
 
 
 class RobotError(TiniScriptError):
-    """The robot or the way to it: `reason` says what, such as `port_missing`, `link_lost` or the
-    name of a status of the link."""
+    """The robot or the connection has failed: `reason` is `port_missing`, `link_lost`, the name of
+    a status of the link, or another short name."""
 
 
 class StopNotConfirmed(RobotError):

@@ -1,4 +1,4 @@
-"""What a robot tells, as data for people: from the events of the link."""
+"""Turns the events of the link into data for users of the library."""
 
 from __future__ import annotations
 
@@ -15,16 +15,17 @@ if TYPE_CHECKING:
 
     from tiniscript.codegen.source_map import Map
     from tiniscript.link.outcomes import Event
+    from tiniscript.link.payloads import StatusReply
 
 
 class RobotEvent(NamedTuple):
-    """What a robot tells, `ms` milliseconds after the connection was made, by the wall clock.
+    """An event of a robot, `ms` milliseconds after the connection was made, by the wall clock.
 
     name      values
     SHOW      value
     STARTED   checksum of the program
     DONE      none
-    FAULT     fault: its name; offset in the code; line and column, where the text is known
+    FAULT     fault: its name; offset in the code; line and column, if the text is known
     STOPPED   cause: NONE, SEQUENCE, MESSAGE, BUTTON or CABLE
     MISSED    count of events that did not arrive
     TEXT      text that is no message of the link
@@ -44,50 +45,45 @@ class Ending(NamedTuple):
 
 
 class Reader:
-    """Reads the events of one connection. `maps` are those of programs that were sent, by their
-    checksums."""
+    """Reads the events of one connection. `maps` are the source maps of the sent programs, by
+    checksum."""
 
     def __init__(self) -> None:
         self.maps: dict[int, Map] = {}
         self._began_ms = int(monotonic() * 1000)
 
     def told(self, time_ms: int, event: Event) -> RobotEvent | None:
-        """Return an event as data, or None for one that is not for people."""
-        name, values = event
-        numbers = {key: each for key, each in values.items() if isinstance(each, int)}
+        """Return an event as data, or None for an internal event of the link."""
         found: dict[str, Value] = {}
-        if name == "SHOW":
-            found = {"value": value_of(numbers["value"], bool(numbers["is_yes_no"]))}
-        elif name == "STARTED":
-            found = {"checksum": numbers["program"]}
-        elif name == "ENDED":
-            return self._told_end(time_ms, numbers)
-        elif name == "FAULT":
-            found = self._fault(numbers["fault"], numbers["at"], numbers["program"])
-        elif name == "STOPPED":
+        if event.name == "SHOW":
+            found = {"value": value_of(event.value, bool(event.is_yes_no))}
+        elif event.name == "STARTED":
+            found = {"checksum": event.program}
+        elif event.name == "ENDED":
+            return self._told_end(time_ms, event.status)
+        elif event.name == "FAULT":
+            found = self._fault(event.fault, event.at, event.program)
+        elif event.name == "STOPPED":
             from tiniscript.link.messages import CAUSES
 
-            cause = numbers["cause"]
-            found = {"cause": CAUSES[cause if cause < len(CAUSES) else 0][0]}
-        elif name == "MISSED":
-            found = {"count": numbers["count"]}
-        elif name == "TEXT":
-            text = values["text"]
-            assert isinstance(text, bytes)
-            found = {"text": printable(text.decode("utf-8", "replace"))}
-        elif name != DONE:
+            found = {"cause": CAUSES[event.cause if event.cause < len(CAUSES) else 0][0]}
+        elif event.name == "MISSED":
+            found = {"count": event.count}
+        elif event.name == "TEXT":
+            found = {"text": printable(event.text.decode("utf-8", "replace"))}
+        elif event.name != "DONE":
             return None
-        return RobotEvent(time_ms - self._began_ms, name, found)
+        return RobotEvent(time_ms - self._began_ms, event.name, found)
 
-    def _told_end(self, time_ms: int, numbers: Mapping[str, int]) -> RobotEvent:
-        """The end of a run of which only the robot's state is known."""
+    def _told_end(self, time_ms: int, status: StatusReply) -> RobotEvent:
+        """Return the end of a run for which only the robot's state is known."""
         from tiniscript.link.messages import STATES
 
-        state, ms = numbers["state"], time_ms - self._began_ms
-        if STATES[state][0] == "FAULTED":
-            fault = self._fault(numbers["fault"], numbers["fault_at"], numbers["fault_program"])
+        state, ms = STATES[status.state][0], time_ms - self._began_ms
+        if state == "FAULTED":
+            fault = self._fault(status.fault, status.fault_at, status.fault_program)
             return RobotEvent(ms, FAULT, fault)
-        if STATES[state][0] == "IDLE":
+        if state == "IDLE":
             return RobotEvent(ms, DONE, {})
         return RobotEvent(ms, "STOPPED", {"cause": "NONE"})
 
@@ -106,7 +102,7 @@ class Reader:
 
 
 def ending_of(event: RobotEvent) -> Ending:
-    """Return how a program has ended, from the event that ends it."""
+    """Return the ending that an event reports."""
     values = event.values
     if event.name == FAULT:
         line, column = values.get("line"), values.get("column")

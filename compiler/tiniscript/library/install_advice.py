@@ -1,8 +1,8 @@
-"""The command that installs what a part of tsc needs, for the tsc that is running.
+"""The command that installs the packages of an extra, for the tsc that is running.
 
-Knows how tsc got here: from a clone, by pip, by pipx. Names what PyPI has, never `tiniscript`
-itself where that is not needed: a clone knows its extras, and an installed package those packages
-that an extra stands for.
+Depends on how tsc was installed: from a clone, by pip, by pipx. A clone installs its own extras;
+an installed package names the packages behind an extra, so that `tiniscript` itself is named only
+where that is needed.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ VIRTUAL, FIRMWARE = "virtual", "firmware"  # the extras of pyproject.toml
 
 
 def command(extra: str) -> str:
-    """Return what to type."""
+    """Return the command to type."""
     wanted = " ".join(map(quoted, requirements(extra)))
     if is_pipx() and wanted:
         return f"pipx inject tiniscript {wanted}"
@@ -41,13 +41,13 @@ def is_pipx() -> bool:
 
 
 def is_managed() -> bool:
-    """Whether pip refuses to install here: Python is the system's, as on Debian 12."""
+    """Whether pip refuses to install because the system manages this Python, as on Debian 12."""
     marker = Path(sysconfig.get_path("stdlib")) / "EXTERNALLY-MANAGED"
     return sys.prefix == sys.base_prefix and marker.is_file()
 
 
 def requirements(extra: str) -> list[str]:
-    """Return what the installed package says that an extra needs, `wasmtime>=20`."""
+    """Return the requirements of an extra in the installed package, such as `wasmtime>=20`."""
     try:
         rows = metadata.requires("tiniscript") or []
     except metadata.PackageNotFoundError:
@@ -57,7 +57,7 @@ def requirements(extra: str) -> list[str]:
 
 
 def _pip() -> str:
-    """Return `pip` where a shell finds the right one, else the one of this Python."""
+    """Return `pip` if the shell finds this Python's pip, else the command with its full path."""
     active = os.environ.get("VIRTUAL_ENV")
     if active and Path(active).resolve() == Path(sys.prefix).resolve():
         return "pip"
@@ -65,7 +65,7 @@ def _pip() -> str:
 
 
 def quoted(word: str) -> str:
-    """Return a word as the shell of this system takes it."""
+    """Return a word quoted for the shell of this system."""
     plain = r"[\w./:=,@+-]+" if sys.platform != "win32" else r"[\w./:=,@+\\-]+"
     if re.fullmatch(plain, word):
         return word

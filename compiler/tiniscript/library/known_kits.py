@@ -1,4 +1,4 @@
-"""The robots whose kits this computer knows: the shipped ones, and those of given profiles."""
+"""The robots whose kits this computer knows: shipped profiles and those that users have given."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from tiniscript import Compiled
+    from tiniscript.bytecode.image import Image
     from tiniscript.kit import Kit
     from tiniscript.robots.profile import Robot
 
@@ -14,19 +15,19 @@ SHOWN_CHARACTERS = 60  # of a path in a message: a longer one could not be copie
 
 
 def naming(compiled: Compiled, robot: Robot) -> Compiled:
-    """Return `compiled` with the robots named that have a word which this robot does not have."""
+    """Return `compiled` with hints to the robots that have a word that this robot lacks."""
     from tiniscript.semantics import other_kits
 
-    problems = compiled.problems
-    if not any(map(other_kits.is_unknown, problems)):
+    diagnostics = compiled.diagnostics
+    if not any(map(other_kits.is_unknown, diagnostics)):
         return compiled
     own = robot.name, robot.kit
-    named = other_kits.naming_robots(problems, compiled.source.text, own, _others())
-    return compiled._replace(problems=named)
+    named = other_kits.naming_robots(diagnostics, compiled.source.text, own, _others())
+    return compiled._replace(diagnostics=named)
 
 
 def _others() -> dict[str, Kit]:
-    """Return the kits that are known, by the name or the path of their robots."""
+    """Return the known kits, by the name or the path of their robots."""
     from tiniscript import robots
     from tiniscript.robots import given
 
@@ -34,7 +35,7 @@ def _others() -> dict[str, Kit]:
     for path, robot in given.profiles():
         try:
             near = min(path, os.path.relpath(path), key=len)
-        except ValueError:  # Windows: it is on another drive
+        except ValueError:  # Windows: the path is on another drive
             near = path
         if len(near) <= SHOWN_CHARACTERS and " " not in near:
             found[near] = robot.kit
@@ -52,9 +53,38 @@ def shipped_of_kit(fingerprint: int) -> str | None:
 
 
 def of_kit(fingerprint: int) -> Robot | None:
-    """Return the profile that has this kit: a shipped one, or one that was given before."""
+    """Return the profile that has this kit: a shipped one, or one that a user has given before."""
     from tiniscript import robots
     from tiniscript.robots import given
 
     name = shipped_of_kit(fingerprint)
     return given.recall(fingerprint) if name is None else robots.load(name)
+
+
+def may_run(image: Image, profile: Robot, kit: int) -> bool:
+    """Return whether the robot of this kit may run an image that was verified for `profile`.
+
+    True if this computer does not know the kit: then the robot itself refuses a wrong image.
+    """
+    from tiniscript.library.compiling import fits
+
+    if not image.devices or kit == profile.kit.fingerprint:
+        return True
+    found = of_kit(kit)
+    return found is None or fits(image, found)
+
+
+def fitting(image: Image, first: Robot) -> Robot | None:
+    """Return a robot that may run an image: `first`, a shipped one, or one given before.
+
+    Returns None if no such robot is known.
+    """
+    from tiniscript import robots
+    from tiniscript.library.compiling import fits
+    from tiniscript.robots import given
+
+    if fits(image, first):
+        return first
+    shipped = (robots.load(name) for name in robots.names())
+    others = (robot for _, robot in given.profiles())
+    return next((robot for each in (shipped, others) for robot in each if fits(image, robot)), None)

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
+from tiniscript.diagnostics.rendering import Message
 from tiniscript.library.errors import ProgramError, UsageError
 from tiniscript.printable import printable
 
 if TYPE_CHECKING:
-    from typing import Literal
-
     from tiniscript import Compiled
     from tiniscript.bytecode.image import Image
     from tiniscript.codegen.source_map import Map
@@ -21,37 +20,21 @@ SHOWN = 200  # characters of a name or a value in a sentence
 REMARK = 60  # characters of a line in a listing
 
 
-class Diagnostic(NamedTuple):
-    """A mistake or a warning. Lines and columns count from 1, columns in characters.
-
-    The end is exclusive. `fix` is what to try, or empty.
-    """
-
-    code: str
-    severity: Literal["mistake", "warning"]
-    line: int
-    column: int
-    end_line: int
-    end_column: int
-    message: str
-    fix: str
-
-
 class Program:
-    """A program that is ready to run. It does not change.
+    """A program that is ready to run. Immutable.
 
-    `text` is None for one that was an image; `robot` is the name of the robot that it was compiled
-    for; `start` is SI, SB or PING; `checksum` names the image wherever it goes; `diagnostics` are
-    warnings: a program with mistakes is none.
+    `text` is None if it was read from an image; `robot` is the name of the robot that it was
+    compiled for; `start` is SI, SB or PING; `checksum` identifies the image; `diagnostics` has
+    warnings only, because a text with mistakes gives no Program.
     """
 
     __slots__ = ("_image", "_map", "_profile", "diagnostics", "image", "text")
 
     def __init__(
         self, text: str | None, image: bytes, parsed: Image, profile: Robot, places: Map | None,
-        diagnostics: tuple[Diagnostic, ...],
+        diagnostics: tuple[Message, ...],
     ) -> None:  # fmt: skip
-        """For the functions of this library: `compile` makes programs."""
+        """Internal: use `compile` instead."""
         self.text = text
         self.image = image
         self.diagnostics = diagnostics
@@ -76,11 +59,11 @@ class Program:
         return self._image.checksum
 
     def listing(self, language: Language = "en") -> str:
-        """Return the instructions, a line for each: offset, bytes, name, and the line of the text
-        that they come from."""
+        """Return one line per instruction: offset, bytes, name, and the source line that it comes
+        from."""
         from tiniscript.bytecode.disassembly import listing
 
-        kit = self._profile.kit if self._image.kit else None
+        kit = self._profile.kit if self._image.devices else None
         return listing(self.code, remarks(self._map, _checked(language)), kit)
 
     def __repr__(self) -> str:
@@ -94,8 +77,8 @@ def compile(
 ) -> Program:  # fmt: skip
     """Compile a text for a robot: the name of a shipped one, or the path of a profile.
 
-    Raises ProgramError with all diagnostics where the text has mistakes. `name` is what
-    messages and listings call it; `language` (en, es) is that of diagnostics.
+    Raises ProgramError with all diagnostics if the text has mistakes. `name` is the program's name
+    in messages and listings; `language` (en, es) is that of diagnostics.
     """
     if not isinstance(text, str):
         raise UsageError("bad_program", _checked(language), {"found": type(text).__name__})
@@ -105,9 +88,9 @@ def compile(
 
 def check(
     text: str, robot: str | os.PathLike[str] = "tinibot", *, language: Language = "en"
-) -> list[Diagnostic]:
-    """Return all mistakes and warnings of a text by place; none: an empty list. Never raises
-    ProgramError. A program that is too large for the robot's board is a warning."""
+) -> list[Message]:
+    """Return all mistakes and warnings of a text by place; the list may be empty. Never raises
+    ProgramError. A program that is too large for the robot's board gives a warning."""
     if not isinstance(text, str):
         raise UsageError("bad_program", _checked(language), {"found": type(text).__name__})
     profile = profile_of(robot, language)
@@ -131,9 +114,9 @@ def program_of(
     program: Program | str | bytes, robot: str | os.PathLike[str] | Robot | None,
     language: Language,
 ) -> Program:  # fmt: skip
-    """Return a program for a robot; where none is named, for its own or the default one.
+    """Return a program for a robot; by default for the program's own robot or the default robot.
 
-    Raises ProgramError, and UsageError for what is no program.
+    Raises ProgramError, and UsageError for an argument that is no program.
     """
     if isinstance(program, Program) and robot is None:
         return program
@@ -161,7 +144,7 @@ def program_of(
 
 
 def profile_of(robot: str | os.PathLike[str], language: Language) -> Robot:
-    """Return a robot's profile. Raises UsageError where there is none or it is refused."""
+    """Return a robot's profile. Raises UsageError if it is missing or invalid."""
     from tiniscript import robots
     from tiniscript.robots.profile import ProfileRefused
 
@@ -177,14 +160,14 @@ def profile_of(robot: str | os.PathLike[str], language: Language) -> Robot:
         raise UsageError("profile_refused", language, said) from None
 
 
-def diagnostics_of(compiled: Compiled, language: Language) -> list[Diagnostic]:
+def diagnostics_of(compiled: Compiled, language: Language) -> list[Message]:
     from tiniscript.diagnostics.rendering import message
 
-    return [Diagnostic(*message(each, compiled.source, language)) for each in compiled.problems]
+    return [message(each, compiled.source, language) for each in compiled.diagnostics]
 
 
 def remarks(places: Map | None, language: Language) -> dict[int, str]:
-    """Return what stands in a listing behind each instruction that begins something: its line."""
+    """Return the source line for each instruction that begins one, as remarks in a listing."""
     from tiniscript.library.texts import sentence
 
     found: dict[int, str] = {}
@@ -193,7 +176,7 @@ def remarks(places: Map | None, language: Language) -> dict[int, str]:
     for place in places.places:
         line = places.line(place.line)
         shown = line.strip()
-        if len(shown) > REMARK:  # a long line: the instruction alone
+        if len(shown) > REMARK:  # a long line: only its instruction
             end = place.end_column - 1 if place.end_line == place.line else len(line)
             shown = line[place.column - 1 : end][:REMARK]
         values = {"line": str(place.line), "shown": printable(shown.replace("\t", " "))}
@@ -211,7 +194,7 @@ def _program(text: str, profile: Robot, name: str, optimize: bool, language: Lan
         from tiniscript.diagnostics.rendering import as_text, message
 
         said = [as_text(message(each, found.source, language), found.source, language)
-                for each in found.problems]  # fmt: skip
+                for each in found.diagnostics]  # fmt: skip
         error = ProgramError("mistakes", language, said="\n".join(said))
         error.diagnostics = diagnostics
         raise error
@@ -220,35 +203,40 @@ def _program(text: str, profile: Robot, name: str, optimize: bool, language: Lan
 
 
 def _data(text: str) -> bytes:
-    return text.encode("utf-8", "surrogatepass")  # half a character is no UTF-8: a mistake
+    return text.encode("utf-8", "surrogatepass")  # a lone surrogate becomes a mistake
 
 
 def _robot_for(data: bytes, default: Robot, language: Language) -> Robot:
-    """Return the robot whose kit an image names, if it is known."""
-    from tiniscript.library.known_kits import of_kit
+    """Return a known robot that has the devices of an image, else `default`."""
+    from tiniscript.library.known_kits import fitting
 
-    kit = _unpacked(data, None, language).kit
-    return (of_kit(kit) if kit else None) or default
+    return fitting(_unpacked(data, language), default) or default
 
 
 def _read(data: bytes, profile: Robot, language: Language) -> Image:
-    """Return an image that this robot may run. Raises ProgramError."""
+    """Return an image, verified for this robot. Raises ProgramError."""
+    from tiniscript.bytecode.image import ImageRefused
+    from tiniscript.bytecode.loading import check
     from tiniscript.bytecode.verify import Refused
-    from tiniscript.library.compiling import verify_for
 
-    image = _unpacked(data, profile.kit.fingerprint, language)
+    image = _unpacked(data, language)
     try:
-        verify_for(image, profile)
+        check(image, profile.kit)
     except Refused as refused:
+        if refused.name == "NO_SUCH_DEVICE" and image.devices:  # an image for a larger kit
+            other = ImageRefused("OTHER_KIT")
+            raise _refused(other.name, other.number, 0, language) from None
         raise _refused(refused.name, refused.number, refused.offset, language) from None
+    except ImageRefused as refused:
+        raise _refused(refused.name, refused.number, 0, language) from None
     return image
 
 
-def _unpacked(data: bytes, kit: int | None, language: Language) -> Image:
+def _unpacked(data: bytes, language: Language) -> Image:
     from tiniscript.bytecode.image import ImageRefused, unpack
 
     try:
-        return unpack(data, kit)
+        return unpack(data)
     except ImageRefused as refused:
         raise _refused(refused.name, refused.number, 0, language) from None
 

@@ -28,7 +28,7 @@ LARGEST_SEED = 2**32 - 1
 
 
 class TraceEvent(NamedTuple):
-    """What a robot did `ms` milliseconds after the start. `str()` is the line of `tsc run`.
+    """An action of a robot, `ms` milliseconds after the start. `str()` is the line of `tsc run`.
 
     name      values
     MOTORS    left, right: percent, -100 to 100
@@ -49,8 +49,8 @@ class TraceEvent(NamedTuple):
 
 
 class Fault(NamedTuple):
-    """A fault of a program: its name, the offset in the code, and the place in the text from 1;
-    None where nobody knows the text."""
+    """A fault of a program: its name, the offset in the code, and the line and column in the text
+    from 1, or None if the text is unknown."""
 
     name: str
     offset: int
@@ -59,8 +59,8 @@ class Fault(NamedTuple):
 
 
 class Trace(NamedTuple):
-    """A whole run. `ending` is DONE, FAULT or LIMIT (it was cut); `ms` is how long it took by the
-    robot's clock, `steps` how many instructions ran."""
+    """A whole run. `ending` is DONE, FAULT or LIMIT (cut off by a limit); `ms` is its length by the
+    robot's clock, `steps` the number of instructions."""
 
     events: tuple[TraceEvent, ...]
     ending: Literal["DONE", "FAULT", "LIMIT"]
@@ -83,12 +83,12 @@ def run(
     machine: Literal["python", "cpp"] = "python",
     language: Language = "en",
 ) -> Trace:
-    """Run a program (one of `compile`, a text, or an image) by a simulated clock: nothing waits.
+    """Run a program (from `compile`, a text, or an image) with a simulated clock, without waiting.
 
-    `sensors` are readings by the sensors' names: each time the next one, the last one repeats;
-    0 or False where nothing is said. `max_time` is in simulated seconds, `max_steps` in
-    instructions while no time passes, `seed` is where RANDOM begins. Raises ProgramError for
-    mistakes, UsageError for arguments. A fault is no exception: `ending` says it.
+    `sensors` has readings by sensor name: each READ takes the next one, and the last one repeats;
+    the default is 0 or False. `max_time` is in simulated seconds, `max_steps` in instructions while
+    no time passes, `seed` is that of RANDOM. Raises ProgramError for mistakes, UsageError for wrong
+    arguments. A fault raises nothing: `ending` reports it.
     """
     ready = program_of(program, robot, language)
     profile, image = ready._profile, ready._image
@@ -117,7 +117,7 @@ def begun(
     image: Image, robot: Robot, lists: Mapping[int, Sequence[int]], max_ms: int, max_steps: int,
     seed: int, machine_of: MachineOf | None = None,
 ) -> Iterator[Event | Ending]:  # fmt: skip
-    """Yield what a robot does with a verified image. `lists` are readings in thousandths."""
+    """Yield the actions of a robot with a verified image. `lists` are readings in thousandths."""
     from tiniscript.vm.machine import Machine
     from tiniscript.vm.trace import Senses
     from tiniscript.vm.trace import run as run_code
@@ -127,25 +127,24 @@ def begun(
 
 
 def cpp_machine(image: Image, robot: Robot) -> MachineOf:
-    """Return the C++ machine with an image that is verified already: it must agree to that.
+    """Return the C++ machine with a verified image; its own verifier must accept the image, too.
 
-    Raises ImportError, OSError or RuntimeError where wasmtime is missing or not for this computer.
+    Raises ImportError, OSError or RuntimeError if wasmtime is missing or not for this computer.
     """
     from tiniscript.bytecode.image import ImageRefused, pack
     from tiniscript.bytecode.verify import Refused
     from tiniscript.vm.wasm import WasmImage
 
     kit = robot.kit
-    data = pack(image.start, image.kit, image.code)
-    devices = (len(kit.sensors), len(kit.actuators)) if image.kit else (0, 0)
+    data = pack(image.start, image.devices, image.code, image.later)
     try:
-        return WasmImage(data, kit.fingerprint, *devices).machine
+        return WasmImage(data, kit).machine
     except (ImageRefused, Refused) as refused:
         raise AssertionError(f"the C++ machine refuses what Python accepts: {refused}") from None
 
 
 def thousandths(sensors: Readings, robot: Robot, language: Language) -> dict[int, list[int]]:
-    """Return readings as the machine has them, by the sensor's number. Raises UsageError."""
+    """Return readings in thousandths, by sensor number. Raises UsageError."""
     devices = robot.kit.sensors
     numbers = {device.name: number for number, device in enumerate(devices)}
     lists: dict[int, list[int]] = {}
@@ -166,14 +165,14 @@ def thousandths(sensors: Readings, robot: Robot, language: Language) -> dict[int
 
 
 def value_of(number: int, is_yes_no: bool) -> float | bool:
-    """Return thousandths as Python has the value: a bool, an int where it is whole, or a float."""
+    """Return thousandths as a Python value: a bool, an int if it is whole, or a float."""
     if is_yes_no:
         return bool(number)
     return number // 1000 if number % 1000 == 0 else number / 1000
 
 
 def fault_of(name: str, offset: int, places: Map | None) -> Fault:
-    """Return a fault with its place in the text, where that is known."""
+    """Return a fault with its place in the text, if that is known."""
     place = places.at(offset) if places is not None else None
     if place is None:
         return Fault(name, offset, None, None)
@@ -237,7 +236,7 @@ def within(name: str, found: object, low: float, high: float, language: Language
 
 
 def whole(name: str, found: object, low: int, high: int, language: Language) -> None:
-    """The same for a whole number."""
+    """Check an argument that must be a whole number in a range. Raises UsageError."""
     if isinstance(found, float):
         raise _bad_number(name, found, low, high, language)
     within(name, found, low, high, language)

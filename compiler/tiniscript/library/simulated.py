@@ -1,6 +1,6 @@
-"""A virtual robot in this process: its firmware, its body and its world, beside the program.
+"""A virtual robot in this process: its firmware, its body and its world.
 
-A thread keeps its time; the connection talks to it over a socket, as to any other robot.
+A thread runs its clock; the connection uses a socket, as with any other robot.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ MOST_NOISE = 0.5
 SLOWEST_HURRY, FASTEST_HURRY = 0.1, 10_000
 LEAST_MOTOR, MOST_MOTOR = 10, 200  # percent
 JOIN_S = 5.0
-TURN_S = 0.05  # the longest that the robot's thread waits
+TURN_S = 0.05  # the longest wait of the robot's thread
 
 
 def virtual_robot(
@@ -38,13 +38,13 @@ def virtual_robot(
     sensors: Readings | None = None,
     language: Language = "en",
 ) -> VirtualRobotConnection:
-    """Switch a virtual robot on, and connect to it; it is gone when the connection is left.
+    """Start a virtual robot and connect to it; it ends when the connection is closed.
 
-    `world` is obstacles, line, light or the path of a file. A program goes `hurry` times as fast
-    as on a real robot, 0.1 to 10000; `math.inf` is as fast as this computer can. `seed` is for all
-    that is left to chance, `noise` the part of a reading that is (0.05 is 5 %), `motors` what
-    speed each has, in percent. `sensors` are readings that do not come from the world, as for
-    `run`. Needs the extra `virtual`. Raises UsageError, RobotError.
+    `world` is obstacles, line, light or the path of a file. A program runs `hurry` times as fast
+    as on a real robot, 0.1 to 10000; `math.inf` is as fast as this computer can. `seed` is that of
+    all random numbers, `noise` the random part of a reading (0.05 is 5 %), `motors` the speed of
+    each motor in percent. `sensors` has readings that replace those of the world, as for `run`.
+    Needs the extra `virtual`. Raises UsageError, RobotError.
     """
     profile = profile_of(robot, language)
     if hurry != math.inf:
@@ -57,7 +57,7 @@ def virtual_robot(
     told = thousandths(sensors or {}, profile, language)
     try:
         from tiniscript.virtual.robot import Settings
-    except (ImportError, OSError, RuntimeError) as why:  # not there, or not for this computer
+    except (ImportError, OSError, RuntimeError) as why:  # missing, or not for this computer
         from tiniscript.library import install_advice
 
         how = install_advice.command(install_advice.VIRTUAL)
@@ -70,32 +70,32 @@ def virtual_robot(
 
 
 class VirtualRobotConnection(RobotConnection):
-    """A virtual robot, and what can be seen of it from above."""
+    """A connection to a virtual robot, with its true position in the world."""
 
     def __init__(self, simulated: Simulated, profile: Robot, language: Language) -> None:
-        """For the functions of this library: `virtual_robot` makes connections."""
+        """Internal: use `virtual_robot` instead."""
         self._simulated = simulated
         super().__init__(simulated.address, profile, True, None, language)
 
     @property
     def pose(self) -> tuple[float, float, float]:
-        """Where it stands: x and y in cm from the lower left corner of the floor, and where it
-        looks in degrees, 0 to the right and 90 up."""
+        """The position, x and y in cm from the lower left corner of the floor, and the heading in
+        degrees, 0 to the right and 90 up."""
         x_cm, y_cm, heading = self._simulated.seen.pose
         return x_cm, y_cm, heading
 
     @property
     def driven_cm(self) -> float:
-        """How far it has driven, in cm."""
+        """The distance that it has driven, in cm."""
         return self._simulated.seen.driven_cm
 
     @property
     def bumps(self) -> int:
-        """How often it has touched something."""
+        """The number of collisions."""
         return self._simulated.seen.bumps
 
     def push_button(self) -> None:
-        """Push its start button, and let it go."""
+        """Push and release its start button."""
         self._simulated.push()
 
     def _part(self) -> None:
@@ -112,19 +112,19 @@ class Seen(NamedTuple):
 
 
 class Simulated:
-    """The robot, and the thread that keeps its time until `close`."""
+    """The robot, and the thread that runs its clock until `close`."""
 
     def __init__(self, robot: VirtualRobot, hurry: float) -> None:
         from tiniscript.library.connection import VERB
         from tiniscript.virtual import directory
-        from tiniscript.virtual.simulator import Host
-        from tiniscript.virtual.transports import Guests
+        from tiniscript.virtual.simulator import Simulator
+        from tiniscript.virtual.transports import Transports
 
         self._robot = robot
-        self._guests = Guests()
-        self.address = self._guests.address
-        self._host = Host(robot, self._guests, hurry)
-        self.seen = self._look()  # since the last turn
+        self._transports = Transports()
+        self.address = self._transports.address
+        self._simulator = Simulator(robot, self._transports, hurry)
+        self.seen = self._look()  # as of the last turn
         self._is_pushed = self._is_over = False
         self._bug: BaseException | None = None
         running = directory.Running(
@@ -147,7 +147,7 @@ class Simulated:
         directory.withdraw(self._note)
         self._is_over = True
         self._thread.join(JOIN_S)
-        self._guests.close()
+        self._transports.close()
         if self._bug is not None:
             raise self._bug
 
@@ -156,14 +156,14 @@ class Simulated:
             while not self._is_over:
                 if self._is_pushed:
                     self._is_pushed = False
-                    self._host.push()
-                self._host.turn(TURN_S)
-                self._robot.take_events()  # nobody looks at them
+                    self._simulator.push()
+                self._simulator.turn(TURN_S)
+                self._robot.take_events()  # discarded: nothing draws them
                 self.seen = self._look()
             self._robot.switch_off()
         except BaseException as bug:
             self._bug = bug
-            self._guests.close()
+            self._transports.close()
 
 
 def _made(profile: Robot, world: str, settings: object, language: Language) -> VirtualRobot:

@@ -1,6 +1,6 @@
 """The sentences of the library's errors and listings, in English and Spanish.
 
-Those of diagnostics are in `diagnostics/catalogue.toml`, those of a robot's answers in
+The sentences of diagnostics are in `diagnostics/catalogue.toml`, those of a robot's answers in
 `link/statuses.toml`. The command has sentences of its own, which name its options.
 """
 
@@ -12,7 +12,7 @@ LANGUAGES = ("en", "es")
 
 # fmt: off
 TEXTS: dict[str, tuple[str, str]] = {
-    # how a function is called
+    # wrong arguments
     "bad_language": ("language is en or es, not {found}.", "language es en o es, no {found}."),
     "bad_program": ("A program is text, an image (bytes) or a Program, not {found}.",
                     "Un programa es texto, una imagen (bytes) o un Program, no {found}."),
@@ -40,9 +40,9 @@ TEXTS: dict[str, tuple[str, str]] = {
     "nothing_started": ("Nothing was started here that could end. Call upload, live or start first.",
                         "Aquí no se inició nada que pueda terminar. Llama primero a upload, live o start."),
     "closed": ("This connection is closed. Connect again.", "Esta conexión está cerrada. Conecta otra vez."),
-    # a listing
+    # listings
     "line": ("line {line}: {shown}", "línea {line}: {shown}"),
-    # which port
+    # the choice of a port
     "which_port": ("Which port? Name it: connect(\"{example}\"). The ports here: {known}",
                    "¿Qué puerto? Nómbralo: connect(\"{example}\"). Los puertos de aquí: {known}"),
     "last_port_missing": ("The last used port, {port}, is not there. Plug the robot in, or name another one. The ports here: {known}",
@@ -70,7 +70,7 @@ TEXTS: dict[str, tuple[str, str]] = {
                      "El puerto {port} lo tiene un tiniscript de otra versión, {theirs} ({verb}). Termínalo, y prueba otra vez."),
     "holder_baud": ("The port {port} is held by {verb}, at {baud} baud. Leave baud out, or end that one and try again.",
                     "El puerto {port} lo tiene {verb}, a {baud} baudios. Quita baud, o termínalo y prueba otra vez."),
-    # the way to the robot
+    # the connection to the robot
     "holder_ended": ("The command that held the port {port} has ended ({verb}), and with it a program that was not detached. Connect again.",
                      "El comando que tenía el puerto {port} terminó ({verb}), y con él un programa no separado. Conecta otra vez."),
     "port_gone": ("The port {port} has vanished. A program that is not detached ends a second after that. Plug the cable in and connect again.",
@@ -101,6 +101,6 @@ TEXTS: dict[str, tuple[str, str]] = {
 
 
 def sentence(reason: str, language: str, values: Mapping[str, str]) -> str:
-    """Return the sentence of a reason with its gaps filled."""
+    """Return the sentence for a reason, with its gaps filled."""
     english, spanish = TEXTS[reason]
     return (spanish if language == "es" else english).format(**values)

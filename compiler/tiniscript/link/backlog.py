@@ -1,7 +1,7 @@
-"""Events that nobody has taken yet: as many as are of use, however long nobody comes.
+"""A bounded queue of events that have not been taken yet.
 
-Whoever waits for a person, or writes into a pipe that nobody reads, does not look meanwhile, and a
-device that chatters does not stop.
+The bound is needed because a consumer may block (it waits for a person, or writes into a pipe that
+nobody reads) while a device goes on sending.
 """
 
 from __future__ import annotations
@@ -9,17 +9,17 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Iterable
 
-from tiniscript.link.outcomes import Event
+from tiniscript.link.outcomes import Event, MissedEvent
 
 KEPT = 500  # events
 MAY_MISS = ("SHOW", "TEXT", "ECHO")  # the others say what the robot does
 
-Told = tuple[int, Event]  # when it came (ms), and what
+Told = tuple[int, Event]  # arrival time (ms), event
 
 
 class Backlog:
-    """Where it is full, the oldest one goes that may be missed, else the oldest of all. MISSED
-    says how many went, before what is left."""
+    """When it is full, the oldest event of MAY_MISS is dropped, else the oldest of all. MISSED
+    comes first and says how many were dropped."""
 
     def __init__(self) -> None:
         self._events: deque[Told] = deque()
@@ -35,9 +35,9 @@ class Backlog:
                 self._drop()
 
     def take(self) -> Told:
-        """Return the next event. Raises IndexError where there is none."""
+        """Return the next event. Raises IndexError if there is none."""
         if self._missed:
-            event = Event("MISSED", {"count": self._missed})
+            event = MissedEvent(self._missed)
             self._missed = 0
             return (self._events[0][0] if self._events else 0), event
         return self._events.popleft()

@@ -1,68 +1,81 @@
-"""What the command may ask of a robot, and of whatever leads to it.
+"""The interface of a connection to a robot, as commands use it.
 
-There are two ways: a `Line` of this process, and a `Guest` at the line of another one. Both have
-these shapes, so whoever asks need not know which of them it is. Shapes only: for types.
+Two classes implement it: a `Line` of this process, and a `Client` of another process's line. A
+command works with either.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Protocol
+from typing import Generic, Protocol, TypeVar
 
 from tiniscript.bytecode.image import Image
 from tiniscript.link.outcomes import Event
-from tiniscript.link.requests import Reply, Robot
+from tiniscript.link.payloads import (
+    EmptyReply,
+    HelloReply,
+    PingReply,
+    ReceiptReply,
+    StatusReply,
+    TrimReply,
+)
+from tiniscript.link.requests import DeviceInfo, FetchedImage, Reply
+
+DEADLINE_MS = 20_000  # of a request, unless another is given
+T = TypeVar("T")
 
 
-class Asked(Protocol):
-    """Something that is under way: `outcome` is there when it is over.
+class PendingRequest(Generic[T]):
+    """A request in progress: `outcome` is set when it is over.
 
-    `limit_ms` is its time, from its first request on; `done_bytes` of a program have arrived;
-    `starts`: a program runs when it is done.
+    `limit_ms` is its timeout, from its first frame on; `done_bytes` of a program have arrived;
+    `starts`: a program runs when the request is done.
     """
 
-    limit_ms: int
-    done_bytes: int
-    starts: bool
-    outcome: Reply | None
+    def __init__(self, limit_ms: int = DEADLINE_MS, starts: bool = False) -> None:
+        self.limit_ms = limit_ms
+        self.starts = starts
+        self.done_bytes = 0
+        self.outcome: Reply[T] | None = None
 
 
-class Asks(Protocol):
-    """What can be asked; `link.session` does it."""
+class Requester(Protocol):
+    """The requests that can be made; `link.session` carries them out."""
 
-    def hello(self) -> Asked: ...
+    def hello(self) -> PendingRequest[HelloReply]: ...
 
-    def ping(self) -> Asked: ...
+    def ping(self) -> PendingRequest[PingReply]: ...
 
-    def status(self) -> Asked: ...
+    def status(self) -> PendingRequest[StatusReply]: ...
 
-    def clear(self) -> Asked: ...
+    def clear(self) -> PendingRequest[EmptyReply]: ...
 
-    def start(self, is_detached: bool = False) -> Asked: ...
+    def start(self, is_detached: bool = False) -> PendingRequest[ReceiptReply]: ...
 
-    def live(self, code: bytes, kit: int = 0) -> Asked: ...
+    def live(self, code: bytes, kit: int = 0) -> PendingRequest[ReceiptReply]: ...
 
     def upload(
-        self, image: Image, runs: bool = True, saves: bool = True, is_detached: bool = False
-    ) -> Asked: ...
+        self, image: Image, runs: bool = True, saves: bool = True, is_detached: bool = False,
+        kit: int | None = None,
+    ) -> PendingRequest[ReceiptReply]: ...  # fmt: skip
 
-    def name(self, name: bytes) -> Asked: ...
+    def name(self, name: bytes) -> PendingRequest[EmptyReply]: ...
 
-    def trim(self, trim: bytes = b"") -> Asked: ...
+    def trim(self, trim: bytes = b"") -> PendingRequest[TrimReply]: ...
 
-    def fetch(self) -> Asked: ...
+    def fetch(self) -> PendingRequest[FetchedImage]: ...
 
 
-class Way(Protocol):
-    """The way to a robot. All of it but `close` and `stop` raises Gone where it has ended.
+class LinkConnection(Protocol):
+    """A connection to a robot. All methods but `close` and `stop` raise Gone once it has ended.
 
-    `heard` counts the bytes that have come, `is_echoed`: what is sent comes back; `held_by` is
-    the verb of the command that holds the port, if that is another one; `has_ended`: the way is
-    not there any more.
+    `heard` counts received bytes; `is_echoed`: the line returns what is sent; `held_by` is the
+    verb of the command that holds the port, if that is another command; `has_ended`: the
+    connection is gone.
     """
 
     @property
-    def robot(self) -> Robot | None: ...
+    def robot(self) -> DeviceInfo | None: ...
 
     @property
     def heard(self) -> int: ...
@@ -76,20 +89,20 @@ class Way(Protocol):
     @property
     def has_ended(self) -> bool: ...
 
-    def do(self, make: Callable[[Asks], Asked]) -> Asked:
-        """Have something done; it is under way when this returns."""
+    def do(self, make: Callable[[Requester], PendingRequest[T]]) -> PendingRequest[T]:
+        """Start a request; return while it is in progress."""
         ...
 
-    def wait(self, task: Asked, look: Callable[[], None] | None = None) -> Reply:
-        """Wait for the outcome of a task, and call `look` now and then."""
+    def wait(self, request: PendingRequest[T], look: Callable[[], None] | None = None) -> Reply[T]:
+        """Wait for the outcome of a request, and call `look` periodically."""
         ...
 
     def event(self, limit_s: float = ...) -> tuple[int, Event] | None:
-        """Return the next event and when it came (ms), or None where none comes."""
+        """Return the next event and its arrival time (ms), or None after the time limit."""
         ...
 
     def stop(self) -> None:
-        """Stop the robot. STOPPED is among the events when it has confirmed."""
+        """Stop the robot. The event STOPPED follows when the robot has confirmed."""
         ...
 
     def close(self) -> None: ...

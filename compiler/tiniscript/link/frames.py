@@ -1,6 +1,6 @@
-"""Bytes to frames and back: a head, a payload and a checksum, through COBS.
+"""Encodes and decodes frames: a head, a payload and a checksum, in COBS.
 
-Knows nothing of what a message means. The same as `vm_arduino/src/link/frames.cpp`.
+Does not know what a message means. The C++ version is `vm_arduino/src/link/frames.cpp`.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _HELLO = BY_NAME["HELLO"].number
 
 
 class Frame(NamedTuple):
-    """`number` is that of a message; `epoch` the session's, as whoever sends it knows it."""
+    """`number` is a message's number; `epoch` is the session's epoch as the sender knows it."""
 
     number: int
     seq: int
@@ -35,7 +35,7 @@ class Frame(NamedTuple):
 
 
 def encoded(frame: Frame) -> bytes:
-    """Return the bytes on the wire, the 0x00 at the end included."""
+    """Return the bytes on the wire, including the 0x00 at the end."""
     kind = frame.number | REPLY * frame.is_reply | SEALED * frame.is_sealed
     data = bytes((kind, frame.seq, frame.epoch)) + frame.payload
     data += checksum(data).to_bytes(CRC_BYTES, "little")
@@ -45,7 +45,7 @@ def encoded(frame: Frame) -> bytes:
 
 
 def decoded(wire: bytes) -> Frame | None:
-    """Return the frame in the bytes of an item, without the 0x00, or None for a damaged one."""
+    """Return the frame in an item's bytes (without the 0x00), or None if it is damaged."""
     try:
         data: bytes = cobs.decode(wire)
     except cobs.DecodeError:
@@ -61,8 +61,8 @@ def decoded(wire: bytes) -> Frame | None:
 def checksum(data: bytes) -> int:
     """Return the CRC-32 of a frame.
 
-    It begins with the major version, so that a peer of another one is not misunderstood. HELLO
-    begins with 0: that there is another version must be understood.
+    The CRC starts with the major version, so that frames of another version are rejected. For
+    HELLO it starts with 0, because every version must understand HELLO.
     """
     is_hello = data[0] & ~(REPLY | SEALED) == _HELLO
     return zlib.crc32(data, 0 if is_hello else MAJOR)

@@ -1,6 +1,6 @@
-"""The ports that robots have answered on, with their names, and which was used last.
+"""The ports on which robots have answered, the robots' names, and the port used last.
 
-They lie in the user's cache: losing them loses nothing else. Opens no port.
+They are in the user's cache: if it is lost, nothing else is lost. Opens no port.
 """
 
 from __future__ import annotations
@@ -17,14 +17,14 @@ KEPT = 100  # ports; the oldest go first
 
 
 class Known(NamedTuple):
-    """`names` are those of robots by their ports, the newest first; a robot may have none."""
+    """`names` maps ports to robots' names, the newest first; a name may be empty."""
 
     last: str | None
     names: dict[str, str]
 
 
 def known() -> Known:
-    """Return what is remembered."""
+    """Return the remembered ports."""
     try:
         fields = json.loads(contents(_path(), FILE_BYTES))
         last = fields["last"]
@@ -35,7 +35,7 @@ def known() -> Known:
 
 
 def remember(port: str, name: str, is_used: bool = True) -> None:
-    """Keep the name of the robot on a port. Where the cache cannot be written, it is not kept."""
+    """Keep the name of the robot on a port. If the cache cannot be written, it is not kept."""
     before = known()
     first = next(iter(before.names.items()), None)
     if first == (port, name) and (before.last == port or not is_used):

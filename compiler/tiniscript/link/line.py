@@ -1,7 +1,7 @@
-"""A session on a port: a thread of its own reads, writes and keeps the time.
+"""A session on a port: a separate thread reads, writes and keeps the time.
 
 So the heartbeat goes on while the program waits for a person. Knows the clock and when to read;
-what is said, `session` knows, and what a port is, `ports`.
+`session` knows the messages, and `ports` opens ports.
 """
 
 from __future__ import annotations
@@ -10,15 +10,17 @@ from collections.abc import Callable
 from contextlib import suppress
 from threading import Condition, Thread
 from time import monotonic
-from typing import IO
+from typing import IO, Any, TypeVar
 
 import serial
 
 from tiniscript.link.backlog import Backlog, Told
-from tiniscript.link.connection import Asked, Asks
+from tiniscript.link.connection import PendingRequest, Requester
 from tiniscript.link.outcomes import LOOK_S, Event, Gone
-from tiniscript.link.requests import Reply, Robot
+from tiniscript.link.requests import DeviceInfo, Reply
 from tiniscript.link.session import Session
+
+T = TypeVar("T")
 
 
 def now_ms() -> int:
@@ -28,7 +30,7 @@ def now_ms() -> int:
 class Line:
     """An open port and the session on it.
 
-    `event` and `close` are for the thread that has made it, the rest is for any.
+    Call `event` and `close` only from the thread that made it; any thread may call the rest.
     """
 
     held_by = ""  # this process
@@ -38,14 +40,14 @@ class Line:
     ) -> None:
         """`lock` is closed after the port."""
         self.session = session
-        session.tells_starts = True  # others may share the line
+        session.tells_starts = True  # other clients may share the line
         self.heard = 0  # bytes
         self.is_echoed = False
         self._port = port
         self._lock = lock
         self._news = Condition()
         self._events = Backlog()
-        self._under_way: list[Asked] = []
+        self._under_way: list[PendingRequest[Any]] = []
         self._listener: Callable[[list[Told]], None] | None = None
         self._gone: str | None = None
         self._bug: Exception | None = None
@@ -54,41 +56,41 @@ class Line:
         self._thread.start()
 
     @property
-    def robot(self) -> Robot | None:
+    def robot(self) -> DeviceInfo | None:
         return self.session.robot
 
     @property
     def gone(self) -> str | None:
-        """Return why the port is not there any more, or None while it is."""
+        """Return why the port is gone, or None while it is open."""
         return self._gone
 
     @property
     def has_ended(self) -> bool:
         return self._gone is not None
 
-    def do(self, make: Callable[[Asks], Asked]) -> Asked:
-        """Have something done; it is under way when this returns."""
+    def do(self, make: Callable[[Requester], PendingRequest[T]]) -> PendingRequest[T]:
+        """Start a request; return while it is in progress."""
         with self._news:
-            task = make(self.session)
-            self._under_way.append(task)
+            request = make(self.session)
+            self._under_way.append(request)
         self._wake()
-        return task
+        return request
 
-    def wait(self, task: Asked, look: Callable[[], None] | None = None) -> Reply:
-        """Wait for the outcome of a task, and call `look` now and then. Raises Gone."""
+    def wait(self, request: PendingRequest[T], look: Callable[[], None] | None = None) -> Reply[T]:
+        """Wait for the outcome of a request, and call `look` periodically. Raises Gone."""
         while True:
             with self._news:
-                if task.outcome is None and self._gone is None:
+                if request.outcome is None and self._gone is None:
                     self._news.wait(LOOK_S)
-                if task.outcome is not None:
-                    return task.outcome
+                if request.outcome is not None:
+                    return request.outcome
                 if self._gone is not None:
                     raise self._bug or Gone(self._gone)
             if look is not None:
                 look()
 
     def event(self, limit_s: float = LOOK_S) -> Told | None:
-        """Return the next event and when it came, or None where none comes. Raises Gone."""
+        """Return the next event and its time, or None after the time limit. Raises Gone."""
         with self._news:
             if not self._events and self._gone is None:
                 self._news.wait(limit_s)
@@ -99,7 +101,7 @@ class Line:
         return None
 
     def stop(self) -> None:
-        """Stop the robot. STOPPED is among the events when it has confirmed."""
+        """Stop the robot. The event STOPPED follows when the robot has confirmed."""
         with self._news:
             self.session.stop(now_ms())
         self._wake()
@@ -111,20 +113,20 @@ class Line:
             self._news.notify_all()
 
     def fail(self, bug: Exception) -> None:
-        """End the line because of a mistake of ours, which whoever waits here is to hear of."""
+        """End the line because of a bug of ours, which is passed to the waiting caller."""
         self._bug = bug
         self._end(str(bug))
 
     def listen(self, listener: Callable[[list[Told]], None]) -> None:
-        """Have somebody called with new events, and when a task is over or the port is gone.
+        """Call `listener` with new events, and when a request is over or the port is gone.
 
-        The thread of the line calls it, which waits meanwhile.
+        The line's thread makes the call, and is blocked until it returns.
         """
         with self._news:
             self._listener = listener
 
     def runs(self, run: int) -> bool:
-        """Whether a run that was started here still goes on."""
+        """Return whether a run that was started here is still running."""
         with self._news:
             return self.session.is_running and self.session.run == run
 
@@ -133,7 +135,7 @@ class Line:
             self._is_closing = True
         self._wake()
         self._thread.join(2 * LOOK_S)
-        with suppress(OSError):  # it is gone already
+        with suppress(OSError):  # the port is gone already
             self._port.close()
         if self._lock is not None:
             self._lock.close()
@@ -147,10 +149,10 @@ class Line:
     # -- the thread -------------------------------------------------------------------------------
 
     def _wake(self) -> None:
-        """End a read that waits, where the system can; it ends soon anyway."""
+        """Interrupt a waiting read, if the system can; without this it ends within READ_S."""
         cancel = getattr(self._port, "cancel_read", None)
         if cancel is not None:
-            with suppress(OSError, TypeError):  # it is gone
+            with suppress(OSError, TypeError):  # the port is gone
                 cancel()
 
     def _run(self) -> None:
@@ -167,7 +169,7 @@ class Line:
                         self.heard += len(heard)
                         self.session.receive(heard, now_ms())
                         self._tell()
-        except (OSError, TypeError) as why:  # TypeError: pyserial's, where a port is closed
+        except (OSError, TypeError) as why:  # TypeError: from pyserial, if the port is closed
             self._end(str(why))
         except Exception as bug:
             self.fail(bug)
@@ -188,16 +190,16 @@ class Line:
         return found
 
     def _write(self, data: bytes) -> None:
-        with suppress(serial.SerialTimeoutException):  # as if lost on the way: it is sent again
+        with suppress(serial.SerialTimeoutException):  # counts as lost: the session sends it again
             self._port.write(data)
 
     def _tell(self) -> None:
-        """Pass on what has happened: to who waits here, and to who listens."""
+        """Pass events and outcomes on to the waiting thread and to the listener."""
         time_ms = now_ms()
         told = [(time_ms, event) for event in self.session.events()]
-        over = [task for task in self._under_way if task.outcome is not None]
+        over = [request for request in self._under_way if request.outcome is not None]
         if over:
-            self._under_way = [task for task in self._under_way if task.outcome is None]
+            self._under_way = [request for request in self._under_way if request.outcome is None]
         self.is_echoed = self.is_echoed or any(event.name == "ECHO" for _, event in told)
         self._events.put(told)
         self._news.notify_all()

@@ -1,8 +1,8 @@
-"""The one table of the link: messages, their fields, and every number that is sent.
+"""The single table of the link: messages, their fields, and every number that is sent.
 
-`frames` and `session` import it; `python -m tools.generate` writes `vm_arduino/src/link/messages.h` and
-the tables of `docs/link.md` from it. Numbers on the wire are promises: a number is never used
-again for something else.
+`frames` and `session` import it; `python -m tools.generate` writes from it
+`vm_arduino/src/link/messages.h` and the tables of `docs/link.md`. Numbers on the wire are stable: a
+number is never reused for something else.
 
 Knows numbers, sizes and times. Does not know how a message is answered.
 """
@@ -13,28 +13,28 @@ import struct
 from collections.abc import Mapping
 from typing import NamedTuple
 
-MAJOR = 1  # where it differs, a robot and a computer understand HELLO of each other, nothing else
-MINOR = 0  # a robot that knows more messages has more here
+MAJOR = 1  # if it differs, robot and computer understand only each other's HELLO
+MINOR = 0  # grows with each added message
 
-LARGEST = 63  # bytes of a frame before COBS: so the first byte on the wire is 0x40 at most
-TEXT_FROM = 0x41  # from here on, the first byte of an item begins no frame
+LARGEST = 63  # bytes of a frame before COBS, so that its first byte on the wire is 0x40 at most
+TEXT_FROM = 0x41  # an item whose first byte is this or more is no frame
 HEAD_BYTES = 3  # type, sequence number, epoch
 CRC_BYTES = 4
 PAYLOAD_BYTES = LARGEST - HEAD_BYTES - CRC_BYTES
-WINDOW = 1  # requests that a robot takes before it has answered
-REPLY = 0x80  # of a type: it is for the computer
-SEALED = 0x40  # of a type: a counter and a MAC follow the payload. Kept for later
+WINDOW = 1  # requests that a robot accepts before it has answered
+REPLY = 0x80  # flag of a type: sent to the computer
+SEALED = 0x40  # flag of a type: a counter and a MAC follow the payload. Reserved
 NAME_BYTES = 16
 TRIM_BYTES = 3
 
 STOP_BYTES = 8  # zeros that a computer sends to stop a robot
 STOP_RUN = 4  # zeros in a row that stop it
-SILENCE_MS = 1000  # after so long an item begins
-TETHER_MS = 1000  # without a valid frame, a tethered program ends
-LISTEN_MS = 3000  # without one, a robot sends no more events
-AGAIN_MS = 50  # between two times that a robot says that it is stopped
+SILENCE_MS = 1000  # after this silence the next byte begins an item
+TETHER_MS = 1000  # dead-man timer: without a valid frame, a tethered program ends
+LISTEN_MS = 3000  # without a valid frame, a robot sends no more events
+AGAIN_MS = 50  # between two STOPPED events of a stopped robot
 
-# How a program starts and what becomes of it: one byte of LIVE, PROGRAM, BEGIN and START.
+# How a program starts and whether it is kept: one byte of LIVE, PROGRAM, BEGIN and START.
 START_BITS, RUN, SAVE, DETACHED = 0x03, 0x10, 0x20, 0x40
 MODES = (
     (START_BITS, "START_BITS", "The start mode of an image: 0 `SI`, 1 `SB`."),
@@ -44,7 +44,7 @@ MODES = (
 )
 
 
-# The trim of the motors: how they are wired, how much weaker one gets, and what moves a wheel.
+# The trim of the motors: their wiring, how much one is weakened, and the least power that moves.
 EXCHANGED, LEFT_REVERSED, RIGHT_REVERSED = 0x01, 0x02, 0x04
 MOST_BALANCE, MOST_LEAST = 40, 40  # percent
 WHEELS = (
@@ -55,7 +55,7 @@ WHEELS = (
 
 
 class Field(NamedTuple):
-    """`kind` is one of KINDS, or `rest`: all bytes that are left, `low` to `high` of them."""
+    """`kind` is one of KINDS, or `rest`: all remaining bytes, `low` to `high` of them."""
 
     name: str
     kind: str
@@ -64,9 +64,10 @@ class Field(NamedTuple):
 
 
 class Message(NamedTuple):
-    """`request` is what a computer sends, `reply` what follows the status OK.
+    """`request` has the fields that a computer sends, `reply` those that follow the status OK.
 
-    An event has no request, and its fields are in `reply`. A message that `acts` is stale in another epoch than the robot's.
+    An event has no request; its fields are in `reply`. A message that `acts` is stale if its
+    epoch is not the robot's.
     """
 
     number: int
@@ -98,35 +99,35 @@ def _message(number: int, name: str, acts: bool, request: str, reply: str, meani
     return Message(number, name, acts, _fields(request), _fields(reply), meaning)
 
 
-# These are records in the robot's memory too: `port.h`.
-_CARD = "kit:u16 id:u32 nonce:u32 features:u16 reset:u8"
-_CONDITION = "state:u8 run:u8 program:u32 length:u16 slot:u8 saved:u8 fault:u8 fault_at:u16 fault_program:u32"
+# The robot's memory has these records too: `port.h`.
+_IDENTITY = "kit:u16 id:u32 nonce:u32 features:u16 reset:u8"
+_STATUS = "state:u8 run:u8 program:u32 length:u16 slot:u8 saved:u8 fault:u8 fault_at:u16 fault_program:u32"
 _RECEIPT = "program:u32 run:u8 slot:u8 saved:u8"
 
 # fmt: off
 MESSAGES = (
-    # anyone may send these at any time
+    # these are valid at any time, in any epoch
     _message(1, "HELLO", False, "major:u8 minor:u8 isa_major:u8 isa_minor:u8 kit:u16 nonce:u32",
-             "major:u8 minor:u8 isa_major:u8 isa_minor:u8 largest:u8 window:u8 " + _CARD + " room:u16 "
-             + _CONDITION + " name:rest=0..16",
+             "major:u8 minor:u8 isa_major:u8 isa_minor:u8 largest:u8 window:u8 " + _IDENTITY + " room:u16 "
+             + _STATUS + " name:rest=0..16",
              "Begins a session. The same `nonce` again is the same session."),
     _message(2, "PING", False, "", "state:u8 run:u8", "Are you there? Also the heartbeat."),
     _message(3, "STATUS", False, "",
-             _CONDITION + " damaged:u8 dropped:u8 framing:u8 overrun:u8",
+             _STATUS + " damaged:u8 dropped:u8 framing:u8 overrun:u8",
              "What the robot does, its last fault, and how well it hears."),
     _message(4, "FETCH", False, "offset:u16", "length:u16 bytes:rest=0..53",
              "The stored program's image, from `offset` on. `length` is that of all of it."),
     _message(5, "STOP", False, "", "", "The same as the stop sequence, and answered."),
-    # these act: they are for one epoch
+    # these act: they are valid in one epoch only
     _message(6, "CLEAR", True, "", "", "Releases the latch that a stop or a fault has set."),
     _message(7, "START", True, "mode:u8", _RECEIPT, "Starts the program that the robot holds."),
     _message(8, "LIVE", True, "mode:u8 code:rest=0..55", _RECEIPT,
              "Runs code once. The program that the robot holds stays what it is."),
     _message(9, "PROGRAM", True, "mode:u8 code:rest=0..55", _RECEIPT, "A whole program in one frame."),
-    _message(10, "BEGIN", True, "mode:u8 isa_major:u8 isa_minor:u8 start:u8 needs:u8 kit:u16 length:u16",
-             "next:u16", "Begins a longer program: what its image's header says."),
-    _message(11, "DATA", True, "offset:u16 code:rest=1..54", "next:u16",
-             "Code. What does not begin at `next` is not taken."),
+    _message(10, "BEGIN", True, "mode:u8 isa_major:u8 isa_minor:u8 start:u8 header_length:u8 devices:u16 code_length:u16",
+             "next:u16", "Begins a longer program: what its image's header says before its checksum."),
+    _message(11, "DATA", True, "offset:u16 bytes:rest=1..54", "next:u16",
+             "What lies behind the checksum, from `offset` on. What does not begin at `next` is not taken."),
     _message(12, "COMMIT", True, "checksum:u32", _RECEIPT, "The program is whole: its image's checksum."),
     _message(13, "ABORT", True, "", "", "Drops the program that was begun."),
     _message(14, "NAME", True, "name:rest=1..16", "", "Names the robot: UTF-8. OK when it is kept, before that SAVING or LOW_SUPPLY: ask again."),
@@ -141,11 +142,17 @@ MESSAGES = (
 )
 FIRST_ACTING = 6
 FIRST_EVENT = 32
+# Replies with the same fields share a type: its name, and its fields.
+SHARED_REPLIES = {
+    "ReceiptReply": _fields(_RECEIPT),
+    "NextReply": _fields("next:u16"),
+    "EmptyReply": (),
+}
 
 RESERVED = {16: "CLAIM", 17: "AUTHENTICATE", 18: "IDENTIFY", 19: "UNDO", 20: "TEXT"}
 
-# What begins a reply. 1 to 19 are the refusals of an image, 20 to 63 the rules of the verifier:
-# `bytecode_spec.md`. The sentences are in `statuses.toml`.
+# The status, the first byte of a reply. 1 to 19 are the refusals of an image, 20 to 63 the rules
+# of the verifier: `bytecode_spec.md`. The sentences are in `statuses.toml`.
 FIRST_RULE, FIRST_STATUS = 20, 64
 STATUSES = {
     "OK": 0,
@@ -167,7 +174,7 @@ STATUSES = {
     "LOW_SUPPLY": 79,
     "NOT_KEPT": 80,
 }
-# What the number that follows a status other than OK means. It is 0 where it is not here.
+# The meaning of the number after a status other than OK. Statuses not listed here have 0.
 DETAILS = {
     "OTHER_LINK": "the robot's major version",
     "OTHER_MACHINE": "the robot's instruction set: major times 256, and minor",
@@ -188,6 +195,7 @@ SAVED = (
     ("SAVING",     "It is being saved: it is when the motors have stood for a moment."),
     ("STORED",     "It is saved."),
     ("LOW_SUPPLY", "It is in RAM only: the voltage is too low to save it. It is saved as soon as it is not."),
+    ("OTHER_VERSION", "The stored program is for another version of the robot's machine: it holds none."),
 )
 CAUSES = (
     ("NONE",     "Not stopped."),
@@ -203,7 +211,7 @@ RESETS = (
     ("BROWN_OUT", "The voltage was too low."),
     ("WATCHDOG",  "The watchdog: the robot's own program hung."),
 )
-# Faults that no instruction makes. Those of instructions are in `opcodes.py`.
+# Faults that no instruction causes. The faults of instructions are in `opcodes.py`.
 LINK_FAULTS = (
     (64, "LINK_LOST", "No valid frame for a second while a tethered program ran."),
     (65, "MAX_RUN",   "A program without a tether ran longer than the robot allows."),
@@ -213,7 +221,7 @@ LINK_FAULTS = (
 
 
 def _rows(table: tuple[tuple[str, str], ...], names: str) -> tuple[int, ...]:
-    """Return the number of each name: its row in the table. Raises ValueError where it has none."""
+    """Return the number of each name: its row in the table. Raises ValueError if it has none."""
     rows = [name for name, _ in table]
     return tuple(rows.index(name) for name in names.split())
 
@@ -221,10 +229,10 @@ def _rows(table: tuple[tuple[str, str], ...], names: str) -> tuple[int, ...]:
 STATE_IDLE, STATE_RUNNING, STATE_STOPPED, STATE_FAULTED = _rows(
     STATES, "IDLE RUNNING STOPPED FAULTED"
 )
-SAVED_NOTHING, SAVED_SAVING, SAVED_STORED, SAVED_LOW_SUPPLY = _rows(
-    SAVED, "NOTHING SAVING STORED LOW_SUPPLY"
+SAVED_NOTHING, SAVED_SAVING, SAVED_STORED, SAVED_LOW_SUPPLY, SAVED_OTHER_VERSION = _rows(
+    SAVED, "NOTHING SAVING STORED LOW_SUPPLY OTHER_VERSION"
 )
-FIRST_LINK_FAULT = LINK_FAULTS[0][0]  # from here on, a fault is none of the program's
+FIRST_LINK_FAULT = LINK_FAULTS[0][0]  # faults from this number on are not caused by the program
 
 BY_NUMBER = {message.number: message for message in MESSAGES}
 BY_NAME = {message.name: message for message in MESSAGES}
@@ -232,7 +240,7 @@ STATUS_NAMES = {number: name for name, number in STATUSES.items()}
 
 
 class Malformed(Exception):
-    """A payload that is not what the table says."""
+    """A payload that does not fit the table."""
 
 
 def written(fields: tuple[Field, ...], values: Mapping[str, int | bytes]) -> bytes:
@@ -250,7 +258,7 @@ def written(fields: tuple[Field, ...], values: Mapping[str, int | bytes]) -> byt
 
 
 def read(fields: tuple[Field, ...], payload: bytes) -> dict[str, int | bytes]:
-    """Return the values in a payload. Raises Malformed where its length does not fit."""
+    """Return the values in a payload. Raises Malformed if its length does not fit."""
     found: dict[str, int | bytes] = {}
     at = 0
     for field in fields:
@@ -268,5 +276,5 @@ def read(fields: tuple[Field, ...], payload: bytes) -> dict[str, int | bytes]:
 
 
 def sizes(fields: tuple[Field, ...]) -> tuple[int, int]:
-    """Return how long a payload with these fields is at least and at most."""
+    """Return the least and the greatest length of a payload with these fields."""
     return sum(field.low for field in fields), sum(field.high for field in fields)

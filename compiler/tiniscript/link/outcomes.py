@@ -1,37 +1,114 @@
-"""What a session tells: events, and outcomes that no robot sends.
+"""The events of a session, and the outcomes that the session itself produces.
 
-Shared by all that listen to one, also those in another process.
+All listeners share these, also those in another process. An event is identified by its type or its
+`name`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
-LOST, CANCELLED = -1, -2  # outcomes that no robot sends
-LOOK_S = 0.1  # between two looks at what has come: Windows lets Ctrl-C through only then
+from tiniscript.link.payloads import (
+    EVENTS,
+    DoneEvent,
+    FaultEvent,
+    ShowEvent,
+    StatusReply,
+    StoppedEvent,
+)
+
+LOST, CANCELLED = -1, -2  # outcomes that the session produces
+LOOK_S = 0.1  # between two checks for events: Windows handles Ctrl-C only then
 
 
-class Event(NamedTuple):
-    """What there is to tell: an event of the robot by its name, or one of these.
+class TextEvent(NamedTuple):
+    """A line of text has arrived."""
 
-    TEXT (`text`): a line of text came. MISSED (`count`): so many events did not arrive.
-    LOST: nothing is heard of the robot any more. ECHO: what is sent comes back.
-    ENDED: the program has ended, and the event that says how did not arrive.
-    STARTED (`run`, `program`): somebody who shares the line has started this run.
-    """
+    text: bytes
+    name: Literal["TEXT"] = "TEXT"
 
-    name: str
-    values: Mapping[str, int | bytes]
+
+class MissedEvent(NamedTuple):
+    """`count` events did not arrive."""
+
+    count: int  # type: ignore[assignment]  # a tuple has a method of this name
+    name: Literal["MISSED"] = "MISSED"
+
+
+class LostEvent(NamedTuple):
+    """The robot no longer answers."""
+
+    name: Literal["LOST"] = "LOST"
+
+
+class EchoEvent(NamedTuple):
+    """The line returns what is sent."""
+
+    name: Literal["ECHO"] = "ECHO"
+
+
+class EndedEvent(NamedTuple):
+    """The program has ended, but the event that says how did not arrive."""
+
+    status: StatusReply
+    name: Literal["ENDED"] = "ENDED"
+
+
+class StartedEvent(NamedTuple):
+    """A run has begun; another client of the line may have started it."""
+
+    run: int
+    program: int
+    name: Literal["STARTED"] = "STARTED"
+
+
+class JoinedEvent(NamedTuple):
+    """A client has joined the port: `verb` is its command."""
+
+    verb: bytes
+    name: Literal["JOINED"] = "JOINED"
+
+
+class LeftEvent(NamedTuple):
+    """A client has left."""
+
+    verb: bytes
+    name: Literal["LEFT"] = "LEFT"
+
+
+Event = (
+    ShowEvent
+    | FaultEvent
+    | StoppedEvent
+    | DoneEvent
+    | TextEvent
+    | MissedEvent
+    | LostEvent
+    | EchoEvent
+    | EndedEvent
+    | StartedEvent
+    | JoinedEvent
+    | LeftEvent
+)
+OWN_EVENTS: dict[str, type[Event]] = {
+    "TEXT": TextEvent,
+    "MISSED": MissedEvent,
+    "LOST": LostEvent,
+    "ECHO": EchoEvent,
+    "STARTED": StartedEvent,
+    "JOINED": JoinedEvent,
+    "LEFT": LeftEvent,
+}
+ALL_EVENTS: dict[str, type[Event]] = {**EVENTS, **OWN_EVENTS}
 
 
 class Gone(Exception):
-    """The way to the robot has ended; `why` is what the system says.
+    """The connection to the robot has ended; `why` is what the system says.
 
-    `is_holder`: the command that held the port has ended. Else the port is not there any more.
+    `is_server`: the command that held the port has ended. Otherwise the port is gone.
     """
 
-    def __init__(self, why: str = "", is_holder: bool = False) -> None:
+    def __init__(self, why: str = "", is_server: bool = False) -> None:
         super().__init__(why)
         self.why = why
-        self.is_holder = is_holder
+        self.is_server = is_server

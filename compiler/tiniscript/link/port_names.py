@@ -1,4 +1,4 @@
-"""The names of ports: which are addresses, and which of them mean the same port.
+"""The names of ports: which are network addresses, and which names mean the same port.
 
 Opens nothing, and needs no pyserial.
 """
@@ -12,22 +12,22 @@ _LOCAL = ("localhost", "[::1]")
 
 
 def is_address(port: str) -> bool:
-    """Whether a port is reached over a network: no system lists it."""
+    """Return whether a port is reached over a network: no system lists such ports."""
     return "://" in port
 
 
 def is_there(port: str) -> bool:
-    """Whether it makes sense to open a port."""
+    """Return whether a port exists, as far as this is known without opening it."""
     if is_address(port) or sys.platform == "win32":
         return True
     return os.path.exists(port)  # noqa: PTH110 - Path raises for a name that no file can have
 
 
 def same_for_all(port: str) -> str:
-    """Return the one name of a port that has several.
+    """Return the canonical name of a port that has several.
 
-    A link of udev (`/dev/serial/by-id/...`) is what it leads to, `/dev/cu.X` of macOS is
-    `/dev/tty.X`, and Windows does not look at capitals.
+    A udev link (`/dev/serial/by-id/...`) becomes its target, `/dev/cu.X` of macOS becomes
+    `/dev/tty.X`, and Windows ignores case.
     """
     if is_address(port):
         kind, _, rest = port.partition("://")
@@ -38,6 +38,6 @@ def same_for_all(port: str) -> str:
         return port.upper().removeprefix("\\\\.\\")
     try:
         path = os.path.realpath(port)
-    except (OSError, ValueError):  # a name that no file can have
+    except (OSError, ValueError):  # the name is not valid for a file
         return port
     return path.replace("/dev/cu.", "/dev/tty.", 1) if path.startswith("/dev/cu.") else path

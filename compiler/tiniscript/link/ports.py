@@ -1,4 +1,4 @@
-"""Serial ports: which there are, how one is opened, and why one cannot be.
+"""Serial ports: lists them, opens one, and says why one cannot be opened.
 
 Knows pyserial, for serial ports, Bluetooth's (`/dev/rfcomm0`, `COM5`, `/dev/tty.HC-05`) and the
 addresses `socket://host:port` and `rfc2217://host:port`. Knows no robot and no sentences: what
@@ -17,9 +17,9 @@ from serial.tools import list_ports
 
 from tiniscript.link.port_names import is_address
 
-READ_S = 0.02  # for which a read waits: on some systems nothing can wake it earlier
-WRITE_S = 1.0  # for which a port may refuse to take bytes; the session sends them again
-OPEN_S = 20.0  # for which a port may open: a radio that is out of reach takes its time
+READ_S = 0.02  # timeout of a read: on some systems nothing can interrupt it
+WRITE_S = 1.0  # timeout of a write; the session sends the bytes again
+OPEN_S = 20.0  # timeout of opening: a radio that is out of reach takes long
 
 MISSING, FORBIDDEN, BUSY = "missing", "forbidden", "busy"
 UNREACHABLE, NO_PORT, SLOW, BROKEN = "unreachable", "no_port", "slow", "broken"
@@ -43,8 +43,8 @@ _REASONS = {
 }
 
 
-class PortTrouble(Exception):
-    """A port that cannot be used: `reason` is one of the names above, `why` what was said of it."""
+class PortError(Exception):
+    """A port that cannot be used: `reason` is a name from above, `why` the system's message."""
 
     def __init__(self, reason: str, why: str = "") -> None:
         super().__init__(reason)
@@ -53,14 +53,14 @@ class PortTrouble(Exception):
 
 
 class Found(NamedTuple):
-    """A port that the system lists, and what it says of it."""
+    """A port that the system lists, and the system's description of it."""
 
     port: str
     description: str
 
 
 def listed() -> list[Found]:
-    """Return the ports that the system knows. None of them is opened: that resets boards."""
+    """Return the ports that the system knows. Opens none of them, because that resets boards."""
     found = []
     for each in list_ports.comports():
         description = each.description if each.description != "n/a" else ""
@@ -69,7 +69,7 @@ def listed() -> list[Found]:
 
 
 def is_radio(port: str) -> bool:
-    """Whether a port leads to a robot through the air: opening it does not reset a board."""
+    """Return whether a port is wireless: opening it does not reset a board."""
     name = port.lower()
     if is_address(port) or "rfcomm" in name:
         return True
@@ -82,57 +82,57 @@ def is_radio(port: str) -> bool:
 
 
 def opened(port: str, baud: int, limit_s: float = OPEN_S) -> serial.SerialBase:
-    """Open a port for this program alone. Raises PortTrouble, at the latest after `limit_s`.
+    """Open a port for exclusive use. Raises PortError, at the latest after `limit_s`.
 
-    Some drivers wait in `open` for ever: so a thread does it, which nobody waits for at the end.
+    Some drivers block in `open` for ever, so a daemon thread opens the port.
     """
     done: list[serial.SerialBase | BaseException] = []
 
     def work() -> None:
         try:
             done.append(_open(port, baud))
-        except BaseException as trouble:
-            done.append(trouble)
+        except BaseException as failure:
+            done.append(failure)
 
     thread = Thread(target=work, name="open", daemon=True)
     thread.start()
     thread.join(limit_s)
     if not done:
-        raise PortTrouble(SLOW)
+        raise PortError(SLOW)
     if isinstance(done[0], BaseException):
-        raise _trouble(done[0]) from None
+        raise _failure(done[0]) from None
     return done[0]
 
 
 def _open(port: str, baud: int) -> serial.SerialBase:
     settings = {"timeout": READ_S, "write_timeout": WRITE_S, "exclusive": True}
     if port.startswith("rfc2217://"):
-        del settings["write_timeout"]  # pyserial has none for it
+        del settings["write_timeout"]  # pyserial does not support it here
     return serial.serial_for_url(port, baudrate=baud, **settings)
 
 
-def _trouble(trouble: BaseException) -> PortTrouble:
-    """Return what is wrong, from what pyserial says on this system."""
-    why = str(trouble)
-    if isinstance(trouble, (ValueError, NotImplementedError)):
-        return PortTrouble(NO_PORT, why)
-    if not isinstance(trouble, OSError):
-        raise trouble
-    if trouble.errno is not None:
-        return PortTrouble(_REASONS.get(trouble.errno, BROKEN), trouble.strerror or why)
+def _failure(failure: BaseException) -> PortError:
+    """Return the PortError for an exception of pyserial, which differs between systems."""
+    why = str(failure)
+    if isinstance(failure, (ValueError, NotImplementedError)):
+        return PortError(NO_PORT, why)
+    if not isinstance(failure, OSError):
+        raise failure
+    if failure.errno is not None:
+        return PortError(_REASONS.get(failure.errno, BROKEN), failure.strerror or why)
     for said, reason in (
-        ("FileNotFoundError", MISSING),  # Windows has its errors in the text
-        ("PermissionError", BUSY),  # and calls that what is in use
+        ("FileNotFoundError", MISSING),  # Windows gives the error only in the text
+        ("PermissionError", BUSY),  # and reports a port in use like this
         ("could not configure port", NO_PORT),
         ("Could not configure port", NO_PORT),
         ("expected a string in the form", NO_PORT),
         ("Connection refused", UNREACHABLE),
         ("timed out", UNREACHABLE),
         ("Could not open port", UNREACHABLE),  # of a network
-        ("RFC2217", UNREACHABLE),  # something else listens there
+        ("RFC2217", UNREACHABLE),  # another kind of server listens there
         ("timeout while waiting for option", UNREACHABLE),
         ("could not open port", UNREACHABLE),
     ):
         if said in why:
-            return PortTrouble(reason, why)
-    return PortTrouble(BROKEN, why)
+            return PortError(reason, why)
+    return PortError(BROKEN, why)

@@ -1,8 +1,8 @@
-"""Bytes to items: frames, lines of text, and the run of zeros that stops a robot.
+"""Splits bytes into items: frames, lines of text, and the run of zeros that stops a robot.
 
-Knows where an item begins and ends; not whether a frame is whole: `frames` does. Holds one item
-until it is taken; what comes meanwhile is dropped, but for a stop.
-The same as `vm_arduino/src/link/receiver.cpp`.
+Knows where an item begins and ends; `frames` checks whether a frame is undamaged. Holds one item
+until it is taken; items that arrive meanwhile are dropped, a stop is not.
+The C++ version is `vm_arduino/src/link/receiver.cpp`.
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ LONGEST = 255  # a longer text counts as this long
 
 # places in the stream
 _BEGIN = "begin"  # the next byte begins an item
-_AFTER_TEXT = "after text"  # the same, but for white space
-_BLANK = "blank"  # after white space, which may begin a frame too
+_AFTER_TEXT = "after text"  # the same, but white space is skipped
+_BLANK = "blank"  # after white space, which may also be the first byte of a frame
 _HEAD = "head"  # after the first byte of a frame or of a line of text
-_LINE = "line"  # in a line of text, as far as it looks; else in a frame
+_LINE = "line"  # probably in a line of text; otherwise in a frame
 _FRAME = "frame"
-_OTHER = "other"  # in a line of text, as far as it looks; else in noise
+_OTHER = "other"  # probably in a line of text; otherwise in noise
 _TEXT = "text"
 _SKIP = "skip"  # in noise, up to the next 0x00
 
@@ -41,8 +41,8 @@ class Item(NamedTuple):
 class Receiver:
     def __init__(self) -> None:
         self.item: Item | None = None
-        self.damaged = 0  # items that were cut, too long, or none
-        self.dropped = 0  # items that came while one was waiting
+        self.damaged = 0  # items that were cut, too long, or invalid
+        self.dropped = 0  # items that arrived while one was waiting
         self._place = _BEGIN
         self._data = bytearray()
         self._length = 0
@@ -51,14 +51,14 @@ class Receiver:
         self._last_ms = 0
 
     def take(self) -> Item | None:
-        """Return the item that is waiting, if there is one, and make room for the next."""
+        """Return the waiting item, if there is one, and make room for the next."""
         item, self.item = self.item, None
         return item
 
     def put(self, byte: int, now_ms: int) -> bool:
-        """Take a byte; return whether it completes a run of four zeros, which means stop.
+        """Take a byte; return whether it completes a run of four zeros, which is a stop.
 
-        Eight zeros are two stops. A byte that came damaged (a framing error) is 0.
+        Eight zeros are two stops. A byte with a framing error counts as 0.
         """
         is_quiet = (now_ms - self._last_ms) % 0x10000 >= SILENCE_MS
         self._last_ms = now_ms
@@ -81,7 +81,7 @@ class Receiver:
         return False
 
     def _begin(self, byte: int) -> None:
-        """Find out what an item is by its first byte, as far as that says it."""
+        """Classify an item by its first byte, as far as possible."""
         self._is_dropping = self.item is not None
         self._data.clear()
         self._length = 0
@@ -104,7 +104,7 @@ class Receiver:
         is_text = _is_printable(byte) or byte == 0x09
         if self._place == _SKIP:
             return
-        if self._place == _HEAD:  # the type of a request is less
+        if self._place == _HEAD:  # the type of a request is smaller
             self._place = _LINE if _is_printable(byte) else _FRAME
         elif self._place != _FRAME and byte in b"\r\n":
             self._end(is_text=True)
@@ -141,7 +141,7 @@ class Receiver:
         return self._zeros == 0
 
     def _cut(self) -> None:
-        """Begin anew; what is open has no end of its own."""
+        """Drop the open item, which has not ended, and begin a new one."""
         self.damaged += self._place in (*_MAYBE_FRAME, _OTHER, _TEXT)
         self._place = _BEGIN
 
@@ -151,5 +151,5 @@ class Receiver:
 
 
 def _is_printable(byte: int) -> bool:
-    """Whether a byte is in a line of text; what is not ASCII is UTF-8."""
+    """Return whether a byte may be in a line of text; bytes beyond ASCII are UTF-8."""
     return byte >= 0x20 and byte != _DELETE

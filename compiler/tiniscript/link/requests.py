@@ -1,16 +1,17 @@
-"""What a computer wants of a robot: each errand is a few requests, one after the other.
+"""The exchanges with a robot: each is a sequence of a few requests.
 
-An errand is a generator: it yields a request, is sent the reply, and returns its outcome. Knows
-which message follows which, and what would be refused before it is sent. Knows no frame, no time
-and no retry: `session` does.
+An exchange is a generator: it yields a request, is sent the reply, and returns its outcome. Knows
+the order of messages, and does not send what the robot would refuse. Knows no frame, no time and
+no retry: `session` does.
 """
 
 from __future__ import annotations
 
 from collections.abc import Generator, Mapping
-from typing import NamedTuple
+from typing import Any, Generic, NamedTuple, TypeVar
 
-from tiniscript.bytecode.image import STARTS, Image
+from tiniscript.bytecode.image import HEADER_BYTES, NEEDS, STARTS, Image
+from tiniscript.bytecode.verify import RULES
 from tiniscript.link.messages import (
     BY_NAME,
     DETACHED,
@@ -21,15 +22,24 @@ from tiniscript.link.messages import (
     Malformed,
     read,
 )
+from tiniscript.link.payloads import (
+    REPLIES,
+    EmptyReply,
+    FetchReply,
+    HelloReply,
+    NextReply,
+    ReceiptReply,
+    SentReply,
+)
 
 OK = STATUSES["OK"]
 SHORT_BYTES = BY_NAME["PROGRAM"].request[-1].high  # of code, in one frame
 DATA_BYTES = BY_NAME["DATA"].request[-1].high
 BUSY_TRIES = 200  # while the robot saves another program
-KEPT_TRIES = 12  # while it has not kept what it was given,
-LOW_TRIES = 4  # and while its voltage is too low for that: it looks every half second
+KEPT_TRIES = 12  # while it has not written its data to EEPROM,
+LOW_TRIES = 4  # and while its voltage is too low for that: it checks every half second
 KEPT_PAUSE_MS = 200
-# What it was given it has, but not yet over the next power-on.
+# The robot has the data, but would lose it at the next power-on.
 TAKEN = (STATUSES["SAVING"], STATUSES["LOW_SUPPLY"], STATUSES["NOT_KEPT"])
 assert SHORT_BYTES == PAYLOAD_BYTES - 1
 
@@ -42,169 +52,205 @@ class Request(NamedTuple):
     pause_ms: int = 0
 
 
-class Reply(NamedTuple):
-    """`values` are there where the status is OK, a `detail` where it is not."""
-
-    status: int
-    detail: int = 0
-    values: Mapping[str, int | bytes] = {}
+T_co = TypeVar("T_co", covariant=True)
+T = TypeVar("T")
 
 
-Errand = Generator[Request, Reply, Reply]
+class Reply(Generic[T_co]):
+    """The outcome of a request: a status of the robot, or one that the session produces.
+
+    With the status OK there are `values`, with any other a `detail`.
+    """
+
+    def __init__(self, status: int, detail: int = 0, values: T_co | None = None) -> None:
+        self.status = status
+        self.detail = detail
+        self._values = values
+
+    def __repr__(self) -> str:
+        return f"Reply({self.status}, {self.detail}, {self._values})"
+
+    @property
+    def values(self) -> T_co:
+        """The values of a reply whose status is OK."""
+        assert self._values is not None, self
+        return self._values
 
 
-class Robot(NamedTuple):
-    """What a robot has said of itself in HELLO."""
+# Yields requests, is sent the reply to each, and returns the outcome.
+Exchange = Generator["Request", Reply[SentReply], Reply[T]]
+
+
+class DeviceInfo(NamedTuple):
+    """A robot's description of itself, from its reply to HELLO."""
 
     name: str
     id: int
     isa: tuple[int, int]
     kit: int
     room: int
-    values: Mapping[str, int | bytes]
+    values: HelloReply
 
 
-def reply_of(name: str, payload: bytes) -> Reply | None:
-    """Return what a reply says, or None where it has no such payload."""
+class FetchedImage(NamedTuple):
+    """The image of the program that the robot holds."""
+
+    image: bytes
+
+
+def reply_of(name: str, payload: bytes) -> Reply[SentReply] | None:
+    """Return the reply to message `name`, or None if its payload does not fit."""
     if not payload:
         return None
     if payload[0] != OK:
         return Reply(payload[0], int.from_bytes(payload[1:3], "little"))
     try:
-        return Reply(OK, 0, read(BY_NAME[name].reply, payload[1:]))
+        values: Mapping[str, Any] = read(BY_NAME[name].reply, payload[1:])
     except Malformed:
         return None
+    return Reply(OK, 0, REPLIES[name](**values))
 
 
-def described(values: Mapping[str, int | bytes]) -> Robot:
-    """Return what HELLO's reply says."""
-    name = values["name"]
-    assert isinstance(name, bytes)
-    isa = _number(values, "isa_major"), _number(values, "isa_minor")
-    return Robot(
-        name.decode("utf-8", "replace"),
-        _number(values, "id"),
-        isa,
-        _number(values, "kit"),
-        _number(values, "room"),
-        values,
-    )
+def described(values: HelloReply) -> DeviceInfo:
+    """Return the device info in the reply to HELLO."""
+    name = values.name.decode("utf-8", "replace")
+    isa = values.isa_major, values.isa_minor
+    return DeviceInfo(name, values.id, isa, values.kit, values.room, values)
 
 
-def single(name: str, **values: int | bytes) -> Errand:
-    """One request."""
-    return (yield Request(name, values))
+def refused(reply: Reply[object]) -> Reply[Any]:
+    """Return a reply that is not OK as the outcome of a whole exchange."""
+    assert reply.status != OK
+    return Reply(reply.status, reply.detail)
 
 
-def live(code: bytes, is_latched: bool, kit: int, robot: Robot) -> Errand:
-    """Run code once. Where a stop has latched the robot, this is the new run that may begin."""
+def single(request: Request, kind: type[T]) -> Exchange[T]:
+    """Send one request; its reply has this type."""
+    reply = yield request
+    if reply.status != OK:
+        return refused(reply)
+    values = reply.values
+    assert isinstance(values, kind), (request, values)
+    return Reply(OK, 0, values)
+
+
+def live(code: bytes, is_latched: bool, kit: int, robot: DeviceInfo) -> Exchange[ReceiptReply]:
+    """Run code once. If a stop has latched the robot, the latch is released for this run."""
     if len(code) > SHORT_BYTES:
         return Reply(STATUSES["TOO_LARGE"], SHORT_BYTES)
     if kit not in (0, robot.kit):
         return Reply(STATUSES["WRONG_KIT"], robot.kit)
     if is_latched:
-        reply = yield Request("CLEAR")
-        if reply.status != OK:
-            return reply
-    return (yield from patient(Request("LIVE", {"mode": RUN, "code": code})))
+        cleared = yield from clear()
+        if cleared.status != OK:
+            return refused(cleared)
+    request = Request("LIVE", {"mode": RUN, "code": code})
+    return (yield from patient(request, ReceiptReply))
 
 
-def start(is_detached: bool, is_latched: bool) -> Errand:
+def clear() -> Exchange[EmptyReply]:
+    """Release the latch."""
+    return (yield from single(Request("CLEAR"), EmptyReply))
+
+
+def start(is_detached: bool, is_latched: bool) -> Exchange[ReceiptReply]:
     """Start the program that the robot holds."""
     if is_latched:
-        reply = yield Request("CLEAR")
-        if reply.status != OK:
-            return reply
-    return (yield from patient(Request("START", {"mode": DETACHED * is_detached})))
+        cleared = yield from clear()
+        if cleared.status != OK:
+            return refused(cleared)
+    request = Request("START", {"mode": DETACHED * is_detached})
+    return (yield from patient(request, ReceiptReply))
 
 
 def mode_of(image: Image, runs: bool, saves: bool, is_detached: bool) -> int:
     return STARTS.index(image.start) | RUN * runs | SAVE * saves | DETACHED * is_detached
 
 
-def upload(image: Image, mode: int, robot: Robot, isa: tuple[int, int], is_latched: bool) -> Errand:
-    """Bring a program to the robot: in one frame, where it fits.
+def upload(
+    image: Image, mode: int, robot: DeviceInfo, isa: tuple[int, int], is_latched: bool, kit: int
+) -> Exchange[ReceiptReply]:
+    """Upload a program to the robot: in one frame, if it fits.
 
-    `isa` is what HELLO has said of our programs. What the robot would refuse is not sent.
+    `isa` is the one that HELLO has announced for our programs. A single frame does not name the
+    devices: an image that uses some, and is for another `kit` than the robot's, is sent with its
+    header. A program that the robot would refuse is not sent.
     """
+    is_its_kit = kit == robot.kit or not image.devices
     if image.isa[0] != robot.isa[0] or image.isa[1] > robot.isa[1]:
         return Reply(STATUSES["OTHER_MACHINE"], robot.isa[0] << 8 | robot.isa[1])
-    if image.kit not in (0, robot.kit):
-        return Reply(STATUSES["WRONG_KIT"], robot.kit)
-    if len(image.code) > robot.room:
+    if len(image.later) + len(image.code) > robot.room:
         return Reply(STATUSES["TOO_LARGE"], robot.room)
     if is_latched:
-        reply = yield Request("CLEAR")
-        if reply.status != OK:
-            return reply
-    if len(image.code) <= SHORT_BYTES and image.isa == isa:
-        reply = yield from patient(Request("PROGRAM", {"mode": mode, "code": image.code}))
+        cleared = yield from clear()
+        if cleared.status != OK:
+            return refused(cleared)
+    is_short = len(image.code) <= SHORT_BYTES and image.isa == isa and not image.later
+    if is_short and is_its_kit:
+        request = Request("PROGRAM", {"mode": mode, "code": image.code})
+        reply = yield from patient(request, ReceiptReply)
     else:
         reply = yield from _in_pieces(image, mode)
-    if reply.status == OK and reply.values["program"] != image.checksum:
-        return Reply(STATUSES["INCOMPLETE"])  # the robot says it runs another program
+        if not is_its_kit and reply.status == RULES["NO_SUCH_DEVICE"][0]:
+            return Reply(STATUSES["WRONG_KIT"], robot.kit)
+    if reply.status == OK and reply.values.program != image.checksum:
+        return Reply(STATUSES["INCOMPLETE"])  # the robot reports that it runs another program
     return reply
 
 
-def _in_pieces(image: Image, mode: int) -> Errand:
+def _in_pieces(image: Image, mode: int) -> Exchange[ReceiptReply]:
     header = {
         "mode": mode,
         "isa_major": image.isa[0],
         "isa_minor": image.isa[1],
         "start": STARTS.index(image.start),
-        "needs": 0,
-        "kit": image.kit,
-        "length": len(image.code),
+        "header_length": HEADER_BYTES + len(image.later),
+        "devices": image.devices,
+        "code_length": len(image.code),
     }
-    reply = yield from patient(Request("BEGIN", header))
-    while reply.status == OK and _number(reply.values, "next") < len(image.code):
-        at = _number(reply.values, "next")
-        piece = image.code[at : at + DATA_BYTES]
-        reply = yield Request("DATA", {"offset": at, "code": piece})
+    reply = yield from patient(Request("BEGIN", header), NextReply)
+    rest = bytes([NEEDS]) + image.later + image.code  # the bytes after the checksum
+    while reply.status == OK and reply.values.next < len(rest):
+        at = reply.values.next
+        piece = rest[at : at + DATA_BYTES]
+        reply = yield from single(Request("DATA", {"offset": at, "bytes": piece}), NextReply)
     if reply.status != OK:
-        return reply
-    return (yield Request("COMMIT", {"checksum": image.checksum}))
+        return refused(reply)
+    return (yield from single(Request("COMMIT", {"checksum": image.checksum}), ReceiptReply))
 
 
-def fetch() -> Errand:
-    """Read back the image that the robot holds: the `image` of the reply."""
+def fetch() -> Exchange[FetchedImage]:
+    """Read back the image that the robot holds."""
     image = b""
     while True:
-        reply = yield from patient(Request("FETCH", {"offset": len(image)}))
+        reply = yield from patient(Request("FETCH", {"offset": len(image)}), FetchReply)
         if reply.status != OK:
-            return reply
-        piece = reply.values["bytes"]
-        assert isinstance(piece, bytes)
+            return refused(reply)
+        piece = reply.values.bytes
         image += piece
-        if len(image) >= _number(reply.values, "length") or not piece:
-            return Reply(OK, 0, {"image": image})
+        if len(image) >= reply.values.length or not piece:
+            return Reply(OK, 0, FetchedImage(image))
 
 
-def patient(request: Request) -> Errand:
-    """Ask again while the robot is busy saving."""
-    reply = yield request
+def patient(request: Request, kind: type[T]) -> Exchange[T]:
+    """Repeat a request while the robot is busy saving."""
+    reply = yield from single(request, kind)
     for _ in range(BUSY_TRIES):
         if reply.status != STATUSES["BUSY"]:
             break
-        reply = yield request._replace(pause_ms=100)
+        reply = yield from single(request._replace(pause_ms=100), kind)
     return reply
 
 
-def kept(request: Request) -> Errand:
-    """Have the robot keep something, and wait a while until it says that it has.
+def kept(request: Request, kind: type[T]) -> Exchange[T]:
+    """Have the robot save data, and repeat the request until it confirms or the tries are over.
 
-    Where it has not, the outcome says what is in the way: a program that drives, a low voltage.
+    If it has not saved, the outcome gives the reason: a program that drives, a low voltage.
     """
-    reply = yield from patient(request)
+    reply = yield from patient(request, kind)
     tries = low = 0
     while reply.status in TAKEN[:2] and tries < KEPT_TRIES and low < LOW_TRIES:
         tries += 1
-        reply = yield from patient(request._replace(pause_ms=KEPT_PAUSE_MS))
+        reply = yield from patient(request._replace(pause_ms=KEPT_PAUSE_MS), kind)
         low = low + 1 if reply.status == STATUSES["LOW_SUPPLY"] else 0
     return reply
-
-
-def _number(values: Mapping[str, int | bytes], name: str) -> int:
-    value = values[name]
-    assert isinstance(value, int)
-    return value

@@ -16,14 +16,14 @@ from tiniscript.link.messages import FIRST_RULE, FIRST_STATUS, STATUS_NAMES
 
 
 class Sentence(NamedTuple):
-    """What is said, and what to do next; that may be nothing."""
+    """The message, and what to do next, which may be empty."""
 
     said: str
     advice: str
 
 
 def name_of(status: int) -> str:
-    """Return the name of a status: that of a refusal or a rule too; a number for no known one."""
+    """Return the name of a status, a refusal or a rule; the number if it is unknown."""
     if status in STATUS_NAMES:
         return STATUS_NAMES[status]
     numbered = {number: name for name, (number, _) in {**REFUSALS, **RULES}.items()}
@@ -31,12 +31,14 @@ def name_of(status: int) -> str:
 
 
 def sentence(status: int, detail: int, lang: str) -> Sentence:
-    """Return what is said of a status and the number that follows it."""
+    """Return the sentence for a status and its detail number."""
     name = name_of(status)
-    if 0 < status < FIRST_STATUS:
+    if name in texts():
+        key = name
+    elif 0 < status < FIRST_STATUS:
         key = "IMAGE" if status < FIRST_RULE else "RULE"
     else:
-        key = name if name in texts() else "UNKNOWN_MESSAGE"  # a newer robot has more statuses
+        key = "UNKNOWN_MESSAGE"  # a newer robot has more statuses
     values = {
         "detail": str(detail),
         "kit": f"{detail:04x}",

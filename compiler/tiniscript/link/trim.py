@@ -1,23 +1,23 @@
-"""The trim of a robot's motors: what it keeps of them in three bytes.
+"""The trim of a robot's motors, which the robot keeps in three bytes.
 
-Knows what the bytes mean. How the motors get what a program asks for, the robot knows
+Knows what the bytes mean. The robot applies the trim to its motors
 (`vm_arduino/src/firmware/trim.cpp`).
 """
 
 from __future__ import annotations
 
 import struct
-from collections.abc import Mapping
 from typing import NamedTuple
 
 from tiniscript.link.messages import EXCHANGED, LEFT_REVERSED, RIGHT_REVERSED
+from tiniscript.link.payloads import TrimReply
 
 
 class Trim(NamedTuple):
-    """How the motors are wired, and what makes them drive straight.
+    """How the motors are wired, and the correction that makes the robot drive straight.
 
-    `balance` is the percent by which the left wheel is too strong, or the right one where it is
-    less than 0; `least` the percent of power from which on the wheels move.
+    `balance` is the percent by which the left wheel is too strong; if it is below 0, the right
+    wheel is. `least` is the smallest power in percent that moves the wheels.
     """
 
     is_exchanged: bool = False
@@ -35,14 +35,12 @@ class Trim(NamedTuple):
         return struct.pack("<BbB", wheels, self.balance, self.least)
 
 
-def told(values: Mapping[str, int | bytes]) -> Trim:
-    """Return the trim that the reply to TRIM tells."""
-    numbers = [values[name] for name in ("wheels", "balance", "least")]
-    wheels, balance, least = (each for each in numbers if isinstance(each, int))
+def told(reply: TrimReply) -> Trim:
+    """Return the trim in the reply to TRIM."""
     return Trim(
-        bool(wheels & EXCHANGED),
-        bool(wheels & LEFT_REVERSED),
-        bool(wheels & RIGHT_REVERSED),
-        balance,
-        least,
+        bool(reply.wheels & EXCHANGED),
+        bool(reply.wheels & LEFT_REVERSED),
+        bool(reply.wheels & RIGHT_REVERSED),
+        reply.balance,
+        reply.least,
     )

@@ -1,7 +1,7 @@
 """Robot profiles: which robots there are, and how one is found by name or by file.
 
-Knows where a profile comes from. What is in one, `profile` says; `reader` reads the TOML of a
-file; `shipped` holds the profiles of this folder ready to use, so that they need no TOML.
+Knows where a profile comes from. `profile` defines its fields; `reader` reads the TOML of a file;
+`shipped` holds the profiles of this folder as Python objects, so that they need no TOML.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ def names() -> list[str]:
 
 
 def load(name_or_path: str, chip: str | None = None) -> Robot:
-    """Return a shipped robot, in any case, or the one that a TOML file describes.
+    """Return a shipped robot (upper or lower case), or the one that a TOML file describes.
 
-    `chip`: as if its profile named this board. Anything else that ends in `.toml`, contains a
-    separator or exists is a file of at most FILE_BYTES bytes of UTF-8. Raises ProfileRefused and
-    nothing else.
+    `chip` replaces the board that the profile names. A name that is not shipped is a file if it
+    ends in `.toml`, contains a separator or exists; a file has at most FILE_BYTES bytes of UTF-8.
+    Raises only ProfileRefused.
     """
     from tiniscript.robots.shipped import ROBOTS
 
@@ -53,7 +53,7 @@ def load(name_or_path: str, chip: str | None = None) -> Robot:
 
 
 def is_path(text: str) -> bool:
-    """Whether a text names a file, and not one of the shipped things."""
+    """Return whether a text names a file instead of something shipped."""
     separators = os.sep + (os.altsep or "") + "/"
     return (
         text.lower().endswith(".toml")
@@ -63,7 +63,7 @@ def is_path(text: str) -> bool:
 
 
 def text_of(path: str) -> str:
-    """Return what is in a file of at most FILE_BYTES bytes of UTF-8. Raises ProfileRefused."""
+    """Return the text of a file of at most FILE_BYTES bytes of UTF-8. Raises ProfileRefused."""
     from pathlib import Path
 
     from tiniscript.robots.refusals import shown
@@ -74,7 +74,7 @@ def text_of(path: str) -> str:
             found = file.read(FILE_BYTES + 1)
     except FileNotFoundError:
         raise ProfileRefused(("file_missing", values)) from None
-    except (OSError, ValueError):  # ValueError: a name that no file can have
+    except (OSError, ValueError):  # ValueError: the name is not valid for a file
         is_directory = os.path.isdir(path)  # noqa: PTH112 - Path raises for those names
         code = "file_is_directory" if is_directory else "file_unreadable"
         raise ProfileRefused((code, values)) from None

@@ -1,6 +1,6 @@
-"""`[board]` of a profile becomes a Board; what the chip cannot do is complained about.
+"""Turns `[board]` of a profile into a Board, and complains about what the chip cannot do.
 
-Knows which pins and timers are in use, and by what. What chips and drivers are, `boards` says.
+Knows which pins and timers are in use, and by what. `boards` describes chips and drivers.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ NOTHING = Wiring("", {}, {})
 
 
 class Use(NamedTuple):
-    """Somebody uses a pin: the place of the key, and what it needs of `NEEDS`."""
+    """A use of a pin: the path of the key, and the ability that it needs, one of `NEEDS`."""
 
     table: Table
     key: str
@@ -29,14 +29,14 @@ class Use(NamedTuple):
 
 
 class Pins:
-    """The pins of a chip, and who uses them. Without a chip nothing is checked."""
+    """The pins of a chip and their uses. Without a chip nothing is checked."""
 
     def __init__(self, chip: Chip | None) -> None:
         self._chip = chip
         self._uses: list[Use] = []
 
     def take(self, table: Table, key: str, need: str, is_optional: bool = False) -> int | None:
-        """Return the number of the pin at `key`, or None where there is none to use."""
+        """Return the number of the pin at `key`, or None if no usable pin is given."""
         written = table.get(key, "" if is_optional else f"{key} = 5")
         if written is None:
             return None
@@ -63,7 +63,7 @@ class Pins:
         return pin
 
     def check_timers(self) -> None:
-        """Complain about every PWM pin whose timer servos or the buzzer have."""
+        """Complain about every PWM pin whose timer is taken by servos or the buzzer."""
         if self._chip is None:
             return
         owners = {"servo": self._chip.servo_timer, "tone": self._chip.tone_timer}
@@ -84,14 +84,14 @@ class Pins:
 
 
 def _choices(chip: Chip, need: str, without: frozenset[int | None] = frozenset()) -> str:
-    """Return the pins that can do what is needed, but for those of the timers `without`."""
+    """Return the pins that can do `need`, except those of the timers in `without`."""
     every = sorted(chip.digital | chip.reading | chip.analog)
     fit = [pin for pin in every if chip.can(pin, need) and chip.pwm.get(pin, -1) not in without]
     return ", ".join(chip.pin_name(pin) for pin in fit)
 
 
 def read_board(table: Table, kit: Kit) -> Board:
-    """Return the board of a kit. Complaints go where those of `table` go."""
+    """Return the board of a kit. Complaints are added to those of `table`."""
     chip = CHIPS.get(table.choice("chip", tuple(CHIPS)))
     pins = Pins(chip)
     most = chip.program_bytes if chip else 0
@@ -128,7 +128,7 @@ def read_board(table: Table, kit: Kit) -> Board:
 
 
 def device_tables(table: Table, key: str, devices: Sequence[Device]) -> dict[str, Table]:
-    """Return the table `[key.NAME]` of each device that has one. Names are in any case."""
+    """Return the table `[key.NAME]` of each device that has one. The case of NAME is ignored."""
     group = table.table(key)
     known = tuple(device.name for device in devices if device.name)
     found: dict[str, Table] = {}
@@ -159,7 +159,7 @@ def _read_devices(
 
 
 def _read_wiring(table: Table, used_by: str, pins: Pins) -> Wiring:
-    """Return how one thing is connected; what has no known kind fits no driver."""
+    """Return how one device is connected. A device of unknown kind fits no driver."""
     fitting = drivers_for(used_by)
     if not fitting:
         return NOTHING
@@ -169,7 +169,7 @@ def _read_wiring(table: Table, used_by: str, pins: Pins) -> Wiring:
     driver = DRIVERS[used_by, name]
     is_actuator = used_by.startswith("actuators")
     if is_actuator and name != "servo" and AT_STOP in table.written():
-        table.has(AT_STOP)  # this complaint is enough
+        table.has(AT_STOP)  # counted as known: one complaint is enough
         table.complain("at_stop_of_no_servo", AT_STOP)
     settings = {setting.key: _read_setting(table, setting) for setting in driver.settings}
     taken = {}

@@ -1,4 +1,4 @@
-"""The tables of chips and drivers: which pins can do what, and which pins a driver wants.
+"""The tables of chips and drivers: what each pin can do, and which pins a driver needs.
 
 Knows pins, timers and memory. Does not read profiles: `board_reader` does, and compares.
 """
@@ -12,9 +12,9 @@ from typing import NamedTuple
 class Chip(NamedTuple):
     """A board that the firmware runs on. Pins are numbers of its Arduino core.
 
-    `digital` pins read and write, `reading` pins only read; A0 is the number `first_analog`,
-    where the board prints such names. `pwm` gives each pin its timer. The link has
-    `link_pins`. No timer is None where the chip has enough of them.
+    `digital` pins read and write, `reading` pins only read. A0 has the number `first_analog`, if
+    the board prints such names. `pwm` maps each pin to its timer. The link uses `link_pins`.
+    A timer field is None if the chip has enough timers.
     """
 
     name: str
@@ -30,7 +30,7 @@ class Chip(NamedTuple):
     tone_timer: int | None
 
     def can(self, pin: int, need: str) -> bool:
-        """Return whether `pin` can do what NEEDS names."""
+        """Return whether `pin` has the ability `need`, one of NEEDS."""
         if need == "input":
             return pin in self.digital or pin in self.reading
         if need == "analog":
@@ -52,7 +52,7 @@ class Chip(NamedTuple):
         return number if number in every else None
 
     def pin_name(self, number: int) -> str:
-        """Return what the board prints beside a pin: `5`, `A0`."""
+        """Return the name that the board prints beside a pin: `5`, `A0`."""
         first = self.first_analog
         return str(number) if first is None or number < first else f"A{number - first}"
 
@@ -67,7 +67,7 @@ def _pins(*parts: int | range) -> frozenset[int]:
     )
 
 
-# Data sheets of the ATmega328P and the ATmega2560. Timer 0 keeps the time and does PWM besides.
+# Data sheets of the ATmega328P and the ATmega2560. Timer 0 keeps the time and also does PWM.
 _PWM_328P = {3: 2, 5: 0, 6: 0, 9: 1, 10: 1, 11: 2}
 # fmt: off
 _PWM_2560 = {
@@ -75,7 +75,7 @@ _PWM_2560 = {
     44: 5, 45: 5, 46: 5,
 }
 # fmt: on
-# Pins of an ESP32 that carry neither its flash memory nor the link.
+# Pins of an ESP32 that are free: the others carry its flash memory or the link.
 _ESP32 = _pins(0, 2, 4, 5, range(12, 20), 21, 22, 23, 25, 26, 27, 32, 33)
 
 CHIPS = {
@@ -83,7 +83,7 @@ CHIPS = {
     for chip in (
         Chip(
             "uno",
-            program_bytes=430,
+            program_bytes=389,
             digital=_pins(range(2, 20)),
             reading=frozenset(),
             analog=_pins(range(14, 20)),
@@ -96,10 +96,10 @@ CHIPS = {
         ),
         Chip(
             "nano",
-            program_bytes=430,
+            program_bytes=389,
             digital=_pins(range(2, 20)),
             reading=frozenset(),
-            analog=_pins(range(14, 22)),  # A6 and A7 measure and do nothing else
+            analog=_pins(range(14, 22)),  # A6 and A7 are analog inputs only
             echo=_pins(range(2, 20)),
             pwm=_PWM_328P,
             link_pins=_pins(0, 1),
@@ -146,9 +146,9 @@ class PinKey(NamedTuple):
 
 
 class Setting(NamedTuple):
-    """`kind` is `yes/no`, `whole`, `number` or `choice`; thousandths for `number`.
+    """`kind` is `yes/no`, `whole`, `number` (in thousandths) or `choice`.
 
-    A choice is the place of its word among `words`.
+    A choice is the index of its word in `words`.
     """
 
     key: str
@@ -180,7 +180,7 @@ _TWO_WIRES = tuple(
 _TWO_SERVOS = tuple(PinKey(f"{side}_pin", "servo") for side in _SIDES)
 _STILL = Setting("left_still_us", "whole", 1500, 1000, 2000)
 
-AT_STOP = "at_stop"  # what a stop does with a servo; all else it turns off
+AT_STOP = "at_stop"  # what a stop does with a servo; it turns other actuators off
 HOLD = 1
 
 # fmt: off
@@ -193,7 +193,7 @@ DRIVERS = {(driver.used_by, driver.name): driver for driver in (
            (Setting("left_reversed", "yes/no"), Setting("right_reversed", "yes/no", 1),
             _STILL, _STILL._replace(key="right_still_us"))),
     Driver("analog",    "sensors number",   (PinKey("pin", "analog"),),
-           # what 0 V means and what the highest voltage does; 0 and 1023 keep the raw reading
+           # the values at 0 V and at the highest voltage; 0 and 1023 keep the raw reading
            (Setting("zero", "number", 0, -1_000_000_000, 1_000_000_000),
             Setting("full", "number", 1_023_000, -1_000_000_000, 1_000_000_000))),
     Driver("hc_sr04",   "sensors number",   (PinKey("trigger", "output"), PinKey("echo", "echo"))),

@@ -1,7 +1,7 @@
-"""A robot becomes the header that tells the firmware how it is wired.
+"""Makes the C++ header that tells the firmware how a robot is wired.
 
-Knows the names that `vm_arduino/src/boards` asks for. Opens no files. All numbers are worked out
-here, so that a board has nothing left to look up: registers for pins, steps for ranges.
+Knows the names that `vm_arduino/src/boards` uses. Opens no files. All numbers are calculated
+here (registers for pins, steps for ranges), so that the firmware looks nothing up.
 """
 
 from __future__ import annotations
@@ -9,12 +9,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tiniscript.fixed_point import ONE
-from tiniscript.kit import Device
+from tiniscript.kit import Device, Kit
 from tiniscript.robots.boards import CHIPS, HOLD
 from tiniscript.robots.ports import AVRS, Avr
 from tiniscript.robots.profile import Robot, Wiring
 
-FULL_COUNT = 1023  # what the converter gives for the highest voltage
+FULL_COUNT = 1023  # reading of the A/D converter at the highest voltage
 BRIDGES = ("l298n", "l293d", "tb6612")
 SPACE = "tiniscript"
 BOARDS = tuple(AVRS)
@@ -26,7 +26,7 @@ def fits(robot: Robot) -> bool:
 
 
 def header(wired: Sequence[Robot], made_by: str) -> str:
-    """Return the header of a robot. `wired` is one robot, once for each board that it fits."""
+    """Return the header of a robot. `wired` is one robot, repeated for each board that it fits."""
     parts: dict[str, list[Robot]] = {}
     for robot in wired:
         parts.setdefault(_Part(robot).text(), []).append(robot)
@@ -63,8 +63,8 @@ class _Part:
         self.avr: Avr = AVRS[robot.board.chip]
         self.vectors: list[str] = []
         self.servos: list[int] = []
-        self.echoes: list[str] = []
-        self.off: list[str] = []  # what a stop does with actuators
+        self.ultrasonics: list[str] = []
+        self.off: list[str] = []  # lines that a stop runs for actuators
         self.begin: list[str] = []
 
     def text(self) -> str:
@@ -91,6 +91,7 @@ class _Part:
             f"constexpr uint16_t kBoardKit = 0x{kit.fingerprint:04x};",
             f"constexpr uint8_t kBoardSensors = {len(kit.sensors)};",
             f"constexpr uint8_t kBoardActuators = {len(kit.actuators)};",
+            f"constexpr uint16_t kDeviceHashes[] tini_progmem = {{{_hashes(kit)}}};",
             f"constexpr uint16_t kProgramBytes = {board.program_bytes};",
             f"constexpr uint16_t kMaxRunSeconds = {board.max_run_seconds};",
             f"constexpr uint32_t kBaud = {board.baud};",
@@ -105,7 +106,7 @@ class _Part:
             pins = ", ".join(self._pin(pin) for pin in self.servos)
             lines.append(f"constexpr Pin kServos[] = {{{pins}}};")
         lines += [
-            *self._echoes(),
+            *self._ultrasonics(),
             "",
             "inline void begin_devices() {",
             *(f"  {line}" for line in self.begin),
@@ -123,14 +124,14 @@ class _Part:
         return "\n".join(lines)
 
     def _parts(self) -> list[str]:
-        """Return what the firmware is built of for this robot."""
+        """Return the names of the firmware's modules that this robot needs."""
         driver = self.robot.board.motors.driver
         names = ["motors_bridge" if driver in BRIDGES else f"motors_{driver}"]
         if self.servos:
             names.append("servos")
         if self.vectors:
             each = " ".join(f"each({name})" for name in self.vectors)
-            names.append(f"echo_vectors(each) {each}")
+            names.append(f"ultrasonic_vectors(each) {each}")
         return names
 
     # -- pins
@@ -199,22 +200,22 @@ class _Part:
             self.vectors.append(vector)
         self.begin.append(f"begin_output({self._pin(trigger)}, false);")
         wired = f"{{{self._pin(trigger)}, {self._pin(echo)}, {group}, 1 << {bit}}}"
-        self.echoes.append(wired)
+        self.ultrasonics.append(wired)
         return [
-            f"      if (!echo_read({len(self.echoes) - 1}, value)) return false;",
+            f"      if (!ultrasonic_read({len(self.ultrasonics) - 1}, value)) return false;",
             *_limits(device, 0, FARTHEST),
             "      return true;",
         ]
 
-    def _echoes(self) -> list[str]:
-        """Return how many there are and how each is wired: where it is one, by constants."""
-        if not self.echoes:
+    def _ultrasonics(self) -> list[str]:
+        """Return the number of ultrasonic sensors and their wiring; a single one uses constants."""
+        if not self.ultrasonics:
             return []
-        *others, last = self.echoes
+        *others, last = self.ultrasonics
         return [
-            f"constexpr uint8_t kEchoes = {len(self.echoes)};",
+            f"constexpr uint8_t kUltrasonics = {len(self.ultrasonics)};",
             "",
-            f"tini_always_inline Echo echo_at(uint8_t{' number' if others else ''}) {{",
+            f"tini_always_inline Ultrasonic ultrasonic_at(uint8_t{' number' if others else ''}) {{",
             *(f"  if (number == {k}) return {wired};" for k, wired in enumerate(others)),
             f"  return {last};",
             "}",
@@ -245,7 +246,7 @@ class _Part:
         return [f"      servo_set({number}, {pulse}, 0);", "      return;"]
 
     def _actuators_off(self) -> list[str]:
-        """Return the function that a stop calls, and a main loop that stands still."""
+        """Return the function that turns actuators off: at a stop, and if the main loop hangs."""
         if not self.off:
             return ["inline void actuators_off(bool) {}"]
         is_asked = any("is_stalled" in line for line in self.off)
@@ -257,8 +258,13 @@ class _Part:
         ]
 
 
+def _hashes(kit: Kit) -> str:
+    """Return the hashes of the sensors, then of the actuators. C++ has no empty array."""
+    return ", ".join(f"0x{each:04x}" for each in kit.hashes or (0,))
+
+
 _WAYS = ("forward", "backward")
-FARTHEST = 400 * ONE  # what an HC-SR04 gives where it hears nothing
+FARTHEST = 400 * ONE  # reading of an HC-SR04 without an echo
 
 
 def _limits(device: Device, low: int, high: int) -> list[str]:
@@ -269,7 +275,7 @@ def _limits(device: Device, low: int, high: int) -> list[str]:
 
 
 def _switch(function: str, argument: str, cases: Sequence[str], last: str) -> list[str]:
-    """Return a function that does what the `cases` of a device's number say."""
+    """Return a function that switches over a device's number, with these `cases`."""
     name = argument.rpartition(" ")[0]
     if not cases:
         return [f"inline {function}(uint8_t, {name}) {{{last.strip() and f' {last.strip()} '}}}"]

@@ -1,7 +1,7 @@
 """Profiles that a robot was used with before, by the fingerprints of their kits.
 
-They lie in the user's cache, as paths: a profile that has changed or is gone is not believed.
-Losing them loses nothing else.
+The user's cache holds their paths; a profile that has changed or is gone is ignored. If the cache
+is lost, nothing else is lost.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ FILE_BYTES = 200_000
 
 
 def remember(path: str, kit: int) -> None:
-    """Keep where a profile is. Where the cache cannot be written, it is not kept."""
+    """Keep the path of a profile. If the cache cannot be written, the path is not kept."""
     known = _known()
     entry = (kit, os.path.abspath(path))  # noqa: PTH100 - Path raises for some names
     if known[:1] == [entry]:
@@ -32,12 +32,12 @@ def remember(path: str, kit: int) -> None:
 
 
 def recall(kit: int) -> Robot | None:
-    """Return the profile that has this kit, if it is known and still has it."""
+    """Return the known profile with this kit, or None if there is none or its kit has changed."""
     return next((robot for _, robot in profiles() if robot.kit.fingerprint == kit), None)
 
 
 def profiles() -> list[tuple[str, Robot]]:
-    """Return the profiles that are still there with their paths, the newest first."""
+    """Return the profiles that still exist, with their paths, the newest first."""
     found: list[tuple[str, Robot]] = []
     for kit, path in _known():
         with contextlib.suppress(ProfileRefused):

@@ -1,8 +1,8 @@
-"""Where a robot with two driven wheels gets to.
+"""The path of a robot with two driven wheels.
 
-Knows the geometry: a setting of the motors that lasts is a straight line, a turn on the spot or
-an arc of a circle, and this is exact. Knows no clock, no world and no friction: wheels are at
-once as fast as they are set.
+Knows the geometry: a constant setting of the motors gives a straight line, a turn on the spot or
+an arc of a circle, exactly. Knows no clock, no world and no friction: wheels reach their speed at
+once.
 """
 
 from __future__ import annotations
@@ -12,14 +12,14 @@ from typing import NamedTuple
 
 from tiniscript.robots.profile import Body
 
-STEP = 5.0  # degrees of an arc between two points; between them a straight line is 0.1 % off
+STEP = 5.0  # degrees of an arc between two points; a straight line between them is 0.1 % off
 
 
 class Pose(NamedTuple):
-    """Where the middle between the wheels is, and where the robot looks.
+    """The position of the middle between the wheels, and the robot's heading.
 
-    A robot that looks along `heading` 0 goes along x; y is to its left. `heading` is in degrees,
-    counterclockwise, and goes on counting over full turns.
+    With `heading` 0 the robot drives along x, and y is to its left. `heading` is in degrees,
+    counterclockwise, and does not wrap around after a full turn.
     """
 
     x_cm: float
@@ -31,7 +31,7 @@ START = Pose(0.0, 0.0, 0.0)
 
 
 def moved(body: Body, pose: Pose, left: float, right: float, duration_ms: float) -> Pose:
-    """Return the pose after the motors were set to `left` and `right` percent for so long."""
+    """Return the pose after the motors ran at `left` and `right` percent for `duration_ms`."""
     left_cm, right_cm = (
         body.speed_cm_s * percent / 100 * duration_ms / 1000 for percent in (left, right)
     )
@@ -48,10 +48,10 @@ def moved(body: Body, pose: Pose, left: float, right: float, duration_ms: float)
 
 
 def points(body: Body, pose: Pose, left: float, right: float, duration_ms: float) -> list[Pose]:
-    """Return poses along the way, without its beginning; straight lines join them.
+    """Return poses along the way, without its first; straight lines join them.
 
-    A straight line and a turn on the spot need only their end. An arc has a point at least
-    every STEP degrees, for two circles at most: more rounds are the same circle.
+    A straight line and a turn on the spot need only their end. An arc has a point at least every
+    STEP degrees, for at most two full circles: further rounds repeat the same circle.
     """
     end = moved(body, pose, left, right, duration_ms)
     turn = abs(end.heading - pose.heading)
@@ -64,14 +64,14 @@ def points(body: Body, pose: Pose, left: float, right: float, duration_ms: float
 
 
 class Way:
-    """The way of a robot whose motors are set from time to time; times only go forward."""
+    """The path of a robot whose motor setting changes; times only go forward."""
 
     def __init__(self, body: Body, pose: Pose = START) -> None:
         self.body = body
-        self.left = self.right = 0  # the setting that lasts, in percent,
+        self.left = self.right = 0  # the current setting, in percent,
         self.since_ms: float = 0  # since when,
-        self.begun = pose  # and where it began
-        self.corners = [pose]  # straight lines join them; they show the way up to here
+        self.begun = pose  # and the pose at that time
+        self.corners = [pose]  # points of the path so far, joined by straight lines
 
     def set_motors(self, now_ms: float, left: int, right: int) -> None:
         if (left, right) == (self.left, self.right):
@@ -81,17 +81,17 @@ class Way:
         self.left, self.right = left, right
 
     def pose(self, now_ms: float) -> Pose:
-        """Return where the robot is, not before the last setting."""
+        """Return the pose at a time that is not before the last setting."""
         return moved(self.body, self.begun, self.left, self.right, now_ms - self.since_ms)
 
     def ahead(self, now_ms: float) -> list[Pose]:
-        """Return the points of the way since the last corner; none where it did not leave it."""
+        """Return the points of the path since the last corner; none if the robot has not moved."""
         if self.left == -self.right:
             return []
         return points(self.body, self.begun, self.left, self.right, now_ms - self.since_ms)
 
     def thin_out(self, most: int) -> None:
-        """Forget corners that no picture shows apart; where that is not enough, the oldest."""
+        """Drop corners too close to tell apart in a picture; if too many remain, the oldest."""
         across_cm = max(
             max(values) - min(values) for values in list(zip(*self.corners, strict=True))[:2]
         )

@@ -1,7 +1,7 @@
-"""The tables of the AVR chips: which port, timer and interrupt is behind a pin of a board.
+"""The tables of the AVR chips: which port, timer and interrupt belongs to a pin of a board.
 
-Data sheets of the ATmega328P and the ATmega2560, and the pins of their Arduino boards. What a
-pin can be used for, `boards` says; here are the registers that this takes.
+From the data sheets of the ATmega328P and the ATmega2560, and the pins of their Arduino boards.
+`boards` says what a pin can be used for; the registers for that are here.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ class Compare(NamedTuple):
 
 
 class Interrupt(NamedTuple):
-    """What notices a change of a pin: its vector, and its bit in the mask of its `group`.
+    """The interrupt for a change of a pin: its vector, and its bit in the mask of its `group`.
 
-    Groups 0 to 2 are those of pin changes, 3 has the external interrupts.
+    Groups 0 to 2 are pin change interrupts, group 3 has the external interrupts.
     """
 
     vector: str
@@ -36,7 +36,7 @@ class Interrupt(NamedTuple):
 
 
 class Avr(NamedTuple):
-    """A chip, by the name that its compiler defines, and what is behind its pins."""
+    """A chip: the name that its compiler defines, and the registers of its pins."""
 
     macro: str
     bits: Mapping[int, Bit]
@@ -48,7 +48,7 @@ EXTERNAL = 3  # the group of INT0 to INT7
 
 
 def _bits(*parts: str) -> dict[int, Bit]:
-    """Return the pins of `"0 d0 d1"`: the first pin's number, then the bits from there on."""
+    """Return the pins of `"0 d0 d1"`: the number of the first pin, then the bit of each pin."""
     found = {}
     for part in parts:
         first, *bits = part.split()
@@ -83,7 +83,7 @@ _EXTERNAL_2560 = {"d0": 0, "d1": 1, "d2": 2, "d3": 3, "e4": 4, "e5": 5}
 
 
 def _changes(bits: Mapping[int, Bit], groups: Mapping[str, int]) -> dict[int, Interrupt]:
-    """Return the interrupts of pin changes. Bit 0 of port J is the second of its group."""
+    """Return the pin change interrupts. Bit 0 of port J is the second of its group."""
     return {
         pin: Interrupt(f"PCINT{groups[port]}_vect", groups[port], bit + (port == "j"))
         for pin, (port, bit) in bits.items()

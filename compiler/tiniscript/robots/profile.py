@@ -1,6 +1,6 @@
-"""What a robot profile is once it is read, and what it means to refuse one.
+"""The types of a robot profile, and the exception for one that cannot be used.
 
-Knows the shapes. Knows no TOML (`reader`), no chips (`boards`) and no sentences (`refusals`).
+Knows no TOML (`reader`), no chips (`boards`) and no sentences (`refusals`).
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ Reason = tuple[str, Mapping[str, str]]
 class ProfileRefused(Exception):
     """A profile that cannot be used.
 
-    `reasons` holds every complaint as (code, values): the code is a short name that stays the
-    same, the values fill the gaps of its sentence in `refusals`. `path` among the values is the
-    place of the key, `kit.sensors[2].range`, where tables are counted from 1.
+    `reasons` holds every complaint as (code, values): the code is a short, stable name, and the
+    values fill the gaps of its sentence in `refusals`. The value `path` is the path of the key,
+    such as `kit.sensors[2].range`; tables are counted from 1.
     """
 
     def __init__(self, *reasons: Reason) -> None:
@@ -28,11 +28,11 @@ class ProfileRefused(Exception):
 
 
 class Wiring(NamedTuple):
-    """How something is connected: a driver of `boards`, its pins and its settings.
+    """How a device is connected: a driver of `boards`, its pins and its settings.
 
-    Pins are the numbers of the chip's Arduino core (A0 of an Uno is 14); one that the profile
-    leaves out is not among them. Settings are all there: yes/no as 0 and 1, `zero` and `full`
-    as thousandths, the rest as whole numbers.
+    Pins are the numbers of the chip's Arduino core (A0 of an Uno is 14); pins that the profile
+    omits are missing. All settings are present: yes/no as 0 and 1, `zero` and `full` as
+    thousandths, the others as whole numbers.
     """
 
     driver: str
@@ -43,8 +43,8 @@ class Wiring(NamedTuple):
 class Board(NamedTuple):
     """What the firmware must know. Sensors and actuators are in the kit's order.
 
-    `program_bytes` is the size of the largest program's code, `max_run_seconds` how long a
-    program may run with nobody connected. A pin that is None is not wired.
+    `program_bytes` is the largest size of a program's code. `max_run_seconds` limits how long a
+    program runs without a client. A pin that is None is not wired.
     """
 
     chip: str
@@ -61,7 +61,7 @@ class Board(NamedTuple):
 
 
 class Place(NamedTuple):
-    """Where a sensor sits, from the middle between the wheels, and what it notices.
+    """Where a sensor sits, from the middle between the wheels, and what it detects.
 
     `x_cm` goes forward and `y_cm` to the left; `heading` is in degrees, 0 ahead and 90 to the
     left. `sees` is one of SEES.
@@ -79,7 +79,7 @@ SEES = ("light", "distance", "line", "touch")
 class Body(NamedTuple):
     """What a simulator must know. `speed_cm_s` is the speed of a wheel at 100 %.
 
-    A sensor that is not in `places` notices nothing of a simulated world.
+    A sensor that is not in `places` detects nothing in a simulated world.
     """
 
     wheel_base_cm: float

@@ -1,6 +1,6 @@
-"""The text of a profile becomes a Robot, or every complaint about it is raised at once.
+"""Reads the text of a profile into a Robot, or raises all complaints about it at once.
 
-Knows `[kit]`, `[body]` and `[labels]`; `board_reader` knows `[board]`. Opens no files.
+Reads `[kit]`, `[body]` and `[labels]`; `board_reader` reads `[board]`. Opens no files.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from tiniscript.robots.refusals import shown
 from tiniscript.robots.toml_table import Table, parse_toml
 from tiniscript.words import WORDS
 
-DEVICES = 32  # sensors, and as many actuators
+DEVICES = 32  # the most sensors, and the most actuators
 NAME_CHARACTERS = 24
 UNIT_CHARACTERS = 8
 LABEL_CHARACTERS = 60
@@ -34,7 +34,7 @@ FASTEST_CM_S = 1000 * ONE
 def read(text: str, name: str, chip: str | None = None) -> Robot:
     """Return the robot that a profile's text describes, under `name`.
 
-    `chip`: as if the profile named this board. Raises ProfileRefused.
+    `chip` replaces the board that the profile names. Raises ProfileRefused.
     """
     found = parse_toml(text)
     if isinstance(found, tuple):
@@ -149,7 +149,7 @@ def _read_place(table: Table) -> Place:
 
 
 def _read_labels(table: Table, kit: Kit, name: str) -> Mapping[str, Mapping[str, str]]:
-    """Return the labels. One that is missing is the other language's, or the name itself."""
+    """Return the labels. A missing one is taken from the other language, or is the name itself."""
     devices = (*kit.sensors, *kit.actuators)
     written = {language: _read_language(table, language, devices) for language in LANGUAGES}
     table.finish()

@@ -1,6 +1,6 @@
-"""What is said of a refused profile: a cause and a thing to do, in English and Spanish.
+"""The sentences about a refused profile: a cause and a remedy, in English and Spanish.
 
-Knows every code that ProfileRefused may carry. Does not know when one is given.
+Knows every code of ProfileRefused. Does not know when a code applies.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from tiniscript.robots.profile import LANGUAGES, ProfileRefused
 
 SHOWN_CHARACTERS = 40
 
-# A code with `/near` has this sentence where there is a name that may be meant, in `near`.
+# The sentence of a code with `/near` is used if `near` holds a similar name.
 SENTENCES: dict[str, dict[str, str]] = {
     # finding the file
     "no_such_robot": {
@@ -169,7 +169,7 @@ SENTENCES: dict[str, dict[str, str]] = {
     },
 }
 
-# What `wanted`, `found` and `need` stand for.
+# The texts for the values of `wanted`, `found` and `need`.
 WORDS_FOR: dict[str, dict[str, dict[str, str]]] = {
     "type": {
         "text": {"en": "a text in quotes", "es": "un texto entre comillas"},
@@ -205,7 +205,7 @@ def describe(
 ) -> list[str]:
     """Return a sentence for each reason, in `lang` of LANGUAGES (English for any other).
 
-    `own` are sentences that go before these: another file than a profile has some.
+    `own` are sentences that take precedence: files other than profiles have some of their own.
     """
     known_sentences = {**SENTENCES, **(own or {})}
     lang = lang if lang in LANGUAGES else LANGUAGES[0]
@@ -224,7 +224,7 @@ def describe(
 
 
 def shown(value: object) -> str:
-    """Return what a file or a person wrote as a sentence can hold it: short and printable."""
+    """Return a value from a file or a person in a form for a sentence: short and printable."""
     if isinstance(value, int) and value.bit_length() > 100:
-        return "…"  # Python itself refuses to write out endless numbers
+        return "…"  # Python refuses to print very long integers
     return printable(str(value), SHOWN_CHARACTERS)

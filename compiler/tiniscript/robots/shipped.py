@@ -111,7 +111,7 @@ def _liner() -> Robot:
         ),
         board=Board(
             chip="nano",
-            program_bytes=430,
+            program_bytes=389,
             baud=9600,
             max_run_seconds=600,
             motors=Wiring(
@@ -196,7 +196,7 @@ def _tinibot() -> Robot:
         ),
         board=Board(
             chip="uno",
-            program_bytes=430,
+            program_bytes=389,
             baud=9600,
             max_run_seconds=600,
             motors=Wiring(

@@ -1,8 +1,8 @@
 """Reads the keys of a TOML table one by one and collects every complaint.
 
-Knows TOML's types and how exact a number is. Does not know what a profile contains: `reader`
-and `board_reader` ask for it. A key that is missing or wrong is complained about and gives a
-placeholder, so that reading can go on; whoever reads refuses the file in the end.
+Knows TOML's types and the precision of numbers. Does not know the keys of a profile: `reader` and
+`board_reader` ask for them. A missing or wrong key adds a complaint and gives a placeholder, so
+that reading goes on; the caller refuses the file at the end.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ from tiniscript.words import nearest
 
 
 class Written(str):
-    """A number with a point, as it is written: a float would not keep it exactly."""
+    """A decimal as written in the file: a float would not keep it exactly."""
 
 
 def parse_toml(text: str) -> dict[str, object] | Reason:
-    """Return the keys of a TOML text, with decimals as Written, or why it is not TOML."""
+    """Return the keys of a TOML text, with decimals as Written, or the reason it is not TOML."""
     if sys.version_info >= (3, 11):
         import tomllib
     else:
@@ -29,7 +29,7 @@ def parse_toml(text: str) -> dict[str, object] | Reason:
 
     try:
         return tomllib.loads(text, parse_float=Written)
-    except (ValueError, RecursionError) as error:  # ValueError: also an endless number
+    except (ValueError, RecursionError) as error:  # ValueError: also for a very long integer
         message = str(error)
         line = message.rpartition("at line ")[2].partition(",")[0]
         place = line if line.isdigit() else str(text.count("\n") + 1)
@@ -38,7 +38,7 @@ def parse_toml(text: str) -> dict[str, object] | Reason:
 
 
 class Table:
-    """A table of a TOML file at `path`. `finish` complains about the keys nobody asked for."""
+    """A table of a TOML file at `path`. `finish` complains about keys that were never read."""
 
     def __init__(self, values: Mapping[str, object], path: str, reasons: list[Reason]) -> None:
         self.path = path
@@ -47,14 +47,14 @@ class Table:
         self._asked: list[str] = []
 
     def path_of(self, key: str) -> str:
-        """Return `board.motors`: the place of a key in the file."""
+        """Return the path of a key in the file, such as `board.motors`."""
         return f"{self.path}.{shown(key)}" if self.path else shown(key)
 
     def complain(self, code: str, key: str, **values: str) -> None:
         self.reasons.append((code, {"path": self.path_of(key), **values}))
 
     def has(self, key: str) -> bool:
-        """Return whether a key is there, and count it as known."""
+        """Return whether a key is present, and count it as known."""
         self._asked.append(key)
         return key in self._values
 
@@ -62,7 +62,7 @@ class Table:
         return self._values.keys()
 
     def get(self, key: str, example: str) -> object:
-        """Return what stands at `key`. If nothing does, complain and suggest `example`, if any."""
+        """Return the value at `key`. If it is missing, complain and suggest `example`, if any."""
         if self.has(key):
             return self._values[key]
         if example:
@@ -134,9 +134,9 @@ class Table:
         return found
 
     def table(self, key: str, example: str = "") -> Table:
-        """Return the table at `key`; what is not there, or no table, is read as an empty one.
+        """Return the table at `key`. A missing key or another type gives an empty table.
 
-        What is missing in one that had to be there is not worth a second complaint.
+        If a required table is missing, its missing keys add no further complaints.
         """
         value = self.get(key, example)
         if isinstance(value, dict):
@@ -146,7 +146,7 @@ class Table:
         return Table({}, self.path_of(key), [] if is_known else self.reasons)
 
     def tables(self, key: str) -> list[Table]:
-        """Return the tables at `[[key]]`; their places are counted from 1."""
+        """Return the tables at `[[key]]`; their paths count from 1."""
         value = self.get(key, "")
         if value is None:
             return []
@@ -163,7 +163,7 @@ class Table:
         return found
 
     def expect(self, wanted: str, key: str, value: object) -> None:
-        """Complain that `value` has another type; a missing one has its own complaint."""
+        """Complain that `value` has the wrong type; a missing value has its own complaint."""
         if value is not None:
             self.complain("wrong_type", key, wanted=wanted, found=_type_of(value))
 
@@ -172,7 +172,7 @@ class Table:
         self.complain("not_in_kit", key, name=shown(key), near=near)
 
     def finish(self) -> None:
-        """Complain about every key that nobody has asked for."""
+        """Complain about every key that was never read."""
         for key in self._values:
             if key not in self._asked:
                 near = nearest(key, self._asked) or ""

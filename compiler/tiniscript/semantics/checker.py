@@ -7,37 +7,41 @@ ranges, kinds, limits; and the rule which reading a sensor's name means. Does no
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from itertools import chain
 from typing import NamedTuple
 
 from tiniscript.bytecode.opcodes import BLOCKS, CALLS, DEFS, STACK_VALUES, VARIABLES
 from tiniscript.diagnostics import codes
-from tiniscript.diagnostics.codes import Problem
+from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.fixed_point import HIGHEST, as_text
 from tiniscript.kit import Kit
 from tiniscript.semantics import ir
 from tiniscript.semantics.ir import Statement
 from tiniscript.semantics.symbols import Name, Scope
 from tiniscript.semantics.types import ANY, Kinds, Value
+from tiniscript.semantics.unknown_words import (
+    report_named_arguments,
+    report_unknown,
+    the_other_way,
+)
 from tiniscript.source import Source, Span
 from tiniscript.syntax import ast
-from tiniscript.syntax.call_suggestions import actuator_word, call_of, count_problem, glued_call
-from tiniscript.words import WORDS, Argument, Word, meant_by
+from tiniscript.syntax.call_suggestions import actuator_word, count_diagnostic
+from tiniscript.words import WORDS, Argument, Word
 
 
 class Checked(NamedTuple):
-    """`program` is a whole program only where no problem is a mistake."""
+    """`program` is a whole program only where no diagnostic is a mistake."""
 
     program: ir.Program
-    problems: list[Problem]
+    diagnostics: list[Diagnostic]
 
 
 def check(source: Source, parsed: ast.Program, kit: Kit) -> Checked:
-    """Return what a program means on a robot with this kit, and all that is wrong with it."""
+    """Return the IR of a program for a robot with this kit, and all its diagnostics."""
     checker = _Checker(source, kit, parsed)
     body = checker.body(parsed.body)
     meaning = ir.Program(parsed.start, tuple(checker.variables), tuple(checker.procedures), body)
-    return Checked(meaning, checker.problems)
+    return Checked(meaning, checker.diagnostics)
 
 
 class _Procedure(NamedTuple):
@@ -147,13 +151,15 @@ class _Checker(Scope):
         if forever and node.until is None:
             self.report(codes.FOREVER_NEEDS_UNTIL, arguments[0].span, word=word.text,
                         fix=self.source[node.span] + " UNTIL(DISTANCE < 10)")  # fmt: skip
-        said = len(self.problems)
+        said = len(self.diagnostics)
         values = [
-            self.kinds.value(each) if word.role == "show" else self.number(each, its, word.text)
+            self.kinds.value(each)
+            if word.role == "show"
+            else self.number(each, its, word.text, the_other_way(self.source, node, word))
             for each, its in zip(arguments[forever:], word.arguments[forever:], strict=True)
         ]
-        if len(self.problems) > said:
-            self.named_arguments(node, word, arguments, said)
+        if len(self.diagnostics) > said:
+            report_named_arguments(self, node, word, said)
         self.stack_fits(values, span)
         self.take(values, span, made)
         if word.role in ("move", "wait"):
@@ -174,27 +180,10 @@ class _Checker(Scope):
 
     def count(self, word: Word, arguments: tuple[ast.Argument, ...], span: Span) -> None:
         spans = [argument.span for argument in arguments]
-        self.problems.append(count_problem(self.source, word, spans, span))
+        self.diagnostics.append(count_diagnostic(self.source, word, spans, span))
 
-    def named_arguments(
-        self, node: ast.Command, word: Word, arguments: Sequence[ast.Argument], said: int
-    ) -> None:
-        """`F(t=2, p=80)`: values have no names here."""
-        unknown = {each.span for each in self.problems[said:] if each.code is codes.UNKNOWN_NAME}
-        values = []
-        for argument in arguments:
-            first, last = argument.expression[0], argument.expression[-1]
-            is_named = last.op == "EQ" and Span(first.start, first.end) in unknown
-            start = last.end if is_named else argument.span.start
-            values.append(self.source[Span(start, argument.span.end)].strip())
-            if not is_named:
-                return
-        del self.problems[said:]
-        fix = f"{word.text}({', '.join(values)})"
-        self.report(codes.NAMED_ARGUMENT, node.span, word=word.text, fix=fix)
-
-    def number(self, argument: ast.Argument, its: Argument, word: str) -> Value:
-        """Check an argument that is a number; a plain one must be in range."""
+    def number(self, argument: ast.Argument, its: Argument, word: str, fix: str = "") -> Value:
+        """Check a number argument; a plain one must be in range, otherwise suggest `fix`."""
         if argument.is_plain:
             part = argument.expression[0]
             assert isinstance(part.value, int)
@@ -202,7 +191,7 @@ class _Checker(Scope):
                 low, high = as_text(its.low), "" if its.high == HIGHEST else as_text(its.high)
                 self.report(codes.OUT_OF_RANGE, argument.span, word=word, name=its.name,
                             unit=its.unit, low=low, high=high,
-                            found=as_text(part.value))  # fmt: skip
+                            found=as_text(part.value), fix=fix)  # fmt: skip
         value = self.kinds.value(argument)
         if value.kind == "yes_no":
             self.report(codes.WANTS_NUMBER, argument.span, by=word,
@@ -234,7 +223,7 @@ class _Checker(Scope):
     def kit_or_def(self, node: ast.Command, made: list[Statement]) -> None:
         name = self.names.get(node.word)
         if name is None:
-            self.unknown(node)
+            report_unknown(self, node, self.inside)
         elif name.what == "actuator":
             self.actuator(node, name.number, made)
         elif node.arguments is not None:
@@ -277,36 +266,6 @@ class _Checker(Scope):
         self.deepest = max(self.deepest, self.depth + facts.blocks)
         self.surely_read |= facts.surely_read
         made.append(ir.Call(number, node.span))
-
-    def unknown(self, node: ast.Command) -> None:
-        word, span = node.word, node.word_span
-        if word == self.inside:
-            self.report(codes.CALLS_ITSELF, span, name=word)
-        elif word in self.def_names:
-            self.report(codes.CALL_BEFORE_DEF, span, name=word)
-        elif word in self.set_somewhere:
-            self.report(codes.VARIABLE_ALONE, span, name=word)
-        else:
-            self.unknown_word(node)
-
-    def unknown_word(self, node: ast.Command) -> None:
-        word, span = node.word, node.word_span
-        meant = meant_by(word)
-        if meant is not None and (meant in WORDS or meant in self.names):
-            fix = meant
-            if meant in WORDS:
-                spans = [each.span for each in node.arguments or ()]
-                fix = call_of(self.source, WORDS[meant], spans)
-            self.report(codes.OTHER_LANGUAGE, span, found=word, right=meant, fix=fix)
-            return
-        glued = glued_call(word)
-        if glued is not None and node.arguments is None:
-            self.report(codes.MISSING_OPEN, span, word=glued.partition("(")[0], fix=glued)
-            return
-        commands = [each.text for each in WORDS.values() if each.role not in
-                    ("setup", "later", "value", "operator", "function", "forever")]  # fmt: skip
-        near = self.near(word, chain(commands, self.names, self.def_names))
-        self.report(codes.UNKNOWN_WORD, span, found=word, near=near)
 
     # -- blocks -------------------------------------------------------------------------------
 

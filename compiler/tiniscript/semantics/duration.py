@@ -1,7 +1,7 @@
-"""How long a program runs, where that can be known before it does.
+"""How long a program runs, if this can be known in advance.
 
-Knows the checked program. Takes no reading and no instruction to take time: moves, waits and
-beeps do.
+Knows the checked program. Only moves, waits and beeps count; readings and other instructions take
+no time.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ from tiniscript.semantics.optimizer import constant, fold
 
 
 class Duration(NamedTuple):
-    """Milliseconds from `least` to `most`, which is None where there is no bound.
+    """Milliseconds from `least` to `most`, which is None without an upper bound.
 
-    `never_ends`: whatever happens, only somebody else ends it.
+    `never_ends`: the program never ends by itself.
     """
 
     least: int

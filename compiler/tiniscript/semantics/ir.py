@@ -1,12 +1,11 @@
-"""The IR: what a checked program means, with every reading in its place.
+"""The IR: a checked program, with every sensor reading as a step of its own.
 
 The checker writes it, the optimiser rewrites it, `lower` turns it into instructions. Names are
 numbers here: variables, sensors, actuators and DEFs by their order. Numbers are thousandths,
-TRUE is 1 and FALSE is 0. Nothing in here can be wrong any more.
+TRUE is 1 and FALSE is 0. All mistakes have been reported before.
 """
 
-from __future__ import annotations
-
+# No `from __future__ import annotations`: typing would compile each field's again, one by one.
 from collections.abc import Iterator
 from typing import NamedTuple
 
@@ -85,13 +84,13 @@ class Assign(NamedTuple):
 class Arm(NamedTuple):
     reads: tuple[int, ...]
     condition: Expression
-    body: tuple[Statement, ...]
+    body: "tuple[Statement, ...]"
     span: Span
 
 
 class If(NamedTuple):
     arms: tuple[Arm, ...]
-    otherwise: tuple[Statement, ...]
+    otherwise: "tuple[Statement, ...]"
     span: Span
 
 
@@ -99,14 +98,14 @@ class Loop(NamedTuple):
     """`times` is None for FOREVER."""
 
     times: Expression | None
-    body: tuple[Statement, ...]
+    body: "tuple[Statement, ...]"
     span: Span
 
 
 class While(NamedTuple):
     reads: tuple[int, ...]
     condition: Expression
-    body: tuple[Statement, ...]
+    body: "tuple[Statement, ...]"
     span: Span
 
 

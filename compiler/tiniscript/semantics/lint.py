@@ -1,4 +1,4 @@
-"""The lint: what a teacher would say about a program that is right.
+"""The lint: advice about a program that has no mistakes.
 
 Knows the IR, before it is optimised. Gives warnings, never mistakes.
 """
@@ -9,7 +9,7 @@ from collections.abc import Iterator
 
 from tiniscript.bytecode.opcodes import COMPARATORS
 from tiniscript.diagnostics import codes
-from tiniscript.diagnostics.codes import Code, Problem
+from tiniscript.diagnostics.codes import Code, Diagnostic
 from tiniscript.fixed_point import as_text
 from tiniscript.kit import Kit
 from tiniscript.semantics.ir import (
@@ -37,12 +37,14 @@ from tiniscript.source import Span
 from tiniscript.syntax.operators import SIGN_OF
 
 LONG_MOVE = 500  # ms: a robot goes a hand's breadth in this time
+LONG_TIME = 20_000  # ms: a power was meant, where the power is a time
+LITTLE_POWER = 10_000  # thousandths of a percent
 _COMPARATORS = frozenset(name for name, _ in COMPARATORS)
 
 
-def advice(program: Program, kit: Kit) -> list[Problem]:
+def advice(program: Program, kit: Kit) -> list[Diagnostic]:
     """Return the warnings for a program that has no mistakes."""
-    found: list[Problem] = []
+    found: list[Diagnostic] = []
     routines = [*(procedure.body for procedure in program.procedures), program.body]
     for body in routines:
         _look_at(body, program, kit, found)
@@ -51,11 +53,11 @@ def advice(program: Program, kit: Kit) -> list[Problem]:
     return found
 
 
-def _report(found: list[Problem], code: Code, span: Span, **values: str) -> None:
-    found.append(Problem(code, span, values))
+def _report(found: list[Diagnostic], code: Code, span: Span, **values: str) -> None:
+    found.append(Diagnostic(code, span, values))
 
 
-def _look_at(body: Body, program: Program, kit: Kit, found: list[Problem]) -> None:
+def _look_at(body: Body, program: Program, kit: Kit, found: list[Diagnostic]) -> None:
     for k, statement in enumerate(body):
         if k + 1 < len(body) and not goes_on((statement,)):
             _report(found, codes.NEVER_REACHED, body[k + 1].span)
@@ -66,6 +68,7 @@ def _look_at(body: Body, program: Program, kit: Kit, found: list[Problem]) -> No
             time = None if statement.time is None else constant(fold(statement.time))
             if time is not None and time <= 0:
                 _report(found, codes.MOVE_OF_NO_TIME, statement.span, word=statement.direction)
+            _swapped(statement, time, found)
         if isinstance(statement, (Loop, While)):
             _late_checks(statement.body, kit, found)
             if _is_forever(statement) and not (
@@ -78,12 +81,23 @@ def _look_at(body: Body, program: Program, kit: Kit, found: list[Problem]) -> No
             _look_at(inner, program, kit, found)
 
 
-def _expressions(statement: Statement, found: list[Problem]) -> None:
+def _expressions(statement: Statement, found: list[Diagnostic]) -> None:
     for expression in expressions(statement):
         fault = sure_fault(fold(expression))
         if fault:
             _report(found, codes.WILL_FAULT, statement.span, fault=fault)
             return
+
+
+def _swapped(move: Move, time: int | None, found: list[Diagnostic]) -> None:
+    """`F(80, 2)`: a long time with a power that moves hardly any robot."""
+    power = None if move.power is None else constant(fold(move.power))
+    if time is None or power is None or not (LONG_TIME <= time <= 100_000):
+        return
+    if 0 < power <= LITTLE_POWER:
+        seconds, percent = as_text(time), as_text(power)
+        fix = f"{move.direction}({percent}, {seconds})"
+        _report(found, codes.SWAPPED, move.span, time=seconds, power=percent, fix=fix)
 
 
 def _is_forever(statement: Loop | While) -> bool:
@@ -103,7 +117,7 @@ def _takes_time(body: Body, program: Program) -> bool:
     return False
 
 
-def _late_checks(body: Body, kit: Kit, found: list[Problem]) -> None:
+def _late_checks(body: Body, kit: Kit, found: list[Diagnostic]) -> None:
     """Find a long move, then a look at a distance: the robot drives blind in between."""
     for k, statement in enumerate(body):
         if not isinstance(statement, Move) or statement.direction not in ("F", "B"):
@@ -144,7 +158,7 @@ def _comparison(condition: Expression, kit: Kit) -> str:
     return f" {SIGN_OF[condition[2].op]} ".join(texts) if len(texts) == 2 else ""
 
 
-def _unused(program: Program, statements: list[Statement]) -> Iterator[Problem]:
+def _unused(program: Program, statements: list[Statement]) -> Iterator[Diagnostic]:
     used = {
         term.value
         for statement in statements
@@ -156,9 +170,9 @@ def _unused(program: Program, statements: list[Statement]) -> Iterator[Problem]:
         if isinstance(statement, Assign) and statement.variable not in used:
             used.add(statement.variable)  # said once
             name = program.variables[statement.variable]
-            yield Problem(codes.UNUSED_VARIABLE, statement.span, {"name": name})
+            yield Diagnostic(codes.UNUSED_VARIABLE, statement.span, {"name": name})
     called = {each.procedure for each in statements if isinstance(each, Call)}
     for number, procedure in enumerate(program.procedures):
         if number not in called:
             span = Span(procedure.span.start, procedure.span.start + len("DEF"))
-            yield Problem(codes.UNUSED_DEF, span, {"name": procedure.name})
+            yield Diagnostic(codes.UNUSED_DEF, span, {"name": procedure.name})

@@ -45,7 +45,7 @@ _UNARY: dict[str, Callable[[int], int]] = {
     "NEG": fixed_point.negate, "ABS": fixed_point.absolute, "NOT": (1).__sub__,
 }  # fmt: skip
 _YES_NO = frozenset(("EQ", "NE", "LT", "LE", "GT", "GE", "NOT"))
-# What cannot fault, so that evaluating it or not makes no difference.
+# Operations that cannot fault, so that leaving them out changes nothing.
 SAFE = frozenset(("NUMBER", "YES_NO", "VARIABLE", "SENSOR", "EQ", "NE", "LT", "LE", "GT", "GE",
                   "NOT", "AND", "OR", "AND_LEFT", "OR_LEFT", "MIN", "MAX"))  # fmt: skip
 
@@ -103,7 +103,7 @@ def constant(expression: Expression) -> int | None:
 
 
 def is_safe(terms: Expression) -> bool:
-    """Whether evaluating it can neither fault nor change anything."""
+    """Return whether evaluating these terms is free of faults and side effects."""
     return all(term.op in SAFE for term in terms)
 
 
@@ -147,7 +147,7 @@ def _calculated(op: str, left: list[Term], right: list[Term] | None) -> list[Ter
 
 
 def _decided(op: str, left: _Operand, right: _Operand) -> _Operand:
-    """Return `left op right`, without what a constant side makes needless."""
+    """Return `left op right`, without the side that a constant makes needless."""
     decides = 0 if op == "AND" else 1
     (terms, left_safe), (right_terms, right_safe) = left, right
     if _is_constant(terms):

@@ -1,6 +1,6 @@
-"""Words of a program that other robots know: their kits have them, and that of its robot does not.
+"""Finds words of a program that its robot's kit lacks, but the kits of other robots have.
 
-Knows the problems of a program and the kits of other robots. Opens no profile.
+Knows the diagnostics of a program and the kits of other robots. Opens no profile.
 """
 
 from __future__ import annotations
@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from tiniscript.diagnostics import codes
-from tiniscript.diagnostics.codes import Problem
+from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.kit import Kit
 from tiniscript.syntax.lexer import WORD, scan
 
@@ -16,15 +16,15 @@ _UNKNOWN = (codes.UNKNOWN_NAME, codes.UNKNOWN_WORD)
 _NUMBERS = ("first", "second", "third")
 
 
-def is_unknown(problem: Problem) -> bool:
+def is_unknown(diagnostic: Diagnostic) -> bool:
     """Whether a word is not known to the program's robot: another kit may have it."""
-    return problem.code in (*_UNKNOWN, codes.OTHER_ROBOT)
+    return diagnostic.code in (*_UNKNOWN, codes.OTHER_ROBOT)
 
 
 def naming_robots(
-    found: Sequence[Problem], text: str, own: tuple[str, Kit], others: Mapping[str, Kit]
-) -> list[Problem]:
-    """Return problems that name the robots that have an unknown word; at most three of them.
+    found: Sequence[Diagnostic], text: str, own: tuple[str, Kit], others: Mapping[str, Kit]
+) -> list[Diagnostic]:
+    """Return diagnostics that name the robots that have an unknown word; at most three of them.
 
     Where a robot has all kit words of the program, those that lack one are not named.
     """
@@ -33,15 +33,15 @@ def naming_robots(
     used = {token.text for token in scan(text).tokens if token.kind is WORD} & of_kits
     whole = [robot for robot, its in known.items() if used <= its]
     named = []
-    for problem in found:
-        word = problem.values.get("found", "")
+    for diagnostic in found:
+        word = diagnostic.values.get("found", "")
         having = [robot for robot, its in known.items() if word in its]
-        if problem.code in _UNKNOWN and having:
+        if diagnostic.code in _UNKNOWN and having:
             robots = [robot for robot in having if robot in whole] or having
             numbered = dict(zip(_NUMBERS, robots, strict=False))
             values = {"found": word, "own": own[0], **numbered}
-            problem = Problem(codes.OTHER_ROBOT, problem.span, values)
-        named.append(problem)
+            diagnostic = Diagnostic(codes.OTHER_ROBOT, diagnostic.span, values)
+        named.append(diagnostic)
     return named
 
 

@@ -15,13 +15,13 @@ from tiniscript.semantics.symbols import Scope
 from tiniscript.source import Span
 from tiniscript.syntax.ast import Argument, Part
 from tiniscript.syntax.operators import SIGN_OF
-from tiniscript.words import WORDS, meant_by
+from tiniscript.words import NUMBER_WORDS, WORDS, meant_by
 
 NUMBER, YES_NO, ANY = "number", "yes_no", "any"  # ANY: a mistake was already reported there
 
 
 class Value(NamedTuple):
-    """An expression that has been looked into. `depth` counts values on the stack."""
+    """A checked expression. `depth` counts values on the stack."""
 
     terms: Expression
     kind: str
@@ -110,10 +110,14 @@ class Kinds:
         ):  # fmt: skip
             scope.report(codes.OTHER_LANGUAGE, span, found=name, right=meant, fix=meant)
             return
+        if meant == "BUTTON" or name == "BUTTON":
+            scope.report(codes.NO_BUTTON, span)
+            return
         known = (each for each, its in scope.names.items() if its.what in ("sensor", "variable"))
-        near = scope.near(name, known)
+        near = NUMBER_WORDS.get(name) or scope.near(name, known)
         if name == target or name in scope.set_somewhere:
-            scope.report(codes.USED_BEFORE_SET, span, name=name, near=near)
+            first = scope.line_to_move_up(name, span)
+            scope.report(codes.USED_BEFORE_SET, span, name=name, near=near, **first)
         else:
             scope.report(codes.UNKNOWN_NAME, span, found=name, near=near)
 

@@ -1,1 +1,1 @@
-"""One port, many commands: who holds a port lets the others use its session."""
+"""One port, many commands: the command that holds a port shares its session with the others."""

@@ -1,7 +1,7 @@
-"""The way to a robot through the command that holds its port.
+"""The connection to a robot through the command that holds its port.
 
-Has no thread: what comes is read where somebody waits for it. While it waits it says that it is
-still there; a run that it has started ends when it does not. Knows sockets and the clock.
+Has no thread: a caller that waits reads what has arrived. While it waits it sends heartbeats; the
+server ends a run that it has started when they stay away. Knows sockets and the clock.
 """
 
 from __future__ import annotations
@@ -11,69 +11,76 @@ from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
 from time import monotonic
+from typing import Any, TypeVar
 
 from tiniscript import __version__
-from tiniscript.link.connection import Asked, Asks
+from tiniscript.link.connection import PendingRequest, Requester
 from tiniscript.link.outcomes import LOOK_S, Event, Gone
-from tiniscript.link.requests import OK, Reply, Robot, described
+from tiniscript.link.payloads import HelloReply
+from tiniscript.link.requests import OK, DeviceInfo, Reply, described
 from tiniscript.sharing import protocol, registry
-from tiniscript.sharing.protocol import BadNote, Note
-from tiniscript.sharing.registry import Holder
-from tiniscript.sharing.requests import Wish, Wishes
+from tiniscript.sharing.protocol import BadMessage, JsonMessage
+from tiniscript.sharing.registry import Registration
+from tiniscript.sharing.requests import ClientRequest, ClientRequests
 
-ANSWER_S = 2.0  # for which a holder may take to greet
-SEND_S = 2.0  # for which it may take no bytes
-DEAF_S = 5.0  # for which it may answer no beat
+ANSWER_S = 2.0  # timeout for the server's greeting
+SEND_S = 2.0  # timeout for a server that takes no bytes
+DEAF_S = 5.0  # timeout for the answer to a heartbeat
+
+
+T = TypeVar("T")
 
 
 class OtherVersion(Exception):
-    """The holder is a tsc of another version."""
+    """The server is a tsc of another version."""
 
-    def __init__(self, holder: Holder, version: str) -> None:
+    def __init__(self, registration: Registration, version: str) -> None:
         super().__init__(version)
-        self.holder = holder
+        self.registration = registration
         self.version = version
 
 
-class Guest:
-    """The way through a holder that has greeted."""
+class Client:
+    """The connection through a server that has sent its greeting."""
 
-    def __init__(self, peer: socket.socket, holder: Holder, rest: protocol.Notes) -> None:
-        self.robot: Robot | None = None
+    def __init__(
+        self, peer: socket.socket, registration: Registration, rest: protocol.MessageReader
+    ) -> None:
+        self.robot: DeviceInfo | None = None
         self.heard = 0
         self.is_echoed = False
-        self.held_by = holder.verb
-        self.baud = holder.baud
+        self.held_by = registration.verb
+        self.baud = registration.baud
         self._peer = peer
-        self._notes = rest
-        self._wishes = Wishes()
-        self._tasks: dict[int, Asked] = {}
+        self._messages = rest
+        self._requests = ClientRequests()
+        self._pending: dict[int, ClientRequest[Any]] = {}
         self._count = 0
         self._events: deque[tuple[int, Event]] = deque()
         self._over: Gone | None = None
-        self._beat_s = 0.0  # when the last one was sent
-        self._unanswered_s: float | None = None  # since when one is
+        self._heartbeat_s = 0.0  # when the last heartbeat was sent
+        self._unanswered_s: float | None = None  # since when a heartbeat is
 
     @property
     def has_ended(self) -> bool:
         return self._over is not None
 
-    def do(self, make: Callable[[Asks], Asked]) -> Asked:
-        task = make(self._wishes)
-        assert isinstance(task, Wish)
+    def do(self, make: Callable[[Requester], PendingRequest[T]]) -> PendingRequest[T]:
+        request = make(self._requests)
+        assert isinstance(request, ClientRequest)
         self._count += 1
-        self._tasks[self._count] = task
-        self._send({**task.note, "id": self._count, "limit_ms": task.limit_ms})
-        return task
+        self._pending[self._count] = request
+        self._send({**request.message, "id": self._count, "limit_ms": request.limit_ms})
+        return request
 
-    def wait(self, task: Asked, look: Callable[[], None] | None = None) -> Reply:
-        while task.outcome is None:
+    def wait(self, request: PendingRequest[T], look: Callable[[], None] | None = None) -> Reply[T]:
+        while request.outcome is None:
             if self._over is not None:
                 raise self._over
             self._listen(LOOK_S)
             if look is not None:
                 look()
-        return task.outcome
+        return request.outcome
 
     def event(self, limit_s: float = LOOK_S) -> tuple[int, Event] | None:
         if not self._events:
@@ -88,19 +95,19 @@ class Guest:
     def close(self) -> None:
         self._peer.close()
 
-    def _send(self, note: Note) -> None:
+    def _send(self, message: JsonMessage) -> None:
         try:
             self._peer.settimeout(SEND_S)
-            self._peer.sendall(protocol.written(note))
+            self._peer.sendall(protocol.written(message))
         except OSError as why:
-            # what has come before may say more
-            self._over = self._over or Gone(str(why), is_holder=True)
+            # messages that arrived earlier may give a better reason
+            self._over = self._over or Gone(str(why), is_server=True)
 
     def _listen(self, limit_s: float) -> None:
-        """Take what has come, or comes in time."""
+        """Read and handle messages until some arrive or the time is over."""
         now_s = monotonic()
-        if now_s - self._beat_s >= protocol.BEAT_S:
-            self._beat_s = now_s
+        if now_s - self._heartbeat_s >= protocol.HEARTBEAT_S:
+            self._heartbeat_s = now_s
             if self._unanswered_s is None:
                 self._unanswered_s = now_s
             self._send({"do": "beat"})
@@ -110,104 +117,98 @@ class Guest:
             if not data:
                 raise ConnectionError
             self._unanswered_s = None
-            for note in self._notes.put(data):
-                self._take(note)
+            for message in self._messages.put(data):
+                self._take(message)
         except TimeoutError:
             if self._unanswered_s is not None and now_s - self._unanswered_s > DEAF_S:
-                self._over = Gone("", is_holder=True)
-        except (OSError, BadNote) as why:
-            self._over = self._over or Gone(str(why), is_holder=True)
+                self._over = Gone("", is_server=True)
+        except (OSError, BadMessage) as why:
+            self._over = self._over or Gone(str(why), is_server=True)
 
-    def _take(self, note: Note) -> None:
-        if "over" in note:
-            is_holder = note["over"] != "gone"
-            self._over = Gone(protocol.word(note, "why"), is_holder)
-        elif "event" in note:
-            self._events.append(protocol.event(note))
-        elif "id" in note:
-            self._take_outcome(note)
+    def _take(self, message: JsonMessage) -> None:
+        if "over" in message:
+            is_server = message["over"] != "gone"
+            self._over = Gone(protocol.word(message, "why"), is_server)
+        elif "event" in message:
+            self._events.append(protocol.event(message))
+        elif "id" in message:
+            self._take_outcome(message)
 
-    def _take_outcome(self, note: Note) -> None:
-        number = protocol.number(note, "id")
-        task = self._tasks.get(number)
-        if task is None:
-            raise BadNote
-        if "done_bytes" in note:
-            task.done_bytes = protocol.number(note, "done_bytes")
+    def _take_outcome(self, message: JsonMessage) -> None:
+        number = protocol.number(message, "id")
+        request = self._pending.get(number)
+        if request is None:
+            raise BadMessage
+        if "done_bytes" in message:
+            request.done_bytes = protocol.number(message, "done_bytes")
             return
-        values = protocol.values(note)
-        self.heard, self.is_echoed = (
-            protocol.number(note, "heard"),
-            protocol.answer(note, "is_echoed"),
-        )
-        task.outcome = Reply(
-            protocol.number(note, "status"), protocol.number(note, "detail"), values
-        )
-        del self._tasks[number]
-        assert isinstance(task, Wish)
-        if task.note["do"] == "hello" and task.outcome.status == OK:
-            self.robot = _described(values)
-        elif task.outcome.status == OK and task.note["do"] == "name" and self.robot is not None:
-            name = bytes.fromhex(str(task.note["name"]))
-            self.robot = described({**self.robot.values, "name": name})
+        self.heard = protocol.number(message, "heard")
+        self.is_echoed = protocol.answer(message, "is_echoed")
+        reply = protocol.reply(message, request.kind)
+        request.outcome = reply
+        del self._pending[number]
+        if reply.status == OK:
+            self._learn(request, reply.values)
+
+    def _learn(self, request: ClientRequest[Any], values: object) -> None:
+        """Remember who the robot is."""
+        if isinstance(values, HelloReply):
+            self.robot = described(values)
+        elif request.message["do"] == "name" and self.robot is not None:
+            name = bytes.fromhex(str(request.message["name"]))
+            self.robot = described(self.robot.values._replace(name=name))
 
 
-def _described(values: dict[str, int | bytes]) -> Robot:
-    """Return what a robot has said of itself. Raises BadNote where something is missing."""
-    try:
-        return described(values)
-    except (KeyError, AssertionError):
-        raise BadNote from None
+def joined(port: str, verb: str) -> Client | None:
+    """Return the connection through the command that holds a port; None if no command does.
 
-
-def joined(port: str, verb: str) -> Guest | None:
-    """Return the way through whoever holds a port, or None where nobody does.
-
-    Raises OtherVersion where the holder is another tsc; `stop` gets through to that, too.
+    Raises OtherVersion where the server is another version of tsc; `stop` works there, too.
     """
-    holder = registry.found(port)
-    return None if holder is None else _joined(holder, verb)
+    registration = registry.found(port)
+    return None if registration is None else _joined(registration, verb)
 
 
-def is_alive(holder: Holder) -> bool:
-    """Whether a holder is still there."""
+def is_alive(registration: Registration) -> bool:
+    """Whether a server is still there."""
     try:
-        guest = _joined(holder, protocol.LOOKER)
+        client = _joined(registration, protocol.LOOKER)
     except OtherVersion:
         return True
-    if guest is not None:
-        guest.close()
-    return guest is not None
+    if client is not None:
+        client.close()
+    return client is not None
 
 
-def _joined(holder: Holder, verb: str) -> Guest | None:
+def _joined(registration: Registration, verb: str) -> Client | None:
     peer = None
     try:
-        peer = socket.create_connection((protocol.HOST, holder.number), ANSWER_S)
+        peer = socket.create_connection((protocol.HOST, registration.number), ANSWER_S)
         peer.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        peer.sendall(protocol.written({"tsc": __version__, "token": holder.token, "verb": verb}))
-        rest = protocol.Notes(protocol.LINE_BYTES)
+        peer.sendall(
+            protocol.written({"tsc": __version__, "token": registration.token, "verb": verb})
+        )
+        rest = protocol.MessageReader(protocol.LINE_BYTES)
         found = _first(peer, rest)
-        if protocol.word(found[0], "answer") != holder.answer:
-            raise BadNote  # somebody else listens there now
+        if protocol.word(found[0], "answer") != registration.answer:
+            raise BadMessage  # another program listens there now
         version = protocol.word(found[0], "tsc")
         if version != __version__ and verb != "stop":
-            raise OtherVersion(holder, version)
-        guest = Guest(peer, holder, rest)
-        for note in found[1:]:
-            guest._take(note)
-        return guest
-    except (OSError, BadNote, OtherVersion) as trouble:
+            raise OtherVersion(registration, version)
+        client = Client(peer, registration, rest)
+        for message in found[1:]:
+            client._take(message)
+        return client
+    except (OSError, BadMessage, OtherVersion) as failure:
         if peer is not None:
             with suppress(OSError):
                 peer.close()
-        if isinstance(trouble, OtherVersion):
+        if isinstance(failure, OtherVersion):
             raise
         return None
 
 
-def _first(peer: socket.socket, rest: protocol.Notes) -> list[Note]:
-    """Return the greeting of a holder and what follows it."""
+def _first(peer: socket.socket, rest: protocol.MessageReader) -> list[JsonMessage]:
+    """Return the greeting of a server and what follows it."""
     end_s = monotonic() + ANSWER_S
     while (left_s := end_s - monotonic()) > 0:
         peer.settimeout(left_s)

@@ -1,6 +1,6 @@
-"""What a holder and its guests say to each other: lines of JSON of a limited length.
+"""The messages between a server and its clients: lines of JSON of a limited length.
 
-    guest                                        holder
+    client                                       server
     {"tsc": "0.1.0", "token": "..", "verb": ".."}
                                                  {"tsc": "0.1.0", "answer": ".."}
     {"do": "upload", "id": 1, "limit_ms": 6000, "image": "..", ..}
@@ -12,9 +12,9 @@
     {"do": "beat"}                               {"beat": true}
                                                  {"over": "ended", "why": ""}
 
-Whoever does not begin with the right token is not answered, and nothing that it says is read as
-JSON: a greeting has one form, to the byte. The greeting and `stop` stay as they are in every
-version, so that each tsc can stop what another one holds. Bytes are written in hex.
+The server does not answer a client that begins without the right token, and reads nothing from it
+as JSON: a greeting has one form, to the byte. The greeting and `stop` are the same in every
+version, so that each tsc can stop a robot that another version holds. Bytes are written in hex.
 Knows no socket.
 """
 
@@ -23,124 +23,142 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Mapping
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
+from tiniscript.link.fields import event_of, filled
+from tiniscript.link.messages import Malformed
 from tiniscript.link.outcomes import Event
+from tiniscript.link.requests import OK, Reply
 
 HOST = "127.0.0.1"
 LINE_BYTES = 100_000  # the longest program has 32,781 bytes
 GREETING_BYTES = 1000
-LOOKER = "ports"  # the verb of a guest that only looks who is there
-BEAT_S = 0.2  # between two beats of a guest that waits for something
-TETHER_S = 1.0  # a run ends when the guest that has started it is silent for so long
+LOOKER = "ports"  # the verb of a client that only checks which robot is there
+HEARTBEAT_S = 0.2  # between two heartbeats of a waiting client
+DEAD_MAN_S = 1.0  # dead-man timer: a run ends when its client is silent for this long
 
-Note = dict[str, object]
+JsonMessage = dict[str, object]
+T = TypeVar("T")
 
 _GREETING = re.compile(
     rb'{"tsc":"[0-9A-Za-z.+-]{1,40}","token":"([0-9a-f]{32})","verb":"([A-Za-z]{1,20})"}\n'
 )
 
 
-class BadNote(Exception):
-    """What came is no note, or not the one that was expected."""
+class BadMessage(Exception):
+    """The data is no message, or not the expected one."""
 
 
 class Greeting(NamedTuple):
     token: bytes
     verb: str
-    rest: bytes  # what follows it
+    rest: bytes  # the bytes after the greeting
 
 
 def greeting(data: bytes) -> Greeting | None:
-    """Return the greeting that data begins with, or None while it may still become one.
+    """Return the greeting that data begins with, or None while it is still incomplete.
 
-    Raises BadNote.
+    Raises BadMessage where data is no greeting.
     """
     found = _GREETING.match(data)
     if found is not None:
         return Greeting(found[1], found[2].decode("ascii"), data[found.end() :])
     if data[:1] != b"{" or b"\n" in data or len(data) > GREETING_BYTES:
-        raise BadNote
+        raise BadMessage
     return None
 
 
-class Notes:
-    """Bytes to notes. `limit_bytes` is that of the longest line."""
+class MessageReader:
+    """Turns bytes into messages. `limit_bytes` is the length of the longest line allowed."""
 
     def __init__(self, limit_bytes: int) -> None:
         self.limit_bytes = limit_bytes
         self._rest = b""
 
-    def put(self, data: bytes) -> list[Note]:
-        """Return the notes that are complete. Raises BadNote."""
+    def put(self, data: bytes) -> list[JsonMessage]:
+        """Return the messages that are now complete. Raises BadMessage."""
         *lines, self._rest = (self._rest + data).split(b"\n")
         if any(len(line) > self.limit_bytes for line in (*lines, self._rest)):
-            raise BadNote
-        return [_note(line) for line in lines]
+            raise BadMessage
+        return [_message(line) for line in lines]
 
 
-def written(note: Mapping[str, object]) -> bytes:
-    return json.dumps(note, separators=(",", ":")).encode() + b"\n"
+def written(message: Mapping[str, object]) -> bytes:
+    return json.dumps(message, separators=(",", ":")).encode() + b"\n"
 
 
-def _note(line: bytes) -> Note:
+def _message(line: bytes) -> JsonMessage:
     try:
         found = json.loads(line)
     except (ValueError, RecursionError):
-        raise BadNote from None
+        raise BadMessage from None
     if not isinstance(found, dict):
-        raise BadNote
+        raise BadMessage
     return found
 
 
-def word(note: Note, name: str) -> str:
-    """Return a field that is text. Raises BadNote where it is none."""
-    found = note.get(name)
+def word(message: JsonMessage, name: str) -> str:
+    """Return a field of text. Raises BadMessage where it is something else."""
+    found = message.get(name)
     if not isinstance(found, str):
-        raise BadNote
+        raise BadMessage
     return found
 
 
-def number(note: Note, name: str) -> int:
-    """Return a field that is a whole number. Raises BadNote where it is none."""
-    found = note.get(name)
+def number(message: JsonMessage, name: str) -> int:
+    """Return a field that is a whole number. Raises BadMessage where it is something else."""
+    found = message.get(name)
     if type(found) is not int:
-        raise BadNote
+        raise BadMessage
     return found
 
 
-def answer(note: Note, name: str) -> bool:
-    """Return a field that is true or false. Raises BadNote where it is neither."""
-    found = note.get(name)
+def answer(message: JsonMessage, name: str) -> bool:
+    """Return a field that is true or false. Raises BadMessage where it is something else."""
+    found = message.get(name)
     if type(found) is not bool:
-        raise BadNote
+        raise BadMessage
     return found
 
 
-def data(note: Note, name: str) -> bytes:
-    """Return a field that is bytes. Raises BadNote where it is none."""
+def data(message: JsonMessage, name: str) -> bytes:
+    """Return a field of bytes in hex. Raises BadMessage where it is something else."""
     try:
-        return bytes.fromhex(word(note, name))
+        return bytes.fromhex(word(message, name))
     except ValueError:
-        raise BadNote from None
+        raise BadMessage from None
 
 
-def plain(values: Mapping[str, int | bytes]) -> Note:
-    """Return the values of a reply or an event as JSON has them."""
+def plain(values: Mapping[str, int | bytes]) -> JsonMessage:
+    """Return the fields of a reply or an event in a form for JSON: bytes become hex."""
     return {name: each.hex() if isinstance(each, bytes) else each for name, each in values.items()}
 
 
-def values(note: Note, name: str = "values") -> dict[str, int | bytes]:
-    """Return the values in a note. Raises BadNote."""
-    found = note.get(name)
+def values(message: JsonMessage) -> dict[str, int | bytes]:
+    """Return the fields of a reply or an event. Raises BadMessage."""
+    found = message.get("values")
     if not isinstance(found, dict):
-        raise BadNote
+        raise BadMessage
     return {
         key: number(found, key) if type(each) is int else data(found, key)
         for key, each in found.items()
     }
 
 
-def event(note: Note) -> tuple[int, Event]:
-    """Return the event in a note and when it came (ms). Raises BadNote."""
-    return number(note, "ms"), Event(word(note, "event"), values(note))
+def reply(message: JsonMessage, kind: type[T]) -> Reply[T]:
+    """Return the reply in a message, with values of the type `kind`. Raises BadMessage."""
+    status, detail, found = number(message, "status"), number(message, "detail"), values(message)
+    if status != OK:
+        return Reply(status, detail)
+    try:
+        return Reply(OK, detail, filled(kind, found))
+    except Malformed:
+        raise BadMessage from None
+
+
+def event(message: JsonMessage) -> tuple[int, Event]:
+    """Return the time (ms) and the event of a message. Raises BadMessage."""
+    try:
+        return number(message, "ms"), event_of(word(message, "event"), values(message))
+    except Malformed:
+        raise BadMessage from None

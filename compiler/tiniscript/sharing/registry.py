@@ -1,8 +1,8 @@
-"""Who holds which port: a file for each, which only the user can read.
+"""Which command holds which port: one file for each port, which only the user can read.
 
-It says where the holder listens and what proves that a command is of the same user. A file may
-outlive its holder: whoever reads it must hear the right answer from there, or the port is free.
-Knows files, and whether a TCP port is taken. Talks to nobody.
+The file says where the server listens, and has the token that proves that a client belongs to the
+same user. A file may outlive its server: without the right answer from there, the port is free.
+Knows files, and whether a TCP port is taken. Connects to no server.
 """
 
 from __future__ import annotations
@@ -26,11 +26,11 @@ FILE_BYTES = 4096
 _LOCK_FLAGS = os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0)
 
 
-class Holder(NamedTuple):
-    """`number` is the TCP port on 127.0.0.1 where the holder of `port` listens.
+class Registration(NamedTuple):
+    """`number` is the TCP port on 127.0.0.1 where the server of `port` listens.
 
-    A guest proves with `token` that it may come in, and the holder with `answer` that it is the
-    one who has written this.
+    A client proves with `token` that it may connect; the server proves with `answer` that it has
+    written this file.
     """
 
     port: str
@@ -42,37 +42,39 @@ class Holder(NamedTuple):
     pid: int
 
 
-def found(port: str) -> Holder | None:
-    """Return what is written of the holder of a port, if anything is."""
-    holder = _read(_path(port))
-    return holder if holder is not None and holder.port == same_for_all(port) else None
+def found(port: str) -> Registration | None:
+    """Return the registration of the server of a port, or None."""
+    registration = _read(_path(port))
+    if registration is None or registration.port != same_for_all(port):
+        return None
+    return registration
 
 
-def all_found() -> list[Holder]:
-    """Return what is written of the holders of all ports."""
+def all_found() -> list[Registration]:
+    """Return the registrations of the servers of all ports."""
     tidy()
     with suppress(OSError):
         paths = sorted(_folder().glob(f"{_computer()}-*.json"))
-        return [holder for holder in map(_read, paths) if holder is not None]
+        return [registration for registration in map(_read, paths) if registration is not None]
     return []
 
 
-def write(holder: Holder) -> None:
-    """Let others find a holder. Raises OSError where nothing can be written."""
+def write(registration: Registration) -> None:
+    """Write the file by which clients find a server. Raises OSError where that is impossible."""
     _make_folder()
     tidy()
-    files.replace(_path(holder.port), json.dumps(holder._asdict()).encode(), 0o600)
+    files.replace(_path(registration.port), json.dumps(registration._asdict()).encode(), 0o600)
 
 
-def remove(holder: Holder) -> None:
-    """Take back what is written of a holder, unless another one has written since."""
-    _remove(_path(holder.port), lambda found: found == holder)
+def remove(registration: Registration) -> None:
+    """Remove the file of a server, unless another server has replaced it."""
+    _remove(_path(registration.port), lambda found: found == registration)
 
 
-def _remove(path: Path, is_meant: Callable[[Holder | None], bool]) -> None:
-    """Remove a file if it says what is meant, and never another one that was written meanwhile.
+def _remove(path: Path, is_meant: Callable[[Registration | None], bool]) -> None:
+    """Remove a file if `is_meant` accepts its content, and never one that has replaced it.
 
-    It is taken aside before it is read for the last time, and put back where it is another one.
+    The file is renamed before the last check, and renamed back if the check fails.
     """
     if not is_meant(_read(path)):
         return
@@ -86,9 +88,9 @@ def _remove(path: Path, is_meant: Callable[[Holder | None], bool]) -> None:
 
 
 def tidy() -> None:
-    """Remove what killed commands of this computer have left: nobody listens where they did.
+    """Remove the files of killed commands of this computer: no server listens on their ports.
 
-    A living holder listens before it writes its file, and removes the file before it stops.
+    A running server listens before it writes its file, and removes the file before it stops.
     """
     folder = _folder()
     with suppress(OSError):
@@ -103,14 +105,14 @@ def tidy() -> None:
                     lock.close()
 
 
-def _is_dead(holder: Holder | None) -> bool:
-    return holder is not None and not is_taken(holder.number)
+def _is_dead(registration: Registration | None) -> bool:
+    return registration is not None and not is_taken(registration.number)
 
 
 def is_taken(number: int) -> bool:
-    """Whether somebody listens on a TCP port of this computer; nobody is visited for that."""
+    """Whether a process listens on a TCP port of this computer; makes no connection."""
     with socket() as probe:
-        if sys.platform != "win32":  # there it would take a port away from its owner
+        if sys.platform != "win32":  # on Windows it would take the port from its owner
             probe.setsockopt(SOL_SOCKET, SO_REUSEADDR, 1)
         try:
             probe.bind(("127.0.0.1", number))
@@ -120,15 +122,15 @@ def is_taken(number: int) -> bool:
 
 
 def forget(port: str) -> None:
-    """Remove what is written of a holder of a port, for whoever has opened the port."""
+    """Remove the registration of a port. Only for the command that has opened the port itself."""
     with suppress(OSError):
         _path(port).unlink(missing_ok=True)
 
 
 def claimed(port: str) -> IO[bytes] | None:
-    """Return a file that is locked for this process alone, or None where another one has it.
+    """Return a file that is locked for this process, or None where another process has the lock.
 
-    No system keeps two processes from the same address, as it does with serial ports. The lock
+    Systems lock serial ports, but not addresses: two processes could use the same one. The lock
     ends with the file, or with the process. Raises OSError where nothing can be locked.
     """
     _make_folder()
@@ -136,7 +138,7 @@ def claimed(port: str) -> IO[bytes] | None:
 
 
 class _Lock(FileIO):
-    """A locked file, which goes when it is closed; whoever is killed leaves it to `tidy`."""
+    """A locked file that is removed when closed; `tidy` removes those of killed processes."""
 
     def __init__(self, path: Path) -> None:
         super().__init__(os.open(path, _LOCK_FLAGS, 0o600), "r+")
@@ -145,7 +147,7 @@ class _Lock(FileIO):
 
     @property
     def is_there(self) -> bool:
-        """Whether the file of this lock is still the one at its path."""
+        """Whether this locked file is still the one at its path."""
         try:
             return os.path.samestat(os.fstat(self.fileno()), self.path.stat())
         except OSError:
@@ -161,15 +163,15 @@ class _Lock(FileIO):
                 is_unlinked = True
         super().close()
         if self.is_ours and not is_unlinked and sys.platform == "win32":
-            with suppress(OSError):  # another process has it open, and will remove it
+            with suppress(OSError):  # another process has the file open, and will remove it
                 self.path.unlink()
 
 
 def _locked(path: Path) -> _Lock | None:
-    """Return a locked file, or None where another process has it.
+    """Return a locked file, or None where another process has locked it.
 
-    Whoever had it may have removed it between our opening and our locking it: then it locks
-    nothing, and the next one at its place is tried.
+    The previous owner may have removed the file between our open and our lock: then the lock
+    protects nothing, and the file that is now at the path is tried.
     """
     while True:
         file = _Lock(path)
@@ -183,7 +185,7 @@ def _locked(path: Path) -> _Lock | None:
 
 
 def _lock(file: FileIO) -> bool:
-    """Lock a file for this process; return whether nobody else had done so."""
+    """Lock a file for this process; return False where another process has locked it."""
     try:
         if sys.platform == "win32":
             import msvcrt
@@ -202,22 +204,22 @@ def _lock(file: FileIO) -> bool:
     return True
 
 
-def _read(path: Path) -> Holder | None:
-    """Return what a file says, if this user alone may have written it."""
+def _read(path: Path) -> Registration | None:
+    """Return the registration in a file, if only this user can have written it."""
     try:
         if sys.platform != "win32":
             about = path.parent.stat()
             if about.st_uid != os.geteuid() or about.st_mode & 0o077:
                 return None
         fields = json.loads(contents(path, FILE_BYTES))
-        holder = Holder(*(fields[name] for name in Holder._fields))
+        registration = Registration(*(fields[name] for name in Registration._fields))
     except (OSError, ValueError, TypeError, KeyError, RecursionError):
         return None
-    numbers = holder.number, holder.baud, holder.pid
-    words = holder.port, holder.token, holder.answer, holder.verb
+    numbers = registration.number, registration.baud, registration.pid
+    words = registration.port, registration.token, registration.answer, registration.verb
     is_sound = all(isinstance(each, str) and each.isprintable() for each in words)
     is_sound = is_sound and all(type(each) is int for each in numbers)
-    return holder if is_sound and 0 < holder.number < 65536 else None
+    return registration if is_sound and 0 < registration.number < 65536 else None
 
 
 def _make_folder() -> None:
@@ -237,5 +239,5 @@ def _path(port: str) -> Path:
 
 
 def _computer() -> str:
-    """Return the name of this computer: others may share the user's folders."""
+    """Return the name of this computer: several computers may share the user's folders."""
     return "".join(letter if letter.isalnum() else "_" for letter in gethostname())[:40]

@@ -1,74 +1,87 @@
-"""What a guest may wish for: as a note that it writes, and as what the holder then asks.
+"""The requests of a client: the message that it writes, and the call that the server then makes.
 
-Each wish is here twice, one above the other. Whatever comes in a note is looked at here, before
-the session sees it.
+Each request is here twice, one above the other. This module checks every field of a message
+before it reaches the session.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any, TypeVar
 
-from tiniscript.bytecode.image import STARTS, Image
-from tiniscript.link.connection import Asked, Asks
+from tiniscript.bytecode.image import HEADER_BYTES, STARTS, Image
+from tiniscript.link.connection import PendingRequest, Requester
 from tiniscript.link.messages import NAME_BYTES, TRIM_BYTES
-from tiniscript.link.requests import Reply
+from tiniscript.link.payloads import (
+    EmptyReply,
+    HelloReply,
+    PingReply,
+    ReceiptReply,
+    StatusReply,
+    TrimReply,
+)
+from tiniscript.link.requests import FetchedImage
 from tiniscript.sharing import protocol
-from tiniscript.sharing.protocol import BadNote, Note
+from tiniscript.sharing.protocol import BadMessage, JsonMessage
 
-CODE_BYTES = 0x7FFF  # as an image's header can say
+CODE_BYTES = 0x7FFF  # the most that an image's header can say
+LATER_BYTES = 0xFF - HEADER_BYTES  # the most that it can say
+T = TypeVar("T")
 _PLAIN = ("hello", "ping", "status", "clear", "fetch")
 
 
-class Wish:
-    """Something that a guest has asked for: what `link.asking` says of it."""
+class ClientRequest(PendingRequest[T]):
+    """A request of a client: the values of its reply have the type `kind`."""
 
-    def __init__(self, do: str, starts: bool = False, **fields: object) -> None:
-        self.note: Note = {"do": do, **fields}
-        self.starts = starts
-        self.limit_ms = 20_000
-        self.done_bytes = 0
-        self.outcome: Reply | None = None
+    def __init__(self, do: str, kind: type[T], starts: bool = False, **fields: object) -> None:
+        super().__init__(starts=starts)
+        self.message: JsonMessage = {"do": do, **fields}
+        self.kind = kind
 
 
-class Wishes:
-    """All that a guest can ask for: the same as a session."""
+class ClientRequests:
+    """All requests of a client: the same as those of a session."""
 
-    def hello(self) -> Wish:
-        return Wish("hello")
+    def hello(self) -> ClientRequest[HelloReply]:
+        return ClientRequest("hello", HelloReply)
 
-    def ping(self) -> Wish:
-        return Wish("ping")
+    def ping(self) -> ClientRequest[PingReply]:
+        return ClientRequest("ping", PingReply)
 
-    def status(self) -> Wish:
-        return Wish("status")
+    def status(self) -> ClientRequest[StatusReply]:
+        return ClientRequest("status", StatusReply)
 
-    def clear(self) -> Wish:
-        return Wish("clear")
+    def clear(self) -> ClientRequest[EmptyReply]:
+        return ClientRequest("clear", EmptyReply)
 
-    def fetch(self) -> Wish:
-        return Wish("fetch")
+    def fetch(self) -> ClientRequest[FetchedImage]:
+        return ClientRequest("fetch", FetchedImage)
 
-    def name(self, name: bytes) -> Wish:
-        return Wish("name", name=name.hex())
+    def name(self, name: bytes) -> ClientRequest[EmptyReply]:
+        return ClientRequest("name", EmptyReply, name=name.hex())
 
-    def trim(self, trim: bytes = b"") -> Wish:
-        return Wish("trim", trim=trim.hex())
+    def trim(self, trim: bytes = b"") -> ClientRequest[TrimReply]:
+        return ClientRequest("trim", TrimReply, trim=trim.hex())
 
-    def start(self, is_detached: bool = False) -> Wish:
-        return Wish("start", starts=True, is_detached=is_detached)
+    def start(self, is_detached: bool = False) -> ClientRequest[ReceiptReply]:
+        return ClientRequest("start", ReceiptReply, starts=True, is_detached=is_detached)
 
-    def live(self, code: bytes, kit: int = 0) -> Wish:
-        return Wish("live", starts=True, code=code.hex(), kit=kit)
+    def live(self, code: bytes, kit: int = 0) -> ClientRequest[ReceiptReply]:
+        return ClientRequest("live", ReceiptReply, starts=True, code=code.hex(), kit=kit)
 
     def upload(
-        self, image: Image, runs: bool = True, saves: bool = True, is_detached: bool = False
-    ) -> Wish:
-        return Wish(
+        self, image: Image, runs: bool = True, saves: bool = True, is_detached: bool = False,
+        kit: int | None = None,
+    ) -> ClientRequest[ReceiptReply]:  # fmt: skip
+        return ClientRequest(
             "upload",
+            ReceiptReply,
             starts=runs and image.start == "SI",
             start=image.start,
-            kit=image.kit,
+            devices=image.devices,
+            kit=kit or 0,
             code=image.code.hex(),
+            later=image.later.hex(),
             checksum=image.checksum,
             isa=bytes(image.isa).hex(),
             runs=runs,
@@ -77,65 +90,64 @@ class Wishes:
         )
 
 
-def asked_for(note: Note, limit_ms: int) -> Callable[[Asks], Asked]:
-    """Return what asks a session for what a note wishes. Raises BadNote."""
-    ask = _asked_for(note)
+def asked_for(message: JsonMessage, limit_ms: int) -> Callable[[Requester], PendingRequest[Any]]:
+    """Return the function that makes a message's request to a session. Raises BadMessage."""
+    ask = _asked_for(message)
 
-    def limited(session: Asks) -> Asked:
-        task = ask(session)
-        task.limit_ms = limit_ms
-        return task
+    def limited(session: Requester) -> PendingRequest[Any]:
+        request = ask(session)
+        request.limit_ms = limit_ms
+        return request
 
     return limited
 
 
-def is_detached(note: Note) -> bool:
-    """Return whether a note wishes for a run that needs nobody."""
-    return note.get("is_detached") is True
+def is_detached(message: JsonMessage) -> bool:
+    """Return whether a message requests a run that goes on without its client."""
+    return message.get("is_detached") is True
 
 
-def _asked_for(note: Note) -> Callable[[Asks], Asked]:
-    do = protocol.word(note, "do")
+def _asked_for(message: JsonMessage) -> Callable[[Requester], PendingRequest[Any]]:
+    do = protocol.word(message, "do")
     if do in _PLAIN:
         return lambda session: _plain(session, do)
     if do == "name":
-        name = protocol.data(note, "name")
+        name = protocol.data(message, "name")
         if not 1 <= len(name) <= NAME_BYTES:
-            raise BadNote
+            raise BadMessage
         return lambda session: session.name(name)
     if do == "trim":
-        trim = protocol.data(note, "trim")
+        trim = protocol.data(message, "trim")
         if len(trim) not in (0, TRIM_BYTES):
-            raise BadNote
+            raise BadMessage
         return lambda session: session.trim(trim)
     if do == "start":
-        is_alone = protocol.answer(note, "is_detached")
+        is_alone = protocol.answer(message, "is_detached")
         return lambda session: session.start(is_alone)
     if do == "live":
-        code, kit = protocol.data(note, "code"), protocol.number(note, "kit")
+        code, kit = protocol.data(message, "code"), protocol.number(message, "kit")
         return lambda session: session.live(code, kit)
     if do == "upload":
-        image = _image(note)
+        image, kit = _image(message), protocol.number(message, "kit")
         runs, saves, is_alone = (
-            protocol.answer(note, name) for name in ("runs", "saves", "is_detached")
+            protocol.answer(message, name) for name in ("runs", "saves", "is_detached")
         )
-        return lambda session: session.upload(image, runs, saves, is_alone)
-    raise BadNote
+        return lambda session: session.upload(image, runs, saves, is_alone, kit)
+    raise BadMessage
 
 
-def _plain(session: Asks, do: str) -> Asked:
-    asked: Asked = getattr(session, do)()
+def _plain(session: Requester, do: str) -> PendingRequest[Any]:
+    asked: PendingRequest[Any] = getattr(session, do)()
     return asked
 
 
-def _image(note: Note) -> Image:
-    start, code, isa = (
-        protocol.word(note, "start"),
-        protocol.data(note, "code"),
-        protocol.data(note, "isa"),
-    )
-    kit, checksum = protocol.number(note, "kit"), protocol.number(note, "checksum")
+def _image(message: JsonMessage) -> Image:
+    start = protocol.word(message, "start")
+    code, isa, later = (protocol.data(message, name) for name in ("code", "isa", "later"))
+    devices, checksum = protocol.number(message, "devices"), protocol.number(message, "checksum")
     is_sound = start in STARTS[:2] and len(code) <= CODE_BYTES and len(isa) == 2
-    if not is_sound or not 0 <= kit < 1 << 16 or not 0 <= checksum < 1 << 32:
-        raise BadNote
-    return Image(start, kit, code, checksum, (isa[0], isa[1]))
+    if not is_sound or len(later) > LATER_BYTES:
+        raise BadMessage
+    if not 0 <= devices < 1 << 16 or not 0 <= checksum < 1 << 32:
+        raise BadMessage
+    return Image(start, devices, code, checksum, (isa[0], isa[1]), later)

@@ -1,116 +1,119 @@
-"""A line that others may use: other commands come here, and one thread attends to all of them.
+"""A line that other commands share: they connect as clients, and one thread serves all of them.
 
-What a guest wants done goes to the one session of the line, and everybody hears what the robot
-tells. A run belongs to the guest that has started it: when that guest leaves or falls silent, the
-robot is stopped, as it stops by itself when a command that holds the port ends. No guest can hold
-up the line or another guest: whoever is slow misses events, and whoever is rude is let go.
+The requests of all clients go to the one session of the line, and all clients get the events of
+the robot. A run belongs to the client that has started it: when that client leaves or its
+heartbeats stop, the server stops the robot, as the robot stops itself when the command that holds
+the port ends. No client can delay the line or another client: a slow client misses events, and
+one that breaks the protocol is disconnected.
 """
 
 from __future__ import annotations
 
+import hmac
 import os
-import secrets
 import selectors
 import socket
 from collections import deque
 from contextlib import suppress
 from threading import Thread
 from time import monotonic, sleep
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from tiniscript import __version__
+from tiniscript.link import fields
 from tiniscript.link.backlog import Told
-from tiniscript.link.connection import Asked
+from tiniscript.link.connection import PendingRequest
 from tiniscript.link.line import Line
-from tiniscript.link.outcomes import Event
+from tiniscript.link.outcomes import Event, JoinedEvent, LeftEvent, MissedEvent
+from tiniscript.link.payloads import ReceiptReply
 from tiniscript.link.port_names import same_for_all
 from tiniscript.link.requests import OK, Reply
 from tiniscript.sharing import protocol, registry
-from tiniscript.sharing.protocol import BadNote, Note
-from tiniscript.sharing.registry import Holder
+from tiniscript.sharing.protocol import BadMessage, JsonMessage
+from tiniscript.sharing.registry import Registration
 from tiniscript.sharing.requests import asked_for, is_detached
 
-GREETING_S = 2.0  # in which whoever comes must say who it is
-GUESTS = 64  # at a time, and as many who have not said who they are
-TASKS = 8  # of one guest, at a time
-FULL_BYTES = 200_000  # that wait for a slow guest: from here on it misses values,
-TOO_FULL_BYTES = 1_000_000  # and here it is let go
-FULL_S = 0.02  # after which there may be room for one more open file
-PAUSE_S = 0.1  # between two looks at a run or a task of a guest
-REST_S = 1.0  # between two looks at nothing
+GREETING_S = 2.0  # timeout for a new client's greeting
+CLIENTS = 64  # at a time, and as many connections without a greeting
+REQUESTS = 8  # of one client, at a time
+FULL_BYTES = 200_000  # in the send buffer: a client with more misses values
+TOO_FULL_BYTES = 1_000_000  # in the send buffer: a client with more is disconnected
+FULL_S = 0.02  # pause before the next try when the process has too many files open
+PAUSE_S = 0.1  # between two checks while a client has a run or a request
+REST_S = 1.0  # between two checks while none has
 _ENDS = ("DONE", "FAULT", "STOPPED", "ENDED", "LOST")
 _MAY_MISS = ("SHOW", "TEXT")
 
 
-class Guest:
-    """Another command, or somebody who has not yet said who it is: `verb` is empty then."""
+class ConnectedClient:
+    """Another command. `verb` is empty until its greeting is complete."""
 
     def __init__(self, peer: socket.socket) -> None:
         self.peer = peer
         self.verb = ""
-        self.greeting = b""  # as far as it has come
-        self.heard_s = monotonic()  # of a stranger: when it came
-        self.notes = protocol.Notes(protocol.LINE_BYTES)
-        self.tasks: dict[int, Task] = {}
+        self.greeting = b""  # the bytes that have arrived so far
+        self.heard_s = monotonic()  # before the greeting: when it connected
+        self.messages = protocol.MessageReader(protocol.LINE_BYTES)
+        self.requests: dict[int, ServedRequest] = {}
         self.out = bytearray()
-        self.missed = 0  # events
+        self.missed = 0  # number of events
 
 
-class Task(NamedTuple):
-    asked: Asked
+class ServedRequest(NamedTuple):
+    pending: PendingRequest[Any]
     is_detached: bool
-    told_bytes: int = 0  # of `done_bytes`
+    told_bytes: int = 0  # the `done_bytes` that the client knows
 
 
-class Host:
-    """Shares a line until it is closed. Raises OSError where that is impossible."""
+class Server:
+    """Shares a line until `close`. Raises OSError where the line cannot be shared."""
 
     def __init__(self, line: Line, port: str, baud: int, verb: str) -> None:
         self._line = line
-        self._server = socket.create_server((protocol.HOST, 0))
-        self._server.setblocking(False)
-        number = self._server.getsockname()[1]
-        token, answer = secrets.token_hex(16), secrets.token_hex(16)
+        self._listening = socket.create_server((protocol.HOST, 0))
+        self._listening.setblocking(False)
+        number = self._listening.getsockname()[1]
+        token, answer = os.urandom(16).hex(), os.urandom(16).hex()
         name = same_for_all(port)
-        self.holder = Holder(name, number, token, answer, verb, baud, os.getpid())
+        self.registration = Registration(name, number, token, answer, verb, baud, os.getpid())
         self._bell, self._wire = socket.socketpair()
         self._bell.setblocking(False)
         self._wire.setblocking(False)
         self._told: deque[Told] = deque()
-        self._guests: list[Guest] = []
-        self._owner: tuple[Guest, int] | None = None  # of the run that goes on
-        self._orphans: list[Task] = []  # of guests that have left
+        self._clients: list[ConnectedClient] = []
+        self._owner: tuple[ConnectedClient, int] | None = None  # of the current run
+        self._detached_requests: list[ServedRequest] = []  # of clients that have left
         self._is_closing = False
         self._selector = selectors.DefaultSelector()
-        self._selector.register(self._server, selectors.EVENT_READ)
+        self._selector.register(self._listening, selectors.EVENT_READ)
         self._selector.register(self._wire, selectors.EVENT_READ)
         try:
-            registry.write(self.holder)
+            registry.write(self.registration)
         except OSError:
             self._close_all()
             raise
         line.listen(self._hear)
-        self._thread = Thread(target=self._run, name="host", daemon=True)
+        self._thread = Thread(target=self._run, name="server", daemon=True)
         self._thread.start()
 
     @property
     def has_run(self) -> bool:
-        """Whether a program runs that a guest has started, and that wants a tether."""
+        """Whether a client has started the current run, and the run ends with that client."""
         owner = self._owner
         return owner is not None and self._line.runs(owner[1])
 
     @property
     def may_have_run(self) -> bool:
-        """The same, or a guest's run is about to begin: its request may be on its way. To be asked
-        when this is closed."""
-        tasks = [task for guest in self._guests for task in guest.tasks.values()]
+        """Whether `has_run`, or the request for such a run may still be on its way to the robot.
+        Ask after `close`."""
+        requests = [request for client in self._clients for request in client.requests.values()]
         return self.has_run or any(
-            task.asked.outcome is None and task.asked.starts and not task.is_detached
-            for task in (*tasks, *self._orphans)
+            request.pending.outcome is None and request.pending.starts and not request.is_detached
+            for request in (*requests, *self._detached_requests)
         )
 
     def close(self) -> None:
-        """Let all guests go."""
+        """Disconnect all clients."""
         self._is_closing = True
         self._ring()
         self._thread.join(2)
@@ -122,7 +125,7 @@ class Host:
         self._ring()
 
     def _ring(self) -> None:
-        with suppress(OSError):  # it rings already
+        with suppress(OSError):  # the buffer is full: the thread wakes anyway
             self._bell.send(b"\0")
 
     # -- the thread -------------------------------------------------------------------------------
@@ -135,19 +138,20 @@ class Host:
         except Exception as bug:
             self._line.fail(bug)
         finally:
-            registry.remove(self.holder)
+            registry.remove(self.registration)
             self._part()
             self._close_all()
 
     def _attend(self) -> None:
-        is_busy = self._owner or self._orphans or any(guest.tasks for guest in self._guests)
+        is_asked = any(client.requests for client in self._clients)
+        is_busy = self._owner or self._detached_requests or is_asked
         for key, mask in self._selector.select(PAUSE_S if is_busy else REST_S):
-            if key.fileobj is self._server:
+            if key.fileobj is self._listening:
                 self._let_in()
             elif key.fileobj is self._wire:
                 with suppress(OSError):
                     self._wire.recv(4096)
-            elif key.data in self._guests:
+            elif key.data in self._clients:
                 if mask & selectors.EVENT_READ:
                     self._read(key.data)
                 if mask & selectors.EVENT_WRITE:
@@ -158,121 +162,127 @@ class Host:
 
     def _let_in(self) -> None:
         try:
-            peer, _ = self._server.accept()
-        except (BlockingIOError, ConnectionError):  # it has gone already
+            peer, _ = self._listening.accept()
+        except (BlockingIOError, ConnectionError):  # the client has left already
             return
         except OSError:  # this process has too many files open
             self._drop_oldest_stranger()
             sleep(FULL_S)
             return
-        strangers = [guest for guest in self._guests if not guest.verb]
-        if len(self._guests) - len(strangers) >= GUESTS:
+        strangers = [client for client in self._clients if not client.verb]
+        if len(self._clients) - len(strangers) >= CLIENTS:
             peer.close()
             return
-        if len(strangers) >= GUESTS:
+        if len(strangers) >= CLIENTS:
             self._drop_oldest_stranger()
         peer.setblocking(False)
-        with suppress(OSError):  # it has gone already
+        with suppress(OSError):  # the client has left already
             peer.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        guest = Guest(peer)
-        self._guests.append(guest)
-        self._selector.register(peer, selectors.EVENT_READ, guest)
+        client = ConnectedClient(peer)
+        self._clients.append(client)
+        self._selector.register(peer, selectors.EVENT_READ, client)
 
     def _drop_oldest_stranger(self) -> None:
-        stranger = next((guest for guest in self._guests if not guest.verb), None)
+        stranger = next((client for client in self._clients if not client.verb), None)
         if stranger is not None:
             self._drop(stranger)
 
-    def _read(self, guest: Guest) -> None:
+    def _read(self, client: ConnectedClient) -> None:
         try:
-            data = guest.peer.recv(65536 if guest.verb else protocol.GREETING_BYTES)
+            data = client.peer.recv(65536 if client.verb else protocol.GREETING_BYTES)
             if not data:
                 raise ConnectionError
-            if not guest.verb:
-                data = self._greet(guest, data)
+            if not client.verb:
+                data = self._greet(client, data)
             else:
-                guest.heard_s = monotonic()
-            for note in guest.notes.put(data) if guest.verb else ():
-                self._take(guest, note)
+                client.heard_s = monotonic()
+            for message in client.messages.put(data) if client.verb else ():
+                self._take(client, message)
         except BlockingIOError:
             pass
-        except (OSError, BadNote):
-            self._drop(guest)
+        except (OSError, BadMessage):
+            self._drop(client)
 
-    def _take(self, guest: Guest, note: Note) -> None:
-        wish = protocol.word(note, "do")
-        if wish == "stop":
+    def _take(self, client: ConnectedClient, message: JsonMessage) -> None:
+        action = protocol.word(message, "do")
+        if action == "stop":
             self._line.stop()
-        elif wish == "beat":
-            self._send(guest, {"beat": True})
+        elif action == "beat":
+            self._send(client, {"beat": True})
         else:
-            self._begin(guest, note)
+            self._begin(client, message)
 
-    def _greet(self, guest: Guest, data: bytes) -> bytes:
-        """Take what somebody says before it is known; return what follows its greeting.
+    def _greet(self, client: ConnectedClient, data: bytes) -> bytes:
+        """Read a new client's greeting; return the bytes after it.
 
-        Until the token was right nothing else of it is looked at. Raises BadNote.
+        Until the token is right, nothing else is read. Raises BadMessage.
         """
-        guest.greeting += data
-        greeting = protocol.greeting(guest.greeting)
+        client.greeting += data
+        greeting = protocol.greeting(client.greeting)
         if greeting is None:
             return b""
-        if not secrets.compare_digest(greeting.token, self.holder.token.encode()):
-            raise BadNote
-        guest.verb, guest.greeting = greeting.verb, b""
-        guest.heard_s = monotonic()
-        self._send(guest, {"tsc": __version__, "answer": self.holder.answer})
-        self._tell_holder("JOINED", guest)
+        if not hmac.compare_digest(greeting.token, self.registration.token.encode()):
+            raise BadMessage
+        client.verb, client.greeting = greeting.verb, b""
+        client.heard_s = monotonic()
+        self._send(client, {"tsc": __version__, "answer": self.registration.answer})
+        self._tell_own_command(client, JoinedEvent)
         return greeting.rest
 
-    def _begin(self, guest: Guest, note: Note) -> None:
-        """Have something done for a guest."""
-        number = protocol.number(note, "id")
-        limit_ms = min(max(1, protocol.number(note, "limit_ms")), 60_000)
-        if number in guest.tasks or len(guest.tasks) >= TASKS:
-            raise BadNote
+    def _begin(self, client: ConnectedClient, message: JsonMessage) -> None:
+        """Begin a client's request."""
+        number = protocol.number(message, "id")
+        limit_ms = min(max(1, protocol.number(message, "limit_ms")), 60_000)
+        if number in client.requests or len(client.requests) >= REQUESTS:
+            raise BadMessage
         robot = self._line.robot
-        if note["do"] == "hello" and robot and self._line.session.is_open:  # it is there
-            self._tell_outcome(guest, number, Reply(OK, 0, robot.values))
+        if message["do"] == "hello" and robot and self._line.session.is_open:  # already known
+            self._tell_outcome(client, number, Reply(OK, 0, robot.values))
             return
-        make = asked_for(note, limit_ms)
-        guest.tasks[number] = Task(self._line.do(make), is_detached(note))
+        make = asked_for(message, limit_ms)
+        client.requests[number] = ServedRequest(self._line.do(make), is_detached(message))
 
     def _pass_on_outcomes(self) -> None:
-        for guest in list(self._guests):
-            for number, task in list(guest.tasks.items()):
-                outcome = task.asked.outcome
+        for client in list(self._clients):
+            for number, request in list(client.requests.items()):
+                outcome = request.pending.outcome
                 if outcome is not None:
-                    del guest.tasks[number]
-                    self._own(task, guest)
-                    self._tell_outcome(guest, number, outcome)
-                elif task.asked.done_bytes != task.told_bytes:
-                    guest.tasks[number] = task._replace(told_bytes=task.asked.done_bytes)
-                    self._send(guest, {"id": number, "done_bytes": task.asked.done_bytes})
-        for task in self._orphans:
-            self._own(task, None)
-        self._orphans = [task for task in self._orphans if task.asked.outcome is None]
+                    del client.requests[number]
+                    self._own(request, client)
+                    self._tell_outcome(client, number, outcome)
+                elif request.pending.done_bytes != request.told_bytes:
+                    done_bytes = request.pending.done_bytes
+                    client.requests[number] = request._replace(told_bytes=done_bytes)
+                    self._send(client, {"id": number, "done_bytes": done_bytes})
+        for request in self._detached_requests:
+            self._own(request, None)
+        self._detached_requests = [
+            request for request in self._detached_requests if request.pending.outcome is None
+        ]
 
-    def _own(self, task: Task, guest: Guest | None) -> None:
-        """Note whose run has begun; stop it where nobody is left whose it is."""
-        outcome = task.asked.outcome
-        if outcome is None or outcome.status != OK or not task.asked.starts or task.is_detached:
+    def _own(self, request: ServedRequest, client: ConnectedClient | None) -> None:
+        """Note which client's run has begun; stop the run where that client has left."""
+        outcome = request.pending.outcome
+        if outcome is None or outcome.status != OK:
             return
-        run = outcome.values["run"]
-        assert isinstance(run, int)
+        if not request.pending.starts or request.is_detached:
+            return
+        receipt: ReceiptReply = outcome.values
+        run = receipt.run
         if not self._line.runs(run):
             return
-        if guest is None:
+        if client is None:
             self._line.stop()
         else:
-            self._owner = guest, run
+            self._owner = client, run
 
-    def _tell_outcome(self, guest: Guest, number: int, outcome: Reply) -> None:
-        self._send(guest, {
+    def _tell_outcome(self, client: ConnectedClient, number: int, outcome: Reply[Any]) -> None:
+        values = fields.of_payload(outcome.values) if outcome.status == OK else {}
+        self._send(client, {
             "id": number,
             "status": outcome.status,
             "detail": outcome.detail,
-            "values": protocol.plain(outcome.values),
+            "values": protocol.plain(values),
             "heard": self._line.heard,
             "is_echoed": self._line.is_echoed,
         })  # fmt: skip
@@ -280,86 +290,89 @@ class Host:
     def _pass_on_events(self) -> None:
         while self._told:
             time_ms, event = self._told.popleft()
-            # an end that is told late may be that of a run before
+            # a late end may belong to the previous run
             if event.name in _ENDS and self._owner is not None and not self.has_run:
                 self._owner = None
-            for guest in list(self._guests):
-                if guest.verb:
-                    self._tell_event(guest, time_ms, event)
+            for client in list(self._clients):
+                if client.verb:
+                    self._tell_event(client, time_ms, event)
 
-    def _tell_event(self, guest: Guest, time_ms: int, event: Event) -> None:
-        if len(guest.out) > FULL_BYTES and event.name in _MAY_MISS:
-            guest.missed += 1
+    def _tell_event(self, client: ConnectedClient, time_ms: int, event: Event) -> None:
+        if len(client.out) > FULL_BYTES and event.name in _MAY_MISS:
+            client.missed += 1
             return
-        if guest.missed:
-            missed, guest.missed = guest.missed, 0
-            self._tell_event(guest, time_ms, Event("MISSED", {"count": missed}))
-        note = {"event": event.name, "ms": time_ms, "values": protocol.plain(event.values)}
-        self._send(guest, note)
+        if client.missed:
+            missed, client.missed = client.missed, 0
+            self._tell_event(client, time_ms, MissedEvent(missed))
+        values = protocol.plain(fields.of_event(event))
+        message: JsonMessage = {"event": event.name, "ms": time_ms, "values": values}
+        self._send(client, message)
 
     def _look_after(self) -> None:
         now_s = monotonic()
-        for guest in list(self._guests):
-            if not guest.verb and now_s - guest.heard_s > GREETING_S:
-                self._drop(guest)
-        if self._owner is not None and now_s - self._owner[0].heard_s > protocol.TETHER_S:
+        for client in list(self._clients):
+            if not client.verb and now_s - client.heard_s > GREETING_S:
+                self._drop(client)
+        if self._owner is not None and now_s - self._owner[0].heard_s > protocol.DEAD_MAN_S:
             self._end_run()
 
     def _end_run(self) -> None:
-        """Stop the run of a guest that is not there any more."""
+        """Stop the run of a client that has left."""
         if self.has_run:
             self._line.stop()
         self._owner = None
 
-    def _drop(self, guest: Guest) -> None:
-        if guest not in self._guests:
+    def _drop(self, client: ConnectedClient) -> None:
+        if client not in self._clients:
             return
-        self._guests.remove(guest)
-        self._selector.unregister(guest.peer)
-        guest.peer.close()
-        self._orphans += guest.tasks.values()
-        if self._owner is not None and self._owner[0] is guest:
+        self._clients.remove(client)
+        self._selector.unregister(client.peer)
+        client.peer.close()
+        self._detached_requests += client.requests.values()
+        if self._owner is not None and self._owner[0] is client:
             self._end_run()
-        self._tell_holder("LEFT", guest)
+        self._tell_own_command(client, LeftEvent)
 
-    def _tell_holder(self, name: str, guest: Guest) -> None:
-        if guest.verb not in ("", protocol.LOOKER):
-            self._line.tell(Event(name, {"verb": guest.verb.encode()}))
+    def _tell_own_command(
+        self, client: ConnectedClient, event: type[JoinedEvent] | type[LeftEvent]
+    ) -> None:
+        if client.verb not in ("", protocol.LOOKER):
+            self._line.tell(event(client.verb.encode()))
 
-    # -- what guests are told ---------------------------------------------------------------------
+    # -- what clients are told --------------------------------------------------------------------
 
-    def _send(self, guest: Guest, note: Note) -> None:
-        guest.out += protocol.written(note)
-        if len(guest.out) > TOO_FULL_BYTES:
-            self._drop(guest)
+    def _send(self, client: ConnectedClient, message: JsonMessage) -> None:
+        client.out += protocol.written(message)
+        if len(client.out) > TOO_FULL_BYTES:
+            self._drop(client)
         else:
-            self._write(guest)
+            self._write(client)
 
-    def _write(self, guest: Guest) -> None:
+    def _write(self, client: ConnectedClient) -> None:
         try:
-            sent = guest.peer.send(guest.out) if guest.out else 0
-            del guest.out[:sent]
+            sent = client.peer.send(client.out) if client.out else 0
+            del client.out[:sent]
         except BlockingIOError:
             pass
         except OSError:
-            self._drop(guest)
+            self._drop(client)
             return
-        wanted = selectors.EVENT_READ | (selectors.EVENT_WRITE if guest.out else 0)
-        if guest in self._guests:
-            self._selector.modify(guest.peer, wanted, guest)
+        wanted = selectors.EVENT_READ | (selectors.EVENT_WRITE if client.out else 0)
+        if client in self._clients:
+            self._selector.modify(client.peer, wanted, client)
 
     def _part(self) -> None:
-        """Tell all guests that it is over."""
+        """Tell all clients that the connection has ended, and why."""
         gone = self._line.gone
-        over: Note = {"over": "ended" if gone is None else "gone", "why": gone or ""}
-        for guest in list(self._guests):
-            if guest.verb:
-                self._send(guest, over)
+        over: JsonMessage = {"over": "ended" if gone is None else "gone", "why": gone or ""}
+        for client in list(self._clients):
+            if client.verb:
+                self._send(client, over)
             with suppress(OSError):
-                guest.peer.shutdown(socket.SHUT_WR)
+                client.peer.shutdown(socket.SHUT_WR)
 
     def _close_all(self) -> None:
-        for guest in self._guests:
-            guest.peer.close()
-        for each in (self._server, self._bell, self._wire, self._selector):
+        for client in self._clients:
+            client.peer.close()
+        for each in (self._listening, self._bell, self._wire, self._selector):
             each.close()

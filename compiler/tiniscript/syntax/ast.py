@@ -1,12 +1,11 @@
-"""The abstract syntax tree (AST): what was written, and where. Nothing else.
+"""The abstract syntax tree (AST): only what was written, and where.
 
 Blocks are nested, at most as deep as the language allows. An expression is flat: its parts in
-the order in which a stack machine meets them, so that no depth of brackets that somebody
-types can exhaust anything. Between the two sides of an AND or OR stands AND_LEFT or OR_LEFT.
+the order in which a stack machine meets them, so that deep brackets cannot exhaust Python's
+stack. Between the two sides of an AND or OR stands AND_LEFT or OR_LEFT.
 """
 
-from __future__ import annotations
-
+# No `from __future__ import annotations`: typing would compile each field's again, one by one.
 from typing import NamedTuple
 
 from tiniscript.source import Span
@@ -55,13 +54,13 @@ class Arm(NamedTuple):
     """IF or ELSEIF: `condition` is None where it could not be read."""
 
     condition: Argument | None
-    body: tuple[Instruction, ...]
+    body: "tuple[Instruction, ...]"
     span: Span
 
 
 class If(NamedTuple):
     arms: tuple[Arm, ...]
-    otherwise: tuple[Instruction, ...]
+    otherwise: "tuple[Instruction, ...]"
     span: Span
 
 
@@ -69,13 +68,13 @@ class Loop(NamedTuple):
     """`times` is None for FOREVER."""
 
     times: Argument | None
-    body: tuple[Instruction, ...]
+    body: "tuple[Instruction, ...]"
     span: Span
 
 
 class While(NamedTuple):
     condition: Argument | None
-    body: tuple[Instruction, ...]
+    body: "tuple[Instruction, ...]"
     span: Span
 
 
@@ -86,7 +85,7 @@ class Break(NamedTuple):
 class Def(NamedTuple):
     name: str
     name_span: Span
-    body: tuple[Instruction, ...]
+    body: "tuple[Instruction, ...]"
     span: Span
 
 
@@ -97,4 +96,4 @@ class Program(NamedTuple):
     """`start` is SI, SB or PING."""
 
     start: str
-    body: tuple[Instruction, ...]
+    body: "tuple[Instruction, ...]"

@@ -1,7 +1,7 @@
 """Recovery of headers, arms and block ends.
 
-Knows which end was meant for which block. Where a header cannot be read its block opens all the
-same, so that its end is no second mistake.
+Knows which end was meant for which block. A header that cannot be read still opens its block, so
+that its end is not reported as a second mistake.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ class BlockRecovery:
         self.blocks.begin(word, span, head).is_reported = True
 
     def go_on(self) -> NoReturn:
-        """Go on with what follows on this line, in silence about what stands between."""
+        """Go on with what follows on this line, without reporting what is skipped."""
         cursor = self.cursor
         token = cursor.token
         while token.text in AFTER_HEADER or (token.kind is ODD and token.text == ":"):
@@ -182,7 +182,30 @@ class BlockRecovery:
         for block in self.blocks.open:
             if not block.is_reported and not self._is_misspelt(block):
                 right = BLOCK_ENDS[block.word]
-                self.reporter.report(codes.NEVER_ENDS, block.span, word=block.word, right=right)
+                place = self._last_line(block)
+                self.reporter.report(
+                    codes.NEVER_ENDS, block.span, word=block.word, right=right, **place
+                )
+
+    def _last_line(self, block: Block) -> dict[str, str]:
+        """Return the line that a block without an end probably ends with, and its text.
+
+        Lines that stand further in than the header belong to it; where none does, all that follow.
+        """
+        source = self.cursor.source
+        head = source.position(block.span.start)[0]
+        last = source.position(len(source.text))[0]
+        rows = [(k, source.line_text(k)) for k in range(head, min(last, head + 400) + 1)]
+        first, *rest = [(k, row) for k, row in rows if row.strip()] or [(head, "")]
+        within = []
+        for k, row in rest:
+            if _indent(row) <= _indent(first[1]):
+                break
+            within.append((k, row))
+        if not rest:
+            return {"line": "", "last": ""}
+        line, text = (within or rest)[-1]
+        return {"line": str(line), "last": text.strip()}
 
     def _is_open(self, word: str) -> bool:
         return any(block.word == word for block in self.blocks.open)
@@ -221,3 +244,7 @@ class BlockRecovery:
                 devices = (*self.kit.sensors, *self.kit.actuators)
                 self._names |= {each.name for each in devices}
         return word in self._names
+
+
+def _indent(row: str) -> int:
+    return len(row) - len(row.lstrip())

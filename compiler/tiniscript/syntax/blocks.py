@@ -1,4 +1,4 @@
-"""The blocks that are open at a place of a program, and the AST that they become.
+"""The stack of open blocks while a program is parsed, and the AST that they become.
 
 Knows which instructions belong to which block. Knows no tokens but the names of DEFs.
 """
@@ -77,7 +77,7 @@ class Blocks:
     def end(self, end: Span) -> None:
         """Close the innermost block. It becomes an instruction of the one around it.
 
-        A DEF inside a block and what is nested too deep are left out: they are reported.
+        A DEF inside a block and blocks nested too deep are left out, because they are reported.
         """
         block = self.open.pop()
         span = Span(block.span.start, end.end)

@@ -1,6 +1,6 @@
-"""What a beginner probably meant to put into brackets.
+"""Suggests what a beginner probably meant to put into brackets.
 
-Knows how values are told apart where commas, points or brackets are not where they belong.
+Knows how to separate values if commas, points or brackets are misplaced.
 Looks at what was written, in spans or tokens, and gives texts to suggest. Recovery asks for
 functions and headers, the checker for commands.
 """
@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 from tiniscript.diagnostics import codes
-from tiniscript.diagnostics.codes import Problem
+from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.fixed_point import as_text
 from tiniscript.kit import Device
 from tiniscript.source import Source, Span
@@ -37,14 +37,16 @@ def actuator_word(device: Device) -> Word:
     )
 
 
-def count_problem(source: Source, word: Word, arguments: Sequence[Span], span: Span) -> Problem:
-    """Return the problem of `word` with these arguments; `span` is the place to point at."""
+def count_diagnostic(
+    source: Source, word: Word, arguments: Sequence[Span], span: Span
+) -> Diagnostic:
+    """Return the diagnostic of `word` with these arguments; `span` is the place to point at."""
     texts = [source[each] for each in arguments]
     fixed = _with_points(texts, arguments, word)
     if fixed is not None:
-        return Problem(codes.DECIMAL_COMMA, span, {"fix": _call(word, fixed)})
+        return Diagnostic(codes.DECIMAL_COMMA, span, {"fix": _call(word, fixed)})
     wanted = len(word.arguments)
-    fix = word.example
+    fix = _call(word, _filled_up(texts, word)) if texts else word.example
     if len(texts) > wanted == 1:
         is_asked = word.arguments[0].name == "c"
         fix = _call(word, [" AND ".join(texts)] if is_asked else texts[:1])
@@ -55,7 +57,7 @@ def count_problem(source: Source, word: Word, arguments: Sequence[Span], span: S
         "wanted": str(wanted),
         "found": str(len(arguments)),
     }
-    return Problem(codes.ARGUMENT_COUNT, span, values)
+    return Diagnostic(codes.ARGUMENT_COUNT, span, values)
 
 
 def call_of(source: Source, word: Word, arguments: Sequence[Span]) -> str:
@@ -65,8 +67,8 @@ def call_of(source: Source, word: Word, arguments: Sequence[Span]) -> str:
         return word.text
     if len(texts) == len(word.arguments) and not any(text[:1] in QUOTES for text in texts):
         return _call(word, texts)
-    fixed = _with_points(texts, arguments, word)
-    return word.example if fixed is None else _call(word, fixed)
+    fixed = _with_points(texts, arguments, word) or _filled_up(texts, word)
+    return _call(word, fixed) if fixed else word.example
 
 
 def call_in(word: Word, tokens: Sequence[Token]) -> str:
@@ -80,7 +82,7 @@ def call_in(word: Word, tokens: Sequence[Token]) -> str:
         texts = [_WORDS_FOR_YES_NO.get(text, text) for text in texts]
     if len(texts) != len(word.arguments):
         spans = [Span(value[0].start, value[-1].end) for value in values]
-        texts = _with_points(texts, spans, word) or []
+        texts = _with_points(texts, spans, word) or _filled_up(texts, word)
     if len(tokens) > LONGEST or not texts:
         return word.example
     return _call(word, texts)
@@ -170,6 +172,23 @@ def _values(tokens: Sequence[Token]) -> list[list[Token]]:
     return [value for value in found if value]
 
 
+def _filled_up(texts: Sequence[str], word: Word) -> list[str]:
+    """Return the values of `F(5)` with those that are missing: `5`, `80`. None where not meant.
+
+    `F(2.80)` has a point in place of its comma: no other decimal ends with a 0.
+    """
+    if len(texts) == 1 < len(word.arguments) == 2 and word.arguments[0].unit == "s":
+        whole, _, part = texts[0].partition(".")
+        if whole.isdecimal() and part.isdecimal() and part[-1] == "0" and len(part) > 1:
+            return [whole, part]
+    missing = word.arguments[len(texts) :]
+    if word.role == "motors" and len(texts) == 1:
+        return [*texts, *texts]
+    if not texts or not missing or any(text[:1] in QUOTES for text in texts):
+        return []
+    return [*texts, *(its.sample for its in missing)]
+
+
 def _ends(tokens: Sequence[Token], k: int) -> bool:
     """Whether the value before `k` is over there."""
     return k >= len(tokens) or tokens[k].kind == ","
@@ -197,7 +216,7 @@ def _with_points(texts: Sequence[str], places: Sequence[Span], word: Word) -> li
             (is_meant or (some_are_loose and its.name != "n" and word.role != "actuator"))
             and spare > 0
             and k + 1 < len(texts)
-            and texts[k].lstrip("-").isdecimal()
+            and _ends_whole(texts[k], len(word.arguments) == 1)
             and texts[k + 1].isdecimal()
             and touches[k]
         )
@@ -205,3 +224,13 @@ def _with_points(texts: Sequence[str], places: Sequence[Span], word: Word) -> li
         spare -= joins
         k += 2 if joins else 1
     return merged if spare == 0 and k == len(texts) else None
+
+
+def _ends_whole(text: str, may_be_more: bool) -> bool:
+    """Whether a value is a whole number, or may be a calculation that ends with one."""
+    number = text.lstrip("-")
+    if may_be_more:
+        number = text[len(text.rstrip("0123456789")) :]
+        before = text[: len(text) - len(number)]
+        return bool(number) and (not before or before[-1] in " +-*/(<>=")
+    return number.isdecimal()

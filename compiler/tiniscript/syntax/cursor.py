@@ -13,7 +13,7 @@ AFTER_VALUE = frozenset((",", ")", *AT_END))  # where a value does
 
 
 class Cursor:
-    """`tokens[i]` is the token to read next. Whoever has read it sets `i` to what follows."""
+    """`tokens[i]` is the token to read next. The caller that reads it advances `i`."""
 
     __slots__ = ("i", "source", "tokens")
 

@@ -1,7 +1,7 @@
 """Recovery inside expressions and brackets.
 
-Knows what may stand where an operand, an operator or a bracket is wanted, and reports it. What is
-clear it repairs among the tokens, and the grammar reads on from there.
+Reports tokens that stand where an operand, an operator or a bracket is expected. If the meaning is
+clear, it repairs the tokens, and the grammar reads on from there.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from tiniscript.source import Span
 from tiniscript.syntax.call_suggestions import (
     actuator_word,
     call_in,
-    count_problem,
+    count_diagnostic,
     ends_value,
     starts_value,
 )
@@ -25,6 +25,7 @@ from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, Token
 from tiniscript.syntax.operators import BINARY, Operator, Postfix
 from tiniscript.syntax.reporter import Failed, Reporter
 from tiniscript.syntax.suggestions import operator_words
+from tiniscript.syntax.unit_recovery import converted
 from tiniscript.words import UNITS, WORDS, Word, meant_by, other_name
 
 
@@ -46,7 +47,7 @@ class ExpressionRecovery:
         if before.kind == "%" and token.kind in AFTER_VALUE:
             number = cursor.tokens[place - 1]
             span = Span(number.start, before.end)
-            fail(codes.UNIT, span, found=cursor.source[span], right=number.text)
+            fail(codes.UNIT, span, found=cursor.source[span], right=number.text, unit="%")
         if token.kind is WORD and WORDS[token.text].role != "operator":
             self._no_value_word(token)
         is_at_end = token.kind in AT_END
@@ -99,15 +100,15 @@ class ExpressionRecovery:
 
     def wrong_count(self, word: Word, arguments: Sequence[Span], span: Span) -> NoReturn:
         """`word` does not take so many arguments."""
-        found = count_problem(self.cursor.source, word, arguments, span)
+        found = count_diagnostic(self.cursor.source, word, arguments, span)
         self.reporter.fail(found.code, found.span, **found.values)
 
     # -- where an operator is wanted ----------------------------------------------------------
 
     def is_repaired(self, token: Token, read: Postfix) -> bool:
-        """Report what stands where an operator is wanted; whether it is clear what it means.
+        """Report a token where an operator is expected; return whether its meaning is clear.
 
-        Then the tokens say so, and the cursor stands at the operator, or at the NOT that was
+        If so, the tokens are repaired, and the cursor is at the operator, or at the NOT that was
         taken for an operand.
         """
         if token.kind is not WORD and not starts_value(token):
@@ -147,7 +148,9 @@ class ExpressionRecovery:
             return False
         span = Span(before.start, token.end)
         found = cursor.source[span]
-        self.reporter.report(codes.UNIT, span, found=found, right=before.text)
+        unit = token.text
+        right = converted(before.text, unit) if before.kind is NUMBER else before.text
+        self.reporter.report(codes.UNIT, span, found=found, right=right, unit=unit)
         cursor.i = k + 1
         return True
 
@@ -176,7 +179,7 @@ class ExpressionRecovery:
     # -- where a bracket is wanted ------------------------------------------------------------
 
     def no_close(self, bracket: int) -> NoReturn:
-        """A bracket is open and what comes cannot stand in it: say what is missing."""
+        """Report what is missing: a bracket is open and the next token does not fit in it."""
         cursor, fail = self.cursor, self.reporter.fail
         token = cursor.inner()
         last = cursor.tokens[cursor.before(cursor.i)]
@@ -194,11 +197,16 @@ class ExpressionRecovery:
                 self._nothing_between(last, token, bracket)
         if token.kind is ODD:
             self.reporter.answer(token)
+            if token.text in (":", ".") and self._close_comes() and starts_value(cursor.following):
+                self._nothing_between(last, cursor.following, bracket)
         fail(codes.MISSING_CLOSE, last.span, last=last.text)
 
     def _nothing_between(self, last: Token, token: Token, bracket: int) -> NoReturn:
         """Two values in brackets with only a space between them."""
         span = Span(last.start, token.end)
+        if last.kind is WORD and token.kind is WORD and not {last.text, token.text} & set(WORDS):
+            right, found = f"{last.text}_{token.text}", self.cursor.source[span]
+            self.reporter.fail(codes.NAME_WITH_SPACE, span, found=found, right=right)
         owner = self.cursor.tokens[bracket - 1] if bracket else self.cursor.tokens[bracket]
         word = self._word_of(owner)
         if word is not None and len(word.arguments) > 1:

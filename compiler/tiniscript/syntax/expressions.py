@@ -32,7 +32,7 @@ class ExpressionParser:
 
     @cached_property
     def recovery(self) -> ExpressionRecovery:
-        """What is asked where an expression is wrong. A right program never loads it."""
+        """The recovery of wrong expressions. A correct program never loads it."""
         from tiniscript.syntax.expression_recovery import ExpressionRecovery
 
         return ExpressionRecovery(self.cursor, self.reporter, self._kit)

@@ -13,7 +13,7 @@ from tiniscript.syntax.blocks import ENDS, HEADERS
 from tiniscript.syntax.cursor import AT_END
 from tiniscript.syntax.lexer import WORD, Token
 from tiniscript.syntax.reporter import Failed
-from tiniscript.syntax.suggestions import AFTER_HEADER, COUNTING, head_in, inside
+from tiniscript.syntax.suggestions import AFTER_HEADER, COUNTING, counted, head_in, inside
 from tiniscript.words import WORDS
 
 if TYPE_CHECKING:
@@ -100,5 +100,6 @@ def _header_fix(parser: Parser, word: Token, meant: str) -> str:
     values = inside(parser.cursor.tokens, parser.cursor.i + 1)
     counts = word.text in COUNTING or any(token.kind in (";", ",", "=") for token in values)
     if meant == "LOOP" and counts:  # `for (i = 0; i < 3; i++)`
-        return WORDS[meant].example
+        times = counted(parser.cursor.tokens, parser.cursor.i + 1)
+        return WORDS[meant].example if times is None else f"LOOP({times})"
     return head_in(WORDS[meant], values)

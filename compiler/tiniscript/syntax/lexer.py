@@ -10,7 +10,7 @@ import re
 from typing import NamedTuple
 
 from tiniscript.diagnostics import codes
-from tiniscript.diagnostics.codes import Code, Problem
+from tiniscript.diagnostics.codes import Code, Diagnostic
 from tiniscript.source import Span
 from tiniscript.words import UNITS
 
@@ -37,7 +37,7 @@ class Token(NamedTuple):
 class Scan(NamedTuple):
     tokens: list[Token]  # the last one is END
     comments: list[Token]
-    problems: list[Problem]
+    diagnostics: list[Diagnostic]
 
 
 _PATTERN = re.compile(
@@ -103,7 +103,7 @@ def scan(text: str) -> Scan:
             assert group is not None
             add(getattr(repairs, group)(match.group(), Span(start, end)))
     add(Token(END, "", len(text), len(text)))
-    return Scan(tokens, comments, repairs.problems)
+    return Scan(tokens, comments, repairs.diagnostics)
 
 
 class _Repairs:
@@ -114,13 +114,13 @@ class _Repairs:
     """
 
     def __init__(self) -> None:
-        self.problems: list[Problem] = []
+        self.diagnostics: list[Diagnostic] = []
         self.open_brackets = 0
         self.has_wide = False
         self.has_braces = False
 
     def report(self, code: Code, span: Span, **values: str) -> None:
-        self.problems.append(Problem(code, span, values))
+        self.diagnostics.append(Diagnostic(code, span, values))
 
     def othersign(self, text: str, span: Span) -> Token:
         right = _OTHER_SIGNS[text]
@@ -148,10 +148,13 @@ class _Repairs:
 
     def badnumber(self, text: str, span: Span) -> Token:
         number = _number_in(text)
-        is_unit = text[len(number) :].upper() in UNITS and text.startswith(number)
-        code = codes.UNIT if is_unit else codes.BAD_NUMBER
-        self.report(code, span, found=text, right=number)
-        return Token(NUMBER, number, *span)
+        unit = text[len(number) :].upper() if text.startswith(number) else ""
+        if unit in UNITS:
+            self.report(codes.UNIT, span, found=text, right=number, unit=unit)
+            return Token(NUMBER, number, *span)
+        meant = _digits_meant(text)
+        self.report(codes.BAD_NUMBER, span, found=text, right=meant)
+        return Token(NUMBER, meant or number, *span)
 
     def badword(self, text: str, span: Span) -> Token:
         plain = _plain(text)
@@ -175,17 +178,27 @@ class _Repairs:
         self.report(codes.OTHER_NOTE, span, found=sign, right=f"// {inside}")
 
     def odd(self, text: str, span: Span) -> Token:
-        last = self.problems[-1] if self.problems else None
+        last = self.diagnostics[-1] if self.diagnostics else None
         if last is None or last.code is not codes.ODD_CHARACTER or last.span.end != span.start:
             shown = text if text.isprintable() else f"U+{ord(text):04X}"
             self.report(codes.ODD_CHARACTER, span, found=shown)
-        else:  # one problem for a run of them
-            self.problems[-1] = last._replace(span=Span(last.span.start, span.end))
+        else:  # one diagnostic for a run of them
+            self.diagnostics[-1] = last._replace(span=Span(last.span.start, span.end))
         return Token(ODD, text, *span)
 
 
+_LETTERS_FOR_DIGITS = str.maketrans("OoIl", "0011")
+
+
+def _digits_meant(text: str) -> str:
+    """Return the number that was surely meant: `5` for `5.`, `80` for `8O`; else nothing."""
+    digits = text.translate(_LETTERS_FOR_DIGITS)
+    match = re.fullmatch(r"([0-9]{1,40}(?:\.[0-9]{1,40})?)\.?", digits)
+    return match[1] if match else ""
+
+
 def _number_in(text: str) -> str:
-    """Return the number that was probably meant: `5` for `5.`, `1.2` for `1.2.3`, `2` for `2X`."""
+    """Return what reading goes on with: `1.2` for `1.2.3`, `2` for `2X`."""
     match = re.match(r"[0-9]*(?:\.[0-9]+)?", text)
     return match.group()[:40] if match and match.group() else "0"
 

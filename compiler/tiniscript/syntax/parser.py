@@ -55,13 +55,13 @@ _COMMANDS = frozenset(("move", "wait", "motors", "stop", "start", "beep", "show"
 class Parsed(NamedTuple):
     program: Program
     scan: Scan
-    problems: list[codes.Problem]
+    diagnostics: list[codes.Diagnostic]
 
 
 def parse(source: Source, kit: Kit | None = None) -> Parsed:
-    """Return the AST of a program with all that is wrong in its shape.
+    """Return the AST of a program, with all mistakes of its syntax.
 
-    The names of `kit` are taken for what they are. Without a kit a name may be anything.
+    Names of `kit` are recognized as devices. Without a kit a name may be anything.
     """
     scanned = scan(source.text)
     parser = Parser(source, scanned, kit)
@@ -72,14 +72,14 @@ def parse(source: Source, kit: Kit | None = None) -> Parsed:
 class Parser:
     def __init__(self, source: Source, scanned: Scan, kit: Kit | None) -> None:
         self.cursor = Cursor(source, scanned.tokens)
-        self.reporter = Reporter(scanned.problems)
+        self.reporter = Reporter(scanned.diagnostics)
         self.blocks = Blocks(self.reporter)
         self.expressions = ExpressionParser(self.cursor, self.reporter, kit)
         self._kit = kit
 
     @cached_property
     def recovery(self) -> Recovery:
-        """What is asked where a text is wrong. A right program never loads it."""
+        """The recovery of wrong texts. A correct program never loads it."""
         from tiniscript.syntax.recovery import Recovery
 
         return Recovery(self.cursor, self.reporter, self.blocks, self._kit)
@@ -111,13 +111,13 @@ class Parser:
         if word.kind is not WORD:
             return "SI"
         if bar.kind != "|":
-            if word.text not in _SETUPS or not self.recovery.is_taken_for_bar(word, bar):
+            if word.text not in _SETUPS or not self.recovery.setup.is_taken_for_bar(word, bar):
                 return "SI"
         cursor.i += 2
         if word.text == "PING":
             self.check_connection(word)
         elif word.text not in ("SI", "SB"):
-            return self.recovery.unknown_setup(word)
+            return self.recovery.setup.unknown(word)
         return word.text
 
     def check_connection(self, ping: Token) -> None:
@@ -129,7 +129,7 @@ class Parser:
             token = cursor.token
             if token.kind is END:
                 return
-        self.recovery.not_alone(ping, token)
+        self.recovery.setup.not_alone(ping, token)
 
     def instruction(self) -> None:
         cursor = self.cursor
@@ -204,6 +204,10 @@ class Parser:
             self.no_arguments(word)
             return None
         arguments = self.expressions.arguments()
+        if known is not None and self.reporter.diagnostics:
+            from tiniscript.syntax.unit_recovery import fit_units  # a right program needs it not
+
+            fit_units(self.reporter, known, arguments)
         if arguments or known is not None:
             return arguments
         span = self.cursor.span_from(word)
@@ -222,7 +226,7 @@ class Parser:
     # -- blocks -----------------------------------------------------------------------------
 
     def header(self, word: Token) -> None:
-        """The block opens even where its header is wrong, so that its end is no other mistake."""
+        """Open the block even if its header is wrong, so that its end is not a second mistake."""
         self.cursor.i += 1
         try:
             head = self.argument_of(word)

@@ -1,7 +1,7 @@
-"""Recovery where an instruction is wanted, or where one must end.
+"""Recovery where an instruction is expected, or where one must end.
 
-Knows what people write there, how to report it and where to go on. What they meant by it
-`suggestions` says; the parser is passed where reading goes on with a rule of the grammar.
+Knows what people write there, how to report it and where to go on. `suggestions` knows what they
+meant; methods that go on with a rule of the grammar get the parser.
 """
 
 from __future__ import annotations
@@ -22,23 +22,26 @@ from tiniscript.syntax.call_suggestions import (
     written,
 )
 from tiniscript.syntax.cursor import AT_END, Cursor
-from tiniscript.syntax.foreign import foreign_header, foreign_word, forever_alone
+from tiniscript.syntax.foreign import foreign_word, forever_alone
 from tiniscript.syntax.lexer import NUMBER, ODD, QUOTES, WORD, Token
 from tiniscript.syntax.operators import COMPARISONS, SIGNS
 from tiniscript.syntax.reporter import Failed, Reporter, Resumed
+from tiniscript.syntax.setup_recovery import SetupRecovery
 from tiniscript.syntax.suggestions import (
     AFTER_HEADER,
     BEFORE_CALL,
     BEFORE_NAME,
     BEFORE_NOTE,
     BETWEEN,
+    COUNTING,
     body_begins,
     foreign_block,
     head_in,
     inside,
     is_assignment,
-    is_question,
+    is_counting,
     shortened,
+    spaced_name,
     update,
 )
 from tiniscript.words import WORDS, Word, meant_by, other_name
@@ -55,32 +58,8 @@ class Recovery:
         self.reporter = reporter
         self.blocks = blocks
         self.kit = kit
+        self.setup = SetupRecovery(cursor, reporter)
         self.in_block = BlockRecovery(cursor, reporter, blocks, kit)
-
-    # -- SETUP --------------------------------------------------------------------------------
-
-    def is_taken_for_bar(self, word: Token, sign: Token) -> bool:
-        """Whether `SI:` or `SI||` begins the program."""
-        found = self.cursor.source[sign.span]
-        if found not in (":", "||", "/", "\\", "¦"):
-            return False
-        self.reporter.answer(sign)
-        span = Span(word.start, sign.end)
-        self.reporter.report(codes.SETUP_NEEDS_BAR, span, found=word.text)
-        return True
-
-    def unknown_setup(self, word: Token) -> str:
-        """`START|F(2, 80)`, `GO|F(2, 80)`: go on as after `SI|`."""
-        right = "SI|START;" if word.text == "START" else "SI|"
-        self.reporter.report(codes.SETUP_UNKNOWN, word.span, found=word.text, right=right)
-        return "SI"
-
-    def not_alone(self, ping: Token, token: Token) -> None:
-        """`PING|F(2, 80)`: nothing after it is read."""
-        cursor = self.cursor
-        at_end = token is cursor.tokens[-1]
-        self.reporter.report(codes.PING_ALONE, ping.span if at_end else token.span)
-        cursor.i = len(cursor.tokens) - 1
 
     # -- what is no instruction ---------------------------------------------------------------
 
@@ -96,13 +75,29 @@ class Recovery:
             raise Failed
         if token.kind == "-" and cursor.token.kind == "-":
             self._other_note(token.start, "--", cursor.token.end)
+        if token.kind is NUMBER:
+            self._line_number(token)
         code = codes.EXTRA_CLOSE if token.kind == ")" else codes.NOT_AN_INSTRUCTION
         self.reporter.fail(code, token.span, found=token.text, fix="")
+
+    def _line_number(self, number: Token) -> None:
+        """`1. F(2, 80)`, `2) S`: go on with what stands behind the number."""
+        cursor = self.cursor
+        sign = cursor.token
+        if sign.kind in (")", "-") or (sign.kind is ODD and sign.text in (":", ".", "°", "º")):
+            cursor.i += 1
+        if cursor.token.kind is WORD and cursor.line_of(cursor.token) == cursor.line_of(number):
+            self.reporter.answer(number)
+            self.reporter.answer(sign)
+            span = Span(number.start, cursor.last.end)
+            found = cursor.source[span]
+            self.reporter.report(codes.LINE_NUMBER, span, found=found)
+            raise Resumed
 
     def no_command(self, parser: Parser, word: Token, role: str) -> NoReturn:
         """A word of the language that is no command begins an instruction."""
         if role == "setup":
-            self._setup_word(parser, word)
+            self.setup.in_the_middle(parser, word)
         if role == "until":
             self._until_after_its_move(parser, word)
         if role == "forever":
@@ -111,19 +106,6 @@ class Recovery:
         if role == "later":
             self.reporter.fail(codes.LATER_WORD, word.span, word=word.text)
         self._not_an_instruction(word)
-
-    def _setup_word(self, parser: Parser, word: Token) -> NoReturn:
-        """`SI|SI|F(2, 80)`; but `SI(DISTANCE < 10)` asks a question."""
-        cursor = self.cursor
-        following = cursor.following
-        if word.text == "CHECK_CONNECTION":
-            self.reporter.fail(codes.PING_ALONE, word.span)
-        if word.text == "SI" and following.kind != "|":
-            if following.kind == "(" or is_question(cursor.tokens, cursor.i + 1):
-                self.reporter.report(codes.SPANISH_IF, word.span)
-                foreign_header(parser, word, "IF")
-        code = codes.SETUP_TWICE if following.kind == "|" else codes.SETUP_NEEDS_BAR
-        self.reporter.fail(code, word.span, found=word.text)
 
     def _not_an_instruction(self, first: Token) -> NoReturn:
         """`DISTANCE < 10` alone: suggest the question."""
@@ -240,6 +222,8 @@ class Recovery:
         is_alone = kind in AT_END
         if kind == "|":
             self.reporter.fail(codes.SETUP_TWICE, word.span, found=word.text)
+        if word.text in COUNTING and is_counting(self.cursor.tokens, self.cursor.i + 1):
+            foreign_word(parser, word, "LOOP")
         if not is_alone and kind != "(":
             self._what_follows_a_name(word, following)
         if self.kit is not None or (word.text == "END" and is_alone):
@@ -271,9 +255,16 @@ class Recovery:
             self._values_without_brackets(word, following)
 
     def _word_before(self, word: Token, following: Token) -> None:
-        """`LET X = 5`, `CALL DANCE`: go on with what is right."""
+        """`LET X = 5`, `CALL DANCE`, `MY SPEED = 5`: go on with what is right."""
         cursor, start = self.cursor, self.cursor.i
         fix = ""
+        name = spaced_name(cursor.tokens, start)
+        if name is not None and word.text not in BEFORE_NAME:
+            text, end = name
+            span = Span(word.start, cursor.tokens[end - 1].end)
+            self.reporter.report(codes.NAME_WITH_SPACE, span, found=cursor.source[span], right=text)
+            self.unread_assignment(Token(WORD, text, *span))
+            raise Failed
         if word.text in BEFORE_NAME and is_assignment(cursor.tokens, start + 1):
             end = body_begins(cursor.tokens, start + 3, names_end=False)
             value = written(cursor.tokens[start + 3 : min(end, start + 40)])
@@ -286,10 +277,17 @@ class Recovery:
             raise Resumed
 
     def _values_without_brackets(self, word: Token, following: Token) -> None:
-        """`F2, 80`, `FORWARD 2 80`."""
+        """`F2, 80`, `FORWARD 2 80`, `SPEED 50`."""
         cursor, start = self.cursor, self.cursor.i + 1
         end = body_begins(cursor.tokens, start, names_end=False)
         rest = cursor.tokens[start:end]
+        is_new = meant_by(word.text) is None and not self.in_block.is_name(word.text)
+        if is_new and len(rest) == 1 and glued_call(word.text) is None:
+            span = Span(word.start, following.end)
+            fix = f"{word.text} = {following.text}"
+            self.reporter.report(codes.MISSING_EQUALS, span, fix=fix)
+            self.unread_assignment(word)
+            raise Failed
         span = Span(word.start, rest[-1].end)
         glued = glued_call(word.text, rest)
         if glued is not None:
@@ -352,7 +350,7 @@ class Recovery:
             cursor.i += 1
             fail(codes.EXTRA_CLOSE, token.span, found=")")
         if kind == "|":
-            fail(codes.SETUP_TWICE, token.span, found=first.text)
+            self.setup.bar_between(first, token)
         if kind == "-" and after.kind == "-" and after.start == token.end:
             self._other_note(token.start, "--", after.end)
         if header is not None and first.text in WORDS and WORDS[first.text].arguments:

@@ -1,19 +1,19 @@
-"""The diagnostics of one parse, and what they have settled already.
+"""The diagnostics of one parse, and what must not be reported again.
 
-Knows how the parser gives up a rule: it reports why, and raises Failed. Knows no grammar.
+Knows how the parser abandons a rule: it reports why, and raises Failed. Knows no grammar.
 """
 
 from __future__ import annotations
 
 from typing import NoReturn
 
-from tiniscript.diagnostics.codes import Code, Problem
+from tiniscript.diagnostics.codes import Code, Diagnostic
 from tiniscript.source import Span
 from tiniscript.syntax.lexer import Token
 
 
 class Failed(Exception):
-    """An instruction cannot be read on. Why is reported already; the rest of it is skipped."""
+    """An instruction cannot be read to its end. This is reported; the rest of it is skipped."""
 
 
 class Resumed(Failed):
@@ -23,7 +23,7 @@ class Resumed(Failed):
 class Reporter:
     """`diagnostics` begins with those of the lexer."""
 
-    def __init__(self, of_lexer: list[Problem]) -> None:
+    def __init__(self, of_lexer: list[Diagnostic]) -> None:
         self._of_lexer = of_lexer
         self.diagnostics = list(of_lexer)
         self._answered: set[int] = set()
@@ -31,24 +31,30 @@ class Reporter:
         self.crowded_line = -1  # the last line with a separator missing, which is reported once
 
     def report(self, code: Code, span: Span, **values: str) -> None:
-        self.diagnostics.append(Problem(code, span, values))
+        self.diagnostics.append(Diagnostic(code, span, values))
 
     def fail(self, code: Code, span: Span, **values: str) -> NoReturn:
         self.report(code, span, **values)
         raise Failed
 
+    def change(self, place: int, diagnostic: Diagnostic) -> None:
+        """Replace the diagnostic at index `place`."""
+        if place < len(self._of_lexer):
+            self._of_lexer[place] = diagnostic
+        self.diagnostics[place] = diagnostic
+
     def withdraw(self, count: int) -> None:
-        """Drop all diagnostics but the first `count`: what they say follows from those."""
+        """Drop all diagnostics but the first `count`, because the others follow from them."""
         del self.diagnostics[count:]
 
     def answer(self, odd: Token) -> None:
         """Drop what the lexer said about an odd sign: the parser knows more."""
         self._answered.add(odd.start)
 
-    def found(self) -> list[Problem]:
-        """Return the diagnostics without those that are answered.
+    def found(self) -> list[Diagnostic]:
+        """Return the diagnostics without the answered ones.
 
-        Where nothing else is wrong they stay: an odd sign is never right.
+        If there are no others, the answered ones stay, because an odd sign is always a mistake.
         """
         odd = self._of_lexer
         found = [each for each in odd if each.span.start not in self._answered]

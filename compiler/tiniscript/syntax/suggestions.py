@@ -1,7 +1,7 @@
-"""What a beginner probably meant, and where it goes on.
+"""Suggests what a beginner probably meant, and where reading goes on.
 
 Knows habits from other languages, from Spanish and from talking. Looks at tokens and gives texts to
-suggest. Reports nothing: whether a text is wrong is known before it is asked.
+suggest. Reports nothing: the caller already knows that the text is wrong.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from tiniscript.syntax.call_suggestions import LONGEST, ends_value, starts_value
 from tiniscript.syntax.cursor import AT_END
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, Token
 from tiniscript.syntax.operators import COMPARISONS, SIGNS
-from tiniscript.words import WORDS, Word, meant_by, other_name
+from tiniscript.words import BLOCK_ENDS, WORDS, Word, meant_by, other_name
 
 # Words in the place of an operator, and those that go with them.
 OPERATOR_WORDS = {
@@ -29,7 +29,9 @@ BEFORE_NAME = frozenset(("LET", "VAR", "SET", "INT", "FLOAT", "CONST", "GLOBAL",
 BEFORE_CALL = frozenset(("CALL", "RUN", "GOSUB", "LLAMAR", "LLAMA", "EJECUTAR", "EJECUTA"))
 BEFORE_NOTE = frozenset(("REM", "NOTE", "NOTA"))
 
-COUNTING = frozenset(("FOR", "PARA_CADA"))  # a variable and its values come after these
+COUNTING = frozenset(
+    ("FOR", "PARA_CADA", "PARA", "DESDE")
+)  # a variable and its values come after these
 ENDS_OF_ANY = frozenset(("END", "FIN", "DONE"))
 
 
@@ -39,6 +41,38 @@ def foreign_block(word: str) -> str | None:
     if meant is None or WORDS.get(meant) is None:
         return "END" if word in ENDS_OF_ANY else None
     return meant if WORDS[meant].role in ("block", "arm", "end", "forever") else None
+
+
+def is_counting(tokens: Sequence[Token], k: int) -> bool:
+    """Whether `I = 1 TO 4` or `I IN` stands at `k`, after a word such as `PARA`."""
+    name, sign = tokens[k], tokens[min(k + 1, len(tokens) - 1)]
+    return name.kind is WORD and (sign.kind == "=" or sign.text in ("IN", "EN", "DESDE"))
+
+
+def counted(tokens: Sequence[Token], start: int) -> int | None:
+    """Return how often `I = 1 TO 4`, `I IN RANGE(4)` or `(I = 0; I < 4; I++)` goes round.
+
+    None where that is not sure: a value that is no whole number, a step that is not 1.
+    """
+    row = []
+    for token in tokens[start : start + 20]:
+        if token.kind in (NEWLINE, END, "{"):
+            break
+        row.append(token)
+    words = {token.text for token in row if token.kind is WORD}
+    numbers = [int(token.text) for token in row if token.kind is NUMBER and token.text.isdecimal()]
+    has_other = any(token.kind is NUMBER and not token.text.isdecimal() for token in row)
+    if has_other or words & {"STEP", "PASO", "DOWNTO"} or any(t.kind == "-" for t in row):
+        return None
+    times = None
+    if "RANGE" in words and len(numbers) in (1, 2):
+        times = numbers[-1] - (numbers[0] if len(numbers) == 2 else 0)
+    elif words & {"TO", "HASTA", "A"} and len(numbers) == 2:
+        times = numbers[1] - numbers[0] + 1
+    elif len(numbers) == 2 and any(token.kind in COMPARISONS - {"="} for token in row):
+        includes_last = any(token.kind in COMPARISONS and len(token.kind) > 1 for token in row)
+        times = numbers[1] - numbers[0] + includes_last
+    return times if times is not None and 0 < times <= 255 else None
 
 
 def head_in(word: Word, tokens: Sequence[Token]) -> str:
@@ -137,6 +171,45 @@ def operator_words(tokens: Sequence[Token], k: int) -> tuple[int, str] | None:
         end += 1
     operand = tokens[end].kind == "-" or starts_value(tokens[end]) or tokens[end].text == "NOT"
     return (end, said) if said and operand else None
+
+
+def spaced_name(tokens: Sequence[Token], k: int) -> tuple[str, int] | None:
+    """Return the name that `MY SPEED = 5` at `k` was meant to set, and where the `=` stands.
+
+    A name may not have a word of the language in it, which rather is an instruction.
+    """
+    end = k
+    while tokens[end].kind is WORD and tokens[end].text not in WORDS and end < k + 5:
+        end += 1
+    if end < k + 2 or tokens[end].kind != "=":
+        return None
+    return "_".join(token.text for token in tokens[k:end]), end
+
+
+def question_line(tokens: Sequence[Token], start: int) -> tuple[str, bool]:
+    """Return `IF(DISTANCE < 10);S;ENDIF` for `distancia < 10 entonces para`, and whether it is all.
+
+    `start` is the place after the word that asks. Where what is to be done is not said on the same
+    line, or not in words that are surely known, it is the header alone.
+    """
+    asked = inside(tokens, start)
+    header = head_in(WORDS["IF"], [_translated(token) for token in asked])
+    end = start + len(asked) + (2 if tokens[start].kind == "(" else 0)
+    end = min(end, len(tokens) - 1)
+    while tokens[end].text in AFTER_HEADER or tokens[end].text in (",", ":", ";"):
+        end += 1
+    done = _translated(tokens[end])
+    word = WORDS.get(done.text)
+    if done.kind is not WORD or word is None or tokens[end + 1].kind not in (NEWLINE, END):
+        return header, False
+    if word.role != "stop":
+        return header, False
+    return f"{header};{word.text};{BLOCK_ENDS['IF']}", True
+
+
+def _translated(token: Token) -> Token:
+    meant = meant_by(token.text) if token.kind is WORD else None
+    return token if meant is None else token._replace(text=meant)
 
 
 def is_assignment(tokens: Sequence[Token], k: int) -> bool:

@@ -1,6 +1,6 @@
 """Which virtual robots of this user are running: a small file for each, in the user's cache.
 
-A robot that has ended without taking its file along is not believed: nobody listens on its port.
+The file of a robot that has crashed is ignored, because nothing listens on its port.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ PREFIX = f"socket://{LOCAL}:"
 
 
 class Running(NamedTuple):
-    """A robot: its port's address, its profile's name, its world's, and what it is called.
+    """A robot: its port's address, the names of its profile and its world, and its own name.
 
-    `terminal` is the path of its pseudo-terminal, if it has one. `verb` is the command that it
-    lives in: `robot` is one for all; with any other it belongs to that command.
+    `terminal` is the path of its pseudo-terminal, if it has one. `verb` is the command that runs
+    it: a robot of `robot` is shared; a robot of another command belongs to that command.
     """
 
     address: str
@@ -55,7 +55,7 @@ def withdraw(path: Path | None) -> None:
 
 
 def running() -> list[Running]:
-    """Return the robots that are there. Opens none of them: that would be a visit."""
+    """Return the running robots. Opens none of them: that would count as a client."""
     found = []
     try:
         paths = sorted(_folder().glob("*.json"))
@@ -71,18 +71,18 @@ def running() -> list[Running]:
 
 
 def for_all() -> list[Running]:
-    """Return those to which any command may bring a program."""
+    """Return the robots to which any command may upload a program."""
     return [each for each in running() if each.verb == "robot"]
 
 
 def is_virtual(port: str) -> bool:
-    """Whether a port is a virtual robot's that runs."""
+    """Return whether a port belongs to a running virtual robot."""
     known = {port, same_for_all(port)}
     return any(known & {each.address, each.terminal} for each in running())
 
 
 def is_gone(port: str) -> bool:
-    """Whether a port is an address on this computer where nobody listens (any more)."""
+    """Return whether a port is an address on this computer where nothing listens."""
     number = port.lower().removeprefix(PREFIX)
     return number != port.lower() and number.isdecimal() and not _is_listening(PREFIX + number)
 
@@ -99,7 +99,7 @@ def _read(path: Path) -> Running | None:
 
 
 def _is_listening(address: str) -> bool:
-    """Whether the port is taken: then it cannot be had."""
+    """Return whether the port is taken: binding it fails then."""
     digits = address.removeprefix(PREFIX)
     is_number = digits.isascii() and digits.isdigit() and len(digits) <= 5
     if not (is_number and 0 < int(digits) < 65536):

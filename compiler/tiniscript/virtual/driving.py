@@ -1,7 +1,7 @@
-"""Where a robot gets to among obstacles: it slides along what it touches, and goes through nothing.
+"""The path of a robot among obstacles: it slides along what it touches, and passes through nothing.
 
-Knows the geometry of bodies and walls. Knows no clock, no sensors and no friction. What it returns
-depends on when the motors were set, not on how often it is asked.
+Knows the geometry of bodies and walls. Knows no clock, no sensors and no friction. The results
+depend on when the motors were set, not on how often they are queried.
 """
 
 from __future__ import annotations
@@ -14,17 +14,17 @@ from tiniscript.robots.kinematics import Pose, moved, points
 from tiniscript.robots.profile import Body
 from tiniscript.virtual.geometry import Point, Segment, between, distance
 
-TOUCH_CM = 0.3  # nearer than that is touching
-STEP_MS = 10.0  # of a robot that touches something
-STRIDE_MS = 100.0  # after which a place is kept
-NEAR_CM = 20.0  # what is further away than this is looked at again later
-KEPT = 20_000  # corners of the way; then every other one goes
-EXACT_CM = 1e-6  # less than that inside is not inside
-PUSHES = 6  # at one place, out of what is touched there
+TOUCH_CM = 0.3  # a smaller distance is contact
+STEP_MS = 10.0  # time step of a robot in contact
+STRIDE_MS = 100.0  # time between two kept poses
+NEAR_CM = 20.0  # obstacles further away than this are checked later
+KEPT = 20_000  # corners of the path; beyond that every other one is dropped
+EXACT_CM = 1e-6  # a smaller overlap does not count
+PUSHES = 6  # attempts to push the body out of obstacles in one place
 
 
 class Contact(NamedTuple):
-    """What is touched, or nearest: how far it is, and from where to where."""
+    """The nearest obstacle: its distance, and the nearest points of body and obstacle."""
 
     gap_cm: float
     ours: Point  # on the middle line of the body
@@ -45,7 +45,7 @@ class Hull:
         self.radius_cm = min(body.width_cm, body.length_cm) / 2
         self.front_cm = front - self.radius_cm
         self.back_cm = min(back + self.radius_cm, self.front_cm)
-        self.reach_cm = max(front, -back)  # of the point that is farthest from the wheels
+        self.reach_cm = max(front, -back)  # distance of the farthest point from the wheels
 
     def spine(self, pose: Pose) -> Segment:
         along = math.radians(pose.heading)
@@ -90,7 +90,7 @@ class Hull:
 
 
 class Drive(NamedTuple):
-    """Points of a way, joined by straight lines, and how far at least it is free from its end."""
+    """Points of a path, joined by straight lines, and the least free distance beyond its end."""
 
     way: list[Pose]
     free_cm: float
@@ -103,9 +103,9 @@ class Driving:
         self.body = body
         self.hull = Hull(body)
         self.obstacles = obstacles
-        self.left = self.right = 0.0  # percent of full speed that the wheels really make
+        self.left = self.right = 0.0  # actual speed of the wheels, in percent
         self.corners = [start]  # straight lines join them; they show the way
-        self.bumps = 0  # how often it has begun to touch something
+        self.bumps = 0  # how many contacts have begun
         self.driven_cm = 0.0
         self._pose = start
         self._near: Sequence[Segment] = obstacles  # all that may come near,
@@ -138,7 +138,7 @@ class Driving:
         self.left, self.right = left, right
 
     def go_on(self, now_ms: float) -> Pose:
-        """Return where the robot is, and go on from there."""
+        """Return the pose at `now_ms`, and continue the path from there."""
         while self._kept_ms + STRIDE_MS <= now_ms:
             self._keep(STRIDE_MS)
         if self._kept_ms < now_ms:
@@ -146,7 +146,7 @@ class Driving:
         return self._pose
 
     def look(self, now_ms: float) -> Pose:
-        """Return where the robot is. This changes nothing of where it gets to."""
+        """Return the pose at `now_ms`. This does not change the later path."""
         while self._kept_ms + STRIDE_MS <= now_ms:
             self._keep(STRIDE_MS)
         return self._driven(self._pose, self._free_cm, now_ms - self._kept_ms).way[-1]
@@ -174,7 +174,7 @@ class Driving:
 
     @staticmethod
     def _is_straight(first: Pose, second: Pose, third: Pose) -> bool:
-        """Whether a corner between two others is not to be seen: the way there goes straight on."""
+        """Return whether a corner lies on the straight line between its neighbours."""
         return (
             abs(
                 (second.x_cm - first.x_cm) * (third.y_cm - second.y_cm)
@@ -220,9 +220,9 @@ class Driving:
         return ahead + turning * self.hull.reach_cm
 
     def _pushed(self, before: Pose, pose: Pose) -> tuple[Pose, float]:
-        """Return where a robot comes to that wants to be at `pose`, and how much is free there.
+        """Return where a robot ends up on its way to `pose`, and the free distance there.
 
-        It is pushed out of every obstacle; where that is not possible it stays where it was.
+        It is pushed out of every obstacle; if that is not possible it stays where it was.
         """
         for _ in range(PUSHES):
             contact = self._contact(pose)

@@ -1,4 +1,4 @@
-"""Whether what comes first over a connection may be meant for a robot.
+"""Decides by the first bytes of a connection whether its client may be meant for a robot.
 
 A web page can make a browser of this computer connect to any of its ports: with HTTP (WebSockets
 begin as HTTP), with TLS, and with STUN, which WebRTC uses. The page chooses what follows, so
@@ -27,9 +27,9 @@ _EMPTY_LINES = re.compile(rb"[\r\n]+(?=[A-Za-z]|\Z)")  # servers of HTTP skip th
 
 
 def is_for_robot(data: bytes) -> bool | None:
-    """Return whether a robot may hear what begins so; None while that cannot be told yet.
+    """Return whether bytes that begin like this may reach a robot; None: not known yet.
 
-    Nothing is lost by waiting: a robot does nothing before a frame or a line of text has ended.
+    Waiting costs nothing: a robot acts only when a frame or a line of text has ended.
     """
     rest = data.lstrip(b"\0")
     if len(data) - len(rest) > 1:

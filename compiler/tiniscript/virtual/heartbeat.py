@@ -1,15 +1,14 @@
-"""A robot in a hurry, and a computer that is not: the seconds of both are reconciled here.
+"""Keeps the dead-man timer of a robot alive whose time runs faster than real time.
 
-A robot stops what was started over its link when it has heard nothing for a second of its own
-time. Where that is a hundredth of a real one, no computer is quick enough. So it hears the
-computer's last frame again: a request that comes again is answered again and never done twice.
-When the computer itself is silent for a second on the wall, there is nothing more to hear, and
-the robot stops.
+A robot stops a tethered program after a second of its own time without a frame. If its second is
+a hundredth of a real one, no computer is fast enough. So the computer's last frame is repeated:
+the robot answers a repeated request again but never executes it twice. After a real second
+without bytes from the computer the repetition ends, and the robot stops.
 """
 
 from __future__ import annotations
 
-BEAT_MS = 300  # of the robot's time
+HEARTBEAT_MS = 300  # of the robot's time
 SILENT_S = 1.0
 LONGEST = 100  # bytes of a frame on the wire, and some
 
@@ -19,10 +18,10 @@ class Heartbeat:
         self._frame = b""  # the last one
         self._open = b""  # what has begun
         self._heard_s = 0.0
-        self._beat_ms = 0
+        self._heartbeat_ms = 0
 
     def hear(self, data: bytes, wall_s: float) -> None:
-        """The computer has sent bytes."""
+        """Take bytes that the computer has sent."""
         self._heard_s = wall_s
         *whole, self._open = (self._open + data).split(b"\0")
         self._open = self._open[:LONGEST]
@@ -31,13 +30,13 @@ class Heartbeat:
                 self._frame = each + b"\0"
 
     def forget(self) -> None:
-        """Another computer comes."""
+        """Forget the last frame, because another client connects."""
         self._frame = self._open = b""
 
     def due(self, now_ms: int, wall_s: float) -> bytes:
-        """Return what the robot shall hear at its time `now_ms`, most often nothing."""
+        """Return the bytes to repeat at the robot's time `now_ms`, usually none."""
         is_silent = wall_s - self._heard_s > SILENT_S
-        if self._open or is_silent or now_ms < self._beat_ms + BEAT_MS:
+        if self._open or is_silent or now_ms < self._heartbeat_ms + HEARTBEAT_MS:
             return b""
-        self._beat_ms = now_ms
+        self._heartbeat_ms = now_ms
         return self._frame

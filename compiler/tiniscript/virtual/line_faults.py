@@ -1,7 +1,7 @@
 """A bad line on purpose: bytes get lost or change, come late, or a radio module writes among them.
 
-Knows chance and bytes; time is an argument. What never happens on a serial line does not happen
-here either: nothing is sent twice, and nothing overtakes what was sent before it.
+Knows chance and bytes; time is an argument. As on a serial line, bytes are never duplicated or
+reordered.
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ class BadLine:
 
     def __init__(self, rate: float, chance: Random) -> None:
         self.rate = rate
-        self.faults = 0  # that there were
+        self.faults = 0  # count of faults so far
         self._chance = chance
-        self._late: deque[tuple[int, int]] = deque()  # when a byte arrives, and which
-        self._lost = 0  # of the next bytes
+        self._late: deque[tuple[int, int]] = deque()  # arrival time and byte
+        self._lost = 0  # how many of the next bytes get lost
 
     def put(self, data: bytes, now_ms: int) -> None:
         """Send bytes."""
@@ -57,10 +57,10 @@ class BadLine:
 
     @property
     def waiting(self) -> int:
-        """How many bytes are on their way."""
+        """Return how many bytes are in transit."""
         return len(self._late)
 
     def clear(self) -> None:
-        """What is on its way arrives nowhere."""
+        """Drop the bytes in transit."""
         self._late.clear()
         self._lost = 0

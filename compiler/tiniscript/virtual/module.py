@@ -7,8 +7,8 @@ installed, or cannot run on this computer.
 
 from __future__ import annotations
 
-from ctypes import addressof, c_ubyte
 from pathlib import Path
+from struct import pack
 from typing import NamedTuple, Protocol
 from weakref import WeakMethod
 
@@ -47,12 +47,13 @@ _NOTE = 4  # numbers of 32 bits
 
 
 class Circumstances(NamedTuple):
-    """What a firmware is switched on with.
+    """The settings with which a firmware is switched on.
 
-    `byte_us` is how long a byte takes on the line, both ways (0: none); `eeprom_us` how long one
-    takes in the memory that keeps programs.
+    `hashes` are those of the kit's devices; `byte_us` is how long a byte takes on the line, both
+    ways (0: none); `eeprom_us` how long one takes in the memory that keeps programs.
     """
 
+    hashes: tuple[int, ...]
     kit: int
     sensors: int
     actuators: int
@@ -64,7 +65,7 @@ class Circumstances(NamedTuple):
 
 
 class Firmware:
-    """The firmware from power-on on. `memory` is what its EEPROM holds; None: it is new."""
+    """A running firmware. `memory` is the content of its EEPROM; None: the EEPROM is empty."""
 
     def __init__(self, board: Board, what: Circumstances, memory: bytes | None = None) -> None:
         self._store = wasm_store.store()
@@ -91,20 +92,19 @@ class Firmware:
         self._eeprom, size = self.call("memory_at"), self.call("memory_bytes")
         self.memory_bytes = size
         self._waiting = bytearray()  # bytes behind those in the inbox
-        # the module's memory, which does not grow, as numbers of 32 bits
-        room = found.data_len(self._store)
-        base = addressof(found.data_ptr(self._store).contents)
-        self._numbers = memoryview((c_ubyte * room).from_address(base)).cast("B").cast("i")
+        self._numbers = wasm_store.numbers(self._store, found)
         self._notes, self._noted = self.call("notes") // 4, self.call("noted") // 4
         self._reading = self.call("reading") // 4
         self._told = [(getattr(board, name), count) for name, count in _WHAT]
         whole = ((memory or b"") + bytes(size).replace(b"\0", b"\xff"))[:size]
         self._memory.write(self._store, whole, self._eeprom)
-        self.call("begin", *what)
+        hashes = pack(f"<{len(what.hashes)}H", *what.hashes)
+        self._memory.write(self._store, hashes, self.call("hashes"))
+        self.call("begin", *what[1:])
         self._look()
 
     def run(self, until_us: int, data: bytes = b"") -> bytes:
-        """Go on up to a time; bytes arrive from now on. Return what is sent meanwhile."""
+        """Run until `until_us`, with `data` as received bytes. Return the bytes sent meanwhile."""
         self._waiting += data
         sent = bytearray()
         while True:
@@ -125,7 +125,7 @@ class Firmware:
         return len(self._waiting) + self.call("unheard")
 
     def memory(self) -> bytes:
-        """Return what the EEPROM holds."""
+        """Return the content of the EEPROM."""
         end = self._eeprom + self.memory_bytes
         return bytes(self._memory.read(self._store, self._eeprom, end))
 
@@ -133,9 +133,9 @@ class Firmware:
         return int(self._functions[name](self._store, *values) or 0)
 
     def close(self) -> None:
-        """Switch it off, and free its memory. It does nothing more then."""
+        """Switch it off, and free its memory. It cannot run again."""
         self._functions = {}
-        self._numbers.release()  # it shows what is no longer there
+        self._numbers.release()  # its memory is about to be freed
         self._told = []
         self._store.close()
 

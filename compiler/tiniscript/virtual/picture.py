@@ -15,7 +15,7 @@ from tiniscript.virtual.driving import Hull
 from tiniscript.virtual.geometry import Point
 from tiniscript.virtual.world import World
 
-FINE = 2  # drawn so many times as large, and then made smaller: smooth lines
+FINE = 2  # drawn this many times larger, then scaled down: smooth lines
 LARGEST = 1200  # pixels of the longer side
 MARGIN = 24
 PAPER, FLOOR, WALL, BOX = "#ffffff", "#f5f2ea", "#37414b", "#8a97a3"

@@ -29,11 +29,11 @@ EVENTS = 100_000  # that are kept until somebody takes them
 
 
 class Settings(NamedTuple):
-    """What is not as in the profile.
+    """Settings that differ from the profile.
 
-    `seed` is for all that is left to chance. `noise` is a part: 0.05 is 5 %. `motors` are percent
-    of the speed that each should have. `baud` of 0: a byte takes no time; None: as in the profile.
-    `eeprom_us` is what a byte takes that is saved. `told` are readings of single sensors.
+    `seed` starts the random numbers. `noise` is a fraction: 0.05 is 5 %. `motors` are percent of
+    each motor's nominal speed. `baud` of 0: a byte takes no time; None: as in the profile.
+    `eeprom_us` is the time to save one byte. `told` are readings of single sensors.
     """
 
     seed: int = 1
@@ -74,10 +74,10 @@ class VirtualRobot:
         self.started_ms: int | None = None  # when its first program began
         self.ended_ms: int | None = None  # when its newest program ended
         self.is_at_rest = False
-        self._told = 0  # events that are true of a robot at rest
-        self.is_lit = False  # the light says that the button would start something
-        self.fault = ""  # that has ended the last program
-        self.actuators: dict[int, int] = {}  # what each was set to, and still is
+        self._told = 0  # number of events from before the robot was at rest
+        self.is_lit = False  # the light is on: the button would start a program
+        self.fault = ""  # the fault that has ended the last program
+        self.actuators: dict[int, int] = {}  # the current value of each
         self._traced = TracedRobot(profile.kit, self._noticed)
         self._ended = ""  # how the program has ended, as far as it is known
         self._began_ms = 0  # when it was switched on
@@ -105,14 +105,14 @@ class VirtualRobot:
         self._settle()
 
     def power_cycle(self, reset: int = POWER_ON) -> None:
-        """Off and on: it stands where it stood, and knows what it has saved."""
+        """Switch off and on: pose and EEPROM are kept."""
         memory = self._firmware.memory()
         self.switch_off()
         self._firmware.close()
         self._firmware = self._switched_on(reset, memory)
 
     def rest(self) -> None:
-        """Its time is over: it stands from now on, whatever its firmware still does."""
+        """End its time: it no longer moves, whatever its firmware does."""
         self.driving.set_motors(self.now_ms, 0, 0)
         self._traced.now_ms = self.now_ms
         if self.is_running:
@@ -124,7 +124,7 @@ class VirtualRobot:
         self._told = len(self._traced.events)
 
     def switch_off(self) -> None:
-        """It stands now. Until it is switched on again, its clock must not go on."""
+        """Switch it off. Its clock must not go on until it is switched on again."""
         self.driving.set_motors(self.now_ms, 0, 0)
         if self.is_running:
             self._traced.now_ms = self.now_ms
@@ -141,6 +141,7 @@ class VirtualRobot:
         return Firmware(
             self,
             Circumstances(
+                hashes=kit.hashes,
                 kit=kit.fingerprint,
                 sensors=len(kit.sensors),
                 actuators=len(kit.actuators),
@@ -169,7 +170,7 @@ class VirtualRobot:
 
     @property
     def unheard(self) -> int:
-        """How many bytes that have come to it are still to be heard."""
+        """Return how many received bytes the firmware has not read yet."""
         return self._firmware.unheard
 
     @property
@@ -201,7 +202,7 @@ class VirtualRobot:
         self.actuators[actuator] = self._traced.events[-1].values[1]
 
     def actuators_off(self, now_ms: int) -> None:
-        """What is on goes off; a servo gets no more pulses, unless its profile holds it."""
+        """Turn actuators off; a servo gets no more pulses, unless its profile holds it."""
         self._at(now_ms)
         board, kit = self.profile.board, self.profile.kit
         for number, value in sorted(self.actuators.items()):
@@ -262,7 +263,7 @@ class VirtualRobot:
         return self.sensing.read(sensor, self.driving.go_on(self.now_ms))
 
     def _settle(self) -> None:
-        """Say how a program has ended: only now is it known whether by itself."""
+        """Report how a program has ended: only now is it known whether it ended by itself."""
         if not self._ended:
             return
         what, self._ended = self._ended, ""
@@ -279,7 +280,7 @@ class VirtualRobot:
 
     @property
     def held(self) -> str:
-        """Where its program is: NOTHING, MEMORY, SAVING or STORED."""
+        """Return where its program is held: NOTHING, MEMORY, SAVING or STORED."""
         from tiniscript.link.messages import SAVED
 
         return SAVED[self._firmware.call("saved")][0]

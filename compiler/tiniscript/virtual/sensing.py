@@ -1,7 +1,7 @@
-"""What the sensors of a robot say, from where it is in a world.
+"""The readings of a robot's sensors, calculated from its pose in a world.
 
-Knows what light, distance, a line and a touch are to a sensor. Readings are thousandths, as a
-machine has them. A sensor that has no place in the robot's body says what it is told to.
+Knows how sensors measure light, distance, a line and a touch. Readings are thousandths, as in the
+machine. A sensor without a place in the robot's body gives the readings that it is told.
 """
 
 from __future__ import annotations
@@ -55,14 +55,14 @@ class Sensing:
         self._told = {number: list(values) for number, values in (told or {}).items()}
 
     def read(self, number: int, pose: Pose) -> int:
-        """Return what a sensor says to a robot that is at `pose`."""
+        """Return the reading of a sensor at `pose`."""
         told = self._told.get(number)
         if told:
             return told.pop(0) if len(told) > 1 else told[0]
         return self._noticed(number, pose, self.noise)
 
     def look(self, number: int, pose: Pose) -> int:
-        """Return what it would say, without noise. This changes nothing of what it will say."""
+        """Return the reading without noise. This does not change later readings."""
         told = self._told.get(number)
         return told[0] if told else self._noticed(number, pose, 0.0)
 
@@ -116,7 +116,7 @@ class Sensing:
         return False
 
     def _is_touched(self, place: Place, pose: Pose) -> bool:
-        """A bumper notices what the body touches on the side where it sits."""
+        """Return whether the body touches something on the side where a bumper sits."""
         contact = self.hull.contact(pose, self.obstacles)
         if contact is None or contact.gap_cm >= TOUCH_CM:
             return False
@@ -139,7 +139,7 @@ def _stood(place: Place, pose: Pose) -> tuple[Point, float]:
 
 
 def _nothing(device: Device) -> int:
-    """Return what a sensor says that notices nothing of this world."""
+    """Return the reading of a sensor that detects nothing in this world."""
     if device.is_yes_no:
         return 0
     if device.unit == "°C" and device.low <= ROOM_CELSIUS <= device.high:

@@ -1,7 +1,7 @@
-"""A virtual robot in time: the clock on the wall, and whoever talks to it.
+"""Runs a virtual robot against the real clock and its clients.
 
-Time goes by for the robot as on the wall, or quicker while a program runs; slower where this
-computer is busy. What the robot is, `robot` knows, and who talks to it, `guests`.
+The robot's time follows real time, or runs faster while a program runs; it runs slower if this
+computer is busy. `robot` simulates the robot, `transports` handles its clients.
 """
 
 from __future__ import annotations
@@ -12,30 +12,30 @@ from time import monotonic
 from tiniscript.virtual.heartbeat import Heartbeat
 from tiniscript.virtual.line_faults import BadLine
 from tiniscript.virtual.robot import VirtualRobot
-from tiniscript.virtual.transports import Guests
+from tiniscript.virtual.transports import Transports
 
-BEHIND_S = 0.25  # more than that behind, the robot's clock goes slower
-BUSY_S = 0.002  # between two looks while bytes are under way,
-NEAR_S = 0.02  # while somebody is there or something runs,
+BEHIND_S = 0.25  # a larger delay slows the robot's clock down
+BUSY_S = 0.002  # between two polls while bytes are in transit,
+NEAR_S = 0.02  # while a client is connected or a program runs,
 CALM_S = 0.25  # and otherwise
-TRAFFIC_S = 0.05  # for which bytes are expected where some were
-STRIDE_MS = 100  # of a robot in a hurry, between two looks at the line
-TURN_S = 0.01  # for which it may hurry before others have their turn
-FULL_BYTES = 512  # that wait for the robot; then nothing more is taken from the line
-PUSH_MS = 60  # for which a finger is on the button
+TRAFFIC_S = 0.05  # after a byte, more bytes are expected for this time
+STRIDE_MS = 100  # robot time between two polls of the line while it runs faster
+TURN_S = 0.01  # real time that a fast run may take before the caller gets its turn
+FULL_BYTES = 512  # limit of bytes waiting for the robot; then the line is not read
+PUSH_MS = 60  # how long a push holds the button down
 
 
-class Host:
+class Simulator:
     """`hurry` is how many times as fast a running program goes; 0 is as fast as possible.
 
     Of 1000 bytes of the line, about `faults` meet a fault, both ways.
     """
 
     def __init__(
-        self, robot: VirtualRobot, guests: Guests, hurry: float = 1.0, faults: float = 0.0
+        self, robot: VirtualRobot, transports: Transports, hurry: float = 1.0, faults: float = 0.0
     ) -> None:
         self.robot = robot
-        self.guests = guests
+        self.transports = transports
         self.hurry = hurry
         self.end_ms: int | None = None  # of the robot's time: then it is over
         self.lasts_ms: int | None = None  # or so long after its first program has begun
@@ -77,15 +77,15 @@ class Host:
         return self.robot.unheard + self.there.waiting
 
     def turn(self, limit_s: float = CALM_S) -> None:
-        """Wait for what comes, at most for so long; then the robot goes on to now."""
+        """Wait for bytes, at most `limit_s`; then advance the robot to the present."""
         is_full = self.waiting >= FULL_BYTES
-        self.guests.wait(min(limit_s, self._pause_s()), is_full)
+        self.transports.wait(min(limit_s, self._pause_s()), is_full)
         wall_s = monotonic()
         passed_s = min(wall_s - self._wall_s, BEHIND_S)
         self._wall_s = wall_s
-        data = b"" if is_full else self.guests.receive()
-        if self.guests.visits != self._visits:
-            self._visits = self.guests.visits
+        data = b"" if is_full else self.transports.receive()
+        if self.transports.visits != self._visits:
+            self._visits = self.transports.visits
             self._heartbeat.forget()
             self.there.clear()
             self.back.clear()
@@ -94,14 +94,14 @@ class Host:
             self._heartbeat.hear(data, wall_s)
             self.there.put(data, self.robot.now_ms)
         self._go_on(passed_s)
-        self.guests.send(b"")
+        self.transports.send(b"")
 
     def _pause_s(self) -> float:
         if self._is_hurrying():
             return 0.0 if not self.hurry else BUSY_S
         if self._wall_s - self._traffic_s < TRAFFIC_S or self.robot.unheard:
             return BUSY_S
-        if self.robot.is_running or self.guests.is_connected or self._is_pushing:
+        if self.robot.is_running or self.transports.is_connected or self._is_pushing:
             return NEAR_S
         return CALM_S
 
@@ -150,10 +150,10 @@ class Host:
         elif self._is_wanted:
             self.push()
         data = self.there.take(now_ms)
-        if is_hurrying and self.guests.is_connected and not data:
+        if is_hurrying and self.transports.is_connected and not data:
             data = self._heartbeat.due(now_ms, self._wall_s)
         sent = self.robot.step(now_ms + step_ms, data)
         if sent:
             self._traffic_s = self._wall_s
             self.back.put(sent, self.robot.now_ms)
-        self.guests.send(self.back.take(self.robot.now_ms))
+        self.transports.send(self.back.take(self.robot.now_ms))

@@ -1,9 +1,9 @@
-"""Who talks to a virtual robot: over TCP from this computer alone, or over a pseudo-terminal.
+"""The transports of a virtual robot: TCP from this computer only, or a pseudo-terminal.
 
-One at a time, as on a cable: whoever comes second is told so and has to leave. A caller comes in
-when its first bytes may be meant for a robot; those of a browser never are. Callers have a number
-and a time, so no connections keep out for ever the next one that speaks. Bytes go in and out; what
-they mean is not known here.
+There is one client at a time, as on a cable: a second one is told so and disconnected. A caller
+becomes the client when its first bytes may be meant for a robot; a browser's never are. The
+number and the time of callers are limited, so idle connections cannot block a new client. Does
+not know what the bytes mean.
 """
 
 from __future__ import annotations
@@ -19,19 +19,19 @@ from tiniscript.virtual.first_bytes import is_for_robot
 
 LOCAL = "127.0.0.1"
 READ_BYTES = 1024
-KEPT_BYTES = 65_536  # for a guest who does not read; more is lost, as on a serial line
+KEPT_BYTES = 65_536  # buffer for a client that does not read; more is lost, as on a serial line
 TAKEN = b"Port already in use: another program is talking to this robot.\r\n"
-PATIENT_S = 0.3  # for which a second caller waits before it is told
-FAREWELL_S = 2.5  # for which it may read that
+PATIENT_S = 0.3  # a second caller waits this long before it is told
+FAREWELL_S = 2.5  # and has this long to read the message
 CALLERS = 64  # at a time: file descriptors are few (macOS: 256)
-YOUNG_S = 0.25  # for which a caller is not dropped for a newer one
-SILENT_S = 60.0  # for which a caller may say nothing,
-OPENING_S = 10.0  # and for which its first bytes or line may take
-IDLE_S = 10.0  # a guest that is silent for so long leaves its place to one who speaks
+YOUNG_S = 0.25  # a caller is not dropped for a newer one within this time
+SILENT_S = 60.0  # timeout of a caller that sends nothing,
+OPENING_S = 10.0  # and of one whose first bytes or line are incomplete
+IDLE_S = 10.0  # a client that is silent for this time is replaced by a caller that sends
 BACKLOG = 128
 
 
-class Guests:
+class Transports:
     """A port on this computer. Raises OSError where it cannot be had."""
 
     def __init__(self, port: int = 0, has_terminal: bool = False) -> None:
@@ -48,8 +48,8 @@ class Guests:
             except BaseException:
                 self._server.close()
                 raise
-        self._guest: socket.socket | None = None
-        self._heard_s = 0.0  # when the guest has said something
+        self._client: socket.socket | None = None
+        self._heard_s = 0.0  # when the client has said something
         self._callers: list[_Caller] = []  # the oldest first
         self._full_s = 0.0  # when there was no room for one more open file
         self._unsent = bytearray()
@@ -57,7 +57,7 @@ class Guests:
     @property
     def is_connected(self) -> bool:
         """Whether somebody is there. Of a pseudo-terminal nobody knows."""
-        return self._guest is not None
+        return self._client is not None
 
     def wait(self, limit_s: float, is_full: bool = False) -> None:
         """Wait until something comes, at most for so long. `is_full`: nothing more is wanted."""
@@ -67,8 +67,8 @@ class Guests:
         if not watched:
             limit_s = min(limit_s, YOUNG_S / 4)
         if not is_full:
-            if self._guest is not None:
-                watched.append(self._guest)
+            if self._client is not None:
+                watched.append(self._client)
             elif self._ours >= 0:
                 watched.append(self._ours)
         if watched or sys.platform != "win32":
@@ -77,15 +77,15 @@ class Guests:
             sleep(limit_s)
 
     def receive(self) -> bytes:
-        """Return what has come. Lets guests in and out."""
+        """Return what has come. Lets clients in and out."""
         data = self._heard()
         first = self._let_in()
         return data if first is None else first
 
     def _heard(self) -> bytes:
-        if self._guest is not None:
+        if self._client is not None:
             try:
-                data = self._guest.recv(READ_BYTES)
+                data = self._client.recv(READ_BYTES)
             except BlockingIOError:
                 return b""
             except OSError:
@@ -101,7 +101,7 @@ class Guests:
 
     def send(self, data: bytes) -> None:
         """Send bytes to whoever is there; nobody, and they are lost."""
-        if self._guest is None:
+        if self._client is None:
             if self._ours >= 0 and data:
                 with contextlib.suppress(OSError):  # nobody reads, and its buffer is full
                     os.write(self._ours, data)
@@ -110,7 +110,7 @@ class Guests:
         if not self._unsent:
             return
         try:
-            done = self._guest.send(self._unsent)
+            done = self._client.send(self._unsent)
             del self._unsent[:done]
         except BlockingIOError:
             pass
@@ -136,30 +136,30 @@ class Guests:
         self.terminal = os.ttyname(self._theirs)
 
     def _let_in(self) -> bytes | None:
-        """Let the next caller in where there is room, and tell the others that there is none.
+        """Make the next caller the client if there is none, and refuse the other callers.
 
-        Return the first bytes of a guest that has come, or None where none has.
+        Return the first bytes of a new client, or None if there is no new client.
         """
         self._accept()
         now_s = monotonic()
         self._callers = [each for each in self._callers if not each.has_left(now_s)]
         first = None
         speaker = next((each for each in self._callers if each.is_next), None)
-        if speaker is not None and self._guest is not None and now_s > self._heard_s + IDLE_S:
+        if speaker is not None and self._client is not None and now_s > self._heard_s + IDLE_S:
             self._part()
-        if speaker is not None and self._guest is None:
+        if speaker is not None and self._client is None:
             self._callers.remove(speaker)
-            self._guest, first = speaker.peer, speaker.opening
+            self._client, first = speaker.peer, speaker.opening
             self._unsent.clear()
             self._heard_s = now_s
             self.visits += 1
-        if self._guest is not None:
+        if self._client is not None:
             for caller in self._callers:
                 caller.tell(now_s)
         return first
 
     def _accept(self) -> None:
-        """Take new callers in, the oldest ones going first where there are too many."""
+        """Accept new callers; if there are too many, drop the oldest."""
         for _ in range(CALLERS):
             if not self._has_room():
                 return
@@ -178,7 +178,7 @@ class Guests:
             self._callers.append(_Caller(peer, monotonic()))
 
     def _has_room(self) -> bool:
-        """Whether one more may come: each has had a moment in which to say something."""
+        """Return whether one more caller may be accepted: each gets YOUNG_S to send something."""
         past_s = monotonic() - YOUNG_S
         is_few = len(self._callers) < CALLERS or self._callers[0].came_s < past_s
         return is_few and self._full_s < past_s
@@ -188,17 +188,17 @@ class Guests:
             self._callers.pop(0).peer.close()
 
     def _part(self) -> None:
-        if self._guest is not None:
-            self._guest.close()
-        self._guest = None
+        if self._client is not None:
+            self._client.close()
+        self._client = None
         self._unsent.clear()
 
 
 class _Caller:
-    """Somebody who wants to come in. Who waits for a while is told that another one is there.
+    """A connection that is not the client yet. After PATIENT_S it is told that there is another.
 
-    Not at once: the one before may be about to go, and pyserial throws away what it hears first.
-    Whoever is told has time to read it: closing at once would take the word back.
+    Not at once: the client may be about to leave, and pyserial discards the first bytes. It stays
+    open for FAREWELL_S, because closing at once would lose the message.
     """
 
     def __init__(self, peer: socket.socket, came_s: float) -> None:

@@ -1,4 +1,4 @@
-"""What a world is once it is read: a floor with walls, boxes, black lines and lamps.
+"""The types of a world: a floor with walls, boxes, black lines and lamps.
 
 Lengths are centimetres: x goes to the right and y up, from the lower left corner of the floor.
 Knows the shapes. Knows no TOML (`world_reader`), no files (`worlds`) and no robots.
@@ -26,7 +26,7 @@ class Line(NamedTuple):
 
 
 class Lamp(NamedTuple):
-    """A lamp. In the distance `reach_cm` a sensor that looks at it gives half of its range."""
+    """A lamp. At the distance `reach_cm` a sensor facing it reads half of its range."""
 
     place: Point
     reach_cm: float
@@ -35,7 +35,7 @@ class Lamp(NamedTuple):
 class World(NamedTuple):
     """A world. `walls` are rows of points, `boxes` corners; the robot begins at `start`.
 
-    `ambient` is what light there is without lamps, 0 to 1. `labels` has its name in each language.
+    `ambient` is the light without lamps, 0 to 1. `labels` has the name in each language.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""The text of a world becomes a World, or every complaint about it is raised at once.
+"""Reads the text of a world into a World, or raises all complaints about it at once.
 
 Opens no files.
 """
@@ -29,7 +29,7 @@ def read(text: str, name: str) -> World:
     reasons: list[Reason] = []
     try:
         world = _read(Table(found, "", reasons), shown(name))
-    except ProfileRefused as refused:  # what cannot be complained about and passed over
+    except ProfileRefused as refused:  # a mistake after which reading cannot go on
         raise WorldRefused(*refused.reasons) from None
     if reasons:
         raise WorldRefused(*reasons)

@@ -1,7 +1,6 @@
-"""What is said of a refused world: a cause and a thing to do, in English and Spanish.
+"""The sentences about a refused world: a cause and a remedy, in English and Spanish.
 
-What a world has in common with a profile, `robots.refusals` says. Does not know when a code is
-given.
+`robots.refusals` has the sentences shared with profiles. Does not know when a code applies.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The worlds that there are, and how one is found by name or by file."""
+"""The shipped worlds, and how a world is found by name or by file."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ def names() -> list[str]:
 
 
 def load(name_or_path: str) -> World:
-    """Return a shipped world, in any case, or the one that a TOML file describes.
+    """Return a shipped world (upper or lower case), or the one that a TOML file describes.
 
-    What is a file, `robots.load` says. Raises WorldRefused and nothing else.
+    `robots.load` says which names are files. Raises only WorldRefused.
     """
     if name_or_path.lower() in names():
         name = name_or_path.lower()

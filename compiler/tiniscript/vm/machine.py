@@ -1,7 +1,7 @@
 """The machine, in Python.
 
 Runs verified code. Time comes in as `now_ms`; the world is behind `task.Robot`. `tick` does a
-little and returns: nothing here waits. What each instruction does is in `vm_instructions`.
+little and returns: nothing here waits. What each instruction does is in `instructions`.
 The C++ machine has the same names and the same order.
 """
 
@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from tiniscript.bytecode.opcodes import CHECK_MS
 from tiniscript.fixed_point import Fault
-from tiniscript.vm.instructions import decoded
+from tiniscript.vm.handlers import STAY, stopped
+from tiniscript.vm.instructions import bound, instruction
 from tiniscript.vm.state import (
     DONE,
     FAULT,
@@ -40,7 +41,8 @@ class Machine:
         self.fault = ""
         self.at = 0  # where the instruction that runs, or has faulted, begins
         self.steps = 0  # instructions that have run
-        self._code = decoded(code)
+        self._code = code
+        self._steps = bound(self, code)
 
     def tick(self, now_ms: int, budget: int) -> str:
         """Run at most `budget` instructions at the time `now_ms`; return the status."""
@@ -55,50 +57,56 @@ class Machine:
                 self.robot.motors(0, 0)
             task.wait = NOTHING
         self.status = RUNNING
-        code = self._code
+        run = self._steps
+        at, pc = self.at, task.pc
         left = budget
         try:
-            while left:
-                left -= 1
-                self.at = at = task.pc
-                handler, operands, task.pc = code[at]
-                if handler(self, task, *operands):
+            for left in range(budget - 1, -1, -1):  # noqa: B007 - it is asked for behind the loop
+                at = pc
+                pc = run[at]()
+                if pc < 0:
+                    pc = at if pc == STAY else stopped(pc)
                     break
         except Fault as fault:
             self.robot.off()
             self.status, self.fault = FAULT, fault.name
+            pc = instruction(self._code, at)[1]
+        self.at, task.pc = at, pc
         self.steps += budget - left
         return self.status
 
     @property
     def wake_ms(self) -> int:
-        """Before this time, a machine that waits has nothing to do."""
+        """Return the time before which a waiting machine has nothing to do."""
         return self.task.wake_ms
 
-    def wait(self, duration_ms: int, what: str) -> bool:
-        """Begin a wait where the one before ended, or now where that is too long ago."""
+    def wait(self, duration_ms: int, what: str, after: int) -> int:
+        """Begin a wait at the end of the previous one, or now if that is too long ago.
+
+        Like a step, this and `until` return where the program goes on.
+        """
         task = self.task
         self.begin()
         task.clock_ms += duration_ms
         task.wake_ms = task.clock_ms
         task.wait = what
         self.status = WAITING
-        return True
+        return stopped(after)
 
     def begin(self) -> None:
-        """Set the program's clock to when a wait or a move that comes now begins."""
+        """Set the program's clock to the start time of the next wait or move."""
         if self.now_ms - self.task.clock_ms > LATE_MS:
             self.task.clock_ms = self.now_ms
 
-    def until(self, stop: bool, check: int) -> bool:
-        """End the watched move or go on with it, and check again at the offset `check`."""
+    def until(self, stop: bool, after: int) -> int:
+        """End the watched move or go on with it, and check again."""
         task = self.task
         if stop:
             if task.is_watching:
                 task.clock_ms = self.now_ms
                 if task.powers is not None:
                     self.robot.motors(0, 0)
-            return False
+            return after
         if not task.is_watching:
             task.is_watching = True
             self.begin()
@@ -107,17 +115,11 @@ class Machine:
                 self.robot.motors(*task.powers)
         gone_ms = self.now_ms - task.begun_ms
         next_ms = (gone_ms // CHECK_MS + 1) * CHECK_MS
+        self.status = WAITING
         if task.move_ms != FOREVER and next_ms >= task.move_ms:
             task.clock_ms = task.wake_ms = task.begun_ms + task.move_ms
             task.wait = PAUSE if task.powers is None else MOVE
-        else:
-            task.clock_ms = task.wake_ms = task.begun_ms + next_ms
-            task.wait = PAUSE
-            task.pc = check
-        self.status = WAITING
-        return True
-
-    def retry(self) -> bool:
-        """Run this instruction again at the next tick: the robot is not ready."""
-        self.task.pc = self.at
-        return True
+            return stopped(after)
+        task.clock_ms = task.wake_ms = task.begun_ms + next_ms
+        task.wait = PAUSE
+        return stopped(task.check)

@@ -1,7 +1,7 @@
-"""What a running program is, and what it may ask of the world.
+"""The state of a running program, and its interface to the robot.
 
 Knows the record `Task`, the robot's seam and the words for what a machine is doing. Does not
-know what instructions do (`vm_instructions`) nor when they run (`vm`).
+know what instructions do (`instructions`) nor when they run (`machine`).
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ MOVE = "move"  # the end of a move: then motors off
 
 
 class Robot(Protocol):
-    """What a machine may ask of the world. Numbers are thousandths, TRUE is 1."""
+    """The robot as a machine uses it. Numbers are thousandths, TRUE is 1."""
 
     def motors(self, left: int, right: int) -> None:
         """Set both motors, -100 to 100 percent."""
@@ -34,7 +34,7 @@ class Robot(Protocol):
         """Motors off: the program has ended or faulted."""
 
     def read(self, sensor: int) -> int | None:
-        """Return a reading, or None while it is not there yet: the machine asks again."""
+        """Return a reading, or None if it is not ready: the machine asks again."""
 
     def beep(self, hertz: int, duration_ms: int) -> None:
         """Start a sound; it ends by itself."""
@@ -47,10 +47,10 @@ class Robot(Protocol):
 
 
 class Task:
-    """All that a running program is: one small record."""
+    """The whole state of a running program: one small record."""
 
-    __slots__ = ("begun_ms", "calls", "clock_ms", "counters", "is_watching", "move_ms", "pc",
-                 "powers", "random", "readings", "stack", "started_ms", "variables", "wait",
+    __slots__ = ("begun_ms", "calls", "check", "clock_ms", "counters", "is_watching", "move_ms",
+                 "pc", "powers", "random", "readings", "stack", "started_ms", "variables", "wait",
                  "wake_ms")  # fmt: skip
 
     def __init__(self, seed: int, sensors: int, now_ms: int) -> None:
@@ -68,5 +68,6 @@ class Task:
         # the move that an UNTIL watches
         self.powers: tuple[int, int] | None = None  # None: a wait, the motors stay as they are
         self.move_ms = 0  # how long it may last, or FOREVER
+        self.check = 0  # where its check begins
         self.is_watching = False  # it has begun,
         self.begun_ms = now_ms  # at this time

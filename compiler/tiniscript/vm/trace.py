@@ -14,7 +14,7 @@ from tiniscript.kit import Kit
 from tiniscript.vm.machine import Machine
 from tiniscript.vm.state import DONE, FAULT, WAITING, Robot
 
-SLICE = 1000  # instructions between two looks at the limit
+SLICE = 10_000  # instructions between two looks at the limit
 
 
 class Event(NamedTuple):
@@ -58,7 +58,7 @@ class Senses:
 
 
 class TracedRobot:
-    """A robot that does nothing but say what it did."""
+    """A robot that only records what it is told to do."""
 
     def __init__(self, kit: Kit, senses: Callable[[int], int]) -> None:
         self.kit = kit
@@ -73,7 +73,7 @@ class TracedRobot:
         self.say("MOTORS", (left, right), f"MOTORS {left} {right}")
 
     def off(self) -> None:
-        """The final stop is no line of a trace."""
+        """Record nothing: the final stop is not part of a trace."""
 
     def read(self, sensor: int) -> int | None:
         value = self.senses(sensor)
@@ -128,8 +128,8 @@ def run(
 ) -> Iterator[Event | Ending]:
     """Yield what a robot with this kit does with verified `code`; the last one is its Ending.
 
-    `max_ms` cuts a wait that would pass it. `max_steps` is how many instructions may run while no
-    time passes: it cuts loops that take none.
+    `max_ms` cuts a wait that would pass it. `max_steps` limits the instructions that run without
+    time passing: it ends loops that take no time.
     """
     robot = TracedRobot(kit, senses)
     machine = machine_of(code, robot, len(kit.sensors), seed)

@@ -9,15 +9,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from struct import pack
 from types import TracebackType
 from typing import Any
 from weakref import ref
 
-from wasmtime import Func, FuncType, Instance, Memory, ValType
+from wasmtime import Func, FuncType, Instance, Memory
 
 from tiniscript.bytecode.image import REFUSALS, ImageRefused
 from tiniscript.bytecode.opcodes import FAULTS
 from tiniscript.bytecode.verify import RULES, Refused
+from tiniscript.kit import Kit
 from tiniscript.vm import wasm_store
 from tiniscript.vm.state import DONE, FAULT, RUNNING, WAITING, Robot
 
@@ -29,30 +31,35 @@ _RULE_NAMES = {number: name for name, (number, _) in RULES.items()}
 _REFUSAL_NAMES = {number: name for name, (number, _) in REFUSALS.items()}
 
 _CLOCK = 1 << 32  # where the clock of the machine wraps around
+_HALF = _CLOCK // 2
 _BUDGET = 65_535  # instructions, the most of one tick
-_NOT_THERE = 1 << 32  # what is no reading
+
+# Where numbers are in `Exchange` of `main.cpp`
+_NOW_MS, _LEFT, _WAKE_MS, _STATUS, _FIRST, _SECOND, _ANSWER, _IS_ANSWERED = range(8)
+_NUMBERS = 8
 
 
 class WasmImage:
     """An image in the memory of a C++ machine of its own, which has read and verified it.
 
-    `close`, the end of a `with`, or the last reference to it ends that, and frees the memory.
+    `close`, the end of a `with`, or the loss of the last reference frees the memory.
     """
 
-    def __init__(self, data: bytes, kit: int, sensors: int, actuators: int) -> None:
-        """`kit` is the fingerprint of the robot that shall run it.
+    def __init__(self, data: bytes, kit: Kit) -> None:
+        """`kit` is that of the robot that shall run it.
 
         Raises ImageRefused or Refused with the name of the reason.
         """
         self.robot: Robot | None = None
+        self.exchange: memoryview[int] | None = None
         self._store = wasm_store.store()
         try:
-            self._load(data, kit, sensors, actuators)
+            self._load(data, kit)
         except BaseException:
             self.close()
             raise
 
-    def _load(self, data: bytes, kit: int, sensors: int, actuators: int) -> None:
+    def _load(self, data: bytes, kit: Kit) -> None:
         module = wasm_store.module(MODULE)
         functions = self._robot_functions()
         imports = [functions[each.name or ""] for each in module.imports]
@@ -62,26 +69,38 @@ class WasmImage:
         memory = self._exports["memory"]
         assert isinstance(memory, Memory)
         memory.write(self._store, data, self.call("room"))
-        refusal = self.call("unpack", len(data), kit)
+        first = self.call("exchange") // 4
+        numbers = wasm_store.numbers(self._store, memory)
+        self.exchange = numbers[first : first + _NUMBERS]
+        hashes = kit.hashes
+        memory.write(self._store, pack(f"<{len(hashes)}H", *hashes), self.call("hashes"))
+        refusal = self.call("unpack", len(data))
         if refusal:
             raise ImageRefused(_REFUSAL_NAMES[refusal])
-        rule = self.call("verify", sensors, actuators)
+        rule = self.call("verify", len(kit.sensors), len(kit.actuators))
         if rule:
             raise Refused(_RULE_NAMES[rule], self.call("refused_at"))
+        refusal = self.call("compare")
+        if refusal:
+            raise ImageRefused(_REFUSAL_NAMES[refusal])
 
     def machine(
         self, code: bytes, robot: Robot, sensors: int = 0, seed: int = 1, now_ms: int = 0
     ) -> WasmMachine:
-        """Return the machine, at the beginning of the program. `code` is what it has already.
+        """Return the machine, at the beginning of the program. The image already holds `code`.
 
-        It has one machine: another one ends the one before.
+        An image has one machine: a new one ends the previous one.
         """
         self.robot = robot
         self.call("start", sensors, seed, now_ms % _CLOCK)
-        return WasmMachine(self, now_ms)
+        assert self.exchange is not None, "the image is closed"
+        return WasmMachine(self, self.exchange, now_ms)
 
     def close(self) -> None:
-        """Free its memory. It does nothing more then."""
+        """Free its memory. It cannot be used again."""
+        if self.exchange is not None:
+            self.exchange.release()  # its memory is about to be freed
+            self.exchange = None
         self._store.close()
 
     def __enter__(self) -> WasmImage:
@@ -105,51 +124,70 @@ class WasmImage:
         return lambda *values: function(self._store, *values)
 
     def _robot_functions(self) -> dict[str, Func]:
-        """Return what the module imports: `robot.h`, under the names of `task.Robot`."""
-        i32, i64 = ValType.i32(), ValType.i64()
+        """Return what the module imports: `robot.h`, under the names of `state.Robot`."""
         owner = ref(self)  # no more: else it would live for ever, `wasm_store` says why
 
-        def there() -> Robot:
+        def asked() -> tuple[Robot, memoryview[int]]:
             image = owner()
             assert image is not None and image.robot is not None, "nothing runs yet"
-            return image.robot
+            assert image.exchange is not None
+            return image.robot, image.exchange
 
-        def read(sensor: int) -> int:
-            value = there().read(sensor)
-            return _NOT_THERE if value is None else value
+        def motors() -> None:
+            robot, numbers = asked()
+            robot.motors(numbers[_FIRST], numbers[_SECOND])
 
-        table: dict[str, tuple[list[ValType], list[ValType], Callable[..., Any]]] = {
-            "motors": ([i32, i32], [], lambda left, right: there().motors(left, right)),
-            "off": ([], [], lambda: there().off()),
-            "read": ([i32], [i64], read),
-            "beep": ([i32, i32], [], lambda hertz, ms: there().beep(hertz, ms)),
-            "show": ([i32, i32], [i32], lambda value, yes: int(there().show(value, bool(yes)))),
-            "set": ([i32, i32], [], lambda actuator, value: there().set(actuator, value)),
-        }
+        def off() -> None:
+            asked()[0].off()
+
+        def read() -> None:
+            robot, numbers = asked()
+            value = robot.read(numbers[_FIRST])
+            numbers[_IS_ANSWERED] = value is not None
+            numbers[_ANSWER] = value or 0
+
+        def beep() -> None:
+            robot, numbers = asked()
+            robot.beep(numbers[_FIRST], numbers[_SECOND])
+
+        def show() -> None:
+            robot, numbers = asked()
+            numbers[_IS_ANSWERED] = robot.show(numbers[_FIRST], bool(numbers[_SECOND]))
+
+        def set_actuator() -> None:
+            robot, numbers = asked()
+            robot.set(numbers[_FIRST], numbers[_SECOND])
+
+        table: dict[str, Callable[[], None]] = {
+            "motors": motors, "off": off, "read": read, "beep": beep, "show": show,
+            "set": set_actuator,
+        }  # fmt: skip
         return {
-            name: Func(self._store, FuncType(takes, gives), function)
-            for name, (takes, gives, function) in table.items()
+            name: Func(self._store, FuncType([], []), function) for name, function in table.items()
         }
 
 
 class WasmMachine:
     """The same as `vm.Machine` from outside, for 2^32 milliseconds: then its clock wraps around."""
 
-    def __init__(self, image: WasmImage, now_ms: int) -> None:
+    def __init__(self, image: WasmImage, exchange: memoryview[int], now_ms: int) -> None:
         self.status = RUNNING
         self.wake_ms = now_ms
         self.steps = 0  # instructions that have run
         self._image = image
+        self._exchange = exchange
         self._tick = image.function("tick")
 
     def tick(self, now_ms: int, budget: int) -> str:
         """Run at most `budget` instructions at the time `now_ms`; return the status."""
         budget = min(budget, _BUDGET)
-        said = self._tick(now_ms % _CLOCK, budget)
-        half = _CLOCK // 2
-        self.wake_ms = now_ms + ((said - now_ms + half) % _CLOCK - half)
-        self.steps += budget - (said >> 32 & 0xFFFF)
-        self.status = _STATUSES[said >> 48]
+        numbers = self._exchange
+        numbers[_NOW_MS] = (now_ms + _HALF) % _CLOCK - _HALF
+        numbers[_LEFT] = budget
+        self._tick()
+        self.wake_ms = now_ms + ((numbers[_WAKE_MS] - now_ms + _HALF) % _CLOCK - _HALF)
+        self.steps += budget - numbers[_LEFT]
+        self.status = _STATUSES[numbers[_STATUS]]
         return self.status
 
     @property

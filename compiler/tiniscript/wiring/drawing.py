@@ -1,6 +1,6 @@
-"""A plan becomes a drawing: SVG that needs nothing else, and can be read in black and white.
+"""Draws a plan as self-contained SVG that can be read in black and white.
 
-Everything has its place from `layout`. Whatever text comes here is escaped here.
+`layout` gives all positions. All text is escaped here.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A plan becomes places: where the board, the parts and the wires are drawn.
+"""Calculates where the board, the parts and the wires of a plan are drawn.
 
 Pins lie on a grid, terminals half a step beside it, and every wire has a track of its own between
 the board and the parts: so wires cross, and never lie upon each other. Knows no SVG.
@@ -92,7 +92,7 @@ class _Channel:
         self.spans: dict[int, tuple[int, int]] = {}
 
     def tracks(self) -> dict[int, int]:
-        """Return the track of each wire, 0 next to the board, with few crossings."""
+        """Return the track of each wire (0 is next to the board), chosen for few crossings."""
         order = sorted(self.spans, key=lambda wire: self.spans[wire])
         improved = True
         while improved:
@@ -176,7 +176,7 @@ class _Layout:
         return RIGHT if sides and 2 * sum(sides) >= len(sides) else LEFT
 
     def _wanted(self, part: Part) -> float:
-        """Return where a part's first terminal would like to be: beside its pins."""
+        """Return the preferred height of a part's first terminal: beside its pins."""
         offsets = [
             self.pin_y[end.wire.pin] - row
             for end, row in zip(part.ends, _rows_of(part), strict=True)

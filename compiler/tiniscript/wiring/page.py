@@ -1,7 +1,7 @@
-"""What is said beside a drawing: what is needed, tables, what to mind, what to check.
+"""The text beside a drawing: parts list, tables, warnings and checks.
 
-Knows a plan, and when a sentence belongs to it. Text in a block is plain, but for **bold** in
-sentences of `texts`; whoever writes it escapes it.
+Knows a plan, and which sentences apply to it. Text in a block is plain except for **bold** in
+sentences of `texts`; the code that writes it escapes it.
 """
 
 from __future__ import annotations

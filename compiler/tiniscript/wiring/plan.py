@@ -1,7 +1,7 @@
-"""A robot becomes a plan: its parts, and every wire between them and the board, numbered.
+"""Makes the plan of a robot: its parts, and every wire between them and the board, numbered.
 
 Knows which pin is joined to which terminal. Does not know where things are drawn (`layout`). What
-comes from a profile is cut to a length here, and is still to be escaped by whoever writes it.
+comes from a profile is cut to a length here; the code that writes it must escape it.
 """
 
 from __future__ import annotations
@@ -173,7 +173,7 @@ def plan_of(robot: Robot, language: str) -> Plan:
 
 
 def _with_servo_supply(shape: Shape) -> Shape:
-    """Servos that drive have one supply: what measures the battery measures that."""
+    """Driving servos share one supply: a battery sensor measures that supply."""
     renamed = (
         terminal._replace(name=SERVO_SUPPLY) if terminal.name == MOTOR_BATTERY else terminal
         for terminal in shape.terminals

@@ -1,4 +1,5 @@
-// Runs one image on a simulated ATmega328P, for tests, and says over the UART what the robot did.
+// Runs one image on a simulated ATmega328P, for tests, and reports over the UART what the robot
+// did.
 //
 // The request lies in flash: `tests/machines/avr.py` writes it into the built program. The clock
 // is simulated as in `run.py`. Ends by sleeping without interrupts: that ends the simulator too.
@@ -18,7 +19,7 @@ namespace {
 constexpr size_t kRequestBytes = 8192;
 constexpr size_t kImageBytes = 700;
 
-// What is found by its first bytes, and written over.
+// A test finds it by its first bytes and overwrites it.
 const uint8_t kRequest[kRequestBytes] tini_progmem = {"TiniScript: here is the request"};
 
 uint8_t image_bytes[kImageBytes + kEndBytes];

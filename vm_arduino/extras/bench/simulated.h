@@ -17,7 +17,7 @@ namespace simulated {
 
 constexpr uint16_t kRequestBytes = 1024;
 
-// What is found by its first bytes, and written over.
+// The bench finds it by its first bytes and overwrites it.
 const uint8_t kRequest[kRequestBytes] PROGMEM = {"TiniScript: here is the request"};
 
 uint16_t reading_at = 0;  // of the request

@@ -56,12 +56,11 @@ void answer_verdicts(Request request, size_t end) {
 }
 
 void answer_images(Request request, size_t end) {
-  const uint16_t kit = request.u16();
   while (request.place() < end) {
     const Bytes data = next_bytes(&request);
     if (data.data == nullptr) return;
     Image image;
-    put_bytes(static_cast<uint8_t>(unpack(data.data, data.length, kit, &image)), 1);
+    put_bytes(static_cast<uint8_t>(unpack(data.data, data.length, &image)), 1);
   }
 }
 

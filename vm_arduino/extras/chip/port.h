@@ -1,4 +1,4 @@
-// What a chip lends to the tests that run on it: where a request lies, where an answer goes.
+// The interface of a chip to the tests that run on it: reads a request, writes an answer.
 //
 // Each chip defines these in a folder beside this one. The requests are those of
 // `tests/machines/host.py`.
@@ -14,8 +14,8 @@ namespace tiniscript {
 // The byte of the request at this place; 0 behind its end.
 uint8_t request_byte(size_t place);
 
-// The `length` bytes of the request from this place in RAM, and `zeros` behind them; or nullptr
-// where the chip has no room for them. They stay until the next call.
+// Returns `length` bytes of the request from this place, in RAM and followed by `zeros`, or nullptr
+// if the chip has no room for them. They are valid until the next call.
 const uint8_t* request_bytes(size_t place, size_t length, size_t zeros);
 
 // Adds a byte to the answer.

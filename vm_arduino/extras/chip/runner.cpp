@@ -80,7 +80,6 @@ uint32_t run(const Image& image, const Limits& limits) {
 }  // namespace
 
 void answer_run(Request request) {
-  const uint16_t kit = request.u16();
   Limits limits;
   limits.max_ms = request.u32();
   limits.max_steps = request.u32();
@@ -91,13 +90,16 @@ void answer_run(Request request) {
   const uint8_t* const data = request_bytes(request.place(), length, kEndBytes);
   if (data == nullptr) return put_text("NO ROOM\n");
   Image image;
-  const Refusal refusal = unpack(data, length, kit, &image);
+  const Refusal refusal = unpack(data, length, &image);
   if (refusal != Refusal::kNone) return end("REFUSED", static_cast<uint8_t>(refusal), 0);
+  uint16_t devices;
   const Verdict verdict =
-      verify(image.code, image.code_length, robot.sensor_count, robot.actuator_count);
+      verify(image.code, image.code_length, robot.sensor_count, robot.actuator_count, &devices);
   if (verdict.rule != Rule::kNone) {
     return end("BREAKS", static_cast<uint8_t>(verdict.rule), verdict.offset);
   }
+  const Refusal other = check_devices(image, devices);
+  if (other != Refusal::kNone) return end("REFUSED", static_cast<uint8_t>(other), 0);
   const uint32_t steps = run(image, limits);
   end("RAN", machine.at(), steps);
 }

@@ -29,6 +29,7 @@ bool TracedRobot::read(Request* request) {
     Sensor& sensor = sensors[k];
     sensor.name = request->text();
     sensor.is_yes_no = request->u8() != 0;
+    sensor.hash = request->u16();
     sensor.count = request->u16();
     sensor.taken = 0;
     sensor.readings = request->place();
@@ -40,6 +41,7 @@ bool TracedRobot::read(Request* request) {
     Actuator& actuator = actuators[k];
     actuator.name = request->text();
     actuator.is_yes_no = request->u8() != 0;
+    actuator.hash = request->u16();
     actuator.low = request->i32();
     actuator.high = request->i32();
   }
@@ -88,6 +90,12 @@ bool robot_show(int32_t value, bool is_yes_no) {
   put_value(value, is_yes_no);
   put('\n');
   return true;
+}
+
+uint16_t robot_device_hash(uint16_t device) {
+  if (device < robot.sensor_count) return robot.sensors[device].hash;
+  device = static_cast<uint16_t>(device - robot.sensor_count);
+  return device < robot.actuator_count ? robot.actuators[device].hash : 0;  // none is asked about
 }
 
 void robot_set(uint8_t actuator, int32_t value) {

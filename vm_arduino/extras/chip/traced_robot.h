@@ -1,4 +1,4 @@
-// A robot that does nothing but say what it did, in memory that is counted beforehand.
+// A robot that only records what it does, in memory of fixed size.
 //
 // Defines what `robot.h` declares, and means the same as `../host/traced_robot.h`; its names and
 // readings stay in the request.
@@ -16,12 +16,14 @@ struct TracedRobot {
     size_t readings;  // where they begin
     uint16_t count;
     uint16_t taken;
+    uint16_t hash;
     bool is_yes_no;
   };
   struct Actuator {
     size_t name;
     int32_t low;
     int32_t high;
+    uint16_t hash;
     bool is_yes_no;
   };
 
@@ -31,11 +33,11 @@ struct TracedRobot {
   Sensor sensors[8];
   Actuator actuators[4];
 
-  // Takes sensors, readings and actuators from a request, and begins at 0 milliseconds; false where
-  // there are more than it has room for.
+  // Takes sensors, readings and actuators from a request and starts at 0 ms. False: there are more
+  // than fit.
   bool read(Request* request);
 
-  // Begins a line of the trace: what follows is its rest.
+  // Begins a line of the trace; the caller adds the rest.
   void say(const char* what) const;
 };
 

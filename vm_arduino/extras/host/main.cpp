@@ -71,7 +71,7 @@ void run(const uint8_t* code, uint16_t length, const Limits& limits, Writer* ans
     } else if (status == Status::kFault) {
       ending = std::string("FAULT ") + name_of(machine.fault());
     } else if (status == Status::kWaiting && wake_ms <= limits.max_ms) {
-      // a look too early changes nothing
+      // A tick that is too early changes nothing.
       if (wake_ms > robot.now_ms) machine.tick(wake_ms - 1 + limits.begin_ms, kSlice);
       if (wake_ms > robot.now_ms) {
         before = steps;
@@ -98,7 +98,7 @@ void read_robot(Reader* request) {
   for (uint8_t count = request->u8(); count > 0; count--) {
     const std::string name = request->text();
     const bool is_yes_no = request->u8() != 0;
-    robot.sensors.push_back({name, is_yes_no, 0, 0});
+    robot.sensors.push_back({name, is_yes_no, 0, 0, request->u16()});
     std::vector<int32_t> values(request->u16());
     for (int32_t& value : values) value = request->i32();
     robot.readings.push_back(values);
@@ -106,8 +106,9 @@ void read_robot(Reader* request) {
   for (uint8_t count = request->u8(); count > 0; count--) {
     const std::string name = request->text();
     const bool is_yes_no = request->u8() != 0;
+    const uint16_t hash = request->u16();
     const int32_t low = request->i32();
-    robot.actuators.push_back({name, is_yes_no, low, request->i32()});
+    robot.actuators.push_back({name, is_yes_no, low, request->i32(), hash});
   }
   robot.taken.assign(robot.sensors.size(), 0);
   robot.not_ready = request->u32();
@@ -115,7 +116,6 @@ void read_robot(Reader* request) {
 
 // R: runs an image, which is read and verified first. U: runs the code of an image whatever it is.
 void answer_run(Reader* request, bool is_verified, Writer* answer) {
-  const uint16_t kit = request->u16();
   Limits limits;
   limits.max_ms = request->u32();
   limits.max_steps = request->u32();
@@ -125,15 +125,19 @@ void answer_run(Reader* request, bool is_verified, Writer* answer) {
   const Bytes data = request->bytes(kEndBytes);
   Image image;
   if (is_verified) {
-    const Refusal refusal = unpack(data.data.get(), data.length, kit, &image);
+    const Refusal refusal = unpack(data.data.get(), data.length, &image);
     answer->u8(static_cast<uint8_t>(refusal));
     if (refusal != Refusal::kNone) return;
+    uint16_t devices;
     const Verdict verdict =
         verify(image.code, image.code_length, static_cast<uint8_t>(robot.sensors.size()),
-               static_cast<uint8_t>(robot.actuators.size()));
+               static_cast<uint8_t>(robot.actuators.size()), &devices);
     answer->u8(static_cast<uint8_t>(verdict.rule));
     answer->u16(verdict.offset);
     if (verdict.rule != Rule::kNone) return;
+    const Refusal other = check_devices(image, devices);
+    answer->u8(static_cast<uint8_t>(other));
+    if (other != Refusal::kNone) return;
   } else {
     image.code = data.data.get();
     image.code_length = static_cast<uint16_t>(data.length);
@@ -144,7 +148,6 @@ void answer_run(Reader* request, bool is_verified, Writer* answer) {
 // L: runs the code of an image whose ticks after a wait come late: the lines before its ending.
 void answer_late(Reader* request, Writer* answer) {
   const uint32_t late_ms = request->u32();
-  request->u16();  // kit
   request->u32();  // longest time
   request->u32();  // most instructions
   const uint32_t seed = request->u32();
@@ -209,7 +212,7 @@ uint8_t request_byte(size_t place) {
   return place < asked.size() ? static_cast<uint8_t>(asked[place]) : 0;
 }
 
-// Bytes of exactly their length: a look behind them is an error that a sanitizer sees.
+// Bytes of exactly their length, so that a sanitizer detects a read past the end.
 const uint8_t* request_bytes(size_t place, size_t length, size_t zeros) {
   bytes_asked.reset(new uint8_t[length + zeros]());
   for (size_t k = 0; k < length; k++) bytes_asked[k] = request_byte(place + k);

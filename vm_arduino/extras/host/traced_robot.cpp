@@ -64,6 +64,12 @@ bool robot_show(int32_t value, bool is_yes_no) {
   return true;
 }
 
+uint16_t robot_device_hash(uint16_t device) {
+  if (device < robot.sensors.size()) return robot.sensors[device].hash;
+  const size_t number = device - robot.sensors.size();
+  return number < robot.actuators.size() ? robot.actuators[number].hash : 0;  // none is asked about
+}
+
 void robot_set(uint8_t actuator, int32_t value) {
   if (actuator >= robot.actuators.size()) return;  // the code was not verified
   const Device& device = robot.actuators[actuator];

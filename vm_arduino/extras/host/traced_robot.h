@@ -1,4 +1,4 @@
-// A robot that does nothing but say what it did: the lines of `tsc run`.
+// A robot that only records what it does, as the lines of `tsc run`.
 //
 // Defines what `robot.h` declares. Readings come from lists: each takes the next value, the last
 // one repeats, no list is 0. The same as `TracedRobot` and `Senses` in `run.py`.
@@ -17,6 +17,7 @@ struct Device {
   bool is_yes_no;
   int32_t low;
   int32_t high;
+  uint16_t hash;
 };
 
 struct TracedRobot {

@@ -1,4 +1,4 @@
-// Numbers and bytes of a request and of its answer: little-endian, texts with their length before.
+// Numbers and bytes of requests and answers: little-endian, texts after their length.
 
 #ifndef TINISCRIPT_HOST_WIRE_H_
 #define TINISCRIPT_HOST_WIRE_H_
@@ -11,7 +11,7 @@
 #include <string>
 #include <utility>
 
-// Bytes of exactly their length: a look behind them is an error that a sanitizer sees.
+// Bytes of exactly their length, so that a sanitizer detects a read past the end.
 struct Bytes {
   std::unique_ptr<uint8_t[]> data;
   size_t length;

@@ -1,4 +1,4 @@
-// A whole robot on a computer, for tests: its firmware with a board that is made of variables.
+// A whole robot on a computer, for tests: the firmware with a board simulated by variables.
 //
 // One process is one robot from power-on to power-off. A request is four bytes of length and a
 // letter with what it asks; an answer is four bytes of length and what was found.
@@ -23,6 +23,7 @@ struct Tabletop {
   std::string memory;  // the EEPROM
   std::vector<int32_t> readings;
   std::vector<int32_t> kept;  // the firmware's
+  std::vector<uint16_t> hashes;
   std::string log;
   int8_t left = 0;
   int8_t right = 0;
@@ -32,7 +33,7 @@ struct Tabletop {
   bool is_low = false;  // the supply
   bool writes_mark = false;
   uint8_t measures = 0;    // of it, each fourth says something
-  uint16_t dead = 0xffff;  // a place of the memory that keeps what it is
+  uint16_t dead = 0xffff;  // an address of the memory whose byte never changes
   bool has_set = false;    // an actuator, and no stop since
   bool has_hung = false;
   Place hung = {};
@@ -51,7 +52,7 @@ void say(const char* what, int32_t first, int32_t second) {
 
 int8_t percent_of(int16_t level) { return static_cast<int8_t>(lround(level / 2.55)); }
 
-// Whether a byte makes something count: the marks of a slot, 0 aside.
+// Whether a byte is a commit byte: a mark of a slot other than 0.
 bool is_mark(uint16_t place, uint8_t value) {
   for (uint8_t slot = 0; slot < kSlots; slot++) {
     const int at = place - place_of(slot);
@@ -60,7 +61,7 @@ bool is_mark(uint16_t place, uint8_t value) {
   return false;
 }
 
-// What the motors do, not what they are told.
+// The actual state of the motors, not the requested one.
 void turn(int8_t left, int8_t right) {
   if ((left != 0 || right != 0) && table.busy_ticks != 0 && table.writes_mark) {
     table.log += "MARK and a motor starts\n";
@@ -80,6 +81,8 @@ void answer_begin(Reader* request) {
   board.seed = request->u32();
   board.max_run_ms = request->u32();
   table.write_ticks = request->u8();
+  table.hashes.resize(static_cast<size_t>(board.sensors + board.actuators));
+  for (uint16_t& hash : table.hashes) hash = request->u16();
   table.readings.resize(board.sensors);
   table.kept.resize(board.sensors);
   board.readings = table.kept.data();
@@ -119,16 +122,16 @@ void answer_step(Reader* request, Writer* answer) {
   answer->u8(table.is_latched);
 }
 
-// E: what the memory holds.
+// E: the contents of the memory.
 void answer_memory(Writer* answer) { answer->text(table.memory); }
 
 // L: whether the supply is too low.
 void answer_supply(Reader* request) { table.is_low = request->u8() != 0; }
 
-// D: a byte of the memory that keeps what it is.
+// D: selects a byte of the memory that never changes.
 void answer_dead(Reader* request) { table.dead = request->u16(); }
 
-// V: what the sensors say.
+// V: sets the readings of the sensors.
 void answer_readings(Reader* request) {
   for (int32_t& reading : table.readings) reading = request->i32();
 }
@@ -156,6 +159,8 @@ void robot_set(uint8_t actuator, int32_t value) {
   say("SET", actuator, value);
   table.has_set = true;
 }
+
+uint16_t robot_device_hash(uint16_t device) { return table.hashes.at(device); }
 
 void board_actuators_off() {
   if (table.has_set) table.log += "ACTUATORS OFF\n";

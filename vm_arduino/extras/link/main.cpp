@@ -16,21 +16,23 @@ namespace {
 Receiver receiver;
 Link link_half;
 
-// B: a robot is switched on.
+// B: switches a robot on.
 void answer_begin(Reader* request) {
   port = SimulatedPort();
   port.room = request->u16();
-  port.card.kit = request->u16();
-  port.equipment.sensors = request->u8();
-  port.equipment.actuators = request->u8();
-  port.card.id = 0x54696e69;
-  port.card.reset = Reset::kPower;
-  port.card.nonce = 0x08070605;
+  port.identity.kit = request->u16();
+  port.device_info.sensors = request->u8();
+  port.device_info.actuators = request->u8();
+  port.hashes.resize(static_cast<size_t>(port.device_info.sensors + port.device_info.actuators));
+  port.identity.id = 0x54696e69;
+  port.identity.reset = Reset::kPower;
+  port.identity.nonce = 0x08070605;
   const uint8_t name[] = {'T', 'i', 'n', 'i'};
   port_rename(name, sizeof name);
   receiver = Receiver();
   link_half = Link();
   link_half.begin(&receiver, request->u8());
+  for (uint16_t& hash : port.hashes) hash = request->u16();
   port.log.clear();
 }
 
@@ -48,13 +50,14 @@ void answer_step(Reader* request, Writer* answer) {
     }
     const bool is_last = k == data.length;
     if (how == 1 && !is_last) continue;
-    link_half.tick(static_cast<uint16_t>(now_ms));
+    link_half.pass_time(static_cast<uint16_t>(now_ms));
+    link_half.tick();
     link_half.tell();
     uint8_t byte = 0;
     for (uint8_t turns = 0; turns < 8; turns++) {
       while ((how != 2 || is_last) && link_half.next_tx_byte(&byte))
         sent += static_cast<char>(byte);
-      link_half.tick(static_cast<uint16_t>(now_ms));
+      link_half.tick();
       link_half.tell();
     }
   }
@@ -69,7 +72,7 @@ void answer_robot(Reader* request, Writer* answer) {
   bool is_taken = true;
   switch (what) {
     case 'd':
-      port.condition.state = State::kIdle;
+      port.robot_status.state = State::kIdle;
       link_half.done();
       break;
     case 'f':

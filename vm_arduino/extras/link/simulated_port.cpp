@@ -2,6 +2,7 @@
 
 #include <stdio.h>
 
+#include "../../src/robot.h"
 #include "../../src/vm/crc32.h"
 #include "../../src/vm/image.h"
 #include "../../src/vm/vm.h"
@@ -19,13 +20,19 @@ void say(const char* what, unsigned number = 0) {
   port.log += "\n";
 }
 
+const uint8_t* bytes_of(const std::string& image) {
+  return reinterpret_cast<const uint8_t*>(image.data());
+}
+
+// The length of its code.
 uint16_t length_of(const std::string& image) {
-  return image.empty() ? 0 : static_cast<uint16_t>(image.size() - kHeaderBytes);
+  if (image.empty()) return 0;
+  return static_cast<uint16_t>(image.size() - bytes_of(image)[kHeaderLengthAt]);
 }
 
 uint32_t checksum_of(const std::string& image) {
   uint32_t found = 0;
-  for (uint8_t k = kHeaderBytes; !image.empty() && k-- > kChecksumAt;) {
+  for (uint8_t k = kBehindChecksum; !image.empty() && k-- > kChecksumAt;) {
     found = found << 8 | static_cast<uint8_t>(image[k]);
   }
   return found;
@@ -33,21 +40,20 @@ uint32_t checksum_of(const std::string& image) {
 
 void hold(const std::string& image, Saved saved) {
   port.held = image;
-  port.condition.program = checksum_of(image);
-  port.condition.length = length_of(image);
-  port.condition.saved = image.empty() ? Saved::kNothing : saved;
+  port.robot_status.program = checksum_of(image);
+  port.robot_status.length = length_of(image);
+  port.robot_status.saved = image.empty() ? Saved::kNothing : saved;
 }
 
 std::string text_of(const uint8_t* image) {
-  const size_t length = kHeaderBytes + image[kCodeLengthAt] + 256u * image[kCodeLengthAt + 1];
-  return std::string(reinterpret_cast<const char*>(image), length);
+  return std::string(reinterpret_cast<const char*>(image), image_length(image));
 }
 
 // The image with its checksum.
 std::string sealed(std::string image) {
-  const uint8_t* const bytes = reinterpret_cast<const uint8_t*>(image.data());
-  const uint16_t code_length = static_cast<uint16_t>(image.size() - kHeaderBytes);
-  const uint32_t crc = crc32(crc32(0, bytes, kChecksumAt), bytes + kHeaderBytes, code_length);
+  const uint8_t* const bytes = bytes_of(image);
+  const uint16_t rest = static_cast<uint16_t>(image.size() - kBehindChecksum);
+  const uint32_t crc = crc32(crc32(0, bytes, kChecksumAt), bytes + kBehindChecksum, rest);
   image.replace(kChecksumAt, sizeof crc, reinterpret_cast<const char*>(&crc), sizeof crc);
   return image;
 }
@@ -56,28 +62,31 @@ std::string sealed(std::string image) {
 
 namespace tiniscript {
 
-const Equipment& port_equipment() { return port.equipment; }
-const Card& port_card() { return port.card; }
-const Condition& port_condition() { return port.condition; }
+const DeviceInfo& port_device_info() { return port.device_info; }
+const Identity& port_identity() { return port.identity; }
+const RobotStatus& port_status() { return port.robot_status; }
 const Trim& port_trim() { return port.trim; }
 LineErrors port_line_errors() { return {0, 0}; }
 uint16_t port_room() { return port.room; }
 
 Answer port_make_way(bool) {
   if (port.is_busy) return Answer::kBusy;
-  if (port.condition.state == State::kRunning) {
-    port.condition.state = State::kIdle;
+  if (port.robot_status.state == State::kRunning) {
+    port.robot_status.state = State::kIdle;
     say("END");
   }
   return Answer::kOk;
 }
 
+// What may not be lost is not lost by writing ahead: `port_memory` gives other memory each time.
+bool port_may_prepare() { return !port.is_busy; }
+
 void port_forget() { hold(port.stored, Saved::kStored); }
 
-uint8_t* port_memory(uint16_t code_length, bool is_live) {
-  if (code_length > port.room) return nullptr;
+uint8_t* port_memory(uint16_t length, bool is_live) {
+  if (length > kHeaderBytes + port.room) return nullptr;
   std::unique_ptr<uint8_t[]>& memory = is_live ? port.live : port.image;
-  const size_t size = static_cast<size_t>(kHeaderBytes + code_length + kEndBytes);
+  const size_t size = static_cast<size_t>(length + kEndBytes);
   memory.reset(new uint8_t[size]);
   for (size_t k = 0; k < size; k++) memory[k] = 0xa5;  // what was there before
   return memory.get();
@@ -91,8 +100,7 @@ void port_take(uint8_t mode, bool is_live) {
       say("TAKE something without END");
   }
   Image read;
-  const bool is_whole = unpack(reinterpret_cast<const uint8_t*>(image.data()), image.size(),
-                               port.card.kit, &read) == Refusal::kNone;
+  const bool is_whole = unpack(bytes_of(image), image.size(), &read) == Refusal::kNone;
   if (!is_whole) say("TAKE something that is no image");
   say(is_live ? "TAKE live %08x" : "TAKE %08x", checksum_of(image));
   if (is_live) return;
@@ -105,25 +113,29 @@ void port_seal(const uint8_t* image) {
 }
 
 void port_start(bool is_live) {
-  port.condition.state = State::kRunning;
-  port.condition.run++;
-  say(is_live ? "START live, run %u" : "START run %u", port.condition.run);
+  port.robot_status.state = State::kRunning;
+  port.robot_status.run++;
+  say(is_live ? "START live, run %u" : "START run %u", port.robot_status.run);
 }
 
 void port_stop(uint8_t fault) {
-  port.condition.state = fault != 0 ? State::kFaulted : State::kStopped;
+  port.robot_status.state = fault != 0 ? State::kFaulted : State::kStopped;
   if (fault != 0) {
-    port.condition.fault = fault;
-    port.condition.fault_at = 5;
-    port.condition.fault_program = port.condition.program;
+    port.robot_status.fault = fault;
+    port.robot_status.fault_at = 5;
+    port.robot_status.fault_program = port.robot_status.program;
   }
   say(fault != 0 ? "FAULT %u" : "STOP", fault);
 }
 
 void port_release() {
-  if (port.condition.state > State::kRunning) port.condition.state = State::kIdle;
+  if (port.robot_status.state > State::kRunning) port.robot_status.state = State::kIdle;
   say("RELEASE");
 }
+
+uint16_t port_image_length() { return static_cast<uint16_t>(port.held.size()); }
+
+uint16_t robot_device_hash(uint16_t device) { return port.hashes.at(device); }
 
 Answer port_image_byte(uint16_t offset, uint8_t* byte) {
   *byte = static_cast<uint8_t>(port.held.at(offset));
@@ -140,8 +152,8 @@ Answer port_set_trim(const Trim& trim) {
 
 Answer port_rename(const uint8_t* name, uint8_t length) {
   if (port.is_busy) return Answer::kBusy;
-  for (uint8_t k = 0; k < length; k++) port.equipment.name[k] = name[k];
-  port.equipment.name_length = length;
+  for (uint8_t k = 0; k < length; k++) port.device_info.name[k] = name[k];
+  port.device_info.name_length = length;
   say("NAME of %u bytes", length);
   return port.is_saving ? Answer::kSaving : Answer::kOk;
 }

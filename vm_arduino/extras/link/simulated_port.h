@@ -5,14 +5,16 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "../../src/link/port.h"
 
 struct SimulatedPort {
-  tiniscript::Card card = {};
-  tiniscript::Equipment equipment = {};
-  tiniscript::Condition condition = {};
+  tiniscript::Identity identity = {};
+  tiniscript::DeviceInfo device_info = {};
+  tiniscript::RobotStatus robot_status = {};
   tiniscript::Trim trim = {};
+  std::vector<uint16_t> hashes;  // of the kit's devices
   uint16_t room = 0;
   bool is_busy = false;              // it saves, and cannot make way
   bool is_saving = false;            // it has not kept yet what it was given

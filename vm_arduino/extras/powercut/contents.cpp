@@ -22,13 +22,13 @@ uint8_t any_byte() { return static_cast<uint8_t>(random_below(0x100)); }
 
 Content checked(Content image) {
   const uint32_t head = crc32(0, image.data(), kChecksumAt);
-  const uint16_t code_bytes = static_cast<uint16_t>(image.size() - kHeaderBytes);
-  put(&image, kChecksumAt, crc32(head, image.data() + kHeaderBytes, code_bytes));
+  const uint16_t rest = static_cast<uint16_t>(image.size() - kBehindChecksum);
+  put(&image, kChecksumAt, crc32(head, image.data() + kBehindChecksum, rest));
   return image;
 }
 
 Content some_image(uint16_t code_bytes) {
-  Content image = {'T', 'S', kIsaMajor, kIsaMinor, 0, 0, 0x1b, 0x23};
+  Content image = {'T', 'S', kIsaMajor, kIsaMinor, 0, kHeaderBytes, 0x1b, 0x23};
   image.push_back(static_cast<uint8_t>(code_bytes));
   image.push_back(static_cast<uint8_t>(code_bytes >> 8));
   image.resize(kHeaderBytes);
@@ -56,6 +56,9 @@ Content read(const Store& store, Area area) {
     }
     found.push_back(byte);
     if (area == Area::kProgram && found.size() == kHeaderBytes) {
+      // of version 1 the header ends with the checksum, and says nothing of its length
+      const bool is_old = found[kHeaderLengthAt] == 0;
+      length = is_old ? kBehindChecksum : found[kHeaderLengthAt];
       length += found[kCodeLengthAt] + found[kCodeLengthAt + 1] * 256U;
     }
   }

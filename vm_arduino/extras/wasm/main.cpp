@@ -14,62 +14,101 @@
 
 using namespace tiniscript;
 
-tini_imported("motors") void host_motors(int32_t left, int32_t right);
+// What the robot is asked; the numbers are in `exchange`.
+tini_imported("motors") void host_motors();
 tini_imported("off") void host_off();
-tini_imported("read") int64_t host_read(uint32_t sensor);
-tini_imported("beep") void host_beep(uint32_t hertz, uint32_t duration_ms);
-tini_imported("show") int32_t host_show(int32_t value, int32_t is_yes_no);
-tini_imported("set") void host_set(uint32_t actuator, int32_t value);
+tini_imported("read") void host_read();
+tini_imported("beep") void host_beep();
+tini_imported("show") void host_show();
+tini_imported("set") void host_set();
 
 namespace {
 
 constexpr uint32_t kRoom = 65536;  // for an image, and for some that are too long
-constexpr int64_t kNotThere = static_cast<int64_t>(1) << 32;  // what is no reading
+
+// The numbers of calls that are frequent. They lie in memory: to pass some takes the other side
+// several times as long as the call.
+struct Exchange {
+  uint32_t now_ms;  // of a tick,
+  uint32_t budget;  // 0 to 65535 instructions; then what is left of it
+  uint32_t wake_ms;
+  uint32_t status;
+  int32_t first;  // what the robot is asked
+  int32_t second;
+  int32_t answer;  // and what it says, where that is a number,
+  uint32_t is_answered;  // or whether it was ready
+};
 
 uint8_t room[kRoom + kEndBytes];
 Image image;
 Verdict verdict;
+uint16_t devices;
 Machine machine;
 int32_t readings[kDevices];
+Exchange exchange;
+uint16_t hashes[2 * 255];  // more than a profile may have
+
+void ask(void (*host)(), int32_t first, int32_t second = 0) {
+  exchange.first = first;
+  exchange.second = second;
+  host();
+}
 
 }  // namespace
 
 namespace tiniscript {
 
-void robot_motors(int8_t left, int8_t right) { host_motors(left, right); }
+void robot_motors(int8_t left, int8_t right) { ask(host_motors, left, right); }
 
 void robot_off() { host_off(); }
 
 bool robot_read(uint8_t sensor, int32_t* value) {
-  const int64_t found = host_read(sensor);
-  if (found == kNotThere) return false;
-  *value = static_cast<int32_t>(found);
+  ask(host_read, sensor);
+  if (exchange.is_answered == 0) return false;
+  *value = exchange.answer;
   return true;
 }
 
-void robot_beep(uint16_t hertz, uint32_t duration_ms) { host_beep(hertz, duration_ms); }
+void robot_beep(uint16_t hertz, uint32_t duration_ms) {
+  ask(host_beep, hertz, static_cast<int32_t>(duration_ms));
+}
 
-bool robot_show(int32_t value, bool is_yes_no) { return host_show(value, is_yes_no) != 0; }
+bool robot_show(int32_t value, bool is_yes_no) {
+  ask(host_show, value, is_yes_no);
+  return exchange.is_answered != 0;
+}
 
-void robot_set(uint8_t actuator, int32_t value) { host_set(actuator, value); }
+void robot_set(uint8_t actuator, int32_t value) { ask(host_set, actuator, value); }
+
+uint16_t robot_device_hash(uint16_t device) { return hashes[device]; }
 
 }  // namespace tiniscript
+
+tini_exported("exchange") Exchange* module_exchange() { return &exchange; }
 
 // Where the bytes of an image go.
 tini_exported("room") uint8_t* module_room() { return room; }
 
 tini_exported("room_bytes") uint32_t module_room_bytes() { return kRoom; }
 
+// Where the hashes of the kit's devices go: those of sensors, then those of actuators.
+tini_exported("hashes") uint16_t* module_hashes() { return hashes; }
+
 // Reads the header of the image in the room; returns the number of what refuses it, or 0.
-tini_exported("unpack") uint32_t module_unpack(uint32_t length, uint32_t kit) {
-  return static_cast<uint32_t>(unpack(room, length, static_cast<uint16_t>(kit), &image));
+tini_exported("unpack") uint32_t module_unpack(uint32_t length) {
+  return static_cast<uint32_t>(unpack(room, length, &image));
 }
 
 // Verifies the code of the image; returns the number of the rule that it breaks, or 0.
 tini_exported("verify") uint32_t module_verify(uint32_t sensors, uint32_t actuators) {
   verdict = verify(image.code, image.code_length, static_cast<uint8_t>(sensors),
-                   static_cast<uint8_t>(actuators));
+                   static_cast<uint8_t>(actuators), &devices);
   return static_cast<uint32_t>(verdict.rule);
+}
+
+// Compares the devices that the code uses, which is verified; returns what refuses it, or 0.
+tini_exported("compare") uint32_t module_compare() {
+  return static_cast<uint32_t>(check_devices(image, devices));
 }
 
 // Where the code breaks the rule.
@@ -78,26 +117,27 @@ tini_exported("refused_at") uint32_t module_refused_at() { return verdict.offset
 // Begins the program of the image, which is verified.
 tini_exported("start") void module_start(uint32_t sensors, uint32_t seed, uint32_t now_ms) {
   for (uint8_t k = 0; k < kEndBytes; k++) {
-    room[kHeaderBytes + image.code_length + k] = static_cast<uint8_t>(Op::kEnd);
+    room[image_length(room) + k] = static_cast<uint8_t>(Op::kEnd);
   }
   for (int32_t& reading : readings) reading = 0;
   machine.start(image.code, image.code_length, readings, static_cast<uint8_t>(sensors), seed,
                 now_ms);
 }
 
-// Runs at most `budget` (0 to 65535) instructions. From the lowest bit: 32 of `wake_ms`, 16 of
-// how much of the budget is left, 8 of the status.
-tini_exported("tick") uint64_t module_tick(uint32_t now_ms, uint32_t budget) {
+// Runs instructions at the time of the exchange.
+tini_exported("tick") void module_tick() {
+  uint32_t budget = exchange.budget;
   Status status;
   bool is_over;
   do {
     const uint8_t slice = budget < 255 ? static_cast<uint8_t>(budget) : 255;
-    status = machine.tick(now_ms, slice);
+    status = machine.tick(exchange.now_ms, slice);
     budget -= static_cast<uint32_t>(slice - machine.left());
     is_over = status != Status::kRunning || machine.left() != 0;
   } while (budget != 0 && !is_over);
-  return machine.wake_ms() | static_cast<uint64_t>(budget) << 32 |
-         static_cast<uint64_t>(status) << 48;
+  exchange.budget = budget;
+  exchange.wake_ms = machine.wake_ms();
+  exchange.status = static_cast<uint32_t>(status);
 }
 
 tini_exported("fault") uint32_t module_fault() { return static_cast<uint32_t>(machine.fault()); }

@@ -38,6 +38,7 @@ uint32_t byte_us;    // how long a byte takes on the line, both ways; 0: no time
 uint32_t write_us;   // and how long in the EEPROM
 bool is_latched = true;
 int32_t readings[256];
+uint16_t hashes[512];
 uint8_t memory[kMemoryBytes];
 
 // What the robot does, and when: milliseconds since power-on. `what` is one of kMotors to
@@ -119,6 +120,8 @@ void robot_beep(uint16_t hertz, uint32_t duration_ms) {
 
 void robot_set(uint8_t actuator, int32_t value) { note(kSet, actuator, value); }
 
+uint16_t robot_device_hash(uint16_t device) { return hashes[device]; }
+
 void board_stop() {
   is_latched = true;
   note(kStop);
@@ -174,6 +177,9 @@ bool watched_show(int32_t value, bool is_yes_no) {
 // The EEPROM, to be filled before `begin`.
 tini_exported("memory_at") uint8_t* module_memory() { return memory; }
 tini_exported("memory_bytes") uint32_t module_memory_bytes() { return kMemoryBytes; }
+
+// The hashes of the kit's devices, those of sensors first, to be filled before `begin`.
+tini_exported("hashes") uint16_t* module_hashes() { return hashes; }
 
 tini_exported("inbox") uint8_t* module_inbox() { return inbox; }
 tini_exported("outbox") uint8_t* module_outbox() { return outbox; }
@@ -232,9 +238,9 @@ tini_exported("let_go") void module_let_go() { firmware_on_released(); }
 
 // The robot as its own STATUS tells it.
 tini_exported("state") uint32_t module_state() {
-  return static_cast<uint32_t>(port_condition().state);
+  return static_cast<uint32_t>(port_status().state);
 }
 tini_exported("saved") uint32_t module_saved() {
-  return static_cast<uint32_t>(port_condition().saved);
+  return static_cast<uint32_t>(port_status().saved);
 }
-tini_exported("fault") uint32_t module_fault() { return port_condition().fault; }
+tini_exported("fault") uint32_t module_fault() { return port_status().fault; }

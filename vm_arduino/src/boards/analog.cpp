@@ -10,27 +10,31 @@ namespace {
 
 constexpr uint8_t kNoChannel = 0xff;
 constexpr uint8_t kFromSupply = 1 << REFS0;  // the highest count is the supply's voltage
-constexpr uint8_t kChannels = 8;             // with a number of three bits; more have a bit apart
+constexpr uint8_t kChannels = 8;             // three bits select these; more need a bit elsewhere
 
-// The chip's own voltage of 1.1 V, as a channel. Between chips it is 1.0 to 1.2 V: what counts as
-// 4.0 V here is 3.6 to 4.4 V.
+// The channel of the chip's own 1.1 V reference. It varies from 1.0 to 1.2 V between chips, so what
+// counts as 4.0 V here is 3.6 to 4.4 V.
 #ifdef MUX5
 constexpr uint8_t kBandGap = 0x1e;
 #else
 constexpr uint8_t kBandGap = 0x0e;
 #endif
-constexpr uint16_t kMostCount = 281;  // 1024 times 1.1 V by 4.0 V: with more the supply is too low
-// It has a high resistance, and the converter's capacitor takes a millisecond or two to follow. The
-// last of so many conversions of 104 us counts.
+constexpr uint16_t kMostCount = 281;  // 1024 * 1.1 V / 4.0 V: the supply is too low above it
+// The reference has a high resistance, so the converter's capacitor needs 1 to 2 ms to follow. Only
+// the last of these conversions (104 us each) counts.
 constexpr uint8_t kSupplyTries = 24;
 
 uint8_t measured = kNoChannel;
-uint8_t tries;          // conversions of the band gap that are still to come
-bool is_supply_wanted;  // in this turn of the main loop
+uint8_t tries;          // conversions of the reference still to come
+bool is_supply_wanted;  // somebody asked in this turn of the main loop
 
 void convert() { ADCSRA |= 1 << ADSC; }
 
 }  // namespace
+
+void analog_begin() {
+  ADCSRA = 1 << ADEN | 1 << ADPS2 | 1 << ADPS1 | 1 << ADPS0;  // 125 kHz
+}
 
 bool analog_read(uint8_t channel, int32_t* value) {
   if ((ADCSRA & 1 << ADSC) != 0 || measured == kBandGap) return false;
@@ -75,7 +79,7 @@ void analog_tick() {
 
 int32_t analog_scaled(int32_t count, int32_t zero, int32_t step, int32_t rest) {
   const uint32_t parts = static_cast<uint32_t>(count * rest) + 511;
-  // That is divided by 1023, exactly up to 2^20.
+  // Dividing by 1023 with shifts is exact up to 2^20.
   return zero + count * step + static_cast<int32_t>((parts + (parts >> 10) + 1) >> 10);
 }
 
@@ -85,7 +89,7 @@ int32_t in_limits(int32_t value, int32_t low, int32_t high) {
 
 uint16_t part_of_range(int32_t value, int32_t low, int32_t high, uint16_t first, uint16_t last) {
   const int32_t at = in_limits(whole(value), low, high) - low;
-  // Ranges of more than 2^15 are as exact as they need to be without their last bits.
+  // Ranges above 2^15 are exact enough without their lowest bits.
   uint32_t range = static_cast<uint32_t>(high - low);
   uint32_t gone = static_cast<uint32_t>(at);
   while (range > 0x7fff) {

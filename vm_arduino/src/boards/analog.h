@@ -1,4 +1,4 @@
-// The analog converter: a measurement is begun, and fetched when it is there.
+// The analog converter: one call starts a measurement, a later call fetches it.
 
 #ifndef TINISCRIPT_BOARDS_ANALOG_H_
 #define TINISCRIPT_BOARDS_ANALOG_H_
@@ -9,27 +9,29 @@
 
 namespace tiniscript {
 
-// Puts 0 to 1023 into `*value` and returns true where a channel has been measured since the last
-// time; else begins that, if it is not under way, and returns false.
+void analog_begin();
+
+// If the channel has been measured since the last call, puts 0 to 1023 into `*value` and returns
+// true. Otherwise starts the measurement, unless it is under way, and returns false.
 bool analog_read(uint8_t channel, int32_t* value);
 
-// A measurement that is under way is nobody's any more.
+// Discards the measurement that is under way.
 void analog_forget();
 
-// The same for the supply: its voltage against the band gap of the chip. It takes some 3 ms, and a
-// channel waits for so long. To be asked in every turn of the main loop; `analog_tick`, once in
-// each, gives up a measurement that was not.
+// The same for the supply: measures its voltage against the chip's band gap. This takes some 3 ms,
+// and channels wait meanwhile. Call it in every turn of the main loop: `analog_tick`, called once a
+// turn, gives up a measurement that nobody asked for.
 Supply analog_supply();
 void analog_tick();
 
-// What a count means: `zero`, and for each count `step` and so many parts of 1023 that `rest` is
-// (0 to 1022), rounded.
+// Converts a count: `zero`, plus `step` and `rest` / 1023 (`rest` is 0 to 1022) for each count,
+// rounded.
 int32_t analog_scaled(int32_t count, int32_t zero, int32_t step, int32_t rest);
 
-// The value nearest to `value` from `low` to `high`.
+// Returns `value` limited to `low` to `high`.
 int32_t in_limits(int32_t value, int32_t low, int32_t high);
 
-// A setting of `low` to `high` (whole numbers) in thousandths, as a part of the way from `first` to
+// Maps a setting in thousandths, from `low` to `high` (whole numbers), to the range from `first` to
 // `last`.
 uint16_t part_of_range(int32_t value, int32_t low, int32_t high, uint16_t first, uint16_t last);
 

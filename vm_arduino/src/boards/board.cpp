@@ -1,38 +1,39 @@
-// The board as the sketch and the machine see it: what `board.h` and `robot.h` ask for.
+// Implements `board.h` and `robot.h`: the board as the sketch and the machine see it.
 //
-// What a sensor or an actuator is, the robot's header says.
+// The robot's header defines each sensor and actuator.
 
 #include "board.h"
 
-#include <Arduino.h>
-
 #include "../robot.h"
 #include "analog.h"
-#include "echo.h"
+#include "clock.h"
 #include "kit.h"
 #include "motors.h"
 #include "servo.h"
 #include "sound.h"
 #include "uart.h"
+#include "ultrasonic.h"
 #include "watchdog.h"
 
 namespace tiniscript {
 
 namespace {
 
-constexpr uint16_t kSteadyUs = 50000;  // a change of the STATE pin counts then
+constexpr uint16_t kSteadyUs = 50000;  // a change of the STATE pin counts after this time
 
 bool is_connected;
-uint32_t agreed_us;  // when the STATE pin said last what `is_connected` says
+uint16_t agreed_us;  // when the STATE pin last agreed with `is_connected`
+uint8_t seen_ms;     // lowest bits of the clock at the last look
 int32_t readings[kBoardSensors];
 
 }  // namespace
 
 void board_begin() {
   begin_pull_up(kStartButton);
-  if (kBluetoothState.port != 0) begin_pull_up(kBluetoothState);  // it may hang in the air
+  if (kBluetoothState.port != 0) begin_pull_up(kBluetoothState);  // the pin may be unconnected
   if (kLight.port != 0) begin_output(kLight, false);
   begin_devices();
+  analog_begin();
   sound_begin();
 #ifdef tiniscript_servos
   servo_begin();
@@ -40,20 +41,28 @@ void board_begin() {
   watchdog_begin();
 }
 
-uint32_t board_now_ms() { return millis(); }
+uint32_t board_now_ms() { return clock_ms(); }
+
+bool board_has_news() {
+  const uint8_t time_ms = clock_8_ms();
+  if (time_ms == seen_ms && !button_has_moved(!is_high(kStartButton))) return false;
+  seen_ms = time_ms;
+  return true;
+}
 
 void board_tick(uint32_t now_ms) {
   watchdog_feed();
   analog_tick();
+  ultrasonic_tick();
   sound_tick(now_ms);
 }
 
 bool board_has_disconnected() {
   if (kBluetoothState.port == 0) return false;
-  const uint32_t now_us = micros();
+  const uint16_t now_us = clock_us();
   const bool is_now = is_high(kBluetoothState);
   if (is_now == is_connected) agreed_us = now_us;
-  if (now_us - agreed_us < kSteadyUs) return false;
+  if (static_cast<uint16_t>(now_us - agreed_us) < kSteadyUs) return false;
   agreed_us = now_us;
   is_connected = is_now;
   return !is_now;
@@ -66,10 +75,12 @@ Board board_told() {
   told.actuators = kBoardActuators;
   told.readings = readings;
   told.reset = watchdog_reset_cause();
-  told.seed = watchdog_seed() ^ micros();
+  told.seed = watchdog_seed() ^ clock_us();
   told.max_run_ms = uint32_t{kMaxRunSeconds} * 1000;
   return told;
 }
+
+uint16_t robot_device_hash(uint16_t device) { return flash_word(kDeviceHashes + device); }
 
 void board_stop() { motors_stop(); }
 
@@ -77,7 +88,7 @@ void board_release() { motors_release(); }
 
 void board_actuators_off() { actuators_off(false); }
 
-// What the timer has turned off may have been set once more since.
+// A program may have set an actuator again after the timer turned it off.
 bool board_has_stalled() {
   const bool found = watchdog_has_stalled();
   if (found) actuators_off(true);
@@ -92,7 +103,7 @@ LineErrors board_line_errors() { return uart_errors(); }
 
 void board_forget() {
   analog_forget();
-  echo_forget();
+  ultrasonic_forget();
 }
 
 Supply board_supply() { return analog_supply(); }
@@ -101,9 +112,9 @@ void board_light(bool is_on) {
   if (kLight.port != 0) write(kLight, is_on);
 }
 
-void board_finished() { sound_finished(millis()); }
+void board_finished() { sound_finished(clock_ms()); }
 
-void board_faulted() { sound_faulted(millis()); }
+void board_faulted() { sound_faulted(clock_ms()); }
 
 void robot_off() {
   board_motors(0, 0);
@@ -112,9 +123,11 @@ void robot_off() {
 
 bool robot_read(uint8_t sensor, int32_t* value) { return read_sensor(sensor, value); }
 
-void robot_beep(uint16_t hertz, uint32_t duration_ms) { sound_start(hertz, duration_ms, millis()); }
+void robot_beep(uint16_t hertz, uint32_t duration_ms) {
+  sound_start(hertz, duration_ms, clock_ms());
+}
 
-// A program that is being stopped sets nothing any more.
+// A program that is being stopped must not set anything.
 void robot_set(uint8_t actuator, int32_t value) {
   if (!motors_are_stopped()) set_actuator(actuator, value);
 }

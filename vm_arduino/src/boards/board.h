@@ -1,4 +1,4 @@
-// What the sketch asks of the board besides what the firmware does: its clock and its button.
+// The sketch's view of the board beyond `firmware/board.h`: clock and button.
 
 #ifndef TINISCRIPT_BOARDS_BOARD_H_
 #define TINISCRIPT_BOARDS_BOARD_H_
@@ -10,22 +10,25 @@
 
 namespace tiniscript {
 
-// All pins but those of the motors: these are low since the reset, and stay it until
+// Sets up all pins but those of the motors, which are low since the reset and stay low until
 // `motors_release`.
 void board_begin();
 
 uint32_t board_now_ms();
 
-// Does what is due; to be called all the time.
+// Whether the clock has advanced since the last call, or the button has moved since it was read.
+bool board_has_news();
+
+// Does the work that is due; call it at least once a millisecond.
 void board_tick(uint32_t now_ms);
 
 Press board_button(uint32_t now_ms);
 
-// The radio module's STATE pin says that nobody is connected any more: it was high for 50 ms, and
-// then low for 50 ms. A pin that nothing drives stays high.
+// True once the radio module's STATE pin was high for 50 ms and then low for 50 ms: the client has
+// disconnected. Call it at least every 10 ms. An undriven pin stays high.
 bool board_has_disconnected();
 
-// What the firmware is told of the board.
+// What the board tells the firmware at the start.
 Board board_told();
 
 }  // namespace tiniscript

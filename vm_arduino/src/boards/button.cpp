@@ -4,21 +4,23 @@ namespace tiniscript {
 
 namespace {
 
-constexpr uint8_t kDebounceMs = 30;  // chatter and spikes are shorter than that, or not steady
+constexpr uint8_t kDebounceMs = 30;  // bouncing and spikes are shorter, or not steady
 
 enum class State : uint8_t {
   kUnknown,  // after a reset
   kUp,
-  kEdge,  // has gone down: chatters, or it was a spike
+  kEdge,  // just went down: bouncing or a spike
   kDown,
 };
 
 State state = State::kUnknown;
 bool was_down;
-uint8_t steady_ms;  // for how long it has been as it is: milliseconds that were looked at
+uint8_t steady_ms;  // how long it has been steady, in milliseconds that were sampled
 uint8_t last_ms;
 
 }  // namespace
+
+bool button_has_moved(bool is_down) { return is_down != was_down; }
 
 Press button_read(bool is_down, uint32_t now_ms) {
   const uint8_t time_ms = static_cast<uint8_t>(now_ms);

@@ -1,4 +1,4 @@
-// The start button, debounced.
+// The start button with debounce.
 
 #ifndef TINISCRIPT_BOARDS_BUTTON_H_
 #define TINISCRIPT_BOARDS_BUTTON_H_
@@ -7,16 +7,19 @@
 
 namespace tiniscript {
 
-// A stop is early and a start is late: the first edge of a press is told at once, and a release
-// only when the button was surely down and is surely up. Each is told once for a press.
+// A stop must be early, a start may be late: the first edge of a press is reported at once, a
+// release only after a debounced press and a debounced release. Each is reported once per press.
 enum class Press : uint8_t {
   kNothing,
-  kPressed,   // it goes down, or a spike on its wire looks so
-  kHeld,      // it has been down for 30 ms: a press and no spike
-  kReleased,  // it has been up for 30 ms after that
+  kPressed,   // it goes down, or there is a spike on its wire
+  kHeld,      // it has been down for 30 ms: a press, not a spike
+  kReleased,  // it has been up for 30 ms after kHeld
 };
 
-// What has happened since the last question. One that is down after a reset has to go up first.
+// Whether the button has changed since the last call.
+bool button_has_moved(bool is_down);
+
+// What has happened since the last call. A button that is down after a reset must first go up.
 Press button_read(bool is_down, uint32_t now_ms);
 
 }  // namespace tiniscript

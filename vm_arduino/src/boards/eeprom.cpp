@@ -1,7 +1,7 @@
-// The store's memory on an AVR: its EEPROM.
+// Implements `nvm.h` on an AVR: the memory is its EEPROM.
 //
-// Empty for other chips. An erase and a write take 3.4 ms, clearing a byte 1.8 ms; the chip does
-// both by itself.
+// Empty for other chips. Erase and write take 3.4 ms, clearing a byte takes 1.8 ms; the hardware
+// does both on its own.
 
 #ifdef __AVR__
 
@@ -22,7 +22,7 @@ void begin(uint16_t place, uint8_t value, uint8_t mode) {
   EEDR = value;
   EECR = mode;
   const uint8_t before = SREG;
-  cli();  // the second bit counts only in the four cycles behind the first
+  cli();  // EEPE must follow EEMPE within four cycles
   EECR |= _BV(EEMPE);
   EECR |= _BV(EEPE);
   SREG = before;

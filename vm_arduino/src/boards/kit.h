@@ -1,15 +1,15 @@
-// Chooses the robot that the sketch is for: a robot of your own where kits/own.h is there, else
-// tinibot. `pio run -e nano_liner` says it; for the Arduino IDE write a line here, such as
-// #define tiniscript_liner
+// Selects the robot: kits/own.h if that file exists, else tinibot. `pio run -e nano_liner` selects
+// another one; in the Arduino IDE, write a line here such as #define tiniscript_liner
 
 #ifndef TINISCRIPT_BOARDS_KIT_H_
 #define TINISCRIPT_BOARDS_KIT_H_
 
+#include "../vm/flash.h"
 #include "analog.h"
-#include "echo.h"
 #include "motors.h"
 #include "pins.h"
 #include "servo.h"
+#include "ultrasonic.h"
 
 #if defined(tiniscript_liner)
 #include "kits/liner.h"

@@ -21,15 +21,15 @@ uint8_t size_of(int16_t level) { return static_cast<uint8_t>(level < 0 ? -level 
 
 }  // namespace
 
-// The motor pins are low before memory is set up, and before anything else happens. There is no
-// stack frame yet, and `main` follows behind: so it is naked, and nobody calls it.
+// Pulls the motor pins low before memory is set up. It is naked because there is no stack frame
+// yet; `main` follows it in flash, so nothing calls it.
 extern "C" void tiniscript_motors_low() __attribute__((naked, used, section(".init3")));
 void tiniscript_motors_low() { begin_motors(); }
 
 void board_motors(int16_t left, int16_t right) {
   const uint8_t left_level = size_of(left);
   const uint8_t right_level = size_of(right);
-  const CriticalSection critical;  // a stop comes before this or after it, not in between
+  const CriticalSection critical;  // a stop comes before or after this block, never inside it
   if (!is_released || (left_level | right_level) == 0) {
     motors_off();
     return;

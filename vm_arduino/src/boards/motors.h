@@ -1,7 +1,7 @@
-// The motors: the latch that stops them, and what a motor is for each driver.
+// The motors: the latch that stops them, and the types of motor drivers.
 //
-// Nothing turns a motor on but `board_motors`, and it only while the latch is open. The latch is
-// closed after a reset.
+// Only `board_motors` turns a motor on, and only while the latch is open. The latch is closed after
+// a reset.
 
 #ifndef TINISCRIPT_BOARDS_MOTORS_H_
 #define TINISCRIPT_BOARDS_MOTORS_H_
@@ -12,30 +12,30 @@
 
 namespace tiniscript {
 
-// Two pins say which way and one how strongly: L298N, L293D, TB6612.
+// Two direction pins and one PWM pin: L298N, L293D, TB6612.
 struct Bridge {
   Pwm pwm;
   Pin forward;
   Pin backward;
 };
 
-// PWM on the one wire or on the other.
+// Two PWM pins, one for each direction.
 struct TwoWire {
   Pwm forward;
   Pwm backward;
 };
 
-// A servo that turns without end; at `still_us` it stands.
+// A continuous-rotation servo; it stands still at `still_us`.
 struct TurningServo {
-  uint8_t number;  // of the servos
+  uint8_t number;  // index of the servo
   uint16_t still_us;
   bool is_reversed;
 };
 
-// Turns the motors off at once and closes the latch. May be called in an interrupt.
+// Turns the motors off at once and closes the latch. May be called from an interrupt.
 void motors_stop();
 
-// Opens the latch: from now on a program drives.
+// Opens the latch: a program may drive.
 void motors_release();
 
 bool motors_are_stopped();

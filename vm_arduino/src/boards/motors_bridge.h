@@ -13,7 +13,7 @@ tini_always_inline void begin(Bridge motor) {
   begin_output(motor.backward, false);
 }
 
-// No more than direct writes, so that it may run before anything else does.
+// Uses direct writes only, so that it can run before memory is set up.
 tini_always_inline void begin_motors() {
   begin(kLeftMotor);
   begin(kRightMotor);

@@ -1,4 +1,4 @@
-// Motors that are servos that turn without end. Off: their neutral pulse for a second, then none.
+// Motors that are continuous-rotation servos. Off: neutral pulses for a second, then none.
 
 #ifndef TINISCRIPT_BOARDS_MOTORS_SERVOS_H_
 #define TINISCRIPT_BOARDS_MOTORS_SERVOS_H_
@@ -8,14 +8,14 @@
 
 namespace tiniscript {
 
-constexpr uint8_t kStillFrames = 50;  // of 20 ms
+constexpr uint8_t kStillFrames = 50;  // 20 ms each
 
 tini_always_inline void begin_motors() {
   begin_output(kServos[kLeftMotor.number], false);
   begin_output(kServos[kRightMotor.number], false);
 }
 
-// One that stands already, or will soon, is left alone.
+// Leaves alone a servo that stands still or is about to.
 tini_always_inline void off(TurningServo motor) {
   if (servo_is_held(motor.number)) servo_set(motor.number, motor.still_us, kStillFrames);
 }
@@ -25,7 +25,7 @@ tini_always_inline void motors_off() {
   off(kRightMotor);
 }
 
-// At 255 the pulse is 510 us longer or shorter.
+// At level 255 the pulse is 510 us longer or shorter.
 tini_always_inline void drive(TurningServo motor, bool is_backward, uint8_t level) {
   const uint16_t more = static_cast<uint16_t>(2 * level);
   const bool is_shorter = is_backward != motor.is_reversed;

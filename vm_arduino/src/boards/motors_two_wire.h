@@ -1,4 +1,4 @@
-// Motors behind a bridge of two wires each, such as a DRV8833 or an L9110. Off: no PWM, both low.
+// Motors behind a driver with two inputs each, such as a DRV8833 or an L9110. Off: both low.
 
 #ifndef TINISCRIPT_BOARDS_MOTORS_TWO_WIRE_H_
 #define TINISCRIPT_BOARDS_MOTORS_TWO_WIRE_H_

@@ -1,8 +1,8 @@
-// Pins of an ATmega328P or an ATmega2560, and PWM on them, by their registers.
+// Pins of an ATmega328P or ATmega2560, and PWM on them, by direct register access.
 //
-// With pins that are known when it is compiled, most of this is one instruction. Whatever changes
-// a register that an interrupt changes too does it with interrupts off: the interrupt that turns
-// the motors off may come at any time, and nothing may put back what it has cleared.
+// With pins known at compile time, most of this is one instruction. A change of a register that an
+// interrupt also changes runs with interrupts off: the interrupt that turns the motors off may come
+// at any time, and its write must not be undone.
 
 #ifndef TINISCRIPT_BOARDS_PINS_H_
 #define TINISCRIPT_BOARDS_PINS_H_
@@ -11,12 +11,12 @@
 #include <avr/io.h>
 #include <stdint.h>
 
-// For a function that is copied into its callers.
+// Marks a function that is always inlined.
 #define tini_always_inline inline __attribute__((always_inline))
 
 namespace tiniscript {
 
-// The addresses of PORTA to PORTL. Before each lie its DDR and its PIN.
+// The addresses of PORTA to PORTL. The DDR and PIN registers lie just before each.
 enum Port : uint16_t {
   kPortA = 0x22,
   kPortB = 0x25,
@@ -40,19 +40,19 @@ constexpr Pin kNoPin = {0, 0};
 
 enum Channel : uint8_t { kChannelA, kChannelB, kChannelC };
 
-// A pin with PWM: OC0B is timer 0, channel B. The Arduino core runs the timers with 8 bits.
+// A PWM pin: OC0B is timer 0, channel B. The timers run with 8 bits.
 struct Pwm {
   Pin pin;
   uint8_t timer;
   uint8_t channel;
 };
 
-// A critical section: interrupts are off while there is one of these.
+// A critical section: interrupts are off during the object's lifetime.
 class CriticalSection {
  public:
   tini_always_inline CriticalSection() : before_(SREG) { cli(); }
   tini_always_inline ~CriticalSection() {
-    asm volatile("" ::: "memory");  // nothing moves out from between
+    asm volatile("" ::: "memory");  // compiler barrier: no access moves out of the section
     SREG = before_;
   }
 
@@ -71,7 +71,7 @@ tini_always_inline volatile uint16_t& register16(uint16_t address) {
   return *reinterpret_cast<volatile uint16_t*>(address);
 }
 
-// Whether one instruction changes a bit there: then no interrupt comes in between.
+// Whether a bit there can be changed with one instruction, which no interrupt can split.
 tini_always_inline bool is_near(uint16_t address) {
   return __builtin_constant_p(address) && address < 0x40;
 }
@@ -136,12 +136,12 @@ constexpr uint16_t compare_of(Pwm pwm) {
                                (has_8_bits(pwm) ? 3 + pwm.channel : 8 + 2 * pwm.channel));
 }
 
-// The bit that connects a channel with its pin.
+// The COM bit that connects a channel to its pin.
 constexpr uint8_t connection_of(Pwm pwm) { return static_cast<uint8_t>(0x80 >> 2 * pwm.channel); }
 
-// Lets a timer drive a pin: 255 is always high.
+// Lets a timer drive a pin; 255 is constantly high.
 tini_always_inline void connect(Pwm pwm, uint8_t level) {
-  const CriticalSection critical;  // timers of 16 bits share a register for the high byte
+  const CriticalSection critical;  // 16-bit timers share a register for the high byte
   if (has_8_bits(pwm)) {
     register8(compare_of(pwm)) = level;
   } else {
@@ -150,7 +150,7 @@ tini_always_inline void connect(Pwm pwm, uint8_t level) {
   register8(control_of(pwm)) |= connection_of(pwm);
 }
 
-// The pin is low, whatever its timer does.
+// Disconnects the timer and sets the pin low.
 tini_always_inline void disconnect(Pwm pwm) {
   {
     const CriticalSection critical;

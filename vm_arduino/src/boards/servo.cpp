@@ -12,19 +12,19 @@ namespace {
 constexpr uint8_t kServoCount = sizeof kServos / sizeof *kServos;
 constexpr uint8_t kTicksPerUs = 2;       // 16 MHz / 8
 constexpr uint16_t kFrameTicks = 40000;  // 20 ms
-constexpr uint8_t kSoonTicks = 20;       // a compare that lies nearer may be missed
+constexpr uint8_t kSoonTicks = 20;       // a compare value that is nearer than this may be missed
 constexpr uint8_t kLateTicks = 9;        // how late the interrupt ends a pulse
 constexpr uint8_t kGap = kServoCount;    // the time between the last pulse and the next frame
 
 struct Pulse {
   uint16_t ticks;  // 0: no pulse
-  uint8_t frames;  // how many are left, or 0
+  uint8_t frames;  // pulses left, or 0
 };
 
 volatile Pulse pulses[kServoCount];
-uint8_t turn = kGap;  // whose pulse it is
+uint8_t turn = kGap;  // index of the servo whose pulse is under way
 
-// The end of a pulse, and the beginning of the next one.
+// Ends a pulse and starts the next one.
 tini_always_inline void next_pulse() {
   if (turn == kGap) {
     TCNT1 = 0;

@@ -7,30 +7,30 @@ namespace tiniscript {
 namespace {
 
 constexpr uint32_t kClockHertz = 16000000;
-constexpr uint16_t kMostCounts = 512;  // of a period: 256 for each half
+constexpr uint16_t kMostCounts = 512;  // per period: 256 for each half
 
-// The tunes: two notes, up and high, or down and low.
+// Two notes each: rising and high, or falling and low.
 constexpr uint16_t kFinishedHertz[] = {1047, 1568};
 constexpr uint16_t kFaultHertz[] = {220, 110};
 constexpr uint8_t kNoteMs = 120;
 
 bool is_on;
-uint16_t next_hertz;  // the note that follows, or 0
+uint16_t next_hertz;  // the next note, or 0
 uint32_t end_ms;
 
-// The last count of each half of a period. They differ by one where the whole one is odd.
+// The last count of each half period. They differ by one if the period is odd.
 volatile uint8_t first_half;
 volatile uint8_t second_half;
 
-// How the timer divides the clock: by 2 to the power of `shift`.
+// A prescaler of timer 2: divides the clock by 2^`shift`.
 struct Divider {
   uint8_t shift;
-  uint8_t bits;  // of TCCR2B
+  uint8_t bits;  // in TCCR2B
 };
 
 constexpr Divider kFastest = {3, 2};
 
-// The next slower one: 8, 32, 64, 128, 256, 1024.
+// Returns the next slower prescaler: 8, 32, 64, 128, 256, 1024.
 Divider slower(Divider divider) {
   const bool is_wide = divider.bits == 2 || divider.bits == 6;
   divider.shift = static_cast<uint8_t>(divider.shift + (is_wide ? 2 : 1));

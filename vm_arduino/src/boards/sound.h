@@ -1,4 +1,4 @@
-// The buzzer: timer 2 toggles its pin, and what is due is done by `sound_tick`.
+// The buzzer: timer 2 toggles its pin, `sound_tick` does the timing.
 
 #ifndef TINISCRIPT_BOARDS_SOUND_H_
 #define TINISCRIPT_BOARDS_SOUND_H_
@@ -9,10 +9,10 @@ namespace tiniscript {
 
 void sound_begin();
 
-// A sound of 31 to 20000 hertz, which `sound_tick` ends; one of 0 ms is none.
+// Starts a sound of 31 to 20000 hertz, which `sound_tick` ends. 0 ms means no sound.
 void sound_start(uint16_t hertz, uint32_t duration_ms, uint32_t now_ms);
 
-// The tune that says that a program has ended, and the one that says that a fault has ended it.
+// The tune for the end of a program, and the one for a fault.
 void sound_finished(uint32_t now_ms);
 void sound_faulted(uint32_t now_ms);
 

@@ -2,10 +2,13 @@
 
 #include "uart.h"
 
-#include <Arduino.h>
+#include <avr/interrupt.h>
+#include <avr/io.h>
 
 #include "../firmware/firmware.h"
 #include "../link/messages.h"
+#include "attention.h"
+#include "clock.h"
 #include "kit.h"
 
 #ifdef USART_RX_vect
@@ -26,22 +29,22 @@ constexpr Pin kReceive = {kPortE, 1 << 0};
 constexpr Pin kReceive = {kPortD, 1 << 0};
 #endif
 
-// A byte that was on its way is over after so many turns of timer 0, about a millisecond each: if
-// the line is low in all of them and nothing has come, it is held.
+// A byte under way is over after this many turns of timer 0 (about 1 ms each). A line that is low
+// in all of them, with no byte received, is held low.
 constexpr uint8_t kHeldTurns = static_cast<uint8_t>(10000 / kBaud + 3);
 
 volatile uint8_t framing;
 volatile uint8_t overrun;
-// Whether the line was high since the reset, and since it was held low: else it has no sender. A
-// USB chip whose cable was pulled out holds it low for good, and the button must start the robot.
+// Whether the line was high since the reset or since it was last held low; otherwise it has no
+// sender. A USB chip without its cable holds the line low for good, and the button must still work.
 volatile bool was_high;
-uint8_t low_turns;  // since the last byte, which had a framing error
+uint8_t low_turns;  // since the last byte with a framing error
 
-// The interrupt of timer 0 that looks at the line. It is on only after a framing error.
+// Enables the interrupt of timer 0 that checks the line. It is on only after a framing error.
 tini_always_inline void watch_line() {
   low_turns = 0;
   if (!was_high) return;
-  TIFR0 = _BV(OCF0B);  // one that has waited since long ago
+  TIFR0 = _BV(OCF0B);  // clears an old pending interrupt
   TIMSK0 |= _BV(OCIE0B);
 }
 
@@ -50,7 +53,7 @@ tini_always_inline void leave_line() { TIMSK0 &= static_cast<uint8_t>(~_BV(OCIE0
 }  // namespace
 
 void uart_begin(uint32_t baud) {
-  begin_pull_up(kReceive);  // where nothing is connected it stays high
+  begin_pull_up(kReceive);  // stays high if nothing is connected
   UCSR0A = _BV(U2X0);
   UBRR0 = static_cast<uint16_t>((F_CPU / 4 / baud - 1) / 2);  // rounded
   UCSR0C = _BV(UCSZ01) | _BV(UCSZ00);                         // 8N1
@@ -59,14 +62,17 @@ void uart_begin(uint32_t baud) {
 
 void uart_tick() {
   if (is_high(kReceive)) was_high = true;
-  UCSR0B |= _BV(UDRIE0);
+}
+
+void uart_send() {
+  if (firmware_has_tx_byte()) UCSR0B |= _BV(UDRIE0);
 }
 
 LineErrors uart_errors() { return {framing, overrun}; }
 
 }  // namespace tiniscript
 
-// A byte that came damaged says nothing but that the line is bad: it counts as 0.
+// A byte with a framing error counts as 0: only that the line is bad is known.
 ISR(uart_receive_vect) {
   using namespace tiniscript;
   const uint8_t status = UCSR0A;
@@ -80,7 +86,8 @@ ISR(uart_receive_vect) {
     }
   }
   if ((status & _BV(FE0)) == 0) leave_line();
-  firmware_on_rx_byte(byte, static_cast<uint16_t>(millis()));
+  call_attention();
+  firmware_on_rx_byte(byte, clock_16_ms());
 }
 
 ISR(TIMER0_COMPB_vect) {
@@ -88,7 +95,7 @@ ISR(TIMER0_COMPB_vect) {
   if (is_high(kReceive)) return leave_line();
   low_turns = static_cast<uint8_t>(low_turns + 1);
   if (low_turns <= kHeldTurns) return;
-  firmware_on_rx_byte(0, static_cast<uint16_t>(millis()));
+  firmware_on_rx_byte(0, clock_16_ms());
   if (low_turns < kHeldTurns + kStopRun) return;
   was_high = false;
   leave_line();

@@ -1,8 +1,8 @@
-// The serial port that the link goes over: USART 0, without the core's `Serial`.
+// The serial port of the link: USART 0, without the core's `Serial`.
 //
-// What arrives goes to the firmware in the interrupt: so a stop is never behind anything. A byte
-// with a framing error counts as 0. A line that stays low after one counts as a 0 each millisecond,
-// for the UART itself tells a break only once.
+// The interrupt hands each byte to the firmware at once, so a stop never waits. A byte with a
+// framing error counts as 0. If the line then stays low, each millisecond counts as another 0,
+// because the UART reports a break only once.
 
 #ifndef TINISCRIPT_BOARDS_UART_H_
 #define TINISCRIPT_BOARDS_UART_H_
@@ -15,8 +15,11 @@ namespace tiniscript {
 
 void uart_begin(uint32_t baud);
 
-// Sends what the firmware has to say, as far as it is not being sent.
+// Checks the line; call it once a millisecond.
 void uart_tick();
+
+// Starts to send what the firmware has to send, unless that is under way.
+void uart_send();
 
 LineErrors uart_errors();
 

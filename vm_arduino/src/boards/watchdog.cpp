@@ -2,11 +2,12 @@
 
 #include "watchdog.h"
 
-#include <Arduino.h>
-#include <avr/wdt.h>
+#include <avr/interrupt.h>
+#include <avr/io.h>
 
 #include "../firmware/firmware.h"
 #include "../vm/crc32.h"
+#include "../vm/small.h"
 #include "kit.h"
 #include "motors.h"
 #include "servo.h"
@@ -15,30 +16,28 @@ namespace tiniscript {
 
 namespace {
 
-constexpr uint8_t kStallMs = 100;
-constexpr uint16_t kNoiseBytes = 64;
-constexpr uint32_t kAlive = 0x6f3a91c4;  // what `mark` is while the robot goes on
-constexpr uint32_t kHung = 0x93c5e21b;   // and, with the rest of the record, after a hang
+constexpr uint16_t kNoiseBytes = 256;    // below the stack
+constexpr uint32_t kAlive = 0x6f3a91c4;  // value of `mark` in normal operation
+constexpr uint32_t kHung = 0x93c5e21b;   // value of `mark` after a hang, when the record counts
 
-volatile uint8_t silent_ms;
 volatile bool has_stalled;
-bool has_hung;  // before the last reset, and nobody has asked
+bool has_hung;  // before the last reset; not yet reported
 
-// What lies here outlives a restart. Without power it is anything: `mark` says whether it counts.
+// Survives a restart. After power-on its contents are random: `mark` says whether it counts.
 struct Record {
   uint32_t mark;
-  Place place;  // zeros where nothing ran
+  Place place;  // zeros if nothing ran
 };
 
 Record last __attribute__((section(".noinit")));
-uint32_t resets __attribute__((section(".noinit")));  // counts them, from anywhere
+uint32_t resets __attribute__((section(".noinit")));  // count of resets, from a random start
 uint8_t flags __attribute__((section(".noinit")));    // MCUSR after the reset
 
-uint32_t hung_mark() { return kHung ^ last.place.program ^ last.place.at; }
+tini_noinline uint32_t hung_mark() { return kHung ^ last.place.program ^ last.place.at; }
 
 }  // namespace
 
-// Notes what the watchdog ends.
+// Records what the watchdog interrupts.
 extern "C" void tiniscript_note_hang() __attribute__((used, noinline));
 void tiniscript_note_hang() {
   if (last.mark != kAlive) return;
@@ -46,9 +45,9 @@ void tiniscript_note_hang() {
   last.mark = hung_mark();
 }
 
-// The watchdog may still run, and shortly: it is put off before memory is set up. So what ran is
-// still there too, where a hang with interrupts off has been reset without being noted. There is no
-// stack frame yet, and `main` follows behind: so it is naked, and nobody calls it.
+// Turns the watchdog off before memory is set up, because it may still run with a short timeout.
+// After a hang with interrupts off, the state of what ran is still intact here and is recorded.
+// Naked because there is no stack frame yet; `main` follows, so nothing calls it.
 extern "C" void tiniscript_watchdog_off() __attribute__((naked, used, section(".init3")));
 void tiniscript_watchdog_off() {
   flags = MCUSR;
@@ -63,18 +62,12 @@ void watchdog_begin() {
   last.mark = has_hung ? last.mark : kAlive;
   const uint8_t before = SREG;
   cli();
-  TIMSK0 |= 1 << OCIE0A;  // once in each turn of timer 0, about a millisecond
   wdt_reset();
   WDTCSR = 1 << WDCE | 1 << WDE;
-  // 0.125 s, and the second time-out resets. An old Nano's bootloader cannot turn that off again:
-  // if the program has hung with interrupts off, its motors stay off until it has no power.
+  // 0.125 s; the second timeout resets. An old Nano's bootloader cannot disable the watchdog: after
+  // a hang with interrupts off, the motors stay off until the power is cycled.
   WDTCSR = 1 << WDIE | 1 << WDE | 1 << WDP1 | 1 << WDP0;
   SREG = before;
-}
-
-void watchdog_feed() {
-  wdt_reset();
-  silent_ms = 0;
 }
 
 bool watchdog_has_stalled() {
@@ -96,34 +89,28 @@ Reset watchdog_reset_cause() {
   if ((flags & 1 << PORF) != 0) return Reset::kPower;
   if ((flags & 1 << BORF) != 0) return Reset::kBrownOut;
   if ((flags & 1 << EXTRF) != 0) return Reset::kButton;
-  return Reset::kUnknown;  // a bootloader has looked first
+  return Reset::kUnknown;  // a bootloader has cleared the flags
 }
 
 uint32_t watchdog_seed() {
   const uint8_t* const end = reinterpret_cast<const uint8_t*>(RAMEND + 1);
   const uint8_t* const stack = reinterpret_cast<const uint8_t*>(SP);
-  const uint8_t* const from = stack - 4 * kNoiseBytes;
-  const uint32_t found =
-      crc32(crc32(0, from, kNoiseBytes), stack, static_cast<uint16_t>(end - stack - 1));
-  resets++;
-  return crc32(found, reinterpret_cast<const uint8_t*>(&resets), sizeof resets);
+  const uint8_t* const from = stack - kNoiseBytes;
+  return crc32(++resets, from, static_cast<uint16_t>(end - from - 1));
 }
 
 }  // namespace tiniscript
 
 ISR(TIMER0_COMPA_vect) {
   using namespace tiniscript;
-  const uint8_t silent = static_cast<uint8_t>(silent_ms + 1);
-  if (silent <= kStallMs) {
-    silent_ms = silent;
-    return;
-  }
+  TIMSK0 &= static_cast<uint8_t>(~(1 << OCIE0A));
+  clock.silence_ms = 0;
   has_stalled = true;
   motors_stop();
   actuators_off(true);
 }
 
-// Nobody has answered for 0.125 s. Interrupts are off here.
+// The main loop has not fed the watchdog for 0.125 s. Interrupts are off here.
 ISR(WDT_vect) {
   using namespace tiniscript;
   motors_stop();
@@ -133,7 +120,7 @@ ISR(WDT_vect) {
 #endif
   tiniscript_note_hang();
 #ifdef ARDUINO_AVR_UNO
-  for (;;) {  // the reset comes
+  for (;;) {  // until the reset
   }
 #else
   WDTCSR = 1 << WDCE | 1 << WDE;

@@ -1,32 +1,43 @@
-// The watchdog of the main loop, and what is known of the last reset.
+// The watchdog of the main loop, and the cause of the last reset.
 //
-// While the main loop stands still, a timer turns motors and actuators off after 0.1 s; after
-// 0.125 s the watchdog restarts the chip, after 0.25 s also where interrupts are off. A bootloader
-// of an old Nano or Mega would not come out of a reset by the watchdog: there the restart is a
-// jump.
+// If the main loop hangs, a timer turns motors and actuators off after 0.1 s. The watchdog restarts
+// the chip after 0.125 s, or after 0.25 s if interrupts are off. The bootloader of an old Nano or
+// Mega would not come out of a watchdog reset, so the restart there is a jump.
 
 #ifndef TINISCRIPT_BOARDS_WATCHDOG_H_
 #define TINISCRIPT_BOARDS_WATCHDOG_H_
 
+#include <avr/wdt.h>
+
 #include "../firmware/board.h"
+#include "clock.h"
 
 namespace tiniscript {
 
+constexpr uint8_t kStallMs = 100;
+
 void watchdog_begin();
 
-// The main loop goes on: it is to be called in every turn.
-void watchdog_feed();
+// Call it in every turn of the main loop.
+tini_always_inline void watchdog_feed() {
+  wdt_reset();
+  clock.silence_ms = 0;
+}
 
-// Whether it stood still, since the last question.
+// Triggers the interrupt that turns everything off: the main loop has hung for more than kStallMs.
+// Call it from an interrupt.
+tini_always_inline void watchdog_is_stalled() { TIMSK0 |= 1 << OCIE0A; }
+
+// Whether the main loop has hung since the last call.
 bool watchdog_has_stalled();
 
-// Whether the watchdog has restarted the chip, and what ran then; it is told once.
+// Whether the watchdog has restarted the chip, and what ran then. Reported once.
 bool watchdog_has_hung(Place* place);
 
 Reset watchdog_reset_cause();
 
-// A number from memory as it was found and from a count of the resets since power-on: another one
-// after each reset.
+// A seed from uninitialised memory and a count of resets since power-on: different after each
+// reset.
 uint32_t watchdog_seed();
 
 }  // namespace tiniscript

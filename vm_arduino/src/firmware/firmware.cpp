@@ -8,7 +8,7 @@
 namespace tiniscript {
 
 Board board;
-Condition condition;
+RobotStatus robot_status;
 uint32_t now_ms;
 Link link;
 Store store;
@@ -19,27 +19,38 @@ Receiver receiver;
 
 }  // namespace
 
-void show_light() { board_light(!is_running() && condition.saved != Saved::kNothing); }
+void show_light() { board_light(!is_running() && holds_program()); }
 
 void firmware_begin(const Board& what) {
   board = what;
-  condition.slot = kNoSlot;
+  robot_status.slot = kNoSlot;
   begin_identity();
   store.boot();
   link.begin(&receiver, static_cast<uint8_t>(what.seed & 0xff));
 }
 
-void firmware_tick(uint32_t time_ms) {
+void firmware_on_time(uint32_t time_ms) {
   now_ms = time_ms;
-  link.tick(static_cast<uint16_t>(time_ms));
+  link.pass_time(static_cast<uint16_t>(time_ms));
+}
+
+void firmware_turn() {
+  link.tick();
   tick_run();
   link.tell();
   tick_keeping();
 }
 
+void firmware_tick(uint32_t time_ms) {
+  firmware_on_time(time_ms);
+  firmware_turn();
+}
+
 void firmware_on_rx_byte(uint8_t byte, uint16_t time_ms) {
   if (receiver.put(byte, time_ms)) board_stop();
 }
+
+bool firmware_has_tx_byte() { return link.has_tx_byte(); }
 
 bool firmware_next_tx_byte(uint8_t* byte) { return link.next_tx_byte(byte); }
 

@@ -1,8 +1,8 @@
-// The robot's own program: what it does with its button, its link, its store and a program.
+// The robot's firmware: connects button, link, store and program.
 //
-// Knows no pins. Time comes in as `now_ms`; nothing here waits. There is one robot, so these are
-// plain functions. Its parts: `program` holds the images in memory, `run` runs one, `keeping` has
-// it saved, `identity` is who the robot is, `port` answers the link, `state` is what they share.
+// Knows no pins. Time comes in as `now_ms`; nothing here blocks. There is only one robot, so these
+// are plain functions. Parts: `program` holds the images in memory, `run` runs one, `keeping`
+// saves, `identity` is id, name and trim, `port` answers the link, `state` is what they share.
 
 #ifndef TINISCRIPT_FIRMWARE_FIRMWARE_H_
 #define TINISCRIPT_FIRMWARE_FIRMWARE_H_
@@ -13,34 +13,40 @@
 
 namespace tiniscript {
 
-// To be called once, after the board has begun. Nothing moves before the button or the link says
-// so.
+// Call it once, after the board has begun. Nothing moves until the button or the link starts it.
 void firmware_begin(const Board& board);
 
-// Does a little of all that is due; to be called all the time.
+// Passes the time; call it at least once a millisecond.
+void firmware_on_time(uint32_t now_ms);
+
+// Does a little of everything that is due; call it continuously.
+void firmware_turn();
+
+// Calls both.
 void firmware_tick(uint32_t now_ms);
 
-// The button goes down: what runs is stopped. It goes up again: what waits is started, where
-// nothing has run and nothing was stopped since it went down.
+// The button goes down: stops what runs. The button goes up: starts the waiting program, if
+// nothing has run or was stopped since it went down.
 void firmware_on_pressed();
 void firmware_on_released();
 
-// The button has been down for a while: what was started between its first edge and now is
-// stopped, too.
+// The button has been down for a while: also stops what was started since its first edge.
 void firmware_on_held();
 
-// The radio module says that nobody is connected any more: that ends a tethered run.
+// The radio module reports that the client has disconnected: ends a tethered run.
 void firmware_on_disconnect();
 
-// Whether a program runs, in which image and where. May be called in an interrupt, and after a
-// reset before memory is set up anew: it changes nothing.
+// Whether a program runs, in which image and where. Changes nothing, so it may be called from an
+// interrupt, and after a reset before memory is set up.
 bool firmware_runs(Place* place);
 
-// A byte has arrived; a damaged one is 0. May be called from the interrupt: a run of zeros turns
-// the motors off there and then.
+// A byte has arrived; one with a framing error is 0. May be called from the interrupt: a run of
+// zeros turns the motors off at once.
 void firmware_on_rx_byte(uint8_t byte, uint16_t now_ms);
 
-// The next byte to send; false where there is none. May be called from an interrupt.
+// Whether there is a byte to send; the next one, or false if there is none. May be called from an
+// interrupt.
+bool firmware_has_tx_byte();
 bool firmware_next_tx_byte(uint8_t* byte);
 
 }  // namespace tiniscript

@@ -9,8 +9,8 @@ namespace tiniscript {
 
 namespace {
 
-Card card;
-Equipment equipment;
+Identity identity;
+DeviceInfo device_info;
 Trim trim;
 
 static_assert(sizeof trim == kTrimBytes, "it is kept as it is sent");
@@ -27,34 +27,34 @@ bool change(uint8_t* to, const uint8_t* from, uint8_t length) {
 }  // namespace
 
 void begin_identity() {
-  card.kit = board.kit;
-  card.nonce = board.seed;
-  card.reset = board.reset;
-  equipment.sensors = board.sensors;
-  equipment.actuators = board.actuators;
+  identity.kit = board.kit;
+  identity.nonce = board.seed;
+  identity.reset = board.reset;
+  device_info.sensors = board.sensors;
+  device_info.actuators = board.actuators;
 }
 
-void make_identity() { card.id = board.seed; }
+void make_identity() { identity.id = board.seed; }
 
 void read_identity(const uint8_t* record) {
-  card.id = get32(record + kIdAt);
-  while (equipment.name_length < kNameBytes && record[kNameAt + equipment.name_length] != 0) {
-    equipment.name[equipment.name_length] = record[kNameAt + equipment.name_length];
-    equipment.name_length++;
+  identity.id = get32(record + kIdAt);
+  while (device_info.name_length < kNameBytes && record[kNameAt + device_info.name_length] != 0) {
+    device_info.name[device_info.name_length] = record[kNameAt + device_info.name_length];
+    device_info.name_length++;
   }
   copy_bytes(record + kTrimAt, reinterpret_cast<uint8_t*>(&trim), sizeof trim);
-  if (!is_sound(trim)) trim = Trim();  // of other firmware
+  if (!is_sound(trim)) trim = Trim();  // written by other firmware
 }
 
 void write_identity(uint8_t* record) {
-  copy_bytes(&card.id, record + kIdAt, sizeof card.id);
-  copy_bytes(equipment.name, record + kNameAt, equipment.name_length);
+  copy_bytes(&identity.id, record + kIdAt, sizeof identity.id);
+  copy_bytes(device_info.name, record + kNameAt, device_info.name_length);
   copy_bytes(&trim, record + kTrimAt, sizeof trim);
 }
 
 bool change_name(const uint8_t* name, uint8_t length) {
-  const bool is_other_length = change(&equipment.name_length, &length, 1);
-  return change(equipment.name, name, length) || is_other_length;
+  const bool is_other_length = change(&device_info.name_length, &length, 1);
+  return change(device_info.name, name, length) || is_other_length;
 }
 
 bool change_trim(const Trim& found) {
@@ -62,9 +62,9 @@ bool change_trim(const Trim& found) {
                 sizeof trim);
 }
 
-const Card& port_card() { return card; }
+const Identity& port_identity() { return identity; }
 
-const Equipment& port_equipment() { return equipment; }
+const DeviceInfo& port_device_info() { return device_info; }
 
 const Trim& port_trim() { return trim; }
 

@@ -1,7 +1,7 @@
-// Who the robot is: its id, its name, the trim of its motors, and what it is built for.
+// The robot's identity: its id, name, motor trim and kit.
 //
-// Knows how that lies in a record; not when it is kept. `identity.cpp` also answers `port_card`,
-// `port_equipment` and `port_trim`.
+// Knows the layout in a record, not when it is saved. `identity.cpp` also implements
+// `port_identity`, `port_device_info` and `port_trim`.
 
 #ifndef TINISCRIPT_FIRMWARE_IDENTITY_H_
 #define TINISCRIPT_FIRMWARE_IDENTITY_H_
@@ -12,17 +12,17 @@
 
 namespace tiniscript {
 
-// Takes over what the board has told.
+// Takes over the board's data.
 void begin_identity();
 
-// A robot that has kept none gets an id.
+// Makes an id if none is saved.
 void make_identity();
 
-// From a record of kRecordBytes and into one; its check is not looked at, nor written.
+// Reads from and writes to a record of kRecordBytes, without its check.
 void read_identity(const uint8_t* record);
 void write_identity(uint8_t* record);
 
-// Each says whether that changes anything. The trim is sound.
+// Each returns whether it changes anything. The trim must be sound.
 bool change_name(const uint8_t* name, uint8_t length);
 bool change_trim(const Trim& trim);
 

@@ -10,12 +10,12 @@ namespace tiniscript {
 
 namespace {
 
-constexpr uint16_t kLowMs = 500;  // between two looks at a supply that is too low
+constexpr uint16_t kLowMs = 500;  // between two checks of a supply that is too low
 
-// What is read from the store after a reset, one after the other.
+// What is read from the store after a reset, in this order.
 enum class Boot : uint8_t { kSettling, kIdentity, kFault, kProgram, kOver };
 
-// What is to be kept, as soon as the store is free: one bit each.
+// What is to be saved when the store is free: one bit each.
 constexpr uint8_t kProgramBit = 1;
 constexpr uint8_t kFaultBit = 2;
 constexpr uint8_t kIdentityBit = 4;
@@ -23,10 +23,10 @@ constexpr uint8_t kIdentityBit = 4;
 Boot boot;
 uint8_t record[kRecordBytes];
 uint8_t to_keep;
-uint8_t keeping;  // of them: what the store writes now
-bool is_low;      // what is to be kept waits for more voltage
-uint16_t low_ms;  // since then
-bool is_worn;     // the memory has not kept who the robot is
+uint8_t keeping;  // the bits that the store is writing
+bool is_low;      // saving waits for more voltage
+uint16_t low_ms;  // when that wait began
+bool is_worn;     // the memory has failed to save the identity
 
 // -- after a reset ------------------------------------------------------------------------------
 
@@ -36,20 +36,20 @@ void load_identity() {
   keep_identity();
 }
 
-// A record of a fault: what, where, in which image. What the watchdog has ended is a newer one.
+// The record of a fault: what, where, in which image. A hang that the watchdog ended is newer.
 void load_fault() {
   Place hung;
   if (board_has_hung(&hung)) {
-    condition.fault = static_cast<uint8_t>(LinkFault::kStall);
-    condition.fault_at = hung.at;
-    condition.fault_program = hung.program;
+    robot_status.fault = static_cast<uint8_t>(LinkFault::kStall);
+    robot_status.fault_at = hung.at;
+    robot_status.fault_program = hung.program;
     return keep_fault();
   }
   if (!store.fetch_first(Area::kFault, record, kRecordBytes)) return;
-  copy_bytes(record + kFaultAt, &condition.fault, kFaultBytes);
+  copy_bytes(record + kFaultAt, &robot_status.fault, kFaultBytes);
 }
 
-// One thing after the other, when the store is free.
+// Reads the next item when the store is free.
 void load_next() {
   if (store.is_busy()) return;
   switch (boot) {
@@ -82,12 +82,12 @@ void write_record() {
   if (keeping == kIdentityBit) {
     write_identity(record);
   } else {
-    copy_bytes(&condition.fault, record + kFaultAt, kFaultBytes);
+    copy_bytes(&robot_status.fault, record + kFaultAt, kFaultBytes);
     record[kFaultAt + kFaultBytes] = static_cast<uint8_t>(board.reset);
   }
 }
 
-// Whether what makes something count may be written: motors off, and enough voltage.
+// Whether a commit byte may be written: motors off and enough voltage.
 bool may_commit() {
   if (is_driving() || !store.is_ready_to_commit()) return false;
   if (is_low && static_cast<uint16_t>(now_ms - low_ms) < kLowMs) return false;
@@ -98,9 +98,9 @@ bool may_commit() {
   return !is_low;
 }
 
-void tell_saving() { condition.saved = is_low ? Saved::kLowSupply : Saved::kSaving; }
+void tell_saving() { robot_status.saved = is_low ? Saved::kLowSupply : Saved::kSaving; }
 
-// Begins to keep what is next; a program first.
+// Begins to save what is next, a program first.
 void keep_next() {
   keeping = static_cast<uint8_t>(to_keep & -to_keep);
   bool has_begun;
@@ -111,12 +111,13 @@ void keep_next() {
     has_begun = store.begin_keep(keeping == kFaultBit ? Area::kFault : Area::kIdentity, record);
   }
   to_keep = static_cast<uint8_t>(to_keep & ~keeping);
-  if (!has_begun) keeping = 0;  // it is too large; there is no such program
+  if (!has_begun) keeping = 0;  // too large: no such program exists
 }
 
 }  // namespace
 
 void tick_keeping() {
+  if (boot == Boot::kOver && (to_keep | keeping) == 0) return;  // nothing to save
   store.tick(may_commit());
   const bool is_busy = store.is_busy();
   const bool is_kept = store.state() == StoreState::kSaved;
@@ -125,8 +126,8 @@ void tick_keeping() {
     return load_next();
   }
   if (!is_busy && keeping == kProgramBit) {
-    condition.saved = is_kept ? Saved::kStored : Saved::kMemory;
-    if (is_kept) condition.slot = store.used(Area::kProgram);
+    robot_status.saved = is_kept ? Saved::kStored : Saved::kMemory;
+    if (is_kept) robot_status.slot = store.used(Area::kProgram);
   } else if (((to_keep | keeping) & kProgramBit) != 0) {
     tell_saving();
   }
@@ -158,7 +159,7 @@ Answer identity_kept() {
 
 Answer give_up_program() {
   if (is_low) {
-    // a program that waits for other batteries may wait for ever: the next one is worth more
+    // The wait for enough voltage may never end, so the next program takes precedence.
     if (keeping == kProgramBit) {
       store.give_up();
       keeping = 0;
@@ -166,7 +167,7 @@ Answer give_up_program() {
     }
     to_keep &= static_cast<uint8_t>(~kProgramBit);
   } else if (store.is_busy() || (to_keep & kProgramBit) != 0) {
-    return Answer::kBusy;  // what is being written cannot be read either
+    return Answer::kBusy;  // a program that is being written cannot be read
   }
   return Answer::kOk;
 }

@@ -1,7 +1,7 @@
-// What the robot keeps without power: it is read after a reset, and kept when it may be.
+// The data that the robot saves: read after a reset, written when allowed.
 //
-// Knows which of program, fault and identity is next, and that motors off and enough voltage come
-// before what makes it count. How bytes are written is for the store to know.
+// Knows the order of program, fault and identity, and that a commit needs motors off and enough
+// voltage. The store knows how bytes are written.
 
 #ifndef TINISCRIPT_FIRMWARE_KEEPING_H_
 #define TINISCRIPT_FIRMWARE_KEEPING_H_
@@ -12,26 +12,26 @@
 
 namespace tiniscript {
 
-// Goes on with what is read or kept: at most one byte.
+// Continues reading or saving: at most one byte.
 void tick_keeping();
 
-// Whether everything has been read since the reset. Before that, nothing is to be changed.
+// Whether everything has been read since the reset. Until then nothing may be changed.
 bool has_booted();
 
-// Has it kept, as soon as the store is free. The program must stay as it is until then.
+// Has it saved as soon as the store is free. The program must not change until then.
 void keep_program();
 void keep_fault();
 void keep_identity();
 
-// Whether the identity is kept: kOk; kSaving and kLowSupply: it will be; kNotKept: the memory is
+// Whether the identity is saved. kOk: yes; kSaving and kLowSupply: not yet; kNotKept: the memory is
 // worn out, and it is tried again.
 Answer identity_kept();
 
-// Makes way for another program in memory: kBusy while the one there is being kept. One that waits
-// for more voltage is given up.
+// Makes way for another program in memory: kBusy while the current one is being saved. A save that
+// waits for more voltage is given up.
 Answer give_up_program();
 
-// Why something is not to be had now.
+// The reason why something is not available now.
 Answer not_now();
 
 }  // namespace tiniscript

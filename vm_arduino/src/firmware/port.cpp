@@ -1,4 +1,4 @@
-// What the link asks of the robot, but for who it is (`identity.cpp`).
+// Implements `link/port.h`, except for the identity (`identity.cpp`).
 
 #include "../link/port.h"
 
@@ -12,7 +12,7 @@
 
 namespace tiniscript {
 
-const Condition& port_condition() { return condition; }
+const RobotStatus& port_status() { return robot_status; }
 
 LineErrors port_line_errors() { return board_line_errors(); }
 
@@ -22,13 +22,15 @@ Answer port_make_way(bool is_live) {
   if (!has_booted()) return not_now();
   if (is_running()) end_run(State::kIdle);
   forget_start();
-  if (is_live) return load_program() ? Answer::kOk : Answer::kBusy;
+  if (is_live) return has_program() || load_program() ? Answer::kOk : Answer::kBusy;
   return give_up_program();
 }
 
-uint8_t* port_memory(uint16_t code_length, bool is_live) {
-  if (is_live) return code_length <= kLiveCodeBytes ? live : nullptr;
-  return code_length <= kStoredCodeBytes ? program : nullptr;
+bool port_may_prepare() { return has_booted() && !is_live_running() && load_program(); }
+
+uint8_t* port_memory(uint16_t length, bool is_live) {
+  if (is_live) return length <= kLiveImageBytes ? live : nullptr;
+  return length <= kImageBytes ? program : nullptr;
 }
 
 void port_forget() {
@@ -44,7 +46,7 @@ void port_take(uint8_t mode, bool is_live) {
 }
 
 void port_seal(const uint8_t* image) {
-  if (image == program) condition.program = get32(image + kChecksumAt);
+  if (image == program) robot_status.program = get32(image + kChecksumAt);
 }
 
 void port_start(bool is_live) {
@@ -54,8 +56,10 @@ void port_start(bool is_live) {
 void port_stop(uint8_t fault) { stop_run(fault); }
 
 void port_release() {
-  if (condition.state >= State::kStopped) condition.state = State::kIdle;
+  if (robot_status.state >= State::kStopped) robot_status.state = State::kIdle;
 }
+
+uint16_t port_image_length() { return held_bytes(); }
 
 Answer port_image_byte(uint16_t offset, uint8_t* byte) {
   *byte = program[offset];

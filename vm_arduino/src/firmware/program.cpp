@@ -7,54 +7,78 @@
 
 namespace tiniscript {
 
-uint8_t program[kHeaderBytes + kStoredCodeBytes + kEndBytes];
-uint8_t live[kHeaderBytes + kLiveCodeBytes + kEndBytes];
+uint8_t program[kImageBytes + kEndBytes];
+uint8_t live[kLiveImageBytes + kEndBytes];
 
 namespace {
 
-bool is_whole;  // `program` is the one that `condition` names
+bool is_whole;                         // `program` is the one in `robot_status`
+bool has_other;                        // the stored program is of another version
+uint8_t header_length = kHeaderBytes;  // of the program in `robot_status`
 
-// Whether the robot may run the image of so many bytes in memory.
+// Whether the robot may run the image of this size in memory.
 bool may_run(uint16_t bytes) {
   Image image;
-  return unpack(program, bytes, board.kit, &image) == Refusal::kNone &&
-         verify(image.code, image.code_length, board.sensors, board.actuators).rule == Rule::kNone;
+  if (unpack(program, bytes, &image) != Refusal::kNone) return false;
+  uint16_t devices;
+  const Verdict verdict =
+      verify(image.code, image.code_length, board.sensors, board.actuators, &devices);
+  return verdict.rule == Rule::kNone && check_devices(image, devices) == Refusal::kNone;
+}
+
+bool is_other_version(const uint8_t* header) {
+  return header[kIsaMajorAt] != kIsaMajor || header[kIsaMinorAt] > kIsaMinor;
+}
+
+void hold(const uint8_t* header) {
+  header_length = header[kHeaderLengthAt];
+  robot_status.length = get16(header + kCodeLengthAt);
 }
 
 }  // namespace
 
 bool is_in_memory() { return is_whole; }
 
+uint16_t held_bytes() { return static_cast<uint16_t>(header_length + robot_status.length); }
+
 void hold_stored() {
   is_whole = false;
-  condition.saved = Saved::kNothing;
-  condition.slot = store.used(Area::kProgram);
   uint8_t header[kHeaderBytes];
-  if (condition.slot == kNoSlot || !store.fetch_first(Area::kProgram, header, kHeaderBytes)) return;
-  condition.saved = Saved::kStored;
-  condition.program = get32(header + kChecksumAt);
-  condition.length = get16(header + kCodeLengthAt);
+  for (;;) {
+    robot_status.saved = has_other ? Saved::kOtherVersion : Saved::kNothing;
+    robot_status.slot = store.used(Area::kProgram);
+    if (robot_status.slot == kNoSlot) return;
+    if (!store.fetch_first(Area::kProgram, header, kHeaderBytes)) return;
+    if (!is_other_version(header)) break;
+    has_other = true;
+    store.refuse();
+  }
+  robot_status.saved = Saved::kStored;
+  robot_status.program = get32(header + kChecksumAt);
+  hold(header);
 }
 
 void hold_memory() {
   is_whole = true;
-  condition.length = get16(program + kCodeLengthAt);
-  condition.slot = kNoSlot;
-  condition.saved = Saved::kMemory;
+  hold(program);
+  robot_status.slot = kNoSlot;
+  robot_status.saved = Saved::kMemory;
 }
 
+bool has_program() { return is_whole || !holds_program(); }
+
 bool load_program() {
-  if (is_whole || condition.saved == Saved::kNothing) return true;
-  const uint16_t bytes = static_cast<uint16_t>(kHeaderBytes + condition.length);
+  if (has_program()) return true;
+  const uint16_t bytes = held_bytes();
   if (!store.fetch_first(Area::kProgram, program, bytes)) return false;
   for (uint8_t k = 0; k < kEndBytes; k++) program[bytes + k] = static_cast<uint8_t>(Op::kEnd);
   is_whole = may_run(bytes);
   if (!is_whole) {
-    // the one before it, or none
+    // falls back to the program before it, or to none
     store.refuse();
     hold_stored();
   }
-  return is_whole || condition.saved == Saved::kNothing;
+  return has_program();
 }
 
 }  // namespace tiniscript

@@ -1,6 +1,6 @@
-// The images in memory: the program that the robot holds, and the one that runs once beside it.
+// The images in memory: the program that the robot holds, and the one beside it that runs once.
 //
-// Brings the stored program into memory, and says which one the robot holds. Knows nothing of runs.
+// Loads the stored program into memory and knows which one the robot holds. Knows nothing of runs.
 
 #ifndef TINISCRIPT_FIRMWARE_PROGRAM_H_
 #define TINISCRIPT_FIRMWARE_PROGRAM_H_
@@ -13,21 +13,28 @@
 
 namespace tiniscript {
 
-constexpr uint8_t kLiveCodeBytes = kPayloadBytes - kLiveCodeAt;
+constexpr uint8_t kLiveImageBytes = kHeaderBytes + kPayloadBytes - kLiveCodeAt;
 
-extern uint8_t program[kHeaderBytes + kStoredCodeBytes + kEndBytes];
-extern uint8_t live[kHeaderBytes + kLiveCodeBytes + kEndBytes];
+extern uint8_t program[kImageBytes + kEndBytes];
+extern uint8_t live[kLiveImageBytes + kEndBytes];
 
-// Whether `program` is the one that `condition` names.
+// Whether `program` is the one in `robot_status`.
 bool is_in_memory();
 
-// The robot holds the stored program, if there is one; it may have to be loaded.
+// The length of the image in `robot_status`.
+uint16_t held_bytes();
+
+// The robot now holds the stored program, if there is one; it may have to be loaded. A program of
+// another version does not count, and `robot_status` reports that.
 void hold_stored();
 
-// The robot holds the image in memory, which is verified. It is stored nowhere.
+// The robot now holds the verified image in memory, which is not stored.
 void hold_memory();
 
-// Brings the program that the robot holds into memory, if there is one. False: it is not to be had
+// Whether there is nothing to load.
+bool has_program();
+
+// Loads the program that the robot holds into memory, if there is one. False: it is not available
 // now.
 bool load_program();
 

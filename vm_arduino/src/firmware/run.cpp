@@ -3,6 +3,7 @@
 #include "../link/frames.h"
 #include "../robot.h"
 #include "../vm/crc32.h"
+#include "../vm/image.h"
 #include "../vm/vm.h"
 #include "firmware.h"
 #include "keeping.h"
@@ -14,21 +15,20 @@ namespace tiniscript {
 
 namespace {
 
-constexpr uint8_t kBudget = 32;  // instructions in one tick
-
 Machine machine;
 bool is_live_run;   // `live` runs
-bool may_start;     // the button is down; nothing has run or was stopped since: going up, it starts
-bool is_start_due;  // the button went up, and the program was not to be had at once
+bool may_start;     // the button is down and nothing ran or was stopped since: its release starts
+bool is_start_due;  // the button was released, but the program was not available
 bool has_motors_on;
-uint32_t began_ms;  // the run
+bool is_prepared;   // machine and board are reset for a program
+uint32_t began_ms;  // when the run began
 
-// The record of a fault.
+// Records a fault.
 void fault(uint8_t number, uint16_t at) {
-  link.seal();  // the record has the checksum of its image
-  condition.fault = number;
-  condition.fault_at = at;
-  condition.fault_program = is_live_run ? get32(live + kChecksumAt) : condition.program;
+  link.seal();  // the record contains the checksum of its image
+  robot_status.fault = number;
+  robot_status.fault_at = at;
+  robot_status.fault_program = is_live_run ? get32(live + kChecksumAt) : robot_status.program;
   keep_fault();
   board_faulted();
 }
@@ -39,7 +39,7 @@ void abort_run(LinkFault why) {
 }
 
 void go_on() {
-  const Status status = machine.tick(now_ms, kBudget);
+  const Status status = machine.tick(now_ms, kTickBudget);
   if (status == Status::kDone) {
     end_run(State::kIdle, true);
     board_finished();
@@ -53,22 +53,30 @@ void go_on() {
   }
 }
 
+// The part of starting a run that does not depend on the program: done while nothing runs.
+void prepare() {
+  for (uint8_t k = 0; k < board.sensors; k++) board.readings[k] = 0;
+  board_forget();
+  machine.prepare();
+  is_prepared = true;
+}
+
 }  // namespace
 
 void begin_run(bool is_live) {
   const uint8_t* const image = is_live ? live : program;
+  if (!is_prepared) prepare();
+  is_prepared = false;
+  machine.start_prepared(image + image[kHeaderLengthAt], get16(image + kCodeLengthAt),
+                         board.readings, board.sensors, (now_ms ^ board.seed) | 1, now_ms);
   is_live_run = is_live;
   is_start_due = false;
   began_ms = now_ms;
   may_start = false;
-  condition.state = State::kRunning;
-  condition.run++;
-  for (uint8_t k = 0; k < board.sensors; k++) board.readings[k] = 0;
-  board_forget();
+  robot_status.state = State::kRunning;
+  robot_status.run++;
   board_release();
-  if (link.stop_is_due()) board_stop();  // it came before this; one that comes now does it itself
-  machine.start(image + kHeaderBytes, get16(image + kCodeLengthAt), board.readings, board.sensors,
-                (now_ms ^ board.seed) | 1, now_ms);
+  if (link.stop_is_due()) board_stop();  // an earlier stop; a later one closes the latch itself
   show_light();
 }
 
@@ -78,8 +86,12 @@ void tick_run() {
     is_start_due = false;
     if (is_in_memory()) begin_run(false);
   }
-  // No motor starts while a byte is written that makes something count.
-  if (is_running() && !store.is_committing()) go_on();
+  // No motor starts while a commit byte is being written.
+  if (!is_running()) {
+    if (!is_prepared) prepare();
+  } else if (!store.is_committing()) {
+    go_on();
+  }
 }
 
 void end_run(State state, bool is_done) {
@@ -87,7 +99,7 @@ void end_run(State state, bool is_done) {
   if (!is_done) board_actuators_off();
   robot_off();
   may_start = has_motors_on = is_start_due = false;
-  condition.state = state;
+  robot_status.state = state;
   show_light();
 }
 
@@ -98,6 +110,8 @@ void stop_run(uint8_t number) {
 }
 
 void forget_start() { is_start_due = false; }
+
+bool is_live_running() { return is_live_run && is_running(); }
 
 bool is_driving() { return has_motors_on; }
 
@@ -117,7 +131,7 @@ void firmware_on_held() {
 void firmware_on_released() {
   if (!may_start || !has_booted()) return;
   link.drop();
-  is_start_due = condition.saved != Saved::kNothing;
+  is_start_due = holds_program();
 }
 
 void firmware_on_disconnect() {
@@ -126,14 +140,14 @@ void firmware_on_disconnect() {
   link.stopped(Cause::kCable);
 }
 
-// The checksum may not be in the image yet.
+// The image may not contain its checksum yet.
 bool firmware_runs(Place* place) {
   if (!is_running()) return false;
   const uint8_t* const image = is_live_run ? live : program;
-  const uint16_t most = is_live_run ? kLiveCodeBytes : kStoredCodeBytes;
-  const uint16_t length = get16(image + kCodeLengthAt);
-  place->program =
-      crc32(crc32(0, image, kChecksumAt), image + kHeaderBytes, length < most ? length : most);
+  const uint16_t most = is_live_run ? kLiveImageBytes : kImageBytes;
+  const uint16_t length = image_length(image);
+  const uint16_t rest = static_cast<uint16_t>((length < most ? length : most) - kBehindChecksum);
+  place->program = crc32(crc32(0, image, kChecksumAt), image + kBehindChecksum, rest);
   place->at = machine.at();
   return true;
 }
@@ -146,7 +160,7 @@ void robot_motors(int8_t left, int8_t right) {
   board_motors(levels.left, levels.right);
 }
 
-// What a program shows goes to whoever listens.
+// Sends a shown value to the connected client.
 bool robot_show(int32_t value, bool is_yes_no) { return link.show(value, is_yes_no); }
 
 }  // namespace tiniscript

@@ -1,7 +1,7 @@
-// The run of a program: what begins it, what ends it, and what a fault leaves.
+// The run of a program: how it begins and ends, and the record of a fault.
 //
-// Knows the machine, the button's and the tether's part in a run. Answers the firmware's events
-// (`firmware_on_pressed` ...), and of the machine's questions those that are for no board alone.
+// Knows the machine, and how button and tether affect a run. Implements the firmware's events
+// (`firmware_on_pressed` ...) and the functions of `robot.h` that are the same on every board.
 
 #ifndef TINISCRIPT_FIRMWARE_RUN_H_
 #define TINISCRIPT_FIRMWARE_RUN_H_
@@ -15,18 +15,21 @@ namespace tiniscript {
 // Starts the image `live`, or else `program`, which must be in memory.
 void begin_run(bool is_live);
 
-// Starts what the button has asked for, and goes on with what runs.
+// Starts what the button has requested, and continues what runs.
 void tick_run();
 
-// Motors off before anything else. Where a program has not come to its own end, actuators follow.
-// The robot is in `state` then; what the button has asked for is forgotten.
+// Turns the motors off first, then the actuators unless the program has reached its own end. Sets
+// the robot's `state` and cancels a start by the button.
 void end_run(State state, bool is_done = false);
 
-// Ends what runs, and nothing starts until the link says so. A fault that is not 0 is recorded.
+// Ends what runs and allows no start until the link does. Records `fault` if it is not 0.
 void stop_run(uint8_t fault);
 
-// What the button has asked for is forgotten, if it has not begun.
+// Cancels a start by the button that has not happened yet.
 void forget_start();
+
+// Whether `live` runs.
+bool is_live_running();
 
 // Whether a motor is on.
 bool is_driving();

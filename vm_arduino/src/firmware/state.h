@@ -1,4 +1,4 @@
-// What the parts of the firmware share. `firmware.cpp` holds it.
+// The shared state of the firmware's parts, defined in `firmware.cpp`.
 
 #ifndef TINISCRIPT_FIRMWARE_STATE_H_
 #define TINISCRIPT_FIRMWARE_STATE_H_
@@ -11,15 +11,20 @@
 
 namespace tiniscript {
 
-extern Board board;          // as it was told at the beginning
-extern Condition condition;  // what the robot does and holds, and its last fault
-extern uint32_t now_ms;      // of this tick
+extern Board board;               // as passed at the beginning
+extern RobotStatus robot_status;  // what the robot does and holds, and its last fault
+extern uint32_t now_ms;           // of this tick
 extern Link link;
 extern Store store;
 
-inline bool is_running() { return condition.state == State::kRunning; }
+inline bool is_running() { return robot_status.state == State::kRunning; }
 
-// Tells the board whether a press of the button would start something.
+// Whether there is a program that the button may start.
+inline bool holds_program() {
+  return robot_status.saved != Saved::kNothing && robot_status.saved != Saved::kOtherVersion;
+}
+
+// Tells the board whether a press of the button would start a program.
 void show_light();
 
 }  // namespace tiniscript

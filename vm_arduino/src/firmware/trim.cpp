@@ -12,15 +12,17 @@ uint8_t level_of(uint8_t percent) {
   return static_cast<uint8_t>(percent * 653u >> 8);
 }
 
-// What a wheel gets that needs `least` percent to move, and is `weakened` by so many percent where
-// that is more than 0.
+// The level of a wheel that needs `least` percent to move. It is reduced by `weakened` percent if
+// that is positive.
 int16_t level(int8_t power, uint8_t least, int8_t weakened) {
   if (power == 0) return 0;
-  const uint8_t low = level_of(least);
-  uint16_t steps = static_cast<uint16_t>(256 - low);
-  if (weakened > 0) steps = static_cast<uint16_t>(steps - level_of(size_of(weakened)));
-  const uint8_t asked = level_of(size_of(power));
-  const int16_t found = static_cast<int16_t>(low + (asked * steps >> 8));
+  uint8_t found = level_of(size_of(power));
+  uint8_t missing = level_of(least);  // of 256 steps
+  const uint8_t low = missing;
+  if (weakened > 0) missing = static_cast<uint8_t>(missing + level_of(size_of(weakened)));
+  if (missing != 0) {
+    found = static_cast<uint8_t>(low + (found * static_cast<uint16_t>(256 - missing) >> 8));
+  }
   return power < 0 ? static_cast<int16_t>(-found) : found;
 }
 

@@ -1,7 +1,7 @@
-// The trim of the motors: what they get for the power that a program asks for.
+// The trim of the motors: converts a program's power to driver levels.
 //
-// Two cheap motors are never the same: one is stronger, both need some power before they move, and
-// wires may be crossed. Knows numbers; not where they are kept, nor pins.
+// Two cheap motors always differ: one is stronger, both need some power before they move, and wires
+// may be crossed. Does only arithmetic: no storage, no pins.
 
 #ifndef TINISCRIPT_FIRMWARE_TRIM_H_
 #define TINISCRIPT_FIRMWARE_TRIM_H_
@@ -12,17 +12,17 @@
 
 namespace tiniscript {
 
-// What each output of the motor driver gets: -255 to 255.
+// The level of each output of the motor driver: -255 to 255.
 struct Levels {
   int16_t left;
   int16_t right;
 };
 
-// Whether a trim has no bits and numbers but those that mean something.
+// Whether all bits and numbers of a trim are valid.
 bool is_sound(const Trim& trim);
 
-// What the outputs get when the program asks for `left` and `right` percent, -100 to 100. `trim` is
-// sound; one of zeros changes nothing.
+// The levels for `left` and `right` percent, -100 to 100. `trim` must be sound; one of zeros
+// changes nothing.
 Levels trimmed(const Trim& trim, int8_t left, int8_t right);
 
 }  // namespace tiniscript

@@ -7,12 +7,14 @@ namespace tiniscript {
 
 namespace {
 
-// The CRC-32 of the frame up to `end`. It begins with the major version, so that a peer of another
-// one is not misunderstood. HELLO begins with 0: that there is another version must be understood.
-tini_noinline uint32_t checksum(const uint8_t* bytes, uint8_t end) {
-  const uint8_t number = static_cast<uint8_t>(bytes[kTypeAt] & ~(kReply | kSealed));
-  const bool is_hello = number == static_cast<uint8_t>(Message::kHello);
-  return crc32(is_hello ? 0 : kLinkMajor, bytes + kTypeAt, static_cast<uint16_t>(end - kTypeAt));
+// The CRC-32 of any bytes followed by their own CRC-32.
+constexpr uint32_t kBehindItself = 0x2144df1c;
+
+// The CRC-32 of a frame is seeded with the major version, so that a peer of another version rejects
+// the frame. HELLO is seeded with 0, so that both peers can find out that versions differ.
+uint8_t seed_of(uint8_t type) {
+  const uint8_t number = static_cast<uint8_t>(type & ~(kReply | kSealed));
+  return number == static_cast<uint8_t>(Message::kHello) ? 0 : kLinkMajor;
 }
 
 }  // namespace
@@ -41,10 +43,11 @@ tini_noinline uint32_t get32(const uint8_t* bytes) {
 }
 
 uint8_t encode_frame(uint8_t* bytes, uint8_t end) {
-  const uint32_t crc = checksum(bytes, end);
+  const uint32_t crc =
+      crc32(seed_of(bytes[kTypeAt]), bytes + kTypeAt, static_cast<uint16_t>(end - kTypeAt));
   copy_bytes(&crc, bytes + end, kCrcBytes);
   end = static_cast<uint8_t>(end + kCrcBytes);
-  uint8_t zero = 0;  // where the last one was
+  uint8_t zero = 0;  // position of the last zero
   bytes[end] = 0;
   for (uint8_t at = 1; at <= end; at++) {
     if (bytes[at] != 0) continue;
@@ -54,19 +57,44 @@ uint8_t encode_frame(uint8_t* bytes, uint8_t end) {
   return static_cast<uint8_t>(end + 1);
 }
 
-// Each byte that stands for a zero tells how far it is to the next one.
-uint8_t decode_frame(uint8_t* bytes, uint8_t length) {
-  uint8_t at = bytes[0];
-  while (at < length) {
-    const uint8_t distance = bytes[at];
-    bytes[at] = 0;
-    if (distance == 0 || distance > length - at) return 0;
-    at = static_cast<uint8_t>(at + distance);
+void FrameCheck::begin() {
+  taken_ = 0;
+  zero_ = 0;
+  decoded_ = 0;
+}
+
+// Each COBS byte gives the distance to the next one. If that leads past the end, the frame is
+// damaged.
+tini_noinline void FrameCheck::take(const uint8_t* bytes, uint8_t length) {
+  for (; taken_ < length; taken_++) {
+    uint8_t byte = bytes[taken_];
+    if (taken_ == zero_) {
+      zero_ = static_cast<uint8_t>(zero_ + byte);
+      byte = 0;
+    }
+    if (taken_ == kTypeAt) crc_ = seed_of(byte);
+    if (taken_ >= kTypeAt) crc_ = crc32(crc_, &byte, 1);
   }
-  if (at != length || length < kPayloadAt + kCrcBytes) return 0;
-  const uint8_t end = static_cast<uint8_t>(length - kCrcBytes);
-  const uint32_t crc = checksum(bytes, end);
-  return same_bytes(&crc, bytes + end) ? end : 0;
+}
+
+tini_noinline bool FrameCheck::is_whole() const {
+  return zero_ == taken_ && crc_ == kBehindItself && taken_ >= kPayloadAt + kCrcBytes;
+}
+
+tini_noinline uint8_t FrameCheck::decode(uint8_t* bytes) {
+  while (decoded_ != zero_) {
+    const uint8_t distance = bytes[decoded_];
+    bytes[decoded_] = 0;
+    decoded_ = static_cast<uint8_t>(decoded_ + distance);
+  }
+  return static_cast<uint8_t>(zero_ - kCrcBytes);
+}
+
+uint8_t decode_frame(uint8_t* bytes, uint8_t length) {
+  FrameCheck check;
+  check.begin();
+  check.take(bytes, length);
+  return check.is_whole() ? check.decode(bytes) : 0;
 }
 
 }  // namespace tiniscript

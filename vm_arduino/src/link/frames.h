@@ -1,7 +1,7 @@
-// Bytes of an item to a frame and back, in place: COBS and a checksum.
+// Encodes and decodes frames in place: COBS and a checksum.
 //
-// Knows nothing of what a message means. The same as `frames.py`. In a buffer the frame lies behind
-// its first byte, which is only there on the wire: type, sequence number, epoch, payload, checksum.
+// Knows nothing of messages. Matches `frames.py`. In a buffer the frame follows its first byte,
+// which exists only on the wire: type, sequence number, epoch, payload, checksum.
 
 #ifndef TINISCRIPT_LINK_FRAMES_H_
 #define TINISCRIPT_LINK_FRAMES_H_
@@ -17,19 +17,50 @@ constexpr uint8_t kSeqAt = 2;
 constexpr uint8_t kEpochAt = 3;
 constexpr uint8_t kPayloadAt = 4;
 
-constexpr uint8_t kWireBytes = kLargestFrame + 2;  // with the 0x00 behind it
+constexpr uint8_t kWireBytes = kLargestFrame + 2;  // with the 0x00 at its end
 
-// Numbers are little-endian on the wire, and in the memory of every chip that this is for.
+// Numbers are little-endian on the wire and in the memory of every supported chip.
 void copy_bytes(const void* from, uint8_t* to, uint8_t length);
 bool same_bytes(const uint32_t* number, const uint8_t* bytes);
 uint16_t get16(const uint8_t* bytes);
 uint32_t get32(const uint8_t* bytes);
 
-// Encodes the frame whose payload ends at `end`. Returns how many bytes to send, the 0x00 included.
+// Encodes the frame whose payload ends at `end`. Returns the number of bytes to send, including the
+// 0x00.
 uint8_t encode_frame(uint8_t* bytes, uint8_t end);
 
-// Decodes the `length` bytes of an item (1 to kItemBytes). Returns where its payload ends, or 0
-// where it is damaged.
+// Checks an item while it arrives, so that little work is left after its last byte.
+class FrameCheck {
+ public:
+  // Starts over for another item.
+  void begin();
+
+  uint8_t taken() const { return taken_; }
+
+  // Takes the bytes that have arrived since the last call, up to `length` (at most kItemBytes). If
+  // `length` is less than before, another item has begun meanwhile, and it takes none.
+  void take(const uint8_t* bytes, uint8_t length);
+
+  // The number of bytes up to the next zero or the end; more than any frame has if that position
+  // has passed.
+  uint8_t left() const { return static_cast<uint8_t>(zero_ - taken_); }
+
+  // Whether the bytes taken so far are a whole frame.
+  bool is_whole() const;
+
+  // Decodes the bytes taken so far in place. Returns where the payload ends, assuming that the
+  // frame ends at the next zero. More bytes may be taken afterwards.
+  uint8_t decode(uint8_t* bytes);
+
+ private:
+  uint8_t taken_;    // bytes
+  uint8_t zero_;     // position of the next zero
+  uint8_t decoded_;  // the first zero that is not restored yet
+  uint32_t crc_;
+};
+
+// Decodes the `length` bytes of an item (1 to kItemBytes). Returns where its payload ends, or 0 if
+// it is damaged.
 uint8_t decode_frame(uint8_t* bytes, uint8_t length);
 
 }  // namespace tiniscript

@@ -1,4 +1,4 @@
-// What the link tells: replies and events, field by field as in the table of messages.
+// Writes replies and events, field by field as in the table of messages.
 
 #include "../vm/bytecode.h"
 #include "../vm/flash.h"
@@ -10,14 +10,18 @@ namespace tiniscript {
 
 namespace {
 
-// For whoever sends a line of text. The 0x00 at its end begins an item: a frame may follow.
+// The hint for a person who sends text. Its 0x00 ends the item, so that a frame may follow.
 const uint8_t kHint[] tini_progmem = "No text yet: use tsc. / Aun no hay texto: usa tsc.\r\n";
 
-constexpr uint8_t kTailBytes = 8;  // of the hint, by which an echo of it or of its end is known
+// The first part of the reply to HELLO.
+const uint8_t kVersions[] tini_progmem = {kLinkMajor, kLinkMinor,    kIsaMajor,
+                                          kIsaMinor,  kLargestFrame, kWindow};
 
-constexpr uint8_t kPulseBytes = 2;  // of a Condition: state and run
+constexpr uint8_t kTailBytes = 8;  // end of the hint, which identifies an echo
 
-static_assert(sizeof(Card) == 13 && sizeof(Condition) == 17, "they are as they are sent");
+constexpr uint8_t kPulseBytes = 2;  // state and run of a RobotStatus
+
+static_assert(sizeof(Identity) == 13 && sizeof(RobotStatus) == 17, "they are as they are sent");
 static_assert(sizeof kHint <= kWireBytes, "it is sent like a frame");
 
 template <class Type>
@@ -28,13 +32,13 @@ uint8_t byte_of(Type value) {
 }  // namespace
 
 void Link::done() {
-  ended_run_ = port_condition().run;
+  ended_run_ = port_status().run;
   due_ |= kDueDone;
 }
 
 void Link::faulted() {
   renew();
-  ended_run_ = port_condition().run;
+  ended_run_ = port_status().run;
   due_ |= kDueFault;
 }
 
@@ -55,10 +59,10 @@ bool Link::show(int32_t value, bool is_yes_no) {
   return true;
 }
 
-// Nobody reads what a robot tells that runs alone.
+// A robot that runs alone has no client that reads.
 bool Link::is_listened_to() const { return is_open_ && quiet_ms_ < kListenMs; }
 
-// Whether the line of text that waits ends like the hint, or is the end of it.
+// Whether the waiting line of text ends like the hint, or is the end of the hint.
 bool Link::is_own_hint() const {
   const uint8_t* hint = kHint + sizeof kHint - 3;  // without CR, LF and 0x00
   uint8_t at = receiver_->length();
@@ -69,7 +73,7 @@ bool Link::is_own_hint() const {
   return true;
 }
 
-// Sends one thing of what is due. Whoever has sent the stop sequence listens.
+// Sends one message that is due. A client that has sent the stop sequence is listening.
 void Link::send() {
   if (!is_listened_to()) due_ &= static_cast<uint8_t>(~(kDueFault | kDueDone));
   if ((due_ & kDueStopped) != 0) {
@@ -83,7 +87,7 @@ void Link::send() {
     due_ &= static_cast<uint8_t>(~kDueFault);
     begin_event(Message::kFault);
     put(ended_run_);
-    put_all(&port_condition().fault, kFaultBytes);
+    put_all(&port_status().fault, kFaultBytes);
   } else if ((due_ & kDueDone) != 0) {
     due_ &= static_cast<uint8_t>(~kDueDone);
     begin_event(Message::kDone);
@@ -106,16 +110,16 @@ void Link::reply() {
     put16(said_.detail);
     return;
   }
-  const Condition& condition = port_condition();
+  const RobotStatus& robot_status = port_status();
   switch (static_cast<Message>(said_.number)) {
     case Message::kHello:
       describe();
       break;
     case Message::kPing:
-      put_all(&condition, kPulseBytes);
+      put_all(&robot_status, kPulseBytes);
       break;
     case Message::kStatus:
-      put_all(&condition, sizeof condition);
+      put_all(&robot_status, sizeof robot_status);
       put(byte_of(damaged_ + receiver_->damaged()));
       put(receiver_->dropped());
       put(port_line_errors().framing);
@@ -129,9 +133,9 @@ void Link::reply() {
     case Message::kProgram:
     case Message::kCommit:
       put_all(&checksum_, sizeof checksum_);
-      put(condition.run);
-      put(condition.slot);
-      put(byte_of(condition.saved));
+      put(robot_status.run);
+      put(robot_status.slot);
+      put(byte_of(robot_status.saved));
       break;
     case Message::kBegin:
     case Message::kData:
@@ -153,21 +157,16 @@ void Link::reply() {
 }
 
 void Link::describe() {
-  put(kLinkMajor);
-  put(kLinkMinor);
-  put(kIsaMajor);
-  put(kIsaMinor);
-  put(kLargestFrame);
-  put(kWindow);
-  put_all(&port_card(), sizeof(Card));
+  for (const uint8_t& byte : kVersions) put(flash_byte(&byte));
+  put_all(&port_identity(), sizeof(Identity));
   put16(port_room());
-  put_all(&port_condition(), sizeof(Condition));
-  const Equipment& equipment = port_equipment();
-  put_all(equipment.name, equipment.name_length);
+  put_all(&port_status(), sizeof(RobotStatus));
+  const DeviceInfo& device_info = port_device_info();
+  put_all(device_info.name, device_info.name_length);
 }
 
 void Link::fetch() {
-  const uint16_t whole = static_cast<uint16_t>(kHeaderBytes + port_condition().length);
+  const uint16_t whole = port_image_length();
   put16(whole);
   for (uint16_t at = said_.detail; at < whole && size_ < kPayloadAt + kPayloadBytes; at++) {
     const Answer found = port_image_byte(at, out_ + size_++);
@@ -206,7 +205,7 @@ void Link::close() {
   hand_over();
 }
 
-// An interrupt may take it from here on: all of it is written by then.
+// From here on the interrupt may send the message: it is complete.
 void Link::hand_over() {
   sent_ = 0;
   asm volatile("" ::: "memory");

@@ -54,8 +54,8 @@ enum class Message : uint8_t {
   kStart = 7,  // Starts the program that the robot holds.
   kLive = 8,  // Runs code once. The program that the robot holds stays what it is.
   kProgram = 9,  // A whole program in one frame.
-  kBegin = 10,  // Begins a longer program: what its image's header says.
-  kData = 11,  // Code. What does not begin at `next` is not taken.
+  kBegin = 10,  // Begins a longer program: what its image's header says before its checksum.
+  kData = 11,  // What lies behind the checksum, from `offset` on. What does not begin at `next` is not taken.
   kCommit = 12,  // The program is whole: its image's checksum.
   kAbort = 13,  // Drops the program that was begun.
   kName = 14,  // Names the robot: UTF-8. OK when it is kept, before that SAVING or LOW_SUPPLY: ask again.
@@ -90,11 +90,11 @@ constexpr uint8_t kBeginModeAt = 0;
 constexpr uint8_t kBeginIsaMajorAt = 1;
 constexpr uint8_t kBeginIsaMinorAt = 2;
 constexpr uint8_t kBeginStartAt = 3;
-constexpr uint8_t kBeginNeedsAt = 4;
-constexpr uint8_t kBeginKitAt = 5;
-constexpr uint8_t kBeginLengthAt = 7;
+constexpr uint8_t kBeginHeaderLengthAt = 4;
+constexpr uint8_t kBeginDevicesAt = 5;
+constexpr uint8_t kBeginCodeLengthAt = 7;
 constexpr uint8_t kDataOffsetAt = 0;
-constexpr uint8_t kDataCodeAt = 2;
+constexpr uint8_t kDataBytesAt = 2;
 constexpr uint8_t kCommitChecksumAt = 0;
 constexpr uint8_t kNameNameAt = 0;
 constexpr uint8_t kTrimTrimAt = 0;
@@ -134,6 +134,7 @@ enum class Saved : uint8_t {
   kSaving = 2,  // It is being saved: it is when the motors have stood for a moment.
   kStored = 3,  // It is saved.
   kLowSupply = 4,  // It is in RAM only: the voltage is too low to save it. It is saved as soon as it is not.
+  kOtherVersion = 5,  // The stored program is for another version of the robot's machine: it holds none.
 };
 
 enum class Cause : uint8_t {

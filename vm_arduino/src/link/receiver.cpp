@@ -15,7 +15,7 @@ bool ends_line(uint8_t byte) { return byte == '\r' || byte == '\n'; }
 
 bool is_blank(uint8_t byte) { return byte == ' ' || byte == '\t' || ends_line(byte); }
 
-// In a line of text; what is not ASCII is UTF-8.
+// In a line of text. Bytes beyond ASCII are UTF-8.
 bool is_printable(uint8_t byte) { return byte >= ' ' && byte != 0x7f; }
 
 }  // namespace
@@ -32,7 +32,7 @@ bool Receiver::take(uint8_t byte, uint16_t now_ms) {
   if (byte == 0) return zero();
   zeros_ = 0;
   if (place_ == Place::kBlank) {
-    // the second byte of a request is its type, and no frame of a robot begins like this
+    // The second byte of a request is its type, and no frame to a robot begins like this.
     place_ = is_printable(byte) && byte < 0x80 ? Place::kAfterText : Place::kFrame;
     if (place_ == Place::kFrame) drop();
   }
@@ -45,10 +45,13 @@ bool Receiver::take(uint8_t byte, uint16_t now_ms) {
   return false;
 }
 
-// Finds out what an item is by its first byte, as far as that says it.
+// Determines the kind of an item from its first byte, as far as possible.
 void Receiver::begin(uint8_t byte) {
   is_dropping_ = item_ != Item::kNone;
-  if (!is_dropping_) length_ = 0;
+  if (!is_dropping_) {
+    length_ = 0;
+    has_begun_ = true;
+  }
   if (byte == 0x7f) return skip();
   if (is_letter(byte)) {
     place_ = Place::kText;
@@ -63,12 +66,12 @@ void Receiver::begin(uint8_t byte) {
   add(byte);
 }
 
-// Takes a byte of an item that has begun.
+// Takes a further byte of an item.
 void Receiver::go_on(uint8_t byte) {
   const bool is_text = is_printable(byte) || byte == '\t';
   if (place_ == Place::kSkip) return;
   if (place_ == Place::kHead) {
-    place_ = is_printable(byte) ? Place::kLine : Place::kFrame;  // the type of a request is less
+    place_ = is_printable(byte) ? Place::kLine : Place::kFrame;  // request types are smaller
   } else if (place_ != Place::kFrame && ends_line(byte)) {
     end(Item::kText);
     place_ = Place::kAfterText;
@@ -95,11 +98,12 @@ void Receiver::drop() {
   if (is_dropping_) dropped_ = static_cast<uint8_t>(dropped_ + 1);
 }
 
-// What waits, and its length, stay as they are.
+// Leaves a waiting item and its length unchanged.
 void Receiver::add(uint8_t byte) {
   if (is_dropping_) return;
-  if (length_ < kItemBytes) bytes_[length_] = byte;
-  if (length_ < 255) length_++;
+  const uint8_t length = length_;
+  if (length < kItemBytes) bytes_[length] = byte;
+  if (length < 255) length_ = static_cast<uint8_t>(length + 1);
 }
 
 bool Receiver::zero() {
@@ -110,12 +114,12 @@ bool Receiver::zero() {
     cut();
   }
   if (++zeros_ != kStopRun) return false;
-  zeros_ = 0;  // the next four are another stop
+  zeros_ = 0;  // four more zeros are another stop
   stop_is_due_ = true;
   return true;
 }
 
-// Begins anew; what is open has no end of its own.
+// Starts over; the open item never ended.
 void Receiver::cut() {
   if (place_ >= Place::kBlank && place_ <= Place::kText) {
     damaged_ = static_cast<uint8_t>(damaged_ + 1);

@@ -1,8 +1,8 @@
-// What the store may ask of the memory that keeps its bytes without power.
+// What the store needs of its non-volatile memory.
 //
 // Plain functions, as in `robot.h`: each build links one definition of them (the EEPROM of a board,
-// a model in a test). A place is counted from 0. None of them waits; a write goes on by itself
-// after it has begun, and nothing else may be asked until the memory is ready again.
+// a model in a test). A place is an address from 0. None of them blocks: a write continues on its
+// own, and no other call is allowed until the memory is ready again.
 
 #ifndef TINISCRIPT_STORE_NVM_H_
 #define TINISCRIPT_STORE_NVM_H_
@@ -11,15 +11,15 @@
 
 namespace tiniscript {
 
-// Whether the last write is finished: a byte may be read, or a write may begin.
+// Whether the last write is finished: only then may a byte be read or written.
 bool nvm_is_ready();
 
 uint8_t nvm_read(uint16_t place);
 
-// Begins to put a value into a byte, also where it is there already: the byte is erased first.
+// Begins to write a byte, even an equal one: the byte is erased first.
 void nvm_write(uint16_t place, uint8_t value);
 
-// Begins to make a byte 0, where the memory can do so without an erase.
+// Begins to set a byte to 0, without an erase if the memory can do that.
 void nvm_clear(uint16_t place);
 
 }  // namespace tiniscript

@@ -10,26 +10,23 @@ namespace tiniscript {
 
 namespace {
 
-// Generations go around in a circle. The mark of a generation is that of no other one; nor is it
-// what a slot has there while it is written, 0, or while it is empty.
+// Generation numbers wrap around. Each generation has a mark of its own, which differs from the
+// marks of a slot that is being written (0) and of an empty slot.
 constexpr uint8_t kGenerations = 0x40;
 constexpr uint8_t kMarkOf = 0xa5;
 constexpr uint8_t kEmptied = 0xff;
 
-// What is known of a slot is its generation, or that it holds nothing.
-constexpr uint8_t kRefused = kGenerations;  // more than its generation: it does not count
+// The known state of a slot: its generation, or that it holds nothing.
+constexpr uint8_t kRefused = kGenerations;  // added to the generation: the slot does not count
 constexpr uint8_t kNothing = 0xff;
-
-// The checksum of any bytes with their own checksum behind them.
-constexpr uint32_t kBehindItself = 0x2144df1c;
 
 // The write steps of a slot. `docs/store.md` says why they come in this order.
 enum class WriteStep : uint8_t {
   kLook,
-  kClear,       // one of the first bytes of the slot: 0, without an erase
+  kClear,       // one of the first bytes of the slot: to 0, without an erase
   kGeneration,  // its own number
   kMark,        // the mark of its generation
-  kEmpty,       // what empty memory holds
+  kEmpty,       // the value of empty memory
   kBody,
   kCheck,
   kEnd,
@@ -40,14 +37,14 @@ constexpr uint8_t step(WriteStep what, uint8_t at = 0) {
 }
 
 constexpr uint8_t kSteps[] tini_progmem = {
-    // settles: decides what a slot holds
+    // settling: determine what a slot holds
     step(WriteStep::kLook),
-    // settles: what it holds does not count, and never will
+    // settling: its contents never count
     step(WriteStep::kEmpty, 0),
     step(WriteStep::kEmpty, kBodyAt),
     step(WriteStep::kEmpty, 1),
     step(WriteStep::kEnd),
-    // saves
+    // saving
     step(WriteStep::kClear, 3),
     step(WriteStep::kClear, 2),
     step(WriteStep::kClear, 1),
@@ -58,7 +55,7 @@ constexpr uint8_t kSteps[] tini_progmem = {
     step(WriteStep::kMark, 2),
     step(WriteStep::kMark, 3),
     step(WriteStep::kEnd),
-    // settles: what it holds counts, and always will
+    // settling: its contents count for good
     step(WriteStep::kGeneration),
     step(WriteStep::kMark, 1),
     step(WriteStep::kMark, 2),
@@ -66,12 +63,12 @@ constexpr uint8_t kSteps[] tini_progmem = {
     step(WriteStep::kEnd),
 };
 
-// Where they begin.
+// Offsets in kSteps.
 constexpr uint8_t kLooking = 0;
 constexpr uint8_t kEmptying = 1;
 constexpr uint8_t kEmptyingEnd = 4;
 constexpr uint8_t kSaving = 5;
-constexpr uint8_t kCommitting = 11;  // from here on it waits for `may_commit`
+constexpr uint8_t kCommitting = 11;  // later steps wait for `may_commit`
 constexpr uint8_t kKeeping = 15;
 constexpr uint8_t kKeepingMarks = 17;
 constexpr uint8_t kKeepingEnd = 19;
@@ -87,8 +84,8 @@ static_assert(kSteps[kKeepingEnd] == step(WriteStep::kEnd), "keeping ends here")
 
 uint16_t plus(uint16_t place, uint16_t more) { return static_cast<uint16_t>(place + more); }
 
-// A byte of the body of the slot at `place`. The first one is kept XOR the generation: under
-// another generation its checksum is wrong.
+// A byte of the body of the slot at `place`. The first byte is stored XOR the generation, so that
+// the checksum is wrong under another generation.
 tini_noinline uint8_t body_byte(uint16_t place, uint16_t at) {
   const uint8_t byte = nvm_read(plus(place, plus(kBodyAt, at)));
   return at == 0 ? byte ^ nvm_read(place) : byte;
@@ -102,9 +99,16 @@ tini_noinline uint32_t checksum(uint32_t crc, uint16_t place, uint16_t at, uint1
   return crc;
 }
 
-uint16_t image_bytes(uint8_t low, uint8_t high) {
+// The length of an image, or 0 if it does not fit. An image of version 1 does not state the length
+// of its header, which ends with the checksum.
+uint16_t image_bytes(uint8_t header, uint8_t low, uint8_t high) {
+  uint16_t most = kImageBytes;
+  if (header < kHeaderBytes) {
+    header = kBehindChecksum;
+    most = kOldImageBytes;
+  }
   const uint16_t code = static_cast<uint16_t>(low | high << 8);
-  return code > kStoredCodeBytes ? 0 : plus(code, kHeaderBytes);
+  return code > most - header ? 0 : plus(code, header);
 }
 
 bool is_program(uint8_t slot) { return slot < 2; }
@@ -171,7 +175,7 @@ bool Store::is_ready_to_commit() const {
   return is_busy_ && step_ >= kCommitting && nvm_is_ready();
 }
 
-// One has been written, or it is.
+// The write of a commit byte has begun and is not finished.
 bool Store::is_committing() const { return is_busy_ && !nvm_is_ready() && step_ > kCommitting; }
 
 tini_noinline void Store::give_up() {
@@ -181,7 +185,8 @@ tini_noinline void Store::give_up() {
 }
 
 tini_noinline bool Store::begin_save(const uint8_t* image) {
-  const uint16_t length = image_bytes(image[kCodeLengthAt], image[kCodeLengthAt + 1]);
+  const uint16_t length = image_bytes(image[kHeaderLengthAt], image[kCodeLengthAt],
+                                      image[kCodeLengthAt + 1]);
   return length != 0 && near(this)->begin_write(Area::kProgram, image, length);
 }
 
@@ -221,7 +226,7 @@ tini_noinline void Store::go_to(uint8_t slot) {
   place_ = place_of(slot);
 }
 
-// Goes to the slot that must not be kept where `slot`, or none, must.
+// Selects the slot other than `slot` (or any, if that is none).
 void Store::go_beside(Area area, uint8_t slot) {
   go_to(slot == kNoSlot ? static_cast<uint8_t>(2 * static_cast<uint8_t>(area)) : slot ^ 1);
 }
@@ -230,7 +235,7 @@ tini_noinline bool Store::begin_write(Area area, const uint8_t* bytes, uint16_t 
   if (is_busy_ || !nvm_is_ready()) return false;
   const uint8_t slot = used(area);
   if (slot != kNoSlot) {
-    // the same up to the end of its check?
+    // Is it equal up to the end of its check?
     uint8_t count = is_program(slot) ? kHeaderBytes : kCheckBytes;
     do {
       if (count-- == 0) {
@@ -254,7 +259,7 @@ tini_noinline bool Store::begin_write(Area area, const uint8_t* bytes, uint16_t 
   return true;
 }
 
-// Decides what a slot holds, once: a byte whose writing was cut may be read otherwise later.
+// Decides once what a slot holds: a byte whose write was cut may read differently later.
 void Store::look() {
   const uint16_t place = place_;
   const uint8_t generation = nvm_read(place);
@@ -264,19 +269,21 @@ void Store::look() {
   step_ = generation == kEmptied && first == kEmptied ? kEmptyingEnd : kEmptying;
   if (generation >= kGenerations || first != mark || !is_sound()) return;
   held_[slot_] = generation;
-  // The last mark that is there may be the one that was cut. With one alone, that is what counts,
-  // and the slot may have been about to be emptied. With more, what counts is left as it is.
+  // The last mark present may be the one whose write was cut. If it is the only one, it and the
+  // generation are rewritten, as the slot may have been about to be emptied. Otherwise both are
+  // left as they are.
   step_ = nvm_read(place + 2) != mark   ? kKeeping
           : nvm_read(place + 3) != mark ? kKeepingMarks
                                         : kKeepingEnd;
 }
 
-// Whether the body of a slot has its checksum.
+// Whether the checksum of a slot's body is right.
 bool Store::is_sound() const {
   uint16_t length = kRecordBytes;
   uint16_t check = 0;
   if (is_program(slot_)) {
-    length = image_bytes(body_byte(place_, kCodeLengthAt), body_byte(place_, kCodeLengthAt + 1));
+    length = image_bytes(body_byte(place_, kHeaderLengthAt), body_byte(place_, kCodeLengthAt),
+                         body_byte(place_, kCodeLengthAt + 1));
     if (length == 0) return false;
     check = kChecksumAt;
   }
@@ -286,7 +293,7 @@ bool Store::is_sound() const {
   return checksum(crc, place_, check, behind) == kBehindItself;
 }
 
-// The slot of an area whose generation is the latest of those less than `end`.
+// The slot of an area with the latest generation below `end`.
 tini_noinline uint8_t Store::newest(Area area, uint8_t end) const {
   const uint8_t slot = static_cast<uint8_t>(2 * static_cast<uint8_t>(area));
   const uint8_t first = held_[slot];
@@ -297,7 +304,7 @@ tini_noinline uint8_t Store::newest(Area area, uint8_t end) const {
   return is_first ? slot : slot ^ 1;
 }
 
-// The slot is done with.
+// Finishes work on the slot.
 void Store::finish() {
   uint8_t slot = slot_;
   const StoreState state = state_;

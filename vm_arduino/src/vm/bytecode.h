@@ -15,7 +15,7 @@
 namespace tiniscript {
 
 // A machine runs images of its own major version, and of its own minor version or less.
-constexpr uint8_t kIsaMajor = 1;
+constexpr uint8_t kIsaMajor = 2;
 constexpr uint8_t kIsaMinor = 0;
 
 // Limits, the same on every machine.
@@ -29,6 +29,7 @@ constexpr uint8_t kNestWords = 32;
 constexpr uint8_t kJoins = 16;
 constexpr uint8_t kDevices = 32;
 constexpr uint8_t kCheckMs = 20;
+constexpr uint8_t kShorts = 8;
 constexpr uint8_t kPowerHigh = 100;
 constexpr uint8_t kPercentHigh = 100;
 
@@ -37,11 +38,14 @@ constexpr uint8_t kMagicAt = 0;
 constexpr uint8_t kIsaMajorAt = 2;
 constexpr uint8_t kIsaMinorAt = 3;
 constexpr uint8_t kStartAt = 4;
-constexpr uint8_t kNeedsAt = 5;
-constexpr uint8_t kKitAt = 6;
+constexpr uint8_t kHeaderLengthAt = 5;
+constexpr uint8_t kDevicesAt = 6;
 constexpr uint8_t kCodeLengthAt = 8;
 constexpr uint8_t kChecksumAt = 10;
-constexpr uint8_t kHeaderBytes = 14;
+constexpr uint8_t kNeedsAt = 14;
+constexpr uint8_t kHeaderBytes = 15;
+constexpr uint8_t kNeeds = 0;
+constexpr uint8_t kDevicesPolynomial = 45;
 constexpr uint8_t kStarts = 3;
 constexpr uint8_t kStartPing = 2;
 
@@ -58,6 +62,7 @@ enum class Op : uint8_t {
   kPushRead = 0x09,  // -- reading
   kTime = 0x0a,  // -- seconds
   kRandom = 0x0b,  // low high -- n
+  kPushTenths = 0x0c,  // -- n
   kAdd = 0x10,  // a b -- a+b
   kSub = 0x11,  // a b -- a-b
   kMul = 0x12,  // a b -- a*b
@@ -85,6 +90,8 @@ enum class Op : uint8_t {
   kSetVar8 = 0x31,  // --
   kAddVar8 = 0x32,  // --
   kAddVar = 0x33,  // --
+  kIncVar = 0x34,  // --
+  kDecVar = 0x35,  // --
   kRead = 0x38,  // --
   kShow = 0x39,  // number --
   kShowYesNo = 0x3a,  // yes --
@@ -110,7 +117,7 @@ enum class Op : uint8_t {
   kWatchWait = 0x52,  // time --
   kWatchForeverWait = 0x53,  // --
   kUntil = 0x54,  // stop --
-  kUntilFar = 0x55,  // stop --
+  kBeep8 = 0x56,  // --
   kStop = 0x58,  // --
   kMotors = 0x59,  // left right --
   kMotors8 = 0x5a,  // --
@@ -140,56 +147,125 @@ enum class Op : uint8_t {
   kReturn = 0x7a,  // --
   kCall = 0x7b,  // --
   kCallFar = 0x7c,  // --
-  kIfVar8Eq = 0x80,  // --
-  kIfVar8Ne = 0x81,  // --
-  kIfVar8Lt = 0x82,  // --
-  kIfVar8Le = 0x83,  // --
-  kIfVar8Gt = 0x84,  // --
-  kIfVar8Ge = 0x85,  // --
-  kIfVar16Eq = 0x88,  // --
-  kIfVar16Ne = 0x89,  // --
-  kIfVar16Lt = 0x8a,  // --
-  kIfVar16Le = 0x8b,  // --
-  kIfVar16Gt = 0x8c,  // --
-  kIfVar16Ge = 0x8d,  // --
-  kIfSensor8Eq = 0x90,  // --
-  kIfSensor8Ne = 0x91,  // --
-  kIfSensor8Lt = 0x92,  // --
-  kIfSensor8Le = 0x93,  // --
-  kIfSensor8Gt = 0x94,  // --
-  kIfSensor8Ge = 0x95,  // --
-  kIfSensor16Eq = 0x98,  // --
-  kIfSensor16Ne = 0x99,  // --
-  kIfSensor16Lt = 0x9a,  // --
-  kIfSensor16Le = 0x9b,  // --
-  kIfSensor16Gt = 0x9c,  // --
-  kIfSensor16Ge = 0x9d,  // --
-  kIfRead8Eq = 0xa0,  // --
-  kIfRead8Ne = 0xa1,  // --
-  kIfRead8Lt = 0xa2,  // --
-  kIfRead8Le = 0xa3,  // --
-  kIfRead8Gt = 0xa4,  // --
-  kIfRead8Ge = 0xa5,  // --
-  kIfRead16Eq = 0xa8,  // --
-  kIfRead16Ne = 0xa9,  // --
-  kIfRead16Lt = 0xaa,  // --
-  kIfRead16Le = 0xab,  // --
-  kIfRead16Gt = 0xac,  // --
-  kIfRead16Ge = 0xad,  // --
+  kPushVar0 = 0x80,  // -- value
+  kPushVar1 = 0x81,  // -- value
+  kPushVar2 = 0x82,  // -- value
+  kPushVar3 = 0x83,  // -- value
+  kPushVar4 = 0x84,  // -- value
+  kPushVar5 = 0x85,  // -- value
+  kPushVar6 = 0x86,  // -- value
+  kPushVar7 = 0x87,  // -- value
+  kPushSensor0 = 0x88,  // -- reading
+  kPushSensor1 = 0x89,  // -- reading
+  kPushSensor2 = 0x8a,  // -- reading
+  kPushSensor3 = 0x8b,  // -- reading
+  kPushSensor4 = 0x8c,  // -- reading
+  kPushSensor5 = 0x8d,  // -- reading
+  kPushSensor6 = 0x8e,  // -- reading
+  kPushSensor7 = 0x8f,  // -- reading
+  kPushRead0 = 0x90,  // -- reading
+  kPushRead1 = 0x91,  // -- reading
+  kPushRead2 = 0x92,  // -- reading
+  kPushRead3 = 0x93,  // -- reading
+  kPushRead4 = 0x94,  // -- reading
+  kPushRead5 = 0x95,  // -- reading
+  kPushRead6 = 0x96,  // -- reading
+  kPushRead7 = 0x97,  // -- reading
+  kRead0 = 0x98,  // --
+  kRead1 = 0x99,  // --
+  kRead2 = 0x9a,  // --
+  kRead3 = 0x9b,  // --
+  kRead4 = 0x9c,  // --
+  kRead5 = 0x9d,  // --
+  kRead6 = 0x9e,  // --
+  kRead7 = 0x9f,  // --
+  kSetVar0 = 0xa0,  // value --
+  kSetVar1 = 0xa1,  // value --
+  kSetVar2 = 0xa2,  // value --
+  kSetVar3 = 0xa3,  // value --
+  kSetVar4 = 0xa4,  // value --
+  kSetVar5 = 0xa5,  // value --
+  kSetVar6 = 0xa6,  // value --
+  kSetVar7 = 0xa7,  // value --
+  kSet0 = 0xa8,  // value --
+  kSet1 = 0xa9,  // value --
+  kSet2 = 0xaa,  // value --
+  kSet3 = 0xab,  // value --
+  kSet4 = 0xac,  // value --
+  kSet5 = 0xad,  // value --
+  kSet6 = 0xae,  // value --
+  kSet7 = 0xaf,  // value --
+  kPushNum0 = 0xb0,  // -- n
+  kPushNum1 = 0xb1,  // -- n
+  kPushNum2 = 0xb2,  // -- n
+  kPushNum3 = 0xb3,  // -- n
+  kPushNum4 = 0xb4,  // -- n
+  kPushNum5 = 0xb5,  // -- n
+  kPushNum6 = 0xb6,  // -- n
+  kPushNum7 = 0xb7,  // -- n
+  kPushNum8 = 0xb8,  // -- n
+  kPushNum9 = 0xb9,  // -- n
+  kPushNum10 = 0xba,  // -- n
+  kPushNum20 = 0xbb,  // -- n
+  kPushNum30 = 0xbc,  // -- n
+  kPushNum40 = 0xbd,  // -- n
+  kPushNum50 = 0xbe,  // -- n
+  kPushNum60 = 0xbf,  // -- n
+  kPushNum70 = 0xc0,  // -- n
+  kPushNum80 = 0xc1,  // -- n
+  kPushNum90 = 0xc2,  // -- n
+  kPushNum100 = 0xc3,  // -- n
+  kUntil8Eq = 0xc8,  // a --
+  kUntil8Ne = 0xc9,  // a --
+  kUntil8Lt = 0xca,  // a --
+  kUntil8Le = 0xcb,  // a --
+  kUntil8Gt = 0xcc,  // a --
+  kUntil8Ge = 0xcd,  // a --
+  kUntil16Eq = 0xd0,  // a --
+  kUntil16Ne = 0xd1,  // a --
+  kUntil16Lt = 0xd2,  // a --
+  kUntil16Le = 0xd3,  // a --
+  kUntil16Gt = 0xd4,  // a --
+  kUntil16Ge = 0xd5,  // a --
+  kIf8Eq = 0xd8,  // a --
+  kIf8Ne = 0xd9,  // a --
+  kIf8Lt = 0xda,  // a --
+  kIf8Le = 0xdb,  // a --
+  kIf8Gt = 0xdc,  // a --
+  kIf8Ge = 0xdd,  // a --
+  kIf16Eq = 0xe0,  // a --
+  kIf16Ne = 0xe1,  // a --
+  kIf16Lt = 0xe2,  // a --
+  kIf16Le = 0xe3,  // a --
+  kIf16Gt = 0xe4,  // a --
+  kIf16Ge = 0xe5,  // a --
+  kIfVar8Eq = 0xe8,  // --
+  kIfVar8Ne = 0xe9,  // --
+  kIfVar8Lt = 0xea,  // --
+  kIfVar8Le = 0xeb,  // --
+  kIfVar8Gt = 0xec,  // --
+  kIfVar8Ge = 0xed,  // --
+  kIfVar16Eq = 0xf0,  // --
+  kIfVar16Ne = 0xf1,  // --
+  kIfVar16Lt = 0xf2,  // --
+  kIfVar16Le = 0xf3,  // --
+  kIfVar16Gt = 0xf4,  // --
+  kIfVar16Ge = 0xf5,  // --
 };
 
 // Why bytes are no image for this machine.
 enum class Refusal : uint8_t {
   kNone = 0,  // It is one.
   kNotAnImage = 1,  // It does not begin with `TS`: it is no TiniScript program.
-  kTruncated = 2,  // Bytes are missing at its end.
-  kTrailing = 3,  // There are bytes after its end.
-  kDamaged = 4,  // Its checksum does not fit: a byte has changed.
-  kOtherVersion = 5,  // It is for another version of the machine.
-  kUnknownStart = 6,  // Its start mode is not known.
+  kOtherVersion = 2,  // It is for another version of the machine.
+  kBadHeader = 3,  // Its header has less than 15 bytes, or its code more than 32767.
+  kTruncated = 4,  // Bytes are missing at its end.
+  kTrailing = 5,  // There are bytes after its end.
+  kDamaged = 6,  // Its checksum does not fit: a byte has changed.
   kUnknownNeeds = 7,  // It needs something that this machine does not have.
-  kOtherKit = 8,  // It uses words of another robot's kit.
+  kUnknownStart = 8,  // Its start mode is not known.
   kPingWithCode = 9,  // It starts with PING, and yet has code.
+  kOtherKit = 10,  // It uses a sensor or an actuator that is another one here.
 };
 
 // Which rule code breaks.
@@ -202,13 +278,13 @@ enum class Rule : uint8_t {
   kNoSuchDevice = 24,  // A sensor or an actuator that the kit does not have.
   kStackUnderflow = 25,  // An instruction takes more values than are on the stack.
   kStackOverflow = 26,  // More than 16 values on the stack.
-  kStackNotEmpty = 27,  // Values are left on the stack between two instructions.
-  kBadTarget = 28,  // A jump forward leads out of the block around it.
+  kStackNotEmpty = 27,  // Values are left between two instructions, or a join is reached with more or fewer than one.
+  kBadTarget = 28,  // A jump forward leads out of the block around it, or out of the code.
   kMissedTarget = 29,  // No instruction begins where a jump leads, or one that may not be reached so.
-  kBadLoopStart = 30,  // A jump back does not lead to the beginning of its loop or check.
+  kBadLoopStart = 30,  // A jump back does not lead to the beginning of its loop.
   kBadLoopEnd = 31,  // A BREAK or a loop's head names an end that is not behind the loop.
   kNotOpen = 32,  // ELSE, AGAIN, NEXT, BREAK, UNTIL or RETURN without what it belongs to.
-  kStillOpen = 33,  // A block ends while another one inside it is open.
+  kStillOpen = 33,  // A loop, a procedure or the code ends while a block or a procedure in it is open.
   kTooDeep = 34,  // Blocks, counters, joins or calls deeper than a machine remembers.
   kBadDef = 35,  // A DEF that is not at the top level, or does not end with its RETURN.
   kTooManyDefs = 36,  // More than 16 DEFs.
@@ -257,81 +333,86 @@ enum class Byte : uint8_t {
   kPercent = 2,
   kVariable = 3,
   kCount = 4,
-  kBack = 5,
-  kSensor = 6,
-  kActuator = 7,
+  kSensor = 5,
+  kActuator = 6,
 };
 
-// Opcodes of one form have the same operands and the same picture of the stack, and
-// what they do begins in one place. It bears the name of the first.
-enum class Form : uint8_t {
+// What an instruction does: it begins in one place for a whole family.
+enum class Family : uint8_t {
   kNone = 0,
   kEnd = 1,
-  kPushFalse = 2,  // PUSH_FALSE, PUSH_TRUE, TIME
-  kRandom = 3,
-  kAdd = 4,  // ADD, SUB, MUL, DIV ...
-  kNeg = 5,  // NEG, ABS
-  kEq = 6,  // EQ, NE, LT, LE ...
-  kNot = 7,
-  kShow = 8,  // SHOW, SHOW_YES_NO
-  kMoveF = 9,  // MOVE_F, MOVE_B, MOVE_L, MOVE_R
-  kWatchF = 10,  // WATCH_F, WATCH_B, WATCH_L, WATCH_R
-  kWatchForeverF = 11,  // WATCH_FOREVER_F, WATCH_FOREVER_B, WATCH_FOREVER_L, WATCH_FOREVER_R
-  kWait = 12,
-  kWatchWait = 13,
-  kWatchForeverWait = 14,
-  kStop = 15,
-  kMotors = 16,  // MOTORS, BEEP
-  kForever = 17,
-  kReturn = 18,
-  kPush8 = 19,
-  kPushVar = 20,
-  kPushSensor = 21,  // PUSH_SENSOR, PUSH_READ
-  kSetVar = 22,
-  kRead = 23,
-  kSet = 24,
-  kWait8 = 25,
-  kLoop8 = 26,
-  kAndThen = 27,  // AND_THEN, OR_ELSE
-  kUntil = 28,
-  kIf = 29,  // IF, IF_NOT
-  kElse = 30,
-  kWhile = 31,
-  kAgain = 32,
-  kLoop = 33,
-  kNext = 34,
-  kBreak = 35,
-  kBreakLoop = 36,
-  kDef = 37,
-  kCall = 38,
-  kPush16 = 39,  // PUSH16, PUSH_MILLI
-  kPush32 = 40,
-  kSetVar8 = 41,  // SET_VAR8, ADD_VAR8
-  kAddVar = 42,
-  kMove8F = 43,  // MOVE8_F, MOVE8_B, MOVE8_L, MOVE8_R
-  kMotors8 = 44,
+  kPush8 = 2,
+  kPush16 = 3,
+  kPushMilli = 4,
+  kPush32 = 5,
+  kPushFalse = 6,
+  kPushTrue = 7,
+  kPushVar = 8,  // PUSH_VAR, PUSH_VAR_0, PUSH_VAR_1, PUSH_VAR_2 ...
+  kPushSensor = 9,  // PUSH_SENSOR, PUSH_SENSOR_0, PUSH_SENSOR_1, PUSH_SENSOR_2 ...
+  kPushRead = 10,  // PUSH_READ, PUSH_READ_0, PUSH_READ_1, PUSH_READ_2 ...
+  kTime = 11,
+  kRandom = 12,
+  kPushTenths = 13,
+  kCalculate = 14,  // ADD, SUB, MUL, DIV ...
+  kAndThen = 15,  // AND_THEN, AND_THEN_FAR
+  kOrElse = 16,  // OR_ELSE, OR_ELSE_FAR
+  kSetVar = 17,  // SET_VAR, SET_VAR_0, SET_VAR_1, SET_VAR_2 ...
+  kSetVar8 = 18,
+  kAddVar8 = 19,
+  kAddVar = 20,
+  kIncVar = 21,
+  kDecVar = 22,
+  kRead = 23,  // READ, READ_0, READ_1, READ_2 ...
+  kShow = 24,
+  kShowYesNo = 25,
+  kSet = 26,  // SET, SET_0, SET_1, SET_2 ...
+  kMove = 27,  // MOVE_F, MOVE_B, MOVE_L, MOVE_R
+  kMove8 = 28,  // MOVE8_F, MOVE8_B, MOVE8_L, MOVE8_R
+  kWatch = 29,  // WATCH_F, WATCH_B, WATCH_L, WATCH_R
+  kWatchForever = 30,  // WATCH_FOREVER_F, WATCH_FOREVER_B, WATCH_FOREVER_L, WATCH_FOREVER_R
+  kWait = 31,
+  kWait8 = 32,
+  kWatchWait = 33,
+  kWatchForeverWait = 34,
+  kUntil = 35,
+  kBeep8 = 36,
+  kStop = 37,
+  kMotors = 38,
+  kMotors8 = 39,
+  kBeep = 40,
+  kIf = 41,  // IF, IF_FAR
+  kIfNot = 42,  // IF_NOT, IF_NOT_FAR
+  kElse = 43,  // ELSE, ELSE_FAR
+  kForever = 44,
+  kWhile = 45,  // WHILE, WHILE_FAR
+  kAgain = 46,  // AGAIN, AGAIN_FAR
+  kLoop8 = 47,
+  kLoop = 48,  // LOOP, LOOP_FAR
+  kNext = 49,  // NEXT, NEXT_FAR
+  kBreak = 50,  // BREAK, BREAK_FAR
+  kBreakLoop = 51,  // BREAK_LOOP, BREAK_LOOP_FAR
+  kDef = 52,  // DEF, DEF_FAR
+  kReturn = 53,
+  kCall = 54,  // CALL, CALL_FAR
+  kPushNum = 55,  // PUSH_NUM_0, PUSH_NUM_1, PUSH_NUM_2, PUSH_NUM_3 ...
+  kUntil8 = 56,  // UNTIL8_EQ, UNTIL8_NE, UNTIL8_LT, UNTIL8_LE ...
+  kUntil16 = 57,  // UNTIL16_EQ, UNTIL16_NE, UNTIL16_LT, UNTIL16_LE ...
+  kIf8 = 58,  // IF8_EQ, IF8_NE, IF8_LT, IF8_LE ...
+  kIf16 = 59,  // IF16_EQ, IF16_NE, IF16_LT, IF16_LE ...
+  kIfVar8 = 60,  // IF_VAR8_EQ, IF_VAR8_NE, IF_VAR8_LT, IF_VAR8_LE ...
+  kIfVar16 = 61,  // IF_VAR16_EQ, IF_VAR16_NE, IF_VAR16_LT, IF_VAR16_LE ...
 };
 
-// Where forms of two bytes begin, those of them that have a far twin, and those of
-// three bytes and more. From kFarForms on, a number is that of the far twin of a
-// form from kNearForms on.
-constexpr uint8_t kTwoBytes = 19;
-constexpr uint8_t kNearForms = 27;
-constexpr uint8_t kThreeBytes = 39;
-constexpr uint8_t kFarForms = 45;
+// Bits of the size of a shape.
+constexpr uint8_t kFar = 8;
+constexpr uint8_t kBack = 16;
 
-// From kFamilies on, each eight are a family. Their forms follow the others.
-constexpr uint8_t kFamilies = 128;
-constexpr uint8_t kFamiliesEnd = 176;
-constexpr uint8_t kFamilyOps = 6;
+// The number of each opcode's shape.
+extern const uint8_t kShapeOf[] tini_progmem;
 
-// Pops (2 bits) and form (6) of each opcode below kFamilies.
-constexpr uint8_t kFormMask = 63;
-extern const uint8_t kFormOf[] tini_progmem;
-
-// Of each form: pushes (1 bit) and role (5); what the second byte is (2), the first
-// (3), and the size (3).
-extern const uint8_t kForms[][2] tini_progmem;
+// Of each shape: pops (2 bits), pushes (1) and role (5); kBack, kFar and size (3);
+// what the second byte is (4) and the first (4); the family.
+extern const uint8_t kShapes[][4] tini_progmem;
 
 // The least value of a Byte, and how much more than that it may be.
 extern const uint8_t kRanges[][2] tini_progmem;

@@ -7,7 +7,7 @@
 
 namespace tiniscript {
 
-// Begin with 0, and give the result for the bytes that follow.
+// Start with 0; pass the result on for the bytes that follow.
 uint32_t crc32(uint32_t crc, const uint8_t* data, uint16_t length);
 
 }  // namespace tiniscript

@@ -1,7 +1,7 @@
 // Tables that stay in flash.
 //
-// The AVR has an address space of its own for flash: a table there is read with an instruction of
-// its own, and any other constant takes RAM. Elsewhere a constant is just that.
+// The AVR has a separate address space for flash: a table there is read with a special instruction,
+// and any other constant takes RAM. Other chips need nothing special.
 
 #ifndef TINISCRIPT_VM_FLASH_H_
 #define TINISCRIPT_VM_FLASH_H_
@@ -20,6 +20,14 @@ namespace tiniscript {
 inline uint8_t flash_byte(const uint8_t* address) {
 #ifdef __AVR__
   return pgm_read_byte(address);
+#else
+  return *address;
+#endif
+}
+
+inline uint16_t flash_word(const uint16_t* address) {
+#ifdef __AVR__
+  return pgm_read_word(address);
 #else
   return *address;
 #endif

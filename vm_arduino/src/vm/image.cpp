@@ -6,34 +6,42 @@ namespace tiniscript {
 
 namespace {
 
-// The checksum of any bytes with their own checksum behind them.
-constexpr uint32_t kBehindItself = 0x2144df1c;
+constexpr uint8_t kVersionBytes = kIsaMinorAt + 1;  // these identify an image of any version
 
 uint16_t word(const uint8_t* data) { return static_cast<uint16_t>(data[0] | data[1] << 8); }
 
 }  // namespace
 
-Refusal unpack(const uint8_t* data, size_t length, uint16_t kit, Image* image) {
+// Checks in the order of `Refusal`, but missing bytes that must be checked are reported first.
+Refusal unpack(const uint8_t* data, size_t length, Image* image) {
   if (length == 0 || data[0] != 'T' || (length > 1 && data[1] != 'S')) {
     return Refusal::kNotAnImage;
   }
-  if (length < kHeaderBytes) return Refusal::kTruncated;
-  image->code = data + kHeaderBytes;
-  image->code_length = word(data + kCodeLengthAt);
-  image->kit = word(data + kKitAt);
-  image->start = data[kStartAt];
-  if (length - kHeaderBytes < image->code_length) return Refusal::kTruncated;
-  if (length - kHeaderBytes > image->code_length) return Refusal::kTrailing;
-  uint32_t crc = crc32(0, data, kChecksumAt);
-  crc = crc32(crc, image->code, image->code_length);
-  if (crc32(crc, data + kChecksumAt, 4) != kBehindItself) return Refusal::kDamaged;
+  if (length < kVersionBytes) return Refusal::kTruncated;
   if (data[kIsaMajorAt] != kIsaMajor || data[kIsaMinorAt] > kIsaMinor) {
     return Refusal::kOtherVersion;
   }
+  if (length < kHeaderBytes) return Refusal::kTruncated;
+  const uint8_t header_length = data[kHeaderLengthAt];
+  image->code = data + header_length;
+  image->code_length = word(data + kCodeLengthAt);
+  image->devices = word(data + kDevicesAt);
+  image->start = data[kStartAt];
+  if (header_length < kHeaderBytes || image->code_length > kCodeBytes) return Refusal::kBadHeader;
+  const uint16_t whole = static_cast<uint16_t>(header_length + image->code_length);
+  if (length < whole) return Refusal::kTruncated;
+  if (length > whole) return Refusal::kTrailing;
+  uint32_t crc = crc32(0, data, kChecksumAt);
+  crc = crc32(crc, data + kBehindChecksum, static_cast<uint16_t>(whole - kBehindChecksum));
+  if (crc32(crc, data + kChecksumAt, kChecksumBytes) != kBehindItself) return Refusal::kDamaged;
+  if (data[kNeedsAt] != kNeeds) return Refusal::kUnknownNeeds;
   if (image->start >= kStarts) return Refusal::kUnknownStart;
-  if (data[kNeedsAt] != 0) return Refusal::kUnknownNeeds;
-  if (image->kit != 0 && image->kit != kit) return Refusal::kOtherKit;
   if (image->start == kStartPing && image->code_length != 0) return Refusal::kPingWithCode;
+  return Refusal::kNone;
+}
+
+Refusal check_devices(const Image& image, uint16_t devices) {
+  if (devices != image.devices) return Refusal::kOtherKit;
   return Refusal::kNone;
 }
 

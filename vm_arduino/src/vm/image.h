@@ -1,6 +1,6 @@
-// An image: code with the header that tells a robot whether it may run it.
+// An image: code, and a header by which a robot decides whether it may run it.
 //
-// Knows the header and the checksum. Knows nothing of what the code does: `verify` does.
+// Knows the header and the checksum. Knows nothing of the code: `verify` checks it.
 
 #ifndef TINISCRIPT_VM_IMAGE_H_
 #define TINISCRIPT_VM_IMAGE_H_
@@ -12,17 +12,35 @@
 
 namespace tiniscript {
 
-// `code` points into the bytes of the image; `kit` is a fingerprint, or 0.
+// `code` points into the bytes of the image; `devices` is the hash of the devices that it uses.
 struct Image {
   const uint8_t* code;
   uint16_t code_length;
-  uint16_t kit;
+  uint16_t devices;
   uint8_t start;
 };
 
-// Fills `*image` from `length` bytes, for a robot whose kit has the fingerprint `kit`. Its code is
-// not verified yet, and `*image` means nothing where it is refused.
-Refusal unpack(const uint8_t* data, size_t length, uint16_t kit, Image* image);
+// After the checksum come the parts that it covers besides the ten bytes before it: `needs`, fields
+// of later versions, and the code.
+constexpr uint8_t kChecksumBytes = 4;
+constexpr uint8_t kBehindChecksum = kChecksumAt + kChecksumBytes;
+
+// The length of an image, from its header.
+inline uint16_t image_length(const uint8_t* image) {
+  const uint16_t code = static_cast<uint16_t>(image[kCodeLengthAt] | image[kCodeLengthAt + 1] << 8);
+  return static_cast<uint16_t>(image[kHeaderLengthAt] + code);
+}
+
+// The checksum of any bytes followed by their own checksum.
+constexpr uint32_t kBehindItself = 0x2144df1c;
+
+// Fills `*image` from `length` bytes. Code and devices are not verified yet; `*image` is undefined
+// if it is refused.
+Refusal unpack(const uint8_t* data, size_t length, Image* image);
+
+// Whether the devices that the code uses are those of this robot: `devices` is their hash here,
+// from `verify`.
+Refusal check_devices(const Image& image, uint16_t devices);
 
 }  // namespace tiniscript
 

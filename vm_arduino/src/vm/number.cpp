@@ -13,14 +13,28 @@ struct Division {
   uint32_t remainder;
 };
 
-// -2^31 has a magnitude of its own: so magnitudes are unsigned.
+// Magnitudes are unsigned, because -2^31 has no positive counterpart.
 uint32_t magnitude(int32_t value) {
   const uint32_t bits = static_cast<uint32_t>(value);
   return value < 0 ? 0 - bits : bits;
 }
 
-// Returns a * b / divisor; the quotient is 2^32 - 1 where it is more. A chip of 32 bits may have no
-// product and has no quotient of 64: they are made of parts, and bit by bit where it must be.
+// Returns a * b / divisor, or 2^32 - 1 if the quotient is larger.
+#ifdef __wasm__
+
+Division divided(uint32_t a, uint32_t b, uint32_t divisor) {
+  const uint64_t product = static_cast<uint64_t>(a) * b;
+  const uint32_t low = static_cast<uint32_t>(product);
+  if (low == product) return {low / divisor, low % divisor};  // quicker if it fits
+  const uint64_t quotient = product / divisor;
+  if (quotient > 0xffffffff) return {0xffffffff, 0};
+  return {static_cast<uint32_t>(quotient), static_cast<uint32_t>(product - quotient * divisor)};
+}
+
+#else
+
+// A chip of 32 bits may have no product and has no quotient of 64: they are made of parts, and bit
+// by bit where it must be.
 Division divided(uint32_t a, uint32_t b, uint32_t divisor) {
   const uint32_t parts[] = {(a & 0xffff) * (b & 0xffff), (a >> 16) * (b & 0xffff),
                             (a & 0xffff) * (b >> 16), (a >> 16) * (b >> 16)};
@@ -40,14 +54,16 @@ Division divided(uint32_t a, uint32_t b, uint32_t divisor) {
   return {low, high};
 }
 
-// Returns a * b / divisor rounded half up, or 2^32 - 1 where it is more.
+#endif
+
+// Returns a * b / divisor rounded half up, or 2^32 - 1 if that is larger.
 uint32_t scaled(uint32_t a, uint32_t b, uint32_t divisor) {
   const Division division = divided(a, b, divisor);
   const bool is_up = division.remainder >= divisor - division.remainder;
   return division.quotient + (is_up && division.quotient != 0xffffffff ? 1 : 0);
 }
 
-// Puts a magnitude with its sign into `*result`, if there is such a number.
+// Puts a magnitude with its sign into `*result`, if it is in range.
 Fault finish(uint32_t size, bool is_negative, int32_t* result) {
   *result = static_cast<int32_t>(is_negative ? 0 - size : size);
   return size == 0 || (*result < 0) == is_negative ? Fault::kNone : Fault::kOverflow;
@@ -62,7 +78,7 @@ Fault scale(Op op, int32_t* pair) {
   if (op == Op::kMul) return finish(scaled(first, second, kOne), differ, pair);
   if (second == 0) return Fault::kDivideByZero;
   if (op == Op::kDiv) return finish(scaled(first, kOne, second), differ, pair);
-  // the exact remainder; it takes the sign of the divisor
+  // The exact remainder has the sign of the divisor.
   const uint32_t rest = first % second;
   return finish(rest != 0 && differ ? second - rest : rest, is_negative, pair);
 }
@@ -77,7 +93,7 @@ bool relates(int32_t a, int32_t b, uint8_t op) {
   return is != is_opposite;
 }
 
-// Rounds the first of a pair to as many decimals as the second says.
+// Rounds the first of a pair to the number of decimals in the second.
 Fault round(int32_t* pair) {
   const int32_t places = whole(pair[1]);
   if (places >= 3) return Fault::kNone;
@@ -121,10 +137,10 @@ Fault calculate(Op op, int32_t* pair) {
       if (pair[1] > pair[0]) pair[0] = pair[1];
       return Fault::kNone;
     case Op::kAnd:
-      pair[0] &= pair[1];
+      pair[0] = pair[0] != 0 && pair[1] != 0 ? 1 : 0;
       return Fault::kNone;
     case Op::kOr:
-      pair[0] |= pair[1];
+      pair[0] = pair[0] != 0 || pair[1] != 0 ? 1 : 0;
       return Fault::kNone;
     case Op::kNot:
       pair[0] = pair[0] == 0 ? 1 : 0;
@@ -135,7 +151,7 @@ Fault calculate(Op op, int32_t* pair) {
   }
 }
 
-// A sum leaves the range where its sign is that of neither part.
+// A sum overflows if its sign differs from the signs of both parts.
 Fault add(int32_t* place, const int32_t* number) {
   const int32_t value =
       static_cast<int32_t>(static_cast<uint32_t>(*place) + static_cast<uint32_t>(*number));
@@ -154,8 +170,6 @@ int32_t whole(int32_t a) {
   const int32_t units = static_cast<int32_t>(scaled(magnitude(a), 1, kOne));
   return a < 0 ? -units : units;
 }
-
-uint32_t remainder(uint32_t size, uint32_t divisor) { return size % divisor; }
 
 uint32_t next_random(uint32_t state) {
   state ^= state << 13;

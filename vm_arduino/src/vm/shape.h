@@ -1,4 +1,4 @@
-// What the tables say of an opcode: its stack, its size, its operands, its role.
+// The shape of an opcode from the tables: its stack, its size, its operands, its role.
 //
 // Knows how the rows of `bytecode.h` are packed, and where they lie.
 
@@ -11,18 +11,19 @@
 
 namespace tiniscript {
 
-// What is no opcode has a shape too: one byte, without operands or values, of the role kNone.
+// An invalid opcode has a shape too: one byte, no operands or values, role kNone.
 struct Shape {
   uint8_t effects;
   uint8_t bytes;
+  uint8_t kinds;  // of the operands: each a Byte of 4 bits, the first one below
+  Family family;
 
   uint8_t pops() const { return static_cast<uint8_t>(effects / 64); }
   uint8_t pushes() const { return (effects & 0x20) != 0; }
   Role role() const { return static_cast<Role>(effects & 0x1f); }
   uint8_t size() const { return bytes & 7; }
-  // what the first byte is in 3 bits, the second in 2
-  uint8_t operands() const { return static_cast<uint8_t>(bytes / 8); }
-  bool jumps_back() const { return (bytes & 0x38) == static_cast<uint8_t>(Byte::kBack) << 3; }
+  bool is_far() const { return (bytes & kFar) != 0; }
+  bool jumps_back() const { return (bytes & kBack) != 0; }
 };
 
 Shape shape_of(uint8_t code);

@@ -1,4 +1,4 @@
-// What keeps the machine small and quick on the AVR. Elsewhere it means nothing more.
+// Attributes and helpers that keep the machine small and quick on the AVR. No effect elsewhere.
 
 #ifndef TINISCRIPT_VM_SMALL_H_
 #define TINISCRIPT_VM_SMALL_H_
@@ -6,18 +6,24 @@
 #include <stddef.h>
 #include <stdint.h>
 
-// For a function that is called more than once: without a copy for each call.
+// Marks a function that is not copied into each of its callers.
 #ifdef __AVR__
 #define tini_noinline __attribute__((noinline, noclone))
 #else
 #define tini_noinline
 #endif
 
+// Marks a function that only assembly calls, which whole-program optimization would drop.
+#ifdef __AVR__
+#define tini_called_by_assembly __attribute__((used, externally_visible, noinline))
+#else
+#define tini_called_by_assembly
+#endif
+
 namespace tiniscript {
 
-// Returns the pointer. Where a program has one object of a kind, the compiler knows where it lies
-// and reaches each part by its full address; through a pointer that it knows nothing of, that
-// takes half as much flash.
+// Returns the pointer but hides its value from the compiler. For a known object the compiler uses
+// full addresses; access through an unknown pointer takes half as much flash.
 template <class Type>
 inline Type* near(Type* object) {
 #ifdef __AVR__
@@ -29,7 +35,7 @@ inline Type* near(Type* object) {
 // Clears 4 bytes `fours` times, at least once.
 inline void clear(void* at, uint8_t fours) {
 #ifdef __AVR__
-  // a loop of the compiler clears one at a time, or takes more registers
+  // The compiler's own loop clears one byte at a time or takes more registers.
   asm volatile(
       "1: st %a0+, __zero_reg__\n\tst %a0+, __zero_reg__\n\t"
       "st %a0+, __zero_reg__\n\tst %a0+, __zero_reg__\n\t"

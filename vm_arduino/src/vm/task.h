@@ -1,4 +1,4 @@
-// What a running program is: one small, plain record.
+// The state of a running program: one small, plain record.
 //
 // Knows nothing of what instructions do. Times are milliseconds of a clock that may start
 // anywhere and wraps around after 2^32; a wait is at most 2^31 long.
@@ -41,15 +41,17 @@ struct Task {
   // the move that an UNTIL watches
   uint32_t move_ms;   // how long it may last, or kForever
   uint32_t begun_ms;  // when it began,
+  uint16_t check;     // where its check begins
   bool is_watching;   // if it has
   bool drives;        // false: a wait, the motors stay as they are
   int8_t left;
   int8_t right;
+  bool is_late;  // 2^31 ms have passed since the start: TIME can no longer express it
   int32_t variables[kVariables];
-  // From here on, all is written before it is read.
-  int32_t stack[kStackValues + 1];  // the last one only lies behind them
+  // Everything from here on is written before it is read.
+  int32_t stack[kStackValues + 1];  // the last one only lies after the values
   int32_t counters[kCounters];
-  uint16_t calls[kCalls];  // where each open call goes on
+  uint16_t calls[kCalls];  // where each open call continues
 };
 
 }  // namespace tiniscript

@@ -1,5 +1,6 @@
 #include "verify.h"
 
+#include "../robot.h"
 #include "shape.h"
 
 namespace tiniscript {
@@ -18,13 +19,13 @@ struct Block {
   uint8_t words;  // with those around it; an IF counts as one word, a loop as two
 };
 
-// Where an AND_THEN or an OR_ELSE leads.
+// The target of an AND_THEN or an OR_ELSE.
 struct Join {
   uint16_t target;
   uint8_t depth;  // values there
 };
 
-// A routine, and what is open at once in it, its calls included.
+// A routine, and the most that is open in it at once, including its calls.
 struct Def {
   uint16_t start;
   uint16_t end;  // 0: it is the code outside of all DEFs
@@ -33,6 +34,7 @@ struct Def {
 };
 
 struct Memory {
+  uint16_t devices;              // the hash of those that are used so far
   Join joins[kJoins + 1];        // the first one ends behind any code
   Def defs[kDefs + 1];           // behind the closed ones: the one that is looked at
   Block blocks[kNestWords + 1];  // the first one is the code itself
@@ -49,19 +51,26 @@ bool in_range(Byte kind, uint8_t value) {
   return static_cast<uint8_t>(value - flash_byte(range)) <= flash_byte(range + 1);
 }
 
+// Adds a device to the hash: bytecode_spec.md defines it.
+uint16_t with_device(uint16_t hash, uint16_t device) {
+  const uint16_t carry = hash & 0x8000 ? kDevicesPolynomial : 0;
+  return static_cast<uint16_t>(hash << 1) ^ carry ^ robot_device_hash(device);
+}
+
 // The loop that a role opens, closes or leaves: they come in pairs.
 Kind loop_of(Role role) {
   static_assert(static_cast<uint8_t>(Role::kForever) % 2 == 0, "the first one does not count");
   return static_cast<uint8_t>(role) % 2 == 0 ? Kind::kRepeat : Kind::kCount;
 }
 
-// One function, so that most of what it remembers stays in registers: as a class with a method for
-// each role it takes about a hundred bytes more.
+// The steps of `bytecode_spec.md`, with the names that they have there and in `verify.py`. It is
+// one function so that most of its state stays in registers: a class with a method for each role
+// takes about 100 bytes more.
 __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uint8_t sensors,
                                        uint8_t actuators, Memory* memory) {
   uint16_t at = 0;              // where the instruction that is looked at begins
   uint16_t after = 0;           // where the next one begins
-  uint16_t check = 0;           // where the open check of an UNTIL begins, or 0
+  bool is_checking = false;     // the check of an UNTIL is open
   uint8_t depth = 0;            // values on the stack
   uint8_t joins = 0;            // that are open
   uint8_t defs = 0;             // that are closed
@@ -74,53 +83,64 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
   top->end = 0;
   top->kind = Kind::kCode;
   top->words = 0;
+  memory->devices = 0;
 
   for (;; at = after) {
-    // what ends at this offset
+    // arrive
     for (; join->target <= at; join--, joins--) {
       if (join->target != at) return {Rule::kMissedTarget, at};
       if (join->depth != depth) return {Rule::kStackNotEmpty, at};
     }
     for (; top->kind == Kind::kIf && top->end <= at; top--) {
-      if (top->end != at || depth != 0 || check != 0) return {Rule::kMissedTarget, at};
+      if (top->end != at || depth != 0 || joins != 0 || is_checking) {
+        return {Rule::kMissedTarget, at};
+      }
     }
     if (routine->end != 0 && routine->end <= at) return {Rule::kBadDef, at};
     if (at >= length) break;
 
-    // the operands; what begins no instruction has none
+    // opcode: an invalid one has one byte, and its role refuses it
     const Shape shape = shape_of(code[at]);
     after = static_cast<uint16_t>(at + shape.size());
     if (after > length) return {Rule::kCutOperand, at};
+
+    // operands
     const uint8_t* operand = code + at;
-    for (uint8_t kinds = shape.operands(); kinds != 0; kinds = static_cast<uint8_t>(kinds >> 3)) {
-      const Byte kind = static_cast<Byte>(kinds & 7);
-      const uint8_t value = *++operand;
+    for (uint8_t kinds = shape.kinds; kinds != 0; kinds = static_cast<uint8_t>(kinds >> 4)) {
+      const Byte kind = static_cast<Byte>(kinds & 15);
+      // a one-byte instruction holds its operand in its code
+      const uint8_t value = shape.size() == 1 ? code[at] % kShorts : *++operand;
       if (!in_range(kind, value)) return {Rule::kBadOperand, at};
-      if (kind >= Byte::kSensor && value >= (kind == Byte::kSensor ? sensors : actuators)) {
+      if (kind < Byte::kSensor) continue;
+      if (value >= (kind == Byte::kSensor ? sensors : actuators)) {
         return {Rule::kNoSuchDevice, at};
       }
+      const uint16_t first = kind == Byte::kSensor ? 0 : sensors;
+      memory->devices = with_device(memory->devices, static_cast<uint16_t>(first + value));
     }
 
-    // the stack
+    // stack
     if (depth < shape.pops()) return {Rule::kStackUnderflow, at};
     depth = static_cast<uint8_t>(depth - shape.pops() + shape.pushes());
     if (depth > kStackValues) return {Rule::kStackOverflow, at};
 
-    // where it jumps, if it does: the last byte tells, or the last two of three
+    // the target of a jump comes from the last one or two bytes
     const uint8_t* last = code + after - 1;
     uint16_t distance = *last;
-    if (shape.size() == 3) distance = static_cast<uint16_t>(distance << 8 | *--last);
+    if (shape.is_far()) distance = static_cast<uint16_t>(distance << 8 | *--last);
     uint16_t target = static_cast<uint16_t>(after + distance);
     if (target < after) target = kFarAway;
-    // to before the code is more than `after`: no start of anything
+    // a target before the code wraps to more than `after`, where nothing starts
     if (shape.jumps_back()) target = static_cast<uint16_t>(after - distance);
 
+    // place
     const Role role = shape.role();
     if (role >= Role::kRead) {
-      if (role == Role::kUntil && check == 0) return {Rule::kNotOpen, at};
       if (depth != 0 || joins != 0) return {Rule::kStackNotEmpty, at};
-      if (role >= Role::kPlain && check != 0) return {Rule::kInsideCheck, at};
+      if (role >= Role::kPlain && is_checking) return {Rule::kInsideCheck, at};
     }
+
+    // a step for each role
     Kind kind = loop_of(role);
     switch (role) {
       case Role::kNone:
@@ -140,14 +160,14 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
         continue;
 
       case Role::kWatch:
-        check = after;
+        is_checking = true;
         continue;
       case Role::kUntil:
-        if (target != check) return {Rule::kBadLoopStart, at};
-        check = 0;
+        if (!is_checking) return {Rule::kNotOpen, at};
+        is_checking = false;
         continue;
 
-      // what opens a block: that is done below
+      // those that open a block: see `open` below
       case Role::kElse:
         if (top->kind != Kind::kIf || top->end != after) return {Rule::kNotOpen, at};
         top--;
@@ -168,7 +188,7 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
       case Role::kAgain:
       case Role::kNext:
       case Role::kBreak:
-      case Role::kDrop: {
+      case Role::kDrop: {  // close, leave
         const bool closes = role <= Role::kNext;
         const uint16_t end = closes ? after : target;
         Block* loop = top;
@@ -214,7 +234,7 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
       }
     }
 
-    // opens a block that ends at the target; an IF shares the block around it that ends there too
+    // open: a block that ends at the target; an IF shares the one around it that ends there too
     if (target > length) return {Rule::kBadTarget, at};
     // where both are known: behind 0, less 1, nothing lies
     if (target > static_cast<uint16_t>(top->end - 1)) {
@@ -232,18 +252,22 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
     }
   }
 
+  // finish
   if (depth != 0 || joins != 0) return {Rule::kStackNotEmpty, at};
-  if (check != 0) return {Rule::kInsideCheck, at};
+  if (is_checking) return {Rule::kInsideCheck, at};
   if (top->kind != Kind::kCode || routine->end != 0) return {Rule::kStillOpen, at};
   return {Rule::kNone, at};
 }
 
 }  // namespace
 
-Verdict verify(const uint8_t* code, size_t length, uint8_t sensors, uint8_t actuators) {
+Verdict verify(const uint8_t* code, size_t length, uint8_t sensors, uint8_t actuators,
+               uint16_t* devices) {
   if (length > kCodeBytes) return {Rule::kCodeLength, 0};
-  Memory memory;  // all of it is written before it is read: to clear it takes longer than most code
-  return pass(code, static_cast<uint16_t>(length), sensors, actuators, &memory);
+  Memory memory;  // not cleared, which takes longer than most code: it is written before it is read
+  const Verdict verdict = pass(code, static_cast<uint16_t>(length), sensors, actuators, &memory);
+  *devices = memory.devices;
+  return verdict;
 }
 
 }  // namespace tiniscript

@@ -1,9 +1,10 @@
-// What a machine must refuse, and the number of each reason.
+// The verifier: what a machine must refuse, and the number of each reason.
 //
 // One pass over the code from its first byte to its last, with bounded memory: what is open is a
 // few words, and a jump is right when it leads where the structure around it ends or begins. What
 // is accepted cannot leave the stack, the variables, the kit or the code while it runs.
-// The same rules, order and verdicts as `verify.py`.
+// `bytecode_spec.md` has the steps in words, `verify.py` in Python: same names, same order, same
+// verdict at the same offset. Change all three.
 
 #ifndef TINISCRIPT_VM_VERIFY_H_
 #define TINISCRIPT_VM_VERIFY_H_
@@ -15,14 +16,21 @@
 
 namespace tiniscript {
 
-// The first thing that breaks a rule, and the offset of its instruction; kNone: accepted.
+// The first violation of a rule and the offset of its instruction; kNone: accepted.
 struct Verdict {
   Rule rule;
   uint16_t offset;
 };
 
-// Whether a machine with so many sensors and actuators (0 to 255) may run `code`.
-Verdict verify(const uint8_t* code, size_t length, uint8_t sensors, uint8_t actuators);
+// Whether a machine with this many sensors and actuators (0 to 255) may run `code`. Puts the hash
+// of the used devices into `*devices`, which is undefined if the code is refused.
+Verdict verify(const uint8_t* code, size_t length, uint8_t sensors, uint8_t actuators,
+               uint16_t* devices);
+
+inline Verdict verify(const uint8_t* code, size_t length, uint8_t sensors, uint8_t actuators) {
+  uint16_t devices;
+  return verify(code, length, sensors, actuators, &devices);
+}
 
 }  // namespace tiniscript
 

@@ -3,6 +3,7 @@
 #include <stddef.h>
 
 #include "../robot.h"
+#include "execute_avr.h"
 #include "number.h"
 #include "small.h"
 
@@ -10,14 +11,23 @@ namespace tiniscript {
 
 namespace {
 
-constexpr uint8_t kLateMs = 20;  // later than this, a program's own clock no longer catches up
+constexpr uint8_t kLateMs = 20;  // when later than this, a program's own clock no longer catches up
 
 }  // namespace
 
 void Machine::start(const uint8_t* code, uint16_t length, int32_t* readings, uint8_t sensors,
                     uint32_t seed, uint32_t now_ms) {
+  prepare();
+  start_prepared(code, length, readings, sensors, seed, now_ms);
+}
+
+void Machine::prepare() {
   constexpr uint8_t kUsed = offsetof(Machine, task_) + offsetof(Task, stack);
-  clear(this, kUsed / 4 + 1);  // all behind that is written before it is read
+  clear(this, kUsed / 4 + 1);  // everything after that is written before it is read
+}
+
+void Machine::start_prepared(const uint8_t* code, uint16_t length, int32_t* readings,
+                             uint8_t sensors, uint32_t seed, uint32_t now_ms) {
   sensors_ = sensors < kDevices ? sensors : kDevices;
   readings_ = readings;
   length_ = length;
@@ -29,8 +39,10 @@ void Machine::start(const uint8_t* code, uint16_t length, int32_t* readings, uin
 
 Status Machine::tick(uint32_t now_ms, uint8_t budget) {
   left_ = budget;
-  if (status_ >= Status::kDone) return status_;
+  if (status_ >= Status::kDone || budget == 0) return status_;
   now_ms_ = now_ms;
+  // No wait is longer than that, so no tick skips the whole second half of the clock.
+  if (static_cast<int32_t>(now_ms - task_.started_ms) < 0) task_.is_late = true;
   if (task_.wait != Wait::kNothing) {
     if (static_cast<int32_t>(now_ms - task_.clock_ms) < 0) return Status::kWaiting;
     if (task_.wait == Wait::kMove) robot_motors(0, 0);
@@ -45,46 +57,93 @@ Status Machine::tick(uint32_t now_ms, uint8_t budget) {
   return status_;
 }
 
-// Begins a wait where the one before ended, or now where that is too long ago.
-tini_noinline void Machine::wait(uint32_t duration_ms, Wait what) {
+// Begins a wait at the end of the one before, or now if that is too long ago.
+tini_noinline bool Machine::wait(uint32_t duration_ms, Wait what) {
   begin();
-  sleep(task_.clock_ms + duration_ms, what);
+  return sleep(task_.clock_ms + duration_ms, what);
 }
 
-tini_noinline void Machine::sleep(uint32_t wake_ms, Wait what) {
+tini_noinline bool Machine::sleep(uint32_t wake_ms, Wait what) {
   task_.clock_ms = wake_ms;
   task_.wait = what;
   status_ = Status::kWaiting;
+  return false;
 }
 
-// Sets the program's clock to when a wait or a move that comes now begins.
+// Sets the program's clock to the begin of the next wait or move.
 tini_noinline void Machine::begin() {
   if (now_ms_ - task_.clock_ms > kLateMs) task_.clock_ms = now_ms_;
 }
 
-// Ends the watched move.
-tini_noinline void Machine::finish() {
-  if (!task_.is_watching) return;
-  task_.clock_ms = now_ms_;
-  if (task_.drives) robot_motors(0, 0);
-}
-
-// Goes on with the watched move: begins it, or waits for its next check. Returns whether there is
-// one.
-tini_noinline bool Machine::watch() {
+// Begins, continues or ends the watched move, or waits for its next check. Returns whether the next
+// instruction may run now.
+bool Machine::until(bool stop) {
+  if (stop) {
+    if (!task_.is_watching) return true;
+    task_.clock_ms = now_ms_;
+    if (task_.drives) robot_motors(0, 0);
+    return true;
+  }
   if (!task_.is_watching) {
     task_.is_watching = true;
     begin();
     task_.begun_ms = task_.clock_ms;
     if (task_.drives) robot_motors(task_.left, task_.right);
   }
+  // the last check was due at the program's clock: from there it is not far
   const uint32_t gone_ms = now_ms_ - task_.begun_ms;
-  uint32_t next_ms =
-      gone_ms - remainder(gone_ms, kCheckMs) + kCheckMs;  // never as much as kForever
+  uint32_t next_ms = task_.clock_ms - task_.begun_ms;
+  do {
+    next_ms += kCheckMs;
+  } while (next_ms <= gone_ms);  // never as much as kForever
   const bool is_checked = next_ms < task_.move_ms;
-  if (!is_checked) next_ms = task_.move_ms;
-  sleep(task_.begun_ms + next_ms, is_checked || !task_.drives ? Wait::kPause : Wait::kMove);
-  return is_checked;
+  if (is_checked) {
+    task_.pc = task_.check;
+  } else {
+    next_ms = task_.move_ms;
+  }
+  return sleep(task_.begun_ms + next_ms, is_checked || !task_.drives ? Wait::kPause : Wait::kMove);
 }
+
+tini_noinline bool Machine::goes_on(Fault fault) {
+  fault_ = fault;
+  return fault == Fault::kNone;
+}
+
+// A run-time check has failed, which verified code never causes.
+bool Machine::fail() { return goes_on(Fault::kBadCode); }
+
+// Ends the tick before this instruction; the next tick begins with it.
+bool Machine::stay() {
+  task_.pc = at_;
+  return false;
+}
+
+#ifdef __AVR__
+
+// The layout that `execute_avr.S` relies on.
+#define lies_at(member, place) static_assert(offsetof(Machine, member) == place, #member)
+
+void Machine::check_places() {
+  lies_at(fault_, tini_fault_at);
+  lies_at(sensors_, tini_sensors_at);
+  lies_at(at_, tini_at_at);
+  lies_at(left_, tini_left_at);
+  lies_at(length_, tini_length_at);
+  lies_at(code_, tini_code_at);
+  lies_at(readings_, tini_readings_at);
+  lies_at(task_.pc, tini_pc_at);
+  lies_at(task_.depth, tini_depth_at);
+  lies_at(task_.looped, tini_looped_at);
+  lies_at(task_.called, tini_called_at);
+  lies_at(task_.variables, tini_variables_at);
+  lies_at(task_.stack, tini_stack_at);
+  lies_at(task_.counters, tini_counters_at);
+  lies_at(task_.calls, tini_calls_at);
+}
+
+#undef lies_at
+
+#endif
 
 }  // namespace tiniscript

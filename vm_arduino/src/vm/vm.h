@@ -1,11 +1,12 @@
 // The machine.
 //
 // Runs verified code. Time comes in as `now_ms`; the world is behind `robot.h`. `tick` does a
-// little and returns: nothing here waits. Means the same as `machine.py` and
-// `instructions.py`.
+// little and returns: nothing here blocks. Matches `machine.py` and `instructions.py`.
 //
-// What verified code never does is still looked at, cheaply: stack, counters, calls, offsets,
-// opcodes and the numbers of variables and sensors. It is the fault kBadCode, not a wild write.
+// Cheap checks guard against unverified code: stack, counters, calls, offsets, opcodes and the
+// numbers of variables and sensors. A violation is the fault kBadCode, not a wild write. On the AVR
+// an instruction that should empty the stack empties it, and the target of a short jump back is
+// checked when the machine leaves.
 
 #ifndef TINISCRIPT_VM_VM_H_
 #define TINISCRIPT_VM_VM_H_
@@ -13,13 +14,21 @@
 #include <stdint.h>
 
 #include "bytecode.h"
+#include "small.h"
 #include "task.h"
 
 namespace tiniscript {
 
-// The first of them ends the program. The others are for damaged code, whose last instruction may
-// be cut: they are read as its operands.
+// The first kEnd ends the program. The others serve as operands if the last instruction of damaged
+// code is cut off.
 constexpr uint8_t kEndBytes = 4;
+
+// The budget of a tick in a main loop.
+#ifdef __AVR__
+constexpr uint8_t kTickBudget = 255;
+#else
+constexpr uint8_t kTickBudget = 32;
+#endif
 
 class Machine {
  public:
@@ -29,49 +38,64 @@ class Machine {
   void start(const uint8_t* code, uint16_t length, int32_t* readings, uint8_t sensors,
              uint32_t seed, uint32_t now_ms);
 
-  // Runs at most `budget` instructions at the time `now_ms`.
+  // The two halves of `start`: the first one takes longer and does not depend on the program.
+  void prepare();
+  void start_prepared(const uint8_t* code, uint16_t length, int32_t* readings, uint8_t sensors,
+                      uint32_t seed, uint32_t now_ms);
+
+  // Runs at the time `now_ms` until the program must wait or ends, or for `budget` instructions. On
+  // the AVR the budget counts only jumps back and calls, as code between two of them is short; a
+  // tick also ends there early if `boards/attention.h` requests it.
   Status tick(uint32_t now_ms, uint8_t budget);
 
   const Task& task() const { return task_; }
   Status status() const { return status_; }
   Fault fault() const { return fault_; }
 
-  // Where the instruction that runs, or has faulted, begins.
+  // The begin of the instruction that runs or has faulted.
   uint16_t at() const { return at_; }
 
-  // When there is something to do again, while the program waits.
+  // When the machine has work again, while the program waits.
   uint32_t wake_ms() const { return task_.clock_ms; }
 
-  // How much of the last budget is left.
+  // What is left of the last budget: instructions, or jumps on the AVR.
   uint8_t left() const { return left_; }
 
  private:
-  // What an instruction changes of where the program is. It is in the task only between ticks.
+  // The position in the program, as instructions change it. It is in the task only between ticks
+  // and during `act`.
   struct Running {
     uint16_t next;
     uint16_t at;
     uint8_t depth;
   };
 
+  // The inner loop, in `vm_instructions.cpp`; for the AVR it is in `execute_avr.S`, which knows
+  // where members lie.
   void execute(uint8_t budget);
   bool step(Running* run);
-  bool goes_on(Fault fault);
-  bool fail();
-  bool stay(Running* run);
   bool jump(Running* run, uint16_t distance);
   bool jump_back(Running* run, uint16_t distance);
+  bool stay(Running* run);
+  bool act(Running* run, uint8_t code, const uint8_t* bytes, int32_t* top);
+  bool until(Running* run, bool stop);
+  void check_places();
 
-  // what several instructions share
-  bool move(uint8_t code, uint16_t operand, const int32_t* values);
-  bool sense(uint8_t number, bool must_read);
-  uint16_t compare_and_branch(const uint8_t* bytes);
+  // what asks something of the robot, of the clock or of chance, in `vm_robot.cpp`
+  bool act(uint8_t code, const uint8_t* bytes, int32_t* top) tini_called_by_assembly;
+  bool until(bool stop) tini_called_by_assembly;
+  bool sense(uint8_t number) tini_called_by_assembly;
+  void powers(uint8_t code, int8_t power);
+  bool watch(uint32_t move_ms, bool drives);
+
+  bool goes_on(Fault fault);
+  bool fail();
+  bool stay();
 
   // waits
-  void wait(uint32_t duration_ms, Wait what);
-  void sleep(uint32_t wake_ms, Wait what);
+  bool wait(uint32_t duration_ms, Wait what);
+  bool sleep(uint32_t wake_ms, Wait what);
   void begin();
-  void finish();
-  bool watch();
 
   Status status_;
   Fault fault_;

@@ -1,9 +1,13 @@
-// What each instruction does: a `case` for each form in `bytecode.h`.
-//
-// The switch has no `default`, so the compiler names a form that is forgotten.
+// For all chips but the AVR, which has `execute_avr.S`.
 
-#include "../robot.h"
+#ifndef __AVR__
+
+// Implements each instruction: one `case` per family in `bytecode.h`.
+//
+// The switch has no `default`, so the compiler reports a missing family.
+
 #include "number.h"
+#include "shape.h"
 #include "small.h"
 #include "vm.h"
 
@@ -11,93 +15,19 @@ namespace tiniscript {
 
 namespace {
 
-// The two operands of one byte that a word of operands is, and a number with a sign.
-uint8_t low(uint16_t operand) { return static_cast<uint8_t>(operand & 0xff); }
+// The second byte of a word of operands, and a number with a sign.
 uint8_t high(uint16_t operand) { return static_cast<uint8_t>(operand >> 8); }
 int8_t signed8(uint8_t operand) { return static_cast<int8_t>(operand); }
 
-constexpr uint8_t kTenthMs = 100;
-
-// Milliseconds: a time in thousandths of a second, not below 0.
-uint32_t duration(int32_t time) { return time < 0 ? 0 : static_cast<uint32_t>(time); }
-
-// The number nearest to `value` from `low` to `high`.
-tini_noinline int16_t limited(int32_t value, int16_t low, int16_t high) {
-  const int16_t part = static_cast<int16_t>(value);
-  if (part != value) return value < 0 ? low : high;
-  return part < low ? low : part > high ? high : part;
-}
-
-// A power in percent, from `low` to 100.
-int8_t percent(int32_t power, int8_t low) {
-  return static_cast<int8_t>(limited(whole(power), low, 100));
+// The number that a one-byte instruction pushes: 0 to 10, and tens from 20 on.
+uint8_t pushed(uint8_t code) {
+  const uint8_t n = static_cast<uint8_t>(code - static_cast<uint8_t>(Op::kPushNum0));
+  return n <= 10 ? n : static_cast<uint8_t>((n - 9) * 10);
 }
 
 }  // namespace
 
-// Takes a reading where it `must_read`, else leaves the kept one. Returns false where the robot is
-// not ready, or does not have the sensor.
-tini_noinline bool Machine::sense(uint8_t number, bool must_read) {
-  if (number >= sensors_) return fail();
-  return !must_read || robot_read(number, readings_ + number);
-}
-
-// MOVE to WATCH_FOREVER and WAIT to WATCH_FOREVER_WAIT. Each comes in four forms: with a time from
-// the stack, with bytes, watched, and watched forever. Returns whether the program waits now.
-tini_noinline bool Machine::move(uint8_t code, uint16_t operand, const int32_t* values) {
-  const bool drives = code < static_cast<uint8_t>(Op::kWait);
-  const uint8_t form = (drives ? code >> 2 : code) & 3;
-  uint32_t move_ms = kForever;
-  if (form == 1) {
-    move_ms = static_cast<uint16_t>(low(operand) * kTenthMs);
-  } else if (form != 3) {
-    move_ms = duration(*values++);
-  }
-  if (drives) {
-    const int8_t power = form == 1 ? signed8(high(operand)) : percent(*values, 0);
-    // the last two bits say which way: F, B, L, R
-    const uint8_t way = code & 3;
-    const int8_t reversed = static_cast<int8_t>(-power);
-    task_.left = way == 1 || way == 2 ? reversed : power;
-    task_.right = way == 1 || way == 3 ? reversed : power;
-  }
-  if (form >= 2) {
-    task_.move_ms = move_ms;
-    task_.drives = drives;
-    task_.is_watching = false;
-    return false;
-  }
-  if (drives) robot_motors(task_.left, task_.right);
-  wait(move_ms, drives ? Wait::kMove : Wait::kPause);
-  return true;
-}
-
-// Goes on where a comparison is TRUE, and else to its target. 80 + 10 for each source + 8 for the
-// wide constant + the comparator. Returns how far it is to the next instruction, or 0 where this
-// one cannot run.
-tini_noinline uint16_t Machine::compare_and_branch(const uint8_t* bytes) {
-  const uint8_t code = *bytes++;
-  const uint8_t number = *bytes++;
-  const int32_t* places = task_.variables;
-  if (code >= 0x90) {
-    places = readings_;
-    if (!sense(number, code >= 0xa0)) return 0;
-  }
-  if (number >= kVariables || code >= kFamiliesEnd || code % 8 >= kFamilyOps) {
-    fail();
-    return 0;
-  }
-  int16_t constant = *bytes++;
-  uint16_t distance = 4;
-  if ((code & 8) != 0) {
-    constant = static_cast<int16_t>(constant | *bytes++ << 8);
-    distance++;
-  }
-  if (compare(places + number, constant, code)) return distance;
-  return static_cast<uint16_t>(distance + *bytes);
-}
-
-// Goes on so many bytes behind, or before, the end of the instruction.
+// Jumps by this many bytes forward or back from the end of the instruction.
 bool Machine::jump(Running* run, uint16_t distance) {
   run->next = static_cast<uint16_t>(run->next + distance);
   return true;
@@ -108,204 +38,218 @@ bool Machine::jump_back(Running* run, uint16_t distance) {
   return true;
 }
 
-bool Machine::goes_on(Fault fault) {
-  fault_ = fault;
-  return fault == Fault::kNone;
-}
-
-// A check has failed that verified code never fails.
-bool Machine::fail() { return goes_on(Fault::kBadCode); }
-
-// Ends the tick before this instruction: the next one begins with it.
+// Ends the tick before this instruction; the next tick begins with it.
 bool Machine::stay(Running* run) {
   run->next = run->at;
   return false;
 }
 
+// Lets `act` and `until` see where the program is, and go elsewhere.
+bool Machine::act(Running* run, uint8_t code, const uint8_t* bytes, int32_t* top) {
+  at_ = run->at;
+  task_.pc = run->next;
+  const bool goes_on = act(code, bytes, top);
+  run->next = task_.pc;
+  return goes_on;
+}
+
+bool Machine::until(Running* run, bool stop) {
+  task_.pc = run->next;
+  const bool goes_on = until(stop);
+  run->next = task_.pc;
+  return goes_on;
+}
+
 // Runs one instruction. Returns whether the next one may run now.
 //
-// An instruction is decoded in one place: when its `case` begins, its operands are read, and the
-// values that it takes lie at `values`. It ends with `break` where it leaves `value` there, else
-// with `return`.
+// Decoding is in one place: when a `case` begins, the operands are read and the values that it
+// takes lie at `values`. It ends with `break` if it leaves `value` there, else with `return`.
 __attribute__((always_inline)) inline bool Machine::step(Running* run) {
   const uint16_t at = run->next;
   run->at = at;
   if (at > length_) return fail();
   const uint8_t* const bytes = code_ + at;
   const uint8_t code = *bytes;
-  if (code >= kFamilies) {
-    const uint16_t distance = compare_and_branch(bytes);
-    run->next = static_cast<uint16_t>(at + distance);
-    return distance != 0;
-  }
-  const uint8_t entry = flash_byte(kFormOf + code);
-  uint8_t form = entry & kFormMask;
-  uint8_t size = 1;
-  uint16_t operand = 0;  // the first one or two bytes
-  if (form >= kTwoBytes) {
-    operand = bytes[1];
-    size++;
-    if (form >= kThreeBytes) {
-      operand |= static_cast<uint16_t>(bytes[2] << 8);
-      size++;
-      if (form >= kFarForms) form = static_cast<uint8_t>(form - (kFarForms - kNearForms));
-    }
-  }
+  const Shape shape = shape_of(code);
+  const uint8_t size = shape.size();
   run->next = static_cast<uint16_t>(at + size);
-  if (entry > kFormMask) {
-    run->depth = static_cast<uint8_t>(run->depth - (entry >> 6));
-    if (static_cast<int8_t>(run->depth) < 0) return fail();
-  }
+  if (run->depth < shape.pops()) return fail();
+  run->depth = static_cast<uint8_t>(run->depth - shape.pops());
   int32_t* const values = task_.stack + run->depth;
   int32_t value = *values;
-  const uint8_t first = low(operand);
+  // the first byte of operands, which the code of an instruction of one byte says; the first two;
+  // and the last one or two
+  const uint8_t first = static_cast<uint8_t>(size == 1 ? code % kShorts : bytes[1]);
+  const uint16_t operand = static_cast<uint16_t>(bytes[1] | bytes[2] << 8);
+  const uint16_t distance = shape.is_far() ? operand : bytes[size - 1];
   const Op op = static_cast<Op>(code);
-  switch (static_cast<Form>(form)) {
-    case Form::kNone:
+  switch (shape.family) {
+    case Family::kNone:
       return fail();
 
     // values
-    case Form::kPush8:
-      value = thousandths(signed8(first));
+    case Family::kPushNum:
+      value = thousandths(pushed(code));
       break;
-    case Form::kPush16:
+    case Family::kPush8:
+      value = thousandths(first);
+      break;
+    case Family::kPush16:
+      value = thousandths(static_cast<int16_t>(operand));
+      break;
+    case Family::kPushTenths:
+      value = static_cast<int16_t>(signed8(first) * 100);
+      break;
+    case Family::kPushMilli:
       value = static_cast<int16_t>(operand);
-      if (op == Op::kPush16) value = thousandths(static_cast<int16_t>(operand));
       break;
-    case Form::kPush32:
+    case Family::kPush32:
       __builtin_memcpy(&value, bytes + 1, sizeof value);
-      run->next = static_cast<uint16_t>(run->next + 2);
       break;
-    case Form::kPushFalse:
-      value = op == Op::kPushTrue ? 1 : 0;
-      if (op != Op::kTime) break;
-      value = static_cast<int32_t>(now_ms_ - task_.started_ms);
-      if (value >= 0) break;
-      return goes_on(Fault::kOverflow);
-    case Form::kPushVar:
+    case Family::kPushFalse:
+      value = 0;
+      break;
+    case Family::kPushTrue:
+      value = 1;
+      break;
+    case Family::kPushVar:
       if (first >= kVariables) return fail();
       value = task_.variables[first];
       break;
-    case Form::kPushSensor:
-    case Form::kRead:
-      if (!sense(first, op != Op::kPushSensor)) return stay(run);
-      if (op == Op::kRead) return true;
+    case Family::kPushSensor:
+      if (first >= sensors_) return fail();
       value = readings_[first];
       break;
-    case Form::kRandom:
+    case Family::kPushRead:
+      if (!sense(first)) return stay(run);
+      value = readings_[first];
+      break;
+    case Family::kTime:
       run->depth++;
-      task_.random = next_random(task_.random);
-      return goes_on(random_between(values, task_.random));
-    case Form::kAdd:
-    case Form::kNeg:
-    case Form::kEq:
-    case Form::kNot:
+      return act(run, code, bytes, values) && (run->depth <= kStackValues || fail());
+    case Family::kRandom:
+      run->depth++;
+      return act(run, code, bytes, values + 1);
+    case Family::kCalculate:
       run->depth++;
       return goes_on(calculate(op, values));
-    case Form::kAndThen:
-      if ((value != 0) == (op < Op::kOrElse)) return true;
+    case Family::kAndThen:
+      if (value != 0) return true;
       run->depth++;
-      return jump(run, operand);
+      return jump(run, distance);
+    case Family::kOrElse:
+      if (value == 0) return true;
+      run->depth++;
+      return jump(run, distance);
 
     // variables
-    case Form::kSetVar:
+    case Family::kSetVar:
       if (first >= kVariables) return fail();
       task_.variables[first] = value;
       return true;
-    case Form::kSetVar8:
+    case Family::kSetVar8:
+      if (first >= kVariables) return fail();
+      task_.variables[first] = thousandths(signed8(high(operand)));
+      return true;
+    case Family::kAddVar8:
       if (first >= kVariables) return fail();
       *values = thousandths(signed8(high(operand)));
-      if (op == Op::kSetVar8) {
-        task_.variables[first] = *values;
-        return true;
-      }
       return goes_on(add(task_.variables + first, values));
-    case Form::kAddVar: {
+    case Family::kAddVar: {
       const uint8_t second = high(operand);
       if ((first | second) >= kVariables) return fail();
       return goes_on(add(task_.variables + first, task_.variables + second));
     }
+    case Family::kIncVar:
+      if (first >= kVariables) return fail();
+      *values = kOne;
+      return goes_on(add(task_.variables + first, values));
+    case Family::kDecVar:
+      if (first >= kVariables) return fail();
+      *values = -kOne;
+      return goes_on(add(task_.variables + first, values));
 
     // the robot
-    case Form::kShow:
-      if (robot_show(value, op == Op::kShowYesNo)) return true;
+    case Family::kRead:
+      return sense(first) || stay(run);
+    case Family::kShow:
+    case Family::kShowYesNo:
+      if (act(run, code, bytes, values)) return true;
       run->depth++;
-      return stay(run);
-    case Form::kSet:
-      robot_set(first, value);
-      return true;
-    case Form::kMoveF:
-    case Form::kMove8F:
-    case Form::kWatchF:
-    case Form::kWatchForeverF:
-    case Form::kWait:
-    case Form::kWait8:
-    case Form::kWatchWait:
-    case Form::kWatchForeverWait:
-      return !move(code, operand, values);
-    case Form::kMotors:
-      if (op == Op::kMotors) {
-        robot_motors(percent(value, -100), percent(values[1], -100));
-        return true;
-      }
-      robot_beep(static_cast<uint16_t>(limited(whole(values[1]), 31, 20000)), duration(value));
-      wait(duration(value), Wait::kPause);
       return false;
-    case Form::kUntil:
-      if (value != 0) {
-        finish();
-        return true;
-      }
-      if (watch()) run->next = static_cast<uint16_t>(run->next - operand);
-      return false;
-    case Form::kStop:
-      robot_motors(0, 0);
-      return true;
-    case Form::kMotors8:
-      robot_motors(signed8(first), signed8(high(operand)));
-      return true;
+    case Family::kSet:
+    case Family::kStop:
+    case Family::kMotors:
+    case Family::kMotors8:
+    case Family::kMove:
+    case Family::kMove8:
+    case Family::kWatch:
+    case Family::kWatchForever:
+    case Family::kWait:
+    case Family::kWait8:
+    case Family::kWatchWait:
+    case Family::kWatchForeverWait:
+    case Family::kBeep:
+    case Family::kBeep8:
+    case Family::kEnd:
+      return act(run, code, bytes, values + shape.pops() - 1);
+    case Family::kUntil:
+      return until(run, value != 0);
+    case Family::kUntil8:
+      return until(run, compare(values, first, code));
+    case Family::kUntil16:
+      return until(run, compare(values, static_cast<int16_t>(operand), code));
 
     // control
-    case Form::kIf:
-      if ((value != 0) == (op < Op::kIfNot)) return true;
-      return jump(run, operand);
-    case Form::kBreakLoop:
-      if (task_.looped == 0) return fail();
-      task_.looped--;
-      return jump(run, operand);
-    case Form::kElse:
-    case Form::kBreak:
-    case Form::kDef:
-      return jump(run, operand);
-    case Form::kForever:
-    case Form::kWhile:
+    case Family::kIf:
+      return value != 0 || jump(run, distance);
+    case Family::kIfNot:
+      return value == 0 || jump(run, distance);
+    case Family::kIf8:
+      return compare(values, first, code) || jump(run, distance);
+    case Family::kIf16:
+      return compare(values, static_cast<int16_t>(operand), code) || jump(run, distance);
+    case Family::kIfVar8:
+      if (first >= kVariables) return fail();
+      return compare(task_.variables + first, high(operand), code) || jump(run, distance);
+    case Family::kIfVar16: {
+      if (first >= kVariables) return fail();
+      const int16_t constant = static_cast<int16_t>(high(operand) | bytes[3] << 8);
+      return compare(task_.variables + first, constant, code) || jump(run, distance);
+    }
+    case Family::kElse:
+    case Family::kBreak:
+    case Family::kDef:
+      return jump(run, distance);
+    case Family::kForever:
+    case Family::kWhile:
       return true;
-    case Form::kLoop8:
-    case Form::kLoop:
+    case Family::kAgain:
+      return jump_back(run, distance);
+    case Family::kLoop8:
+    case Family::kLoop:
       value = op == Op::kLoop8 ? first : whole(value);
-      if (value < 1) return jump(run, operand);
+      if (value < 1) return jump(run, distance);
       if (task_.looped >= kCounters) return fail();
       task_.counters[task_.looped++] = value;
       return true;
-    case Form::kNext:
+    case Family::kNext:
       if (task_.looped == 0) return fail();
-      if (--task_.counters[task_.looped - 1] != 0) return jump_back(run, operand);
+      if (--task_.counters[task_.looped - 1] != 0) return jump_back(run, distance);
       task_.looped--;
       return true;
-    case Form::kCall:
+    case Family::kBreakLoop:
+      if (task_.looped == 0) return fail();
+      task_.looped--;
+      return jump(run, distance);
+    case Family::kCall:
       if (task_.called >= kCalls) return fail();
       task_.calls[task_.called++] = run->next;
-      return jump_back(run, operand);
-    case Form::kAgain:
-      return jump_back(run, operand);
-    case Form::kReturn:
+      return jump_back(run, distance);
+    case Family::kReturn:
       if (task_.called == 0) return fail();
       run->next = task_.calls[--task_.called];
       return true;
-    case Form::kEnd:
-      robot_off();
-      status_ = Status::kDone;
-      return stay(run);
   }
   *values = value;
   run->depth++;
@@ -329,3 +273,5 @@ tini_noinline void Machine::execute(uint8_t budget) {
 }
 
 }  // namespace tiniscript
+
+#endif

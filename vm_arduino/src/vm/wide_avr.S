@@ -1,17 +1,11 @@
-; Numbers of 32 bits and more in registers of 8: the steps that `number_avr.S` is made of.
+; Whole numbers of 32 bits and more in registers of 8: the steps that `number_avr.S` is made of.
 ;
-; a, b and d are numbers of 32 bits, high stands above a. What a routine says nothing of, it
-; leaves; all use r0, and r1 is 0.
+; a and b are numbers of 32 bits, high stands above b: 64 bits together. What a routine says nothing
+; of, it leaves; all use r0. r1 is 0 before and after.
 
 #ifdef __AVR__
 
 #include "wide_avr.h"
-
-; For products alone.
-#define part0 r12
-#define part1 r13
-#define carry r28
-#define count r29
 
     .section .text.tiniscript_wide, "ax", @progbits
 
@@ -19,12 +13,6 @@
     .global \name
 \name:
 .endm
-
-; Lets a be the number at Z, without its sign.
-shared load_magnitude
-    rcall load
-    sbrs a3, 7
-    ret
 
 ; Leaves V where there is no such number.
 shared negate_a
@@ -37,12 +25,14 @@ shared negate_a
     sbci a3, -1
     ret
 
-; Lets a be the number at Z.
-shared load
-    ld a0, Z
-    ldd a1, Z+1
-    ldd a2, Z+2
-    ldd a3, Z+3
+shared negate_b
+    com b3
+    com b2
+    com b1
+    neg b0
+    sbci b1, -1
+    sbci b2, -1
+    sbci b3, -1
     ret
 
 ; Leaves the answer in Z, the flag.
@@ -53,160 +43,193 @@ shared is_a_zero
     or r0, a3
     ret
 
-shared negate_d
-    com d0
-    com d1
-    com d2
-    com d3                  ; leaves a carry
-    adc d0, r1
-    adc d1, r1
-    adc d2, r1
-    adc d3, r1
+shared is_b_zero
+    mov r0, b0
+    or r0, b1
+    or r0, b2
+    or r0, b3
     ret
 
-shared double_d
-    lsl d0
-    rol d1
-    rol d2
-    rol d3
-    ret
-
-shared let_d_be_1000
-    ldi r26, lo8(1000)
-    ldi r27, hi8(1000)
-    movw d0, r26
-    clr d2
-    clr d3
-    ret
-
-shared let_b_be_1000
-    ldi b0, lo8(1000)
-    ldi b1, hi8(1000)
-    ldi b2, 0
-    ldi b3, 0
-    ret
-
-shared widen
+; high and b are b * a. Byte by byte: the lowest byte of b, times a, is added to high, and both move
+; down by a byte into the room that it leaves.
+shared multiply
     clr high0
     clr high1
     movw high2, high0
-    ret
-
-; high and a are a * b. Byte by byte: the lowest byte of a, times b, is added to high, and both
-; move down by a byte into the room that it leaves.
-shared multiply
-    push part0
-    push part1
-    push carry
-    push count
-    rcall widen
-    ldi count, 4
+    rcall 1f
+    rcall 1f
+    rcall 1f
 1:  clr carry
-    tst a0
+    tst b0
     breq 2f
-    mul a0, b0
+    mul b0, a0
     movw part0, r0
-    mul a0, b2
+    mul b0, a2
     add high0, part0
     adc high1, part1
     adc high2, r0
     adc high3, r1
     rol carry
-    mul a0, b1
+    mul b0, a1
     movw part0, r0
-    mul a0, b3
+    mul b0, a3
     add high1, part0
     adc high2, part1
     adc high3, r0
     adc carry, r1
-2:  mov a0, a1
-    mov a1, a2
-    mov a2, a3
-    mov a3, high0
+    clr r1
+2:  mov b0, b1
+    mov b1, b2
+    mov b2, b3
+    mov b3, high0
     mov high0, high1
     mov high1, high2
     mov high2, high3
     mov high3, carry
-    dec count
-    brne 1b
-    clr r1
-    pop count
-    pop carry
-    pop part1
-    pop part0
     ret
 
-; As `divide`, rounded half up.
-shared divide_and_round
-    rcall divide
-    lsl high0
-    rol high1
-    rol high2
-    rol high3
-    cp high0, d0
-    cpc high1, d1
-    cpc high2, d2
-    cpc high3, d3
-    brlo 1f
-    subi a0, -1
-    sbci a1, -1
-    sbci a2, -1
-    sbci a3, -1
-    brlo 1f
-    dec a3                  ; 2^32 stays out of range
-1:  ret
-
-; a is high and a, divided by d, or 0xff000000 and more where it does not fit; high is the
-; remainder, where it fits. d stays; b is lost.
+; b is high and b, divided by a; high is what is left. Leaves a carry where b has no room for it.
+; Uses part1.
 shared divide
-    cp high0, d0
-    cpc high1, d1
-    cpc high2, d2
-    cpc high3, d3
-    brlo 2f
-    ldi a3, 0xff
+    cp high0, a0
+    cpc high1, a1
+    cpc high2, a2
+    cpc high3, a3
+    brlo 1f
+    sec
     ret
-; Bytes of the quotient that are 0 at its beginning come at once.
-2:  ldi b0, 32              ; bits
-3:  tst high3
-    brne 4f
-    cp a3, d0
-    cpc high0, d1
-    cpc high1, d2
-    cpc high2, d3
-    brsh 4f
+1:  rcall divide_byte
+    rcall divide_byte
+    rcall divide_byte
+    rcall divide_byte
+    clc
+    ret
+
+; The highest byte of b becomes one of the quotient, the lowest. It is 0 at once, or comes bit by
+; bit.
+divide_byte:
+    mov r0, b3
+    mov b3, b2
+    mov b2, b1
+    mov b1, b0
+    mov b0, r0
+    tst high3
+    brne 2f
+    cp r0, a0
+    cpc high0, a1
+    cpc high1, a2
+    cpc high2, a3
+    brsh 2f
     mov high3, high2
     mov high2, high1
     mov high1, high0
-    mov high0, a3
-    mov a3, a2
-    mov a2, a1
-    mov a1, a0
-    clr a0
-    subi b0, 8
-    brne 3b
+    mov high0, r0
+    ldi b0, 0
     ret
-; Bit by bit.
-4:  lsl a0
-    rol a1
-    rol a2
-    rol a3
+2:  sec
+    clr part1               ; leaves the carry
+    ror part1               ; a bit that leaves it behind eight
+3:  lsl b0
     rol high0
     rol high1
     rol high2
     rol high3
-    cp high0, d0
-    cpc high1, d1
-    cpc high2, d2
-    cpc high3, d3
-    brlo 5f
-    sub high0, d0
-    sbc high1, d1
-    sbc high2, d2
-    sbc high3, d3
-    inc a0
-5:  dec b0
+    cp high0, a0
+    cpc high1, a1
+    cpc high2, a2
+    cpc high3, a3
+    brlo 4f
+    sub high0, a0
+    sbc high1, a1
+    sbc high2, a2
+    sbc high3, a3
+    inc b0
+4:  lsr part1
+    brcc 3b
+    ret
+
+; As `divide`, rounded half up. high is lost.
+shared divide_and_round
+    rcall divide
+    brcs 2f
+    lsl high0
+    rol high1
+    rol high2
+    rol high3
+    cp high0, a0
+    cpc high1, a1
+    cpc high2, a2
+    cpc high3, a3
+    brsh 1f
+    clc
+    ret
+1:  subi b0, -1
+    sbci b1, -1
+    sbci b2, -1
+    sbci b3, -1             ; a carry, but for 2^32
+    brcc 3f
+    clc
+2:  ret
+3:  sec
+    ret
+
+; b is high and b, divided by 1000, rounded half up. Leaves a carry where b has no room for it. high
+; is lost.
+;
+; 1000 is 8 * 125, and 256 is 2 * 125 + 6: with what is left of the bytes above, which is less than
+; 125, the next byte of the quotient is twice that, and a few more.
+shared divide_by_1000
+    or high2, high3
+    brne 3b
+    cpi high1, 2
+    brsh 3b
+    subi b0, lo8(-500)
+    sbci b1, hi8(-500)
+    sbci b2, -1
+    sbci b3, -1
+    sbci high0, -1
+    sbci high1, -1
+    ldi high2, 3
+4:  lsr high1
+    ror high0
+    ror b3
+    ror b2
+    ror b1
+    ror b0
+    dec high2               ; leaves 0
     brne 4b
+    cpi high0, 125
+    brsh 3b
+    ldi high3, 6
+    rcall 5f
+    rcall 5f
+    rcall 5f
+    rcall 5f
+    clr r1
+    clc
+    ret
+5:  mov high1, b3
+    mov b3, b2
+    mov b2, b1
+    mov b1, b0
+    mul high0, high3        ; and the next byte: less than 1000
+    add r0, high1
+    adc r1, high2
+    lsl r0                  ; 128 of them are 125 and 3
+    rol r1
+    lsr r0
+    lsl high0
+    add high0, r1
+    mov high1, r0
+    add high1, r1
+    add high1, r1
+    add high1, r1
+    cpi high1, 125
+    brlo 6f
+    subi high1, 125
+    inc high0
+6:  mov b0, high0
+    mov high0, high1
     ret
 
 #endif

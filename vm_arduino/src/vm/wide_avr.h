@@ -1,9 +1,9 @@
-// What `number_avr.S` and `wide_avr.S` call the registers, and the routines that they share.
+// Names of registers, and the routines that the assembly of this folder shares.
 
 #ifndef TINISCRIPT_VM_WIDE_AVR_H_
 #define TINISCRIPT_VM_WIDE_AVR_H_
 
-// two numbers and a divisor
+// two numbers
 #define a0 r22
 #define a1 r23
 #define a2 r24
@@ -12,28 +12,30 @@
 #define b1 r19
 #define b2 r20
 #define b3 r21
-#define d0 r14
-#define d1 r15
-#define d2 r16
-#define d3 r17
 
-// what stands above a where a product has more than 32 bits
+// what stands above b where a product has more than 32 bits
 #define high0 r26
 #define high1 r27
 #define high2 r30
 #define high3 r31
 
-#define load_magnitude tiniscript_load_magnitude
+// what products and quotients need besides: whoever is called from C++ saves it
+#define part0 r2
+#define part1 r3
+#define carry r12
+
 #define negate_a tiniscript_negate_a
-#define load tiniscript_load
+#define negate_b tiniscript_negate_b
 #define is_a_zero tiniscript_is_a_zero
-#define negate_d tiniscript_negate_d
-#define double_d tiniscript_double_d
-#define let_d_be_1000 tiniscript_let_d_be_1000
-#define let_b_be_1000 tiniscript_let_b_be_1000
-#define widen tiniscript_widen
+#define is_b_zero tiniscript_is_b_zero
 #define multiply tiniscript_multiply
-#define divide_and_round tiniscript_divide_and_round
 #define divide tiniscript_divide
+#define divide_and_round tiniscript_divide_and_round
+#define divide_by_1000 tiniscript_divide_by_1000
+
+#define fixed_multiply tiniscript_fixed_multiply
+#define fixed_divide tiniscript_fixed_divide
+#define fixed_modulo tiniscript_fixed_modulo
+#define fixed_round tiniscript_fixed_round
 
 #endif  // TINISCRIPT_VM_WIDE_AVR_H_

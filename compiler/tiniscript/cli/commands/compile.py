@@ -3,56 +3,26 @@
 from __future__ import annotations
 
 import sys
+from argparse import Namespace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tiniscript.cli import inputs, outputs, paths
-from tiniscript.cli.errors import Trouble
-from tiniscript.cli.options import Options
+from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts.common import text
 
 if TYPE_CHECKING:
     from tiniscript import Compiled
 
-HELP = (
-    """\
-tsc compile PROGRAM [-o FILE] [--robot NAME|FILE] [--map FILE]
 
-Compiles a program into an image for the robot, beside the program if -o is not given.
-  -o FILE       where to; - is standard output
-  --robot R     for which robot: a name (tinibot, ...) or a profile's file
-  --map FILE    writes which instruction comes from which line, as JSON
-Says how many bytes it has, how deep its stack gets and, where that can be known, how long it
-runs. Where the program has mistakes, FILE stays as it was.
-""",
-    """\
-tsc compile PROGRAMA [-o ARCHIVO] [--robot NOMBRE|ARCHIVO] [--map ARCHIVO]
-
-Compila un programa en una imagen para el robot, junto al programa si no se da -o.
-  -o ARCHIVO    a dónde; - es la salida estándar
-  --robot R     para qué robot: un nombre (tinibot, ...) o el archivo de un perfil
-  --map ARCHIVO escribe qué instrucción viene de qué línea, como JSON
-Dice cuántos bytes tiene, cuánto usa de la pila y, si se puede saber, cuánto dura. Si el
-programa tiene errores, ARCHIVO queda como estaba.
-""",
-)
-
-
-def run(arguments: list[str], language: str) -> int:
-    parser = Options("compile", language, HELP)
-    parser.takes_program()
-    parser.add_argument("-o", dest="output")
-    parser.add_argument("--map")
-    options = parser.read(arguments)
-    if options is None:
-        return 0
+def run(options: Namespace, language: str) -> int:
     given = inputs.program(options)
     target = _target(given, options.output)
     if options.map == "-":
-        raise Trouble(2, "over_map", file="-")
+        raise CommandError(2, "over_map", file="-")
     robot = inputs.robot(options, language)
     compiled = inputs.compiled(given, robot, is_strict=True)
-    outputs.print_problems(compiled, language)
+    outputs.print_diagnostics(compiled, language)
     if not compiled.is_right:
         return 1
     from tiniscript.codegen import source_map
@@ -85,7 +55,7 @@ def _target(given: inputs.Input, output: str | None) -> Path | None:
     if output == "-":
         return None
     if output is None and given.path is None:
-        raise Trouble(2, "needs_output")
+        raise CommandError(2, "needs_output")
     return Path(paths.default_output(given.name) if output is None else output)
 
 
@@ -98,7 +68,7 @@ def _stack_values() -> int:
 def _will_fault(compiled: Compiled) -> bool:
     from tiniscript.diagnostics.codes import WILL_FAULT
 
-    return any(problem.code is WILL_FAULT for problem in compiled.problems)
+    return any(diagnostic.code is WILL_FAULT for diagnostic in compiled.diagnostics)
 
 
 def _runs(program: object, language: str) -> str:

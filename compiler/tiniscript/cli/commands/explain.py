@@ -2,29 +2,12 @@
 
 from __future__ import annotations
 
-from tiniscript.cli.errors import Trouble
-from tiniscript.cli.options import Options
+from argparse import Namespace
 
-HELP = (
-    """\
-tsc explain [CODE]
-
-Says more about a mistake, with an example. Without a code it lists all.
-""",
-    """\
-tsc explain [CÓDIGO]
-
-Explica mejor un error, con un ejemplo. Sin código los lista todos.
-""",
-)
+from tiniscript.cli.errors import CommandError
 
 
-def run(arguments: list[str], language: str) -> int:
-    parser = Options("explain", language, HELP)
-    parser.add_argument("code", nargs="?")
-    options = parser.read(arguments)
-    if options is None:
-        return 0
+def run(options: Namespace, language: str) -> int:
     from tiniscript.diagnostics.rendering import explain, titles
 
     if options.code is None:
@@ -37,6 +20,6 @@ def run(arguments: list[str], language: str) -> int:
         from tiniscript.words import nearest
 
         near = nearest(options.code.upper(), list(CODES)) or ""
-        raise Trouble(2, "no_code", found=options.code, near=near)
+        raise CommandError(2, "no_code", found=options.code, near=near)
     print(said, end="" if said.endswith("\n") else "\n")
     return 0

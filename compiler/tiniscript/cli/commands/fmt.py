@@ -3,50 +3,27 @@
 from __future__ import annotations
 
 import sys
+from argparse import Namespace
 
 from tiniscript.cli import inputs, outputs
-from tiniscript.cli.errors import Trouble
-from tiniscript.cli.options import Options
+from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts.common import text
 from tiniscript.source import LARGEST_SOURCE
 
-HELP = (
-    """\
-tsc fmt PROGRAM [--check]
 
-Lays the text of a program out in the usual way, in place; comments are kept, and it means the
-same. From standard input or -e it prints the result.
-  --check       changes nothing; exit code 1 where something would change
-""",
-    """\
-tsc fmt PROGRAMA [--check]
-
-Ordena el texto de un programa de la forma usual, en el mismo archivo; los comentarios quedan y
-significa lo mismo. Desde la entrada estándar o con -e imprime el resultado.
-  --check       no cambia nada; código de salida 1 si algo cambiaría
-""",
-)
-
-
-def run(arguments: list[str], language: str) -> int:
-    parser = Options("fmt", language, HELP)
-    parser.takes_program()
-    parser.add_argument("--check", action="store_true")
-    options = parser.read(arguments)
-    if options is None:
-        return 0
+def run(options: Namespace, language: str) -> int:
     given = inputs.program(options)
     if given.is_image:
-        raise Trouble(2, "needs_text", file=inputs.shown(given.name), verb="fmt")
+        raise CommandError(2, "needs_text", file=inputs.shown(given.name), verb="fmt")
     from tiniscript.syntax.formatter import formatted
 
     parsed = inputs.parsed(given, inputs.robot(options, language).kit)
     if not parsed.is_right:
-        outputs.print_problems(parsed, language)
+        outputs.print_diagnostics(parsed, language)
         return 1
     laid_out = formatted(parsed.source)
     if len(laid_out.encode()) > LARGEST_SOURCE:
-        raise Trouble(2, "fmt_too_large", file=inputs.shown(given.name))
+        raise CommandError(2, "fmt_too_large", file=inputs.shown(given.name))
     name = inputs.shown(given.name)
     is_same = laid_out.encode() == given.data
     if options.check:

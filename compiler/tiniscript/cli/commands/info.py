@@ -1,52 +1,22 @@
-"""`tsc info`: what the robot says of itself."""
+"""`tsc info`: the robot's description of itself."""
 
 from __future__ import annotations
 
 import json
+from argparse import Namespace
 from typing import TYPE_CHECKING
 
 from tiniscript.cli import inputs
 from tiniscript.cli.inputs import shown
-from tiniscript.cli.options import Options
 from tiniscript.cli.robot.connect import Connection, robot_of_kit
-from tiniscript.cli.robot.targets import are_many, takes_ports
+from tiniscript.cli.robot.targets import are_many
 from tiniscript.cli.texts.common import text
 
 if TYPE_CHECKING:
     from tiniscript.cli.robot.fleet import Member, Result
 
-HELP = (
-    """\
-tsc info [--port P ...] [--all] [--json]
 
-Prints what the robot says of itself: name, kit, room, program, state, last fault.
-  --port P      the robot's port; the last used one where nothing is said; several for several
-  --all         every robot that answers, a line each
-  --baud N      its speed (the one of the profile that --robot NAME|FILE chooses)
-  --virtual     the virtual robot of tsc robot, which runs in another terminal
-  --json        the same as data
-""",
-    """\
-tsc info [--port P ...] [--all] [--json]
-
-Imprime lo que el robot dice de sí mismo: nombre, kit, sitio, programa, estado, última falla.
-  --port P      el puerto del robot; el último usado si no se dice nada; varios para varios
-  --all         todos los robots que responden, una línea por cada uno
-  --baud N      su velocidad (la del perfil que --robot NOMBRE|ARCHIVO elige)
-  --virtual     el robot virtual de tsc robot, que está en marcha en otra terminal
-  --json        lo mismo como datos
-""",
-)
-
-
-def run(arguments: list[str], language: str) -> int:
-    parser = Options("info", language, HELP)
-    takes_ports(parser)
-    parser.add_argument("--robot")
-    parser.add_argument("--json", action="store_true")
-    options = parser.read(arguments)
-    if options is None:
-        return 0
+def run(options: Namespace, language: str) -> int:
     robot = inputs.robot(options, language)
     if are_many(options):
         from tiniscript.cli.robot.fleet import together
@@ -68,47 +38,46 @@ def _one_of_many(connection: Connection, member: Member) -> Result:
 
 
 class Description:
-    """What HELLO and STATUS have said."""
+    """The replies to HELLO and STATUS."""
 
     def __init__(self, connection: Connection) -> None:
         self.connection = connection
-        self.card = connection.card
-        status = connection.ask(lambda session: session.status()).values
-        said = {**self.card.values, **status}
-        self.values = {key: value for key, value in said.items() if isinstance(value, int)}
+        self.device_info = connection.device_info
+        self.hello = self.device_info.values
+        self.status = connection.ask(lambda session: session.status()).values
 
     def fields(self) -> dict[str, object]:
         """Return it as data."""
         from tiniscript.cli.robot.event_printer import fault_name
-        from tiniscript.link.messages import RESETS, SAVED, SAVED_NOTHING, SAVED_STORED, STATES
+        from tiniscript.link.messages import RESETS, SAVED, SAVED_STORED, STATES
 
-        values = self.values
-        has_program = values["saved"] != SAVED_NOTHING
+        status = self.status
+        has_program = not self._why_no_program()
         fault = None
-        if values["fault"]:
-            program = f"{values['fault_program']:08x}"
-            fault = {"fault": fault_name(values["fault"]), "at": values["fault_at"],
+        if status.fault:
+            program = f"{status.fault_program:08x}"
+            fault = {"fault": fault_name(status.fault), "at": status.fault_at,
                      "program": program}  # fmt: skip
         return {
-            "name": self.card.name,
-            "id": f"{self.card.id:08x}",
+            "name": self.device_info.name,
+            "id": f"{self.device_info.id:08x}",
             "port": self.connection.port,
-            "kit": f"{self.card.kit:04x}",
-            "robot": robot_of_kit(self.card.kit),
-            "link": f"{values['major']}.{values['minor']}",
-            "isa": f"{self.card.isa[0]}.{self.card.isa[1]}",
-            "room": self.card.room,
-            "state": _name(STATES, values["state"]),
-            "program": f"{values['program']:08x}" if has_program else None,
-            "code_bytes": values["length"] if has_program else None,
-            "saved": _name(SAVED, values["saved"]),
-            "slot": values["slot"] if values["saved"] == SAVED_STORED else None,
+            "kit": f"{self.device_info.kit:04x}",
+            "robot": robot_of_kit(self.device_info.kit),
+            "link": f"{self.hello.major}.{self.hello.minor}",
+            "isa": f"{self.device_info.isa[0]}.{self.device_info.isa[1]}",
+            "room": self.device_info.room,
+            "state": _name(STATES, status.state),
+            "program": f"{status.program:08x}" if has_program else None,
+            "code_bytes": status.length if has_program else None,
+            "saved": _name(SAVED, status.saved),
+            "slot": status.slot if status.saved == SAVED_STORED else None,
             "fault": fault,
-            "reset": _name(RESETS, values["reset"]),
-            "damaged": values["damaged"],
-            "dropped": values["dropped"],
-            "framing": values["framing"],
-            "overrun": values["overrun"],
+            "reset": _name(RESETS, self.hello.reset),
+            "damaged": status.damaged,
+            "dropped": status.dropped,
+            "framing": status.framing,
+            "overrun": status.overrun,
         }
 
     def line(self) -> str:
@@ -118,47 +87,55 @@ class Description:
 
     def _program(self) -> str:
         from tiniscript.codegen import source_map
-        from tiniscript.link.messages import SAVED_NOTHING
 
-        language, values, fields = self.connection.language, self.values, self.fields()
-        if values["saved"] == SAVED_NOTHING:
-            return text("info_no_program", language)
-        places = source_map.recall(values["program"])
+        language, status, fields = self.connection.language, self.status, self.fields()
+        why = self._why_no_program()
+        if why:
+            return text(why, language)
+        places = source_map.recall(status.program)
         return text("info_program", language).format(
             checksum=fields["program"],
             name=f" ({shown(places.name)})" if places is not None else "",
-            code=values["length"],
-            saved=text(f"saved_{fields['saved']}", language).format(slot=values["slot"]),
+            code=status.length,
+            saved=text(f"saved_{fields['saved']}", language).format(slot=status.slot),
         )
+
+    def _why_no_program(self) -> str:
+        """Return the reason why the robot holds no program, or an empty text."""
+        from tiniscript.link.messages import SAVED_NOTHING, SAVED_OTHER_VERSION
+
+        texts = {SAVED_NOTHING: "info_no_program", SAVED_OTHER_VERSION: "info_other_version"}
+        return texts.get(self.status.saved, "")
 
     def text(self) -> str:
         """Return it as lines."""
-        language, values, fields = self.connection.language, self.values, self.fields()
+        language, status, fields = self.connection.language, self.status, self.fields()
         kit = f"{fields['kit']} ({fields['robot']})" if fields["robot"] else fields["kit"]
         head = {"robot": self.connection.name, "port": shown(self.connection.port)}
         state, reset = (text(f"{what}_{fields[what]}", language) for what in ("state", "reset"))
         lines = [
             text("info_robot", language).format(**head, id=fields["id"]),
-            text("info_kit", language).format(kit=kit, isa=fields["isa"], room=self.card.room),
+            text("info_kit", language).format(
+                kit=kit, isa=fields["isa"], room=self.device_info.room
+            ),
             self._program(),
             text("info_state", language).format(state=state, reset=reset),
         ]
-        if values["fault"]:
+        if status.fault:
             lines.append(self._fault())
-        counts = {name: values[name] for name in ("damaged", "dropped", "framing", "overrun")}
-        if any(counts.values()):
-            lines.append(text("info_hearing", language).format(**counts))
+        if status.damaged or status.dropped or status.framing or status.overrun:
+            lines.append(text("info_hearing", language).format(**status._asdict()))
         return "\n".join(lines)
 
     def _fault(self) -> str:
         from tiniscript.cli.robot.event_printer import fault_sentence
 
-        values = self.values
-        said = fault_sentence(values["fault"], values["fault_at"], values["fault_program"], None,
+        status = self.status
+        said = fault_sentence(status.fault, status.fault_at, status.fault_program, None,
                               self.connection.language)  # fmt: skip
         return text("info_fault", self.connection.language).format(fault=said)
 
 
 def _name(table: tuple[tuple[str, str], ...], number: int) -> str:
-    """Return the name of a number; the first one's for what only a newer robot knows."""
+    """Return the name of a number; the first name for a number that only newer robots know."""
     return table[number if number < len(table) else 0][0]

@@ -10,46 +10,18 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from tiniscript.cli import inputs, outputs
-from tiniscript.cli.errors import Trouble
-from tiniscript.cli.options import Options
+from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot import own_kit
-from tiniscript.cli.robot.connect import Connection, takes_robot
-from tiniscript.cli.robot.run_monitor import Attendant, stop_and_say
-from tiniscript.cli.robot.simulator_options import takes_world
+from tiniscript.cli.robot.connect import Connection
+from tiniscript.cli.robot.run_monitor import RunMonitor, stop_and_say
 from tiniscript.cli.texts.common import text
 
 if TYPE_CHECKING:
-    from tiniscript.cli.robot.event_printer import Teller
+    from tiniscript.cli.robot.event_printer import EventPrinter
     from tiniscript.cli.robot.live_state import Known, Line
     from tiniscript.link.outcomes import Event
+    from tiniscript.link.payloads import ShowEvent
     from tiniscript.robots.profile import Robot
-
-HELP = (
-    """\
-tsc live ['LINE'] [--port P] [--robot NAME|FILE]
-
-Does a line on the robot at once:  tsc live 'F(2, 80)'   Without a line there is a prompt, and with
-- lines come from standard input. Variables and DEFs live on until you leave: tsc keeps DEFs
-as text, and the values that a line has given when it was done. The program that the robot
-holds stays what it is. Ctrl-C stops the robot, Ctrl-D leaves.
-  --port P      the robot's port; the last used one where nothing is said
-  --baud N      its speed (the one of the robot's profile)
-  --robot R     for which robot: a name (tinibot, ...) or a profile's file
-  --virtual     no robot: a virtual one does it here; --world, --plot, --seed, ... as tsc robot
-""",
-    """\
-tsc live ['LÍNEA'] [--port P] [--robot NOMBRE|ARCHIVO]
-
-Hace una línea en el robot en el acto:  tsc live 'F(2, 80)'   Sin línea hay un diálogo, y con - las
-líneas vienen de la entrada estándar. Las variables y los DEF siguen vivos hasta que sales: tsc
-guarda los DEF como texto, y los valores que una línea ha puesto cuando terminó. El programa que
-tiene el robot queda como está. Ctrl-C detiene el robot, Ctrl-D sale.
-  --port P      el puerto del robot; el último usado si no se dice nada
-  --baud N      su velocidad (la del perfil del robot)
-  --robot R     para qué robot: un nombre (tinibot, ...) o el archivo de un perfil
-  --virtual     sin robot: lo hace aquí uno virtual; --world, --plot, --seed, ... como tsc robot
-""",
-)
 
 PROMPT = "tini> "
 LEAVE, HELP_ME = "leave", "help"
@@ -63,17 +35,9 @@ WISHES = {
 }
 
 
-def run(arguments: list[str], language: str) -> int:
-    parser = Options("live", language, HELP)
-    takes_robot(parser)
-    takes_world(parser)
-    parser.add_argument("line", nargs="?")
-    parser.add_argument("-e", dest="text")
-    options = parser.read(arguments)
-    if options is None:
-        return 0
+def run(options: Namespace, language: str) -> int:
     if options.line is not None and options.text is not None:
-        raise Trouble(2, "two_programs")
+        raise CommandError(2, "two_programs")
     line: str | None = options.text if options.line is None else options.line
     robot = inputs.robot(options, language)
     from tiniscript.cli.robot.live_state import Known
@@ -82,7 +46,7 @@ def run(arguments: list[str], language: str) -> int:
     if line is not None and line != "-" and not _may_be_done(line, known, robot, options):
         return 1
     with Connection(options, robot, language) as connection:
-        talk = Talk(connection, known, options)
+        talk = Repl(connection, known, options)
         if line is None and sys.stdin.isatty():
             return talk.prompt()
         talk.meet()
@@ -92,37 +56,37 @@ def run(arguments: list[str], language: str) -> int:
 
 
 def _may_be_done(line: str, known: Known, robot: Robot, options: Namespace) -> bool:
-    """Whether a line is right, perhaps for the robot that answers; else say what is wrong."""
+    """Whether a line has no mistakes, perhaps for the robot that answers; else print them."""
     language: str = options.language
     if options.robot is None:
         compiled = own_kit.naming(known.line(line, 0).compiled, robot)
         if own_kit.is_other_robots(compiled):
             found = own_kit.of_answering(options, robot, language)
             if found is not None:
-                return True  # it is compiled again, for that one
+                return True  # it is compiled again for that robot
     return _compiled(line, known, robot, language, is_last=True) is not None
 
 
 def _compiled(
     line: str, known: Known, robot: Robot, language: str, is_last: bool = False
 ) -> Line | None:
-    """Compile a line and print what is wrong with it; return None where it is."""
+    """Compile a line and print its diagnostics; return None if it has mistakes."""
     from tiniscript.cli.robot.live_state import header
     from tiniscript.link.requests import SHORT_BYTES
 
     if header(line) == "SB":
-        raise Trouble(1, "live_button")
+        raise CommandError(1, "live_button")
     found = known.line(line, 0 if is_last else SHORT_BYTES)
-    outputs.print_problems(own_kit.naming(found.compiled, robot), language)
+    outputs.print_diagnostics(own_kit.naming(found.compiled, robot), language)
     if not found.compiled.is_right:
         return None
     code = len(found.compiled.code)
     if code > SHORT_BYTES:
-        raise Trouble(1, "live_too_long", code=str(code), room=str(SHORT_BYTES))
+        raise CommandError(1, "live_too_long", code=str(code), room=str(SHORT_BYTES))
     return found
 
 
-class Talk:
+class Repl:
     """Lines to a robot, one after the other."""
 
     def __init__(self, connection: Connection, known: Known, options: Namespace) -> None:
@@ -132,13 +96,13 @@ class Talk:
         self.known = known
 
     def meet(self) -> None:
-        """Ask the robot who it is, and take its kit. Raises Trouble where none answers."""
+        """Send HELLO to the robot, and use its kit. Raises CommandError if none answers."""
         self.connection.meet()
         if own_kit.take(self.connection, self.options):
             self.known.kit = self.connection.profile.kit
 
     def do(self, line: str, is_last: bool = False) -> int:
-        """Do a line; return the exit code. Ctrl-C stops the robot."""
+        """Run a line; return the exit code. Ctrl-C stops the robot."""
         from tiniscript.cli.robot.live_state import header
 
         if header(line) == "PING":
@@ -170,21 +134,19 @@ class Talk:
         source_map.remember(found.compiled.image, places)  # tsc info names a fault's line later
         kit = kit_of(found.compiled, self.connection.profile)
         reply = self.connection.ask(lambda session: session.live(found.compiled.code, kit))
-        run = reply.values["run"]
-        assert isinstance(run, int)
-        teller = self.connection.teller(places=places)
-        catch = Catch(found.shown, self.known, teller, is_last)
-        company = self.connection.company
-        if company is not None:
-            company.watch()
+        printer = self.connection.event_printer(places=places)
+        catch = Catch(found.shown, self.known, printer, is_last)
+        simulator = self.connection.simulator
+        if simulator is not None:
+            simulator.watch()
         try:
-            return Attendant(self.connection, teller, catch.hold).attend(run)
+            return RunMonitor(self.connection, printer, catch.hold).follow(reply.values.run)
         finally:
-            if company is not None:
-                company.unwatch()
+            if simulator is not None:
+                simulator.unwatch()
 
     def all_of(self, lines: object) -> int:
-        """Do lines from a file until one fails."""
+        """Run lines from a file until one fails."""
         from typing import TextIO, cast
 
         for line in cast("TextIO", lines):
@@ -197,7 +159,7 @@ class Talk:
         return 0
 
     def _says_time_over(self) -> bool:
-        """Say it where the time of a virtual robot has passed between two lines."""
+        """Whether a virtual robot's time limit has passed between two lines; prints so then."""
         if self.connection.is_time_over:
             print(text("time_over", self.language))
             return True
@@ -237,48 +199,48 @@ class Talk:
                     print(self._help())
                 elif line.strip():
                     self._try(line)
-                    if self.connection.is_time_over:  # that line has said it
+                    if self.connection.is_time_over:  # already printed
                         return 0
 
     def _try(self, line: str) -> None:
-        """Do a line; what is wrong with it or with the robot is said, and the talk goes on."""
+        """Run a line; print any failure, and go on with the session."""
         try:
             self.do(line)
-        except Trouble as trouble:
-            if trouble.key in ("port_gone", "holder_ended"):
+        except CommandError as failure:
+            if failure.key in ("port_gone", "holder_ended"):
                 raise
-            print(trouble.sentence(self.language), file=sys.stderr)
+            print(failure.sentence(self.language), file=sys.stderr)
 
     def _stop(self) -> None:
         try:
             stop_and_say(self.connection)
-        except Trouble as trouble:
-            print(trouble.sentence(self.language), file=sys.stderr)
+        except CommandError as failure:
+            print(failure.sentence(self.language), file=sys.stderr)
 
     def _tell_meanwhile(self) -> None:
-        """Tell what the robot has told since the last line.
+        """Print the robot's events since the last line.
 
-        That it was lost the next line tells, if it still is.
+        The next line reports a lost robot, if it is still lost.
         """
-        from tiniscript.cli.robot.event_printer import Bookkeeping, Teller
+        from tiniscript.cli.robot.event_printer import Bookkeeping, EventPrinter
         from tiniscript.link.outcomes import Gone
 
-        teller, bookkeeping = Teller(self.language), Bookkeeping()
+        printer, bookkeeping = EventPrinter(self.language), Bookkeeping()
         try:
             while True:
                 found = self.connection.line.event(0)
                 if found is None:
                     return
                 if not bookkeeping.hides(found[1]):
-                    teller.tell(*found)
+                    printer.tell(*found)
         except Gone as gone:
             raise self.connection.gone(gone) from None
 
 
 def wished(line: str, known: Known) -> str:
-    """Return what a whole line asks of tsc and not of the robot, or nothing.
+    """Return the command to tsc, not to the robot, that a line consists of, or an empty text.
 
-    A name that the robot or the person has given means what it means there.
+    A name of the kit or of the user's program is no such command.
     """
     word = re.sub(r"\s*(\(\s*\))?[\s;]*$", "", line.lstrip()).upper()
     devices = (device.name for device in (*known.kit.sensors, *known.kit.actuators))
@@ -286,16 +248,16 @@ def wished(line: str, known: Known) -> str:
 
 
 class Catch:
-    """Keeps back what a line shows of its variables, and learns their values from it."""
+    """Hides the SHOW events that report a line's variables, and learns the values from them."""
 
     def __init__(
-        self, shown: tuple[str, ...], known: Known, teller: Teller, says_done: bool
+        self, shown: tuple[str, ...], known: Known, printer: EventPrinter, says_done: bool
     ) -> None:
         self.shown = shown
         self.known = known
-        self.teller = teller
+        self.printer = printer
         self.says_done = says_done
-        self.held: list[Event] = []
+        self.held: list[ShowEvent] = []
         self.has_missed = False  # events of this line
 
     def hold(self, event: Event) -> bool:
@@ -311,17 +273,15 @@ class Catch:
                     self._release(1)
             return True
         if event.name == "DONE":
-            values = [each.values for each in self.held[1:]]
-            if len(values) == len(self.shown):
-                for name, each in zip(self.shown, values, strict=True):
-                    value = each["value"]
-                    assert isinstance(value, int)
-                    self.known.values[name] = Value(value, bool(each["is_yes_no"]))
+            told = self.held[1:]
+            if len(told) == len(self.shown):
+                for name, each in zip(self.shown, told, strict=True):
+                    self.known.values[name] = Value(each.value, bool(each.is_yes_no))
             elif not self.has_missed:
                 self._release()
             self.held = []
             return not self.says_done
-        if event.name == "FAULT":  # what shows the values has none
+        if event.name == "FAULT":  # the instructions that show the values cannot fault
             self._release()
         elif event.name in ("STOPPED", "ENDED"):
             self.held = []
@@ -329,17 +289,17 @@ class Catch:
         return False
 
     def _release(self, count: int | None = None) -> None:
-        """What was kept back is the person's own: so many events, or all."""
+        """Print held events after all, because the line itself has shown them: `count`, or all."""
         own = self.held[:count]
         del self.held[:count]
         for event in own:
-            self.teller.tell(0, event)
+            self.printer.tell(0, event)
 
 
-def _is_mark(event: Event) -> bool:
+def _is_mark(event: ShowEvent) -> bool:
     from tiniscript.cli.robot.live_mark import MARK
 
-    return event.values["value"] == MARK and not event.values["is_yes_no"]
+    return event.value == MARK and not event.is_yes_no
 
 
 @contextlib.contextmanager

@@ -1,73 +1,34 @@
-"""`tsc monitor`: what the robot shows, while it does what it does."""
+"""`tsc monitor`: prints what the robot shows, without changing its run."""
 
 from __future__ import annotations
 
 import sys
+from argparse import Namespace
 from contextlib import suppress
 from pathlib import Path
 from time import monotonic
 from typing import TYPE_CHECKING, TextIO
 
-from tiniscript.cli.errors import Trouble
+from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
-from tiniscript.cli.options import Options, whole_number
-from tiniscript.cli.robot.connect import Connection, connected, takes_robot
+from tiniscript.cli.options import whole_number
+from tiniscript.cli.robot.connect import Connection, connected
 from tiniscript.cli.texts.common import text
 
 if TYPE_CHECKING:
-    from tiniscript.cli.robot.event_printer import Teller
+    from tiniscript.cli.robot.event_printer import EventPrinter
     from tiniscript.cli.terminal.plot import Board
 
-HELP = (
-    """\
-tsc monitor [--port P] [--plot] [--csv FILE] [--json] [--max-time S]
 
-Prints what the robot tells, each with the milliseconds since the first: values of SHOW, how a
-program ends, faults with their lines. Starts and stops nothing; Ctrl-C leaves. (Opening the
-port of an Arduino with a cable resets it: then nothing runs before its button is pressed.)
-  --port P      the robot's port; the last used one where nothing is said
-  --baud N      its speed (the one of the profile that --robot NAME|FILE chooses)
-  --virtual     the virtual robot of tsc robot, which runs in another terminal
-  --plot        on a terminal: draws the values of the last 30 seconds as a curve
-  --csv FILE    writes rows of ms,event,value, too
-  --json        prints lines of JSON
-  --max-time S  leaves after so many seconds
-""",
-    """\
-tsc monitor [--port P] [--plot] [--csv ARCHIVO] [--json] [--max-time S]
-
-Imprime lo que el robot cuenta, cada cosa con los milisegundos desde la primera: valores de SHOW,
-cómo termina un programa, fallas con sus líneas. No inicia ni detiene nada; Ctrl-C sale. (Abrir
-el puerto de un Arduino con cable lo reinicia: nada se mueve antes de pulsar su botón.)
-  --port P      el puerto del robot; el último usado si no se dice nada
-  --baud N      su velocidad (la del perfil que --robot NOMBRE|ARCHIVO elige)
-  --virtual     el robot virtual de tsc robot, que está en marcha en otra terminal
-  --plot        en una terminal: dibuja los valores de los últimos 30 segundos como una curva
-  --csv ARCHIVO escribe además filas de ms,event,value
-  --json        imprime líneas de JSON
-  --max-time S  sale después de tantos segundos
-""",
-)
-
-
-def run(arguments: list[str], language: str) -> int:
-    parser = Options("monitor", language, HELP)
-    takes_robot(parser)
-    parser.add_argument("--plot", action="store_true")
-    parser.add_argument("--csv")
-    parser.add_argument("--json", action="store_true")
-    parser.add_argument("--max-time")
-    options = parser.read(arguments)
-    if options is None:
-        return 0
+def run(options: Namespace, language: str) -> int:
     seconds = whole_number("--max-time", options.max_time, 0, 1, 10**6, language)
     rows: TextIO | None = None
-    from tiniscript.cli.robot.event_printer import Teller
+    from tiniscript.cli.robot.event_printer import EventPrinter
 
     try:
         with connected(options, language) as connection:
             connection.meet()
-            if options.csv is not None:  # where no robot answers, the last rows stay
+            if options.csv is not None:  # without a robot the old file stays
                 rows = _rows(options.csv)
             said = {"robot": connection.name, "port": shown(connection.port)}
             print(text("watching", language).format(**said), file=sys.stderr)
@@ -75,13 +36,13 @@ def run(arguments: list[str], language: str) -> int:
                 from tiniscript.cli.terminal.plot import Board
 
                 with Board() as board:
-                    teller = Teller(language, options.json, has_times=True, rows=rows,
+                    printer = EventPrinter(language, options.json, has_times=True, rows=rows,
                                     out=board.say, err=board.warn)  # fmt: skip
-                    _watch(connection, teller, seconds, board)
+                    _watch(connection, printer, seconds, board)
             else:
-                teller = Teller(language, options.json, has_times=True, rows=rows)
-                _watch(connection, teller, seconds)
-    except KeyboardInterrupt:  # that is how a person leaves
+                printer = EventPrinter(language, options.json, has_times=True, rows=rows)
+                _watch(connection, printer, seconds)
+    except KeyboardInterrupt:  # the usual way to end it
         print(file=sys.stderr)
     finally:
         if rows is not None:
@@ -90,7 +51,7 @@ def run(arguments: list[str], language: str) -> int:
 
 
 def _watch(
-    connection: Connection, teller: Teller, seconds: int, board: Board | None = None
+    connection: Connection, printer: EventPrinter, seconds: int, board: Board | None = None
 ) -> None:
     from tiniscript.cli.robot.event_printer import Bookkeeping
     from tiniscript.link.outcomes import Gone
@@ -107,8 +68,8 @@ def _watch(
             if board is not None:
                 board.take(*found)
             if found[1].name == "LOST":
-                raise Trouble(3, "link_lost", port=shown(connection.port))
-            teller.tell(*found)
+                raise CommandError(3, "link_lost", port=shown(connection.port))
+            printer.tell(*found)
     except Gone as gone:
         raise connection.gone(gone) from None
 
@@ -120,10 +81,10 @@ def _rows(name: str) -> TextIO:
         rows.flush()
     except (OSError, ValueError) as why:
         reason = why.strerror if isinstance(why, OSError) and why.strerror else str(why)
-        raise Trouble(2, "unwritable_rows", file=shown(name), why=reason) from None
+        raise CommandError(2, "unwritable_rows", file=shown(name), why=reason) from None
     return rows
 
 
 def _close(rows: TextIO) -> None:
-    with suppress(OSError):  # what did not fit has been said
+    with suppress(OSError):  # a write failure was printed already
         rows.close()

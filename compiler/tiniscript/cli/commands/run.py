@@ -1,13 +1,14 @@
-"""`tsc run`: what a robot would do, printed as a trace."""
+"""`tsc run`: prints the trace of a simulated robot."""
 
 from __future__ import annotations
 
 import sys
+from argparse import Namespace
 from typing import TYPE_CHECKING
 
 from tiniscript.cli import images, inputs
-from tiniscript.cli.errors import Trouble
-from tiniscript.cli.options import Options, decimal, whole_number
+from tiniscript.cli.errors import CommandError
+from tiniscript.cli.options import decimal, whole_number
 from tiniscript.cli.texts.common import text
 
 if TYPE_CHECKING:
@@ -17,60 +18,11 @@ if TYPE_CHECKING:
     from tiniscript.robots.profile import Robot
     from tiniscript.vm.trace import Ending, MachineOf
 
-HELP = (
-    """\
-tsc run PROGRAM [--sensor NAME=1,2,3 ...] [--max-time S] [--seed N] [--show] [--robot NAME|FILE]
-
-Runs a program (text or image) without a robot and prints what the robot does, line by line,
-each with the milliseconds since the start. The clock is simulated, so that takes no time.
-  --sensor NAME=1,2,3   what the sensor reads: the next value each time, the last one repeats;
-                        0 or FALSE where nothing is said. Once for each sensor
-  --max-time S          simulated seconds after which the run is cut (60)
-  --max-steps N         instructions after which a loop that takes no time is cut (10000000)
-  --seed N              where RANDOM begins, 1 to 4294967295 (1)
-  --show                on a terminal: draws the way and the values as they come
-  --pace N              with --show: N times as fast as the robot (1); 0 is as fast as possible
-  --machine python|cpp  which machine runs it: the one in Python, or the robot's own, in C++
-Exit code: 0 when it is done or cut, 1 after a fault or mistakes.
-""",
-    """\
-tsc run PROGRAMA [--sensor NOMBRE=1,2,3 ...] [--max-time S] [--seed N] [--show]
-        [--robot NOMBRE|ARCHIVO]
-
-Ejecuta un programa (texto o imagen) sin robot e imprime lo que hace el robot, línea por línea,
-cada una con los milisegundos desde el inicio. El reloj es simulado: no hay que esperar.
-  --sensor NOMBRE=1,2,3 lo que lee el sensor: cada vez el siguiente valor, el último se repite;
-                        0 o FALSE si no se dice nada. Una vez por cada sensor
-  --max-time S          segundos simulados después de los que se corta (60)
-  --max-steps N         instrucciones después de las que se corta un bucle que no toma tiempo
-                        (10000000)
-  --seed N              dónde empieza RANDOM, de 1 a 4294967295 (1)
-  --show                en una terminal: dibuja el camino y los valores según llegan
-  --pace N              con --show: N veces más rápido que el robot (1); 0 es lo más rápido posible
-  --machine python|cpp  qué máquina lo ejecuta: la de Python, o la del robot mismo, en C++
-Código de salida: 0 si termina o se corta, 1 después de una falla o con errores.
-""",
-)
-
 LONGEST = 10**9  # seconds
 STEPS = 10_000_000
 
 
-def run(arguments: list[str], language: str) -> int:
-    parser = Options("run", language, HELP)
-    parser.takes_program()
-    parser.add_argument("--sensor", action="append", default=[])
-    parser.add_argument("--max-time")
-    parser.add_argument("--max-steps")
-    parser.add_argument("--seed")
-    parser.add_argument("--pace")
-    parser.add_argument("--show", action="store_true")
-    parser.add_argument("--machine", default="python")
-    options = parser.read(arguments)
-    if options is None:
-        return 0
-    if options.machine not in ("python", "cpp"):
-        raise Trouble(2, "no_machine", found=options.machine)
+def run(options: Namespace, language: str) -> int:
     max_ms = _decimal("--max-time", options.max_time, 60_000, LONGEST, language)
     pace = _decimal("--pace", options.pace, 1000, 1_000_000, language)
     max_steps = whole_number("--max-steps", options.max_steps, STEPS, 0, 10**15, language)
@@ -105,11 +57,11 @@ def _cpp_machine(image: Image, robot: Robot) -> MachineOf:
 
     try:
         return cpp_machine(image, robot)
-    except (ImportError, OSError, RuntimeError) as why:  # not there, or not for this computer
+    except (ImportError, OSError, RuntimeError) as why:  # missing, or not for this computer
         from tiniscript.library import install_advice
 
         how = install_advice.command(install_advice.VIRTUAL)
-        raise Trouble(2, "no_wasmtime", why=str(why), how=how) from None
+        raise CommandError(2, "no_wasmtime", why=str(why), how=how) from None
 
 
 def _print(events: object) -> Ending:
@@ -127,9 +79,9 @@ def _print(events: object) -> Ending:
 
 
 def fault_text(fault: str, offset: int, places: Map | None, is_image: bool, language: str) -> str:
-    """Return what happened, and the line of the text where it did.
+    """Return the meaning of a fault, and its line in the text.
 
-    An image's text is what was last compiled to it: its name is said too.
+    For an image this is the text that was last compiled to it; its name is added.
     """
     place = places.at(offset) if places is not None else None
     if places is None or place is None:
@@ -147,13 +99,13 @@ def fault_text(fault: str, offset: int, places: Map | None, is_image: bool, lang
 
 
 def _decimal(option: str, found: str | None, default: int, highest: int, language: str) -> int:
-    """Return the thousandths that an option says, from 0 to `highest` units."""
+    """Return an option's number in thousandths, from 0 to `highest` units."""
     if found is None:
         return default
     value = decimal(found)
     if value is None or not 0 <= value <= highest * 1000:
         allowed = text("range_number", language).format(low=0, high=highest)
-        raise Trouble(2, "bad_number", option=option, range=allowed, found=found)
+        raise CommandError(2, "bad_number", option=option, range=allowed, found=found)
     return value
 
 
@@ -169,15 +121,15 @@ def sensor_lists(texts: list[str], robot: Robot, language: str) -> dict[int, lis
             from tiniscript.words import nearest
 
             known = ", ".join(names) or text("no_sensors", language)
-            raise Trouble(2, "no_sensor", robot=robot.name, found=name or each, known=known,
+            raise CommandError(2, "no_sensor", robot=robot.name, found=name or each, known=known,
                           near=nearest(name, names) or "")  # fmt: skip
         number = names.index(name)
         device = sensors[number]
         if not equals or not values.strip():
             example = f"{name}={device.text(device.low)},{device.text(device.high)}"
-            raise Trouble(2, "sensor_form", example=example)
+            raise CommandError(2, "sensor_form", example=example)
         if number in lists:
-            raise Trouble(2, "sensor_twice", name=name)
+            raise CommandError(2, "sensor_twice", name=name)
         lists[number] = [_reading(device, value.strip(), language) for value in values.split(",")]
     return lists
 
@@ -191,5 +143,5 @@ def _reading(device: Device, found: str, language: str) -> int:
         low, high = device.text(device.low), device.text(device.high)
         allowed = text("range_number", language).format(low=low, high=high)
     if value is None or not device.low <= value <= device.high:
-        raise Trouble(2, "sensor_value", found=found or "''", name=device.name, range=allowed)
+        raise CommandError(2, "sensor_value", found=found or "''", name=device.name, range=allowed)
     return value

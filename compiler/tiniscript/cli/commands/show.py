@@ -2,40 +2,17 @@
 
 from __future__ import annotations
 
+from argparse import Namespace
 from typing import TYPE_CHECKING
 
 from tiniscript.cli import images, inputs
-from tiniscript.cli.options import Options
 from tiniscript.cli.texts.common import text
 
 if TYPE_CHECKING:
     from tiniscript.robots.profile import Robot
 
-HELP = (
-    """\
-tsc show PROGRAM [--json] [--robot NAME|FILE]
 
-Lists the instructions of a program (image or text): offsets, bytes, names, and source lines
-where they are known.
-  --json        the same as data: code_bytes, image_bytes, start, robot, instructions, ...
-""",
-    """\
-tsc show PROGRAMA [--json] [--robot NOMBRE|ARCHIVO]
-
-Lista las instrucciones de un programa (imagen o texto): posiciones, bytes, nombres, y las
-líneas del texto si se conocen.
-  --json        lo mismo como datos: code_bytes, image_bytes, start, robot, instructions, ...
-""",
-)
-
-
-def run(arguments: list[str], language: str) -> int:
-    parser = Options("show", language, HELP)
-    parser.takes_program()
-    parser.add_argument("--json", action="store_true")
-    options = parser.read(arguments)
-    if options is None:
-        return 0
+def run(options: Namespace, language: str) -> int:
     given = inputs.program(options)
     robot = inputs.robot(options, language)
     if given.is_image and options.robot is None:
@@ -55,7 +32,7 @@ def print_listing(ready: images.Ready, robot: Robot, name: str, language: str) -
     from tiniscript.library.programs import remarks
 
     image = ready.image
-    key = "for_robot" if image.kit else "any_robot"
+    key = "for_robot" if image.devices else "any_robot"
     print(text("head", language).format(
         file=name,
         start=image.start,
@@ -65,7 +42,7 @@ def print_listing(ready: images.Ready, robot: Robot, name: str, language: str) -
         checksum=f"{image.checksum:08x}",
     ))  # fmt: skip
     found = remarks(ready.places, language)
-    print(listing(image.code, found, robot.kit if image.kit else None), end="")
+    print(listing(image.code, found, robot.kit if image.devices else None), end="")
 
 
 def print_json(ready: images.Ready, robot: Robot) -> None:
@@ -93,8 +70,8 @@ def print_json(ready: images.Ready, robot: Robot) -> None:
         "code_bytes": len(image.code),
         "image_bytes": ready.image_bytes,
         "start": image.start,
-        "robot": robot.name if image.kit else None,
-        "kit": f"{image.kit:04x}",
+        "robot": robot.name if image.devices else None,
+        "devices": f"{image.devices:04x}",
         "checksum": f"{image.checksum:08x}",
         "isa": f"{image.isa[0]}.{image.isa[1]}",
         "instructions": instructions,

@@ -6,60 +6,15 @@ import json
 from argparse import Namespace
 from typing import Any
 
-from tiniscript.cli.errors import Trouble
 from tiniscript.cli.inputs import shown
-from tiniscript.cli.options import Options, whole_number
-from tiniscript.cli.robot.connect import Connection, connected, takes_robot
+from tiniscript.cli.options import whole_number
+from tiniscript.cli.robot.connect import Connection, connected
 from tiniscript.cli.texts.common import text
 from tiniscript.link.messages import MOST_BALANCE, MOST_LEAST
 from tiniscript.link.trim import Trim, told
 
-HELP = (
-    """\
-tsc trim [--port P] [--show] [--reset]
-         [--exchange yes|no] [--reverse-left yes|no] [--reverse-right yes|no]
-         [--balance N] [--least N] [--json]
 
-Makes a robot drive straight: turns its motors, asks what you see, and the robot keeps what
-follows from it in its own memory, whatever program it runs. No wire is changed and nothing flashed.
-  --show               only prints what the robot keeps
-  --reset              motors as they are wired, both equally strong
-  --exchange yes       left and right motor are the wrong way round
-  --reverse-left yes   the left wheel turns backward; --reverse-right likewise
-  --balance N          the left wheel gets N % less; with -N the right one does (up to 40)
-  --least N            the percent of power from which on the wheels move (0 to 40)
-  --json               prints what the robot keeps as data
-  --port P, --baud N   as for tsc upload
-""",
-    """\
-tsc trim [--port P] [--show] [--reset]
-         [--exchange yes|no] [--reverse-left yes|no] [--reverse-right yes|no]
-         [--balance N] [--least N] [--json]
-
-Hace que un robot vaya derecho: gira sus motores, pregunta qué ves, y el robot guarda lo que
-resulta en su propia memoria, con cualquier programa. No se cambia ningún cable ni se graba nada.
-  --show               solo imprime lo que guarda el robot
-  --reset              motores como están conectados, los dos con igual fuerza
-  --exchange yes       el motor izquierdo y el derecho están al revés
-  --reverse-left yes   la rueda izquierda gira hacia atrás; --reverse-right igual
-  --balance N          la rueda izquierda recibe N % menos; con -N, la derecha (hasta 40)
-  --least N            el porcentaje de potencia desde el que se mueven las ruedas (0 a 40)
-  --json               imprime lo que guarda el robot como datos
-  --port P, --baud N   como en tsc upload
-""",
-)
-
-
-def run(arguments: list[str], language: str) -> int:
-    parser = Options("trim", language, HELP)
-    takes_robot(parser)
-    for name in ("--show", "--reset", "--json"):
-        parser.add_argument(name, action="store_true")
-    for name in ("--exchange", "--reverse-left", "--reverse-right", "--balance", "--least"):
-        parser.add_argument(name)
-    options = parser.read(arguments)
-    if options is None:
-        return 0
+def run(options: Namespace, language: str) -> int:
     given = _given(options, language)
     with connected(options, language) as connection:
         connection.meet()
@@ -73,14 +28,14 @@ def run(arguments: list[str], language: str) -> int:
             from tiniscript.cli.robot.trim_wizard import guided
 
             trim = guided(connection, before)
-        # The one that may have been set already: OK says that it is kept.
+        # This trim may be set already; the status OK means that it is saved.
         connection.ask(lambda session: session.trim(trim.data()))
         _print(connection, "trim_keeps", trim, options.json)
     return 0
 
 
 def _given(options: Namespace, language: str) -> dict[str, Any]:
-    """Return what the options set of a trim."""
+    """Return the fields of a trim that the options set."""
     found: dict[str, Any] = {}
     for option, name in (
         ("exchange", "is_exchanged"),
@@ -89,9 +44,6 @@ def _given(options: Namespace, language: str) -> dict[str, Any]:
     ):
         word: str | None = getattr(options, option)
         if word is not None:
-            if word not in ("yes", "no"):
-                shown_option = "--" + option.replace("_", "-")
-                raise Trouble(2, "trim_yes_no", option=shown_option, found=shown(word) or "''")
             found[name] = word == "yes"
     if options.balance is not None:
         found["balance"] = whole_number(
@@ -104,7 +56,7 @@ def _given(options: Namespace, language: str) -> dict[str, Any]:
 
 def _print(connection: Connection, key: str, trim: Trim, is_json: bool) -> None:
     if is_json:
-        print(json.dumps({"robot": connection.card.name, "port": connection.port,
+        print(json.dumps({"robot": connection.device_info.name, "port": connection.port,
                           **trim._asdict()}))  # fmt: skip
         return
     said = text(key, connection.language).format(
@@ -114,7 +66,7 @@ def _print(connection: Connection, key: str, trim: Trim, is_json: bool) -> None:
 
 
 def words(trim: Trim, language: str) -> str:
-    """Return what a trim means."""
+    """Return a trim in words."""
     found = [
         text(key, language)
         for key, is_so in (

@@ -1,1 +1,1 @@
-"""What verbs that talk to a robot share."""
+"""Code that the verbs with a robot share."""

@@ -1,6 +1,6 @@
-"""The way to a robot: `--port` and `--baud`, the choice of a port, and who answers there.
+"""The connection to a robot: `--port` and `--baud`, the choice of a port, and the robot there.
 
-Every trouble on that way becomes a sentence that says what to do next.
+Every failure becomes a sentence that says what to do next.
 """
 
 from __future__ import annotations
@@ -9,46 +9,34 @@ import sys
 from argparse import Namespace
 from collections.abc import Callable
 from contextlib import suppress
-from typing import IO, TYPE_CHECKING
+from typing import IO, TYPE_CHECKING, TypeVar
 
 from tiniscript.cli import inputs
-from tiniscript.cli.errors import Trouble
+from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
-from tiniscript.cli.options import Options, whole_number
+from tiniscript.cli.options import whole_number
 from tiniscript.cli.robot import shared_port
 from tiniscript.cli.robot.own_kit import remember as remember_profile
 from tiniscript.cli.texts.common import text
-from tiniscript.library import way
+from tiniscript.library import opening
 from tiniscript.library.errors import RobotError
 
 if TYPE_CHECKING:
-    from tiniscript.cli.robot.event_printer import Teller
-    from tiniscript.cli.robot.simulator import Company
+    from tiniscript.cli.robot.event_printer import EventPrinter
+    from tiniscript.cli.robot.simulator import CommandSimulator
     from tiniscript.codegen.source_map import Map
-    from tiniscript.link.connection import Asked, Asks, Way
+    from tiniscript.link.connection import LinkConnection, PendingRequest, Requester
     from tiniscript.link.line import Line
     from tiniscript.link.outcomes import Event, Gone
-    from tiniscript.link.ports import PortTrouble
-    from tiniscript.link.requests import Reply
-    from tiniscript.link.requests import Robot as Card
+    from tiniscript.link.ports import PortError
+    from tiniscript.link.requests import DeviceInfo, Reply
     from tiniscript.robots.profile import Robot
 
-PATIENCE_MS = 6000  # for which one that has answered may be silent, or busy with saving
-VIRTUAL = ""  # no port: a virtual robot that this command brings along
+T = TypeVar("T")
+
+PATIENCE_MS = 6000  # timeout for a known robot that is silent, or busy with saving
+VIRTUAL = ""  # no port: this command starts its own virtual robot
 SLOWEST_BAUD, FASTEST_BAUD = 300, 2_000_000
-
-
-def takes_port(parser: Options) -> None:
-    """Add what every verb that talks to a robot has."""
-    parser.add_argument("--port")
-    parser.add_argument("--baud")
-    parser.add_argument("--virtual", action="store_true")
-
-
-def takes_robot(parser: Options) -> None:
-    """Add what those have that take no program."""
-    takes_port(parser)
-    parser.add_argument("--robot")
 
 
 def connected(options: Namespace, language: str) -> Connection:
@@ -61,14 +49,14 @@ def baud_of(options: Namespace, robot: Robot, language: str) -> int:
 
 
 class Connection:
-    """The way to a port, and the robot on it once it has said who it is."""
+    """The connection to a port, and the robot on it once it has said who it is."""
 
     def __init__(
         self, options: Namespace, robot: Robot, language: str, is_one_of_many: bool = False
     ) -> None:
-        """Go to the port that the options name, or the last used one, or ask for one.
+        """Connect to the port that the options name, or the last used one, or ask for one.
 
-        `is_one_of_many`: whoever looks after all of them remembers the ports.
+        `is_one_of_many`: the fleet remembers the ports, not this connection.
         """
         self.is_one_of_many = is_one_of_many
         self.options = options
@@ -80,20 +68,21 @@ class Connection:
         baud = baud_of(options, robot, language)
         self.language = language
         self.profile = robot
-        self.company: Company | None = None  # a virtual robot that is here for this command
+        self.simulator: CommandSimulator | None = None  # a virtual robot for this command alone
         found = _chosen(options, language)
         if found == VIRTUAL:
-            from tiniscript.cli.robot.simulator import Company
+            from tiniscript.cli.robot.simulator import CommandSimulator
 
-            self.company = Company(options, robot, language)
-            found = self.company.port
+            self.simulator = CommandSimulator(options, robot, language)
+            found = self.simulator.port
         self.port = found
         asked_baud = None if options.baud is None else baud
         try:
-            self.line = opened_way(self.port, baud, robot, options.verb, asked_baud=asked_baud)
-            self.host = shared_port.shared(self.line, self.port, baud, options.verb)
+            verb = options.verb
+            self.line = opened_connection(self.port, baud, robot, verb, asked_baud=asked_baud)
+            self.server = shared_port.shared(self.line, self.port, baud, verb)
         except BaseException:
-            self._end_company()
+            self._end_simulator()
             raise
 
     def __enter__(self) -> Connection:
@@ -102,18 +91,18 @@ class Connection:
     def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
         if kind is not None and issubclass(kind, OSError) and self.drives:
             self.stop_unseen()
-        if self.host is not None:
-            self.host.close()  # before it one may begin
-            if self.host.may_have_run:  # of a guest, who can no longer stop it
+        if self.server is not None:
+            self.server.close()  # until then a client may start a run
+            if self.server.may_have_run:  # its client can no longer stop it
                 from tiniscript.cli.robot.run_monitor import STOP_S, confirmed
 
                 confirmed(self.line, STOP_S)
         self.line.close()
-        self._end_company()
+        self._end_simulator()
 
     def stop_unseen(self) -> bool:
-        """Stop the robot, once, because nobody reads any more, or can, what it does; return whether
-        it was this time, and the robot has confirmed it."""
+        """Stop the robot, because nobody reads, or can read, the output. Return True if this is the
+        first such call and the robot has confirmed the stop."""
         if self._is_stopped_unseen or not self.drives:
             return False
         self._is_stopped_unseen = True
@@ -128,80 +117,86 @@ class Connection:
 
     @property
     def is_time_over(self) -> bool:
-        """Whether the command has to end, because it was told so."""
-        return self.company is not None and self.company.is_time_over
+        """Whether the time limit of the command is over."""
+        return self.simulator is not None and self.simulator.is_time_over
 
-    def teller(self, is_json: bool = False, places: Map | None = None) -> Teller:
-        """Return who prints events: around the picture of a virtual robot that is drawn here."""
-        from tiniscript.cli.robot.event_printer import Teller
+    def event_printer(self, is_json: bool = False, places: Map | None = None) -> EventPrinter:
+        """Return the printer of events; it prints above the picture of a virtual robot."""
+        from tiniscript.cli.robot.event_printer import EventPrinter
 
-        if self.company is None:
-            return Teller(self.language, is_json, places=places)
-        return Teller(
-            self.language, is_json, places=places, out=self.company.say, err=self.company.complain
+        if self.simulator is None:
+            return EventPrinter(self.language, is_json, places=places)
+        return EventPrinter(
+            self.language,
+            is_json,
+            places=places,
+            out=self.simulator.say,
+            err=self.simulator.complain,
         )
 
-    def _end_company(self) -> None:
-        if self.company is not None:
-            self.company.close()
+    def _end_simulator(self) -> None:
+        if self.simulator is not None:
+            self.simulator.close()
 
-    def meet(self, board: str | None = None) -> Card:
-        """Ask the robot who it is, until it answers. Raises Trouble where none does.
+    def meet(self, board: str | None = None) -> DeviceInfo:
+        """Send HELLO until the robot answers. Raises CommandError if none does.
 
-        `board` is what it is on, where that is not the one of its profile.
+        `board` replaces the board of the profile.
         """
         from tiniscript.link.outcomes import CANCELLED
 
-        reply = way.met(self.line, self.port, board or self.profile.board.chip, self.wait)
+        reply = opening.met(self.line, self.port, board or self.profile.board.chip, self.wait)
         while reply.status == CANCELLED and self.starts_nothing:  # a stop came first
-            reply = self.wait(way.hello(self.line, way.ANSWER_MS))
-        card = self.line.robot
-        if reply.status or card is None:
-            raise self.trouble(reply)
-        remember_profile(self.options, self.profile, card.kit)
+            reply = self.wait(opening.hello(self.line, opening.ANSWER_MS))
+        device_info = self.line.robot
+        if reply.status or device_info is None:
+            raise self.failure(reply)
+        remember_profile(self.options, self.profile, device_info.kit)
         if not self.is_one_of_many:
-            self.remember(card.name)
-        return card
+            self.remember(device_info.name)
+        return device_info
 
     def remember(self, name: str) -> None:
-        """Keep the port for the next time, and what the robot on it is called."""
-        way.remember(self.port, name)
+        """Remember the port for the next time, and the name of its robot."""
+        opening.remember(self.port, name)
 
     @property
-    def card(self) -> Card:
-        """Who the robot is; `meet` has asked."""
+    def device_info(self) -> DeviceInfo:
+        """The robot's answer to HELLO; call `meet` first."""
         assert self.line.robot is not None
         return self.line.robot
 
     @property
     def name(self) -> str:
-        """What to call the robot: its name, else that of its profile, else its port."""
-        if self.card.name:
-            return shown(self.card.name)
-        return robot_of_kit(self.card.kit) or text("robot", self.language)
+        """The robot's name for messages: its own, else that of its profile, else its port."""
+        if self.device_info.name:
+            return shown(self.device_info.name)
+        return robot_of_kit(self.device_info.kit) or text("robot", self.language)
 
-    def ask(self, make: Callable[[Asks], Asked]) -> Reply:
-        """Have something done; raise Trouble where it is not."""
+    def ask(self, make: Callable[[Requester], PendingRequest[T]]) -> Reply[T]:
+        """Make a request and return its reply; raise CommandError if it fails."""
         reply = self.wait(self.do(make))
         if reply.status:
-            raise self.trouble(reply)
+            raise self.failure(reply)
         return reply
 
-    def give(self, make: Callable[[Asks], Asked]) -> Reply:
-        """Have the robot take something; raise Trouble where it does not. Where the reply is not
-        OK, it has not kept it yet."""
+    def give(self, make: Callable[[Requester], PendingRequest[T]]) -> Reply[T]:
+        """Send data for the robot to keep; raise CommandError if it refuses.
+
+        If the reply is not OK, the robot has not saved the data yet.
+        """
         from tiniscript.link.requests import TAKEN
 
         reply = self.wait(self.do(make))
         if reply.status and reply.status not in TAKEN:
-            raise self.trouble(reply)
+            raise self.failure(reply)
         return reply
 
-    def do(self, make: Callable[[Asks], Asked]) -> Asked:
-        """Have something begun, for which there is a limited time."""
-        return self.line.do(way.limited(make, PATIENCE_MS))
+    def do(self, make: Callable[[Requester], PendingRequest[T]]) -> PendingRequest[T]:
+        """Begin a request with a timeout."""
+        return self.line.do(opening.limited(make, PATIENCE_MS))
 
-    def wait(self, task: Asked, look: Callable[[], None] | None = None) -> Reply:
+    def wait(self, request: PendingRequest[T], look: Callable[[], None] | None = None) -> Reply[T]:
         from tiniscript.link.outcomes import Gone
 
         def watch() -> None:
@@ -210,14 +205,14 @@ class Connection:
                 look()
 
         try:
-            return self.line.wait(task, watch)
+            return self.line.wait(request, watch)
         except Gone as gone:
             raise self.gone(gone) from None
 
     def event(self) -> tuple[int, Event] | None:
-        """Return the next event and when it came (ms), or None where none comes for a moment.
+        """Return the time (ms) and the next event, or None if none arrives for a moment.
 
-        Raises Trouble where the way has ended.
+        Raises CommandError if the connection has ended.
         """
         from tiniscript.link.outcomes import Gone
 
@@ -228,7 +223,7 @@ class Connection:
             raise self.gone(gone) from None
 
     def interrupt(self) -> None:
-        """Let the thread that waits here see a Ctrl-C, which Python shows only the first one."""
+        """Pass a Ctrl-C to the thread that waits here; Python reports it only to the main one."""
         self.is_interrupted = True
 
     def _heed(self) -> None:
@@ -236,15 +231,15 @@ class Connection:
             self.is_interrupted = False
             raise KeyboardInterrupt
 
-    def trouble(self, reply: Reply) -> Trouble:
+    def failure(self, reply: Reply[object]) -> CommandError:
         """Return the sentence for an outcome that is not OK."""
-        reason = way.reason_of(self.line, reply)
+        reason = opening.reason_of(self.line, reply)
         if reason == "status":
-            return Trouble(3, "plain", said=self.said(reply))
-        return Trouble(3, reason, port=shown(self.port))
+            return CommandError(3, "plain", said=self.said(reply))
+        return CommandError(3, reason, port=shown(self.port))
 
-    def said(self, reply: Reply) -> str:
-        """Return what a robot's refusal means, and what to do."""
+    def said(self, reply: Reply[object]) -> str:
+        """Return the meaning of a robot's refusal, and what to do."""
         from tiniscript.link.messages import STATUSES
         from tiniscript.link.statuses import sentence
 
@@ -255,31 +250,33 @@ class Connection:
                 advice = text("choose_kit", self.language).format(robot=name)
         return f"{said} {advice}".strip()
 
-    def gone(self, gone: Gone) -> Trouble:
-        """Return the sentence for a way that has ended."""
+    def gone(self, gone: Gone) -> CommandError:
+        """Return the sentence for a connection that has ended."""
         verb = self.line.held_by
-        return Trouble(3, way.reason_of_end(self.line, gone), port=shown(self.port), verb=verb)
+        return CommandError(
+            3, opening.reason_of_end(self.line, gone), port=shown(self.port), verb=verb
+        )
 
 
-def opened_way(
+def opened_connection(
     port: str, baud: int, robot: Robot, verb: str, limit_s: float = 20,
     asked_baud: int | None = None,
-) -> Way:  # fmt: skip
-    """Go to a port through its holder, or open it. Raises Trouble."""
+) -> LinkConnection:  # fmt: skip
+    """Connect to a port through its server, or open it. Raises CommandError."""
 
     def open_line(lock: IO[bytes] | None) -> Line:
-        return way.opened_line(port, baud, robot.kit.fingerprint, limit_s, lock)
+        return opening.opened_line(port, baud, robot.kit.fingerprint, limit_s, lock)
 
     try:
-        return way.way_to(port, verb, open_line, asked_baud)
+        return opening.connection_to(port, verb, open_line, asked_baud)
     except RobotError as error:
-        raise Trouble(3, error.reason, **error.values) from None
+        raise CommandError(3, error.reason, **error.values) from None
 
 
-def port_trouble(port: str, trouble: PortTrouble) -> Trouble:
+def port_failure(port: str, failure: PortError) -> CommandError:
     """Return the sentence for a port that does not open."""
-    error = way.port_error(port, trouble)
-    return Trouble(3, error.reason, **error.values)
+    error = opening.port_error(port, failure)
+    return CommandError(3, error.reason, **error.values)
 
 
 def robot_of_kit(kit: int) -> str | None:
@@ -289,16 +286,16 @@ def robot_of_kit(kit: int) -> str | None:
 
 
 def _chosen(options: Namespace, language: str) -> str:
-    """Return the port of `--port`, else the last used, else the one that the person chooses.
+    """Return the port of `--port`, else the last used one, else the one that the user chooses.
 
-    Never one that merely answers: it may be another group's robot. A virtual robot that runs here
-    is this person's own. VIRTUAL: one that the command brings along.
+    A port is not chosen because a robot answers on it: it may be another group's robot. A running
+    virtual robot is the user's own. VIRTUAL stands for a virtual robot of this command.
     """
     port: str | None = options.port
     can_bring = hasattr(options, "world")
     if options.virtual:
         if port is not None:
-            raise Trouble(2, "virtual_and_port")
+            raise CommandError(2, "virtual_and_port")
         from tiniscript.cli.robot.simulator import running_address
 
         return running_address(options) or VIRTUAL
@@ -308,7 +305,7 @@ def _chosen(options: Namespace, language: str) -> str:
         refuse_real(options)
     if port is not None:
         if not port.strip() or not port.isprintable():
-            raise Trouble(2, "no_such_port", found=shown(port) or "''")
+            raise CommandError(2, "no_such_port", found=shown(port) or "''")
         return port
     from tiniscript.link import known_ports, port_names
 
@@ -322,8 +319,8 @@ def _chosen(options: Namespace, language: str) -> str:
         return virtual[0].address
     if not (sys.stdin.isatty() and sys.stderr.isatty()) or getattr(options, "asks_nothing", False):
         if last is not None:
-            raise Trouble(3, "last_port_missing", port=shown(last))
-        raise Trouble(3, "which_port_or_virtual" if can_bring else "which_port")
+            raise CommandError(3, "last_port_missing", port=shown(last))
+        raise CommandError(3, "which_port_or_virtual" if can_bring else "which_port")
     return _asked(language, can_bring)
 
 
@@ -344,7 +341,7 @@ def _asked(language: str, can_bring: bool) -> str:
 
             if offered(language):
                 return VIRTUAL
-        raise Trouble(3, "no_ports")
+        raise CommandError(3, "no_ports")
     about = {each.port: each.description for each in found}
     print(text("choose_port", language), file=sys.stderr)
     for number, port in enumerate(choices, 1):
@@ -358,7 +355,7 @@ def _asked(language: str, can_bring: bool) -> str:
               flush=True)  # fmt: skip
         answer = sys.stdin.readline()
         if not answer:
-            raise Trouble(3, "which_port")
+            raise CommandError(3, "which_port")
         answer = answer.strip()
         if answer and answer in choices:
             return answer

@@ -1,6 +1,6 @@
-"""What a robot tells while it runs: SHOW values, faults with their lines, how it ended.
+"""Prints a robot's events during a run: SHOW values, faults with their lines, the end.
 
-As sentences, as lines of JSON, and as rows of a CSV file.
+The formats are sentences, lines of JSON, and rows of a CSV file.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ import json
 import sys
 from typing import TYPE_CHECKING, TextIO
 
-from tiniscript.cli.errors import Trouble
+from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.texts.common import text
 
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
     from tiniscript.codegen.source_map import Map
     from tiniscript.link.outcomes import Event
+    from tiniscript.link.payloads import ShowEvent, StatusReply
     from tiniscript.vm.trace import Event as Traced
 
 
@@ -31,7 +32,7 @@ def fault_name(number: int) -> str:
 
 
 def fault_sentence(number: int, at: int, program: int, places: Map | None, language: str) -> str:
-    """Return what a fault is, and the line of the program where it was, if its text is known."""
+    """Return the meaning of a fault, and its line in the program if the text is known."""
     from tiniscript.cli.commands.run import fault_text
     from tiniscript.cli.texts.common import has_text
     from tiniscript.codegen import source_map
@@ -53,7 +54,7 @@ def value_text(value: int, is_yes_no: bool) -> str:
 
 
 def cause_name(number: int) -> str:
-    """Return the name of a cause; of one that a newer robot knows, NONE."""
+    """Return the name of a cause; NONE for a cause that only newer robots know."""
     from tiniscript.link.messages import CAUSES
 
     return CAUSES[number][0] if number < len(CAUSES) else CAUSES[0][0]
@@ -68,11 +69,11 @@ def _err(line: str) -> None:
     print(line, file=sys.stderr, flush=True)
 
 
-class Teller:
+class EventPrinter:
     """Prints events. `has_times`: each with the milliseconds since the first.
 
-    `out` and `err` print, where something else than this is on the terminal. JSON gets what
-    `about` says, too.
+    `out` and `err` replace `print` while a picture is on the terminal. JSON lines also get the
+    fields of `about`.
     """
 
     def __init__(
@@ -100,44 +101,43 @@ class Teller:
         if self.began_ms is None:
             self.began_ms = time_ms
         since_ms = time_ms - self.began_ms
-        name, values = event
-        numbers = {key: value for key, value in values.items() if isinstance(value, int)}
-        if name == "SHOW":
-            value = value_text(numbers["value"], bool(numbers["is_yes_no"]))
-            self.say(since_ms, "SHOW", value, value=json_value(numbers))
-        elif name == "DONE":
+        if event.name == "SHOW":
+            value = value_text(event.value, bool(event.is_yes_no))
+            self.say(since_ms, "SHOW", value, value=json_value(event))
+        elif event.name == "DONE":
             self.say(since_ms, "DONE", "", text("robot_done", self.language))
-        elif name in ("FAULT", "ENDED"):
-            self._tell_end(since_ms, name, numbers)
-        elif name == "STOPPED":
-            cause = cause_name(numbers["cause"])
+        elif event.name == "FAULT":
+            self._tell_fault(since_ms, event.fault, event.at, event.program)
+        elif event.name == "ENDED":
+            self._tell_end(since_ms, event.status)
+        elif event.name == "STOPPED":
+            cause = cause_name(event.cause)
             said = text(f"stopped_{cause}", self.language)
             self.say(since_ms, "STOPPED", cause, said, cause=cause)
-        elif name == "MISSED":
-            said = text("missed", self.language).format(n=numbers["count"])
-            self.say(since_ms, "MISSED", str(numbers["count"]), said, count=numbers["count"])
-        elif name == "TEXT":
-            line = values["text"]
-            assert isinstance(line, bytes)
-            words = shown(line.decode("utf-8", "replace"))
+        elif event.name == "MISSED":
+            said = text("missed", self.language).format(n=event.count)
+            self.say(since_ms, "MISSED", str(event.count), said, count=event.count)
+        elif event.name == "TEXT":
+            words = shown(event.text.decode("utf-8", "replace"))
             said = text("robot_text", self.language).format(said=words)
             self.say(since_ms, "TEXT", words, said, text=words)
 
-    def _tell_end(self, since_ms: int, name: str, numbers: dict[str, int]) -> None:
-        """A fault, or the end of a run of which only the robot's state is known."""
+    def _tell_end(self, since_ms: int, status: StatusReply) -> None:
+        """Print the end of a run for which only the robot's state is known."""
         from tiniscript.link.messages import STATE_FAULTED, STATE_IDLE
 
-        if name == "ENDED" and numbers["state"] != STATE_FAULTED:
-            ended = "DONE" if numbers["state"] == STATE_IDLE else "STOPPED"
-            key = "robot_done" if ended == "DONE" else "stopped_NONE"
-            self.say(since_ms, ended, "", text(key, self.language))
+        if status.state == STATE_FAULTED:
+            self._tell_fault(since_ms, status.fault, status.fault_at, status.fault_program)
             return
+        ended = "DONE" if status.state == STATE_IDLE else "STOPPED"
+        key = "robot_done" if ended == "DONE" else "stopped_NONE"
+        self.say(since_ms, ended, "", text(key, self.language))
+
+    def _tell_fault(self, since_ms: int, number: int, at: int, program: int) -> None:
         from tiniscript.codegen import source_map
 
-        fault = fault_name(numbers["fault"])
-        at = numbers["at" if name == "FAULT" else "fault_at"]
-        program = numbers["program" if name == "FAULT" else "fault_program"]
-        said = fault_sentence(numbers["fault"], at, program, self.places, self.language)
+        fault = fault_name(number)
+        said = fault_sentence(number, at, program, self.places, self.language)
         places = self.places or source_map.recall(program)
         place = places.at(at) if places is not None else None
         more = {} if place is None else {"line": place.line}
@@ -148,7 +148,7 @@ class Teller:
         self, since_ms: int, name: str, what: str, said: str = "", /, is_bad: bool = False,
         **fields: object,
     ) -> None:  # fmt: skip
-        """Print an event: `said`, or its name and what there is to it. JSON gets the fields."""
+        """Print an event: `said`, or its name and its values. JSON gets the fields."""
         if self.rows is not None:
             self._add_row(since_ms, name, what)
         if self.is_json:
@@ -161,19 +161,20 @@ class Teller:
             self.out(time + (said or f"{name} {what}"))
 
     def _add_row(self, since_ms: int, name: str, what: str) -> None:
+        import csv
+
         assert self.rows is not None
-        quoted = '"' + what.replace('"', '""') + '"' if any(c in what for c in ',"\n') else what
         try:
-            self.rows.write(f"{since_ms},{name},{quoted}\n")
+            csv.writer(self.rows, lineterminator="\n").writerow((since_ms, name, what))
             self.rows.flush()
         except (OSError, ValueError) as why:
             reason = why.strerror if isinstance(why, OSError) and why.strerror else str(why)
             file = shown(str(self.rows.name))
-            raise Trouble(2, "unwritable_rows", file=file, why=reason) from None
+            raise CommandError(2, "unwritable_rows", file=file, why=reason) from None
 
 
 class Bookkeeping:
-    """Knows which values of a run are for `tsc live` alone, that keeps its variables so."""
+    """Recognizes the values in a run that `tsc live` uses to keep its variables."""
 
     def __init__(self) -> None:
         self.is_on = False
@@ -185,12 +186,12 @@ class Bookkeeping:
             self.is_on = False
         elif event.name != "SHOW":
             return False
-        elif event.values["value"] == MARK and not event.values["is_yes_no"]:
+        elif event.value == MARK and not event.is_yes_no:
             self.is_on = True
         return self.is_on
 
     def hides_trace(self, event: Traced) -> bool:
-        """The same for what a virtual robot says that it does."""
+        """The same for an action in the trace of a virtual robot."""
         from tiniscript.cli.robot.live_mark import MARK
 
         if event.what in ("START", "DONE", "FAULT", "STOP", "OFF"):
@@ -200,9 +201,8 @@ class Bookkeeping:
         return self.is_on and event.what == "SHOW"
 
 
-def json_value(numbers: dict[str, int]) -> object:
-    """Return a value as JSON has it: a number with its decimals, or true and false."""
-    if numbers["is_yes_no"]:
-        return bool(numbers["value"])
-    value = numbers["value"]
-    return value // 1000 if value % 1000 == 0 else value / 1000
+def json_value(event: ShowEvent) -> object:
+    """Return a value for JSON: a number with its decimals, or true and false."""
+    if event.is_yes_no:
+        return bool(event.value)
+    return event.value // 1000 if event.value % 1000 == 0 else event.value / 1000

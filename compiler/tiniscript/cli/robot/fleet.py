@@ -1,6 +1,6 @@
 """Many robots at once: a thread for each, so that none waits for another.
 
-Knows no verb: each says what is done with one robot, and gets a `Connection` of its own for that.
+Knows no verb: a verb passes a function, which gets a `Connection` for each robot.
 """
 
 from __future__ import annotations
@@ -15,21 +15,21 @@ from threading import Event, Thread
 from time import monotonic
 from typing import TYPE_CHECKING, NamedTuple
 
-from tiniscript.cli.errors import Trouble
+from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.run_monitor import CONFIRM_S, confirmed
-from tiniscript.cli.robot.targets import Post, posts
+from tiniscript.cli.robot.targets import Target, targets
 from tiniscript.cli.texts.common import text
-from tiniscript.library import way
+from tiniscript.library import opening
 
 if TYPE_CHECKING:
-    from tiniscript.cli.terminal.fleet_table import Roll
+    from tiniscript.cli.terminal.fleet_table import FleetTable
     from tiniscript.robots.profile import Robot
 
 LOOK_S = 0.1
-STRANGER_S = 4.0  # for which a port that nobody has named may be silent, if it never had a robot
-# troubles that may only mean that there is no robot on a port that nobody has named
+STRANGER_S = 4.0  # timeout for a port that the user has not named and that never had a robot
+# failures that may only mean that a port that the user has not named has no robot
 NOBODY = ("port_missing", "port_missing_but", "port_unreachable")
 NO_ROBOT = (
     "link_silent", "link_other", "link_echo", "not_confirmed", "port_slow", "port_no_port",
@@ -38,11 +38,11 @@ NO_ROBOT = (
 
 
 class Again(Exception):
-    """The way to a robot has to be looked for again."""
+    """The connection to a robot has to be opened again."""
 
 
 class Result(NamedTuple):
-    """How it went with one robot, as a sentence and as data. `is_absent`: there is none."""
+    """The result for one robot, as a sentence and as data. `is_absent`: there is none."""
 
     is_done: bool
     said: str
@@ -53,10 +53,10 @@ class Result(NamedTuple):
 class Member:
     """One robot of many: its thread writes, all others read."""
 
-    def __init__(self, post: Post, lines: deque[str]) -> None:
-        self.post = post
-        self.lines = lines  # that are printed when there is time: one thread does that for all
-        self.name = post.name  # what it calls itself, once it has said so
+    def __init__(self, target: Target, lines: deque[str]) -> None:
+        self.target = target
+        self.lines = lines  # to be printed by the one thread that prints for all
+        self.name = target.name  # its own name once it has answered
         self.state: tuple[str, dict[str, object]] = ("crew_opening", {})
         self.value = ""  # the last that it has shown
         self.result: Result | None = None
@@ -68,11 +68,11 @@ class Member:
         self.state = key, values
 
     def print(self, line: str) -> None:
-        """Have a line printed."""
+        """Queue a line for printing."""
         self.lines.append(line)
 
     def meet(self, connection: Connection) -> None:
-        """Ask the robot who it is. Raises Trouble."""
+        """Send HELLO to the robot. Raises CommandError."""
         self.tell("crew_asking")
         connection.meet()
         self.name = connection.name
@@ -88,7 +88,7 @@ class Member:
         return "absent" if self.is_absent else "ok" if self.result.is_done else "bad"
 
     def said(self, language: str) -> str:
-        """Return what happens now, or how it went."""
+        """Return the current state, or the result."""
         if self.result is not None:
             return self.result.said
         key, values = self.state
@@ -98,14 +98,14 @@ class Member:
     @property
     def row(self) -> str:
         said = self.result.said if self.result is not None else ""
-        name = f"{shown(self.name)} ({shown(self.post.port)})" if self.name else self.post.port
+        name = f"{shown(self.name)} ({shown(self.target.port)})" if self.name else self.target.port
         return f"{name}: {said}"
 
     def as_json(self) -> str:
         assert self.result is not None
         is_done, said, fields, is_absent = self.result
         return json.dumps({
-            "event": "RESULT", "port": self.post.port, "robot": self.name or None,
+            "event": "RESULT", "port": self.target.port, "robot": self.name or None,
             "is_done": is_done, "is_absent": is_absent, "said": said, **fields,
         })  # fmt: skip
 
@@ -114,36 +114,38 @@ Work = Callable[[Connection, Member], Result]
 
 
 def together(options: Namespace, robot: Robot, language: str, work: Work) -> int:
-    """Do something with many robots, and print how it went; return the exit code.
+    """Run `work` for many robots and print the results; return the exit code.
 
-    Ctrl-C stops all of them. Raises Trouble where there is none.
+    Ctrl-C stops all of them. Raises CommandError if there is none.
     """
-    crew = Crew(posts(options), options, robot, language)
-    if not crew.members:
-        raise Trouble(3, "no_robots")
-    crew.begin(work)
+    fleet = Fleet(targets(options), options, robot, language)
+    if not fleet.members:
+        raise CommandError(3, "no_robots")
+    fleet.begin(work)
     try:
         if sys.stderr.isatty() and not options.json:
-            from tiniscript.cli.terminal.fleet_table import Roll
+            from tiniscript.cli.terminal.fleet_table import FleetTable
 
-            with Roll(crew.in_order(), language) as roll:
-                crew.watch(roll)
+            with FleetTable(fleet.in_order(), language) as table:
+                fleet.watch(table)
         else:
-            crew.watch(None)
-    except OSError:  # nobody reads any more, or can, what the robots do
+            fleet.watch(None)
+    except OSError:  # nobody reads, or can read, the output
         if options.verb == "upload" and not options.detach:
-            crew.interrupt()
-            crew.wait(CONFIRM_S)
+            fleet.interrupt()
+            fleet.wait(CONFIRM_S)
         raise
     finally:
-        crew.remember()
-    return crew.exit_code()
+        fleet.remember()
+    return fleet.exit_code()
 
 
-class Crew:
-    def __init__(self, posts: list[Post], options: Namespace, robot: Robot, language: str) -> None:
+class Fleet:
+    def __init__(
+        self, targets: list[Target], options: Namespace, robot: Robot, language: str
+    ) -> None:
         self.lines: deque[str] = deque()
-        self.members = [Member(post, self.lines) for post in posts]
+        self.members = [Member(target, self.lines) for target in targets]
         self.options = options
         self.robot = robot
         self.language = language
@@ -154,7 +156,7 @@ class Crew:
         for member in self.members:
             Thread(target=self._run, args=(member, work), name="robot", daemon=True).start()
 
-    def watch(self, roll: Roll | None) -> None:
+    def watch(self, table: FleetTable | None) -> None:
         """Print results until all have one; Ctrl-C stops all, a second one leaves at once."""
         untold = list(self.members)
         begin_s = monotonic()
@@ -163,8 +165,8 @@ class Crew:
             if monotonic() - begin_s > STRANGER_S and all(map(_is_stranger, untold)):
                 self._give_up(untold)
             try:
-                if roll is not None:
-                    roll.draw()
+                if table is not None:
+                    table.draw()
                 else:
                     self._news.wait(LOOK_S)
                     self._news.clear()
@@ -178,43 +180,43 @@ class Crew:
             for member in over:
                 if member.bug is not None:
                     raise member.bug
-                if roll is None:
+                if table is None:
                     self._print(member)
-            self._print_lines(roll)
-        if roll is not None:
+            self._print_lines(table)
+        if table is not None:
             there = [member for member in self.in_order() if not member.is_absent]
-            there.sort(key=lambda member: member.mark == "bad")  # what went wrong is seen last
-            roll.end(member.row for member in there)
+            there.sort(key=lambda member: member.mark == "bad")  # failures are printed last
+            table.end(member.row for member in there)
         self._print_sum()
 
     def wait(self, limit_s: float) -> None:
-        """Wait until it is known of all how it went."""
+        """Wait until all robots have a result."""
         end_s = monotonic() + limit_s
         while monotonic() < end_s and any(member.result is None for member in self.members):
             self._news.wait(LOOK_S)
             self._news.clear()
 
     def interrupt(self) -> None:
-        """Have every robot stopped."""
+        """Stop every robot."""
         self.is_interrupted = True
         for member in self.members:
             if member.connection is not None:
                 member.connection.interrupt()
 
     def remember(self) -> None:
-        """Keep the names of all that have answered, for the next time."""
+        """Remember the names of all robots that have answered."""
         for member in self.members:
             connection = member.connection
             if connection is not None and connection.line.robot is not None:
-                name = connection.card.name
-                way.remember(member.post.port, name, is_used=False)
+                name = connection.device_info.name
+                opening.remember(member.target.port, name, is_used=False)
 
     def exit_code(self) -> int:
         if self.is_interrupted:
             return 2
         results = [member.result for member in self.members]
         if all(result is not None and result.is_absent for result in results):
-            raise Trouble(3, "no_robots")
+            raise CommandError(3, "no_robots")
         is_fine = all(each is not None and (each.is_done or each.is_absent) for each in results)
         return 0 if is_fine else 3
 
@@ -226,15 +228,15 @@ class Crew:
         except Again:
             self._run(member, work)
             return
-        except Trouble as trouble:
-            member.result = self._failed(member, trouble)
+        except CommandError as failure:
+            member.result = self._failed(member, failure)
         except Exception as bug:
             member.bug = bug
             member.result = Result(False, "")
         self._news.set()
 
     def _connect(self, member: Member, work: Work) -> None:
-        own = Namespace(**{**vars(self.options), "port": member.post.port})
+        own = Namespace(**{**vars(self.options), "port": member.target.port})
         with Connection(own, self.robot, self.language, is_one_of_many=True) as connection:
             member.connection = connection
             if self.is_interrupted:
@@ -247,33 +249,34 @@ class Crew:
     def _stopped(self, connection: Connection) -> Result:
         if confirmed(connection.line):
             return Result(False, text("robot_stopped", self.language))
-        trouble = Trouble(3, "not_confirmed", port=shown(connection.port))
-        return Result(False, _plain(trouble, self.language))
+        failure = CommandError(3, "not_confirmed", port=shown(connection.port))
+        return Result(False, _plain(failure, self.language))
 
-    def _failed(self, member: Member, trouble: Trouble) -> Result:
-        is_absent = trouble.key in NOBODY or (trouble.key in NO_ROBOT and not member.post.is_known)
-        said = _plain(trouble, self.language)
-        return Result(False, said, {}, is_absent and not member.post.is_named)
+    def _failed(self, member: Member, failure: CommandError) -> Result:
+        target = member.target
+        is_absent = failure.key in NOBODY or (failure.key in NO_ROBOT and not target.is_known)
+        said = _plain(failure, self.language)
+        return Result(False, said, {}, is_absent and not target.is_named)
 
     # -- what is printed --------------------------------------------------------------------------
 
     def _print(self, member: Member) -> None:
-        self._print_lines(None)  # what it has told before
+        self._print_lines(None)  # lines from before
         if self.options.json:
             print(member.as_json(), flush=True)
         elif not member.is_absent:
             print(member.row, flush=True)
 
-    def _print_lines(self, roll: Roll | None) -> None:
+    def _print_lines(self, table: FleetTable | None) -> None:
         while self.lines:
             line = self.lines.popleft()
-            if roll is None:
+            if table is None:
                 print(line, flush=True)
             else:
-                roll.say(line)
+                table.say(line)
 
     def _give_up(self, strangers: list[Member]) -> None:
-        """Wait no longer for ports on which nobody has ever answered."""
+        """Give up on ports on which no robot has ever answered."""
         said = text("port_quiet", self.language)
         for member in strangers:
             member.result = Result(False, said, {}, is_absent=True)
@@ -282,13 +285,13 @@ class Crew:
         """Return the robots by their ports, `COM9` before `COM10`."""
 
         def key(member: Member) -> list[tuple[int, str]]:
-            parts = re.split(r"(\d+)", member.post.port)
+            parts = re.split(r"(\d+)", member.target.port)
             return [(int(part), "") if part.isdecimal() else (-1, part) for part in parts]
 
         return sorted(self.members, key=key)
 
     def _print_sum(self) -> None:
-        """Say how many it went well with, and where no robot is."""
+        """Print the number of successes, and the ports without a robot."""
         absent = [member for member in self.in_order() if member.is_absent]
         there = len(self.members) - len(absent)
         if self.options.json or not there:
@@ -297,17 +300,17 @@ class Crew:
         done = sum(member.mark == "ok" for member in self.members)
         lines = [text("crew_sum", self.language).format(done=done, all=there)]
         if absent:
-            ports = ", ".join(shown(member.post.port) for member in absent)
+            ports = ", ".join(shown(member.target.port) for member in absent)
             lines.append(text("crew_absent", self.language).format(ports=ports))
         print("\n".join(lines), file=sys.stderr, flush=True)
 
 
 def _is_stranger(member: Member) -> bool:
-    """Whether nobody has ever answered on a port that nobody has named."""
+    """Whether the user has not named the port and no robot has ever answered on it."""
     connection = member.connection
     has_answered = connection is not None and connection.line.robot is not None
-    return not (has_answered or member.post.is_named or member.post.is_known)
+    return not (has_answered or member.target.is_named or member.target.is_known)
 
 
-def _plain(trouble: Trouble, language: str) -> str:
-    return trouble.sentence(language).removeprefix("tsc: ")
+def _plain(failure: CommandError, language: str) -> str:
+    return failure.sentence(language).removeprefix("tsc: ")

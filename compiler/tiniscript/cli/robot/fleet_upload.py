@@ -1,4 +1,4 @@
-"""`tsc upload` to many robots: each gets the program, and is looked after until it ends there."""
+"""`tsc upload` to many robots: sends the program to each, and follows it until it ends there."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from argparse import Namespace
 from typing import TYPE_CHECKING
 
 from tiniscript.cli.commands import upload
-from tiniscript.cli.robot.event_printer import Teller
+from tiniscript.cli.robot.event_printer import EventPrinter
 from tiniscript.cli.robot.fleet import Member, Result, together
 from tiniscript.cli.robot.run_monitor import Saving
 from tiniscript.cli.texts.common import text
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 def upload_to_many(
     options: Namespace, robot: Robot, language: str, ready: Ready, name: str
 ) -> int:  # fmt: skip
-    """Bring a program to many robots; return the exit code."""
+    """Send a program to many robots; return the exit code."""
     if ready.image.start == "PING":  # a program that asks who is there
         from tiniscript.cli.commands.ping import COUNT, one_of_many
 
@@ -54,20 +54,20 @@ class Upload:
             member.print(json.dumps(receipt))
         runs = upload.is_running(ready, options)
         member.tell("crew_running" if runs and not options.detach else "crew_saving")
-        teller = MemberTeller(connection, ready, member, options.json, self.has_table)
-        saving = Saving(connection, teller, values)
-        code = upload.looked_after(connection, ready, saving, options, teller)
+        printer = MemberPrinter(connection, ready, member, options.json, self.has_table)
+        saving = Saving(connection, printer, values)
+        code = upload.looked_after(connection, ready, saving, options, printer)
         if not runs or options.detach:
             key = "how_waits" if not runs else "how_detached"
-            teller.end = text(key, language).format(start=ready.image.start)
+            printer.end = text(key, language).format(start=ready.image.start)
         said = text("crew_uploaded", language).format(
-            checksum=receipt["checksum"], code=receipt["code_bytes"], how=teller.end
+            checksum=receipt["checksum"], code=receipt["code_bytes"], how=printer.end
         )
         return Result(code == 0, said, {"checksum": receipt["checksum"]})
 
 
-class MemberTeller(Teller):
-    """Tells what one of many robots tells. `end` is how its program has ended, in one line."""
+class MemberPrinter(EventPrinter):
+    """Prints the events of one of many robots. `end` is the end of its program, in one line."""
 
     def __init__(
         self, connection: Connection, ready: Ready, member: Member, is_json: bool, has_table: bool
@@ -91,4 +91,4 @@ class MemberTeller(Teller):
         if self.is_json:
             super().say(since_ms, name, what, said, is_bad=is_bad, **fields)
         elif name == "SHOW" and not self.has_table:
-            self.out(f"{self.member.name} ({self.member.post.port}): {line}")
+            self.out(f"{self.member.name} ({self.member.target.port}): {line}")

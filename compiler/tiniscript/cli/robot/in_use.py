@@ -1,6 +1,6 @@
 """Which robots are in use on this computer: on a port that a command holds, or virtual ones.
 
-Opens no port, and no robot's.
+Opens no port and connects to no robot.
 """
 
 from __future__ import annotations
@@ -8,9 +8,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from tiniscript.sharing.registry import Holder
+    from tiniscript.sharing.registry import Registration
 
-AT_ONCE = 16  # commands that are asked at the same time whether they are still there
+AT_ONCE = 16  # servers that are checked at the same time
 
 
 def ports(is_virtual: bool = False) -> list[str]:
@@ -28,23 +28,27 @@ def ports(is_virtual: bool = False) -> list[str]:
     return list({same_for_all(port): port for port in found}.values())
 
 
-def _alive(holders: list[Holder]) -> list[str]:
-    """Return the ports of the holders that are still there: one that hangs delays no other."""
+def _alive(registrations: list[Registration]) -> list[str]:
+    """Return the ports of the servers that still run; a hanging server delays no other check."""
     from tiniscript.sharing.client import is_alive
 
-    if len(holders) < 2:  # threads take longer to import than one to answer
-        return [holder.port for holder in holders if is_alive(holder)]
+    if len(registrations) < 2:  # importing threads takes longer than one answer
+        return [registration.port for registration in registrations if is_alive(registration)]
     from concurrent.futures import ThreadPoolExecutor
 
     with ThreadPoolExecutor(AT_ONCE) as pool:
-        alive = list(pool.map(is_alive, holders))
-    return [holder.port for holder, is_there in zip(holders, alive, strict=True) if is_there]
+        alive = list(pool.map(is_alive, registrations))
+    return [
+        registration.port
+        for registration, is_there in zip(registrations, alive, strict=True)
+        if is_there
+    ]
 
 
 def to_stop(is_virtual: bool = False) -> list[str]:
-    """Return the ports that `tsc stop` means where no port is named.
+    """Return the ports for `tsc stop` without `--port`.
 
-    The last used robot is among them: it may drive on without any command.
+    They include that of the last used robot, which may drive on without any command.
     """
     from tiniscript.link import known_ports
     from tiniscript.link.port_names import is_there, same_for_all

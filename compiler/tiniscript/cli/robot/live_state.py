@@ -1,8 +1,8 @@
-"""What lives on from one live line to the next: DEFs as text, variables with their values.
+"""The state between two live lines: DEFs as text, variables with their values.
 
-The robot forgets a line when it is done. So a line is sent with the DEFs and the variables that it
-uses before it, and behind it come instructions that show the values it has given: a mark that no
-program shows by chance, then a SHOW for each variable. Knows no port.
+The robot forgets a line when it is done. So tsc puts the DEFs and variables that a line uses
+before it, and instructions after it that show the new values: a mark that no program shows by
+chance, then a SHOW for each variable. Knows no port.
 """
 
 from __future__ import annotations
@@ -38,10 +38,10 @@ class Value(NamedTuple):
 
 
 class Line(NamedTuple):
-    """A line that is compiled: `shown` are the variables whose values it shows behind the mark.
+    """A compiled line: `shown` are the variables whose values it shows after the mark.
 
     `defs` are the DEFs in it, which are known once it is done; `does_nothing`: it has nothing
-    else; `forgets`: it sets variables, and has no room to show them.
+    but DEFs; `forgets`: it sets variables, but has no room to show them.
     """
 
     compiled: Compiled
@@ -52,7 +52,7 @@ class Line(NamedTuple):
 
 
 def header(text: str) -> str:
-    """Return SI, SB or PING: what a line starts with, SI where it says nothing."""
+    """Return the start of a line: SI, SB or PING; the default is SI."""
     found = _HEADER.match(text)
     return found[1].upper() if found else "SI"
 
@@ -69,7 +69,7 @@ class Known:
         return [*self.defs, *self.values]
 
     def line(self, text: str, room: int) -> Line:
-        """Compile a line, with what is known before it; its code has room for so many bytes."""
+        """Compile a line after the known DEFs and variables into at most `room` bytes of code."""
         found = _HEADER.match(text)
         body = " " * found.end() + text[found.end() :] if found else text
         parsed = parse(Source(body), self.kit).program.body
@@ -119,25 +119,30 @@ def _assigned(compiled: Compiled, start: int) -> tuple[str, ...]:
 
 
 def _behind(compiled: Compiled, start: int, end: int | None = None) -> Compiled:
-    """Return what there is to say of the text from `start` to `end`, as if it stood alone.
+    """Return the diagnostics of the text from `start` to `end`, as if it stood alone.
 
-    A mistake before it stays where it is: then all of the text is the source. That a DEF is not
-    called, or a variable not used, is no mistake here: the next line may do it.
+    For a mistake before `start` the source is the whole text. An unused DEF or variable gives no
+    diagnostic: the next line may use it.
     """
     text = compiled.source.text
     end = len(text) if end is None else end
-    if any(problem.is_mistake and problem.span.start < start for problem in compiled.problems):
+    if any(
+        diagnostic.is_mistake and diagnostic.span.start < start
+        for diagnostic in compiled.diagnostics
+    ):
         return compiled
-    problems = [
-        problem._replace(span=Span(problem.span.start - start, min(problem.span.end, end) - start))
-        for problem in compiled.problems
-        if start <= problem.span.start <= end
-        and (problem.is_mistake or problem.code not in _UNUSED)
-        and (problem.span.start < end or end == len(text))
+    diagnostics = [
+        diagnostic._replace(
+            span=Span(diagnostic.span.start - start, min(diagnostic.span.end, end) - start)
+        )
+        for diagnostic in compiled.diagnostics
+        if start <= diagnostic.span.start <= end
+        and (diagnostic.is_mistake or diagnostic.code not in _UNUSED)
+        and (diagnostic.span.start < end or end == len(text))
     ]
     places = tuple(
         Place(place.offset, Span(max(0, place.span.start - start), max(0, place.span.end - start)))
         for place in compiled.places
     )
     source = Source(text[start:end], "live")
-    return compiled._replace(source=source, problems=problems, places=places)
+    return compiled._replace(source=source, diagnostics=diagnostics, places=places)

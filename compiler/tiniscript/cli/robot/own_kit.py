@@ -1,7 +1,7 @@
-"""The kit of the robot that is there, where the person has not said which robot it is.
+"""The kit of the connected robot, for commands without `--robot`.
 
-A program is compiled for the default robot then. One with words of another robot is compiled for
-the robot that answers, if its profile is known: a shipped one, or one that was given before.
+Such a command compiles for the default robot. A program with words of another robot is compiled
+for the robot that answers, if its profile is known: a shipped one, or one given before.
 """
 
 from __future__ import annotations
@@ -23,21 +23,23 @@ if TYPE_CHECKING:
 
 
 def is_other_robots(compiled: Compiled) -> bool:
-    """Whether a program has words of another robot: its problems have been through `naming`."""
+    """Whether a program has words of another robot: its diagnostics have been through `naming`."""
     from tiniscript.diagnostics.codes import OTHER_ROBOT
     from tiniscript.robots import given
     from tiniscript.semantics import other_kits
 
-    unknown = [problem for problem in compiled.problems if other_kits.is_unknown(problem)]
-    if any(problem.code is OTHER_ROBOT for problem in unknown):
+    unknown = [
+        diagnostic for diagnostic in compiled.diagnostics if other_kits.is_unknown(diagnostic)
+    ]
+    if any(diagnostic.code is OTHER_ROBOT for diagnostic in unknown):
         return True
-    words = {problem.values.get("found") for problem in unknown}
-    # of profiles whose paths are too long to be named
+    words = {diagnostic.values.get("found") for diagnostic in unknown}
+    # of profiles with paths that are too long for a message
     return bool(words) and any(words & other_kits.words(robot.kit) for _, robot in given.profiles())
 
 
 def remember(options: Namespace, robot: Robot, kit: int) -> None:
-    """Keep the profile of a file, for a robot that has this kit."""
+    """Remember the profile of a file for the robots with this kit."""
     from tiniscript import robots
 
     name = getattr(options, "robot", None)
@@ -49,11 +51,11 @@ def remember(options: Namespace, robot: Robot, kit: int) -> None:
 
 
 def take(connection: Connection, options: Namespace) -> bool:
-    """Take the profile of the robot that has answered, and say so; return whether it is another.
+    """Use the profile of the robot that has answered, and print so; return True if it is another.
 
-    Where the person has named a robot, or nobody knows the kit of this one, all stays as it is.
+    If the user has named a robot, or the kit is unknown, nothing changes.
     """
-    kit = connection.card.kit
+    kit = connection.device_info.kit
     if options.robot is not None or kit == connection.profile.kit.fingerprint:
         return False
     robot = of_kit(kit)
@@ -66,20 +68,20 @@ def take(connection: Connection, options: Namespace) -> bool:
 
 
 def of_answering(options: Namespace, robot: Robot, language: str) -> Robot | None:
-    """Return the profile of the robot that answers where the options lead, without a question.
+    """Return the profile of the robot that answers on the port of the options; asks no question.
 
-    None: nobody answers there, nobody knows its kit, or it is `robot`.
+    Returns None if no robot answers, its kit is unknown, or it is `robot`.
     """
-    from tiniscript.cli.errors import Trouble
+    from tiniscript.cli.errors import CommandError
     from tiniscript.cli.robot.connect import Connection
     from tiniscript.cli.robot.simulator import running_address
 
     own = Namespace(**{**vars(options), "verb": "check", "asks_nothing": True})
     try:
         if options.virtual and running_address(options) is None:
-            return None  # the one that comes along is what `options` say
+            return None  # `options` describe the own virtual robot
         with Connection(own, robot, language) as connection:
             kit = connection.meet().kit
-    except Trouble:
+    except CommandError:
         return None
     return None if kit == robot.kit.fingerprint else of_kit(kit)

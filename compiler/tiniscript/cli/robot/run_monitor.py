@@ -1,4 +1,4 @@
-"""Staying with a program until it ends; Ctrl-C stops the robot."""
+"""Follows a program until it ends; Ctrl-C stops the robot."""
 
 from __future__ import annotations
 
@@ -7,52 +7,56 @@ from contextlib import suppress
 from time import monotonic
 from typing import TYPE_CHECKING
 
-from tiniscript.cli.errors import Trouble
+from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.texts.common import text
 from tiniscript.library.endings import Follower, end_of
 from tiniscript.library.errors import RobotError
-from tiniscript.library.way import CONFIRM_S, confirmed
+from tiniscript.library.opening import CONFIRM_S, confirmed
 from tiniscript.link.messages import SAVED_LOW_SUPPLY, SAVED_SAVING, SAVED_STORED
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable
 
     from tiniscript.cli.robot.connect import Connection
-    from tiniscript.cli.robot.event_printer import Teller
-    from tiniscript.link.connection import Asked
+    from tiniscript.cli.robot.event_printer import EventPrinter
+    from tiniscript.link.connection import PendingRequest
     from tiniscript.link.outcomes import Event
+    from tiniscript.link.payloads import ReceiptReply, StatusReply
     from tiniscript.link.requests import Reply
 
-STOP_S = 1.5  # the same for a command that leaves, and that nobody may look at
-SAVE_S = 10.0  # for which a robot may save a program
-LOW_S = 2.0  # for which its voltage may be too low for that: it looks every half second
-ASK_S = 1.0  # between two questions whether it has, while the program runs
+STOP_S = 1.5  # timeout for a stop when the command ends and may have no reader
+SAVE_S = 10.0  # timeout for saving a program
+LOW_S = 2.0  # timeout while the voltage is too low for saving: the robot checks every 0.5 s
+ASK_S = 1.0  # between two status requests about saving, while the program runs
 DONE, FAULTY, INTERRUPTED, LOST = 0, 1, 2, 3  # exit codes
 
-__all__ = ("CONFIRM_S", "STOP_S", "Attendant", "Saving", "confirmed", "ended", "stop_and_say")
+__all__ = ("CONFIRM_S", "STOP_S", "RunMonitor", "Saving", "confirmed", "ended", "stop_and_say")
 
 
-class Attendant:
-    """Tells what a run tells, until it ends. `hold` may keep an event back: it returns whether.
+class RunMonitor:
+    """Prints the events of a run until it ends. `hold` returns True for an event to keep back.
 
-    `look` is called now and then.
+    `look` is called repeatedly meanwhile.
     """
 
     def __init__(
         self,
         connection: Connection,
-        teller: Teller,
+        printer: EventPrinter,
         hold: Callable[[Event], bool] | None = None,
         look: Callable[[], None] | None = None,
     ) -> None:
         self.connection = connection
-        self.teller = teller
+        self.printer = printer
         self.hold = hold
         self.look = look
 
-    def attend(self, run: int) -> int:
-        """Wait for the end of a run; return the exit code. Raises Trouble where the link ends."""
+    def follow(self, run: int) -> int:
+        """Wait for the end of a run; return the exit code.
+
+        Raises CommandError where the link ends.
+        """
         follower = Follower(run)
         while True:
             found = self.connection.event()
@@ -67,27 +71,20 @@ class Attendant:
                 if not follower.is_about(event, shown(self.connection.port)):
                     continue
             except RobotError as error:
-                raise Trouble(3, error.reason, **error.values) from None
+                raise CommandError(3, error.reason, **error.values) from None
             if self.hold is None or not self.hold(event):
-                self.teller.tell(time_ms, event)
+                self.printer.tell(time_ms, event)
             code = ended(event, run)
             if code is not None:
                 return code
 
     def stop_in_time(self) -> int:
-        """Stop a virtual robot whose time is over: it stands already, its firmware goes on."""
+        """Stop a virtual robot at its time limit: it stands already, but its firmware runs on."""
         if not confirmed(self.connection.line):
-            raise Trouble(3, "not_confirmed", port=shown(self.connection.port))
+            raise CommandError(3, "not_confirmed", port=shown(self.connection.port))
         language = self.connection.language
-        self.teller.say(0, "TIME_OVER", "", text("time_over", language))
+        self.printer.say(0, "TIME_OVER", "", text("time_over", language))
         return DONE
-
-    def attend_or_stop(self, run: int) -> int:
-        """The same; Ctrl-C stops the robot first."""
-        try:
-            return self.attend(run)
-        except KeyboardInterrupt:
-            return stop_and_say(self.connection)
 
 
 def ended(event: Event, run: int | None) -> int | None:
@@ -103,28 +100,29 @@ def ended(event: Event, run: int | None) -> int | None:
 def stop_and_say(connection: Connection) -> int:
     """Stop the robot after Ctrl-C, and say whether it has confirmed; return the exit code."""
     is_confirmed = confirmed(connection.line)
-    if connection.company is not None:
-        connection.company.unwatch()  # now that the robot stands in the picture, too
+    if connection.simulator is not None:
+        connection.simulator.unwatch()  # the robot has stopped in the picture, too
     print(file=sys.stderr)  # the terminal has written ^C
     if is_confirmed:
         print(text("robot_stopped", connection.language), file=sys.stderr)
         return INTERRUPTED
-    raise Trouble(3, "not_confirmed", port=shown(connection.port))
+    raise CommandError(3, "not_confirmed", port=shown(connection.port))
 
 
 class Saving:
-    """Follows how the robot saves the program that it was given, and says once that it has.
+    """Waits until the robot has saved the uploaded program, and prints that once.
 
-    Whoever opens the port next may reset the robot, and would end the saving.
+    The next command that opens the port may reset the robot, which would end the saving.
     """
 
-    def __init__(self, connection: Connection, teller: Teller, values: Mapping[str, int]) -> None:
-        """`values` are those of the program's receipt."""
+    def __init__(
+        self, connection: Connection, printer: EventPrinter, receipt: ReceiptReply
+    ) -> None:
         self.connection = connection
-        self.teller = teller
-        self.run, self.program, self.saved = (values[key] for key in ("run", "program", "saved"))
+        self.printer = printer
+        self.run, self.program, self.saved = receipt.run, receipt.program, receipt.saved
         self.is_unseen = False
-        self._asked: Asked | None = None
+        self._asked: PendingRequest[StatusReply] | None = None
         self._asked_s = monotonic()
 
     @property
@@ -132,7 +130,7 @@ class Saving:
         return self.saved not in (SAVED_SAVING, SAVED_LOW_SUPPLY)
 
     def look(self) -> None:
-        """Ask every second, and wait for nothing."""
+        """Request the status every second, without waiting."""
         if self._asked is not None and self._asked.outcome is not None:
             self._learn(self._asked.outcome, is_running=True)
             self._asked = None
@@ -141,7 +139,7 @@ class Saving:
             self._asked = self.connection.do(lambda session: session.status())
 
     def wait(self) -> None:
-        """Wait until it is saved. Raises Trouble where it is not."""
+        """Wait until it is saved. Raises CommandError where it is not."""
         if self.is_over:
             return
         begun_s = monotonic()
@@ -159,31 +157,31 @@ class Saving:
         if self.saved != SAVED_STORED:
             keys = {SAVED_SAVING: "saves_later", SAVED_LOW_SUPPLY: "low_supply"}
             key = keys.get(self.saved, "not_saved")
-            raise Trouble(3, "plain", said=text(key, self.connection.language))
+            raise CommandError(3, "plain", said=text(key, self.connection.language))
 
     def wait_unseen(self) -> None:
-        """The same where nobody reads what tsc prints: only what went wrong is still said."""
+        """The same when tsc's output has no reader: only failures are printed."""
         self.is_unseen = True
         try:
             self.wait()
-        except Trouble as trouble:
+        except CommandError as failure:
             with suppress(OSError):
-                print(trouble.sentence(self.connection.language), file=sys.stderr, flush=True)
+                print(failure.sentence(self.connection.language), file=sys.stderr, flush=True)
 
-    def _learn(self, status: Reply, is_running: bool) -> None:
-        values = {key: each for key, each in status.values.items() if isinstance(each, int)}
-        if status.status or self.is_over:
+    def _learn(self, reply: Reply[StatusReply], is_running: bool) -> None:
+        if reply.status or self.is_over:
             return
-        if values["program"] != self.program:  # somebody has sent another one
+        status = reply.values
+        if status.program != self.program:  # another command has sent another one
             self.saved = SAVED_STORED
             return
-        was_low, self.saved = self.saved == SAVED_LOW_SUPPLY, values["saved"]
+        was_low, self.saved = self.saved == SAVED_LOW_SUPPLY, status.saved
         language = self.connection.language
         if self.is_unseen:
             return
         if self.saved == SAVED_STORED:
-            slot = values["slot"]
+            slot = status.slot
             said = text("now_saved", language).format(slot=slot)
-            self.teller.say(0, "SAVED", str(slot), said, slot=slot)
+            self.printer.say(0, "SAVED", str(slot), said, slot=slot)
         elif self.saved == SAVED_LOW_SUPPLY and not was_low and is_running:
-            self.teller.say(0, "LOW_SUPPLY", "", text("low_supply", language), is_bad=True)
+            self.printer.say(0, "LOW_SUPPLY", "", text("low_supply", language), is_bad=True)

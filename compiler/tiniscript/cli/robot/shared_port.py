@@ -5,21 +5,21 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from tiniscript.link.connection import Way
-    from tiniscript.sharing.server import Host
+    from tiniscript.link.connection import LinkConnection
+    from tiniscript.sharing.server import Server
 
 SHARED = ("link", "live", "monitor", "start", "upload")  # verbs that stay on a port, and share it
 
 
-def shared(way: Way, port: str, baud: int, verb: str) -> Host | None:
-    """Let others use a way, if this verb does so and they can be told."""
-    if verb not in SHARED or way.held_by:
+def shared(connection: LinkConnection, port: str, baud: int, verb: str) -> Server | None:
+    """Share a connection with other commands, if this verb does so and it is possible."""
+    if verb not in SHARED or connection.held_by:
         return None
     from tiniscript.link.line import Line
-    from tiniscript.sharing.server import Host
+    from tiniscript.sharing.server import Server
 
-    assert isinstance(way, Line)
+    assert isinstance(connection, Line)
     try:
-        return Host(way, port, baud, verb)
+        return Server(connection, port, baud, verb)
     except OSError:
         return None

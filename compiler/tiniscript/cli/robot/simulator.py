@@ -1,7 +1,7 @@
-"""A virtual robot for one command: it lives beside it, and is drawn on its terminal.
+"""A virtual robot for one command: it runs in the command's process, and on its terminal.
 
-The command talks to it over a socket as to any other robot. Or the one that is running already is
-found: `tsc robot` in another terminal.
+The command uses a socket, as with any other robot. Also finds a virtual robot that runs already:
+`tsc robot` in another terminal.
 """
 
 from __future__ import annotations
@@ -12,24 +12,24 @@ from threading import Condition, Thread
 from time import monotonic
 from typing import TYPE_CHECKING
 
-from tiniscript.cli.errors import Trouble
+from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot import simulator_options
 from tiniscript.cli.robot.event_printer import Bookkeeping
 from tiniscript.cli.texts.common import text
 
 if TYPE_CHECKING:
-    from tiniscript.cli.terminal.run_drawing import Screen
+    from tiniscript.cli.terminal.screen import Screen
     from tiniscript.cli.terminal.world_drawing import WorldPicture
     from tiniscript.robots.profile import Robot
 
 JOIN_S = 5.0
-ROUND_S = 1.0  # the longest, of a robot that draws at least 15 pictures in a second
+ROUND_S = 1.0  # the longest round; a robot draws at least 15 pictures per second
 
 
 def running_address(options: Namespace) -> str | None:
-    """Return where the one virtual robot is that runs, or None where a new one is wanted.
+    """Return the address of the only running virtual robot, or None if a new one is needed.
 
-    Raises Trouble where none runs and the verb can bring none, or several do.
+    Raises CommandError if several run, or if none runs and the verb cannot start one.
     """
     from tiniscript.virtual import directory
 
@@ -38,14 +38,14 @@ def running_address(options: Namespace) -> str | None:
         return None
     found = directory.for_all() if can_bring else directory.running()
     if not found and not can_bring:
-        raise Trouble(3, "no_virtual")
+        raise CommandError(3, "no_virtual")
     if len(found) > 1:
-        raise Trouble(3, "which_virtual", known=", ".join(each.address for each in found))
+        raise CommandError(3, "which_virtual", known=", ".join(each.address for each in found))
     return found[0].address if found else None
 
 
-class Company:
-    """The robot. It is there when this is made, until `close`. Raises Trouble."""
+class CommandSimulator:
+    """The robot. It runs from the constructor until `close`. Raises CommandError."""
 
     def __init__(self, options: Namespace, profile: Robot, language: str) -> None:
         hurry = simulator_options.hurry_of(options, language)
@@ -55,22 +55,22 @@ class Company:
         self.language = language
         self.robot = simulator_options.made(options, profile, language)
         from tiniscript.virtual import directory
-        from tiniscript.virtual.simulator import Host
-        from tiniscript.virtual.transports import Guests
+        from tiniscript.virtual.simulator import Simulator
+        from tiniscript.virtual.transports import Transports
 
-        self.guests = Guests()
-        self.port = self.guests.address
-        self.host = Host(self.robot, self.guests, hurry, faults)
-        self.host.lasts_ms = self.end_ms
+        self.transports = Transports()
+        self.port = self.transports.address
+        self.simulator = Simulator(self.robot, self.transports, hurry, faults)
+        self.simulator.lasts_ms = self.end_ms
         self.screen: Screen | None = None
         self._picture: WorldPicture | None = None
-        self._is_watched = False  # the command has begun to look at it
+        self._is_watched = False  # `watch` was called
         self._bug: BaseException | None = None
         self._is_over = self._is_pushed = False
         self._bookkeeping = Bookkeeping()
         self._frame_s = 0.0
         self._drawing = Condition()
-        self._rounds = 0  # after which the picture has known all that had happened
+        self._rounds = 0  # rounds after which the picture is up to date
         world = self.robot.world.name
         self._note = directory.announce(
             directory.Running(self.port, profile.name, world, "", "", options.verb)
@@ -82,24 +82,24 @@ class Company:
     def is_time_over(self) -> bool:
         """Whether the time of `--for` is over.
 
-        It begins with the first program; before that, for one that waits, when it is watched.
+        It begins with the first program, or with `watch` if the program waits for the button.
         """
-        return self._is_watched and self.host.is_over
+        return self._is_watched and self.simulator.is_over
 
     @property
     def is_drawn(self) -> bool:
-        """Whether it is drawn where somebody watches it."""
+        """Whether it is drawn on a terminal."""
         return sys.stderr.isatty() and not getattr(self.options, "json", False)
 
     def watch(self, keys: str = "") -> None:
-        """Draw it from now on, where there is a terminal. `keys` says what keys do."""
+        """Draw it from now on, if there is a terminal. `keys` is the help for the keys."""
         if not self._is_watched:
             self._is_watched = True
             if self.end_ms is not None:
-                self.host.end_ms = self.robot.now_ms + self.end_ms
+                self.simulator.end_ms = self.robot.now_ms + self.end_ms
         if not self.is_drawn:
             return
-        from tiniscript.cli.terminal.run_drawing import Screen
+        from tiniscript.cli.terminal.screen import Screen
         from tiniscript.cli.terminal.world_drawing import WorldPicture
 
         with self._drawing:
@@ -109,11 +109,11 @@ class Company:
             self.screen.begin()
 
     def push(self) -> None:
-        """Have the robot's start button pushed: its own thread does that."""
+        """Ask the robot's thread to push the start button."""
         self._is_pushed = True
 
     def say(self, line: str) -> None:
-        """Print a line, around the picture where there is one."""
+        """Print a line, above the picture if there is one."""
         with self._drawing:
             if self.screen is not None:
                 self.screen.say(line)
@@ -129,27 +129,27 @@ class Company:
         print(line, file=sys.stderr, flush=True)
 
     def unwatch(self) -> None:
-        """Leave the last picture standing."""
+        """Stop drawing; the last picture stays."""
         with self._drawing:
             if self.screen is not None:
-                due = self._rounds + 1  # what has just happened is still to be taken
+                due = self._rounds + 1  # the newest events are still to come
                 self._drawing.wait_for(lambda: self._rounds >= due, ROUND_S)
             screen, self.screen = self.screen, None
             if screen is not None:
                 if self._picture is not None:
-                    self._picture.footer = ""  # of keys that do nothing now
+                    self._picture.footer = ""  # the keys do nothing now
                 self._draw(screen)
                 screen.end()
 
     def close(self) -> None:
-        """The robot's life ends; what it has done is said, and drawn into the file of `--plot`."""
+        """End the robot; print a summary, and draw the file of `--plot`."""
         from tiniscript.virtual import directory
 
         directory.withdraw(self._note)
         self._is_over = True
         self._thread.join(JOIN_S)
         self.unwatch()
-        self.guests.close()
+        self.transports.close()
         if self._bug is not None:
             raise self._bug
         if not self._is_watched:
@@ -161,14 +161,14 @@ class Company:
         print(said, file=sys.stderr if is_json else sys.stdout, flush=True)
 
     def _driven_ms(self) -> int:
-        """Return how long there were programs, from the first one's beginning on."""
+        """Return the time from the start of the first program to the end of the last one."""
         began_ms, ended_ms = self.robot.started_ms, self.robot.ended_ms
         if began_ms is None:
             return 0
         return (self.robot.now_ms if ended_ms is None else ended_ms) - began_ms
 
     def _live(self) -> None:
-        from tiniscript.cli.terminal.run_drawing import FRAME_S
+        from tiniscript.cli.terminal.screen import FRAME_S
 
         try:
             while True:
@@ -178,15 +178,15 @@ class Company:
                 else:
                     if self._is_pushed:
                         self._is_pushed = False
-                        self.host.push()
-                    self.host.turn(FRAME_S)
+                        self.simulator.push()
+                    self.simulator.turn(FRAME_S)
                 with self._drawing:
                     if self._picture is not None:
                         for event in self.robot.take_events():
                             if not self._bookkeeping.hides_trace(event):
                                 self._picture.take(event)
                     elif not sys.stderr.isatty():
-                        self.robot.take_events()  # nobody will draw them
+                        self.robot.take_events()  # discarded: nothing draws them
                     if self.screen is not None and monotonic() >= self._frame_s:
                         self._frame_s = monotonic() + FRAME_S
                         self._draw(self.screen)
@@ -196,7 +196,7 @@ class Company:
                     return
         except BaseException as bug:
             self._bug = bug
-            self.guests.close()
+            self.transports.close()
 
     def _draw(self, screen: Screen) -> None:
         if self._picture is not None:
@@ -204,7 +204,7 @@ class Company:
 
 
 def offered(language: str) -> bool:
-    """Ask whether the virtual robot will do; an empty answer is yes."""
+    """Ask whether to use the virtual robot; an empty answer is yes."""
     print(text("offer_virtual", language), end="", file=sys.stderr, flush=True)
     answer = sys.stdin.readline()
     return bool(answer) and answer.strip().lower()[:1] in ("", "y", "s")

@@ -1,4 +1,4 @@
-"""The virtual robot as options describe it: its world, its chance, its speed and its picture."""
+"""The options of the virtual robot: its world, its noise and seed, its speed and its picture."""
 
 from __future__ import annotations
 
@@ -6,10 +6,11 @@ from argparse import Namespace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tiniscript.cli.errors import Trouble
+from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
-from tiniscript.cli.options import Options, decimal, whole_number
+from tiniscript.cli.options import decimal, whole_number
 from tiniscript.cli.texts.common import Said, text
+from tiniscript.cli.texts.options import virtual_names
 
 if TYPE_CHECKING:
     from tiniscript.robots.profile import Robot
@@ -23,28 +24,17 @@ FASTEST = 10_000 * ONE
 LONGEST_S = 1_000_000 * ONE
 MOTOR_LOW, MOTOR_HIGH = 10 * ONE, 200 * ONE  # percent
 
-NAMES = ("world", "seed", "noise", "motors", "faults", "hurry", "for", "plot")
-
-
-def takes_world(parser: Options) -> None:
-    """Add what every verb has that brings a virtual robot along."""
-    for name in NAMES:
-        parser.add_argument(f"--{name}")
-    parser.add_argument("--sensor", action="append", default=[])
-
 
 def wants_own(options: Namespace) -> bool:
-    """Whether something is said that only a robot of one's own can do."""
-    return any(getattr(options, name, None) is not None for name in NAMES) or bool(
-        getattr(options, "sensor", [])
-    )
+    """Whether an option needs a virtual robot of this command."""
+    return any(getattr(options, name, None) not in (None, []) for name in virtual_names())
 
 
 def refuse_real(options: Namespace) -> None:
-    """Refuse what a real robot cannot do."""
-    for name in (*NAMES, "sensor"):
+    """Refuse the options that a real robot does not support."""
+    for name in virtual_names():
         if getattr(options, name):
-            raise Trouble(2, "only_virtual", option=f"--{name}")
+            raise CommandError(2, "only_virtual", option=f"--{name}")
 
 
 def made(
@@ -54,7 +44,7 @@ def made(
     memory: bytes | None = None,
     baud: int | None = None,
 ) -> VirtualRobot:
-    """Return the robot in its world. Raises Trouble."""
+    """Return the robot in its world. Raises CommandError."""
     check_picture(options)
     world = world_of(options, language)
     seed = whole_number("--seed", options.seed, 1, 1, 2**32 - 1, language)
@@ -66,7 +56,7 @@ def made(
     told = sensor_lists(options.sensor, profile, language)
     try:
         from tiniscript.virtual.robot import Settings, VirtualRobot
-    except (ImportError, OSError, RuntimeError) as why:  # not there, or not for this computer
+    except (ImportError, OSError, RuntimeError) as why:  # missing, or not for this computer
         raise _not_installed("virtual_needs_wasmtime", why) from None
     settings = Settings(seed=seed, noise=noise, motors=motors, told=told, baud=baud)
     try:
@@ -87,24 +77,24 @@ def world_of(options: Namespace, language: str) -> World:
         raise _refused(name, refused, language) from None
 
 
-def _refused(name: str, refused: Exception, language: str) -> Trouble:
+def _refused(name: str, refused: Exception, language: str) -> CommandError:
     from tiniscript.virtual.world import WorldRefused
     from tiniscript.virtual.world_refusals import describe
 
     assert isinstance(refused, WorldRefused)
     lines = describe(refused, language)
     if len(lines) == 1 and refused.reasons[0][0].startswith(("file_", "no_such_world")):
-        return Trouble(2, "plain", said=lines[0])
+        return CommandError(2, "plain", said=lines[0])
     reasons = Said("\n".join("  " + line for line in lines))
-    return Trouble(2, "world_refused", file=shown(name), reasons=reasons)
+    return CommandError(2, "world_refused", file=shown(name), reasons=reasons)
 
 
 def hurry_of(options: Namespace, language: str) -> float:
-    """Return how many times as fast a program goes; 0 is as fast as possible."""
+    """Return the speed as a multiple of real time; 0 is as fast as possible."""
     if options.hurry == "max":
         return 0.0
     if options.hurry is not None and decimal(options.hurry) is None:
-        raise Trouble(2, "bad_hurry", found=shown(options.hurry) or "''")
+        raise CommandError(2, "bad_hurry", found=shown(options.hurry) or "''")
     return number("--hurry", options.hurry, ONE, ONE // 10, FASTEST, language)
 
 
@@ -113,7 +103,7 @@ def faults_of(options: Namespace, language: str) -> float:
 
 
 def end_ms(options: Namespace, language: str) -> int | None:
-    """Return after how many milliseconds of the robot's time it ends, or None."""
+    """Return the end in milliseconds of the robot's time, or None."""
     found = getattr(options, "for")
     if found is None:
         return None
@@ -121,7 +111,7 @@ def end_ms(options: Namespace, language: str) -> int | None:
 
 
 def check_picture(options: Namespace) -> None:
-    """Say at the beginning that no picture can be drawn; `paths` has looked at its place."""
+    """Refuse `--plot` early if no picture can be drawn; `paths` has checked the file."""
     if options.plot is None:
         return
     try:
@@ -145,7 +135,7 @@ def draw_picture(options: Namespace, robot: VirtualRobot, language: str) -> None
 def summary(
     options: Namespace, robot: VirtualRobot, language: str, passed_ms: int | None = None
 ) -> str:
-    """Return how far the robot has come, in all its time or in `passed_ms`, and its picture."""
+    """Return the summary of the run, of the robot's whole time or of `passed_ms`."""
     driving = robot.driving
     passed_ms = robot.now_ms if passed_ms is None else passed_ms
     key = "drove_touching" if driving.bumps else "drove"
@@ -160,7 +150,7 @@ def summary(
 def number(
     option: str, found: str | None, default: int, low: int, high: int, language: str
 ) -> float:
-    """Return the decimal that an option says; `default`, `low` and `high` are thousandths."""
+    """Return an option's decimal number; `default`, `low` and `high` are thousandths."""
     if found is None:
         return default / ONE
     value = decimal(found)
@@ -168,7 +158,9 @@ def number(
         from tiniscript.fixed_point import as_text
 
         allowed = text("range_number", language).format(low=as_text(low), high=as_text(high))
-        raise Trouble(2, "bad_number", option=option, range=allowed, found=shown(found) or "''")
+        raise CommandError(
+            2, "bad_number", option=option, range=allowed, found=shown(found) or "''"
+        )
     return value / ONE
 
 
@@ -177,14 +169,14 @@ def _motors(found: str | None, language: str) -> tuple[float, float]:
         return 100.0, 100.0
     parts = found.split(",")
     if len(parts) != 2:
-        raise Trouble(2, "bad_motors", found=shown(found) or "''")
+        raise CommandError(2, "bad_motors", found=shown(found) or "''")
     left, right = (
         number("--motors", each.strip(), 0, MOTOR_LOW, MOTOR_HIGH, language) for each in parts
     )
     return left, right
 
 
-def _not_installed(key: str, why: Exception) -> Trouble:
+def _not_installed(key: str, why: Exception) -> CommandError:
     from tiniscript.library import install_advice
 
-    return Trouble(2, key, why=str(why), how=install_advice.command(install_advice.VIRTUAL))
+    return CommandError(2, key, why=str(why), how=install_advice.command(install_advice.VIRTUAL))

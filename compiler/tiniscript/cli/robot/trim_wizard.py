@@ -1,6 +1,6 @@
-"""What `tsc trim` asks a person: it turns motors, and the answers say how they are.
+"""The dialog of `tsc trim`: it turns motors, and asks the user what they do.
 
-Whatever ends it early leaves the robot the trim that it had.
+If it ends early, the robot keeps its former trim.
 """
 
 from __future__ import annotations
@@ -8,57 +8,57 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING
 
-from tiniscript.cli.errors import Trouble
+from tiniscript.cli.errors import CommandError
 from tiniscript.cli.robot.connect import Connection
-from tiniscript.cli.robot.run_monitor import Attendant, confirmed
+from tiniscript.cli.robot.run_monitor import RunMonitor, confirmed
 from tiniscript.cli.texts.common import text
 from tiniscript.link.messages import MOST_BALANCE, MOST_LEAST
 from tiniscript.link.trim import Trim
 
 if TYPE_CHECKING:
-    from tiniscript.cli.robot.event_printer import Teller
+    from tiniscript.cli.robot.event_printer import EventPrinter
 
-TURNING = 60  # percent, of a motor that is looked at
+TURNING = 60  # percent, while the user looks at a motor
 STRAIGHT = "F(2, 60)"
 LEAST_STEP = 5  # percent
-FIRST_STEP = 16  # percent of balance; half of it each time that the robot goes to the other side
+FIRST_STEP = 16  # percent of balance; halved each time that the drift changes side
 YES, AGAIN = 1, 4
-STOPPED = ("stopped_elsewhere", "plain")  # troubles of a robot that was stopped meanwhile
+STOPPED = ("stopped_elsewhere", "plain")  # failures after a stop by another command
 TRIES = 4
 
 
 def guided(connection: Connection, before: Trim) -> Trim:
-    """Ask until the robot drives straight; return the trim that it keeps then."""
+    """Ask until the robot drives straight; return the new trim."""
     try:
-        return Guide(connection).trim()
+        return TrimWizard(connection).trim()
     except BaseException as why:
         if isinstance(why, KeyboardInterrupt):
             print(file=sys.stderr)
             confirmed(connection.line)
-        if not isinstance(why, Trouble) or _is_there(why):
+        if not isinstance(why, CommandError) or _is_there(why):
             _give_back(connection, before)
         raise
 
 
-def _is_there(trouble: Trouble) -> bool:
-    """Whether the robot can still be told something."""
-    return trouble.key in STOPPED or trouble.key.startswith("trim_")
+def _is_there(failure: CommandError) -> bool:
+    """Whether the robot can still be reached."""
+    return failure.key in STOPPED or failure.key.startswith("trim_")
 
 
 def _give_back(connection: Connection, before: Trim) -> None:
-    """Have the robot keep the trim that it had: a stop that still goes on may come in between."""
+    """Restore the robot's former trim, with retries: a stop may still be in progress."""
     for _ in range(TRIES - 1):
         try:
             connection.give(lambda session: session.trim(before.data()))
-        except Trouble as trouble:
-            if not _is_there(trouble):
+        except CommandError as failure:
+            if not _is_there(failure):
                 raise
         else:
             return
     connection.give(lambda session: session.trim(before.data()))
 
 
-class Guide:
+class TrimWizard:
     def __init__(self, connection: Connection) -> None:
         self.connection = connection
         self.language = connection.language
@@ -69,7 +69,7 @@ class Guide:
         left, left_forward = self._turned(f"M({TURNING}, 0)")
         right, right_forward = self._turned(f"M(0, {TURNING})")
         if left == right:
-            raise Trouble(3, "trim_same_wheel")
+            raise CommandError(3, "trim_same_wheel")
         is_exchanged = left == 2
         ways = {left: left_forward, right: right_forward}
         found = Trim(is_exchanged, not ways[1], not ways[2])
@@ -86,16 +86,16 @@ class Guide:
             self._drive(f"{motors}; W(1); M(0, 0)")
             wheel = self._choice("trim_which", AGAIN)
         if wheel == 3:
-            raise Trouble(3, "trim_no_wheel")
+            raise CommandError(3, "trim_no_wheel")
         return wheel, self._choice("trim_way", 2) == YES
 
     def _least(self) -> int:
-        """Return the smallest power that moves both wheels, or 0 where the smallest step does."""
+        """Return the smallest power that moves both wheels, or 0 if the smallest step does."""
         for power in range(LEAST_STEP, MOST_LEAST + 1, LEAST_STEP):
             self._drive(f"M({power}, {power}); W(1); M(0, 0)")
             if self._choice("trim_moves", 2, n=str(power)) == YES:
                 return power if power > LEAST_STEP else 0
-        raise Trouble(3, "trim_too_weak", n=str(MOST_LEAST))
+        raise CommandError(3, "trim_too_weak", n=str(MOST_LEAST))
 
     def _straight(self, found: Trim) -> Trim:
         """Balance the wheels until the robot goes straight."""
@@ -114,7 +114,7 @@ class Guide:
             last = side
             balance = found.balance + side * step
             if abs(balance) > MOST_BALANCE:
-                raise Trouble(3, "trim_too_uneven", n=str(MOST_BALANCE))
+                raise CommandError(3, "trim_too_uneven", n=str(MOST_BALANCE))
             found = found._replace(balance=balance)
             self._set(found)
 
@@ -124,14 +124,13 @@ class Guide:
     def _drive(self, line: str) -> None:
         from tiniscript import compile_text
         from tiniscript.bytecode.image import unpack
-        from tiniscript.cli.robot.event_printer import Teller
+        from tiniscript.cli.robot.event_printer import EventPrinter
 
         code = unpack(compile_text(f"SI|{line}", self.connection.profile.kit).image).code
-        run = self.connection.ask(lambda session: session.live(code)).values["run"]
-        assert isinstance(run, int)
-        teller: Teller = Teller(self.language)
-        if Attendant(self.connection, teller, lambda event: True).attend(run):
-            raise Trouble(3, "trim_ended")
+        run = self.connection.ask(lambda session: session.live(code)).values.run
+        printer: EventPrinter = EventPrinter(self.language)
+        if RunMonitor(self.connection, printer, lambda event: True).follow(run):
+            raise CommandError(3, "trim_ended")
 
     def _choice(self, key: str, high: int, **values: str) -> int:
         while True:
@@ -144,5 +143,5 @@ class Guide:
         print(text(key, self.language).format(**values), end="", file=sys.stderr, flush=True)
         answer = sys.stdin.readline()
         if not answer:
-            raise Trouble(3, "trim_no_answer")
+            raise CommandError(3, "trim_no_answer")
         return answer

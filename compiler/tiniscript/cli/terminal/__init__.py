@@ -1,1 +1,1 @@
-"""What is drawn on a terminal, and the keys that come from it."""
+"""Drawing on a terminal, and reading its keys."""

@@ -5,10 +5,11 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING
 
+from rich.cells import cell_len, set_cell_size
 from rich.text import Text
 
 from tiniscript.cli.inputs import shown
-from tiniscript.cli.terminal.run_drawing import Screen
+from tiniscript.cli.terminal.screen import Screen
 from tiniscript.cli.texts.common import text
 
 if TYPE_CHECKING:
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 STYLES = {"": "", "ok": "green", "bad": "red", "absent": "dim"}
 
 
-class Roll:
+class FleetTable:
     """The terminal while robots work: the table, and above it what is said."""
 
     def __init__(self, members: Sequence[Member], language: str) -> None:
@@ -27,7 +28,7 @@ class Roll:
         self.language = language
         self.screen = Screen()
 
-    def __enter__(self) -> Roll:
+    def __enter__(self) -> FleetTable:
         self.screen.begin()
         return self
 
@@ -64,10 +65,10 @@ class Roll:
             hidden = len(rows) - max(0, height - 2)
             rows = rows[: len(rows) - hidden]
         names = [shown(member.name or "?") for member in rows]
-        ports = [shown(member.post.port) for member in rows]
-        wide = [max(map(len, column), default=0) for column in (names, ports)]
+        ports = [shown(member.target.port) for member in rows]
+        wide = [max(map(cell_len, column), default=0) for column in (names, ports)]
         for member, name, port in zip(rows, names, ports, strict=True):
-            line = Text(f"{name:{wide[0]}}  {port:{wide[1]}}  ")
+            line = Text(f"{set_cell_size(name, wide[0])}  {set_cell_size(port, wide[1])}  ")
             line.append(member.said(self.language), style=STYLES[member.mark])
             lines.append(line)
         if hidden:

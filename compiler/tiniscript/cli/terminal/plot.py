@@ -1,6 +1,6 @@
 """`tsc monitor --plot`: the values that a robot shows, as a curve that moves with the time.
 
-Drawn in braille, below what is printed. Knows values and times; a terminal is known by `drawing`.
+Drawn below what is printed. Knows values and times; the terminal is known by `screen`.
 """
 
 from __future__ import annotations
@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 
 from rich.text import Text
 
-from tiniscript.cli.terminal.run_drawing import DOTS, FRAME_S, Screen
+from tiniscript.cli.terminal.canvas import ACROSS, DOWN, Canvas, layered
+from tiniscript.cli.terminal.screen import FRAME_S, Screen
 from tiniscript.fixed_point import as_text
 
 if TYPE_CHECKING:
@@ -46,9 +47,7 @@ class Board:
 
     def take(self, time_ms: int, event: Event) -> None:
         if event.name == "SHOW":
-            value = event.values["value"]
-            assert isinstance(value, int)
-            self.plot.take(time_ms, value, bool(event.values["is_yes_no"]))
+            self.plot.take(time_ms, event.value, bool(event.is_yes_no))
 
     def draw(self, now_ms: int) -> None:
         """Draw the curve as it is now, where the last frame is over."""
@@ -86,22 +85,19 @@ class Plot:
         title.truncate(max(1, width))
         if rows < 2 or columns < 4:
             return [title]
-        cells = self._cells(columns, rows, begin_ms, low, high)
-        lines = [title]
-        for row in range(rows):
+        canvas = self._curve(columns, rows, begin_ms, low, high)
+        found = [title]
+        for row, curve in enumerate(layered([(canvas, "cyan")])):
             label = labels[0] if row == 0 else labels[1] if row == rows - 1 else ""
-            drawn = cells[row * columns : (row + 1) * columns]
-            line = Text(f"{label:>{margin - 1}} ", style="dim")
-            curve = "".join(chr(0x2800 + bits) if bits else " " for bits in drawn)
-            lines.append(line.append(curve, style="not dim cyan"))
-        return lines
+            found.append(Text(f"{label:>{margin - 1}} ", style="dim").append_text(curve))
+        return found
 
-    def _cells(self, columns: int, rows: int, begin_ms: float, low: int, high: int) -> bytearray:
-        """Return the braille of the curve: each value holds until the next one."""
-        cells = bytearray(columns * rows)
+    def _curve(self, columns: int, rows: int, begin_ms: float, low: int, high: int) -> Canvas:
+        """Return the curve: each value holds until the next one."""
+        canvas = Canvas(columns, rows)
         if not self.values:
-            return cells
-        right, bottom = 2 * columns - 1, 4 * rows - 1
+            return canvas
+        right, bottom = ACROSS * columns - 1, DOWN * rows - 1
         before: int | None = None
         ends = [*[time_ms for time_ms, _ in self.values][1:], begin_ms + SECONDS * 1000]
         for (time_ms, value), end_ms in zip(self.values, ends, strict=True):
@@ -110,10 +106,6 @@ class Plot:
                 for each in (time_ms, end_ms)
             )
             y = round((high - value) / (high - low) * bottom)
-            low_y, high_y = (y, y) if before is None else (min(y, before), max(y, before))
-            dots = [(x, each) for each in range(low_y, high_y + 1)]
-            dots += [(each, y) for each in range(x, end + 1)]
-            for dot_x, dot_y in dots:
-                cells[dot_y // 4 * columns + dot_x // 2] |= DOTS[dot_y % 4][dot_x % 2]
+            canvas.lines([(x, y if before is None else before), (x, y), (end, y)])
             before = y
-        return cells
+        return canvas

@@ -1,4 +1,4 @@
-"""A bar on the terminal for what takes longer than a blink."""
+"""A progress bar on the terminal for tasks that take longer than a moment."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ COLUMNS = 30
 
 
 class Progress:
-    """Draws nothing before the blink is over, and nothing where nobody looks."""
+    """Draws nothing during the first moment, and nothing without a terminal."""
 
     def __init__(self, language: str, whole: int) -> None:
-        """`whole` is how much there is, in whatever unit."""
+        """`whole` is the total, in any unit."""
         self.label = text("sending", language)
         self.whole = whole
         self._begin_s = monotonic()
@@ -33,7 +33,7 @@ class Progress:
             print("\r" + line, end="", file=sys.stderr, flush=True)
 
     def end(self) -> None:
-        """Leave the line as if nothing had been there."""
+        """Clear the line of the bar."""
         if self._drawn:
             print("\r" + " " * len(self._drawn) + "\r", end="", file=sys.stderr, flush=True)
             self._drawn = ""

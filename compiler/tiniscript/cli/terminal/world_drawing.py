@@ -1,18 +1,18 @@
 """The virtual robot on a terminal: its world, its way, and what it senses, does and plays.
 
-Knows the terminal as `drawing` does, and braille. The picture is that of `tsc run --show`, with a
-world around it.
+Knows the floor of a world and how it lies on a canvas. The picture is that of `tsc run --show`,
+with a world around it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import pairwise
-from math import floor, log10
 
 from rich.text import Text
 
-from tiniscript.cli.terminal.run_drawing import ARROWS, DOTS, ROUND, Picture, Sketch
+from tiniscript.cli.terminal.canvas import ACROSS, DOWN, Canvas, Dot, layered, put
+from tiniscript.cli.terminal.run_drawing import Picture
+from tiniscript.cli.terminal.sketch import ARROWS, ROBOT, WAY, Sketch, round_scale
 from tiniscript.cli.texts.common import text
 from tiniscript.robots.kinematics import Pose
 from tiniscript.virtual.geometry import Point
@@ -20,11 +20,11 @@ from tiniscript.virtual.robot import VirtualRobot
 from tiniscript.virtual.world import World
 from tiniscript.vm.trace import Event
 
-WALLS, WAY, LAMP, ROBOT = "", "cyan", "bold yellow", "bold green"
+WALLS, LAMP = "", "bold yellow"
 
 
 class WorldPicture(Picture):
-    """What is known of a virtual robot; `footer` is a line below it."""
+    """The state of a virtual robot; `footer` is a line below it."""
 
     def __init__(self, robot: VirtualRobot, language: str, footer: str = "") -> None:
         super().__init__(robot.profile, language)
@@ -81,7 +81,7 @@ class WorldSketch(Sketch):
     def ruler(self) -> str:
         if self.floor is None:
             return ""
-        return f" ├────────┤ {20 * self.floor.cm_per_dot:g} cm "
+        return f" ├────────┤ {10 * ACROSS * self.floor.cm_per_dot:g} cm "
 
     def drawn(self, columns: int, rows: int, now_ms: float) -> list[Text]:
         ground = self.floor
@@ -89,22 +89,14 @@ class WorldSketch(Sketch):
             ground = self.floor = Floor(self.world, columns, rows)
         driving = self.robot.driving
         pose = self.robot.pose
-        way = ground.way(driving.corners, pose)
-        hull = bytearray(columns * rows)
+        hull = Canvas(columns, rows)
         outline = driving.hull.outline(pose, 16)
-        ground.join(hull, [*outline, outline[0]])
-        lines = []
-        for row in range(rows):
-            line = Text()
-            for k in range(row * columns, (row + 1) * columns):
-                bits = ground.walls[k] | way[k] | hull[k]
-                style = ROBOT if hull[k] else WAY if way[k] else WALLS
-                line.append(chr(0x2800 + bits) if bits else " ", style=style)
-            lines.append(line)
+        hull.lines(map(ground.dot, [*outline, outline[0]]))
+        way = ground.way(driving.corners, pose)
+        lines = layered([(hull, ROBOT), (way, WAY), (ground.walls, WALLS)])
         for lamp in self.world.lamps:
-            ground.mark(lines, lamp.place, "*", LAMP)
-        arrow = ARROWS[round((pose.heading - 90) / 45) % 8]
-        ground.mark(lines, pose, arrow, ROBOT)
+            put(lines, ground.dot(lamp.place), "*", LAMP)
+        put(lines, ground.dot(pose), ARROWS[round((pose.heading - 90) / 45) % 8], ROBOT)
         return lines
 
 
@@ -113,55 +105,35 @@ class Floor:
 
     def __init__(self, world: World, columns: int, rows: int) -> None:
         self.columns, self.rows = columns, rows
-        needed = max(
-            world.width_cm / max(1, 2 * columns - 1), world.height_cm / max(1, 4 * rows - 1)
+        self.cm_per_dot = round_scale(
+            max(
+                world.width_cm / max(1, ACROSS * columns - 1),
+                world.height_cm / max(1, DOWN * rows - 1),
+            )
         )
-        tens = 10.0 ** floor(log10(needed))
-        self.cm_per_dot = next(each * tens for each in (*ROUND, 20) if each * tens >= needed)
         self.height_cm = world.height_cm
-        self.walls = bytearray(columns * rows)
-        self._way = bytearray(columns * rows)
+        self.walls = Canvas(columns, rows)
+        self._way = Canvas(columns, rows)
         self._last: Sequence[Pose] = []
         for segment in world.obstacles():
-            self.join(self.walls, segment)
+            self.walls.lines(map(self.dot, segment))
         for line in world.lines:
-            self.join(self.walls, line.points)
+            self.walls.lines(map(self.dot, line.points))
 
-    def dot(self, point: Point | Pose) -> tuple[int, int]:
-        """Return the dots from the left and from the top."""
+    def dot(self, point: Point | Pose) -> Dot:
+        """Return where a place lies on the canvas."""
         x, y = point[:2]
         return round(x / self.cm_per_dot), round((self.height_cm - y) / self.cm_per_dot)
 
-    def way(self, corners: Sequence[Pose], pose: Pose) -> bytearray:
+    def way(self, corners: Sequence[Pose], pose: Pose) -> Canvas:
         """Return the way up to `pose`; the corners that were there before are drawn already."""
         known = len(self._last)
         if known > 1 and corners[: known - 1] == self._last[: known - 1]:
-            self.join(self._way, corners[known - 2 :])
+            self._way.lines(map(self.dot, corners[known - 2 :]))
         else:
-            self._way = bytearray(len(self._way))
-            self.join(self._way, corners)
+            self._way.clear()
+            self._way.lines(map(self.dot, corners))
         self._last = list(corners)
-        found = bytearray(self._way)
-        self.join(found, [corners[-1], pose])
+        found = self._way.copy()
+        found.lines(map(self.dot, [corners[-1], pose]))
         return found
-
-    def join(self, cells: bytearray, points: Sequence[Point | Pose]) -> None:
-        """Draw straight lines from point to point, as far as they are on the floor."""
-        dots = [self.dot(each) for each in points]
-        for (ax, ay), (bx, by) in pairwise(dots):
-            steps = min(max(abs(bx - ax), abs(by - ay), 1), 10_000)
-            for k in range(steps + 1):
-                right = ax + ((bx - ax) * k * 2 + steps) // (2 * steps)
-                down = ay + ((by - ay) * k * 2 + steps) // (2 * steps)
-                if 0 <= right < 2 * self.columns and 0 <= down < 4 * self.rows:
-                    place = down // 4 * self.columns + right // 2
-                    cells[place] |= DOTS[down % 4][right % 2]
-
-    def mark(self, lines: list[Text], point: Point | Pose, letter: str, style: str) -> None:
-        right, down = self.dot(point)
-        column, row = right // 2, down // 4
-        if 0 <= column < self.columns and 0 <= row < self.rows:
-            line = lines[row]
-            plain = line.plain
-            line.plain = plain[:column] + letter + plain[column + 1 :]
-            line.stylize(style, column, column + 1)

@@ -1,4 +1,4 @@
-"""What `tsc` itself says, in English and Spanish. What it says of programs is in `diagnostics`."""
+"""The sentences of `tsc` itself, in English and Spanish; those on programs: `diagnostics`."""
 
 from __future__ import annotations
 
@@ -9,87 +9,9 @@ from tiniscript.printable import printable
 
 LONGEST = 2000  # characters of what is put into a sentence
 
-_HELP_EN = """\
-tsc: TiniScript, a language of single lines for robots.
-
-  tsc compile prog.ts -o prog.bin    compile a program into an image for the robot
-  tsc check prog.ts                  show all mistakes and warnings
-  tsc run prog.ts                    run it without a robot and print what the robot does
-  tsc show prog.bin                  list the instructions of a program
-  tsc fmt prog.ts                    lay the text out in the usual way
-  tsc explain TS012                  say more about a mistake
-  tsc wiring                         how a robot is wired, as a list or as a page
-  tsc board myrobot.toml             tell the firmware how a robot is wired
-  tsc firmware --port /dev/ttyUSB0   put the firmware of a robot on its board
-
-With a robot on a port (--port /dev/rfcomm0, COM5, ...; later the last used one):
-
-  tsc ports                          list the ports; --ask: which robot answers where
-  tsc ping                           who is there, and how long an answer takes
-  tsc upload prog.ts                 bring a program to the robot, start it, and stay
-  tsc live 'F(2, 80)'                do a line at once; without a line: a prompt
-  tsc stop                           stop the robot now
-  tsc link                           hold the port, so that other commands share it
-  tsc start                          start the program that the robot holds
-  tsc info                           what the robot says of itself
-  tsc monitor                        print what the robot shows
-  tsc fetch                          read the robot's program back
-  tsc name TINI                      name the robot
-  tsc trim                           make the robot drive straight
-
-Without one:
-
-  tsc upload prog.ts --virtual       a virtual robot drives here, in a world of its own
-  tsc robot                          a virtual robot with a port, for other terminals
-
-A program is a file, - (standard input) or -e 'SI|F(2, 80)'.
-tsc VERB --help says more about a verb; --lang en or --lang es chooses the language.
-Exit codes: 0 done, 1 the program is wrong, 2 wrong use of tsc, 3 the robot or the link; 141 where
-whoever read the output has gone, which stops the robot that the command drives.
-"""
-_HELP_ES = """\
-tsc: TiniScript, un lenguaje de una sola línea para robots.
-
-  tsc compile prog.ts -o prog.bin    compila un programa en una imagen para el robot
-  tsc check prog.ts                  muestra todos los errores y avisos
-  tsc run prog.ts                    lo ejecuta sin robot e imprime lo que haría el robot
-  tsc show prog.bin                  lista las instrucciones de un programa
-  tsc fmt prog.ts                    ordena el texto de la forma usual
-  tsc explain TS012                  explica mejor un error
-  tsc wiring                         cómo se conecta un robot, en lista o en una página
-  tsc board mirobot.toml             le dice al firmware cómo está conectado un robot
-  tsc firmware --port /dev/ttyUSB0   pone el firmware de un robot en su placa
-
-Con un robot en un puerto (--port /dev/rfcomm0, COM5, ...; después, el último usado):
-
-  tsc ports                          lista los puertos; --ask: qué robot responde en cuál
-  tsc ping                           quién está ahí, y cuánto tarda una respuesta
-  tsc upload prog.ts                 lleva un programa al robot, lo inicia y se queda
-  tsc live 'F(2, 80)'                hace una línea en el acto; sin línea: un diálogo
-  tsc stop                           detiene el robot ahora
-  tsc link                           tiene el puerto, para que otros comandos lo compartan
-  tsc start                          inicia el programa que tiene el robot
-  tsc info                           lo que el robot dice de sí mismo
-  tsc monitor                        imprime lo que el robot muestra
-  tsc fetch                          lee de vuelta el programa del robot
-  tsc name TINI                      le pone nombre al robot
-  tsc trim                           hace que el robot vaya derecho
-
-Sin robot:
-
-  tsc upload prog.ts --virtual       un robot virtual se mueve aquí, en un mundo propio
-  tsc robot                          un robot virtual con un puerto, para otras terminales
-
-Un programa es un archivo, - (entrada estándar) o -e 'SI|F(2, 80)'.
-tsc VERBO --help dice más de un verbo; --lang en o --lang es elige el idioma.
-Códigos de salida: 0 listo, 1 el programa está mal, 2 mal uso de tsc, 3 el robot o la conexión; 141
-si quien leía la salida ya no está, y eso detiene el robot que el comando mueve.
-"""
-
 # fmt: off
 TEXTS: dict[str, tuple[str, str]] = {
     # key: (English, Spanish)
-    "help": (_HELP_EN, _HELP_ES),
     "did_you_mean": ("Did you mean {near}?", "¿Quisiste decir {near}?"),
     "stopped": ("Stopped.", "Detenido."),
     "bug": ("tsc met something it was not made for. That is our mistake, not yours.\n"
@@ -98,6 +20,7 @@ TEXTS: dict[str, tuple[str, str]] = {
             "tsc encontró algo para lo que no está hecho. El error es nuestro, no tuyo.\n"
             "Por favor repórtalo con tu programa y esta línea:  {what}\n"
             "(TINISCRIPT_DEBUG=1 muestra más.)"),
+    "pager_keys": ("Space: more   q: end", "Espacio: sigue   q: salir"),
     # wrong use
     "plain": ("tsc: {said}", "tsc: {said}"),
     "no_verb": ("tsc: there is no verb {found}. Try:  tsc --help",
@@ -113,7 +36,8 @@ TEXTS: dict[str, tuple[str, str]] = {
     "two_programs": ("tsc: one program at a time: a file, - or -e.",
                      "tsc: un programa a la vez: un archivo, - o -e."),
     "bad_option": ("tsc: {detail}. Try:  tsc {verb} --help", "tsc: {detail}. Prueba:  tsc {verb} --help"),
-    "bad_language": ("tsc: --lang takes en or es, not {found}.", "tsc: --lang acepta en o es, no {found}."),
+    "bad_choice": ("tsc: {option} takes {known}, not {found}.", "tsc: {option} acepta {known}, no {found}."),
+    "or": ("or", "o"),
     "file_missing": ("tsc: there is no file {file}. Check its name and the folder you are in.",
                      "tsc: no existe el archivo {file}. Revisa su nombre y la carpeta en la que estás."),
     "file_directory": ("tsc: {file} is a folder. Give a file in it.",
@@ -161,8 +85,6 @@ TEXTS: dict[str, tuple[str, str]] = {
     "range_yes_no": ("TRUE or FALSE", "TRUE o FALSE"),
     "bad_number": ("tsc: {option} takes {range}, not {found}.", "tsc: {option} acepta {range}, no {found}."),
     "range_whole": ("a whole number from {low} to {high}", "un número entero de {low} a {high}"),
-    "no_machine": ("tsc: there is no machine {found} here. There are: python, cpp.",
-                   "tsc: aquí no hay una máquina {found}. Hay: python, cpp."),
     "no_wasmtime": ("tsc: --machine cpp needs wasmtime, which cannot be used here: {why}.\n"
                     "Install it:  {how}   or try:  --machine python",
                     "tsc: --machine cpp necesita wasmtime, que aquí no se puede usar: {why}.\n"
@@ -185,6 +107,8 @@ TEXTS: dict[str, tuple[str, str]] = {
     # images
     "image_NOT_AN_IMAGE": ("refused: {file} is no compiled TiniScript program. Make one:  tsc compile prog.ts",
                            "rechazado: {file} no es un programa TiniScript compilado. Haz uno:  tsc compile prog.ts"),
+    "image_BAD_HEADER": ("refused: {file} begins with a header that no program has. Compile the program again.",
+                         "rechazado: {file} empieza con una cabecera que ningún programa tiene. Compila el programa otra vez."),
     "image_TRUNCATED": ("refused: the end of {file} is missing. Compile the program again.",
                         "rechazado: a {file} le falta el final. Compila el programa otra vez."),
     "image_TRAILING": ("refused: {file} is longer than the program in it. Compile the program again.",
@@ -203,7 +127,7 @@ TEXTS: dict[str, tuple[str, str]] = {
                              "rechazado: {file} inicia con PING y sin embargo tiene instrucciones. Compila el programa otra vez."),
     "image_code": ("refused: the code in {file} breaks rule {number} ({name}) at offset {offset}. Compile the program again.",
                    "rechazado: el código de {file} rompe la regla {number} ({name}) en la posición {offset}. Compila el programa otra vez."),
-    # what the verbs say
+    # sentences of the verbs
     "compiled": ("{source} -> {target}   {image} bytes ({code} of code)   stack {stack} of {stacks}{runs}",
                  "{source} -> {target}   {image} bytes ({code} de código)   pila {stack} de {stacks}{runs}"),
     "runs": ("   runs {how}", "   dura {how}"),
@@ -253,10 +177,10 @@ TEXTS: dict[str, tuple[str, str]] = {
 
 
 class Said(str):
-    """A sentence, or what is made of some: all that `format` puts into it can be printed.
+    """A sentence, or several: `format` makes all values printable.
 
-    What is put in is a text of others, in which nothing may move the cursor or begin a line; but
-    for another sentence, which stays as it is.
+    A value may come from a file or a robot: it must not move the cursor or begin a line. A value
+    that is a `Said` itself stays unchanged.
     """
 
     __slots__ = ()
@@ -273,7 +197,7 @@ def _plain(value: object) -> object:
 
 
 def text(key: str, language: str) -> str:
-    """Return a sentence, `Said`. Those about robots and ports are read when one is wanted."""
+    """Return a sentence as `Said`. Sentences about robots and ports are imported on first use."""
     found = TEXTS.get(key)
     if found is None:
         from tiniscript.cli.texts.robot import LINK_TEXTS
@@ -299,7 +223,7 @@ def has_text(key: str) -> bool:
 
 
 def language_of(arguments: Sequence[str], environ: Mapping[str, str] = os.environ) -> str:
-    """Return en or es: what `--lang` says, else what the locale says, else en."""
+    """Return en or es: from `--lang`, else from the locale, else en."""
     for k, word in enumerate(arguments):
         value = word[7:] if word.startswith("--lang=") else None
         if word == "--lang" and k + 1 < len(arguments):

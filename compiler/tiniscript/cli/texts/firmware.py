@@ -1,4 +1,4 @@
-"""What `tsc firmware` says, in English and Spanish."""
+"""The sentences of `tsc firmware`, in English and Spanish."""
 
 from __future__ import annotations
 
@@ -23,7 +23,6 @@ FLASH_TEXTS: dict[str, tuple[str, str]] = {
                       "tsc: ¿en qué puerto está la placa? Nómbralo con --port. Los puertos de aquí:  tsc ports"),
     "flash_address": ("tsc: a firmware goes over the board's USB cable, and {port} is on a network. Plug the board into this computer; the ports here:  tsc ports",
                       "tsc: un firmware va por el cable USB de la placa, y {port} está en una red. Conecta la placa a esta computadora; los puertos de aquí:  tsc ports"),
-    "flash_bad_board": ("tsc: --board takes {known}, not {found}.", "tsc: --board acepta {known}, no {found}."),
     "flash_no_fit": ("tsc: the robot {robot} does not fit the board {board}. It fits: {known}.",
                      "tsc: el robot {robot} no va con la placa {board}. Va con: {known}."),
     # it cannot be built

@@ -1,4 +1,4 @@
-"""What `tsc` says of ports and robots, in English and Spanish. What it says else is in `texts`."""
+"""The sentences of `tsc` about ports and robots, in English and Spanish."""
 
 from __future__ import annotations
 
@@ -93,7 +93,6 @@ LINK_TEXTS: dict[str, tuple[str, str]] = {
                    "tsc: el robot fue detenido a la mitad. Guarda el ajuste que tenía; prueba otra vez."),
     "trim_no_answer": ("tsc: the answers ended in between. The robot keeps what it had. Set numbers at once like this:  tsc trim --balance 5",
                        "tsc: las respuestas terminaron a la mitad. El robot guarda lo que tenía. Los números se ponen de una vez así:  tsc trim --balance 5"),
-    "trim_yes_no": ("tsc: {option} takes yes or no, not {found}", "tsc: {option} acepta yes o no, no {found}"),
     "choose_kit": ("Name the robot:  --robot {robot}", "Nombra el robot:  --robot {robot}"),
     "too_large_by": ("tsc: the program has {code} bytes of code, {over} more than the robot has room for ({room}). What repeats fits in a LOOP or a DEF.",
                      "tsc: el programa tiene {code} bytes de código, {over} más de los que caben en el robot ({room}). Lo que se repite cabe en un LOOP o un DEF."),
@@ -108,6 +107,7 @@ LINK_TEXTS: dict[str, tuple[str, str]] = {
     "saved_LOW_SUPPLY": ("in RAM only: its batteries are too weak to save it", "solo en RAM: sus pilas están demasiado gastadas para guardarlo"),
     "saved_STORED": ("saved in slot {slot}", "guardado en el lugar {slot}"),
     "saved_NOTHING": ("not saved", "sin guardar"),
+    "saved_OTHER_VERSION": ("not saved", "sin guardar"),
     "now_saved": ("Saved in slot {slot}.", "Guardado en el lugar {slot}."),
     "not_saved": ("The robot could not save the program; it is in RAM only.",
                   "El robot no pudo guardar el programa; está solo en RAM."),
@@ -178,6 +178,8 @@ LINK_TEXTS: dict[str, tuple[str, str]] = {
     "info_program": ("program {checksum}{name}, {code} bytes of code, {saved}",
                      "programa {checksum}{name}, {code} bytes de código, {saved}"),
     "info_no_program": ("no program", "sin programa"),
+    "info_other_version": ("its program is for another version of the machine: compile its text again and upload it",
+                           "su programa es para otra versión de la máquina: compila su texto otra vez y envíalo"),
     "info_state": ("{state}; last started by: {reset}", "{state}; último arranque por: {reset}"),
     "info_fault": ("last fault: {fault}", "última falla: {fault}"),
     "info_hearing": ("it has heard {damaged} damaged and {dropped} dropped messages, {framing} framing errors and {overrun} overruns; if these go up, look at the wires and the speed (--baud)",

@@ -1,4 +1,4 @@
-"""What `tsc` says of the virtual robot, in English and Spanish."""
+"""The sentences of `tsc` about the virtual robot, in English and Spanish."""
 
 from __future__ import annotations
 

@@ -6,13 +6,14 @@
 
 #define tiniscript_motors_bridge
 #define tiniscript_servos
-#define tiniscript_echo_vectors(each) each(INT4_vect)
+#define tiniscript_ultrasonic_vectors(each) each(INT4_vect)
 
 namespace tiniscript {
 
 constexpr uint16_t kBoardKit = 0x74b5;
 constexpr uint8_t kBoardSensors = 3;
 constexpr uint8_t kBoardActuators = 2;
+constexpr uint16_t kDeviceHashes[] tini_progmem = {0x0920, 0xe0c8, 0x3dd4, 0x5d07, 0x97d3};
 constexpr uint16_t kProgramBytes = 1900;
 constexpr uint16_t kMaxRunSeconds = 600;
 constexpr uint32_t kBaud = 57600;
@@ -27,9 +28,9 @@ constexpr Bridge kRightMotor =
     {{{kPortH, 1 << 4}, 4, kChannelB}, {kPortA, 1 << 2}, {kPortA, 1 << 3}};
 constexpr Pin kStandby = kNoPin;
 constexpr Pin kServos[] = {{kPortB, 1 << 5}};
-constexpr uint8_t kEchoes = 1;
+constexpr uint8_t kUltrasonics = 1;
 
-tini_always_inline Echo echo_at(uint8_t) {
+tini_always_inline Ultrasonic ultrasonic_at(uint8_t) {
   return {{kPortA, 1 << 4}, {kPortE, 1 << 4}, 3, 1 << 4};
 }
 
@@ -42,7 +43,7 @@ inline void begin_devices() {
 inline bool read_sensor(uint8_t number, int32_t* value) {
   switch (number) {
     case 0:  // DISTANCE
-      if (!echo_read(0, value)) return false;
+      if (!ultrasonic_read(0, value)) return false;
       return true;
     case 1:  // TEMPERATURE
       if (!analog_read(0, value)) return false;

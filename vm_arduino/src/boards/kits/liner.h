@@ -11,7 +11,8 @@ namespace tiniscript {
 constexpr uint16_t kBoardKit = 0xfc65;
 constexpr uint8_t kBoardSensors = 4;
 constexpr uint8_t kBoardActuators = 1;
-constexpr uint16_t kProgramBytes = 430;
+constexpr uint16_t kDeviceHashes[] tini_progmem = {0xbc99, 0xd575, 0x3dd4, 0x5c59, 0x97d3};
+constexpr uint16_t kProgramBytes = 389;
 constexpr uint16_t kMaxRunSeconds = 600;
 constexpr uint32_t kBaud = 9600;
 
@@ -72,6 +73,7 @@ namespace tiniscript {
 constexpr uint16_t kBoardKit = 0xfc65;
 constexpr uint8_t kBoardSensors = 4;
 constexpr uint8_t kBoardActuators = 1;
+constexpr uint16_t kDeviceHashes[] tini_progmem = {0xbc99, 0xd575, 0x3dd4, 0x5c59, 0x97d3};
 constexpr uint16_t kProgramBytes = 1900;
 constexpr uint16_t kMaxRunSeconds = 600;
 constexpr uint32_t kBaud = 9600;

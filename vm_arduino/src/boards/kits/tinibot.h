@@ -5,14 +5,15 @@
 #if defined(__AVR_ATmega328P__)  // uno, nano
 
 #define tiniscript_motors_bridge
-#define tiniscript_echo_vectors(each) each(PCINT2_vect)
+#define tiniscript_ultrasonic_vectors(each) each(PCINT2_vect)
 
 namespace tiniscript {
 
 constexpr uint16_t kBoardKit = 0x231b;
 constexpr uint8_t kBoardSensors = 3;
 constexpr uint8_t kBoardActuators = 0;
-constexpr uint16_t kProgramBytes = 430;
+constexpr uint16_t kDeviceHashes[] tini_progmem = {0x1fe9, 0xffab, 0x0920};
+constexpr uint16_t kProgramBytes = 389;
 constexpr uint16_t kMaxRunSeconds = 600;
 constexpr uint32_t kBaud = 9600;
 
@@ -25,9 +26,9 @@ constexpr Bridge kLeftMotor =
 constexpr Bridge kRightMotor =
     {{{kPortD, 1 << 6}, 0, kChannelA}, {kPortB, 1 << 1}, {kPortB, 1 << 2}};
 constexpr Pin kStandby = kNoPin;
-constexpr uint8_t kEchoes = 1;
+constexpr uint8_t kUltrasonics = 1;
 
-tini_always_inline Echo echo_at(uint8_t) {
+tini_always_inline Ultrasonic ultrasonic_at(uint8_t) {
   return {{kPortD, 1 << 4}, {kPortD, 1 << 3}, 2, 1 << 3};
 }
 
@@ -46,7 +47,7 @@ inline bool read_sensor(uint8_t number, int32_t* value) {
       *value = analog_scaled(*value, 0, 1000, 0);
       return true;
     case 2:  // DISTANCE
-      if (!echo_read(0, value)) return false;
+      if (!ultrasonic_read(0, value)) return false;
       return true;
   }
   return true;
@@ -61,13 +62,14 @@ inline void actuators_off(bool) {}
 #elif defined(__AVR_ATmega2560__)  // mega
 
 #define tiniscript_motors_bridge
-#define tiniscript_echo_vectors(each) each(INT5_vect)
+#define tiniscript_ultrasonic_vectors(each) each(INT5_vect)
 
 namespace tiniscript {
 
 constexpr uint16_t kBoardKit = 0x231b;
 constexpr uint8_t kBoardSensors = 3;
 constexpr uint8_t kBoardActuators = 0;
+constexpr uint16_t kDeviceHashes[] tini_progmem = {0x1fe9, 0xffab, 0x0920};
 constexpr uint16_t kProgramBytes = 1900;
 constexpr uint16_t kMaxRunSeconds = 600;
 constexpr uint32_t kBaud = 9600;
@@ -81,9 +83,9 @@ constexpr Bridge kLeftMotor =
 constexpr Bridge kRightMotor =
     {{{kPortH, 1 << 3}, 4, kChannelA}, {kPortH, 1 << 6}, {kPortB, 1 << 4}};
 constexpr Pin kStandby = kNoPin;
-constexpr uint8_t kEchoes = 1;
+constexpr uint8_t kUltrasonics = 1;
 
-tini_always_inline Echo echo_at(uint8_t) {
+tini_always_inline Ultrasonic ultrasonic_at(uint8_t) {
   return {{kPortG, 1 << 5}, {kPortE, 1 << 5}, 3, 1 << 5};
 }
 
@@ -102,7 +104,7 @@ inline bool read_sensor(uint8_t number, int32_t* value) {
       *value = analog_scaled(*value, 0, 1000, 0);
       return true;
     case 2:  // DISTANCE
-      if (!echo_read(0, value)) return false;
+      if (!ultrasonic_read(0, value)) return false;
       return true;
   }
   return true;

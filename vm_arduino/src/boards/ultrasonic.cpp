@@ -1,23 +1,25 @@
-#include "echo.h"
+#include "ultrasonic.h"
 
-#include <Arduino.h>
+#include <avr/interrupt.h>
+#include <avr/io.h>
 
+#include "clock.h"
 #include "kit.h"
 
-#ifdef tiniscript_echo_vectors
+#ifdef tiniscript_ultrasonic_vectors
 
 namespace tiniscript {
 
 namespace {
 
-constexpr uint8_t kTriggerUs = 10;      // how long the trigger is high, at least
-constexpr uint16_t kLimitUs = 25000;    // there and back is at most 23.3 ms, and 0.5 ms to begin
-constexpr uint16_t kSpacingUs = 30000;  // from ping to ping
-constexpr uint8_t kFreshMs = 57;        // 60, and `millis` may be 2 behind and jumps by 2
-constexpr uint8_t kGlitchUs = 100;      // an echo is 117 us at least, from 2 cm away
+constexpr uint8_t kTriggerUs = 10;      // minimum length of the trigger pulse
+constexpr uint16_t kLimitUs = 25000;    // an echo takes at most 23.3 ms, plus 0.5 ms to begin
+constexpr uint16_t kSpacingUs = 30000;  // between two pings
+constexpr uint8_t kFreshMs = 57;        // 60 ms, less 2 for a late clock and steps of 2
+constexpr uint8_t kGlitchUs = 100;      // an echo is at least 117 us long, from 2 cm
 constexpr int32_t kNothing = -1;
 constexpr int32_t kFarthest = 400000;
-constexpr uint16_t kThousandthsPer256Us = 4390;  // half of 34.3 cm a millisecond
+constexpr uint16_t kThousandthsPer256Us = 4390;  // half of 34.3 cm/ms
 constexpr uint16_t kGroups = 0x68;               // PCICR
 constexpr uint16_t kChanges = 0x6b;              // PCMSK0 to PCMSK2
 constexpr uint16_t kExternal = 0x3d;             // EIMSK
@@ -27,22 +29,23 @@ enum class Ping : uint8_t { kNone, kTriggered, kListening };
 
 struct Reading {
   int32_t distance;  // or kNothing
-  uint32_t ping_ms;  // when its ping left
+  uint32_t ping_ms;  // when its ping was sent
 };
 
-Reading readings[kEchoes];
+Reading readings[kUltrasonics];
 Ping ping;
-uint8_t asked;      // the sensor of this ping
-uint32_t ping_us;   // when the last ping left, of any sensor
-uint32_t begun_us;  // since when the trigger is high, or an echo that is nobody's
-bool is_held;       // there is such an echo
+uint8_t asked;      // the sensor of the current ping
+uint16_t ping_us;   // when the last ping of any sensor was sent
+bool is_spaced;     // kSpacingUs have passed since then
+uint16_t begun_us;  // when the trigger, or a stale echo, went high
+bool is_held;       // there is a stale echo
 
-// What the interrupt notes of an echo. What is shorter than kGlitchUs is no echo, and no gap in one.
+// The interrupt's record of an echo. It ignores pulses and gaps shorter than kGlitchUs.
 enum class Heard : uint8_t {
   kNothing,
   kHigh,   // since `rose_us`
-  kEnded,  // at `fell_us`; after kGlitchUs that is final
-  kAgain,  // but the line is high again, since `again_us`
+  kEnded,  // at `fell_us`; final after kGlitchUs
+  kAgain,  // the line is high again since `again_us`
 };
 
 volatile Heard heard;
@@ -55,9 +58,9 @@ tini_always_inline uint16_t since(uint16_t now_us, uint16_t then_us) {
 }
 
 tini_always_inline void on_change() {
-  const uint16_t now_us = static_cast<uint16_t>(micros());
+  const uint16_t now_us = clock_us();
   const Heard before = heard;
-  if (is_high(echo_at(asked).echo)) {
+  if (is_high(ultrasonic_at(asked).echo)) {
     if (before == Heard::kNothing) {
       rose_us = now_us;
       heard = Heard::kHigh;
@@ -76,7 +79,7 @@ tini_always_inline void on_change() {
 
 void listen(bool is_on) {
   const CriticalSection critical;
-  const Echo sensor = echo_at(asked);
+  const Ultrasonic sensor = ultrasonic_at(asked);
   const uint8_t group = sensor.group;
   const uint16_t masks =
       group == kExternalGroup ? kExternal : static_cast<uint16_t>(kChanges + group);
@@ -84,7 +87,7 @@ void listen(bool is_on) {
     heard = Heard::kNothing;
     if (group == kExternalGroup) {
 #ifdef EICRB
-      EICRA = 0x55;  // each change of INT0 to INT7
+      EICRA = 0x55;  // any edge of INT0 to INT7
       EICRB = 0x55;
       EIFR = sensor.interrupt;
 #endif
@@ -99,15 +102,16 @@ void listen(bool is_on) {
 }
 
 void lower_trigger() {
-  write(echo_at(asked).trigger, false);
-  ping_us = micros();
-  readings[asked].ping_ms = millis();
+  write(ultrasonic_at(asked).trigger, false);
+  ping_us = clock_us();
+  is_spaced = false;
+  readings[asked].ping_ms = clock_ms();
 }
 
-// Goes on with the ping that is under way. True: it is over, and there is a reading.
+// Continues the current ping. Returns true when it is over and there is a reading.
 bool is_over() {
   if (ping == Ping::kTriggered) {
-    if (micros() - begun_us < kTriggerUs) return false;
+    if (since(clock_us(), begun_us) < kTriggerUs) return false;
     listen(true);
     lower_trigger();
     ping = Ping::kListening;
@@ -116,14 +120,14 @@ bool is_over() {
   Heard found;
   uint16_t echo_us;
   uint16_t quiet_us;
-  uint32_t gone_us;
+  uint16_t gone_us;
   {
     const CriticalSection critical;
-    const uint32_t now_us = micros();
-    gone_us = now_us - ping_us;
+    const uint16_t now_us = clock_us();
+    gone_us = since(now_us, ping_us);
     found = heard;
     echo_us = since(fell_us, rose_us);
-    quiet_us = since(static_cast<uint16_t>(now_us), fell_us);
+    quiet_us = since(now_us, fell_us);
   }
   const bool has_ended = found == Heard::kEnded;
   if (gone_us < kLimitUs && !(has_ended && quiet_us >= kGlitchUs)) return false;
@@ -141,46 +145,56 @@ bool is_over() {
 void begin(uint8_t number) {
   asked = number;
   readings[number].distance = kNothing;
-  write(echo_at(number).trigger, true);
-  begun_us = micros();
+  write(ultrasonic_at(number).trigger, true);
+  begun_us = clock_us();
   ping = Ping::kTriggered;
+}
+
+// Whether kSpacingUs have passed since the last ping of any sensor.
+bool may_ping() {
+  if (since(clock_us(), ping_us) >= kSpacingUs) is_spaced = true;
+  return is_spaced;
 }
 
 }  // namespace
 
-bool echo_read(uint8_t number, int32_t* distance) {
+void ultrasonic_tick() {
+  if (!is_spaced) may_ping();
+}
+
+bool ultrasonic_read(uint8_t number, int32_t* distance) {
   const Reading& mine = readings[number];
   if (ping != Ping::kNone && is_over() && asked == number) {
     *distance = mine.distance;
     return true;
   }
   if (ping != Ping::kNone && asked == number) return false;
-  // A sensor that has heard nothing holds its echo for longer, and sees no trigger meanwhile.
-  const bool is_busy = ping == Ping::kNone && is_high(echo_at(number).echo);
+  // A sensor without an echo holds its line high for longer and ignores triggers meanwhile.
+  const bool is_busy = ping == Ping::kNone && is_high(ultrasonic_at(number).echo);
   if (ping == Ping::kNone && !is_busy) {
     is_held = false;
-    if (micros() - ping_us >= kSpacingUs) {
+    if (may_ping()) {
       begin(number);
       return false;
     }
   }
-  if (mine.distance != kNothing && millis() - mine.ping_ms <= kFreshMs) {
+  if (mine.distance != kNothing && clock_ms() - mine.ping_ms <= kFreshMs) {
     *distance = mine.distance;
     return true;
   }
   if (!is_busy) return false;
   if (!is_held) {
     is_held = true;
-    begun_us = micros();
+    begun_us = clock_us();
     return false;
   }
-  if (micros() - begun_us < kLimitUs) return false;
+  if (since(clock_us(), begun_us) < kLimitUs) return false;
   is_held = false;
   *distance = kFarthest;
   return true;
 }
 
-void echo_forget() {
+void ultrasonic_forget() {
   if (ping == Ping::kTriggered) lower_trigger();
   if (ping == Ping::kListening) listen(false);
   ping = Ping::kNone;
@@ -192,10 +206,12 @@ void echo_forget() {
 
 #define tiniscript_on(vector) \
   ISR(vector) { tiniscript::on_change(); }
-tiniscript_echo_vectors(tiniscript_on)
+tiniscript_ultrasonic_vectors(tiniscript_on)
 
 #else
 
-void tiniscript::echo_forget() {}
+void tiniscript::ultrasonic_forget() {}
+
+void tiniscript::ultrasonic_tick() {}
 
 #endif

@@ -1,0 +1,151 @@
+"""The text of `tsc --help` and `tsc help VERB`, made from the tables of verbs and options.
+
+Only lays the text out; `terminal/pager.py` shows it.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Iterable, Iterator
+from shutil import get_terminal_size
+from textwrap import wrap
+
+from tiniscript.cli.terminal import pager
+from tiniscript.cli.texts.options import PROGRAM, USAGE, WITH_VIRTUAL, Option, of_verb
+from tiniscript.cli.texts.verbs import NOTES, TITLE, VERBS
+
+WIDTH = 80  # columns, where the terminal has as many
+NARROWEST = 40
+
+Row = tuple[str, str]  # the command, and its description
+
+
+def show_verb(verb: str, language: str) -> None:
+    pager.show(of(verb, language, _width()), language)
+
+
+def show_all(language: str) -> None:
+    pager.show(overview(language, _width()), language)
+
+
+def of(verb: str, language: str, width: int = WIDTH) -> str:
+    """Return the help of a verb."""
+    found, k = VERBS[verb], language == "es"
+    table = of_verb(verb)
+    parts = [
+        _paragraphs("\n".join(usage(verb, language)), width),
+        _paragraphs(found.says[k], width),
+        "\n".join(_options(table, language, width)),
+        _paragraphs(found.ends[k], width),
+    ]
+    return "\n\n".join(part for part in parts if part) + "\n"
+
+
+def overview(language: str, width: int = WIDTH) -> str:
+    """Return the help of `tsc`: every verb with an example."""
+    k = language == "es"
+    parts = [_paragraphs(TITLE[k], width)]
+    commands = groups(language)
+    left = _left([row for _, rows in commands for row in rows], width * 4 // 10)
+    for heading, rows in commands:
+        if heading:
+            parts.append(_paragraphs(heading, width))
+        parts.append("\n".join(_columns(rows, left, width)))
+    parts.append("\n".join(_options(of_verb("tsc"), language, width)))
+    parts.append("\n".join(_paragraphs(note[k], width) for note in NOTES))
+    return "\n\n".join(parts) + "\n"
+
+
+def groups(language: str) -> list[tuple[str, list[Row]]]:
+    """Return the headings of the overview with the commands below each, and what these do."""
+    k = language == "es"
+    found: dict[str, list[Row]] = {}
+
+    for each in VERBS.values():
+        for group, example, summary in ((each.group, each.example, each.summary), *each.also):
+            found.setdefault(group[k], []).append((f"tsc {example[k]}", summary[k]))
+    return list(found.items())
+
+
+def usage(verb: str, language: str) -> list[str]:
+    """Return how a verb is used: a line for each way."""
+    k = language == "es"
+    if VERBS[verb].usage[k]:
+        return [f"tsc {verb} {way}" for way in VERBS[verb].usage[k].split("\n")]
+    words = [f"tsc {verb}"]
+    for option in of_verb(verb):
+        if option.is_argument:
+            is_there = option.is_needed or option.kind == PROGRAM  # in whose place -e may stand
+            words.append(option.value[k] if is_there else f"[{option.value[k]}]")
+    return [" ".join([*words, USAGE[k]])]
+
+
+def signature(option: Option, language: str) -> str:
+    """Return an option as help shows it: `-o FILE`."""
+    value = option.value[language == "es"]
+    if option.is_argument:
+        return value
+    return f"{', '.join(option.flags.split())} {value}".rstrip()
+
+
+def _options(table: Iterable[Option], language: str, width: int) -> Iterator[str]:
+    """Yield the rows of options; those for a virtual robot only have a heading of their own."""
+    rows: dict[bool, list[Row]] = {False: [], True: []}
+    last: list[Row] = []
+    is_apart = any(option.name == "virtual" for option in table)
+    for option in table:
+        row = signature(option, language), option.help[language == "es"]
+        if option.verbs in ("*", "tsc"):
+            last.append(row)
+        else:
+            rows[option.virtual and is_apart].append(row)
+    together = [*rows[False], *rows[True], *last]
+    left = _left(together, width * 3 // 10)
+    yield from _columns(rows[False], left, width)
+    if rows[True]:
+        yield ""
+        yield WITH_VIRTUAL[language == "es"]
+        yield from _columns(rows[True], left, width)
+        yield ""
+    yield from _columns(last, left, width)
+
+
+def _left(rows: Iterable[Row], most: int) -> int:
+    """Return the width of the left column, at most `most`."""
+    return max((len(typed) for typed, _ in rows if len(typed) <= most), default=most)
+
+
+def _columns(rows: Iterable[Row], left: int, width: int) -> Iterator[str]:
+    """Yield two columns; what is too long for the first one has a line of its own."""
+    indent = " " * (left + 4)
+    for typed, does in rows:
+        lines = _wrapped(does, width - len(indent))
+        if len(typed) > left:
+            yield f"  {typed}"
+        else:
+            yield f"  {typed:{left}}  {lines.pop(0)}"
+        for line in lines:
+            yield indent + line
+
+
+def _paragraphs(text: str, width: int) -> str:
+    return "\n".join(line for each in text.split("\n") for line in _wrapped(each, width))
+
+
+def _wrapped(text: str, width: int) -> list[str]:
+    """Return the lines of a text. What stands between backticks is not broken, if it fits."""
+
+    def kept(found: re.Match[str]) -> str:
+        return found[1].replace(" ", "\0") if len(found[1]) <= width else found[1]
+
+    whole = re.sub("`([^`]*)`", kept, text)
+    lines = wrap(whole, width, break_long_words=False, break_on_hyphens=False)
+    return [line.replace("\0", " ") for line in lines]
+
+
+def _width() -> int:
+    """Return how many columns help has: on a narrow terminal fewer."""
+    if not sys.stdout.isatty():
+        return WIDTH
+    return max(NARROWEST, min(WIDTH, get_terminal_size().columns))

@@ -1,0 +1,68 @@
+"""A long text on a terminal: shown by `$PAGER`, or by `less`, a page at a time.
+
+Where the output is no terminal, the text is short, or no pager can be started, it is printed.
+"""
+
+from __future__ import annotations
+
+import os
+import shlex
+import subprocess
+import sys
+from contextlib import suppress
+from shutil import get_terminal_size, which
+
+from tiniscript.cli.texts.common import text
+
+# What a shell answers where the command cannot be started.
+NOT_STARTED = (126, 127)
+
+
+def show(said: str, language: str) -> None:
+    """Show a text; a long one with a pager, until the person leaves that."""
+    sys.stdout.flush()
+    command = _command(language) if _is_long_there(said) else ""
+    if not command or not _paged(said, command):
+        print(said, end="")
+
+
+def _is_long_there(said: str) -> bool:
+    """Whether a person sits at a terminal that has fewer lines than the text."""
+    is_person = sys.stdin.isatty() and sys.stdout.isatty() and os.environ.get("TERM") != "dumb"
+    return is_person and said.count("\n") >= get_terminal_size().lines
+
+
+def _command(language: str) -> str:
+    """Return the pager's command for the shell. An empty `$PAGER` says that none is wanted.
+
+    Without `$PAGER` the prompt of `less` shows its keys, because the user may not know them.
+    """
+    command = os.environ.get("PAGER")
+    if command is None:
+        found = which("less") if os.name != "nt" else None  # consoles of Windows scroll
+        keys = text("pager_keys", language).replace(":", r"\:")
+        command = shlex.join([found, "-R", f"-Ps{keys}"]) if found else ""
+    return command.strip()
+
+
+def _paged(said: str, command: str) -> bool:
+    """Show a text with a pager; return whether it could be started.
+
+    Ctrl-C belongs to the pager: tsc waits until the pager has left the terminal.
+    """
+    environ = {"LESS": "FRX", "LESSCHARSET": "utf-8", **os.environ}
+    data = said.encode(sys.stdout.encoding or "utf-8", "backslashreplace")
+    try:
+        pager = subprocess.Popen(command, shell=True, stdin=subprocess.PIPE, env=environ)
+    except OSError:
+        return False
+    assert pager.stdin is not None
+    while True:
+        try:
+            if not pager.stdin.closed:
+                with suppress(OSError):  # the person has left already
+                    pager.stdin.write(data)
+                    pager.stdin.close()
+            return pager.wait() not in NOT_STARTED
+        except KeyboardInterrupt:
+            continue

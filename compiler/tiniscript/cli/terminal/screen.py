@@ -1,0 +1,109 @@
+"""A picture at the bottom of the terminal, which is redrawn while lines are printed above it.
+
+The picture goes to standard error, the lines to standard output. Knows the terminal and the time
+that passes in front of it; does not know what a picture shows.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+from typing import Protocol
+
+from rich.console import Console
+from rich.control import Control
+from rich.live import Live
+from rich.segment import ControlType
+from rich.text import Text
+
+FRAME_S = 1 / 15
+SLOWEST_S = 0.2  # a frame that took longer (a long computation, Ctrl-Z) does not skip a move
+PLAIN = str.maketrans("│─├┤█▌▐♪…↑↖←↙↓↘→↗", "|-||#==~.^\\</v\\>/")
+
+
+class Drawable(Protocol):
+    """A picture: at most `height` lines of at most `width` columns."""
+
+    def lines(self, width: int, height: int, now_ms: float) -> list[Text]: ...
+
+
+class Screen:
+    """The terminal: the trace, and below it the picture."""
+
+    def __init__(self) -> None:
+        self.console = Console(stderr=True)
+        self.live = Live(console=self.console, auto_refresh=False, redirect_stdout=False,
+                         redirect_stderr=False, vertical_overflow="crop")  # fmt: skip
+        self.lines: list[str] = []  # of the trace, for the next frame
+        self.widths: list[int] = []  # of the lines of the picture
+        self.frame_s = time.monotonic()
+        # where the trace goes to this very terminal, it has to go around the picture
+        self.is_shared = sys.stdout.isatty() and (
+            os.fstat(sys.stdout.fileno()).st_rdev == os.fstat(sys.stderr.fileno()).st_rdev
+        )
+
+    def begin(self) -> None:
+        self.live.start()
+
+    def end(self) -> None:
+        try:
+            self.flush()
+        finally:
+            if self.live.is_started:
+                try:
+                    self.live.stop()
+                finally:
+                    self.console.show_cursor(True)
+
+    def say(self, line: str) -> None:
+        """Print a line of the trace, at the next frame at the latest."""
+        if self.is_shared and self.live.is_started:
+            self.lines.append(line)
+        else:
+            sys.stdout.write(f"{line}\n")
+
+    def flush(self) -> None:
+        sys.stdout.flush()
+        if self.lines:
+            said = Text("\n".join(self.lines))
+            self.lines = []
+            self.console.print(said, soft_wrap=True)
+
+    def rest(self) -> float:
+        """Wait for the next frame; return the seconds since the last one."""
+        last_s = self.frame_s
+        time.sleep(max(0.0, last_s + FRAME_S - time.monotonic()))
+        self.frame_s = time.monotonic()
+        return min(self.frame_s - last_s, SLOWEST_S)
+
+    def is_late(self) -> bool:
+        """Return whether a frame is overdue: much has happened that takes the robot no time."""
+        now_s = time.monotonic()
+        if now_s - self.frame_s < 2 * FRAME_S:
+            return False
+        self.frame_s = now_s
+        return True
+
+    def draw(self, picture: Drawable, now_ms: float) -> None:
+        """Print what was said, and the picture below it."""
+        width, height = self.console.size
+        lines = picture.lines(width - 1, height - max(3, height // 4), now_ms)
+        if not self.console.encoding.startswith("utf"):
+            for line in lines:
+                line.plain = "".join("*" if "⠀" <= c <= "⣿" else c for c in line.plain)
+                line.plain = line.plain.translate(PLAIN)
+        drawn = Text("\n", no_wrap=True).join(lines)
+        if not self.live.is_started:
+            self.flush()
+            self.console.print(drawn)
+            return
+        # A terminal that has become narrower has wrapped the picture; rich does not know it.
+        wrapped = sum(max(0, cells - 1) // width for cells in self.widths)
+        if wrapped:
+            up = (ControlType.ERASE_IN_LINE, 2), (ControlType.CURSOR_UP, 1)
+            self.console.control(Control(ControlType.CARRIAGE_RETURN, *up * wrapped))
+        self.widths = [line.cell_len for line in lines]
+        self.live.update(drawn)
+        self.flush()
+        self.live.refresh()

@@ -1,0 +1,206 @@
+"""The options of all verbs: one table, in English and Spanish.
+
+Parsers, help, completion, `cli/paths.py` and the documents are made from it and from the table in
+`verbs.py`, which says how texts are written.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from tiniscript.cli.texts.verbs import Both
+
+
+class Kind(NamedTuple):
+    """The kind of a value, for completion and for `cli/paths.py`.
+
+    `reads` is the sentence that describes an input file, `writes` the sentence for an output file
+    that cannot be written. A value that is not among `choices` is refused.
+    """
+
+    name: str
+    reads: str = ""
+    writes: str = ""
+    choices: tuple[str, ...] = ()
+
+
+class Option(NamedTuple):
+    """An option, or, where its name has no dash, an argument. All but `is_needed` may be left out.
+
+    `kind` and `value` (its name in help) describe the option's value; a switch has none. `dest` is
+    its name in the code, if it is not the last of its flags. `repeats`: each use adds one value.
+    `virtual`: only for the virtual robot.
+    """
+
+    flags: str
+    verbs: str  # "*" is each, and tsc itself; "tsc" is tsc itself
+    help: Both
+    kind: Kind | None = None
+    value: Both = ("", "")
+    dest: str = ""
+    repeats: bool = False
+    virtual: bool = False
+    is_needed: bool = False
+
+    @property
+    def is_argument(self) -> bool:
+        return not self.flags.startswith("-")
+
+    @property
+    def name(self) -> str:
+        """Its name in the code."""
+        return self.dest or self.flags.split()[-1].lstrip("-").replace("-", "_")
+
+    def taken_by(self, verb: str) -> bool:
+        return self.verbs == "*" or verb in self.verbs.split()
+
+
+PROGRAM = Kind("program", reads="path_program")
+ROBOT = Kind("robot", reads="path_robot")
+WORLD = Kind("world", reads="path_world")
+PORT = Kind("port", reads="path_port")
+IMAGE = Kind("file", writes="unwritable")
+MAP = Kind("file", writes="unwritable_map")
+PICTURE = Kind("file", writes="unwritable_picture")
+ROWS = Kind("file", writes="unwritable_rows")
+MEMORY = Kind("file", reads="path_memory", writes="unwritable_memory")
+TEXT = Kind("text")
+NUMBER = Kind("number")
+CODE = Kind("code")  # of a mistake
+BOARD = Kind("board")
+SENSOR = Kind("sensor")
+VERB = Kind("verb")
+HURRY = Kind("hurry")
+LANGUAGE = Kind("choice", choices=("en", "es"))
+MACHINE = Kind("choice", choices=("python", "cpp"))
+YES_NO = Kind("choice", choices=("yes", "no"))
+SHELL = Kind("choice", choices=("bash", "zsh", "powershell"))
+
+A_FILE = ("FILE", "ARCHIVO")
+A_ROBOT = ("NAME|FILE", "NOMBRE|ARCHIVO")
+A_TEXT = ("TEXT", "TEXTO")
+P, N, S, X = ("P", "P"), ("N", "N"), ("S", "S"), ("X", "X")
+READINGS = ("NAME=1,2,3", "NOMBRE=1,2,3")
+YES = ("yes|no", "yes|no")
+
+TO_MANY = "ping upload stop info"  # may work on many robots at once
+TO_ONE = "live link start monitor fetch name trim"
+OWN = "upload live robot"  # may bring a virtual robot along
+
+# fmt: off
+OPTIONS: tuple[Option, ...] = (
+    # arguments
+    Option("program", "compile check run show fmt upload",
+           ("a file, or - for standard input", "un archivo, o - para la entrada estándar"), PROGRAM, ("PROGRAM", "PROGRAMA")),
+    Option("code", "explain", ("the mistake's code, such as TS012", "el código del error, como TS012"), CODE, ("CODE", "CÓDIGO")),
+    Option("robot", "board", ("a name (tinibot, ...) or a profile's file", "un nombre (tinibot, ...) o el archivo de un perfil"), ROBOT, ("ROBOT", "ROBOT"), is_needed=True),
+    Option("line", "live", ("what to do; with - lines come from standard input", "qué hacer; con - las líneas vienen de la entrada estándar"), TEXT, ("LINE", "LÍNEA")),
+    Option("name", "name", ("the robot's name: 1 to 16 bytes of UTF-8", "el nombre del robot: de 1 a 16 bytes de UTF-8"), TEXT, ("NEW", "NUEVO")),
+    Option("about", "help", ("the verb to say more about", "el verbo del que se quiere saber más"), VERB, ("VERB", "VERBO")),
+    Option("shell", "completion", ("bash, zsh or powershell", "bash, zsh o powershell"), SHELL, ("SHELL", "TERMINAL"), is_needed=True),
+    # the program
+    Option("-e", "compile check run show fmt upload", ("the program itself, instead of a file: `-e 'SI|F(2, 80)'`", "el programa mismo, en vez de un archivo: `-e 'SI|F(2, 80)'`"), TEXT, A_TEXT, "texts", repeats=True),
+    Option("-e", "live", ("the line, too", "también la línea"), TEXT, A_TEXT, "text"),
+    # files
+    Option("-o", "compile", ("where to, beside the program if it is not given; - is standard output", "a dónde, junto al programa si no se da; - es la salida estándar"), IMAGE, A_FILE, "output"),
+    Option("-o", "wiring", ("writes a page with a drawing, all tables and a check list, to read in a browser and to print; without it the wires are listed here",
+                            "escribe una página con un dibujo, todas las tablas y una lista de control, para leerla en un navegador e imprimirla; sin esto se listan aquí los cables"), IMAGE, ("PAGE.html", "PÁGINA.html"), "output"),
+    Option("-o", "board", ("where to; standard output if it is not given", "a dónde; la salida estándar si no se da"), IMAGE, A_FILE, "output"),
+    Option("-o", "fetch", ("writes its image instead", "escribe su imagen en vez de eso"), IMAGE, A_FILE, "output"),
+    Option("--map", "compile", ("writes which instruction comes from which line, as JSON", "escribe qué instrucción viene de qué línea, como JSON"), MAP, A_FILE),
+    Option("--check", "fmt", ("changes nothing; exit code 1 where something would change", "no cambia nada; código de salida 1 si algo cambiaría")),
+    # a run
+    Option("--sensor", "run", ("what the sensor reads: the next value each time, the last one repeats; 0 or FALSE where nothing is said. Once for each sensor",
+                               "lo que lee el sensor: cada vez el siguiente valor, el último se repite; 0 o FALSE si no se dice nada. Una vez por cada sensor"), SENSOR, READINGS, repeats=True),
+    Option("--max-time", "run", ("simulated seconds after which the run is cut (60)", "segundos simulados después de los que se corta (60)"), NUMBER, S),
+    Option("--max-steps", "run", ("instructions after which a loop that takes no time is cut (10000000)", "instrucciones después de las que se corta un bucle que no toma tiempo (10000000)"), NUMBER, N),
+    Option("--seed", "run", ("where RANDOM begins, 1 to 4294967295 (1)", "dónde empieza RANDOM, de 1 a 4294967295 (1)"), NUMBER, N),
+    Option("--show", "run", ("on a terminal: draws the way and the values as they come", "en una terminal: dibuja el camino y los valores según llegan")),
+    Option("--pace", "run", ("with --show: N times as fast as the robot (1); 0 is as fast as possible", "con --show: N veces más rápido que el robot (1); 0 es lo más rápido posible"), NUMBER, N),
+    Option("--machine", "run", ("which machine runs it: the one in Python, or the robot's own, in C++", "qué máquina lo ejecuta: la de Python, o la del robot mismo, en C++"), MACHINE, ("python|cpp", "python|cpp")),
+    # the firmware
+    Option("--port", "firmware", ("the port of the board's USB cable: `tsc ports` lists them", "el puerto del cable USB de la placa: `tsc ports` los lista"), PORT, P),
+    Option("--board", "firmware", ("uno, nano, nano-old (with the bootloader of before 2018) or mega; if none is named, the one that the robot has",
+                                   "uno, nano, nano-old (con el cargador de arranque de antes de 2018) o mega; si no se nombra ninguna, la que tiene el robot"), BOARD, ("BOARD", "PLACA")),
+    Option("--build", "firmware", ("makes the firmware ready and writes nothing: for later, without internet", "deja listo el firmware y no escribe nada: para después, sin internet")),
+    Option("--list", "firmware", ("lists which firmware is ready", "lista qué firmware está listo")),
+    # what a verb does
+    Option("--no-run", "upload", ("brings the program, and does not start it", "lleva el programa y no lo inicia")),
+    Option("--no-save", "upload", ("the robot forgets it when it is switched off", "el robot lo olvida cuando se apaga")),
+    Option("--detach", "upload start", ("starts it and leaves: it goes on without tsc", "lo inicia y se va: sigue sin tsc")),
+    Option("--ask", "ports", ("opens each and says which robot answers there", "abre cada uno y dice qué robot responde ahí")),
+    Option("--count", "ping", ("so many round trips (10)", "tantas idas y vueltas (10)"), NUMBER, N),
+    Option("--plot", "monitor", ("on a terminal: draws the values of the last 30 seconds as a curve", "en una terminal: dibuja los valores de los últimos 30 segundos como una curva")),
+    Option("--csv", "monitor", ("writes rows of ms,event,value, too", "escribe además filas de ms,event,value"), ROWS, A_FILE),
+    Option("--max-time", "monitor", ("leaves after so many seconds", "sale después de tantos segundos"), NUMBER, S),
+    Option("--show", "trim", ("only prints what the robot keeps", "solo imprime lo que guarda el robot")),
+    Option("--reset", "trim", ("motors as they are wired, both equally strong", "motores como están conectados, los dos con igual fuerza")),
+    Option("--exchange", "trim", ("yes: left and right motor are the wrong way round", "yes: el motor izquierdo y el derecho están al revés"), YES_NO, YES),
+    Option("--reverse-left", "trim", ("yes: the left wheel turns backward", "yes: la rueda izquierda gira hacia atrás"), YES_NO, YES),
+    Option("--reverse-right", "trim", ("yes: the right wheel turns backward", "yes: la rueda derecha gira hacia atrás"), YES_NO, YES),
+    Option("--balance", "trim", ("the left wheel gets N % less; with -N the right one does (up to 40)", "la rueda izquierda recibe N % menos; con -N, la derecha (hasta 40)"), NUMBER, N),
+    Option("--least", "trim", ("the percent of power from which on the wheels move (0 to 40)", "el porcentaje de potencia desde el que se mueven las ruedas (0 a 40)"), NUMBER, N),
+    Option("--name", "robot", ("what it is called", "cómo se llama"), TEXT, ("NAME", "NOMBRE")),
+    Option("--listen", "robot", ("its TCP port, on this computer alone (any free one)", "su puerto TCP, solo en esta computadora (uno libre)"), NUMBER, P),
+    Option("--pty", "robot", ("a pseudo-terminal too (not on Windows)", "también una pseudoterminal (no en Windows)")),
+    Option("--memory", "robot", ("keeps what it has saved in a file; without it, that is forgotten", "conserva en un archivo lo que guarda; sin esto, se olvida"), MEMORY, A_FILE),
+    Option("--button-at", "robot", ("pushes the start button after so many seconds; 2,10: twice", "pulsa el botón de inicio después de tantos segundos; 2,10: dos veces"), NUMBER, S),
+    # the robot, and the way to it
+    Option("--port", "check", ("for the robot on this port, which is asked", "para el robot en este puerto, al que se pregunta"), PORT, P),
+    Option("--port", "ports", ("with --ask: this one alone", "con --ask: solo este"), PORT, P),
+    Option("--port", TO_ONE, ("the robot's port; the last used one where nothing is said", "el puerto del robot; el último usado si no se dice nada"), PORT, P),
+    Option("--port", "ping info", ("the robot's port; the last used one where nothing is said; several for several", "el puerto del robot; el último usado si no se dice nada; varios para varios"), PORT, P, "ports", repeats=True),
+    Option("--port", "upload", ("the robot's port (/dev/ttyUSB0, /dev/rfcomm0, COM5, socket://host:port, ...); the last used one where nothing is said; several for several robots",
+                                "el puerto del robot (/dev/ttyUSB0, /dev/rfcomm0, COM5, socket://host:puerto, ...); el último usado si no se dice nada; varios para varios robots"), PORT, P, "ports", repeats=True),
+    Option("--port", "stop", ("the robot's port; several for several", "el puerto del robot; varios para varios"), PORT, P, "ports", repeats=True),
+    Option("--all", "ping info", ("every robot that answers, a line each", "todos los robots que responden, una línea por cada uno")),
+    Option("--all", "upload", ("every robot that answers, all at once", "todos los robots que responden, todos a la vez")),
+    Option("--all", "stop", ("stops every robot that there is, all at once", "detiene todos los robots que hay, todos a la vez")),
+    Option("--baud", f"check {TO_ONE} {TO_MANY}", ("the speed of its port (the one of the robot's profile)", "la velocidad de su puerto (la del perfil del robot)"), NUMBER, N),
+    Option("--baud", "ports", ("with --ask: their speed (the one of the robot's profile)", "con --ask: su velocidad (la del perfil del robot)"), NUMBER, N),
+    Option("--baud", "robot", ("how fast its line is (as in its profile); 0 is as fast as possible", "la velocidad de su línea (la de su perfil); 0 es lo más rápido posible"), NUMBER, N),
+    Option("--robot", "compile check run show fmt upload live", ("for which robot: a name (tinibot, ...) or a profile's file", "para qué robot: un nombre (tinibot, ...) o el archivo de un perfil"), ROBOT, A_ROBOT),
+    Option("--robot", "wiring ports ping stop link start info monitor fetch name trim robot", ("which robot: a name (tinibot, ...) or a profile's file", "qué robot: un nombre (tinibot, ...) o el archivo de un perfil"), ROBOT, A_ROBOT),
+    Option("--robot", "firmware", ("tinibot (if none is named), liner, grabber, or a profile of your own", "tinibot (si no se nombra ninguno), liner, grabber, o un perfil propio"), ROBOT, A_ROBOT),
+    Option("--virtual", "check", ("for the virtual robot of `tsc robot`, which runs in another terminal", "para el robot virtual de `tsc robot`, que está en marcha en otra terminal")),
+    Option("--virtual", "ping link start info monitor fetch name trim", ("the virtual robot of `tsc robot`, which runs in another terminal", "el robot virtual de `tsc robot`, que está en marcha en otra terminal")),
+    Option("--virtual", "stop", ("virtual robots alone: those of `tsc robot`, and of commands with --virtual", "solo robots virtuales: los de `tsc robot`, y los de comandos con --virtual")),
+    Option("--virtual", "upload", ("no robot: a virtual one drives here, until the program ends or Ctrl-C; the one of `tsc robot`, if that runs in another terminal. The key b is the button of one here; where nobody is at a terminal, it is pushed at once",
+                                   "sin robot: uno virtual se mueve aquí, hasta que el programa termina o Ctrl-C; el de `tsc robot`, si está en marcha en otra terminal. La tecla b es el botón del de aquí; si no hay nadie en una terminal, se pulsa enseguida")),
+    Option("--virtual", "live", ("no robot: a virtual one does it here", "sin robot: lo hace aquí uno virtual")),
+    # how it is said
+    Option("--json", "check show ping info ports", ("the same as data", "lo mismo como datos")),
+    Option("--json", "upload", ("prints the receipt and what comes after it as lines of JSON", "imprime el recibo y lo que viene después como líneas de JSON")),
+    Option("--json", "stop", ("prints a line of JSON for each robot", "imprime una línea de JSON por cada robot")),
+    Option("--json", "link start monitor", ("prints lines of JSON", "imprime líneas de JSON")),
+    Option("--json", "fetch", ("the listing as data", "la lista como datos")),
+    Option("--json", "trim", ("prints what the robot keeps as data", "imprime lo que guarda el robot como datos")),
+    # a virtual robot of one's own
+    Option("--world", OWN, ("its world: obstacles, line, light, or a file (obstacles)", "su mundo: obstacles, line, light, o un archivo (obstacles)"), WORLD, A_ROBOT, virtual=True),
+    Option("--plot", OWN, ("draws the world and the way when it ends", "dibuja el mundo y el camino cuando termina"), PICTURE, ("F.png", "F.png"), virtual=True),
+    Option("--for", OWN, ("ends after so many seconds of the robot's time", "termina después de tantos segundos del tiempo del robot"), NUMBER, S, virtual=True),
+    Option("--hurry", OWN, ("a program goes N times as fast; max: as fast as this computer can", "un programa va N veces más rápido; max: lo más rápido que esta computadora pueda"), HURRY, ("N|max", "N|max"), virtual=True),
+    Option("--sensor", OWN, ("what a sensor says, instead of what it notices in the world", "lo que dice un sensor, en vez de lo que nota en el mundo"), SENSOR, READINGS, repeats=True, virtual=True),
+    Option("--noise", OWN, ("sensors and motors are off by about X percent (0)", "los sensores y motores se desvían más o menos X por ciento (0)"), NUMBER, X, virtual=True),
+    Option("--motors", OWN, ("percent of the speed that each motor should have (100,100)", "por ciento de la velocidad que cada motor debería tener (100,100)"), NUMBER, ("L,R", "I,D"), virtual=True),
+    Option("--faults", OWN, ("of 1000 bytes on its line, X get lost, change or come late (0)", "de 1000 bytes en su línea, X se pierden, cambian o llegan tarde (0)"), NUMBER, X, virtual=True),
+    Option("--seed", OWN, ("where chance begins: the same number is the same run (1)", "dónde empieza el azar: el mismo número es el mismo recorrido (1)"), NUMBER, N, virtual=True),
+    # every verb
+    Option("--lang", "*", ("says everything in English (en) or Spanish (es)", "dice todo en inglés (en) o en español (es)"), LANGUAGE, ("en|es", "en|es")),
+    Option("-h --help", "*", ("prints this help", "imprime esta ayuda")),
+    Option("-V --version", "tsc", ("prints which tsc this is", "imprime qué tsc es este")),
+)
+# fmt: on
+
+WITH_VIRTUAL = ("With --virtual:", "Con --virtual:")  # above options that are `virtual`
+USAGE = ("[options]", "[opciones]")
+
+
+def of_verb(verb: str) -> list[Option]:
+    """Return the options of a verb, or of `tsc` itself, in the order of help."""
+    return [option for option in OPTIONS if option.taken_by(verb)]
+
+
+def virtual_names() -> list[str]:
+    """Return the names in the code of the options for a virtual robot of the command."""
+    return [option.name for option in OPTIONS if option.virtual]

@@ -1,0 +1,204 @@
+"""The verbs of `tsc`, in the order in which help has them: one table, in English and Spanish.
+
+Parsers, help, completion and the documents are made from it and from the table in `options.py`.
+What is typed stands between backticks: documents show it as code, and on a terminal no line ends
+in it.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+Both = tuple[str, str]  # a text in English and in Spanish
+
+
+class Verb(NamedTuple):
+    """A verb, which is a module of `cli/commands/`.
+
+    `example` is a command with it and `summary` what that does, under the heading `group`; `also`
+    are more of such lines, each with its group. `says` is what it does, `ends` what else
+    there is to know. Where it is used in several ways, `usage` has a line for each.
+    """
+
+    group: Both
+    example: Both
+    summary: Both
+    says: Both
+    usage: Both = ("", "")
+    ends: Both = ("", "")
+    also: tuple[tuple[Both, Both, Both], ...] = ()
+
+
+# fmt: off
+TITLE = ("tsc: TiniScript, a language of single lines for robots.",
+         "tsc: TiniScript, un lenguaje de una sola línea para robots.")
+PROGRAMS = ("", "")
+ROBOTS = ("With a robot on a port (`--port /dev/rfcomm0`, `COM5`, ...; later the last one):",
+          "Con un robot en un puerto (`--port /dev/rfcomm0`, `COM5`, ...; luego, el último):")
+VIRTUAL = ("Without one:", "Sin robot:")
+ITSELF = ("And:", "Y además:")
+NOTES = (
+    ("A program is a file, - (standard input) or `-e 'SI|F(2, 80)'`.",
+     "Un programa es un archivo, - (entrada estándar) o `-e 'SI|F(2, 80)'`."),
+    ("`tsc help VERB` says more about a verb.", "`tsc help VERBO` dice más de un verbo."),
+    ("Exit codes: 0 done, 1 the program is wrong, 2 wrong use of tsc, 3 the robot or the link; 141 where whoever read the output has gone, which stops the robot that the command drives.",
+     "Códigos de salida: 0 listo, 1 el programa está mal, 2 mal uso de tsc, 3 el robot o la conexión; 141 si quien leía la salida ya no está, y eso detiene el robot que el comando mueve."),
+)
+
+VERBS: dict[str, Verb] = {
+    "compile": Verb(
+        PROGRAMS, ("compile prog.ts", "compile prog.ts"),
+        ("compile a program into an image for the robot", "compila un programa en una imagen para el robot"),
+        ("Compiles a program into an image for the robot. Says how many bytes it has, how deep its stack gets and, where that can be known, how long it runs. Where the program has mistakes, the file stays as it was.",
+         "Compila un programa en una imagen para el robot. Dice cuántos bytes tiene, cuánto usa de la pila y, si se puede saber, cuánto dura. Si el programa tiene errores, el archivo queda como estaba."),
+    ),
+    "check": Verb(
+        PROGRAMS, ("check prog.ts", "check prog.ts"),
+        ("show all mistakes and warnings", "muestra todos los errores y avisos"),
+        ("Shows all mistakes and warnings of a program.", "Muestra todos los errores y avisos de un programa."),
+        ends=("`--json` gives a list of `{code, severity, line, column, end_line, end_column, message, fix}`; lines and columns count from 1, columns in characters, the end is not included.",
+              "`--json` da una lista de `{code, severity, line, column, end_line, end_column, message, fix}`; líneas y columnas desde 1, columnas en caracteres, el final no se incluye."),
+    ),
+    "run": Verb(
+        PROGRAMS, ("run prog.ts", "run prog.ts"),
+        ("run it without a robot; print what it would do", "lo ejecuta sin robot e imprime lo que haría"),
+        ("Runs a program (text or image) without a robot and prints what the robot does, line by line, each with the milliseconds since the start. The clock is simulated, so that takes no time.",
+         "Ejecuta un programa (texto o imagen) sin robot e imprime lo que hace el robot, línea por línea, cada una con los milisegundos desde el inicio. El reloj es simulado: no hay que esperar."),
+        ends=("Exit code: 0 when it is done or cut, 1 after a fault or mistakes.",
+              "Código de salida: 0 si termina o se corta, 1 después de una falla o con errores."),
+    ),
+    "show": Verb(
+        PROGRAMS, ("show prog.bin", "show prog.bin"),
+        ("list the instructions of a program", "lista las instrucciones de un programa"),
+        ("Lists the instructions of a program (image or text): offsets, bytes, names, and source lines where they are known.",
+         "Lista las instrucciones de un programa (imagen o texto): posiciones, bytes, nombres, y las líneas del texto si se conocen."),
+    ),
+    "fmt": Verb(
+        PROGRAMS, ("fmt prog.ts", "fmt prog.ts"),
+        ("lay the text out in the usual way", "ordena el texto de la forma usual"),
+        ("Lays the text of a program out in the usual way, in place; comments are kept, and it means the same. From standard input or with -e it prints the result.",
+         "Ordena el texto de un programa de la forma usual, en el mismo archivo; los comentarios quedan y significa lo mismo. Desde la entrada estándar o con -e imprime el resultado."),
+    ),
+    "explain": Verb(
+        PROGRAMS, ("explain TS012", "explain TS012"),
+        ("say more about a mistake", "explica mejor un error"),
+        ("Says more about a mistake, with an example. Without a code it lists all.",
+         "Explica mejor un error, con un ejemplo. Sin código los lista todos."),
+    ),
+    "wiring": Verb(
+        PROGRAMS, ("wiring", "wiring"),
+        ("how a robot is wired, as a list or as a page", "cómo se conecta un robot, en lista o página"),
+        ("Shows how a robot is wired: which wire goes from which pin to which part.",
+         "Muestra cómo se conecta un robot: qué cable va de qué pin a qué pieza."),
+    ),
+    "board": Verb(
+        PROGRAMS, ("board myrobot.toml", "board mirobot.toml"),
+        ("tell the firmware how a robot is wired", "le dice al firmware cómo está conectado un robot"),
+        ("Writes the header that tells the firmware how a robot is wired. The sketch in vm_arduino is for your robot when the header is its file src/boards/kits/own.h.",
+         "Escribe la cabecera que le dice al firmware cómo está conectado un robot. El sketch de vm_arduino es para tu robot cuando la cabecera es su archivo src/boards/kits/own.h."),
+    ),
+    "firmware": Verb(
+        PROGRAMS, ("firmware --port COM3", "firmware --port COM3"),
+        ("put the firmware of a robot on its board", "pone el firmware de un robot en su placa"),
+        ("Writes the firmware of a robot on its board, over the USB cable, and reads it back. Unplug the HC-05, or whatever else is on pins 0 and 1, as long as that takes. Firmware that is not ready yet is built first, with PlatformIO; the first time that needs the internet.",
+         "Escribe el firmware de un robot en su placa, por el cable USB, y lo lee de vuelta. Desconecta el HC-05, o lo que esté en los pines 0 y 1, mientras eso dure. Si el firmware todavía no está listo, primero se construye, con PlatformIO; la primera vez hace falta internet."),
+        ("--port P [--robot NAME|FILE] [--board BOARD]\n--build [--robot NAME|FILE] [--board BOARD]\n--list",
+         "--port P [--robot NOMBRE|ARCHIVO] [--board PLACA]\n--build [--robot NOMBRE|ARCHIVO] [--board PLACA]\n--list"),
+        ("It needs avrdude.", "Necesita avrdude."),
+    ),
+    "ports": Verb(
+        ROBOTS, ("ports", "ports"),
+        ("list the ports; --ask: which robot answers where", "los puertos; --ask: qué robot responde en cuál"),
+        ("Lists the serial ports of this computer, which robots have answered there before, and which tsc holds one. Opens none of them: opening a port resets most boards.",
+         "Lista los puertos serie de esta computadora, qué robots respondieron ahí antes, y qué tsc tiene uno. No abre ninguno: abrir un puerto reinicia la mayoría de las placas."),
+    ),
+    "ping": Verb(
+        ROBOTS, ("ping", "ping"),
+        ("who is there, and how long an answer takes", "quién está ahí, y cuánto tarda una respuesta"),
+        ("Says who answers on the port, and how long a round trip takes: at least, in the middle, at most.",
+         "Dice quién responde en el puerto, y cuánto tarda una ida y vuelta: mínimo, medio y máximo."),
+    ),
+    "upload": Verb(
+        ROBOTS, ("upload prog.ts", "upload prog.ts"),
+        ("bring a program to the robot, start it, and stay", "lleva un programa al robot, lo inicia y se queda"),
+        ("Compiles a program, brings it to the robot and starts it there if it begins with `SI`. Stays until it ends: prints what it shows, and a fault with its line. Ctrl-C stops the robot. A program that begins with `SB` waits for the robot's button.",
+         "Compila un programa, lo lleva al robot y lo inicia ahí si empieza con `SI`. Se queda hasta que termina: imprime lo que muestra, y una falla con su línea. Ctrl-C detiene el robot. Un programa que empieza con `SB` espera el botón del robot."),
+        ends=("Exit code: 0 when it is done, 1 after mistakes or a fault, 2 after Ctrl-C, 3 where the robot or the link has ended it.",
+              "Código de salida: 0 si termina, 1 con errores o una falla, 2 después de Ctrl-C, 3 si el robot o la conexión lo terminó."),
+        also=((VIRTUAL, ("upload prog.ts --virtual", "upload prog.ts --virtual"),
+               ("a virtual robot drives here, in its own world", "un robot virtual se mueve aquí, en su mundo")),),
+    ),
+    "live": Verb(
+        ROBOTS, ("live 'F(2, 80)'", "live 'F(2, 80)'"),
+        ("do a line at once; without a line: a prompt", "hace una línea en el acto; sin línea: un diálogo"),
+        ("Does a line on the robot at once: `tsc live 'F(2, 80)'`. Without a line there is a prompt. Variables and DEFs live on until you leave: tsc keeps DEFs as text, and the values that a line has given when it was done. The program that the robot holds stays what it is. Ctrl-C stops the robot, Ctrl-D leaves.",
+         "Hace una línea en el robot en el acto: `tsc live 'F(2, 80)'`. Sin línea hay un diálogo. Las variables y los DEF siguen vivos hasta que sales: tsc guarda los DEF como texto, y los valores que una línea ha puesto cuando terminó. El programa que tiene el robot queda como está. Ctrl-C detiene el robot, Ctrl-D sale."),
+    ),
+    "stop": Verb(
+        ROBOTS, ("stop", "stop"), ("stop the robot now", "detiene el robot ahora"),
+        ("Stops the robot now, and says when it has confirmed that. Asks nothing before, so it stops a robot of another version or kit, too. The robot stays stopped until a new start or its button. Where no port is named it stops every robot that a tsc on this computer has now, virtual ones too, and the last used one.",
+         "Detiene el robot ahora, y dice cuándo lo ha confirmado. No pregunta nada antes, así que también detiene un robot de otra versión o de otro kit. Queda detenido hasta otro inicio o su botón. Si no se nombra un puerto, detiene todos los robots que un tsc tiene ahora en esta computadora, también los virtuales, y el último usado."),
+    ),
+    "link": Verb(
+        ROBOTS, ("link", "link"),
+        ("hold the port, so that other commands share it", "tiene el puerto, para que otros lo compartan"),
+        ("Holds the robot's port until Ctrl-C, so that other tsc commands share it: `tsc stop` works while another terminal drives, and an upload does not reset the board. Prints what goes on. Where the robot is lost, it looks for it until it is there again. (live, monitor, and an upload or start that stays share their port, too.)",
+         "Tiene el puerto del robot hasta Ctrl-C, para que otros comandos de tsc lo compartan: `tsc stop` funciona mientras otra terminal conduce, y un upload no reinicia la placa. Imprime lo que pasa. Si el robot se pierde, lo busca hasta que vuelve. (live, monitor, y un upload o start que se queda también comparten su puerto.)"),
+    ),
+    "start": Verb(
+        ROBOTS, ("start", "start"), ("start the program that the robot holds", "inicia el programa que tiene el robot"),
+        ("Starts the program that the robot holds and stays until it ends, as `tsc upload` does. Ctrl-C stops the robot.",
+         "Inicia el programa que tiene el robot y se queda hasta que termina, como `tsc upload`. Ctrl-C detiene el robot."),
+    ),
+    "info": Verb(
+        ROBOTS, ("info", "info"), ("what the robot says of itself", "lo que el robot dice de sí mismo"),
+        ("Prints what the robot says of itself: name, kit, room, program, state, last fault.",
+         "Imprime lo que el robot dice de sí mismo: nombre, kit, sitio, programa, estado, última falla."),
+    ),
+    "monitor": Verb(
+        ROBOTS, ("monitor", "monitor"), ("print what the robot shows", "imprime lo que el robot muestra"),
+        ("Prints what the robot tells, each with the milliseconds since the first: values of SHOW, how a program ends, faults with their lines. Starts and stops nothing; Ctrl-C leaves. (Opening the port of an Arduino with a cable resets it: then nothing runs before its button is pressed.)",
+         "Imprime lo que el robot cuenta, cada cosa con los milisegundos desde la primera: valores de SHOW, cómo termina un programa, fallas con sus líneas. No inicia ni detiene nada; Ctrl-C sale. (Abrir el puerto de un Arduino con cable lo reinicia: nada se mueve antes de pulsar su botón.)"),
+    ),
+    "fetch": Verb(
+        ROBOTS, ("fetch", "fetch"), ("read the robot's program back", "lee de vuelta el programa del robot"),
+        ("Reads back the program that the robot holds and lists it, beside its lines where they are known.",
+         "Lee de vuelta el programa que tiene el robot y lo lista, junto a sus líneas si se conocen."),
+    ),
+    "name": Verb(
+        ROBOTS, ("name TINI", "name TINI"), ("name the robot", "le pone nombre al robot"),
+        ("Names the robot. It keeps its name when it is switched off.",
+         "Le pone nombre al robot. Lo conserva cuando se apaga."),
+        ("NEW [options]", "NUEVO [opciones]"),
+    ),
+    "trim": Verb(
+        ROBOTS, ("trim", "trim"), ("make the robot drive straight", "hace que el robot vaya derecho"),
+        ("Makes a robot drive straight: turns its motors, asks what you see, and the robot keeps what follows from it in its own memory, whatever program it runs. No wire is changed and nothing flashed.",
+         "Hace que un robot vaya derecho: gira sus motores, pregunta qué ves, y el robot guarda lo que resulta en su propia memoria, con cualquier programa. No se cambia ningún cable ni se graba nada."),
+    ),
+    "robot": Verb(
+        VIRTUAL, ("robot", "robot"),
+        ("a virtual robot with a port, for other terminals", "un robot virtual, para otras terminales"),
+        ("A virtual robot: the firmware of the real one, in a world of walls, lines and lamps. It has a port like any other robot, and another terminal finds it (`tsc upload prog.ts --virtual`). On a terminal it is drawn, and keys push its buttons; elsewhere a line says what it does.",
+         "Un robot virtual: el firmware del verdadero, en un mundo de paredes, líneas y lámparas. Tiene un puerto como cualquier robot, y otra terminal lo encuentra (`tsc upload prog.ts --virtual`). En una terminal se dibuja, y hay teclas para sus botones; en otro lugar una línea dice lo que hace."),
+        ends=("Exit code: 0 when it has ended.", "Código de salida: 0 cuando terminó."),
+    ),
+    "help": Verb(
+        ITSELF, ("help upload", "help upload"), ("say more about a verb", "dice más de un verbo"),
+        ("Says what a verb does and which options it has, as `tsc VERB --help` does. Without a verb it lists all. `tsc ayuda` is the same.",
+         "Dice qué hace un verbo y qué opciones tiene, igual que `tsc VERBO --help`. Sin verbo los lista todos. `tsc ayuda` es lo mismo."),
+    ),
+    "completion": Verb(
+        ITSELF, ("completion bash", "completion bash"),
+        ("let the Tab key complete commands", "hace que la tecla Tab complete los comandos"),
+        ("Prints what a shell wants to know so that the Tab key completes verbs, options and their values. It is switched on by a line in a file that the shell reads when it begins.",
+         "Imprime lo que una terminal necesita para que la tecla Tab complete verbos, opciones y sus valores. Se activa con una línea en un archivo que la terminal lee al empezar."),
+        ends=("`~/.bashrc`, at its end: `eval \"$(tsc completion bash)\"`\n"
+              "`~/.zshrc`, at its end: `autoload -Uz compinit && compinit; eval \"$(tsc completion zsh)\"`\n"
+              "PowerShell, in the file `$PROFILE`: `tsc completion powershell | Out-String | Invoke-Expression`",
+              "`~/.bashrc`, al final: `eval \"$(tsc completion bash)\"`\n"
+              "`~/.zshrc`, al final: `autoload -Uz compinit && compinit; eval \"$(tsc completion zsh)\"`\n"
+              "PowerShell, en el archivo `$PROFILE`: `tsc completion powershell | Out-String | Invoke-Expression`"),
+    ),
+}
+# fmt: on

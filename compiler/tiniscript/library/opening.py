@@ -1,0 +1,246 @@
+"""Opens a connection to a robot: through the command that holds its port, else on the port itself.
+
+If two programs open the same port at once, the lock of the serial port decides; an address has no
+lock, so a locked file decides. The second program then looks for the server of the first one for
+some seconds before it reports a busy port. Failures are `RobotError`s: the command puts their
+reason and values into sentences of its own.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from time import monotonic, sleep
+from typing import IO, TYPE_CHECKING
+
+from tiniscript.library.errors import RobotError
+from tiniscript.printable import printable
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from typing import TypeVar
+
+    from tiniscript.link.connection import LinkConnection, PendingRequest, Requester
+    from tiniscript.link.line import Line
+    from tiniscript.link.outcomes import Gone
+    from tiniscript.link.payloads import HelloReply
+    from tiniscript.link.ports import PortError
+    from tiniscript.link.requests import Reply
+    from tiniscript.sharing.client import Client
+
+    T = TypeVar("T")
+
+BUSY_S = 3.0  # timeout for a busy port: its owner may be leaving, or be about to share it
+STOP_BUSY_S = 10.0  # the same for a stop: an owner with a silent robot gives up only slowly
+AGAIN_S = 0.05
+OPEN_S = 20.0  # timeout for opening a port
+SHOWN = 200  # characters of a name in a sentence
+
+ANSWER_MS = 6000  # timeout for HELLO by radio
+# By cable the timeout is shorter, and HELLO has two tries: an Uno takes 1.4 s after a reset.
+CABLE_ANSWER_MS = 2000
+# A Mega begins 0.9 s after a reset. Bytes that arrive earlier keep it in its bootloader until the
+# line has been silent for 4.2 s.
+QUIET_S = {"mega": 1.2}  # by board
+LONG_QUIET_S = 4.5
+CONFIRM_S = 7.0  # timeout for the answer to a stop, a little longer than stops are sent
+PSEUDO = ("/dev/pts/", "/dev/ttys")  # pseudo-terminals
+
+
+def connection_to(
+    port: str, verb: str, open_line: Callable[[IO[bytes] | None], Line], baud: int | None = None,
+    language: str = "en",
+) -> LinkConnection:  # fmt: skip
+    """Return the connection to a port. Raises RobotError if the port is busy or does not open.
+
+    `open_line` opens the port; its line closes the lock that it is given. `verb` is the name that
+    other commands show for this one. `baud` is the speed that the user has asked for.
+    """
+    from tiniscript.sharing import registry
+
+    end_s = monotonic() + (STOP_BUSY_S if verb == "stop" else BUSY_S)
+    while True:
+        client = _joined(port, verb, baud, language)
+        if client is not None:
+            return client
+        try:
+            line = open_line(_claimed(port, language))
+            registry.forget(port)  # the port is ours: its former owner has crashed
+            return line
+        except RobotError as failure:
+            if failure.reason != "port_busy" or monotonic() > end_s:
+                raise
+        sleep(AGAIN_S)
+
+
+def opened_line(
+    port: str, baud: int, kit: int, limit_s: float = OPEN_S, lock: IO[bytes] | None = None,
+    language: str = "en",
+) -> Line:  # fmt: skip
+    """Open a port and begin a session for this kit. Raises RobotError."""
+    from tiniscript.link.line import Line
+    from tiniscript.link.ports import PortError, opened
+    from tiniscript.link.session import Session
+
+    try:
+        device = opened(port, baud, limit_s)
+    except PortError as failure:
+        if lock is not None:
+            lock.close()
+        raise port_error(port, failure, language) from None
+    session = Session(int.from_bytes(os.urandom(4), "little"), baud, kit)
+    return Line(device, session, lock)
+
+
+def port_error(port: str, failure: PortError, language: str = "en") -> RobotError:
+    """Return the error for a port that does not open."""
+    from tiniscript.link import ports
+
+    reason = f"port_{failure.reason}"
+    values = {"port": shown(port), "why": shown(failure.why)}
+    if failure.reason == ports.FORBIDDEN and sys.platform.startswith("linux"):
+        reason = "port_forbidden_linux"
+    if failure.reason == ports.MISSING:
+        known = ", ".join(each.port for each in ports.listed())
+        if known:
+            reason, values["known"] = "port_missing_but", shown(known)
+    return RobotError(reason, language, values)
+
+
+def met(
+    line: LinkConnection,
+    port: str,
+    board: str,
+    wait: Callable[[PendingRequest[HelloReply]], Reply[HelloReply]],
+) -> Reply[HelloReply]:
+    """Send HELLO, but not so early that a board stays in its bootloader."""
+    if not line.held_by:  # else the port is open already
+        from tiniscript.link import ports
+
+        if not ports.is_radio(port):
+            sleep(QUIET_S.get(board, 0.0))
+            reply = wait(hello(line, CABLE_ANSWER_MS))
+            if line.heard:
+                return reply
+            sleep(LONG_QUIET_S)
+            return wait(hello(line, CABLE_ANSWER_MS))
+    return wait(hello(line, ANSWER_MS))
+
+
+def hello(line: LinkConnection, limit_ms: int) -> PendingRequest[HelloReply]:
+    """Begin a session. HELLO is repeated until the robot answers, as a reset takes a while."""
+    return line.do(limited(lambda session: session.hello(), limit_ms))
+
+
+def limited(
+    make: Callable[[Requester], PendingRequest[T]], limit_ms: int
+) -> Callable[[Requester], PendingRequest[T]]:
+    """Return a function that makes the same request with a timeout."""
+
+    def asked(session: Requester) -> PendingRequest[T]:
+        request = make(session)
+        request.limit_ms = limit_ms
+        return request
+
+    return asked
+
+
+def reason_of(line: LinkConnection, reply: Reply[object]) -> str:
+    """Return why a reply is not OK; `status`: the robot's status gives the reason."""
+    from tiniscript.link.outcomes import CANCELLED, LOST
+
+    if reply.status == CANCELLED:
+        return "stopped_elsewhere"
+    if reply.status != LOST:
+        return "status"
+    if line.robot is not None:
+        return "link_lost"
+    if line.is_echoed:
+        return "link_echo"
+    return "link_other" if line.heard else "link_silent"
+
+
+def reason_of_end(line: LinkConnection, gone: Gone) -> str:
+    """Return why a connection has ended."""
+    if gone.is_server:
+        return "holder_ended"
+    if line.heard and line.robot is None:  # it reported busy, and closed
+        return "port_busy"
+    return "port_gone"
+
+
+def confirmed(line: LinkConnection, limit_s: float | None = None) -> bool:
+    """Stop the robot; return whether it has confirmed. A second Ctrl-C ends the wait.
+
+    The default of `limit_s` is CONFIRM_S. Events from before the call do not count.
+    """
+    from tiniscript.link.outcomes import Gone
+
+    began_s = monotonic()
+    end_s = began_s + (CONFIRM_S if limit_s is None else limit_s)
+    line.stop()
+    try:
+        while monotonic() < end_s:
+            found = line.event()
+            if found is None or found[0] < int(began_s * 1000):
+                continue
+            if found[1].name in ("STOPPED", "LOST"):
+                return found[1].name == "STOPPED"
+    except (Gone, KeyboardInterrupt):
+        pass
+    return False
+
+
+def remember(port: str, name: str, is_used: bool = True) -> None:
+    """Remember a port and the name of its robot; not for a virtual robot, whose port is new each
+    time."""
+    from tiniscript.link import known_ports
+    from tiniscript.link.port_names import is_address
+
+    if is_address(port) or port.startswith(PSEUDO):
+        from tiniscript.virtual import directory
+
+        if directory.is_virtual(port):
+            return
+    known_ports.remember(port, name, is_used)
+
+
+def shown(name: str) -> str:
+    """Return a name in a form for sentences: printable, at most SHOWN characters."""
+    return printable(name, SHOWN)
+
+
+def _joined(port: str, verb: str, baud: int | None, language: str) -> Client | None:
+    from tiniscript.sharing.client import OtherVersion, joined
+
+    try:
+        client = joined(port, verb)
+    except OtherVersion as other:
+        values = {
+            "verb": other.registration.verb,
+            "theirs": shown(other.version),
+            "port": shown(port),
+        }
+        raise RobotError("holder_other", language, values) from None
+    if client is not None and baud not in (None, client.baud) and verb != "stop":
+        client.close()
+        values = {"verb": client.held_by, "baud": str(client.baud), "port": shown(port)}
+        raise RobotError("holder_baud", language, values)
+    return client
+
+
+def _claimed(port: str, language: str) -> IO[bytes] | None:
+    """Return the lock of an address, or None for other ports and where no file can be locked."""
+    from tiniscript.link.port_names import is_address
+
+    if not is_address(port):
+        return None
+    from tiniscript.sharing import registry
+
+    try:
+        lock = registry.claimed(port)
+    except OSError:
+        return None
+    if lock is None:
+        raise RobotError("port_busy", language, {"port": shown(port), "why": ""})
+    return lock

@@ -1,0 +1,86 @@
+"""HELLO: identifies computer and robot to each other; and the exchanges that need this.
+
+Knows whether the robot has answered. Knows no frame and no time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator
+from typing import TypeVar
+
+from tiniscript.bytecode.image import Image
+from tiniscript.link import requests
+from tiniscript.link.messages import MAJOR, MINOR
+from tiniscript.link.payloads import EmptyReply, HelloReply, ReceiptReply, SentReply
+from tiniscript.link.requests import OK, DeviceInfo, Exchange, Reply, Request, refused
+from tiniscript.link.robot_state import RobotState
+
+T = TypeVar("T")
+
+
+class Handshake:
+    """`nonce` is a random number of 32 bits; `kit` and `isa` are those of our programs.
+
+    `is_open`: the robot has answered HELLO, and has not been lost since.
+    """
+
+    def __init__(self, nonce: int, kit: int, isa: tuple[int, int], state: RobotState) -> None:
+        self._nonce, self._kit, self._isa = nonce, kit, isa
+        self._state = state
+        self.robot: DeviceInfo | None = None
+        self.is_open = False
+
+    def hello(self) -> Exchange[HelloReply]:
+        values = {
+            "major": MAJOR,
+            "minor": MINOR,
+            "isa_major": self._isa[0],
+            "isa_minor": self._isa[1],
+            "kit": self._kit,
+            "nonce": self._nonce,
+        }
+        reply = yield from requests.single(Request("HELLO", values), HelloReply)
+        if reply.status == OK:
+            self.is_open = True
+            if self.robot is None or self.robot.values.nonce != reply.values.nonce:
+                self._state.reset()
+            self.robot = requests.described(reply.values)
+            self._state.state = reply.values.state
+        return reply
+
+    def open_then(self, make: Callable[[], Exchange[T]]) -> Exchange[T]:
+        """Open the session if needed, then make and run an exchange."""
+        if not self.is_open:
+            reply = yield from self.hello()
+            if reply.status != OK:
+                return refused(reply)
+        return (yield from make())
+
+    def live(self, code: bytes, kit: int) -> Exchange[ReceiptReply]:
+        robot = yield from self._speak_for(kit)
+        return (yield from requests.live(code, self._state.is_latched, kit, robot))
+
+    def upload(self, image: Image, mode: int, kit: int | None) -> Exchange[ReceiptReply]:
+        """`kit` is the kit that the image was verified for; None means this session's kit."""
+        kit = self._kit if kit is None else kit
+        robot = yield from self._speak_for(kit if image.devices else 0)
+        is_latched = self._state.is_latched
+        return (yield from requests.upload(image, mode, robot, self._isa, is_latched, kit))
+
+    def name(self, name: bytes) -> Exchange[EmptyReply]:
+        reply = yield from requests.kept(Request("NAME", {"name": name}), EmptyReply)
+        if reply.status in (OK, *requests.TAKEN) and self.robot:
+            self.robot = requests.described(self.robot.values._replace(name=name))
+        return reply
+
+    def _speak_for(self, kit: int) -> Generator[Request, Reply[SentReply], DeviceInfo]:
+        """Repeat HELLO with the robot's kit if `kit` is that kit and HELLO named another one;
+        return the robot's device info.
+
+        This is needed because clients that share a session may have chosen different robots.
+        """
+        assert self.robot
+        if kit != self._kit and kit == self.robot.kit:
+            self._kit = kit
+            yield from self.hello()
+        return self.robot

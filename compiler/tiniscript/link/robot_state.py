@@ -1,0 +1,73 @@
+"""The state of the robot, as known from its replies and events.
+
+Knows which run is ours and which has ended. Knows no frame and no time, and sends no request.
+"""
+
+from __future__ import annotations
+
+from tiniscript.link.messages import STATE_IDLE, STATE_RUNNING, STATE_STOPPED
+from tiniscript.link.outcomes import Event
+from tiniscript.link.payloads import (
+    DoneEvent,
+    FaultEvent,
+    HelloReply,
+    PingReply,
+    ReceiptReply,
+    SentReply,
+    StatusReply,
+    StoppedEvent,
+)
+
+
+class RobotState:
+    def __init__(self) -> None:
+        self.state = STATE_IDLE
+        self.run: int | None = None  # the run that we have started
+        self._ended: int | None = None  # the last run whose end we know
+        self._event_seq: int | None = None
+
+    @property
+    def is_running(self) -> bool:
+        return self.state == STATE_RUNNING
+
+    @property
+    def is_latched(self) -> bool:
+        return self.state > STATE_RUNNING
+
+    def reset(self) -> None:
+        """Note that the robot was reset: its counters start again."""
+        self._event_seq = self.run = self._ended = None
+
+    def missed(self, seq: int) -> int:
+        """Take the number of an event; return how many events before it are missing."""
+        before, self._event_seq = self._event_seq, seq
+        return 0 if before is None else (seq - before - 1) & 0xFF
+
+    def learn(self, values: SentReply) -> bool:
+        """Take a reply; return whether our run has ended without an event that says how."""
+        if isinstance(values, ReceiptReply):
+            self.run = values.run
+        if not isinstance(values, (HelloReply, PingReply, StatusReply)):
+            return False
+        was_running, self.state = self.is_running, values.state
+        if not was_running or self.is_running or self.run is None:
+            return False
+        self._ended = self.run
+        return isinstance(values, PingReply)  # a reply to STATUS says how it ended
+
+    def take(self, event: Event) -> None:
+        if isinstance(event, (StoppedEvent, FaultEvent)):
+            self.state = STATE_STOPPED
+        if isinstance(event, (DoneEvent, FaultEvent)):
+            self._ended = event.run
+            if isinstance(event, DoneEvent) and event.run == self.run:
+                self.state = STATE_IDLE
+
+    def begin(self, run: int) -> None:
+        """Note that a run has begun, unless its end arrived before its receipt."""
+        if run != self._ended:
+            self.state = STATE_RUNNING
+
+    def clear(self) -> None:
+        """Note that the latch is released or the robot is lost."""
+        self.state = STATE_IDLE

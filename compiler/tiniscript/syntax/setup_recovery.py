@@ -1,0 +1,74 @@
+"""Recovery of how a program begins: SETUP and its bar.
+
+Knows what people write in place of `SI|`, and bars that stand elsewhere.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NoReturn
+
+from tiniscript.diagnostics import codes
+from tiniscript.source import Span
+from tiniscript.syntax.cursor import Cursor
+from tiniscript.syntax.foreign import foreign_header
+from tiniscript.syntax.lexer import Token
+from tiniscript.syntax.reporter import Reporter, Resumed
+from tiniscript.syntax.suggestions import is_question, question_line
+from tiniscript.words import WORDS
+
+if TYPE_CHECKING:
+    from tiniscript.syntax.parser import Parser
+
+
+class SetupRecovery:
+    def __init__(self, cursor: Cursor, reporter: Reporter) -> None:
+        self.cursor = cursor
+        self.reporter = reporter
+
+    def is_taken_for_bar(self, word: Token, sign: Token) -> bool:
+        """Whether `SI:` or `SI||` begins the program."""
+        found = self.cursor.source[sign.span]
+        if found not in (":", "||", "/", "\\", "¦"):
+            return False
+        self.reporter.answer(sign)
+        span = Span(word.start, sign.end)
+        self.reporter.report(codes.SETUP_NEEDS_BAR, span, found=word.text)
+        return True
+
+    def unknown(self, word: Token) -> str:
+        """`START|F(2, 80)`, `GO|F(2, 80)`: go on as after `SI|`."""
+        right = "SI|START;" if word.text == "START" else "SI|"
+        self.reporter.report(codes.SETUP_UNKNOWN, word.span, found=word.text, right=right)
+        return "SI"
+
+    def not_alone(self, ping: Token, token: Token) -> None:
+        """`PING|F(2, 80)`: nothing after it is read."""
+        cursor = self.cursor
+        at_end = token is cursor.tokens[-1]
+        self.reporter.report(codes.PING_ALONE, ping.span if at_end else token.span)
+        cursor.i = len(cursor.tokens) - 1
+
+    def in_the_middle(self, parser: Parser, word: Token) -> NoReturn:
+        """`SI|SI|F(2, 80)`; but `SI(DISTANCE < 10)` asks a question."""
+        cursor = self.cursor
+        following = cursor.following
+        if word.text == "CHECK_CONNECTION":
+            self.reporter.fail(codes.PING_ALONE, word.span)
+        if word.text == "SI" and following.kind != "|":
+            if following.kind == "(" or is_question(cursor.tokens, cursor.i + 1):
+                fix, is_all = question_line(cursor.tokens, cursor.i + 1)
+                self.reporter.report(codes.SPANISH_IF, word.span, fix=fix)
+                if is_all:
+                    cursor.skip_instruction()
+                    raise Resumed
+                foreign_header(parser, word, "IF")
+        code = codes.SETUP_TWICE if following.kind == "|" else codes.SETUP_NEEDS_BAR
+        self.reporter.fail(code, word.span, found=word.text)
+
+    def bar_between(self, first: Token, bar: Token) -> NoReturn:
+        """`F(2, 80)|R(1, 60)`: a `;` is meant where the word before is an instruction."""
+        if first.text in WORDS and WORDS[first.text].role == "setup":
+            self.reporter.fail(codes.SETUP_TWICE, bar.span, found=first.text)
+        self.reporter.report(codes.BAR_BETWEEN, bar.span)
+        self.cursor.i += 1
+        raise Resumed

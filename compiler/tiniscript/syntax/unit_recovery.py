@@ -1,0 +1,64 @@
+"""Recovery of units, because TiniScript writes numbers without units.
+
+Knows which unit an argument has and which one was written behind its number. A repair is offered
+only if the unit can be converted: seconds cannot become degrees.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Diagnostic
+from tiniscript.fixed_point import as_text
+from tiniscript.syntax.ast import Argument
+from tiniscript.syntax.reporter import Reporter
+from tiniscript.words import UNITS, Word
+
+_NAMES = {"s": "seconds", "cm": "centimetres", "Hz": "hertz", "%": "percent", "V": "volts"}
+
+
+def fit_units(reporter: Reporter, word: Word, arguments: Sequence[Argument]) -> None:
+    """Say of each unit among the arguments of `word` whether it is the one that belongs there."""
+    for k, diagnostic in enumerate(reporter.diagnostics):
+        if diagnostic.code is codes.UNIT:
+            for argument, its in zip(arguments, word.arguments, strict=False):
+                if argument.span.start <= diagnostic.span.start <= argument.span.end and its.unit:
+                    reporter.change(k, _fitted(diagnostic, word, its.name, its.unit))
+
+
+def in_thousandths(number: str, unit: str) -> int | None:
+    """Return `number` of a unit in thousandths of our unit; None if it is not a number."""
+    try:
+        return round(float(number) * UNITS[unit][1])
+    except (ValueError, OverflowError):
+        return None
+
+
+def converted(number: str, unit: str) -> str:
+    """Return a number in our unit: `0.5` for `500` and `MS`."""
+    if UNITS[unit][1] == 1000:
+        return number
+    value = in_thousandths(number, unit)
+    return number if value is None else as_text(value)
+
+
+def _fitted(diagnostic: Diagnostic, word: Word, name: str, wanted: str) -> Diagnostic:
+    unit, number = diagnostic.values["unit"], diagnostic.values["right"]
+    found, _ = UNITS[unit]
+    if found == wanted:
+        right = converted(number, unit)
+        return diagnostic._replace(values={**diagnostic.values, "right": right})
+    values = {
+        "word": word.text,
+        "name": "@" + name,
+        "wanted": _named(wanted),
+        "unit": _named(found),
+        "usage": word.usage,
+    }
+    return Diagnostic(codes.OTHER_UNIT, diagnostic.span, values)
+
+
+def _named(unit: str) -> str:
+    """Return the term of a unit, as messages say it."""
+    return "@" + _NAMES.get(unit, unit)

@@ -1,0 +1,126 @@
+"""The handlers of jumps, loops and calls."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from tiniscript.fixed_point import ONE, whole
+from tiniscript.vm.handlers import HANDLERS, STAY, Handler, Step, does
+from tiniscript.vm.state import DONE
+from tiniscript.vm.values import COMPARE, Compare
+
+if TYPE_CHECKING:
+    from tiniscript.vm.machine import Machine
+
+
+@does("IF", "IF_FAR")
+def _if(m: Machine, after: int, to: int) -> Step:
+    pop = m.task.stack.pop
+    return lambda: after if pop() else to
+
+
+@does("IF_NOT", "IF_NOT_FAR")
+def _if_not(m: Machine, after: int, to: int) -> Step:
+    return _if(m, to, after)
+
+
+def _if_compared(compare: Compare) -> Handler:
+    def handler(m: Machine, after: int, n: int, to: int) -> Step:
+        pop, constant = m.task.stack.pop, n * ONE
+        return lambda: after if compare(pop(), constant) else to
+
+    return handler
+
+
+def _if_var_compared(compare: Compare) -> Handler:
+    def handler(m: Machine, after: int, v: int, n: int, to: int) -> Step:
+        variables, constant = m.task.variables, n * ONE
+        return lambda: after if compare(variables[v], constant) else to
+
+    return handler
+
+
+for _name, _compare in COMPARE.items():
+    HANDLERS[f"IF8_{_name}"] = HANDLERS[f"IF16_{_name}"] = _if_compared(_compare)
+    HANDLERS[f"IF_VAR8_{_name}"] = HANDLERS[f"IF_VAR16_{_name}"] = _if_var_compared(_compare)
+
+
+@does("ELSE", "ELSE_FAR", "AGAIN", "AGAIN_FAR", "BREAK", "BREAK_FAR", "DEF", "DEF_FAR")
+def _go(m: Machine, after: int, to: int) -> Step:
+    return lambda: to
+
+
+@does("FOREVER", "WHILE", "WHILE_FAR")
+def _mark(m: Machine, after: int, to: int = 0) -> Step:
+    return lambda: after
+
+
+@does("LOOP8")
+def _loop8(m: Machine, after: int, n: int) -> Step:
+    def step() -> int:
+        m.task.counters.append(n)
+        return after
+
+    return step
+
+
+@does("LOOP", "LOOP_FAR")
+def _loop(m: Machine, after: int, to: int) -> Step:
+    def step() -> int:
+        n = whole(m.task.stack.pop())
+        if n < 1:
+            return to
+        m.task.counters.append(n)
+        return after
+
+    return step
+
+
+@does("NEXT", "NEXT_FAR")
+def _next(m: Machine, after: int, to: int) -> Step:
+    counters = m.task.counters
+
+    def step() -> int:
+        left = counters[-1] - 1
+        if left:
+            counters[-1] = left
+            return to
+        counters.pop()
+        return after
+
+    return step
+
+
+@does("BREAK_LOOP", "BREAK_LOOP_FAR")
+def _break_loop(m: Machine, after: int, to: int) -> Step:
+    def step() -> int:
+        m.task.counters.pop()
+        return to
+
+    return step
+
+
+@does("CALL", "CALL_FAR")
+def _call(m: Machine, after: int, to: int) -> Step:
+    calls = m.task.calls
+
+    def step() -> int:
+        calls.append(after)
+        return to
+
+    return step
+
+
+@does("RETURN")
+def _return(m: Machine, after: int) -> Step:
+    return m.task.calls.pop
+
+
+@does("END")
+def _end(m: Machine, after: int) -> Step:
+    def step() -> int:
+        m.robot.off()
+        m.status = DONE
+        return STAY
+
+    return step

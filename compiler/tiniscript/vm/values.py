@@ -1,0 +1,257 @@
+"""The handlers of instructions that only calculate: values on the stack, and variables."""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from tiniscript import fixed_point
+from tiniscript.bytecode.opcodes import COMPARATORS, PUSHED
+from tiniscript.fixed_point import ONE, in_range, next_random, random_between
+from tiniscript.vm.handlers import HANDLERS, STAY, Handler, Step, does
+
+if TYPE_CHECKING:
+    from tiniscript.vm.machine import Machine
+
+Compare = Callable[[int, int], bool]
+
+# -- values -------------------------------------------------------------------------------------
+
+
+@does("PUSH_MILLI", "PUSH32")
+def _push(m: Machine, after: int, n: int) -> Step:
+    push = m.task.stack.append
+
+    def step() -> int:
+        push(n)
+        return after
+
+    return step
+
+
+@does("PUSH8", "PUSH16")
+def _push_whole(m: Machine, after: int, n: int) -> Step:
+    return _push(m, after, n * ONE)
+
+
+@does("PUSH_TENTHS")
+def _push_tenths(m: Machine, after: int, n: int) -> Step:
+    return _push(m, after, n * 100)
+
+
+def _pushing(n: int) -> Handler:
+    return lambda m, after: _push(m, after, n)
+
+
+HANDLERS["PUSH_FALSE"] = _pushing(0)
+HANDLERS["PUSH_TRUE"] = _pushing(1)
+for _number in PUSHED:
+    HANDLERS[f"PUSH_NUM_{_number}"] = _pushing(_number * ONE)
+
+
+def _push_of(m: Machine, after: int, values: list[int], number: int) -> Step:
+    push = m.task.stack.append
+
+    def step() -> int:
+        push(values[number])
+        return after
+
+    return step
+
+
+@does("PUSH_VAR")
+def _push_var(m: Machine, after: int, v: int) -> Step:
+    return _push_of(m, after, m.task.variables, v)
+
+
+@does("PUSH_SENSOR")
+def _push_sensor(m: Machine, after: int, s: int) -> Step:
+    return _push_of(m, after, m.task.readings, s)
+
+
+@does("READ")
+def _read(m: Machine, after: int, s: int) -> Step:
+    readings = m.task.readings
+
+    def step() -> int:
+        reading = m.robot.read(s)
+        if reading is None:
+            return STAY
+        readings[s] = reading
+        return after
+
+    return step
+
+
+@does("PUSH_READ")
+def _push_read(m: Machine, after: int, s: int) -> Step:
+    read, push = _read(m, after, s), _push_sensor(m, after, s)
+
+    def step() -> int:
+        return STAY if read() == STAY else push()
+
+    return step
+
+
+@does("TIME")
+def _time(m: Machine, after: int) -> Step:
+    task = m.task
+
+    def step() -> int:
+        task.stack.append(in_range(m.now_ms - task.started_ms))
+        return after
+
+    return step
+
+
+@does("RANDOM")
+def _random(m: Machine, after: int) -> Step:
+    task = m.task
+
+    def step() -> int:
+        high, low = task.stack.pop(), task.stack.pop()
+        task.random = next_random(task.random)
+        task.stack.append(random_between(low, high, task.random))
+        return after
+
+    return step
+
+
+def _binary(calculate: Callable[[int, int], int]) -> Handler:
+    def handler(m: Machine, after: int) -> Step:
+        stack = m.task.stack
+
+        def step() -> int:
+            right = stack.pop()
+            stack[-1] = calculate(stack[-1], right)
+            return after
+
+        return step
+
+    return handler
+
+
+def _comparing(compare: Compare) -> Handler:
+    def handler(m: Machine, after: int) -> Step:
+        stack = m.task.stack
+
+        def step() -> int:
+            right = stack.pop()
+            stack[-1] = 1 if compare(stack[-1], right) else 0
+            return after
+
+        return step
+
+    return handler
+
+
+def _unary(calculate: Callable[[int], int]) -> Handler:
+    def handler(m: Machine, after: int) -> Step:
+        stack = m.task.stack
+
+        def step() -> int:
+            stack[-1] = calculate(stack[-1])
+            return after
+
+        return step
+
+    return handler
+
+
+COMPARE: dict[str, Compare] = {name: getattr(operator, name.lower()) for name, _ in COMPARATORS}
+_CALCULATE: dict[str, Callable[[int, int], int]] = {
+    "ADD": fixed_point.add, "SUB": fixed_point.subtract, "MUL": fixed_point.multiply,
+    "DIV": fixed_point.divide, "MOD": fixed_point.modulo, "MIN": min, "MAX": max,
+    "ROUND": fixed_point.round_to,
+    "AND": lambda a, b: 1 if a and b else 0,
+    "OR": lambda a, b: 1 if a or b else 0,
+}  # fmt: skip
+HANDLERS.update((name, _binary(calculate)) for name, calculate in _CALCULATE.items())
+HANDLERS.update((name, _comparing(compare)) for name, compare in COMPARE.items())
+HANDLERS["NEG"] = _unary(fixed_point.negate)
+HANDLERS["ABS"] = _unary(fixed_point.absolute)
+HANDLERS["NOT"] = _unary(lambda a: 0 if a else 1)
+
+
+@does("AND_THEN", "AND_THEN_FAR")
+def _and_then(m: Machine, after: int, to: int) -> Step:
+    stack = m.task.stack
+
+    def step() -> int:
+        if not stack[-1]:
+            return to
+        stack.pop()
+        return after
+
+    return step
+
+
+@does("OR_ELSE", "OR_ELSE_FAR")
+def _or_else(m: Machine, after: int, to: int) -> Step:
+    stack = m.task.stack
+
+    def step() -> int:
+        if stack[-1]:
+            return to
+        stack.pop()
+        return after
+
+    return step
+
+
+# -- variables ----------------------------------------------------------------------------------
+
+
+@does("SET_VAR")
+def _set_var(m: Machine, after: int, v: int) -> Step:
+    variables, pop = m.task.variables, m.task.stack.pop
+
+    def step() -> int:
+        variables[v] = pop()
+        return after
+
+    return step
+
+
+@does("SET_VAR8")
+def _set_var8(m: Machine, after: int, v: int, n: int) -> Step:
+    variables, value = m.task.variables, n * ONE
+
+    def step() -> int:
+        variables[v] = value
+        return after
+
+    return step
+
+
+@does("ADD_VAR8")
+def _add_var8(m: Machine, after: int, v: int, n: int) -> Step:
+    variables, value = m.task.variables, n * ONE
+
+    def step() -> int:
+        variables[v] = in_range(variables[v] + value)
+        return after
+
+    return step
+
+
+@does("INC_VAR")
+def _inc_var(m: Machine, after: int, v: int) -> Step:
+    return _add_var8(m, after, v, 1)
+
+
+@does("DEC_VAR")
+def _dec_var(m: Machine, after: int, v: int) -> Step:
+    return _add_var8(m, after, v, -1)
+
+
+@does("ADD_VAR")
+def _add_var(m: Machine, after: int, v: int, w: int) -> Step:
+    variables = m.task.variables
+
+    def step() -> int:
+        variables[v] = in_range(variables[v] + variables[w])
+        return after
+
+    return step

@@ -1,0 +1,265 @@
+"""Help says what the parsers take, and nothing else, in both languages; and fits a terminal."""
+
+from __future__ import annotations
+
+import os
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from tests.support.casefile import ROOT
+from tests.support.command import PROGRAM, TSC, Tsc
+from tests.support.verbs import parsers
+from tiniscript import robots
+from tiniscript.cli import help
+from tiniscript.cli.texts.options import OPTIONS, Option, of_verb
+from tiniscript.cli.texts.verbs import NOTES, VERBS
+from tiniscript.flash.bootloaders import BOARDS
+from tiniscript.virtual import worlds
+from tools.generate.command_pages import PAGES
+
+if TYPE_CHECKING:
+    from tests.support.shell import Shell
+
+PARSERS = parsers()
+FLAG = r"(?<![\w-])--?[a-zA-Z][a-z-]*"
+
+in_both = pytest.mark.parametrize("language", ["en", "es"])
+of_each = pytest.mark.parametrize("verb", VERBS)
+
+
+def rows_of(said: str) -> list[str]:
+    """Return what a help has in its left column: `-o FILE`, `PROGRAM`."""
+    return [found.strip() for found in re.findall(r"^  (\S.*?)(?:  |$)", said, re.M)]
+
+
+@in_both
+@of_each
+def test_every_flag_of_a_parser_is_in_help_and_the_other_way_round(
+    tsc: Tsc, verb: str, language: str
+) -> None:
+    done = tsc(verb, "--help", "--lang", language)
+    assert done.code == 0
+    said = [flag for row in rows_of(done.out) for flag in re.findall(FLAG, row)]
+    taken = [flag for each in PARSERS[verb]._actions for flag in each.option_strings]
+    assert sorted(said) == sorted(taken)
+    arguments = [row for row in rows_of(done.out) if not row.startswith("-")]
+    assert len(arguments) == sum(not each.option_strings for each in PARSERS[verb]._actions)
+    for argument in arguments:
+        assert re.search(rf"\b{argument}\b", done.out.splitlines()[0])
+    known = {
+        flag for of in PARSERS.values() for each in of._actions for flag in each.option_strings
+    }
+    assert set(re.findall(FLAG, done.out)) <= known | {"-N", "-Uz"}  # a number; of zsh
+
+
+@in_both
+@of_each
+def test_help_shows_which_options_take_a_value(verb: str, language: str) -> None:
+    rows = rows_of(help.of(verb, language))
+    for each in PARSERS[verb]._actions:
+        if each.option_strings:
+            (row,) = (row for row in rows if each.option_strings[0] in row.split(" ")[0].split(","))
+            assert (each.nargs == 0) == (re.fullmatch(rf"{FLAG}(, {FLAG})*", row) is not None), row
+
+
+@in_both
+@pytest.mark.parametrize("columns", [80, 60, 40])
+def test_help_fits_a_terminal(language: str, columns: int) -> None:
+    for said in (help.overview(language, columns), *(help.of(v, language, columns) for v in VERBS)):
+        too_long = [line for line in said.splitlines() if len(line) > columns]
+        # a word is not broken: a name of a file, or of many fields
+        assert [line for line in too_long if " " in line.strip()] == []
+        assert columns < 80 or not too_long
+
+
+@in_both
+def test_no_backticks_are_printed_and_no_texts_are_lost(language: str) -> None:
+    k = language == "es"
+
+    def words(text: str) -> str:
+        return " ".join(text.replace("`", "").split())
+
+    for verb, each in VERBS.items():
+        said = help.of(verb, language)
+        assert "`" not in said
+        assert words(each.says[k]) in words(said) and words(each.ends[k]) in words(said)
+        for option in of_verb(verb):
+            assert words(option.help[k]) in words(said), option
+        assert words(each.summary[k]) in words(help.overview(language))
+    for note in NOTES:
+        assert words(note[k]) in words(help.overview(language))
+
+
+def test_every_verb_is_a_module_and_every_module_a_verb() -> None:
+    folder = Path(help.__file__ or "").parent / "commands"
+    assert {path.stem for path in folder.glob("*.py")} - {"__init__"} == set(VERBS)
+
+
+@pytest.mark.parametrize("option", OPTIONS, ids=lambda each: f"{each.flags} {each.verbs}")
+def test_every_row_of_the_table_is_for_a_verb_and_says_something_in_both(option: Option) -> None:
+    assert option.verbs in ("*", "tsc") or set(option.verbs.split()) <= set(VERBS)
+    english, spanish = option.help
+    assert english and spanish and english != spanish
+    assert (option.kind is None) == (option.value == ("", ""))
+    if option.kind is not None and option.kind.choices and not option.is_argument:
+        assert option.value == ("|".join(option.kind.choices),) * 2
+    for text in option.help:
+        assert text.count("`") % 2 == 0
+
+
+@in_both
+@pytest.mark.parametrize(
+    ("verb", "flag", "names"),
+    [
+        ("robot", "--world", worlds.names()),
+        ("firmware", "--board", BOARDS),
+        ("firmware", "--robot", robots.names()),
+    ],
+)
+def test_names_that_help_lists_are_those_that_there_are(
+    verb: str, flag: str, names: list[str], language: str
+) -> None:
+    (option,) = (each for each in of_verb(verb) if each.flags == flag)
+    listed = re.split(r"[^a-z-]+", option.help[language == "es"])
+    assert set(names) <= set(listed)
+
+
+def test_a_program_on_the_command_line_works_in_every_verb_that_takes_one(
+    tsc: Tsc, tmp_path: Path
+) -> None:
+    """`upload`, which takes one too, needs a robot: its tests give it programs so."""
+    takes = [verb for verb in VERBS if any(each.name == "program" for each in of_verb(verb))]
+    assert takes == ["compile", "check", "run", "show", "fmt", "upload"]
+    for verb in takes:
+        assert "-e" in {flag for each in PARSERS[verb]._actions for flag in each.option_strings}
+        if verb != "upload":
+            more = ["-o", str(tmp_path / "a.bin")] if verb == "compile" else []
+            assert tsc(verb, "-e", PROGRAM, *more).code == 0
+    assert "-e" in {flag for each in PARSERS["live"]._actions for flag in each.option_strings}
+
+
+def test_help_of_a_verb_that_there_is_not(tsc: Tsc) -> None:
+    done = tsc("help", "uplod", "--lang", "es")
+    assert done.code == 2
+    assert "¿Quisiste decir upload?" in done.err
+
+
+@in_both
+@of_each
+def test_the_page_of_the_documents_says_all_of_it_too(verb: str, language: str) -> None:
+    page = (ROOT / "docs" / PAGES[language]).read_text(encoding="utf-8")
+    common, *sections = page.split("\n## ")
+    (section,) = (each for each in sections if each.startswith(f"`tsc {verb}`\n"))
+    typed = re.findall(r"^\| `(-.*?)` \|", common + "\n" + section, re.M)
+    taken = [flag for each in PARSERS[verb]._actions for flag in each.option_strings]
+    assert sorted(flag for each in typed for flag in re.findall(FLAG, each)) == sorted(taken)
+
+
+# -- a page at a time -----------------------------------------------------------------------------
+
+PTY = pytest.mark.skipif(os.name == "nt", reason="Windows has no pseudo-terminals of this kind")
+
+
+def on_terminal(rows: int, words: str, **environ: str) -> Shell:
+    from tests.support.shell import Shell
+
+    hidden = ("PAGER", "LESS", "COLUMNS", "LINES")
+    plain = {name: value for name, value in os.environ.items() if name not in hidden}
+    command = [sys.executable, "-m", "tiniscript", *shlex.split(words)]
+    return Shell(command, {**plain, "TERM": "xterm", **environ}, rows)
+
+
+def printed(said: str) -> str:
+    return said.replace("\r\n", "\n")
+
+
+@PTY
+@pytest.mark.skipif(not shutil.which("less"), reason="there is no less")
+@pytest.mark.parametrize(
+    ("language", "keys"), [("en", "Space: more   q: end"), ("es", "Espacio: sigue   q: salir")]
+)
+def test_long_help_is_shown_a_page_at_a_time(language: str, keys: str) -> None:
+    assert keys.isascii()  # less spoils other letters there
+    shell = on_terminal(12, f"help upload --lang {language}")
+    first = shell.until(f"{keys}$")
+    assert "tsc upload" in first and "--seed" not in first
+    shell.type("G")
+    shell.until(r"--seed N(.|\n)*-h, --help")
+    shell.type("q")
+    assert shell.end() == 0
+
+
+@PTY
+@pytest.mark.parametrize(
+    ("rows", "environ"),
+    [
+        (12, {"PAGER": ""}),
+        (12, {"PAGER": "cat"}),
+        (12, {"PAGER": "no-such-pager-here --flag"}),
+        (12, {"PATH": "/nowhere"}),  # no less either
+        (12, {"TERM": "dumb", "PAGER": "false"}),
+        (100, {"PAGER": "false"}),  # it fits
+    ],
+)
+def test_help_is_printed_where_there_is_no_pager(rows: int, environ: dict[str, str]) -> None:
+    shell = on_terminal(rows, "help upload --lang en", **environ)
+    assert shell.end() == 0
+    assert printed(shell.written).endswith(help.of("upload", "en"))
+
+
+def test_help_that_goes_elsewhere_is_never_paged(tmp_path: Path) -> None:
+    marker = tmp_path / "begun"
+    environ = {**os.environ, "PAGER": f"touch {marker}"}
+    done = subprocess.run(
+        [*TSC, "help", "upload", "--lang", "en"], capture_output=True, text=True, env=environ
+    )
+    assert (done.returncode, done.stdout, marker.exists()) == (0, help.of("upload", "en"), False)
+
+
+PAGER = """
+import os, signal, sys, time
+def leave(*_):
+    os.write(1, b"caught\\n")
+    time.sleep(0.3)
+    os.write(1, b"left\\n")
+    os._exit(0)
+signal.signal(signal.SIGINT, leave if sys.argv[1] == "waits" else signal.SIG_DFL)
+sys.stdin.read()
+os.write(1, b"begun\\n")
+time.sleep(1000)
+"""
+
+
+@PTY
+@pytest.mark.parametrize(
+    ("how", "said"), [("dies", ""), ("waits", "caught\nleft\n")], ids=["dies", "waits"]
+)
+def test_ctrl_c_is_the_pager_s_and_tsc_waits_and_says_nothing(
+    tmp_path: Path, how: str, said: str
+) -> None:
+    """`less` goes on after Ctrl-C, `more` ends. A shell between would miss a signal sometimes."""
+    (tmp_path / "pager.py").write_text(PAGER)
+    words = shlex.join([sys.executable, str(tmp_path / "pager.py"), how])
+    shell = on_terminal(12, "help upload --lang en", PAGER=f"exec {words}")
+    shell.until("begun\r\n")
+    shell.type("\x03")
+    assert shell.end() == 0
+    assert printed(shell.written).replace("^C", "") == said
+
+
+@PTY
+def test_help_is_narrow_on_a_narrow_terminal() -> None:
+    from tests.support import shell as support
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(support, "COLUMNS", 60)
+        shell = on_terminal(100, "stop --help --lang en")
+        assert shell.end() == 0
+    assert printed(shell.written) == help.of("stop", "en", 60)

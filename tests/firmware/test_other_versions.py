@@ -1,0 +1,122 @@
+"""A robot whose EEPROM holds a program of another version says so, and starts nothing."""
+
+from __future__ import annotations
+
+import random
+import zlib
+from struct import pack as struct_pack
+
+import pytest
+
+from tests.firmware.test_host_firmware import computer, image_of, outcome, switched_on
+from tests.firmware.test_keeping import EACH, FIRST, SECOND, saved
+from tests.machines.host_firmware import EMPTY, HostFirmware, missing
+from tiniscript.bytecode.image import REFUSALS, sealed
+from tiniscript.link.requests import OK
+from tiniscript.link.session import Session
+
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
+
+OTHER_VERSION = REFUSALS["OTHER_VERSION"][0]
+# `F(5, 80)`, as version 0.1.0 has compiled it.
+OLD = bytes.fromhex("54530100000000000300101604fa443250")
+MOST_OLD = 430  # bytes of code
+
+
+def old(code: bytes, start: int = 0) -> bytes:
+    """Return an image of version 0.1.0: a header of 14 bytes, the checksum at its end."""
+    head = b"TS\1\0" + struct_pack("<BBHH", start, 0, 0, len(code))
+    return head + struct_pack("<I", zlib.crc32(head + code)) + code
+
+
+def kept(*slots: tuple[int, int, bytes]) -> bytes:
+    """Return an EEPROM with images: the place of each slot, its generation, and what it holds."""
+    memory = bytearray(EMPTY)
+    for place, generation, image in slots:
+        mark = generation ^ 0xA5
+        body = bytes([image[0] ^ generation]) + image[1:]
+        memory[place : place + 4 + len(image)] = bytes([generation, mark, mark, mark]) + body
+    return bytes(memory)
+
+
+def met(memory: bytes) -> tuple[HostFirmware, Session]:
+    robot, session = switched_on(memory), computer(5)
+    robot.wait(200)
+    assert robot.until(session, session.hello()) == OK
+    return robot, session
+
+
+def test_what_0_1_0_has_made_is_known() -> None:
+    assert old(OLD[14:]) == OLD
+
+
+@pytest.mark.parametrize("place", [FIRST, SECOND])
+@pytest.mark.parametrize("length", [0, 3, 389, MOST_OLD])
+def test_a_robot_says_that_its_program_is_of_another_version(place: int, length: int) -> None:
+    """Up to the largest one of 0.1.0, which reaches into the slot behind it."""
+    memory = kept((place, 7, old(random.Random(length).randbytes(length))))
+    robot, session = met(memory)
+    assert saved(robot, session) == "OTHER_VERSION"
+    for ask in (session.start, session.fetch):
+        assert robot.until(session, ask()) == OTHER_VERSION
+    assert not robot.is_lit
+    robot.did.clear()
+    robot.push()
+    robot.wait(500)
+    assert not [line for line in robot.did if "MOTORS" in line]
+    assert robot.memory()[place : place + length + 18] == memory[place : place + length + 18]
+
+
+def test_the_next_program_replaces_it() -> None:
+    robot, session = met(kept((FIRST, 0, old(bytes(20), 1)), (SECOND, 1, OLD)))
+    assert saved(robot, session) == "OTHER_VERSION"
+    image = image_of("SB|F(0.1, 60)")
+    assert robot.until(session, session.upload(image)) == OK
+    robot.talk(session, 1000)
+    assert saved(robot, session) == "STORED"
+    again, session = met(robot.memory())
+    assert saved(again, session) == "STORED"
+    task = session.fetch()
+    assert again.until(session, task) == OK
+    assert outcome(task).values.image[15:] == image.code
+
+
+def test_one_of_this_version_before_it_counts() -> None:
+    from tests.firmware.test_keeping import bytes_of
+
+    mine = bytes_of("SB|F(0.1, 60)")
+    robot, session = met(kept((FIRST, 3, mine), (SECOND, 4, OLD)))
+    assert saved(robot, session) == "STORED"
+    later = sealed(mine[:3] + b"\1" + mine[4:])  # of a later minor version
+    robot, session = met(kept((FIRST, 3, later), (SECOND, 2, OLD)))
+    assert saved(robot, session) == "OTHER_VERSION"
+
+
+def test_a_program_with_a_longer_header_is_run() -> None:
+    from tests.firmware.test_keeping import bytes_of
+    from tiniscript.bytecode.image import pack, unpack
+
+    image = unpack(bytes_of("SB|F(0.1, 60)"))
+    longer = pack("SB", image.devices, image.code, b"what a later version says")
+    robot, session = met(kept((FIRST, 3, longer)))
+    assert saved(robot, session) == "STORED"
+    task = session.fetch()
+    assert robot.until(session, task) == OK
+    assert outcome(task).values.image == longer
+    robot.push()
+    robot.wait(300)
+    assert [line.split(" ", 1)[1] for line in robot.did if "MOTORS" in line] == [
+        "MOTORS 60 60",
+        "MOTORS 0 0",
+    ]
+
+
+def test_name_and_trim_outlive_an_update() -> None:
+    """They lie where they lay: what version 0.1.0 has kept is found."""
+    robot, session = met(kept((FIRST, 0, OLD)))
+    assert robot.until(session, session.name(b"Ada")) == OK
+    memory = bytearray(robot.memory())
+    assert memory[4 : 4 + EACH] != EMPTY[4 : 4 + EACH]
+    again, session = met(bytes(memory))
+    assert session.robot is not None and session.robot.name == "Ada"
+    assert saved(again, session) == "OTHER_VERSION"

@@ -1,0 +1,155 @@
+"""A robot makes the image of LIVE before its frame ends: that changes nothing but when it runs.
+
+A robot that looks at its bytes one by one does so, one that looks behind the last byte cannot.
+"""
+
+from __future__ import annotations
+
+import random
+import struct
+
+import pytest
+
+from tests.link.test_link_channel import damaged
+from tests.machines.link import CppLink, cpp_link, missing
+from tiniscript import compile_text, robots
+from tiniscript.bytecode.image import unpack
+from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
+from tiniscript.link import messages
+from tiniscript.link.frames import Frame, encoded
+
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a host machine")
+
+LIVE, HELLO = (messages.BY_NAME[name].number for name in ("LIVE", "HELLO"))
+RUN = 16
+KIT = robots.load("tinibot").kit
+EPOCH = 9  # of the robot when it begins; HELLO makes it one more
+TEXTS = ("SI|F(5, 80)", "SI|X = 0; LOOP(3); X = X + 1; END_LOOP; SHOW(X)", "SI|SHOW(DISTANCE)")
+CODES = [unpack(compile_text(text, KIT).image).code for text in TEXTS]
+STARTED = "START live, run 1"
+SEED = 5
+FRAMES = 1500
+
+
+def greeted(epoch: int = EPOCH) -> CppLink:
+    """Return a robot in a session."""
+    robot = cpp_link()
+    robot.begin(epoch=epoch)
+    payload = struct.pack("<BBBBHI", messages.MAJOR, 0, ISA_MAJOR, ISA_MINOR, KIT.fingerprint, 7)
+    assert robot.step(0, encoded(Frame(HELLO, 1, 0, payload))).sent
+    return robot
+
+
+def live(code: bytes, seq: int = 2, epoch: int = EPOCH + 1) -> bytes:
+    return encoded(Frame(LIVE, seq, epoch, bytes([RUN]) + code))
+
+
+def test_what_is_made_ahead_is_what_would_be_made_later() -> None:
+    """Zeros anywhere in a frame, code that is refused, and damage included."""
+    draw = random.Random(SEED)
+    print(f"seed {SEED}")
+    started = 0
+    for number in range(FRAMES):
+        epoch = draw.choice((draw.randrange(256), 255))  # the next one is 0
+        code = draw.choice((*CODES, CODES[0] + bytes(draw.randrange(4)), draw.randbytes(9)))
+        data = live(code, draw.randrange(2, 100), (epoch + draw.randrange(20) // 19 + 1) % 256)
+        if number % 3 == 0:
+            data = damaged(data[:-1], draw) + b"\0"
+        found = [greeted(epoch).step(10, data, is_late=is_late) for is_late in (False, True)]
+        # one that looks late misses what comes behind the end of another item
+        if data.count(b"\0") == 1 and not {*b"\r\n"} & {*data}:
+            assert found[0] == found[1], data.hex()
+        if number % 3 == 0 and data != live(code):
+            continue
+        started += STARTED in found[0].did
+    assert started > FRAMES // 4
+
+
+@pytest.mark.parametrize("code", CODES)
+def test_it_does_not_run_before_its_frame_ends(code: bytes) -> None:
+    robot = greeted()
+    data = live(code)
+    assert not robot.step(10, data[:-1]).did
+    assert STARTED in robot.step(20, data[-1:]).did
+
+
+@pytest.mark.parametrize("at", [2, 3, 7, 9, 10, 11])
+def test_a_damaged_frame_runs_nothing(at: int) -> None:
+    data = bytearray(live(CODES[0]))
+    data[at] ^= 0x40 if at < 8 else 0x11
+    step = greeted().step(10, bytes(data))
+    assert not step.did
+    assert not step.sent
+
+
+@pytest.mark.parametrize("code", CODES)
+@pytest.mark.parametrize("more", [b"\x01", b"\x05", b"\x01\x01", b"\xff"])
+def test_a_frame_that_goes_on_is_another_one(code: bytes, more: bytes) -> None:
+    robot = greeted()
+    step = robot.step(10, live(code)[:-1])
+    step = robot.step(10, more + b"\0")
+    assert not step.did
+    assert not step.sent
+
+
+def test_what_runs_goes_on_until_the_frame_ends() -> None:
+    robot = greeted()
+    robot.happens("r")
+    data = live(CODES[0])
+    assert not robot.step(10, data[:-1]).did
+    assert robot.step(20, data[-1:]).did[0] == "END"
+
+
+def test_a_button_in_between_makes_it_stale() -> None:
+    robot = greeted()
+    data = live(CODES[0])
+    assert not robot.step(10, data[:-1]).did
+    robot.happens("b")
+    step = robot.step(20, data[-1:])
+    assert not [row for row in step.did if "START" in row]
+    assert step.sent
+
+
+def test_a_fault_in_between_makes_it_stale() -> None:
+    robot = greeted()
+    robot.happens("r")
+    data = live(CODES[0])
+    assert not robot.step(10, data[:-1]).did
+    robot.happens("f", 65)
+    step = robot.step(20, data[-1:])
+    assert not [row for row in step.did if "START" in row]
+    assert step.sent
+
+
+def test_the_same_line_twice_runs_once() -> None:
+    robot = greeted()
+    data = live(CODES[0])
+    assert STARTED in robot.step(10, data).did
+    again = robot.step(20, data)
+    assert not [row for row in again.did if "START" in row]
+    assert again.sent
+
+
+def test_a_stop_ends_the_frame_and_then_the_run() -> None:
+    robot = greeted()
+    assert not robot.step(10, live(CODES[0])[:-1]).did
+    did = robot.step(10, bytes(8)).did
+    assert did.index(STARTED) < did.index("PINS OFF") < did.index("STOP")
+    assert not robot.step(20, bytes(1)).did
+
+
+def test_silence_in_between_damages_it() -> None:
+    robot = greeted()
+    data = live(CODES[0])
+    assert not robot.step(10, data[:-1]).did
+    step = robot.step(10 + messages.SILENCE_MS, data[-1:])
+    assert not step.did
+    assert not step.sent
+
+
+def test_another_frame_after_one_that_was_cut_runs_its_own_code() -> None:
+    robot = greeted()
+    assert not robot.step(10, live(CODES[1])[:-1]).did
+    step = robot.step(10 + messages.SILENCE_MS, live(CODES[0]))
+    expected = greeted().step(10, live(CODES[0]), is_late=True)
+    assert step == expected

@@ -1,0 +1,95 @@
+"""Replies and events have the fields of the table, and come through a shared port as they are."""
+
+from __future__ import annotations
+
+from typing import get_args
+
+import pytest
+
+from tests.support.link_events import EVENTS as SOME_EVENTS
+from tests.support.link_events import QUIET
+from tiniscript.link.fields import event_of, filled, of_event, of_payload
+from tiniscript.link.messages import FIRST_EVENT, MESSAGES, Field, Malformed, Message
+from tiniscript.link.outcomes import (
+    ALL_EVENTS,
+    EchoEvent,
+    EndedEvent,
+    Event,
+    JoinedEvent,
+    LeftEvent,
+    MissedEvent,
+    TextEvent,
+)
+from tiniscript.link.payloads import EVENTS, REPLIES, ReceiptReply, StatusReply
+from tiniscript.sharing import protocol
+
+REPLY_MESSAGES = [each for each in MESSAGES if each.number < FIRST_EVENT]
+EVENT_MESSAGES = [each for each in MESSAGES if each.number >= FIRST_EVENT]
+
+
+def value(field: Field) -> int | bytes:
+    return b"\1" * field.low if field.kind == "rest" else 1
+
+
+@pytest.mark.parametrize("message", REPLY_MESSAGES, ids=lambda each: str(each.name))
+def test_a_reply_has_the_fields_of_the_table_in_their_order(message: Message) -> None:
+    values = {field.name: value(field) for field in message.reply}
+    made = filled(REPLIES[message.name], values)
+    assert list(of_payload(made).items()) == list(values.items())
+
+
+def test_an_event_has_the_fields_of_the_table_and_its_name() -> None:
+    for message in EVENT_MESSAGES:
+        made = event_of(message.name, {field.name: value(field) for field in message.reply})
+        assert isinstance(made, EVENTS[message.name]) and made.name == message.name
+        assert list(of_event(made)) == [field.name for field in message.reply]
+
+
+OTHERS: tuple[Event, ...] = (
+    TextEvent(b"hello"), MissedEvent(3), EchoEvent(), JoinedEvent(b"live"), LeftEvent(b"live"),
+    EndedEvent(QUIET._replace(state=3, fault_program=2**32 - 1)),
+)  # fmt: skip
+
+
+def test_every_event_comes_through_a_shared_port() -> None:
+    """Its fields are written as JSON and read again."""
+    told = (*SOME_EVENTS, *OTHERS)
+    assert {type(each) for each in told} == set(get_args(Event)) == {
+        *ALL_EVENTS.values(), EndedEvent
+    }  # fmt: skip
+    reader = protocol.MessageReader(protocol.LINE_BYTES)
+    for each in told:
+        values = protocol.plain(of_event(each))
+        message = {"event": each.name, "ms": 5, "values": values}
+        [read] = reader.put(protocol.written(message))
+        assert protocol.event(read) == (5, each)
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"program": 1, "run": 2, "slot": 0},
+        {"program": 1, "run": 2, "slot": 0, "saved": 1, "more": 1},
+        {"program": 1, "run": 2, "slot": 0, "saved": b"\1"},
+        {"program": True, "run": 2, "slot": 0, "saved": 1},
+    ],
+)
+def test_other_fields_are_refused(values: dict[str, int | bytes]) -> None:
+    with pytest.raises(Malformed):
+        filled(ReceiptReply, values)
+    message: protocol.JsonMessage = {"status": 0, "detail": 0, "values": protocol.plain(values)}
+    with pytest.raises(protocol.BadMessage):
+        protocol.reply(message, ReceiptReply)
+
+
+@pytest.mark.parametrize("name", ["", "HELLO", "ENDED", "SHOW", "shown"])
+def test_an_event_that_there_is_not_is_refused(name: str) -> None:
+    with pytest.raises(protocol.BadMessage):
+        protocol.event({"event": name, "ms": 1, "values": {"value": 1}})
+
+
+def test_a_refusal_has_no_values() -> None:
+    reply = protocol.reply({"status": 72, "detail": 7, "values": {}}, StatusReply)
+    assert (reply.status, reply.detail) == (72, 7)
+    with pytest.raises(AssertionError):
+        _ = reply.values

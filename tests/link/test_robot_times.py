@@ -1,0 +1,171 @@
+"""The robot's half of the link in C++: the tether, stops, echoes, and who is listened to."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+
+from tests.machines.link import CppLink, cpp_link, missing
+from tests.support.link_cases import KIT, items_of
+from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
+from tiniscript.link import messages
+from tiniscript.link.frames import Frame, decoded, encoded
+from tiniscript.link.messages import (
+    AGAIN_MS,
+    BY_NAME,
+    LISTEN_MS,
+    TETHER_MS,
+)
+
+needs_host = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a host machine")
+FORWARD = bytes.fromhex("448c50")  # F(5,80)
+
+
+def cpp_items(stream: list[tuple[int, int]]) -> list[str]:
+    return cpp_link().items(stream)
+
+
+def robot_with_session() -> CppLink:
+    cpp = cpp_link()
+    cpp.begin(kit=KIT)
+    hello = {"major": 1, "minor": 0, "isa_major": ISA_MAJOR, "isa_minor": ISA_MINOR,
+             "kit": KIT, "nonce": 3}  # fmt: skip
+    cpp.step(0, encoded(Frame(1, 1, 0, messages.written(BY_NAME["HELLO"].request, hello))))
+    return cpp
+
+
+def ends_at(cpp: CppLink, from_ms: int, until_ms: int) -> int | None:
+    """Return when a fault ends the program, looking every 5 ms."""
+    for now_ms in range(from_ms, until_ms, 5):
+        if "FAULT 64" in cpp.step(now_ms).did:
+            return now_ms
+    return None
+
+
+@needs_host
+@pytest.mark.parametrize("start", [0, 0xFFFFFFFF - 2000])
+def test_a_tethered_program_ends_a_second_after_the_last_valid_frame(start: int) -> None:
+    cpp = robot_with_session()
+    live = messages.written(BY_NAME["LIVE"].request, {"mode": 0x10, "code": FORWARD})
+    cpp.step(start, encoded(Frame(8, 2, 10, live)))
+    cpp.step(start + 700, encoded(Frame(2, 3, 10)))
+    cpp.step(start + 900, encoded(Frame(2, 4, 10))[:-2] + b"\1\0")  # damaged: does not count
+    assert ends_at(cpp, start + 900, start + 2000) == start + 700 + TETHER_MS
+
+
+@needs_host
+@pytest.mark.parametrize("name", ["PROGRAM", "START"])
+def test_a_detached_program_goes_on(name: str) -> None:
+    cpp = robot_with_session()
+    mode = 0x50 if name == "PROGRAM" else 0x40
+    program = messages.written(
+        BY_NAME["PROGRAM"].request, {"mode": mode & 0x70 if mode & 0x10 else 0, "code": FORWARD}
+    )
+    cpp.step(10, encoded(Frame(9, 2, 10, program)))
+    if name == "START":
+        cpp.step(20, encoded(Frame(7, 3, 10, bytes([mode]))))
+    assert ends_at(cpp, 20, 5000) is None
+
+
+@needs_host
+def test_a_long_silence_is_no_short_one() -> None:
+    """Times are 16 bits: after a minute a robot still knows that it has heard nothing."""
+    cpp = robot_with_session()
+    for now_ms in range(0, 200_000, 500):
+        sent = cpp.step(now_ms).sent
+        assert cpp.happens("s", 1) and (not sent or now_ms < LISTEN_MS + 1000), now_ms
+
+
+@needs_host
+def test_what_the_button_has_started_is_not_tethered() -> None:
+    cpp = robot_with_session()
+    live = messages.written(BY_NAME["LIVE"].request, {"mode": 0x10, "code": FORWARD})
+    cpp.step(10, encoded(Frame(8, 2, 10, live)))
+    cpp.happens("b")
+    cpp.step(20)
+    cpp.happens("r")
+    assert ends_at(cpp, 30, 5000) is None
+
+
+@pytest.mark.parametrize("find", [items_of, pytest.param(cpp_items, marks=needs_host)])
+def test_what_is_counted_does_not_wrap(find: Callable[[list[tuple[int, int]]], list[str]]) -> None:
+    """A line that is broken for long stops a robot all the time; a long text is no short one."""
+    assert find([(0, 0)] * 1402) == [*["stop"] * 350, "damaged 0, dropped 0"]
+    assert find([(0, byte) for byte in b"A" * 300 + b"\n"])[0].startswith("text 255 41 41")
+
+
+@needs_host
+def test_a_line_that_is_held_low_neither_runs_the_epoch_round_nor_fills_the_line_back() -> None:
+    cpp = robot_with_session()
+    sent = b"".join(cpp.step(now_ms, b"\0").sent for now_ms in range(10, 70_010))
+    told = [decoded(part) for part in sent.split(b"\0") if part]
+    assert {each.epoch for each in told if each} == {11}
+    assert {each.number for each in told if each} == {BY_NAME["STOPPED"].number}
+    assert 1000 < len(told) <= 70_000 // AGAIN_MS + 1, len(told)
+
+
+@needs_host
+def test_many_stops_that_nobody_has_looked_at_are_not_none() -> None:
+    cpp = robot_with_session()
+    for count in (1, 255, 256, 257, 512):
+        assert "STOP" in cpp.step(10, bytes(4 * count), is_late=True).did
+
+
+@needs_host
+@pytest.mark.parametrize("late_ms", [0, 300, 1500, 2900, 4000])
+@pytest.mark.parametrize(("piece_bytes", "gap_ms"), [(99, 0), (10, 0), (7, 1100), (45, 1100)])
+@pytest.mark.parametrize("before", [b"", b"> "], ids=["plain", "prompt"])
+def test_an_echo_of_everything_starts_no_endless_conversation(
+    late_ms: int, piece_bytes: int, gap_ms: int, before: bytes
+) -> None:
+    """A terminal or a radio module that sends back what it gets, whole and in pieces."""
+    cpp = cpp_link()
+    cpp.begin(kit=KIT)
+    under_way = [(0, b"F(2,80)\r\n")]
+    hints = 0
+    for now_ms in range(0, 60_000, 10):
+        came = b"".join(data for at, data in under_way if at == now_ms)
+        under_way = [each for each in under_way if each[0] > now_ms]
+        sent = cpp.step(now_ms, came).sent.replace(b"\0", b"")
+        hints += sent.count(b"use tsc.")
+        echo = before + sent if sent else b""
+        for k in range(-(-len(echo) // piece_bytes)):
+            piece = echo[k * piece_bytes : (k + 1) * piece_bytes]
+            under_way.append((now_ms + 10 + late_ms + k * gap_ms, piece))
+    assert hints == 1
+
+
+@needs_host
+def test_a_module_that_answers_each_line_gets_few_hints() -> None:
+    cpp = cpp_link()
+    cpp.begin(kit=KIT)
+    hints = [cpp.step(now_ms, b"ERROR:(0)\r\n").sent for now_ms in range(0, 60_000, 500)]
+    assert sum(bool(each) for each in hints) == 1
+
+
+@needs_host
+def test_a_slow_line_back_costs_no_answer() -> None:
+    """What comes before the last answer could be sent waits."""
+    cpp = robot_with_session()
+    data = b"".join(encoded(Frame(2, seq, 10)) for seq in (2, 3, 4))
+    sent = cpp.step(10, data, is_slow=True).sent
+    frames = [decoded(part) for part in sent.split(b"\0") if part]
+    assert [frame.seq for frame in frames if frame] == [2, 3, 4]
+
+
+@needs_host
+def test_a_robot_tells_only_who_listens() -> None:
+    cpp = cpp_link()
+    cpp.begin(kit=KIT)
+    assert cpp.happens("s", 1) and not cpp.step(0).sent  # nobody has said HELLO
+    cpp = robot_with_session()
+    assert cpp.happens("s", 1)
+    assert not cpp.happens("s", 2)  # the last one is not sent yet: it comes again
+    assert cpp.step(LISTEN_MS - 1).sent
+    cpp.step(LISTEN_MS)
+    assert cpp.happens("s", 3) and cpp.happens("s", 3)
+    cpp.happens("d")
+    assert not cpp.step(LISTEN_MS + 5).sent
+    cpp.happens("b")
+    assert cpp.step(LISTEN_MS + 10).sent  # that it was stopped it always tells

@@ -1,0 +1,380 @@
+"""The computer's session: retries, the heartbeat, the stop, and what a robot answers."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Any
+
+import pytest
+
+from tests.support.link_cases import KIT
+from tiniscript import compile_text, robots
+from tiniscript.bytecode.image import Image, pack, unpack
+from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
+from tiniscript.bytecode.verify import RULES
+from tiniscript.link import messages
+from tiniscript.link.connection import DEADLINE_MS, PendingRequest
+from tiniscript.link.frames import Frame, decoded, encoded
+from tiniscript.link.messages import (
+    BY_NAME,
+    BY_NUMBER,
+    STATUSES,
+)
+from tiniscript.link.outcomes import CANCELLED, LOST, TextEvent
+from tiniscript.link.payloads import ReceiptReply
+from tiniscript.link.requests import SHORT_BYTES
+from tiniscript.link.session import HEARTBEAT_MS, IDLE_HEARTBEAT_MS, Session
+from tiniscript.link.stop_sequence import CONFIRM_MS, STOP_MS
+
+FORWARD = bytes.fromhex("448c50")  # F(5,80)
+
+
+DESCRIPTION: dict[str, int | bytes] = {
+    "major": 1, "minor": 0, "isa_major": ISA_MAJOR, "isa_minor": ISA_MINOR, "kit": KIT,
+    "id": 7, "nonce": 8,
+    "largest": 63, "window": 1, "features": 0, "room": 389, "state": 0, "run": 0, "program": 0,
+    "length": 0, "slot": 0, "saved": 0, "fault": 0, "fault_at": 0, "fault_program": 0,
+    "reset": 1, "name": b"Tini",
+}  # fmt: skip
+
+
+def answer(sent: bytes, values: dict[str, int | bytes], status: int = 0, epoch: int = 10) -> bytes:
+    """Return a robot's answer to what a session has sent."""
+    frame = decoded(sent.strip(b"\0"))
+    assert frame
+    payload = bytes((status, 0, 0))
+    if not status:
+        payload = b"\0" + messages.written(messages.BY_NUMBER[frame.number].reply, values)
+    return encoded(Frame(frame.number, frame.seq, epoch, payload, is_reply=True))
+
+
+def event(name: str, seq: int, values: dict[str, int | bytes], epoch: int = 11) -> bytes:
+    message = BY_NAME[name]
+    payload = messages.written(message.reply, values)
+    return encoded(Frame(message.number, seq, epoch, payload, is_reply=True))
+
+
+def greeted(baud: int = 9600, now_ms: int = 0) -> Session:
+    """Return a session that has said HELLO."""
+    session = Session(1, baud, KIT)
+    session.hello()
+    session.receive(answer(session.poll(now_ms), {**DESCRIPTION}), now_ms)
+    assert session.robot and session.robot.name == "Tini" and session.robot.room == 389
+    return session
+
+
+def receipt(run: int, code: bytes = FORWARD) -> dict[str, int | bytes]:
+    checksum = unpack(pack("SI", 0, code)).checksum
+    return {"program": checksum, "run": run, "slot": 0, "saved": 1}
+
+
+def sending(session: Session, until_ms: int) -> list[tuple[int, bytes]]:
+    """Return what a session sends when it is woken exactly when it wants to be."""
+    found = []
+    while (at := session.wakes_at()) is not None and at <= until_ms:
+        data = session.poll(at)
+        if data:
+            found.append((at, data))
+        assert session.wakes_at() != at or session.wakes_at() is None, (
+            "it wants to be woken at once"
+        )
+    return found
+
+
+@pytest.mark.parametrize(("baud", "first"), [(9600, 200), (57600, 134), (115200, 127)])
+def test_times_of_retries_come_from_the_baud_rate(baud: int, first: int) -> None:
+    session = greeted(baud)
+    session.is_attached = False
+    request = session.live(FORWARD)
+    session.poll(0)
+    sent = sending(session, DEADLINE_MS)
+    times = [at for at, _ in sent]
+    # a byte more, the 0x00 before, from the second one on is no matter
+    assert abs(times[0] - first) <= 2
+    gaps = [later - earlier for earlier, later in pairwise(times)]
+    for k, gap in enumerate(gaps[:5]):
+        assert abs(gap - times[0] - 80 * (k + 1)) <= 2
+    assert set(gaps[5:]) == {gaps[5]}
+    assert len({data for _, data in sent}) == 1 and sent[0][1][:1] == b"\0"
+    assert len(sent) + 1 <= 30
+    sending(session, 2 * DEADLINE_MS)
+    assert request.outcome and request.outcome.status == LOST
+
+
+def test_a_session_that_waits_for_nothing_sleeps() -> None:
+    assert Session(1).wakes_at() is None
+    session = greeted()
+    session.is_attached = False
+    assert session.wakes_at() is None
+
+
+def test_the_heartbeat() -> None:
+    session = greeted()
+    assert session.wakes_at() == IDLE_HEARTBEAT_MS
+    session.live(FORWARD)
+    session.receive(answer(session.poll(5), receipt(1)), 5)
+    assert session.is_running and session.wakes_at() == 5 + HEARTBEAT_MS
+    data = session.poll(5 + HEARTBEAT_MS)
+    assert len(data) == 9
+    session.receive(answer(data, {"state": 1, "run": 1}), 300)
+    assert session.wakes_at() == 5 + 2 * HEARTBEAT_MS
+
+
+def test_a_robot_that_is_silent_is_lost() -> None:
+    session = greeted()
+    sent = sending(session, 10_000)
+    assert [each.name for each in session.events()] == ["LOST"]
+    assert all(IDLE_HEARTBEAT_MS <= at < IDLE_HEARTBEAT_MS + 3000 for at, _ in sent)
+    assert session.wakes_at() is None
+    request = session.live(FORWARD)  # begins with HELLO again
+    frame = decoded(session.poll(10_000).strip(b"\0"))
+    assert frame and frame.number == BY_NAME["HELLO"].number and not request.outcome
+
+
+def test_a_stop_cuts_everything_short() -> None:
+    session = greeted()
+    requests: list[PendingRequest[Any]] = [session.live(FORWARD), session.fetch()]
+    session.poll(0)
+    session.stop(3)
+    assert [request.outcome.status for request in requests if request.outcome] == [
+        CANCELLED,
+        CANCELLED,
+    ]
+    assert sending(session, 250) == [(3, bytes(8)), (103, bytes(8)), (203, bytes(8))]
+    session.receive(event("STOPPED", 0, {"cause": 1}), 260)
+    assert [each.name for each in session.events()] == ["STOPPED"]
+    assert session.is_latched and sending(session, 500) == []
+
+
+def test_a_stop_that_nobody_answers_is_told() -> None:
+    session = greeted()
+    session.stop(0)
+    sent = sending(session, 2 * DEADLINE_MS)
+    assert len(sent) == CONFIRM_MS // STOP_MS
+    assert [each.name for each in session.events()] == ["LOST"]
+
+
+def test_a_stop_that_nobody_answers_holds_up_others_for_a_few_seconds() -> None:
+    session = greeted()
+    session.stop(0)
+    early = session.ping()
+    sending(session, CONFIRM_MS)
+    assert early.outcome and early.outcome.status == LOST
+    late = session.ping()
+    data = session.poll(CONFIRM_MS + 1)
+    session.receive(answer(data, {"state": 0, "run": 0}), CONFIRM_MS + 2)
+    assert late.outcome and late.outcome.status == 0
+
+
+def test_what_came_before_a_stop_was_sent_confirms_nothing() -> None:
+    """The robot may have been started again since."""
+    session = greeted()
+    session.stop(3)
+    session.receive(event("STOPPED", 0, {"cause": 3}), 3)
+    assert session.poll(3) == bytes(8)
+    session.events()
+    session.receive(event("STOPPED", 1, {"cause": 1}, epoch=12), 30)
+    assert [each.name for each in session.events()] == ["STOPPED"]
+    assert sending(session, 500) == []
+
+
+def test_a_stop_that_is_confirmed_twice_ends_nothing_that_is_wanted_since() -> None:
+    """The radio was slow: two stop sequences were sent before the first was confirmed."""
+    session = greeted()
+    session.stop(0)
+    assert len(sending(session, 150)) == 2
+    session.receive(event("STOPPED", 0, {"cause": 1}), 160)
+    assert [each.name for each in session.events()] == ["STOPPED"]
+    requests: list[PendingRequest[Any]] = [session.clear(), session.live(FORWARD)]
+    session.poll(170)
+    session.receive(event("STOPPED", 1, {"cause": 1}), 180)
+    assert session.events() == []
+    assert [request.outcome for request in requests] == [None, None]
+    session.stop(200)
+    session.poll(200)
+    session.receive(event("STOPPED", 2, {"cause": 1}), 300)
+    assert [each.name for each in session.events()] == ["STOPPED"]
+    session.receive(event("STOPPED", 3, {"cause": 1}, epoch=12), 400)
+    assert [each.name for each in session.events()] == ["STOPPED"]
+
+
+def test_an_old_answer_is_none() -> None:
+    session = greeted()
+    first = session.live(FORWARD)
+    data = session.poll(0)
+    session.receive(answer(data, receipt(1)), 10)
+    assert first.outcome
+    second = session.live(FORWARD)
+    session.poll(20)
+    session.receive(answer(data, receipt(1)), 30)
+    assert second.outcome is None
+
+
+def test_a_program_that_is_done_before_its_receipt_does_not_run() -> None:
+    session = greeted()
+    session.live(FORWARD)
+    data = session.poll(0)
+    session.receive(event("DONE", 0, {"run": 1}, epoch=10), 10)
+    session.receive(answer(data, receipt(1)), 20)
+    assert not session.is_running
+
+
+def test_text_and_echoes_are_told() -> None:
+    session = greeted()
+    session.receive(b"OK+LOST\r\n\0" + encoded(Frame(2, 1, 1)), 5)
+    found = session.events()
+    assert [each.name for each in found] == ["TEXT", "ECHO"]
+    assert found[0] == TextEvent(b"OK+LOST")
+
+
+def test_what_a_newer_robot_sends_is_no_harm() -> None:
+    session = greeted()
+    for frame in (Frame(40, 0, 10, b"new", is_reply=True), Frame(35, 1, 10, b"", is_reply=True)):
+        session.receive(encoded(frame), 5)
+    request = session.ping()
+    data = session.poll(6)
+    sent = decoded(data.strip(b"\0"))
+    assert sent
+    session.receive(encoded(Frame(2, sent.seq, 10, b"", is_reply=True)), 7)
+    session.receive(encoded(Frame(2, sent.seq, 10, b"\0\1\1\1\1", is_reply=True)), 7)
+    assert request.outcome is None and session.damaged == 3
+    session.receive(answer(data, {"state": 0, "run": 0}), 8)
+    assert request.outcome
+
+
+def test_what_does_not_fit_is_not_sent() -> None:
+    image = unpack(pack("SI", 0, FORWARD))
+    cases: list[tuple[Image, int, int]] = [
+        (image._replace(isa=(ISA_MAJOR - 1, 0)), STATUSES["OTHER_MACHINE"], 256 * ISA_MAJOR),
+        (
+            image._replace(isa=(ISA_MAJOR, ISA_MINOR + 1)),
+            STATUSES["OTHER_MACHINE"],
+            256 * ISA_MAJOR + ISA_MINOR,
+        ),
+        (image._replace(code=bytes(390)), STATUSES["TOO_LARGE"], 389),
+        (image._replace(code=bytes(389), later=b"x"), STATUSES["TOO_LARGE"], 389),
+    ]
+    session = greeted()
+    for each, status, detail in cases:
+        request = session.upload(each)
+        assert session.poll(0) == b""
+        assert request.outcome and (request.outcome.status, request.outcome.detail) == (
+            status,
+            detail,
+        )
+    request = session.live(bytes(SHORT_BYTES + 1))
+    assert session.poll(0) == b""
+    assert request.outcome and request.outcome.status == STATUSES["TOO_LARGE"]
+
+
+Request = PendingRequest[ReceiptReply]
+
+
+def uploaded(image: Image, kit: int | None, is_refused: int = 0) -> tuple[list[str], Request]:
+    """Return what a session sends to bring an image, and the request; the robot takes it all."""
+    session = greeted()
+    request = session.upload(image, kit=kit)
+    names: list[str] = []
+    next_at = now_ms = 0
+    while request.outcome is None:
+        now_ms += 1000
+        data = session.poll(now_ms)
+        frame = decoded(data.strip(b"\0"))
+        assert frame
+        names.append(BY_NUMBER[frame.number].name)
+        values: dict[str, int | bytes] = {}
+        if names[-1] == "DATA":
+            next_at = len(frame.payload) - 2
+        if names[-1] in ("BEGIN", "DATA"):
+            values = {"next": next_at}
+        elif names[-1] == "HELLO":
+            values = DESCRIPTION
+        else:
+            values = {"program": image.checksum, "run": 1, "slot": 0, "saved": 1}
+        status = is_refused if names[-1] == "COMMIT" else 0
+        session.receive(answer(data, values, status), now_ms)
+    return names, request
+
+
+def test_what_uses_devices_goes_with_its_header_to_a_robot_of_another_kit() -> None:
+    """For a frame alone does not say which they are: the robot compares them."""
+    free, used = unpack(pack("SI", 0, FORWARD)), unpack(pack("SI", 7, b"\x38\x02"))
+    later = unpack(pack("SI", 0, FORWARD, b"later"))
+    in_pieces = ["BEGIN", "DATA", "COMMIT"]
+    for image, kit, expected in (
+        (free, KIT ^ 1, ["PROGRAM"]), (used, KIT, ["PROGRAM"]), (used, None, ["PROGRAM"]),
+        (used, KIT ^ 1, in_pieces), (used, 0, in_pieces), (later, KIT, in_pieces),
+    ):  # fmt: skip
+        names, request = uploaded(image, kit)
+        assert names == expected
+        assert request.outcome and request.outcome.status == 0
+    for refused in (STATUSES["WRONG_KIT"], RULES["NO_SUCH_DEVICE"][0]):
+        _, request = uploaded(used, KIT ^ 1, refused)
+        assert request.outcome and request.outcome.status == STATUSES["WRONG_KIT"]
+
+
+def test_a_receipt_for_another_program_is_no_success() -> None:
+    session = greeted()
+    request = session.upload(unpack(pack("SI", 0, FORWARD)))
+    session.receive(answer(session.poll(0), {**receipt(1), "program": 1}), 5)
+    assert request.outcome and request.outcome.status != 0
+
+
+def test_a_program_of_an_older_instruction_set_says_so() -> None:
+    """In one frame it could not: HELLO has named the one of our compiler."""
+    session = Session(1, kit=KIT, isa=(ISA_MAJOR, ISA_MINOR + 1))
+    session.hello()
+    session.receive(answer(session.poll(0), {**DESCRIPTION, "isa_minor": ISA_MINOR + 1}), 0)
+    session.upload(unpack(pack("SI", 0, FORWARD)))
+    frame = decoded(session.poll(0).strip(b"\0"))
+    assert frame and frame.number == BY_NAME["BEGIN"].number
+
+
+def test_a_busy_robot_is_asked_again_but_not_for_ever() -> None:
+    session = greeted()
+    request = session.upload(unpack(pack("SI", 0, FORWARD)))
+    now_ms = 0
+    while request.outcome is None and now_ms < 3 * DEADLINE_MS:
+        data = session.poll(now_ms)
+        if data:
+            session.receive(answer(data, {}, STATUSES["BUSY"]), now_ms)
+        now_ms += 10
+    assert request.outcome and request.outcome.status == STATUSES["BUSY"], (
+        "it answers: it is not lost"
+    )
+    assert now_ms <= DEADLINE_MS + 1000
+
+
+def test_a_robot_that_was_busy_and_then_falls_silent_is_lost() -> None:
+    session = greeted()
+    request = session.upload(unpack(pack("SI", 0, FORWARD)))
+    now_ms = 0
+    while request.outcome is None and now_ms < 3 * DEADLINE_MS:
+        data = session.poll(now_ms)
+        if data and now_ms < 1000:
+            session.receive(answer(data, {}, STATUSES["BUSY"]), now_ms)
+        now_ms += 10
+    assert request.outcome and request.outcome.status == LOST
+
+
+def test_a_stop_between_makes_what_waits_stale() -> None:
+    """The answer bears another epoch: what was wanted before is not wanted any more."""
+    session = Session(1, kit=KIT)
+    requests: list[PendingRequest[Any]] = [
+        session.hello(),
+        session.live(FORWARD),
+        session.live(FORWARD),
+    ]
+    session.receive(answer(session.poll(0), DESCRIPTION), 0)
+    assert requests[1].outcome is None  # HELLO begins an epoch, it ends none
+    session.receive(answer(session.poll(1), receipt(1), epoch=11), 1)
+    assert requests[1].outcome and requests[1].outcome.status == 0
+    assert requests[2].outcome and requests[2].outcome.status == STATUSES["STALE"]
+
+
+def test_a_short_program_takes_few_bytes() -> None:
+    compiled = compile_text("SI|F(5,80)", robots.load("tinibot").kit)
+    assert compiled.image
+    session = greeted()
+    session.upload(unpack(compiled.image))
+    assert len(session.poll(0)) == 13  # at most 14

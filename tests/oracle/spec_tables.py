@@ -1,0 +1,121 @@
+"""Reads the tables of `bytecode_spec.md`: what the oracles of the bytecode know of instructions.
+
+Knows how the page is written, and nothing of the package: a table that says too little, or
+something wrong, makes an oracle disagree.
+"""
+
+from __future__ import annotations
+
+import re
+from functools import lru_cache
+from pathlib import Path
+from typing import NamedTuple
+
+SPEC = Path(__file__).resolve().parent.parent.parent / "bytecode_spec.md"
+
+
+class Operand(NamedTuple):
+    """Its name, its kind, how many bytes it has, and its range."""
+
+    name: str
+    kind: str
+    size: int
+    low: int
+    high: int
+
+    def read(self, data: bytes) -> int:
+        """Numbers are little-endian; those whose range has negative ones have a sign."""
+        return int.from_bytes(data, "little", signed=self.low < 0)
+
+    @property
+    def is_distance(self) -> bool:
+        """Whether it says where to jump."""
+        return self.kind in ("fwd8", "fwd16", "back8", "back16")
+
+
+class Instruction(NamedTuple):
+    """A row of the table of instructions.
+
+    `stem` is the name of what it does: that of the instruction that it is a short or far form of.
+    A short one has its operand `implied` by its code: the kind, and the value.
+    """
+
+    name: str
+    stem: str
+    operands: tuple[Operand, ...]
+    implied: tuple[tuple[str, int], ...]
+    takes: int
+    leaves: int
+    role: str
+
+    @property
+    def size(self) -> int:
+        """How many bytes it has, its opcode included."""
+        return 1 + sum(operand.size for operand in self.operands)
+
+    def read(self, code: bytes, at: int) -> list[tuple[Operand, int]]:
+        """Return the operands with their values, where the instruction is at an offset."""
+        found = []
+        at += 1
+        for operand in self.operands:
+            found.append((operand, operand.read(code[at : at + operand.size])))
+            at += operand.size
+        return found
+
+    def values(self, code: bytes, at: int) -> list[int]:
+        """Return what is no distance of a jump: implied, or read."""
+        read = [value for operand, value in self.read(code, at) if not operand.is_distance]
+        return [value for _, value in self.implied] + read
+
+    def target(self, code: bytes, at: int) -> int:
+        """Return where it jumps, or the next offset."""
+        after = at + self.size
+        distances = [each for each in self.read(code, at) if each[0].is_distance]
+        return after + sum(-v if each.kind[:4] == "back" else v for each, v in distances)
+
+
+def rows(name: str) -> list[list[str]]:
+    """Return the cells of a generated table, without the backquotes around them."""
+    text = SPEC.read_text(encoding="utf-8")
+    begin, end = f"<!-- begin generated: {name} -->", f"<!-- end generated: {name} -->"
+    lines = text[text.index(begin) : text.index(end)].splitlines()[3:]
+    return [
+        [cell.strip().strip("`") for cell in re.split(r"(?<!\\)\|", line)[1:-1]] for line in lines
+    ]
+
+
+@lru_cache(maxsize=1)
+def instructions() -> dict[int, Instruction]:
+    """Return what the page says of each opcode."""
+    kinds = {}
+    for kind, size, bounds, *_ in rows("operands"):
+        low, high = bounds.split(" to ")
+        kinds[kind] = int(size), int(low), int(high)
+    role_of = {
+        name.strip("` "): role for role, names, *_ in rows("roles") for name in names.split(",")
+    }
+    written = {
+        int(code, 16): (words.split(), [len(side.split()) for side in picture.split("--")])
+        for code, words, picture, *_ in rows("instructions")
+    }
+    kind_of = {words[0]: _halves(words[1])[1] for words, _ in written.values() if words[1:]}
+    found = {}
+    for code, ((name, *operands), (takes, leaves)) in written.items():
+        made = tuple(Operand(*halves, *kinds[halves[1]]) for halves in map(_halves, operands))
+        short = re.fullmatch(r"(.+)_(\d+)", name)
+        stem = short[1] if short else name.removesuffix("_FAR")
+        implied = ((kind_of.get(stem, "u8"), int(short[2])),) if short else ()
+        role = role_of[name]
+        found[code] = Instruction(name, stem, made, implied, takes, leaves, role)
+    return found
+
+
+def _halves(word: str) -> tuple[str, str]:
+    label, _, kind = word.partition(":")
+    return label, kind
+
+
+@lru_cache(maxsize=1)
+def rule_numbers() -> dict[str, int]:
+    """Return the number of each rule of the verifier."""
+    return {rule: int(number) for number, rule, *_ in rows("rules")}

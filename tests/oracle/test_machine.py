@@ -1,0 +1,121 @@
+"""The machines agree with the one that is written from `bytecode_spec.md` alone.
+
+`python -m tests.oracle.test_machine 10000` runs more than the tests.
+"""
+
+from __future__ import annotations
+
+import argparse
+import random
+import time
+from collections.abc import Iterator
+
+import pytest
+
+from tests.machines import Senses
+from tests.machines.python import run_python
+from tests.oracle import machine, programs
+from tests.oracle.interpreter import Kit
+from tests.oracle.test_verifier import python as verdict
+from tests.support.images import image_for
+from tests.support.kits import KITS
+from tests.support.random_codes import random_codes
+from tiniscript import compile_text
+from tiniscript.vm.machine import Machine
+from tiniscript.vm.state import WAITING
+from tiniscript.vm.trace import Senses as Lists
+from tiniscript.vm.trace import TracedRobot
+
+MAX_MS, MAX_STEPS = 20_000, 5000
+
+
+def compare(code: bytes, number: int, readings: dict[str, list[int]], seed: int) -> str:
+    """Assert that both machines print the same; return the last line.
+
+    Where one of them gives up a loop that takes no time is not part of the meaning: then what both
+    have printed until then is the same.
+    """
+    theirs, kit = KITS[number]
+    senses = Senses(readings, MAX_MS, MAX_STEPS, seed)
+    ours = run_python(image_for(code, kit), kit, senses).splitlines()
+    said = machine.trace(code, theirs, readings, MAX_MS, seed, MAX_STEPS).splitlines()
+    if said[-1].endswith(machine.TOO_MANY) or (ours[-1] != said[-1] and "LIMIT" in ours[-1]):
+        both = min(len(ours), len(said)) - 1
+        ours, said = ours[:both], said[:both]
+    assert ours == said, f"{code.hex(' ')}, seed {seed}"
+    return said[-1].split(" ", 1)[1] if said else ""
+
+
+def codes(seed: int, count: int) -> Iterator[tuple[bytes, int, dict[str, list[int]], int]]:
+    """Yield random programs and random code that is accepted, each with a robot's readings."""
+    rng = random.Random(seed)
+    damaged = random_codes(seed, 10**9)
+    for number in range(count):
+        which = number % 2
+        theirs, kit = KITS[which]
+        sizes = len(kit.sensors), len(kit.actuators)
+        if rng.random() < 0.5:
+            code = compile_text(programs.program(rng, theirs), kit).code
+        else:
+            code = next(each for each in damaged if verdict(each, *sizes) == (0, 0))
+        yield code, which, dict(programs.senses(rng, theirs)), rng.randrange(1, 2**32)
+
+
+def test_traces() -> None:
+    endings = {compare(*each) for each in codes(1, 1500)}
+    assert {"DONE", "LIMIT", "FAULT OVERFLOW", "FAULT DIVIDE_BY_ZERO"} <= endings
+
+
+@pytest.mark.parametrize("seed", [1, 7, 2**31, 2**32 - 1])
+def test_random_numbers(seed: int) -> None:
+    text = "LOOP(50); SHOW(RANDOM(1, 6)); SHOW(RANDOM(100, -1000.5)); END_LOOP"
+    assert compare(compile_text(text, KITS[0][1]).code, 0, {}, seed) == "DONE"
+
+
+def late_trace(code: bytes, number: int, readings: dict[str, list[int]], seed: int) -> list[str]:
+    """Return what Python's machine prints where each call after a wait comes late."""
+    kit = KITS[number][1]
+    lists = {k: readings.get(each.name, ()) for k, each in enumerate(kit.sensors)}
+    robot = TracedRobot(kit, Lists(kit, lists))
+    runs = Machine(code, robot, len(kit.sensors), seed)
+    waited = 0
+    while runs.tick(robot.now_ms, MAX_STEPS) == WAITING and runs.wake_ms <= MAX_MS:
+        waited += 1
+        robot.now_ms = max(robot.now_ms, runs.wake_ms) + late(waited)
+    return [str(event) for event in robot.events]
+
+
+def late(waited: int) -> int:
+    """From 0 to 40 ms: up to 20 of them a program's own clock catches up."""
+    return waited * 7 % 41
+
+
+def test_late_calls() -> None:
+    lines = 0
+    for code, number, readings, seed in codes(2, 500):
+        ours = late_trace(code, number, readings, seed)
+        theirs = KITS[number][0]
+        said = machine.trace(code, theirs, readings, MAX_MS, seed, MAX_STEPS, late).splitlines()
+        assert said[: len(ours)] == ours or said[:-1] == ours[: len(said) - 1], code.hex(" ")
+        lines += min(len(ours), len(said) - 1)
+    assert lines > 5000
+
+
+def test_the_kits_are_those_of_the_other_oracle() -> None:
+    assert all(isinstance(theirs, Kit) for theirs, _ in KITS)
+
+
+def campaign(count: int) -> None:
+    begun = time.monotonic()
+    for done, each in enumerate(codes(5000, count), 1):
+        compare(*each)
+        if done % 1000 == 0:
+            print(
+                f"{done} runs agree, {done / (time.monotonic() - begun):.0f} a second", flush=True
+            )
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("count", nargs="?", type=int, default=10_000)
+    campaign(parser.parse_args().count)

@@ -1,0 +1,158 @@
+"""The verifiers agree with the one that is written from `bytecode_spec.md` alone.
+
+`python -m tests.oracle.test_verifier 100000` compares more codes than the tests: random ones,
+programs that are damaged, and all of one or two bytes.
+"""
+
+from __future__ import annotations
+
+import argparse
+import ast
+import random
+import time
+from collections.abc import Iterable, Iterator
+from itertools import product
+
+import pytest
+
+from tests.machines.host import host, missing
+from tests.oracle import spec_tables, verifier
+from tests.support.casefile import ROOT, Case, all_cases
+from tests.support.random_codes import random_codes
+from tiniscript import compile_text
+from tiniscript.bytecode.disassembly import read_listing
+from tiniscript.bytecode.opcodes import ROLES
+from tiniscript.bytecode.verify import RULES, Refused, verify
+from tiniscript.robots import DEFAULT, load
+
+SENSORS, ACTUATORS = 3, 2
+
+
+def python(code: bytes, sensors: int = SENSORS, actuators: int = ACTUATORS) -> verifier.Verdict:
+    try:
+        verify(code, sensors, actuators)
+    except Refused as refused:
+        return refused.number, refused.offset
+    return 0, 0
+
+
+def compare(codes: Iterable[bytes], sensors: int = SENSORS, actuators: int = ACTUATORS) -> set[int]:
+    """Assert that all verifiers say the same of each code; return the rules that were broken."""
+    codes = list(codes)
+    said = [verifier.verdict(code, sensors, actuators) for code in codes]
+    for code, verdict in zip(codes, said, strict=True):
+        ours = python(code, sensors, actuators)
+        assert ours == verdict, f"{code.hex(' ')}: Python says {ours}, the page {verdict}"
+    if not missing():
+        theirs = host().verdicts(codes, sensors, actuators)
+        for code, verdict, (rule, offset) in zip(codes, said, theirs, strict=True):
+            ours = rule, offset if rule else 0  # of accepted code, the offset is its length
+            assert ours == verdict, f"{code.hex(' ')}: C++ says {ours}, the page {verdict}"
+    return {rule for rule, _ in said}
+
+
+def every_program() -> list[bytes]:
+    """Return the code of all programs in cases and documents that compile for the usual robot."""
+    kit = load(DEFAULT).kit
+    texts = [case.parts["tiniscript"] for case in all_cases() if "tiniscript" in case.parts]
+    compiled = [compile_text(text, kit) for text in texts]
+    return [each.code for each in compiled if each.is_right and each.code]
+
+
+def damaged(programs: list[bytes], seed: int, count: int) -> Iterator[bytes]:
+    """Yield programs with one to three bytes that are changed, lost, doubled or cut off."""
+    rng = random.Random(seed)
+    for _ in range(count):
+        code = bytearray(rng.choice(programs))
+        for _ in range(rng.choice((1, 1, 2, 3))):
+            at = rng.randrange(len(code)) if code else 0
+            kind = rng.randrange(6)
+            if kind == 0:
+                del code[at : at + 1]
+            elif kind == 1:
+                code[at:at] = code[at : at + 1]
+            elif kind == 2 and rng.random() < 0.2:
+                del code[at:]
+            elif code:
+                code[at] = rng.choice((code[at] ^ 1 << rng.randrange(8), rng.randrange(256)))
+        yield bytes(code)
+
+
+def listings() -> list[pytest.ParameterSet]:
+    found = [case for case in all_cases() if "bytecode" in case.parts]
+    return [pytest.param(case, id=case.id) for case in found if "senses" not in case.parts]
+
+
+@pytest.mark.parametrize("case", listings())
+def test_listing_and_its_beginnings(case: Case) -> None:
+    code = read_listing(case.parts["bytecode"])
+    for actuators in (0, ACTUATORS):
+        compare([code[:length] for length in range(len(code) + 1)], SENSORS, actuators)
+
+
+def test_codes_of_up_to_two_bytes() -> None:
+    compare(bytes(each) for size in range(3) for each in product(range(256), repeat=size))
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_random_codes_break_every_rule(seed: int) -> None:
+    broken = compare(random_codes(1000 + seed, 5000))
+    assert broken == {0, *(number for number, _ in RULES.values())} - {RULES["CODE_LENGTH"][0]}
+
+
+def test_damaged_programs() -> None:
+    programs = every_program()
+    assert len(programs) > 100
+    assert compare(programs) == {0}
+    assert len(compare(damaged(programs, 1, 5000))) > 15
+
+
+def test_the_steps_name_every_rule_and_every_role() -> None:
+    text = spec_tables.SPEC.read_text(encoding="utf-8")
+    steps = text[text.index("A verifier remembers") : text.index("The roles of instructions:")]
+    assert {rule for rule in RULES if rule in steps} == set(RULES)
+    assert {role for role in ROLES if f"`{role}`" in steps} == set(ROLES)
+
+
+def test_code_may_be_as_long_as_the_limit() -> None:
+    stop = next(code for code, row in spec_tables.instructions().items() if row.name == "STOP")
+    assert [verifier.verdict(bytes([stop]) * length, 0, 0) for length in (32767, 32768)] == [
+        (0, 0),
+        (RULES["CODE_LENGTH"][0], 0),
+    ]
+
+
+@pytest.mark.parametrize("name", ["spec_tables", "verifier", "arithmetic", "machine"])
+def test_it_knows_nothing_of_the_package(name: str) -> None:
+    text = (ROOT / "tests" / "oracle" / f"{name}.py").read_text(encoding="utf-8")
+    imported = {
+        alias.name if isinstance(node, ast.Import) else str(node.module)
+        for node in ast.walk(ast.parse(text))
+        if isinstance(node, (ast.Import, ast.ImportFrom))
+        for alias in node.names
+    }
+    assert not {each for each in imported if each.startswith("tiniscript")}
+    others = {each for each in imported if each.startswith("tests")}
+    assert others <= {f"tests.oracle.{each}" for each in ("spec_tables", "arithmetic", "text")}
+
+
+# -- a campaign ---------------------------------------------------------------------------------
+
+
+def campaign(count: int) -> None:
+    begun = time.monotonic()
+    programs = every_program()
+    rules: set[int] = set()
+    batch = 10_000
+    for seed in range(2000, 2000 + -(-count // (2 * batch))):
+        for codes in (random_codes(seed, batch), damaged(programs, seed, batch)):
+            rules |= compare(codes)
+        done = (seed - 1999) * 2 * batch
+        print(f"{done} codes agree, {done / (time.monotonic() - begun):.0f} a second", flush=True)
+    print(f"{len(rules - {0})} rules were broken")
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("count", nargs="?", type=int, default=100_000)
+    campaign(parser.parse_args().count)

@@ -1,0 +1,25 @@
+"""The code of the documents' programs stays small."""
+
+from __future__ import annotations
+
+from tiniscript import compile_text, robots
+from tools.bench import code_size
+from tools.bench.compiler import PROGRAMS
+
+
+def test_a_statement_takes_a_fifth_less_than_in_instruction_set_1() -> None:
+    found = code_size.measured()
+    assert found.programs >= 50
+    assert found.per_statement <= 0.8 * code_size.BEFORE / code_size.STATEMENTS
+
+
+def test_the_papers_programs() -> None:
+    kit = robots.load(robots.DEFAULT).kit
+    assert [len(compile_text(text, kit).code) for text in PROGRAMS] == [3, 7, 14]
+
+
+def test_the_programs_of_the_documents_use_what_the_set_has_for_them() -> None:
+    """A family that no program of the documents needs would not be worth its codes."""
+    families = {name.rpartition("_")[0] for name in code_size.measured().opcodes}
+    short = {"PUSH_NUM", "PUSH_VAR", "SET_VAR", "PUSH_SENSOR", "PUSH_READ", "READ", "SET"}
+    assert short | {"IF8", "UNTIL8", "UNTIL16", "IF_VAR8"} <= families

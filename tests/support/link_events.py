@@ -1,0 +1,29 @@
+"""Events of a robot, for tests that need one of a kind and not what is in it."""
+
+from __future__ import annotations
+
+from tiniscript.link.outcomes import EndedEvent, Event, LostEvent, StartedEvent
+from tiniscript.link.payloads import (
+    DoneEvent,
+    FaultEvent,
+    ShowEvent,
+    StatusReply,
+    StoppedEvent,
+)
+
+QUIET = StatusReply(*[0] * len(StatusReply._fields))  # of an idle robot that has done nothing
+
+EVENTS: tuple[Event, ...] = (
+    ShowEvent(7, 0),
+    FaultEvent(1, 2, 0, 0),
+    StoppedEvent(1),
+    DoneEvent(1),
+    LostEvent(),
+    StartedEvent(1, 1),
+    EndedEvent(QUIET),
+)
+
+
+def event(name: str) -> Event:
+    """Return an event of this name."""
+    return next(each for each in EVENTS if each.name == name)

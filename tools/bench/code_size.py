@@ -1,0 +1,99 @@
+"""Measures how many bytes of code the programs of the documents and of `examples/` take.
+
+The corpus is each program in a fence `tiniscript` of README.md, bytecode_spec.md and docs/ that
+compiles, each text once, and the files of `examples/`; for the robot that its fence `senses` names,
+else for the first shipped one that it compiles for. A statement is one of the IR: an arm of an IF
+is part of the IF, END_... is none, and a DEF is one. `--opcodes` also says how often each
+instruction occurs.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections import Counter
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
+
+from tests.support.casefile import documents, read
+from tiniscript import Compiled, compile_text, robots
+from tiniscript.bytecode.disassembly import rows
+from tiniscript.semantics.ir import walk
+
+CASES = ROOT / "tests" / "cases"
+BEFORE = 1066  # bytes of the same programs in the instruction set 1.0
+STATEMENTS = 259  # that they had when BEFORE was measured
+
+
+class Measured(NamedTuple):
+    programs: int
+    statements: int
+    code_bytes: int
+    opcodes: Counter[str]
+
+    @property
+    def per_statement(self) -> float:
+        return self.code_bytes / self.statements
+
+
+def corpus() -> Iterator[Compiled]:
+    """Yield the compiled programs of the documents and examples."""
+    found: dict[str, str] = {}  # the robot, or nothing, of each text
+    for path in documents():
+        if CASES not in path.parents:
+            for case in read(path):
+                if "tiniscript" in case.parts:
+                    found.setdefault(case.parts["tiniscript"], _robot_of(case.parts))
+    for path in sorted((ROOT / "examples").glob("*.ts")):
+        found.setdefault(path.read_text(encoding="utf-8"), "")
+    for text, robot in found.items():
+        for name in [robot] if robot else [robots.DEFAULT, *robots.names()]:
+            compiled = compile_text(text, robots.load(name).kit)
+            if compiled.is_right:
+                yield compiled
+                break
+
+
+def _robot_of(parts: dict[str, str]) -> str:
+    for row in parts.get("senses", "").splitlines():
+        word, _, value = (part.strip() for part in row.partition("="))
+        if word == "robot":
+            return value
+    return ""
+
+
+def measured() -> Measured:
+    programs = statements = code_bytes = 0
+    opcodes: Counter[str] = Counter()
+    for compiled in corpus():
+        assert compiled.program is not None
+        procedures = [each.body for each in compiled.program.procedures]
+        programs += 1
+        statements += len(procedures)
+        statements += sum(1 for body in (compiled.program.body, *procedures) for _ in walk(body))
+        code_bytes += len(compiled.code)
+        opcodes.update(row.op.name for row in rows(compiled.code) if row.op)
+    return Measured(programs, statements, code_bytes, opcodes)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description="Measure the code of the documents' programs.")
+    parser.add_argument("--opcodes", action="store_true", help="say how often each one occurs")
+    with_opcodes: bool = parser.parse_args().opcodes
+    found = measured()
+    print(
+        f"{found.programs} programs, {found.statements} statements, {found.code_bytes} code_bytes: "
+        f"{found.per_statement:.2f} bytes a statement"
+    )
+    print(f"in instruction set 1.0: {BEFORE} code_bytes, {BEFORE / STATEMENTS:.2f} a statement")
+    if with_opcodes:
+        for name, count in found.opcodes.most_common():
+            print(f"{count:5}  {name}")
+
+
+if __name__ == "__main__":
+    main()

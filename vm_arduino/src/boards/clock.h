@@ -1,0 +1,37 @@
+// The clock: milliseconds and microseconds from timer 0, which also makes PWM.
+//
+// Replaces `init`, `millis` and `micros` of the Arduino core, as far as a robot needs them, in less
+// flash and with a shorter interrupt. So this folder has its own `main`, which calls `setup` and
+// `loop` as the core's does.
+
+#ifndef TINISCRIPT_BOARDS_CLOCK_H_
+#define TINISCRIPT_BOARDS_CLOCK_H_
+
+#include <stdint.h>
+
+#include "pins.h"
+
+namespace tiniscript {
+
+// The state of the clock. The interrupt of timer 0 advances it every 1.024 ms, sometimes by 2 ms.
+struct Clock {
+  uint32_t now_ms;
+  uint8_t turns;       // overflows of the timer
+  uint8_t fraction;    // in 125ths of a millisecond
+  uint8_t silence_ms;  // approximate time since the main loop last fed the watchdog
+};
+
+extern volatile Clock clock;
+
+uint32_t clock_ms();
+
+// The lowest 8 bits, read with one instruction; the lowest 16, for callers with interrupts off.
+tini_always_inline uint8_t clock_8_ms() { return static_cast<uint8_t>(clock.now_ms); }
+tini_always_inline uint16_t clock_16_ms() { return static_cast<uint16_t>(clock.now_ms); }
+
+// Microseconds in steps of 4; they wrap around after 65 ms.
+uint16_t clock_us();
+
+}  // namespace tiniscript
+
+#endif  // TINISCRIPT_BOARDS_CLOCK_H_

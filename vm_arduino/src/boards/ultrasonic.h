@@ -1,0 +1,38 @@
+// HC-SR04: measures distance without waiting for the echo.
+//
+// Pings of all sensors are at least 30 ms apart, so that a late echo is not taken for the next one.
+// A reading is valid for 60 ms from its ping on.
+
+#ifndef TINISCRIPT_BOARDS_ULTRASONIC_H_
+#define TINISCRIPT_BOARDS_ULTRASONIC_H_
+
+#include <stdint.h>
+
+#include "pins.h"
+
+namespace tiniscript {
+
+// A sensor. Groups 0 to 2 are pin-change interrupts, group 3 the external ones; `interrupt` is the
+// bit in the group's mask.
+struct Ultrasonic {
+  Pin trigger;
+  Pin echo;
+  uint8_t group;
+  uint8_t interrupt;
+};
+
+// Puts thousandths of a centimetre into `*distance` and returns true if there is an echo; without
+// one in 25 ms it is 400 cm, the end of the range. Returns false otherwise: ask again. While no
+// ping may be sent, returns the last reading again if it is fresh. The robot's header says how each
+// `number` is wired.
+bool ultrasonic_read(uint8_t number, int32_t* distance);
+
+// Call it at least every 30 ms: the spacing of pings is timed with a clock that wraps at 65 ms.
+void ultrasonic_tick();
+
+// Discards readings and the measurement that is under way.
+void ultrasonic_forget();
+
+}  // namespace tiniscript
+
+#endif  // TINISCRIPT_BOARDS_ULTRASONIC_H_

@@ -1,0 +1,218 @@
+// Program transfer: the link checks, verifies, stores and starts a program.
+//
+// A program that runs once is prepared before its frame has ended, so that it starts at once.
+
+#include "../vm/crc32.h"
+#include "../vm/image.h"
+#include "../vm/small.h"
+#include "../vm/verify.h"
+#include "../vm/vm.h"
+#include "link.h"
+#include "port.h"
+
+namespace tiniscript {
+
+namespace {
+
+constexpr uint16_t kIsa = kIsaMajor << 8 | kIsaMinor;
+constexpr uint8_t kFirstAt = kIsaMajorAt;  // first header byte that BEGIN carries
+constexpr uint8_t kLiveByte = static_cast<uint8_t>(Message::kLive);
+constexpr uint8_t kIsFine = static_cast<uint8_t>(Answer::kOk);
+
+uint8_t number_of(Answer answer) { return static_cast<uint8_t>(answer); }
+
+bool is_latched() { return port_status().state >= State::kStopped; }
+
+bool may_start(uint8_t mode) { return (mode & (kRun | kStartBits)) != kRun || !is_latched(); }
+
+// Whether the robot may run the code; with `is_bare`, whether a robot without any device may.
+tini_noinline Verdict verified(const uint8_t* code, uint16_t length, bool is_bare,
+                               uint16_t* devices) {
+  const DeviceInfo& device_info = port_device_info();
+  const uint8_t sensors = is_bare ? 0 : device_info.sensors;
+  return verify(code, length, sensors, is_bare ? 0 : device_info.actuators, devices);
+}
+
+// Returns the end of an image whose header begins with the instruction set.
+uint16_t end_of(const uint8_t* header) {
+  return static_cast<uint16_t>(header[kHeaderLengthAt - kFirstAt] +
+                               get16(header + kCodeLengthAt - kFirstAt));
+}
+
+}  // namespace
+
+// Called when the payload of a frame has arrived, assuming that the frame ends at the next zero.
+// Makes and verifies the image of LIVE. Nothing is reported or started yet, because the frame may
+// turn out to be damaged or longer.
+tini_noinline void Link::prepare() {
+  uint8_t* const bytes = receiver_->bytes();
+  const uint8_t end = check_.decode(bytes);  // below 0 it is very large
+  if (end == ahead_ || end <= kPayloadAt || end > kLargestFrame || bytes[kTypeAt] != kLiveByte ||
+      due_ != 0 || !is_open_ || !port_may_prepare()) {
+    return;
+  }
+  ahead_ = end;
+  is_ready_ =
+      fill(Use::kAhead, bytes + kPayloadAt, static_cast<uint8_t>(end - kPayloadAt)) == kIsFine;
+}
+
+// Runs the image that was made ahead. False: this frame does not allow it.
+bool Link::go_live() {
+  const uint8_t* const bytes = receiver_->bytes();
+  if (!check_.is_whole() || !is_next(bytes[kSeqAt], bytes[kEpochAt]) || is_latched() ||
+      port_make_way(true) != Answer::kOk) {
+    return false;
+  }
+  quiet_ms_ = 0;
+  said_.number = kLiveByte;
+  said_.seq = bytes[kSeqAt];
+  said_.status = kIsFine;
+  last_ = said_;
+  last_epoch_ = epoch_;
+  unsealed_ = made_;
+  finish(kRun, true);
+  return true;
+}
+
+// Refuses, with a reason and its detail.
+uint8_t Link::refuse(Answer answer, uint16_t detail) {
+  said_.detail = detail;
+  return number_of(answer);
+}
+
+// Whether the robot may take a program at all. `header` is part of the image header, from the
+// instruction set on.
+uint8_t Link::allow(uint8_t mode, const uint8_t* header) {
+  if (header[kIsaMajorAt - kFirstAt] != kIsaMajor || header[kIsaMinorAt - kFirstAt] > kIsaMinor) {
+    return refuse(Answer::kOtherMachine, kIsa);
+  }
+  const uint8_t start_mode = mode & kStartBits;
+  if (header[kHeaderLengthAt - kFirstAt] < kHeaderBytes ||
+      header[kStartAt - kFirstAt] != start_mode || start_mode >= kStartPing ||
+      (mode & ~(kStartBits | kRun | kSave | kDetached)) != 0) {
+    return refuse(Answer::kBadValue, 0);
+  }
+  if (!may_start(mode)) return refuse(Answer::kLatched, 0);
+  return kIsFine;
+}
+
+// Begins an image. A refusal leaves the image before intact.
+uint8_t Link::make_room(Use use, const uint8_t* header) {
+  const bool is_live = use != Use::kStored;
+  const uint16_t length = end_of(header);
+  const bool is_possible = get16(header + kCodeLengthAt - kFirstAt) <= kCodeBytes;
+  uint8_t* const image = is_possible ? port_memory(length, is_live) : nullptr;
+  if (image == nullptr) return refuse(Answer::kTooLarge, port_room());
+  if (use != Use::kAhead) {
+    const Answer way = port_make_way(is_live);
+    if (way != Answer::kOk) return refuse(way, 0);
+  }
+  made_ = image;
+  image[kMagicAt] = 'T';
+  image[kMagicAt + 1] = 'S';
+  copy_bytes(header, image + kFirstAt, kChecksumAt - kFirstAt);
+  uint8_t* const end = image + length;
+  for (uint8_t k = 0; k < kEndBytes; k++) end[k] = static_cast<uint8_t>(Op::kEnd);
+  return kIsFine;
+}
+
+// Makes and verifies an image from the payload of LIVE or PROGRAM.
+tini_noinline uint8_t Link::fill(Use use, const uint8_t* payload, uint8_t length) {
+  const uint8_t mode = payload[kProgramModeAt];
+  const uint8_t* const code = payload + kProgramCodeAt;
+  length = static_cast<uint8_t>(length - kProgramCodeAt);
+  if (use != Use::kStored && mode != kRun) return refuse(Answer::kBadValue, 0);
+  uint8_t header[kChecksumAt - kFirstAt] = {
+      isa_[0], isa_[1], static_cast<uint8_t>(mode & kStartBits), kHeaderBytes, 0, 0, length, 0};
+  const uint8_t refusal = allow(mode, header);
+  if (refusal != kIsFine) return refusal;
+
+  // A program that needs no device fits any kit.
+  uint16_t devices;
+  const Verdict verdict = verified(code, length, is_other_kit_, &devices);
+  if (verdict.rule == Rule::kNoSuchDevice && is_other_kit_) {
+    return refuse(Answer::kWrongKit, port_identity().kit);
+  }
+  if (verdict.rule != Rule::kNone) return refuse(static_cast<Answer>(verdict.rule), verdict.offset);
+  header[kDevicesAt - kFirstAt] = static_cast<uint8_t>(devices);
+  header[kDevicesAt - kFirstAt + 1] = static_cast<uint8_t>(devices >> 8);
+  const uint8_t found = make_room(use, header);
+  if (found != kIsFine) return found;
+  made_[kNeedsAt] = kNeeds;
+  copy_bytes(code, made_ + kHeaderBytes, length);
+  return kIsFine;
+}
+
+// Takes a whole program in one frame.
+uint8_t Link::take_short(bool is_live, const uint8_t* payload, uint8_t length) {
+  const uint8_t refusal = fill(is_live ? Use::kLive : Use::kStored, payload, length);
+  if (refusal != kIsFine) return refusal;
+  unsealed_ = made_;
+  finish(payload[kProgramModeAt], is_live);
+  return kIsFine;
+}
+
+uint8_t Link::begin_program(const uint8_t* payload) {
+  const uint8_t mode = payload[kBeginModeAt];
+  const uint8_t* const header = payload + kBeginIsaMajorAt;
+  uint8_t refusal = allow(mode, header);
+  if (refusal == kIsFine) refusal = make_room(Use::kStored, header);
+  if (refusal != kIsFine) return refusal;
+  image_ = made_;
+  mode_ = mode;
+  length_ = static_cast<uint16_t>(end_of(header) - kBehindChecksum);
+  next_ = 0;
+  port_forget();
+  return kIsFine;
+}
+
+uint8_t Link::add_data(const uint8_t* payload, uint8_t length) {
+  length = static_cast<uint8_t>(length - kDataBytesAt);
+  if (image_ == nullptr) return refuse(Answer::kNotBegun, 0);
+  if (get16(payload + kDataOffsetAt) != next_) return kIsFine;  // the reply says where to continue
+  if (length > length_ - next_) return refuse(Answer::kBadLength, 0);
+  copy_bytes(payload + kDataBytesAt, image_ + kBehindChecksum + next_, length);
+  next_ = static_cast<uint16_t>(next_ + length);
+  return kIsFine;
+}
+
+uint8_t Link::commit(const uint8_t* payload) {
+  uint8_t* const image = image_;
+  if (image == nullptr) return refuse(Answer::kNotBegun, 0);
+  if (next_ != length_) return refuse(Answer::kIncomplete, next_);
+  image_ = nullptr;
+  put_checksum(image);
+  if (!same_bytes(&checksum_, payload + kCommitChecksumAt)) {
+    return static_cast<uint8_t>(Refusal::kDamaged);
+  }
+  if (image[kNeedsAt] != kNeeds) return static_cast<uint8_t>(Refusal::kUnknownNeeds);
+  uint16_t devices;
+  const Verdict verdict =
+      verified(image + image[kHeaderLengthAt], get16(image + kCodeLengthAt), false, &devices);
+  if (verdict.rule != Rule::kNone) return refuse(static_cast<Answer>(verdict.rule), verdict.offset);
+  if (devices != get16(image + kDevicesAt)) return refuse(Answer::kWrongKit, port_identity().kit);
+  finish(mode_, false);
+  port_seal(image);
+  return kIsFine;
+}
+
+// Writes the checksum into the otherwise complete image.
+void Link::put_checksum(uint8_t* image) {
+  checksum_ = crc32(crc32(0, image, kChecksumAt), image + kBehindChecksum,
+                    static_cast<uint16_t>(end_of(image + kFirstAt) - kBehindChecksum));
+  copy_bytes(&checksum_, image + kChecksumAt, sizeof checksum_);
+}
+
+// The image in memory is verified and complete except for its checksum.
+void Link::finish(uint8_t mode, bool is_live) {
+  image_ = nullptr;
+  port_take(mode, is_live);
+  if ((mode & (kRun | kStartBits)) == kRun) start(mode, is_live);
+}
+
+void Link::start(uint8_t mode, bool is_live) {
+  port_start(is_live);
+  is_tethered_ = (mode & kDetached) == 0;
+}
+
+}  // namespace tiniscript

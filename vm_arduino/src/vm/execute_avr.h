@@ -1,0 +1,26 @@
+// The memory layout of a machine for `execute_avr.S`. `vm_instructions.cpp` asserts every offset.
+
+#ifndef TINISCRIPT_VM_EXECUTE_AVR_H_
+#define TINISCRIPT_VM_EXECUTE_AVR_H_
+
+// The bit of GPIOR0 that interrupts set: `boards/attention.h`.
+#define tini_attention_bit 0
+
+// in a Machine
+#define tini_fault_at 1
+#define tini_sensors_at 2
+#define tini_at_at 3
+#define tini_left_at 5
+#define tini_length_at 6
+#define tini_code_at 8
+#define tini_readings_at 10
+#define tini_pc_at 16
+#define tini_depth_at 18
+#define tini_looped_at 19
+#define tini_called_at 20
+#define tini_variables_at 49
+#define tini_stack_at 177
+#define tini_counters_at 245
+#define tini_calls_at 309
+
+#endif  // TINISCRIPT_VM_EXECUTE_AVR_H_

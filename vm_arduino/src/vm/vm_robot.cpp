@@ -1,0 +1,133 @@
+// Instructions that use the robot, the clock or random numbers: the same on every chip.
+
+#include "../robot.h"
+#include "number.h"
+#include "shape.h"
+#include "small.h"
+#include "vm.h"
+
+namespace tiniscript {
+
+namespace {
+
+int8_t signed8(uint8_t operand) { return static_cast<int8_t>(operand); }
+
+// Milliseconds of an operand of the kind time8: hundredths of a second, tenths, whole ones.
+uint32_t time8(uint8_t time) {
+  if (time < 100) return static_cast<uint16_t>(time * 10);
+  if (time < 200) return static_cast<uint16_t>((time - 90) * 100);
+  return static_cast<uint8_t>(time - 189) * uint32_t{1000};
+}
+
+// Milliseconds: a time in thousandths of a second, not below 0.
+uint32_t duration(int32_t time) { return time < 0 ? 0 : static_cast<uint32_t>(time); }
+
+// Returns `value` limited to `low` to `high`.
+tini_noinline int16_t limited(int32_t value, int16_t low, int16_t high) {
+  const int16_t part = static_cast<int16_t>(value);
+  if (part != value) return value < 0 ? low : high;
+  return part < low ? low : part > high ? high : part;
+}
+
+// A power in percent, from `low` to 100.
+tini_noinline int8_t percent(int32_t power, int8_t low) {
+  return static_cast<int8_t>(limited(whole(power), low, 100));
+}
+
+}  // namespace
+
+// Takes a reading. Returns false if the robot is not ready or has no such sensor.
+bool Machine::sense(uint8_t number) {
+  if (number >= sensors_) return fail();
+  return robot_read(number, readings_ + number);
+}
+
+// Keeps the powers of a move. The last two bits of its code are the direction: F, B, L, R.
+tini_noinline void Machine::powers(uint8_t code, int8_t power) {
+  const uint8_t way = code & 3;
+  const int8_t reversed = static_cast<int8_t>(-power);
+  task_.left = way == 1 || way == 2 ? reversed : power;
+  task_.right = way == 1 || way == 3 ? reversed : power;
+}
+
+// Keeps the move or wait that an UNTIL watches; its check begins after this instruction.
+tini_noinline bool Machine::watch(uint32_t move_ms, bool drives) {
+  task_.move_ms = move_ms;
+  task_.drives = drives;
+  task_.is_watching = false;
+  task_.check = task_.pc;
+  return true;
+}
+
+// Executes the instruction `code` at `bytes`, which lies before `task_.pc`; `top` points to the top
+// of the stack. Returns whether the next instruction may run now.
+//
+// A time is the first value that an instruction takes, a power the last one; without values they
+// are its first and last operand. Both are read before the switch, which takes half as much flash.
+bool Machine::act(uint8_t code, const uint8_t* bytes, int32_t* top) {
+  const Shape shape = shape_of(code);
+  const Family family = shape.family;
+  // The check of an UNTIL may contain these; its move is unchanged.
+  if (family == Family::kTime) {
+    *top = static_cast<int32_t>(now_ms_ - task_.started_ms);
+    return !task_.is_late || goes_on(Fault::kOverflow);
+  }
+  if (family == Family::kRandom) {
+    task_.random = next_random(task_.random);
+    return goes_on(random_between(top - 1, task_.random));
+  }
+  const bool takes = shape.pops() != 0;
+  const uint8_t first = shape.size() == 1 ? static_cast<uint8_t>(code % kShorts) : bytes[1];
+  const int8_t low = family == Family::kMotors ? -100 : 0;
+  const int8_t power = takes ? percent(*top, low) : signed8(bytes[shape.size() - 1]);
+  uint32_t time_ms = takes ? duration(shape.pops() == 1 ? *top : top[-1]) : time8(first);
+  switch (family) {
+    case Family::kShow:
+      return robot_show(*top, false) || stay();
+    case Family::kShowYesNo:
+      return robot_show(*top != 0 ? 1 : 0, true) || stay();
+    case Family::kSet:
+      robot_set(first, *top);
+      return true;
+    case Family::kStop:
+      robot_motors(0, 0);
+      return true;
+    case Family::kMotors:
+      robot_motors(percent(top[-1], low), power);
+      return true;
+    case Family::kMotors8:
+      robot_motors(signed8(first), power);
+      return true;
+    case Family::kMove:
+    case Family::kMove8:
+      powers(code, power);
+      robot_motors(task_.left, task_.right);
+      return wait(time_ms, Wait::kMove);
+    case Family::kWatchForever:
+      time_ms = kForever;
+      // fallthrough
+    case Family::kWatch:
+      powers(code, power);
+      return watch(time_ms, true);
+    case Family::kWatchForeverWait:
+      time_ms = kForever;
+      // fallthrough
+    case Family::kWatchWait:
+      return watch(time_ms, false);
+    case Family::kBeep:
+    case Family::kBeep8: {
+      const int32_t hertz = takes ? whole(*top) : static_cast<uint16_t>(bytes[2] | bytes[3] << 8);
+      robot_beep(static_cast<uint16_t>(limited(hertz, 31, 20000)), time_ms);
+    }
+      // fallthrough
+    case Family::kWait:
+    case Family::kWait8:
+      return wait(time_ms, Wait::kPause);
+    default:  // kEnd: the others are in the inner loop
+      robot_off();
+      status_ = Status::kDone;
+      return stay();
+  }
+}
+
+}  // namespace tiniscript
