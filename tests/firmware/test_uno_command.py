@@ -19,6 +19,7 @@ from tools.uno import CYCLES_PER_MS, Uno
 
 DRIVES = "SI|F(0.3, 80)"
 TETHER_MS = 1050
+FIRST_FAULT = 69  # the last mark of the first slot for faults, written 230 ms after the fault
 
 
 @pytest.fixture
@@ -49,6 +50,11 @@ def drives(uno: Uno) -> int:
     return sum(change.state == "pwm" for change in uno.pins.history("left"))
 
 
+def writes(uno: Uno, address: int) -> bool:
+    """Return whether a byte has been written to the EEPROM at an address."""
+    return any(event.what == "eeprom" and event.rest["address"] == address for event in uno.events)
+
+
 def test_upload_shows_and_finds_the_line_of_a_fault(uno: Uno, tmp_path: Path) -> None:
     done = on(uno, "upload", "-e", DRIVES)
     assert (done.code, drives(uno)) == (0, 1), done.err
@@ -59,6 +65,7 @@ def test_upload_shows_and_finds_the_line_of_a_fault(uno: Uno, tmp_path: Path) ->
     assert "SHOW 2" in done.out
     assert re.search(r"line 4:\s+X = 1 / \(X - 2\)", done.err), done.err
     assert states(uno) == OFF
+    until(lambda: writes(uno, FIRST_FAULT), "the fault is kept")  # the next command resets it
     assert "DIVIDE_BY_ZERO" in on(uno, "info").out
 
 
