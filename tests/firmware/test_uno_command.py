@@ -19,7 +19,8 @@ from tools.uno import CYCLES_PER_MS, Uno
 
 DRIVES = "SI|F(0.3, 80)"
 TETHER_MS = 1050
-FIRST_FAULT = 69  # the last mark of the first slot for faults, written 230 ms after the fault
+# The last mark of the first slot for faults, written 230 ms after the fault.
+FIRST_FAULT = {"address": 69, "value": 0xA5}
 
 
 @pytest.fixture
@@ -50,9 +51,8 @@ def drives(uno: Uno) -> int:
     return sum(change.state == "pwm" for change in uno.pins.history("left"))
 
 
-def writes(uno: Uno, address: int) -> bool:
-    """Return whether a byte has been written to the EEPROM at an address."""
-    return any(event.what == "eeprom" and event.rest["address"] == address for event in uno.events)
+def has_written(uno: Uno, byte: dict[str, int]) -> bool:
+    return any(event.what == "eeprom" and event.rest == byte for event in uno.events)
 
 
 def test_upload_shows_and_finds_the_line_of_a_fault(uno: Uno, tmp_path: Path) -> None:
@@ -65,7 +65,7 @@ def test_upload_shows_and_finds_the_line_of_a_fault(uno: Uno, tmp_path: Path) ->
     assert "SHOW 2" in done.out
     assert re.search(r"line 4:\s+X = 1 / \(X - 2\)", done.err), done.err
     assert states(uno) == OFF
-    until(lambda: writes(uno, FIRST_FAULT), "the fault is kept")  # the next command resets it
+    until(lambda: has_written(uno, FIRST_FAULT), "the fault is kept")  # the next command resets it
     assert "DIVIDE_BY_ZERO" in on(uno, "info").out
 
 
