@@ -2,6 +2,9 @@
 
 Knows which instruction says a thing in the fewest bytes, and lays out jumps: each starts
 short, and becomes far where its target is. Does not know what an image is.
+
+Plain code is what one pass over the text can emit, as a robot does that reads text
+(`docs/text.md`): no instruction that fuses others, every ELSE of the text, DEFs where they stand.
 """
 
 from __future__ import annotations
@@ -30,6 +33,7 @@ from tiniscript.semantics.ir import (
     Loop,
     Motors,
     Move,
+    Procedure,
     Program,
     Read,
     Set,
@@ -57,12 +61,19 @@ class Lowered(NamedTuple):
     places: tuple[Place, ...]
 
 
-def lower(program: Program) -> Lowered:
-    """Return the code bytes of a program, and where in the text they come from."""
-    lowering = _Lowering()
-    for procedure in program.procedures:
-        lowering.procedure(procedure.body, procedure.span)
-    lowering.body(program.body)
+def lower(program: Program, plain: bool = False) -> Lowered:
+    """Return the code bytes of a program, and where in the text they come from.
+
+    `plain` code is made from a program as it is written, not from an optimised one.
+    """
+    lowering = _Lowering(plain)
+    waiting = list(reversed(program.procedures))
+    for statement in program.body:
+        while waiting and (not plain or waiting[-1].span < statement.span):
+            lowering.procedure(waiting.pop())
+        lowering.statement(statement)
+    while waiting:
+        lowering.procedure(waiting.pop())
     return _assembled(lowering.out)
 
 
@@ -72,18 +83,19 @@ class _LoopEnd(NamedTuple):
 
 
 class _Lowering:
-    def __init__(self) -> None:
-        self.out = Emitter()
+    def __init__(self, plain: bool) -> None:
+        self.plain = plain
+        self.out = Emitter(plain)
         self.entries: list[int] = []  # the label of each DEF's first instruction
         self.loops: list[_LoopEnd] = []
 
-    def procedure(self, body: Body, span: Span) -> None:
+    def procedure(self, procedure: Procedure) -> None:
         out = self.out
-        out.span = span
+        out.span = procedure.span
         end = out.new_label()
         out.add("DEF", to=end)
         self.entries.append(out.mark_here())
-        self.body(body)
+        self.body(procedure.body)
         out.add("RETURN")
         out.mark(end)
 
@@ -128,14 +140,14 @@ class _Lowering:
 
     def move(self, move: Move) -> None:
         out = self.out
-        time = None if move.time is None else _at_least_0(move.time)
-        power = None if move.power is None else _percentage(move.power, 0)
+        time = None if move.time is None else self.at_least_0(move.time)
+        power = None if move.power is None else self.percentage(move.power, 0)
         name = "WAIT" if power is None else move.direction
         if move.until is None:
             assert time is not None
-            time_ms = constant(time)
+            time_ms = self.fixed(time)
             byte = None if time_ms is None else time8(time_ms)
-            value = None if power is None else constant(power)
+            value = None if power is None else self.fixed(power)
             if byte is not None and (power is None or value is not None):
                 short = "WAIT8" if value is None else f"MOVE8_{name}"
                 out.add(short, byte, *(() if value is None else (value // 1000,)))
@@ -153,7 +165,7 @@ class _Lowering:
         stops(out, move.until.condition)
 
     def beep(self, beep: Beep) -> None:
-        time_ms, hertz = constant(_at_least_0(beep.time)), constant(beep.hertz)
+        time_ms, hertz = self.fixed(self.at_least_0(beep.time)), self.fixed(beep.hertz)
         byte = None if time_ms is None else time8(time_ms)
         if byte is not None and hertz is not None:
             self.out.add("BEEP8", byte, limited(whole(hertz), 31, 20_000))
@@ -163,8 +175,8 @@ class _Lowering:
         self.out.add("BEEP")
 
     def motors(self, motors: Motors) -> None:
-        left, right = _percentage(motors.left, -100), _percentage(motors.right, -100)
-        left_value, right_value = constant(left), constant(right)
+        left, right = self.percentage(motors.left, -100), self.percentage(motors.right, -100)
+        left_value, right_value = self.fixed(left), self.fixed(right)
         if left_value is not None and right_value is not None:
             self.out.add("MOTORS8", left_value // 1000, right_value // 1000)
         else:
@@ -177,11 +189,19 @@ class _Lowering:
     def assign(self, assign: Assign) -> None:
         """`X = 5`, `X = X + 5`, `X = X + Y` have instructions of their own."""
         out, variable, value = self.out, assign.variable, assign.value
+        if not self.plain and self.assigned_at_once(variable, value):
+            return
+        add_value(out, value)
+        out.add("SET_VAR", variable)
+
+    def assigned_at_once(self, variable: int, value: Expression) -> bool:
+        """Add the one instruction that does it; return whether there is one."""
+        out = self.out
         if len(value) == 1 and value[0].op == "NUMBER":
             number = number_of(value[0], -128, 127)
             if number is not None and not pushes_in_one_byte(value[0], variable):
                 out.add("SET_VAR8", variable, number)
-                return
+                return True
         if len(value) == 3 and value[2].op in ("ADD", "SUB"):
             left, right, operator = value
             if operator.op == "ADD" and left != ("VARIABLE", variable):
@@ -192,15 +212,14 @@ class _Lowering:
                     number = number_of(right._replace(value=sign * right.value), -128, 127)
                     if number in (1, -1):
                         out.add("INC_VAR" if number == 1 else "DEC_VAR", variable)
-                        return
+                        return True
                     if number is not None:
                         out.add("ADD_VAR8", variable, number)
-                        return
+                        return True
                 elif right.op == "VARIABLE" and operator.op == "ADD":
                     out.add("ADD_VAR", variable, right.value)
-                    return
-        add_value(out, value)
-        out.add("SET_VAR", variable)
+                    return True
+        return False
 
     # -- blocks -------------------------------------------------------------------------------
 
@@ -208,7 +227,8 @@ class _Lowering:
         out = self.out
         end = out.new_label()
         for k, arm in enumerate(statement.arms):
-            is_last = k == len(statement.arms) - 1 and not statement.otherwise
+            has_else = statement.has_else if self.plain else bool(statement.otherwise)
+            is_last = k == len(statement.arms) - 1 and not has_else
             following = end if is_last else out.new_label()
             out.span = arm.span
             for sensor in arm.reads:
@@ -216,7 +236,7 @@ class _Lowering:
             tests(out, arm.condition, following)
             self.body(arm.body)
             if not is_last:
-                if goes_on(arm.body):
+                if self.plain or goes_on(arm.body):
                     out.add("ELSE", to=end)
                 out.mark(following)
         self.body(statement.otherwise)
@@ -228,7 +248,7 @@ class _Lowering:
         if loop.times is None:
             out.add("FOREVER")
         else:
-            value = constant(loop.times)
+            value = self.fixed(loop.times)
             count = None if value is None else whole(value)
             if count is not None and 1 <= count <= 255:
                 out.add("LOOP8", count)
@@ -261,17 +281,21 @@ class _Lowering:
         out.add("NEXT" if counts else "AGAIN", to=start)
         out.mark(end)
 
+    # -- numbers that the text says -----------------------------------------------------------
 
-def _at_least_0(time: Expression) -> Expression:
-    value = constant(time)
-    return (time[0]._replace(value=0),) if value is not None and value < 0 else time
+    def fixed(self, expression: Expression) -> int | None:
+        """Return the value that an operand may hold; in plain code numbers are pushed."""
+        return None if self.plain else constant(expression)
 
+    def at_least_0(self, time: Expression) -> Expression:
+        value = self.fixed(time)
+        return (time[0]._replace(value=0),) if value is not None and value < 0 else time
 
-def _percentage(power: Expression, low: int) -> Expression:
-    value = constant(power)
-    if value is None:
-        return power
-    return (power[0]._replace(value=limited(whole(value), low, 100) * 1000),)
+    def percentage(self, power: Expression, low: int) -> Expression:
+        value = self.fixed(power)
+        if value is None:
+            return power
+        return (power[0]._replace(value=limited(whole(value), low, 100) * 1000),)
 
 
 # -- layout -----------------------------------------------------------------------------------

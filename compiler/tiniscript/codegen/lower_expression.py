@@ -1,7 +1,8 @@
 """Lowering: expressions become instructions, and conditions become branches.
 
 Knows the shortest push of a constant, when both sides of an AND may simply be evaluated, and
-which conditions compare to a constant.
+which conditions compare to a constant. In plain code (`lower`) nothing of that is chosen but the
+push: each operator is its instruction, and a condition is a value that IF or UNTIL takes.
 """
 
 from __future__ import annotations
@@ -31,7 +32,8 @@ class Item(NamedTuple):
 class Emitter:
     """Collects instructions and labels."""
 
-    def __init__(self) -> None:
+    def __init__(self, plain: bool = False) -> None:
+        self.plain = plain
         self.items: list[Item] = []
         self.labels: list[int] = []  # the index of the item that each label stands before
         self.span = Span(0, 0)
@@ -55,7 +57,7 @@ class Emitter:
 
     def pops_read(self, sensor: int) -> bool:
         """Take back `READ sensor` if it is the last instruction and nothing jumps behind it."""
-        if not self.items or self._last_mark == len(self.items):
+        if self.plain or not self.items or self._last_mark == len(self.items):
             return False
         last = self.items[-1]
         if (last.op, last.operands) != _shortest("READ", sensor):
@@ -149,7 +151,7 @@ def add_value(out: Emitter, expression: Expression) -> None:
     for k, term in enumerate(expression):
         if term.op in ("AND_LEFT", "OR_LEFT"):
             right = _right_side(expression, k)
-            if is_safe(right) and len(right) <= _SHORT_SIDE:
+            if not out.plain and is_safe(right) and len(right) <= _SHORT_SIDE:
                 joins.append(None)
             else:
                 joins.append(out.new_label())
@@ -166,6 +168,10 @@ def add_value(out: Emitter, expression: Expression) -> None:
 
 def tests(out: Emitter, condition: Expression, otherwise: int) -> None:
     """Add branches to the label `otherwise` that are taken where `condition` is FALSE."""
+    if out.plain:
+        add_value(out, condition)
+        out.add("IF", to=otherwise)
+        return
     # where a part of it begins and ends, and whether its being TRUE branches
     pending = [(0, len(condition), False)]
     while pending:
@@ -183,7 +189,7 @@ def tests(out: Emitter, condition: Expression, otherwise: int) -> None:
 
 def stops(out: Emitter, condition: Expression) -> None:
     """Add instructions that end a watched move where `condition` is TRUE."""
-    compared = _compared(condition)
+    compared = None if out.plain else _compared(condition)
     if compared is None:
         add_value(out, condition)
         out.add("UNTIL")

@@ -299,7 +299,7 @@ class _Checker(Scope):
             arms.append(ir.Arm(reads, value.terms, body, arm.span))
         otherwise = self.deeper(node.otherwise, False)
         self.surely_read &= after
-        made.append(ir.If(tuple(arms), otherwise, node.span))
+        made.append(ir.If(tuple(arms), otherwise, node.span, node.has_else))
 
     def loop(self, node: ast.Loop, made: list[Statement]) -> None:
         count = None

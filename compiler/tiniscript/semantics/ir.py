@@ -89,9 +89,12 @@ class Arm(NamedTuple):
 
 
 class If(NamedTuple):
+    """`has_else`: the text has an ELSE, perhaps with nothing behind it."""
+
     arms: tuple[Arm, ...]
     otherwise: "tuple[Statement, ...]"
     span: Span
+    has_else: bool = False
 
 
 class Loop(NamedTuple):

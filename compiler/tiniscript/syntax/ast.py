@@ -59,8 +59,11 @@ class Arm(NamedTuple):
 
 
 class If(NamedTuple):
+    """`has_else`: an ELSE stands in it, perhaps with nothing behind."""
+
     arms: tuple[Arm, ...]
     otherwise: "tuple[Instruction, ...]"
+    has_else: bool
     span: Span
 
 

@@ -94,9 +94,10 @@ class Blocks:
 
 def _node(block: Block, span: Span) -> Instruction:
     if block.word == "IF":
-        if block.otherwise is None:
+        has_else = block.otherwise is not None
+        if not has_else:
             block.next_arm(None, block.span)
-        return If(tuple(block.arms), tuple(block.otherwise or ()), span)
+        return If(tuple(block.arms), tuple(block.otherwise or ()), has_else, span)
     if block.word == "LOOP":
         count = block.head
         if count is not None and count.expression[0].op == "FOREVER":
