@@ -33,6 +33,7 @@ TEXTS: dict[str, dict[str, Any]] = {
 }
 EXAMPLES = sorted(code for code, texts in TEXTS.items() if "wrong" in texts)
 BOARD = {"robot": "TINIBOT", "limit": "900", "code": "1000", "over": "100"}
+LEVEL = {"level": "uno", "limit": "255", "code": "260", "over": "5"}
 WITHOUT_EXAMPLE: dict[str, Mapping[str, str]] = {
     "TS001": {},
     "TS002": {},
@@ -41,6 +42,9 @@ WITHOUT_EXAMPLE: dict[str, Mapping[str, str]] = {
     "TS120": {},
     "TS306": {"limit": "32767", "over": "100"},
     "TS307": BOARD,
+    "TS308": {"level": "uno", "word": "RANDOM"},
+    "TS309": LEVEL,
+    "TS310": LEVEL,
     "TS809": BOARD,
 }
 

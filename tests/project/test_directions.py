@@ -31,6 +31,7 @@ UPSTREAM: dict[str, set[str]] = {
     "codegen": {"source", "files", "fixed_point", "bytecode", "semantics"},
     "vm": {"fixed_point", "kit", "bytecode"},
     "robots": SHARED,
+    "text": {*TEXT, "bytecode", "syntax", "semantics", "codegen", "robots"},
     "wiring": {"fixed_point", "kit", "robots"},
     "flash": {"files", "robots"},
     "link": {"files", "bytecode"},

@@ -107,6 +107,18 @@ def compiled(given: Input, robot: Robot, is_strict: bool) -> Compiled:
     return compiled_data(given.data, robot, given.name, is_strict)
 
 
+def for_level(found: Compiled, robot: Robot, name: str | None) -> Compiled:
+    """Return `found` with what a robot of the level `name` lacks to read the program as text."""
+    if name is None or found.program is None or not found.is_right:
+        return found
+    from tiniscript.diagnostics.codes import in_order
+    from tiniscript.text.fitting import misfits
+    from tiniscript.text.levels import LEVELS
+
+    lacking = misfits(found.source, found.program, robot.kit, LEVELS[name])
+    return found._replace(diagnostics=in_order([*found.diagnostics, *lacking]))
+
+
 def parsed(given: Input, kit: Kit) -> Compiled:
     """Return only the syntax mistakes of a program's text."""
     from tiniscript import Compiled

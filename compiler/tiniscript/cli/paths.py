@@ -92,7 +92,7 @@ def _written(options: Namespace) -> Iterator[Named]:
     program = values.get("program")
     if program is not None and program != "-":
         program = real_name(program)
-        if options.verb == "compile" and options.output is None:
+        if options.verb == "compile" and options.output is None and not options.text:
             yield Named("output", default_output(program), "-o")
         if options.verb == "fmt" and not options.check:
             yield Named("program", program, "tsc fmt")

@@ -1,7 +1,7 @@
 """The lexer: text becomes tokens.
 
 Knows characters. Knows no word of the language and no grammar. What it cannot read it reports,
-and goes on with the nearest token that makes sense.
+and goes on with the nearest token that makes sense. A checksum behind a line is no token.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from typing import NamedTuple
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic
 from tiniscript.source import Span
+from tiniscript.syntax.checksums import SPACES, without_checksums
 from tiniscript.words import UNITS
 
 WORD = "word"
@@ -41,7 +42,8 @@ class Scan(NamedTuple):
 
 
 _PATTERN = re.compile(
-    r"""(?P<space>[ \t\f\v\u00a0\u2000-\u200b\u202f\u3000\ufeff]+)
+    rf"(?P<space>[{SPACES}]+)"
+    r"""
       | (?P<word>[A-Za-z][A-Za-z0-9_]*)(?!\w)
       | (?P<number>(?:[0-9]+(?:\.[0-9]+)?|\.[0-9]+)(?![\w.\u00b0]))
       | (?P<newline>\r\n|\n|\r)
@@ -57,6 +59,7 @@ _PATTERN = re.compile(
       | (?P<wide>[\uff08\uff09\uff0c\uff1b\uff1d\uff1c\uff1e\uff5c\uff0b\uff0d])
       | (?P<bracket>[][])
       | (?P<brace>[{}])
+      | (?P<tilde>~[0-9A-Fa-f]*)
       | (?P<odd>.)
     """,
     re.VERBOSE | re.DOTALL,
@@ -77,6 +80,8 @@ def scan(text: str) -> Scan:
     tokens: list[Token] = []
     comments: list[Token] = []
     repairs = _Repairs()
+    if "~" in text:
+        text, repairs.diagnostics = without_checksums(text)
     add = tokens.append
     new = tuple.__new__  # in half the time of Token()
     for match in _PATTERN.finditer(text):
@@ -145,6 +150,10 @@ class _Repairs:
             self.has_braces = True
             self.report(codes.BRACES, span, found=text)
         return Token(text, text, *span)
+
+    def tilde(self, text: str, span: Span) -> Token:
+        self.report(codes.CHECKSUM_FORM, span)
+        return Token(ODD, text, *span)
 
     def badnumber(self, text: str, span: Span) -> Token:
         number = _number_in(text)

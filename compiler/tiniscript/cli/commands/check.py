@@ -18,6 +18,7 @@ def run(options: Namespace, language: str) -> int:
     if options.port is not None or options.virtual:
         robot = _of_port(options, robot, language)
     compiled = inputs.compiled(given, robot, is_strict=False)
+    compiled = inputs.for_level(compiled, robot, options.text_level)
     if options.json:
         import json
 

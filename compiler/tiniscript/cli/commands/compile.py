@@ -1,4 +1,4 @@
-"""`tsc compile`: a program becomes an image."""
+"""`tsc compile`: a program becomes an image, or a line for a robot that reads text."""
 
 from __future__ import annotations
 
@@ -17,6 +17,10 @@ if TYPE_CHECKING:
 
 def run(options: Namespace, language: str) -> int:
     given = inputs.program(options)
+    if options.text:
+        return _line(options, given, language)
+    if options.text_level is not None:
+        raise CommandError(2, "level_needs_text", level=options.text_level)
     target = _target(given, options.output)
     if options.map == "-":
         raise CommandError(2, "over_map", file="-")
@@ -47,6 +51,37 @@ def run(options: Namespace, language: str) -> int:
         runs="" if _will_fault(compiled) else _runs(compiled.program, language),
     )
     print(said, file=sys.stderr if target is None else sys.stdout)
+    return 0
+
+
+def _line(options: Namespace, given: inputs.Input, language: str) -> int:
+    """Write the program as one line of text."""
+    if options.map is not None:
+        raise CommandError(2, "text_has_no_map")
+    robot = inputs.robot(options, language)
+    compiled = inputs.compiled(given, robot, is_strict=True)
+    compiled = inputs.for_level(compiled, robot, options.text_level)
+    outputs.print_diagnostics(compiled, language)
+    if not compiled.is_right:
+        return 1
+    from tiniscript.text.line import line_of
+    from tiniscript.text.plain import plain_code
+
+    assert compiled.program is not None
+    line = (line_of(compiled.source) + "\n").encode()
+    is_printed = options.output in (None, "-")
+    if is_printed:
+        sys.stdout.buffer.write(line)
+        sys.stdout.flush()
+    else:
+        outputs.write(Path(options.output), line, "unwritable")
+    said = text("compiled_text", language).format(
+        source=inputs.shown(given.name),
+        target="-" if is_printed else inputs.shown(options.output),
+        bytes=len(line),
+        code=plain_code(compiled.program).length,
+    )
+    print(said, file=sys.stderr if is_printed else sys.stdout)
     return 0
 
 

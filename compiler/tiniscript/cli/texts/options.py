@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from tiniscript.cli.texts.verbs import Both
+from tiniscript.text.levels import LEVELS
 
 
 class Kind(NamedTuple):
@@ -75,6 +76,7 @@ LANGUAGE = Kind("choice", choices=("en", "es"))
 MACHINE = Kind("choice", choices=("python", "cpp"))
 YES_NO = Kind("choice", choices=("yes", "no"))
 SHELL = Kind("choice", choices=("bash", "zsh", "powershell"))
+LEVEL = Kind("choice", choices=tuple(LEVELS))
 
 A_FILE = ("FILE", "ARCHIVO")
 A_ROBOT = ("NAME|FILE", "NOMBRE|ARCHIVO")
@@ -82,6 +84,7 @@ A_TEXT = ("TEXT", "TEXTO")
 P, N, S, X = ("P", "P"), ("N", "N"), ("S", "S"), ("X", "X")
 READINGS = ("NAME=1,2,3", "NOMBRE=1,2,3")
 YES = ("yes|no", "yes|no")
+A_LEVEL = ("|".join(LEVELS),) * 2
 
 TO_MANY = "ping upload stop info"  # may work on many robots at once
 TO_ONE = "live link start monitor fetch name trim"
@@ -102,7 +105,14 @@ OPTIONS: tuple[Option, ...] = (
     Option("-e", "compile check run show fmt upload", ("the program itself, instead of a file: `-e 'SI|F(2, 80)'`", "el programa mismo, en vez de un archivo: `-e 'SI|F(2, 80)'`"), TEXT, A_TEXT, "texts", repeats=True),
     Option("-e", "live", ("the line, too", "también la línea"), TEXT, A_TEXT, "text"),
     # files
-    Option("-o", "compile", ("where to, beside the program if it is not given; - is standard output", "a dónde, junto al programa si no se da; - es la salida estándar"), IMAGE, A_FILE, "output"),
+    Option("-o", "compile", ("where to, beside the program if it is not given; - is standard output, where --text writes if it is not given",
+                             "a dónde, junto al programa si no se da; - es la salida estándar, donde escribe --text si no se da"), IMAGE, A_FILE, "output"),
+    Option("--text", "compile", ("writes no image but the program as one line of text, with a checksum, for a robot that reads text",
+                                 "no escribe una imagen sino el programa como una línea de texto, con suma de control, para un robot que lee texto")),
+    Option("--text-level", "check", ("also what a robot of this level lacks to read the program as text (a Nano's is uno)",
+                                     "también lo que le falta a un robot de este nivel para leer el programa como texto (el de un Nano es uno)"), LEVEL, A_LEVEL),
+    Option("--text-level", "compile", ("with --text: only if a robot of this level reads it (a Nano's is uno)",
+                                       "con --text: solo si lo lee un robot de este nivel (el de un Nano es uno)"), LEVEL, A_LEVEL),
     Option("-o", "wiring", ("writes a page with a drawing, all tables and a check list, to read in a browser and to print; without it the wires are listed here",
                             "escribe una página con un dibujo, todas las tablas y una lista de control, para leerla en un navegador e imprimirla; sin esto se listan aquí los cables"), IMAGE, ("PAGE.html", "PÁGINA.html"), "output"),
     Option("-o", "board", ("where to; standard output if it is not given", "a dónde; la salida estándar si no se da"), IMAGE, A_FILE, "output"),

@@ -49,8 +49,8 @@ VERBS: dict[str, Verb] = {
     "compile": Verb(
         PROGRAMS, ("compile prog.ts", "compile prog.ts"),
         ("compile a program into an image for the robot", "compila un programa en una imagen para el robot"),
-        ("Compiles a program into an image for the robot. Says how many bytes it has, how deep its stack gets and, where that can be known, how long it runs. Where the program has mistakes, the file stays as it was.",
-         "Compila un programa en una imagen para el robot. Dice cuántos bytes tiene, cuánto usa de la pila y, si se puede saber, cuánto dura. Si el programa tiene errores, el archivo queda como estaba."),
+        ("Compiles a program into an image for the robot. Says how many bytes it has, how deep its stack gets and, where that can be known, how long it runs. Where the program has mistakes, the file stays as it was. With `--text` it writes the same program as one line of text.",
+         "Compila un programa en una imagen para el robot. Dice cuántos bytes tiene, cuánto usa de la pila y, si se puede saber, cuánto dura. Si el programa tiene errores, el archivo queda como estaba. Con `--text` escribe el mismo programa como una línea de texto."),
     ),
     "check": Verb(
         PROGRAMS, ("check prog.ts", "check prog.ts"),

@@ -1,0 +1,42 @@
+"""The checksums of lines: `~` and eight hexadecimal digits at the end of a line of text.
+
+Knows which bytes of a line a checksum covers, and where it may stand. Knows no token.
+"""
+
+from __future__ import annotations
+
+import re
+from zlib import crc32
+
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Diagnostic
+from tiniscript.source import Span
+
+SPACES = (
+    r" \t\f\v\u00a0\u2000-\u200b\u202f\u3000\ufeff"  # as a set of a regular expression has them
+)
+_BYTE_ORDER_MARK = "\ufeff"
+
+_CHECKSUM = re.compile(rf"~([0-9A-Fa-f]{{8}})(?=[{SPACES}]*(?:[\r\n]|\Z))")
+
+
+def checksum_of(line: str) -> int:
+    """Return the CRC-32 (zlib) of a line, byte order marks at its beginning left out."""
+    return crc32(line.lstrip(_BYTE_ORDER_MARK).encode("utf-8", "surrogatepass"))
+
+
+def with_checksum(line: str) -> str:
+    """Return a line that has a checksum behind it, but no line end."""
+    return f"{line}~{checksum_of(line):08X}"
+
+
+def without_checksums(text: str) -> tuple[str, list[Diagnostic]]:
+    """Return `text` with spaces in the place of checksums, and those that do not fit."""
+    wrong = []
+    for match in _CHECKSUM.finditer(text):
+        start, end = match.span()
+        begin = max(text.rfind("\n", 0, start), text.rfind("\r", 0, start)) + 1
+        if checksum_of(text[begin:start]) != int(match[1], 16):
+            span = Span(start, end)
+            wrong.append(Diagnostic(codes.CHECKSUM_WRONG, span, {"found": match.group()}))
+    return _CHECKSUM.sub(" " * 9, text), wrong

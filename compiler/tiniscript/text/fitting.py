@@ -1,0 +1,52 @@
+"""What a level's reader does not take of a right program, as diagnostics.
+
+Knows the table of levels and how much memory a program needs. Looks for no mistake of the language:
+those have been reported.
+"""
+
+from __future__ import annotations
+
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Diagnostic
+from tiniscript.kit import Kit
+from tiniscript.semantics.ir import Program
+from tiniscript.source import Source, Span
+from tiniscript.syntax.lexer import WORD
+from tiniscript.syntax.parser import parse
+from tiniscript.text import memory
+from tiniscript.text.levels import CODE_BYTES, Level
+from tiniscript.text.plain import PlainCode, plain_code
+
+
+def misfits(source: Source, program: Program, kit: Kit, level: Level) -> list[Diagnostic]:
+    """Return what a robot of this level lacks for a checked program."""
+    parsed = parse(source, kit)
+    found = [
+        Diagnostic(codes.LEVEL_WORD, token.span, {"level": level.name, "word": token.text})
+        for token in parsed.scan.tokens
+        if token.kind is WORD and token.text in level.lacks
+    ]
+    plain = plain_code(program)
+    limit = min(CODE_BYTES, level.room)
+    if plain.length > limit:
+        place = _first_behind(plain, limit)
+        found.append(_too_many(codes.LEVEL_CODE, place, level, plain.length, limit))
+        return found
+    needed = memory.needed(parsed.program.body, plain)
+    if needed > level.room:
+        at = memory.full_at(parsed.program.body, plain, level.room)
+        place = Span(at, at + 1)
+        found.append(_too_many(codes.LEVEL_ROOM, place, level, needed, level.room))
+    return found
+
+
+def _first_behind(plain: PlainCode, limit: int) -> Span:
+    """Return the text of the first instruction whose code does not lie within the limit."""
+    ends = [*(place.offset for place in plain.places[1:]), plain.length]
+    return next(place.span for place, end in zip(plain.places, ends, strict=True) if end > limit)
+
+
+def _too_many(code: codes.Code, place: Span, level: Level, bytes_: int, limit: int) -> Diagnostic:
+    values = {"level": level.name, "code": str(bytes_), "limit": str(limit),
+              "over": str(bytes_ - limit)}  # fmt: skip
+    return Diagnostic(code, place, values)

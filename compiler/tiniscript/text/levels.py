@@ -1,0 +1,41 @@
+"""The levels of robots that read text: which words each lacks, and how much room it has.
+
+All other limits (variables, blocks, values on the stack, DEFs, calls) are those of the language.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+CODE_BYTES = 255  # of a typed program: a jump of one byte reaches over all of it
+
+
+class Level(NamedTuple):
+    """`lacks` are words of the language that this level's reader does not read.
+
+    A Nano has the level of its chip, `uno`.
+    """
+
+    name: str
+    board: str  # whose memory it has, as `robots.boards` names it
+    lacks: frozenset[str] = frozenset()
+
+    @property
+    def room(self) -> int:
+        """Bytes for the code, and for all that the reader remembers until a program's end.
+
+        It is the memory for a program's image, without its header.
+        """
+        from tiniscript.robots.boards import CHIPS
+
+        return CHIPS[self.board].program_bytes
+
+
+LEVELS = {
+    level.name: level
+    for level in (
+        Level("uno", "uno"),
+        Level("mega", "mega"),
+        Level("esp32", "esp32dev"),
+    )
+}

@@ -1,0 +1,37 @@
+"""A program as one line for a robot that reads text, with a checksum.
+
+Knows where a space is needed. Works on tokens, so that numbers and brackets stay as they are
+written, and so does the order of everything. It is made for texts in which nothing is wrong.
+"""
+
+from __future__ import annotations
+
+from tiniscript.source import Source
+from tiniscript.syntax.checksums import with_checksum
+from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, scan
+from tiniscript.words import ALIASES
+
+EMPTY = "SI|"  # a program that does nothing: an empty line would be none
+
+
+def line_of(source: Source) -> str:
+    """Return a program's text as one line, without its end: the same instructions."""
+    parts: list[str] = []
+    brackets = 0
+    before = ""  # the kind of the last token, or nothing at the beginning
+    is_ended = False  # whether an instruction has ended since then
+    for token in scan(source.text).tokens:
+        kind = token.kind
+        if kind is END:
+            break
+        if kind is NEWLINE or kind == ";":
+            is_ended = is_ended or not brackets
+            continue
+        if is_ended and before not in ("", "|"):
+            parts.append(";")
+        elif before in (WORD, NUMBER) and kind in (WORD, NUMBER):
+            parts.append(" ")
+        parts.append(ALIASES.get(token.text, token.text))
+        brackets += (kind == "(") - (kind == ")")
+        before, is_ended = kind, False
+    return with_checksum("".join(parts) or EMPTY)
