@@ -14,6 +14,8 @@ from tiniscript.cli.options import decimal
 from tiniscript.diagnostics.rendering import as_text, message
 from tiniscript.robots.profile import Robot
 from tiniscript.syntax.formatter import formatted
+from tiniscript.text.line import line_of
+from tiniscript.text.plain import plain_code
 
 CASES = all_cases()
 
@@ -82,6 +84,18 @@ def test_robot(case: Case, machine: str, request: pytest.FixtureRequest) -> None
 @pytest.mark.parametrize("case", having("tiniscript", "bytecode"))
 def test_bytecode_of_a_program(case: Case, request: pytest.FixtureRequest) -> None:
     expect(case, "bytecode", listing(compiled(case).code), request)
+
+
+@pytest.mark.parametrize("case", having("tiniscript", "plain"))
+def test_plain_code_of_a_program(case: Case, request: pytest.FixtureRequest) -> None:
+    program = compiled(case).program
+    assert program is not None
+    expect(case, "plain", listing(plain_code(program).code), request)
+
+
+@pytest.mark.parametrize("case", having("tiniscript", "line"))
+def test_line_of_a_program(case: Case, request: pytest.FixtureRequest) -> None:
+    expect(case, "line", line_of(compiled(case).source) + "\n", request)
 
 
 @pytest.mark.parametrize(

@@ -22,6 +22,7 @@ from tiniscript.robots.ports import AVRS
 from tiniscript.robots.profile import LANGUAGES, ProfileRefused, Robot
 from tiniscript.robots.reader import read
 from tiniscript.robots.refusals import describe
+from tiniscript.text.levels import CODE_BYTES, LEVELS
 from tools.generate.command_pages import PAGES
 
 COMMAND = "python -m tools.generate"
@@ -115,6 +116,17 @@ def link_document() -> str:
     for name, made in DOCUMENT_TABLES.items():
         text = spliced(text, name, table(*made()))
     return text
+
+
+def text_document() -> str:
+    """Return `docs/text.md` with the table of levels."""
+    rows = [
+        (f"`{each.name}`", ", ".join(f"`{word}`" for word in sorted(each.lacks)) or "nothing",
+         each.room, min(CODE_BYTES, each.room))
+        for each in LEVELS.values()
+    ]  # fmt: skip
+    made = table(("level", "lacks", "room in bytes", "bytes of code, at most"), rows)
+    return spliced(TEXT_DOCUMENT.read_text(encoding="utf-8"), "levels", made)
 
 
 def spec() -> str:
@@ -314,6 +326,7 @@ SPEC_TABLES: dict[str, Callable[[], str]] = {
 MACHINE = ROOT / "vm_arduino" / "src" / "vm"
 LINK = ROOT / "vm_arduino" / "src" / "link"
 LINK_DOCUMENT = ROOT / "docs" / "link.md"
+TEXT_DOCUMENT = ROOT / "docs" / "text.md"
 PAYLOADS = ROOT / "compiler" / "tiniscript" / "link" / "payloads.py"
 WIRED = ROOT / "vm_arduino" / "src" / "boards" / "kits"
 WIRING = ROOT / "docs" / "wiring"
@@ -327,6 +340,7 @@ OUTPUTS: list[tuple[Path, Callable[[], str]]] = [
     (LINK / "messages.h", link_header),
     (LINK / "messages.cpp", link_tables),
     (LINK_DOCUMENT, link_document),
+    (TEXT_DOCUMENT, text_document),
     (PAYLOADS, link_payloads),
     *((ROOT / "docs" / name, partial(command_page, language)) for language, name in PAGES.items()),
     (ROOT / "vm_arduino" / "test" / "cases.h", cpp_cases),
