@@ -1,0 +1,95 @@
+"""`tsc compile --text` and `--text-level`: programs for robots that read text."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.support.command import Tsc
+
+PROGRAM = "si|\n  f(2, 80) // go\n"
+LINE = "SI|F(2,80)~72CA4271\n"
+LONG = "S\n" * 260
+
+
+@pytest.fixture
+def tsc(capsys: pytest.CaptureFixture[str]) -> Tsc:
+    return Tsc(capsys)
+
+
+@pytest.fixture
+def program(tmp_path: Path) -> Path:
+    path = tmp_path / "go.ts"
+    path.write_text(PROGRAM, encoding="utf-8")
+    return path
+
+
+def test_the_line_goes_to_standard_output(tsc: Tsc, program: Path) -> None:
+    for more in ([], ["-o", "-"], ["--text-level", "uno"]):
+        done = tsc("compile", "--text", program, *more)
+        assert (done.code, done.out) == (0, LINE)
+        assert f"{program} -> -   20 bytes of text   3 bytes of code" in done.err
+    assert [path.name for path in program.parent.iterdir()] == ["go.ts"]
+
+
+def test_the_line_goes_to_a_file(tsc: Tsc, program: Path) -> None:
+    target = program.parent / "line.ts"
+    done = tsc("compile", "--text", program, "-o", target, "--lang", "es")
+    assert done.code == 0 and target.read_bytes() == LINE.encode()
+    assert f"{program} -> {target}   20 bytes de texto" in done.out
+
+
+def test_never_over_the_program(tsc: Tsc, program: Path) -> None:
+    assert tsc("compile", "--text", program, "-o", program).code == 2
+    assert program.read_text(encoding="utf-8") == PROGRAM
+
+
+def test_the_line_runs_and_compiles_as_the_program_does(tsc: Tsc, program: Path) -> None:
+    line = program.parent / "line.ts"
+    tsc("compile", "--text", program, "-o", line)
+    assert tsc("run", line).out == tsc("run", program).out
+    for path in (line, program):
+        assert tsc("compile", path).code == 0
+    assert line.with_suffix(".bin").read_bytes() == program.with_suffix(".bin").read_bytes()
+
+
+def test_a_line_that_has_changed_does_nothing(tsc: Tsc) -> None:
+    for verb in ("run", "check", "fmt", "compile"):
+        more = ["-o", "-"] if verb == "compile" else []
+        done = tsc(verb, "-e", LINE.replace("80", "90"), *more)
+        assert done.code == 1 and "[TS058]" in done.err and not done.out
+
+
+def test_what_a_level_lacks_is_a_mistake_with_its_place(tsc: Tsc) -> None:
+    done = tsc("check", "--text-level", "uno", "-e", LONG)
+    assert done.code == 1
+    assert "line 256:  S\n" in done.err
+    assert "the level uno makes 260 bytes of code, 5 too many: it has room for 255" in done.err
+    data = tsc("check", "--json", "--text-level", "mega", "-e", LONG)
+    assert '"code": "TS309"' in data.out and '"line": 256' in data.out
+    assert tsc("check", "-e", LONG).code == 0
+
+
+def test_nothing_is_written_that_a_level_does_not_take(tsc: Tsc, tmp_path: Path) -> None:
+    target = tmp_path / "line.ts"
+    done = tsc("compile", "--text", "--text-level", "esp32", "-e", LONG, "-o", target)
+    assert done.code == 1 and "[TS309]" in done.err and not target.exists()
+    assert tsc("compile", "--text", "-e", LONG, "-o", target).code == 0
+    done = tsc("compile", "--text", "-e", "F(2", "-o", tmp_path / "wrong.ts")
+    assert done.code == 1 and not (tmp_path / "wrong.ts").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (["--text-level", "uno"], "--text-level goes with --text"),
+        (["--text", "--map", "x.json"], "a line of text has no map"),
+        (["--text", "--text-level", "nano"], "--text-level takes uno, mega or esp32, not nano"),
+    ],
+)
+def test_options_that_do_not_go_together(
+    tsc: Tsc, program: Path, arguments: list[str], says: str
+) -> None:
+    done = tsc("compile", program, *arguments)
+    assert done.code == 2 and says in done.err

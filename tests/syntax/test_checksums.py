@@ -1,0 +1,108 @@
+"""The checksums of lines: which bytes they cover, where they stand, and what is said of them."""
+
+from __future__ import annotations
+
+from zlib import crc32
+
+import pytest
+
+from tiniscript import Compiled, compile_text, robots
+from tiniscript.library.compiling import compiled
+from tiniscript.source import Source
+from tiniscript.syntax.checksums import checksum_of, with_checksum
+from tiniscript.syntax.formatter import formatted
+
+TINIBOT = robots.load("tinibot")
+LINE = "SI|F(2, 80)"
+CHECKED = f"{LINE}~B77E7BD9"
+
+
+def found(text: str) -> Compiled:
+    return compile_text(text, TINIBOT.kit)
+
+
+def said(text: str) -> list[tuple[str, str]]:
+    """Return the code of each diagnostic, and what it points at."""
+    return [(each.code.number, text[slice(*each.span)]) for each in found(text).diagnostics]
+
+
+def test_the_checksum_is_the_crc_32_of_the_bytes_of_the_line() -> None:
+    assert with_checksum(LINE) == CHECKED
+    assert checksum_of("// ñ") == crc32("// ñ".encode())
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        CHECKED,
+        CHECKED.lower().replace("si|f", "SI|F"),  # digits in any case
+        CHECKED + "\n",
+        CHECKED + "\r\n",
+        CHECKED + "\r",
+        CHECKED + " \t\u00a0\ufeff\n",
+        "\ufeff" + CHECKED,
+        "\n" + CHECKED,
+    ],
+)
+def test_a_line_with_its_checksum_is_the_line(text: str) -> None:
+    assert said(text) == []
+    assert found(text).image == found(LINE).image
+
+
+def test_a_byte_order_mark_of_a_file_does_not_count() -> None:
+    assert compiled(b"\xef\xbb\xbf" + CHECKED.encode(), TINIBOT, "", True).is_right
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+def test_each_line_has_a_checksum_of_its_own_or_none(end: str) -> None:
+    lines = ["LOOP(2)", "  F(1, 50)  ", "END_LOOP // twice", "", "S"]
+    want = found("\n".join(lines)).image
+    for which in range(2 ** len(lines)):
+        rows = [with_checksum(row) if which >> k & 1 else row for k, row in enumerate(lines)]
+        assert found(end.join(rows)).image == want, rows
+        assert said(end.join([*rows[:-1], "R~00000000"])) != []
+
+
+@pytest.mark.parametrize("at", range(len(LINE)))
+def test_a_line_that_has_changed_is_a_mistake(at: int) -> None:
+    changed = LINE[:at] + chr(ord(LINE[at]) ^ 1) + LINE[at + 1 :]
+    assert ("TS058", "~B77E7BD9") in said(f"{changed}~B77E7BD9")
+    assert not found(f"{changed}~B77E7BD9").image
+
+
+def test_spaces_before_the_sign_count() -> None:
+    assert said(f"{LINE} ~B77E7BD9") == [("TS058", "~B77E7BD9")]
+    assert said(with_checksum(f"{LINE} ")) == []
+
+
+def test_a_line_of_comment_has_a_checksum_too() -> None:
+    """So a line in which two signs became `//` does not pass for a comment."""
+    assert said(with_checksum("// a square")) == []
+    assert said("// a square~00000000") == [("TS058", "~00000000")]
+    assert said(with_checksum("S // stop")) == []
+
+
+@pytest.mark.parametrize(
+    ("text", "place"),
+    [
+        ("S~", "~"),
+        ("S~1234567", "~1234567"),
+        ("S~123456789", "~123456789"),
+        ("S~12345678 // stop", "~12345678"),
+        ("S~12345678;S", "~12345678"),
+        ("~S", "~"),
+        ("S;~00000000~00000000x", "~00000000"),
+    ],
+)
+def test_a_sign_that_is_no_checksum_is_a_mistake(text: str, place: str) -> None:
+    assert ("TS059", place) in said(text)
+
+
+def test_in_a_comment_it_is_a_sign_like_others() -> None:
+    assert said("S // ~5 cm, ~12345678 or so") == []
+
+
+def test_a_formatted_text_has_no_checksums_for_it_is_another_text() -> None:
+    rows = [with_checksum("s // stop"), with_checksum("// ~5"), with_checksum("f(1,50)")]
+    text = formatted(Source("\n".join(rows)))
+    assert text == "S;  // stop\n// ~5\nF(1, 50);\n"

@@ -1,0 +1,71 @@
+"""A program as one line for a robot: shorter, and the same program."""
+
+from __future__ import annotations
+
+import random
+import re
+
+import pytest
+
+from tests.oracle import programs
+from tests.support.kits import KITS
+from tests.vm.test_cases import CASES, compiled, robot_and_senses
+from tiniscript import compile_text
+from tiniscript.kit import Kit
+from tiniscript.source import Source
+from tiniscript.syntax.checksums import with_checksum
+from tiniscript.text.line import line_of
+from tiniscript.text.plain import plain_code
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        ("", "SI|"),
+        (" // nothing\n;;\n", "SI|"),
+        ("si | f( 2 , 80 ) ; s", "SI|F(2,80);S"),
+        ("SB|\n\n  F(1,\n 80) // go\n;;\n S;\n", "SB|F(1,80);S"),
+        ("LOOP(2)\nS\nENDLOOP\nIF(TRUE)\nELSE\nEND_IF", "LOOP(2);S;END_LOOP;IF(TRUE);ELSE;ENDIF"),
+        ("x = not (1 < 2) and 3 > - 4", "X=NOT(1<2)AND 3>-4"),
+        ("X = 3 - - 5 % .5", "X=3--5%.5"),
+        ("F(1, 50) UNTIL(TIME > 3)", "F(1,50)UNTIL(TIME>3)"),
+        ("DEF A; END_DEF\nA", "DEF A;END_DEF;A"),
+        ("PING |\n check_connection ;", "PING|CHECK_CONNECTION"),
+        ("START\nM(\u2013 5,\u00a06)", "START;M(-5,6)"),
+    ],
+)
+def test_what_is_left_of_a_text(text: str, line: str) -> None:
+    assert line_of(Source(text)) == with_checksum(line)
+
+
+def check_line(text: str, kit: Kit) -> None:
+    found = compile_text(text, kit)
+    line = line_of(found.source)
+    assert re.fullmatch(r"[ -}]*~[0-9A-F]{8}", line), line
+    assert "//" not in line and "  " not in line
+    assert line == line.upper()
+    assert len(line) <= len(text.encode()) + len("SI|~00000000")
+    again = compile_text(line, kit)
+    assert again.is_right and again.image == found.image, line
+    assert found.program is not None and again.program is not None
+    assert plain_code(again.program).code == plain_code(found.program).code, line
+    told = [each.code for each in found.diagnostics]
+    assert sorted(each.number for each in told) == sorted(
+        each.code.number for each in again.diagnostics
+    )
+    assert line_of(Source(line)) == line
+
+
+@pytest.mark.parametrize("first", range(0, 2000, 500))
+def test_the_line_of_a_random_program_is_the_same_program(first: int) -> None:
+    for seed in range(first, first + 500):
+        oracle_kit, kit = KITS[seed % len(KITS)]
+        check_line(programs.program(random.Random(seed), oracle_kit), kit)
+
+
+def test_the_line_of_each_program_of_the_documents_is_the_same_program() -> None:
+    right = [case for case in CASES if "tiniscript" in case.parts and "mistake" not in case.parts]
+    assert len(right) > 150
+    for case in right:
+        robot, _ = robot_and_senses(case)
+        check_line(compiled(case).source.text, robot.kit)

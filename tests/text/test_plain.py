@@ -1,0 +1,187 @@
+"""Plain code: what a robot that reads text emits, and that it does what optimised code does."""
+
+from __future__ import annotations
+
+import random
+import re
+
+import pytest
+
+from tests.machines import Senses
+from tests.machines.python import run_python
+from tests.oracle import programs
+from tests.support.casefile import ROOT
+from tests.support.images import image_for
+from tests.support.kits import KITS
+from tests.vm.test_agreement import MAX_MS, MAX_STEPS, same
+from tests.vm.test_cases import CASES, compiled, having, robot_and_senses
+from tiniscript import Compiled, compile_text, robots
+from tiniscript.bytecode.disassembly import listing
+from tiniscript.bytecode.opcodes import BY_NAME, OPS
+from tiniscript.bytecode.verify import verify
+from tiniscript.kit import Kit
+from tiniscript.text.levels import CODE_BYTES
+from tiniscript.text.plain import PlainCode, plain_code
+
+TINIBOT, GRABBER = robots.load("tinibot").kit, robots.load("grabber").kit
+# what is for the optimising compiler alone: `docs/text.md` has none of it
+FUSED = re.compile(
+    r"PUSH_READ|(SET_VAR|ADD_VAR|WAIT|BEEP|MOTORS|LOOP|UNTIL|IF|IF_VAR)(8|16)|MOVE8|IF_NOT|INC_|DEC_"
+    r"|ADD_VAR|AND$|OR$|END$|\w+_FAR$"
+)
+PLAIN = {op.name for op in OPS if not FUSED.match(op.name)}
+ENOUGH = 4 * 500  # random programs
+
+
+def plain_of(text: str, kit: Kit = TINIBOT) -> PlainCode:
+    found = compile_text(text, kit)
+    assert found.is_right and found.program is not None, text
+    return plain_code(found.program)
+
+
+def names(text: str, kit: Kit = TINIBOT) -> str:
+    """Return the instructions of the plain code, without offsets and operands."""
+    rows = listing(plain_of(text, kit).code).splitlines()
+    return " ".join(row[25:].split()[0] for row in rows)
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        # what the optimiser would fold, fuse or drop
+        ("X = 2 + 3; SHOW(X)", "PUSH_NUM_2 PUSH_NUM_3 ADD SET_VAR_0 PUSH_VAR_0 SHOW"),
+        ("X = 1; X = X + 1", "PUSH_NUM_1 SET_VAR_0 PUSH_VAR_0 PUSH_NUM_1 ADD SET_VAR_0"),
+        ("F(2, 80)", "PUSH_NUM_2 PUSH_NUM_80 MOVE_F"),
+        ("W(1)", "PUSH_NUM_1 WAIT"),
+        ("M(50, -50)", "PUSH_NUM_50 PUSH16 MOTORS"),
+        ("BEEP(1, 440)", "PUSH_NUM_1 PUSH16 BEEP"),
+        ("SHOW(DISTANCE)", "READ_2 PUSH_SENSOR_2 SHOW"),
+        ("DISTANCE; SHOW(DISTANCE)", "READ_2 PUSH_SENSOR_2 SHOW"),
+        ("LOOP(3); S; END_LOOP", "PUSH_NUM_3 LOOP STOP NEXT"),
+        ("LOOP(0); S; END_LOOP", "PUSH_NUM_0 LOOP STOP NEXT"),
+        ("LOOP(FOREVER); BREAK; S; END_LOOP; S", "FOREVER BREAK STOP AGAIN STOP"),
+        ("LOOP(2); BREAK; END_LOOP", "PUSH_NUM_2 LOOP BREAK_LOOP NEXT"),
+        ("WHILE(FALSE); S; END_WHILE", "WHILE PUSH_FALSE IF STOP AGAIN"),
+        ("IF(TRUE); S; ENDIF", "PUSH_TRUE IF STOP"),
+        ("IF(TRUE); ENDIF", "PUSH_TRUE IF"),
+        ("IF(TRUE); ELSE; ENDIF", "PUSH_TRUE IF ELSE"),
+        ("IF(TRUE); ELSEIF(FALSE); ENDIF", "PUSH_TRUE IF ELSE PUSH_FALSE IF"),
+        ("IF(TRUE); ELSEIF(FALSE); ELSE; ENDIF", "PUSH_TRUE IF ELSE PUSH_FALSE IF ELSE"),
+        ("SHOW(NOT TRUE AND FALSE)", "PUSH_TRUE NOT AND_THEN PUSH_FALSE SHOW_YES_NO"),
+        ("IF(TIME < 1 OR TIME > 2); ENDIF", "TIME PUSH_NUM_1 LT OR_ELSE TIME PUSH_NUM_2 GT IF"),
+        ("F(1, 50) UNTIL(TIME > 1)", "PUSH_NUM_1 PUSH_NUM_50 WATCH_F TIME PUSH_NUM_1 GT UNTIL"),
+        ("W(FOREVER) UNTIL(TRUE)", "WATCH_FOREVER_WAIT PUSH_TRUE UNTIL"),
+        ("L(FOREVER, 9) UNTIL(TRUE)", "PUSH_NUM_9 WATCH_FOREVER_L PUSH_TRUE UNTIL"),
+        # readings: in front of the instruction, and those of UNTIL behind WATCH
+        (
+            "F(DISTANCE, LIGHT_L) UNTIL(DISTANCE < 5)",
+            "READ_2 READ_1 PUSH_SENSOR_2 PUSH_SENSOR_1 WATCH_F"
+            " READ_2 PUSH_SENSOR_2 PUSH_NUM_5 LT UNTIL",
+        ),
+        ("WHILE(DISTANCE < 5); END_WHILE", "WHILE READ_2 PUSH_SENSOR_2 PUSH_NUM_5 LT IF AGAIN"),
+        (
+            "IF(DISTANCE < 5); ELSEIF(DISTANCE < LIGHT_L); ENDIF",
+            "READ_2 PUSH_SENSOR_2 PUSH_NUM_5 LT IF ELSE READ_1 PUSH_SENSOR_2 PUSH_SENSOR_1 LT IF",
+        ),
+        # DEFs where they stand, called or not
+        ("S; DEF A; END_DEF; S", "STOP DEF RETURN STOP"),
+        ("S; DEF A; S; END_DEF; A; DEF C; END_DEF", "STOP DEF STOP RETURN CALL DEF RETURN"),
+        # the minus of a number, and others
+        ("X = - 5; X = 3 - 5; X = --5; X = -(5)",
+         "PUSH_TENTHS SET_VAR_0 PUSH_NUM_3 PUSH_NUM_5 SUB SET_VAR_0 PUSH_TENTHS NEG SET_VAR_0"
+         " PUSH_NUM_5 NEG SET_VAR_0"),
+        # nothing
+        ("START", ""), ("", ""), ("PING|CHECK_CONNECTION", ""),
+    ],
+)  # fmt: skip
+def test_each_word_is_its_own_instruction(text: str, says: str) -> None:
+    assert names(text) == says
+
+
+@pytest.mark.parametrize(
+    ("number", "code"),
+    [
+        ("0", "b0"), ("10", "ba"), ("11", "01 0b"), ("20", "bb"), ("100", "c3"), ("110", "01 6e"),
+        ("255", "01 ff"), ("256", "02 00 01"), ("-1", "0c f6"), ("-12.8", "0c 80"),
+        ("-13", "02 f3 ff"), ("12.7", "0c 7f"), ("12.8", "03 00 32"), ("0.001", "03 01 00"),
+        ("-32.768", "03 00 80"), ("32.768", "04 00 80 00 00"), ("32767", "02 ff 7f"),
+        ("32768", "04 00 00 f4 01"), ("-32768", "02 00 80"), ("300.5", "04 d4 95 04 00"),
+        ("2147483.647", "04 ff ff ff 7f"), ("1.0005", "03 e9 03"),
+    ],
+)  # fmt: skip
+def test_a_number_has_the_first_push_that_says_it(number: str, code: str) -> None:
+    assert plain_of(f"SHOW({number})").code.hex(" ") == f"{code} 39"
+
+
+def test_operands_to_7_are_part_of_the_code() -> None:
+    made = plain_of("; ".join(f"V{k} = 0" for k in range(9))).code
+    assert made == b"".join(bytes((0xB0, 0xA0 + k)) for k in range(8)) + b"\xb0\x30\x08"
+
+
+def test_variables_have_their_numbers_in_the_order_of_the_text() -> None:
+    text = "IF(FALSE); C = 1; ENDIF; DEF D; A = 2; END_DEF; E = 3; SHOW(A); SHOW(C)"
+    last = listing(plain_of(text).code).splitlines()[-6:]
+    assert [row[25:] for row in last] == [
+        "PUSH_NUM_3", "SET_VAR_2", "PUSH_VAR_1", "SHOW", "PUSH_VAR_0", "SHOW"
+    ]  # fmt: skip
+
+
+def test_the_length_is_that_with_short_jumps() -> None:
+    """A robot refuses code with a far jump; `tsc` says how much too long it is with short ones."""
+    text = "IF(TRUE); " + "S; " * 300 + "ENDIF"
+    made = plain_of(text)
+    assert BY_NAME["IF_FAR"].code == made.code[1] and len(made.code) == 304
+    assert made.length == 303
+    assert [each.offset for each in made.places[:3]] == [0, 3, 4]
+
+
+def test_code_that_fits_a_level_has_no_far_jump() -> None:
+    made = plain_of("IF(TRUE); " + "S; " * (CODE_BYTES - 3) + "ENDIF")
+    assert len(made.code) == made.length == CODE_BYTES
+    assert "FAR" not in listing(made.code)
+
+
+def test_the_page_names_every_instruction_of_plain_code_and_no_other() -> None:
+    """`MOVE_B`, `PUSH_NUM_5` and the like are under the first of their kind."""
+    page = (ROOT / "docs" / "text.md").read_text(encoding="utf-8")
+    page = page[page.index("## Plain code") : page.index("## Three programs")]
+    named = {word for part in re.findall(r"`([^`]+)`", page) for word in part.split()}
+    for name in PLAIN:
+        kind = re.sub(r"_\d+$", "", name)
+        kind = {"PUSH_NUM": "PUSH_NUM_n"}.get(kind, kind)
+        kind = re.sub(r"(MOVE|WATCH|WATCH_FOREVER)_[BLR]$", r"\1_F", kind)
+        assert kind in named, name
+    known = {op.name for op in OPS}
+    assert named & known <= PLAIN | {"AND", "OR"}  # which are words of the language, too
+
+
+def check_same(found: Compiled, kit: Kit, senses: Senses) -> None:
+    """The plain code of a program passes the verifier and does what its other code does."""
+    assert found.program is not None
+    made = plain_code(found.program)
+    verify(made.code, len(kit.sensors), len(kit.actuators))
+    short = "_FAR" not in listing(made.code)
+    assert (made.length == len(made.code)) == short
+    if short:
+        used = {row[25:].split()[0] for row in listing(made.code).splitlines()}
+        assert used <= PLAIN, used - PLAIN
+    trace = run_python(image_for(made.code, kit, found.program.start), kit, senses)
+    assert same(run_python(found.image, kit, senses), trace), found.source.text
+
+
+@pytest.mark.parametrize("first", range(0, ENOUGH, 500))
+def test_random_programs_do_the_same_in_plain_code(first: int) -> None:
+    for seed in range(first, first + 500):
+        rng = random.Random(seed)
+        oracle_kit, kit = KITS[seed % len(KITS)]
+        found = compile_text(programs.program(rng, oracle_kit), kit)
+        readings = programs.senses(rng, oracle_kit)
+        check_same(found, kit, Senses(readings, MAX_MS, MAX_STEPS, seed + 1))
+
+
+def test_programs_of_all_documents_do_the_same_in_plain_code() -> None:
+    run = [case for case in CASES if {"tiniscript", "robot"} <= set(case.parts)]
+    assert len(run) > 100 and len(run) == len(having("tiniscript", "robot"))
+    for case in run:
+        robot, senses = robot_and_senses(case)
+        check_same(compiled(case), robot.kit, senses)
