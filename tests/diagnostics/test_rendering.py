@@ -45,6 +45,7 @@ WITHOUT_EXAMPLE: dict[str, Mapping[str, str]] = {
     "TS308": {"level": "uno", "word": "RANDOM"},
     "TS309": LEVEL,
     "TS310": LEVEL,
+    "TS311": LEVEL,
     "TS809": BOARD,
 }
 

@@ -100,9 +100,10 @@ def test_a_sign_that_is_no_checksum_is_a_mistake(text: str, place: str) -> None:
 
 def test_in_a_comment_it_is_a_sign_like_others() -> None:
     assert said("S // ~5 cm, ~12345678 or so") == []
+    assert said("S // ~5 cm ~12345678") == []  # the first one counts
 
 
 def test_a_formatted_text_has_no_checksums_for_it_is_another_text() -> None:
-    rows = [with_checksum("s // stop"), with_checksum("// ~5"), with_checksum("f(1,50)")]
+    rows = [with_checksum("s // stop"), "// ~5", with_checksum("f(1,50)")]
     text = formatted(Source("\n".join(rows)))
     assert text == "S;  // stop\n// ~5\nF(1, 50);\n"

@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import random
 import re
 
 import pytest
 
+from tests.oracle import programs
 from tests.support.casefile import ROOT
+from tests.support.kits import KITS
 from tiniscript import compile_text, robots
 from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.robots.boards import CHIPS
+from tiniscript.syntax.lexer import scan
 from tiniscript.text.fitting import misfits
 from tiniscript.text.levels import CODE_BYTES, LEVELS, Level
-from tiniscript.text.memory import KEPT_FREE, NAME_BYTES
+from tiniscript.text.memory import Reader
+from tiniscript.text.plain import plain_code
 from tiniscript.words import WORDS
 
 TINIBOT = robots.load("tinibot").kit
@@ -58,7 +63,7 @@ def test_levels_lack_words_of_the_language_alone() -> None:
 
 
 def test_a_word_that_a_level_lacks_is_told_at_each_place() -> None:
-    small = Level("small", "uno", frozenset(("RANDOM", "DEF", "END_DEF")))
+    small = Level("small", "uno", 2, frozenset(("RANDOM", "DEF", "END_DEF")))
     text = "DEF A; END_DEF; X = random(1, 6); SHOW(X + RANDOM(1, 2)); A // RANDOM"
     assert told(text) == []
     assert told(text, small) == [
@@ -89,15 +94,80 @@ def test_short_jumps_alone_count() -> None:
     assert told(text)[0][2] == {"code": "303", "limit": "255", "over": "48"}
 
 
+def most(text: str, level: Level = UNO) -> int:
+    """Return the bytes that a reader needs for a text."""
+    reader = Reader(scan(text).tokens, TINIBOT, level.sensor_bytes)
+    reader.program()
+    return reader.most
+
+
+@pytest.mark.parametrize(
+    ("text", "bytes_"),
+    [
+        ("", 0),
+        ("S", 1),  # a letter of a word lies where the code comes
+        ("STOP", 4),
+        ("S;STOP", 5),
+        # a value's own byte, and one byte of code behind it
+        ("W(5)", 2),
+        ("F(5, 5)", 3),  # code, the second value, code
+        ("W(((5)))", 4),
+        ("W(-(-(5)))", 6),
+        ("X=5", 4),  # the letter twice, then the name and its byte
+        ("X=5;Y=5", 8),
+        ("LONG=5", 9),
+        # blocks: 9 bytes each, and the code before and in them
+        ("IF(TRUE);ENDIF", 12 + 5),
+        ("IF(TRUE);S;ENDIF;IF(TRUE);S;ENDIF", 8 + 9 + 5),
+        ("LOOP(2);S;END_LOOP", 4 + 9 + 8),
+        ("DEF AB;END_DEF", 2 + 8 + 9 + 7),
+        ("SHOW(TRUE AND TRUE)", 3 + 3 + 4),
+    ],
+)
+def test_what_a_reader_needs(text: str, bytes_: int) -> None:
+    assert most(text) == bytes_
+
+
+def test_a_set_of_sensors_is_wider_where_there_may_be_more() -> None:
+    assert most("LOOP(2);END_LOOP", LEVELS["mega"]) == most("LOOP(2);END_LOOP") + 3 * 2
+    assert most("DEF A;END_DEF", LEVELS["mega"]) == most("DEF A;END_DEF") + 4 * 2
+
+
+@pytest.mark.parametrize("first", range(0, 2000, 500))
+def test_the_reader_and_the_compiler_count_the_same_code(first: int) -> None:
+    for seed in range(first, first + 500):
+        oracle_kit, kit = KITS[seed % len(KITS)]
+        found = compile_text(programs.program(random.Random(seed), oracle_kit), kit)
+        reader = Reader(scan(found.source.text).tokens, kit, 2)
+        reader.program()
+        assert found.program is not None
+        assert reader.length == plain_code(found.program).length, found.source.text
+        names = [*reader.variables, *(name + 5 * "?" for name in reader.defs)]
+        assert reader.used == sum(1 + len(name) for name in names), found.source.text
+
+
 def test_names_take_room_too() -> None:
-    long = "".join(f"{chr(65 + k)}{'X' * 39}=0;" for k in range(8))
-    used = 8 * (2 + 40 + NAME_BYTES) + KEPT_FREE
-    assert used > UNO.room
-    values = {"code": str(used), "limit": str(UNO.room), "over": str(used - UNO.room)}
-    [(code, place, its)] = told(long)
-    assert (code, its) == ("TS310", values)
-    assert place == "H"  # where it is full
+    long = "".join(f"{chr(65 + k)}{'X' * 49}=0;" for k in range(7))
+    before = 6 * (2 + 51)
+    needed = before + 2 * 50 + 1
+    values = {"code": str(needed), "limit": str(UNO.room), "over": str(needed - UNO.room)}
+    assert told(long) == [("TS310", "G" + "X" * 49, values)]  # where it is full
     assert told(long, LEVELS["mega"]) == []
+    assert told(long[: -len("X=0;") - (needed - UNO.room) // 2 - 1] + "=0;") == []
+
+
+def test_a_word_has_at_most_255_letters() -> None:
+    fits, over = "X" * 255 + "=0", "X" * 256 + "=0"
+    for level in (LEVELS["mega"], LEVELS["esp32"]):
+        assert told(fits, level) == []
+        assert told(over, level) == [("TS308", "X" * 256, {"word": "X" * 256})]
+
+
+def test_at_most_254_brackets_are_open_at_once() -> None:
+    fits = f"X=0;SHOW({'(' * 253}X{')' * 253})"
+    assert told(fits) == []
+    over = f"X=0;SHOW({'(' * 254}X{')' * 254})"
+    assert told(over) == [("TS311", "(", {"limit": "254"})]
 
 
 @pytest.mark.parametrize("text", ["", "PING|CHECK_CONNECTION", "SB|", "SI|F(2, 80)"])

@@ -122,6 +122,11 @@ def _push(value: int) -> tuple[Op, tuple[int, ...]]:
     return BY_NAME["PUSH_MILLI" if -32768 <= value <= 32767 else "PUSH32"], (value,)
 
 
+def push_bytes(value: int) -> int:
+    """Return the bytes of the instruction that pushes `value` thousandths."""
+    return _push(value)[0].size
+
+
 def pushes_in_one_byte(term: Term, variable: int) -> bool:
     """Return whether to push a number and to set a variable takes a byte each."""
     return variable < SHORTS and _push(term.value)[0].size == 1

@@ -143,6 +143,7 @@ BOARD_TOO_SMALL = _mistake("TS307")
 LEVEL_WORD = _mistake("TS308")
 LEVEL_CODE = _mistake("TS309")
 LEVEL_ROOM = _mistake("TS310")
+LEVEL_BRACKETS = _mistake("TS311")
 # what a teacher would say
 ROUNDED = _warning("TS801")
 NEVER_REACHED = _warning("TS802")

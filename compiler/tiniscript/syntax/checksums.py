@@ -17,7 +17,10 @@ SPACES = (
 )
 _BYTE_ORDER_MARK = "\ufeff"
 
-_CHECKSUM = re.compile(rf"~([0-9A-Fa-f]{{8}})(?=[{SPACES}]*(?:[\r\n]|\Z))")
+# a line, and the checksum at its first ~
+_CHECKED = re.compile(
+    rf"(?:\A|(?<=[\r\n]))([^~\r\n]*)~([0-9A-Fa-f]{{8}})(?=[{SPACES}]*(?:[\r\n]|\Z))"
+)
 
 
 def checksum_of(line: str) -> int:
@@ -33,10 +36,9 @@ def with_checksum(line: str) -> str:
 def without_checksums(text: str) -> tuple[str, list[Diagnostic]]:
     """Return `text` with spaces in the place of checksums, and those that do not fit."""
     wrong = []
-    for match in _CHECKSUM.finditer(text):
-        start, end = match.span()
-        begin = max(text.rfind("\n", 0, start), text.rfind("\r", 0, start)) + 1
-        if checksum_of(text[begin:start]) != int(match[1], 16):
-            span = Span(start, end)
-            wrong.append(Diagnostic(codes.CHECKSUM_WRONG, span, {"found": match.group()}))
-    return _CHECKSUM.sub(" " * 9, text), wrong
+    for match in _CHECKED.finditer(text):
+        if checksum_of(match[1]) != int(match[2], 16):
+            span = Span(match.end(1), match.end())
+            found = {"found": f"~{match[2]}"}
+            wrong.append(Diagnostic(codes.CHECKSUM_WRONG, span, found))
+    return _CHECKED.sub(rf"\1{' ' * 9}", text), wrong

@@ -13,8 +13,8 @@ from tiniscript.semantics.ir import Program
 from tiniscript.source import Source, Span
 from tiniscript.syntax.lexer import WORD
 from tiniscript.syntax.parser import parse
-from tiniscript.text import memory
-from tiniscript.text.levels import CODE_BYTES, Level
+from tiniscript.text.levels import CODE_BYTES, LONGEST_WORD, Level
+from tiniscript.text.memory import MOST_BRACKETS, Reader
 from tiniscript.text.plain import PlainCode, plain_code
 
 
@@ -24,7 +24,7 @@ def misfits(source: Source, program: Program, kit: Kit, level: Level) -> list[Di
     found = [
         Diagnostic(codes.LEVEL_WORD, token.span, {"level": level.name, "word": token.text})
         for token in parsed.scan.tokens
-        if token.kind is WORD and token.text in level.lacks
+        if token.kind is WORD and (token.text in level.lacks or len(token.text) > LONGEST_WORD)
     ]
     plain = plain_code(program)
     limit = min(CODE_BYTES, level.room)
@@ -32,11 +32,15 @@ def misfits(source: Source, program: Program, kit: Kit, level: Level) -> list[Di
         place = _first_behind(plain, limit)
         found.append(_too_many(codes.LEVEL_CODE, place, level, plain.length, limit))
         return found
-    needed = memory.needed(parsed.program.body, plain)
-    if needed > level.room:
-        at = memory.full_at(parsed.program.body, plain, level.room)
-        place = Span(at, at + 1)
-        found.append(_too_many(codes.LEVEL_ROOM, place, level, needed, level.room))
+    reader = Reader(parsed.scan.tokens, kit, level.sensor_bytes)
+    reader.program()
+    if reader.one_too_many is not None:
+        values = {"level": level.name, "limit": str(MOST_BRACKETS)}
+        found.append(Diagnostic(codes.LEVEL_BRACKETS, reader.one_too_many, values))
+    for need in reader.needs:
+        if need.bytes > level.room:
+            found.append(_too_many(codes.LEVEL_ROOM, need.span, level, reader.most, level.room))
+            break
     return found
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 CODE_BYTES = 255  # of a typed program: a jump of one byte reaches over all of it
+LONGEST_WORD = 255  # letters of a word that a reader takes
 
 
 class Level(NamedTuple):
@@ -18,6 +19,7 @@ class Level(NamedTuple):
 
     name: str
     board: str  # whose memory it has, as `robots.boards` names it
+    sensor_bytes: int  # of a set of sensors, with a bit for each, in its reader
     lacks: frozenset[str] = frozenset()
 
     @property
@@ -34,8 +36,8 @@ class Level(NamedTuple):
 LEVELS = {
     level.name: level
     for level in (
-        Level("uno", "uno"),
-        Level("mega", "mega"),
-        Level("esp32", "esp32dev"),
+        Level("uno", "uno", 2),
+        Level("mega", "mega", 4),
+        Level("esp32", "esp32dev", 4),
     )
 }

@@ -1,57 +1,356 @@
-"""How much memory a robot's reader needs while it reads a program.
+"""How much of its memory a robot's reader uses while it reads a program, token by token.
 
-Knows what its reader keeps beside the code, and what each of these takes. The C++ reader must
-agree: this module is the only place in Python that knows its layout.
+Knows what a reader keeps beside the code, and in which order: `docs/text.md`. The code grows from
+one end of the memory; names, blocks that are open and operators that wait grow from the other one,
+and a word lies behind the code until it has been looked up. Made for right programs: it looks for
+no mistake.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from typing import NamedTuple
 
-from tiniscript.bytecode.opcodes import BLOCKS
-from tiniscript.syntax import ast
-from tiniscript.text.plain import PlainCode
+from tiniscript.bytecode.opcodes import SHORTS
+from tiniscript.codegen.lower_expression import push_bytes
+from tiniscript.fixed_point import read_literal
+from tiniscript.kit import Kit
+from tiniscript.source import Span
+from tiniscript.syntax.blocks import ENDS
+from tiniscript.syntax.cursor import AT_END
+from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Token
+from tiniscript.syntax.operators import AND, BINARY, MINUS, NOT, OPEN
+from tiniscript.words import WORDS
 
-NAME_BYTES = 1  # of each name of a variable or a DEF, beside its letters
-DEF_BYTES = 1  # of each DEF more: where it begins
-BLOCK_BYTES = 3  # of each block that is open
-OPERATOR_BYTES = 1  # of each operator, bracket and call that waits
-WAITING = 16  # operators that may wait at once: room is kept for them
-KEPT_FREE = BLOCKS * BLOCK_BYTES + WAITING * OPERATOR_BYTES
-
-
-def remembered(body: Sequence[ast.Instruction]) -> list[tuple[int, int]]:
-    """Return for each name that a program makes its place in the text, and its bytes."""
-    seen: dict[str, tuple[int, int]] = {}
-    waiting = list(reversed(body))
-    while waiting:
-        node = waiting.pop()
-        if isinstance(node, (ast.Assign, ast.Def)):
-            size = len(node.name) + NAME_BYTES + DEF_BYTES * isinstance(node, ast.Def)
-            seen.setdefault(node.name, (node.name_span.start, size))
-        if isinstance(node, ast.If):
-            waiting += reversed(
-                (*(each for arm in node.arms for each in arm.body), *node.otherwise)
-            )
-        elif isinstance(node, (ast.Loop, ast.While, ast.Def)):
-            waiting += reversed(node.body)
-    return list(seen.values())
+MOST_BRACKETS = 254  # open at once
+_BLOCK_BYTES = 3  # and three sets of sensors
+_DEF_BYTES = 3  # in front of the name of a DEF, and a set of sensors
+_JUMP = 2  # bytes of an instruction with a short jump
+_MOVES = frozenset(("move", "wait"))
 
 
-def needed(body: Sequence[ast.Instruction], plain: PlainCode) -> int:
-    """Return the bytes that a reader needs for a program: its code, its names, what waits."""
-    return plain.length + sum(size for _, size in remembered(body)) + KEPT_FREE
+class Need(NamedTuple):
+    """So many bytes are needed from the token at `span` on, and fewer before."""
+
+    bytes: int
+    span: Span
 
 
-def full_at(body: Sequence[ast.Instruction], plain: PlainCode, room: int) -> int:
-    """Return where in the text a reader with so much room is full; it needs more for the whole."""
-    grows = sorted(remembered(body))
-    used, k = KEPT_FREE, 0
-    ends = [*(place.offset for place in plain.places[1:]), plain.length]
-    for place, end in zip(plain.places, ends, strict=True):
-        while k < len(grows) and grows[k][0] <= place.span.start:
-            used += grows[k][1]
-            k += 1
-        if used + end > room:
-            return place.span.start
-    return grows[-1][0] if grows else 0
+class _Block:
+    """A block that is open; sets of sensors have a bit for each."""
+
+    __slots__ = ("after", "before", "has_else", "name", "taken", "word")
+
+    def __init__(self, word: str, before: int, taken: int, name: str = "") -> None:
+        self.word = word
+        self.name = name  # of a DEF
+        self.before = before
+        self.taken = taken
+        self.after = -1
+        self.has_else = False
+
+
+class Reader:
+    """Reads a right program as a robot does, one of whose sets of sensors has `sensor_bytes`.
+
+    `needs` says where it needs more than before: the last is the most.
+    """
+
+    def __init__(self, tokens: list[Token], kit: Kit, sensor_bytes: int) -> None:
+        self.tokens = tokens
+        self.i = 0
+        self.needs: list[Need] = []
+        self.most = 0  # bytes that have been wanted at once
+        self.block_bytes = _BLOCK_BYTES + 3 * sensor_bytes
+        self.def_bytes = _DEF_BYTES + sensor_bytes
+        self.length = 0  # of the code
+        self.used = 0  # at the other end
+        self.brackets = 0
+        self.one_too_many: Span | None = None  # the first bracket behind MOST_BRACKETS
+        self.sensors = {each.name: k for k, each in enumerate(kit.sensors)}
+        self.actuators = {each.name: k for k, each in enumerate(kit.actuators)}
+        self.variables: dict[str, int] = {}
+        self.defs: dict[str, int] = {}  # what each surely reads
+        self.blocks: list[_Block] = []
+        self.read = 0  # sensors that are surely read
+        self.known = 0  # those, and what this instruction has read
+        self.waiting: list[tuple[int, str]] = []  # operators: how tightly each binds, its name
+
+    # -- memory -------------------------------------------------------------------------------
+
+    def has_room(self, more: int) -> None:
+        """Note that a byte is wanted behind the code and `more` bytes."""
+        wanted = self.length + more + 1 + self.used
+        if wanted > self.most:
+            self.most = wanted
+            self.needs.append(Need(wanted, self.tokens[max(self.i - 1, 0)].span))
+
+    def emit(self, count: int) -> None:
+        for _ in range(count):
+            self.has_room(0)
+            self.length += 1
+
+    def numbered(self, number: int) -> None:
+        self.emit(1 if number < SHORTS else 2)
+
+    def push(self) -> None:
+        self.has_room(0)
+        self.used += 1
+
+    def pop(self) -> None:
+        self.used -= 1
+
+    def add_name(self, name: str, more: int) -> None:
+        count = 1 + more + len(name)
+        self.has_room(len(name) + count - 1)
+        self.used += count
+
+    # -- tokens -------------------------------------------------------------------------------
+
+    @property
+    def token(self) -> Token:
+        return self.tokens[self.i]
+
+    def take(self) -> Token:
+        """Go past the next token; a word comes letter by letter."""
+        token = self.tokens[self.i]
+        if token.kind is WORD:
+            self.i += 1
+            self.has_room(len(token.text) - 1)
+        else:
+            self.i += 1
+        return token
+
+    def skip_newlines(self) -> None:
+        while self.brackets and self.token.kind is NEWLINE:
+            self.i += 1
+
+    def open_bracket(self) -> None:
+        self.i += 1
+        self.brackets += 1
+        if self.brackets > MOST_BRACKETS and self.one_too_many is None:
+            self.one_too_many = self.tokens[self.i - 1].span
+
+    # -- instructions -------------------------------------------------------------------------
+
+    def program(self) -> None:
+        while self.token.kind is not END:
+            if self.token.kind in AT_END or self.token.kind == "|":
+                self.i += 1
+            else:
+                self.instruction()
+
+    def instruction(self) -> None:
+        self.known = self.read
+        token = self.take()
+        word = WORDS.get(token.text)
+        if word is None:
+            self.name(token.text)
+        elif token.text in ENDS:
+            self.close(ENDS[token.text])
+        elif token.text == "DEF":
+            name = self.take().text
+            self.add_name(name, self.def_bytes)
+            self.emit(_JUMP)
+            self.open("DEF", name)
+        elif token.text == "ELSE":
+            self.next_arm()
+            self.blocks[-1].has_else = True
+        elif word.role == "break":
+            self.emit(_JUMP)
+        elif word.role == "stop":
+            self.emit(1)
+        elif word.arguments:
+            self.command(token.text, word.role)
+
+    def name(self, name: str) -> None:
+        if self.token.kind == "=":
+            self.assignment(name)
+        elif name in self.sensors:
+            self.numbered(self.sensors[name])
+            self.read |= 1 << self.sensors[name]
+        elif name in self.defs:
+            self.read |= self.defs[name]
+            self.emit(_JUMP)
+        else:
+            self.arguments()
+            self.numbered(self.actuators[name])
+
+    def assignment(self, name: str) -> None:
+        number = self.variables.get(name, len(self.variables))
+        if name not in self.variables:
+            self.add_name(name, 0)
+        self.i += 1
+        self.push()
+        self.value()
+        self.variables[name] = number
+        self.numbered(number)
+
+    def command(self, word: str, role: str) -> None:
+        if word == "ELSEIF":
+            self.next_arm()
+        elif word == "WHILE":
+            self.emit(_JUMP)
+            self.open(word)
+        is_forever = self.arguments()
+        if role in _MOVES:
+            if self.token.kind is WORD:
+                self.take()
+                self.emit(1)
+                self.known = 0
+                self.arguments()
+            self.emit(1)
+        elif word == "LOOP":
+            self.emit(1 if is_forever else _JUMP)
+            self.open(word)
+        elif word in ("IF", "ELSEIF", "WHILE"):
+            self.emit(_JUMP)
+            if word == "IF":
+                self.open(word)
+            self.blocks[-1].taken = self.known
+        else:
+            self.emit(1)
+
+    # -- blocks -------------------------------------------------------------------------------
+
+    def open(self, word: str, name: str = "") -> None:
+        self.has_room(self.block_bytes - 1)
+        self.used += self.block_bytes
+        self.blocks.append(_Block(word, self.read, self.known, name))
+        if word != "IF":
+            self.known = self.read = 0
+
+    def next_arm(self) -> None:
+        block = self.blocks[-1]
+        self.emit(_JUMP)
+        block.after &= self.read
+        self.read, self.known = block.before, block.taken
+
+    def close(self, word: str) -> None:
+        block = self.blocks.pop()
+        if word == "IF":
+            self.read &= block.after & (-1 if block.has_else else block.before)
+        else:
+            self.emit(1 if word == "DEF" else _JUMP)
+            if word == "DEF":
+                self.defs[block.name] = self.read
+            self.read = block.before
+        self.used -= self.block_bytes
+
+    # -- values -------------------------------------------------------------------------------
+
+    def arguments(self) -> bool:
+        """Read what stands in the brackets of an instruction; return whether it is FOREVER."""
+        self.open_bracket()
+        is_forever = False
+        while True:
+            self.push()
+            self.skip_newlines()
+            if self.token.kind is WORD and self.token.text == "FOREVER":
+                is_forever = True
+                self.take()
+                self.skip_newlines()
+                self.pop()
+            else:
+                self.value()
+            if self.take().kind == ")":
+                self.brackets -= 1
+                return is_forever
+
+    def value(self) -> None:
+        """Read an expression to the sign behind it; below it lies a byte that is popped then."""
+        while True:
+            while not self.operand():
+                pass
+            if not self.operator():
+                break
+        self.pop()
+
+    def operand(self) -> bool:
+        """Read an operand or what stands before one; return whether the operand is complete."""
+        self.skip_newlines()
+        token = self.token
+        if token.kind == "(":
+            self.wait(OPEN, "(")
+            self.open_bracket()
+            return False
+        self.take()
+        if token.kind is NUMBER:
+            self.number(token)
+            return True
+        if token.kind == "-":
+            self.wait(MINUS, "NEG")
+            return False
+        if token.text == "NOT":
+            self.wait(NOT, "NOT")
+            return False
+        word = WORDS.get(token.text)
+        if word is not None and word.role == "function":
+            self.wait(OPEN, token.text)
+            self.skip_newlines()
+            self.open_bracket()
+            return False
+        if token.text in self.sensors:
+            number = self.sensors[token.text]
+            if not self.known >> number & 1:
+                self.known |= 1 << number
+                self.numbered(number)
+            self.numbered(number)
+        else:
+            self.numbered(self.variables.get(token.text, 0))
+        return True
+
+    def number(self, token: Token) -> None:
+        value, _ = read_literal(token.text)
+        if self.waiting and self.waiting[-1] == (MINUS, "NEG"):
+            before = self.i - 2
+            while self.tokens[before].kind is NEWLINE:
+                before -= 1
+            if self.tokens[before].kind == "-":
+                self.waiting.pop()
+                self.pop()
+                value = -value
+        self.emit(push_bytes(value))
+
+    def wait(self, binding: int, name: str) -> None:
+        self.push()
+        self.waiting.append((binding, name))
+
+    def operator(self) -> bool:
+        """Read what follows an operand; return whether another operand is wanted."""
+        while True:
+            self.skip_newlines()
+            token = self.token
+            if token.text in BINARY:
+                self.take()
+                self.binary(*BINARY[token.text])
+                return True
+            self.reduce(OPEN + 1)
+            if not self.waiting or token.kind not in (")", ","):
+                return False
+            if token.kind == ",":
+                self.take()
+                return True
+            self.take()
+            self.brackets -= 1
+            _, name = self.waiting.pop()
+            self.pop()
+            if name != "(":
+                self.emit(1)
+
+    def binary(self, binding: int, name: str) -> None:
+        self.reduce(binding)
+        if binding <= AND:
+            self.emit(1)
+            self.push()  # where its jump is
+            self.emit(1)
+        self.wait(binding, name)
+
+    def reduce(self, binding: int) -> None:
+        """Apply what waits and binds at least so tightly, back to an open bracket."""
+        while self.waiting and self.waiting[-1][0] >= binding:
+            its, _ = self.waiting.pop()
+            self.pop()
+            if its <= AND:
+                self.pop()
+            else:
+                self.emit(1)
