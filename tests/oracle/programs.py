@@ -9,6 +9,7 @@ from __future__ import annotations
 import itertools
 import random
 import re
+import zlib
 from collections.abc import Callable
 
 from tests.oracle.interpreter import PAPER_KIT, Device, Kit
@@ -557,7 +558,16 @@ class Layout:
             text += self.instruction(tokens) + self.end()
         if rng.random() < 0.5:
             text = text.rstrip(" ;\t\r\n\u00a0")
+        if rng.random() < 0.1:
+            text = self.newline.join(map(self.checked, text.split(self.newline)))
         return ("\ufeff" if rng.random() < 0.03 else "") + text
+
+    def checked(self, line: str) -> str:
+        """A line with its checksum, or without one."""
+        if self.rng.random() < 0.5:
+            return line
+        digits = f"{zlib.crc32(line.encode()):08x}"
+        return f"{line}~{self.rng.choice((digits, digits.upper()))}{self.rng.choice(('', ' '))}"
 
 
 def program(rng: random.Random, kit: Kit) -> str:
@@ -585,7 +595,7 @@ def senses(rng: random.Random, kit: Kit) -> dict[str, list[int]]:
 
 
 _PIECES = re.compile(r"[A-Za-z0-9_.]+|\s+|.", re.DOTALL)
-_NOISE = "();,|=<>+-*/%._ \n\t'\"#@!?&[]{}0123456789abcEFLWXYZñé¿½"
+_NOISE = "~();,|=<>+-*/%._ \n\t'\"#@!?&[]{}0123456789abcEFLWXYZñé¿½"
 _WORDS = (
     "IF", "ELSE", "ELSEIF", "ENDIF", "LOOP", "END_LOOP", "WHILE", "END_WHILE", "BREAK", "DEF",
     "END_DEF", "UNTIL", "FOREVER", "SI", "SB", "|", "PING", "TRUE", "AND", "NOT", "X", "DISTANCE",

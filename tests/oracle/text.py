@@ -7,6 +7,7 @@ readings it takes. Numbers are Python integers that count thousandths; yes/no va
 from __future__ import annotations
 
 import re
+import zlib
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import NamedTuple, NoReturn
@@ -109,9 +110,21 @@ _TOKEN = re.compile(
 )
 
 
+def without_checksum(line: str) -> str:
+    """A line without the checksum at its first ~, if there is one; it must fit."""
+    before, _, behind = line.partition("~")
+    digits = behind.rstrip(" \t\u00a0\u202f")
+    if not re.fullmatch(r"[0-9A-Fa-f]{8}", digits):
+        return line
+    if int(digits, 16) != zlib.crc32(before.encode()):
+        raise Mistake(f"{line!r} does not fit its checksum")
+    return before
+
+
 def tokens_of(text: str) -> list[Token]:
     """Cuts a text into tokens; an end of line inside parentheses is white space."""
     text = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n")
+    text = "\n".join(map(without_checksum, text.split("\n")))
     found: list[Token] = []
     line, depth, at = 1, 0, 0
     while at < len(text):
