@@ -89,7 +89,7 @@ CONSTRUCTS = {
     "F(2, 80)": "F [2]! [80]! «F(2, 80)»",
     "f ( 2 ,\n\n -80 )": "F [2]! [-80]! «f ( 2 , -80 )»",
     "S": "S «S»",
-    "SI|START;STOP": "STOP «STOP»",
+    "SI|START;STOP": "START «START»\nSTOP «STOP»",
     "DISTANCE": "DISTANCE «DISTANCE»",
     "LED(TRUE)": "LED [TRUE] «LED(TRUE)»",
     "F()": "F () «F()»",

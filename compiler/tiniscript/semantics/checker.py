@@ -139,6 +139,8 @@ class _Checker(Scope):
         if word is None:
             self.kit_or_def(node, made)
             return
+        if word.role == "start":  # it does nothing
+            return
         if word.role == "stop":
             made.append(ir.Stop(node.span))
             return

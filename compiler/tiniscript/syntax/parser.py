@@ -195,9 +195,8 @@ class Parser:
             self.recovery.no_bracket(word, known)
         if tokens[cursor.i].kind not in AT_END:
             until = self.until(word)
-        if known is None or known.role != "start":
-            span = cursor.span_from(word)
-            self.blocks.here.append(Command(word.text, word.span, arguments, until, span))
+        span = cursor.span_from(word)
+        self.blocks.here.append(Command(word.text, word.span, arguments, until, span))
 
     def arguments_of(self, word: Token, known: Word | None) -> tuple[Argument, ...] | None:
         if known is not None and not known.arguments:
