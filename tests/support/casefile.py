@@ -2,8 +2,8 @@
 
 Each heading `## sentence` that has fences is a case; each fence states one thing about it. The
 language of the fence says which: `tiniscript` (the program), `senses` (readings and limits),
-`robot` (the trace), `bytecode` (the listing), `plain` (that of its plain code), `line` (what a robot
-that reads text gets), `mistake` and `warning` (what is said),
+`robot` (the trace), `bytecode` (the listing), `plain` (that of its plain code), `line` (what a
+robot that reads text gets), `mistake` and `warning` (what is said),
 `refused` (the rule that a listing breaks). Fences of other languages are for people.
 """
 
@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 ROOT = Path(__file__).resolve().parent.parent.parent
-PARTS = ("tiniscript", "senses", "robot", "bytecode", "plain", "line", "mistake", "warning", "refused",
-         "formatted")  # fmt: skip
+PARTS = ("tiniscript", "senses", "robot", "bytecode", "plain", "line", "mistake", "warning",
+         "refused", "formatted")  # fmt: skip
 
 
 class Case(NamedTuple):
