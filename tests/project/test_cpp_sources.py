@@ -126,8 +126,8 @@ def test_compiler_names_a_forgotten_instruction(name: str, tmp_path: Path) -> No
     copy = Path(shutil.copytree(SOURCES / "src", tmp_path / "src"))
     source = copy / "vm" / "vm_instructions.cpp"
     text = source.read_text(encoding="utf-8")
-    assert text.count(f"case Family::{name}:") == 1
-    source.write_text(text.replace(f"case Family::{name}:", ""), encoding="utf-8")
+    assert text.count(f"case Op::{name}:") == 1
+    source.write_text(text.replace(f"case Op::{name}:", ""), encoding="utf-8")
     done = compiled("g++", source)
     assert done.returncode == 1
     assert name in done.stderr

@@ -4,6 +4,8 @@
 
 #include "number.h"
 
+#include "arithmetic.h"
+
 namespace tiniscript {
 
 namespace {
@@ -19,10 +21,11 @@ uint32_t magnitude(int32_t value) {
   return value < 0 ? 0 - bits : bits;
 }
 
-// Returns a * b / divisor, or 2^32 - 1 if the quotient is larger.
-#ifdef __wasm__
+// Returns a * b / divisor, or 2^32 - 1 if the quotient is larger. It is copied to where it is used:
+// a divisor that is known there needs no division.
+#if defined __x86_64__ || defined __aarch64__ || defined __wasm__
 
-Division divided(uint32_t a, uint32_t b, uint32_t divisor) {
+tini_always_inline Division divided(uint32_t a, uint32_t b, uint32_t divisor) {
   const uint64_t product = static_cast<uint64_t>(a) * b;
   const uint32_t low = static_cast<uint32_t>(product);
   if (low == product) return {low / divisor, low % divisor};  // quicker if it fits
@@ -31,18 +34,34 @@ Division divided(uint32_t a, uint32_t b, uint32_t divisor) {
   return {static_cast<uint32_t>(quotient), static_cast<uint32_t>(product - quotient * divisor)};
 }
 
-#else
+#else  // a chip of 32 bits
 
-// A chip of 32 bits may have no product and has no quotient of 64: they are made of parts, and bit
-// by bit where it must be.
-Division divided(uint32_t a, uint32_t b, uint32_t divisor) {
+// It may have no product of 64 bits: then it is made of parts.
+tini_always_inline uint64_t multiplied(uint32_t a, uint32_t b) {
+#ifdef __riscv_mul
+  return static_cast<uint64_t>(a) * b;
+#else
   const uint32_t parts[] = {(a & 0xffff) * (b & 0xffff), (a >> 16) * (b & 0xffff),
                             (a & 0xffff) * (b >> 16), (a >> 16) * (b >> 16)};
   const uint32_t middle = (parts[0] >> 16) + (parts[1] & 0xffff) + (parts[2] & 0xffff);
-  uint32_t low = middle << 16 | (parts[0] & 0xffff);
-  uint32_t high = parts[3] + (parts[1] >> 16) + (parts[2] >> 16) + (middle >> 16);
+  const uint32_t high = parts[3] + (parts[1] >> 16) + (parts[2] >> 16) + (middle >> 16);
+  return static_cast<uint64_t>(high) << 32 | (middle << 16 | (parts[0] & 0xffff));
+#endif
+}
+
+// It has no quotient of 64 bits: that is made 16 bits at a time, or bit by bit if a rest may be
+// longer than 16.
+tini_always_inline Division divided(uint32_t a, uint32_t b, uint32_t divisor) {
+  const uint64_t product = multiplied(a, b);
+  uint32_t low = static_cast<uint32_t>(product);
+  uint32_t high = static_cast<uint32_t>(product >> 32);
   if (high == 0) return {low / divisor, low % divisor};
   if (high >= divisor) return {0xffffffff, 0};
+  if (divisor <= 0xffff) {
+    const uint32_t upper = high << 16 | low >> 16;
+    const uint32_t lower = upper % divisor << 16 | (low & 0xffff);
+    return {upper / divisor << 16 | lower / divisor, lower % divisor};
+  }
   for (uint8_t bit = 32; bit != 0; bit--) {
     high = high << 1 | low >> 31;
     low <<= 1;
@@ -57,7 +76,7 @@ Division divided(uint32_t a, uint32_t b, uint32_t divisor) {
 #endif
 
 // Returns a * b / divisor rounded half up, or 2^32 - 1 if that is larger.
-uint32_t scaled(uint32_t a, uint32_t b, uint32_t divisor) {
+tini_always_inline uint32_t scaled(uint32_t a, uint32_t b, uint32_t divisor) {
   const Division division = divided(a, b, divisor);
   const bool is_up = division.remainder >= divisor - division.remainder;
   return division.quotient + (is_up && division.quotient != 0xffffffff ? 1 : 0);
@@ -83,16 +102,6 @@ Fault scale(Op op, int32_t* pair) {
   return finish(rest != 0 && differ ? second - rest : rest, is_negative, pair);
 }
 
-// Whether `a` and `b` compare as the last three bits of `op` say.
-bool relates(int32_t a, int32_t b, uint8_t op) {
-  const uint8_t comparator = op & 7;
-  const bool is_opposite = (comparator & 1) != 0;  // NE of EQ, GE of LT, LE of GT
-  bool is = a < b;
-  if (comparator < 2) is = a == b;
-  if (comparator == 3 || comparator == 4) is = a > b;
-  return is != is_opposite;
-}
-
 // Rounds the first of a pair to the number of decimals in the second.
 Fault round(int32_t* pair) {
   const int32_t places = whole(pair[1]);
@@ -111,7 +120,7 @@ Fault round(int32_t* pair) {
 Fault calculate(Op op, int32_t* pair) {
   switch (op) {
     case Op::kAdd:
-      return add(pair, pair + 1);
+      return sum(pair[0], pair[1], pair);
     case Op::kMul:
     case Op::kDiv:
     case Op::kMod:
@@ -119,13 +128,7 @@ Fault calculate(Op op, int32_t* pair) {
     case Op::kRound:
       return round(pair);
     case Op::kSub:
-      // a - b is ~(~a + b)
-      {
-        pair[0] = ~pair[0];
-        const Fault fault = add(pair, pair + 1);
-        pair[0] = ~pair[0];
-        return fault;
-      }
+      return difference(pair[0], pair[1], pair);
     case Op::kAbs:
       return finish(magnitude(pair[0]), false, pair);
     case Op::kNeg:
@@ -146,24 +149,17 @@ Fault calculate(Op op, int32_t* pair) {
       pair[0] = pair[0] == 0 ? 1 : 0;
       return Fault::kNone;
     default:
-      pair[0] = relates(pair[0], pair[1], static_cast<uint8_t>(op)) ? 1 : 0;
+      pair[0] = relates(pair[0], comparator_of(op), pair[1]) ? 1 : 0;
       return Fault::kNone;
   }
 }
 
-// A sum overflows if its sign differs from the signs of both parts.
-Fault add(int32_t* place, const int32_t* number) {
-  const int32_t value =
-      static_cast<int32_t>(static_cast<uint32_t>(*place) + static_cast<uint32_t>(*number));
-  if (((*place ^ value) & (*number ^ value)) < 0) return Fault::kOverflow;
-  *place = value;
-  return Fault::kNone;
-}
+Fault add(int32_t* place, const int32_t* number) { return sum(*place, *number, place); }
 
-int32_t thousandths(int16_t whole) { return int32_t{whole} * kOne; }
+int32_t thousandths(int16_t whole) { return in_thousandths(whole); }
 
 bool compare(const int32_t* a, int16_t whole, uint8_t op) {
-  return relates(*a, thousandths(whole), op);
+  return relates(*a, comparator_of(static_cast<Op>(op)), in_thousandths(whole));
 }
 
 int32_t whole(int32_t a) {

@@ -13,6 +13,9 @@
 #define tini_noinline
 #endif
 
+// Marks a function that is copied to where it is called, whatever the compiler thinks of it.
+#define tini_always_inline inline __attribute__((always_inline))
+
 // Marks a function that only assembly calls, which whole-program optimization would drop.
 #ifdef __AVR__
 #define tini_called_by_assembly __attribute__((used, externally_visible, noinline))

@@ -62,23 +62,50 @@ class Machine {
   uint8_t left() const { return left_; }
 
  private:
-  // The position in the program, as instructions change it. It is in the task only between ticks
-  // and during `act`.
+  // The position in the program while the inner loop runs. It is in the task only between ticks and
+  // during `act`.
   struct Running {
-    uint16_t next;
-    uint16_t at;
-    uint8_t depth;
+    const uint8_t* at;    // where the instruction begins
+    const uint8_t* next;  // its next operand, then the next instruction
+    int32_t* top;         // behind the topmost value of the stack
+
+    tini_always_inline uint8_t u8() { return *next++; }
+    tini_always_inline int8_t i8() { return static_cast<int8_t>(u8()); }
+    tini_always_inline uint16_t u16() {
+      const uint8_t low = u8();
+      return static_cast<uint16_t>(low | u8() << 8);
+    }
+    tini_always_inline int16_t i16() { return static_cast<int16_t>(u16()); }
   };
 
   // The inner loop, in `vm_instructions.cpp`; for the AVR it is in `execute_avr.S`, which knows
   // where members lie.
   void execute(uint8_t budget);
+
+  // What it is made of, in `steps.h`, but for the AVR.
   bool step(Running* run);
+  bool halt(Fault fault);
+  uint16_t offset(const uint8_t* at) const;
+  bool pop(Running* run, uint8_t values);
+  bool push(Running* run, int32_t value);
+  bool leave(Running* run, Fault fault);
   bool jump(Running* run, uint16_t distance);
   bool jump_back(Running* run, uint16_t distance);
+  bool unless(Running* run, bool holds, uint16_t distance);
+  bool join(Running* run, bool decisive, uint16_t distance);
   bool stay(Running* run);
-  bool act(Running* run, uint8_t code, const uint8_t* bytes, int32_t* top);
+  bool act(Running* run, uint8_t code);
   bool until(Running* run, bool stop);
+  bool push_variable(Running* run, uint8_t number);
+  bool push_sensor(Running* run, uint8_t number);
+  bool push_read(Running* run, uint8_t number);
+  bool set_variable(Running* run, uint8_t number);
+  bool add_to(uint8_t number, int32_t more);
+  bool loop(int32_t times);
+  bool loop(Running* run, uint16_t distance);
+  bool next(Running* run, uint16_t distance);
+  bool break_loop(Running* run, uint16_t distance);
+  bool call(Running* run, uint16_t distance);
   void check_places();
 
   // what asks something of the robot, of the clock or of chance, in `vm_robot.cpp`

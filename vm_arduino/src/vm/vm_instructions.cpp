@@ -2,274 +2,314 @@
 
 #ifndef __AVR__
 
-// Implements each instruction: one `case` per family in `bytecode.h`.
+// Implements each instruction: a `case` for each opcode, in the order of the spec.
 //
-// The switch has no `default`, so the compiler reports a missing family.
+// The switch has no `default`, so the compiler reports a missing opcode. Where the program is stays
+// in registers: nothing that is called gets the address of `Running`, as all that takes it is
+// copied into the loop.
 
+#include "arithmetic.h"
 #include "number.h"
-#include "shape.h"
 #include "small.h"
+#include "steps.h"
 #include "vm.h"
+
+// The eight instructions of one byte that have their operand in their code.
+#define tini_each_short(op) \
+  case Op::op##0:           \
+  case Op::op##1:           \
+  case Op::op##2:           \
+  case Op::op##3:           \
+  case Op::op##4:           \
+  case Op::op##5:           \
+  case Op::op##6:           \
+  case Op::op##7
+
+// The six instructions of a family that compares.
+#define tini_each_comparator(op) \
+  case Op::op##Eq:               \
+  case Op::op##Ne:               \
+  case Op::op##Lt:               \
+  case Op::op##Le:               \
+  case Op::op##Gt:               \
+  case Op::op##Ge
 
 namespace tiniscript {
 
 namespace {
 
-// The second byte of a word of operands, and a number with a sign.
-uint8_t high(uint16_t operand) { return static_cast<uint8_t>(operand >> 8); }
-int8_t signed8(uint8_t operand) { return static_cast<int8_t>(operand); }
+// The operand that is in the code of an instruction of one byte.
+tini_always_inline uint8_t in_code(uint8_t code) { return static_cast<uint8_t>(code % kShorts); }
 
-// The number that a one-byte instruction pushes: 0 to 10, and tens from 20 on.
-uint8_t pushed(uint8_t code) {
+// The number that an instruction of one byte pushes: 0 to 10, and tens from 20 on.
+tini_always_inline uint8_t pushed(uint8_t code) {
   const uint8_t n = static_cast<uint8_t>(code - static_cast<uint8_t>(Op::kPushNum0));
   return n <= 10 ? n : static_cast<uint8_t>((n - 9) * 10);
 }
 
 }  // namespace
 
-// Jumps by this many bytes forward or back from the end of the instruction.
-bool Machine::jump(Running* run, uint16_t distance) {
-  run->next = static_cast<uint16_t>(run->next + distance);
-  return true;
-}
-
-bool Machine::jump_back(Running* run, uint16_t distance) {
-  run->next = static_cast<uint16_t>(run->next - distance);
-  return true;
-}
-
-// Ends the tick before this instruction; the next tick begins with it.
-bool Machine::stay(Running* run) {
-  run->next = run->at;
-  return false;
-}
-
-// Lets `act` and `until` see where the program is, and go elsewhere.
-bool Machine::act(Running* run, uint8_t code, const uint8_t* bytes, int32_t* top) {
-  at_ = run->at;
-  task_.pc = run->next;
-  const bool goes_on = act(code, bytes, top);
-  run->next = task_.pc;
-  return goes_on;
-}
-
-bool Machine::until(Running* run, bool stop) {
-  task_.pc = run->next;
-  const bool goes_on = until(stop);
-  run->next = task_.pc;
-  return goes_on;
-}
-
 // Runs one instruction. Returns whether the next one may run now.
 //
-// Decoding is in one place: when a `case` begins, the operands are read and the values that it
-// takes lie at `values`. It ends with `break` if it leaves `value` there, else with `return`.
-__attribute__((always_inline)) inline bool Machine::step(Running* run) {
-  const uint16_t at = run->next;
-  run->at = at;
-  if (at > length_) return fail();
-  const uint8_t* const bytes = code_ + at;
+// Operands are read one after the other: when a `case` returns, `run->next` is behind the last one.
+tini_always_inline bool Machine::step(Running* run) {
+  const uint8_t* const bytes = run->next;
+  run->at = bytes;
+  if (static_cast<uint32_t>(bytes - code_) > length_) return halt(Fault::kBadCode);
   const uint8_t code = *bytes;
-  const Shape shape = shape_of(code);
-  const uint8_t size = shape.size();
-  run->next = static_cast<uint16_t>(at + size);
-  if (run->depth < shape.pops()) return fail();
-  run->depth = static_cast<uint8_t>(run->depth - shape.pops());
-  int32_t* const values = task_.stack + run->depth;
-  int32_t value = *values;
-  // the first byte of operands, which the code of an instruction of one byte says; the first two;
-  // and the last one or two
-  const uint8_t first = static_cast<uint8_t>(size == 1 ? code % kShorts : bytes[1]);
-  const uint16_t operand = static_cast<uint16_t>(bytes[1] | bytes[2] << 8);
-  const uint16_t distance = shape.is_far() ? operand : bytes[size - 1];
   const Op op = static_cast<Op>(code);
-  switch (shape.family) {
-    case Family::kNone:
-      return fail();
-
+  run->next++;
+  switch (op) {
     // values
-    case Family::kPushNum:
-      value = thousandths(pushed(code));
-      break;
-    case Family::kPush8:
-      value = thousandths(first);
-      break;
-    case Family::kPush16:
-      value = thousandths(static_cast<int16_t>(operand));
-      break;
-    case Family::kPushTenths:
-      value = static_cast<int16_t>(signed8(first) * 100);
-      break;
-    case Family::kPushMilli:
-      value = static_cast<int16_t>(operand);
-      break;
-    case Family::kPush32:
-      __builtin_memcpy(&value, bytes + 1, sizeof value);
-      break;
-    case Family::kPushFalse:
-      value = 0;
-      break;
-    case Family::kPushTrue:
-      value = 1;
-      break;
-    case Family::kPushVar:
-      if (first >= kVariables) return fail();
-      value = task_.variables[first];
-      break;
-    case Family::kPushSensor:
-      if (first >= sensors_) return fail();
-      value = readings_[first];
-      break;
-    case Family::kPushRead:
-      if (!sense(first)) return stay(run);
-      value = readings_[first];
-      break;
-    case Family::kTime:
-      run->depth++;
-      return act(run, code, bytes, values) && (run->depth <= kStackValues || fail());
-    case Family::kRandom:
-      run->depth++;
-      return act(run, code, bytes, values + 1);
-    case Family::kCalculate:
-      run->depth++;
-      return goes_on(calculate(op, values));
-    case Family::kAndThen:
-      if (value != 0) return true;
-      run->depth++;
-      return jump(run, distance);
-    case Family::kOrElse:
-      if (value == 0) return true;
-      run->depth++;
-      return jump(run, distance);
+    case Op::kPush8:
+      return push(run, in_thousandths(run->u8()));
+    case Op::kPush16:
+      return push(run, in_thousandths(run->i16()));
+    case Op::kPushMilli:
+      return push(run, run->i16());
+    case Op::kPush32: {
+      int32_t value;
+      __builtin_memcpy(&value, run->next, sizeof value);
+      run->next += sizeof value;
+      return push(run, value);
+    }
+    case Op::kPushFalse:
+      return push(run, 0);
+    case Op::kPushTrue:
+      return push(run, 1);
+    case Op::kPushVar:
+      return push_variable(run, run->u8());
+    case Op::kPushSensor:
+      return push_sensor(run, run->u8());
+    case Op::kPushRead:
+      return push_read(run, run->u8());
+    case Op::kTime:
+      return push(run, 0) && act(run, code);
+    case Op::kRandom:
+      if (!act(run, code)) return false;
+      run->top++;
+      return true;
+    case Op::kPushTenths:
+      return push(run, run->i8() * 100);
+
+    // calculating
+    case Op::kAdd:
+      return pop(run, 2) && leave(run, sum(run->top[0], run->top[1], run->top));
+    case Op::kSub:
+      return pop(run, 2) && leave(run, difference(run->top[0], run->top[1], run->top));
+    case Op::kMul:
+      return pop(run, 2) && leave(run, calculate(Op::kMul, run->top));
+    case Op::kDiv:
+      return pop(run, 2) && leave(run, calculate(Op::kDiv, run->top));
+    case Op::kMod:
+      return pop(run, 2) && leave(run, calculate(Op::kMod, run->top));
+    case Op::kNeg:
+    case Op::kAbs:
+    case Op::kNot:
+      return pop(run, 1) && leave(run, calculate(op, run->top));
+    case Op::kMin:
+    case Op::kMax:
+    case Op::kRound:
+    case Op::kEq:
+    case Op::kNe:
+    case Op::kLt:
+    case Op::kLe:
+    case Op::kGt:
+    case Op::kGe:
+    case Op::kAnd:
+    case Op::kOr:
+      return pop(run, 2) && leave(run, calculate(op, run->top));
+    case Op::kAndThen:
+      return join(run, false, run->u8());
+    case Op::kAndThenFar:
+      return join(run, false, run->u16());
+    case Op::kOrElse:
+      return join(run, true, run->u8());
+    case Op::kOrElseFar:
+      return join(run, true, run->u16());
 
     // variables
-    case Family::kSetVar:
-      if (first >= kVariables) return fail();
-      task_.variables[first] = value;
+    case Op::kSetVar:
+      return set_variable(run, run->u8());
+    case Op::kSetVar8: {
+      const uint8_t number = run->u8();
+      if (number >= kVariables) return halt(Fault::kBadCode);
+      task_.variables[number] = in_thousandths(run->i8());
       return true;
-    case Family::kSetVar8:
-      if (first >= kVariables) return fail();
-      task_.variables[first] = thousandths(signed8(high(operand)));
-      return true;
-    case Family::kAddVar8:
-      if (first >= kVariables) return fail();
-      *values = thousandths(signed8(high(operand)));
-      return goes_on(add(task_.variables + first, values));
-    case Family::kAddVar: {
-      const uint8_t second = high(operand);
-      if ((first | second) >= kVariables) return fail();
-      return goes_on(add(task_.variables + first, task_.variables + second));
     }
-    case Family::kIncVar:
-      if (first >= kVariables) return fail();
-      *values = kOne;
-      return goes_on(add(task_.variables + first, values));
-    case Family::kDecVar:
-      if (first >= kVariables) return fail();
-      *values = -kOne;
-      return goes_on(add(task_.variables + first, values));
+    case Op::kAddVar8: {
+      const uint8_t number = run->u8();
+      return add_to(number, in_thousandths(run->i8()));
+    }
+    case Op::kAddVar: {
+      const uint8_t number = run->u8();
+      const uint8_t second = run->u8();
+      return second < kVariables ? add_to(number, task_.variables[second]) : halt(Fault::kBadCode);
+    }
+    case Op::kIncVar:
+      return add_to(run->u8(), kOne);
+    case Op::kDecVar:
+      return add_to(run->u8(), -kOne);
 
     // the robot
-    case Family::kRead:
-      return sense(first) || stay(run);
-    case Family::kShow:
-    case Family::kShowYesNo:
-      if (act(run, code, bytes, values)) return true;
-      run->depth++;
+    case Op::kRead:
+      return sense(run->u8()) || stay(run);
+    case Op::kShow:
+    case Op::kShowYesNo:
+      if (act(run, code)) return true;
+      run->top++;
       return false;
-    case Family::kSet:
-    case Family::kStop:
-    case Family::kMotors:
-    case Family::kMotors8:
-    case Family::kMove:
-    case Family::kMove8:
-    case Family::kWatch:
-    case Family::kWatchForever:
-    case Family::kWait:
-    case Family::kWait8:
-    case Family::kWatchWait:
-    case Family::kWatchForeverWait:
-    case Family::kBeep:
-    case Family::kBeep8:
-    case Family::kEnd:
-      return act(run, code, bytes, values + shape.pops() - 1);
-    case Family::kUntil:
-      return until(run, value != 0);
-    case Family::kUntil8:
-      return until(run, compare(values, first, code));
-    case Family::kUntil16:
-      return until(run, compare(values, static_cast<int16_t>(operand), code));
+    case Op::kSet:
+    case Op::kMoveF:
+    case Op::kMoveB:
+    case Op::kMoveL:
+    case Op::kMoveR:
+    case Op::kMove8F:
+    case Op::kMove8B:
+    case Op::kMove8L:
+    case Op::kMove8R:
+    case Op::kWatchF:
+    case Op::kWatchB:
+    case Op::kWatchL:
+    case Op::kWatchR:
+    case Op::kWatchForeverF:
+    case Op::kWatchForeverB:
+    case Op::kWatchForeverL:
+    case Op::kWatchForeverR:
+    case Op::kWait:
+    case Op::kWait8:
+    case Op::kWatchWait:
+    case Op::kWatchForeverWait:
+    case Op::kBeep8:
+    case Op::kStop:
+    case Op::kMotors:
+    case Op::kMotors8:
+    case Op::kBeep:
+    case Op::kEnd:
+      tini_each_short(kSet) : return act(run, code);
+    case Op::kUntil:
+      return pop(run, 1) && until(run, *run->top != 0);
 
     // control
-    case Family::kIf:
-      return value != 0 || jump(run, distance);
-    case Family::kIfNot:
-      return value == 0 || jump(run, distance);
-    case Family::kIf8:
-      return compare(values, first, code) || jump(run, distance);
-    case Family::kIf16:
-      return compare(values, static_cast<int16_t>(operand), code) || jump(run, distance);
-    case Family::kIfVar8:
-      if (first >= kVariables) return fail();
-      return compare(task_.variables + first, high(operand), code) || jump(run, distance);
-    case Family::kIfVar16: {
-      if (first >= kVariables) return fail();
-      const int16_t constant = static_cast<int16_t>(high(operand) | bytes[3] << 8);
-      return compare(task_.variables + first, constant, code) || jump(run, distance);
-    }
-    case Family::kElse:
-    case Family::kBreak:
-    case Family::kDef:
-      return jump(run, distance);
-    case Family::kForever:
-    case Family::kWhile:
+    case Op::kIf:
+      return pop(run, 1) && unless(run, *run->top != 0, run->u8());
+    case Op::kIfFar:
+      return pop(run, 1) && unless(run, *run->top != 0, run->u16());
+    case Op::kIfNot:
+      return pop(run, 1) && unless(run, *run->top == 0, run->u8());
+    case Op::kIfNotFar:
+      return pop(run, 1) && unless(run, *run->top == 0, run->u16());
+    case Op::kElse:
+    case Op::kBreak:
+    case Op::kDef:
+      return jump(run, run->u8());
+    case Op::kElseFar:
+    case Op::kBreakFar:
+    case Op::kDefFar:
+      return jump(run, run->u16());
+    case Op::kForever:
       return true;
-    case Family::kAgain:
-      return jump_back(run, distance);
-    case Family::kLoop8:
-    case Family::kLoop:
-      value = op == Op::kLoop8 ? first : whole(value);
-      if (value < 1) return jump(run, distance);
-      if (task_.looped >= kCounters) return fail();
-      task_.counters[task_.looped++] = value;
+    case Op::kWhile:
+      run->next++;
       return true;
-    case Family::kNext:
-      if (task_.looped == 0) return fail();
-      if (--task_.counters[task_.looped - 1] != 0) return jump_back(run, distance);
-      task_.looped--;
+    case Op::kWhileFar:
+      run->next += 2;
       return true;
-    case Family::kBreakLoop:
-      if (task_.looped == 0) return fail();
-      task_.looped--;
-      return jump(run, distance);
-    case Family::kCall:
-      if (task_.called >= kCalls) return fail();
-      task_.calls[task_.called++] = run->next;
-      return jump_back(run, distance);
-    case Family::kReturn:
-      if (task_.called == 0) return fail();
-      run->next = task_.calls[--task_.called];
+    case Op::kAgain:
+      return jump_back(run, run->u8());
+    case Op::kAgainFar:
+      return jump_back(run, run->u16());
+    case Op::kLoop8:
+      return loop(run->u8());
+    case Op::kLoop:
+      return loop(run, run->u8());
+    case Op::kLoopFar:
+      return loop(run, run->u16());
+    case Op::kNext:
+      return next(run, run->u8());
+    case Op::kNextFar:
+      return next(run, run->u16());
+    case Op::kBreakLoop:
+      return break_loop(run, run->u8());
+    case Op::kBreakLoopFar:
+      return break_loop(run, run->u16());
+    case Op::kReturn:
+      if (task_.called == 0) return halt(Fault::kBadCode);
+      run->next = code_ + task_.calls[--task_.called];
       return true;
+    case Op::kCall:
+      return call(run, run->u8());
+    case Op::kCallFar:
+      return call(run, run->u16());
+
+      // in one byte
+      tini_each_short(kPushVar) : return push_variable(run, in_code(code));
+      tini_each_short(kPushSensor) : return push_sensor(run, in_code(code));
+      tini_each_short(kPushRead) : return push_read(run, in_code(code));
+      tini_each_short(kRead) : return sense(in_code(code)) || stay(run);
+      tini_each_short(kSetVar) : return set_variable(run, in_code(code));
+    tini_each_short(kPushNum) : case Op::kPushNum8:
+    case Op::kPushNum9:
+    case Op::kPushNum10:
+    case Op::kPushNum20:
+    case Op::kPushNum30:
+    case Op::kPushNum40:
+    case Op::kPushNum50:
+    case Op::kPushNum60:
+    case Op::kPushNum70:
+    case Op::kPushNum80:
+    case Op::kPushNum90:
+    case Op::kPushNum100:
+      return push(run, in_thousandths(pushed(code)));
+
+      // with a constant
+      tini_each_comparator(kUntil8) : {
+        const int32_t constant = in_thousandths(run->u8());
+        return pop(run, 1) && until(run, relates(*run->top, comparator_of(op), constant));
+      }
+      tini_each_comparator(kUntil16) : {
+        const int32_t constant = in_thousandths(run->i16());
+        return pop(run, 1) && until(run, relates(*run->top, comparator_of(op), constant));
+      }
+      tini_each_comparator(kIf8) : {
+        const int32_t constant = in_thousandths(run->u8());
+        return pop(run, 1) &&
+               unless(run, relates(*run->top, comparator_of(op), constant), run->u8());
+      }
+      tini_each_comparator(kIf16) : {
+        const int32_t constant = in_thousandths(run->i16());
+        return pop(run, 1) &&
+               unless(run, relates(*run->top, comparator_of(op), constant), run->u8());
+      }
+      tini_each_comparator(kIfVar8) : {
+        const uint8_t number = run->u8();
+        if (number >= kVariables) return halt(Fault::kBadCode);
+        const int32_t constant = in_thousandths(run->u8());
+        return unless(run, relates(task_.variables[number], comparator_of(op), constant),
+                      run->u8());
+      }
+      tini_each_comparator(kIfVar16) : {
+        const uint8_t number = run->u8();
+        if (number >= kVariables) return halt(Fault::kBadCode);
+        const int32_t constant = in_thousandths(run->i16());
+        return unless(run, relates(task_.variables[number], comparator_of(op), constant),
+                      run->u8());
+      }
   }
-  *values = value;
-  run->depth++;
-  return run->depth <= kStackValues || fail();
+  return halt(Fault::kBadCode);
 }
 
-// Runs instructions until the program must wait or ends, or the budget is used up.
-tini_noinline void Machine::execute(uint8_t budget) {
-  Machine* self = this;
-  Running run = {task_.pc, task_.pc, task_.depth};
-  bool goes_on = true;
-  while (goes_on && budget != 0) {
+// Runs instructions until the program must wait or ends, or the budget, which is not 0, is used up.
+void Machine::execute(uint8_t budget) {
+  const uint8_t* const begin = code_ + task_.pc;
+  Running run = {begin, begin, task_.stack + task_.depth};
+  do {
     budget--;
-    self = near(self);
-    goes_on = self->step(&run);
-  }
-  self->at_ = run.at;
-  self->left_ = budget;
-  self->task_.pc = run.next;
-  self->task_.depth = run.depth;
+  } while (step(&run) && budget != 0);
+  at_ = offset(run.at);
+  left_ = budget;
+  task_.pc = offset(run.next);
+  task_.depth = static_cast<uint8_t>(run.top - task_.stack);
 }
 
 }  // namespace tiniscript
