@@ -20,15 +20,26 @@ from tools.bench import (
     machine_cycles,
     machine_size,
     machine_speed,
+    native_cycles,
     sketch_cycles,
     workloads,
 )
-from tools.bench.workloads import WORKS, Work, WrongResult, check, code_of, expected
+from tools.bench.workloads import (
+    ALL_WORKS,
+    WORKS,
+    Work,
+    WrongResult,
+    check,
+    code_of,
+    driven,
+    expected,
+)
 
 needs_chip = pytest.mark.skipif(
     bool(avr_bench.missing()), reason=avr_bench.missing() or "there is a simulated chip"
 )
 BY_NAME = [pytest.param(work, id=work.name) for work in WORKS]
+ALL_BY_NAME = [pytest.param(work, id=work.name) for work in ALL_WORKS]
 
 
 def test_what_the_works_show() -> None:
@@ -41,10 +52,22 @@ def test_what_the_works_show() -> None:
     assert shown == {"A": (30_000_000,), "B": (1_000_000, 500_000), "C": (total, 1_000_000)}
 
 
+def test_what_the_works_beside_c_show() -> None:
+    """D meets three obstacles in eight readings; E drives by the last of its own."""
+    found = {work.name: (expected(work).shown, driven(work)) for work in ALL_WORKS[len(WORKS) :]}
+    assert found == {
+        "A2": ((30_000_000,), (0, 0)),
+        "D": ((375_000,), (60, -60)),
+        "E": ((-1000,), (46, 54)),
+        "F": ((1_000_000,), (0, 0)),
+    }
+
+
 def test_nothing_of_the_works_is_folded() -> None:
     """Each time around its loop takes as many instructions as its text says."""
-    steps = {work.name: expected(work).steps // work.times for work in WORKS}
-    assert steps == {"A": 2, "B": 3, "C": 16}  # B: 3 up to 500, then 4
+    steps = {work.name: expected(work).steps // work.times for work in ALL_WORKS}
+    # B: 3 up to 500, then 4; D: 4 or 7
+    assert steps == {"A": 2, "A2": 2, "B": 3, "C": 16, "D": 5, "E": 16, "F": 4}
 
 
 @pytest.mark.parametrize("work", BY_NAME)
@@ -128,9 +151,35 @@ def test_table(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 @needs_chip
-@pytest.mark.parametrize("work", BY_NAME)
+@pytest.mark.parametrize("work", ALL_BY_NAME)
 def test_the_chip_shows_what_python_does(work: Work) -> None:
     assert machine_cycles.per_iteration(work) > 1
+
+
+@needs_chip
+@pytest.mark.parametrize("work", ALL_BY_NAME)
+def test_c_alone_shows_the_same(work: Work) -> None:
+    """In whole numbers, as other interpreters do, or in thousandths."""
+    assert 1 < native_cycles.per_iteration(work) < machine_cycles.per_iteration(work)
+    if work.name in native_cycles.THOUSANDTHS:
+        assert native_cycles.per_iteration(work, has_thousandths=True) > 1
+
+
+@needs_chip
+def test_a_wrong_value_of_c_alone_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(native_cycles, "driven", lambda work: (1, 2))
+    with pytest.raises(WrongResult, match="C alone, work E"):
+        native_cycles.per_iteration(ALL_WORKS[-2])
+    monkeypatch.setattr(native_cycles, "wanted", lambda work, has_thousandths: [1])
+    with pytest.raises(WrongResult, match="C alone, work A"):
+        native_cycles.per_iteration(WORKS[0])
+
+
+@needs_chip
+def test_the_chip_has_driven_what_python_has(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(machine_cycles, "driven", lambda work: (1, 2))
+    with pytest.raises(WrongResult, match="work D: motors"):
+        machine_cycles.per_iteration(ALL_WORKS[-3])
 
 
 @pytest.fixture(scope="module")

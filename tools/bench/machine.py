@@ -22,6 +22,7 @@ from tools.bench import (
     interpreters,
     machine_cycles,
     machine_size,
+    native_cycles,
     sketch_cycles,
     workloads,
 )
@@ -90,11 +91,14 @@ def cycles() -> None:
         *((name, numbers, *figures) for name, numbers, figures in workloads.OTHERS),
     ]
     table("Cycles of one iteration on a simulated ATmega328P", ("", "numbers", "A", "B", "C"), rows)
-    for work in workloads.WORKS:
-        print(f"\n{work.name}: `{work.body[:-1]}`, {work.times:,} times.", end="")
+    beside_c()
+    for work in workloads.ALL_WORKS:
+        before = f"`{work.before[:-1]}`, " if work.name == "F" else ""
+        print(f"\n{work.name}: {before}`{work.body[:-1]}`, {work.times:,} times.", end="")
     print(
-        f"\n`tick` is called for {machine_cycles.BUDGET} times around a loop. In the sketch "
-        "all is counted\nthat comes between, its main loop and its interrupts.\nThe others were "
+        f"\n`tick` is called for {machine_cycles.BUDGET} times around a loop, and for half as many "
+        "in D and E. In the sketch all is\ncounted that comes between, its main loop and its "
+        "interrupts; D and E need a robot that costs nothing.\nThe others were "
         "measured once, with loops of the same work in their own languages. Fewer bits\nare less "
         "work; Snek, Microvium and "
         "uLisp are far larger languages; TinyBASIC, Bitlash and\nuBASIC read the text of each line "
@@ -102,6 +106,27 @@ def cycles() -> None:
     )
     for why in filter(None, (avr_bench.missing(), sketch_cycles.missing())):
         print(f"\n{why}")
+
+
+def beside_c() -> None:
+    """Print the cycles of each work and those of C alone, which were counted in the same run."""
+    rows: list[tuple[object, ...]] = []
+    for work in sorted(workloads.ALL_WORKS, key=lambda work: work.name):
+        ours: object = NONE
+        sketch: object = NONE
+        c: list[object] = [NONE, NONE]
+        times: object = NONE
+        if not avr_bench.missing():
+            found = machine_cycles.per_iteration(work)
+            alone = native_cycles.per_iteration(work)
+            ours, c[0], times = found, alone, found / alone
+            if work.name in native_cycles.THOUSANDTHS:
+                c[1] = native_cycles.per_iteration(work, has_thousandths=True)
+        if not sketch_cycles.missing() and not work.has_robot:
+            sketch = sketch_cycles.per_iteration(sketch_cycles.built(), work)
+        rows.append((work.name, ours, sketch, *c, times))
+    head = ("", "all of `tick`", "in the sketch", "C, int32", "C, thousandths", "times C, int32")
+    table("The same beside C alone, compiled for the same chip with variables in RAM", head, rows)
 
 
 def instructions() -> None:

@@ -18,7 +18,7 @@ sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tiniscript.bytecode.opcodes import BY_NAME
 from tools.bench import avr_bench
-from tools.bench.workloads import Work, check, code_of
+from tools.bench.workloads import Work, WrongResult, check, code_of, driven
 
 BUDGET = 100  # jumps back in a call of `tick`: it may take 200,000 cycles
 DONE = 2  # Status::kDone
@@ -34,9 +34,10 @@ ARITHMETIC = ("ADD", "SUB", "MUL", "DIV", "MOD", "LT")
 
 
 class Counted(NamedTuple):
-    """What the chip says of a whole run: values shown, jumps back, cycles in `tick` in all."""
+    """What the chip says of a run: values shown, motors, jumps back, cycles in `tick` in all."""
 
     shown: list[int]
+    driven: tuple[int, int]
     jumps: int
     cycles: int
 
@@ -53,15 +54,18 @@ def count(code: bytes, readings: Sequence[int], budget: int) -> Counted:
         raise RuntimeError(f"the program did not end, or a tick was too long: {said[-5:]}")
     return Counted(
         [value for (value,) in found["SHOW"]],
+        (found["LEFT"][0][0], found["RIGHT"][0][0]),
         found["JUMPS"][0][0],
         found["CYCLES"][0][0],
     )
 
 
-def per_iteration(work: Work, budget: int = BUDGET) -> float:
+def per_iteration(work: Work) -> float:
     """Return the cycles of a whole run, all but the robot, for each time around its loop."""
-    counted = count(code_of(work), work.thousandths, budget)
+    counted = count(code_of(work), work.thousandths, BUDGET // 2 if work.has_robot else BUDGET)
     check("ATmega328P", work, counted.shown)
+    if counted.driven != driven(work):
+        raise WrongResult(f"ATmega328P, work {work.name}: motors {counted.driven}")
     return counted.cycles / work.times
 
 

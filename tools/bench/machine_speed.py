@@ -12,6 +12,7 @@ import sys
 import time
 from collections.abc import Callable
 from importlib.util import find_spec
+from itertools import cycle
 from pathlib import Path
 from typing import NamedTuple
 
@@ -34,11 +35,11 @@ class Robot:
     """A robot that costs next to nothing: readings from a list, and what is shown in another."""
 
     def __init__(self, work: Work) -> None:
-        self.readings = work.thousandths[::-1]
+        self.readings = cycle(work.thousandths)
         self.shown: list[int] = []
 
     def read(self, sensor: int) -> int | None:
-        return self.readings.pop()
+        return next(self.readings)
 
     def show(self, value: int, is_yes_no: bool) -> bool:
         self.shown.append(value)

@@ -1,4 +1,4 @@
-"""The three works that the machines are measured with, and what must come out of them.
+"""The works that the machines are measured with, and what must come out of them.
 
 Knows the programs, the figures of others, and what the machine in Python says
 of them. Does not measure. Constants come from a sensor, so that no compiler can fold them.
@@ -7,8 +7,9 @@ of them. Does not measure. Constants come from a sensor, so that no compiler can
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import lru_cache
+from itertools import cycle, islice
 from pathlib import Path
 from typing import NamedTuple
 
@@ -17,7 +18,7 @@ sys.path[:0] = [str(ROOT / "compiler")]
 
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import HEADER_BYTES
-from tiniscript.vm.trace import Ending, Senses, run
+from tiniscript.vm.trace import Ending, Event, Senses, run
 
 KIT = robots.load(robots.DEFAULT).kit
 SENSOR = [each.name for each in KIT.sensors].index("DISTANCE")
@@ -31,7 +32,8 @@ class Work(NamedTuple):
     body: str
     times: int
     after: str
-    readings: tuple[int, ...] = ()  # of DISTANCE, in units
+    readings: tuple[int, ...] = ()  # of DISTANCE, in units; the first again after the last
+    has_robot: bool = False  # its loop reads a sensor and sets motors
 
     @property
     def text(self) -> str:
@@ -72,6 +74,32 @@ WORKS = (
         (3, 7, 100),
     ),
 )
+
+# What comes beside C alone, compiled for the same chip.
+MORE_WORKS = (
+    Work("A2", "X = 0;", "X = X + 3;", 10_000, "SHOW(X);"),
+    # the paper's obstacle loop: moves set the motors and do not wait
+    Work(
+        "D",
+        "N = 0;",
+        "M(80, 80); IF(DISTANCE < 10); STOP; M(60, -60); N = N + 1; ENDIF;",
+        1000,
+        "SHOW(N);",
+        (50, 9, 30, 12, 8, 100, 10, 7),
+        has_robot=True,
+    ),
+    Work(
+        "E",
+        "K = DISTANCE;",
+        "E = DISTANCE - 5; M(50 + K*E, 50 - K*E);",
+        1000,
+        "SHOW(E);",
+        (4, 5, 7, 3, 9, 1, 6, 2),
+        has_robot=True,
+    ),
+    Work("F", "X = 0; DEF UP; X = X + 1; END_DEF;", "UP;", 1000, "SHOW(X);"),
+)
+ALL_WORKS = (*WORKS, *MORE_WORKS)
 
 # Cycles of one iteration of A, B and C in the shipped sketch.
 MUST = (120.0, 200.0, 2400.0)
@@ -114,7 +142,9 @@ OTHER_SIZES: tuple[tuple[str, str, int, int | str], ...] = (
 
 @lru_cache
 def image_of(work: Work) -> bytes:
-    return compile_text(work.text, KIT).image
+    compiled = compile_text(work.text, KIT)
+    assert compiled.image, compiled.diagnostics
+    return compiled.image
 
 
 def code_of(work: Work) -> bytes:
@@ -126,13 +156,29 @@ def expected(work: Work) -> Ran:
     """Return what the machine in Python says."""
     shown: list[int] = []
     steps = 0
-    for event in run(code_of(work), KIT, Senses(KIT, {SENSOR: work.thousandths})):
+    for event in _events(work):
         if isinstance(event, Ending):
             assert event.what == "DONE", event
             steps = event.steps
         elif event.what == "SHOW":
             shown += event.values
     return Ran(tuple(shown), steps)
+
+
+@lru_cache
+def driven(work: Work) -> tuple[int, int]:
+    """Return what the motors were told last; 0 and 0 where they never were."""
+    told = (0, 0)
+    for event in _events(work):
+        if not isinstance(event, Ending) and event.what == "MOTORS":
+            left, right = event.values
+            told = (left, right)
+    return told
+
+
+def _events(work: Work) -> Iterator[Event | Ending]:
+    readings = list(islice(cycle(work.thousandths), work.times + len(work.readings)))
+    return run(code_of(work), KIT, Senses(KIT, {SENSOR: readings}))
 
 
 def check(machine: str, work: Work, shown: Sequence[int], steps: int | None = None) -> None:

@@ -1,8 +1,9 @@
 // Calculates on a simulated ATmega328P what instructions make of many pairs of numbers.
 //
 // Each operation is a program of its own, `PUSH32 a; PUSH32 b; OP; SHOW`, so what is looked at is
-// what a robot calculates. The pairs are made here and in `tests/vm/test_cpp_avr_arithmetic.py` in the
-// same way; the answer to a block of operations is one checksum, or each result where it asks so.
+// what a robot calculates. The pairs are made here and in `tests/vm/test_cpp_avr_arithmetic.py` in
+// the same way; the answer to a block of operations is one checksum, or each result where it asks
+// so.
 
 #include "../../src/vm/crc32.h"
 #include "../../src/vm/number.h"

@@ -1,8 +1,8 @@
 // What the programs of this folder share: a request in flash, and a UART that writes.
 //
-// Each `.cpp` here is a program of its own for a simulated ATmega328P; `tools/bench/avr_bench.py` builds
-// it, writes the request into it and reads what it says. Ends by sleeping without interrupts:
-// that ends the simulator too.
+// Each `.cpp` here is a program of its own for a simulated ATmega328P; `tools/bench/avr_bench.py`
+// builds it, writes the request into it and reads what it says. Ends by sleeping without
+// interrupts: that ends the simulator too.
 
 #ifndef TINISCRIPT_BENCH_SIMULATED_H_
 #define TINISCRIPT_BENCH_SIMULATED_H_
