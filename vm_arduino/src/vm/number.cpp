@@ -49,19 +49,21 @@ tini_always_inline uint64_t multiplied(uint32_t a, uint32_t b) {
 #endif
 }
 
-// It has no quotient of 64 bits: that is made 16 bits at a time, or bit by bit if a rest may be
-// longer than 16.
+// It has no quotient of 64 bits: that is made bit by bit, or 16 bits at a time if each rest has no
+// more than 16, and if the chip divides at all. An ESP8266 does not.
 tini_always_inline Division divided(uint32_t a, uint32_t b, uint32_t divisor) {
   const uint64_t product = multiplied(a, b);
   uint32_t low = static_cast<uint32_t>(product);
   uint32_t high = static_cast<uint32_t>(product >> 32);
   if (high == 0) return {low / divisor, low % divisor};
   if (high >= divisor) return {0xffffffff, 0};
+#ifndef __XTENSA_CALL0_ABI__
   if (divisor <= 0xffff) {
     const uint32_t upper = high << 16 | low >> 16;
     const uint32_t lower = upper % divisor << 16 | (low & 0xffff);
     return {upper / divisor << 16 | lower / divisor, lower % divisor};
   }
+#endif
   for (uint8_t bit = 32; bit != 0; bit--) {
     high = high << 1 | low >> 31;
     low <<= 1;
