@@ -35,36 +35,41 @@ def missing() -> str:
     )
 
 
-@lru_cache(maxsize=1)
-def built(sources: Path = SOURCES) -> bytes:
-    """Return the program of the chip, an ELF file."""
+def program(sources: Path = SOURCES) -> bytes:
+    """Return the program of the chip, an ELF file, made from a folder like `vm_arduino`."""
     folders = [sources / name for name in ("src/vm", "extras/chip", "extras/avr")]
     code = [str(path) for each in folders for path in each.glob("*.[cS]*")]
     with tempfile.TemporaryDirectory() as folder:
-        program = Path(folder) / "machine.elf"
+        made = Path(folder) / "machine.elf"
         done = subprocess.run(
-            ["avr-g++", *FLAGS, *WARNINGS, *sorted(code), "-o", str(program)],
+            ["avr-g++", *FLAGS, *WARNINGS, *sorted(code), "-o", str(made)],
             capture_output=True,
             text=True,
         )
         assert done.returncode == 0, f"avr-g++ refuses the C++ machine:\n{done.stderr[:4000]}"
-        return program.read_bytes()
+        return made.read_bytes()
+
+
+built = lru_cache(maxsize=1)(program)
 
 
 def ran_on_avr(image: bytes, kit: Kit, senses: Senses) -> Ran:
     """Run an image, which is read and verified by the simulated chip."""
-    elf = built()
+    return ran(answer(built(), b"R" + run_request(image, kit, senses)))
+
+
+def answer(elf: bytes, request: bytes, most_seconds: int = 120) -> str:
+    """Return what a program says about a request. Raises TimeoutExpired."""
     at = elf.index(MARK)
-    request = run_request(image, kit, senses)
     assert len(request) <= REQUEST_BYTES
     with tempfile.TemporaryDirectory() as folder:
-        program = Path(folder) / "machine.elf"
-        program.write_bytes(elf[:at] + request + elf[at + len(request) :])
+        path = Path(folder) / "machine.elf"
+        path.write_bytes(elf[:at] + request + elf[at + len(request) :])
         done = subprocess.run(
-            ["simavr", "-m", CHIP, "-f", "16000000", str(program)],
+            ["simavr", "-m", CHIP, "-f", "16000000", str(path)],
             capture_output=True,
-            timeout=120,
+            timeout=most_seconds,
         )
     said = re.findall(rb"\x1b\[32m(.*?)\.\s*\x1b", done.stdout + done.stderr)
     assert said, (done.stdout + done.stderr)[-2000:]
-    return ran("".join(f"{line.decode()}\n" for line in said))
+    return "".join(f"{line.decode()}\n" for line in said)

@@ -1,7 +1,8 @@
 """The tests notice what is wrong: a fair sample of the breaks of `python -m tools.mutation`.
 
 One for each rule and each reason to refuse, one of every six opcodes, and what arithmetic and time
-come to. All of them: `python -m tools.mutation`.
+come to; and some of the lines of the assembly for the AVR. All of them: `python -m tools.mutation`, and
+with `--avr`.
 """
 
 from __future__ import annotations
@@ -13,8 +14,11 @@ from pathlib import Path
 import pytest
 
 from tests.machines.host import SOURCES, missing
+from tests.machines import avr
+from tests.support.avr_sample import AvrSample
 from tests.support.cpp_sample import Sample, Unfit
 from tools.mutation import __main__
+from tools.mutation.assembly import assembly_breaks, noticeable_on_avr
 from tools.mutation.mutants import MACHINE, Break, Stale, breaks
 from tools.mutation.operators import small_changes
 
@@ -61,6 +65,28 @@ def test_break_is_noticed(each: Break, sample: Sample) -> None:
     result = __main__.tried(each, sample)
     assert result.kind, "every check passes"
     assert result.kind != __main__.BUILD, result.said
+
+
+ONE_LINE_IN = 31  # of the assembly
+AVR_SAMPLE = noticeable_on_avr(assembly_breaks(SOURCES))[::ONE_LINE_IN]
+
+
+@pytest.fixture(scope="module")
+def avr_sample() -> AvrSample:
+    return AvrSample()
+
+
+@pytest.mark.skipif(bool(avr.missing()), reason=avr.missing() or "there is a simulated chip")
+@pytest.mark.parametrize("each", AVR_SAMPLE, ids=lambda each: each.name)
+def test_break_of_the_assembly_is_noticed(each: Break, avr_sample: AvrSample) -> None:
+    assert __main__.tried_on_avr(each, avr_sample).kind, "every answer is right"
+
+
+def test_the_sample_of_the_assembly_is_fair() -> None:
+    found = assembly_breaks(SOURCES)
+    assert len({each.name for each in found}) == len(found) > 500
+    assert {each.kind for each in AVR_SAMPLE} == {each.kind for each in found}
+    assert {each.file for each in AVR_SAMPLE} == {each.file for each in found}
 
 
 def test_the_sample_is_fair() -> None:

@@ -186,6 +186,14 @@ def changed_code(sensors: int) -> Iterator[tuple[bytes, int | None]]:
     yield yes * STACK_VALUES + simple("TIME"), STACK_VALUES
     yield show, 0
     yield yes + simple("ADD") + show, 1
+    # nothing is on the stack
+    for name in ("ADD", "MAX", "EQ", "AND"):
+        yield simple(name), 0
+    for name in ("SET_VAR", "LOOP", "IF", "IF_NOT", "IF_FAR", "IF_NOT_FAR", "LOOP_FAR"):
+        yield simple(name) + bytes(2), 0
+    for name in ("IF8_EQ", "IF16_EQ"):
+        yield simple(name) + bytes(3), 0
+    yield simple("SET_VAR_0"), 0
     yield yes + simple("MOTORS"), 1
     for each, caught in ((VARIABLES - 1, None), (VARIABLES, 0), (255, 0)):
         number = bytes([each])

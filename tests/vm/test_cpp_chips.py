@@ -15,13 +15,14 @@ from functools import partial
 import pytest
 
 from tests.machines import Senses, avr
-from tests.machines.chips import Chip
-from tests.machines.host import Ran
+from tests.machines.chips import Chip, ran
+from tests.machines.host import Ran, run_request
 from tests.machines.python import ran_python
 from tests.machines.qemu import emulated
 from tests.machines.qemu import missing as emulator_missing
 from tests.oracle import programs
 from tests.support import cpp_checks, cpp_images
+from tests.support.avr_sample import of_changed_code
 from tests.support.casefile import Case
 from tests.support.images import image_for
 from tests.support.kits import KITS
@@ -125,6 +126,30 @@ def test_some_random_codes(chip: str, seed: int) -> None:
                 ending = same_on_the_chip(chip, image, kit, Senses(max_ms=3000, max_steps=300))
                 endings.add(ending.split(" ", 1)[-1])
     assert "DONE" in endings and len(endings) > 2
+
+
+@some_chips("avr")
+def test_code_that_changed_after_it_was_verified(chip: str) -> None:
+    """It ends in BAD_CODE at each edge, and not too early."""
+    endings = set()
+    for question in of_changed_code():
+        said = avr.answer(avr.built(), question.request)
+        assert question.is_answered_by(said), f"{question.name}: {said}"
+        endings.add(question.want)
+    assert endings == {"DONE", "BAD_CODE"}
+
+
+@some_chips("avr")
+def test_a_robot_that_is_not_ready_is_asked_again(chip: str) -> None:
+    """Values stay on the stack, and the next tick goes on with them."""
+    kit = KITS[0][1]
+    text = "LOOP(3); X = 1 + 2*DISTANCE; SHOW(X); SHOW(5 + X*DISTANCE); END_LOOP"
+    image = compile_text(text, kit).image
+    readings = {"DISTANCE": [1000, 2500, -3000]}
+    want = ran_python(image, kit, Senses(readings)).trace
+    for not_ready in (2, 3):
+        request = b"R" + run_request(image, kit, Senses(readings), not_ready)
+        assert ran(avr.answer(avr.built(), request)).trace == want
 
 
 @each_emulated

@@ -1,8 +1,9 @@
 """Breaks the C++ machine in hundreds of ways, and asks whether the tests notice each one.
 
 `python -m tools.mutation` tries all of `mutants.py`; words choose those whose names have them;
-`--all` tries a change of every operator, constant and statement too. What goes unnoticed is a gap
-in the tests, and exit code 1. Needs g++.
+`--all` tries a change of every operator, constant and statement too; `--avr` one of every line of
+the assembly for the AVR, on a simulated chip. What goes unnoticed is a gap in the tests, and exit
+code 1. Needs g++, or avr-g++ and simavr.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ import sys
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
@@ -22,8 +23,11 @@ from typing import NamedTuple
 ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
+from tests.machines import avr
 from tests.machines.host import SOURCES, missing
+from tests.support.avr_sample import AvrSample
 from tests.support.cpp_sample import Sample, Unfit
+from tools.mutation.assembly import assembly_breaks
 from tools.mutation.equivalent import EQUIVALENT
 from tools.mutation.mutants import MACHINE, Break, Stale, breaks
 from tools.mutation.operators import small_changes
@@ -61,24 +65,42 @@ def tried(each: Break, sample: Sample) -> Result:
     return Result(each, kind, check, said, time.monotonic() - begun)
 
 
-def results(chosen: Sequence[Break], sample: Sample) -> Iterator[Result]:
+def tried_on_avr(each: Break, sample: AvrSample) -> Result:
+    """Build the program of the chip with one break, and ask it until an answer is wrong."""
+    begun = time.monotonic()
+    with tempfile.TemporaryDirectory() as folder:
+        copy = Path(folder)
+        for name in ("src", "extras/avr", "extras/chip"):
+            shutil.copytree(SOURCES / name, copy / name)
+        (copy / MACHINE / each.file).write_text(each.text, encoding="utf-8")
+        try:
+            check = sample.failing(avr.program(copy))
+            kind, said = "chip" if check else "", ""
+        except AssertionError as error:
+            kind, check, said = BUILD, "avr-g++", str(error)
+    return Result(each, kind, check, said, time.monotonic() - begun)
+
+
+def results(chosen: Sequence[Break], attempt: Callable[[Break], Result]) -> Iterator[Result]:
     """Yield what becomes of each break, in their order."""
     with ThreadPoolExecutor(WORKERS) as pool:
-        yield from pool.map(partial(tried, sample=sample), chosen)
+        yield from pool.map(attempt, chosen)
 
 
 def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description="Break the C++ machine; say what notices it.")
     parser.add_argument("words", nargs="*", help="only breaks whose names have one of these words")
     parser.add_argument("--all", action="store_true", help="also every operator and constant")
+    parser.add_argument("--avr", action="store_true", help="the assembly, on a simulated chip")
     parser.add_argument("--list", action="store_true", help="only print the names of the breaks")
     options = parser.parse_args(arguments)
-    if missing():
-        print(missing(), file=sys.stderr)
+    why = avr.missing() if options.avr else missing()
+    if why:
+        print(why, file=sys.stderr)
         return 2
     try:
-        found = breaks(SOURCES)
-        if options.all:
+        found = assembly_breaks(SOURCES) if options.avr else breaks(SOURCES)
+        if options.all and not options.avr:
             found += small_changes(SOURCES)
             for line in gone(found):
                 print(f"equivalent.py has what is no longer there: {line}", file=sys.stderr)
@@ -91,26 +113,32 @@ def main(arguments: list[str] | None = None) -> int:
         return 0
     begun = time.monotonic()
     try:
-        done = campaign(chosen)
+        done = campaign(chosen, options.avr)
     except Unfit as error:
         print(f"The machine as it is, unbroken, fails a check. {error}", file=sys.stderr)
         return 2
     return summary(done, time.monotonic() - begun)
 
 
-def campaign(chosen: Sequence[Break]) -> list[Result]:
+def campaign(chosen: Sequence[Break], is_avr: bool = False) -> list[Result]:
     """Print what becomes of each break."""
     print("| break | noticed by | s |\n|---|---|---:|", flush=True)
-    done = []
+    if is_avr:
+        return _told(results(chosen, partial(tried_on_avr, sample=AvrSample())))
     with tempfile.TemporaryDirectory() as builds:
         sample = Sample(SOURCES, Path(builds) / "builds")
         try:
-            for result in results(chosen, sample):
-                noticed = f"{result.kind}: {result.check}" if result.kind else "**nothing**"
-                print(f"| {result.each.name} | {noticed} | {result.seconds:.1f} |", flush=True)
-                done.append(result)
+            return _told(results(chosen, partial(tried, sample=sample)))
         finally:
             sample.close()
+
+
+def _told(found: Iterator[Result]) -> list[Result]:
+    done = []
+    for result in found:
+        noticed = f"{result.kind}: {result.check}" if result.kind else "**nothing**"
+        print(f"| {result.each.name} | {noticed} | {result.seconds:.1f} |", flush=True)
+        done.append(result)
     return done
 
 

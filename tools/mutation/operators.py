@@ -11,7 +11,7 @@ from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 
-from tools.mutation.mutants import Break, blanked, broken, read
+from tools.mutation.mutants import Break, blanked, broken, has_code, read
 
 OPERATORS = {
     "<": "<=", "<=": "<", ">": ">=", ">=": ">", "==": "!=", "!=": "==", "&&": "||", "||": "&&",
@@ -35,7 +35,7 @@ def small_changes(sources: Path) -> list[Break]:
     found: list[Break] = []
     numbers: Counter[str] = Counter()
     for file, text in texts.items():
-        if not file.endswith(".cpp"):
+        if not has_code(file):
             continue
         for start, end, instead in _changes(blanked(text)):
             each = broken("change", "", file, texts, start, end, instead)

@@ -1,7 +1,8 @@
-// Runs one image on a simulated ATmega328P, for tests, and reports over the UART what the robot
+// Runs one image, or code, on a simulated ATmega328P, for tests, and reports over the UART what the robot
 // did.
 //
-// The request lies in flash: `tests/machines/avr.py` writes it into the built program. The clock
+// The request lies in flash: `tests/machines/avr.py` writes it into the built program. It begins with
+// R for an image, and with U for code that is not verified. The clock
 // is simulated as in `run.py`. Ends by sleeping without interrupts: that ends the simulator too.
 
 #include <avr/interrupt.h>
@@ -49,7 +50,7 @@ int main() {
   UCSR0A = _BV(U2X0);
   UCSR0B = _BV(TXEN0);
   UBRR0 = 0;
-  tiniscript::answer_run(tiniscript::Request(0));
+  tiniscript::answer_run(tiniscript::Request(1), tiniscript::request_byte(0) == 'R');
   while ((UCSR0A & _BV(TXC0)) == 0) {
   }
   cli();

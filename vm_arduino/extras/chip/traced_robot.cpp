@@ -45,9 +45,12 @@ bool TracedRobot::read(Request* request) {
     actuator.low = request->i32();
     actuator.high = request->i32();
   }
-  request->u32();  // this robot is always ready
+  not_ready = request->u32();
+  asked = 0;
   return true;
 }
+
+bool TracedRobot::is_ready() { return not_ready == 0 || ++asked % not_ready != 0; }
 
 void TracedRobot::say(const char* what) const {
   put_size(now_ms);
@@ -67,6 +70,7 @@ void robot_motors(int8_t left, int8_t right) {
 void robot_off() {}
 
 bool robot_read(uint8_t sensor, int32_t* value) {
+  if (!robot.is_ready()) return false;
   TracedRobot::Sensor& from = robot.sensors[sensor];
   const uint16_t last = static_cast<uint16_t>(from.count - 1);
   const uint16_t index = from.taken < last ? from.taken : last;
@@ -86,6 +90,7 @@ void robot_beep(uint16_t hertz, uint32_t duration_ms) {
 }
 
 bool robot_show(int32_t value, bool is_yes_no) {
+  if (!robot.is_ready()) return false;
   robot.say("SHOW ");
   put_value(value, is_yes_no);
   put('\n');

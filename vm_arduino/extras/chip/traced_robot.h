@@ -28,6 +28,8 @@ struct TracedRobot {
   };
 
   uint32_t now_ms;
+  uint32_t not_ready;  // every so many questions the robot is not ready; 0: always ready
+  uint32_t asked;
   uint8_t sensor_count;
   uint8_t actuator_count;
   Sensor sensors[8];
@@ -36,6 +38,9 @@ struct TracedRobot {
   // Takes sensors, readings and actuators from a request and starts at 0 ms. False: there are more
   // than fit.
   bool read(Request* request);
+
+  // Whether it reads, or shows, what it is asked now.
+  bool is_ready();
 
   // Begins a line of the trace; the caller adds the rest.
   void say(const char* what) const;
