@@ -89,6 +89,14 @@ def questions() -> Iterator[Question]:
             image = image_for(code, KITS[0][1], "SB")
             yield from _question(f"code {number}", image, KITS[0][1], Senses({}, 3000, 300))
     yield from of_changed_code()
+    yield from of_long_loops()
+
+
+def of_long_loops() -> Iterator[Question]:
+    """Yield a loop that counts beyond 65535, and that another one in it does not disturb."""
+    text = "X = 0; Y = 0; LOOP(70000); X = X + 1; LOOP(1); Y = X; END_LOOP; END_LOOP; SHOW(Y)"
+    kit = KITS[0][1]
+    yield from _question("a long loop", compile_text(text, kit).image, kit, Senses())
 
 
 def of_changed_code() -> Iterator[Question]:

@@ -183,7 +183,10 @@ def changed_code(sensors: int) -> Iterator[tuple[bytes, int | None]]:
     count = simple("LOOP8") + b"\x01"
     for values, caught in ((STACK_VALUES, None), (STACK_VALUES + 1, STACK_VALUES)):
         yield yes * values, caught
-    yield yes * STACK_VALUES + simple("TIME"), STACK_VALUES
+    for name in ("TIME", "PUSH_FALSE", "PUSH_VAR_0", "PUSH_SENSOR_0", "PUSH_READ_0", "PUSH_NUM_1"):
+        yield yes * STACK_VALUES + simple(name), STACK_VALUES
+    for name in ("PUSH_VAR", "PUSH_SENSOR", "PUSH_READ", "PUSH8", "PUSH16", "PUSH32"):
+        yield yes * STACK_VALUES + simple(name) + bytes(4), STACK_VALUES
     yield show, 0
     yield yes + simple("ADD") + show, 1
     # nothing is on the stack

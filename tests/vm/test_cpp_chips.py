@@ -22,11 +22,11 @@ from tests.machines.qemu import emulated
 from tests.machines.qemu import missing as emulator_missing
 from tests.oracle import programs
 from tests.support import cpp_checks, cpp_images
-from tests.support.avr_sample import of_changed_code
+from tests.support.avr_sample import of_changed_code, of_long_loops
 from tests.support.casefile import Case
 from tests.support.images import image_for
 from tests.support.kits import KITS
-from tests.support.random_codes import random_codes
+from tests.support.random_codes import random_codes, simple
 from tests.vm.test_cases import compiled, having, listings_alone, robot_and_senses
 from tiniscript import compile_text
 from tiniscript.bytecode.disassembly import read_listing
@@ -140,11 +140,21 @@ def test_code_that_changed_after_it_was_verified(chip: str) -> None:
 
 
 @some_chips("avr")
+def test_loops_count_beyond_65535(chip: str) -> None:
+    """A counter has 24 bits, in registers and in memory."""
+    for question in of_long_loops():
+        assert question.is_answered_by(avr.answer(avr.built(), question.request))
+
+
+@some_chips("avr")
 def test_a_robot_that_is_not_ready_is_asked_again(chip: str) -> None:
     """Values stay on the stack, and the next tick goes on with them."""
     kit = KITS[0][1]
-    text = "LOOP(3); X = 1 + 2*DISTANCE; SHOW(X); SHOW(5 + X*DISTANCE); END_LOOP"
-    image = compile_text(text, kit).image
+    code = b"".join(
+        simple("PUSH_NUM_5") + simple(name) + operand + simple("ADD") + simple("SHOW")
+        for name, operand in (("PUSH_READ", b"\2"), ("PUSH_READ_2", b""), ("PUSH_READ_2", b""))
+    )
+    image = image_for(code, kit)
     readings = {"DISTANCE": [1000, 2500, -3000]}
     want = ran_python(image, kit, Senses(readings)).trace
     for not_ready in (2, 3):

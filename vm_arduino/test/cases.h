@@ -723,6 +723,21 @@ inline const std::vector<ProgramCase>& program_cases() {
        "0 READ DISTANCE 9\n"
        "0 SHOW 0\n"
        "0 DONE\n"},
+      {"instructions: Every push leaves what lies below it", tinibot(), {{}, {}, {2000, 3000}}, 60000, 1,
+       {84, 83, 2, 0, 0, 15, 224, 118, 56, 0, 83, 147, 128, 249, 0, 49, 9, 4, 181, 7, 9, 16, 57, 181, 9, 2, 16, 57, 181, 8, 2, 16, 57, 181, 146, 16, 57, 181, 138, 16, 57, 183, 12, 5, 16, 57, 183, 2, 44, 1, 16, 57, 183, 3, 44, 1, 16, 57, 183, 4, 0, 0, 1, 0, 16, 57, 183, 1, 200, 16, 57},
+       "0 SHOW 9\n"
+       "0 READ DISTANCE 2\n"
+       "0 SHOW 7\n"
+       "0 SHOW 7\n"
+       "0 READ DISTANCE 3\n"
+       "0 SHOW 8\n"
+       "0 SHOW 8\n"
+       "0 SHOW 7.5\n"
+       "0 SHOW 307\n"
+       "0 SHOW 7.3\n"
+       "0 SHOW 72.536\n"
+       "0 SHOW 207\n"
+       "0 DONE\n"},
       {"moves: The four directions", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 12, 0, 248, 254, 48, 168, 0, 68, 100, 10, 69, 100, 20, 70, 100, 30, 71, 100, 40},
        "0 MOTORS 10 10\n"
