@@ -1,7 +1,7 @@
 """The tests notice what is wrong: a fair sample of the breaks of `python -m tools.mutation`.
 
 One for each rule and each reason to refuse, one of every six opcodes, and what arithmetic and time
-come to; and some of the lines of the assembly for the AVR. All of them: `python -m tools.mutation`, and
+come to; and some lines of the assembly for the AVR. All of them: `python -m tools.mutation`, and
 with `--avr`.
 """
 
@@ -13,12 +13,12 @@ from pathlib import Path
 
 import pytest
 
-from tests.machines.host import SOURCES, missing
 from tests.machines import avr
+from tests.machines.host import SOURCES, missing
 from tests.support.avr_sample import AvrSample
 from tests.support.cpp_sample import Sample, Unfit
 from tools.mutation import __main__
-from tools.mutation.assembly import assembly_breaks, noticeable_on_avr
+from tools.mutation.assembly import NEEDLESS, assembly_breaks, gone_from_avr, noticeable_on_avr
 from tools.mutation.mutants import MACHINE, Break, Stale, breaks
 from tools.mutation.operators import small_changes
 
@@ -87,6 +87,13 @@ def test_the_sample_of_the_assembly_is_fair() -> None:
     assert len({each.name for each in found}) == len(found) > 500
     assert {each.kind for each in AVR_SAMPLE} == {each.kind for each in found}
     assert {each.file for each in AVR_SAMPLE} == {each.file for each in found}
+
+
+def test_what_is_needless_and_gone_is_told() -> None:
+    found = assembly_breaks(SOURCES)
+    name = next(each.name for each in found if each.name in NEEDLESS)
+    assert name not in {each.name for each in noticeable_on_avr(found)}
+    assert name in gone_from_avr([each for each in found if each.name != name])
 
 
 def test_the_sample_is_fair() -> None:

@@ -93,10 +93,13 @@ def questions() -> Iterator[Question]:
 
 
 def of_long_loops() -> Iterator[Question]:
-    """Yield a loop that counts beyond 65535, and that another one in it does not disturb."""
-    text = "X = 0; Y = 0; LOOP(70000); X = X + 1; LOOP(1); Y = X; END_LOOP; END_LOOP; SHOW(Y)"
+    """Yield loops that count beyond 65535: with another one in it, and with a long body."""
     kit = KITS[0][1]
-    yield from _question("a long loop", compile_text(text, kit).image, kit, Senses())
+    inner = "LOOP(1); Y = X; END_LOOP;"
+    far = f"IF(X < 0); {'Y = Y + 1; ' * 130} ENDIF; Y = X;"
+    for name, body in (("a loop in a long loop", inner), ("a long body", far)):
+        text = f"X = 0; Y = 0; LOOP(70000); X = X + 1; {body} END_LOOP; SHOW(Y)"
+        yield from _question(name, compile_text(text, kit).image, kit, Senses())
 
 
 def of_changed_code() -> Iterator[Question]:

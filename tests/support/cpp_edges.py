@@ -203,6 +203,7 @@ def changed_code(sensors: int) -> Iterator[tuple[bytes, int | None]]:
         yield simple("SET_VAR8") + number + b"\x01", caught
         yield simple("ADD_VAR8") + number + b"\x01", caught
         yield simple("ADD_VAR") + b"\x00" + number, caught
+        yield simple("ADD_VAR") + number + b"\x00", caught
         yield simple("PUSH_VAR") + number, caught
         yield yes + simple("SET_VAR") + number, None if caught is None else 1
         yield simple("INC_VAR") + number, caught

@@ -143,7 +143,7 @@ def test_code_that_changed_after_it_was_verified(chip: str) -> None:
 def test_loops_count_beyond_65535(chip: str) -> None:
     """A counter has 24 bits, in registers and in memory."""
     for question in of_long_loops():
-        assert question.is_answered_by(avr.answer(avr.built(), question.request))
+        assert question.is_answered_by(avr.answer(avr.built(), question.request)), question.name
 
 
 @some_chips("avr")

@@ -35,6 +35,87 @@ LINE = re.compile(r"^(?:\d+: +| +)(?P<what>[a-z_]\w*)(?: +(?P<with>[^;\n]*?))?[ 
 NOTHING = {"push_value", "next"}
 
 
+_EXECUTE = "_ZN10tiniscript7Machine7executeEh"
+
+# Breaks that no test can notice, and why.
+_NEEDLESS = {
+    "no carry, where the tests' program has the machine in RAM": (
+        f"{_EXECUTE}: sbci r25, hi8(-tini_variables_at) is left out",
+        f"{_EXECUTE}: adc r29, r1 is sbc r29, r1",
+        "let_y_be_empty: sbci r29, hi8(tini_variables_at - tini_stack_at) is left out",
+        "let_z_be_counter: ldi r31, 0 is ldi r31, (0) + 1",  # 256 bytes further on nothing is
+        "let_z_be_counter: sbci r31, hi8(tini_variables_at - tini_counters_at + 4) is left out",
+        "let_z_be_reading: adc r31, r1 is sbc r31, r1",
+        "let_z_be_call: adc r31, r1 is sbc r31, r1",
+    ),
+    "it looks whether memory has changed": (
+        f"{_EXECUTE}: clr looped is left out",
+        f"{_EXECUTE}: cpi r18, tini_stack_values + 1 is cpi r18, (tini_stack_values + 1) + 1",
+        f"{_EXECUTE}: brsh 2f is left out",
+        f"{_EXECUTE}: cpi r19, tini_counters + 1 is cpi r19, (tini_counters + 1) + 1",
+        f"{_EXECUTE}: cpi r19, tini_counters + 1 is left out",
+        f"{_EXECUTE}: brsh 2f is left out (no. 2)",
+        f"{_EXECUTE}: 2: adiw r26, 1 is 2: adiw r26, (1) + 1",
+        f"{_EXECUTE}: 2: adiw r26, 1 is 2:",
+        f"{_EXECUTE}: rjmp bad_1 is left out",
+    ),
+    "where BAD_CODE is found is the machine's own affair": (
+        "bad_jump: adiw r26, 1 is adiw r26, (1) + 1",
+        "bad_jump: adiw r26, 1 is left out",
+        "bad_jump: rjmp bad_1 is left out",
+        "bad_2: sbiw r26, 1 is sbiw r26, (1) + 1",
+        "bad_2: sbiw r26, 1 is nop",
+        "bad_variable: rjmp bad_2 is left out",
+        "bad_compare2: sbiw r26, 1 is sbiw r26, (1) + 1",
+    ),
+    "a program does not go on after a fault": (
+        "faulted: sbiw r26, 1 is sbiw r26, (1) + 1",
+        "faulted: sbiw r26, 1 is nop",
+    ),
+    "who leaves with values has stored them": (
+        "leave: std Y+0, a0 is left out",
+        "leave: std Y+1, a1 is left out",
+        "leave: std Y+2, a2 is left out",
+        "leave: std Y+3, a3 is left out",
+    ),
+    "a counter has 24 bits": ("store_counter: std Z+3, r1 is left out",),
+    "all but 0 is TRUE there": (
+        "op_push_true: ldi r18, 1 is ldi r18, (1) + 1",
+        "op_not: ldi a0, 1 is ldi a0, (1) + 1",
+    ),
+    "these bits are shifted out": (
+        "op_push_var_short: andi r30, tini_shorts - 1 is left out",
+        "op_set_var_short: andi r30, tini_shorts - 1 is left out",
+    ),
+    "TIME faults after 24 days, and where a tick ends is no part of the meaning": (
+        "op_time: tst r18 is left out",
+        "op_time: breq 1f is brne 1f",
+        "op_time: breq 1f is left out",
+    ),
+    "where an instruction began says a fault alone": (
+        "leave_behind_jump: movw r24, r26 is left out",
+        "leave_behind_jump: sbiw r24, 1 is sbiw r24, (1) + 1 (no. 2)",
+    ),
+    "a value that was not sent is found on an empty stack too": (
+        "op_show_yes_no: tst r18 is left out",
+    ),
+    "the chip of the tests has a program counter of two bytes": (
+        "bad_caller: pop r0 is left out (no. 3)",
+    ),
+}
+NEEDLESS = {name: reason for reason, names in _NEEDLESS.items() for name in names}
+
+
+def noticeable_on_avr(found: list[Break]) -> list[Break]:
+    """Return the breaks without those that change nothing a test could see."""
+    return [each for each in found if each.name not in NEEDLESS]
+
+
+def gone_from_avr(found: list[Break]) -> list[str]:
+    """Return the names that are listed as needless, and are no longer there."""
+    return sorted({*NEEDLESS} - {each.name for each in found})
+
+
 def assembly_breaks(sources: Path) -> list[Break]:
     """Return the breaks of a folder like `vm_arduino`."""
     found: list[Break] = []

@@ -738,6 +738,21 @@ inline const std::vector<ProgramCase>& program_cases() {
        "0 SHOW 72.536\n"
        "0 SHOW 207\n"
        "0 DONE\n"},
+      {"instructions: ADD_VAR adds a variable that was not the last one to be set", tinibot(), {{}, {}, {}}, 60000, 1,
+       {84, 83, 2, 0, 0, 15, 0, 0, 16, 0, 138, 228, 139, 129, 0, 177, 160, 178, 161, 192, 162, 51, 0, 1, 128, 57, 51, 2, 0, 130, 57},
+       "0 SHOW 3\n"
+       "0 SHOW 73\n"
+       "0 DONE\n"},
+      {"instructions: ADD_VAR8 does not leave the range of numbers", tinibot(), {{}, {}, {2147483000}}, 60000, 1,
+       {84, 83, 2, 0, 0, 15, 32, 9, 11, 0, 204, 218, 101, 157, 0, 146, 160, 177, 161, 129, 57, 50, 0, 100, 128, 57},
+       "0 READ DISTANCE 2147483\n"
+       "0 SHOW 1\n"
+       "0 FAULT OVERFLOW\n"},
+      {"instructions: ADD_VAR does not leave the range of numbers", tinibot(), {{}, {}, {2147483000}}, 60000, 1,
+       {84, 83, 2, 0, 0, 15, 32, 9, 11, 0, 116, 139, 48, 127, 0, 146, 160, 128, 161, 177, 57, 51, 0, 1, 128, 57},
+       "0 READ DISTANCE 2147483\n"
+       "0 SHOW 1\n"
+       "0 FAULT OVERFLOW\n"},
       {"moves: The four directions", tinibot(), {{}, {}, {}}, 60000, 1,
        {84, 83, 2, 0, 0, 15, 0, 0, 12, 0, 248, 254, 48, 168, 0, 68, 100, 10, 69, 100, 20, 70, 100, 30, 71, 100, 40},
        "0 MOTORS 10 10\n"
