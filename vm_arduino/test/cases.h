@@ -743,14 +743,12 @@ inline const std::vector<ProgramCase>& program_cases() {
        "0 SHOW 3\n"
        "0 SHOW 73\n"
        "0 DONE\n"},
-      {"instructions: ADD_VAR8 does not leave the range of numbers", tinibot(), {{}, {}, {2147483000}}, 60000, 1,
-       {84, 83, 2, 0, 0, 15, 32, 9, 11, 0, 204, 218, 101, 157, 0, 146, 160, 177, 161, 129, 57, 50, 0, 100, 128, 57},
-       "0 READ DISTANCE 2147483\n"
+      {"instructions: ADD_VAR8 does not leave the range of numbers", tinibot(), {{}, {}, {}}, 60000, 1,
+       {84, 83, 2, 0, 0, 15, 0, 0, 15, 0, 240, 201, 64, 102, 0, 4, 120, 253, 255, 127, 160, 177, 161, 129, 57, 50, 0, 100, 128, 57},
        "0 SHOW 1\n"
        "0 FAULT OVERFLOW\n"},
-      {"instructions: ADD_VAR does not leave the range of numbers", tinibot(), {{}, {}, {2147483000}}, 60000, 1,
-       {84, 83, 2, 0, 0, 15, 32, 9, 11, 0, 116, 139, 48, 127, 0, 146, 160, 128, 161, 177, 57, 51, 0, 1, 128, 57},
-       "0 READ DISTANCE 2147483\n"
+      {"instructions: ADD_VAR does not leave the range of numbers", tinibot(), {{}, {}, {}}, 60000, 1,
+       {84, 83, 2, 0, 0, 15, 0, 0, 15, 0, 72, 152, 21, 132, 0, 4, 120, 253, 255, 127, 160, 128, 161, 177, 57, 51, 0, 1, 128, 57},
        "0 SHOW 1\n"
        "0 FAULT OVERFLOW\n"},
       {"moves: The four directions", tinibot(), {{}, {}, {}}, 60000, 1,
