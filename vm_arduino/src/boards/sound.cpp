@@ -6,8 +6,8 @@ namespace tiniscript {
 
 namespace {
 
-constexpr uint32_t kClockHertz = 16000000;
-constexpr uint16_t kMostCounts = 512;  // per period: 256 for each half
+constexpr uint32_t kFastestHertz = 2000000;  // the timer's clock with the fastest prescaler
+constexpr uint16_t kMostCounts = 512;        // per period: 256 for each half
 
 // Two notes each: rising and high, or falling and low.
 constexpr uint16_t kFinishedHertz[] = {1047, 1568};
@@ -22,25 +22,10 @@ uint32_t end_ms;
 volatile uint8_t first_half;
 volatile uint8_t second_half;
 
-// A prescaler of timer 2: divides the clock by 2^`shift`.
-struct Divider {
-  uint8_t shift;
-  uint8_t bits;  // in TCCR2B
-};
+// Prescalers of timer 2, in TCCR2B: they divide the clock by 8, 32, 64, 128, 256, 1024.
+constexpr uint8_t kFastest = 2;
 
-constexpr Divider kFastest = {3, 2};
-
-// Returns the next slower prescaler: 8, 32, 64, 128, 256, 1024.
-Divider slower(Divider divider) {
-  const bool is_wide = divider.bits == 2 || divider.bits == 6;
-  divider.shift = static_cast<uint8_t>(divider.shift + (is_wide ? 2 : 1));
-  divider.bits++;
-  return divider;
-}
-
-uint16_t counts(uint32_t cycles, uint8_t shift) {
-  return static_cast<uint16_t>(((cycles >> (shift - 1)) + 1) >> 1);
-}
+uint16_t half(uint16_t counts) { return static_cast<uint16_t>((counts + 1) >> 1); }
 
 }  // namespace
 
@@ -53,17 +38,20 @@ void sound_begin() {
 void sound_start(uint16_t hertz, uint32_t duration_ms, uint32_t now_ms) {
   sound_off();
   if (duration_ms == 0) return;
-  const uint32_t cycles = kClockHertz / hertz;
-  Divider divider = kFastest;
-  while (cycles >> divider.shift >= kMostCounts) divider = slower(divider);
-  const uint16_t period = counts(cycles, divider.shift);
+  uint16_t period = static_cast<uint16_t>((kFastestHertz + hertz / 2) / hertz);
+  uint8_t prescaler = kFastest;
+  while (period >= kMostCounts) {
+    period = half(period);
+    if (prescaler == 2 || prescaler == 6) period = half(period);  // four times as slow
+    prescaler++;
+  }
   first_half = static_cast<uint8_t>(period / 2 - 1);
   second_half = static_cast<uint8_t>(period - period / 2 - 1);
   TCNT2 = 0;
   OCR2A = first_half;
   TIFR2 = 1 << OCF2A;
   TIMSK2 = 1 << OCIE2A;
-  TCCR2B = divider.bits;
+  TCCR2B = prescaler;
   end_ms = now_ms + duration_ms;
   is_on = true;
 }

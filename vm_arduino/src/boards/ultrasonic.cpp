@@ -17,8 +17,8 @@ constexpr uint16_t kLimitUs = 25000;    // an echo takes at most 23.3 ms, plus 0
 constexpr uint16_t kSpacingUs = 30000;  // between two pings
 constexpr uint8_t kFreshMs = 57;        // 60 ms, less 2 for a late clock and steps of 2
 constexpr uint8_t kGlitchUs = 100;      // an echo is at least 117 us long, from 2 cm
-constexpr int32_t kNothing = -1;
-constexpr int32_t kFarthest = 400000;
+constexpr uint16_t kNothing = 0xffff;
+constexpr uint32_t kFarthest = 400000;
 constexpr uint16_t kThousandthsPer256Us = 4390;  // half of 34.3 cm/ms
 constexpr uint16_t kGroups = 0x68;               // PCICR
 constexpr uint16_t kChanges = 0x6b;              // PCMSK0 to PCMSK2
@@ -28,13 +28,13 @@ constexpr uint8_t kExternalGroup = 3;
 enum class Ping : uint8_t { kNone, kTriggered, kListening };
 
 struct Reading {
-  int32_t distance;  // or kNothing
+  uint16_t echo_us;  // the length of its echo; kLimitUs: it heard none; or kNothing
   uint32_t ping_ms;  // when its ping was sent
 };
 
 Reading readings[kUltrasonics];
 Ping ping;
-uint8_t asked;      // the sensor of the current ping
+uint8_t last_asked;  // the sensor of the current ping
 uint16_t ping_us;   // when the last ping of any sensor was sent
 bool is_spaced;     // kSpacingUs have passed since then
 uint16_t begun_us;  // when the trigger, or a stale echo, went high
@@ -53,6 +53,9 @@ volatile uint16_t rose_us;
 volatile uint16_t fell_us;
 volatile uint16_t again_us;
 
+// Where there is only one sensor, the compiler knows.
+tini_always_inline uint8_t asked() { return kUltrasonics == 1 ? 0 : last_asked; }
+
 tini_always_inline uint16_t since(uint16_t now_us, uint16_t then_us) {
   return static_cast<uint16_t>(now_us - then_us);
 }
@@ -60,7 +63,7 @@ tini_always_inline uint16_t since(uint16_t now_us, uint16_t then_us) {
 tini_always_inline void on_change() {
   const uint16_t now_us = clock_us();
   const Heard before = heard;
-  if (is_high(ultrasonic_at(asked).echo)) {
+  if (is_high(ultrasonic_at(asked()).echo)) {
     if (before == Heard::kNothing) {
       rose_us = now_us;
       heard = Heard::kHigh;
@@ -79,7 +82,7 @@ tini_always_inline void on_change() {
 
 void listen(bool is_on) {
   const CriticalSection critical;
-  const Ultrasonic sensor = ultrasonic_at(asked);
+  const Ultrasonic sensor = ultrasonic_at(asked());
   const uint8_t group = sensor.group;
   const uint16_t masks =
       group == kExternalGroup ? kExternal : static_cast<uint16_t>(kChanges + group);
@@ -102,10 +105,10 @@ void listen(bool is_on) {
 }
 
 void lower_trigger() {
-  write(ultrasonic_at(asked).trigger, false);
+  write(ultrasonic_at(asked()).trigger, false);
   ping_us = clock_us();
   is_spaced = false;
-  readings[asked].ping_ms = clock_ms();
+  readings[asked()].ping_ms = clock_ms();
 }
 
 // Continues the current ping. Returns true when it is over and there is a reading.
@@ -133,18 +136,13 @@ bool is_over() {
   if (gone_us < kLimitUs && !(has_ended && quiet_us >= kGlitchUs)) return false;
   listen(false);
   ping = Ping::kNone;
-  int32_t distance = kFarthest;
-  if (has_ended && echo_us < kLimitUs) {
-    const int32_t near = static_cast<int32_t>(uint32_t{echo_us} * kThousandthsPer256Us >> 8);
-    if (near < kFarthest) distance = near;
-  }
-  readings[asked].distance = distance;
+  readings[asked()].echo_us = has_ended && echo_us < kLimitUs ? echo_us : kLimitUs;
   return true;
 }
 
 void begin(uint8_t number) {
-  asked = number;
-  readings[number].distance = kNothing;
+  last_asked = number;
+  readings[number].echo_us = kNothing;
   write(ultrasonic_at(number).trigger, true);
   begun_us = clock_us();
   ping = Ping::kTriggered;
@@ -156,6 +154,32 @@ bool may_ping() {
   return is_spaced;
 }
 
+// The length of an echo, or kNothing: ask again.
+uint16_t echo_of(uint8_t number) {
+  const Reading& mine = readings[number];
+  if (ping != Ping::kNone && is_over() && asked() == number) return mine.echo_us;
+  if (ping != Ping::kNone && asked() == number) return kNothing;
+  // A sensor without an echo holds its line high for longer and ignores triggers meanwhile.
+  const bool is_busy = ping == Ping::kNone && is_high(ultrasonic_at(number).echo);
+  if (ping == Ping::kNone && !is_busy) {
+    is_held = false;
+    if (may_ping()) {
+      begin(number);
+      return kNothing;
+    }
+  }
+  if (clock_ms() - mine.ping_ms <= kFreshMs) return mine.echo_us;
+  if (!is_busy) return kNothing;
+  if (!is_held) {
+    is_held = true;
+    begun_us = clock_us();
+    return kNothing;
+  }
+  if (since(clock_us(), begun_us) < kLimitUs) return kNothing;
+  is_held = false;
+  return kLimitUs;
+}
+
 }  // namespace
 
 void ultrasonic_tick() {
@@ -163,34 +187,10 @@ void ultrasonic_tick() {
 }
 
 bool ultrasonic_read(uint8_t number, int32_t* distance) {
-  const Reading& mine = readings[number];
-  if (ping != Ping::kNone && is_over() && asked == number) {
-    *distance = mine.distance;
-    return true;
-  }
-  if (ping != Ping::kNone && asked == number) return false;
-  // A sensor without an echo holds its line high for longer and ignores triggers meanwhile.
-  const bool is_busy = ping == Ping::kNone && is_high(ultrasonic_at(number).echo);
-  if (ping == Ping::kNone && !is_busy) {
-    is_held = false;
-    if (may_ping()) {
-      begin(number);
-      return false;
-    }
-  }
-  if (mine.distance != kNothing && clock_ms() - mine.ping_ms <= kFreshMs) {
-    *distance = mine.distance;
-    return true;
-  }
-  if (!is_busy) return false;
-  if (!is_held) {
-    is_held = true;
-    begun_us = clock_us();
-    return false;
-  }
-  if (since(clock_us(), begun_us) < kLimitUs) return false;
-  is_held = false;
-  *distance = kFarthest;
+  const uint16_t echo_us = echo_of(number);
+  if (echo_us == kNothing) return false;
+  const uint32_t near = uint32_t{echo_us} * kThousandthsPer256Us >> 8;
+  *distance = static_cast<int32_t>(near < kFarthest ? near : kFarthest);
   return true;
 }
 
@@ -199,7 +199,7 @@ void ultrasonic_forget() {
   if (ping == Ping::kListening) listen(false);
   ping = Ping::kNone;
   is_held = false;
-  for (Reading& reading : readings) reading.distance = kNothing;
+  for (Reading& reading : readings) reading.echo_us = kNothing;
 }
 
 }  // namespace tiniscript

@@ -2,7 +2,6 @@
 
 #include "../link/frames.h"
 #include "../vm/image.h"
-#include "../vm/verify.h"
 #include "state.h"
 
 namespace tiniscript {
@@ -15,16 +14,6 @@ namespace {
 bool is_whole;                         // `program` is the one in `robot_status`
 bool has_other;                        // the stored program is of another version
 uint8_t header_length = kHeaderBytes;  // of the program in `robot_status`
-
-// Whether the robot may run the image of this size in memory.
-bool may_run(uint16_t bytes) {
-  Image image;
-  if (unpack(program, bytes, &image) != Refusal::kNone) return false;
-  uint16_t devices;
-  const Verdict verdict =
-      verify(image.code, image.code_length, board.sensors, board.actuators, &devices);
-  return verdict.rule == Rule::kNone && check_devices(image, devices) == Refusal::kNone;
-}
 
 bool is_other_version(const uint8_t* header) {
   return header[kIsaMajorAt] != kIsaMajor || header[kIsaMinorAt] > kIsaMinor;
@@ -72,7 +61,7 @@ bool load_program() {
   const uint16_t bytes = held_bytes();
   if (!store.fetch_first(Area::kProgram, program, bytes)) return false;
   for (uint8_t k = 0; k < kEndBytes; k++) program[bytes + k] = static_cast<uint8_t>(Op::kEnd);
-  is_whole = may_run(bytes);
+  is_whole = admit(program, bytes, board.sensors, board.actuators).refusal == 0;
   if (!is_whole) {
     // falls back to the program before it, or to none
     store.refuse();

@@ -2,7 +2,6 @@
 
 #include "../link/frames.h"
 #include "../robot.h"
-#include "../vm/crc32.h"
 #include "../vm/image.h"
 #include "../vm/vm.h"
 #include "firmware.h"
@@ -146,8 +145,7 @@ bool firmware_runs(Place* place) {
   const uint8_t* const image = is_live_run ? live : program;
   const uint16_t most = is_live_run ? kLiveImageBytes : kImageBytes;
   const uint16_t length = image_length(image);
-  const uint16_t rest = static_cast<uint16_t>((length < most ? length : most) - kBehindChecksum);
-  place->program = crc32(crc32(0, image, kChecksumAt), image + kBehindChecksum, rest);
+  place->program = image_checksum(image, length < most ? length : most);
   place->at = machine.at();
   return true;
 }

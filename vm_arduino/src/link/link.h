@@ -62,9 +62,9 @@ class Link {
   bool is_tethered() const { return is_tethered_; }
 
  private:
-  // What is due to be sent, one bit each.
-  static constexpr uint8_t kDueReply = 1;
-  static constexpr uint8_t kDueStopped = 2;
+  // What is due to be sent, one bit each: the lowest one first.
+  static constexpr uint8_t kDueStopped = 1;
+  static constexpr uint8_t kDueReply = 2;
   static constexpr uint8_t kDueFault = 4;
   static constexpr uint8_t kDueDone = 8;
   static constexpr uint8_t kDueHint = 16;

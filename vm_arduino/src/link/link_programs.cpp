@@ -2,7 +2,6 @@
 //
 // A program that runs once is prepared before its frame has ended, so that it starts at once.
 
-#include "../vm/crc32.h"
 #include "../vm/image.h"
 #include "../vm/small.h"
 #include "../vm/verify.h"
@@ -24,14 +23,6 @@ uint8_t number_of(Answer answer) { return static_cast<uint8_t>(answer); }
 bool is_latched() { return port_status().state >= State::kStopped; }
 
 bool may_start(uint8_t mode) { return (mode & (kRun | kStartBits)) != kRun || !is_latched(); }
-
-// Whether the robot may run the code; with `is_bare`, whether a robot without any device may.
-tini_noinline Verdict verified(const uint8_t* code, uint16_t length, bool is_bare,
-                               uint16_t* devices) {
-  const DeviceInfo& device_info = port_device_info();
-  const uint8_t sensors = is_bare ? 0 : device_info.sensors;
-  return verify(code, length, sensors, is_bare ? 0 : device_info.actuators, devices);
-}
 
 // Returns the end of an image whose header begins with the instruction set.
 uint16_t end_of(const uint8_t* header) {
@@ -129,7 +120,10 @@ tini_noinline uint8_t Link::fill(Use use, const uint8_t* payload, uint8_t length
 
   // A program that needs no device fits any kit.
   uint16_t devices;
-  const Verdict verdict = verified(code, length, is_other_kit_, &devices);
+  const DeviceInfo& device_info = port_device_info();
+  const uint8_t sensors = is_other_kit_ ? 0 : device_info.sensors;
+  const uint8_t actuators = is_other_kit_ ? 0 : device_info.actuators;
+  const Verdict verdict = verify(code, length, sensors, actuators, &devices);
   if (verdict.rule == Rule::kNoSuchDevice && is_other_kit_) {
     return refuse(Answer::kWrongKit, port_identity().kit);
   }
@@ -181,16 +175,15 @@ uint8_t Link::commit(const uint8_t* payload) {
   if (image == nullptr) return refuse(Answer::kNotBegun, 0);
   if (next_ != length_) return refuse(Answer::kIncomplete, next_);
   image_ = nullptr;
-  put_checksum(image);
-  if (!same_bytes(&checksum_, payload + kCommitChecksumAt)) {
-    return static_cast<uint8_t>(Refusal::kDamaged);
+  copy_bytes(payload + kCommitChecksumAt, image + kChecksumAt, kChecksumBytes);
+  checksum_ = get32(image + kChecksumAt);
+  const DeviceInfo& device_info = port_device_info();
+  const Admission found = admit(image, static_cast<uint16_t>(kBehindChecksum + length_),
+                                device_info.sensors, device_info.actuators);
+  if (found.refusal == static_cast<uint8_t>(Refusal::kOtherKit)) {
+    return refuse(Answer::kWrongKit, port_identity().kit);
   }
-  if (image[kNeedsAt] != kNeeds) return static_cast<uint8_t>(Refusal::kUnknownNeeds);
-  uint16_t devices;
-  const Verdict verdict =
-      verified(image + image[kHeaderLengthAt], get16(image + kCodeLengthAt), false, &devices);
-  if (verdict.rule != Rule::kNone) return refuse(static_cast<Answer>(verdict.rule), verdict.offset);
-  if (devices != get16(image + kDevicesAt)) return refuse(Answer::kWrongKit, port_identity().kit);
+  if (found.refusal != 0) return refuse(static_cast<Answer>(found.refusal), found.offset);
   finish(mode_, false);
   port_seal(image);
   return kIsFine;
@@ -198,8 +191,7 @@ uint8_t Link::commit(const uint8_t* payload) {
 
 // Writes the checksum into the otherwise complete image.
 void Link::put_checksum(uint8_t* image) {
-  checksum_ = crc32(crc32(0, image, kChecksumAt), image + kBehindChecksum,
-                    static_cast<uint16_t>(end_of(image + kFirstAt) - kBehindChecksum));
+  checksum_ = image_checksum(image, image_length(image));
   copy_bytes(&checksum_, image + kChecksumAt, sizeof checksum_);
 }
 

@@ -73,32 +73,26 @@ bool Link::is_own_hint() const {
   return true;
 }
 
-// Sends one message that is due. A client that has sent the stop sequence is listening.
+// Sends the first message that is due. A client that has sent the stop sequence is listening.
 void Link::send() {
   if (!is_listened_to()) due_ &= static_cast<uint8_t>(~(kDueFault | kDueDone));
-  if ((due_ & kDueStopped) != 0) {
-    due_ &= static_cast<uint8_t>(~kDueStopped);
+  const uint8_t first = static_cast<uint8_t>(due_ & -due_);
+  if (first == 0) return;
+  due_ ^= first;
+  if (first == kDueHint) {
+    size_ = 0;
+    for (const uint8_t& byte : kHint) put(flash_byte(&byte));
+    return hand_over();
+  }
+  if (first == kDueReply) {
+    reply();
+  } else if (first == kDueStopped) {
     begin_event(Message::kStopped);
     put(byte_of(cause_));
-  } else if ((due_ & kDueReply) != 0) {
-    due_ &= static_cast<uint8_t>(~kDueReply);
-    reply();
-  } else if ((due_ & kDueFault) != 0) {
-    due_ &= static_cast<uint8_t>(~kDueFault);
-    begin_event(Message::kFault);
-    put(ended_run_);
-    put_all(&port_status().fault, kFaultBytes);
-  } else if ((due_ & kDueDone) != 0) {
-    due_ &= static_cast<uint8_t>(~kDueDone);
-    begin_event(Message::kDone);
-    put(ended_run_);
-  } else if ((due_ & kDueHint) != 0) {
-    due_ &= static_cast<uint8_t>(~kDueHint);
-    for (size_ = 0; size_ < sizeof kHint; size_++) out_[size_] = flash_byte(kHint + size_);
-    hand_over();
-    return;
   } else {
-    return;
+    begin_event(first == kDueFault ? Message::kFault : Message::kDone);
+    put(ended_run_);
+    if (first == kDueFault) put_all(&port_status().fault, kFaultBytes);
   }
   close();
 }
@@ -181,7 +175,7 @@ void Link::fetch() {
 
 void Link::begin_event(Message message) { begin_frame(byte_of(message) | kReply, event_seq_++); }
 
-void Link::begin_frame(uint8_t type, uint8_t seq) {
+tini_noinline void Link::begin_frame(uint8_t type, uint8_t seq) {
   out_[kTypeAt] = type;
   out_[kSeqAt] = seq;
   out_[kEpochAt] = epoch_;

@@ -1,6 +1,8 @@
 #include "image.h"
 
 #include "crc32.h"
+#include "small.h"
+#include "verify.h"
 
 namespace tiniscript {
 
@@ -11,6 +13,11 @@ constexpr uint8_t kVersionBytes = kIsaMinorAt + 1;  // these identify an image o
 uint16_t word(const uint8_t* data) { return static_cast<uint16_t>(data[0] | data[1] << 8); }
 
 }  // namespace
+
+tini_noinline uint32_t image_checksum(const uint8_t* image, uint16_t length) {
+  return crc32(crc32(0, image, kChecksumAt), image + kBehindChecksum,
+               static_cast<uint16_t>(length - kBehindChecksum));
+}
 
 // Checks in the order of `Refusal`, but missing bytes that must be checked are reported first.
 Refusal unpack(const uint8_t* data, size_t length, Image* image) {
@@ -31,9 +38,9 @@ Refusal unpack(const uint8_t* data, size_t length, Image* image) {
   const uint16_t whole = static_cast<uint16_t>(header_length + image->code_length);
   if (length < whole) return Refusal::kTruncated;
   if (length > whole) return Refusal::kTrailing;
-  uint32_t crc = crc32(0, data, kChecksumAt);
-  crc = crc32(crc, data + kBehindChecksum, static_cast<uint16_t>(whole - kBehindChecksum));
-  if (crc32(crc, data + kChecksumAt, kChecksumBytes) != kBehindItself) return Refusal::kDamaged;
+  uint32_t check;
+  __builtin_memcpy(&check, data + kChecksumAt, sizeof check);
+  if (image_checksum(data, whole) != check) return Refusal::kDamaged;
   if (data[kNeedsAt] != kNeeds) return Refusal::kUnknownNeeds;
   if (image->start >= kStarts) return Refusal::kUnknownStart;
   if (image->start == kStartPing && image->code_length != 0) return Refusal::kPingWithCode;
@@ -43,6 +50,17 @@ Refusal unpack(const uint8_t* data, size_t length, Image* image) {
 Refusal check_devices(const Image& image, uint16_t devices) {
   if (devices != image.devices) return Refusal::kOtherKit;
   return Refusal::kNone;
+}
+
+tini_noinline Admission admit(const uint8_t* data, uint16_t length, uint8_t sensors,
+                              uint8_t actuators) {
+  Image image;
+  const Refusal refusal = unpack(data, length, &image);
+  if (refusal != Refusal::kNone) return {static_cast<uint8_t>(refusal), 0};
+  uint16_t devices;
+  const Verdict verdict = verify(image.code, image.code_length, sensors, actuators, &devices);
+  if (verdict.rule != Rule::kNone) return {static_cast<uint8_t>(verdict.rule), verdict.offset};
+  return {static_cast<uint8_t>(check_devices(image, devices)), 0};
 }
 
 }  // namespace tiniscript

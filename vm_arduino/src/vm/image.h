@@ -1,6 +1,6 @@
 // An image: code, and a header by which a robot decides whether it may run it.
 //
-// Knows the header and the checksum. Knows nothing of the code: `verify` checks it.
+// Knows the header and the checksum; `verify` checks the code.
 
 #ifndef TINISCRIPT_VM_IMAGE_H_
 #define TINISCRIPT_VM_IMAGE_H_
@@ -34,6 +34,9 @@ inline uint16_t image_length(const uint8_t* image) {
 // The checksum of any bytes followed by their own checksum.
 constexpr uint32_t kBehindItself = 0x2144df1c;
 
+// The checksum of an image of `length` bytes, whatever its header says.
+uint32_t image_checksum(const uint8_t* image, uint16_t length);
+
 // Fills `*image` from `length` bytes. Code and devices are not verified yet; `*image` is undefined
 // if it is refused.
 Refusal unpack(const uint8_t* data, size_t length, Image* image);
@@ -41,6 +44,15 @@ Refusal unpack(const uint8_t* data, size_t length, Image* image);
 // Whether the devices that the code uses are those of this robot: `devices` is their hash here,
 // from `verify`.
 Refusal check_devices(const Image& image, uint16_t devices);
+
+// Whether a robot with this many sensors and actuators may run the image of `length` bytes: 0, a
+// Refusal, or the verifier's Rule with its `offset`.
+struct Admission {
+  uint8_t refusal;
+  uint16_t offset;
+};
+
+Admission admit(const uint8_t* data, uint16_t length, uint8_t sensors, uint8_t actuators);
 
 }  // namespace tiniscript
 
