@@ -21,6 +21,10 @@ namespace {
 
 struct Tabletop {
   std::string memory;  // the EEPROM
+  uint16_t kit = 0;
+  uint8_t sensors = 0;
+  uint8_t actuators = 0;
+  uint32_t max_run_ms = 0;
   std::vector<int32_t> readings;
   std::vector<int32_t> kept;  // the firmware's
   std::vector<uint16_t> hashes;
@@ -73,19 +77,18 @@ void turn(int8_t left, int8_t right) {
 
 // B: power on, with what the memory holds.
 void answer_begin(Reader* request) {
+  table.kit = request->u16();
+  table.sensors = request->u8();
+  table.actuators = request->u8();
   Board board;
-  board.kit = request->u16();
-  board.sensors = request->u8();
-  board.actuators = request->u8();
   board.reset = static_cast<Reset>(request->u8());
   board.seed = request->u32();
-  board.max_run_ms = request->u32();
+  table.max_run_ms = request->u32();
   table.write_ticks = request->u8();
-  table.hashes.resize(static_cast<size_t>(board.sensors + board.actuators));
+  table.hashes.resize(static_cast<size_t>(table.sensors + table.actuators));
   for (uint16_t& hash : table.hashes) hash = request->u16();
-  table.readings.resize(board.sensors);
-  table.kept.resize(board.sensors);
-  board.readings = table.kept.data();
+  table.readings.resize(table.sensors);
+  table.kept.resize(table.sensors);
   table.memory = request->text();
   firmware_begin(board);
 }
@@ -159,6 +162,16 @@ void robot_set(uint8_t actuator, int32_t value) {
   say("SET", actuator, value);
   table.has_set = true;
 }
+
+uint16_t board_kit() { return table.kit; }
+
+uint8_t board_sensors() { return table.sensors; }
+
+uint8_t board_actuators() { return table.actuators; }
+
+int32_t* board_readings() { return table.kept.data(); }
+
+uint32_t board_max_run_ms() { return table.max_run_ms; }
 
 uint16_t robot_device_hash(uint16_t device) { return table.hashes.at(device); }
 

@@ -39,6 +39,16 @@ uint32_t write_us;   // and how long in the EEPROM
 bool is_latched = true;
 int32_t readings[256];
 uint16_t hashes[512];
+
+// What `begin` tells of the robot.
+struct Own {
+  uint16_t kit;
+  uint8_t sensors;
+  uint8_t actuators;
+  uint32_t max_run_ms;
+};
+
+Own own;
 uint8_t memory[kMemoryBytes];
 
 // What the robot does, and when: milliseconds since power-on. `what` is one of kMotors to
@@ -120,6 +130,16 @@ void robot_beep(uint16_t hertz, uint32_t duration_ms) {
 
 void robot_set(uint8_t actuator, int32_t value) { note(kSet, actuator, value); }
 
+uint16_t board_kit() { return own.kit; }
+
+uint8_t board_sensors() { return own.sensors; }
+
+uint8_t board_actuators() { return own.actuators; }
+
+int32_t* board_readings() { return readings; }
+
+uint32_t board_max_run_ms() { return own.max_run_ms; }
+
 uint16_t robot_device_hash(uint16_t device) { return hashes[device]; }
 
 void board_stop() {
@@ -196,14 +216,13 @@ tini_exported("begin") void module_begin(uint32_t kit, uint32_t sensors, uint32_
                                          uint32_t line_us, uint32_t eeprom_us) {
   byte_us = line_us;
   write_us = eeprom_us;
+  own.kit = static_cast<uint16_t>(kit);
+  own.sensors = static_cast<uint8_t>(sensors);
+  own.actuators = static_cast<uint8_t>(actuators);
+  own.max_run_ms = max_run_ms;
   Board board;
-  board.kit = static_cast<uint16_t>(kit);
-  board.sensors = static_cast<uint8_t>(sensors);
-  board.actuators = static_cast<uint8_t>(actuators);
-  board.readings = readings;
   board.reset = static_cast<Reset>(reset);
   board.seed = seed;
-  board.max_run_ms = max_run_ms;
   firmware_begin(board);
 }
 

@@ -70,15 +70,20 @@ bool board_has_disconnected() {
 
 Board board_told() {
   Board told;
-  told.kit = kBoardKit;
-  told.sensors = kBoardSensors;
-  told.actuators = kBoardActuators;
-  told.readings = readings;
   told.reset = watchdog_reset_cause();
   told.seed = watchdog_seed() ^ clock_us();
-  told.max_run_ms = uint32_t{kMaxRunSeconds} * 1000;
   return told;
 }
+
+uint16_t board_kit() { return kBoardKit; }
+
+uint8_t board_sensors() { return kBoardSensors; }
+
+uint8_t board_actuators() { return kBoardActuators; }
+
+int32_t* board_readings() { return readings; }
+
+uint32_t board_max_run_ms() { return uint32_t{kMaxRunSeconds} * 1000; }
 
 uint16_t robot_device_hash(uint16_t device) { return flash_word(kDeviceHashes + device); }
 

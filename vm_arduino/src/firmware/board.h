@@ -12,16 +12,19 @@
 
 namespace tiniscript {
 
-// The board's kit, the cause of the last reset, and a seed that rarely repeats.
+// The cause of the last reset, and a seed that rarely repeats.
 struct Board {
-  uint16_t kit;
-  uint8_t sensors;
-  uint8_t actuators;
-  int32_t* readings;  // the last reading of each sensor
   Reset reset;
   uint32_t seed;
-  uint32_t max_run_ms;  // the longest run without a tether
 };
+
+// The board's kit; on an AVR the compiler knows all of these. `board_readings` are the last
+// readings of the sensors, `board_max_run_ms` is the longest run without a tether.
+uint16_t board_kit();
+uint8_t board_sensors();
+uint8_t board_actuators();
+int32_t* board_readings();
+uint32_t board_max_run_ms();
 
 // A place in a program: the checksum of the image and the offset of an instruction.
 struct Place {

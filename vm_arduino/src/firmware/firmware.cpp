@@ -7,7 +7,6 @@
 
 namespace tiniscript {
 
-Board board;
 RobotStatus robot_status;
 uint32_t now_ms;
 Link link;
@@ -22,9 +21,8 @@ Receiver receiver;
 void show_light() { board_light(!is_running() && holds_program()); }
 
 void firmware_begin(const Board& what) {
-  board = what;
   robot_status.slot = kNoSlot;
-  begin_identity();
+  begin_identity(what);
   store.boot();
   link.begin(&receiver, static_cast<uint8_t>(what.seed & 0xff));
 }

@@ -26,15 +26,15 @@ bool change(uint8_t* to, const uint8_t* from, uint8_t length) {
 
 }  // namespace
 
-void begin_identity() {
-  identity.kit = board.kit;
+void begin_identity(const Board& board) {
+  identity.kit = board_kit();
   identity.nonce = board.seed;
   identity.reset = board.reset;
-  device_info.sensors = board.sensors;
-  device_info.actuators = board.actuators;
+  device_info.sensors = board_sensors();
+  device_info.actuators = board_actuators();
 }
 
-void make_identity() { identity.id = board.seed; }
+void make_identity() { identity.id = identity.nonce; }
 
 void read_identity(const uint8_t* record) {
   identity.id = get32(record + kIdAt);

@@ -8,12 +8,12 @@
 
 #include <stdint.h>
 
-#include "../link/port.h"
+#include "board.h"
 
 namespace tiniscript {
 
 // Takes over the board's data.
-void begin_identity();
+void begin_identity(const Board& board);
 
 // Makes an id if none is saved.
 void make_identity();

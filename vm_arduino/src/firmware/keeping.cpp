@@ -83,7 +83,7 @@ void write_record() {
     write_identity(record);
   } else {
     copy_bytes(&robot_status.fault, record + kFaultAt, kFaultBytes);
-    record[kFaultAt + kFaultBytes] = static_cast<uint8_t>(board.reset);
+    record[kFaultAt + kFaultBytes] = static_cast<uint8_t>(port_identity().reset);
   }
 }
 

@@ -47,14 +47,14 @@ void go_on() {
     end_run(State::kFaulted);
     fault(static_cast<uint8_t>(machine.fault()), machine.at());
     link.faulted();
-  } else if (!link.is_tethered() && now_ms - began_ms >= board.max_run_ms) {
+  } else if (!link.is_tethered() && now_ms - began_ms >= board_max_run_ms()) {
     abort_run(LinkFault::kMaxRun);
   }
 }
 
 // The part of starting a run that does not depend on the program: done while nothing runs.
 void prepare() {
-  for (uint8_t k = 0; k < board.sensors; k++) board.readings[k] = 0;
+  for (uint8_t k = 0; k < board_sensors(); k++) board_readings()[k] = 0;
   board_forget();
   machine.prepare();
   is_prepared = true;
@@ -67,7 +67,7 @@ void begin_run(bool is_live) {
   if (!is_prepared) prepare();
   is_prepared = false;
   machine.start_prepared(image + image[kHeaderLengthAt], get16(image + kCodeLengthAt),
-                         board.readings, board.sensors, (now_ms ^ board.seed) | 1, now_ms);
+                         board_readings(), board_sensors(), (now_ms ^ port_identity().nonce) | 1, now_ms);
   is_live_run = is_live;
   is_start_due = false;
   began_ms = now_ms;

@@ -11,7 +11,6 @@
 
 namespace tiniscript {
 
-extern Board board;               // as passed at the beginning
 extern RobotStatus robot_status;  // what the robot does and holds, and its last fault
 extern uint32_t now_ms;           // of this tick
 extern Link link;
