@@ -117,9 +117,9 @@ void board_light(bool is_on) {
   if (kLight.port != 0) write(kLight, is_on);
 }
 
-void board_finished() { sound_finished(clock_ms()); }
+void board_finished() { sound_finished(); }
 
-void board_faulted() { sound_faulted(clock_ms()); }
+void board_faulted() { sound_faulted(); }
 
 void robot_off() {
   board_motors(0, 0);
@@ -129,7 +129,7 @@ void robot_off() {
 bool robot_read(uint8_t sensor, int32_t* value) { return read_sensor(sensor, value); }
 
 void robot_beep(uint16_t hertz, uint32_t duration_ms) {
-  sound_start(hertz, duration_ms, clock_ms());
+  sound_start(hertz, duration_ms);
 }
 
 // A program that is being stopped must not set anything.

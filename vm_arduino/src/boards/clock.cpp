@@ -52,14 +52,14 @@ uint16_t clock_us() {
 ISR(TIMER0_OVF_vect) {
   using namespace tiniscript;
   call_attention();
-  uint32_t now_ms = clock.now_ms + 1;
+  uint8_t passed_ms = 1;
   uint8_t fraction = static_cast<uint8_t>(clock.fraction + kTurnParts);
   if (fraction >= kParts) {
     fraction = static_cast<uint8_t>(fraction - kParts);
-    now_ms++;
+    passed_ms = 2;
   }
   clock.fraction = fraction;
-  clock.now_ms = now_ms;
+  clock.now_ms = clock.now_ms + passed_ms;
   clock.turns = static_cast<uint8_t>(clock.turns + 1);
   const uint8_t silence_ms = static_cast<uint8_t>(clock.silence_ms + 1);
   clock.silence_ms = silence_ms;

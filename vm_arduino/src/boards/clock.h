@@ -26,8 +26,12 @@ extern volatile Clock clock;
 uint32_t clock_ms();
 
 // The lowest 8 bits, read with one instruction; the lowest 16, for callers with interrupts off.
-tini_always_inline uint8_t clock_8_ms() { return static_cast<uint8_t>(clock.now_ms); }
-tini_always_inline uint16_t clock_16_ms() { return static_cast<uint16_t>(clock.now_ms); }
+tini_always_inline uint8_t clock_8_ms() {
+  return *reinterpret_cast<const volatile uint8_t*>(&clock.now_ms);
+}
+tini_always_inline uint16_t clock_16_ms() {
+  return *reinterpret_cast<const volatile uint16_t*>(&clock.now_ms);
+}
 
 // Microseconds in steps of 4; they wrap around after 65 ms.
 uint16_t clock_us();

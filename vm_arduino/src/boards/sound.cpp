@@ -1,5 +1,7 @@
 #include "sound.h"
 
+#include "../vm/small.h"
+#include "clock.h"
 #include "kit.h"
 
 namespace tiniscript {
@@ -25,6 +27,11 @@ volatile uint8_t second_half;
 // Prescalers of timer 2, in TCCR2B: they divide the clock by 8, 32, 64, 128, 256, 1024.
 constexpr uint8_t kFastest = 2;
 
+tini_noinline void start_notes(uint16_t hertz, uint16_t next) {
+  sound_start(hertz, kNoteMs);
+  next_hertz = next;
+}
+
 uint16_t half(uint16_t counts) { return static_cast<uint16_t>((counts + 1) >> 1); }
 
 }  // namespace
@@ -35,7 +42,7 @@ void sound_begin() {
   TCCR2A = 1 << WGM21;  // counts up to OCR2A
 }
 
-void sound_start(uint16_t hertz, uint32_t duration_ms, uint32_t now_ms) {
+void sound_start(uint16_t hertz, uint32_t duration_ms) {
   sound_off();
   if (duration_ms == 0) return;
   uint16_t period = static_cast<uint16_t>((kFastestHertz + hertz / 2) / hertz);
@@ -52,19 +59,13 @@ void sound_start(uint16_t hertz, uint32_t duration_ms, uint32_t now_ms) {
   TIFR2 = 1 << OCF2A;
   TIMSK2 = 1 << OCIE2A;
   TCCR2B = prescaler;
-  end_ms = now_ms + duration_ms;
+  end_ms = clock_ms() + duration_ms;
   is_on = true;
 }
 
-void sound_finished(uint32_t now_ms) {
-  sound_start(kFinishedHertz[0], kNoteMs, now_ms);
-  next_hertz = kFinishedHertz[1];
-}
+void sound_finished() { start_notes(kFinishedHertz[0], kFinishedHertz[1]); }
 
-void sound_faulted(uint32_t now_ms) {
-  sound_start(kFaultHertz[0], kNoteMs, now_ms);
-  next_hertz = kFaultHertz[1];
-}
+void sound_faulted() { start_notes(kFaultHertz[0], kFaultHertz[1]); }
 
 void sound_off() {
   TIMSK2 = 0;
@@ -76,11 +77,8 @@ void sound_off() {
 
 void sound_tick(uint32_t now_ms) {
   if (!is_on || static_cast<int32_t>(now_ms - end_ms) < 0) return;
-  if (next_hertz != 0) {
-    sound_start(next_hertz, kNoteMs, now_ms);
-  } else {
-    sound_off();
-  }
+  if (next_hertz == 0) return sound_off();
+  start_notes(next_hertz, 0);
 }
 
 }  // namespace tiniscript

@@ -10,11 +10,11 @@ namespace tiniscript {
 void sound_begin();
 
 // Starts a sound of 31 to 20000 hertz, which `sound_tick` ends. 0 ms means no sound.
-void sound_start(uint16_t hertz, uint32_t duration_ms, uint32_t now_ms);
+void sound_start(uint16_t hertz, uint32_t duration_ms);
 
 // The tune for the end of a program, and the one for a fault.
-void sound_finished(uint32_t now_ms);
-void sound_faulted(uint32_t now_ms);
+void sound_finished();
+void sound_faulted();
 
 void sound_off();
 

@@ -34,10 +34,9 @@ void Link::pass_time(uint16_t now_ms) { near(this)->pass(now_ms); }
 void Link::pass(uint16_t now_ms) {
   const uint16_t passed = static_cast<uint16_t>(now_ms - now_ms_);
   now_ms_ = now_ms;
-  quiet_ms_ =
-      passed < kListenMs - quiet_ms_ ? static_cast<uint16_t>(quiet_ms_ + passed) : kListenMs;
-  text_ms_ = passed < text_ms_ ? static_cast<uint16_t>(text_ms_ - passed) : 0;
-  again_ms_ = passed < again_ms_ ? static_cast<uint8_t>(again_ms_ - passed) : 0;
+  for (uint16_t& left_ms : left_ms_) {
+    left_ms = passed < left_ms ? static_cast<uint16_t>(left_ms - passed) : 0;
+  }
 }
 
 void Link::tick() { near(this)->turn(); }
@@ -51,7 +50,8 @@ void Link::turn() {
   check();
   // A reply that is due goes first.
   if (is_there && (due_ & (kDueReply | kDueHint)) == 0) hear();
-  if (is_tethered_ && quiet_ms_ >= kTetherMs && port_status().state == State::kRunning) {
+  if (is_tethered_ && left_ms_[kListen] <= kListenMs - kTetherMs &&
+      port_status().state == State::kRunning) {
     port_stop(static_cast<uint8_t>(LinkFault::kLinkLost));
     faulted();
   }
@@ -86,8 +86,8 @@ tini_noinline void Link::halt(Cause cause) {
   port_stop(0);
   const bool has_stale = cause == Cause::kSequence && receiver_->item() != Item::kNone;
   if (!was_stopped || has_stale) return stopped(cause);
-  if (again_ms_ != 0) return;
-  again_ms_ = kAgainMs;
+  if (left_ms_[kAgain] != 0) return;
+  left_ms_[kAgain] = kAgainMs;
   due_ |= kDueStopped;
 }
 
@@ -110,15 +110,15 @@ tini_noinline void Link::hear() {
   if (is_ready_ && ahead_ + kCrcBytes == receiver_->length() && go_live()) {
     due_ |= kDueReply;
   } else if (receiver_->item() == Item::kText) {
-    if (text_ms_ == 0 && !is_listened_to() && !is_own_hint()) due_ |= kDueHint;
-    text_ms_ = kListenMs;
+    if (left_ms_[kText] == 0 && !is_listened_to() && !is_own_hint()) due_ |= kDueHint;
+    left_ms_[kText] = kListenMs;
   } else {
     if (!check_.is_whole()) {
       damaged_++;
     } else {
       const uint8_t end = check_.decode(receiver_->bytes());
       if ((receiver_->bytes()[kTypeAt] & kReply) == 0) {  // otherwise it is an echo
-        quiet_ms_ = 0;
+        left_ms_[kListen] = kListenMs;
         handle(end);
         due_ |= kDueReply;
       }

@@ -69,6 +69,10 @@ class Link {
   static constexpr uint8_t kDueDone = 8;
   static constexpr uint8_t kDueHint = 16;
 
+  // Times that run down to 0: until a client without frames no longer counts as listening, until
+  // a line of text is answered again, until STOPPED is sent again.
+  enum Time : uint8_t { kListen, kText, kAgain, kTimes };
+
   // A reply before it is written. The detail follows a status other than OK.
   struct Said {
     uint8_t number;
@@ -123,10 +127,8 @@ class Link {
   Receiver* receiver_;
   FrameCheck check_;  // of the item that arrives or waits
   uint16_t now_ms_;
-  uint16_t quiet_ms_;  // time since the last valid frame, up to kListenMs
-  uint32_t nonce_;     // of the session
-  uint16_t text_ms_;   // time without text until a line of text is answered again
-  uint8_t again_ms_;   // time until STOPPED is sent again
+  uint16_t left_ms_[kTimes];
+  uint32_t nonce_;  // of the session
   uint8_t epoch_;
   uint8_t damaged_;    // number of damaged frames
   uint8_t due_;        // what is due to be sent

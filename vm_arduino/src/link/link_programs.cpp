@@ -54,7 +54,7 @@ bool Link::go_live() {
       port_make_way(true) != Answer::kOk) {
     return false;
   }
-  quiet_ms_ = 0;
+  left_ms_[kListen] = kListenMs;
   said_.number = kLiveByte;
   said_.seq = bytes[kSeqAt];
   said_.status = kIsFine;

@@ -45,7 +45,7 @@ void Link::faulted() {
 void Link::stopped(Cause cause) {
   renew();
   cause_ = cause;
-  again_ms_ = kAgainMs;
+  left_ms_[kAgain] = kAgainMs;
   due_ |= kDueStopped;
 }
 
@@ -60,7 +60,7 @@ bool Link::show(int32_t value, bool is_yes_no) {
 }
 
 // A robot that runs alone has no client that reads.
-bool Link::is_listened_to() const { return is_open_ && quiet_ms_ < kListenMs; }
+bool Link::is_listened_to() const { return is_open_ && left_ms_[kListen] != 0; }
 
 // Whether the waiting line of text ends like the hint, or is the end of the hint.
 bool Link::is_own_hint() const {

@@ -135,6 +135,8 @@
     sbiw r28, 4
 .endm
 
+    .section .text.tiniscript_execute, "ax", @progbits
+
 ; void Machine::execute(uint8_t budget)
     .global _ZN10tiniscript7Machine7executeEh
     .type _ZN10tiniscript7Machine7executeEh, @function
