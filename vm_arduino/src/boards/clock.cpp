@@ -3,6 +3,7 @@
 #include <Arduino.h>  // declares setup() and loop()
 
 #include "attention.h"
+#include "interrupts.h"
 #include "watchdog.h"
 
 namespace tiniscript {
@@ -49,8 +50,12 @@ uint16_t clock_us() {
 
 }  // namespace tiniscript
 
-ISR(TIMER0_OVF_vect) {
-  using namespace tiniscript;
+namespace tiniscript {
+
+namespace {
+
+// The interrupt of timer 0 at its overflow.
+void on_turn() {
   call_attention();
   uint8_t passed_ms = 1;
   uint8_t fraction = static_cast<uint8_t>(clock.fraction + kTurnParts);
@@ -65,6 +70,12 @@ ISR(TIMER0_OVF_vect) {
   clock.silence_ms = silence_ms;
   if (silence_ms > kStallMs) watchdog_is_stalled();
 }
+
+}  // namespace
+
+}  // namespace tiniscript
+
+tiniscript_interrupt(TIMER0_OVF_vect, tiniscript::on_turn)
 
 int main() __attribute__((OS_main));
 int main() {

@@ -9,6 +9,7 @@
 #include "../link/messages.h"
 #include "attention.h"
 #include "clock.h"
+#include "interrupts.h"
 #include "kit.h"
 
 #ifdef USART_RX_vect
@@ -50,6 +51,17 @@ tini_always_inline void watch_line() {
 
 tini_always_inline void leave_line() { TIMSK0 &= static_cast<uint8_t>(~_BV(OCIE0B)); }
 
+// The interrupt of timer 0.
+void look_at_line() {
+  if (is_high(kReceive)) return leave_line();
+  low_turns = static_cast<uint8_t>(low_turns + 1);
+  if (low_turns <= kHeldTurns) return;
+  firmware_on_rx_byte(0, clock_16_ms());
+  if (low_turns < kHeldTurns + kStopRun) return;
+  was_high = false;
+  leave_line();
+}
+
 }  // namespace
 
 void uart_begin(uint32_t baud) {
@@ -90,16 +102,7 @@ ISR(uart_receive_vect) {
   firmware_on_rx_byte(byte, clock_16_ms());
 }
 
-ISR(TIMER0_COMPB_vect) {
-  using namespace tiniscript;
-  if (is_high(kReceive)) return leave_line();
-  low_turns = static_cast<uint8_t>(low_turns + 1);
-  if (low_turns <= kHeldTurns) return;
-  firmware_on_rx_byte(0, clock_16_ms());
-  if (low_turns < kHeldTurns + kStopRun) return;
-  was_high = false;
-  leave_line();
-}
+tiniscript_interrupt(TIMER0_COMPB_vect, tiniscript::look_at_line)
 
 ISR(uart_send_vect) {
   uint8_t byte = 0;

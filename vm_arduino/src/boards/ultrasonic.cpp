@@ -4,6 +4,7 @@
 #include <avr/io.h>
 
 #include "clock.h"
+#include "interrupts.h"
 #include "kit.h"
 
 #ifdef tiniscript_ultrasonic_vectors
@@ -60,7 +61,7 @@ tini_always_inline uint16_t since(uint16_t now_us, uint16_t then_us) {
   return static_cast<uint16_t>(now_us - then_us);
 }
 
-tini_always_inline void on_change() {
+void on_change() {
   const uint16_t now_us = clock_us();
   const Heard before = heard;
   if (is_high(ultrasonic_at(asked()).echo)) {
@@ -205,7 +206,7 @@ void ultrasonic_forget() {
 }  // namespace tiniscript
 
 #define tiniscript_on(vector) \
-  ISR(vector) { tiniscript::on_change(); }
+  tiniscript_interrupt(vector, tiniscript::on_change)
 tiniscript_ultrasonic_vectors(tiniscript_on)
 
 #else

@@ -8,6 +8,7 @@
 #include "../firmware/firmware.h"
 #include "../vm/crc32.h"
 #include "../vm/small.h"
+#include "interrupts.h"
 #include "kit.h"
 #include "motors.h"
 #include "servo.h"
@@ -32,6 +33,15 @@ struct Record {
 Record last __attribute__((section(".noinit")));
 uint32_t resets __attribute__((section(".noinit")));  // count of resets, from a random start
 uint8_t flags __attribute__((section(".noinit")));    // MCUSR after the reset
+
+// The interrupt of timer 0.
+void on_stall() {
+  TIMSK0 &= static_cast<uint8_t>(~(1 << OCIE0A));
+  clock.silence_ms = 0;
+  has_stalled = true;
+  motors_stop();
+  actuators_off(true);
+}
 
 tini_noinline uint32_t hung_mark() { return kHung ^ last.place.program ^ last.place.at; }
 
@@ -101,14 +111,7 @@ uint32_t watchdog_seed() {
 
 }  // namespace tiniscript
 
-ISR(TIMER0_COMPA_vect) {
-  using namespace tiniscript;
-  TIMSK0 &= static_cast<uint8_t>(~(1 << OCIE0A));
-  clock.silence_ms = 0;
-  has_stalled = true;
-  motors_stop();
-  actuators_off(true);
-}
+tiniscript_interrupt(TIMER0_COMPA_vect, tiniscript::on_stall)
 
 // The main loop has not fed the watchdog for 0.125 s. Interrupts are off here.
 ISR(WDT_vect) {
