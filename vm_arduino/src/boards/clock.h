@@ -15,7 +15,11 @@ namespace tiniscript {
 
 // The state of the clock. The interrupt of timer 0 advances it every 1.024 ms, sometimes by 2 ms.
 struct Clock {
-  uint32_t now_ms;
+  union {
+    uint32_t now_ms;
+    uint16_t low_16_ms;  // reading all of it takes longer
+    uint8_t low_8_ms;
+  };
   uint8_t turns;       // overflows of the timer
   uint8_t fraction;    // in 125ths of a millisecond
   uint8_t silence_ms;  // approximate time since the main loop last fed the watchdog
@@ -26,12 +30,8 @@ extern volatile Clock clock;
 uint32_t clock_ms();
 
 // The lowest 8 bits, read with one instruction; the lowest 16, for callers with interrupts off.
-tini_always_inline uint8_t clock_8_ms() {
-  return *reinterpret_cast<const volatile uint8_t*>(&clock.now_ms);
-}
-tini_always_inline uint16_t clock_16_ms() {
-  return *reinterpret_cast<const volatile uint16_t*>(&clock.now_ms);
-}
+tini_always_inline uint8_t clock_8_ms() { return clock.low_8_ms; }
+tini_always_inline uint16_t clock_16_ms() { return clock.low_16_ms; }
 
 // Microseconds in steps of 4; they wrap around after 65 ms.
 uint16_t clock_us();

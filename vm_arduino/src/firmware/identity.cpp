@@ -38,12 +38,11 @@ void make_identity() { identity.id = identity.nonce; }
 
 void read_identity(const uint8_t* record) {
   identity.id = get32(record + kIdAt);
-  while (device_info.name_length < kNameBytes && record[kNameAt + device_info.name_length] != 0) {
-    device_info.name[device_info.name_length] = record[kNameAt + device_info.name_length];
-    device_info.name_length++;
-  }
-  copy_bytes(record + kTrimAt, reinterpret_cast<uint8_t*>(&trim), sizeof trim);
-  if (!is_sound(trim)) trim = Trim();  // written by other firmware
+  uint8_t length = 0;
+  while (length < kNameBytes && record[kNameAt + length] != 0) length++;
+  change_name(record + kNameAt, length);
+  const Trim& found = *reinterpret_cast<const Trim*>(record + kTrimAt);
+  if (is_sound(found)) change_trim(found);  // otherwise it was written by other firmware
 }
 
 void write_identity(uint8_t* record) {

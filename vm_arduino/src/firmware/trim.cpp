@@ -1,5 +1,7 @@
 #include "trim.h"
 
+#include "../vm/small.h"
+
 namespace tiniscript {
 
 namespace {
@@ -28,9 +30,12 @@ int16_t level(int8_t power, uint8_t least, int8_t weakened) {
 
 }  // namespace
 
-bool is_sound(const Trim& trim) {
-  return (trim.wheels & ~(kExchanged | kLeftReversed | kRightReversed)) == 0 &&
-         size_of(trim.balance) <= kMostBalance && trim.least <= kMostLeast;
+static_assert((kExchanged | kLeftReversed | kRightReversed) == 7, "a sound number has no other bits");
+
+tini_noinline bool is_sound(const Trim& trim) {
+  return trim.wheels <= (kExchanged | kLeftReversed | kRightReversed) &&
+         static_cast<uint8_t>(trim.balance + kMostBalance) <= 2 * kMostBalance &&
+         trim.least <= kMostLeast;
 }
 
 Levels trimmed(const Trim& trim, int8_t left, int8_t right) {

@@ -234,10 +234,8 @@ uint8_t Link::answer(Message message, const uint8_t* payload, uint8_t length) {
 }
 
 Answer Link::set_trim(const uint8_t* payload, uint8_t length) {
-  Trim trim;
-  if (length != sizeof trim) return Answer::kBadLength;
-  copy_bytes(payload, reinterpret_cast<uint8_t*>(&trim), sizeof trim);
-  return port_set_trim(trim);
+  if (length != sizeof(Trim)) return Answer::kBadLength;
+  return port_set_trim(*reinterpret_cast<const Trim*>(payload));
 }
 
 uint8_t Link::hello(const uint8_t* payload) {

@@ -20,6 +20,7 @@ const uint8_t kVersions[] tini_progmem = {kLinkMajor, kLinkMinor,    kIsaMajor,
 constexpr uint8_t kTailBytes = 8;  // end of the hint, which identifies an echo
 
 constexpr uint8_t kPulseBytes = 2;  // state and run of a RobotStatus
+constexpr uint8_t kPlaceBytes = 2;  // its slot and `saved`
 
 static_assert(sizeof(Identity) == 13 && sizeof(RobotStatus) == 17, "they are as they are sent");
 static_assert(sizeof kHint <= kWireBytes, "it is sent like a frame");
@@ -128,8 +129,7 @@ void Link::reply() {
     case Message::kCommit:
       put_all(&checksum_, sizeof checksum_);
       put(robot_status.run);
-      put(robot_status.slot);
-      put(byte_of(robot_status.saved));
+      put_all(&robot_status.slot, kPlaceBytes);
       break;
     case Message::kBegin:
     case Message::kData:

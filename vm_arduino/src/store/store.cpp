@@ -192,11 +192,8 @@ tini_noinline bool Store::begin_save(const uint8_t* image) {
 
 tini_noinline bool Store::begin_keep(Area area, uint8_t* record) {
   if (is_busy_) return false;
-  uint32_t check = crc32(0, record + kCheckBytes, kRecordBytes - kCheckBytes);
-  for (uint8_t k = 0; k < kCheckBytes; k++) {
-    record[k] = static_cast<uint8_t>(check);
-    check >>= 8;
-  }
+  const uint32_t check = crc32(0, record + kCheckBytes, kRecordBytes - kCheckBytes);
+  __builtin_memcpy(record, &check, kCheckBytes);
   return near(this)->begin_write(area, record, kRecordBytes);
 }
 
