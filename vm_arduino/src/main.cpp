@@ -11,7 +11,6 @@
 #include <Arduino.h>  // declares setup() and loop()
 
 #include "boards/attention.h"
-#include "boards/attention.h"
 #include "boards/board.h"
 #include "boards/kit.h"
 #include "boards/uart.h"
@@ -28,15 +27,19 @@ void setup() {
 namespace {
 
 // The work for each millisecond and each move of the button; skipping it makes other turns quicker.
+// What a LIVE cuts off comes a millisecond later.
 void attend() {
   const uint32_t now_ms = board_now_ms();
   board_tick(now_ms);
+  if (firmware_is_awaited()) return;
   uart_tick();
   const Press press = board_button(now_ms);
   if (press == Press::kPressed) firmware_on_pressed();
   if (press == Press::kHeld) firmware_on_held();
   if (press == Press::kReleased) firmware_on_released();
+  if (firmware_is_awaited()) return;
   if (board_has_disconnected()) firmware_on_disconnect();
+  if (firmware_is_awaited()) return;
   firmware_on_time(now_ms);
 }
 
@@ -44,7 +47,7 @@ void attend() {
 
 void loop() {
   pay_attention();
-  if (board_has_news()) attend();
+  if (!firmware_is_awaited() && board_has_news()) attend();
   firmware_turn();
   uart_send();
 }

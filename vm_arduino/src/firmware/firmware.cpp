@@ -36,8 +36,10 @@ void firmware_turn() {
   link.tick();
   tick_run();
   link.tell();
-  tick_keeping();
+  if (!link.is_awaited()) tick_keeping();
 }
+
+bool firmware_is_awaited() { return link.is_awaited(); }
 
 void firmware_tick(uint32_t time_ms) {
   firmware_on_time(time_ms);

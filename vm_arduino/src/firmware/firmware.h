@@ -22,6 +22,9 @@ void firmware_on_time(uint32_t now_ms);
 // Does a little of everything that is due; call it continuously.
 void firmware_turn();
 
+// Whether `firmware_turn` would start a LIVE now, so that other work may wait for a turn.
+bool firmware_is_awaited();
+
 // Calls both.
 void firmware_tick(uint32_t now_ms);
 

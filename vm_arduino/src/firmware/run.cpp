@@ -20,7 +20,6 @@ bool may_start;     // the button is down and nothing ran or was stopped since: 
 bool is_start_due;  // the button was released, but the program was not available
 bool has_motors_on;
 bool is_prepared;   // machine and board are reset for a program
-uint32_t began_ms;  // when the run began
 
 // Records a fault.
 void fault(uint8_t number, uint16_t at) {
@@ -47,7 +46,7 @@ void go_on() {
     end_run(State::kFaulted);
     fault(static_cast<uint8_t>(machine.fault()), machine.at());
     link.faulted();
-  } else if (!link.is_tethered() && now_ms - began_ms >= board_max_run_ms()) {
+  } else if (!link.is_tethered() && now_ms - machine.task().started_ms >= board_max_run_ms()) {
     abort_run(LinkFault::kMaxRun);
   }
 }
@@ -66,11 +65,13 @@ void begin_run(bool is_live) {
   const uint8_t* const image = is_live ? live : program;
   if (!is_prepared) prepare();
   is_prepared = false;
-  machine.start_prepared(image + image[kHeaderLengthAt], get16(image + kCodeLengthAt),
-                         board_readings(), board_sensors(), (now_ms ^ port_identity().nonce) | 1, now_ms);
+  const uint16_t length = get16(image + kCodeLengthAt);  // in this order fewer registers are saved
+  const uint8_t* const code = image + image[kHeaderLengthAt];
+  const uint32_t time_ms = now_ms;
+  machine.start_prepared(code, length, board_readings(), board_sensors(),
+                         (time_ms ^ port_identity().nonce) | 1, time_ms);
   is_live_run = is_live;
   is_start_due = false;
-  began_ms = now_ms;
   may_start = false;
   robot_status.state = State::kRunning;
   robot_status.run++;

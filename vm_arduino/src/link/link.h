@@ -27,6 +27,9 @@ class Link {
   // Handles what has arrived.
   void tick();
 
+  // Whether `tick` would start a LIVE now: everything else may wait for that.
+  bool is_awaited() const { return is_ready_ && receiver_->item() != Item::kNone; }
+
   // Call it after the motors are served: seals a program that came in one frame and starts to send
   // what is due.
   void tell();

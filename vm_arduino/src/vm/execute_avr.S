@@ -162,7 +162,7 @@ _ZN10tiniscript7Machine7executeEh:
     add r18, r26
     adc r19, r27
     movw code_end, r18
-    rcall let_x_be_next
+    rcall add_pc_to_x
     clr looped
     ldd r18, Z+tini_depth_at
     ldd r19, Z+tini_looped_at
@@ -176,6 +176,7 @@ _ZN10tiniscript7Machine7executeEh:
     adc r29, r1
     load_a_from_y
     mov looped, r19
+    cpse looped, r1         ; none: what its registers hold means nothing
     rcall load_counter
     rjmp next_one
 2:  adiw r26, 1             ; memory has changed
@@ -253,6 +254,7 @@ let_x_be_code:
 ; For the machine at Z.
 let_x_be_next:
     rcall let_x_be_code
+add_pc_to_x:
     ldd r0, Z+tini_pc_at
     add r26, r0
     ldd r0, Z+tini_pc_at+1
