@@ -82,25 +82,29 @@ void uart_send() {
 
 LineErrors uart_errors() { return {framing, overrun}; }
 
-}  // namespace tiniscript
+namespace {
 
 // A byte with a framing error counts as 0: only that the line is bad is known.
-ISR(uart_receive_vect) {
-  using namespace tiniscript;
+void receive() {
   const uint8_t status = UCSR0A;
   uint8_t byte = UDR0;
-  if ((status & (_BV(FE0) | _BV(DOR0))) != 0) {
-    if ((status & _BV(DOR0)) != 0) overrun = static_cast<uint8_t>(overrun + 1);
-    if ((status & _BV(FE0)) != 0) {
-      framing = static_cast<uint8_t>(framing + 1);
-      byte = 0;
-      watch_line();
-    }
+  if ((status & _BV(DOR0)) != 0) overrun = static_cast<uint8_t>(overrun + 1);
+  if ((status & _BV(FE0)) != 0) {
+    framing = static_cast<uint8_t>(framing + 1);
+    byte = 0;
+    watch_line();
+  } else {
+    leave_line();
   }
-  if ((status & _BV(FE0)) == 0) leave_line();
   call_attention();
   firmware_on_rx_byte(byte, clock_16_ms());
 }
+
+}  // namespace
+
+}  // namespace tiniscript
+
+tiniscript_interrupt(uart_receive_vect, tiniscript::receive)
 
 tiniscript_interrupt(TIMER0_COMPB_vect, tiniscript::look_at_line)
 
