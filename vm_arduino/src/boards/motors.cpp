@@ -17,7 +17,11 @@ namespace {
 
 volatile bool is_released;
 
-uint8_t size_of(int16_t level) { return static_cast<uint8_t>(level < 0 ? -level : level); }
+uint8_t size_of(int16_t level) {
+  uint8_t size = static_cast<uint8_t>(level);
+  if (level < 0) size = static_cast<uint8_t>(-size);
+  return size;
+}
 
 }  // namespace
 

@@ -21,7 +21,7 @@ tini_always_inline void begin_motors() {
 }
 
 tini_always_inline void off(Bridge motor) {
-  disconnect(motor.pwm);
+  disconnect_inside(motor.pwm);
   write(motor.forward, false);
   write(motor.backward, false);
 }
@@ -41,7 +41,7 @@ tini_always_inline void drive(Bridge motor, bool is_backward, uint8_t level) {
     write(motor.backward, false);
     write(motor.forward, true);
   }
-  connect(motor.pwm, level);
+  connect_inside(motor.pwm, level);
 }
 
 tini_always_inline void begin_drive() {

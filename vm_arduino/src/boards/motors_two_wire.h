@@ -15,8 +15,8 @@ tini_always_inline void begin_motors() {
 }
 
 tini_always_inline void off(TwoWire motor) {
-  disconnect(motor.forward);
-  disconnect(motor.backward);
+  disconnect_inside(motor.forward);
+  disconnect_inside(motor.backward);
 }
 
 tini_always_inline void motors_off() {
@@ -26,11 +26,11 @@ tini_always_inline void motors_off() {
 
 tini_always_inline void drive(TwoWire motor, bool is_backward, uint8_t level) {
   if (is_backward) {
-    disconnect(motor.forward);
-    connect(motor.backward, level);
+    disconnect_inside(motor.forward);
+    connect_inside(motor.backward, level);
   } else {
-    disconnect(motor.backward);
-    connect(motor.forward, level);
+    disconnect_inside(motor.backward);
+    connect_inside(motor.forward, level);
   }
 }
 

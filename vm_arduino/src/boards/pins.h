@@ -139,9 +139,9 @@ constexpr uint16_t compare_of(Pwm pwm) {
 // The COM bit that connects a channel to its pin.
 constexpr uint8_t connection_of(Pwm pwm) { return static_cast<uint8_t>(0x80 >> 2 * pwm.channel); }
 
-// Lets a timer drive a pin; 255 is constantly high.
-tini_always_inline void connect(Pwm pwm, uint8_t level) {
-  const CriticalSection critical;  // 16-bit timers share a register for the high byte
+// Lets a timer drive a pin; 255 is constantly high. For callers with interrupts off: they change
+// these registers too, and 16-bit timers share one for the high byte.
+tini_always_inline void connect_inside(Pwm pwm, uint8_t level) {
   if (has_8_bits(pwm)) {
     register8(compare_of(pwm)) = level;
   } else {
@@ -150,13 +150,21 @@ tini_always_inline void connect(Pwm pwm, uint8_t level) {
   register8(control_of(pwm)) |= connection_of(pwm);
 }
 
-// Disconnects the timer and sets the pin low.
-tini_always_inline void disconnect(Pwm pwm) {
-  {
-    const CriticalSection critical;
-    register8(control_of(pwm)) &= static_cast<uint8_t>(~connection_of(pwm));
-  }
+// Disconnects the timer and sets the pin low. For callers with interrupts off.
+tini_always_inline void disconnect_inside(Pwm pwm) {
+  register8(control_of(pwm)) &= static_cast<uint8_t>(~connection_of(pwm));
   write(pwm.pin, false);
+}
+
+// The same for any caller.
+tini_always_inline void connect(Pwm pwm, uint8_t level) {
+  const CriticalSection critical;
+  connect_inside(pwm, level);
+}
+
+tini_always_inline void disconnect(Pwm pwm) {
+  const CriticalSection critical;
+  disconnect_inside(pwm);
 }
 
 }  // namespace tiniscript

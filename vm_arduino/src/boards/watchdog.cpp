@@ -69,7 +69,7 @@ void tiniscript_watchdog_off() {
 
 void watchdog_begin() {
   has_hung = last.mark == hung_mark();
-  last.mark = has_hung ? last.mark : kAlive;
+  if (!has_hung) last.mark = kAlive;
   const uint8_t before = SREG;
   cli();
   wdt_reset();
