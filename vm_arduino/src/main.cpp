@@ -31,7 +31,6 @@ namespace {
 void attend() {
   const uint32_t now_ms = board_now_ms();
   board_tick(now_ms);
-  if (firmware_is_awaited()) return;
   uart_tick();
   const Press press = board_button(now_ms);
   if (press == Press::kPressed) firmware_on_pressed();
@@ -39,7 +38,6 @@ void attend() {
   if (press == Press::kReleased) firmware_on_released();
   if (firmware_is_awaited()) return;
   if (board_has_disconnected()) firmware_on_disconnect();
-  if (firmware_is_awaited()) return;
   firmware_on_time(now_ms);
 }
 

@@ -36,7 +36,7 @@ void firmware_turn() {
   link.tick();
   tick_run();
   link.tell();
-  if (!link.is_awaited()) tick_keeping();
+  tick_keeping();
 }
 
 bool firmware_is_awaited() { return link.is_awaited(); }

@@ -118,6 +118,7 @@ void keep_next() {
 
 void tick_keeping() {
   if (boot == Boot::kOver && (to_keep | keeping) == 0) return;  // nothing to save
+  if (link.is_awaited()) return;
   store.tick(may_commit());
   const bool is_busy = store.is_busy();
   const bool is_kept = store.state() == StoreState::kSaved;
