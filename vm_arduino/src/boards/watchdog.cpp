@@ -113,9 +113,11 @@ uint32_t watchdog_seed() {
 
 tiniscript_interrupt(TIMER0_COMPA_vect, tiniscript::on_stall)
 
-// The main loop has not fed the watchdog for 0.125 s. Interrupts are off here.
-ISR(WDT_vect) {
+// The main loop has not fed the watchdog for 0.125 s. Interrupts are off here. It never returns, so
+// it saves no registers.
+ISR(WDT_vect, ISR_NAKED) {
   using namespace tiniscript;
+  asm volatile("clr __zero_reg__");
   motors_stop();
   actuators_off(true);
 #ifdef tiniscript_servos
@@ -129,6 +131,7 @@ ISR(WDT_vect) {
   WDTCSR = 1 << WDCE | 1 << WDE;
   WDTCSR = 0;
   asm volatile("jmp 0");
+  __builtin_unreachable();
 #endif
 }
 
