@@ -29,7 +29,7 @@ OFF = dict.fromkeys(MOTORS, "low")
 FORWARD = OFF | {"left": "pwm", "right": "pwm", "left forward": "high", "right forward": "high"}
 AWAY = "SI|F(70, 80)"
 CABLE = 4  # a cause in docs/link.md
-LIVE_CYCLES = 2240  # from the last byte of a frame to the pins: 140 us; most take 110
+LIVE_CYCLES = 1600  # from the last byte of a frame to the pins: 100 us; most take 90
 
 
 @pytest.fixture(scope="session")

@@ -128,9 +128,7 @@ void robot_off() {
 
 bool robot_read(uint8_t sensor, int32_t* value) { return read_sensor(sensor, value); }
 
-void robot_beep(uint16_t hertz, uint32_t duration_ms) {
-  sound_start(hertz, duration_ms);
-}
+void robot_beep(uint16_t hertz, uint32_t duration_ms) { sound_start(hertz, duration_ms); }
 
 // A program that is being stopped must not set anything.
 void robot_set(uint8_t actuator, int32_t value) {

@@ -9,12 +9,12 @@
 #include <avr/interrupt.h>
 
 // Defines the handler of `vector`: it calls `function`, which takes and returns nothing.
-#define tiniscript_interrupt(vector, function)                              \
-  ISR(vector, ISR_NAKED) {                                                  \
-    asm volatile(                                                           \
-        "push r30\n\tpush r31\n\t"                                          \
-        "ldi r30, lo8(gs(%x0))\n\tldi r31, hi8(gs(%x0))\n\t"                \
-        "%~jmp tiniscript_interrupt_frame" ::"i"(function));                \
+#define tiniscript_interrupt(vector, function)               \
+  ISR(vector, ISR_NAKED) {                                   \
+    asm volatile(                                            \
+        "push r30\n\tpush r31\n\t"                           \
+        "ldi r30, lo8(gs(%x0))\n\tldi r31, hi8(gs(%x0))\n\t" \
+        "%~jmp tiniscript_interrupt_frame" ::"i"(function)); \
   }
 
 #endif  // TINISCRIPT_BOARDS_INTERRUPTS_H_

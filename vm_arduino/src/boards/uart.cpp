@@ -106,9 +106,9 @@ void receive() {
 
 tiniscript_interrupt(uart_receive_vect, tiniscript::receive)
 
-tiniscript_interrupt(TIMER0_COMPB_vect, tiniscript::look_at_line)
+    tiniscript_interrupt(TIMER0_COMPB_vect, tiniscript::look_at_line)
 
-ISR(uart_send_vect) {
+        ISR(uart_send_vect) {
   uint8_t byte = 0;
   if (tiniscript::firmware_next_tx_byte(&byte)) {
     UDR0 = byte;

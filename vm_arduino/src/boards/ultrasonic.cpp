@@ -36,10 +36,10 @@ struct Reading {
 Reading readings[kUltrasonics];
 Ping ping;
 uint8_t last_asked;  // the sensor of the current ping
-uint16_t ping_us;   // when the last ping of any sensor was sent
-bool is_spaced;     // kSpacingUs have passed since then
-uint16_t begun_us;  // when the trigger, or a stale echo, went high
-bool is_held;       // there is a stale echo
+uint16_t ping_us;    // when the last ping of any sensor was sent
+bool is_spaced;      // kSpacingUs have passed since then
+uint16_t begun_us;   // when the trigger, or a stale echo, went high
+bool is_held;        // there is a stale echo
 
 // The interrupt's record of an echo. It ignores pulses and gaps shorter than kGlitchUs.
 enum class Heard : uint8_t {
@@ -205,8 +205,7 @@ void ultrasonic_forget() {
 
 }  // namespace tiniscript
 
-#define tiniscript_on(vector) \
-  tiniscript_interrupt(vector, tiniscript::on_change)
+#define tiniscript_on(vector) tiniscript_interrupt(vector, tiniscript::on_change)
 tiniscript_ultrasonic_vectors(tiniscript_on)
 
 #else

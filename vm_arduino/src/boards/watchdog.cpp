@@ -113,9 +113,9 @@ uint32_t watchdog_seed() {
 
 tiniscript_interrupt(TIMER0_COMPA_vect, tiniscript::on_stall)
 
-// The main loop has not fed the watchdog for 0.125 s. Interrupts are off here. It never returns, so
-// it saves no registers.
-ISR(WDT_vect, ISR_NAKED) {
+    // The main loop has not fed the watchdog for 0.125 s. Interrupts are off here. It never
+    // returns, so it saves no registers.
+    ISR(WDT_vect, ISR_NAKED) {
   using namespace tiniscript;
   asm volatile("clr __zero_reg__");
   motors_stop();

@@ -19,7 +19,7 @@ bool is_live_run;   // `live` runs
 bool may_start;     // the button is down and nothing ran or was stopped since: its release starts
 bool is_start_due;  // the button was released, but the program was not available
 bool has_motors_on;
-bool is_prepared;   // machine and board are reset for a program
+bool is_prepared;  // machine and board are reset for a program
 
 // Records a fault.
 void fault(uint8_t number, uint16_t at) {

@@ -24,7 +24,8 @@ int16_t level(int8_t power, uint8_t low, int8_t weakened) {
   if (power == 0) return 0;
   uint8_t found = level_of(size_of(power));
   uint8_t missing = low;  // of 256 steps
-  if (weakened > 0) missing = static_cast<uint8_t>(missing + level_of(static_cast<uint8_t>(weakened)));
+  if (weakened > 0)
+    missing = static_cast<uint8_t>(missing + level_of(static_cast<uint8_t>(weakened)));
   if (missing != 0) {
     const uint16_t rest = static_cast<uint16_t>((found << 8) - found * missing);
     found = static_cast<uint8_t>(low + (rest >> 8));
@@ -34,7 +35,8 @@ int16_t level(int8_t power, uint8_t low, int8_t weakened) {
 
 }  // namespace
 
-static_assert((kExchanged | kLeftReversed | kRightReversed) == 7, "a sound number has no other bits");
+static_assert((kExchanged | kLeftReversed | kRightReversed) == 7,
+              "a sound number has no other bits");
 
 tini_noinline bool is_sound(const Trim& trim) {
   return trim.wheels <= (kExchanged | kLeftReversed | kRightReversed) &&

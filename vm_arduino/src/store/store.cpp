@@ -185,8 +185,8 @@ tini_noinline void Store::give_up() {
 }
 
 tini_noinline bool Store::begin_save(const uint8_t* image) {
-  const uint16_t length = image_bytes(image[kHeaderLengthAt], image[kCodeLengthAt],
-                                      image[kCodeLengthAt + 1]);
+  const uint16_t length =
+      image_bytes(image[kHeaderLengthAt], image[kCodeLengthAt], image[kCodeLengthAt + 1]);
   return length != 0 && near(this)->begin_write(Area::kProgram, image, length);
 }
 
