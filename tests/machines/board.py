@@ -32,6 +32,7 @@ FLAGS = (
     "-Os", "-flto", "-ffunction-sections", "-fdata-sections", "-mrelax", "-mcall-prologues",
     "-mstrict-X", "-fno-devirtualize", "-fno-partial-inlining",
     "-fno-gcse", "-fno-tree-sink", "-fno-move-loop-invariants",
+    "-fira-algorithm=priority",
     "-DF_CPU=16000000L", "-DARDUINO=10808", "-DDECIMAL_DIG=__DECIMAL_DIG__",
 )  # fmt: skip
 CPP = ("-std=gnu++11", "-fno-exceptions", "-fno-threadsafe-statics")
