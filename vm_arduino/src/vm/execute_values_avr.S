@@ -233,7 +233,7 @@ op_max:
 
 ; b, from the stack, and a: leaves Z, the flag, where they do not relate as r30 allows.
 relate:
-    rcall pop
+    pop_b bad_caller
     cp b0, a0
     cpc b1, a1
     cpc b2, a2
