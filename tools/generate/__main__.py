@@ -323,11 +323,25 @@ SPEC_TABLES: dict[str, Callable[[], str]] = {
     "limits": limit_table,
 }
 
+def text_table(name: str) -> str:
+    """Return a file of `vm_arduino/src/text/`: words or answers of the reader of text."""
+    from tools.generate import text_tables
+
+    makes = {
+        "words.h": text_tables.words_header,
+        "words.cpp": text_tables.words_tables,
+        "problems.h": text_tables.problems_header,
+        "problems.cpp": text_tables.problems_texts,
+    }
+    return makes[name](COMMAND)
+
+
 MACHINE = ROOT / "vm_arduino" / "src" / "vm"
 LINK = ROOT / "vm_arduino" / "src" / "link"
 LINK_DOCUMENT = ROOT / "docs" / "link.md"
 TEXT_DOCUMENT = ROOT / "docs" / "text.md"
 PAYLOADS = ROOT / "compiler" / "tiniscript" / "link" / "payloads.py"
+TEXT = ROOT / "vm_arduino" / "src" / "text"
 WIRED = ROOT / "vm_arduino" / "src" / "boards" / "kits"
 WIRING = ROOT / "docs" / "wiring"
 
@@ -339,6 +353,10 @@ OUTPUTS: list[tuple[Path, Callable[[], str]]] = [
     (MACHINE / "bytecode_avr.S", avr_header),
     (LINK / "messages.h", link_header),
     (LINK / "messages.cpp", link_tables),
+    *(
+        (TEXT / name, partial(text_table, name))
+        for name in ("words.h", "words.cpp", "problems.h", "problems.cpp")
+    ),
     (LINK_DOCUMENT, link_document),
     (TEXT_DOCUMENT, text_document),
     (PAYLOADS, link_payloads),

@@ -1,0 +1,33 @@
+"""The words of a kit as a robot that reads text keeps them.
+
+Knows the table of `vm_arduino/src/text/kit_words.h`.
+"""
+
+from __future__ import annotations
+
+from tiniscript.kit import Kit
+
+LAST_LETTER = 0x80  # marks the last letter of a word
+_YES_NO, _ACTUATOR = 1, 2
+
+
+def kit_words(kit: Kit) -> bytes:
+    """Return the table of a kit: its sensors, its actuators, and a 0."""
+    table = bytearray()
+    for device in kit.sensors:
+        table += packed(device.name) + bytes((_YES_NO * device.is_yes_no,))
+    for device in kit.actuators:
+        table += packed(device.name) + bytes((_ACTUATOR | _YES_NO * device.is_yes_no,))
+        if not device.is_yes_no:
+            table += packed_range(device.low, device.high)
+    return bytes((*table, 0))
+
+
+def packed(word: str) -> bytes:
+    """Return the letters of a word, the last one marked."""
+    return word[:-1].encode() + bytes((ord(word[-1]) | LAST_LETTER,))
+
+
+def packed_range(low: int, high: int) -> bytes:
+    """Return the least and the largest plain number that an argument may be."""
+    return b"".join(each.to_bytes(4, "little", signed=True) for each in (low, high))

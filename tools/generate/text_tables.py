@@ -1,0 +1,210 @@
+"""What the robot's reader of text takes from the tables of the compiler: its words, its answers.
+
+Knows how the tables of `vm_arduino/src/text/` are packed. `__main__.py` writes the files.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from tiniscript.bytecode.opcodes import BY_NAME
+from tiniscript.fixed_point import HIGHEST, LOWEST
+from tiniscript.text.kit_words import packed, packed_range
+from tiniscript.text.problems import PROBLEMS
+from tiniscript.words import WORDS, Word
+from tools.generate.cpp_header import camel
+
+FIRST_WORD = 0x40  # the token of the first word; those of signs lie below and above
+# Roles in the order in which the reader wants their words: those with brackets first.
+ROLES = ("move", "wait", "motors", "beep", "show", "loop", "question", "stop", "start", "else",
+         "def", "break", "end", "value", "operator", "function", "forever", "setup",
+         "later")  # fmt: skip
+ANY, YES_NO, NUMBER, FIRST_RANGE = 1, 2, 3, 4  # kinds of arguments
+OPCODES = {"W": "WAIT", "M": "MOTORS", "BEEP": "BEEP", "SHOW": "SHOW", "LOOP": "LOOP", "IF": "IF",
+           "ELSEIF": "IF", "WHILE": "IF", "UNTIL": "UNTIL"}  # fmt: skip
+
+
+def role_of(word: Word) -> str:
+    """Return the role by which the reader tells words apart."""
+    if word.text in ("LOOP", "DEF", "ELSE"):
+        return word.text.lower()
+    roles = {"block": "question", "arm": "question", "until": "question", "alias": "end"}
+    return roles.get(word.role, word.role)
+
+
+def words_in_order() -> list[Word]:
+    """Return the words of the language as the reader numbers them."""
+    return sorted(WORDS.values(), key=lambda word: ROLES.index(role_of(word)))
+
+
+def ranges() -> list[tuple[int, int]]:
+    """Return the ranges of arguments, each once, in the order of their words."""
+    found: list[tuple[int, int]] = []
+    for word in words_in_order():
+        for each in word.arguments:
+            pair = (each.low, each.high)
+            if pair not in found and pair != (LOWEST, HIGHEST) and role_of(word) != "function":
+                found.append(pair)
+    return found
+
+
+def _kinds(word: Word) -> int:
+    """Return the kinds of a word's arguments: four bits each, the first one lowest."""
+    role, kinds = role_of(word), 0
+    for k, each in enumerate(word.arguments):
+        if role in ("question", "show"):
+            kind = YES_NO if role == "question" else ANY
+        elif (each.low, each.high) == (LOWEST, HIGHEST):
+            kind = NUMBER
+        else:
+            kind = FIRST_RANGE + ranges().index((each.low, each.high))
+        kinds |= kind << 4 * k
+    return kinds
+
+
+def words_header(command: str) -> str:
+    """Return `words.h`."""
+    words = words_in_order()
+    names = [
+        f"constexpr uint8_t kWord{camel(word.text)} = 0x{FIRST_WORD + k:02x};"
+        for k, word in enumerate(words)
+    ]
+    commands = sum(role_of(word) in ROLES[: ROLES.index("stop")] for word in words)
+    return _file(
+        command,
+        "words.h",
+        "// The words of the language as the reader of text knows them.\n",
+        [
+            "constexpr uint8_t kFirstWord = 0x40;",
+            *names,
+            "",
+            "// The words up to this one take arguments in brackets.",
+            f"constexpr uint8_t kCommands = {commands};",
+            "",
+            "// What an argument may be; from kFirstRange on a number in a range of kArgumentRanges.",
+            f"constexpr uint8_t kAnyKind = {ANY};",
+            f"constexpr uint8_t kYesNoKind = {YES_NO};",
+            f"constexpr uint8_t kNumberKind = {NUMBER};",
+            f"constexpr uint8_t kFirstRange = {FIRST_RANGE};",
+            f"constexpr uint8_t kDeviceRange = {FIRST_RANGE + len(ranges())};  // of the kit",
+            f"constexpr uint8_t kTimeRange = {FIRST_RANGE + ranges().index((0, HIGHEST))};",
+            "",
+            "// All words one after the other, 0x80 in the last letter of each, and a 0.",
+            "extern const uint8_t kWords[] tini_progmem;",
+            "",
+            "// Of each command: the kinds of its arguments (4 bits each, the first below), its opcode.",
+            "extern const uint8_t kCommandRows[][2] tini_progmem;",
+            "",
+            "// The least and the largest plain number of each range, thousandths, little-endian.",
+            "extern const uint8_t kArgumentRanges[][8] tini_progmem;",
+        ],
+    )
+
+
+def words_tables(command: str) -> str:
+    """Return `words.cpp`."""
+    words = words_in_order()
+    rows = [
+        f"    {{0x{_kinds(word):02x}, 0x{BY_NAME[OPCODES.get(word.text, f'MOVE_{word.text}')].code:02x}}},  // {word.text}"
+        for word in words
+        if role_of(word) in ROLES[: ROLES.index("stop")]
+    ]
+    return _file(
+        command,
+        "words.cpp",
+        "",
+        [
+            "const uint8_t kWords[] tini_progmem = {",
+            *(f"    {_bytes(packed(word.text))}  // {word.text}" for word in words),
+            "    0,",
+            "};",
+            "",
+            "const uint8_t kCommandRows[][2] tini_progmem = {",
+            *rows,
+            "};",
+            "",
+            "const uint8_t kArgumentRanges[][8] tini_progmem = {",
+            *(f"    {{{_bytes(packed_range(low, high))}}}," for low, high in ranges()),
+            "};",
+        ],
+    )
+
+
+def problems_header(command: str) -> str:
+    """Return `problems.h`."""
+    rows = [
+        f"  k{camel(problem.name)} = {number},  // {problem.english}"
+        for number, problem in enumerate(PROBLEMS, 1)
+    ]
+    return _file(
+        command,
+        "problems.h",
+        "// What the reader of text says about a wrong line.\n",
+        [
+            "enum class Problem : uint8_t {",
+            "  kNone = 0,",
+            *rows,
+            "};",
+            "",
+            "// The texts one after the other, in the robot's language, a 0 behind each.",
+            "extern const uint8_t kProblemTexts[] tini_progmem;",
+            "",
+            "// The text of a problem, in flash; a 0 ends it.",
+            "const uint8_t* text_of(Problem problem);",
+        ],
+    )
+
+
+def problems_texts(command: str) -> str:
+    """Return `problems.cpp`."""
+    return _file(
+        command,
+        "problems.cpp",
+        "",
+        [
+            "const uint8_t kProblemTexts[] tini_progmem =",
+            "#ifdef tiniscript_spanish",
+            *_strings([problem.spanish for problem in PROBLEMS]),
+            "#else",
+            *_strings([problem.english for problem in PROBLEMS]),
+            "#endif",
+            "",
+            "const uint8_t* text_of(Problem problem) {",
+            "  const uint8_t* text = kProblemTexts;",
+            "  for (uint8_t left = static_cast<uint8_t>(problem); left > 1; left--) {",
+            "    while (flash_byte(text++) != 0) {",
+            "    }",
+            "  }",
+            "  return text;",
+            "}",
+        ],
+    )
+
+
+def _strings(texts: Sequence[str]) -> list[str]:
+    lines = [f"    {_bytes(text.encode())} 0,  // {text}" for text in texts]
+    return ["    {", *lines, "    };"]
+
+
+def _bytes(data: Iterable[int]) -> str:
+    return " ".join(f"0x{each:02x}," for each in data)
+
+
+def _file(command: str, name: str, what: str, lines: Sequence[str]) -> str:
+    stem, _, ending = name.partition(".")
+    guard = f"TINISCRIPT_TEXT_{stem.upper()}_H_"
+    opening = (
+        [f"#ifndef {guard}", f"#define {guard}", "", "#include <stdint.h>", "",
+         '#include "../vm/flash.h"']
+        if ending == "h"
+        else [f'#include "{stem}.h"']
+    )  # fmt: skip
+    closing = ["", f"#endif  // {guard}"] if ending == "h" else []
+    return (
+        f"// Generated by {command} from the tables in compiler/tiniscript. Do not edit.\n"
+        + (f"//\n{what}" if what else "")
+        + "\n".join(
+            ["", *opening, "", "// clang-format off", "", "namespace tiniscript {", "", *lines,
+             "", "}  // namespace tiniscript", *closing, ""]
+        )
+    )  # fmt: skip

@@ -1,0 +1,96 @@
+// Runs the reader of text on a computer, for tests: `text ROOM WORDS [whole]`.
+//
+// ROOM is the bytes of the reader's buffer, WORDS the table of `kit_words.h` in hexadecimal digits.
+// Reads lines from its input, and says of each program in one line `OK start code`, `NO problem
+// column` or `MORE`; an empty line begins anew. With `whole`, its input is texts, four bytes of
+// length before each, little-endian; each is one program, whatever lines it has.
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <memory>
+#include <vector>
+
+#include "../../src/text/kit_words.h"
+#include "../../src/text/reader.h"
+
+using namespace tiniscript;
+
+namespace {
+
+std::vector<uint8_t> words;
+
+// An array of its own, so that the sanitizer sees an access outside.
+struct Read {
+  explicit Read(size_t bytes) : room(static_cast<uint16_t>(bytes)), buffer(new uint8_t[bytes]) {}
+
+  void begin() { reader.begin(buffer.get(), room); }
+
+  void say(Text found) const {
+    if (found == Text::kMore) {
+      puts("MORE");
+    } else if (found == Text::kProblem) {
+      printf("NO %d %d\n", static_cast<int>(reader.problem()), reader.column());
+    } else {
+      printf("OK %d ", reader.start());
+      for (uint8_t k = 0; k < reader.length(); k++) printf("%02x", buffer[k]);
+      putchar('\n');
+    }
+    fflush(stdout);
+  }
+
+  Reader reader = Reader();
+  uint16_t room;
+  std::unique_ptr<uint8_t[]> buffer;
+};
+
+void read_lines(Read* read) {
+  read->begin();
+  bool is_blank = true;
+  for (int byte = getchar(); byte != EOF; byte = getchar()) {
+    const Text found = read->reader.put(static_cast<uint8_t>(byte));
+    if (found == Text::kGoesOn) {
+      if (byte != '\n') is_blank = false;
+      continue;
+    }
+    if (!is_blank) read->say(found);
+    if (is_blank || found != Text::kMore) read->begin();
+    is_blank = true;
+  }
+}
+
+void read_texts(Read* read) {
+  uint8_t head[4];
+  while (fread(head, 1, 4, stdin) == 4) {
+    std::vector<uint8_t> text(head[0] | head[1] << 8 | head[2] << 16);
+    if (fread(text.data(), 1, text.size(), stdin) != text.size()) return;
+    if (text.empty() || (text.back() != '\n' && text.back() != '\r')) text.push_back('\n');
+    read->begin();
+    Text found = Text::kNothing;
+    for (const uint8_t byte : text) {
+      const Text now = read->reader.put(byte);
+      if (now != Text::kGoesOn && found != Text::kProblem) found = now;
+    }
+    read->say(found);
+  }
+}
+
+}  // namespace
+
+const uint8_t* tiniscript::robot_words() { return words.data(); }
+
+int main(int count, char** arguments) {
+  if (count < 3) return 2;
+  for (const char* digits = arguments[2]; digits[0] != 0 && digits[1] != 0; digits += 2) {
+    const char both[] = {digits[0], digits[1], 0};
+    words.push_back(static_cast<uint8_t>(strtol(both, nullptr, 16)));
+  }
+  Read read(static_cast<size_t>(atoi(arguments[1])));
+  if (count > 3) {
+    read_texts(&read);
+  } else {
+    read_lines(&read);
+  }
+  return 0;
+}

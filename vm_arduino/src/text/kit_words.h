@@ -1,0 +1,24 @@
+// What the reader of text asks of the robot: the words of its kit.
+//
+// Each build links one definition, as of `robot.h`.
+
+#ifndef TINISCRIPT_TEXT_KIT_WORDS_H_
+#define TINISCRIPT_TEXT_KIT_WORDS_H_
+
+#include <stdint.h>
+
+namespace tiniscript {
+
+// Bits of what stands behind the letters of a device.
+constexpr uint8_t kDeviceIsYesNo = 1;
+constexpr uint8_t kDeviceIsActuator = 2;
+constexpr uint8_t kRangeBytes = 8;
+
+// The sensors and then the actuators, in flash: the letters of each, 0x80 in the last one; what it
+// is; behind an actuator that is a number its least and its largest value, thousandths of 32 bits,
+// little-endian. A 0 ends the table.
+const uint8_t* robot_words();
+
+}  // namespace tiniscript
+
+#endif  // TINISCRIPT_TEXT_KIT_WORDS_H_

@@ -1,0 +1,165 @@
+// The reader of text: compiles a program while its bytes arrive.
+//
+// One pass: bytes become tokens, a token drives the parser, and the parser emits code, which lies
+// in the buffer from its beginning. What must be remembered (names, open blocks, operators that
+// wait) grows from the end of the buffer towards the code. Knows no link, no clock and no robot but
+// the words of its kit. Accepts what the compiler accepts; the code is that of `docs/text.md`.
+
+#ifndef TINISCRIPT_TEXT_READER_H_
+#define TINISCRIPT_TEXT_READER_H_
+
+#include <stdint.h>
+
+#include "problems.h"
+
+namespace tiniscript {
+
+// A bit for each sensor. A board with an ATmega328P has pins for at most 16.
+#ifdef __AVR_ATmega328P__
+typedef uint16_t SensorBits;
+#else
+typedef uint32_t SensorBits;
+#endif
+
+enum class Text : uint8_t {
+  kGoesOn,   // the line has not ended
+  kNothing,  // the line has ended: no program has begun
+  kMore,     // the line has ended: a block or a bracket is open
+  kProgram,  // the line has ended, and with it a whole program
+  kProblem,  // the line has ended: there is a problem in it, and the program is lost
+};
+
+class Reader {
+ public:
+  // Begins a program: call it first, and after kProgram and kProblem.
+  void begin(uint8_t* buffer, uint16_t room);
+
+  // Takes a byte. CR, LF or both end a line.
+  Text put(uint8_t byte);
+
+  // After kProgram: how the program starts, and the length of its code in the buffer, which the
+  // machine's verifier accepts.
+  uint8_t start() const { return setup_; }
+  uint8_t length() const { return length_; }
+
+  // After kProblem: what it is, and its column from 1; all columns from 255 on are 255.
+  Problem problem() const { return problem_; }
+  uint8_t column() const { return problem_column_; }
+
+ private:
+  struct Block;
+  struct Def;
+
+  // characters, in reader.cpp
+  uint8_t character(uint8_t byte);
+  bool checks(uint8_t letter);
+  Text end_line();
+  void take(uint8_t letter);
+  void sign(uint8_t letter);
+  void add_letter(uint8_t letter);
+  void digit(uint8_t value);
+  void report(Problem problem);
+
+  // words, in reader_names.cpp
+  void end_word();
+  bool matches(const uint8_t** entry) const;
+  bool find_in_kit();
+  bool find_name();
+  void add_name(uint8_t info, uint8_t more);
+
+  // instructions, in reader_parser.cpp
+  void token(uint8_t token);
+  void instruction(uint8_t token);
+  void after_name(uint8_t token);
+  void command(uint8_t word);
+  void end_arguments();
+  void end_move(uint8_t token);
+  void end_assignment();
+
+  // blocks, in reader_blocks.cpp
+  void open(uint8_t type, uint8_t ends);
+  void close(uint8_t word);
+  void next_arm();
+  void leave_loop();
+  void define(uint8_t token);
+  void call();
+
+  // expressions, in reader_values.cpp
+  void begin_value();
+  void operand(uint8_t token);
+  void open_bracket();
+  void number();
+  void name_value();
+  void operators(uint8_t token);
+  void binary(uint8_t op);
+  void apply(uint8_t op);
+  uint8_t reduce();
+  void push_kind(bool is_yes_no);
+  void end_value();
+
+  // code and memory, in reader_code.cpp
+  void emit(uint8_t byte);
+  void emit_numbered(uint8_t op, uint8_t first_short, uint8_t number);
+  void emit_little_endian(uint32_t value, uint8_t bytes);
+  void emit_number(uint32_t value, uint32_t whole, uint16_t rest, bool is_minus);
+  void link(uint8_t* ends);
+  void resolve(uint8_t at);
+  void read_first(uint8_t sensor);
+  void push(uint8_t byte);
+  bool has_room(uint16_t bytes);
+  Block* top() const { return reinterpret_cast<Block*>(stack_); }
+
+  uint8_t* buffer_;
+  uint8_t* stack_;  // the lowest byte of what waits
+  uint8_t* names_;  // behind what waits, before the names
+  uint8_t* end_;
+  uint8_t length_;  // of the code
+  uint8_t first_;   // where the code of this instruction begins, behind its readings
+
+  // characters
+  uint8_t place_;
+  uint8_t letters_;  // of the word behind the code
+  uint8_t column_;
+  uint8_t token_column_;
+  uint8_t left_;  // bytes of a character of UTF-8 that are still to come
+  uint8_t lead_;
+  uint8_t second_;
+  uint8_t check_;  // what has come of a checksum
+  bool is_damaged_;
+  bool is_after_cr_;
+  uint32_t crc_;
+  uint32_t value_;  // digits before the point; behind the number its thousandths
+  uint16_t rest_;   // digits behind the point
+  uint8_t places_;
+
+  // the parser
+  uint8_t state_;
+  Problem problem_;
+  uint8_t problem_column_;
+  uint8_t setup_;
+  uint8_t what_;      // the instruction, by its word
+  uint8_t kinds_;     // of its arguments from this one on
+  uint8_t target_;    // the variable or the actuator that it sets
+  uint8_t brackets_;  // that are open
+  uint8_t shape_;     // whether this argument is just a number
+  bool is_forever_;
+  uint8_t depth_;          // values that wait
+  uint16_t value_kinds_;   // a bit for each, the last one lowest: whether it is a yes/no
+  SensorBits read_;        // that are surely read
+  SensorBits known_;       // the same, and those that this instruction has read
+  uint8_t variables_;
+  uint8_t defs_;
+  uint8_t blocks_;
+  uint8_t deepest_;  // blocks open at once in this routine
+  uint8_t calls_;    // calls open at once in it
+  Def* def_;         // the DEF that is open, or null
+
+  // the name that was read last
+  uint8_t found_;
+  uint8_t number_;
+  const uint8_t* entry_;
+};
+
+}  // namespace tiniscript
+
+#endif  // TINISCRIPT_TEXT_READER_H_

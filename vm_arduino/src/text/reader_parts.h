@@ -1,0 +1,84 @@
+// What the files of the reader share: tokens, states, and what lies in its buffer.
+
+#ifndef TINISCRIPT_TEXT_READER_PARTS_H_
+#define TINISCRIPT_TEXT_READER_PARTS_H_
+
+#include "../vm/bytecode.h"
+#include "../vm/small.h"
+#include "reader.h"
+#include "words.h"
+
+namespace tiniscript {
+
+// Tokens. The other signs are their own letters, words their numbers of `words.h`.
+constexpr uint8_t kNewline = '\n';
+constexpr uint8_t kNumberToken = '0';
+constexpr uint8_t kNameToken = 'z';
+constexpr uint8_t kBinary = 0x80;  // with the opcode below
+
+constexpr uint8_t byte_of(Op op) { return static_cast<uint8_t>(op); }
+constexpr uint8_t token_of(Op op) { return static_cast<uint8_t>(kBinary | byte_of(op)); }
+
+// What the parser wants next.
+constexpr uint8_t kBlocks = 16;  // open at once
+
+enum Wanted : uint8_t {
+  kBegin,
+  kBar,              // behind SI, SB or PING
+  kCheckConnection,  // behind PING|
+  kNothingMore,      // behind PING|CHECK_CONNECTION
+  kInstruction,
+  kAfterName,  // =, ( or the end of the instruction
+  kArguments,  // the ( of a command
+  kDefName,
+  kSeparator,
+  kAfterMove,  // UNTIL or the end of the instruction
+  kFunction,   // the ( of a function
+  kArgument,   // an operand, or FOREVER
+  kOperand,
+  kAfterMinus,  // an operand, to whose number the minus belongs
+  kOperator,
+  kAfterForever,
+};
+
+// Whether an argument is just a number.
+enum Shape : uint8_t { kNoPlain, kFresh, kMinusFirst, kPlain };
+
+// What a name is; the lowest bit says whether it is a yes/no.
+constexpr uint8_t kIsYesNo = 1;
+constexpr uint8_t kIsSensor = 2;
+constexpr uint8_t kIsActuator = 4;
+constexpr uint8_t kIsVariable = 8;
+constexpr uint8_t kIsDef = 16;
+
+// Among the operators that wait: open brackets, with the opcode of their function. The second
+// argument of a function has kSecond, and kBase is behind all.
+constexpr uint8_t kBracket = 0x80;
+constexpr uint8_t kSecond = 0x40;
+constexpr uint8_t kBase = 0xff;
+
+// A block whose end has not come yet. `type` is the first word that ends it, or kForeverLoop.
+struct __attribute__((packed)) Reader::Block {
+  uint8_t type;
+  uint8_t ends;       // the last of the operands that want its end; each holds the one before
+  uint8_t to;         // of an IF: behind the jump to its next arm, or 0; of a loop: its first code
+  SensorBits before;  // surely read before it
+  SensorBits after;   // by all arms of an IF so far
+  SensorBits taken;   // the readings of its conditions, and those before
+};
+constexpr uint8_t kForeverLoop = 0;
+
+// In front of the letters of each name stands the number of its variable, with kNameYesNo, or
+// kNameDef and then this.
+struct __attribute__((packed)) Reader::Def {
+  uint8_t at;
+  uint8_t blocks;
+  uint8_t calls;
+  SensorBits read;
+};
+constexpr uint8_t kNameDef = 0x80;
+constexpr uint8_t kNameYesNo = 0x40;
+
+}  // namespace tiniscript
+
+#endif  // TINISCRIPT_TEXT_READER_PARTS_H_
