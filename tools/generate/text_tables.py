@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+from tiniscript.bytecode.image import STARTS
 from tiniscript.bytecode.opcodes import BY_NAME
 from tiniscript.fixed_point import HIGHEST, LOWEST
 from tiniscript.text.kit_words import packed, packed_range
@@ -34,7 +35,15 @@ def role_of(word: Word) -> str:
 
 def words_in_order() -> list[Word]:
     """Return the words of the language as the reader numbers them."""
-    return sorted(WORDS.values(), key=lambda word: ROLES.index(role_of(word)))
+    # as they are numbered in an image and in the bytecode
+    numbered = [*STARTS, "CHECK_CONNECTION", "FALSE", "TRUE", "TIME", "ABS", "MIN", "MAX", "ROUND"]
+
+    def place(word: Word) -> tuple[int, int]:
+        number = numbered.index(word.text) if word.text in numbered else len(numbered)
+        role = ROLES.index(role_of(word))
+        return role, number if role_of(word) in ("setup", "value", "function") else 0
+
+    return sorted(WORDS.values(), key=place)
 
 
 def ranges() -> list[tuple[int, int]]:

@@ -15,35 +15,35 @@ namespace tiniscript {
 
 enum class Problem : uint8_t {
   kNone = 0,
-  kChecksum = 1,  // Line damaged. Send it again.
-  kCharacter = 2,  // This sign has no meaning here.
-  kNumber = 3,  // Write numbers like 5 or 0.5
-  kTooBig = 4,  // Numbers go to 2147483.647
-  kSetup = 5,  // SI| or SB| goes first, once.
-  kPing = 6,  // Write PING|CHECK_CONNECTION alone.
-  kInstruction = 7,  // Start with a word such as F.
-  kUnknownWord = 8,  // I do not know this word.
-  kUnknownValue = 9,  // It has no value yet. Write X = 0
-  kReserved = 10,  // This word cannot stand here.
-  kSeparator = 11,  // Put a ; before this.
-  kOpen = 12,  // Put a ( before this.
-  kClose = 13,  // A ) is missing or too many.
-  kValue = 14,  // A value is missing here.
-  kCount = 15,  // Wrong count of values.
-  kRange = 16,  // Number too small or too large.
-  kWantsNumber = 17,  // Use a number, not a yes/no.
-  kWantsYesNo = 18,  // Ask a question: DISTANCE < 10
-  kCompare = 19,  // Compare two values of one kind.
-  kNot = 20,  // Put NOT and its value in ( ).
-  kKind = 21,  // Number or yes/no: do not change it.
-  kForever = 22,  // FOREVER: in LOOP, or with UNTIL.
-  kUntil = 23,  // UNTIL goes behind F B L R or W.
-  kBlock = 24,  // This ends no open block.
-  kBreak = 25,  // BREAK goes inside a loop.
-  kDef = 26,  // DEF goes outside of blocks.
-  kTaken = 27,  // This name is used for another thing.
-  kLimit = 28,  // Too many or too deep.
-  kFull = 29,  // Program too long. Make it shorter.
+  kChecksum = 1,  // Line damaged. Send it again
+  kCharacter = 2,  // Sign not known
+  kNumber = 3,  // Write it like 5 or 0.5
+  kTooBig = 4,  // Most is 2147483.647
+  kSetup = 5,  // SI| or SB| goes first
+  kPing = 6,  // PING|CHECK_CONNECTION alone
+  kInstruction = 7,  // Begin with a word like F
+  kUnknownWord = 8,  // Word not known
+  kUnknownValue = 9,  // No value yet. Write X = 0
+  kReserved = 10,  // This word is not for here
+  kSeparator = 11,  // Put ; before this
+  kOpen = 12,  // Put ( before this
+  kClose = 13,  // Check the ( and )
+  kValue = 14,  // A value is missing
+  kCount = 15,  // Too many or too few values
+  kRange = 16,  // Too small or too large
+  kWantsNumber = 17,  // Needs a number
+  kWantsYesNo = 18,  // Ask, like DISTANCE < 10
+  kCompare = 19,  // Compare 2 values of one kind
+  kNot = 20,  // Write (NOT X)
+  kKind = 21,  // Keep it a number, or yes/no
+  kForever = 22,  // Only in LOOP, or with UNTIL
+  kUntil = 23,  // UNTIL goes after F B L R W
+  kBlock = 24,  // There is no such block
+  kBreak = 25,  // BREAK goes in a loop
+  kDef = 26,  // DEF goes outside blocks
+  kTaken = 27,  // It is another thing's name
+  kLimit = 28,  // Too many, or too deep
+  kFull = 29,  // Too long. Make it shorter
 };
 
 // The texts one after the other, in the robot's language, a 0 behind each.

@@ -13,7 +13,8 @@ namespace {
 enum Place : uint8_t { kBetween, kWord, kComment, kWhole, kPoint, kPlaces };
 
 constexpr uint8_t kUnfinished = 0;
-constexpr uint8_t kOdd = 1;  // a character that means nothing
+constexpr uint8_t kOdd = 1;     // a character that means nothing
+constexpr uint8_t kBroken = 2;  // no UTF-8
 
 // Of a checksum: nothing has come, all digits have come, what came was a comment.
 constexpr uint8_t kNoCheck = 0;
@@ -21,7 +22,14 @@ constexpr uint8_t kTilde = 1;
 constexpr uint8_t kAllDigits = kTilde + 8;
 constexpr uint8_t kCommentAfterAll = 255;
 
-constexpr uint32_t kLargestWhole = 2147483;
+constexpr uint32_t kTooBig = 0x10000000;  // ten times that is more than any number
+
+// Each sign and its token, or 0 if it may be the first half of another.
+const uint8_t kSigns[] tini_progmem = {
+    '(', '(', ')', ')', ',', ',', ';', ';', '|', '|', '/', 0, '<', 0, '>', 0,
+    '+', token_of(Op::kAdd), '-', token_of(Op::kSub), '*', token_of(Op::kMul),
+    '%', token_of(Op::kMod), '=', token_of(Op::kEq), 0,
+};
 
 }  // namespace
 
@@ -51,7 +59,8 @@ Text Reader::put(uint8_t byte) {
       check_ = kTilde;
       return Text::kGoesOn;
     }
-    crc_ = crc32(crc_, &byte, 1);
+    byte_ = byte;  // a local variable would need a frame
+    crc_ = crc32(crc_, &byte_, 1);
   }
   const uint8_t letter = character(byte);
   if (letter != kUnfinished && !checks(letter)) take(letter);
@@ -82,51 +91,53 @@ bool Reader::checks(uint8_t letter) {
   return false;
 }
 
-// Returns an ASCII letter, a space or a dash for its relatives, kOdd, or kUnfinished.
+// Returns an ASCII letter, a space or a dash for its relatives, kOdd, kBroken or kUnfinished.
 uint8_t Reader::character(uint8_t byte) {
-  if (left_ == 0) {
-    if (byte == '\v' || byte == '\f') return ' ';
-    if (byte != 0 && byte < 0x80) return byte;
-    left_ = static_cast<uint8_t>(1 + (byte >= 0xe0) + (byte >= 0xf0));
+  const uint8_t lead = lead_;
+  const uint8_t second = second_;
+  lead_ = 0;
+  if (byte < 0x80) {
+    if (lead != 0 || byte == 0) return kBroken;
+    return byte == '\v' || byte == '\f' ? ' ' : byte;
+  }
+  if (byte >= 0xc0) {
+    if (lead != 0 || byte < 0xc2 || byte > 0xf4) return kBroken;
     lead_ = byte;
     second_ = 0;
-    if (byte >= 0xc2 && byte <= 0xf4) return kUnfinished;
-  } else if ((byte & 0xc0) == 0x80) {
-    bool is_right = true;
-    if (second_ == 0) {
-      second_ = byte;
-      if (lead_ == 0xe0) is_right = byte >= 0xa0;
-      if (lead_ == 0xed) is_right = byte < 0xa0;
-      if (lead_ == 0xf0) is_right = byte >= 0x90;
-      if (lead_ == 0xf4) is_right = byte < 0x90;
-    }
-    if (is_right) {
-      if (--left_ != 0) return kUnfinished;
-      if (lead_ == 0xc2 && byte == 0xa0) return ' ';
-      if (lead_ == 0xe2 && second_ == 0x80) {
-        if (byte <= 0x8b || byte == 0xaf) return ' ';
-        if (byte >= 0x90 && byte <= 0x95) return '-';
-      }
-      if (lead_ == 0xe2 && second_ == 0x88 && byte == 0x92) return '-';
-      if (lead_ == 0xe3 && second_ == 0x80 && byte == 0x80) return ' ';
-      if (lead_ == 0xef && second_ == 0xbb && byte == 0xbf) {
-        if (column_ == 1) {  // the byte order mark is no part of the line
-          column_ = 0;
-          crc_ = 0;
-        }
-        return ' ';
-      }
-      return kOdd;
-    }
+    return kUnfinished;
   }
-  left_ = 0;
-  token_column_ = column_;
-  report(Problem::kCharacter);
+  if (lead == 0) return kBroken;
+  if (lead < 0xe0) return lead == 0xc2 && byte == 0xa0 ? ' ' : kOdd;
+  if (second == 0) {
+    lead_ = lead;
+    second_ = byte;
+    return kUnfinished;
+  }
+  if (lead >= 0xf0) {
+    lead_ = 0xe1;  // none of its characters means anything
+    return kUnfinished;
+  }
+  if (lead == 0xe2) {
+    if (second == 0x80) {
+      if (byte <= 0x8b || byte == 0xaf) return ' ';
+      if (byte >= 0x90 && byte <= 0x95) return '-';
+    }
+    if (second == 0x88 && byte == 0x92) return '-';
+  } else if (lead == 0xe3) {
+    if (second == 0x80 && byte == 0x80) return ' ';
+  } else if (lead == 0xef && second == 0xbb && byte == 0xbf) {
+    if (column_ == 1) {  // the byte order mark is no part of the line
+      column_ = 0;
+      crc_ = 0;
+    }
+    return ' ';
+  }
   return kOdd;
 }
 
 Text Reader::end_line() {
-  if (left_ != 0) report(Problem::kCharacter);
+  if (lead_ != 0) take(kBroken);
+  lead_ = 0;
   const bool is_cut = check_ != kNoCheck && check_ < kAllDigits && place_ != kComment;
   take('\n');
   if (is_cut) report(Problem::kChecksum);
@@ -135,7 +146,6 @@ Text Reader::end_line() {
     problem_column_ = 1;
   }
   place_ = kBetween;
-  left_ = 0;
   column_ = 0;
   check_ = kNoCheck;
   is_damaged_ = false;
@@ -148,73 +158,68 @@ Text Reader::end_line() {
 // Takes a character, or '\n' for the end of the line.
 void Reader::take(uint8_t letter) {
   if (problem_ != Problem::kNone) return;
+  const uint8_t place = place_;
   const uint8_t value = static_cast<uint8_t>(letter - '0');
   uint8_t capital = letter;
   if (static_cast<uint8_t>(letter - 'a') < 26) capital = static_cast<uint8_t>(letter - 0x20);
-  const bool is_digit = value < 10;
   const bool is_word =
-      is_digit || static_cast<uint8_t>(capital - 'A') < 26 || letter == '_';
-  const uint8_t place = place_;
-  switch (place) {
-    case kBetween:
-      break;
-    case kWord:
-      if (is_word) {
-        add_letter(capital);
-        return;
-      }
-      end_word();
-      break;
-    case kComment:
-      if (letter != '\n') return;
-      break;
-    case kWhole:
-    case kPoint:
-    case kPlaces:
-      if (is_digit) {
-        digit(value);
-        return;
-      }
-      if (letter == '.' && place == kWhole) {
-        place_ = kPoint;
-        return;
-      }
-      if (is_word || letter == '.' || place == kPoint) {
-        report(Problem::kNumber);
-        return;
-      }
-      token(kNumberToken);
-      break;
-    default: {
-      bool are_two = place != '/';
-      uint8_t op = place == '<' ? token_of(Op::kLt) : token_of(Op::kGt);
-      if (!are_two) {
-        if (letter == '/') {
-          place_ = kComment;
-          return;
-        }
-        op = token_of(Op::kDiv);
-      } else if (letter == '=') {
-        op++;
+      value < 10 || static_cast<uint8_t>(capital - 'A') < 26 || letter == '_';
+  if (place == kComment) {
+    if (letter != '\n' && letter != kBroken) return;
+  } else if (place == kWord) {
+    if (is_word) {
+      add_letter(capital);
+      return;
+    }
+    end_word();
+  } else if (place >= kWhole && place <= kPlaces) {
+    if (value < 10) {
+      digit(value);
+      return;
+    }
+    if (letter == '.' && place == kWhole) {
+      place_ = kPoint;
+      return;
+    }
+    if (is_word || letter == '.' || place == kPoint) {
+      report(Problem::kNumber);
+      return;
+    }
+    token(kNumberToken);
+  } else if (place != kBetween) {
+    if (place == '/' && letter == '/') {
+      place_ = kComment;
+      return;
+    }
+    uint8_t first = place;  // is now the opcode
+    place_ = kBetween;
+    if (first == '/') {
+      first = token_of(Op::kDiv);
+    } else {
+      first = first == '<' ? token_of(Op::kLt) : token_of(Op::kGt);
+      bool are_two = true;
+      if (letter == '=') {
+        first++;
       } else if (letter == '>' && place == '<') {
-        op = token_of(Op::kNe);
+        first = token_of(Op::kNe);
       } else {
         are_two = false;
       }
-      place_ = kBetween;
-      token(op);
-      if (are_two) return;
+      if (are_two) letter = ' ';
     }
+    token(first);
   }
   place_ = kBetween;
   if (letter == ' ' || letter == '\t') return;
   token_column_ = column_;
-  if (is_digit || letter == '.') {
+  if (letter == '.' || value < 10) {
     value_ = 0;
-    rest_ = 0;
-    places_ = 0;
-    place_ = is_digit ? kWhole : kPoint;
-    if (is_digit) digit(value);
+    places_ = 3;
+    place_ = kPoint;
+    if (letter != '.') {
+      place_ = kWhole;
+      digit(value);
+    }
   } else if (is_word && letter != '_') {
     place_ = kWord;
     letters_ = 0;
@@ -231,56 +236,40 @@ void Reader::add_letter(uint8_t letter) {
 }
 
 void Reader::sign(uint8_t letter) {
-  uint8_t op = byte_of(Op::kAdd);
-  switch (letter) {
-    case '/':
-    case '<':
-    case '>':
-      place_ = letter;
-      return;
-    case '(':
-    case ')':
-    case ',':
-    case ';':
-    case '|':
-    case '\n':
-      token(letter);
-      return;
-    case '=':
-      op = byte_of(Op::kEq);
-      break;
-    case '+':
-      break;
-    case '-':
-      op = byte_of(Op::kSub);
-      break;
-    case '*':
-      op = byte_of(Op::kMul);
-      break;
-    case '%':
-      op = byte_of(Op::kMod);
-      break;
-    default:
-      report(Problem::kCharacter);
-      return;
+  if (letter == '\n') {
+    token(kNewline);
+    return;
   }
-  token(static_cast<uint8_t>(kBinary | op));
+  for (const uint8_t* sign = kSigns; flash_byte(sign) != 0; sign += 2) {
+    if (flash_byte(sign) != letter) continue;
+    const uint8_t its = flash_byte(sign + 1);
+    if (its == 0) {
+      place_ = letter;
+    } else {
+      token(its);
+    }
+    return;
+  }
+  report(Problem::kCharacter);
 }
 
 // Adds a digit to the number, whose places behind the third one round it.
 void Reader::digit(uint8_t value) {
-  if (place_ == kWhole) {
-    if (value_ <= kLargestWhole) value_ = value_ * 10 + value;
-    return;
+  if (place_ != kWhole) {
+    place_ = kPlaces;
+    if (places_ < 0) return;
+    places_--;
+    if (places_ < 0) {
+      if (value >= 5) value_++;
+      return;
+    }
   }
-  place_ = kPlaces;
-  if (places_ < 3) {
-    rest_ = static_cast<uint16_t>(rest_ * 10 + value);
-    places_++;
-  } else if (places_ == 3) {
-    places_++;
-    if (value >= 5) rest_++;
-  }
+  scale(value);
+}
+
+void Reader::scale(uint8_t digit) {
+  if (value_ >= kTooBig) report(Problem::kTooBig);
+  value_ = value_ * 10 + digit;
 }
 
 }  // namespace tiniscript

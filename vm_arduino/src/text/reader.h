@@ -10,6 +10,7 @@
 
 #include <stdint.h>
 
+#include "../vm/small.h"
 #include "problems.h"
 
 namespace tiniscript {
@@ -58,53 +59,53 @@ class Reader {
   void sign(uint8_t letter);
   void add_letter(uint8_t letter);
   void digit(uint8_t value);
+  tini_noinline void scale(uint8_t digit);
   void report(Problem problem);
 
   // words, in reader_names.cpp
-  void end_word();
-  bool matches(const uint8_t** entry) const;
+  tini_noinline void end_word();
+  bool matches(bool in_flash);
   bool find_in_kit();
-  bool find_name();
+  void find_name();
   void add_name(uint8_t info, uint8_t more);
 
   // instructions, in reader_parser.cpp
   void token(uint8_t token);
-  void instruction(uint8_t token);
-  void after_name(uint8_t token);
-  void command(uint8_t word);
+  Problem parse(uint8_t token);
+  Problem instruction(uint8_t token);
+  Problem after_name(uint8_t token);
   void end_arguments();
-  void end_move(uint8_t token);
-  void end_assignment();
+  Problem end_move(uint8_t token);
+  Problem end_assignment(uint8_t token);
 
   // blocks, in reader_blocks.cpp
   void open(uint8_t type, uint8_t ends);
-  void close(uint8_t word);
-  void next_arm();
-  void leave_loop();
-  void define(uint8_t token);
-  void call();
+  void emit_open(uint8_t op, uint8_t type);
+  Problem close(uint8_t type);
+  Problem next_arm();
+  Problem leave_loop();
+  Problem define(uint8_t token);
+  Problem call();
 
   // expressions, in reader_values.cpp
   void begin_value();
-  void operand(uint8_t token);
   void open_bracket();
-  void number();
-  void name_value();
-  void operators(uint8_t token);
-  void binary(uint8_t op);
+  Problem operand(uint8_t token);
+  tini_noinline void number();
+  Problem name_value();
+  Problem operators(uint8_t token);
+  Problem binary(uint8_t op);
   void apply(uint8_t op);
-  uint8_t reduce();
   void push_kind(bool is_yes_no);
-  void end_value();
+  tini_noinline Problem end_value();
 
   // code and memory, in reader_code.cpp
   void emit(uint8_t byte);
   void emit_numbered(uint8_t op, uint8_t first_short, uint8_t number);
-  void emit_little_endian(uint32_t value, uint8_t bytes);
-  void emit_number(uint32_t value, uint32_t whole, uint16_t rest, bool is_minus);
+  tini_noinline void emit_number(bool is_minus);
   void link(uint8_t* ends);
   void resolve(uint8_t at);
-  void read_first(uint8_t sensor);
+  tini_noinline void read_first(uint8_t sensor);
   void push(uint8_t byte);
   bool has_room(uint16_t bytes);
   Block* top() const { return reinterpret_cast<Block*>(stack_); }
@@ -121,16 +122,15 @@ class Reader {
   uint8_t letters_;  // of the word behind the code
   uint8_t column_;
   uint8_t token_column_;
-  uint8_t left_;  // bytes of a character of UTF-8 that are still to come
-  uint8_t lead_;
+  uint8_t lead_;  // the first byte of a character of UTF-8 that is not whole
   uint8_t second_;
+  uint8_t byte_;
   uint8_t check_;  // what has come of a checksum
   bool is_damaged_;
   bool is_after_cr_;
   uint32_t crc_;
-  uint32_t value_;  // digits before the point; behind the number its thousandths
-  uint16_t rest_;   // digits behind the point
-  uint8_t places_;
+  uint32_t value_;  // of the number's digits so far; behind the number its thousandths
+  int8_t places_;   // decimals that it may still have; -1 behind the one that rounds it
 
   // the parser
   uint8_t state_;
@@ -138,6 +138,7 @@ class Reader {
   uint8_t problem_column_;
   uint8_t setup_;
   uint8_t what_;      // the instruction, by its word
+  uint8_t op_;        // its opcode
   uint8_t kinds_;     // of its arguments from this one on
   uint8_t target_;    // the variable or the actuator that it sets
   uint8_t brackets_;  // that are open

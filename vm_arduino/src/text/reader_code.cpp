@@ -53,72 +53,73 @@ void Reader::read_first(uint8_t sensor) {
   const SensorBits bit = static_cast<SensorBits>(SensorBits{1} << sensor);
   if ((known_ & bit) != 0) return;
   known_ |= bit;
-  uint8_t left = length_;
+  const uint8_t bytes = sensor < kShorts ? 1 : 2;
+  emit(0);
+  if (bytes == 2) emit(0);
+  if (problem_ != Problem::kNone) return;
+  uint8_t* const at = buffer_ + first_;
+  const uint8_t length = length_;
+  __builtin_memmove(at + bytes, at, static_cast<size_t>(length - bytes - first_));
+  length_ = first_;
   emit_numbered(byte_of(Op::kRead), byte_of(Op::kRead0), sensor);
-  for (; left != length_; left++) {
-    uint8_t* const first = buffer_ + first_;
-    const uint8_t last = buffer_[length_ - 1];
-    __builtin_memmove(first + 1, first, static_cast<size_t>(length_ - 1 - first_));
-    *first = last;
-  }
-  first_ = static_cast<uint8_t>(first_ + (sensor < kShorts ? 1 : 2));
+  first_ = length_;
+  length_ = length;
 }
 
-void Reader::emit_little_endian(uint32_t value, uint8_t bytes) {
-  for (; bytes != 0; bytes--) {
-    emit(static_cast<uint8_t>(value));
-    value >>= 8;
-  }
+namespace {
+
+// The number, or 65535 for all that are larger.
+tini_noinline uint16_t limited(uint32_t number) {
+  return number > 0xffff ? uint16_t{0xffff} : static_cast<uint16_t>(number);
 }
 
-// Emits the shortest instruction that pushes a number: `value` thousandths with the sign of
-// `is_minus`, of which `rest` are no whole ones.
-void Reader::emit_number(uint32_t value, uint32_t whole, uint16_t rest, bool is_minus) {
+}  // namespace
+
+// Emits the shortest instruction that pushes `value_` thousandths, or less them.
+void Reader::emit_number(bool is_minus) {
   const uint8_t minus = is_minus;
-  if (rest == 0 && minus == 0 && whole <= 255) {
-    uint8_t tens = 0;
-    uint8_t ones = static_cast<uint8_t>(whole);
-    if (ones <= 100) {
-      while (ones > 10) {
-        ones = static_cast<uint8_t>(ones - 10);
-        tens++;
-      }
-      if (tens == 0 || ones == 10) {
-        emit(static_cast<uint8_t>(byte_of(Op::kPushNum0) + ones + tens));
-        return;
-      }
-    }
-    emit(byte_of(Op::kPush8));
-    emit(static_cast<uint8_t>(whole));
-    return;
-  }
-  const uint32_t number = is_minus ? 0 - value : value;
-  if (whole <= 12) {
-    uint8_t tenths = static_cast<uint8_t>(whole * 10);
-    while (rest >= 100) {
-      rest = static_cast<uint16_t>(rest - 100);
-      tenths++;
-    }
-    if (rest == 0 && tenths <= 127 + minus) {
-      emit(byte_of(Op::kPushTenths));
-      emit(is_minus ? static_cast<uint8_t>(-tenths) : tenths);
-      return;
-    }
-    rest = 1;
-  }
+  uint32_t operand = value_;
   uint8_t op = byte_of(Op::kPush32);
   uint8_t bytes = 4;
-  uint32_t operand = number;
-  if (rest == 0 && whole <= uint32_t{32767} + minus) {
-    op = byte_of(Op::kPush16);
-    bytes = 2;
-    operand = is_minus ? 0 - whole : whole;
-  } else if (value <= uint32_t{32767} + minus) {
+  const uint16_t most = static_cast<uint16_t>(32767 + minus);
+  if (limited(operand) <= most) {
     op = byte_of(Op::kPushMilli);
     bytes = 2;
   }
+  const uint32_t tenths = operand / 100;
+  if (operand % 100 == 0) {
+    const uint16_t whole = limited(tenths / 10);
+    const bool is_whole = tenths % 10 == 0;
+    if (is_whole && whole <= most) {
+      operand = whole;
+      op = byte_of(Op::kPush16);
+      bytes = 2;
+    }
+    if (is_whole && minus == 0 && whole <= 255) {
+      op = byte_of(Op::kPush8);
+      bytes = 1;
+      uint8_t ones = static_cast<uint8_t>(whole);
+      uint8_t at = byte_of(Op::kPushNum0);
+      while (ones > 10) {
+        ones = static_cast<uint8_t>(ones - 10);
+        at++;
+      }
+      if (whole <= 100 && (whole <= 10 || ones == 10)) {
+        op = static_cast<uint8_t>(at + ones);
+        bytes = 0;
+      }
+    } else if (limited(tenths) <= static_cast<uint8_t>(127 + minus)) {
+      operand = tenths;
+      op = byte_of(Op::kPushTenths);
+      bytes = 1;
+    }
+  }
+  if (is_minus) operand = 0 - operand;
   emit(op);
-  emit_little_endian(operand, bytes);
+  for (; bytes != 0; bytes--) {
+    emit(static_cast<uint8_t>(operand));
+    operand >>= 8;
+  }
 }
 
 }  // namespace tiniscript

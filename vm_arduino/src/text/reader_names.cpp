@@ -14,79 +14,72 @@ constexpr uint8_t kLastLetter = 0x80;
 // The word behind the code has ended. It stays there until code is emitted.
 void Reader::end_word() {
   buffer_[length_ + letters_ - 1] |= kLastLetter;
+  entry_ = kWords;
   uint8_t word = kFirstWord;
-  for (const uint8_t* entry = kWords; flash_byte(entry) != 0; word++) {
-    if (matches(&entry)) {
-      if (word == kWordAnd) word = token_of(Op::kAnd);
-      if (word == kWordOr) word = token_of(Op::kOr);
-      token(word);
-      return;
-    }
+  for (; flash_byte(entry_) != 0; word++) {
+    if (!matches(true)) continue;
+    if (word == kWordAnd) word = token_of(Op::kAnd);
+    if (word == kWordOr) word = token_of(Op::kOr);
+    token(word);
+    return;
   }
   if (!find_in_kit()) find_name();
   token(kNameToken);
 }
 
-// Whether the word is the one in flash. `*entry` goes behind it.
-bool Reader::matches(const uint8_t** entry) const {
+// Whether the word is the one at `entry_`, which goes behind it.
+bool Reader::matches(bool in_flash) {
   const uint8_t* word = buffer_ + length_;
+  const uint8_t* entry = entry_;
   bool is_same = true;
   uint8_t letter;
   do {
-    letter = flash_byte((*entry)++);
+    letter = in_flash ? flash_byte(entry) : *entry;
+    entry++;
     if (is_same && letter != *word++) is_same = false;
   } while ((letter & kLastLetter) == 0);
+  entry_ = entry;
   return is_same;
 }
 
 bool Reader::find_in_kit() {
-  const uint8_t* entry = robot_words();
+  entry_ = robot_words();
   uint8_t sensors = 0;
   uint8_t actuators = 0;
-  while (flash_byte(entry) != 0) {
-    const bool is_found = matches(&entry);
-    const uint8_t device = flash_byte(entry++);
-    const bool is_actuator = (device & kDeviceIsActuator) != 0;
-    if (is_found) {
-      found_ = is_actuator ? kIsActuator : kIsSensor;
-      number_ = is_actuator ? actuators : sensors;
-      found_ = static_cast<uint8_t>(found_ | (device & kDeviceIsYesNo));
-      entry_ = entry;
-      return true;
+  while (flash_byte(entry_) != 0) {
+    const bool is_found = matches(true);
+    const uint8_t device = flash_byte(entry_++);
+    found_ = static_cast<uint8_t>(kIsSensor | (device & kDeviceIsYesNo));
+    number_ = sensors++;
+    if ((device & kDeviceIsActuator) != 0) {
+      found_ ^= kIsSensor | kIsActuator;
+      sensors--;
+      number_ = actuators++;
     }
-    if (is_actuator) {
-      actuators++;
-    } else {
-      sensors++;
-    }
-    if (device == kDeviceIsActuator) entry += kRangeBytes;
+    if (is_found) return true;
+    if (device == kDeviceIsActuator) entry_ += kRangeBytes;
   }
   return false;
 }
 
-bool Reader::find_name() {
-  const uint8_t* entry = names_;
-  while (entry != end_) {
-    const uint8_t info = *entry++;
+void Reader::find_name() {
+  entry_ = names_;
+  while (entry_ != end_) {
+    const uint8_t info = *entry_++;
+    const uint8_t* const facts = entry_;
     found_ = kIsVariable;
-    if ((info & kNameYesNo) != 0) found_ |= kIsYesNo;
+    if ((info & kNameYesNo) != 0) found_ = kIsVariable | kIsYesNo;
     number_ = info & (kVariables - 1);
-    entry_ = entry;
     if ((info & kNameDef) != 0) {
       found_ = kIsDef;
-      entry += sizeof(Def);
+      entry_ += sizeof(Def);
     }
-    const uint8_t* word = buffer_ + length_;
-    bool is_same = true;
-    uint8_t letter;
-    do {
-      letter = *entry++;
-      if (is_same && letter != *word++) is_same = false;
-    } while ((letter & kLastLetter) == 0);
-    if (is_same) return true;
+    if (matches(false)) {
+      entry_ = facts;
+      return;
+    }
   }
   found_ = 0;
-  return false;
 }
 
 // Adds the word as a name, `more` bytes before its letters.

@@ -6,248 +6,223 @@ namespace tiniscript {
 
 namespace {
 
-bool ends(uint8_t token) { return token == ';' || token == kNewline; }
+bool ends(uint8_t token) { return token == ';'; }
 
-bool is_word(uint8_t token) { return token >= kFirstWord && token < kNameToken; }
+// From a move or a wait to the one with a check, and half as far from there to the endless one.
+constexpr uint8_t kWatchMove = byte_of(Op::kWatchF) - byte_of(Op::kMoveF);
+constexpr uint8_t kWatchWait = byte_of(Op::kWatchWait) - byte_of(Op::kWait);
+static_assert(byte_of(Op::kWatchForeverF) - byte_of(Op::kWatchF) == kWatchMove / 2, "");
+static_assert(byte_of(Op::kWatchForeverWait) - byte_of(Op::kWatchWait) == kWatchWait / 2, "");
 
-bool is_command(uint8_t token) { return token >= kFirstWord && token < kFirstWord + kCommands; }
-
-// The problem with a token where an instruction should begin, or has none.
-Problem no_instruction(uint8_t token) {
-  if (token == ')') return Problem::kClose;
-  if (!is_word(token)) return Problem::kInstruction;
-  if (token >= kWordPing && token <= kWordCheckConnection) return Problem::kSetup;
-  return Problem::kReserved;
+// The problem with a token where an instruction must end.
+Problem no_end(uint8_t token) {
+  if (ends(token)) return Problem::kNone;
+  return token == ')' ? Problem::kClose : Problem::kSeparator;
 }
 
 }  // namespace
 
 void Reader::token(uint8_t token) {
   if (problem_ != Problem::kNone) return;
-  if (token == kNewline && brackets_ != 0) return;
-  switch (state_) {
+  if (token == kNewline) {
+    if (brackets_ != 0 || state_ == kBegin) return;
+    token = ';';
+  }
+  report(parse(token));
+}
+
+Problem Reader::parse(uint8_t token) {
+  const uint8_t state = state_;
+  switch (state) {
     case kBegin:
-      if (token == kNewline) return;
-      state_ = kInstruction;
-      if (token >= kWordPing && token <= kWordSb) {
-        setup_ = token == kWordPing ? kStartPing : static_cast<uint8_t>(token - kWordSi);
+      if (token >= kWordSi && token <= kWordPing) {
+        setup_ = static_cast<uint8_t>(token - kWordSi);
         state_ = kBar;
-        return;
+        return Problem::kNone;
       }
-      break;
-    case kBar:
-      if (token != '|') report(Problem::kSetup);
-      state_ = setup_ == kStartPing ? kCheckConnection : kInstruction;
-      return;
-    case kCheckConnection:
-      if (token != kWordCheckConnection) report(Problem::kPing);
-      state_ = kNothingMore;
-      return;
-    case kNothingMore:
-      if (!ends(token)) report(Problem::kPing);
-      return;
+      // fall through
     case kInstruction:
-      break;
-    case kAfterName:
-      after_name(token);
-      return;
-    case kArguments:
-      if (token != '(') report(Problem::kOpen);
-      brackets_ = 1;
-      begin_value();
-      return;
-    case kDefName:
-      define(token);
-      return;
-    case kAfterMove:
-      end_move(token);
-      return;
-    case kSeparator:
-      if (!ends(token)) report(token == ')' ? Problem::kClose : Problem::kSeparator);
       state_ = kInstruction;
-      return;
+      return ends(token) ? Problem::kNone : instruction(token);
+    case kBar:
+      state_ = setup_ == kStartPing ? kCheckConnection : kInstruction;
+      return token == '|' ? Problem::kNone : Problem::kSetup;
+    case kCheckConnection:
+      state_ = kNothingMore;
+      return token == kWordCheckConnection ? Problem::kNone : Problem::kPing;
+    case kNothingMore:
+      return ends(token) ? Problem::kNone : Problem::kPing;
+    case kAfterName:
+      return after_name(token);
+    case kArguments:
     case kFunction:
-      if (token != '(') report(Problem::kOpen);
+      if (token != '(') return Problem::kOpen;
       open_bracket();
-      return;
+      if (state == kArguments) begin_value();
+      return Problem::kNone;
+    case kDefName:
+      return define(token);
+    case kAfterMove:
+      return end_move(token);
+    case kSeparator:
+      state_ = kInstruction;
+      return no_end(token);
     case kArgument:
     case kOperand:
     case kAfterMinus:
-      operand(token);
-      return;
+      return operand(token);
     default:
-      operators(token);
-      return;
+      return operators(token);
   }
-  if (!ends(token)) instruction(token);
 }
 
 // A token begins an instruction.
-void Reader::instruction(uint8_t token) {
+Problem Reader::instruction(uint8_t token) {
   first_ = length_;
   known_ = read_;
   depth_ = 0;
   what_ = token;
-  state_ = kSeparator;
   if (token == kNameToken) {
     state_ = kAfterName;
-  } else if (is_command(token)) {
-    command(token);
-  } else if (token == kWordS || token == kWordStop) {
-    emit(byte_of(Op::kStop));
-  } else if (token == kWordDef) {
-    state_ = kDefName;
-  } else if (token == kWordElse) {
-    next_arm();
-  } else if (token == kWordBreak) {
-    leave_loop();
-  } else if (token >= kWordEndif && token <= kWordEnddef) {
-    close(static_cast<uint8_t>(kWordEndif + (token - kWordEndif) % 4));
-  } else if (token != kWordStart) {
-    report(no_instruction(token));
+    return Problem::kNone;
   }
-}
-
-// A word that takes arguments.
-void Reader::command(uint8_t word) {
+  if (token == kWordDef) {
+    state_ = kDefName;
+    return Problem::kNone;
+  }
+  if (token >= kWordS) {
+    state_ = kSeparator;
+    if (token <= kWordStop) {
+      emit(byte_of(Op::kStop));
+      return Problem::kNone;
+    }
+    if (token == kWordStart) return Problem::kNone;
+    if (token == kWordElse) return next_arm();
+    if (token == kWordBreak) return leave_loop();
+    if (token <= kWordEnddef) return close((token - kWordEndif) & 3);
+    return token < kNameToken ? Problem::kReserved : Problem::kInstruction;
+  }
+  if (token < kFirstWord) return token == ')' ? Problem::kClose : Problem::kInstruction;
   state_ = kArguments;
-  what_ = word;
   is_forever_ = false;
-  kinds_ = flash_byte(kCommandRows[word - kFirstWord]);
-  if (word == kWordUntil) {
-    report(Problem::kUntil);
-  } else if (word == kWordElseif) {
-    next_arm();
-  } else if (word == kWordWhile) {
-    emit(byte_of(Op::kWhile));
-    emit(0);
-    open(kWordEndWhile, static_cast<uint8_t>(length_ - 1));
+  const uint8_t* const row = kCommandRows[token - kFirstWord];
+  kinds_ = flash_byte(row);
+  op_ = flash_byte(row + 1);
+  if (token == kWordUntil) return Problem::kUntil;
+  if (token == kWordElseif) return next_arm();
+  if (token == kWordWhile) {
+    emit_open(byte_of(Op::kWhile), kWhileBlock);
     first_ = length_;
   }
+  return Problem::kNone;
 }
 
 // What follows a name at the begin of an instruction.
-void Reader::after_name(uint8_t token) {
+Problem Reader::after_name(uint8_t token) {
+  const uint8_t found = found_;
   state_ = kInstruction;
   target_ = number_;
   if (token == token_of(Op::kEq)) {
-    if (found_ == 0) {
-      if (variables_ == kVariables) report(Problem::kLimit);
+    if (found == 0) {
+      if (variables_ == kVariables) return Problem::kLimit;
       target_ = variables_;
       add_name(variables_, 0);
-    } else if ((found_ & kIsVariable) == 0) {
-      report(Problem::kTaken);
+    } else if ((found & kIsVariable) == 0) {
+      return Problem::kTaken;
     }
-    if ((found_ & kIsYesNo) != 0) target_ |= kNameYesNo;
+    if ((found & kIsYesNo) != 0) target_ |= kNameYesNo;
     kinds_ = kAnyKind;
     begin_value();
     state_ = kOperand;
-  } else if (found_ == 0) {
-    report(Problem::kUnknownWord);
-  } else if (token == '(' && (found_ & kIsActuator) != 0) {
-    kinds_ = (found_ & kIsYesNo) != 0 ? kYesNoKind : kDeviceRange;
+    return Problem::kNone;
+  }
+  if (found == 0) return Problem::kUnknownWord;
+  if ((found & kIsActuator) != 0) {
+    if (token != '(') return Problem::kOpen;
+    kinds_ = (found & kIsYesNo) != 0 ? kYesNoKind : kDeviceRange;
     brackets_ = 1;
     begin_value();
-  } else if (!ends(token)) {
-    report(Problem::kSeparator);
-  } else if ((found_ & kIsSensor) != 0) {
-    emit_numbered(byte_of(Op::kRead), byte_of(Op::kRead0), number_);
-    read_ |= static_cast<SensorBits>(SensorBits{1} << number_);
-  } else if (found_ == kIsDef) {
-    call();
-  } else {
-    report((found_ & kIsActuator) != 0 ? Problem::kOpen : Problem::kInstruction);
+    return Problem::kNone;
   }
+  if ((found & kIsVariable) != 0) return Problem::kInstruction;
+  if (!ends(token)) return Problem::kSeparator;
+  if (found == kIsDef) return call();
+  emit_numbered(byte_of(Op::kRead), byte_of(Op::kRead0), number_);
+  read_ |= static_cast<SensorBits>(SensorBits{1} << number_);
+  return Problem::kNone;
 }
 
 // The brackets of a command have closed.
 void Reader::end_arguments() {
   brackets_ = 0;
   state_ = kSeparator;
-  if (what_ == kNameToken) {
+  const uint8_t what = what_;
+  if (what == kNameToken) {
     emit_numbered(byte_of(Op::kSet), byte_of(Op::kSet0), target_);
     return;
   }
-  uint8_t op = flash_byte(kCommandRows[what_ - kFirstWord] + 1);
-  switch (what_) {
-    case kWordM:
-    case kWordBeep:
-    case kWordUntil:
-      break;
-    case kWordShow:
-      if ((value_kinds_ & 1) != 0) op++;
-      break;
-    case kWordLoop:
-      if (is_forever_) {
-        emit(byte_of(Op::kForever));
-        open(kForeverLoop, 0);
-      } else {
-        emit(op);
-        emit(0);
-        open(kWordEndLoop, static_cast<uint8_t>(length_ - 1));
-      }
-      return;
-    case kWordIf:
-      emit(op);
-      emit(0);
-      open(kWordEndif, 0);
-      return;
-    case kWordElseif:
-      emit(op);
+  if (what <= kWordW) {
+    state_ = kAfterMove;
+    return;
+  }
+  uint8_t op = op_;
+  if (what == kWordShow && (value_kinds_ & 1) != 0) op++;
+  if (what == kWordLoop && is_forever_) {
+    emit(byte_of(Op::kForever));
+    open(kForeverBlock, 0);
+  } else if (what == kWordLoop) {
+    emit_open(op, kLoopBlock);
+  } else if (what == kWordIf) {
+    emit_open(op, kIfBlock);
+    top()->ends = 0;
+  } else {
+    emit(op);
+    if (what == kWordWhile) {
+      link(&top()->ends);
+    } else if (what == kWordElseif) {
       emit(0);
       top()->to = length_;
       top()->taken = known_;
-      return;
-    case kWordWhile:
-      emit(op);
-      link(&top()->ends);
-      return;
-    default:
-      state_ = kAfterMove;
-      return;
+    }
   }
-  emit(op);
 }
 
 // What follows the brackets of a move or a wait: its UNTIL, or its end.
-void Reader::end_move(uint8_t token) {
-  const bool is_wait = what_ == kWordW;
-  uint8_t op = flash_byte(kCommandRows[what_ - kFirstWord] + 1);
+Problem Reader::end_move(uint8_t token) {
+  uint8_t op = op_;
   if (token == kWordUntil) {
-    constexpr uint8_t kWatchMove = byte_of(Op::kWatchF) - byte_of(Op::kMoveF);
-    constexpr uint8_t kForeverMove = byte_of(Op::kWatchForeverF) - byte_of(Op::kWatchF);
-    constexpr uint8_t kWatchWait = byte_of(Op::kWatchWait) - byte_of(Op::kWait);
-    constexpr uint8_t kForeverWait = byte_of(Op::kWatchForeverWait) - byte_of(Op::kWatchWait);
-    op = static_cast<uint8_t>(op + (is_wait ? kWatchWait : kWatchMove));
-    if (is_forever_) op = static_cast<uint8_t>(op + (is_wait ? kForeverWait : kForeverMove));
+    const uint8_t step = what_ == kWordW ? kWatchWait : kWatchMove;
+    op = static_cast<uint8_t>(op + step);
+    if (is_forever_) op = static_cast<uint8_t>(op + step / 2);
     emit(op);
     first_ = length_;
     known_ = 0;
     depth_ = 0;
     what_ = kWordUntil;
+    op_ = byte_of(Op::kUntil);
     kinds_ = kYesNoKind;
-    is_forever_ = false;
     state_ = kArguments;
-    return;
+    return Problem::kNone;
   }
-  if (!ends(token)) report(token == ')' ? Problem::kClose : Problem::kSeparator);
-  if (is_forever_) report(Problem::kForever);
+  if (is_forever_) return Problem::kForever;
   emit(op);
   state_ = kInstruction;
+  return no_end(token);
 }
 
 // The value of an assignment has ended. The kind of a variable is that of its first one.
-void Reader::end_assignment() {
+Problem Reader::end_assignment(uint8_t token) {
   const uint8_t number = target_ & (kVariables - 1);
-  uint8_t kind = value_kinds_ & 1 ? kNameYesNo : 0;
+  const uint8_t kind = value_kinds_ & 1 ? kNameYesNo : 0;
   if (number == variables_) {
     variables_++;
     *names_ |= kind;
-  } else if ((target_ & kNameYesNo) != kind) {
-    report(Problem::kKind);
+  } else if (((target_ ^ kind) & kNameYesNo) != 0) {
+    return Problem::kKind;
   }
   emit_numbered(byte_of(Op::kSetVar), byte_of(Op::kSetVar0), number);
   state_ = kInstruction;
+  return no_end(token);
 }
 
 }  // namespace tiniscript

@@ -57,7 +57,12 @@ constexpr uint8_t kBracket = 0x80;
 constexpr uint8_t kSecond = 0x40;
 constexpr uint8_t kBase = 0xff;
 
-// A block whose end has not come yet. `type` is the first word that ends it, or kForeverLoop.
+// Types of blocks, in the order of the words that end them.
+enum BlockType : uint8_t { kIfBlock, kLoopBlock, kWhileBlock, kDefBlock };
+constexpr uint8_t kBlockType = 3;
+constexpr uint8_t kForeverBlock = 4 | kLoopBlock;  // one that does not count
+
+// A block whose end has not come yet.
 struct __attribute__((packed)) Reader::Block {
   uint8_t type;
   uint8_t ends;       // the last of the operands that want its end; each holds the one before
@@ -66,7 +71,6 @@ struct __attribute__((packed)) Reader::Block {
   SensorBits after;   // by all arms of an IF so far
   SensorBits taken;   // the readings of its conditions, and those before
 };
-constexpr uint8_t kForeverLoop = 0;
 
 // In front of the letters of each name stands the number of its variable, with kNameYesNo, or
 // kNameDef and then this.
