@@ -13,11 +13,11 @@ from tests.machines.host import SOURCES, WARNINGS, missing
 
 MACHINE = SOURCES / "src" / "vm"
 EXTRAS = SOURCES / "extras"
-ROOMS = [SOURCES / "src" / name for name in ("vm", "link", "store", "firmware")]
+ROOMS = [SOURCES / "src" / name for name in ("vm", "link", "store", "text", "firmware")]
 PORTABLE = sorted(
     [*(path for room in ROOMS for path in room.glob("*.[ch]*")), SOURCES / "src" / "robot.h"]
 )
-TESTED = ("host", "host_firmware", "chip", "qemu", "link", "powercut")
+TESTED = ("host", "host_firmware", "chip", "qemu", "link", "powercut", "text")
 FILES = [
     *PORTABLE,
     *sorted(path for name in TESTED for path in (EXTRAS / name).glob("*.[ch]*")),

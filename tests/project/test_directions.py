@@ -24,6 +24,7 @@ UPSTREAM: dict[str, set[str]] = {
     "fixed_point": set(),
     "kit": {"fixed_point"},
     "words": {"fixed_point"},
+    "text": {"kit"},
     "diagnostics": {"source"},
     "bytecode": {"kit"},
     "syntax": {*TEXT, "bytecode"},  # of the bytecode its limits and its comparators

@@ -48,7 +48,7 @@ struct Read {
 void read_lines(Read* read) {
   read->begin();
   bool is_blank = true;
-  for (int byte = getchar(); byte != EOF; byte = getchar()) {
+  for (int byte = getchar(); byte >= 0; byte = getchar()) {
     const Text found = read->reader.put(static_cast<uint8_t>(byte));
     if (found == Text::kGoesOn) {
       if (byte != '\n') is_blank = false;

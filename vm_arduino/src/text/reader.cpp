@@ -26,9 +26,20 @@ constexpr uint32_t kTooBig = 0x10000000;  // ten times that is more than any num
 
 // Each sign and its token, or 0 if it may be the first half of another.
 const uint8_t kSigns[] tini_progmem = {
-    '(', '(', ')', ')', ',', ',', ';', ';', '|', '|', '/', 0, '<', 0, '>', 0,
-    '+', token_of(Op::kAdd), '-', token_of(Op::kSub), '*', token_of(Op::kMul),
-    '%', token_of(Op::kMod), '=', token_of(Op::kEq), 0,
+    '(', '(',
+    ')', ')',
+    ',', ',',
+    ';', ';',
+    '|', '|',
+    '/', 0,
+    '<', 0,
+    '>', 0,
+    '+', token_of(Op::kAdd),
+    '-', token_of(Op::kSub),
+    '*', token_of(Op::kMul),
+    '%', token_of(Op::kMod),
+    '=', token_of(Op::kEq),
+    0,
 };
 
 }  // namespace
@@ -162,8 +173,7 @@ void Reader::take(uint8_t letter) {
   const uint8_t value = static_cast<uint8_t>(letter - '0');
   uint8_t capital = letter;
   if (static_cast<uint8_t>(letter - 'a') < 26) capital = static_cast<uint8_t>(letter - 0x20);
-  const bool is_word =
-      value < 10 || static_cast<uint8_t>(capital - 'A') < 26 || letter == '_';
+  const bool is_word = value < 10 || static_cast<uint8_t>(capital - 'A') < 26 || letter == '_';
   if (place == kComment) {
     if (letter != '\n' && letter != kBroken) return;
   } else if (place == kWord) {

@@ -144,10 +144,10 @@ class Reader {
   uint8_t brackets_;  // that are open
   uint8_t shape_;     // whether this argument is just a number
   bool is_forever_;
-  uint8_t depth_;          // values that wait
-  uint16_t value_kinds_;   // a bit for each, the last one lowest: whether it is a yes/no
-  SensorBits read_;        // that are surely read
-  SensorBits known_;       // the same, and those that this instruction has read
+  uint8_t depth_;         // values that wait
+  uint16_t value_kinds_;  // a bit for each, the last one lowest: whether it is a yes/no
+  SensorBits read_;       // that are surely read
+  SensorBits known_;      // the same, and those that this instruction has read
   uint8_t variables_;
   uint8_t defs_;
   uint8_t blocks_;

@@ -173,8 +173,9 @@ void Reader::end_arguments() {
   } else if (what == kWordLoop) {
     emit_open(op, kLoopBlock);
   } else if (what == kWordIf) {
-    emit_open(op, kIfBlock);
-    top()->ends = 0;
+    emit(op);
+    emit(0);
+    open(kIfBlock, 0);
   } else {
     emit(op);
     if (what == kWordWhile) {

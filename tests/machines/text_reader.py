@@ -1,0 +1,96 @@
+"""The reader of text in C++ on this computer, with the sanitizers of the compiler.
+
+Builds `vm_arduino/extras/text` with g++ and talks to one process of it: texts in, answers out.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import tempfile
+from pathlib import Path
+from struct import pack
+from typing import NamedTuple
+
+from tests.machines.host import BUILDS, FLAGS, SOURCES, compiled
+from tiniscript.bytecode.image import STARTS
+from tiniscript.kit import Kit
+from tiniscript.text.kit_words import kit_words
+from tiniscript.text.problems import NAMES
+
+LARGEST_ROOM = 60_000
+
+
+class Answer(NamedTuple):
+    """What the reader says: `code` of a program, or a problem; neither: a block is open."""
+
+    start: str = ""
+    code: bytes = b""
+    problem: str = ""
+    column: int = 0
+
+    @property
+    def is_program(self) -> bool:
+        return bool(self.start)
+
+
+class TextReader:
+    """A process that reads texts: each is one program, however many lines it has."""
+
+    def __init__(self, kit: Kit, room: int = LARGEST_ROOM, flags: tuple[str, ...] = ()) -> None:
+        self._errors = tempfile.TemporaryFile()  # noqa: SIM115
+        self._process = subprocess.Popen(
+            [built(flags), str(room), kit_words(kit).hex(), "whole"],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=self._errors,
+        )
+
+    def read(self, text: bytes) -> Answer:
+        pipe_in, pipe_out = self._process.stdin, self._process.stdout
+        assert pipe_in and pipe_out
+        pipe_in.write(pack("<I", len(text)) + text)
+        pipe_in.flush()
+        line = pipe_out.readline().decode()
+        assert line, f"{text!r} ends the reader:\n{self._said()}"
+        return answer(line)
+
+    def close(self) -> None:
+        self._process.kill()
+        self._process.communicate()
+        self._errors.close()
+
+    def _said(self) -> str:
+        self._process.wait()
+        self._errors.seek(0)
+        return self._errors.read().decode(errors="replace")[:4000]
+
+
+def read_lines(kit: Kit, data: bytes, room: int = LARGEST_ROOM) -> list[Answer]:
+    """Return what a robot would answer to these bytes, line by line."""
+    done = subprocess.run(
+        [built(), str(room), kit_words(kit).hex()], input=data, capture_output=True, check=True
+    )
+    return [answer(line) for line in done.stdout.decode().splitlines()]
+
+
+def answer(line: str) -> Answer:
+    word, *rest = line.split()
+    if word == "OK":
+        return Answer(start=STARTS[int(rest[0])], code=bytes.fromhex("".join(rest[1:])))
+    if word == "NO":
+        return Answer(problem=NAMES[int(rest[0])], column=int(rest[1]))
+    assert word == "MORE"
+    return Answer()
+
+
+def built(flags: tuple[str, ...] = ()) -> Path:
+    """Return the program made from the reader and `extras/text`."""
+    inputs = sorted(
+        path
+        for folder in ("src/text", "extras/text")
+        for path in (SOURCES / folder).glob("*")
+        if path.suffix in (".h", ".cpp")
+    )
+    vm = SOURCES / "src" / "vm"
+    inputs += [vm / name for name in ("bytecode.h", "crc32.h", "flash.h", "small.h", "crc32.cpp")]
+    return compiled(inputs, (*FLAGS, *flags), BUILDS)

@@ -1,0 +1,184 @@
+"""The robot's reader of text and the compiler: the same texts are programs, and do the same.
+
+`python -m tests.text.test_reader_agreement 100000` runs a campaign: so many programs, and ten
+broken ones from each.
+"""
+
+from __future__ import annotations
+
+import random
+import re
+import sys
+from collections import Counter
+from functools import lru_cache
+
+import pytest
+
+from tests.machines import Senses
+from tests.machines.host import missing
+from tests.machines.python import lists_of
+from tests.machines.text_reader import Answer, TextReader
+from tests.oracle import programs
+from tests.support.casefile import Case, all_cases
+from tests.support.kits import KITS
+from tiniscript import check_text, compile_text, robots
+from tiniscript.bytecode.verify import verify
+from tiniscript.kit import Kit
+from tiniscript.source import Unreadable, decode
+from tiniscript.vm.trace import run
+from tiniscript.words import WORDS
+
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
+
+MAX_MS, MAX_STEPS = 5_000, 5_000
+SHORT_BUFFER = 389 - 15
+PROGRAMS, BROKEN, SOUPS = 400, 4, 3000  # in the tests; a campaign runs more
+
+TOKENS = (*WORDS, "X", "Y", "Z", "DISTANCE", "LIGHT_R", "LINE", "TOUCH", "LED", "GRIPPER", "GO",
+          *"0123456789", "0.5", ".5", "5.", "12.7", "12.8", "-12.8", "-12.9", "32767", "32768",
+          "-32768", "-32769", "32.767", "32.768", "-32.768", "255", "256", "2147483.647",
+          "-2147483.648", "2147483.648", "100.4", "20001", "31", "0.0005", "0.9999", "9.9996",
+          *"()(),;|=<>+-*/%", "<=", ">=", "<>", "\n", "//", " ", "\u00a0", "\u2013", "\ufeff",
+          )  # fmt: skip
+
+
+@lru_cache(maxsize=8)
+def reader_of(kit: Kit, room: int = 60_000) -> TextReader:
+    return TextReader(kit, room)
+
+
+def is_right(data: bytes, kit: Kit) -> bool:
+    """Whether the compiler takes these bytes for a program."""
+    try:
+        return check_text(decode(data), kit).is_right
+    except Unreadable:
+        return False
+
+
+def check_bytes(data: bytes, kit: Kit) -> Answer | None:
+    """The reader says of a text what the compiler says; None: it is too long for a robot."""
+    answer = reader_of(kit).read(data)
+    if answer.problem == "FULL":
+        return None
+    if answer.is_program != is_right(data, kit):
+        assert is_known_difference(data), f"{answer}\n{data!r}"
+    if answer.is_program:
+        verify(answer.code, len(kit.sensors), len(kit.actuators))
+    return answer
+
+
+def is_known_difference(data: bytes) -> bool:
+    """What the reader takes and the compiler does not, or the other way: `docs/text.md`."""
+    text = data.decode("utf-8", "replace").upper()
+    has_odd_bytes = "\ufffd" in text and "//" in text  # in a comment they are only looked at
+    return has_odd_bytes or "~" in text or re.search(r"START\s+UNTIL", text) is not None
+
+
+def check_program(data: bytes, kit: Kit, senses: Senses) -> None:
+    """A right program does what the compiler's does."""
+    answer = check_bytes(data, kit)
+    if answer is None:
+        return
+    assert answer.is_program, f"{answer}\n{data.decode()}"
+    compiled = compile_text(decode(data), kit)
+    assert compiled.program is not None and compiled.program.start == answer.start
+    got, want = (trace(code, kit, senses) for code in (answer.code, compiled.code))
+    if any(each[-1].endswith("LIMIT") for each in (got, want)):
+        least = min(len(got), len(want)) - 1  # where steps cut a run is no part of the meaning
+        got, want = got[:least], want[:least]
+    assert got == want, data.decode()
+
+
+def trace(code: bytes, kit: Kit, senses: Senses) -> list[str]:
+    lists = lists_of(kit, senses)
+    events = run(code, kit, lists, senses.max_ms, senses.max_steps, senses.seed)
+    *lines, _ = map(str, events)  # the last one says where in its own code a run has ended
+    return lines
+
+
+def texts_of(seed: int, broken: int) -> tuple[Kit, bytes, Senses, list[bytes]]:
+    """Return a random program, its readings, and what is left of it after slips."""
+    rng = random.Random(seed)
+    oracle_kit, kit = KITS[seed % len(KITS)]
+    text = programs.program(rng, oracle_kit)
+    senses = Senses(programs.senses(rng, oracle_kit), MAX_MS, MAX_STEPS, seed + 1)
+    slips = [programs.broken(rng, text).encode("utf-8", "surrogatepass") for _ in range(broken)]
+    return kit, text.encode(), senses, [damaged(rng, each) for each in slips]
+
+
+def damaged(rng: random.Random, data: bytes) -> bytes:
+    """Return a text with one byte changed, lost or added, now and then."""
+    if not data or rng.random() < 0.6:
+        return data
+    at = rng.randrange(len(data))
+    byte = bytes((rng.choice((rng.randrange(256), *b"\x00\xc2\xa0\xe2\x80\x93~09AZ_.<>/=-\r\n")),))
+    return data[:at] + rng.choice((byte, b"", byte + data[at : at + 1])) + data[at + 1 :]
+
+
+def soup(seed: int) -> tuple[Kit, bytes]:
+    """Return a few tokens in any order: a short line, as people type it wrong."""
+    rng = random.Random(seed)
+    tokens = rng.choices(TOKENS, k=rng.randint(1, 9))
+    frame = rng.choice(("{}", "X=1;{}", "IF({});ENDIF", "F({})", "X={}", "SHOW({})",
+                        "LOOP(2);{};END_LOOP", "DEF GO;{};END_DEF;GO", "LED({})", "GRIPPER({})",
+                        "F(1,{})UNTIL(TOUCH)", "BEEP({})", "M({},{})"))  # fmt: skip
+    text = frame.format(*(["".join(t + " " * rng.randint(0, 1) for t in tokens)] * 2))
+    return KITS[1][1], text.encode()
+
+
+# -- in the tests -------------------------------------------------------------------------------
+
+CASES = [case for case in all_cases() if "tiniscript" in case.parts]
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.id)
+def test_case(case: Case) -> None:
+    parts = case.parts
+    found = re.search(r"^robot *= *(\w+)", parts.get("senses", ""), re.MULTILINE)
+    kit = robots.load(found[1] if found else "tinibot").kit
+    data = parts["tiniscript"].encode()
+    if is_right(data, kit):
+        check_program(data, kit, Senses({}, MAX_MS, MAX_STEPS, 1))
+    for line in (data, *data.splitlines()):
+        check_bytes(line, kit)
+
+
+@pytest.mark.parametrize("first", range(0, PROGRAMS, 100))
+def test_random_programs(first: int) -> None:
+    for seed in range(first, first + 100):
+        kit, data, senses, slips = texts_of(seed, BROKEN)
+        check_program(data, kit, senses)
+        for each in slips:
+            check_bytes(each, kit)
+
+
+def test_random_tokens() -> None:
+    found = Counter(check_bytes(data, kit) is not None for kit, data in map(soup, range(SOUPS)))
+    assert found[True] == SOUPS
+
+
+@pytest.mark.parametrize("room", [8, 40, 100, SHORT_BUFFER])
+def test_little_room_is_full_and_nothing_else(room: int) -> None:
+    for seed in range(200):
+        kit, data, _, slips = texts_of(seed, 1)
+        for each in (data, *slips):
+            want, got = reader_of(kit).read(each), reader_of(kit, room).read(each)
+            assert got.problem == "FULL" or got == want
+
+
+def campaign(first: int, count: int) -> None:
+    """Compare `count` programs, ten texts with slips from each, and ten lines of any tokens."""
+    found: Counter[str] = Counter()
+    for seed in range(first, first + count):
+        kit, data, senses, slips = texts_of(seed, 10)
+        check_program(data, kit, senses)
+        soups = [soup(10 * seed + k) for k in range(10)]
+        for each_kit, each in [(kit, each) for each in slips] + soups:
+            answer = check_bytes(each, each_kit)
+            found["full" if answer is None else "program" if answer.is_program else "refused"] += 1
+        if seed % 1000 == 999:
+            print(f"{seed + 1 - first} programs agree, and of other texts {dict(found)}", flush=True)
+
+
+if __name__ == "__main__":
+    campaign(1_000_000, int(sys.argv[1]) if len(sys.argv) > 1 else 100_000)
