@@ -323,6 +323,7 @@ SPEC_TABLES: dict[str, Callable[[], str]] = {
     "limits": limit_table,
 }
 
+
 def text_table(name: str) -> str:
     """Return a file of `vm_arduino/src/text/`: words or answers of the reader of text."""
     from tools.generate import text_tables

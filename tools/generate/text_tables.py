@@ -90,7 +90,7 @@ def words_header(command: str) -> str:
             "// The words up to this one take arguments in brackets.",
             f"constexpr uint8_t kCommands = {commands};",
             "",
-            "// What an argument may be; from kFirstRange on a number in a range of kArgumentRanges.",
+            "// What an argument may be; from kFirstRange on a number in a range.",
             f"constexpr uint8_t kAnyKind = {ANY};",
             f"constexpr uint8_t kYesNoKind = {YES_NO};",
             f"constexpr uint8_t kNumberKind = {NUMBER};",
@@ -101,7 +101,7 @@ def words_header(command: str) -> str:
             "// All words one after the other, 0x80 in the last letter of each, and a 0.",
             "extern const uint8_t kWords[] tini_progmem;",
             "",
-            "// Of each command: the kinds of its arguments (4 bits each, the first below), its opcode.",
+            "// Of each command: the kinds of its arguments (4 bits each), its opcode.",
             "extern const uint8_t kCommandRows[][2] tini_progmem;",
             "",
             "// The least and the largest plain number of each range, thousandths, little-endian.",
@@ -113,11 +113,11 @@ def words_header(command: str) -> str:
 def words_tables(command: str) -> str:
     """Return `words.cpp`."""
     words = words_in_order()
-    rows = [
-        f"    {{0x{_kinds(word):02x}, 0x{BY_NAME[OPCODES.get(word.text, f'MOVE_{word.text}')].code:02x}}},  // {word.text}"
-        for word in words
-        if role_of(word) in ROLES[: ROLES.index("stop")]
-    ]
+    rows = []
+    for word in words:
+        if role_of(word) in ROLES[: ROLES.index("stop")]:
+            op = BY_NAME[OPCODES.get(word.text, f"MOVE_{word.text}")]
+            rows.append(f"    {{0x{_kinds(word):02x}, 0x{op.code:02x}}},  // {word.text}")
     return _file(
         command,
         "words.cpp",

@@ -221,7 +221,7 @@ void Reader::take(uint8_t letter) {
   }
   place_ = kBetween;
   if (letter == ' ' || letter == '\t') return;
-  token_column_ = column_;
+  if (is_word || letter == '.') token_column_ = column_;
   if (letter == '.' || value < 10) {
     value_ = 0;
     places_ = 3;
@@ -253,6 +253,8 @@ void Reader::sign(uint8_t letter) {
   for (const uint8_t* sign = kSigns; flash_byte(sign) != 0; sign += 2) {
     if (flash_byte(sign) != letter) continue;
     const uint8_t its = flash_byte(sign + 1);
+    // what is wrong at the end of a value or an instruction, is so with what stands before it
+    if (its != letter || its == '(') token_column_ = column_;
     if (its == 0) {
       place_ = letter;
     } else {
@@ -260,6 +262,7 @@ void Reader::sign(uint8_t letter) {
     }
     return;
   }
+  token_column_ = column_;
   report(Problem::kCharacter);
 }
 

@@ -66,7 +66,7 @@ constexpr uint8_t kWordSend = 0x6f;
 // The words up to this one take arguments in brackets.
 constexpr uint8_t kCommands = 13;
 
-// What an argument may be; from kFirstRange on a number in a range of kArgumentRanges.
+// What an argument may be; from kFirstRange on a number in a range.
 constexpr uint8_t kAnyKind = 1;
 constexpr uint8_t kYesNoKind = 2;
 constexpr uint8_t kNumberKind = 3;
@@ -77,7 +77,7 @@ constexpr uint8_t kTimeRange = 4;
 // All words one after the other, 0x80 in the last letter of each, and a 0.
 extern const uint8_t kWords[] tini_progmem;
 
-// Of each command: the kinds of its arguments (4 bits each, the first below), its opcode.
+// Of each command: the kinds of its arguments (4 bits each), its opcode.
 extern const uint8_t kCommandRows[][2] tini_progmem;
 
 // The least and the largest plain number of each range, thousandths, little-endian.

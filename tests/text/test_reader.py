@@ -1,0 +1,255 @@
+"""The reader's own rules: lines, checksums, what it says of a wrong one and where, its limits."""
+
+from __future__ import annotations
+
+from zlib import crc32
+
+import pytest
+
+from tests.machines.host import missing
+from tests.machines.text_reader import Answer, TextReader, read_lines
+from tests.support.kits import KITS
+from tiniscript import robots
+from tiniscript.bytecode.disassembly import listing
+from tiniscript.text.problems import LONGEST, PROBLEMS
+
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
+
+KIT = robots.load("tinibot").kit
+WIDE = KITS[1][1]
+MORE = Answer()
+BLOCK_BYTES = 3 + 3 * 4  # with a bit for each of 32 sensors
+
+
+def one(text: str | bytes) -> Answer:
+    """Return what a robot answers to one line."""
+    data = text if isinstance(text, bytes) else text.encode()
+    (found,) = read_lines(KIT, data + b"\n")
+    return found
+
+
+def code_of(text: str) -> list[str]:
+    answer = one(text)
+    assert answer.is_program, answer
+    return [row[25:] for row in listing(answer.code).splitlines()]
+
+
+def checked(line: bytes) -> bytes:
+    return b"%s~%08x" % (line, crc32(line))
+
+
+# -- lines --------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("end", [b"\n", b"\r", b"\r\n"])
+def test_line_ends(end: bytes) -> None:
+    found = read_lines(KIT, end.join([b"F(2, 80)", b"SB|S", b""]))
+    assert [answer.start for answer in found] == ["SI", "SB"]
+
+
+def test_a_program_goes_on_until_its_blocks_are_closed() -> None:
+    found = read_lines(KIT, b"LOOP(2)\nF(1,\n80)\nEND_LOOP\nS\n")
+    assert found[:3] == [MORE] * 3
+    assert found[3] == one("LOOP(2);F(1,80);END_LOOP")
+    assert found[4] == one("S")
+
+
+def test_a_problem_ends_a_program() -> None:
+    found = read_lines(KIT, b"LOOP(2)\nF(1, 800)\nS\n")
+    assert found[1].problem == "RANGE" and found[2] == one("S")
+
+
+def test_an_empty_line_begins_anew_on_this_computer() -> None:
+    assert read_lines(KIT, b"LOOP(2)\n\nS\n") == [MORE, one("S")]
+
+
+@pytest.mark.parametrize("line", ["", "  ", "// only a note", "SI|", ";;"])
+def test_programs_that_do_nothing(line: str) -> None:
+    reader = TextReader(KIT)
+    assert reader.read(line.encode()) == Answer(start="SI")
+    reader.close()
+
+
+# -- checksums ----------------------------------------------------------------------------------
+
+
+def test_a_line_with_its_checksum_runs() -> None:
+    assert one(checked(b"F(2, 80)")) == one("F(2, 80)")
+    assert one(checked(b"F(2, 80)").upper() + b" \t") == one("F(2, 80)")
+    assert one(checked(b"F(2, 80) // and a note")) == one("F(2, 80)")
+    assert one("\ufeff".encode() + checked(b"S")) == one("S")
+
+
+def test_each_line_of_a_program_may_have_one() -> None:
+    lines = b"\r\n".join(map(checked, (b"LOOP(2)", b"F(1,", b"80)", b"", b"END_LOOP"))) + b"\r\n"
+    assert read_lines(KIT, lines)[-1] == one("LOOP(2);F(1,80);END_LOOP")
+
+
+def test_every_damage_of_one_byte_is_noticed() -> None:
+    line = checked(b"F(2, 80);S // note")
+    for at in range(len(line)):
+        for byte in b"~/0aF(\x00\xc2":
+            damaged = line[:at] + bytes((byte,)) + line[at + 1 :]
+            if damaged.lower() != line.lower():
+                assert not one(damaged).is_program or at > line.index(b"/"), damaged
+
+
+@pytest.mark.parametrize("line", [b"F(2, 80)~", b"S~1234567", b"S~1234567G", b"~S", b"S~ 12345678"])
+def test_what_is_no_checksum(line: bytes) -> None:
+    assert one(line).problem == "CHECKSUM"
+
+
+def test_a_damaged_line_is_said_to_be_damaged_whatever_else_is_wrong() -> None:
+    assert one(checked(b"F(2, 80)").replace(b"F", b"G")).problem == "CHECKSUM"
+    assert one(checked(b"G(2, 80)")).problem == "UNKNOWN_WORD"
+
+
+# -- characters ---------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("space", "\t\f\v\u00a0\u2000\u200b\u202f\u3000\ufeff")
+def test_spaces(space: str) -> None:
+    assert one(f"F{space}(2,{space}80){space}") == one("F(2,80)")
+
+
+@pytest.mark.parametrize("dash", "\u2010\u2013\u2014\u2015\u2212")
+def test_dashes(dash: str) -> None:
+    assert one(f"M({dash}5,80)") == one("M(-5,80)")
+
+
+@pytest.mark.parametrize("odd", ["é", "#", "\u2009\u2016", "\U0001f600", "\u00b0", "{", "=="])
+def test_other_characters(odd: str) -> None:
+    assert one(f"S{odd}").problem
+
+
+# -- what it says, and where --------------------------------------------------------------------
+
+WRONG = {
+    "F(2, 80)é": ("CHARACTER", 9), "W(5.)": ("NUMBER", 3), "X = 2147483.648": ("TOO_BIG", 5),
+    "SI(X)": ("SETUP", 3), "F(1,80);SB|S": ("RESERVED", 9), "PING|S": ("PING", 6),
+    "5": ("INSTRUCTION", 1), "GO": ("UNKNOWN_WORD", 1), "X = X + 1": ("UNKNOWN_VALUE", 5),
+    "S = 5": ("SEPARATOR", 3), "F 2": ("OPEN", 3), "S)": ("CLOSE", 1), "F(1;80)": ("CLOSE", 3),
+    "W()": ("VALUE", 2), "F(1)": ("COUNT", 3), "F(1,2,3)": ("COUNT", 5), "W(-1)": ("RANGE", 4),
+    "W(TRUE)": ("WANTS_NUMBER", 3), "IF(5);S": ("WANTS_YES_NO", 4),
+    "X=1<2<3": ("COMPARE", 6), "X=1=TRUE": ("COMPARE", 5), "X=1+NOT TRUE": ("NOT", 5),
+    "X=1;X=TRUE": ("KIND", 7), "F(FOREVER,80)": ("FOREVER", 11), "M(FOREVER,1)": ("FOREVER", 3),
+    "UNTIL(TRUE)": ("UNTIL", 1), "ENDIF": ("BLOCK", 1), "LOOP(2);ELSE": ("BLOCK", 9),
+    "BREAK": ("BREAK", 1), "LOOP(2);DEF X": ("DEF", 13), "DISTANCE=5": ("TAKEN", 9),
+    "DEF F": ("RESERVED", 5), "TASK": ("RESERVED", 1), "ROUND(1)": ("RESERVED", 1),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("line", WRONG)
+def test_what_is_wrong_and_where(line: str) -> None:
+    answer = one(line)
+    assert (answer.problem, answer.column) == WRONG[line]
+
+
+def test_columns_from_255_on_are_255() -> None:
+    assert one(" " * 253 + "5").column == 254
+    assert one(" " * 300 + "5").column == 255
+    assert one("ñ" * 3).column == 1
+    assert one("// ñandú\u00a0").is_program is True
+
+
+def test_every_problem_has_its_test() -> None:
+    said = {problem for problem, _ in WRONG.values()} | {"CHECKSUM", "LIMIT", "FULL"}
+    assert said == {problem.name for problem in PROBLEMS}
+
+
+def test_texts_are_short_and_plain() -> None:
+    for problem in PROBLEMS:
+        for text in (problem.english, problem.spanish):
+            assert text.isascii() and 0 < len(text) <= LONGEST
+
+
+# -- limits -------------------------------------------------------------------------------------
+
+
+def blocks(depth: int) -> str:
+    return "LOOP(1);" * depth + "END_LOOP;" * depth
+
+
+def deep(values: int) -> str:
+    return "X=" + "1+(" * (values - 1) + "1" + ")" * (values - 1)
+
+
+def chain(calls: int) -> str:
+    return "DEF A0;END_DEF;" + "".join(
+        f"DEF A{k};A{k - 1};END_DEF;" for k in range(1, calls)
+    ) + f"A{calls - 1}"  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong"),
+    [
+        (";".join(f"V{k}=1" for k in range(32)), ";".join(f"V{k}=1" for k in range(33))),
+        (blocks(16), blocks(17)),
+        (deep(16), deep(17)),
+        ("DEF A;" + blocks(8) + "END_DEF;" + "IF(TRUE);" * 8 + "A;" + "ENDIF;" * 8,
+         "DEF A;" + blocks(8) + "END_DEF;" + "IF(TRUE);" * 9 + "A;" + "ENDIF;" * 9),
+        (chain(8), chain(9)),
+        ("".join(f"DEF A{k};END_DEF;" for k in range(16)),
+         "".join(f"DEF A{k};END_DEF;" for k in range(17))),
+    ],
+)  # fmt: skip
+def test_limits_of_the_language(right: str, wrong: str) -> None:
+    assert one(right).is_program
+    assert one(wrong).problem == "LIMIT"
+
+
+def test_at_most_255_bytes_of_code() -> None:
+    assert len(one("S;" * 255).code) == 255
+    assert one("S;" * 256).problem == "FULL"
+
+
+def test_names_are_told_apart_to_their_last_letter() -> None:
+    name = "A" * 200
+    assert code_of(f"{name}1 = 1; {name}2 = 2; {name} = {name}2")[-2:] == [
+        "PUSH_VAR_1",
+        "SET_VAR_2",
+    ]
+
+
+def test_what_lies_in_the_buffer() -> None:
+    """Code and what waits meet: one byte less is too little."""
+    text = b"SPEED = 5; IF(SPEED > 1); F(1, SPEED); ENDIF"
+    # ten bytes of code, the word that is read, the block that it ends, and the name SPEED
+    least = 10 + len("ENDIF") + BLOCK_BYTES + len(" SPEED")
+    for room in range(least):
+        assert read_lines(KIT, text + b"\n", room)[0].problem == "FULL"
+    assert read_lines(KIT, text + b"\n", least)[0].is_program
+
+
+# -- code ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("number", "instruction"),
+    [
+        ("10", "PUSH_NUM_10"), ("11", "PUSH8 11"), ("90", "PUSH_NUM_90"), ("100", "PUSH_NUM_100"),
+        ("101", "PUSH8 101"), ("110", "PUSH8 110"), ("255", "PUSH8 255"), ("256", "PUSH16 256"),
+        ("12.7", "PUSH_TENTHS 127"), ("12.8", "PUSH_MILLI 12800"), ("-12.8", "PUSH_TENTHS -128"),
+        ("-12.9", "PUSH_MILLI -12900"), ("-1", "PUSH_TENTHS -10"), ("-13", "PUSH16 -13"),
+        ("32767", "PUSH16 32767"), ("32768", "PUSH32 32768000"), ("-32768", "PUSH16 -32768"),
+        ("-32769", "PUSH32 -32769000"), ("32.767", "PUSH_MILLI 32767"), ("-0", "PUSH_NUM_0"),
+        ("32.768", "PUSH32 32768"), ("-32.768", "PUSH_MILLI -32768"), ("0.0995", "PUSH_TENTHS 1"),
+        ("0.9995", "PUSH_NUM_1"), ("0.0004999", "PUSH_NUM_0"), ("-0.0005", "PUSH_MILLI -1"),
+        ("2147483.647", "PUSH32 2147483647"), ("-2147483.648", "PUSH32 -2147483648"),
+        ("-2147483.6484", "PUSH32 -2147483648"), ("000000000000000005.000000000", "PUSH_NUM_5"),
+    ],
+)  # fmt: skip
+def test_shortest_push(number: str, instruction: str) -> None:
+    assert code_of(f"X = {number}") == [instruction, "SET_VAR_0"]
+
+
+@pytest.mark.parametrize("number", ["2147483.6475", "-2147483.6485", "9999999999999999999999"])
+def test_numbers_that_are_too_big(number: str) -> None:
+    assert one(f"X = {number}").problem == "TOO_BIG"
+
+
+def test_readings_stand_before_their_instruction() -> None:
+    assert code_of("X = TIME > 5 AND DISTANCE < 10 OR LIGHT_R > 5") == [
+        "READ_2", "READ_0", "TIME", "PUSH_NUM_5", "GT", "AND_THEN -> 000a", "PUSH_SENSOR_2",
+        "PUSH_NUM_10", "LT", "OR_ELSE -> 000f", "PUSH_SENSOR_0", "PUSH_NUM_5", "GT", "SET_VAR_0",
+    ]  # fmt: skip
