@@ -1,0 +1,122 @@
+// The reader of text: lines become code, or a problem with its column.
+
+#include <doctest.h>
+
+#include <string>
+#include <vector>
+
+#include "../src/text/kit_words.h"
+#include "../src/text/reader.h"
+#include "../src/vm/bytecode.h"
+
+using namespace tiniscript;
+
+namespace {
+
+// DISTANCE, a number; TOUCH, a yes/no; the actuator ARM from 0 to 180.
+const uint8_t words[] = {'D',
+                         'I',
+                         'S',
+                         'T',
+                         'A',
+                         'N',
+                         'C',
+                         'E' | 0x80,
+                         0,
+                         'T',
+                         'O',
+                         'U',
+                         'C',
+                         'H' | 0x80,
+                         kDeviceIsYesNo,
+                         'A',
+                         'R',
+                         'M' | 0x80,
+                         kDeviceIsActuator,
+                         0,
+                         0,
+                         0,
+                         0,
+                         0x20,
+                         0xbf,
+                         0x02,
+                         0,
+                         0};
+
+struct Reading {
+  Text put(const std::string& text) {
+    Text found = Text::kGoesOn;
+    for (const char letter : text) found = reader.put(static_cast<uint8_t>(letter));
+    return found;
+  }
+  std::vector<uint8_t> code() const {
+    return std::vector<uint8_t>(buffer, buffer + reader.length());
+  }
+
+  uint8_t buffer[200];
+  Reader reader = Reader();
+};
+
+// The code of a line that is a program.
+std::vector<uint8_t> code_of(const std::string& line) {
+  Reading reading;
+  reading.reader.begin(reading.buffer, sizeof reading.buffer);
+  INFO(line);
+  REQUIRE(reading.put(line + "\n") == Text::kProgram);
+  return reading.code();
+}
+
+std::vector<uint8_t> codes(const std::vector<Op>& ops) {
+  std::vector<uint8_t> bytes;
+  for (const Op op : ops) bytes.push_back(static_cast<uint8_t>(op));
+  return bytes;
+}
+
+}  // namespace
+
+const uint8_t* tiniscript::robot_words() { return words; }
+
+TEST_CASE("a line of text becomes code") {
+  CHECK(code_of("SI|F(2, 80)") == codes({Op::kPushNum2, Op::kPushNum80, Op::kMoveF}));
+  CHECK(code_of("arm(90)") == codes({Op::kPushNum90, Op::kSet0}));
+  CHECK(code_of("touch") == codes({Op::kRead1}));
+}
+
+TEST_CASE("a reading stands before its instruction") {
+  CHECK(code_of("F(1, DISTANCE)") ==
+        codes({Op::kRead0, Op::kPushNum1, Op::kPushSensor0, Op::kMoveF}));
+}
+
+TEST_CASE("a program goes on until its blocks are closed") {
+  Reading reading;
+  reading.reader.begin(reading.buffer, sizeof reading.buffer);
+  CHECK(reading.put("\r\n") == Text::kGoesOn);  // LF behind CR is no line of its own
+  CHECK(reading.put("\r") == Text::kNothing);
+  CHECK(reading.put("SB|LOOP(FOREVER)\n") == Text::kMore);
+  CHECK(reading.put("W(1\n") == Text::kMore);
+  CHECK(reading.put(")\n") == Text::kMore);
+  CHECK(reading.put("END_LOOP\n") == Text::kProgram);
+  CHECK(reading.reader.start() == 1);
+  CHECK(reading.code() == std::vector<uint8_t>({0x68, 0xb1, 0x50, 0x6b, 4}));
+}
+
+TEST_CASE("a problem has a column and a text") {
+  Reading reading;
+  reading.reader.begin(reading.buffer, sizeof reading.buffer);
+  CHECK(reading.put("F(2, 800); S\n") == Text::kProblem);
+  CHECK(reading.reader.problem() == Problem::kRange);
+  CHECK(reading.reader.column() == 6);
+  const uint8_t* const text = text_of(Problem::kRange);
+  CHECK(std::string(reinterpret_cast<const char*>(text)) == "Too small or too large");
+  const uint8_t* const first = text_of(Problem::kChecksum);
+  CHECK(first == kProblemTexts);
+}
+
+TEST_CASE("a line runs only with the checksum that it has") {
+  Reading reading;
+  reading.reader.begin(reading.buffer, sizeof reading.buffer);
+  CHECK(reading.put("S~08D60B65\n") == Text::kProblem);
+  CHECK(reading.reader.problem() == Problem::kChecksum);
+  reading.reader.begin(reading.buffer, sizeof reading.buffer);
+  CHECK(reading.put("S~2060EFC3\n") == Text::kProgram);
+}
