@@ -14,7 +14,7 @@ from typing import NamedTuple
 from tests.machines.host import BUILDS, FLAGS, SOURCES, compiled
 from tiniscript.bytecode.image import STARTS
 from tiniscript.kit import Kit
-from tiniscript.text.kit_words import kit_words
+from tiniscript.robots.kit_words import kit_words
 from tiniscript.text.problems import NAMES
 
 LARGEST_ROOM = 60_000

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Sequence
 from tiniscript.bytecode.image import STARTS
 from tiniscript.bytecode.opcodes import BY_NAME
 from tiniscript.fixed_point import HIGHEST, LOWEST
-from tiniscript.text.kit_words import packed, packed_range
+from tiniscript.robots.kit_words import packed, packed_range
 from tiniscript.text.problems import PROBLEMS
 from tiniscript.words import WORDS, Word
 from tools.generate.cpp_header import camel
