@@ -24,6 +24,13 @@ constexpr uint8_t kCommentAfterAll = 255;
 
 constexpr uint32_t kTooBig = 0x10000000;  // ten times that is more than any number
 
+// Characters of three bytes: the first two, the third and how many more may follow, and what they
+// are.
+const uint8_t kRelatives[] tini_progmem = {
+    0xe2, 0x80, 0x80, 11,  ' ',  0xe2, 0x80, 0xaf, 0,   ' ',  0xe2, 0x80, 0x90, 5,   '-', 0xe2,
+    0x88, 0x92, 0,    '-', 0xe3, 0x80, 0x80, 0,    ' ', 0xef, 0xbb, 0xbf, 0,    ' ', 0,
+};
+
 // Each sign and its token, or 0 if it may be the first half of another.
 const uint8_t kSigns[] tini_progmem = {
     '(', '(',
@@ -53,9 +60,7 @@ void Reader::begin(uint8_t* buffer, uint16_t room) {
 }
 
 void Reader::report(Problem problem) {
-  if (problem_ != Problem::kNone) return;
-  problem_ = problem;
-  problem_column_ = token_column_;
+  if (problem_ == Problem::kNone) problem_ = problem;
 }
 
 Text Reader::put(uint8_t byte) {
@@ -90,14 +95,17 @@ bool Reader::checks(uint8_t letter) {
       digit = digit < 6 ? static_cast<uint8_t>(digit + 10) : uint8_t{255};
     }
     if (digit < 16) {
-      if (digit != static_cast<uint8_t>(crc_ >> 24) >> 4) is_damaged_ = true;
+      const uint8_t highest = static_cast<uint8_t>(crc_ >> 24);
+      if (digit != static_cast<uint8_t>(highest / 16)) is_damaged_ = true;
       crc_ <<= 4;
       check_++;
       return true;
     }
   }
-  token_column_ = column_;
-  if (place_ != kComment) report(Problem::kChecksum);
+  if (place_ != kComment && problem_ == Problem::kNone) {
+    token_column_ = column_;
+    report(Problem::kChecksum);
+  }
   check_ = kCommentAfterAll;
   return false;
 }
@@ -128,20 +136,15 @@ uint8_t Reader::character(uint8_t byte) {
     lead_ = 0xe1;  // none of its characters means anything
     return kUnfinished;
   }
-  if (lead == 0xe2) {
-    if (second == 0x80) {
-      if (byte <= 0x8b || byte == 0xaf) return ' ';
-      if (byte >= 0x90 && byte <= 0x95) return '-';
+  if (lead == 0xef && second == 0xbb && byte == 0xbf && column_ == 1) {
+    column_ = 0;  // the byte order mark is no part of the line
+    crc_ = 0;
+  }
+  for (const uint8_t* row = kRelatives; flash_byte(row) != 0; row += 5) {
+    const uint8_t above = static_cast<uint8_t>(byte - flash_byte(row + 2));
+    if (lead == flash_byte(row) && second == flash_byte(row + 1) && above <= flash_byte(row + 3)) {
+      return flash_byte(row + 4);
     }
-    if (second == 0x88 && byte == 0x92) return '-';
-  } else if (lead == 0xe3) {
-    if (second == 0x80 && byte == 0x80) return ' ';
-  } else if (lead == 0xef && second == 0xbb && byte == 0xbf) {
-    if (column_ == 1) {  // the byte order mark is no part of the line
-      column_ = 0;
-      crc_ = 0;
-    }
-    return ' ';
   }
   return kOdd;
 }
@@ -154,7 +157,7 @@ Text Reader::end_line() {
   if (is_cut) report(Problem::kChecksum);
   if (check_ == kAllDigits && is_damaged_) {
     problem_ = Problem::kChecksum;
-    problem_column_ = 1;
+    token_column_ = 1;
   }
   place_ = kBetween;
   column_ = 0;
@@ -220,7 +223,7 @@ void Reader::take(uint8_t letter) {
     token(first);
   }
   place_ = kBetween;
-  if (letter == ' ' || letter == '\t') return;
+  if (letter == ' ' || letter == '\t' || problem_ != Problem::kNone) return;
   if (is_word || letter == '.') token_column_ = column_;
   if (letter == '.' || value < 10) {
     value_ = 0;

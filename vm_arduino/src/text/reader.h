@@ -36,7 +36,7 @@ class Reader {
   void begin(uint8_t* buffer, uint16_t room);
 
   // Takes a byte. CR, LF or both end a line.
-  Text put(uint8_t byte);
+  tini_noinline Text put(uint8_t byte);
 
   // After kProgram: how the program starts, and the length of its code in the buffer, which the
   // machine's verifier accepts.
@@ -45,14 +45,14 @@ class Reader {
 
   // After kProblem: what it is, and its column from 1; all columns from 255 on are 255.
   Problem problem() const { return problem_; }
-  uint8_t column() const { return problem_column_; }
+  uint8_t column() const { return token_column_; }
 
  private:
   struct Block;
   struct Def;
 
   // characters, in reader.cpp
-  uint8_t character(uint8_t byte);
+  tini_noinline uint8_t character(uint8_t byte);
   bool checks(uint8_t letter);
   Text end_line();
   void take(uint8_t letter);
@@ -88,7 +88,7 @@ class Reader {
   Problem call();
 
   // expressions, in reader_values.cpp
-  void begin_value();
+  tini_noinline void begin_value();
   void open_bracket();
   Problem operand(uint8_t token);
   tini_noinline void number();
@@ -121,8 +121,8 @@ class Reader {
   uint8_t place_;
   uint8_t letters_;  // of the word behind the code
   uint8_t column_;
-  uint8_t token_column_;
-  uint8_t lead_;  // the first byte of a character of UTF-8 that is not whole
+  uint8_t token_column_;  // or that of the problem
+  uint8_t lead_;          // the first byte of a character of UTF-8 that is not whole
   uint8_t second_;
   uint8_t byte_;
   uint8_t check_;  // what has come of a checksum
@@ -135,7 +135,6 @@ class Reader {
   // the parser
   uint8_t state_;
   Problem problem_;
-  uint8_t problem_column_;
   uint8_t setup_;
   uint8_t what_;      // the instruction, by its word
   uint8_t op_;        // its opcode

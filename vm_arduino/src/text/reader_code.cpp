@@ -57,9 +57,12 @@ void Reader::read_first(uint8_t sensor) {
   emit(0);
   if (bytes == 2) emit(0);
   if (problem_ != Problem::kNone) return;
-  uint8_t* const at = buffer_ + first_;
   const uint8_t length = length_;
-  __builtin_memmove(at + bytes, at, static_cast<size_t>(length - bytes - first_));
+  uint8_t* const first = buffer_ + first_ + bytes;
+  for (uint8_t* at = buffer_ + length; at != first;) {
+    at--;
+    *at = *(at - bytes);
+  }
   length_ = first_;
   emit_numbered(byte_of(Op::kRead), byte_of(Op::kRead0), sensor);
   first_ = length_;

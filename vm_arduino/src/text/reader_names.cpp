@@ -86,12 +86,13 @@ void Reader::find_name() {
 void Reader::add_name(uint8_t info, uint8_t more) {
   const uint16_t bytes = static_cast<uint16_t>(1 + more + letters_);
   if (!has_room(static_cast<uint16_t>(letters_ + bytes - 1))) return;
-  __builtin_memmove(stack_ - bytes, stack_, static_cast<size_t>(names_ - stack_));
+  uint8_t* const names = names_ - bytes;
+  for (uint8_t* at = stack_ - bytes; at != names; at++) *at = at[bytes];
   stack_ -= bytes;
-  names_ -= bytes;
-  uint8_t* at = names_;
-  *at++ = info;
-  __builtin_memcpy(at + more, buffer_ + length_, letters_);
+  names_ = names;
+  *names = info;
+  const uint8_t* word = buffer_ + length_;
+  for (uint8_t* at = names + bytes - letters_; at != names + bytes; at++) *at = *word++;
 }
 
 }  // namespace tiniscript
