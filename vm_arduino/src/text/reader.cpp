@@ -59,10 +59,6 @@ void Reader::begin(uint8_t* buffer, uint16_t room) {
   stack_ = names_ = end_ = buffer + room;
 }
 
-void Reader::report(Problem problem) {
-  if (problem_ == Problem::kNone) problem_ = problem;
-}
-
 Text Reader::put(uint8_t byte) {
   const bool was_after_cr = is_after_cr_;
   is_after_cr_ = byte == '\r';

@@ -60,7 +60,7 @@ class Reader {
   void add_letter(uint8_t letter);
   void digit(uint8_t value);
   tini_noinline void scale(uint8_t digit);
-  void report(Problem problem);
+  void report(Problem problem) { problem_ = problem; }
 
   // words, in reader_names.cpp
   tini_noinline void end_word();

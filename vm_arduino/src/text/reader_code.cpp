@@ -80,43 +80,45 @@ tini_noinline uint16_t limited(uint32_t number) {
 
 // Emits the shortest instruction that pushes `value_` thousandths, or less them.
 void Reader::emit_number(bool is_minus) {
-  const uint8_t minus = is_minus;
   uint32_t operand = value_;
-  uint8_t op = byte_of(Op::kPush32);
-  uint8_t bytes = 4;
-  const uint16_t most = static_cast<uint16_t>(32767 + minus);
-  if (limited(operand) <= most) {
+  uint8_t places = 3;
+  while (places != 0 && operand % 10 == 0) {
+    operand /= 10;
+    places--;
+  }
+  uint16_t number = limited(operand);
+  const uint16_t most = static_cast<uint16_t>(uint16_t{32767} + is_minus);
+  uint8_t op = byte_of(Op::kPush16);
+  uint8_t bytes = 2;
+  if (places == 0 && number <= 12 && is_minus) {
+    number = static_cast<uint16_t>(number * 10);
+    places = 1;
+  }
+  if (places == 0 && number <= 255 && !is_minus) {
+    op = byte_of(Op::kPush8);
+    bytes = 1;
+    uint8_t ones = static_cast<uint8_t>(number);
+    uint8_t tens = 0;
+    while (ones > 10) {
+      ones = static_cast<uint8_t>(ones - 10);
+      tens++;
+    }
+    if (tens == 0 || (ones == 10 && tens < 10)) {
+      op = static_cast<uint8_t>(byte_of(Op::kPushNum0) + tens + ones);
+      bytes = 0;
+    }
+  } else if (places == 1 && number <= static_cast<uint8_t>(127 + is_minus)) {
+    op = byte_of(Op::kPushTenths);
+    bytes = 1;
+  } else if (places != 0 || number > most) {
     op = byte_of(Op::kPushMilli);
-    bytes = 2;
-  }
-  const uint32_t tenths = operand / 100;
-  if (operand % 100 == 0) {
-    const uint16_t whole = limited(tenths / 10);
-    const bool is_whole = tenths % 10 == 0;
-    if (is_whole && whole <= most) {
-      operand = whole;
-      op = byte_of(Op::kPush16);
-      bytes = 2;
-    }
-    if (is_whole && minus == 0 && whole <= 255) {
-      op = byte_of(Op::kPush8);
-      bytes = 1;
-      uint8_t ones = static_cast<uint8_t>(whole);
-      uint8_t at = byte_of(Op::kPushNum0);
-      while (ones > 10) {
-        ones = static_cast<uint8_t>(ones - 10);
-        at++;
-      }
-      if (whole <= 100 && (whole <= 10 || ones == 10)) {
-        op = static_cast<uint8_t>(at + ones);
-        bytes = 0;
-      }
-    } else if (limited(tenths) <= static_cast<uint8_t>(127 + minus)) {
-      operand = tenths;
-      op = byte_of(Op::kPushTenths);
-      bytes = 1;
+    number = limited(value_);
+    if (number > most) {
+      op = byte_of(Op::kPush32);
+      bytes = 4;
     }
   }
+  operand = bytes == 4 ? value_ : number;
   if (is_minus) operand = 0 - operand;
   emit(op);
   for (; bytes != 0; bytes--) {

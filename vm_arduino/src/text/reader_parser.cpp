@@ -28,7 +28,8 @@ void Reader::token(uint8_t token) {
     if (brackets_ != 0 || state_ == kBegin) return;
     token = ';';
   }
-  report(parse(token));
+  const Problem problem = parse(token);
+  if (problem != Problem::kNone) report(problem);
 }
 
 Problem Reader::parse(uint8_t token) {
