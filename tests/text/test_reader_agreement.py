@@ -158,6 +158,26 @@ def test_random_tokens() -> None:
     assert found[True] == SOUPS
 
 
+@pytest.mark.parametrize(
+    "text", [b"S // %b\n", b"S//%b", b"X%b=1", b"X=1%b", b"X=1.%b", b"F(1%b,2)", b"%bS", b"AN%bD=1"]
+)
+def test_every_byte_and_pair_of_bytes(text: bytes) -> None:
+    for byte in range(256):
+        check_bytes(text % bytes((byte,)), KITS[1][1])
+        for other in b"\x00\x02\x80\x93\xa0\xbf\xc2\xe2 /=9A":
+            check_bytes(text % bytes((byte, other)), KITS[1][1])
+
+
+@pytest.mark.parametrize(
+    "point",
+    [0xA0, 0x7FF, 0x800, 0x1FFF, 0x2000, 0x200B, 0x200C, 0x200F, 0x2010, 0x2015, 0x2016, 0x2028,
+     0x202F, 0x2212, 0x3000, 0x3001, 0xFEFF, 0xFFFD, 0x10000, 0x100A0, 0x12000, 0x1F600, 0x10FFFF],
+)  # fmt: skip
+def test_characters_of_unicode(point: int) -> None:
+    for text in ("S//%s", "S%s", "M(%s5,5)", "%sS"):
+        check_bytes((text % chr(point)).encode(), KITS[1][1])
+
+
 @pytest.mark.parametrize("room", [8, 40, 100, SHORT_BUFFER])
 def test_little_room_is_full_and_nothing_else(room: int) -> None:
     for seed in range(200):

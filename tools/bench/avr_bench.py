@@ -33,7 +33,12 @@ def missing() -> str:
 
 
 # What a program needs besides the machine.
-MORE = {"store": ("store/store.cpp", "boards/eeprom.cpp")}
+MORE = {
+    "store": ("store/store.cpp", "boards/eeprom.cpp"),
+    "reader": tuple(
+        f"text/{path.name}" for path in sorted((SOURCES / "src" / "text").glob("*.cpp"))
+    ),
+}
 
 
 @lru_cache(maxsize=8)

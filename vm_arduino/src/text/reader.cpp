@@ -12,9 +12,9 @@ namespace {
 // Where a byte stands. The signs that may be the first half of another stand for themselves.
 enum Place : uint8_t { kBetween, kWord, kComment, kWhole, kPoint, kPlaces };
 
-constexpr uint8_t kUnfinished = 0;
-constexpr uint8_t kOdd = 1;     // a character that means nothing
-constexpr uint8_t kBroken = 2;  // no UTF-8
+constexpr uint8_t kUnfinished = 0x80;  // what follows is no ASCII
+constexpr uint8_t kOdd = 0x81;         // a character that means nothing
+constexpr uint8_t kBroken = 0x82;      // no UTF-8
 
 // Of a checksum: nothing has come, all digits have come, what came was a comment.
 constexpr uint8_t kNoCheck = 0;

@@ -1,0 +1,49 @@
+// Reads texts on a simulated ATmega328P: are its programs and problems those of other computers?
+//
+// The request: the room (2 bytes), the length of the kit's words (2) and these, then texts, each
+// with its length (2); 0 ends them. The answer to each: its kind, start or problem, length or
+// column, and the CRC-32 of its code.
+
+#include "../../src/text/kit_words.h"
+#include "../../src/text/reader.h"
+#include "../../src/vm/crc32.h"
+#include "../../src/vm/small.h"
+#include "quiet_robot.h"
+#include "simulated.h"
+
+using namespace tiniscript;
+
+namespace {
+
+Reader reader;
+uint8_t buffer[1024];
+uint16_t words_at;
+
+}  // namespace
+
+const uint8_t* tiniscript::robot_words() { return simulated::kRequest + words_at; }
+
+int main() {
+  simulated::begin();
+  const uint16_t room = simulated::next_word();
+  const uint16_t words = simulated::next_word();
+  words_at = simulated::reading_at;
+  simulated::reading_at += words;
+  Reader* const its = near(&reader);
+  for (uint16_t left = simulated::next_word(); left != 0; left = simulated::next_word()) {
+    its->begin(buffer, room);
+    Text found = Text::kNothing;
+    for (; left != 0; left--) {
+      const Text now = its->put(simulated::next_byte());
+      if (now != Text::kGoesOn && found != Text::kProblem) found = now;
+    }
+    const bool is_problem = found == Text::kProblem;
+    simulated::say("found", static_cast<uint8_t>(found));
+    simulated::say("what", is_problem ? static_cast<uint8_t>(its->problem()) : its->start());
+    simulated::say("how much", is_problem ? its->column() : its->length());
+    const uint8_t length = is_problem ? 0 : its->length();
+    simulated::say("checksum", static_cast<int32_t>(crc32(0, buffer, length)));
+  }
+  simulated::end();
+  return 0;
+}
