@@ -69,7 +69,10 @@ def check_bytes(data: bytes, kit: Kit) -> Answer | None:
 
 
 def is_known_difference(data: bytes) -> bool:
-    """What the reader takes and the compiler does not, or the other way: `docs/text.md`."""
+    """What the reader takes and the compiler does not, or the other way.
+
+    Bytes in a comment are only looked at, a `~` is a checksum's, and START has no UNTIL.
+    """
     text = data.decode("utf-8", "replace").upper()
     has_odd_bytes = "\ufffd" in text and "//" in text  # in a comment they are only looked at
     return has_odd_bytes or "~" in text or re.search(r"START\s+UNTIL", text) is not None
