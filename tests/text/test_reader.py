@@ -94,6 +94,12 @@ def test_every_damage_of_one_byte_is_noticed() -> None:
                 assert not one(damaged).is_program or at > line.index(b"/"), damaged
 
 
+@pytest.mark.parametrize("before", [b"LOOP(2)", b"LOOP(2) // ~0", b"LOOP(2) // ~0 and more"])
+def test_a_checksum_is_that_of_its_own_line(before: bytes) -> None:
+    lines = read_lines(KIT, before + b"\n" + checked(b"S;END_LOOP") + b"\n")
+    assert lines == [MORE, one("LOOP(2);S;END_LOOP")]
+
+
 @pytest.mark.parametrize("line", [b"F(2, 80)~", b"S~1234567", b"S~1234567G", b"~S", b"S~ 12345678"])
 def test_what_is_no_checksum(line: bytes) -> None:
     assert one(line).problem == "CHECKSUM"
@@ -132,6 +138,7 @@ WRONG = {
     "W()": ("VALUE", 2), "F(1)": ("COUNT", 3), "F(1,2,3)": ("COUNT", 5), "W(-1)": ("RANGE", 4),
     "W(TRUE)": ("WANTS_NUMBER", 3), "IF(5);S": ("WANTS_YES_NO", 4),
     "X=1<2<3": ("COMPARE", 6), "X=1=TRUE": ("COMPARE", 5), "X=1+NOT TRUE": ("NOT", 5),
+    "X=TRUE<FALSE": ("COMPARE", 8), "X=TRUE<=FALSE": ("COMPARE", 9),
     "X=1;X=TRUE": ("KIND", 7), "F(FOREVER,80)": ("FOREVER", 11), "M(FOREVER,1)": ("FOREVER", 3),
     "UNTIL(TRUE)": ("UNTIL", 1), "ENDIF": ("BLOCK", 1), "LOOP(2);ELSE": ("BLOCK", 9),
     "BREAK": ("BREAK", 1), "LOOP(2);DEF X": ("DEF", 13), "DISTANCE=5": ("TAKEN", 9),
@@ -188,6 +195,10 @@ def chain(calls: int) -> str:
         (deep(16), deep(17)),
         ("DEF A;" + blocks(8) + "END_DEF;" + "IF(TRUE);" * 8 + "A;" + "ENDIF;" * 8,
          "DEF A;" + blocks(8) + "END_DEF;" + "IF(TRUE);" * 9 + "A;" + "ENDIF;" * 9),
+        ("DEF A;" + blocks(8) + "END_DEF;DEF C;" + "IF(TRUE);" * 4 + "A;" + "ENDIF;" * 4
+         + "END_DEF;" + "IF(TRUE);" * 4 + "C;" + "ENDIF;" * 4,
+         "DEF A;" + blocks(8) + "END_DEF;DEF C;" + "IF(TRUE);" * 4 + "A;" + "ENDIF;" * 4
+         + "END_DEF;" + "IF(TRUE);" * 5 + "C;" + "ENDIF;" * 5),
         (chain(8), chain(9)),
         ("".join(f"DEF A{k};END_DEF;" for k in range(16)),
          "".join(f"DEF A{k};END_DEF;" for k in range(17))),
@@ -201,6 +212,12 @@ def test_limits_of_the_language(right: str, wrong: str) -> None:
 def test_at_most_255_bytes_of_code() -> None:
     assert len(one("S;" * 255).code) == 255
     assert one("S;" * 256).problem == "FULL"
+
+
+def test_at_most_254_brackets_that_are_open() -> None:
+    assert one("X=" + "(" * 254 + "1" + ")" * 254).is_program
+    assert one("X=" + "(" * 255 + "1" + ")" * 255).problem == "FULL"
+    assert one("X=" + "(" * 600 + "1" + ")" * 600).problem == "FULL"
 
 
 def test_names_are_told_apart_to_their_last_letter() -> None:
@@ -253,3 +270,26 @@ def test_readings_stand_before_their_instruction() -> None:
         "READ_2", "READ_0", "TIME", "PUSH_NUM_5", "GT", "AND_THEN -> 000a", "PUSH_SENSOR_2",
         "PUSH_NUM_10", "LT", "OR_ELSE -> 000f", "PUSH_SENSOR_0", "PUSH_NUM_5", "GT", "SET_VAR_0",
     ]  # fmt: skip
+
+
+def readings_of(text: str) -> list[str]:
+    return [name for name in code_of(text) if name.startswith("READ")]
+
+
+def test_a_chain_of_arms_takes_a_reading_once() -> None:
+    assert readings_of("IF(FALSE);ELSEIF(DISTANCE>1);ELSEIF(DISTANCE>2);ENDIF") == ["READ_2"]
+    assert readings_of("IF(DISTANCE>0);ELSEIF(DISTANCE>1);S;ENDIF;X=DISTANCE") == ["READ_2"] * 2
+
+
+def test_a_call_makes_surely_read_what_its_body_does() -> None:
+    assert readings_of("DEF LOOK;DISTANCE;END_DEF;LOOK;X=DISTANCE") == ["READ_2"]
+    assert readings_of("DEF LOOK;X=DISTANCE;END_DEF;LOOK;X=DISTANCE") == ["READ_2"] * 2
+    assert readings_of("DISTANCE;DEF LOOK;X=DISTANCE;END_DEF;X=DISTANCE") == ["READ_2"] * 2
+
+
+def test_an_if_makes_surely_read_what_all_of_its_arms_do() -> None:
+    both = "IF(TRUE);DISTANCE;ELSE;DISTANCE;ENDIF;X=DISTANCE"
+    assert readings_of(both) == ["READ_2"] * 2
+    assert readings_of(both.replace("ELSE;", "")) == ["READ_2"] * 3
+    assert readings_of("IF(TRUE);DISTANCE;ELSE;S;ENDIF;X=DISTANCE") == ["READ_2"] * 2
+    assert readings_of("IF(TRUE);S;ELSE;DISTANCE;ENDIF;X=DISTANCE") == ["READ_2"] * 2

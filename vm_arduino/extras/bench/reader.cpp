@@ -4,8 +4,9 @@
 // with its length (2); 0 ends them. The answer to each: its kind, start or problem, length or
 // column, and the CRC-32 of its code.
 
-#include "../../src/text/kit_words.h"
 #include "../../src/text/reader.h"
+
+#include "../../src/text/kit_words.h"
 #include "../../src/vm/crc32.h"
 #include "../../src/vm/small.h"
 #include "quiet_robot.h"

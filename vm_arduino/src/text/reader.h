@@ -3,8 +3,8 @@
 // One pass: bytes become tokens, a token drives the parser, and the parser emits code, which lies
 // in the buffer from its beginning. What must be remembered (names, open blocks, operators that
 // wait) grows from the end of the buffer towards the code. Knows no link, no clock and no robot but
-// the words of its kit. Accepts what the compiler accepts; its code is plain: nothing is folded, and
-// each operator is one instruction.
+// the words of its kit. Accepts what the compiler accepts; its code is plain: nothing is folded,
+// and each operator is one instruction.
 
 #ifndef TINISCRIPT_TEXT_READER_H_
 #define TINISCRIPT_TEXT_READER_H_
