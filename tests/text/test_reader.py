@@ -54,6 +54,18 @@ def test_a_program_goes_on_until_its_blocks_are_closed() -> None:
     assert found[4] == one("S")
 
 
+@pytest.mark.parametrize("cut", range(1, len("F(FOREVER,80)UNTIL(NOT(1<DISTANCE))")))
+def test_a_line_may_end_in_brackets_alone(cut: int) -> None:
+    whole = "F(FOREVER,80)UNTIL(NOT(1<DISTANCE))"
+    if whole[cut - 1].isalnum() and whole[cut].isalnum():
+        return
+    found = read_lines(KIT, f"{whole[:cut]} // )\n{whole[cut:]}\n".encode())
+    if whole[:cut].count("(") > whole[:cut].count(")"):
+        assert found == [MORE, one(whole)]
+    else:
+        assert found[0].problem
+
+
 def test_a_problem_ends_a_program() -> None:
     found = read_lines(KIT, b"LOOP(2)\nF(1, 800)\nS\n")
     assert found[1].problem == "RANGE" and found[2] == one("S")

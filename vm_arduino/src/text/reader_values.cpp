@@ -68,7 +68,6 @@ Problem Reader::operand(uint8_t token) {
     const uint8_t what = what_;
     if (state_ != kArgument || (what != kWordLoop && what > kWordW)) return Problem::kForever;
     is_forever_ = true;
-    stack_++;  // its value
     state_ = kAfterForever;
   } else if (token == kWordNot) {
     if (binding_of(*stack_) > kNots) return Problem::kNot;
@@ -147,6 +146,8 @@ Problem Reader::operators(uint8_t token) {
     const Problem problem = end_value();
     if (problem != Problem::kNone) return problem;
     if (brackets_ == 0) return end_assignment(token);
+  } else {
+    stack_++;  // FOREVER leaves no value
   }
   kinds_ = static_cast<uint8_t>(kinds_ / 16);
   if (!is_comma && token != ')') return Problem::kClose;
