@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from tiniscript.bytecode.image import STARTS
-from tiniscript.bytecode.opcodes import BY_NAME
+from tiniscript.bytecode.opcodes import BLOCKS, BY_NAME
 from tiniscript.fixed_point import HIGHEST, LOWEST
 from tiniscript.robots.kit_words import packed, packed_range
 from tiniscript.text.problems import PROBLEMS
@@ -84,7 +84,9 @@ def words_header(command: str) -> str:
         "words.h",
         "// The words of the language as the reader of text knows them.\n",
         [
-            "constexpr uint8_t kFirstWord = 0x40;",
+            f"constexpr uint8_t kBlocks = {BLOCKS};  // open at once",
+            "",
+            f"constexpr uint8_t kFirstWord = 0x{FIRST_WORD:02x};",
             *names,
             "",
             "// The words up to this one take arguments in brackets.",

@@ -20,8 +20,6 @@ constexpr uint8_t byte_of(Op op) { return static_cast<uint8_t>(op); }
 constexpr uint8_t token_of(Op op) { return static_cast<uint8_t>(kBinary | byte_of(op)); }
 
 // What the parser wants next.
-constexpr uint8_t kBlocks = 16;  // open at once
-
 enum Wanted : uint8_t {
   kBegin,
   kBar,              // behind SI, SB or PING

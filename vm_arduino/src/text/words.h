@@ -13,6 +13,8 @@
 
 namespace tiniscript {
 
+constexpr uint8_t kBlocks = 16;  // open at once
+
 constexpr uint8_t kFirstWord = 0x40;
 constexpr uint8_t kWordF = 0x40;
 constexpr uint8_t kWordB = 0x41;
