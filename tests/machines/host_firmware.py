@@ -16,6 +16,7 @@ from tests.machines.host import FLAGS, SOURCES, Process, compiled, missing
 from tiniscript.kit import Kit
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.session import Session
+from tiniscript.robots.kit_words import kit_words
 
 __all__ = ("EMPTY", "HostFirmware", "Seen", "missing")
 
@@ -53,7 +54,9 @@ class HostFirmware(Process):
         head = pack("<HBBB", kit.fingerprint, len(kit.sensors), len(kit.actuators), reset)
         times = pack("<IIB", seed, max_run_ms, int(write_ms * TICKS))
         hashes = pack(f"<{len(kit.hashes)}H", *kit.hashes)
-        self.ask(b"B", head + times + hashes + pack("<I", len(memory)) + memory)
+        words = kit_words(kit)
+        begin = head + times + hashes + pack("<I", len(memory)) + memory
+        self.ask(b"B", begin + pack("<I", len(words)) + words)
 
     def step(self, data: bytes = b"", flags: int = 0, ticks: int = TICKS) -> bytes:
         """Let a millisecond pass in which bytes arrive; return what is sent."""
@@ -116,7 +119,15 @@ def _text(answer: bytes) -> tuple[bytes, bytes]:
 @lru_cache
 def built(sources: Path) -> Path:
     """Return the program made from `sources`; what was made before from the same is used again."""
-    folders = ("src", "src/vm", "src/link", "src/store", "src/firmware", "extras/host_firmware")
+    folders = (
+        "src",
+        "src/vm",
+        "src/link",
+        "src/text",
+        "src/store",
+        "src/firmware",
+        "extras/host_firmware",
+    )
     inputs = sorted(
         path
         for folder in folders

@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 from tests.machines.host import FLAGS, SOURCES, Process, compiled, missing
 from tiniscript import robots
+from tiniscript.robots.kit_words import kit_words
 
 __all__ = ("CppLink", "Step", "built", "cpp_link", "missing")
 
@@ -42,7 +43,9 @@ class CppLink(Process):
         """Switch a robot on: its devices are those of tinibot, as far as it has them."""
         numbers = pack("<HHBBB", room, kit, sensors, actuators, epoch)
         hashes = (*robots.load("tinibot").kit.hashes, *range(510))[: sensors + actuators]
-        self.ask(b"B", numbers + pack(f"<{len(hashes)}H", *hashes))
+        words = kit_words(robots.load("tinibot").kit)
+        begin = numbers + pack(f"<{len(hashes)}H", *hashes)
+        self.ask(b"B", begin + pack("<I", len(words)) + words)
 
     def step(
         self, now_ms: int, data: bytes = b"", is_late: bool = False, is_slow: bool = False
@@ -81,7 +84,7 @@ def built(sources: Path) -> Path:
     """Return the program made from `sources`; what was made before from the same is used again."""
     inputs = sorted(
         path
-        for folder in ("src/vm", "src/link", "extras/link")
+        for folder in ("src/vm", "src/link", "src/text", "extras/link")
         for path in (sources / folder).glob("*")
         if path.suffix in (".h", ".cpp")
     )

@@ -24,7 +24,6 @@ UPSTREAM: dict[str, set[str]] = {
     "fixed_point": set(),
     "kit": {"fixed_point"},
     "words": {"fixed_point"},
-    "text": set(),
     "diagnostics": {"source"},
     "bytecode": {"kit"},
     "syntax": {*TEXT, "bytecode"},  # of the bytecode its limits and its comparators

@@ -3,18 +3,21 @@
 A `link` fence is a conversation. Rows without a time say what is wanted: `host ...` of the
 session, `robot ...` what happens to the robot, `wait N` milliseconds, `lose >` and `lose <` the
 next bytes from either side, `late` that the robot looks at nothing before all has arrived. Where a
-row is `host sends` (a frame) or `host bytes`, there is no session, and only the robot is played.
+row is `host sends` (a frame), `host bytes` or `host types` (text), there is no session, and only
+the robot is played.
 Rows with a time say what comes of it: `>` the bytes from the computer, `<` those from the robot
 (with `x` where they are lost) and what they mean, `did` what the robot's link asks of the robot,
 `tells` and `outcome` what the session says. Each side is played against the written bytes of the
 other.
 
 An `items` fence is for a receiver alone: `> bytes`, `wait N`, `held N` (bytes before an item is
-taken), and `=` what it finds.
+taken), and `=` what it finds. A `computer items` fence is for the one in Python, a `robot items`
+fence for the one in C++.
 """
 
 from __future__ import annotations
 
+import ast
 import re
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
@@ -35,7 +38,7 @@ from tiniscript.link.statuses import name_of
 STEP_MS = 10
 KIT = 0x231B
 SHOWN_BYTES = 24  # of a longer item, the first ones are written
-KINDS = ("link", "items")
+KINDS = ("link", "items", "computer items", "robot items")
 
 
 class LinkCase(NamedTuple):
@@ -161,7 +164,7 @@ def meaning(item: bytes) -> str:
     body = item.rstrip(b"\0")
     if not body:
         return ""
-    if body[0] >= 0x41:
+    if body[0] >= 0x41 or re.fullmatch(rb"(?:[\x20-\x7e]+\r\n)+", body):
         return repr(body.decode("latin-1"))
     frame = decoded(body)
     return "damaged" if frame is None else frame_text(frame)
@@ -265,6 +268,9 @@ class Sender:
         if words[0] == "bytes":
             self.data = bytes.fromhex(" ".join(words[1:]))
             return
+        if words[0] == "types":
+            self.data = ast.literal_eval("b" + " ".join(words[1:]))
+            return
         seq, epoch, name, *rest = words[1:]
         message = BY_NAME[name]
         texts = dict(word.split("=") for word in rest)
@@ -291,7 +297,8 @@ def computer_of(case: LinkCase) -> Sender | SessionSide:
 
 
 def has_session(case: LinkCase) -> bool:
-    return not any(row.split()[:2] in (["host", "sends"], ["host", "bytes"]) for row in case.rows)
+    rows = [row.split()[:2] for row in case.rows]
+    return not any(["host", what] in rows for what in ("sends", "bytes", "types"))
 
 
 class CppSide:

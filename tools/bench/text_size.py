@@ -23,9 +23,9 @@ RAM_MUST = 60
 # As PlatformIO builds the sketch: Arduino's flags, and those of platformio.ini.
 FLAGS = (
     "-mmcu=atmega328p", "-std=gnu++11", "-Os", "-flto", "-fno-exceptions",
-    "-fno-threadsafe-statics", "-ffunction-sections", "-fdata-sections", "-Wl,--gc-sections", "-mrelax",
-    "-mcall-prologues", "-Wl,--relax", "-mstrict-X", "-fno-devirtualize", "-fno-partial-inlining", "-fno-gcse",
-    "-fno-tree-sink", "-fno-move-loop-invariants",
+    "-fno-threadsafe-statics", "-ffunction-sections", "-fdata-sections", "-Wl,--gc-sections",
+    "-mrelax", "-mcall-prologues", "-Wl,--relax", "-mstrict-X", "-fno-devirtualize",
+    "-fno-partial-inlining", "-fno-gcse", "-fno-tree-sink", "-fno-move-loop-invariants",
 )  # fmt: skip
 
 PROBE = """

@@ -45,7 +45,7 @@ MACHINE = Module("compiler/tiniscript/vm/machine.wasm", ("extras/wasm/main.cpp",
 ROBOT = Module(
     "compiler/tiniscript/virtual/robot.wasm",
     ("extras/wasm/robot.cpp", "extras/wasm/watched.cpp"),
-    ("src/firmware", "src/link", "src/store", "src/vm"),
+    ("src/firmware", "src/link", "src/store", "src/text", "src/vm"),
 )
 MODULES = (MACHINE, ROBOT)
 

@@ -326,13 +326,15 @@ SPEC_TABLES: dict[str, Callable[[], str]] = {
 
 def text_table(name: str) -> str:
     """Return a file of `vm_arduino/src/text/`: words or answers of the reader of text."""
-    from tools.generate import text_tables
+    from tools.generate import remark_tables, text_tables
 
     makes = {
         "words.h": text_tables.words_header,
         "words.cpp": text_tables.words_tables,
         "problems.h": text_tables.problems_header,
         "problems.cpp": text_tables.problems_texts,
+        "remarks.h": remark_tables.remarks_header,
+        "remarks.cpp": remark_tables.remarks_texts,
     }
     return makes[name](COMMAND)
 
@@ -356,7 +358,14 @@ OUTPUTS: list[tuple[Path, Callable[[], str]]] = [
     (LINK / "messages.cpp", link_tables),
     *(
         (TEXT / name, partial(text_table, name))
-        for name in ("words.h", "words.cpp", "problems.h", "problems.cpp")
+        for name in (
+            "words.h",
+            "words.cpp",
+            "problems.h",
+            "problems.cpp",
+            "remarks.h",
+            "remarks.cpp",
+        )
     ),
     (LINK_DOCUMENT, link_document),
     (TEXT_DOCUMENT, text_document),

@@ -79,7 +79,7 @@ def words_header(command: str) -> str:
         for k, word in enumerate(words)
     ]
     commands = sum(role_of(word) in ROLES[: ROLES.index("stop")] for word in words)
-    return _file(
+    return file_of(
         command,
         "words.h",
         "// The words of the language as the reader of text knows them.\n",
@@ -120,7 +120,7 @@ def words_tables(command: str) -> str:
         if role_of(word) in ROLES[: ROLES.index("stop")]:
             op = BY_NAME[OPCODES.get(word.text, f"MOVE_{word.text}")]
             rows.append(f"    {{0x{_kinds(word):02x}, 0x{op.code:02x}}},  // {word.text}")
-    return _file(
+    return file_of(
         command,
         "words.cpp",
         "",
@@ -147,7 +147,7 @@ def problems_header(command: str) -> str:
         f"  k{camel(problem.name)} = {number},  // {problem.english}"
         for number, problem in enumerate(PROBLEMS, 1)
     ]
-    return _file(
+    return file_of(
         command,
         "problems.h",
         "// What the reader of text says about a wrong line.\n",
@@ -157,58 +157,63 @@ def problems_header(command: str) -> str:
             *rows,
             "};",
             "",
-            "// The texts one after the other, in the robot's language, a 0 behind each.",
-            "extern const uint8_t kProblemTexts[] tini_progmem;",
-            "",
             "// The text of a problem, in flash; a 0 ends it.",
             "const uint8_t* text_of(Problem problem);",
+            "",
+            "// The text of this number, from 1, of those that lie one after the other.",
+            "const uint8_t* text_at(const uint8_t* texts, uint8_t number);",
         ],
     )
 
 
 def problems_texts(command: str) -> str:
     """Return `problems.cpp`."""
-    return _file(
+    return file_of(
         command,
         "problems.cpp",
         "",
         [
             "const uint8_t kProblemTexts[] tini_progmem =",
             "#ifdef tiniscript_spanish",
-            *_strings([problem.spanish for problem in PROBLEMS]),
+            *strings([problem.spanish for problem in PROBLEMS]),
             "#else",
-            *_strings([problem.english for problem in PROBLEMS]),
+            *strings([problem.english for problem in PROBLEMS]),
             "#endif",
             "",
             "const uint8_t* text_of(Problem problem) {",
-            "  const uint8_t* text = kProblemTexts;",
-            "  for (uint8_t left = static_cast<uint8_t>(problem); left > 1; left--) {",
-            "    while (flash_byte(text++) != 0) {",
+            "  return text_at(kProblemTexts, static_cast<uint8_t>(problem));",
+            "}",
+            "",
+            "const uint8_t* text_at(const uint8_t* texts, uint8_t number) {",
+            "  for (; number > 1; number--) {",
+            "    while (flash_byte(texts++) != 0) {",
             "    }",
             "  }",
-            "  return text;",
+            "  return texts;",
             "}",
         ],
     )
 
 
-def _strings(texts: Sequence[str]) -> list[str]:
-    lines = [f"    {_bytes(text.encode())} 0,  // {text}" for text in texts]
-    return ["    {", *lines, "    };"]
+def strings(texts: Sequence[str]) -> list[str]:
+    """Return a C++ string with a 0 behind each of the texts."""
+    lines = [f'    "{text}\\0"' for text in texts]
+    return [*lines[:-1], f"{lines[-1]};"]
 
 
 def _bytes(data: Iterable[int]) -> str:
     return " ".join(f"0x{each:02x}," for each in data)
 
 
-def _file(command: str, name: str, what: str, lines: Sequence[str]) -> str:
+def file_of(command: str, name: str, what: str, lines: Sequence[str], include: str = "") -> str:
+    """Return a file of `vm_arduino/src/text/`; `include` is one more header for a `.cpp`."""
     stem, _, ending = name.partition(".")
     guard = f"TINISCRIPT_TEXT_{stem.upper()}_H_"
     opening = (
         [f"#ifndef {guard}", f"#define {guard}", "", "#include <stdint.h>", "",
          '#include "../vm/flash.h"']
         if ending == "h"
-        else [f'#include "{stem}.h"']
+        else [f'#include "{stem}.h"', *([f'\n#include "{include}"'] if include else [])]
     )  # fmt: skip
     closing = ["", f"#endif  // {guard}"] if ending == "h" else []
     return (

@@ -26,7 +26,7 @@ class RobotEvent(NamedTuple):
     STARTED   checksum of the program
     DONE      none
     FAULT     fault: its name; offset in the code; line and column, if the text is known
-    STOPPED   cause: NONE, SEQUENCE, MESSAGE, BUTTON or CABLE
+    STOPPED   cause: NONE, SEQUENCE, MESSAGE, BUTTON, CABLE or TEXT
     MISSED    count of events that did not arrive
     TEXT      text that is no message of the link
     """

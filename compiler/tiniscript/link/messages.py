@@ -203,6 +203,7 @@ CAUSES = (
     ("MESSAGE",  "By STOP."),
     ("BUTTON",   "By the button."),
     ("CABLE",    "The radio module says that nobody is connected."),
+    ("TEXT",     "By a line of text."),
 )
 RESETS = (
     ("UNKNOWN",   "The chip does not say."),

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from tiniscript.fixed_point import ONE
 from tiniscript.kit import Device, Kit
 from tiniscript.robots.boards import CHIPS, HOLD
+from tiniscript.robots.kit_words import kit_words
 from tiniscript.robots.ports import AVRS, Avr
 from tiniscript.robots.profile import Robot, Wiring
 
@@ -92,6 +93,9 @@ class _Part:
             f"constexpr uint8_t kBoardSensors = {len(kit.sensors)};",
             f"constexpr uint8_t kBoardActuators = {len(kit.actuators)};",
             f"constexpr uint16_t kDeviceHashes[] tini_progmem = {{{_hashes(kit)}}};",
+            "constexpr uint8_t kKitWords[] tini_progmem = {",
+            *_rows(kit_words(kit)),
+            "};",
             f"constexpr uint16_t kProgramBytes = {board.program_bytes};",
             f"constexpr uint16_t kMaxRunSeconds = {board.max_run_seconds};",
             f"constexpr uint32_t kBaud = {board.baud};",
@@ -261,6 +265,12 @@ class _Part:
 def _hashes(kit: Kit) -> str:
     """Return the hashes of the sensors, then of the actuators. C++ has no empty array."""
     return ", ".join(f"0x{each:04x}" for each in kit.hashes or (0,))
+
+
+def _rows(data: bytes) -> list[str]:
+    """Return bytes of an array, at most 16 in a row."""
+    rows = [data[k : k + 16] for k in range(0, len(data), 16)]
+    return [f"    {' '.join(f'0x{each:02x},' for each in row)}" for row in rows]
 
 
 _WAYS = ("forward", "backward")

@@ -42,7 +42,7 @@ PROBLEMS = (  # by number, from 1
     Problem("COMPARE",        "Compare 2 values of one kind", "Compara 2 del mismo tipo"),
     Problem("NOT",            "Write (NOT X)",                "Escribe (NOT X)"),
     Problem("KIND",           "Keep it a number, or yes/no",  "Que siga numero, o si/no"),
-    Problem("FOREVER",        "Only in LOOP, or with UNTIL",  "Solo en LOOP, o con UNTIL"),
+    Problem("FOREVER_HERE",   "Only in LOOP, or with UNTIL",  "Solo en LOOP, o con UNTIL"),
     Problem("UNTIL",          "UNTIL goes after F B L R W",   "UNTIL va tras F B L R W"),
     Problem("BLOCK",          "There is no such block",       "No hay tal bloque"),
     Problem("BREAK",          "BREAK goes in a loop",         "BREAK va en un bucle"),

@@ -49,10 +49,12 @@ _NOTE = 4  # numbers of 32 bits
 class Circumstances(NamedTuple):
     """The settings with which a firmware is switched on.
 
-    `hashes` are those of the kit's devices; `byte_us` is how long a byte takes on the line, both
+    `words` are those of the kit, as its reader of text keeps them, and `hashes` those of its
+    devices; `byte_us` is how long a byte takes on the line, both
     ways (0: none); `eeprom_us` how long one takes in the memory that keeps programs.
     """
 
+    words: bytes
     hashes: tuple[int, ...]
     kit: int
     sensors: int
@@ -100,7 +102,9 @@ class Firmware:
         self._memory.write(self._store, whole, self._eeprom)
         hashes = pack(f"<{len(what.hashes)}H", *what.hashes)
         self._memory.write(self._store, hashes, self.call("hashes"))
-        self.call("begin", *what[1:])
+        if len(what.words) <= self.call("word_bytes"):  # else it knows none of them
+            self._memory.write(self._store, what.words, self.call("words"))
+        self.call("begin", *what[2:])
         self._look()
 
     def run(self, until_us: int, data: bytes = b"") -> bytes:

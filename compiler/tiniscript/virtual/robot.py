@@ -13,6 +13,7 @@ from typing import NamedTuple
 from tiniscript.bytecode.opcodes import FAULTS
 from tiniscript.robots.boards import AT_STOP, HOLD
 from tiniscript.robots.kinematics import Pose
+from tiniscript.robots.kit_words import kit_words
 from tiniscript.robots.profile import Robot
 from tiniscript.virtual.driving import Driving
 from tiniscript.virtual.module import POWER_ON, RESET_BUTTON, Circumstances, Firmware
@@ -141,6 +142,7 @@ class VirtualRobot:
         return Firmware(
             self,
             Circumstances(
+                words=kit_words(kit),
                 hashes=kit.hashes,
                 kit=kit.fingerprint,
                 sensors=len(kit.sensors),

@@ -93,7 +93,7 @@ void run(const uint8_t* code, uint16_t length, const Limits& limits, Writer* ans
   answer->text(robot.trace);
 }
 
-void read_robot(Reader* request) {
+void read_robot(RequestReader* request) {
   robot = TracedRobot();
   for (uint8_t count = request->u8(); count > 0; count--) {
     const std::string name = request->text();
@@ -115,7 +115,7 @@ void read_robot(Reader* request) {
 }
 
 // R: runs an image, which is read and verified first. U: runs the code of an image whatever it is.
-void answer_run(Reader* request, bool is_verified, Writer* answer) {
+void answer_run(RequestReader* request, bool is_verified, Writer* answer) {
   Limits limits;
   limits.max_ms = request->u32();
   limits.max_steps = request->u32();
@@ -146,7 +146,7 @@ void answer_run(Reader* request, bool is_verified, Writer* answer) {
 }
 
 // L: runs the code of an image whose ticks after a wait come late: the lines before its ending.
-void answer_late(Reader* request, Writer* answer) {
+void answer_late(RequestReader* request, Writer* answer) {
   const uint32_t late_ms = request->u32();
   request->u32();  // longest time
   request->u32();  // most instructions
@@ -168,7 +168,7 @@ void answer_late(Reader* request, Writer* answer) {
 
 // X: all codes of three bytes that begin with one byte. How many are accepted, how many of these
 // fail a run-time check, and the checksum of all verdicts.
-void answer_all(Reader* request, Writer* answer) {
+void answer_all(RequestReader* request, Writer* answer) {
   const uint8_t sensors = request->u8();
   const uint8_t actuators = request->u8();
   uint8_t code[3 + kEndBytes] = {request->u8()};
@@ -225,7 +225,7 @@ void put(char letter) { said.u8(static_cast<uint8_t>(letter)); }
 
 int main() {
   while (next_request(&asked)) {
-    Reader request(asked);
+    RequestReader request(asked);
     said = Writer();
     switch (request.u8()) {
       case 'R':

@@ -17,9 +17,9 @@ struct Bytes {
   size_t length;
 };
 
-class Reader {
+class RequestReader {
  public:
-  explicit Reader(std::string data) : data_(std::move(data)) {}
+  explicit RequestReader(std::string data) : data_(std::move(data)) {}
 
   uint32_t number(int size) {
     uint32_t value = 0;
@@ -78,7 +78,7 @@ class Writer {
 inline bool next_request(std::string* asked) {
   unsigned char head[4];
   if (fread(head, 1, sizeof head, stdin) != sizeof head) return false;
-  asked->resize(Reader(std::string(head, head + sizeof head)).u32());
+  asked->resize(RequestReader(std::string(head, head + sizeof head)).u32());
   if (asked->empty()) return true;
   if (fread(&(*asked)[0], 1, asked->size(), stdin) != asked->size()) exit(1);
   return true;

@@ -13,6 +13,7 @@
 #include "../../src/robot.h"
 #include "../../src/store/layout.h"
 #include "../../src/store/nvm.h"
+#include "../../src/text/kit_words.h"
 #include "../host/wire.h"
 
 using namespace tiniscript;
@@ -28,6 +29,7 @@ struct Tabletop {
   std::vector<int32_t> readings;
   std::vector<int32_t> kept;  // the firmware's
   std::vector<uint16_t> hashes;
+  std::string words;
   std::string log;
   int8_t left = 0;
   int8_t right = 0;
@@ -76,7 +78,7 @@ void turn(int8_t left, int8_t right) {
 }
 
 // B: power on, with what the memory holds.
-void answer_begin(Reader* request) {
+void answer_begin(RequestReader* request) {
   table.kit = request->u16();
   table.sensors = request->u8();
   table.actuators = request->u8();
@@ -90,13 +92,14 @@ void answer_begin(Reader* request) {
   table.readings.resize(table.sensors);
   table.kept.resize(table.sensors);
   table.memory = request->text();
+  table.words = request->text();
   firmware_begin(board);
 }
 
 // S: bytes arrive at a time, the button goes down (1) or up (2), the main loop stood still (4),
 // nobody is connected (8), the bytes come before all that (16), the button has been down for a
 // while (32); so many ticks follow. Says what the robot sends and what it does.
-void answer_step(Reader* request, Writer* answer) {
+void answer_step(RequestReader* request, Writer* answer) {
   const uint32_t now_ms = request->u32();
   const uint8_t flags = request->u8();
   const uint16_t ticks = request->u16();
@@ -129,13 +132,13 @@ void answer_step(Reader* request, Writer* answer) {
 void answer_memory(Writer* answer) { answer->text(table.memory); }
 
 // L: whether the supply is too low.
-void answer_supply(Reader* request) { table.is_low = request->u8() != 0; }
+void answer_supply(RequestReader* request) { table.is_low = request->u8() != 0; }
 
 // D: selects a byte of the memory that never changes.
-void answer_dead(Reader* request) { table.dead = request->u16(); }
+void answer_dead(RequestReader* request) { table.dead = request->u16(); }
 
 // V: sets the readings of the sensors.
-void answer_readings(Reader* request) {
+void answer_readings(RequestReader* request) {
   for (int32_t& reading : table.readings) reading = request->i32();
 }
 
@@ -174,6 +177,8 @@ int32_t* board_readings() { return table.kept.data(); }
 uint32_t board_max_run_ms() { return table.max_run_ms; }
 
 uint16_t robot_device_hash(uint16_t device) { return table.hashes.at(device); }
+
+const uint8_t* robot_words() { return reinterpret_cast<const uint8_t*>(table.words.data()); }
 
 void board_actuators_off() {
   if (table.has_set) table.log += "ACTUATORS OFF\n";
@@ -237,7 +242,7 @@ void nvm_clear(uint16_t place) { nvm_write(place, 0); }
 int main() {
   std::string asked;
   while (next_request(&asked)) {
-    Reader request(asked);
+    RequestReader request(asked);
     Writer said;
     switch (request.u8()) {
       case 'B':

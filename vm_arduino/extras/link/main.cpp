@@ -5,6 +5,8 @@
 
 #include <stdio.h>
 
+#include <algorithm>
+
 #include "../../src/link/link.h"
 #include "../host/wire.h"
 #include "simulated_port.h"
@@ -17,7 +19,7 @@ Receiver receiver;
 Link link_half;
 
 // B: switches a robot on.
-void answer_begin(Reader* request) {
+void answer_begin(RequestReader* request) {
   port = SimulatedPort();
   port.room = request->u16();
   port.identity.kit = request->u16();
@@ -33,12 +35,14 @@ void answer_begin(Reader* request) {
   link_half = Link();
   link_half.begin(&receiver, request->u8());
   for (uint16_t& hash : port.hashes) hash = request->u16();
+  const Bytes words = request->bytes();
+  port.words.assign(words.data.get(), words.data.get() + words.length);
   port.log.clear();
 }
 
 // S: bytes arrive at a time; the link looks at them after each one, or only at the end. Says what
 // it sends and what the robot does.
-void answer_step(Reader* request, Writer* answer) {
+void answer_step(RequestReader* request, Writer* answer) {
   const uint32_t now_ms = request->u32();
   const uint8_t how = request->u8();
   const Bytes data = request->bytes();
@@ -66,7 +70,7 @@ void answer_step(Reader* request, Writer* answer) {
 }
 
 // R: what happens to the robot: its program is done, has a fault, shows something; its button.
-void answer_robot(Reader* request, Writer* answer) {
+void answer_robot(RequestReader* request, Writer* answer) {
   const uint8_t what = request->u8();
   const uint32_t value = request->u32();
   bool is_taken = true;
@@ -103,39 +107,62 @@ void answer_robot(Reader* request, Writer* answer) {
   answer->u8(is_taken);
 }
 
-// I: bytes and times to a receiver alone: what it finds, a line each. An item is released after
-// `held` more bytes.
-void answer_items(Reader* request, Writer* answer) {
+// Writes a row: what was found, its length and its first bytes.
+std::string row_of(const char* what, const uint8_t* bytes, size_t length) {
+  char part[40];
+  snprintf(part, sizeof part, "%s %zu", what, length);
+  std::string row = part;
+  for (size_t k = 0; k < length && k < kItemBytes; k++) {
+    snprintf(part, sizeof part, " %02x", bytes[k]);
+    row += part;
+  }
+  return row;
+}
+
+// Adds the lines of text that are whole to the rows.
+void take_lines(std::string* line, std::string* rows) {
+  uint8_t byte;
+  while (receiver.take_text(&byte)) {
+    if (byte == kLineEnd) {
+      const uint8_t* const bytes = reinterpret_cast<const uint8_t*>(line->data());
+      *rows += row_of("text", bytes, std::min<size_t>(line->size(), 255)) + "\n";
+    }
+    if (byte == kLineEnd || byte == kLineCut) {
+      line->clear();
+    } else {
+      *line += static_cast<char>(byte);
+    }
+  }
+}
+
+// I: bytes and times to a receiver alone: what it finds, a line each. A frame is released, and text
+// taken, after `held` more bytes.
+void answer_items(RequestReader* request, Writer* answer) {
   receiver = Receiver();
-  std::string lines;
+  std::string rows;
+  std::string line;
   const uint8_t held = request->u8();
   uint8_t left = 0;
   for (uint32_t count = request->u32(); count > 0; count--) {
     const uint16_t now_ms = request->u16();
     if (left > 0 && --left == 0) receiver.release();
-    if (receiver.put(request->u8(), now_ms)) lines += "stop\n";
-    if (receiver.item() == Item::kNone || left > 0) continue;
-    char row[40];
-    snprintf(row, sizeof row, "%s %u", receiver.item() == Item::kText ? "text" : "frame",
-             receiver.length());
-    lines += row;
-    for (uint8_t k = 0; k < receiver.length() && k < kItemBytes; k++) {
-      snprintf(row, sizeof row, " %02x", receiver.bytes()[k]);
-      lines += row;
-    }
-    if (receiver.item() == Item::kFrame) {
-      lines += decode_frame(receiver.bytes(), receiver.length()) != 0 ? " whole" : " damaged";
-    }
-    lines += "\n";
+    if (left == 0) take_lines(&line, &rows);
+    if (receiver.put(request->u8(), now_ms)) rows += "stop\n";
+    if (left > 0) continue;
+    if (held == 0) take_lines(&line, &rows);
+    if (!receiver.has_frame()) continue;
+    rows += row_of("frame", receiver.bytes(), receiver.length());
+    rows += decode_frame(receiver.bytes(), receiver.length()) != 0 ? " whole\n" : " damaged\n";
     left = static_cast<uint8_t>(held + 1);
     if (held == 0) {
       receiver.release();
       left = 0;
     }
   }
+  take_lines(&line, &rows);
   char row[40];
   snprintf(row, sizeof row, "damaged %u, dropped %u\n", receiver.damaged(), receiver.dropped());
-  answer->text(lines + row);
+  answer->text(rows + row);
 }
 
 // M: the image that the robot holds, and whether it is what a robot may run.
@@ -146,7 +173,7 @@ void answer_image(Writer* answer) { answer->text(port.held); }
 int main() {
   std::string asked;
   while (next_request(&asked)) {
-    Reader request(asked);
+    RequestReader request(asked);
     Writer said;
     switch (request.u8()) {
       case 'B':

@@ -3,6 +3,7 @@
 #include <stdio.h>
 
 #include "../../src/robot.h"
+#include "../../src/text/kit_words.h"
 #include "../../src/vm/crc32.h"
 #include "../../src/vm/image.h"
 #include "../../src/vm/vm.h"
@@ -12,6 +13,8 @@ using namespace tiniscript;
 SimulatedPort port;
 
 namespace {
+
+constexpr uint16_t kScratchBytes = 64;
 
 void say(const char* what, unsigned number = 0) {
   char row[60];
@@ -117,6 +120,40 @@ void port_start(bool is_live) {
   port.robot_status.run++;
   say(is_live ? "START live, run %u" : "START run %u", port.robot_status.run);
 }
+
+// As an Uno: there is room for a whole program only where the one is that the robot holds.
+uint8_t* port_text_memory(uint16_t* room, bool* has_room) {
+  *has_room = false;
+  *room = kScratchBytes;
+  port.text.reset(new uint8_t[kHeaderBytes + kScratchBytes]);
+  return port.text.get();
+}
+
+uint8_t* port_text_room(uint16_t* room) {
+  if (port_make_way(false) != Answer::kOk) return nullptr;
+  port_forget();
+  *room = port.room;
+  port.image.reset(new uint8_t[static_cast<size_t>(kHeaderBytes + port.room + kEndBytes)]);
+  return port.image.get();
+}
+
+uint8_t* port_take_text(bool is_for_button) {
+  uint8_t* const image = port.image.get();
+  const std::string whole = sealed(text_of(image));
+  say(is_for_button ? "TEXT %08x for the button" : "TEXT %08x", checksum_of(whole));
+  if (is_for_button) {
+    hold(whole, Saved::kMemory);
+  } else {
+    port_start(false);
+  }
+  return image;
+}
+
+void port_end() {
+  if (port.robot_status.state == State::kRunning) port_make_way(true);
+}
+
+const uint8_t* robot_words() { return port.words.data(); }
 
 void port_stop(uint8_t fault) {
   port.robot_status.state = fault != 0 ? State::kFaulted : State::kStopped;

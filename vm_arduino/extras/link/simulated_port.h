@@ -15,11 +15,13 @@ struct SimulatedPort {
   tiniscript::RobotStatus robot_status = {};
   tiniscript::Trim trim = {};
   std::vector<uint16_t> hashes;  // of the kit's devices
+  std::vector<uint8_t> words;    // its words, as `robot_words` says them
   uint16_t room = 0;
   bool is_busy = false;              // it saves, and cannot make way
   bool is_saving = false;            // it has not kept yet what it was given
   std::unique_ptr<uint8_t[]> image;  // of exactly its length: a sanitizer sees what is outside
   std::unique_ptr<uint8_t[]> live;
+  std::unique_ptr<uint8_t[]> text;  // what is read as text
   std::string held;    // the image that START starts
   std::string stored;  // the one that is saved: what is held again where an upload breaks off
   std::string log;

@@ -10,6 +10,7 @@
 #include "../../src/firmware/firmware.h"
 #include "../../src/store/layout.h"
 #include "../../src/store/nvm.h"
+#include "../../src/text/kit_words.h"
 
 #define tini_exported(name) extern "C" __attribute__((export_name(name)))
 #define tini_imported(name) extern "C" __attribute__((import_module("robot"), import_name(name)))
@@ -24,6 +25,7 @@ namespace {
 // The main loop comes around so often: 32 instructions each time are about what an Uno does.
 constexpr uint32_t kTickUs = 125;
 constexpr uint32_t kBoxBytes = 4096;
+constexpr uint32_t kWordBytes = 65536;
 
 uint8_t inbox[kBoxBytes];   // what is on its way to the robot
 uint8_t outbox[kBoxBytes];  // what it has sent
@@ -39,6 +41,7 @@ uint32_t write_us;   // and how long in the EEPROM
 bool is_latched = true;
 int32_t readings[256];
 uint16_t hashes[512];
+uint8_t words[kWordBytes];
 
 // What `begin` tells of the robot.
 struct Own {
@@ -142,6 +145,8 @@ uint32_t board_max_run_ms() { return own.max_run_ms; }
 
 uint16_t robot_device_hash(uint16_t device) { return hashes[device]; }
 
+const uint8_t* robot_words() { return words; }
+
 void board_stop() {
   is_latched = true;
   note(kStop);
@@ -200,6 +205,11 @@ tini_exported("memory_bytes") uint32_t module_memory_bytes() { return kMemoryByt
 
 // The hashes of the kit's devices, those of sensors first, to be filled before `begin`.
 tini_exported("hashes") uint16_t* module_hashes() { return hashes; }
+
+// The words of the kit as `robot_words` says them, to be filled before `begin`, and how many bytes
+// they may have.
+tini_exported("words") uint8_t* module_words() { return words; }
+tini_exported("word_bytes") uint32_t module_word_bytes() { return kWordBytes; }
 
 tini_exported("inbox") uint8_t* module_inbox() { return inbox; }
 tini_exported("outbox") uint8_t* module_outbox() { return outbox; }

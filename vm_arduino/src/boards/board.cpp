@@ -5,6 +5,7 @@
 #include "board.h"
 
 #include "../robot.h"
+#include "../text/kit_words.h"
 #include "analog.h"
 #include "clock.h"
 #include "kit.h"
@@ -86,6 +87,8 @@ int32_t* board_readings() { return readings; }
 uint32_t board_max_run_ms() { return uint32_t{kMaxRunSeconds} * 1000; }
 
 uint16_t robot_device_hash(uint16_t device) { return flash_word(kDeviceHashes + device); }
+
+const uint8_t* robot_words() { return kKitWords; }
 
 void board_stop() { motors_stop(); }
 

@@ -3,6 +3,7 @@
 #include "../link/port.h"
 
 #include "../link/frames.h"
+#include "../vm/image.h"
 #include "identity.h"
 #include "keeping.h"
 #include "program.h"
@@ -26,7 +27,9 @@ Answer port_make_way(bool is_live) {
   return give_up_program();
 }
 
-bool port_may_prepare() { return has_booted() && !is_live_running() && load_program(); }
+bool port_may_prepare() {
+  return has_booted() && !is_image_running(live) && load_program();
+}
 
 uint8_t* port_memory(uint16_t length, bool is_live) {
   if (is_live) return length <= kLiveImageBytes ? live : nullptr;
@@ -50,7 +53,48 @@ void port_seal(const uint8_t* image) {
 }
 
 void port_start(bool is_live) {
-  if (is_live || is_in_memory()) begin_run(is_live);
+  if (is_live || is_in_memory()) begin_run(is_live ? live : program);
+}
+
+uint8_t* port_text_memory(uint16_t* room, bool* has_room) {
+#ifdef tiniscript_has_draft
+  *has_room = true;
+  *room = kTextRoom;
+  return draft;
+#else
+  *has_room = false;
+  *room = sizeof live - kHeaderBytes;
+  return is_image_running(live) ? nullptr : live;
+#endif
+}
+
+uint8_t* port_text_room(uint16_t* room) {
+  if (port_make_way(false) != Answer::kOk) return nullptr;
+  port_forget();
+  *room = kTextRoom;
+  return program;
+}
+
+uint8_t* port_take_text(bool is_for_button) {
+#ifdef tiniscript_has_draft
+  uint8_t* const image = is_for_button ? program : live;
+  if (port_make_way(!is_for_button) != Answer::kOk) return nullptr;
+  const uint16_t bytes = static_cast<uint16_t>(image_length(draft) + kEndBytes);
+  for (uint16_t k = 0; k < bytes; k++) image[k] = draft[k];
+#else
+  uint8_t* const image = program;
+#endif
+  if (is_for_button) {
+    hold_memory();
+    show_light();
+  } else {
+    begin_run(image);
+  }
+  return image;
+}
+
+void port_end() {
+  if (is_running()) end_run(State::kIdle);
 }
 
 void port_stop(uint8_t fault) { stop_run(fault); }

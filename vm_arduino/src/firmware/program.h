@@ -13,7 +13,24 @@
 
 namespace tiniscript {
 
-constexpr uint8_t kLiveImageBytes = kHeaderBytes + kPayloadBytes - kLiveCodeAt;
+// A program that is read as text: at most so many bytes of code, as its jumps are short. Its code
+// and what the reader keeps beside it have this room.
+constexpr uint8_t kTextCodeBytes = 255;
+#ifdef __AVR_ATmega2560__
+constexpr uint16_t kTextRoom = 1900;
+#else
+constexpr uint16_t kTextRoom = kStoredCodeBytes;
+#endif
+static_assert(kTextRoom <= kStoredCodeBytes, "an Uno reads it where its program is");
+
+// An ATmega328P would read a program where the one is that it holds. Others have room for both.
+#if !defined(__AVR__) || defined(__AVR_ATmega2560__)
+#define tiniscript_has_draft
+constexpr uint16_t kLiveImageBytes = kHeaderBytes + kTextCodeBytes;
+extern uint8_t draft[kHeaderBytes + kTextRoom];
+#else
+constexpr uint16_t kLiveImageBytes = kHeaderBytes + kPayloadBytes - kLiveCodeAt;
+#endif
 
 extern uint8_t program[kImageBytes + kEndBytes];
 extern uint8_t live[kLiveImageBytes + kEndBytes];

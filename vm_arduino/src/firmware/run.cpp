@@ -15,7 +15,7 @@ namespace tiniscript {
 namespace {
 
 Machine machine;
-bool is_live_run;   // `live` runs
+const uint8_t* run_image = program;  // of the current or last run
 bool may_start;     // the button is down and nothing ran or was stopped since: its release starts
 bool is_start_due;  // the button was released, but the program was not available
 bool has_motors_on;
@@ -26,7 +26,7 @@ void fault(uint8_t number, uint16_t at) {
   link.seal();  // the record contains the checksum of its image
   robot_status.fault = number;
   robot_status.fault_at = at;
-  robot_status.fault_program = is_live_run ? get32(live + kChecksumAt) : robot_status.program;
+  robot_status.fault_program = get32(run_image + kChecksumAt);
   keep_fault();
   board_faulted();
 }
@@ -61,8 +61,7 @@ void prepare() {
 
 }  // namespace
 
-void begin_run(bool is_live) {
-  const uint8_t* const image = is_live ? live : program;
+void begin_run(const uint8_t* image) {
   if (!is_prepared) prepare();
   is_prepared = false;
   const uint16_t length = get16(image + kCodeLengthAt);  // in this order fewer registers are saved
@@ -70,7 +69,7 @@ void begin_run(bool is_live) {
   const uint32_t time_ms = now_ms;
   machine.start_prepared(code, length, board_readings(), board_sensors(),
                          (time_ms ^ port_identity().nonce) | 1, time_ms);
-  is_live_run = is_live;
+  run_image = image;
   is_start_due = false;
   may_start = false;
   robot_status.state = State::kRunning;
@@ -84,7 +83,7 @@ void tick_run() {
   if (board_has_stalled() && is_running()) abort_run(LinkFault::kStall);
   if (is_start_due && load_program() && is_start_due) {
     is_start_due = false;
-    if (is_in_memory()) begin_run(false);
+    if (is_in_memory()) begin_run(program);
   }
   // No motor starts while a commit byte is being written.
   if (!is_running()) {
@@ -111,7 +110,7 @@ void stop_run(uint8_t number) {
 
 void forget_start() { is_start_due = false; }
 
-bool is_live_running() { return is_live_run && is_running(); }
+bool is_image_running(const uint8_t* image) { return run_image == image && is_running(); }
 
 bool is_driving() { return has_motors_on; }
 
@@ -143,8 +142,8 @@ void firmware_on_disconnect() {
 // The image may not contain its checksum yet.
 bool firmware_runs(Place* place) {
   if (!is_running()) return false;
-  const uint8_t* const image = is_live_run ? live : program;
-  const uint16_t most = is_live_run ? kLiveImageBytes : kImageBytes;
+  const uint8_t* const image = run_image;
+  const uint16_t most = image == live ? kLiveImageBytes : kImageBytes;
   const uint16_t length = image_length(image);
   place->program = image_checksum(image, length < most ? length : most);
   place->at = machine.at();

@@ -12,8 +12,8 @@
 
 namespace tiniscript {
 
-// Starts the image `live`, or else `program`, which must be in memory.
-void begin_run(bool is_live);
+// Starts an image: `live`, or `program`, which must be in memory.
+void begin_run(const uint8_t* image);
 
 // Starts what the button has requested, and continues what runs.
 void tick_run();
@@ -28,8 +28,8 @@ void stop_run(uint8_t fault);
 // Cancels a start by the button that has not happened yet.
 void forget_start();
 
-// Whether `live` runs.
-bool is_live_running();
+// Whether this image runs.
+bool is_image_running(const uint8_t* image);
 
 // Whether a motor is on.
 bool is_driving();

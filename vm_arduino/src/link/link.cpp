@@ -34,6 +34,7 @@ void Link::pass_time(uint16_t now_ms) { near(this)->pass(now_ms); }
 void Link::pass(uint16_t now_ms) {
   const uint16_t passed = static_cast<uint16_t>(now_ms - now_ms_);
   now_ms_ = now_ms;
+  console_.pass(passed);
   for (uint16_t& left_ms : left_ms_) {
     left_ms = passed < left_ms ? static_cast<uint16_t>(left_ms - passed) : 0;
   }
@@ -46,10 +47,11 @@ void Link::turn() {
     receiver_->take_stop();  // cleared before it is handled, so that another stop is not lost
     halt(Cause::kSequence);
   }
-  const bool is_there = receiver_->item() != Item::kNone;  // the whole item has arrived
+  const bool is_there = receiver_->has_frame();  // the whole frame has arrived
   check();
   // A reply that is due goes first.
-  if (is_there && (due_ & (kDueReply | kDueHint)) == 0) hear();
+  if (is_there && (due_ & kDueReply) == 0) hear();
+  talk();
   if (is_tethered_ && left_ms_[kListen] <= kListenMs - kTetherMs &&
       port_status().state == State::kRunning) {
     port_stop(static_cast<uint8_t>(LinkFault::kLinkLost));
@@ -84,7 +86,7 @@ bool Link::next_tx_byte(uint8_t* byte) {
 tini_noinline void Link::halt(Cause cause) {
   const bool was_stopped = port_status().state == State::kStopped;
   port_stop(0);
-  const bool has_stale = cause == Cause::kSequence && receiver_->item() != Item::kNone;
+  const bool has_stale = cause == Cause::kSequence && receiver_->has_frame();
   if (!was_stopped || has_stale) return stopped(cause);
   if (left_ms_[kAgain] != 0) return;
   left_ms_[kAgain] = kAgainMs;
@@ -104,24 +106,19 @@ inline void Link::check() {
   if (check_.left() <= kCrcBytes && receiver_->bytes()[kTypeAt] == kLiveByte) prepare();
 }
 
-// Answers a line of text if no frames arrive, no other line came recently, and it is not our own.
-// This avoids an endless exchange with a peer that answers or echoes each line.
+// Answers a frame.
 tini_noinline void Link::hear() {
   if (is_ready_ && ahead_ + kCrcBytes == receiver_->length() && go_live()) {
     due_ |= kDueReply;
-  } else if (receiver_->item() == Item::kText) {
-    if (left_ms_[kText] == 0 && !is_listened_to() && !is_own_hint()) due_ |= kDueHint;
-    left_ms_[kText] = kListenMs;
+  } else if (!check_.is_whole()) {
+    damaged_++;
   } else {
-    if (!check_.is_whole()) {
-      damaged_++;
-    } else {
-      const uint8_t end = check_.decode(receiver_->bytes());
-      if ((receiver_->bytes()[kTypeAt] & kReply) == 0) {  // otherwise it is an echo
-        left_ms_[kListen] = kListenMs;
-        handle(end);
-        due_ |= kDueReply;
-      }
+    const uint8_t end = check_.decode(receiver_->bytes());
+    if ((receiver_->bytes()[kTypeAt] & kReply) == 0) {  // otherwise it is an echo
+      left_ms_[kListen] = kListenMs;
+      console_.hang_up();
+      handle(end);
+      due_ |= kDueReply;
     }
   }
   is_ready_ = false;
@@ -168,6 +165,7 @@ tini_noinline void Link::handle(uint8_t end) {
   }
   said_.status = number_of(refusal);
   if (refusal == Answer::kOk) {
+    if (type >= kFirstActing) console_.drop();  // it may use the same memory
     said_.status = answer(static_cast<Message>(type), payload, length);
   }
   if (is_next || (is_hello && said_.status == kIsFine)) {

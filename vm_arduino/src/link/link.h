@@ -13,7 +13,17 @@
 #include "messages.h"
 #include "receiver.h"
 
+#ifdef tiniscript_reads_text
+#include "console.h"
+#else
+#include "hint.h"
+#endif
+
 namespace tiniscript {
+
+#ifndef tiniscript_reads_text
+using Console = Hint;
+#endif
 
 class Link {
  public:
@@ -28,7 +38,7 @@ class Link {
   void tick();
 
   // Whether `tick` would start a LIVE now: everything else may wait for that.
-  bool is_awaited() const { return is_ready_ && receiver_->item() != Item::kNone; }
+  bool is_awaited() const { return is_ready_ && receiver_->has_frame(); }
 
   // Call it after the motors are served: seals a program that came in one frame and starts to send
   // what is due.
@@ -59,6 +69,7 @@ class Link {
   void drop() {
     image_ = nullptr;
     is_tethered_ = false;
+    console_.drop();
   }
 
   // Whether the run ends when no frame arrives.
@@ -70,11 +81,11 @@ class Link {
   static constexpr uint8_t kDueReply = 2;
   static constexpr uint8_t kDueFault = 4;
   static constexpr uint8_t kDueDone = 8;
-  static constexpr uint8_t kDueHint = 16;
+  static constexpr uint8_t kDueText = 16;
 
   // Times that run down to 0: until a client without frames no longer counts as listening, until
-  // a line of text is answered again, until STOPPED is sent again.
-  enum Time : uint8_t { kListen, kText, kAgain, kTimes };
+  // STOPPED is sent again.
+  enum Time : uint8_t { kListen, kAgain, kTimes };
 
   // A reply before it is written. The detail follows a status other than OK.
   struct Said {
@@ -115,7 +126,28 @@ class Link {
 
   // writing
   void send();
-  bool is_own_hint() const;
+  bool talks() const { return console_.is_talking() && !is_listened_to(); }
+
+  // text
+#ifdef tiniscript_reads_text
+  void talk();
+  Remark start_text();
+  void send_text();
+  void show_text(int32_t value, bool is_yes_no);
+  bool separate();
+#else
+  void talk() {
+    console_.turn(receiver_, is_listened_to());
+    if (console_.has_answer()) due_ |= kDueText;
+  }
+  void send_text() {
+    due_ &= static_cast<uint8_t>(~kDueText);
+    size_ = console_.write(out_);
+    hand_over();
+  }
+  void show_text(int32_t, bool) {}
+  bool separate() { return false; }
+#endif
   void reply();
   void describe();
   void fetch();
@@ -156,9 +188,12 @@ class Link {
   uint8_t ahead_;      // end of the payload of an image made ahead, or 0
   bool is_ready_;      // it is `made_`, and may start if the frame ends there
   // Output.
+  bool is_after_text_;     // a line of text was sent last
   uint8_t size_;           // bytes written so far
   uint8_t sent_;           // bytes already sent
   volatile uint8_t left_;  // bytes left to send
+  // Large members come last: what lies near to the begin takes less code.
+  Console console_;
   uint8_t out_[kWireBytes];
 };
 

@@ -39,7 +39,7 @@ tini_noinline void Link::prepare() {
   uint8_t* const bytes = receiver_->bytes();
   const uint8_t end = check_.decode(bytes);  // below 0 it is very large
   if (end == ahead_ || end <= kPayloadAt || end > kLargestFrame || bytes[kTypeAt] != kLiveByte ||
-      due_ != 0 || !is_open_ || !port_may_prepare()) {
+      due_ != 0 || !is_open_ || console_.is_open() || !port_may_prepare()) {
     return;
   }
   ahead_ = end;

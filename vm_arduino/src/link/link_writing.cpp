@@ -10,20 +10,14 @@ namespace tiniscript {
 
 namespace {
 
-// The hint for a person who sends text. Its 0x00 ends the item, so that a frame may follow.
-const uint8_t kHint[] tini_progmem = "No text yet: use tsc. / Aun no hay texto: usa tsc.\r\n";
-
 // The first part of the reply to HELLO.
 const uint8_t kVersions[] tini_progmem = {kLinkMajor, kLinkMinor,    kIsaMajor,
                                           kIsaMinor,  kLargestFrame, kWindow};
-
-constexpr uint8_t kTailBytes = 8;  // end of the hint, which identifies an echo
 
 constexpr uint8_t kPulseBytes = 2;  // state and run of a RobotStatus
 constexpr uint8_t kPlaceBytes = 2;  // its slot and `saved`
 
 static_assert(sizeof(Identity) == 13 && sizeof(RobotStatus) == 17, "they are as they are sent");
-static_assert(sizeof kHint <= kWireBytes, "it is sent like a frame");
 
 template <class Type>
 uint8_t byte_of(Type value) {
@@ -46,13 +40,21 @@ void Link::faulted() {
 void Link::stopped(Cause cause) {
   renew();
   cause_ = cause;
+  console_.discard();
+  if (cause == Cause::kSequence || cause == Cause::kMessage) console_.hang_up();
   left_ms_[kAgain] = kAgainMs;
   due_ |= kDueStopped;
 }
 
 bool Link::show(int32_t value, bool is_yes_no) {
-  if (!is_listened_to()) return true;
+  const bool is_text = talks();
+  if (!is_listened_to() && !is_text) return true;
   if (left_ != 0 || due_ != 0) return false;
+  if (is_text) {
+    show_text(value, is_yes_no);
+    return true;
+  }
+  if (separate()) return false;
   begin_event(Message::kShow);
   put_all(&value, sizeof value);
   put(is_yes_no);
@@ -63,28 +65,15 @@ bool Link::show(int32_t value, bool is_yes_no) {
 // A robot that runs alone has no client that reads.
 bool Link::is_listened_to() const { return is_open_ && left_ms_[kListen] != 0; }
 
-// Whether the waiting line of text ends like the hint, or is the end of the hint.
-bool Link::is_own_hint() const {
-  const uint8_t* hint = kHint + sizeof kHint - 3;  // without CR, LF and 0x00
-  uint8_t at = receiver_->length();
-  if (at > kItemBytes) return false;
-  for (uint8_t k = 0; k < kTailBytes && at != 0; k++) {
-    if (receiver_->bytes()[--at] != flash_byte(--hint)) return false;
-  }
-  return true;
-}
-
 // Sends the first message that is due. A client that has sent the stop sequence is listening.
 void Link::send() {
+  if (talks()) return send_text();
   if (!is_listened_to()) due_ &= static_cast<uint8_t>(~(kDueFault | kDueDone));
   const uint8_t first = static_cast<uint8_t>(due_ & -due_);
   if (first == 0) return;
+  if (first == kDueText) return send_text();
+  if (separate()) return;
   due_ ^= first;
-  if (first == kDueHint) {
-    size_ = 0;
-    for (const uint8_t& byte : kHint) put(flash_byte(&byte));
-    return hand_over();
-  }
   if (first == kDueReply) {
     reply();
   } else if (first == kDueStopped) {

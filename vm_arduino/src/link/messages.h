@@ -143,6 +143,7 @@ enum class Cause : uint8_t {
   kMessage = 2,  // By STOP.
   kButton = 3,  // By the button.
   kCable = 4,  // The radio module says that nobody is connected.
+  kText = 5,  // By a line of text.
 };
 
 enum class Reset : uint8_t {

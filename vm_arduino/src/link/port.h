@@ -97,6 +97,21 @@ void port_seal(const uint8_t* image);
 // Starts the image taken last, or the program that the robot holds.
 void port_start(bool is_live);
 
+// Memory for the image of a program that is read as text, with `*room` bytes behind its header;
+// nullptr if there is none now. Without `has_room` that is enough for its begin only.
+uint8_t* port_text_memory(uint16_t* room, bool* has_room);
+
+// Memory with enough room, where the program is that the robot holds. Ends what runs; the robot
+// holds the stored program from now on. nullptr: a program is still being saved.
+uint8_t* port_text_room(uint16_t* room);
+
+// The image that was read is verified and complete except for its checksum. Returns where it lies
+// from now on: it starts at once, or the button starts it until power-off. nullptr: not now.
+uint8_t* port_take_text(bool is_for_button);
+
+// Ends what runs.
+void port_end();
+
 // Turns the motors off and ends what runs; nothing starts until port_release. Records `fault` if it
 // is not 0.
 void port_stop(uint8_t fault);

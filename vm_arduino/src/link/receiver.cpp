@@ -26,7 +26,7 @@ bool Receiver::take(uint8_t byte, uint16_t now_ms) {
   const bool is_quiet = static_cast<uint16_t>(now_ms - last_ms_) >= kSilenceMs;
   last_ms_ = now_ms;
   if (is_quiet) {
-    cut();
+    if (!kReadsText || !is_kept_ || (place_ != Place::kText && place_ != Place::kLost)) cut();
     zeros_ = 0;
   }
   if (byte == 0) return zero();
@@ -45,15 +45,23 @@ bool Receiver::take(uint8_t byte, uint16_t now_ms) {
   return false;
 }
 
-// Determines the kind of an item from its first byte, as far as possible.
+// Determines the kind of an item from its first byte, as far as possible. A frame after text has a
+// zero before it, so while text waits what follows it is text.
 void Receiver::begin(uint8_t byte) {
+  if (byte == 0x7f) return skip();
+  if (kReadsText) {
+    const bool goes_on = place_ == Place::kAfterText && (first_ != behind_ || item_ == Item::kText);
+    if (is_letter(byte) || (goes_on && is_printable(byte))) {
+      place_ = Place::kText;
+      return pass_on(byte);
+    }
+  }
   is_dropping_ = item_ != Item::kNone;
   if (!is_dropping_) {
     length_ = 0;
     has_begun_ = true;
   }
-  if (byte == 0x7f) return skip();
-  if (is_letter(byte)) {
+  if (!kReadsText && is_letter(byte)) {
     place_ = Place::kText;
   } else if (byte >= kTextFrom) {
     place_ = Place::kOther;
@@ -70,6 +78,11 @@ void Receiver::begin(uint8_t byte) {
 void Receiver::go_on(uint8_t byte) {
   const bool is_text = is_printable(byte) || byte == '\t';
   if (place_ == Place::kSkip) return;
+  if (kReadsText && place_ >= Place::kText) {
+    if (ends_line(byte)) return end_text(place_ == Place::kText ? kLineEnd : kLineCut);
+    if (place_ == Place::kText) pass_on(byte);
+    return;
+  }
   if (place_ == Place::kHead) {
     place_ = is_printable(byte) ? Place::kLine : Place::kFrame;  // request types are smaller
   } else if (place_ != Place::kFrame && ends_line(byte)) {
@@ -84,6 +97,13 @@ void Receiver::go_on(uint8_t byte) {
   if (length_ == kItemBytes && !is_dropping_) {
     if (place_ == Place::kFrame) return skip();
     place_ = Place::kText;
+    if (kReadsText) {
+      end(Item::kText);
+      is_begun_ = true;
+      if (item_ != Item::kText) place_ = Place::kLost;
+      if (place_ == Place::kText) pass_on(byte);
+      return;
+    }
   }
   add(byte);
 }
@@ -100,10 +120,10 @@ void Receiver::drop() {
 
 // Leaves a waiting item and its length unchanged.
 void Receiver::add(uint8_t byte) {
-  if (is_dropping_) return;
   const uint8_t length = length_;
-  if (length < kItemBytes) bytes_[length] = byte;
-  if (length < 255) length_ = static_cast<uint8_t>(length + 1);
+  if (is_dropping_ || length == kItemBytes) return;
+  bytes_[length] = byte;
+  length_ = static_cast<uint8_t>(length + 1);
 }
 
 bool Receiver::zero() {
@@ -121,14 +141,65 @@ bool Receiver::zero() {
 
 // Starts over; the open item never ended.
 void Receiver::cut() {
-  if (place_ >= Place::kBlank && place_ <= Place::kText) {
-    damaged_ = static_cast<uint8_t>(damaged_ + 1);
-  }
+  const Place place = place_;
   place_ = Place::kBegin;
+  if (place >= Place::kBlank && place <= Place::kText) damaged_ = static_cast<uint8_t>(damaged_ + 1);
+  if (kReadsText && (place == Place::kText || place == Place::kLost)) pass_on(kLineCut);
 }
 
+// A line that may overtake older text is dropped.
 void Receiver::end(Item item) {
-  if (!is_dropping_) item_ = item;
+  if (is_dropping_) return;
+  if (kReadsText) {
+    is_begun_ = false;
+    taken_ = 0;
+  }
+  if (!kReadsText || item == Item::kFrame || first_ == behind_) {
+    item_ = item;
+  } else {
+    dropped_ = static_cast<uint8_t>(dropped_ + 1);
+  }
+}
+
+// Passes a byte of text on. Where there is no room, the rest of its line is skipped.
+void Receiver::pass_on(uint8_t byte) {
+  const uint8_t at = behind_;
+  const uint8_t behind = static_cast<uint8_t>((at + 1) % kTextBytes);
+  if (behind == first_) {
+    if (place_ != Place::kLost) damaged_ = static_cast<uint8_t>(damaged_ + 1);
+    place_ = Place::kLost;
+    return;
+  }
+  text_[at] = byte;
+  asm volatile("" ::: "memory");  // barrier: `take_text` reads the byte after the index
+  behind_ = behind;
+}
+
+void Receiver::end_text(uint8_t byte) {
+  place_ = Place::kAfterText;
+  pass_on(byte);
+}
+
+bool Receiver::take_text(uint8_t* byte) {
+  if (item_ == Item::kText) {
+    if (taken_ < length_) {
+      *byte = bytes_[taken_++];
+      return true;
+    }
+    const bool is_over = !is_begun_;
+    asm volatile("" ::: "memory");  // barrier: the bytes are read before the interrupt may write
+    item_ = Item::kNone;
+    if (is_over) {
+      *byte = kLineEnd;
+      return true;
+    }
+  }
+  const uint8_t first = first_;
+  if (first == behind_) return false;
+  *byte = text_[first];
+  asm volatile("" ::: "memory");
+  first_ = static_cast<uint8_t>((first + 1) % kTextBytes);
+  return true;
 }
 
 }  // namespace tiniscript

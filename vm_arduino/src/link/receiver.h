@@ -1,8 +1,10 @@
 // Splits bytes into items: frames, lines of text, and the run of zeros that stops a robot.
 //
-// Knows where an item begins and ends; `frames.h` checks whether a frame is whole. Holds one item
-// until it is released; anything but a stop that arrives meanwhile is dropped. Matches
-// `receiver.py`. `put` may be called from an interrupt, everything else from the main loop.
+// Knows where an item begins and ends; `frames.h` checks whether a frame is whole. Holds one frame
+// until it is released; a frame that arrives meanwhile is dropped. Text is passed on as it arrives;
+// a robot that reads no text holds a line like a frame.
+// Finds the same items as `receiver.py`. `put` may be called from an interrupt, everything else from
+// the main loop.
 
 #ifndef TINISCRIPT_LINK_RECEIVER_H_
 #define TINISCRIPT_LINK_RECEIVER_H_
@@ -10,12 +12,20 @@
 #include <stdint.h>
 
 #include "messages.h"
+#include "reads_text.h"
 
 namespace tiniscript {
 
 constexpr uint8_t kItemBytes = kLargestFrame + 1;  // a frame and its first COBS byte
 
+// Room for text that nobody has taken yet.
+constexpr uint8_t kTextBytes = kReadsText ? 32 : 1;
+
 enum class Item : uint8_t { kNone, kFrame, kText };
+
+// What `take_text` returns beside the bytes of a line.
+constexpr uint8_t kLineEnd = '\n';
+constexpr uint8_t kLineCut = 0;
 
 class Receiver {
  public:
@@ -24,12 +34,21 @@ class Receiver {
   // error is 0.
   bool put(uint8_t byte, uint16_t now_ms);
 
-  // The waiting item, its bytes and their number. For a text longer than kItemBytes: its first
-  // bytes, and a length of at most 255.
-  Item item() const { return item_; }
+  // Whether a frame waits, its bytes and their number.
+  bool has_frame() const { return item_ == Item::kFrame; }
   uint8_t* bytes() { return bytes_; }
   uint8_t length() const { return length_; }
   void release() { item_ = Item::kNone; }
+
+  // Whether a line waits, on a robot that reads no text: at most its first kItemBytes.
+  bool has_line() const { return item_ == Item::kText; }
+
+  // Takes the next byte of text. kLineEnd: the line is whole. kLineCut: it never ends, or bytes of
+  // it were lost. False: none waits.
+  bool take_text(uint8_t* byte);
+
+  // Whether a second of silence leaves the open line of text as it is. The caller limits its time.
+  void keep_line(bool is_kept) { is_kept_ = is_kept; }
 
   // Bytes of an unfinished item may be read up to `length`. `has_begun` says whether another item
   // has begun since the last call: call it before `length`. An item that begins between the two
@@ -58,6 +77,7 @@ class Receiver {
     kFrame,
     kOther,  // probably in a line of text, otherwise in noise
     kText,
+    kLost,  // in a line of text whose bytes found no room
     kSkip,  // in noise, up to the next 0x00
   };
 
@@ -70,7 +90,10 @@ class Receiver {
   void drop();
   void add(uint8_t byte);
   void end(Item item);
+  void pass_on(uint8_t byte);
+  void end_text(uint8_t byte);
 
+  // The waiting item. A line that might have been a frame waits in `bytes_` like one.
   volatile Item item_;
   volatile bool has_begun_;
   volatile bool stop_is_due_;
@@ -78,6 +101,12 @@ class Receiver {
   volatile uint8_t dropped_;
   Place place_;
   bool is_dropping_;
+  bool is_begun_;            // the line in `bytes_` goes on in `text_`
+  volatile bool is_kept_;
+  uint8_t taken_;            // bytes of the line in `bytes_`
+  volatile uint8_t first_;   // the text that waits, in a ring
+  volatile uint8_t behind_;
+  uint8_t text_[kTextBytes];
   uint8_t zeros_;
   volatile uint8_t length_;
   uint16_t last_ms_;

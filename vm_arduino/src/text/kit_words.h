@@ -7,6 +7,8 @@
 
 #include <stdint.h>
 
+#include "../vm/flash.h"
+
 namespace tiniscript {
 
 // Bits of what stands behind the letters of a device.
@@ -18,6 +20,12 @@ constexpr uint8_t kRangeBytes = 8;
 // is; behind an actuator that is a number its least and its largest value, thousandths of 32 bits,
 // little-endian. A 0 ends the table.
 const uint8_t* robot_words();
+
+// Returns what is behind a device, from what it is on.
+inline const uint8_t* behind_device(const uint8_t* device) {
+  const bool has_range = flash_byte(device) == kDeviceIsActuator;
+  return device + 1 + (has_range ? kRangeBytes : 0);
+}
 
 }  // namespace tiniscript
 

@@ -36,7 +36,7 @@ enum class Problem : uint8_t {
   kCompare = 19,  // Compare 2 values of one kind
   kNot = 20,  // Write (NOT X)
   kKind = 21,  // Keep it a number, or yes/no
-  kForever = 22,  // Only in LOOP, or with UNTIL
+  kForeverHere = 22,  // Only in LOOP, or with UNTIL
   kUntil = 23,  // UNTIL goes after F B L R W
   kBlock = 24,  // There is no such block
   kBreak = 25,  // BREAK goes in a loop
@@ -46,11 +46,11 @@ enum class Problem : uint8_t {
   kFull = 29,  // Too long. Make it shorter
 };
 
-// The texts one after the other, in the robot's language, a 0 behind each.
-extern const uint8_t kProblemTexts[] tini_progmem;
-
 // The text of a problem, in flash; a 0 ends it.
 const uint8_t* text_of(Problem problem);
+
+// The text of this number, from 1, of those that lie one after the other.
+const uint8_t* text_at(const uint8_t* texts, uint8_t number);
 
 }  // namespace tiniscript
 

@@ -51,7 +51,7 @@ const uint8_t kSigns[] tini_progmem = {
 
 }  // namespace
 
-void Reader::begin(uint8_t* buffer, uint16_t room) {
+tini_noinline void Reader::begin(uint8_t* buffer, uint16_t room) {
   const bool is_after_cr = is_after_cr_;
   __builtin_memset(static_cast<void*>(this), 0, sizeof *this);
   is_after_cr_ = is_after_cr;
@@ -59,7 +59,7 @@ void Reader::begin(uint8_t* buffer, uint16_t room) {
   stack_ = names_ = end_ = buffer + room;
 }
 
-Text Reader::put(uint8_t byte) {
+tini_noinline Text Reader::put(uint8_t byte) {
   const bool was_after_cr = is_after_cr_;
   is_after_cr_ = byte == '\r';
   if (byte == '\r') return end_line();

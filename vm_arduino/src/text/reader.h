@@ -39,6 +39,26 @@ class Reader {
   // Takes a byte. CR, LF or both end a line.
   tini_noinline Text put(uint8_t byte);
 
+  // Goes on in another buffer. The words that were read last are forgotten.
+  void move(uint8_t* buffer, uint16_t room);
+
+  // Whether its first instruction has been read, or the buffer may be too small for it.
+  bool wants_room() const;
+
+  // Whether the program begins with a SETUP word, and whether that may still become so.
+  bool has_setup() const { return has_setup_; }
+  bool may_have_setup() const;
+
+  // Whether the program so far is S.
+  bool is_stop() const { return length_ == 1 && !has_setup_ && ends_with_stop(); }
+  bool ends_with_stop() const;
+
+  // After kProblem: whether it is the first word, and this one in flash.
+  bool is_about(const uint8_t* word);
+
+  // After kMore: the word for which it waits, or ')'.
+  uint8_t awaited() const;
+
   // After kProgram: how the program starts, and the length of its code in the buffer, which the
   // machine's verifier accepts.
   uint8_t start() const { return setup_; }
@@ -137,6 +157,7 @@ class Reader {
   uint8_t state_;
   Problem problem_;
   uint8_t setup_;
+  bool has_setup_;
   uint8_t what_;      // the instruction, by its word
   uint8_t op_;        // its opcode
   uint8_t kinds_;     // of its arguments from this one on

@@ -75,6 +75,12 @@ Problem Reader::close(uint8_t type) {
   return Problem::kNone;
 }
 
+uint8_t Reader::awaited() const {
+  if (brackets_ != 0) return ')';
+  const uint8_t type = top()->type;
+  return type == kForeverBlock ? kWordEndLoop : type;
+}
+
 // BREAK leaves the innermost loop.
 Problem Reader::leave_loop() {
   uint8_t* at = stack_;

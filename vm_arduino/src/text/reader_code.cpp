@@ -4,6 +4,34 @@
 
 namespace tiniscript {
 
+namespace {
+
+constexpr uint8_t kTight = 16;  // more than one byte of text takes
+
+}  // namespace
+
+bool Reader::ends_with_stop() const { return buffer_[length_ - 1] == byte_of(Op::kStop); }
+
+bool Reader::wants_room() const {
+  if (problem_ != Problem::kNone) return false;
+  if (state_ == kInstruction && length_ != 0) return !is_stop();
+  return stack_ - (buffer_ + length_) < kTight + letters_;
+}
+
+tini_noinline void Reader::move(uint8_t* buffer, uint16_t room) {
+  uint8_t* const end = buffer + room;
+  const ptrdiff_t way = end - end_;
+  __builtin_memmove(buffer, buffer_, static_cast<size_t>(length_ + letters_));
+  __builtin_memmove(stack_ + way, stack_, static_cast<size_t>(end_ - stack_));
+  if (def_ != nullptr) {
+    def_ = reinterpret_cast<Def*>(reinterpret_cast<uint8_t*>(def_) + way);
+  }
+  stack_ += way;
+  names_ += way;
+  end_ = end;
+  buffer_ = buffer;
+}
+
 // Whether a byte fits behind the code and `bytes` more.
 bool Reader::has_room(uint16_t bytes) {
   const uint8_t* const behind = buffer_ + length_ + bytes;

@@ -42,6 +42,16 @@ bool Reader::matches(bool in_flash) {
   return is_same;
 }
 
+bool Reader::is_about(const uint8_t* word) {
+  entry_ = word;
+  return problem_ == Problem::kUnknownWord && length_ == 0 && matches(true);
+}
+
+bool Reader::may_have_setup() const {
+  if (state_ != kBegin || buffer_[0] != (letters_ == 2 ? 'S' : 'P')) return false;
+  return letters_ == 4 || (letters_ == 2 && (buffer_[1] == 'I' || buffer_[1] == 'B'));
+}
+
 bool Reader::find_in_kit() {
   entry_ = robot_words();
   uint8_t sensors = 0;

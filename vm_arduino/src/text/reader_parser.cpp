@@ -38,6 +38,7 @@ Problem Reader::parse(uint8_t token) {
     case kBegin:
       if (token >= kWordSi && token <= kWordPing) {
         setup_ = static_cast<uint8_t>(token - kWordSi);
+        has_setup_ = true;
         state_ = kBar;
         return Problem::kNone;
       }
@@ -206,7 +207,7 @@ Problem Reader::end_move(uint8_t token) {
     state_ = kArguments;
     return Problem::kNone;
   }
-  if (is_forever_) return Problem::kForever;
+  if (is_forever_) return Problem::kForeverHere;
   emit(op);
   state_ = kInstruction;
   return no_end(token);

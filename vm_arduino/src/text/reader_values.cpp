@@ -66,7 +66,7 @@ Problem Reader::operand(uint8_t token) {
     push_kind(token != kWordTime);
   } else if (token == kWordForever) {
     const uint8_t what = what_;
-    if (state_ != kArgument || (what != kWordLoop && what > kWordW)) return Problem::kForever;
+    if (state_ != kArgument || (what != kWordLoop && what > kWordW)) return Problem::kForeverHere;
     is_forever_ = true;
     state_ = kAfterForever;
   } else if (token == kWordNot) {

@@ -134,6 +134,7 @@ LINK_TEXTS: dict[str, tuple[str, str]] = {
     "stopped_BUTTON": ("The robot was stopped with its button.", "El robot se detuvo con su botón."),
     "stopped_CABLE": ("The robot has stopped: its radio module says that nobody is connected.",
                       "El robot se detuvo: su módulo de radio dice que nadie está conectado."),
+    "stopped_TEXT": ("The robot was stopped by a line of text.", "El robot se detuvo por una línea de texto."),
     "missed": ("{n} events of the robot did not arrive.", "{n} avisos del robot no llegaron."),
     "robot_text": ("The robot says:  {said}", "El robot dice:  {said}"),
     "fault_LINK_LOST": ("the robot heard nothing of tsc for a second, and stopped. Bring it nearer; a program that shall go on alone wants --detach.",

@@ -1,0 +1,37 @@
+"""What a robot that reads text says to a person, beside what is wrong with a line.
+
+Knows names and words in both languages. Generated into the firmware behind the problems. Texts are
+ASCII, for any terminal.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class Remark(NamedTuple):
+    """`english` and `spanish` are the text. Where it is empty, the firmware makes it."""
+
+    name: str
+    english: str
+    spanish: str
+
+
+# fmt: off
+REMARKS = (  # in the order of their numbers
+    Remark("OK",        "OK",                               "OK"),
+    Remark("OK_BUTTON", "OK. The button starts it.",        "OK. El boton lo inicia."),
+    Remark("OK_LOST",   "OK. The old program is lost.",     "OK. El programa anterior se perdio."),
+    Remark("WAITING",   "Waiting for ",                     "Espero "),
+    Remark("GIVEN_UP",  "Too late. Begin again.",           "Muy tarde. Empieza otra vez."),
+    Remark("STOPPED",   "STOPPED",                          "PARADO"),
+    Remark("LATCHED",   "It was stopped. Begin with SI|",   "Fue parado. Empieza con SI|"),
+    Remark("SAVING",    "Still saving. Send it again.",     "Aun guardo. Envialo otra vez."),
+    Remark("REFUSED",   "Not possible here.",               "Aqui no es posible."),
+    Remark("DONE",      "DONE",                             "FIN"),
+    Remark("FAULT",     "FAULT ",                           "FALLA "),
+    Remark("MISTAKE",   "",                                 ""),  # the column and the problem
+    Remark("HELLO",     "",                                 ""),  # name, kit and level
+    Remark("HELP",      "",                                 ""),  # the words of this robot
+)
+# fmt: on

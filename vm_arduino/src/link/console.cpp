@@ -1,0 +1,205 @@
+#include "reads_text.h"
+
+#ifdef tiniscript_reads_text
+
+#include "console.h"
+
+#include "../vm/bytecode.h"
+#include "../vm/small.h"
+#include "port.h"
+
+namespace tiniscript {
+
+namespace {
+
+constexpr uint16_t kPatienceMs = 60000;  // for the rest of a line with a SETUP word or of a block
+constexpr uint8_t kBytesATurn = 8;
+// So many mistakes are answered without a pause of this length between two bytes: then something that
+// echoes or answers each line is on the other side.
+constexpr uint8_t kMostMistakes = 16;
+constexpr uint16_t kPauseMs = 5000;
+
+// Words that ask for all others, and what radio modules say; 0x80 in the last letter of each.
+const uint8_t kHelpWords[][5] tini_progmem = {{'H', 'E', 'L', 'P' | 0x80},
+                                              {'A', 'Y', 'U', 'D', 'A' | 0x80}};
+const uint8_t kChatter[][5] tini_progmem = {
+    {'O', 'K' | 0x80}, {'A', 'T' | 0x80}, {'E', 'R', 'R', 'O', 'R' | 0x80}};
+
+bool is_latched() { return port_status().state >= State::kStopped; }
+
+}  // namespace
+
+void Console::pass(uint16_t passed_ms) {
+  quiet_ms_ = passed_ms < kPatienceMs - quiet_ms_ ? static_cast<uint16_t>(quiet_ms_ + passed_ms)
+                                                  : kPatienceMs;
+}
+
+void Console::discard() {
+  is_discarding_ = true;
+  is_silent_ = false;
+  is_open_ = false;
+}
+
+tini_noinline Console::Act Console::turn(Receiver* receiver, bool is_heard) {
+  uint8_t byte;
+  for (uint8_t left = kBytesATurn; left != 0; left--) {
+    if (has_answer()) return Act::kNone;
+    if (!receiver->take_text(&byte)) break;
+    quiet_ms_ = 0;
+    is_silent_ = false;
+    const Act act = take(byte, is_heard);
+    receiver->keep_line(is_open_ && is_patient());
+    if (act != Act::kNone) return act;
+  }
+  if (quiet_ms_ >= kPauseMs) mistakes_ = 0;
+  if (quiet_ms_ == kPatienceMs) {
+    if (is_open_) say(Remark::kGivenUp);
+    is_open_ = false;
+  } else if (quiet_ms_ >= kSilenceMs && !is_silent_) {
+    is_silent_ = true;
+    return fall_silent();
+  }
+  return Act::kNone;
+}
+
+// A second has passed without a byte.
+Console::Act Console::fall_silent() {
+  is_discarding_ = is_ignoring_ = is_refused_ = false;
+  if (!is_open_) return Act::kNone;
+  if (is_waiting_) {
+    say(Remark::kWaiting);
+  } else if (!is_patient()) {
+    is_open_ = false;
+    // Whoever types letter by letter has typed S, and waits.
+    if (port_status().state == State::kRunning && reader_.put(kLineEnd) == Text::kProgram &&
+        reader_.is_stop()) {
+      return stop();
+    }
+  }
+  return Act::kNone;
+}
+
+Console::Act Console::stop() {
+  is_talking_ = true;
+  return Act::kStop;
+}
+
+Console::Act Console::take(uint8_t byte, bool is_heard) {
+  if (is_discarding_) return Act::kNone;
+  if (byte == kLineCut) {
+    is_open_ = is_refused_ = false;
+    return Act::kNone;
+  }
+  if (byte == kLineEnd) return end_line(is_heard);
+  if (is_refused_ || (!is_open_ && !begin(byte))) return Act::kNone;
+  reader_.put(byte);
+  if (!has_moved_ && reader_.wants_room()) has_room();
+  return Act::kNone;
+}
+
+// Begins a program in memory that nobody uses.
+bool Console::begin(uint8_t byte) {
+  uint16_t room;
+  image_ = port_text_memory(&room, &has_moved_);
+  is_refused_ = image_ == nullptr;
+  if (is_refused_) return false;
+  reader_.begin(image_ + kHeaderBytes, room);
+  is_open_ = true;
+  has_lost_ = is_waiting_ = false;
+  length_ = 0;
+  first_ = byte;
+  return true;
+}
+
+// Moves the program to where there is room for all of it. False: not now.
+bool Console::has_room() {
+  if (has_moved_) return true;
+  const bool has_setup = reader_.has_setup();
+  if (is_ignoring_ && !has_setup) return true;
+  has_lost_ = port_status().saved == Saved::kMemory;
+  uint16_t room;
+  uint8_t* const image = has_setup || !is_latched() ? port_text_room(&room) : nullptr;
+  is_refused_ = image == nullptr;
+  is_open_ = !is_refused_;
+  if (is_refused_) return false;
+  image_ = image;
+  reader_.move(image + kHeaderBytes, room);
+  has_moved_ = true;
+  return true;
+}
+
+Console::Act Console::end_line(bool is_heard) {
+  if (is_refused_) {
+    if (!is_heard) refuse();
+    is_refused_ = false;
+  }
+  if (!is_open_) return Act::kNone;
+  const Text text = reader_.put(kLineEnd);
+  const bool has_setup = reader_.has_setup();
+  const bool was_waiting = is_waiting_;
+  const uint8_t before = length_;
+  length_ = reader_.length();
+  is_waiting_ = is_open_ = text == Text::kMore;
+  if (is_ignoring_ && !has_setup) {
+    is_open_ = false;
+    return Act::kNone;
+  }
+  switch (text) {
+    case Text::kMore:
+      if (length_ == before + 1 && reader_.ends_with_stop()) return Act::kEnd;
+      break;
+    case Text::kProgram:
+      if (reader_.is_stop()) return stop();
+      is_ignoring_ = false;
+      is_talking_ = true;
+      if (reader_.start() == kStartPing) {
+        say(Remark::kHello);
+      } else if (has_room()) {
+        is_open_ = false;
+        return Act::kStart;
+      } else {
+        refuse();
+      }
+      break;
+    case Text::kProblem:
+      is_ignoring_ = has_setup || was_waiting;
+      if (!is_chatter() && !is_heard && mistakes_ != kMostMistakes) {
+        mistakes_++;
+        is_talking_ = true;
+        say(asks_for_help() ? Remark::kHelp : Remark::kMistake);
+      }
+      break;
+    case Text::kGoesOn:
+    case Text::kNothing:
+      break;
+  }
+  return Act::kNone;
+}
+
+// The line cannot be read now.
+void Console::refuse() {
+  is_refused_ = is_open_ = false;
+  is_talking_ = true;
+  say(is_latched() ? Remark::kLatched : Remark::kSaving);
+}
+
+// Whether there is time for the rest of the line: it begins with a SETUP word, or a block is open.
+bool Console::is_patient() const {
+  return is_waiting_ || reader_.has_setup() || reader_.may_have_setup();
+}
+
+bool Console::asks_for_help() {
+  return reader_.is_about(kHelpWords[0]) || reader_.is_about(kHelpWords[1]);
+}
+
+// Whether the line is what radio modules say.
+bool Console::is_chatter() {
+  for (const uint8_t(&word)[5] : kChatter) {
+    if (reader_.is_about(word)) return true;
+  }
+  return first_ == '+';
+}
+
+}  // namespace tiniscript
+
+#endif  // tiniscript_reads_text

@@ -1,0 +1,90 @@
+// The robot's half of a conversation in text: feeds the reader, and decides what a line does and
+// which answer is due.
+//
+// Knows how long a line may take, and which lines are ignored. What a line asks for is done by the
+// link. `docs/link.md` is the contract.
+
+#ifndef TINISCRIPT_LINK_CONSOLE_H_
+#define TINISCRIPT_LINK_CONSOLE_H_
+
+#include <stdint.h>
+
+#include "../text/reader.h"
+#include "../text/remarks.h"
+#include "receiver.h"
+
+namespace tiniscript {
+
+class Console {
+ public:
+  // What a line asks of the link: to stop the robot, to end what runs, to start the program that
+  // was read.
+  enum class Act : uint8_t { kNone, kStop, kEnd, kStart };
+
+  void pass(uint16_t passed_ms);
+
+  // Takes text that has arrived. `is_heard`: a client's frames arrive, so mistakes get no answer.
+  Act turn(Receiver* receiver, bool is_heard);
+
+  // The robot was stopped: what arrives before a second of silence is ignored.
+  void discard();
+
+  // Whether a line or a program has begun.
+  bool is_open() const { return is_open_; }
+
+  // Somebody else uses the memory: the open line and its program are lost.
+  void drop() { is_open_ = false; }
+
+  // Whether the last one who spoke to the robot was a person.
+  bool is_talking() const { return is_talking_; }
+  void hang_up() { is_talking_ = false; }
+
+  // The program that was read: its image, without a header.
+  const Reader& reader() const { return reader_; }
+  uint8_t* image() const { return image_; }
+
+  // Whether the program that the robot held is lost.
+  bool has_lost() const { return has_lost_; }
+
+  // Sets the answer that is due. Writes it as a line of at most kWireBytes and returns its length.
+  void say(Remark remark) { remark_ = remark; }
+  bool has_answer() const { return remark_ != Remark::kNone; }
+  uint8_t write(uint8_t* out);
+
+  // Writes a line with a value that a program shows.
+  static uint8_t write_value(int32_t value, bool is_yes_no, uint8_t* out);
+
+ private:
+  Act take(uint8_t byte, bool is_heard);
+  Act end_line(bool is_heard);
+  Act fall_silent();
+  bool begin(uint8_t byte);
+  bool has_room();
+  void refuse();
+  Act stop();
+  bool is_patient() const;
+  bool asks_for_help();
+  bool is_chatter();
+
+  uint8_t* image_;
+  uint16_t quiet_ms_;  // time since the last byte of text
+  uint8_t length_;     // of the code before this line
+  uint8_t first_;      // the first byte of the program
+  Remark remark_;
+  uint8_t word_at_;    // of the words of the robot that are being said
+  uint8_t mistakes_;   // answered since the last pause
+  bool is_open_;       // the reader has begun a line or a program
+  bool has_moved_;     // it lies where there is room for a whole program
+  bool is_refused_;    // there is none: the line is not read
+  bool has_lost_;
+  bool is_waiting_;    // for the end of a block that an earlier line has opened
+  bool is_talking_;
+  bool is_discarding_;
+  bool is_ignoring_;   // lines without a SETUP word: there was a mistake in their program
+  bool is_silent_;     // a second has passed
+  Reader reader_;
+};
+
+}  // namespace tiniscript
+
+#endif  // TINISCRIPT_LINK_CONSOLE_H_

@@ -1,0 +1,20 @@
+// Whether this robot reads programs as text: not where its flash has no room for the reader.
+
+#ifndef TINISCRIPT_LINK_READS_TEXT_H_
+#define TINISCRIPT_LINK_READS_TEXT_H_
+
+#if !defined(__AVR__) || defined(__AVR_ATmega2560__)
+#define tiniscript_reads_text
+#endif
+
+namespace tiniscript {
+
+#ifdef tiniscript_reads_text
+constexpr bool kReadsText = true;
+#else
+constexpr bool kReadsText = false;
+#endif
+
+}  // namespace tiniscript
+
+#endif  // TINISCRIPT_LINK_READS_TEXT_H_
