@@ -54,14 +54,12 @@ byte:
     ld r0, Z+
     eor crc0, r0
     clr r0
-    bld r0, 1               ; it falls out after two rounds
-four_bits:
-    shift_bit
-    shift_bit
+    bld r0, 3               ; it falls out after four rounds
+two_bits:
     shift_bit
     shift_bit
     lsr r0
-    brcc four_bits
+    brcc two_bits
 next_byte:
     subi length0, 1
     sbci length1, 0
