@@ -54,7 +54,7 @@ class Question(NamedTuple):
     def is_answered_by(self, said: str) -> bool:
         try:
             got = ran(said)
-        except (AssertionError, Refused, ImageRefused):
+        except (AssertionError, ValueError, IndexError, Refused, ImageRefused):
             return False
         if isinstance(self.want, str):
             return got.trace.splitlines()[-1].split()[-1] == self.want

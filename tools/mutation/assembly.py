@@ -67,6 +67,7 @@ _NEEDLESS = {
         "bad_2: sbiw r26, 1 is nop",
         "bad_variable: rjmp bad_2 is left out",
         "bad_compare2: sbiw r26, 1 is sbiw r26, (1) + 1",
+        "bad_compare2: sbiw r26, 1 is nop",
     ),
     "a program does not go on after a fault": (
         "faulted: sbiw r26, 1 is sbiw r26, (1) + 1",
