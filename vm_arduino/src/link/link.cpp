@@ -49,9 +49,12 @@ void Link::turn() {
   }
   const bool is_there = receiver_->has_frame();  // the whole frame has arrived
   check();
-  // A reply that is due goes first.
-  if (is_there && (due_ & kDueReply) == 0) hear();
-  talk();
+  // A reply that is due goes first, and text last.
+  if (is_there && (due_ & kDueReply) == 0) {
+    hear();
+  } else {
+    talk();
+  }
   if (is_tethered_ && left_ms_[kListen] <= kListenMs - kTetherMs &&
       port_status().state == State::kRunning) {
     port_stop(static_cast<uint8_t>(LinkFault::kLinkLost));
