@@ -214,6 +214,8 @@ def changed_code(sensors: int) -> Iterator[tuple[bytes, int | None]]:
         number = bytes([each])
         for name in ("READ", "PUSH_SENSOR", "PUSH_READ"):
             yield simple(name) + number, caught
+    # a distance that leads beyond all addresses of 16 bits, to the instruction itself
+    yield jump("ELSE", True, 0xFFFD), 0
     for op in OPS:  # instructions of one byte name what a machine has, or may have not
         if op.implied and op.implied.kind.name == "sensor":
             yield bytes([op.code]), 0 if op.implied.value >= sensors else None

@@ -68,6 +68,8 @@ _NEEDLESS = {
         "bad_variable: rjmp bad_2 is left out",
         "bad_compare2: sbiw r26, 1 is sbiw r26, (1) + 1",
         "bad_compare2: sbiw r26, 1 is nop",
+        "bad_set: rjmp bad_2 is left out",
+        "bad_add: movw r26, at is left out",
     ),
     "a program does not go on after a fault": (
         "faulted: sbiw r26, 1 is sbiw r26, (1) + 1",
@@ -87,6 +89,15 @@ _NEEDLESS = {
     "these bits are shifted out": (
         "op_push_var_short: andi r30, tini_shorts - 1 is left out",
         "op_set_var_short: andi r30, tini_shorts - 1 is left out",
+    ),
+    "of two equal values either is the smaller and the larger one": (
+        "op_min: ldi r30, LESS is ldi r30, (LESS) + 1",
+        "op_max: ldi r30, MORE is ldi r30, (MORE) + 1",
+    ),
+    "all but 0 goes on": ("op_until8: inc r18 is dec r18",),
+    "it is quicker so: what is loaded is not used, who leaves comes back": (
+        f"{_EXECUTE}: cpse looped, r1 is left out",
+        "statement_end: brne 4f is left out",
     ),
     "TIME faults after 24 days, and where a tick ends is no part of the meaning": (
         "op_time: tst r18 is left out",
