@@ -36,19 +36,34 @@ void Console::pass(uint16_t passed_ms) {
 
 void Console::discard() {
   is_discarding_ = true;
-  is_silent_ = false;
+  begin_silence();
   is_open_ = false;
+}
+
+void Console::begin_silence() {
+  quiet_ms_ = 0;
+  is_silent_ = false;
+}
+
+// What is left of a lost program is not run alone.
+bool Console::drop() {
+  const bool is_lost = is_open_ && (is_waiting_ || reader_.has_setup());
+  if (is_lost) {
+    is_ignoring_ = true;
+    begin_silence();
+  }
+  is_open_ = false;
+  return is_lost;
 }
 
 tini_noinline Console::Act Console::turn(Receiver* receiver, bool is_heard) {
   uint8_t byte;
+  receiver->keep_line(is_open_ && is_patient());
   for (uint8_t left = kBytesATurn; left != 0; left--) {
     if (has_answer()) return Act::kNone;
     if (!receiver->take_text(&byte)) break;
-    quiet_ms_ = 0;
-    is_silent_ = false;
+    begin_silence();
     const Act act = take(byte, is_heard);
-    receiver->keep_line(is_open_ && is_patient());
     if (act != Act::kNone) return act;
   }
   if (quiet_ms_ >= kPauseMs) mistakes_ = 0;
@@ -87,7 +102,11 @@ Console::Act Console::stop() {
 Console::Act Console::take(uint8_t byte, bool is_heard) {
   if (is_discarding_) return Act::kNone;
   if (byte == kLineCut) {
-    is_open_ = is_refused_ = false;
+    is_refused_ = false;
+    if (drop() && !is_heard) {
+      is_talking_ = true;
+      say(Remark::kGivenUp);
+    }
     return Act::kNone;
   }
   if (byte == kLineEnd) return end_line(is_heard);

@@ -32,8 +32,9 @@ class Console {
   // Whether a line or a program has begun.
   bool is_open() const { return is_open_; }
 
-  // Somebody else uses the memory: the open line and its program are lost.
-  void drop() { is_open_ = false; }
+  // The open line and its program are lost: somebody else uses the memory. Returns whether further
+  // lines of that program may come; they are ignored.
+  bool drop();
 
   // Whether the last one who spoke to the robot was a person.
   bool is_talking() const { return is_talking_; }
@@ -58,6 +59,7 @@ class Console {
   Act take(uint8_t byte, bool is_heard);
   Act end_line(bool is_heard);
   Act fall_silent();
+  void begin_silence();
   bool begin(uint8_t byte);
   bool has_room();
   void refuse();
@@ -80,7 +82,7 @@ class Console {
   bool is_waiting_;    // for the end of a block that an earlier line has opened
   bool is_talking_;
   bool is_discarding_;
-  bool is_ignoring_;   // lines without a SETUP word: there was a mistake in their program
+  bool is_ignoring_;   // lines without a SETUP word: their program is lost
   bool is_silent_;     // a second has passed
   Reader reader_;
 };

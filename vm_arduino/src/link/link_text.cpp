@@ -18,7 +18,10 @@ tini_noinline void Link::talk() {
   const Console::Act act = console_.turn(receiver_, is_listened_to());
   if (act == Console::Act::kStop) halt(Cause::kText);
   if (act == Console::Act::kEnd) port_end();
-  if (act == Console::Act::kStart) console_.say(start_text());
+  if (act == Console::Act::kStart) {
+    is_ready_ = false;  // its image may lie where the one of a frame was made ahead
+    console_.say(start_text());
+  }
   if (console_.has_answer()) due_ |= kDueText;
 }
 

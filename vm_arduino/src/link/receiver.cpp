@@ -26,7 +26,9 @@ bool Receiver::take(uint8_t byte, uint16_t now_ms) {
   const bool is_quiet = static_cast<uint16_t>(now_ms - last_ms_) >= kSilenceMs;
   last_ms_ = now_ms;
   if (is_quiet) {
-    if (!kReadsText || !is_kept_ || (place_ != Place::kText && place_ != Place::kLost)) cut();
+    const bool is_text =
+        place_ == Place::kText || place_ == Place::kLost || place_ == Place::kAfterText;
+    if (!kReadsText || !is_kept_ || !is_text) cut();
     zeros_ = 0;
   }
   if (byte == 0) return zero();

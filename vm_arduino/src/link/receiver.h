@@ -47,7 +47,8 @@ class Receiver {
   // it were lost. False: none waits.
   bool take_text(uint8_t* byte);
 
-  // Whether a second of silence leaves the open line of text as it is. The caller limits its time.
+  // Whether a second of silence leaves the open line or program of text as it is. The caller limits
+  // its time.
   void keep_line(bool is_kept) { is_kept_ = is_kept; }
 
   // Bytes of an unfinished item may be read up to `length`. `has_begun` says whether another item

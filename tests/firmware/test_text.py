@@ -1,0 +1,317 @@
+"""The whole robot and lines of text: what they start, what they stop, and what they leave alone.
+
+`python -m tests.firmware.test_text 1000` throws so many times anything at a robot.
+"""
+
+from __future__ import annotations
+
+import sys
+
+import pytest
+
+from tests.firmware.test_host_firmware import (
+    LONG,
+    computer,
+    happened,
+    image_of,
+    outcome,
+    send,
+    stored,
+    switched_on,
+)
+from tests.machines.host_firmware import HostFirmware, missing
+from tiniscript.link.messages import SAVED_STORED, STATUSES
+from tiniscript.link.payloads import StatusReply
+from tiniscript.link.requests import OK
+from tiniscript.link.session import Session
+
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
+
+SAVED_BACK = ["MOTORS -60 -60", "MOTORS 0 0", "FINISHED"]  # what `holding` holds
+LINE = ["MOTORS 50 50", "MOTORS 0 0", "FINISHED"]
+SAVED_MEMORY = 1
+
+
+def typed(robot: HostFirmware, text: str | bytes, milliseconds: int = 30) -> list[str]:
+    """Let bytes arrive at 9600 baud; return the lines that it answers."""
+    data = text if isinstance(text, bytes) else text.encode()
+    sent = b"".join(robot.step(bytes((byte,))) for byte in data)
+    return (sent + robot.wait(milliseconds)).decode("latin-1").splitlines()
+
+
+def holding(text: str = "SB|B(0.2, 60)", saves: bool = True) -> tuple[HostFirmware, Session]:
+    """Return a robot that holds a program, and whose client has gone."""
+    robot, session = switched_on(), computer()
+    send(robot, session, text, saves=saves)
+    if saves:
+        stored(robot, session)
+    robot.wait(4000)
+    robot.did.clear()
+    return robot, session
+
+
+def status(robot: HostFirmware, session: Session) -> StatusReply:
+    request = session.status()
+    assert robot.until(session, request) == OK
+    return outcome(request).values
+
+
+def fetched(robot: HostFirmware, session: Session) -> bytes:
+    request = session.fetch()
+    assert robot.until(session, request) == OK
+    return outcome(request).values.image
+
+
+def done_after(robot: HostFirmware, text: str | bytes, milliseconds: int = 1200) -> list[str]:
+    """Return what the robot does after a line."""
+    robot.did.clear()
+    typed(robot, text, milliseconds)
+    return happened(robot)
+
+
+# -- a line, and the program that the robot holds -------------------------------------------------
+
+
+def test_a_line_moves_and_its_end_is_told() -> None:
+    robot = switched_on()
+    assert typed(robot, "SI|F(0.2,50)\n", 400) == ["// OK", "// DONE"]
+    assert happened(robot) == LINE
+    first, last = (int(line.split()[0]) for line in robot.did[:2])
+    assert last - first == 200
+    assert done_after(robot, "f ( 0.2 , 50 )\r") == LINE
+
+
+@pytest.mark.parametrize("saves", [True, False])
+def test_the_program_that_it_holds_is_untouched(saves: bool) -> None:
+    """Also one that is in memory only: there is room for two programs."""
+    robot, session = holding(saves=saves)
+    before = fetched(robot, session)
+    robot.wait(4000)
+    assert typed(robot, "SI|F(0.2,50);SHOW(1.5)\r\n", 400) == ["// OK", "// 1.5", "// DONE"]
+    assert fetched(robot, session) == before
+    assert status(robot, session).saved == (SAVED_STORED if saves else SAVED_MEMORY)
+    robot.wait(4000)
+    robot.did.clear()
+    robot.push()
+    robot.wait(400)
+    assert happened(robot) == SAVED_BACK
+
+
+def test_sb_waits_for_the_button_and_is_gone_with_the_power() -> None:
+    robot, session = holding()
+    before = fetched(robot, session)
+    robot.wait(4000)
+    assert typed(robot, "SB|F(0.2,50)\n", 2000) == ["// OK. The button starts it."]
+    assert robot.did == [] and robot.is_lit
+    for _ in range(2):
+        robot.push()
+        robot.wait(400)
+    assert happened(robot) == LINE * 2
+    assert done_after(robot, "SI|R(0.1,40)\n")[0] == "MOTORS 40 -40"
+    robot.did.clear()
+    robot.push()
+    robot.wait(400)
+    assert happened(robot) == LINE, "a line that runs at once leaves the button's program"
+    assert status(robot, session).saved == SAVED_MEMORY
+    again = switched_on(robot.memory())
+    again.push()
+    again.wait(400)
+    assert happened(again) == SAVED_BACK
+    assert fetched(again, computer(2)) == before
+
+
+def test_a_program_of_frames_replaces_sb() -> None:
+    robot, session = holding()
+    typed(robot, "SB|F(0.2,50)\n")
+    send(robot, session, "SB|L(0.1, 40)")
+    robot.did.clear()
+    robot.push()
+    robot.wait(400)
+    assert happened(robot)[0] == "MOTORS -40 40"
+
+
+@pytest.mark.parametrize(
+    "line",
+    ["FOO(1)\n", "SI|F(1,\n", "F(1,500)\n", "SB|X=\n", "F(1,50)~0\n", "\x01\x02\n",
+     "SI|LOOP(2);\nBAD\n", "9" * 300 + "\n"],
+)  # fmt: skip
+def test_a_bad_line_leaves_what_runs(line: str) -> None:
+    robot = switched_on()
+    typed(robot, "SI|F(30,50)\n", 300)
+    typed(robot, line, 2000)
+    assert happened(robot) == ["MOTORS 50 50"]
+
+
+# -- what ends a run that text has started --------------------------------------------------------
+
+
+@pytest.mark.parametrize("how", ["s\n", "STOP", "zeros", "button"])
+def test_what_stops_it_latches(how: str) -> None:
+    robot, _ = holding()
+    typed(robot, "SI|F(30,50)\n", 1500)
+    assert happened(robot) == ["MOTORS 50 50"]
+    if how == "button":
+        robot.push()
+    elif how == "zeros":
+        robot.wait(50, bytes(8))
+    else:
+        assert typed(robot, how, 1100) == ["// STOPPED"]
+    assert happened(robot) == ["MOTORS 50 50", "MOTORS 0 0"]
+    robot.wait(1500)
+    assert typed(robot, "F(1,50)\n", 1100) == ["// It was stopped. Begin with SI|"]
+    assert happened(robot) == ["MOTORS 50 50", "MOTORS 0 0"]
+    assert typed(robot, "SI|F(0.2,50)\n", 400) == ["// OK", "// DONE"]
+    robot.did.clear()
+    robot.push()
+    robot.wait(400)
+    assert happened(robot) == SAVED_BACK
+
+
+@pytest.mark.parametrize("how", ["s\n", "zeros", "button"])
+def test_what_arrives_less_than_a_second_after_a_stop_is_not_done(how: str) -> None:
+    """It may have been under way: also where the line was silent before the stop."""
+    robot = switched_on()
+    typed(robot, "SI|F(30,50)\n", 3000)
+    if how == "button":
+        robot.push()
+    else:
+        robot.wait(20, bytes(8) if how == "zeros" else how.encode())
+    robot.wait(100)
+    for _ in range(4):
+        typed(robot, "SI|F(1,50)\n", 700)
+    assert happened(robot) == ["MOTORS 50 50", "MOTORS 0 0"]
+    robot.wait(1000)
+    assert typed(robot, "SI|F(0.2,50)\n", 400) == ["// OK", "// DONE"]
+
+
+def test_it_has_no_tether_and_a_longest_time() -> None:
+    robot = switched_on(max_run_ms=5000)
+    typed(robot, "SI|F(30,50)\n", 4900)
+    assert happened(robot) == ["MOTORS 50 50"]
+    robot.step(flags=8)  # nobody is connected
+    assert happened(robot) == ["MOTORS 50 50"]
+    assert robot.wait(300) == b"// FAULT MAX_RUN\r\n"
+    assert happened(robot)[1:] == ["MOTORS 0 0", "FAULTED"]
+
+
+def test_a_fault_is_told_recorded_and_kept() -> None:
+    robot, session = holding()
+    held = status(robot, session).program
+    robot.wait(4000)
+    assert typed(robot, "SI|X=0;F(0.1,50);X=1/X\n", 300) == ["// OK", "// FAULT DIVIDE_BY_ZERO"]
+    assert happened(robot) == ["MOTORS 50 50", "MOTORS 0 0", "FAULTED"]
+    values = status(robot, session)
+    # nothing is fused in a robot's own code: its checksum is that of no image of the compiler
+    assert values.fault == 2 and values.program == held
+    assert values.fault_program not in (0, held)
+    robot.wait(3000)
+    again = status(switched_on(robot.memory()), computer(2))
+    assert (again.fault, again.fault_at) == (2, values.fault_at)
+    assert again.fault_program == values.fault_program
+    assert typed(robot, "F(0.2,50)\n") == ["// It was stopped. Begin with SI|"]
+
+
+def test_a_fault_names_the_image_of_the_text() -> None:
+    """Where the plain code and the compiler's are the same, so are the checksums."""
+    robot, session = switched_on(), computer()
+    image = image_of("SI|W(TIME / (TIME - TIME))")
+    typed(robot, "SI|W(TIME/(TIME-TIME))\n")
+    assert status(robot, session).fault_program == image.checksum
+
+
+# -- frames and text ------------------------------------------------------------------------------
+
+
+def test_frames_during_and_after_text() -> None:
+    robot, session = switched_on(), computer()
+    typed(robot, "SI|F(30,50)\n", 100)
+    assert status(robot, session).state == 1
+    assert robot.until(session, session.live(image_of("SI|F(0.1, 80)").code)) == OK
+    robot.talk(session, 300)
+    assert happened(robot) == ["MOTORS 50 50", "MOTORS 0 0", "MOTORS 80 80", "MOTORS 0 0",
+                               "FINISHED"]  # fmt: skip
+    robot.did.clear()
+    typed(robot, "SI|F(30,50)\n", 20)
+    send(robot, session, "SI|F(0.1, 80)")
+    robot.talk(session, 300)
+    assert happened(robot)[-2:] == ["MOTORS 0 0", "FINISHED"]
+    assert "MOTORS 80 80" in happened(robot)
+    robot.did.clear()
+    typed(robot, "SI|F(0.2,50)\n", 300)
+    assert happened(robot) == LINE
+
+
+@pytest.mark.parametrize("burst", [True, False])
+@pytest.mark.parametrize("less", range(1, 12))
+def test_a_live_line_right_behind_text_is_what_its_frame_says(less: int, burst: bool) -> None:
+    """Its image is made before its frame ends: text that comes between must not be run for it."""
+    robot, session = switched_on(), computer()
+    robot.until(session, session.hello())
+    image = image_of("SI|F(0.1, 80)")
+    request = session.live(image.code)
+    frame = session.poll(robot.now_ms)
+    text = b"SI|M(50,50);W(5)\n\0"
+    robot.step(text + frame[:-less], flags=16 if burst else 0, ticks=0 if burst else 1)
+    sent = robot.step(b"", ticks=4) + robot.step(frame[-less:]) + robot.wait(20)
+    session.receive(sent, robot.now_ms)
+    robot.talk(session, 300)
+    assert robot.until(session, request) == OK
+    assert outcome(request).values.program == image.checksum
+    assert happened(robot)[-3:] == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
+
+
+@pytest.mark.parametrize("line", ["FOO\n", "SI|F(0.2,50)\n", "SB|F(0.2,50)\n", "S\n"])
+def test_an_upload_while_text_arrives(line: str) -> None:
+    """It is whole, or it is refused and the one before is there."""
+    robot, session = holding()
+    before = fetched(robot, session)
+    request = session.upload(image_of(LONG))
+    robot.talk(session, 10)
+    for byte in line.encode():
+        session.receive(robot.step(bytes((byte,))), robot.now_ms)
+    found = robot.until(session, request)
+    # in one frame's place it may start, and an S that comes later stops it
+    assert found in (OK, STATUSES["NOT_BEGUN"], STATUSES["STALE"], STATUSES["LATCHED"])
+    robot.talk(session, 6000)
+    image = fetched(robot, session)
+    if found == OK:
+        assert image.endswith(image_of(LONG).code)
+    elif not line.startswith("SB"):
+        assert image == before
+
+
+@pytest.mark.parametrize("start", ["SI", "SB"])
+def test_text_while_a_program_is_being_saved(start: str) -> None:
+    robot, session = switched_on(), computer()
+    send(robot, session, LONG.replace("SI", "SB"))
+    robot.wait(300)
+    answers = []
+    for _ in range(40):
+        robot.step(b"\0")
+        answers += typed(robot, f"{start}|F(0.1,50)\n", 150)
+        if answers[-1] == "// OK. The button starts it.":
+            break
+    assert answers[-1] in ("// DONE", "// OK. The button starts it."), answers
+    stored(switched_on(robot.memory()), computer(3), 12_000)
+    robot.wait(12_000)
+    again = switched_on(robot.memory())
+    image = fetched(again, computer(2))
+    assert image.endswith(image_of(LONG).code)
+
+
+def test_values_wait_for_room_and_none_is_lost() -> None:
+    robot = switched_on()
+    said = typed(robot, "SI|X=0;LOOP(50);X=X+1.001;SHOW(X);END_LOOP;SHOW(X>1)\n", 3000)
+    values = [f"// {(k + 1) * 1.001:.3f}" for k in range(50)]
+    assert said == [
+        "// OK",
+        *(each.rstrip("0").rstrip(".") for each in values),
+        "// TRUE",
+        "// DONE",
+    ]
+
+
+if __name__ == "__main__":
+    from tests.firmware.test_text_fuzz import campaign
+
+    campaign(int(sys.argv[1]) if len(sys.argv) > 1 else 1000)
