@@ -184,6 +184,18 @@ def test_what_arrives_less_than_a_second_after_a_stop_is_not_done(how: str) -> N
     assert typed(robot, "SI|F(0.2,50)\n", 400) == ["// OK", "// DONE"]
 
 
+@pytest.mark.parametrize("noise", [b"\n", b" ", b"\x05\x06", b"\0", b"\xff"])
+def test_a_line_is_silent_after_a_stop_when_nothing_at_all_arrives(noise: bytes) -> None:
+    robot = switched_on()
+    typed(robot, "SI|F(30,50)\n")
+    typed(robot, "S\n")
+    for _ in range(5):
+        typed(robot, noise, 500)
+    typed(robot, b"\0SI|F(1,50)\n", 1500)
+    assert happened(robot) == ["MOTORS 50 50", "MOTORS 0 0"]
+    assert typed(robot, "SI|F(0.2,50)\n", 400) == ["// OK", "// DONE"]
+
+
 def test_it_has_no_tether_and_a_longest_time() -> None:
     robot = switched_on(max_run_ms=5000)
     typed(robot, "SI|F(30,50)\n", 4900)

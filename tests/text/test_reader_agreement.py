@@ -17,7 +17,7 @@ import pytest
 from tests.machines import Senses
 from tests.machines.host import missing
 from tests.machines.python import lists_of
-from tests.machines.text_reader import Answer, TextReader
+from tests.machines.text_reader import LARGEST_ROOM, Answer, TextReader
 from tests.oracle import programs
 from tests.support.casefile import Case, all_cases
 from tests.support.kits import KITS
@@ -25,6 +25,10 @@ from tiniscript import check_text, compile_text, robots
 from tiniscript.bytecode.verify import verify
 from tiniscript.kit import Kit
 from tiniscript.source import Unreadable, decode
+from tiniscript.syntax.lexer import scan
+from tiniscript.text.levels import CODE_BYTES, LEVELS, LONGEST_WORD
+from tiniscript.text.memory import Reader as Model
+from tiniscript.text.plain import plain_code
 from tiniscript.vm.trace import run
 from tiniscript.words import WORDS
 
@@ -32,6 +36,7 @@ pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a
 
 MAX_MS, MAX_STEPS = 5_000, 5_000
 SHORT_BUFFER = 389 - 15
+SENSOR_BYTES = LEVELS["mega"].sensor_bytes  # as this computer has them
 PROGRAMS, BROKEN, SOUPS = 400, 4, 3000  # in the tests; a campaign runs more
 TRACED = 10  # of so many programs a campaign runs one
 
@@ -44,7 +49,7 @@ TOKENS = (*WORDS, "X", "Y", "Z", "DISTANCE", "LIGHT_R", "LINE", "TOUCH", "LED", 
 
 
 @lru_cache(maxsize=8)
-def reader_of(kit: Kit, room: int = 60_000) -> TextReader:
+def reader_of(kit: Kit, room: int = LARGEST_ROOM) -> TextReader:
     return TextReader(kit, room)
 
 
@@ -56,26 +61,39 @@ def is_right(data: bytes, kit: Kit) -> bool:
         return False
 
 
-def check_bytes(data: bytes, kit: Kit) -> Answer | None:
+def check_bytes(data: bytes, kit: Kit, room: int = LARGEST_ROOM) -> Answer | None:
     """The reader says of a text what the compiler says; None: it is too long for a robot."""
-    answer = reader_of(kit).read(data)
+    answer = reader_of(kit, room).read(data)
+    right = is_right(data, kit)
+    if right:
+        check_code(data, kit, answer, room)
     if answer.problem == "FULL":
         return None
-    if answer.is_program != is_right(data, kit):
+    if answer.is_program != right:
         assert is_known_difference(data), f"{answer}\n{data!r}"
     if answer.is_program:
         verify(answer.code, len(kit.sensors), len(kit.actuators))
     return answer
 
 
-def is_known_difference(data: bytes) -> bool:
-    """What the reader takes and the compiler does not, or the other way.
+def check_code(data: bytes, kit: Kit, answer: Answer, room: int) -> None:
+    """The code of a right text is the plain one, or what `text/memory.py` counts is too much."""
+    compiled = compile_text(decode(data), kit)
+    assert compiled.program is not None
+    plain = plain_code(compiled.program)
+    model = Model(scan(compiled.source.text).tokens, kit, SENSOR_BYTES)
+    model.program()
+    fits = plain.length <= CODE_BYTES and model.most <= room and model.one_too_many is None
+    if fits and all(len(word) <= LONGEST_WORD for word in re.findall(r"\w+", compiled.source.text)):
+        assert answer.code == plain.code, f"{answer} {model.most}\n{data!r}"
+    else:
+        assert answer.problem == "FULL", f"{answer} {model.most}\n{data!r}"
 
-    Bytes in a comment are only looked at, a `~` is a checksum's, and START has no UNTIL.
-    """
-    text = data.decode("utf-8", "replace").upper()
-    has_odd_bytes = "\ufffd" in text and "//" in text  # in a comment they are only looked at
-    return has_odd_bytes or "~" in text or re.search(r"START\s+UNTIL", text) is not None
+
+def is_known_difference(data: bytes) -> bool:
+    """What the reader takes and the compiler does not: bytes in a comment are only looked at."""
+    text = data.decode("utf-8", "replace")
+    return "\ufffd" in text and "//" in text
 
 
 def check_program(data: bytes, kit: Kit, senses: Senses) -> None:
@@ -186,6 +204,7 @@ def test_little_room_is_full_and_nothing_else(room: int) -> None:
     for seed in range(200):
         kit, data, _, slips = texts_of(seed, 1)
         for each in (data, *slips):
+            check_bytes(each, kit, room)
             want, got = reader_of(kit).read(each), reader_of(kit, room).read(each)
             assert got.problem == "FULL" or got == want
 

@@ -70,7 +70,8 @@ void read_texts(Read* read) {
     Text found = Text::kNothing;
     for (const uint8_t byte : text) {
       const Text now = read->reader.put(byte);
-      if (now != Text::kGoesOn && found != Text::kProblem) found = now;
+      if (now != Text::kGoesOn) found = now;
+      if (found == Text::kProblem) break;
     }
     read->say(found);
   }

@@ -59,6 +59,7 @@ bool Console::drop() {
 tini_noinline Console::Act Console::turn(Receiver* receiver, bool is_heard) {
   uint8_t byte;
   receiver->keep_line(is_open_ && is_patient());
+  if (receiver->has_heard() && is_discarding_) begin_silence();
   for (uint8_t left = kBytesATurn; left != 0; left--) {
     if (has_answer()) return Act::kNone;
     if (!receiver->take_text(&byte)) break;

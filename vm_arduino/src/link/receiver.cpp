@@ -25,6 +25,7 @@ bool Receiver::put(uint8_t byte, uint16_t now_ms) { return near(this)->take(byte
 bool Receiver::take(uint8_t byte, uint16_t now_ms) {
   const bool is_quiet = static_cast<uint16_t>(now_ms - last_ms_) >= kSilenceMs;
   last_ms_ = now_ms;
+  if (kReadsText) has_heard_ = true;
   if (is_quiet) {
     const bool is_text =
         place_ == Place::kText || place_ == Place::kLost || place_ == Place::kAfterText;

@@ -51,6 +51,13 @@ class Receiver {
   // its time.
   void keep_line(bool is_kept) { is_kept_ = is_kept; }
 
+  // Whether any byte has arrived since the last call.
+  bool has_heard() {
+    if (!has_heard_) return false;
+    has_heard_ = false;
+    return true;
+  }
+
   // Bytes of an unfinished item may be read up to `length`. `has_begun` says whether another item
   // has begun since the last call: call it before `length`. An item that begins between the two
   // calls counts as begun, too.
@@ -104,6 +111,7 @@ class Receiver {
   bool is_dropping_;
   bool is_begun_;            // the line in `bytes_` goes on in `text_`
   volatile bool is_kept_;
+  volatile bool has_heard_;
   uint8_t taken_;            // bytes of the line in `bytes_`
   volatile uint8_t first_;   // the text that waits, in a ring
   volatile uint8_t behind_;
