@@ -73,7 +73,8 @@ def test_text_at_once_after_power_on() -> None:
     assert robot.step(ticks=3) == b"// Still saving. Send it again.\r\n"
     robot.wait(300)
     assert done_after(robot, "SI|F(0.2,50)\n") == LINE
-    assert typed(HostFirmware(KIT, EMPTY), "PING|\n")[-1].startswith("// ")
+    (hello,) = typed(HostFirmware(KIT, EMPTY), "PING|CHECK_CONNECTION\n")
+    assert hello.endswith(", text 1")
 
 
 # -- what must not be run in parts ----------------------------------------------------------------

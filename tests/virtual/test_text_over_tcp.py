@@ -1,0 +1,69 @@
+"""`tsc robot --listen` and a plain TCP connection, as `nc` has it: a person types lines."""
+
+from __future__ import annotations
+
+import socket
+import time
+
+import pytest
+
+from tests.cli.test_virtual_command import FOREVER, robot, visitor
+from tests.support.virtual_robot import missing
+
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
+
+LIMIT_S = 30  # only a test that fails waits so long
+SILENT_S = 1.5  # longer than the second that a robot waits for
+
+
+def heard(client: socket.socket, end: str) -> list[str]:
+    """Return what is answered, up to a line that ends so."""
+    client.settimeout(LIMIT_S)
+    data = b""
+    while not data.endswith(end.encode() + b"\r\n"):
+        more = client.recv(1000)
+        assert more, data
+        data += more
+    return data.decode().split("\r\n")[:-1]
+
+
+def test_lines_are_answered_and_the_robot_drives() -> None:
+    with robot("--listen", "0", "--name", "KAT") as found, visitor(found.port) as client:
+        client.sendall(b"PING|CHECK_CONNECTION\r\n")
+        [hello] = heard(client, "text 1")
+        assert hello.startswith("// KAT, kit ")
+        client.sendall(b"SI|F(0.2,50);SHOW(1.5)\n")
+        assert heard(client, "DONE") == ["// OK", "// 1.5", "// DONE"]
+        assert found.until("DONE")[1:3] == ["0 MOTORS 50 50", "200 MOTORS 0 0"]
+        client.sendall(b"SI|FOO(1)\n")
+        assert heard(client, "known") == ["// 7: Word not known"]
+        for line in FOREVER.replace(";", ";\n").encode().splitlines(keepends=True):
+            client.sendall(line)
+        client.sendall(b"\n")
+        assert heard(client, "OK") == ["// OK"]
+        client.sendall(b"s\n")
+        assert heard(client, "STOPPED") == ["// STOPPED"]
+        time.sleep(SILENT_S)  # what comes sooner is not done
+        client.sendall(b"F(1,50)\n")
+        assert heard(client, "SI|") == ["// It was stopped. Begin with SI|"]
+        client.sendall(b"SI|F(0.1,50)\n")
+        assert heard(client, "DONE") == ["// OK", "// DONE"]
+
+
+@pytest.mark.parametrize(
+    "first", [b"GET / HTTP/1.1\r\n", b"SI|F / HTTP/1.1\r\n", b"\x16\x03\x01\x02\x00"]
+)
+def test_what_a_browser_begins_with_is_refused_and_a_line_gets_through(first: bytes) -> None:
+    with robot("--listen", "0") as found:
+        with visitor(found.port) as page:
+            page.settimeout(LIMIT_S)
+            page.sendall(first)
+            try:
+                page.sendall(b"\r\nSI|F(9,50)\r\n")
+                assert page.recv(1000) == b""
+            except ConnectionError:
+                pass  # it has hung up at once
+        with visitor(found.port) as client:
+            client.sendall(b"SI|F(0.1,50)\n")
+            assert heard(client, "DONE") == ["// OK", "// DONE"]
+        assert found.until("DONE")[1:3] == ["0 MOTORS 50 50", "100 MOTORS 0 0"]
