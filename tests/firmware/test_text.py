@@ -272,6 +272,26 @@ def test_a_live_line_right_behind_text_is_what_its_frame_says(less: int, burst: 
     assert happened(robot)[-3:] == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
 
 
+@pytest.mark.parametrize("text", [b"", b"W(9)\n\0", b"FOO\nW(9)\n\0"])
+def test_a_program_in_the_same_turn_as_text_has_its_checksum(text: bytes) -> None:
+    """Where the robot was slow, both wait: the image must be sealed before the next one is."""
+    robot, session = switched_on(), computer()
+    robot.until(session, session.hello())
+    image = image_of("SB|F(0.1, 80)")
+    request = session.upload(image)
+    frame = session.poll(robot.now_ms)
+    assert len(frame) < 30
+    session.receive(robot.step(text + frame, flags=16, ticks=1), robot.now_ms)
+    assert robot.until(session, request) == OK
+    assert outcome(request).values.program == image.checksum
+    typed(robot, "W(0)\n")
+    stored(robot, session)
+    again = switched_on(robot.memory())
+    again.push()
+    again.wait(300)
+    assert happened(again) == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
+
+
 @pytest.mark.parametrize("line", ["FOO\n", "SI|F(0.2,50)\n", "SB|F(0.2,50)\n", "S\n"])
 def test_an_upload_while_text_arrives(line: str) -> None:
     """It is whole, or it is refused and the one before is there."""

@@ -108,3 +108,18 @@ def test_a_line_of_a_program_may_come_late_and_indented(blanks: str) -> None:
     typed(robot, f"{blanks}F(0.2,50)\n", 1500)
     assert typed(robot, "END_LOOP\n", 700) == ["// OK", "// DONE"]
     assert happened(robot) == LINE[:2] * 2 + LINE[2:]
+
+
+@pytest.mark.parametrize(
+    ("text", "awaited"),
+    [
+        ("LOOP(2)\n", "END_LOOP"), ("LOOP(FOREVER)\n", "END_LOOP"), ("IF(TRUE)\n", "ENDIF"),
+        ("IF(TRUE);ELSE\n", "ENDIF"), ("WHILE(TRUE)\n", "END_WHILE"), ("DEF A\n", "END_DEF"),
+        ("X=(1\n", ")"), ("LOOP(2)\nX=1+", "END_LOOP"), ("LOOP(2)\nX=-", "END_LOOP"),
+        ("IF(TRUE)\nX=TRUE AND NOT ", "ENDIF"), ("IF(TRUE)\nX=MIN(1,", "ENDIF"),
+        ("DEF A\nF(1,", "END_DEF"),
+    ],
+)  # fmt: skip
+def test_what_an_open_block_waits_for_is_told(text: str, awaited: str) -> None:
+    """Also in the middle of a line: what the reader keeps of that is no block."""
+    assert typed(switched_on(), text, 1100) == [f"// Waiting for {awaited}"]

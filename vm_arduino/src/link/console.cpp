@@ -166,6 +166,7 @@ Console::Act Console::end_line(bool is_heard) {
   }
   switch (text) {
     case Text::kMore:
+      awaited_ = reader_.awaited();
       if (length_ == before + 1 && reader_.ends_with_stop()) return Act::kEnd;
       break;
     case Text::kProgram:

@@ -72,6 +72,7 @@ class Console {
   uint16_t quiet_ms_;  // time since the last byte of text
   uint8_t length_;     // of the code before this line
   uint8_t first_;      // the first byte of the program
+  uint8_t awaited_;    // the word that the last line has left open, or ')'
   Remark remark_;
   uint8_t word_at_;    // of the words of the robot that are being said
   uint8_t mistakes_;   // answered since the last pause

@@ -162,7 +162,7 @@ tini_noinline uint8_t Console::write(uint8_t* out) {
     }
     default:
       line.put_text(text_of(remark));
-      if (remark == Remark::kWaiting) line.put_token(reader_.awaited());
+      if (remark == Remark::kWaiting) line.put_token(awaited_);
       if (remark == Remark::kFault) line.put_text(name_of_fault(port_status().fault));
   }
   return line.end();

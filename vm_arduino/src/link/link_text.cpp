@@ -50,9 +50,13 @@ Remark Link::start_text() {
   image[kNeedsAt] = kNeeds;
   for (uint8_t k = 0; k < kEndBytes; k++) code[length + k] = static_cast<uint8_t>(Op::kEnd);
   image_ = nullptr;
+  seal();  // a frame's image of this turn, whose receipt is due
+  const uint32_t receipt = checksum_;
   image = port_take_text(start != 0);
   if (image == nullptr) return Remark::kSaving;
-  unsealed_ = image;
+  put_checksum(image);
+  port_seal(image);
+  checksum_ = receipt;
   is_tethered_ = false;
   if (start != 0) return Remark::kOkButton;
   return console_.has_lost() ? Remark::kOkLost : Remark::kOk;

@@ -77,8 +77,7 @@ Problem Reader::close(uint8_t type) {
 
 uint8_t Reader::awaited() const {
   if (brackets_ != 0) return ')';
-  const uint8_t type = top()->type;
-  return type == kForeverBlock ? kWordEndLoop : type;
+  return static_cast<uint8_t>(kWordEndif + (top()->type & kBlockType));
 }
 
 // BREAK leaves the innermost loop.
