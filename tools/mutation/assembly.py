@@ -115,6 +115,33 @@ _NEEDLESS = {
         "bad_caller: pop r0 is left out (no. 3)",
     ),
 }
+# What no test notices yet: how a call of `execute` ends early (the tests' program has no
+# interrupts, and runs code in one piece), and checks of jumps that only code that changed would
+# fail (what lies before and behind the code of the tests' program ends in BAD_CODE, too).
+OPEN = frozenset(
+    (
+        "land: cp code_end, r26 is left out",
+        "op_loop: tst a3 is left out (no. 2)",
+        "op_again: sbic GPIOR0, tini_attention_bit is sbis GPIOR0, tini_attention_bit",
+        "op_again: 1: clt is 1: set",
+        "op_again: breq bad_back is left out",
+        "jump_back: breq leave_behind_jump is brne leave_behind_jump",
+        "jump_back: breq leave_behind_jump is left out",
+        "jump_back: sbic GPIOR0, tini_attention_bit is sbis GPIOR0, tini_attention_bit",
+        "jump_back: ldd r19, Z+tini_code_at+1 is left out",
+        "jump_back: cp r26, r18 is left out",
+        "jump_back: brlo bad_back is left out",
+        "leave_behind_jump: sbiw r24, 1 is sbiw r24, (1) + 1",
+        "leave_behind_jump: sbiw r24, 1 is nop",
+        "leave_behind_jump: brtc 4f is brts 4f",
+        "leave_behind_jump: brtc 4f is left out",
+        "leave_behind_jump: sbiw r24, 1 is nop (no. 2)",
+        "leave_behind_jump: 4: movw at, r24 is 4:",
+        "op_return: brcs bad_back is left out",
+        "let_z_be_call: add r30, r20 is sub r30, r20",
+    )
+)
+
 NEEDLESS = {name: reason for reason, names in _NEEDLESS.items() for name in names}
 
 
