@@ -101,7 +101,6 @@ Console::Act Console::stop() {
 }
 
 Console::Act Console::take(uint8_t byte, bool is_heard) {
-  if (is_discarding_) return Act::kNone;
   if (byte == kLineCut) {
     is_refused_ = false;
     if (drop() && !is_heard) {
@@ -135,7 +134,7 @@ bool Console::begin(uint8_t byte) {
 bool Console::has_room() {
   if (has_moved_) return true;
   const bool has_setup = reader_.has_setup();
-  if (is_ignoring_ && !has_setup) return true;
+  if (is_ignored()) return true;
   has_lost_ = port_status().saved == Saved::kMemory;
   uint16_t room;
   uint8_t* const image = has_setup || !is_latched() ? port_text_room(&room) : nullptr;
@@ -160,8 +159,10 @@ Console::Act Console::end_line(bool is_heard) {
   const uint8_t before = length_;
   length_ = reader_.length();
   is_waiting_ = is_open_ = text == Text::kMore;
-  if (is_ignoring_ && !has_setup) {
-    is_open_ = false;
+  // S stops, also where nothing else is listened to.
+  if (text == Text::kProgram && reader_.is_stop()) return stop();
+  if (is_ignored()) {
+    is_open_ = is_waiting_ = false;
     return Act::kNone;
   }
   switch (text) {
@@ -170,7 +171,6 @@ Console::Act Console::end_line(bool is_heard) {
       if (length_ == before + 1 && reader_.ends_with_stop()) return Act::kEnd;
       break;
     case Text::kProgram:
-      if (reader_.is_stop()) return stop();
       is_ignoring_ = false;
       is_talking_ = true;
       if (reader_.start() == kStartPing) {
@@ -195,6 +195,11 @@ Console::Act Console::end_line(bool is_heard) {
       break;
   }
   return Act::kNone;
+}
+
+// Whether the line is read, and nothing but S does anything.
+bool Console::is_ignored() const {
+  return is_discarding_ || (is_ignoring_ && !reader_.has_setup());
 }
 
 // The line cannot be read now.

@@ -63,6 +63,7 @@ class Console {
   bool begin(uint8_t byte);
   bool has_room();
   void refuse();
+  bool is_ignored() const;
   Act stop();
   bool is_patient() const;
   bool asks_for_help();
