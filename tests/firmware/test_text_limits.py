@@ -8,9 +8,12 @@ from tests.firmware.test_host_firmware import KIT, computer, happened, switched_
 from tests.firmware.test_text import LINE, done_after, holding, typed
 from tests.machines.host_firmware import EMPTY, HostFirmware, missing
 from tests.support.command import OBSTACLE
+from tiniscript.kit import NUMBER, Device, Kit
 from tiniscript.link.requests import OK
 
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
+
+LINE_LETTERS = 63  # of an answer, without its end
 
 CODE_BYTES = 255
 
@@ -51,6 +54,29 @@ def test_a_line_of_10000_bytes(what: str) -> None:
     assert robot.did == []
     robot.wait(1100)
     assert typed(robot, "SI|F(0.2,50)\n", 400) == ["// OK", "// DONE"]
+
+
+@pytest.mark.parametrize("letters", [1, 24, 25, 59, 60, 61, 255, 1000])
+def test_help_with_a_device_of_a_long_name(letters: int) -> None:
+    """An answer is never longer than a line; a word that is longer is cut."""
+    distance = Device("DISTANCE", NUMBER, "cm", 0, 400_000)
+    kit = Kit((distance, Device("A" * letters, NUMBER, "", 0, 1)), ())
+    robot = HostFirmware(kit, EMPTY)
+    robot.wait(200)
+    answers = typed(robot, "HELP\n", 2000)
+    assert max(map(len, answers)) <= LINE_LETTERS
+    words = [word for answer in answers for word in answer.removeprefix("// ").split()]
+    assert words[-2:] == ["DISTANCE", "A" * min(letters, LINE_LETTERS - len("// "))]
+
+
+def test_a_name_cannot_end_its_line() -> None:
+    """Else an echo of it would be a program."""
+    robot, session = switched_on(), computer()
+    robot.until(session, session.hello())
+    robot.until(session, session.name(b"\r\nS;\x1b[2J\xc3\xb1\x00\x7f"))
+    robot.wait(4000)
+    (answer,) = typed(robot, "PING|CHECK_CONNECTION\n")
+    assert answer.encode("latin-1").startswith(b"// ??S;?[2J\xc3\xb1??, kit ")
 
 
 @pytest.mark.parametrize("end", ["\n", "\r", "\r\n"])

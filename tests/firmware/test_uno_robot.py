@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -14,6 +15,7 @@ from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import Image, unpack
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
+from tools.bench.firmware_size import FLASH_MUST
 from tools.uno import CYCLES_PER_MS, Uno
 
 KIT = robots.load("tinibot").kit
@@ -55,6 +57,12 @@ def switched_on(sketch: Path, memory: Path) -> Uno:
     uno.run_ms(300)
     assert states(uno) == OFF
     return uno
+
+
+def test_the_sketch_keeps_to_its_size(sketch: Path) -> None:
+    done = subprocess.run(["avr-size", sketch], capture_output=True, text=True, check=True)
+    code, data = (int(word) for word in done.stdout.splitlines()[1].split()[:2])
+    assert 10_000 < code + data <= FLASH_MUST
 
 
 def states(uno: Uno) -> dict[str, str]:

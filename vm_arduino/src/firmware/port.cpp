@@ -28,7 +28,8 @@ Answer port_make_way(bool is_live) {
 }
 
 bool port_may_prepare() {
-  return has_booted() && !is_image_running(live) && load_program();
+  const bool is_text = kTextIsInProgram && is_image_running(program) && !is_in_memory();
+  return has_booted() && !is_image_running(live) && !is_text && load_program();
 }
 
 uint8_t* port_memory(uint16_t length, bool is_live) {
@@ -49,7 +50,8 @@ void port_take(uint8_t mode, bool is_live) {
 }
 
 void port_seal(const uint8_t* image) {
-  if (image == program) robot_status.program = get32(image + kChecksumAt);
+  if (image == program && (!kTextIsInProgram || is_in_memory()))
+    robot_status.program = get32(image + kChecksumAt);
 }
 
 void port_start(bool is_live) {

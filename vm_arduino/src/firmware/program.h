@@ -8,6 +8,7 @@
 #include <stdint.h>
 
 #include "../link/messages.h"
+#include "../link/reads_text.h"
 #include "../store/layout.h"
 #include "../vm/vm.h"
 
@@ -26,9 +27,11 @@ static_assert(kTextRoom <= kStoredCodeBytes, "an Uno reads it where its program 
 // An ATmega328P would read a program where the one is that it holds. Others have room for both.
 #if !defined(__AVR__) || defined(__AVR_ATmega2560__)
 #define tiniscript_has_draft
+constexpr bool kTextIsInProgram = false;
 constexpr uint16_t kLiveImageBytes = kHeaderBytes + kTextCodeBytes;
 extern uint8_t draft[kHeaderBytes + kTextRoom];
 #else
+constexpr bool kTextIsInProgram = kReadsText;
 constexpr uint16_t kLiveImageBytes = kHeaderBytes + kPayloadBytes - kLiveCodeAt;
 #endif
 

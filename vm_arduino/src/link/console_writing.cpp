@@ -30,16 +30,18 @@ const uint8_t* behind(const uint8_t* word) {
   return word;
 }
 
-// A line that is being written, as if memory had no end: nobody writes more than fits.
+// A line that is being written. What does not fit is left out.
 class Line {
  public:
-  explicit Line(uint8_t* out) : out_(out), at_(out) {
+  explicit Line(uint8_t* out) : out_(out), at_(out), end_(out + kWireBytes - kLineEndBytes) {
     put('/');
     put('/');
     put(' ');
   }
 
-  void put(uint8_t byte) { *at_++ = byte; }
+  void put(uint8_t byte) {
+    if (at_ != end_) *at_++ = byte;
+  }
 
   void put_text(const uint8_t* text) {
     for (uint8_t letter; (letter = flash_byte(text)) != 0; text++) put(letter);
@@ -61,6 +63,9 @@ class Line {
     for (; token != kFirstWord; token--) word = behind(word);
     put_word(word);
   }
+
+  // Puts a byte that somebody else has chosen: it may be no sign that a terminal obeys.
+  void put_foreign(uint8_t byte) { put(byte < ' ' || byte == 0x7f ? uint8_t{'?'} : byte); }
 
   void put_hex(uint32_t number, uint8_t digits) {
     while (digits-- != 0) {
@@ -87,21 +92,21 @@ class Line {
     while (count > last) {
       if (count == 3) put('.');
       put(digits[--count]);
-      if (count == 3 && last == 3) break;
     }
   }
 
   uint8_t length() const { return static_cast<uint8_t>(at_ - out_); }
 
   uint8_t end() {
-    put('\r');
-    put('\n');
+    *at_++ = '\r';
+    *at_++ = '\n';
     return length();
   }
 
  private:
   uint8_t* const out_;
   uint8_t* at_;
+  uint8_t* const end_;
 };
 
 // Returns the word of this number: those of the language, then those of the kit. nullptr: no more.
@@ -153,7 +158,7 @@ tini_noinline uint8_t Console::write(uint8_t* out) {
       break;
     case Remark::kHello: {
       const DeviceInfo& info = port_device_info();
-      for (uint8_t k = 0; k < info.name_length; k++) line.put(info.name[k]);
+      for (uint8_t k = 0; k < info.name_length; k++) line.put_foreign(info.name[k]);
       if (info.name_length == 0) line.put_hex(port_identity().id, 8);
       line.put_text(kIsOfKit);
       line.put_hex(port_identity().kit, 4);
