@@ -127,7 +127,10 @@ BREAKS = {
     ),
     "settling begins with the mark": ("kKeeping = 15;", "kKeeping = 16;"),
     "the checksum is not looked at": ("== kBehindItself;", "!= 0;"),
-    "equal bytes are never written": ("is_stable_ = held != kNothing;", "is_stable_ = true;"),
+    "equal bytes are never written": (
+        "is_stable_ = held_[slot_] != kNothing;",
+        "is_stable_ = true;",
+    ),
     "the generation is not in the body": ("at == 0 ? byte ^ nvm_read(place) : byte;", "byte;"),
     "the mark is the same for each generation": ("generation_ ^ kMarkOf;", "kMarkOf;"),
     "what is emptied still fits": (

@@ -222,6 +222,7 @@ class SessionSide:
             "status": session.status,
             "clear": session.clear,
             "fetch": session.fetch,
+            "undo": session.undo,
             "start": lambda: session.start("detached" in flags),
             "live": lambda: session.live(data),
             "name": lambda: session.name(data),

@@ -14,6 +14,7 @@ from tiniscript.link.statuses import texts
 from tools.generate.cpp_header import array, camel, constants, enumeration
 
 HEADER_GUARD = "TINISCRIPT_LINK_MESSAGES_H_"
+KEPT_FOR_LATER = 0xFF  # the length of a request whose number is reserved: no payload is so long
 
 
 def header(command: str) -> str:
@@ -67,6 +68,9 @@ def header(command: str) -> str:
             ("kFirstActing", messages.FIRST_ACTING),
         ),
         "// How long the payload of each request may be, from the first one on: least and most.\n"
+        "// kKeptForLater: the number is kept for later, and no payload is so long.\n"
+        + constants(("kKeptForLater", KEPT_FOR_LATER))
+        + "\n"
         "extern const uint8_t kRequestBytes[][2] tini_progmem;\n",
         "// Where each field of a request begins.\n" + constants(*_places()),
         "// What begins a reply. Below 64: an image's Refusal, or the verifier's Rule.\n"
@@ -89,7 +93,12 @@ def header(command: str) -> str:
 
 def tables(command: str) -> str:
     """Return `messages.cpp`: the table that the header declares."""
-    rows = [("{{{}, {}}}".format(*messages.sizes(each.request)), each.name) for each in _requests()]
+    by_number = {each.number: each for each in _requests()}
+    rows = []
+    for number in range(1, max(by_number) + 1):
+        each = by_number.get(number)
+        low, high = messages.sizes(each.request) if each else (KEPT_FOR_LATER, KEPT_FOR_LATER)
+        rows.append((f"{{{low}, {high}}}", each.name if each else messages.RESERVED[number]))
     return "\n".join(
         (
             _first_line(command),
@@ -108,7 +117,7 @@ def _first_line(command: str) -> str:
 
 def _requests() -> list[messages.Message]:
     found = [each for each in MESSAGES if each.number < messages.FIRST_EVENT]
-    assert [each.number for each in found] == list(range(1, len(found) + 1))
+    assert [each.number for each in found] == sorted({each.number for each in found})
     return found
 
 

@@ -169,6 +169,20 @@ class RobotConnection:
         reply = self._ask(lambda session: session.start(detached))
         return self._begun(reply, True, detached)
 
+    def undo(self) -> Receipt:
+        """Bring back the program that the robot held before the last saved one; a second call
+        brings the later one back.
+
+        What runs ends, and nothing starts. Returns when the robot holds it; `close` waits until
+        that is saved. Raises RobotError, with the reason `NO_PREVIOUS` where there is none.
+        """
+        self._check_open()
+        reply = self._ask(lambda session: session.undo())
+        self._is_saving = True
+        receipt = self._begun(reply, False, False)
+        self._follower = None
+        return receipt
+
     def events(self, timeout: float | None = None) -> Iterator[RobotEvent]:
         """Yield the robot's events until the program that this connection has started ends (that
         event is the last one) or `timeout` seconds have passed. If it has started none, only the

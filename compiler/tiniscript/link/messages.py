@@ -133,6 +133,8 @@ MESSAGES = (
     _message(14, "NAME", True, "name:rest=1..16", "", "Names the robot: UTF-8. OK when it is kept, before that SAVING or LOW_SUPPLY: ask again."),
     _message(15, "TRIM", True, f"trim:rest=0..{TRIM_BYTES}", "wheels:u8 balance:i8 least:u8",
              "Sets the trim of the motors, three bytes like those of the reply, or only tells it. OK as for NAME."),
+    _message(19, "UNDO", True, "", _RECEIPT,
+             "The robot holds the program before again. What runs ends; nothing starts."),
     # events: a robot sends these without being asked
     _message(32, "SHOW", False, "", "value:i32 is_yes_no:u8", "A value that a program shows."),
     _message(33, "FAULT", False, "", "run:u8 fault:u8 at:u16 program:u32",
@@ -149,7 +151,7 @@ SHARED_REPLIES = {
     "EmptyReply": (),
 }
 
-RESERVED = {16: "CLAIM", 17: "AUTHENTICATE", 18: "IDENTIFY", 19: "UNDO", 20: "TEXT"}
+RESERVED = {16: "CLAIM", 17: "AUTHENTICATE", 18: "IDENTIFY", 20: "TEXT"}
 
 # The status, the first byte of a reply. 1 to 19 are the refusals of an image, 20 to 63 the rules
 # of the verifier: `bytecode_spec.md`. The sentences are in `statuses.toml`.
@@ -173,6 +175,7 @@ STATUSES = {
     "SAVING": 78,
     "LOW_SUPPLY": 79,
     "NOT_KEPT": 80,
+    "NO_PREVIOUS": 90,
 }
 # The meaning of the number after a status other than OK. Statuses not listed here have 0.
 DETAILS = {

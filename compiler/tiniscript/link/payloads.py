@@ -68,7 +68,7 @@ class EmptyReply(NamedTuple):
 
 
 class ReceiptReply(NamedTuple):
-    """What is in the reply to START, LIVE, PROGRAM, COMMIT."""
+    """What is in the reply to START, LIVE, PROGRAM, COMMIT, UNDO."""
 
     program: int
     run: int
@@ -148,6 +148,7 @@ REPLIES: dict[str, type[SentReply]] = {
     "ABORT": EmptyReply,
     "NAME": EmptyReply,
     "TRIM": TrimReply,
+    "UNDO": ReceiptReply,
 }
 
 

@@ -144,6 +144,11 @@ class Session:
         exchange = self._handshake.open_then(lambda: self._handshake.upload(image, mode, kit))
         return self._add(exchange, starts=runs and image.start == "SI")
 
+    def undo(self) -> PendingExchange[ReceiptReply]:
+        """Have the robot hold the program before again; what runs ends."""
+        request = Request("UNDO")
+        return self._add(self._handshake.open_then(lambda: requests.patient(request, ReceiptReply)))
+
     def name(self, name: bytes) -> PendingExchange[EmptyReply]:
         return self._add(self._handshake.open_then(lambda: self._handshake.name(name)))
 

@@ -27,7 +27,7 @@ from tiniscript.sharing.protocol import BadMessage, JsonMessage
 CODE_BYTES = 0x7FFF  # the most that an image's header can say
 LATER_BYTES = 0xFF - HEADER_BYTES  # the most that it can say
 T = TypeVar("T")
-_PLAIN = ("hello", "ping", "status", "clear", "fetch")
+_PLAIN = ("hello", "ping", "status", "clear", "fetch", "undo")
 
 
 class ClientRequest(PendingRequest[T]):
@@ -56,6 +56,9 @@ class ClientRequests:
 
     def fetch(self) -> ClientRequest[FetchedImage]:
         return ClientRequest("fetch", FetchedImage)
+
+    def undo(self) -> ClientRequest[ReceiptReply]:
+        return ClientRequest("undo", ReceiptReply)
 
     def name(self, name: bytes) -> ClientRequest[EmptyReply]:
         return ClientRequest("name", EmptyReply, name=name.hex())

@@ -107,7 +107,10 @@ void port_take(uint8_t mode, bool is_live) {
   if (!is_whole) say("TAKE something that is no image");
   say(is_live ? "TAKE live %08x" : "TAKE %08x", checksum_of(image));
   if (is_live) return;
-  if ((mode & kSave) != 0) port.stored = image;
+  if ((mode & kSave) != 0) {
+    port.previous = port.stored;
+    port.stored = image;
+  }
   hold(image, (mode & kSave) != 0 ? Saved::kStored : Saved::kMemory);
 }
 
@@ -147,6 +150,16 @@ uint8_t* port_take_text(bool is_for_button) {
     port_start(false);
   }
   return image;
+}
+
+Answer port_undo() {
+  if (port.is_busy) return Answer::kBusy;
+  if (port.previous.empty()) return Answer::kNoPrevious;
+  port_end();
+  port.previous.swap(port.stored);
+  hold(port.stored, Saved::kStored);
+  say("UNDO %08x", port.robot_status.program);
+  return Answer::kOk;
 }
 
 void port_end() {

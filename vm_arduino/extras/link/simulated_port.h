@@ -24,6 +24,7 @@ struct SimulatedPort {
   std::unique_ptr<uint8_t[]> text;  // what is read as text
   std::string held;    // the image that START starts
   std::string stored;  // the one that is saved: what is held again where an upload breaks off
+  std::string previous;  // the one that was saved before
   std::string log;
 };
 

@@ -134,6 +134,52 @@ const char* run_checks() {
   start(&store);
   expect(has(store, b));
 
+  // a verdict that is taken back
+  expect(save(&store, a));
+  const uint8_t slot = store.used(Area::kProgram);
+  store.refuse();
+  expect(has(store, b));
+  store.readmit(slot);
+  expect(has(store, a));
+
+  // the program before is saved again: nothing of it is touched before the motors stand, and it
+  // is not lost where that is given up
+  writes = memory.writes;
+  for (uint8_t k = 0; k < 2; k++) {
+    expect(store.begin_save(b.data()));
+    run(&store, false, 2000);
+    expect(store.is_ready_to_commit() && !store.is_committing() && memory.writes == writes);
+    expect(has(store, a));
+    store.give_up();
+    expect(!store.is_busy() && has(store, a));
+  }
+  expect(store.begin_save(b.data()));
+  store.tick(true);
+  expect(store.is_committing() && memory.writes == writes + 1);
+  run(&store, true, 40);  // a few bytes: it soon counts again
+  expect(!store.is_busy() && memory.writes == writes + 8 && has(store, b));
+  start(&store);
+  expect(has(store, b));
+  expect(save(&store, a) && memory.writes == writes + 16);
+  start(&store);
+  expect(has(store, a));
+  expect(save(&store, b));
+
+  // where a byte of it has changed by itself it is written anew, all of it
+  memory.cells[place_of(store.used(Area::kProgram) ^ 1) + kBodyAt + 20] = {1, 1};
+  expect(save(&store, a));
+  start(&store);
+  expect(has(store, a) && save(&store, b));
+
+  // what is half written over counts no more
+  expect(store.begin_save(c.data()));
+  run(&store, false, 5000);
+  store.give_up();
+  store.refuse();
+  expect(has(store, {}));
+  start(&store);
+  expect(has(store, b) && save(&store, a) && save(&store, b));
+
   // records: apart from each other and from programs
   expect(store.begin_keep(Area::kIdentity, record.data()));
   run(&store, true);

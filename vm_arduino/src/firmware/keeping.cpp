@@ -1,6 +1,7 @@
 #include "keeping.h"
 
 #include "../link/frames.h"
+#include "../store/nvm.h"
 #include "identity.h"
 #include "program.h"
 #include "run.h"
@@ -170,7 +171,7 @@ Answer give_up_program() {
   } else if (store.is_busy() || (to_keep & kProgramBit) != 0) {
     return Answer::kBusy;  // a program that is being written cannot be read
   }
-  return Answer::kOk;
+  return nvm_is_ready() ? Answer::kOk : Answer::kBusy;
 }
 
 Answer not_now() { return is_low ? Answer::kLowSupply : Answer::kBusy; }

@@ -95,6 +95,16 @@ uint8_t* port_take_text(bool is_for_button) {
   return image;
 }
 
+Answer port_undo() {
+  const Answer way = port_make_way(false);
+  if (way != Answer::kOk) return way;
+  const bool is_stored = robot_status.slot != kNoSlot;
+  if (!hold_previous()) return Answer::kNoPrevious;
+  if (is_stored) keep_program();
+  show_light();
+  return Answer::kOk;
+}
+
 void port_end() {
   if (is_running()) end_run(State::kIdle);
 }

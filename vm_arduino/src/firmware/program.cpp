@@ -57,6 +57,25 @@ void hold_memory() {
   robot_status.saved = Saved::kMemory;
 }
 
+bool hold_previous() {
+  const uint8_t slot = robot_status.slot;
+  if (slot == kNoSlot) {
+    if (store.used(Area::kProgram) == kNoSlot) return false;
+    hold_stored();
+    return load_program();
+  }
+  store.refuse();
+  hold_stored();
+  const bool is_there = load_program() && is_whole;
+  store.readmit(slot);
+  if (is_there) {
+    hold_memory();
+  } else {
+    hold_stored();
+  }
+  return is_there;
+}
+
 bool has_program() { return is_whole || !holds_program(); }
 
 bool load_program() {

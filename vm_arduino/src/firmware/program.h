@@ -51,6 +51,11 @@ void hold_stored();
 // The robot now holds the verified image in memory, which is not stored.
 void hold_memory();
 
+// The robot now holds, in memory, the program before the one that it holds: where that is stored,
+// the one in the other slot; where it is not, the stored one. False: there is none that it can run,
+// and it holds what it held. The store must be ready.
+bool hold_previous();
+
 // Whether there is nothing to load.
 bool has_program();
 

@@ -15,6 +15,11 @@ uint8_t number_of(Answer answer) { return static_cast<uint8_t>(answer); }
 
 bool is_latched() { return port_status().state >= State::kStopped; }
 
+bool is_known_request(uint8_t type) {
+  return type != 0 && type <= kLastRequest &&
+         flash_byte(&kRequestBytes[type - 1][0]) != kKeptForLater;
+}
+
 // The reason why the robot has no program to start or to fetch, or kOk.
 Answer lacks_program() {
   const Saved saved = port_status().saved;
@@ -155,7 +160,7 @@ tini_noinline void Link::handle(uint8_t end) {
   Answer refusal = Answer::kOk;
   if ((type & kSealed) != 0) {
     refusal = Answer::kNotSealed;
-  } else if (type == 0 || type > kLastRequest) {
+  } else if (!is_known_request(type)) {
     refusal = Answer::kUnknownMessage;
   } else if (is_hello && length != 0 && payload[kHelloMajorAt] != kLinkMajor) {
     said_.detail = kLinkMajor;
@@ -229,6 +234,11 @@ uint8_t Link::answer(Message message, const uint8_t* payload, uint8_t length) {
       break;
     case Message::kTrim:
       if (length != 0) found = set_trim(payload, length);
+      break;
+    case Message::kUndo:
+      image_ = nullptr;
+      found = port_undo();
+      checksum_ = port_status().program;
       break;
   }
   return number_of(found);

@@ -116,6 +116,7 @@ void Link::reply() {
     case Message::kLive:
     case Message::kProgram:
     case Message::kCommit:
+    case Message::kUndo:
       put_all(&checksum_, sizeof checksum_);
       put(robot_status.run);
       put_all(&robot_status.slot, kPlaceBytes);

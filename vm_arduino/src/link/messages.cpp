@@ -22,6 +22,10 @@ const uint8_t kRequestBytes[][2] tini_progmem = {
     {0, 0},  // ABORT
     {1, 16},  // NAME
     {0, 3},  // TRIM
+    {255, 255},  // CLAIM
+    {255, 255},  // AUTHENTICATE
+    {255, 255},  // IDENTIFY
+    {0, 0},  // UNDO
 };
 
 }  // namespace tiniscript

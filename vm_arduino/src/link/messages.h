@@ -60,6 +60,7 @@ enum class Message : uint8_t {
   kAbort = 13,  // Drops the program that was begun.
   kName = 14,  // Names the robot: UTF-8. OK when it is kept, before that SAVING or LOW_SUPPLY: ask again.
   kTrim = 15,  // Sets the trim of the motors, three bytes like those of the reply, or only tells it. OK as for NAME.
+  kUndo = 19,  // The robot holds the program before again. What runs ends; nothing starts.
   kShow = 32,  // A value that a program shows.
   kFault = 33,  // The program has ended with a fault.
   kStopped = 34,  // The robot was stopped: its epoch is another one. Or again: it still is.
@@ -67,10 +68,13 @@ enum class Message : uint8_t {
 };
 
 // Requests are the numbers from 1 up to this one; from kFirstActing on they act.
-constexpr uint8_t kLastRequest = 15;
+constexpr uint8_t kLastRequest = 19;
 constexpr uint8_t kFirstActing = 6;
 
 // How long the payload of each request may be, from the first one on: least and most.
+// kKeptForLater: the number is kept for later, and no payload is so long.
+constexpr uint8_t kKeptForLater = 255;
+
 extern const uint8_t kRequestBytes[][2] tini_progmem;
 
 // Where each field of a request begins.
@@ -119,6 +123,7 @@ enum class Answer : uint8_t {
   kSaving = 78,  // The robot has it, and keeps it as soon as its motors stand; switched off before, it forgets it.
   kLowSupply = 79,  // The robot's batteries are too weak to save anything; switched off, it forgets what is not saved.
   kNotKept = 80,  // The robot's memory has not kept it; switched off, it forgets it.
+  kNoPrevious = 90,  // The robot has no program from before that it can run.
 };
 
 enum class State : uint8_t {

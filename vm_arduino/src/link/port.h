@@ -109,6 +109,10 @@ uint8_t* port_text_room(uint16_t* room);
 // from now on: it starts at once, or the button starts it until power-off. nullptr: not now.
 uint8_t* port_take_text(bool is_for_button);
 
+// Has the robot hold the program before the one that it holds, and has that saved. Ends what runs.
+// kNoPrevious: there is none that it can run, and it holds what it held; kBusy: nothing was done.
+Answer port_undo();
+
 // Ends what runs.
 void port_end();
 

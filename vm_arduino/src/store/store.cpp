@@ -122,13 +122,14 @@ tini_noinline void Store::boot() {
   state_ = StoreState::kSettling;
   is_busy_ = true;
   step_ = kLooking;
+  waits_from_ = kCommitting;
   go_to(0);
 }
 
 tini_noinline void Store::tick(bool may_commit) {
   if (!is_busy_ || !nvm_is_ready()) return;
   const uint8_t step = flash_byte(kSteps + step_);
-  if (step_ >= kCommitting && !may_commit && step != tiniscript::step(WriteStep::kEnd)) return;
+  if (step_ >= waits_from_ && !may_commit && step != tiniscript::step(WriteStep::kEnd)) return;
   const uint8_t at = step % 16;
   uint8_t value = kEmptied;
   switch (static_cast<WriteStep>(step / 16)) {
@@ -137,6 +138,7 @@ tini_noinline void Store::tick(bool may_commit) {
     case WriteStep::kEnd:
       return near(this)->finish();
     case WriteStep::kClear:
+      held_[slot_] = kNothing;
       nvm_clear(plus(place_, at));
       step_++;
       return;
@@ -172,11 +174,11 @@ tini_noinline void Store::tick(bool may_commit) {
 }
 
 bool Store::is_ready_to_commit() const {
-  return is_busy_ && step_ >= kCommitting && nvm_is_ready();
+  return is_busy_ && step_ >= waits_from_ && nvm_is_ready();
 }
 
 // The write of a commit byte has begun and is not finished.
-bool Store::is_committing() const { return is_busy_ && !nvm_is_ready() && step_ > kCommitting; }
+bool Store::is_committing() const { return is_busy_ && !nvm_is_ready() && step_ > waits_from_; }
 
 tini_noinline void Store::give_up() {
   if (!is_ready_to_commit() || state_ != StoreState::kSaving) return;
@@ -201,6 +203,8 @@ tini_noinline void Store::refuse() {
   const uint8_t slot = used(Area::kProgram);
   if (slot != kNoSlot) held_[slot] |= kRefused;
 }
+
+void Store::readmit(uint8_t slot) { held_[slot] &= static_cast<uint8_t>(~kRefused); }
 
 tini_noinline bool Store::fetch(Area area, uint16_t at, uint8_t* byte) const {
   const uint8_t slot = used(area);
@@ -231,29 +235,36 @@ void Store::go_beside(Area area, uint8_t slot) {
 tini_noinline bool Store::begin_write(Area area, const uint8_t* bytes, uint16_t length) {
   if (is_busy_ || !nvm_is_ready()) return false;
   const uint8_t slot = used(area);
-  if (slot != kNoSlot) {
-    // Is it equal up to the end of its check?
-    uint8_t count = is_program(slot) ? kHeaderBytes : kCheckBytes;
-    do {
-      if (count-- == 0) {
-        state_ = StoreState::kSaved;
-        return true;
-      }
-    } while (body_byte(place_of(slot), count) == bytes[count]);
+  if (slot != kNoSlot && is_in(slot, bytes, is_program(slot) ? kHeaderBytes : kCheckBytes)) {
+    state_ = StoreState::kSaved;
+    return true;
   }
   const uint8_t last = newest(area, kNothing);
   generation_ = last == kNoSlot ? 0 : (held_[last] + 1) & (kGenerations - 1);
   go_beside(area, slot);
-  uint8_t& held = held_[slot_];
-  is_stable_ = held != kNothing;
-  held = kNothing;
+  is_stable_ = held_[slot_] != kNothing;
   bytes_ = bytes;
   length_ = length;
+  waits_from_ = kCommitting;
+  if (is_stable_ && is_in(slot_, bytes, length)) {
+    // It may be the only copy: it gets another generation, and that waits from its first byte on.
+    length_ = 1;
+    waits_from_ = kSaving;
+  }
   at_ = 0;
   state_ = StoreState::kSaving;
   step_ = kSaving;
   is_busy_ = true;
   return true;
+}
+
+// Whether a slot that counts begins with these bytes.
+tini_noinline bool Store::is_in(uint8_t slot, const uint8_t* bytes, uint16_t count) {
+  const uint16_t place = place_of(slot);
+  do {
+    if (count-- == 0) return true;
+  } while (body_byte(place, count) == bytes[count]);
+  return false;
 }
 
 // Decides once what a slot holds: a byte whose write was cut may read differently later.

@@ -65,6 +65,9 @@ class Store {
   // writes nothing; after `boot` the program is offered again.
   void refuse();
 
+  // Takes back that a slot, whose data has counted before, was refused.
+  void readmit(uint8_t slot);
+
   // Puts a byte of the current image or record into `*byte`; `at` must lie in it. False: there is
   // none, or the memory is writing (try again). The memory never writes while the store is idle.
   bool fetch(Area area, uint16_t at, uint8_t* byte) const;
@@ -76,6 +79,7 @@ class Store {
   void look();
   bool is_sound() const;
   void finish();
+  static bool is_in(uint8_t slot, const uint8_t* bytes, uint16_t count);
   bool begin_write(Area area, const uint8_t* bytes, uint16_t length);
   void go_to(uint8_t slot);
   void go_beside(Area area, uint8_t slot);
@@ -90,6 +94,7 @@ class Store {
   uint8_t slot_;
   uint16_t place_;      // of the slot
   uint8_t generation_;  // of the slot
+  uint8_t waits_from_;  // steps from this one on wait for `may_commit`
   bool is_stable_;      // equal bytes of the body need not be written again
   const uint8_t* bytes_;
   uint16_t length_;

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from contextlib import suppress
 from time import monotonic
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
@@ -115,6 +115,10 @@ class Saving:
     The next command that opens the port may reset the robot, which would end the saving.
     """
 
+    # what is said where it is not saved: while it is neither, or where its memory is worn out
+    KEYS: ClassVar = {SAVED_SAVING: "saves_later", SAVED_LOW_SUPPLY: "low_supply"}
+    NOT_SAVED = "not_saved"
+
     def __init__(
         self, connection: Connection, printer: EventPrinter, receipt: ReceiptReply
     ) -> None:
@@ -155,8 +159,7 @@ class Saving:
             if not self.is_over:
                 self.connection.event()
         if self.saved != SAVED_STORED:
-            keys = {SAVED_SAVING: "saves_later", SAVED_LOW_SUPPLY: "low_supply"}
-            key = keys.get(self.saved, "not_saved")
+            key = self.KEYS.get(self.saved, self.NOT_SAVED)
             raise CommandError(3, "plain", said=text(key, self.connection.language))
 
     def wait_unseen(self) -> None:

@@ -86,7 +86,7 @@ READINGS = ("NAME=1,2,3", "NOMBRE=1,2,3")
 YES = ("yes|no", "yes|no")
 A_LEVEL = ("|".join(LEVELS),) * 2
 
-TO_MANY = "ping upload stop info"  # may work on many robots at once
+TO_MANY = "ping upload stop info undo"  # may work on many robots at once
 TO_ONE = "live link start monitor fetch name trim"
 OWN = "upload live robot"  # may bring a virtual robot along
 
@@ -159,21 +159,21 @@ OPTIONS: tuple[Option, ...] = (
     Option("--port", "check", ("for the robot on this port, which is asked", "para el robot en este puerto, al que se pregunta"), PORT, P),
     Option("--port", "ports", ("with --ask: this one alone", "con --ask: solo este"), PORT, P),
     Option("--port", TO_ONE, ("the robot's port; the last used one where nothing is said", "el puerto del robot; el último usado si no se dice nada"), PORT, P),
-    Option("--port", "ping info", ("the robot's port; the last used one where nothing is said; several for several", "el puerto del robot; el último usado si no se dice nada; varios para varios"), PORT, P, "ports", repeats=True),
+    Option("--port", "ping info undo", ("the robot's port; the last used one where nothing is said; several for several", "el puerto del robot; el último usado si no se dice nada; varios para varios"), PORT, P, "ports", repeats=True),
     Option("--port", "upload", ("the robot's port (/dev/ttyUSB0, /dev/rfcomm0, COM5, socket://host:port, ...); the last used one where nothing is said; several for several robots",
                                 "el puerto del robot (/dev/ttyUSB0, /dev/rfcomm0, COM5, socket://host:puerto, ...); el último usado si no se dice nada; varios para varios robots"), PORT, P, "ports", repeats=True),
     Option("--port", "stop", ("the robot's port; several for several", "el puerto del robot; varios para varios"), PORT, P, "ports", repeats=True),
     Option("--all", "ping info", ("every robot that answers, a line each", "todos los robots que responden, una línea por cada uno")),
-    Option("--all", "upload", ("every robot that answers, all at once", "todos los robots que responden, todos a la vez")),
+    Option("--all", "upload undo", ("every robot that answers, all at once", "todos los robots que responden, todos a la vez")),
     Option("--all", "stop", ("stops every robot that there is, all at once", "detiene todos los robots que hay, todos a la vez")),
     Option("--baud", f"check {TO_ONE} {TO_MANY}", ("the speed of its port (the one of the robot's profile)", "la velocidad de su puerto (la del perfil del robot)"), NUMBER, N),
     Option("--baud", "ports", ("with --ask: their speed (the one of the robot's profile)", "con --ask: su velocidad (la del perfil del robot)"), NUMBER, N),
     Option("--baud", "robot", ("how fast its line is (as in its profile); 0 is as fast as possible", "la velocidad de su línea (la de su perfil); 0 es lo más rápido posible"), NUMBER, N),
     Option("--robot", "compile check run show fmt upload live", ("for which robot: a name (tinibot, ...) or a profile's file", "para qué robot: un nombre (tinibot, ...) o el archivo de un perfil"), ROBOT, A_ROBOT),
-    Option("--robot", "wiring ports ping stop link start info monitor fetch name trim robot", ("which robot: a name (tinibot, ...) or a profile's file", "qué robot: un nombre (tinibot, ...) o el archivo de un perfil"), ROBOT, A_ROBOT),
+    Option("--robot", "wiring ports ping stop link start info monitor fetch name trim undo robot", ("which robot: a name (tinibot, ...) or a profile's file", "qué robot: un nombre (tinibot, ...) o el archivo de un perfil"), ROBOT, A_ROBOT),
     Option("--robot", "firmware", ("tinibot (if none is named), liner, grabber, or a profile of your own", "tinibot (si no se nombra ninguno), liner, grabber, o un perfil propio"), ROBOT, A_ROBOT),
     Option("--virtual", "check", ("for the virtual robot of `tsc robot`, which runs in another terminal", "para el robot virtual de `tsc robot`, que está en marcha en otra terminal")),
-    Option("--virtual", "ping link start info monitor fetch name trim", ("the virtual robot of `tsc robot`, which runs in another terminal", "el robot virtual de `tsc robot`, que está en marcha en otra terminal")),
+    Option("--virtual", "ping link start info monitor fetch name trim undo", ("the virtual robot of `tsc robot`, which runs in another terminal", "el robot virtual de `tsc robot`, que está en marcha en otra terminal")),
     Option("--virtual", "stop", ("virtual robots alone: those of `tsc robot`, and of commands with --virtual", "solo robots virtuales: los de `tsc robot`, y los de comandos con --virtual")),
     Option("--virtual", "upload", ("no robot: a virtual one drives here, until the program ends or Ctrl-C; the one of `tsc robot`, if that runs in another terminal. The key b is the button of one here; where nobody is at a terminal, it is pushed at once",
                                    "sin robot: uno virtual se mueve aquí, hasta que el programa termina o Ctrl-C; el de `tsc robot`, si está en marcha en otra terminal. La tecla b es el botón del de aquí; si no hay nadie en una terminal, se pulsa enseguida")),
@@ -181,6 +181,7 @@ OPTIONS: tuple[Option, ...] = (
     # how it is said
     Option("--json", "check show ping info ports", ("the same as data", "lo mismo como datos")),
     Option("--json", "upload", ("prints the receipt and what comes after it as lines of JSON", "imprime el recibo y lo que viene después como líneas de JSON")),
+    Option("--json", "undo", ("prints the receipt, and that it is saved, as lines of JSON", "imprime el recibo, y que está guardado, como líneas de JSON")),
     Option("--json", "stop", ("prints a line of JSON for each robot", "imprime una línea de JSON por cada robot")),
     Option("--json", "link start monitor", ("prints lines of JSON", "imprime líneas de JSON")),
     Option("--json", "fetch", ("the listing as data", "la lista como datos")),

@@ -121,6 +121,17 @@ LINK_TEXTS: dict[str, tuple[str, str]] = {
     "started": ("{robot}: started, checksum {checksum}. Ctrl-C stops it.", "{robot}: iniciado, suma {checksum}. Ctrl-C lo detiene."),
     "started_detached": ("{robot}: started, checksum {checksum}. It goes on without tsc; stop it with its button or tsc stop.",
                          "{robot}: iniciado, suma {checksum}. Sigue sin tsc; detenlo con su botón o tsc stop."),
+    # undo
+    "undone": ("{robot} ({port}): {line}. Start it with tsc start or the robot's button; tsc undo again takes this back.",
+               "{robot} ({port}): {line}. Inícialo con tsc start o con el botón del robot; otro tsc undo deshace esto."),
+    "undone_line": ("it holds the program before again, checksum {checksum}{name}",
+                    "vuelve a tener el programa anterior, suma {checksum}{name}"),
+    "undo_later": ("The robot has not kept this yet: it does as soon as its motors stand. Do not switch it off before; look with tsc info.",
+                   "El robot todavía no lo ha guardado: lo hace en cuanto sus motores estén quietos. No lo apagues antes; míralo con tsc info."),
+    "undo_low_supply": ("The robot's batteries are too weak to keep this: switched off, it holds the later program again. Nothing is lost. Change the batteries and do tsc undo again. With its USB cable plugged in it keeps it at once.",
+                        "Las pilas del robot están demasiado gastadas para guardarlo: si se apaga, vuelve a tener el programa más nuevo. No se pierde nada. Cambia las pilas y haz tsc undo otra vez. Con su cable USB conectado lo guarda en el acto."),
+    "undo_not_saved": ("The robot could not keep this: its memory is worn out. Switched off, it holds the later program again; the robot needs another board.",
+                       "El robot no pudo guardarlo: su memoria está gastada. Si se apaga, vuelve a tener el programa más nuevo; el robot necesita otra placa."),
     # how a program ends
     "robot_done": ("Done.", "Listo."),
     "robot_stopped": ("Stopped: the robot has confirmed it.", "Detenido: el robot lo ha confirmado."),

@@ -150,6 +150,11 @@ VERBS: dict[str, Verb] = {
         ("Starts the program that the robot holds and stays until it ends, as `tsc upload` does. Ctrl-C stops the robot.",
          "Inicia el programa que tiene el robot y se queda hasta que termina, como `tsc upload`. Ctrl-C detiene el robot."),
     ),
+    "undo": Verb(
+        ROBOTS, ("undo", "undo"), ("bring the program before back", "vuelve al programa anterior"),
+        ("Brings back the program that the robot held before the last one that it has saved, and keeps that over the next power-on. What runs ends, nothing starts. A second undo brings the later program back. Where the last program was sent with --no-save, the saved one comes back, and the other is gone.",
+         "Vuelve al programa que el robot tenía antes del último que guardó, y lo conserva cuando se apaga. Lo que está en marcha termina, y nada inicia. Otro undo vuelve al programa más nuevo. Si el último programa se envió con --no-save, vuelve el guardado, y el otro se pierde."),
+    ),
     "info": Verb(
         ROBOTS, ("info", "info"), ("what the robot says of itself", "lo que el robot dice de sí mismo"),
         ("Prints what the robot says of itself: name, kit, room, program, state, last fault.",

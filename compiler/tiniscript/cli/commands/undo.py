@@ -1,0 +1,97 @@
+"""`tsc undo`: the robot holds the program before again."""
+
+from __future__ import annotations
+
+import json
+from argparse import Namespace
+from typing import TYPE_CHECKING, ClassVar
+
+from tiniscript.cli import inputs
+from tiniscript.cli.inputs import shown
+from tiniscript.cli.robot.connect import Connection
+from tiniscript.cli.robot.run_monitor import Saving
+from tiniscript.cli.robot.targets import are_many
+from tiniscript.cli.texts.common import text
+from tiniscript.link.messages import SAVED_LOW_SUPPLY, SAVED_SAVING
+
+if TYPE_CHECKING:
+    from tiniscript.cli.robot.fleet import Member, Result
+    from tiniscript.link.payloads import ReceiptReply
+
+
+class UndoSaving(Saving):
+    """Waits until the robot keeps its choice: what it has undone is not lost before."""
+
+    KEYS: ClassVar = {SAVED_SAVING: "undo_later", SAVED_LOW_SUPPLY: "undo_low_supply"}
+    NOT_SAVED = "undo_not_saved"
+
+
+def run(options: Namespace, language: str) -> int:
+    robot = inputs.robot(options, language)
+    if are_many(options):
+        from tiniscript.cli.robot.fleet import together
+
+        return together(options, robot, language, _one_of_many)
+    with Connection(options, robot, language) as connection:
+        connection.meet()
+        receipt = Undone(connection)
+        print(json.dumps(receipt.fields()) if options.json else receipt.text(), flush=True)
+        printer = connection.event_printer(options.json)
+        UndoSaving(connection, printer, receipt.values).wait()
+    return 0
+
+
+def _one_of_many(connection: Connection, member: Member) -> Result:
+    from tiniscript.cli.robot.event_printer import EventPrinter
+    from tiniscript.cli.robot.fleet import Result
+
+    member.meet(connection)
+    receipt = Undone(connection)
+    member.tell("crew_saving")
+    quiet = EventPrinter(connection.language, False, out=lambda line: None)
+    UndoSaving(connection, quiet, receipt.values).wait()
+    return Result(True, receipt.line(), receipt.named())
+
+
+class Undone:
+    """The receipt of UNDO."""
+
+    def __init__(self, connection: Connection) -> None:
+        from tiniscript.codegen import source_map
+
+        self.connection = connection
+        self.values: ReceiptReply = connection.ask(lambda session: session.undo()).values
+        places = source_map.recall(self.values.program)
+        self.program = None if places is None else places.name
+
+    def named(self) -> dict[str, object]:
+        """Return which program is back, as data. `program`: its file, where that is known."""
+        return {"checksum": f"{self.values.program:08x}", "program": self.program}
+
+    def fields(self) -> dict[str, object]:
+        """Return the receipt as data."""
+        from tiniscript.cli.commands.upload import saved_name
+
+        saved = saved_name(self.values)
+        return {
+            "event": "RECEIPT",
+            "robot": self.connection.device_info.name,
+            "port": self.connection.port,
+            **self.named(),
+            "saved": saved,
+            "slot": self.values.slot if saved == "STORED" else None,
+        }
+
+    def line(self) -> str:
+        """Return which program is back, in one line."""
+        name = f" ({shown(self.program)})" if self.program is not None else ""
+        return text("undone_line", self.connection.language).format(
+            checksum=f"{self.values.program:08x}", name=name
+        )
+
+    def text(self) -> str:
+        """Return the receipt as lines."""
+        language, connection = self.connection.language, self.connection
+        return text("undone", language).format(
+            robot=connection.name, port=shown(connection.port), line=self.line()
+        )
