@@ -17,7 +17,9 @@ from tests.support.pty_robot import PtyRobot, on
 from tiniscript import compile_text, robots
 from tiniscript.cli.robot import connect
 from tiniscript.library import opening
-from tiniscript.link import known_ports, ports
+from tiniscript.link import known_ports, ports, requests
+from tiniscript.link.payloads import HelloReply
+from tiniscript.link.requests import DeviceInfo
 
 pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
@@ -278,8 +280,31 @@ def test_a_robot_describes_itself_and_its_port_is_remembered(pty_robot: PtyRobot
         pty_robot.port, f"{KIT.fingerprint:04x}", "tinibot",
     )  # fmt: skip
     assert known["program"] is None
+    assert known["text_level"] == "uno"
+    assert "reads text, level uno" in done.out
     assert json.loads(process("ping", "--json").out)["round_trips"] == 10
     assert "10 round trips" in process("upload", "-e", "PING|check_connection").out
+
+
+@pytest.mark.parametrize(("features", "level", "said"), [
+    (0, None, "no lee texto"),
+    (1, "uno", "lee texto, nivel uno"),
+    (0xFFFE, "mega", "lee texto, nivel mega"),  # whatever else it is able to do
+    (0x3, "esp32", "lee texto, nivel esp32"),
+])  # fmt: skip
+def test_the_level_of_text_is_that_of_two_bits(
+    pty_robot: PtyRobot, tsc: Tsc, monkeypatch: pytest.MonkeyPatch,
+    features: int, level: str | None, said: str,
+) -> None:  # fmt: skip
+    described = requests.described
+
+    def with_features(values: HelloReply) -> DeviceInfo:
+        return described(values._replace(features=features))
+
+    monkeypatch.setattr(requests, "described", with_features)
+    found = tsc("info", "--port", pty_robot.port, "--json")
+    assert json.loads(found.out)["text_level"] == level
+    assert said in tsc("info", "--port", pty_robot.port, "--lang", "es").out
 
 
 def test_a_board_that_has_just_been_reset_is_waited_for(pty_robot: PtyRobot) -> None:

@@ -9,7 +9,13 @@ import pytest
 
 from tests.firmware.test_uno_robot import BAUD, FORWARD, NAMES, OFF, states
 from tests.machines.uno import needed
-from tests.support.platformio import firmware, shared
+from tests.machines.wired import Wired
+from tests.support.platformio import copied, firmware, pio, shared
+from tiniscript import robots
+from tiniscript.flash import building
+from tiniscript.link.messages import TEXT_LEVEL, TEXT_LEVELS
+from tiniscript.link.requests import OK
+from tiniscript.link.session import Session
 from tools.uno import CYCLES_PER_MS, Uno
 
 LINE_MS = 5  # from the end of a line to the pins, at most
@@ -62,6 +68,34 @@ def test_a_wrong_line_leaves_what_runs(mega: Uno) -> None:
     assert typed(mega, "SI|LOOP(FOREVER)\r\nM(50,50)\r\nW(0.1)\r\nEND_LOOP\r\n", 200) == ["// OK"]
     assert typed(mega, "SI|R(1,500)\r\n", 100) == ["// 8: Too small or too large"]
     assert states(mega) == FORWARD
+
+
+def test_its_hello_tells_its_level(mega: Uno) -> None:
+    wired = Wired(mega, Session(1, BAUD))
+    request = wired.session.hello()
+    assert wired.until(request) == OK
+    assert wired.session.robot is not None
+    features = wired.session.robot.values.features
+    assert TEXT_LEVELS[features & TEXT_LEVEL][0] == "MEGA"
+
+
+def test_a_profile_in_spanish_makes_a_robot_that_answers_in_spanish(tmp_path: Path) -> None:
+    """As `tsc firmware` makes it. The other language takes no flash."""
+    needed()
+    project = copied(tmp_path)
+    for language, answer, other in (
+        ("es", "Muy chico o muy grande", "Too small"),
+        ("en", "Too small or too large", "Muy chico"),
+    ):
+        robot = robots.load("tinibot", "mega").speaking(language)
+        (project / building.HEADER).write_text(building.header(robot), encoding="utf-8")
+        code, log = pio(project, "run", "-e", "mega")
+        assert code == 0, log
+        elf = project / ".pio" / "build" / "mega" / "firmware.elf"
+        assert answer.encode() in elf.read_bytes() and other.encode() not in elf.read_bytes()
+        with Uno(elf, names=NAMES, board="mega", baud=BAUD, resets_on_open=False) as mega:
+            mega.run_ms(300)
+            assert typed(mega, "SI|R(1, 500)\n", 100) == [f"// 9: {answer}"]
 
 
 def test_its_words_and_its_end(mega: Uno) -> None:

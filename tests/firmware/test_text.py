@@ -20,6 +20,7 @@ from tests.firmware.test_host_firmware import (
     switched_on,
 )
 from tests.machines.host_firmware import HostFirmware, missing
+from tiniscript import robots
 from tiniscript.link.messages import SAVED_STORED, STATUSES
 from tiniscript.link.payloads import StatusReply
 from tiniscript.link.requests import OK
@@ -37,6 +38,14 @@ def typed(robot: HostFirmware, text: str | bytes, milliseconds: int = 30) -> lis
     data = text if isinstance(text, bytes) else text.encode()
     sent = b"".join(robot.step(bytes((byte,))) for byte in data)
     return (sent + robot.wait(milliseconds)).decode("latin-1").splitlines()
+
+
+def test_a_robot_answers_in_its_language() -> None:
+    robot = HostFirmware(robots.load("tinibot").kit, is_spanish=True)
+    assert typed(robot, "SI|F(0.1,50)\n", 200) == ["// OK", "// FIN"]
+    assert typed(robot, "S\n") == ["// PARADO"]
+    robot.wait(1500)
+    assert typed(robot, "SI|R(1,500)\n") == ["// 8: Muy chico o muy grande"]
 
 
 def holding(text: str = "SB|B(0.2, 60)", saves: bool = True) -> tuple[HostFirmware, Session]:

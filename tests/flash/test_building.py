@@ -20,6 +20,8 @@ from tests.support.casefile import ROOT
 from tests.support.command import Tsc, process
 from tests.support.platformio import need, prepared
 from tiniscript import robots
+from tiniscript.cli import firmware_build
+from tiniscript.cli.errors import CommandError
 from tiniscript.flash import building, ready
 from tiniscript.flash.building import COMPILING, FETCHING, Seen
 
@@ -60,7 +62,7 @@ def test_a_robot_of_ones_own_is_built_and_written(clone: Path, own: Path) -> Non
         info = process("info", "--json", "--port", uno.pty)
         assert f'"kit": "{robots.load(str(own)).kit.fingerprint:04x}"' in info.out, info.err
     kept = ready.files(ready.cache())
-    assert [(each.robot, each.board) for each in kept] == [("mine", "uno")]
+    assert [(each.title, each.board) for each in kept] == [("mine", "uno")]
     again = tsc(clone, "--build", "--robot", str(own))  # PlatformIO could build nothing now
     assert (again.code, again.err) == (0, "")
     assert again.out == f"mine on uno: ready, {kept[0].bytes:,} bytes\n"
@@ -84,6 +86,9 @@ def test_sources_robot_and_board_make_the_digest(clone: Path, own: Path) -> None
         for robot in (robots.load("tinibot"), robots.load("tinibot", "nano"), robots.load(str(own)))
     }
     assert len(digests) == 3
+    spanish = robots.load("tinibot").speaking("es")
+    assert sources.digest(spanish) not in digests and ready.title_of(spanish) == "tinibot_es"
+    assert ready.title_of(spanish.speaking("en")) == "tinibot_es"
     for name in sources.files:
         changed = building.Sources({**sources.files, name: sources.files[name] + b"\n"})
         digests.add(changed.digest(robots.load("tinibot")))
@@ -112,6 +117,26 @@ def test_a_file_of_the_package_that_is_old_is_not_taken(clone: Path) -> None:
     assert rows[:2] == [
         "tinibot on uno: ready, 0 bytes", "tinibot on nano: is built when it is first written"
     ]  # fmt: skip
+
+
+@pytest.mark.parametrize(("titles", "spanish", "english"), [
+    (["liner", "liner_es"], "liner_es", "liner"),
+    (["liner"], "liner", "liner"),  # an answer in another language is better than no robot
+    (["tinibot"], None, None),
+])  # fmt: skip
+def test_a_package_without_sources_takes_the_file_in_the_language_of_the_robot(
+    monkeypatch: pytest.MonkeyPatch, titles: list[str], spanish: str | None, english: str | None
+) -> None:
+    files = [ready.Ready(title, "nano", "1", Path(title)) for title in titles]
+    monkeypatch.setattr(building, "sources", lambda: None)
+    monkeypatch.setattr(ready, "files", lambda: files)
+    for language, wanted in (("es", spanish), ("en", english)):
+        robot = robots.load("liner", "nano").speaking(language)
+        if wanted is None:
+            with pytest.raises(CommandError):
+                firmware_build.firmware(robot, "en")
+        else:
+            assert firmware_build.firmware(robot, "en").title == wanted
 
 
 def source_bytes(clone: Path) -> dict[str, bytes]:

@@ -23,6 +23,7 @@ from tiniscript.cli.commands import firmware as firmware_command
 from tiniscript.cli.texts.firmware import FLASH_TEXTS
 from tiniscript.flash import avrdude, ready
 from tiniscript.flash.bootloaders import BOARDS, UNO
+from tiniscript.robots.profile import LANGUAGES
 from tools.bench import firmware_size
 from tools.builds import firmware_files
 from tools.uno import Uno
@@ -303,9 +304,12 @@ def test_a_firmware_is_the_same_however_it_is_built(
 def test_every_board_of_the_option_is_one_that_is_built() -> None:
     built = {name.partition("_")[0] for name in firmware_size.environments()}
     assert {board for board, _ in BOARDS.values()} == built
-    brought = {(robot.name, robot.board.chip) for robot in firmware_files.shipped()}
+    brought = {
+        (robot.name, robot.board.chip, robot.board.language) for robot in firmware_files.shipped()
+    }
     assert brought == {
-        (robot or robots.DEFAULT, board)
+        (robot or robots.DEFAULT, board, language)
+        for language in LANGUAGES
         for board, _, robot in (name.partition("_") for name in firmware_size.environments())
     }
 
@@ -322,11 +326,11 @@ def test_what_came_with_the_package_is_listed(package: Path) -> None:
     done = tsc(package, "--list")
     assert done.code == 0
     files = ready.files(package / "tiniscript" / "flash" / "ready")
-    assert [(each.robot, each.board) for each in files] == [
+    assert [(each.title, each.board) for each in files] == [
         ("grabber", "mega"), ("tinibot", "nano"), ("tinibot", "uno")
     ]  # fmt: skip
     for each in files:
-        assert f"{each.robot} on {each.board}: ready, {each.bytes:,} bytes" in done.out
+        assert f"{each.title} on {each.board}: ready, {each.bytes:,} bytes" in done.out
     assert "liner on nano: is built when it is first written" in done.out
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import functools
+import operator
 import re
 
 import pytest
@@ -12,6 +14,7 @@ from tiniscript.link import messages, statuses
 from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.messages import (
     BY_NAME,
+    FEATURES,
     FIRST_ACTING,
     FIRST_EVENT,
     FIRST_STATUS,
@@ -23,9 +26,12 @@ from tiniscript.link.messages import (
     SEALED,
     STATUSES,
     TEXT_FROM,
+    TEXT_LEVEL,
+    TEXT_LEVELS,
     sizes,
 )
 from tiniscript.link.requests import DATA_BYTES, SHORT_BYTES
+from tiniscript.text.levels import LEVELS
 from tools.bench import link_size, machine_size
 
 
@@ -39,6 +45,13 @@ def test_numbers_are_used_once_and_leave_the_bits_alone() -> None:
     assert max(lower) < FIRST_STATUS
     for each in MESSAGES:
         assert each.acts == (FIRST_ACTING <= each.number < FIRST_EVENT)
+
+
+def test_features_share_no_bit_and_levels_have_the_names_of_their_table() -> None:
+    every = [bits for bits, *_ in FEATURES]
+    assert sum(every) == functools.reduce(operator.or_, every) < 1 << 16
+    names = [name.lower() for name, _ in TEXT_LEVELS]
+    assert names == ["none", *LEVELS] and len(names) == TEXT_LEVEL + 1
 
 
 def test_every_payload_fits_a_frame() -> None:

@@ -46,6 +46,7 @@ class HostFirmware(Process):
         max_run_ms: int = 600_000,
         write_ms: float = 3.4,
         sources: Path = SOURCES,
+        is_spanish: bool = False,
     ) -> None:
         super().__init__([built(sources)], "the C++ robot")
         self.now_ms = 0
@@ -56,7 +57,7 @@ class HostFirmware(Process):
         hashes = pack(f"<{len(kit.hashes)}H", *kit.hashes)
         words = kit_words(kit)
         begin = head + times + hashes + pack("<I", len(memory)) + memory
-        self.ask(b"B", begin + pack("<I", len(words)) + words)
+        self.ask(b"B", begin + pack("<I", len(words)) + words + bytes([is_spanish]))
 
     def step(self, data: bytes = b"", flags: int = 0, ticks: int = TICKS) -> bytes:
         """Let a millisecond pass in which bytes arrive; return what is sent."""

@@ -145,6 +145,20 @@ def test_what_a_profile_changes(changes: tuple[tuple[str, str], ...], line: str)
     assert line in firmware.header([wired("uno", "tinibot", *changes)], "a test.")
 
 
+def test_the_language_of_answers_is_that_of_the_profile_or_else_of_whoever_makes_it() -> None:
+    """The kit's fingerprint does not depend on it: programs run on both."""
+    define = "#define tiniscript_spanish 1\n"
+    plain = wired("uno")
+    fixed = wired("uno", "tinibot", ("status_led = 13", 'language = "es"'))
+    english = wired("uno", "tinibot", ("status_led = 13", 'language = "en"'))
+    assert plain.kit.fingerprint == fixed.kit.fingerprint
+    for robot, is_spanish in (
+        (plain, False), (plain.speaking("en"), False), (plain.speaking("es"), True),
+        (fixed, True), (fixed.speaking("en"), True), (english.speaking("es"), False),
+    ):  # fmt: skip
+        assert (define in firmware.header([robot], "a test.")) == is_spanish
+
+
 def test_two_echoes_have_their_vectors_once() -> None:
     second = '[[kit.sensors]]\nname = "BEHIND"\nkind = "number"\nunit = "cm"\nrange = [0, 400]\n\n'
     text = TEXTS["tinibot"].replace("[board]\n", f"{second}[board]\n", 1)
@@ -167,6 +181,11 @@ def test_board_writes_the_header(tsc: Tsc, tmp_path: Path) -> None:
     header = target.read_text(encoding="utf-8")
     assert header == tsc("board", "liner").out == tsc("board", "liner", "-o", "-").out
     assert header == firmware.header([robots.load("liner")], "tsc board, from a robot profile.")
+
+
+def test_board_speaks_the_language_of_the_command(tsc: Tsc) -> None:
+    assert "#define tiniscript_spanish 1\n" in tsc("board", "liner", "--lang", "es").out
+    assert "spanish" not in tsc("board", "liner", "--lang", "en").out
 
 
 def test_board_refuses_what_has_no_firmware(tsc: Tsc, tmp_path: Path) -> None:

@@ -53,6 +53,8 @@ REFUSED = [
      "board.actuators.LED.at_stop"),
     ("not_one_of", "grabber", 'at_stop = "release"', 'at_stop = "keep"',
      "board.actuators.GRIPPER.at_stop"),
+    ("not_one_of", "tinibot", "baud = 9600", 'baud = 9600\nlanguage = "fr"', "board.language"),
+    ("wrong_type", "tinibot", "baud = 9600", "baud = 9600\nlanguage = 5", "board.language"),
     ("wrong_type", "grabber", 'at_stop = "release"', "at_stop = true",
      "board.actuators.GRIPPER.at_stop"),
     ("unknown_key", "tinibot", "echo = 3", 'echo = 3\nat_stop = "hold"',

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import socket
 import time
+from pathlib import Path
 
 import pytest
 
 from tests.cli.test_virtual_command import FOREVER, robot, visitor
+from tests.robots.test_robots import TEXTS
 from tests.support.virtual_robot import missing
 
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
@@ -48,6 +50,16 @@ def test_lines_are_answered_and_the_robot_drives() -> None:
         assert heard(client, "SI|") == ["// It was stopped. Begin with SI|"]
         client.sendall(b"SI|F(0.1,50)\n")
         assert heard(client, "DONE") == ["// OK", "// DONE"]
+
+
+def test_it_speaks_the_language_of_the_command_unless_its_profile_has_one(tmp_path: Path) -> None:
+    profile = tmp_path / "mine.toml"
+    profile.write_text(TEXTS["tinibot"].replace("[board]\n", '[board]\nlanguage = "en"\n'))
+    own: list[str | Path] = ["--robot", profile]
+    for words, answers in (([], ["// OK", "// FIN"]), (own, ["// OK", "// DONE"])):
+        with robot("--listen", "0", "--lang", "es", *words) as found, visitor(found.port) as client:
+            client.sendall(b"SI|F(0.1,50)\n")
+            assert heard(client, answers[-1][3:]) == answers
 
 
 @pytest.mark.parametrize(

@@ -36,6 +36,7 @@ using namespace tiniscript;
 volatile uint8_t sink;
 const uint8_t words[] tini_progmem = {0};
 const uint8_t* tiniscript::robot_words() { return words; }
+bool tiniscript::robot_speaks_spanish() { return false; }
 uint8_t buffer[389];
 Reader reader;
 int main() {

@@ -22,9 +22,9 @@ sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 from tiniscript import robots
 from tiniscript.cli.firmware_build import on_boards
 from tiniscript.flash import building
-from tiniscript.flash.ready import FOLDER, NOTICE, name_of
+from tiniscript.flash.ready import FOLDER, NOTICE, name_of, title_of
 from tiniscript.library import install_advice
-from tiniscript.robots.profile import Robot
+from tiniscript.robots.profile import LANGUAGES, Robot
 from tools.builds.platformio_offline import PROJECT, CannotStandIn, settings_for
 
 LICENCE = Path("/usr/share/common-licenses/LGPL-2.1")  # Debian's copy
@@ -51,15 +51,20 @@ class CannotBuild(Exception):
 
 
 def shipped() -> list[Robot]:
-    """Return each shipped robot on each board that it fits."""
-    return [robot for name in robots.names() for robot in on_boards(name)]
+    """Return each shipped robot on each board that it fits, in each language."""
+    return [
+        robot
+        for name in robots.names()
+        for language in LANGUAGES
+        for robot in on_boards(name, language)
+    ]
 
 
 def build(robot: Robot, target: Path) -> Path:
     """Build the firmware of a robot on its board into a folder; return the file."""
     sources = building.sources()
     assert sources is not None, "no vm_arduino beside this folder"
-    made = target / name_of(robot.name, robot.board.chip, sources.digest(robot))
+    made = target / name_of(title_of(robot), robot.board.chip, sources.digest(robot))
     made.write_bytes(building.build(sources, robot, lambda seen: None))
     return made
 

@@ -61,6 +61,8 @@ def header(command: str) -> str:
         + constants(*((f"k{camel(name)}", bits) for bits, name, _ in messages.MODES)),
         "// How the motors are wired, in one byte.\n"
         + constants(*((f"k{camel(name)}", bits) for bits, name, _ in messages.WHEELS)),
+        "// What a robot is able and allowed to do, in two bytes.\n"
+        + constants(*((f"k{camel(name)}", bits) for bits, name, _ in messages.FEATURES)),
         enumeration("Message", named),
         "// Requests are the numbers from 1 up to this one; from kFirstActing on they act.\n"
         + constants(
@@ -82,6 +84,7 @@ def header(command: str) -> str:
                 ("Saved", messages.SAVED),
                 ("Cause", messages.CAUSES),
                 ("Reset", messages.RESETS),
+                ("TextLevel", messages.TEXT_LEVELS),
             )
         ),
         "// Faults that no instruction makes. The others are `Fault`.\n"
@@ -186,6 +189,11 @@ DOCUMENT_TABLES: dict[str, Callable[[], Rows]] = {
         ("bit", "name", "meaning"),
         [(f"0x{bits:02x}", f"`{name}`", what) for bits, name, what in messages.WHEELS],
     ),
+    "features": lambda: (
+        ("bits", "name", "meaning"),
+        [(f"0x{bits:04x}", f"`{name}`", what) for bits, name, what in messages.FEATURES],
+    ),
+    "text levels": lambda: number_rows(messages.TEXT_LEVELS),
     "statuses": status_rows,
     "states": lambda: number_rows(messages.STATES),
     "saved": lambda: number_rows(messages.SAVED),

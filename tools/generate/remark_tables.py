@@ -6,7 +6,7 @@ from tiniscript.bytecode.opcodes import FAULTS
 from tiniscript.link.messages import LINK_FAULTS
 from tiniscript.text.remarks import REMARKS
 from tools.generate.cpp_header import camel
-from tools.generate.text_tables import file_of, strings
+from tools.generate.text_tables import file_of, in_both, strings
 
 
 def remarks_header(command: str) -> str:
@@ -44,23 +44,14 @@ def remarks_texts(command: str) -> str:
         "remarks.cpp",
         "",
         [
-            "namespace {",
+            *in_both("kRemarkTexts", "Remark remark", REMARKS),
             "",
-            "const uint8_t kRemarkTexts[] tini_progmem =",
-            "#ifdef tiniscript_spanish",
-            *strings([remark.spanish for remark in REMARKS]),
-            "#else",
-            *strings([remark.english for remark in REMARKS]),
-            "#endif",
+            "namespace {",
             "",
             "const uint8_t kFaultNames[] tini_progmem =",
             *strings(names),
             "",
             "}  // namespace",
-            "",
-            "const uint8_t* text_of(Remark remark) {",
-            "  return text_at(kRemarkTexts, static_cast<uint8_t>(remark));",
-            "}",
             "",
             "const uint8_t* name_of_fault(uint8_t fault) {",
             f"  if (fault > {LINK_FAULTS[-1][0]}) return text_at(kFaultNames, {len(names)});",
@@ -68,5 +59,5 @@ def remarks_texts(command: str) -> str:
             "  return text_at(kFaultNames, fault);",
             "}",
         ],
-        include="problems.h",
+        include=("kit_words.h", "problems.h"),
     )

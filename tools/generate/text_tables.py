@@ -11,7 +11,8 @@ from tiniscript.bytecode.image import STARTS
 from tiniscript.bytecode.opcodes import BLOCKS, BY_NAME
 from tiniscript.fixed_point import HIGHEST, LOWEST
 from tiniscript.robots.kit_words import packed, packed_range
-from tiniscript.text.problems import PROBLEMS
+from tiniscript.text.problems import PROBLEMS, Problem
+from tiniscript.text.remarks import Remark
 from tiniscript.words import WORDS, Word
 from tools.generate.cpp_header import camel
 
@@ -173,16 +174,7 @@ def problems_texts(command: str) -> str:
         "problems.cpp",
         "",
         [
-            "const uint8_t kProblemTexts[] tini_progmem =",
-            "#ifdef tiniscript_spanish",
-            *strings([problem.spanish for problem in PROBLEMS]),
-            "#else",
-            *strings([problem.english for problem in PROBLEMS]),
-            "#endif",
-            "",
-            "const uint8_t* text_of(Problem problem) {",
-            "  return text_at(kProblemTexts, static_cast<uint8_t>(problem));",
-            "}",
+            *in_both("kProblemTexts", "Problem problem", PROBLEMS),
             "",
             "const uint8_t* text_at(const uint8_t* texts, uint8_t number) {",
             "  for (; number > 1; number--) {",
@@ -192,7 +184,32 @@ def problems_texts(command: str) -> str:
             "  return texts;",
             "}",
         ],
+        include=("kit_words.h",),
     )
+
+
+def in_both(name: str, parameter: str, texts: Sequence[Problem | Remark]) -> list[str]:
+    """Return the texts in both languages, and the function that chooses one of them.
+
+    On a board the linker leaves the language out that the robot does not speak.
+    """
+    number = parameter.split()[-1]
+    return [
+        "namespace {",
+        "",
+        f"const uint8_t {name}English[] tini_progmem =",
+        *strings([each.english for each in texts]),
+        "",
+        f"const uint8_t {name}Spanish[] tini_progmem =",
+        *strings([each.spanish for each in texts]),
+        "",
+        "}  // namespace",
+        "",
+        f"const uint8_t* text_of({parameter}) {{",
+        f"  return text_at(robot_speaks_spanish() ? {name}Spanish : {name}English,",
+        f"                 static_cast<uint8_t>({number}));",
+        "}",
+    ]
 
 
 def strings(texts: Sequence[str]) -> list[str]:
@@ -205,15 +222,18 @@ def _bytes(data: Iterable[int]) -> str:
     return " ".join(f"0x{each:02x}," for each in data)
 
 
-def file_of(command: str, name: str, what: str, lines: Sequence[str], include: str = "") -> str:
-    """Return a file of `vm_arduino/src/text/`; `include` is one more header for a `.cpp`."""
+def file_of(
+    command: str, name: str, what: str, lines: Sequence[str], include: Sequence[str] = ()
+) -> str:
+    """Return a file of `vm_arduino/src/text/`; `include` are more headers for a `.cpp`."""
     stem, _, ending = name.partition(".")
     guard = f"TINISCRIPT_TEXT_{stem.upper()}_H_"
     opening = (
         [f"#ifndef {guard}", f"#define {guard}", "", "#include <stdint.h>", "",
          '#include "../vm/flash.h"']
         if ending == "h"
-        else [f'#include "{stem}.h"', *([f'\n#include "{include}"'] if include else [])]
+        else [f'#include "{stem}.h"', *([""] if include else []),
+              *(f'#include "{each}"' for each in include)]
     )  # fmt: skip
     closing = ["", f"#endif  // {guard}"] if ending == "h" else []
     return (

@@ -39,3 +39,5 @@ const uint8_t words[] = {'D',
 }  // namespace
 
 const uint8_t* tiniscript::robot_words() { return words; }
+
+bool tiniscript::robot_speaks_spanish() { return false; }

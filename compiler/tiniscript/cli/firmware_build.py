@@ -24,14 +24,18 @@ __all__ = ("BOARDS", "firmware", "on_boards", "print_list", "row")
 LOG = "build.log"  # the output of the last failed build, in the folder of the ready files
 
 
-def on_boards(name: str | None, boards: Sequence[str] = BOARDS) -> list[Robot]:
-    """Return a robot once for each of the boards that its profile fits."""
+def on_boards(name: str | None, language: str, boards: Sequence[str] = BOARDS) -> list[Robot]:
+    """Return a robot once for each of the boards that its profile fits.
+
+    It answers text in `language`, if its profile names none.
+    """
     from tiniscript.robots.profile import ProfileRefused
 
     found = []
     for board in boards:
         try:
-            found.append(robots.load(robots.DEFAULT if name is None else name, board))
+            robot = robots.load(robots.DEFAULT if name is None else name, board)
+            found.append(robot.speaking(language))
         except ProfileRefused:
             continue  # the board has no such pins
     return found
@@ -50,7 +54,7 @@ def firmware(robot: Robot, language: str) -> Ready:
     values = {"robot": robot.name, "board": robot.board.chip}
     try:
         data = _built(robot, sources, language)
-        return ready.keep(robot.name, robot.board.chip, sources.digest(robot), data)
+        return ready.keep(ready.title_of(robot), robot.board.chip, sources.digest(robot), data)
     except building.CannotBuild as why:
         raise _failure(why, values) from None
     except OSError as why:
@@ -61,14 +65,21 @@ def firmware(robot: Robot, language: str) -> Ready:
 
 
 def _ready(robot: Robot, sources: Sources | None) -> Ready | None:
-    """Return the file for a robot. Without sources the shipped file cannot be out of date."""
+    """Return the file for a robot.
+
+    Without sources the shipped file cannot be out of date; one that answers in another language is
+    better than none.
+    """
     from tiniscript.flash import ready
 
     if sources is not None:
-        return ready.find(robot.name, robot.board.chip, sources.digest(robot))
-    for each in ready.files():
-        if (each.robot, each.board) == (robot.name, robot.board.chip):
-            return each if robot.name in robots.names() else None
+        return ready.find(ready.title_of(robot), robot.board.chip, sources.digest(robot))
+    if robot.name not in robots.names():
+        return None
+    files = {(each.title, each.board): each for each in ready.files()}
+    for title in (ready.title_of(robot), robot.name):
+        if (title, robot.board.chip) in files:
+            return files[title, robot.board.chip]
     return None
 
 
@@ -119,7 +130,7 @@ def print_list(language: str) -> None:
 
     sources = building.sources()
     for name in robots.names():
-        for robot in on_boards(name):
+        for robot in on_boards(name, language):
             print(row(robot, _ready(robot, sources), language))
 
 

@@ -1,4 +1,4 @@
-"""Firmware that is ready to be written: files, named after the robot, the board and a digest.
+"""Firmware that is ready to be written: files, named after a title, the board and a digest.
 
 The digest is of all that a firmware is made from, so that an old file is never taken for a new
 one. A package may bring files (`tools/builds/firmware_files.py` makes them); others are built when
@@ -11,18 +11,19 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tiniscript.files import cache_folder, replace
+from tiniscript.robots.profile import LANGUAGES, Robot
 
 FOLDER = Path(__file__).resolve().parent / "ready"
 NOTICE = "NOTICE.txt"
 KEPT = 30  # files in the cache; the oldest go first
-NAME_CHARACTERS = 24  # of a robot's name, in a file's name
+NAME_CHARACTERS = 24  # of a title, in a file's name
 DATA, END = "00", "01"  # in the row of a HEX file
 
 
 class Ready(NamedTuple):
     """A firmware: an Intel HEX file."""
 
-    robot: str
+    title: str
     board: str
     digest: str
     path: Path
@@ -39,27 +40,33 @@ def cache() -> Path:
     return cache_folder() / "firmware"
 
 
-def name_of(robot: str, board: str, digest: str) -> str:
-    plain = "".join(letter if letter.isalnum() else "_" for letter in robot)
+def title_of(robot: Robot) -> str:
+    """Return a robot's name, and the language of its answers where that is not English."""
+    language = robot.board.language
+    return robot.name if language in ("", LANGUAGES[0]) else f"{robot.name}_{language}"
+
+
+def name_of(title: str, board: str, digest: str) -> str:
+    plain = "".join(letter if letter.isalnum() else "_" for letter in title)
     return f"{plain[:NAME_CHARACTERS]}-{board}-{digest}.hex"
 
 
 def files(folder: Path = FOLDER) -> list[Ready]:
-    """Return the files of a folder, by robot and board. An incomplete file is left out."""
+    """Return the files of a folder, by title and board. An incomplete file is left out."""
     found = []
     for path in sorted(folder.glob("*-*-*.hex")):
         if is_whole(path):
-            robot, board, digest = path.stem.rsplit("-", 2)
-            found.append(Ready(robot, board, digest, path))
+            title, board, digest = path.stem.rsplit("-", 2)
+            found.append(Ready(title, board, digest, path))
     return found
 
 
-def find(robot: str, board: str, digest: str) -> Ready | None:
+def find(title: str, board: str, digest: str) -> Ready | None:
     """Return the file with this digest, from the package or the cache."""
-    name = name_of(robot, board, digest)
+    name = name_of(title, board, digest)
     for folder in (FOLDER, cache()):
         if is_whole(folder / name):
-            return Ready(robot, board, digest, folder / name)
+            return Ready(title, board, digest, folder / name)
     return None
 
 
@@ -73,14 +80,14 @@ def is_whole(path: Path) -> bool:
     return bool(rows) and rows[-1][7:9] == END and sums == [0] * len(rows)
 
 
-def keep(robot: str, board: str, digest: str, data: bytes) -> Ready:
+def keep(title: str, board: str, digest: str, data: bytes) -> Ready:
     """Put a firmware into the cache, all of it or nothing. Raises OSError."""
     folder = cache()
     folder.mkdir(parents=True, exist_ok=True)
-    path = folder / name_of(robot, board, digest)
+    path = folder / name_of(title, board, digest)
     replace(path, data)
     kept = sorted(folder.glob("*.hex"), key=lambda each: each.stat().st_mtime_ns)
     for old in kept[:-KEPT]:
         if old != path:
             old.unlink(missing_ok=True)
-    return Ready(robot, board, digest, path)
+    return Ready(title, board, digest, path)

@@ -175,7 +175,9 @@ def _made(profile: Robot, world: str, settings: object, language: Language) -> V
     from tiniscript.virtual.world import WorldRefused
 
     try:
-        return VirtualRobot(profile, worlds.load(world), cast(Settings, settings))
+        return VirtualRobot(
+            profile.speaking(language), worlds.load(world), cast(Settings, settings)
+        )
     except WorldRefused as refused:
         from tiniscript.virtual.world_refusals import describe
 

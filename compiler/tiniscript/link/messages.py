@@ -53,6 +53,15 @@ WHEELS = (
     (RIGHT_REVERSED, "RIGHT_REVERSED", "The right wheel turns the wrong way round."),
 )
 
+# What a robot is able and allowed to do, as HELLO tells it. A robot whose firmware is older has 0.
+TEXT_LEVEL, OWNERS, OWNED, TEXT_ALLOWED = 0x0003, 0x0010, 0x0020, 0x0040
+FEATURES = (
+    (TEXT_LEVEL, "TEXT_LEVEL", "Which level of text the robot reads, a number of the table below."),
+    (OWNERS, "OWNERS", "The robot knows owners."),
+    (OWNED, "OWNED", "It has one."),
+    (TEXT_ALLOWED, "TEXT_ALLOWED", "Lines of text may drive it."),
+)
+
 
 class Field(NamedTuple):
     """`kind` is one of KINDS, or `rest`: all remaining bytes, `low` to `high` of them."""
@@ -214,6 +223,13 @@ RESETS = (
     ("BUTTON",    "The reset button, or a computer that opened the port."),
     ("BROWN_OUT", "The voltage was too low."),
     ("WATCHDOG",  "The watchdog: the robot's own program hung."),
+)
+# The levels of text by number, as `text/levels.py` names them; 0 is none.
+TEXT_LEVELS = (
+    ("NONE",  "The robot reads no text."),
+    ("UNO",   "Level `uno`."),
+    ("MEGA",  "Level `mega`."),
+    ("ESP32", "Level `esp32`."),
 )
 # Faults that no instruction causes. The faults of instructions are in `opcodes.py`.
 LINK_FAULTS = (

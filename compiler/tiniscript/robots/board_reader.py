@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from tiniscript.kit import Device, Kit
 from tiniscript.robots.boards import AT_STOP, BAUDS, CHIPS, DRIVERS, Chip, Setting, drivers_for
-from tiniscript.robots.profile import Board, Wiring
+from tiniscript.robots.profile import LANGUAGES, Board, Wiring
 from tiniscript.robots.refusals import shown
 from tiniscript.robots.toml_table import Table
 
@@ -107,6 +107,7 @@ def read_board(table: Table, kit: Kit) -> Board:
     buzzer = pins.take(table, "buzzer", "tone")
     status_led = pins.take(table, "status_led", "output", is_optional=True)
     bluetooth_state = pins.take(table, "bluetooth_state", "input", is_optional=True)
+    language = table.choice("language", LANGUAGES) if table.has("language") else ""
     motors = _read_wiring(table.table("motors", "[board.motors]"), "motors", pins)
     sensors = _read_devices(table, "sensors", kit.sensors, pins)
     actuators = _read_devices(table, "actuators", kit.actuators, pins)
@@ -124,6 +125,7 @@ def read_board(table: Table, kit: Kit) -> Board:
         buzzer=buzzer or 0,
         status_led=status_led,
         bluetooth_state=bluetooth_state,
+        language=language,
     )
 
 

@@ -86,6 +86,7 @@ class _Part:
         state, light = board.bluetooth_state, board.status_led
         lines = [
             *(f"#define tiniscript_{name}" for name in self._parts()),
+            *(["#define tiniscript_spanish 1"] if board.language == "es" else []),
             "",
             f"namespace {SPACE} {{",
             "",

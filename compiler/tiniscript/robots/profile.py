@@ -44,7 +44,8 @@ class Board(NamedTuple):
     """What the firmware must know. Sensors and actuators are in the kit's order.
 
     `program_bytes` is the largest size of a program's code. `max_run_seconds` limits how long a
-    program runs without a client. A pin that is None is not wired.
+    program runs without a client. A pin that is None is not wired. `language`,
+    one of LANGUAGES, is that of its answers to text; empty: that of whoever makes its firmware.
     """
 
     chip: str
@@ -58,6 +59,7 @@ class Board(NamedTuple):
     buzzer: int
     status_led: int | None
     bluetooth_state: int | None
+    language: str = ""
 
 
 class Place(NamedTuple):
@@ -97,3 +99,8 @@ class Robot(NamedTuple):
     board: Board
     body: Body
     labels: Mapping[str, Mapping[str, str]]
+
+    def speaking(self, language: str) -> Robot:
+        """Return the robot with a language: this one, where its profile names none."""
+        board = self.board._replace(language=self.board.language or language)
+        return self._replace(board=board)

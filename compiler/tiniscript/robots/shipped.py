@@ -65,6 +65,7 @@ def _grabber() -> Robot:
             buzzer=10,
             status_led=13,
             bluetooth_state=32,
+            language="",
         ),
         body=Body(
             wheel_base_cm=15.5,
@@ -150,6 +151,7 @@ def _liner() -> Robot:
             buzzer=11,
             status_led=13,
             bluetooth_state=None,
+            language="",
         ),
         body=Body(
             wheel_base_cm=9.2,
@@ -221,6 +223,7 @@ def _tinibot() -> Robot:
             buzzer=11,
             status_led=13,
             bluetooth_state=12,
+            language="",
         ),
         body=Body(
             wheel_base_cm=13.5,

@@ -52,6 +52,7 @@ class Circumstances(NamedTuple):
     `words` are those of the kit, as its reader of text keeps them, and `hashes` those of its
     devices; `byte_us` is how long a byte takes on the line, both
     ways (0: none); `eeprom_us` how long one takes in the memory that keeps programs.
+    `is_spanish` is the language of its answers to text.
     """
 
     words: bytes
@@ -64,6 +65,7 @@ class Circumstances(NamedTuple):
     max_run_ms: int
     byte_us: int
     eeprom_us: int
+    is_spanish: bool
 
 
 class Firmware:
@@ -104,7 +106,7 @@ class Firmware:
         self._memory.write(self._store, hashes, self.call("hashes"))
         if len(what.words) <= self.call("word_bytes"):  # else it knows none of them
             self._memory.write(self._store, what.words, self.call("words"))
-        self.call("begin", *what[2:])
+        self.call("begin", *map(int, what[2:]))
         self._look()
 
     def run(self, until_us: int, data: bytes = b"") -> bytes:

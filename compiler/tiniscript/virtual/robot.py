@@ -152,6 +152,7 @@ class VirtualRobot:
                 max_run_ms=board.max_run_seconds * 1000,
                 byte_us=round(BITS * 1_000_000 / baud) if baud else 0,
                 eeprom_us=self.settings.eeprom_us,
+                is_spanish=board.language == "es",
             ),
             memory,
         )

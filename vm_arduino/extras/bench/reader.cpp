@@ -23,6 +23,7 @@ uint16_t words_at;
 }  // namespace
 
 const uint8_t* tiniscript::robot_words() { return simulated::kRequest + words_at; }
+bool tiniscript::robot_speaks_spanish() { return false; }
 
 int main() {
   simulated::begin();

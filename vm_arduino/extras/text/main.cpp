@@ -80,6 +80,7 @@ void read_texts(Read* read) {
 }  // namespace
 
 const uint8_t* tiniscript::robot_words() { return words.data(); }
+bool tiniscript::robot_speaks_spanish() { return false; }
 
 int main(int count, char** arguments) {
   if (count < 3) return 2;

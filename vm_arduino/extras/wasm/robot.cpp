@@ -49,6 +49,7 @@ struct Own {
   uint8_t sensors;
   uint8_t actuators;
   uint32_t max_run_ms;
+  bool is_spanish;
 };
 
 Own own;
@@ -147,6 +148,8 @@ uint16_t robot_device_hash(uint16_t device) { return hashes[device]; }
 
 const uint8_t* robot_words() { return words; }
 
+bool robot_speaks_spanish() { return own.is_spanish; }
+
 void board_stop() {
   is_latched = true;
   note(kStop);
@@ -221,15 +224,18 @@ tini_exported("noted") uint32_t* module_noted() { return &noted; }
 tini_exported("reading") int32_t* module_reading() { return &reading; }
 
 // Power on. `line_us` is how long a byte takes on the line, `eeprom_us` how long in the EEPROM.
+// `is_spanish` is the language of its answers.
 tini_exported("begin") void module_begin(uint32_t kit, uint32_t sensors, uint32_t actuators,
                                          uint32_t reset, uint32_t seed, uint32_t max_run_ms,
-                                         uint32_t line_us, uint32_t eeprom_us) {
+                                         uint32_t line_us, uint32_t eeprom_us,
+                                         uint32_t is_spanish) {
   byte_us = line_us;
   write_us = eeprom_us;
   own.kit = static_cast<uint16_t>(kit);
   own.sensors = static_cast<uint8_t>(sensors);
   own.actuators = static_cast<uint8_t>(actuators);
   own.max_run_ms = max_run_ms;
+  own.is_spanish = is_spanish != 0;
   Board board;
   board.reset = static_cast<Reset>(reset);
   board.seed = seed;

@@ -90,6 +90,15 @@ uint16_t robot_device_hash(uint16_t device) { return flash_word(kDeviceHashes + 
 
 const uint8_t* robot_words() { return kKitWords; }
 
+// A profile's `language` defines it, or -D tiniscript_spanish.
+bool robot_speaks_spanish() {
+#ifdef tiniscript_spanish
+  return true;
+#else
+  return false;
+#endif
+}
+
 void board_stop() { motors_stop(); }
 
 void board_release() { motors_release(); }

@@ -1,6 +1,7 @@
 #include "identity.h"
 
 #include "../link/frames.h"
+#include "../link/reads_text.h"
 #include "../store/layout.h"
 #include "state.h"
 #include "trim.h"
@@ -30,6 +31,7 @@ void begin_identity(const Board& board) {
   identity.kit = board_kit();
   identity.nonce = board.seed;
   identity.reset = board.reset;
+  identity.features = static_cast<uint16_t>(kRobotTextLevel);
   device_info.sensors = board_sensors();
   device_info.actuators = board_actuators();
 }

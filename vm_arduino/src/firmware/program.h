@@ -17,11 +17,7 @@ namespace tiniscript {
 // A program that is read as text: at most so many bytes of code, as its jumps are short. Its code
 // and what the reader keeps beside it have this room.
 constexpr uint8_t kTextCodeBytes = 255;
-#ifdef __AVR_ATmega2560__
-constexpr uint16_t kTextRoom = 1900;
-#else
-constexpr uint16_t kTextRoom = kStoredCodeBytes;
-#endif
+constexpr uint16_t kTextRoom = kRobotTextLevel == TextLevel::kMega ? 1900 : kStoredCodeBytes;
 static_assert(kTextRoom <= kStoredCodeBytes, "an Uno reads it where its program is");
 
 // An ATmega328P would read a program where the one is that it holds. Others have room for both.

@@ -44,6 +44,12 @@ constexpr uint8_t kExchanged = 1;
 constexpr uint8_t kLeftReversed = 2;
 constexpr uint8_t kRightReversed = 4;
 
+// What a robot is able and allowed to do, in two bytes.
+constexpr uint8_t kTextLevel = 3;
+constexpr uint8_t kOwners = 16;
+constexpr uint8_t kOwned = 32;
+constexpr uint8_t kTextAllowed = 64;
+
 enum class Message : uint8_t {
   kHello = 1,  // Begins a session. The same `nonce` again is the same session.
   kPing = 2,  // Are you there? Also the heartbeat.
@@ -157,6 +163,13 @@ enum class Reset : uint8_t {
   kButton = 2,  // The reset button, or a computer that opened the port.
   kBrownOut = 3,  // The voltage was too low.
   kWatchdog = 4,  // The watchdog: the robot's own program hung.
+};
+
+enum class TextLevel : uint8_t {
+  kNone = 0,  // The robot reads no text.
+  kUno = 1,  // Level `uno`.
+  kMega = 2,  // Level `mega`.
+  kEsp32 = 3,  // Level `esp32`.
 };
 
 // Faults that no instruction makes. The others are `Fault`.

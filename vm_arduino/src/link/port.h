@@ -14,7 +14,8 @@ namespace tiniscript {
 // Sent as it lies in memory: little-endian, without padding.
 #define tini_packed __attribute__((packed))
 
-// The robot's identity. `features` bits have no meaning yet; `nonce` changes with each reset.
+// The robot's identity. `features` has kTextLevel and the other bits; `nonce` changes with each
+// reset.
 struct tini_packed Identity {
   uint16_t kit;
   uint32_t id;

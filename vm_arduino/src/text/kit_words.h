@@ -1,4 +1,4 @@
-// What the reader of text asks of the robot: the words of its kit.
+// What the reader of text asks of the robot: the words of its kit, and the language of its answers.
 //
 // Each build links one definition, as of `robot.h`.
 
@@ -20,6 +20,9 @@ constexpr uint8_t kRangeBytes = 8;
 // is; behind an actuator that is a number its least and its largest value, thousandths of 32 bits,
 // little-endian. A 0 ends the table.
 const uint8_t* robot_words();
+
+// Whether a person is answered in Spanish, else in English.
+bool robot_speaks_spanish();
 
 // Returns what is behind a device, from what it is on.
 inline const uint8_t* behind_device(const uint8_t* device) {

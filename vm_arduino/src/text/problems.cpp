@@ -2,42 +2,15 @@
 
 #include "problems.h"
 
+#include "kit_words.h"
+
 // clang-format off
 
 namespace tiniscript {
 
-const uint8_t kProblemTexts[] tini_progmem =
-#ifdef tiniscript_spanish
-    "Linea danada. Enviala de nuevo\0"
-    "Signo desconocido\0"
-    "Escribelo como 5 o 0.5\0"
-    "Lo maximo es 2147483.647\0"
-    "SI| o SB| va al principio\0"
-    "PING|CHECK_CONNECTION solo\0"
-    "Empieza con algo como F\0"
-    "Palabra desconocida\0"
-    "Sin valor. Escribe X = 0\0"
-    "Esta palabra no va aqui\0"
-    "Pon ; antes de esto\0"
-    "Pon ( antes de esto\0"
-    "Revisa los ( y )\0"
-    "Falta un valor\0"
-    "Sobran o faltan valores\0"
-    "Muy chico o muy grande\0"
-    "Debe ser un numero\0"
-    "Pregunta: DISTANCE < 10\0"
-    "Compara 2 del mismo tipo\0"
-    "Escribe (NOT X)\0"
-    "Que siga numero, o si/no\0"
-    "Solo en LOOP, o con UNTIL\0"
-    "UNTIL va tras F B L R W\0"
-    "No hay tal bloque\0"
-    "BREAK va en un bucle\0"
-    "DEF va fuera de bloques\0"
-    "Es nombre de otra cosa\0"
-    "Demasiado, o muy adentro\0"
-    "Muy largo. Hazlo mas corto\0";
-#else
+namespace {
+
+const uint8_t kProblemTextsEnglish[] tini_progmem =
     "Line damaged. Send it again\0"
     "Sign not known\0"
     "Write it like 5 or 0.5\0"
@@ -67,10 +40,43 @@ const uint8_t kProblemTexts[] tini_progmem =
     "It is another thing's name\0"
     "Too many, or too deep\0"
     "Too long. Make it shorter\0";
-#endif
+
+const uint8_t kProblemTextsSpanish[] tini_progmem =
+    "Linea danada. Enviala de nuevo\0"
+    "Signo desconocido\0"
+    "Escribelo como 5 o 0.5\0"
+    "Lo maximo es 2147483.647\0"
+    "SI| o SB| va al principio\0"
+    "PING|CHECK_CONNECTION solo\0"
+    "Empieza con algo como F\0"
+    "Palabra desconocida\0"
+    "Sin valor. Escribe X = 0\0"
+    "Esta palabra no va aqui\0"
+    "Pon ; antes de esto\0"
+    "Pon ( antes de esto\0"
+    "Revisa los ( y )\0"
+    "Falta un valor\0"
+    "Sobran o faltan valores\0"
+    "Muy chico o muy grande\0"
+    "Debe ser un numero\0"
+    "Pregunta: DISTANCE < 10\0"
+    "Compara 2 del mismo tipo\0"
+    "Escribe (NOT X)\0"
+    "Que siga numero, o si/no\0"
+    "Solo en LOOP, o con UNTIL\0"
+    "UNTIL va tras F B L R W\0"
+    "No hay tal bloque\0"
+    "BREAK va en un bucle\0"
+    "DEF va fuera de bloques\0"
+    "Es nombre de otra cosa\0"
+    "Demasiado, o muy adentro\0"
+    "Muy largo. Hazlo mas corto\0";
+
+}  // namespace
 
 const uint8_t* text_of(Problem problem) {
-  return text_at(kProblemTexts, static_cast<uint8_t>(problem));
+  return text_at(robot_speaks_spanish() ? kProblemTextsSpanish : kProblemTextsEnglish,
+                 static_cast<uint8_t>(problem));
 }
 
 const uint8_t* text_at(const uint8_t* texts, uint8_t number) {

@@ -2,6 +2,7 @@
 
 #include "remarks.h"
 
+#include "kit_words.h"
 #include "problems.h"
 
 // clang-format off
@@ -10,23 +11,7 @@ namespace tiniscript {
 
 namespace {
 
-const uint8_t kRemarkTexts[] tini_progmem =
-#ifdef tiniscript_spanish
-    "OK\0"
-    "OK. El boton lo inicia.\0"
-    "OK. El programa anterior se perdio.\0"
-    "Espero \0"
-    "Muy tarde. Empieza otra vez.\0"
-    "PARADO\0"
-    "Fue parado. Empieza con SI|\0"
-    "Aun guardo. Envialo otra vez.\0"
-    "Aqui no es posible.\0"
-    "FIN\0"
-    "FALLA \0"
-    "\0"
-    "\0"
-    "\0";
-#else
+const uint8_t kRemarkTextsEnglish[] tini_progmem =
     "OK\0"
     "OK. The button starts it.\0"
     "OK. The old program is lost.\0"
@@ -41,7 +26,31 @@ const uint8_t kRemarkTexts[] tini_progmem =
     "\0"
     "\0"
     "\0";
-#endif
+
+const uint8_t kRemarkTextsSpanish[] tini_progmem =
+    "OK\0"
+    "OK. El boton lo inicia.\0"
+    "OK. El programa anterior se perdio.\0"
+    "Espero \0"
+    "Muy tarde. Empieza otra vez.\0"
+    "PARADO\0"
+    "Fue parado. Empieza con SI|\0"
+    "Aun guardo. Envialo otra vez.\0"
+    "Aqui no es posible.\0"
+    "FIN\0"
+    "FALLA \0"
+    "\0"
+    "\0"
+    "\0";
+
+}  // namespace
+
+const uint8_t* text_of(Remark remark) {
+  return text_at(robot_speaks_spanish() ? kRemarkTextsSpanish : kRemarkTextsEnglish,
+                 static_cast<uint8_t>(remark));
+}
+
+namespace {
 
 const uint8_t kFaultNames[] tini_progmem =
     "OVERFLOW\0"
@@ -52,10 +61,6 @@ const uint8_t kFaultNames[] tini_progmem =
     "BAD_CODE\0";
 
 }  // namespace
-
-const uint8_t* text_of(Remark remark) {
-  return text_at(kRemarkTexts, static_cast<uint8_t>(remark));
-}
 
 const uint8_t* name_of_fault(uint8_t fault) {
   if (fault > 66) return text_at(kFaultNames, 6);

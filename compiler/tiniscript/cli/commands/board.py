@@ -17,7 +17,7 @@ SKETCH, HOME = Path("vm_arduino"), Path("src/boards/kits/own.h")  # and the plac
 def run(options: Namespace, language: str) -> int:
     from tiniscript.robots import firmware
 
-    robot = inputs.robot(options, language)
+    robot = inputs.robot(options, language).speaking(language)
     if not firmware.fits(robot):
         raise CommandError(
             2, "no_firmware", chip=robot.board.chip, known=", ".join(firmware.BOARDS)

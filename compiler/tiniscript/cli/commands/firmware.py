@@ -61,9 +61,11 @@ def _chosen(options: Namespace, language: str) -> tuple[Robot, tuple[Bootloader,
         raise CommandError(
             2, "no_firmware", chip=robot.board.chip, known=", ".join(firmware_build.BOARDS)
         )
-    there = firmware_build.on_boards(options.robot, [board])
+    there = firmware_build.on_boards(options.robot, language, [board])
     if not there:
-        fits = ", ".join(each.board.chip for each in firmware_build.on_boards(options.robot))
+        fits = ", ".join(
+            each.board.chip for each in firmware_build.on_boards(options.robot, language)
+        )
         raise CommandError(2, "flash_no_fit", robot=robot.name, board=board, known=fits)
     return there[0], bootloaders
 

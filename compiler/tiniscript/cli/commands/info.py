@@ -67,6 +67,7 @@ class Description:
             "link": f"{self.hello.major}.{self.hello.minor}",
             "isa": f"{self.device_info.isa[0]}.{self.device_info.isa[1]}",
             "room": self.device_info.room,
+            "text_level": self._text_level(),
             "state": _name(STATES, status.state),
             "program": f"{status.program:08x}" if has_program else None,
             "code_bytes": status.length if has_program else None,
@@ -100,6 +101,18 @@ class Description:
             saved=text(f"saved_{fields['saved']}", language).format(slot=status.slot),
         )
 
+    def _text_level(self) -> str | None:
+        """Return the level of text that the robot reads, or None."""
+        from tiniscript.link.messages import TEXT_LEVEL, TEXT_LEVELS
+
+        number = self.hello.features & TEXT_LEVEL
+        return _name(TEXT_LEVELS, number).lower() if number else None
+
+    def _reader(self) -> str:
+        level = self._text_level()
+        key = "info_no_text" if level is None else "info_text"
+        return text(key, self.connection.language).format(level=level)
+
     def _why_no_program(self) -> str:
         """Return the reason why the robot holds no program, or an empty text."""
         from tiniscript.link.messages import SAVED_NOTHING, SAVED_OTHER_VERSION
@@ -118,6 +131,7 @@ class Description:
             text("info_kit", language).format(
                 kit=kit, isa=fields["isa"], room=self.device_info.room
             ),
+            self._reader(),
             self._program(),
             text("info_state", language).format(state=state, reset=reset),
         ]

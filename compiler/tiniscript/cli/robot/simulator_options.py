@@ -60,7 +60,7 @@ def made(
         raise _not_installed("virtual_needs_wasmtime", why) from None
     settings = Settings(seed=seed, noise=noise, motors=motors, told=told, baud=baud)
     try:
-        return VirtualRobot(profile, world, settings, memory)
+        return VirtualRobot(profile.speaking(language), world, settings, memory)
     except WorldRefused as refused:
         raise _refused(world.name, refused, language) from None
 
