@@ -129,6 +129,24 @@ def test_info_and_ping_have_a_row_for_each(class_: RobotFleet) -> None:
     assert all(row["round_trips"] == 3 for row in rows.values())
 
 
+def test_undo_has_a_row_for_each_and_stops_for_none(class_: RobotFleet) -> None:
+    first, second = "SB|F(0.1, 50)", "SB|F(0.1, 60)"
+    assert process("upload", "-e", first, "--all").code == 0
+    names = [pupil.port for pupil in class_.pupils]
+    assert process("upload", "-e", second, "--port", names[1], "--port", names[2]).code == 0
+    done = process("undo", "--all", "--json")
+    assert done.code == 3
+    rows = results(done)
+    assert {port for port in names if rows[port]["is_done"]} == {names[1], names[2]}
+    assert "no program from before" in str(rows[names[0]]["said"])
+    checksums = {rows[names[1]]["checksum"], rows[names[2]]["checksum"]}
+    assert len(checksums) == 1
+    done = process("undo", "--port", names[1], "--port", names[2], "--lang", "es")
+    assert done.code == 0
+    assert done.out.count("vuelve a tener el programa anterior") == 2
+    assert str(checksums.pop()) not in done.out
+
+
 def test_ports_that_are_named_must_have_robots(class_: RobotFleet) -> None:
     name = class_.pupils[0].port
     done = process("ping", "--port", name, "--port", "/dev/no-such", "--lang", "es")

@@ -332,6 +332,37 @@ def test_a_program_is_saved_when_its_connection_is_left(pty_robot: PtyRobot) -> 
 
 
 @needs_pty
+def test_the_program_before_comes_back(pty_robot: PtyRobot) -> None:
+    with tiniscript.connect(pty_robot.port) as robot:
+        programs = []
+        for power in (30, 40):
+            programs.append(robot.upload(f"SI|F(0.05, {power})"))
+            robot.wait()
+        receipt = robot.undo()
+        assert (receipt.checksum, receipt.is_running) == (programs[0].checksum, False)
+        with pytest.raises(tiniscript.UsageError) as raised:
+            robot.wait()
+        assert raised.value.reason == "nothing_started"
+    pty_robot.switch_off()
+    pty_robot.switch_on()
+    with tiniscript.connect(pty_robot.port) as robot:
+        assert robot.start().checksum == programs[0].checksum
+        assert robot.wait().name == "DONE"
+        assert robot.undo().checksum == programs[1].checksum
+
+
+@needs_pty
+def test_a_program_that_is_the_first_one_has_none_before(pty_robot: PtyRobot) -> None:
+    with tiniscript.connect(pty_robot.port) as robot:
+        robot.upload("SI|SHOW(1)")
+        robot.wait()
+        with pytest.raises(tiniscript.RobotError) as raised:
+            robot.undo()
+        assert raised.value.reason == "NO_PREVIOUS"
+        assert "tsc upload" in str(raised.value)
+
+
+@needs_pty
 def test_a_way_through_another_command_is_a_way(pty_robot: PtyRobot, link: Command) -> None:
     with tiniscript.connect(pty_robot.port) as robot:
         robot.upload("SI|SHOW(4)")

@@ -30,6 +30,7 @@ needs_host = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a
 FRAMES = 100_000  # damaged ones, in the tests
 BATCH = 20_000
 UPLOADS = 300
+UNDOS = 100
 SEED = 4
 OUTCOMES = {LOST: "lost", CANCELLED: "cancelled"}
 
@@ -299,6 +300,42 @@ def test_uploads_over_a_bad_radio() -> None:
     """No upload says done that is not, and nothing is done twice."""
     found = Counter(one_upload(cpp_link(), seed) for seed in range(UPLOADS))
     assert found["done"] > UPLOADS * 0.9, found
+
+
+def one_undo(cpp: CppLink, seed: int) -> str:
+    """Bring the program before back several times; return how many were confirmed."""
+    draw = random.Random(seed)
+    world = World(cpp, draw, 0, 0)
+    images = [pack("SI", 0, program(draw)) for _ in range(2)]
+    for image in images:
+        request = world.session.upload(unpack(image), runs=False)
+        world.run(request)
+    if images[0] == images[1]:
+        return "the same"
+    world.there.faults = world.back.faults = draw.choice((0.001, 0.01, 0.03))
+    world.drops = draw.choice((0, 0.0002, 0.002))
+    confirmed = 0
+    for _ in range(4):
+        before = world.did.count(f"UNDO {unpack(images[0]).checksum:08x}")
+        asked = world.session.undo()
+        world.run(asked)
+        assert asked.outcome, f"seed {seed}: an undo has no end"
+        done = world.did.count(f"UNDO {unpack(images[0]).checksum:08x}") - before
+        assert done <= 1, f"seed {seed}: undone {done} times"
+        if asked.outcome.status == 0:
+            assert done == 1, f"seed {seed}: the computer says undone, the robot has done nothing"
+            confirmed += 1
+        if done:
+            images.reverse()
+        assert cpp.held() == images[1], f"seed {seed}: the robot holds another program"
+    return f"{confirmed} confirmed"
+
+
+@needs_host
+def test_undos_over_a_bad_radio() -> None:
+    """No undo is done twice, however often its answer is lost."""
+    found = Counter(one_undo(cpp_link(), seed) for seed in range(UNDOS))
+    assert found["4 confirmed"] > UNDOS * 0.8, found
 
 
 def main() -> int:

@@ -59,6 +59,7 @@ def test_commands_share_a_session_that_is_begun_once(
     assert on(pty_robot, "upload", ours, "--no-run", "--no-save").code == 0
     assert on(pty_robot, "fetch", "-o", theirs).code == 0
     assert theirs.read_bytes() == ours.read_bytes()
+    assert json.loads(on(pty_robot, "undo", "--json").out)["saved"] == "STORED"  # it was not saved
     assert on(pty_robot, "name", "Ñandú").code == 0
     assert json.loads(on(pty_robot, "info", "--json").out)["name"] == "Ñandú"
     assert on(pty_robot, "start").out.endswith("Done.\n")

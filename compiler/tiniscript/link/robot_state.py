@@ -44,7 +44,7 @@ class RobotState:
         return 0 if before is None else (seq - before - 1) & 0xFF
 
     def learn(self, values: SentReply) -> bool:
-        """Take a reply; return whether our run has ended without an event that says how."""
+        """Take a reply; return whether it tells of the end of our run, of which no event has."""
         if isinstance(values, ReceiptReply):
             self.run = values.run
         if not isinstance(values, (HelloReply, PingReply, StatusReply)):
@@ -53,7 +53,7 @@ class RobotState:
         if not was_running or self.is_running or self.run is None:
             return False
         self._ended = self.run
-        return isinstance(values, PingReply)  # a reply to STATUS says how it ended
+        return not isinstance(values, HelloReply)
 
     def take(self, event: Event) -> None:
         if isinstance(event, (StoppedEvent, FaultEvent)):

@@ -317,7 +317,10 @@ class Session:
         if reply.status == OK:
             if message.name == "CLEAR":
                 self._state.clear()
-            if self._state.learn(reply.values):
+            has_ended = self._state.learn(reply.values)
+            if has_ended and isinstance(reply.values, StatusReply):
+                self._events.append(EndedEvent(reply.values))
+            elif has_ended:
                 self._waiting.appendleft(PendingExchange(self._end(), DEAF_MS, is_own=True))
             if self._pending and isinstance(reply.values, NextReply):
                 self._pending.done_bytes = reply.values.next

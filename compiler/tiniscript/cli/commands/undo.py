@@ -7,6 +7,7 @@ from argparse import Namespace
 from typing import TYPE_CHECKING, ClassVar
 
 from tiniscript.cli import inputs
+from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.run_monitor import Saving
@@ -36,8 +37,19 @@ def run(options: Namespace, language: str) -> int:
         connection.meet()
         receipt = Undone(connection)
         print(json.dumps(receipt.fields()) if options.json else receipt.text(), flush=True)
-        printer = connection.event_printer(options.json)
-        UndoSaving(connection, printer, receipt.values).wait()
+        try:
+            UndoSaving(connection, connection.event_printer(options.json), receipt.values).wait()
+            return 0
+        except CommandError as failure:
+            if failure.key == "plain":
+                raise
+    # the command that held the port has ended, as its program has
+    with Connection(options, robot, language) as connection:
+        connection.meet()
+        status = connection.ask(lambda session: session.status()).values
+        if status.program != receipt.values.program:
+            raise CommandError(3, "undo_lost", port=shown(connection.port))
+        UndoSaving(connection, connection.event_printer(options.json), receipt.values).wait()
     return 0
 
 

@@ -130,6 +130,8 @@ LINK_TEXTS: dict[str, tuple[str, str]] = {
                    "El robot todavía no lo ha guardado: lo hace en cuanto sus motores estén quietos. No lo apagues antes; míralo con tsc info."),
     "undo_low_supply": ("The robot's batteries are too weak to keep this: switched off, it holds the later program again. Nothing is lost. Change the batteries and do tsc undo again. With its USB cable plugged in it keeps it at once.",
                         "Las pilas del robot están demasiado gastadas para guardarlo: si se apaga, vuelve a tener el programa más nuevo. No se pierde nada. Cambia las pilas y haz tsc undo otra vez. Con su cable USB conectado lo guarda en el acto."),
+    "undo_lost": ("tsc: the connection on {port} ended before the robot had kept this, and it holds the later program again. Do tsc undo again.",
+                  "tsc: la conexión en {port} terminó antes de que el robot lo guardara, y vuelve a tener el programa más nuevo. Haz tsc undo otra vez."),
     "undo_not_saved": ("The robot could not keep this: its memory is worn out. Switched off, it holds the later program again; the robot needs another board.",
                        "El robot no pudo guardarlo: su memoria está gastada. Si se apaga, vuelve a tener el programa más nuevo; el robot necesita otra placa."),
     # how a program ends

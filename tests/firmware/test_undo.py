@@ -1,0 +1,314 @@
+"""UNDO: a robot holds the program before again, over every power-off, and loses none."""
+
+from __future__ import annotations
+
+import random
+from struct import pack as struct_pack
+
+import pytest
+
+from tests.firmware.test_host_firmware import (
+    KIT,
+    computer,
+    happened,
+    image_of,
+    outcome,
+    send,
+    stored,
+    switched_on,
+)
+from tests.firmware.test_keeping import (
+    DRIVES,
+    FIRST,
+    LONG,
+    SECOND,
+    bytes_of,
+    program_after_power_off,
+    saved,
+)
+from tests.firmware.test_other_versions import OLD, kept
+from tests.machines.host_firmware import HostFirmware, drives, missing
+from tiniscript.bytecode.image import sealed
+from tiniscript.link.frames import decoded
+from tiniscript.link.messages import SAVED, STATUSES
+from tiniscript.link.requests import OK
+from tiniscript.link.session import Session
+
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
+
+A, B, C = "SB|F(0.1, 50)", LONG.replace("SI", "SB"), "SI|F(0.1, 70)"
+NO_PREVIOUS = STATUSES["NO_PREVIOUS"]
+
+
+def with_two(first: str = A, second: str = B) -> tuple[HostFirmware, Session]:
+    """Return a robot that holds the second program, and has saved the first one before."""
+    robot, session = switched_on(), computer()
+    for text in (first, second):
+        send(robot, session, text, runs=False)
+        stored(robot, session)
+    return robot, session
+
+
+def undo(robot: HostFirmware, session: Session) -> int:
+    return robot.until(session, session.undo())
+
+
+def held(robot: HostFirmware, session: Session) -> bytes:
+    request = session.fetch()
+    assert robot.until(session, request) == OK
+    return outcome(request).values.image
+
+
+def test_the_program_before_comes_back_and_the_later_one_after_it() -> None:
+    robot, session = with_two()
+    for text in (A, B, A, B):
+        request = session.undo()
+        assert robot.until(session, request) == OK
+        receipt = outcome(request).values
+        assert receipt.program == image_of(text).checksum
+        assert SAVED[receipt.saved][0] == "SAVING"
+        assert held(robot, session) == bytes_of(text)
+        stored(robot, session, 500)
+        assert program_after_power_off(robot) == bytes_of(text)
+
+
+def test_what_is_back_runs_and_is_what_the_button_starts() -> None:
+    robot, session = with_two()
+    assert undo(robot, session) == OK
+    stored(robot, session)
+    again = switched_on(robot.memory())
+    again.push()
+    again.wait(400)
+    assert happened(again) == ["MOTORS 50 50", "MOTORS 0 0", "FINISHED"]
+
+
+def test_what_runs_ends_and_nothing_starts() -> None:
+    robot, session = with_two(A, DRIVES)
+    robot.until(session, session.start())
+    robot.talk(session, 200)
+    robot.did.clear()
+    assert undo(robot, session) == OK
+    robot.talk(session, 1000)
+    assert [line.split(" ", 1)[1] for line in drives(robot.did)] == ["MOTORS 0 0"]
+    assert saved(robot, session) == "STORED"
+    assert program_after_power_off(robot) == bytes_of(A)
+
+
+def test_a_stopped_robot_stays_stopped() -> None:
+    robot, session = with_two()
+    session.stop(robot.now_ms)
+    robot.talk(session, 500)
+    assert undo(robot, session) == OK
+    robot.talk(session, 500)
+    assert session.is_latched and robot.is_latched
+    assert held(robot, session) == bytes_of(A)
+
+
+# -- refused --------------------------------------------------------------------------------------
+
+
+def test_a_robot_without_any_program_has_none_before() -> None:
+    robot, session = switched_on(), computer()
+    assert undo(robot, session) == NO_PREVIOUS
+    assert saved(robot, session) == "NOTHING"
+
+
+def test_where_there_is_none_before_it_holds_what_it_held() -> None:
+    robot, session = switched_on(), computer()
+    send(robot, session, A)
+    stored(robot, session)
+    assert undo(robot, session) == NO_PREVIOUS
+    assert saved(robot, session) == "STORED"
+    assert held(robot, session) == bytes_of(A)
+    robot.push()
+    robot.talk(session, 400)
+    assert happened(robot) == ["MOTORS 50 50", "MOTORS 0 0", "FINISHED"]
+    assert program_after_power_off(robot) == bytes_of(A)
+
+
+def of_another_kit() -> bytes:
+    """An image that is whole but for the devices: those of another kit."""
+    image = bytearray(bytes_of("SI|SHOW(DISTANCE)"))
+    image[6:8] = struct_pack("<H", int.from_bytes(image[6:8], "little") ^ 0x1111)
+    return sealed(bytes(image))
+
+
+def of_another_minor() -> bytes:
+    image = bytearray(bytes_of(A))
+    image[3] += 1
+    return sealed(bytes(image))
+
+
+def that_no_verifier_takes() -> bytes:
+    image = bytearray(bytes_of(A))
+    image[-1] = 0xFE
+    return sealed(bytes(image))
+
+
+def that_is_damaged() -> bytes:
+    image = bytearray(bytes_of(A))
+    image[-1] ^= 1
+    return bytes(image)
+
+
+@pytest.mark.parametrize(
+    "image",
+    [OLD, of_another_kit(), of_another_minor(), that_no_verifier_takes(), that_is_damaged()],
+    ids=["old", "kit", "minor", "verifier", "damaged"],
+)
+@pytest.mark.parametrize("is_first", [True, False])
+def test_what_it_cannot_run_does_not_come_back(image: bytes, is_first: bool) -> None:
+    good = bytes_of(A)
+    places = (FIRST, SECOND) if is_first else (SECOND, FIRST)
+    robot = HostFirmware(KIT, kept((places[0], 7, good), (places[1], 6, image)))
+    session = computer()
+    robot.wait(400)
+    for _ in range(2):
+        assert undo(robot, session) == NO_PREVIOUS
+        assert saved(robot, session) == "STORED"
+        assert held(robot, session) == good
+    robot.push()
+    robot.talk(session, 400)
+    assert "MOTORS 50 50" in happened(robot)
+    assert program_after_power_off(robot) == good
+    # the next program goes beside the one that it can run
+    send(robot, session, C)
+    stored(robot, session)
+    assert undo(robot, session) == OK
+    assert held(robot, session) == good
+
+
+# -- what is in RAM only --------------------------------------------------------------------------
+
+
+def test_a_program_that_is_not_saved_makes_way_for_the_saved_one() -> None:
+    robot, session = with_two()
+    send(robot, session, C, saves=False)
+    robot.talk(session, 500)
+    memory = robot.memory()
+    request = session.undo()
+    assert robot.until(session, request) == OK
+    assert SAVED[outcome(request).values.saved][0] == "STORED"
+    assert held(robot, session) == bytes_of(B)
+    robot.talk(session, 500)
+    assert robot.memory() == memory, "nothing is written"
+    assert undo(robot, session) == OK
+    assert held(robot, session) == bytes_of(A)
+
+
+def test_a_program_that_is_not_saved_stays_where_nothing_is() -> None:
+    robot, session = switched_on(), computer()
+    send(robot, session, A, saves=False)
+    assert undo(robot, session) == NO_PREVIOUS
+    assert held(robot, session) == bytes_of(A)
+    robot.push()
+    robot.talk(session, 400)
+    assert "MOTORS 50 50" in happened(robot)
+
+
+# -- in the middle of something -------------------------------------------------------------------
+
+
+def test_it_waits_while_the_program_is_being_saved() -> None:
+    robot, session = with_two()
+    send(robot, session, C.replace("SI", "SB"))
+    request = session.undo()
+    robot.talk(session, 40)
+    assert request.outcome is None, "the robot was busy"
+    assert robot.until(session, request) == OK
+    assert held(robot, session) == bytes_of(B)
+    stored(robot, session)
+    assert undo(robot, session) == OK
+    assert held(robot, session) == bytes_of(C.replace("SI", "SB"))
+
+
+def test_with_a_low_supply_nothing_is_touched_and_nothing_is_lost() -> None:
+    robot, session = with_two()
+    robot.supply(is_low=True)
+    memory = robot.memory()
+    for text in (A, B, A):
+        assert undo(robot, session) == OK
+        robot.talk(session, 1500)
+        assert held(robot, session) == bytes_of(text)
+        assert robot.memory() == memory
+        assert program_after_power_off(robot) == bytes_of(B)
+    assert saved(robot, session) == "LOW_SUPPLY"
+    robot.supply(is_low=False)
+    robot.talk(session, 1500)
+    assert saved(robot, session) == "STORED"
+    assert program_after_power_off(robot) == bytes_of(A)
+    assert undo(robot, session) == OK
+    stored(robot, session)
+    assert program_after_power_off(robot) == bytes_of(B)
+
+
+def test_a_program_that_drives_does_not_let_it_lose_the_one_before() -> None:
+    """It waits for the motors before its first byte."""
+    robot, session = with_two(DRIVES, A)
+    memory = robot.memory()
+    assert undo(robot, session) == OK
+    assert robot.until(session, session.start()) == OK
+    robot.talk(session, 3000)
+    assert saved(robot, session) == "SAVING"
+    changed = sum(a != b for a, b in zip(memory, robot.memory(), strict=True))
+    assert changed <= 3, "at most what it wrote before the start"
+    session.stop(robot.now_ms)
+    robot.talk(session, 1000)
+    assert program_after_power_off(robot) == bytes_of(DRIVES)
+
+
+@pytest.mark.parametrize("cut_ms", range(0, 160, 3))
+def test_pulled_out_at_any_moment_it_has_one_of_the_two(cut_ms: int) -> None:
+    robot, session = with_two()
+    request = session.undo()
+    robot.talk(session, cut_ms)
+    memory = robot.memory()
+    found = []
+    for nonce in (5, 6):
+        again, other = switched_on(memory), computer(nonce)
+        found.append(held(again, other))
+        memory = again.memory()
+    assert found[0] == found[1]
+    assert found[0] in (bytes_of(A), bytes_of(B))
+    is_answered = request.outcome is not None
+    robot.talk(session, 1000)
+    assert program_after_power_off(robot) == bytes_of(A)
+    assert is_answered or cut_ms < 100
+
+
+def test_a_request_that_comes_twice_is_done_once() -> None:
+    """The answer was lost, so the same bytes come again, also when it has long been saved."""
+    robot, session = with_two()
+    request = session.undo()
+    wire = session.poll(robot.now_ms)
+    answers = [decoded(robot.wait(wait_ms, wire)[:-1]) for wait_ms in (50, 500, 2000)]
+    assert request.outcome is None
+    programs = {answer.payload[:5] for answer in answers if answer}
+    assert None not in answers
+    assert programs == {bytes([OK]) + image_of(A).checksum.to_bytes(4, "little")}
+    assert held(robot, computer(9)) == bytes_of(A)
+
+
+def test_any_order_of_programs_undos_and_power_offs() -> None:
+    """Against two variables: what it holds, and what it held before."""
+    draw = random.Random(11)
+    texts = [f"SB|F(0.1, {power})" for power in range(40, 46)] + [B]
+    robot, session = switched_on(), computer()
+    now, before = "", ""
+    for step in range(120):
+        what = draw.choice(("send", "undo", "undo", "off"))
+        if what == "send":
+            text = draw.choice(texts)
+            send(robot, session, text)
+            stored(robot, session)
+            if text != now:
+                now, before = text, now
+        elif what == "undo":
+            assert undo(robot, session) == (OK if before else NO_PREVIOUS), step
+            if before:
+                stored(robot, session)
+                now, before = before, now
+        else:
+            robot, session = switched_on(robot.memory()), computer(step)
+        if now:
+            assert held(robot, session) == bytes_of(now), step
