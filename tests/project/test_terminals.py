@@ -1,0 +1,76 @@
+"""What documents show of a terminal is what a robot answers to the same lines.
+
+A fence `terminal` is a conversation: lines that a person types, and the answers, which begin with
+`//`. Here a virtual robot in the document's language answers them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.support.casefile import ROOT
+from tests.support.virtual_robot import missing
+
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
+
+PAGES = (ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")))
+ANSWER = "// "
+LONGEST_MS = 5000  # until an answer comes
+SILENT_MS = 1500  # after the answers, before the next line: more than a second
+
+
+def conversations(page: Path) -> Iterator[list[str]]:
+    """Yield the lines of each fence `terminal`."""
+    fence, lines = "", list[str]()
+    for row in page.read_text(encoding="utf-8").splitlines():
+        if row.startswith("```"):
+            if fence == "terminal":
+                yield lines
+            fence, lines = ("" if fence else row[3:].strip() or "text"), []
+        else:
+            lines.append(row)
+
+
+EVERY = [
+    pytest.param("es" if page.name.endswith(".es.md") else "en", lines, id=f"{page.name}-{k}")
+    for page in PAGES
+    for k, lines in enumerate(conversations(page))
+]
+
+
+def played(lines: list[str], language: str) -> list[str]:
+    """Return the conversation as it goes: each line, and what is answered before the next one."""
+    from tests.support.virtual_robot import floor
+    from tiniscript import robots
+    from tiniscript.virtual.robot import VirtualRobot
+
+    robot = VirtualRobot(robots.load("tinibot").speaking(language), floor())
+    found = []
+    for k, line in enumerate(lines):
+        if line.startswith(ANSWER):
+            continue
+        wanted = next(
+            (n for n, each in enumerate(lines[k + 1 :]) if not each.startswith(ANSWER)),
+            len(lines) - k - 1,
+        )
+        said = robot.step(robot.now_ms + 1, line.encode() + b"\r\n")
+        end_ms = robot.now_ms + LONGEST_MS
+        while said.count(b"\n") < wanted and robot.now_ms < end_ms:
+            said += robot.step(robot.now_ms + 1)
+        said += robot.step(robot.now_ms + SILENT_MS)
+        found += [line, *said.decode().splitlines()]
+    return found
+
+
+@pytest.mark.parametrize(("language", "lines"), EVERY)
+def test_a_robot_answers_as_the_document_shows(language: str, lines: list[str]) -> None:
+    assert len(lines) >= 2
+    assert played(lines, language) == lines
+
+
+def test_the_front_door_and_both_guides_show_a_terminal() -> None:
+    shown = {page.name for page in PAGES if list(conversations(page))}
+    assert {"README.md", "monday.en.md", "lunes.es.md"} <= shown
