@@ -22,7 +22,6 @@ from tiniscript.link.messages import (
     MESSAGES,
     PAYLOAD_BYTES,
     REPLY,
-    RESERVED,
     SEALED,
     STATUSES,
     TEXT_FROM,
@@ -36,7 +35,7 @@ from tools.bench import link_size, machine_size
 
 
 def test_numbers_are_used_once_and_leave_the_bits_alone() -> None:
-    numbers = [each.number for each in MESSAGES] + list(RESERVED)
+    numbers = [each.number for each in MESSAGES]
     assert len(set(numbers)) == len(numbers)
     assert all(0 < number < min(REPLY, SEALED) for number in numbers)
     assert len(set(STATUSES.values())) == len(STATUSES)

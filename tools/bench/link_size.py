@@ -23,7 +23,7 @@ MUST = 4900  # bytes of flash
 PORT = """
 namespace tiniscript {
 Identity identity; RobotStatus robot_status; DeviceInfo device_info;
-const Identity& port_identity() { return identity; }
+Identity& port_identity() { return identity; }
 const RobotStatus& port_status() { return robot_status; }
 Trim trim;
 const Trim& port_trim() { return trim; }

@@ -14,7 +14,6 @@ from tiniscript.link.statuses import texts
 from tools.generate.cpp_header import array, camel, constants, enumeration
 
 HEADER_GUARD = "TINISCRIPT_LINK_MESSAGES_H_"
-KEPT_FOR_LATER = 0xFF  # the length of a request whose number is reserved: no payload is so long
 
 
 def header(command: str) -> str:
@@ -56,12 +55,21 @@ def header(command: str) -> str:
             ("kTetherMs", messages.TETHER_MS),
             ("kListenMs", messages.LISTEN_MS),
             ("kAgainMs", messages.AGAIN_MS),
+            ("kKeyBytes", messages.KEY_BYTES),
+            ("kChallengeBytes", messages.CHALLENGE_BYTES),
+            ("kTagBytes", messages.TAG_BYTES),
+            ("kAuthorityMs", messages.AUTHORITY_MS),
+            ("kKeyTries", messages.KEY_TRIES),
+            ("kKeyPauseMs", messages.KEY_PAUSE_MS),
+            ("kLongMs", messages.LONG_MS),
+            ("kClaimMs", messages.CLAIM_MS),
+            ("kForgetMs", messages.FORGET_MS),
         ),
         "// How a program starts, in one byte.\n"
         + constants(*((f"k{camel(name)}", bits) for bits, name, _ in messages.MODES)),
         "// How the motors are wired, in one byte.\n"
         + constants(*((f"k{camel(name)}", bits) for bits, name, _ in messages.WHEELS)),
-        "// What a robot is able and allowed to do, in two bytes.\n"
+        "// What the robot is able to do and who may drive it, in one number.\n"
         + constants(*((f"k{camel(name)}", bits) for bits, name, _ in messages.FEATURES)),
         enumeration("Message", named),
         "// Requests are the numbers from 1 up to this one; from kFirstActing on they act.\n"
@@ -70,9 +78,6 @@ def header(command: str) -> str:
             ("kFirstActing", messages.FIRST_ACTING),
         ),
         "// How long the payload of each request may be, from the first one on: least and most.\n"
-        "// kKeptForLater: the number is kept for later, and no payload is so long.\n"
-        + constants(("kKeptForLater", KEPT_FOR_LATER))
-        + "\n"
         "extern const uint8_t kRequestBytes[][2] tini_progmem;\n",
         "// Where each field of a request begins.\n" + constants(*_places()),
         "// What begins a reply. Below 64: an image's Refusal, or the verifier's Rule.\n"
@@ -85,6 +90,7 @@ def header(command: str) -> str:
                 ("Cause", messages.CAUSES),
                 ("Reset", messages.RESETS),
                 ("TextLevel", messages.TEXT_LEVELS),
+                ("Key", messages.KEYS),
             )
         ),
         "// Faults that no instruction makes. The others are `Fault`.\n"
@@ -96,12 +102,7 @@ def header(command: str) -> str:
 
 def tables(command: str) -> str:
     """Return `messages.cpp`: the table that the header declares."""
-    by_number = {each.number: each for each in _requests()}
-    rows = []
-    for number in range(1, max(by_number) + 1):
-        each = by_number.get(number)
-        low, high = messages.sizes(each.request) if each else (KEPT_FOR_LATER, KEPT_FOR_LATER)
-        rows.append((f"{{{low}, {high}}}", each.name if each else messages.RESERVED[number]))
+    rows = [("{{{}, {}}}".format(*messages.sizes(each.request)), each.name) for each in _requests()]
     return "\n".join(
         (
             _first_line(command),
@@ -120,7 +121,7 @@ def _first_line(command: str) -> str:
 
 def _requests() -> list[messages.Message]:
     found = [each for each in MESSAGES if each.number < messages.FIRST_EVENT]
-    assert [each.number for each in found] == sorted({each.number for each in found})
+    assert [each.number for each in found] == list(range(1, len(found) + 1))
     return found
 
 
@@ -149,7 +150,6 @@ def message_rows() -> Rows:
         )
         for each in MESSAGES
     ]
-    rows += [(n, f"`{name}`", "", "", "Kept for later.") for n, name in messages.RESERVED.items()]
     head = ("number", "message", "from the computer", "from the robot, after the status", "meaning")
     return head, rows
 
@@ -194,6 +194,7 @@ DOCUMENT_TABLES: dict[str, Callable[[], Rows]] = {
         [(f"0x{bits:04x}", f"`{name}`", what) for bits, name, what in messages.FEATURES],
     ),
     "text levels": lambda: number_rows(messages.TEXT_LEVELS),
+    "keys": lambda: number_rows(messages.KEYS),
     "statuses": status_rows,
     "states": lambda: number_rows(messages.STATES),
     "saved": lambda: number_rows(messages.SAVED),

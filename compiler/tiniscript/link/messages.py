@@ -26,6 +26,9 @@ REPLY = 0x80  # flag of a type: sent to the computer
 SEALED = 0x40  # flag of a type: a counter and a MAC follow the payload. Reserved
 NAME_BYTES = 16
 TRIM_BYTES = 3
+KEY_BYTES = 16
+CHALLENGE_BYTES = 8
+TAG_BYTES = 8
 
 STOP_BYTES = 8  # zeros that a computer sends to stop a robot
 STOP_RUN = 4  # zeros in a row that stop it
@@ -33,6 +36,12 @@ SILENCE_MS = 1000  # after this silence the next byte begins an item
 TETHER_MS = 1000  # dead-man timer: without a valid frame, a tethered program ends
 LISTEN_MS = 3000  # without a valid frame, a robot sends no more events
 AGAIN_MS = 50  # between two STOPPED events of a stopped robot
+AUTHORITY_MS = 2000  # without a valid frame, a key has to be shown again
+KEY_TRIES = 5  # wrong keys before a pause
+KEY_PAUSE_MS = 30_000  # in which a robot listens to no key
+LONG_MS = 1000  # a press of the button of this length starts nothing
+CLAIM_MS = 2000  # a press of this length lets a client claim the robot, or lets text drive it
+FORGET_MS = 10_000  # a press of this length from power-on makes the robot forget its keys
 
 # How a program starts and whether it is kept: one byte of LIVE, PROGRAM, BEGIN and START.
 START_BITS, RUN, SAVE, DETACHED = 0x03, 0x10, 0x20, 0x40
@@ -43,6 +52,23 @@ MODES = (
     (DETACHED, "DETACHED", "It goes on without the link. START may have this bit and no other."),
 )
 
+# What a robot is able to do and who may drive it, in one number of the reply to HELLO. A robot whose
+# firmware is older has 0.
+TEXT_LEVEL, OWNERS, OWNED, TEXT_ALLOWED = 0x0003, 0x0010, 0x0020, 0x0040
+YOURS, BY_TEACHER = 0x0080, 0x0100
+FEATURES = (
+    (TEXT_LEVEL, "TEXT_LEVEL", "Which level of text the robot reads, a number of the table below."),
+    (OWNERS, "OWNERS", "The robot knows owners."),
+    (OWNED, "OWNED", "It has an owner."),
+    (TEXT_ALLOWED, "TEXT_ALLOWED", "Lines of text may drive it."),
+    (YOURS, "YOURS", "This session has shown a key of the robot."),
+    (BY_TEACHER, "BY_TEACHER", "It was the teacher's key."),
+)
+# The keys of a robot: `which` of CLAIM and AUTHENTICATE.
+KEYS = (
+    ("OWNER", "Who has claimed the robot. Where there is one, nobody drives the robot without a key."),
+    ("TEACHER", "May do what the owner may. A stop with it is released by it or by the button alone."),
+)
 
 # The trim of the motors: their wiring, how much one is weakened, and the least power that moves.
 EXCHANGED, LEFT_REVERSED, RIGHT_REVERSED = 0x01, 0x02, 0x04
@@ -51,15 +77,6 @@ WHEELS = (
     (EXCHANGED, "EXCHANGED", "The left motor is where the right one should be."),
     (LEFT_REVERSED, "LEFT_REVERSED", "The left wheel turns the wrong way round."),
     (RIGHT_REVERSED, "RIGHT_REVERSED", "The right wheel turns the wrong way round."),
-)
-
-# What a robot is able and allowed to do, as HELLO tells it. A robot whose firmware is older has 0.
-TEXT_LEVEL, OWNERS, OWNED, TEXT_ALLOWED = 0x0003, 0x0010, 0x0020, 0x0040
-FEATURES = (
-    (TEXT_LEVEL, "TEXT_LEVEL", "Which level of text the robot reads, a number of the table below."),
-    (OWNERS, "OWNERS", "The robot knows owners."),
-    (OWNED, "OWNED", "It has one."),
-    (TEXT_ALLOWED, "TEXT_ALLOWED", "Lines of text may drive it."),
 )
 
 
@@ -142,8 +159,14 @@ MESSAGES = (
     _message(14, "NAME", True, "name:rest=1..16", "", "Names the robot: UTF-8. OK when it is kept, before that SAVING or LOW_SUPPLY: ask again."),
     _message(15, "TRIM", True, f"trim:rest=0..{TRIM_BYTES}", "wheels:u8 balance:i8 least:u8",
              "Sets the trim of the motors, three bytes like those of the reply, or only tells it. OK as for NAME."),
+    _message(16, "CLAIM", True, f"which:u8 key:rest=0..{KEY_BYTES}", "",
+             "Gives the robot a key, when its button was held: `which` of KEYS. Without a key: takes that one away. OK as for NAME."),
+    _message(17, "AUTHENTICATE", True, f"which:u8 tag:rest=0..{TAG_BYTES}", f"features:u16 challenge:rest=0..{CHALLENGE_BYTES}",
+             "Without a tag: asks for a challenge. With it: shows a key of the robot."),
+    _message(18, "IDENTIFY", True, "", "", "The robot blinks and plays the tune of its id."),
     _message(19, "UNDO", True, "", _RECEIPT,
              "The robot holds the program before again. What runs ends; nothing starts."),
+    _message(20, "TEXT", True, "is_allowed:u8", "features:u16", "Lets lines of text drive a robot with an owner, or not, until power-off."),
     # events: a robot sends these without being asked
     _message(32, "SHOW", False, "", "value:i32 is_yes_no:u8", "A value that a program shows."),
     _message(33, "FAULT", False, "", "run:u8 fault:u8 at:u16 program:u32",
@@ -159,8 +182,6 @@ SHARED_REPLIES = {
     "NextReply": _fields("next:u16"),
     "EmptyReply": (),
 }
-
-RESERVED = {16: "CLAIM", 17: "AUTHENTICATE", 18: "IDENTIFY", 20: "TEXT"}
 
 # The status, the first byte of a reply. 1 to 19 are the refusals of an image, 20 to 63 the rules
 # of the verifier: `bytecode_spec.md`. The sentences are in `statuses.toml`.
@@ -184,6 +205,11 @@ STATUSES = {
     "SAVING": 78,
     "LOW_SUPPLY": 79,
     "NOT_KEPT": 80,
+    "NOT_OWNER": 84,
+    "WRONG_KEY": 85,
+    "TOO_MANY_TRIES": 86,
+    "HOLD_BUTTON": 87,
+    "HELD_BACK": 88,
     "NO_PREVIOUS": 90,
 }
 # The meaning of the number after a status other than OK. Statuses not listed here have 0.
@@ -193,6 +219,8 @@ DETAILS = {
     "WRONG_KIT": "the fingerprint of the robot's kit",
     "TOO_LARGE": "bytes of code for which the robot has room",
     "INCOMPLETE": "the offset of the first byte that is missing",
+    "WRONG_KEY": "tries that are left before a pause",
+    "TOO_MANY_TRIES": "seconds until the robot listens to keys again",
 }
 
 STATES = (
@@ -249,6 +277,7 @@ def _rows(table: tuple[tuple[str, str], ...], names: str) -> tuple[int, ...]:
 STATE_IDLE, STATE_RUNNING, STATE_STOPPED, STATE_FAULTED = _rows(
     STATES, "IDLE RUNNING STOPPED FAULTED"
 )
+KEY_OWNER, KEY_TEACHER = _rows(KEYS, "OWNER TEACHER")
 SAVED_NOTHING, SAVED_SAVING, SAVED_STORED, SAVED_LOW_SUPPLY, SAVED_OTHER_VERSION = _rows(
     SAVED, "NOTHING SAVING STORED LOW_SUPPLY OTHER_VERSION"
 )

@@ -64,7 +64,7 @@ class FetchReply(NamedTuple):
 
 
 class EmptyReply(NamedTuple):
-    """What is in the reply to STOP, CLEAR, ABORT, NAME."""
+    """What is in the reply to STOP, CLEAR, ABORT, NAME, CLAIM, IDENTIFY."""
 
 
 class ReceiptReply(NamedTuple):
@@ -88,6 +88,19 @@ class TrimReply(NamedTuple):
     wheels: int
     balance: int
     least: int
+
+
+class AuthenticateReply(NamedTuple):
+    """What is in the reply to AUTHENTICATE."""
+
+    features: int
+    challenge: bytes
+
+
+class TextReply(NamedTuple):
+    """What is in the reply to TEXT."""
+
+    features: int
 
 
 class ShowEvent(NamedTuple):
@@ -131,6 +144,8 @@ SentReply = (
     | ReceiptReply
     | NextReply
     | TrimReply
+    | AuthenticateReply
+    | TextReply
 )
 REPLIES: dict[str, type[SentReply]] = {
     "HELLO": HelloReply,
@@ -148,7 +163,11 @@ REPLIES: dict[str, type[SentReply]] = {
     "ABORT": EmptyReply,
     "NAME": EmptyReply,
     "TRIM": TrimReply,
+    "CLAIM": EmptyReply,
+    "AUTHENTICATE": AuthenticateReply,
+    "IDENTIFY": EmptyReply,
     "UNDO": ReceiptReply,
+    "TEXT": TextReply,
 }
 
 

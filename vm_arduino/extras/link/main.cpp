@@ -98,6 +98,12 @@ void answer_robot(RequestReader* request, Writer* answer) {
     case 'w':
       port.is_busy = value != 0;
       break;
+    case 'h':
+      is_taken = link_half.confirm_claim();
+      break;
+    case 'l':
+      link_half.lapse();
+      break;
     case 'k':
       port.is_saving = value != 0;
       break;

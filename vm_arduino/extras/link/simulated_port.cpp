@@ -66,7 +66,7 @@ std::string sealed(std::string image) {
 namespace tiniscript {
 
 const DeviceInfo& port_device_info() { return port.device_info; }
-const Identity& port_identity() { return port.identity; }
+Identity& port_identity() { return port.identity; }
 const RobotStatus& port_status() { return port.robot_status; }
 const Trim& port_trim() { return port.trim; }
 LineErrors port_line_errors() { return {0, 0}; }
@@ -133,7 +133,7 @@ uint8_t* port_text_memory(uint16_t* room, bool* has_room) {
 }
 
 uint8_t* port_text_room(uint16_t* room) {
-  if (port_make_way(false) != Answer::kOk) return nullptr;
+  if (!text_may_drive() || port_make_way(false) != Answer::kOk) return nullptr;
   port_forget();
   *room = port.room;
   port.image.reset(new uint8_t[static_cast<size_t>(kHeaderBytes + port.room + kEndBytes)]);
@@ -192,6 +192,26 @@ Answer port_image_byte(uint16_t offset, uint8_t* byte) {
   *byte = static_cast<uint8_t>(port.held.at(offset));
   return port.is_busy ? Answer::kBusy : Answer::kOk;
 }
+
+Answer port_key(uint8_t which, uint8_t* key) {
+  for (uint8_t k = 0; k < kKeyBytes; k++) key[k] = port.keys[which][k];
+  if (port.is_busy) return Answer::kBusy;
+  return port.is_saving ? Answer::kSaving : Answer::kOk;
+}
+
+Answer port_keep_key(uint8_t which, const uint8_t* key) {
+  bool is_owned = which == 0 ? false : (port.identity.features & kOwned) != 0;
+  for (uint8_t k = 0; k < kKeyBytes; k++) {
+    port.keys[which][k] = key[k];
+    if (which == 0 && key[k] != 0) is_owned = true;
+  }
+  const int flag = is_owned ? kOwned : 0;
+  port.identity.features = static_cast<uint16_t>((port.identity.features & ~kOwned) | flag);
+  say("KEY %u", which);
+  return Answer::kSaving;
+}
+
+void port_identify() { say("IDENTIFY"); }
 
 Answer port_set_trim(const Trim& trim) {
   if (port.is_busy) return Answer::kBusy;

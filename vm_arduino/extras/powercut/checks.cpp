@@ -42,7 +42,7 @@ const char* run_checks() {
   const Content b = some_image(20);
   const Content c = some_image(kStoredCodeBytes);
   const Content large = some_image(kStoredCodeBytes + 1);
-  Content record = some_record();
+  Content record = some_record(Area::kFault);
   const Content same_record = record;
   Store store;
   Store later;

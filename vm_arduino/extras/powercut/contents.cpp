@@ -36,17 +36,18 @@ Content some_image(uint16_t code_bytes) {
   return checked(image);
 }
 
-Content some_record() {
-  Content record(kRecordBytes);
+Content some_record(Area area) {
+  Content record(area == Area::kOwner ? kOwnerBytes : kRecordBytes);
   for (uint8_t& byte : record) byte = any_byte();
-  put(&record, 0, crc32(0, record.data() + kCheckBytes, kRecordBytes - kCheckBytes));
+  const uint16_t rest = static_cast<uint16_t>(record.size() - kCheckBytes);
+  put(&record, 0, crc32(0, record.data() + kCheckBytes, rest));
   return record;
 }
 
 Content read(const Store& store, Area area) {
   Content found;
   if (store.used(area) == kNoSlot) return found;
-  size_t length = kRecordBytes;
+  size_t length = area == Area::kOwner ? kOwnerBytes : kRecordBytes;
   if (area == Area::kProgram) length = kHeaderBytes;
   while (found.size() < length) {
     uint8_t byte;

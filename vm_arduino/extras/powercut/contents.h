@@ -20,7 +20,7 @@ Content checked(Content image);
 Content some_image(uint16_t code_bytes);
 
 // A record of anything, with its check.
-Content some_record();
+Content some_record(Area area);
 
 // What counts in an area, all of it. Where it cannot be read the program ends.
 Content read(const Store& store, Area area);

@@ -294,15 +294,16 @@ void programs(uint16_t size, uint32_t stride) {
   Content e = a;
   e.back() ^= 1;
   e = checked(e);
-  const Task record = {Area::kFault, some_record()};
-  const Task identity = {Area::kIdentity, some_record()};
+  const Task record = {Area::kFault, some_record(Area::kFault)};
+  const Task identity = {Area::kIdentity, some_record(Area::kIdentity)};
+  const Task owner = {Area::kOwner, some_record(Area::kOwner)};
   std::vector<Task> many;
   for (uint8_t k = 0; k < 62; k++) many.push_back({area, k % 2 == 0 ? a : b});
 
   cut_everything("the first save", after(0xff, {}), {area, a}, {b, a}, stride);
   cut_everything("the second save", after(0xff, {identity, {area, a}}), {area, b}, {c, b, a},
                  stride);
-  cut_everything("the third save", after(0xff, {{area, a}, record, {area, b}}), {area, c},
+  cut_everything("the third save", after(0xff, {{area, a}, record, owner, {area, b}}), {area, c},
                  {d, c, b, a}, stride);
   cut_everything("what was there before the last", after(0xff, {{area, a}, {area, b}}), {area, a},
                  {c, a, b}, stride);
@@ -330,9 +331,9 @@ void programs(uint16_t size, uint32_t stride) {
 }
 
 void records(Area area, uint32_t stride) {
-  const Content a = some_record();
-  const Content b = some_record();
-  const Content c = some_record();
+  const Content a = some_record(area);
+  const Content b = some_record(area);
+  const Content c = some_record(area);
   const Task program = {Area::kProgram, some_image(20)};
   cut_everything("the first record", after(0xff, {program}), {area, a}, {b, a}, stride);
   cut_everything("the second record", after(0xff, {program, {area, a}}), {area, b}, {c, b, a},
@@ -356,6 +357,7 @@ int main(int count, char** arguments) {
   } else if (strcmp(arguments[2], "records") == 0) {
     records(Area::kIdentity, stride);
     records(Area::kFault, stride);
+    records(Area::kOwner, stride);
   } else {
     programs(static_cast<uint16_t>(atoi(arguments[2])), stride);
   }

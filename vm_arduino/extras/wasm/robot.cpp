@@ -268,7 +268,10 @@ tini_exported("now_us") uint64_t module_now_us() { return now_us; }
 // How many bytes of the inbox have not been heard.
 tini_exported("unheard") uint32_t module_unheard() { return to_hear - heard; }
 
-tini_exported("press") void module_press() { firmware_on_pressed(); }
+tini_exported("press") void module_press() {
+  firmware_on_pressed();
+  firmware_on_held();  // it has no spikes
+}
 tini_exported("let_go") void module_let_go() { firmware_on_released(); }
 
 // The robot as its own STATUS tells it.

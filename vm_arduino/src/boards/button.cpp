@@ -35,7 +35,7 @@ Press button_read(bool is_down, uint32_t now_ms) {
     state = State::kEdge;
     return Press::kPressed;
   }
-  if (steady_ms < kDebounceMs || (is_down && state != State::kEdge)) return Press::kNothing;
+  if (steady_ms < kDebounceMs || (is_down && state == State::kDown)) return Press::kNothing;
   const State before = state;
   state = is_down ? State::kDown : State::kUp;
   if (is_down) return Press::kHeld;

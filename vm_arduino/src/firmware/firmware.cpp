@@ -1,5 +1,7 @@
 #include "firmware.h"
 
+#include "holding.h"
+#include "identify.h"
 #include "identity.h"
 #include "keeping.h"
 #include "run.h"
@@ -28,6 +30,7 @@ void firmware_begin(const Board& what) {
 }
 
 void firmware_on_time(uint32_t time_ms) {
+  pass_holding(static_cast<uint16_t>(time_ms - now_ms));
   now_ms = time_ms;
   link.pass_time(static_cast<uint16_t>(time_ms));
 }
@@ -35,6 +38,7 @@ void firmware_on_time(uint32_t time_ms) {
 void firmware_turn() {
   link.tick();
   tick_run();
+  tick_identify();
   link.tell();
   tick_keeping();
 }

@@ -63,7 +63,7 @@ bool change_trim(const Trim& found) {
                 sizeof trim);
 }
 
-const Identity& port_identity() { return identity; }
+Identity& port_identity() { return identity; }
 
 const DeviceInfo& port_device_info() { return device_info; }
 

@@ -20,14 +20,15 @@ enum class Boot : uint8_t { kSettling, kIdentity, kFault, kProgram, kOver };
 constexpr uint8_t kProgramBit = 1;
 constexpr uint8_t kFaultBit = 2;
 constexpr uint8_t kIdentityBit = 4;
+constexpr uint8_t kOwnerBit = 8;
 
 Boot boot;
-uint8_t record[kRecordBytes];
+uint8_t record[kOwnerBytes];
 uint8_t to_keep;
 uint8_t keeping;  // the bits that the store is writing
 bool is_low;      // saving waits for more voltage
 uint16_t low_ms;  // when that wait began
-bool is_worn;     // the memory has failed to save the identity
+bool is_worn;     // the memory has failed to save the identity or a key
 
 // -- after a reset ------------------------------------------------------------------------------
 
@@ -59,6 +60,7 @@ void load_next() {
       return;
     case Boot::kIdentity:
       load_identity();
+      read_owner();
       boot = Boot::kFault;
       return;
     case Boot::kFault:
@@ -134,7 +136,8 @@ void tick_keeping() {
     tell_saving();
   }
   if (is_busy) return;
-  if (keeping == kIdentityBit) is_worn = !is_kept;
+  if ((keeping & (kIdentityBit | kOwnerBit)) != 0) is_worn = !is_kept;
+  if (keeping == kOwnerBit) read_owner();
   keeping = 0;
   if (to_keep != 0) keep_next();
 }
@@ -157,6 +160,36 @@ Answer identity_kept() {
   if (!is_worn) return Answer::kOk;
   keep_identity();
   return Answer::kNotKept;
+}
+
+bool fetch_key(uint8_t which, uint8_t* key) {
+  if (!has_booted() && boot <= Boot::kSettling) return false;
+  const bool is_there = store.used(Area::kOwner) != kNoSlot;
+  for (uint8_t k = 0; k < kKeyRoom; k++) {
+    key[k] = 0;
+    const uint16_t at = static_cast<uint16_t>(kKeysAt + which * kKeyRoom + k);
+    if (is_there && !store.fetch(Area::kOwner, at, key + k)) return false;
+  }
+  return true;
+}
+
+// The record stays in memory until it is saved, so nothing else may wait to be.
+Answer keep_key(uint8_t which, const uint8_t* key) {
+  if (!has_booted() || store.is_busy() || (to_keep | keeping) != 0) return not_now();
+  for (uint8_t k = 0; k < kKeys; k++) {
+    if (!fetch_key(k, record + kKeysAt + k * kKeyRoom)) return not_now();
+  }
+  copy_bytes(key, record + kKeysAt + which * kKeyRoom, kKeyRoom);
+  if (!store.begin_keep(Area::kOwner, record)) return not_now();
+  keeping = kOwnerBit;
+  const bool was_worn = is_worn;
+  is_worn = false;
+  return was_worn ? Answer::kNotKept : Answer::kSaving;
+}
+
+Answer owner_kept() {
+  if (keeping != kOwnerBit) return Answer::kOk;
+  return is_low ? Answer::kLowSupply : Answer::kSaving;
 }
 
 Answer give_up_program() {

@@ -71,7 +71,7 @@ uint8_t* port_text_memory(uint16_t* room, bool* has_room) {
 }
 
 uint8_t* port_text_room(uint16_t* room) {
-  if (port_make_way(false) != Answer::kOk) return nullptr;
+  if (!text_may_drive() || port_make_way(false) != Answer::kOk) return nullptr;
   port_forget();
   *room = kTextRoom;
   return program;

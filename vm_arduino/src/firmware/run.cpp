@@ -5,6 +5,7 @@
 #include "../vm/image.h"
 #include "../vm/vm.h"
 #include "firmware.h"
+#include "holding.h"
 #include "keeping.h"
 #include "program.h"
 #include "state.h"
@@ -116,24 +117,36 @@ bool is_driving() { return has_motors_on; }
 
 // -- events -------------------------------------------------------------------------------------
 
-void firmware_on_pressed() {
+namespace {
+
+void press() {
   may_start = !is_running();
   if (may_start) return;
   end_run(State::kStopped);
   link.stopped(Cause::kButton);
 }
 
+}  // namespace
+
+void firmware_on_pressed() {
+  begin_press();
+  press();
+}
+
 void firmware_on_held() {
-  if (is_running()) firmware_on_pressed();
+  hold_press();
+  if (is_running()) press();
 }
 
 void firmware_on_released() {
-  if (!may_start || !has_booted()) return;
+  end_press();
+  if (!may_start || is_long_press() || !has_booted()) return;
   link.drop();
   is_start_due = holds_program();
 }
 
 void firmware_on_disconnect() {
+  link.lapse();
   if (!is_running() || !link.is_tethered()) return;
   end_run(State::kStopped);
   link.stopped(Cause::kCable);

@@ -206,7 +206,9 @@ bool Console::is_ignored() const {
 void Console::refuse() {
   is_refused_ = is_open_ = false;
   is_talking_ = true;
-  say(is_latched() ? Remark::kLatched : Remark::kSaving);
+  say(!text_may_drive() ? Remark::kNotOwner
+      : is_latched()    ? Remark::kLatched
+                        : Remark::kSaving);
 }
 
 // Whether there is time for the rest of the line: it begins with a SETUP word, or a block is open.

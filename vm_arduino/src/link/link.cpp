@@ -2,6 +2,7 @@
 
 #include "../vm/bytecode.h"
 #include "../vm/small.h"
+#include "has_owners.h"
 #include "port.h"
 
 namespace tiniscript {
@@ -14,11 +15,6 @@ constexpr uint8_t kIsFine = static_cast<uint8_t>(Answer::kOk);
 uint8_t number_of(Answer answer) { return static_cast<uint8_t>(answer); }
 
 bool is_latched() { return port_status().state >= State::kStopped; }
-
-bool is_known_request(uint8_t type) {
-  return type != 0 && type <= kLastRequest &&
-         flash_byte(&kRequestBytes[type - 1][0]) != kKeptForLater;
-}
 
 // The reason why the robot has no program to start or to fetch, or kOk.
 Answer lacks_program() {
@@ -65,6 +61,7 @@ void Link::turn() {
     port_stop(static_cast<uint8_t>(LinkFault::kLinkLost));
     faulted();
   }
+  if (kHasOwners && left_ms_[kListen] <= kListenMs - kAuthorityMs) lapse();
 }
 
 void Link::tell() {
@@ -160,7 +157,7 @@ tini_noinline void Link::handle(uint8_t end) {
   Answer refusal = Answer::kOk;
   if ((type & kSealed) != 0) {
     refusal = Answer::kNotSealed;
-  } else if (!is_known_request(type)) {
+  } else if (type == 0 || type > kLastRequest) {
     refusal = Answer::kUnknownMessage;
   } else if (is_hello && length != 0 && payload[kHelloMajorAt] != kLinkMajor) {
     said_.detail = kLinkMajor;
@@ -170,6 +167,8 @@ tini_noinline void Link::handle(uint8_t end) {
     refusal = Answer::kBadLength;
   } else if (type >= kFirstActing && !is_next) {
     refusal = Answer::kStale;
+  } else if (is_forbidden(type)) {
+    refusal = Answer::kNotOwner;
   }
   said_.status = number_of(refusal);
   if (refusal == Answer::kOk) {
@@ -200,9 +199,10 @@ uint8_t Link::answer(Message message, const uint8_t* payload, uint8_t length) {
       break;
     case Message::kStop:
       halt(Cause::kMessage);
+      if (kHasOwners && (port_identity().features & kByTeacher) != 0) rights_ |= kHeldBack;
       break;
     case Message::kClear:
-      port_release();
+      found = clear();
       break;
     case Message::kStart:
       if ((payload[kStartModeAt] & ~kDetached) != 0) {
@@ -235,13 +235,31 @@ uint8_t Link::answer(Message message, const uint8_t* payload, uint8_t length) {
     case Message::kTrim:
       if (length != 0) found = set_trim(payload, length);
       break;
+    case Message::kClaim:
+      found = kHasOwners ? claim(payload, length) : Answer::kUnknownMessage;
+      break;
+    case Message::kAuthenticate:
+      return kHasOwners ? authenticate(payload, length) : number_of(Answer::kUnknownMessage);
+    case Message::kIdentify:
+      port_identify();
+      break;
     case Message::kUndo:
       image_ = nullptr;
       found = port_undo();
       checksum_ = port_status().program;
       break;
+    case Message::kText:
+      found = kHasOwners ? allow_text(payload) : Answer::kUnknownMessage;
+      break;
   }
   return number_of(found);
+}
+
+Answer Link::clear() {
+  if ((rights_ & kHeldBack) != 0 && (port_identity().features & kByTeacher) == 0) return Answer::kHeldBack;
+  rights_ &= static_cast<uint8_t>(~kHeldBack);
+  port_release();
+  return Answer::kOk;
 }
 
 Answer Link::set_trim(const uint8_t* payload, uint8_t length) {
@@ -250,7 +268,10 @@ Answer Link::set_trim(const uint8_t* payload, uint8_t length) {
 }
 
 uint8_t Link::hello(const uint8_t* payload) {
-  if (!is_open_ || !same_bytes(&nonce_, payload + kHelloNonceAt)) renew();
+  if (!is_open_ || !same_bytes(&nonce_, payload + kHelloNonceAt)) {
+    renew();
+    lapse();
+  }
   is_open_ = true;
   copy_bytes(payload + kHelloNonceAt, reinterpret_cast<uint8_t*>(&nonce_), sizeof nonce_);
   isa_[0] = payload[kHelloIsaMajorAt];

@@ -70,10 +70,17 @@ class Link {
     image_ = nullptr;
     is_tethered_ = false;
     console_.drop();
+    rights_ = 0;  // also what only the teacher may release
   }
 
   // Whether the run ends when no frame arrives.
   bool is_tethered() const { return is_tethered_; }
+
+  // Ends the authority of the session.
+  void lapse();
+
+  // The button confirms a claim, if the session has asked for one. Returns whether it has.
+  bool confirm_claim();
 
  private:
   // What is due to be sent, one bit each: the lowest one first.
@@ -84,8 +91,15 @@ class Link {
   static constexpr uint8_t kDueText = 16;
 
   // Times that run down to 0: until a client without frames no longer counts as listening, until
-  // STOPPED is sent again.
-  enum Time : uint8_t { kListen, kAgain, kTimes };
+  // STOPPED is sent again, until a key may be shown again.
+  enum Time : uint8_t { kListen, kAgain, kKeyPause, kTimes };
+
+  // Rights of the session, one bit each: it has a challenge, it has asked for a claim, the button
+  // has confirmed that. And the robot was stopped with the teacher's key.
+  static constexpr uint8_t kHasChallenge = 1;
+  static constexpr uint8_t kIsAsked = 2;
+  static constexpr uint8_t kIsConfirmed = 4;
+  static constexpr uint8_t kHeldBack = 8;
 
   // A reply before it is written. The detail follows a status other than OK.
   struct Said {
@@ -123,6 +137,13 @@ class Link {
   uint8_t make_room(Use use, const uint8_t* header);
   bool is_listened_to() const;
   void renew();
+
+  // owners
+  bool is_forbidden(uint8_t type) const;
+  Answer claim(const uint8_t* payload, uint8_t length);
+  uint8_t authenticate(const uint8_t* payload, uint8_t length);
+  Answer allow_text(const uint8_t* payload);
+  Answer clear();
 
   // writing
   void send();
@@ -175,6 +196,8 @@ class Link {
   Cause cause_;
   uint8_t event_seq_;
   uint8_t last_epoch_;
+  uint8_t rights_;
+  uint8_t tries_;      // wrong keys since the last right one or the last pause
   Said last_;          // the last reply to a numbered request
   Said said_;          // the current reply
   uint32_t checksum_;  // of the image in a receipt
@@ -194,6 +217,7 @@ class Link {
   volatile uint8_t left_;  // bytes left to send
   // Large members come last: what lies near to the begin takes less code.
   Console console_;
+  uint8_t challenge_[kChallengeBytes];
   uint8_t out_[kWireBytes];
 };
 

@@ -39,7 +39,8 @@ tini_noinline void Link::prepare() {
   uint8_t* const bytes = receiver_->bytes();
   const uint8_t end = check_.decode(bytes);  // below 0 it is very large
   if (end == ahead_ || end <= kPayloadAt || end > kLargestFrame || bytes[kTypeAt] != kLiveByte ||
-      due_ != 0 || !is_open_ || console_.is_open() || !port_may_prepare()) {
+      due_ != 0 || !is_open_ || is_forbidden(kLiveByte) || console_.is_open() ||
+      !port_may_prepare()) {
     return;
   }
   ahead_ = end;
@@ -51,7 +52,7 @@ tini_noinline void Link::prepare() {
 bool Link::go_live() {
   const uint8_t* const bytes = receiver_->bytes();
   if (!check_.is_whole() || !is_next(bytes[kSeqAt], bytes[kEpochAt]) || is_latched() ||
-      port_make_way(true) != Answer::kOk) {
+      is_forbidden(kLiveByte) || port_make_way(true) != Answer::kOk) {
     return false;
   }
   left_ms_[kListen] = kListenMs;

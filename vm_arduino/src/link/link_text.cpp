@@ -27,9 +27,11 @@ tini_noinline void Link::talk() {
 
 // Starts the program that was read. Returns what to say.
 Remark Link::start_text() {
+  if (!text_may_drive()) return Remark::kNotOwner;
   const Reader& reader = console_.reader();
   const uint8_t start = reader.start();
   if (start == 0 && port_status().state >= State::kStopped) {
+    if ((rights_ & kHeldBack) != 0) return Remark::kHeldBack;
     if (!reader.has_setup()) return Remark::kLatched;
     port_release();
   }

@@ -128,10 +128,18 @@ void Link::reply() {
     case Message::kTrim:
       put_all(&port_trim(), sizeof(Trim));
       break;
+    case Message::kAuthenticate:
+    case Message::kText:
+      put16(port_identity().features);
+      if (said_.number == byte_of(Message::kAuthenticate) && (rights_ & kHasChallenge) != 0)
+        put_all(challenge_, kChallengeBytes);
+      break;
     case Message::kStop:
     case Message::kClear:
     case Message::kAbort:
     case Message::kName:
+    case Message::kClaim:
+    case Message::kIdentify:
     case Message::kShow:
     case Message::kFault:
     case Message::kStopped:

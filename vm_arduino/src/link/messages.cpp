@@ -22,10 +22,11 @@ const uint8_t kRequestBytes[][2] tini_progmem = {
     {0, 0},  // ABORT
     {1, 16},  // NAME
     {0, 3},  // TRIM
-    {255, 255},  // CLAIM
-    {255, 255},  // AUTHENTICATE
-    {255, 255},  // IDENTIFY
+    {1, 17},  // CLAIM
+    {1, 9},  // AUTHENTICATE
+    {0, 0},  // IDENTIFY
     {0, 0},  // UNDO
+    {1, 1},  // TEXT
 };
 
 }  // namespace tiniscript

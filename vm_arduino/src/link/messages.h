@@ -32,6 +32,15 @@ constexpr uint16_t kSilenceMs = 1000;
 constexpr uint16_t kTetherMs = 1000;
 constexpr uint16_t kListenMs = 3000;
 constexpr uint8_t kAgainMs = 50;
+constexpr uint8_t kKeyBytes = 16;
+constexpr uint8_t kChallengeBytes = 8;
+constexpr uint8_t kTagBytes = 8;
+constexpr uint16_t kAuthorityMs = 2000;
+constexpr uint8_t kKeyTries = 5;
+constexpr uint16_t kKeyPauseMs = 30000;
+constexpr uint16_t kLongMs = 1000;
+constexpr uint16_t kClaimMs = 2000;
+constexpr uint16_t kForgetMs = 10000;
 
 // How a program starts, in one byte.
 constexpr uint8_t kStartBits = 3;
@@ -44,11 +53,13 @@ constexpr uint8_t kExchanged = 1;
 constexpr uint8_t kLeftReversed = 2;
 constexpr uint8_t kRightReversed = 4;
 
-// What a robot is able and allowed to do, in two bytes.
+// What the robot is able to do and who may drive it, in one number.
 constexpr uint8_t kTextLevel = 3;
 constexpr uint8_t kOwners = 16;
 constexpr uint8_t kOwned = 32;
 constexpr uint8_t kTextAllowed = 64;
+constexpr uint8_t kYours = 128;
+constexpr uint16_t kByTeacher = 256;
 
 enum class Message : uint8_t {
   kHello = 1,  // Begins a session. The same `nonce` again is the same session.
@@ -66,7 +77,11 @@ enum class Message : uint8_t {
   kAbort = 13,  // Drops the program that was begun.
   kName = 14,  // Names the robot: UTF-8. OK when it is kept, before that SAVING or LOW_SUPPLY: ask again.
   kTrim = 15,  // Sets the trim of the motors, three bytes like those of the reply, or only tells it. OK as for NAME.
+  kClaim = 16,  // Gives the robot a key, when its button was held: `which` of KEYS. Without a key: takes that one away. OK as for NAME.
+  kAuthenticate = 17,  // Without a tag: asks for a challenge. With it: shows a key of the robot.
+  kIdentify = 18,  // The robot blinks and plays the tune of its id.
   kUndo = 19,  // The robot holds the program before again. What runs ends; nothing starts.
+  kText = 20,  // Lets lines of text drive a robot with an owner, or not, until power-off.
   kShow = 32,  // A value that a program shows.
   kFault = 33,  // The program has ended with a fault.
   kStopped = 34,  // The robot was stopped: its epoch is another one. Or again: it still is.
@@ -74,13 +89,10 @@ enum class Message : uint8_t {
 };
 
 // Requests are the numbers from 1 up to this one; from kFirstActing on they act.
-constexpr uint8_t kLastRequest = 19;
+constexpr uint8_t kLastRequest = 20;
 constexpr uint8_t kFirstActing = 6;
 
 // How long the payload of each request may be, from the first one on: least and most.
-// kKeptForLater: the number is kept for later, and no payload is so long.
-constexpr uint8_t kKeptForLater = 255;
-
 extern const uint8_t kRequestBytes[][2] tini_progmem;
 
 // Where each field of a request begins.
@@ -108,6 +120,11 @@ constexpr uint8_t kDataBytesAt = 2;
 constexpr uint8_t kCommitChecksumAt = 0;
 constexpr uint8_t kNameNameAt = 0;
 constexpr uint8_t kTrimTrimAt = 0;
+constexpr uint8_t kClaimWhichAt = 0;
+constexpr uint8_t kClaimKeyAt = 1;
+constexpr uint8_t kAuthenticateWhichAt = 0;
+constexpr uint8_t kAuthenticateTagAt = 1;
+constexpr uint8_t kTextIsAllowedAt = 0;
 
 // What begins a reply. Below 64: an image's Refusal, or the verifier's Rule.
 enum class Answer : uint8_t {
@@ -129,6 +146,11 @@ enum class Answer : uint8_t {
   kSaving = 78,  // The robot has it, and keeps it as soon as its motors stand; switched off before, it forgets it.
   kLowSupply = 79,  // The robot's batteries are too weak to save anything; switched off, it forgets what is not saved.
   kNotKept = 80,  // The robot's memory has not kept it; switched off, it forgets it.
+  kNotOwner = 84,  // The robot has an owner, and this computer has no key of it.
+  kWrongKey = 85,  // The robot has another key than this computer.
+  kTooManyTries = 86,  // The robot was shown too many wrong keys.
+  kHoldButton = 87,  // The robot waits for its button.
+  kHeldBack = 88,  // The teacher has stopped the robot.
   kNoPrevious = 90,  // The robot has no program from before that it can run.
 };
 
@@ -170,6 +192,11 @@ enum class TextLevel : uint8_t {
   kUno = 1,  // Level `uno`.
   kMega = 2,  // Level `mega`.
   kEsp32 = 3,  // Level `esp32`.
+};
+
+enum class Key : uint8_t {
+  kOwner = 0,  // Who has claimed the robot. Where there is one, nobody drives the robot without a key.
+  kTeacher = 1,  // May do what the owner may. A stop with it is released by it or by the button alone.
 };
 
 // Faults that no instruction makes. The others are `Fault`.

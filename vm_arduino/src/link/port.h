@@ -14,8 +14,8 @@ namespace tiniscript {
 // Sent as it lies in memory: little-endian, without padding.
 #define tini_packed __attribute__((packed))
 
-// The robot's identity. `features` has kTextLevel and the other bits; `nonce` changes with each
-// reset.
+// The robot's identity. `features` has kTextLevel and the other bits: the link sets those that say who
+// may drive. `nonce` changes with each reset.
 struct tini_packed Identity {
   uint16_t kit;
   uint32_t id;
@@ -64,7 +64,7 @@ struct DeviceInfo {
 };
 
 const DeviceInfo& port_device_info();
-const Identity& port_identity();
+Identity& port_identity();
 const RobotStatus& port_status();
 const Trim& port_trim();
 LineErrors port_line_errors();
@@ -128,6 +128,22 @@ uint16_t port_image_length();
 // Puts a byte of the image that the robot holds into `*byte`. kBusy or kLowSupply if it is not
 // available now: the link reports this, and the client tries again.
 Answer port_image_byte(uint16_t offset, uint8_t* byte);
+
+// Whether lines of text may drive the robot.
+inline bool text_may_drive() {
+  return (port_identity().features & (kOwned | kTextAllowed)) != kOwned;
+}
+
+// Puts a key of the robot into `key`, zeros if it has none. kBusy: not available now; kSaving and
+// kLowSupply: another one is being saved.
+Answer port_key(uint8_t which, uint8_t* key);
+
+// Has a key saved; zeros take it away. kSaving: it has begun, and `port_key` tells it when it is
+// saved; kNotKept: the memory is worn out, and it is tried again; kBusy: nothing was done.
+Answer port_keep_key(uint8_t which, const uint8_t* key);
+
+// Blinks, and plays the tune of the id unless a program runs.
+void port_identify();
 
 // Sets the name and has it saved. kOk: saved; kSaving and kLowSupply: set and to be saved;
 // kNotKept: the memory is worn out; kBusy: nothing was done. The link reports this, and the client

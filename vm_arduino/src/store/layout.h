@@ -21,8 +21,8 @@ constexpr uint16_t kMemoryBytes = 1024;
 
 // Each kind of data has an area of A/B slots: one holds the current data, the other one is written.
 // Slots are numbered: those of programs are 0 and 1.
-enum class Area : uint8_t { kProgram, kIdentity, kFault };
-constexpr uint8_t kAreas = 3;
+enum class Area : uint8_t { kProgram, kIdentity, kFault, kOwner };
+constexpr uint8_t kAreas = 4;
 constexpr uint8_t kSlots = 2 * kAreas;
 
 // A slot: the generation of its data, three marks, and the data itself, its body.
@@ -48,17 +48,24 @@ constexpr uint8_t kFaultAt = kCheckBytes;
 constexpr uint8_t kFaultRoom = 16;
 static_assert(kFaultAt + kFaultRoom <= kRecordBytes, "a fault fits into a record");
 
+// The record kOwner is larger: the keys of the robot, zeros where there is none.
+constexpr uint8_t kKeys = 2;
+constexpr uint8_t kKeyRoom = 16;
+constexpr uint8_t kKeysAt = kCheckBytes;
+constexpr uint8_t kOwnerBytes = kKeysAt + kKeys * kKeyRoom;
+
 // Where the slots begin. During a brown-out some chips write to address 0 by mistake, so nothing is
 // stored there.
 constexpr uint16_t kRecordsBegin = 4;
 constexpr uint16_t kRecordSlot = kBodyAt + kRecordBytes;
-constexpr uint16_t kProgramsBegin = kRecordsBegin + (kSlots - 2) * kRecordSlot;
+constexpr uint8_t kSmallRecords = 4;  // slots of kRecordSlot
+constexpr uint8_t kFirstOwnerSlot = 2 + kSmallRecords;
+constexpr uint16_t kProgramsBegin = kRecordsBegin + kSmallRecords * kRecordSlot;
 constexpr uint16_t kProgramDistance = (kMemoryBytes - kProgramsBegin) / 2;
 
-// A slot after each of the two programs is reserved for the owner's record of two keys. It is not
-// written yet. Programs stay where version 1 put them, whose images may reach into it.
-constexpr uint8_t kKeyBytes = 16;
-constexpr uint8_t kOwnerSlot = kBodyAt + kCheckBytes + 2 * kKeyBytes;
+// After each of the two programs is a slot of the record kOwner. Programs stay where version 1 put
+// them, whose images may reach into it.
+constexpr uint8_t kOwnerSlot = kBodyAt + kOwnerBytes;
 constexpr uint16_t kProgramSlot = kProgramDistance - kOwnerSlot;
 
 // The largest image and the largest program that can be saved.
@@ -67,13 +74,15 @@ constexpr uint16_t kStoredCodeBytes = kImageBytes - kHeaderBytes;
 constexpr uint16_t kOldImageBytes = kProgramDistance - kBodyAt;
 
 constexpr uint16_t place_of(uint8_t slot) {
-  return static_cast<uint16_t>(slot == 0   ? kProgramsBegin
-                               : slot == 1 ? kProgramsBegin + kProgramDistance
-                                           : kRecordsBegin + (slot - 2) * kRecordSlot);
+  return static_cast<uint16_t>(
+      slot < 2                 ? kProgramsBegin + slot * kProgramDistance
+      : slot < kFirstOwnerSlot ? kRecordsBegin + (slot - 2) * kRecordSlot
+                               : kProgramsBegin + kProgramSlot +
+                                     (slot - kFirstOwnerSlot) * kProgramDistance);
 }
 
 static_assert(kProgramsBegin >= kRecordsBegin + 4 * kRecordSlot, "no slot lies in another one");
-static_assert(place_of(1) + kProgramSlot + kOwnerSlot <= kMemoryBytes, "the slots fit in");
+static_assert(place_of(kSlots - 1) + kOwnerSlot <= kMemoryBytes, "the slots fit in");
 static_assert(kStoredCodeBytes >= 384, "the code of a program has room");
 static_assert(kStoredCodeBytes <= kCodeBytes, "its length has room in the header");
 static_assert(kHeaderBytes > kChecksumAt + kCheckBytes, "the check lies in the header");

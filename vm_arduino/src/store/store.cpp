@@ -113,6 +113,13 @@ uint16_t image_bytes(uint8_t header, uint8_t low, uint8_t high) {
 
 bool is_program(uint8_t slot) { return slot < 2; }
 
+uint8_t record_bytes(uint8_t slot) { return slot < kFirstOwnerSlot ? kRecordBytes : kOwnerBytes; }
+
+uint16_t image_bytes_at(uint16_t place) {
+  return image_bytes(body_byte(place, kHeaderLengthAt), body_byte(place, kCodeLengthAt),
+                     body_byte(place, kCodeLengthAt + 1));
+}
+
 }  // namespace
 
 tini_noinline void Store::boot() {
@@ -194,9 +201,11 @@ tini_noinline bool Store::begin_save(const uint8_t* image) {
 
 tini_noinline bool Store::begin_keep(Area area, uint8_t* record) {
   if (is_busy_) return false;
-  const uint32_t check = crc32(0, record + kCheckBytes, kRecordBytes - kCheckBytes);
+  const uint8_t length = record_bytes(static_cast<uint8_t>(2 * static_cast<uint8_t>(area)));
+  const uint32_t check =
+      crc32(0, record + kCheckBytes, static_cast<uint16_t>(length - kCheckBytes));
   __builtin_memcpy(record, &check, kCheckBytes);
-  return near(this)->begin_write(area, record, kRecordBytes);
+  return near(this)->begin_write(area, record, length);
 }
 
 tini_noinline void Store::refuse() {
@@ -270,6 +279,8 @@ tini_noinline bool Store::is_in(uint8_t slot, const uint8_t* bytes, uint16_t cou
 // Decides once what a slot holds: a byte whose write was cut may read differently later.
 void Store::look() {
   const uint16_t place = place_;
+  step_ = kEmptyingEnd;
+  if (is_overlaid()) return;
   const uint8_t generation = nvm_read(place);
   const uint8_t first = nvm_read(place + 1);
   const uint8_t mark = generation ^ kMarkOf;
@@ -285,13 +296,19 @@ void Store::look() {
                                         : kKeepingEnd;
 }
 
+// Whether the program of version 1 before the slot reaches into it. It is left as it is.
+bool Store::is_overlaid() const {
+  if (slot_ < kFirstOwnerSlot) return false;
+  const uint8_t program = static_cast<uint8_t>(slot_ - kFirstOwnerSlot);
+  return held_[program] != kNothing && image_bytes_at(place_of(program)) > kImageBytes;
+}
+
 // Whether the checksum of a slot's body is right.
 bool Store::is_sound() const {
-  uint16_t length = kRecordBytes;
+  uint16_t length = record_bytes(slot_);
   uint16_t check = 0;
   if (is_program(slot_)) {
-    length = image_bytes(body_byte(place_, kHeaderLengthAt), body_byte(place_, kCodeLengthAt),
-                         body_byte(place_, kCodeLengthAt + 1));
+    length = image_bytes_at(place_);
     if (length == 0) return false;
     check = kChecksumAt;
   }

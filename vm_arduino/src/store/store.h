@@ -1,4 +1,4 @@
-// The robot's non-volatile data: a program and two small records.
+// The robot's non-volatile data: a program and three records.
 //
 // Writes through `nvm.h`, one byte per call of `tick`, while a program runs; nothing here blocks.
 // After a power cut at any moment, the next start finds either the old or the new data, whole, and
@@ -54,8 +54,8 @@ class Store {
   // is already stored, the save is done at once. False: busy, or too large.
   bool begin_save(const uint8_t* image);
 
-  // Begins to save a record of kRecordBytes and puts the check into its first bytes. Same
-  // conditions.
+  // Begins to save a record (of kRecordBytes, or kOwnerBytes) and puts the check into its first
+  // bytes. Same conditions.
   bool begin_keep(Area area, uint8_t* record);
 
   // The slot of the current data, or kNoSlot. Undefined while settling.
@@ -78,6 +78,7 @@ class Store {
  private:
   void look();
   bool is_sound() const;
+  bool is_overlaid() const;
   void finish();
   static bool is_in(uint8_t slot, const uint8_t* bytes, uint16_t count);
   bool begin_write(Area area, const uint8_t* bytes, uint16_t length);

@@ -24,11 +24,13 @@ enum class Remark : uint8_t {
   kLatched = 7,  // It was stopped. Begin with SI|
   kSaving = 8,  // Still saving. Send it again.
   kRefused = 9,  // Not possible here.
-  kDone = 10,  // DONE
-  kFault = 11,  // FAULT
-  kMistake = 12,
-  kHello = 13,
-  kHelp = 14,
+  kNotOwner = 10,  // It has an owner: tsc text on, or its button for 2 s.
+  kHeldBack = 11,  // The teacher stopped it.
+  kDone = 12,  // DONE
+  kFault = 13,  // FAULT
+  kMistake = 14,
+  kHello = 15,
+  kHelp = 16,
 };
 
 // The text of a remark, in flash; a 0 ends it.

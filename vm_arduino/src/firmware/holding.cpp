@@ -1,0 +1,65 @@
+#include "holding.h"
+
+#include "../link/has_owners.h"
+#include "keeping.h"
+#include "state.h"
+
+namespace tiniscript {
+
+namespace {
+
+constexpr uint16_t kMostMs = 60000;  // longer presses count as this
+
+enum class Phase : uint8_t {
+  kUp,
+  kEdge,  // a press, or a spike on its wire
+  kDown,
+  kDownSinceReset,
+};
+
+Phase phase;
+uint16_t down_ms;
+
+// A press has lasted long enough for a claim.
+void confirm() {
+  if (!link.confirm_claim()) {
+    if (!kReadsText || (port_identity().features & kOwned) == 0) return;
+    port_identity().features |= kTextAllowed;
+  }
+  board_finished();
+}
+
+}  // namespace
+
+void pass_holding(uint16_t passed_ms) {
+  if (phase == Phase::kUp) return;
+  const uint16_t before_ms = down_ms;
+  down_ms = passed_ms < kMostMs - before_ms ? static_cast<uint16_t>(before_ms + passed_ms) : kMostMs;
+  if (!kHasOwners) return;
+  if (phase == Phase::kDown && before_ms < kClaimMs && down_ms >= kClaimMs) confirm();
+  // Tried again until the store is free and has done it.
+  if (phase == Phase::kDownSinceReset && down_ms >= kForgetMs && forget_owner()) {
+    phase = Phase::kUp;
+    board_finished();
+  }
+}
+
+void begin_press() {
+  phase = Phase::kEdge;
+  down_ms = 0;
+}
+
+void hold_press() {
+  if (phase == Phase::kEdge) {
+    phase = Phase::kDown;
+  } else if (phase == Phase::kUp) {
+    phase = Phase::kDownSinceReset;
+    down_ms = 0;
+  }
+}
+
+void end_press() { phase = Phase::kUp; }
+
+bool is_long_press() { return down_ms >= kLongMs; }
+
+}  // namespace tiniscript

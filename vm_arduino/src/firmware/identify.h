@@ -1,0 +1,15 @@
+// The robot makes itself known: it blinks for 3 s and plays three notes that its id decides.
+//
+// The buzzer is the program's while one runs: then the light blinks alone.
+
+#ifndef TINISCRIPT_FIRMWARE_IDENTIFY_H_
+#define TINISCRIPT_FIRMWARE_IDENTIFY_H_
+
+namespace tiniscript {
+
+// Continues; call it in every turn.
+void tick_identify();
+
+}  // namespace tiniscript
+
+#endif  // TINISCRIPT_FIRMWARE_IDENTIFY_H_

@@ -1,0 +1,54 @@
+// The robot's keys: implements what `port.h` says of them.
+
+#include "../link/has_owners.h"
+#include "../link/port.h"
+#include "../store/layout.h"
+#include "keeping.h"
+#include "state.h"
+
+namespace tiniscript {
+
+static_assert(kKeyRoom == kKeyBytes, "a key fills its place");
+
+// Reads the keys byte by byte, so that they are nowhere in RAM.
+void read_owner() {
+  if (!kHasOwners) return;
+  uint8_t key[kKeyBytes];
+  uint8_t found = 0;
+  if (fetch_key(static_cast<uint8_t>(Key::kOwner), key)) {
+    for (const uint8_t byte : key) found |= byte;
+  }
+  uint16_t features = port_identity().features & static_cast<uint16_t>(~(kOwned | kTextAllowed));
+  if (found != 0) {
+    features |= kOwned;
+  } else if (kReadsText) {
+    features |= kTextAllowed;
+  }
+  port_identity().features = features | kOwners;
+}
+
+Answer port_key(uint8_t which, uint8_t* key) {
+  const Answer found = owner_kept();
+  if (found != Answer::kOk) return found;
+  return fetch_key(which, key) ? Answer::kOk : not_now();
+}
+
+Answer port_keep_key(uint8_t which, const uint8_t* key) { return keep_key(which, key); }
+
+// Whether the robot has no keys any more.
+bool forget_owner() {
+  const uint8_t none[kKeyBytes] = {};
+  for (uint8_t which = 0; which < kKeys; which++) {
+    uint8_t key[kKeyBytes];
+    if (port_key(which, key) != Answer::kOk) return false;
+    uint8_t found = 0;
+    for (const uint8_t byte : key) found |= byte;
+    if (found != 0) {
+      keep_key(which, none);
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace tiniscript

@@ -1,0 +1,133 @@
+// Who may drive the robot: claims, keys, and the authority of a session.
+
+#include "../vm/small.h"
+#include "has_owners.h"
+#include "link.h"
+#include "port.h"
+#include "siphash.h"
+
+namespace tiniscript {
+
+namespace {
+
+constexpr uint8_t kIsFine = static_cast<uint8_t>(Answer::kOk);
+constexpr uint8_t kChallengeText = kChallengeBytes + sizeof(uint32_t) + sizeof(uint16_t);
+constexpr uint8_t kTagText = kChallengeBytes + sizeof(uint32_t) + 2;
+
+static_assert(kTagBytes == kHashBytes && kChallengeBytes == kHashBytes, "both are hashes");
+
+uint8_t number_of(Answer answer) { return static_cast<uint8_t>(answer); }
+
+bool has(uint16_t feature) { return (port_identity().features & feature) != 0; }
+
+// In constant time: how long it takes says nothing about the bytes.
+bool are_equal(const uint8_t* first, const uint8_t* second, uint8_t length) {
+  uint8_t differ = 0;
+  while (length-- != 0) differ = static_cast<uint8_t>(differ | (*first++ ^ *second++));
+  return differ == 0;
+}
+
+bool is_key(const uint8_t* key) {
+  uint8_t found = 0;
+  for (uint8_t k = 0; k < kKeyBytes; k++) found |= key[k];
+  return found != 0;
+}
+
+}  // namespace
+
+// Whether a message needs authority that the session does not have.
+bool Link::is_forbidden(uint8_t type) const {
+  if (!kHasOwners || (port_identity().features & (kOwned | kYours)) != kOwned) return false;
+  if (type < kFirstActing) return type == static_cast<uint8_t>(Message::kFetch);
+  return type < static_cast<uint8_t>(Message::kClaim) ||
+         type > static_cast<uint8_t>(Message::kIdentify);
+}
+
+tini_noinline void Link::lapse() {
+  port_identity().features &= static_cast<uint16_t>(~(kYours | kByTeacher));
+  rights_ &= kHeldBack;
+}
+
+bool Link::confirm_claim() {
+  if (!kHasOwners || (rights_ & kIsAsked) == 0) return false;
+  rights_ |= kIsConfirmed;
+  return true;
+}
+
+Answer Link::claim(const uint8_t* payload, uint8_t length) {
+  const uint8_t which = payload[kClaimWhichAt];
+  const uint8_t key_bytes = static_cast<uint8_t>(length - kClaimKeyAt);
+  if (which > static_cast<uint8_t>(Key::kTeacher)) return Answer::kBadValue;
+  if (key_bytes != 0 && key_bytes != kKeyBytes) return Answer::kBadLength;
+  uint8_t key[kKeyBytes];
+  uint8_t wanted[kKeyBytes] = {};
+  copy_bytes(payload + kClaimKeyAt, wanted, key_bytes);
+  Answer found = port_key(which, key);
+  if (found != Answer::kOk) return found;
+  if (are_equal(key, wanted, kKeyBytes)) {
+    rights_ &= static_cast<uint8_t>(~(kIsAsked | kIsConfirmed));
+    return Answer::kOk;
+  }
+  uint16_t needed = has(kOwned) || is_key(key) ? kYours : 0;
+  if (which == static_cast<uint8_t>(Key::kTeacher) && is_key(key)) needed = kByTeacher;
+  if (needed != 0 && !has(needed)) return Answer::kNotOwner;
+  if (is_key(wanted) && (rights_ & kIsConfirmed) == 0) {
+    rights_ |= kIsAsked;
+    return Answer::kHoldButton;
+  }
+  return port_keep_key(which, wanted);
+}
+
+uint8_t Link::authenticate(const uint8_t* payload, uint8_t length) {
+  const uint8_t which = payload[kAuthenticateWhichAt];
+  const uint8_t* const tag = payload + kAuthenticateTagAt;
+  if (which > static_cast<uint8_t>(Key::kTeacher)) return number_of(Answer::kBadValue);
+  if (left_ms_[kKeyPause] != 0) {
+    return refuse(Answer::kTooManyTries, static_cast<uint16_t>(left_ms_[kKeyPause] / 1000 + 1));
+  }
+  uint8_t key[kKeyBytes];
+  const Answer found = port_key(which, key);
+  if (found != Answer::kOk) return number_of(found);
+  if (!is_key(key)) return refuse(Answer::kWrongKey, kKeyTries);
+  uint8_t text[kTagText];
+  copy_bytes(challenge_, text, kChallengeBytes);
+  if (length == kAuthenticateTagAt) {
+    copy_bytes(&port_identity().nonce, text + kChallengeBytes, sizeof(uint32_t));
+    copy_bytes(&now_ms_, text + kChallengeBytes + sizeof(uint32_t), sizeof now_ms_);
+    siphash(key, text, kChallengeText, challenge_);
+    rights_ |= kHasChallenge;
+    return kIsFine;
+  }
+  if (length != kAuthenticateTagAt + kTagBytes) return number_of(Answer::kBadLength);
+  if ((rights_ & kHasChallenge) == 0) return number_of(Answer::kNotOwner);
+  rights_ &= static_cast<uint8_t>(~kHasChallenge);
+  copy_bytes(&nonce_, text + kChallengeBytes, sizeof nonce_);
+  text[kTagText - 2] = epoch_;
+  text[kTagText - 1] = which;
+  siphash(key, text, kTagText, text);
+  if (!are_equal(text, tag, kTagBytes)) {
+    const uint8_t tries = ++tries_;
+    if (tries == kKeyTries) {
+      tries_ = 0;
+      left_ms_[kKeyPause] = kKeyPauseMs;
+    }
+    return refuse(Answer::kWrongKey, static_cast<uint16_t>(kKeyTries - tries));
+  }
+  tries_ = 0;
+  port_identity().features |= which == static_cast<uint8_t>(Key::kTeacher) ? kYours | kByTeacher : kYours;
+  return kIsFine;
+}
+
+Answer Link::allow_text(const uint8_t* payload) {
+  const uint8_t is_allowed = payload[kTextIsAllowedAt];
+  if (is_allowed > 1 || !kReadsText) return Answer::kBadValue;
+  if (is_allowed != 0 || !has(kOwned)) {
+    port_identity().features |= kTextAllowed;
+  } else {
+    port_identity().features &= static_cast<uint16_t>(~kTextAllowed);
+    console_.drop();
+  }
+  return Answer::kOk;
+}
+
+}  // namespace tiniscript
