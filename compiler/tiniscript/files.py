@@ -26,16 +26,35 @@ ABANDONED_S = 3600.0  # a new file that is older has lost its command
 
 def cache_folder() -> Path:
     """Return the user's folder for what a command keeps until the next one: it may be deleted."""
-    # nearly everywhere on Linux one of two variables says it: importing platformdirs takes as long
-    # as compiling a program
-    if sys.platform == "linux" and "ANDROID_ROOT" not in os.environ:
-        chosen = os.environ.get("XDG_CACHE_HOME")
-        folder = Path(chosen) if chosen else Path(os.environ.get("HOME", "")) / ".cache"
-        if folder.is_absolute():
-            return folder / "tiniscript"
+    folder = _linux_folder("XDG_CACHE_HOME", ".cache")
+    if folder is not None:
+        return folder
     from platformdirs import user_cache_path
 
     return user_cache_path("tiniscript", appauthor=False)
+
+
+def settings_folder() -> Path:
+    """Return the user's folder for what must not be lost."""
+    folder = _linux_folder("XDG_CONFIG_HOME", ".config")
+    if folder is not None:
+        return folder
+    from platformdirs import user_config_path
+
+    return user_config_path("tiniscript", appauthor=False)
+
+
+def _linux_folder(variable: str, usual: str) -> Path | None:
+    """Return a folder of ours as Linux has it, or None.
+
+    Nearly everywhere on Linux one of two variables says it: importing platformdirs takes as long as
+    compiling a program.
+    """
+    if sys.platform != "linux" or "ANDROID_ROOT" in os.environ:
+        return None
+    chosen = os.environ.get(variable)
+    folder = Path(chosen) if chosen else Path(os.environ.get("HOME", "")) / usual
+    return folder / "tiniscript" if folder.is_absolute() else None
 
 
 def replace(path: Path, data: bytes, mode: int | None = None) -> None:

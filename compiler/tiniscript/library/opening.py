@@ -78,6 +78,7 @@ def opened_line(
     language: str = "en",
 ) -> Line:  # fmt: skip
     """Open a port and begin a session for this kit. Raises RobotError."""
+    from tiniscript.keys import KeyFile
     from tiniscript.link.line import Line
     from tiniscript.link.ports import PortError, opened
     from tiniscript.link.session import Session
@@ -88,7 +89,7 @@ def opened_line(
         if lock is not None:
             lock.close()
         raise port_error(port, failure, language) from None
-    session = Session(int.from_bytes(os.urandom(4), "little"), baud, kit)
+    session = Session(int.from_bytes(os.urandom(4), "little"), baud, kit, keys=KeyFile())
     return Line(device, session, lock)
 
 

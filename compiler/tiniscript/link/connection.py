@@ -17,6 +17,7 @@ from tiniscript.link.payloads import (
     PingReply,
     ReceiptReply,
     StatusReply,
+    TextReply,
     TrimReply,
 )
 from tiniscript.link.requests import DeviceInfo, FetchedImage, Reply
@@ -66,6 +67,16 @@ class Requester(Protocol):
     def trim(self, trim: bytes = b"") -> PendingRequest[TrimReply]: ...
 
     def fetch(self) -> PendingRequest[FetchedImage]: ...
+
+    def identify(self) -> PendingRequest[EmptyReply]: ...
+
+    def claim(self, which: int) -> PendingRequest[EmptyReply]: ...
+
+    def disown(self, which: int) -> PendingRequest[EmptyReply]: ...
+
+    def hold_back(self) -> PendingRequest[EmptyReply]: ...
+
+    def allow_text(self, is_allowed: bool) -> PendingRequest[TextReply]: ...
 
 
 class LinkConnection(Protocol):

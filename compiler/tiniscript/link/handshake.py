@@ -9,9 +9,17 @@ from collections.abc import Callable, Generator
 from typing import TypeVar
 
 from tiniscript.bytecode.image import Image
-from tiniscript.link import requests
-from tiniscript.link.messages import MAJOR, MINOR
-from tiniscript.link.payloads import EmptyReply, HelloReply, ReceiptReply, SentReply
+from tiniscript.link import authority, requests
+from tiniscript.link.authority import NOT_OWNER, KeyRing
+from tiniscript.link.messages import KEY_TEACHER, MAJOR, MINOR, OWNED, OWNERS, STATUSES
+from tiniscript.link.payloads import (
+    AuthenticateReply,
+    EmptyReply,
+    HelloReply,
+    ReceiptReply,
+    SentReply,
+    TextReply,
+)
 from tiniscript.link.requests import OK, DeviceInfo, Exchange, Reply, Request, refused
 from tiniscript.link.robot_state import RobotState
 
@@ -19,14 +27,25 @@ T = TypeVar("T")
 
 
 class Handshake:
-    """`nonce` is a random number of 32 bits; `kit` and `isa` are those of our programs.
+    """`nonce` is a random number of 32 bits; `kit` and `isa` are those of our programs; `keys`
+    has the keys of robots; `epoch` returns the robot's.
 
     `is_open`: the robot has answered HELLO, and has not been lost since.
     """
 
-    def __init__(self, nonce: int, kit: int, isa: tuple[int, int], state: RobotState) -> None:
+    def __init__(
+        self,
+        nonce: int,
+        kit: int,
+        isa: tuple[int, int],
+        state: RobotState,
+        keys: KeyRing | None,
+        epoch: Callable[[], int],
+    ) -> None:
         self._nonce, self._kit, self._isa = nonce, kit, isa
         self._state = state
+        self._keys = keys
+        self._epoch = epoch
         self.robot: DeviceInfo | None = None
         self.is_open = False
 
@@ -46,6 +65,11 @@ class Handshake:
                 self._state.reset()
             self.robot = requests.described(reply.values)
             self._state.state = reply.values.state
+            if reply.values.features & OWNED:
+                shown = yield from self._show_keys()
+                if shown.status == STATUSES["STALE"]:  # the robot was stopped meanwhile
+                    return refused(shown)
+                return Reply(OK, 0, self.robot.values)
         return reply
 
     def open_then(self, make: Callable[[], Exchange[T]]) -> Exchange[T]:
@@ -54,7 +78,68 @@ class Handshake:
             reply = yield from self.hello()
             if reply.status != OK:
                 return refused(reply)
+        return (yield from self.with_key(make))
+
+    def with_key(self, make: Callable[[], Exchange[T]]) -> Exchange[T]:
+        """Make and run an exchange; again, if the robot wants to be shown its key before."""
+        reply = yield from make()
+        if reply.status != NOT_OWNER or self._keys is None:
+            return reply
+        if not self.is_open:
+            hello = yield from self.hello()
+            if hello.status != OK:
+                return refused(hello)
+        shown = yield from self._show_keys()
+        if shown.status != OK:
+            return refused(shown)
         return (yield from make())
+
+    def _show_keys(self) -> Exchange[AuthenticateReply]:
+        assert self.robot
+        keys = self._keys.of_robot(self.robot.id) if self._keys is not None else ()
+        reply = yield from authority.show_keys(keys, self._nonce, self._epoch)
+        if reply.status == OK:
+            self._take_features(reply.values.features)
+        return reply
+
+    def _take_features(self, features: int) -> None:
+        assert self.robot
+        self.robot = requests.described(self.robot.values._replace(features=features))
+
+    def claim(self, which: int) -> Exchange[EmptyReply]:
+        assert self.robot
+        if not self.robot.values.features & OWNERS:
+            return Reply(STATUSES["UNKNOWN_MESSAGE"])
+        assert self._keys is not None
+        reply = yield from authority.claim(self._keys, self.robot, which)
+        if reply.status == OK:
+            yield from self._show_keys()
+        return reply
+
+    def disown(self, which: int) -> Exchange[EmptyReply]:
+        assert self.robot and self._keys is not None
+        reply = yield from authority.disown(self._keys, self.robot, which)
+        if reply.status == OK and which != KEY_TEACHER:
+            self._take_features(self.robot.values.features & ~OWNED)
+        return reply
+
+    def hold_back(self) -> Exchange[EmptyReply]:
+        """Stop the robot so that only the teacher's key, or its button, lets it go on."""
+        assert self.robot
+        found = self._keys.of_robot(self.robot.id) if self._keys is not None else ()
+        keys = [key for key in found if key.which == KEY_TEACHER]
+        shown = yield from authority.show_keys(keys, self._nonce, self._epoch)
+        if shown.status != OK:
+            return refused(shown)
+        self._take_features(shown.values.features)
+        return (yield from requests.single(Request("STOP"), EmptyReply))
+
+    def allow_text(self, is_allowed: bool) -> Exchange[TextReply]:
+        request = Request("TEXT", {"is_allowed": int(is_allowed)})
+        reply = yield from requests.single(request, TextReply)
+        if reply.status == OK:
+            self._take_features(reply.values.features)
+        return reply
 
     def live(self, code: bytes, kit: int) -> Exchange[ReceiptReply]:
         robot = yield from self._speak_for(kit)

@@ -66,8 +66,14 @@ FEATURES = (
 )
 # The keys of a robot: `which` of CLAIM and AUTHENTICATE.
 KEYS = (
-    ("OWNER", "Who has claimed the robot. Where there is one, nobody drives the robot without a key."),
-    ("TEACHER", "May do what the owner may. A stop with it is released by it or by the button alone."),
+    (
+        "OWNER",
+        "Who has claimed the robot. Where there is one, nobody drives the robot without a key.",
+    ),
+    (
+        "TEACHER",
+        "May do what the owner may. A stop with it is released by it or by the button alone.",
+    ),
 )
 
 # The trim of the motors: their wiring, how much one is weakened, and the least power that moves.

@@ -17,7 +17,7 @@ from tiniscript.link.payloads import (
     StoppedEvent,
 )
 
-LOST, CANCELLED = -1, -2  # outcomes that the session produces
+LOST, CANCELLED, UNKEPT = -1, -2, -3  # outcomes that the session produces; UNKEPT: of a key
 LOOK_S = 0.1  # between two checks for events: Windows handles Ctrl-C only then
 
 

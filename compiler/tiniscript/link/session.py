@@ -12,12 +12,10 @@ from __future__ import annotations
 from collections import deque
 from typing import Any, TypeVar
 
-from tiniscript.bytecode.image import Image
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.link import requests
-from tiniscript.link.connection import DEADLINE_MS, PendingRequest
+from tiniscript.link.authority import KeyRing
 from tiniscript.link.frames import Frame, decoded
-from tiniscript.link.handshake import Handshake
 from tiniscript.link.messages import (
     BY_NAME,
     BY_NUMBER,
@@ -40,28 +38,24 @@ from tiniscript.link.outcomes import (
 )
 from tiniscript.link.payloads import (
     EVENTS,
-    EmptyReply,
     FaultEvent,
-    HelloReply,
     NextReply,
     PingReply,
     ReceiptReply,
     SentReply,
     StatusReply,
     StoppedEvent,
-    TrimReply,
 )
 from tiniscript.link.receiver import Receiver
 from tiniscript.link.requests import (
     OK,
     DeviceInfo,
     Exchange,
-    FetchedImage,
     Reply,
     Request,
     reply_of,
 )
-from tiniscript.link.robot_state import RobotState
+from tiniscript.link.session_requests import PendingExchange, SessionRequests
 from tiniscript.link.stop_sequence import StopSequence
 from tiniscript.link.transmission import TRIES, Transmission
 
@@ -72,32 +66,19 @@ _STALE, _BUSY = STATUSES["STALE"], STATUSES["BUSY"]
 T = TypeVar("T")
 
 
-class PendingExchange(PendingRequest[T]):
-    """An exchange and its timeout, from its first request on."""
-
-    def __init__(
-        self,
-        exchange: Exchange[T],
-        limit_ms: int = DEADLINE_MS,
-        starts: bool = False,
-        is_own: bool = False,
-    ) -> None:
-        super().__init__(limit_ms, starts)
-        self.exchange = exchange
-        self.deadline_ms = 0
-        self.is_own = is_own  # made by the session itself
-        self.is_busy = False  # the robot's last answer was BUSY
-
-
-class Session:
+class Session(SessionRequests):
     def __init__(
         self,
         nonce: int,
         baud: int = 9600,
         kit: int = 0,
         isa: tuple[int, int] = (ISA_MAJOR, ISA_MINOR),
+        keys: KeyRing | None = None,
     ) -> None:
-        """`nonce` is a random number of 32 bits; `kit` and `isa` are those of our programs."""
+        """`nonce` is a random number of 32 bits; `kit` and `isa` are those of our programs; `keys`
+        has the keys of robots.
+        """
+        super().__init__(nonce, kit, isa, keys, lambda: self._epoch)
         self.is_attached = True  # events are wanted, so the heartbeat goes on while nothing runs
         self.tells_starts = False  # STARTED events are wanted
         self.damaged = 0  # count of damaged frames
@@ -110,55 +91,6 @@ class Session:
         self._transmission = Transmission(baud)
         self._stop = StopSequence()
         self._sent_ms = 0  # time of the last transmission
-        self._state = RobotState()
-        self._handshake = Handshake(nonce, kit, isa, self._state)
-
-    # -- exchanges --------------------------------------------------------------------------------
-
-    def hello(self) -> PendingExchange[HelloReply]:
-        return self._add(self._handshake.hello())
-
-    def ping(self) -> PendingExchange[PingReply]:
-        return self._add(requests.single(Request("PING"), PingReply))
-
-    def status(self) -> PendingExchange[StatusReply]:
-        return self._add(requests.single(Request("STATUS"), StatusReply))
-
-    def clear(self) -> PendingExchange[EmptyReply]:
-        return self._add(self._handshake.open_then(requests.clear))
-
-    def start(self, is_detached: bool = False) -> PendingExchange[ReceiptReply]:
-        exchange = self._handshake.open_then(lambda: requests.start(is_detached, self.is_latched))
-        return self._add(exchange, starts=True)
-
-    def live(self, code: bytes, kit: int = 0) -> PendingExchange[ReceiptReply]:
-        """`kit` is the kit whose words the code uses, or 0 for none."""
-        exchange = self._handshake.open_then(lambda: self._handshake.live(code, kit))
-        return self._add(exchange, starts=True)
-
-    def upload(
-        self, image: Image, runs: bool = True, saves: bool = True, is_detached: bool = False,
-        kit: int | None = None,
-    ) -> PendingExchange[ReceiptReply]:  # fmt: skip
-        mode = requests.mode_of(image, runs, saves, is_detached)
-        exchange = self._handshake.open_then(lambda: self._handshake.upload(image, mode, kit))
-        return self._add(exchange, starts=runs and image.start == "SI")
-
-    def undo(self) -> PendingExchange[ReceiptReply]:
-        """Have the robot hold the program before again; what runs ends."""
-        request = Request("UNDO")
-        return self._add(self._handshake.open_then(lambda: requests.patient(request, ReceiptReply)))
-
-    def name(self, name: bytes) -> PendingExchange[EmptyReply]:
-        return self._add(self._handshake.open_then(lambda: self._handshake.name(name)))
-
-    def trim(self, trim: bytes = b"") -> PendingExchange[TrimReply]:
-        """Set the trim of the motors, or only read it if `trim` is empty."""
-        request = Request("TRIM", {"trim": trim})
-        return self._add(self._handshake.open_then(lambda: requests.kept(request, TrimReply)))
-
-    def fetch(self) -> PendingExchange[FetchedImage]:
-        return self._add(requests.fetch())
 
     def stop(self, now_ms: int) -> None:
         """Stop the robot now, and cancel all exchanges.

@@ -11,13 +11,14 @@ from typing import Any, TypeVar
 
 from tiniscript.bytecode.image import HEADER_BYTES, STARTS, Image
 from tiniscript.link.connection import PendingRequest, Requester
-from tiniscript.link.messages import NAME_BYTES, TRIM_BYTES
+from tiniscript.link.messages import KEYS, NAME_BYTES, TRIM_BYTES
 from tiniscript.link.payloads import (
     EmptyReply,
     HelloReply,
     PingReply,
     ReceiptReply,
     StatusReply,
+    TextReply,
     TrimReply,
 )
 from tiniscript.link.requests import FetchedImage
@@ -27,7 +28,7 @@ from tiniscript.sharing.protocol import BadMessage, JsonMessage
 CODE_BYTES = 0x7FFF  # the most that an image's header can say
 LATER_BYTES = 0xFF - HEADER_BYTES  # the most that it can say
 T = TypeVar("T")
-_PLAIN = ("hello", "ping", "status", "clear", "fetch", "undo")
+_PLAIN = ("hello", "ping", "status", "clear", "fetch", "undo", "identify", "hold_back")
 
 
 class ClientRequest(PendingRequest[T]):
@@ -59,6 +60,22 @@ class ClientRequests:
 
     def undo(self) -> ClientRequest[ReceiptReply]:
         return ClientRequest("undo", ReceiptReply)
+
+    def identify(self) -> ClientRequest[EmptyReply]:
+        return ClientRequest("identify", EmptyReply)
+
+    def hold_back(self) -> ClientRequest[EmptyReply]:
+        return ClientRequest("hold_back", EmptyReply)
+
+    def claim(self, which: int) -> ClientRequest[EmptyReply]:
+        """The server makes the key, and keeps it: no message between commands has one."""
+        return ClientRequest("claim", EmptyReply, which=which)
+
+    def disown(self, which: int) -> ClientRequest[EmptyReply]:
+        return ClientRequest("disown", EmptyReply, which=which)
+
+    def allow_text(self, is_allowed: bool) -> ClientRequest[TextReply]:
+        return ClientRequest("allow_text", TextReply, is_allowed=is_allowed)
 
     def name(self, name: bytes) -> ClientRequest[EmptyReply]:
         return ClientRequest("name", EmptyReply, name=name.hex())
@@ -119,6 +136,14 @@ def _asked_for(message: JsonMessage) -> Callable[[Requester], PendingRequest[Any
         if not 1 <= len(name) <= NAME_BYTES:
             raise BadMessage
         return lambda session: session.name(name)
+    if do in ("claim", "disown"):
+        which = protocol.number(message, "which")
+        if not 0 <= which < len(KEYS):
+            raise BadMessage
+        return lambda session: session.claim(which) if do == "claim" else session.disown(which)
+    if do == "allow_text":
+        is_allowed = protocol.answer(message, "is_allowed")
+        return lambda session: session.allow_text(is_allowed)
     if do == "trim":
         trim = protocol.data(message, "trim")
         if len(trim) not in (0, TRIM_BYTES):

@@ -1,0 +1,149 @@
+"""The keys of a person's robots: a file that only this person can read.
+
+It lies in the user's folder for settings: a lost key is made good at the robot alone. Knows the form
+of the file, and of a class list, which has the same form. No exception and no text has a key in it.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from collections.abc import Iterable
+from contextlib import suppress
+from pathlib import Path
+from threading import Lock
+
+from tiniscript import files
+from tiniscript.link.authority import RobotKey
+from tiniscript.link.messages import KEY_BYTES, KEYS
+from tiniscript.printable import printable
+
+FILE_BYTES = 1_000_000
+NAME_CHARACTERS = 16
+MOST = 2000  # keys in a file
+_KINDS = tuple(name.lower() for name, _ in KEYS)
+
+
+class BadKeys(Exception):
+    """A file that has no keys, or that cannot be read or written: `why` is what the system says."""
+
+    def __init__(self, why: str = "") -> None:
+        super().__init__(why)
+        self.why = why
+
+
+class KeyFile:
+    """The keys in a file; the user's own where no path is given. Each call reads it anew."""
+
+    def __init__(self, path: Path | None = None) -> None:
+        self.path = path or files.settings_folder() / "keys.json"
+        self._lock = Lock()  # the robots of a fleet have threads of their own
+
+    def all(self) -> list[RobotKey]:
+        """Return all keys. Raises BadKeys where the file is none."""
+        try:
+            data = files.contents(self.path, FILE_BYTES)
+        except FileNotFoundError:
+            return []
+        except OSError as failure:
+            raise BadKeys(failure.strerror or str(failure)) from None
+        return read(data)
+
+    def add(self, keys: Iterable[RobotKey]) -> int:
+        """Put keys into the file in the place of those before; return how many are new or other.
+
+        Raises BadKeys.
+        """
+        with self._lock:
+            before = self.all()
+            given = {_place(key): key for key in keys}
+            rest = [key for key in before if key.is_pending or _place(key) not in given]
+            changed = [key for key in given.values() if key not in before]
+            if changed:
+                self._write([*rest, *given.values()])
+            return len(changed)
+
+    # -- as a KeyRing: where the file cannot be read there is no key ----------------------------------
+
+    def of_robot(self, robot: int) -> list[RobotKey]:
+        with suppress(BadKeys):
+            return [key for key in self.all() if key.id == robot]
+        return []
+
+    def made(self, robot: int, which: int, name: str) -> RobotKey | None:
+        key = RobotKey(robot, which, os.urandom(KEY_BYTES), name, is_pending=True)
+        try:
+            with self._lock:
+                self._write([*self.all(), key])
+        except BadKeys:
+            return None
+        return key
+
+    def settle(self, key: RobotKey) -> None:
+        with suppress(BadKeys), self._lock:
+            settled = key._replace(is_pending=False)
+            rest = [each for each in self.all() if _place(each) != _place(key)]
+            self._write([*rest, settled])
+
+    def drop(self, key: RobotKey) -> None:
+        with suppress(BadKeys), self._lock:
+            self._write([each for each in self.all() if each.key != key.key])
+
+    def _write(self, keys: list[RobotKey]) -> None:
+        try:
+            self.path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+            self.path.parent.chmod(0o700)
+            files.replace(self.path, written(keys[-MOST:]), 0o600)
+        except (OSError, ValueError) as failure:
+            raise BadKeys(getattr(failure, "strerror", None) or str(failure)) from None
+
+
+def is_shared(path: Path) -> bool:
+    """Return whether others may read a file; where the system has no such bits, they don't tell."""
+    if sys.platform == "win32":
+        return False
+    try:
+        return bool(path.stat().st_mode & 0o077)
+    except OSError:
+        return False
+
+
+def written(keys: Iterable[RobotKey]) -> bytes:
+    """Return keys as a file."""
+    rows = [
+        {
+            "id": f"{key.id:08x}",
+            "name": key.name,
+            "kind": _KINDS[key.which],
+            "key": key.key.hex(),
+            **({"is_pending": True} if key.is_pending else {}),
+        }
+        for key in keys
+    ]
+    return (json.dumps({"tiniscript_keys": 1, "keys": rows}, indent=1) + "\n").encode()
+
+
+def read(data: bytes) -> list[RobotKey]:
+    """Return the keys in a file. Raises BadKeys where it is none, without anything from it."""
+    try:
+        found = json.loads(data)
+        if found["tiniscript_keys"] != 1:
+            raise BadKeys
+        return [_key(row) for row in found["keys"][:MOST]]
+    except (ValueError, TypeError, KeyError, IndexError, RecursionError):
+        raise BadKeys from None
+
+
+def _key(row: dict[str, object]) -> RobotKey:
+    robot, kind, key = (str(row[name]) for name in ("id", "kind", "key"))
+    data = bytes.fromhex(key)
+    if len(robot) != 8 or len(data) != KEY_BYTES or not any(data) or kind not in _KINDS:
+        raise ValueError
+    name = printable(str(row.get("name", "")), NAME_CHARACTERS)
+    is_pending = row.get("is_pending") is True
+    return RobotKey(int(robot, 16), _KINDS.index(kind), data, name, is_pending)
+
+
+def _place(key: RobotKey) -> tuple[int, int]:
+    return key.id, key.which

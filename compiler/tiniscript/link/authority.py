@@ -1,0 +1,118 @@
+"""The exchanges about a robot's owner: to show a key, to claim a robot, to give it up.
+
+Knows the order of messages and what a tag is made of. Knows no file: a `KeyRing` keeps the keys.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple, Protocol
+
+from tiniscript.link import requests
+from tiniscript.link.messages import KEY_TEACHER, OWNED, STATUSES, YOURS
+from tiniscript.link.outcomes import UNKEPT
+from tiniscript.link.payloads import AuthenticateReply, EmptyReply
+from tiniscript.link.requests import OK, TAKEN, DeviceInfo, Exchange, Reply, Request
+from tiniscript.link.siphash import siphash
+
+NOT_OWNER, WRONG_KEY, HOLD_BUTTON = (
+    STATUSES[name] for name in ("NOT_OWNER", "WRONG_KEY", "HOLD_BUTTON")
+)
+HOLD_TRIES = 150  # while the button is not held down: 30 s
+HOLD_PAUSE_MS = 200
+FREE, YOUR_OWN, OF_ANOTHER = "free", "yours", "other"
+
+
+class RobotKey(NamedTuple):
+    """A key of a robot. `which` is one of KEYS; `name` is the robot's.
+
+    `is_pending`: it is not known whether the robot has taken it.
+    """
+
+    id: int
+    which: int
+    key: bytes
+    name: str = ""
+    is_pending: bool = False
+
+    def __repr__(self) -> str:  # a key is in no message
+        return f"RobotKey({self.id:08x}, {self.which})"
+
+
+class KeyRing(Protocol):
+    """Where the keys of a person are. No method raises an exception."""
+
+    def of_robot(self, robot: int) -> Sequence[RobotKey]:
+        """Return the keys of a robot."""
+        ...
+
+    def made(self, robot: int, which: int, name: str) -> RobotKey | None:
+        """Make a key and keep it as a pending one; None if it cannot be kept."""
+        ...
+
+    def settle(self, key: RobotKey) -> None:
+        """The robot has taken a pending key: it replaces the one before."""
+        ...
+
+    def drop(self, key: RobotKey) -> None:
+        """The robot has not taken, or no longer has, this key."""
+        ...
+
+
+def whose(robot: DeviceInfo) -> str:
+    """Return whether a robot is FREE, YOUR_OWN or OF_ANOTHER."""
+    features = robot.values.features
+    if not features & OWNED:
+        return FREE
+    return YOUR_OWN if features & YOURS else OF_ANOTHER
+
+
+def show_keys(
+    keys: Sequence[RobotKey], nonce: int, epoch: Callable[[], int]
+) -> Exchange[AuthenticateReply]:
+    """Show the robot one key after the other, the teacher's first, until one is right."""
+    found: Reply[AuthenticateReply] = Reply(NOT_OWNER)
+    for each in sorted(keys, key=lambda each: each.which != KEY_TEACHER):
+        found = yield from _show(each, nonce, epoch)
+        if found.status != WRONG_KEY:
+            break
+    return found
+
+
+def _show(key: RobotKey, nonce: int, epoch: Callable[[], int]) -> Exchange[AuthenticateReply]:
+    ask = Request("AUTHENTICATE", {"which": key.which, "tag": b""})
+    reply = yield from requests.patient(ask, AuthenticateReply)
+    if reply.status != OK:
+        return reply
+    text = reply.values.challenge + nonce.to_bytes(4, "little") + bytes([epoch(), key.which])
+    answer = Request("AUTHENTICATE", {"which": key.which, "tag": siphash(key.key, text)})
+    return (yield from requests.patient(answer, AuthenticateReply))
+
+
+def claim(ring: KeyRing, robot: DeviceInfo, which: int) -> Exchange[EmptyReply]:
+    """Give the robot a new key, when its button was held down."""
+    key = ring.made(robot.id, which, robot.name)
+    if key is None:
+        return Reply(UNKEPT)
+    request = Request("CLAIM", {"which": which, "key": key.key})
+    reply = yield from requests.kept(request, EmptyReply)
+    for _ in range(HOLD_TRIES):
+        if reply.status != HOLD_BUTTON:
+            break
+        reply = yield from requests.kept(request._replace(pause_ms=HOLD_PAUSE_MS), EmptyReply)
+    if reply.status == OK:
+        ring.settle(key)
+    elif reply.status not in TAKEN:
+        ring.drop(key)
+    return reply
+
+
+def disown(ring: KeyRing, robot: DeviceInfo, which: int) -> Exchange[EmptyReply]:
+    """Take a key away from the robot."""
+    request = Request("CLAIM", {"which": which, "key": b""})
+    reply = yield from requests.kept(request, EmptyReply)
+    if reply.status == OK:
+        for key in ring.of_robot(robot.id):
+            if key.which == which:
+                ring.drop(key)
+    return reply

@@ -1,0 +1,130 @@
+"""The requests that a session makes: each is an exchange, which the session carries out.
+
+Knows which exchange is made for which request. Knows no byte and no time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TypeVar
+
+from tiniscript.bytecode.image import Image
+from tiniscript.link import requests
+from tiniscript.link.authority import KeyRing
+from tiniscript.link.connection import DEADLINE_MS, PendingRequest
+from tiniscript.link.handshake import Handshake
+from tiniscript.link.payloads import (
+    EmptyReply,
+    HelloReply,
+    PingReply,
+    ReceiptReply,
+    StatusReply,
+    TextReply,
+    TrimReply,
+)
+from tiniscript.link.requests import Exchange, FetchedImage, Request
+from tiniscript.link.robot_state import RobotState
+
+CLAIM_LIMIT_MS = 45_000  # the robot waits for a hand on its button
+T = TypeVar("T")
+
+
+class PendingExchange(PendingRequest[T]):
+    """An exchange and its timeout, from its first request on."""
+
+    def __init__(
+        self,
+        exchange: Exchange[T],
+        limit_ms: int = DEADLINE_MS,
+        starts: bool = False,
+        is_own: bool = False,
+    ) -> None:
+        super().__init__(limit_ms, starts)
+        self.exchange = exchange
+        self.deadline_ms = 0
+        self.is_own = is_own  # made by the session itself
+        self.is_busy = False  # the robot's last answer was BUSY
+
+
+class SessionRequests:
+    """The part of a session that makes exchanges; `epoch` returns the robot's."""
+
+    def __init__(
+        self,
+        nonce: int,
+        kit: int,
+        isa: tuple[int, int],
+        keys: KeyRing | None,
+        epoch: Callable[[], int],
+    ) -> None:
+        self._state = RobotState()
+        self._handshake = Handshake(nonce, kit, isa, self._state, keys, epoch)
+
+    def _add(self, exchange: Exchange[T], starts: bool = False) -> PendingExchange[T]:
+        raise NotImplementedError
+
+    def hello(self) -> PendingExchange[HelloReply]:
+        return self._add(self._handshake.hello())
+
+    def ping(self) -> PendingExchange[PingReply]:
+        return self._add(requests.single(Request("PING"), PingReply))
+
+    def status(self) -> PendingExchange[StatusReply]:
+        return self._add(requests.single(Request("STATUS"), StatusReply))
+
+    def clear(self) -> PendingExchange[EmptyReply]:
+        return self._add(self._handshake.open_then(requests.clear))
+
+    def start(self, is_detached: bool = False) -> PendingExchange[ReceiptReply]:
+        exchange = self._handshake.open_then(
+            lambda: requests.start(is_detached, self._state.is_latched)
+        )
+        return self._add(exchange, starts=True)
+
+    def live(self, code: bytes, kit: int = 0) -> PendingExchange[ReceiptReply]:
+        """`kit` is the kit whose words the code uses, or 0 for none."""
+        exchange = self._handshake.open_then(lambda: self._handshake.live(code, kit))
+        return self._add(exchange, starts=True)
+
+    def upload(
+        self, image: Image, runs: bool = True, saves: bool = True, is_detached: bool = False,
+        kit: int | None = None,
+    ) -> PendingExchange[ReceiptReply]:  # fmt: skip
+        mode = requests.mode_of(image, runs, saves, is_detached)
+        exchange = self._handshake.open_then(lambda: self._handshake.upload(image, mode, kit))
+        return self._add(exchange, starts=runs and image.start == "SI")
+
+    def undo(self) -> PendingExchange[ReceiptReply]:
+        """Have the robot hold the program before again; what runs ends."""
+        request = Request("UNDO")
+        return self._add(self._handshake.open_then(lambda: requests.patient(request, ReceiptReply)))
+
+    def name(self, name: bytes) -> PendingExchange[EmptyReply]:
+        return self._add(self._handshake.open_then(lambda: self._handshake.name(name)))
+
+    def trim(self, trim: bytes = b"") -> PendingExchange[TrimReply]:
+        """Set the trim of the motors, or only read it if `trim` is empty."""
+        request = Request("TRIM", {"trim": trim})
+        return self._add(self._handshake.open_then(lambda: requests.kept(request, TrimReply)))
+
+    def fetch(self) -> PendingExchange[FetchedImage]:
+        return self._add(self._handshake.with_key(requests.fetch))
+
+    def identify(self) -> PendingExchange[EmptyReply]:
+        identify = Request("IDENTIFY")
+        return self._add(self._handshake.open_then(lambda: requests.single(identify, EmptyReply)))
+
+    def claim(self, which: int) -> PendingExchange[EmptyReply]:
+        """Claim the robot: `which` is one of KEYS. Waits until its button is held down."""
+        pending = self._add(self._handshake.open_then(lambda: self._handshake.claim(which)))
+        pending.limit_ms = CLAIM_LIMIT_MS
+        return pending
+
+    def disown(self, which: int) -> PendingExchange[EmptyReply]:
+        return self._add(self._handshake.open_then(lambda: self._handshake.disown(which)))
+
+    def hold_back(self) -> PendingExchange[EmptyReply]:
+        return self._add(self._handshake.open_then(self._handshake.hold_back))
+
+    def allow_text(self, is_allowed: bool) -> PendingExchange[TextReply]:
+        return self._add(self._handshake.open_then(lambda: self._handshake.allow_text(is_allowed)))

@@ -1,0 +1,91 @@
+"""What tests of owners share: keys in memory, and a robot with its computer."""
+
+from __future__ import annotations
+
+from tests.machines.host_firmware import EMPTY, HostFirmware
+from tiniscript import compile_text, robots
+from tiniscript.bytecode.image import Image, unpack
+from tiniscript.link.authority import RobotKey
+from tiniscript.link.connection import PendingRequest
+from tiniscript.link.messages import STATUS_NAMES
+from tiniscript.link.session import Session
+
+KIT = robots.load("tinibot").kit
+PRESSED, RELEASED, HELD = 1, 2, 32
+FOREVER = "SI|F(200, 40)"
+
+
+class Keys:
+    """A `KeyRing` in memory. Keys are numbered, so each run has the same."""
+
+    def __init__(self, first: int = 1) -> None:
+        self.found: list[RobotKey] = []
+        self.next = first
+        self.is_full = False
+
+    def of_robot(self, robot: int) -> list[RobotKey]:
+        return [key for key in self.found if key.id == robot]
+
+    def made(self, robot: int, which: int, name: str) -> RobotKey | None:
+        if self.is_full:
+            return None
+        key = RobotKey(robot, which, bytes([self.next] * 16), name, True)
+        self.next += 1
+        self.found.append(key)
+        return key
+
+    def settle(self, key: RobotKey) -> None:
+        self.found = [each for each in self.found if (each.id, each.which) != (key.id, key.which)]
+        self.found.append(key._replace(is_pending=False))
+
+    def drop(self, key: RobotKey) -> None:
+        self.found.remove(key)
+
+
+class Owned:
+    """A robot and one computer after the other."""
+
+    def __init__(self, memory: bytes = EMPTY, seed: int = 0x12345678) -> None:
+        self.robot = HostFirmware(KIT, memory, seed=seed)
+        self.robot.wait(300)
+
+    def session(self, keys: Keys | None = None, nonce: int = 1) -> Session:
+        return Session(nonce, 115200, KIT.fingerprint, keys=keys)
+
+    def outcome(self, session: Session, request: PendingRequest[object]) -> str:
+        return STATUS_NAMES.get(status := self.robot.until(session, request, 60_000), str(status))
+
+    def hold(self, session: Session | None, milliseconds: int) -> None:
+        """Hold the button down, while a computer talks."""
+        self.pass_time(session, 1, PRESSED)
+        self.pass_time(session, 30)
+        self.pass_time(session, milliseconds - 31, HELD)
+        self.pass_time(session, 1, RELEASED)
+
+    def pass_time(self, session: Session | None, milliseconds: int, flags: int = 0) -> None:
+        for k in range(milliseconds):
+            if session is None:
+                self.robot.step(flags=flags if k == 0 else 0)
+            else:
+                self.robot.talk(session, 1, flags if k == 0 else 0)
+
+    def claim(self, session: Session, which: int = 0) -> str:
+        request = session.claim(which)
+        self.pass_time(session, 500)
+        self.hold(session, 2200)
+        return self.outcome(session, request)
+
+    def claimed(self, keys: Keys, which: int = 0) -> Session:
+        session = self.session(keys)
+        assert self.claim(session, which) == "OK"
+        return session
+
+    def tries(self, session: Session) -> str:
+        """Return how the robot answers who wants to drive."""
+        return self.outcome(session, session.upload(image_of(FOREVER), saves=False))
+
+
+def image_of(text: str) -> Image:
+    compiled = compile_text(text, KIT)
+    assert compiled.image, text
+    return unpack(compiled.image)
