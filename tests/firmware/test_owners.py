@@ -12,6 +12,8 @@ from tiniscript.link.authority import FREE, OF_ANOTHER, YOUR_OWN, whose
 from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.messages import (
     BY_NAME,
+    BY_NUMBER,
+    FIRST_EVENT,
     KEY_OWNER,
     KEY_TEACHER,
     STATE_IDLE,
@@ -23,6 +25,8 @@ from tiniscript.link.outcomes import UNKEPT
 from tiniscript.link.session import Session
 
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
+
+OPEN_TO_ALL = {"HELLO", "PING", "STATUS", "STOP", "IDENTIFY"}
 
 
 def owner_of(table: Owned, session: Session) -> str:
@@ -186,11 +190,10 @@ def test_every_request_has_a_side() -> None:
     """Whatever acts and is not listed here needs authority."""
     table, keys = Owned(), Keys()
     table.claimed(keys)
-    open_to_all = {"HELLO", "PING", "STATUS", "STOP", "CLAIM", "AUTHENTICATE", "IDENTIFY"}
     stranger = table.session(nonce=3)
     assert owner_of(table, stranger) == OF_ANOTHER
     for message in BY_NAME.values():
-        if message.number >= 32 or message.name in open_to_all:
+        if message.number >= 32 or message.name in OPEN_TO_ALL | {"CLAIM", "AUTHENTICATE"}:
             continue
         payload = bytes(sum(field.low for field in message.request))
         stranger._seq = (stranger._seq + 1) & 0xFF
@@ -247,6 +250,45 @@ def test_a_recorded_session_opens_nothing() -> None:
         for data in recorded:
             table.robot.wait(3, bytes(data))
     assert not [line for line in table.robot.did if "MOTORS" in line]
+
+
+def test_a_recorded_tag_opens_nothing_in_its_own_epoch() -> None:
+    table, keys = Owned(), Keys()
+    table.claimed(keys)
+    owner = table.session(keys, nonce=4)
+    recorded: list[Frame] = []
+    request = owner.hello()
+    while request.outcome is None:
+        data = owner.poll(table.robot.now_ms)
+        frame = decoded(data.strip(b"\0")) if data else None
+        recorded += [frame] if frame is not None else []
+        owner.receive(table.robot.step(data), table.robot.now_ms)
+    (shown,) = (each for each in recorded if len(each.payload) == 9)
+    assert table.outcome(owner, owner.trim()) == "OK"
+
+    def answers(thief: Session, tag: bytes) -> int:
+        thief._seq = (thief._seq + 1) & 0xFF
+        frame = Frame(shown.number, thief._seq, thief._epoch, shown.payload[:1] + tag)
+        answer = decoded(table.robot.wait(20, b"\0" + encoded(frame)).strip(b"\0"))
+        assert answer
+        return answer.payload[0]
+
+    table.pass_time(None, 2100)
+    assert answers(owner, shown.payload[1:]) == STATUSES["NOT_OWNER"]  # without a challenge
+    assert answers(owner, b"") == 0
+    assert answers(owner, shown.payload[1:]) == STATUSES["WRONG_KEY"]  # to another challenge
+    for count in range(300):
+        thief = table.session(nonce=4 if count % 2 else 9)
+        assert table.outcome(thief, thief.hello()) == "OK"
+        if thief._epoch == shown.epoch and count % 2:
+            break
+        if thief._epoch == (shown.epoch - 1) & 0xFF and not count % 2:
+            continue
+        if (thief._epoch - shown.epoch) % 2 == count % 2:  # so that both come together
+            table.robot.wait(100, bytes(8))
+    assert thief._epoch == shown.epoch
+    assert answers(thief, b"") == 0
+    assert answers(thief, shown.payload[1:]) == STATUSES["WRONG_KEY"]
 
 
 def test_wrong_keys_are_tried_five_times() -> None:
@@ -468,7 +510,8 @@ def forged(frames: int, seed: int) -> int:
             thief._seq = (thief._seq + 1) & 0xFF
             seq = thief._seq if how == 1 else chance.randrange(256)
             data = encoded(Frame(message.number, seq, thief._epoch, payload))
-        table.robot.step(b"\0" + data)
+        sent = table.robot.step(b"\0" + data)
+        accepted += sum(is_accepted(answer) for answer in sent.split(b"\0"))
         if chance.randrange(50) == 0:
             table.robot.wait(30)
         did = [line for line in table.robot.did if "MOTORS" in line]
@@ -478,6 +521,19 @@ def forged(frames: int, seed: int) -> int:
         accepted += 1
     assert table.tries(table.session(keys, nonce=5)) in ("OK", "TOO_MANY_TRIES")
     return accepted
+
+
+def is_accepted(sent: bytes) -> bool:
+    """Return whether an answer says that something was done for which it takes a key."""
+    frame = decoded(sent)
+    if frame is None or frame.number not in BY_NUMBER or not frame.payload:
+        return False
+    message = BY_NUMBER[frame.number]
+    if message.name == "AUTHENTICATE":  # a challenge is for anybody
+        is_open = len(frame.payload) == 1 + 2 + 8
+    else:
+        is_open = message.name in OPEN_TO_ALL or message.number >= FIRST_EVENT
+    return frame.payload[0] == 0 and not is_open
 
 
 def main(frames: int, seed: int) -> int:

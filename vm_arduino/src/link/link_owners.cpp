@@ -64,14 +64,16 @@ Answer Link::claim(const uint8_t* payload, uint8_t length) {
   copy_bytes(payload + kClaimKeyAt, wanted, key_bytes);
   Answer found = port_key(which, key);
   if (found != Answer::kOk) return found;
-  if (are_equal(key, wanted, kKeyBytes)) {
+  const bool is_teachers = which == static_cast<uint8_t>(Key::kTeacher) && is_key(key);
+  const bool is_allowed = is_teachers ? has(kByTeacher) : !has(kOwned) || has(kYours);
+  const bool is_given = is_key(wanted);
+  // A claim that is repeated because its answer was lost comes without authority.
+  if (are_equal(key, wanted, kKeyBytes) && (is_given || is_allowed)) {
     rights_ &= static_cast<uint8_t>(~(kIsAsked | kIsConfirmed));
     return Answer::kOk;
   }
-  uint16_t needed = has(kOwned) || is_key(key) ? kYours : 0;
-  if (which == static_cast<uint8_t>(Key::kTeacher) && is_key(key)) needed = kByTeacher;
-  if (needed != 0 && !has(needed)) return Answer::kNotOwner;
-  if (is_key(wanted) && (rights_ & kIsConfirmed) == 0) {
+  if (!is_allowed) return Answer::kNotOwner;
+  if (is_given && (rights_ & kIsConfirmed) == 0) {
     rights_ |= kIsAsked;
     return Answer::kHoldButton;
   }
