@@ -1,7 +1,8 @@
 """The keys of a person's robots: a file that only this person can read.
 
-It lies in the user's folder for settings: a lost key is made good at the robot alone. Knows the form
-of the file, and of a class list, which has the same form. No exception and no text has a key in it.
+It lies in the user's folder for settings: a lost key is made good at the robot alone. Knows the
+form of the file, and of a class list, which has the same form. No exception and no text has a key
+in it.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from tiniscript.printable import printable
 FILE_BYTES = 1_000_000
 NAME_CHARACTERS = 16
 MOST = 2000  # keys in a file
+MODE = 0o600  # only this person reads it
 _KINDS = tuple(name.lower() for name, _ in KEYS)
 
 
@@ -64,7 +66,7 @@ class KeyFile:
                 self._write([*rest, *given.values()])
             return len(changed)
 
-    # -- as a KeyRing: where the file cannot be read there is no key ----------------------------------
+    # -- as a KeyRing: where the file cannot be read there is no key ------------------------------
 
     def of_robot(self, robot: int) -> list[RobotKey]:
         with suppress(BadKeys):
@@ -94,7 +96,7 @@ class KeyFile:
         try:
             self.path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
             self.path.parent.chmod(0o700)
-            files.replace(self.path, written(keys[-MOST:]), 0o600)
+            files.replace(self.path, written(keys[-MOST:]), MODE)
         except (OSError, ValueError) as failure:
             raise BadKeys(getattr(failure, "strerror", None) or str(failure)) from None
 

@@ -273,6 +273,7 @@ def test_a_recorded_tag_opens_nothing_in_its_own_epoch() -> None:
         assert answer
         return answer.payload[0]
 
+    assert answers(owner, shown.payload[1:]) == STATUSES["NOT_OWNER"]  # twice to one challenge
     table.pass_time(None, 2100)
     assert answers(owner, shown.payload[1:]) == STATUSES["NOT_OWNER"]  # without a challenge
     assert answers(owner, b"") == 0
@@ -310,6 +311,19 @@ def test_wrong_keys_are_tried_five_times() -> None:
     assert table.outcome(owner, owner.start()) == "TOO_MANY_TRIES"
     table.pass_time(None, 30_000)
     assert table.tries(owner) == "OK"
+
+
+def test_a_right_key_begins_the_count_of_wrong_ones_anew() -> None:
+    table, keys = Owned(), Keys()
+    table.claimed(keys)
+    wrong = Keys()
+    wrong.found = [keys.found[0]._replace(key=bytes([200] * 16))]
+    for count in range(3):
+        thief = table.session(wrong, nonce=10 + count)
+        for _ in range(3):
+            assert table.outcome(thief, thief.start()) in ("WRONG_KEY", "NOT_OWNER")
+        owner = table.session(keys, nonce=20 + count)
+        assert table.outcome(owner, owner.trim()) == "OK"
 
 
 def test_the_same_seed_after_a_reset_is_another_challenge_or_needs_the_key() -> None:

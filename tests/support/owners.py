@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from tests.machines.host_firmware import EMPTY, HostFirmware
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import Image, unpack
@@ -52,7 +54,7 @@ class Owned:
     def session(self, keys: Keys | None = None, nonce: int = 1) -> Session:
         return Session(nonce, 115200, KIT.fingerprint, keys=keys)
 
-    def outcome(self, session: Session, request: PendingRequest[object]) -> str:
+    def outcome(self, session: Session, request: PendingRequest[Any]) -> str:
         return STATUS_NAMES.get(status := self.robot.until(session, request, 60_000), str(status))
 
     def hold(self, session: Session | None, milliseconds: int) -> None:

@@ -16,16 +16,17 @@ if TYPE_CHECKING:
 SHOWN = 20  # diagnostics that are printed; a person mends the first ones first
 
 
-def write(path: Path, data: bytes, key: str) -> None:
+def write(path: Path, data: bytes, key: str, mode: int | None = None) -> None:
     """Write a file, all of it or nothing: the old file stays until the new one is whole.
 
-    Raises CommandError with the sentence `key` where that is not possible.
+    `mode` is what its permissions become. Raises CommandError with the sentence `key` where that
+    is not possible.
     """
     from tiniscript import files
     from tiniscript.cli.inputs import shown
 
     try:
-        files.replace(path, data)
+        files.replace(path, data, mode)
     except (OSError, ValueError, RuntimeError) as why:  # RuntimeError: a link to itself
         if isinstance(why, BrokenPipeError):
             raise

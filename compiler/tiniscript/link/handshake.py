@@ -83,7 +83,7 @@ class Handshake:
     def with_key(self, make: Callable[[], Exchange[T]]) -> Exchange[T]:
         """Make and run an exchange; again, if the robot wants to be shown its key before."""
         reply = yield from make()
-        if reply.status != NOT_OWNER or self._keys is None:
+        if reply.status not in (NOT_OWNER, STATUSES["HELD_BACK"]) or self._keys is None:
             return reply
         if not self.is_open:
             hello = yield from self.hello()
@@ -91,7 +91,7 @@ class Handshake:
                 return refused(hello)
         shown = yield from self._show_keys()
         if shown.status != OK:
-            return refused(shown)
+            return refused(reply if shown.status == NOT_OWNER else shown)
         return (yield from make())
 
     def _show_keys(self) -> Exchange[AuthenticateReply]:

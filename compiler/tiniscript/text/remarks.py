@@ -28,7 +28,7 @@ REMARKS = (  # in the order of their numbers
     Remark("LATCHED",   "It was stopped. Begin with SI|",   "Fue parado. Empieza con SI|"),
     Remark("SAVING",    "Still saving. Send it again.",     "Aun guardo. Envialo otra vez."),
     Remark("REFUSED",   "Not possible here.",               "Aqui no es posible."),
-    Remark("NOT_OWNER", "Owned: tsc text on, or button 2 s.", "Con dueno: tsc text on, o boton 2 s"),
+    Remark("NOT_OWNER", "Owned: tsc text on, or button 2 s.", "Con dueno: tsc text on, o boton 2s"),
     Remark("HELD_BACK", "The teacher stopped it.",          "Lo detuvo el docente."),
     Remark("DONE",      "DONE",                             "FIN"),
     Remark("FAULT",     "FAULT ",                           "FALLA "),

@@ -23,6 +23,7 @@ STRIDE_MS = 100  # robot time between two polls of the line while it runs faster
 TURN_S = 0.01  # real time that a fast run may take before the caller gets its turn
 FULL_BYTES = 512  # limit of bytes waiting for the robot; then the line is not read
 PUSH_MS = 60  # how long a push holds the button down
+HOLD_MS = 2300  # and a long one, which confirms a claim
 
 
 class Simulator:
@@ -46,7 +47,7 @@ class Simulator:
         self._owed_ms = 0.0  # of the robot's time, less than one
         self._visits = 0
         self._let_go_ms: int | None = None
-        self._is_wanted = False  # a push that has to wait
+        self._wanted_ms = 0  # how long a push lasts that has to wait
         self._up_until_ms = 0  # a button that was let go stays up so long
 
     @property
@@ -62,14 +63,15 @@ class Simulator:
         over_ms = self.over_ms
         return over_ms is not None and self.robot.now_ms >= over_ms
 
-    def push(self) -> None:
+    def push(self, lasts_ms: int = PUSH_MS) -> None:
         """Push the start button and let it go; where it is down or just was, a moment later."""
         now_ms = self.robot.now_ms
-        self._is_wanted = self._let_go_ms is not None or now_ms < self._up_until_ms
-        if not self._is_wanted:
+        must_wait = self._let_go_ms is not None or now_ms < self._up_until_ms
+        self._wanted_ms = lasts_ms if must_wait else 0
+        if not must_wait:
             self.robot.press()
-            self._let_go_ms = now_ms + PUSH_MS
-            self._up_until_ms = now_ms + 2 * PUSH_MS
+            self._let_go_ms = now_ms + lasts_ms
+            self._up_until_ms = now_ms + lasts_ms + PUSH_MS
 
     @property
     def waiting(self) -> int:
@@ -107,7 +109,7 @@ class Simulator:
 
     @property
     def _is_pushing(self) -> bool:
-        return self._is_wanted or self._let_go_ms is not None
+        return self._wanted_ms != 0 or self._let_go_ms is not None
 
     def _is_hurrying(self) -> bool:
         return self.robot.is_running and self.hurry != 1 and not self.is_over
@@ -147,8 +149,8 @@ class Simulator:
         if self._let_go_ms is not None and now_ms >= self._let_go_ms:
             self._let_go_ms = None
             self.robot.let_go()
-        elif self._is_wanted:
-            self.push()
+        elif self._wanted_ms:
+            self.push(self._wanted_ms)
         data = self.there.take(now_ms)
         if is_hurrying and self.transports.is_connected and not data:
             data = self._heartbeat.due(now_ms, self._wall_s)

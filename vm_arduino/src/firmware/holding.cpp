@@ -1,6 +1,7 @@
 #include "holding.h"
 
 #include "../link/has_owners.h"
+#include "../robot.h"
 #include "keeping.h"
 #include "state.h"
 
@@ -9,6 +10,8 @@ namespace tiniscript {
 namespace {
 
 constexpr uint16_t kMostMs = 60000;  // longer presses count as this
+constexpr uint16_t kSignHertz = 1568;  // says that the button may be let go
+constexpr uint8_t kSignMs = 250;
 
 enum class Phase : uint8_t {
   kUp,
@@ -26,7 +29,7 @@ void confirm() {
     if (!kReadsText || (port_identity().features & kOwned) == 0) return;
     port_identity().features |= kTextAllowed;
   }
-  board_finished();
+  robot_beep(kSignHertz, kSignMs);
 }
 
 }  // namespace
@@ -40,7 +43,7 @@ void pass_holding(uint16_t passed_ms) {
   // Tried again until the store is free and has done it.
   if (phase == Phase::kDownSinceReset && down_ms >= kForgetMs && forget_owner()) {
     phase = Phase::kUp;
-    board_finished();
+    robot_beep(kSignHertz, kSignMs);
   }
 }
 

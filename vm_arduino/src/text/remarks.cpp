@@ -39,7 +39,7 @@ const uint8_t kRemarkTextsSpanish[] tini_progmem =
     "Fue parado. Empieza con SI|\0"
     "Aun guardo. Envialo otra vez.\0"
     "Aqui no es posible.\0"
-    "Con dueno: tsc text on, o boton 2 s\0"
+    "Con dueno: tsc text on, o boton 2s\0"
     "Lo detuvo el docente.\0"
     "FIN\0"
     "FALLA \0"

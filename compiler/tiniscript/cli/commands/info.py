@@ -49,6 +49,7 @@ class Description:
     def fields(self) -> dict[str, object]:
         """Return it as data."""
         from tiniscript.cli.robot.event_printer import fault_name
+        from tiniscript.link.authority import whose
         from tiniscript.link.messages import RESETS, SAVED, SAVED_STORED, STATES
 
         status = self.status
@@ -62,6 +63,7 @@ class Description:
             "name": self.device_info.name,
             "id": f"{self.device_info.id:08x}",
             "port": self.connection.port,
+            "owner": whose(self.device_info),
             "kit": f"{self.device_info.kit:04x}",
             "robot": robot_of_kit(self.device_info.kit),
             "link": f"{self.hello.major}.{self.hello.minor}",
@@ -84,7 +86,8 @@ class Description:
     def line(self) -> str:
         """Return the most important of it in one line."""
         state = text(f"state_{self.fields()['state']}", self.connection.language)
-        return f"{self._program()}; {state}"
+        owner = text(f"whose_{self.fields()['owner']}", self.connection.language)
+        return f"{self._program()}; {state}; {owner}"
 
     def _program(self) -> str:
         from tiniscript.codegen import source_map
@@ -132,6 +135,7 @@ class Description:
                 kit=kit, isa=fields["isa"], room=self.device_info.room
             ),
             self._reader(),
+            text("info_owner", language).format(whose=text(f"whose_{fields['owner']}", language)),
             self._program(),
             text("info_state", language).format(state=state, reset=reset),
         ]

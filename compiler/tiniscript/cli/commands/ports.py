@@ -87,6 +87,7 @@ def _ask(port: str, baud: int, robot: Robot, language: str) -> dict[str, object]
     """Return the robot that answers on a port, or why none does."""
     from contextlib import closing
 
+    from tiniscript.link.authority import whose
     from tiniscript.link.outcomes import Gone
     from tiniscript.link.requests import OK
 
@@ -102,11 +103,16 @@ def _ask(port: str, baud: int, robot: Robot, language: str) -> dict[str, object]
     if reply.status == OK and device_info is not None:
         opening.remember(port, device_info.name, is_used=False)
         called = shown(device_info.name) or robot_of_kit(device_info.kit) or f"{device_info.id:08x}"
-        said = text("port_robot", language).format(name=called)
+        owner = whose(device_info)
+        said = text("port_whose", language).format(
+            said=text("port_robot", language).format(name=called),
+            whose=text(f"whose_{owner}", language),
+        )
         return {
             "answer": device_info.name,
             "id": f"{device_info.id:08x}",
             "kit": f"{device_info.kit:04x}",
+            "owner": owner,
             "said": said,
         }
     return {"answer": None, "said": text("port_other" if heard else "port_quiet", language)}

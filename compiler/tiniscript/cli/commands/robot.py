@@ -33,13 +33,17 @@ MEMORY_BYTES = 1024  # of an Uno's EEPROM
 SAVE_S = 1.0  # between two looks at what the robot keeps
 NAME_MS = 20_000  # timeout for naming it, in the robot's time
 QUIT = "qQ\x04"
+PUSH_MS, HOLD_MS = 60, 2300  # as `virtual.simulator`, which takes long to import
 
 
 def run(options: Namespace, language: str) -> int:
     profile = inputs.robot(options, language)
     port = whole_number("--listen", options.listen, 0, 0, 65535, language)
     baud = whole_number("--baud", options.baud, profile.board.baud, 0, FASTEST_BAUD, language)
-    pushes_ms = _pushes_ms(options.button_at)
+    pushes = sorted(
+        [(time_ms, PUSH_MS) for time_ms in _pushes_ms("--button-at", options.button_at)]
+        + [(time_ms, HOLD_MS) for time_ms in _pushes_ms("--hold-at", options.hold_at)]
+    )
     end_ms = simulator_options.end_ms(options, language)
     hurry = simulator_options.hurry_of(options, language)
     faults = simulator_options.faults_of(options, language)
@@ -60,7 +64,7 @@ def run(options: Namespace, language: str) -> int:
         simulator = Simulator(robot, transports, hurry, faults)
         simulator.end_ms = end_ms
         stage = _Stage(simulator, options, language)
-        stage.show(pushes_ms, end_ms)
+        stage.show(pushes, end_ms)
     finally:
         directory.withdraw(note)
         transports.close()
@@ -82,7 +86,7 @@ class _Stage:
         self._look_s = monotonic()
         self._frame_s = 0.0
 
-    def show(self, pushes_ms: list[int], end_ms: int | None) -> None:
+    def show(self, pushes: list[tuple[int, int]], end_ms: int | None) -> None:
         """Run the robot until its time is over or the user ends it."""
         robot = self.simulator.robot
         self._introduce()
@@ -90,10 +94,9 @@ class _Stage:
             with Keys() as keys, ended_by_signal() as ended:
                 self._begin()
                 while not ended.is_set and (end_ms is None or robot.now_ms < end_ms):
-                    if pushes_ms and robot.now_ms >= pushes_ms[0]:
-                        pushes_ms.pop(0)
-                        self.simulator.push()
-                    self.simulator.turn(self._limit_s(pushes_ms, end_ms))
+                    if pushes and robot.now_ms >= pushes[0][0]:
+                        self.simulator.push(pushes.pop(0)[1])
+                    self.simulator.turn(self._limit_s(pushes, end_ms))
                     self._tell(robot.take_events())
                     self._save(is_due=False)
                     if not self._obey(keys.pressed()):
@@ -135,13 +138,16 @@ class _Stage:
         self.picture = WorldPicture(self.simulator.robot, self.language, keys)
         self.screen.begin()
 
-    def _limit_s(self, pushes_ms: list[int], end_ms: int | None) -> float:
+    def _limit_s(self, pushes: list[tuple[int, int]], end_ms: int | None) -> float:
         """Return the time until the next action is due."""
         from tiniscript.cli.terminal.screen import FRAME_S
         from tiniscript.virtual.simulator import CALM_S
 
         limits = [FRAME_S if self.screen else CALM_S]
-        for due_ms in (*pushes_ms[:1], *([end_ms] if end_ms is not None else [])):
+        for due_ms in (
+            *(time_ms for time_ms, _ in pushes[:1]),
+            *([end_ms] if end_ms is not None else []),
+        ):
             limits.append(max(0.001, (due_ms - self.simulator.robot.now_ms) / 1000))
         return min(limits)
 
@@ -175,6 +181,8 @@ class _Stage:
                 return False
             if key in "bB ":
                 self.simulator.push()
+            elif key in "hH":
+                self.simulator.push(HOLD_MS)
             elif key in "rR":
                 self.simulator.robot.power_cycle(2)
             elif key in "pP":
@@ -230,14 +238,14 @@ def _transports(port: int, has_terminal: bool) -> Transports:
         ) from None
 
 
-def _pushes_ms(found: str | None) -> list[int]:
+def _pushes_ms(option: str, found: str | None) -> list[int]:
     if found is None:
         return []
     values = [decimal(each.strip()) for each in found.split(",")]
     known = [each for each in values if each is not None and each >= 0]
     if len(known) != len(values):
-        raise CommandError(2, "bad_button", found=shown(found) or "''")
-    return sorted(known)
+        raise CommandError(2, "bad_button", option=option, found=shown(found) or "''")
+    return known
 
 
 def _memory(name: str | None) -> bytes | None:
@@ -260,12 +268,13 @@ def _memory(name: str | None) -> bytes | None:
 def _name(robot: VirtualRobot, name: str) -> None:
     """Name the robot as `tsc name` does, before any client connects."""
     from tiniscript.cli.commands.name import name_bytes
+    from tiniscript.keys import KeyFile
     from tiniscript.link.session import Session
 
     data = name_bytes(name)
     profile = robot.profile
     nonce = robot.chance.getrandbits(32)
-    session = Session(nonce, profile.board.baud, profile.kit.fingerprint)
+    session = Session(nonce, profile.board.baud, profile.kit.fingerprint, keys=KeyFile())
     request = session.name(data)
     while request.outcome is None and robot.now_ms < NAME_MS:
         now_ms = robot.now_ms + 1

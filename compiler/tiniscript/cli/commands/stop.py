@@ -35,14 +35,29 @@ def run(options: Namespace, language: str) -> int:
         with Connection(options, robot, language) as connection:
             port = connection.port
             if confirmed(connection.line):
+                if options.teacher:
+                    _hold_back(connection)
                 if options.json:
                     print(json.dumps({"port": port, "is_done": True}))
                 else:
-                    print(text("stopped_on", language).format(port=shown(port)))
+                    key = "held_back" if options.teacher else "stopped_on"
+                    print(text(key, language).format(port=shown(port)))
                 return 0
             if not _may_be_opened(connection):
                 raise CommandError(3, "not_confirmed", port=shown(port))
         options.port = port
+
+
+def _hold_back(connection: Connection) -> None:
+    """Have a robot that was stopped wait for the teacher, or its button. Raises CommandError."""
+    from tiniscript.link.authority import NOT_OWNER, WRONG_KEY
+
+    connection.meet()
+    reply = connection.wait(connection.do(lambda session: session.hold_back()))
+    if reply.status in (NOT_OWNER, WRONG_KEY):
+        raise CommandError(3, "no_teachers_key", robot=connection.name)
+    if reply.status:
+        raise connection.failure(reply)
 
 
 def _may_be_opened(connection: Connection) -> bool:
@@ -55,6 +70,9 @@ def _one_of_many(connection: Connection, member: Member) -> Result:
 
     member.tell("crew_stopping")
     if confirmed(connection.line):
+        if connection.options.teacher:
+            _hold_back(connection)
+            return Result(True, text("held_back_short", connection.language))
         return Result(True, text("robot_stopped", connection.language))
     if _may_be_opened(connection):
         raise Again

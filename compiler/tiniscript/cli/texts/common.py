@@ -214,6 +214,10 @@ def text(key: str, language: str) -> str:
 
         found = VIRTUAL_TEXTS.get(key)
     if found is None:
+        from tiniscript.cli.texts.owners import OWNER_TEXTS
+
+        found = OWNER_TEXTS.get(key)
+    if found is None:
         from tiniscript.cli.texts.firmware import FLASH_TEXTS
 
         found = FLASH_TEXTS[key]
@@ -222,10 +226,11 @@ def text(key: str, language: str) -> str:
 
 
 def has_text(key: str) -> bool:
+    from tiniscript.cli.texts.owners import OWNER_TEXTS
     from tiniscript.cli.texts.robot import LINK_TEXTS
     from tiniscript.cli.texts.simulator import VIRTUAL_TEXTS
 
-    return key in TEXTS or key in LINK_TEXTS or key in VIRTUAL_TEXTS
+    return any(key in each for each in (TEXTS, LINK_TEXTS, VIRTUAL_TEXTS, OWNER_TEXTS))
 
 
 def language_of(arguments: Sequence[str], environ: Mapping[str, str] = os.environ) -> str:

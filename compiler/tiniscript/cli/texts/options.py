@@ -64,6 +64,8 @@ IMAGE = Kind("file", writes="unwritable")
 MAP = Kind("file", writes="unwritable_map")
 PICTURE = Kind("file", writes="unwritable_picture")
 ROWS = Kind("file", writes="unwritable_rows")
+KEYS = Kind("file", reads="path_keys")
+NEW_KEYS = Kind("file", writes="unwritable_keys")
 MEMORY = Kind("file", reads="path_memory", writes="unwritable_memory")
 TEXT = Kind("text")
 NUMBER = Kind("number")
@@ -75,6 +77,7 @@ HURRY = Kind("hurry")
 LANGUAGE = Kind("choice", choices=("en", "es"))
 MACHINE = Kind("choice", choices=("python", "cpp"))
 YES_NO = Kind("choice", choices=("yes", "no"))
+ON_OFF = Kind("choice", choices=("on", "off"))
 SHELL = Kind("choice", choices=("bash", "zsh", "powershell"))
 LEVEL = Kind("choice", choices=tuple(LEVELS))
 
@@ -86,8 +89,8 @@ READINGS = ("NAME=1,2,3", "NOMBRE=1,2,3")
 YES = ("yes|no", "yes|no")
 A_LEVEL = ("|".join(LEVELS),) * 2
 
-TO_MANY = "ping upload stop info undo"  # may work on many robots at once
-TO_ONE = "live link start monitor fetch name trim"
+TO_MANY = "ping upload stop info undo identify"  # may work on many robots at once
+TO_ONE = "live link start monitor fetch name trim claim disown text"
 OWN = "upload live robot"  # may bring a virtual robot along
 
 # fmt: off
@@ -99,6 +102,7 @@ OPTIONS: tuple[Option, ...] = (
     Option("robot", "board", ("a name (tinibot, ...) or a profile's file", "un nombre (tinibot, ...) o el archivo de un perfil"), ROBOT, ("ROBOT", "ROBOT"), is_needed=True),
     Option("line", "live", ("what to do; with - lines come from standard input", "qué hacer; con - las líneas vienen de la entrada estándar"), TEXT, ("LINE", "LÍNEA")),
     Option("name", "name", ("the robot's name: 1 to 16 bytes of UTF-8", "el nombre del robot: de 1 a 16 bytes de UTF-8"), TEXT, ("NEW", "NUEVO")),
+    Option("whether", "text", ("on or off", "on u off"), ON_OFF, ("on|off", "on|off")),
     Option("about", "help", ("the verb to say more about", "el verbo del que se quiere saber más"), VERB, ("VERB", "VERBO")),
     Option("shell", "completion", ("bash, zsh or powershell", "bash, zsh o powershell"), SHELL, ("SHELL", "TERMINAL"), is_needed=True),
     # the program
@@ -150,39 +154,45 @@ OPTIONS: tuple[Option, ...] = (
     Option("--reverse-right", "trim", ("yes: the right wheel turns backward", "yes: la rueda derecha gira hacia atrás"), YES_NO, YES),
     Option("--balance", "trim", ("the left wheel gets N % less; with -N the right one does (up to 40)", "la rueda izquierda recibe N % menos; con -N, la derecha (hasta 40)"), NUMBER, N),
     Option("--least", "trim", ("the percent of power from which on the wheels move (0 to 40)", "el porcentaje de potencia desde el que se mueven las ruedas (0 a 40)"), NUMBER, N),
+    Option("--teacher", "claim", ("gives the robot the teacher's key, the second of its two", "le da al robot la llave de docente, la segunda de sus dos")),
+    Option("--teacher", "disown", ("takes the teacher's key away", "quita la llave de docente")),
+    Option("--teacher", "stop", ("with the teacher's key: only this computer, or the robot's button, lets it go on", "con la llave de docente: solo esta computadora, o el botón del robot, lo deja seguir")),
+    Option("--export", "keys", ("writes the keys to a file, for another computer", "escribe las llaves en un archivo, para otra computadora"), NEW_KEYS, A_FILE),
+    Option("--import", "keys", ("takes the keys of such a file, too", "toma también las llaves de un archivo así"), KEYS, A_FILE, "bring"),
     Option("--name", "robot", ("what it is called", "cómo se llama"), TEXT, ("NAME", "NOMBRE")),
     Option("--listen", "robot", ("its TCP port, on this computer alone (any free one)", "su puerto TCP, solo en esta computadora (uno libre)"), NUMBER, P),
     Option("--pty", "robot", ("a pseudo-terminal too (not on Windows)", "también una pseudoterminal (no en Windows)")),
     Option("--memory", "robot", ("keeps what it has saved in a file; without it, that is forgotten", "conserva en un archivo lo que guarda; sin esto, se olvida"), MEMORY, A_FILE),
     Option("--button-at", "robot", ("pushes the start button after so many seconds; 2,10: twice", "pulsa el botón de inicio después de tantos segundos; 2,10: dos veces"), NUMBER, S),
+    Option("--hold-at", "robot", ("holds the start button down for 2 s after so many seconds", "mantiene pulsado el botón de inicio 2 s después de tantos segundos"), NUMBER, S),
     # the robot, and the way to it
     Option("--port", "check", ("for the robot on this port, which is asked", "para el robot en este puerto, al que se pregunta"), PORT, P),
     Option("--port", "ports", ("with --ask: this one alone", "con --ask: solo este"), PORT, P),
     Option("--port", TO_ONE, ("the robot's port; the last used one where nothing is said", "el puerto del robot; el último usado si no se dice nada"), PORT, P),
-    Option("--port", "ping info undo", ("the robot's port; the last used one where nothing is said; several for several", "el puerto del robot; el último usado si no se dice nada; varios para varios"), PORT, P, "ports", repeats=True),
+    Option("--port", "ping info undo identify", ("the robot's port; the last used one where nothing is said; several for several", "el puerto del robot; el último usado si no se dice nada; varios para varios"), PORT, P, "ports", repeats=True),
     Option("--port", "upload", ("the robot's port (/dev/ttyUSB0, /dev/rfcomm0, COM5, socket://host:port, ...); the last used one where nothing is said; several for several robots",
                                 "el puerto del robot (/dev/ttyUSB0, /dev/rfcomm0, COM5, socket://host:puerto, ...); el último usado si no se dice nada; varios para varios robots"), PORT, P, "ports", repeats=True),
     Option("--port", "stop", ("the robot's port; several for several", "el puerto del robot; varios para varios"), PORT, P, "ports", repeats=True),
-    Option("--all", "ping info", ("every robot that answers, a line each", "todos los robots que responden, una línea por cada uno")),
+    Option("--all", "ping info identify", ("every robot that answers, a line each", "todos los robots que responden, una línea por cada uno")),
     Option("--all", "upload undo", ("every robot that answers, all at once", "todos los robots que responden, todos a la vez")),
     Option("--all", "stop", ("stops every robot that there is, all at once", "detiene todos los robots que hay, todos a la vez")),
     Option("--baud", f"check {TO_ONE} {TO_MANY}", ("the speed of its port (the one of the robot's profile)", "la velocidad de su puerto (la del perfil del robot)"), NUMBER, N),
     Option("--baud", "ports", ("with --ask: their speed (the one of the robot's profile)", "con --ask: su velocidad (la del perfil del robot)"), NUMBER, N),
     Option("--baud", "robot", ("how fast its line is (as in its profile); 0 is as fast as possible", "la velocidad de su línea (la de su perfil); 0 es lo más rápido posible"), NUMBER, N),
     Option("--robot", "compile check run show fmt upload live", ("for which robot: a name (tinibot, ...) or a profile's file", "para qué robot: un nombre (tinibot, ...) o el archivo de un perfil"), ROBOT, A_ROBOT),
-    Option("--robot", "wiring ports ping stop link start info monitor fetch name trim undo robot", ("which robot: a name (tinibot, ...) or a profile's file", "qué robot: un nombre (tinibot, ...) o el archivo de un perfil"), ROBOT, A_ROBOT),
+    Option("--robot", "wiring ports ping stop link start info monitor fetch name trim undo claim disown text identify robot", ("which robot: a name (tinibot, ...) or a profile's file", "qué robot: un nombre (tinibot, ...) o el archivo de un perfil"), ROBOT, A_ROBOT),
     Option("--robot", "firmware", ("tinibot (if none is named), liner, grabber, or a profile of your own", "tinibot (si no se nombra ninguno), liner, grabber, o un perfil propio"), ROBOT, A_ROBOT),
     Option("--virtual", "check", ("for the virtual robot of `tsc robot`, which runs in another terminal", "para el robot virtual de `tsc robot`, que está en marcha en otra terminal")),
-    Option("--virtual", "ping link start info monitor fetch name trim undo", ("the virtual robot of `tsc robot`, which runs in another terminal", "el robot virtual de `tsc robot`, que está en marcha en otra terminal")),
+    Option("--virtual", "ping link start info monitor fetch name trim undo claim disown text identify", ("the virtual robot of `tsc robot`, which runs in another terminal", "el robot virtual de `tsc robot`, que está en marcha en otra terminal")),
     Option("--virtual", "stop", ("virtual robots alone: those of `tsc robot`, and of commands with --virtual", "solo robots virtuales: los de `tsc robot`, y los de comandos con --virtual")),
     Option("--virtual", "upload", ("no robot: a virtual one drives here, until the program ends or Ctrl-C; the one of `tsc robot`, if that runs in another terminal. The key b is the button of one here; where nobody is at a terminal, it is pushed at once",
                                    "sin robot: uno virtual se mueve aquí, hasta que el programa termina o Ctrl-C; el de `tsc robot`, si está en marcha en otra terminal. La tecla b es el botón del de aquí; si no hay nadie en una terminal, se pulsa enseguida")),
     Option("--virtual", "live", ("no robot: a virtual one does it here", "sin robot: lo hace aquí uno virtual")),
     # how it is said
-    Option("--json", "check show ping info ports", ("the same as data", "lo mismo como datos")),
+    Option("--json", "check show ping info ports keys", ("the same as data", "lo mismo como datos")),
     Option("--json", "upload", ("prints the receipt and what comes after it as lines of JSON", "imprime el recibo y lo que viene después como líneas de JSON")),
     Option("--json", "undo", ("prints the receipt, and that it is saved, as lines of JSON", "imprime el recibo, y que está guardado, como líneas de JSON")),
-    Option("--json", "stop", ("prints a line of JSON for each robot", "imprime una línea de JSON por cada robot")),
+    Option("--json", "stop identify", ("prints a line of JSON for each robot", "imprime una línea de JSON por cada robot")),
     Option("--json", "link start monitor", ("prints lines of JSON", "imprime líneas de JSON")),
     Option("--json", "fetch", ("the listing as data", "la lista como datos")),
     Option("--json", "trim", ("prints what the robot keeps as data", "imprime lo que guarda el robot como datos")),

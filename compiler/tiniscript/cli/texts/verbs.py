@@ -181,6 +181,35 @@ VERBS: dict[str, Verb] = {
         ("Makes a robot drive straight: turns its motors, asks what you see, and the robot keeps what follows from it in its own memory, whatever program it runs. No wire is changed and nothing flashed.",
          "Hace que un robot vaya derecho: gira sus motores, pregunta qué ves, y el robot guarda lo que resulta en su propia memoria, con cualquier programa. No se cambia ningún cable ni se graba nada."),
     ),
+    "identify": Verb(
+        ROBOTS, ("identify", "identify"), ("which robot is it? it blinks and plays", "¿qué robot es? parpadea y toca"),
+        ("The robot blinks for 3 s and plays its own three notes. Anybody may ask that. While a program runs it plays nothing, since the buzzer is the program's; the light blinks all the same. `--all`: each robot that answers.",
+         "El robot parpadea 3 s y toca sus tres notas. Cualquiera puede pedirlo. Mientras corre un programa no toca nada, porque el zumbador es del programa; la luz parpadea igual. `--all`: cada robot que responde."),
+    ),
+    "claim": Verb(
+        ROBOTS, ("claim", "claim"), ("make the robot yours: only you drive it", "hace tuyo el robot: solo tú lo conduces"),
+        ("Makes the robot yours. Hold its start button down for 2 s while tsc waits. From then on only a computer that has its key drives it; everybody else may look at it, make it blink and stop it. With `--teacher` the robot gets a second key, which may do the same; a stop with it (`tsc stop --teacher`) is released by it, or by the button, alone. A robot without an owner is free to use.",
+         "Hace tuyo el robot. Mantén pulsado su botón de inicio 2 s mientras tsc espera. Desde entonces solo lo conduce una computadora que tiene su llave; los demás pueden mirarlo, hacerlo parpadear y detenerlo. Con `--teacher` el robot recibe una segunda llave, que puede lo mismo; una parada con ella (`tsc stop --teacher`) la libera solo ella, o el botón. Un robot sin dueño es libre para todos."),
+        ends=("To make a robot forget its keys: hold its button down, switch it on, and hold it for 10 s more, until it plays.",
+              "Para que un robot olvide sus llaves: mantén pulsado su botón, enciéndelo, y sigue así 10 s más, hasta que suene."),
+    ),
+    "disown": Verb(
+        ROBOTS, ("disown", "disown"), ("give the robot up: anybody drives it", "suelta el robot: lo conduce cualquiera"),
+        ("Takes the owner's key away from the robot: it is free. That needs the owner's key or the teacher's.",
+         "Le quita al robot la llave del dueño: queda libre. Hace falta la llave del dueño o la de docente."),
+    ),
+    "text": Verb(
+        ROBOTS, ("text on", "text on"), ("let lines of text drive your robot, or not", "deja que líneas de texto conduzcan tu robot, o no"),
+        ("Lets lines of text, which anybody may type on a phone, drive a robot that has an owner; until it is switched off. So does its button, held down for 2 s. The line S stops a robot always.",
+         "Deja que líneas de texto, que cualquiera puede escribir en un teléfono, conduzcan un robot que tiene dueño; hasta que se apague. Lo mismo hace su botón, pulsado 2 s. La línea S detiene un robot siempre."),
+        ("on|off [options]", "on|off [opciones]"),
+    ),
+    "keys": Verb(
+        ROBOTS, ("keys", "keys"), ("the robots whose keys this computer has", "los robots cuya llave tiene esta computadora"),
+        ("Lists the robots whose keys this computer has; no key is printed. `--export` writes them to a file that only you can read: a class list for another computer, which takes it with `--import`. Whoever has that file drives those robots. On Windows such a file has the permissions of its folder: keep it in your own.",
+         "Lista los robots cuyas llaves tiene esta computadora; no se imprime ninguna llave. `--export` las escribe en un archivo que solo tú puedes leer: la lista de la clase para otra computadora, que la toma con `--import`. Quien tiene ese archivo conduce esos robots. En Windows un archivo así tiene los permisos de su carpeta: guárdalo en la tuya."),
+        ("[--export FILE|--import FILE] [--json]", "[--export ARCHIVO|--import ARCHIVO] [--json]"),
+    ),
     "robot": Verb(
         VIRTUAL, ("robot", "robot"),
         ("a virtual robot with a port, for other terminals", "un robot virtual, para otras terminales"),

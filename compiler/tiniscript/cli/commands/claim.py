@@ -1,0 +1,51 @@
+"""`tsc claim`: the robot gets an owner, when its button is held down."""
+
+from __future__ import annotations
+
+import sys
+from argparse import Namespace
+
+from tiniscript.cli.errors import CommandError
+from tiniscript.cli.inputs import shown
+from tiniscript.cli.robot.connect import Connection, connected
+from tiniscript.cli.texts.common import text
+from tiniscript.link.messages import KEY_OWNER, KEY_TEACHER, OWNERS, STATUSES
+
+LIMIT_MS = 45_000  # the robot waits 30 s for the button
+
+
+def run(options: Namespace, language: str) -> int:
+    with connected(options, language) as connection:
+        connection.meet()
+        _refuse_old(connection)
+        which = KEY_TEACHER if options.teacher else KEY_OWNER
+        said = text("claim_hold", language).format(
+            robot=connection.name, port=shown(connection.port)
+        )
+        print(said, file=sys.stderr, flush=True)
+        _claim(connection, which)
+    return 0
+
+
+def _claim(connection: Connection, which: int) -> None:
+    from tiniscript.library.opening import limited
+    from tiniscript.link.outcomes import UNKEPT
+
+    make = limited(lambda session: session.claim(which), LIMIT_MS)
+    reply = connection.wait(connection.line.do(make))
+    if reply.status == UNKEPT:
+        from tiniscript.keys import KeyFile
+
+        raise CommandError(2, "unkept_key", file=shown(str(KeyFile().path)))
+    if reply.status in (STATUSES["SAVING"], STATUSES["LOW_SUPPLY"]):
+        key = "claim_saving"
+    elif reply.status:
+        raise connection.failure(reply)
+    else:
+        key = "claimed" if which == KEY_OWNER else "claimed_teacher"
+    print(text(key, connection.language).format(robot=connection.name))
+
+
+def _refuse_old(connection: Connection) -> None:
+    if not connection.device_info.values.features & OWNERS:
+        raise CommandError(3, "no_owners", robot=connection.name)

@@ -1,0 +1,24 @@
+"""`tsc disown`: the owner gives a robot up."""
+
+from __future__ import annotations
+
+from argparse import Namespace
+
+from tiniscript.cli.robot.connect import connected
+from tiniscript.cli.texts.common import text
+from tiniscript.link.messages import KEY_OWNER, KEY_TEACHER, OWNED
+
+
+def run(options: Namespace, language: str) -> int:
+    which = KEY_TEACHER if options.teacher else KEY_OWNER
+    with connected(options, language) as connection:
+        info = connection.meet()
+        if which == KEY_OWNER and not info.values.features & OWNED:
+            print(text("not_owned", language).format(robot=connection.name))
+            return 0
+        reply = connection.give(lambda session: session.disown(which))
+        if reply.status:  # the robot has begun, but may not have finished
+            raise connection.failure(reply)
+        key = "disowned" if which == KEY_OWNER else "disowned_teacher"
+        print(text(key, language).format(robot=connection.name))
+    return 0

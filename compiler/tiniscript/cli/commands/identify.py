@@ -1,0 +1,49 @@
+"""`tsc identify`: a robot blinks and plays its tune, so that everybody sees which one it is."""
+
+from __future__ import annotations
+
+import json
+from argparse import Namespace
+from typing import TYPE_CHECKING
+
+from tiniscript.cli import inputs
+from tiniscript.cli.inputs import shown
+from tiniscript.cli.robot.connect import Connection
+from tiniscript.cli.robot.targets import are_many
+from tiniscript.cli.texts.common import text
+
+if TYPE_CHECKING:
+    from tiniscript.cli.robot.fleet import Member, Result
+
+
+def run(options: Namespace, language: str) -> int:
+    robot = inputs.robot(options, language)
+    if are_many(options):
+        from tiniscript.cli.robot.fleet import together
+
+        return together(options, robot, language, _one_of_many)
+    with Connection(options, robot, language) as connection:
+        connection.meet()
+        said = _identified(connection)
+        print(json.dumps(_fields(connection)) if options.json else said)
+    return 0
+
+
+def _identified(connection: Connection) -> str:
+    connection.ask(lambda session: session.identify())
+    return text("identified", connection.language).format(
+        robot=connection.name, port=shown(connection.port)
+    )
+
+
+def _fields(connection: Connection) -> dict[str, object]:
+    info = connection.device_info
+    return {"port": connection.port, "robot": info.name, "id": f"{info.id:08x}", "is_done": True}
+
+
+def _one_of_many(connection: Connection, member: Member) -> Result:
+    from tiniscript.cli.robot.fleet import Result
+
+    member.meet(connection)
+    member.tell("crew_identifying")
+    return Result(True, _identified(connection), {"id": f"{connection.device_info.id:08x}"})

@@ -1,0 +1,80 @@
+"""`tsc keys`: the robots whose keys this computer has; a class list to bring to another one."""
+
+from __future__ import annotations
+
+import json
+import sys
+from argparse import Namespace
+from pathlib import Path
+
+from tiniscript import files, keys
+from tiniscript.cli import outputs
+from tiniscript.cli.errors import CommandError
+from tiniscript.cli.inputs import shown
+from tiniscript.cli.texts.common import text
+from tiniscript.keys import BadKeys, KeyFile
+from tiniscript.link.authority import RobotKey
+from tiniscript.link.messages import KEYS
+
+
+def run(options: Namespace, language: str) -> int:
+    if options.export is not None and options.bring is not None:
+        raise CommandError(2, "one_way")
+    own = KeyFile()
+    try:
+        found = own.all()
+    except BadKeys as why:
+        raise _own(own, "own_keys_bad", why) from None
+    if keys.is_shared(own.path):
+        warning = CommandError(0, "keys_shared", file=shown(str(own.path)))
+        print(warning.sentence(language), file=sys.stderr)
+    if options.export is not None:
+        _export(found, options.export, language)
+    elif options.bring is not None:
+        _import(own, options.bring, language)
+    elif options.json:
+        print(json.dumps([_fields(key) for key in found], indent=2))
+    else:
+        _print(found, language)
+    return 0
+
+
+def _export(found: list[RobotKey], name: str, language: str) -> None:
+    path = Path(name)
+    if path.exists():
+        raise CommandError(2, "export_there", file=shown(name))
+    taken = [key for key in found if not key.is_pending]
+    outputs.write(path, keys.written(taken), "unwritable_keys", keys.MODE)
+    print(text("keys_exported", language).format(n=len(taken), file=shown(name)))
+
+
+def _import(own: KeyFile, name: str, language: str) -> None:
+    try:
+        brought = keys.read(files.contents(Path(name), keys.FILE_BYTES))
+    except (OSError, ValueError, BadKeys):
+        raise CommandError(2, "bad_keys", file=shown(name)) from None
+    try:
+        changed = own.add(brought)
+    except BadKeys as why:
+        raise _own(own, "own_keys_full", why) from None
+    said = text("keys_imported", language)
+    print(said.format(n=changed, all=len(brought), file=shown(name)))
+
+
+def _own(own: KeyFile, key: str, why: BadKeys) -> CommandError:
+    return CommandError(2, key, file=shown(str(own.path)), why=f": {why.why}" if why.why else "")
+
+
+def _print(found: list[RobotKey], language: str) -> None:
+    if not found:
+        print(text("no_keys", language))
+    for key in sorted(found, key=lambda key: (key.name, key.id, key.which)):
+        kind = text(f"kind_{KEYS[key.which][0].lower()}", language)
+        row = text("key_row", language).format(id=f"{key.id:08x}", kind=kind, name=shown(key.name))
+        more = f"   ({text('key_pending', language)})" if key.is_pending else ""
+        print(row.rstrip() + more)
+
+
+def _fields(key: RobotKey) -> dict[str, object]:
+    return {"id": f"{key.id:08x}", "name": key.name, "kind": KEYS[key.which][0].lower(),
+            "is_pending": key.is_pending}  # fmt: skip

@@ -1,0 +1,28 @@
+"""`tsc text`: whether lines of text may drive a robot that has an owner."""
+
+from __future__ import annotations
+
+from argparse import Namespace
+
+from tiniscript.cli.errors import CommandError
+from tiniscript.cli.robot.connect import connected
+from tiniscript.cli.texts.common import text
+from tiniscript.link.messages import OWNED, STATUSES
+
+
+def run(options: Namespace, language: str) -> int:
+    if options.whether is None:
+        raise CommandError(2, "on_or_off")
+    is_allowed = options.whether == "on"
+    with connected(options, language) as connection:
+        info = connection.meet()
+        reply = connection.wait(connection.do(lambda session: session.allow_text(is_allowed)))
+        if reply.status == STATUSES["BAD_VALUE"]:
+            raise CommandError(3, "text_none", robot=connection.name)
+        if reply.status:
+            raise connection.failure(reply)
+        key = "text_on" if is_allowed else "text_off"
+        if not info.values.features & OWNED:
+            key = "text_free"
+        print(text(key, language).format(robot=connection.name))
+    return 0
