@@ -1,0 +1,91 @@
+"""A port as a wire: bytes that are sent and heard, at a speed that can change.
+
+For whoever looks at what is at the other end before a session is possible. Knows no frame, no
+robot and no clock: the port itself waits.
+"""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from typing import Any, Protocol
+
+MOST_BYTES = 4096  # of one answer: whoever never stops is not listened to for ever
+QUIET_MS = 60  # after so long a silence an answer is over
+RESTART_MS = 100  # how long the lines that restart a board are off
+
+
+class Wire(Protocol):
+    """All but `close` raise OSError where the port is gone."""
+
+    def send(self, data: bytes) -> None: ...
+
+    def heard(self, wait_ms: int, quiet_ms: int = QUIET_MS) -> bytes:
+        """Wait `wait_ms` for a byte at most; return it and what follows until a silence."""
+        ...
+
+    def set_baud(self, baud: int) -> None: ...
+
+    def restart(self) -> None:
+        """Restart a board on a USB cable, as opening its port does."""
+        ...
+
+    def close(self) -> None: ...
+
+
+class SerialWire:
+    """The wire of a port that `link.ports` has opened."""
+
+    def __init__(self, port: Any) -> None:
+        self._port = port
+
+    def send(self, data: bytes) -> None:
+        try:
+            self._port.write(data)
+        except TypeError as why:  # from pyserial, if the port is closed
+            raise OSError(str(why)) from None
+
+    def heard(self, wait_ms: int, quiet_ms: int = QUIET_MS) -> bytes:
+        found = b""
+        wait = wait_ms
+        while len(found) < MOST_BYTES:
+            more = self._read(wait)
+            if not more:
+                break
+            found += more
+            wait = quiet_ms
+        return found
+
+    def _read(self, wait_ms: int) -> bytes:
+        try:
+            self._port.timeout = wait_ms / 1000
+            found = bytes(self._port.read(1))
+            waiting = self._port.in_waiting if found else 0
+            if waiting:
+                self._port.timeout = 0
+                found += self._port.read(waiting)
+            return found
+        except TypeError as why:  # as above
+            raise OSError(str(why)) from None
+
+    def set_baud(self, baud: int) -> None:
+        try:
+            self._port.baudrate = baud
+        except (ValueError, NotImplementedError) as why:  # a port that has no such speed
+            raise OSError(str(why)) from None
+        self._drop_input()
+
+    def restart(self) -> None:
+        for is_on in (False, True):
+            with suppress(OSError, NotImplementedError, TypeError):  # a port without such lines
+                self._port.dtr = self._port.rts = is_on
+            if not is_on:
+                self.heard(RESTART_MS, RESTART_MS)
+        self._drop_input()
+
+    def _drop_input(self) -> None:
+        with suppress(OSError, TypeError, AttributeError):
+            self._port.reset_input_buffer()
+
+    def close(self) -> None:
+        with suppress(OSError):
+            self._port.close()

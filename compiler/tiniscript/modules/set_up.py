@@ -1,0 +1,155 @@
+"""Sets a module's name, PIN and speed, and asks it afterwards: what is said done was seen.
+
+The speed comes last, and is looked for at all speeds where it cannot be found at the new one: so
+nobody is left with a module whose speed they do not know.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+from tiniscript.link.wire import Wire
+from tiniscript.modules.dialects import RESTART_MS, Dialect, is_error, is_ok, value_of
+from tiniscript.modules.talk import Module, asked, found, is_there
+
+NAME, PIN, BAUD = "name", "pin", "baud"
+# How a step ends. UNSEEN: the module says that it is done, and does not tell the value.
+DONE, UNSEEN, REFUSED, SILENT, DIFFERS, ELSEWHERE, LOST = (
+    "done", "unseen", "refused", "silent", "differs", "elsewhere", "lost",
+)  # fmt: skip
+GOOD = (DONE, UNSEEN)
+LETTERS = set("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_ ")
+TINI = "Tini-"  # how a name from a robot's id begins
+
+
+class Wanted(NamedTuple):
+    """What a module is to have; None leaves it as it is."""
+
+    name: str | None = None
+    pin: str | None = None
+    baud: int | None = None
+
+
+class Step(NamedTuple):
+    """What is set, to which value, by which commands: the first that is taken counts."""
+
+    what: str
+    value: str
+    commands: tuple[str, ...]
+
+
+class Outcome(NamedTuple):
+    """How a step has ended; `said` is what the module answered, or the speed at which it is."""
+
+    step: Step
+    how: str
+    said: str = ""
+
+
+def name_for(robot_id: int) -> str:
+    """Return the name of the module of a robot: `Tini-7F3A`."""
+    return f"{TINI}{robot_id & 0xFFFF:04X}"
+
+
+def misfit(wanted: Wanted, dialect: Dialect) -> str:
+    """Return what this kind of module cannot have: `name`, `pin`, `baud`, or an empty text."""
+    name, pin, baud = wanted
+    if name is not None and (
+        not name.strip() or name != name.strip() or set(name) - LETTERS
+        or len(name) > dialect.name_bytes
+    ):  # fmt: skip
+        return NAME
+    is_number = pin is not None and pin.isascii() and pin.isdigit()
+    if pin is not None and not (is_number and len(pin) == dialect.pin_digits):
+        return PIN
+    return BAUD if baud is not None and baud not in dialect.bauds else ""
+
+
+def steps(wanted: Wanted, dialect: Dialect) -> list[Step]:
+    """Return what is to be sent, in this order. Nothing is sent here."""
+    plan = []
+    if wanted.name is not None:
+        plan.append(_step(NAME, wanted.name, dialect.names, wanted.name))
+    if wanted.pin is not None:
+        plan.append(_step(PIN, wanted.pin, dialect.pins, wanted.pin))
+    if wanted.baud is not None:
+        written = dialect.bauds[wanted.baud]
+        plan.append(_step(BAUD, str(wanted.baud), dialect.speeds, written))
+    return plan
+
+
+def _step(what: str, value: str, forms: tuple[str, ...], written: str) -> Step:
+    return Step(what, value, tuple(form.format(written) for form in forms))
+
+
+def done(
+    wire: Wire, module: Module, plan: list[Step], tell: Callable[[Outcome], None]
+) -> list[Outcome]:
+    """Do the steps, and stop at the first that goes wrong. `tell` gets each outcome at once."""
+    outcomes: list[Outcome] = []
+    for step in plan:
+        outcome = _set(wire, module.dialect, step)
+        if step.what == BAUD and outcome.how != REFUSED:
+            outcome = _at_its_speed(wire, module, outcome)
+        outcomes.append(outcome)
+        tell(outcome)
+        if outcome.how not in GOOD:
+            return outcomes
+    return outcomes
+
+
+def _set(wire: Wire, dialect: Dialect, step: Step) -> Outcome:
+    """Send the forms of a command until one is taken and the module tells the value."""
+    question = {NAME: dialect.ask_name, PIN: dialect.ask_pin, BAUD: dialect.ask_baud}[step.what]
+    outcome = Outcome(step, SILENT)
+    for command in step.commands:
+        said = asked(wire, command, dialect.ending, dialect.wait_ms)
+        if is_ok(said):
+            if not question:
+                return Outcome(step, UNSEEN, said)
+            answer = asked(wire, question, dialect.ending, dialect.wait_ms)
+            now = value_of(answer)
+            if not answer and not is_there(wire, dialect):
+                return Outcome(step, SILENT, said)
+            if not now:
+                return Outcome(step, UNSEEN, said)
+            if _is_same(step, dialect, answer):
+                return Outcome(step, DONE, now)
+            outcome = Outcome(step, DIFFERS, now)
+        elif said and outcome.how != DIFFERS:
+            outcome = Outcome(step, REFUSED, said if is_error(said) else "")
+    return outcome
+
+
+def _is_same(step: Step, dialect: Dialect, answer: str) -> bool:
+    """Whether an answer has the value.
+
+    Firmware that wants a PIN in quotes tells `+PIN:"1234"`. Where an older one tells
+    `+PSWD:"1234"`, it has kept the quotes.
+    """
+    now = value_of(answer)
+    if step.what == BAUD:
+        return now.split(",")[0] in (step.value, dialect.bauds[int(step.value)])
+    if answer.startswith("+PIN:"):
+        now = now.strip('"')
+    return now == step.value
+
+
+def _at_its_speed(wire: Wire, module: Module, outcome: Outcome) -> Outcome:
+    """Return whether the module is at its new speed, else at which one it is."""
+    dialect, step = module.dialect, outcome.step
+    baud = int(step.value)
+    if dialect.is_fixed:
+        return outcome._replace(how=LOST) if outcome.how == SILENT else outcome
+    if dialect.restart:
+        asked(wire, dialect.restart, dialect.ending, dialect.wait_ms)
+        wire.heard(RESTART_MS, RESTART_MS)
+    wire.set_baud(baud)
+    if is_there(wire, dialect):
+        return Outcome(step, DONE, step.value)
+    elsewhere = found(wire, wakes=False)
+    if elsewhere is None:
+        return Outcome(step, LOST, step.value)
+    how = DONE if elsewhere.baud == baud else ELSEWHERE
+    return Outcome(step, how, str(elsewhere.baud))

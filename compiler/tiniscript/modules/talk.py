@@ -1,0 +1,120 @@
+"""Talks with a module over a wire, and finds out at which speed it listens and which one it is.
+
+Nothing here changes a module: AT, and questions. Interrupted set-ups are found this way, too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+from tiniscript.link.wire import Wire
+from tiniscript.modules.dialects import (
+    ANSWER_MS,
+    BAUDS,
+    BT05,
+    CC41,
+    CRLF,
+    HC05,
+    HC05_3,
+    HC06,
+    HC06_3,
+    HM10,
+    SLOW_ANSWER_MS,
+    WAKE_BYTES,
+    Dialect,
+    is_error,
+    is_ok,
+)
+
+SHOWN = 60  # characters of a version
+TRIES = 2  # the first command after power-on may meet half a command of before
+
+
+class Module(NamedTuple):
+    """A module that answers: its commands, the speed at which it listens now, and its version."""
+
+    dialect: Dialect
+    baud: int
+    version: str
+
+
+def asked(wire: Wire, command: str, ending: bytes, wait_ms: int) -> str:
+    """Send a command and return the answer, or an empty text where none comes."""
+    wire.send(command.encode("ascii") + ending)
+    return wire.heard(wait_ms).decode("ascii", "replace").strip()
+
+
+def found(
+    wire: Wire,
+    bauds: Sequence[int] = BAUDS,
+    look: Callable[[int], None] = lambda baud: None,
+    wakes: bool = True,
+) -> Module | None:
+    """Return the module on a wire, or None where none answers. `look` is told each speed.
+
+    `wakes`: where none answers a text of 100 bytes is sent, which wakes an HM-10 that sleeps.
+    """
+    for is_awake in (False, True) if wakes else (False,):
+        for baud in bauds:
+            look(baud)
+            wire.set_baud(baud)
+            if is_awake:
+                wire.send(b"w" * WAKE_BYTES)
+                wire.heard(ANSWER_MS)
+            ending = _listens(wire)
+            if ending is not None:
+                dialect, version = _kind(wire, ending)
+                return Module(dialect, baud, version[:SHOWN])
+    return None
+
+
+def is_there(wire: Wire, dialect: Dialect) -> bool:
+    """Whether a module of this kind answers at the speed that the wire has."""
+    return any(is_ok(asked(wire, "AT", dialect.ending, dialect.wait_ms)) for _ in range(TRIES))
+
+
+def _listens(wire: Wire) -> bytes | None:
+    """Return how a command ends for the module on the wire, or None where none answers.
+
+    A module that waits for a silence must not hear more before that; one that waits for the end of
+    a line has `AT` already when it comes.
+    """
+    if _takes(asked(wire, "AT", b"", SLOW_ANSWER_MS)):
+        return b""
+    said = asked(wire, "", CRLF, SLOW_ANSWER_MS)
+    if is_error(said):  # it had half a command of before
+        said = asked(wire, "AT", CRLF, ANSWER_MS)
+    return CRLF if _takes(said) else None
+
+
+def _takes(said: str) -> bool:
+    return "OK" in said.split()
+
+
+def _kind(wire: Wire, ending: bytes) -> tuple[Dialect, str]:
+    """Return which module this is, and what it says of itself."""
+    if not ending:
+        said = asked(wire, "AT+VERSION", ending, SLOW_ANSWER_MS)
+        if said.startswith("OK") and not said.startswith("OK+") and said != "OK":
+            return HC06, said.removeprefix("OK")
+        more = asked(wire, "AT+VERR?", ending, SLOW_ANSWER_MS)
+        if "HM" in more.upper() or said.startswith("OK+") or "HM" in said.upper():
+            return HM10, more or said
+        return HC06, said
+    said = asked(wire, "AT+VERSION", ending, ANSWER_MS)
+    if "BT05" in said.upper():
+        return BT05, _line(said)
+    if said.startswith("+VERSION="):
+        return CC41, _line(said)
+    role = asked(wire, "AT+ROLE?", ending, ANSWER_MS)
+    if role.startswith("+ROLE"):
+        said = asked(wire, "AT+VERSION?", ending, ANSWER_MS)
+        return (HC05_3 if ":3." in said else HC05), _line(said)
+    return (HC06_3, _line(said)) if not is_error(said) else (HC05, "")
+
+
+def _line(said: str) -> str:
+    """Return the version in an answer: its first line, without what it is called."""
+    first = said.splitlines()[0] if said else ""
+    return first.removeprefix("+").removeprefix("VERSION").lstrip(":=")

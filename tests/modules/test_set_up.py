@@ -1,0 +1,219 @@
+"""Modules with their quirks: found at any speed, set up, and never lost without a word."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.support.simulated_modules import KINDS, Bt05, Cc41, Hc05, Hc05New, Hc06, Hm10
+from tests.support.simulated_modules import SimulatedModule as Simulated
+from tests.support.simulated_wire import SimulatedWire
+from tiniscript.modules import set_up
+from tiniscript.modules.dialects import BAUDS, DIALECTS, Dialect
+from tiniscript.modules.set_up import Outcome, Wanted
+from tiniscript.modules.talk import Module, found
+
+of_each = pytest.mark.parametrize("kind", KINDS)
+
+
+def met(wire: SimulatedWire) -> Module:
+    module = found(wire)
+    assert module is not None
+    return module
+
+
+def pin_of(dialect: Dialect) -> str:
+    return "135790"[: dialect.pin_digits]
+
+
+def ended(wire: SimulatedWire, module: Module, wanted: Wanted) -> list[Outcome]:
+    told: list[Outcome] = []
+    outcomes = set_up.done(wire, module, set_up.steps(wanted, module.dialect), told.append)
+    assert told == outcomes
+    return outcomes
+
+
+def test_every_dialect_has_a_simulated_module() -> None:
+    assert set(KINDS) == {each.name for each in DIALECTS}
+
+
+@of_each
+def test_a_module_is_told_from_all_others(kind: str) -> None:
+    wire = SimulatedWire(KINDS[kind]())
+    module = met(wire)
+    assert module.dialect.name == kind
+    assert module.baud == wire.end.baud
+    assert module.version and "\r" not in module.version
+
+
+@pytest.mark.parametrize("baud", BAUDS)
+@pytest.mark.parametrize("kind", [each for each in KINDS if not each.startswith("HC-05")])
+def test_a_module_is_found_at_any_speed(kind: str, baud: int) -> None:
+    module = met(SimulatedWire(KINDS[kind](baud)))
+    assert (module.dialect.name, module.baud) == (kind, baud)
+
+
+@of_each
+@pytest.mark.parametrize("baud", [9600, 57600, 115200])
+def test_name_pin_and_speed_are_what_was_wanted(kind: str, baud: int) -> None:
+    end: Simulated = KINDS[kind]()
+    wire = SimulatedWire(end)
+    module = met(wire)
+    wanted = Wanted("Tini-7F3A", pin_of(module.dialect), baud)
+    outcomes = ended(wire, module, wanted)
+    assert [each.how in set_up.GOOD for each in outcomes] == [True] * 3
+    assert (end.name, end.pin, end.data_baud) == wanted
+    end.power_on()
+    assert end.baud == baud
+
+
+@of_each
+def test_what_is_not_wanted_stays(kind: str) -> None:
+    end = KINDS[kind]()
+    before = end.name, end.pin, end.data_baud
+    wire = SimulatedWire(end)
+    assert ended(wire, met(wire), Wanted()) == []
+    assert (end.name, end.pin, end.data_baud) == before
+
+
+def test_an_old_hc_05_gets_its_pin_without_quotes_and_a_new_one_with() -> None:
+    for end in (Hc05(), Hc05New()):
+        wire = SimulatedWire(end)
+        (outcome,) = ended(wire, met(wire), Wanted(pin="4711"))
+        assert (end.pin, outcome.how) == ("4711", set_up.DONE)
+
+
+def test_quotes_that_a_module_has_kept_are_not_taken_for_the_pin() -> None:
+    """An old module that is taken for a new one keeps the quotes: that is seen, and set again."""
+    end = Hc05()
+    end.version = "3.0-clone"
+    wire = SimulatedWire(end)
+    module = met(wire)
+    assert module.dialect.name == "HC-05 3.x"
+    (outcome,) = ended(wire, module, Wanted(pin="4711"))
+    assert (end.pin, outcome.how) == ("4711", set_up.DONE)
+
+
+def test_a_module_that_sleeps_is_woken() -> None:
+    end = Hm10()
+    end.is_asleep = True
+    wire = SimulatedWire(end)
+    assert found(wire, wakes=False) is None
+    assert met(wire).dialect.name == "HM-10"
+
+
+def test_a_speed_that_was_set_before_a_restart_is_found_again() -> None:
+    """Somebody pulled the plug between the command and the restart: the next run finds it."""
+    end = Hm10()
+    wire = SimulatedWire(end)
+    module = met(wire)
+    end.breaks_after = len(end.commands) + 1  # AT+BAUD is the last one that it hears
+    outcomes = ended(wire, module, Wanted(baud=115200))
+    assert outcomes[-1].how == set_up.LOST
+    end.breaks_after = None
+    end.power_on()
+    assert met(wire).baud == 115200
+
+
+@pytest.mark.parametrize("commands", range(12))
+@of_each
+def test_a_set_up_that_breaks_anywhere_is_done_by_the_next_one(kind: str, commands: int) -> None:
+    end = KINDS[kind]()
+    wire = SimulatedWire(end)
+    module = met(wire)
+    wanted = Wanted("ANA", pin_of(module.dialect), 57600)
+    end.breaks_after = len(end.commands) + commands
+    outcomes = ended(wire, module, wanted)
+    is_whole = end.is_on
+    assert is_whole == (len(outcomes) == 3 and all(each.how in set_up.GOOD for each in outcomes))
+    end.breaks_after = None
+    if kind.startswith("HC-05"):
+        end.is_on = True  # its button is still held
+    else:
+        end.power_on()
+    outcomes = ended(wire, met(wire), wanted)
+    assert all(each.how in set_up.GOOD for each in outcomes)
+    assert (end.name, end.pin, end.data_baud) == wanted
+
+
+def test_a_clone_whose_numbers_are_others_is_found_where_it_went() -> None:
+    """It says CC41-A and counts as an MLT-BT05: it is at another speed, and that is said."""
+
+    class Liar(Cc41):
+        bauds = Bt05.bauds
+
+    end = Liar()
+    wire = SimulatedWire(end)
+    module = met(wire)
+    assert module.dialect.name == "CC41-A"
+    end.data_baud = 38400
+    (outcome,) = ended(wire, module, Wanted(baud=9600))
+    assert (outcome.how, end.baud) == (set_up.DONE, 9600)
+    outcomes = ended(wire, met(wire), Wanted(baud=57600))
+    assert outcomes[-1].how == set_up.REFUSED
+    end.bauds = Hm10.bauds
+    outcomes = ended(wire, met(wire), Wanted(baud=9600))
+    assert (outcomes[-1].how, outcomes[-1].said) == (set_up.ELSEWHERE, "115200")
+    assert end.baud == 115200
+
+
+def test_a_module_that_refuses_is_not_said_to_have_done_it() -> None:
+    class Stubborn(Hc06):
+        def answer(self, command: str) -> str:
+            return "ERROR:(7)" if command.startswith("AT+PIN") else super().answer(command)
+
+    end = Stubborn()
+    wire = SimulatedWire(end)
+    outcomes = ended(wire, met(wire), Wanted("ANA", "1111", 115200))
+    assert [each.how for each in outcomes] == [set_up.UNSEEN, set_up.REFUSED]
+    assert outcomes[-1].said == "ERROR:(7)"
+    assert (end.pin, end.baud) == ("1234", 9600)
+
+
+def test_a_module_that_cuts_a_name_is_seen_to_have_done_so() -> None:
+    class Short(Hm10):
+        def answer(self, command: str) -> str:
+            said = super().answer(command)
+            self.name = self.name[:4]
+            return said
+
+    wire = SimulatedWire(Short())
+    (outcome,) = ended(wire, met(wire), Wanted("Tini-7F3A"))
+    assert (outcome.how, outcome.said) == (set_up.DIFFERS, "Tini")
+
+
+def test_nobody_is_no_module() -> None:
+    end = Hc06()
+    end.is_on = False
+    assert found(SimulatedWire(end)) is None
+
+
+@pytest.mark.parametrize(
+    ("wanted", "dialect", "what"),
+    [
+        (Wanted("x" * 20), "HC-06", ""),
+        (Wanted("x" * 21), "HC-06", "name"),
+        (Wanted("x" * 12), "HM-10", ""),
+        (Wanted("x" * 13), "HM-10", "name"),
+        (Wanted(""), "HC-05", "name"),
+        (Wanted(" a"), "HC-05", "name"),
+        (Wanted("a,b"), "HC-05", "name"),
+        (Wanted("ÑANDÚ"), "HC-05", "name"),
+        (Wanted("a\r\nAT+ORGL"), "HC-05", "name"),
+        (Wanted(pin="1234"), "HC-05", ""),
+        (Wanted(pin="12345"), "HC-05", "pin"),
+        (Wanted(pin="1234"), "HM-10", "pin"),
+        (Wanted(pin="123456"), "CC41-A", ""),
+        (Wanted(pin="12a4"), "HC-06", "pin"),
+        (Wanted(pin="१२३४"), "HC-06", "pin"),
+        (Wanted(baud=57600), "HC-06", ""),
+        (Wanted(baud=57601), "HC-06", "baud"),
+    ],
+)
+def test_what_a_module_cannot_have_is_known_before(wanted: Wanted, dialect: str, what: str) -> None:
+    (found_dialect,) = (each for each in DIALECTS if each.name == dialect)
+    assert set_up.misfit(wanted, found_dialect) == what
+
+
+def test_a_name_from_an_id() -> None:
+    assert set_up.name_for(0x12347F3A) == "Tini-7F3A"
+    assert all(not set_up.misfit(Wanted(set_up.name_for(7)), each) for each in DIALECTS)

@@ -1,0 +1,78 @@
+"""Something simulated behind a pseudo-terminal, in real time: what `tsc` opens is `port`.
+
+A pseudo-terminal has no speed, but it keeps the one that was set: bytes at another speed than that
+of the other end arrive garbled, as on a wire.
+"""
+
+from __future__ import annotations
+
+import os
+import select
+import termios
+import threading
+import time
+from collections.abc import Callable
+
+from tests.support.simulated_wire import OtherEnd, garbled
+
+_SPEEDS = {
+    getattr(termios, name): int(name[1:])
+    for name in ("B9600", "B19200", "B38400", "B57600", "B115200")
+}
+
+
+class PtyEnd:
+    def __init__(self, end: OtherEnd, has_speed: bool = True) -> None:
+        import pty
+        import tty
+
+        self.end = end
+        self.has_speed = has_speed
+        self.heard = b""
+        self._ours, self._theirs = pty.openpty()
+        tty.setraw(self._theirs)
+        self.port = os.ttyname(self._theirs)
+        self._is_over = False
+        self._thread = threading.Thread(target=self._run, daemon=True)
+        self._thread.start()
+
+    def __enter__(self) -> PtyEnd:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.pull()
+
+    def pull(self) -> None:
+        """Pull the cable out."""
+        if self._is_over:
+            return
+        self._is_over = True
+        self._thread.join()
+        for each in (self._ours, self._theirs):
+            os.close(each)
+
+    def until(self, is_so: Callable[[], bool], limit_s: float = 60) -> None:
+        """Wait until something is so."""
+        end_s = time.monotonic() + limit_s
+        while not is_so():
+            assert time.monotonic() < end_s, f"not after {limit_s} s"
+            time.sleep(0.005)
+
+    def _baud(self) -> int:
+        """Return the speed that the computer has set."""
+        if not self.has_speed:
+            return self.end.baud
+        return _SPEEDS.get(termios.tcgetattr(self._ours)[5], 0) or self.end.baud
+
+    def _run(self) -> None:
+        next_s = time.monotonic()
+        while not self._is_over:
+            next_s = max(next_s + 0.001, time.monotonic() - 0.2)
+            ready, _, _ = select.select([self._ours], [], [], 0)
+            data = os.read(self._ours, 4096) if ready else b""
+            self.heard += data
+            speed = self.end.baud  # an answer has the speed of before the command
+            said = self.end.step(garbled(data, self._baud(), speed))
+            if said:
+                os.write(self._ours, garbled(said, speed, self._baud()))
+            time.sleep(max(0.0, next_s - time.monotonic()))
