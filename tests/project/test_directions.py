@@ -36,6 +36,8 @@ UPSTREAM: dict[str, set[str]] = {
     "flash": {"files", "robots"},
     "link": {"files", "bytecode"},
     "sharing": {"files", "bytecode", "link"},
+    "modules": {"link"},
+    "doctor": {"files", "bytecode", "flash", "link", "modules", "sharing"},
     "virtual": {*SHARED, "bytecode", "vm", "robots", "link", "sharing"},
 }
 WHOLE = {"__init__", "__main__", "library", "cli"}  # what puts the stages together

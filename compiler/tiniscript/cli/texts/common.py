@@ -220,7 +220,15 @@ def text(key: str, language: str) -> str:
     if found is None:
         from tiniscript.cli.texts.firmware import FLASH_TEXTS
 
-        found = FLASH_TEXTS[key]
+        found = FLASH_TEXTS.get(key)
+    if found is None:
+        from tiniscript.cli.texts.module import MODULE_TEXTS
+
+        found = MODULE_TEXTS.get(key)
+    if found is None:
+        from tiniscript.cli.texts.doctor import DOCTOR_TEXTS
+
+        found = DOCTOR_TEXTS[key]
     english, spanish = found
     return Said(spanish if language == "es" else english)
 

@@ -63,6 +63,7 @@ PORT = Kind("port", reads="path_port")
 IMAGE = Kind("file", writes="unwritable")
 MAP = Kind("file", writes="unwritable_map")
 PICTURE = Kind("file", writes="unwritable_picture")
+REPORT = Kind("file", writes="unwritable_report")
 ROWS = Kind("file", writes="unwritable_rows")
 KEYS = Kind("file", reads="path_keys")
 NEW_KEYS = Kind("file", writes="unwritable_keys")
@@ -165,7 +166,17 @@ OPTIONS: tuple[Option, ...] = (
     Option("--memory", "robot", ("keeps what it has saved in a file; without it, that is forgotten", "conserva en un archivo lo que guarda; sin esto, se olvida"), MEMORY, A_FILE),
     Option("--button-at", "robot", ("pushes the start button after so many seconds; 2,10: twice", "pulsa el botón de inicio después de tantos segundos; 2,10: dos veces"), NUMBER, S),
     Option("--hold-at", "robot", ("holds the start button down for 2 s after so many seconds", "mantiene pulsado el botón de inicio 2 s después de tantos segundos"), NUMBER, S),
+    Option("--yes", "doctor", ("it may open the port of a cable, which restarts the board there and ends what it runs, and ask at other speeds", "puede abrir el puerto de un cable, lo que reinicia la placa y termina lo que hace, y preguntar a otras velocidades")),
+    Option("--watch", "doctor", ("listens to the robot for so many seconds more, while you let it drive with its button or from another terminal", "escucha al robot tantos segundos más, mientras lo haces moverse con su botón o desde otra terminal"), NUMBER, S),
+    Option("--report", "doctor", ("writes what was found into a file to send to a teacher; there are no names of people, computers or networks in it", "escribe lo que encontró en un archivo para enviar a un profesor; no lleva nombres de personas, computadoras ni redes"), REPORT, A_FILE),
+    Option("--port", "module", ("the port of the USB adapter that the module is on, or of the board that is held in reset", "el puerto del adaptador USB donde está el módulo, o de la placa que está en reset"), PORT, P),
+    Option("--name", "module", ("its new name: up to 20 letters, an HM-10's up to 12", "su nuevo nombre: hasta 20 letras, el de un HM-10 hasta 12"), TEXT, ("NAME", "NOMBRE")),
+    Option("--id", "module", ("names it after its robot: Tini- and the last four digits of this id, which `tsc info` shows", "le da el nombre de su robot: Tini- y las cuatro últimas cifras de este id, que muestra `tsc info`"), TEXT, ("ID", "ID")),
+    Option("--pin", "module", ("its new PIN: 4 digits, an HM-10's 6", "su nuevo PIN: 4 cifras, el de un HM-10 6"), TEXT, ("PIN", "PIN")),
+    Option("--baud", "module", ("its new speed, that of the robot's profile: 9600, 19200, 38400, 57600 or 115200", "su nueva velocidad, la del perfil del robot: 9600, 19200, 38400, 57600 o 115200"), NUMBER, N),
+    Option("--dry-run", "module", ("finds the module, shows what would be sent, and changes nothing", "encuentra el módulo, muestra lo que se enviaría y no cambia nada")),
     # the robot, and the way to it
+    Option("--port", "doctor", ("the port to look at; the last used one, or the only one, where nothing is said", "el puerto que se examina; el último usado, o el único, si no se dice nada"), PORT, P),
     Option("--port", "check", ("for the robot on this port, which is asked", "para el robot en este puerto, al que se pregunta"), PORT, P),
     Option("--port", "ports", ("with --ask: this one alone", "con --ask: solo este"), PORT, P),
     Option("--port", TO_ONE, ("the robot's port; the last used one where nothing is said", "el puerto del robot; el último usado si no se dice nada"), PORT, P),
@@ -176,11 +187,13 @@ OPTIONS: tuple[Option, ...] = (
     Option("--all", "ping info identify", ("every robot that answers, a line each", "todos los robots que responden, una línea por cada uno")),
     Option("--all", "upload undo", ("every robot that answers, all at once", "todos los robots que responden, todos a la vez")),
     Option("--all", "stop", ("stops every robot that there is, all at once", "detiene todos los robots que hay, todos a la vez")),
+    Option("--baud", "doctor", ("the speed that its port should have (the one of the robot's profile)", "la velocidad que su puerto debería tener (la del perfil del robot)"), NUMBER, N),
     Option("--baud", f"check {TO_ONE} {TO_MANY}", ("the speed of its port (the one of the robot's profile)", "la velocidad de su puerto (la del perfil del robot)"), NUMBER, N),
     Option("--baud", "ports", ("with --ask: their speed (the one of the robot's profile)", "con --ask: su velocidad (la del perfil del robot)"), NUMBER, N),
     Option("--baud", "robot", ("how fast its line is (as in its profile); 0 is as fast as possible", "la velocidad de su línea (la de su perfil); 0 es lo más rápido posible"), NUMBER, N),
     Option("--robot", "compile check run show fmt upload live", ("for which robot: a name (tinibot, ...) or a profile's file", "para qué robot: un nombre (tinibot, ...) o el archivo de un perfil"), ROBOT, A_ROBOT),
     Option("--robot", "wiring ports ping stop link start info monitor fetch name trim undo claim disown text identify robot", ("which robot: a name (tinibot, ...) or a profile's file", "qué robot: un nombre (tinibot, ...) o el archivo de un perfil"), ROBOT, A_ROBOT),
+    Option("--robot", "doctor", ("which robot it should be: a name (tinibot, ...) or a profile's file", "qué robot debería ser: un nombre (tinibot, ...) o el archivo de un perfil"), ROBOT, A_ROBOT),
     Option("--robot", "firmware", ("tinibot (if none is named), liner, grabber, or a profile of your own", "tinibot (si no se nombra ninguno), liner, grabber, o un perfil propio"), ROBOT, A_ROBOT),
     Option("--virtual", "check", ("for the virtual robot of `tsc robot`, which runs in another terminal", "para el robot virtual de `tsc robot`, que está en marcha en otra terminal")),
     Option("--virtual", "ping link start info monitor fetch name trim undo claim disown text identify", ("the virtual robot of `tsc robot`, which runs in another terminal", "el robot virtual de `tsc robot`, que está en marcha en otra terminal")),
@@ -189,7 +202,7 @@ OPTIONS: tuple[Option, ...] = (
                                    "sin robot: uno virtual se mueve aquí, hasta que el programa termina o Ctrl-C; el de `tsc robot`, si está en marcha en otra terminal. La tecla b es el botón del de aquí; si no hay nadie en una terminal, se pulsa enseguida")),
     Option("--virtual", "live", ("no robot: a virtual one does it here", "sin robot: lo hace aquí uno virtual")),
     # how it is said
-    Option("--json", "check show ping info ports keys", ("the same as data", "lo mismo como datos")),
+    Option("--json", "check show ping info ports keys doctor module", ("the same as data", "lo mismo como datos")),
     Option("--json", "upload", ("prints the receipt and what comes after it as lines of JSON", "imprime el recibo y lo que viene después como líneas de JSON")),
     Option("--json", "undo", ("prints the receipt, and that it is saved, as lines of JSON", "imprime el recibo, y que está guardado, como líneas de JSON")),
     Option("--json", "stop identify", ("prints a line of JSON for each robot", "imprime una línea de JSON por cada robot")),

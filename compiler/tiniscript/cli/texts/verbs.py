@@ -210,6 +210,29 @@ VERBS: dict[str, Verb] = {
          "Lista los robots cuyas llaves tiene esta computadora; no se imprime ninguna llave. `--export` las escribe en un archivo que solo tú puedes leer: la lista de la clase para otra computadora, que la toma con `--import`. Quien tiene ese archivo conduce esos robots. En Windows un archivo así tiene los permisos de su carpeta: guárdalo en la tuya."),
         ("[--export FILE|--import FILE] [--json]", "[--export ARCHIVO|--import ARCHIVO] [--json]"),
     ),
+    "doctor": Verb(
+        ROBOTS, ("doctor", "doctor"),
+        ("find out what is wrong, and what to do", "averigua qué está mal, y qué hacer"),
+        ("Finds out what is wrong with a port, a Bluetooth module or a robot: what it saw, how sure it is, and the next step. First it looks at this computer alone and opens no port. The port of a radio, and one that another tsc has, it then uses: it sends HELLO, STATUS and 20 PING. Opening the port of a cable restarts most boards, so it asks before (`--yes` says yes); where no robot answers there it asks at other speeds, sends AT, which a module answers, and the greeting of bootloaders. It never drives a robot, starts or stops nothing, and writes into no memory.",
+         "Averigua qué está mal en un puerto, un módulo Bluetooth o un robot: qué vio, qué tan seguro está y el siguiente paso. Primero mira solo esta computadora y no abre ningún puerto. Después usa el puerto de una radio, y el que tiene otro tsc: envía HELLO, STATUS y 20 PING. Abrir el puerto de un cable reinicia la mayoría de las placas, así que antes pregunta (`--yes` dice que sí); si ahí no responde ningún robot, pregunta a otras velocidades, envía AT, que un módulo responde, y el saludo de los cargadores de arranque. Nunca mueve un robot, no inicia ni detiene nada, y no escribe en ninguna memoria."),
+        ends=("Exit code: 0 if a robot answers and nothing is wrong, 3 if something is or nobody could be asked.\n"
+              "With `--watch 20` it sees a robot that restarts when its motors start: let it drive meanwhile.\n"
+              "What it asks of Windows and macOS was tested with written-down answers of these systems, not on them.",
+              "Código de salida: 0 si un robot responde y nada está mal, 3 si algo lo está o no se pudo preguntar a nadie.\n"
+              "Con `--watch 20` ve un robot que se reinicia cuando arrancan sus motores: haz que se mueva mientras tanto.\n"
+              "Lo que pregunta a Windows y macOS se probó con respuestas escritas de esos sistemas, no en ellos."),
+    ),
+    "module": Verb(
+        ROBOTS, ("module --port P", "module --port P"),
+        ("name, PIN and speed of a Bluetooth module", "nombre, PIN y velocidad de un módulo Bluetooth"),
+        ("Sets up an HC-05, HC-06 or HM-10, or one of their clones: finds it at any speed, says which one it is, sets its name, its PIN and its speed, and reads back what the module tells. Without an option for that it only says what it has found. The module is on a USB adapter, or on a board that is held in reset (a wire from RESET to GND). An HC-05 takes these commands if its button was down when its power came. A set-up that was broken off is done by the next one.",
+         "Configura un HC-05, HC-06 o HM-10, o una de sus copias: lo encuentra a cualquier velocidad, dice cuál es, le pone su nombre, su PIN y su velocidad, y lee de vuelta lo que el módulo cuenta. Sin una opción para eso solo dice lo que encontró. El módulo está en un adaptador USB, o en una placa que está en reset (un cable de RESET a GND). Un HC-05 acepta estos comandos si su botón estaba pulsado cuando llegó la corriente. Una configuración interrumpida la termina la siguiente."),
+        ("--port P [options]", "--port P [opciones]"),
+        ends=("A robot cannot set up its own module: both share the wires to the computer, and the module listens to the robot's side alone.\n"
+              "The answers of modules are those of their papers and users; no physical module was tried.",
+              "Un robot no puede configurar su propio módulo: los dos comparten los cables hacia la computadora, y el módulo solo escucha el lado del robot.\n"
+              "Las respuestas de los módulos son las de sus manuales y usuarios; no se probó ningún módulo físico."),
+    ),
     "robot": Verb(
         VIRTUAL, ("robot", "robot"),
         ("a virtual robot with a port, for other terminals", "un robot virtual, para otras terminales"),

@@ -1,0 +1,221 @@
+"""`tsc doctor`: prints what the doctor finds, and writes it into a report."""
+
+from __future__ import annotations
+
+import json
+import os
+import platform
+import sys
+from argparse import Namespace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tiniscript.cli import inputs, outputs
+from tiniscript.cli.errors import CommandError
+from tiniscript.cli.inputs import shown
+from tiniscript.cli.options import whole_number
+from tiniscript.cli.robot.connect import baud_of, robot_of_kit
+from tiniscript.cli.texts.common import text
+from tiniscript.doctor import report
+from tiniscript.doctor.findings import CAUSES, NOTE, Finding
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from tiniscript.doctor.diagnosis import Diagnosis, Doors, Question
+    from tiniscript.link.wire import Wire
+
+LONGEST_WATCH_S = 600
+
+
+def run(options: Namespace, language: str) -> int:
+    if options.report is not None:
+        _refuse_others(Path(options.report))
+    question = _question(options, language)
+    from tiniscript.doctor.diagnosis import diagnosed
+
+    doing = _Doing(language, is_shown=sys.stderr.isatty() and not options.json)
+    try:
+        diagnosis = diagnosed(_doors(options, language, doing), question)
+    finally:
+        doing.end()
+    if options.json:
+        print(json.dumps(_fields(diagnosis, language), indent=2))
+    else:
+        print("\n".join(_lines(diagnosis, language)), flush=True)
+    if options.report is not None:
+        data = "\n".join(_report(diagnosis, language)) + "\n"
+        outputs.write(Path(options.report), data.encode(), "unwritable_report")
+        said = text("doctor_report", language).format(file=shown(options.report))
+        print(said, file=sys.stderr if options.json else sys.stdout)
+    is_fine = not any(finding.is_wrong for finding in diagnosis.findings)
+    return 0 if is_fine else 3
+
+
+def _refuse_others(path: Path) -> None:
+    """Refuse a file that is no report, before anything is done."""
+    try:
+        if not path.is_file():
+            return
+        with path.open("rb") as file:
+            head = file.read(len(report.MARK) + 2)
+    except (OSError, ValueError) as why:
+        reason = why.strerror if isinstance(why, OSError) and why.strerror else str(why)
+        raise CommandError(2, "unwritable_report", file=shown(str(path)), why=reason) from None
+    if head and not report.is_ours(head):
+        raise CommandError(2, "report_not_ours", file=shown(str(path)))
+
+
+def _question(options: Namespace, language: str) -> Question:
+    from tiniscript.doctor.diagnosis import Question
+    from tiniscript.doctor.examination import Expected
+    from tiniscript.link import known_ports, port_names
+
+    robot = inputs.robot(options, language)
+    watch_s = whole_number("--watch", options.watch, 0, 0, LONGEST_WATCH_S, language)
+    port: str | None = options.port
+    if port is not None and (not port.strip() or not port.isprintable()):
+        raise CommandError(2, "no_such_port", found=shown(port) or "''")
+    last = known_ports.known().last
+    kit = None if options.robot is None else robot.kit.fingerprint
+    return Question(
+        port,
+        last if last is not None and port_names.is_there(last) else None,
+        baud_of(options, robot, language),
+        Expected(kit, robot.name, _name_of_kit),
+        int.from_bytes(os.urandom(4), "little"),
+        watch_s * 1000,
+    )
+
+
+def _name_of_kit(kit: int) -> str | None:
+    from tiniscript.library.known_kits import of_kit
+
+    found = of_kit(kit)
+    return robot_of_kit(kit) or (None if found is None else found.name)
+
+
+def _doors(options: Namespace, language: str, doing: _Doing) -> Doors:
+    from tiniscript.doctor.diagnosis import Doors
+    from tiniscript.doctor.system import ThisComputer
+    from tiniscript.link import ports
+    from tiniscript.link.wire import SerialWire
+    from tiniscript.sharing.client import joined
+
+    def open_wire(port: str, baud: int) -> Wire:
+        return SerialWire(ports.opened(port, baud))
+
+    def may_open(port: str) -> bool:
+        if options.yes:
+            return True
+        if options.json or not (sys.stdin.isatty() and sys.stderr.isatty()):
+            return False
+        doing.end()
+        said = text("doctor_yes", language).format(port=shown(port))
+        print(said, end="", file=sys.stderr, flush=True)
+        return sys.stdin.readline().strip().lower() in ("1", "y", "yes", "s", "si", "sí")
+
+    return Doors(
+        ThisComputer(), open_wire, lambda port: joined(port, "doctor"), may_open, ports.is_radio,
+        doing.tell,
+    )  # fmt: skip
+
+
+class _Doing:
+    """The line on the terminal that says what is done just now."""
+
+    def __init__(self, language: str, is_shown: bool) -> None:
+        self.language = language
+        self.is_shown = is_shown
+
+    def tell(self, what: str) -> None:
+        if self.is_shown:
+            said = text(f"doing_{what}", self.language)
+            print(f"\r\x1b[K{said}", end="", file=sys.stderr, flush=True)
+
+    def end(self) -> None:
+        if self.is_shown:
+            print("\r\x1b[K", end="", file=sys.stderr, flush=True)
+
+
+def _said(finding: Finding, values: Mapping[str, str], language: str) -> tuple[str, str, str]:
+    """Return what is wrong, what was seen, and the next step."""
+    from tiniscript.link.messages import RESETS
+
+    filled = dict(values)
+    if filled.get("reset") in dict(RESETS):
+        filled["reset"] = text(f"reset_{filled['reset']}", language)
+    seen = f"seen_{finding.cause}"
+    if finding.cause == "busy" and not filled["by"]:
+        seen = "seen_busy_unknown"
+    if finding.cause == "other_sketch" and not filled["said"]:
+        seen = "seen_other_sketch_silent"
+    keys = f"doctor_{finding.cause}", seen, f"next_{finding.cause}"
+    what, seen, then = (text(key, language).format(**filled) for key in keys)
+    return what, seen, then
+
+
+def _rows(diagnosis: Diagnosis, language: str, is_private: bool) -> list[str]:
+    """Return the findings as lines; `is_private`: as a report may have them."""
+    rows = []
+    for number, finding in enumerate(diagnosis.findings, 1):
+        values = report.values_of(finding) if is_private else finding.values
+        what, seen, then = _said(finding, values, language)
+        how = "doctor_sure" if finding.is_sure else "doctor_probably"
+        if CAUSES[finding.cause] == NOTE:
+            how = "doctor_note"
+        rows += [
+            text("doctor_finding", language).format(
+                number=str(number), what=what, how=text(how, language)
+            ),
+            text("doctor_seen", language).format(seen=seen),
+            text("doctor_next", language).format(next=then),
+        ]
+    return rows
+
+
+def _lines(diagnosis: Diagnosis, language: str) -> list[str]:
+    head = []
+    if diagnosis.port is not None:
+        head = [text("doctor_port", language).format(port=shown(diagnosis.port))]
+    return head + _rows(diagnosis, language, is_private=False)
+
+
+def _report(diagnosis: Diagnosis, language: str) -> list[str]:
+    """Return the lines of a report."""
+    from tiniscript import __version__
+
+    python = platform.python_version()
+    rows = [report.MARK, text("report_about", language), ""]
+    rows += [f"tsc: {__version__}, Python {python}"]
+    rows += [f"{name}: {value}" for name, value in report.facts(diagnosis.computer)]
+    rows += ["", f"port: {report.port(diagnosis.port) if diagnosis.port else '-'}"]
+    rows += [
+        f"{each.cause} {'sure' if each.is_sure else 'probably'}" for each in diagnosis.findings
+    ]
+    return [*rows, "", *_rows(diagnosis, language, is_private=True)]
+
+
+def _fields(diagnosis: Diagnosis, language: str) -> dict[str, object]:
+    """Return it as data."""
+    rows = []
+    for finding in diagnosis.findings:
+        what, seen, then = _said(finding, finding.values, language)
+        rows.append(
+            {
+                "cause": finding.cause,
+                "is_wrong": finding.is_wrong,
+                "is_sure": finding.is_sure,
+                "values": dict(finding.values),
+                "said": what,
+                "seen": seen,
+                "next": then,
+            }
+        )
+    return {
+        "port": diagnosis.port,
+        "is_opened": diagnosis.is_opened,
+        "bluetooth": diagnosis.computer.bluetooth,
+        "ports": [each.port for each in diagnosis.computer.ports],
+        "findings": rows,
+    }

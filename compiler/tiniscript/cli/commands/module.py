@@ -1,0 +1,216 @@
+"""`tsc module`: finds the Bluetooth module on a wire, and sets its name, PIN and speed."""
+
+from __future__ import annotations
+
+import json
+import re
+import sys
+from argparse import Namespace
+from typing import TYPE_CHECKING
+
+from tiniscript.cli.errors import CommandError
+from tiniscript.cli.inputs import shown
+from tiniscript.cli.robot.connect import port_failure
+from tiniscript.cli.texts.common import text
+from tiniscript.modules import set_up
+from tiniscript.modules.dialects import BAUDS, DIALECTS, Dialect, value_of
+from tiniscript.modules.set_up import BAUD, DONE, GOOD, NAME, PIN, Outcome, Step, Wanted
+from tiniscript.modules.talk import Module, asked, found
+
+if TYPE_CHECKING:
+    from tiniscript.link.wire import Wire
+
+
+def run(options: Namespace, language: str) -> int:
+    wanted = _wanted(options)
+    wire = _wire(options)
+    begun: list[Step] = []  # the speed, once a command for it may have been sent
+    try:
+        return _SetUp(wire, options, wanted, language, begun).run()
+    except OSError:
+        left = _left(begun, language)
+        raise CommandError(3, "module_gone", port=shown(options.port), left=left) from None
+    except KeyboardInterrupt:
+        raise CommandError(2, "module_stopped", left=_left(begun, language)) from None
+    finally:
+        wire.close()
+
+
+def _left(begun: list[Step], language: str) -> str:
+    """Return what is known of the speed of a module whose set-up was broken off."""
+    if not begun:
+        return text("module_left_nothing", language)
+    return text("module_left", language).format(baud=begun[0].value)
+
+
+def _wanted(options: Namespace) -> Wanted:
+    """Return what the options ask for. Raises CommandError for what no module can have."""
+    name: str | None = options.name
+    if options.id is not None:
+        if name is not None:
+            raise CommandError(2, "module_name_and_id")
+        if not re.fullmatch("[0-9a-fA-F]{1,8}", options.id):
+            raise CommandError(2, "module_bad_id", found=shown(options.id) or "''")
+        name = set_up.name_for(int(options.id, 16))
+    baud = None
+    if options.baud is not None:
+        known = {str(each): each for each in BAUDS}
+        if options.baud not in known:
+            raise CommandError(
+                2, "module_bad_baud", known=", ".join(map(str, sorted(BAUDS))),
+                found=shown(options.baud) or "''",
+            )  # fmt: skip
+        baud = known[options.baud]
+    wanted = Wanted(name, options.pin, baud)
+    misfits = [set_up.misfit(wanted, each) for each in DIALECTS]
+    if all(misfits):
+        _refuse(wanted, max(DIALECTS, key=lambda each: each.name_bytes), misfits[0])
+    return wanted
+
+
+def _refuse(wanted: Wanted, dialect: Dialect, what: str) -> None:
+    if what == NAME:
+        raise CommandError(
+            2,
+            "module_bad_name",
+            most=str(dialect.name_bytes),
+            found=shown(wanted.name or "") or "''",
+        )
+    if what == PIN:
+        raise CommandError(2, "module_bad_pin", digits=str(dialect.pin_digits), module=dialect.name)
+
+
+def _wire(options: Namespace) -> Wire:
+    from tiniscript.link import ports
+    from tiniscript.link.wire import SerialWire
+
+    port: str | None = options.port
+    if port is None:
+        raise CommandError(2, "module_no_port")
+    if not port.strip() or not port.isprintable():
+        raise CommandError(2, "no_such_port", found=shown(port) or "''")
+    try:
+        if ports.is_radio(port):
+            raise CommandError(2, "module_by_radio", port=shown(port))
+        return SerialWire(ports.opened(port, BAUDS[0]))
+    except ports.PortError as failure:
+        raise port_failure(port, failure) from None
+
+
+class _SetUp:
+    def __init__(
+        self, wire: Wire, options: Namespace, wanted: Wanted, language: str, begun: list[Step]
+    ) -> None:
+        self.wire, self.options, self.wanted = wire, options, wanted
+        self.language, self.begun = language, begun
+        self.port = shown(options.port)
+
+    def run(self) -> int:
+        module = found(self.wire, look=self._look)
+        self._clear()
+        if module is None:
+            raise CommandError(3, "module_silent", port=self.port)
+        what = set_up.misfit(self.wanted, module.dialect)
+        if what:
+            _refuse(self.wanted, module.dialect, what)
+        plan = set_up.steps(self.wanted, module.dialect)
+        now = self._values(module)
+        if not self.options.json:
+            self._introduce(module, now)
+        outcomes: list[Outcome] = []
+        if not self.options.dry_run:
+            self.begun += [step for step in plan if step.what == BAUD]
+            outcomes = set_up.done(self.wire, module, plan, self._tell)
+        elif not self.options.json:
+            self._show(plan)
+        is_done = all(each.how in GOOD for each in outcomes)
+        if self.options.json:
+            print(json.dumps(self._fields(module, now, plan, outcomes), indent=2))
+        elif not plan:
+            pin = "123456"[: module.dialect.pin_digits]
+            print(self._text("module_nothing", port=self.port, pin=pin))
+        elif outcomes and is_done:
+            key = "module_then_button" if module.dialect.is_fixed else "module_then"
+            print(self._text(key))
+        return 0 if is_done else 3
+
+    def _text(self, key: str, **values: str) -> str:
+        return text(key, self.language).format(**values)
+
+    def _look(self, baud: int) -> None:
+        if sys.stderr.isatty() and not self.options.json:
+            said = self._text("module_looking", baud=str(baud))
+            print(f"\r\x1b[K{said}", end="", file=sys.stderr, flush=True)
+
+    def _clear(self) -> None:
+        if sys.stderr.isatty() and not self.options.json:
+            print("\r\x1b[K", end="", file=sys.stderr, flush=True)
+
+    def _values(self, module: Module) -> dict[str, str]:
+        """Return what the module tells of what it keeps. Its PIN is not asked."""
+        dialect = module.dialect
+        questions = {NAME: dialect.ask_name, BAUD: dialect.ask_baud}
+        values = {
+            what: value_of(asked(self.wire, question, dialect.ending, dialect.wait_ms))
+            for what, question in questions.items()
+            if question
+        }
+        if BAUD in values:
+            written = values[BAUD].split(",")[0]
+            values[BAUD] = next(
+                (str(baud) for baud, each in dialect.bauds.items() if each == written), ""
+            )
+        return {what: shown(value) for what, value in values.items() if value}
+
+    def _introduce(self, module: Module, now: dict[str, str]) -> None:
+        version = shown(module.version) or self._text("module_no_version")
+        print(
+            self._text("module_found", module=module.dialect.name, port=self.port,
+                       version=version, baud=str(module.baud))
+        )  # fmt: skip
+        if now:
+            values = (self._text(f"module_what_{what}", value=now[what]) for what in now)
+            print(self._text("module_now", values=", ".join(values)), flush=True)
+
+    def _show(self, plan: list[Step]) -> None:
+        for step in plan:
+            what = self._text(f"module_what_{step.what}", value=step.value)
+            commands = self._text("module_plan_or").join(step.commands)
+            print(f"{what}: " + self._text("module_plan", commands=commands))
+
+    def _tell(self, outcome: Outcome) -> None:
+        if self.options.json:
+            return
+        step, how, said = outcome
+        what = self._text(f"module_what_{step.what}", value=step.value)
+        key = f"module_{how}"
+        if step.what == BAUD and how == DONE:
+            key = "module_done_baud" if said == step.value else "module_done_later"
+        if how == set_up.SILENT:
+            key = "module_lost_midway"
+        out = sys.stdout if how in GOOD else sys.stderr
+        said = shown(said) or self._text("module_no_word")
+        print(self._text(key, what=what, said=said), file=out, flush=True)
+
+    def _fields(
+        self, module: Module, now: dict[str, str], plan: list[Step], outcomes: list[Outcome]
+    ) -> dict[str, object]:
+        """Return it as data. `how` of a step that was not done is null."""
+        ends = {outcome.step.what: outcome for outcome in outcomes}
+        return {
+            "port": self.options.port,
+            "module": module.dialect.name,
+            "version": module.version,
+            "baud": module.baud,
+            "had": now,
+            "steps": [
+                {
+                    "what": step.what,
+                    "value": step.value,
+                    "commands": step.commands,
+                    "how": ends[step.what].how if step.what in ends else None,
+                    "said": ends[step.what].said if step.what in ends else None,
+                }
+                for step in plan
+            ],
+        }

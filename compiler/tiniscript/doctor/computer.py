@@ -1,0 +1,117 @@
+"""What a computer has: USB adapters with their drivers, Bluetooth, and who uses a port.
+
+The same for all systems; how each one is asked, `linux`, `macos` and `windows` know.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from typing import NamedTuple
+
+from tiniscript.doctor.system import System
+from tiniscript.link.ports import Found
+
+ON, OFF, NONE, UNKNOWN = "on", "off", "none", "unknown"  # Bluetooth
+
+# USB adapters that boards have: vendor and product, what people call them, the driver of Linux.
+CHIPS: dict[tuple[str, str], tuple[str, str]] = {
+    ("1a86", "7523"): ("CH340", "ch341"),
+    ("1a86", "5523"): ("CH341", "ch341"),
+    ("1a86", "7522"): ("CH340", "ch341"),
+    ("1a86", "55d4"): ("CH9102", "cdc_acm"),
+    ("0403", "6001"): ("FT232", "ftdi_sio"),
+    ("0403", "6015"): ("FT231", "ftdi_sio"),
+    ("10c4", "ea60"): ("CP2102", "cp210x"),
+    ("067b", "2303"): ("PL2303", "pl2303"),
+}
+ARDUINOS = ("2341", "2a03")  # vendors
+# Names that modules have from the factory, and from `tsc module`.
+_MODULES = re.compile(r"HC-0[56]|HC0[56]|linvor|HMSoft|BT05|BT-05|MLT|CC41|SPP-C|JDY|Tini-", re.I)
+
+
+class Adapter(NamedTuple):
+    """A USB adapter: its chip, the driver that it wants, and the one that has it (or none)."""
+
+    chip: str
+    wants: str
+    driver: str
+    has_port: bool
+
+
+class Computer(NamedTuple):
+    """`adapters` and `paired` are None where the system does not tell.
+
+    `paired` are names of Bluetooth devices: they may be those of persons' telephones, and are never
+    told. `programs` are those of interest that run.
+    """
+
+    platform: str
+    ports: tuple[Found, ...]
+    adapters: tuple[Adapter, ...] | None
+    bluetooth: str
+    paired: tuple[str, ...] | None
+    programs: frozenset[str] = frozenset()
+
+    @property
+    def has_module(self) -> bool | None:
+        """Whether something that looks like a robot's module is paired; None if nobody knows."""
+        return None if self.paired is None else any(map(is_module, self.paired))
+
+
+class Access(NamedTuple):
+    """Who may use a port, and who uses it: names of programs, if the system tells them.
+
+    `is_joined`: the user is in the group, but logged in before that.
+    """
+
+    may_use: bool
+    group: str
+    is_joined: bool
+    users: tuple[str, ...]
+
+
+FREE = Access(True, "", False, ())
+
+
+def looked(system: System) -> Computer:
+    """Look at a computer. Opens no port."""
+    if system.platform == "darwin":
+        from tiniscript.doctor.macos import looked as look
+    elif system.platform == "win32":
+        from tiniscript.doctor.windows import looked as look
+    else:
+        from tiniscript.doctor.linux import looked as look
+    return look(system)
+
+
+def access(system: System, port: str) -> Access:
+    """Return who may use a port and who does. Opens no port."""
+    if system.platform == "win32":
+        return FREE
+    if system.platform == "darwin":
+        from tiniscript.doctor.macos import access as look
+    else:
+        from tiniscript.doctor.linux import access as look
+    return look(system, port)
+
+
+def chip_of(vendor: str, product: str) -> tuple[str, str] | None:
+    """Return the name of an adapter and its driver, or None for any other USB device."""
+    if vendor in ARDUINOS:
+        return "Arduino", "cdc_acm"
+    return CHIPS.get((vendor, product))
+
+
+def is_module(name: str) -> bool:
+    return _MODULES.search(name) is not None
+
+
+def looks_wireless(port: str, description: str = "") -> bool:
+    """Whether a port is one of Bluetooth, by its name or the system's description of it."""
+    text = f"{port} {description}".lower()
+    return any(word in text for word in ("rfcomm", "bluetooth", "bthenum")) or is_module(text)
+
+
+def without_driver(adapters: Iterable[Adapter]) -> list[Adapter]:
+    return [each for each in adapters if not each.has_port]

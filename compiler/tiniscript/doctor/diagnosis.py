@@ -1,0 +1,203 @@
+"""The way of the doctor: first the computer, then the port, then what answers there.
+
+A port is opened only where nothing else has it, and that of a cable only after a yes: opening it
+restarts most boards.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+from collections.abc import Callable
+from typing import NamedTuple
+
+from tiniscript.doctor import computer, line
+from tiniscript.doctor.computer import NONE, OFF, Computer, looks_wireless, without_driver
+from tiniscript.doctor.examination import Expected, examined
+from tiniscript.doctor.findings import Finding, probably, sure
+from tiniscript.doctor.line import Line
+from tiniscript.doctor.robot import SharedRobot
+from tiniscript.doctor.system import System
+from tiniscript.link import ports
+from tiniscript.link.connection import LinkConnection
+from tiniscript.link.outcomes import Gone
+from tiniscript.link.port_names import is_address, same_for_all
+from tiniscript.link.ports import PortError
+from tiniscript.link.wire import Wire
+from tiniscript.sharing.client import OtherVersion
+
+REFUSED = os.strerror(errno.ECONNREFUSED)
+PSEUDO = ("/dev/pts/", "/dev/ttys")  # pseudo-terminals: nothing restarts there
+
+
+class Doors(NamedTuple):
+    """What the doctor needs from outside. `may_open` asks the user about the port of a cable."""
+
+    system: System
+    open_wire: Callable[[str, int], Wire]
+    join: Callable[[str], LinkConnection | None]
+    may_open: Callable[[str], bool]
+    is_radio: Callable[[str], bool]
+    tell: Callable[[str], None] = lambda what: None
+
+
+class Question(NamedTuple):
+    """What the user asks about. `last` is the port that was used last, if it is there."""
+
+    port: str | None
+    last: str | None
+    baud: int
+    expected: Expected
+    nonce: int
+    watch_ms: int = 0
+
+
+class Diagnosis(NamedTuple):
+    """`port` is None where none was looked at; `is_opened`: bytes were sent there."""
+
+    port: str | None
+    findings: tuple[Finding, ...]
+    computer: Computer
+    is_opened: bool
+
+
+def diagnosed(doors: Doors, question: Question) -> Diagnosis:
+    doors.tell("computer")
+    found = computer.looked(doors.system)
+    port = question.port or question.last or _only(found)
+    if port is None:
+        return Diagnosis(None, _without_port(found), found, False)
+    client = None
+    try:
+        client = doors.join(port)
+        if client is not None:
+            return Diagnosis(port, _shared(client, doors, question), found, True)
+    except OtherVersion as other:
+        values = {"verb": other.registration.verb, "theirs": other.version}
+        return Diagnosis(port, (sure("other_tsc", **values),), found, False)
+    finally:
+        if client is not None:
+            client.close()
+    held = _held(doors.system, found, port)
+    if held is not None:
+        return Diagnosis(port, (held,), found, False)
+    is_radio = doors.is_radio(port) or port.startswith(PSEUDO)
+    if not is_radio and _is_listed(doors.system, found, port) and not doors.may_open(port):
+        return Diagnosis(port, (sure("not_opened"),), found, False)
+    return _opened(doors, question, found, port, is_radio)
+
+
+def _opened(
+    doors: Doors, question: Question, found: Computer, port: str, is_radio: bool
+) -> Diagnosis:
+    try:
+        wire = doors.open_wire(port, question.baud)
+    except PortError as failure:
+        return Diagnosis(port, (_unopened(failure, found, port, doors.system),), found, False)
+    is_radio = is_radio and not port.startswith(PSEUDO)
+    asked = Line(question.baud, is_radio, question.nonce)
+    try:
+        findings = line.looked(wire, asked, question.expected, question.watch_ms, doors.tell)
+    except OSError:
+        cause = "other_host" if is_address(port) else "port_gone"
+        findings = [Finding(cause, not is_address(port))]
+    finally:
+        wire.close()
+    return Diagnosis(port, tuple(findings), found, True)
+
+
+def _only(found: Computer) -> str | None:
+    """Return the only port that may be a robot's: of USB or Bluetooth."""
+    names = [
+        each.port for each in found.ports
+        if "usb" in each.port.lower() or "acm" in each.port.lower()
+        or looks_wireless(each.port, each.description) or found.platform == "win32"
+    ]  # fmt: skip
+    return names[0] if len(names) == 1 else None
+
+
+def _without_port(found: Computer) -> tuple[Finding, ...]:
+    """Return why there is no port to look at."""
+    if len(found.ports) > 1:
+        return (sure("which_port", ports=", ".join(each.port for each in found.ports)),)
+    return (_absent(found),)
+
+
+def _absent(found: Computer) -> Finding:
+    """Return why an adapter, or any at all, has no port."""
+    for each in without_driver(found.adapters or ()):
+        if each.driver == "usbfs" or "brltty" in found.programs:
+            return Finding("brltty", "brltty" in found.programs, {"chip": each.chip})
+        return sure("driver_missing", chip=each.chip, driver=each.wants or each.chip)
+    if found.adapters is not None and not found.adapters:
+        return probably("charging_cable")
+    return sure("no_port")
+
+
+def _shared(client: LinkConnection, doors: Doors, question: Question) -> tuple[Finding, ...]:
+    robot = SharedRobot(client)
+    doors.tell("hello")
+    try:
+        reply = robot.hello()
+        if reply is None:
+            return (probably("falls_silent"),)
+        return tuple(examined(robot, reply, question.expected, question.watch_ms, doors.tell))
+    except Gone:
+        return (sure("port_gone"),)
+
+
+def _held(system: System, found: Computer, port: str) -> Finding | None:
+    """Return why this user cannot have the port now, as far as it is known without opening it."""
+    who = computer.access(system, same_for_all(port))
+    if not who.may_use and who.is_joined:
+        return sure("login_again", group=who.group)
+    if not who.may_use:
+        return sure("no_permission", group=who.group or "dialout")
+    if port.startswith(PSEUDO):
+        return None  # whoever has made it has it open, too
+    if "ModemManager" in who.users:
+        return sure("modem_manager")
+    return sure("busy", by=", ".join(who.users)) if who.users else None
+
+
+def _is_listed(system: System, found: Computer, port: str) -> bool:
+    return is_address(port) or system.owner(port) is not None or any(
+        each.port.lower() == port.lower() for each in found.ports
+    )  # fmt: skip
+
+
+def _unopened(failure: PortError, found: Computer, port: str, system: System) -> Finding:
+    """Return why a port did not open."""
+    if failure.reason == ports.MISSING:
+        return _missing(found, port, system)
+    if failure.reason == ports.FORBIDDEN:
+        return sure("no_permission", group="dialout")
+    if failure.reason == ports.BUSY:
+        if "ModemManager" in found.programs:
+            return probably("modem_manager")
+        return sure("busy", by="")
+    if failure.reason in (ports.UNREACHABLE, ports.SLOW):
+        if failure.why == REFUSED and not is_address(port):
+            return probably("other_host")
+        if not is_address(port) and found.has_module is False and found.bluetooth != OFF:
+            return probably("not_paired")
+        return probably("slow_port" if failure.reason == ports.SLOW else "out_of_reach")
+    if failure.reason == ports.NO_PORT:
+        return sure("no_serial_port")
+    return sure("port_broken", why=failure.why)
+
+
+def _missing(found: Computer, port: str, system: System) -> Finding:
+    """Return why the port that was named does not exist."""
+    if looks_wireless(port):
+        if found.bluetooth == NONE:
+            return sure("no_bluetooth")
+        if found.bluetooth == OFF:
+            return sure("bluetooth_off")
+        if found.has_module is False:
+            return sure("not_paired")
+        if found.platform == "linux" and "rfcomm" in port:
+            return Finding("no_rfcomm", bool(found.has_module), {"number": port[-1:]})
+    if without_driver(found.adapters or ()) or not found.ports:
+        return _absent(found)
+    return sure("port_missing", ports=", ".join(each.port for each in found.ports))

@@ -1,0 +1,192 @@
+"""Examines a robot that answers: its versions, kit, supply and restarts, and how well it hears.
+
+Everything is asked; nothing is started, stopped, set or written.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
+from tiniscript.doctor.findings import Finding, probably, sure
+from tiniscript.doctor.robot import Robot, values_of
+from tiniscript.link.messages import (
+    LINK_FAULTS,
+    MAJOR,
+    MINOR,
+    RESETS,
+    SAVED_LOW_SUPPLY,
+    SAVED_OTHER_VERSION,
+    SAVED_SAVING,
+    STATE_RUNNING,
+    STATUSES,
+)
+from tiniscript.link.payloads import HelloReply, SentReply, StatusReply
+from tiniscript.link.requests import Reply
+
+PINGS = 20
+PAUSE_MS = 50  # between two of them
+LOSSY = 2  # of 20 that were not answered at once, or that the robot heard damaged
+LOOKS = 6  # whether it is still the same robot, and was not restarted meanwhile
+LOOK_MS = 250
+_STALL = next(number for number, name, _ in LINK_FAULTS if name == "STALL")
+_BROWN_OUT = "BROWN_OUT"
+_WATCHDOG = "WATCHDOG"
+
+
+class Expected(NamedTuple):
+    """The kit that the robot should have, None for any; `names` says whose a kit is, or nothing."""
+
+    kit: int | None
+    name: str
+    names: Callable[[int], str | None]
+
+
+class Restart(NamedTuple):
+    """A restart that was seen: whether a program ran just before, and its cause."""
+
+    was_running: bool
+    cause: str
+
+
+def examined(
+    robot: Robot, first: Reply[SentReply], expected: Expected, watch_ms: int = 0,
+    tell: Callable[[str], None] = lambda what: None,
+) -> list[Finding]:  # fmt: skip
+    """Return what is wrong with a robot whose answer to HELLO is `first`.
+
+    Where nothing is, the only finding that is no note is `fine`. `tell` gets `pings` and `watch`.
+    """
+    hello = values_of(first)
+    if hello is None:
+        return [_other_link(first)]
+    findings = [*_versions(hello), *_kit(hello, expected)]
+    before = robot.status()
+    restarts: list[Restart] = []
+    if before is not None:
+        findings += _told(before)
+        findings += _hearing(robot, before, tell)
+        tell("watch")
+        restarts = _watched(robot, hello, watch_ms)
+    after = robot.status() if before is not None else None
+    if restarts:
+        findings += _restarts(restarts)
+    elif after is None:
+        findings.append(probably("falls_silent"))
+    elif RESETS[_row(hello.reset)][0] == _BROWN_OUT:
+        findings.append(sure("brown_out"))
+    elif RESETS[_row(hello.reset)][0] == _WATCHDOG or after.fault == _STALL:
+        findings.append(sure("hung"))
+    if not any(each.is_wrong for each in findings):
+        name = hello.name.decode("utf-8", "replace")
+        whose = expected.names(hello.kit) or f"{hello.kit:04x}"
+        values = {"name": name or whose, "kit": whose, "id": f"{hello.id:08x}", "n": str(PINGS)}
+        findings.append(sure("fine", **values))
+    return findings
+
+
+def _row(reset: int) -> int:
+    """Return the row of a reset: the first for one that only newer robots know."""
+    return reset if reset < len(RESETS) else 0
+
+
+def _other_link(reply: Reply[SentReply]) -> Finding:
+    if reply.status != STATUSES["OTHER_LINK"]:
+        return probably("firmware_older", theirs=f"status {reply.status}", ours=f"{MAJOR}.{MINOR}")
+    cause = "firmware_older" if reply.detail < MAJOR else "firmware_newer"
+    return sure(cause, theirs=str(reply.detail), ours=str(MAJOR))
+
+
+def _versions(hello: HelloReply) -> list[Finding]:
+    """Compare versions: what a newer robot has more does no harm."""
+    theirs, ours = (hello.isa_major, hello.isa_minor), (ISA_MAJOR, ISA_MINOR)
+    is_newer = hello.isa_major > ISA_MAJOR or hello.major > MAJOR
+    if not is_newer and theirs >= ours and (hello.major, hello.minor) >= (MAJOR, MINOR):
+        return []
+    values = {
+        "theirs": f"{hello.major}.{hello.minor} / {theirs[0]}.{theirs[1]}",
+        "ours": f"{MAJOR}.{MINOR} / {ours[0]}.{ours[1]}",
+    }
+    return [sure("firmware_newer" if is_newer else "firmware_older", **values)]
+
+
+def _kit(hello: HelloReply, expected: Expected) -> list[Finding]:
+    found = expected.names(hello.kit)
+    kit = f"{hello.kit:04x}"
+    if expected.kit is not None and hello.kit != expected.kit:
+        return [sure("wrong_kit", kit=kit, robot=found or kit, expected=expected.name)]
+    if expected.kit is None and found is None:
+        return [sure("unknown_kit", kit=kit)]
+    return []
+
+
+def _told(status: StatusReply) -> list[Finding]:
+    """Return what the robot says of its supply, its latch and its program."""
+    findings = []
+    if status.saved == SAVED_LOW_SUPPLY:
+        findings.append(sure("low_supply"))
+    if status.saved == SAVED_SAVING:
+        findings.append(sure("not_saved_yet"))
+    if status.saved == SAVED_OTHER_VERSION:
+        findings.append(sure("other_program"))
+    if status.state > STATE_RUNNING:
+        findings.append(sure("stopped"))
+    return findings
+
+
+def _counts(status: StatusReply) -> int:
+    return status.damaged + status.dropped + status.framing + status.overrun
+
+
+def _hearing(robot: Robot, before: StatusReply, tell: Callable[[str], None]) -> list[Finding]:
+    """Send PING, and count what is not answered at once and what the robot heard damaged."""
+    tell("pings")
+    missed = robot.missed
+    for _ in range(PINGS):
+        robot.ping()
+        robot.pause(PAUSE_MS)
+    missed = robot.missed - missed
+    after = robot.status()
+    damaged = 0
+    if after is not None:
+        pairs = zip(_four(before), _four(after), strict=True)
+        damaged = sum((now - then) & 0xFF for then, now in pairs)
+    values = {"missed": str(missed), "n": str(PINGS), "damaged": str(damaged)}
+    if missed >= LOSSY or damaged >= LOSSY:
+        return [sure("lossy", **values)] if after is not None else []
+    if after is not None and _counts(before) >= 10 * LOSSY:
+        return [probably("lossy", **{**values, "damaged": str(_counts(before))})]
+    return []
+
+
+def _four(status: StatusReply) -> tuple[int, int, int, int]:
+    return status.damaged, status.dropped, status.framing, status.overrun
+
+
+def _watched(robot: Robot, hello: HelloReply, watch_ms: int) -> list[Restart]:
+    """Look for a while whether the robot restarts: then its nonce is another one."""
+    restarts = []
+    nonce, is_running = hello.nonce, hello.state == STATE_RUNNING
+    for _ in range(max(LOOKS, watch_ms // LOOK_MS)):
+        robot.pause(LOOK_MS)
+        now = values_of(robot.hello())
+        if now is None:
+            continue
+        if now.nonce != nonce:
+            restarts.append(Restart(is_running, RESETS[_row(now.reset)][0]))
+            nonce = now.nonce
+        is_running = now.state == STATE_RUNNING
+    return restarts
+
+
+def _restarts(restarts: list[Restart]) -> list[Finding]:
+    """Return what restarts mean: it was the voltage for sure only where the chip tells it."""
+    count = str(len(restarts))
+    driving = [each for each in restarts if each.was_running]
+    if driving:
+        is_told = any(each.cause == _BROWN_OUT for each in driving)
+        return [Finding("motors_restart", is_told, {"count": count, "reset": driving[-1].cause})]
+    if restarts[-1].cause == _WATCHDOG:
+        return [sure("hung")]
+    return [sure("restarts", count=count, reset=restarts[-1].cause)]

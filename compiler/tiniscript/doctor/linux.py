@@ -1,0 +1,115 @@
+"""What Linux tells of a computer: `/sys`, `/proc`, `/etc/group`, and bluetoothctl."""
+
+from __future__ import annotations
+
+from tiniscript.doctor.computer import (
+    FREE,
+    NONE,
+    OFF,
+    ON,
+    Access,
+    Adapter,
+    Computer,
+    chip_of,
+)
+from tiniscript.doctor.system import System
+from tiniscript.link.port_names import is_address
+
+USB, BLUETOOTH, SWITCHES = "/sys/bus/usb/devices", "/sys/class/bluetooth", "/sys/class/rfkill"
+LOCKS = "/run/lock", "/var/lock"
+OF_INTEREST = {"brltty", "ModemManager"}
+
+
+def looked(system: System) -> Computer:
+    bluetooth = _bluetooth(system)
+    return Computer(
+        system.platform,
+        tuple(system.ports()),
+        tuple(_adapters(system)) if system.names(USB) else None,
+        bluetooth,
+        _paired(system) if bluetooth == ON else (),
+        frozenset(OF_INTEREST & set(_programs(system).values())),
+    )
+
+
+def _adapters(system: System) -> list[Adapter]:
+    found = []
+    for name in system.names(USB):
+        vendor, product = (
+            system.text(f"{USB}/{name}/{each}") or "" for each in ("idVendor", "idProduct")
+        )
+        chip = chip_of(vendor.lower(), product.lower())
+        if chip is None:
+            continue
+        parts = [each for each in system.names(USB) if each.startswith(f"{name}:")]
+        drivers = [system.target(f"{USB}/{each}/driver") for each in parts]
+        driver = next((each.rpartition("/")[2] for each in drivers if each), "")
+        has_port = any(
+            inside.startswith("tty") for each in parts for inside in system.names(f"{USB}/{each}")
+        )
+        found.append(Adapter(chip[0], chip[1], driver, has_port))
+    return found
+
+
+def _bluetooth(system: System) -> str:
+    if not any(name.startswith("hci") for name in system.names(BLUETOOTH)):
+        return NONE
+    for name in system.names(SWITCHES):
+        folder = f"{SWITCHES}/{name}"
+        blocks = (system.text(f"{folder}/{each}") for each in ("soft", "hard"))
+        if system.text(f"{folder}/type") == "bluetooth" and "1" in blocks:
+            return OFF
+    return ON
+
+
+def _paired(system: System) -> tuple[str, ...] | None:
+    """Return the names of paired devices; newer and older bluetoothctl are asked differently."""
+    for words in (("devices", "Paired"), ("paired-devices",)):
+        said = system.output("bluetoothctl", *words)
+        if said is not None:
+            rows = [row.split(None, 2) for row in said.splitlines()]
+            return tuple(row[2] for row in rows if len(row) == 3 and row[0] == "Device")
+    return None
+
+
+def _programs(system: System) -> dict[str, str]:
+    """Return the names of all programs that run, by their numbers."""
+    numbers = [name for name in system.names("/proc") if name.isdigit()]
+    return {number: system.text(f"/proc/{number}/comm") or "" for number in numbers}
+
+
+def access(system: System, port: str) -> Access:
+    if is_address(port):
+        return FREE
+    owner = system.owner(port)
+    if owner is None:
+        return FREE
+    group, members = _group(system, owner.group)
+    is_joined = system.user() in members and owner.group not in system.groups()
+    return Access(owner.may_use, group, is_joined, tuple(_users(system, port)))
+
+
+def _group(system: System, number: int) -> tuple[str, list[str]]:
+    for row in (system.text("/etc/group") or "").splitlines():
+        parts = row.split(":")
+        if len(parts) == 4 and parts[2] == str(number):
+            return parts[0], parts[3].split(",")
+    return "", []
+
+
+def _users(system: System, port: str) -> list[str]:
+    """Return the programs that use a port.
+
+    Those of other users are known by their lock files alone.
+    """
+    found = []
+    programs = _programs(system)
+    for number, name in programs.items():
+        folder = f"/proc/{number}/fd"
+        if any(system.target(f"{folder}/{each}") == port for each in system.names(folder)):
+            found.append(name)
+    for folder in LOCKS:
+        number = (system.text(f"{folder}/LCK..{port.rpartition('/')[2]}") or "").strip()
+        if number in programs:
+            found.append(programs[number])
+    return list(dict.fromkeys(name for name in found if name))

@@ -1,0 +1,85 @@
+"""What macOS tells of a computer: system_profiler and lsof."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from typing import Any
+
+from tiniscript.doctor.computer import (
+    FREE,
+    NONE,
+    OFF,
+    ON,
+    UNKNOWN,
+    Access,
+    Adapter,
+    Computer,
+    chip_of,
+)
+from tiniscript.doctor.system import System
+from tiniscript.link.port_names import is_address
+
+
+def looked(system: System) -> Computer:
+    ports = system.ports()
+    usb = _asked(system, "SPUSBDataType")
+    has_port = any("usb" in each.port.lower() for each in ports)
+    adapters = None if usb is None else tuple(_adapters(usb, has_port))
+    bluetooth, paired = _bluetooth(_asked(system, "SPBluetoothDataType"))
+    return Computer(system.platform, tuple(ports), adapters, bluetooth, paired)
+
+
+def _asked(system: System, what: str) -> list[dict[str, Any]] | None:
+    said = system.output("system_profiler", what, "-json")
+    try:
+        found = json.loads(said or "")[what]
+    except (ValueError, KeyError, TypeError, RecursionError):
+        return None
+    return [each for each in found if isinstance(each, dict)] if isinstance(found, list) else None
+
+
+def _adapters(devices: list[dict[str, Any]], has_port: bool) -> Iterator[Adapter]:
+    """Yield the adapters. Which port is whose is not told: a USB port is taken for all of them."""
+    waiting = list(devices)
+    while waiting:
+        device = waiting.pop()
+        inside = device.get("_items")
+        if isinstance(inside, list):
+            waiting += [each for each in inside if isinstance(each, dict)]
+        vendor, product = (
+            str(device.get(key, "")).split(" ")[0].lower().removeprefix("0x")
+            for key in ("vendor_id", "product_id")
+        )
+        chip = chip_of(vendor, product)
+        if chip is not None:
+            yield Adapter(chip[0], "", "", has_port)
+
+
+def _bluetooth(found: list[dict[str, Any]] | None) -> tuple[str, tuple[str, ...] | None]:
+    if found is None:
+        return UNKNOWN, None
+    if not found:
+        return NONE, ()
+    about = found[0]
+    controller = about.get("controller_properties")
+    state = controller.get("controller_state") if isinstance(controller, dict) else None
+    names: list[str] = []
+    for key in ("device_connected", "device_not_connected"):
+        rows = about.get(key)
+        for row in rows if isinstance(rows, list) else []:
+            names += list(row) if isinstance(row, dict) else []
+    if state is None:
+        return NONE, ()
+    return (OFF if str(state).endswith("_off") else ON), tuple(names)
+
+
+def access(system: System, port: str) -> Access:
+    if is_address(port):
+        return FREE
+    owner = system.owner(port)
+    if owner is None:
+        return FREE
+    said = system.output("lsof", "-F", "c", port) or ""
+    names = [row[1:] for row in said.splitlines() if row.startswith("c") and row[1:]]
+    return Access(owner.may_use, "", False, tuple(dict.fromkeys(names)))

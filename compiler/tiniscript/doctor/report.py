@@ -1,0 +1,70 @@
+"""A report to send: which facts go into it, and what is taken out of them.
+
+No name of a person, a computer, a network or a telephone leaves this computer, and no serial
+number: many systems make the name of a port from one.
+"""
+
+from __future__ import annotations
+
+import re
+
+from tiniscript.doctor.computer import Computer, is_module
+from tiniscript.doctor.findings import Finding
+from tiniscript.link.port_names import is_address
+
+MARK = "TiniScript doctor report 1"  # the first line: the file is one of ours
+HIDDEN = "…"
+# Values of findings that are made by others: a robot's name, what a sketch prints, system messages.
+PRIVATE = ("name", "said", "why", "by")
+PROGRAMS = ("ModemManager", "brltty", "avrdude", "arduino", "Arduino IDE", "screen", "minicom",
+            "picocom", "putty", "tsc", "python", "python3", "java", "thonny", "code")  # fmt: skip
+
+
+def is_ours(data: bytes) -> bool:
+    """Whether a file is a report, which a new one may replace."""
+    return data.split(b"\n", 1)[0].strip() == MARK.encode()
+
+
+def port(name: str) -> str:
+    """Return a port's name without what tells whose it is: `socket://…`, `/dev/tty.usbmodem…`."""
+    if is_address(name):
+        return name.partition("://")[0] + "://" + HIDDEN
+    if re.fullmatch(r"/dev/(?:tty(?:USB|ACM|S|AMA)|rfcomm|pts/)\d{1,3}|COM\d{1,3}", name, re.I):
+        return name
+    found = re.match(r"/dev/(?:tty|cu)\.(?:usbserial|usbmodem|wchusbserial|SLAB_USBtoUART)", name)
+    if found:
+        return found[0] + HIDDEN
+    return "Bluetooth " + HIDDEN if is_module(name) else HIDDEN
+
+
+def values_of(finding: Finding) -> dict[str, str]:
+    """Return the values of a finding as a report may have them."""
+    found = {}
+    for key, value in finding.values.items():
+        if key == "ports":
+            found[key] = ", ".join(port(each) for each in value.split(", "))
+        elif key == "by":
+            names = [each if each in PROGRAMS else HIDDEN for each in value.split(", ") if each]
+            found[key] = ", ".join(names)
+        else:
+            found[key] = HIDDEN if key in PRIVATE and value else value
+    return found
+
+
+def facts(computer: Computer) -> list[tuple[str, str]]:
+    """Return what is told of the computer: names of things, and numbers."""
+    adapters = "?"
+    if computer.adapters is not None:
+        adapters = ", ".join(
+            f"{each.chip} ({each.driver or ('port' if each.has_port else '-')})"
+            for each in computer.adapters
+        )
+    modules = "?" if computer.paired is None else str(sum(map(is_module, computer.paired)))
+    return [
+        ("system", computer.platform),
+        ("ports", ", ".join(port(each.port) for each in computer.ports) or "-"),
+        ("usb", adapters or "-"),
+        ("bluetooth", computer.bluetooth),
+        ("modules", modules),
+        ("programs", ", ".join(sorted(computer.programs)) or "-"),
+    ]

@@ -1,0 +1,153 @@
+"""A robot as the doctor asks it: HELLO, STATUS and PING, which change nothing in it.
+
+Two ways: by frames on a wire, where each try is counted, and through the connection of another
+tsc that has the port.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Protocol
+
+from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
+from tiniscript.link.connection import LinkConnection
+from tiniscript.link.frames import Frame, decoded, encoded
+from tiniscript.link.messages import BY_NAME, MAJOR, MINOR, written
+from tiniscript.link.payloads import HelloReply, SentReply, StatusReply
+from tiniscript.link.requests import OK, Reply, reply_of
+from tiniscript.link.wire import Wire
+
+TRIES = 3
+READS = 4  # of the wire in one try: what the robot tells by itself may come in between
+CABLE_MS, RADIO_MS = 300, 700  # for an answer
+SHARED_MS = 4000  # for one through another tsc, with its own retries
+
+
+class Robot(Protocol):
+    """`asked` requests were made, of which `missed` were not answered at the first try.
+
+    A reply is None where none came.
+    """
+
+    asked: int
+    missed: int
+
+    def hello(self) -> Reply[SentReply] | None: ...
+
+    def status(self) -> StatusReply | None: ...
+
+    def ping(self) -> int | None:
+        """Return the robot's state."""
+        ...
+
+    def pause(self, wait_ms: int) -> None: ...
+
+
+class WireRobot:
+    """The robot on a wire. `heard` are all bytes that came, `spoken` all that were sent."""
+
+    def __init__(self, wire: Wire, nonce: int, kit: int, answer_ms: int = CABLE_MS) -> None:
+        self.wire = wire
+        self.answer_ms = answer_ms
+        self.asked = self.missed = 0
+        self.heard = self.spoken = b""
+        self._seq = 0
+        self._epoch = 0
+        self._hello = {"major": MAJOR, "minor": MINOR, "isa_major": ISA_MAJOR,
+                       "isa_minor": ISA_MINOR, "kit": kit, "nonce": nonce}  # fmt: skip
+
+    def hello(self, tries: int = TRIES) -> Reply[SentReply] | None:
+        return self._ask("HELLO", self._hello, tries)
+
+    def status(self) -> StatusReply | None:
+        reply = self._ask("STATUS", {})
+        is_told = reply is not None and reply.status == OK
+        return reply.values if is_told and isinstance(reply.values, StatusReply) else None  # type: ignore[union-attr]
+
+    def ping(self) -> int | None:
+        reply = self._ask("PING", {})
+        state = getattr(reply.values, "state", None) if reply and reply.status == OK else None
+        return state if isinstance(state, int) else None
+
+    def pause(self, wait_ms: int) -> None:
+        self.heard += self.wire.heard(wait_ms, wait_ms)
+
+    def _ask(
+        self, name: str, values: dict[str, int], tries: int = TRIES
+    ) -> Reply[SentReply] | None:
+        """Ask until an answer comes: a 0x00 goes before each try, as `docs/link.md` says."""
+        self.asked += 1
+        self._seq = (self._seq + 1) & 0xFF
+        message = BY_NAME[name]
+        frame = Frame(message.number, self._seq, self._epoch, written(message.request, values))
+        data = b"\0" + encoded(frame)
+        for number in range(tries):
+            self.wire.send(data)
+            self.spoken += data
+            reply = self._answer(name, message.number)
+            if reply is not None:
+                return reply
+            self.missed += number == 0
+        return None
+
+    def _answer(self, name: str, number: int) -> Reply[SentReply] | None:
+        found = b""
+        for _ in range(READS):
+            more = self.wire.heard(self.answer_ms)
+            if not more:
+                break
+            found += more
+            self.heard += more
+            for item in found.split(b"\0"):
+                frame = decoded(item) if item else None
+                if frame and frame.is_reply and (frame.number, frame.seq) == (number, self._seq):
+                    reply = reply_of(name, frame.payload)
+                    if reply is not None:
+                        self._epoch = frame.epoch
+                        return reply
+        return None
+
+
+class SharedRobot:
+    """The robot behind the connection of another tsc, which does the retries."""
+
+    def __init__(self, line: LinkConnection) -> None:
+        self.line = line
+        self.asked = self.missed = 0
+
+    def hello(self) -> Reply[SentReply] | None:
+        return self._done(lambda session: session.hello())
+
+    def status(self) -> StatusReply | None:
+        reply = self._done(lambda session: session.status())
+        values = reply.values if reply is not None and reply.status == OK else None
+        return values if isinstance(values, StatusReply) else None
+
+    def ping(self) -> int | None:
+        reply = self._done(lambda session: session.ping())
+        state = getattr(reply.values, "state", None) if reply and reply.status == OK else None
+        return state if isinstance(state, int) else None
+
+    def pause(self, wait_ms: int) -> None:
+        self.line.event(wait_ms / 1000)
+
+    def _done(self, make: Any) -> Reply[SentReply] | None:
+        from tiniscript.link.outcomes import CANCELLED, LOST
+
+        def limited(session: Any) -> Any:
+            request = make(session)
+            request.limit_ms = SHARED_MS
+            return request
+
+        self.asked += 1
+        reply: Reply[SentReply] = self.line.wait(self.line.do(limited))
+        if reply.status in (LOST, CANCELLED):
+            self.missed += 1
+            return None
+        return reply
+
+
+def values_of(reply: Reply[SentReply] | None) -> HelloReply | None:
+    """Return what a robot says of itself, where its answer to HELLO is OK."""
+    if reply is None or reply.status != OK:
+        return None
+    return reply.values if isinstance(reply.values, HelloReply) else None

@@ -1,0 +1,117 @@
+"""The door to this computer: files, folders, links, programs and ports, read and never written.
+
+Everything else in the doctor sees the computer through it, so that a test can give another one.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import NamedTuple, Protocol
+
+from tiniscript.files import contents
+from tiniscript.link import ports
+from tiniscript.link.ports import Found
+
+FILE_BYTES = 65_536
+OUTPUT_S = 8.0  # timeout of a program
+
+
+class Owner(NamedTuple):
+    """The group of a file, and whether this user may read and write it."""
+
+    group: int
+    may_use: bool
+
+
+class System(Protocol):
+    """What cannot be read is None or empty."""
+
+    platform: str  # as `sys.platform`
+
+    def ports(self) -> list[Found]: ...
+
+    def names(self, folder: str) -> list[str]: ...
+
+    def text(self, path: str) -> str | None: ...
+
+    def target(self, link: str) -> str | None: ...
+
+    def owner(self, path: str) -> Owner | None: ...
+
+    def groups(self) -> set[int]:
+        """Return the groups of this session: of those the user joined since, it has none."""
+        ...
+
+    def user(self) -> str:
+        """Return the user's name, to look it up in a list of members. It is never told."""
+        ...
+
+    def output(self, *words: str) -> str | None:
+        """Return what a program prints, or None where there is no such program."""
+        ...
+
+
+class ThisComputer:
+    """The computer that this runs on, seen from the folder `root`."""
+
+    def __init__(self, root: Path = Path("/")) -> None:
+        self.platform = sys.platform
+        self.root = root
+
+    def _path(self, path: str) -> Path:
+        return self.root / path.lstrip("/")
+
+    def ports(self) -> list[Found]:
+        return ports.listed()
+
+    def names(self, folder: str) -> list[str]:
+        try:
+            return sorted(os.listdir(self._path(folder)))  # noqa: PTH208 - a folder may vanish
+        except OSError:
+            return []
+
+    def text(self, path: str) -> str | None:
+        try:
+            return contents(self._path(path), FILE_BYTES).decode("utf-8", "replace").strip()
+        except (OSError, ValueError):
+            return None
+
+    def target(self, link: str) -> str | None:
+        try:
+            return os.readlink(self._path(link))  # noqa: PTH115 - what it says, not a path
+        except (OSError, ValueError):
+            return None
+
+    def owner(self, path: str) -> Owner | None:
+        try:
+            found = self._path(path).stat()
+        except (OSError, ValueError):
+            return None
+        return Owner(found.st_gid, os.access(self._path(path), os.R_OK | os.W_OK))
+
+    def groups(self) -> set[int]:
+        if sys.platform == "win32":
+            return set()
+        return {os.getegid(), *os.getgroups()}
+
+    def user(self) -> str:
+        if sys.platform == "win32":
+            return ""
+        import pwd
+
+        try:
+            return pwd.getpwuid(os.geteuid()).pw_name
+        except KeyError:  # a user without an entry, as in a container
+            return ""
+
+    def output(self, *words: str) -> str | None:
+        try:
+            done = subprocess.run(
+                words, stdin=subprocess.DEVNULL, capture_output=True, timeout=OUTPUT_S, check=False
+            )
+        except (OSError, ValueError, subprocess.TimeoutExpired):
+            return None
+        return done.stdout.decode("utf-8", "replace") if done.returncode == 0 else None

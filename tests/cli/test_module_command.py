@@ -1,0 +1,174 @@
+"""`tsc module` and a module behind a port: what is printed is what the module has then."""
+
+from __future__ import annotations
+
+import json
+import signal
+from collections.abc import Iterator
+
+import pytest
+
+pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
+
+from tests.support.command import Command, Tsc
+from tests.support.pty_end import PtyEnd
+from tests.support.simulated_modules import Bt05, Hc05, Hc06, Hc06New, Hm10
+from tests.support.simulated_modules import SimulatedModule as Simulated
+from tiniscript.modules import talk
+
+
+@pytest.fixture
+def module() -> Iterator[Simulated]:
+    """An HC-06 with firmware 3.0, which answers at once."""
+    end = Hc06New()
+    with PtyEnd(end) as pty_end:
+        end.port = pty_end.port  # type: ignore[attr-defined]
+        yield end
+
+
+def port_of(module: Simulated) -> str:
+    return str(module.port)  # type: ignore[attr-defined]
+
+
+def test_a_module_gets_name_pin_and_speed(tsc: Tsc, module: Simulated) -> None:
+    done = tsc("module", "--port", port_of(module), "--name", "ANA", "--pin", "4711",
+               "--baud", "57600")  # fmt: skip
+    assert (done.code, done.err) == (0, "")
+    assert (module.name, module.pin, module.baud) == ("ANA", "4711", 57600)
+    assert done.out.splitlines() == [
+        f"HC-06 3.x on {port_of(module)}, version 3.0-20170609; it listens at 9600 baud.",
+        "name ANA: the module says that it is done; it does not tell what it keeps.",
+        "PIN 4711: the module says that it is done; it does not tell what it keeps.",
+        "57600 baud: done; it answers at this speed.",
+        "Now switch it off, connect it to the robot as it was, switch it on and pair it again.",
+    ]
+
+
+@pytest.mark.parametrize("end", [Hc05(57600), Hc06()])
+def test_quick_and_slow_ones_behind_a_real_port(tsc: Tsc, end: Simulated) -> None:
+    """So that a port waits long enough for an answer. All kinds are in `tests/modules/`."""
+    pin = "471123"[: len(end.pin)]
+    with PtyEnd(end) as pty_end:
+        done = tsc("module", "--port", pty_end.port, "--id", "12347f3a", "--pin", pin,
+                   "--baud", "19200", "--lang", "es")  # fmt: skip
+    assert (done.code, done.err) == (0, "")
+    assert (end.name, end.pin, end.data_baud) == ("Tini-7F3A", pin, 19200)
+    assert ("suelta su botón" in done.out) == isinstance(end, Hc05)
+
+
+def test_a_dry_run_shows_the_commands_and_changes_nothing(tsc: Tsc, module: Simulated) -> None:
+    done = tsc("module", "--port", port_of(module), "--name", "ANA", "--baud", "115200",
+               "--dry-run")  # fmt: skip
+    assert done.code == 0
+    assert "would be sent:  AT+NAME:ANA, or else AT+NAME=ANA\n" in done.out
+    assert "115200 baud: would be sent:  AT+UART=115200,0,0" in done.out
+    assert (module.name, module.baud) == ("HC-06", 9600)
+    assert not any("ANA" in command or "UART" in command for command in module.commands)
+
+
+def test_without_a_wish_it_says_what_it_has_found(tsc: Tsc) -> None:
+    with PtyEnd(Bt05(38400)) as pty_end:
+        done = tsc("module", "--port", pty_end.port)
+    assert done.code == 0
+    assert "MLT-BT05 on" in done.out and "listens at 38400 baud" in done.out
+    assert "It has: name BT05, 38400 baud." in done.out
+    assert "--pin 123456" in done.out
+
+
+def test_as_data(tsc: Tsc, module: Simulated) -> None:
+    done = tsc("module", "--port", port_of(module), "--name", "ANA", "--json")
+    fields = json.loads(done.out)
+    assert (done.code, fields["module"], fields["baud"]) == (0, "HC-06 3.x", 9600)
+    (step,) = fields["steps"]
+    assert (step["what"], step["value"], step["how"]) == ("name", "ANA", "unseen")
+
+
+def test_nobody_answers(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(talk, "SLOW_ANSWER_MS", 20)
+    monkeypatch.setattr(talk, "ANSWER_MS", 20)
+    end = Hc06New()
+    end.is_on = False
+    with PtyEnd(end) as pty_end:
+        done = tsc("module", "--port", pty_end.port, "--name", "ANA")
+    assert done.code == 3
+    assert "no module answers" in done.err and "held in reset" in done.err
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--name", "A" * 21], "at most 20"),
+        (["--name", ""], "at most 20"),
+        (["--name", "ÑU"], "ÑU is no such name"),
+        (["--pin", "12"], "PIN of this kind of module has"),
+        (["--baud", "300"], "9600, 19200, 38400, 57600, 115200, not 300"),
+        (["--id", "xyz"], "takes the id"),
+        (["--id", "123456789"], "takes the id"),
+        (["--id", "1", "--name", "A"], "Leave one"),
+    ],
+)
+def test_what_no_module_can_have_is_refused_before_anything_is_opened(
+    tsc: Tsc, words: list[str], said: str
+) -> None:
+    done = tsc("module", "--port", "/dev/not-there", *words)
+    assert done.code == 2
+    assert said in done.err
+
+
+def test_what_this_module_cannot_have_is_refused_before_anything_is_changed(tsc: Tsc) -> None:
+    end = Bt05()
+    with PtyEnd(end) as pty_end:
+        done = tsc("module", "--port", pty_end.port, "--name", "ANA", "--pin", "1234")
+    assert done.code == 2
+    assert "6 digits (MLT-BT05)" in done.err
+    assert end.name == "BT05"
+
+
+def test_ports_that_are_none(tsc: Tsc) -> None:
+    assert "tsc module --port P" in tsc("module").err
+    assert tsc("module", "--port", "").code == 2
+    assert tsc("module", "--port", "/dev/not-there").code == 3
+    for port in ("/dev/rfcomm7", "socket://127.0.0.1:9"):
+        done = tsc("module", "--port", port)
+        assert (done.code, "only by wire" in done.err) == (2, True)
+
+
+def test_a_module_that_does_not_do_it_is_an_exit_code(tsc: Tsc, module: Simulated) -> None:
+    module.breaks_after = 4
+    done = tsc("module", "--port", port_of(module), "--name", "ANA", "--baud", "115200")
+    assert done.code == 3
+    assert "try again" in done.err
+
+
+def test_a_cable_that_is_pulled_says_what_is_known_of_the_speed() -> None:
+    end = Hm10()
+    with PtyEnd(end) as pty_end:
+        command = Command("module", "--port", pty_end.port, "--baud", "115200")
+        pty_end.until(lambda: b"AT+BAUD4" in pty_end.heard)
+        pty_end.pull()
+        done = command.ended()
+    assert done.code == 3
+    assert "has vanished. It was being set to 115200 baud" in done.err
+
+
+def test_ctrl_c_says_at_which_speeds_the_module_may_be() -> None:
+    end = Hc06()
+    end.is_on = False
+    with PtyEnd(end) as pty_end:
+        command = Command("module", "--port", pty_end.port, "--baud", "115200")
+        pty_end.until(lambda: bool(pty_end.heard))
+        command.signal(signal.SIGINT)
+        done = command.ended()
+    assert done.code == 2
+    assert "Its speed is what it was. Try again" in done.err
+
+
+def test_ctrl_c_while_the_speed_changes() -> None:
+    end = Hm10()
+    with PtyEnd(end) as pty_end:
+        command = Command("module", "--port", pty_end.port, "--baud", "115200")
+        pty_end.until(lambda: b"AT+BAUD4" in pty_end.heard)
+        command.signal(signal.SIGINT)
+        done = command.ended()
+    assert done.code == 2
+    assert "It was being set to 115200 baud: it is at that speed or at the one before." in done.err

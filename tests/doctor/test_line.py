@@ -1,0 +1,273 @@
+"""What is at the other end of a port: each is told from the others, and nothing is disturbed."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.support.simulated_ends import (
+    KIT,
+    QUESTIONS,
+    Babble,
+    Board,
+    Echo,
+    Firmware,
+    Nobody,
+    Sketch,
+    reset,
+    state,
+)
+from tests.support.simulated_modules import Bt05, Hc05, Hc06, Hm10
+from tests.support.simulated_wire import OtherEnd, SimulatedWire
+from tiniscript.doctor.examination import Expected
+from tiniscript.doctor.findings import Finding
+from tiniscript.doctor.line import Line, looked, readable
+from tiniscript.link.messages import LINK_FAULTS, SAVED, STATUSES, STOP_RUN
+from tiniscript.robots import load
+
+NAMES = {load(name).kit.fingerprint: name for name in ("tinibot", "liner", "grabber")}
+SAVED_BY_NAME = {name: number for number, (name, _) in enumerate(SAVED)}
+MEGA = b"\x1b\x01\0\x01\x0e\x01\x14"  # the greeting of its bootloader
+STALL = next(number for number, name, _ in LINK_FAULTS if name == "STALL")
+
+
+def found(
+    end: OtherEnd,
+    is_radio: bool = False,
+    kit: int | None = None,
+    watch_ms: int = 0,
+    baud: int = 9600,
+) -> list[Finding]:
+    wire = SimulatedWire(end, baud)
+    findings = looked(
+        wire, Line(baud, is_radio, 4711), Expected(kit, "tinibot", NAMES.get), watch_ms
+    )
+    if is_radio:
+        assert {speed for speed, _ in wire.sent} == {baud}
+        assert wire.restarts == 0
+    return findings
+
+
+def only(end: OtherEnd, **how: object) -> tuple[str, bool]:
+    (finding,) = found(end, **how)  # type: ignore[arg-type]
+    return finding.cause, finding.is_sure
+
+
+def causes(end: OtherEnd, **how: object) -> dict[str, Finding]:
+    return {each.cause: each for each in found(end, **how)}  # type: ignore[arg-type]
+
+
+# -- a robot ------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("is_radio", [False, True])
+def test_a_robot_that_is_fine(is_radio: bool) -> None:
+    (finding,) = found(Firmware(), is_radio=is_radio, kit=KIT)
+    assert (finding.cause, finding.is_sure) == ("fine", True)
+    assert finding.values["name"] == "ANA"
+    assert finding.values["id"] == "12347f3a"
+
+
+@pytest.mark.parametrize("is_radio", [False, True])
+def test_only_questions_are_asked_of_a_robot_and_nothing_that_stops_it(is_radio: bool) -> None:
+    """No frame acts, and there are never four zeros in a row: these would stop it."""
+    end = Firmware(state=state("RUNNING"))
+    end.deaf = 3
+    found(end, is_radio=is_radio, kit=KIT, watch_ms=3000)
+    assert set(end.requests) == QUESTIONS
+    assert b"\0" * STOP_RUN not in b"".join(end.got)
+
+
+@pytest.mark.parametrize(
+    ("values", "cause"),
+    [
+        ({"isa_major": 1}, "firmware_older"),
+        ({"isa_major": 3}, "firmware_newer"),
+        ({"minor": 9}, "fine"),
+        ({"isa_minor": 9}, "fine"),
+        ({"kit": next(kit for kit, name in NAMES.items() if name == "liner")}, "wrong_kit"),
+        ({"reset": reset("BROWN_OUT")}, "brown_out"),
+        ({"reset": reset("WATCHDOG")}, "hung"),
+        ({"reset": 99}, "fine"),
+        ({"fault": STALL}, "hung"),
+        ({"saved": SAVED_BY_NAME["LOW_SUPPLY"]}, "low_supply"),
+    ],
+)
+def test_what_a_robot_tells(values: dict[str, int], cause: str) -> None:
+    assert only(Firmware(**values), kit=KIT) == (cause, True)
+
+
+@pytest.mark.parametrize(
+    ("values", "cause"),
+    [
+        ({"state": state("STOPPED")}, "stopped"),
+        ({"state": state("FAULTED")}, "stopped"),
+        ({"saved": SAVED_BY_NAME["SAVING"]}, "not_saved_yet"),
+        ({"saved": SAVED_BY_NAME["OTHER_VERSION"]}, "other_program"),
+    ],
+)
+def test_what_is_good_to_know_is_nothing_wrong(values: dict[str, int], cause: str) -> None:
+    findings = found(Firmware(**values), kit=KIT)
+    assert [each.cause for each in findings] == [cause, "fine"]
+    assert not any(each.is_wrong for each in findings)
+
+
+def test_a_kit_that_nobody_knows() -> None:
+    assert only(Firmware(kit=0x1234)) == ("unknown_kit", True)
+    assert only(Firmware(kit=0x1234), kit=0x1234) == ("fine", True)
+
+
+@pytest.mark.parametrize(
+    ("detail", "cause"), [(0, "firmware_older"), (2, "firmware_newer"), (99, "firmware_newer")]
+)
+def test_a_robot_of_another_link(detail: int, cause: str) -> None:
+    end = Firmware()
+    end.refuses = (STATUSES["OTHER_LINK"], detail)
+    assert only(end) == (cause, True)
+
+
+def test_a_robot_that_restarts_by_itself() -> None:
+    end = Firmware()
+    end.restarts_ms, end.resets = 700, "POWER"
+    finding = causes(end)["restarts"]
+    assert finding.is_sure and int(finding.values["count"]) >= 2
+    assert finding.values["reset"] == "POWER"
+
+
+def test_a_robot_that_its_watchdog_restarts() -> None:
+    end = Firmware()
+    end.restarts_ms, end.resets = 700, "WATCHDOG"
+    assert "hung" in causes(end)
+
+
+@pytest.mark.parametrize(("resets", "is_sure"), [("BROWN_OUT", True), ("POWER", False)])
+def test_a_robot_that_restarts_when_its_motors_start(resets: str, is_sure: bool) -> None:
+    """Sure where its chip tells the voltage, else probably."""
+
+    class Driver(Firmware):
+        def answer(self, data: bytes) -> bytes:
+            if self.now_ms == 9000:  # its button
+                self.hello["state"] = state("RUNNING")
+            return super().answer(data)
+
+    end = Driver()
+    end.restarts_ms, end.resets = 10_000, resets
+    finding = causes(end, watch_ms=12_000)["motors_restart"]
+    assert finding.is_sure == is_sure
+    end = Driver()
+    end.restarts_ms, end.resets = 10_000, resets
+    assert "motors_restart" not in causes(end)  # it was not watched for so long
+
+
+@pytest.mark.parametrize("is_radio", [False, True])
+def test_a_radio_that_loses_much(is_radio: bool) -> None:
+    end = Firmware()
+    end.deaf, end.hears_badly = 5, True
+    finding = causes(end, is_radio=is_radio)["lossy"]
+    assert finding.is_sure and int(finding.values["missed"]) >= 3
+    assert int(finding.values["damaged"]) >= 3
+
+
+def test_one_that_is_lost_among_twenty_is_no_bad_line() -> None:
+    end = Firmware()
+    end.deaf = 17
+    assert "lossy" not in causes(end)
+
+
+def test_a_line_that_was_bad_before_is_probably_bad() -> None:
+    finding = causes(Firmware(damaged=60))["lossy"]
+    assert not finding.is_sure
+
+
+def test_a_counter_that_begins_again_is_no_damage() -> None:
+    assert causes(Firmware(damaged=255, framing=0))["lossy"].values["missed"] == "0"
+
+
+@pytest.mark.parametrize("requests", [1, 5, 22])
+def test_a_robot_that_falls_silent(requests: int) -> None:
+    end = Firmware()
+    end.dies_after = requests
+    assert only(end) == ("falls_silent", False)
+
+
+# -- no robot -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("baud", [19200, 38400, 57600, 115200])
+def test_a_robot_at_another_speed(baud: int) -> None:
+    (finding,) = found(Firmware(baud))
+    assert (finding.cause, finding.is_sure, finding.values["baud"]) == (
+        "wrong_baud",
+        True,
+        str(baud),
+    )
+
+
+def test_a_robot_at_another_speed_with_another_trouble() -> None:
+    end = Firmware(115200, saved=SAVED_BY_NAME["LOW_SUPPLY"])
+    assert [each.cause for each in found(end)] == ["wrong_baud", "low_supply"]
+
+
+@pytest.mark.parametrize(
+    ("end", "cause", "is_sure"),
+    [
+        (Echo(), "echo", True),
+        (Sketch(), "other_sketch", True),
+        (Sketch(115200), "other_sketch", True),
+        (Hc05(), "module_set_up", True),
+        (Hc06(), "module_alone", True),
+        (Hm10(57600), "module_alone", True),
+        (Bt05(), "module_alone", True),
+        (Board(), "other_sketch", False),
+        (Board(57600), "other_sketch", False),
+        (Board(open_ms=None), "bootloader_only", True),
+        (Board(57600, open_ms=None), "bootloader_only", True),
+        (Board(115200, MEGA, b"\x1b\x01\0\x0b\x0e\x01\0\x08AVRISP_2!"), "other_sketch", False),
+        (Babble(), "garbled", False),
+        (Nobody(), "silent", False),
+    ],
+)  # fmt: skip
+def test_on_a_cable(end: OtherEnd, cause: str, is_sure: bool) -> None:
+    assert only(end) == (cause, is_sure)
+
+
+@pytest.mark.parametrize(
+    ("end", "cause", "is_sure"),
+    [
+        (Echo(), "echo", True),
+        (Sketch(), "other_sketch", False),
+        (Babble(), "module_baud", False),
+        (Nobody(), "crossed", False),
+    ],
+)
+def test_by_radio(end: OtherEnd, cause: str, is_sure: bool) -> None:
+    assert only(end, is_radio=True) == (cause, is_sure)
+
+
+def test_a_robot_behind_a_module_of_another_speed() -> None:
+    """The radio carries bytes; it is the module's wire that garbles them."""
+
+    class Behind(Nobody):
+        def __init__(self) -> None:
+            super().__init__()
+            self.wire = SimulatedWire(Sketch(115200), 9600)
+
+        def answer(self, data: bytes) -> bytes:
+            return self.wire.heard(1)
+
+    assert only(Behind(), is_radio=True) == ("module_baud", False)
+
+
+def test_what_a_sketch_prints_is_told_in_part_and_as_text() -> None:
+    end = Sketch()
+    end.line = b"x" * 300 + b"\r\n"
+    (finding,) = found(end)
+    assert finding.values["said"] == "x" * 60
+    assert readable(b"\x1b[2J\x07\x07\x07\x07") == ""
+    assert readable(b"ab") == ""
+
+
+def test_a_wire_that_is_gone_is_an_os_error() -> None:
+    wire = SimulatedWire(Firmware())
+    wire.close()
+    with pytest.raises(OSError):
+        looked(wire, Line(9600, False, 1), Expected(None, "", NAMES.get))

@@ -1,0 +1,68 @@
+"""A computer of files in a folder, whose programs answer what a test says."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from tiniscript.doctor.system import Owner, ThisComputer
+from tiniscript.link.ports import Found
+
+
+class FakeComputer(ThisComputer):
+    """`owners` are the group of a file and whether it may be used; `outputs` those of programs."""
+
+    def __init__(self, root: Path, platform: str) -> None:
+        super().__init__(root)
+        self.platform = platform
+        self.listed: list[Found] = []
+        self.outputs: dict[tuple[str, ...], str] = {}
+        self.owners: dict[str, tuple[int, bool]] = {}
+        self.group_numbers: set[int] = set()
+        self.user_name = "somebody"
+        self.asked: list[tuple[str, ...]] = []
+
+    def add_port(self, port: str, description: str = "", exists: bool = True) -> None:
+        self.listed.append(Found(port, description))
+        if exists:
+            self.owners.setdefault(port, (20, True))
+
+    def write(self, path: str, text: str) -> None:
+        file = self.root / path.lstrip("/")
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text, encoding="utf-8")
+
+    def usb(self, name: str, vendor: str, product: str, driver: str = "", tty: str = "") -> None:
+        """Plug a USB device in; `driver` is what has its only interface."""
+        folder = f"/sys/bus/usb/devices/{name}"
+        self.write(f"{folder}/idVendor", vendor + "\n")
+        self.write(f"{folder}/idProduct", product + "\n")
+        part = f"{folder}:1.0"
+        self.write(f"{part}/bInterfaceClass", "ff\n")
+        if driver:
+            link = self.root / f"{part}/driver".lstrip("/")
+            link.symlink_to(f"../../../bus/usb/drivers/{driver}")
+        if tty:
+            self.write(f"{part}/{tty}/dev", "188:0\n")
+
+    def program(self, number: int, name: str, opens: str = "") -> None:
+        self.write(f"/proc/{number}/comm", name + "\n")
+        if opens:
+            folder = self.root / f"proc/{number}/fd"
+            folder.mkdir()
+            (folder / "3").symlink_to(opens)
+
+    def ports(self) -> list[Found]:
+        return self.listed
+
+    def owner(self, path: str) -> Owner | None:
+        return Owner(*self.owners[path]) if path in self.owners else None
+
+    def groups(self) -> set[int]:
+        return self.group_numbers
+
+    def user(self) -> str:
+        return self.user_name
+
+    def output(self, *words: str) -> str | None:
+        self.asked.append(words)
+        return self.outputs.get(words)
