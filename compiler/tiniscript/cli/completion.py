@@ -14,7 +14,13 @@ from tiniscript.cli.texts.verbs import VERBS
 
 NAMES = "tsc", "tiniscript"
 ALIASES = {"help": "ayuda"}
-FILES = {"program", "robot", "world", "file"}  # kinds whose value may be the name of a file
+FILES = {
+    "program",
+    "robot",
+    "world",
+    "file",
+    "action",
+}  # kinds whose value may be the name of a file
 DEVICES = "/dev/ttyUSB*", "/dev/ttyACM*", "/dev/rfcomm*", "/dev/cu.*"  # ports of Linux and macOS
 
 
@@ -36,6 +42,10 @@ def words_of(kind: Kind) -> list[str]:
         from tiniscript.diagnostics.codes import CODES
 
         return list(CODES)
+    if kind.name == "action":
+        from tiniscript.cli.commands.lesson import ACTIONS
+
+        return list(ACTIONS)
     return {"verb": list(VERBS), "hurry": ["max"]}.get(kind.name, list(kind.choices))
 
 

@@ -57,7 +57,7 @@ def made(
     try:
         from tiniscript.virtual.robot import Settings, VirtualRobot
     except (ImportError, OSError, RuntimeError) as why:  # missing, or not for this computer
-        raise _not_installed("virtual_needs_wasmtime", why) from None
+        raise not_installed("virtual_needs_wasmtime", why) from None
     settings = Settings(seed=seed, noise=noise, motors=motors, told=told, baud=baud)
     try:
         return VirtualRobot(profile.speaking(language), world, settings, memory)
@@ -117,7 +117,7 @@ def check_picture(options: Namespace) -> None:
     try:
         import PIL.Image  # noqa: F401
     except ImportError as why:
-        raise _not_installed("plot_needs_pillow", why) from None
+        raise not_installed("plot_needs_pillow", why) from None
 
 
 def draw_picture(options: Namespace, robot: VirtualRobot, language: str) -> None:
@@ -176,7 +176,7 @@ def _motors(found: str | None, language: str) -> tuple[float, float]:
     return left, right
 
 
-def _not_installed(key: str, why: Exception) -> CommandError:
+def not_installed(key: str, why: Exception) -> CommandError:
     from tiniscript.library import install_advice
 
     return CommandError(2, key, why=str(why), how=install_advice.command(install_advice.VIRTUAL))

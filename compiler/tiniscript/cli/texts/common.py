@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from importlib import import_module
 
 from tiniscript.printable import printable
 
@@ -202,43 +203,36 @@ def _plain(value: object) -> object:
     return value
 
 
+# Sentences that few commands say: the files of this folder, and their tables. Each is imported where
+# no sentence was found before it.
+_LATER = (
+    ("robot", "LINK_TEXTS"),
+    ("simulator", "VIRTUAL_TEXTS"),
+    ("owners", "OWNER_TEXTS"),
+    ("firmware", "FLASH_TEXTS"),
+    ("lessons", "LESSON_TEXTS"),
+    ("module", "MODULE_TEXTS"),
+    ("doctor", "DOCTOR_TEXTS"),
+)
+
+
 def text(key: str, language: str) -> str:
-    """Return a sentence as `Said`. Sentences about robots and ports are imported on first use."""
-    found = TEXTS.get(key)
-    if found is None:
-        from tiniscript.cli.texts.robot import LINK_TEXTS
-
-        found = LINK_TEXTS.get(key)
-    if found is None:
-        from tiniscript.cli.texts.simulator import VIRTUAL_TEXTS
-
-        found = VIRTUAL_TEXTS.get(key)
-    if found is None:
-        from tiniscript.cli.texts.owners import OWNER_TEXTS
-
-        found = OWNER_TEXTS.get(key)
-    if found is None:
-        from tiniscript.cli.texts.firmware import FLASH_TEXTS
-
-        found = FLASH_TEXTS.get(key)
-    if found is None:
-        from tiniscript.cli.texts.module import MODULE_TEXTS
-
-        found = MODULE_TEXTS.get(key)
-    if found is None:
-        from tiniscript.cli.texts.doctor import DOCTOR_TEXTS
-
-        found = DOCTOR_TEXTS[key]
-    english, spanish = found
-    return Said(spanish if language == "es" else english)
+    """Return a sentence as `Said`."""
+    for each in _tables():
+        if key in each:
+            english, spanish = each[key]
+            return Said(spanish if language == "es" else english)
+    raise KeyError(key)
 
 
 def has_text(key: str) -> bool:
-    from tiniscript.cli.texts.owners import OWNER_TEXTS
-    from tiniscript.cli.texts.robot import LINK_TEXTS
-    from tiniscript.cli.texts.simulator import VIRTUAL_TEXTS
+    return any(key in each for each in _tables())
 
-    return any(key in each for each in (TEXTS, LINK_TEXTS, VIRTUAL_TEXTS, OWNER_TEXTS))
+
+def _tables() -> Iterator[Mapping[str, tuple[str, str]]]:
+    yield TEXTS
+    for file, name in _LATER:
+        yield getattr(import_module(f"tiniscript.cli.texts.{file}"), name)
 
 
 def language_of(arguments: Sequence[str], environ: Mapping[str, str] = os.environ) -> str:

@@ -75,6 +75,7 @@ BOARD = Kind("board")
 SENSOR = Kind("sensor")
 VERB = Kind("verb")
 HURRY = Kind("hurry")
+ACTION = Kind("action")  # of tsc lesson
 LANGUAGE = Kind("choice", choices=("en", "es"))
 MACHINE = Kind("choice", choices=("python", "cpp"))
 YES_NO = Kind("choice", choices=("yes", "no"))
@@ -97,6 +98,9 @@ OWN = "upload live robot"  # may bring a virtual robot along
 # fmt: off
 OPTIONS: tuple[Option, ...] = (
     # arguments
+    Option("action", "lesson", ("show, check or sheet; without it the lessons are listed", "show, check o sheet; sin esto se listan las lecciones"), ACTION, ("ACTION", "ACCIÓN")),
+    Option("number", "lesson", ("the lesson's number, or the folder of a lesson of your own", "el número de la lección, o la carpeta de una lección tuya"), TEXT, ("N", "N")),
+    Option("program", "lesson", ("with check: a file, a folder of programs, or - for standard input", "con check: un archivo, una carpeta de programas, o - para la entrada estándar"), PROGRAM, ("PROGRAM", "PROGRAMA")),
     Option("program", "compile check run show fmt upload",
            ("a file, or - for standard input", "un archivo, o - para la entrada estándar"), PROGRAM, ("PROGRAM", "PROGRAMA")),
     Option("code", "explain", ("the mistake's code, such as TS012", "el código del error, como TS012"), CODE, ("CODE", "CÓDIGO")),
@@ -107,7 +111,7 @@ OPTIONS: tuple[Option, ...] = (
     Option("about", "help", ("the verb to say more about", "el verbo del que se quiere saber más"), VERB, ("VERB", "VERBO")),
     Option("shell", "completion", ("bash, zsh or powershell", "bash, zsh o powershell"), SHELL, ("SHELL", "TERMINAL"), is_needed=True),
     # the program
-    Option("-e", "compile check run show fmt upload", ("the program itself, instead of a file: `-e 'SI|F(2, 80)'`", "el programa mismo, en vez de un archivo: `-e 'SI|F(2, 80)'`"), TEXT, A_TEXT, "texts", repeats=True),
+    Option("-e", "compile check run show fmt upload lesson", ("the program itself, instead of a file: `-e 'SI|F(2, 80)'`", "el programa mismo, en vez de un archivo: `-e 'SI|F(2, 80)'`"), TEXT, A_TEXT, "texts", repeats=True),
     Option("-e", "live", ("the line, too", "también la línea"), TEXT, A_TEXT, "text"),
     # files
     Option("-o", "compile", ("where to, beside the program if it is not given; - is standard output, where --text writes if it is not given",
@@ -122,6 +126,7 @@ OPTIONS: tuple[Option, ...] = (
                             "escribe una página con un dibujo, todas las tablas y una lista de control, para leerla en un navegador e imprimirla; sin esto se listan aquí los cables"), IMAGE, ("PAGE.html", "PÁGINA.html"), "output"),
     Option("-o", "board", ("where to; standard output if it is not given", "a dónde; la salida estándar si no se da"), IMAGE, A_FILE, "output"),
     Option("-o", "fetch", ("writes its image instead", "escribe su imagen en vez de eso"), IMAGE, A_FILE, "output"),
+    Option("-o", "lesson", ("with sheet: where the page goes; - is standard output", "con sheet: a dónde va la hoja; - es la salida estándar"), IMAGE, ("PAGE.html", "PÁGINA.html"), "output"),
     Option("--map", "compile", ("writes which instruction comes from which line, as JSON", "escribe qué instrucción viene de qué línea, como JSON"), MAP, A_FILE),
     Option("--check", "fmt", ("changes nothing; exit code 1 where something would change", "no cambia nada; código de salida 1 si algo cambiaría")),
     # a run
@@ -133,6 +138,11 @@ OPTIONS: tuple[Option, ...] = (
     Option("--show", "run", ("on a terminal: draws the way and the values as they come", "en una terminal: dibuja el camino y los valores según llegan")),
     Option("--pace", "run", ("with --show: N times as fast as the robot (1); 0 is as fast as possible", "con --show: N veces más rápido que el robot (1); 0 es lo más rápido posible"), NUMBER, N),
     Option("--machine", "run", ("which machine runs it: the one in Python, or the robot's own, in C++", "qué máquina lo ejecuta: la de Python, o la del robot mismo, en C++"), MACHINE, ("python|cpp", "python|cpp")),
+    # a lesson
+    Option("--teacher", "lesson", ("with show or sheet: the teacher's notes, with answers", "con show o sheet: las notas para el docente, con respuestas")),
+    Option("--seed", "lesson", ("with check: only the world of this number, 1 to 4294967295", "con check: solo el mundo de este número, de 1 a 4294967295"), NUMBER, N),
+    Option("--csv", "lesson", ("with check: writes rows of file,verdict,seed,sentence, too", "con check: escribe además filas de file,verdict,seed,sentence"), ROWS, A_FILE),
+    Option("--plot", "lesson", ("with check: draws the way in the world where it failed, or in the last one", "con check: dibuja el camino en el mundo donde falló, o en el último"), PICTURE, ("F.png", "F.png")),
     # the firmware
     Option("--port", "firmware", ("the port of the board's USB cable: `tsc ports` lists them", "el puerto del cable USB de la placa: `tsc ports` los lista"), PORT, P),
     Option("--board", "firmware", ("uno, nano, nano-old (with the bootloader of before 2018) or mega; if none is named, the one that the robot has",
@@ -202,7 +212,7 @@ OPTIONS: tuple[Option, ...] = (
                                    "sin robot: uno virtual se mueve aquí, hasta que el programa termina o Ctrl-C; el de `tsc robot`, si está en marcha en otra terminal. La tecla b es el botón del de aquí; si no hay nadie en una terminal, se pulsa enseguida")),
     Option("--virtual", "live", ("no robot: a virtual one does it here", "sin robot: lo hace aquí uno virtual")),
     # how it is said
-    Option("--json", "check show ping info ports keys doctor module", ("the same as data", "lo mismo como datos")),
+    Option("--json", "check show lesson ping info ports keys doctor module", ("the same as data", "lo mismo como datos")),
     Option("--json", "upload", ("prints the receipt and what comes after it as lines of JSON", "imprime el recibo y lo que viene después como líneas de JSON")),
     Option("--json", "undo", ("prints the receipt, and that it is saved, as lines of JSON", "imprime el recibo, y que está guardado, como líneas de JSON")),
     Option("--json", "stop identify", ("prints a line of JSON for each robot", "imprime una línea de JSON por cada robot")),

@@ -240,6 +240,17 @@ VERBS: dict[str, Verb] = {
          "Un robot virtual: el firmware del verdadero, en un mundo de paredes, líneas y lámparas. Tiene un puerto como cualquier robot, y otra terminal lo encuentra (`tsc upload prog.ts --virtual`). En una terminal se dibuja, y hay teclas para sus botones; en otro lugar una línea dice lo que hace."),
         ends=("Exit code: 0 when it has ended.", "Código de salida: 0 cuando terminó."),
     ),
+    "lesson": Verb(
+        VIRTUAL, ("lesson check 1 prog.ts", "lesson check 1 prog.ts"),
+        ("twelve lessons, whose tasks it checks", "doce lecciones, y revisa sus tareas"),
+        ("Twelve lessons of 45 minutes, from the first line to a robot that follows a line. Without more it lists them; `tsc lesson show 1` prints the pupils' page, `tsc lesson sheet 1 -o sheet.html` makes it a page to print. `tsc lesson check 1 prog.ts` lets the program drive in the worlds of the task, on the virtual robot, and says what is missing; of a folder it checks every program and prints a table. The same program gets the same verdict on every computer.",
+         "Doce lecciones de 45 minutos, desde la primera línea hasta un robot que sigue una línea. Sin nada más las lista; `tsc lesson show 1` imprime la página de los alumnos, `tsc lesson sheet 1 -o hoja.html` hace de ella una hoja para imprimir. `tsc lesson check 1 prog.ts` deja que el programa se mueva en los mundos de la tarea, con el robot virtual, y dice qué falta; de una carpeta revisa todos los programas e imprime una tabla. El mismo programa recibe el mismo resultado en cualquier computadora."),
+        ("[options]\nshow N [--teacher]\ncheck N PROGRAM [options]\nsheet N -o PAGE.html [--teacher]",
+         "[opciones]\nshow N [--teacher]\ncheck N PROGRAMA [opciones]\nsheet N -o PÁGINA.html [--teacher]"),
+        ("With check, `--json` gives a list of `{file, verdict, seed, findings}`. Exit code of check: 0 when every program passes, 1 when one does not.",
+         "Con check, `--json` da una lista de `{file, verdict, seed, findings}`. Código de salida de check: 0 si todos los programas cumplen la tarea, 1 si alguno no."),
+        also=((VIRTUAL, ("lesson", "lesson"), ("list the lessons", "lista las lecciones")),),
+    ),
     "help": Verb(
         ITSELF, ("help upload", "help upload"), ("say more about a verb", "dice más de un verbo"),
         ("Says what a verb does and which options it has, as `tsc VERB --help` does. Without a verb it lists all. `tsc ayuda` is the same.",

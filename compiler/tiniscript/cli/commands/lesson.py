@@ -1,0 +1,129 @@
+"""`tsc lesson`: lists lessons, prints their pages, makes sheets, and checks programs."""
+
+from __future__ import annotations
+
+import sys
+from argparse import Namespace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tiniscript.cli import inputs, outputs
+from tiniscript.cli.errors import CommandError
+from tiniscript.cli.texts.common import Said, text
+
+if TYPE_CHECKING:
+    from tiniscript.lessons.lesson import Lesson, LessonRefused
+
+# What each action takes besides the lesson and the language.
+ACTIONS = {
+    "show": ("teacher",),
+    "check": ("program", "texts", "seed", "csv", "plot", "json"),
+    "sheet": ("teacher", "output"),
+}
+LIST = "list"
+
+
+def run(options: Namespace, language: str) -> int:
+    action = options.action or LIST
+    if action != LIST and action not in ACTIONS:
+        known = f"{', '.join(list(ACTIONS)[:-1])} {text('or', language)} {list(ACTIONS)[-1]}"
+        raise CommandError(2, "lesson_action", known=known, found=inputs.shown(action) or "''")
+    _refuse_others(options, action)
+    if action == LIST:
+        return _list(language)
+    if options.number is None:
+        raise CommandError(2, "lesson_which", action=action)
+    from tiniscript.lessons import catalogue
+    from tiniscript.lessons.lesson import LessonRefused
+
+    try:
+        folder = catalogue.folder_of(options.number)
+        lesson = catalogue.load(folder)
+        if action == "check":
+            from tiniscript.cli.lesson_check import check
+
+            return check(options, lesson, language)
+        if action == "show":
+            return _show(folder, options.teacher, language)
+        return _sheet(folder, lesson, options, language)
+    except LessonRefused as refused:
+        raise _refused(options.number, refused, language) from None
+
+
+def _refuse_others(options: Namespace, action: str) -> None:
+    """Refuse what only goes with another action."""
+    from tiniscript.cli.texts.options import of_verb
+
+    for option in of_verb("lesson"):
+        is_others = any(option.name in taken for taken in ACTIONS.values())
+        if is_others and option.name not in ACTIONS.get(action, ()):
+            if getattr(options, option.name):
+                label = option.flags if not option.is_argument else options.program
+                raise CommandError(
+                    2, "lesson_only", option=label, action="" if action == LIST else action
+                )
+
+
+def _refused(name: str, refused: LessonRefused, language: str) -> CommandError:
+    from tiniscript.lessons.refusals import describe
+
+    lines = describe(refused, language)
+    if refused.reasons[0][0] in ("no_such_lesson", "no_page"):
+        return CommandError(2, "plain", said=lines[0])
+    reasons = Said("\n".join("  " + line for line in lines))
+    return CommandError(2, "lesson_refused", file=inputs.shown(name), reasons=reasons)
+
+
+def _list(language: str) -> int:
+    from tiniscript.lessons import catalogue
+
+    for number, folder in enumerate(catalogue.folders(), 1):
+        lesson = catalogue.load(folder)
+        said = text("lesson_title", language)
+        print(said.format(number=f"{number:2}", title=lesson.titles[language], robot=lesson.robot))
+    print(text("lesson_hint", language), file=sys.stderr)
+    return 0
+
+
+def _page(folder: Path, is_teachers: bool, language: str) -> str:
+    """Return the Markdown of a page; that of a teacher has the answers behind it."""
+    from tiniscript.lessons import catalogue
+
+    page = catalogue.page(folder, catalogue.TEACHER if is_teachers else catalogue.PUPIL, language)
+    if not is_teachers:
+        return page
+    right, wrong = catalogue.answers(folder)
+    parts = [page.rstrip("\n"), f"## {text('lesson_answers', language)}"]
+    for answer in right:
+        parts += [f"{answer.labels[language]}:", _fence(answer.program)]
+    parts.append(f"## {text('lesson_wrong', language)}")
+    for answer in wrong:
+        parts += [f"{answer.labels[language]}:", _fence(answer.program), answer.said[language]]
+    return "\n\n".join(parts) + "\n"
+
+
+def _fence(program: str) -> str:
+    return f"```tiniscript\n{program.strip()}\n```"
+
+
+def _show(folder: Path, is_teachers: bool, language: str) -> int:
+    from tiniscript.cli.terminal import pager
+    from tiniscript.lessons.markdown import as_text
+
+    pager.show(as_text(_page(folder, is_teachers, language)), language)
+    return 0
+
+
+def _sheet(folder: Path, lesson: Lesson, options: Namespace, language: str) -> int:
+    if options.output is None:
+        raise CommandError(2, "lesson_where", number=inputs.shown(options.number))
+    from tiniscript.lessons.sheet import sheet
+
+    page = sheet(_page(folder, options.teacher, language), lesson, options.teacher, language)
+    if options.output == "-":
+        sys.stdout.write(page)
+        return 0
+    outputs.write(Path(options.output), page.encode(), "unwritable")
+    said = text("lesson_sheet", language)
+    print(said.format(file=inputs.shown(options.output), title=lesson.titles[language]))
+    return 0

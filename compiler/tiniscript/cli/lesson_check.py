@@ -1,0 +1,261 @@
+"""`tsc lesson check`: one program, or every program of a folder, in the worlds of a lesson.
+
+Decides what is said of a program and in which form; `lessons.running` lets it drive, and
+`lessons.judging` compares.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from argparse import Namespace
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+from tiniscript.cli import inputs, outputs
+from tiniscript.cli.errors import CommandError
+from tiniscript.cli.options import whole_number
+from tiniscript.cli.texts.common import Said, text
+
+if TYPE_CHECKING:
+    from tiniscript import Compiled
+    from tiniscript.lessons.judging import Finding
+    from tiniscript.lessons.lesson import Lesson
+    from tiniscript.lessons.running import Run
+    from tiniscript.robots.profile import Robot
+
+PROGRAMS = 200  # of a folder
+ENDINGS = (".ts", ".txt")
+PASSED, FAILED, MISTAKES, UNREADABLE = "passed", "failed", "mistakes", "unreadable"
+
+
+class Mark(NamedTuple):
+    """What came of a program. `seed` is that of the world where it failed, 0 for none.
+
+    `said` are pairs of a criterion's kind and a sentence; `run` is the last run.
+    """
+
+    name: str
+    verdict: str
+    seed: int
+    said: tuple[tuple[str, str], ...]
+    run: Run | None = None
+
+
+def check(options: Namespace, lesson: Lesson, language: str) -> int:
+    seeds: Sequence[int] = range(1, lesson.worlds + 1)
+    if options.seed is not None:
+        seeds = [whole_number("--seed", options.seed, 1, 1, 2**32 - 1, language)]
+    if options.program is None and not options.texts:
+        raise CommandError(2, "lesson_no_program", number=inputs.shown(options.number))
+    from tiniscript import robots
+
+    marker = _Marker(lesson, robots.load(lesson.robot), seeds, language)
+    if _is_folder(options):
+        if options.plot is not None:
+            raise CommandError(2, "lesson_one_picture", file=inputs.shown(options.program))
+        marks = [marker.of_file(path, options) for path in _programs(options.program)]
+    else:
+        if options.plot is not None:
+            from tiniscript.cli.robot.simulator_options import check_picture
+
+            check_picture(options)
+        given = inputs.program(options)
+        compiled = marker.compiled(given, "check")
+        if not options.json:
+            outputs.print_diagnostics(compiled, language)
+        marks = [marker.mark(given, compiled)]
+    if options.csv is not None:
+        outputs.write(Path(options.csv), _rows(marks), "unwritable_rows")
+    if options.plot is not None and marks[0].run is not None:
+        _draw(Path(options.plot), marks[0].run, language)
+    if options.json:
+        print(json.dumps([_data(mark) for mark in marks], indent=2, ensure_ascii=False))
+    elif _is_folder(options):
+        _print_table(marks, options, language)
+    else:
+        _print_one(marks[0], seeds, options, language)
+    return 0 if all(mark.verdict == PASSED for mark in marks) else 1
+
+
+class _Marker:
+    """Marks programs by one lesson."""
+
+    def __init__(self, lesson: Lesson, robot: Robot, seeds: Sequence[int], language: str) -> None:
+        self.lesson = lesson
+        self.robot = robot
+        self.seeds = seeds
+        self.language = language
+
+    def of_file(self, path: Path, options: Namespace) -> Mark:
+        """Mark a file of a folder; one that cannot be read gets a row, too."""
+        one = Namespace(program=str(path), texts=[], language=options.language)
+        try:
+            given = inputs.program(one)
+            compiled = self.compiled(given, "check")
+        except CommandError as failure:
+            return Mark(path.name, UNREADABLE, 0, (("", failure.sentence(self.language)),))
+        return self.mark(given._replace(name=path.name), compiled)
+
+    def compiled(self, given: inputs.Input, verb: str) -> Compiled:
+        if given.is_image:
+            file = inputs.shown(given.name)
+            raise CommandError(2, "needs_text", file=file, verb=f"lesson {verb}")
+        return inputs.compiled(given, self.robot, is_strict=True)
+
+    def mark(self, given: inputs.Input, compiled: Compiled) -> Mark:
+        if not compiled.is_right:
+            return Mark(given.name, MISTAKES, 0, tuple(self._mistakes(compiled)))
+        try:
+            from tiniscript.lessons import running
+        except (ImportError, OSError, RuntimeError) as why:  # missing, or not for this computer
+            from tiniscript.cli.robot.simulator_options import not_installed
+
+            raise not_installed("virtual_needs_wasmtime", why) from None
+        from tiniscript.lessons.judging import judged, judged_text
+        from tiniscript.library.compiling import image_of
+        from tiniscript.virtual.world import WorldRefused
+
+        image = image_of(compiled, self.robot)
+        of_text = judged_text(compiled.source.text, self.lesson)
+        run = None
+        for seed in self.seeds:
+            try:
+                run = running.run(image, self.robot, self.lesson, seed)
+            except WorldRefused as refused:
+                raise self._blocked(refused, seed) from None
+            findings = judged(run, self.lesson)
+            if findings:
+                return Mark(given.name, FAILED, seed, self._said([*findings, *of_text]), run)
+        if of_text:
+            return Mark(given.name, FAILED, 0, self._said(of_text), run)
+        return Mark(given.name, PASSED, 0, (), run)
+
+    def _said(self, findings: Iterable[Finding]) -> tuple[tuple[str, str], ...]:
+        from tiniscript.lessons.sentences import sentence
+
+        return tuple((each.kind, sentence(each, self.language)) for each in findings)
+
+    def _mistakes(self, compiled: Compiled) -> Iterable[tuple[str, str]]:
+        from tiniscript.diagnostics.rendering import message
+
+        for diagnostic in compiled.diagnostics:
+            if diagnostic.is_mistake:
+                said = message(diagnostic, compiled.source, self.language)
+                line = text("fault_line", self.language).format(line=said.line, shown=said.message)
+                fix = text("lesson_try", self.language).format(fix=said.fix) if said.fix else ""
+                yield "", f"{line}   {fix}".strip()
+
+    def _blocked(self, refused: Exception, seed: int) -> CommandError:
+        from tiniscript.virtual.world import WorldRefused
+        from tiniscript.virtual.world_refusals import describe
+
+        assert isinstance(refused, WorldRefused)
+        lines = describe(refused, self.language)
+        reasons = Said("\n".join("  " + line for line in lines))
+        file = inputs.shown(self.lesson.name)
+        return CommandError(2, "lesson_world", file=file, seed=str(seed), reasons=reasons)
+
+
+def _is_folder(options: Namespace) -> bool:
+    try:
+        return options.program not in (None, "-") and Path(options.program).is_dir()
+    except (OSError, ValueError):  # a name that no file can have
+        return False
+
+
+def _programs(folder: str) -> list[Path]:
+    """Return the programs of a folder, by their names. Raises CommandError."""
+    try:
+        found = sorted(
+            path
+            for path in Path(folder).iterdir()
+            if path.name.lower().endswith(ENDINGS)
+            and not path.name.startswith(".")
+            and path.is_file()
+        )
+    except OSError as why:
+        reason = why.strerror or str(why)
+        raise CommandError(2, "lesson_folder", file=inputs.shown(folder), why=reason) from None
+    if not found:
+        raise CommandError(2, "lesson_empty", file=inputs.shown(folder))
+    if len(found) > PROGRAMS:
+        raise CommandError(2, "lesson_many", file=inputs.shown(folder), most=str(PROGRAMS))
+    return found
+
+
+def _print_one(mark: Mark, seeds: Sequence[int], options: Namespace, language: str) -> None:
+    number, file = inputs.shown(options.number), inputs.shown(mark.name)
+    if mark.verdict == MISTAKES:
+        print(text("lesson_mistakes", language).format(file=file))
+        return
+    if mark.verdict == PASSED:
+        key = "lesson_passed" if len(seeds) == 1 else "lesson_passed_worlds"
+        print(text(key, language).format(file=file, number=number, worlds=len(seeds)))
+    else:
+        key = "lesson_failed_world" if len(seeds) > 1 and mark.seed else "lesson_failed"
+        print(text(key, language).format(file=file, seed=mark.seed))
+        for _, sentence in mark.said:
+            print(text("lesson_finding", language).format(said=sentence))
+        if len(seeds) > 1 and mark.seed and not options.texts and mark.name != "-":
+            again = text("lesson_again", language)
+            print(again.format(number=number, file=file, seed=mark.seed))
+    if options.plot is not None:
+        print(text("lesson_picture", language).format(file=inputs.shown(options.plot)))
+
+
+def _print_table(marks: Sequence[Mark], options: Namespace, language: str) -> None:
+    """Print a row for each program: its name, the verdict, and the first sentence."""
+    from rich.cells import cell_len, set_cell_size
+
+    rows = [
+        (inputs.shown(mark.name), text(f"verdict_{mark.verdict}", language), _first(mark))
+        for mark in marks
+    ]
+    wide = [max(cell_len(row[k]) for row in rows) for k in (0, 1)]
+    for name, verdict, sentence in rows:
+        cells = f"{set_cell_size(name, wide[0])}  {set_cell_size(verdict, wide[1])}  {sentence}"
+        print(cells.rstrip())
+    passed = sum(mark.verdict == PASSED for mark in marks)
+    count = text("lesson_count", language)
+    number = inputs.shown(options.number)
+    print(count.format(passed=passed, all=len(marks), number=number))
+
+
+def _first(mark: Mark) -> str:
+    from tiniscript.printable import printable
+
+    sentence = printable(mark.said[0][1], 300) if mark.said else ""
+    return f"[{mark.seed}] {sentence}" if mark.seed else sentence
+
+
+def _data(mark: Mark) -> dict[str, object]:
+    findings = [{"kind": kind, "sentence": sentence} for kind, sentence in mark.said]
+    seed = mark.seed or None
+    return {"file": mark.name, "verdict": mark.verdict, "seed": seed, "findings": findings}
+
+
+def _rows(marks: Sequence[Mark]) -> bytes:
+    """Return the marks as CSV, as spreadsheets read it: no cell begins a formula."""
+    file = io.StringIO()
+    writer = csv.writer(file)
+    writer.writerow(("file", "verdict", "seed", "sentence"))
+    for mark in marks:
+        sentence = mark.said[0][1] if mark.said else ""
+        cells = (mark.name, mark.verdict, str(mark.seed or ""), sentence)
+        writer.writerow([f"'{cell}" if cell[:1] in tuple("=+-@\t\r") else cell for cell in cells])
+    return file.getvalue().encode("utf-8-sig", "backslashreplace")
+
+
+def _draw(path: Path, run: Run, language: str) -> None:
+    from tiniscript.virtual.picture import png
+
+    robot = run.robot
+    title = f"{robot.profile.labels[language]['robot']} - {robot.world.labels[language]}"
+    image = png(robot.world, robot.driving.hull, robot.driving.corners, robot.pose, title)
+    outputs.write(path, image, "unwritable_picture")
+
+
+__all__ = ("FAILED", "MISTAKES", "PASSED", "UNREADABLE", "Mark", "check")

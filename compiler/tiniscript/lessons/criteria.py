@@ -1,0 +1,62 @@
+"""The kinds of criteria: one table, which says what each takes.
+
+Knows keys, ranges and defaults. Does not know how a run is judged: `judging` has a function for
+each kind.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+MOST = 10_000.0  # of any number
+
+
+class Number(NamedTuple):
+    """A number of a criterion, from `low` to `high`. Without a default it must be there."""
+
+    key: str
+    low: float
+    high: float
+    default: float | None = None
+
+
+class Kind(NamedTuple):
+    """What a criterion takes besides `kind`, and what it means.
+
+    `places` are how many places at least; 0: it has none. `words` is what its words are: "" for
+    none, "word" of the language or a sensor, "event" of EVENTS, "sensor" of the lesson's robot or
+    TIME.
+    """
+
+    meaning: str
+    numbers: tuple[Number, ...] = ()
+    places: int = 0
+    words: str = ""
+
+
+EVENTS = ("moves", "stops", "beeps", "shows")
+TIMES = Number("times", 1, 100, 1)
+WITHIN = Number("within_cm", 1, 500, 10)
+
+# fmt: off
+KINDS: dict[str, Kind] = {
+    "ends_in": Kind("the robot stands within so many cm of a place at the end", (WITHIN,), places=1),
+    "reaches": Kind("it comes within so many cm of places, in their order", (WITHIN, Number("by_seconds", 0.1, MOST, MOST)), places=1),
+    "stays_in": Kind("it never is further than so many cm from a place", (Number("within_cm", 1, 500),), places=1),
+    "stands_before": Kind("at the end it stands so many cm before what is ahead of it", (Number("low_cm", 0, 400), Number("high_cm", 0, 400))),
+    "faces": Kind("at the end it looks where a heading points to", (Number("heading", -360, 360), Number("within_degrees", 1, 180, 15))),
+    "never_touches": Kind("it touches nothing"),
+    "follows": Kind("its line sensors stay on the black line, for so many cm of it", (Number("within_cm", 1, 500, 6), Number("at_least_cm", 1, MOST))),
+    "drives": Kind("it drives so many cm", (Number("at_least_cm", 0, MOST, 0), Number("at_most_cm", 1, MOST, MOST))),
+    "pauses": Kind("it stands so long between two moves", (Number("at_least_seconds", 0.1, 600), TIMES)),
+    "shows": Kind("it shows a value: any, this one, or that of a sensor or of TIME at that moment",
+                  (TIMES, Number("value", -MOST, MOST, MOST + 1), Number("tolerance", 0, MOST, 0)), words="sensor"),
+    "beeps": Kind("its buzzer sounds so often, at so many different pitches", (TIMES, Number("pitches", 1, 100, 1))),
+    "order": Kind("these things happen one after the other", words="event"),
+    "ends": Kind("the program ends by itself"),
+    "uses": Kind("the text has these words, each so often", (TIMES,), words="word"),
+    "moves": Kind("the text has at most so many moves", (Number("at_most", 1, 1000),)),
+}
+# fmt: on
+
+ANY_VALUE = MOST + 1  # of `shows`, where no value is asked for

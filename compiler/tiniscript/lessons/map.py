@@ -1,0 +1,125 @@
+"""A plan of a lesson's world, from above, as SVG for a page to print.
+
+Knows shapes and greys. What moves from world to world is drawn where `world.toml` has it, with a
+dashed outline. Goals are circles with a flag.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+from tiniscript import robots
+from tiniscript.lessons.lesson import Lesson
+from tiniscript.lessons.variation import point_of
+from tiniscript.virtual.driving import Hull
+from tiniscript.virtual.geometry import Point
+
+GOALS = ("ends_in", "reaches")
+MARGIN_CM = 6.0
+GRID_CM = 20
+DASHED = ' stroke-dasharray="4 2.5"'
+
+
+def plan(lesson: Lesson, title: str) -> str:
+    """Return the drawing, one unit of which is a centimetre. `title` is for who cannot see it."""
+    from html import escape
+
+    world = lesson.world
+    width, height = world.width_cm, world.height_cm
+    moved = {(each.place.part, each.place.number) for each in lesson.variations}
+    parts = [_grid(width, height)]
+
+    def dash(part: str, number: int) -> str:
+        return DASHED if (part, number) in moved else ""
+
+    def row(points: Iterable[Point]) -> str:
+        return " ".join(f"{x:.1f},{height - y:.1f}" for x, y in points)
+
+    for number, line in enumerate(world.lines, 1):
+        parts.append(
+            f'<polyline points="{row(line.points)}" fill="none" stroke="#000"'
+            f' stroke-width="{line.width_cm:g}" stroke-linejoin="round"{dash("lines", number)}/>'
+        )
+    for number, box in enumerate(world.boxes, 1):
+        parts.append(
+            f'<polygon points="{row(box)}" fill="#bbb" stroke="#333"{dash("boxes", number)}/>'
+        )
+    for number, wall in enumerate(world.walls, 1):
+        parts.append(
+            f'<polyline points="{row(wall)}" fill="none" stroke="#333" stroke-width="3"'
+            f"{dash('walls', number)}/>"
+        )
+    for number, lamp in enumerate(world.lamps, 1):
+        x, y = lamp.place.x, height - lamp.place.y
+        parts.append(
+            f'<circle cx="{x:.1f}" cy="{y:.1f}" r="6" fill="#ffd84d" stroke="#333"'
+            f"{dash('lamps', number)}/>"
+        )
+    parts += _goals(lesson)
+    parts.append(_robot(lesson))
+    if world.has_border:
+        parts.append(
+            f'<rect width="{width:g}" height="{height:g}" fill="none" stroke="#333"'
+            ' stroke-width="3"/>'
+        )
+    view = f"{-MARGIN_CM:g} {-MARGIN_CM:g} {width + 2 * MARGIN_CM:g} {height + 2 * MARGIN_CM:g}"
+    body = "\n".join(parts)
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{view}" role="img">\n'
+        f"<title>{escape(title)}</title>\n{body}\n</svg>"
+    )
+
+
+def _grid(width: float, height: float) -> str:
+    """Return lines every 20 cm, so that a pupil can measure."""
+    found = []
+    for x in range(GRID_CM, math.ceil(width), GRID_CM):
+        found.append(f"M{x} 0V{height:g}")
+    for y in range(GRID_CM, math.ceil(height), GRID_CM):
+        found.append(f"M0 {height - y:g}H{width:g}")
+    return f'<path d="{"".join(found)}" stroke="#ddd" stroke-width="0.6"/>'
+
+
+def _goals(lesson: Lesson) -> list[str]:
+    found = []
+    for criterion in lesson.criteria:
+        if criterion.kind not in GOALS:
+            continue
+        for number, place in enumerate(criterion.places, 1):
+            x, y = point_of(place, lesson.world, False)
+            y = lesson.world.height_cm - y
+            within_cm = criterion.numbers["within_cm"]
+            found.append(
+                f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{within_cm:g}" fill="none" stroke="#555"'
+                ' stroke-dasharray="1.5 2"/>'
+            )
+            if len(criterion.places) > 1:
+                found.append(
+                    f'<text x="{x:.1f}" y="{y + 3:.1f}" font-size="9" text-anchor="middle"'
+                    f' font-family="sans-serif">{number}</text>'
+                )
+            elif place.part != "start":
+                found.append(
+                    f'<path d="M{x:.1f} {y:.1f}v-12l9 3.5l-9 3.5" fill="#fff" stroke="#333"/>'
+                )
+    return found
+
+
+def _robot(lesson: Lesson) -> str:
+    """Return the robot where it begins, with an arrow to where it looks."""
+    hull = Hull(robots.load(lesson.robot).body)
+    start = lesson.world.start
+    height = lesson.world.height_cm
+    outline = " ".join(f"{x:.1f},{height - y:.1f}" for x, y in hull.outline(start))
+    along = math.radians(start.heading)
+    x, y = start.x_cm, height - start.y_cm
+    tip_x, tip_y = x + 26 * math.cos(along), y - 26 * math.sin(along)
+    back = [(tip_x - 6 * math.cos(along + turn), tip_y + 6 * math.sin(along + turn))
+            for turn in (0.5, -0.5)]  # fmt: skip
+    head = " ".join(f"L{px:.1f} {py:.1f}" for px, py in [back[0], (tip_x, tip_y), back[1]])
+    return (
+        f'<polygon points="{outline}" fill="#eee" stroke="#333" stroke-width="1.5"/>'
+        f'<path d="M{x:.1f} {y:.1f}L{tip_x:.1f} {tip_y:.1f}M{back[0][0]:.1f} {back[0][1]:.1f}'
+        f'{head}" fill="none" stroke="#333" stroke-width="1.5"/>'
+    )

@@ -1,0 +1,94 @@
+"""The small part of Markdown that pages of lessons are written in: text becomes blocks.
+
+Headings (`#`, `##`), paragraphs, lists (`-`, `- [ ]`, `1.`), tables, and fences of programs; in
+lines `**bold**` and `` `code` ``. Anything else is a paragraph. Knows no HTML (`sheet`).
+"""
+
+from __future__ import annotations
+
+import re
+from textwrap import fill
+from typing import NamedTuple
+
+WIDTH = 80  # columns of a page on a terminal
+ITEM = re.compile(r"(- \[ \]|-|[0-9]{1,2}\.) +(.*)")
+KINDS = {"- [ ]": "checks", "-": "list"}
+
+
+class Block(NamedTuple):
+    """`kind` is title, heading, paragraph, list, checks, steps, table or program.
+
+    `rows` has a row of cells for each line of a table, one cell for each item or line otherwise.
+    """
+
+    kind: str
+    rows: tuple[tuple[str, ...], ...]
+
+
+def blocks(text: str) -> list[Block]:
+    """Return the blocks of a page."""
+    found: list[Block] = []
+    lines = text.split("\n")
+    k = 0
+    while k < len(lines):
+        line = lines[k]
+        if line.startswith("```"):
+            end = next((n for n in range(k + 1, len(lines)) if lines[n] == "```"), len(lines))
+            found.append(Block("program", tuple((each,) for each in lines[k + 1 : end])))
+            k = end + 1
+            continue
+        start = k
+        k += 1
+        if not line.strip():
+            continue
+        if line.startswith("#"):
+            kind = "title" if line.startswith("# ") else "heading"
+            found.append(Block(kind, ((line.lstrip("# "),),)))
+            continue
+        while k < len(lines) and lines[k].strip() and not lines[k].startswith(("#", "```")):
+            k += 1
+        found += _paragraph(lines[start:k])
+    return found
+
+
+def _paragraph(lines: list[str]) -> list[Block]:
+    """Return the blocks of lines without an empty one among them."""
+    if lines[0].startswith("|"):
+        rows = [tuple(cell.strip() for cell in line.strip("| ").split("|")) for line in lines]
+        return [Block("table", tuple(row for row in rows if set("".join(row)) - set("-: ")))]
+    found: list[tuple[str, list[str]]] = []
+    for line in lines:
+        item = ITEM.match(line)
+        kind = KINDS.get(item[1], "steps") if item else "paragraph"
+        if item is None and found:
+            found[-1][1][-1] += " " + line.strip()
+        elif found and found[-1][0] == kind:
+            found[-1][1].append(item[2] if item else line)
+        else:
+            found.append((kind, [item[2] if item else line]))
+    return [Block(kind, tuple((row,) for row in rows)) for kind, rows in found]
+
+
+def as_text(page: str) -> str:
+    """Return a page as a terminal shows it."""
+    return "\n".join(_as_text(block) + "\n" for block in blocks(page))
+
+
+def _as_text(block: Block) -> str:
+    if block.kind == "program":
+        return "\n".join(f"    {row}" for (row,) in block.rows)
+    rows = [tuple(re.sub(r"\*\*|`", "", cell) for cell in row) for row in block.rows]
+    if block.kind == "table":
+        wide = [max(len(row[k]) for row in rows if k < len(row)) for k in range(len(rows[0]))]
+        return "\n".join(
+            "  ".join(f"{cell:{width}}" for cell, width in zip(row, wide, strict=False)).rstrip()
+            for row in rows
+        )
+    if block.kind in ("title", "heading"):
+        (title,) = rows[0]
+        return f"{title}\n{('=' if block.kind == 'title' else '-') * len(title)}"
+    lines = []
+    for number, (row,) in enumerate(rows, 1):
+        mark = {"list": "- ", "checks": "[ ] ", "steps": f"{number}. "}.get(block.kind, "")
+        lines.append(fill(row, WIDTH, initial_indent=mark, subsequent_indent=" " * len(mark)))
+    return "\n".join(lines)

@@ -1,0 +1,235 @@
+"""Reads the TOML of a lesson and of its answers, or raises all complaints about it at once.
+
+Opens no files.
+"""
+
+from __future__ import annotations
+
+import re
+
+from tiniscript import robots
+from tiniscript.fixed_point import ONE
+from tiniscript.lessons.criteria import ANY_VALUE, EVENTS, KINDS, Number
+from tiniscript.lessons.lesson import (
+    PARTS,
+    Answer,
+    Criterion,
+    Lesson,
+    LessonRefused,
+    Place,
+    Variation,
+)
+from tiniscript.robots.profile import LANGUAGES, Reason
+from tiniscript.robots.refusals import shown
+from tiniscript.robots.toml_table import Table, parse_toml
+from tiniscript.virtual.world import World
+from tiniscript.words import WORDS, nearest
+
+LABEL_CHARACTERS = 80
+PROGRAM_CHARACTERS = 20_000
+MOST_SECONDS, MOST_WORLDS, MOST_NOISE = 600, 20, 20
+MOST_CM = 2000
+ROWS = 100  # criteria, variations, answers
+PART = re.compile(r"(start)|(walls|boxes|lines|lamps)\[([1-9][0-9]{0,2})\]")
+NO_LABELS = {"en": "the goal", "es": "la meta"}
+TIME = "TIME"
+
+
+def read(text: str, world: World, name: str) -> Lesson:
+    """Return the lesson that a text describes, with its world. Raises LessonRefused."""
+    root, reasons = _root(text)
+    title = root.table("title", "[title]")
+    titles = _labels(title)
+    title.finish()
+    robot = root.choice("robot", robots.names())
+    sensors: tuple[str, ...] = ()
+    if robot:
+        sensors = tuple(device.name for device in robots.load(robot).kit.sensors)
+    lesson = Lesson(
+        shown(name),
+        robot,
+        titles,
+        root.number("seconds", ONE, MOST_SECONDS * ONE, "seconds = 20", ONE) / ONE,
+        root.whole("worlds", 1, MOST_WORLDS, default=1),
+        root.number("noise_percent", 0, MOST_NOISE * ONE) / ONE / 100,
+        root.yes_no("mirror", False),
+        world,
+        tuple(_variation(each, world) for each in _rows(root, "varies")),
+        tuple(_criterion(each, world, sensors) for each in _rows(root, "criteria")),
+    )
+    if not lesson.criteria and not reasons:
+        root.complain("no_criteria", "criteria")
+    root.finish()
+    if reasons:
+        raise LessonRefused(*reasons)
+    return lesson
+
+
+def read_answers(text: str) -> tuple[list[Answer], list[Answer]]:
+    """Return the right answers of a lesson and the typical wrong ones. Raises LessonRefused."""
+    root, reasons = _root(text)
+    right = [_answer(each, False) for each in _rows(root, "right")]
+    wrong = [_answer(each, True) for each in _rows(root, "wrong")]
+    root.finish()
+    if reasons:
+        raise LessonRefused(*reasons)
+    return right, wrong
+
+
+def _root(text: str) -> tuple[Table, list[Reason]]:
+    found = parse_toml(text)
+    if isinstance(found, tuple):
+        raise LessonRefused(found)
+    reasons: list[Reason] = []
+    return Table(found, "", reasons), reasons
+
+
+def _rows(root: Table, key: str) -> list[Table]:
+    tables = root.tables(key)
+    if len(tables) > ROWS:
+        root.complain("too_many_parts", key, found=str(len(tables)), most=str(ROWS))
+    return tables[:ROWS]
+
+
+def _answer(table: Table, is_wrong: bool) -> Answer:
+    program = table.text("program", "program = 'SI|F(2, 80)'") or ""
+    if len(program) > PROGRAM_CHARACTERS:
+        table.complain("label_bad", "program", most=str(PROGRAM_CHARACTERS))
+    labels = _labels(table)
+    said = {}
+    if is_wrong:
+        says = table.table("says", "[wrong.says]")
+        said = _labels(says, most=400)
+        says.finish()
+    table.finish()
+    return Answer(program, labels, said)
+
+
+def _labels(table: Table, most: int = LABEL_CHARACTERS) -> dict[str, str]:
+    """Return a text in each language; both must be there."""
+    found = {}
+    for language in LANGUAGES:
+        label = table.text(language, f'{language} = "…"')
+        if label is not None and (
+            not label.strip() or len(label) > most or not label.isprintable()
+        ):
+            table.complain("label_bad", language, most=str(most))
+        found[language] = label or ""
+    return found
+
+
+def _variation(table: Table, world: World) -> Variation:
+    text = table.text("part", 'part = "walls[1]"')
+    place = Place("start", 0) if text is None else _part(table, "part", text, world)
+    spans = []
+    for key, most in (("x_cm", MOST_CM), ("y_cm", MOST_CM), ("heading", 360)):
+        low, high = table.pair(key, "") if table.has(key) else (0, 0)
+        if low > high:
+            table.complain("range_empty", key)
+        if max(abs(low), abs(high)) > most * ONE:
+            table.complain("out_of_range", key, found=f"[{low / ONE:g}, {high / ONE:g}]",
+                           low=str(-most), high=str(most))  # fmt: skip
+        spans.append((low / ONE, high / ONE))
+    if place.part == "lamps" and table.has("heading"):
+        table.complain("lamp_has_no_heading", "heading")
+    table.finish()
+    return Variation(place, *spans)
+
+
+def _criterion(table: Table, world: World, sensors: tuple[str, ...]) -> Criterion:
+    name = table.text("kind", 'kind = "never_touches"')
+    kind = KINDS.get(name or "")
+    if name is None or kind is None:
+        if name is not None:
+            near = nearest(name, list(KINDS)) or ""
+            known = ", ".join(KINDS)
+            table.complain("unknown_criterion", "kind", found=shown(name), near=near, known=known)
+        return Criterion("", {}, (), (), NO_LABELS)
+    numbers = {each.key: _number(table, each) for each in kind.numbers}
+    for low, high in (("low_cm", "high_cm"), ("at_least_cm", "at_most_cm")):
+        if low in numbers and numbers[low] > numbers.get(high, numbers[low]):
+            table.complain("low_above_high", low, other=table.path_of(high))
+    places = _places(table, world, kind.places) if kind.places else ()
+    labels: dict[str, str] = NO_LABELS
+    if kind.places and any(table.has(language) for language in LANGUAGES):
+        labels = _labels(table)
+    words: tuple[str, ...] = ()
+    if kind.words == "sensor":
+        words = _sensor(table, sensors)
+    elif kind.words:
+        words = _words(table, EVENTS if kind.words == "event" else (*WORDS, *sensors))
+    table.finish()
+    return Criterion(name, numbers, words, places, labels)
+
+
+def _number(table: Table, what: Number) -> float:
+    if what.default is not None and not table.has(what.key):
+        return what.default
+    low, high = round(what.low * ONE), round(what.high * ONE)
+    return table.number(what.key, low, high, f"{what.key} = {what.low:g}") / ONE
+
+
+def _sensor(table: Table, sensors: tuple[str, ...]) -> tuple[str, ...]:
+    """Return whose value `shows` asks for, if it does."""
+    if not table.has("what"):
+        return ()
+    found = table.text("what")
+    if found is None or found in (*sensors, TIME):
+        return () if found is None else (found,)
+    table.complain("not_one_of", "what", found=shown(found), choices=", ".join((*sensors, TIME)))
+    return ()
+
+
+def _words(table: Table, known: tuple[str, ...]) -> tuple[str, ...]:
+    found = table.get("words", f'words = ["{known[0]}"]')
+    if found is None:
+        return ()
+    if not isinstance(found, list) or not all(type(each) is str for each in found) or not found:
+        table.complain("words_form", "words", example=f'["{known[0]}"]')
+        return ()
+    for each in found:
+        if each not in known:
+            near = nearest(each, known) or ""
+            table.complain("unknown_word", "words", found=shown(each), near=near)
+    return tuple(found)
+
+
+def _places(table: Table, world: World, least: int) -> tuple[Place, ...]:
+    """Return the places of `at`: a part of the world, a point, or a list of them."""
+    value = table.get("at", 'at = "start"')
+    if value is None:
+        return ()
+    is_point = isinstance(value, list) and len(value) == 2 and not isinstance(value[0], list | str)
+    several = value if isinstance(value, list) and not is_point else [value]
+    found = []
+    for each in several:
+        if isinstance(each, str):
+            found.append(_part(table, "at", each, world))
+        elif isinstance(each, list) and len(each) == 2:
+            pairs = Table({"at": [each]}, table.path, table.reasons)
+            points = pairs.pairs("at", -MOST_CM * ONE, MOST_CM * ONE, "")
+            for x_cm, y_cm in points or ():
+                found.append(Place("", 0, x_cm / ONE, y_cm / ONE))
+        else:
+            table.complain("place_form", "at")
+    if len(found) < least and not table.reasons:
+        table.complain("place_form", "at")
+    return tuple(found)
+
+
+def _part(table: Table, key: str, text: str, world: World) -> Place:
+    """Return the part of a world that a text names, such as `boxes[2]`."""
+    match = PART.fullmatch(text)
+    if match is None:
+        table.complain("unknown_part", key, found=shown(text), parts=", ".join(PARTS[1:]))
+        return Place("start", 0)
+    if match[1]:
+        return Place("start", 0)
+    number, there = int(match[3]), len(getattr(world, match[2]))
+    if number > there:
+        table.complain("no_such_part", key, found=shown(text), there=str(there))
+        return Place("start", 0)
+    return Place(match[2], number)
+
+
+__all__ = ("ANY_VALUE", "NO_LABELS", "TIME", "read", "read_answers")

@@ -1,0 +1,217 @@
+"""Lets a program drive in the world of a seed, and notes what a teacher would see.
+
+The robot is the virtual one, in its own time: a run takes no longer than it must, and gives the
+same on every computer. A run is cut after the lesson's seconds, and after EVENTS actions, so that
+no program holds a checker up.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple, TypeVar
+
+from tiniscript.bytecode.image import Image
+from tiniscript.lessons.lesson import Lesson
+from tiniscript.lessons.variation import varied
+from tiniscript.link.connection import PendingRequest
+from tiniscript.link.session import Session
+from tiniscript.robots.kinematics import Pose
+from tiniscript.robots.profile import Robot
+from tiniscript.virtual.geometry import joined
+from tiniscript.virtual.robot import Settings, VirtualRobot
+from tiniscript.virtual.world import World
+from tiniscript.vm.trace import Event
+
+STEP_MS = 20  # between two looks at where the robot is
+EVENTS = 200_000  # that a run may have
+BRINGING_MS = 60_000  # limit for the way of a program to the robot
+PUSH_MS = 60
+
+# How a run ends.
+DONE, FAULT, LIMIT, BUSY, ASKS = "DONE", "FAULT", "LIMIT", "BUSY", "ASKS"
+
+T = TypeVar("T")
+
+
+class Sample(NamedTuple):
+    """Where the robot was. Times of a run are milliseconds since its start."""
+
+    ms: int
+    pose: Pose
+
+
+class Touch(NamedTuple):
+    """It came against something: `what` is "wall", "box" or "border"."""
+
+    ms: int
+    what: str
+
+
+class Shown(NamedTuple):
+    """A value of SHOW in thousandths (0 and 1 for yes/no), and where the robot was then."""
+
+    ms: int
+    value: int
+    is_yes_no: bool
+    pose: Pose
+
+
+class Beep(NamedTuple):
+    ms: int
+    hertz: int
+
+
+class Run(NamedTuple):
+    """What a program did. `ending` is DONE, FAULT, LIMIT, BUSY (it took no time) or ASKS (PING).
+
+    `motors` are the settings of both motors, each with its time; `happened` are words of
+    `criteria.EVENTS` in their order.
+    """
+
+    seed: int
+    ending: str
+    fault: str
+    end_ms: int
+    track: tuple[Sample, ...]
+    touches: tuple[Touch, ...]
+    shown: tuple[Shown, ...]
+    beeps: tuple[Beep, ...]
+    motors: tuple[tuple[int, int, int], ...]
+    happened: tuple[str, ...]
+    driven_cm: float
+    robot: VirtualRobot
+
+    @property
+    def world(self) -> World:
+        return self.robot.world
+
+
+def run(image: Image, profile: Robot, lesson: Lesson, seed: int) -> Run:
+    """Return what a program does in the world of a seed.
+
+    Raises WorldRefused where the robot does not fit into that world.
+    """
+    robot = VirtualRobot(
+        profile, varied(lesson, seed), Settings(seed=seed, noise=lesson.noise, eeprom_us=0)
+    )
+    witness = _Witness(robot, seed)
+    if image.start == "PING":
+        return witness.run(ASKS)
+    _bring(robot, image)
+    witness.look()
+    end_ms = robot.now_ms + BRINGING_MS
+    while witness.began_ms is None and robot.now_ms < end_ms:
+        robot.step(robot.now_ms + 1)
+        witness.look()
+    assert witness.began_ms is not None, "the program does not begin"
+    limit_ms = witness.began_ms + round(lesson.seconds * 1000)
+    while robot.is_running:
+        if robot.now_ms >= limit_ms:
+            robot.rest()
+            return witness.run(LIMIT)
+        robot.step(min(robot.now_ms + STEP_MS, limit_ms))
+        witness.look()
+        if witness.events > EVENTS:
+            robot.rest()
+            return witness.run(BUSY)
+    return witness.run(FAULT if robot.fault else DONE)
+
+
+def _bring(robot: VirtualRobot, image: Image) -> None:
+    """Bring a program to the robot and start it, by its button where it begins with SB."""
+    profile = robot.profile
+    session = Session(robot.settings.seed, profile.board.baud, profile.kit.fingerprint)
+
+    def wait(request: PendingRequest[T]) -> None:
+        end_ms = robot.now_ms + BRINGING_MS
+        while request.outcome is None:
+            now_ms = robot.now_ms + 1
+            assert now_ms < end_ms, "the robot does not answer"
+            session.receive(robot.step(now_ms, session.poll(now_ms)), now_ms)
+        assert not request.outcome.status, request.outcome
+
+    wait(session.hello())
+    wait(session.upload(image, True, False, True))
+    if image.start == "SB":
+        robot.press()
+        robot.step(robot.now_ms + PUSH_MS)
+        robot.let_go()
+
+
+class _Witness:
+    """Notes what a robot does, from the start of its program on."""
+
+    def __init__(self, robot: VirtualRobot, seed: int) -> None:
+        self.robot = robot
+        self.seed = seed
+        self.began_ms: int | None = None
+        self.events = 0
+        self._bumps = 0
+        self._track: list[Sample] = []
+        self._touches: list[Touch] = []
+        self._shown: list[Shown] = []
+        self._beeps: list[Beep] = []
+        self._motors: list[tuple[int, int, int]] = []
+        self._happened: list[str] = []
+        self._is_moving = False
+
+    def look(self) -> None:
+        """Take what has happened since the last time."""
+        robot = self.robot
+        pose = robot.pose
+        for event in robot.take_events():
+            self.events += 1
+            if event.what == "START" and self.began_ms is None:
+                self.began_ms = event.time_ms
+                self._track.append(Sample(0, robot.world.start))
+            elif self.began_ms is not None:
+                self._take(event, event.time_ms - self.began_ms, pose)
+        if self.began_ms is None:
+            return
+        ms = robot.now_ms - self.began_ms
+        if pose != self._track[-1].pose:
+            self._track.append(Sample(ms, pose))
+        if robot.driving.bumps != self._bumps:
+            self._bumps = robot.driving.bumps
+            self._touches.append(Touch(ms, self._touched(pose)))
+
+    def _take(self, event: Event, ms: int, pose: Pose) -> None:
+        if event.what == "MOTORS":
+            self._motors.append((ms, event.values[0], event.values[1]))
+            if any(event.values) != self._is_moving:
+                self._is_moving = not self._is_moving
+                self._happened.append("moves" if self._is_moving else "stops")
+        elif event.what == "BEEP":
+            self._beeps.append(Beep(ms, event.values[0]))
+            self._happened.append("beeps")
+        elif event.what == "SHOW":
+            self._happened.append("shows")
+            is_yes_no = event.text.endswith(("TRUE", "FALSE"))
+            self._shown.append(Shown(ms, event.values[0], is_yes_no, pose))
+
+    def _touched(self, pose: Pose) -> str:
+        """Return what the robot is nearest to."""
+        world, hull = self.robot.world, self.robot.driving.hull
+        kinds = {
+            "wall": [each for wall in world.walls for each in joined(list(wall))],
+            "box": [each for box in world.boxes for each in joined([*box, box[0]])],
+            "border": world._replace(walls=(), boxes=()).obstacles(),
+        }
+        gaps = []
+        for kind, obstacles in kinds.items():
+            contact = hull.contact(pose, obstacles)
+            if contact is not None:
+                gaps.append((contact.gap_cm, kind))
+        return min(gaps)[1]
+
+    def run(self, ending: str) -> Run:
+        robot = self.robot
+        end_ms = 0
+        if self.began_ms is not None:
+            ended_ms = robot.now_ms if robot.ended_ms is None else robot.ended_ms
+            end_ms = ended_ms - self.began_ms
+        return Run(
+            self.seed, ending, robot.fault, end_ms,
+            tuple(self._track) or (Sample(0, robot.world.start),),
+            tuple(self._touches), tuple(self._shown), tuple(self._beeps), tuple(self._motors),
+            (*self._happened, *["stops"] * self._is_moving), robot.driving.driven_cm, robot,
+        )  # fmt: skip

@@ -1,0 +1,166 @@
+"""What there is to say of a finding: what the robot did, and what to try, in two languages.
+
+Knows every key of `judging`. Does not know when one applies.
+"""
+
+from __future__ import annotations
+
+from tiniscript.lessons.judging import Finding
+from tiniscript.printable import printable
+from tiniscript.words import WORDS
+
+# fmt: off
+SENTENCES: dict[str, tuple[str, str]] = {
+    # the run as a whole
+    "asks": ("The program begins with PING, so the robot does nothing. Begin with SI or with nothing.",
+             "El programa empieza con PING, así que el robot no hace nada. Empieza con SI o sin nada."),
+    "busy": ("In {seconds} s the robot did more than 200000 things without a rest. Put W(0.05) into the loop.",
+             "En {seconds} s el robot hizo más de 200000 cosas sin descanso. Pon W(0.05) dentro del bucle."),
+    "long": ("After {seconds} s the robot was still on its way, and the time was over. Times are seconds: look for one that is too large.",
+             "A los {seconds} s el robot todavía seguía y el tiempo se acabó. Los tiempos son segundos: busca uno demasiado grande."),
+    "still": ("The robot did not move. Give it a move with time and power: F(2, 80)",
+              "El robot no se movió. Dale un movimiento con tiempo y potencia: F(2, 80)"),
+    "fault/OVERFLOW": ("After {seconds} s a number got too large and the program broke off. Use smaller numbers.",
+                       "A los {seconds} s un número se hizo demasiado grande y el programa se cortó. Usa números más pequeños."),
+    "fault/DIVIDE_BY_ZERO": ("After {seconds} s something was divided by 0 and the program broke off. Ask with IF before you divide.",
+                             "A los {seconds} s algo se dividió entre 0 y el programa se cortó. Pregunta con IF antes de dividir."),
+    "fault": ("After {seconds} s the robot ended the program ({fault}). Look at what it did just before.",
+              "A los {seconds} s el robot terminó el programa ({fault}). Mira qué hizo justo antes."),
+    # places
+    "ends_in/short": ("The robot stopped {cm} cm before the middle of {place}. Let it go further.",
+                      "El robot se quedó {cm} cm antes del centro {of_place}. Haz que avance más."),
+    "ends_in/far": ("The robot went {cm} cm past the middle of {place}. Let it stop earlier.",
+                    "El robot se pasó {cm} cm del centro {of_place}. Haz que pare antes."),
+    "ends_in/turned": ("The robot only turned on the spot. Forward is F: F(2, 80)",
+                       "El robot solo giró en su sitio. Adelante es F: F(2, 80)"),
+    "ends_in/away": ("At the end the robot was {cm} cm from {place}. Look at which way it went, and change one number.",
+                     "Al final el robot quedó a {cm} cm {of_place}. Mira por dónde fue y cambia un solo número."),
+    "reaches/one": ("The robot came no nearer to {place} than {cm} cm. Look at the way that it went.",
+                    "El robot no se acercó a menos de {cm} cm {of_place}. Mira por dónde fue."),
+    "reaches/several": ("The robot did not get to {place} {number} of {all}. Look at the move before it.",
+                        "El robot no llegó {to_place} {number} de {all}. Mira el movimiento anterior."),
+    "reaches/late": ("The robot was at {place} after {seconds} s; it has {limit} s. Make it quicker, or its way shorter.",
+                     "El robot llegó {to_place} a los {seconds} s y tiene {limit} s. Hazlo más rápido o acorta el camino."),
+    "stays_in": ("After {seconds} s the robot left {place}. Look at what it does just before.",
+                 "A los {seconds} s el robot salió {of_place}. Mira qué hace justo antes."),
+    "stands_before/far": ("The robot stood {cm} cm before the obstacle; {low} to {high} cm is the task. Let it go nearer.",
+                          "El robot quedó a {cm} cm del obstáculo; la tarea pide de {low} a {high} cm. Deja que se acerque más."),
+    "stands_before/near": ("The robot stood {cm} cm before the obstacle; {low} to {high} cm is the task. Let it stop earlier.",
+                           "El robot quedó a {cm} cm del obstáculo; la tarea pide de {low} a {high} cm. Haz que pare antes."),
+    "stands_before/nothing": ("At the end there was nothing in front of the robot. Let it look towards the obstacle.",
+                              "Al final no había nada delante del robot. Haz que mire hacia el obstáculo."),
+    "faces/left": ("At the end the robot looks {degrees} degrees too far to the left. Turn it less to the left, or more to the right.",
+                   "Al final el robot mira {degrees} grados demasiado a la izquierda. Gíralo menos a la izquierda o más a la derecha."),
+    "faces/right": ("At the end the robot looks {degrees} degrees too far to the right. Turn it less to the right, or more to the left.",
+                    "Al final el robot mira {degrees} grados demasiado a la derecha. Gíralo menos a la derecha o más a la izquierda."),
+    # ways
+    "touches/wall": ("The robot touched the wall after {seconds} s. Look at what it does just before.",
+                     "El robot tocó la pared a los {seconds} s. Mira qué hace justo antes."),
+    "touches/box": ("The robot touched a box after {seconds} s. Look at what it does just before.",
+                    "El robot tocó una caja a los {seconds} s. Mira qué hace justo antes."),
+    "touches/border": ("The robot touched the edge of the floor after {seconds} s. Look at what it does just before.",
+                       "El robot tocó el borde de la pista a los {seconds} s. Mira qué hace justo antes."),
+    "follows/off": ("After {seconds} s the robot left the black line; it had followed {cm} cm of {least}. Go slower, or turn harder.",
+                    "A los {seconds} s el robot dejó la línea negra; había seguido {cm} cm de {least}. Ve más lento o gira con más fuerza."),
+    "follows/early": ("After {seconds} s the robot left the black line. Look at which way it turns when one of its sensors sees black.",
+                      "A los {seconds} s el robot dejó la línea negra. Mira hacia qué lado gira cuando uno de sus sensores ve negro."),
+    "follows/short": ("The robot followed {cm} cm of the black line; {least} cm is the task. Let it go on.",
+                      "El robot siguió {cm} cm de la línea negra; la tarea pide {least} cm. Deja que continúe."),
+    "drives/short": ("The robot drove {cm} cm; at least {limit} cm is the task. Let it drive more.",
+                     "El robot recorrió {cm} cm; la tarea pide al menos {limit} cm. Haz que avance más."),
+    "drives/long": ("The robot drove {cm} cm; at most {limit} cm is the task. Look for a shorter way.",
+                    "El robot recorrió {cm} cm; la tarea permite {limit} cm. Busca un camino más corto."),
+    # times
+    "pauses/none": ("The robot did not wait between its moves. Put W({least}) between two moves.",
+                    "El robot no esperó entre sus movimientos. Pon W({least}) entre dos movimientos."),
+    "pauses/short": ("The robot waited {seconds} s; {least} s is the task. Put W({least}) between two moves.",
+                     "El robot esperó {seconds} s; la tarea pide {least} s. Pon W({least}) entre dos movimientos."),
+    "pauses/several": ("The robot waited {least} s between its moves {found} of {times} times. Put W({least}) there.",
+                       "El robot esperó {least} s entre sus movimientos {found} de {times} veces. Pon ahí W({least})."),
+    "order//moves": ("The robot did not move. Give it a move: F(2, 80)", "El robot no se movió. Dale un movimiento: F(2, 80)"),
+    "order//stops": ("The robot never stopped. Let it stop: S", "El robot nunca se detuvo. Haz que pare: S"),
+    "order//beeps": ("The robot did not beep. Give it a sound: BEEP(0.2, 440)", "El robot no sonó. Dale un sonido: BEEP(0.2, 440)"),
+    "order//shows": ("The robot showed nothing. Show a value: SHOW(DISTANCE)", "El robot no mostró nada. Muestra un valor: SHOW(DISTANCE)"),
+    "order": ("After it {before}, the robot should {then}, but it does not. Check the order of the lines, or repeat them.",
+              "Después de {before}, el robot tendría que {then}, pero no lo hace. Revisa el orden de las líneas o repítelas."),
+    "ends": ("After {seconds} s the program was still running. It must end by itself: give its loop an end.",
+             "A los {seconds} s el programa todavía seguía. Tiene que terminar solo: ponle un final al bucle."),
+    # what it says
+    "shows/nothing": ("The robot showed nothing. Write what it shall show: {show}",
+                      "El robot no mostró nada. Escribe qué debe mostrar: {show}"),
+    "shows/few": ("The robot showed {found} of {times} values. Put SHOW where it comes by more often.",
+                  "El robot mostró {found} de {times} valores. Pon SHOW donde pase más veces."),
+    "shows/sensor": ("The robot showed {value}, but {what} was about {wanted} then. Let it measure and show: {show}",
+                     "El robot mostró {value}, pero {what} era más o menos {wanted}. Haz que mida y muestre: {show}"),
+    "shows/time": ("The robot showed {value}, but it was on its way for {wanted} s. Let the robot count: {show}",
+                   "El robot mostró {value}, pero llevaba {wanted} s en camino. Deja que el robot cuente: {show}"),
+    "shows/value": ("The robot showed {value}; {wanted} is right. Check how the program calculates it.",
+                    "El robot mostró {value}; lo correcto es {wanted}. Revisa cómo lo calcula el programa."),
+    "beeps/none": ("The robot did not beep. Give it a sound: BEEP(0.2, 440)",
+                   "El robot no sonó. Dale un sonido: BEEP(0.2, 440)"),
+    "beeps/few": ("The robot beeped {found} of {times} times. Add the sounds that are missing.",
+                  "El robot sonó {found} de {times} veces. Agrega los sonidos que faltan."),
+    "beeps/pitches": ("The robot beeped at {different} of {pitches} pitches. Change the second number of a BEEP: BEEP(0.2, 660)",
+                      "El robot sonó con {different} de {pitches} tonos. Cambia el segundo número de un BEEP: BEEP(0.2, 660)"),
+    # the text
+    "uses/none": ("The program does not use {word}. It helps here: {example}",
+                  "El programa no usa {word}. Aquí ayuda: {example}"),
+    "uses/few": ("The program uses {word} {found} of {times} times. It helps here once more: {example}",
+                 "El programa usa {word} {found} de {times} veces. Aquí ayuda otra vez: {example}"),
+    "moves": ("The program has {found} moves; {most} are enough. Let a LOOP or a DEF repeat what is there twice.",
+              "El programa tiene {found} movimientos; bastan {most}. Deja que un LOOP o un DEF repita lo que está dos veces."),
+}
+# what happens: as it stands behind "after", and behind "should"
+EVENTS = {
+    "moves": (("moves", "move"), ("moverse", "moverse")),
+    "stops": (("stops", "stop"), ("parar", "parar")),
+    "beeps": (("beeps", "beep"), ("sonar", "sonar")),
+    "shows": (("shows a value", "show a value"), ("mostrar un valor", "mostrar un valor")),
+}
+# of words whose row in the table of words has no example, or one for another robot
+EXAMPLES = {
+    "UNTIL": "F(FOREVER, 60) UNTIL({question})", "IF": "IF({question}) ... ENDIF",
+    "WHILE": "WHILE({question}) ... END_WHILE", "LOOP": "LOOP(3) ... END_LOOP",
+    "ELSE": "IF({question}) ... ELSE ... ENDIF", "DEF": "DEF STEP ... END_DEF",
+}
+# fmt: on
+
+
+def sentence(finding: Finding, language: str) -> str:
+    """Return what is said of a finding, in en or es."""
+    key = finding.key
+    if key not in SENTENCES:
+        key = key.partition("/")[0]
+    k = language == "es"
+    place = finding.labels.get(language, "")
+    what = finding.values.get("what") or "DISTANCE"
+    values = {
+        **{name: printable(value) for name, value in finding.values.items()},
+        "place": place,
+        "of_place": _joined("de", place),
+        "to_place": _joined("a", place),
+        "show": f"SHOW({what})",
+        "example": _example(finding.values.get("word", ""), finding.values.get("question", "")),
+        "before": _event(finding, 1, k),
+        "then": _event(finding, 2, k),
+    }
+    return SENTENCES[key][k].format(**values)
+
+
+def _event(finding: Finding, number: int, k: int) -> str:
+    """Return an event of the key `order/before/then` in words."""
+    parts = [*finding.key.split("/"), "", ""]
+    return EVENTS[parts[number]][k][number - 1] if parts[number] in EVENTS else ""
+
+
+def _joined(preposition: str, label: str) -> str:
+    """Return a Spanish label behind `de` or `a`, which become one word with `el`."""
+    if label.startswith("el "):
+        return f"{preposition}l {label[3:]}" if preposition == "de" else f"al {label[3:]}"
+    return f"{preposition} {label}"
+
+
+def _example(word: str, question: str) -> str:
+    if word in EXAMPLES:
+        return EXAMPLES[word].format(question=question)
+    return WORDS[word].example if word in WORDS else word

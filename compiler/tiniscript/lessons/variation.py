@@ -1,0 +1,99 @@
+"""Makes the world of a seed: chance moves its parts, and may exchange left and right.
+
+The same lesson and seed give the same world on every computer. The seed 1 of a lesson without
+variations is the world as it is written.
+"""
+
+from __future__ import annotations
+
+import math
+from random import Random
+from typing import TypeVar
+
+from tiniscript.lessons.lesson import Lesson, Place, Variation
+from tiniscript.robots.kinematics import Pose
+from tiniscript.virtual.geometry import Point
+from tiniscript.virtual.world import World
+
+T = TypeVar("T")
+
+
+def varied(lesson: Lesson, seed: int) -> World:
+    """Return the world of a seed."""
+    chance = Random(seed)
+    world = lesson.world
+    for each in lesson.variations:
+        dx, dy, turn = (chance.uniform(*span) for span in (each.x_cm, each.y_cm, each.heading))
+        world = _moved(world, each, dx, dy, turn)
+    return _mirrored(world) if is_mirrored(lesson, seed) else world
+
+
+def is_mirrored(lesson: Lesson, seed: int) -> bool:
+    """Whether left and right are exchanged: in every other world, beginning with the second."""
+    return lesson.is_mirrored and seed % 2 == 0
+
+
+def point_of(place: Place, world: World, mirrored: bool) -> Point:
+    """Return where a place is: a point, the start, a lamp, the middle of another part."""
+    if not place.part:
+        return Point(place.x_cm, world.height_cm - place.y_cm if mirrored else place.y_cm)
+    if place.part == "start":
+        return Point(*world.start[:2])
+    k = place.number - 1
+    if place.part == "lamps":
+        return world.lamps[k].place
+    if place.part == "lines":
+        return _middle(world.lines[k].points)
+    return _middle(world.walls[k] if place.part == "walls" else world.boxes[k])
+
+
+def _moved(world: World, what: Variation, dx: float, dy: float, turn: float) -> World:
+    part, k = what.place.part, what.place.number - 1
+
+    def shifted(points: tuple[Point, ...]) -> tuple[Point, ...]:
+        middle = _middle(points)
+        cos, sin = math.cos(math.radians(turn)), math.sin(math.radians(turn))
+        return tuple(
+            Point(
+                middle.x + dx + (x - middle.x) * cos - (y - middle.y) * sin,
+                middle.y + dy + (x - middle.x) * sin + (y - middle.y) * cos,
+            )
+            for x, y in points
+        )
+
+    if part == "start":
+        x_cm, y_cm, heading = world.start
+        return world._replace(start=Pose(x_cm + dx, y_cm + dy, heading + turn))
+    if part == "walls":
+        return world._replace(walls=_changed(world.walls, k, shifted(world.walls[k])))
+    if part == "boxes":
+        return world._replace(boxes=_changed(world.boxes, k, shifted(world.boxes[k])))
+    if part == "lines":
+        line = world.lines[k]
+        line = line._replace(points=shifted(line.points))
+        return world._replace(lines=_changed(world.lines, k, line))
+    x, y = world.lamps[k].place
+    lamp = world.lamps[k]._replace(place=Point(x + dx, y + dy))
+    return world._replace(lamps=_changed(world.lamps, k, lamp))
+
+
+def _changed(rows: tuple[T, ...], k: int, row: T) -> tuple[T, ...]:
+    return (*rows[:k], row, *rows[k + 1 :])
+
+
+def _mirrored(world: World) -> World:
+    def over(point: Point) -> Point:
+        return Point(point.x, world.height_cm - point.y)
+
+    x_cm, y_cm, heading = world.start
+    return world._replace(
+        start=Pose(x_cm, world.height_cm - y_cm, -heading),
+        walls=tuple(tuple(map(over, wall)) for wall in world.walls),
+        boxes=tuple(tuple(map(over, box)) for box in world.boxes),
+        lines=tuple(line._replace(points=tuple(map(over, line.points))) for line in world.lines),
+        lamps=tuple(lamp._replace(place=over(lamp.place)) for lamp in world.lamps),
+    )
+
+
+def _middle(points: tuple[Point, ...]) -> Point:
+    return Point(sum(p.x for p in points) / len(points), sum(p.y for p in points) / len(points))
