@@ -88,7 +88,7 @@ def test_a_stop_waits_for_a_port_longer_than_others(
     monkeypatch.setattr(opening, "sleep", lambda wait_s: now_s.append(now_s.pop() + wait_s))
     line = cast(Line, object())
 
-    def open_line(_: object) -> Line:
+    def open_line(_: str, __: object) -> Line:
         if now_s[0] < 8.5:
             raise RobotError("port_busy", "en", {"port": "/dev/ttyUSB7", "why": ""})
         return line

@@ -85,9 +85,9 @@ class RobotConnection:
         self._is_closed = False
         speed = profile.board.baud if baud is None else baud
 
-        def open_line(lock: IO[bytes] | None) -> Line:
+        def open_line(address: str, lock: IO[bytes] | None) -> Line:
             kit = profile.kit.fingerprint
-            return opening.opened_line(port, speed, kit, lock=lock, language=language)
+            return opening.opened_line(address, speed, kit, lock=lock, language=language, port=port)
 
         self._line: LinkConnection = opening.connection_to(port, VERB, open_line, baud, language)
         self._server: Server | None = None
@@ -369,7 +369,7 @@ class RobotConnection:
 
         if not isinstance(gone, Gone):
             return gone
-        reason = opening.reason_of_end(self._line, gone)
+        reason = opening.reason_of_end(self._line, gone, self.port)
         values = {"port": opening.shown(self.port), "verb": self._line.held_by}
         return RobotError(reason, self.language, values)
 

@@ -48,24 +48,32 @@ PSEUDO = ("/dev/pts/", "/dev/ttys")  # pseudo-terminals
 
 
 def connection_to(
-    port: str, verb: str, open_line: Callable[[IO[bytes] | None], Line], baud: int | None = None,
-    language: str = "en",
+    port: str, verb: str, open_line: Callable[[str, IO[bytes] | None], Line],
+    baud: int | None = None, language: str = "en",
 ) -> LinkConnection:  # fmt: skip
     """Return the connection to a port. Raises RobotError if the port is busy or does not open.
 
-    `open_line` opens the port; its line closes the lock that it is given. `verb` is the name that
-    other commands show for this one. `baud` is the speed that the user has asked for.
+    `open_line` opens an address; its line closes the lock that it is given. `verb` is the name that
+    other commands show for this one. `baud` is the speed that the user has asked for. A robot's
+    name becomes its address, which may be in use under another name.
     """
+    from tiniscript.link.port_names import is_name
     from tiniscript.sharing import registry
 
+    address = port
     end_s = monotonic() + (STOP_BUSY_S if verb == "stop" else BUSY_S)
     while True:
-        client = _joined(port, verb, baud, language)
+        client = _joined(address, verb, baud, language)
         if client is not None:
             return client
+        if is_name(address):
+            address = _resolved(port, language)
+            end_s = monotonic() + (STOP_BUSY_S if verb == "stop" else BUSY_S)
+            continue
         try:
-            line = open_line(_claimed(port, language))
-            registry.forget(port)  # the port is ours: its former owner has crashed
+            line = open_line(address, _claimed(address, language))
+            for name in {port, address}:
+                registry.forget(name)  # the port is ours: its former owner has crashed
             return line
         except RobotError as failure:
             if failure.reason != "port_busy" or monotonic() > end_s:
@@ -74,23 +82,28 @@ def connection_to(
 
 
 def opened_line(
-    port: str, baud: int, kit: int, limit_s: float = OPEN_S, lock: IO[bytes] | None = None,
-    language: str = "en",
+    address: str, baud: int, kit: int, limit_s: float = OPEN_S, lock: IO[bytes] | None = None,
+    language: str = "en", port: str = "",
 ) -> Line:  # fmt: skip
-    """Open a port and begin a session for this kit. Raises RobotError."""
+    """Open a port and begin a session for this kit. Raises RobotError.
+
+    `port` is the port's name in sentences, where it is not `address`.
+    """
     from tiniscript.keys import KeyFile
     from tiniscript.link.line import Line
     from tiniscript.link.ports import PortError, opened
     from tiniscript.link.session import Session
 
     try:
-        device = opened(port, baud, limit_s)
-    except PortError as failure:
+        device = opened(address, baud, limit_s)
+    except BaseException as failure:
         if lock is not None:
             lock.close()
-        raise port_error(port, failure, language) from None
+        if isinstance(failure, PortError):
+            raise port_error(port or address, failure, language) from None
+        raise
     session = Session(int.from_bytes(os.urandom(4), "little"), baud, kit, keys=KeyFile())
-    return Line(device, session, lock)
+    return Line(device, session, lock, address)
 
 
 def port_error(port: str, failure: PortError, language: str = "en") -> RobotError:
@@ -99,6 +112,12 @@ def port_error(port: str, failure: PortError, language: str = "en") -> RobotErro
 
     reason = f"port_{failure.reason}"
     values = {"port": shown(port), "why": shown(failure.why)}
+    if failure.reason == ports.NOT_INSTALLED:
+        from tiniscript.library import install_advice
+
+        values["how"] = install_advice.command(install_advice.RADIO)
+    if failure.reason == ports.NOT_FOUND and failure.why:
+        reason = "port_not_found_but"
     if failure.reason == ports.FORBIDDEN and sys.platform.startswith("linux"):
         reason = "port_forbidden_linux"
     if failure.reason == ports.MISSING:
@@ -161,10 +180,14 @@ def reason_of(line: LinkConnection, reply: Reply[object]) -> str:
     return "link_other" if line.heard else "link_silent"
 
 
-def reason_of_end(line: LinkConnection, gone: Gone) -> str:
+def reason_of_end(line: LinkConnection, gone: Gone, port: str) -> str:
     """Return why a connection has ended."""
+    from tiniscript.link.port_names import is_bluetooth
+
     if gone.is_server:
         return "holder_ended"
+    if is_bluetooth(port):
+        return "radio_gone"
     if line.heard and line.robot is None:  # it reported busy, and closed
         return "port_busy"
     return "port_gone"
@@ -228,6 +251,16 @@ def _joined(port: str, verb: str, baud: int | None, language: str) -> Client | N
         values = {"verb": client.held_by, "baud": str(client.baud), "port": shown(port)}
         raise RobotError("holder_baud", language, values)
     return client
+
+
+def _resolved(port: str, language: str) -> str:
+    """Return the address of a robot that is named. Raises RobotError."""
+    from tiniscript.link import ports
+
+    try:
+        return ports.resolved(port)
+    except ports.PortError as failure:
+        raise port_error(port, failure, language) from None
 
 
 def _claimed(port: str, language: str) -> IO[bytes] | None:

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from tiniscript import files
 from tiniscript.files import contents
+from tiniscript.link.port_names import is_address, same_for_all
 
 FILE_BYTES = 1_000_000
 KEPT = 100  # ports; the oldest go first
@@ -40,7 +41,8 @@ def remember(port: str, name: str, is_used: bool = True) -> None:
     first = next(iter(before.names.items()), None)
     if first == (port, name) and (before.last == port or not is_used):
         return
-    names = {port: name, **{each: name for each, name in before.names.items() if each != port}}
+    others = {each: name for each, name in before.names.items() if not _is_same(each, port)}
+    names = {port: name, **others}
     last = port if is_used else before.last
     path = _path()
     try:
@@ -49,6 +51,13 @@ def remember(port: str, name: str, is_used: bool = True) -> None:
         files.replace(path, json.dumps(fields).encode())
     except (OSError, ValueError):
         pass
+
+
+def _is_same(port: str, other: str) -> bool:
+    """Whether two names always mean the same port; a link in /dev may mean another tomorrow."""
+    if is_address(port) and is_address(other):
+        return same_for_all(port) == same_for_all(other)
+    return port == other
 
 
 def _path() -> Path:

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from threading import Condition, Thread
 from time import monotonic
-from typing import IO, Any, TypeVar
+from typing import IO, TYPE_CHECKING, Any, TypeVar
 
 import serial
 
@@ -19,6 +19,9 @@ from tiniscript.link.connection import PendingRequest, Requester
 from tiniscript.link.outcomes import LOOK_S, Event, Gone
 from tiniscript.link.requests import DeviceInfo, Reply
 from tiniscript.link.session import Session
+
+if TYPE_CHECKING:
+    from tiniscript.link.bluetooth import BluetoothPort
 
 T = TypeVar("T")
 
@@ -36,10 +39,15 @@ class Line:
     held_by = ""  # this process
 
     def __init__(
-        self, port: serial.SerialBase, session: Session, lock: IO[bytes] | None = None
+        self,
+        port: serial.SerialBase | BluetoothPort,
+        session: Session,
+        lock: IO[bytes] | None = None,
+        address: str = "",
     ) -> None:
-        """`lock` is closed after the port."""
+        """`lock` is closed after the port. `address` is the port's, where it has a name, too."""
         self.session = session
+        self.address = address
         session.tells_starts = True  # other clients may share the line
         self.heard = 0  # bytes
         self.is_echoed = False

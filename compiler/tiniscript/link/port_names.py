@@ -1,19 +1,54 @@
-"""The names of ports: which are network addresses, and which names mean the same port.
+"""The names of ports: which are addresses, and which names mean the same port.
 
+`ble://` names a robot in reach of Bluetooth LE, `tcp://` one that announces itself in the network.
 Opens nothing, and needs no pyserial.
 """
 
 from __future__ import annotations
 
 import os.path
+import re
 import sys
+import unicodedata
 
+BLE, TCP = "ble://", "tcp://"
 _LOCAL = ("localhost", "[::1]")
 
 
 def is_address(port: str) -> bool:
-    """Return whether a port is reached over a network: no system lists such ports."""
+    """Return whether a port is reached over a network or a radio: no system lists such ports."""
     return "://" in port
+
+
+def is_bluetooth(port: str) -> bool:
+    """Return whether a port is reached by Bluetooth LE."""
+    return port[: len(BLE)].lower() == BLE
+
+
+def is_network_name(port: str) -> bool:
+    """Return whether a port is the name of a robot that announces itself in the network."""
+    return port[: len(TCP)].lower() == TCP
+
+
+def is_name(port: str) -> bool:
+    """Return whether a port is a robot's name, whose address has to be found first."""
+    return is_network_name(port) or (is_bluetooth(port) and not is_device_address(name_in(port)))
+
+
+def name_in(port: str) -> str:
+    """Return the name or address behind `://`, in its canonical form."""
+    return canonical(port.partition("://")[2])
+
+
+def canonical(name: str) -> str:
+    """Return a name such that two names of one robot are equal: they ignore case."""
+    return unicodedata.normalize("NFC", unicodedata.normalize("NFC", name.strip()).casefold())
+
+
+def is_device_address(name: str) -> bool:
+    """Return whether a name is the address of a Bluetooth device: six bytes, on macOS a UUID."""
+    uuid = r"[0-9A-Fa-f]{8}(-[0-9A-Fa-f]{4}){3}-[0-9A-Fa-f]{12}"
+    return re.fullmatch(rf"[0-9A-Fa-f]{{2}}(:[0-9A-Fa-f]{{2}}){{5}}|{uuid}", name) is not None
 
 
 def is_there(port: str) -> bool:
@@ -27,8 +62,12 @@ def same_for_all(port: str) -> str:
     """Return the canonical name of a port that has several.
 
     A udev link (`/dev/serial/by-id/...`) becomes its target, `/dev/cu.X` of macOS becomes
-    `/dev/tty.X`, and Windows ignores case.
+    `/dev/tty.X`, and Windows ignores case; so do the names of robots.
     """
+    if is_bluetooth(port):
+        return BLE + name_in(port)
+    if is_network_name(port):
+        return TCP + name_in(port).removesuffix(".local")
     if is_address(port):
         kind, _, rest = port.partition("://")
         host, colon, number = rest.rpartition(":")

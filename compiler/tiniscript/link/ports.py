@@ -1,21 +1,29 @@
-"""Serial ports: lists them, opens one, and says why one cannot be opened.
+"""Ports: lists them, opens one, and says why one cannot be opened.
 
 Knows pyserial, for serial ports, Bluetooth's (`/dev/rfcomm0`, `COM5`, `/dev/tty.HC-05`) and the
-addresses `socket://host:port` and `rfc2217://host:port`. Knows no robot and no sentences: what
-goes wrong has a name.
+addresses `socket://host:port` and `rfc2217://host:port`. `bluetooth` opens `ble://name`, and
+`named_robots` finds `tcp://name`; their packages are imported with their first use. Knows no robot
+and no sentences: what goes wrong has a name.
 """
 
 from __future__ import annotations
 
 import errno
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from threading import Thread
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import serial
 from serial.tools import list_ports
 
-from tiniscript.link.port_names import is_address
+from tiniscript.link.port_names import is_address, is_bluetooth, is_network_name
+
+if TYPE_CHECKING:
+    from tiniscript.link.bluetooth import BluetoothPort
+    from tiniscript.link.bluetooth_search import Seen
+    from tiniscript.link.named_robots import Announced
 
 READ_S = 0.02  # timeout of a read: on some systems nothing can interrupt it
 WRITE_S = 1.0  # timeout of a write; the session sends the bytes again
@@ -23,6 +31,13 @@ OPEN_S = 20.0  # timeout of opening: a radio that is out of reach takes long
 
 MISSING, FORBIDDEN, BUSY = "missing", "forbidden", "busy"
 UNREACHABLE, NO_PORT, SLOW, BROKEN = "unreachable", "no_port", "slow", "broken"
+# of `ble://` and `tcp://`: the package that is missing, Bluetooth of this computer, the network
+NOT_INSTALLED = "not_installed"
+RADIO_OFF, RADIO_FORBIDDEN = "radio_off", "radio_forbidden"
+RADIO_SERVICE, RADIO_BROKEN = "radio_service", "radio_broken"
+NO_MULTICAST, NOT_ANNOUNCED, STRANGE = "no_multicast", "not_announced", "strange"
+# nobody has the name, several have it, whoever has it is no robot
+NOT_FOUND, SEVERAL, NO_ROBOT = "not_found", "several", "no_robot"
 
 _REASONS = {
     errno.ENOENT: MISSING,
@@ -81,11 +96,56 @@ def is_radio(port: str) -> bool:
     return False
 
 
-def opened(port: str, baud: int, limit_s: float = OPEN_S) -> serial.SerialBase:
+def resolved(port: str) -> str:
+    """Return the address of the robot that `ble://name` or `tcp://name` means: a port, too.
+
+    Any other port is its own address. Raises PortError.
+    """
+    with _installed():
+        if is_bluetooth(port):
+            from tiniscript.link import bluetooth
+
+            return bluetooth.resolved(port)
+        if is_network_name(port):
+            from tiniscript.link import named_robots
+
+            return named_robots.resolved(port)
+    return port
+
+
+def in_reach() -> list[Seen]:
+    """Search with Bluetooth LE for some seconds, and return the robots. Raises PortError."""
+    with _installed():
+        from tiniscript.link import bluetooth
+    return bluetooth.listed()
+
+
+def announced() -> list[Announced]:
+    """Return the robots that announce themselves in the network. Raises PortError."""
+    with _installed():
+        from tiniscript.link import named_robots
+    return named_robots.listed()
+
+
+@contextmanager
+def _installed() -> Iterator[None]:
+    """Raise PortError where a package is missing."""
+    try:
+        yield
+    except ImportError as missing:
+        raise PortError(NOT_INSTALLED, missing.name or str(missing)) from None
+
+
+def opened(port: str, baud: int, limit_s: float = OPEN_S) -> serial.SerialBase | BluetoothPort:
     """Open a port for exclusive use. Raises PortError, at the latest after `limit_s`.
 
-    Some drivers block in `open` for ever, so a daemon thread opens the port.
+    Some drivers block in `open` for ever, so a daemon thread opens the port. A connection by
+    Bluetooth LE has limits of its own.
     """
+    if is_bluetooth(port):
+        with _installed():
+            from tiniscript.link import bluetooth
+        return bluetooth.opened(port, baud)
     done: list[serial.SerialBase | BaseException] = []
 
     def work() -> None:

@@ -30,7 +30,7 @@ class Registration(NamedTuple):
     """`number` is the TCP port on 127.0.0.1 where the server of `port` listens.
 
     A client proves with `token` that it may connect; the server proves with `answer` that it has
-    written this file.
+    written this file. `is_alias`: the same server has registered the port under another name.
     """
 
     port: str
@@ -40,6 +40,7 @@ class Registration(NamedTuple):
     verb: str
     baud: int
     pid: int
+    is_alias: bool = False
 
 
 def found(port: str) -> Registration | None:
@@ -51,11 +52,11 @@ def found(port: str) -> Registration | None:
 
 
 def all_found() -> list[Registration]:
-    """Return the registrations of the servers of all ports."""
+    """Return the registrations of all servers, each once."""
     tidy()
     with suppress(OSError):
         paths = sorted(_folder().glob(f"{_computer()}-*.json"))
-        return [registration for registration in map(_read, paths) if registration is not None]
+        return [each for each in map(_read, paths) if each is not None and not each.is_alias]
     return []
 
 
@@ -212,13 +213,16 @@ def _read(path: Path) -> Registration | None:
             if about.st_uid != os.geteuid() or about.st_mode & 0o077:
                 return None
         fields = json.loads(contents(path, FILE_BYTES))
+        fields.setdefault("is_alias", False)  # older versions have no aliases
         registration = Registration(*(fields[name] for name in Registration._fields))
-    except (OSError, ValueError, TypeError, KeyError, RecursionError):
+    except (OSError, ValueError, TypeError, KeyError, AttributeError,
+            RecursionError):  # fmt: skip
         return None
     numbers = registration.number, registration.baud, registration.pid
     words = registration.port, registration.token, registration.answer, registration.verb
     is_sound = all(isinstance(each, str) and each.isprintable() for each in words)
     is_sound = is_sound and all(type(each) is int for each in numbers)
+    is_sound = is_sound and type(registration.is_alias) is bool
     return registration if is_sound and 0 < registration.number < 65536 else None
 
 

@@ -76,6 +76,10 @@ class Server:
         token, answer = os.urandom(16).hex(), os.urandom(16).hex()
         name = same_for_all(port)
         self.registration = Registration(name, number, token, answer, verb, baud, os.getpid())
+        self._names = [self.registration]
+        address = same_for_all(line.address or port)
+        if address != name:
+            self._names.append(self.registration._replace(port=address, is_alias=True))
         self._bell, self._wire = socket.socketpair()
         self._bell.setblocking(False)
         self._wire.setblocking(False)
@@ -88,7 +92,8 @@ class Server:
         self._selector.register(self._listening, selectors.EVENT_READ)
         self._selector.register(self._wire, selectors.EVENT_READ)
         try:
-            registry.write(self.registration)
+            for each in self._names:
+                registry.write(each)
         except OSError:
             self._close_all()
             raise
@@ -138,7 +143,8 @@ class Server:
         except Exception as bug:
             self._line.fail(bug)
         finally:
-            registry.remove(self.registration)
+            for each in self._names:
+                registry.remove(each)
             self._part()
             self._close_all()
 

@@ -207,7 +207,7 @@ class Repl:
         try:
             self.do(line)
         except CommandError as failure:
-            if failure.key in ("port_gone", "holder_ended"):
+            if failure.key in ("port_gone", "radio_gone", "holder_ended"):
                 raise
             print(failure.sentence(self.language), file=sys.stderr)
 

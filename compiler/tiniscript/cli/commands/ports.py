@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from argparse import Namespace
 from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING
@@ -11,6 +12,7 @@ from tiniscript.cli import inputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot.connect import baud_of, opened_connection, robot_of_kit
+from tiniscript.cli.robot.in_reach import InReach, found
 from tiniscript.cli.texts.common import text
 from tiniscript.library import opening
 
@@ -25,11 +27,20 @@ AT_ONCE = 16  # ports that are asked at the same time
 def run(options: Namespace, language: str) -> int:
     robot = inputs.robot(options, language)
     baud = baud_of(options, robot, language)
-    rows = _rows(options, language)
+    in_reach = InReach({}, [], [], [])
+    if options.ask and options.port is None:
+        in_reach = _in_reach(language)
+    rows = _rows(options, in_reach, language)
     if options.ask:
+        absent: dict[str, object] = {"answer": None, "said": text("out_of_reach", language)}
+
+        def ask(row: dict[str, object]) -> dict[str, object]:
+            port = str(row["port"])
+            is_absent = port in in_reach.absent and row["held_by"] is None
+            return absent if is_absent else _ask(port, baud, robot, language)
+
         with ThreadPoolExecutor(AT_ONCE) as pool:
-            answers = pool.map(lambda row: _ask(str(row["port"]), baud, robot, language), rows)
-            for row, answer in zip(rows, answers, strict=True):
+            for row, answer in zip(rows, pool.map(ask, rows), strict=True):
                 row.update(answer)
     if options.json:
         print(json.dumps(rows, indent=2))
@@ -40,8 +51,18 @@ def run(options: Namespace, language: str) -> int:
     return 0
 
 
-def _rows(options: Namespace, language: str) -> list[dict[str, object]]:
-    """Return the ports that the system lists, and other ports that had a robot."""
+def _in_reach(language: str) -> InReach:
+    """Return the robots that are found without a cable, and print what could not be searched."""
+    from tiniscript.link import known_ports
+
+    in_reach = found(list(known_ports.known().names), language)
+    for note in in_reach.notes:
+        print(note, file=sys.stderr, flush=True)
+    return in_reach
+
+
+def _rows(options: Namespace, in_reach: InReach, language: str) -> list[dict[str, object]]:
+    """Return the ports that the system lists, those in reach, and others that had a robot."""
     from tiniscript.link import known_ports, ports
     from tiniscript.link.port_names import is_there, same_for_all
     from tiniscript.sharing.client import is_alive
@@ -51,6 +72,7 @@ def _rows(options: Namespace, language: str) -> list[dict[str, object]]:
     known = known_ports.known()
     virtual = {each.address: each for each in directory.running()}
     about = {each.port: each.description for each in ports.listed()}
+    about |= in_reach.about
     held = {
         registration.port: registration.verb
         for registration in all_found()
@@ -59,8 +81,8 @@ def _rows(options: Namespace, language: str) -> list[dict[str, object]]:
     names = [options.port] if options.port is not None else list(about)
     if options.port is None:
         names += [port for port in known.names if port not in about and is_there(port)
-                  and not directory.is_gone(port)]  # fmt: skip
-        names += [port for port in virtual if port not in names]
+                  and port not in in_reach.others and not directory.is_gone(port)]  # fmt: skip
+        names += [port for port in virtual if port not in (*names, *in_reach.others)]
         listed = {same_for_all(port) for port in names}
         names += [port for port in held if port not in listed]
     about |= {port: _virtual(each, language) for port, each in virtual.items()}

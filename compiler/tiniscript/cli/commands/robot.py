@@ -19,10 +19,12 @@ from tiniscript.cli.robot import simulator_options
 from tiniscript.cli.robot.event_printer import Bookkeeping
 from tiniscript.cli.terminal.keys import Keys, is_in_front
 from tiniscript.cli.texts.common import text
+from tiniscript.library import install_advice
 
 if TYPE_CHECKING:
     from tiniscript.cli.terminal.screen import Screen
     from tiniscript.cli.terminal.world_drawing import WorldPicture
+    from tiniscript.virtual.announcement import Announcement
     from tiniscript.virtual.robot import VirtualRobot
     from tiniscript.virtual.simulator import Simulator
     from tiniscript.virtual.transports import Transports
@@ -54,8 +56,11 @@ def run(options: Namespace, language: str) -> int:
     from tiniscript.virtual.simulator import Simulator
 
     transports = _transports(port, options.pty)
-    note = None
+    note, announcement = None, None
     try:
+        if options.announce:
+            name = options.name or f"{profile.name}-{transports.port}"
+            announcement = _announcement(name, transports.port)
         running = directory.Running(
             transports.address, robot.profile.name, robot.world.name, options.name or "",
             transports.terminal,
@@ -64,9 +69,12 @@ def run(options: Namespace, language: str) -> int:
         simulator = Simulator(robot, transports, hurry, faults)
         simulator.end_ms = end_ms
         stage = _Stage(simulator, options, language)
+        stage.announced = announcement.port if announcement is not None else ""
         stage.show(pushes, end_ms)
     finally:
         directory.withdraw(note)
+        if announcement is not None:
+            announcement.close()
         transports.close()
     return 0
 
@@ -80,6 +88,7 @@ class _Stage:
         self.language = language
         self.screen: Screen | None = None
         self.picture: WorldPicture | None = None
+        self.announced = ""  # the port by which it is found
         self.began_ms = 0  # when the program began whose lines are printed
         self._bookkeeping = Bookkeeping()
         self._kept = simulator.robot.memory
@@ -120,6 +129,8 @@ class _Stage:
         print(transports.address, flush=True)
         if transports.terminal:
             print(transports.terminal, flush=True)
+        if self.announced:
+            print(shown(self.announced), flush=True)
         language = self.language
         said = text("robot_here", language).format(
             robot=shown(self.options.name or "") or robot.profile.labels[language]["robot"],
@@ -236,6 +247,20 @@ def _transports(port: int, has_terminal: bool) -> Transports:
         raise CommandError(
             3, "listen_taken", port=str(port), why=why.strerror or str(why)
         ) from None
+
+
+def _announcement(name: str, number: int) -> Announcement:
+    try:
+        from tiniscript.virtual.announcement import Announcement, NameTaken
+    except ImportError as missing:
+        how = install_advice.command(install_advice.RADIO)
+        raise CommandError(2, "announce_needs", why=missing.name or "", how=how) from None
+    try:
+        return Announcement(name, number)
+    except NameTaken:
+        raise CommandError(3, "name_taken", name=shown(name)) from None
+    except OSError as why:
+        raise CommandError(3, "no_announcement", why=why.strerror or str(why)) from None
 
 
 def _pushes_ms(option: str, found: str | None) -> list[int]:

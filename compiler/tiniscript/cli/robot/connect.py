@@ -253,9 +253,8 @@ class Connection:
     def gone(self, gone: Gone) -> CommandError:
         """Return the sentence for a connection that has ended."""
         verb = self.line.held_by
-        return CommandError(
-            3, opening.reason_of_end(self.line, gone), port=shown(self.port), verb=verb
-        )
+        reason = opening.reason_of_end(self.line, gone, self.port)
+        return CommandError(3, reason, port=shown(self.port), verb=verb)
 
 
 def opened_connection(
@@ -264,8 +263,9 @@ def opened_connection(
 ) -> LinkConnection:  # fmt: skip
     """Connect to a port through its server, or open it. Raises CommandError."""
 
-    def open_line(lock: IO[bytes] | None) -> Line:
-        return opening.opened_line(port, baud, robot.kit.fingerprint, limit_s, lock)
+    def open_line(address: str, lock: IO[bytes] | None) -> Line:
+        kit = robot.kit.fingerprint
+        return opening.opened_line(address, baud, kit, limit_s, lock, port=port)
 
     try:
         return opening.connection_to(port, verb, open_line, asked_baud)

@@ -30,10 +30,14 @@ if TYPE_CHECKING:
 LOOK_S = 0.1
 STRANGER_S = 4.0  # timeout for a port that the user has not named and that never had a robot
 # failures that may only mean that a port that the user has not named has no robot
-NOBODY = ("port_missing", "port_missing_but", "port_unreachable")
+NOBODY = (
+    "port_missing", "port_missing_but", "port_unreachable", "port_not_found", "port_not_found_but",
+    "port_not_announced",
+)  # fmt: skip
 NO_ROBOT = (
     "link_silent", "link_other", "link_echo", "not_confirmed", "port_slow", "port_no_port",
     "port_broken", "port_busy", "port_forbidden", "port_forbidden_linux", "port_gone",
+    "port_no_robot", "radio_gone",
 )  # fmt: skip
 
 

@@ -34,6 +34,12 @@ VIRTUAL_TEXTS: dict[str, tuple[str, str]] = {
                      "tsc: no se puede usar el puerto {port}: {why}. Elige otro con --listen, o quita esa opción."),
     "no_pty": ("tsc: this system has no pseudo-terminals. Leave --pty out and use the address of the robot.",
                "tsc: este sistema no tiene pseudoterminales. Quita --pty y usa la dirección del robot."),
+    "announce_needs": ("tsc: --announce needs a package that is not installed here ({why}). Install it and try again:  {how}",
+                       "tsc: --announce necesita un paquete que aquí no está instalado ({why}). Instálalo y prueba otra vez:  {how}"),
+    "name_taken": ("tsc: the name {name} cannot be announced: another robot of this computer has it, or it is too long. Choose another with --name.",
+                   "tsc: no se puede anunciar el nombre {name}: lo tiene otro robot de esta computadora, o es demasiado largo. Elige otro con --name."),
+    "no_announcement": ("tsc: the robot cannot be announced: {why}. Leave --announce out, and use its address.",
+                        "tsc: no se puede anunciar el robot: {why}. Quita --announce y usa su dirección."),
     # what it says
     "robot_here": ("{robot} in the world \"{world}\". In another terminal:  tsc upload prog.ts --virtual   Ctrl-C ends.",
                    "{robot} en el mundo \"{world}\". En otra terminal:  tsc upload prog.ts --virtual   Ctrl-C termina."),

@@ -1,0 +1,235 @@
+"""A robot's port over Bluetooth LE: the Nordic UART service, or that of an HM-10.
+
+`BluetoothPort` has what a `Line` uses of a serial port. Knows bleak; importing this fails without
+it. What is seen in a scan is in `bluetooth_search`. Knows no robot and no sentences.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Coroutine
+from contextlib import suppress
+from threading import Condition
+from typing import Any, NamedTuple, TypeVar
+
+from bleak import BleakClient
+from bleak.backends.characteristic import BleakGATTCharacteristic
+from bleak.backends.device import BLEDevice
+from bleak.exc import BleakDeviceNotFoundError, BleakError
+
+from tiniscript.link import bluetooth_search as search
+from tiniscript.link import ports
+from tiniscript.link.event_loop import EventLoop, shared
+from tiniscript.link.port_names import BLE, canonical, name_in
+from tiniscript.link.ports import READ_S, WRITE_S, PortError
+
+CONNECT_S = 15.0
+QUEUE_S = 60.0  # and of those that wait for the connections of others
+CLOSE_S = 5.0  # BlueZ takes 2 s
+KEPT_BYTES = 65_536  # of a device that sends more than is read; more is lost
+UART_BITS = 10  # of a byte, with its start and its stop
+SMALLEST = 20  # bytes of a write before more is negotiated
+
+T = TypeVar("T")
+
+
+class Module(NamedTuple):
+    """A way of sending bytes over Bluetooth LE.
+
+    `is_paced`: the module loses bytes that arrive faster than its UART passes them on, and takes
+    no more than SMALLEST in one write, whatever was negotiated.
+    """
+
+    service: str
+    writes: str
+    notifies: str
+    is_paced: bool
+
+
+MODULES = (
+    Module(
+        search.NORDIC_UART,
+        "6e400002-b5a3-f393-e0a9-e50e24dcca9e",
+        "6e400003-b5a3-f393-e0a9-e50e24dcca9e",
+        is_paced=False,
+    ),
+    Module(
+        search.HM10,
+        "0000ffe1-0000-1000-8000-00805f9b34fb",
+        "0000ffe1-0000-1000-8000-00805f9b34fb",
+        is_paced=True,
+    ),
+)
+_turns: list[asyncio.Lock] = []
+_found: dict[str, BLEDevice] = {}  # by address: devices that a search has found
+
+
+def resolved(port: str) -> str:
+    """Return the port of the device that a name means: `ble://` and its address.
+
+    Raises PortError, at the latest after search.SEARCH_S.
+    """
+    loop = shared()
+    device = _run(loop, search.found(name_in(port)), search.SEARCH_S + search.LEAVE_S * 2)
+    address = canonical(device.address)
+    _found[address] = device
+    return BLE + address
+
+
+def listed() -> list[search.Seen]:
+    """Return the robots in reach. Raises PortError."""
+    limit_s = search.LISTED_S + search.LEAVE_S * 2
+    found = _run(shared(), search.robots(), limit_s)
+    _found.update({canonical(seen.address): seen.device for seen in found})
+    return found
+
+
+def opened(port: str, baud: int) -> BluetoothPort:
+    """Connect to a device. Raises PortError, at the latest after a search and QUEUE_S.
+
+    `baud` is the speed of the UART behind an HM-10.
+    """
+    address = name_in(port)
+    if address not in _found:
+        address = name_in(resolved(port))
+    bluetooth_port = BluetoothPort(shared(), baud)
+    bluetooth_port.connect(_found.pop(address))
+    return bluetooth_port
+
+
+class BluetoothPort:
+    """A connection to a device. `read`, `write`, `in_waiting`, `cancel_read` and `close` are as in
+    pyserial; where the connection has ended they raise OSError."""
+
+    def __init__(self, loop: EventLoop, baud: int) -> None:
+        self._loop = loop
+        self._byte_s = UART_BITS / baud
+        self._news = Condition()
+        self._heard = bytearray()
+        self._gone = ""
+        self._is_cancelled = False
+        self._client: BleakClient | None = None
+        self._writes: BleakGATTCharacteristic | None = None
+        self._is_paced = False
+        self._ready_s = 0.0  # when the module has room again, in the loop's time
+
+    def connect(self, device: BLEDevice) -> None:
+        """Raises PortError."""
+        self._client = BleakClient(device, self._part, timeout=CONNECT_S)
+        try:
+            _run(self._loop, self._connect(self._client), QUEUE_S)
+        except BaseException:
+            self.close()
+            raise
+
+    @property
+    def in_waiting(self) -> int:
+        return len(self._heard)
+
+    def read(self, size: int) -> bytes:
+        """Return what has arrived, at most `size` bytes, or nothing after READ_S."""
+        with self._news:
+            if not (self._heard or self._gone or self._is_cancelled):
+                self._news.wait(READ_S)
+            self._is_cancelled = False
+            found = bytes(self._heard[:size])
+            del self._heard[:size]
+            if self._gone and not found:
+                raise OSError(self._gone)
+            return found
+
+    def cancel_read(self) -> None:
+        with self._news:
+            self._is_cancelled = True
+            self._news.notify_all()
+
+    def write(self, data: bytes) -> None:
+        """Send bytes in pieces. Pieces that do not get through in time are lost."""
+        if self._gone:
+            raise OSError(self._gone)
+        limit_s = WRITE_S + len(data) * self._byte_s
+        with suppress(TimeoutError, asyncio.TimeoutError, BleakError, OSError, EOFError):
+            self._loop.run(self._send(data), limit_s)
+        if self._gone:
+            raise OSError(self._gone)
+
+    def close(self) -> None:
+        client, self._client = self._client, None
+        if client is not None:
+            with suppress(Exception):  # it has ended already
+                self._loop.run(client.disconnect(), CLOSE_S)
+
+    # -- in the loop ------------------------------------------------------------------------------
+
+    async def _connect(self, client: BleakClient) -> None:
+        async with _turn():  # BlueZ fails where two connections are made at once
+            await asyncio.wait_for(client.connect(), CONNECT_S)
+        for module in MODULES:
+            service = next((each for each in client.services if each.uuid == module.service), None)
+            if service is None:
+                continue
+            writes = service.get_characteristic(module.writes)
+            notifies = service.get_characteristic(module.notifies)
+            if writes is None or notifies is None or not _can(writes, "write"):
+                continue
+            self._writes, self._is_paced = writes, module.is_paced
+            await client.start_notify(notifies, self._hear)
+            return
+        raise PortError(ports.NO_ROBOT)
+
+    async def _send(self, data: bytes) -> None:
+        assert self._client is not None and self._writes is not None
+        time = asyncio.get_running_loop().time
+        response = "write-without-response" not in self._writes.properties
+        while data:
+            size = SMALLEST
+            if not self._is_paced:
+                size = max(SMALLEST, self._writes.max_write_without_response_size)
+            piece, data = data[:size], data[size:]
+            await asyncio.sleep(self._ready_s - time())
+            try:
+                await self._client.write_gatt_char(self._writes, piece, response=response)
+            except Exception as why:
+                if not self._client.is_connected:
+                    self._end(str(why))
+                raise
+            if self._is_paced:
+                self._ready_s = time() + len(piece) * self._byte_s
+
+    def _hear(self, _: BleakGATTCharacteristic, data: bytearray) -> None:
+        with self._news:
+            self._heard += data[: KEPT_BYTES - len(self._heard)]
+            self._news.notify_all()
+
+    def _part(self, _: BleakClient) -> None:
+        self._end("the connection has ended")
+
+    def _end(self, why: str) -> None:
+        with self._news:
+            self._gone = self._gone or why or "the connection has ended"
+            self._news.notify_all()
+
+
+def _run(loop: EventLoop, work: Coroutine[Any, Any, T], limit_s: float) -> T:
+    """Run a coroutine of bleak. Raises PortError for all that can go wrong there."""
+    try:
+        return loop.run(work, limit_s)
+    except PortError:
+        raise
+    except (TimeoutError, asyncio.TimeoutError):  # two of them, in Python 3.10
+        raise PortError(ports.SLOW) from None
+    except BleakDeviceNotFoundError as failure:
+        raise PortError(ports.UNREACHABLE, str(failure)) from None
+    except Exception as failure:  # of bleak, of D-Bus, of the system: each has its own
+        raise PortError(search.reason_of(failure), str(failure)) from None
+
+
+def _turn() -> asyncio.Lock:
+    """Return the lock of all that connect; call it in the loop."""
+    if not _turns:
+        _turns.append(asyncio.Lock())
+    return _turns[0]
+
+
+def _can(characteristic: BleakGATTCharacteristic, ability: str) -> bool:
+    return any(each.startswith(ability) for each in characteristic.properties)

@@ -1,0 +1,167 @@
+"""The robots in reach of Bluetooth LE: finds one by its name or its address, or lists them.
+
+All searches of a process share a scan, because BlueZ lets a program scan once at a time. What a
+device says of itself is unproven: names that two devices have are refused. Knows bleak. Its
+coroutines run in the loop of `event_loop`.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import sys
+from contextlib import suppress
+from typing import NamedTuple
+
+from bleak import BleakAdapter, BleakScanner
+from bleak.backends.device import BLEDevice
+from bleak.backends.scanner import AdvertisementData
+from bleak.exc import BleakBluetoothNotAvailableError, BleakBluetoothNotAvailableReason
+
+from tiniscript.link import ports
+from tiniscript.link.port_names import canonical, is_device_address
+from tiniscript.link.ports import PortError
+
+NORDIC_UART = "6e400001-b5a3-f393-e0a9-e50e24dcca9e"
+HM10 = "0000ffe0-0000-1000-8000-00805f9b34fb"
+SERVICES = (NORDIC_UART, HM10)
+
+SEARCH_S = 10.0  # for one robot
+LINGER_S = 1.5  # after a name was seen: an HM-10 says its own once in 1.3 s, and two may have one
+LISTED_S = 4.0  # for all robots
+LEAVE_S = 3.0  # timeout of the end of a scan
+NEARBY = 8  # names in a sentence
+DEVICES = 1000  # that a scan keeps
+
+_Denied = BleakBluetoothNotAvailableReason
+_FORBIDDEN = (_Denied.DENIED_BY_USER, _Denied.DENIED_BY_SYSTEM, _Denied.DENIED_BY_UNKNOWN)
+
+
+class Seen(NamedTuple):
+    """A device. `is_robot`: it offers a service by which robots are reached."""
+
+    device: BLEDevice
+    name: str
+    is_robot: bool
+
+    @property
+    def address(self) -> str:
+        return self.device.address
+
+
+class _Scan:
+    """The scan of this process, as long as somebody searches."""
+
+    def __init__(self) -> None:
+        self.seen: dict[str, Seen] = {}
+        self.news = asyncio.Event()
+        self._searches = 0
+        self._scanner: BleakScanner | None = None
+        self._turn = asyncio.Lock()
+
+    async def __aenter__(self) -> _Scan:
+        async with self._turn:
+            if self._searches == 0:
+                self.seen = {}
+                scanner = BleakScanner(self._notice)
+                await scanner.start()
+                self._scanner = scanner
+                for device in await _connected():
+                    self._keep(Seen(device, device.name or "", True))
+            self._searches += 1
+        return self
+
+    async def __aexit__(self, *_: object) -> None:
+        async with self._turn:
+            self._searches -= 1
+            if self._searches == 0 and self._scanner is not None:
+                scanner, self._scanner = self._scanner, None
+                with suppress(Exception):  # the adapter is gone: the scan is over
+                    await asyncio.wait_for(scanner.stop(), LEAVE_S)
+
+    def _notice(self, device: BLEDevice, said: AdvertisementData) -> None:
+        services = {each.lower() for each in said.service_uuids}
+        before = self.seen.get(device.address)
+        name = said.local_name or device.name or (before.name if before else "")
+        is_robot = bool(services & set(SERVICES)) or (before is not None and before.is_robot)
+        self._keep(Seen(device, name, is_robot))
+
+    def _keep(self, seen: Seen) -> None:
+        if seen.address in self.seen or len(self.seen) < DEVICES:
+            self.seen[seen.address] = seen
+            self.news.set()
+            self.news = asyncio.Event()
+
+
+async def _connected() -> list[BLEDevice]:
+    """Return the robots that this computer is connected to: they are not seen in a scan.
+
+    BlueZ keeps a connection when the program that made it is killed.
+    """
+    if sys.platform != "linux":
+        return []
+    adapter = await BleakAdapter.get()
+    return list(await adapter.get_connected_devices(list(SERVICES)))
+
+
+_scans: list[_Scan] = []
+
+
+def _scan() -> _Scan:
+    if not _scans:
+        _scans.append(_Scan())
+    return _scans[0]
+
+
+async def found(name: str) -> BLEDevice:
+    """Return the device with a name or an address. Raises PortError: none, or several."""
+    is_address = is_device_address(name)
+    loop = asyncio.get_running_loop()
+    end_s = loop.time() + SEARCH_S
+    matches: dict[str, Seen] = {}
+    async with _scan() as scan:
+        while loop.time() < end_s:
+            news = scan.news
+            is_first = not matches
+            matches = {
+                address: seen
+                for address, seen in scan.seen.items()
+                if canonical(address if is_address else seen.name) == name
+            }
+            if matches and is_address:
+                break
+            if matches and is_first:
+                end_s = min(end_s, loop.time() + LINGER_S)
+            with suppress(asyncio.TimeoutError):
+                await asyncio.wait_for(news.wait(), max(0.0, end_s - loop.time()))
+        robots = sorted({seen.name or seen.address for seen in scan.seen.values() if seen.is_robot})
+    if not matches:
+        raise PortError(ports.NOT_FOUND, ", ".join(robots[:NEARBY]))
+    if len(matches) > 1:
+        raise PortError(ports.SEVERAL, ", ".join(f"ble://{each}" for each in sorted(matches)))
+    return next(iter(matches.values())).device
+
+
+async def robots() -> list[Seen]:
+    """Return all robots in reach, by name."""
+    async with _scan() as scan:
+        await asyncio.sleep(LISTED_S)
+        there = [seen for seen in scan.seen.values() if seen.is_robot]
+    return sorted(there, key=lambda seen: (seen.name, seen.address))
+
+
+def reason_of(failure: Exception) -> str:
+    """Return why Bluetooth cannot be used, a name of `ports`."""
+    if isinstance(failure, BleakBluetoothNotAvailableError):
+        if failure.reason in _FORBIDDEN:
+            return ports.RADIO_FORBIDDEN
+        return ports.RADIO_OFF
+    said = str(failure)
+    if isinstance(failure, PermissionError) or "AccessDenied" in said or "AuthFailed" in said:
+        return ports.RADIO_FORBIDDEN
+    if "NotReady" in said or "Resource Not Ready" in said:
+        return ports.RADIO_OFF
+    if isinstance(failure, (FileNotFoundError, ConnectionError)):
+        return ports.RADIO_SERVICE
+    if "ServiceUnknown" in said or "NoReply" in said or "NameHasNoOwner" in said:
+        return ports.RADIO_SERVICE
+    return ports.RADIO_BROKEN

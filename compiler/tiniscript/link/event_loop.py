@@ -1,0 +1,85 @@
+"""An asyncio event loop in a thread of its own, for what cannot be used without one.
+
+It begins with its first use. At the end of the process its tasks are cancelled, which ends open
+connections. Knows no port.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import atexit
+from collections.abc import Coroutine
+from concurrent.futures import wait
+from contextlib import suppress
+from threading import Event, Lock, Thread
+from time import monotonic
+from typing import Any, TypeVar
+
+LOOK_S = 0.1  # between two looks: on Windows, Ctrl-C interrupts nothing that waits
+CANCEL_S = 1.0  # timeout of what has been cancelled
+END_S = 5.0  # timeout of the tasks that end with the process
+
+T = TypeVar("T")
+
+
+class EventLoop:
+    """Runs coroutines for other threads."""
+
+    def __init__(self) -> None:
+        self._loop = asyncio.new_event_loop()
+        self._thread = Thread(target=self._loop.run_forever, name="events", daemon=True)
+        self._thread.start()
+        atexit.register(self.close)
+
+    def run(self, coroutine: Coroutine[Any, Any, T], limit_s: float) -> T:
+        """Run a coroutine and return its result. Raises TimeoutError after the time limit.
+
+        After the time limit, or Ctrl-C, the coroutine is cancelled.
+        """
+        is_over = Event()
+
+        async def work() -> T:
+            try:
+                return await coroutine
+            finally:
+                is_over.set()
+
+        future = asyncio.run_coroutine_threadsafe(work(), self._loop)
+        end_s = monotonic() + limit_s
+        try:
+            while not wait([future], max(0.0, min(LOOK_S, end_s - monotonic()))).done:
+                if monotonic() >= end_s:
+                    raise TimeoutError
+        except BaseException:
+            future.cancel()
+            is_over.wait(CANCEL_S)
+            raise
+        return future.result()
+
+    def close(self) -> None:
+        """Cancel all tasks, and end the thread. The process ends: nobody runs anything more."""
+        if not self._thread.is_alive():
+            return
+        with suppress(TimeoutError):
+            self.run(_cancelled_tasks(), END_S)
+        self._loop.call_soon_threadsafe(self._loop.stop)
+        self._thread.join(CANCEL_S)
+
+
+async def _cancelled_tasks() -> None:
+    tasks = asyncio.all_tasks() - {asyncio.current_task()}
+    for task in tasks:
+        task.cancel()
+    await asyncio.gather(*tasks, return_exceptions=True)
+
+
+_shared: list[EventLoop] = []
+_lock = Lock()
+
+
+def shared() -> EventLoop:
+    """Return the loop of this process."""
+    with _lock:
+        if not _shared:
+            _shared.append(EventLoop())
+        return _shared[0]

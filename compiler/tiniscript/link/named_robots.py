@@ -1,0 +1,93 @@
+"""Robots that announce themselves in the network, by multicast DNS: finds one, or lists them.
+
+Knows zeroconf; importing this fails without it. Anybody in the network can announce anything: an
+address that is not of a local network is refused, and a name proves nothing.
+"""
+
+from __future__ import annotations
+
+from ipaddress import ip_address
+from threading import Event
+from typing import NamedTuple
+
+from zeroconf import BadTypeInNameException, IPVersion, ServiceBrowser, ServiceInfo, Zeroconf
+
+from tiniscript.link import ports
+from tiniscript.link.port_names import name_in
+from tiniscript.link.ports import PortError
+
+SERVICE = "_tiniscript._tcp.local."
+SEARCH_S = 5.0  # for one robot
+LISTED_S = 2.0  # for all robots
+LONGEST = 63  # bytes of a name
+ROBOTS = 1000  # that a list keeps
+
+
+class Announced(NamedTuple):
+    """A robot's name, and its address as a port."""
+
+    name: str
+    port: str
+
+
+def resolved(port: str) -> str:
+    """Return the address, `socket://…`, of the robot that announces a name. Raises PortError."""
+    name = name_in(port).removesuffix(".local")
+    if not 0 < len(name.encode()) <= LONGEST:
+        raise PortError(ports.NOT_ANNOUNCED)
+    with _network() as network:
+        try:
+            info = network.get_service_info(SERVICE, f"{name}.{SERVICE}", int(SEARCH_S * 1000))
+        except BadTypeInNameException:  # a name that nothing in a network can have
+            info = None
+    if info is None:
+        raise PortError(ports.NOT_ANNOUNCED)
+    return _address(info)
+
+
+def listed() -> list[Announced]:
+    """Return the robots that announce themselves. Raises PortError."""
+    names: set[str] = set()
+
+    class Listener:
+        def add_service(self, _: Zeroconf, __: str, name: str) -> None:
+            if len(names) < ROBOTS:
+                names.add(name)
+
+        def update_service(self, *_: object) -> None:
+            pass
+
+        def remove_service(self, _: Zeroconf, __: str, name: str) -> None:
+            names.discard(name)
+
+    found = []
+    with _network() as network:
+        browser = ServiceBrowser(network, SERVICE, listener=Listener())  # type: ignore[arg-type]
+        Event().wait(LISTED_S)
+        browser.cancel()
+        for name in sorted(names):
+            info = network.get_service_info(SERVICE, name, 1000)
+            if info is None:
+                continue
+            try:
+                found.append(Announced(name.removesuffix(f".{SERVICE}"), _address(info)))
+            except PortError:  # no robot has such an address
+                continue
+    return found
+
+
+def _network() -> Zeroconf:
+    try:
+        return Zeroconf(ip_version=IPVersion.V4Only)
+    except OSError as why:
+        raise PortError(ports.NO_MULTICAST, why.strerror or str(why)) from None
+
+
+def _address(info: ServiceInfo) -> str:
+    """Return the port that a robot announces. Raises PortError: it is none of a local network."""
+    for each in info.parsed_addresses(IPVersion.V4Only):
+        address = ip_address(each)
+        is_local = address.is_private or address.is_link_local or address.is_loopback
+        if is_local and not address.is_unspecified and info.port:
+            return f"socket://{address}:{info.port}"
+    raise PortError(ports.STRANGE, ", ".join(info.parsed_addresses()[:3]))

@@ -1,0 +1,46 @@
+"""Lets programs of this computer find a virtual robot by its name, with multicast DNS.
+
+The announcement stays on 127.0.0.1, as the robot does: in a room of many computers nobody hears of
+the robots of the others. Knows zeroconf; importing this fails without it.
+"""
+
+from __future__ import annotations
+
+from ipaddress import ip_address
+
+from zeroconf import Error, NonUniqueNameException, ServiceInfo, Zeroconf
+
+from tiniscript.link.named_robots import LONGEST, SERVICE
+from tiniscript.link.port_names import TCP
+from tiniscript.virtual.transports import LOCAL
+
+
+class NameTaken(Exception):
+    """Another robot has the name, or nothing can have it."""
+
+
+class Announcement:
+    """Says where a robot is until `close`; `port` is its name as a port."""
+
+    def __init__(self, name: str, number: int) -> None:
+        """`number` is the robot's TCP port. Raises NameTaken, and OSError without multicast."""
+        if not 0 < len(name.encode()) <= LONGEST:
+            raise NameTaken
+        self.port = TCP + name
+        self._network = Zeroconf(interfaces=[LOCAL])
+        try:
+            info = ServiceInfo(
+                SERVICE, f"{name}.{SERVICE}", number,
+                addresses=[ip_address(LOCAL).packed], server=f"tini-{number}.local.",
+            )  # fmt: skip
+            self._network.register_service(info)
+        except (NonUniqueNameException, Error):
+            self._network.close()
+            raise NameTaken from None
+        except BaseException:
+            self._network.close()
+            raise
+
+    def close(self) -> None:
+        """Say that the robot has gone."""
+        self._network.close()

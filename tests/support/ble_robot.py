@@ -1,0 +1,126 @@
+"""Bluetooth LE modules for `fake_bluez`, and a robot behind one: the host firmware on a pty.
+
+Every byte goes through the radio module, the pseudo-terminal and the robot's UART, both ways.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import termios
+import tty
+from collections.abc import Callable
+
+from tests.support.fake_bluez import FakeBluez
+from tests.support.pty_robot import PtyRobot
+
+HM10 = "0000ffe0-0000-1000-8000-00805f9b34fb"
+NORDIC = "6e400001-b5a3-f393-e0a9-e50e24dcca9e"
+LAMP = "0000fff0-0000-1000-8000-00805f9b34fb"
+BOTH = ["write", "write-without-response"]
+CHARACTERISTICS = {
+    HM10: [("0000ffe1-0000-1000-8000-00805f9b34fb", ["read", BOTH[1], "notify"])],
+    NORDIC: [("6e400002-b5a3-f393-e0a9-e50e24dcca9e", BOTH),
+             ("6e400003-b5a3-f393-e0a9-e50e24dcca9e", ["notify"])],
+    LAMP: [("0000fff1-0000-1000-8000-00805f9b34fb", BOTH)],
+}  # fmt: skip
+ADDRESS = "AA:BB:CC:DD:EE:01"
+
+
+class Peripheral:
+    """A module without a robot: it hears and says nothing.
+
+    `fails_at`: its connection ends at `connect`, `services` or `notify`; `parts_after`: after so
+    many bytes that it has heard.
+    """
+
+    tell: Callable[[bytes], None]
+    loop: asyncio.AbstractEventLoop
+
+    def __init__(
+        self, name: str, address: str = ADDRESS, service: str = HM10, mtu: int = 23
+    ) -> None:
+        self.name = name
+        self.address = address
+        self.service = service
+        self.mtu = mtu
+        self.characteristics = CHARACTERISTICS[service]
+        self.is_on = True
+        self.fails_at = ""
+        self.parts_after: int | None = None
+        self.connections = 0
+        self.written: list[tuple[str, bytes]] = []  # kind and bytes of each write
+
+    @property
+    def heard(self) -> bytes:
+        return b"".join(data for _, data in self.written)
+
+    @property
+    def is_over(self) -> bool:
+        return self.parts_after is not None and len(self.heard) >= self.parts_after
+
+    def take(self, data: bytes, kind: str) -> None:
+        self.written.append((kind, data))
+
+    def begin(self) -> None:
+        """Somebody wants to hear it."""
+
+    def part(self) -> None:
+        """Nobody is connected any more."""
+
+    def clear_away(self) -> None:
+        pass
+
+
+class Echo(Peripheral):
+    """A module whose TX and RX are connected."""
+
+    def take(self, data: bytes, kind: str) -> None:
+        super().take(data, kind)
+        self.loop.call_soon(self.tell, data)
+
+
+class BleRobot(Peripheral):
+    """A module and the robot behind it. `late_s`: each notification comes so much later; `said` is
+    all that the module has sent by radio."""
+
+    def __init__(
+        self, robot: PtyRobot, name: str = "Tini 1", address: str = ADDRESS, service: str = HM10,
+        mtu: int = 23, late_s: float = 0.0,
+    ) -> None:  # fmt: skip
+        super().__init__(name, address, service, mtu)
+        self.robot = robot
+        self.late_s = late_s
+        self.said: list[bytes] = []
+        self._uart = os.open(robot.port, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
+        tty.setraw(self._uart)
+
+    def take(self, data: bytes, kind: str) -> None:
+        super().take(data, kind)
+        os.write(self._uart, data)
+
+    def begin(self) -> None:
+        termios.tcflush(self._uart, termios.TCIFLUSH)
+        self.loop.add_reader(self._uart, self._pass_on)
+
+    def part(self) -> None:
+        self.loop.remove_reader(self._uart)
+        if self.service == HM10:
+            os.write(self._uart, b"OK+LOST")  # as such modules do
+
+    def clear_away(self) -> None:
+        self.loop.remove_reader(self._uart)
+        os.close(self._uart)
+
+    def _pass_on(self) -> None:
+        data = os.read(self._uart, self.mtu - 3)
+        self.said.append(data)
+        if self.late_s:
+            self.loop.call_later(self.late_s, self.tell, data)
+        else:
+            self.tell(data)
+
+
+def in_reach(bluez: FakeBluez, *peripherals: Peripheral) -> None:
+    for each in peripherals:
+        bluez.add(each)

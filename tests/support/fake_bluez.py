@@ -1,0 +1,383 @@
+"""BlueZ as a program sees it: `org.bluez` on a private D-Bus, with peripherals that tests make.
+
+bleak is used as it ships, and finds this bus by DBUS_SYSTEM_BUS_ADDRESS. What peripherals do is in
+`ble_robot`. As in BlueZ, a connection outlives the program that has made it.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import shutil
+import subprocess
+import sys
+import threading
+from collections.abc import Callable
+from importlib.util import find_spec
+from typing import TYPE_CHECKING, Annotated, Any
+
+import pytest
+
+if find_spec("dbus_fast") is None:
+    pytest.skip("no dbus_fast: pip install dbus-fast", allow_module_level=True)
+
+from dbus_fast import BusType, DBusError, PropertyAccess
+from dbus_fast.aio import MessageBus
+from dbus_fast.annotations import (
+    DBusBool,
+    DBusBytes,
+    DBusDict,
+    DBusInt16,
+    DBusObjectPath,
+    DBusSignature,
+    DBusStr,
+    DBusUInt16,
+)
+from dbus_fast.service import ServiceInterface, dbus_method, dbus_property
+
+if TYPE_CHECKING:
+    from tests.support.ble_robot import Peripheral
+
+ADAPTER = "/org/bluez/hci0"
+ADVERTISED_S = 0.05
+STEP_S = 10.0  # timeout of a step in the bus's thread
+_READ = PropertyAccess.READ
+_Nothing = Annotated[None, DBusSignature("")]
+_Strings = Annotated[list[str], DBusSignature("as")]
+
+
+def missing() -> str:
+    """Return why there is no such bus here, or nothing."""
+    if sys.platform != "linux":
+        return "BlueZ is Linux's"
+    for name in ("bleak", "zeroconf"):
+        if find_spec(name) is None:
+            return f"no {name}: pip install {name}"
+    return "" if shutil.which("dbus-daemon") else "no dbus-daemon: apt-get install dbus-daemon"
+
+
+class Adapter(ServiceInterface):
+    def __init__(self, bluez: FakeBluez) -> None:
+        super().__init__("org.bluez.Adapter1")
+        self.bluez = bluez
+        self.is_powered = True
+        self.is_scanning = False
+
+    @dbus_method()
+    def SetDiscoveryFilter(self, _: DBusDict) -> _Nothing:  # noqa: N802 - BlueZ's names
+        pass
+
+    @dbus_method()
+    def StartDiscovery(self) -> _Nothing:  # noqa: N802
+        if not self.is_powered:
+            raise DBusError("org.bluez.Error.NotReady", "Resource Not Ready")
+        self.is_scanning = True
+        self.bluez.advertise()
+
+    @dbus_method()
+    def StopDiscovery(self) -> _Nothing:  # noqa: N802
+        self.is_scanning = False
+
+    @dbus_property(access=_READ)
+    def Address(self) -> DBusStr:  # noqa: N802
+        return "00:11:22:33:44:55"
+
+    @dbus_property(access=_READ)
+    def Roles(self) -> _Strings:  # noqa: N802
+        return ["central"]
+
+    @dbus_property(access=_READ)
+    def Powered(self) -> DBusBool:  # noqa: N802
+        return self.is_powered
+
+    @dbus_property(access=_READ)
+    def Discovering(self) -> DBusBool:  # noqa: N802
+        return self.is_scanning
+
+
+class Device(ServiceInterface):
+    """A peripheral as BlueZ shows it."""
+
+    def __init__(self, bluez: FakeBluez, peripheral: Peripheral) -> None:
+        super().__init__("org.bluez.Device1")
+        self.bluez = bluez
+        self.peripheral = peripheral
+        self.path = f"{ADAPTER}/dev_{peripheral.address.replace(':', '_')}"
+        self.is_connected = self.is_resolved = False
+        self.signal = -50
+        self.notifies: Characteristic | None = None
+        self._gatt: list[str] = []  # the paths of its service and characteristics
+
+    def advertise(self) -> None:
+        self.signal = -50 if self.signal != -50 else -51
+        self.emit_properties_changed({"RSSI": self.signal})
+
+    def tell(self, data: bytes) -> None:
+        """Send a notification, if somebody has asked for them."""
+        if self.notifies is not None and self.notifies.is_notifying:
+            self.notifies.value = data
+            self.notifies.emit_properties_changed({"Value": data})
+
+    def part(self) -> None:
+        """End the connection."""
+        if not self.is_connected:
+            return
+        self.is_connected = self.is_resolved = False
+        self.emit_properties_changed({"Connected": False, "ServicesResolved": False})
+        for path in reversed(self._gatt):
+            self.bluez.bus.unexport(path)
+        self._gatt = []
+        self.notifies = None
+        self.peripheral.part()
+
+    @dbus_method()
+    async def Connect(self) -> _Nothing:  # noqa: N802
+        if self.peripheral.fails_at == "connect":
+            raise DBusError("org.bluez.Error.Failed", "le-connection-abort-by-remote")
+        self.is_connected = True
+        self.emit_properties_changed({"Connected": True})
+        self.peripheral.connections += 1
+        if self.peripheral.fails_at == "services":
+            self.part()
+            return
+        self._gatt = [f"{self.path}/service0010"]
+        self.bluez.bus.export(self._gatt[0], Service(self))
+        for k, (uuid, flags) in enumerate(self.peripheral.characteristics):
+            path = f"{self._gatt[0]}/char{k:04x}"
+            characteristic = Characteristic(self, uuid, flags)
+            if "notify" in flags:
+                self.notifies = characteristic
+            self.bluez.bus.export(path, characteristic)
+            self._gatt.append(path)
+        self.is_resolved = True
+        self.emit_properties_changed({"ServicesResolved": True})
+
+    @dbus_method()
+    def Disconnect(self) -> _Nothing:  # noqa: N802
+        self.part()
+
+    @dbus_property(access=_READ)
+    def Address(self) -> DBusStr:  # noqa: N802
+        return self.peripheral.address
+
+    @dbus_property(access=_READ)
+    def AddressType(self) -> DBusStr:  # noqa: N802
+        return "public"
+
+    @dbus_property(access=_READ)
+    def Name(self) -> DBusStr:  # noqa: N802
+        return self.peripheral.name
+
+    @dbus_property(access=_READ)
+    def Alias(self) -> DBusStr:  # noqa: N802
+        return self.peripheral.name
+
+    @dbus_property(access=_READ)
+    def Adapter(self) -> DBusObjectPath:  # noqa: N802
+        return ADAPTER
+
+    @dbus_property(access=_READ)
+    def UUIDs(self) -> _Strings:  # noqa: N802
+        return [self.peripheral.service]
+
+    @dbus_property(access=_READ)
+    def RSSI(self) -> DBusInt16:  # noqa: N802
+        return self.signal
+
+    @dbus_property(access=_READ)
+    def Connected(self) -> DBusBool:  # noqa: N802
+        return self.is_connected
+
+    @dbus_property(access=_READ)
+    def Paired(self) -> DBusBool:  # noqa: N802
+        return False
+
+    @dbus_property(access=_READ)
+    def ServicesResolved(self) -> DBusBool:  # noqa: N802
+        return self.is_resolved
+
+
+class Service(ServiceInterface):
+    def __init__(self, device: Device) -> None:
+        super().__init__("org.bluez.GattService1")
+        self.device = device
+
+    @dbus_property(access=_READ)
+    def UUID(self) -> DBusStr:  # noqa: N802
+        return self.device.peripheral.service
+
+    @dbus_property(access=_READ)
+    def Device(self) -> DBusObjectPath:  # noqa: N802
+        return self.device.path
+
+    @dbus_property(access=_READ)
+    def Primary(self) -> DBusBool:  # noqa: N802
+        return True
+
+
+class Characteristic(ServiceInterface):
+    def __init__(self, device: Device, uuid: str, flags: list[str]) -> None:
+        super().__init__("org.bluez.GattCharacteristic1")
+        self.device = device
+        self.uuid = uuid
+        self.flags = flags
+        self.value = b""
+        self.is_notifying = False
+
+    @dbus_method()
+    async def WriteValue(self, value: DBusBytes, options: DBusDict) -> _Nothing:  # noqa: N802
+        peripheral = self.device.peripheral
+        kind = options["type"].value
+        flag = "write" if kind == "request" else "write-without-response"
+        if flag not in self.flags:
+            raise DBusError("org.bluez.Error.NotSupported", "Operation is not supported")
+        if len(value) > peripheral.mtu - 3:
+            raise DBusError("org.bluez.Error.InvalidValueLength", "Invalid value length")
+        peripheral.take(bytes(value), kind)
+        if peripheral.is_over:
+            self.device.part()
+
+    @dbus_method()
+    def StartNotify(self) -> _Nothing:  # noqa: N802
+        if self.device.peripheral.fails_at == "notify":
+            self.device.part()
+            return
+        self.is_notifying = True
+        self.emit_properties_changed({"Notifying": True})
+        self.device.peripheral.begin()
+
+    @dbus_method()
+    def StopNotify(self) -> _Nothing:  # noqa: N802
+        self.is_notifying = False
+
+    @dbus_property(access=_READ)
+    def UUID(self) -> DBusStr:  # noqa: N802
+        return self.uuid
+
+    @dbus_property(access=_READ)
+    def Service(self) -> DBusObjectPath:  # noqa: N802
+        return f"{self.device.path}/service0010"
+
+    @dbus_property(access=_READ)
+    def Flags(self) -> _Strings:  # noqa: N802
+        return self.flags
+
+    @dbus_property(access=_READ)
+    def Value(self) -> DBusBytes:  # noqa: N802
+        return self.value
+
+    @dbus_property(access=_READ)
+    def Notifying(self) -> DBusBool:  # noqa: N802
+        return self.is_notifying
+
+    @dbus_property(access=_READ)
+    def MTU(self) -> DBusUInt16:  # noqa: N802
+        return self.device.peripheral.mtu
+
+
+class Root(ServiceInterface):
+    """So that `/` lists all objects."""
+
+    def __init__(self) -> None:
+        super().__init__("org.tiniscript.Root")
+
+
+class FakeBluez:
+    """The bus and what is on it, in a thread of its own; `address` is the bus's."""
+
+    bus: MessageBus
+    has_ended = False
+
+    def __init__(self, has_bluez: bool = True, has_adapter: bool = True) -> None:
+        self._daemon = subprocess.Popen(
+            ["dbus-daemon", "--session", "--nofork", "--nosyslog", "--print-address"],
+            stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True,
+        )  # fmt: skip
+        assert self._daemon.stdout
+        self.address = self._daemon.stdout.readline().strip()
+        self.adapter = Adapter(self)
+        self.devices: dict[str, Device] = {}
+        self.loop = asyncio.new_event_loop()
+        self._thread = threading.Thread(target=self.loop.run_forever, daemon=True)
+        self._thread.start()
+        self.has_adapter = has_adapter
+        if has_bluez:
+            asyncio.run_coroutine_threadsafe(self._begin(), self.loop).result(STEP_S)
+
+    def __enter__(self) -> FakeBluez:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.vanish()
+        assert self._daemon.stdout
+        self._daemon.stdout.close()
+        self.loop.call_soon_threadsafe(self.loop.stop)
+        self._thread.join(STEP_S)
+        for device in self.devices.values():
+            device.peripheral.clear_away()
+        self.loop.close()
+
+    async def _begin(self) -> None:
+        self.bus = await MessageBus(self.address, bus_type=BusType.SYSTEM).connect()
+        self.bus.export("/", Root())
+        if self.has_adapter:
+            self.bus.export(ADAPTER, self.adapter)
+        await self.bus.request_name("org.bluez")
+
+    def do(self, what: Callable[[], Any]) -> None:
+        """Do something in the bus's thread."""
+
+        async def work() -> None:
+            what()
+
+        asyncio.run_coroutine_threadsafe(work(), self.loop).result(STEP_S)
+
+    def add(self, peripheral: Peripheral) -> None:
+        device = Device(self, peripheral)
+        self.devices[peripheral.address] = device
+        peripheral.tell = device.tell
+        peripheral.loop = self.loop
+        self.do(lambda: self.bus.export(device.path, device))
+
+    def advertise(self) -> None:
+        """Let peripherals be seen, as long as a program scans."""
+        if not self.adapter.is_scanning:
+            return
+        for device in self.devices.values():
+            if device.peripheral.is_on and not device.is_connected:
+                device.advertise()
+        self.loop.call_later(ADVERTISED_S, self.advertise)
+
+    def part(self, peripheral: Peripheral) -> None:
+        """End a peripheral's connection, as where it is out of reach."""
+        self.do(self.devices[peripheral.address].part)
+
+    def power(self, is_on: bool) -> None:
+        """Switch the adapter."""
+
+        def switch() -> None:
+            self.adapter.is_powered = is_on
+            self.adapter.emit_properties_changed({"Powered": is_on})
+            if not is_on:
+                for device in self.devices.values():
+                    device.part()
+
+        self.do(switch)
+
+    def unplug(self) -> None:
+        """Pull the adapter out: its objects are gone."""
+
+        def pull() -> None:
+            for device in self.devices.values():
+                device.part()
+                self.bus.unexport(device.path)
+            self.bus.unexport(ADAPTER)
+
+        self.do(pull)
+
+    def vanish(self) -> None:
+        """End the D-Bus, and BlueZ with it."""
+        if hasattr(self, "bus") and not self.has_ended:
+            self.do(self.bus.disconnect)
+        self.has_ended = True
+        self._daemon.terminate()
+        self._daemon.wait()
