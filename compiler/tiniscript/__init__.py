@@ -128,7 +128,11 @@ def check_text(text: str, kit: Kit, name: str = "") -> Compiled:
     parsed = parse(source, kit)
     checked = check(source, parsed.program, kit)
     found = [*parsed.diagnostics, *checked.diagnostics]
-    if not any(diagnostic.is_mistake for diagnostic in found):
+    if any(diagnostic.is_mistake for diagnostic in found):
+        from tiniscript.semantics.joining import joined
+
+        found = joined(found, source, parsed.scan.tokens, kit)
+    else:
         found += advice(checked.program, kit)
     return Compiled(source, in_order(found), checked.program)
 

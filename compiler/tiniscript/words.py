@@ -94,19 +94,20 @@ OTHER_WORDS = {
     "M": "MOTOR MOTORS MOTORES",
     "BEEP": "TONE BUZZ BUZZER SOUND PITAR PITA PITO PITIDO SONAR SUENA SONIDO TONO",
     "SHOW": "PRINT SAY DISPLAY ECHO MOSTRAR MUESTRA IMPRIMIR IMPRIME DECIR DI ESCRIBIR ESCRIBE",
+    "START": "INICIO BEGIN COMENZAR COMIENZO EMPEZAR EMPIEZA INICIAR VOID_SETUP",
     "IF": "SI_ES CUANDO",
     "ELSEIF": "ELIF ELSIF SINO_SI",
     "ELSE": "SINO SI_NO OTHERWISE",
-    "ENDIF": "FI FIN_SI FINSI IF_END",
+    "ENDIF": "FI FIN_SI FINSI FIN_IF FINIF IF_END",
     "LOOP": "REPEAT FOR DO TIMES REPETIR REPITE BUCLE CICLO PARA_CADA VECES",
-    "END_LOOP": "FIN_BUCLE FIN_REPETIR FIN_REPITE FIN_CICLO FIN_PARA END_REPEAT ENDREPEAT END_FOR"
-                " ENDFOR LOOP_END NEXT",
+    "END_LOOP": "FIN_BUCLE FIN_LOOP FINLOOP FIN_REPETIR FINREPETIR FIN_REPITE FIN_CICLO FIN_PARA FINPARA"
+                " END_REPEAT ENDREPEAT END_FOR ENDFOR LOOP_END NEXT SIGUIENTE",
     "WHILE": "MIENTRAS",
-    "END_WHILE": "FIN_MIENTRAS FINMIENTRAS WHILE_END WEND",
-    "FOREVER": "SIEMPRE INFINITO PARA_SIEMPRE",
+    "END_WHILE": "FIN_MIENTRAS FINMIENTRAS FIN_WHILE FINWHILE WHILE_END WEND",
+    "FOREVER": "SIEMPRE INFINITO PARA_SIEMPRE POR_SIEMPRE VOID_LOOP",
     "BREAK": "EXIT LEAVE SALIR ROMPER",
     "DEF": "FUNCTION PROCEDURE SUB FUNCION PROCEDIMIENTO",
-    "END_DEF": "END_FUNCTION FIN_FUNCION FIN_DEF DEF_END END_SUB",
+    "END_DEF": "END_FUNCTION FIN_FUNCION FINFUNCION FIN_DEF FINDEF DEF_END END_SUB",
     "UNTIL": "HASTA HASTA_QUE",
     "TRUE": "YES VERDADERO CIERTO",
     "FALSE": "NO FALSO",
@@ -114,16 +115,28 @@ OTHER_WORDS = {
     "ROUND": "REDONDEAR",
     "TIME": "MILLIS TIMER TIEMPO",
     "BUTTON": "BOTON PULSADOR",
-    "DISTANCE": "DISTANCIA",
+    "DISTANCE": "DISTANCIA ULTRASONIDO ULTRASONICO ULTRASONIC",
     "LIGHT_R": "LUZ_D LUZ_DERECHA LIGHT_RIGHT",
     "LIGHT_L": "LUZ_I LUZ_IZQUIERDA LIGHT_LEFT",
 }
+
+# The sensor of which a robot has a left and a right one.
+SENSOR_STEMS = {"LUZ": "LIGHT", "LINEA": "LINE"}
 
 # What no single word says here: which way to turn, and what to switch on or off.
 TURN_WORDS = frozenset(["TURN", "ROTATE", "GIRAR", "GIRA", "GIRO", "ROTAR", "ROTA", "VOLTEAR", "VOLTEA", "DOBLAR", "DOBLA"])
 SWITCH_WORDS = {
     **dict.fromkeys(["TURN_ON", "SWITCH_ON", "PRENDER", "PRENDE", "ENCENDER", "ENCIENDE"], "TRUE"),
     **dict.fromkeys(["TURN_OFF", "SWITCH_OFF", "APAGAR", "APAGA"], "FALSE"),
+}
+
+# Commands of other languages whose time is in milliseconds.
+IN_MILLISECONDS = frozenset(["DELAY"])
+# What documents write for a value, and pupils copy.
+PLACEHOLDERS = {
+    "time": ("TIME", "TIEMPO", "T"), "seconds": ("SECONDS", "SEGUNDOS", "TIME", "TIEMPO"),
+    "power": ("POWER", "POTENCIA", "P"), "left": ("LEFT", "IZQUIERDA"), "right": ("RIGHT", "DERECHA"),
+    "hertz": ("HERTZ", "HERCIOS", "HZ"),
 }
 
 # Numbers in words, of what programs often say.
@@ -141,10 +154,16 @@ UNITS = {name: (unit, thousandths) for unit, thousandths, names in (
     ("s", 1000, "S SEC SECS SECOND SECONDS SEG SEGS SEGUNDO SEGUNDOS"),
     ("s", 1, "MS"), ("s", 60_000, "MIN MINUTO MINUTOS"),
     ("cm", 1000, "CM"), ("cm", 100, "MM"), ("cm", 100_000, "M METRO METROS"),
-    ("Hz", 1000, "HZ HERTZ"), ("°", 1000, "DEG DEGREES GRADO GRADOS °"), ("%", 1000, "PERCENT PORCIENTO %"),
-    ("V", 1000, "V"), ("°C", 1000, "°C"),
+    ("Hz", 1000, "HZ HERTZ"), ("°", 1000, "DEG DEGREE DEGREES GRADO GRADOS °"),
+    ("%", 1000, "PERCENT PORCIENTO POTENCIA POWER %"), ("steps", 1000, "STEP STEPS PASO PASOS"),
+    ("times", 1000, "VEZ VECES TIMES"), ("V", 1000, "V"), ("°C", 1000, "°C"),
 ) for name in names.split()}
 # fmt: on
+
+
+def usage_of(word: str) -> str:
+    """Return how a word is used, as messages print it: `F(time, power)`; else the word."""
+    return WORDS[word].usage if word in WORDS else word
 
 
 def meant_by(word: str) -> str | None:

@@ -51,9 +51,12 @@ WITHOUT_EXAMPLE: dict[str, Mapping[str, str]] = {
 
 
 def gaps(code: str) -> set[str]:
-    """Return the names of all gaps in a code's message and thing to try."""
-    texts = TEXTS[code]
-    both = "".join(str(texts[lang + end]) for lang in LANGUAGES for end in ("", "_try"))
+    """Return the names of the gaps in a code's message and thing to try, which all need a value.
+
+    Of several texts only the last one has to be filled: it is taken where no other is.
+    """
+    texts = [TEXTS[code][lang + end] for lang in LANGUAGES for end in ("", "_try")]
+    both = "".join(text if isinstance(text, str) else text[-1] for text in texts)
     return set(re.findall(r"\{@?(\w+)\}", both))
 
 
@@ -229,13 +232,13 @@ def test_long_pieces_of_a_program_are_shortened() -> None:
                 "line 1:  SI|SI(DISTANCE < 10);S;ENDIF",
                 "            ^^",
                 "SI starts a program. To ask a question the word is IF.   "
-                "Try:  IF(DISTANCE < 10)   [TS045]",
+                "Try:  IF(DISTANCE < 10);S;ENDIF   [TS045]",
             ],
             [
                 "línea 1:  SI|SI(DISTANCE < 10);S;ENDIF",
                 "             ^^",
                 "SI sirve para empezar el programa. Para preguntar se usa IF.   "
-                "Prueba:  IF(DISTANCE < 10)   [TS045]",
+                "Prueba:  IF(DISTANCE < 10);S;ENDIF   [TS045]",
             ],
         ),
         (
@@ -258,13 +261,14 @@ def test_long_pieces_of_a_program_are_shortened() -> None:
             [
                 "line 1:  IF(DISTANCE);S;ENDIF",
                 "            ^^^^^^^^",
-                "IF needs a yes or no, and DISTANCE is a number.   Try:  DISTANCE < 10   [TS202]",
+                "IF needs a yes or no, and DISTANCE is a number.   "
+                "Try:  Compare it with a number, as in DISTANCE < 10   [TS202]",
             ],
             [
                 "línea 1:  IF(DISTANCE);S;ENDIF",
                 "             ^^^^^^^^",
                 "IF necesita un sí o no, y DISTANCE es un número.   "
-                "Prueba:  DISTANCE < 10   [TS202]",
+                "Prueba:  Compáralo con un número, como DISTANCE < 10   [TS202]",
             ],
         ),
     ],

@@ -260,8 +260,8 @@ RECOVERIES: dict[str, tuple[list[str], str]] = {
         "if «IF DISTANCE < 10;S;ENDIF»\n  arm ? «IF DISTANCE < 10»\n    S «S»",
     ),
     "IF DISTANCE < 10: S;ENDIF": (
-        ["TS015 IF DISTANCE < 10"],
-        "if «IF DISTANCE < 10: S;ENDIF»\n  arm ? «IF DISTANCE < 10»\n    S «S»",
+        ["TS015 IF DISTANCE < 10: S;ENDIF"],
+        "",  # the thing to try is the whole line
     ),
     "LOOP();S;END_LOOP": (["TS020 ()"], "loop forever «LOOP();S;END_LOOP»\n  S «S»"),
     "WHILE(;S;END_WHILE": (["TS018 ("], "while ? «WHILE(;S;END_WHILE»\n  S «S»"),
@@ -274,7 +274,8 @@ RECOVERIES: dict[str, tuple[list[str], str]] = {
         ["TS021 ELSE IF"],
         "if «ELSE IF(Q);S;ENDIF»\n  arm [A] «IF(A)»\n  arm [Q] «ELSE IF(Q)»\n    S «S»",
     ),
-    "REPEAT(3);S;FIN": (["TS102 REPEAT"], "loop [3]! «REPEAT(3);S;FIN»\n  S «S»"),
+    "REPEAT(3);S;FIN": (["TS102 REPEAT"], ""),
+    "REPEAT(3)\nS\nFIN": (["TS102 REPEAT"], "loop [3]! «REPEAT(3) S FIN»\n  S «S»"),
     "REPEAT(1, 2);S;FIN": (["TS102 REPEAT"], "loop forever «REPEAT(1, 2);S;FIN»\n  S «S»"),
     "SI(A);S;SINO;W(1);FIN_SI": (
         ["TS045 SI", "TS102 SINO"],

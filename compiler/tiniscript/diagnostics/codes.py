@@ -18,11 +18,15 @@ class Code(NamedTuple):
 
 
 class Diagnostic(NamedTuple):
-    """One diagnostic in one place. `values` fill the gaps in its message."""
+    """One diagnostic in one place. `values` fill the gaps in its message.
+
+    `place` is what the thing to try stands for, where that is not `span`.
+    """
 
     code: Code
     span: Span
     values: Mapping[str, str] = {}
+    place: Span | None = None
 
     @property
     def is_mistake(self) -> bool:
@@ -99,6 +103,7 @@ LINE_NUMBER = _mistake("TS054")
 BAR_BETWEEN = _mistake("TS055")
 NAME_WITH_SPACE = _mistake("TS056")
 MISSING_EQUALS = _mistake("TS057")
+PLACEHOLDER = _mistake("TS060")
 # the checksum of a line
 CHECKSUM_WRONG = _mistake("TS058")
 CHECKSUM_FORM = _mistake("TS059")

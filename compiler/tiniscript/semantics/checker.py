@@ -20,6 +20,7 @@ from tiniscript.semantics.symbols import Name, Scope
 from tiniscript.semantics.types import ANY, Kinds, Value
 from tiniscript.semantics.unknown_words import (
     report_named_arguments,
+    report_placeholders,
     report_unknown,
     the_other_way,
 )
@@ -162,6 +163,7 @@ class _Checker(Scope):
         ]
         if len(self.diagnostics) > said:
             report_named_arguments(self, node, word, said)
+            report_placeholders(self, node, word, said)
         self.stack_fits(values, span)
         self.take(values, span, made)
         if word.role in ("move", "wait"):
@@ -213,8 +215,8 @@ class _Checker(Scope):
 
     def wants_condition(self, argument: ast.Argument, by: str) -> None:
         found = self.source[argument.span]
-        self.report(codes.WANTS_CONDITION, argument.span, by=by, found=found,
-                    fix=self.kinds.question(found))  # fmt: skip
+        values = self.kinds.question(found)
+        self.report(codes.WANTS_CONDITION, argument.span, None, by=by, found=found, **values)
 
     def stack_fits(self, values: Sequence[Value], span: Span) -> None:
         if any(value.depth + i > STACK_VALUES for i, value in enumerate(values)):

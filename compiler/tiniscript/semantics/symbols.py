@@ -37,8 +37,8 @@ class Scope:
         self.parsed = parsed
         self.def_names = {each.name for each in parsed.body if isinstance(each, ast.Def)}
 
-    def report(self, code: Code, span: Span, **values: str) -> None:
-        self.diagnostics.append(Diagnostic(code, span, values))
+    def report(self, code: Code, span: Span, place: Span | None = None, **values: str) -> None:
+        self.diagnostics.append(Diagnostic(code, span, values, place))
 
     def line_to_move_up(self, name: str, used: Span) -> dict[str, str]:
         """Return the number and the text of the later line that only gives `name` a number."""

@@ -15,7 +15,7 @@ from tiniscript.semantics.symbols import Scope
 from tiniscript.source import Span
 from tiniscript.syntax.ast import Argument, Part
 from tiniscript.syntax.operators import SIGN_OF
-from tiniscript.words import NUMBER_WORDS, WORDS, meant_by
+from tiniscript.words import NUMBER_WORDS, SENSOR_STEMS, WORDS, meant_by
 
 NUMBER, YES_NO, ANY = "number", "yes_no", "any"  # ANY: a mistake was already reported there
 
@@ -108,18 +108,24 @@ class Kinds:
         if name not in scope.set_somewhere and name != target and (
             (meant in WORDS and WORDS[meant].role in ("value", "forever")) or meant in scope.names
         ):  # fmt: skip
-            scope.report(codes.OTHER_LANGUAGE, span, found=name, right=meant, fix=meant)
+            scope.report(
+                codes.OTHER_LANGUAGE, span, found=name, right=meant, fix=meant, usage=meant
+            )
             return
         if meant == "BUTTON" or name == "BUTTON":
             scope.report(codes.NO_BUTTON, span)
             return
-        known = (each for each, its in scope.names.items() if its.what in ("sensor", "variable"))
+        known = [each for each, its in scope.names.items() if its.what in ("sensor", "variable")]
         near = NUMBER_WORDS.get(name) or scope.near(name, known)
+        stem = SENSOR_STEMS.get(name, name) + "_"  # `LIGHT` of LIGHT_R and LIGHT_L
+        several = [each for each in known if each.startswith(stem)]
+        which = {} if len(several) != 2 else {"first": several[0], "second": several[1]}
         if name == target or name in scope.set_somewhere:
             first = scope.line_to_move_up(name, span)
-            scope.report(codes.USED_BEFORE_SET, span, name=name, near=near, **first)
+            scope.report(codes.USED_BEFORE_SET, span, None, name=name, near=near, **first)
         else:
-            scope.report(codes.UNKNOWN_NAME, span, found=name, near=near)
+            near = "" if which else near
+            scope.report(codes.UNKNOWN_NAME, span, None, found=name, near=near, **which)
 
     def _apply(self, part: Part, stack: list[_Operand]) -> None:
         """Take the operands of an operator from `stack` and put its result there."""
@@ -165,19 +171,20 @@ class Kinds:
         if operand.kind == NUMBER:
             span = Span(operand.start, operand.end)
             found = self.scope.source[span]
-            fix = self.question(found)
+            values = self.question(found)
             if left is not None and left.end - left.start <= 80:
                 asked = _COMPARED.match(self.scope.source[Span(left.start, left.end)])
-                fix = f"{asked[0]} {found}" if asked else fix
-            self.scope.report(codes.WANTS_CONDITION, span, by=by, found=found, fix=fix)
+                values = {"fix": f"{asked[0]} {found}"} if asked else values
+            self.scope.report(codes.WANTS_CONDITION, span, None, by=by, found=found, **values)
 
-    def question(self, found: str) -> str:
-        """Return the question that was probably meant with a number alone."""
+    def question(self, found: str) -> dict[str, str]:
+        """Return the yes or no that a number alone means, or an example of a question with it."""
         word = found.upper()
         name = self.scope.names.get(word)
         if name is not None:
-            return f"{word} < 10" if name.what == "sensor" else f"{word} > 0"
-        return {"0": "FALSE", "1": "TRUE"}.get(word, "")
+            return {"example": f"{word} < 10" if name.what == "sensor" else f"{word} > 0"}
+        meant = {"0": "FALSE", "1": "TRUE"}.get(word)
+        return {"fix": meant} if meant else {}
 
     def _yes_no_alone(self, op: str, left: _Operand, right: _Operand) -> str:
         """`BUTTON = 1` is `BUTTON`, and `BUTTON = 0` is `NOT BUTTON`."""

@@ -12,8 +12,18 @@ from tiniscript.diagnostics import codes
 from tiniscript.semantics.symbols import Scope
 from tiniscript.source import Source, Span
 from tiniscript.syntax import ast
-from tiniscript.syntax.call_suggestions import call_of, glued_call
-from tiniscript.words import SWITCH_WORDS, TURN_WORDS, WORDS, Word, meant_by
+from tiniscript.syntax.call_suggestions import LOWEST_HERTZ, call_of, glued_call
+from tiniscript.syntax.units import converted
+from tiniscript.words import (
+    IN_MILLISECONDS,
+    PLACEHOLDERS,
+    SWITCH_WORDS,
+    TURN_WORDS,
+    WORDS,
+    Word,
+    meant_by,
+    usage_of,
+)
 
 _OPPOSITE = {"F": "B", "B": "F", "L": "R", "R": "L"}
 
@@ -34,12 +44,10 @@ def report_unknown(scope: Scope, node: ast.Command, inside: str | None) -> None:
 def _report_unknown_word(scope: Scope, node: ast.Command) -> None:
     word, span = node.word, node.word_span
     meant = meant_by(word)
+    if (word in TURN_WORDS or meant == "F") and _report_way(scope, node):
+        return
     if meant is not None and (meant in WORDS or meant in scope.names):
-        fix = meant
-        if meant in WORDS:
-            spans = [each.span for each in node.arguments or ()]
-            fix = call_of(scope.source, WORDS[meant], spans)
-        scope.report(codes.OTHER_LANGUAGE, span, found=word, right=meant, fix=fix)
+        _report_foreign(scope, node, meant)
         return
     if word in TURN_WORDS:
         scope.report(codes.WHICH_WAY, span)
@@ -51,12 +59,57 @@ def _report_unknown_word(scope: Scope, node: ast.Command) -> None:
         return
     glued = glued_call(word)
     if glued is not None and node.arguments is None:
-        scope.report(codes.MISSING_OPEN, span, word=glued.partition("(")[0], fix=glued)
+        name = glued.partition("(")[0]
+        scope.report(codes.MISSING_OPEN, span, word=name, fix=glued, usage=usage_of(name))
         return
     commands = [each.text for each in WORDS.values() if each.role not in
                 ("setup", "later", "value", "operator", "function", "forever")]  # fmt: skip
     near = scope.near(word, chain(commands, scope.names, scope.def_names))
     scope.report(codes.UNKNOWN_WORD, span, found=word, near=near)
+
+
+def _report_foreign(scope: Scope, node: ast.Command, meant: str) -> None:
+    """`ADELANTE(5)`, `delay(1000)`, `DISTANCIA`: the same in a word of the language or the kit."""
+    fix = usage = meant
+    if meant in WORDS:
+        spans = [each.span for each in node.arguments or ()]
+        usage = WORDS[meant].usage
+        fix = call_of(scope.source, WORDS[meant], spans)
+        if node.word in IN_MILLISECONDS and len(spans) == 1:
+            number = scope.source[spans[0]]
+            fix = f"W({converted(number, 'MS')})" if number.isdecimal() else ""
+    scope.report(codes.OTHER_LANGUAGE, node.word_span, node.span, found=node.word, right=meant,
+                 fix=fix, usage=usage)  # fmt: skip
+
+
+def _report_way(scope: Scope, node: ast.Command) -> bool:
+    """`girar(derecha, 90)`, `mover(adelante, 2, 80)`: the first value says the word."""
+    arguments = node.arguments or ()
+    texts = [scope.source[each.span] for each in arguments]
+    meant = WORDS.get(meant_by(texts[0].upper()) or "") if texts else None
+    if meant is None or meant.role != "move":
+        return False
+    spans = [each.span for each in arguments[1:]]
+    fix = call_of(scope.source, meant, spans) if spans else ""
+    if meant.text in ("L", "R") and not fix:
+        way = "left" if meant.text == "L" else "right"
+        scope.report(codes.WHICH_WAY, node.word_span, word=meant.text, way=way, usage=meant.usage)
+        return True
+    found = f"{node.word}({texts[0]})"
+    scope.report(codes.OTHER_LANGUAGE, node.word_span, node.span, found=found, right=meant.text,
+                 fix=fix, usage=meant.usage)  # fmt: skip
+    return True
+
+
+def report_placeholders(scope: Scope, node: ast.Command, word: Word, said: int) -> None:
+    """`F(tiempo, potencia)`: these names stand for numbers. Drops the diagnostics since `said`."""
+    texts = [scope.source[each.span].upper() for each in node.arguments or ()]
+    names = [PLACEHOLDERS.get(its.name, ()) for its in word.arguments]
+    if len(texts) == len(names) and all(
+        text in its for text, its in zip(texts, names, strict=True)
+    ):
+        del scope.diagnostics[said:]
+        scope.report(codes.PLACEHOLDER, node.span, usage=word.usage, example=word.example)
 
 
 def report_named_arguments(scope: Scope, node: ast.Command, word: Word, said: int) -> None:
@@ -73,11 +126,18 @@ def report_named_arguments(scope: Scope, node: ast.Command, word: Word, said: in
     scope.report(codes.NAMED_ARGUMENT, node.span, word=word.text, fix=fix)
 
 
+def _is_pitch(text: str) -> bool:
+    """Whether a number is rather hertz than seconds."""
+    return text.isdecimal() and int(text[:9]) > LOWEST_HERTZ
+
+
 def the_other_way(source: Source, node: ast.Command, word: Word) -> str:
-    """Return `B(2, 80)` for `F(-2, 80)` or `F(2, -80)`; nothing for what is no such move."""
+    """Return `B(2, 80)` for `F(-2, 80)`, `BEEP(1, 440)` for `BEEP(440, 1)`, else nothing."""
     arguments = node.arguments or ()
     texts = [source[each.span] for each in arguments]
     signs = sum(text.startswith("-") for text in texts)
+    if word.role == "beep" and len(texts) == 2 and all(each.is_plain for each in arguments):
+        return f"{word.text}({texts[1]}, {texts[0]})" if _is_pitch(texts[0]) else ""
     if word.role != "move" or signs != 1 or not all(each.is_plain for each in arguments):
         return ""
     values = ", ".join(text.lstrip("- ") for text in texts)

@@ -7,18 +7,19 @@ that its end is not reported as a second mistake.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import pairwise
 from typing import NoReturn
 
 from tiniscript.diagnostics import codes
 from tiniscript.kit import Kit
 from tiniscript.source import Span
-from tiniscript.syntax.ast import Argument, Command
-from tiniscript.syntax.blocks import Block, Blocks
-from tiniscript.syntax.cursor import Cursor
+from tiniscript.syntax.ast import Argument, Assign, Command
+from tiniscript.syntax.blocks import HEADERS, Block, Blocks
+from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.lexer import ODD, WORD, Token
+from tiniscript.syntax.one_line import line_of_block
 from tiniscript.syntax.reporter import Failed, Reporter, Resumed
 from tiniscript.syntax.suggestions import AFTER_HEADER, after_bracket, body_begins, head_in
+from tiniscript.syntax.vocabulary import Vocabulary
 from tiniscript.words import ALIASES, BLOCK_ENDS, WORDS, nearest
 
 
@@ -28,7 +29,7 @@ class BlockRecovery:
         self.reporter = reporter
         self.blocks = blocks
         self.kit = kit
-        self._names: set[str] | None = None  # of the kit and of all DEFs, once somebody asks
+        self.known = Vocabulary(cursor.tokens, kit)
         self._owed = 0  # blocks that were closed by another one's end: their own may still come
 
     # -- headers ------------------------------------------------------------------------------
@@ -40,10 +41,43 @@ class BlockRecovery:
         cursor.i = body_begins(cursor.tokens, start)
         if is_reported:
             raise Failed
+        end = body_begins(cursor.tokens, start)
+        if word.text in HEADERS and cursor.tokens[end].kind not in AT_END:
+            cursor.i = start - 1
+            line = self.whole_line(word, word.text)
+            if line is not None:
+                place = cursor.span_from(word)
+                self.reporter.report(codes.MISSING_OPEN, place, word=word.text, fix=line, usage="")
+                raise Resumed
+            cursor.i = body_begins(cursor.tokens, start)
         written = cursor.tokens[start : cursor.i]
         span = Span(word.start, written[-1].end if written else word.end)
-        fix = head_in(WORDS[word.text], written)
-        self.reporter.fail(codes.MISSING_OPEN, span, word=word.text, fix=fix)
+        known = WORDS[word.text]
+        fix = head_in(known, written)
+        if len(written) == 1 and self.known.is_number(written[0].text) and word.text != "LOOP":
+            fix = ""  # what it is compared with is not said
+        self.reporter.fail(codes.MISSING_OPEN, span, word=word.text, fix=fix, usage=known.usage)
+
+    def whole_line(self, word: Token, block: str) -> str | None:
+        """Return how the line is written that begins with `word`, the header of a `block`.
+
+        Go to its end; blocks that it leaves open are opened. None where it is not understood.
+        """
+        cursor = self.cursor
+        k = cursor.i
+        while cursor.tokens[k].start > word.start:
+            k -= 1
+        line = line_of_block(cursor.tokens, k, block, self.known)
+        if line is None:
+            return None
+        for token in cursor.tokens[k : line.end]:
+            self.reporter.answer(token)
+        cursor.i = line.end
+        for block in line.open:
+            self.begin_reported(block, cursor.span_from(word))
+        for name in line.variables:
+            self.blocks.here.append(Assign(name.text, name.span, None, name.span))
+        return line.text
 
     def to_body(self, bracket: int) -> None:
         """Go to where the body begins behind the `(` at `bracket`, which cannot be read."""
@@ -88,8 +122,12 @@ class BlockRecovery:
             return
         inside = cursor.source[Span(arguments[0].span.start, arguments[-1].span.end)]
         fix = f"{other}({inside})" if other else word.text
+        if word.text in WORDS and WORDS[word.text].role == "stop":
+            is_time = len(arguments) == 1 and arguments[0].is_plain
+            fix = f"{word.text};W({inside})" if is_time else word.text
         span = cursor.span_from(bracket)
-        self.reporter.report(codes.NO_BRACKETS_HERE, span, word=word.text, fix=fix)
+        place = cursor.span_from(word)
+        self.reporter.report(codes.NO_BRACKETS_HERE, span, place, word=word.text, fix=fix)
 
     # -- arms ---------------------------------------------------------------------------------
 
@@ -104,7 +142,8 @@ class BlockRecovery:
         if written and written[0].kind == "(" and written[-1].kind == ")":
             written = written[1:-1]
         fix = head_in(WORDS["ELSEIF"], written)
-        self.reporter.report(codes.ELSE_IF, span, fix=fix)
+        last = cursor.tokens[(end or body_begins(cursor.tokens, start)) - 1]
+        self.reporter.report(codes.ELSE_IF, span, Span(word.start, last.end), fix=fix)
         return Token(WORD, "ELSEIF", *span)
 
     def misplaced_arm(self, arm: str, span: Span) -> Block:
@@ -112,6 +151,7 @@ class BlockRecovery:
         innermost = self.blocks.innermost
         if innermost is None or not self._is_open("IF"):
             right = "IF(DISTANCE < 10)"
+            self._owed += 1
             self.reporter.fail(codes.NOT_OPEN, span, found=arm, right=right)
         self._report_wrong_end(span, arm, innermost)
         return self._end_until("IF", span)
@@ -174,17 +214,27 @@ class BlockRecovery:
         cursor = self.cursor
         following = cursor.inner()
         if self.blocks.open and following.text not in ("ELSE", "ELSEIF", "SINO", "ELIF"):
+            self._name_end(self.blocks.open[-1])
             self.blocks.end(brace.span)
             self._owed += 1
+
+    def _name_end(self, block: Block) -> None:
+        """Let the diagnostic of the first brace name the end of its block, which is known now."""
+        start = block.arms[0].span.end if block.arms else block.span.end
+        for k, diagnostic in enumerate(self.reporter.diagnostics):
+            if diagnostic.code is codes.BRACES and start <= diagnostic.span.start:
+                if not self.cursor.source[Span(start, diagnostic.span.start)].strip():
+                    values = {**diagnostic.values, "right": BLOCK_ENDS[block.word]}
+                    self.reporter.change(k, diagnostic._replace(values=values))
 
     def never_ended(self) -> None:
         """Report the blocks that are still open at the end of the text."""
         for block in self.blocks.open:
             if not block.is_reported and not self._is_misspelt(block):
                 right = BLOCK_ENDS[block.word]
-                place = self._last_line(block)
+                where = self._last_line(block)
                 self.reporter.report(
-                    codes.NEVER_ENDS, block.span, word=block.word, right=right, **place
+                    codes.NEVER_ENDS, block.span, None, word=block.word, right=right, **where
                 )
 
     def _last_line(self, block: Block) -> dict[str, str]:
@@ -237,13 +287,7 @@ class BlockRecovery:
 
     def is_name(self, word: str) -> bool:
         """Whether the kit or a DEF anywhere in the text has this name."""
-        if self._names is None:
-            pairs = pairwise(self.cursor.tokens)
-            self._names = {name.text for first, name in pairs if first.text == "DEF"}
-            if self.kit is not None:
-                devices = (*self.kit.sensors, *self.kit.actuators)
-                self._names |= {each.name for each in devices}
-        return word in self._names
+        return self.known.is_name(word)
 
 
 def _indent(row: str) -> int:

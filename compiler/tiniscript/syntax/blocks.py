@@ -74,6 +74,15 @@ class Blocks:
         self.open.append(Block(word, span, head, name))
         return self.open[-1]
 
+    def forget(self) -> None:
+        """Drop the innermost block, which has just begun, because its line is read anew."""
+        self._depth -= self.open.pop().word != "DEF"
+
+    def reopen(self, block: Block) -> None:
+        """Put a block back that was forgotten."""
+        self._depth += block.word != "DEF"
+        self.open.append(block)
+
     def end(self, end: Span) -> None:
         """Close the innermost block. It becomes an instruction of the one around it.
 

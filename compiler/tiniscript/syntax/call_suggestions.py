@@ -7,6 +7,7 @@ functions and headers, the checker for commands.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from itertools import pairwise
 
@@ -16,10 +17,16 @@ from tiniscript.fixed_point import as_text
 from tiniscript.kit import Device
 from tiniscript.source import Source, Span
 from tiniscript.syntax.lexer import NEWLINE, NUMBER, ODD, QUOTES, WORD, Token
+from tiniscript.syntax.units import converted
 from tiniscript.words import UNITS, WORDS, Argument, Word
 
 LONGEST = 60  # tokens of which a suggestion is made
+LONG_TIME_S = 20  # a longer move is rarely meant: so much is a power, degrees or steps
+LOWEST_HERTZ = 30
 _HAS_DECIMALS = ("s",)  # units whose values are often no whole numbers
+_NUMBER = re.compile(r"[0-9]+(\.[0-9]+)?|\.[0-9]+")
+_DIVIDED = re.compile(r"([0-9]+)\s*[-/.:]\s*([0-9]{2}|100)(?<=0)")  # `2.80`, `2-80`
+_ASKS = re.compile(r"[<>=]")  # a comparison, which no number has
 _WORDS_FOR_YES_NO = {
     "ON": "TRUE", "YES": "TRUE", "1": "TRUE", "ENCENDIDO": "TRUE", "PRENDIDO": "TRUE",
     "OFF": "FALSE", "NO": "FALSE", "0": "FALSE", "APAGADO": "FALSE",
@@ -46,14 +53,16 @@ def count_diagnostic(
     if fixed is not None:
         return Diagnostic(codes.DECIMAL_COMMA, span, {"fix": _call(word, fixed)})
     wanted = len(word.arguments)
-    fix = _call(word, _filled_up(texts, word)) if texts else word.example
-    if len(texts) > wanted == 1:
-        is_asked = word.arguments[0].name == "c"
-        fix = _call(word, [" AND ".join(texts)] if is_asked else texts[:1])
+    fix = _filled(texts, word)
+    if len(texts) > wanted == 1 and word.arguments[0].name == "c":
+        fix = _call(word, [" AND ".join(texts)])
+    if word.role == "move" and len(texts) == wanted + 1 and _ASKS.search(texts[-1]):
+        fix = f"{_call(word, texts[:-1])} UNTIL({texts[-1]})"
     values = {
         "word": word.text,
         "usage": word.usage,
         "fix": fix,
+        "example": "" if texts else word.example,
         "wanted": str(wanted),
         "found": str(len(arguments)),
     }
@@ -61,30 +70,39 @@ def count_diagnostic(
 
 
 def call_of(source: Source, word: Word, arguments: Sequence[Span]) -> str:
-    """Return `word` with these arguments where they fit, else an example of it."""
+    """Return `word` with these arguments, an example where there are none, "" where none fits."""
     texts = [source[each] for each in arguments]
     if not word.arguments:
         return word.text
     if len(texts) == len(word.arguments) and not any(text[:1] in QUOTES for text in texts):
         return _call(word, texts)
-    fixed = _with_points(texts, arguments, word) or _filled_up(texts, word)
-    return _call(word, fixed) if fixed else word.example
+    fixed = _with_points(texts, arguments, word)
+    if fixed or texts:
+        return _call(word, fixed) if fixed else _filled(texts, word)
+    return word.example
 
 
 def call_in(word: Word, tokens: Sequence[Token]) -> str:
-    """Return the call that the tokens after `word` were meant to be, else an example of it.
+    """Return the call that the tokens after `word` were meant to be, "" where that is not sure.
 
-    `2 80` for F is `F(2, 80)`, `0,5` for W is `W(0.5)`.
+    `2 80` for F is `F(2, 80)`, `0,5` for W is `W(0.5)`; nothing at all is an example.
     """
     values = _values(tokens[:LONGEST])
     texts = [written(value) for value in values]
+    units = [_in_our_unit(value, word, k) for k, value in enumerate(values)]
+    if None in units:
+        return ""
+    texts = [unit or text for unit, text in zip(units, texts, strict=True)]
     if word.role == "actuator" and word.example.endswith("(TRUE)"):
         texts = [_WORDS_FOR_YES_NO.get(text, text) for text in texts]
+    if not tokens:
+        return word.example
+    if len(tokens) > LONGEST:
+        return ""
     if len(texts) != len(word.arguments):
         spans = [Span(value[0].start, value[-1].end) for value in values]
-        texts = _with_points(texts, spans, word) or _filled_up(texts, word)
-    if len(tokens) > LONGEST or not texts:
-        return word.example
+        fixed = _with_points(texts, spans, word)
+        return _call(word, fixed) if fixed else _filled(texts, word)
     return _call(word, texts)
 
 
@@ -140,17 +158,21 @@ def is_value_word(token: Token) -> bool:
 
 
 def _values(tokens: Sequence[Token]) -> list[list[Token]]:
-    """Return the values that follow one another in `tokens`, with commas or without."""
+    """Return the values that follow one another in `tokens`, with commas or without.
+
+    The unit of a number is the last token of its value.
+    """
     found: list[list[Token]] = [[]]
     depth = 0
     before: Token | None = None
+    tokens = _without_angles(tokens)
     for k, token in enumerate(tokens):
         kind = token.kind
         if kind is NEWLINE or kind is ODD or (kind == ")" and not depth):
             continue
-        if before is not None and before.kind is NUMBER and token.text in UNITS:
-            if token.text not in WORDS and (kind != "%" or _ends(tokens, k + 1)):
-                continue
+        if _is_unit_of(before, tokens, k):
+            found[-1].append(token)
+            continue
         if not depth:
             if kind == ",":
                 found.append([])
@@ -172,21 +194,56 @@ def _values(tokens: Sequence[Token]) -> list[list[Token]]:
     return [value for value in found if value]
 
 
-def _filled_up(texts: Sequence[str], word: Word) -> list[str]:
-    """Return the values of `F(5)` with those that are missing: `5`, `80`. None where not meant.
+def _without_angles(tokens: Sequence[Token]) -> Sequence[Token]:
+    """Return `2, 80` for the `< 2, 80 >` that someone put there for brackets."""
+    is_framed = len(tokens) > 2 and tokens[0].kind == "<" and tokens[-1].kind == ">"
+    return tokens[1:-1] if is_framed else tokens
 
-    `F(2.80)` has a point in place of its comma: no other decimal ends with a 0.
+
+def _is_unit_of(before: Token | None, tokens: Sequence[Token], k: int) -> bool:
+    """Whether the token at `k` is the unit of the number before it."""
+    token = tokens[k]
+    if before is None or before.kind is not NUMBER or token.text not in UNITS:
+        return False
+    return token.text not in WORDS and (token.kind != "%" or _ends(tokens, k + 1))
+
+
+def _in_our_unit(value: Sequence[Token], word: Word, k: int) -> str | None:
+    """Return a number with a unit as the argument `k` of `word` takes it.
+
+    Nothing where it has no unit, None where the unit does not belong there.
     """
-    if len(texts) == 1 < len(word.arguments) == 2 and word.arguments[0].unit == "s":
-        whole, _, part = texts[0].partition(".")
-        if whole.isdecimal() and part.isdecimal() and part[-1] == "0" and len(part) > 1:
-            return [whole, part]
-    missing = word.arguments[len(texts) :]
-    if word.role == "motors" and len(texts) == 1:
-        return [*texts, *texts]
-    if not texts or not missing or any(text[:1] in QUOTES for text in texts):
-        return []
-    return [*texts, *(its.sample for its in missing)]
+    number, unit = value[0], value[-1]
+    if len(value) != 2 or number.kind is not NUMBER or unit.text not in UNITS:
+        return ""
+    its = word.arguments[k].unit if k < len(word.arguments) else ""
+    return converted(number.text, unit.text) if UNITS[unit.text][0] == its else None
+
+
+def _filled(texts: Sequence[str], word: Word) -> str:
+    """Return the call of `word` with the value that is missing, "" where that is not sure.
+
+    `F(5)` lacks its power. `F(2.80)` has a point in place of its comma: no other decimal ends
+    with a 0. `F(80)` may lack either, and `R(90)` is meant in degrees.
+    """
+    if len(texts) != 1 or len(word.arguments) != 2:
+        return ""
+    (text,) = texts
+    number = float(text) if _NUMBER.fullmatch(text) else None
+    first = word.arguments[0]
+    if word.role == "motors":
+        return _call(word, [text, text]) if number is not None else ""
+    if word.text == "RANDOM":
+        return _call(word, ["1", text]) if text.isdecimal() and text not in ("0", "1") else ""
+    if first.unit != "s":
+        return ""
+    divided = _DIVIDED.fullmatch(text)
+    if divided:
+        return _call(word, [divided[1], divided[2]])
+    if number is None or number >= LONG_TIME_S:
+        is_pitch = word.role == "beep" and number is not None and number > LOWEST_HERTZ
+        return _call(word, [first.sample, text]) if is_pitch else ""
+    return _call(word, [text, word.arguments[1].sample])
 
 
 def _ends(tokens: Sequence[Token], k: int) -> bool:
@@ -209,7 +266,7 @@ def _with_points(texts: Sequence[str], places: Sequence[Span], word: Word) -> li
     k = 0
     while k < len(texts) and len(merged) < len(word.arguments):
         its = word.arguments[len(merged)]
-        is_meant = its.unit in _HAS_DECIMALS or (its.name in ("value", "a") and (
+        is_meant = its.unit in _HAS_DECIMALS or (its.name in ("value", "a", "c") and (
             some_are_loose or (len(word.arguments) == 1 and word.role != "actuator")
         ))  # fmt: skip
         joins = (

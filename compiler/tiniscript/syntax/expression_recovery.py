@@ -18,14 +18,15 @@ from tiniscript.syntax.call_suggestions import (
     call_in,
     count_diagnostic,
     ends_value,
+    is_value_word,
     starts_value,
 )
 from tiniscript.syntax.cursor import AFTER_VALUE, AT_END, Cursor
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, Token
-from tiniscript.syntax.operators import BINARY, Operator, Postfix
+from tiniscript.syntax.operators import BINARY, COMPARISONS, Operator, Postfix
 from tiniscript.syntax.reporter import Failed, Reporter
-from tiniscript.syntax.suggestions import operator_words
-from tiniscript.syntax.unit_recovery import converted
+from tiniscript.syntax.suggestions import after_bracket, operator_words
+from tiniscript.syntax.units import converted
 from tiniscript.words import UNITS, WORDS, Word, meant_by, other_name
 
 
@@ -47,13 +48,51 @@ class ExpressionRecovery:
         if before.kind == "%" and token.kind in AFTER_VALUE:
             number = cursor.tokens[place - 1]
             span = Span(number.start, before.end)
-            fail(codes.UNIT, span, found=cursor.source[span], right=number.text, unit="%")
+            fail(codes.UNIT, span, found=cursor.source[span], number=number.text,
+                 right=number.text, unit="%")  # fmt: skip
         if token.kind is WORD and WORDS[token.text].role != "operator":
             self._no_value_word(token)
+        if before.text in ("AND", "OR") and token.kind in COMPARISONS:
+            self._nothing_compared(before, token, place)
+        if before.kind == "," == token.kind or (before.kind == "," and token.kind == ")"):
+            self._comma_too_many(token, place)
         is_at_end = token.kind in AT_END
         span = before.span if is_at_end else token.span
         found = "" if is_at_end else token.text
         fail(codes.MISSING_VALUE, span, found=found, before=before.text)
+
+    def _nothing_compared(self, word: Token, sign: Token, place: int) -> None:
+        """`DISTANCE > 10 AND < 30`: what is compared is said once."""
+        cursor = self.cursor
+        tokens, after = cursor.tokens, cursor.following
+        if place < 3 or tokens[place - 2].kind not in COMPARISONS or not starts_value(after):
+            return
+        subject = tokens[place - 3]
+        if subject.kind is WORD and subject.text not in WORDS:
+            fix = f"{word.text} {subject.text} {sign.text} {after.text}"
+            span = Span(word.start, after.end)
+            self.reporter.fail(
+                codes.MISSING_VALUE, sign.span, span, found=sign.text, before=word.text, fix=fix
+            )
+
+    def _comma_too_many(self, token: Token, place: int) -> None:
+        """`F(2,,80)`, `F(2, 80,)`: with one comma less the values are complete."""
+        cursor = self.cursor
+        tokens, k = cursor.tokens, place
+        while k and tokens[k].kind not in ("(", ";", NEWLINE):
+            k -= 1
+        word = self._word_of(tokens[k - 1]) if k else None
+        if word is None or tokens[k].kind != "(":
+            return
+        values = self._in_brackets(k)
+        places = [i for i, each in enumerate(values) if each.start == tokens[place].start]
+        fewer = [each for i, each in enumerate(values) if i not in places]
+        if sum(each.kind == "," for each in fewer) + 1 == len(word.arguments) == _plain(fewer):
+            span = Span(tokens[k - 1].start, self._end_of(k))
+            self.reporter.fail(
+                codes.MISSING_VALUE, token.span, span, found=token.text,
+                before=tokens[place].text, fix=call_in(word, fewer),
+            )  # fmt: skip
 
     def _no_value_word(self, token: Token) -> NoReturn:
         word, fail = WORDS[token.text], self.reporter.fail
@@ -85,7 +124,13 @@ class ExpressionRecovery:
         if meant is not None and meant.arguments:
             fix = call_in(meant, self._in_brackets(cursor.i))
             reporter.fail(
-                codes.OTHER_LANGUAGE, name.span, found=name.text, right=meant.text, fix=fix
+                codes.OTHER_LANGUAGE,
+                name.span,
+                Span(name.start, self._end_of(cursor.i)),
+                found=name.text,
+                right=meant.text,
+                fix=fix,
+                usage=meant.usage,
             )
         close = cursor.following
         if close.kind != ")":
@@ -95,13 +140,21 @@ class ExpressionRecovery:
 
     def no_bracket(self, name: Token, function: Word) -> NoReturn:
         """`ABS 5`."""
-        fix = function.example
-        self.reporter.fail(codes.MISSING_OPEN, name.span, word=name.text, fix=fix)
+        tokens, start = self.cursor.tokens, self.cursor.i
+        end = start
+        while tokens[end].kind in (NUMBER, ",") or is_value_word(tokens[end]):
+            end += 1
+        rest = tokens[start:end]
+        place = Span(name.start, rest[-1].end if rest else name.end)
+        fix = call_in(function, rest)
+        self.reporter.fail(
+            codes.MISSING_OPEN, name.span, place, word=name.text, fix=fix, usage=function.usage
+        )
 
     def wrong_count(self, word: Word, arguments: Sequence[Span], span: Span) -> NoReturn:
         """`word` does not take so many arguments."""
         found = count_diagnostic(self.cursor.source, word, arguments, span)
-        self.reporter.fail(found.code, found.span, **found.values)
+        self.reporter.fail(found.code, found.span, None, **found.values)
 
     # -- where an operator is wanted ----------------------------------------------------------
 
@@ -150,7 +203,9 @@ class ExpressionRecovery:
         found = cursor.source[span]
         unit = token.text
         right = converted(before.text, unit) if before.kind is NUMBER else before.text
-        self.reporter.report(codes.UNIT, span, found=found, right=right, unit=unit)
+        self.reporter.report(
+            codes.UNIT, span, found=found, number=before.text, right=right, unit=unit
+        )
         cursor.i = k + 1
         return True
 
@@ -199,7 +254,23 @@ class ExpressionRecovery:
             self.reporter.answer(token)
             if token.text in (":", ".") and self._close_comes() and starts_value(cursor.following):
                 self._nothing_between(last, cursor.following, bracket)
+        self._open_too_many(bracket, token)
         fail(codes.MISSING_CLOSE, last.span, last=last.text)
+
+    def _open_too_many(self, bracket: int, token: Token) -> None:
+        """`F((2, 80)`: the second bracket is too much."""
+        tokens = self.cursor.tokens
+        word = self._word_of(tokens[bracket - 2]) if bracket > 1 else None
+        end = after_bracket(tokens, bracket)
+        if word is None or token.kind != "," or tokens[bracket - 1].kind != "(" or end is None:
+            return
+        if tokens[end].kind in AT_END:
+            span = Span(tokens[bracket - 2].start, tokens[end - 1].end)
+            fix = call_in(word, tokens[bracket + 1 : end - 1])
+            self.cursor.i = end
+            self.reporter.fail(
+                codes.MISSING_CLOSE, tokens[bracket].span, span, last=tokens[bracket].text, fix=fix
+            )
 
     def _nothing_between(self, last: Token, token: Token, bracket: int) -> NoReturn:
         """Two values in brackets with only a space between them."""
@@ -210,11 +281,14 @@ class ExpressionRecovery:
         owner = self.cursor.tokens[bracket - 1] if bracket else self.cursor.tokens[bracket]
         word = self._word_of(owner)
         if word is not None and len(word.arguments) > 1:
-            fix = call_in(word, self._in_brackets(bracket))
-            self.reporter.fail(codes.MISSING_COMMA, span, fix=fix)
-        sign = "<" if last.kind is WORD or last.kind == ")" else "+"
-        fix = f"{last.text} {sign} {token.text}" if last.kind != ")" and token.kind != "(" else ""
-        self.reporter.fail(codes.MISSING_SIGN, span, before=last.text, found=token.text, fix=fix)
+            inner = self._in_brackets(bracket)
+            fix = call_in(word, inner)
+            place = Span(owner.start, self._end_of(bracket))
+            self.reporter.fail(codes.MISSING_COMMA, span, place, fix=fix, usage=word.usage)
+        shown = {"before": last.text, "found": token.text}
+        if last.kind == ")" or token.kind == "(":
+            shown = {"before": "", "found": ""}
+        self.reporter.fail(codes.MISSING_SIGN, span, None, **shown)
 
     def _word_of(self, token: Token) -> Word | None:
         """Return the word of the language or of the kit that takes values in brackets here."""
@@ -222,6 +296,13 @@ class ExpressionRecovery:
             return WORDS.get(token.text)
         found = (each for each in self.kit.actuators if each.name == token.text)
         return WORDS.get(token.text) or next((actuator_word(each) for each in found), None)
+
+    def _end_of(self, bracket: int) -> int:
+        """Return where the brackets end in the text that open at the token `bracket`."""
+        end = after_bracket(self.cursor.tokens, bracket)
+        inner = self._in_brackets(bracket)
+        last = self.cursor.tokens[bracket] if not inner else inner[-1]
+        return self.cursor.tokens[end - 1].end if end is not None else last.end
 
     def _in_brackets(self, bracket: int) -> list[Token]:
         """Return the tokens after a `(` up to its `)`, or to where the instruction ends."""
@@ -240,3 +321,9 @@ class ExpressionRecovery:
         while tokens[k].kind not in ("(", ")", NEWLINE, END):
             k += 1
         return tokens[k].kind == ")"
+
+
+def _plain(tokens: Sequence[Token]) -> int:
+    """Return how many numbers or names there are with commas between, 0 for anything else."""
+    values = [each for each in tokens if each.kind != ","]
+    return len(values) if all(each.kind in (NUMBER, WORD) for each in values) else 0

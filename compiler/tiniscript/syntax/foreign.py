@@ -9,11 +9,19 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NoReturn
 
 from tiniscript.diagnostics import codes
+from tiniscript.source import Span
 from tiniscript.syntax.blocks import ENDS, HEADERS
 from tiniscript.syntax.cursor import AT_END
 from tiniscript.syntax.lexer import WORD, Token
-from tiniscript.syntax.reporter import Failed
-from tiniscript.syntax.suggestions import AFTER_HEADER, COUNTING, counted, head_in, inside
+from tiniscript.syntax.reporter import Failed, Resumed
+from tiniscript.syntax.suggestions import (
+    AFTER_HEADER,
+    COUNTING,
+    counted,
+    end_of_values,
+    head_in,
+    inside,
+)
 from tiniscript.words import WORDS
 
 if TYPE_CHECKING:
@@ -31,12 +39,23 @@ def foreign_word(parser: Parser, word: Token, meant: str) -> NoReturn:
     if meant in ENDS:
         _end(parser, word, meant)
     if meant in HEADERS:
-        _report(parser, word, meant, _header_fix(parser, word, meant))
+        line = parser.recovery.in_block.whole_line(word, meant)
+        if line is not None:
+            _report(parser, word, meant, line, parser.cursor.span_from(word))
+            raise Resumed
+        values = inside(parser.cursor.tokens, parser.cursor.i + 1)
+        end = end_of_values(parser.cursor.tokens, parser.cursor.i + 1, values)
+        place = Span(word.start, end)
+        _report(parser, word, meant, _header_fix(parser, word, meant), place)
         foreign_header(parser, word, meant)
     if meant == "DEF":
         _definition(parser, word)
     values = inside(parser.cursor.tokens, parser.cursor.i + 1)
-    _report(parser, word, meant, meant if meant == "ELSE" else head_in(WORDS[meant], values))
+    place = Span(word.start, end_of_values(parser.cursor.tokens, parser.cursor.i + 1, values))
+    if meant == "ELSE":
+        _report(parser, word, meant, meant)
+    else:
+        _report(parser, word, meant, head_in(WORDS[meant], values), place)
     parser.arm(Token(WORD, meant, *word.span), is_reported=True)
     parser.recovery.in_block.go_on()
 
@@ -92,8 +111,11 @@ def _definition(parser: Parser, word: Token) -> NoReturn:
     parser.recovery.in_block.go_on()
 
 
-def _report(parser: Parser, word: Token, meant: str, fix: str) -> None:
-    parser.reporter.report(codes.OTHER_LANGUAGE, word.span, found=word.text, right=meant, fix=fix)
+def _report(parser: Parser, word: Token, meant: str, fix: str, place: Span | None = None) -> None:
+    usage = WORDS[meant].usage if meant in WORDS else meant
+    parser.reporter.report(
+        codes.OTHER_LANGUAGE, word.span, place, found=word.text, right=meant, fix=fix, usage=usage
+    )
 
 
 def _header_fix(parser: Parser, word: Token, meant: str) -> str:

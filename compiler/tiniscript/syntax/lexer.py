@@ -13,6 +13,7 @@ from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic
 from tiniscript.source import Span
 from tiniscript.syntax.checksums import SPACES, without_checksums
+from tiniscript.syntax.units import converted
 from tiniscript.words import UNITS
 
 WORD = "word"
@@ -45,14 +46,14 @@ _PATTERN = re.compile(
     rf"(?P<space>[{SPACES}]+)"
     r"""
       | (?P<word>[A-Za-z][A-Za-z0-9_]*)(?!\w)
-      | (?P<number>(?:[0-9]+(?:\.[0-9]+)?|\.[0-9]+)(?![\w.\u00b0]))
+      | (?P<number>(?:[0-9]+(?:\.[0-9]+)?|\.[0-9]+)(?![\w.\u00b0]|['\u00b4\u2019][0-9]))
       | (?P<newline>\r\n|\n|\r)
       | (?P<comment>//[^\r\n]*)
       | (?P<othernote>\#[^\r\n]*|/\*[^*]*(?:\*(?!/)[^*]*)*(?:\*/)?)
       | (?P<othersign>==|!=|=>|=<|><|&&|\|\||!(?=[ \t]*[\w(])|[\u2264\u2265\u2260\u00d7\u00f7])
       | (?P<sign><=|>=|<>|[-+*/%=<>(),;|])
       | (?P<dash>[\u2010-\u2015\u2212])
-      | (?P<badnumber>\.?[0-9][\w.\u00b0]*)
+      | (?P<badnumber>[0-9]+['\u00b4\u2019][0-9]+(?!\w)|\.?[0-9][\w.\u00b0]*|[\u00bc-\u00be])
       | (?P<badword>\w+)
       | (?P<quote>["'`\u00b4\u2018-\u201f\u00ab\u00bb]+
             (?:[^"'`\u00b4\u2018-\u201f\u00ab\u00bb\r\n]*["'`\u00b4\u2018-\u201f\u00ab\u00bb]+)?)
@@ -159,7 +160,8 @@ class _Repairs:
         number = _number_in(text)
         unit = text[len(number) :].upper() if text.startswith(number) else ""
         if unit in UNITS:
-            self.report(codes.UNIT, span, found=text, right=number, unit=unit)
+            right = converted(number, unit)
+            self.report(codes.UNIT, span, found=text, number=number, right=right, unit=unit)
             return Token(NUMBER, number, *span)
         meant = _digits_meant(text)
         self.report(codes.BAD_NUMBER, span, found=text, right=meant)
@@ -168,7 +170,7 @@ class _Repairs:
     def badword(self, text: str, span: Span) -> Token:
         plain = _plain(text)
         self.report(codes.BAD_NAME, span, found=text, right=plain)
-        return Token(WORD, plain.upper(), *span)
+        return Token(WORD, plain.upper() or "X", *span)
 
     def quote(self, text: str, span: Span) -> Token:
         inside = text.strip(QUOTES).strip()
@@ -190,18 +192,22 @@ class _Repairs:
         last = self.diagnostics[-1] if self.diagnostics else None
         if last is None or last.code is not codes.ODD_CHARACTER or last.span.end != span.start:
             shown = text if text.isprintable() else f"U+{ord(text):04X}"
-            self.report(codes.ODD_CHARACTER, span, found=shown)
+            between = shown if text == "^" else ""
+            self.report(codes.ODD_CHARACTER, span, found=shown, between=between)
         else:  # one diagnostic for a run of them
             self.diagnostics[-1] = last._replace(span=Span(last.span.start, span.end))
         return Token(ODD, text, *span)
 
 
+_PARTS = {"¼": "0.25", "½": "0.5", "¾": "0.75"}
 _LETTERS_FOR_DIGITS = str.maketrans("OoIl", "0011")
 
 
 def _digits_meant(text: str) -> str:
-    """Return the number that was surely meant: `5` for `5.`, `80` for `8O`; else nothing."""
-    digits = text.translate(_LETTERS_FOR_DIGITS)
+    """Return the number that was surely meant: `5` for `5.`, `80` for `8O`, `1.5` for `1'5`."""
+    if text in _PARTS:
+        return _PARTS[text]
+    digits = re.sub("['´’]", ".", text.translate(_LETTERS_FOR_DIGITS))
     match = re.fullmatch(r"([0-9]{1,40}(?:\.[0-9]{1,40})?)\.?", digits)
     return match[1] if match else ""
 
@@ -222,4 +228,4 @@ def _plain(text: str) -> str:
     composed = re.sub("Ñ(?![IÍií])", capitals, composed).replace("Ñ", "N")
     letters = normalize("NFD", composed).encode("ascii", "ignore").decode()
     plain = re.sub(r"^[^A-Za-z]+|\W", "", letters)
-    return plain or "X"
+    return plain

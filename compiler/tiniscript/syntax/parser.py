@@ -165,12 +165,12 @@ class Parser:
     def assignment(self, name: Token) -> None:
         is_reserved = name.text in WORDS
         if is_reserved:
-            self.recovery.reserved_name(name)
+            self.recovery.of_name.reserved_name(name)
         self.cursor.i += 2
         try:
             value = self.expressions.expression(in_brackets=False)
         except Failed:
-            self.recovery.unread_assignment(name)
+            self.recovery.of_name.unread_assignment(name)
             raise
         if is_reserved:
             raise Failed
@@ -184,7 +184,7 @@ class Parser:
         following = tokens[cursor.i + 1]
         if known is None:
             if following.kind not in _AFTER_NAME or foreign_block(word.text):
-                self.recovery.unknown_word(self, word, following)
+                self.recovery.of_name.unknown_word(self, word, following)
         elif known.role not in _COMMANDS:
             self.recovery.no_command(self, word, known.role)
         cursor.i += 1
@@ -192,7 +192,7 @@ class Parser:
         if following.kind == "(":
             arguments = self.arguments_of(word, known)
         elif known is not None and known.arguments:
-            self.recovery.no_bracket(word, known)
+            self.recovery.of_name.no_bracket(word, known)
         if tokens[cursor.i].kind not in AT_END:
             until = self.until(word)
         span = cursor.span_from(word)
@@ -207,7 +207,7 @@ class Parser:
             from tiniscript.syntax.unit_recovery import fit_units  # a right program needs it not
 
             fit_units(self.reporter, known, arguments)
-        if arguments or known is not None:
+        if arguments or known is not None or self.recovery.of_name.is_said_elsewhere(word):
             return arguments
         span = self.cursor.span_from(word)
         self.reporter.report(codes.EMPTY_BRACKETS, span, word=word.text)
@@ -243,6 +243,8 @@ class Parser:
         if name.text in WORDS:
             right = other_name(name.text)
             self.reporter.report(codes.RESERVED, name.span, word=name.text, right=right)
+        if cursor.token.kind is WORD and name.kind is WORD:
+            name = self.recovery.of_name.joined(name)
         block = self.blocks.begin("DEF", Span(word.start, name.end), name=name)
         if cursor.token.kind == "(":
             block.is_reported = True

@@ -11,40 +11,29 @@ from typing import TYPE_CHECKING, NoReturn
 from tiniscript.diagnostics import codes
 from tiniscript.kit import Kit
 from tiniscript.source import Span
-from tiniscript.syntax.ast import Assign, Command
+from tiniscript.syntax.ast import Command
 from tiniscript.syntax.block_recovery import BlockRecovery
 from tiniscript.syntax.blocks import Block, Blocks
 from tiniscript.syntax.call_suggestions import (
-    actuator_word,
-    call_in,
-    glued_call,
     starts_value,
-    written,
 )
 from tiniscript.syntax.cursor import AT_END, Cursor
-from tiniscript.syntax.foreign import foreign_word, forever_alone
-from tiniscript.syntax.lexer import NUMBER, ODD, QUOTES, WORD, Token
-from tiniscript.syntax.operators import COMPARISONS, SIGNS
+from tiniscript.syntax.foreign import forever_alone
+from tiniscript.syntax.lexer import NUMBER, ODD, WORD, Token
+from tiniscript.syntax.name_recovery import NameRecovery
+from tiniscript.syntax.operators import SIGNS
 from tiniscript.syntax.reporter import Failed, Reporter, Resumed
 from tiniscript.syntax.setup_recovery import SetupRecovery
 from tiniscript.syntax.suggestions import (
     AFTER_HEADER,
-    BEFORE_CALL,
-    BEFORE_NAME,
-    BEFORE_NOTE,
     BETWEEN,
-    COUNTING,
     body_begins,
-    foreign_block,
+    end_of_values,
     head_in,
     inside,
-    is_assignment,
-    is_counting,
     shortened,
-    spaced_name,
-    update,
 )
-from tiniscript.words import WORDS, Word, meant_by, other_name
+from tiniscript.words import WORDS, meant_by
 
 if TYPE_CHECKING:
     from tiniscript.syntax.parser import Parser
@@ -60,6 +49,7 @@ class Recovery:
         self.kit = kit
         self.setup = SetupRecovery(cursor, reporter)
         self.in_block = BlockRecovery(cursor, reporter, blocks, kit)
+        self.of_name = NameRecovery(cursor, reporter, blocks, kit, self.in_block)
 
     # -- what is no instruction ---------------------------------------------------------------
 
@@ -74,16 +64,27 @@ class Recovery:
         if token.kind is ODD:
             raise Failed
         if token.kind == "-" and cursor.token.kind == "-":
-            self._other_note(token.start, "--", cursor.token.end)
+            self.of_name.other_note(token.start, "--", cursor.token.end)
         if token.kind is NUMBER:
             self._line_number(token)
+        if token.kind in ("-", "*") and cursor.token.kind is WORD:
+            self.reporter.report(codes.LINE_NUMBER, token.span, found=token.text, dash=token.text)
+            raise Resumed
         code = codes.EXTRA_CLOSE if token.kind == ")" else codes.NOT_AN_INSTRUCTION
         self.reporter.fail(code, token.span, found=token.text, fix="")
 
     def _line_number(self, number: Token) -> None:
-        """`1. F(2, 80)`, `2) S`: go on with what stands behind the number."""
+        """`1. F(2, 80)`, `2) S`: go on with what stands behind the number; but `50 = V` sets V."""
         cursor = self.cursor
         sign = cursor.token
+        name = cursor.following
+        if sign.kind == "=" and name.kind is WORD and name.text not in WORDS:
+            span = Span(number.start, name.end)
+            self.of_name.unread_assignment(name)
+            fix = f"{name.text} = {number.text}"
+            self.reporter.fail(
+                codes.NOT_AN_INSTRUCTION, number.span, span, found=number.text, fix=fix
+            )
         if sign.kind in (")", "-") or (sign.kind is ODD and sign.text in (":", ".", "°", "º")):
             cursor.i += 1
         if cursor.token.kind is WORD and cursor.line_of(cursor.token) == cursor.line_of(number):
@@ -102,28 +103,12 @@ class Recovery:
             self._until_after_its_move(parser, word)
         if role == "forever":
             self.reporter.report(codes.FOREVER_NOT_HERE, word.span)
+            if self.cursor.following.kind == "(":
+                raise Failed
             forever_alone(parser, word)
         if role == "later":
             self.reporter.fail(codes.LATER_WORD, word.span, word=word.text)
-        self._not_an_instruction(word)
-
-    def _not_an_instruction(self, first: Token) -> NoReturn:
-        """`DISTANCE < 10` alone: suggest the question."""
-        tokens, start = self.cursor.tokens, self.cursor.i
-        tokens = tokens[start : body_begins(tokens, start, names_end=False)]
-        asks = any(token.kind in COMPARISONS or token.text == "NOT" for token in tokens)
-        sign = next((token for token in tokens if token.kind in SIGNS), first)
-        place = sign if asks else first
-        fix = head_in(WORDS["IF"], tokens) if asks else ""
-        self.reporter.fail(codes.NOT_AN_INSTRUCTION, place.span, found=place.text, fix=fix)
-
-    def _other_note(self, start: int, sign: str, text_start: int) -> NoReturn:
-        """`-- go` or `REM go`: the rest of the line is a note."""
-        cursor = self.cursor
-        cursor.skip_line()
-        span = Span(start, cursor.token.start)
-        note = "// " + cursor.source[Span(text_start, span.end)].strip()[:40]
-        self.reporter.fail(codes.OTHER_NOTE, span, found=sign, right=note)
+        self.of_name.not_an_instruction(word)
 
     # -- UNTIL --------------------------------------------------------------------------------
 
@@ -141,9 +126,17 @@ class Recovery:
             return False
         if not starts_value(following):
             return False
-        fix = head_in(WORDS["UNTIL"], inside(cursor.tokens, cursor.i + 1))
+        values = inside(cursor.tokens, cursor.i + 1)
+        fix = head_in(WORDS["UNTIL"], values)
+        place = Span(token.start, end_of_values(cursor.tokens, cursor.i + 1, values))
         self.reporter.report(
-            codes.OTHER_LANGUAGE, token.span, found=token.text, right="UNTIL", fix=fix
+            codes.OTHER_LANGUAGE,
+            token.span,
+            place,
+            found=token.text,
+            right="UNTIL",
+            fix=fix,
+            usage=fix,
         )
         return True
 
@@ -164,168 +157,6 @@ class Recovery:
         fix = f"{before} {head_in(WORDS['UNTIL'], values)}" if before else ""
         self.reporter.report(codes.UNTIL_ALONE, until.span, fix=fix)
 
-    # -- a command without brackets -----------------------------------------------------------
-
-    def no_bracket(self, word: Token, known: Word) -> NoReturn:
-        """`F 2 80`: suggest the same with brackets and commas."""
-        cursor = self.cursor
-        start = cursor.i
-        first = cursor.source.text[cursor.token.start : cursor.token.start + 1]
-        if first in tuple(QUOTES):
-            raise Failed
-        cursor.i = body_begins(cursor.tokens, start, names_end=False)
-        rest = cursor.tokens[start : cursor.i]
-        if not rest and cursor.token.kind == "{":
-            self._braces_for_brackets(word, known)
-        span = Span(word.start, rest[-1].end if rest else word.end)
-        fix = call_in(known, rest)
-        self.reporter.report(codes.MISSING_OPEN, span, word=word.text, fix=fix)
-        if cursor.token.kind is WORD and cursor.token.text != "UNTIL":
-            self.in_block.go_on()
-        raise Failed
-
-    def _braces_for_brackets(self, word: Token, known: Word) -> NoReturn:
-        """`F{2, 80}`."""
-        cursor = self.cursor
-        start = cursor.i + 1
-        self.reporter.answer(cursor.token)
-        while cursor.token.kind not in ("}", *AT_END):
-            cursor.i += 1
-        fix = call_in(known, cursor.tokens[start : cursor.i])
-        self.reporter.fail(codes.MISSING_OPEN, word.span, word=word.text, fix=fix)
-
-    # -- what begins with a name --------------------------------------------------------------
-
-    def reserved_name(self, name: Token) -> None:
-        """`S = 5`; but `F = 2, 80` is F without brackets."""
-        cursor = self.cursor
-        word, start = WORDS[name.text], cursor.i + 2
-        end = body_begins(cursor.tokens, start, names_end=False)
-        rest = cursor.tokens[start:end]
-        if len(word.arguments) > 1 and any(token.kind == "," for token in rest):
-            span = Span(name.start, rest[-1].end)
-            cursor.i = end
-            fix = call_in(word, rest)
-            self.reporter.fail(codes.MISSING_OPEN, span, word=name.text, fix=fix)
-        self.reporter.reserved_words.add(name.text)
-        right = other_name(name.text)
-        self.reporter.report(codes.RESERVED, name.span, word=name.text, right=right)
-
-    def unread_assignment(self, name: Token) -> None:
-        """Remember that a variable is set here, to a value that cannot be read."""
-        if name.text not in WORDS:
-            self.blocks.here.append(Assign(name.text, name.span, None, name.span))
-
-    def unknown_word(self, parser: Parser, word: Token, following: Token) -> None:
-        """Report what no name of a program can be; a name alone may be one of its DEFs."""
-        kind = following.kind
-        is_alone = kind in AT_END
-        if kind == "|":
-            self.reporter.fail(codes.SETUP_TWICE, word.span, found=word.text)
-        if word.text in COUNTING and is_counting(self.cursor.tokens, self.cursor.i + 1):
-            foreign_word(parser, word, "LOOP")
-        if not is_alone and kind != "(":
-            self._what_follows_a_name(word, following)
-        if self.kit is not None or (word.text == "END" and is_alone):
-            meant = foreign_block(word.text)
-            if meant is not None and not self.in_block.is_name(word.text):
-                foreign_word(parser, word, meant)
-        if self.kit is not None:
-            if kind is NUMBER or kind is WORD:
-                self._actuator_without_brackets(word, self.kit)
-            if kind is WORD and following.text != "UNTIL":
-                if not self.in_block.is_name(word.text):
-                    self._two_words(word, following)
-
-    def _what_follows_a_name(self, word: Token, following: Token) -> None:
-        cursor, kind = self.cursor, following.kind
-        changed = update(word, cursor.tokens, cursor.i + 1)
-        if changed is not None:
-            fix, found = changed
-            self.reporter.answer(following)
-            self.unread_assignment(word)
-            self.reporter.fail(codes.OTHER_ASSIGNMENT, word.span, found=found, fix=fix)
-        if kind is WORD:
-            self._word_before(word, following)
-        if word.text in BEFORE_NOTE and (kind is WORD or kind is ODD):
-            self._other_note(word.start, word.text, word.end)
-        if kind in SIGNS:
-            self._not_an_instruction(word)
-        if kind is NUMBER or kind == ",":
-            self._values_without_brackets(word, following)
-
-    def _word_before(self, word: Token, following: Token) -> None:
-        """`LET X = 5`, `CALL DANCE`, `MY SPEED = 5`: go on with what is right."""
-        cursor, start = self.cursor, self.cursor.i
-        fix = ""
-        name = spaced_name(cursor.tokens, start)
-        if name is not None and word.text not in BEFORE_NAME:
-            text, end = name
-            span = Span(word.start, cursor.tokens[end - 1].end)
-            self.reporter.report(codes.NAME_WITH_SPACE, span, found=cursor.source[span], right=text)
-            self.unread_assignment(Token(WORD, text, *span))
-            raise Failed
-        if word.text in BEFORE_NAME and is_assignment(cursor.tokens, start + 1):
-            end = body_begins(cursor.tokens, start + 3, names_end=False)
-            value = written(cursor.tokens[start + 3 : min(end, start + 40)])
-            fix = f"{following.text} = {value}"
-        elif word.text in BEFORE_CALL:
-            fix = following.text
-        if fix:
-            self.reporter.report(codes.EXTRA_WORD, word.span, found=word.text, fix=fix)
-            cursor.i += 1
-            raise Resumed
-
-    def _values_without_brackets(self, word: Token, following: Token) -> None:
-        """`F2, 80`, `FORWARD 2 80`, `SPEED 50`."""
-        cursor, start = self.cursor, self.cursor.i + 1
-        end = body_begins(cursor.tokens, start, names_end=False)
-        rest = cursor.tokens[start:end]
-        is_new = meant_by(word.text) is None and not self.in_block.is_name(word.text)
-        if is_new and len(rest) == 1 and glued_call(word.text) is None:
-            span = Span(word.start, following.end)
-            fix = f"{word.text} = {following.text}"
-            self.reporter.report(codes.MISSING_EQUALS, span, fix=fix)
-            self.unread_assignment(word)
-            raise Failed
-        span = Span(word.start, rest[-1].end)
-        glued = glued_call(word.text, rest)
-        if glued is not None:
-            cursor.i = end
-            name = glued.partition("(")[0]
-            self.reporter.fail(codes.MISSING_OPEN, span, word=name, fix=glued)
-        meant = WORDS.get(meant_by(word.text) or "")
-        if meant is not None and following.kind is NUMBER and meant.role in (*_TIMED, "show"):
-            cursor.i = end
-            self._say_in_other_words(word.span, word.text, meant, rest)
-
-    def _actuator_without_brackets(self, word: Token, kit: Kit) -> None:
-        """`LED ON`, `GRIPPER 90`."""
-        device = next((each for each in kit.actuators if each.name == word.text), None)
-        if device is not None:
-            self.cursor.i += 1
-            self.no_bracket(word, actuator_word(device))
-
-    def _two_words(self, word: Token, following: Token) -> None:
-        """`TURN LEFT`; and of `hello world` only the first word is a mistake."""
-        tokens, start = self.cursor.tokens, self.cursor.i + 2
-        meant = WORDS.get(meant_by(f"{word.text}_{following.text}") or "")
-        if meant is not None and meant.role != "block":
-            span = Span(word.start, following.end)
-            rest = tokens[start : body_begins(tokens, start, names_end=False)]
-            self._say_in_other_words(span, self.cursor.source[span], meant, rest)
-        after = tokens[start].kind
-        if following.text not in WORDS and (after in AT_END or after is WORD):
-            self.blocks.here.append(Command(word.text, word.span, None, None, word.span))
-            self.cursor.i += 1
-            raise Failed
-
-    def _say_in_other_words(
-        self, span: Span, found: str, meant: Word, values: list[Token]
-    ) -> NoReturn:
-        fix = call_in(meant, values) if meant.arguments else meant.text
-        self.reporter.fail(codes.OTHER_LANGUAGE, span, found=found, right=meant.text, fix=fix)
-
     # -- where an instruction must end --------------------------------------------------------
 
     def no_separator(self, first: Token) -> None:
@@ -333,10 +164,14 @@ class Recovery:
         cursor, fail = self.cursor, self.reporter.fail
         token, before, after = cursor.token, cursor.last, cursor.following
         kind, text = token.kind, token.text
-        if kind in ("{", "}"):
-            return
         block = self.blocks.innermost
         header = block if block is not None and block.span.end == before.end else None
+        goes_on = kind in SIGNS or text in ("AND", "OR")  # of the question, or of its line
+        goes_on = goes_on or (text in AFTER_HEADER and after.kind in AT_END)
+        if header is not None and header.word != "DEF" and first.text != "ELSE" and not goes_on:
+            self._line_of(header, token)
+        if kind in ("{", "}"):
+            return
         is_colon = kind is ODD and text == ":" and header is not None
         if is_colon or ((kind == "," or text in (".", ":")) and after.kind is WORD):
             if header is None or not header.is_reported:
@@ -352,7 +187,7 @@ class Recovery:
         if kind == "|":
             self.setup.bar_between(first, token)
         if kind == "-" and after.kind == "-" and after.start == token.end:
-            self._other_note(token.start, "--", after.end)
+            self.of_name.other_note(token.start, "--", after.end)
         if header is not None and first.text in WORDS and WORDS[first.text].arguments:
             if kind in SIGNS or text in ("AND", "OR"):
                 self._question_goes_on(first, header)
@@ -370,6 +205,32 @@ class Recovery:
         self._separator_missing(first, token, before, header)
         if kind is not WORD:
             raise Failed
+
+    def _line_of(self, header: Block, token: Token) -> None:
+        """`IF(c) S` or `LOOP(2) { S }`: suggest the whole line, if all of it is understood."""
+        cursor = self.cursor
+        start = cursor.i
+        word = Token(WORD, header.word, header.span.start, header.span.start + len(header.word))
+        self.blocks.forget()
+        line = self.in_block.whole_line(word, header.word)
+        if line is None:
+            cursor.i = start
+            self.blocks.reopen(header)
+            return
+        if not header.is_reported:
+            place = cursor.span_from(word)
+            self.reporter.answer(token)
+            is_brace = token.kind == "{"
+            before = shortened(cursor.source[header.span])
+            if not is_brace or any(
+                each.code is codes.BRACES and each.span == token.span
+                for each in self.reporter.diagnostics
+            ):
+                code = codes.BRACES if is_brace else codes.HEADER_SEPARATOR
+                self.reporter.report(
+                    code, token.span, place, found=token.text, before=before, fix=line
+                )
+        raise Resumed
 
     def _separator_missing(
         self, first: Token, token: Token, before: Token, header: Block | None
@@ -393,5 +254,5 @@ class Recovery:
         fix = head_in(WORDS[first.text], cursor.tokens[start + 1 : cursor.i])
         header.is_reported = True
         span = cursor.span_from(first)
-        self.reporter.report(codes.MISSING_OPEN, span, word=first.text, fix=fix)
+        self.reporter.report(codes.MISSING_OPEN, span, word=first.text, fix=fix, usage=fix)
         self.in_block.go_on()

@@ -30,11 +30,11 @@ class Reporter:
         self.reserved_words: set[str] = set()  # that are assigned: reported there, and only there
         self.crowded_line = -1  # the last line with a separator missing, which is reported once
 
-    def report(self, code: Code, span: Span, **values: str) -> None:
-        self.diagnostics.append(Diagnostic(code, span, values))
+    def report(self, code: Code, span: Span, place: Span | None = None, **values: str) -> None:
+        self.diagnostics.append(Diagnostic(code, span, values, place))
 
-    def fail(self, code: Code, span: Span, **values: str) -> NoReturn:
-        self.report(code, span, **values)
+    def fail(self, code: Code, span: Span, place: Span | None = None, **values: str) -> NoReturn:
+        self.report(code, span, place, **values)
         raise Failed
 
     def change(self, place: int, diagnostic: Diagnostic) -> None:

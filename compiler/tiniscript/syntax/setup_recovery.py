@@ -13,7 +13,7 @@ from tiniscript.syntax.cursor import Cursor
 from tiniscript.syntax.foreign import foreign_header
 from tiniscript.syntax.lexer import Token
 from tiniscript.syntax.reporter import Reporter, Resumed
-from tiniscript.syntax.suggestions import is_question, question_line
+from tiniscript.syntax.suggestions import end_of_values, head_in, inside, is_question
 from tiniscript.words import WORDS
 
 if TYPE_CHECKING:
@@ -28,12 +28,20 @@ class SetupRecovery:
     def is_taken_for_bar(self, word: Token, sign: Token) -> bool:
         """Whether `SI:` or `SI||` begins the program."""
         found = self.cursor.source[sign.span]
-        if found not in (":", "||", "/", "\\", "¦"):
+        is_sign = found in (":", "||", "/", "\\", "¦", "!", "¡")
+        is_letter = found in ("l", "L", "I", "i", "1") and self._is_command(self.cursor.i + 2)
+        if not (is_sign or is_letter):
             return False
         self.reporter.answer(sign)
         span = Span(word.start, sign.end)
         self.reporter.report(codes.SETUP_NEEDS_BAR, span, found=word.text)
         return True
+
+    def _is_command(self, k: int) -> bool:
+        """Whether an instruction begins at `k`: `SI l F(2, 80)` has a letter for its bar."""
+        tokens = self.cursor.tokens
+        known = WORDS.get(tokens[k].text) if k < len(tokens) else None
+        return known is not None and known.role not in ("setup", "value", "operator")
 
     def unknown(self, word: Token) -> str:
         """`START|F(2, 80)`, `GO|F(2, 80)`: go on as after `SI|`."""
@@ -56,11 +64,15 @@ class SetupRecovery:
             self.reporter.fail(codes.PING_ALONE, word.span)
         if word.text == "SI" and following.kind != "|":
             if following.kind == "(" or is_question(cursor.tokens, cursor.i + 1):
-                fix, is_all = question_line(cursor.tokens, cursor.i + 1)
-                self.reporter.report(codes.SPANISH_IF, word.span, fix=fix)
-                if is_all:
-                    cursor.skip_instruction()
+                line = parser.recovery.in_block.whole_line(word, "IF")
+                if line is not None:
+                    place = cursor.span_from(word)
+                    self.reporter.report(codes.SPANISH_IF, word.span, place, fix=line)
                     raise Resumed
+                asked = inside(cursor.tokens, cursor.i + 1)
+                place = Span(word.start, end_of_values(cursor.tokens, cursor.i + 1, asked))
+                fix = head_in(WORDS["IF"], asked)
+                self.reporter.report(codes.SPANISH_IF, word.span, place, fix=fix)
                 foreign_header(parser, word, "IF")
         code = codes.SETUP_TWICE if following.kind == "|" else codes.SETUP_NEEDS_BAR
         self.reporter.fail(code, word.span, found=word.text)

@@ -11,19 +11,25 @@ from collections.abc import Sequence
 from tiniscript.syntax.call_suggestions import LONGEST, ends_value, starts_value, written
 from tiniscript.syntax.cursor import AT_END
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, Token
-from tiniscript.syntax.operators import COMPARISONS, SIGNS
-from tiniscript.words import BLOCK_ENDS, WORDS, Word, meant_by, other_name
+from tiniscript.syntax.operators import BINARY, COMPARISONS, SIGNS
+from tiniscript.words import TURN_WORDS, WORDS, Word, meant_by, other_name
 
 # Words in the place of an operator, and those that go with them.
 OPERATOR_WORDS = {
     "Y": "AND", "E": "AND", "O": "OR", "U": "OR",
     "IS": "=", "ES": "=", "EQUALS": "=", "EQUAL": "=", "IGUAL": "=",
     "LESS": "<", "MENOR": "<", "GREATER": ">", "MORE": ">", "MAYOR": ">", "BIGGER": ">",
-    "MOD": "%",
+    "MOD": "%", "X": "*", "POR": "*", "MAS": "+", "MENOS": "-", "ENTRE": "/",
 }  # fmt: skip
 _OPERATOR_TAILS = frozenset(("THAN", "QUE", "TO", "A"))
 
 AFTER_HEADER = frozenset(("THEN", "DO", "BEGIN", "TIMES", "ENTONCES", "HACER", "HAZ", "VECES"))
+# Small words that change nothing: `la distancia`, `a la derecha`, `until the distance`.
+FILLERS = frozenset(
+    ("LA", "EL", "LOS", "LAS", "THE", "QUE", "A", "AL", "HACIA", "DE", "CON", "UN", "UNA")
+)
+# Who does it, or that something is done: the move is in the word behind.
+BEFORE_MOVE = frozenset(("ROBOT", "EL", "THE", "IR", "VE", "VAMOS", "HAZ", "GO", *TURN_WORDS))
 BETWEEN = frozenset(("AND", "Y", "THEN", "ENTONCES", "LUEGO", "DESPUES", "NEXT"))
 BEFORE_NAME = frozenset(("LET", "VAR", "SET", "INT", "FLOAT", "CONST", "GLOBAL", "DIM", "BOOL"))
 BEFORE_CALL = frozenset(("CALL", "RUN", "GOSUB", "LLAMAR", "LLAMA", "EJECUTAR", "EJECUTA"))
@@ -145,13 +151,26 @@ def inside(tokens: Sequence[Token], start: int) -> Sequence[Token]:
         if end is not None:
             return tokens[start + 1 : end - 1]
         start += 1
+    while is_filler(tokens, start):
+        start += 1
     return tokens[start : body_begins(tokens, start)]
+
+
+def end_of_values(tokens: Sequence[Token], start: int, values: Sequence[Token]) -> int:
+    """Return where the values end in the text that `inside` has found at `start`."""
+    end = after_bracket(tokens, start) if tokens[start].kind == "(" else None
+    if end is not None:
+        return tokens[end - 1].end
+    return values[-1].end if values else tokens[start - 1].end
 
 
 def is_question(tokens: Sequence[Token], start: int) -> bool:
     """Whether a comparison follows and no instruction: `DISTANCE < 10` after SI."""
+    while is_filler(tokens, start):
+        start += 1
     end = body_begins(tokens, start)
-    signs = [token.kind for token in tokens[start:end] if token.kind in COMPARISONS]
+    said = [OPERATOR_WORDS.get(token.text, token.kind) for token in tokens[start + 1 : end]]
+    signs = [sign for sign in said if sign in COMPARISONS]
     return bool(signs) and starts_value(tokens[start]) and (
         any(sign != "=" for sign in signs) or tokens[end].text in AFTER_HEADER
     )  # fmt: skip
@@ -186,30 +205,28 @@ def spaced_name(tokens: Sequence[Token], k: int) -> tuple[str, int] | None:
     return "_".join(token.text for token in tokens[k:end]), end
 
 
-def question_line(tokens: Sequence[Token], start: int) -> tuple[str, bool]:
-    """Return `IF(DISTANCE < 10);S;ENDIF` for `distancia < 10 entonces para`, and whether it is all.
-
-    `start` is the place after the word that asks. Where what is to be done is not said on the same
-    line, or not in words that are surely known, it is the header alone.
-    """
-    asked = inside(tokens, start)
-    header = head_in(WORDS["IF"], [_translated(token) for token in asked])
-    end = start + len(asked) + (2 if tokens[start].kind == "(" else 0)
-    end = min(end, len(tokens) - 1)
-    while tokens[end].text in AFTER_HEADER or tokens[end].text in (",", ":", ";"):
-        end += 1
-    done = _translated(tokens[end])
-    word = WORDS.get(done.text)
-    if done.kind is not WORD or word is None or tokens[end + 1].kind not in (NEWLINE, END):
-        return header, False
-    if word.role != "stop":
-        return header, False
-    return f"{header};{word.text};{BLOCK_ENDS['IF']}", True
+def is_filler(tokens: Sequence[Token], k: int) -> bool:
+    """Whether the word at `k` changes nothing: another word follows, and no operator."""
+    after = tokens[min(k + 1, len(tokens) - 1)]
+    is_sign = after.text in OPERATOR_WORDS or after.text in BINARY
+    return tokens[k].text in FILLERS and after.kind in (WORD, NUMBER) and not is_sign
 
 
-def _translated(token: Token) -> Token:
-    meant = meant_by(token.text) if token.kind is WORD else None
-    return token if meant is None else token._replace(text=meant)
+def move_said(tokens: Sequence[Token], k: int) -> tuple[Word, int] | None:
+    """Return the move that `girar a la derecha` or `el robot avanza` at `k` says, and its end."""
+    first = k
+    while tokens[k].kind is WORD:
+        text = tokens[k].text
+        meant = WORDS.get(meant_by(text) or "")
+        is_more = k > first and (text in FILLERS or meant_by(text) == "F")
+        is_verb = text in BEFORE_MOVE or meant_by(text) == "F"
+        leads = is_verb and tokens[k + 1].kind is WORD and tokens[k + 1].text not in WORDS
+        if meant is not None and meant.role == "move" and not leads:
+            return (meant, k + 1) if k > first else None
+        if not (is_verb or is_more):
+            return None
+        k += 1
+    return None
 
 
 def is_assignment(tokens: Sequence[Token], k: int) -> bool:
@@ -223,6 +240,9 @@ def update(name: Token, tokens: Sequence[Token], k: int) -> tuple[str, str] | No
     `k` is the place after the name.
     """
     sign, second = tokens[k], tokens[min(k + 1, len(tokens) - 1)]
+    says_is = sign.kind is WORD and OPERATOR_WORDS.get(sign.text) == "="
+    if (says_is or sign.text == ":") and starts_value(second) and tokens[k + 2].kind in AT_END:
+        return f"{name.text} = {second.text}", sign.text.lower()
     if sign.end != second.start:
         return None
     found = sign.text + second.text

@@ -10,9 +10,9 @@ from collections.abc import Sequence
 
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Diagnostic
-from tiniscript.fixed_point import as_text
 from tiniscript.syntax.ast import Argument
 from tiniscript.syntax.reporter import Reporter
+from tiniscript.syntax.units import converted
 from tiniscript.words import UNITS, Word
 
 _NAMES = {"s": "seconds", "cm": "centimetres", "Hz": "hertz", "%": "percent", "V": "volts"}
@@ -27,24 +27,8 @@ def fit_units(reporter: Reporter, word: Word, arguments: Sequence[Argument]) -> 
                     reporter.change(k, _fitted(diagnostic, word, its.name, its.unit))
 
 
-def in_thousandths(number: str, unit: str) -> int | None:
-    """Return `number` of a unit in thousandths of our unit; None if it is not a number."""
-    try:
-        return round(float(number) * UNITS[unit][1])
-    except (ValueError, OverflowError):
-        return None
-
-
-def converted(number: str, unit: str) -> str:
-    """Return a number in our unit: `0.5` for `500` and `MS`."""
-    if UNITS[unit][1] == 1000:
-        return number
-    value = in_thousandths(number, unit)
-    return number if value is None else as_text(value)
-
-
 def _fitted(diagnostic: Diagnostic, word: Word, name: str, wanted: str) -> Diagnostic:
-    unit, number = diagnostic.values["unit"], diagnostic.values["right"]
+    unit, number = diagnostic.values["unit"], diagnostic.values["number"]
     found, _ = UNITS[unit]
     if found == wanted:
         right = converted(number, unit)

@@ -1,0 +1,53 @@
+"""Joins diagnostics of one misunderstanding: what one repair mends needs no other.
+
+Knows where the things to try stand, and writes each of them in the words of the language. Finds no
+mistakes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Diagnostic
+from tiniscript.kit import Kit
+from tiniscript.source import Source
+from tiniscript.syntax.lexer import Token
+from tiniscript.syntax.vocabulary import Vocabulary
+
+# What is mended within a larger repair: a word, a number or a sign.
+_SMALL = (codes.OTHER_LANGUAGE, codes.UNIT, codes.OTHER_SIGN, codes.BAD_NUMBER)
+ENOUGH = 100  # diagnostics that are joined
+
+
+def joined(
+    found: Sequence[Diagnostic], source: Source, tokens: Sequence[Token], kit: Kit
+) -> list[Diagnostic]:
+    """Return diagnostics without those that the thing to try of another one mends."""
+    known = Vocabulary(tokens, kit)
+    kept: list[Diagnostic] = []
+    mended: set[int] = set()
+    for diagnostic in found[:ENOUGH]:
+        fix = diagnostic.values.get("fix", "")
+        if fix:
+            place = diagnostic.place or diagnostic.span
+            for k, other in enumerate(found[:ENOUGH]):
+                small = other.place or other.span
+                if other is diagnostic or other.code not in _SMALL:
+                    continue
+                if place.start <= small.start and small.end <= place.end and small != place:
+                    written = source[small]
+                    right = other.values.get("fix") or other.values.get("right", "")
+                    if written.upper() in fix.upper() and right:
+                        fix = _replaced(fix, written, right)
+                    mended.add(k)
+            fix = known.translated(fix)
+            diagnostic = diagnostic._replace(values={**diagnostic.values, "fix": fix})
+        kept.append(diagnostic)
+    return [each for k, each in enumerate(kept) if k not in mended] + list(found[ENOUGH:])
+
+
+def _replaced(text: str, old: str, new: str) -> str:
+    """Return `text` with the first `old` in it, in any case, replaced."""
+    start = text.upper().index(old.upper())
+    return text[:start] + new + text[start + len(old) :]

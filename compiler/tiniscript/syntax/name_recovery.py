@@ -1,0 +1,357 @@
+"""Recovery of instructions that begin with a name, or with a word of another language.
+
+Knows what people write behind a name: values without brackets, other signs for `=`, a word that
+is too much. Instructions of the language without their brackets are here, too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, NoReturn
+
+from tiniscript.diagnostics import codes
+from tiniscript.kit import Kit
+from tiniscript.source import Span
+from tiniscript.syntax.ast import Assign, Command
+from tiniscript.syntax.block_recovery import BlockRecovery
+from tiniscript.syntax.blocks import Blocks
+from tiniscript.syntax.call_suggestions import (
+    LONG_TIME_S,
+    actuator_word,
+    call_in,
+    glued_call,
+    written,
+)
+from tiniscript.syntax.cursor import AT_END, Cursor
+from tiniscript.syntax.foreign import foreign_word
+from tiniscript.syntax.lexer import NUMBER, ODD, QUOTES, WORD, Token
+from tiniscript.syntax.operators import COMPARISONS, SIGNS
+from tiniscript.syntax.reporter import Failed, Reporter, Resumed
+from tiniscript.syntax.suggestions import (
+    BEFORE_CALL,
+    BEFORE_NAME,
+    BEFORE_NOTE,
+    COUNTING,
+    FILLERS,
+    body_begins,
+    foreign_block,
+    head_in,
+    inside,
+    is_assignment,
+    is_counting,
+    move_said,
+    spaced_name,
+    update,
+)
+from tiniscript.words import SWITCH_WORDS, UNITS, WORDS, Word, meant_by, other_name, usage_of
+
+if TYPE_CHECKING:
+    from tiniscript.syntax.parser import Parser
+
+
+class NameRecovery:
+    def __init__(
+        self,
+        cursor: Cursor,
+        reporter: Reporter,
+        blocks: Blocks,
+        kit: Kit | None,
+        in_block: BlockRecovery,
+    ) -> None:
+        self.cursor = cursor
+        self.reporter = reporter
+        self.blocks = blocks
+        self.kit = kit
+        self.in_block = in_block
+
+    def reserved_name(self, name: Token) -> None:
+        """`S = 5`; but `F = 2, 80` is F without brackets."""
+        cursor = self.cursor
+        word, start = WORDS[name.text], cursor.i + 2
+        end = body_begins(cursor.tokens, start, names_end=False)
+        rest = cursor.tokens[start:end]
+        if len(word.arguments) > 1 and any(token.kind == "," for token in rest):
+            span = Span(name.start, rest[-1].end)
+            cursor.i = end
+            fix = call_in(word, rest)
+            self.reporter.fail(codes.MISSING_OPEN, span, word=name.text, fix=fix, usage=word.usage)
+        self.reporter.reserved_words.add(name.text)
+        right = other_name(name.text)
+        self.reporter.report(codes.RESERVED, name.span, word=name.text, right=right)
+
+    def unread_assignment(self, name: Token) -> None:
+        """Remember that a variable is set here, to a value that cannot be read."""
+        if name.text not in WORDS:
+            self.blocks.here.append(Assign(name.text, name.span, None, name.span))
+
+    def unknown_word(self, parser: Parser, word: Token, following: Token) -> None:
+        """Report what no name of a program can be; a name alone may be one of its DEFs."""
+        kind = following.kind
+        is_alone = kind in AT_END
+        if kind == "|":
+            self.reporter.fail(codes.SETUP_TWICE, word.span, found=word.text)
+        if word.text in COUNTING and is_counting(self.cursor.tokens, self.cursor.i + 1):
+            foreign_word(parser, word, "LOOP")
+        if not is_alone and kind != "(":
+            self._what_follows_a_name(word, following)
+        if self.kit is not None and not self.in_block.is_name(word.text):
+            self._move_in_a_sentence(word)
+        if self.kit is not None or (word.text == "END" and is_alone):
+            meant = foreign_block(word.text)
+            if meant is not None and not self.in_block.is_name(word.text):
+                foreign_word(parser, word, meant)
+        if self.kit is not None:
+            if kind is NUMBER or kind is WORD:
+                self._actuator_without_brackets(word, self.kit)
+            if kind is WORD and following.text != "UNTIL":
+                if not self.in_block.is_name(word.text):
+                    self._two_words(word, following)
+
+    def _what_follows_a_name(self, word: Token, following: Token) -> None:
+        cursor, kind = self.cursor, following.kind
+        if kind is ODD and following.text in (".", ":"):
+            self._word_and_sign(word, following)
+        changed = update(word, cursor.tokens, cursor.i + 1)
+        if changed is not None:
+            fix, found = changed
+            self.reporter.answer(following)
+            self.unread_assignment(word)
+            self.reporter.fail(codes.OTHER_ASSIGNMENT, word.span, found=found, fix=fix)
+        if kind is WORD:
+            self._word_before(word, following)
+        if word.text in BEFORE_NOTE and (kind is WORD or kind is ODD):
+            self.other_note(word.start, word.text, word.end)
+        if kind in SIGNS:
+            self.not_an_instruction(word)
+        if kind is NUMBER or kind == ",":
+            self._values_without_brackets(word, following)
+
+    def _word_before(self, word: Token, following: Token) -> None:
+        """`LET X = 5`, `CALL DANCE`, `MY SPEED = 5`: go on with what is right."""
+        cursor, start = self.cursor, self.cursor.i
+        fix = ""
+        name = spaced_name(cursor.tokens, start)
+        if name is not None and word.text not in BEFORE_NAME:
+            text, end = name
+            span = Span(word.start, cursor.tokens[end - 1].end)
+            self.reporter.report(codes.NAME_WITH_SPACE, span, found=cursor.source[span], right=text)
+            self.unread_assignment(Token(WORD, text, *span))
+            raise Failed
+        if word.text in BEFORE_NAME and is_assignment(cursor.tokens, start + 1):
+            end = body_begins(cursor.tokens, start + 3, names_end=False)
+            value = written(cursor.tokens[start + 3 : min(end, start + 40)])
+            fix = f"{following.text} = {value}"
+        elif word.text in BEFORE_CALL:
+            fix = following.text
+        if fix:
+            self.reporter.report(codes.EXTRA_WORD, word.span, found=word.text, fix=fix)
+            cursor.i += 1
+            raise Resumed
+
+    def _values_without_brackets(self, word: Token, following: Token) -> None:
+        """`F2, 80`, `FORWARD 2 80`, `SPEED 50`."""
+        cursor, start = self.cursor, self.cursor.i + 1
+        end = body_begins(cursor.tokens, start, names_end=False)
+        rest = cursor.tokens[start:end]
+        is_new = meant_by(word.text) is None and not self.in_block.is_name(word.text)
+        if is_new and len(rest) == 1 and glued_call(word.text) is None:
+            span = Span(word.start, following.end)
+            fix = f"{word.text} = {following.text}"
+            self.reporter.report(codes.MISSING_EQUALS, span, fix=fix)
+            self.unread_assignment(word)
+            raise Failed
+        span = Span(word.start, rest[-1].end)
+        glued = glued_call(word.text, rest)
+        if glued is not None:
+            cursor.i = end
+            name = glued.partition("(")[0]
+            self.reporter.fail(codes.MISSING_OPEN, span, word=name, fix=glued, usage=usage_of(name))
+        meant = WORDS.get(meant_by(word.text) or "")
+        if (
+            meant is not None
+            and following.kind is NUMBER
+            and meant.role in ("move", "wait", "show")
+        ):
+            cursor.i = end
+            self._say_in_other_words(word.span, word.text, meant, rest)
+
+    def _actuator_without_brackets(self, word: Token, kit: Kit) -> None:
+        """`LED ON`, `GRIPPER 90`."""
+        device = next((each for each in kit.actuators if each.name == word.text), None)
+        if device is not None:
+            self.cursor.i += 1
+            self.no_bracket(word, actuator_word(device))
+
+    def _two_words(self, word: Token, following: Token) -> None:
+        """`TURN LEFT`; and of `hello world` only the first word is a mistake."""
+        tokens, start = self.cursor.tokens, self.cursor.i + 2
+        joined = f"{word.text}_{following.text}"
+        if self.in_block.is_name(joined):
+            span = Span(word.start, following.end)
+            found = self.cursor.source[span]
+            self.reporter.fail(codes.NAME_WITH_SPACE, span, found=found, right=joined)
+        if meant_by(following.text) == "BUTTON" and meant_by(word.text) == "W":
+            self.reporter.fail(codes.NO_BUTTON, Span(word.start, following.end))
+        if meant_by(joined) == "FOREVER":
+            self._void_loop(word, following)
+        if word.text in SWITCH_WORDS and meant_by(following.text) == "M":
+            span = Span(word.start, following.end)
+            self._say_in_other_words(span, self.cursor.source[span], WORDS["S"], [])
+        meant = WORDS.get(meant_by(f"{word.text}_{following.text}") or "")
+        if meant is not None and meant.role != "block":
+            span = Span(word.start, following.end)
+            rest = tokens[start : body_begins(tokens, start, names_end=False)]
+            self._say_in_other_words(span, self.cursor.source[span], meant, rest)
+        after = tokens[start].kind
+        if following.text not in WORDS and (after in AT_END or after is WORD):
+            self.blocks.here.append(Command(word.text, word.span, None, None, word.span))
+            self.cursor.i += 1
+            raise Failed
+        said = WORDS.get(meant_by(word.text) or "")
+        if said is not None and said.arguments and following.text not in WORDS:
+            rest = tokens[start - 1 : body_begins(tokens, start - 1, names_end=False)]
+            self._say_in_other_words(word.span, word.text, said, rest)
+
+    def _say_in_other_words(
+        self, span: Span, found: str, meant: Word, values: list[Token]
+    ) -> NoReturn:
+        last = values[-1:]
+        values = [each for each in values if each.text not in FILLERS or [each] == last]
+        fix = call_in(meant, values) if meant.arguments else meant.text
+        if any(each.kind is WORD and not self._is_value(each) for each in values):
+            fix = ""
+        place = Span(span.start, max(span.end, values[-1].end if values else 0))
+        self.reporter.fail(
+            codes.OTHER_LANGUAGE, span, place, found=found, right=meant.text, fix=fix,
+            usage=meant.usage,
+        )  # fmt: skip
+
+    def joined(self, name: Token) -> Token:
+        """`DEF MY TURN`: a name has no space."""
+        cursor = self.cursor
+        second = cursor.token
+        if second.text in WORDS or cursor.following.kind not in AT_END:
+            return name
+        cursor.i += 1
+        whole = Token(WORD, f"{name.text}_{second.text}", name.start, second.end)
+        found = cursor.source[whole.span]
+        self.reporter.report(codes.NAME_WITH_SPACE, whole.span, found=found, right=whole.text)
+        return whole
+
+    def is_said_elsewhere(self, word: Token) -> bool:
+        """Whether `word` is a command of another language, as in `PARAR()`."""
+        meant = self.in_block.known.command(word.text)
+        return meant is not None and not self.in_block.is_name(word.text)
+
+    def _is_value(self, token: Token) -> bool:
+        """Whether a word behind a number or a command is a value or a unit."""
+        known = self.in_block.known
+        text = known.value(token.text)
+        return text in WORDS or text in UNITS or known.is_own(text)
+
+    def _move_in_a_sentence(self, word: Token) -> None:
+        """`girar a la derecha 90 grados`, `el robot avanza 2 segundos`."""
+        cursor = self.cursor
+        said = move_said(cursor.tokens, cursor.i)
+        if said is None:
+            return
+        meant, start = said
+        span = Span(word.start, cursor.tokens[start - 1].end)
+        values = inside(cursor.tokens, start)
+        if meant.text in ("L", "R") and self._is_angle(values):
+            way = "left" if meant.text == "L" else "right"
+            self.reporter.fail(codes.WHICH_WAY, span, word=meant.text, way=way, usage=meant.usage)
+        self._say_in_other_words(span, cursor.source[span], meant, list(values))
+
+    @staticmethod
+    def _is_angle(values: Sequence[Token]) -> bool:
+        """Whether these values are degrees: they say so, or one alone is too much for a time."""
+        numbers = [each for each in values if each.kind is NUMBER]
+        if any(UNITS.get(each.text, ("",))[0] == "°" for each in values):
+            return True
+        return len(numbers) == 1 and float(numbers[0].text) >= LONG_TIME_S
+
+    def _word_and_sign(self, word: Token, sign: Token) -> None:
+        """`robot.adelante(2, 80)`, `Primero: F(2, 80)`: the instruction is behind the sign."""
+        cursor = self.cursor
+        after = cursor.tokens[min(cursor.i + 2, len(cursor.tokens) - 1)]
+        meant = self.in_block.known.command(after.text) if after.kind is WORD else None
+        if meant is None:
+            return
+        self.reporter.answer(sign)
+        if sign.text == ".":
+            span = Span(word.start, after.end)
+            values = inside(cursor.tokens, cursor.i + 3)
+            self._say_in_other_words(span, cursor.source[span], meant, list(values))
+        found = f"{word.text}:"
+        self.reporter.report(codes.EXTRA_WORD, Span(word.start, sign.end), found=found, label=found)
+        cursor.i += 2
+        raise Resumed
+
+    def _void_loop(self, word: Token, following: Token) -> NoReturn:
+        """`void loop() {`: what repeats for ever in a sketch."""
+        cursor = self.cursor
+        cursor.i += 2
+        if cursor.token.kind == "(" and cursor.following.kind == ")":
+            cursor.i += 2
+        span = Span(word.start, following.end)
+        place = cursor.span_from(word)
+        fix = "LOOP(FOREVER)"
+        found = cursor.source[span]
+        self.reporter.report(
+            codes.OTHER_LANGUAGE, span, place, found=found, right="LOOP", fix=fix, usage=fix
+        )
+        self.in_block.begin_reported("LOOP", span)
+        self.in_block.go_on()
+
+    # -- a command without brackets -----------------------------------------------------------
+
+    def no_bracket(self, word: Token, known: Word) -> NoReturn:
+        """`F 2 80`: suggest the same with brackets and commas."""
+        cursor = self.cursor
+        start = cursor.i
+        first = cursor.source.text[cursor.token.start : cursor.token.start + 1]
+        if first in tuple(QUOTES):
+            raise Failed
+        cursor.i = body_begins(cursor.tokens, start, names_end=False)
+        rest = cursor.tokens[start : cursor.i]
+        if not rest and cursor.token.kind == "{":
+            self._braces_for_brackets(word, known)
+        span = Span(word.start, rest[-1].end if rest else word.end)
+        fix = call_in(known, rest)
+        self.reporter.report(codes.MISSING_OPEN, span, word=word.text, fix=fix, usage=known.usage)
+        if cursor.token.kind is WORD and cursor.token.text != "UNTIL":
+            self.in_block.go_on()
+        raise Failed
+
+    def _braces_for_brackets(self, word: Token, known: Word) -> NoReturn:
+        """`F{2, 80}`."""
+        cursor = self.cursor
+        start = cursor.i + 1
+        self.reporter.answer(cursor.token)
+        while cursor.token.kind not in ("}", *AT_END):
+            cursor.i += 1
+        fix = call_in(known, cursor.tokens[start : cursor.i])
+        self.reporter.fail(
+            codes.MISSING_OPEN, word.span, word=word.text, fix=fix, usage=known.usage
+        )
+
+    # -- what is no instruction ---------------------------------------------------------------
+
+    def not_an_instruction(self, first: Token) -> NoReturn:
+        """`DISTANCE < 10` alone: suggest the question."""
+        tokens, start = self.cursor.tokens, self.cursor.i
+        tokens = tokens[start : body_begins(tokens, start, names_end=False)]
+        asks = any(token.kind in COMPARISONS or token.text == "NOT" for token in tokens)
+        sign = next((token for token in tokens if token.kind in SIGNS), first)
+        place = sign if asks else first
+        fix = head_in(WORDS["IF"], tokens) if asks else ""
+        self.reporter.fail(codes.NOT_AN_INSTRUCTION, place.span, found=place.text, fix=fix)
+
+    def other_note(self, start: int, sign: str, text_start: int) -> NoReturn:
+        """`-- go` or `REM go`: the rest of the line is a note."""
+        cursor = self.cursor
+        cursor.skip_line()
+        span = Span(start, cursor.token.start)
+        note = "// " + cursor.source[Span(text_start, span.end)].strip()[:40]
+        self.reporter.fail(codes.OTHER_NOTE, span, found=sign, right=note)

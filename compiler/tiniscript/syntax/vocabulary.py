@@ -1,0 +1,84 @@
+"""What the words of one program mean: those of the language, of the kit, and its own names.
+
+Knows which names a wrong program gives to variables and DEFs, by a look at its tokens. So a word of
+another language is translated only where it is no name.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from functools import cached_property
+from itertools import pairwise
+
+from tiniscript.kit import Kit
+from tiniscript.syntax.call_suggestions import actuator_word
+from tiniscript.syntax.lexer import WORD, Token
+from tiniscript.words import WORDS, Word, meant_by
+
+_WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
+
+
+class Vocabulary:
+    def __init__(self, tokens: Sequence[Token], kit: Kit | None) -> None:
+        self._tokens = tokens
+        self._kit = kit
+
+    @cached_property
+    def _sensors(self) -> frozenset[str]:
+        return frozenset(each.name for each in self._kit.sensors) if self._kit else frozenset()
+
+    @cached_property
+    def _names(self) -> frozenset[str]:
+        pairs = pairwise(self._tokens)
+        found = set()
+        for k, (first, name) in enumerate(pairs):
+            if first.text == "DEF":
+                second = self._tokens[min(k + 2, len(self._tokens) - 1)]
+                is_spaced = second.kind is WORD and second.text not in WORDS  # `DEF MY TURN`
+                found.add(f"{name.text}_{second.text}" if is_spaced else name.text)
+        actuators = self._kit.actuators if self._kit else ()
+        return frozenset(found | self._sensors | {each.name for each in actuators})
+
+    @cached_property
+    def _variables(self) -> frozenset[str]:
+        pairs = pairwise(self._tokens)
+        return frozenset(
+            name.text for name, sign in pairs if name.kind is WORD and sign.kind == "="
+        )
+
+    def is_number(self, word: str) -> bool:
+        """Whether a sensor of the kit, or what means one, gives a number."""
+        name = self.value(word)
+        sensors = self._kit.sensors if self._kit else ()
+        return any(each.name == name and not each.is_yes_no for each in sensors)
+
+    def is_name(self, word: str) -> bool:
+        """Whether the kit or a DEF anywhere in the text has this name."""
+        return word in self._names
+
+    def is_own(self, word: str) -> bool:
+        """Whether the kit or the program gives this name to something."""
+        return word in self._names or word in self._variables
+
+    def command(self, word: str) -> Word | None:
+        """Return the word of the language, or the actuator, that an instruction means."""
+        known = WORDS.get(word)
+        if known is not None:
+            return known
+        for device in self._kit.actuators if self._kit else ():
+            if device.name == word:
+                return actuator_word(device)
+        return None if self.is_own(word) else WORDS.get(meant_by(word) or "")
+
+    def value(self, word: str) -> str:
+        """Return the name of a value: `DISTANCE` for `DISTANCIA`, `TRUE` for `VERDADERO`."""
+        meant = meant_by(word.upper())
+        if meant is None or word.upper() in WORDS or self.is_own(word.upper()):
+            return word
+        is_value = meant in WORDS and WORDS[meant].role in ("value", "function")
+        return meant if is_value or meant in self._sensors else word
+
+    def translated(self, text: str) -> str:
+        """Return a piece of program with its values in the words of the language."""
+        return _WORD.sub(lambda match: self.value(match[0]), text)
