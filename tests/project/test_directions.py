@@ -28,6 +28,7 @@ UPSTREAM: dict[str, set[str]] = {
     "bytecode": {"kit"},
     "syntax": {*TEXT, "bytecode"},  # of the bytecode its limits and its comparators
     "semantics": {*TEXT, "bytecode", "syntax"},
+    "repairs": {*TEXT, "syntax"},
     "codegen": {"source", "files", "fixed_point", "bytecode", "semantics"},
     "vm": {"fixed_point", "kit", "bytecode"},
     "robots": SHARED,

@@ -20,7 +20,7 @@ from tiniscript.syntax.one_line import line_of_block
 from tiniscript.syntax.reporter import Failed, Reporter, Resumed
 from tiniscript.syntax.suggestions import AFTER_HEADER, after_bracket, body_begins, head_in
 from tiniscript.syntax.vocabulary import Vocabulary
-from tiniscript.words import ALIASES, BLOCK_ENDS, WORDS, nearest
+from tiniscript.words import ALIASES, BLOCK_ENDS, WORDS, meant_by, nearest
 
 
 class BlockRecovery:
@@ -89,7 +89,7 @@ class BlockRecovery:
         """Open the block of a header that cannot be read."""
         span = Span(word.start, max(word.end, self.cursor.last.end))
         self.begin_reported(word.text, span)
-        self.go_on()
+        self.go_on(word)
 
     def no_name(self, word: Token) -> NoReturn:
         """`DEF` alone."""
@@ -100,8 +100,11 @@ class BlockRecovery:
         """Open a block whose header has a diagnostic already."""
         self.blocks.begin(word, span, head).is_reported = True
 
-    def go_on(self) -> NoReturn:
-        """Go on with what follows on this line, without reporting what is skipped."""
+    def go_on(self, header: Token | None = None) -> NoReturn:
+        """Go on with what follows on this line, without reporting what is skipped.
+
+        The thing to try of a `header` stands for what is skipped, too.
+        """
         cursor = self.cursor
         token = cursor.token
         while token.text in AFTER_HEADER or (token.kind is ODD and token.text == ":"):
@@ -109,6 +112,8 @@ class BlockRecovery:
             cursor.i += 1
             token = cursor.token
         self.reporter.crowded_line = cursor.line_of(cursor.last)
+        if header is not None:
+            self.reporter.widen(header.start, cursor.last.end)
         raise Resumed
 
     def needless_brackets(
@@ -199,14 +204,20 @@ class BlockRecovery:
 
     def end_of_any(self, end: Token) -> None:
         """`END` or `FIN` alone: it ends the innermost block."""
-        self.cursor.i += 1
+        cursor = self.cursor
+        cursor.i += 1
+        named = cursor.token
+        if named.text == "SI" or (named.kind is WORD and meant_by(named.text) in BLOCK_ENDS):
+            cursor.i += 1  # `FIN SI`, `FIN MIENTRAS`
         block = self.blocks.innermost
         if block is None:
             self.reporter.report(codes.EXTRA_WORD, end.span, found=end.text, fix="")
             return
         if not block.is_reported:
             right = BLOCK_ENDS[block.word]
-            self.reporter.report(codes.END_ALONE, end.span, found=end.text, right=right)
+            span = cursor.span_from(end)
+            found = cursor.source[span].upper()
+            self.reporter.report(codes.END_ALONE, span, found=found, right=right)
         self.blocks.end(end.span)
 
     def close_brace(self, brace: Token) -> None:

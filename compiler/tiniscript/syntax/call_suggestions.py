@@ -25,7 +25,7 @@ LONG_TIME_S = 20  # a longer move is rarely meant: so much is a power, degrees o
 LOWEST_HERTZ = 30
 _HAS_DECIMALS = ("s",)  # units whose values are often no whole numbers
 _NUMBER = re.compile(r"[0-9]+(\.[0-9]+)?|\.[0-9]+")
-_DIVIDED = re.compile(r"([0-9]+)\s*[-/.:]\s*([0-9]{2}|100)(?<=0)")  # `2.80`, `2-80`
+_DIVIDED = re.compile(r"([0-9]+)(?:\s*[-/]\s*|\.(?=[6-9]0|100))([0-9]{2}|100)(?<=0)")  # `2.80`
 _ASKS = re.compile(r"[<>=]")  # a comparison, which no number has
 _WORDS_FOR_YES_NO = {
     "ON": "TRUE", "YES": "TRUE", "1": "TRUE", "ENCENDIDO": "TRUE", "PRENDIDO": "TRUE",

@@ -229,7 +229,8 @@ class ExpressionRecovery:
         middle = cursor.source.text[first.token.end : second.start].strip()
         right = cursor.following
         fix = f"{left.text} {first.token.text} {middle} AND {middle} {second.text} {right.text}"
-        self.reporter.fail(codes.CHAINED, Span(first.token.start, second.end), fix=fix)
+        span, place = Span(first.token.start, second.end), Span(left.start, right.end)
+        self.reporter.fail(codes.CHAINED, span, place, fix=fix)
 
     # -- where a bracket is wanted ------------------------------------------------------------
 

@@ -43,10 +43,7 @@ def foreign_word(parser: Parser, word: Token, meant: str) -> NoReturn:
         if line is not None:
             _report(parser, word, meant, line, parser.cursor.span_from(word))
             raise Resumed
-        values = inside(parser.cursor.tokens, parser.cursor.i + 1)
-        end = end_of_values(parser.cursor.tokens, parser.cursor.i + 1, values)
-        place = Span(word.start, end)
-        _report(parser, word, meant, _header_fix(parser, word, meant), place)
+        _report(parser, word, meant, _header_fix(parser, word, meant))
         foreign_header(parser, word, meant)
     if meant == "DEF":
         _definition(parser, word)
@@ -75,7 +72,7 @@ def foreign_header(parser: Parser, word: Token, meant: str) -> NoReturn:
     except Failed:
         reporter.withdraw(count)
     parser.recovery.in_block.begin_reported(meant, cursor.span_from(word), head)
-    parser.recovery.in_block.go_on()
+    parser.recovery.in_block.go_on(word)
 
 
 def forever_alone(parser: Parser, word: Token) -> NoReturn:

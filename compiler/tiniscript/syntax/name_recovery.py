@@ -34,6 +34,7 @@ from tiniscript.syntax.suggestions import (
     COUNTING,
     FILLERS,
     body_begins,
+    end_of_values,
     foreign_block,
     head_in,
     inside,
@@ -116,7 +117,9 @@ class NameRecovery:
             fix, found = changed
             self.reporter.answer(following)
             self.unread_assignment(word)
-            self.reporter.fail(codes.OTHER_ASSIGNMENT, word.span, found=found, fix=fix)
+            cursor.skip_instruction()
+            place = cursor.span_from(word)
+            self.reporter.fail(codes.OTHER_ASSIGNMENT, word.span, place, found=found, fix=fix)
         if kind is WORD:
             self._word_before(word, following)
         if word.text in BEFORE_NOTE and (kind is WORD or kind is ODD):
@@ -202,25 +205,26 @@ class NameRecovery:
             span = Span(word.start, following.end)
             rest = tokens[start : body_begins(tokens, start, names_end=False)]
             self._say_in_other_words(span, self.cursor.source[span], meant, rest)
+        said = WORDS.get(meant_by(word.text) or "")
+        if said is not None and said.arguments and following.text not in WORDS:
+            rest = tokens[start - 1 : body_begins(tokens, start - 1, names_end=False)]
+            self._say_in_other_words(word.span, word.text, said, rest)
         after = tokens[start].kind
         if following.text not in WORDS and (after in AT_END or after is WORD):
             self.blocks.here.append(Command(word.text, word.span, None, None, word.span))
             self.cursor.i += 1
             raise Failed
-        said = WORDS.get(meant_by(word.text) or "")
-        if said is not None and said.arguments and following.text not in WORDS:
-            rest = tokens[start - 1 : body_begins(tokens, start - 1, names_end=False)]
-            self._say_in_other_words(word.span, word.text, said, rest)
 
     def _say_in_other_words(
-        self, span: Span, found: str, meant: Word, values: list[Token]
+        self, span: Span, found: str, meant: Word, values: list[Token], end: int = 0
     ) -> NoReturn:
+        """`end` is where the values end in the text, if not with the last of them."""
         last = values[-1:]
         values = [each for each in values if each.text not in FILLERS or [each] == last]
         fix = call_in(meant, values) if meant.arguments else meant.text
         if any(each.kind is WORD and not self._is_value(each) for each in values):
             fix = ""
-        place = Span(span.start, max(span.end, values[-1].end if values else 0))
+        place = Span(span.start, max(span.end, end, *(each.end for each in values)))
         self.reporter.fail(
             codes.OTHER_LANGUAGE, span, place, found=found, right=meant.text, fix=fix,
             usage=meant.usage,
@@ -258,10 +262,11 @@ class NameRecovery:
         meant, start = said
         span = Span(word.start, cursor.tokens[start - 1].end)
         values = inside(cursor.tokens, start)
+        end = end_of_values(cursor.tokens, start, values)
         if meant.text in ("L", "R") and self._is_angle(values):
             way = "left" if meant.text == "L" else "right"
             self.reporter.fail(codes.WHICH_WAY, span, word=meant.text, way=way, usage=meant.usage)
-        self._say_in_other_words(span, cursor.source[span], meant, list(values))
+        self._say_in_other_words(span, cursor.source[span], meant, list(values), end)
 
     @staticmethod
     def _is_angle(values: Sequence[Token]) -> bool:
@@ -282,7 +287,8 @@ class NameRecovery:
         if sign.text == ".":
             span = Span(word.start, after.end)
             values = inside(cursor.tokens, cursor.i + 3)
-            self._say_in_other_words(span, cursor.source[span], meant, list(values))
+            end = end_of_values(cursor.tokens, cursor.i + 3, values)
+            self._say_in_other_words(span, cursor.source[span], meant, list(values), end)
         found = f"{word.text}:"
         self.reporter.report(codes.EXTRA_WORD, Span(word.start, sign.end), found=found, label=found)
         cursor.i += 2
@@ -332,8 +338,13 @@ class NameRecovery:
         while cursor.token.kind not in ("}", *AT_END):
             cursor.i += 1
         fix = call_in(known, cursor.tokens[start : cursor.i])
+        place = word.span
+        if cursor.token.kind == "}":
+            self.reporter.answer(cursor.token)
+            cursor.i += 1
+            place = cursor.span_from(word)
         self.reporter.fail(
-            codes.MISSING_OPEN, word.span, word=word.text, fix=fix, usage=known.usage
+            codes.MISSING_OPEN, word.span, place, word=word.text, fix=fix, usage=known.usage
         )
 
     # -- what is no instruction ---------------------------------------------------------------

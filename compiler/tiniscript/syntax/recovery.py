@@ -155,7 +155,11 @@ class Recovery:
     def _until_alone(self, until: Token, before: str) -> None:
         values = inside(self.cursor.tokens, self.cursor.i + 1)
         fix = f"{before} {head_in(WORDS['UNTIL'], values)}" if before else ""
-        self.reporter.report(codes.UNTIL_ALONE, until.span, fix=fix)
+        place = None
+        if before:
+            end = end_of_values(self.cursor.tokens, self.cursor.i + 1, values)
+            place = Span(self.cursor.source.text.rindex(before, 0, until.start), end)
+        self.reporter.report(codes.UNTIL_ALONE, until.span, place, fix=fix)
 
     # -- where an instruction must end --------------------------------------------------------
 
@@ -196,7 +200,8 @@ class Recovery:
         if kind == "," and before.kind is NUMBER and after.kind is NUMBER:
             whole = cursor.source[Span(first.start, before.end)]
             fix = f"{whole}.{after.text}"
-            fail(codes.DECIMAL_COMMA, Span(before.start, after.end), fix=fix)
+            span = Span(before.start, after.end)
+            fail(codes.DECIMAL_COMMA, span, Span(first.start, after.end), fix=fix)
         if kind is WORD and text in (BETWEEN if header is None else AFTER_HEADER):
             if header is not None or (after.kind is WORD and not self.in_block.is_name(text)):
                 self.reporter.report(codes.EXTRA_WORD, token.span, found=text, fix="")

@@ -43,6 +43,12 @@ class Reporter:
             self._of_lexer[place] = diagnostic
         self.diagnostics[place] = diagnostic
 
+    def widen(self, start: int, end: int) -> None:
+        """Let the thing to try of the diagnostic at `start` stand for all up to `end`."""
+        for k, each in enumerate(self.diagnostics):
+            if each.span.start == start and each.is_mistake:
+                self.diagnostics[k] = each._replace(place=Span(start, end))
+
     def withdraw(self, count: int) -> None:
         """Drop all diagnostics but the first `count`, because the others follow from them."""
         del self.diagnostics[count:]

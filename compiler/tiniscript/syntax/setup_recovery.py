@@ -13,7 +13,7 @@ from tiniscript.syntax.cursor import Cursor
 from tiniscript.syntax.foreign import foreign_header
 from tiniscript.syntax.lexer import Token
 from tiniscript.syntax.reporter import Reporter, Resumed
-from tiniscript.syntax.suggestions import end_of_values, head_in, inside, is_question
+from tiniscript.syntax.suggestions import head_in, inside, is_question
 from tiniscript.words import WORDS
 
 if TYPE_CHECKING:
@@ -69,10 +69,8 @@ class SetupRecovery:
                     place = cursor.span_from(word)
                     self.reporter.report(codes.SPANISH_IF, word.span, place, fix=line)
                     raise Resumed
-                asked = inside(cursor.tokens, cursor.i + 1)
-                place = Span(word.start, end_of_values(cursor.tokens, cursor.i + 1, asked))
-                fix = head_in(WORDS["IF"], asked)
-                self.reporter.report(codes.SPANISH_IF, word.span, place, fix=fix)
+                fix = head_in(WORDS["IF"], inside(cursor.tokens, cursor.i + 1))
+                self.reporter.report(codes.SPANISH_IF, word.span, fix=fix)
                 foreign_header(parser, word, "IF")
         code = codes.SETUP_TWICE if following.kind == "|" else codes.SETUP_NEEDS_BAR
         self.reporter.fail(code, word.span, found=word.text)

@@ -1,0 +1,140 @@
+"""Makes the sure repairs of a program.
+
+A repair is sure where the message leaves no choice: it drops or invents no number, it does not
+guess a name, and with it the program has fewer mistakes. All others are left to the reader.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from typing import NamedTuple
+
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Code, Diagnostic
+from tiniscript.repairs.edits import Edit, applied, overlap
+from tiniscript.repairs.placing import edits_of
+from tiniscript.source import Source
+
+# Codes whose repair is a guess, also where it keeps every number.
+_GUESSED = frozenset((
+    codes.UNKNOWN_WORD, codes.UNKNOWN_NAME, codes.NEVER_ENDS, codes.OUT_OF_RANGE,
+    codes.WANTS_CONDITION, codes.MIXED_COMPARE, codes.SETUP_UNKNOWN, codes.NO_BRACKETS_HERE,
+    codes.WRONG_END, codes.NOT_AN_INSTRUCTION, codes.MISSING_VALUE, codes.ARGUMENT_COUNT,
+))  # fmt: skip
+# Codes of headers: how a block ends is not looked at before its header is right.
+_HEADERS = frozenset((
+    codes.SPANISH_IF, codes.OTHER_LANGUAGE, codes.MISSING_OPEN, codes.HEADER_SEPARATOR,
+    codes.BRACES,
+))  # fmt: skip
+# Codes whose repair writes a number in another way: `500 ms` is 0.5, `8O` is 80, `X++` adds 1, and
+# the number of a line goes.
+_REWRITTEN = frozenset((codes.UNIT, codes.BAD_NUMBER, codes.OTHER_ASSIGNMENT, codes.LINE_NUMBER))
+ENOUGH = 200  # repairs of one program
+
+
+class Fixed(NamedTuple):
+    """`text` is the program with its sure repairs, `left` what it still has."""
+
+    text: str
+    repairs: int
+    left: list[Diagnostic]
+
+
+class _Repair(NamedTuple):
+    code: Code
+    edits: list[Edit]
+
+
+_Step = tuple[str, list[Diagnostic], int]
+Check = Callable[[str], list[Diagnostic]]
+
+
+def fixed(text: str, check: Check) -> Fixed:
+    """Return a program with its sure repairs. `check` finds the diagnostics of a text."""
+    found = check(text)
+    count = 0
+    while count < ENOUGH:
+        repairs = _sure(found, text)
+        step = _all_of(repairs, text, found, check) or _one_of(repairs, text, found, check)
+        if step is None:
+            break
+        text, found, made = step
+        count += made
+    return Fixed(text, count, found)
+
+
+def _all_of(
+    repairs: list[_Repair], text: str, found: list[Diagnostic], check: Check
+) -> _Step | None:
+    """Make all repairs at once that do not touch, if each of them counts."""
+    chosen: list[_Repair] = []
+    for repair in repairs:
+        if not any(overlap(repair.edits, other.edits) for other in chosen):
+            chosen.append(repair)
+    if len(chosen) < 2:
+        return None
+    changed = applied(text, [edit for repair in chosen for edit in repair.edits])
+    after = check(changed)
+    if _mistakes(after) > _mistakes(found) - len(chosen):
+        return None
+    return changed, after, len(chosen)
+
+
+def _one_of(
+    repairs: list[_Repair], text: str, found: list[Diagnostic], check: Check
+) -> _Step | None:
+    """Make the first repair that leaves fewer mistakes."""
+    for repair in repairs:
+        changed = applied(text, repair.edits)
+        after = check(changed)
+        if is_better(after, found, repair.code, repair.edits):
+            return changed, after, 1
+    return None
+
+
+def is_better(
+    after: list[Diagnostic], found: list[Diagnostic], code: Code, edits: list[Edit]
+) -> bool:
+    """Whether a repair leaves fewer mistakes.
+
+    Or as many, where it has uncovered one elsewhere: how a block ends is not looked at before its
+    header is right, and of several signs that are missing on a line the first one is reported.
+    """
+    if _mistakes(after) != _mistakes(found):
+        return _mistakes(after) < _mistakes(found)
+    if code not in _HEADERS and not any(each.code is code for each in after):
+        return False
+    shift = 0
+    for span, new in sorted(edits):
+        start = span.start + shift
+        end = start + len(new)
+        shift += len(new) - (span.end - span.start)
+        if any(each.is_mistake and start <= each.span.start < end for each in after):
+            return False
+    return True
+
+
+def _sure(found: list[Diagnostic], text: str) -> list[_Repair]:
+    source = Source(text)
+    repairs = []
+    for diagnostic in found:
+        if not diagnostic.is_mistake or diagnostic.code in _GUESSED:
+            continue
+        edits = edits_of(diagnostic, source)
+        if edits and (diagnostic.code in _REWRITTEN or keeps_numbers(text, edits)):
+            repairs.append(_Repair(diagnostic.code, edits))
+    return repairs
+
+
+def keeps_numbers(text: str, edits: list[Edit]) -> bool:
+    """Whether a change drops no digit of the program, and adds none."""
+    return _digits(text) == _digits(applied(text, edits))
+
+
+def _digits(text: str) -> str:
+    return "".join(re.findall("[0-9]", text))
+
+
+def _mistakes(found: list[Diagnostic]) -> int:
+    return sum(diagnostic.is_mistake for diagnostic in found)
