@@ -211,21 +211,29 @@ def compiled(inputs: Sequence[Path], flags: Sequence[str], builds: Path = BUILDS
 
     Workers may build at the same time: each builds for itself, and the last one stays.
     """
+    return built_by("g++", inputs, (*flags, *WARNINGS), builds)
+
+
+def built_by(
+    compiler: str, inputs: Sequence[Path], flags: Sequence[str], builds: Path = BUILDS
+) -> Path:
+    """The same with any compiler, and with all of its flags."""
     texts = {path: path.name.encode() + path.read_bytes() for path in inputs}
     headers = [text for path, text in texts.items() if path.suffix == ".h"]
     objects = [
-        str(_made(builds, ".o", flags, [*headers, text], ["-c", str(path)]))
+        str(_made(compiler, builds, ".o", flags, [*headers, text], ["-c", str(path)]))
         for path, text in texts.items()
         if path.suffix == ".cpp"
     ]
-    return _made(builds, "", flags, [name.encode() for name in objects], objects)
+    return _made(compiler, builds, "", flags, [name.encode() for name in objects], objects)
 
 
 def _made(
-    builds: Path, suffix: str, flags: Sequence[str], made_from: Iterable[bytes], words: list[str]
-) -> Path:
+    compiler: str, builds: Path, suffix: str, flags: Sequence[str], made_from: Iterable[bytes],
+    words: list[str],
+) -> Path:  # fmt: skip
     """Return what the compiler makes of `words`, named after all that it is made from."""
-    key = hashlib.sha256(repr((WARNINGS, tuple(flags))).encode())
+    key = hashlib.sha256(repr((compiler, tuple(flags))).encode())
     for part in made_from:
         key.update(part)
     made = builds / (key.hexdigest()[:16] + suffix)
@@ -233,9 +241,9 @@ def _made(
         builds.mkdir(mode=0o700, exist_ok=True)
         own = made.with_suffix(f".{os.getpid()}-{get_ident()}")
         done = subprocess.run(
-            ["g++", *flags, *WARNINGS, *words, "-o", str(own)], capture_output=True, text=True
+            [compiler, *flags, *words, "-o", str(own)], capture_output=True, text=True
         )
-        assert done.returncode == 0, f"g++ refuses the C++ sources:\n{done.stderr[:4000]}"
+        assert done.returncode == 0, f"{compiler} refuses the C++ sources:\n{done.stderr[:4000]}"
         own.replace(made)
     return made
 

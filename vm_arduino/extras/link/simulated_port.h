@@ -23,8 +23,8 @@ struct SimulatedPort {
   std::unique_ptr<uint8_t[]> image;  // of exactly its length: a sanitizer sees what is outside
   std::unique_ptr<uint8_t[]> live;
   std::unique_ptr<uint8_t[]> text;  // what is read as text
-  std::string held;    // the image that START starts
-  std::string stored;  // the one that is saved: what is held again where an upload breaks off
+  std::string held;                 // the image that START starts
+  std::string stored;    // the one that is saved: what is held again where an upload breaks off
   std::string previous;  // the one that was saved before
   std::string log;
 };

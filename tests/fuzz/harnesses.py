@@ -1,0 +1,164 @@
+"""The harnesses of `vm_arduino/extras/fuzz`, built with libFuzzer, ASan and UBSan, and their first
+inputs.
+
+Knows which sources a harness is made of, and which inputs it begins with: made of the cases and
+examples, never kept in the repository. `python -m tests.fuzz.harnesses machine 1000000` runs one.
+"""
+
+from __future__ import annotations
+
+import argparse
+import random
+import re
+import shutil
+import subprocess
+import tempfile
+from collections.abc import Iterator
+from functools import lru_cache
+from pathlib import Path
+from typing import NamedTuple
+
+from tests.machines.host import SOURCES, WARNINGS, built_by
+from tests.support.casefile import ROOT
+from tests.support.link_cases import link_cases
+from tests.support.random_codes import random_codes, random_images
+from tiniscript.bytecode.image import pack
+from tiniscript.link.frames import decoded
+
+COMPILER = "clang++-22"
+FLAGS = ("-std=c++11", "-O1", "-g", "-fsanitize=fuzzer,address,undefined",
+         "-fno-sanitize-recover=all")  # fmt: skip
+MOST_BYTES = 700  # of an input
+DONE = re.compile(r"Done (\d+) runs")
+
+VM = ("crc32.cpp", "image.cpp", "verify.cpp", "bytecode.cpp", "shape.cpp")
+MACHINE = ("vm.cpp", "vm_instructions.cpp", "vm_robot.cpp", "number.cpp")
+PARTS = {
+    "machine": [f"src/vm/{name}" for name in (*VM, *MACHINE)],
+    "link": [*(f"src/vm/{name}" for name in VM), "src/link/*.cpp", "src/text/*.cpp",
+             "extras/link/simulated_port.cpp"],
+    "store": ["src/vm/crc32.cpp", "src/store/store.cpp", "extras/powercut/contents.cpp",
+              "extras/powercut/memory.cpp"],
+}  # fmt: skip
+HEADERS = ("src/*.h", "src/vm/*.h", "src/link/*.h", "src/text/*.h", "src/store/*.h",
+           "extras/fuzz/*.h", "extras/link/*.h", "extras/powercut/*.h")  # fmt: skip
+NAMES = tuple(PARTS)
+
+
+@lru_cache(maxsize=1)
+def missing() -> str:
+    """Return why nothing can be built here, or nothing."""
+    if shutil.which(COMPILER) is None:
+        return f"no {COMPILER} on this computer: apt-get install clang-22 libclang-rt-22-dev"
+    with tempfile.TemporaryDirectory() as folder:
+        source = Path(folder) / "empty.cpp"
+        source.write_text('extern "C" int LLVMFuzzerTestOneInput(const char*, long) { return 0; }')
+        command = [COMPILER, *FLAGS, str(source), "-o", str(source.with_suffix(""))]
+        is_built = subprocess.run(command, capture_output=True).returncode == 0
+    return "" if is_built else "no libFuzzer for clang-22: apt-get install libclang-rt-22-dev"
+
+
+def harness(name: str, sources: Path = SOURCES) -> Path:
+    """Return the program of a harness, made from a folder like `vm_arduino`."""
+    code = [sources / "extras" / "fuzz" / f"{name}.cpp"]
+    for pattern in PARTS[name]:
+        code += sorted(sources.glob(pattern))
+    headers = [path for pattern in HEADERS for path in sorted(sources.glob(pattern))]
+    return built_by(COMPILER, [*code, *headers], (*FLAGS, *WARNINGS))
+
+
+class Found(NamedTuple):
+    """How a run of a fuzzer has ended: how many inputs, and what was wrong with the last one."""
+
+    runs: int
+    wrong: str
+    input: bytes
+
+
+def fuzz(program: Path, folder: Path, runs: int, seed: int) -> Found:
+    """Run inputs, first those in `folder`, which grows; stop at the first that is wrong."""
+    crash = folder.parent / f"{folder.name}-crash"
+    command = [str(program), f"-runs={runs}", f"-seed={seed}", f"-max_len={MOST_BYTES}",
+               f"-exact_artifact_path={crash}", "-print_final_stats=0", "-timeout=25",
+               str(folder)]  # fmt: skip
+    done = subprocess.run(command, capture_output=True, errors="replace")
+    said = done.stderr + done.stdout
+    if done.returncode == 0:
+        count = DONE.search(said)
+        assert count, said[-2000:]
+        return Found(int(count[1]), "", b"")
+    wrong = re.findall(r"WRONG .*|MISUSE .*|ERROR: .*|runtime error: .*", said)
+    data = crash.read_bytes() if crash.exists() else b""
+    return Found(0, "; ".join(wrong[:3]) or said[-2000:], data)
+
+
+# -- the first inputs -----------------------------------------------------------------------------
+
+
+def seeds(name: str) -> Iterator[bytes]:
+    """Yield inputs as `vm_arduino/extras/fuzz` reads them."""
+    yield from {"machine": machine_seeds, "link": link_seeds, "store": store_seeds}[name]()
+
+
+def machine_seeds() -> Iterator[bytes]:
+    for code in random_codes(1, 150):
+        yield bytes([7, 3, 1]) + pack("SI", 0, code)
+    for image in random_images(1, 30):
+        yield bytes([7, 3, 0]) + image
+
+
+def link_seeds() -> Iterator[bytes]:
+    """The conversations of the cases: what the computer sends, frames without their wrapping."""
+    for case in link_cases("link"):
+        events = b"\0"
+        for row in case.rows:
+            words = re.match(r"\s*\d+ >x? ((?:[0-9a-f]{2} )*[0-9a-f]{2})\b", row)
+            if words is None:
+                continue
+            data = bytes.fromhex(words[1])
+            frame = decoded(data.rstrip(b"\0"))
+            if frame is not None and frame.number < 0x40:
+                events += bytes([frame.number, len(frame.payload)]) + frame.payload
+            else:
+                for begin in range(0, len(data), 15):
+                    piece = data[begin : begin + 15]
+                    events += bytes([0x80 + len(piece)]) + piece
+            events += bytes([0x40, 50])  # 50 ms
+        yield events
+    for text in (b"SI|F(2, 80)", b"SB|LOOP(3);F(1,50);END_LOOP", b"S", b"HELP"):
+        yield b"\0" + bytes([0xC0 + len(text)]) + text + bytes([0x41, 0, 8])
+
+
+def store_seeds() -> Iterator[bytes]:
+    draw = random.Random(1)
+    for count in range(40):
+        yield draw.randbytes(2) + b"\xff\0" + draw.randbytes(4 * (count % 12 + 1))
+    for path in sorted((ROOT / "examples").glob("*.ts"))[:4]:
+        yield draw.randbytes(3) + bytes([1]) + bytes([128, 0, 200]) + path.read_bytes()[:200]
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description="Fuzz a part of the robot's C++.")
+    parser.add_argument("name", choices=NAMES)
+    parser.add_argument("runs", type=int)
+    parser.add_argument("--seed", type=int, default=1)
+    options = parser.parse_args()
+    why = missing()
+    if why:
+        print(why)
+        return 2
+    with tempfile.TemporaryDirectory() as folder:
+        inputs = Path(folder) / "inputs"
+        inputs.mkdir()
+        for number, data in enumerate(seeds(options.name)):
+            (inputs / f"{number:04}").write_bytes(data)
+        found = fuzz(harness(options.name), inputs, options.runs, options.seed)
+    if found.wrong:
+        print(f"{found.wrong}\ninput: {found.input.hex()}")
+        return 1
+    print(f"{found.runs} runs of {options.name}, nothing wrong; seed {options.seed}")
+    return 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

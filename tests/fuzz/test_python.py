@@ -1,0 +1,238 @@
+"""Anything at all, as a program, a profile, a world, a robot's answer or another command's message:
+it is taken, or refused as that is refused, and nothing else happens.
+
+Hypothesis makes it, from what is right and from nothing. `python -m tests.fuzz.test_python
+compiler 100000` makes more than the tests do.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Callable
+from functools import lru_cache
+from typing import Any
+
+import pytest
+from hypothesis import HealthCheck, given, seed, settings
+from hypothesis import strategies as st
+from hypothesis.strategies import SearchStrategy
+
+from tests.support.casefile import ROOT
+from tiniscript import compile_text, robots
+from tiniscript.bytecode.image import pack, unpack
+from tiniscript.bytecode.verify import verify
+from tiniscript.diagnostics.rendering import as_text, message
+from tiniscript.link.frames import Frame, encoded
+from tiniscript.link.messages import MESSAGES, PAYLOAD_BYTES
+from tiniscript.link.session import Session
+from tiniscript.robots.profile import ProfileRefused
+from tiniscript.robots.reader import read as read_profile
+from tiniscript.sharing import protocol
+from tiniscript.sharing.protocol import BadMessage, MessageReader
+from tiniscript.sharing.requests import ClientRequests, asked_for
+from tiniscript.source import Source
+from tiniscript.virtual.world_reader import read as read_world
+
+EXAMPLES = 150  # in the tests, of each kind
+KIT = robots.load("tinibot").kit
+PIECES = (
+    "SI|", "SB|", "LOOP(", "FOREVER", "IF ", "ELSE", "END_IF", "END_LOOP", "DEF X", "UNTIL(",
+    "F(2, 80)", "X = ", "(", ")", ";", "\n", "|", '"', "//", "1e9", "-", "0.0005", "9" * 400,
+    "\0", "\ufeff", "ñ", "\u2028",
+    "[kit]", "[[kit.sensors]]", "name = ", "= {}", "[", "]", "nan", "inf", "true", "'", "=",
+    "0x", ",", "\\",
+)  # fmt: skip
+
+
+@lru_cache
+def _texts(pattern: str) -> list[str]:
+    found = [path.read_text(encoding="utf-8") for path in sorted(ROOT.glob(pattern))]
+    assert found, pattern
+    return found
+
+
+def changed_texts(pattern: str) -> SearchStrategy[str]:
+    """Texts of these files with pieces left out, put in or doubled, and texts of anything."""
+
+    def change(text: str, edits: list[tuple[float, int, str]]) -> str:
+        for where, gone, piece in edits:
+            at = int(where * len(text))
+            text = text[:at] + piece + text[at + gone :]
+        return text
+
+    edit = st.tuples(
+        st.floats(0, 1), st.integers(0, 40), st.one_of(st.sampled_from(PIECES), st.text(max_size=9))
+    )
+    near = st.builds(change, st.sampled_from(_texts(pattern)), st.lists(edit, max_size=6))
+    return st.one_of(near, st.text(max_size=300))
+
+
+# -- what must hold -------------------------------------------------------------------------------
+
+
+def check_program(text: str) -> None:
+    """It has an image that the verifier takes, or mistakes that can be said in both languages."""
+    compiled = compile_text(text, KIT)
+    assert compiled.is_right != any(each.is_mistake for each in compiled.diagnostics)
+    if compiled.is_right:
+        image = unpack(compiled.image)
+        verify(image.code, len(KIT.sensors), len(KIT.actuators))
+    source = Source(text, "x.ts")
+    for each in compiled.diagnostics:
+        for language in ("en", "es"):
+            assert as_text(message(each, source, language), source, language)
+
+
+def check_profile(text: str) -> None:
+    try:
+        robot = read_profile(text, "own")
+    except ProfileRefused:
+        return
+    assert 0 <= robot.kit.fingerprint < 1 << 16
+
+
+def check_world(text: str) -> None:
+    try:
+        read_world(text, "own")
+    except ProfileRefused:
+        return
+
+
+def check_answers(items: list[tuple[int, int, bytes, bool]]) -> None:
+    """A session hears whole frames and other bytes, and every request of it has an end."""
+    session = Session(7, 9600, KIT.fingerprint)
+    requests: list[Any] = [
+        session.hello(), session.undo(), session.status(), session.fetch(), session.live(b"\x44"),
+        session.upload(unpack(pack("SI", 0, bytes(80)))), session.trim(), session.name(b"X"),
+    ]  # fmt: skip
+    now_ms = 0
+    seq = 7
+    for number, delta, payload, is_frame in items:
+        for _ in range(2):
+            if session.poll(now_ms):
+                seq = (seq + 1) & 0xFF
+        frame = Frame(number, (seq + delta) & 0xFF, delta & 0xFF, payload, is_reply=True)
+        session.receive(encoded(frame) if is_frame else payload + b"\0", now_ms)
+        session.events()
+        now_ms += 10 * (delta & 0x1F)
+    session.stop(now_ms)
+    for _ in range(200):
+        session.poll(now_ms)
+        now_ms += 50
+    assert all(each.outcome is not None for each in requests)
+
+
+def check_message(found: object) -> None:
+    """A line of a shared port is a request that a session takes, or no message."""
+    try:
+        for each in MessageReader(1 << 20).put(json.dumps(found).encode() + b"\n"):
+            ask = asked_for(each, 1000)
+            session = Session(7, 9600, KIT.fingerprint)
+            ask(session)
+            for now_ms in range(0, 300, 50):
+                session.poll(now_ms)
+    except BadMessage:
+        return
+
+
+def check_line(data: bytes) -> None:
+    """Any bytes of a stranger are a greeting, the begin of one, or none."""
+    try:
+        protocol.greeting(data)
+        MessageReader(200).put(data)
+    except BadMessage:
+        return
+
+
+# -- what is made ---------------------------------------------------------------------------------
+
+NUMBERS = [each.number for each in MESSAGES]
+ITEMS = st.tuples(
+    st.one_of(st.sampled_from(NUMBERS), st.integers(0, 63)),
+    st.one_of(st.just(0), st.integers(-3, 40)),
+    st.one_of(st.binary(max_size=PAYLOAD_BYTES), st.just(b"\0" + bytes(7))),
+    st.booleans(),
+)
+_CLIENT = ClientRequests()
+RIGHT = [
+    _CLIENT.hello().message, _CLIENT.undo().message, _CLIENT.name(b"X").message,
+    _CLIENT.trim(b"abc").message, _CLIENT.start().message, _CLIENT.live(b"\x44\x01").message,
+    _CLIENT.upload(unpack(pack("SI", 0, b"\x44"))).message,
+]  # fmt: skip
+VALUES = st.recursive(
+    st.one_of(st.none(), st.booleans(), st.integers(), st.floats(), st.text(max_size=9)),
+    lambda inner: st.one_of(
+        st.lists(inner, max_size=3), st.dictionaries(st.text(max_size=5), inner)
+    ),
+    max_leaves=5,
+)  # fmt: skip
+FIELDS = sorted({name for each in RIGHT for name in each})
+NEAR = st.builds(
+    lambda right, other: {**right, **other},
+    st.sampled_from(RIGHT),
+    st.dictionaries(
+        st.sampled_from(FIELDS), st.one_of(VALUES, st.sampled_from(["00", "SI", "zz"]))
+    ),
+)  # fmt: skip
+GREETING = b'{"tsc":"1.0","token":"' + b"0" * 32 + b'","verb":"stop"}\n'
+STRANGERS = st.one_of(
+    st.binary(max_size=300),
+    st.builds(lambda cut, more: GREETING[:cut] + more, st.integers(0, 80), st.binary(max_size=40)),
+)
+
+KINDS: dict[str, tuple[Callable[..., None], SearchStrategy[Any]]] = {
+    "compiler": (check_program, changed_texts("examples/*.ts")),
+    "profiles": (check_profile, changed_texts("compiler/tiniscript/robots/*.toml")),
+    "worlds": (check_world, changed_texts("compiler/tiniscript/virtual/worlds/*.toml")),
+    "answers": (check_answers, st.lists(ITEMS, max_size=40)),
+    "messages": (check_message, st.one_of(NEAR, VALUES)),
+    "greetings": (check_line, STRANGERS),
+}
+
+
+def make(kind: str, count: int, number: int) -> None:
+    """Check so many things of a kind, the same for the same number."""
+    check, strategy = KINDS[kind]
+
+    def one(each: Any) -> None:
+        check(each)
+
+    checked = settings(
+        max_examples=count, deadline=None, database=None,
+        suppress_health_check=list(HealthCheck),
+    )(given(strategy)(one))  # fmt: skip
+    seed(number)(checked)()
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_anything_is_taken_or_refused(kind: str) -> None:
+    make(kind, EXAMPLES, 1)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_what_fails_is_found(kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is raised for a few of the things that are made is told."""
+    check, strategy = KINDS[kind]
+
+    def breaks(each: object) -> None:
+        check(each)
+        assert len(repr(each)) % 7 != 3, "broken on purpose"
+
+    monkeypatch.setitem(KINDS, kind, (breaks, strategy))
+    with pytest.raises(AssertionError, match="broken on purpose"):
+        make(kind, EXAMPLES, 1)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description="Make anything, and see that it is refused well.")
+    parser.add_argument("kind", choices=KINDS)
+    parser.add_argument("count", type=int)
+    parser.add_argument("--seed", type=int, default=1)
+    options = parser.parse_args()
+    make(options.kind, options.count, options.seed)
+    print(f"{options.count} runs of {options.kind}, nothing wrong; seed {options.seed}")
+
+
+if __name__ == "__main__":
+    main()

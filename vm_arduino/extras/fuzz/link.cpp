@@ -1,0 +1,156 @@
+// The receiver, the decoder of frames, the link and the reader of text, around a robot that writes
+// down what it is asked for (`../link/simulated_port`).
+//
+// An input is a row of events. Those that begin a frame send it whole: with its number, the epoch
+// and a right checksum, or the fuzzer would never get past them. Others are bytes as they are, time
+// that passes, and what happens to the robot.
+
+#include "../../src/link/link.h"
+
+#include <string.h>
+
+#include <string>
+
+#include "../../src/link/frames.h"
+#include "../../src/vm/crc32.h"
+#include "../link/simulated_port.h"
+#include "input.h"
+
+using namespace tiniscript;
+
+namespace {
+
+constexpr size_t kMostEvents = 300;
+constexpr uint8_t kReplies = 20;  // turns in which the robot may go on talking
+
+Receiver receiver;
+Link link_half;
+uint32_t now_ms;
+uint8_t seq;
+uint8_t epoch;
+
+// What the robot has sent: a row of items, whose frames are whole.
+std::string sent;
+
+void look_at_sent() {
+  size_t begin = 0;
+  for (size_t k = 0; k < sent.size(); k++) {
+    if (sent[k] != 0) continue;
+    const std::string item = sent.substr(begin, k - begin);
+    begin = k + 1;
+    if (item.empty()) continue;
+    if (static_cast<uint8_t>(item[0]) >= kTextFrom || item[0] == '/') continue;  // text
+    uint8_t bytes[kItemBytes];
+    must(item.size() <= sizeof bytes);
+    memcpy(bytes, item.data(), item.size());
+    must(decode_frame(bytes, static_cast<uint8_t>(item.size())) != 0);
+    must((bytes[kTypeAt] & kReply) != 0);
+    epoch = bytes[kEpochAt];
+  }
+  sent.erase(0, begin);
+}
+
+void turn() {
+  for (uint8_t k = 0; k < kReplies; k++) {
+    link_half.pass_time(static_cast<uint16_t>(now_ms));
+    link_half.tick();
+    link_half.tell();
+    uint8_t byte;
+    while (link_half.next_tx_byte(&byte)) sent.push_back(static_cast<char>(byte));
+  }
+  look_at_sent();
+  must(sent.size() < 4096);
+}
+
+void arrive(uint8_t byte) {
+  const bool is_stop = receiver.put(byte, static_cast<uint16_t>(now_ms));
+  must(!is_stop || link_half.stop_is_due());
+  link_half.pass_time(static_cast<uint16_t>(now_ms));
+  link_half.tick();
+  link_half.tell();
+}
+
+void send_frame(uint8_t type, Input* input) {
+  uint8_t frame[kWireBytes] = {};
+  uint8_t end = kPayloadAt;
+  const uint8_t length = input->u8() % (kPayloadBytes + 1);
+  frame[kTypeAt] = type;
+  frame[kSeqAt] = ++seq;
+  frame[kEpochAt] = epoch;
+  while (end < kPayloadAt + length) frame[end++] = input->u8();
+  if (type == static_cast<uint8_t>(Message::kHello) && length != 0) frame[kPayloadAt] = kLinkMajor;
+  const uint8_t size = encode_frame(frame, end);
+  arrive(0);
+  for (uint8_t k = 0; k < size; k++) arrive(frame[k]);
+}
+
+void happen(uint8_t what, Input* input) {
+  const bool is_running = port.robot_status.state == State::kRunning;
+  switch (what % 8) {
+    case 0:
+      now_ms += input->u8();
+      break;
+    case 1:
+      now_ms += input->u16();
+      break;
+    case 2:
+      if (is_running) {
+        port.robot_status.state = State::kIdle;
+        link_half.done();
+      }
+      break;
+    case 3:
+      if (is_running) {
+        port_stop(1);
+        link_half.faulted();
+      }
+      break;
+    case 4:
+      if (is_running) link_half.show(input->u16() * 77, input->u8() % 2 == 0);
+      break;
+    case 5:
+      port_stop(0);
+      link_half.stopped(Cause::kButton);
+      break;
+    case 6:
+      port.is_busy = !port.is_busy;
+      break;
+    case 7:
+      port.is_saving = !port.is_saving;
+      break;
+  }
+}
+
+}  // namespace
+
+int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  Input input(data, size);
+  port = SimulatedPort();
+  port.room = 389;
+  port.device_info.sensors = 3;
+  port.device_info.actuators = 1;
+  port.hashes = {1, 2, 3, 4};
+  port.words = {0};
+  receiver = Receiver();
+  link_half = Link();
+  epoch = input.u8();
+  link_half.begin(&receiver, epoch);
+  now_ms = 0;
+  seq = 0;
+  sent.clear();
+  for (size_t k = 0; k < kMostEvents && input.has_more(); k++) {
+    const uint8_t event = input.u8();
+    if (event < 0x40) {
+      send_frame(event, &input);
+    } else if (event < 0x50) {
+      happen(event, &input);
+    } else {
+      for (uint8_t count = event % 64; count > 0 && input.has_more(); count--) arrive(input.u8());
+      if (event >= 0xc0) arrive('\n');
+    }
+    turn();
+    // whatever came: the motors' pins are off where a stop has not been looked at
+    must(!link_half.stop_is_due() || port.robot_status.state != State::kRunning);
+  }
+  return 0;
+}
