@@ -251,11 +251,12 @@ def test_size() -> None:
 def main() -> None:
     parser = argparse.ArgumentParser(description="Pull the plug of the store, many times.")
     parser.add_argument("cases", type=int, help="how many cases, at least")
+    parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
     program = compiled(parts(SOURCES), FLAGS)
     begun = time.monotonic()
     cases = saves = erases = 0
-    for seed in count(1):
+    for seed in count(options.seed):
         for sample in CAMPAIGN:
             found = run(program, seed, sample)
             cases += found.cases

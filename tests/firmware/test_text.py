@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-import sys
+import argparse
 
 import pytest
 
@@ -355,4 +355,8 @@ def test_values_wait_for_room_and_none_is_lost() -> None:
 if __name__ == "__main__":
     from tests.firmware.test_text_fuzz import campaign
 
-    campaign(int(sys.argv[1]) if len(sys.argv) > 1 else 1000)
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("count", nargs="?", type=int, default=1000)
+    parser.add_argument("--seed", type=int, default=1_000_000)
+    options = parser.parse_args()
+    campaign(options.count, options.seed)

@@ -179,13 +179,13 @@ def test_anything_and_then_a_line(seed: int) -> None:
     run(seed)
 
 
-def campaign(count: int) -> None:
-    """Run so many seeds, other ones than the tests."""
-    for seed in range(1_000_000, 1_000_000 + count):
+def campaign(count: int, first: int) -> None:
+    """Run so many seeds."""
+    for seed in range(first, first + count):
         try:
             run(seed)
         except BaseException:
             print(f"seed {seed}", flush=True)
             raise
-        if seed % 100 == 99:
-            print(f"{seed - 999_999} robots have done the line after anything", flush=True)
+        if (seed - first) % 100 == 99 or seed == first + count - 1:
+            print(f"{seed - first + 1} robots have done the line after anything", flush=True)

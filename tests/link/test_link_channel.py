@@ -342,6 +342,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description="Play the link on a bad line for long.")
     parser.add_argument("uploads", type=int, nargs="?", default=10_000)
     parser.add_argument("--frames", type=int, default=1_000_000, help="damaged ones")
+    parser.add_argument("--undos", type=int, default=0)
     parser.add_argument("--seed", type=int, default=1_000_000)
     options = parser.parse_args()
     begun = time.monotonic()
@@ -352,6 +353,10 @@ def main() -> int:
     for seed in range(options.seed, options.seed + options.uploads):
         found[one_upload(cpp_link(), seed)] += 1
     print(f"{options.uploads} uploads, {dict(found)}, 0 false, 0 double: "
+          f"{time.monotonic() - begun:.0f} s")  # fmt: skip
+    begun = time.monotonic()
+    told = Counter(one_undo(cpp_link(), options.seed + number) for number in range(options.undos))
+    print(f"{options.undos} robots with undos, {dict(told)}, 0 false, 0 double: "
           f"{time.monotonic() - begun:.0f} s")  # fmt: skip
     return 0
 

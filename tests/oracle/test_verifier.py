@@ -139,15 +139,15 @@ def test_it_knows_nothing_of_the_package(name: str) -> None:
 # -- a campaign ---------------------------------------------------------------------------------
 
 
-def campaign(count: int) -> None:
+def campaign(count: int, first: int) -> None:
     begun = time.monotonic()
     programs = every_program()
     rules: set[int] = set()
     batch = 10_000
-    for seed in range(2000, 2000 + -(-count // (2 * batch))):
+    for seed in range(first, first + -(-count // (2 * batch))):
         for codes in (random_codes(seed, batch), damaged(programs, seed, batch)):
             rules |= compare(codes)
-        done = (seed - 1999) * 2 * batch
+        done = (seed - first + 1) * 2 * batch
         print(f"{done} codes agree, {done / (time.monotonic() - begun):.0f} a second", flush=True)
     print(f"{len(rules - {0})} rules were broken")
 
@@ -155,4 +155,6 @@ def campaign(count: int) -> None:
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("count", nargs="?", type=int, default=100_000)
-    campaign(parser.parse_args().count)
+    parser.add_argument("--seed", type=int, default=2000)
+    options = parser.parse_args()
+    campaign(options.count, options.seed)

@@ -6,9 +6,9 @@ broken ones from each.
 
 from __future__ import annotations
 
+import argparse
 import random
 import re
-import sys
 from collections import Counter
 from functools import lru_cache
 
@@ -232,4 +232,8 @@ def campaign(first: int, count: int) -> None:
 
 
 if __name__ == "__main__":
-    campaign(1_000_000, int(sys.argv[1]) if len(sys.argv) > 1 else 100_000)
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("count", nargs="?", type=int, default=100_000)
+    parser.add_argument("--seed", type=int, default=1_000_000)
+    options = parser.parse_args()
+    campaign(options.seed, options.count)

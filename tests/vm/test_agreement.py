@@ -6,8 +6,8 @@ line with the compiler. `python -m tests.vm.test_agreement 100000` runs a campai
 
 from __future__ import annotations
 
+import argparse
 import random
-import sys
 from typing import NamedTuple
 
 import pytest
@@ -157,4 +157,8 @@ def campaign(first: int, count: int) -> None:
 
 
 if __name__ == "__main__":
-    campaign(BATCH * BATCHES, int(sys.argv[1]) if len(sys.argv) > 1 else 100_000)
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("count", nargs="?", type=int, default=100_000)
+    parser.add_argument("--seed", type=int, default=BATCH * BATCHES)
+    options = parser.parse_args()
+    campaign(options.seed, options.count)

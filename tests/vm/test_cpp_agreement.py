@@ -179,11 +179,11 @@ def test_arithmetic(name: str) -> None:
 # -- a campaign ---------------------------------------------------------------------------------
 
 
-def campaign(count: int) -> None:
+def campaign(count: int, first: int) -> None:
     begun = time.monotonic()
     total: Counter[str] = Counter()
     done = 0
-    for seed in range(BATCHES, BATCHES + -(-count // BATCH)):
+    for seed in range(first, first + -(-count // BATCH)):
         total += cpp_checks.check_codes(host(), seed, BATCH)
         done += BATCH
         print(f"{done} codes agree, {done / (time.monotonic() - begun):.0f} a second", flush=True)
@@ -200,5 +200,6 @@ if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("count", nargs="?", type=int, default=1_000_000)
     parser.add_argument("--three", action="store_true", help="all codes of three bytes instead")
+    parser.add_argument("--seed", type=int, default=BATCHES)
     options = parser.parse_args()
-    all_of_three() if options.three else campaign(options.count)
+    all_of_three() if options.three else campaign(options.count, options.seed)

@@ -129,6 +129,14 @@ def text_document() -> str:
     return spliced(TEXT_DOCUMENT.read_text(encoding="utf-8"), "levels", made)
 
 
+def promises_document() -> str:
+    """Return `docs/promises.md` with the table of goals and figures."""
+    from tools.campaign.table import HEAD, rows
+
+    text = PROMISES_DOCUMENT.read_text(encoding="utf-8")
+    return spliced(text, "promises", table(HEAD, rows()))
+
+
 def spec() -> str:
     """Return `bytecode_spec.md` with the tables that it takes from the compiler."""
     text = SPEC.read_text(encoding="utf-8")
@@ -343,6 +351,7 @@ MACHINE = ROOT / "vm_arduino" / "src" / "vm"
 LINK = ROOT / "vm_arduino" / "src" / "link"
 LINK_DOCUMENT = ROOT / "docs" / "link.md"
 TEXT_DOCUMENT = ROOT / "docs" / "text.md"
+PROMISES_DOCUMENT = ROOT / "docs" / "promises.md"
 PAYLOADS = ROOT / "compiler" / "tiniscript" / "link" / "payloads.py"
 TEXT = ROOT / "vm_arduino" / "src" / "text"
 WIRED = ROOT / "vm_arduino" / "src" / "boards" / "kits"
@@ -369,6 +378,7 @@ OUTPUTS: list[tuple[Path, Callable[[], str]]] = [
     ),
     (LINK_DOCUMENT, link_document),
     (TEXT_DOCUMENT, text_document),
+    (PROMISES_DOCUMENT, promises_document),
     (PAYLOADS, link_payloads),
     *((ROOT / "docs" / name, partial(command_page, language)) for language, name in PAGES.items()),
     (ROOT / "vm_arduino" / "test" / "cases.h", cpp_cases),

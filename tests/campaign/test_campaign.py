@@ -1,0 +1,133 @@
+"""`python -m tools.campaign` goes on where it was, tells what fails, adds up no other code."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.support.casefile import ROOT
+from tools.campaign import __main__ as campaign
+from tools.campaign import goals, results, table
+from tools.campaign.goals import GOALS, Goal
+from tools.campaign.results import Result
+
+HERE = "tests.campaign.stand_in"  # a campaign that takes no time
+DONE = Goal("done", "It ends.", "things", 25, 10, f"{HERE} {{count}} --seed {{seed}}", 5)
+BAD = Goal("bad", "It does not.", "things", 10, 5, f"{HERE} {{count}} --seed {{seed}} --fails", 5)
+
+
+@pytest.fixture(autouse=True)
+def own_goals(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Two goals, results in a folder of the test, and code that is committed."""
+    written = tmp_path / "results.json"
+    for module in (campaign, goals, results, table):
+        monkeypatch.setattr(module, "GOALS", (DONE, BAD), raising=False)
+    monkeypatch.setattr(campaign, "BY_NAME", {"done": DONE, "bad": BAD})
+    monkeypatch.setattr(results, "WRITTEN", written)
+    monkeypatch.setattr(table, "WRITTEN", written)
+    monkeypatch.setattr(results, "commit", lambda: "a" * 10)
+    monkeypatch.setattr(campaign, "FIRST_SEED", 7)
+    return written
+
+
+def kept(name: str) -> Result:
+    return results.read(results.kept())[name]
+
+
+def test_it_goes_on_where_it_was(capsys: pytest.CaptureFixture[str]) -> None:
+    assert campaign.main(["done", "--pieces", "1"]) == 0
+    assert (kept("done").done, kept("done").seed, kept("done").next_seed) == (10, 7, 12)
+    assert "10: less" in capsys.readouterr().out
+    assert campaign.main(["done"]) == 0
+    assert (kept("done").done, kept("done").seed, kept("done").next_seed) == (25, 7, 22)
+    said = capsys.readouterr().out
+    assert [line.split("; ")[1] for line in said.splitlines()[:2]] == [
+        f"-m {HERE} 10 --seed 12",
+        f"-m {HERE} 5 --seed 17",
+    ]
+    assert campaign.main(["done"]) == 0
+    assert "--seed" not in capsys.readouterr().out, "nothing is left to do"
+
+
+def test_a_failure_is_told_with_its_seed_and_run_again(capsys: pytest.CaptureFixture[str]) -> None:
+    assert campaign.main(["bad"]) == 1
+    assert "this one is wrong" in capsys.readouterr().out
+    assert kept("bad").done == 0 and "seed 7" in kept("bad").wrong
+    assert campaign.main(["bad"]) == 1
+    assert "--seed 7" in capsys.readouterr().out
+
+
+def test_what_other_code_has_reached_does_not_count(monkeypatch: pytest.MonkeyPatch) -> None:
+    campaign.main(["done", "--pieces", "2"])
+    monkeypatch.setattr(results, "commit", lambda: "b" * 10)
+    campaign.main(["done", "--pieces", "1"])
+    assert (kept("done").done, kept("done").commit) == (10, "b" * 10)
+
+
+def test_a_campaign_that_is_interrupted_keeps_what_was_done(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    run = subprocess.run
+    calls = []
+
+    def interrupted(*words: object, **how: object) -> object:
+        calls.append(words)
+        if len(calls) == 2:
+            raise KeyboardInterrupt
+        return run(*words, **how)  # type: ignore[call-overload]
+
+    monkeypatch.setattr(subprocess, "run", interrupted)
+    assert campaign.main(["done"]) == 2
+    assert kept("done").done == 10
+    assert "goes on from here" in capsys.readouterr().out
+
+
+def test_the_time_ends_it(capsys: pytest.CaptureFixture[str]) -> None:
+    assert campaign.main(["done", "--minutes", "0"]) == 0
+    assert "The time is over" in capsys.readouterr().out
+    assert results.read(results.kept()) == {}
+
+
+def test_the_table_says_what_was_not_run_and_what_is_less(
+    own_goals: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert [row[4] for row in table.rows()] == ["not run yet"] * 2
+    campaign.main(["done", "--pieces", "2"])
+    monkeypatch.setattr(subprocess, "run", lambda *_, **__: subprocess.CompletedProcess([], 0))
+    assert campaign.main(["--write"]) == 0
+    row = table.rows()[0]
+    assert row[3:] == ("25 things", "20: less", "7 to 12", kept("done").date, "a" * 10)
+
+
+def test_figures_of_code_that_is_not_committed_are_left_out(
+    own_goals: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(results, "commit", lambda: "a" * 10 + "+")
+    campaign.main(["done", "--pieces", "1"])
+    monkeypatch.setattr(subprocess, "run", lambda *_, **__: subprocess.CompletedProcess([], 0))
+    campaign.main(["--write"])
+    assert results.read(own_goals) == {}
+    assert "not committed: done" in capsys.readouterr().err
+
+
+def test_an_unknown_goal_is_told_which_there_are(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        campaign.main(["everything"])
+    assert ended.value.code == 2
+    assert "There are: done, bad" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("goal", GOALS, ids=lambda goal: goal.name)
+def test_each_goal_has_a_command_that_takes_its_words(goal: Goal) -> None:
+    """Only its options are read: `--help` ends it."""
+    words = goal.command.format(count=1, seed=1).split()
+    done = subprocess.run(
+        [sys.executable, "-m", *words, "--help"], cwd=ROOT, capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr
+    options = {word for word in words if word.startswith("--")}
+    assert all(option in done.stdout for option in options)
+    assert 0 < goal.piece <= goal.shall

@@ -1,0 +1,76 @@
+"""What is promised, how it is tested, and how many times that shall have been done.
+
+The one table of the campaign: `docs/promises.md` and `python -m tools.campaign` are made from it.
+Knows commands, and no results.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class Goal(NamedTuple):
+    """`shall` of `unit` be done, `piece` of them at a time, by `command`.
+
+    In the command `{count}` and `{seed}` are those of a piece. A command that fails has found
+    something. Seeds of pieces are `stride` apart.
+    """
+
+    name: str
+    promise: str
+    unit: str
+    shall: int
+    piece: int
+    command: str
+    stride: int = 1
+
+
+FUZZ = "libFuzzer, ASan and UBSan"
+_CHANNEL = "tests.link.test_link_channel"
+
+# fmt: off
+GOALS: tuple[Goal, ...] = (
+    Goal("store", "A plug that is pulled at any write leaves the old program or the new one, the same at every later start.",
+         "power cuts", 10_000_000, 2_000_000, "tests.firmware.test_store {count} --seed {seed}", 20),
+    Goal("uploads", "An upload over a bad radio says done only if the robot has the program; nothing is done twice; after a stop nothing starts.",
+         "uploads", 10_000, 500, f"{_CHANNEL} {{count}} --frames 0 --seed {{seed}}", 1000),
+    Goal("undos", "An undo whose answer is lost is not done twice.",
+         "robots, four undos each", 10_000, 500, f"{_CHANNEL} 0 --frames 0 --undos {{count}} --seed {{seed}}", 1000),
+    Goal("frames", "No damaged frame is taken for a whole one, and damage costs one more frame at most.",
+         "damaged frames", 100_000_000, 1_000_000, f"{_CHANNEL} 0 --frames {{count}} --seed {{seed}}"),
+    Goal("fuzz-machine", f"No image harms the machine: what the verifier accepts runs without BAD_CODE ({FUZZ}).",
+         "inputs", 100_000_000, 5_000_000, "tests.fuzz.harnesses machine {count} --seed {seed}"),
+    Goal("fuzz-link", f"No bytes harm receiver, link and reader of text ({FUZZ}).",
+         "inputs", 100_000_000, 1_000_000, "tests.fuzz.harnesses link {count} --seed {seed}"),
+    Goal("fuzz-store", f"No contents of the EEPROM harm the store, at start and in saves ({FUZZ}).",
+         "inputs", 10_000_000, 100_000, "tests.fuzz.harnesses store {count} --seed {seed}"),
+    Goal("agreement", "The machine and the verifier in C++ and in Python say and do the same.",
+         "random and changed codes", 10_000_000, 200_000, "tests.vm.test_cpp_agreement {count} --seed {seed}", 1000),
+    Goal("verifier", "Both verifiers and the one written from the specification give the same verdict at the same offset.",
+         "random and damaged codes", 10_000_000, 100_000, "tests.oracle.test_verifier {count} --seed {seed}", 1000),
+    Goal("machine", "The machine does what the one written from the specification does.",
+         "runs", 100_000, 5_000, "tests.oracle.test_machine {count} --seed {seed}"),
+    Goal("compiler", "Programs do what the interpreter written from the language reference does.",
+         "programs, right and broken", 100_000, 5_000, "tests.vm.test_agreement {count} --seed {seed}", 10_000),
+    Goal("reader", "The robot's reader of text makes what the compiler makes of it.",
+         "programs, and twenty changed texts of each", 100_000, 1_000, "tests.text.test_reader_agreement {count} --seed {seed}", 10_000),
+    Goal("text", "A robot does a line of text after anything was thrown at it.",
+         "robots", 10_000, 100, "tests.firmware.test_text {count} --seed {seed}", 1000),
+    Goal("fuzz-compiler", "Any text is compiled, or refused with mistakes that can be said in both languages.",
+         "texts", 1_000_000, 5_000, "tests.fuzz.test_python compiler {count} --seed {seed}"),
+    Goal("fuzz-profiles", "Any profile of a robot is read, or refused.",
+         "texts", 1_000_000, 5_000, "tests.fuzz.test_python profiles {count} --seed {seed}"),
+    Goal("fuzz-worlds", "Any world is read, or refused.",
+         "texts", 1_000_000, 5_000, "tests.fuzz.test_python worlds {count} --seed {seed}"),
+    Goal("fuzz-answers", "Whatever a robot answers, every request of the computer has an end.",
+         "rows of answers", 1_000_000, 5_000, "tests.fuzz.test_python answers {count} --seed {seed}"),
+    Goal("fuzz-messages", "Any message of another command on a shared port is a request, or none.",
+         "messages", 1_000_000, 5_000, "tests.fuzz.test_python messages {count} --seed {seed}"),
+    Goal("fuzz-greetings", "Any bytes of a stranger on a shared port are a greeting, or none.",
+         "rows of bytes", 1_000_000, 5_000, "tests.fuzz.test_python greetings {count} --seed {seed}"),
+    Goal("mutation", "A break of the C++ machine is noticed by a test; none of a list of over 450 is not.",
+         "runs over the list", 1, 1, "tools.mutation"),
+)
+# fmt: on
+
+BY_NAME = {goal.name: goal for goal in GOALS}
