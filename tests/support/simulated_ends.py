@@ -118,7 +118,11 @@ class Firmware(Nobody):
         }  # fmt: skip
         self.counts = {"damaged": 0, "dropped": 0, "framing": 0, "overrun": 0}
         for key, value in values.items():
-            (self.counts if key in self.counts else self.hello)[key] = value  # type: ignore[index]
+            if key in self.counts:
+                assert isinstance(value, int)
+                self.counts[key] = value
+            else:
+                self.hello[key] = value
         self.restarts_ms: int | None = None
         self.resets = "BROWN_OUT"
         self.deaf = 0

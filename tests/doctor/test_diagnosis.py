@@ -1,0 +1,238 @@
+"""From a computer and a port to causes: every one that the table has is found somewhere here."""
+
+from __future__ import annotations
+
+import errno
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from tests.support.fake_computer import FakeComputer
+from tests.support.simulated_ends import KIT, Firmware, Nobody
+from tests.support.simulated_wire import OtherEnd, SimulatedWire
+from tiniscript.doctor.diagnosis import Diagnosis, Doors, Question, diagnosed
+from tiniscript.doctor.examination import Expected
+from tiniscript.doctor.findings import CAUSES
+from tiniscript.link import ports
+from tiniscript.link.ports import PortError
+from tiniscript.link.wire import Wire
+from tiniscript.sharing.client import OtherVersion
+from tiniscript.sharing.registry import Registration
+
+pytestmark = pytest.mark.skipif(os.name == "nt", reason="the trees have symbolic links")
+
+CABLE, RADIO = "/dev/ttyUSB0", "/dev/rfcomm0"
+
+
+class Case:
+    """A computer, what is on its ports, and what the user answers."""
+
+    def __init__(self, tmp_path: Path) -> None:
+        self.system = FakeComputer(tmp_path, "linux")
+        self.end: OtherEnd = Firmware()
+        self.failure: PortError | None = None
+        self.says_yes = False
+        self.last: str | None = None
+        self.opened: list[str] = []
+        self.wire: SimulatedWire | None = None
+        self.asked: list[str] = []
+        self.other: OtherVersion | None = None
+
+    def with_bluetooth(self, *paired: str, is_off: bool = False) -> Case:
+        self.system.write("/sys/class/bluetooth/hci0/address", "0")
+        rows = "".join(f"Device 00:00:00:00:00:0{k} {name}\n" for k, name in enumerate(paired))
+        self.system.outputs["bluetoothctl", "devices", "Paired"] = rows
+        self.system.write("/sys/class/rfkill/rfkill0/type", "bluetooth")
+        self.system.write("/sys/class/rfkill/rfkill0/soft", "1" if is_off else "0")
+        return self
+
+    def with_port(self, port: str, description: str = "") -> Case:
+        self.system.add_port(port, description)
+        self.system.usb("usb1", "1d6b", "0002")
+        return self
+
+    def failing(self, reason: str, why: str = "") -> Case:
+        self.failure = PortError(reason, why)
+        return self
+
+    def diagnosis(self, port: str | None = CABLE) -> Diagnosis:
+        def open_wire(name: str, baud: int) -> Wire:
+            self.opened.append(name)
+            if self.failure is not None:
+                raise self.failure
+            if name == CABLE and name not in self.system.owners:
+                raise PortError(ports.MISSING)
+            self.wire = SimulatedWire(self.end, baud)
+            return self.wire
+
+        def join(name: str) -> None:
+            if self.other is not None:
+                raise self.other
+
+        def may_open(name: str) -> bool:
+            self.asked.append(name)
+            return self.says_yes
+
+        expected = Expected(None, "tinibot", {KIT: "tinibot"}.get)
+        doors = Doors(self.system, open_wire, join, may_open, lambda name: "rfcomm" in name)
+        return diagnosed(doors, Question(port, self.last, 9600, expected, 7))
+
+    def cause(self, port: str | None = CABLE) -> tuple[str, bool]:
+        (finding,) = self.diagnosis(port).findings
+        return finding.cause, finding.is_sure
+
+
+@pytest.fixture
+def case(tmp_path: Path) -> Case:
+    return Case(tmp_path)
+
+
+Make = Callable[[Case], object]
+
+
+def _member(case: Case) -> None:
+    case.with_port(CABLE)
+    case.system.owners[CABLE] = (20, False)
+    case.system.write("/etc/group", "dialout:x:20:somebody\n")
+
+
+def _stranger(case: Case) -> None:
+    case.with_port(CABLE)
+    case.system.owners[CABLE] = (20, False)
+    case.system.write("/etc/group", "dialout:x:20:\n")
+
+
+def _used(name: str) -> Make:
+    def make(case: Case) -> None:
+        case.with_port(CABLE)
+        case.system.program(5, name, opens=CABLE)
+
+    return make
+
+
+def _brltty(case: Case) -> None:
+    case.system.usb("1-1", "1a86", "7523", driver="usbfs")
+    case.system.program(5, "brltty")
+
+
+def _other_tsc(case: Case) -> None:
+    held = Registration(CABLE, 1, "t", "a", "link", 9600, 5)
+    case.with_port(CABLE).other = OtherVersion(held, "0.1")
+
+
+def _plugged(vendor: str, product: str, driver: str = "") -> Make:
+    return lambda case: case.system.usb("1-1", vendor, product, driver)
+
+
+def _paired(reason: str, *names: str, is_off: bool = False) -> Make:
+    """Bluetooth is there, and the port does not open."""
+    return lambda case: case.with_bluetooth(*names, is_off=is_off).failing(reason)
+
+
+def _failing(reason: str, why: str = "") -> Make:
+    return lambda case: case.failing(reason, why)
+
+
+def _ports(*names: str) -> Make:
+    return lambda case: [case.with_port(name) for name in names]
+
+
+HUB, CH340 = ("1d6b", "0002"), ("1a86", "7523")
+REFUSED = os.strerror(errno.ECONNREFUSED)
+ROWS: tuple[tuple[str | None, Make, str, bool], ...] = (
+    (None, _ports(), "no_port", True),
+    (CABLE, _ports(), "no_port", True),
+    (None, _plugged(*HUB), "charging_cable", False),
+    (CABLE, _plugged(*HUB), "charging_cable", False),
+    (CABLE, _ports("/dev/ttyUSB7"), "port_missing", True),
+    (None, _ports(CABLE, "/dev/ttyACM0"), "which_port", True),
+    (None, _plugged(*CH340), "driver_missing", True),
+    (None, _brltty, "brltty", True),
+    (None, _plugged(*CH340, "usbfs"), "brltty", False),
+    (RADIO, _failing(ports.MISSING), "no_bluetooth", True),
+    (RADIO, _paired(ports.MISSING, is_off=True), "bluetooth_off", True),
+    (RADIO, _paired(ports.MISSING, "Telephone"), "not_paired", True),
+    (RADIO, _paired(ports.MISSING, "HC-05"), "no_rfcomm", True),
+    (CABLE, _stranger, "no_permission", True),
+    (CABLE, _member, "login_again", True),
+    (CABLE, _used("minicom"), "busy", True),
+    (CABLE, _used("ModemManager"), "modem_manager", True),
+    (CABLE, _other_tsc, "other_tsc", True),
+    (RADIO, _failing(ports.BUSY), "busy", True),
+    (RADIO, _paired(ports.UNREACHABLE, "HC-05"), "out_of_reach", False),
+    (RADIO, _paired(ports.UNREACHABLE, "Telephone"), "not_paired", False),
+    (RADIO, _failing(ports.UNREACHABLE, REFUSED), "other_host", False),
+    (RADIO, _paired(ports.SLOW, "HC-05"), "slow_port", False),
+    (RADIO, _failing(ports.NO_PORT), "no_serial_port", True),
+    (RADIO, _failing(ports.BROKEN, "Input/output error"), "port_broken", True),
+    (RADIO, _failing(ports.FORBIDDEN), "no_permission", True),
+    (CABLE, _ports(CABLE), "not_opened", True),
+    (RADIO, _ports(), "fine", True),
+)
+
+
+@pytest.mark.parametrize(
+    ("port", "make", "cause", "is_sure"), ROWS, ids=lambda each: str(each)[:20]
+)
+def test_each_cause_of_computer_and_port(
+    case: Case, port: str | None, make: Make, cause: str, is_sure: bool
+) -> None:
+    make(case)
+    assert case.cause(port) == (cause, is_sure)
+
+
+def test_a_port_of_a_cable_is_opened_after_a_yes_alone(case: Case) -> None:
+    case.with_port(CABLE)
+    assert case.cause() == ("not_opened", True)
+    assert (case.opened, case.asked) == ([], [CABLE])
+    case.says_yes = True
+    assert case.cause() == ("fine", True)
+    assert case.opened == [CABLE]
+    assert case.wire is not None and case.wire.is_gone  # it is closed
+
+
+def test_a_radio_is_opened_without_a_question(case: Case) -> None:
+    diagnosis = case.diagnosis(RADIO)
+    assert (diagnosis.findings[0].cause, diagnosis.is_opened) == ("fine", True)
+    assert case.asked == []
+
+
+@pytest.mark.parametrize("make", [_stranger, _member, _used("minicom"), _other_tsc])
+def test_a_port_that_is_not_ours_is_not_opened(case: Case, make: Make) -> None:
+    make(case)
+    case.says_yes = True
+    assert not case.diagnosis().is_opened
+    assert case.opened == []
+
+
+def test_the_last_port_and_the_only_port(case: Case) -> None:
+    case.with_port("/dev/ttyS0").with_port(CABLE)
+    assert case.diagnosis(None).port == CABLE  # the other one is no robot's
+    case.with_port("/dev/ttyACM0")
+    assert case.diagnosis(None).port is None
+    case.last = RADIO
+    assert case.diagnosis(None).port == RADIO
+
+
+@pytest.mark.parametrize(
+    ("port", "cause", "is_sure"),
+    [(RADIO, "port_gone", True), ("socket://robot:7000", "other_host", False)],
+)
+def test_a_port_that_vanishes(case: Case, port: str, cause: str, is_sure: bool) -> None:
+    class Gone(Nobody):
+        def answer(self, data: bytes) -> bytes:
+            raise OSError("gone")
+
+    case.end, case.says_yes = Gone(), True
+    assert case.cause(port) == (cause, is_sure)
+
+
+def test_every_cause_has_a_test() -> None:
+    """Each is in a table of this folder, or is named in a test."""
+    folder = Path(__file__).parent
+    tables = (folder / "test_line.py", folder / "test_diagnosis.py")
+    said = "".join(path.read_text(encoding="utf-8") for path in tables)
+    assert [cause for cause in CAUSES if f'"{cause}"' not in said] == []
+    assert len(CAUSES) >= 20

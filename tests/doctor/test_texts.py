@@ -1,0 +1,39 @@
+"""Every cause has its sentences, and every sentence its cause."""
+
+from __future__ import annotations
+
+from string import Formatter
+
+import pytest
+
+from tiniscript.cli.texts.doctor import DOCTOR_TEXTS
+from tiniscript.doctor.findings import CAUSES
+
+# The values of each cause that has some; the sentences may use no others.
+VALUES = {
+    "port_missing": {"ports"}, "which_port": {"ports"}, "driver_missing": {"chip", "driver"},
+    "brltty": {"chip"}, "no_rfcomm": {"number"}, "no_permission": {"group"},
+    "login_again": {"group"}, "busy": {"by"}, "other_tsc": {"verb", "theirs"},
+    "port_broken": {"why"}, "module_set_up": {"baud", "module"}, "module_alone": {"baud", "module"},
+    "wrong_baud": {"baud", "expected"}, "module_baud": {"n"}, "other_sketch": {"said"},
+    "bootloader_only": {"board"}, "garbled": {"n"}, "firmware_older": {"theirs", "ours"},
+    "firmware_newer": {"theirs", "ours"}, "wrong_kit": {"kit", "robot", "expected"},
+    "unknown_kit": {"kit"}, "restarts": {"count", "reset"}, "motors_restart": {"count", "reset"},
+    "lossy": {"missed", "n", "damaged"}, "fine": {"name", "kit", "id", "n"},
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("cause", CAUSES)
+def test_a_cause_says_what_is_wrong_what_was_seen_and_what_to_do(cause: str) -> None:
+    for kind in ("doctor", "seen", "next"):
+        for said in DOCTOR_TEXTS[f"{kind}_{cause}"]:
+            assert said
+            gaps = {name for _, name, _, _ in Formatter().parse(said) if name}
+            assert gaps <= VALUES.get(cause, set())
+
+
+def test_no_sentence_is_of_a_cause_that_does_not_exist() -> None:
+    known = {f"{kind}_{cause}" for kind in ("seen", "next") for cause in CAUSES}
+    known |= {"seen_busy_unknown", "seen_other_sketch_silent"}
+    named = {key for key in DOCTOR_TEXTS if key.startswith(("seen_", "next_"))}
+    assert named == known
