@@ -65,6 +65,7 @@ def test_every_file_that_the_command_writes_comes_from_such_an_option() -> None:
         "outputs.write(Path(options.output),": "output",
         "outputs.write(Path(options.map),": "map",
         "outputs.write(Path(options.plot),": "plot",
+        "outputs.write(Path(options.report),": "report",
         "outputs.write(Path(self.options.memory),": "memory",
         "outputs.write(given.path,": "program",  # fmt, in place
         'Path(name).open("w"': "csv",

@@ -1,0 +1,249 @@
+"""`tsc doctor` and what is behind real ports: it disturbs nothing, and its report has no names."""
+
+from __future__ import annotations
+
+import getpass
+import json
+import re
+import socket
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
+
+from tests.machines.host_firmware import missing
+from tests.support.command import FOREVER, Command, Tsc, process
+from tests.support.pty_end import PtyEnd
+from tests.support.pty_robot import PtyRobot, on, uploading
+from tests.support.simulated_ends import Echo, Firmware, Sketch
+from tiniscript.doctor import report
+from tiniscript.doctor.computer import ON, Adapter, Computer
+from tiniscript.doctor.findings import sure
+from tiniscript.link.ports import Found, opened
+
+needs_compiler = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
+
+
+def causes(done_out: str) -> list[str]:
+    return [each["cause"] for each in json.loads(done_out)["findings"]]
+
+
+# -- the whole firmware -------------------------------------------------------------------------
+
+
+@needs_compiler
+def test_a_robot_that_is_fine(pty_robot: PtyRobot) -> None:
+    before: list[bytes] = []
+    pty_robot.until(lambda: pty_robot.robot_ms > 500, "a new robot has kept its id")
+    pty_robot.ask(lambda robot: before.append(robot.memory()))
+    done = on(pty_robot, "doctor")
+    assert (done.code, done.err) == (0, "")
+    assert done.out.splitlines() == [
+        f"Port {pty_robot.port}",
+        "1. tinibot is fine (sure)",
+        "   seen: kit tinibot, id 12345678; it answered 20 questions, and was not restarted",
+        "   next: Nothing to do. If it restarts when it drives:  tsc doctor --watch 20",
+    ]
+    assert pty_robot.did == []
+    pty_robot.ask(lambda robot: before.append(robot.memory()))
+    assert before[0] == before[1]
+
+
+@needs_compiler
+def test_a_run_goes_on(pty_robot: PtyRobot) -> None:
+    assert on(pty_robot, "upload", "-e", FOREVER, "--detach", "--no-save").code == 0
+    pty_robot.until(lambda: pty_robot.moves, "it drives")
+    done = on(pty_robot, "doctor", "--json")
+    assert (done.code, causes(done.out)) == (0, ["fine"])
+    assert pty_robot.moves
+    assert "FINISHED" not in pty_robot.did
+
+
+@needs_compiler
+def test_a_run_of_another_tsc_goes_on(pty_robot: PtyRobot) -> None:
+    command = uploading(pty_robot)
+    done = on(pty_robot, "doctor", "--json")
+    assert (done.code, causes(done.out)) == (0, ["not_saved_yet", "fine"])
+    assert pty_robot.moves
+    command.process.kill()
+    command.process.communicate()
+
+
+@needs_compiler
+def test_through_the_command_that_has_the_port(link: Command, pty_robot: PtyRobot) -> None:
+    done = on(pty_robot, "doctor", "--lang", "es")
+    assert done.code == 0
+    assert "1. tinibot está bien (seguro)" in done.out
+    assert on(pty_robot, "ping").code == 0
+
+
+@needs_compiler
+def test_batteries_that_are_too_weak(pty_robot: PtyRobot) -> None:
+    pty_robot.ask(lambda robot: robot.supply(True))
+    on(pty_robot, "upload", "-e", "SB|F(1, 50)")
+    done = on(pty_robot, "doctor", "--json")
+    assert (done.code, causes(done.out)) == (3, ["low_supply"])
+
+
+@needs_compiler
+def test_a_bad_line(pty_robot: PtyRobot) -> None:
+    pty_robot.damages = 97
+    done = on(pty_robot, "doctor", "--json")
+    assert done.code == 3
+    assert "lossy" in causes(done.out)
+
+
+@needs_compiler
+def test_another_robot_than_the_one_that_was_named(pty_robot: PtyRobot) -> None:
+    done = on(pty_robot, "doctor", "--robot", "liner")
+    assert done.code == 3
+    assert "(tinibot), not that of liner" in done.out
+    assert "--robot tinibot" in done.out
+
+
+@needs_compiler
+def test_a_robot_that_restarts_while_it_drives(pty_robot: PtyRobot) -> None:
+    """Its power goes away when its motors are on; this chip says only that power came."""
+    on(pty_robot, "upload", "-e", FOREVER, "--detach", "--no-save")
+    command = Command("doctor", "--port", pty_robot.port, "--watch", "12", "--json")
+    heard = len(pty_robot.heard)
+    pty_robot.until(lambda: len(pty_robot.heard) > heard + 400, "it is watched")
+    pty_robot.switch_off()
+    pty_robot.switch_on()
+    done = command.ended()
+    assert done.code == 3
+    (finding,) = (each for each in json.loads(done.out)["findings"] if each["is_wrong"])
+    assert (finding["cause"], finding["is_sure"]) == ("motors_restart", False)
+    assert finding["said"] == "Your robot restarted when the motors started: check the batteries"
+    assert finding["values"]["reset"] == "POWER"
+
+
+# -- other things -------------------------------------------------------------------------------
+
+
+def test_a_port_that_another_program_has_locked() -> None:
+    with PtyEnd(Firmware()) as end:
+        holder = opened(end.port, 9600)
+        done = process("doctor", "--port", end.port)
+        holder.close()
+        assert done.code == 3
+        assert "1. Another program is using this port (sure)" in done.out
+        assert "does not tell by whom" in done.out
+        assert process("doctor", "--port", end.port).code == 0
+
+
+@pytest.mark.parametrize(("end", "cause"), [(Echo(), "echo"), (Sketch(115_200), "other_sketch"),
+                                            (Firmware(57_600), "wrong_baud")])  # fmt: skip
+def test_what_is_no_robot_at_this_speed(tsc: Tsc, end: Firmware, cause: str) -> None:
+    with PtyEnd(end) as pty_end:
+        done = tsc("doctor", "--port", pty_end.port, "--json")
+    assert (done.code, causes(done.out)) == (3, [cause])
+
+
+def test_what_others_have_written_cannot_move_the_cursor(tsc: Tsc) -> None:
+    with PtyEnd(Firmware(name=b"\x1b[2J\nANA")) as pty_end:
+        done = tsc("doctor", "--port", pty_end.port)
+    assert done.code == 0
+    assert "\x1b" not in done.out
+    assert len(done.out.splitlines()) == 4
+
+
+@pytest.mark.parametrize("words", [["--watch", "601"], ["--watch", "-1"], ["--baud", "x"],
+                                   ["--robot", "nobody"], ["--port", ""]])  # fmt: skip
+def test_wrong_use(tsc: Tsc, words: list[str]) -> None:
+    assert tsc("doctor", "--port", "/dev/not-there", *words).code == 2
+
+
+def test_no_such_port(tsc: Tsc) -> None:
+    for port in ("/dev/not-there", "a\u202eb", "x" * 5000, "socket://127.0.0.1:1", "foo://x"):
+        done = tsc("doctor", "--port", port)
+        assert done.code in (2, 3)
+        assert "next:" in done.out or done.code == 2
+
+
+def test_without_a_yes_a_cable_is_not_opened(tsc: Tsc, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A pseudo-terminal is no cable: here its name does not tell."""
+    monkeypatch.setattr("tiniscript.doctor.diagnosis.PSEUDO", ())
+    monkeypatch.setattr("tiniscript.doctor.linux._users", lambda system, port: [])
+    with PtyEnd(Firmware()) as pty_end:
+        done = tsc("doctor", "--port", pty_end.port)
+        assert (done.code, pty_end.heard) == (3, b"")
+        assert "tsc doctor --yes" in done.out
+        done = tsc("doctor", "--port", pty_end.port, "--yes")
+        assert done.code == 0
+        assert pty_end.heard
+
+
+# -- the report ---------------------------------------------------------------------------------
+
+
+def words_of_this_computer() -> list[str]:
+    found = [getpass.getuser(), socket.gethostname(), str(Path.home()), str(Path.cwd())]
+    return [each for each in found if len(each) > 2]
+
+
+def test_a_report_has_the_findings_and_no_names(tsc: Tsc, tmp_path: Path) -> None:
+    file = tmp_path / "report.txt"
+    with PtyEnd(Firmware(name=b"Ana Garcia", kit=0x1234)) as pty_end:
+        done = tsc("doctor", "--port", pty_end.port, "--report", file)
+        assert (done.code, str(file) in done.out) == (3, True)
+        text = file.read_text(encoding="utf-8")
+        assert text.startswith(report.MARK + "\n")
+        assert "unknown_kit sure" in text and "next: Name its profile once" in text
+        assert f"port: {pty_end.port}" in text
+        for word in ("Ana", "Garcia", str(tmp_path), *words_of_this_computer()):
+            assert not re.search(rf"\b{re.escape(word)}\b", text), word
+        # one of its own it replaces
+        tsc("doctor", "--port", "/dev/not-there", "--report", file)
+        assert "unknown_kit" not in file.read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("text", ["SI|F(2, 80)\n", report.MARK + " of mine\n", "x" * 100_000])
+def test_a_file_of_others_stays_what_it_is(tsc: Tsc, tmp_path: Path, text: str) -> None:
+    file = tmp_path / "drive.ts"
+    file.write_text(text, encoding="utf-8")
+    done = tsc("doctor", "--port", "/dev/not-there", "--report", file)
+    assert done.code == 2
+    assert "no report of tsc doctor" in done.err
+    assert file.read_text(encoding="utf-8") == text
+
+
+def test_a_report_that_cannot_be_written(tsc: Tsc, tmp_path: Path) -> None:
+    for file in (tmp_path, tmp_path / "no" / "report.txt", Path("/dev/full")):
+        done = tsc("doctor", "--port", "/dev/not-there", "--report", file)
+        assert (done.code, "cannot be written" in done.err) == (2, True)
+
+
+@pytest.mark.parametrize(
+    ("port", "told"),
+    [
+        ("/dev/ttyUSB0", "/dev/ttyUSB0"),
+        ("COM5", "COM5"),
+        ("/dev/rfcomm0", "/dev/rfcomm0"),
+        ("/dev/cu.usbserial-A50285BI", "/dev/cu.usbserial…"),
+        ("/dev/tty.usbmodem14201", "/dev/tty.usbmodem…"),
+        ("/dev/serial/by-id/usb-FTDI_A50285BI", "…"),
+        ("/dev/tty.HC-05-Ana", "Bluetooth …"),
+        ("socket://ana.school.example:7000", "socket://…"),
+        ("/home/ana/port", "…"),
+    ],
+)
+def test_ports_in_a_report(port: str, told: str) -> None:
+    assert report.port(port) == told
+
+
+def test_values_of_others_stay_out_of_a_report() -> None:
+    finding = sure("busy", by="ModemManager, secret-tool")
+    assert report.values_of(finding) == {"by": "ModemManager, …"}
+    finding = sure("port_broken", why="could not open /home/ana/x")
+    assert report.values_of(finding) == {"why": "…"}
+    finding = sure("port_missing", ports="COM3, /dev/cu.usbserial-A50285BI")
+    assert report.values_of(finding) == {"ports": "COM3, /dev/cu.usbserial…"}
+    computer = Computer(
+        "darwin", (Found("/dev/cu.usbserial-A50285BI", "FT232 of Ana"),),
+        (Adapter("FT232", "", "", True),), ON, ("Telephone of Ana", "HC-05"),
+    )  # fmt: skip
+    rows = dict(report.facts(computer))
+    assert (rows["modules"], rows["ports"]) == ("1", "/dev/cu.usbserial…")
+    assert "Ana" not in str(rows) and "A50285BI" not in str(rows)
