@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import getpass
+import io
 import json
 import re
 import socket
+import sys
 from pathlib import Path
 
 import pytest
@@ -173,6 +175,26 @@ def test_without_a_yes_a_cable_is_not_opened(tsc: Tsc, monkeypatch: pytest.Monke
         done = tsc("doctor", "--port", pty_end.port, "--yes")
         assert done.code == 0
         assert pty_end.heard
+
+
+@pytest.mark.parametrize(
+    ("answer", "code"), [("1\n", 0), ("yes\n", 0), ("sí\n", 0), ("2\n", 3), ("\n", 3), ("", 3)]
+)
+def test_the_question_before_a_cable_is_opened(
+    tsc: Tsc, monkeypatch: pytest.MonkeyPatch, answer: str, code: int
+) -> None:
+    class Terminal(io.StringIO):
+        def isatty(self) -> bool:
+            return True
+
+    monkeypatch.setattr("tiniscript.doctor.diagnosis.PSEUDO", ())
+    monkeypatch.setattr("tiniscript.doctor.linux._users", lambda system, port: [])
+    monkeypatch.setattr("sys.stdin", Terminal(answer))
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    with PtyEnd(Firmware()) as pty_end:
+        done = tsc("doctor", "--port", pty_end.port)
+        assert (done.code, bool(pty_end.heard)) == (code, code == 0)
+    assert f"open {pty_end.port}. That restarts a board" in done.err
 
 
 # -- the report ---------------------------------------------------------------------------------

@@ -14,7 +14,7 @@ from tiniscript.doctor.examination import Expected, examined
 from tiniscript.doctor.findings import Finding, probably, sure
 from tiniscript.doctor.robot import CABLE_MS, RADIO_MS, WireRobot
 from tiniscript.link.wire import Wire
-from tiniscript.modules import talk
+from tiniscript.modules import dialects, talk
 
 BOOT_MS = 1700  # an Uno takes 1.4 s after its port was opened, and a Mega wants silence until then
 BAUDS = (9600, 115200, 57600, 38400, 19200)
@@ -44,7 +44,7 @@ def looked(
     if reply is not None:
         return examined(robot, reply, expected, watch_ms, tell)
     heard = before + robot.heard
-    if robot.spoken in heard or _is_echo(heard, robot.spoken):
+    if _is_echo(heard, robot.spoken):
         return [sure("echo")]
     if _is_error(heard):
         return [sure("module_set_up", baud=str(line.baud))]
@@ -61,7 +61,7 @@ def _robot(wire: Wire, line: Line, expected: Expected) -> WireRobot:
 def _is_echo(heard: bytes, spoken: bytes) -> bool:
     """Whether at least one whole frame that was sent came back."""
     frames = [each for each in spoken.split(b"\0") if each]
-    return bool(frames) and all(frame in heard for frame in frames[:1])
+    return any(frame in heard for frame in frames)
 
 
 def _is_error(heard: bytes) -> bool:
@@ -111,7 +111,7 @@ def _by_cable(
             return [sure("other_sketch", said=readable(more))]
         garbage = max(garbage, len(more))
     tell("module")
-    module = talk.found(wire, (*BAUDS[3:4], line.baud, *BAUDS[:3]), wakes=False)
+    module = talk.found(wire, tuple(dict.fromkeys((line.baud, *dialects.BAUDS))), wakes=False)
     if module is not None:
         cause = "module_set_up" if module.dialect.is_fixed else "module_alone"
         return [sure(cause, baud=str(module.baud), module=module.dialect.name)]

@@ -55,6 +55,7 @@ def found(
 
     `wakes`: where none answers a text of 100 bytes is sent, which wakes an HM-10 that sleeps.
     """
+    wire.heard(SLOW_ANSWER_MS, SLOW_ANSWER_MS)  # what was sent before is no part of a command
     for is_awake in (False, True) if wakes else (False,):
         for baud in bauds:
             look(baud)
