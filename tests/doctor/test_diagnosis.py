@@ -161,6 +161,7 @@ ROWS: tuple[tuple[str | None, Make, str, bool], ...] = (
     (CABLE, _used("ModemManager"), "modem_manager", True),
     (CABLE, _other_tsc, "other_tsc", True),
     (RADIO, _failing(ports.BUSY), "busy", True),
+    (RADIO, _failing(ports.BUSY, os.strerror(errno.EBUSY)), "other_host", False),
     (RADIO, _paired(ports.UNREACHABLE, "HC-05"), "out_of_reach", False),
     (RADIO, _paired(ports.UNREACHABLE, "Telephone"), "not_paired", False),
     (RADIO, _failing(ports.UNREACHABLE, REFUSED), "other_host", False),

@@ -26,7 +26,7 @@ from tiniscript.link.ports import PortError
 from tiniscript.link.wire import Wire
 from tiniscript.sharing.client import OtherVersion
 
-REFUSED = os.strerror(errno.ECONNREFUSED)
+REFUSED, IN_USE = os.strerror(errno.ECONNREFUSED), os.strerror(errno.EBUSY)
 PSEUDO = ("/dev/pts/", "/dev/ttys")  # pseudo-terminals: nothing restarts there
 
 
@@ -152,7 +152,7 @@ def _held(system: System, found: Computer, port: str) -> Finding | None:
     if not who.may_use and who.is_joined:
         return sure("login_again", group=who.group)
     if not who.may_use:
-        return sure("no_permission", group=who.group or "dialout")
+        return sure("no_permission", group=who.group)
     if port.startswith(PSEUDO):
         return None  # whoever has made it has it open, too
     if "ModemManager" in who.users:
@@ -171,8 +171,10 @@ def _unopened(failure: PortError, found: Computer, port: str, system: System) ->
     if failure.reason == ports.MISSING:
         return _missing(found, port, system)
     if failure.reason == ports.FORBIDDEN:
-        return sure("no_permission", group="dialout")
+        return sure("no_permission", group="")
     if failure.reason == ports.BUSY:
+        if looks_wireless(port) and failure.why == IN_USE:
+            return probably("other_host")
         if "ModemManager" in found.programs:
             return probably("modem_manager")
         return sure("busy", by="")

@@ -17,6 +17,7 @@ from tiniscript.link.wire import Wire
 from tiniscript.modules import dialects, talk
 
 BOOT_MS = 1700  # an Uno takes 1.4 s after its port was opened, and a Mega wants silence until then
+HELLOS = 5  # an old Nano's bootloader takes longer
 BAUDS = (9600, 115200, 57600, 38400, 19200)
 LISTEN_MS = 400  # at a speed, to what a sketch prints
 FEW, MOST_TEXT = 4, 60  # bytes that are looked at, characters that are told
@@ -40,7 +41,7 @@ def looked(
     before = wire.heard(LISTEN_MS if line.is_radio else BOOT_MS)
     robot = _robot(wire, line, expected)
     tell("hello")
-    reply = robot.hello()
+    reply = robot.hello(HELLOS)
     if reply is not None:
         return examined(robot, reply, expected, watch_ms, tell)
     heard = before + robot.heard

@@ -9,7 +9,7 @@ from __future__ import annotations
 from contextlib import suppress
 from typing import Any, Protocol
 
-MOST_BYTES = 4096  # of one answer: whoever never stops is not listened to for ever
+MOST_BYTES = 1024  # of one answer: whoever never stops is not listened to for ever
 QUIET_MS = 60  # after so long a silence an answer is over
 RESTART_MS = 100  # how long the lines that restart a board are off
 

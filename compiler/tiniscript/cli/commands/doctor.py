@@ -148,9 +148,12 @@ def _said(finding: Finding, values: Mapping[str, str], language: str) -> tuple[s
     seen = f"seen_{finding.cause}"
     if finding.cause == "busy" and not filled["by"]:
         seen = "seen_busy_unknown"
+    then = f"next_{finding.cause}"
+    if finding.cause == "no_permission" and not filled["group"]:
+        seen, then = "seen_no_permission_other", "next_no_permission_other"
     if finding.cause == "other_sketch" and not filled["said"]:
         seen = "seen_other_sketch_silent"
-    keys = f"doctor_{finding.cause}", seen, f"next_{finding.cause}"
+    keys = f"doctor_{finding.cause}", seen, then
     what, seen, then = (text(key, language).format(**filled) for key in keys)
     return what, seen, then
 

@@ -70,6 +70,8 @@ DOCTOR_TEXTS: dict[str, tuple[str, str]] = {
     "doctor_no_permission": ("You may not use this port", "No tienes permiso para usar este puerto"),
     "seen_no_permission": ("it belongs to the group {group}, and you are not in it", "es del grupo {group}, y no estás en él"),
     "next_no_permission": ("sudo usermod -aG {group} $USER   Then log out and in again.", "sudo usermod -aG {group} $USER   Después cierra la sesión y ábrela otra vez."),
+    "seen_no_permission_other": ("the system refuses it", "el sistema lo niega"),
+    "next_no_permission_other": ("Ask whoever looks after this computer.", "Pídeselo a quien cuida esta computadora."),
     "doctor_login_again": ("You may use this port only after you have logged in again", "Podrás usar este puerto cuando abras la sesión otra vez"),
     "seen_login_again": ("you have joined the group {group} since you logged in", "entraste en el grupo {group} después de abrir la sesión"),
     "next_login_again": ("Log out and in again (a new terminal is not enough), or restart the computer.", "Cierra la sesión y ábrela otra vez (una terminal nueva no basta), o reinicia la computadora."),

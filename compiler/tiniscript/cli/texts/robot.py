@@ -76,8 +76,8 @@ LINK_TEXTS: dict[str, tuple[str, str]] = {
     "stopped_elsewhere": ("tsc: another command has stopped the robot on {port} meanwhile, so this was not done. Try again.",
                           "tsc: otro comando detuvo mientras tanto el robot en {port}, así que esto no se hizo. Prueba otra vez."),
     # who answers
-    "link_silent": ("tsc: nothing answers on {port}. Is the robot on, and is this its port (tsc ports)? If it has another speed:  --baud 115200",
-                    "tsc: nada responde en {port}. ¿El robot está encendido y este es su puerto (tsc ports)? Si tiene otra velocidad:  --baud 115200"),
+    "link_silent": ("tsc: nothing answers on {port}. Is the robot on, and is this its port (tsc ports)? If it has another speed:  --baud 115200   To find out more:  tsc doctor",
+                    "tsc: nada responde en {port}. ¿El robot está encendido y este es su puerto (tsc ports)? Si tiene otra velocidad:  --baud 115200   Para saber más:  tsc doctor"),
     "link_other": ("tsc: something answers on {port}, but it is not TiniScript. Perhaps the speed is another (--baud 115200), or the board has another sketch: put the TiniScript firmware on it.",
                    "tsc: algo responde en {port}, pero no es TiniScript. Tal vez la velocidad es otra (--baud 115200), o la placa tiene otro programa: ponle el firmware de TiniScript."),
     "link_echo": ("tsc: on {port} comes back what is sent. Are TX and RX connected to each other, or is the radio module in its set-up mode?",

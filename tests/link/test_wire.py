@@ -1,0 +1,68 @@
+"""The wire of a port: how long it listens, and what becomes of a port that is gone."""
+
+from __future__ import annotations
+
+import pytest
+
+from tiniscript.link.wire import MOST_BYTES, SerialWire
+
+
+class Port:
+    """As much of pyserial as a wire uses: `answers` come one for each wait."""
+
+    def __init__(self, *answers: bytes) -> None:
+        self.answers = list(answers)
+        self.timeout = 0.0
+        self.waits: list[float] = []
+        self.in_waiting = 0
+        self.lines: list[tuple[str, bool]] = []
+        self._left = b""
+
+    def read(self, count: int) -> bytes:
+        if not self._left:
+            self.waits.append(self.timeout)
+            self._left = self.answers.pop(0) if self.answers else b""
+        found, self._left = self._left[:count], self._left[count:]
+        self.in_waiting = len(self._left)
+        return found
+
+    def __setattr__(self, name: str, value: object) -> None:
+        if name in ("dtr", "rts"):
+            self.lines.append((name, bool(value)))
+        if name == "baudrate" and value == 7:
+            raise ValueError("no such speed")
+        super().__setattr__(name, value)
+
+
+def test_it_waits_for_the_first_byte_and_then_for_a_silence() -> None:
+    port = Port(b"OK\r", b"\n+")
+    assert SerialWire(port).heard(500, 60) == b"OK\r\n+"
+    assert port.waits == [0.5, 0.06, 0.06]
+    assert SerialWire(Port()).heard(500) == b""
+
+
+def test_it_does_not_listen_for_ever() -> None:
+    port = Port(*[b"x" * 100] * 1000)
+    assert MOST_BYTES <= len(SerialWire(port).heard(500)) < MOST_BYTES + 100
+
+
+def test_a_board_restarts_when_its_lines_come_back() -> None:
+    port = Port()
+    SerialWire(port).restart()
+    assert port.lines == [("dtr", False), ("rts", False), ("dtr", True), ("rts", True)] or (
+        port.lines == [("rts", False), ("dtr", False), ("rts", True), ("dtr", True)]
+    )
+
+
+def test_what_goes_wrong_is_an_os_error() -> None:
+    class Closed(Port):
+        def read(self, count: int) -> bytes:
+            raise TypeError("None")  # pyserial, where the port is closed
+
+        def write(self, data: bytes) -> None:
+            raise TypeError("None")
+
+    wire = SerialWire(Closed())
+    for use in (lambda: wire.heard(10), lambda: wire.send(b"x"), lambda: wire.set_baud(7)):
+        with pytest.raises(OSError):
+            use()
