@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import asyncio
 import os
-import termios
-import tty
 from collections.abc import Callable
 
-from tests.support.fake_bluez import FakeBluez
+from tests.machines import host_firmware
+from tests.support import fake_bluez
+from tests.support.command import FOREVER, Command
 from tests.support.pty_robot import PtyRobot
 
 HM10 = "0000ffe0-0000-1000-8000-00805f9b34fb"
@@ -25,6 +25,9 @@ CHARACTERISTICS = {
     LAMP: [("0000fff1-0000-1000-8000-00805f9b34fb", BOTH)],
 }  # fmt: skip
 ADDRESS = "AA:BB:CC:DD:EE:01"
+NAME, PLACE = "ble://Tini 1", f"ble://{ADDRESS}"  # its ports
+DRIVE = "SI|F(0.2, 80)"
+DROVE = ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
 
 
 class Peripheral:
@@ -93,6 +96,8 @@ class BleRobot(Peripheral):
         self.late_s = late_s
         self.said: list[bytes] = []
         self._uart = os.open(robot.port, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
+        import tty
+
         tty.setraw(self._uart)
 
     def take(self, data: bytes, kind: str) -> None:
@@ -100,6 +105,8 @@ class BleRobot(Peripheral):
         os.write(self._uart, data)
 
     def begin(self) -> None:
+        import termios
+
         termios.tcflush(self._uart, termios.TCIFLUSH)
         self.loop.add_reader(self._uart, self._pass_on)
 
@@ -121,6 +128,14 @@ class BleRobot(Peripheral):
             self.tell(data)
 
 
-def in_reach(bluez: FakeBluez, *peripherals: Peripheral) -> None:
-    for each in peripherals:
-        bluez.add(each)
+def missing() -> str:
+    """Return why there is no such robot here, or nothing."""
+    return fake_bluez.missing() or host_firmware.missing()
+
+
+def uploading(ble: BleRobot, port: str = PLACE) -> Command:
+    """A program that runs, and the command that attends to it."""
+    command = Command("upload", "-e", FOREVER, "--port", port)
+    command.until("running")
+    ble.robot.until(lambda: ble.robot.moves, "it drives")
+    return command

@@ -316,6 +316,14 @@ class FakeBluez:
             device.peripheral.clear_away()
         self.loop.close()
 
+    def _leave(self) -> None:
+        self.adapter.is_scanning = False
+        for device in self.devices.values():
+            if device.is_connected:
+                device.is_connected = False
+                device.peripheral.part()
+        self.bus.disconnect()
+
     async def _begin(self) -> None:
         self.bus = await MessageBus(self.address, bus_type=BusType.SYSTEM).connect()
         self.bus.export("/", Root())
@@ -377,7 +385,7 @@ class FakeBluez:
     def vanish(self) -> None:
         """End the D-Bus, and BlueZ with it."""
         if hasattr(self, "bus") and not self.has_ended:
-            self.do(self.bus.disconnect)
+            self.do(self._leave)
         self.has_ended = True
         self._daemon.terminate()
         self._daemon.wait()

@@ -1,0 +1,235 @@
+"""A robot over Bluetooth LE: real `tsc` processes, bleak as it ships, a BlueZ of the test's own."""
+
+from __future__ import annotations
+
+import json
+import signal
+from pathlib import Path
+
+import pytest
+
+from tests.support.ble_robot import (
+    ADDRESS,
+    DRIVE,
+    DROVE,
+    HM10,
+    LAMP,
+    NAME,
+    NORDIC,
+    PLACE,
+    BleRobot,
+    Echo,
+    Peripheral,
+    missing,
+    uploading,
+)
+from tests.support.command import LONG, Command, ended, process, running
+from tests.support.fake_bluez import FakeBluez
+from tests.support.pty_robot import PtyRobot
+
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a bus")
+
+OTHER = "AA:BB:CC:DD:EE:02"
+LARGEST = 65  # bytes of a frame on the wire
+
+
+# -- what is done -------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("port", [NAME, PLACE, "BLE://tini 1", PLACE.lower()])
+def test_a_program_is_uploaded_and_runs(ble: BleRobot, port: str) -> None:
+    done = process("upload", "-e", DRIVE, "--port", port)
+    assert (done.code, done.err) == (0, "")
+    assert done.out.splitlines()[-2:] == ["Done.", "Saved in slot 0."]
+    assert ble.robot.did == DROVE
+    assert {kind for kind, _ in ble.written} == {"command"}  # an HM-10 answers no write
+    assert max(len(data) for _, data in ble.written) == 20
+    assert ble.connections == 1
+    assert process("info").code == 0  # the port is remembered
+
+
+def test_lines_are_done_at_once(ble: BleRobot) -> None:
+    done = process("live", "-", "--port", PLACE, data=b"F(0.1, 50)\nR(0.1, 40)\n")
+    assert (done.code, done.err) == (0, "")
+    assert ble.robot.did[0::3] == ["MOTORS 50 50", "MOTORS 40 -40"]
+
+
+@pytest.mark.parametrize(("service", "mtu", "late_s"), [
+    (HM10, 23, 0.0), (HM10, 185, 0.0), (HM10, 23, 0.15),
+    (NORDIC, 23, 0.0), (NORDIC, 64, 0.0), (NORDIC, 185, 0.0), (NORDIC, 23, 0.15),
+])  # fmt: skip
+def test_a_long_program_arrives_whole(
+    bluez: FakeBluez, pty_robot: PtyRobot, tmp_path: Path, service: str, mtu: int, late_s: float
+) -> None:
+    """Whatever was negotiated, and where notifications come late."""
+    ble = BleRobot(pty_robot, service=service, mtu=mtu, late_s=late_s)
+    bluez.add(ble)
+    ours, theirs = tmp_path / "ours.bin", tmp_path / "theirs.bin"
+    process("compile", "-e", LONG, "-o", ours)
+    assert process("upload", ours, "--no-run", "--port", PLACE).code == 0
+    assert process("fetch", "-o", theirs, "--port", PLACE).code == 0
+    assert theirs.read_bytes() == ours.read_bytes()
+    longest = max(len(data) for _, data in ble.written)
+    assert longest == (20 if service == HM10 else min(mtu - 3, LARGEST))
+    assert max(map(len, ble.said)) <= mtu - 3
+
+
+def test_where_a_module_answers_each_write_it_is_waited_for(
+    bluez: FakeBluez, pty_robot: PtyRobot
+) -> None:
+    ble = BleRobot(pty_robot)
+    ble.characteristics = [(ble.characteristics[0][0], ["write", "notify"])]
+    bluez.add(ble)
+    assert process("upload", "-e", DRIVE, "--port", PLACE).code == 0
+    assert {kind for kind, _ in ble.written} == {"request"}
+    assert pty_robot.did == DROVE
+
+
+# -- who has the port ---------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("first", "second"), [(NAME, PLACE), (NAME, NAME), (PLACE, PLACE)])
+def test_commands_share_a_connection_whatever_they_call_it(
+    ble: BleRobot, first: str, second: str
+) -> None:
+    command = uploading(ble, first)
+    rows = [row for row in json.loads(process("ports", "--json").out) if row["held_by"]]
+    assert [row["port"] for row in rows] == [first]
+    done = process("stop", "--port", second)
+    assert done.code == 0
+    assert not ble.robot.moves
+    assert command.ended().code == 3
+    assert ble.connections == 1
+
+
+def test_a_stop_without_a_port_stops_it_once(ble: BleRobot) -> None:
+    command = uploading(ble, NAME)
+    done = process("stop")
+    assert (done.code, done.out.count("Stopped")) == (0, 1)
+    command.ended()
+
+
+def test_two_at_once_take_turns(ble: BleRobot) -> None:
+    both = [running("ping", "--port", port) for port in (NAME, PLACE)]
+    done = [ended(each) for each in both]
+    assert 0 in [each.code for each in done]
+    for each in done:
+        assert each.code == 0 or "another program is using" in each.err or "in reach" in each.err
+
+
+def test_ctrl_c_stops_the_robot_and_frees_it(ble: BleRobot, bluez: FakeBluez) -> None:
+    command = uploading(ble)
+    command.signal(signal.SIGINT)
+    assert command.ended().code == 2
+    assert not ble.robot.moves
+    assert not bluez.devices[ADDRESS].is_connected
+    assert process("ping", "--port", NAME).code == 0
+
+
+def test_ctrl_c_ends_a_search(ble: BleRobot, bluez: FakeBluez) -> None:
+    command = Command("ping", "--port", "ble://nobody")
+    ble.robot.until(lambda: bluez.adapter.is_scanning, "it searches")
+    command.signal(signal.SIGINT)
+    assert command.ended().code == 2
+    assert not bluez.adapter.is_scanning
+
+
+def test_a_command_that_is_killed_leaves_a_robot_that_stops_and_can_be_reached(
+    ble: BleRobot, bluez: FakeBluez
+) -> None:
+    """BlueZ keeps its connection, and a robot that is connected is seen by no scan."""
+    command = uploading(ble)
+    command.process.kill()
+    command.process.communicate()
+    ble.robot.until(lambda: not ble.robot.moves, "the tether stops it")
+    assert bluez.devices[ADDRESS].is_connected
+    for port in (NAME, PLACE):
+        assert process("upload", "-e", DRIVE, "--port", port).code == 0
+    assert ble.robot.did[-3:] == DROVE
+
+
+# -- which robot --------------------------------------------------------------------------------
+
+
+def test_of_two_with_one_name_none_is_taken(ble: BleRobot, bluez: FakeBluez) -> None:
+    bluez.add(Peripheral("TINI 1", OTHER))
+    done = process("upload", "-e", DRIVE, "--port", NAME)
+    assert done.code == 3
+    assert f"several robots are called {NAME}" in done.err
+    assert f"{PLACE}, ble://{OTHER}" in done.err
+    assert ble.connections == 0
+    assert process("upload", "-e", DRIVE, "--port", PLACE).code == 0
+
+
+@pytest.mark.parametrize(("said", "typed"), [
+    ("Ñandú 7", "ñandú 7"),
+    ("Mi robot", "mi robot"),
+    ("a/b?c%20://d", "a/b?c%20://d"),
+    ("Straße", "STRASSE"),
+    ("  spaced  ", "spaced"),
+    ("Cafe\u0301", "Caf\u00e9"),
+])  # fmt: skip
+def test_names_are_text(bluez: FakeBluez, pty_robot: PtyRobot, said: str, typed: str) -> None:
+    bluez.add(BleRobot(pty_robot, said))
+    assert process("ping", "--port", f"ble://{typed}").code == 0
+
+
+def test_a_name_that_looks_like_an_address_is_none(bluez: FakeBluez, ble: BleRobot) -> None:
+    fake = Peripheral(ADDRESS, OTHER)
+    bluez.add(fake)
+    assert process("ping", "--port", PLACE).code == 0
+    assert (ble.connections, fake.connections) == (1, 0)
+
+
+def test_all_robots_in_reach_are_listed_and_asked(ble: BleRobot, bluez: FakeBluez) -> None:
+    hostile = "\x1b[31mNo\r\ntsc: \u202ename"
+    bluez.add(Echo(hostile, OTHER))
+    bluez.add(Peripheral("lamp", "AA:BB:CC:DD:EE:03", LAMP))
+    done = process("ports", "--ask")
+    assert done.code == 0
+    rows = {line.split("   ")[0]: line.split("   ")[1:] for line in done.out.splitlines()}
+    assert rows[PLACE] == ["Tini 1, Bluetooth LE", "robot tinibot"]
+    assert [port for port in rows if port.startswith("ble")] == [f"ble://{OTHER}", PLACE]
+    assert not any(sign in done.out for sign in "\x1b\r\u202e")
+    assert process("ping", "--port", NAME).code == 0  # from now on it has this name
+    process("ping", "--port", "ble://gone-since")
+    rows2 = json.loads(process("ports", "--ask", "--json").out)
+    named = [row["port"] for row in rows2 if row["description"] == "Tini 1, Bluetooth LE"]
+    assert named == [NAME]
+
+
+@pytest.mark.parametrize("verb", ["stop", "upload"])
+def test_all_includes_a_robot_that_is_known(ble: BleRobot, verb: str) -> None:
+    assert process("ping", "--port", NAME).code == 0
+    words = ["-e", DRIVE] if verb == "upload" else []
+    done = process(verb, "--all", *words)
+    assert done.code == 0, done.err
+    assert "1 of 1 robots: done." in done.err
+
+
+def test_what_is_no_robot_is_said(bluez: FakeBluez) -> None:
+    bluez.add(Peripheral("lamp", OTHER, LAMP))
+    done = process("ping", "--port", "ble://lamp")
+    assert (done.code, "no service by which a robot is reached" in done.err) == (3, True)
+    bluez.add(Echo("echo", ADDRESS))
+    done = process("ping", "--port", "ble://echo")
+    assert (done.code, "comes back what is sent" in done.err) == (3, True)
+
+
+def test_nobody_is_in_reach(ble: BleRobot) -> None:
+    done = process("ping", "--port", "ble://nobody")
+    assert done.code == 3
+    assert "no ble://nobody is in reach" in done.err
+    assert "In reach: Tini 1" in done.err
+    ble.is_on = False
+    done = process("ping", "--port", NAME, "--lang", "es")
+    assert (done.code, "ni otro robot con Bluetooth LE" in done.err) == (3, True)
+
+
+def test_the_library_drives_it_too(ble: BleRobot) -> None:
+    code = (f"import tiniscript\nwith tiniscript.connect({NAME!r}) as robot:\n"
+            f"    robot.upload({DRIVE!r})\n    robot.wait()\n")  # fmt: skip
+    command = Command(code=code)
+    done = command.ended()
+    assert (done.code, done.err) == (0, "")
+    assert ble.robot.did == DROVE

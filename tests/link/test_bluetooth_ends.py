@@ -1,0 +1,227 @@
+"""What ends a connection over Bluetooth LE, at every stage, and what keeps one from beginning."""
+
+from __future__ import annotations
+
+import asyncio
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from tests.support.ble_robot import (
+    DRIVE,
+    DROVE,
+    HM10,
+    NAME,
+    NORDIC,
+    PLACE,
+    BleRobot,
+    Peripheral,
+    missing,
+    uploading,
+)
+from tests.support.command import LONG, Tsc, process
+from tests.support.fake_bluez import FakeBluez
+
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a bus")
+
+
+def moves_on_its_own(ble: BleRobot) -> None:
+    """It stops by itself: nobody is there to stop it."""
+    ble.robot.until(lambda: not ble.robot.moves, "the tether stops it")
+
+
+# -- in the middle ------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("stage", ["connect", "services", "notify"])
+@pytest.mark.parametrize("language", ["en", "es"])
+def test_a_connection_that_is_never_made(ble: BleRobot, stage: str, language: str) -> None:
+    ble.fails_at = stage
+    done = process("upload", "-e", DRIVE, "--port", PLACE, "--lang", language)
+    assert (done.code, done.out) == (3, "")
+    assert done.err.startswith("tsc: ")
+    assert PLACE.upper() in done.err.upper()
+    assert ble.robot.did == []
+    ble.fails_at = ""
+    assert process("upload", "-e", DRIVE, "--port", PLACE).code == 0
+    assert ble.robot.did == DROVE
+
+
+@pytest.mark.parametrize("heard", [1, 20, 40, 60, 100, 160, 220, 280])
+def test_a_program_that_is_cut_leaves_the_one_before(
+    ble: BleRobot, tmp_path: Path, heard: int
+) -> None:
+    """The connection ends within HELLO, or a frame of the program, or before the last answer."""
+    before, after = tmp_path / "before.bin", tmp_path / "after.bin"
+    assert process("upload", "-e", "SB|F(1, 10)", "--port", PLACE).code == 0
+    assert process("fetch", "-o", before).code == 0
+    ble.parts_after = len(ble.heard) + heard
+    done = process("upload", "-e", LONG, "--port", PLACE)
+    assert done.code == 3
+    assert f"the Bluetooth connection to {PLACE} has ended" in done.err
+    ble.parts_after = None
+    moves_on_its_own(ble)
+    ours = tmp_path / "ours.bin"
+    process("compile", "-e", LONG, "-o", ours)
+    assert process("fetch", "-o", after, "--port", PLACE).code == 0
+    assert after.read_bytes() in (before.read_bytes(), ours.read_bytes())
+    assert process("upload", "-e", LONG, "--no-run", "--port", PLACE).code == 0
+
+
+def test_a_robot_out_of_reach_stops_and_the_command_says_so(
+    ble: BleRobot, bluez: FakeBluez
+) -> None:
+    command = uploading(ble)
+    bluez.part(ble)
+    done = command.ended()
+    assert done.code == 3
+    assert f"the Bluetooth connection to {PLACE} has ended" in done.err
+    moves_on_its_own(ble)
+    assert process("upload", "-e", DRIVE, "--port", NAME).code == 0
+
+
+def test_a_line_after_a_lost_connection_ends_live(ble: BleRobot, bluez: FakeBluez) -> None:
+    done = process("live", "-", "--port", PLACE, data=b"F(0.1, 50)\n")
+    assert done.code == 0
+    ble.parts_after = len(ble.heard) + 60
+    done = process("live", "-", "--port", PLACE, data=b"F(0.1, 50)\n" * 9)
+    assert (done.code, "Bluetooth connection" in done.err) == (3, True)
+
+
+@pytest.mark.parametrize("what", ["power", "unplug", "vanish"])
+def test_an_adapter_that_is_gone_ends_the_command(
+    ble: BleRobot, bluez: FakeBluez, what: str
+) -> None:
+    command = uploading(ble)
+    if what == "power":
+        bluez.power(False)
+    elif what == "unplug":
+        bluez.unplug()
+    else:
+        bluez.vanish()
+    done = command.ended()
+    assert done.code == 3
+    assert "the Bluetooth connection" in done.err
+    moves_on_its_own(ble)
+    done = process("stop", "--port", PLACE, "--lang", "es")
+    said = "el servicio de Bluetooth" if what == "vanish" else "el Bluetooth de esta computadora"
+    assert (done.code, said in done.err) == (3, True)
+
+
+def test_an_echo_and_a_flood_are_no_robot(bluez: FakeBluez) -> None:
+    class Flood(Peripheral):
+        def begin(self) -> None:
+            self.flood(2000)
+
+        def flood(self, left: int) -> None:
+            self.tell(bytes(range(1, 21)))
+            if left:
+                self.loop.call_soon(self.flood, left - 1)
+
+    bluez.add(Flood("flood"))
+    done = process("ping", "--port", PLACE)
+    assert (done.code, "not TiniScript" in done.err) == (3, True)
+
+
+# -- before it begins ---------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("has_bluez", "has_adapter", "said"), [
+    (False, False, ("the Bluetooth service of this computer does not run",
+                    "el servicio de Bluetooth de esta computadora no está en marcha")),
+    (True, False, ("the Bluetooth of this computer is off",
+                   "el Bluetooth de esta computadora está apagado")),
+])  # fmt: skip
+def test_a_computer_without_bluetooth(
+    has_bluez: bool, has_adapter: bool, said: tuple[str, str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with FakeBluez(has_bluez, has_adapter) as bluez:
+        monkeypatch.setenv("DBUS_SYSTEM_BUS_ADDRESS", bluez.address)
+        for language, words in zip(("en", "es"), said, strict=True):
+            done = process("ping", "--port", NAME, "--lang", language)
+            assert (done.code, words in done.err) == (3, True)
+        done = process("ports", "--ask")
+        assert (done.code, said[0] in done.err) == (0, True)
+
+
+def test_a_bus_that_lets_nobody_in(bluez: FakeBluez, monkeypatch: pytest.MonkeyPatch) -> None:
+    from bleak.exc import BleakBluetoothNotAvailableError as NotAvailable
+    from bleak.exc import BleakBluetoothNotAvailableReason as Reason
+    from bleak.exc import BleakDBusError
+
+    from tiniscript.link import bluetooth_search as search
+    from tiniscript.link import ports
+
+    for reason, name in (
+        (Reason.DENIED_BY_USER, ports.RADIO_FORBIDDEN),
+        (Reason.DENIED_BY_SYSTEM, ports.RADIO_FORBIDDEN),
+        (Reason.POWERED_OFF, ports.RADIO_OFF),
+        (Reason.NO_BLE_CENTRAL_ROLE, ports.RADIO_OFF),
+    ):
+        assert search.reason_of(NotAvailable("", reason)) == name
+    denied = BleakDBusError("org.freedesktop.DBus.Error.AccessDenied", ["Sender is not allowed"])
+    assert search.reason_of(denied) == ports.RADIO_FORBIDDEN
+    assert search.reason_of(RuntimeError("new")) == ports.RADIO_BROKEN
+
+
+@pytest.mark.parametrize("language", ["en", "es"])
+@pytest.mark.parametrize("package", ["bleak", "zeroconf"])
+def test_without_its_package_the_next_step_is_said(
+    tsc: Tsc, monkeypatch: pytest.MonkeyPatch, package: str, language: str
+) -> None:
+    for name in [each for each in sys.modules if each.partition(".")[0] == package]:
+        monkeypatch.setitem(sys.modules, name, None)
+    for name in ("bluetooth", "bluetooth_search", "named_robots"):
+        monkeypatch.delitem(sys.modules, f"tiniscript.link.{name}", raising=False)
+        monkeypatch.delattr(f"tiniscript.link.{name}", raising=False)
+    monkeypatch.setitem(sys.modules, package, None)
+    port = {"bleak": "ble://Tini", "zeroconf": "tcp://tini"}[package]
+    done = tsc("ping", "--port", port, "--lang", language)
+    assert done.code == 3
+    assert package in done.err
+    assert "[radio]" in done.err
+    if package == "zeroconf":
+        done = tsc("robot", "--announce", "--for", "0.1", "--lang", language)
+        assert (done.code, "[radio]" in done.err) == (2, True)
+
+
+# -- the pace -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("service", "sizes", "waits"), [
+    (HM10, [20, 20, 20, 5], [0.0208, 0.0208, 0.0208]),
+    (NORDIC, [65], []),
+])  # fmt: skip
+def test_an_hm10_gets_no_more_than_its_uart_passes_on(
+    service: str, sizes: list[int], waits: list[float], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It drops what comes sooner; 20 bytes take it 20.8 ms at 9600 baud."""
+    from tiniscript.link import bluetooth
+
+    now_s, slept, written = [0.0], [], []
+
+    async def sleep(seconds: float) -> None:
+        if seconds > 0:
+            slept.append(round(seconds, 4))
+            now_s[0] += seconds
+
+    async def write(_: object, data: bytes, response: bool) -> None:
+        written.append(len(data))
+
+    loop: Any = SimpleNamespace(run=lambda work, _: asyncio.run(work))
+    port = bluetooth.BluetoothPort(loop, 9600)
+    module = next(each for each in bluetooth.MODULES if each.service == service)
+    client: Any = SimpleNamespace(write_gatt_char=write, is_connected=True)
+    characteristic: Any = SimpleNamespace(
+        properties=["write-without-response"], max_write_without_response_size=182
+    )
+    port._client, port._writes, port._is_paced = client, characteristic, module.is_paced
+    monkeypatch.setattr(bluetooth, "asyncio", SimpleNamespace(
+        sleep=sleep, TimeoutError=asyncio.TimeoutError,
+        get_running_loop=lambda: SimpleNamespace(time=lambda: now_s[0]),
+    ))  # fmt: skip
+    port.write(bytes(65))
+    assert (written, slept) == (sizes, waits)
