@@ -26,6 +26,7 @@ from tests.support.ble_robot import (
 from tests.support.command import LONG, Command, ended, process, running
 from tests.support.fake_bluez import FakeBluez
 from tests.support.pty_robot import PtyRobot
+from tiniscript.link import known_ports
 
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a bus")
 
@@ -192,10 +193,10 @@ def test_all_robots_in_reach_are_listed_and_asked(ble: BleRobot, bluez: FakeBlue
     assert [port for port in rows if port.startswith("ble")] == [f"ble://{OTHER}", PLACE]
     assert not any(sign in done.out for sign in "\x1b\r\u202e")
     assert process("ping", "--port", NAME).code == 0  # from now on it has this name
-    process("ping", "--port", "ble://gone-since")
-    rows2 = json.loads(process("ports", "--ask", "--json").out)
-    named = [row["port"] for row in rows2 if row["description"] == "Tini 1, Bluetooth LE"]
-    assert named == [NAME]
+    known_ports.remember("ble://yesterday", "Yesterday")
+    said = {row["port"]: row["said"] for row in json.loads(process("ports", "--ask", "--json").out)}
+    assert (said[NAME], said["ble://yesterday"]) == ("robot tinibot", "out of reach now")
+    assert PLACE not in said
 
 
 @pytest.mark.parametrize("verb", ["stop", "upload"])

@@ -10,7 +10,14 @@ from ipaddress import ip_address
 from threading import Event
 from typing import NamedTuple
 
-from zeroconf import BadTypeInNameException, IPVersion, ServiceBrowser, ServiceInfo, Zeroconf
+from zeroconf import (
+    BadTypeInNameException,
+    DNSQuestionType,
+    IPVersion,
+    ServiceBrowser,
+    ServiceInfo,
+    Zeroconf,
+)
 
 from tiniscript.link import ports
 from tiniscript.link.port_names import name_in
@@ -18,7 +25,8 @@ from tiniscript.link.ports import PortError
 
 SERVICE = "_tiniscript._tcp.local."
 SEARCH_S = 5.0  # for one robot
-LISTED_S = 2.0  # for all robots
+LISTED_S = 2.0  # for all robots,
+ROBOT_MS = 1000  # and for the address of each
 LONGEST = 63  # bytes of a name
 ROBOTS = 1000  # that a list keeps
 
@@ -37,7 +45,7 @@ def resolved(port: str) -> str:
         raise PortError(ports.NOT_ANNOUNCED)
     with _network() as network:
         try:
-            info = network.get_service_info(SERVICE, f"{name}.{SERVICE}", int(SEARCH_S * 1000))
+            info = asked(network, f"{name}.{SERVICE}", int(SEARCH_S * 1000))
         except BadTypeInNameException:  # a name that nothing in a network can have
             info = None
     if info is None:
@@ -66,7 +74,7 @@ def listed() -> list[Announced]:
         Event().wait(LISTED_S)
         browser.cancel()
         for name in sorted(names):
-            info = network.get_service_info(SERVICE, name, 1000)
+            info = asked(network, name, ROBOT_MS)
             if info is None:
                 continue
             try:
@@ -74,6 +82,14 @@ def listed() -> list[Announced]:
             except PortError:  # no robot has such an address
                 continue
     return found
+
+
+def asked(network: Zeroconf, name: str, limit_ms: int) -> ServiceInfo | None:
+    """Return what is announced of a name.
+
+    The answer goes to all: of several programs of a computer, one alone would get its own.
+    """
+    return network.get_service_info(SERVICE, name, limit_ms, question_type=DNSQuestionType.QM)
 
 
 def _network() -> Zeroconf:

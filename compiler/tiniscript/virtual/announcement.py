@@ -10,9 +10,11 @@ from ipaddress import ip_address
 
 from zeroconf import Error, NonUniqueNameException, ServiceInfo, Zeroconf
 
-from tiniscript.link.named_robots import LONGEST, SERVICE
+from tiniscript.link.named_robots import LONGEST, SERVICE, asked
 from tiniscript.link.port_names import TCP
 from tiniscript.virtual.transports import LOCAL
+
+ASK_MS = 1000  # timeout for a robot that has the name
 
 
 class NameTaken(Exception):
@@ -33,8 +35,11 @@ class Announcement:
                 SERVICE, f"{name}.{SERVICE}", number,
                 addresses=[ip_address(LOCAL).packed], server=f"tini-{number}.local.",
             )  # fmt: skip
+            # two programs of one computer may miss each other's answers while they register
+            if asked(self._network, info.name, ASK_MS) is not None:
+                raise NonUniqueNameException
             self._network.register_service(info)
-        except (NonUniqueNameException, Error):
+        except Error:
             self._network.close()
             raise NameTaken from None
         except BaseException:

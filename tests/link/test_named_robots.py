@@ -1,0 +1,195 @@
+"""`tcp://name`: robots that announce themselves, over real sockets of this computer."""
+
+from __future__ import annotations
+
+import random
+import socket
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import closing, contextmanager
+from importlib.util import find_spec
+from ipaddress import ip_address
+
+import pytest
+
+from tests.cli.test_virtual_command import FOREVER, robot
+from tests.support.command import LONG, Command, Tsc, process
+from tests.support.virtual_robot import missing
+
+WHY = missing() or ("" if find_spec("zeroconf") else "no zeroconf: pip install zeroconf")
+pytestmark = pytest.mark.skipif(bool(WHY), reason=WHY or "there is zeroconf")
+
+LATE_S = 0.04  # each way
+LOST = 0.05  # of the pieces
+
+
+@contextmanager
+def announced(name: str, address: str, number: int) -> Iterator[None]:
+    """Something that says it is a robot."""
+    from zeroconf import ServiceInfo, Zeroconf
+
+    from tiniscript.link.named_robots import SERVICE
+
+    with closing(Zeroconf(interfaces=["127.0.0.1"])) as network:
+        network.register_service(ServiceInfo(
+            SERVICE, f"{name}.{SERVICE}", number, addresses=[ip_address(address).packed],
+            server="stranger.local.",
+        ))  # fmt: skip
+        yield
+
+
+@contextmanager
+def bad_network(number: int) -> Iterator[int]:
+    """A TCP port that passes bytes on to another one: late, and not all of them."""
+    chance = random.Random(7)
+    server = socket.create_server(("127.0.0.1", 0))
+
+    def pass_on(source: socket.socket, target: socket.socket) -> None:
+        try:
+            while data := source.recv(1000):
+                time.sleep(LATE_S)
+                if chance.random() > LOST:
+                    target.sendall(data)
+            target.shutdown(socket.SHUT_WR)
+        except OSError:
+            pass  # one of them has left
+
+    def serve() -> None:
+        while True:
+            try:
+                peer, _ = server.accept()
+            except OSError:
+                return
+            robot_side = socket.create_connection(("127.0.0.1", number))
+            for ends in ((peer, robot_side), (robot_side, peer)):
+                threading.Thread(target=pass_on, args=ends, daemon=True).start()
+
+    threading.Thread(target=serve, daemon=True).start()
+    try:
+        yield server.getsockname()[1]
+    finally:
+        server.shutdown(socket.SHUT_RDWR)
+        server.close()
+
+
+def number_of(port: str) -> int:
+    return int(port.rpartition(":")[2])
+
+
+@pytest.mark.parametrize("typed", ["tcp://Ñ tini", "tcp://ñ tini.local", "TCP://ñ TINI"])
+def test_a_robot_is_reached_by_its_name(typed: str) -> None:
+    with robot("--announce", "--name", "Ñ tini") as found:
+        assert found.line() == "tcp://Ñ tini"
+        done = process("upload", "-e", "SI|F(0.2, 50)", "--port", typed)
+        assert (done.code, done.err) == (0, "")
+        assert process("ping").code == 0  # it is remembered
+
+
+def test_a_name_and_an_address_share_a_connection() -> None:
+    with robot("--announce", "--name", "tini-1") as found:
+        command = Command("upload", "-e", FOREVER, "--port", "tcp://tini-1")
+        command.until("running")
+        assert process("stop", "--port", found.port).code == 0
+        assert command.ended().code == 3
+
+
+def test_a_robot_announces_itself_only_when_asked() -> None:
+    with robot("--name", "quiet") as found, robot("--announce") as other:
+        name = other.line()
+        assert name == f"tcp://tinibot-{number_of(other.port)}"
+        rows = process("ports", "--ask").out.splitlines()
+        assert [row.split("   ")[0] for row in rows if "robot tinibot" in row] == [
+            name, found.port,
+        ]  # fmt: skip
+
+
+def test_the_announcement_ends_with_the_robot() -> None:
+    with robot("--announce", "--name", "short"):
+        assert process("ping", "--port", "tcp://short").code == 0
+    done = process("ping", "--port", "tcp://short", "--lang", "es")
+    assert (done.code, "ningún robot de esta red se anuncia como tcp://short" in done.err) == (
+        3, True,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("name", ["x" * 64, "Ñ" * 40, "_tcp", ".", "..", "a.b", "a..b", " "])
+def test_names_that_nobody_has(tsc: Tsc, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    from tiniscript.link import named_robots
+
+    monkeypatch.setattr(named_robots, "SEARCH_S", 0.2)
+    done = tsc("ping", "--port", f"tcp://{name}")
+    assert done.code == 3
+    assert "announces itself" in done.err
+
+
+def test_two_robots_of_one_name_are_not_announced() -> None:
+    with robot("--announce", "--name", "twin") as found:
+        found.line()
+        done = process("robot", "--announce", "--name", "twin", "--for", "0.1")
+        assert (done.code, "the name twin cannot be announced" in done.err) == (3, True)
+
+
+@pytest.mark.parametrize("address", ["8.8.8.8", "0.0.0.0"])
+def test_an_address_outside_is_not_called(address: str) -> None:
+    with announced("bait", address, 7007):
+        done = process("ping", "--port", "tcp://bait")
+        assert (done.code, f"an address that is not in this network ({address})" in done.err) == (
+            3, True,
+        )  # fmt: skip
+
+
+def test_a_hostile_name_is_shown_without_what_a_terminal_obeys() -> None:
+    with (
+        robot("--listen", "0") as found,
+        announced("\u202ex", "127.0.0.1", number_of(found.port)),
+    ):
+        done = process("ports", "--ask")
+        assert (done.code, found.port in done.out) == (0, True)
+        assert "\u202e" not in done.out
+
+
+def test_whatever_answers_a_name_has_to_be_a_robot() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as web:
+        number = web.getsockname()[1]
+
+        def serve() -> None:
+            peer, _ = web.accept()
+            peer.sendall(b"HTTP/1.1 400 Bad Request\r\n\r\n")
+            peer.close()
+
+        threading.Thread(target=serve, daemon=True).start()
+        with announced("web", "127.0.0.1", number):
+            assert process("ping", "--port", "tcp://web").code == 3
+
+
+def test_without_multicast_the_address_is_the_next_step(
+    tsc: Tsc, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from tiniscript.link import named_robots
+
+    def fail(**_: object) -> None:
+        raise OSError(101, "Network is unreachable")
+
+    monkeypatch.setattr(named_robots, "Zeroconf", fail)
+    for language, said in (("en", "reaches no network with multicast"),
+                           ("es", "no llega a ninguna red con multicast")):  # fmt: skip
+        done = tsc("ping", "--port", "tcp://tini", "--lang", language)
+        assert (done.code, said in done.err, "socket://HOST" in done.err) == (3, True, True)
+
+
+def test_a_bad_network_costs_time_and_nothing_else() -> None:
+    """40 ms each way, and one piece in twenty is lost: frames are sent again."""
+    with (
+        robot() as found,
+        bad_network(number_of(found.port)) as number,
+        announced("far", "127.0.0.1", number),
+    ):
+        done = process("upload", "-e", f"SB|{LONG}", "--port", "tcp://far")
+        assert (done.code, done.err) == (0, "")
+        checksum = done.out.partition("checksum ")[2][:8]
+        assert f"program {checksum}" in process("info", "--port", "tcp://far").out
+        command = Command("upload", "-e", FOREVER, "--port", "tcp://far")
+        command.until("running")
+        assert process("stop", "--port", "tcp://far").code == 0
+        command.ended()
