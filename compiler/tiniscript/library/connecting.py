@@ -18,7 +18,7 @@ def connect(
     port: str | None = None, *, robot: str | os.PathLike[str] | None = None,
     baud: int | None = None, language: Language = "en",
 ) -> RobotConnection:  # fmt: skip
-    """Connect to the robot on a port: /dev/ttyUSB0, COM5, socket://host:port, ...
+    """Connect to the robot on a port: /dev/ttyUSB0, COM5, ble://name, socket://host:port, ...
 
     The default port is the last used one, else that of the only running virtual robot.
     `robot` is the name or the path of the profile that texts are compiled for; its default is the

@@ -109,8 +109,8 @@ VERBS: dict[str, Verb] = {
     "ports": Verb(
         ROBOTS, ("ports", "ports"),
         ("list the ports; --ask: which robot answers where", "los puertos; --ask: qué robot responde en cuál"),
-        ("Lists the serial ports of this computer, which robots have answered there before, and which tsc holds one. Opens none of them: opening a port resets most boards.",
-         "Lista los puertos serie de esta computadora, qué robots respondieron ahí antes, y qué tsc tiene uno. No abre ninguno: abrir un puerto reinicia la mayoría de las placas."),
+        ("Lists the serial ports of this computer, which robots have answered there before, and which tsc holds one. Opens none of them: opening a port resets most boards. A robot with Bluetooth LE (an HM-10, say) is no serial port: its port is `ble://NAME` or `ble://ADDRESS`; that of a robot which announces itself in the network is `tcp://NAME`.",
+         "Lista los puertos serie de esta computadora, qué robots respondieron ahí antes, y qué tsc tiene uno. No abre ninguno: abrir un puerto reinicia la mayoría de las placas. Un robot con Bluetooth LE (un HM-10, por ejemplo) no es un puerto serie: su puerto es `ble://NOMBRE` o `ble://DIRECCIÓN`; el de un robot que se anuncia en la red es `tcp://NOMBRE`."),
     ),
     "ping": Verb(
         ROBOTS, ("ping", "ping"),
