@@ -184,8 +184,45 @@ def test_timers_of_an_uno(motors: str, pin: int, timer: int | None, first: str) 
     assert f"which {first} uses." in said
 
 
+ESP32 = {"= 2 ": "= 4 ", "= 11 ": "= 22 ", "= 13 ": "= 23 ", "= 12 ": "= 39 ", "= 5\n": "= 25\n",
+         "= 7\n": "= 26\n", "= 8\n": "= 27\n", "= 6\n": "= 32\n", "= 9\n": "= 33\n",
+         "= 10\n": "= 21\n", '"A0"': "34", '"A1"': "35", "= 4\n": "= 18\n", "= 3\n": "= 19\n",
+         '"uno"': '"esp32dev"'}  # fmt: skip
+
+
+@pytest.mark.parametrize(("old", "pin", "code"), [
+    *(("right_backward = 21", pin, "pin_at_boot") for pin in (0, 5, 12, 14, 15)),
+    ("left_pwm = 25", 12, "pin_at_boot"),
+    *(("right_backward = 21", pin, "no_such_pin") for pin in range(6, 12)),
+    *(("right_backward = 21", pin, "pin_of_link") for pin in (1, 3)),
+    *(("right_backward = 21", pin, "pin_cannot") for pin in (34, 35, 36, 39)),
+    *(("pin = 34", pin, "pin_cannot") for pin in (0, 2, 12, 13, 14, 15)),
+])  # fmt: skip
+def test_pins_of_an_esp32(old: str, pin: int, code: str) -> None:
+    """What it does at a reset starts no motor; flash, inputs and ADC2 are what they are."""
+    text = TEXTS["tinibot"]
+    for uno, esp32 in ESP32.items():
+        text = text.replace(uno, esp32)
+    assert read(text, "test").board.chip == "esp32dev"
+    key, _, number = old.partition(" = ")
+    assert old in text
+    refused = refusal(text.replace(f"{key} = {number}", f"{key} = {pin}"))
+    assert codes(refused) == [code]
+    said = describe(refused, "en")[0]
+    if code == "pin_at_boot":
+        assert said.endswith(" 2, 4, 13, 16, 17, 18, 19, 21, 22, 23, 25, 26, 27, 32, 33.")
+
+
+@pytest.mark.parametrize("pin", [0, 5, 12, 14, 15])
+def test_what_is_no_motor_may_be_on_such_a_pin(pin: int) -> None:
+    text = TEXTS["tinibot"]
+    for uno, esp32 in ESP32.items():
+        text = text.replace(uno, esp32)
+    assert read(text.replace("trigger = 18", f"trigger = {pin}"), "test").board.chip == "esp32dev"
+
+
 def test_every_code_has_a_test() -> None:
-    of_files = {"no_such_robot", *(code for code, *_ in FILES)}
+    of_files = {"no_such_robot", "pin_at_boot", *(code for code, *_ in FILES)}
     tested = of_files | {code for code, *_ in REFUSED}
     assert tested == {code for code in SENTENCES if not code.endswith("/near")}
 

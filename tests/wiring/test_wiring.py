@@ -356,7 +356,8 @@ def test_what_cannot_be_drawn_or_written_is_said(tsc: Tsc, tmp_path: Path) -> No
         .replace('"A0"', "32")
         .replace('"A1"', "33")
     )
-    for old, new in (("_pwm = 6", "_pwm = 16"), ("forward = 7", "forward = 17"), ("= 8", "= 18"),
+    for old, new in (("_pwm = 6", "_pwm = 16"), ("_pwm = 5", "_pwm = 27"),
+                     ("forward = 7", "forward = 17"), ("= 8", "= 18"),
                      ("= 9\n", "= 19\n"), ("= 10\n", "= 21\n"), ("buzzer = 11", "buzzer = 22"),
                      ("led = 13", "led = 23"), ("echo = 3", "echo = 25"),
                      ("state = 12", "state = 26")):  # fmt: skip

@@ -35,7 +35,9 @@ class Pins:
         self._chip = chip
         self._uses: list[Use] = []
 
-    def take(self, table: Table, key: str, need: str, is_optional: bool = False) -> int | None:
+    def take(
+        self, table: Table, key: str, need: str, is_optional: bool = False, is_motor: bool = False
+    ) -> int | None:
         """Return the number of the pin at `key`, or None if no usable pin is given."""
         written = table.get(key, "" if is_optional else f"{key} = 5")
         if written is None:
@@ -56,6 +58,9 @@ class Pins:
             table.complain("pin_of_link", key, **named)
         elif not chip.can(pin, need):
             table.complain("pin_cannot", key, need=need, **named, choices=_choices(chip, need))
+        elif is_motor and pin in chip.boot_pins:
+            choices = _choices(chip, need, without_pins=chip.boot_pins)
+            table.complain("pin_at_boot", key, **named, choices=choices)
         elif before is not None:
             table.complain("pin_twice", key, **named, first=before.table.path_of(before.key))
         else:
@@ -83,9 +88,12 @@ class Pins:
                     )
 
 
-def _choices(chip: Chip, need: str, without: frozenset[int | None] = frozenset()) -> str:
+def _choices(
+    chip: Chip, need: str, without: frozenset[int | None] = frozenset(),
+    without_pins: frozenset[int] = frozenset(),
+) -> str:  # fmt: skip
     """Return the pins that can do `need`, except those of the timers in `without`."""
-    every = sorted(chip.digital | chip.reading | chip.analog)
+    every = sorted((chip.digital | chip.reading | chip.analog) - without_pins)
     fit = [pin for pin in every if chip.can(pin, need) and chip.pwm.get(pin, -1) not in without]
     return ", ".join(chip.pin_name(pin) for pin in fit)
 
@@ -177,7 +185,8 @@ def _read_wiring(table: Table, used_by: str, pins: Pins) -> Wiring:
     taken = {}
     for key, need, is_optional in driver.pins:
         has_pull_up = need == "input" and settings.get("pull_up")
-        pin = pins.take(table, key, "pull_up" if has_pull_up else need, is_optional)
+        need = "pull_up" if has_pull_up else need
+        pin = pins.take(table, key, need, is_optional, is_motor=used_by == "motors")
         if pin is not None:
             taken[key] = pin
     table.finish()

@@ -14,6 +14,8 @@ class Chip(NamedTuple):
 
     `digital` pins read and write, `reading` pins only read. A0 has the number `first_analog`, if
     the board prints such names. `pwm` maps each pin to its timer. The link uses `link_pins`.
+    `boot_pins` are high, or do PWM, before the firmware runs, or decide how the chip starts: no
+    motor may hang on them.
     A timer field is None if the chip has enough timers.
     """
 
@@ -28,6 +30,7 @@ class Chip(NamedTuple):
     first_analog: int | None
     servo_timer: int | None
     tone_timer: int | None
+    boot_pins: frozenset[int] = frozenset()
 
     def can(self, pin: int, need: str) -> bool:
         """Return whether `pin` has the ability `need`, one of NEEDS."""
@@ -75,7 +78,11 @@ _PWM_2560 = {
     44: 5, 45: 5, 46: 5,
 }
 # fmt: on
-# Pins of an ESP32 that are free: the others carry its flash memory or the link.
+# Pins of an ESP32 that are free: 6 to 11 carry its flash memory, 1 and 3 the link. 34 to 39 only
+# read. Of the analog pins those of ADC1: ADC2 (0, 2, 4, 12 to 15, 25 to 27) cannot measure while
+# WiFi is on. Data sheet, "Strapping Pins": 0, 2, 5, 12 and 15 are read at a reset; 12 held high
+# keeps the chip from starting. 0, 5 and 15 are pulled up then, and 14 does PWM for a moment; 2 is
+# pulled down.
 _ESP32 = _pins(0, 2, 4, 5, range(12, 20), 21, 22, 23, 25, 26, 27, 32, 33)
 
 CHIPS = {
@@ -132,6 +139,7 @@ CHIPS = {
             first_analog=None,
             servo_timer=None,
             tone_timer=None,
+            boot_pins=_pins(0, 5, 12, 14, 15),
         ),
     )
 }

@@ -161,6 +161,12 @@ SENTENCES: dict[str, dict[str, str]] = {
         "en": "{path} is pin {pin}, which cannot be {need} on {chip}. These can: {choices}.",
         "es": "{path} es el pin {pin}, que en {chip} no sirve de {need}. Sirven: {choices}.",
     },
+    "pin_at_boot": {
+        "en": "{path} is pin {pin}, which could start a motor of an {chip} when it is switched on,"
+        " or keep it from starting. Choose one of these: {choices}.",
+        "es": "{path} es el pin {pin}, que podría arrancar un motor de un {chip} al encenderlo,"
+        " o no dejar que arranque. Elige uno de estos: {choices}.",
+    },
     "timer_twice": {
         "en": "{path} is pin {pin}: its PWM needs timer {timer}, which {first} uses."
         " Choose one of these: {choices}.",
