@@ -40,6 +40,8 @@ UPSTREAM: dict[str, set[str]] = {
     "modules": {"link"},
     "doctor": {"files", "bytecode", "flash", "link", "modules", "sharing"},
     "virtual": {*SHARED, "bytecode", "vm", "robots", "link", "sharing"},
+    # of the syntax its tokens: which words a program uses
+    "lessons": {*SHARED, "bytecode", "syntax", "vm", "robots", "link", "virtual"},
 }
 WHOLE = {"__init__", "__main__", "library", "cli"}  # what puts the stages together
 

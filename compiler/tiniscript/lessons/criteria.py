@@ -41,7 +41,7 @@ WITHIN = Number("within_cm", 1, 500, 10)
 # fmt: off
 KINDS: dict[str, Kind] = {
     "ends_in": Kind("the robot stands within so many cm of a place at the end", (WITHIN,), places=1),
-    "reaches": Kind("it comes within so many cm of places, in their order", (WITHIN, Number("by_seconds", 0.1, MOST, MOST)), places=1),
+    "reaches": Kind("it comes within so many cm of places, in their order, in so much time and on so long a way at most", (WITHIN, Number("by_seconds", 0.1, MOST, MOST), Number("by_cm", 1, MOST, MOST)), places=1),
     "stays_in": Kind("it never is further than so many cm from a place", (Number("within_cm", 1, 500),), places=1),
     "stands_before": Kind("at the end it stands so many cm before what is ahead of it", (Number("low_cm", 0, 400), Number("high_cm", 0, 400))),
     "faces": Kind("at the end it looks where a heading points to", (Number("heading", -360, 360), Number("within_degrees", 1, 180, 15))),

@@ -145,15 +145,14 @@ def _ends_in(criterion: Criterion, task: Task) -> Finding | None:
 
 def _reaches(criterion: Criterion, task: Task) -> Finding | None:
     within_cm = criterion.numbers["within_cm"]
-    samples = iter(_between(task.run.track))
-    reached_ms = 0.0
+    points = iter(_between(task.run.track))
+    at = On(0.0, 0.0, 0.0, 0.0)
     for number in range(len(criterion.places)):
         place = task.point(criterion, number)
         nearest_cm = math.inf
-        for ms, x_cm, y_cm in samples:
-            nearest_cm = min(nearest_cm, math.dist(place, (x_cm, y_cm)))
+        for at in points:
+            nearest_cm = min(nearest_cm, math.dist(place, (at.x_cm, at.y_cm)))
             if nearest_cm <= within_cm:
-                reached_ms = ms
                 break
         else:
             values = {"number": str(number + 1), "all": str(len(criterion.places))}
@@ -161,23 +160,42 @@ def _reaches(criterion: Criterion, task: Task) -> Finding | None:
                 values["cm"] = _cm(nearest_cm)
             key = "one" if len(criterion.places) == 1 else "several"
             return Finding("reaches", f"reaches/{key}", values, criterion.labels)
-    limit_s = criterion.numbers["by_seconds"]
-    if reached_ms > limit_s * 1000:
-        values = {"seconds": _seconds(reached_ms), "limit": f"{limit_s:g}"}
+    limit_s, limit_cm = criterion.numbers["by_seconds"], criterion.numbers["by_cm"]
+    if at.ms > limit_s * 1000:
+        values = {"seconds": _seconds(at.ms), "limit": f"{limit_s:g}"}
         return Finding("reaches", "reaches/late", values, criterion.labels)
+    if at.way_cm > limit_cm:
+        values = {"cm": _cm(at.way_cm), "limit": f"{limit_cm:g}"}
+        return Finding("reaches", "reaches/around", values, criterion.labels)
     return None
 
 
-def _between(track: tuple[Sample, ...]) -> list[tuple[float, float, float]]:
-    """Return points of the way, at most a centimetre from each other: time, x, y."""
-    found = [(float(track[0].ms), *track[0].pose[:2])]
+class On(NamedTuple):
+    """A point on the way: when, where, and how far the robot had driven."""
+
+    ms: float
+    x_cm: float
+    y_cm: float
+    way_cm: float
+
+
+def _between(track: tuple[Sample, ...]) -> list[On]:
+    """Return points of the way, at most a centimetre from each other."""
+    found = [On(float(track[0].ms), *track[0].pose[:2], 0.0)]
     for sample in track[1:]:
-        ms, x, y = found[-1]
-        steps = max(1, math.ceil(math.dist((x, y), sample.pose[:2])))
+        ms, x, y, way_cm = found[-1]
+        step_cm = math.dist((x, y), sample.pose[:2])
+        steps = max(1, math.ceil(step_cm))
         for k in range(1, steps + 1):
             part = k / steps
-            found.append((ms + (sample.ms - ms) * part, x + (sample.pose.x_cm - x) * part,
-                          y + (sample.pose.y_cm - y) * part))  # fmt: skip
+            found.append(
+                On(
+                    ms + (sample.ms - ms) * part,
+                    x + (sample.pose.x_cm - x) * part,
+                    y + (sample.pose.y_cm - y) * part,
+                    way_cm + step_cm * part,
+                )
+            )
     return found
 
 

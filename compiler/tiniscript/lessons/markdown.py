@@ -19,10 +19,12 @@ class Block(NamedTuple):
     """`kind` is title, heading, paragraph, list, checks, steps, table or program.
 
     `rows` has a row of cells for each line of a table, one cell for each item or line otherwise.
+    `first` is the number of the first step.
     """
 
     kind: str
     rows: tuple[tuple[str, ...], ...]
+    first: int = 1
 
 
 def blocks(text: str) -> list[Block]:
@@ -66,7 +68,9 @@ def _paragraph(lines: list[str]) -> list[Block]:
             found[-1][1].append(item[2] if item else line)
         else:
             found.append((kind, [item[2] if item else line]))
-    return [Block(kind, tuple((row,) for row in rows)) for kind, rows in found]
+    number = re.match(r"[0-9]+", lines[0])
+    first = int(number[0]) if number and found[0][0] == "steps" else 1
+    return [Block(kind, tuple((row,) for row in rows), first) for kind, rows in found]
 
 
 def as_text(page: str) -> str:
@@ -88,7 +92,7 @@ def _as_text(block: Block) -> str:
         (title,) = rows[0]
         return f"{title}\n{('=' if block.kind == 'title' else '-') * len(title)}"
     lines = []
-    for number, (row,) in enumerate(rows, 1):
+    for number, (row,) in enumerate(rows, block.first):
         mark = {"list": "- ", "checks": "[ ] ", "steps": f"{number}. "}.get(block.kind, "")
         lines.append(fill(row, WIDTH, initial_indent=mark, subsequent_indent=" " * len(mark)))
     return "\n".join(lines)

@@ -41,6 +41,8 @@ SENTENCES: dict[str, tuple[str, str]] = {
                         "El robot no llegó {to_place} {number} de {all}. Mira el movimiento anterior."),
     "reaches/late": ("The robot was at {place} after {seconds} s; it has {limit} s. Make it quicker, or its way shorter.",
                      "El robot llegó {to_place} a los {seconds} s y tiene {limit} s. Hazlo más rápido o acorta el camino."),
+    "reaches/around": ("The robot drove {cm} cm to {place}; {limit} cm are enough. Let it go there more directly.",
+                       "El robot recorrió {cm} cm hasta llegar {to_place}; bastan {limit} cm. Haz que vaya más directo."),
     "stays_in": ("After {seconds} s the robot left {place}. Look at what it does just before.",
                  "A los {seconds} s el robot salió {of_place}. Mira qué hace justo antes."),
     "stands_before/far": ("The robot stood {cm} cm before the obstacle; {low} to {high} cm is the task. Let it go nearer.",

@@ -99,6 +99,8 @@ def _html(block: Block) -> str:
         items = "\n".join(f"<li>{_words(item)}</li>" for (item,) in block.rows)
         tag = "ol" if block.kind == "steps" else "ul"
         mark = ' class="checks"' if block.kind == "checks" else ""
+        if block.first > 1:
+            mark = f' start="{block.first}"'
         return f"<{tag}{mark}>\n{items}\n</{tag}>"
     tag = {"title": "h1", "heading": "h2"}.get(block.kind, "p")
     return f"<{tag}>{_words(block.rows[0][0])}</{tag}>"

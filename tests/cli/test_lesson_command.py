@@ -1,0 +1,223 @@
+"""`tsc lesson` as teachers and pupils use it."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import re
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+
+from tests.machines.wasm import missing
+from tests.support.command import Tsc
+from tiniscript.lessons import catalogue
+from tiniscript.robots.profile import LANGUAGES
+
+needs_wasm = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
+RIGHT, SHORT, WRONG = "SI|F(2.5, 80)", "SI|F(2, 80)", "SI|F(2 80)"
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """What a class has handed in."""
+    pupils = tmp_path / "class"
+    pupils.mkdir()
+    for name, text in {"ana": RIGHT, "beto": SHORT, "carla": WRONG, "=dani": "SI|F(5, 80)"}.items():
+        (pupils / f"{name}.ts").write_text(text, encoding="utf-8")
+    (pupils / "eva.ts.txt").write_text(RIGHT, encoding="utf-8")
+    (pupils / "fox.ts").write_bytes(b"\xff\xfe\x00")
+    (pupils / "notes.pdf").write_bytes(b"%PDF")
+    return pupils
+
+
+def test_the_lessons_are_listed(tsc: Tsc) -> None:
+    done = tsc("lesson", "--lang", "es")
+    assert done.code == 0
+    rows = done.out.splitlines()
+    assert len(rows) == 12
+    assert rows[0] == " 1  La primera línea   (tinibot)"
+
+
+@needs_wasm
+def test_one_program(tsc: Tsc, folder: Path) -> None:
+    done = tsc("lesson", "check", "1", folder / "ana.ts")
+    assert done.code == 0
+    assert "done! The task of lesson 1 is solved." in done.out
+    done = tsc("lesson", "check", "1", folder / "beto.ts", "--lang", "es")
+    assert done.code == 1
+    assert (
+        "- El robot se quedó 18 cm antes del centro de la cochera. Haz que avance más." in done.out
+    )
+    done = tsc("lesson", "check", "1", "-e", WRONG)
+    assert done.code == 1
+    assert "TS017" in done.err
+    assert "mend the mistakes first" in done.out
+
+
+@needs_wasm
+def test_the_world_of_a_failure_can_be_repeated(tsc: Tsc, tmp_path: Path) -> None:
+    path = tmp_path / "left.ts"
+    path.write_text("SI|F(2.6, 60);L(0.39, 60);IF(TRUE);F(2.4, 60);ENDIF", encoding="utf-8")
+    done = tsc("lesson", "check", "8", path)
+    assert done.code == 1
+    said = re.search(r"--seed (\d+)", done.out)
+    assert said and f"not yet, in world {said[1]}." in done.out
+    (sentence,) = [row for row in done.out.splitlines() if row.startswith("- ")]
+    again = tsc("lesson", "check", "8", path, "--seed", said[1])
+    assert again.code == 1
+    assert sentence in again.out
+    assert tsc("lesson", "check", "8", path, "--seed", "1").code == 0
+
+
+@needs_wasm
+def test_a_folder_gets_a_table(tsc: Tsc, folder: Path, tmp_path: Path) -> None:
+    rows = tmp_path / "marks.csv"
+    done = tsc("lesson", "check", "1", folder, "--csv", rows)
+    assert done.code == 1
+    table = {row.split()[0]: row for row in done.out.splitlines()}
+    assert re.match(r"ana\.ts +done$", table["ana.ts"])
+    assert "not yet" in table["beto.ts"] and "18 cm before" in table["beto.ts"]
+    assert "mistakes" in table["carla.ts"] and "line 1" in table["carla.ts"]
+    assert "done" in table["eva.ts.txt"]
+    assert "mistakes" in table["fox.ts"]
+    assert done.out.splitlines()[-1] == "2 of 6 programs solve lesson 1."
+    data = rows.read_bytes()
+    assert data.startswith(b"\xef\xbb\xbf")  # spreadsheets on Windows ask for it
+    cells = list(csv.reader(data.decode("utf-8-sig").splitlines()))
+    assert cells[0] == ["file", "verdict", "seed", "sentence"]
+    assert cells[1][0] == "'=dani.ts"  # no formula
+    assert {row[1] for row in cells[1:]} == {"passed", "failed", "mistakes"}
+
+
+@needs_wasm
+def test_json_is_a_list(tsc: Tsc, folder: Path) -> None:
+    found = json.loads(tsc("lesson", "check", "1", folder, "--json").out)
+    assert [each["verdict"] for each in found] == [
+        "failed", "passed", "failed", "mistakes", "passed", "mistakes"]  # fmt: skip
+    assert found[2]["findings"][0]["kind"] == "ends_in"
+    assert found[2]["seed"] == 1
+    (one,) = json.loads(tsc("lesson", "check", "1", "-e", RIGHT, "--json").out)
+    assert one == {"file": "-e", "verdict": "passed", "seed": None, "findings": []}
+
+
+@needs_wasm
+def test_a_picture_of_the_way(tsc: Tsc, tmp_path: Path) -> None:
+    pytest.importorskip("PIL")
+    picture = tmp_path / "way.png"
+    assert tsc("lesson", "check", "1", "-e", SHORT, "--plot", picture).code == 1
+    assert picture.read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (["jump"], "lesson takes show, check or sheet, not jump"),
+        (["show"], "which lesson?"),
+        (["show", "13"], "There is no lesson 13. Give a number from 1 to 12"),
+        (["show", "0"], "There is no lesson 0."),
+        (["show", "²"], "There is no lesson ²."),
+        (["show", "9" * 5000], "There is no lesson 999"),
+        (["show", "a\0b"], "There is no lesson"),
+        (["check", "1"], "which program?"),
+        (["check", "1", "nothing.ts"], "there is no file nothing.ts"),
+        (["check", "1", "x.ts", "-e", "F(1,1)"], "one program at a time"),
+        (["check", "1", "-e", "F(1,1)", "--seed", "0"], "--seed takes a whole number"),
+        (
+            ["check", "1", "-e", "F(1,1)", "--teacher"],
+            "--teacher does not go with tsc lesson check",
+        ),
+        (["show", "1", "--json"], "--json does not go with tsc lesson show"),
+        (["show", "1", "x.ts"], "x.ts does not go with tsc lesson show"),
+        (["sheet", "1"], "where shall the page go?"),
+        (["sheet", "1", "-o", "no/such/folder.html"], "cannot be written"),
+        (["check", "1", "."], "there is no program"),
+    ],
+)
+def test_wrong_use_says_the_next_step(
+    tsc: Tsc, arguments: list[str], sentence: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    done = tsc("lesson", *arguments)
+    assert done.code == 2
+    assert sentence in done.err
+    assert tsc("lesson", *arguments, "--lang", "es").err != done.err
+
+
+@needs_wasm
+def test_images_and_odd_files_are_refused(tsc: Tsc, tmp_path: Path) -> None:
+    (tmp_path / "a.bin").write_bytes(b"TS\x02")
+    assert "wants its text" in tsc("lesson", "check", "1", tmp_path / "a.bin").err
+    (tmp_path / "image.ts").write_bytes(b"TS\x02\0")
+    if hasattr(os, "mkfifo"):
+        os.mkfifo(tmp_path / "pipe.ts")  # nobody writes into it: nobody may wait
+    done = tsc("lesson", "check", "1", tmp_path)
+    assert done.code == 1
+    assert "image.ts  unreadable" in done.out
+    assert "pipe.ts" not in done.out
+
+
+@needs_wasm
+def test_a_lesson_of_ones_own(tsc: Tsc, tmp_path: Path) -> None:
+    shipped = catalogue.folders()[0]
+    for name in ("lesson.toml", "world.toml"):
+        (tmp_path / name).write_bytes((shipped / name).read_bytes())
+    assert tsc("lesson", "check", tmp_path, "-e", RIGHT).code == 0
+    done = tsc("lesson", "show", tmp_path)
+    assert (done.code, "pupil.en.md is missing" in done.err) == (2, True)
+    text = (tmp_path / "world.toml").read_text(encoding="utf-8")
+    (tmp_path / "world.toml").write_text(text.replace("x_cm = 30", "x_cm = 2"), encoding="utf-8")
+    done = tsc("lesson", "check", tmp_path, "-e", RIGHT)
+    assert (done.code, "the robot does not fit" in done.err) == (2, True)
+    (tmp_path / "lesson.toml").write_text("worlds = 0", encoding="utf-8")
+    done = tsc("lesson", "check", tmp_path, "-e", RIGHT)
+    assert (done.code, "robot is missing" in done.err) == (2, True)
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+@pytest.mark.parametrize("number", range(1, 13))
+def test_sheets_are_whole_pages(tsc: Tsc, number: int, language: str, tmp_path: Path) -> None:
+    """One file: nothing is fetched, every element is closed, the drawing is inside."""
+    for more in ([], ["--teacher"]):
+        path = tmp_path / "sheet.html"
+        done = tsc("lesson", "sheet", str(number), "-o", path, "--lang", language, *more)
+        assert done.code == 0
+        page = path.read_text(encoding="utf-8")
+        assert not re.search(r"(src|href|url|@import|<script|<link)\b", page)
+        assert page.count("<svg") == 1
+        assert "**" not in page and "```" not in page and "`" not in page
+        assert "size: A4" in page
+        _Closed().whole(page)
+
+
+class _Closed(HTMLParser):
+    VOID = ("meta",)
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.open: list[str] = []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        if tag not in self.VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        pass
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open and self.open.pop() == tag, tag
+
+    def whole(self, page: str) -> None:
+        self.feed(page)
+        self.close()
+        assert self.open == []
+
+
+def test_a_page_is_printed_for_a_terminal(tsc: Tsc) -> None:
+    done = tsc("lesson", "show", "4", "--teacher")
+    assert done.code == 0
+    assert "    SI|LOOP(4)\n" in done.out
+    assert "Answers\n-------" in done.out
+    assert "```" not in done.out

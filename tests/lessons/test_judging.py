@@ -1,0 +1,159 @@
+"""Each criterion, by a program that misses it; the same verdict each time; no program holds up."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.machines.wasm import missing
+from tiniscript import robots
+from tiniscript.lessons import catalogue, running
+from tiniscript.lessons.judging import judged, judged_text
+from tiniscript.lessons.lesson import Lesson
+from tiniscript.lessons.sentences import SENTENCES, sentence
+from tiniscript.lessons.variation import point_of, varied
+from tiniscript.library.compiling import compiled, image_of
+
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
+
+HEAD = 'robot = "{robot}"\nseconds = 10\n{more}\n[title]\nen = "A"\nes = "B"\n'
+WORLD = """\
+[floor]
+width_cm = 300
+height_cm = 200
+[start]
+x_cm = 100
+y_cm = 100
+heading = 0
+[[boxes]]
+x_cm = 200
+y_cm = 100
+length_cm = 20
+width_cm = 60
+[[lines]]
+points = [[20, 100], [110, 100]]
+"""
+
+
+def lesson_of(folder: Path, criteria: str, robot: str = "tinibot", more: str = "") -> Lesson:
+    text = HEAD.format(robot=robot, more=more) + criteria
+    (folder / "lesson.toml").write_text(text, encoding="utf-8")
+    (folder / "world.toml").write_text(WORLD, encoding="utf-8")
+    return catalogue.load(folder)
+
+
+def said(lesson: Lesson, text: str, seed: int = 1, language: str = "en") -> list[str]:
+    robot = robots.load(lesson.robot)
+    found = compiled(text.encode(), robot, "p.ts", is_strict=True)
+    assert found.is_right, found.diagnostics
+    run = running.run(image_of(found, robot), robot, lesson, seed)
+    findings = judged(run, lesson) + judged_text(text, lesson)
+    return [sentence(each, language) for each in findings]
+
+
+CASES = [
+    ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "F(0.5, 89)", "stopped 20 cm before the middle of the goal"),
+    ('kind = "ends_in"\nat = [140, 100]\nwithin_cm = 5', "F(1, 89)", "F(1.3, 89)", "went 12 cm past the middle"),
+    ('kind = "ends_in"\nat = "start"', "F(1, 50); B(1, 50)", "F(1, 50)", "was 22 cm from the goal"),
+    ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "R(1, 60)", "only turned on the spot"),
+    ('kind = "reaches"\nat = [[140, 100], [60, 100]]', "F(1, 89); B(2, 89)", "B(1, 89); F(2, 89)", "get to the goal 2 of 2"),
+    ('kind = "reaches"\nat = [140, 100]\nby_seconds = 2', "F(1, 89)", "F(4, 22)", "after 3.0 s; it has 2 s"),
+    ('kind = "reaches"\nat = [140, 100]\nby_cm = 50', "F(1, 89)", "B(1, 89); F(2, 89)", "drove 110 cm to the goal; 50 cm are enough"),
+    ('kind = "stays_in"\nat = "start"\nwithin_cm = 30', "F(0.5, 50)", "F(1, 89)", "After 0.8 s the robot left the goal"),
+    ('kind = "stands_before"\nlow_cm = 20\nhigh_cm = 50', "F(1, 89)", "F(0.5, 50)", "stood 66 cm before the obstacle; 20 to 50 cm"),
+    ('kind = "stands_before"\nlow_cm = 20\nhigh_cm = 50', "F(1, 89)", "F(1.6, 89)", "stood 13 cm before the obstacle"),
+    ('kind = "faces"\nheading = 90', "L(0.39, 60)", "L(0.2, 60)", "44 degrees too far to the right"),
+    ('kind = "faces"\nheading = 90', "L(0.39, 60)", "L(0.8, 60)", "93 degrees too far to the left"),
+    ('kind = "never_touches"', "F(1, 50)", "F(3, 80)", "touched a box after 2.2 s"),
+    ('kind = "never_touches"', "F(1, 50)", "B(4, 80)", "touched the edge of the floor after 2.5 s"),
+    ('kind = "drives"\nat_least_cm = 30', "F(1, 89)", "F(0.5, 50)", "drove 11 cm; at least 30 cm"),
+    ('kind = "drives"\nat_most_cm = 30', "F(0.5, 50)", "F(1, 89)", "drove 40 cm; at most 30 cm"),
+    ('kind = "pauses"\nat_least_seconds = 1', "F(1,50);W(1);B(1,50)", "F(1,50);W(0.5);B(1,50)", "waited 0.5 s; 1 s is the task"),
+    ('kind = "pauses"\nat_least_seconds = 1\ntimes = 2', "LOOP(3);F(0.2,50);W(1);END_LOOP", "F(1,50);W(1);B(1,50)", "1 of 2 times"),
+    ('kind = "shows"\nvalue = 4', "SHOW(2 + 2)", "SHOW(5)", "showed 5; 4 is right"),
+    ('kind = "shows"\nwhat = "DISTANCE"\ntolerance = 1', "SHOW(DISTANCE)", "SHOW(50)", "showed 50, but DISTANCE was about 77 then"),
+    ('kind = "shows"\nwhat = "TIME"\ntolerance = 0.1', "W(1);SHOW(TIME)", "W(1);SHOW(2)", "showed 2, but it was on its way for 1 s"),
+    ('kind = "shows"\ntimes = 2', "SHOW(1);SHOW(TRUE)", "SHOW(1)", "showed 1 of 2 values"),
+    ('kind = "shows"', "SHOW(1)", "W(1)", "showed nothing"),
+    ('kind = "beeps"\ntimes = 2', "BEEP(0.1,440);BEEP(0.1,440)", "BEEP(0.1,440)", "beeped 1 of 2 times"),
+    ('kind = "beeps"\ntimes = 2\npitches = 2', "BEEP(0.1,440);BEEP(0.1,880)", "BEEP(0.1,440);BEEP(0.1,440)", "1 of 2 pitches"),
+    ('kind = "beeps"', "BEEP(0.1,440)", "W(1)", "did not beep"),
+    ('kind = "order"\nwords = ["beeps", "moves", "stops", "shows"]', "BEEP(0.1,440);F(1,50);SHOW(1)", "F(1,50);BEEP(0.1,440);SHOW(1)", "After it beeps, the robot should move"),
+    ('kind = "order"\nwords = ["moves"]', "F(1,50)", "W(1)", "did not move"),
+    ('kind = "ends"', "W(1)", "LOOP(FOREVER);W(1);END_LOOP", "After 10.0 s the program was still running"),
+    ('kind = "uses"\nwords = ["UNTIL"]', "F(1,50) UNTIL(DISTANCE < 9)", "F(1,50) // UNTIL", "does not use UNTIL"),
+    ('kind = "uses"\nwords = ["LOOP"]\ntimes = 2', "LOOP(2);LOOP(2);W(0.1);END_LOOP;END_LOOP", "LOOP(2);W(0.1);END_LOOP", "LOOP 1 of 2 times"),
+    ('kind = "moves"\nat_most = 1', "LOOP(2);F(0.1,50);END_LOOP", "F(0.1,50);F(0.1,50)", "has 2 moves; 1 are enough"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("criterion", "right", "wrong", "sentence"), CASES)
+def test_a_criterion_is_met_or_missed(
+    tmp_path: Path, criterion: str, right: str, wrong: str, sentence: str
+) -> None:
+    lesson = lesson_of(tmp_path, f"[[criteria]]\n{criterion}\n")
+    assert said(lesson, right) == []
+    (found,) = said(lesson, wrong)
+    assert sentence in found
+    (spanish,) = said(lesson, wrong, language="es")
+    assert spanish != found
+    assert "{" not in found + spanish
+
+
+def test_a_line_is_followed_or_left(tmp_path: Path) -> None:
+    line = '[[criteria]]\nkind = "follows"\nwithin_cm = 9\nat_least_cm = 60\n'
+    lesson = lesson_of(tmp_path, line, "liner")
+    assert said(lesson, "B(1.7, 60)") == []
+    assert "of the black line; 60 cm is the task" in said(lesson, "B(0.7, 60)")[0]
+    assert "left the black line. Look at which way" in said(lesson, "F(1, 60)")[0]
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        ("PING|check_connection", "begins with PING"),
+        ("X = 1 / TIME", "divided by 0"),
+        ("X = 2147483 + TIME * 0 + 1", "a number got too large"),
+        ("F(2, 0)", "did not move"),
+        ("L(90, 60)", "After 10.0 s the robot was still on its way"),
+    ],
+)
+def test_what_is_wrong_with_the_run_as_a_whole(tmp_path: Path, text: str, sentence: str) -> None:
+    lesson = lesson_of(tmp_path, '[[criteria]]\nkind = "ends_in"\nat = [140, 100]\n')
+    (found,) = said(lesson, text)
+    assert sentence in found
+
+
+@pytest.mark.parametrize("body", ["", "X = LIGHT_L", "SHOW(1)", "M(50, 49)", "BEEP(0, 440)"])
+def test_a_program_that_never_rests_ends(tmp_path: Path, body: str) -> None:
+    """By actions or by the robot's time, never by the clock on the wall."""
+    lesson = lesson_of(tmp_path, '[[criteria]]\nkind = "ends"\n')
+    (found,) = said(lesson, f"LOOP(FOREVER);{body};END_LOOP")
+    assert "without a rest" in found or "still running" in found
+
+
+def test_a_world_is_the_same_for_the_same_seed(tmp_path: Path) -> None:
+    more = "worlds = 3\nnoise_percent = 2\nmirror = true"
+    varies = '[[criteria]]\nkind = "never_touches"\n[[varies]]\npart = "boxes[1]"\ny_cm = [5, 30]\n'
+    lesson = lesson_of(tmp_path, varies, more=more)
+    assert varied(lesson, 3) == varied(lesson, 3) != varied(lesson, 5)
+    box = lesson.variations[0].place
+    assert 105 <= point_of(box, varied(lesson, 1), False).y <= 130
+    assert 70 <= point_of(box, varied(lesson, 2), True).y <= 95  # the other way round
+    robot = robots.load("tinibot")
+    image = image_of(compiled(b"F(1, 80);L(1, 50)", robot, "p", True), robot)
+    tracks = [running.run(image, robot, lesson, seed).track for seed in (1, 1, 3)]
+    assert tracks[0] == tracks[1] != tracks[2]
+
+
+def test_the_button_starts_what_begins_with_sb(tmp_path: Path) -> None:
+    lesson = lesson_of(tmp_path, '[[criteria]]\nkind = "drives"\nat_least_cm = 30\n')
+    assert said(lesson, "SB|F(1, 89)") == []
+
+
+def test_every_sentence_has_two_languages_and_a_next_step() -> None:
+    for key, both in SENTENCES.items():
+        assert both[0] != both[1], key
+        for said_so in both:
+            assert said_so.count(". ") + said_so.count("; ") >= 1, key

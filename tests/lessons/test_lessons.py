@@ -1,0 +1,160 @@
+"""Every shipped lesson: its answers are right, its wrong ones are told so, its pages are whole."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from tests.machines.wasm import missing
+from tiniscript import robots
+from tiniscript.lessons import catalogue
+from tiniscript.lessons.judging import JUDGES, OF_TEXT, Finding, judged, judged_text
+from tiniscript.lessons.lesson import Answer, Lesson
+from tiniscript.lessons.markdown import blocks
+from tiniscript.lessons.sentences import sentence
+from tiniscript.library.compiling import compiled, image_of
+from tiniscript.robots.profile import LANGUAGES
+
+FOLDERS = catalogue.folders()
+MINUTES = "45"
+OTHER_SEEDS = range(101, 105)  # of worlds that the command does not try by itself
+BY_HEART = "by heart"  # in the label of a wrong answer
+HEADINGS = {"en": 5, "es": 5}  # of a pupil's page: need, steps, task, check, and the title
+
+each = pytest.mark.parametrize("folder", FOLDERS, ids=lambda path: path.name)
+in_both = pytest.mark.parametrize("language", LANGUAGES)
+
+
+def answers_of(is_right: bool) -> list[tuple[Path, Answer]]:
+    which = 0 if is_right else 1
+    return [(folder, found) for folder in FOLDERS for found in catalogue.answers(folder)[which]]
+
+
+def name_of(value: object) -> str:
+    return value.name if isinstance(value, Path) else value.labels["en"].replace(" ", "_")  # type: ignore[attr-defined]
+
+
+def findings_of(text: str, lesson: Lesson, seeds: range) -> list[Finding]:
+    """Return what is missing in the first world where something is, or in the text."""
+    from tiniscript.lessons.running import run
+
+    robot = robots.load(lesson.robot)
+    found = compiled(text.encode(), robot, "answer.ts", is_strict=True)
+    assert found.is_right, found.diagnostics
+    image = image_of(found, robot)
+    for seed in seeds:
+        findings = judged(run(image, robot, lesson, seed), lesson)
+        if findings:
+            return findings + judged_text(text, lesson)
+    return judged_text(text, lesson)
+
+
+def test_there_are_twelve() -> None:
+    assert [folder.name[:2] for folder in FOLDERS] == [f"{k:02}" for k in range(1, 13)]
+
+
+@pytest.mark.skipif(bool(missing()), reason=str(missing()))
+@pytest.mark.parametrize(("folder", "answer"), answers_of(True), ids=name_of)
+def test_a_right_answer_is_right(folder: Path, answer: Answer) -> None:
+    """In the worlds of the task, and in others."""
+    lesson = catalogue.load(folder)
+    assert findings_of(answer.program, lesson, range(1, lesson.worlds + 1)) == []
+    assert findings_of(answer.program, lesson, OTHER_SEEDS) == []
+
+
+@pytest.mark.skipif(bool(missing()), reason=str(missing()))
+@pytest.mark.parametrize(("folder", "answer"), answers_of(False), ids=name_of)
+def test_a_wrong_answer_is_told_what_helps(folder: Path, answer: Answer) -> None:
+    lesson = catalogue.load(folder)
+    found = findings_of(answer.program, lesson, range(1, lesson.worlds + 1))
+    assert found, "it passes"
+    assert {language: sentence(found[0], language) for language in LANGUAGES} == answer.said
+
+
+@each
+def test_a_lesson_has_answers_and_typical_mistakes(folder: Path) -> None:
+    right, wrong = catalogue.answers(folder)
+    assert len(right) >= 2
+    assert len(wrong) >= 3
+    if catalogue.load(folder).worlds > 1 and folder.name[:2] != "08":  # there "always to the left"
+        assert any(BY_HEART in answer.labels["en"] for answer in wrong)
+
+
+@each
+def test_what_varies_is_asked_for_in_several_worlds(folder: Path) -> None:
+    lesson = catalogue.load(folder)
+    assert (lesson.worlds > 1) == bool(lesson.variations or lesson.is_mirrored)
+
+
+@each
+@in_both
+def test_the_pages_of_a_lesson_are_whole(folder: Path, language: str) -> None:
+    number = int(folder.name[:2])
+    lesson = catalogue.load(folder)
+    page = catalogue.page(folder, catalogue.PUPIL, language)
+    found = blocks(page)
+    assert found[0].kind == "title"
+    assert found[0].rows[0][0] == f"{number}. {lesson.titles[language]}"
+    assert sum(block.kind in ("title", "heading") for block in found) == HEADINGS[language]
+    steps = [block for block in found if block.kind == "steps"]
+    assert [
+        block.first + k for block in steps for k in range(len(block.rows))
+    ] == list(range(1, sum(len(block.rows) for block in steps) + 1))  # fmt: skip
+    assert f"tsc lesson check {number} " in page
+    notes = catalogue.page(folder, catalogue.TEACHER, language)
+    table = next(block for block in blocks(notes) if block.kind == "table")
+    assert str(sum(int(row[0]) for row in table.rows[1:])) == MINUTES
+
+
+@each
+@in_both
+@pytest.mark.parametrize("who", [catalogue.PUPIL, catalogue.TEACHER])
+def test_programs_on_pages_compile(folder: Path, language: str, who: str) -> None:
+    lesson = catalogue.load(folder)
+    robot = robots.load(lesson.robot)
+    programs = [
+        "\n".join(row for (row,) in block.rows)
+        for block in blocks(catalogue.page(folder, who, language))
+        if block.kind == "program"
+    ]
+    assert programs or who == catalogue.TEACHER
+    for program in programs:
+        found = compiled(program.encode(), robot, "page.ts", is_strict=True)
+        assert found.is_right, (program, found.diagnostics)
+
+
+@each
+def test_pages_of_both_languages_have_the_same_parts(folder: Path) -> None:
+    for who in (catalogue.PUPIL, catalogue.TEACHER):
+        kinds = [
+            [(block.kind, len(block.rows)) for block in blocks(catalogue.page(folder, who, lang))]
+            for lang in LANGUAGES
+        ]
+        assert kinds[0] == kinds[1]
+
+
+@each
+def test_no_page_tells_the_answer(folder: Path) -> None:
+    """A program on a pupil's page is an example: it does not solve the task."""
+    if missing():
+        pytest.skip(str(missing()))
+    lesson = catalogue.load(folder)
+    for language in LANGUAGES:
+        for block in blocks(catalogue.page(folder, catalogue.PUPIL, language)):
+            if block.kind == "program":
+                text = "\n".join(row for (row,) in block.rows)
+                assert findings_of(text, lesson, range(1, lesson.worlds + 1)), text
+
+
+def test_every_criterion_is_judged() -> None:
+    from tiniscript.lessons.criteria import KINDS
+
+    assert {*JUDGES, *OF_TEXT} == set(KINDS)
+
+
+def test_spanish_speaks_to_one_pupil() -> None:
+    for folder in FOLDERS:
+        page = catalogue.page(folder, catalogue.PUPIL, "es")
+        assert not re.search(r"\b(usted|ustedes|vosotros|coloque|escriba|pruebe)\b", page, re.I)

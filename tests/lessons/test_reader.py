@@ -1,0 +1,81 @@
+"""A lesson that cannot be used says why, all complaints at once, with what to do."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tiniscript.lessons import catalogue
+from tiniscript.lessons.lesson import LessonRefused
+from tiniscript.lessons.refusals import describe
+
+HEAD = 'robot = "tinibot"\nseconds = 20\n[title]\nen = "A"\nes = "B"\n'
+WORLD = "[floor]\nwidth_cm = 200\nheight_cm = 100\n[start]\nx_cm = 50\ny_cm = 50\n"
+TOUCH = '[[criteria]]\nkind = "never_touches"\n'
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / "world.toml").write_text(WORLD, encoding="utf-8")
+    return tmp_path
+
+
+def refused(folder: Path, text: str, language: str = "en") -> list[str]:
+    (folder / "lesson.toml").write_text(text, encoding="utf-8")
+    with pytest.raises(LessonRefused) as found:
+        catalogue.load(folder)
+    return describe(found.value, language)
+
+
+CASES = [
+    (HEAD, "The lesson has no criteria. Add one"),
+    (HEAD + '[[criteria]]\nkind = "never_touch"\n', "Did you mean never_touches?"),
+    (HEAD + '[[criteria]]\nkind = "flies"\n', "which is no criterion. Write one of these: ends_in"),
+    (HEAD + TOUCH + "within_cm = 3\n", "criteria[1].within_cm means nothing in a lesson."),
+    (HEAD + '[[criteria]]\nkind = "ends_in"\n', 'criteria[1].at is missing. Add it, for example: at = "start"'),
+    (HEAD + '[[criteria]]\nkind = "ends_in"\nat = 5\n', "criteria[1].at is no place."),
+    (HEAD + '[[criteria]]\nkind = "ends_in"\nat = []\n', "criteria[1].at is no place."),
+    (HEAD + '[[criteria]]\nkind = "ends_in"\nat = "boxes[1]"\n', "world.toml has 0 of them"),
+    (HEAD + '[[criteria]]\nkind = "ends_in"\nat = "moon"\n', "Write start, or one of walls"),
+    (HEAD + '[[criteria]]\nkind = "ends_in"\nat = "start"\nwithin_cm = 900\n', "from 1 to 500"),
+    (HEAD + '[[criteria]]\nkind = "ends_in"\nat = "start"\nen = "x"\n', "criteria[1].es is missing"),
+    (HEAD + '[[criteria]]\nkind = "uses"\nwords = ["LOP"]\n', "Did you mean LOOP?"),
+    (HEAD + '[[criteria]]\nkind = "uses"\nwords = "LOOP"\n', "is no list of words"),
+    (HEAD + '[[criteria]]\nkind = "order"\nwords = ["sings"]\n', "sings, which is not a known word"),
+    (HEAD + '[[criteria]]\nkind = "shows"\nwhat = "LINE_L"\n', "Write one of these: LIGHT_R"),
+    (HEAD + '[[criteria]]\nkind = "stands_before"\nlow_cm = 9\nhigh_cm = 5\n', "is larger than criteria[1].high_cm"),
+    (HEAD + TOUCH + '[[varies]]\npart = "walls[1]"\n', "world.toml has 0 of them"),
+    (HEAD + TOUCH + '[[varies]]\npart = "start"\nx_cm = [5, -5]\n', "the first number is not the smaller one"),
+    (HEAD + TOUCH + '[[varies]]\npart = "start"\nheading = [-900, 5]\n', "from -360 to 360"),
+    ("worlds = 99\n" + HEAD + TOUCH, "Write a number from 1 to 20."),
+    (HEAD.replace("tinibot", "tinibt") + TOUCH, "robot is tinibt. Write one of these: tinibot"),
+    (HEAD.replace('es = "B"\n', "") + TOUCH, "title.es is missing"),
+    ("x", "Line 1 is not TOML."),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("text", "said"), CASES)
+def test_a_refused_lesson_says_why(folder: Path, text: str, said: str) -> None:
+    found = refused(folder, text)
+    assert any(said in sentence for sentence in found), found
+    assert len(refused(folder, text, "es")) == len(found)
+
+
+def test_all_complaints_come_at_once(folder: Path) -> None:
+    text = 'speed = 3\nrobot = "tinibot"\nseconds = 0\n[title]\nen = ""\nes = "B"\n' + TOUCH
+    assert len(refused(folder, text)) == 3
+
+
+def test_a_world_is_read_as_any_other(folder: Path) -> None:
+    (folder / "world.toml").write_text(WORLD.replace("floor", "flor"), encoding="utf-8")
+    assert "flor means nothing" in " ".join(refused(folder, HEAD + TOUCH))
+
+
+def test_answers_are_read_strictly(folder: Path) -> None:
+    (folder / "answers.toml").write_text("[[right]]\nen = 'a'\nes = 'b'\nsays = 3\n")
+    with pytest.raises(LessonRefused) as found:
+        catalogue.answers(folder)
+    said = describe(found.value, "en")
+    assert any("right[1].program is missing" in each for each in said)
+    assert any("right[1].says" in each for each in said)
