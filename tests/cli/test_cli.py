@@ -60,11 +60,11 @@ def test_compile_says_how_long_it_runs(tsc: Tsc, tmp_path: Path, text: str, runs
 
 def test_a_failed_compile_leaves_the_old_image(tsc: Tsc, tmp_path: Path) -> None:
     target = tmp_path / "old.bin"
-    target.write_bytes(b"old")
+    target.write_bytes(b"TS\2 an old image")
     done = tsc("compile", "-e", "S = 5", "-o", target)
     assert done.code == 1
     assert "TS" in done.err
-    assert target.read_bytes() == b"old"
+    assert target.read_bytes() == b"TS\2 an old image"
     assert [each.name for each in tmp_path.glob("*.*")] == ["old.bin"]
 
 

@@ -158,13 +158,13 @@ def test_a_full_disk_leaves_nothing(tmp_path: Path) -> None:
         "from tiniscript.cli import main; sys.exit(main(sys.argv[1:]))"
     )
     output = tmp_path / "a.bin"
-    output.write_bytes(b"mine")
+    output.write_bytes(b"TS\2mine")
     done = subprocess.run(
         [sys.executable, "-B", "-c", code, "compile", str(program), "-o", str(output)],
         capture_output=True,
     )
     assert done.returncode == 2 and b"cannot be written" in done.stderr
-    assert output.read_bytes() == b"mine"
+    assert output.read_bytes() == b"TS\2mine"
     left = sorted(each.name for each in tmp_path.rglob("*") if each.is_file())
     assert left == ["a.bin", "a.ts"], "nor is there an empty map"
 

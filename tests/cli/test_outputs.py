@@ -68,7 +68,8 @@ def test_every_file_that_the_command_writes_comes_from_such_an_option() -> None:
         "outputs.write(Path(options.report),": "report",
         "outputs.write(Path(self.options.memory),": "memory",
         "outputs.write(given.path,": "program",  # fmt, in place
-        'Path(name).open("w"': "csv",
+        'path.open("a"': "csv",
+        'path.open("w"': "csv",
     }
     found = set()
     for file in sorted((HERE / "cli").rglob("*.py")):

@@ -1,9 +1,9 @@
 """The one check of a command's output files; the table of options says which options name files.
 
-No output may be a file that the same command reads, or another of its outputs: the check comes
-before anything is read, sent or written. It compares files, not names: a link, another hard link,
-`./`, other capitals and `/dev/stdin` may be the same file. A terminal or `/dev/null` may be read
-and written at once; the port of a robot may not.
+No output may be a file that the same command reads, or another of its outputs, or a file that tsc
+has not made: the check comes before anything is read, sent or written. It compares files, not
+names: a link, another hard link, `./`, other capitals and `/dev/stdin` may be the same file. A
+terminal or `/dev/null` may be read and written at once; the port of a robot may not.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ import sys
 from argparse import Namespace
 from collections.abc import Iterator
 from contextlib import suppress
+from pathlib import Path
 from typing import NamedTuple
 
 from tiniscript.cli.errors import CommandError
@@ -61,6 +62,8 @@ def check(options: Namespace, language: str) -> None:
     for output in outputs:
         if getattr(options, output.dest) is not None and output.dest in WRITES:
             _refuse_unwritable(output.path, WRITES[output.dest][1])
+        if output.dest not in READS:  # else it is changed in place
+            _refuse_foreign(output)
 
 
 def default_output(program: str) -> str:
@@ -157,6 +160,15 @@ def _folded(name: str) -> str:
     from unicodedata import normalize
 
     return normalize("NFC", normalize("NFC", name).casefold())
+
+
+def _refuse_foreign(output: Named) -> None:
+    """Refuse to write over a file that tsc has not made. Raises CommandError."""
+    from tiniscript.cli.made import is_foreign
+
+    with suppress(OSError, ValueError):  # it is not there, or writing it reports the reason
+        if is_foreign(Path(output.path)):
+            raise CommandError(2, "over_foreign", option=output.label, file=output.path)
 
 
 def _refuse_unwritable(path: str, key: str) -> None:

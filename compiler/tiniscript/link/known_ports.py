@@ -12,6 +12,7 @@ from typing import NamedTuple
 from tiniscript import files
 from tiniscript.files import contents
 from tiniscript.link.port_names import is_address, same_for_all
+from tiniscript.printable import printable
 
 FILE_BYTES = 1_000_000
 KEPT = 100  # ports; the oldest go first
@@ -29,7 +30,7 @@ def known() -> Known:
     try:
         fields = json.loads(contents(_path(), FILE_BYTES))
         last = fields["last"]
-        names = {str(port): str(name) for port, name in fields["ports"]}
+        names = {str(port): printable(str(name)) for port, name in fields["ports"]}
     except (OSError, ValueError, TypeError, KeyError, RecursionError):
         return Known(None, {})
     return Known(last if isinstance(last, str) else None, names)

@@ -19,6 +19,7 @@ import serial
 from serial.tools import list_ports
 
 from tiniscript.link.port_names import is_address, is_bluetooth, is_network_name
+from tiniscript.printable import printable
 
 if TYPE_CHECKING:
     from tiniscript.link.bluetooth import BluetoothPort
@@ -79,7 +80,7 @@ def listed() -> list[Found]:
     found = []
     for each in list_ports.comports():
         description = each.description if each.description != "n/a" else ""
-        found.append(Found(each.device, description))
+        found.append(Found(each.device, printable(description)))  # a device says it
     return sorted(found)
 
 

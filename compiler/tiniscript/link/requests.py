@@ -31,6 +31,7 @@ from tiniscript.link.payloads import (
     ReceiptReply,
     SentReply,
 )
+from tiniscript.printable import printable
 
 OK = STATUSES["OK"]
 SHORT_BYTES = BY_NAME["PROGRAM"].request[-1].high  # of code, in one frame
@@ -112,8 +113,8 @@ def reply_of(name: str, payload: bytes) -> Reply[SentReply] | None:
 
 
 def described(values: HelloReply) -> DeviceInfo:
-    """Return the device info in the reply to HELLO."""
-    name = values.name.decode("utf-8", "replace")
+    """Return the device info in the reply to HELLO. Its name has no control characters."""
+    name = printable(values.name.decode("utf-8", "replace"))
     isa = values.isa_major, values.isa_minor
     return DeviceInfo(name, values.id, isa, values.kit, values.room, values)
 

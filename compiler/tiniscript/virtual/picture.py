@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from io import BytesIO
 
 from PIL import Image, ImageDraw, ImageFont
+from PIL.PngImagePlugin import PngInfo
 
 from tiniscript.robots.kinematics import Pose
 from tiniscript.virtual.driving import Hull
@@ -79,7 +80,9 @@ class _Sheet:
             (self.image.width // FINE, self.image.height // FINE), Image.Resampling.LANCZOS
         )
         file = BytesIO()
-        small.save(file, "PNG")
+        about = PngInfo()
+        about.add_text("Software", "TiniScript")  # by which tsc knows its own pictures
+        small.save(file, "PNG", pnginfo=about)
         return file.getvalue()
 
     def _disc(self, middle: Point | Pose, radius_cm: float, colour: str) -> None:

@@ -1,4 +1,4 @@
-"""The transports of a virtual robot: TCP from this computer only, or a pseudo-terminal.
+"""The transports of a virtual robot: TCP from this computer and user, or a pseudo-terminal.
 
 There is one client at a time, as on a cable: a second one is told so and disconnected. A caller
 becomes the client when its first bytes may be meant for a robot; a browser's never are. The
@@ -15,6 +15,7 @@ import socket
 import sys
 from time import monotonic, sleep
 
+from tiniscript.sharing.peers import is_of_this_user
 from tiniscript.virtual.first_bytes import is_for_robot
 
 LOCAL = "127.0.0.1"
@@ -132,6 +133,7 @@ class Transports:
 
         self._ours, self._theirs = pty.openpty()  # ours to keep, both: or it would hang up
         tty.setraw(self._theirs)
+        os.fchmod(self._theirs, 0o600)  # systems let a group write to terminals
         os.set_blocking(self._ours, False)
         self.terminal = os.ttyname(self._theirs)
 
@@ -173,6 +175,9 @@ class Transports:
                 self._drop_oldest()
                 self._full_s = monotonic()
                 return
+            if not is_of_this_user(peer):
+                peer.close()
+                continue
             if len(self._callers) >= CALLERS:
                 self._drop_oldest()
             self._callers.append(_Caller(peer, monotonic()))

@@ -42,6 +42,7 @@ def html_of(plan: Plan) -> str:
     return (
         f'<!DOCTYPE html>\n<html lang="{plan.language}">\n<head>\n<meta charset="utf-8">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+        '<meta name="generator" content="TiniScript">\n'
         f"<title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n{body}\n"
         "</body>\n</html>\n"
     )

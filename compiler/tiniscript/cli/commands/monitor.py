@@ -75,9 +75,17 @@ def _watch(
 
 
 def _rows(name: str) -> TextIO:
+    """Return a file with its first row; until that is there, the old file stays."""
+    from tiniscript import files
+    from tiniscript.cli.made import ROWS
+
     try:
-        rows = Path(name).open("w", encoding="utf-8", newline="\n")  # noqa: SIM115
-        rows.write("ms,event,value\n")
+        path = Path(name)
+        if path.is_file() or not path.exists():
+            files.replace(path, ROWS)
+            return path.open("a", encoding="utf-8", newline="\n")
+        rows = path.open("w", encoding="utf-8", newline="\n")  # a device or a pipe
+        rows.write(ROWS.decode())
         rows.flush()
     except (OSError, ValueError) as why:
         reason = why.strerror if isinstance(why, OSError) and why.strerror else str(why)

@@ -53,6 +53,13 @@ def value_text(value: int, is_yes_no: bool) -> str:
     return as_text(value)
 
 
+def no_formula(text: str) -> str:
+    """Return a text that a spreadsheet takes for text, whether its cells end with , or with ;."""
+    import re
+
+    return re.sub(r"(^|[;|\"])(\s*)(?=[=+\-@＝＋－＠])", r"\1\2'", text)
+
+
 def cause_name(number: int) -> str:
     """Return the name of a cause; NONE for a cause that only newer robots know."""
     from tiniscript.link.messages import CAUSES
@@ -120,7 +127,7 @@ class EventPrinter:
         elif event.name == "TEXT":
             words = shown(event.text.decode("utf-8", "replace"))
             said = text("robot_text", self.language).format(said=words)
-            self.say(since_ms, "TEXT", words, said, text=words)
+            self.say(since_ms, "TEXT", no_formula(words), said, text=words)
 
     def _tell_end(self, since_ms: int, status: StatusReply) -> None:
         """Print the end of a run for which only the robot's state is known."""

@@ -61,6 +61,8 @@ TEXTS: dict[str, tuple[str, str]] = {
                          "tsc: --text-level va con --text. Prueba:  tsc compile --text --text-level {level}"),
     "over_map": ("tsc: the map wants a file of its own, not {file}. Choose another name with --map.",
                  "tsc: el mapa quiere un archivo propio, no {file}. Elige otro nombre con --map."),
+    "over_foreign": ("tsc: {file} is there already, and tsc has not made it. Choose another name with {option}, or delete it first; nothing was changed.",
+                     "tsc: {file} ya existe, y no lo hizo tsc. Elige otro nombre con {option}, o bórralo antes; nada ha cambiado."),
     "over_input": ("tsc: {option} would overwrite {file}, which is {what} of this command: {other}. Choose another name with {option}; nothing was changed.",
                    "tsc: {option} borraría {file}, que es {what} de este comando: {other}. Elige otro nombre con {option}; no se cambió nada."),
     "same_outputs": ("tsc: {option} {file} and {second} {other} are the same file. Give each its own name; nothing was changed.",

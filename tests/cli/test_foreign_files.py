@@ -1,0 +1,95 @@
+"""No command writes over a file that tsc has not made, and each may write over its own."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from tests.machines.host_firmware import missing
+from tests.support.command import Tsc, process
+from tests.support.pty_robot import PtyRobot, on
+from tiniscript import robots
+from tiniscript.cli.made import is_foreign
+
+PROGRAM = "SI|F(0.1, 50)"
+FOREIGN = (
+    b"a letter", b"\0", b"TS", b"TSV\tfile", b"\x89PNG\r\n\x1a\n a photo", b"\xff\xd8\xff\xe0 JPEG",
+    b"// by hand", b"{}", b'{"version": "1"}', b"ms;event;value\n", b"<!DOCTYPE html><p>mine</p>",
+    b"F(1,2)~1234567", b"a\nF(1,2)~12345678\n",
+)  # fmt: skip
+WRITERS = [
+    (("compile", "-e", PROGRAM, "-o"), "-o"),
+    (("compile", "-e", PROGRAM, "--text", "-o"), "-o"),
+    (("compile", "-e", PROGRAM, "-o", "a.bin", "--map"), "--map"),
+    (("wiring", "-o"), "-o"),
+    (("board", "tinibot", "-o"), "-o"),
+]
+
+
+@pytest.mark.parametrize(("words", "option"), WRITERS, ids=lambda each: str(each))
+def test_a_foreign_file_stays_and_an_own_one_is_replaced(
+    tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, words: tuple[str, ...], option: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    target = tmp_path / "there"
+    assert tsc(*words, target).code == 0  # nothing is there
+    made = target.read_bytes()
+    assert made and not is_foreign(target)
+    assert tsc(*words, target).code == 0  # its own
+    target.write_bytes(b"")
+    assert tsc(*words, target).code == 0  # nothing to lose
+    assert target.read_bytes() == made
+    for content in FOREIGN:
+        target.write_bytes(content)
+        for lang, said in (("en", "tsc has not made it"), ("es", "no lo hizo tsc")):
+            done = tsc(*words, target, "--lang", lang)
+            assert done.code == 2 and said in done.err and option in done.err
+        assert target.read_bytes() == content
+
+
+def test_the_image_that_nobody_names_spares_a_foreign_file(tsc: Tsc, tmp_path: Path) -> None:
+    program, beside = tmp_path / "photo.ts", tmp_path / "photo.bin"
+    program.write_text(PROGRAM)
+    beside.write_bytes(b"a firmware of something else")
+    done = tsc("compile", program)
+    assert done.code == 2 and "tsc has not made it" in done.err
+    assert beside.read_bytes() == b"a firmware of something else"
+    beside.unlink()
+    assert tsc("compile", program).code == tsc("compile", program).code == 0
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="Windows has no such pipes")
+def test_a_link_leads_to_a_foreign_file_and_a_pipe_is_none(tsc: Tsc, tmp_path: Path) -> None:
+    letter, link = tmp_path / "letter", tmp_path / "link"
+    letter.write_bytes(b"a letter")
+    link.symlink_to(letter)
+    assert tsc("compile", "-e", PROGRAM, "-o", link).code == 2
+    assert letter.read_bytes() == b"a letter"
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    assert not is_foreign(pipe)  # it would be waited for
+
+
+def test_a_picture_and_rows(tmp_path: Path) -> None:
+    pytest.importorskip("wasmtime")
+    pytest.importorskip("PIL")
+    picture = tmp_path / "way.png"
+    for _ in range(2):
+        assert process("robot", "--for", "0.1", "--hurry", "max", "--plot", picture).code == 0
+        assert not is_foreign(picture)
+
+
+@pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
+def test_rows_of_a_monitor(tmp_path: Path) -> None:
+    pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
+    rows, letter = tmp_path / "rows.csv", tmp_path / "letter.csv"
+    letter.write_bytes(b"a;b\n1;2\n")
+    with PtyRobot(robots.load("tinibot").kit) as found:
+        for _ in range(2):
+            assert on(found, "monitor", "--csv", rows, "--max-time", "1").code == 0
+        assert rows.read_bytes() == b"ms,event,value\n"
+        done = on(found, "monitor", "--csv", letter, "--max-time", "1")
+    assert done.code == 2 and "tsc has not made it" in done.err
+    assert letter.read_bytes() == b"a;b\n1;2\n"
