@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import random
+from typing import Any
 
 import pytest
 
 from tests.machines.host_firmware import missing
 from tests.support.owners import FOREVER, HELD, PRESSED, RELEASED, Keys, Owned, image_of
 from tiniscript.link.authority import FREE, OF_ANOTHER, YOUR_OWN, whose
+from tiniscript.link.connection import PendingRequest
 from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.messages import (
     BY_NAME,
@@ -169,15 +171,22 @@ def test_a_stranger_looks_and_stops_and_nothing_else() -> None:
     assert table.tries(owner) == "OK"
     stranger = table.session(nonce=3)
     assert owner_of(table, stranger) == OF_ANOTHER
-    for request in (stranger.ping(), stranger.identify()):
-        assert table.outcome(stranger, request) == "OK"
+    for is_open in (stranger.ping(), stranger.identify()):
+        assert table.outcome(stranger, is_open) == "OK"
     assert state_of(table, stranger) == STATE_RUNNING
-    for request in (
-        stranger.clear(), stranger.start(), stranger.live(image_of("F(1, 80)").code),
-        stranger.upload(image_of(FOREVER)), stranger.upload(image_of("SHOW(1); " * 40)),
-        stranger.name(b"Mine"), stranger.trim(), stranger.trim(b"\0\0\0"), stranger.fetch(),
+    closed: list[PendingRequest[Any]] = [
+        stranger.clear(),
+        stranger.start(),
+        stranger.live(image_of("F(1, 80)").code),
+        stranger.upload(image_of(FOREVER)),
+        stranger.upload(image_of("SHOW(1); " * 40)),
+        stranger.name(b"Mine"),
+        stranger.trim(),
+        stranger.trim(b"\0\0\0"),
+        stranger.fetch(),
         stranger.allow_text(True),
-    ):  # fmt: skip
+    ]
+    for request in closed:
         assert table.outcome(stranger, request) == "NOT_OWNER"
     stranger.stop(table.robot.now_ms)
     table.pass_time(stranger, 50)
@@ -235,12 +244,12 @@ def test_authority_lapses_and_is_shown_again() -> None:
 def test_a_recorded_session_opens_nothing() -> None:
     table, keys = Owned(), Keys()
     session = table.claimed(keys)
-    recorded = [bytearray()]
+    recorded: list[bytes] = []
     again = table.session(keys, nonce=4)
     request = again.upload(image_of("SI|F(1, 80)"))
     while request.outcome is None:
         data = again.poll(table.robot.now_ms)
-        recorded.append(bytearray(data))
+        recorded.append(data)
         again.receive(table.robot.step(data), table.robot.now_ms)
     assert request.outcome.status == 0
     table.pass_time(None, 4000)
@@ -248,7 +257,7 @@ def test_a_recorded_session_opens_nothing() -> None:
     table.robot.did.clear()
     for _ in range(300):  # the epoch goes around
         for data in recorded:
-            table.robot.wait(3, bytes(data))
+            table.robot.wait(3, data)
     assert not [line for line in table.robot.did if "MOTORS" in line]
 
 

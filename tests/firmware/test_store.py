@@ -126,7 +126,7 @@ BREAKS = {
         "first == kEmptied ? kEmptyingEnd : kEmptyingEnd;",
     ),
     "settling begins with the mark": ("kKeeping = 15;", "kKeeping = 16;"),
-    "the checksum is not looked at": ("== kBehindItself;", "!= 0;"),
+    "the checksum is not looked at": ("!= kBehindItself) return false;", "== 0) return false;"),
     "equal bytes are never written": (
         "is_stable_ = held_[slot_] != kNothing;",
         "is_stable_ = true;",

@@ -40,8 +40,8 @@ void pass_holding(uint16_t passed_ms) {
   down_ms = passed_ms < kMostMs - before_ms ? static_cast<uint16_t>(before_ms + passed_ms) : kMostMs;
   if (!kHasOwners) return;
   if (phase == Phase::kDown && before_ms < kClaimMs && down_ms >= kClaimMs) confirm();
-  // Tried again until the store is free and has done it.
-  if (phase == Phase::kDownSinceReset && down_ms >= kForgetMs && forget_owner()) {
+  // Tried again until the store is free.
+  if (phase == Phase::kDownSinceReset && down_ms >= kForgetMs && forget_keys()) {
     phase = Phase::kUp;
     robot_beep(kSignHertz, kSignMs);
   }

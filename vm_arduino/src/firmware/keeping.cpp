@@ -117,6 +117,15 @@ void keep_next() {
   if (!has_begun) keeping = 0;  // too large: no such program exists
 }
 
+// The record stays in memory until it is saved, so nothing else may wait to be.
+bool may_keep_keys() { return has_booted() && !store.is_busy() && (to_keep | keeping) == 0; }
+
+void keep_keys() {
+  store.begin_keep(Area::kOwner, record);
+  keeping = kOwnerBit;
+  is_worn = false;
+}
+
 }  // namespace
 
 void tick_keeping() {
@@ -173,18 +182,22 @@ bool fetch_key(uint8_t which, uint8_t* key) {
   return true;
 }
 
-// The record stays in memory until it is saved, so nothing else may wait to be.
-Answer keep_key(uint8_t which, const uint8_t* key) {
-  if (!has_booted() || store.is_busy() || (to_keep | keeping) != 0) return not_now();
+Answer port_keep_key(uint8_t which, const uint8_t* key) {
+  if (!may_keep_keys()) return not_now();
   for (uint8_t k = 0; k < kKeys; k++) {
     if (!fetch_key(k, record + kKeysAt + k * kKeyRoom)) return not_now();
   }
   copy_bytes(key, record + kKeysAt + which * kKeyRoom, kKeyRoom);
-  if (!store.begin_keep(Area::kOwner, record)) return not_now();
-  keeping = kOwnerBit;
   const bool was_worn = is_worn;
-  is_worn = false;
+  keep_keys();
   return was_worn ? Answer::kNotKept : Answer::kSaving;
+}
+
+bool forget_keys() {
+  if (!may_keep_keys()) return false;
+  for (uint8_t& byte : record) byte = 0;
+  keep_keys();
+  return true;
 }
 
 Answer owner_kept() {

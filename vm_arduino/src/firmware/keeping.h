@@ -30,17 +30,14 @@ Answer identity_kept();
 // Puts a key of the robot into `key`: zeros if it has none. False: not available now.
 bool fetch_key(uint8_t which, uint8_t* key);
 
-// Has a key saved. kSaving: it has begun; kNotKept: the memory is worn out, and it is tried again.
-Answer keep_key(uint8_t which, const uint8_t* key);
-
 // kSaving or kLowSupply while a key is being saved.
 Answer owner_kept();
 
 // Learns from the store whether the robot has an owner (`owners.cpp`).
 void read_owner();
 
-// Whether the robot has no keys any more; otherwise begins to take them away, if possible now.
-bool forget_owner();
+// Begins to take all keys away. False: not now.
+bool forget_keys();
 
 // Makes way for another program in memory: kBusy while the current one is being saved. A save that
 // waits for more voltage is given up.

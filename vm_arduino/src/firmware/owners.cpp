@@ -33,22 +33,4 @@ Answer port_key(uint8_t which, uint8_t* key) {
   return fetch_key(which, key) ? Answer::kOk : not_now();
 }
 
-Answer port_keep_key(uint8_t which, const uint8_t* key) { return keep_key(which, key); }
-
-// Whether the robot has no keys any more.
-bool forget_owner() {
-  const uint8_t none[kKeyBytes] = {};
-  for (uint8_t which = 0; which < kKeys; which++) {
-    uint8_t key[kKeyBytes];
-    if (port_key(which, key) != Answer::kOk) return false;
-    uint8_t found = 0;
-    for (const uint8_t byte : key) found |= byte;
-    if (found != 0) {
-      keep_key(which, none);
-      return false;
-    }
-  }
-  return true;
-}
-
 }  // namespace tiniscript

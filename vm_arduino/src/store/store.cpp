@@ -19,6 +19,7 @@ constexpr uint8_t kEmptied = 0xff;
 // The known state of a slot: its generation, or that it holds nothing.
 constexpr uint8_t kRefused = kGenerations;  // added to the generation: the slot does not count
 constexpr uint8_t kNothing = 0xff;
+constexpr uint8_t kOverlaid = 0xfe;  // the program of version 1 before the slot reaches into it
 
 // The write steps of a slot. `docs/store.md` says why they come in this order.
 enum class WriteStep : uint8_t {
@@ -82,6 +83,13 @@ static_assert(kSteps[kKeeping] == step(WriteStep::kGeneration), "keeping begins 
 static_assert(kSteps[kKeepingMarks] == step(WriteStep::kMark, 2), "the first mark stays as it is");
 static_assert(kSteps[kKeepingEnd] == step(WriteStep::kEnd), "keeping ends here");
 
+// Where each slot begins: the table is shorter than its calculation.
+constexpr uint16_t kStarts[] tini_progmem = {place_of(0), place_of(1), place_of(2), place_of(3),
+                                             place_of(4), place_of(5), place_of(6), place_of(7)};
+static_assert(sizeof kStarts == kSlots * sizeof(uint16_t), "each slot begins somewhere");
+
+uint16_t start_of(uint8_t slot) { return flash_word(kStarts + slot); }
+
 uint16_t plus(uint16_t place, uint16_t more) { return static_cast<uint16_t>(place + more); }
 
 // A byte of the body of the slot at `place`. The first byte is stored XOR the generation, so that
@@ -114,11 +122,6 @@ uint16_t image_bytes(uint8_t header, uint8_t low, uint8_t high) {
 bool is_program(uint8_t slot) { return slot < 2; }
 
 uint8_t record_bytes(uint8_t slot) { return slot < kFirstOwnerSlot ? kRecordBytes : kOwnerBytes; }
-
-uint16_t image_bytes_at(uint16_t place) {
-  return image_bytes(body_byte(place, kHeaderLengthAt), body_byte(place, kCodeLengthAt),
-                     body_byte(place, kCodeLengthAt + 1));
-}
 
 }  // namespace
 
@@ -218,7 +221,7 @@ void Store::readmit(uint8_t slot) { held_[slot] &= static_cast<uint8_t>(~kRefuse
 tini_noinline bool Store::fetch(Area area, uint16_t at, uint8_t* byte) const {
   const uint8_t slot = used(area);
   if (slot == kNoSlot || !nvm_is_ready()) return false;
-  *byte = body_byte(place_of(slot), at);
+  *byte = body_byte(start_of(slot), at);
   return true;
 }
 
@@ -233,7 +236,7 @@ uint8_t Store::used(Area area) const { return newest(area, kRefused); }
 
 tini_noinline void Store::go_to(uint8_t slot) {
   slot_ = slot;
-  place_ = place_of(slot);
+  place_ = start_of(slot);
 }
 
 // Selects the slot other than `slot` (or any, if that is none).
@@ -269,7 +272,7 @@ tini_noinline bool Store::begin_write(Area area, const uint8_t* bytes, uint16_t 
 
 // Whether a slot that counts begins with these bytes.
 tini_noinline bool Store::is_in(uint8_t slot, const uint8_t* bytes, uint16_t count) {
-  const uint16_t place = place_of(slot);
+  const uint16_t place = start_of(slot);
   do {
     if (count-- == 0) return true;
   } while (body_byte(place, count) == bytes[count]);
@@ -279,15 +282,19 @@ tini_noinline bool Store::is_in(uint8_t slot, const uint8_t* bytes, uint16_t cou
 // Decides once what a slot holds: a byte whose write was cut may read differently later.
 void Store::look() {
   const uint16_t place = place_;
+  uint8_t& held = held_[slot_];
   step_ = kEmptyingEnd;
-  if (is_overlaid()) return;
+  if (held == kOverlaid) {
+    held = kNothing;
+    return;
+  }
   const uint8_t generation = nvm_read(place);
   const uint8_t first = nvm_read(place + 1);
   const uint8_t mark = generation ^ kMarkOf;
   generation_ = generation;
   step_ = generation == kEmptied && first == kEmptied ? kEmptyingEnd : kEmptying;
   if (generation >= kGenerations || first != mark || !is_sound()) return;
-  held_[slot_] = generation;
+  held = generation;
   // The last mark present may be the one whose write was cut. If it is the only one, it and the
   // generation are rewritten, as the slot may have been about to be emptied. Otherwise both are
   // left as they are.
@@ -296,26 +303,22 @@ void Store::look() {
                                         : kKeepingEnd;
 }
 
-// Whether the program of version 1 before the slot reaches into it. It is left as it is.
-bool Store::is_overlaid() const {
-  if (slot_ < kFirstOwnerSlot) return false;
-  const uint8_t program = static_cast<uint8_t>(slot_ - kFirstOwnerSlot);
-  return held_[program] != kNothing && image_bytes_at(place_of(program)) > kImageBytes;
-}
-
 // Whether the checksum of a slot's body is right.
-bool Store::is_sound() const {
+bool Store::is_sound() {
   uint16_t length = record_bytes(slot_);
   uint16_t check = 0;
   if (is_program(slot_)) {
-    length = image_bytes_at(place_);
+    length = image_bytes(body_byte(place_, kHeaderLengthAt), body_byte(place_, kCodeLengthAt),
+                         body_byte(place_, kCodeLengthAt + 1));
     if (length == 0) return false;
     check = kChecksumAt;
   }
   const uint16_t behind = plus(check, kCheckBytes);
   uint32_t crc = checksum(0, place_, 0, check);
   crc = checksum(crc, place_, behind, length);
-  return checksum(crc, place_, check, behind) == kBehindItself;
+  if (checksum(crc, place_, check, behind) != kBehindItself) return false;
+  if (length > kImageBytes) held_[slot_ + kFirstOwnerSlot] = kOverlaid;
+  return true;
 }
 
 // The slot of an area with the latest generation below `end`.

@@ -77,8 +77,7 @@ class Store {
 
  private:
   void look();
-  bool is_sound() const;
-  bool is_overlaid() const;
+  bool is_sound();
   void finish();
   static bool is_in(uint8_t slot, const uint8_t* bytes, uint16_t count);
   bool begin_write(Area area, const uint8_t* bytes, uint16_t length);
