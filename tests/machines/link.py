@@ -70,6 +70,9 @@ class CppLink(Process):
         found, _ = _text(self.ask(b"I", pack("<BI", held, len(stream)) + parts))
         return found.decode().splitlines()
 
+    def siphash(self, key: bytes, message: bytes) -> bytes:
+        return self.ask(b"H", key + pack("<I", len(message)) + message)
+
     def held(self) -> bytes:
         """Return the image that the robot holds."""
         return _text(self.ask(b"M", b""))[0]

@@ -17,7 +17,7 @@ from tests.machines.host_firmware import EMPTY, POWER_ON, HostFirmware
 from tests.support.command import FOREVER, Command, Done, process
 from tiniscript.kit import Kit
 
-PUSHED, RELEASED = 1, 2  # flags of a step
+PUSHED, RELEASED, HELD = 1, 2, 32  # flags of a step
 BEHIND_MS = 50  # more than that behind, the robot's clock goes slower
 
 
@@ -100,6 +100,10 @@ class PtyRobot:
     def push(self) -> None:
         """Push the button, and let it go."""
         self._flags = [PUSHED, *[0] * 20, RELEASED]
+
+    def hold(self, milliseconds: int = 2300) -> None:
+        """Hold the button down."""
+        self._flags = [PUSHED, *[0] * 30, HELD, *[0] * (milliseconds - 32), RELEASED]
 
     def switch_off(self) -> None:
         """Only what is in its memory is kept."""

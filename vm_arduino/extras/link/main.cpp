@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "../../src/link/link.h"
+#include "../../src/link/siphash.h"
 #include "../host/wire.h"
 #include "simulated_port.h"
 
@@ -171,6 +172,16 @@ void answer_items(RequestReader* request, Writer* answer) {
   answer->text(rows + row);
 }
 
+// H: a key, and a message: its hash.
+void answer_hash(RequestReader* request, Writer* answer) {
+  uint8_t key[kKeyBytes];
+  for (uint8_t& byte : key) byte = request->u8();
+  const Bytes message = request->bytes();
+  uint8_t hash[kHashBytes];
+  siphash(key, message.data.get(), static_cast<uint8_t>(message.length), hash);
+  for (const uint8_t byte : hash) answer->u8(byte);
+}
+
 // M: the image that the robot holds, and whether it is what a robot may run.
 void answer_image(Writer* answer) { answer->text(port.held); }
 
@@ -193,6 +204,9 @@ int main() {
         break;
       case 'I':
         answer_items(&request, &said);
+        break;
+      case 'H':
+        answer_hash(&request, &said);
         break;
       case 'M':
         answer_image(&said);

@@ -1,0 +1,137 @@
+"""The file with a person's keys, and `tsc keys`."""
+
+from __future__ import annotations
+
+import json
+import stat
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.support.command import Tsc
+from tiniscript.keys import BadKeys, KeyFile, read, written
+from tiniscript.link.authority import RobotKey
+from tiniscript.link.messages import KEY_OWNER, KEY_TEACHER
+
+ONE = RobotKey(0x12345678, KEY_OWNER, bytes(range(16)), "TINI")
+SECRET = ONE.key.hex()
+
+
+@pytest.fixture
+def own(tmp_path: Path) -> KeyFile:
+    return KeyFile(tmp_path / "settings" / "keys.json")
+
+
+def test_a_claim_that_the_robot_takes_replaces_the_key_before(own: KeyFile) -> None:
+    assert own.all() == []
+    first = own.made(1, KEY_OWNER, "A")
+    assert first and first.is_pending and own.of_robot(1) == [first]
+    own.settle(first)
+    second = own.made(1, KEY_OWNER, "A")
+    assert second and second.key != first.key
+    assert len(own.of_robot(1)) == 2  # until it is known which one the robot has
+    own.settle(second)
+    assert own.of_robot(1) == [second._replace(is_pending=False)]
+    teacher = own.made(1, KEY_TEACHER, "A")
+    assert teacher
+    own.drop(teacher)
+    assert len(own.of_robot(1)) == 1
+    assert own.of_robot(2) == []
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="permissions there are those of the folder")
+def test_only_this_person_reads_the_file(own: KeyFile) -> None:
+    own.made(1, KEY_OWNER, "A")
+    assert stat.S_IMODE(own.path.stat().st_mode) == 0o600
+    assert stat.S_IMODE(own.path.parent.stat().st_mode) == 0o700
+    own.path.chmod(0o644)
+    own.made(2, KEY_OWNER, "B")
+    assert stat.S_IMODE(own.path.stat().st_mode) == 0o600
+
+
+@pytest.mark.parametrize(
+    "data",
+    [b"", b"{", b"[]", b"null", b'{"tiniscript_keys": 2, "keys": []}', b"\xff\xfe",
+     b'{"tiniscript_keys": 1, "keys": [{}]}', b'{"tiniscript_keys": 1, "keys": 3}',
+     written([ONE]).replace(b"owner", b"boss"), written([ONE]).replace(SECRET[:2].encode(), b"zz"),
+     written([ONE._replace(key=bytes(16))]), written([ONE._replace(key=bytes(3))]),
+     written([ONE]).replace(b"12345678", b"1234567"), b"[" * 100_000],
+)  # fmt: skip
+def test_a_file_that_is_none_is_left_as_it_is(own: KeyFile, data: bytes) -> None:
+    own.path.parent.mkdir()
+    own.path.write_bytes(data)
+    with pytest.raises(BadKeys) as found:
+        own.all()
+    assert SECRET not in repr(found.value)
+    assert own.of_robot(1) == []
+    assert own.made(1, KEY_OWNER, "A") is None
+    own.settle(ONE)
+    own.drop(ONE)
+    assert own.path.read_bytes() == data
+
+
+def test_keys_go_to_another_computer(own: KeyFile, tmp_path: Path) -> None:
+    teacher = ONE._replace(which=KEY_TEACHER, key=b"\1" * 16)
+    other = KeyFile(tmp_path / "other" / "keys.json")
+    assert other.add(read(written([ONE, teacher]))) == 2
+    assert other.add([ONE]) == 0
+    newer = ONE._replace(key=b"\2" * 16)
+    assert other.add([newer]) == 1
+    assert sorted(other.all()) == sorted([newer, teacher])
+
+
+def test_no_text_of_a_key_has_its_bytes() -> None:
+    assert SECRET not in repr(ONE) + str(ONE) + f"{[ONE]}"
+
+
+def test_the_command_lists_names_and_no_key(tsc: Tsc) -> None:
+    assert "tsc claim" in tsc("keys").out
+    KeyFile().add([ONE, ONE._replace(which=KEY_TEACHER, key=b"\1" * 16)])
+    for language, word in (("en", "teacher"), ("es", "docente")):
+        listed = tsc("keys", "--lang", language)
+        assert listed.code == 0 and word in listed.out and "12345678" in listed.out
+        assert "TINI" in listed.out
+        assert SECRET not in listed.out
+    rows = json.loads(tsc("keys", "--json").out)
+    assert [row["kind"] for row in rows] == ["owner", "teacher"]
+    assert SECRET not in json.dumps(rows)
+
+
+def test_a_class_list_goes_out_and_in(
+    tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "one"))
+    KeyFile().add([ONE])
+    KeyFile().made(7, KEY_OWNER, "not confirmed")
+    listed = tmp_path / "class.json"
+    assert "1 keys" in tsc("keys", "--export", str(listed)).out
+    if sys.platform != "win32":
+        assert stat.S_IMODE(listed.stat().st_mode) == 0o600
+    again = tsc("keys", "--export", str(listed))
+    assert again.code == 2 and "already" in again.err
+    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "two"))
+    assert "1 keys" in tsc("keys", "--import", str(listed)).out
+    assert KeyFile().all() == [ONE]
+    listed.write_text("nothing")
+    wrong = tsc("keys", "--import", str(listed))
+    assert wrong.code == 2 and "--export" in wrong.err
+    assert tsc("keys", "--import", str(tmp_path / "none")).code == 2
+    both = tsc("keys", "--import", str(listed), "--export", str(tmp_path / "x"))
+    assert both.code == 2 and "one at a time" in both.err
+
+
+def test_a_broken_file_is_told_and_kept(tsc: Tsc) -> None:
+    path = KeyFile().path
+    path.parent.mkdir(parents=True)
+    path.write_text("broken")
+    found = tsc("keys")
+    assert found.code == 2 and "--import" in found.err
+    assert path.read_text() == "broken"
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="permissions there are those of the folder")
+def test_a_file_that_others_may_read_is_told(tsc: Tsc) -> None:
+    KeyFile().add([ONE])
+    KeyFile().path.chmod(0o644)
+    assert "chmod 600" in tsc("keys").err

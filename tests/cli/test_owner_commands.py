@@ -1,0 +1,158 @@
+"""Owners at the command: claim, keys of others, text, the teacher's stop, and a shared port.
+
+The robot is the firmware in C++ behind a pseudo-terminal.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tests.machines.host_firmware import missing
+from tests.support.command import FOREVER, Command, Done
+from tests.support.pty_robot import PtyRobot, on
+from tiniscript.keys import KeyFile
+from tiniscript.link.messages import KEY_OWNER, KEY_TEACHER
+from tiniscript.sharing.requests import ClientRequests
+
+pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
+
+DRIVES = "SI|F(0.2, 80)"
+
+
+def claimed(pty_robot: PtyRobot, *options: str) -> Done:
+    """Claim the robot, with a hand on its button."""
+    command = Command("claim", "--port", pty_robot.port, *options)
+    assert command.process.stderr
+    assert "2 s" in command.process.stderr.readline().decode()
+    pty_robot.hold()
+    done = command.ended()
+    secrets = [key.key.hex() for key in KeyFile().all()]
+    assert not [secret for secret in secrets if secret in done.out + done.err]
+    return done
+
+
+def as_another(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, name: str = "another") -> None:
+    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / name))
+
+
+def test_who_claims_a_robot_drives_it_and_nobody_else(
+    pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    assert json.loads(on(pty_robot, "info", "--json").out)["owner"] == "free"
+    done = claimed(pty_robot)
+    assert done.code == 0 and "yours" in done.out
+    assert on(pty_robot, "upload", "-e", DRIVES).code == 0
+    assert "owner: yours" in on(pty_robot, "info").out
+    assert "owner: yours" in on(pty_robot, "ping", "--count", "1").out
+    assert "(yours)" in on(pty_robot, "ports", "--ask").out
+    as_another(monkeypatch, tmp_path)
+    assert "owner: of another owner" in on(pty_robot, "info").out
+    assert "(de otro dueño)" in on(pty_robot, "ports", "--ask", "--lang", "es").out
+    refused = on(pty_robot, "upload", "-e", DRIVES)
+    assert refused.code == 3 and "10 s" in refused.err
+    assert "dueño" in on(pty_robot, "live", "F(1, 80)", "--lang", "es").err
+    assert on(pty_robot, "claim").code == 3
+    assert on(pty_robot, "disown").code == 3
+    assert on(pty_robot, "identify").code == 0
+    pty_robot.until(lambda: any("BEEP" in line for line in pty_robot.did), "its tune")
+    assert on(pty_robot, "stop").code == 0
+
+
+def test_a_robot_is_given_up_and_free(pty_robot: PtyRobot) -> None:
+    assert "nothing to give up" in on(pty_robot, "disown").out
+    assert claimed(pty_robot).code == 0
+    assert len(KeyFile().all()) == 1
+    assert on(pty_robot, "disown").code == 0
+    assert KeyFile().all() == []
+    assert "owner: free" in on(pty_robot, "info").out
+
+
+def test_a_claim_without_the_button_says_what_to_do(
+    pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    code = (
+        "from tiniscript.link import authority; authority.HOLD_TRIES = 3\n"
+        "import sys; from tiniscript.cli import main; sys.exit(main())"
+    )
+    done = Command("claim", "--port", pty_robot.port, code=code).ended()
+    assert done.code == 3 and "2 s" in done.err
+    assert KeyFile().all() == []
+
+
+def test_a_key_that_cannot_be_kept_is_not_given(pty_robot: PtyRobot) -> None:
+    path = KeyFile().path
+    path.parent.mkdir(parents=True)
+    path.write_text("broken")
+    done = on(pty_robot, "claim")
+    assert done.code == 2 and str(path) in done.err
+    path.unlink()
+    assert "owner: free" in on(pty_robot, "info").out
+
+
+def test_a_teachers_stop_holds_until_the_teacher_or_the_button(
+    pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    assert claimed(pty_robot, "--teacher").code == 0
+    as_another(monkeypatch, tmp_path, "pupil")
+    assert claimed(pty_robot).code == 0
+    assert on(pty_robot, "upload", "-e", DRIVES).code == 0
+    assert "teacher's key" in on(pty_robot, "stop", "--teacher").err  # a pupil has none
+    as_another(monkeypatch, tmp_path, "settings")
+    assert "goes on when" in on(pty_robot, "stop", "--teacher").out
+    as_another(monkeypatch, tmp_path, "pupil")
+    held = on(pty_robot, "start")
+    assert held.code == 3 and "teacher" in held.err
+    as_another(monkeypatch, tmp_path, "settings")
+    assert on(pty_robot, "start").code == 0
+    assert {key.which for key in KeyFile().all()} == {KEY_TEACHER}
+
+
+def test_text_on_and_off(pty_robot: PtyRobot) -> None:
+    assert "no owner" in on(pty_robot, "text", "off").out
+    assert claimed(pty_robot).code == 0
+    assert "until it is switched off" in on(pty_robot, "text", "on").out
+    assert "but S" in on(pty_robot, "text", "off").out
+    assert on(pty_robot, "text").code == 2
+    assert on(pty_robot, "text", "perhaps").code == 2
+
+
+def test_a_shared_port_has_the_authority_and_its_messages_no_key(
+    pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    link = Command("link", "--port", pty_robot.port)
+    link.until("share this port")
+    assert claimed(pty_robot).code == 0  # the key is made by the command that holds the port
+    assert [key.which for key in KeyFile().all()] == [KEY_OWNER]
+    as_another(monkeypatch, tmp_path)  # so that this command has no key
+    assert on(pty_robot, "upload", "-e", DRIVES).code == 0
+    assert "owner: yours" in on(pty_robot, "info").out
+    driving = Command("upload", "-e", FOREVER, "--port", pty_robot.port)
+    driving.until("running")
+    assert on(pty_robot, "stop").code == 0
+    driving.ended()
+    assert on(pty_robot, "upload", "-e", DRIVES).code == 0  # after a stop, too
+    link.process.kill()
+    link.process.communicate()
+    for request in (ClientRequests().claim(KEY_OWNER), ClientRequests().disown(KEY_OWNER)):
+        assert set(request.message) == {"do", "which"}
+
+
+def test_no_key_is_in_an_argument_or_in_debug_output(pty_robot: PtyRobot) -> None:
+    from tests.support.command import process
+
+    assert claimed(pty_robot).code == 0
+    (key,) = KeyFile().all()
+    kept = KeyFile().path.read_text()
+    assert key.key.hex() in kept
+    import os
+
+    os.environ["TINISCRIPT_DEBUG"] = "1"
+    try:
+        said = process("info", "--json", "--port", pty_robot.port)
+    finally:
+        del os.environ["TINISCRIPT_DEBUG"]
+    assert key.key.hex() not in said.out + said.err
