@@ -13,12 +13,7 @@ import pytest
 from tests.support.command import PROGRAM, TSC, Tsc, process
 from tiniscript.bytecode.image import unpack
 from tiniscript.cli import CLOSED, help, main
-from tiniscript.cli.texts.common import TEXTS
-from tiniscript.cli.texts.doctor import DOCTOR_TEXTS
-from tiniscript.cli.texts.firmware import FLASH_TEXTS
-from tiniscript.cli.texts.module import MODULE_TEXTS
-from tiniscript.cli.texts.robot import LINK_TEXTS
-from tiniscript.cli.texts.simulator import VIRTUAL_TEXTS
+from tiniscript.cli.texts import common
 from tiniscript.cli.texts.verbs import VERBS
 
 # -- anything whatever --------------------------------------------------------------------------
@@ -113,7 +108,7 @@ def test_no_verb_and_no_such_verb(tsc: Tsc) -> None:
 def test_texts_have_the_same_gaps_in_both_languages() -> None:
     from string import Formatter
 
-    tables = (TEXTS, LINK_TEXTS, VIRTUAL_TEXTS, FLASH_TEXTS, MODULE_TEXTS, DOCTOR_TEXTS)
+    tables = tuple(common.tables())
     together = {key: both for table in tables for key, both in table.items()}
     assert len(together) == sum(map(len, tables)), "no key is in two tables"
     for key, both in together.items():

@@ -220,7 +220,7 @@ def _specs(verb: str, is_spanish: bool) -> list[str]:
         if option.kind is not None:
             value = f":{_escaped(option.value[is_spanish])}:{_action(option.kind)}"
         if option.is_argument:
-            found.append(_quoted(f"1{value}"))
+            found.append(_quoted(f"{'*' if option.repeats else 1}{value}"))
             continue
         before = "*" if option.repeats else ""
         for flag in option.flags.split():

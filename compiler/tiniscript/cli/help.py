@@ -77,7 +77,8 @@ def usage(verb: str, language: str) -> list[str]:
     for option in of_verb(verb):
         if option.is_argument:
             is_there = option.is_needed or option.kind == PROGRAM  # in whose place -e may stand
-            words.append(option.value[k] if is_there else f"[{option.value[k]}]")
+            label = option.value[k] + (" ..." if option.repeats else "")
+            words.append(label if is_there else f"[{label}]")
     return [" ".join([*words, USAGE[k]])]
 
 

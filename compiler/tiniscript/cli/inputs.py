@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from argparse import Namespace
 from pathlib import Path
@@ -51,25 +52,30 @@ def program(options: Namespace) -> Input:
     if options.program == "-":
         return Input("-", sys.stdin.buffer.read(LARGEST_SOURCE + 1), None)
     name = real_name(options.program)
-    path = Path(name)
     if name != options.program:
         from tiniscript.cli.texts.common import text
 
         said = text("file_really", options.language)
         print(said.format(file=options.program, real=name), file=sys.stderr)
+    return file(name, options.program)
+
+
+def file(name: str, typed: str | None = None) -> Input:
+    """Return what is in a file. Raises CommandError, which names it as it was `typed`."""
+    path, said = Path(name), shown(name if typed is None else typed)
     try:
-        with path.open("rb") as file:
-            return Input(name, file.read(LARGEST_SOURCE + 1), path)
+        with path.open("rb") as opened:
+            return Input(name, opened.read(LARGEST_SOURCE + 1), path)
     except FileNotFoundError:
-        raise CommandError(2, "file_missing", file=shown(options.program)) from None
+        raise CommandError(2, "file_missing", file=said) from None
     except IsADirectoryError:
-        raise CommandError(2, "file_directory", file=shown(options.program)) from None
+        raise CommandError(2, "file_directory", file=said) from None
     except PermissionError:
-        key = "file_directory" if path.is_dir() else "file_forbidden"
-        raise CommandError(2, key, file=shown(options.program)) from None
+        key = "file_directory" if path.is_dir() and os.access(path, os.R_OK) else "file_forbidden"
+        raise CommandError(2, key, file=said) from None
     except (OSError, ValueError) as why:  # ValueError: a name that no file can have
         reason = why.strerror if isinstance(why, OSError) and why.strerror else str(why)
-        raise CommandError(2, "file_unreadable", file=shown(options.program), why=reason) from None
+        raise CommandError(2, "file_unreadable", file=said, why=reason) from None
 
 
 def shown(name: str) -> str:

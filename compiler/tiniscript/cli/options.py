@@ -41,9 +41,10 @@ class Options(ArgumentParser):
 
     def _take(self, option: Option) -> None:
         if option.is_argument:
-            self.add_argument(option.name, nargs=None if option.is_needed else "?")
+            count = "*" if option.repeats else None if option.is_needed else "?"
+            self.add_argument(option.name, nargs=count)
         elif option.kind is None:
-            self.add_argument(*option.flags.split(), action="store_true")
+            self.add_argument(*option.flags.split(), dest=option.name, action="store_true")
         elif option.repeats:
             self.add_argument(option.flags, dest=option.name, action="append", default=[])
         else:

@@ -92,6 +92,9 @@ def _written(options: Namespace) -> Iterator[Named]:
         path = values.get(dest)
         if isinstance(path, str) and not (dest == "output" and path == "-"):
             yield Named(dest, path, label)
+    for each in sorted(set(values.get("programs") or ())):
+        if values["fix"] and not values["diff"] and each != "-":
+            yield Named("programs", real_name(each), "tsc check --fix")
     program = values.get("program")
     if program is not None and program != "-":
         program = real_name(program)
@@ -107,7 +110,7 @@ def _read(options: Namespace, language: str) -> Iterator[Named]:
         found = values.get(dest)
         for path in found if isinstance(found, list) else [found]:
             if isinstance(path, str) and path != "-" and not _is_shipped(dest, path):
-                name = real_name(path) if dest == "program" else path
+                name = real_name(path) if dest in ("program", "programs") else path
                 yield Named(dest, name, text(key, language))
     if "port" in values and values["port"] is None and not values.get("virtual"):
         from tiniscript.link import known_ports

@@ -122,9 +122,16 @@ def _sure(found: list[Diagnostic], text: str) -> list[_Repair]:
         if not diagnostic.is_mistake or diagnostic.code in _GUESSED:
             continue
         edits = edits_of(diagnostic, source)
+        if edits and any(_is_sealed(edit, source) for edit in edits):
+            continue
         if edits and (diagnostic.code in _REWRITTEN or keeps_numbers(text, edits)):
             repairs.append(_Repair(diagnostic.code, edits))
     return repairs
+
+
+def _is_sealed(edit: Edit, source: Source) -> bool:
+    """Whether a change is in a line that has a checksum: it is to be copied again."""
+    return "~" in source.line_text(source.position(edit.span.start)[0])
 
 
 def keeps_numbers(text: str, edits: list[Edit]) -> bool:

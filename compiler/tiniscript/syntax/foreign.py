@@ -97,7 +97,9 @@ def _end(parser: Parser, word: Token, meant: str) -> NoReturn:
 
 def _definition(parser: Parser, word: Token) -> NoReturn:
     name = parser.cursor.following
-    _report(parser, word, "DEF", f"DEF {name.text}" if name.kind is WORD else "DEF DANCE")
+    is_named = name.kind is WORD
+    place = Span(word.start, name.end) if is_named else None
+    _report(parser, word, "DEF", f"DEF {name.text}" if is_named else "DEF DANCE", place)
     count = len(parser.reporter.diagnostics)
     try:
         parser.definition(word)

@@ -12,7 +12,7 @@ from tiniscript.syntax.call_suggestions import LONGEST, ends_value, starts_value
 from tiniscript.syntax.cursor import AT_END
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, Token
 from tiniscript.syntax.operators import BINARY, COMPARISONS, SIGNS
-from tiniscript.words import TURN_WORDS, WORDS, Word, meant_by, other_name
+from tiniscript.words import TURN_WORDS, UNITS, WORDS, Word, meant_by, other_name
 
 # Words in the place of an operator, and those that go with them.
 OPERATOR_WORDS = {
@@ -115,6 +115,8 @@ def _begins_body(tokens: Sequence[Token], k: int, start: int, names_end: bool) -
     if word is None:
         if token.text in AFTER_HEADER:
             return k > start
+        if token.text in UNITS and tokens[k - 1].kind is NUMBER and following.kind != "(":
+            return following.kind == "="
         if not after_value or token.text in _OPERATOR_TAILS:
             return False
         if token.text in OPERATOR_WORDS:

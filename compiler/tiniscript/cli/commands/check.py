@@ -1,24 +1,42 @@
-"""`tsc check`: all mistakes and warnings, no output file."""
+"""`tsc check`: all mistakes and warnings, no output file; with --fix the sure repairs."""
 
 from __future__ import annotations
 
+import sys
 from argparse import Namespace
 from typing import TYPE_CHECKING
 
 from tiniscript.cli import inputs, outputs
+from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts.common import text
 
 if TYPE_CHECKING:
+    from tiniscript import Compiled
+    from tiniscript.cli.inputs import Input
     from tiniscript.robots.profile import Robot
 
 
 def run(options: Namespace, language: str) -> int:
+    from tiniscript.cli import program_files
+
+    names: list[str] = options.programs
+    if program_files.are_several(names) and not options.texts:
+        from tiniscript.cli import check_table
+
+        return check_table.check(options, _robot(options, language), language)
+    if options.csv is not None:
+        raise CommandError(2, "no_table")
+    if len(names) > 1:
+        raise CommandError(2, "two_programs")
+    options.program = names[0] if names else None
     given = inputs.program(options)
-    robot = inputs.robot(options, language)
-    if options.port is not None or options.virtual:
-        robot = _of_port(options, robot, language)
-    compiled = inputs.compiled(given, robot, is_strict=False)
-    compiled = inputs.for_level(compiled, robot, options.text_level)
+    robot = _robot(options, language)
+    if options.fix or options.diff:
+        compiled, is_right = _repaired(options, given, robot, language)
+    else:
+        compiled = inputs.compiled(given, robot, is_strict=False)
+        compiled = inputs.for_level(compiled, robot, options.text_level)
+        is_right = compiled.is_right
     if options.json:
         import json
 
@@ -30,13 +48,50 @@ def run(options: Namespace, language: str) -> int:
         print(json.dumps(as_json(said), indent=2))
     else:
         outputs.print_diagnostics(compiled, language)
-        if compiled.is_right:
+        if compiled.is_right and not options.diff and (given.path is not None or not options.fix):
             print(text("no_mistakes", language).format(file=inputs.shown(given.name)))
-    return 0 if compiled.is_right else 1
+    return 0 if is_right else 1
 
 
-def _of_port(options: Namespace, robot: Robot, language: str) -> Robot:
-    """Return the profile of the robot on a port, if it is known and `--robot` is not given."""
+def _repaired(
+    options: Namespace, given: Input, robot: Robot, language: str
+) -> tuple[Compiled, bool]:
+    """Make or show the sure repairs; return what is left, and whether the program is right now."""
+    from tiniscript.cli.repairing import print_difference, repaired
+
+    found = repaired(given.data, robot, given.name)
+    name = inputs.shown(given.name)
+    says = not options.json
+    if options.diff:
+        if says and found.repairs:
+            print_difference(given.data, found.data, given.name)
+        key = "would_repair" if found.repairs else "nothing_repaired"
+        if says and (found.repairs or not found.compiled.is_right):
+            key += "_one" if found.repairs == 1 else ""
+            print(text(key, language).format(file=name, n=found.repairs), file=sys.stderr)
+        return found.compiled, found.compiled.is_right and not found.repairs
+    if given.path is None:
+        if says:
+            sys.stdout.flush()
+            sys.stdout.buffer.write(found.data)  # a program is UTF-8, whatever the locale
+    elif found.repairs:
+        outputs.write(given.path, found.data, "unwritable_source")
+    if says and found.repairs and given.path is not None:
+        print_difference(given.data, found.data, given.name)
+        key = "repaired_one" if found.repairs == 1 else "repaired"
+        print(text(key, language).format(file=name, n=found.repairs), file=sys.stderr)
+    if says and not found.compiled.is_right:
+        key = "not_repaired" if found.repairs else "nothing_repaired"
+        print(text(key, language).format(file=name) + "\n", file=sys.stderr)
+    compiled = inputs.for_level(found.compiled, robot, options.text_level)
+    return compiled, compiled.is_right
+
+
+def _robot(options: Namespace, language: str) -> Robot:
+    """Return the robot that is named, or the one on a port, if its profile is known."""
+    robot = inputs.robot(options, language)
+    if options.port is None and not options.virtual:
+        return robot
     from tiniscript.cli.robot import own_kit
     from tiniscript.cli.robot.connect import Connection
 

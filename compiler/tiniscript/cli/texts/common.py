@@ -144,6 +144,7 @@ TEXTS: dict[str, tuple[str, str]] = {
     "runs_between": ("{least} to {most} s", "de {least} a {most} s"),
     "runs_at_least": ("at least {least} s", "al menos {least} s"),
     "runs_forever": ("until it is stopped", "hasta que lo detengan"),
+    "file_no_file": ("tsc: {file} is no file with text.", "tsc: {file} no es un archivo de texto."),
     "no_mistakes": ("{file}: no mistakes.", "{file}: sin errores."),
     "count_mistake": ("1 mistake", "1 error"),
     "count_mistakes": ("{n} mistakes", "{n} errores"),
@@ -208,6 +209,7 @@ def _plain(value: object) -> object:
 # Sentences that few commands say: the files of this folder, and their tables. Each is imported where
 # no sentence was found before it.
 _LATER = (
+    ("checking", "CHECK_TEXTS"),
     ("robot", "LINK_TEXTS"),
     ("simulator", "VIRTUAL_TEXTS"),
     ("owners", "OWNER_TEXTS"),
@@ -220,7 +222,7 @@ _LATER = (
 
 def text(key: str, language: str) -> str:
     """Return a sentence as `Said`."""
-    for each in _tables():
+    for each in tables():
         if key in each:
             english, spanish = each[key]
             return Said(spanish if language == "es" else english)
@@ -228,10 +230,11 @@ def text(key: str, language: str) -> str:
 
 
 def has_text(key: str) -> bool:
-    return any(key in each for each in _tables())
+    return any(key in each for each in tables())
 
 
-def _tables() -> Iterator[Mapping[str, tuple[str, str]]]:
+def tables() -> Iterator[Mapping[str, tuple[str, str]]]:
+    """Return all sentences by key, English and Spanish, table by table."""
     yield TEXTS
     for file, name in _LATER:
         yield getattr(import_module(f"tiniscript.cli.texts.{file}"), name)

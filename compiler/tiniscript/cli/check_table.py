@@ -1,0 +1,178 @@
+"""`tsc check` for several programs: a line for each, and a table at the end.
+
+Knows rows and how they are printed. A program that cannot be read has a row, too.
+"""
+
+from __future__ import annotations
+
+from argparse import Namespace
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+from tiniscript.cli import inputs, outputs
+from tiniscript.cli.errors import CommandError
+from tiniscript.cli.program_files import Found, programs
+from tiniscript.cli.texts.common import text
+
+if TYPE_CHECKING:
+    from tiniscript import Compiled
+    from tiniscript.diagnostics.rendering import Message
+    from tiniscript.robots.profile import Robot
+
+NAME_COLUMNS = 40  # of a file's name in the table; of a longer one the end is shown
+
+
+class Row(NamedTuple):
+    """A program: its messages, mistakes first, or why it cannot be read."""
+
+    name: str
+    messages: list[Message]
+    repaired: int
+    problem: str
+
+    @property
+    def mistakes(self) -> int:
+        return sum(each.severity == "mistake" for each in self.messages)
+
+    @property
+    def warnings(self) -> int:
+        return len(self.messages) - self.mistakes
+
+
+def check(options: Namespace, robot: Robot, language: str) -> int:
+    """Check all programs that are named; return the exit code."""
+    rows = []
+    for found in programs(options.programs):
+        rows.append(_row(found, options, robot, language))
+        if not options.json:
+            print(_line(rows[-1], language), flush=True)
+    if options.json:
+        import json
+
+        print(json.dumps([_as_data(row) for row in rows], indent=2))
+    else:
+        print("\n" + "\n".join(_table(rows, language)))
+    if options.csv is not None:
+        outputs.write(Path(options.csv), _as_csv(rows).encode("utf-8-sig"), "unwritable_rows")
+    if any(row.problem for row in rows):
+        return 2
+    return 1 if any(row.mistakes for row in rows) else 0
+
+
+def _row(found: Found, options: Namespace, robot: Robot, language: str) -> Row:
+    from tiniscript.diagnostics.rendering import message
+
+    if found.problem is not None:
+        return Row(found.name, [], 0, found.problem.sentence(language).removeprefix("tsc: "))
+    repaired = 0
+    if options.fix or options.diff:
+        compiled, repaired, problem = _repaired(found, options, robot, language)
+        if problem:
+            return Row(found.name, [], 0, problem)
+    else:
+        given = inputs.Input(found.name, found.data, Path(found.name))
+        compiled = inputs.compiled(given, robot, is_strict=False)
+    compiled = inputs.for_level(compiled, robot, options.text_level)
+    said = [message(each, compiled.source, language) for each in compiled.diagnostics]
+    said.sort(key=lambda each: each.severity != "mistake")
+    return Row(found.name, said, repaired, "")
+
+
+def _repaired(
+    found: Found, options: Namespace, robot: Robot, language: str
+) -> tuple[Compiled, int, str]:
+    """Make or show the sure repairs of a program; return what is left, how many, and a problem."""
+    from tiniscript.cli.repairing import print_difference, repaired
+
+    its = repaired(found.data, robot, found.name)
+    if its.repairs and not options.json:
+        print_difference(found.data, its.data, found.name)
+    if options.diff:
+        given = inputs.Input(found.name, found.data, Path(found.name))
+        return inputs.compiled(given, robot, is_strict=False), its.repairs, ""
+    if its.repairs:
+        try:
+            outputs.write(Path(found.name), its.data, "unwritable_source")
+        except CommandError as problem:
+            return its.compiled, 0, problem.sentence(language).removeprefix("tsc: ")
+    return its.compiled, its.repairs, ""
+
+
+def _line(row: Row, language: str) -> str:
+    name = inputs.shown(row.name)
+    if row.problem:
+        return text("checked_unread", language).format(file=name, why=row.problem)
+    if not row.mistakes:
+        return text("checked_right", language).format(file=name)
+    first = row.messages[0]
+    return text("checked_wrong", language).format(
+        file=name, line=first.line, said=first.message, code=first.code
+    )
+
+
+def _table(rows: Sequence[Row], language: str) -> list[str]:
+    has_repairs = any(row.repaired for row in rows)
+    columns = ["program_column", "mistakes_column", "warnings_column", "first_column"]
+    heads = [text(key, language) for key in columns]
+    cells = []
+    for row in rows:
+        name = inputs.shown(row.name)
+        name = name if len(name) <= NAME_COLUMNS else "…" + name[1 - NAME_COLUMNS :]
+        first = next((each for each in row.messages if each.severity == "mistake"), None)
+        place = "" if first is None else f"{first.line}: {first.code}"
+        cells.append([name, str(row.mistakes), str(row.warnings), place])
+        if row.problem:
+            cells[-1] = [name, "-", "-", text("unread", language)]
+        if has_repairs:
+            cells[-1].insert(3, str(row.repaired))
+    if has_repairs:
+        heads.insert(3, text("repaired_column", language))
+    widths = [max(len(each[k]) for each in (heads, *cells)) for k in range(len(heads))]
+    lines = [_laid_out(each, widths) for each in (heads, *cells)]
+    right = sum(not row.mistakes and not row.problem for row in rows)
+    return [*lines, text("all_row", language).format(n=len(rows), right=right)]
+
+
+def _laid_out(cells: Sequence[str], widths: Sequence[int]) -> str:
+    """Return a row: the first and the last column begin on the left, numbers end on the right."""
+    last = len(cells) - 1
+    row = [
+        f"{cell:{width}}" if k in (0, last) else f"{cell:>{width}}"
+        for k, (cell, width) in enumerate(zip(cells, widths, strict=True))
+    ]
+    return "   ".join(row).rstrip()
+
+
+def _as_data(row: Row) -> dict[str, object]:
+    from tiniscript.diagnostics.rendering import as_json
+
+    return {
+        "file": inputs.shown(row.name),
+        "mistakes": row.mistakes,
+        "warnings": row.warnings,
+        "repaired": row.repaired,
+        "problem": row.problem,
+        "messages": as_json(row.messages),
+    }
+
+
+def _as_csv(rows: Sequence[Row]) -> str:
+    """Return the rows for a spreadsheet, which takes no cell of them for a formula."""
+    import csv
+    from io import StringIO
+
+    written = StringIO()
+    table = csv.writer(written, lineterminator="\n")
+    table.writerow(("file", "mistakes", "warnings", "repaired", "line", "code", "message"))
+    for row in rows:
+        first = row.messages[0] if row.mistakes else None
+        name = inputs.shown(row.name)
+        table.writerow((
+            f"'{name}" if name[:1] in tuple("=+-@") else name,
+            row.mistakes, row.warnings, row.repaired,
+            "" if first is None else first.line,
+            "" if first is None else first.code,
+            row.problem if first is None else first.message,
+        ))  # fmt: skip
+    return written.getvalue()

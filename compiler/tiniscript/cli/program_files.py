@@ -1,0 +1,81 @@
+"""The programs that a command names: files, and all programs in folders.
+
+Follows no link to a folder, and opens nothing that is no file: a folder may hold anything.
+"""
+
+from __future__ import annotations
+
+import os
+import stat
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+from tiniscript.cli import inputs
+from tiniscript.cli.errors import CommandError
+from tiniscript.cli.paths import real_name
+
+ENDS = (".ts", ".ts.txt")  # of a program's name; editors of Windows add .txt
+
+
+class Found(NamedTuple):
+    """A program's file, or, where it cannot be read, why."""
+
+    name: str
+    data: bytes
+    problem: CommandError | None = None
+
+
+def are_several(names: Sequence[str]) -> bool:
+    """Whether these names are not just one program."""
+    return len(names) > 1 or any(_is_folder(name) for name in names)
+
+
+def programs(names: Sequence[str]) -> Iterator[Found]:
+    """Yield the programs that are named, each once. Raises CommandError for an empty folder."""
+    seen: set[str] = set()
+    for name in names:
+        found = list(_in_folder(name)) if _is_folder(name) else [real_name(name)]
+        if not found:
+            raise CommandError(2, "no_programs", file=inputs.shown(name))
+        for each in found:
+            real = os.path.realpath(each)
+            if real not in seen:
+                seen.add(real)
+                yield _read(each)
+
+
+def _is_folder(name: str) -> bool:
+    return os.path.isdir(name)  # noqa: PTH112 - a name that no file can have gets no Path
+
+
+def _in_folder(top: str) -> Iterator[str]:
+    """Yield the names of programs in a folder and those below, in order; none that is hidden."""
+    waiting = [top]
+    while waiting:
+        folder = waiting.pop()
+        try:
+            with os.scandir(folder) as entries:
+                inside = sorted(entries, key=lambda entry: entry.name)
+        except OSError:
+            yield folder  # reading it says why
+            continue
+        for entry in inside:
+            if not entry.name.startswith(".") and entry.name.lower().endswith(ENDS):
+                if not entry.is_dir(follow_symlinks=False):
+                    yield entry.path
+        below = (entry for entry in inside if entry.is_dir(follow_symlinks=False))
+        waiting += [each.path for each in reversed(list(below)) if not each.name.startswith(".")]
+
+
+def _read(name: str) -> Found:
+    try:
+        found = Path(name).stat()
+        if not (stat.S_ISREG(found.st_mode) or stat.S_ISDIR(found.st_mode)):
+            return Found(name, b"", CommandError(2, "file_no_file", file=inputs.shown(name)))
+    except (OSError, ValueError):
+        pass  # reading it says why
+    try:
+        return Found(name, inputs.file(name).data)
+    except CommandError as problem:
+        return Found(name, b"", problem)

@@ -1,0 +1,64 @@
+"""Repairs of a program's file: which text it gets, and how the change is shown.
+
+Knows bytes, lines and colors. What is repaired, and what is not, `repairs.fixing` knows.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Iterator
+from difflib import unified_diff
+from typing import TYPE_CHECKING, NamedTuple
+
+from tiniscript.printable import printable
+
+if TYPE_CHECKING:
+    from tiniscript import Compiled
+    from tiniscript.robots.profile import Robot
+
+_BOM = b"\xef\xbb\xbf"
+_COLORS = {"+": "\033[32m", "-": "\033[31m", "@": "\033[36m"}
+_PLAIN = "\033[0m"
+
+
+class Repaired(NamedTuple):
+    """A program with its sure repairs: the bytes of its file, how many, and what is left."""
+
+    data: bytes
+    repairs: int
+    compiled: Compiled
+
+
+def repaired(data: bytes, robot: Robot, name: str) -> Repaired:
+    """Return a program with its sure repairs; bytes that are no program stay as they are."""
+    from tiniscript.library.compiling import compiled, text_of
+    from tiniscript.repairs.fixing import fixed
+
+    text = text_of(data, name)
+    if not isinstance(text, str):
+        return Repaired(data, 0, text)
+    found = fixed(text, lambda changed: compiled(changed.encode(), robot, name, False).diagnostics)
+    new = found.text.encode()
+    if data.startswith(_BOM):
+        new = _BOM + new
+    return Repaired(new, found.repairs, compiled(new, robot, name, False))
+
+
+def print_difference(old: bytes, new: bytes, name: str) -> None:
+    """Print what differs in two texts, as `diff -u` does; on a terminal in colors."""
+    color = sys.stdout.isatty() and not os.environ.get("NO_COLOR")
+    for line in _difference(old.decode(), new.decode(), printable(name)):
+        mark = _COLORS.get(line[:1], "") if color and line[:3] not in ("+++", "---") else ""
+        print(mark + line + (_PLAIN if mark else ""))
+
+
+def _difference(old: str, new: str, name: str) -> Iterator[str]:
+    rows = unified_diff(_rows(old), _rows(new), name, name, lineterm="", n=2)
+    for k, row in enumerate(rows):
+        yield row if k < 2 else printable(row[:1] + row[1:].replace("\t", "    "))
+
+
+def _rows(text: str) -> list[str]:
+    """Return the lines of a text as the compiler counts them."""
+    return text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n").split("\n")

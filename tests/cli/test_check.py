@@ -1,0 +1,209 @@
+"""`tsc check` for several programs and folders, and `--fix`: what is written, said and returned."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import sys
+from io import StringIO
+from pathlib import Path
+
+import pytest
+
+from tests.support.command import Tsc
+
+RIGHT, WRONG = "SI|F(2, 80)\n", "SI|F(2 80)\n"
+LEFT = "SI|F(2 80);girar(derecha, 90)\n"  # one is sure, the other is not
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "a.ts").write_text(RIGHT, encoding="utf-8")
+    (tmp_path / "b.ts").write_text(WRONG, encoding="utf-8")
+    (tmp_path / "sub").mkdir()
+    (tmp_path / "sub" / "c.ts").write_text(LEFT, encoding="utf-8")
+    (tmp_path / "sub" / "notes.txt").write_text("no program", encoding="utf-8")
+    return tmp_path
+
+
+# -- several programs ---------------------------------------------------------------------------
+
+
+def test_a_folder_has_a_line_for_each_program_and_a_table(folder: Path, tsc: Tsc) -> None:
+    done = tsc("check", ".", "--lang", "es")
+    assert done.code == 1
+    assert done.out == (
+        "./a.ts: sin errores\n"
+        "./b.ts: línea 1: Entre dos valores va una coma.   [TS017]\n"
+        "./sub/c.ts: línea 1: Entre dos valores va una coma.   [TS017]\n"
+        "\n"
+        "programa     errores   avisos   primero\n"
+        "./a.ts             0        0\n"
+        "./b.ts             1        0   1: TS017\n"
+        "./sub/c.ts         2        0   1: TS017\n"
+        "3 programas, 1 sin errores\n"
+    )
+
+
+def test_programs_that_are_right_give_zero_and_each_is_checked_once(folder: Path, tsc: Tsc) -> None:
+    done = tsc("check", "a.ts", "./a.ts", "a.ts")
+    assert (done.code, done.out.count("no mistakes")) == (0, 1)
+
+
+def test_the_table_as_data_and_for_a_spreadsheet(folder: Path, tsc: Tsc) -> None:
+    (folder / "=1+1.ts").write_text(RIGHT, encoding="utf-8")
+    done = tsc("check", "=1+1.ts", "b.ts", "--json", "--csv", "table.csv")
+    rows = json.loads(done.out)
+    assert [(row["file"], row["mistakes"], row["problem"]) for row in rows] == [
+        ("=1+1.ts", 0, ""),
+        ("b.ts", 1, ""),
+    ]
+    assert rows[1]["messages"][0]["fix"] == "F(2, 80)"
+    table = list(csv.DictReader(StringIO((folder / "table.csv").read_text("utf-8-sig"))))
+    assert [row["file"] for row in table] == ["'=1+1.ts", "b.ts"]  # no formula
+    assert (table[1]["mistakes"], table[1]["line"], table[1]["code"]) == ("1", "1", "TS017")
+
+
+def test_one_that_cannot_be_read_has_its_row_and_gives_two(folder: Path, tsc: Tsc) -> None:
+    done = tsc("check", "a.ts", "none.ts", "b.ts")
+    assert done.code == 2
+    assert "none.ts: there is no file none.ts" in done.out
+    assert "none.ts          -          -   not read\n" in done.out
+    assert "b.ts: line 1" in done.out
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such names")
+def test_what_lies_in_a_folder_does_no_harm(folder: Path, tsc: Tsc) -> None:
+    (folder / "x\n\x1b[31m.ts").write_text(RIGHT, encoding="utf-8")
+    (folder / "bytes.ts").write_bytes(b"\0\xff")
+    (folder / ".hidden.ts").write_text(WRONG, encoding="utf-8")
+    (folder / "loop").symlink_to(".")
+    (folder / "dangling.ts").symlink_to("nowhere")
+    os.mkfifo(folder / "pipe.ts")
+    done = tsc("check", ".")
+    assert done.code == 2
+    assert "\x1b" not in done.out
+    assert ".hidden" not in done.out
+    assert "./x??[31m.ts: no mistakes" in done.out
+    assert "./bytes.ts: line 1: This file is not text" in done.out
+    assert "./pipe.ts is no file with text" in done.out
+    assert "./dangling.ts: there is no file" in done.out
+
+
+def test_a_folder_without_programs_says_what_a_program_is(folder: Path, tsc: Tsc) -> None:
+    (folder / "empty").mkdir()
+    done = tsc("check", "empty")
+    assert (done.code, done.out) == (2, "")
+    assert done.err.startswith("tsc: empty has no program in it. Their names end in .ts.")
+
+
+def test_thirty_programs_and_deep_folders(folder: Path, tsc: Tsc) -> None:
+    deep = folder
+    for k in range(30):
+        deep = deep / "d"
+        deep.mkdir()
+        (deep / f"p{k}.ts").write_text(WRONG if k % 2 else RIGHT, encoding="utf-8")
+    done = tsc("check", "d")
+    assert done.code == 1
+    assert done.out.endswith("30 programs, 15 without mistakes\n")
+
+
+def test_a_table_of_one_program_is_refused(folder: Path, tsc: Tsc) -> None:
+    done = tsc("check", "a.ts", "--csv", "t.csv")
+    assert (done.code, (folder / "t.csv").exists()) == (2, False)
+    assert "--csv is for several programs or a folder" in done.err
+
+
+# -- repairs ------------------------------------------------------------------------------------
+
+
+def test_fix_writes_the_sure_repairs_and_says_what_is_left(folder: Path, tsc: Tsc) -> None:
+    done = tsc("check", "--fix", "sub/c.ts", "--lang", "es")
+    assert done.code == 1
+    assert (folder / "sub" / "c.ts").read_text("utf-8") == "SI|F(2, 80);girar(derecha, 90)\n"
+    assert done.out == (
+        "--- sub/c.ts\n+++ sub/c.ts\n@@ -1,2 +1,2 @@\n"
+        "-SI|F(2 80);girar(derecha, 90)\n+SI|F(2, 80);girar(derecha, 90)\n \n"
+    )
+    assert done.err.startswith(
+        "sub/c.ts: 1 error corregido.\n"
+        "Lo que queda lo corriges tú, porque puede querer decir varias cosas:\n"
+    )
+    assert "la palabra es R" in done.err
+
+
+def test_fix_twice_is_fix_once(folder: Path, tsc: Tsc) -> None:
+    tsc("check", "--fix", "sub/c.ts")
+    once = (folder / "sub" / "c.ts").read_bytes()
+    done = tsc("check", "--fix", "sub/c.ts")
+    assert ((folder / "sub" / "c.ts").read_bytes(), done.out) == (once, "")
+    assert "nothing is sure enough" in done.err
+
+
+@pytest.mark.parametrize("option", ["--diff", "--dry-run"])
+def test_a_difference_alone_writes_nothing(folder: Path, tsc: Tsc, option: str) -> None:
+    for options in ([option], ["--fix", option]):
+        done = tsc("check", *options, "b.ts")
+        assert (folder / "b.ts").read_text("utf-8") == WRONG
+        assert done.code == 1
+        assert "-SI|F(2 80)\n+SI|F(2, 80)\n" in done.out
+        assert done.err == "b.ts: 1 mistake can be repaired. Try:  tsc check --fix\n"
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+@pytest.mark.parametrize("bom", [b"", b"\xef\xbb\xbf"])
+@pytest.mark.parametrize("last", ["", "END"])
+def test_a_file_keeps_its_line_ends_and_its_mark(
+    folder: Path, tsc: Tsc, end: str, bom: bytes, last: str
+) -> None:
+    last = end if last else ""
+    text = f"SI|F(2 80) // ñandú{end}{end}\tR(1,5, 60){last}"
+    (folder / "b.ts").write_bytes(bom + text.encode())
+    assert tsc("check", "--fix", "b.ts").code == 0
+    right = f"SI|F(2, 80) // ñandú{end}{end}\tR(1.5, 60){last}"
+    assert (folder / "b.ts").read_bytes() == bom + right.encode()
+
+
+def test_without_a_file_the_program_is_printed(tsc: Tsc) -> None:
+    done = tsc("check", "--fix", "-e", "F(2 80)")
+    assert (done.code, done.out) == (0, "F(2, 80)")
+
+
+def test_what_is_no_text_stays_as_it_is(folder: Path, tsc: Tsc) -> None:
+    (folder / "b.ts").write_bytes(b"F(2 80)\xff")
+    done = tsc("check", "--fix", "b.ts")
+    assert (done.code, (folder / "b.ts").read_bytes()) == (1, b"F(2 80)\xff")
+    assert "TS003" in done.err
+
+
+def test_a_line_with_a_checksum_is_not_repaired(folder: Path, tsc: Tsc) -> None:
+    line = "SI|F(2 80);S~21FFE748\n"
+    (folder / "b.ts").write_text(line, encoding="utf-8")
+    assert tsc("check", "--fix", "b.ts").code == 1
+    assert (folder / "b.ts").read_text("utf-8") == line
+
+
+def test_a_file_that_cannot_be_written_is_as_it_was(
+    folder: Path, tsc: Tsc, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("tiniscript.files.replace", full)
+    done = tsc("check", "--fix", "b.ts")
+    assert (done.code, (folder / "b.ts").read_text("utf-8")) == (2, WRONG)
+    assert "b.ts cannot be written: No space left on device. It is as it was." in done.err
+    done = tsc("check", "--fix", "b.ts", "a.ts")
+    assert done.code == 2
+    assert "a.ts: no mistakes" in done.out
+
+
+def test_a_folder_is_repaired_with_a_column_of_its_own(folder: Path, tsc: Tsc) -> None:
+    done = tsc("check", "--fix", ".")
+    assert done.code == 1
+    assert "program      mistakes   warnings   repaired   first\n" in done.out
+    assert "./b.ts              0          0          1\n" in done.out
+    assert "./sub/c.ts          1          0          1   1: TS121\n" in done.out
+    assert (folder / "b.ts").read_text("utf-8") == "SI|F(2, 80)\n"

@@ -1,0 +1,63 @@
+"""Wrong programs as pupils write them, and what is said of each.
+
+`programs.txt` has a program, then a line for each message, `> 1 TS012 F(1.5, 80)`: its line, its
+code and what to try, in Spanish; then, where `tsc check --fix` changes it, the program that it
+makes, each line behind a `=`. A line of `%%` ends it.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple
+
+from tiniscript import robots
+from tiniscript.diagnostics.codes import Diagnostic
+from tiniscript.diagnostics.rendering import message
+from tiniscript.library.compiling import compiled
+from tiniscript.repairs.fixing import fixed
+from tiniscript.source import Source
+
+FILE = Path(__file__).with_name("programs.txt")
+
+
+class Entry(NamedTuple):
+    program: str
+    said: tuple[str, ...]
+    mended: str | None
+
+
+@cache
+def entries() -> tuple[Entry, ...]:
+    found = []
+    for part in FILE.read_text(encoding="utf-8").split("\n%%\n"):
+        lines = part.removesuffix("\n%%").split("\n")
+        program = [line for line in lines if line[:1] not in (">", "=")]
+        mended = [line[1:].removeprefix(" ") for line in lines if line[:1] == "="]
+        said = tuple(line[2:] for line in lines if line[:1] == ">")
+        found.append(Entry("\n".join(program).rstrip("\n"), said, "\n".join(mended) or None))
+    return tuple(each for each in found if each.program)
+
+
+def check(text: str) -> list[Diagnostic]:
+    robot = robots.load(robots.DEFAULT)
+    return compiled(text.encode(), robot, "prog.ts", is_strict=False).diagnostics
+
+
+def found_in(program: str) -> Entry:
+    """Return what is said of a program now, and what becomes of it."""
+    found = check(program)
+    source = Source(program)
+    messages = [message(each, source, "es") for each in found]
+    mended = fixed(program, check).text
+    said = tuple(f"{each.line} {each.code} {each.fix}".rstrip() for each in messages)
+    return Entry(program, said, mended if mended != program else None)
+
+
+def write(found: list[Entry]) -> None:
+    rows = []
+    for entry in found:
+        rows += [entry.program, *(f"> {said}" for said in entry.said)]
+        rows += [f"= {line}".rstrip() for line in (entry.mended or "").split("\n") if entry.mended]
+        rows.append("%%")
+    FILE.write_text("\n".join(rows) + "\n", encoding="utf-8")

@@ -1,0 +1,90 @@
+"""Right programs with slips of the finger: no repair loses a number, and all end.
+
+python -m tests.pupils.test_damage 10000    so many damaged programs
+"""
+
+from __future__ import annotations
+
+import random
+import re
+import sys
+from functools import cache, partial
+from pathlib import Path
+
+import pytest
+
+from tests.pupils.corpus import check
+from tests.pupils.test_pupils import OTHER_NUMBERS, mistakes
+from tiniscript.diagnostics.codes import Diagnostic
+from tiniscript.repairs.edits import applied
+from tiniscript.repairs.fixing import fixed, keeps_numbers
+from tiniscript.repairs.placing import edits_of
+from tiniscript.source import Source
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+IN_CI = 150
+# What is put in, or takes the place of a sign: of phones, of other languages, of Spanish.
+SLIPS = [
+    *";,.:()[]{}|=<>+-*/%!?\"'°~# ", "\n", "\r\n", "//", "==", "&&", "++", ":=", " y ", " o ", "O",
+    " si ", " entonces ", " fin ", " SINO ", " ENDIF ", " END_LOOP ", " LOOP(2) ", "l", "ñ", "s",
+    "%", " adelante ", " girar ", " derecha ", " 5 ", " cm", "F", " DEF ", " mi vel ",
+]  # fmt: skip
+
+
+@cache
+def programs() -> list[str]:
+    """Return programs of the examples, and those of cases and documents."""
+    found = [path.read_text(encoding="utf-8") for path in sorted(ROOT.glob("examples/**/*.ts"))]
+    for page in sorted((*ROOT.glob("tests/cases/*.md"), *ROOT.glob("docs/lang*.md"))):
+        found += re.findall(r"```tiniscript\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL)
+    return [text for text in found if len(text) < 600 and not mistakes(check(text))]
+
+
+def damaged(seed: int) -> str:
+    """Return a right program with one to three slips."""
+    chance = random.Random(seed)
+    text = chance.choice(programs())
+    for _ in range(chance.randint(1, 3)):
+        k = chance.randrange(len(text) + 1)
+        what = chance.randrange(5)
+        if what == 0:
+            text = text[:k] + text[k + 1 :]
+        elif what == 1:
+            text = text[:k] + chance.choice(SLIPS) + text[k:]
+        elif what == 2:
+            text = text[:k] + chance.choice(SLIPS) + text[k + 1 :]
+        elif what == 3:
+            text = text[:k] + text[k + 1 : k + 2] + text[k : k + 1] + text[k + 2 :]
+        else:
+            end = text.find("\n", k) + 1 or len(text)
+            text = text[:k] + text[end:]
+    return text
+
+
+@pytest.mark.parametrize("seed", range(IN_CI))
+def test_a_damaged_program_is_repaired_or_left(seed: int) -> None:
+    text = damaged(seed)
+    found, source = check(text), Source(text)
+    for diagnostic in found[:20]:
+        edits = edits_of(diagnostic, source)
+        assert edits is None or applied(text, edits) != text
+    done = fixed(text, check)
+    assert mistakes(done.left) <= mistakes(found)
+    assert done.left == check(done.text)
+    assert fixed(done.text, check).text == done.text
+    for diagnostic in found[:20]:  # each alone
+        edits = edits_of(diagnostic, source)
+        alone = fixed(text, partial(_only, text, diagnostic))
+        if alone.text != text and diagnostic.code not in OTHER_NUMBERS:
+            assert edits and keeps_numbers(text, edits)
+
+
+def _only(text: str, diagnostic: Diagnostic, changed: str) -> list[Diagnostic]:
+    return [diagnostic] if changed == text else []
+
+
+if __name__ == "__main__":
+    for seed in range(int(sys.argv[1])):
+        test_a_damaged_program_is_repaired_or_left(seed)
+        if seed % 1000 == 999:
+            print(seed + 1, flush=True)

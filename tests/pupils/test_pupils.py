@@ -1,0 +1,85 @@
+"""What pupils get wrong: each program of the corpus gets its messages, and repairs that are right.
+
+python -m pytest tests/pupils --accept    writes what is said now; read the difference like code
+"""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from tests.pupils.corpus import Entry, check, entries, found_in, write
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Diagnostic
+from tiniscript.repairs.edits import Edit, applied
+from tiniscript.repairs.fixing import fixed
+from tiniscript.repairs.placing import edits_of
+from tiniscript.source import Source
+
+ENTRIES = entries()
+# Repairs that write a number in another way: a unit, a letter for a digit, `X++`, `50.`, and how
+# often `I = 1 TO 4` goes round.
+OTHER_NUMBERS = (
+    codes.UNIT,
+    codes.BAD_NUMBER,
+    codes.OTHER_ASSIGNMENT,
+    codes.LINE_NUMBER,
+    codes.SETUP_UNKNOWN,  # `S1|` is SI
+)
+
+
+def mistakes(found: list[Diagnostic]) -> int:
+    return sum(each.is_mistake for each in found)
+
+
+def numbers(text: str) -> list[str]:
+    return sorted(re.findall("[0-9]+", text))
+
+
+def loses_a_number(text: str, edits: list[Edit]) -> bool:
+    """Whether a change drops one of the program's numbers."""
+    left = numbers(applied(text, edits))
+    for number in numbers(text):
+        if number not in left:
+            return True
+        left.remove(number)
+    return False
+
+
+def test_there_are_enough() -> None:
+    assert len(ENTRIES) >= 200
+    assert len({each.program for each in ENTRIES}) == len(ENTRIES)
+
+
+def test_the_corpus_is_as_it_was(request: pytest.FixtureRequest) -> None:
+    found = [found_in(each.program) for each in ENTRIES]
+    if request.config.getoption("--accept"):
+        write(found)
+        return
+    changed = [(old, new) for old, new in zip(ENTRIES, found, strict=True) if old != new]
+    assert not changed, f"{len(changed)} of {len(found)}, the first: {changed[0]}"
+
+
+@pytest.mark.parametrize("entry", ENTRIES, ids=lambda each: each.program[:40])
+def test_each_repair_helps_and_keeps_the_numbers(entry: Entry) -> None:
+    found, source = check(entry.program), Source(entry.program)
+    for diagnostic in found:
+        edits = edits_of(diagnostic, source)
+        if not edits or not diagnostic.is_mistake:
+            continue
+        after = check(applied(entry.program, edits))
+        assert mistakes(after) <= mistakes(found)
+        if mistakes(after) == mistakes(found):  # it has uncovered another one
+            assert diagnostic not in after
+        fix = diagnostic.values.get("fix", "")
+        is_counted = fix.startswith(("LOOP(", "W(")) and diagnostic.code is codes.OTHER_LANGUAGE
+        if diagnostic.code not in OTHER_NUMBERS and not is_counted:
+            assert not loses_a_number(entry.program, edits), fix
+
+
+@pytest.mark.parametrize("entry", ENTRIES, ids=lambda each: each.program[:40])
+def test_what_is_repaired_is_repaired_once(entry: Entry) -> None:
+    if entry.mended is not None:
+        assert fixed(entry.mended, check).text == entry.mended
+        assert mistakes(check(entry.mended)) <= mistakes(check(entry.program))
