@@ -132,9 +132,11 @@ def text_document() -> str:
 def promises_document() -> str:
     """Return `docs/promises.md` with the table of goals and figures."""
     from tools.campaign.table import HEAD, rows
+    from tools.mutation import rooms
 
     text = PROMISES_DOCUMENT.read_text(encoding="utf-8")
-    return spliced(text, "promises", table(HEAD, rows()))
+    text = spliced(text, "promises", table(HEAD, rows()))
+    return spliced(text, "mutation", table(rooms.HEAD, rooms.rows()))
 
 
 def spec() -> str:

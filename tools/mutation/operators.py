@@ -17,7 +17,7 @@ OPERATORS = {
     "<": "<=", "<=": "<", ">": ">=", ">=": ">", "==": "!=", "!=": "==", "&&": "||", "||": "&&",
     "+": "-", "-": "+", "*": "/", "/": "*", "%": "/", "&": "|", "|": "&", "^": "&", "<<": ">>",
     ">>": "<<", "+=": "-=", "-=": "+=", "^=": "|=", "%=": "/=", "&=": "|=", "|=": "&=",
-    "*=": "/=", ">>=": "<<=", "<<=": ">>=",
+    "*=": "/=", "/=": "*=", ">>=": "<<=", "<<=": ">>=",
 }  # fmt: skip
 OPERATOR = re.compile(r"(?<= )(?:[-+*/%&|^]=?|<<=?|>>=?|[<>]=?|[=!]=|&&|\|\|)(?= )")
 STEP = re.compile(r"\+\+|--")
@@ -37,7 +37,7 @@ def small_changes(sources: Path) -> list[Break]:
     for file, text in texts.items():
         if not has_code(file):
             continue
-        for start, end, instead in _changes(blanked(text)):
+        for start, end, instead in changes(blanked(text)):
             each = broken("change", "", file, texts, start, end, instead)
             name = f"{file}: `{each.was}` is `{each.becomes}`"
             numbers[name] += 1
@@ -47,7 +47,7 @@ def small_changes(sources: Path) -> list[Break]:
     return found
 
 
-def _changes(text: str) -> Iterator[tuple[int, int, str]]:
+def changes(text: str) -> Iterator[tuple[int, int, str]]:
     """Yield where to put what."""
     for place in OPERATOR.finditer(text):
         yield place.start(), place.end(), OPERATORS[place[0]]
