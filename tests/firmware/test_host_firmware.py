@@ -407,3 +407,16 @@ def test_one_clear_is_enough() -> None:
     assert not session.is_latched
     send(robot, session, AWAY)
     assert happened(robot)[-1] == "MOTORS 80 80"
+
+
+@pytest.mark.parametrize("text", ["SB|F(0.1, 50)", LONG.replace("SI|", "SB|")])
+def test_a_robot_tells_which_program_it_holds_before_it_is_saved(text: str) -> None:
+    """In one frame, and in several."""
+    robot, session = switched_on(), computer()
+    send(robot, session, "SB|F(0.1, 40)")
+    stored(robot, session)
+    send(robot, session, text)
+    request = session.status()
+    assert robot.until(session, request) == OK
+    assert outcome(request).values.program == image_of(text).checksum
+    assert outcome(request).values.saved != SAVED_STORED
