@@ -165,7 +165,7 @@ def test_who_uses_a_port_of_macos(tmp_path: Path) -> None:
     system.write(port, "")
     system.owners[port] = (0, True)
     system.outputs["lsof", "-F", "c", port] = "p812\ncArduino IDE\nf7\n"
-    assert computer.access(system, port).users == ("Arduino IDE",)
+    assert computer.access(system, port) == computer.Access(True, "", False, ("Arduino IDE",))
 
 
 PNPUTIL = ("pnputil", "/enum-devices", "/connected")
@@ -213,6 +213,7 @@ def test_this_computer_can_be_looked_at() -> None:
     assert found.platform == system.platform
     assert system.output("no-such-program-here") is None
     assert system.output("false") is None
+    assert system.output("echo", "here") == "here\n"
     assert system.text("/no/such/file") is None and system.names("/no/such") == []
     assert system.text("/dev/zero") is None and system.target("a\0b") is None
     assert system.owner("/no/such") is None

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import errno
 import os
+from argparse import Namespace
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any, cast
 
 import pytest
 
@@ -16,7 +18,11 @@ from tiniscript.doctor.diagnosis import Diagnosis, Doors, Question, diagnosed
 from tiniscript.doctor.examination import Expected
 from tiniscript.doctor.findings import CAUSES
 from tiniscript.link import ports
+from tiniscript.link.connection import LinkConnection
+from tiniscript.link.messages import STATUSES
+from tiniscript.link.outcomes import CANCELLED, LOST, Gone
 from tiniscript.link.ports import PortError
+from tiniscript.link.requests import Reply
 from tiniscript.link.wire import Wire
 from tiniscript.sharing.client import OtherVersion
 from tiniscript.sharing.registry import Registration
@@ -24,6 +30,33 @@ from tiniscript.sharing.registry import Registration
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="the trees have symbolic links")
 
 CABLE, RADIO = "/dev/ttyUSB0", "/dev/rfcomm0"
+
+
+class Shared:
+    """The connection of another tsc: its requests are answered with `replies`, or it is gone."""
+
+    def __init__(self, *replies: Reply[Any]) -> None:
+        self.replies = list(replies)
+        self.is_closed = False
+
+    def do(self, make: Callable[[Any], object]) -> object:
+        class Session:
+            def __getattr__(self, name: str) -> Callable[[], Namespace]:
+                return lambda: Namespace(name=name)
+
+        return make(Session())
+
+    def wait(self, request: Namespace) -> Reply[Any]:
+        assert request.name in ("hello", "status", "ping") and request.limit_ms > 0
+        if not self.replies:
+            raise Gone("")
+        return self.replies.pop(0)
+
+    def event(self, limit_s: float) -> None:
+        assert limit_s > 0
+
+    def close(self) -> None:
+        self.is_closed = True
 
 
 class Case:
@@ -39,6 +72,7 @@ class Case:
         self.wire: SimulatedWire | None = None
         self.asked: list[str] = []
         self.other: OtherVersion | None = None
+        self.shared: Shared | None = None
 
     def with_bluetooth(self, *paired: str, is_off: bool = False) -> Case:
         self.system.write("/sys/class/bluetooth/hci0/address", "0")
@@ -67,9 +101,10 @@ class Case:
             self.wire = SimulatedWire(self.end, baud)
             return self.wire
 
-        def join(name: str) -> None:
+        def join(name: str) -> LinkConnection | None:
             if self.other is not None:
                 raise self.other
+            return cast(LinkConnection, self.shared) if self.shared is not None else None
 
         def may_open(name: str) -> bool:
             self.asked.append(name)
@@ -228,6 +263,28 @@ def test_a_port_that_vanishes(case: Case, port: str, cause: str, is_sure: bool) 
 
     case.end, case.says_yes = Gone(), True
     assert case.cause(port) == (cause, is_sure)
+
+
+@pytest.mark.parametrize(
+    ("replies", "cause"),
+    [
+        ([], "port_gone"),
+        ([Reply(LOST)], "falls_silent"),
+        ([Reply(CANCELLED)], "falls_silent"),
+        ([Reply(STATUSES["OTHER_LINK"], 2)], "firmware_newer"),
+    ],
+)
+def test_through_another_tsc(case: Case, replies: list[Reply[Any]], cause: str) -> None:
+    case.shared = Shared(*replies)
+    diagnosis = case.diagnosis()
+    assert [each.cause for each in diagnosis.findings] == [cause]
+    assert diagnosis.is_opened and case.shared.is_closed
+    assert case.opened == []
+
+
+def test_what_was_not_opened_is_not_said_to_have_been(case: Case) -> None:
+    assert not case.diagnosis(None).is_opened
+    assert not case.failing(ports.SLOW).diagnosis(RADIO).is_opened
 
 
 def test_every_cause_has_a_test() -> None:

@@ -87,6 +87,7 @@ def test_only_questions_are_asked_of_a_robot_and_nothing_that_stops_it(is_radio:
         ({"kit": next(kit for kit, name in NAMES.items() if name == "liner")}, "wrong_kit"),
         ({"reset": reset("BROWN_OUT")}, "brown_out"),
         ({"reset": reset("WATCHDOG")}, "hung"),
+        ({"reset": 5}, "fine"),
         ({"reset": 99}, "fine"),
         ({"fault": STALL}, "hung"),
         ({"saved": SAVED_BY_NAME["LOW_SUPPLY"]}, "low_supply"),
@@ -107,7 +108,7 @@ def test_what_a_robot_tells(values: dict[str, int], cause: str) -> None:
 )
 def test_what_is_good_to_know_is_nothing_wrong(values: dict[str, int], cause: str) -> None:
     findings = found(Firmware(**values), kit=KIT)
-    assert [each.cause for each in findings] == [cause, "fine"]
+    assert [(each.cause, each.is_sure) for each in findings] == [(cause, True), ("fine", True)]
     assert not any(each.is_wrong for each in findings)
 
 
@@ -165,6 +166,28 @@ def test_a_radio_that_loses_much(is_radio: bool) -> None:
     finding = causes(end, is_radio=is_radio)["lossy"]
     assert finding.is_sure and int(finding.values["missed"]) >= 3
     assert int(finding.values["damaged"]) >= 3
+
+
+@pytest.mark.parametrize(("damaged", "is_lossy"), [(1, False), (2, True)])
+def test_a_robot_that_hears_badly_and_answers_all_the_same(damaged: int, is_lossy: bool) -> None:
+    class Noisy(Firmware):
+        def answer(self, data: bytes) -> bytes:
+            if len(self.requests) == 10:  # in the middle of the PINGs
+                self.counts["framing"] = damaged
+            return super().answer(data)
+
+    assert ("lossy" in causes(Noisy())) == is_lossy
+
+
+@pytest.mark.parametrize(("damaged", "is_lossy"), [(19, False), (20, True)])
+def test_how_bad_a_line_was_before(damaged: int, is_lossy: bool) -> None:
+    assert ("lossy" in causes(Firmware(overrun=damaged))) == is_lossy
+
+
+def test_a_robot_that_refuses_hello_for_another_reason_is_probably_older() -> None:
+    end = Firmware()
+    end.refuses = (STATUSES["BAD_LENGTH"], 0)
+    assert only(end) == ("firmware_older", False)
 
 
 def test_one_that_is_lost_among_twenty_is_no_bad_line() -> None:
