@@ -14,6 +14,7 @@ GREETINGS: tuple[tuple[Bootloader, bytes, bytes], ...] = (
     (NANO_OLD, b"\x30\x20", b"\x14\x10"),
     (MEGA, b"\x1b\x01\x00\x01\x0e\x01\x14", b"\x1b\x01\x00"),
 )
+BLINK_MS = 450  # Optiboot blinks first, and hears no more than two bytes meanwhile
 TRIES = 4
 ANSWER_MS = 200
 OVER_MS = 5000  # a bootloader that has heard nothing for so long has gone on to what is behind it
@@ -27,6 +28,7 @@ def answers(wire: Wire) -> tuple[Bootloader, bool] | None:
     for bootloader, greeting, answer in GREETINGS:
         wire.set_baud(bootloader.baud)
         wire.restart()
+        wire.heard(BLINK_MS, BLINK_MS)
         if _greeted(wire, greeting, answer):
             wire.heard(OVER_MS, OVER_MS)
             return bootloader, _greeted(wire, greeting, answer)
