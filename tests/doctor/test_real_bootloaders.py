@@ -1,4 +1,4 @@
-"""The bootloaders that boards come with, on a simulated board, are greeted as the doctor does it."""
+"""The bootloaders that boards come with, on a simulated board, greeted as the doctor does it."""
 
 from __future__ import annotations
 
