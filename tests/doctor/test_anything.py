@@ -1,0 +1,95 @@
+"""Whatever is at the other end, and whatever a computer tells: there is an answer, and soon."""
+
+from __future__ import annotations
+
+import random
+from pathlib import Path
+
+import pytest
+
+from tests.support.fake_computer import FakeComputer
+from tests.support.simulated_ends import Firmware, Nobody
+from tests.support.simulated_wire import SimulatedWire
+from tiniscript.doctor import computer
+from tiniscript.doctor.examination import Expected
+from tiniscript.doctor.findings import CAUSES
+from tiniscript.doctor.line import Line, looked
+from tiniscript.modules.talk import found
+
+WORDS = (
+    b"OK",
+    b"ERROR:(0)\r\n",
+    b"+VERSION:",
+    b"+ROLE:0",
+    b"OK+",
+    b"\r\n",
+    b"\x14\x10",
+    b"\0",
+    b"// ",
+)
+LONGEST_MS = 400_000  # of simulated time, for whoever never stops sending
+
+
+class Chance(Nobody):
+    """Sends words of modules, bootloaders and robots, and anything else."""
+
+    def __init__(self, seed: int) -> None:
+        super().__init__(random.Random(seed).choice((9600, 38400, 115200)))
+        self.chance = random.Random(seed)
+        self.rate = self.chance.choice((0.001, 0.02, 0.5))
+
+    def answer(self, data: bytes) -> bytes:
+        if self.chance.random() > self.rate and not data:
+            return b""
+        words = [self.chance.choice(WORDS) for _ in range(self.chance.randrange(4))]
+        return b"".join([*words, self.chance.randbytes(self.chance.randrange(3)), data[:3]])
+
+
+class Damaged(Firmware):
+    """A robot whose fields are anything, and whose answers are damaged at times."""
+
+    def __init__(self, seed: int) -> None:
+        super().__init__()
+        self.chance = random.Random(seed)
+        for key, value in self.hello.items():
+            if isinstance(value, int) and self.chance.random() < 0.3:
+                self.hello[key] = self.chance.randrange(256)
+        self.hello["name"] = self.chance.randbytes(self.chance.randrange(17))
+
+    def answer(self, data: bytes) -> bytes:
+        said = bytearray(super().answer(data))
+        if said and self.chance.random() < 0.1:
+            said[self.chance.randrange(len(said))] ^= 1 << self.chance.randrange(8)
+        return bytes(said)
+
+
+@pytest.mark.parametrize("seed", range(15))
+@pytest.mark.parametrize("kind", [Chance, Damaged])
+def test_anything_at_the_other_end(kind: type[Chance | Damaged], seed: int) -> None:
+    for is_radio in (False, True):
+        wire = SimulatedWire(kind(seed))
+        findings = looked(wire, Line(9600, is_radio, 1), Expected(None, "", lambda kit: None))
+        assert findings and {each.cause for each in findings} <= set(CAUSES)
+        assert wire.now_ms < LONGEST_MS
+    found(SimulatedWire(Chance(seed)))
+
+
+@pytest.mark.parametrize("platform", ["linux", "darwin", "win32"])
+@pytest.mark.parametrize("seed", range(10))
+def test_a_computer_that_tells_anything(tmp_path: Path, platform: str, seed: int) -> None:
+    chance = random.Random(seed)
+    parts = ('{"SPUSBDataType": [', "{}", "]}", "null", "[[", '"_items": 7', "Device", " ", ":",
+             "\n", "USB\\VID_1A86&PID_7523", "BTHENUM\\DEV_000000000000", "\0", "é")  # fmt: skip
+
+    class Any(FakeComputer):
+        def output(self, *words: str) -> str | None:
+            return "".join(chance.choice(parts) for _ in range(chance.randrange(12)))
+
+    system = Any(tmp_path, platform)
+    system.usb("1-1", *(chance.choice(("", "1a86", "7523", "\n")) for _ in range(2)))
+    system.write("/etc/group", "".join(chance.choice(("a:x:20:b", ":", "\n")) for _ in range(9)))
+    system.write("/sys/class/bluetooth/hci0/x", "")
+    system.owners["/dev/x"] = (20, True)
+    told = computer.looked(system)
+    assert told.bluetooth in (computer.ON, computer.OFF, computer.NONE, computer.UNKNOWN)
+    computer.access(system, "/dev/x")
