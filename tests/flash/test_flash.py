@@ -337,7 +337,7 @@ def test_what_came_with_the_package_is_listed(package: Path) -> None:
 @pytest.mark.parametrize(("words", "said"), [
     ([], "on which port"),
     (["--port", ""], "--port takes the name of a port"),
-    (["--port", "socket://localhost:1"], "is on a network"),
+    (["--port", "socket://localhost:1"], "is on a network or a radio"),
     (["--port", "/dev/none"], "there is no port /dev/none"),
     (["--port", "x", "--board", "teensy"], "uno, nano, nano-old or mega, not teensy"),
     (["--port", "x", "--robot", "grabber", "--board", "uno"], "does not fit the board uno"),

@@ -105,6 +105,7 @@ def test_an_adapter_that_is_gone_ends_the_command(
     done = command.ended()
     assert done.code == 3
     assert "the Bluetooth connection" in done.err
+    assert done.err.count("\n") == 1  # nothing of bleak's
     moves_on_its_own(ble)
     done = process("stop", "--port", PLACE, "--lang", "es")
     said = "el servicio de Bluetooth" if what == "vanish" else "el Bluetooth de esta computadora"

@@ -8,6 +8,7 @@ from __future__ import annotations
 import asyncio
 import os
 from collections.abc import Callable
+from contextlib import suppress
 
 from tests.machines import host_firmware
 from tests.support import fake_bluez
@@ -113,14 +114,20 @@ class BleRobot(Peripheral):
     def part(self) -> None:
         self.loop.remove_reader(self._uart)
         if self.service == HM10:
-            os.write(self._uart, b"OK+LOST")  # as such modules do
+            with suppress(OSError):  # the robot is gone already
+                os.write(self._uart, b"OK+LOST")  # as such modules do
 
     def clear_away(self) -> None:
         self.loop.remove_reader(self._uart)
         os.close(self._uart)
 
     def _pass_on(self) -> None:
-        data = os.read(self._uart, self.mtu - 3)
+        data = b""
+        with suppress(OSError):
+            data = os.read(self._uart, self.mtu - 3)
+        if not data:  # the robot is gone
+            self.loop.remove_reader(self._uart)
+            return
         self.said.append(data)
         if self.late_s:
             self.loop.call_later(self.late_s, self.tell, data)

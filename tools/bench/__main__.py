@@ -18,6 +18,7 @@ BENCHMARKS = (
     "link",
     "virtual",
     "upload",
+    "bluetooth",
     "firmware_size",
     "machine_size",
     "link_size",

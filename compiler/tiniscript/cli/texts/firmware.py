@@ -21,8 +21,8 @@ FLASH_TEXTS: dict[str, tuple[str, str]] = {
     # wrong use
     "flash_no_port": ("tsc: on which port is the board? Name it with --port. The ports here:  tsc ports",
                       "tsc: ¿en qué puerto está la placa? Nómbralo con --port. Los puertos de aquí:  tsc ports"),
-    "flash_address": ("tsc: a firmware goes over the board's USB cable, and {port} is on a network. Plug the board into this computer; the ports here:  tsc ports",
-                      "tsc: un firmware va por el cable USB de la placa, y {port} está en una red. Conecta la placa a esta computadora; los puertos de aquí:  tsc ports"),
+    "flash_address": ("tsc: a firmware goes over the board's USB cable, and {port} is on a network or a radio. Plug the board into this computer; the ports here:  tsc ports",
+                      "tsc: un firmware va por el cable USB de la placa, y {port} está en una red o una radio. Conecta la placa a esta computadora; los puertos de aquí:  tsc ports"),
     "flash_no_fit": ("tsc: the robot {robot} does not fit the board {board}. It fits: {known}.",
                      "tsc: el robot {robot} no va con la placa {board}. Va con: {known}."),
     # it cannot be built
