@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+import tiniscript
 from tests.support.ble_robot import (
     ADDRESS,
     DRIVE,
@@ -152,8 +153,12 @@ def test_a_command_that_is_killed_leaves_a_robot_that_stops_and_can_be_reached(
 # -- which robot --------------------------------------------------------------------------------
 
 
-def test_of_two_with_one_name_none_is_taken(ble: BleRobot, bluez: FakeBluez) -> None:
-    bluez.add(Peripheral("TINI 1", OTHER))
+@pytest.mark.parametrize("late", [0, 4])
+def test_of_two_with_one_name_none_is_taken(ble: BleRobot, bluez: FakeBluez, late: int) -> None:
+    """Also where one says its name later."""
+    twin = Peripheral("TINI 1", OTHER)
+    twin.late = late
+    bluez.add(twin)
     done = process("upload", "-e", DRIVE, "--port", NAME)
     assert done.code == 3
     assert f"several robots are called {NAME}" in done.err
@@ -225,6 +230,18 @@ def test_nobody_is_in_reach(ble: BleRobot) -> None:
     ble.is_on = False
     done = process("ping", "--port", NAME, "--lang", "es")
     assert (done.code, "ni otro robot con Bluetooth LE" in done.err) == (3, True)
+
+
+def test_a_connection_that_is_closed_is_free_while_its_process_goes_on(
+    ble: BleRobot, bluez: FakeBluez
+) -> None:
+    for count in (1, 2):
+        with tiniscript.connect(PLACE) as robot:
+            robot.upload(DRIVE)
+            robot.wait()
+            assert bluez.devices[ADDRESS].is_connected
+        assert not bluez.devices[ADDRESS].is_connected
+        assert ble.connections == count
 
 
 def test_the_library_drives_it_too(ble: BleRobot) -> None:

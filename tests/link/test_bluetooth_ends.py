@@ -24,6 +24,7 @@ from tests.support.ble_robot import (
 )
 from tests.support.command import LONG, Tsc, process
 from tests.support.fake_bluez import FakeBluez
+from tiniscript.link import ports
 
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a bus")
 
@@ -81,6 +82,19 @@ def test_a_robot_out_of_reach_stops_and_the_command_says_so(
     assert f"the Bluetooth connection to {PLACE} has ended" in done.err
     moves_on_its_own(ble)
     assert process("upload", "-e", DRIVE, "--port", NAME).code == 0
+
+
+def test_the_end_of_a_connection_is_heard_by_who_only_reads(
+    ble: BleRobot, bluez: FakeBluez
+) -> None:
+    port = ports.opened(PLACE, 9600)
+    assert port.read(1) == b""
+    bluez.part(ble)
+    with pytest.raises(OSError, match="has ended"):
+        ble.robot.until(lambda: bool(port.read(1)), "it ends")
+    with pytest.raises(OSError, match="has ended"):
+        port.write(b"1")
+    port.close()
 
 
 def test_a_line_after_a_lost_connection_ends_live(ble: BleRobot, bluez: FakeBluez) -> None:
@@ -154,7 +168,6 @@ def test_a_bus_that_lets_nobody_in(bluez: FakeBluez, monkeypatch: pytest.MonkeyP
     from bleak.exc import BleakDBusError
 
     from tiniscript.link import bluetooth_search as search
-    from tiniscript.link import ports
 
     for reason, name in (
         (Reason.DENIED_BY_USER, ports.RADIO_FORBIDDEN),

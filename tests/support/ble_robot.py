@@ -34,8 +34,8 @@ DROVE = ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
 class Peripheral:
     """A module without a robot: it hears and says nothing.
 
-    `fails_at`: its connection ends at `connect`, `services` or `notify`; `parts_after`: after so
-    many bytes that it has heard.
+    It says its name from the `late`th advertisement on. `fails_at`: its connection ends at
+    `connect`, `services` or `notify`; `parts_after`: after so many bytes that it has heard.
     """
 
     tell: Callable[[bytes], None]
@@ -50,6 +50,7 @@ class Peripheral:
         self.mtu = mtu
         self.characteristics = CHARACTERISTICS[service]
         self.is_on = True
+        self.late = 0
         self.fails_at = ""
         self.parts_after: int | None = None
         self.connections = 0

@@ -60,6 +60,7 @@ class Adapter(ServiceInterface):
         super().__init__("org.bluez.Adapter1")
         self.bluez = bluez
         self.is_powered = True
+        self.rounds = 0
         self.is_scanning = False
 
     @dbus_method()
@@ -71,6 +72,7 @@ class Adapter(ServiceInterface):
         if not self.is_powered:
             raise DBusError("org.bluez.Error.NotReady", "Resource Not Ready")
         self.is_scanning = True
+        self.rounds = 0  # of advertisements in this scan
         self.bluez.advertise()
 
     @dbus_method()
@@ -350,8 +352,10 @@ class FakeBluez:
         """Let peripherals be seen, as long as a program scans."""
         if not self.adapter.is_scanning:
             return
+        self.adapter.rounds += 1
         for device in self.devices.values():
-            if device.peripheral.is_on and not device.is_connected:
+            is_late = device.peripheral.late > self.adapter.rounds
+            if device.peripheral.is_on and not is_late and not device.is_connected:
                 device.advertise()
         self.loop.call_later(ADVERTISED_S, self.advertise)
 

@@ -1,0 +1,81 @@
+"""The event loop of the libraries that need one: results, failures, and what is cancelled."""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+
+import pytest
+
+from tests.support.command import Command
+from tiniscript.link import event_loop
+from tiniscript.link.event_loop import EventLoop
+
+
+async def fail() -> None:
+    raise ValueError("so it is")
+
+
+class Endless:
+    """A coroutine that ends when it is cancelled."""
+
+    def __init__(self) -> None:
+        self.has_begun = threading.Event()
+        self.is_cancelled = False
+
+    async def work(self) -> None:
+        self.has_begun.set()
+        try:
+            await asyncio.Event().wait()
+        finally:
+            self.is_cancelled = True
+
+
+def test_results_and_failures_come_back() -> None:
+    loop = EventLoop()
+    assert loop.run(asyncio.sleep(0, "done"), 10) == "done"
+    with pytest.raises(ValueError, match="so it is"):
+        loop.run(fail(), 10)
+    loop.close()
+    loop.close()  # as at the end of the process
+
+
+def test_what_takes_too_long_is_cancelled_before_the_failure() -> None:
+    loop, endless = EventLoop(), Endless()
+    with pytest.raises(TimeoutError):
+        loop.run(endless.work(), 0)
+    loop.run(asyncio.sleep(0), 10)
+    assert endless.is_cancelled or not endless.has_begun.is_set()
+    loop.close()
+
+
+def test_ctrl_c_cancels_what_it_interrupts(monkeypatch: pytest.MonkeyPatch) -> None:
+    loop, endless = EventLoop(), Endless()
+
+    def interrupted(*_: object) -> None:
+        assert endless.has_begun.wait(10)
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
+        patch.setattr(event_loop, "wait", interrupted)
+        loop.run(endless.work(), 10)
+    assert endless.is_cancelled
+    loop.close()
+
+
+def test_the_end_of_a_process_cancels_what_runs() -> None:
+    code = (
+        "import asyncio, threading\n"
+        "from tiniscript.link.event_loop import shared\n"
+        "begun = threading.Event()\n"
+        "async def work():\n"
+        "    begun.set()\n"
+        "    try: await asyncio.Event().wait()\n"
+        "    finally: print('cancelled', flush=True)\n"
+        "async def begin():\n"
+        "    global task\n"
+        "    task = asyncio.create_task(work())\n"
+        "shared().run(begin(), 10); begun.wait(10)\n"
+    )
+    done = Command(code=code).ended()
+    assert (done.code, done.out, done.err) == (0, "cancelled\n", "")
