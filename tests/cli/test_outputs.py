@@ -36,12 +36,16 @@ needs_links = pytest.mark.skipif(os.name == "nt", reason="Windows wants a right 
 def arguments(verb: str, files: dict[str, Path]) -> list[str]:
     """Return the words of a command with these files for its options."""
     known = values_of(PARSERS[verb])
-    words = [verb]
+    words = [verb, "check", "1"] if verb == "lesson" else [verb]
     if "program" in known and "program" not in files:
         words += ["-e", PROGRAM]
     for dest, path in files.items():
         words += [known[dest], str(path)] if known[dest] else [str(path)]
-    return [*words, "--virtual"] if {"plot"} & set(files) and verb != "robot" else words
+    return (
+        [*words, "--virtual"]
+        if {"plot"} & set(files) and verb not in ("robot", "lesson")
+        else words
+    )
 
 
 def test_every_option_that_takes_a_value_is_known_to_name_a_file_or_not() -> None:
@@ -64,6 +68,7 @@ def test_every_file_that_the_command_writes_comes_from_such_an_option() -> None:
         "outputs.write(target,": "output",  # of compile
         "outputs.write(Path(options.output),": "output",
         "outputs.write(Path(options.map),": "map",
+        "outputs.write(Path(options.csv),": "csv",
         "outputs.write(Path(options.plot),": "plot",
         "outputs.write(Path(options.report),": "report",
         "outputs.write(Path(self.options.memory),": "memory",

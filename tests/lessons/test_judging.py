@@ -9,9 +9,10 @@ import pytest
 from tests.machines.wasm import missing
 from tiniscript import robots
 from tiniscript.lessons import catalogue, running
-from tiniscript.lessons.judging import judged, judged_text
+from tiniscript.lessons.judging import judged
 from tiniscript.lessons.lesson import Lesson
 from tiniscript.lessons.sentences import SENTENCES, sentence
+from tiniscript.lessons.text_judging import judged_text
 from tiniscript.lessons.variation import point_of, varied
 from tiniscript.library.compiling import compiled, image_of
 

@@ -9,11 +9,12 @@ import pytest
 
 from tests.machines.wasm import missing
 from tiniscript import robots
-from tiniscript.lessons import catalogue
-from tiniscript.lessons.judging import JUDGES, OF_TEXT, Finding, judged, judged_text
+from tiniscript.lessons import catalogue, text_judging
+from tiniscript.lessons.judging import JUDGES, Finding, judged
 from tiniscript.lessons.lesson import Answer, Lesson
 from tiniscript.lessons.markdown import blocks
 from tiniscript.lessons.sentences import sentence
+from tiniscript.lessons.text_judging import judged_text
 from tiniscript.library.compiling import compiled, image_of
 from tiniscript.robots.profile import LANGUAGES
 
@@ -151,7 +152,7 @@ def test_no_page_tells_the_answer(folder: Path) -> None:
 def test_every_criterion_is_judged() -> None:
     from tiniscript.lessons.criteria import KINDS
 
-    assert {*JUDGES, *OF_TEXT} == set(KINDS)
+    assert {*JUDGES, *text_judging.JUDGES} == set(KINDS)
 
 
 def test_spanish_speaks_to_one_pupil() -> None:

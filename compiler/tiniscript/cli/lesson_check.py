@@ -70,7 +70,7 @@ def check(options: Namespace, lesson: Lesson, language: str) -> int:
     if options.csv is not None:
         outputs.write(Path(options.csv), _rows(marks), "unwritable_rows")
     if options.plot is not None and marks[0].run is not None:
-        _draw(Path(options.plot), marks[0].run, language)
+        outputs.write(Path(options.plot), _picture(marks[0].run, language), "unwritable_picture")
     if options.json:
         print(json.dumps([_data(mark) for mark in marks], indent=2, ensure_ascii=False))
     elif _is_folder(options):
@@ -114,7 +114,8 @@ class _Marker:
             from tiniscript.cli.robot.simulator_options import not_installed
 
             raise not_installed("virtual_needs_wasmtime", why) from None
-        from tiniscript.lessons.judging import judged, judged_text
+        from tiniscript.lessons.judging import judged
+        from tiniscript.lessons.text_judging import judged_text
         from tiniscript.library.compiling import image_of
         from tiniscript.virtual.world import WorldRefused
 
@@ -249,13 +250,12 @@ def _rows(marks: Sequence[Mark]) -> bytes:
     return file.getvalue().encode("utf-8-sig", "backslashreplace")
 
 
-def _draw(path: Path, run: Run, language: str) -> None:
+def _picture(run: Run, language: str) -> bytes:
     from tiniscript.virtual.picture import png
 
     robot = run.robot
     title = f"{robot.profile.labels[language]['robot']} - {robot.world.labels[language]}"
-    image = png(robot.world, robot.driving.hull, robot.driving.corners, robot.pose, title)
-    outputs.write(path, image, "unwritable_picture")
+    return png(robot.world, robot.driving.hull, robot.driving.corners, robot.pose, title)
 
 
 __all__ = ("FAILED", "MISTAKES", "PASSED", "UNREADABLE", "Mark", "check")

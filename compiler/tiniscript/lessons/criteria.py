@@ -1,7 +1,7 @@
 """The kinds of criteria: one table, which says what each takes.
 
-Knows keys, ranges and defaults. Does not know how a run is judged: `judging` has a function for
-each kind.
+Knows keys, ranges and defaults. Does not know how a run is judged: `judging` and
+`text_judging` have a function for each kind.
 """
 
 from __future__ import annotations

@@ -1,17 +1,15 @@
 """Compares a run with the criteria of a lesson: what is missing becomes findings.
 
 A finding is the name of a sentence and the values of its gaps; `sentences` makes words of it.
-Knows no languages.
+Knows no languages, and no texts of programs: `text_judging` looks at those.
 """
 
 from __future__ import annotations
 
 import math
-from collections import Counter
 from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
-from tiniscript import robots
 from tiniscript.fixed_point import ONE, as_text
 from tiniscript.lessons.criteria import ANY_VALUE
 from tiniscript.lessons.lesson import Criterion, Lesson
@@ -19,14 +17,12 @@ from tiniscript.lessons.reader import TIME
 from tiniscript.lessons.running import ASKS, BUSY, DONE, FAULT, LIMIT, Run, Sample, Shown
 from tiniscript.lessons.variation import is_mirrored, point_of
 from tiniscript.robots.kinematics import Pose
-from tiniscript.syntax.lexer import WORD, scan
 from tiniscript.virtual.geometry import Point, joined, seen
 from tiniscript.virtual.geometry import distance as distance_to
 from tiniscript.virtual.sensing import CONE
 
 STILL_CM, STILL_DEGREES = 1.0, 5.0  # less is no move
 SAMPLE_CM = 5.0  # between two points of a line that is followed
-MOVES = frozenset("FBLRM")
 MOVING = frozenset({"ends_in", "reaches", "stands_before", "follows", "drives", "faces"})
 AT_END = frozenset({"ends_in", "stands_before", "faces"})  # where the robot is when it is over
 WHERE = AT_END | {"reaches"}
@@ -52,15 +48,6 @@ class Task(NamedTuple):
 
     def point(self, criterion: Criterion, number: int = 0) -> Point:
         return point_of(criterion.places[number], self.run.world, self.mirrored)
-
-
-def judged_text(text: str, lesson: Lesson) -> list[Finding]:
-    """Return what is missing in a program's text, whatever it does."""
-    words = [token.text for token in scan(text).tokens if token.kind == WORD]
-    judges = {"uses": _uses, "moves": _moves}
-    question = {"question": _question(lesson.robot)}
-    found = (judges[each.kind](each, words) for each in lesson.criteria if each.kind in judges)
-    return [each._replace(values={**each.values, **question}) for each in found if each]
 
 
 def judged(run: Run, lesson: Lesson) -> list[Finding]:
@@ -384,32 +371,6 @@ def _beeps(criterion: Criterion, task: Task) -> Finding | None:
     return Finding("beeps", "beeps/pitches", values) if different < pitches else None
 
 
-# -- the text -------------------------------------------------------------------------------------
-
-
-def _question(robot: str) -> str:
-    """Return a question that a robot can answer, for examples: a yes/no sensor, or a distance."""
-    sensors = robots.load(robot).kit.sensors
-    yes_no = [device.name for device in sensors if device.is_yes_no]
-    return yes_no[0] if yes_no else "DISTANCE < 15"
-
-
-def _uses(criterion: Criterion, words: list[str]) -> Finding | None:
-    times, counted = int(criterion.numbers["times"]), Counter(words)
-    for word in criterion.words:
-        if counted[word] < times:
-            key = "uses/none" if not counted[word] else "uses/few"
-            values = {"word": word, "times": str(times), "found": str(counted[word])}
-            return Finding("uses", key, values)
-    return None
-
-
-def _moves(criterion: Criterion, words: list[str]) -> Finding | None:
-    most, found = int(criterion.numbers["at_most"]), sum(word in MOVES for word in words)
-    values = {"found": str(found), "most": str(most)}
-    return Finding("moves", "moves", values) if found > most else None
-
-
 JUDGES: dict[str, Callable[[Criterion, Task], Finding | None]] = {
     "ends_in": _ends_in,
     "reaches": _reaches,
@@ -425,4 +386,3 @@ JUDGES: dict[str, Callable[[Criterion, Task], Finding | None]] = {
     "order": _order,
     "ends": _ends,
 }
-OF_TEXT = ("uses", "moves")  # `judged_text` has these
