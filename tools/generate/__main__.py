@@ -139,6 +139,23 @@ def promises_document() -> str:
     return spliced(text, "mutation", table(rooms.HEAD, rooms.rows()))
 
 
+def lessons_document() -> str:
+    """Return `docs/lessons.en.md` with the table of criteria."""
+    from tiniscript.lessons.criteria import KINDS
+
+    rows = []
+    for name, kind in KINDS.items():
+        takes = ["`at`"] * bool(kind.places)
+        if kind.words:
+            takes.append("`what`" if kind.words == "sensor" else "`words`")
+        for each in kind.numbers:
+            is_said = each.default is not None and each.default < each.high
+            takes.append(f"`{each.key}`" + (f" ({each.default:g})" if is_said else ""))
+        rows.append((f"`{name}`", kind.meaning, ", ".join(takes)))
+    made = table(("criterion", "met if", "takes"), rows)
+    return spliced(LESSONS_DOCUMENT.read_text(encoding="utf-8"), "criteria", made)
+
+
 def spec() -> str:
     """Return `bytecode_spec.md` with the tables that it takes from the compiler."""
     text = SPEC.read_text(encoding="utf-8")
@@ -354,6 +371,7 @@ LINK = ROOT / "vm_arduino" / "src" / "link"
 LINK_DOCUMENT = ROOT / "docs" / "link.md"
 TEXT_DOCUMENT = ROOT / "docs" / "text.md"
 PROMISES_DOCUMENT = ROOT / "docs" / "promises.md"
+LESSONS_DOCUMENT = ROOT / "docs" / "lessons.en.md"
 PAYLOADS = ROOT / "compiler" / "tiniscript" / "link" / "payloads.py"
 TEXT = ROOT / "vm_arduino" / "src" / "text"
 WIRED = ROOT / "vm_arduino" / "src" / "boards" / "kits"
@@ -381,6 +399,7 @@ OUTPUTS: list[tuple[Path, Callable[[], str]]] = [
     (LINK_DOCUMENT, link_document),
     (TEXT_DOCUMENT, text_document),
     (PROMISES_DOCUMENT, promises_document),
+    (LESSONS_DOCUMENT, lessons_document),
     (PAYLOADS, link_payloads),
     *((ROOT / "docs" / name, partial(command_page, language)) for language, name in PAGES.items()),
     (ROOT / "vm_arduino" / "test" / "cases.h", cpp_cases),

@@ -52,7 +52,7 @@ KINDS: dict[str, Kind] = {
     "shows": Kind("it shows a value: any, this one, or that of a sensor or of TIME at that moment",
                   (TIMES, Number("value", -MOST, MOST, MOST + 1), Number("tolerance", 0, MOST, 0)), words="sensor"),
     "beeps": Kind("its buzzer sounds so often, at so many different pitches", (TIMES, Number("pitches", 1, 100, 1))),
-    "order": Kind("these things happen one after the other", words="event"),
+    "order": Kind("these things happen one after the other: moves, stops, beeps, shows", words="event"),
     "ends": Kind("the program ends by itself"),
     "uses": Kind("the text has these words, each so often", (TIMES,), words="word"),
     "moves": Kind("the text has at most so many moves", (Number("at_most", 1, 1000),)),
