@@ -141,19 +141,9 @@ def promises_document() -> str:
 
 def lessons_document() -> str:
     """Return `docs/lessons.en.md` with the table of criteria."""
-    from tiniscript.lessons.criteria import KINDS
+    from tools.generate.lesson_table import criteria
 
-    rows = []
-    for name, kind in KINDS.items():
-        takes = ["`at`"] * bool(kind.places)
-        if kind.words:
-            takes.append("`what`" if kind.words == "sensor" else "`words`")
-        for each in kind.numbers:
-            is_said = each.default is not None and each.default < each.high
-            takes.append(f"`{each.key}`" + (f" ({each.default:g})" if is_said else ""))
-        rows.append((f"`{name}`", kind.meaning, ", ".join(takes)))
-    made = table(("criterion", "met if", "takes"), rows)
-    return spliced(LESSONS_DOCUMENT.read_text(encoding="utf-8"), "criteria", made)
+    return spliced(LESSONS_DOCUMENT.read_text(encoding="utf-8"), "criteria", table(*criteria()))
 
 
 def spec() -> str:
