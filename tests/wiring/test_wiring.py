@@ -147,7 +147,7 @@ def test_both_languages_have_the_same_rows(robot: Robot) -> None:
         (block.kind, len(block.rows)) for block in spanish
     ]
     tables = [(block.rows, other.rows) for block, other in zip(english, spanish, strict=True)
-              if block.kind == "table"]  # fmt: skip
+              if block.kind == "ticks"]  # fmt: skip
     for ours, theirs in tables:
         for row, other in zip(ours, theirs, strict=True):
             assert re.findall(r"\d+ k?Ω", " ".join(row)) == re.findall(r"\d+ k?Ω", " ".join(other))
@@ -155,6 +155,30 @@ def test_both_languages_have_the_same_rows(robot: Robot) -> None:
     assert [row[1] for row in wires[1:]] == [row[1] for row in same[1:]]
     assert [row[0].split(" ")[0] for row in wires[1:]] == [row[0].split(" ")[0] for row in same[1:]]
     assert {"5V", "GND"} <= {row[0] for row in rails}
+
+
+@each_robot
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_every_wire_has_a_row_to_tick(robot: Robot, language: str) -> None:
+    """The wires of pins, and those of power and GND: each end that is joined has its own row."""
+    plan = plan_of(robot, language)
+    wires, rails = (block.rows[1:] for block in page_of(plan) if block.kind == "ticks")
+    assert len(wires) == len(plan.wires) + plan.has_lamp
+    joined = [row[2] for row in rails]
+    assert len(joined) == len(set(zip((row[0] for row in rails), joined, strict=True)))
+    for part in plan.parts:
+        for end in part.ends:
+            if end.rail:
+                assert (end.rail, f"{part.title}: {end.name}") in {(r[0], r[2]) for r in rails}
+    page = html_of(plan)
+    assert page.count('<td data-head="') == sum(len(row) for row in (*wires, *rails))
+
+
+@each_robot
+def test_a_wheel_that_turns_the_wrong_way_is_mended_by_trim(robot: Robot) -> None:
+    for language in LANGUAGES:
+        (checks,) = (each for each in page_of(plan_of(robot, language)) if each.kind == "checks")
+        assert "tsc trim" in checks.rows[-1][0]
 
 
 def test_every_text_has_the_same_gaps_in_both_languages() -> None:

@@ -7,7 +7,9 @@ from tiniscript.lessons.criteria import KINDS, Kind
 
 def criteria() -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
     """Return its head and its rows."""
-    rows = [(f"`{name}`", kind.meaning, ", ".join(_takes(kind))) for name, kind in KINDS.items()]
+    rows: list[tuple[str, ...]] = [
+        (f"`{name}`", kind.meaning, ", ".join(_takes(kind))) for name, kind in KINDS.items()
+    ]
     return ("criterion", "met if", "takes"), rows
 
 

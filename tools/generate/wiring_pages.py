@@ -43,9 +43,9 @@ def _block(block: Block, drawing: str) -> str:
     words = _words(block.words)
     if block.kind == "drawing":
         return f"{words}\n\n![{words}]({drawing})"
-    if block.kind == "table":
+    if block.kind == "ticks":
         head, *rows = block.rows
-        lines = [head, ("---",) * len(head), *rows]
+        lines = [head, ("---",) * len(head), *((f"☐ {first}", *row) for first, *row in rows)]
         return "\n".join(f"| {' | '.join(_words(cell) for cell in line)} |" for line in lines)
     if block.kind in ("list", "checks"):
         mark = "- [ ]" if block.kind == "checks" else "-"

@@ -13,7 +13,7 @@ from tiniscript.lessons.map import plan
 from tiniscript.lessons.markdown import Block, blocks
 
 STYLE = """\
-@page { size: A4; margin: 14mm; }
+@page { size: A4; margin: 11mm 13mm; }
 body { font-family: 'DejaVu Sans', Verdana, Arial, sans-serif; line-height: 1.4; color: #111;
   background: #fff; max-width: 800px; margin: 1em auto; padding: 0 1em; }
 h1, h2 { line-height: 1.2; break-after: avoid; }
@@ -22,7 +22,7 @@ h2 { margin: 1em 0 0.3em; border-bottom: 2px solid #333; font-size: 1.15em; }
 p, ul, ol { margin: 0.4em 0; }
 p.names { display: flex; gap: 1em; border-bottom: 1px solid #777; padding-bottom: 0.6em; }
 p.names span { flex: 1; }
-svg { display: block; width: 100%; max-height: 62mm; margin: 0.6em 0; break-inside: avoid; }
+svg { display: block; width: 100%; max-height: 62mm; margin: 0.5em 0; break-inside: avoid; }
 pre { background: #f3f3f3; border: 1px solid #999; padding: 0.5em 0.8em; margin: 0.4em 0;
   white-space: pre-wrap; break-inside: avoid; }
 pre, code { font-family: 'DejaVu Sans Mono', Consolas, monospace; font-size: 0.95em; }
@@ -35,7 +35,10 @@ ul.checks { list-style: none; padding-left: 1.6em; }
 ul.checks li { text-indent: -1.6em; }
 ul.checks li::before { content: "\\2610"; display: inline-block; width: 1.33em; font-size: 1.2em;
   text-indent: 0; }
-@media print { body { font-size: 10.5pt; max-width: none; margin: 0; padding: 0; } }
+@media print {
+  body { font-size: 9.5pt; line-height: 1.32; max-width: none; margin: 0; padding: 0; }
+  svg { max-height: 46mm; }
+}
 """
 NAMES = {"en": ("Names:", "Robot:", "Date:"), "es": ("Nombres:", "Robot:", "Fecha:")}
 PLAN = {

@@ -27,6 +27,16 @@ ul.checks { list-style: none; padding-left: 2em; }
 ul.checks li { text-indent: -2em; }
 ul.checks li::before { content: "\\2610"; display: inline-block; width: 1.67em; font-size: 1.2em;
   text-indent: 0; }
+td:first-child::before { content: "\\2610"; display: inline-block; width: 1.5em; }
+@media screen and (max-width: 640px) {
+  thead { display: none; }
+  table, tbody, tr, td { display: block; border: 0; }
+  tr { border: 1px solid #777; margin: 0.5em 0; padding: 0.2em 0.4em; }
+  td { padding: 0.1em 0; }
+  td:first-child { font-weight: bold; white-space: normal; }
+  td:not(:first-child)::before { content: attr(data-head) ": "; color: #555; }
+  td:empty { display: none; }
+}
 @media print {
   body { font-size: 10.5pt; max-width: none; margin: 0; padding: 0; }
   svg { max-height: 236mm; break-after: page; }
@@ -55,10 +65,11 @@ def _words(words: str) -> str:
 def _block(block: Block, plan: Plan) -> str:
     if block.kind == "drawing":
         return f"<p>{_words(block.words)}</p>\n{drawing_of(plan)}"
-    if block.kind == "table":
+    if block.kind == "ticks":
         head, *rows = block.rows
-        lines = "\n".join(_row(row, "td") for row in rows)
-        return f"<table>\n<thead>{_row(head, 'th')}</thead>\n<tbody>\n{lines}\n</tbody>\n</table>"
+        lines = "\n".join(_row(row, head) for row in rows)
+        heads = "".join(f"<th>{_words(cell)}</th>" for cell in head)
+        return f"<table>\n<thead><tr>{heads}</tr></thead>\n<tbody>\n{lines}\n</tbody>\n</table>"
     if block.kind in ("list", "checks"):
         items = "\n".join(f"<li>{_words(item)}</li>" for (item,) in block.rows)
         mark = ' class="checks"' if block.kind == "checks" else ""
@@ -67,5 +78,10 @@ def _block(block: Block, plan: Plan) -> str:
     return f"<{tag}>{_words(block.words)}</{tag}>"
 
 
-def _row(cells: tuple[str, ...], tag: str) -> str:
-    return "<tr>" + "".join(f"<{tag}>{_words(cell)}</{tag}>" for cell in cells) + "</tr>"
+def _row(cells: tuple[str, ...], head: tuple[str, ...]) -> str:
+    """Return a row; each cell knows its column, which a narrow screen shows beside it."""
+    found = (
+        f'<td data-head="{escape(name)}">{_words(cell)}</td>'
+        for cell, name in zip(cells, head, strict=True)
+    )
+    return f"<tr>{''.join(found)}</tr>"

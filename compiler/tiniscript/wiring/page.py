@@ -15,14 +15,17 @@ from tiniscript.wiring.texts import text
 
 
 class Block(NamedTuple):
-    """A piece of a page. `kind` is one of KINDS; a table's first row is its head."""
+    """A piece of a page. `kind` is one of KINDS; the first row of `ticks` is its head.
+
+    `ticks` is a table with a box to tick in each row.
+    """
 
     kind: str
     words: str = ""
     rows: tuple[tuple[str, ...], ...] = ()
 
 
-KINDS = ("title", "heading", "paragraph", "drawing", "list", "checks", "table")
+KINDS = ("title", "heading", "paragraph", "drawing", "list", "checks", "ticks")
 
 
 def page_of(plan: Plan) -> list[Block]:
@@ -75,10 +78,10 @@ class _Page:
             Block("list", rows=_column(self._needs())),
             Block("heading", say("wires")),
             Block("paragraph", say("wires_intro")),
-            Block("table", rows=tuple(wire_rows(self.plan))),
+            Block("ticks", rows=tuple(wire_rows(self.plan))),
             Block("heading", say("rails")),
             Block("paragraph", say("rails_intro")),
-            Block("table", rows=tuple(self._rails())),
+            Block("ticks", rows=tuple(self._rails())),
             *(Block("paragraph", words) for words in self._others()),
             Block("list", rows=_column(self._power())),
             Block("heading", say("mind")),
@@ -107,6 +110,7 @@ class _Page:
         return needs
 
     def _rails(self) -> list[tuple[str, ...]]:
+        """Return a row for each wire that joins power or GND, its head first."""
         rows = [tuple(self.say(key) for key in ("head_tag", "head_colour", "head_joined"))]
         for rail in self.plan.rails:
             colour = self.say("colour_black" if rail == GROUND else "colour_red")
@@ -119,7 +123,7 @@ class _Page:
                     for end in part.ends
                     if end.rail == rail or (end.name == rail and end.wire)
                 ]
-            rows.append((rail, colour, ", ".join(joined)))
+            rows += [(rail, colour, each) for each in joined]
         return rows
 
     def _others(self) -> list[str]:
@@ -186,8 +190,7 @@ class _Page:
         if self.driver == "l298n":
             said.append(self.say("check_jumpers"))
         said += [self.say(key) for key in ("check_divider", "check_bare", "check_unplugged")]
-        way = "check_way_servos" if self.driver == "servos" else "check_way"
-        return [*said, self.say("check_hot"), self.say(way)]
+        return [*said, self.say("check_hot"), self.say("check_way")]
 
 
 def _is_grounded(part: Part) -> bool:

@@ -194,10 +194,8 @@ TEXTS: dict[str, tuple[str, str]] = {
     "check_unplugged": ("For the firmware: RXD and TXD of the HC-05 are unplugged.", "Para el firmware: RXD y TXD del HC-05 están desconectados."),
     "check_hot": ("After switching on: does anything get hot or smell? Switch off at once and look again.",
                   "Después de encender: ¿algo se calienta o huele? Apaga en el acto y revisa otra vez."),
-    "check_way": ("A wheel that turns the wrong way: exchange the two wires of that motor.",
-                  "Una rueda que gira al revés: intercambia los dos cables de ese motor."),
-    "check_way_servos": ("A wheel that turns the wrong way: change left_reversed or right_reversed in the profile.",
-                         "Una rueda que gira al revés: cambia left_reversed o right_reversed en el perfil."),
+    "check_way": ("A wheel that turns the wrong way, or a robot that drives a curve: leave the wires as they are, tsc trim mends it.",
+                  "Una rueda que gira al revés, o un robot que se va hacia un lado: deja los cables como están, tsc trim lo arregla."),
     "made_by": ("Made by TiniScript from the profile of {robot}.", "Hecho por TiniScript a partir del perfil de {robot}."),
 }
 # fmt: on
