@@ -24,6 +24,7 @@ from tiniscript.robots.reader import read
 from tiniscript.robots.refusals import describe
 from tiniscript.text.levels import CODE_BYTES, LEVELS
 from tools.generate.command_pages import PAGES
+from tools.generate.poster import posters
 
 COMMAND = "python -m tools.generate"
 LINE_LENGTH = 100
@@ -392,6 +393,7 @@ OUTPUTS: list[tuple[Path, Callable[[], str]]] = [
     (LESSONS_DOCUMENT, lessons_document),
     (PAYLOADS, link_payloads),
     *((ROOT / "docs" / name, partial(command_page, language)) for language, name in PAGES.items()),
+    *((ROOT / "docs" / "poster" / name, make) for name, make in posters(COMMAND).items()),
     (ROOT / "vm_arduino" / "test" / "cases.h", cpp_cases),
     *(
         (WIRED / f"{path.stem}.h", partial(robot_header, path))

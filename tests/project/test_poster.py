@@ -1,0 +1,79 @@
+"""The poster has every word, in both languages, as a drawing and as a PDF that viewers can read."""
+
+from __future__ import annotations
+
+import re
+from xml.etree import ElementTree
+
+import pytest
+
+from tests.support.casefile import ROOT
+from tiniscript import check_text, robots
+from tiniscript.robots.profile import LANGUAGES
+from tiniscript.words import WORDS
+from tools.generate import paper, poster
+from tools.generate.paper import MONO, Line
+
+in_both = pytest.mark.parametrize("language", LANGUAGES)
+
+
+def lines_of(language: str) -> list[Line]:
+    return [each for each in poster.page(language) if isinstance(each, Line)]
+
+
+@in_both
+def test_every_word_of_the_table_is_on_it(language: str) -> None:
+    shown = " ".join(line.text for line in lines_of(language) if line.font == MONO)
+    for word in WORDS.values():
+        is_there = re.search(rf"(?<!\w){word.text}(?!\w)", shown) is not None
+        assert is_there == (word.role not in poster.NOT_SHOWN), word.text
+
+
+def test_a_word_that_is_missing_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(poster, "GROUPS", poster.GROUPS[1:])
+    with pytest.raises(AssertionError, match="the poster lacks"):
+        poster.page("en")
+
+
+def test_what_it_shows_can_be_typed() -> None:
+    kit = robots.load("tinibot").kit
+    for line in lines_of("en"):
+        if line.font != MONO or not line.text[0].isalpha() or "..." in line.text:
+            continue
+        for code in line.text.split("   "):
+            if "(" in code and not re.search(r"\bA\b|ELSEIF", code) and "RANDOM" not in code:
+                found = check_text(code, kit)
+                assert found.is_right, (code, found.diagnostics)
+
+
+@in_both
+def test_the_drawing_is_whole(language: str) -> None:
+    path = ROOT / "docs" / "poster" / f"poster.{language}.svg"
+    tree = ElementTree.fromstring(path.read_text("utf-8"))
+    texts = [each.text for each in tree.iter("{http://www.w3.org/2000/svg}text")]
+    assert texts == [line.text for line in lines_of(language)]
+
+
+@in_both
+def test_the_pdf_is_whole(language: str) -> None:
+    """Each object is where the table at its end says, and nothing leaves the page."""
+    data = (ROOT / "docs" / "poster" / f"poster.{language}.pdf").read_bytes()
+    assert data.startswith(b"%PDF-1.4\n") and data.endswith(b"%%EOF\n")
+    start = int(data.rsplit(b"startxref\n", 1)[1].split(b"\n")[0])
+    assert data[start:].startswith(b"xref\n")
+    offsets = [int(row[:10]) for row in data[start:].split(b"\n")[3:] if row.endswith(b" n ")]
+    for number, offset in enumerate(offsets, 1):
+        assert data[offset:].startswith(b"%d 0 obj\n" % number)
+    length = int(re.search(rb"/Length (\d+)", data)[1])  # type: ignore[index]
+    begin = data.index(b"stream\n") + 7
+    assert data[begin + length :].startswith(b"\nendstream")
+    wanted = [paper._pdf_text(line.text) for line in lines_of(language)]
+    assert re.findall(r"(\(.*\)) Tj ET", data[begin : begin + length].decode()) == wanted
+
+
+@in_both
+def test_nothing_is_written_over_something_else(language: str) -> None:
+    for line in lines_of(language):
+        letter = {MONO: 0.6}.get(line.font, 0.52) * line.size
+        end = line.x + letter * len(line.text)
+        assert end <= (poster.SAYS_X if line.font == MONO else paper.WIDTH), line.text

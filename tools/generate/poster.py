@@ -1,0 +1,149 @@
+"""The poster of the language: every word of `words.py` on one page, in English and Spanish.
+
+Knows what is said of each word, and the layout. A word of the table that has no row here, or two,
+is an error: the poster is whole or not made.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from functools import partial
+from typing import NamedTuple
+
+from tiniscript.robots.profile import LANGUAGES
+from tiniscript.words import WORDS
+from tools.generate import paper
+from tools.generate.paper import BOLD, MONO, SANS, Box, Line, Page
+
+LEFT, RIGHT = 36.0, 559.0
+CODE_X, SAYS_X = 44.0, 252.0
+HEAD_PT, ROW_PT = 21.0, 17.4
+CODE_SIZE, SAYS_SIZE = 9.8, 10.0
+CODE_SIGNS, SAYS_SIGNS = 34, 60  # that fit
+NOT_SHOWN = ("alias", "later")  # roles: other spellings, and words that do nothing yet
+BLACK, GREY, WHITE = (20, 20, 20), (90, 90, 90), (255, 255, 255)
+BLUE, PALE = (18, 92, 160), (238, 243, 248)
+TITLES = {"en": "TiniScript: all the words", "es": "TiniScript: todas las palabras"}
+SUBTITLES = {
+    "en": "One line makes a robot move. The first number is seconds, the second one power in percent.",
+    "es": "Una línea mueve un robot. El primer número son segundos; el segundo, potencia en porcentaje.",
+}
+FEET = {
+    "en": "A ; or a new line ends an instruction. // begins a note.  Help:  tsc explain · tsc help · tsc lesson",
+    "es": "Un ; o una línea nueva termina una instrucción. // empieza una nota.  Ayuda:  tsc explain · tsc help · tsc lesson",
+}
+
+
+class Row(NamedTuple):
+    """`code` shows a word; `{F}` in it is the example that the table has for F."""
+
+    code: str
+    en: str
+    es: str
+
+
+class Group(NamedTuple):
+    en: str
+    es: str
+    rows: tuple[Row, ...]
+
+
+# fmt: off
+GROUPS = (
+    Group("Begin", "Empezar", (
+        Row("SI|{F}", "starts at once", "empieza enseguida"),
+        Row("SB|{F}", "waits for the robot's button", "espera el botón del robot"),
+        Row("PING|CHECK_CONNECTION", "asks: who is there?", "pregunta: ¿quién está ahí?"),
+        Row("START", "names the beginning, and does nothing", "le da nombre al comienzo, y no hace nada"),
+    )),
+    Group("Move", "Moverse", (
+        Row("{F}   {B}", "forward, back", "adelante, atrás"),
+        Row("{L}   {R}", "turn left, turn right", "girar a la izquierda, a la derecha"),
+        Row("{M}", "left and right motor, and goes on at once", "motor izquierdo y derecho, y sigue enseguida"),
+        Row("{W}", "waits", "espera"),
+        Row("S   STOP", "stops the motors", "detiene los motores"),
+        Row("F(5, 60) UNTIL(DISTANCE < 10)", "ends earlier, when the answer is yes", "termina antes, cuando la respuesta es sí"),
+        Row("F(FOREVER, 60) UNTIL(LIGHT_L > 9)", "no time limit: only the question ends it", "sin tiempo máximo: solo la pregunta lo termina"),
+    )),
+    Group("Tell", "Avisar", (
+        Row("{BEEP}", "sounds: seconds, and pitch in hertz", "suena: segundos, y tono en hercios"),
+        Row("{SHOW}", "shows a value on the computer", "muestra un valor en la computadora"),
+    )),
+    Group("Decide and repeat", "Decidir y repetir", (
+        Row("{IF} ... ENDIF", "only if the answer is yes", "solo si la respuesta es sí"),
+        Row("ELSEIF(DISTANCE < 30)   ELSE", "otherwise, if; otherwise", "si no, pero si; si no"),
+        Row("{LOOP} ... END_LOOP", "three times; LOOP(FOREVER) without end", "tres veces; LOOP(FOREVER), sin fin"),
+        Row("{WHILE} ... END_WHILE", "as long as the answer is yes", "mientras la respuesta sea sí"),
+        Row("BREAK", "leaves the loop", "sale del bucle"),
+    )),
+    Group("Words of your own", "Palabras tuyas", (
+        Row("DEF STEP ... END_DEF", "teaches a new word: STEP", "enseña una palabra nueva: STEP"),
+        Row("STEP", "does what STEP means", "hace lo que STEP significa"),
+        Row("SPEED = 50", "a variable keeps a value under a name", "una variable guarda un valor con un nombre"),
+    )),
+    Group("Questions", "Preguntas", (
+        Row("TRUE   FALSE", "yes, no", "sí, no"),
+        Row("A AND B   A OR B   NOT A", "both; one is enough; the contrary", "las dos; basta una; lo contrario"),
+        Row("=  <>  <  >  <=  >=", "equal, not equal, less, more, at most, at least", "igual, distinto, menor, mayor, hasta, desde"),
+    )),
+    Group("Calculate", "Calcular", (
+        Row("+  -  *  /  %", "plus, minus, times, divided by, remainder", "más, menos, por, entre, resto"),
+        Row("{RANDOM}", "a whole number by chance, from 1 to 6", "un número entero al azar, de 1 a 6"),
+        Row("ROUND(A, 1)   ABS(A)", "to one decimal; without its minus", "con un decimal; sin su signo menos"),
+        Row("MIN(A, B)   MAX(A, B)", "the smaller, the larger", "el menor, el mayor"),
+        Row("TIME", "seconds since the program has started", "segundos desde que empezó el programa"),
+    )),
+    Group("What TiniBot sees", "Lo que ve TiniBot", (
+        Row("DISTANCE", "centimetres to what is ahead", "centímetros hasta lo que está delante"),
+        Row("LIGHT_L   LIGHT_R", "light on the left, on the right: 0 to 1023", "luz a la izquierda, a la derecha: de 0 a 1023"),
+    )),
+)
+# fmt: on
+
+
+def posters(command: str) -> dict[str, Callable[[], str]]:
+    """Return how the files of `docs/poster/` are made, by their names. `command` makes them."""
+    return {
+        f"poster.{language}.{form}": partial(poster, language, form, command)
+        for language in LANGUAGES
+        for form in ("svg", "pdf")
+    }
+
+
+def poster(language: str, form: str, command: str) -> str:
+    """Return the poster in a language, as `svg` or `pdf`."""
+    note = f"Generated by {command} from compiler/tiniscript/words.py. Do not edit."
+    write = {"svg": paper.svg, "pdf": paper.pdf}[form]
+    return write(page(language), TITLES[language], note)
+
+
+def page(language: str) -> Page:
+    k = language == "es"
+    found: Page = [
+        Box(0, 0, paper.WIDTH, 64, BLUE),
+        Line(LEFT, 34, 24, BOLD, WHITE, TITLES[language]),
+        Line(LEFT, 53, 10, SANS, WHITE, SUBTITLES[language]),
+    ]
+    y = 74.0
+    shown: list[str] = []
+    for group in GROUPS:
+        found.append(Line(LEFT, y + 15, 12, BOLD, BLUE, group.es if k else group.en))
+        y += HEAD_PT
+        for number, row in enumerate(group.rows):
+            code = re.sub(r"\{(\w+)\}", lambda match: WORDS[match[1]].example, row.code)
+            says = row.es if k else row.en
+            assert len(code) <= CODE_SIGNS and len(says) <= SAYS_SIGNS, (code, says)
+            shown += re.findall(r"[A-Z_]+", re.sub(r"\(.*?\)", "", code.replace(",", "")))
+            shown += [word for word in ("UNTIL", "FOREVER") if word in code]
+            if number % 2 == 0:
+                found.append(Box(LEFT, y, RIGHT - LEFT, ROW_PT, PALE))
+            found.append(Line(CODE_X, y + 12.0, CODE_SIZE, MONO, BLACK, code))
+            found.append(Line(SAYS_X, y + 12.0, SAYS_SIZE, SANS, BLACK, says))
+            y += ROW_PT
+        y += 2
+    assert y <= paper.HEIGHT - 26, f"the page is too short by {y - paper.HEIGHT + 26} points"
+    missing = {word.text for word in WORDS.values() if word.role not in NOT_SHOWN} - set(shown)
+    assert not missing, f"the poster lacks {sorted(missing)}"
+    found.append(Line(LEFT, paper.HEIGHT - 16, 9, SANS, GREY, FEET[language]))
+    return found
