@@ -57,11 +57,12 @@ def _linux_folder(variable: str, usual: str) -> Path | None:
     return folder / "tiniscript" if folder.is_absolute() else None
 
 
-def replace(path: Path, data: bytes, mode: int | None = None) -> None:
+def replace(path: Path, data: bytes, mode: int | None = None, is_lasting: bool = False) -> None:
     """Give a file this content, or leave it as it was. Raises OSError or ValueError.
 
     `mode` is what its permissions become; else they stay, and a new file has what the umask
-    leaves. A device or a pipe, which has no old content, is written to.
+    leaves. A device or a pipe, which has no old content, is written to. `is_lasting`: also where
+    the power goes, or the stick is pulled, the old content is there or the new; that takes time.
     """
     found = _found(path)
     if found is not None and not stat.S_ISREG(found.st_mode):
@@ -81,6 +82,9 @@ def replace(path: Path, data: bytes, mode: int | None = None) -> None:
         file = os.open(new, flags, 0o666 if mode is None else 0o600)
         with open(file, "wb") as stream:  # noqa: PTH123 - a number, not a path
             stream.write(data)
+            if is_lasting:
+                stream.flush()
+                os.fsync(file)
         if mode is not None:
             new.chmod(mode)
         new.replace(target)

@@ -18,6 +18,7 @@ from platformdirs import user_cache_path
 
 from tests.support.command import PROGRAM, Tsc, process
 from tiniscript import files
+from tiniscript.cli import outputs
 from tiniscript.codegen import source_map
 from tiniscript.sharing import registry
 from tiniscript.sharing.registry import Registration
@@ -145,6 +146,25 @@ def test_what_goes_wrong_leaves_nothing(
         files.replace(tmp_path / "x", b"2")
     assert [each.name for each in tmp_path.iterdir()] == ["x"]
     assert (tmp_path / "x").read_bytes() == b"1"
+
+
+def test_an_output_is_on_the_disk_before_it_replaces_the_old_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A stick that is pulled has the old file or the new one."""
+    old, seen = tmp_path / "a.bin", list[tuple[bytes, bytes]]()
+    old.write_bytes(b"TS\2old")
+    sync = os.fsync
+
+    def look(number: int) -> None:
+        [new] = tmp_path.glob(f".*{files.NEW}")
+        seen.append((old.read_bytes(), new.read_bytes()))
+        sync(number)
+
+    monkeypatch.setattr(os, "fsync", look)
+    outputs.write(old, b"TS\2new", "unwritable")
+    assert seen == [(b"TS\2old", b"TS\2new")]
+    assert old.read_bytes() == b"TS\2new"
 
 
 @unix

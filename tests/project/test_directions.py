@@ -35,7 +35,7 @@ UPSTREAM: dict[str, set[str]] = {
     "text": {*TEXT, "bytecode", "syntax", "semantics", "codegen", "robots"},
     "wiring": {"fixed_point", "kit", "robots"},
     "flash": {"files", "robots"},
-    "link": {"files", "bytecode"},
+    "link": {"files", "printable", "bytecode"},
     "sharing": {"files", "bytecode", "link"},
     "modules": {"link"},
     "doctor": {"files", "bytecode", "flash", "link", "modules", "sharing"},

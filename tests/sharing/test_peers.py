@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import socket
 import subprocess
@@ -12,8 +13,12 @@ from pathlib import Path
 import pytest
 
 from tests.cli.test_virtual_command import robot, visitor
+from tests.sharing.test_strangers import few, registration_of
+from tests.support.command import FOREVER, process
 from tests.support.virtual_robot import missing as no_wasm
-from tiniscript.sharing import peers
+from tiniscript import files
+from tiniscript.sharing import peers, registry
+from tiniscript.sharing.registry import Registration
 from tiniscript.virtual.transports import Transports
 
 linux = pytest.mark.skipif(sys.platform != "linux", reason="only Linux tells the user")
@@ -83,19 +88,20 @@ def test_which_ends_are_let_in(
 
 
 def test_a_system_that_does_not_tell_lets_in(monkeypatch: pytest.MonkeyPatch) -> None:
-    def unknown(there: object, here: object) -> peers.End:
-        raise OSError(95, "not supported")
+    def failing(number: int) -> object:
+        def other_end(there: object, here: object) -> peers.End:
+            raise OSError(number, "no")
 
-    def gone(there: object, here: object) -> peers.End:
-        raise FileNotFoundError(2, "gone")
+        return other_end
 
     here, there = pair()
     with here, there:
-        monkeypatch.setattr(peers, "_other_end", unknown)
+        monkeypatch.setattr(peers, "_other_end", failing(errno.EOPNOTSUPP))
         assert peers.is_of_this_user(here)
         monkeypatch.setattr(sys, "platform", "linux")
-        monkeypatch.setattr(peers, "_other_end", gone)
-        assert not peers.is_of_this_user(here)
+        for number in (errno.ENOENT, errno.EMFILE, errno.ENFILE):  # gone, or nothing can be asked
+            monkeypatch.setattr(peers, "_other_end", failing(number))
+            assert not peers.is_of_this_user(here)
 
 
 @linux
@@ -128,9 +134,63 @@ def test_another_user_moves_nothing(how: str) -> None:
 
 
 @pytest.mark.skipif(not hasattr(os, "openpty"), reason="no pseudo-terminals here")
-def test_a_pseudo_terminal_is_for_its_user_alone() -> None:
+def test_a_pseudo_terminal_is_for_its_user_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    import pty
+
+    made = pty.openpty
+
+    def open_to_a_group() -> tuple[int, int]:
+        """As most systems make it."""
+        ours, theirs = made()
+        os.fchmod(theirs, 0o620)
+        return ours, theirs
+
+    monkeypatch.setattr(pty, "openpty", open_to_a_group)
     transports = Transports(has_terminal=True)
     try:
         assert Path(transports.terminal).stat().st_mode & 0o777 == 0o600
     finally:
         transports.close()
+
+
+@linux
+@pytest.mark.skipif(bool(no_wasm()), reason=no_wasm() or "there is wasmtime")
+def test_the_token_is_in_one_private_file() -> None:
+    """In no command line, no environment, no output and no other file."""
+    with few("robot") as virtual:
+        assert virtual.stdout
+        port = virtual.stdout.readline().decode().strip()
+        with few("upload", "--port", port, "-e", FOREVER) as command:
+            assert command.stdout
+            said = command.stdout.readline()
+            registration = registration_of(port)
+            secrets = [each.encode() for each in (registration.token, registration.answer)]
+            assert process("info", "--port", port).code == 0
+            seen = [said]
+            for pid in (virtual.pid, command.pid):
+                seen += [
+                    Path(f"/proc/{pid}/{name}").read_bytes() for name in ("cmdline", "environ")
+                ]
+            having = []
+            for path in files.cache_folder().rglob("*"):
+                if path.is_file():
+                    content = path.read_bytes()
+                    having += [path] if any(each in content for each in secrets) else []
+                    seen.append(str(path).encode())
+            assert process("stop", "--port", port).code == 0
+            out, err = command.communicate(timeout=60)
+            seen += [out, err]
+    assert len(having) == 1 and len(seen) > 6
+    assert not [each for each in seen for secret in secrets if secret in each]
+
+
+def test_the_file_with_the_token_is_for_its_user_alone() -> None:
+    registration = Registration("/dev/x", 1, "a" * 32, "b" * 32, "link", 9600, os.getpid())
+    before = os.umask(0)
+    try:
+        registry.write(registration)
+    finally:
+        os.umask(before)
+    [path] = (files.cache_folder() / "held").glob("*.json")
+    assert path.stat().st_mode & 0o777 == 0o600
+    assert path.parent.stat().st_mode & 0o777 == 0o700

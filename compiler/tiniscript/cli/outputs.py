@@ -26,7 +26,7 @@ def write(path: Path, data: bytes, key: str, mode: int | None = None) -> None:
     from tiniscript.cli.inputs import shown
 
     try:
-        files.replace(path, data, mode)
+        files.replace(path, data, mode, is_lasting=True)
     except (OSError, ValueError, RuntimeError) as why:  # RuntimeError: a link to itself
         if isinstance(why, BrokenPipeError):
             raise

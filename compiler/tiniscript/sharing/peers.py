@@ -6,6 +6,7 @@ everybody is let in.
 
 from __future__ import annotations
 
+import errno
 import os
 import socket
 import struct
@@ -21,6 +22,8 @@ _ENDS = struct.Struct(">HH16s16sI8s")  # ports, addresses, interface, cookie
 _ANSWER = struct.Struct("=BBBB48sIIIII")  # family, state, .., expires, queues, user, inode
 _ESTABLISHED = 1
 ROOT = 0
+# Nobody has the other end any more; or this process has too many files open to ask.
+_NOBODY = (errno.ENOENT, errno.EMFILE, errno.ENFILE)
 
 
 class End(NamedTuple):
@@ -47,10 +50,8 @@ def is_of_this_user(peer: socket.socket) -> bool:
         return False
     try:
         found = _other_end(there, here)
-    except FileNotFoundError:
-        return False
-    except OSError:  # this system has no answer to that
-        return True
+    except OSError as why:  # a system that has no answer to that lets everybody in
+        return why.errno not in _NOBODY
     return found.user == os.geteuid() or (found.user == ROOT and found.is_open)
 
 

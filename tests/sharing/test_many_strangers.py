@@ -1,0 +1,146 @@
+"""Ten thousand connections to what listens on this computer: nothing grows, a stop gets through.
+
+`python -m tests.sharing.test_many_strangers 10000` makes so many of each kind and prints what grew;
+the tests make fewer.
+"""
+
+from __future__ import annotations
+
+import json
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+from tests.sharing.test_strangers import few, registration_of
+from tests.support.command import FOREVER, process
+from tests.support.virtual_robot import missing
+
+pytestmark = [
+    pytest.mark.skipif(sys.platform != "linux", reason="only Linux tells of a process what it has"),
+    pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime"),
+]
+
+TESTED = 400  # connections of a test
+FILES = 140  # that a listener may have open more than before: those who have not said anything yet
+GROWN_KB = 8_000  # of memory; a Python that has handled errors has more than one that has not
+# Who comes and how: `open` are there at once. Each says something, and hears nothing.
+KINDS = ("closed", "silent", "half-open", "slow", "browser")
+VISITORS = """
+import contextlib, socket, sys, time
+port, kind, count = int(sys.argv[1]), sys.argv[2], int(sys.argv[3])
+REQUEST = b"GET / HTTP/1.1\\r\\nHost: robot\\r\\n\\r\\n"
+SAYS = {"slow": b"P", "browser": REQUEST}.get(kind, b"")
+peers = []
+for k in range(count):
+    peer = socket.socket()
+    peer.setblocking(False)
+    peer.connect_ex(("127.0.0.1", port))
+    peers.append(peer)
+    with contextlib.suppress(OSError):
+        if SAYS:
+            peer.send(SAYS)
+        if kind == "half-open":
+            peer.shutdown(socket.SHUT_WR)
+    if kind == "closed":
+        peers.pop().close()
+print("here", flush=True)
+while sys.stdin.buffer.read(1):
+    for peer in peers:
+        with contextlib.suppress(OSError):
+            peer.send(b"O" if kind == "slow" else SAYS)
+    print("said", flush=True)
+"""
+
+
+class Had(NamedTuple):
+    files: int
+    memory_kb: int
+
+
+def had(pid: int) -> Had:
+    """Return what a process has open, and how much memory it fills."""
+    status = Path(f"/proc/{pid}/status").read_text(encoding="ascii")
+    [memory] = [row.split()[1] for row in status.splitlines() if row.startswith("VmRSS")]
+    return Had(len(list(Path(f"/proc/{pid}/fd").iterdir())), int(memory))
+
+
+@contextmanager
+def visitors(port: int, kind: str, count: int) -> Iterator[None]:
+    code = ["sh", "-c", f'ulimit -n {count + 100}; exec "$@"', "sh", sys.executable, "-c", VISITORS]
+    with subprocess.Popen(
+        [*code, str(port), kind, str(count)], stdin=subprocess.PIPE, stdout=subprocess.PIPE
+    ) as there:
+        try:
+            assert there.stdin and there.stdout
+            assert there.stdout.readline() == b"here\n"
+            there.stdin.write(b"!")
+            there.stdin.flush()
+            assert there.stdout.readline() == b"said\n"
+            yield
+        finally:
+            there.kill()
+            there.communicate()
+
+
+def attack(kind: str, count: int) -> list[tuple[str, Had, Had, Had]]:
+    """Come to a virtual robot and to the command that drives it. Return what each process had.
+
+    Before, while they are there, and when they have gone.
+    """
+    with few("robot") as robot:
+        assert robot.stdout
+        port = robot.stdout.readline().decode().strip()
+        with few("upload", "--port", port, "-e", FOREVER) as command:
+            assert command.stdout
+            assert b"running" in command.stdout.readline()
+            places = [
+                ("virtual robot", robot.pid, int(port.rpartition(":")[2])),
+                ("shared port", command.pid, registration_of(port).number),
+            ]
+            found = []
+            for name, pid, number in places:
+                before = had(pid)
+                with visitors(number, kind, count):
+                    meanwhile = had(pid)
+                    state = json.loads(process("info", "--port", port, "--json").out)["state"]
+                    assert state == "RUNNING"
+                end_s = time.monotonic() + 60
+                while had(pid).files > before.files + 3 and time.monotonic() < end_s:
+                    time.sleep(0.1)
+                found.append((name, before, meanwhile, had(pid)))
+            with visitors(places[0][2], kind, count), visitors(places[1][2], kind, count):
+                assert process("stop", "--port", port).code == 0
+            assert command.wait(timeout=60) == 3
+        robot.send_signal(signal.SIGINT)
+        assert b"FAULT" not in robot.communicate(timeout=60)[0]
+    return found
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_nothing_grows_and_a_stop_gets_through(kind: str) -> None:
+    for name, before, meanwhile, after in attack(kind, TESTED):
+        assert meanwhile.files <= before.files + FILES, name
+        assert after.files <= before.files + 3, name
+        assert after.memory_kb <= before.memory_kb + GROWN_KB, name
+
+
+def campaign(count: int) -> None:
+    print("| who comes | where | open files before, meanwhile, after | KB before, after |")
+    print("|---|---|---|---|")
+    for kind in KINDS:
+        for name, before, meanwhile, after in attack(kind, count):
+            print(
+                f"| {count:,} {kind} | {name} | {before.files}, {meanwhile.files}, {after.files} "
+                f"| {before.memory_kb:,}, {after.memory_kb:,} |", flush=True,
+            )  # fmt: skip
+
+
+if __name__ == "__main__":
+    campaign(int(sys.argv[1]) if len(sys.argv) > 1 else 10_000)
