@@ -383,7 +383,7 @@ def test_a_program_without_a_verb(tsc: Tsc, tmp_path: Path) -> None:
     done = tsc("SI|F(2, 80)")
     assert done.code == 2
     assert 'tsc live "SI|F(2, 80)"' in done.err
-    assert "there is no verb nix" in tsc("nix").err
+    assert "there is no command nix" in tsc("nix").err
     assert tsc("x" * 5000).code == 2
 
 
@@ -398,7 +398,7 @@ def test_a_file_is_found_by_the_name_that_a_folder_shows(
     done = tsc("check", tmp_path / said)
     assert done.code == 0
     assert done.out == f"{path}: no mistakes.\n"
-    assert f"{path} is taken, which is its real name" in done.err
+    assert f"tsc uses {path}, its full name" in done.err
     assert tsc("compile", tmp_path / said).code == 0
     assert (tmp_path / "prog.bin").exists()
     assert "su verdadero nombre" in tsc("run", tmp_path / said, "--lang", "es").err

@@ -19,6 +19,7 @@ from tests.support.verbs import parsers
 from tiniscript import robots
 from tiniscript.cli import help
 from tiniscript.cli.texts.options import OPTIONS, Option, of_verb
+from tiniscript.cli.texts.options import PROGRAM as A_PROGRAM
 from tiniscript.cli.texts.verbs import NOTES, VERBS
 from tiniscript.flash.bootloaders import BOARDS
 from tiniscript.virtual import worlds
@@ -135,7 +136,7 @@ def test_a_program_on_the_command_line_works_in_every_verb_that_takes_one(
     tsc: Tsc, tmp_path: Path
 ) -> None:
     """`upload`, which takes one too, needs a robot, and `lesson` a task: their tests do so."""
-    takes = [verb for verb in VERBS if any(each.name == "program" for each in of_verb(verb))]
+    takes = [verb for verb in VERBS if any(each.kind is A_PROGRAM for each in of_verb(verb))]
     assert takes == ["compile", "check", "run", "show", "fmt", "upload", "lesson"]
     for verb in takes:
         assert "-e" in {flag for each in PARSERS[verb]._actions for flag in each.option_strings}

@@ -72,7 +72,7 @@ def test_a_stop_that_nobody_confirms_holds_up_nobody_for_long(
     assert done.code == 3
     assert "has not confirmed" in done.err
     pty_robot.switch_on()
-    link.until("is there again")
+    link.until("is back")
     code, took_ms = passed_ms(pty_robot, "info")
     assert (code, took_ms < CONFIRM_MS // 2) == (0, True)
     assert on(pty_robot, "stop").code == 0

@@ -67,7 +67,7 @@ def test_commands_share_a_session_that_is_begun_once(
     link.signal(signal.SIGINT)
     done = link.ended()
     assert done.code == 0
-    assert "tsc upload: has come." in done.out
+    assert "tsc upload: connected." in done.out
     assert "SHOW 1.5" in done.out
 
 
@@ -294,7 +294,7 @@ def test_a_robot_that_was_lost_is_found_again(pty_robot: PtyRobot, link: Command
     pty_robot.switch_off()
     link.until("Looking for it")
     pty_robot.switch_on()
-    link.until("is there again")
+    link.until("is back")
     assert "SHOW 7" in on(pty_robot, "live", "SHOW(7)").out
 
 

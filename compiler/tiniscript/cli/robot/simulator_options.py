@@ -138,7 +138,7 @@ def summary(
     """Return the summary of the run, of the robot's whole time or of `passed_ms`."""
     driving = robot.driving
     passed_ms = robot.now_ms if passed_ms is None else passed_ms
-    key = "drove_touching" if driving.bumps else "drove"
+    key = {0: "drove", 1: "drove_touching_once"}.get(driving.bumps, "drove_touching")
     said = text(key, language).format(
         cm=round(driving.driven_cm), seconds=f"{passed_ms / 1000:.1f}", n=driving.bumps
     )

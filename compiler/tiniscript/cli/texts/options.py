@@ -110,7 +110,7 @@ OPTIONS: tuple[Option, ...] = (
     Option("line", "live", ("what to do; with - lines come from standard input", "qué hacer; con - las líneas vienen de la entrada estándar"), TEXT, ("LINE", "LÍNEA")),
     Option("name", "name", ("the robot's name: 1 to 16 bytes of UTF-8", "el nombre del robot: de 1 a 16 bytes de UTF-8"), TEXT, ("NEW", "NUEVO")),
     Option("whether", "text", ("on or off", "on u off"), ON_OFF, ("on|off", "on|off")),
-    Option("about", "help", ("the verb to say more about", "el verbo del que se quiere saber más"), VERB, ("VERB", "VERBO")),
+    Option("about", "help", ("the command to say more about", "el comando del que quieres saber más"), VERB, ("COMMAND", "COMANDO")),
     Option("shell", "completion", ("bash, zsh or powershell", "bash, zsh o powershell"), SHELL, ("SHELL", "TERMINAL"), is_needed=True),
     # the program
     Option("-e", "compile check run show fmt upload lesson", ("the program itself, instead of a file: `-e 'SI|F(2, 80)'`", "el programa mismo, en vez de un archivo: `-e 'SI|F(2, 80)'`"), TEXT, A_TEXT, "texts", repeats=True),

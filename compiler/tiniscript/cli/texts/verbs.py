@@ -40,7 +40,7 @@ ITSELF = ("And:", "Y además:")
 NOTES = (
     ("A program is a file, - (standard input) or `-e 'SI|F(2, 80)'`.",
      "Un programa es un archivo, - (entrada estándar) o `-e 'SI|F(2, 80)'`."),
-    ("`tsc help VERB` says more about a verb.", "`tsc help VERBO` dice más de un verbo."),
+    ("`tsc help COMMAND` says more about a command.", "`tsc help COMANDO` dice más de un comando."),
     ("Exit codes: 0 done, 1 the program is wrong, 2 wrong use of tsc, 3 the robot or the link; 141 where whoever read the output has gone, which stops the robot that the command drives.",
      "Códigos de salida: 0 listo, 1 el programa está mal, 2 mal uso de tsc, 3 el robot o la conexión; 141 si quien leía la salida ya no está, y eso detiene el robot que el comando mueve."),
 )
@@ -131,9 +131,9 @@ VERBS: dict[str, Verb] = {
     ),
     "live": Verb(
         ROBOTS, ("live 'F(2, 80)'", "live 'F(2, 80)'"),
-        ("do a line at once; without a line: a prompt", "hace una línea en el acto; sin línea: un diálogo"),
-        ("Does a line on the robot at once: `tsc live 'F(2, 80)'`. Without a line there is a prompt. Variables and DEFs live on until you leave: tsc keeps DEFs as text, and the values that a line has given when it was done. The program that the robot holds stays what it is. Ctrl-C stops the robot, Ctrl-D leaves.",
-         "Hace una línea en el robot en el acto: `tsc live 'F(2, 80)'`. Sin línea hay un diálogo. Las variables y los DEF siguen vivos hasta que sales: tsc guarda los DEF como texto, y los valores que una línea ha puesto cuando terminó. El programa que tiene el robot queda como está. Ctrl-C detiene el robot, Ctrl-D sale."),
+        ("run one line now; without a line: a prompt", "ejecuta una línea ahora; sin línea: un diálogo"),
+        ("Runs one line on the robot now: `tsc live 'F(2, 80)'`. Without a line there is a prompt. Variables and DEFs live on until you leave: tsc keeps DEFs as text, and the values that a line has given when it was done. The program that the robot holds stays what it is. Ctrl-C stops the robot, Ctrl-D leaves.",
+         "Ejecuta una línea en el robot ahora: `tsc live 'F(2, 80)'`. Sin línea hay un diálogo. Las variables y los DEF siguen vivos hasta que sales: tsc guarda los DEF como texto, y los valores que una línea ha puesto cuando terminó. El programa que tiene el robot queda como está. Ctrl-C detiene el robot, Ctrl-D sale."),
     ),
     "stop": Verb(
         ROBOTS, ("stop", "stop"), ("stop the robot now", "detiene el robot ahora"),
@@ -253,15 +253,15 @@ VERBS: dict[str, Verb] = {
         also=((VIRTUAL, ("lesson", "lesson"), ("list the lessons", "lista las lecciones")),),
     ),
     "help": Verb(
-        ITSELF, ("help upload", "help upload"), ("say more about a verb", "dice más de un verbo"),
-        ("Says what a verb does and which options it has, as `tsc VERB --help` does. Without a verb it lists all. `tsc ayuda` is the same.",
-         "Dice qué hace un verbo y qué opciones tiene, igual que `tsc VERBO --help`. Sin verbo los lista todos. `tsc ayuda` es lo mismo."),
+        ITSELF, ("help upload", "help upload"), ("say more about a command", "dice más de un comando"),
+        ("Says what a command does and which options it has, as `tsc COMMAND --help` does. Without a command it lists all. `tsc ayuda` is the same.",
+         "Dice qué hace un comando y qué opciones tiene, igual que `tsc COMANDO --help`. Sin comando los lista todos. `tsc ayuda` es lo mismo."),
     ),
     "completion": Verb(
         ITSELF, ("completion bash", "completion bash"),
         ("let the Tab key complete commands", "hace que la tecla Tab complete los comandos"),
-        ("Prints what a shell wants to know so that the Tab key completes verbs, options and their values. It is switched on by a line in a file that the shell reads when it begins.",
-         "Imprime lo que una terminal necesita para que la tecla Tab complete verbos, opciones y sus valores. Se activa con una línea en un archivo que la terminal lee al empezar."),
+        ("Prints what a shell wants to know so that the Tab key completes commands, options and their values. It is switched on by a line in a file that the shell reads when it begins.",
+         "Imprime lo que una terminal necesita para que la tecla Tab complete comandos, opciones y sus valores. Se activa con una línea en un archivo que la terminal lee al empezar."),
         ends=("`~/.bashrc`, at its end: `eval \"$(tsc completion bash)\"`\n"
               "`~/.zshrc`, at its end: `autoload -Uz compinit && compinit; eval \"$(tsc completion zsh)\"`\n"
               "PowerShell, in the file `$PROFILE`: `tsc completion powershell | Out-String | Invoke-Expression`",
