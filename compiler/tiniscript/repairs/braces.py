@@ -9,7 +9,8 @@ from collections.abc import Sequence
 
 from tiniscript.repairs.edits import Edit
 from tiniscript.source import Span
-from tiniscript.syntax.lexer import END, NEWLINE, WORD, Token, scan
+from tiniscript.syntax.cursor import AT_END
+from tiniscript.syntax.lexer import NEWLINE, WORD, Token, scan
 from tiniscript.syntax.suggestions import foreign_block
 from tiniscript.words import BLOCK_ENDS, WORDS
 
@@ -28,7 +29,7 @@ def without_braces(text: str) -> list[Edit] | None:
                 return None
             opened.append("IF" if word in _ARMS else word)
             after = tokens[k + 1].kind
-            new = "" if after in (NEWLINE, END, ";", "}") else "; "
+            new = "" if after in ("}", *AT_END) else "; "
             edits.append(_replaced(text, tokens, k, new))
         elif token.kind == "}":
             if not opened:
@@ -45,6 +46,8 @@ def without_braces(text: str) -> list[Edit] | None:
 def _header(tokens: Sequence[Token], brace: int) -> str | None:
     """Return the word of the block that a bracket begins."""
     k = brace
+    while k and tokens[k - 1].kind is NEWLINE:  # on a line of its own
+        k -= 1
     while k and tokens[k - 1].kind not in (NEWLINE, ";", "{", "}", "|"):
         k -= 1
     first = tokens[k]
@@ -75,5 +78,5 @@ def _replaced(text: str, tokens: Sequence[Token], k: int, new: str) -> Edit:
 
 def _ended(tokens: Sequence[Token], k: int, end: str) -> Edit:
     before = "" if k == 0 or tokens[k - 1].kind in (NEWLINE, ";") else ";"
-    after = "" if tokens[k + 1].kind in (NEWLINE, END, ";") else ";"
+    after = "" if tokens[k + 1].kind in AT_END else ";"
     return Edit(tokens[k].span, f"{before}{end}{after}")

@@ -33,6 +33,12 @@ def _span(diagnostic: Diagnostic, source: Source) -> Edits:
     values = diagnostic.values
     new = values.get("right") or values.get("near") or ""
     new = values.get("fix", new)
+    if new.isalpha() and diagnostic.code is codes.OTHER_SIGN:  # `A&&B`
+        before, after = (
+            source.text[: diagnostic.span.start][-1:],
+            source.text[diagnostic.span.end :][:1],
+        )
+        new = " " * (before.isalnum() or before == "_") + new + " " * after.isalnum()
     return [Edit(diagnostic.place or diagnostic.span, new)] if new else None
 
 
@@ -68,6 +74,8 @@ def _taken_out(diagnostic: Diagnostic, source: Source) -> Edits:
     if diagnostic.values.get("between"):
         return None
     start, end = diagnostic.span
+    if source[diagnostic.span].isdecimal():
+        return None  # `4 F(2, 80)` may mean four times
     while source.text[end : end + 1] == " " and (not start or source.text[start - 1] in " \r\n"):
         end += 1
     return [Edit(Span(start, end), "")]

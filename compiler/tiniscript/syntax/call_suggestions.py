@@ -53,7 +53,8 @@ def count_diagnostic(
     if fixed is not None:
         return Diagnostic(codes.DECIMAL_COMMA, span, {"fix": _call(word, fixed)})
     wanted = len(word.arguments)
-    fix = _filled(texts, word)
+    goes_on = source.text[span.end : span.end + 9].lstrip(" ")[:1] == "("  # `F(2)(80)`
+    fix = "" if goes_on else _filled(texts, word)
     if len(texts) > wanted == 1 and word.arguments[0].name == "c":
         fix = _call(word, [" AND ".join(texts)])
     if word.role == "move" and len(texts) == wanted + 1 and _ASKS.search(texts[-1]):
@@ -240,6 +241,8 @@ def _filled(texts: Sequence[str], word: Word) -> str:
     divided = _DIVIDED.fullmatch(text)
     if divided:
         return _call(word, [divided[1], divided[2]])
+    if "." in text and text.endswith("0"):
+        return ""  # `F(1.50)` may be 1 and 50
     if number is None or number >= LONG_TIME_S:
         is_pitch = word.role == "beep" and number is not None and number > LOWEST_HERTZ
         return _call(word, [first.sample, text]) if is_pitch else ""

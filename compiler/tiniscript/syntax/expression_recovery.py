@@ -105,6 +105,9 @@ class ExpressionRecovery:
                 fail(codes.NO_VALUE, token.span, word=word.text)
         if word.text in self.reporter.reserved_words:
             raise Failed
+        place = self.cursor.before(self.cursor.i)
+        if self.cursor.tokens[place].kind == "-" and place:
+            self._sensor_in_two(self.cursor.tokens[place - 1], token)
         fail(codes.RESERVED, token.span, word=word.text, right=other_name(word.text))
 
     def literal(self, number: Token, span: Span, value: int) -> int:
@@ -239,6 +242,7 @@ class ExpressionRecovery:
         cursor, fail = self.cursor, self.reporter.fail
         token = cursor.inner()
         last = cursor.tokens[cursor.before(cursor.i)]
+        self._sensor_in_two(last, token)
         if token.kind is ODD and token.text != ":":
             raise Failed
         if token.kind == ";" and self._close_comes():
@@ -258,6 +262,15 @@ class ExpressionRecovery:
         self._open_too_many(bracket, token)
         fail(codes.MISSING_CLOSE, last.span, last=last.text)
 
+    def _sensor_in_two(self, first: Token, second: Token) -> None:
+        """`LIGHT R`, `LIGHT-R`: the kit has a sensor of this name."""
+        name = f"{first.text}_{second.text}"
+        sensors = self.kit.sensors if self.kit is not None else ()
+        if any(each.name == name for each in sensors):
+            span = Span(first.start, second.end)
+            found = self.cursor.source[span]
+            self.reporter.fail(codes.NAME_WITH_SPACE, span, found=found, right=name)
+
     def _open_too_many(self, bracket: int, token: Token) -> None:
         """`F((2, 80)`: the second bracket is too much."""
         tokens = self.cursor.tokens
@@ -276,7 +289,9 @@ class ExpressionRecovery:
     def _nothing_between(self, last: Token, token: Token, bracket: int) -> NoReturn:
         """Two values in brackets with only a space between them."""
         span = Span(last.start, token.end)
-        if last.kind is WORD and token.kind is WORD and not {last.text, token.text} & set(WORDS):
+        devices = (*self.kit.sensors, *self.kit.actuators) if self.kit is not None else ()
+        known = {*WORDS, *(each.name for each in devices)}
+        if last.kind is WORD and token.kind is WORD and not {last.text, token.text} & known:
             right, found = f"{last.text}_{token.text}", self.cursor.source[span]
             self.reporter.fail(codes.NAME_WITH_SPACE, span, found=found, right=right)
         owner = self.cursor.tokens[bracket - 1] if bracket else self.cursor.tokens[bracket]

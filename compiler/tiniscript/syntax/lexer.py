@@ -168,6 +168,10 @@ class _Repairs:
         return Token(NUMBER, meant or number, *span)
 
     def badword(self, text: str, span: Span) -> Token:
+        if text.isdecimal():  # of another script, or as wide as a letter
+            digits = "".join(str(int(digit)) for digit in text)
+            self.report(codes.BAD_NUMBER, span, found=text, right=digits)
+            return Token(NUMBER, digits, *span)
         plain = _plain(text)
         self.report(codes.BAD_NAME, span, found=text, right=plain)
         return Token(WORD, plain.upper() or "X", *span)

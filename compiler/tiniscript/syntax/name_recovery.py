@@ -44,7 +44,16 @@ from tiniscript.syntax.suggestions import (
     spaced_name,
     update,
 )
-from tiniscript.words import SWITCH_WORDS, UNITS, WORDS, Word, meant_by, other_name, usage_of
+from tiniscript.words import (
+    SWITCH_WORDS,
+    TURN_WORDS,
+    UNITS,
+    WORDS,
+    Word,
+    meant_by,
+    other_name,
+    usage_of,
+)
 
 if TYPE_CHECKING:
     from tiniscript.syntax.parser import Parser
@@ -93,6 +102,8 @@ class NameRecovery:
             self.reporter.fail(codes.SETUP_TWICE, word.span, found=word.text)
         if word.text in COUNTING and is_counting(self.cursor.tokens, self.cursor.i + 1):
             foreign_word(parser, word, "LOOP")
+        if self.kit is not None and not self.in_block.known.is_own(word.text):
+            self._turn_by_angle(word, following)
         if not is_alone and kind != "(":
             self._what_follows_a_name(word, following)
         if self.kit is not None and not self.in_block.is_name(word.text):
@@ -267,6 +278,20 @@ class NameRecovery:
             way = "left" if meant.text == "L" else "right"
             self.reporter.fail(codes.WHICH_WAY, span, word=meant.text, way=way, usage=meant.usage)
         self._say_in_other_words(span, cursor.source[span], meant, list(values), end)
+
+    def _turn_by_angle(self, word: Token, following: Token) -> None:
+        """`girar 90 grados a la derecha`."""
+        cursor = self.cursor
+        if word.text not in TURN_WORDS or following.kind is not NUMBER:
+            return
+        cursor.skip_instruction()
+        span = cursor.span_from(word)
+        said = [meant_by(text) for text in cursor.source[span].upper().split()]
+        for name, way in (("L", "left"), ("R", "right")):
+            if name in said:
+                usage = WORDS[name].usage
+                self.reporter.fail(codes.WHICH_WAY, span, word=name, way=way, usage=usage)
+        self.reporter.fail(codes.WHICH_WAY, span)
 
     @staticmethod
     def _is_angle(values: Sequence[Token]) -> bool:

@@ -87,7 +87,11 @@ class Recovery:
             )
         if sign.kind in (")", "-") or (sign.kind is ODD and sign.text in (":", ".", "°", "º")):
             cursor.i += 1
-        if cursor.token.kind is WORD and cursor.line_of(cursor.token) == cursor.line_of(number):
+        first = WORDS.get(cursor.token.text)
+        has_sign = cursor.last is not number
+        is_before_word = first is not None and first.role not in ("value", "operator", "function")
+        is_same_line = cursor.line_of(cursor.token) == cursor.line_of(number)
+        if cursor.token.kind is WORD and is_same_line and (has_sign or is_before_word):
             self.reporter.answer(number)
             self.reporter.answer(sign)
             span = Span(number.start, cursor.last.end)

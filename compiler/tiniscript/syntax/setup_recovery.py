@@ -11,7 +11,7 @@ from tiniscript.diagnostics import codes
 from tiniscript.source import Span
 from tiniscript.syntax.cursor import Cursor
 from tiniscript.syntax.foreign import foreign_header
-from tiniscript.syntax.lexer import Token
+from tiniscript.syntax.lexer import WORD, Token
 from tiniscript.syntax.reporter import Reporter, Resumed
 from tiniscript.syntax.suggestions import head_in, inside, is_question
 from tiniscript.words import WORDS
@@ -62,6 +62,15 @@ class SetupRecovery:
         following = cursor.following
         if word.text == "CHECK_CONNECTION":
             self.reporter.fail(codes.PING_ALONE, word.span)
+        if word.text == "SI" and following.text == "NO":
+            found = cursor.source[Span(word.start, following.end)]
+            values = {"found": found, "right": "ELSE", "fix": "ELSE", "usage": "ELSE"}
+            self.reporter.report(
+                codes.OTHER_LANGUAGE, Span(word.start, following.end), None, **values
+            )
+            cursor.i += 1
+            parser.arm(Token(WORD, "ELSE", word.start, following.end), is_reported=True)
+            parser.recovery.in_block.go_on()
         if word.text == "SI" and following.kind != "|":
             if following.kind == "(" or is_question(cursor.tokens, cursor.i + 1):
                 line = parser.recovery.in_block.whole_line(word, "IF")

@@ -19,7 +19,7 @@ OPERATOR_WORDS = {
     "Y": "AND", "E": "AND", "O": "OR", "U": "OR",
     "IS": "=", "ES": "=", "EQUALS": "=", "EQUAL": "=", "IGUAL": "=",
     "LESS": "<", "MENOR": "<", "GREATER": ">", "MORE": ">", "MAYOR": ">", "BIGGER": ">",
-    "MOD": "%", "X": "*", "POR": "*", "MAS": "+", "MENOS": "-", "ENTRE": "/",
+    "MOD": "%", "X": "*", "POR": "*", "MAS": "+", "MENOS": "-",
 }  # fmt: skip
 _OPERATOR_TAILS = frozenset(("THAN", "QUE", "TO", "A"))
 

@@ -14,6 +14,7 @@ from tiniscript.syntax.ast import Argument
 from tiniscript.syntax.reporter import Reporter
 from tiniscript.syntax.units import converted
 from tiniscript.words import UNITS, Word
+from tiniscript.words import Argument as WordArgument
 
 _NAMES = {"s": "seconds", "cm": "centimetres", "Hz": "hertz", "%": "percent", "V": "volts"}
 
@@ -22,9 +23,20 @@ def fit_units(reporter: Reporter, word: Word, arguments: Sequence[Argument]) -> 
     """Say of each unit among the arguments of `word` whether it is the one that belongs there."""
     for k, diagnostic in enumerate(reporter.diagnostics):
         if diagnostic.code is codes.UNIT:
-            for argument, its in zip(arguments, word.arguments, strict=False):
+            for argument, its in _pairs(diagnostic, word, arguments):
                 if argument.span.start <= diagnostic.span.start <= argument.span.end and its.unit:
                     reporter.change(k, _fitted(diagnostic, word, its.name, its.unit))
+
+
+def _pairs(
+    diagnostic: Diagnostic, word: Word, arguments: Sequence[Argument]
+) -> list[tuple[Argument, WordArgument]]:
+    """Return what each argument is, as far as that is sure: `F(80%)` lacks its time."""
+    if len(arguments) == len(word.arguments):
+        return list(zip(arguments, word.arguments, strict=True))
+    unit = UNITS[diagnostic.values["unit"]][0]
+    fitting = [each for each in word.arguments if each.unit == unit] or list(word.arguments[:1])
+    return [(argument, fitting[0]) for argument in arguments if fitting]
 
 
 def _fitted(diagnostic: Diagnostic, word: Word, name: str, wanted: str) -> Diagnostic:

@@ -76,7 +76,7 @@ class Vocabulary:
         meant = meant_by(word.upper())
         if meant is None or word.upper() in WORDS or self.is_own(word.upper()):
             return word
-        is_value = meant in WORDS and WORDS[meant].role in ("value", "function")
+        is_value = meant in WORDS and WORDS[meant].role in ("value", "function", "forever")
         return meant if is_value or meant in self._sensors else word
 
     def translated(self, text: str) -> str:
