@@ -7,6 +7,7 @@ guess a name, and with it the program has fewer mistakes. All others are left to
 from __future__ import annotations
 
 import re
+import sys
 from collections.abc import Callable
 from typing import NamedTuple
 
@@ -30,7 +31,9 @@ _HEADERS = frozenset((
 # Codes whose repair writes a number in another way: `500 ms` is 0.5, `8O` is 80, `X++` adds 1, and
 # the number of a line goes.
 _REWRITTEN = frozenset((codes.UNIT, codes.BAD_NUMBER, codes.OTHER_ASSIGNMENT, codes.LINE_NUMBER))
-ENOUGH = 200  # repairs of one program
+MANY = 100  # diagnostics after which a program is not read on
+CHECKS = 400  # of one program, fewer of a long one
+CHECKED_CHARACTERS = 4_000_000
 
 
 class Fixed(NamedTuple):
@@ -41,20 +44,34 @@ class Fixed(NamedTuple):
     left: list[Diagnostic]
 
 
+_Step = tuple[str, list[Diagnostic], int]
+Check = Callable[[str], list[Diagnostic]]
+
+
+class _Allowed:
+    """Counts how often a text is checked: a long program takes long, and has many mistakes."""
+
+    def __init__(self, check: Check, left: int) -> None:
+        self._check = check
+        self.left = left
+
+    def check(self, text: str) -> list[Diagnostic]:
+        self.left -= 1
+        return self._check(text)
+
+
 class _Repair(NamedTuple):
     code: Code
     edits: list[Edit]
 
 
-_Step = tuple[str, list[Diagnostic], int]
-Check = Callable[[str], list[Diagnostic]]
-
-
 def fixed(text: str, check: Check) -> Fixed:
     """Return a program with its sure repairs. `check` finds the diagnostics of a text."""
+    allowed = _Allowed(check, min(CHECKS, 20 + CHECKED_CHARACTERS // (len(text) + 1)))
+    check = allowed.check
     found = check(text)
     count = 0
-    while count < ENOUGH:
+    while allowed.left > 0:
         repairs = _sure(found, text)
         step = _all_of(repairs, text, found, check) or _one_of(repairs, text, found, check)
         if step is None:
@@ -76,6 +93,9 @@ def _all_of(
         return None
     changed = applied(text, [edit for repair in chosen for edit in repair.edits])
     after = check(changed)
+    is_cut = len(found) > MANY  # the reader stopped there: what comes after it comes now
+    if is_cut and _mistakes(after) <= _mistakes(found) and _first(after) > _first(found):
+        return changed, after, len(chosen)
     if _mistakes(after) > _mistakes(found) - len(chosen):
         return None
     return changed, after, len(chosen)
@@ -141,6 +161,11 @@ def keeps_numbers(text: str, edits: list[Edit]) -> bool:
 
 def _digits(text: str) -> str:
     return "".join(re.findall("[0-9]", text))
+
+
+def _first(found: list[Diagnostic]) -> int:
+    """Return where the first mistake is in the text."""
+    return min((each.span.start for each in found if each.is_mistake), default=sys.maxsize)
 
 
 def _mistakes(found: list[Diagnostic]) -> int:

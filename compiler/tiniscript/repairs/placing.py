@@ -17,6 +17,7 @@ from tiniscript.source import Source, Span
 
 Edits = list[Edit] | None
 
+_NEAR = 80  # characters before a value in which its word is looked for
 _CALL = re.compile(r"[A-Za-z_]\w*\s*\([^()\r\n]*$")  # up to a value in brackets
 _WORD_BEFORE = re.compile(r"[A-Za-z_]\w*\s*$")
 _TO_ITS_END = re.compile(r"[^;\r\n{}]*")
@@ -52,10 +53,11 @@ def _own(diagnostic: Diagnostic, source: Source) -> Edits:
     start, end = diagnostic.span
     head = fix.partition("(")[0].upper()
     if text[start:end].startswith("("):
-        word = _WORD_BEFORE.search(text[:start])
+        begin = max(0, start - _NEAR)
+        word = _WORD_BEFORE.search(text[begin:start])
         if word is None or word[0].strip().upper() != head:
             return None
-        return [Edit(Span(word.start(), end), fix)]
+        return [Edit(Span(begin + word.start(), end), fix)]
     if "UNTIL" not in fix:
         end = _end_of_call(text, start) or end
     return [Edit(Span(start, end), fix)]
@@ -64,9 +66,10 @@ def _own(diagnostic: Diagnostic, source: Source) -> Edits:
 def _around(diagnostic: Diagnostic, source: Source) -> Edits:
     """The whole call around a value becomes what is right: `F(-2, 80)`."""
     fix = diagnostic.values.get("fix", "")
-    call = _CALL.search(source.text[: diagnostic.span.start])
-    end = _end_of_call(source.text, call.start()) if call else None
-    return [Edit(Span(call.start(), end), fix)] if fix and call and end else None
+    begin = max(0, diagnostic.span.start - _NEAR)
+    call = _CALL.search(source.text[begin : diagnostic.span.start])
+    end = _end_of_call(source.text, begin + call.start()) if call else None
+    return [Edit(Span(begin + call.start(), end), fix)] if fix and call and end else None
 
 
 def _taken_out(diagnostic: Diagnostic, source: Source) -> Edits:
