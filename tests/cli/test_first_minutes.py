@@ -46,13 +46,13 @@ def test_without_a_terminal_the_button_is_pushed_at_once(tmp_path: Path) -> None
     done = process("upload", "--virtual", "-e", "SB|F(1, 80);SHOW(1.5)", "--plot", picture)
     receipt, *rest = done.out.splitlines()
     assert done.code == 0
-    assert receipt.endswith("SB: its button is pushed at once, since nobody is at a terminal here")
+    assert receipt.endswith("SB: its button is pushed right away, since there are no keys here")
     assert sorted(rest[:3]) == ["Done.", "SHOW 1.5", "Saved in slot 0."]  # it is saved meanwhile
     assert rest[3].startswith("The virtual robot drove 36 cm in 1.0 s and touched nothing.")
     assert picture.read_bytes().startswith(b"\x89PNG")
     done = process("upload", "--virtual", "-e", "SB|X = 0;SHOW(1 / X)", "--lang", "es")
     assert done.code == 1
-    assert "su botón se pulsa enseguida" in done.out
+    assert "su botón se pulsa de inmediato" in done.out
     assert "DIVIDE_BY_ZERO" in done.err
 
 
@@ -401,7 +401,7 @@ def test_a_file_is_found_by_the_name_that_a_folder_shows(
     assert f"tsc uses {path}, its full name" in done.err
     assert tsc("compile", tmp_path / said).code == 0
     assert (tmp_path / "prog.bin").exists()
-    assert "su verdadero nombre" in tsc("run", tmp_path / said, "--lang", "es").err
+    assert "su nombre completo" in tsc("run", tmp_path / said, "--lang", "es").err
     (tmp_path / said).write_text("SI|S")
     assert tsc("check", tmp_path / said).err == ""
 

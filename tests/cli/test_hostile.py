@@ -86,7 +86,7 @@ def test_a_file_that_may_not_be_read(
     monkeypatch.setattr(Path, "open", refuse)  # root may read everything, so nothing else would do
     done = tsc("check", program)
     assert done.code == 2
-    assert "may not be read" in done.err
+    assert "no permission to read" in done.err
 
 
 def test_no_verb_and_no_such_verb(tsc: Tsc) -> None:

@@ -72,7 +72,8 @@ def test_every_file_that_the_command_writes_comes_from_such_an_option() -> None:
         "outputs.write(Path(options.plot),": "plot",
         "outputs.write(Path(options.report),": "report",
         "outputs.write(Path(self.options.memory),": "memory",
-        "outputs.write(given.path,": "program",  # fmt, in place
+        "outputs.write(given.path,": "program",  # fmt, in place; check --fix of one program
+        "outputs.write(Path(found.name),": "programs",  # check --fix, in place
         'path.open("a"': "csv",
         'path.open("w"': "csv",
     }
@@ -87,7 +88,7 @@ def test_every_file_that_the_command_writes_comes_from_such_an_option() -> None:
                 assert known, f"{file.name}: {line.strip()}"
                 found |= set(known)
     assert found == set(places)
-    assert {places[each] for each in found} == {*paths.WRITES, "program"}
+    assert {places[each] for each in found} == {*paths.WRITES, "program", "programs"}
 
 
 @pytest.mark.parametrize("how", ["same", "dot", "link", "hard"])

@@ -376,7 +376,7 @@ def test_nobody_something_else_and_another_version(
         timer.join()
     done = tsc("ping", "--port", "loop://")
     assert done.code == 3
-    assert "comes back what is sent" in done.err
+    assert "is sent to loop:// comes back" in done.err
 
 
 @pytest.mark.parametrize("verb", ["ping", "stop", "start", "info", "fetch", "monitor", "live"])

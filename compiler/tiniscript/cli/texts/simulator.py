@@ -48,7 +48,7 @@ VIRTUAL_TEXTS: dict[str, tuple[str, str]] = {
     "button_keys": ("b: start button   q: end   Ctrl-C: stop", "b: botón de inicio   q: terminar   Ctrl-C: detener"),
     "how_key": ("{start}: waits for its button, the key b", "{start}: espera su botón, la tecla b"),
     "how_pushed": ("{start}: its button is pushed right away, since there are no keys here",
-                   "{start}: su botón se pulsa enseguida, porque aquí no hay nadie en una terminal"),
+                   "{start}: su botón se pulsa de inmediato, porque aquí no hay teclas"),
     "drove": ("The virtual robot drove {cm} cm in {seconds} s and touched nothing.",
               "El robot virtual recorrió {cm} cm en {seconds} s y no tocó nada."),
     "drove_touching_once": ("The virtual robot drove {cm} cm in {seconds} s and ran into something once.",
