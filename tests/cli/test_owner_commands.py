@@ -46,11 +46,11 @@ def test_who_claims_a_robot_drives_it_and_nobody_else(
     done = claimed(pty_robot)
     assert done.code == 0 and "yours" in done.out
     assert on(pty_robot, "upload", "-e", DRIVES).code == 0
-    assert "owner: yours" in on(pty_robot, "info").out
-    assert "owner: yours" in on(pty_robot, "ping", "--count", "1").out
+    assert ", yours" in on(pty_robot, "info").out
+    assert ", yours" in on(pty_robot, "ping", "--count", "1").out
     assert "(yours)" in on(pty_robot, "ports", "--ask").out
     as_another(monkeypatch, tmp_path)
-    assert "owner: of another owner" in on(pty_robot, "info").out
+    assert ", of another owner" in on(pty_robot, "info").out
     assert "(de otro dueño)" in on(pty_robot, "ports", "--ask", "--lang", "es").out
     refused = on(pty_robot, "upload", "-e", DRIVES)
     assert refused.code == 3 and "10 s" in refused.err
@@ -68,7 +68,7 @@ def test_a_robot_is_given_up_and_free(pty_robot: PtyRobot) -> None:
     assert len(KeyFile().all()) == 1
     assert on(pty_robot, "disown").code == 0
     assert KeyFile().all() == []
-    assert "owner: free" in on(pty_robot, "info").out
+    assert ", free" in on(pty_robot, "info").out
 
 
 def test_a_claim_without_the_button_says_what_to_do(
@@ -90,7 +90,7 @@ def test_a_key_that_cannot_be_kept_is_not_given(pty_robot: PtyRobot) -> None:
     done = on(pty_robot, "claim")
     assert done.code == 2 and str(path) in done.err
     path.unlink()
-    assert "owner: free" in on(pty_robot, "info").out
+    assert ", free" in on(pty_robot, "info").out
 
 
 def test_a_teachers_stop_holds_until_the_teacher_or_the_button(
@@ -129,7 +129,7 @@ def test_a_shared_port_has_the_authority_and_its_messages_no_key(
     assert [key.which for key in KeyFile().all()] == [KEY_OWNER]
     as_another(monkeypatch, tmp_path)  # so that this command has no key
     assert on(pty_robot, "upload", "-e", DRIVES).code == 0
-    assert "owner: yours" in on(pty_robot, "info").out
+    assert ", yours" in on(pty_robot, "info").out
     driving = Command("upload", "-e", FOREVER, "--port", pty_robot.port)
     driving.until("running")
     assert on(pty_robot, "stop").code == 0

@@ -37,6 +37,7 @@ UPSTREAM: dict[str, set[str]] = {
     "flash": {"files", "robots"},
     "link": {"files", "printable", "bytecode"},
     "sharing": {"files", "bytecode", "link"},
+    "keys": {"files", "printable", "link"},
     "modules": {"link"},
     "doctor": {"files", "bytecode", "flash", "link", "modules", "sharing"},
     "virtual": {*SHARED, "bytecode", "vm", "robots", "link", "sharing"},

@@ -32,6 +32,7 @@ PORTS = {
     "COM3": "Arduino Uno (COM3)",
     "COM5": "Standard Serial over Bluetooth link (COM5)",
 }
+HAND_MS = 5000  # after which a hand is on the button
 LIGHT, DISTANCE = 500_000, 42_000  # thousandths
 
 each_guide = pytest.mark.parametrize(("language", "guide"), GUIDES.items(), ids=list(GUIDES))
@@ -110,6 +111,8 @@ def test_what_a_guide_types_prints_what_it_shows(
             Path(step.name).write_text(step.text, encoding="utf-8")
             continue
         name = next((word for word in step.words if word in PORTS), name)
+        if step.words == ["claim"]:
+            pty_robot.hold(after_ms=HAND_MS)
         main([pty_robot.port if word in PORTS else word for word in step.words])
         said = capsys.readouterr()
         printed.append((step, (said.err + said.out).replace(pty_robot.port, name)))

@@ -101,9 +101,10 @@ class PtyRobot:
         """Push the button, and let it go."""
         self._flags = [PUSHED, *[0] * 20, RELEASED]
 
-    def hold(self, milliseconds: int = 2300) -> None:
-        """Hold the button down."""
-        self._flags = [PUSHED, *[0] * 30, HELD, *[0] * (milliseconds - 32), RELEASED]
+    def hold(self, milliseconds: int = 2300, after_ms: int = 0) -> None:
+        """Hold the button down, after a while."""
+        press = [PUSHED, *[0] * 30, HELD, *[0] * (milliseconds - 32), RELEASED]
+        self._flags = [*[0] * after_ms, *press]
 
     def switch_off(self) -> None:
         """Only what is in its memory is kept."""

@@ -25,11 +25,11 @@ tini_noinline void rotate(uint8_t* word, uint8_t bytes, uint8_t bits) {
   for (uint8_t k = 0; k < kWord; k++) turned[(k + bytes) % kWord] = word[k];
   for (uint8_t k = 0; k < kWord; k++) word[k] = turned[k];
   while (bits-- != 0) {
-    uint8_t carry = word[kWord - 1] >> 7;
+    uint8_t carry = static_cast<uint8_t>(word[kWord - 1] >> 7);
     for (uint8_t k = 0; k < kWord; k++) {
       const uint8_t byte = word[k];
       word[k] = static_cast<uint8_t>(byte << 1 | carry);
-      carry = byte >> 7;
+      carry = static_cast<uint8_t>(byte >> 7);
     }
   }
 }

@@ -128,14 +128,16 @@ class Description:
         language, status, fields = self.connection.language, self.status, self.fields()
         kit = f"{fields['kit']} ({fields['robot']})" if fields["robot"] else fields["kit"]
         head = {"robot": self.connection.name, "port": shown(self.connection.port)}
-        state, reset = (text(f"{what}_{fields[what]}", language) for what in ("state", "reset"))
+        state, reset, owner = (
+            text(f"{what}_{fields[name]}", language)
+            for what, name in (("state", "state"), ("reset", "reset"), ("whose", "owner"))
+        )
         lines = [
-            text("info_robot", language).format(**head, id=fields["id"]),
+            text("info_robot", language).format(**head, id=fields["id"], whose=owner),
             text("info_kit", language).format(
                 kit=kit, isa=fields["isa"], room=self.device_info.room
             ),
             self._reader(),
-            text("info_owner", language).format(whose=text(f"whose_{fields['owner']}", language)),
             self._program(),
             text("info_state", language).format(state=state, reset=reset),
         ]

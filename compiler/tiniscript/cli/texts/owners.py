@@ -10,7 +10,6 @@ OWNER_TEXTS: dict[str, tuple[str, str]] = {
     "whose_free": ("free", "libre"),
     "whose_yours": ("yours", "tuyo"),
     "whose_other": ("of another owner", "de otro dueño"),
-    "info_owner": ("owner: {whose}", "dueño: {whose}"),
     "port_whose": ("{said} ({whose})", "{said} ({whose})"),
     # claiming
     "claim_hold": ("{robot} on {port}: hold its start button down for 2 s. tsc waits 30 s.",

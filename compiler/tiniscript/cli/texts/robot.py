@@ -212,7 +212,7 @@ LINK_TEXTS: dict[str, tuple[str, str]] = {
     # ping, info, name, fetch, ports
     "ping": ("{n} round trips: {least} ms at least, {median} ms in the middle, {most} ms at most",
              "{n} viajes de ida y vuelta: {least} ms como mínimo, {median} ms en el medio, {most} ms como máximo"),
-    "info_robot": ("{robot} on {port}, id {id}", "{robot} en {port}, id {id}"),
+    "info_robot": ("{robot} on {port}, id {id}, {whose}", "{robot} en {port}, id {id}, {whose}"),
     "info_kit": ("kit {kit}, instructions {isa}, room for {room} bytes of code",
                  "kit {kit}, instrucciones {isa}, sitio para {room} bytes de código"),
     "info_text": ("reads text, level {level} (docs/text.md says what that takes)",
