@@ -24,6 +24,7 @@ FILE_BYTES = 1_000_000
 NAME_CHARACTERS = 16
 MOST = 2000  # keys in a file
 MODE = 0o600  # only this person reads it
+_LOCK = Lock()  # the robots of a fleet have threads of their own
 _KINDS = tuple(name.lower() for name, _ in KEYS)
 
 
@@ -40,7 +41,6 @@ class KeyFile:
 
     def __init__(self, path: Path | None = None) -> None:
         self.path = path or files.settings_folder() / "keys.json"
-        self._lock = Lock()  # the robots of a fleet have threads of their own
 
     def all(self) -> list[RobotKey]:
         """Return all keys. Raises BadKeys where the file is none."""
@@ -57,7 +57,7 @@ class KeyFile:
 
         Raises BadKeys.
         """
-        with self._lock:
+        with _LOCK:
             before = self.all()
             given = {_place(key): key for key in keys}
             rest = [key for key in before if key.is_pending or _place(key) not in given]
@@ -76,20 +76,20 @@ class KeyFile:
     def made(self, robot: int, which: int, name: str) -> RobotKey | None:
         key = RobotKey(robot, which, os.urandom(KEY_BYTES), name, is_pending=True)
         try:
-            with self._lock:
+            with _LOCK:
                 self._write([*self.all(), key])
         except BadKeys:
             return None
         return key
 
     def settle(self, key: RobotKey) -> None:
-        with suppress(BadKeys), self._lock:
+        with suppress(BadKeys), _LOCK:
             settled = key._replace(is_pending=False)
             rest = [each for each in self.all() if _place(each) != _place(key)]
             self._write([*rest, settled])
 
     def drop(self, key: RobotKey) -> None:
-        with suppress(BadKeys), self._lock:
+        with suppress(BadKeys), _LOCK:
             self._write([each for each in self.all() if each.key != key.key])
 
     def _write(self, keys: list[RobotKey]) -> None:

@@ -154,6 +154,27 @@ def test_a_pulled_plug_leaves_the_old_key_or_the_new_one(cut_ms: int) -> None:
     assert owner_of(later, later.session(keys, nonce=77)) == YOUR_OWN
 
 
+def test_a_claim_whose_answer_is_lost_is_settled_when_its_key_is_shown() -> None:
+    table, keys = Owned(), Keys()
+    session = table.session(keys)
+    for _ in range(7):  # claims that were left before the button was held
+        session.claim(KEY_OWNER)
+        table.pass_time(session, 300)
+        session = table.session(keys, nonce=len(keys.found) + 1)
+    assert len(keys.found) == 7
+    session.claim(KEY_OWNER)
+    table.pass_time(session, 300)
+    table.pass_time(session, 1, PRESSED)
+    table.pass_time(session, 30)
+    table.pass_time(session, 2100, HELD)
+    table.pass_time(session, 400)
+    table.robot.step(flags=RELEASED)
+    keys.found = [keys.found[0], keys.found[-1]._replace(is_pending=True)]
+    later = table.session(keys, nonce=99)
+    assert owner_of(table, later) == YOUR_OWN
+    assert [(key.key[0], key.is_pending) for key in keys.found] == [(8, False)]
+
+
 def test_a_worn_memory_is_told() -> None:
     table, keys = Owned(), Keys()
     table.robot.wear_out(536 + 8)  # the first byte of a key

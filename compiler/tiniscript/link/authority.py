@@ -68,12 +68,22 @@ def whose(robot: DeviceInfo) -> str:
 
 
 def show_keys(
-    keys: Sequence[RobotKey], nonce: int, epoch: Callable[[], int]
+    ring: KeyRing | None, robot: int, nonce: int, epoch: Callable[[], int], which: int | None = None
 ) -> Exchange[AuthenticateReply]:
-    """Show the robot one key after the other, the teacher's first, until one is right."""
+    """Show a robot its keys, the teacher's first, until one is right; `which` alone if it is given.
+
+    Then it is known of a pending key whether the robot has taken it.
+    """
     found: Reply[AuthenticateReply] = Reply(NOT_OWNER)
-    for each in sorted(keys, key=lambda each: each.which != KEY_TEACHER):
+    keys = [] if ring is None else ring.of_robot(robot)
+    for each in sorted(keys, key=lambda each: (each.which != KEY_TEACHER, each.is_pending)):
+        if which not in (None, each.which):
+            continue
         found = yield from _show(each, nonce, epoch)
+        if ring is not None and each.is_pending and found.status == OK:
+            ring.settle(each)
+        if ring is not None and each.is_pending and found.status == WRONG_KEY:
+            ring.drop(each)
         if found.status != WRONG_KEY:
             break
     return found

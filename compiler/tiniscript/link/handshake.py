@@ -94,10 +94,11 @@ class Handshake:
             return refused(reply if shown.status == NOT_OWNER else shown)
         return (yield from make())
 
-    def _show_keys(self) -> Exchange[AuthenticateReply]:
+    def _show_keys(self, which: int | None = None) -> Exchange[AuthenticateReply]:
         assert self.robot
-        keys = self._keys.of_robot(self.robot.id) if self._keys is not None else ()
-        reply = yield from authority.show_keys(keys, self._nonce, self._epoch)
+        reply = yield from authority.show_keys(
+            self._keys, self.robot.id, self._nonce, self._epoch, which
+        )
         if reply.status == OK:
             self._take_features(reply.values.features)
         return reply
@@ -125,13 +126,9 @@ class Handshake:
 
     def hold_back(self) -> Exchange[EmptyReply]:
         """Stop the robot so that only the teacher's key, or its button, lets it go on."""
-        assert self.robot
-        found = self._keys.of_robot(self.robot.id) if self._keys is not None else ()
-        keys = [key for key in found if key.which == KEY_TEACHER]
-        shown = yield from authority.show_keys(keys, self._nonce, self._epoch)
+        shown = yield from self._show_keys(KEY_TEACHER)
         if shown.status != OK:
             return refused(shown)
-        self._take_features(shown.values.features)
         return (yield from requests.single(Request("STOP"), EmptyReply))
 
     def allow_text(self, is_allowed: bool) -> Exchange[TextReply]:

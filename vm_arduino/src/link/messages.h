@@ -147,8 +147,8 @@ enum class Answer : uint8_t {
   kLowSupply = 79,  // The robot's batteries are too weak to save anything; switched off, it forgets what is not saved.
   kNotKept = 80,  // The robot's memory has not kept it; switched off, it forgets it.
   kNotOwner = 84,  // The robot has an owner, and this computer has no key of it.
-  kWrongKey = 85,  // The robot has another key than this computer.
-  kTooManyTries = 86,  // The robot was shown too many wrong keys.
+  kWrongKey = 85,  // The robot has another key than this computer. Tries that are left: {detail}.
+  kTooManyTries = 86,  // The robot was shown too many wrong keys: it listens again in {detail} s.
   kHoldButton = 87,  // The robot waits for its button.
   kHeldBack = 88,  // The teacher has stopped the robot.
   kNoPrevious = 90,  // The robot has no program from before that it can run.
