@@ -174,6 +174,10 @@ def test_a_claim_whose_answer_is_lost_is_settled_when_its_key_is_shown() -> None
     later = table.session(keys, nonce=99)
     assert owner_of(table, later) == YOUR_OWN
     assert [(key.key[0], key.is_pending) for key in keys.found] == [(8, False)]
+    stale = Keys()
+    stale.found = left[:2]
+    assert owner_of(table, table.session(stale, nonce=100)) == OF_ANOTHER
+    assert stale.found == []
 
 
 def test_a_worn_memory_is_told() -> None:
