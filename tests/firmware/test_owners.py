@@ -18,6 +18,7 @@ from tiniscript.link.messages import (
     FIRST_EVENT,
     KEY_OWNER,
     KEY_TEACHER,
+    OWNERS,
     STATE_IDLE,
     STATE_RUNNING,
     STATE_STOPPED,
@@ -511,6 +512,23 @@ def test_a_robot_makes_itself_known_and_leaves_the_buzzer_to_a_program() -> None
     assert table.outcome(session, session.identify()) == "OK"
     table.pass_time(session, 3500)
     assert not [line for line in table.robot.did if "BEEP" in line]
+
+
+def test_a_firmware_without_owners_says_so_and_is_free() -> None:
+    table = Owned(defines=("tiniscript_without_owners",))
+    session = table.session(Keys())
+    assert table.claim(session) == "UNKNOWN_MESSAGE"
+    assert session.robot
+    assert not session.robot.values.features & OWNERS
+    assert table.tries(session) == "OK"
+    for name, payload in (("CLAIM", bytes(17)), ("AUTHENTICATE", b"\0"), ("TEXT", b"\0")):
+        session._seq = (session._seq + 1) & 0xFF
+        frame = Frame(BY_NAME[name].number, session._seq, session._epoch, payload)
+        answer = decoded(table.robot.wait(20, b"\0" + encoded(frame)).strip(b"\0"))
+        assert answer
+        assert answer.payload[0] == STATUSES["UNKNOWN_MESSAGE"]
+    table.pass_time(None, 5000)
+    assert b"OK" in table.robot.wait(200, b"SI|F(1, 80)\n")
 
 
 # -- by command -----------------------------------------------------------------------------------

@@ -47,8 +47,9 @@ class HostFirmware(Process):
         write_ms: float = 3.4,
         sources: Path = SOURCES,
         is_spanish: bool = False,
+        defines: tuple[str, ...] = (),
     ) -> None:
-        super().__init__([built(sources)], "the C++ robot")
+        super().__init__([built(sources, defines)], "the C++ robot")
         self.now_ms = 0
         self.did: list[str] = []
         self.is_lit, self.is_latched = False, True
@@ -118,7 +119,7 @@ def _text(answer: bytes) -> tuple[bytes, bytes]:
 
 
 @lru_cache
-def built(sources: Path) -> Path:
+def built(sources: Path, defines: tuple[str, ...] = ()) -> Path:
     """Return the program made from `sources`; what was made before from the same is used again."""
     folders = (
         "src",
@@ -135,7 +136,8 @@ def built(sources: Path) -> Path:
         for path in (sources / folder).glob("*")
         if path.suffix in (".h", ".cpp")
     )
-    return compiled([*inputs, sources / "extras/host" / "wire.h"], FLAGS)
+    flags = (*FLAGS, *(f"-D{each}" for each in defines))
+    return compiled([*inputs, sources / "extras/host" / "wire.h"], flags)
 
 
 def drives(did: Sequence[str]) -> list[str]:

@@ -47,8 +47,10 @@ class Keys:
 class Owned:
     """A robot and one computer after the other."""
 
-    def __init__(self, memory: bytes = EMPTY, seed: int = 0x12345678) -> None:
-        self.robot = HostFirmware(KIT, memory, seed=seed)
+    def __init__(
+        self, memory: bytes = EMPTY, seed: int = 0x12345678, defines: tuple[str, ...] = ()
+    ) -> None:
+        self.robot = HostFirmware(KIT, memory, seed=seed, defines=defines)
         self.robot.wait(300)
 
     def session(self, keys: Keys | None = None, nonce: int = 1) -> Session:

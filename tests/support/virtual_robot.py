@@ -8,6 +8,7 @@ from typing import TypeVar
 from tests.machines.wasm import missing
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import unpack
+from tiniscript.link.authority import KeyRing
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.payloads import ReceiptReply
 from tiniscript.link.requests import Reply
@@ -47,10 +48,10 @@ def trace(events: Sequence[Event]) -> list[str]:
 class Talk:
     """A computer at the robot's port."""
 
-    def __init__(self, robot: VirtualRobot, nonce: int = 5) -> None:
+    def __init__(self, robot: VirtualRobot, nonce: int = 5, keys: KeyRing | None = None) -> None:
         profile = robot.profile
         self.robot = robot
-        self.session = Session(nonce, profile.board.baud, profile.kit.fingerprint)
+        self.session = Session(nonce, profile.board.baud, profile.kit.fingerprint, keys=keys)
 
     def wait(self, milliseconds: int) -> None:
         for _ in range(milliseconds):
