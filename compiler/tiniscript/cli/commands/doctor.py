@@ -70,6 +70,7 @@ def _question(options: Namespace, language: str) -> Question:
     from tiniscript.doctor.diagnosis import Question
     from tiniscript.doctor.examination import Expected
     from tiniscript.link import known_ports, port_names
+    from tiniscript.virtual import directory
 
     robot = inputs.robot(options, language)
     watch_s = whole_number("--watch", options.watch, 0, 0, LONGEST_WATCH_S, language)
@@ -77,10 +78,12 @@ def _question(options: Namespace, language: str) -> Question:
     if port is not None and (not port.strip() or not port.isprintable()):
         raise CommandError(2, "no_such_port", found=shown(port) or "''")
     last = known_ports.known().last
+    if last is not None and (not port_names.is_there(last) or directory.is_gone(last)):
+        last = None
     kit = None if options.robot is None else robot.kit.fingerprint
     return Question(
         port,
-        last if last is not None and port_names.is_there(last) else None,
+        last,
         baud_of(options, robot, language),
         Expected(kit, robot.name, _name_of_kit),
         int.from_bytes(os.urandom(4), "little"),
