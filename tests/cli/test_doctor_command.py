@@ -6,6 +6,7 @@ import getpass
 import io
 import json
 import re
+import signal
 import socket
 import sys
 from pathlib import Path
@@ -23,6 +24,7 @@ from tiniscript.doctor import report
 from tiniscript.doctor.computer import ON, Adapter, Computer
 from tiniscript.doctor.findings import sure
 from tiniscript.link.ports import Found, opened
+from tiniscript.sharing import registry
 
 needs_compiler = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
@@ -119,6 +121,18 @@ def test_a_robot_that_restarts_while_it_drives(pty_robot: PtyRobot) -> None:
     assert (finding["cause"], finding["is_sure"]) == ("motors_restart", False)
     assert finding["said"] == "Your robot restarted when the motors started: check the batteries"
     assert finding["values"]["reset"] == "POWER"
+
+
+@needs_compiler
+def test_a_stop_gets_through_while_a_robot_is_watched(pty_robot: PtyRobot) -> None:
+    on(pty_robot, "upload", "-e", FOREVER, "--detach", "--no-save")
+    command = Command("doctor", "--port", pty_robot.port, "--watch", "60")
+    pty_robot.until(lambda: registry.found(pty_robot.port) is not None, "it is watched")
+    assert pty_robot.moves
+    assert on(pty_robot, "stop").code == 0
+    assert not pty_robot.moves
+    command.signal(signal.SIGINT)
+    assert command.ended().code == 2
 
 
 # -- other things -------------------------------------------------------------------------------

@@ -6,6 +6,7 @@ import errno
 import os
 from argparse import Namespace
 from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import Any, cast
 
@@ -73,6 +74,8 @@ class Case:
         self.asked: list[str] = []
         self.other: OtherVersion | None = None
         self.shared: Shared | None = None
+        self.watched = Shared(Reply(LOST))
+        self.watch_ms = 0
 
     def with_bluetooth(self, *paired: str, is_off: bool = False) -> Case:
         self.system.write("/sys/class/bluetooth/hci0/address", "0")
@@ -110,9 +113,12 @@ class Case:
             self.asked.append(name)
             return self.says_yes
 
+        def share(name: str) -> AbstractContextManager[LinkConnection]:
+            return nullcontext(cast(LinkConnection, self.watched))
+
         expected = Expected(None, "tinibot", {KIT: "tinibot"}.get)
-        doors = Doors(self.system, open_wire, join, may_open, lambda name: "rfcomm" in name)
-        return diagnosed(doors, Question(port, self.last, 9600, expected, 7))
+        doors = Doors(self.system, open_wire, join, may_open, lambda name: "rfcomm" in name, share)
+        return diagnosed(doors, Question(port, self.last, 9600, expected, 7, self.watch_ms))
 
     def cause(self, port: str | None = CABLE) -> tuple[str, bool]:
         (finding,) = self.diagnosis(port).findings
@@ -280,6 +286,14 @@ def test_through_another_tsc(case: Case, replies: list[Reply[Any]], cause: str) 
     assert [each.cause for each in diagnosis.findings] == [cause]
     assert diagnosis.is_opened and case.shared.is_closed
     assert case.opened == []
+
+
+def test_a_robot_is_watched_where_nothing_else_is_wrong_and_its_port_is_shared(case: Case) -> None:
+    case.watch_ms = 1000
+    assert case.cause(RADIO) == ("falls_silent", False)  # as the shared connection says
+    assert case.wire is not None and case.wire.is_gone
+    case.end = Nobody()
+    assert case.cause(RADIO) == ("crossed", False)
 
 
 def test_what_was_not_opened_is_not_said_to_have_been(case: Case) -> None:

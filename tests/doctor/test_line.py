@@ -18,9 +18,10 @@ from tests.support.simulated_ends import (
 )
 from tests.support.simulated_modules import Bt05, Hc05, Hc06, Hm10
 from tests.support.simulated_wire import OtherEnd, SimulatedWire
-from tiniscript.doctor.examination import Expected
+from tiniscript.doctor.examination import Expected, examined
 from tiniscript.doctor.findings import Finding
 from tiniscript.doctor.line import Line, looked, readable
+from tiniscript.doctor.robot import WireRobot
 from tiniscript.link.messages import LINK_FAULTS, SAVED, STATUSES, STOP_RUN
 from tiniscript.robots import load
 
@@ -31,20 +32,23 @@ STALL = next(number for number, name, _ in LINK_FAULTS if name == "STALL")
 
 
 def found(
-    end: OtherEnd,
-    is_radio: bool = False,
-    kit: int | None = None,
-    watch_ms: int = 0,
-    baud: int = 9600,
+    end: OtherEnd, is_radio: bool = False, kit: int | None = None, baud: int = 9600
 ) -> list[Finding]:
     wire = SimulatedWire(end, baud)
-    findings = looked(
-        wire, Line(baud, is_radio, 4711), Expected(kit, "tinibot", NAMES.get), watch_ms
-    )
+    findings = looked(wire, Line(baud, is_radio, 4711), Expected(kit, "tinibot", NAMES.get))
     if is_radio:
         assert {speed for speed, _ in wire.sent} == {baud}
         assert wire.restarts == 0
     return findings
+
+
+def watched(end: OtherEnd, watch_ms: int) -> dict[str, Finding]:
+    """Return what is found where a robot is watched for so long."""
+    robot = WireRobot(SimulatedWire(end), 4711, KIT)
+    reply = robot.hello()
+    assert reply is not None
+    expected = Expected(KIT, "tinibot", NAMES.get)
+    return {each.cause: each for each in examined(robot, reply, expected, watch_ms)}
 
 
 def only(end: OtherEnd, **how: object) -> tuple[str, bool]:
@@ -72,7 +76,7 @@ def test_only_questions_are_asked_of_a_robot_and_nothing_that_stops_it(is_radio:
     """No frame acts, and there are never four zeros in a row: these would stop it."""
     end = Firmware(state=state("RUNNING"))
     end.deaf = 3
-    found(end, is_radio=is_radio, kit=KIT, watch_ms=3000)
+    found(end, is_radio=is_radio, kit=KIT)
     assert set(end.requests) == QUESTIONS
     assert b"\0" * STOP_RUN not in b"".join(end.got)
 
@@ -152,7 +156,7 @@ def test_a_robot_that_restarts_when_its_motors_start(resets: str, is_sure: bool)
 
     end = Driver()
     end.restarts_ms, end.resets = 10_000, resets
-    finding = causes(end, watch_ms=12_000)["motors_restart"]
+    finding = watched(end, 12_000)["motors_restart"]
     assert finding.is_sure == is_sure
     end = Driver()
     end.restarts_ms, end.resets = 10_000, resets

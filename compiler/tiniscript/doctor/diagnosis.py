@@ -9,6 +9,7 @@ from __future__ import annotations
 import errno
 import os
 from collections.abc import Callable
+from contextlib import AbstractContextManager
 from typing import NamedTuple
 
 from tiniscript.doctor import computer, line
@@ -31,13 +32,17 @@ PSEUDO = ("/dev/pts/", "/dev/ttys")  # pseudo-terminals: nothing restarts there
 
 
 class Doors(NamedTuple):
-    """What the doctor needs from outside. `may_open` asks the user about the port of a cable."""
+    """What the doctor needs from outside. `may_open` asks the user about the port of a cable.
+
+    `share` opens a port so that other commands share it: a stop gets through while it is watched.
+    """
 
     system: System
     open_wire: Callable[[str, int], Wire]
     join: Callable[[str], LinkConnection | None]
     may_open: Callable[[str], bool]
     is_radio: Callable[[str], bool]
+    share: Callable[[str], AbstractContextManager[LinkConnection]]
     tell: Callable[[str], None] = lambda what: None
 
 
@@ -97,12 +102,15 @@ def _opened(
     is_radio = is_radio and not port.startswith(PSEUDO)
     asked = Line(question.baud, is_radio, question.nonce)
     try:
-        findings = line.looked(wire, asked, question.expected, question.watch_ms, doors.tell)
+        findings = line.looked(wire, asked, question.expected, doors.tell)
     except OSError:
         cause = "other_host" if is_address(port) else "port_gone"
         findings = [Finding(cause, not is_address(port))]
     finally:
         wire.close()
+    if question.watch_ms and not any(finding.is_wrong for finding in findings):
+        with doors.share(port) as shared:
+            findings = list(_shared(shared, doors, question))
     return Diagnosis(port, tuple(findings), found, True)
 
 

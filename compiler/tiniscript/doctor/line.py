@@ -33,7 +33,7 @@ class Line(NamedTuple):
 
 
 def looked(
-    wire: Wire, line: Line, expected: Expected, watch_ms: int = 0,
+    wire: Wire, line: Line, expected: Expected,
     tell: Callable[[str], None] = lambda what: None,
 ) -> list[Finding]:  # fmt: skip
     """Return what is at the other end. `tell` gets what is done next, a short name."""
@@ -43,7 +43,7 @@ def looked(
     tell("hello")
     reply = robot.hello(HELLOS)
     if reply is not None:
-        return examined(robot, reply, expected, watch_ms, tell)
+        return examined(robot, reply, expected, tell=tell)
     heard = before + robot.heard
     if _is_echo(heard, robot.spoken):
         return [sure("echo")]
@@ -51,7 +51,7 @@ def looked(
         return [sure("module_set_up", baud=str(line.baud))]
     if line.is_radio:
         return [_by_radio(heard)]
-    return _by_cable(wire, line, expected, heard, watch_ms, tell)
+    return _by_cable(wire, line, expected, heard, tell)
 
 
 def _robot(wire: Wire, line: Line, expected: Expected) -> WireRobot:
@@ -90,7 +90,7 @@ def _by_radio(heard: bytes) -> Finding:
 
 
 def _by_cable(
-    wire: Wire, line: Line, expected: Expected, heard: bytes, watch_ms: int,
+    wire: Wire, line: Line, expected: Expected, heard: bytes,
     tell: Callable[[str], None],
 ) -> list[Finding]:  # fmt: skip
     if readable(heard):
@@ -106,7 +106,7 @@ def _by_cable(
         reply = robot.hello(1)
         if reply is not None:
             found = sure("wrong_baud", baud=str(baud), expected=str(line.baud))
-            rest = examined(robot, reply, expected, watch_ms, tell)
+            rest = examined(robot, reply, expected, tell=tell)
             return [found, *(each for each in rest if each.cause != "fine")]
         if readable(more):
             return [sure("other_sketch", said=readable(more))]

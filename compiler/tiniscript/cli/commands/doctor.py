@@ -7,6 +7,7 @@ import os
 import platform
 import sys
 from argparse import Namespace
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,15 +15,16 @@ from tiniscript.cli import inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import whole_number
-from tiniscript.cli.robot.connect import baud_of, robot_of_kit
+from tiniscript.cli.robot.connect import Connection, baud_of, robot_of_kit
 from tiniscript.cli.texts.common import text
 from tiniscript.doctor import report
 from tiniscript.doctor.findings import CAUSES, NOTE, Finding
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping
 
     from tiniscript.doctor.diagnosis import Diagnosis, Doors, Question
+    from tiniscript.link.connection import LinkConnection
     from tiniscript.link.wire import Wire
 
 LONGEST_WATCH_S = 600
@@ -118,9 +120,16 @@ def _doors(options: Namespace, language: str, doing: _Doing) -> Doors:
         print(said, end="", file=sys.stderr, flush=True)
         return sys.stdin.readline().strip().lower() in ("1", "y", "yes", "s", "si", "sí")
 
+    @contextmanager
+    def share(port: str) -> Iterator[LinkConnection]:
+        given = Namespace(verb="doctor", port=port, baud=options.baud, virtual=False)
+        with Connection(given, inputs.robot(options, language), language) as connection:
+            connection.meet()
+            yield connection.line
+
     return Doors(
         ThisComputer(), open_wire, lambda port: joined(port, "doctor"), may_open, ports.is_radio,
-        doing.tell,
+        share, doing.tell,
     )  # fmt: skip
 
 

@@ -8,7 +8,14 @@ if TYPE_CHECKING:
     from tiniscript.link.connection import LinkConnection
     from tiniscript.sharing.server import Server
 
-SHARED = ("link", "live", "monitor", "start", "upload")  # verbs that stay on a port, and share it
+SHARED = (
+    "doctor",
+    "link",
+    "live",
+    "monitor",
+    "start",
+    "upload",
+)  # verbs that stay on a port, and share it
 
 
 def shared(connection: LinkConnection, port: str, baud: int, verb: str) -> Server | None:

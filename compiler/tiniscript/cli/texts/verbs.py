@@ -218,11 +218,11 @@ VERBS: dict[str, Verb] = {
          "Averigua qué está mal en un puerto, un módulo Bluetooth o un robot: qué vio, qué tan seguro está y el siguiente paso. Primero mira solo esta computadora y no abre ningún puerto. Después usa el puerto de una radio, y el que tiene otro tsc: envía HELLO, STATUS y 20 PING. Abrir el puerto de un cable reinicia la mayoría de las placas, así que antes pregunta (`--yes` dice que sí); si ahí no responde ningún robot, pregunta a otras velocidades, envía AT, que un módulo responde, y el saludo de los cargadores de arranque. Nunca mueve un robot, no inicia ni detiene nada, y no escribe en ninguna memoria."),
         ends=("Exit code: 0 if a robot answers and nothing is wrong, 3 if something is or nobody could be asked.\n"
               "With `--watch 20` it sees a robot that restarts when its motors start: let it drive meanwhile.\n"
-              "While it has the port, `tsc stop` waits for it; with `tsc link` on the port in another terminal it does not.\n"
+              "While it watches it shares the port: `tsc stop` works in another terminal. Before that a stop waits some seconds for it.\n"
               "What it asks of Windows and macOS was tested with written-down answers of these systems, not on them.",
               "Código de salida: 0 si un robot responde y nada está mal, 3 si algo lo está o no se pudo preguntar a nadie.\n"
               "Con `--watch 20` ve un robot que se reinicia cuando arrancan sus motores: haz que se mueva mientras tanto.\n"
-              "Mientras tiene el puerto, `tsc stop` lo espera; con `tsc link` en el puerto, en otra terminal, no.\n"
+              "Mientras lo mira comparte el puerto: `tsc stop` funciona en otra terminal. Antes de eso, un stop lo espera unos segundos.\n"
               "Lo que pregunta a Windows y macOS se probó con respuestas escritas de esos sistemas, no en ellos."),
     ),
     "module": Verb(
