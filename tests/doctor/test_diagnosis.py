@@ -258,6 +258,24 @@ def test_the_last_port_and_the_only_port(case: Case) -> None:
     assert case.diagnosis(None).port == RADIO
 
 
+def test_the_driver_is_named(case: Case) -> None:
+    _plugged(*CH340)(case)
+    (finding,) = case.diagnosis(None).findings
+    assert finding.values == {"chip": "CH340", "driver": "ch341"}
+
+
+@pytest.mark.parametrize(
+    ("platform", "port", "description"),
+    [("linux", "/dev/tty5", "Bluetooth"), ("win32", "COM3", ""), ("darwin", "/dev/tty.HC-05", "")],
+)
+def test_the_only_port_of_each_system(
+    case: Case, platform: str, port: str, description: str
+) -> None:
+    case.system.platform = platform
+    case.with_port(port, description)
+    assert case.diagnosis(None).port == port
+
+
 @pytest.mark.parametrize(
     ("port", "cause", "is_sure"),
     [(RADIO, "port_gone", True), ("socket://robot:7000", "other_host", False)],
