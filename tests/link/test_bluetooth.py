@@ -204,6 +204,18 @@ def test_all_robots_in_reach_are_listed_and_asked(ble: BleRobot, bluez: FakeBlue
     assert PLACE not in said
 
 
+def test_several_robots_at_once(ble: BleRobot, bluez: FakeBluez) -> None:
+    with PtyRobot(ble.robot.kit) as second:
+        other = BleRobot(second, "Tini 2", OTHER, NORDIC)
+        bluez.add(other)
+        ports = ("--port", NAME, "--port", "ble://tini 2")
+        done = process("upload", "-e", DRIVE, *ports)
+        assert (done.code, "2 of 2 robots: done." in done.err) == (0, True)
+        assert (ble.robot.did, second.did) == (DROVE, DROVE)
+        done = process("stop", *ports)
+        assert (done.code, "2 of 2 robots: done." in done.err) == (0, True)
+
+
 @pytest.mark.parametrize("verb", ["stop", "upload"])
 def test_all_includes_a_robot_that_is_known(ble: BleRobot, verb: str) -> None:
     assert process("ping", "--port", NAME).code == 0

@@ -40,6 +40,50 @@ def announced(name: str, address: str, number: int) -> Iterator[None]:
 
 
 @contextmanager
+def packets(name: str, number: int) -> Iterator[None]:
+    """Multicast packets that announce a name, one after the other."""
+    from zeroconf._dns import DNSAddress, DNSPointer, DNSService, DNSText
+    from zeroconf._protocol.outgoing import DNSOutgoing
+    from zeroconf.const import (
+        _CLASS_IN,
+        _FLAGS_QR_RESPONSE,
+        _TYPE_A,
+        _TYPE_PTR,
+        _TYPE_SRV,
+        _TYPE_TXT,
+    )
+
+    from tiniscript.link.named_robots import SERVICE
+
+    whole = f"{name}.{SERVICE}"
+    packet = DNSOutgoing(_FLAGS_QR_RESPONSE)
+    packet.add_answer_at_time(DNSPointer(SERVICE, _TYPE_PTR, _CLASS_IN, 120, whole), 0)
+    service = DNSService(whole, _TYPE_SRV, _CLASS_IN, 120, 0, 0, number, "far.local.")
+    packet.add_answer_at_time(service, 0)
+    packet.add_answer_at_time(DNSText(whole, _TYPE_TXT, _CLASS_IN, 120, b"\0"), 0)
+    address = DNSAddress("far.local.", _TYPE_A, _CLASS_IN, 120, bytes((127, 0, 0, 1)))
+    packet.add_answer_at_time(address, 0)
+    is_over = threading.Event()
+
+    def send() -> None:
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as out:
+            out.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, bytes((127, 0, 0, 1)))
+            out.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            out.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEPORT, 1)
+            out.bind(("127.0.0.1", 5353))  # from elsewhere nobody believes it
+            while not is_over.wait(0.1):
+                out.sendto(packet.packets()[0], ("224.0.0.251", 5353))
+
+    sender = threading.Thread(target=send, daemon=True)
+    sender.start()
+    try:
+        yield
+    finally:
+        is_over.set()
+        sender.join()
+
+
+@contextmanager
 def bad_network(number: int) -> Iterator[int]:
     """A TCP port that passes bytes on to another one: late, and not all of them."""
     chance = random.Random(7)
@@ -137,6 +181,19 @@ def test_an_address_outside_is_not_called(address: str) -> None:
         assert (done.code, f"an address that is not in this network ({address})" in done.err) == (
             3, True,
         )  # fmt: skip
+
+
+@pytest.mark.parametrize(("name", "is_heard"), [
+    ("plain", True), ("a.b", True), ("_tcp", True), ("x" * 63, True), ("\u202ex", True),
+    ("\x1b[31mx", False), ("a\r\nb", False),
+])  # fmt: skip
+def test_a_packet_may_announce_anything(name: str, is_heard: bool) -> None:
+    """Written by hand: zeroconf refuses to announce some of these, and to believe others."""
+    from tiniscript.link import named_robots
+
+    with packets(name, 7007):
+        found = named_robots.listed()
+    assert found == ([(name, "socket://127.0.0.1:7007")] if is_heard else [])
 
 
 def test_a_hostile_name_is_shown_without_what_a_terminal_obeys() -> None:

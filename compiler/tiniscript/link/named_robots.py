@@ -11,8 +11,8 @@ from threading import Event
 from typing import NamedTuple
 
 from zeroconf import (
-    BadTypeInNameException,
     DNSQuestionType,
+    Error,
     IPVersion,
     ServiceBrowser,
     ServiceInfo,
@@ -44,10 +44,7 @@ def resolved(port: str) -> str:
     if not 0 < len(name.encode()) <= LONGEST:
         raise PortError(ports.NOT_ANNOUNCED)
     with _network() as network:
-        try:
-            info = asked(network, f"{name}.{SERVICE}", int(SEARCH_S * 1000))
-        except BadTypeInNameException:  # a name that nothing in a network can have
-            info = None
+        info = asked(network, f"{name}.{SERVICE}", int(SEARCH_S * 1000))
     if info is None:
         raise PortError(ports.NOT_ANNOUNCED)
     return _address(info)
@@ -85,18 +82,22 @@ def listed() -> list[Announced]:
 
 
 def asked(network: Zeroconf, name: str, limit_ms: int) -> ServiceInfo | None:
-    """Return what is announced of a name.
+    """Return what is announced of a name, or None.
 
     The answer goes to all: of several programs of a computer, one alone would get its own.
     """
-    return network.get_service_info(SERVICE, name, limit_ms, question_type=DNSQuestionType.QM)
+    try:
+        return network.get_service_info(SERVICE, name, limit_ms, question_type=DNSQuestionType.QM)
+    except Error:  # a name that nothing in a network may have
+        return None
 
 
 def _network() -> Zeroconf:
     try:
         return Zeroconf(ip_version=IPVersion.V4Only)
-    except OSError as why:
-        raise PortError(ports.NO_MULTICAST, why.strerror or str(why)) from None
+    except (OSError, RuntimeError) as why:  # RuntimeError: without any interface
+        reason = why.strerror if isinstance(why, OSError) else None
+        raise PortError(ports.NO_MULTICAST, reason or str(why)) from None
 
 
 def _address(info: ServiceInfo) -> str:
