@@ -420,3 +420,11 @@ def test_a_robot_tells_which_program_it_holds_before_it_is_saved(text: str) -> N
     assert robot.until(session, request) == OK
     assert outcome(request).values.program == image_of(text).checksum
     assert outcome(request).values.saved != SAVED_STORED
+
+
+def test_a_program_of_one_frame_may_use_every_sensor_of_the_kit() -> None:
+    robot, session = switched_on(), computer()
+    for device in KIT.sensors:
+        send(robot, session, f"SI|SHOW({device.name})")
+        robot.talk(session, 100)
+    assert [event.name for event in session.events()].count("SHOW") == len(KIT.sensors)

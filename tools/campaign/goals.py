@@ -34,6 +34,8 @@ GOALS: tuple[Goal, ...] = (
          "power cuts", 10_000_000, 2_000_000, "tests.firmware.test_store {count} --seed {seed}", 20),
     Goal("uploads", "An upload over a bad radio says done only if the robot has the program; nothing is done twice; after a stop nothing starts.",
          "uploads", 10_000, 500, f"{_CHANNEL} {{count}} --frames 0 --seed {{seed}}", 1000),
+    Goal("broken-off", "The largest upload may be cut, or the robot be stopped once or twice, at each byte: it holds the old program or the new one, and the next upload is whole.",
+         "runs over all bytes", 1, 1, "tests.firmware.test_cut_uploads"),
     Goal("undos", "An undo whose answer is lost is not done twice.",
          "robots, four undos each", 10_000, 500, f"{_CHANNEL} 0 --frames 0 --undos {{count}} --seed {{seed}}", 1000),
     Goal("frames", "No damaged frame is taken for a whole one, and damage costs one more frame at most.",
