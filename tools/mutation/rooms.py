@@ -265,6 +265,7 @@ def main(arguments: list[str] | None = None) -> int:
                      datetime.now(timezone.utc).date().isoformat(), commit())  # fmt: skip
             now = {**shares(), room.name: dict(zip(HEAD[1:], share, strict=True))}
             WRITTEN.write_text(json.dumps(now, indent=2) + "\n", encoding="utf-8")
+            subprocess.run([sys.executable, "-m", "tools.generate"], cwd=ROOT, check=True)
     return 1 if unnoticed else 0
 
 
