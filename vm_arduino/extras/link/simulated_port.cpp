@@ -72,8 +72,14 @@ const Trim& port_trim() { return port.trim; }
 LineErrors port_line_errors() { return {0, 0}; }
 uint16_t port_room() { return port.room; }
 
-Answer port_make_way(bool) {
-  if (port.is_busy) return Answer::kBusy;
+Answer port_make_way(bool is_live) {
+  std::unique_ptr<uint8_t[]>& before = is_live ? port.live_before : port.image_before;
+  if (port.is_busy) {
+    if (before != nullptr) before.swap(is_live ? port.live : port.image);
+    before.reset();
+    return Answer::kBusy;
+  }
+  before.reset();
   if (port.robot_status.state == State::kRunning) {
     port.robot_status.state = State::kIdle;
     say("END");
@@ -89,6 +95,7 @@ void port_forget() { hold(port.stored, Saved::kStored); }
 uint8_t* port_memory(uint16_t length, bool is_live) {
   if (length > kHeaderBytes + port.room) return nullptr;
   std::unique_ptr<uint8_t[]>& memory = is_live ? port.live : port.image;
+  memory.swap(is_live ? port.live_before : port.image_before);
   const size_t size = static_cast<size_t>(length + kEndBytes);
   memory.reset(new uint8_t[size]);
   for (size_t k = 0; k < size; k++) memory[k] = 0xa5;  // what was there before

@@ -22,6 +22,8 @@ struct SimulatedPort {
   bool is_saving = false;            // it has not kept yet what it was given
   std::unique_ptr<uint8_t[]> image;  // of exactly its length: a sanitizer sees what is outside
   std::unique_ptr<uint8_t[]> live;
+  std::unique_ptr<uint8_t[]> image_before;  // what they were until it makes way
+  std::unique_ptr<uint8_t[]> live_before;
   std::unique_ptr<uint8_t[]> text;  // what is read as text
   std::string held;                 // the image that START starts
   std::string stored;    // the one that is saved: what is held again where an upload breaks off
