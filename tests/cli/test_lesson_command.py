@@ -115,6 +115,7 @@ def test_a_picture_of_the_way(tsc: Tsc, tmp_path: Path) -> None:
     ("arguments", "sentence"),
     [
         (["jump"], "lesson takes show, check or sheet, not jump"),
+        (["--json"], "--json does not go with tsc lesson."),
         (["show"], "which lesson?"),
         (["show", "13"], "There is no lesson 13. Give a number from 1 to 12"),
         (["show", "0"], "There is no lesson 0."),

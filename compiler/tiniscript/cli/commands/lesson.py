@@ -60,7 +60,7 @@ def _refuse_others(options: Namespace, action: str) -> None:
             if getattr(options, option.name):
                 label = option.flags if not option.is_argument else options.program
                 raise CommandError(
-                    2, "lesson_only", option=label, action="" if action == LIST else action
+                    2, "lesson_only", option=label, action="" if action == LIST else f" {action}"
                 )
 
 
