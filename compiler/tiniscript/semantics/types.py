@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from tiniscript.diagnostics import codes
 from tiniscript.semantics.ir import Expression, Term
-from tiniscript.semantics.symbols import Scope
+from tiniscript.semantics.symbols import ENOUGH, Scope
 from tiniscript.source import Span
 from tiniscript.syntax.ast import Argument, Part
 from tiniscript.syntax.operators import SIGN_OF
@@ -115,7 +115,8 @@ class Kinds:
         if meant == "BUTTON" or name == "BUTTON":
             scope.report(codes.NO_BUTTON, span)
             return
-        known = [each for each, its in scope.names.items() if its.what in ("sensor", "variable")]
+        names = scope.names.items() if len(scope.diagnostics) < ENOUGH else ()
+        known = [each for each, its in names if its.what in ("sensor", "variable")]
         near = NUMBER_WORDS.get(name) or scope.near(name, known)
         stem = SENSOR_STEMS.get(name, name) + "_"  # `LIGHT` of LIGHT_R and LIGHT_L
         several = [each for each in known if each.startswith(stem)]
