@@ -2,7 +2,7 @@
 
 `programs.txt` has a program, then a line for each message, `> 1 TS012 F(1.5, 80)`: its line, its
 code and what to try, in Spanish; then, where `tsc check --fix` changes it, the program that it
-makes, each line behind a `=`. A line of `%%` ends it.
+makes, each line behind a `=`, without spaces at its end. A line of `%%` ends it.
 """
 
 from __future__ import annotations
@@ -51,7 +51,8 @@ def found_in(program: str) -> Entry:
     messages = [message(each, source, "es") for each in found]
     mended = fixed(program, check).text
     said = tuple(f"{each.line} {each.code} {each.fix}".rstrip() for each in messages)
-    return Entry(program, said, mended if mended != program else None)
+    kept = "\n".join(line.rstrip() for line in mended.split("\n"))  # as the file keeps it
+    return Entry(program, said, kept or None if mended != program else None)
 
 
 def write(found: list[Entry]) -> None:

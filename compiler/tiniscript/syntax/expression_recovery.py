@@ -79,7 +79,11 @@ class ExpressionRecovery:
         """`F(2,,80)`, `F(2, 80,)`: with one comma less the values are complete."""
         cursor = self.cursor
         tokens, k = cursor.tokens, place
-        while k and tokens[k].kind not in ("(", ";", NEWLINE):
+        depth = 0
+        while k and tokens[k].kind not in (";", NEWLINE):
+            depth += (tokens[k].kind == ")") - (tokens[k].kind == "(")
+            if depth < 0:
+                break
             k -= 1
         word = self._word_of(tokens[k - 1]) if k else None
         if word is None or tokens[k].kind != "(":
