@@ -191,7 +191,7 @@ VERBS: dict[str, Verb] = {
         ROBOTS, ("claim", "claim"), ("make the robot yours: only you drive it", "hace tuyo el robot: solo tú lo conduces"),
         ("Makes the robot yours. Hold its start button down for 2 s while tsc waits. From then on only a computer that has its key drives it; everybody else may look at it, make it blink and stop it. With `--teacher` the robot gets a second key, which may do the same; a stop with it (`tsc stop --teacher`) is released by it, or by the button, alone. A robot without an owner is free to use.",
          "Hace tuyo el robot. Mantén pulsado su botón de inicio 2 s mientras tsc espera. Desde entonces solo lo conduce una computadora que tiene su llave; los demás pueden mirarlo, hacerlo parpadear y detenerlo. Con `--teacher` el robot recibe una segunda llave, que puede lo mismo; una parada con ella (`tsc stop --teacher`) la libera solo ella, o el botón. Un robot sin dueño es libre para todos."),
-        ends=("To make a robot forget its keys: hold its button down, switch it on, and hold it for 10 s more, until it plays.",
+        ends=("To make a robot forget its keys: hold its button down, switch it on, and hold it for 10 s more, until it beeps.",
               "Para que un robot olvide sus llaves: mantén pulsado su botón, enciéndelo, y sigue así 10 s más, hasta que suene."),
     ),
     "disown": Verb(
