@@ -1,48 +1,35 @@
-"""Whose robot it is: claims, keys and what a stranger may do, in the robot's own firmware."""
+"""Whose robot it is: claims, the teacher's key, forgetting, and what else a robot says."""
 
 from __future__ import annotations
-
-import random
-from typing import Any
 
 import pytest
 
 from tests.machines.host_firmware import missing
-from tests.support.owners import FOREVER, HELD, PRESSED, RELEASED, Keys, Owned, image_of
-from tiniscript.link.authority import FREE, OF_ANOTHER, YOUR_OWN, whose
-from tiniscript.link.connection import PendingRequest
+from tests.support.owners import (
+    FOREVER,
+    HELD,
+    PRESSED,
+    RELEASED,
+    Keys,
+    Owned,
+    image_of,
+    owner_of,
+    state_of,
+)
+from tiniscript.link.authority import FREE, OF_ANOTHER, YOUR_OWN
 from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.messages import (
     BY_NAME,
-    BY_NUMBER,
-    FIRST_EVENT,
     KEY_OWNER,
     KEY_TEACHER,
     OWNERS,
     STATE_IDLE,
     STATE_RUNNING,
-    STATE_STOPPED,
     STATUSES,
 )
 from tiniscript.link.outcomes import UNKEPT
-from tiniscript.link.session import Session
 
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
-
-OPEN_TO_ALL = {"HELLO", "PING", "STATUS", "STOP", "IDENTIFY"}
-
-
-def owner_of(table: Owned, session: Session) -> str:
-    assert table.outcome(session, session.hello()) == "OK"
-    assert session.robot
-    return whose(session.robot)
-
-
-def state_of(table: Owned, session: Session) -> int:
-    request = session.status()
-    assert table.outcome(session, request) == "OK"
-    assert request.outcome
-    return request.outcome.values.state
 
 
 # -- claiming -------------------------------------------------------------------------------------
@@ -189,57 +176,6 @@ def test_a_worn_memory_is_told() -> None:
     assert owner_of(table, session) == FREE
 
 
-# -- what a stranger may do ------------------------------------------------------------------------
-
-
-def test_a_stranger_looks_and_stops_and_nothing_else() -> None:
-    table, keys = Owned(), Keys()
-    owner = table.claimed(keys)
-    assert table.tries(owner) == "OK"
-    stranger = table.session(nonce=3)
-    assert owner_of(table, stranger) == OF_ANOTHER
-    for is_open in (stranger.ping(), stranger.identify()):
-        assert table.outcome(stranger, is_open) == "OK"
-    assert state_of(table, stranger) == STATE_RUNNING
-    closed: list[PendingRequest[Any]] = [
-        stranger.clear(),
-        stranger.start(),
-        stranger.live(image_of("F(1, 80)").code),
-        stranger.upload(image_of(FOREVER)),
-        stranger.upload(image_of("SHOW(1); " * 40)),
-        stranger.name(b"Mine"),
-        stranger.trim(),
-        stranger.trim(b"\0\0\0"),
-        stranger.fetch(),
-        stranger.allow_text(True),
-    ]
-    for request in closed:
-        assert table.outcome(stranger, request) == "NOT_OWNER"
-    stranger.stop(table.robot.now_ms)
-    table.pass_time(stranger, 50)
-    assert state_of(table, stranger) == STATE_STOPPED
-    assert table.robot.is_latched
-    assert table.outcome(stranger, stranger.clear()) == "NOT_OWNER"
-
-
-def test_every_request_has_a_side() -> None:
-    """Whatever acts and is not listed here needs authority."""
-    table, keys = Owned(), Keys()
-    table.claimed(keys)
-    stranger = table.session(nonce=3)
-    assert owner_of(table, stranger) == OF_ANOTHER
-    for message in BY_NAME.values():
-        if message.number >= 32 or message.name in OPEN_TO_ALL | {"CLAIM", "AUTHENTICATE"}:
-            continue
-        payload = bytes(sum(field.low for field in message.request))
-        stranger._seq = (stranger._seq + 1) & 0xFF
-        frame = Frame(message.number, stranger._seq, stranger._epoch, payload)
-        sent = table.robot.wait(20, b"\0" + encoded(frame)).strip(b"\0")
-        answer = decoded(sent)
-        assert answer, message.name
-        assert answer.payload[0] == STATUSES["NOT_OWNER"], message.name
-
-
 def test_a_long_press_starts_nothing_and_a_short_one_does() -> None:
     table = Owned()
     session = table.session(Keys())
@@ -251,140 +187,6 @@ def test_a_long_press_starts_nothing_and_a_short_one_does() -> None:
     table.hold(session, 900)
     table.pass_time(session, 100)
     assert state_of(table, session) == STATE_RUNNING
-
-
-# -- authority ------------------------------------------------------------------------------------
-
-
-def test_authority_lapses_and_is_shown_again() -> None:
-    table, keys = Owned(), Keys()
-    session = table.claimed(keys)
-    kept, session._handshake._keys = session._handshake._keys, None  # it cannot show a key now
-    table.pass_time(None, 1900)
-    assert table.outcome(session, session.trim()) == "OK"
-    table.pass_time(None, 2050)
-    assert table.outcome(session, session.trim()) == "NOT_OWNER"
-    session._handshake._keys = kept
-    assert table.outcome(session, session.trim()) == "OK"  # it shows the key by itself
-
-
-def test_a_recorded_session_opens_nothing() -> None:
-    table, keys = Owned(), Keys()
-    session = table.claimed(keys)
-    recorded: list[bytes] = []
-    again = table.session(keys, nonce=4)
-    request = again.upload(image_of("SI|F(1, 80)"))
-    while request.outcome is None:
-        data = again.poll(table.robot.now_ms)
-        recorded.append(data)
-        again.receive(table.robot.step(data), table.robot.now_ms)
-    assert request.outcome.status == 0
-    table.pass_time(None, 4000)
-    del session
-    table.robot.did.clear()
-    for _ in range(300):  # the epoch goes around
-        for data in recorded:
-            table.robot.wait(3, data)
-    assert not [line for line in table.robot.did if "MOTORS" in line]
-
-
-def test_a_recorded_tag_opens_nothing_in_its_own_epoch() -> None:
-    table, keys = Owned(), Keys()
-    table.claimed(keys)
-    owner = table.session(keys, nonce=4)
-    recorded: list[Frame] = []
-    request = owner.hello()
-    while request.outcome is None:
-        data = owner.poll(table.robot.now_ms)
-        frame = decoded(data.strip(b"\0")) if data else None
-        recorded += [frame] if frame is not None else []
-        owner.receive(table.robot.step(data), table.robot.now_ms)
-    (shown,) = (each for each in recorded if len(each.payload) == 9)
-    assert table.outcome(owner, owner.trim()) == "OK"
-
-    def answers(thief: Session, tag: bytes) -> int:
-        thief._seq = (thief._seq + 1) & 0xFF
-        frame = Frame(shown.number, thief._seq, thief._epoch, shown.payload[:1] + tag)
-        answer = decoded(table.robot.wait(20, b"\0" + encoded(frame)).strip(b"\0"))
-        assert answer
-        return answer.payload[0]
-
-    assert answers(owner, shown.payload[1:]) == STATUSES["NOT_OWNER"]  # twice to one challenge
-    table.pass_time(None, 2100)
-    assert answers(owner, shown.payload[1:]) == STATUSES["NOT_OWNER"]  # without a challenge
-    assert answers(owner, b"") == 0
-    assert answers(owner, shown.payload[1:]) == STATUSES["WRONG_KEY"]  # to another challenge
-    for count in range(300):
-        thief = table.session(nonce=4 if count % 2 else 9)
-        assert table.outcome(thief, thief.hello()) == "OK"
-        if thief._epoch == shown.epoch and count % 2:
-            break
-        if thief._epoch == (shown.epoch - 1) & 0xFF and not count % 2:
-            continue
-        if (thief._epoch - shown.epoch) % 2 == count % 2:  # so that both come together
-            table.robot.wait(100, bytes(8))
-    assert thief._epoch == shown.epoch
-    assert answers(thief, b"") == 0
-    assert answers(thief, shown.payload[1:]) == STATUSES["WRONG_KEY"]
-
-
-def test_wrong_keys_are_tried_five_times() -> None:
-    table, keys = Owned(), Keys()
-    table.claimed(keys)
-    wrong = Keys()
-    wrong.found = [keys.found[0]._replace(key=bytes([200] * 16))]
-    thief = table.session(wrong, nonce=8)
-    assert owner_of(table, thief) == OF_ANOTHER
-    for _ in range(3):
-        assert table.outcome(thief, thief.start()) == "WRONG_KEY"
-    request = thief.start()
-    assert table.outcome(thief, request) == "WRONG_KEY"
-    request = thief.start()
-    assert table.outcome(thief, request) == "TOO_MANY_TRIES"
-    assert request.outcome
-    assert 25 <= request.outcome.detail <= 30
-    owner = table.session(keys, nonce=9)
-    assert table.outcome(owner, owner.start()) == "TOO_MANY_TRIES"
-    table.pass_time(None, 30_000)
-    assert table.tries(owner) == "OK"
-
-
-def test_a_right_key_begins_the_count_of_wrong_ones_anew() -> None:
-    table, keys = Owned(), Keys()
-    table.claimed(keys)
-    wrong = Keys()
-    wrong.found = [keys.found[0]._replace(key=bytes([200] * 16))]
-    for count in range(3):
-        thief = table.session(wrong, nonce=10 + count)
-        for _ in range(3):
-            assert table.outcome(thief, thief.start()) in ("WRONG_KEY", "NOT_OWNER")
-        owner = table.session(keys, nonce=20 + count)
-        assert table.outcome(owner, owner.trim()) == "OK"
-
-
-def test_the_same_seed_after_a_reset_is_another_challenge_or_needs_the_key() -> None:
-    """Two robots with one memory and one nonce: what one was shown opens the other at no time."""
-    table, keys = Owned(), Keys()
-    table.claimed(keys)
-    memory = table.robot.memory()
-    challenges = set()
-    for seed in range(12):
-        later = Owned(memory, seed=seed)
-        session = later.session(keys, nonce=4)
-        asked: list[bytes] = []
-        request = session.hello()
-        while request.outcome is None:
-            sent = later.robot.step(session.poll(later.robot.now_ms))
-            asked.append(sent)
-            session.receive(sent, later.robot.now_ms)
-        reply = max(asked, key=len)
-        challenges.add(b"".join(asked).replace(reply, b""))
-    assert len(challenges) == 12
-
-
-def test_forged_and_reordered_frames_drive_nothing(frames: int = 3000) -> None:
-    """As `python -m tests.firmware.test_owners 100000`, which does more of the same."""
-    assert forged(frames, 1) == 0
 
 
 # -- the teacher ----------------------------------------------------------------------------------
@@ -529,88 +331,3 @@ def test_a_firmware_without_owners_says_so_and_is_free() -> None:
         assert answer.payload[0] == STATUSES["UNKNOWN_MESSAGE"]
     table.pass_time(None, 5000)
     assert b"OK" in table.robot.wait(200, b"SI|F(1, 80)\n")
-
-
-# -- by command -----------------------------------------------------------------------------------
-
-
-def forged(frames: int, seed: int) -> int:
-    """Send recorded, forged and reordered frames to a robot with an owner; return how often one of
-    them had it drive, start or change. A stop in between is always obeyed.
-    """
-    chance = random.Random(seed)
-    table, keys = Owned(), Keys()
-    table.claimed(keys)
-    owner = table.session(keys, nonce=4)
-    request = owner.upload(image_of("SI|F(0.1, 80)"))
-    recorded = []
-    while request.outcome is None:
-        data = owner.poll(table.robot.now_ms)
-        if data:
-            recorded.append(data)
-        owner.receive(table.robot.step(data), table.robot.now_ms)
-    table.pass_time(None, 6000)
-    table.robot.did.clear()
-    memory = table.robot.memory()
-    accepted = 0
-    thief = table.session(nonce=4)
-    for count in range(frames):
-        if count % 97 == 0:
-            table.outcome(thief, thief.hello())
-        if count % 1009 == 1:
-            table.robot.wait(60)  # a repeated stop is told 50 ms later at the earliest
-            told = table.robot.wait(60, bytes(8))
-            assert b"\xa2" in told, (count, told)  # STOPPED
-            table.robot.wait(1100)
-        how = chance.randrange(3)
-        if how == 0:
-            data = chance.choice(recorded)
-        else:
-            message = chance.choice([each for each in BY_NAME.values() if each.number < 32])
-            low = sum(field.low for field in message.request)
-            high = sum(field.high for field in message.request)
-            payload = chance.randbytes(chance.randint(low, high))
-            if message.name == "AUTHENTICATE":
-                payload = bytes([chance.randrange(2)]) + chance.randbytes(chance.choice((0, 8)))
-            if message.name == "CLAIM":
-                payload = bytes([chance.randrange(2)]) + chance.randbytes(chance.choice((0, 16)))
-            thief._seq = (thief._seq + 1) & 0xFF
-            seq = thief._seq if how == 1 else chance.randrange(256)
-            data = encoded(Frame(message.number, seq, thief._epoch, payload))
-        sent = table.robot.step(b"\0" + data)
-        accepted += sum(is_accepted(answer) for answer in sent.split(b"\0"))
-        if chance.randrange(50) == 0:
-            table.robot.wait(30)
-        did = [line for line in table.robot.did if "MOTORS" in line]
-        accepted += len(did)
-        table.robot.did.clear()
-    if table.robot.memory() != memory:
-        accepted += 1
-    assert table.tries(table.session(keys, nonce=5)) in ("OK", "TOO_MANY_TRIES")
-    return accepted
-
-
-def is_accepted(sent: bytes) -> bool:
-    """Return whether an answer says that something was done for which it takes a key."""
-    frame = decoded(sent)
-    if frame is None or frame.number not in BY_NUMBER or not frame.payload:
-        return False
-    message = BY_NUMBER[frame.number]
-    if message.name == "AUTHENTICATE":  # a challenge is for anybody
-        is_open = len(frame.payload) == 1 + 2 + 8
-    else:
-        is_open = message.name in OPEN_TO_ALL or message.number >= FIRST_EVENT
-    return frame.payload[0] == 0 and not is_open
-
-
-def main(frames: int, seed: int) -> int:
-    accepted = forged(frames, seed)
-    print(f"{frames} replayed, forged and reordered frames: {accepted} accepted (seed {seed})")
-    return int(accepted != 0)
-
-
-if __name__ == "__main__":
-    import sys
-
-    numbers = [int(each) for each in sys.argv[1:]]
-    sys.exit(main(numbers[0] if numbers else 100_000, numbers[1] if numbers[1:] else 1))

@@ -7,7 +7,7 @@ from typing import Any
 from tests.machines.host_firmware import EMPTY, HostFirmware
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import Image, unpack
-from tiniscript.link.authority import RobotKey
+from tiniscript.link.authority import RobotKey, whose
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.messages import STATUS_NAMES
 from tiniscript.link.session import Session
@@ -93,3 +93,16 @@ def image_of(text: str) -> Image:
     compiled = compile_text(text, KIT)
     assert compiled.image, text
     return unpack(compiled.image)
+
+
+def owner_of(table: Owned, session: Session) -> str:
+    assert table.outcome(session, session.hello()) == "OK"
+    assert session.robot
+    return whose(session.robot)
+
+
+def state_of(table: Owned, session: Session) -> int:
+    request = session.status()
+    assert table.outcome(session, request) == "OK"
+    assert request.outcome
+    return request.outcome.values.state
