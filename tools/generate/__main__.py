@@ -8,7 +8,7 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from functools import partial
 from itertools import accumulate
 from pathlib import Path
@@ -22,8 +22,8 @@ from tiniscript.robots.ports import AVRS
 from tiniscript.robots.profile import LANGUAGES, ProfileRefused, Robot
 from tiniscript.robots.reader import read
 from tiniscript.robots.refusals import describe
-from tiniscript.text.levels import CODE_BYTES, LEVELS
 from tools.generate.command_pages import PAGES
+from tools.generate.documents import DOCUMENTS, spliced, table
 from tools.generate.poster import posters
 
 COMMAND = "python -m tools.generate"
@@ -109,66 +109,12 @@ def _parts_of(value: object) -> tuple[str, list[tuple[str, object]], str]:
     return json.dumps(value, ensure_ascii=False) if isinstance(value, str) else repr(value), [], ""
 
 
-def link_document() -> str:
-    """Return `docs/link.md` with the tables that it takes from `link/messages.py`."""
-    from tools.generate.link_header import DOCUMENT_TABLES
-
-    text = LINK_DOCUMENT.read_text(encoding="utf-8")
-    for name, made in DOCUMENT_TABLES.items():
-        text = spliced(text, name, table(*made()))
-    return text
-
-
-def text_document() -> str:
-    """Return `docs/text.md` with the table of levels."""
-    rows = [
-        (f"`{each.name}`", ", ".join(f"`{word}`" for word in sorted(each.lacks)) or "nothing",
-         each.room, min(CODE_BYTES, each.room))
-        for each in LEVELS.values()
-    ]  # fmt: skip
-    made = table(("level", "lacks", "room in bytes", "bytes of code, at most"), rows)
-    return spliced(TEXT_DOCUMENT.read_text(encoding="utf-8"), "levels", made)
-
-
-def promises_document() -> str:
-    """Return `docs/promises.md` with the table of goals and figures."""
-    from tools.campaign.table import HEAD, rows
-    from tools.mutation import rooms
-
-    text = PROMISES_DOCUMENT.read_text(encoding="utf-8")
-    text = spliced(text, "promises", table(HEAD, rows()))
-    return spliced(text, "mutation", table(rooms.HEAD, rooms.rows()))
-
-
-def lessons_document() -> str:
-    """Return `docs/lessons.en.md` with the table of criteria."""
-    from tools.generate.lesson_table import criteria
-
-    return spliced(LESSONS_DOCUMENT.read_text(encoding="utf-8"), "criteria", table(*criteria()))
-
-
 def spec() -> str:
     """Return `bytecode_spec.md` with the tables that it takes from the compiler."""
     text = SPEC.read_text(encoding="utf-8")
     for name, made in SPEC_TABLES.items():
         text = spliced(text, name, made())
     return text
-
-
-def spliced(text: str, name: str, table: str) -> str:
-    """Return `text` with `table` between the marks called `name`."""
-    begin, end = f"<!-- begin generated: {name} -->\n", f"<!-- end generated: {name} -->"
-    head, mark, rest = text.partition(begin)
-    _, last, tail = rest.partition(end)
-    assert mark and last, f"no marks for {name}"
-    return head + begin + table + end + tail
-
-
-def table(head: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
-    """Return a Markdown table; a bar in a cell is escaped."""
-    lines = [head, ["---"] * len(head), *rows]
-    cells = [[str(cell).replace("|", "\\|") for cell in line] for line in lines]
-    return "".join(f"| {' | '.join(line)} |\n" for line in cells)
 
 
 def image_table() -> str:
@@ -359,10 +305,6 @@ def text_table(name: str) -> str:
 
 MACHINE = ROOT / "vm_arduino" / "src" / "vm"
 LINK = ROOT / "vm_arduino" / "src" / "link"
-LINK_DOCUMENT = ROOT / "docs" / "link.md"
-TEXT_DOCUMENT = ROOT / "docs" / "text.md"
-PROMISES_DOCUMENT = ROOT / "docs" / "promises.md"
-LESSONS_DOCUMENT = ROOT / "docs" / "lessons.en.md"
 PAYLOADS = ROOT / "compiler" / "tiniscript" / "link" / "payloads.py"
 TEXT = ROOT / "vm_arduino" / "src" / "text"
 WIRED = ROOT / "vm_arduino" / "src" / "boards" / "kits"
@@ -387,10 +329,7 @@ OUTPUTS: list[tuple[Path, Callable[[], str]]] = [
             "remarks.cpp",
         )
     ),
-    (LINK_DOCUMENT, link_document),
-    (TEXT_DOCUMENT, text_document),
-    (PROMISES_DOCUMENT, promises_document),
-    (LESSONS_DOCUMENT, lessons_document),
+    *((ROOT / "docs" / name, make) for name, make in DOCUMENTS.items()),
     (PAYLOADS, link_payloads),
     *((ROOT / "docs" / name, partial(command_page, language)) for language, name in PAGES.items()),
     *((ROOT / "docs" / "poster" / name, make) for name, make in posters(COMMAND).items()),
