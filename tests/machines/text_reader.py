@@ -18,6 +18,7 @@ from tiniscript.robots.kit_words import kit_words
 from tiniscript.text.problems import NAMES
 
 LARGEST_ROOM = 60_000
+NO_DEFS = ("-Dtiniscript_no_defs",)  # flags of a reader like an Uno's
 
 
 class Answer(NamedTuple):

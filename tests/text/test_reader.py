@@ -7,7 +7,8 @@ from zlib import crc32
 import pytest
 
 from tests.machines.host import missing
-from tests.machines.text_reader import Answer, TextReader, read_lines
+from tests.machines.text_reader import NO_DEFS, Answer, TextReader, read_lines
+from tests.support.casefile import all_cases
 from tests.support.kits import KITS
 from tiniscript import robots
 from tiniscript.bytecode.disassembly import listing
@@ -173,8 +174,25 @@ def test_columns_from_255_on_are_255() -> None:
 
 
 def test_every_problem_has_its_test() -> None:
-    said = {problem for problem, _ in WRONG.values()} | {"CHECKSUM", "LIMIT", "FULL"}
+    said = {problem for problem, _ in WRONG.values()} | {"CHECKSUM", "LIMIT", "FULL", "LACKS"}
     assert said == {problem.name for problem in PROBLEMS}
+
+
+def test_a_reader_without_defs_reads_all_else() -> None:
+    """It knows the words, so that they are no names."""
+    small, large = TextReader(KIT, flags=NO_DEFS), TextReader(KIT)
+    for text in ("DEF A; F(1, 50); END_DEF; A", "def", "DEF=1", "X=1; DEF A"):
+        assert small.read(text.encode()).problem == "LACKS", text
+        assert small.read(text.encode()).column == text.upper().index("DEF") + 1
+    for text in ("END_DEF", "LOOP(2); END_DEF", "X=DEF", "ENDDEF=1", *WRONG):
+        if "DEF " not in text:
+            assert small.read(text.encode()) == large.read(text.encode()), text
+    for case in all_cases():
+        program = case.parts.get("tiniscript", "S").encode()
+        if b"DEF" not in program.upper():
+            assert small.read(program) == large.read(program), case.id
+    small.close()
+    large.close()
 
 
 def test_texts_are_short_and_plain() -> None:

@@ -12,7 +12,7 @@ from zlib import crc32
 import pytest
 
 from tests.machines.host import missing as missing_host
-from tests.machines.text_reader import Answer, TextReader
+from tests.machines.text_reader import NO_DEFS, Answer, TextReader
 from tests.oracle import programs
 from tests.support.kits import KITS
 from tests.text.test_reader_agreement import damaged, soup
@@ -48,7 +48,7 @@ def texts() -> list[bytes]:
 
 @pytest.mark.skipif(bool(REASON), reason=REASON or "there is a chip")
 def test_the_chip_says_the_same() -> None:
-    reader = TextReader(KIT, ROOM)
+    reader = TextReader(KIT, ROOM, NO_DEFS)
     program = avr_bench.built("reader")
     head = pack("<HH", ROOM, len(kit_words(KIT))) + kit_words(KIT)
     request, expected, compared = head, list[list[int]](), 0

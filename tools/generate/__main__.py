@@ -296,9 +296,9 @@ def text_table(name: str) -> str:
         "words.h": text_tables.words_header,
         "words.cpp": text_tables.words_tables,
         "problems.h": text_tables.problems_header,
-        "problems.cpp": text_tables.problems_texts,
         "remarks.h": remark_tables.remarks_header,
-        "remarks.cpp": remark_tables.remarks_texts,
+        "texts.h": remark_tables.texts_header,
+        "texts.cpp": remark_tables.texts,
     }
     return makes[name](COMMAND)
 
@@ -324,9 +324,9 @@ OUTPUTS: list[tuple[Path, Callable[[], str]]] = [
             "words.h",
             "words.cpp",
             "problems.h",
-            "problems.cpp",
             "remarks.h",
-            "remarks.cpp",
+            "texts.h",
+            "texts.cpp",
         )
     ),
     *((ROOT / "docs" / name, make) for name, make in DOCUMENTS.items()),

@@ -19,6 +19,7 @@ HEADER_GUARD = "TINISCRIPT_VM_BYTECODE_H_"
 # What a verifier distinguishes in the first two bytes of operands; devices come last.
 BYTES = ("any", "power", "percent", "variable", "count", "sensor", "actuator")
 FAR_BIT, BACK_BIT = 0x08, 0x10
+FIRST_TWIN = 0x80  # from here on an even code and the next one have the same shape
 
 
 def header(command: str) -> str:
@@ -177,7 +178,8 @@ def form_numbers() -> str:
             "// What an instruction does: it begins in one place for a whole family.\n"
             + enumeration("Family", named),
             "// Bits of the size of a shape.\n" + constants(("kFar", FAR_BIT), ("kBack", BACK_BIT)),
-            "// The number of each opcode's shape.\n"
+            "// The number of each opcode's shape; from kFirstTwin on one for two of them.\n"
+            f"constexpr uint8_t kFirstTwin = 0x{FIRST_TWIN:02x};\n"
             "extern const uint8_t kShapeOf[] tini_progmem;\n",
             "// Of each shape: pops (2 bits), pushes (1) and role (5); kBack, kFar and size (3);\n"
             "// what the second byte is (4) and the first (4); the family.\n"
@@ -192,7 +194,9 @@ def tables(command: str) -> str:
     """Return `bytecode.cpp`: the tables that the header declares."""
     rows = shapes()
     numbers = {op.code: number for number, same in enumerate(rows.values()) for op in same}
-    entries = [numbers.get(code, 0) for code in range(256)]
+    numbered = [numbers.get(code, 0) for code in range(256)]
+    assert numbered[FIRST_TWIN::2] == numbered[FIRST_TWIN + 1 :: 2]
+    entries = numbered[:FIRST_TWIN] + numbered[FIRST_TWIN::2]
     kinds = {byte_of(kind): kind for kind in opcodes.OPERAND_KINDS.values() if kind.size == 1}
     ranges = [(0, 255) if name == "any" else (kinds[name].low, kinds[name].high) for name in BYTES]
     return "\n".join(
@@ -204,8 +208,11 @@ def tables(command: str) -> str:
             array(
                 "kShapeOf[]",
                 (
-                    (", ".join(f"0x{each:02x}" for each in entries[at : at + 16]), f"{at:02x}")
-                    for at in range(0, 256, 16)
+                    (
+                        ", ".join(f"0x{each:02x}" for each in entries[at : at + 16]),
+                        f"{at if at < FIRST_TWIN else 2 * at - FIRST_TWIN:02x}",
+                    )
+                    for at in range(0, len(entries), 16)
                 ),
             ),
             array("kShapes[][4]", ((packed(shape), names(same)) for shape, same in rows.items())),

@@ -1,12 +1,16 @@
-"""What a robot says to a person beside what is wrong with a line: `remarks.h` and `remarks.cpp`."""
+"""What a robot says to a person: `remarks.h`, and the texts of problems and remarks, packed."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from tiniscript.bytecode.opcodes import FAULTS
 from tiniscript.link.messages import LINK_FAULTS
+from tiniscript.text.problems import PROBLEMS
 from tiniscript.text.remarks import REMARKS
 from tools.generate.cpp_header import camel
-from tools.generate.text_tables import file_of, in_both, strings
+from tools.generate.packed_texts import DEEPEST, FIRST_PAIR, packed, unpacked
+from tools.generate.text_tables import file_of
 
 
 def remarks_header(command: str) -> str:
@@ -25,39 +29,103 @@ def remarks_header(command: str) -> str:
             *rows,
             "};",
             "",
-            "// The text of a remark, in flash; a 0 ends it.",
+            "// The text of a remark, in flash, packed; a 0 ends it.",
             "const uint8_t* text_of(Remark remark);",
             "",
-            "// The name of a fault, in flash; a 0 ends it.",
+            "// The name of a fault, in flash, packed; a 0 ends it.",
             "const uint8_t* name_of_fault(uint8_t fault);",
         ],
     )
 
 
-def remarks_texts(command: str) -> str:
-    """Return `remarks.cpp`. The last of the names of faults is that of the highest number."""
+def texts_header(command: str) -> str:
+    """Return `texts.h`."""
+    return file_of(
+        command,
+        "texts.h",
+        "// How the texts of problems and remarks are packed.\n",
+        [
+            "// A byte from this one on stands for two, in flash, which may be such bytes again,",
+            f"// {DEEPEST} deep.",
+            f"constexpr uint8_t kFirstPair = 0x{FIRST_PAIR:02x};",
+            "const uint8_t* pair_of(uint8_t code);",
+        ],
+    )
+
+
+def texts(command: str) -> str:
+    """Return `texts.cpp`. The last of the names of faults is that of the highest number."""
     first = LINK_FAULTS[0][0]
     own = sum(number < first for number, *_ in FAULTS)
     names = [name for _, name, _ in sorted((*FAULTS, *LINK_FAULTS))]
+    english = [*(row.english for row in PROBLEMS), *(row.english for row in REMARKS), *names]
+    spanish = [*(row.spanish for row in PROBLEMS), *(row.spanish for row in REMARKS), *names]
+    before = len(PROBLEMS) + len(REMARKS)
     return file_of(
         command,
-        "remarks.cpp",
+        "texts.cpp",
         "",
         [
-            *in_both("kRemarkTexts", "Remark remark", REMARKS),
-            "",
             "namespace {",
             "",
-            "const uint8_t kFaultNames[] tini_progmem =",
-            *strings(names),
+            *_tables("English", english),
+            "",
+            *_tables("Spanish", spanish),
+            "",
+            "// The text of this number, from 1: they lie one after the other.",
+            "const uint8_t* text_at(uint8_t number) {",
+            "  const uint8_t* text = robot_speaks_spanish() ? kSpanish : kEnglish;",
+            "  for (; number > 1; number--) {",
+            "    while (flash_byte(text++) != 0) {",
+            "    }",
+            "  }",
+            "  return text;",
+            "}",
             "",
             "}  // namespace",
             "",
+            "const uint8_t* text_of(Problem problem) {",
+            "  return text_at(static_cast<uint8_t>(problem));",
+            "}",
+            "",
+            "const uint8_t* text_of(Remark remark) {",
+            f"  constexpr uint8_t kProblems = {len(PROBLEMS)};",
+            "  return text_at(static_cast<uint8_t>(kProblems + static_cast<uint8_t>(remark)));",
+            "}",
+            "",
             "const uint8_t* name_of_fault(uint8_t fault) {",
-            f"  if (fault > {LINK_FAULTS[-1][0]}) return text_at(kFaultNames, {len(names)});",
+            f"  if (fault > {LINK_FAULTS[-1][0]}) return text_at({before + len(names)});",
             f"  if (fault >= {first}) fault = static_cast<uint8_t>(fault - {first - own - 1});",
-            "  return text_at(kFaultNames, fault);",
+            f"  return text_at(static_cast<uint8_t>({before} + fault));",
+            "}",
+            "",
+            "const uint8_t* pair_of(uint8_t code) {",
+            "  return (robot_speaks_spanish() ? kSpanishPairs : kEnglishPairs)[code - kFirstPair];",
             "}",
         ],
-        include=("kit_words.h", "problems.h"),
+        include=("kit_words.h", "problems.h", "remarks.h"),
     )
+
+
+def _tables(language: str, rows: Sequence[str]) -> list[str]:
+    """Return the texts of a language. On a board the linker leaves the other one out."""
+    pairs, codes = packed(rows)
+    return [
+        f"const uint8_t k{language}[] tini_progmem =",
+        *(
+            f'    "{_escaped(code)}\\0"  // {row}'.rstrip(" /")
+            for code, row in zip(codes, rows, strict=True)
+        ),
+        "    ;",
+        "",
+        f"const uint8_t k{language}Pairs[][2] tini_progmem = {{",
+        *(
+            f"    {{0x{one:02x}, 0x{two:02x}}},  // {unpacked(bytes((one, two)), pairs)}"
+            for one, two in pairs
+        ),
+        "};",
+    ]
+
+
+def _escaped(data: bytes) -> str:
+    return "".join(chr(each) if each < FIRST_PAIR else f"\\{each:03o}" for each in data)

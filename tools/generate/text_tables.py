@@ -11,8 +11,7 @@ from tiniscript.bytecode.image import STARTS
 from tiniscript.bytecode.opcodes import BLOCKS, BY_NAME
 from tiniscript.fixed_point import HIGHEST, LOWEST
 from tiniscript.robots.kit_words import packed, packed_range
-from tiniscript.text.problems import PROBLEMS, Problem
-from tiniscript.text.remarks import Remark
+from tiniscript.text.problems import PROBLEMS
 from tiniscript.words import WORDS, Word
 from tools.generate.cpp_header import camel
 
@@ -72,6 +71,18 @@ def _kinds(word: Word) -> int:
     return kinds
 
 
+def bytes_before(name: str) -> int:
+    """Return how many letters the words have before this one, or before the first of this role."""
+    words = words_in_order()
+    (first, *_) = (at for at, word in enumerate(words) if name in (word.text, word.role))
+    return sum(len(word.text) for word in words[:first])
+
+
+def bytes_of(role: str) -> int:
+    """Return how many letters the words of this role have."""
+    return sum(len(word.text) for word in words_in_order() if word.role == role)
+
+
 def words_header(command: str) -> str:
     """Return `words.h`."""
     words = words_in_order()
@@ -89,6 +100,7 @@ def words_header(command: str) -> str:
             "",
             f"constexpr uint8_t kFirstWord = 0x{FIRST_WORD:02x};",
             *names,
+            f"constexpr uint8_t kWordsEnd = 0x{FIRST_WORD + len(words):02x};",
             "",
             "// The words up to this one take arguments in brackets.",
             f"constexpr uint8_t kCommands = {commands};",
@@ -102,6 +114,13 @@ def words_header(command: str) -> str:
             f"constexpr uint8_t kTimeRange = {FIRST_RANGE + ranges().index((0, HIGHEST))};",
             "",
             "// All words one after the other, 0x80 in the last letter of each, and a 0.",
+            "// Other spellings begin at kAliasesAt, words of later versions at kLaterWordsAt.",
+            f"constexpr uint8_t kAliasesAt = {bytes_before('alias')};",
+            f"constexpr uint8_t kAliasBytes = {bytes_of('alias')};",
+            f"constexpr uint8_t kLaterWordsAt = {bytes_before('later')};",
+            f"constexpr uint8_t kDefAt = {bytes_before('DEF')};",
+            f"constexpr uint8_t kDefBytes = {len('DEF')};",
+            f"constexpr uint8_t kEndDefBytes = {len('END_DEF')};  // before kAliasesAt",
             "extern const uint8_t kWords[] tini_progmem;",
             "",
             "// Of each command: the kinds of its arguments (4 bits each), its opcode.",
@@ -158,64 +177,10 @@ def problems_header(command: str) -> str:
             *rows,
             "};",
             "",
-            "// The text of a problem, in flash; a 0 ends it.",
+            "// The text of a problem, in flash, packed; a 0 ends it.",
             "const uint8_t* text_of(Problem problem);",
-            "",
-            "// The text of this number, from 1, of those that lie one after the other.",
-            "const uint8_t* text_at(const uint8_t* texts, uint8_t number);",
         ],
     )
-
-
-def problems_texts(command: str) -> str:
-    """Return `problems.cpp`."""
-    return file_of(
-        command,
-        "problems.cpp",
-        "",
-        [
-            *in_both("kProblemTexts", "Problem problem", PROBLEMS),
-            "",
-            "const uint8_t* text_at(const uint8_t* texts, uint8_t number) {",
-            "  for (; number > 1; number--) {",
-            "    while (flash_byte(texts++) != 0) {",
-            "    }",
-            "  }",
-            "  return texts;",
-            "}",
-        ],
-        include=("kit_words.h",),
-    )
-
-
-def in_both(name: str, parameter: str, texts: Sequence[Problem | Remark]) -> list[str]:
-    """Return the texts in both languages, and the function that chooses one of them.
-
-    On a board the linker leaves the language out that the robot does not speak.
-    """
-    number = parameter.split()[-1]
-    return [
-        "namespace {",
-        "",
-        f"const uint8_t {name}English[] tini_progmem =",
-        *strings([each.english for each in texts]),
-        "",
-        f"const uint8_t {name}Spanish[] tini_progmem =",
-        *strings([each.spanish for each in texts]),
-        "",
-        "}  // namespace",
-        "",
-        f"const uint8_t* text_of({parameter}) {{",
-        f"  return text_at(robot_speaks_spanish() ? {name}Spanish : {name}English,",
-        f"                 static_cast<uint8_t>({number}));",
-        "}",
-    ]
-
-
-def strings(texts: Sequence[str]) -> list[str]:
-    """Return a C++ string with a 0 behind each of the texts."""
-    lines = [f'    "{text}\\0"' for text in texts]
-    return [*lines[:-1], f"{lines[-1]};"]
 
 
 def _bytes(data: Iterable[int]) -> str:

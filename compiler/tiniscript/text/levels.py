@@ -36,7 +36,7 @@ class Level(NamedTuple):
 LEVELS = {
     level.name: level
     for level in (
-        Level("uno", "uno", 2),
+        Level("uno", "uno", 2, frozenset({"DEF", "END_DEF", "ENDDEF"})),
         Level("mega", "mega", 4),
         Level("esp32", "esp32dev", 4),
     )

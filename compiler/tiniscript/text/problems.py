@@ -50,6 +50,7 @@ PROBLEMS = (  # by number, from 1
     Problem("TAKEN",          "It is another thing's name",   "Es nombre de otra cosa"),
     Problem("LIMIT",          "Too many, or too deep",        "Demasiado, o muy adentro"),
     Problem("FULL",           "Too long. Make it shorter",    "Muy largo. Hazlo mas corto"),
+    Problem("LACKS",          "Not read by this robot",       "Este robot no lo lee"),
 )
 # fmt: on
 

@@ -33,7 +33,9 @@ REMARKS = (  # in the order of their numbers
     Remark("DONE",      "DONE",                             "FIN"),
     Remark("FAULT",     "FAULT ",                           "FALLA "),
     Remark("MISTAKE",   "",                                 ""),  # the column and the problem
-    Remark("HELLO",     "",                                 ""),  # name, kit and level
+    Remark("HELLO",     ", kit ",                           ", kit "),  # between name and kit
     Remark("HELP",      "",                                 ""),  # the words of this robot
+    Remark("CUT",       "Bytes were lost. Begin again.",    "Se perdio algo. Empieza otra vez."),
+    Remark("LEVEL",     ", text 1",                         ", text 1"),  # behind the kit
 )
 # fmt: on

@@ -44,13 +44,11 @@ enum class Problem : uint8_t {
   kTaken = 27,  // It is another thing's name
   kLimit = 28,  // Too many, or too deep
   kFull = 29,  // Too long. Make it shorter
+  kLacks = 30,  // Not read by this robot
 };
 
-// The text of a problem, in flash; a 0 ends it.
+// The text of a problem, in flash, packed; a 0 ends it.
 const uint8_t* text_of(Problem problem);
-
-// The text of this number, from 1, of those that lie one after the other.
-const uint8_t* text_at(const uint8_t* texts, uint8_t number);
 
 }  // namespace tiniscript
 

@@ -9,9 +9,6 @@ namespace tiniscript {
 
 namespace {
 
-// Where a byte stands. The signs that may be the first half of another stand for themselves.
-enum Place : uint8_t { kBetween, kWord, kComment, kWhole, kPoint, kPlaces };
-
 constexpr uint8_t kUnfinished = 0x80;  // what follows is no ASCII
 constexpr uint8_t kOdd = 0x81;         // a character that means nothing
 constexpr uint8_t kBroken = 0x82;      // no UTF-8

@@ -23,6 +23,14 @@ typedef uint16_t SensorBits;
 typedef uint32_t SensorBits;
 #endif
 
+// Whether this robot's reader has DEFs. An ATmega328P has no room for them; tiniscript_no_defs is
+// for tests of that.
+#if defined(__AVR_ATmega328P__) || defined(tiniscript_no_defs)
+constexpr bool kReadsDefs = false;
+#else
+constexpr bool kReadsDefs = true;
+#endif
+
 enum class Text : uint8_t {
   kGoesOn,   // the line has not ended
   kNothing,  // the line has ended: no program has begun
@@ -47,14 +55,19 @@ class Reader {
 
   // Whether the program begins with a SETUP word, and whether that may still become so.
   bool has_setup() const { return has_setup_; }
-  bool may_have_setup() const;
+  bool may_have_setup();
+
+  // Whether all that was added to so many bytes of code is S. `is_at_stop`: also where the line has
+  // not ended.
+  bool is_stop_behind(uint8_t before) const;
+  bool is_at_stop(uint8_t before);
 
   // Whether the program so far is S.
-  bool is_stop() const { return length_ == 1 && !has_setup_ && ends_with_stop(); }
-  bool ends_with_stop() const;
+  bool is_stop() const { return !has_setup_ && is_stop_behind(0); }
 
-  // After kProblem: whether it is the first word, and this one in flash.
-  bool is_about(const uint8_t* word);
+  // After kProblem: the number of the first word in a table of words in flash, if that is what is
+  // wrong. Else the number of words there, or 255.
+  uint8_t find_unknown(const uint8_t* table);
 
   // After kMore: the word for which it waits, or ')'.
   uint8_t awaited() const;
@@ -85,6 +98,8 @@ class Reader {
 
   // words, in reader_names.cpp
   tini_noinline void end_word();
+  uint8_t find(const uint8_t* table, uint8_t unmark);
+  uint8_t open_word();
   bool matches(bool in_flash);
   bool find_in_kit();
   void find_name();

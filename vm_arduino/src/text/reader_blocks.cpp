@@ -6,10 +6,10 @@ namespace tiniscript {
 
 // Opens a block whose first code is the next one. `ends`: an operand that wants its end, or 0.
 void Reader::open(uint8_t type, uint8_t ends) {
-  if (type != kDefBlock) {
+  if (!kReadsDefs || type != kDefBlock) {
     blocks_++;
     if (blocks_ > kBlocks) report(Problem::kLimit);
-    if (deepest_ < blocks_) deepest_ = blocks_;
+    if (kReadsDefs && deepest_ < blocks_) deepest_ = blocks_;
   }
   if (!has_room(sizeof(Block) - 1)) return;
   stack_ -= sizeof(Block);
@@ -57,7 +57,7 @@ Problem Reader::close(uint8_t type) {
     } else {
       resolve(static_cast<uint8_t>(to - 1));
     }
-  } else if (type == kDefBlock) {
+  } else if (kReadsDefs && type == kDefBlock) {
     emit(byte_of(Op::kReturn));
     def_->blocks = deepest_;
     def_->calls = calls_;
@@ -87,7 +87,7 @@ Problem Reader::leave_loop() {
     if (at == names_) return Problem::kBreak;
     Block* const block = reinterpret_cast<Block*>(at);
     if (block->type == kIfBlock) continue;
-    if (block->type == kDefBlock) return Problem::kBreak;
+    if (kReadsDefs && block->type == kDefBlock) return Problem::kBreak;
     emit(byte_of(block->type == kLoopBlock ? Op::kBreakLoop : Op::kBreak));
     link(&block->ends);
     return Problem::kNone;

@@ -10,7 +10,9 @@ constexpr uint8_t kTight = 16;  // more than one byte of text takes
 
 }  // namespace
 
-bool Reader::ends_with_stop() const { return buffer_[length_ - 1] == byte_of(Op::kStop); }
+tini_noinline bool Reader::is_stop_behind(uint8_t before) const {
+  return length_ == static_cast<uint8_t>(before + 1) && buffer_[before] == byte_of(Op::kStop);
+}
 
 bool Reader::wants_room() const {
   if (problem_ != Problem::kNone) return false;
@@ -23,7 +25,7 @@ tini_noinline void Reader::move(uint8_t* buffer, uint16_t room) {
   const ptrdiff_t way = end - end_;
   __builtin_memmove(buffer, buffer_, static_cast<size_t>(length_ + letters_));
   __builtin_memmove(stack_ + way, stack_, static_cast<size_t>(end_ - stack_));
-  if (def_ != nullptr) {
+  if (kReadsDefs && def_ != nullptr) {
     def_ = reinterpret_cast<Def*>(reinterpret_cast<uint8_t*>(def_) + way);
   }
   stack_ += way;

@@ -13,18 +13,35 @@ constexpr uint8_t kLastLetter = 0x80;
 
 // The word behind the code has ended. It stays there until code is emitted.
 void Reader::end_word() {
-  buffer_[length_ + letters_ - 1] |= kLastLetter;
-  entry_ = kWords;
-  uint8_t word = kFirstWord;
-  for (; flash_byte(entry_) != 0; word++) {
-    if (!matches(true)) continue;
-    if (word == kWordAnd) word = token_of(Op::kAnd);
-    if (word == kWordOr) word = token_of(Op::kOr);
-    token(word);
-    return;
+  uint8_t word = find(kWords, 0);
+  if (word != kWordsEnd - kFirstWord) {
+    word = static_cast<uint8_t>(word + kFirstWord);
+    static_assert(token_of(Op::kOr) - token_of(Op::kAnd) == kWordOr - kWordAnd, "");
+    if (word == kWordAnd || word == kWordOr) {
+      word = static_cast<uint8_t>(word + token_of(Op::kAnd) - kWordAnd);
+    }
+    return token(word);
   }
   if (!find_in_kit()) find_name();
   token(kNameToken);
+}
+
+// Returns the number of the word behind the code in a table in flash, or that of the table's end.
+// Its last letter is marked; `unmark` takes that off again.
+tini_noinline uint8_t Reader::find(const uint8_t* table, uint8_t unmark) {
+  uint8_t* const last = buffer_ + length_ + letters_ - 1;
+  *last |= kLastLetter;
+  entry_ = table;
+  uint8_t number = 0;
+  while (flash_byte(entry_) != 0 && !matches(true)) number++;
+  *last ^= unmark;
+  return number;
+}
+
+// The word that is being typed where an instruction may begin, or 0.
+uint8_t Reader::open_word() {
+  if (place_ != kWord || (state_ != kBegin && state_ != kInstruction)) return 0;
+  return static_cast<uint8_t>(kFirstWord + find(kWords, kLastLetter));
 }
 
 // Whether the word is the one at `entry_`, which goes behind it.
@@ -42,14 +59,22 @@ bool Reader::matches(bool in_flash) {
   return is_same;
 }
 
-bool Reader::is_about(const uint8_t* word) {
-  entry_ = word;
-  return problem_ == Problem::kUnknownWord && length_ == 0 && matches(true);
+uint8_t Reader::find_unknown(const uint8_t* table) {
+  return problem_ == Problem::kUnknownWord && length_ == 0 ? find(table, 0) : uint8_t{255};
 }
 
-bool Reader::may_have_setup() const {
-  if (state_ != kBegin || buffer_[0] != (letters_ == 2 ? 'S' : 'P')) return false;
-  return letters_ == 4 || (letters_ == 2 && (buffer_[1] == 'I' || buffer_[1] == 'B'));
+bool Reader::may_have_setup() {
+  const uint8_t word = state_ == kBegin ? open_word() : uint8_t{0};
+  return word >= kWordSi && word <= kWordPing;
+}
+
+bool Reader::is_at_stop(uint8_t before) {
+  if (length_ == before) {
+    const uint8_t word = open_word();
+    return word == kWordS || word == kWordStop;
+  }
+  return is_stop_behind(before) && problem_ == Problem::kNone && place_ <= kComment &&
+         place_ != kWord;
 }
 
 bool Reader::find_in_kit() {
@@ -80,7 +105,7 @@ void Reader::find_name() {
     found_ = kIsVariable;
     if ((info & kNameYesNo) != 0) found_ = kIsVariable | kIsYesNo;
     number_ = info & (kVariables - 1);
-    if ((info & kNameDef) != 0) {
+    if (kReadsDefs && (info & kNameDef) != 0) {
       found_ = kIsDef;
       entry_ += sizeof(Def);
     }

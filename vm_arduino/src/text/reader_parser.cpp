@@ -63,7 +63,8 @@ Problem Reader::parse(uint8_t token) {
       if (state == kArguments) begin_value();
       return Problem::kNone;
     case kDefName:
-      return define(token);
+      if (kReadsDefs) return define(token);
+      // fall through
     case kAfterMove:
       return end_move(token);
     case kSeparator:
@@ -89,6 +90,7 @@ Problem Reader::instruction(uint8_t token) {
     return Problem::kNone;
   }
   if (token == kWordDef) {
+    if (!kReadsDefs) return Problem::kLacks;
     state_ = kDefName;
     return Problem::kNone;
   }
@@ -148,7 +150,7 @@ Problem Reader::after_name(uint8_t token) {
   }
   if ((found & kIsVariable) != 0) return Problem::kInstruction;
   if (!ends(token)) return Problem::kSeparator;
-  if (found == kIsDef) return call();
+  if (kReadsDefs && found == kIsDef) return call();
   emit_numbered(byte_of(Op::kRead), byte_of(Op::kRead0), number_);
   read_ |= static_cast<SensorBits>(SensorBits{1} << number_);
   return Problem::kNone;

@@ -19,6 +19,9 @@ constexpr uint8_t kBinary = 0x80;  // with the opcode below
 constexpr uint8_t byte_of(Op op) { return static_cast<uint8_t>(op); }
 constexpr uint8_t token_of(Op op) { return static_cast<uint8_t>(kBinary | byte_of(op)); }
 
+// Where a byte stands. The signs that may be the first half of another stand for themselves.
+enum Place : uint8_t { kBetween, kWord, kComment, kWhole, kPoint, kPlaces };
+
 // What the parser wants next.
 enum Wanted : uint8_t {
   kBegin,

@@ -29,14 +29,16 @@ enum class Remark : uint8_t {
   kDone = 12,  // DONE
   kFault = 13,  // FAULT
   kMistake = 14,
-  kHello = 15,
+  kHello = 15,  // , kit
   kHelp = 16,
+  kCut = 17,  // Bytes were lost. Begin again.
+  kLevel = 18,  // , text 1
 };
 
-// The text of a remark, in flash; a 0 ends it.
+// The text of a remark, in flash, packed; a 0 ends it.
 const uint8_t* text_of(Remark remark);
 
-// The name of a fault, in flash; a 0 ends it.
+// The name of a fault, in flash, packed; a 0 ends it.
 const uint8_t* name_of_fault(uint8_t fault);
 
 }  // namespace tiniscript

@@ -64,6 +64,7 @@ constexpr uint8_t kWordEndTask = 0x6c;
 constexpr uint8_t kWordWhen = 0x6d;
 constexpr uint8_t kWordEndWhen = 0x6e;
 constexpr uint8_t kWordSend = 0x6f;
+constexpr uint8_t kWordsEnd = 0x70;
 
 // The words up to this one take arguments in brackets.
 constexpr uint8_t kCommands = 13;
@@ -77,6 +78,13 @@ constexpr uint8_t kDeviceRange = 8;  // of the kit
 constexpr uint8_t kTimeRange = 4;
 
 // All words one after the other, 0x80 in the last letter of each, and a 0.
+// Other spellings begin at kAliasesAt, words of later versions at kLaterWordsAt.
+constexpr uint8_t kAliasesAt = 87;
+constexpr uint8_t kAliasBytes = 27;
+constexpr uint8_t kLaterWordsAt = 186;
+constexpr uint8_t kDefAt = 50;
+constexpr uint8_t kDefBytes = 3;
+constexpr uint8_t kEndDefBytes = 7;  // before kAliasesAt
 extern const uint8_t kWords[] tini_progmem;
 
 // Of each command: the kinds of its arguments (4 bits each), its opcode.

@@ -407,7 +407,8 @@ enum class Family : uint8_t {
 constexpr uint8_t kFar = 8;
 constexpr uint8_t kBack = 16;
 
-// The number of each opcode's shape.
+// The number of each opcode's shape; from kFirstTwin on one for two of them.
+constexpr uint8_t kFirstTwin = 0x80;
 extern const uint8_t kShapeOf[] tini_progmem;
 
 // Of each shape: pops (2 bits), pushes (1) and role (5); kBack, kFar and size (3);
