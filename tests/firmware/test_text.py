@@ -240,6 +240,49 @@ def test_a_fault_names_the_image_of_the_text() -> None:
     assert status(robot, session).fault_program == image.checksum
 
 
+RUNS_ON = "SI|LOOP(FOREVER);M(50,50);W(9);END_LOOP\n"
+
+
+@pytest.mark.parametrize("text", ["S", "stop", "S;", "S // now"])
+def test_s_in_an_open_block_ends_what_runs_also_without_the_end_of_its_line(text: str) -> None:
+    """It does not latch, and is part of the program, whose line may go on."""
+    robot = switched_on()
+    typed(robot, RUNS_ON, 300)
+    typed(robot, "LOOP(2)\n", 300)
+    assert typed(robot, text, 900) == []
+    assert happened(robot) == ["MOTORS 50 50"] + ["MOTORS 0 0"] * (not robot.has_draft)
+    assert robot.wait(200) == b"// Waiting for END_LOOP\r\n"
+    assert happened(robot) == ["MOTORS 50 50", "MOTORS 0 0"]
+    assert typed(robot, "\nF(0.1,30)\nEND_LOOP\n", 400) == ["// OK", "// DONE"]
+    assert happened(robot)[2:] == ["MOTORS 30 30", "MOTORS 0 0"] * 2 + ["FINISHED"]
+
+
+@pytest.mark.parametrize("parts", [("S", "HOW(1)"), ("STO", "RE=1"), ("ST", "ART")])
+def test_a_word_that_begins_like_s_in_an_open_block_may_be_typed_slowly(
+    parts: tuple[str, str],
+) -> None:
+    robot = switched_on()
+    typed(robot, RUNS_ON, 300)
+    typed(robot, "LOOP(2)\n", 300)
+    for part in parts:
+        typed(robot, part, 1500)
+    assert typed(robot, "\nEND_LOOP\n", 300)[-1] == "// DONE"
+
+
+@pytest.mark.parametrize("how", [b"\0", b"\x01\x02\0"])
+def test_a_program_that_is_cut_is_told_and_not_called_late(how: bytes) -> None:
+    robot = switched_on()
+    typed(robot, "SI|LOOP(2)\n")
+    typed(robot, "F(0.1")
+    assert typed(robot, how, 100) == ["// Bytes were lost. Begin again."]
+
+
+def test_a_program_that_comes_late_is_told() -> None:
+    robot = switched_on()
+    typed(robot, "SI|LOOP(2)\n", 1100)
+    assert robot.wait(60_000) == b"// Too late. Begin again.\r\n"
+
+
 # -- frames and text ------------------------------------------------------------------------------
 
 

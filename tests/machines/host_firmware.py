@@ -35,7 +35,12 @@ class Seen(NamedTuple):
 
 
 class HostFirmware(Process):
-    """A robot that is switched on. `write_ms` is how long its memory takes for a byte."""
+    """A robot that is switched on. `write_ms` is how long its memory takes for a byte.
+
+    One that has no draft reads text where the program is that it holds, as an Uno does.
+    """
+
+    has_draft = True
 
     def __init__(
         self,
@@ -49,6 +54,8 @@ class HostFirmware(Process):
         is_spanish: bool = False,
         defines: tuple[str, ...] = (),
     ) -> None:
+        if not self.has_draft:
+            defines += ("tiniscript_no_draft",)
         super().__init__([built(sources, defines)], "the C++ robot")
         self.now_ms = 0
         self.did: list[str] = []

@@ -140,15 +140,19 @@ uint8_t* port_text_memory(uint16_t* room, bool* has_room) {
 }
 
 uint8_t* port_text_room(uint16_t* room) {
-  if (!text_may_drive() || port_make_way(false) != Answer::kOk) return nullptr;
+  if (!port_may_make_way(false)) return nullptr;
+  port_make_way(false);
   port_forget();
   *room = port.room;
-  port.image.reset(new uint8_t[static_cast<size_t>(kHeaderBytes + port.room + kEndBytes)]);
-  return port.image.get();
+  port.whole_text.reset(new uint8_t[static_cast<size_t>(kHeaderBytes + port.room + kEndBytes)]);
+  return port.whole_text.get();
 }
 
-uint8_t* port_take_text(bool is_for_button) {
-  uint8_t* const image = port.image.get();
+bool port_may_make_way(bool) { return !port.is_busy; }
+
+bool port_text_is_beside(bool) { return false; }
+
+void port_take_text(uint8_t* image, bool is_for_button) {
   const std::string whole = sealed(text_of(image));
   say(is_for_button ? "TEXT %08x for the button" : "TEXT %08x", checksum_of(whole));
   if (is_for_button) {
@@ -156,7 +160,6 @@ uint8_t* port_take_text(bool is_for_button) {
   } else {
     port_start(false);
   }
-  return image;
 }
 
 Answer port_undo() {

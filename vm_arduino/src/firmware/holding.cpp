@@ -26,7 +26,7 @@ uint16_t down_ms;
 // A press has lasted long enough for a claim.
 void confirm() {
   if (!link.confirm_claim()) {
-    if (!kReadsText || (port_identity().features & kOwned) == 0) return;
+    if ((port_identity().features & kOwned) == 0) return;
     port_identity().features |= kTextAllowed;
   }
   robot_beep(kSignHertz, kSignMs);

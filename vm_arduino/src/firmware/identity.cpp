@@ -1,7 +1,7 @@
 #include "identity.h"
 
 #include "../link/frames.h"
-#include "../link/reads_text.h"
+#include "../link/text_level.h"
 #include "../store/layout.h"
 #include "state.h"
 #include "trim.h"

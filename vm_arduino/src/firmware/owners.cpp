@@ -21,7 +21,7 @@ void read_owner() {
   uint16_t features = port_identity().features & static_cast<uint16_t>(~(kOwned | kTextAllowed));
   if (found != 0) {
     features |= kOwned;
-  } else if (kReadsText) {
+  } else {
     features |= kTextAllowed;
   }
   port_identity().features = features | kOwners;

@@ -27,6 +27,11 @@ Answer port_make_way(bool is_live) {
   return give_up_program();
 }
 
+bool port_may_make_way(bool is_live) {
+  if (!has_booted()) return false;
+  return is_live ? has_program() || load_program() : give_up_program() == Answer::kOk;
+}
+
 bool port_may_prepare() {
   const bool is_text = kTextIsInProgram && is_image_running(program) && !is_in_memory();
   return has_booted() && !is_image_running(live) && !is_text && load_program();
@@ -71,28 +76,22 @@ uint8_t* port_text_memory(uint16_t* room, bool* has_room) {
 }
 
 uint8_t* port_text_room(uint16_t* room) {
-  if (!text_may_drive() || port_make_way(false) != Answer::kOk) return nullptr;
+  if (!port_may_make_way(false)) return nullptr;
+  port_make_way(false);
   port_forget();
   *room = kTextRoom;
   return program;
 }
 
-uint8_t* port_take_text(bool is_for_button) {
-#ifdef tiniscript_has_draft
-  uint8_t* const image = is_for_button ? program : live;
-  if (port_make_way(!is_for_button) != Answer::kOk) return nullptr;
-  const uint16_t bytes = static_cast<uint16_t>(image_length(draft) + kEndBytes);
-  for (uint16_t k = 0; k < bytes; k++) image[k] = draft[k];
-#else
-  uint8_t* const image = program;
-#endif
+bool port_text_is_beside(bool is_for_button) { return !kTextIsInProgram && !is_for_button; }
+
+void port_take_text(uint8_t* image, bool is_for_button) {
   if (is_for_button) {
     hold_memory();
     show_light();
   } else {
     begin_run(image);
   }
-  return image;
 }
 
 Answer port_undo() {

@@ -8,7 +8,7 @@
 #include <stdint.h>
 
 #include "../link/messages.h"
-#include "../link/reads_text.h"
+#include "../link/text_level.h"
 #include "../store/layout.h"
 #include "../vm/vm.h"
 
@@ -20,14 +20,15 @@ constexpr uint8_t kTextCodeBytes = 255;
 constexpr uint16_t kTextRoom = kRobotTextLevel == TextLevel::kMega ? 1900 : kStoredCodeBytes;
 static_assert(kTextRoom <= kStoredCodeBytes, "an Uno reads it where its program is");
 
-// An ATmega328P would read a program where the one is that it holds. Others have room for both.
-#if !defined(__AVR__) || defined(__AVR_ATmega2560__)
+// An ATmega328P reads a program where the one is that it holds; tiniscript_no_draft is for tests of
+// that. Others have room for both.
+#if (!defined(__AVR__) || defined(__AVR_ATmega2560__)) && !defined(tiniscript_no_draft)
 #define tiniscript_has_draft
 constexpr bool kTextIsInProgram = false;
 constexpr uint16_t kLiveImageBytes = kHeaderBytes + kTextCodeBytes;
 extern uint8_t draft[kHeaderBytes + kTextRoom];
 #else
-constexpr bool kTextIsInProgram = kReadsText;
+constexpr bool kTextIsInProgram = true;
 constexpr uint16_t kLiveImageBytes = kHeaderBytes + kPayloadBytes - kLiveCodeAt;
 #endif
 

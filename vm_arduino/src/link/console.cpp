@@ -1,7 +1,3 @@
-#include "reads_text.h"
-
-#ifdef tiniscript_reads_text
-
 #include "console.h"
 
 #include "../vm/bytecode.h"
@@ -19,17 +15,20 @@ constexpr uint8_t kBytesATurn = 8;
 constexpr uint8_t kMostMistakes = 16;
 constexpr uint16_t kPauseMs = 5000;
 
-// Words that ask for all others, and what radio modules say; 0x80 in the last letter of each.
-const uint8_t kHelpWords[][5] tini_progmem = {{'H', 'E', 'L', 'P' | 0x80},
-                                              {'A', 'Y', 'U', 'D', 'A' | 0x80}};
-const uint8_t kChatter[][5] tini_progmem = {
-    {'O', 'K' | 0x80}, {'A', 'T' | 0x80}, {'E', 'R', 'R', 'O', 'R' | 0x80}};
+// What radio modules say, and words that ask for all others; 0x80 in the last letter of each.
+const uint8_t kSpoken[] tini_progmem = {'O', 'K' | 0x80, 'A', 'T' | 0x80,
+                                        'E', 'R', 'R', 'O', 'R' | 0x80,
+                                        'H', 'E', 'L', 'P' | 0x80,
+                                        'A', 'Y', 'U', 'D', 'A' | 0x80, 0};
+constexpr uint8_t kChatter = 3;  // so many of them
+constexpr uint8_t kAsking = 5;
 
 bool is_latched() { return port_status().state >= State::kStopped; }
 
 }  // namespace
 
 void Console::pass(uint16_t passed_ms) {
+  is_due_ = true;
   quiet_ms_ = passed_ms < kPatienceMs - quiet_ms_ ? static_cast<uint16_t>(quiet_ms_ + passed_ms)
                                                   : kPatienceMs;
 }
@@ -58,6 +57,7 @@ bool Console::drop() {
 
 tini_noinline Console::Act Console::turn(Receiver* receiver, bool is_heard) {
   uint8_t byte;
+  is_due_ = false;
   receiver->keep_line(is_open_ && is_patient());
   if (receiver->has_heard() && is_discarding_) begin_silence();
   for (uint8_t left = kBytesATurn; left != 0; left--) {
@@ -80,19 +80,19 @@ tini_noinline Console::Act Console::turn(Receiver* receiver, bool is_heard) {
 
 // A second has passed without a byte.
 Console::Act Console::fall_silent() {
-  is_discarding_ = is_ignoring_ = is_refused_ = false;
+  is_discarding_ = is_ignoring_ = false;
+  refused_ = Remark::kNone;
   if (!is_open_) return Act::kNone;
+  // Whoever types letter by letter has typed S, and waits.
+  const bool is_stop =
+      port_status().state == State::kRunning && reader_.is_at_stop(length_);
   if (is_waiting_) {
     say(Remark::kWaiting);
-  } else if (!is_patient()) {
-    is_open_ = false;
-    // Whoever types letter by letter has typed S, and waits.
-    if (port_status().state == State::kRunning && reader_.put(kLineEnd) == Text::kProgram &&
-        reader_.is_stop()) {
-      return stop();
-    }
+    return is_stop ? Act::kEnd : Act::kNone;
   }
-  return Act::kNone;
+  if (is_patient()) return Act::kNone;
+  is_open_ = false;
+  return is_stop ? stop() : Act::kNone;
 }
 
 Console::Act Console::stop() {
@@ -102,17 +102,17 @@ Console::Act Console::stop() {
 
 Console::Act Console::take(uint8_t byte, bool is_heard) {
   if (byte == kLineCut) {
-    is_refused_ = false;
+    refused_ = Remark::kNone;
     if (drop() && !is_heard) {
       is_talking_ = true;
-      say(Remark::kGivenUp);
+      say(Remark::kCut);
     }
     return Act::kNone;
   }
   if (byte == kLineEnd) return end_line(is_heard);
-  if (is_refused_ || (!is_open_ && !begin(byte))) return Act::kNone;
+  if (refused_ != Remark::kNone || (!is_open_ && !begin(byte))) return Act::kNone;
   reader_.put(byte);
-  if (!has_moved_ && reader_.wants_room()) has_room();
+  if (!has_moved_ && !is_ignored() && reader_.wants_room()) has_room();
   return Act::kNone;
 }
 
@@ -120,8 +120,10 @@ Console::Act Console::take(uint8_t byte, bool is_heard) {
 bool Console::begin(uint8_t byte) {
   uint16_t room;
   image_ = port_text_memory(&room, &has_moved_);
-  is_refused_ = image_ == nullptr;
-  if (is_refused_) return false;
+  if (image_ == nullptr) {
+    refused_ = Remark::kSaving;
+    return false;
+  }
   reader_.begin(image_ + kHeaderBytes, room);
   is_open_ = true;
   has_lost_ = is_waiting_ = false;
@@ -133,24 +135,30 @@ bool Console::begin(uint8_t byte) {
 // Moves the program to where there is room for all of it. False: not now.
 bool Console::has_room() {
   if (has_moved_) return true;
-  const bool has_setup = reader_.has_setup();
-  if (is_ignored()) return true;
   has_lost_ = port_status().saved == Saved::kMemory;
   uint16_t room;
-  uint8_t* const image = has_setup || !is_latched() ? port_text_room(&room) : nullptr;
-  is_refused_ = image == nullptr;
-  is_open_ = !is_refused_;
-  if (is_refused_) return false;
-  image_ = image;
-  reader_.move(image + kHeaderBytes, room);
-  has_moved_ = true;
-  return true;
+  if (!text_may_drive()) {
+    refused_ = Remark::kNotOwner;
+  } else if (!reader_.has_setup() && is_latched()) {
+    refused_ = Remark::kLatched;
+  } else {
+    refused_ = Remark::kSaving;
+    image_ = port_text_room(&room);
+    if (image_ != nullptr) {
+      refused_ = Remark::kNone;
+      reader_.move(image_ + kHeaderBytes, room);
+      has_moved_ = true;
+      return true;
+    }
+  }
+  is_open_ = false;
+  return false;
 }
 
 Console::Act Console::end_line(bool is_heard) {
-  if (is_refused_) {
+  if (refused_ != Remark::kNone) {
     if (!is_heard) refuse();
-    is_refused_ = false;
+    refused_ = Remark::kNone;
   }
   if (!is_open_) return Act::kNone;
   const Text text = reader_.put(kLineEnd);
@@ -168,7 +176,7 @@ Console::Act Console::end_line(bool is_heard) {
   switch (text) {
     case Text::kMore:
       awaited_ = reader_.awaited();
-      if (length_ == before + 1 && reader_.ends_with_stop()) return Act::kEnd;
+      if (reader_.is_stop_behind(before)) return Act::kEnd;
       break;
     case Text::kProgram:
       is_ignoring_ = false;
@@ -184,10 +192,12 @@ Console::Act Console::end_line(bool is_heard) {
       break;
     case Text::kProblem:
       is_ignoring_ = has_setup || was_waiting;
-      if (!is_chatter() && !is_heard && mistakes_ != kMostMistakes) {
+      if (first_ != '+' && !is_heard && mistakes_ != kMostMistakes) {
+        const uint8_t word = reader_.find_unknown(kSpoken);
+        if (word < kChatter) break;
         mistakes_++;
         is_talking_ = true;
-        say(asks_for_help() ? Remark::kHelp : Remark::kMistake);
+        say(word < kAsking ? Remark::kHelp : Remark::kMistake);
       }
       break;
     case Text::kGoesOn:
@@ -202,32 +212,16 @@ bool Console::is_ignored() const {
   return is_discarding_ || (is_ignoring_ && !reader_.has_setup());
 }
 
-// The line cannot be read now.
+// Says why the line cannot be read now.
 void Console::refuse() {
-  is_refused_ = is_open_ = false;
   is_talking_ = true;
-  say(!text_may_drive() ? Remark::kNotOwner
-      : is_latched()    ? Remark::kLatched
-                        : Remark::kSaving);
+  say(refused_);
+  refused_ = Remark::kNone;
 }
 
 // Whether there is time for the rest of the line: it begins with a SETUP word, or a block is open.
-bool Console::is_patient() const {
+bool Console::is_patient() {
   return is_waiting_ || reader_.has_setup() || reader_.may_have_setup();
 }
 
-bool Console::asks_for_help() {
-  return reader_.is_about(kHelpWords[0]) || reader_.is_about(kHelpWords[1]);
-}
-
-// Whether the line is what radio modules say.
-bool Console::is_chatter() {
-  for (const uint8_t(&word)[5] : kChatter) {
-    if (reader_.is_about(word)) return true;
-  }
-  return first_ == '+';
-}
-
 }  // namespace tiniscript
-
-#endif  // tiniscript_reads_text

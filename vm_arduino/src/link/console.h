@@ -23,6 +23,9 @@ class Console {
 
   void pass(uint16_t passed_ms);
 
+  // Whether time has passed since the last turn: without that and without text none is needed.
+  bool is_due() const { return is_due_; }
+
   // Takes text that has arrived. `is_heard`: a client's frames arrive, so mistakes get no answer.
   Act turn(Receiver* receiver, bool is_heard);
 
@@ -53,7 +56,7 @@ class Console {
   uint8_t write(uint8_t* out);
 
   // Writes a line with a value that a program shows.
-  static uint8_t write_value(int32_t value, bool is_yes_no, uint8_t* out);
+  uint8_t write_value(int32_t value, bool is_yes_no, uint8_t* out);
 
  private:
   Act take(uint8_t byte, bool is_heard);
@@ -65,27 +68,41 @@ class Console {
   void refuse();
   bool is_ignored() const;
   Act stop();
-  bool is_patient() const;
-  bool asks_for_help();
-  bool is_chatter();
+  bool is_patient();
 
+  // writing
+  void begin_line(uint8_t* out);
+  uint8_t end_answer();
+  void put(uint8_t byte);
+  void put_text(const uint8_t* text);
+  void put_packed(uint8_t code);
+  const uint8_t* put_word(const uint8_t* word);
+  void put_token(uint8_t token);
+  void put_digit(uint8_t digit);
+  void put_hex(const void* bytes, uint8_t count);
+  void put_number(int32_t value);
+  bool put_words();
+
+  uint8_t* out_;   // the line that is written
+  uint8_t size_;   // its bytes so far
   uint8_t* image_;
   uint16_t quiet_ms_;  // time since the last byte of text
   uint8_t length_;     // of the code before this line
   uint8_t first_;      // the first byte of the program
   uint8_t awaited_;    // the word that the last line has left open, or ')'
   Remark remark_;
-  uint8_t word_at_;    // of the words of the robot that are being said
+  const uint8_t* help_;  // the word of the robot that is said next, or nullptr
   uint8_t mistakes_;   // answered since the last pause
   bool is_open_;       // the reader has begun a line or a program
   bool has_moved_;     // it lies where there is room for a whole program
-  bool is_refused_;    // there is none: the line is not read
+  Remark refused_;     // there is none: the line is not read, and this is the reason
   bool has_lost_;
   bool is_waiting_;    // for the end of a block that an earlier line has opened
   bool is_talking_;
   bool is_discarding_;
   bool is_ignoring_;   // lines without a SETUP word: their program is lost
   bool is_silent_;     // a second has passed
+  bool is_due_;
   Reader reader_;
 };
 

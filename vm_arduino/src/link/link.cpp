@@ -53,7 +53,7 @@ void Link::turn() {
   // A reply that is due goes first, and text last.
   if (is_there && (due_ & kDueReply) == 0) {
     hear();
-  } else {
+  } else if (console_.is_due() || receiver_->has_text()) {
     talk();
   }
   if (is_tethered_ && left_ms_[kListen] <= kListenMs - kTetherMs &&
@@ -75,6 +75,7 @@ tini_noinline void Link::seal() {
   if (image == nullptr) return;
   unsealed_ = nullptr;
   put_checksum(image);
+  checksum_ = get32(image + kChecksumAt);
   port_seal(image);
 }
 

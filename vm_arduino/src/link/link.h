@@ -9,21 +9,12 @@
 
 #include <stdint.h>
 
+#include "console.h"
 #include "frames.h"
 #include "messages.h"
 #include "receiver.h"
 
-#ifdef tiniscript_reads_text
-#include "console.h"
-#else
-#include "hint.h"
-#endif
-
 namespace tiniscript {
-
-#ifndef tiniscript_reads_text
-using Console = Hint;
-#endif
 
 class Link {
  public:
@@ -125,6 +116,7 @@ class Link {
   uint8_t hello(const uint8_t* payload);
   uint8_t take_short(bool is_live, const uint8_t* payload, uint8_t length);
   uint8_t fill(Use use, const uint8_t* payload, uint8_t length);
+  uint8_t make(Use use, uint8_t start, const uint8_t* code, uint8_t length, bool is_other_kit);
   uint8_t begin_program(const uint8_t* payload);
   uint8_t add_data(const uint8_t* payload, uint8_t length);
   uint8_t commit(const uint8_t* payload);
@@ -133,8 +125,8 @@ class Link {
   void start(uint8_t mode, bool is_live);
   bool is_next(uint8_t seq, uint8_t epoch) const;
   uint8_t refuse(Answer answer, uint16_t detail);
-  uint8_t allow(uint8_t mode, const uint8_t* header);
-  uint8_t make_room(Use use, const uint8_t* header);
+  uint8_t allow(uint8_t mode, const uint8_t* isa);
+  uint8_t make_room(Use use, uint16_t length);
   bool is_listened_to() const;
   void renew();
 
@@ -150,25 +142,11 @@ class Link {
   bool talks() const { return console_.is_talking() && !is_listened_to(); }
 
   // text
-#ifdef tiniscript_reads_text
   void talk();
-  Remark start_text();
+  Remark start_text(const Console& console);
   void send_text();
   void show_text(int32_t value, bool is_yes_no);
   bool separate();
-#else
-  void talk() {
-    console_.turn(receiver_, is_listened_to());
-    if (console_.has_answer()) due_ |= kDueText;
-  }
-  void send_text() {
-    due_ &= static_cast<uint8_t>(~kDueText);
-    size_ = console_.write(out_);
-    hand_over();
-  }
-  void show_text(int32_t, bool) {}
-  bool separate() { return false; }
-#endif
   void reply();
   void describe();
   void fetch();

@@ -122,7 +122,7 @@ uint8_t Link::authenticate(const uint8_t* payload, uint8_t length) {
 
 Answer Link::allow_text(const uint8_t* payload) {
   const uint8_t is_allowed = payload[kTextIsAllowedAt];
-  if (is_allowed > 1 || !kReadsText) return Answer::kBadValue;
+  if (is_allowed > 1) return Answer::kBadValue;
   if (is_allowed != 0 || !has(kOwned)) {
     port_identity().features |= kTextAllowed;
   } else {

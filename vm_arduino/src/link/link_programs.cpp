@@ -24,12 +24,6 @@ bool is_latched() { return port_status().state >= State::kStopped; }
 
 bool may_start(uint8_t mode) { return (mode & (kRun | kStartBits)) != kRun || !is_latched(); }
 
-// Returns the end of an image whose header begins with the instruction set.
-uint16_t end_of(const uint8_t* header) {
-  return static_cast<uint16_t>(header[kHeaderLengthAt - kFirstAt] +
-                               get16(header + kCodeLengthAt - kFirstAt));
-}
-
 }  // namespace
 
 // Called when the payload of a frame has arrived, assuming that the frame ends at the next zero.
@@ -72,15 +66,10 @@ uint8_t Link::refuse(Answer answer, uint16_t detail) {
   return number_of(answer);
 }
 
-// Whether the robot may take a program at all. `header` is part of the image header, from the
-// instruction set on.
-uint8_t Link::allow(uint8_t mode, const uint8_t* header) {
-  if (header[kIsaMajorAt - kFirstAt] != kIsaMajor || header[kIsaMinorAt - kFirstAt] > kIsaMinor) {
-    return refuse(Answer::kOtherMachine, kIsa);
-  }
-  const uint8_t start_mode = mode & kStartBits;
-  if (header[kHeaderLengthAt - kFirstAt] < kHeaderBytes ||
-      header[kStartAt - kFirstAt] != start_mode || start_mode >= kStartPing ||
+// Whether the robot may take a program of this instruction set at all.
+uint8_t Link::allow(uint8_t mode, const uint8_t* isa) {
+  if (isa[0] != kIsaMajor || isa[1] > kIsaMinor) return refuse(Answer::kOtherMachine, kIsa);
+  if ((mode & kStartBits) >= kStartPing ||
       (mode & ~(kStartBits | kRun | kSave | kDetached)) != 0) {
     return refuse(Answer::kBadValue, 0);
   }
@@ -88,12 +77,11 @@ uint8_t Link::allow(uint8_t mode, const uint8_t* header) {
   return kIsFine;
 }
 
-// Begins an image. A refusal leaves the image before intact.
-uint8_t Link::make_room(Use use, const uint8_t* header) {
+// Begins an image of this length; the rest of its header is missing. A refusal leaves the image
+// before intact.
+uint8_t Link::make_room(Use use, uint16_t length) {
   const bool is_live = use != Use::kStored;
-  const uint16_t length = end_of(header);
-  const bool is_possible = get16(header + kCodeLengthAt - kFirstAt) <= kCodeBytes;
-  uint8_t* const image = is_possible ? port_memory(length, is_live) : nullptr;
+  uint8_t* const image = port_memory(length, is_live);
   if (image == nullptr) return refuse(Answer::kTooLarge, port_room());
   if (use != Use::kAhead) {
     const Answer way = port_make_way(is_live);
@@ -102,7 +90,6 @@ uint8_t Link::make_room(Use use, const uint8_t* header) {
   made_ = image;
   image[kMagicAt] = 'T';
   image[kMagicAt + 1] = 'S';
-  copy_bytes(header, image + kFirstAt, kChecksumAt - kFirstAt);
   uint8_t* const end = image + length;
   for (uint8_t k = 0; k < kEndBytes; k++) end[k] = static_cast<uint8_t>(Op::kEnd);
   return kIsFine;
@@ -111,30 +98,38 @@ uint8_t Link::make_room(Use use, const uint8_t* header) {
 // Makes and verifies an image from the payload of LIVE or PROGRAM.
 tini_noinline uint8_t Link::fill(Use use, const uint8_t* payload, uint8_t length) {
   const uint8_t mode = payload[kProgramModeAt];
-  const uint8_t* const code = payload + kProgramCodeAt;
-  length = static_cast<uint8_t>(length - kProgramCodeAt);
   if (use != Use::kStored && mode != kRun) return refuse(Answer::kBadValue, 0);
-  uint8_t header[kChecksumAt - kFirstAt] = {
-      isa_[0], isa_[1], static_cast<uint8_t>(mode & kStartBits), kHeaderBytes, 0, 0, length, 0};
-  const uint8_t refusal = allow(mode, header);
+  const uint8_t refusal = allow(mode, isa_);
   if (refusal != kIsFine) return refusal;
+  return make(use, mode & kStartBits, payload + kProgramCodeAt,
+              static_cast<uint8_t>(length - kProgramCodeAt), is_other_kit_);
+}
 
-  // A program that needs no device fits any kit.
+// Verifies code and makes its image. A program that needs no device fits any kit.
+tini_noinline uint8_t Link::make(Use use, uint8_t start, const uint8_t* code, uint8_t length,
+                                 bool is_other_kit) {
   uint16_t devices;
   const DeviceInfo& device_info = port_device_info();
-  const uint8_t sensors = is_other_kit_ ? 0 : device_info.sensors;
-  const uint8_t actuators = is_other_kit_ ? 0 : device_info.actuators;
+  const uint8_t sensors = is_other_kit ? 0 : device_info.sensors;
+  const uint8_t actuators = is_other_kit ? 0 : device_info.actuators;
   const Verdict verdict = verify(code, length, sensors, actuators, &devices);
-  if (verdict.rule == Rule::kNoSuchDevice && is_other_kit_) {
+  if (verdict.rule == Rule::kNoSuchDevice && is_other_kit) {
     return refuse(Answer::kWrongKit, port_identity().kit);
   }
   if (verdict.rule != Rule::kNone) return refuse(static_cast<Answer>(verdict.rule), verdict.offset);
-  header[kDevicesAt - kFirstAt] = static_cast<uint8_t>(devices);
-  header[kDevicesAt - kFirstAt + 1] = static_cast<uint8_t>(devices >> 8);
-  const uint8_t found = make_room(use, header);
+  const uint8_t found = make_room(use, static_cast<uint16_t>(kHeaderBytes + length));
   if (found != kIsFine) return found;
-  made_[kNeedsAt] = kNeeds;
-  copy_bytes(code, made_ + kHeaderBytes, length);
+  uint8_t* const image = made_;
+  image[kIsaMajorAt] = isa_[0];
+  image[kIsaMinorAt] = isa_[1];
+  image[kStartAt] = start;
+  image[kHeaderLengthAt] = kHeaderBytes;
+  image[kDevicesAt] = static_cast<uint8_t>(devices);
+  image[kDevicesAt + 1] = static_cast<uint8_t>(devices >> 8);
+  image[kCodeLengthAt] = length;
+  image[kCodeLengthAt + 1] = 0;
+  image[kNeedsAt] = kNeeds;
+  copy_bytes(code, image + kHeaderBytes, length);
   return kIsFine;
 }
 
@@ -151,11 +146,20 @@ uint8_t Link::begin_program(const uint8_t* payload) {
   const uint8_t mode = payload[kBeginModeAt];
   const uint8_t* const header = payload + kBeginIsaMajorAt;
   uint8_t refusal = allow(mode, header);
-  if (refusal == kIsFine) refusal = make_room(Use::kStored, header);
   if (refusal != kIsFine) return refusal;
+  if (header[kHeaderLengthAt - kFirstAt] < kHeaderBytes ||
+      header[kStartAt - kFirstAt] != (mode & kStartBits)) {
+    return refuse(Answer::kBadValue, 0);
+  }
+  const uint16_t code_length = get16(header + kCodeLengthAt - kFirstAt);
+  if (code_length > kCodeBytes) return refuse(Answer::kTooLarge, port_room());
+  const uint16_t length = static_cast<uint16_t>(header[kHeaderLengthAt - kFirstAt] + code_length);
+  refusal = make_room(Use::kStored, length);
+  if (refusal != kIsFine) return refusal;
+  copy_bytes(header, made_ + kFirstAt, kChecksumAt - kFirstAt);
   image_ = made_;
   mode_ = mode;
-  length_ = static_cast<uint16_t>(end_of(header) - kBehindChecksum);
+  length_ = static_cast<uint16_t>(length - kBehindChecksum);
   next_ = 0;
   port_forget();
   return kIsFine;
@@ -192,8 +196,8 @@ uint8_t Link::commit(const uint8_t* payload) {
 
 // Writes the checksum into the otherwise complete image.
 void Link::put_checksum(uint8_t* image) {
-  checksum_ = image_checksum(image, image_length(image));
-  copy_bytes(&checksum_, image + kChecksumAt, sizeof checksum_);
+  const uint32_t checksum = image_checksum(image, image_length(image));
+  __builtin_memcpy(image + kChecksumAt, &checksum, sizeof checksum);
 }
 
 // The image in memory is verified and complete except for its checksum.

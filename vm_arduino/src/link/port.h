@@ -103,12 +103,19 @@ void port_start(bool is_live);
 uint8_t* port_text_memory(uint16_t* room, bool* has_room);
 
 // Memory with enough room, where the program is that the robot holds. Ends what runs; the robot
-// holds the stored program from now on. nullptr: a program is still being saved.
+// holds the stored program from now on. nullptr: a program is still being saved, and what runs goes
+// on.
 uint8_t* port_text_room(uint16_t* room);
 
-// The image that was read is verified and complete except for its checksum. Returns where it lies
-// from now on: it starts at once, or the button starts it until power-off. nullptr: not now.
-uint8_t* port_take_text(bool is_for_button);
+// Whether the image of a program that was read goes beside the program in memory.
+bool port_text_is_beside(bool is_for_button);
+
+// Whether port_make_way would make way now.
+bool port_may_make_way(bool is_live);
+
+// The image that was read is verified and complete except for its checksum: it starts at once, or
+// the button starts it until power-off.
+void port_take_text(uint8_t* image, bool is_for_button);
 
 // Has the robot hold the program before the one that it holds, and has that saved. Ends what runs.
 // kNoPrevious: there is none that it can run, and it holds what it held; kBusy: nothing was done.

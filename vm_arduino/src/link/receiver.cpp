@@ -25,11 +25,11 @@ bool Receiver::put(uint8_t byte, uint16_t now_ms) { return near(this)->take(byte
 bool Receiver::take(uint8_t byte, uint16_t now_ms) {
   const bool is_quiet = static_cast<uint16_t>(now_ms - last_ms_) >= kSilenceMs;
   last_ms_ = now_ms;
-  if (kReadsText) has_heard_ = true;
+  has_heard_ = true;
   if (is_quiet) {
     const bool is_text =
         place_ == Place::kText || place_ == Place::kLost || place_ == Place::kAfterText;
-    if (!kReadsText || !is_kept_ || !is_text) cut();
+    if (!is_kept_ || !is_text) cut();
     zeros_ = 0;
   }
   if (byte == 0) return zero();
@@ -52,21 +52,17 @@ bool Receiver::take(uint8_t byte, uint16_t now_ms) {
 // zero before it, so while text waits what follows it is text.
 void Receiver::begin(uint8_t byte) {
   if (byte == 0x7f) return skip();
-  if (kReadsText) {
-    const bool goes_on = place_ == Place::kAfterText && (first_ != behind_ || item_ == Item::kText);
-    if (is_letter(byte) || (goes_on && is_printable(byte))) {
-      place_ = Place::kText;
-      return pass_on(byte);
-    }
+  const bool goes_on = place_ == Place::kAfterText && (first_ != behind_ || item_ == Item::kText);
+  if (is_letter(byte) || (goes_on && is_printable(byte))) {
+    place_ = Place::kText;
+    return pass_on(byte);
   }
   is_dropping_ = item_ != Item::kNone;
   if (!is_dropping_) {
     length_ = 0;
     has_begun_ = true;
   }
-  if (!kReadsText && is_letter(byte)) {
-    place_ = Place::kText;
-  } else if (byte >= kTextFrom) {
+  if (byte >= kTextFrom) {
     place_ = Place::kOther;
   } else if (is_blank(byte)) {
     place_ = Place::kBlank;
@@ -81,7 +77,7 @@ void Receiver::begin(uint8_t byte) {
 void Receiver::go_on(uint8_t byte) {
   const bool is_text = is_printable(byte) || byte == '\t';
   if (place_ == Place::kSkip) return;
-  if (kReadsText && place_ >= Place::kText) {
+  if (place_ >= Place::kText) {
     if (ends_line(byte)) return end_text(place_ == Place::kText ? kLineEnd : kLineCut);
     if (place_ == Place::kText) pass_on(byte);
     return;
@@ -100,13 +96,11 @@ void Receiver::go_on(uint8_t byte) {
   if (length_ == kItemBytes && !is_dropping_) {
     if (place_ == Place::kFrame) return skip();
     place_ = Place::kText;
-    if (kReadsText) {
-      end(Item::kText);
-      is_begun_ = true;
-      if (item_ != Item::kText) place_ = Place::kLost;
-      if (place_ == Place::kText) pass_on(byte);
-      return;
-    }
+    end(Item::kText);
+    is_begun_ = true;
+    if (item_ != Item::kText) place_ = Place::kLost;
+    if (place_ == Place::kText) pass_on(byte);
+    return;
   }
   add(byte);
 }
@@ -147,17 +141,15 @@ void Receiver::cut() {
   const Place place = place_;
   place_ = Place::kBegin;
   if (place >= Place::kBlank && place <= Place::kText) damaged_ = static_cast<uint8_t>(damaged_ + 1);
-  if (kReadsText && (place == Place::kText || place == Place::kLost)) pass_on(kLineCut);
+  if (place == Place::kText || place == Place::kLost) pass_on(kLineCut);
 }
 
 // A line that may overtake older text is dropped.
 void Receiver::end(Item item) {
   if (is_dropping_) return;
-  if (kReadsText) {
-    is_begun_ = false;
-    taken_ = 0;
-  }
-  if (!kReadsText || item == Item::kFrame || first_ == behind_) {
+  is_begun_ = false;
+  taken_ = 0;
+  if (item == Item::kFrame || first_ == behind_) {
     item_ = item;
   } else {
     dropped_ = static_cast<uint8_t>(dropped_ + 1);

@@ -1,8 +1,7 @@
 // Splits bytes into items: frames, lines of text, and the run of zeros that stops a robot.
 //
 // Knows where an item begins and ends; `frames.h` checks whether a frame is whole. Holds one frame
-// until it is released; a frame that arrives meanwhile is dropped. Text is passed on as it arrives;
-// a robot that reads no text holds a line like a frame.
+// until it is released; a frame that arrives meanwhile is dropped. Text is passed on as it arrives.
 // Finds the same items as `receiver.py`. `put` may be called from an interrupt, everything else from
 // the main loop.
 
@@ -12,14 +11,13 @@
 #include <stdint.h>
 
 #include "messages.h"
-#include "reads_text.h"
 
 namespace tiniscript {
 
 constexpr uint8_t kItemBytes = kLargestFrame + 1;  // a frame and its first COBS byte
 
 // Room for text that nobody has taken yet.
-constexpr uint8_t kTextBytes = kReadsText ? 32 : 1;
+constexpr uint8_t kTextBytes = 32;
 
 enum class Item : uint8_t { kNone, kFrame, kText };
 
@@ -40,8 +38,8 @@ class Receiver {
   uint8_t length() const { return length_; }
   void release() { item_ = Item::kNone; }
 
-  // Whether a line waits, on a robot that reads no text: at most its first kItemBytes.
-  bool has_line() const { return item_ == Item::kText; }
+  // Whether text may wait.
+  bool has_text() const { return item_ == Item::kText || first_ != behind_; }
 
   // Takes the next byte of text. kLineEnd: the line is whole. kLineCut: it never ends, or bytes of
   // it were lost. False: none waits.

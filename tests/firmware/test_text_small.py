@@ -1,0 +1,244 @@
+"""A robot without room for two programs: it reads text where the program is that it holds.
+
+An Uno and a Nano are such robots. What is the same on all robots is tested on this one too.
+"""
+
+from __future__ import annotations
+
+import random
+
+import pytest
+
+from tests.firmware import test_text, test_text_fuzz, test_text_limits
+from tests.firmware.test_host_firmware import (
+    computer,
+    happened,
+    image_of,
+    send,
+    stored,
+    switched_on,
+)
+from tests.firmware.test_text import (
+    LINE,
+    SAVED_BACK,
+    SAVED_MEMORY,
+    done_after,
+    fetched,
+    holding,
+    status,
+    typed,
+)
+from tests.machines.host_firmware import HostFirmware, missing
+from tiniscript.link.messages import SAVED_STORED
+from tiniscript.link.requests import OK
+
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
+
+LOST = "// OK. The old program is lost."
+OTHERWISE = {  # tests of robots that have room for two programs
+    "test_the_program_that_it_holds_is_untouched",
+    "test_sb_waits_for_the_button_and_is_gone_with_the_power",
+    "test_a_bad_line_leaves_what_runs",
+    "test_anything_and_then_a_line",
+}
+
+for module in (test_text, test_text_limits):
+    for name, test in vars(module).items():
+        if name.startswith("test_") and name not in OTHERWISE:
+            globals()[name] = test
+
+
+@pytest.fixture(autouse=True)
+def _is_small(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(HostFirmware, "has_draft", False)
+
+
+@pytest.mark.parametrize("seed", range(test_text_fuzz.SEEDS))
+def test_anything_and_then_a_line(seed: int) -> None:
+    test_text_fuzz.run(seed)
+
+
+def test_these_are_all_tests_that_differ() -> None:
+    assert (
+        set(vars(test_text)) | set(vars(test_text_limits)) | set(vars(test_text_fuzz)) >= OTHERWISE
+    )
+
+
+# -- the program that it holds --------------------------------------------------------------------
+
+
+def test_a_stored_program_comes_back_with_the_button() -> None:
+    robot, session = holding()
+    before = fetched(robot, session)
+    robot.wait(4000)
+    assert typed(robot, "SI|F(0.2,50);SHOW(1.5)\r\n", 400) == ["// OK", "// 1.5", "// DONE"]
+    assert fetched(robot, session) == before
+    assert status(robot, session).saved == SAVED_STORED
+    robot.wait(4000)
+    robot.did.clear()
+    robot.push()
+    robot.wait(400)
+    assert happened(robot) == SAVED_BACK
+
+
+@pytest.mark.parametrize("has_stored", [True, False])
+def test_a_program_in_memory_only_is_lost_and_that_is_said(has_stored: bool) -> None:
+    robot, session = holding() if has_stored else (switched_on(), computer())
+    send(robot, session, "SB|L(0.1, 40)", saves=False)
+    assert status(robot, session).saved == SAVED_MEMORY
+    robot.wait(4000)
+    assert typed(robot, "SI|F(0.2,50)\n", 400) == [LOST, "// DONE"]
+    assert typed(robot, "SI|F(0.2,50)\n", 400) == ["// OK", "// DONE"]
+    robot.did.clear()
+    robot.push()
+    robot.wait(400)
+    assert happened(robot) == (SAVED_BACK if has_stored else [])
+    assert robot.is_lit == has_stored
+
+
+def test_sb_keeps_the_button_until_the_next_line() -> None:
+    robot, session = holding()
+    before = fetched(robot, session)
+    robot.wait(4000)
+    assert typed(robot, "SB|F(0.2,50)\n", 2000) == ["// OK. The button starts it."]
+    assert robot.did == [] and robot.is_lit
+    for _ in range(2):
+        robot.push()
+        robot.wait(400)
+    assert happened(robot) == LINE * 2
+    robot.did.clear()
+    assert typed(robot, "SI|R(0.1,40)\n", 300) == [LOST, "// DONE"]
+    robot.did.clear()
+    robot.push()
+    robot.wait(400)
+    assert happened(robot) == SAVED_BACK
+    assert fetched(robot, session) == before
+
+
+# -- what runs, and a new line --------------------------------------------------------------------
+
+
+def test_a_new_line_ends_what_runs_when_its_first_instruction_has_been_read() -> None:
+    robot = switched_on()
+    typed(robot, "SI|F(30,50)\n", 300)
+    typed(robot, "SI|R(0.2, 40)")
+    assert happened(robot) == ["MOTORS 50 50"]
+    typed(robot, ";")
+    assert happened(robot) == ["MOTORS 50 50", "MOTORS 0 0"]
+    assert typed(robot, "\n", 400) == ["// OK", "// DONE"]
+    assert happened(robot)[2:] == ["MOTORS 40 -40", "MOTORS 0 0", "FINISHED"]
+
+
+@pytest.mark.parametrize(
+    ("line", "ends"),
+    [
+        ("FOO(1)\n", False), ("SI|F(1,\n", False), ("F(1,500)\n", False), ("SB|X=\n", False),
+        ("F(1,50)~0\n", False), ("\x01\x02\n", False), ("9" * 300 + "\n", False),
+        ("HELP\n", False), ("// no\n", False), ("PING|CHECK_CONNECTION\n", False),
+        ("SI|LOOP(2);\nBAD\n", True), ("F(1,50); F(1,500)\n", True),
+    ],
+)  # fmt: skip
+def test_a_bad_line_ends_what_runs_only_behind_a_whole_instruction(line: str, ends: bool) -> None:
+    robot = switched_on()
+    typed(robot, "SI|F(30,50)\n", 300)
+    typed(robot, line, 2000)
+    assert happened(robot) == ["MOTORS 50 50"] + ["MOTORS 0 0"] * ends
+
+
+def test_a_long_first_instruction_needs_its_room_before_its_end() -> None:
+    robot = switched_on()
+    typed(robot, "SI|F(30,50)\n", 300)
+    typed(robot, "SI|X = " + "1.2345 + " * 12)
+    assert happened(robot) == ["MOTORS 50 50", "MOTORS 0 0"]
+    assert typed(robot, "0; SHOW(X)\n", 100) == ["// OK", "// 14.82", "// DONE"]
+
+
+def test_a_line_of_frames_that_runs_is_ended_by_the_next_line() -> None:
+    robot, session = holding()
+    send(robot, session, "SI|F(30, 60)", saves=False)
+    robot.wait(100)
+    typed(robot, "SI|F(0.2,50);")
+    assert happened(robot)[-2:] == ["MOTORS 60 60", "MOTORS 0 0"]
+
+
+# -- what comes in between ------------------------------------------------------------------------
+
+
+def test_the_button_while_a_block_is_open_starts_the_stored_program() -> None:
+    robot, _ = holding()
+    typed(robot, "SI|LOOP(3)\n F(0.1,50)\n", 1500)
+    robot.push()
+    robot.wait(400)
+    assert happened(robot) == SAVED_BACK
+    robot.did.clear()
+    typed(robot, "END_LOOP\n", 1500)
+    assert happened(robot) == []
+    assert done_after(robot, "SI|F(0.2,50)\n") == LINE
+
+
+def test_a_request_while_a_block_is_open_finds_the_stored_program() -> None:
+    robot, session = holding()
+    before = fetched(robot, session)
+    robot.wait(4000)
+    typed(robot, "SI|LOOP(3)\n F(0.1,50)\n", 1500)
+    assert fetched(robot, session) == before
+    assert robot.until(session, session.start()) == OK
+    robot.talk(session, 400)
+    assert happened(robot) == SAVED_BACK
+
+
+@pytest.mark.parametrize("at_ms", range(0, 60, 7))
+def test_power_that_goes_while_text_is_read_takes_nothing_that_is_stored(at_ms: int) -> None:
+    robot, session = holding()
+    before = fetched(robot, session)
+    robot.wait(4000)
+    typed(robot, "SI|LOOP(3);F(0.01,50);END_LOOP;SHOW(1)\n"[: at_ms + 1], at_ms)
+    again = switched_on(robot.memory())
+    again.push()
+    again.wait(400)
+    assert happened(again) == SAVED_BACK
+    assert fetched(again, computer(2)) == before
+
+
+@pytest.mark.parametrize("has_draft", [True, False])
+def test_a_line_while_a_program_is_saved_leaves_what_runs(
+    has_draft: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A program is saved when the motors stand: until then it is the one that runs."""
+    monkeypatch.setattr(HostFirmware, "has_draft", has_draft)
+    robot, session = switched_on(), computer()
+    send(robot, session, "SI|F(5, 60)", saves=True, is_detached=True)
+    robot.wait(3500)
+    assert happened(robot) == ["MOTORS 60 60"]
+    assert typed(robot, "SB|F(0.1,50); S\n", 100) == ["// Still saving. Send it again."]
+    assert happened(robot) == ["MOTORS 60 60"]
+    robot.wait(3000)
+    stored(robot, session)
+    image = fetched(robot, session)
+    assert image.endswith(image_of("SI|F(5, 60)").code)
+
+
+def test_a_line_while_a_program_is_saved_says_so_also_after_a_stop() -> None:
+    robot, session = switched_on(write_ms=12.0), computer()
+    send(robot, session, "SB|" + "X=RANDOM(1,1000)/7;" * 40, saves=True)
+    robot.wait(1900)
+    typed(robot, "S\n", 1200)
+    assert typed(robot, "SI|F(0.1,50)\n", 300) == ["// Still saving. Send it again."]
+    assert typed(robot, "F(0.1,50)\n", 300) == ["// It was stopped. Begin with SI|"]
+
+
+def test_texts_and_frames_in_any_order() -> None:
+    """Whatever was typed, the stored program stays what it is."""
+    robot, session = holding()
+    before = fetched(robot, session)
+    rng = random.Random(7)
+    for _ in range(40):
+        robot.wait(3500)
+        typed(robot, rng.choice(["SI|F(0.1,50)\n", "SB|R(0.1,20)\n", "LOOP(2)\n", "S\n"]), 50)
+        if rng.random() < 0.5:
+            robot.push()
+    robot.step(flags=2)
+    robot.wait(1500)
+    typed(robot, "SI|W(0)\n")
+    robot.wait(3500)
+    assert fetched(robot, session) == before

@@ -1,0 +1,18 @@
+// At which level this robot reads text, as `text/levels.py` numbers them.
+
+#ifndef TINISCRIPT_LINK_TEXT_LEVEL_H_
+#define TINISCRIPT_LINK_TEXT_LEVEL_H_
+
+#include "messages.h"
+
+namespace tiniscript {
+
+#ifdef __AVR_ATmega2560__
+constexpr TextLevel kRobotTextLevel = TextLevel::kMega;
+#else
+constexpr TextLevel kRobotTextLevel = TextLevel::kUno;
+#endif
+
+}  // namespace tiniscript
+
+#endif  // TINISCRIPT_LINK_TEXT_LEVEL_H_
