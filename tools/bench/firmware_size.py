@@ -24,8 +24,8 @@ from tools.builds.platformio_offline import CannotStandIn, config_of
 PROJECT = ROOT / "vm_arduino"
 OFFLINE = ROOT / "tools" / "builds" / "platformio_offline.py"
 DEFAULT = "tinibot"  # where the name of an environment has no robot
-FLASH_MUST, FLASH_AIM = 30_208, 12 * 1024
-RAM_MUST, RAM_AIM = 1300, 1000
+FLASH_MUST, FLASH_AIM = 30_208, 24_000
+RAM_MUST, RAM_AIM = 1380, 1000
 NEW_NANO = "nano_new"
 LARGE = "mega"  # a board that has more of everything
 

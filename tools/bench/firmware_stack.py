@@ -32,6 +32,20 @@ FREE_FROM = "_end"  # the symbol behind all variables
 RAM = 0x800000  # where avr-nm begins to count it
 BOARDS = {"uno": "uno", "nano": "uno", "mega": "mega"}  # the simulated one for each
 CALLS = 8  # at once
+# What is typed, and what the robot says: 16 values that wait, brackets, blocks, long answers.
+TYPED = (
+    "HELP\n",
+    "PING|CHECK_CONNECTION\n",
+    "SI|X=" + "1+(" * 14 + "RANDOM(1,2)" + ")" * 14 + ";SHOW(0-X/3)\n",
+    "SI|NAME_OF_A_THING=TRUE;"
+    + "IF(NAME_OF_A_THING);" * 9
+    + "BEEP(0.1,500);SHOW(NOT NAME_OF_A_THING OR 1.5<2 AND 3>2);"
+    + "ENDIF;" * 9
+    + "Y=DISTANCE;SHOW(MAX(2,1))\n",
+    "SI|F(1,80)UNTIL(DISTANCE<1 OR NOT ((DISTANCE>2 AND DISTANCE<1)))~00000000\n",
+    "SI|LOOP(FOREVER);SHOW(-2147483.647);X=1/0.0;END_LOOP\n",
+)
+ANSWERS = ("END_LOOP", ", kit ", "// -5", "// TRUE", "// 2", "1: ", "-2147483.647", "FAULT DIVIDE")
 DIVIDES_BY_ZERO = "X = 0; X = 5 / X"
 
 
@@ -96,6 +110,7 @@ def wear_out(wired: Wired, robot: Robot) -> None:
     must(wired, session.upload(longest(kit, robot.board.program_bytes), runs=False))
     wired.run(2500)  # it is saved
     claim(wired, button)
+    type_deep(uno, kit)
     uno.reset("external")  # and looked at when the robot begins
     uno.run_ms(200)
     uno.press(button)
@@ -113,6 +128,22 @@ def claim(wired: Wired, button: str) -> None:
     must(wired, wired.session.identify())
     must(wired, wired.session.trim())
     must(wired, wired.session.disown(KEY_OWNER))
+
+
+def type_deep(uno: Uno, kit: Kit) -> None:
+    """Type lines that take most of the reader and of its answers; nobody else is there.
+
+    Raises RuntimeError where one is not done.
+    """
+    uno.run_ms(4000)
+    before = len(uno.sent)
+    for text in TYPED:
+        uno.send(text.encode())
+        uno.run_ms(2 * len(text) + 400)
+    said = bytes(byte.value for byte in uno.sent[before:]).decode("latin-1")
+    for answer in ANSWERS:
+        if answer not in said:
+            raise RuntimeError(f"the robot has not said {answer} but {said}")
 
 
 def must(wired: Wired, request: PendingRequest[Any]) -> None:
