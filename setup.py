@@ -15,8 +15,12 @@ INSIDE = Path("tiniscript") / "flash" / "vm_arduino"  # where tsc firmware looks
 
 def sources() -> list[Path]:
     """Return what a build of the firmware needs; `own.h` is the robot of whoever has made it."""
-    found = [PROJECT / "platformio.ini", *sorted((PROJECT / "src").rglob("*"))]
-    return [path for path in found if path.is_file() and path.name != "own.h"]
+    folders = (PROJECT / "src", PROJECT / "extras" / "near")
+    files = (path for folder in folders for path in sorted(folder.rglob("*")))
+    found = [PROJECT / "platformio.ini", *files]
+    return [
+        path for path in found if path.is_file() and path.suffix != ".pyc" and path.name != "own.h"
+    ]
 
 
 class Build(build_py):

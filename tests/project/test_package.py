@@ -101,7 +101,8 @@ def test_a_wheel_has_what_is_in_the_repository_and_nothing_stale(
     sources = {
         SOURCES + name.removeprefix("vm_arduino/")
         for name in kept
-        if name.startswith("vm_arduino/src/") or name == "vm_arduino/platformio.ini"
+        if name.startswith(("vm_arduino/src/", "vm_arduino/extras/near/"))
+        or name == "vm_arduino/platformio.ini"
     }
     assert found == package | sources
     assert len(sources) > 50

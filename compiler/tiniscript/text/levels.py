@@ -7,8 +7,14 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from tiniscript.words import ALIASES, BLOCK_ENDS
+
 CODE_BYTES = 255  # of a typed program: a jump of one byte reaches over all of it
 LONGEST_WORD = 255  # letters of a word that a reader takes
+
+
+DEF_END = BLOCK_ENDS["DEF"]
+NO_DEFS = frozenset(("DEF", DEF_END, *(each for each, word in ALIASES.items() if word == DEF_END)))
 
 
 class Level(NamedTuple):
@@ -36,7 +42,7 @@ class Level(NamedTuple):
 LEVELS = {
     level.name: level
     for level in (
-        Level("uno", "uno", 2, frozenset({"DEF", "END_DEF", "ENDDEF"})),
+        Level("uno", "uno", 2, NO_DEFS),
         Level("mega", "mega", 4),
         Level("esp32", "esp32dev", 4),
     )
