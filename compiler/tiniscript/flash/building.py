@@ -85,7 +85,8 @@ def sources() -> Sources | None:
     """Return the sources, or None where this package has none."""
     for place in PLACES:
         if (place / SETTINGS).is_file():
-            found = [place / SETTINGS, *sorted((place / "src").rglob("*"))]
+            files = [*(place / "src").rglob("*"), *(place / "extras" / "near").rglob("*")]
+            found = [place / SETTINGS, *sorted(files)]
             names = {path.relative_to(place).as_posix(): path for path in found if path.is_file()}
             names.pop(HEADER, None)
             return Sources({name: path.read_bytes() for name, path in names.items()})
