@@ -28,3 +28,4 @@ else:
     (build / "near.ld").write_text(script.replace(HERE, "".join(rows) + HERE), encoding="utf-8")
     files = f"-Wl,-T,{build / 'near.ld'},-Map,{build / 'near.map'}"
     env.Append(LINKFLAGS=["-ffunction-sections", files])
+    env.Depends("$BUILD_DIR/${PROGNAME}${PROGSUFFIX}", str(build / "near.ld"))

@@ -54,7 +54,7 @@ bool Link::confirm_claim() {
   return true;
 }
 
-Answer Link::claim(const uint8_t* payload, uint8_t length) {
+tini_noinline Answer Link::claim(const uint8_t* payload, uint8_t length) {
   const uint8_t which = payload[kClaimWhichAt];
   const uint8_t key_bytes = static_cast<uint8_t>(length - kClaimKeyAt);
   if (which > static_cast<uint8_t>(Key::kTeacher)) return Answer::kBadValue;
@@ -80,7 +80,7 @@ Answer Link::claim(const uint8_t* payload, uint8_t length) {
   return port_keep_key(which, wanted);
 }
 
-uint8_t Link::authenticate(const uint8_t* payload, uint8_t length) {
+tini_noinline uint8_t Link::authenticate(const uint8_t* payload, uint8_t length) {
   const uint8_t which = payload[kAuthenticateWhichAt];
   const uint8_t* const tag = payload + kAuthenticateTagAt;
   if (which > static_cast<uint8_t>(Key::kTeacher)) return number_of(Answer::kBadValue);

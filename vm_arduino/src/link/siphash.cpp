@@ -21,9 +21,11 @@ tini_noinline void mix(uint8_t* word, const uint8_t* other) {
 
 // Rotates a word to the left by whole bytes, then by bits.
 tini_noinline void rotate(uint8_t* word, uint8_t bytes, uint8_t bits) {
-  uint8_t turned[kWord];
-  for (uint8_t k = 0; k < kWord; k++) turned[(k + bytes) % kWord] = word[k];
-  for (uint8_t k = 0; k < kWord; k++) word[k] = turned[k];
+  while (bytes-- != 0) {
+    const uint8_t last = word[kWord - 1];
+    for (uint8_t k = kWord - 1; k != 0; k--) word[k] = word[k - 1];
+    word[0] = last;
+  }
   while (bits-- != 0) {
     uint8_t carry = static_cast<uint8_t>(word[kWord - 1] >> 7);
     for (uint8_t k = 0; k < kWord; k++) {
