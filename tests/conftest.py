@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -12,6 +13,11 @@ import pytest
 from tests.support.command import PROGRAM, Command, Tsc
 from tests.support.pty_robot import PtyRobot
 from tiniscript import robots
+
+# Hypothesis keeps what it has found, not in the repository.
+os.environ.setdefault(
+    "HYPOTHESIS_STORAGE_DIRECTORY", str(Path(tempfile.gettempdir()) / "tiniscript-hypothesis")
+)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -188,7 +188,7 @@ def test_a_line_with_a_checksum_is_not_repaired(folder: Path, tsc: Tsc) -> None:
 def test_a_file_that_cannot_be_written_is_as_it_was(
     folder: Path, tsc: Tsc, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def full(*_: object) -> None:
+    def full(*_: object, **__: object) -> None:
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr("tiniscript.files.replace", full)

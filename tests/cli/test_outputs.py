@@ -68,6 +68,7 @@ def test_every_file_that_the_command_writes_comes_from_such_an_option() -> None:
         "outputs.write(target,": "output",  # of compile
         "outputs.write(Path(options.output),": "output",
         "outputs.write(Path(options.map),": "map",
+        "outputs.write(path,": "export",  # of keys
         "outputs.write(Path(options.csv),": "csv",
         "outputs.write(Path(options.plot),": "plot",
         "outputs.write(Path(options.report),": "report",

@@ -404,9 +404,9 @@ def test_every_reason_has_a_sentence_with_a_next_step(
         (SerialException(16, "Device or resource busy"), "another program"),
         (SerialException("could not open port 'COM5': PermissionError(13, 'Access')"), "another"),
         (SerialException("could not open port 'COM5': FileNotFoundError(2, '')"), "no port"),
-        (SerialException("could not open port 'COM5': OSError(22, 'semaphore')"), "nobody"),
+        (SerialException("could not open port 'COM5': OSError(22, 'semaphore')"), "cannot reach"),
         (SerialException("something new"), "something new"),
-        (OSError(112, "Host is down"), "nobody" if os.name == "posix" else ""),
+        (OSError(112, "Host is down"), "cannot reach" if os.name == "posix" else ""),
     ):
 
         def refuse(*_: object, failure: Exception = failure, **__: object) -> None:

@@ -42,6 +42,7 @@ def typed(robot: HostFirmware, text: str | bytes, milliseconds: int = 30) -> lis
 
 def test_a_robot_answers_in_its_language() -> None:
     robot = HostFirmware(robots.load("tinibot").kit, is_spanish=True)
+    robot.wait(1000)  # a new robot saves who it is
     assert typed(robot, "SI|F(0.1,50)\n", 200) == ["// OK", "// FIN"]
     assert typed(robot, "S\n") == ["// PARADO"]
     robot.wait(1500)

@@ -293,12 +293,3 @@ def test_a_run_without_a_tether_needs_nobody(uno: Uno, starts: str) -> None:
     uno.drive("radio", True)
     uno.run_ms(200)
     assert states(uno) == FORWARD
-
-
-def test_a_person_at_a_terminal_is_told(uno: Uno) -> None:
-    uno.send(b"SI|F(1, 80)\r\n")
-    uno.run_ms(500)
-    assert states(uno) == OFF
-    said = bytes(byte.value for byte in uno.sent)
-    assert b"tsc" in said
-    send(computer(uno), "SI|F(0.1, 80)")

@@ -36,7 +36,7 @@ Machine machine;
 int32_t readings[kBoardSensors];
 bool is_accepted;
 bool is_running;
-bool has_stopped;  // the button, which is still down: its release starts nothing
+bool may_start;  // the button went down while nothing ran: its release starts
 
 void start(uint32_t now_ms) {
   board_forget();
@@ -97,11 +97,12 @@ void loop() {
     case Press::kHeld:
       break;
     case Press::kPressed:
-      has_stopped = is_running;
+      may_start = !is_running;
       if (is_running) stop(false);
       break;
     case Press::kReleased:
-      if (is_accepted && !is_running && !has_stopped) start(now_ms);
+      if (is_accepted && !is_running && may_start) start(now_ms);
+      may_start = false;
       break;
   }
   if (is_running && machine.tick(now_ms, kBudget) >= Status::kDone) {

@@ -124,7 +124,7 @@ def test_no_bytes_of_a_stranger_end_a_client_of_link(pty_robot: PtyRobot, link: 
     link.signal(signal.SIGINT)
     done = link.ended()
     assert (done.code, done.err) == (0, "\n")
-    assert done.out.count("connected.") == 2  # strangers are not told of
+    assert done.out.count(": connected.") == 2  # strangers are not told of
 
 
 # -- many of them -------------------------------------------------------------------------------

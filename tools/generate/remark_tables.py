@@ -53,13 +53,18 @@ def texts_header(command: str) -> str:
     )
 
 
+def rows(language: str) -> list[str]:
+    """Return all that a robot says in a language, in the order of the table."""
+    names = [name for _, name, _ in sorted((*FAULTS, *LINK_FAULTS))]
+    said = [(row.english, row.spanish) for row in (*PROBLEMS, *REMARKS)]
+    return [*(spanish if language == "es" else english for english, spanish in said), *names]
+
+
 def texts(command: str) -> str:
     """Return `texts.cpp`. The last of the names of faults is that of the highest number."""
     first = LINK_FAULTS[0][0]
     own = sum(number < first for number, *_ in FAULTS)
     names = [name for _, name, _ in sorted((*FAULTS, *LINK_FAULTS))]
-    english = [*(row.english for row in PROBLEMS), *(row.english for row in REMARKS), *names]
-    spanish = [*(row.spanish for row in PROBLEMS), *(row.spanish for row in REMARKS), *names]
     before = len(PROBLEMS) + len(REMARKS)
     return file_of(
         command,
@@ -68,9 +73,9 @@ def texts(command: str) -> str:
         [
             "namespace {",
             "",
-            *_tables("English", english),
+            *_tables("English", rows("en")),
             "",
-            *_tables("Spanish", spanish),
+            *_tables("Spanish", rows("es")),
             "",
             "// The text of this number, from 1: they lie one after the other.",
             "const uint8_t* text_at(uint8_t number) {",

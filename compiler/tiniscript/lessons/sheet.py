@@ -74,6 +74,7 @@ def sheet(page: str, lesson: Lesson, is_teachers: bool, language: str) -> str:
     body = "\n".join(parts)
     return (
         f'<!DOCTYPE html>\n<html lang="{language}">\n<head>\n<meta charset="utf-8">\n'
+        '<meta name="generator" content="TiniScript">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
         f"<title>{escape(title)}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n{body}\n"
         "</body>\n</html>\n"

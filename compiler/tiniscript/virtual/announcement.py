@@ -14,7 +14,7 @@ from tiniscript.link.named_robots import LONGEST, SERVICE, asked
 from tiniscript.link.port_names import TCP
 from tiniscript.virtual.transports import LOCAL
 
-ASK_MS = 1000  # timeout for a robot that has the name
+ASK_MS = 2500  # timeout for a robot that has the name: for a second it may say nothing twice
 
 
 class NameTaken(Exception):

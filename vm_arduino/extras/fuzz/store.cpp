@@ -81,7 +81,7 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     const Torn torn = static_cast<Torn>(input.u8() % kTorn);
     const Area area = static_cast<Area>(what % kAreas);
     const Content old = what_counts(store, area);
-    const Content now = area == Area::kProgram ? some_image(input.u8()) : some_record();
+    const Content now = area == Area::kProgram ? some_image(input.u8()) : some_record(area);
     Content buffer = now;
     must(area == Area::kProgram ? store.begin_save(buffer.data())
                                 : store.begin_keep(area, buffer.data()));

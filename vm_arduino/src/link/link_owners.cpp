@@ -46,6 +46,7 @@ bool Link::is_forbidden(uint8_t type) const {
 tini_noinline void Link::lapse() {
   port_identity().features &= static_cast<uint16_t>(~(kYours | kByTeacher));
   rights_ &= kHeldBack;
+  is_ready_ = false;  // what was made ahead was made with that authority
 }
 
 bool Link::confirm_claim() {

@@ -46,7 +46,7 @@ tini_noinline void Link::prepare() {
 bool Link::go_live() {
   const uint8_t* const bytes = receiver_->bytes();
   if (!check_.is_whole() || !is_next(bytes[kSeqAt], bytes[kEpochAt]) || is_latched() ||
-      is_forbidden(kLiveByte) || port_make_way(true) != Answer::kOk) {
+      port_make_way(true) != Answer::kOk) {
     return false;
   }
   left_ms_[kListen] = kListenMs;

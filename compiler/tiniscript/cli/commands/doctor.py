@@ -31,8 +31,6 @@ LONGEST_WATCH_S = 600
 
 
 def run(options: Namespace, language: str) -> int:
-    if options.report is not None:
-        _refuse_others(Path(options.report))
     question = _question(options, language)
     from tiniscript.doctor.diagnosis import diagnosed
 
@@ -52,20 +50,6 @@ def run(options: Namespace, language: str) -> int:
         print(said, file=sys.stderr if options.json else sys.stdout)
     is_fine = not any(finding.is_wrong for finding in diagnosis.findings)
     return 0 if is_fine else 3
-
-
-def _refuse_others(path: Path) -> None:
-    """Refuse a file that is no report, before anything is done."""
-    try:
-        if not path.is_file():
-            return
-        with path.open("rb") as file:
-            head = file.read(len(report.MARK) + 2)
-    except (OSError, ValueError) as why:
-        reason = why.strerror if isinstance(why, OSError) and why.strerror else str(why)
-        raise CommandError(2, "unwritable_report", file=shown(str(path)), why=reason) from None
-    if head and not report.is_ours(head):
-        raise CommandError(2, "report_not_ours", file=shown(str(path)))
 
 
 def _question(options: Namespace, language: str) -> Question:

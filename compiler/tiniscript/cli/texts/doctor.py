@@ -22,8 +22,6 @@ DOCTOR_TEXTS: dict[str, tuple[str, str]] = {
                       "El informe está en {file}. Léelo antes de enviarlo."),
     "unwritable_report": ("tsc: {file} cannot be written: {why}. Choose another place with --report.",
                           "tsc: no se puede escribir {file}: {why}. Elige otro lugar con --report."),
-    "report_not_ours": ("tsc: {file} is there already, and is no report of tsc doctor. Choose another name with --report; nothing was changed.",
-                        "tsc: {file} ya existe, y no es un informe de tsc doctor. Elige otro nombre con --report; no se cambió nada."),
     "report_about": ("For a teacher. There are no names of people, computers, networks or robots in it, and no serial numbers.",
                      "Para un profesor. No lleva nombres de personas, computadoras, redes ni robots, ni números de serie."),
     # what is done just now
