@@ -141,7 +141,8 @@ def test_a_package_without_sources_takes_the_file_in_the_language_of_the_robot(
 
 def source_bytes(clone: Path) -> dict[str, bytes]:
     project = clone.parent / "vm_arduino"
-    files = [project / "platformio.ini", *sorted((project / "src").rglob("*"))]
+    parts = [*(project / "src").rglob("*"), *(project / "extras" / "near").rglob("*")]
+    files = [project / "platformio.ini", *sorted(parts)]
     return {
         path.relative_to(project).as_posix(): path.read_bytes() for path in files if path.is_file()
     }
