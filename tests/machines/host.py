@@ -19,6 +19,7 @@ from struct import Struct, pack
 from threading import get_ident
 from typing import TYPE_CHECKING, NamedTuple
 
+from tests.machines.child import Child
 from tiniscript.bytecode.image import REFUSALS, ImageRefused
 from tiniscript.bytecode.verify import RULES, Refused
 from tiniscript.kit import Device, Kit
@@ -51,29 +52,8 @@ class Ran(NamedTuple):
     trace: str
 
 
-class Process:
+class Process(Child):
     """One process that answers requests about the machine; `who` it is stands in its mistakes."""
-
-    def __init__(self, command: Sequence[str | Path], who: str) -> None:
-        self._who = who
-        self._errors = tempfile.TemporaryFile()  # noqa: SIM115
-        self._process = subprocess.Popen(
-            command,
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=self._errors,
-        )
-
-    def end(self) -> None:
-        self._process.kill()
-
-    def close(self) -> None:
-        self.end()
-        self._process.communicate()
-        self._errors.close()
-
-    def has_ended(self) -> bool:
-        return self._process.poll() is not None
 
     def run(self, image: bytes, kit: Kit, senses: Senses) -> Ran:
         """Run an image, or raise what refuses it."""
@@ -97,25 +77,17 @@ class Process:
         return [(fault, result) for fault, result in Struct("<Bi").iter_unpack(answer)]
 
     def ask(self, letter: bytes, request: bytes) -> bytes:
-        pipe_in, pipe_out = self._process.stdin, self._process.stdout
-        assert pipe_in and pipe_out
+        pipe_in, pipe_out = self.pipes
         try:
             pipe_in.write(pack("<I", len(request) + 1) + letter + request)
             pipe_in.flush()
         except BrokenPipeError:
-            raise AssertionError(self._said()) from None
+            raise AssertionError(self.said()) from None
         head = pipe_out.read(4)
         answer = pipe_out.read(int.from_bytes(head, "little"))
         if len(head) < 4:
-            raise AssertionError(self._said())
+            raise AssertionError(self.said())
         return answer
-
-    def _said(self) -> str:
-        """Return the last words of a process that has ended: the sanitizers' report."""
-        status = self._process.wait()
-        self._errors.seek(0)
-        report = self._errors.read().decode(errors="replace")
-        return f"{self._who} ended with status {status}:\n{report[:4000]}"
 
 
 class Host(Process):

@@ -6,11 +6,11 @@ Builds `vm_arduino/extras/text` with g++ and talks to one process of it: texts i
 from __future__ import annotations
 
 import subprocess
-import tempfile
 from pathlib import Path
 from struct import pack
 from typing import NamedTuple
 
+from tests.machines.child import Child
 from tests.machines.host import BUILDS, FLAGS, SOURCES, compiled
 from tiniscript.bytecode.image import STARTS
 from tiniscript.kit import Kit
@@ -34,36 +34,20 @@ class Answer(NamedTuple):
         return bool(self.start)
 
 
-class TextReader:
+class TextReader(Child):
     """A process that reads texts: each is one program, however many lines it has."""
 
     def __init__(self, kit: Kit, room: int = LARGEST_ROOM, flags: tuple[str, ...] = ()) -> None:
-        self._errors = tempfile.TemporaryFile()  # noqa: SIM115
-        self._process = subprocess.Popen(
-            [built(flags), str(room), kit_words(kit).hex(), "whole"],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=self._errors,
-        )
+        words = kit_words(kit).hex()
+        super().__init__([built(flags), str(room), words, "whole"], "the reader of text")
 
     def read(self, text: bytes) -> Answer:
-        pipe_in, pipe_out = self._process.stdin, self._process.stdout
-        assert pipe_in and pipe_out
+        pipe_in, pipe_out = self.pipes
         pipe_in.write(pack("<I", len(text)) + text)
         pipe_in.flush()
         line = pipe_out.readline().decode()
-        assert line, f"{text!r} ends the reader:\n{self._said()}"
+        assert line, f"{text!r} ends the reader:\n{self.said()}"
         return answer(line)
-
-    def close(self) -> None:
-        self._process.kill()
-        self._process.communicate()
-        self._errors.close()
-
-    def _said(self) -> str:
-        self._process.wait()
-        self._errors.seek(0)
-        return self._errors.read().decode(errors="replace")[:4000]
 
 
 def read_lines(kit: Kit, data: bytes, room: int = LARGEST_ROOM) -> list[Answer]:

@@ -41,11 +41,12 @@ volatile uint8_t overrun;
 volatile bool was_high;
 uint8_t low_turns;  // since the last byte with a framing error
 
-// Enables the interrupt of timer 0 that checks the line. It is on only after a framing error.
+// Enables the interrupt of timer 0 that checks the line. It is on only after a framing error. Its
+// flag has been set for long: it comes at once, and that one does not count. Clearing the flag would
+// cost an instruction, and in simavr also the overflow of the clock if that is pending.
 tini_always_inline void watch_line() {
-  low_turns = 0;
+  low_turns = static_cast<uint8_t>(-1);
   if (!was_high) return;
-  TIFR0 = _BV(OCF0B);  // clears an old pending interrupt
   TIMSK0 |= _BV(OCIE0B);
 }
 
