@@ -29,7 +29,7 @@ from tests.firmware.test_text import (
     typed,
 )
 from tests.machines.host_firmware import HostFirmware, missing
-from tiniscript.link.messages import SAVED_STORED
+from tiniscript.link.messages import SAVED_STORED, STATE_STOPPED
 from tiniscript.link.requests import OK
 
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
@@ -225,6 +225,30 @@ def test_a_line_while_a_program_is_saved_says_so_also_after_a_stop() -> None:
     typed(robot, "S\n", 1200)
     assert typed(robot, "SI|F(0.1,50)\n", 300) == ["// Still saving. Send it again."]
     assert typed(robot, "F(0.1,50)\n", 300) == ["// It was stopped. Begin with SI|"]
+
+
+@pytest.mark.parametrize(
+    "line", ["S\n", "s;\r\n", " STOP ; \n", "stop\r"], ids=lambda line: repr(line)[1:-1]
+)
+def test_s_stops_what_tsc_live_runs(line: str) -> None:
+    robot, session = switched_on(), computer()
+    assert robot.until(session, session.live(image_of("SI|F(5, 60)").code)) == OK
+    assert happened(robot) == ["MOTORS 60 60"]
+    typed(robot, line, 0)
+    for _ in range(300):
+        robot.talk(session, 1)
+    assert happened(robot)[:2] == ["MOTORS 60 60", "MOTORS 0 0"]
+    assert status(robot, session).state == STATE_STOPPED
+
+
+@pytest.mark.parametrize("line", ["ST\n", "STO;P(\n", "SS\n", "STOPP\n", "X\n", ";\n", "F(1,50)\n"])
+def test_other_lines_leave_what_tsc_live_runs(line: str) -> None:
+    robot, session = switched_on(), computer()
+    assert robot.until(session, session.live(image_of("SI|F(5, 60)").code)) == OK
+    typed(robot, line, 0)
+    for _ in range(300):
+        robot.talk(session, 1)
+    assert happened(robot) == ["MOTORS 60 60"]
 
 
 def test_texts_and_frames_in_any_order() -> None:

@@ -14,6 +14,7 @@ constexpr uint8_t kBytesATurn = 8;
 // echoes or answers each line is on the other side.
 constexpr uint8_t kMostMistakes = 16;
 constexpr uint16_t kPauseMs = 5000;
+constexpr uint8_t kOtherWord = 5;  // in place of a count of letters
 
 // What radio modules say, and words that ask for all others; 0x80 in the last letter of each.
 const uint8_t kSpoken[] tini_progmem = {'O', 'K' | 0x80, 'A', 'T' | 0x80,
@@ -96,6 +97,7 @@ Console::Act Console::fall_silent() {
 }
 
 Console::Act Console::stop() {
+  refused_ = Remark::kNone;
   is_talking_ = true;
   return Act::kStop;
 }
@@ -110,10 +112,21 @@ Console::Act Console::take(uint8_t byte, bool is_heard) {
     return Act::kNone;
   }
   if (byte == kLineEnd) return end_line(is_heard);
-  if (refused_ != Remark::kNone || (!is_open_ && !begin(byte))) return Act::kNone;
+  if (refused_ != Remark::kNone || (!is_open_ && !begin(byte))) {
+    listen(byte);
+    return Act::kNone;
+  }
   reader_.put(byte);
   if (!has_moved_ && !is_ignored() && reader_.wants_room()) has_room();
   return Act::kNone;
+}
+
+// A line that is not read stops the robot too, if it is S or STOP.
+void Console::listen(uint8_t byte) {
+  static const uint8_t kStopWord[] tini_progmem = {'s', 't', 'o', 'p', 0, 0};
+  if (byte == ' ' || byte == ';') return;
+  const bool goes_on = (byte | 0x20) == flash_byte(kStopWord + stop_letters_);
+  stop_letters_ = goes_on ? static_cast<uint8_t>(stop_letters_ + 1) : kOtherWord;
 }
 
 // Begins a program in memory that nobody uses.
@@ -122,6 +135,7 @@ bool Console::begin(uint8_t byte) {
   image_ = port_text_memory(&room, &has_moved_);
   if (image_ == nullptr) {
     refused_ = Remark::kSaving;
+    stop_letters_ = 0;
     return false;
   }
   reader_.begin(image_ + kHeaderBytes, room);
@@ -152,11 +166,13 @@ bool Console::has_room() {
     }
   }
   is_open_ = false;
+  stop_letters_ = kOtherWord;
   return false;
 }
 
 Console::Act Console::end_line(bool is_heard) {
   if (refused_ != Remark::kNone) {
+    if (stop_letters_ == 1 || stop_letters_ == 4) return stop();
     if (!is_heard) refuse();
     refused_ = Remark::kNone;
   }

@@ -64,6 +64,7 @@ class Console {
   Act fall_silent();
   void begin_silence();
   bool begin(uint8_t byte);
+  void listen(uint8_t byte);
   bool has_room();
   void refuse();
   bool is_ignored() const;
@@ -87,7 +88,10 @@ class Console {
   uint8_t size_;   // its bytes so far
   uint8_t* image_;
   uint16_t quiet_ms_;  // time since the last byte of text
-  uint8_t length_;     // of the code before this line
+  union {
+    uint8_t length_;        // of the code before this line
+    uint8_t stop_letters_;  // of a line that is not read: how many of STOP it is, or kOtherWord
+  };
   uint8_t first_;      // the first byte of the program
   uint8_t awaited_;    // the word that the last line has left open, or ')'
   Remark remark_;
