@@ -16,12 +16,14 @@ BENCHMARKS = (
     "machine",
     "code_size",
     "link",
+    "text",
     "virtual",
     "upload",
     "bluetooth",
     "firmware_size",
     "machine_size",
     "link_size",
+    "text_size",
     "arithmetic",
 )
 
