@@ -1,4 +1,4 @@
-"""The machine in C++ on the emulated chips of ESP boards: LX6, lx106 and RISC-V rv32imc.
+"""The machine and the reader of text on the emulated chips of ESP boards: LX6, lx106, rv32imc.
 
 Builds `vm_arduino/extras/qemu` for a chip and talks to one QEMU that runs it: many requests, each a
 length and bytes. A chip that faults, or does not answer, ends its emulator; the next request then
@@ -8,14 +8,21 @@ begins another one, so that one case that is wrong is one that fails.
 from __future__ import annotations
 
 import tempfile
+from collections.abc import Sequence
 from functools import lru_cache
+from io import BytesIO
 from pathlib import Path
+from struct import pack
 from threading import Timer
 from typing import TYPE_CHECKING
 
 from tests.machines.chips import ran
 from tests.machines.host import SOURCES, WARNINGS, Process, Ran, run_request
+from tests.machines.text_reader import Answer
+from tiniscript.bytecode.image import STARTS
 from tiniscript.kit import Kit
+from tiniscript.robots.kit_words import kit_words
+from tiniscript.text.problems import NAMES
 from tools.builds import chips
 
 if TYPE_CHECKING:
@@ -40,6 +47,15 @@ class Emulated(Process):
     def run(self, image: bytes, kit: Kit, senses: Senses) -> Ran:
         return ran(self.ask(b"R", run_request(image, kit, senses)).decode())
 
+    def read(self, texts: Sequence[bytes], kit: Kit, room: int) -> list[Answer]:
+        """Return what the reader of text says of each."""
+        parts = [kit_words(kit), *texts]
+        data = b"".join(pack("<I", len(each)) + each for each in parts)
+        said = BytesIO(self.ask(b"T", pack("<H", room) + data))
+        found = [_answer(said) for _ in texts]
+        assert not said.read()
+        return found
+
     def ask(self, letter: bytes, request: bytes) -> bytes:
         watch = Timer(MOST_SECONDS, self.end)
         watch.start()
@@ -49,9 +65,20 @@ class Emulated(Process):
             watch.cancel()
 
 
+def _answer(said: BytesIO) -> Answer:
+    (kind,) = said.read(1)
+    if kind == 2:  # a block is open
+        return Answer()
+    first, second = said.read(2)
+    if kind == 1:
+        return Answer(problem=NAMES[first], column=second)
+    assert kind == 0
+    return Answer(start=STARTS[first], code=said.read(second))
+
+
 def built(name: str, program: Path, sources: Path = SOURCES) -> Path:
     """Build the program of a chip from `sources`, a folder like `vm_arduino`."""
-    folders = [sources / each for each in ("src/vm", "extras/chip", "extras/qemu")]
+    folders = [sources / each for each in ("src/vm", "src/text", "extras/chip", "extras/qemu")]
     code = [path for each in folders for path in sorted(each.glob("*.cpp"))]
     code.append(sources / "extras/qemu" / chips.CHIPS[name].start)
     chips.build(chips.CHIPS[name], code, program, *WARNINGS)

@@ -6,6 +6,7 @@
 #include "../chip/answers.h"
 #include "../chip/runner.h"
 #include "host.h"
+#include "reading.h"
 
 namespace tiniscript {
 
@@ -61,6 +62,9 @@ bool answer_one() {
       break;
     case 'A':
       answer_arithmetic(request, asked_length);
+      break;
+    case 'T':
+      answer_texts(request, asked_length);
       break;
     default:
       return false;

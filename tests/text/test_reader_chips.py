@@ -1,0 +1,53 @@
+"""The reader of text on the emulated chips of ESP boards says what it says on this computer.
+
+There a char may be unsigned, and a word must lie at an address that four divides.
+"""
+
+from __future__ import annotations
+
+import random
+
+import pytest
+
+from tests.machines.host import missing as missing_host
+from tests.machines.qemu import emulated, missing
+from tests.machines.text_reader import LARGEST_ROOM, TextReader
+from tests.oracle import programs
+from tests.support.casefile import all_cases
+from tests.support.kits import KITS
+from tests.text.test_reader_agreement import damaged, soup
+from tools.builds import chips
+
+ORACLE_KIT, KIT = KITS[1]
+EACH = [
+    pytest.param(name, marks=pytest.mark.skipif(bool(why), reason=why or "there is a chip"))
+    for name in chips.CHIPS
+    for why in [missing(name) or missing_host()]
+]
+
+
+def texts() -> list[bytes]:
+    found = [
+        case.parts["tiniscript"].encode() for case in all_cases() if "tiniscript" in case.parts
+    ]
+    found += [soup(seed)[1] for seed in range(3000)]
+    for seed in range(1000):
+        rng = random.Random(seed)
+        text = programs.program(rng, ORACLE_KIT)
+        slip = programs.broken(rng, text).encode("utf-8", "surrogatepass")
+        found += [text.encode(), damaged(rng, slip)]
+    return [each for each in found if each.strip()]
+
+
+@pytest.mark.parametrize("name", EACH)
+@pytest.mark.parametrize("room", [200, 374, LARGEST_ROOM])
+def test_the_chip_says_the_same(name: str, room: int) -> None:
+    all_texts = texts()
+    reader = TextReader(KIT, room)
+    expected = [reader.read(each) for each in all_texts]
+    reader.close()
+    got = emulated(name).read(all_texts, KIT, room)
+    for text, mine, other in zip(all_texts, expected, got, strict=True):
+        assert other == mine, text
+    assert sum(each.is_program for each in got) > 1000
+    assert sum(bool(each.problem) for each in got) > 1000

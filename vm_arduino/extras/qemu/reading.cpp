@@ -1,0 +1,63 @@
+#include "reading.h"
+
+#include "../../src/text/kit_words.h"
+#include "../../src/text/reader.h"
+
+namespace tiniscript {
+
+namespace {
+
+constexpr uint16_t kMostRoom = 60000;
+constexpr uint16_t kMostWords = 4096;
+
+uint8_t buffer[kMostRoom];
+uint8_t words[kMostWords];
+Reader reader;
+
+void say(Text found) {
+  if (found == Text::kMore) return put(2);
+  if (found == Text::kProblem) {
+    put(1);
+    put(static_cast<char>(reader.problem()));
+    return put(static_cast<char>(reader.column()));
+  }
+  put(0);
+  put(static_cast<char>(reader.start()));
+  put(static_cast<char>(reader.length()));
+  for (uint8_t k = 0; k < reader.length(); k++) put(static_cast<char>(buffer[k]));
+}
+
+// A text ends as a line does.
+uint8_t byte_of(size_t begun, uint32_t length, uint32_t k) {
+  return k < length ? request_byte(begun + k) : uint8_t{'\n'};
+}
+
+void read(size_t begun, uint32_t length, uint16_t room) {
+  reader.begin(buffer, room);
+  Text found = Text::kNothing;
+  for (uint32_t k = 0; k <= length && found != Text::kProblem; k++) {
+    const Text now = reader.put(byte_of(begun, length, k));
+    if (now != Text::kGoesOn) found = now;
+  }
+  say(found);
+}
+
+}  // namespace
+
+void answer_texts(Request request, size_t end) {
+  const uint16_t room = request.u16();
+  const uint32_t size = request.u32();
+  if (room > kMostRoom || size > kMostWords) return;
+  for (uint32_t k = 0; k < size; k++) words[k] = request.u8();
+  while (request.place() < end) {
+    const uint32_t length = request.u32();
+    read(request.place(), length, room);
+    request.skip(length);
+  }
+}
+
+const uint8_t* robot_words() { return words; }
+
+bool robot_speaks_spanish() { return false; }
+
+}  // namespace tiniscript
