@@ -11,6 +11,6 @@ from tools.bench.machine_size import AVR, missing
 @pytest.mark.skipif(bool(missing(AVR)), reason=missing(AVR) or "there is a compiler")
 def test_the_reader_fits() -> None:
     """Where it is passed as a pointer, as `near` does it: else it takes 100 bytes more."""
-    found = text_size.size("reader and answers")
+    found = text_size.size(AVR, "reader and answers")
     assert found.flash <= text_size.MUST
     assert 40 <= found.ram <= text_size.RAM_MUST

@@ -1,4 +1,4 @@
-"""Prints how much flash and RAM the reader of text takes on an ATmega328P, linked.
+"""Prints how much flash and RAM the reader of text takes on the chips of robots, linked.
 
 Builds a small program once with and once without the reader, and takes the difference. What the
 sketch has anyway (the checksum, a division, a multiplication) is in both. `--parts` prints the
@@ -15,7 +15,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT)]
 
-from tools.bench.machine_size import AVR, SOURCE, Size, done, missing
+from tools.bench.machine_size import AVR, EMULATED, SOURCE, Size, done, missing
+from tools.builds import chips
 
 MUST, AIM = 6500, 5000  # bytes of flash, with the words of the language and the answers
 RAM_MUST = 60
@@ -61,13 +62,20 @@ ANSWERS = {
 }
 
 
-def size(use: str) -> Size:
+def size(board: str, use: str) -> Size:
     """Return what a use of the reader adds to the small program."""
-    with_it, without = linked(READER.replace("ANSWER", ANSWERS[use])), linked("")
+    with_it, without = (_size(board, each) for each in (READER.replace("ANSWER", ANSWERS[use]), ""))
     return Size(with_it.flash - without.flash, with_it.ram - without.ram)
 
 
+def _size(board: str, use: str) -> Size:
+    if board == AVR:
+        return linked(use)
+    return Size(*chips.size(EMULATED[board], PROBE.replace("USE", use), "text"))
+
+
 def linked(use: str, parts: bool = False) -> Size:
+    """Return what the small program takes on an ATmega328P."""
     code = [*sorted((SOURCE / "text").glob("*.cpp")), *sorted((SOURCE / "vm").glob("crc32*.[cS]*"))]
     with tempfile.TemporaryDirectory() as folder:
         source, program = Path(folder) / "probe.cpp", Path(folder) / "probe"
@@ -89,12 +97,16 @@ def main() -> int:
         return 2
     if parts:
         linked(READER.replace("ANSWER", ANSWERS["reader and answers"]), parts=True)
-    print("| part | flash | RAM |\n| --- | --- | --- |")
-    for use in ANSWERS:
-        found = size(use)
-        print(f"| {use} | {found.flash} | {found.ram} |")
+    print("| board | part | flash | RAM |\n| --- | --- | ---: | ---: |")
+    for board in (AVR, *EMULATED):
+        for use in ANSWERS:
+            found = None if missing(board) else size(board, use)
+            print(f"| {board} | {use} |", f"{found.flash} | {found.ram} |" if found else "- | - |")
+        if missing(board):
+            print(missing(board), file=sys.stderr)
     print(
-        f"\nBytes of flash: must {MUST}, aim {AIM}. Of RAM, outside of the buffer: must {RAM_MUST}."
+        f"\nBytes. Of flash on an ATmega328P: must {MUST}, aim {AIM}. Of RAM there, outside of the "
+        f"buffer: must {RAM_MUST}."
     )
     return 0
 

@@ -120,16 +120,18 @@ def build(
         ])  # fmt: skip
 
 
-def size(chip: Chip, probe: str) -> tuple[int, int]:
+def size(chip: Chip, probe: str, *rooms: str) -> tuple[int, int]:
     """Return flash and RAM of a C++ program with a `main`, linked with what it uses of the machine.
 
-    The program includes from `vm_arduino/src`. Flash is text and data, RAM is data and bss.
+    The program includes from `vm_arduino/src`, and may use these folders there too. Flash is text
+    and data, RAM is data and bss.
     """
     with tempfile.TemporaryDirectory() as folder:
         source, program = Path(folder) / "probe.cpp", Path(folder) / "probe"
         source.write_text(probe, encoding="utf-8")
-        machine = sorted((SOURCES / "src" / "vm").glob("*.cpp"))
-        code = [source, *machine, SOURCES / "extras" / "qemu" / "library.cpp"]
+        used = [path for room in ("vm", *rooms)
+                for path in sorted((SOURCES / "src" / room).glob("*.cpp"))]  # fmt: skip
+        code = [source, *used, SOURCES / "extras" / "qemu" / "library.cpp"]
         build(chip, code, program, f"-I{SOURCES / 'src'}", entry="main")
         row = _command([chip.measurer, str(program)]).splitlines()[1]
     text, data, bss = (int(word) for word in row.split()[:3])
