@@ -113,7 +113,7 @@ def built(header: str, board: str, more: str = "") -> bytes:
                 [
                     source / "more.cpp",
                     source / "firmware" / "trim.cpp",
-                    *source.rglob("boards/*"),
+                    *source.rglob("boards/**/*"),
                     *source.rglob("vm/*"),
                 ]
             )

@@ -23,7 +23,9 @@ FILES = [
     *sorted(path for name in TESTED for path in (EXTRAS / name).glob("*.[ch]*")),
     *sorted((EXTRAS / "wasm").glob("*.cpp")),
 ]
-BOARDS = sorted((SOURCES / "src" / "boards").glob("*.[ch]*"))
+BOARDS = sorted(
+    path for folder in ("", "avr") for path in (SOURCES / "src/boards" / folder).glob("*.[ch]*")
+)
 STRICT = ("-std=c++11", "-pedantic", "-fno-exceptions", "-fno-rtti", *WARNINGS, "-fsyntax-only")
 ALLOWED = {"<stdint.h>", "<stddef.h>", "<avr/pgmspace.h>"}
 FORBIDDEN = ("virtual", "new", "delete", "throw", "try", "float", "double", "goto", "malloc",

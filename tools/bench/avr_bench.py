@@ -34,7 +34,7 @@ def missing() -> str:
 
 # What a program needs besides the machine.
 MORE = {
-    "store": ("store/store.cpp", "boards/eeprom.cpp"),
+    "store": ("store/store.cpp", "boards/avr/eeprom.cpp"),
     "reader": tuple(
         f"text/{path.name}" for path in sorted((SOURCES / "src" / "text").glob("*.cpp"))
     ),

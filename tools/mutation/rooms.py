@@ -81,7 +81,7 @@ ROOMS = (
     ),
     Room(
         "boards",
-        (f"{_CPP}/boards/*.cpp",),
+        (f"{_CPP}/boards/*.cpp", f"{_CPP}/boards/avr/*.cpp"),
         (
             "tests/firmware/test_boards.py",
             "tests/firmware/test_board_devices.py",

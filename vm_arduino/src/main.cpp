@@ -2,7 +2,7 @@
 //
 // The board passes button, radio module and time to the firmware; the firmware controls motors,
 // sensors and light of the board (`firmware/board.h`, `robot.h`). Interrupts carry the bytes of the
-// link: `boards/uart.cpp` calls `firmware_on_rx_byte` and `firmware_next_tx_byte`.
+// link: the chip's `uart.cpp` calls `firmware_on_rx_byte` and `firmware_next_tx_byte`.
 //
 // Empty without Arduino, so that a build for a computer may take this whole folder.
 
@@ -10,8 +10,8 @@
 
 #include <Arduino.h>  // declares setup() and loop()
 
-#include "boards/attention.h"
 #include "boards/board.h"
+#include "boards/chip.h"
 #include "boards/kit.h"
 #include "boards/uart.h"
 #include "firmware/firmware.h"

@@ -7,14 +7,13 @@
 #include "../robot.h"
 #include "../text/kit_words.h"
 #include "analog.h"
-#include "clock.h"
+#include "chip.h"
 #include "kit.h"
 #include "motors.h"
 #include "servo.h"
 #include "sound.h"
 #include "uart.h"
 #include "ultrasonic.h"
-#include "watchdog.h"
 
 namespace tiniscript {
 

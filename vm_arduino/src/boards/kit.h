@@ -7,7 +7,7 @@
 #include "../vm/flash.h"
 #include "analog.h"
 #include "motors.h"
-#include "pins.h"
+#include "chip.h"
 #include "servo.h"
 #include "ultrasonic.h"
 

@@ -8,7 +8,7 @@
 
 #include <stdint.h>
 
-#include "pins.h"
+#include "chip.h"
 
 namespace tiniscript {
 

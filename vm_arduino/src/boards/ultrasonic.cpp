@@ -3,8 +3,8 @@
 #include <avr/interrupt.h>
 #include <avr/io.h>
 
-#include "clock.h"
-#include "interrupts.h"
+#include "chip.h"
+#include "avr/interrupts.h"
 #include "kit.h"
 
 #ifdef tiniscript_ultrasonic_vectors

@@ -3,7 +3,7 @@
 #ifndef TINISCRIPT_VM_EXECUTE_AVR_H_
 #define TINISCRIPT_VM_EXECUTE_AVR_H_
 
-// The bit of GPIOR0 that interrupts set: `boards/attention.h`.
+// The bit of GPIOR0 that interrupts set: `boards/avr/attention.h`.
 #define tini_attention_bit 0
 
 // in a Machine

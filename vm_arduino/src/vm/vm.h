@@ -45,7 +45,7 @@ class Machine {
 
   // Runs at the time `now_ms` until the program must wait or ends, or for `budget` instructions. On
   // the AVR the budget counts only jumps back and calls, as code between two of them is short; a
-  // tick also ends there early if `boards/attention.h` requests it.
+  // tick also ends there early if `boards/avr/attention.h` requests it.
   Status tick(uint32_t now_ms, uint8_t budget);
 
   const Task& task() const { return task_; }

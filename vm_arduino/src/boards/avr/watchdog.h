@@ -4,12 +4,12 @@
 // the chip after 0.125 s, or after 0.25 s if interrupts are off. The bootloader of an old Nano or
 // Mega would not come out of a watchdog reset, so the restart there is a jump.
 
-#ifndef TINISCRIPT_BOARDS_WATCHDOG_H_
-#define TINISCRIPT_BOARDS_WATCHDOG_H_
+#ifndef TINISCRIPT_AVR_WATCHDOG_H_
+#define TINISCRIPT_AVR_WATCHDOG_H_
 
 #include <avr/wdt.h>
 
-#include "../firmware/board.h"
+#include "../../firmware/board.h"
 #include "clock.h"
 
 namespace tiniscript {
@@ -42,4 +42,4 @@ uint32_t watchdog_seed();
 
 }  // namespace tiniscript
 
-#endif  // TINISCRIPT_BOARDS_WATCHDOG_H_
+#endif  // TINISCRIPT_AVR_WATCHDOG_H_

@@ -1,7 +1,7 @@
-#include "servo.h"
+#include "../servo.h"
 
-#include "../vm/small.h"
-#include "kit.h"
+#include "../../vm/small.h"
+#include "../kit.h"
 
 #ifdef tiniscript_servos
 

@@ -4,8 +4,8 @@
 // flash and with a shorter interrupt. So this folder has its own `main`, which calls `setup` and
 // `loop` as the core's does.
 
-#ifndef TINISCRIPT_BOARDS_CLOCK_H_
-#define TINISCRIPT_BOARDS_CLOCK_H_
+#ifndef TINISCRIPT_AVR_CLOCK_H_
+#define TINISCRIPT_AVR_CLOCK_H_
 
 #include <stdint.h>
 
@@ -38,4 +38,4 @@ uint16_t clock_us();
 
 }  // namespace tiniscript
 
-#endif  // TINISCRIPT_BOARDS_CLOCK_H_
+#endif  // TINISCRIPT_AVR_CLOCK_H_

@@ -1,16 +1,16 @@
 #ifdef ARDUINO
 
-#include "uart.h"
+#include "../uart.h"
 
 #include <avr/interrupt.h>
 #include <avr/io.h>
 
-#include "../firmware/firmware.h"
-#include "../link/messages.h"
+#include "../../firmware/firmware.h"
+#include "../../link/messages.h"
 #include "attention.h"
 #include "clock.h"
 #include "interrupts.h"
-#include "kit.h"
+#include "../kit.h"
 
 #ifdef USART_RX_vect
 #define uart_receive_vect USART_RX_vect

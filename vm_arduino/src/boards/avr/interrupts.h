@@ -3,8 +3,8 @@
 // A frame of its own takes about 60 bytes in each interrupt that calls something. The shared one
 // begins 12 cycles later.
 
-#ifndef TINISCRIPT_BOARDS_INTERRUPTS_H_
-#define TINISCRIPT_BOARDS_INTERRUPTS_H_
+#ifndef TINISCRIPT_AVR_INTERRUPTS_H_
+#define TINISCRIPT_AVR_INTERRUPTS_H_
 
 #include <avr/interrupt.h>
 
@@ -17,4 +17,4 @@
         "%~jmp tiniscript_interrupt_frame" ::"i"(function)); \
   }
 
-#endif  // TINISCRIPT_BOARDS_INTERRUPTS_H_
+#endif  // TINISCRIPT_AVR_INTERRUPTS_H_

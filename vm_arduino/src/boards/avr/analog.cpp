@@ -1,8 +1,8 @@
-#include "analog.h"
+#include "../analog.h"
 
 #include <avr/io.h>
 
-#include "../vm/number.h"
+#include "../../vm/number.h"
 
 namespace tiniscript {
 

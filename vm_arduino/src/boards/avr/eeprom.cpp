@@ -8,8 +8,8 @@
 #include <avr/interrupt.h>
 #include <avr/io.h>
 
-#include "../store/layout.h"
-#include "../store/nvm.h"
+#include "../../store/layout.h"
+#include "../../store/nvm.h"
 
 namespace tiniscript {
 

@@ -5,13 +5,13 @@
 #include <avr/interrupt.h>
 #include <avr/io.h>
 
-#include "../firmware/firmware.h"
-#include "../vm/crc32.h"
-#include "../vm/small.h"
+#include "../../firmware/firmware.h"
+#include "../../vm/crc32.h"
+#include "../../vm/small.h"
 #include "interrupts.h"
-#include "kit.h"
-#include "motors.h"
-#include "servo.h"
+#include "../kit.h"
+#include "../motors.h"
+#include "../servo.h"
 
 namespace tiniscript {
 

@@ -3,12 +3,12 @@
 // The machine returns at the next jump back. So it may run as long as nothing happens, and the main
 // loop costs little. `vm/execute_avr.S` tests the bit.
 
-#ifndef TINISCRIPT_BOARDS_ATTENTION_H_
-#define TINISCRIPT_BOARDS_ATTENTION_H_
+#ifndef TINISCRIPT_AVR_ATTENTION_H_
+#define TINISCRIPT_AVR_ATTENTION_H_
 
 #include <avr/io.h>
 
-#include "../vm/execute_avr.h"
+#include "../../vm/execute_avr.h"
 
 namespace tiniscript {
 
@@ -20,4 +20,4 @@ inline void pay_attention() { GPIOR0 &= static_cast<uint8_t>(~(1 << tini_attenti
 
 }  // namespace tiniscript
 
-#endif  // TINISCRIPT_BOARDS_ATTENTION_H_
+#endif  // TINISCRIPT_AVR_ATTENTION_H_

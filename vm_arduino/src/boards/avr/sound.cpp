@@ -1,8 +1,8 @@
-#include "sound.h"
+#include "../sound.h"
 
-#include "../vm/small.h"
+#include "../../vm/small.h"
 #include "clock.h"
-#include "kit.h"
+#include "../kit.h"
 
 namespace tiniscript {
 

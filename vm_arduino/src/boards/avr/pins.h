@@ -4,8 +4,8 @@
 // interrupt also changes runs with interrupts off: the interrupt that turns the motors off may come
 // at any time, and its write must not be undone.
 
-#ifndef TINISCRIPT_BOARDS_PINS_H_
-#define TINISCRIPT_BOARDS_PINS_H_
+#ifndef TINISCRIPT_AVR_PINS_H_
+#define TINISCRIPT_AVR_PINS_H_
 
 #include <avr/interrupt.h>
 #include <avr/io.h>
@@ -169,4 +169,4 @@ tini_always_inline void disconnect(Pwm pwm) {
 
 }  // namespace tiniscript
 
-#endif  // TINISCRIPT_BOARDS_PINS_H_
+#endif  // TINISCRIPT_AVR_PINS_H_
