@@ -32,6 +32,7 @@ FLAGS = (
 PROBE = """
 #include "text/kit_words.h"
 #include "text/reader.h"
+#include "text/texts.h"
 #include "vm/crc32.h"
 using namespace tiniscript;
 volatile uint8_t sink;
@@ -58,7 +59,7 @@ READER = """Reader* const its = near(&reader);
   }"""
 ANSWERS = {
     "reader": "sink = (uint8_t)its->problem();",
-    "reader and answers": "sink = flash_byte(text_of(its->problem()));",
+    "reader and answers": "sink = flash_byte(packed_texts() + text_of(its->problem()));",
 }
 
 

@@ -1,6 +1,8 @@
-"""Packs the texts that a robot says: a byte from 0x80 on stands for two bytes of a table.
+"""Packs the texts that a robot says into codes of 4 and 8 bits.
 
-Knows letters and pairs, not what the texts say. The pair that saves most is taken first.
+Knows letters, pairs and halves of bytes, not what the texts say. A code is the end of a text, a
+pair of two codes of a table, or a letter in ASCII. The most frequent ones take 4 bits, all others
+8. The pair that saves most is taken first.
 """
 
 from __future__ import annotations
@@ -8,47 +10,117 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 from itertools import pairwise
+from typing import NamedTuple
 
-FIRST_PAIR = 0x80
-MOST_PAIRS = 0x80
+END = 0  # of a text; the pairs are numbered from 1
+FIRST_LETTER = 0x20  # the letters of ASCII begin here, and the codes of pairs end
+FIRST_COMMON = 8  # a half of a byte from here on is a code of its own
+COMMON = 16 - FIRST_COMMON
 DEEPEST = 3  # pairs in pairs: the robot's stack holds a call for each
-LEAST_USES = 3  # a pair takes two bytes and saves one at each use
+LEAST_SAVED = 4  # halves of bytes, of which a pair itself takes 4
+ROUNDS = 8  # which codes are common, and which pairs save most, depends on each other
 
 Pair = tuple[int, int]
 
 
-def packed(texts: Sequence[str]) -> tuple[list[Pair], list[bytes]]:
-    """Return the pairs, and the texts with the codes of the pairs."""
-    rows = [list(text.encode("ascii")) for text in texts]
-    pairs: list[Pair] = []
-    depths: dict[int, int] = {}
-    while len(pairs) < MOST_PAIRS:
-        uses = Counter(pair for row in rows for pair in _apart(row))
-        possible = [
-            (count, pair)
-            for pair, count in uses.items()
-            if count >= LEAST_USES and max(depths.get(each, 0) for each in pair) < DEEPEST
-        ]
-        if not possible:
-            break
-        _, pair = max(possible)
-        code = FIRST_PAIR + len(pairs)
-        depths[code] = 1 + max(depths.get(each, 0) for each in pair)
-        pairs.append(pair)
-        rows = [_replaced(row, pair, code) for row in rows]
-    return pairs, [bytes(row) for row in rows]
+class Packed(NamedTuple):
+    """Texts, one behind the other; the codes of 4 bits, and those of which the pairs are made."""
+
+    common: tuple[int, ...]
+    pairs: list[Pair]
+    texts: bytes
+
+    @property
+    def size(self) -> int:
+        return len(self.common) + 2 * len(self.pairs) + len(self.texts)
 
 
-def unpacked(text: bytes, pairs: Sequence[Pair]) -> str:
-    """Return what a packed text says."""
-    letters = list(text)
-    while any(letter >= FIRST_PAIR for letter in letters):
+def packed(texts: Sequence[str]) -> Packed:
+    """Return the texts in as few bytes as are found."""
+    rows = [[*text.encode("ascii"), END] for text in texts]
+    common = _most_common(rows)
+    found = []
+    for _ in range(ROUNDS):
+        pairs, shorter = _paired(rows, common)
+        found.append(Packed(common, pairs, _halved(shorter, common)))
+        common = _most_common(shorter)
+    return min(found, key=lambda each: each.size)
+
+
+def unpacked(data: Packed) -> list[str]:
+    """Return what packed texts say."""
+    halves = [half for byte in data.texts for half in (byte >> 4, byte & 15)]
+    texts, said, at = [], bytearray(), 0
+    while at < len(halves):
+        if halves[at] >= FIRST_COMMON:
+            code, at = data.common[halves[at] - FIRST_COMMON], at + 1
+        elif at + 1 < len(halves):
+            code, at = 16 * halves[at] + halves[at + 1], at + 2
+        else:
+            break  # the rest of the last byte
+        if code == END:
+            texts.append(said.decode("ascii"))
+            said = bytearray()
+        else:
+            said += letters_of(code, data.pairs)
+    return texts
+
+
+def letters_of(code: int, pairs: Sequence[Pair]) -> bytes:
+    """Return the letters that a code stands for."""
+    letters = [code]
+    while any(letter < FIRST_LETTER for letter in letters):
         letters = [
             each
             for letter in letters
-            for each in (pairs[letter - FIRST_PAIR] if letter >= FIRST_PAIR else (letter,))
+            for each in (pairs[letter - 1] if letter < FIRST_LETTER else (letter,))
         ]
-    return bytes(letters).decode("ascii")
+    return bytes(letters)
+
+
+def _most_common(rows: Sequence[Sequence[int]]) -> tuple[int, ...]:
+    """Return the end and the most frequent letters, which take 4 bits."""
+    uses = Counter(code for row in rows for code in row if code >= FIRST_LETTER)
+    most = sorted(uses, key=lambda code: (-uses[code], code))[: COMMON - 1]
+    return (END, *sorted(most))
+
+
+def _paired(
+    rows: Sequence[Sequence[int]], common: Sequence[int]
+) -> tuple[list[Pair], list[list[int]]]:
+    """Return pairs, and the texts with their codes."""
+    made = [list(row) for row in rows]
+    pairs: list[Pair] = []
+    depths: dict[int, int] = {}
+
+    def halves(code: int) -> int:
+        return 1 if code in common else 2
+
+    while len(pairs) < FIRST_LETTER - 1:
+        uses = Counter(pair for row in made for pair in _apart(row) if END not in pair)
+        possible = [
+            (count * (halves(pair[0]) + halves(pair[1]) - 2), pair)
+            for pair, count in uses.items()
+            if max(depths.get(each, 0) for each in pair) < DEEPEST
+        ]
+        saved, pair = max(possible, default=(0, (END, END)))
+        if saved <= LEAST_SAVED:
+            break
+        code = 1 + len(pairs)
+        depths[code] = 1 + max(depths.get(each, 0) for each in pair)
+        pairs.append(pair)
+        made = [_replaced(row, pair, code) for row in made]
+    return pairs, made
+
+
+def _halved(rows: Sequence[Sequence[int]], common: Sequence[int]) -> bytes:
+    """Return codes as bytes: the high half of each comes first."""
+    halves: list[int] = []
+    for code in (code for row in rows for code in row):
+        halves += [FIRST_COMMON + common.index(code)] if code in common else divmod(code, 16)
+    if len(halves) % 2:
+        halves.append(0)
+    return bytes(16 * high + low for high, low in zip(halves[::2], halves[1::2], strict=True))
 
 
 def _apart(row: Sequence[int]) -> list[Pair]:

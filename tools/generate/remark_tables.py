@@ -9,8 +9,8 @@ from tiniscript.link.messages import LINK_FAULTS
 from tiniscript.text.problems import PROBLEMS
 from tiniscript.text.remarks import REMARKS
 from tools.generate.cpp_header import camel
-from tools.generate.packed_texts import DEEPEST, FIRST_PAIR, packed, unpacked
-from tools.generate.text_tables import file_of
+from tools.generate.packed_texts import DEEPEST, END, FIRST_COMMON, FIRST_LETTER, letters_of, packed
+from tools.generate.text_tables import bytes_of_table, file_of
 
 
 def remarks_header(command: str) -> str:
@@ -28,28 +28,48 @@ def remarks_header(command: str) -> str:
             "  kNone = 0,",
             *rows,
             "};",
-            "",
-            "// The text of a remark, in flash, packed; a 0 ends it.",
-            "const uint8_t* text_of(Remark remark);",
-            "",
-            "// The name of a fault, in flash, packed; a 0 ends it.",
-            "const uint8_t* name_of_fault(uint8_t fault);",
         ],
     )
 
 
 def texts_header(command: str) -> str:
-    """Return `texts.h`."""
+    """Return `texts.h`. The last of the names of faults is that of the highest number."""
+    first, last = LINK_FAULTS[0][0], LINK_FAULTS[-1][0]
+    own = sum(number < first for number, *_ in FAULTS)
+    before = len(PROBLEMS) + len(REMARKS) - 1
+    behind = before + len(FAULTS) + len(LINK_FAULTS)
     return file_of(
         command,
         "texts.h",
-        "// How the texts of problems and remarks are packed.\n",
+        "// The texts of problems, remarks and faults: their numbers, and how they are packed.\n",
         [
-            "// A byte from this one on stands for two, in flash, which may be such bytes again,",
-            f"// {DEEPEST} deep.",
-            f"constexpr uint8_t kFirstPair = 0x{FIRST_PAIR:02x};",
+            "// The numbers of texts, in the order in which they lie.",
+            "constexpr uint8_t text_of(Problem problem) {",
+            "  return static_cast<uint8_t>(static_cast<uint8_t>(problem) - 1);",
+            "}",
+            "constexpr uint8_t text_of(Remark remark) {",
+            f"  return static_cast<uint8_t>(static_cast<uint8_t>(remark) + {len(PROBLEMS) - 1});",
+            "}",
+            "constexpr uint8_t name_of_fault(uint8_t fault) {",
+            "  return static_cast<uint8_t>(",
+            f"      fault > {last} ? {behind} : fault < {first} ? fault + {before}",
+            f"                             : fault - {first - own - 1 - before});",
+            "}",
+            "",
+            "// A code is the end of a text, a pair, or a letter from kFirstLetter on, in ASCII.",
+            "// The high half of a byte comes first. A half from kFirstCommon on is a code of",
+            "// packed_codes(), any other one the first half of a code.",
+            f"constexpr uint8_t kTextEnd = {END};",
+            f"constexpr uint8_t kFirstLetter = 0x{FIRST_LETTER:02x};",
+            f"constexpr uint8_t kFirstCommon = {FIRST_COMMON};",
+            "",
+            "// In flash: all texts, the codes of halves, and the two codes of each pair, which",
+            f"// may be pairs again, {DEEPEST} deep.",
+            "const uint8_t* packed_texts();",
+            "const uint8_t* packed_codes();",
             "const uint8_t* pair_of(uint8_t code);",
         ],
+        include=("problems.h", "remarks.h"),
     )
 
 
@@ -61,11 +81,7 @@ def rows(language: str) -> list[str]:
 
 
 def texts(command: str) -> str:
-    """Return `texts.cpp`. The last of the names of faults is that of the highest number."""
-    first = LINK_FAULTS[0][0]
-    own = sum(number < first for number, *_ in FAULTS)
-    names = [name for _, name, _ in sorted((*FAULTS, *LINK_FAULTS))]
-    before = len(PROBLEMS) + len(REMARKS)
+    """Return `texts.cpp`."""
     return file_of(
         command,
         "texts.cpp",
@@ -77,60 +93,50 @@ def texts(command: str) -> str:
             "",
             *_tables("Spanish", rows("es")),
             "",
-            "// The text of this number, from 1: they lie one after the other.",
-            "const uint8_t* text_at(uint8_t number) {",
-            "  const uint8_t* text = robot_speaks_spanish() ? kSpanish : kEnglish;",
-            "  for (; number > 1; number--) {",
-            "    while (flash_byte(text++) != 0) {",
-            "    }",
-            "  }",
-            "  return text;",
-            "}",
-            "",
             "}  // namespace",
             "",
-            "const uint8_t* text_of(Problem problem) {",
-            "  return text_at(static_cast<uint8_t>(problem));",
-            "}",
+            *_chosen("packed_texts()", ""),
             "",
-            "const uint8_t* text_of(Remark remark) {",
-            f"  constexpr uint8_t kProblems = {len(PROBLEMS)};",
-            "  return text_at(static_cast<uint8_t>(kProblems + static_cast<uint8_t>(remark)));",
-            "}",
+            *_chosen("packed_codes()", "Codes"),
             "",
-            "const uint8_t* name_of_fault(uint8_t fault) {",
-            f"  if (fault > {LINK_FAULTS[-1][0]}) return text_at({before + len(names)});",
-            f"  if (fault >= {first}) fault = static_cast<uint8_t>(fault - {first - own - 1});",
-            f"  return text_at(static_cast<uint8_t>({before} + fault));",
-            "}",
-            "",
-            "const uint8_t* pair_of(uint8_t code) {",
-            "  return (robot_speaks_spanish() ? kSpanishPairs : kEnglishPairs)[code - kFirstPair];",
-            "}",
+            *_chosen("pair_of(uint8_t code)", "Pairs", "[code - 1]"),
         ],
-        include=("kit_words.h", "problems.h", "remarks.h"),
+        include=("kit_words.h",),
     )
+
+
+def _chosen(function: str, table: str, at: str = "") -> list[str]:
+    """Return a function that has a table of the robot's language."""
+    choice = f"robot_speaks_spanish() ? kSpanish{table} : kEnglish{table}"
+    return [
+        f"const uint8_t* {function} {{",
+        f"  return {f'({choice}){at}' if at else choice};",
+        "}",
+    ]
 
 
 def _tables(language: str, rows: Sequence[str]) -> list[str]:
     """Return the texts of a language. On a board the linker leaves the other one out."""
-    pairs, codes = packed(rows)
+    data = packed(rows)
+    lines = [data.texts[at : at + 16] for at in range(0, len(data.texts), 16)]
     return [
-        f"const uint8_t k{language}[] tini_progmem =",
-        *(
-            f'    "{_escaped(code)}\\0"  // {row}'.rstrip(" /")
-            for code, row in zip(codes, rows, strict=True)
-        ),
-        "    ;",
+        f"const uint8_t k{language}[] tini_progmem = {{",
+        *(f"    {bytes_of_table(line)}" for line in lines),
+        "};",
+        "",
+        f"const uint8_t k{language}Codes[] tini_progmem = {{",
+        f"    {bytes_of_table(data.common)}  // {_shown(data.common)}",
+        "};",
         "",
         f"const uint8_t k{language}Pairs[][2] tini_progmem = {{",
         *(
-            f"    {{0x{one:02x}, 0x{two:02x}}},  // {unpacked(bytes((one, two)), pairs)}"
-            for one, two in pairs
+            f"    {{0x{one:02x}, 0x{two:02x}}},"
+            f"  // 0x{number:02x}: {letters_of(number, data.pairs).decode('ascii')}"
+            for number, (one, two) in enumerate(data.pairs, 1)
         ),
         "};",
     ]
 
 
-def _escaped(data: bytes) -> str:
-    return "".join(chr(each) if each < FIRST_PAIR else f"\\{each:03o}" for each in data)
+def _shown(codes: Sequence[int]) -> str:
+    return "the end, " + ", ".join(f"'{chr(code)}'" for code in codes if code != END)

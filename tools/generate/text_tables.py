@@ -146,7 +146,7 @@ def words_tables(command: str) -> str:
         "",
         [
             "const uint8_t kWords[] tini_progmem = {",
-            *(f"    {_bytes(packed(word.text))}  // {word.text}" for word in words),
+            *(f"    {bytes_of_table(packed(word.text))}  // {word.text}" for word in words),
             "    0,",
             "};",
             "",
@@ -155,7 +155,7 @@ def words_tables(command: str) -> str:
             "};",
             "",
             "const uint8_t kArgumentRanges[][8] tini_progmem = {",
-            *(f"    {{{_bytes(packed_range(low, high))}}}," for low, high in ranges()),
+            *(f"    {{{bytes_of_table(packed_range(low, high))}}}," for low, high in ranges()),
             "};",
         ],
     )
@@ -176,26 +176,24 @@ def problems_header(command: str) -> str:
             "  kNone = 0,",
             *rows,
             "};",
-            "",
-            "// The text of a problem, in flash, packed; a 0 ends it.",
-            "const uint8_t* text_of(Problem problem);",
         ],
     )
 
 
-def _bytes(data: Iterable[int]) -> str:
+def bytes_of_table(data: Iterable[int]) -> str:
+    """Return bytes as a row of a table has them."""
     return " ".join(f"0x{each:02x}," for each in data)
 
 
 def file_of(
     command: str, name: str, what: str, lines: Sequence[str], include: Sequence[str] = ()
 ) -> str:
-    """Return a file of `vm_arduino/src/text/`; `include` are more headers for a `.cpp`."""
+    """Return a file of `vm_arduino/src/text/`; `include` are more headers."""
     stem, _, ending = name.partition(".")
     guard = f"TINISCRIPT_TEXT_{stem.upper()}_H_"
     opening = (
         [f"#ifndef {guard}", f"#define {guard}", "", "#include <stdint.h>", "",
-         '#include "../vm/flash.h"']
+         '#include "../vm/flash.h"', *(f'#include "{each}"' for each in include)]
         if ending == "h"
         else [f'#include "{stem}.h"', *([""] if include else []),
               *(f'#include "{each}"' for each in include)]

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "../src/text/reader.h"
-#include "../src/text/texts.h"
+#include "../src/text/unpacked.h"
 #include "../src/vm/bytecode.h"
 
 using namespace tiniscript;
@@ -42,23 +42,14 @@ std::vector<uint8_t> codes(const std::vector<Op>& ops) {
   return bytes;
 }
 
-// What a packed text says.
-std::string unpacked(const uint8_t* text) {
-  std::string said;
-  std::vector<uint8_t> waiting;
-  for (; *text != 0; text++) {
-    waiting.push_back(*text);
-    while (!waiting.empty()) {
-      const uint8_t code = waiting.back();
-      waiting.pop_back();
-      if (code < kFirstPair) {
-        said.push_back(static_cast<char>(code));
-        continue;
-      }
-      waiting.push_back(pair_of(code)[1]);
-      waiting.push_back(pair_of(code)[0]);
-    }
-  }
+std::string said;
+
+void say(uint8_t letter) { said.push_back(static_cast<char>(letter)); }
+
+// What a text says.
+std::string unpacked(uint8_t number) {
+  said.clear();
+  put_text<say>(number);
   return said;
 }
 
@@ -96,6 +87,11 @@ TEST_CASE("a problem has a column and a text") {
   CHECK(reading.reader.column() == 6);
   CHECK(unpacked(text_of(Problem::kRange)) == "Too small or too large");
   CHECK(unpacked(text_of(Problem::kChecksum)) == "Line damaged. Send it again");
+  CHECK(unpacked(text_of(Remark::kOk)) == "OK");
+  CHECK(unpacked(text_of(Remark::kHelp)) == "");
+  CHECK(unpacked(name_of_fault(1)) == "OVERFLOW");
+  CHECK(unpacked(name_of_fault(64)) == "LINK_LOST");
+  CHECK(unpacked(name_of_fault(255)) == "BAD_CODE");
 }
 
 TEST_CASE("a line runs only with the checksum that it has") {

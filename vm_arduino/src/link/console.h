@@ -72,20 +72,8 @@ class Console {
   bool is_patient();
 
   // writing
-  void begin_line(uint8_t* out);
-  uint8_t end_answer();
-  void put(uint8_t byte);
-  void put_text(const uint8_t* text);
-  void put_packed(uint8_t code);
-  const uint8_t* put_word(const uint8_t* word);
-  void put_token(uint8_t token);
-  void put_digit(uint8_t digit);
-  void put_hex(const void* bytes, uint8_t count);
-  void put_number(int32_t value);
   bool put_words();
 
-  uint8_t* out_;   // the line that is written
-  uint8_t size_;   // its bytes so far
   uint8_t* image_;
   uint16_t quiet_ms_;  // time since the last byte of text
   union {

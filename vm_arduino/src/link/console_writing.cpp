@@ -2,7 +2,7 @@
 // a terminal that echoes starts no conversation.
 
 #include "../text/kit_words.h"
-#include "../text/texts.h"
+#include "../text/unpacked.h"
 #include "../text/words.h"
 #include "../vm/small.h"
 #include "console.h"
@@ -20,44 +20,32 @@ constexpr uint8_t kLongestWord = 24;
 // From here on words are not said: END_DEF where there are no DEFs, and other spellings.
 constexpr uint8_t kSkippedAt = kReadsDefs ? kAliasesAt : kAliasesAt - kEndDefBytes;
 
-}  // namespace
+// The line that is written, and its bytes so far. Only while it is written.
+uint8_t* line;
+uint8_t size;
 
 // What does not fit is left out.
-tini_noinline void Console::put(uint8_t byte) {
-  if (size_ < kWireBytes - kLineEndBytes) out_[size_++] = byte;
+tini_noinline void put(uint8_t byte) {
+  if (size < kWireBytes - kLineEndBytes) line[size++] = byte;
 }
 
-void Console::begin_line(uint8_t* out) {
-  out_ = out;
-  size_ = 0;
+tini_noinline void begin_line(uint8_t* out) {
+  line = out;
+  size = 0;
   put('/');
   put('/');
   put(' ');
 }
 
-uint8_t Console::end_answer() {
-  uint8_t* const end = out_ + size_;
+tini_noinline uint8_t ended_line() {
+  uint8_t* const end = line + size;
   end[0] = '\r';
   end[1] = '\n';
-  return static_cast<uint8_t>(size_ + kLineEndBytes);
-}
-
-tini_noinline void Console::put_text(const uint8_t* text) {
-  for (uint8_t code; (code = flash_byte(text)) != 0; text++) put_packed(code);
-}
-
-// Calls itself as deep as there are pairs in pairs.
-tini_noinline void Console::put_packed(uint8_t code) {
-  while (code >= kFirstPair) {
-    const uint8_t* const pair = pair_of(code);
-    put_packed(flash_byte(pair));
-    code = flash_byte(pair + 1);
-  }
-  put(code);
+  return static_cast<uint8_t>(size + kLineEndBytes);
 }
 
 // Puts a word in flash whose last letter is marked. Returns what is behind it.
-tini_noinline const uint8_t* Console::put_word(const uint8_t* word) {
+tini_noinline const uint8_t* put_word(const uint8_t* word) {
   uint8_t letter;
   do {
     letter = flash_byte(word++);
@@ -67,7 +55,7 @@ tini_noinline const uint8_t* Console::put_word(const uint8_t* word) {
 }
 
 // Puts a word of the language, or a sign.
-void Console::put_token(uint8_t token) {
+tini_noinline void put_token(uint8_t token) {
   if (token < kFirstWord) return put(token);
   const uint8_t* word = kWords;
   for (; token != kFirstWord; token--) {
@@ -77,12 +65,12 @@ void Console::put_token(uint8_t token) {
   put_word(word);
 }
 
-tini_noinline void Console::put_digit(uint8_t digit) {
+tini_noinline void put_digit(uint8_t digit) {
   put(static_cast<uint8_t>(digit < 10 ? '0' + digit : 'a' + digit - 10));
 }
 
 // Puts what lies in memory as a hexadecimal number.
-void Console::put_hex(const void* bytes, uint8_t count) {
+tini_noinline void put_hex(const void* bytes, uint8_t count) {
   do {
     const uint8_t byte = static_cast<const uint8_t*>(bytes)[--count];
     put_digit(byte / 16);
@@ -92,13 +80,13 @@ void Console::put_hex(const void* bytes, uint8_t count) {
 
 // Puts thousandths as the shortest decimal number. Its digits are made in the last bytes of the
 // line, where no number comes.
-void Console::put_number(int32_t value) {
+tini_noinline void put_number(int32_t value) {
   uint32_t rest = static_cast<uint32_t>(value);
   if (value < 0) {
     put('-');
     rest = 0 - rest;
   }
-  uint8_t* const point = out_ + kWireBytes - 3;
+  uint8_t* const point = line + kWireBytes - 3;
   uint8_t* behind = point + 3;
   uint8_t* at = behind;
   do {
@@ -112,6 +100,8 @@ void Console::put_number(int32_t value) {
   }
 }
 
+}  // namespace
+
 // Puts words of the robot until the line is full. Returns whether there are more.
 bool Console::put_words() {
   for (;;) {
@@ -120,7 +110,7 @@ bool Console::put_words() {
     if (help_ == kWords + kSkippedAt) help_ = kWords + kAliasesAt + kAliasBytes;
     if (help_ == kWords + kLaterWordsAt) help_ = robot_words();
     if (flash_byte(help_) == 0) break;
-    if (size_ > kWireBytes - kLineEndBytes - kLongestWord) return true;
+    if (size > kWireBytes - kLineEndBytes - kLongestWord) return true;
     help_ = put_word(help_);
     put(' ');
     // Behind a word of the kit there is no letter.
@@ -137,14 +127,14 @@ tini_noinline uint8_t Console::write_value(int32_t value, bool is_yes_no, uint8_
   } else {
     put_number(value);
   }
-  return end_answer();
+  return ended_line();
 }
 
 tini_noinline uint8_t Console::write(uint8_t* out) {
   begin_line(out);
   const Remark remark = remark_;
   remark_ = Remark::kNone;
-  const uint8_t* text = text_of(remark);
+  uint8_t text = text_of(remark);
   switch (remark) {
     case Remark::kMistake:
       put_number(reader_.column() * int32_t{1000});
@@ -164,7 +154,7 @@ tini_noinline uint8_t Console::write(uint8_t* out) {
       }
       const Identity& identity = port_identity();
       if (info.name_length == 0) put_hex(&identity.id, sizeof identity.id);
-      put_text(text);
+      put_text<put>(text);
       put_hex(&identity.kit, sizeof identity.kit);
       text = text_of(Remark::kLevel);
       break;
@@ -172,10 +162,10 @@ tini_noinline uint8_t Console::write(uint8_t* out) {
     default:
       break;
   }
-  put_text(text);
+  put_text<put>(text);
   if (remark == Remark::kWaiting) put_token(awaited_);
-  if (remark == Remark::kFault) put_text(name_of_fault(port_status().fault));
-  return end_answer();
+  if (remark == Remark::kFault) put_text<put>(name_of_fault(port_status().fault));
+  return ended_line();
 }
 
 }  // namespace tiniscript

@@ -47,9 +47,6 @@ enum class Problem : uint8_t {
   kLacks = 30,  // Not read by this robot
 };
 
-// The text of a problem, in flash, packed; a 0 ends it.
-const uint8_t* text_of(Problem problem);
-
 }  // namespace tiniscript
 
 #endif  // TINISCRIPT_TEXT_PROBLEMS_H_

@@ -35,12 +35,6 @@ enum class Remark : uint8_t {
   kLevel = 18,  // , text 1
 };
 
-// The text of a remark, in flash, packed; a 0 ends it.
-const uint8_t* text_of(Remark remark);
-
-// The name of a fault, in flash, packed; a 0 ends it.
-const uint8_t* name_of_fault(uint8_t fault);
-
 }  // namespace tiniscript
 
 #endif  // TINISCRIPT_TEXT_REMARKS_H_

@@ -1,0 +1,40 @@
+"""The texts that a robot says, packed and unpacked again."""
+
+from __future__ import annotations
+
+import pytest
+
+from tools.generate.packed_texts import DEEPEST, END, FIRST_LETTER, Pair, packed, unpacked
+from tools.generate.remark_tables import rows
+
+
+@pytest.mark.parametrize("language", ["en", "es"])
+def test_what_a_robot_says_comes_back(language: str) -> None:
+    said = rows(language)
+    data = packed(said)
+    assert unpacked(data) == said
+    assert data.size < 0.75 * sum(len(text) + 1 for text in said)
+
+
+@pytest.mark.parametrize(
+    "texts",
+    [[""], ["", "A", ""], ["AAAAAAA", "AAA"], ["~"], ["abc" * 20, "bcab" * 9], ["x" * 200, "|}"]],
+)
+def test_texts_come_back(texts: list[str]) -> None:
+    assert unpacked(packed(texts)) == texts
+
+
+@pytest.mark.parametrize("language", ["en", "es"])
+def test_pairs_in_pairs_are_not_too_deep(language: str) -> None:
+    """The robot's stack holds a call for each. No pair has an end."""
+    data = packed(rows(language))
+
+    def depth(code: int) -> int:
+        return 0 if code >= FIRST_LETTER else 1 + max(map(depth, pair_of(code)))
+
+    def pair_of(code: int) -> Pair:
+        return data.pairs[code - 1]
+
+    assert max(map(depth, range(1, 1 + len(data.pairs)))) <= DEEPEST
+    assert END not in {code for pair in data.pairs for code in pair}
+    assert len(data.pairs) < FIRST_LETTER

@@ -1,0 +1,50 @@
+// Unpacks the texts of `texts.h`, letter by letter. Knows nothing of where they go.
+
+#ifndef TINISCRIPT_TEXT_UNPACKED_H_
+#define TINISCRIPT_TEXT_UNPACKED_H_
+
+#include "../vm/small.h"
+#include "texts.h"
+
+namespace tiniscript {
+
+// Puts what a code stands for. Calls itself as deep as there are pairs in pairs.
+template <void (*put)(uint8_t)>
+tini_noinline void put_code(uint8_t code) {
+  while (code < kFirstLetter) {
+    const uint8_t* const pair = pair_of(code);
+    put_code<put>(flash_byte(pair));
+    code = flash_byte(pair + 1);
+  }
+  put(code);
+}
+
+// Puts the letters of a text by its number.
+template <void (*put)(uint8_t)>
+tini_noinline void put_text(uint8_t number) {
+  constexpr uint8_t kNoHalf = 1;
+  uint8_t first = kNoHalf;
+  for (uint16_t at = 0;; at++) {
+    uint8_t code = flash_byte(packed_texts() + at / 2);
+    if ((at & 1) == 0) code = static_cast<uint8_t>(code >> 4 | code << 4);
+    code &= 15;
+    if (first != kNoHalf) {
+      code |= first;
+      first = kNoHalf;
+    } else if (code < kFirstCommon) {
+      first = static_cast<uint8_t>(code << 4);
+      continue;
+    } else {
+      code = flash_byte(packed_codes() + code - kFirstCommon);
+    }
+    if (code != kTextEnd) {
+      if (number == 0) put_code<put>(code);
+    } else if (number-- == 0) {
+      return;
+    }
+  }
+}
+
+}  // namespace tiniscript
+
+#endif  // TINISCRIPT_TEXT_UNPACKED_H_
