@@ -216,7 +216,7 @@ Answer port_keep_key(uint8_t which, const uint8_t* key) {
     if (which == 0 && key[k] != 0) is_owned = true;
   }
   const int flag = is_owned ? kOwned : 0;
-  port.identity.features = static_cast<uint16_t>((port.identity.features & ~kOwned) | flag);
+  port.identity.features = static_cast<uint8_t>((port.identity.features & ~kOwned) | flag);
   say("KEY %u", which);
   return Answer::kSaving;
 }

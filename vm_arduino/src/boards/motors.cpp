@@ -1,6 +1,7 @@
 #include "motors.h"
 
 #include "../firmware/board.h"
+#include "../vm/flags.h"
 #include "kit.h"
 
 #if defined(tiniscript_motors_bridge)
@@ -15,7 +16,7 @@ namespace tiniscript {
 
 namespace {
 
-volatile bool is_released;
+Flag<Bit::kReleased> is_released;
 
 uint8_t size_of(int16_t level) {
   uint8_t size = static_cast<uint8_t>(level);

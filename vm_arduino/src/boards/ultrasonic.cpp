@@ -3,8 +3,9 @@
 #include <avr/interrupt.h>
 #include <avr/io.h>
 
-#include "chip.h"
+#include "../vm/flags.h"
 #include "avr/interrupts.h"
+#include "chip.h"
 #include "kit.h"
 
 #ifdef tiniscript_ultrasonic_vectors
@@ -37,7 +38,7 @@ Reading readings[kUltrasonics];
 Ping ping;
 uint8_t last_asked;  // the sensor of the current ping
 uint16_t ping_us;    // when the last ping of any sensor was sent
-bool is_spaced;      // kSpacingUs have passed since then
+Flag<Bit::kSpaced> is_spaced;  // kSpacingUs have passed since then
 uint16_t begun_us;   // when the trigger, or a stale echo, went high
 bool is_held;        // there is a stale echo
 

@@ -2,6 +2,7 @@
 
 #include "../link/frames.h"
 #include "../store/nvm.h"
+#include "../vm/flags.h"
 #include "identity.h"
 #include "program.h"
 #include "run.h"
@@ -24,9 +25,9 @@ constexpr uint8_t kOwnerBit = 8;
 
 Boot boot;
 uint8_t record[kOwnerBytes];
-uint8_t to_keep;
-uint8_t keeping;  // the bits that the store is writing
-bool is_low;      // saving waits for more voltage
+QuickByte<kToKeepAt> to_keep;
+QuickByte<kKeepingAt> keeping;  // the bits that the store is writing
+Flag<Bit::kLow> is_low;  // saving waits for more voltage
 uint16_t low_ms;  // when that wait began
 bool is_worn;     // the memory has failed to save the identity or a key
 
@@ -155,12 +156,12 @@ bool has_booted() { return boot == Boot::kOver; }
 
 void keep_program() {
   tell_saving();
-  to_keep |= kProgramBit;
+  to_keep = to_keep | kProgramBit;
 }
 
-void keep_fault() { to_keep |= kFaultBit; }
+void keep_fault() { to_keep = to_keep | kFaultBit; }
 
-void keep_identity() { to_keep |= kIdentityBit; }
+void keep_identity() { to_keep = to_keep | kIdentityBit; }
 
 Answer identity_kept() {
   if (((to_keep | keeping) & kIdentityBit) != 0) {
@@ -213,7 +214,7 @@ Answer give_up_program() {
       keeping = 0;
       is_low = false;
     }
-    to_keep &= static_cast<uint8_t>(~kProgramBit);
+    to_keep = static_cast<uint8_t>(to_keep & ~kProgramBit);
   } else if (store.is_busy() || (to_keep & kProgramBit) != 0) {
     return Answer::kBusy;  // a program that is being written cannot be read
   }

@@ -18,7 +18,7 @@ void read_owner() {
   if (fetch_key(static_cast<uint8_t>(Key::kOwner), key)) {
     for (const uint8_t byte : key) found |= byte;
   }
-  uint16_t features = port_identity().features & static_cast<uint16_t>(~(kOwned | kTextAllowed));
+  uint8_t features = port_identity().features & static_cast<uint8_t>(~(kOwned | kTextAllowed));
   if (found != 0) {
     features |= kOwned;
   } else {

@@ -1,6 +1,7 @@
 #include "program.h"
 
 #include "../link/frames.h"
+#include "../vm/flags.h"
 #include "../vm/image.h"
 #include "state.h"
 
@@ -14,7 +15,7 @@ uint8_t draft[kHeaderBytes + kTextRoom];
 
 namespace {
 
-bool is_whole;                         // `program` is the one in `robot_status`
+Flag<Bit::kWhole> is_whole;            // `program` is the one in `robot_status`
 bool has_other;                        // the stored program is of another version
 uint8_t header_length = kHeaderBytes;  // of the program in `robot_status`
 

@@ -2,6 +2,7 @@
 
 #include "../link/frames.h"
 #include "../robot.h"
+#include "../vm/flags.h"
 #include "../vm/image.h"
 #include "../vm/vm.h"
 #include "firmware.h"
@@ -17,10 +18,10 @@ namespace {
 
 Machine machine;
 const uint8_t* run_image = program;  // of the current or last run
-bool may_start;     // the button is down and nothing ran or was stopped since: its release starts
-bool is_start_due;  // the button was released, but the program was not available
+Flag<Bit::kMayStart> may_start;     // the button is down and nothing ran or was stopped since: its release starts
+Flag<Bit::kStartDue> is_start_due;  // the button was released, but the program was not available
 bool has_motors_on;
-bool is_prepared;  // machine and board are reset for a program
+Flag<Bit::kPrepared> is_prepared;  // machine and board are reset for a program
 
 // Records a fault.
 void fault(uint8_t number, uint16_t at) {
@@ -98,7 +99,9 @@ void end_run(State state, bool is_done) {
   board_stop();
   if (!is_done) board_actuators_off();
   robot_off();
-  may_start = has_motors_on = is_start_due = false;
+  may_start = false;
+  is_start_due = false;
+  has_motors_on = false;
   robot_status.state = state;
   show_light();
 }

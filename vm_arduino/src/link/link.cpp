@@ -200,7 +200,7 @@ uint8_t Link::answer(Message message, const uint8_t* payload, uint8_t length) {
       break;
     case Message::kStop:
       halt(Cause::kMessage);
-      if (kHasOwners && (port_identity().features & kByTeacher) != 0) rights_ |= kHeldBack;
+      if (kHasOwners && (port_identity().more_features & kMoreByTeacher) != 0) rights_ |= kHeldBack;
       break;
     case Message::kClear:
       found = clear();
@@ -257,7 +257,7 @@ uint8_t Link::answer(Message message, const uint8_t* payload, uint8_t length) {
 }
 
 Answer Link::clear() {
-  if ((rights_ & kHeldBack) != 0 && (port_identity().features & kByTeacher) == 0) return Answer::kHeldBack;
+  if ((rights_ & kHeldBack) != 0 && (port_identity().more_features & kMoreByTeacher) == 0) return Answer::kHeldBack;
   rights_ &= static_cast<uint8_t>(~kHeldBack);
   port_release();
   return Answer::kOk;

@@ -18,7 +18,7 @@ static_assert(kTagBytes == kHashBytes && kChallengeBytes == kHashBytes, "both ar
 
 uint8_t number_of(Answer answer) { return static_cast<uint8_t>(answer); }
 
-bool has(uint16_t feature) { return (port_identity().features & feature) != 0; }
+bool has(uint8_t feature) { return (port_identity().features & feature) != 0; }
 
 // In constant time: how long it takes says nothing about the bytes.
 bool are_equal(const uint8_t* first, const uint8_t* second, uint8_t length) {
@@ -44,7 +44,8 @@ bool Link::is_forbidden(uint8_t type) const {
 }
 
 tini_noinline void Link::lapse() {
-  port_identity().features &= static_cast<uint16_t>(~(kYours | kByTeacher));
+  port_identity().features &= static_cast<uint8_t>(~kYours);
+  port_identity().more_features = 0;
   rights_ &= kHeldBack;
   is_ready_ = false;  // what was made ahead was made with that authority
 }
@@ -66,7 +67,7 @@ tini_noinline Answer Link::claim(const uint8_t* payload, uint8_t length) {
   Answer found = port_key(which, key);
   if (found != Answer::kOk) return found;
   const bool is_teachers = which == static_cast<uint8_t>(Key::kTeacher) && is_key(key);
-  const bool is_allowed = is_teachers ? has(kByTeacher) : !has(kOwned) || has(kYours);
+  const bool is_allowed = is_teachers ? port_identity().more_features != 0 : !has(kOwned) || has(kYours);
   const bool is_given = is_key(wanted);
   // A claim that is repeated because its answer was lost comes without authority.
   if (are_equal(key, wanted, kKeyBytes) && (is_given || is_allowed)) {
@@ -117,7 +118,8 @@ tini_noinline uint8_t Link::authenticate(const uint8_t* payload, uint8_t length)
     return refuse(Answer::kWrongKey, static_cast<uint16_t>(kKeyTries - tries));
   }
   tries_ = 0;
-  port_identity().features |= which == static_cast<uint8_t>(Key::kTeacher) ? kYours | kByTeacher : kYours;
+  port_identity().features |= kYours;
+  if (which == static_cast<uint8_t>(Key::kTeacher)) port_identity().more_features = kMoreByTeacher;
   return kIsFine;
 }
 
@@ -127,7 +129,7 @@ Answer Link::allow_text(const uint8_t* payload) {
   if (is_allowed != 0 || !has(kOwned)) {
     port_identity().features |= kTextAllowed;
   } else {
-    port_identity().features &= static_cast<uint16_t>(~kTextAllowed);
+    port_identity().features &= static_cast<uint8_t>(~kTextAllowed);
     console_.drop();
   }
   return Answer::kOk;

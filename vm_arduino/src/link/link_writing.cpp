@@ -130,7 +130,7 @@ void Link::reply() {
       break;
     case Message::kAuthenticate:
     case Message::kText:
-      put16(port_identity().features);
+      put_all(&port_identity().features, kFeaturesBytes);
       if (said_.number == byte_of(Message::kAuthenticate) && (rights_ & kHasChallenge) != 0)
         put_all(challenge_, kChallengeBytes);
       break;

@@ -20,7 +20,8 @@ struct tini_packed Identity {
   uint16_t kit;
   uint32_t id;
   uint32_t nonce;
-  uint16_t features;
+  uint8_t features;
+  uint8_t more_features;  // kByTeacher is here alone: two bytes take less code than a number of both
   Reset reset;
 };
 
@@ -53,7 +54,9 @@ struct tini_packed Trim {
   uint8_t least;
 };
 
-constexpr uint8_t kFaultBytes = 7;  // of a RobotStatus, from `fault` on
+constexpr uint8_t kFaultBytes = 7;     // of a RobotStatus, from `fault` on
+constexpr uint8_t kFeaturesBytes = 2;  // of an Identity, from `features` on
+constexpr uint8_t kMoreByTeacher = kByTeacher >> 8;
 
 // The number of devices of the kit, and the robot's name.
 struct DeviceInfo {

@@ -2,6 +2,7 @@
 
 #include <Arduino.h>  // declares setup() and loop()
 
+#include "../vm/flags.h"
 #include "attention.h"
 #include "watchdog.h"
 
@@ -69,6 +70,7 @@ ISR(TIMER0_OVF_vect) {
 
 int main() __attribute__((OS_main));
 int main() {
+  tiniscript::begin_flags();
   tiniscript::begin_timers();
   sei();
   setup();
