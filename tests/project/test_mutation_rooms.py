@@ -104,3 +104,34 @@ def test_what_is_listed_as_equivalent_is_still_there() -> None:
     texts = [path.read_text(encoding="utf-8") for each in patterns for path in ROOT.glob(each)]
     lines = {line.strip() for text in texts for line in text.splitlines()}
     assert {was for was, _ in EQUIVALENT} <= lines
+
+
+def test_what_is_unnoticed_stays_open_until_a_test_notices_it(
+    own_room: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    changes = list(rooms.changes_of(OWN, own_room))
+    monkeypatch.setattr(rooms, "ROOMS", (OWN,))
+    monkeypatch.setattr(rooms, "BY_NAME", {"own": OWN})
+    monkeypatch.setattr(rooms, "WRITTEN", tmp_path / "rooms.json")
+    monkeypatch.setattr(rooms, "changes_of", lambda room: changes)
+    monkeypatch.setattr(rooms, "regenerate", lambda: None)
+    assert rooms.rows() == [("`own`", "", "not run yet", "", "", "", "", "")]
+    assert rooms.main(["own", "--tries", "0", "--write"]) == 1
+    (row,) = rooms.rows()
+    assert (row[1:4], row[-1]) == ((4, 4, 2), 2)
+    assert rooms.shares()["own"]["open"] == [
+        ["where.py", "x = a * 1", "x = a * 2"],
+        ["where.py", "x = a * 1", "x = a // 1"],
+    ]
+    assert rooms.main(["own", "--tries", "1", "--seed", "0", "--write"]) == 0
+    assert (rooms.rows()[0][2:4], rooms.rows()[0][-1]) == ((1, 0), 2), "what was not tried is open"
+    test = TEST + "    assert 2 not in low.__code__.co_consts\n"
+    (own_room / "test_where.py").write_text(test, encoding="utf-8")
+    assert rooms.main(["own", "--again"]) == 1
+    assert (rooms.rows()[0][2:4], rooms.rows()[0][-1]) == ((1, 0), 1)
+
+
+def test_the_tests_about_a_file_come_first() -> None:
+    room = Room("own", ("*.cpp",), ("tests/a.py", "tests/b.py", "tests/c.py"), {"x.cpp": "b"})
+    assert room.tests_of("src/x.cpp") == ("tests/b.py", "tests/a.py", "tests/c.py")
+    assert room.tests_of("src/y.cpp") == room.tests
