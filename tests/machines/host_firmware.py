@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import lru_cache
 from pathlib import Path
-from struct import pack
+from struct import iter_unpack, pack
 from typing import Any, NamedTuple
 
 from tests.machines.host import FLAGS, SOURCES, Process, compiled, missing
@@ -102,6 +102,11 @@ class HostFirmware(Process):
     def wear_out(self, place: int) -> None:
         """Let a byte of the memory keep what it is."""
         self.ask(b"D", pack("<H", place))
+
+    def levels(self, trim: bytes) -> tuple[bool, list[tuple[int, int]]]:
+        """Return whether a trim is sound, and its levels of both wheels for -128 to 127 percent."""
+        answer = self.ask(b"T", trim)
+        return bool(answer[0]), list(iter_unpack("<hh", answer[1:]))
 
     def memory(self) -> bytes:
         return _text(self.ask(b"E", b""))[0]

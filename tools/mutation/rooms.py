@@ -99,10 +99,10 @@ ROOMS = (
             "tests/firmware/test_button.py",
             "tests/firmware/test_owners.py",
             "tests/firmware/test_actuator_stops.py",
-            "tests/firmware/test_boards.py",
+            "tests/firmware/test_trim.py",
             "tests/firmware/test_text.py",
         ),
-        {"owners.cpp": "owners", "identify.cpp": "owners", "trim.cpp": "boards"},
+        {"owners.cpp": "owners", "identify.cpp": "owners", "trim.cpp": "trim"},
     ),
     Room(
         "boards",

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "../../src/firmware/firmware.h"
+#include "../../src/firmware/trim.h"
 #include "../../src/robot.h"
 #include "../../src/store/layout.h"
 #include "../../src/store/nvm.h"
@@ -144,6 +145,19 @@ void answer_readings(RequestReader* request) {
   for (int32_t& reading : table.readings) reading = request->i32();
 }
 
+// T: whether a trim is sound, and its levels for -128 to 127 percent, the left wheel's and that of
+// the right one.
+void answer_trim(RequestReader* request, Writer* answer) {
+  const Trim trim = {request->u8(), static_cast<int8_t>(request->u8()), request->u8()};
+  answer->u8(is_sound(trim));
+  for (int power = -128; power < 128; power++) {
+    const int8_t percent = static_cast<int8_t>(power);
+    const Levels levels = trimmed(trim, percent, percent);
+    answer->u16(static_cast<uint16_t>(levels.left));
+    answer->u16(static_cast<uint16_t>(levels.right));
+  }
+}
+
 }  // namespace
 
 namespace tiniscript {
@@ -266,6 +280,9 @@ int main() {
         break;
       case 'V':
         answer_readings(&request);
+        break;
+      case 'T':
+        answer_trim(&request, &said);
         break;
       default:
         return 1;
