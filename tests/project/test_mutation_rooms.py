@@ -131,7 +131,16 @@ def test_what_is_unnoticed_stays_open_until_a_test_notices_it(
     assert (rooms.rows()[0][2:4], rooms.rows()[0][-1]) == ((1, 0), 1)
 
 
-def test_the_tests_about_a_file_come_first() -> None:
-    room = Room("own", ("*.cpp",), ("tests/a.py", "tests/b.py", "tests/c.py"), {"x.cpp": "b"})
-    assert room.tests_of("src/x.cpp") == ("tests/b.py", "tests/a.py", "tests/c.py")
+def test_of_a_file_only_the_tests_about_it_run() -> None:
+    room = Room("own", ("*.cpp",), ("tests/a.py", "tests/b.py", "tests/c.py"), {"x.cpp": "c b"})
+    assert room.tests_of("src/x.cpp") == ("tests/c.py", "tests/b.py")
     assert room.tests_of("src/y.cpp") == room.tests
+
+
+@pytest.mark.parametrize("room", ROOMS, ids=lambda room: room.name)
+def test_each_word_about_a_file_means_a_test(room: Room) -> None:
+    names = {path.name for pattern in room.files for path in ROOT.glob(pattern)}
+    assert set(room.about) <= names
+    for words in room.about.values():
+        for word in words.split():
+            assert any(word in test for test in room.tests), word
