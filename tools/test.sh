@@ -19,6 +19,7 @@ run() {
 run ruff check .
 run ruff format --check .
 run mypy
+run mypy --platform win32 --cache-dir .mypy_cache/win32 compiler/tiniscript
 run tools.generate --check
 run pytest -n 2 --dist worksteal "$@"
 

@@ -1,5 +1,5 @@
-# Makes the virtual environment .venv beside this folder, for try.sh and test.sh.
-# Sets PYTHON to its interpreter. Says what it installs.
+# Finds a Python for try.sh and test.sh, and what Debian keeps in packages of their own; environment.py
+# makes the virtual environment .venv beside this folder. Sets PYTHON to its interpreter.
 
 ROOT=$(cd "$(dirname "$0")/.." && pwd)
 PYTHON="$ROOT/.venv/bin/python"
@@ -56,21 +56,10 @@ debian_packages() {
 
 # make_venv EXTRAS: installs this repo, with EXTRAS such as [test], if anything changed since.
 make_venv() {
-    if ! "$PYTHON" -m pip --version >/dev/null 2>&1; then
+    found="$PYTHON"
+    if ! "$found" -m pip --version >/dev/null 2>&1; then
         found=$(find_python)
         "$found" -c 'import ensurepip' 2>/dev/null || install_venv
-        say "Making a virtual environment in .venv"
-        rm -rf "$ROOT/.venv"
-        "$found" -m venv "$ROOT/.venv" || fail "python -m venv failed; see above."
     fi
-    # What was installed, and from where: times of files say neither in the second of a change, nor
-    # where a folder has been moved or an older state of it has been taken out.
-    stamp="$ROOT/.venv/installed$1"
-    wanted="$(cksum <"$ROOT/pyproject.toml") $ROOT"
-    if [ "$(cat "$stamp" 2>/dev/null)" != "$wanted" ]; then
-        say "Installing TiniScript and what it needs from PyPI into .venv"
-        "$PYTHON" -m pip install --quiet --disable-pip-version-check --editable "$ROOT$1" ||
-            fail "pip could not install; is this computer online?"
-        printf '%s\n' "$wanted" >"$stamp"
-    fi
+    "$found" "$ROOT/tools/environment.py" "$1" || exit 2
 }

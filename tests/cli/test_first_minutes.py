@@ -428,7 +428,7 @@ def test_the_first_run_explains_its_warning(tsc: Tsc) -> None:
     done = tsc("check", ROOT / "examples" / "obstacle.ts")
     assert done.err.count("Warning") == 1
     assert tsc("check", ROOT / "examples" / "obstacle_until.ts").err == ""
-    for path in ("README.md", "tools/try.sh", "examples/obstacle.ts"):
+    for path in ("README.md", "tools/try.py", "examples/obstacle.ts"):
         said = (ROOT / path).read_text(encoding="utf-8")
         assert "warn" in said and "obstacle_until.ts" in said, path
 

@@ -6,7 +6,10 @@ import os
 import re
 import shutil
 import subprocess
+import sys
+from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
@@ -49,6 +52,7 @@ INSTALLING = "Installing TiniScript"
 FAKE_PYTHON = (
     '#!/bin/sh\ncase "$*" in *" install "*) echo "$*" >>"$(dirname "$0")/../asked";; esac\n'
 )
+ENGLISH = {**os.environ, "LC_ALL": "C"}
 
 
 @pytest.fixture
@@ -57,8 +61,7 @@ def folder(tmp_path: Path) -> Path:
     clone = tmp_path / "clone"
     (clone / "tools").mkdir(parents=True)
     (clone / ".venv" / "bin").mkdir(parents=True)
-    shutil.copy(ROOT / "tools" / "venv.sh", clone / "tools")
-    (clone / "tools" / "some.sh").write_text('. "$(dirname "$0")/venv.sh"\nmake_venv "[test]"\n')
+    shutil.copy(ROOT / "tools" / "environment.py", clone / "tools")
     (clone / "pyproject.toml").write_text("one")
     python = clone / ".venv" / "bin" / "python"
     python.write_text(FAKE_PYTHON)
@@ -69,8 +72,9 @@ def folder(tmp_path: Path) -> Path:
 def installed(clone: Path) -> bool:
     """Return whether the script has installed anything."""
     done = subprocess.run(
-        ["sh", str(clone / "tools" / "some.sh")], capture_output=True, text=True, check=True
-    )
+        [sys.executable, str(clone / "tools" / "environment.py"), "[test]"],
+        capture_output=True, text=True, check=True, env=ENGLISH,
+    )  # fmt: skip
     return INSTALLING in done.stderr
 
 
@@ -93,3 +97,100 @@ def test_a_folder_that_has_moved_is_installed_again(folder: Path) -> None:
     assert installed(folder)
     moved = folder.rename(folder.with_name("moved"))
     assert installed(moved)
+
+
+def test_the_shell_leaves_the_work_to_python(tmp_path: Path) -> None:
+    """`make_venv` gives the extras on, with the interpreter of `.venv` where it has pip."""
+    (tmp_path / "tools").mkdir()
+    (tmp_path / ".venv" / "bin").mkdir(parents=True)
+    shutil.copy(ROOT / "tools" / "venv.sh", tmp_path / "tools")
+    python = tmp_path / ".venv" / "bin" / "python"
+    python.write_text('#!/bin/sh\ncase "$*" in *environment*) echo "$*";; esac\n')
+    python.chmod(0o755)
+    script = tmp_path / "tools" / "some.sh"
+    script.write_text('. "$(dirname "$0")/venv.sh"\nmake_venv "[test]"\n')
+    done = subprocess.run(["sh", str(script)], capture_output=True, text=True, check=True)
+    assert done.stdout == f"{tmp_path / 'tools' / 'environment.py'} [test]\n"
+
+
+# -- tools/try.py, for every system
+
+
+def loaded() -> ModuleType:
+    """Return `tools/try.py`, whose name no `import` can have."""
+    spec = spec_from_file_location("first_command", ROOT / "tools" / "try.py")
+    assert spec and spec.loader
+    module = module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_windows_has_its_interpreter_and_its_line_elsewhere() -> None:
+    from tools import environment
+
+    assert environment.python_of(Path("x"), "nt") == Path("x/Scripts/python.exe")
+    assert environment.python_of(Path("x"), "posix") == Path("x/bin/python")
+    first = loaded()
+    assert first.activation("nt") == r".venv\Scripts\Activate.ps1"
+    assert first.activation("posix") == ". .venv/bin/activate"
+
+
+@pytest.mark.parametrize(("language", "sentence"), [("en", "needs Python"), ("es", "necesita")])
+def test_an_old_python_is_told_where_to_get_one(
+    language: str, sentence: str, monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:  # fmt: skip
+    from tools import environment
+
+    monkeypatch.setenv("LC_ALL", f"{language}_MX.UTF-8")
+    with pytest.raises(SystemExit) as exit_code:
+        environment.check_version((3, 9))
+    assert exit_code.value.code == 2
+    assert sentence in capsys.readouterr().err
+    environment.check_version((3, 10))
+
+
+def test_a_computer_without_internet_is_told_of_proxies_and_the_stick(
+    folder: Path, tmp_path: Path
+) -> None:
+    python = folder / ".venv" / "bin" / "python"
+    python.write_text('#!/bin/sh\ncase "$*" in *" install "*) exit 1;; esac\n')
+    done = subprocess.run(
+        [sys.executable, str(folder / "tools" / "environment.py"), "[virtual]"],
+        capture_output=True, text=True, env=ENGLISH,
+    )  # fmt: skip
+    assert done.returncode == 2
+    assert "HTTPS_PROXY" in done.stderr
+    assert "USB stick" in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+def test_the_first_command_drives_the_virtual_robot(
+    monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """In an environment that is there: pip has tests of its own."""
+    from tests.support.virtual_robot import missing
+    from tools import environment
+
+    if missing():
+        pytest.skip(missing())
+    monkeypatch.setenv("LC_ALL", "es_MX.UTF-8")
+    monkeypatch.setattr(environment, "make", lambda extras: Path(sys.executable))
+    before = (ROOT / "way.png").exists()
+    assert loaded().main() == 0
+    said = capfd.readouterr()
+    assert (ROOT / "way.png").is_file()
+    if not before:
+        (ROOT / "way.png").unlink()
+    assert "F(1, 80)" in said.out or "LOOP" in said.out
+    assert "way.png" in said.err
+    assert "Ahora el tuyo" in said.err
+
+
+def test_every_sentence_of_the_first_command_has_two_languages() -> None:
+    from tools import environment
+
+    for table in (environment.SAID, loaded().SAID):
+        for english, spanish in table.values():
+            assert english != spanish or "{" in english
+            assert set(re.findall(r"\{\w+\}", english)) == set(re.findall(r"\{\w+\}", spanish))

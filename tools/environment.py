@@ -1,0 +1,148 @@
+"""Makes the virtual environment `.venv` beside this folder, on each system, with Python alone.
+
+`try.py` uses it, and `venv.sh` calls it as `environment.py "[test]"`. What is wrong is said in a
+sentence, and the exit code is then 2. Knows pip and venv; does not know what is done with them.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+NEEDED = (3, 10)
+SAID = {
+    "old": (
+        "TiniScript needs Python 3.10 or newer; this is {version}. {get}",
+        "TiniScript necesita Python 3.10 o más nuevo; este es {version}. {get}",
+    ),
+    "get_windows": (
+        "Get one from python.org (its installer asks for no administrator), then:  py tools\\try.py",
+        "Descárgalo de python.org (su instalador no pide administrador); después:  py tools\\try.py",
+    ),
+    "get": ("Get one from python.org.", "Descárgalo de python.org."),
+    "making": (
+        "Making a virtual environment in .venv",
+        "Se crea un entorno virtual en .venv",
+    ),
+    "no_venv": (
+        "This Python cannot make virtual environments. On Debian and Ubuntu:"
+        "  sudo apt-get install python3-venv",
+        "Este Python no puede crear entornos virtuales. En Debian y Ubuntu:"
+        "  sudo apt-get install python3-venv",
+    ),
+    "in_use": (
+        "Cannot replace .venv: {why}. Close the windows that use it, and try again.",
+        "No se puede reemplazar .venv: {why}. Cierra las ventanas que lo usan y repite.",
+    ),
+    "installing": (
+        "Installing TiniScript and what it needs from PyPI into .venv",
+        "Se instala TiniScript y lo que necesita, desde PyPI, en .venv",
+    ),
+    "no_pip": (
+        "pip could not install; is this computer online? A proxy is given by the variable"
+        " HTTPS_PROXY, as http://proxy:3128. Without internet: docs/monday.en.md, a USB stick",
+        "pip no pudo instalar; ¿hay internet? Un proxy se indica con la variable"
+        " HTTPS_PROXY, como http://proxy:3128. Sin internet: docs/lunes.es.md, una memoria USB",
+    ),
+}
+
+
+def python_of(folder: Path, system: str = os.name) -> Path:
+    """Return the interpreter of a virtual environment."""
+    return folder / "Scripts" / "python.exe" if system == "nt" else folder / "bin" / "python"
+
+
+def said(key: str, **gaps: str) -> str:
+    """Return a sentence in the person's language."""
+    return in_language(SAID[key], **gaps)
+
+
+def in_language(both: tuple[str, str], **gaps: str) -> str:
+    """Return the English or the Spanish sentence."""
+    return both[language() == "es"].format(**gaps)
+
+
+def say(line: str) -> None:
+    """Print a line of our own, in bold where a terminal of Unix shows it."""
+    bold = ("\033[1m", "\033[0m") if os.name != "nt" and sys.stderr.isatty() else ("", "")
+    print(f"{bold[0]}{line}{bold[1]}", file=sys.stderr, flush=True)
+
+
+def make(extras: str, root: Path = ROOT) -> Path:
+    """Install this folder with extras such as `[test]`, if anything changed since.
+
+    Returns the interpreter. Exits with a sentence where it does not work.
+    """
+    check_version(sys.version_info[:2])
+    python = python_of(root / ".venv")
+    if not _runs(python, "-m", "pip", "--version"):
+        _make_empty(root / ".venv")
+    # What was installed, and from where: times of files say neither in the second of a change, nor
+    # where a folder has been moved or an older state of it has been taken out.
+    stamp = root / ".venv" / f"installed{extras}"
+    digest = hashlib.sha256((root / "pyproject.toml").read_bytes()).hexdigest()
+    wanted = f"{digest} {root}\n"
+    if not stamp.is_file() or stamp.read_text(encoding="utf-8") != wanted:
+        say(said("installing"))
+        pip = [str(python), "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
+        if subprocess.run([*pip, "--editable", f"{root}{extras}"]).returncode:
+            _fail(said("no_pip"))
+        stamp.write_text(wanted, encoding="utf-8")
+    return python
+
+
+def check_version(version: tuple[int, int]) -> None:
+    """Exit with a sentence where this Python is too old."""
+    if version < NEEDED:
+        get = said("get_windows" if os.name == "nt" else "get")
+        _fail(said("old", version=".".join(map(str, version)), get=get))
+
+
+def _make_empty(folder: Path) -> None:
+    import shutil
+
+    say(said("making"))
+    try:
+        if folder.exists():
+            shutil.rmtree(folder)
+    except OSError as why:  # Windows removes no program that runs
+        _fail(said("in_use", why=why.strerror or str(why)))
+    if not _runs(Path(sys.executable), "-c", "import ensurepip"):
+        _fail(said("no_venv"))
+    if subprocess.run([sys.executable, "-m", "venv", str(folder)]).returncode:
+        _fail(said("no_venv"))
+
+
+def _runs(python: Path, *words: str) -> bool:
+    try:
+        return not subprocess.run([str(python), *words], capture_output=True).returncode
+    except OSError:  # there is none
+        return False
+
+
+def language() -> str:
+    """Return the person's language, as `tsc` finds it."""
+    sys.path.insert(0, str(ROOT / "compiler"))
+    try:
+        if sys.version_info >= NEEDED:  # an older one cannot read that code
+            from tiniscript.cli.texts.common import language_of
+
+            return language_of([])
+    except ImportError:
+        pass
+    finally:
+        sys.path.remove(str(ROOT / "compiler"))
+    return "es" if os.environ.get("LANG", "").startswith("es") else "en"
+
+
+def _fail(sentence: str) -> None:
+    print(sentence, file=sys.stderr)
+    raise SystemExit(2)
+
+
+if __name__ == "__main__":
+    make(sys.argv[1] if len(sys.argv) > 1 else "")

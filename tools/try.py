@@ -1,0 +1,85 @@
+"""README's first command, on each system: `py tools\\try.py`, `python3 tools/try.py`.
+
+Sets TiniScript up in `.venv`; then the paper's obstacle program is compiled, uploaded to the
+virtual robot, and drives around the obstacles. Ends by itself. Needs no rights but those of its user.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT))
+
+from tools import environment
+
+PROGRAM = Path("examples") / "obstacle.ts"
+SAID = {
+    "program": ("The program: {program}", "El programa: {program}"),
+    "watch": (
+        "For 30 seconds a virtual robot does it here. Ctrl-C stops it earlier.",
+        "Un robot virtual lo hace aquí durante 30 segundos. Ctrl-C lo detiene antes.",
+    ),
+    "warning": (
+        "The warning above: for a second at a time this robot drives without looking. In the room of"
+        " the\nvirtual robot that is soon enough; examples/obstacle_until.ts looks 50 times a second.",
+        "La advertencia: este robot avanza un segundo sin mirar cada vez. En la sala del robot virtual"
+        "\nalcanza; examples/obstacle_until.ts mira 50 veces por segundo.",
+    ),
+    "drawn": (
+        "Its way is drawn in way.png, in this folder.",
+        "Su camino está dibujado en way.png, en esta carpeta.",
+    ),
+    "now": (
+        "Now yours:  {activate}   and   tsc upload -e 'SI|F(2, 80)' --virtual",
+        "Ahora el tuyo:  {activate}   y   tsc upload -e 'SI|F(2, 80)' --virtual",
+    ),
+    "blocked": (
+        "(Where PowerShell runs no scripts:  Set-ExecutionPolicy -Scope Process RemoteSigned"
+        "   or, without it,  {tsc})",
+        "(Si PowerShell no ejecuta scripts:  Set-ExecutionPolicy -Scope Process RemoteSigned"
+        "   o, sin eso,  {tsc})",
+    ),
+}
+
+
+def activation(system: str = os.name) -> str:
+    """Return the line that makes `tsc` a command of this window."""
+    return r".venv\Scripts\Activate.ps1" if system == "nt" else ". .venv/bin/activate"
+
+
+def main() -> int:
+    python = environment.make("[virtual]")
+    _say("program", program=PROGRAM.as_posix())
+    print((ROOT / PROGRAM).read_text(encoding="utf-8"), flush=True)
+    words = ["upload", str(PROGRAM), "--virtual", "--for", "30"]
+    if sys.stdout.isatty() and sys.stderr.isatty() and not os.environ.get("CI"):
+        _say("watch")
+    else:
+        words += ["--hurry", "20"]
+    words += ["--plot", "way.png"]
+    environment.say(f"$ tsc {' '.join(words)}")
+    try:
+        code = subprocess.run([str(python), "-m", "tiniscript", *words], cwd=ROOT).returncode
+    except KeyboardInterrupt:  # the robot has stopped, and tsc has said so
+        return 2
+    print(flush=True)
+    if code:
+        return code
+    _say("warning")
+    _say("drawn")
+    _say("now", activate=activation())
+    if os.name == "nt":
+        _say("blocked", tsc=r".venv\Scripts\tsc")
+    return 0
+
+
+def _say(key: str, **gaps: str) -> None:
+    environment.say(environment.in_language(SAID[key], **gaps))
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
