@@ -63,9 +63,17 @@ def _mend_streams() -> None:
             setattr(sys, name, open(os.devnull, mode, encoding="utf-8"))  # noqa: PTH123, SIM115
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
-            stream.reconfigure(errors="backslashreplace")
+            is_unicode = (stream.encoding or "").lower().startswith("utf")
+            stream.reconfigure(errors="backslashreplace" if is_unicode else _plain_errors())
     if hasattr(sys.stdin, "reconfigure"):
         sys.stdin.reconfigure(errors="backslashreplace")  # invalid text becomes a mistake
+
+
+def _plain_errors() -> str:
+    from tiniscript.cli import encodings
+
+    encodings.register()
+    return encodings.NAME
 
 
 def _drop_output() -> None:

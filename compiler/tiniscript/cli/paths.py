@@ -61,7 +61,7 @@ def check(options: Namespace, language: str) -> None:
                               what=read.label, other=read.path)  # fmt: skip
     for output in outputs:
         if getattr(options, output.dest) is not None and output.dest in WRITES:
-            _refuse_unwritable(output.path, WRITES[output.dest][1])
+            _refuse_unwritable(output.path, WRITES[output.dest][1], language)
         if output.dest not in READS:  # else it is changed in place
             _refuse_foreign(output)
 
@@ -174,9 +174,14 @@ def _refuse_foreign(output: Named) -> None:
             raise CommandError(2, "over_foreign", option=output.label, file=output.path)
 
 
-def _refuse_unwritable(path: str, key: str) -> None:
+def _refuse_unwritable(path: str, key: str, language: str) -> None:
     """Report early that a file cannot be written. Raises CommandError."""
     number = 0
+    if sys.platform == "win32":
+        from tiniscript.cli.windows_names import has_no_file
+
+        if path and has_no_file(path):
+            raise CommandError(2, key, file=path, why=text("no_windows_name", language))
     try:
         try:
             found = os.stat(path)  # noqa: PTH116 - a name that no file can have gets no Path

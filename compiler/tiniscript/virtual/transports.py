@@ -128,6 +128,8 @@ class Transports:
                 os.close(end)
 
     def _open_terminal(self) -> None:
+        if sys.platform == "win32":
+            raise OSError("Windows has no such terminals")
         import pty
         import tty
 

@@ -305,9 +305,12 @@ def _is_mark(event: ShowEvent) -> bool:
 @contextlib.contextmanager
 def _history(known: Known) -> Iterator[None]:
     """Arrow keys bring back earlier lines, of earlier sessions too; Tab completes words."""
+    if sys.platform == "win32":  # its console has a history of its own
+        yield
+        return
     try:
         import readline
-    except ImportError:  # Windows: its console has a history of its own
+    except ImportError:
         yield
         return
     from tiniscript import files

@@ -17,9 +17,10 @@ from rich.live import Live
 from rich.segment import ControlType
 from rich.text import Text
 
+from tiniscript.cli.encodings import DRAWN
+
 FRAME_S = 1 / 15
 SLOWEST_S = 0.2  # a frame that took longer (a long computation, Ctrl-Z) does not skip a move
-PLAIN = str.maketrans("│─├┤█▌▐♪…↑↖←↙↓↘→↗", "|-||#==~.^\\</v\\>/")
 
 
 class Drawable(Protocol):
@@ -39,9 +40,7 @@ class Screen:
         self.widths: list[int] = []  # of the lines of the picture
         self.frame_s = time.monotonic()
         # where the trace goes to this very terminal, it has to go around the picture
-        self.is_shared = sys.stdout.isatty() and (
-            os.fstat(sys.stdout.fileno()).st_rdev == os.fstat(sys.stderr.fileno()).st_rdev
-        )
+        self.is_shared = sys.stdout.isatty() and _is_one_terminal()
 
     def begin(self) -> None:
         self.live.start()
@@ -92,7 +91,7 @@ class Screen:
         if not self.console.encoding.startswith("utf"):
             for line in lines:
                 line.plain = "".join("*" if "⠀" <= c <= "⣿" else c for c in line.plain)
-                line.plain = line.plain.translate(PLAIN)
+                line.plain = line.plain.translate(DRAWN)
         drawn = Text("\n", no_wrap=True).join(lines)
         if not self.live.is_started:
             self.flush()
@@ -107,3 +106,11 @@ class Screen:
         self.live.update(drawn)
         self.flush()
         self.live.refresh()
+
+
+def _is_one_terminal() -> bool:
+    """Whether both streams of this command, which are terminals, are the same one."""
+    if sys.platform == "win32":  # a command has one console
+        return True
+    numbers = [os.fstat(each.fileno()).st_rdev for each in (sys.stdout, sys.stderr)]
+    return numbers[0] == numbers[1]

@@ -49,6 +49,7 @@ TEXTS: dict[str, tuple[str, str]] = {
                         "tsc: no se puede leer {file}: {why}. Cópialo a otra carpeta y prueba otra vez."),
     "unwritable": ("tsc: {file} cannot be written: {why}. Choose another place with -o; nothing was changed.",
                    "tsc: no se puede escribir {file}: {why}. Elige otro lugar con -o; no se cambió nada."),
+    "no_windows_name": ("Windows has no file of this name", "Windows no tiene archivos con este nombre"),
     "unwritable_map": ("tsc: {file} cannot be written: {why}. Choose another place with --map.",
                        "tsc: no se puede escribir {file}: {why}. Elige otro lugar con --map."),
     "unwritable_source": ("tsc: {file} cannot be written: {why}. It is as it was.",

@@ -1,0 +1,201 @@
+"""The rules of Windows, as far as they can be tried on another system.
+
+Types for Windows are checked by `mypy --platform win32` in `tools/test.sh`.
+"""
+
+from __future__ import annotations
+
+import io
+import subprocess
+import sys
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+from tests.support.casefile import ROOT
+from tests.support.command import Tsc
+from tiniscript.cli import encodings
+from tiniscript.cli.texts.common import tables
+from tiniscript.cli.windows_names import has_no_file
+
+PROGRAM = "SI|F(2, 80)\n"
+
+
+# -- names
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["con", "CON.bin", "aux.html", "nul.txt", "com1.csv", "lpt9", "COM¹.bin", "x/prn.toml",
+     r"C:\x\con.bin", "x.", "x ", "sheet:1.html", "what?.bin", "a\tb", r"d:\x\a:b", "con .bin"],
+)  # fmt: skip
+def test_names_that_no_file_has(name: str) -> None:
+    assert has_no_file(name)
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["prog.bin", "console.bin", "com.bin", "com10.csv", "C:prog.bin", r"C:\Users\Ana María\p.bin",
+     r"..\x\prog.bin", "./prog.bin", r"\\school\pupils\prog.bin", "lpt.bin", "año.bin", ".x"],
+)  # fmt: skip
+def test_names_of_files(name: str) -> None:
+    assert not has_no_file(name)
+
+
+def test_an_output_that_windows_would_lose_is_refused(
+    tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from serial.tools import list_ports  # noqa: F401 - it looks at the platform when imported
+
+    monkeypatch.chdir(tmp_path)
+    Path("prog.ts").write_text(PROGRAM)
+    monkeypatch.setattr(sys, "platform", "win32")
+    for language, said in (("en", "no file of this name"), ("es", "este nombre")):
+        done = tsc("compile", "prog.ts", "-o", "aux.bin", "--lang", language)
+        assert done.code == 2
+        assert said in done.err
+    assert not Path("aux.bin").exists()
+    assert tsc("compile", "prog.ts", "-o", "good.bin").code == 0
+
+
+# -- texts
+
+
+def test_a_program_of_notepad_is_the_same_program(
+    tsc: Tsc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With CR LF and a byte order mark; a mistake has the same sentence."""
+    monkeypatch.chdir(tmp_path)
+    wrong = "SI|F(2, 80)\nW(1)\nR(2 60)\n"
+    told = set()
+    for name, begin, end in (("a", "", "\n"), ("b", "\ufeff", "\r\n")):
+        for kind, program in (("right", PROGRAM + "B(1, 50)\n"), ("wrong", wrong)):
+            text = begin + program.replace("\n", end)
+            Path(f"{kind}_{name}.ts").write_bytes(text.encode())
+        assert tsc("compile", f"right_{name}.ts").code == 0
+        done = tsc("check", f"wrong_{name}.ts")
+        assert done.code == 1
+        told.add(done.out + done.err)
+    assert Path("right_a.bin").read_bytes() == Path("right_b.bin").read_bytes()
+    assert len({each.replace("wrong_b", "wrong_a") for each in told}) == 1
+
+
+# -- outputs that are no terminal
+
+
+def encoded(said: str, encoding: str) -> str:
+    """Return what is read of a sentence that was written in an encoding."""
+    encodings.register()
+    return said.encode(encoding, encodings.NAME).decode(encoding)
+
+
+@pytest.mark.parametrize("encoding", ["cp1252", "cp850", "cp437"])
+def test_every_sentence_can_be_read_in_an_encoding_of_windows(encoding: str) -> None:
+    from tiniscript.wiring.texts import TEXTS
+
+    said = [each for table in tables() for both in table.values() for each in both]
+    said += [each for both in TEXTS.values() for each in both]
+    assert len(said) > 500
+    for each in said:
+        assert "\\u" not in encoded(each, encoding), each
+
+
+def test_signs_without_a_code_become_plain_ones() -> None:
+    assert encoded("10 kΩ − 5…", "cp850") == "10 kohm - 5..."
+    assert encoded("10 kΩ − 5…", "cp1252") == "10 kohm - 5…"
+    assert encoded("┤█│→", "cp1252") == "|#|>"
+    assert encoded("π", "cp1252") == "\\u03c0"
+    assert encoded("línea ñ", "cp850") == "línea ñ"
+
+
+@pytest.mark.parametrize("encoding", ["cp1252", "cp850"])
+def test_a_wiring_list_goes_through_a_pipe_of_windows(encoding: str) -> None:
+    environment = {"PYTHONPATH": str(ROOT / "compiler"), "PYTHONIOENCODING": encoding}
+    done = subprocess.run(
+        [sys.executable, "-m", "tiniscript", "wiring", "--lang", "es"],
+        capture_output=True, env=environment,
+    )  # fmt: skip
+    assert done.returncode == 0
+    said = done.stdout.decode(encoding)
+    assert "kohm" in said
+    assert "\\u" not in said
+
+
+# -- the system
+
+
+WITHOUT_UNIX = r"""
+import argparse, asyncio, json, os, platform, select, shlex, shutil, signal, socket, ssl, subprocess
+import sys, tempfile, threading, uuid, webbrowser
+import cobs.cobs, construct, platformdirs, rich.console, rich.live
+import serial.tools.list_ports, wasmtime, PIL.Image, bleak, zeroconf, rich.logging
+gone = ("termios", "tty", "pty", "fcntl", "readline", "pwd", "grp", "resource", "syslog")
+class Missing:
+    def find_spec(self, name, path=None, target=None):
+        if name in gone:
+            raise ModuleNotFoundError(name)
+sys.meta_path.insert(0, Missing())
+for name in gone:
+    sys.modules.pop(name, None)
+for name in ("SIGKILL", "SIGHUP", "SIGTSTP", "SIGCONT", "SIGUSR1", "SIGWINCH", "SIGPIPE"):
+    delattr(signal, name)
+for name in ("killpg", "fork", "getuid", "geteuid", "fchmod", "ttyname", "tcgetpgrp", "openpty",
+             "getpgrp", "O_NOFOLLOW", "O_NONBLOCK", "O_NOCTTY", "O_DIRECTORY"):
+    delattr(os, name)
+sys.platform = "win32"
+import pkgutil, importlib, tiniscript
+count = 0
+for each in pkgutil.walk_packages(tiniscript.__path__, "tiniscript."):
+    if each.name != "tiniscript.__main__" and "flash.vm_arduino" not in each.name:
+        importlib.import_module(each.name)
+        count += 1
+assert count > 200, count
+from tiniscript.cli import main
+commands = [
+    ["check", "prog.ts"], ["compile", "prog.ts", "-o", "prog.bin"], ["show", "prog.bin"],
+    ["run", "prog.ts"], ["fmt", "--check", "prog.ts"], ["explain", "TS012"],
+    ["wiring", "-o", "wiring.html"], ["board", "tinibot", "-o", "own.h"], ["help"],
+    ["lesson", "sheet", "1", "-o", "sheet.html"],
+]
+for words in commands:
+    code = main(words)
+    assert code == 0, (words, code)
+"""
+
+
+def test_nothing_but_unix_knows_unix(tmp_path: Path) -> None:
+    """Each module can be imported, and what needs no robot runs, without what Windows lacks."""
+    for needed in ("wasmtime", "PIL", "bleak", "zeroconf"):
+        pytest.importorskip(needed)
+    (tmp_path / "prog.ts").write_text(PROGRAM)
+    done = subprocess.run(
+        [sys.executable, "-c", WITHOUT_UNIX], cwd=tmp_path, capture_output=True, text=True,
+        env={"PYTHONPATH": str(ROOT / "compiler"), "HOME": str(tmp_path),
+             "PYTHONIOENCODING": "cp1252", "TINISCRIPT_DEBUG": "1"},
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "wiring.html").stat().st_size > 1000
+
+
+class Console(io.StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+def test_keys_come_from_the_console(monkeypatch: pytest.MonkeyPatch) -> None:
+    from tiniscript.cli.terminal.keys import Keys
+
+    waiting = list("bq")
+    console = ModuleType("msvcrt")
+    console.kbhit = lambda: bool(waiting)  # type: ignore[attr-defined]
+    console.getwch = lambda: waiting.pop(0)  # type: ignore[attr-defined]
+    monkeypatch.setattr(sys, "platform", "win32")
+    monkeypatch.setattr(sys, "stdin", Console())
+    monkeypatch.setitem(sys.modules, "msvcrt", console)
+    with Keys() as keys:
+        assert keys.pressed() == "bq"
+        assert keys.pressed() == ""
+        waiting += "\x03"
+        with pytest.raises(KeyboardInterrupt):
+            keys.pressed()
