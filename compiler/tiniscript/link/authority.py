@@ -9,10 +9,11 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple, Protocol
 
 from tiniscript.link import requests
-from tiniscript.link.messages import KEY_TEACHER, OWNED, STATUSES, YOURS
+from tiniscript.link.messages import KEY_TEACHER, OWNED, SEALS, STATUSES, YOURS
 from tiniscript.link.outcomes import UNKEPT
 from tiniscript.link.payloads import AuthenticateReply, EmptyReply
 from tiniscript.link.requests import OK, TAKEN, DeviceInfo, Exchange, Reply, Request
+from tiniscript.link.seal import Seal, session_key
 from tiniscript.link.siphash import siphash
 
 NOT_OWNER, WRONG_KEY, HOLD_BUTTON = (
@@ -68,18 +69,22 @@ def whose(robot: DeviceInfo) -> str:
 
 
 def show_keys(
-    ring: KeyRing | None, robot: int, nonce: int, epoch: Callable[[], int], which: int | None = None
+    ring: KeyRing | None,
+    robot: DeviceInfo,
+    nonce: int,
+    epoch: Callable[[], int],
+    which: int | None = None,
 ) -> Exchange[AuthenticateReply]:
     """Show a robot its keys, the teacher's first, until one is right; `which` alone if it is given.
 
     Then it is known of a pending key whether the robot has taken it.
     """
     found: Reply[AuthenticateReply] = Reply(NOT_OWNER)
-    keys = [] if ring is None else ring.of_robot(robot)
+    keys = [] if ring is None else ring.of_robot(robot.id)
     for each in sorted(keys, key=lambda each: (each.which != KEY_TEACHER, each.is_pending)):
         if which not in (None, each.which):
             continue
-        found = yield from _show(each, nonce, epoch)
+        found = yield from _show(each, robot, nonce, epoch)
         if ring is not None and each.is_pending and found.status == OK:
             ring.settle(each)
         if ring is not None and each.is_pending and found.status == WRONG_KEY:
@@ -89,13 +94,21 @@ def show_keys(
     return found
 
 
-def _show(key: RobotKey, nonce: int, epoch: Callable[[], int]) -> Exchange[AuthenticateReply]:
+def _show(
+    key: RobotKey, robot: DeviceInfo, nonce: int, epoch: Callable[[], int]
+) -> Exchange[AuthenticateReply]:
     ask = Request("AUTHENTICATE", {"which": key.which, "tag": b""})
     reply = yield from requests.patient(ask, AuthenticateReply)
     if reply.status != OK:
         return reply
-    text = reply.values.challenge + nonce.to_bytes(4, "little") + bytes([epoch(), key.which])
-    answer = Request("AUTHENTICATE", {"which": key.which, "tag": siphash(key.key, text)})
+    challenge = reply.values.challenge
+    text = challenge + nonce.to_bytes(4, "little") + bytes([epoch(), key.which])
+    seal = None
+    if robot.values.features & SEALS:
+        own = robot.values.nonce
+        seal = Seal(session_key(key.key, challenge, nonce, own, epoch(), key.which))
+    tag = siphash(key.key, text)
+    answer = Request("AUTHENTICATE", {"which": key.which, "tag": tag}, seal=seal)
     return (yield from requests.patient(answer, AuthenticateReply))
 
 

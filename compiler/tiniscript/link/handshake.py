@@ -66,7 +66,7 @@ class Handshake:
             self.robot = requests.described(reply.values)
             self._state.state = reply.values.state
             if reply.values.features & OWNED:
-                shown = yield from self._show_keys()
+                shown = yield from self.show_keys()
                 if shown.status == STATUSES["STALE"]:  # the robot was stopped meanwhile
                     return refused(shown)
                 return Reply(OK, 0, self.robot.values)
@@ -89,16 +89,16 @@ class Handshake:
             hello = yield from self.hello()
             if hello.status != OK:
                 return refused(hello)
-        shown = yield from self._show_keys()
+        shown = yield from self.show_keys()
         if shown.status != OK:
             return refused(reply if shown.status == NOT_OWNER else shown)
         return (yield from make())
 
-    def _show_keys(self, which: int | None = None) -> Exchange[AuthenticateReply]:
+    def show_keys(self, which: int | None = None) -> Exchange[AuthenticateReply]:
+        """Show the robot our keys of it; `which` alone if it is given."""
         assert self.robot
-        reply = yield from authority.show_keys(
-            self._keys, self.robot.id, self._nonce, self._epoch, which
-        )
+        keys, robot = self._keys, self.robot
+        reply = yield from authority.show_keys(keys, robot, self._nonce, self._epoch, which)
         if reply.status == OK:
             self._take_features(reply.values.features)
         return reply
@@ -114,7 +114,7 @@ class Handshake:
         assert self._keys is not None
         reply = yield from authority.claim(self._keys, self.robot, which)
         if reply.status == OK:
-            yield from self._show_keys()
+            yield from self.show_keys()
         return reply
 
     def disown(self, which: int) -> Exchange[EmptyReply]:
@@ -126,7 +126,7 @@ class Handshake:
 
     def hold_back(self) -> Exchange[EmptyReply]:
         """Stop the robot so that only the teacher's key, or its button, lets it go on."""
-        shown = yield from self._show_keys(KEY_TEACHER)
+        shown = yield from self.show_keys(KEY_TEACHER)
         if shown.status != OK:
             return refused(shown)
         return (yield from requests.single(Request("STOP"), EmptyReply))

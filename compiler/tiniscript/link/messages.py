@@ -14,7 +14,7 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 MAJOR = 1  # if it differs, robot and computer understand only each other's HELLO
-MINOR = 0  # grows with each added message
+MINOR = 1  # grows when messages, statuses or features are added
 
 LARGEST = 63  # bytes of a frame before COBS, so that its first byte on the wire is 0x40 at most
 TEXT_FROM = 0x41  # an item whose first byte is this or more is no frame
@@ -23,12 +23,14 @@ CRC_BYTES = 4
 PAYLOAD_BYTES = LARGEST - HEAD_BYTES - CRC_BYTES
 WINDOW = 1  # requests that a robot accepts before it has answered
 REPLY = 0x80  # flag of a type: sent to the computer
-SEALED = 0x40  # flag of a type: a counter and a MAC follow the payload. Reserved
+SEALED = 0x40  # flag of a type: a 0 and a counter before the payload, and a MAC behind it
 NAME_BYTES = 16
 TRIM_BYTES = 3
 KEY_BYTES = 16
 CHALLENGE_BYTES = 8
 TAG_BYTES = 8
+COUNTER_BYTES = 4
+SEALED_PAYLOAD_BYTES = PAYLOAD_BYTES - 1 - COUNTER_BYTES - TAG_BYTES
 
 STOP_BYTES = 8  # zeros that a computer sends to stop a robot
 STOP_RUN = 4  # zeros in a row that stop it
@@ -55,7 +57,7 @@ MODES = (
 # What a robot is able to do and who may drive it, in one number of the reply to HELLO. A robot whose
 # firmware is older has 0.
 TEXT_LEVEL, OWNERS, OWNED, TEXT_ALLOWED = 0x0003, 0x0010, 0x0020, 0x0040
-YOURS, BY_TEACHER = 0x0080, 0x0100
+YOURS, BY_TEACHER, SEALS = 0x0080, 0x0100, 0x0200
 FEATURES = (
     (TEXT_LEVEL, "TEXT_LEVEL", "Which level of text the robot reads, a number of the table below."),
     (OWNERS, "OWNERS", "The robot knows owners."),
@@ -63,6 +65,11 @@ FEATURES = (
     (TEXT_ALLOWED, "TEXT_ALLOWED", "Lines of text may drive it."),
     (YOURS, "YOURS", "This session has shown a key of the robot."),
     (BY_TEACHER, "BY_TEACHER", "It was the teacher's key."),
+    (
+        SEALS,
+        "SEALS",
+        "It seals what is said with a key, and takes nothing else from who has shown one.",
+    ),
 )
 # The keys of a robot: `which` of CLAIM and AUTHENTICATE.
 KEYS = (

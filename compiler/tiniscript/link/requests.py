@@ -18,7 +18,10 @@ from tiniscript.link.messages import (
     PAYLOAD_BYTES,
     RUN,
     SAVE,
+    SEALED_PAYLOAD_BYTES,
+    SEALS,
     STATUSES,
+    YOURS,
     Malformed,
     read,
 )
@@ -31,6 +34,7 @@ from tiniscript.link.payloads import (
     ReceiptReply,
     SentReply,
 )
+from tiniscript.link.seal import Seal
 from tiniscript.printable import printable
 
 OK = STATUSES["OK"]
@@ -46,11 +50,12 @@ assert SHORT_BYTES == PAYLOAD_BYTES - 1
 
 
 class Request(NamedTuple):
-    """`pause_ms` is how long to wait before it is sent."""
+    """`pause_ms` is how long to wait before it is sent; `seal` what its reply is sealed with."""
 
     name: str
     values: Mapping[str, int | bytes] = {}
     pause_ms: int = 0
+    seal: Seal | None = None
 
 
 T_co = TypeVar("T_co", covariant=True)
@@ -135,10 +140,21 @@ def single(request: Request, kind: type[T]) -> Exchange[T]:
     return Reply(OK, 0, values)
 
 
+def _payload_bytes(robot: DeviceInfo) -> int:
+    """Return how long a payload may be: less where frames are sealed."""
+    is_sealed = robot.values.features & (SEALS | YOURS) == SEALS | YOURS
+    return SEALED_PAYLOAD_BYTES if is_sealed else PAYLOAD_BYTES
+
+
+def short_bytes(robot: DeviceInfo) -> int:
+    """Return the most bytes of code that a frame to this robot has."""
+    return _payload_bytes(robot) - (PAYLOAD_BYTES - SHORT_BYTES)
+
+
 def live(code: bytes, is_latched: bool, kit: int, robot: DeviceInfo) -> Exchange[ReceiptReply]:
     """Run code once. If a stop has latched the robot, the latch is released for this run."""
-    if len(code) > SHORT_BYTES:
-        return Reply(STATUSES["TOO_LARGE"], SHORT_BYTES)
+    if len(code) > short_bytes(robot):
+        return Reply(STATUSES["TOO_LARGE"], short_bytes(robot))
     if kit not in (0, robot.kit):
         return Reply(STATUSES["WRONG_KIT"], robot.kit)
     if is_latched:
@@ -186,12 +202,12 @@ def upload(
         cleared = yield from clear()
         if cleared.status != OK:
             return refused(cleared)
-    is_short = len(image.code) <= SHORT_BYTES and image.isa == isa and not image.later
+    is_short = len(image.code) <= short_bytes(robot) and image.isa == isa and not image.later
     if is_short and is_its_kit:
         request = Request("PROGRAM", {"mode": mode, "code": image.code})
         reply = yield from patient(request, ReceiptReply)
     else:
-        reply = yield from _in_pieces(image, mode)
+        reply = yield from _in_pieces(image, mode, robot)
         if not is_its_kit and reply.status == RULES["NO_SUCH_DEVICE"][0]:
             return Reply(STATUSES["WRONG_KIT"], robot.kit)
     if reply.status == OK and reply.values.program != image.checksum:
@@ -199,7 +215,8 @@ def upload(
     return reply
 
 
-def _in_pieces(image: Image, mode: int) -> Exchange[ReceiptReply]:
+def _in_pieces(image: Image, mode: int, robot: DeviceInfo) -> Exchange[ReceiptReply]:
+    most = _payload_bytes(robot) - (PAYLOAD_BYTES - DATA_BYTES)
     header = {
         "mode": mode,
         "isa_major": image.isa[0],
@@ -213,7 +230,7 @@ def _in_pieces(image: Image, mode: int) -> Exchange[ReceiptReply]:
     rest = bytes([NEEDS]) + image.later + image.code  # the bytes after the checksum
     while reply.status == OK and reply.values.next < len(rest):
         at = reply.values.next
-        piece = rest[at : at + DATA_BYTES]
+        piece = rest[at : at + most]
         reply = yield from single(Request("DATA", {"offset": at, "bytes": piece}), NextReply)
     if reply.status != OK:
         return refused(reply)

@@ -13,12 +13,12 @@ from collections import deque
 from typing import Any, TypeVar
 
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
-from tiniscript.link import requests
-from tiniscript.link.authority import KeyRing
+from tiniscript.link.authority import NOT_OWNER, KeyRing
 from tiniscript.link.frames import Frame, decoded
 from tiniscript.link.messages import (
     BY_NAME,
     BY_NUMBER,
+    FIRST_ACTING,
     FIRST_EVENT,
     STATUSES,
     Malformed,
@@ -40,7 +40,6 @@ from tiniscript.link.payloads import (
     EVENTS,
     FaultEvent,
     NextReply,
-    PingReply,
     ReceiptReply,
     SentReply,
     StatusReply,
@@ -52,16 +51,17 @@ from tiniscript.link.requests import (
     DeviceInfo,
     Exchange,
     Reply,
-    Request,
     reply_of,
 )
-from tiniscript.link.session_requests import PendingExchange, SessionRequests
+from tiniscript.link.sealing import UNSEALED, Sealing
+from tiniscript.link.session_requests import Interrupted, PendingExchange, SessionRequests
 from tiniscript.link.stop_sequence import StopSequence
 from tiniscript.link.transmission import TRIES, Transmission
 
 HEARTBEAT_MS = 200  # between two frames while a program runs
 IDLE_HEARTBEAT_MS = 1000  # between two frames otherwise
 DEAF_MS = 3000  # a heartbeat without an answer for this time means that the link is lost
+MOST_SHOWN = 5  # times that a key is shown again for one request
 _STALE, _BUSY = STATUSES["STALE"], STATUSES["BUSY"]
 T = TypeVar("T")
 
@@ -91,6 +91,7 @@ class Session(SessionRequests):
         self._transmission = Transmission(baud)
         self._stop = StopSequence()
         self._sent_ms = 0  # time of the last transmission
+        self._sealing = Sealing()
 
     def stop(self, now_ms: int) -> None:
         """Stop the robot now, and cancel all exchanges.
@@ -136,6 +137,8 @@ class Session(SessionRequests):
                 self._events.append(TextEvent(item.data))
                 continue
             frame = decoded(item.data)
+            if frame is not None:
+                frame = self._sealing.opened(frame, self._transmission, now_ms)
             if frame is None:
                 self.damaged += 1
             elif not frame.is_reply:
@@ -154,10 +157,16 @@ class Session(SessionRequests):
         if not self._transmission.is_due(now_ms):
             return b""
         assert self._pending
+        seal = self._transmission.seal
+        if seal is not None and seal.is_spent:
+            self._show_again(now_ms)
+            return b""
         if self._transmission.tries >= TRIES or now_ms >= self._pending.deadline_ms:
             self._lose()
             return b""
         self._sent_ms = now_ms
+        if seal is not None:
+            self._sealing.sealed_ms = now_ms
         return self._transmission.sent(now_ms)
 
     def wakes_at(self) -> int | None:
@@ -190,8 +199,7 @@ class Session(SessionRequests):
             heartbeat_ms = self._heartbeat_ms()
             if heartbeat_ms is None or now_ms < self._sent_ms + heartbeat_ms:
                 return
-            ping = requests.single(Request("PING"), PingReply)
-            self._pending = PendingExchange(ping, DEAF_MS, is_own=True)
+            self._pending = PendingExchange(self._ping(), DEAF_MS, is_own=True)
         self._pending.deadline_ms = now_ms + self._pending.limit_ms
         self._advance(None, now_ms)
 
@@ -212,13 +220,48 @@ class Session(SessionRequests):
         except StopIteration as over:
             self._pending = None
             self._transmission.end()
-            self._finish(pending, over.value)
+            if pending.resumes is not None:
+                self._resume(pending.resumes, over.value, now_ms)
+            else:
+                self._finish(pending, over.value)
             return
         message = BY_NAME[request.name]
         self._seq = (self._seq + 1) & 0xFF
+        seal = self._sealing.of_request(request)
+        if seal is not None:
+            self._seq = self._sealing.numbered(self._seq)
         payload = written(message.request, request.values)
         frame = Frame(message.number, self._seq, self._epoch, payload)
-        self._transmission.begin(frame, now_ms + request.pause_ms)
+        self._transmission.begin(frame, now_ms + request.pause_ms, seal)
+
+    def _show_again(self, now_ms: int) -> None:
+        """The robot no longer knows our seal: show a key, then go on with the same request.
+
+        It has the same number, so the robot does nothing twice.
+        """
+        pending, frame = self._pending, self._transmission.frame
+        assert pending and frame
+        pending.shown += 1
+        self._sealing.seal = None
+        self._transmission.end()
+        if pending.shown > MOST_SHOWN:
+            self._advance(Reply(NOT_OWNER), now_ms)
+            return
+        self._pending = PendingExchange(self._handshake.show_keys(), is_own=pending.is_own)
+        self._pending.resumes = Interrupted(pending, frame)
+        self._pending.deadline_ms = pending.deadline_ms
+        self._advance(None, now_ms)
+
+    def _resume(self, interrupted: Interrupted, shown: Reply[Any], now_ms: int) -> None:
+        self._pending = interrupted.pending
+        if (
+            shown.status == OK
+            and self._sealing.seal is not None
+            and interrupted.frame.epoch == self._epoch
+        ):
+            self._transmission.begin(interrupted.frame, now_ms, self._sealing.seal)
+        else:
+            self._advance(Reply(shown.status or _STALE, shown.detail), now_ms)
 
     def _send_stop(self, now_ms: int) -> bytes:
         if not self._stop.is_due(now_ms):
@@ -232,9 +275,23 @@ class Session(SessionRequests):
 
     # -- what arrives -----------------------------------------------------------------------------
 
+    def _lose_seal(self, frame: Frame, now_ms: int) -> None:
+        """The robot does not know our seal. Anybody may say so: nothing is done twice for that."""
+        if frame.epoch == self._epoch:
+            self._show_again(now_ms)
+            return
+        self._epoch = frame.epoch  # it was stopped or restarted, or another session has begun
+        self._sealing.seal = None
+        self._handshake.is_open = False
+        self._cancel_waiting(_STALE)
+        self._advance(Reply(_STALE if frame.number >= FIRST_ACTING else NOT_OWNER), now_ms)
+
     def _take_reply(self, frame: Frame, now_ms: int) -> None:
         if not self._transmission.is_answered_by(frame):
             return  # a second answer
+        if self._transmission.seal is not None and not frame.is_sealed:
+            self._lose_seal(frame, now_ms)
+            return
         message = BY_NUMBER[frame.number]
         reply = reply_of(message.name, frame.payload)
         if reply is None:
@@ -246,6 +303,8 @@ class Session(SessionRequests):
                 self._cancel_waiting(_STALE)
         if reply.status == _STALE:
             self._handshake.is_open = False  # a new HELLO tells the robot's state
+        if message.name in UNSEALED and reply.status != OK:
+            self._sealing.seal = None
         if reply.status == OK:
             if message.name == "CLEAR":
                 self._state.clear()
@@ -260,7 +319,7 @@ class Session(SessionRequests):
 
     def _end(self) -> Exchange[StatusReply]:
         """Ask how a run has ended."""
-        reply = yield from requests.single(Request("STATUS"), StatusReply)
+        reply = yield from self._status()
         if reply.status == OK:
             self._events.append(EndedEvent(reply.values))
         return reply
@@ -304,6 +363,8 @@ class Session(SessionRequests):
         """Give up: the robot does not answer, or is busy."""
         pending, self._pending = self._pending, None
         assert pending
+        if pending.resumes is not None:
+            pending = pending.resumes.pending
         # a robot that answers, but is busy for too long, is not lost
         is_busy = pending.is_busy and self._transmission.tries <= 1
         self._transmission.end()
@@ -319,7 +380,8 @@ class Session(SessionRequests):
 
     def _cancel(self, status: int) -> None:
         if self._pending:
-            self._pending.outcome = Reply(status)
+            resumes = self._pending.resumes
+            (resumes.pending if resumes else self._pending).outcome = Reply(status)
         self._pending = None
         self._transmission.end()
         self._cancel_waiting(status)

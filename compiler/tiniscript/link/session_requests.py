@@ -6,12 +6,13 @@ Knows which exchange is made for which request. Knows no byte and no time.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 from tiniscript.bytecode.image import Image
 from tiniscript.link import requests
 from tiniscript.link.authority import KeyRing
 from tiniscript.link.connection import DEADLINE_MS, PendingRequest
+from tiniscript.link.frames import Frame
 from tiniscript.link.handshake import Handshake
 from tiniscript.link.payloads import (
     EmptyReply,
@@ -44,6 +45,15 @@ class PendingExchange(PendingRequest[T]):
         self.deadline_ms = 0
         self.is_own = is_own  # made by the session itself
         self.is_busy = False  # the robot's last answer was BUSY
+        self.shown = 0  # how often a key was shown again for it
+        self.resumes: Interrupted | None = None
+
+
+class Interrupted(NamedTuple):
+    """An exchange whose request goes on when a key was shown again."""
+
+    pending: PendingExchange[Any]
+    frame: Frame
 
 
 class SessionRequests:
@@ -67,10 +77,16 @@ class SessionRequests:
         return self._add(self._handshake.hello())
 
     def ping(self) -> PendingExchange[PingReply]:
-        return self._add(requests.single(Request("PING"), PingReply))
+        return self._add(self._ping())
 
     def status(self) -> PendingExchange[StatusReply]:
-        return self._add(requests.single(Request("STATUS"), StatusReply))
+        return self._add(self._status())
+
+    def _ping(self) -> Exchange[PingReply]:
+        return self._handshake.with_key(lambda: requests.single(Request("PING"), PingReply))
+
+    def _status(self) -> Exchange[StatusReply]:
+        return self._handshake.with_key(lambda: requests.single(Request("STATUS"), StatusReply))
 
     def clear(self) -> PendingExchange[EmptyReply]:
         return self._add(self._handshake.open_then(requests.clear))

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from tiniscript.link.frames import Frame, encoded
 from tiniscript.link.messages import BY_NAME, LARGEST
+from tiniscript.link.seal import Seal
 
 ROUND_MS = 120  # round trip through two radios and a robot, without the bytes
 RETRY_MS = 80  # added for each try,
@@ -18,11 +19,14 @@ class Transmission:
     def __init__(self, baud: int) -> None:
         self._baud = baud
         self.frame: Frame | None = None
+        self.seal: Seal | None = None
         self.tries = 0
         self.due_ms = 0  # when the frame is sent or repeated
 
-    def begin(self, frame: Frame, due_ms: int) -> None:
+    def begin(self, frame: Frame, due_ms: int, seal: Seal | None = None) -> None:
+        """Send a frame from then on: sealed anew, with a counter of its own, at each try."""
         self.frame = frame
+        self.seal = seal
         self.tries = 0
         self.due_ms = due_ms
 
@@ -40,7 +44,7 @@ class Transmission:
     def sent(self, now_ms: int) -> bytes:
         """Return the bytes to send now."""
         assert self.frame is not None
-        wire = encoded(self.frame)
+        wire = encoded(self.frame if self.seal is None else self.seal.closed(self.frame))
         wait_ms = ROUND_MS + RETRY_MS * min(self.tries, RETRY_STEPS)
         wait_ms += -(-(len(wire) + LARGEST + 2) * 10_000 // self._baud)
         # a 0x00 before a retry and before HELLO ends any partial item in the robot's receiver

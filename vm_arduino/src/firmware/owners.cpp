@@ -1,6 +1,7 @@
 // The robot's keys: implements what `port.h` says of them.
 
 #include "../link/has_owners.h"
+#include "../link/has_seals.h"
 #include "../link/port.h"
 #include "../store/layout.h"
 #include "keeping.h"
@@ -25,6 +26,7 @@ void read_owner() {
     features |= kTextAllowed;
   }
   port_identity().features = features | kOwners;
+  if (kHasSeals) port_identity().more_features |= kMoreSeals;
 }
 
 Answer port_key(uint8_t which, uint8_t* key) {

@@ -56,7 +56,7 @@ void Link::turn() {
   } else if (console_.is_due() || receiver_->has_text()) {
     talk();
   }
-  if (is_tethered_ && left_ms_[kListen] <= kListenMs - kTetherMs &&
+  if (is_tethered_ && tether_ms() <= kListenMs - kTetherMs &&
       port_status().state == State::kRunning) {
     port_stop(static_cast<uint8_t>(LinkFault::kLinkLost));
     faulted();
@@ -114,6 +114,7 @@ inline void Link::check() {
 
 // Answers a frame.
 tini_noinline void Link::hear() {
+  begin_request();
   if (is_ready_ && ahead_ + kCrcBytes == receiver_->length() && go_live()) {
     due_ |= kDueReply;
   } else if (!check_.is_whole()) {
@@ -121,10 +122,16 @@ tini_noinline void Link::hear() {
   } else {
     const uint8_t end = check_.decode(receiver_->bytes());
     if ((receiver_->bytes()[kTypeAt] & kReply) == 0) {  // otherwise it is an echo
-      left_ms_[kListen] = kListenMs;
-      console_.hang_up();
-      handle(end);
-      due_ |= kDueReply;
+      const uint8_t opened = open_seal(end);
+      if (opened == 0) {
+        damaged_++;  // forged, or sealed before another one
+      } else {
+        if (!has_seal() || is_sealed()) left_ms_[kListen] = kListenMs;
+        console_.hang_up();
+        handle(opened);
+        due_ |= kDueReply;
+        close_seal();
+      }
     }
   }
   is_ready_ = false;
@@ -133,22 +140,28 @@ tini_noinline void Link::hear() {
 
 // Whether a frame is the successor of the last numbered one.
 bool Link::is_next(uint8_t seq, uint8_t epoch) const {
+  if (is_sealed()) return is_open_ && epoch == epoch_;  // its counter has risen
   return is_open_ && epoch == epoch_ && static_cast<int8_t>(seq - last_.seq) > 0;
 }
 
 // Determines the answer to the frame whose payload ends at `end`.
 tini_noinline void Link::handle(uint8_t end) {
   const uint8_t* const bytes = receiver_->bytes();
-  const uint8_t type = bytes[kTypeAt];
+  const bool is_marked = may_seal() && (bytes[kTypeAt] & kSealed) != 0;
+  const uint8_t type = is_marked ? bytes[kTypeAt] & static_cast<uint8_t>(~kSealed) : bytes[kTypeAt];
   const uint8_t seq = bytes[kSeqAt];
   const uint8_t epoch = bytes[kEpochAt];
-  const uint8_t* const payload = bytes + kPayloadAt;
-  const uint8_t length = static_cast<uint8_t>(end - kPayloadAt);
+  const uint8_t payload_at = is_marked ? kSealedPayloadAt : kPayloadAt;
+  const uint8_t* const payload = bytes + payload_at;
+  const uint8_t length = static_cast<uint8_t>(end - payload_at);
   const bool is_hello = type == static_cast<uint8_t>(Message::kHello);
 
-  const bool is_known = seq == last_.seq && type == last_.number && epoch == last_epoch_;
-  if (is_open_ && is_known && !is_hello && type != static_cast<uint8_t>(Message::kStop)) {
-    said_ = last_;
+  Said& last = this->last();
+  uint8_t& last_epoch = this->last_epoch();
+  const bool is_known = seq == last.seq && type == last.number && epoch == last_epoch;
+  const bool is_repeat = is_known && is_marked == is_sealed();
+  if (is_open_ && is_repeat && !is_hello && type != static_cast<uint8_t>(Message::kStop)) {
+    said_ = last;
     return;
   }
   said_.number = type & static_cast<uint8_t>(~kSealed);
@@ -158,6 +171,11 @@ tini_noinline void Link::handle(uint8_t end) {
   Answer refusal = Answer::kOk;
   if ((type & kSealed) != 0) {
     refusal = Answer::kNotSealed;
+  } else if (is_marked && (is_hello || type == static_cast<uint8_t>(Message::kAuthenticate))) {
+    refusal = Answer::kNotSealed;  // they begin what a seal is made of
+  } else if (is_marked && !is_sealed()) {
+    if (type == static_cast<uint8_t>(Message::kStop)) halt(Cause::kMessage);
+    refusal = Answer::kNotOwner;
   } else if (type == 0 || type > kLastRequest) {
     refusal = Answer::kUnknownMessage;
   } else if (is_hello && length != 0 && payload[kHelloMajorAt] != kLinkMajor) {
@@ -176,9 +194,9 @@ tini_noinline void Link::handle(uint8_t end) {
     if (type >= kFirstActing) console_.drop();  // it may use the same memory
     said_.status = answer(static_cast<Message>(type), payload, length);
   }
-  if (is_next || (is_hello && said_.status == kIsFine)) {
-    last_ = said_;
-    last_epoch_ = epoch;
+  if ((is_next && keeps_answer(type)) || (is_hello && said_.status == kIsFine)) {
+    last = said_;
+    last_epoch = epoch;
   }
 }
 
@@ -200,7 +218,7 @@ uint8_t Link::answer(Message message, const uint8_t* payload, uint8_t length) {
       break;
     case Message::kStop:
       halt(Cause::kMessage);
-      if (kHasOwners && (port_identity().more_features & kMoreByTeacher) != 0) rights_ |= kHeldBack;
+      if (kHasOwners && may(is_teacher())) rights_ |= kHeldBack;
       break;
     case Message::kClear:
       found = clear();
@@ -257,7 +275,7 @@ uint8_t Link::answer(Message message, const uint8_t* payload, uint8_t length) {
 }
 
 Answer Link::clear() {
-  if ((rights_ & kHeldBack) != 0 && (port_identity().more_features & kMoreByTeacher) == 0) return Answer::kHeldBack;
+  if ((rights_ & kHeldBack) != 0 && !may(is_teacher())) return Answer::kHeldBack;
   rights_ &= static_cast<uint8_t>(~kHeldBack);
   port_release();
   return Answer::kOk;
@@ -269,10 +287,10 @@ Answer Link::set_trim(const uint8_t* payload, uint8_t length) {
 }
 
 uint8_t Link::hello(const uint8_t* payload) {
-  if (!is_open_ || !same_bytes(&nonce_, payload + kHelloNonceAt)) {
-    renew();
-    lapse();
-  }
+  const bool is_new = !is_open_ || !same_bytes(&nonce_, payload + kHelloNonceAt);
+  if (is_new) renew();
+  if (is_new || may_seal()) lapse();
+  if (is_new) forget_answer();
   is_open_ = true;
   copy_bytes(payload + kHelloNonceAt, reinterpret_cast<uint8_t*>(&nonce_), sizeof nonce_);
   isa_[0] = payload[kHelloIsaMajorAt];

@@ -11,8 +11,10 @@
 
 #include "console.h"
 #include "frames.h"
+#include "has_seals.h"
 #include "messages.h"
 #include "receiver.h"
+#include "seal.h"
 
 namespace tiniscript {
 
@@ -82,8 +84,12 @@ class Link {
   static constexpr uint8_t kDueText = 16;
 
   // Times that run down to 0: until a client without frames no longer counts as listening, until
-  // STOPPED is sent again, until a key may be shown again.
+  // STOPPED is sent again, until a key may be shown again; and, as `kListen`, since a sealed frame.
+#ifdef tiniscript_seals
+  enum Time : uint8_t { kListen, kAgain, kKeyPause, kSealHeard, kTimes };
+#else
   enum Time : uint8_t { kListen, kAgain, kKeyPause, kTimes };
+#endif
 
   // Rights of the session, one bit each: it has a challenge, it has asked for a claim, the button
   // has confirmed that. And the robot was stopped with the teacher's key.
@@ -132,10 +138,51 @@ class Link {
 
   // owners
   bool is_forbidden(uint8_t type) const;
+  bool may(bool has_right) const;
   Answer claim(const uint8_t* payload, uint8_t length);
   uint8_t authenticate(const uint8_t* payload, uint8_t length);
   Answer allow_text(const uint8_t* payload);
   Answer clear();
+
+  // seals: `link_seals.cpp`
+#ifdef tiniscript_seals
+  bool may_seal() const;
+  bool has_seal() const { return seal_.is_set(); }
+  // Whether the current request is sealed with it.
+  bool is_sealed() const { return is_sealed_; }
+  void begin_request() { is_sealed_ = is_reply_sealed_ = false; }
+  uint8_t open_seal(uint8_t end);
+  void close_seal();
+  void begin_seal(const uint8_t* key, uint8_t which);
+  void drop_seal() { seal_.drop(); }
+  bool keeps_answer(uint8_t type) const;
+  void forget_answer() { sealed_last_.number = 0; }
+  Said& last() { return is_sealed_ ? sealed_last_ : last_; }
+  uint8_t& last_epoch() { return is_sealed_ ? sealed_last_epoch_ : last_epoch_; }
+  uint16_t tether_ms() const { return left_ms_[is_run_sealed_ ? kSealHeard : kListen]; }
+  void note_run() { is_run_sealed_ = is_sealed_; }
+  uint8_t reply_mark() { return is_reply_sealed_ ? event_mark() : 0; }
+  uint8_t event_mark();
+  void seal_out() { size_ = seal_.close(out_, size_); }
+#else
+  static constexpr bool may_seal() { return false; }
+  static constexpr bool has_seal() { return false; }
+  static constexpr bool is_sealed() { return false; }
+  static void begin_request() {}
+  static uint8_t open_seal(uint8_t end) { return end; }
+  static void close_seal() {}
+  static void begin_seal(const uint8_t*, uint8_t) {}
+  static void drop_seal() {}
+  static constexpr bool keeps_answer(uint8_t) { return true; }
+  static void forget_answer() {}
+  Said& last() { return last_; }
+  uint8_t& last_epoch() { return last_epoch_; }
+  uint16_t tether_ms() const { return left_ms_[kListen]; }
+  static void note_run() {}
+  static constexpr uint8_t reply_mark() { return 0; }
+  static constexpr uint8_t event_mark() { return 0; }
+  static void seal_out() {}
+#endif
 
   // writing
   void send();
@@ -195,6 +242,14 @@ class Link {
   volatile uint8_t left_;  // bytes left to send
   // Large members come last: what lies near to the begin takes less code.
   Console console_;
+#ifdef tiniscript_seals
+  bool is_sealed_;       // the current request
+  bool is_reply_sealed_;
+  bool is_run_sealed_;   // the current or last run was started by a sealed request
+  uint8_t sealed_last_epoch_;
+  Said sealed_last_;     // the last reply to a sealed request
+  Seal seal_;
+#endif
   uint8_t challenge_[kChallengeBytes];
   uint8_t out_[kWireBytes];
 };

@@ -4,6 +4,7 @@
 #include "has_owners.h"
 #include "link.h"
 #include "port.h"
+#include "seal.h"
 #include "siphash.h"
 
 namespace tiniscript {
@@ -20,13 +21,6 @@ uint8_t number_of(Answer answer) { return static_cast<uint8_t>(answer); }
 
 bool has(uint8_t feature) { return (port_identity().features & feature) != 0; }
 
-// In constant time: how long it takes says nothing about the bytes.
-bool are_equal(const uint8_t* first, const uint8_t* second, uint8_t length) {
-  uint8_t differ = 0;
-  while (length-- != 0) differ = static_cast<uint8_t>(differ | (*first++ ^ *second++));
-  return differ == 0;
-}
-
 bool is_key(const uint8_t* key) {
   uint8_t found = 0;
   for (uint8_t k = 0; k < kKeyBytes; k++) found |= key[k];
@@ -37,15 +31,25 @@ bool is_key(const uint8_t* key) {
 
 // Whether a message needs authority that the session does not have.
 bool Link::is_forbidden(uint8_t type) const {
-  if (!kHasOwners || (port_identity().features & (kOwned | kYours)) != kOwned) return false;
+  if (!kHasOwners) return false;
+  if (has_seal()) {
+    if (is_sealed()) return false;
+  } else if ((port_identity().features & (kOwned | kYours)) != kOwned) {
+    return false;
+  }
   if (type < kFirstActing) return type == static_cast<uint8_t>(Message::kFetch);
   return type < static_cast<uint8_t>(Message::kClaim) ||
          type > static_cast<uint8_t>(Message::kIdentify);
 }
 
+// Whether who has sent the current frame has a right: with a seal only what is sealed has it.
+bool Link::may(bool has_right) const { return has_right && (!has_seal() || is_sealed()); }
+
 tini_noinline void Link::lapse() {
-  port_identity().features &= static_cast<uint8_t>(~kYours);
-  port_identity().more_features = 0;
+  Identity& its = port_identity();
+  its.features &= static_cast<uint8_t>(~kYours);
+  its.more_features = kHasSeals ? its.more_features & kMoreSeals : 0;
+  drop_seal();
   rights_ &= kHeldBack;
   is_ready_ = false;  // what was made ahead was made with that authority
 }
@@ -67,7 +71,7 @@ tini_noinline Answer Link::claim(const uint8_t* payload, uint8_t length) {
   Answer found = port_key(which, key);
   if (found != Answer::kOk) return found;
   const bool is_teachers = which == static_cast<uint8_t>(Key::kTeacher) && is_key(key);
-  const bool is_allowed = is_teachers ? port_identity().more_features != 0 : !has(kOwned) || has(kYours);
+  const bool is_allowed = is_teachers ? may(is_teacher()) : !has(kOwned) || may(has(kYours));
   const bool is_given = is_key(wanted);
   // A claim that is repeated because its answer was lost comes without authority.
   if (are_equal(key, wanted, kKeyBytes) && (is_given || is_allowed)) {
@@ -96,6 +100,7 @@ tini_noinline uint8_t Link::authenticate(const uint8_t* payload, uint8_t length)
   uint8_t text[kTagText];
   copy_bytes(challenge_, text, kChallengeBytes);
   if (length == kAuthenticateTagAt) {
+    if (may_seal()) lapse();  // a new seal replaces the one before
     copy_bytes(&port_identity().nonce, text + kChallengeBytes, sizeof(uint32_t));
     copy_bytes(&now_ms_, text + kChallengeBytes + sizeof(uint32_t), sizeof now_ms_);
     siphash(key, text, kChallengeText, challenge_);
@@ -119,7 +124,10 @@ tini_noinline uint8_t Link::authenticate(const uint8_t* payload, uint8_t length)
   }
   tries_ = 0;
   port_identity().features |= kYours;
-  if (which == static_cast<uint8_t>(Key::kTeacher)) port_identity().more_features = kMoreByTeacher;
+  if (which == static_cast<uint8_t>(Key::kTeacher)) {
+    port_identity().more_features |= kMoreByTeacher;
+  }
+  begin_seal(key, which);
   return kIsFine;
 }
 

@@ -210,6 +210,7 @@ void Link::finish(uint8_t mode, bool is_live) {
 void Link::start(uint8_t mode, bool is_live) {
   port_start(is_live);
   is_tethered_ = (mode & kDetached) == 0;
+  note_run();
 }
 
 }  // namespace tiniscript

@@ -88,7 +88,7 @@ void Link::send() {
 }
 
 void Link::reply() {
-  begin_frame(said_.number | kReply, said_.seq);
+  begin_frame(said_.number | kReply | reply_mark(), said_.seq);
   put(said_.status);
   if (said_.status != byte_of(Answer::kOk)) {
     put16(said_.detail);
@@ -159,11 +159,13 @@ void Link::describe() {
 
 void Link::fetch() {
   const uint16_t whole = port_image_length();
+  const uint8_t first = kHasSeals ? static_cast<uint8_t>(size_ - 1) : kPayloadAt;
+  const uint8_t most = kPayloadAt + kPayloadBytes - (first != kPayloadAt ? kTagBytes : 0);
   put16(whole);
-  for (uint16_t at = said_.detail; at < whole && size_ < kPayloadAt + kPayloadBytes; at++) {
+  for (uint16_t at = said_.detail; at < whole && size_ < most; at++) {
     const Answer found = port_image_byte(at, out_ + size_++);
     if (found != Answer::kOk) {
-      size_ = kPayloadAt;
+      size_ = first;
       put(byte_of(found));
       put16(0);
       return;
@@ -171,13 +173,15 @@ void Link::fetch() {
   }
 }
 
-void Link::begin_event(Message message) { begin_frame(byte_of(message) | kReply, event_seq_++); }
+void Link::begin_event(Message message) {
+  begin_frame(byte_of(message) | kReply | event_mark(), event_seq_++);
+}
 
 tini_noinline void Link::begin_frame(uint8_t type, uint8_t seq) {
   out_[kTypeAt] = type;
   out_[kSeqAt] = seq;
   out_[kEpochAt] = epoch_;
-  size_ = kPayloadAt;
+  size_ = kHasSeals && (type & kSealed) != 0 ? kSealedPayloadAt : kPayloadAt;
 }
 
 tini_noinline void Link::put(uint8_t byte) { out_[size_++] = byte; }
@@ -193,6 +197,7 @@ tini_noinline void Link::put_all(const void* bytes, uint8_t length) {
 }
 
 void Link::close() {
+  if (kHasSeals && (out_[kTypeAt] & kSealed) != 0) seal_out();
   size_ = encode_frame(out_, size_);
   hand_over();
 }

@@ -15,7 +15,7 @@
 namespace tiniscript {
 
 constexpr uint8_t kLinkMajor = 1;
-constexpr uint8_t kLinkMinor = 0;
+constexpr uint8_t kLinkMinor = 1;
 constexpr uint8_t kLargestFrame = 63;
 constexpr uint8_t kTextFrom = 65;
 constexpr uint8_t kHeadBytes = 3;
@@ -60,6 +60,7 @@ constexpr uint8_t kOwned = 32;
 constexpr uint8_t kTextAllowed = 64;
 constexpr uint8_t kYours = 128;
 constexpr uint16_t kByTeacher = 256;
+constexpr uint16_t kSeals = 512;
 
 enum class Message : uint8_t {
   kHello = 1,  // Begins a session. The same `nonce` again is the same session.

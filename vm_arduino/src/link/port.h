@@ -14,14 +14,15 @@ namespace tiniscript {
 // Sent as it lies in memory: little-endian, without padding.
 #define tini_packed __attribute__((packed))
 
-// The robot's identity. `features` has kTextLevel and the other bits: the link sets those that say who
-// may drive. `nonce` changes with each reset.
+// The robot's identity. `features` has kTextLevel and the other bits: the link sets those that say
+// who may drive. `nonce` changes with each reset.
 struct tini_packed Identity {
   uint16_t kit;
   uint32_t id;
   uint32_t nonce;
   uint8_t features;
-  uint8_t more_features;  // kByTeacher is here alone: two bytes take less code than a number of both
+  uint8_t more_features;  // kByTeacher and kSeals are here: two bytes take less code than a number
+                          // of both
   Reset reset;
 };
 
@@ -57,6 +58,7 @@ struct tini_packed Trim {
 constexpr uint8_t kFaultBytes = 7;     // of a RobotStatus, from `fault` on
 constexpr uint8_t kFeaturesBytes = 2;  // of an Identity, from `features` on
 constexpr uint8_t kMoreByTeacher = kByTeacher >> 8;
+constexpr uint8_t kMoreSeals = kSeals >> 8;
 
 // The number of devices of the kit, and the robot's name.
 struct DeviceInfo {
@@ -138,6 +140,9 @@ uint16_t port_image_length();
 // Puts a byte of the image that the robot holds into `*byte`. kBusy or kLowSupply if it is not
 // available now: the link reports this, and the client tries again.
 Answer port_image_byte(uint16_t offset, uint8_t* byte);
+
+// Whether the client that is connected has shown the teacher's key.
+inline bool is_teacher() { return (port_identity().more_features & kMoreByTeacher) != 0; }
 
 // Whether lines of text may drive the robot.
 inline bool text_may_drive() {

@@ -1,0 +1,64 @@
+"""The seal of a session: a key that both ends have derived, and a counter for each direction.
+
+Knows the bytes of a sealed frame, and no message. `docs/link.md` says why they are so. The C++
+version is `vm_arduino/src/link/seal.cpp`.
+"""
+
+from __future__ import annotations
+
+from hmac import compare_digest
+
+from tiniscript.link.frames import Frame
+from tiniscript.link.messages import COUNTER_BYTES, REPLY, SEALED, TAG_BYTES
+from tiniscript.link.siphash import siphash
+
+LAST = (1 << 8 * COUNTER_BYTES) - 1
+_BEFORE = 1 + COUNTER_BYTES  # bytes before the payload
+
+
+def session_key(
+    key: bytes, challenge: bytes, nonce: int, robot_nonce: int, epoch: int, which: int
+) -> bytes:
+    """Derive the key of a seal from a key of the robot and what both have said: 16 bytes."""
+    nonces = nonce.to_bytes(4, "little") + robot_nonce.to_bytes(4, "little")
+    origin = challenge + nonces + bytes([epoch, which])
+    return siphash(key, b"\1" + origin) + siphash(key, b"\2" + origin)
+
+
+class Seal:
+    def __init__(self, key: bytes) -> None:
+        self._key = key
+        self.sent = 0  # the last counter to the robot
+        self.heard = 0  # the last one from it
+
+    def __repr__(self) -> str:  # a key is in no message
+        return f"Seal({self.sent}, {self.heard})"
+
+    @property
+    def is_spent(self) -> bool:
+        """Whether no further frame may be sealed: a counter is never used twice."""
+        return self.sent >= LAST
+
+    def closed(self, frame: Frame) -> Frame:
+        """Return a frame with the next counter and its MAC, ready to be encoded."""
+        assert not self.is_spent
+        self.sent += 1
+        payload = b"\0" + self.sent.to_bytes(COUNTER_BYTES, "little") + frame.payload
+        whole = frame._replace(payload=payload, is_sealed=True)
+        return whole._replace(payload=payload + self._mac(whole))
+
+    def opened(self, frame: Frame) -> Frame | None:
+        """Return what a sealed frame of the robot says, or None if it is not its next one."""
+        if not (frame.is_sealed and frame.is_reply) or len(frame.payload) < _BEFORE + TAG_BYTES:
+            return None
+        payload, mac = frame.payload[:-TAG_BYTES], frame.payload[-TAG_BYTES:]
+        counter = int.from_bytes(payload[1:_BEFORE], "little")
+        is_right = compare_digest(self._mac(frame._replace(payload=payload)), mac)
+        if not is_right or payload[0] != 0 or counter <= self.heard:
+            return None
+        self.heard = counter
+        return frame._replace(payload=payload[_BEFORE:])
+
+    def _mac(self, frame: Frame) -> bytes:
+        kind = frame.number | REPLY * frame.is_reply | SEALED
+        return siphash(self._key, bytes((kind, frame.seq, frame.epoch)) + frame.payload)

@@ -1,0 +1,54 @@
+"""Which requests of a session are sealed, and which frames of the robot it believes.
+
+Knows no exchange. `seal` knows the bytes of a sealed frame.
+"""
+
+from __future__ import annotations
+
+from tiniscript.link.authority import NOT_OWNER
+from tiniscript.link.frames import Frame
+from tiniscript.link.messages import AUTHORITY_MS, FIRST_EVENT
+from tiniscript.link.requests import OK, Request
+from tiniscript.link.seal import Seal
+from tiniscript.link.transmission import Transmission
+
+UNSEALED = ("HELLO", "AUTHENTICATE")  # a seal is made of what they say
+
+
+class Sealing:
+    """`seal` is what requests are sealed with; `sealed_ms` is when that was last done."""
+
+    def __init__(self) -> None:
+        self.seal: Seal | None = None
+        self.sealed_ms = 0
+        self._seq: int | None = None
+
+    def of_request(self, request: Request) -> Seal | None:
+        """Return what a request is sealed with. HELLO and AUTHENTICATE end a seal."""
+        if request.name not in UNSEALED:
+            return self.seal
+        self.seal = request.seal
+        return None
+
+    def numbered(self, seq: int) -> int:
+        """Return the number of a sealed request: not that of the last one, or it would be that."""
+        self._seq = (seq + (seq == self._seq)) & 0xFF
+        return self._seq
+
+    def opened(self, frame: Frame, sent: Transmission, now_ms: int) -> Frame | None:
+        """Return what a frame says, or None if it need not be the robot's.
+
+        A robot that has not heard our seal for some time has dropped it, and says so without one.
+        """
+        if frame.is_sealed:
+            return self.seal.opened(frame) if self.seal else None
+        if not frame.is_reply or self.seal is None:
+            return frame
+        if frame.number >= FIRST_EVENT:
+            is_believed = now_ms - self.sealed_ms >= AUTHORITY_MS
+        elif sent.is_answered_by(frame):
+            status = frame.payload[0] if frame.payload else OK
+            is_believed = status == NOT_OWNER if sent.seal else status != OK
+        else:
+            is_believed = True  # a second answer to what was not sealed: nothing follows from it
+        return frame if is_believed else None

@@ -1,0 +1,23 @@
+// Whether this robot seals frames. A Mega can, where it is built with tiniscript_with_seals; an Uno and a
+// Nano have no room. All other chips do, unless tiniscript_without_seals.
+
+#ifndef TINISCRIPT_LINK_HAS_SEALS_H_
+#define TINISCRIPT_LINK_HAS_SEALS_H_
+
+#include "has_owners.h"
+
+#if (defined(tiniscript_with_seals) || !defined(__AVR__)) && !defined(tiniscript_without_seals)
+#define tiniscript_seals
+#endif
+
+namespace tiniscript {
+
+#ifdef tiniscript_seals
+constexpr bool kHasSeals = kHasOwners;
+#else
+constexpr bool kHasSeals = false;
+#endif
+
+}  // namespace tiniscript
+
+#endif  // TINISCRIPT_LINK_HAS_SEALS_H_

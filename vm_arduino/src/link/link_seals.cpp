@@ -1,0 +1,67 @@
+// Sealed frames: which ones the robot takes, and which of its own it seals. `docs/link.md` says why.
+
+#include "has_seals.h"
+#include "link.h"
+#include "port.h"
+
+namespace tiniscript {
+
+#ifdef tiniscript_seals
+
+namespace {
+
+constexpr uint8_t kIsFine = static_cast<uint8_t>(Answer::kOk);
+
+uint8_t number_of(Message message) { return static_cast<uint8_t>(message); }
+
+}  // namespace
+
+bool Link::may_seal() const { return (port_identity().more_features & kMoreSeals) != 0; }
+
+// Returns where the payload ends of the request in a frame that ends at `end`, or 0: a frame whose seal
+// is wrong is not answered. STOP is taken from anybody.
+uint8_t Link::open_seal(uint8_t end) {
+  const uint8_t* const bytes = receiver_->bytes();
+  const uint8_t type = bytes[kTypeAt];
+  if ((type & kSealed) == 0 || !may_seal()) return end;
+  is_sealed_ = seal_.open(bytes, end);
+  if (is_sealed_) {
+    left_ms_[kSealHeard] = kListenMs;
+    return static_cast<uint8_t>(end - kTagBytes);
+  }
+  const bool is_stop = type == (number_of(Message::kStop) | kSealed);
+  return is_stop || !seal_.is_set() ? kSealedPayloadAt : 0;
+}
+
+// The request is answered: its reply is sealed as it was, and that to the right tag with the new seal.
+void Link::close_seal() {
+  const bool is_tag = said_.number == number_of(Message::kAuthenticate) &&
+                      said_.status == kIsFine && (rights_ & kHasChallenge) == 0;
+  is_reply_sealed_ = is_sealed_ || is_tag;
+  is_sealed_ = false;
+  if (!seal_.is_set()) left_ms_[kListen] = kListenMs;  // what has dropped it was heard
+}
+
+void Link::begin_seal(const uint8_t* key, uint8_t which) {
+  if (!may_seal()) return;
+  const SealOrigin origin = {challenge_, nonce_, port_identity().nonce, epoch_, which};
+  seal_.begin(key, origin);
+}
+
+// While there is a seal no stranger changes what the robot remembers of its last request.
+bool Link::keeps_answer(uint8_t type) const {
+  if (!seal_.is_set() || is_sealed_) return true;
+  return type == number_of(Message::kAuthenticate) && said_.status == kIsFine;
+}
+
+// The mark in the type of a frame to the computer. Where the counter is at its end, authority is, too.
+uint8_t Link::event_mark() {
+  if (!seal_.is_set()) return 0;
+  if (seal_.may_close()) return kSealed;
+  lapse();
+  return 0;
+}
+
+#endif
+
+}  // namespace tiniscript

@@ -1,0 +1,74 @@
+#include "seal.h"
+
+#include "../vm/small.h"
+#include "has_seals.h"
+#include "siphash.h"
+
+namespace tiniscript {
+
+bool are_equal(const uint8_t* first, const uint8_t* second, uint8_t length) {
+  uint8_t differ = 0;
+  while (length-- != 0) differ = static_cast<uint8_t>(differ | (*first++ ^ *second++));
+  return differ == 0;
+}
+
+#ifdef tiniscript_seals
+
+namespace {
+
+// A label and the origin: no other hash under the robot's keys is of so many bytes.
+constexpr uint8_t kLabelAt = 0;
+constexpr uint8_t kChallengeAt = 1;
+constexpr uint8_t kNonceAt = kChallengeAt + kChallengeBytes;
+constexpr uint8_t kRobotNonceAt = kNonceAt + sizeof(uint32_t);
+constexpr uint8_t kOriginEpochAt = kRobotNonceAt + sizeof(uint32_t);
+constexpr uint8_t kOriginWhichAt = kOriginEpochAt + 1;
+constexpr uint8_t kOriginBytes = kOriginWhichAt + 1;
+
+static_assert(kKeyBytes == 2 * kHashBytes, "a key is two hashes");
+static_assert(kTagBytes == kHashBytes, "a MAC is a hash");
+
+}  // namespace
+
+void Seal::begin(const uint8_t* key, const SealOrigin& origin) {
+  uint8_t text[kOriginBytes];
+  copy_bytes(origin.challenge, text + kChallengeAt, kChallengeBytes);
+  copy_bytes(&origin.nonce, text + kNonceAt, sizeof origin.nonce);
+  copy_bytes(&origin.robot_nonce, text + kRobotNonceAt, sizeof origin.robot_nonce);
+  text[kOriginEpochAt] = origin.epoch;
+  text[kOriginWhichAt] = origin.which;
+  text[kLabelAt] = 1;
+  siphash(key, text, kOriginBytes, key_);
+  text[kLabelAt] = 2;
+  siphash(key, text, kOriginBytes, key_ + kHashBytes);
+  heard_ = sent_ = 0;
+  is_set_ = true;
+}
+
+void Seal::drop() {
+  is_set_ = false;
+  for (uint8_t& byte : key_) byte = 0;
+}
+
+bool Seal::open(const uint8_t* bytes, uint8_t end) {
+  if (!is_set_ || end < kSealedPayloadAt + kTagBytes || bytes[kSealZeroAt] != 0) return false;
+  const uint8_t behind = static_cast<uint8_t>(end - kTagBytes);
+  uint8_t mac[kTagBytes];
+  siphash(key_, bytes + kTypeAt, static_cast<uint8_t>(behind - kTypeAt), mac);
+  const uint32_t counter = get32(bytes + kCounterAt);
+  if (!are_equal(mac, bytes + behind, kTagBytes) || counter <= heard_) return false;
+  heard_ = counter;
+  return true;
+}
+
+uint8_t Seal::close(uint8_t* bytes, uint8_t end) {
+  sent_++;
+  bytes[kSealZeroAt] = 0;
+  copy_bytes(&sent_, bytes + kCounterAt, sizeof sent_);
+  siphash(key_, bytes + kTypeAt, static_cast<uint8_t>(end - kTypeAt), bytes + end);
+  return static_cast<uint8_t>(end + kTagBytes);
+}
+
+#endif
+
+}  // namespace tiniscript
