@@ -2,7 +2,7 @@
 
 #include <Arduino.h>  // declares setup() and loop()
 
-#include "../vm/flags.h"
+#include "../../vm/flags.h"
 #include "attention.h"
 #include "watchdog.h"
 
