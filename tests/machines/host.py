@@ -193,14 +193,14 @@ def built_by(
     texts = {path: path.name.encode() + path.read_bytes() for path in inputs}
     headers = [text for path, text in texts.items() if path.suffix == ".h"]
     objects = [
-        str(_made(compiler, builds, ".o", flags, [*headers, text], ["-c", str(path)]))
+        str(made(compiler, builds, ".o", flags, [*headers, text], ["-c", str(path)]))
         for path, text in texts.items()
         if path.suffix == ".cpp"
     ]
-    return _made(compiler, builds, "", flags, [name.encode() for name in objects], objects)
+    return made(compiler, builds, "", flags, [name.encode() for name in objects], objects)
 
 
-def _made(
+def made(
     compiler: str, builds: Path, suffix: str, flags: Sequence[str], made_from: Iterable[bytes],
     words: list[str],
 ) -> Path:  # fmt: skip

@@ -88,9 +88,11 @@ def test_shipped_headers_are_for_every_board_that_they_fit() -> None:
         ("tinibot", ["uno", "nano", "mega"]),
         ("liner", ["nano", "mega"]),
         ("grabber", ["mega"]),
+        ("tinibot32", ["esp32dev"]),
+        ("tinibotc3", ["esp32c3"]),
     ):
         found = []
-        for board in AVRS:
+        for board in firmware.BOARDS:
             try:
                 found.append(wired(board, name))
             except ProfileRefused:
@@ -188,23 +190,28 @@ def test_board_speaks_the_language_of_the_command(tsc: Tsc) -> None:
     assert "spanish" not in tsc("board", "liner", "--lang", "en").out
 
 
-def test_board_refuses_what_has_no_firmware(tsc: Tsc, tmp_path: Path) -> None:
-    pins = {"= 2 ": "= 4 ", "= 11 ": "= 22 ", "= 13 ": "= 23 ", "= 12 ": "= 39 ", "= 5\n": "= 25\n",
-            "= 7\n": "= 26\n", "= 8\n": "= 27\n", "= 6\n": "= 32\n", "= 9\n": "= 33\n",
-            "= 10\n": "= 21\n", '"A0"': "34", '"A1"': "35", "= 4\n": "= 18\n",
-            "= 3\n": "= 19\n", '"uno"': '"esp32dev"'}  # fmt: skip
-    text = TEXTS["tinibot"]
-    for old, new in pins.items():
-        text = text.replace(old, new)
-    profile = tmp_path / "mine.toml"
-    profile.write_text(text, encoding="utf-8")
-    done = tsc("board", profile)
-    assert done.code == 2
-    assert done.err == (
-        "tsc: there is no firmware for the board esp32dev yet. There is for: uno, nano, mega.\n"
-    )
+def test_board_refuses_what_it_cannot_read(tsc: Tsc) -> None:
     assert tsc("board").code == 2
     assert tsc("board", "nobody").code == 2
+
+
+def test_every_board_has_firmware() -> None:
+    """Where one has none, `tsc board` and `tsc wiring` say so."""
+    assert set(firmware.BOARDS) == set(CHIPS)
+
+
+def test_the_header_of_an_esp32(tsc: Tsc) -> None:
+    said = tsc("board", "tinibotc3").out
+    for line in (
+        "#if defined(CONFIG_IDF_TARGET_ESP32C3)  // esp32c3",
+        "#define tiniscript_motors_two_wire",
+        "#define tiniscript_ultrasonics",
+        "constexpr Pwm kBuzzer = {{18}, 0};",
+        "constexpr TwoWire kLeftMotor = {{{3}, 2}, {{4}, 3}};",  # a channel each, from an even one
+        "  return {{7}, {{10}}};",
+    ):
+        assert line in said.splitlines()
+    assert "kPort" not in said and "ultrasonic_vectors" not in said
 
 
 # -- the Arduino IDE's own builder

@@ -213,6 +213,42 @@ def test_pins_of_an_esp32(old: str, pin: int, code: str) -> None:
         assert said.endswith(" 2, 4, 13, 16, 17, 18, 19, 21, 22, 23, 25, 26, 27, 32, 33.")
 
 
+C3 = TEXTS["tinibotc3"]
+
+
+@pytest.mark.parametrize(("old", "pin", "code"), [
+    *(("right_backward = 6", pin, "pin_at_boot") for pin in (2, 9, 19)),
+    *(("right_backward = 6", pin, "no_such_pin") for pin in range(11, 18)),
+    *(("right_backward = 6", pin, "pin_of_link") for pin in (20, 21)),
+    ("pin = 0", 2, ""),
+    *(("pin = 0", pin, "pin_cannot") for pin in (9, 19)),
+])  # fmt: skip
+def test_pins_of_an_esp32_c3(old: str, pin: int, code: str) -> None:
+    """What it does at a reset starts no motor; flash, link and ADC2 are what they are."""
+    key, _, number = old.partition(" = ")
+    text = C3.replace(f"{key} = {number}\n", f"{key} = {pin}\n")
+    assert text != C3
+    if code:
+        assert codes(refusal(text)) == [code]
+    else:
+        assert read(text, "test").board.chip == "esp32c3"
+
+
+def test_pwm_of_an_esp32_c3() -> None:
+    """Three timers, for two pins of one frequency each: a fan beside four motor pins has none."""
+    before, mark, after = C3.partition("[board.sensors.LIGHT_R]")
+    text = before + FAN.format(pin=19) + mark + after
+    refused = refusal(text)
+    assert codes(refused) == ["timers_used_up"]
+    assert describe(refused, "en")[0].startswith("board.actuators.FAN.pin is pin 19: its PWM needs")
+    for old, new in (("two_wire", "l298n"), ("left_forward = 3", "left_pwm = 3\nleft_forward = 19"),
+                     ("right_forward = 5", "right_pwm = 5\nright_forward = 2")):  # fmt: skip
+        text = text.replace(old, new)
+    assert "pin_at_boot" in codes(refusal(text)), "direction pins need no timer"
+    dev = TEXTS["tinibot32"].partition("[board.sensors.LIGHT_R]")
+    assert read(dev[0] + FAN.format(pin=22) + dev[1] + dev[2], "test").board.actuators
+
+
 @pytest.mark.parametrize("pin", [0, 5, 12, 14, 15])
 def test_what_is_no_motor_may_be_on_such_a_pin(pin: int) -> None:
     text = TEXTS["tinibot"]
@@ -222,7 +258,7 @@ def test_what_is_no_motor_may_be_on_such_a_pin(pin: int) -> None:
 
 
 def test_every_code_has_a_test() -> None:
-    of_files = {"no_such_robot", "pin_at_boot", *(code for code, *_ in FILES)}
+    of_files = {"no_such_robot", "pin_at_boot", "timers_used_up", *(code for code, *_ in FILES)}
     tested = of_files | {code for code, *_ in REFUSED}
     assert tested == {code for code in SENTENCES if not code.endswith("/near")}
 
@@ -314,7 +350,8 @@ def test_a_wrong_name_gets_the_nearest_one() -> None:
     with pytest.raises(ProfileRefused) as caught:
         robots.load("Tinybot")
     assert describe(caught.value, "es") == [
-        "No hay un robot Tinybot. ¿Quisiste decir tinibot? Los robots son: tinibot, grabber, liner."
+        "No hay un robot Tinybot. ¿Quisiste decir tinibot? Los robots son: tinibot, grabber, liner, tinibot32,"
+        " tinibotc3."
     ]
     for name in ("", "zzz", "\0", "💥", "{path}"):
         with pytest.raises(ProfileRefused) as caught:

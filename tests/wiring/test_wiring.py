@@ -130,7 +130,8 @@ def test_every_pin_of_the_board_is_in_the_table_and_in_the_drawing(
 ) -> None:
     plan = plan_of(robot, language)
     chip = plan.chip
-    names = {chip.pin_name(pin) for pin in pins_of(robot) | set(chip.link_pins)}
+    link = set(chip.link_pins) if plan.has_radio else set()
+    names = {chip.pin_name(pin) for pin in pins_of(robot) | link}
     assert {row[1] for row in wire_rows(plan)[1:]} == names
     shown = [text.split(" ")[0] for text in texts_of(drawing_of(plan))]
     assert names <= set(shown)
@@ -373,24 +374,7 @@ def test_the_command_writes_a_page(tsc: Tsc, tmp_path: Path) -> None:
     assert tsc("wiring", "-o", "-").out == page.read_text(encoding="utf-8")
 
 
-def test_what_cannot_be_drawn_or_written_is_said(tsc: Tsc, tmp_path: Path) -> None:
-    text = (Path(robots.__file__).parent / "tinibot.toml").read_text(encoding="utf-8")
-    text = (
-        text.replace('chip = "uno"', 'chip = "esp32dev"')
-        .replace('"A0"', "32")
-        .replace('"A1"', "33")
-    )
-    for old, new in (("_pwm = 6", "_pwm = 16"), ("_pwm = 5", "_pwm = 27"),
-                     ("forward = 7", "forward = 17"), ("= 8", "= 18"),
-                     ("= 9\n", "= 19\n"), ("= 10\n", "= 21\n"), ("buzzer = 11", "buzzer = 22"),
-                     ("led = 13", "led = 23"), ("echo = 3", "echo = 25"),
-                     ("state = 12", "state = 26")):  # fmt: skip
-        text = text.replace(old, new)
-    profile = tmp_path / "mine.toml"
-    profile.write_text(text, encoding="utf-8")
-    done = tsc("wiring", "--robot", profile)
-    assert done.code == 2
-    assert "no firmware for the board esp32dev" in done.err
+def test_what_cannot_be_written_is_said(tsc: Tsc, tmp_path: Path) -> None:
     for arguments, sentence in (
         (("-o", tmp_path / "no" / "page.html"), "cannot be written"),
         (("--robot", "tinybot"), "Did you mean tinibot?"),

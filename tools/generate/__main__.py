@@ -18,7 +18,6 @@ sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tiniscript.bytecode import image, opcodes, verify
 from tiniscript.robots import firmware
-from tiniscript.robots.ports import AVRS
 from tiniscript.robots.profile import LANGUAGES, ProfileRefused, Robot
 from tiniscript.robots.reader import read
 from tiniscript.robots.refusals import describe
@@ -253,7 +252,7 @@ def robot_header(path: Path) -> str:
     """Return the header of a robot's firmware, for all the boards that its profile fits."""
     text = path.read_text(encoding="utf-8")
     wired: list[Robot] = []
-    for board in AVRS:
+    for board in firmware.BOARDS:
         try:
             wired.append(read(text, path.stem, board))
         except ProfileRefused:

@@ -80,6 +80,16 @@ inline const Kit& liner() {
   return found;
 }
 
+inline const Kit& tinibot32() {
+  static const Kit found = {{{"LIGHT_R", false, 0, 1023000, 8169}, {"LIGHT_L", false, 0, 1023000, 65451}, {"DISTANCE", false, 0, 400000, 2336}}, {}};
+  return found;
+}
+
+inline const Kit& tinibotc3() {
+  static const Kit found = {{{"LIGHT_R", false, 0, 1023000, 8169}, {"LIGHT_L", false, 0, 1023000, 65451}, {"DISTANCE", false, 0, 400000, 2336}}, {}};
+  return found;
+}
+
 inline const Kit& eight() {
   static const Kit found = {{{"S0", false, 0, 1000000, 4669}, {"S1", false, 0, 1000000, 10619}, {"S2", false, 0, 1000000, 25777}, {"S3", false, 0, 1000000, 24567}, {"S4", false, 0, 1000000, 63844}, {"S5", false, 0, 1000000, 49698}, {"S6", false, 0, 1000000, 36840}, {"S7", false, 0, 1000000, 46254}}, {{"A0", false, 0, 1000000, 40561}, {"A1", false, 0, 1000000, 42295}, {"A2", false, 0, 1000000, 59645}, {"A3", false, 0, 1000000, 54203}, {"A4", false, 0, 1000000, 29992}, {"A5", false, 0, 1000000, 20078}, {"A6", false, 0, 1000000, 932}, {"A7", false, 0, 1000000, 14562}}};
   return found;

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 from tiniscript.kit import Device, Kit
 from tiniscript.robots.boards import AT_STOP, BAUDS, CHIPS, DRIVERS, Chip, Setting, drivers_for
+from tiniscript.robots.ledc import FREQUENCIES, timers_of
 from tiniscript.robots.profile import LANGUAGES, Board, Wiring
 from tiniscript.robots.refusals import shown
 from tiniscript.robots.toml_table import Table
@@ -71,6 +72,8 @@ class Pins:
         """Complain about every PWM pin whose timer is taken by servos or the buzzer."""
         if self._chip is None:
             return
+        if self._chip.pwm_timers:
+            return self._check_frequencies(self._chip)
         owners = {"servo": self._chip.servo_timer, "tone": self._chip.tone_timer}
         for need, timer in owners.items():
             owner = next((use for use in self._uses if use.need == need), None)
@@ -86,6 +89,19 @@ class Pins:
                         first=owner.table.path_of(owner.key),
                         choices=_choices(self._chip, "pwm", frozenset(owners.values())),
                     )
+
+    def _check_frequencies(self, chip: Chip) -> None:
+        """Complain about the first PWM pin for which no timer is left."""
+        pins = dict.fromkeys(FREQUENCIES, 0)
+        for use in self._uses:
+            if use.need not in pins:
+                continue
+            pins[use.need] += 1
+            if sum(map(timers_of, pins.values())) > chip.pwm_timers:
+                named = {"pin": chip.pin_name(use.pin), "chip": chip.name}
+                timers = str(chip.pwm_timers)
+                use.table.complain("timers_used_up", use.key, **named, timers=timers)
+                return
 
 
 def _choices(

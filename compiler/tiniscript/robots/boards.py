@@ -8,6 +8,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import NamedTuple
 
+from tiniscript.fixed_point import ONE
+
 
 class Chip(NamedTuple):
     """A board that the firmware runs on. Pins are numbers of its Arduino core.
@@ -16,7 +18,8 @@ class Chip(NamedTuple):
     the board prints such names. `pwm` maps each pin to its timer. The link uses `link_pins`.
     `boot_pins` are high, or do PWM, before the firmware runs, or decide how the chip starts: no
     motor may hang on them.
-    A timer field is None if the chip has enough timers.
+    A timer field is None if the chip has enough timers. Of `pwm_timers` each serves two pins of
+    one frequency; 0: the timers are those of `pwm`.
     """
 
     name: str
@@ -31,6 +34,8 @@ class Chip(NamedTuple):
     servo_timer: int | None
     tone_timer: int | None
     boot_pins: frozenset[int] = frozenset()
+    pwm_timers: int = 0
+    pin_volts: int = 5 * ONE  # in thousandths: what its pins give, and the most that they take
 
     def can(self, pin: int, need: str) -> bool:
         """Return whether `pin` has the ability `need`, one of NEEDS."""
@@ -83,7 +88,11 @@ _PWM_2560 = {
 # WiFi is on. Data sheet, "Strapping Pins": 0, 2, 5, 12 and 15 are read at a reset; 12 held high
 # keeps the chip from starting. 0, 5 and 15 are pulled up then, and 14 does PWM for a moment; 2 is
 # pulled down.
+# An ESP32-C3 has its flash on 12 to 17 (11 feeds it), its link on 20 and 21; its analog pins are
+# those of ADC1, as the chip's errata sheet tells not to use ADC2 (5). It reads 2, 8 and 9 at a
+# reset; 18 and 19 are its own USB, and 19 is pulled up until the firmware runs.
 _ESP32 = _pins(0, 2, 4, 5, range(12, 20), 21, 22, 23, 25, 26, 27, 32, 33)
+_ESP32C3 = _pins(range(11), 18, 19)
 
 CHIPS = {
     chip.name: chip
@@ -140,6 +149,24 @@ CHIPS = {
             servo_timer=None,
             tone_timer=None,
             boot_pins=_pins(0, 5, 12, 14, 15),
+            pwm_timers=8,
+            pin_volts=3_300,
+        ),
+        Chip(
+            "esp32c3",
+            program_bytes=8192,
+            digital=_ESP32C3,
+            reading=frozenset(),
+            analog=_pins(range(5)),
+            echo=_ESP32C3,
+            pwm=dict.fromkeys(sorted(_ESP32C3), 0),
+            link_pins=_pins(20, 21),
+            first_analog=None,
+            servo_timer=None,
+            tone_timer=None,
+            boot_pins=_pins(2, 8, 9, 18, 19),
+            pwm_timers=3,
+            pin_volts=3_300,
         ),
     )
 }

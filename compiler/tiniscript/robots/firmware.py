@@ -12,18 +12,19 @@ from tiniscript.fixed_point import ONE
 from tiniscript.kit import Device, Kit
 from tiniscript.robots.boards import CHIPS, HOLD
 from tiniscript.robots.kit_words import kit_words
-from tiniscript.robots.ports import AVRS, Avr
+from tiniscript.robots.pin_texts import AvrPins, texts_of
+from tiniscript.robots.ports import AVRS, ESP32S
 from tiniscript.robots.profile import Robot, Wiring
 
 FULL_COUNT = 1023  # reading of the A/D converter at the highest voltage
 BRIDGES = ("l298n", "l293d", "tb6612")
 SPACE = "tiniscript"
-BOARDS = tuple(AVRS)
+BOARDS = (*AVRS, *ESP32S)
 
 
 def fits(robot: Robot) -> bool:
     """Return whether there is firmware for the robot's chip."""
-    return robot.board.chip in AVRS
+    return robot.board.chip in BOARDS
 
 
 def header(wired: Sequence[Robot], made_by: str) -> str:
@@ -51,6 +52,8 @@ def header(wired: Sequence[Robot], made_by: str) -> str:
 
 def _condition(robots: Sequence[Robot]) -> str:
     chips = [robot.board.chip for robot in robots]
+    if chips[0] in ESP32S:
+        return f"defined({ESP32S[chips[0]]})"
     condition = f"defined({AVRS[chips[0]].macro})"
     # A Nano has pins that an Uno does not have.
     return condition + (" && !defined(ARDUINO_AVR_UNO)" if chips == ["nano"] else "")
@@ -61,8 +64,7 @@ class _Part:
 
     def __init__(self, robot: Robot) -> None:
         self.robot = robot
-        self.avr: Avr = AVRS[robot.board.chip]
-        self.vectors: list[str] = []
+        self.pins = texts_of(robot)
         self.servos: list[int] = []
         self.ultrasonics: list[str] = []
         self.off: list[str] = []  # lines that a stop runs for actuators
@@ -102,14 +104,15 @@ class _Part:
             f"constexpr uint32_t kBaud = {board.baud};",
             "",
             f"constexpr Pin kStartButton = {self._pin(board.start_button)};",
-            f"constexpr Pin kBuzzer = {self._pin(board.buzzer)};",
+            f"constexpr {self.pins.buzzer(board.buzzer)};",
             f"constexpr Pin kLight = {self._pin(light)};",
             f"constexpr Pin kBluetoothState = {self._pin(state)};",
             *motors,
         ]
         if self.servos:
-            pins = ", ".join(self._pin(pin) for pin in self.servos)
-            lines.append(f"constexpr Pin kServos[] = {{{pins}}};")
+            pins = ", ".join(self.pins.servo(pin) for pin in self.servos)
+            kind = "Pin" if isinstance(self.pins, AvrPins) else "Pwm"
+            lines.append(f"constexpr {kind} kServos[] = {{{pins}}};")
         lines += [
             *self._ultrasonics(),
             "",
@@ -134,22 +137,20 @@ class _Part:
         names = ["motors_bridge" if driver in BRIDGES else f"motors_{driver}"]
         if self.servos:
             names.append("servos")
-        if self.vectors:
-            each = " ".join(f"each({name})" for name in self.vectors)
+        if self.ultrasonics:
+            names.append("ultrasonics")
+        if self.pins.vectors:
+            each = " ".join(f"each({name})" for name in self.pins.vectors)
             names.append(f"ultrasonic_vectors(each) {each}")
         return names
 
     # -- pins
 
     def _pin(self, pin: int | None) -> str:
-        if pin is None:
-            return "kNoPin"
-        bit = self.avr.bits[pin]
-        return f"{{kPort{bit.port.upper()}, 1 << {bit.bit}}}"
+        return self.pins.pin(pin)
 
     def _pwm(self, pin: int) -> str:
-        timer, channel = self.avr.compares[pin]
-        return f"{{{self._pin(pin)}, {timer}, kChannel{channel.upper()}}}"
+        return self.pins.pwm(pin)
 
     # -- motors
 
@@ -185,6 +186,8 @@ class _Part:
             pin = self._pin(pins["pin"])
             if settings["pull_up"]:
                 self.begin.append(f"begin_pull_up({pin});")
+            elif self.robot.board.chip in ESP32S:  # an AVR's pin is an input after a reset
+                self.begin.append(f"begin_input({pin});")
             low = "!" if settings["yes_is_low"] else ""
             return [f"      *value = {low}is_high({pin});", "      return true;"]
         channel = pins["pin"] - (CHIPS[self.robot.board.chip].first_analog or 0)
@@ -200,11 +203,8 @@ class _Part:
         return [read, scaled, *_limits(device, lowest, highest), "      return true;"]
 
     def _distance(self, device: Device, trigger: int, echo: int) -> list[str]:
-        vector, group, bit = self.avr.interrupts[echo]
-        if vector not in self.vectors:
-            self.vectors.append(vector)
         self.begin.append(f"begin_output({self._pin(trigger)}, false);")
-        wired = f"{{{self._pin(trigger)}, {self._pin(echo)}, {group}, 1 << {bit}}}"
+        wired = f"{{{self._pin(trigger)}, {self.pins.echo(echo)}}}"
         self.ultrasonics.append(wired)
         return [
             f"      if (!ultrasonic_read({len(self.ultrasonics) - 1}, value)) return false;",
@@ -239,7 +239,10 @@ class _Part:
             return [f"      write({self._pin(pin)}, {condition});", "      return;"]
         low, high = device.low // ONE, device.high // ONE
         if driver == "pwm":
-            self.begin.append(f"begin_output({self._pin(pin)}, false);")
+            begin = f"begin_output({self._pin(pin)}, false);"
+            if self.robot.board.chip in ESP32S:
+                begin = f"begin_pwm(Pwm{self._pwm(pin)});"
+            self.begin.append(begin)
             self.off.append(f"disconnect(Pwm{self._pwm(pin)});  // {device.name}")
             part = f"part_of_range(value, {low}, {high}, 0, 255)"
             return [f"      connect(Pwm{self._pwm(pin)}, {part});", "      return;"]

@@ -1,7 +1,8 @@
-"""The tables of the AVR chips: which port, timer and interrupt belongs to a pin of a board.
+"""The tables of chips: how the compiler names each, and what registers an AVR's pins have.
 
 From the data sheets of the ATmega328P and the ATmega2560, and the pins of their Arduino boards.
-`boards` says what a pin can be used for; the registers for that are here.
+`boards` says what a pin can be used for; the registers for that are here. An ESP32 has none to
+look up: the number of a pin is that of its GPIO.
 """
 
 from __future__ import annotations
@@ -110,4 +111,6 @@ AVR_2560 = Avr(
         },
     },
 )
+# What the configuration of Espressif's core defines for the chips of `CHIPS`.
+ESP32S = {"esp32dev": "CONFIG_IDF_TARGET_ESP32", "esp32c3": "CONFIG_IDF_TARGET_ESP32C3"}
 AVRS = {"uno": AVR_328P, "nano": AVR_328P, "mega": AVR_2560}  # boards of `CHIPS`

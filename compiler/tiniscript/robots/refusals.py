@@ -173,6 +173,13 @@ SENTENCES: dict[str, dict[str, str]] = {
         "es": "{path} es el pin {pin}: su PWM necesita el temporizador {timer}, que {first} usa."
         " Elige uno de estos: {choices}.",
     },
+    "timers_used_up": {
+        "en": "{path} is pin {pin}: its PWM needs one more timer, and {chip} has {timers}, each for"
+        " two pins of one kind (motors, servos, buzzer). Leave one PWM pin out.",
+        "es": "{path} es el pin {pin}: su PWM necesita un temporizador más, y {chip} tiene"
+        " {timers}, cada uno para dos pines de un tipo (motores, servos, zumbador). Quita un pin"
+        " PWM.",
+    },
 }
 
 # The texts for the values of `wanted`, `found` and `need`.

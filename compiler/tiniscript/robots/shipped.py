@@ -253,8 +253,144 @@ def _tinibot() -> Robot:
     )
 
 
+def _tinibot32() -> Robot:
+    return Robot(
+        name="tinibot32",
+        kit=Kit(
+            sensors=(
+                Device(name="LIGHT_R", kind="number", unit="", low=0, high=1023000),
+                Device(name="LIGHT_L", kind="number", unit="", low=0, high=1023000),
+                Device(name="DISTANCE", kind="number", unit="cm", low=0, high=400000),
+            ),
+            actuators=(),
+        ),
+        board=Board(
+            chip="esp32dev",
+            program_bytes=8192,
+            baud=115200,
+            max_run_seconds=600,
+            motors=Wiring(
+                driver="l298n",
+                pins={
+                    "left_pwm": 25,
+                    "left_forward": 26,
+                    "left_backward": 27,
+                    "right_pwm": 32,
+                    "right_forward": 33,
+                    "right_backward": 21,
+                },
+                settings={},
+            ),
+            sensors=(
+                Wiring(driver="analog", pins={"pin": 34}, settings={"zero": 0, "full": 1023000}),
+                Wiring(driver="analog", pins={"pin": 35}, settings={"zero": 0, "full": 1023000}),
+                Wiring(driver="hc_sr04", pins={"trigger": 18, "echo": 19}, settings={}),
+            ),
+            actuators=(),
+            start_button=4,
+            buzzer=23,
+            status_led=2,
+            bluetooth_state=None,
+            language="",
+        ),
+        body=Body(
+            wheel_base_cm=13.5,
+            speed_cm_s=45.0,
+            length_cm=21.0,
+            width_cm=15.0,
+            places={
+                "LIGHT_R": Place(x_cm=12.0, y_cm=-5.0, heading=-30.0, sees="light"),
+                "LIGHT_L": Place(x_cm=12.0, y_cm=5.0, heading=30.0, sees="light"),
+                "DISTANCE": Place(x_cm=13.0, y_cm=0.0, heading=0.0, sees="distance"),
+            },
+        ),
+        labels={
+            "en": {
+                "robot": "TiniBot 32",
+                "LIGHT_R": "right light sensor",
+                "LIGHT_L": "left light sensor",
+                "DISTANCE": "distance sensor",
+            },
+            "es": {
+                "robot": "TiniBot 32",
+                "LIGHT_R": "sensor de luz derecho",
+                "LIGHT_L": "sensor de luz izquierdo",
+                "DISTANCE": "sensor de distancia",
+            },
+        },
+    )
+
+
+def _tinibotc3() -> Robot:
+    return Robot(
+        name="tinibotc3",
+        kit=Kit(
+            sensors=(
+                Device(name="LIGHT_R", kind="number", unit="", low=0, high=1023000),
+                Device(name="LIGHT_L", kind="number", unit="", low=0, high=1023000),
+                Device(name="DISTANCE", kind="number", unit="cm", low=0, high=400000),
+            ),
+            actuators=(),
+        ),
+        board=Board(
+            chip="esp32c3",
+            program_bytes=8192,
+            baud=115200,
+            max_run_seconds=600,
+            motors=Wiring(
+                driver="two_wire",
+                pins={
+                    "left_forward": 3,
+                    "left_backward": 4,
+                    "right_forward": 5,
+                    "right_backward": 6,
+                },
+                settings={},
+            ),
+            sensors=(
+                Wiring(driver="analog", pins={"pin": 0}, settings={"zero": 0, "full": 1023000}),
+                Wiring(driver="analog", pins={"pin": 1}, settings={"zero": 0, "full": 1023000}),
+                Wiring(driver="hc_sr04", pins={"trigger": 7, "echo": 10}, settings={}),
+            ),
+            actuators=(),
+            start_button=8,
+            buzzer=18,
+            status_led=None,
+            bluetooth_state=None,
+            language="",
+        ),
+        body=Body(
+            wheel_base_cm=13.5,
+            speed_cm_s=45.0,
+            length_cm=21.0,
+            width_cm=15.0,
+            places={
+                "LIGHT_R": Place(x_cm=12.0, y_cm=-5.0, heading=-30.0, sees="light"),
+                "LIGHT_L": Place(x_cm=12.0, y_cm=5.0, heading=30.0, sees="light"),
+                "DISTANCE": Place(x_cm=13.0, y_cm=0.0, heading=0.0, sees="distance"),
+            },
+        ),
+        labels={
+            "en": {
+                "robot": "TiniBot C3",
+                "LIGHT_R": "right light sensor",
+                "LIGHT_L": "left light sensor",
+                "DISTANCE": "distance sensor",
+            },
+            "es": {
+                "robot": "TiniBot C3",
+                "LIGHT_R": "sensor de luz derecho",
+                "LIGHT_L": "sensor de luz izquierdo",
+                "DISTANCE": "sensor de distancia",
+            },
+        },
+    )
+
+
 ROBOTS: dict[str, Callable[[], Robot]] = {
     "grabber": _grabber,
     "liner": _liner,
     "tinibot": _tinibot,
+    "tinibot32": _tinibot32,
+    "tinibotc3": _tinibotc3,
 }

@@ -13,7 +13,7 @@ from tiniscript.wiring import layout as places
 from tiniscript.wiring.headers import ROW_AT_THE_END, SIDES
 from tiniscript.wiring.icons import ICONS
 from tiniscript.wiring.layout import LEFT, RIGHT, STEP, ZONE, Box, Layout, Pin, Route
-from tiniscript.wiring.parts import BOARD_5V, GROUND, RAILS
+from tiniscript.wiring.parts import BOARD_RAILS, GROUND, RAILS
 from tiniscript.wiring.plan import End, Plan, Wire
 from tiniscript.wiring.texts import text
 
@@ -26,7 +26,7 @@ INKS = {
     "grey": "#777777",
     "brown": "#7a4a21",
 }
-RAIL_INKS = {"5V": "#c81e1e", "GND": "#111111", "M+": "#a03060", "S+": "#a06000"}
+RAIL_INKS = {"5V": "#c81e1e", "3V3": "#e0702c", "GND": "#111111", "M+": "#a03060", "S+": "#a06000"}
 LINE = "#333333"
 LEGEND_STEP = 24
 FONT = "'DejaVu Sans', Verdana, Arial, sans-serif"
@@ -119,7 +119,7 @@ def _pin(pin: Pin, layout: Layout, plan: Plan) -> list[str]:
     left, _, width, _ = layout.board
     edge = left if pin.side == LEFT else left + width
     inward = 1 if pin.side == LEFT else -1
-    is_used = pin.wire is not None or pin.name in (BOARD_5V, GROUND)
+    is_used = pin.wire is not None or pin.name in set(BOARD_RAILS) & set(plan.rails)
     fill = "#ffffff" if is_used else "#cccccc"
     lines = [
         f'<rect x="{edge - 5}" y="{pin.y - 5}" width="10" height="10" fill="{fill}" '
@@ -132,9 +132,10 @@ def _pin(pin: Pin, layout: Layout, plan: Plan) -> list[str]:
     anchor = "start" if pin.side == LEFT else "end"
     style = BOLD if is_used else FAINT
     lines.append(_text(shown, edge + 10 * inward, pin.y + 4.5, 62, anchor, 14, style))
-    if pin.side == LEFT and pin.name in (BOARD_5V, GROUND) and _is_first(pin, layout):
-        lines.append(_line(edge - 5, pin.y, edge - 12, pin.y, RAIL_INKS[pin.name]))
-        lines.append(_tag(pin.name, edge - 29, pin.y))
+    if pin.name in set(BOARD_RAILS) & set(plan.rails) and pin == _first(pin.name, layout):
+        near, far = edge - 5 * inward, edge - 12 * inward
+        lines.append(_line(near, pin.y, far, pin.y, RAIL_INKS[pin.name]))
+        lines.append(_tag(pin.name, edge - 29 * inward, pin.y))
     if pin.number in ROW_AT_THE_END and plan.chip.name == "mega":
         first = min(
             each.y for each in layout.pins if each.number in ROW_AT_THE_END and each.side == RIGHT
@@ -145,9 +146,9 @@ def _pin(pin: Pin, layout: Layout, plan: Plan) -> list[str]:
     return lines
 
 
-def _is_first(pin: Pin, layout: Layout) -> bool:
-    same = [each.y for each in layout.pins if each.name == pin.name and each.side == pin.side]
-    return pin.y == min(same)
+def _first(name: str, layout: Layout) -> Pin:
+    """Return the pin of a rail that has its tag: the first one of the left side, if it has one."""
+    return min((each for each in layout.pins if each.name == name), key=lambda each: each[:2])
 
 
 # -- wires

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
-from tiniscript.wiring.headers import ROW_AT_THE_END, SIDES, Slot
+from tiniscript.wiring.headers import RECEIVE_PINS, ROW_AT_THE_END, SIDES, Slot
 from tiniscript.wiring.plan import Part, Plan, Wire
 
 LEFT, RIGHT = 0, 1
@@ -130,6 +130,9 @@ class _Layout:
         self.wires = {wire.pin: wire for wire in plan.wires}
         columns = [self._slots(side) for side in (LEFT, RIGHT)]
         self.pin_side = {pin: side for side in (LEFT, RIGHT) for pin in columns[side]}
+        # A column that has a rail of its own needs room for its tag, as the left one has.
+        has_rail = set(columns[RIGHT]) & set(plan.rails) - set(columns[LEFT])
+        self.near = (NEAR_BOARD[LEFT], NEAR_BOARD[LEFT if has_rail else RIGHT])
         parts: list[list[Part]] = [[], []]
         for part in plan.parts:
             parts[self._side_of(part)].append(part)
@@ -166,7 +169,7 @@ class _Layout:
             return Pin(side, y, slot, None, None)
         name = self.plan.chip.pin_name(slot)
         if slot in self.plan.chip.link_pins:
-            name += " RX" if slot == 0 else " TX"
+            name += " RX" if slot == RECEIVE_PINS.get(self.plan.chip.name, 0) else " TX"
         return Pin(side, y, name, slot, self.wires.get(slot))
 
     # -- the parts
@@ -228,16 +231,16 @@ class _Layout:
             for side in (LEFT, RIGHT)
         ]
         left_part = MARGIN + MOTORS_WIDTH * has_motors[LEFT]
-        board_left = left_part + PART_WIDTH + ZONE + widths[LEFT] + NEAR_BOARD[LEFT]
+        board_left = left_part + PART_WIDTH + ZONE + widths[LEFT] + self.near[LEFT]
         board_right = board_left + BOARD_WIDTH
-        right_zone = board_right + NEAR_BOARD[RIGHT] + widths[RIGHT]
+        right_zone = board_right + self.near[RIGHT] + widths[RIGHT]
         right_part = right_zone + ZONE
         edges = (board_left, board_right)
         zones = (left_part + PART_WIDTH + ZONE, right_zone)
         tracks = [channel.tracks() for channel in channels]
 
         def x_of(side: int, number: int) -> int:
-            distance = NEAR_BOARD[side] + TRACK * (tracks[side][number] + 1)
+            distance = self.near[side] + TRACK * (tracks[side][number] + 1)
             return edges[side] + (distance if side == RIGHT else -distance)
 
         routes = tuple(

@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from tiniscript.wiring.headers import SIDES
-from tiniscript.wiring.parts import BOARD_5V, GROUND, PULL_DOWN
+from tiniscript.wiring.parts import BOARD_RAILS, GROUND, PULL_DOWN
 from tiniscript.wiring.plan import LAMP_PIN, End, Part, Plan
 from tiniscript.wiring.texts import text
 
@@ -86,8 +86,8 @@ class _Page:
             Block("list", rows=_column(self._power())),
             Block("heading", say("mind")),
             Block("list", rows=_column(self._mind())),
-            Block("heading", say("bluetooth")),
-            Block("list", rows=_column(self._bluetooth())),
+            Block("heading", say("bluetooth" if self.plan.has_radio else "usb")),
+            Block("list", rows=_column(self._link())),
             Block("heading", say("check")),
             Block("checks", rows=_column(self._checks())),
             Block("paragraph", say("made_by", robot=self.plan.robot)),
@@ -115,7 +115,7 @@ class _Page:
         for rail in self.plan.rails:
             colour = self.say("colour_black" if rail == GROUND else "colour_red")
             joined = []
-            if rail in (BOARD_5V, GROUND):
+            if rail in BOARD_RAILS:
                 joined.append(self.say("the_board", pin=rail))
             for part in self.plan.parts:
                 joined += [
@@ -147,7 +147,11 @@ class _Page:
         return said
 
     def _power(self) -> list[str]:
-        said = [self.say("power_own"), self.say("power_common"), self.say("power_not_5v")]
+        said = [
+            self.say("power_own"),
+            self.say("power_common"),
+            self.say("power_not_5v" if self.plan.has_radio else "power_not_3v3"),
+        ]
         if self.driver != "servos":
             said.append(self.say(f"power_volts_{self.driver}"))
         return said
@@ -167,7 +171,9 @@ class _Page:
                     said.append(sentence)
         return said
 
-    def _bluetooth(self) -> list[str]:
+    def _link(self) -> list[str]:
+        if not self.plan.has_radio:
+            return [self.say("usb_link", baud=self.plan.baud), self.say("usb_reset")]
         speed = "bluetooth_speed" if self.plan.baud == 9600 else "bluetooth_other_speed"
         state = "bluetooth_state" if self.plan.has_state else "bluetooth_no_state"
         return [
@@ -183,13 +189,18 @@ class _Page:
             self.say("check_wheels"),
             self.say("check_polarity"),
             self.say("check_ground", parts=grounded),
-            self.say("check_5v"),
+            self.say("check_5v" if self.plan.has_radio else "check_3v3"),
         ]
         if self._pull_downs():
             said.append(self.say("check_pull_downs", ends=self._pull_downs()))
         if self.driver == "l298n":
             said.append(self.say("check_jumpers"))
-        said += [self.say(key) for key in ("check_divider", "check_bare", "check_unplugged")]
+        keys: tuple[str, ...] = ("check_bare",)
+        if self.plan.has_radio:
+            keys = ("check_divider", "check_bare", "check_unplugged")
+        elif any(end.series == "1 kΩ" for part in self.plan.parts for end in part.ends):
+            keys = ("check_echo", "check_bare")
+        said += [self.say(key) for key in keys]
         return [*said, self.say("check_hot"), self.say("check_way")]
 
 

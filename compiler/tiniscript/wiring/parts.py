@@ -12,12 +12,15 @@ from typing import NamedTuple
 from tiniscript.fixed_point import ONE
 from tiniscript.kit import Device
 from tiniscript.robots.profile import Place, Wiring
+from tiniscript.wiring.texts import TEXTS
 
 # Rails: all that is joined to one of them is joined together.
-BOARD_5V, GROUND, MOTOR_BATTERY, SERVO_SUPPLY = "5V", "GND", "M+", "S+"
-RAILS = (BOARD_5V, GROUND, MOTOR_BATTERY, SERVO_SUPPLY)
+BOARD_5V, BOARD_3V3, GROUND, MOTOR_BATTERY, SERVO_SUPPLY = "5V", "3V3", "GND", "M+", "S+"
+BOARD_RAILS = (BOARD_5V, BOARD_3V3, GROUND)
+RAILS = (BOARD_5V, BOARD_3V3, GROUND, MOTOR_BATTERY, SERVO_SUPPLY)
 
 PULL_DOWN = "10 kΩ"
+NEEDS_5V = ("need_hc_sr04", "need_l293d")
 FIVE_VOLTS = 5 * ONE
 
 
@@ -53,9 +56,39 @@ class Shape(NamedTuple):
 
 
 def shape_of(used_by: str, wiring: Wiring, device: Device | None = None,
-             place: Place | None = None) -> Shape:  # fmt: skip
+             place: Place | None = None, pin_volts: int = FIVE_VOLTS) -> Shape:  # fmt: skip
     """Return what stands for a driver of `boards.DRIVERS`; KeyError where nothing does."""
-    return SHAPES[used_by, wiring.driver](wiring, device, place.sees if place else "")
+    sees = place.sees if place else ""
+    if SHAPES[used_by, wiring.driver] is _analog:
+        shape = _analog(wiring, device, sees, pin_volts)
+    else:
+        shape = SHAPES[used_by, wiring.driver](wiring, device, sees)
+    return shape if pin_volts == FIVE_VOLTS else _at_3v3(shape)
+
+
+def _at_3v3(shape: Shape) -> Shape:
+    """Return a part as it is joined to a board whose pins have 3.3 V.
+
+    It gets 3.3 V, so that nothing else comes back; what needs 5 V gets them, and a divider where
+    it answers with them.
+    """
+    if shape.need in NEEDS_5V:
+        ends = (
+            each._replace(series="1 kΩ", to_ground="2 kΩ") if each.pin_key == "echo" else each
+            for each in shape.terminals
+        )
+    else:
+        ends = (
+            each._replace(rail=BOARD_3V3) if each.rail == BOARD_5V else each
+            for each in shape.terminals
+        )
+    notes = tuple(of_3v3(note) for note in shape.notes)
+    return shape._replace(need=of_3v3(shape.need), terminals=tuple(ends), notes=notes)
+
+
+def of_3v3(key: str) -> str:
+    """Return the key of what is said of a part on such a board, where that differs."""
+    return f"{key}_3v3" if f"{key}_3v3" in TEXTS else key
 
 
 # -- motors
@@ -187,18 +220,18 @@ def _module(output: str, need: str, notes: tuple[str, ...] = ()) -> Shape:
     return Shape("module", need, terminals, notes=notes)
 
 
-def _analog(wiring: Wiring, device: Device | None, sees: str) -> Shape:
+def _analog(wiring: Wiring, device: Device | None, sees: str, pin_volts: int = FIVE_VOLTS) -> Shape:
     if sees == "light":
         return _light("pin")
     full = wiring.settings["full"]
-    if device and device.unit == "V" and wiring.settings["zero"] == 0 and full > FIVE_VOLTS:
-        return _divided_voltage(device, full)
+    if device and device.unit == "V" and wiring.settings["zero"] == 0 and full > pin_volts:
+        return _divided_voltage(device, full, pin_volts)
     return _module("OUT", "need_analog", ("mind_analog",))
 
 
-def _divided_voltage(device: Device, full: int) -> Shape:
-    """Two resistors, of which the lower one has 5 V when the whole has `full` thousandths."""
-    upper = f"{10 * (full - FIVE_VOLTS) / FIVE_VOLTS:g} kΩ"
+def _divided_voltage(device: Device, full: int, pin_volts: int) -> Shape:
+    """Two resistors: the lower one has what a pin takes when the whole has `full` thousandths."""
+    upper = f"{10 * (full - pin_volts) / pin_volts:g} kΩ"
     is_battery = device.name.startswith(("BATTER", "BATER"))
     name = MOTOR_BATTERY if is_battery else "what_is_measured"
     source = Terminal(name, "pin", to_ground=PULL_DOWN, beyond=upper)

@@ -15,8 +15,8 @@ from tiniscript.wiring import parts
 from tiniscript.wiring.parts import MOTOR_BATTERY, SERVO_SUPPLY, Shape
 from tiniscript.wiring.texts import text
 
-RECEIVE_PIN, TRANSMIT_PIN = 0, 1  # of the boards that there is firmware for
-LAMP_PIN = 13  # has a lamp on these boards, called L
+RECEIVE_PIN, TRANSMIT_PIN = 0, 1  # of an AVR
+LAMP_PIN = 13  # has a lamp on an AVR's boards, called L
 COLOURS = ("orange", "green", "blue", "violet", "yellow", "grey", "brown")
 
 
@@ -63,6 +63,11 @@ class Plan(NamedTuple):
     parts: tuple[Part, ...]
     has_lamp: bool
     has_state: bool
+
+    @property
+    def has_radio(self) -> bool:
+        """Whether an HC-05 is joined to it; an ESP32 has its link on USB."""
+        return self.chip.pin_volts == parts.FIVE_VOLTS
 
     @property
     def wires(self) -> list[Wire]:
@@ -128,7 +133,7 @@ def plan_of(robot: Robot, language: str) -> Plan:
         return text(key, language)
 
     found = []
-    motors = parts.shape_of("motors", board.motors)
+    motors = parts.shape_of("motors", board.motors, pin_volts=chip.pin_volts)
     title, label = motors.model, named("part_motors")
     if not motors.model:
         title, label = named("part_servos"), ""
@@ -140,7 +145,9 @@ def plan_of(robot: Robot, language: str) -> Plan:
     for used_by, devices, wirings in groups:
         for device, wiring in zip(devices, wirings, strict=True):
             place = body.places.get(device.name)
-            shape = parts.shape_of(f"{used_by} {device.kind}", wiring, device, place)
+            shape = parts.shape_of(
+                f"{used_by} {device.kind}", wiring, device, place, chip.pin_volts
+            )
             if board.motors.driver == "servos":
                 shape = _with_servo_supply(shape)
             label = robot.labels[language][device.name]
@@ -150,14 +157,16 @@ def plan_of(robot: Robot, language: str) -> Plan:
         counter.part(named("part_button"), "SB", parts.SWITCH, {"pin": board.start_button})
     )
     found.append(counter.part(named("part_buzzer"), "BEEP", parts.BUZZER, {"pin": board.buzzer}))
-    has_lamp = board.status_led == LAMP_PIN
+    has_radio = chip.pin_volts == parts.FIVE_VOLTS
+    has_lamp = has_radio and board.status_led == LAMP_PIN
     if board.status_led is not None and not has_lamp:
         lamp = parts.shape_of("actuators yes/no", Wiring("digital", {}, {}))
         found.append(counter.part(named("part_lamp"), "", lamp, {"pin": board.status_led}))
     radio = {"rx": RECEIVE_PIN, "tx": TRANSMIT_PIN}
     if board.bluetooth_state is not None:
         radio["state"] = board.bluetooth_state
-    found.append(counter.part("HC-05", "Bluetooth", parts.BLUETOOTH, radio))
+    if has_radio:
+        found.append(counter.part("HC-05", "Bluetooth", parts.BLUETOOTH, radio))
     rails = {end.rail for part in found for end in part.ends}
     rails |= {end.name for part in found for end in part.ends}
     for rail, key, supply in (

@@ -30,11 +30,12 @@ int32_t readings[kBoardSensors];
 
 void board_begin() {
   begin_pull_up(kStartButton);
-  if (kBluetoothState.port != 0) begin_pull_up(kBluetoothState);  // the pin may be unconnected
-  if (kLight.port != 0) begin_output(kLight, false);
+  if (is_there(kBluetoothState)) begin_pull_up(kBluetoothState);  // the pin may be unconnected
+  if (is_there(kLight)) begin_output(kLight, false);
   begin_devices();
   analog_begin();
   sound_begin();
+  ultrasonic_begin();
 #ifdef tiniscript_servos
   servo_begin();
 #endif
@@ -55,10 +56,13 @@ void board_tick(uint32_t now_ms) {
   analog_tick();
   ultrasonic_tick();
   sound_tick(now_ms);
+#ifdef tiniscript_servos
+  servo_tick(now_ms);
+#endif
 }
 
 bool board_has_disconnected() {
-  if (kBluetoothState.port == 0) return false;
+  if (!is_there(kBluetoothState)) return false;
   const uint16_t now_us = clock_us();
   const bool is_now = is_high(kBluetoothState);
   if (is_now == is_connected) agreed_us = now_us;
@@ -125,7 +129,7 @@ void board_forget() {
 Supply board_supply() { return analog_supply(); }
 
 void board_light(bool is_on) {
-  if (kLight.port != 0) write(kLight, is_on);
+  if (is_there(kLight)) write(kLight, is_on);
 }
 
 void board_finished() { sound_finished(); }

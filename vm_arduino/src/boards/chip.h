@@ -5,9 +5,20 @@
 #ifndef TINISCRIPT_BOARDS_CHIP_H_
 #define TINISCRIPT_BOARDS_CHIP_H_
 
+#ifdef __AVR__
 #include "avr/attention.h"
 #include "avr/clock.h"
+#include "avr/echo.h"
 #include "avr/pins.h"
 #include "avr/watchdog.h"
+#elif defined(ARDUINO_ARCH_ESP32)
+#include "esp32/attention.h"
+#include "esp32/clock.h"
+#include "esp32/echo.h"
+#include "esp32/pins.h"
+#include "esp32/watchdog.h"
+#else
+#error "There is no firmware for this chip."
+#endif
 
 #endif  // TINISCRIPT_BOARDS_CHIP_H_

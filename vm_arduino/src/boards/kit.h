@@ -4,21 +4,32 @@
 #ifndef TINISCRIPT_BOARDS_KIT_H_
 #define TINISCRIPT_BOARDS_KIT_H_
 
+#include "../store/layout.h"
 #include "../vm/flash.h"
 #include "analog.h"
-#include "motors.h"
 #include "chip.h"
+#include "motors.h"
 #include "servo.h"
 #include "ultrasonic.h"
 
-#if defined(tiniscript_liner)
+#if defined(tiniscript_own)  // a header elsewhere, for tests
+#include tiniscript_own
+#elif defined(tiniscript_liner)
 #include "kits/liner.h"
 #elif defined(tiniscript_grabber)
 #include "kits/grabber.h"
+#elif defined(tiniscript_tinibot32)
+#include "kits/tinibot32.h"
+#elif defined(tiniscript_tinibotc3)
+#include "kits/tinibotc3.h"
 #elif __has_include("kits/own.h") && !defined(tiniscript_tinibot)
 #include "kits/own.h"
 #else
 #include "kits/tinibot.h"
+#endif
+
+#ifdef ARDUINO_ARCH_ESP32
+static_assert(tiniscript::kProgramBytes <= tiniscript::kStoredCodeBytes, "the store has less room");
 #endif
 
 #endif  // TINISCRIPT_BOARDS_KIT_H_

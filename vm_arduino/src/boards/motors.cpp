@@ -26,10 +26,15 @@ uint8_t size_of(int16_t level) {
 
 }  // namespace
 
+#ifdef __AVR__
 // Pulls the motor pins low before memory is set up. It is naked because there is no stack frame
 // yet; `main` follows it in flash, so nothing calls it.
 extern "C" void tiniscript_motors_low() __attribute__((naked, used, section(".init3")));
 void tiniscript_motors_low() { begin_motors(); }
+#else
+// The Arduino core calls it before it starts the task of setup() and loop().
+extern "C" void initVariant() { begin_motors(); }
+#endif
 
 void board_motors(int16_t left, int16_t right) {
   const uint8_t left_level = size_of(left);

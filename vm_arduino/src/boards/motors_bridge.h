@@ -8,7 +8,7 @@
 namespace tiniscript {
 
 tini_always_inline void begin(Bridge motor) {
-  begin_output(motor.pwm.pin, false);
+  begin_pwm(motor.pwm);
   begin_output(motor.forward, false);
   begin_output(motor.backward, false);
 }
@@ -17,7 +17,7 @@ tini_always_inline void begin(Bridge motor) {
 tini_always_inline void begin_motors() {
   begin(kLeftMotor);
   begin(kRightMotor);
-  if (kStandby.port != 0) begin_output(kStandby, false);
+  if (is_there(kStandby)) begin_output(kStandby, false);
 }
 
 tini_always_inline void off(Bridge motor) {
@@ -29,7 +29,7 @@ tini_always_inline void off(Bridge motor) {
 tini_always_inline void motors_off() {
   off(kLeftMotor);
   off(kRightMotor);
-  if (kStandby.port != 0) write(kStandby, false);
+  if (is_there(kStandby)) write(kStandby, false);
 }
 
 // `level` is 1 to 255.
@@ -45,7 +45,7 @@ tini_always_inline void drive(Bridge motor, bool is_backward, uint8_t level) {
 }
 
 tini_always_inline void begin_drive() {
-  if (kStandby.port != 0) write(kStandby, true);
+  if (is_there(kStandby)) write(kStandby, true);
 }
 
 }  // namespace tiniscript

@@ -11,8 +11,8 @@ namespace tiniscript {
 constexpr uint8_t kStillFrames = 50;  // 20 ms each
 
 tini_always_inline void begin_motors() {
-  begin_output(kServos[kLeftMotor.number], false);
-  begin_output(kServos[kRightMotor.number], false);
+  begin_servo(kServos[kLeftMotor.number]);
+  begin_servo(kServos[kRightMotor.number]);
 }
 
 // Leaves alone a servo that stands still or is about to.

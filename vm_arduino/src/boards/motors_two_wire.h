@@ -8,10 +8,10 @@
 namespace tiniscript {
 
 tini_always_inline void begin_motors() {
-  begin_output(kLeftMotor.forward.pin, false);
-  begin_output(kLeftMotor.backward.pin, false);
-  begin_output(kRightMotor.forward.pin, false);
-  begin_output(kRightMotor.backward.pin, false);
+  begin_pwm(kLeftMotor.forward);
+  begin_pwm(kLeftMotor.backward);
+  begin_pwm(kRightMotor.forward);
+  begin_pwm(kRightMotor.backward);
 }
 
 tini_always_inline void off(TwoWire motor) {

@@ -1,4 +1,5 @@
-// Servos on any pins: timer 1 makes one pulse per servo in turn, 50 times a second.
+// Servos: a pulse for each, 50 times a second. On an AVR timer 1 makes them one after the other, on
+// an ESP32 a channel of LEDC makes those of each.
 
 #ifndef TINISCRIPT_BOARDS_SERVO_H_
 #define TINISCRIPT_BOARDS_SERVO_H_
@@ -14,8 +15,16 @@ void servo_begin();
 // called from an interrupt.
 void servo_set(uint8_t number, uint16_t pulse_us, uint8_t frames);
 
+#ifdef __AVR__
 // Ends all pulses, also the one under way. For an interrupt after which no other one runs.
 void servos_low();
+
+// The interrupt counts pulses.
+inline void servo_tick(uint32_t) {}
+#else
+// Ends the pulses of servos that have had theirs. Call it at least every 20 ms.
+void servo_tick(uint32_t now_ms);
+#endif
 
 // Whether a servo gets pulses without end.
 bool servo_is_held(uint8_t number);

@@ -1,4 +1,4 @@
-// The buzzer: timer 2 toggles its pin, `sound_tick` does the timing.
+// The buzzer: a timer (timer 2, or a channel of LEDC) makes the tone, `sound_tick` ends it.
 
 #ifndef TINISCRIPT_BOARDS_SOUND_H_
 #define TINISCRIPT_BOARDS_SOUND_H_
@@ -6,6 +6,11 @@
 #include <stdint.h>
 
 namespace tiniscript {
+
+// Two notes each: rising and high, or falling and low.
+constexpr uint16_t kFinishedHertz[] = {1047, 1568};
+constexpr uint16_t kFaultHertz[] = {220, 110};
+constexpr uint8_t kNoteMs = 120;
 
 void sound_begin();
 

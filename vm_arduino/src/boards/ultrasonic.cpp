@@ -1,14 +1,10 @@
 #include "ultrasonic.h"
 
-#include <avr/interrupt.h>
-#include <avr/io.h>
-
 #include "../vm/flags.h"
-#include "avr/interrupts.h"
 #include "chip.h"
 #include "kit.h"
 
-#ifdef tiniscript_ultrasonic_vectors
+#ifdef tiniscript_ultrasonics
 
 namespace tiniscript {
 
@@ -22,10 +18,6 @@ constexpr uint8_t kGlitchUs = 100;      // an echo is at least 117 us long, from
 constexpr uint16_t kNothing = 0xffff;
 constexpr uint32_t kFarthest = 400000;
 constexpr uint16_t kThousandthsPer256Us = 4390;  // half of 34.3 cm/ms
-constexpr uint16_t kGroups = 0x68;               // PCICR
-constexpr uint16_t kChanges = 0x6b;              // PCMSK0 to PCMSK2
-constexpr uint16_t kExternal = 0x3d;             // EIMSK
-constexpr uint8_t kExternalGroup = 3;
 
 enum class Ping : uint8_t { kNone, kTriggered, kListening };
 
@@ -65,7 +57,7 @@ tini_always_inline uint16_t since(uint16_t now_us, uint16_t then_us) {
 void on_change() {
   const uint16_t now_us = clock_us();
   const Heard before = heard;
-  if (is_high(ultrasonic_at(asked()).echo)) {
+  if (is_high(ultrasonic_at(asked()).echo.pin)) {
     if (before == Heard::kNothing) {
       rose_us = now_us;
       heard = Heard::kHigh;
@@ -84,26 +76,8 @@ void on_change() {
 
 void listen(bool is_on) {
   const CriticalSection critical;
-  const Ultrasonic sensor = ultrasonic_at(asked());
-  const uint8_t group = sensor.group;
-  const uint16_t masks =
-      group == kExternalGroup ? kExternal : static_cast<uint16_t>(kChanges + group);
-  if (is_on) {
-    heard = Heard::kNothing;
-    if (group == kExternalGroup) {
-#ifdef EICRB
-      EICRA = 0x55;  // any edge of INT0 to INT7
-      EICRB = 0x55;
-      EIFR = sensor.interrupt;
-#endif
-    } else {
-      PCIFR = static_cast<uint8_t>(1 << group);
-      register8(kGroups) |= static_cast<uint8_t>(1 << group);
-    }
-    register8(masks) |= sensor.interrupt;
-  } else {
-    register8(masks) &= static_cast<uint8_t>(~sensor.interrupt);
-  }
+  if (is_on) heard = Heard::kNothing;
+  listen_inside(ultrasonic_at(asked()).echo, is_on);
 }
 
 void lower_trigger() {
@@ -162,7 +136,7 @@ uint16_t echo_of(uint8_t number) {
   if (ping != Ping::kNone && is_over() && asked() == number) return mine.echo_us;
   if (ping != Ping::kNone && asked() == number) return kNothing;
   // A sensor without an echo holds its line high for longer and ignores triggers meanwhile.
-  const bool is_busy = ping == Ping::kNone && is_high(ultrasonic_at(number).echo);
+  const bool is_busy = ping == Ping::kNone && is_high(ultrasonic_at(number).echo.pin);
   if (ping == Ping::kNone && !is_busy) {
     is_held = false;
     if (may_ping()) {
@@ -183,6 +157,12 @@ uint16_t echo_of(uint8_t number) {
 }
 
 }  // namespace
+
+void ultrasonic_begin() {
+  for (uint8_t number = 0; number < kUltrasonics; number++) {
+    begin_echo(ultrasonic_at(number).echo, on_change);
+  }
+}
 
 void ultrasonic_tick() {
   if (!is_spaced) may_ping();
@@ -206,10 +186,14 @@ void ultrasonic_forget() {
 
 }  // namespace tiniscript
 
+#ifdef tiniscript_ultrasonic_vectors
 #define tiniscript_on(vector) tiniscript_interrupt(vector, tiniscript::on_change)
 tiniscript_ultrasonic_vectors(tiniscript_on)
+#endif
 
 #else
+
+void tiniscript::ultrasonic_begin() {}
 
 void tiniscript::ultrasonic_forget() {}
 

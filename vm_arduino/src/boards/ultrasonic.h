@@ -12,14 +12,12 @@
 
 namespace tiniscript {
 
-// A sensor. Groups 0 to 2 are pin-change interrupts, group 3 the external ones; `interrupt` is the
-// bit in the group's mask.
 struct Ultrasonic {
   Pin trigger;
-  Pin echo;
-  uint8_t group;
-  uint8_t interrupt;
+  Echo echo;
 };
+
+void ultrasonic_begin();
 
 // Puts thousandths of a centimetre into `*distance` and returns true if there is an echo; without
 // one in 25 ms it is 400 cm, the end of the range. Returns false otherwise: ask again. While no

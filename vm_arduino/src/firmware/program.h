@@ -17,7 +17,9 @@ namespace tiniscript {
 // A program that is read as text: at most so many bytes of code, as its jumps are short. Its code
 // and what the reader keeps beside it have this room.
 constexpr uint8_t kTextCodeBytes = 255;
-constexpr uint16_t kTextRoom = kRobotTextLevel == TextLevel::kMega ? 1900 : kStoredCodeBytes;
+constexpr uint16_t kTextRoom = kRobotTextLevel == TextLevel::kMega    ? 1900
+                               : kRobotTextLevel == TextLevel::kEsp32 ? 8192
+                                                                      : kStoredCodeBytes;
 static_assert(kTextRoom <= kStoredCodeBytes, "an Uno reads it where its program is");
 
 // An ATmega328P reads a program where the one is that it holds; tiniscript_no_draft is for tests of

@@ -7,8 +7,10 @@
 
 namespace tiniscript {
 
-#ifdef __AVR_ATmega2560__
+#if defined(__AVR_ATmega2560__)
 constexpr TextLevel kRobotTextLevel = TextLevel::kMega;
+#elif defined(ARDUINO_ARCH_ESP32)
+constexpr TextLevel kRobotTextLevel = TextLevel::kEsp32;
 #else
 constexpr TextLevel kRobotTextLevel = TextLevel::kUno;
 #endif

@@ -12,9 +12,12 @@
 
 namespace tiniscript {
 
-// The EEPROM size: Mega 2560; Uno and Nano.
-#ifdef __AVR_ATmega2560__
+// The EEPROM size: Mega 2560; what an ESP32 has in its place, with room for 8,192 bytes of code;
+// Uno and Nano.
+#if defined(__AVR_ATmega2560__)
 constexpr uint16_t kMemoryBytes = 4096;
+#elif defined(ARDUINO_ARCH_ESP32)
+constexpr uint16_t kMemoryBytes = 16640;
 #else
 constexpr uint16_t kMemoryBytes = 1024;
 #endif

@@ -11,6 +11,14 @@
 
 namespace tiniscript {
 
+// Whether a write stops the chip for long, so that nothing may be written while motors are on; such
+// a memory may also refuse the last bytes of a save, as it is full.
+#ifdef ARDUINO_ARCH_ESP32
+constexpr bool kWritesStopTheChip = true;
+#else
+constexpr bool kWritesStopTheChip = false;
+#endif
+
 // Whether the last write is finished: only then may a byte be read or written.
 bool nvm_is_ready();
 

@@ -257,11 +257,11 @@ tini_noinline bool Store::begin_write(Area area, const uint8_t* bytes, uint16_t 
   is_stable_ = held_[slot_] != kNothing;
   bytes_ = bytes;
   length_ = length;
-  waits_from_ = kCommitting;
+  waits_from_ = kWritesStopTheChip ? kLooking : kCommitting;
   if (is_stable_ && is_in(slot_, bytes, length)) {
     // It may be the only copy: it gets another generation, and that waits from its first byte on.
     length_ = 1;
-    waits_from_ = kSaving;
+    waits_from_ = kWritesStopTheChip ? kLooking : kSaving;
   }
   at_ = 0;
   state_ = StoreState::kSaving;
@@ -337,8 +337,12 @@ void Store::finish() {
   uint8_t slot = slot_;
   const StoreState state = state_;
   if (state == StoreState::kSaving) {
-    held_[slot] = generation_;
-    state_ = StoreState::kSaved;
+    if (kWritesStopTheChip && nvm_read(plus(place_, kMarks)) != (generation_ ^ kMarkOf)) {
+      state_ = StoreState::kFailed;
+    } else {
+      held_[slot] = generation_;
+      state_ = StoreState::kSaved;
+    }
   } else if (state == StoreState::kSettling) {
     step_ = kLooking;
     if (++slot != kSlots) return go_to(slot);

@@ -1,3 +1,5 @@
+#ifdef __AVR__
+
 #include "clock.h"
 
 #include <Arduino.h>  // declares setup() and loop()
@@ -76,3 +78,5 @@ int main() {
   setup();
   for (;;) loop();
 }
+
+#endif  // __AVR__

@@ -1,4 +1,4 @@
-#ifdef ARDUINO
+#ifdef __AVR__
 
 #include "interrupts.h"
 
@@ -17,4 +17,4 @@ void tiniscript_interrupt_frame() {
       "pop r31\n\tpop r30\n\treti");
 }
 
-#endif  // ARDUINO
+#endif  // __AVR__

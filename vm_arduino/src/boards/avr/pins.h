@@ -94,6 +94,8 @@ tini_always_inline void clear_bits(uint16_t address, uint8_t mask) {
   }
 }
 
+constexpr bool is_there(Pin pin) { return pin.port != 0; }
+
 tini_always_inline void write(Pin pin, bool is_high) {
   if (is_high) {
     set_bits(pin.port, pin.mask);
@@ -118,6 +120,9 @@ tini_always_inline void begin_output(Pin pin, bool is_high) {
 // Pins are inputs after a reset.
 tini_always_inline void begin_pull_up(Pin pin) { write(pin, true); }
 
+// A servo begins low.
+tini_always_inline void begin_servo(Pin pin) { begin_output(pin, false); }
+
 // -- PWM
 
 constexpr uint16_t control_of(Pwm pwm) {
@@ -138,6 +143,9 @@ constexpr uint16_t compare_of(Pwm pwm) {
 
 // The COM bit that connects a channel to its pin.
 constexpr uint8_t connection_of(Pwm pwm) { return static_cast<uint8_t>(0x80 >> 2 * pwm.channel); }
+
+// Sets the pin low; the timer runs already.
+tini_always_inline void begin_pwm(Pwm pwm) { begin_output(pwm.pin, false); }
 
 // Lets a timer drive a pin; 255 is constantly high. For callers with interrupts off: they change
 // these registers too, and 16-bit timers share one for the high byte.

@@ -1,3 +1,5 @@
+#ifdef __AVR__
+
 #include "../servo.h"
 
 #include "../../vm/small.h"
@@ -83,3 +85,5 @@ bool servo_is_held(uint8_t number) {
 ISR(TIMER1_COMPA_vect) { tiniscript::next_pulse(); }
 
 #endif
+
+#endif  // __AVR__

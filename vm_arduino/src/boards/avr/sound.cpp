@@ -1,3 +1,5 @@
+#ifdef __AVR__
+
 #include "../sound.h"
 
 #include "../../vm/small.h"
@@ -10,11 +12,6 @@ namespace {
 
 constexpr uint32_t kFastestHertz = 2000000;  // the timer's clock with the fastest prescaler
 constexpr uint16_t kMostCounts = 512;        // per period: 256 for each half
-
-// Two notes each: rising and high, or falling and low.
-constexpr uint16_t kFinishedHertz[] = {1047, 1568};
-constexpr uint16_t kFaultHertz[] = {220, 110};
-constexpr uint8_t kNoteMs = 120;
 
 bool is_on;
 uint16_t next_hertz;  // the next note, or 0
@@ -88,3 +85,5 @@ ISR(TIMER2_COMPA_vect) {
   toggle(kBuzzer);
   OCR2A = is_high(kBuzzer) ? second_half : first_half;
 }
+
+#endif  // __AVR__

@@ -1,4 +1,4 @@
-#ifdef ARDUINO
+#ifdef __AVR__
 
 #include "../uart.h"
 
@@ -118,4 +118,4 @@ tiniscript_interrupt(uart_receive_vect, tiniscript::receive)
   }
 }
 
-#endif  // ARDUINO
+#endif  // __AVR__

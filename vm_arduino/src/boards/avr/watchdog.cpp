@@ -1,4 +1,4 @@
-#ifdef ARDUINO
+#ifdef __AVR__
 
 #include "watchdog.h"
 
@@ -135,4 +135,4 @@ tiniscript_interrupt(TIMER0_COMPA_vect, tiniscript::on_stall)
 #endif
 }
 
-#endif  // ARDUINO
+#endif  // __AVR__

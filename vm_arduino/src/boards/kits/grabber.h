@@ -6,6 +6,7 @@
 
 #define tiniscript_motors_bridge
 #define tiniscript_servos
+#define tiniscript_ultrasonics
 #define tiniscript_ultrasonic_vectors(each) each(INT4_vect)
 
 namespace tiniscript {
@@ -37,7 +38,7 @@ constexpr Pin kServos[] = {{kPortB, 1 << 5}};
 constexpr uint8_t kUltrasonics = 1;
 
 tini_always_inline Ultrasonic ultrasonic_at(uint8_t) {
-  return {{kPortA, 1 << 4}, {kPortE, 1 << 4}, 3, 1 << 4};
+  return {{kPortA, 1 << 4}, {{kPortE, 1 << 4}, 3, 1 << 4}};
 }
 
 inline void begin_devices() {

@@ -5,6 +5,7 @@
 #if defined(__AVR_ATmega328P__)  // uno, nano
 
 #define tiniscript_motors_bridge
+#define tiniscript_ultrasonics
 #define tiniscript_ultrasonic_vectors(each) each(PCINT2_vect)
 
 namespace tiniscript {
@@ -33,7 +34,7 @@ constexpr Pin kStandby = kNoPin;
 constexpr uint8_t kUltrasonics = 1;
 
 tini_always_inline Ultrasonic ultrasonic_at(uint8_t) {
-  return {{kPortD, 1 << 4}, {kPortD, 1 << 3}, 2, 1 << 3};
+  return {{kPortD, 1 << 4}, {{kPortD, 1 << 3}, 2, 1 << 3}};
 }
 
 inline void begin_devices() {
@@ -66,6 +67,7 @@ inline void actuators_off(bool) {}
 #elif defined(__AVR_ATmega2560__)  // mega
 
 #define tiniscript_motors_bridge
+#define tiniscript_ultrasonics
 #define tiniscript_ultrasonic_vectors(each) each(INT5_vect)
 
 namespace tiniscript {
@@ -94,7 +96,7 @@ constexpr Pin kStandby = kNoPin;
 constexpr uint8_t kUltrasonics = 1;
 
 tini_always_inline Ultrasonic ultrasonic_at(uint8_t) {
-  return {{kPortG, 1 << 5}, {kPortE, 1 << 5}, 3, 1 << 5};
+  return {{kPortG, 1 << 5}, {{kPortE, 1 << 5}, 3, 1 << 5}};
 }
 
 inline void begin_devices() {

@@ -1,0 +1,52 @@
+"""Gives each PWM pin of an ESP32 a channel of LEDC.
+
+Two neighbouring channels share a timer, and so a frequency: motors, servos and the buzzer have one
+each. So each of these three begins at an even channel.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from itertools import chain
+
+from tiniscript.robots.boards import DRIVERS
+from tiniscript.robots.profile import Board, Wiring
+
+PER_TIMER = 2  # channels
+FREQUENCIES = ("tone", "pwm", "servo")  # of `boards.NEEDS`, in the order of their channels
+
+
+def channels_of(board: Board) -> dict[int, int]:
+    """Return the channel of each pin that needs one."""
+    groups: dict[str, list[int]] = {need: [] for need in FREQUENCIES}
+    groups["tone"].append(board.buzzer)
+    used = chain(
+        [("motors", board.motors)],
+        (("sensors", wiring) for wiring in board.sensors),
+        (("actuators", wiring) for wiring in board.actuators),
+    )
+    for used_by, wiring in used:
+        for pin, need in _needs(used_by, wiring):
+            if need in groups:
+                groups[need].append(pin)
+    channels = {}
+    first = 0
+    for pins in groups.values():
+        channels.update({pin: channel for channel, pin in enumerate(pins, first)})
+        first += timers_of(len(pins)) * PER_TIMER
+    return channels
+
+
+def timers_of(pins: int) -> int:
+    """Return how many timers so many pins of one frequency take."""
+    return -(-pins // PER_TIMER)
+
+
+def _needs(used_by: str, wiring: Wiring) -> Iterable[tuple[int, str]]:
+    """Return the pins of a device with what each needs."""
+    for (use, name), driver in DRIVERS.items():
+        if name == wiring.driver and use.split()[0] == used_by:
+            for key, need, _ in driver.pins:
+                if key in wiring.pins:
+                    yield wiring.pins[key], need
+            return

@@ -1,0 +1,321 @@
+"""The sketch of an ESP32, the very files, on a simulated chip: pins, stops, faults and resets."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+
+import pytest
+
+from tests.firmware.test_host_firmware import computer, happened, outcome, send, stored
+from tests.machines.esp32 import (
+    BROWN_OUT,
+    EMPTY,
+    EXTERNAL,
+    TASK_WATCHDOG,
+    Esp32Robot,
+    Kept,
+    missing,
+)
+from tests.robots.test_robots import TEXTS
+from tiniscript import compile_text, robots
+from tiniscript.bytecode.image import unpack
+from tiniscript.link.requests import OK
+from tiniscript.robots.reader import read
+
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
+
+AWAY = "SI|F(60, 80)"
+KITS = ("tinibot32", "tinibotc3")
+MORE = """
+[[kit.sensors]]
+name = "BUMP"
+kind = "yes/no"
+
+[[kit.sensors]]
+name = "DARK"
+kind = "yes/no"
+
+[[kit.actuators]]
+name = "ARM"
+kind = "number"
+range = [0, 180]
+
+[[kit.actuators]]
+name = "FAN"
+kind = "number"
+range = [0, 100]
+
+[[kit.actuators]]
+name = "LED"
+kind = "yes/no"
+
+[board.sensors.BUMP]
+driver = "digital"
+pin = 22
+pull_up = true
+yes_is_low = true
+
+[board.sensors.DARK]
+driver = "threshold"
+pin = 32
+yes_is_low = true
+
+[board.actuators.ARM]
+driver = "servo"
+pin = 13
+
+[board.actuators.FAN]
+driver = "pwm"
+pin = 16
+
+[board.actuators.LED]
+driver = "digital"
+pin = 17
+yes_is_low = true
+"""
+SERVOS = '[board.motors]\ndriver = "servos"\nleft_pin = 25\nright_pin = 26\n'
+TWO_WIRE = """[board.motors]
+driver = "two_wire"
+left_forward = 25
+left_backward = 26
+right_forward = 27
+right_backward = 33
+"""
+
+
+def wired(motors: str, more: str = MORE) -> Esp32Robot:
+    """Return a robot whose motors are wired so, with one device of every driver."""
+    text = TEXTS["tinibot32"].partition("# ---- Its body")
+    head = re.sub(r"\[board\.motors\].*?(?=\n\[board\.sensors)", motors, text[0], flags=re.S)
+    kit = re.sub(r"(?m)^\[board\]", more.partition("[board")[0] + "[board]", head)
+    body = re.sub(r"(?s)# ---- What people call it.*", "", text[2])
+    devices = "[board" + more.partition("[board")[2]
+    return switched_on(Esp32Robot(read(kit + devices + text[1] + body, "mine")))
+
+
+def switched_on(robot: Esp32Robot) -> Esp32Robot:
+    robot.wait(200)
+    assert robot.did == []
+    assert robot.is_latched
+    return robot
+
+
+def run(robot: Esp32Robot, text: str) -> None:
+    kit = robot.robot.kit
+    compiled = compile_text(text, kit)
+    assert compiled.image, compiled
+    session = computer()
+    session = type(session)(1, 9600, kit.fingerprint)
+    assert robot.until(session, session.upload(unpack(compiled.image))) == OK
+
+
+@pytest.mark.parametrize("major", [2, 3])
+@pytest.mark.parametrize("name", KITS)
+def test_a_program_drives(name: str, major: int) -> None:
+    robot = switched_on(Esp32Robot(robots.load(name), major=major))
+    session = computer()
+    send(robot, session, "SI|F(1, 80);B(0.5, 100)")
+    robot.talk(session, 1800)
+    assert happened(robot)[:4] == ["MOTORS 80 80", "MOTORS -100 -100", "MOTORS 0 0", "TONE 1047"]
+    first, second = (int(line.split()[0]) for line in robot.did[:2])
+    assert second - first == 1000
+    assert [event.name for event in session.events()] == ["DONE"]
+
+
+@pytest.mark.parametrize("name", KITS)
+def test_a_stop_needs_nothing_of_ledc(name: str) -> None:
+    """All motor pins are low, and LEDC's channels still run: no pin is joined to them."""
+    robot = switched_on(Esp32Robot(robots.load(name)))
+    session = computer()
+    send(robot, session, AWAY)
+    robot.talk(session, 100)
+    assert happened(robot) == ["MOTORS 80 80"]
+    robot.step(bytes(4))  # a run of zeros: the link's emergency stop
+    assert happened(robot)[:2] == ["MOTORS 80 80", "MOTORS 0 0"]
+    assert robot.is_latched
+    pins = robot.robot.board.motors.pins.values()
+    assert [robot.output(pin) for pin in pins] == [0] * len(pins)
+
+
+@pytest.mark.parametrize("motors", [SERVOS, TWO_WIRE], ids=["servos", "two_wire"])
+def test_other_motors(motors: str) -> None:
+    robot = wired(motors)
+    run(robot, "SI|F(1, 80)")
+    robot.wait(300)
+    assert "MOTORS 80 80" in happened(robot)
+    robot.did.clear()
+    robot.step(bytes(4))
+    robot.wait(40)
+    assert "MOTORS 0 0" in happened(robot)
+    if motors == SERVOS:  # neutral pulses for a second, then none
+        assert robot.output(25) > 0
+        robot.wait(1100)
+        assert robot.output(25) == robot.output(26) == 0
+
+
+def test_actuators_and_what_a_stop_makes_of_them() -> None:
+    robot = wired(TWO_WIRE)
+    assert (robot.output(13), robot.output(16), robot.output(17)) == (0, 0, 255)
+    run(robot, "SI|SET(ARM, 90);SET(FAN, 50);SET(LED, TRUE);F(60, 80)")
+    robot.wait(100)
+    assert "SERVO 0 1500" in happened(robot)
+    assert (robot.output(16), robot.output(17)) == (128, 0)
+    robot.step(bytes(4))
+    robot.wait(10)
+    assert (robot.output(13), robot.output(16), robot.output(17)) == (0, 0, 255)
+
+
+def test_sensors() -> None:
+    robot = wired(TWO_WIRE)
+    trigger, echo = 18, 19
+    robot.analog(34, 4095)
+    robot.analog(35, 400)
+    robot.analog(32, 100)
+    robot.digital(22, False)
+    robot.sonar(trigger, echo, 50)
+    session = type(computer())(1, 9600, robot.robot.kit.fingerprint)
+    text = "SI|SHOW(LIGHT_R);SHOW(LIGHT_L);SHOW(DISTANCE);SHOW(BUMP);SHOW(DARK)"
+    compiled = compile_text(text, robot.robot.kit)
+    assert compiled.image
+    assert robot.until(session, session.upload(unpack(compiled.image))) == OK
+    robot.talk(session, 500)
+    shown = [event.values.value for event in session.events() if event.name == "SHOW"]
+    assert shown[:2] == [1_023_000, 100_000]
+    assert abs(shown[2] - 50_000) < 100  # thousandths of a centimetre
+    assert shown[3:] == [1, 1]
+
+
+def test_a_sonar_that_hears_nothing_says_400() -> None:
+    robot = switched_on(Esp32Robot())
+    session = computer()
+    send(robot, session, "SI|SHOW(DISTANCE)")
+    robot.talk(session, 500)
+    assert [event.values.value for event in session.events() if event.name == "SHOW"] == [400_000]
+
+
+def test_a_beep() -> None:
+    robot = switched_on(Esp32Robot())
+    send(robot, computer(), "SI|BEEP(0.2, 880);F(1, 50)")
+    robot.wait(400)
+    assert happened(robot)[0] == "TONE 880" and "TONE 0" in happened(robot)
+    assert robot.output(23) == 0
+
+
+def test_the_button_starts_what_is_stored_and_the_light_says_that_it_can() -> None:
+    robot, session = switched_on(Esp32Robot()), computer()
+    assert not robot.is_lit
+    send(robot, session, "SI|F(0.5, 80)")
+    robot.talk(session, 700)
+    stored(robot, session)
+    again = switched_on(Esp32Robot(kept=robot.kept()))
+    assert again.is_lit
+    again.push()
+    again.wait(600)
+    assert happened(again)[:2] == ["MOTORS 80 80", "MOTORS 0 0"]
+
+
+def test_nvs_is_written_only_while_the_motors_stand() -> None:
+    """A write may stop the chip while a page is erased: a stop would come late."""
+    robot, session = switched_on(Esp32Robot()), computer()
+    send(robot, session, AWAY)
+    before = robot.kept().writes
+    robot.talk(session, 1000)
+    assert robot.kept().writes == before
+    assert robot.until(session, session.stop()) == OK
+    stored(robot, session)
+    assert 0 < robot.kept().writes - before <= 9
+
+
+def test_a_full_nvs_is_said_and_the_program_before_stays() -> None:
+    robot, session = switched_on(Esp32Robot()), computer()
+    send(robot, session, "SB|F(0.5, 80)")
+    stored(robot, session)
+    kept = robot.kept()
+    robot.fill_nvs()
+    send(robot, session, "SB|B(0.5, 60)")
+    robot.talk(session, 1000)
+    request = session.status()
+    assert robot.until(session, request) == OK
+    assert outcome(request).values.saved == 1  # in memory alone
+    assert robot.kept().entries == kept.entries
+    again = switched_on(Esp32Robot(kept=robot.kept()))
+    again.push()
+    again.wait(100)
+    assert happened(again) == ["MOTORS 80 80"]
+
+
+# -- what goes wrong
+
+
+def driving(text: str = AWAY) -> Esp32Robot:
+    robot, session = switched_on(Esp32Robot()), computer()
+    send(robot, session, text)
+    robot.talk(session, 100)
+    assert happened(robot) == ["MOTORS 80 80"]
+    robot.did.clear()
+    return robot
+
+
+def test_a_main_loop_that_hangs_is_stopped_and_restarted() -> None:
+    robot = driving()
+    robot.hang(99)
+    robot.wait(1)
+    assert robot.did == []
+    robot.hang(1100)
+    robot.step()
+    assert happened(robot)[:2] == ["MOTORS 0 0", "RESTART"]
+    again = Esp32Robot(kept=robot.kept(), reset=TASK_WATCHDOG)
+    again.wait(200)
+    session = computer(2)
+    request = session.status()
+    assert again.until(session, request) == OK
+    values = outcome(request).values
+    assert values.fault == 19 or values.fault, "it says what hung"
+    assert values.fault_program != 0
+    assert again.is_latched
+
+
+def test_a_short_stall_is_a_fault_and_no_restart() -> None:
+    robot = driving()
+    robot.hang(150)
+    robot.wait(20)
+    assert happened(robot)[0] == "MOTORS 0 0"
+    assert "RESTART" not in happened(robot)
+    again = Esp32Robot(kept=robot.kept(), reset=TASK_WATCHDOG)
+    again.wait(200)
+    assert again.is_latched
+
+
+@pytest.mark.parametrize(("reset", "said"), [(1, 1), (EXTERNAL, 2), (BROWN_OUT, 3),
+                                             (TASK_WATCHDOG, 4), (5, 4), (4, 4), (3, 0)])
+def test_the_cause_of_a_reset(reset: int, said: int) -> None:
+    robot, session = Esp32Robot(reset=reset), computer()
+    robot.wait(200)
+    request = session.hello()
+    assert robot.until(session, request) == OK
+    assert outcome(request).values.reset == said
+
+
+def test_a_lost_client_stops_the_robot() -> None:
+    robot = driving()
+    robot.wait(1500)
+    assert happened(robot)[0] == "MOTORS 0 0"
+
+
+def test_too_many_bytes_at_once_are_counted() -> None:
+    robot, session = switched_on(Esp32Robot()), computer()
+    robot.step(bytes([1]) * 600)
+    robot.wait(2500)
+    request = session.status()
+    assert robot.until(session, request) == OK
+
+
+@pytest.mark.parametrize("take", [lambda kept: EMPTY, lambda kept: kept._replace(noinit=b"")])
+def test_what_a_reset_leaves_alone_may_be_anything(take: Callable[[Kept], Kept]) -> None:
+    robot = driving()
+    robot.hang(1200)
+    robot.step()
+    again = Esp32Robot(kept=take(robot.kept()), reset=1)
+    again.wait(300)
+    assert happened(again) == [] and again.is_latched

@@ -1,0 +1,140 @@
+"""A robot with an ESP32 in C++ on this computer: the sketch that ships, on a simulated chip.
+
+Builds `vm_arduino/src` with the stand-ins of `vm_arduino/extras/esp32` for Espressif's core. One
+process is one robot from a reset to the next; what NVS and the memory that a reset leaves alone
+hold goes on to the next one.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from hashlib import sha256
+from pathlib import Path
+from struct import pack
+from typing import NamedTuple
+
+from tests.machines.host import BUILDS, FLAGS, SOURCES, WARNINGS, Process, made, missing
+from tests.machines.host_firmware import TICKS, HostFirmware
+from tiniscript import robots
+from tiniscript.robots import firmware
+from tiniscript.robots.ports import ESP32S
+from tiniscript.robots.profile import Robot
+
+__all__ = ("EMPTY", "Esp32Robot", "Kept", "flags_of", "missing")
+
+STAND_INS = SOURCES / "extras" / "esp32"
+SIMULATED = ("main.cpp", "simulated_chip.cpp")  # of extras: the others are programs of their own
+POWER_ON, EXTERNAL, TASK_WATCHDOG, BROWN_OUT = 1, 2, 6, 9  # esp_reset_reason_t
+US_PER_CM = 58.309  # of an echo
+
+
+class Kept(NamedTuple):
+    """What a reset leaves alone: entries of NVS, and bytes that are not initialised."""
+
+    noinit: bytes
+    entries: dict[bytes, bytes]
+    writes: int  # of NVS, since the reset
+
+
+EMPTY = Kept(b"", {}, 0)
+
+
+class Esp32Robot(HostFirmware):
+    """A robot after a reset. It has the pins of a profile for an ESP32."""
+
+    def __init__(
+        self, robot: Robot | None = None, kept: Kept = EMPTY, reset: int = POWER_ON,
+        seed: int = 0x12345678, major: int = 2,
+    ) -> None:  # fmt: skip
+        self.robot = robot or robots.load("tinibot32")
+        program = built(firmware.header([self.robot], "a test."), self.robot.board.chip, major)
+        Process.__init__(self, [program], "the C++ robot with an ESP32")
+        self.now_ms = 0
+        self.did: list[str] = []
+        self.is_lit, self.is_latched = False, True
+        entries = b"".join(_text(each) for item in kept.entries.items() for each in item)
+        head = pack("<BI", reset, seed) + _text(kept.noinit)
+        self.ask(b"B", head + pack("<I", len(kept.entries)) + entries)
+
+    def kept(self) -> Kept:
+        answer = self.ask(b"E", b"")
+        noinit, answer = _next(answer)
+        count, answer = int.from_bytes(answer[:4], "little"), answer[4:]
+        entries = {}
+        for _ in range(count):
+            key, answer = _next(answer)
+            entries[key], answer = _next(answer)
+        return Kept(noinit, entries, int.from_bytes(answer[:4], "little"))
+
+    def hang(self, milliseconds: int) -> None:
+        """Let the main loop stand still."""
+        self.ask(b"H", pack("<I", milliseconds))
+        self.now_ms += milliseconds
+
+    def analog(self, pin: int, value: int) -> None:
+        """Let a pin have 0 to 4095."""
+        self.ask(b"A", pack("<BH", pin, value))
+
+    def digital(self, pin: int, level: bool) -> None:
+        self.ask(b"D", pack("<BB", pin, level))
+
+    def sonar(self, trigger: int, echo: int, distance_cm: float) -> None:
+        """Let a sensor hear something at a distance, or nothing at 0."""
+        self.ask(b"U", pack("<BBI", trigger, echo, round(distance_cm * US_PER_CM)))
+
+    def output(self, pin: int) -> int:
+        """Return what a pin has: 0 to 255, PWM as its share."""
+        return self.ask(b"O", pack("<B", pin))[0]
+
+    def fill_nvs(self, is_full: bool = True) -> None:
+        self.ask(b"F", pack("<B", is_full))
+
+
+def _text(data: bytes) -> bytes:
+    return pack("<I", len(data)) + data
+
+
+def _next(answer: bytes) -> tuple[bytes, bytes]:
+    length = int.from_bytes(answer[:4], "little")
+    return answer[4 : 4 + length], answer[4 + length :]
+
+
+def flags_of(chip: str, major: int) -> tuple[str, ...]:
+    """Return what a compiler of Espressif's core would be told for a chip."""
+    return (
+        "-DARDUINO=10805", "-DARDUINO_ARCH_ESP32", f"-DESP_ARDUINO_VERSION_MAJOR={major}",
+        f"-D{ESP32S[chip]}=1", f"-isystem{STAND_INS / 'core'}",
+    )  # fmt: skip
+
+
+@lru_cache
+def built(header: str, chip: str, major: int) -> Path:
+    """Return the program for the robot of a header; what was made before is used again.
+
+    Only what knows the robot's pins is compiled for each robot.
+    """
+    BUILDS.mkdir(mode=0o700, exist_ok=True)
+    own = BUILDS / f"own-{sha256(header.encode()).hexdigest()[:16]}.h"
+    if not own.exists():
+        own.write_text(header, encoding="utf-8")
+    texts = {
+        path: path.name.encode() + path.read_bytes()
+        for part in ("src", "extras/esp32", "extras/host")
+        for path in sorted((SOURCES / part).rglob("*"))
+        if path.suffix in (".h", ".cpp") and path.name != "own.h"
+    }
+    headers = [text for path, text in texts.items() if path.suffix == ".h"]
+    usual = (*FLAGS, *flags_of(chip, major), *WARNINGS)
+    of_boards = ("-Wno-shadow", "-Wno-conversion", f'-Dtiniscript_own="{own}"')
+    objects = []
+    for path, text in texts.items():
+        is_other = "extras" in path.parts and (path.parent != STAND_INS or path.name not in SIMULATED)
+        if path.suffix != ".cpp" or is_other:
+            continue
+        is_own = path.parent.name in ("boards", "esp32", "src")
+        flags = (*usual, *of_boards) if is_own else usual
+        objects.append(str(made("g++", BUILDS, ".o", flags, [*headers, text], ["-c", str(path)])))
+    return made("g++", BUILDS, "", usual, [name.encode() for name in objects], objects)
+
+
+assert TICKS == 20  # turns in a millisecond, as `main.cpp` has them

@@ -1,0 +1,19 @@
+// Stands for components/driver/include/driver/gpio.h of ESP-IDF 4.4; 5.1 has it in driver/gpio.
+
+#ifndef TINISCRIPT_DRIVER_GPIO_H_
+#define TINISCRIPT_DRIVER_GPIO_H_
+
+#include <stdint.h>
+
+#include "../esp_err.h"
+
+typedef enum { GPIO_NUM_NC = -1, GPIO_NUM_0 = 0, GPIO_NUM_MAX = 40 } gpio_num_t;
+
+extern "C" {
+esp_err_t gpio_set_level(gpio_num_t gpio_num, uint32_t level);
+int gpio_get_level(gpio_num_t gpio_num);
+esp_err_t gpio_intr_enable(gpio_num_t gpio_num);
+esp_err_t gpio_intr_disable(gpio_num_t gpio_num);
+}
+
+#endif  // TINISCRIPT_DRIVER_GPIO_H_

@@ -1,0 +1,25 @@
+// Stands for components/freertos/port/CHIP/include/freertos/portmacro.h of ESP-IDF.
+
+#ifndef TINISCRIPT_FREERTOS_FREERTOS_H_
+#define TINISCRIPT_FREERTOS_FREERTOS_H_
+
+#include <stdint.h>
+
+// In 4.4 and 5.1 a struct with the core that has the lock and how often it took it.
+typedef struct {
+  uint32_t owner;
+  uint32_t count;
+} portMUX_TYPE;
+
+#define portMUX_INITIALIZER_UNLOCKED \
+  { 0xb33fffff, 0 }
+
+extern "C" {
+void simulated_enter_critical(portMUX_TYPE* mux);
+void simulated_exit_critical(portMUX_TYPE* mux);
+}
+
+#define portENTER_CRITICAL_SAFE(mux) simulated_enter_critical(mux)
+#define portEXIT_CRITICAL_SAFE(mux) simulated_exit_critical(mux)
+
+#endif  // TINISCRIPT_FREERTOS_FREERTOS_H_

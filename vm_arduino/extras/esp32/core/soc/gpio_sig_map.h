@@ -1,0 +1,17 @@
+// Stands for components/soc/CHIP/include/soc/gpio_sig_map.h of ESP-IDF.
+
+#ifndef TINISCRIPT_SOC_GPIO_SIG_MAP_H_
+#define TINISCRIPT_SOC_GPIO_SIG_MAP_H_
+
+#include "../sdkconfig.h"
+
+#ifdef CONFIG_IDF_TARGET_ESP32
+#define LEDC_HS_SIG_OUT0_IDX 71
+#define LEDC_LS_SIG_OUT0_IDX 79
+#define SIG_GPIO_OUT_IDX 256
+#else
+#define LEDC_LS_SIG_OUT0_IDX 45
+#define SIG_GPIO_OUT_IDX 128
+#endif
+
+#endif  // TINISCRIPT_SOC_GPIO_SIG_MAP_H_

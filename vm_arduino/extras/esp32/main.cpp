@@ -1,0 +1,222 @@
+// A robot with an ESP32 on a computer, for tests: the sketch that ships, on a simulated chip.
+//
+// One process is one robot from a reset to the next. A request is four bytes of length and a letter
+// with what it asks; an answer is four bytes of length and what was found.
+// `tests/machines/esp32.py` is the other side. Ends with its input.
+
+#include <math.h>
+
+#include "../../src/boards/kit.h"
+#include "../host/wire.h"
+#include "simulated_chip.h"
+
+using namespace tiniscript;
+
+namespace {
+
+constexpr uint32_t kTurnUs = 50;     // of the main loop
+constexpr size_t kBytesPerMs = 12;  // at 115200 baud
+
+std::string log_of_robot;
+int shown_left;
+int shown_right;
+uint32_t shown_hertz;
+
+void say(const std::string& line) { log_of_robot += line + "\n"; }
+
+int percent(double level) { return static_cast<int>(lround(level / 2.55)); }
+
+// What reaches a motor, from the pins alone.
+#if defined(tiniscript_motors_bridge)
+int power_of(const Bridge& motor) {
+  const bool is_forward = output_of(motor.forward.number) != 0;
+  const bool is_backward = output_of(motor.backward.number) != 0;
+  if (is_forward == is_backward) return 0;
+  return (is_forward ? 1 : -1) * percent(output_of(motor.pwm.pin.number));
+}
+
+#elif defined(tiniscript_motors_two_wire)
+int power_of(const TwoWire& motor) {
+  return percent(output_of(motor.forward.pin.number) - output_of(motor.backward.pin.number));
+}
+#endif
+
+#ifdef tiniscript_servos
+uint32_t pulse_us(const Pwm& servo) {
+  const SimulatedPin& pin = chip.pins[servo.pin.number];
+  if (pin.signal != signal_of(servo.channel)) return 0;
+  const SimulatedChannel& channel = chip.channels[servo.channel];
+  return static_cast<uint32_t>((uint64_t{channel.duty} * 20000 + 8192) >> 14);
+}
+
+#ifdef tiniscript_motors_servos
+int power_of(const TurningServo& motor) {
+  const uint32_t us = pulse_us(kServos[motor.number]);
+  if (us == 0) return 0;
+  const int more = static_cast<int>(us) - motor.still_us;
+  return percent((motor.is_reversed ? -more : more) / 2.0);
+}
+#endif
+
+uint32_t shown_us[sizeof kServos / sizeof *kServos];
+#endif
+
+uint32_t tone() {
+  const bool is_joined = chip.pins[kBuzzer.pin.number].signal == signal_of(kBuzzer.channel);
+  const SimulatedChannel& channel = chip.channels[kBuzzer.channel];
+  return is_joined && channel.duty != 0 ? channel.hertz : 0;
+}
+
+void look() {
+  const int left = power_of(kLeftMotor);
+  const int right = power_of(kRightMotor);
+  if (left != shown_left || right != shown_right) {
+    say("MOTORS " + std::to_string(left) + " " + std::to_string(right));
+  }
+  shown_left = left;
+  shown_right = right;
+  const uint32_t hertz = tone();
+  if (hertz != shown_hertz) say("TONE " + std::to_string(hertz));
+  shown_hertz = hertz;
+#ifdef tiniscript_servos
+  uint8_t number = 0;
+  for (const Pwm& servo : kServos) {
+    const uint32_t us = pulse_us(servo);
+    if (us != shown_us[number]) say("SERVO " + std::to_string(number) + " " + std::to_string(us));
+    shown_us[number++] = us;
+  }
+#endif
+}
+
+void pass(uint32_t us) {
+  pass_us(us);
+  if (chip.has_restarted) {
+    say("RESTART");
+    chip.has_restarted = false;
+  }
+  look();
+}
+
+// B: a reset, and what it leaves alone: the bytes of `noinit`, the entries of NVS.
+void answer_begin(RequestReader* request) {
+  chip.reset = static_cast<esp_reset_reason_t>(request->u8());
+  chip.random = request->u32();
+  set_noinit(request->text());
+  for (uint32_t left = request->u32(); left > 0; left--) {
+    const std::string key = request->text();
+    chip.entries[key] = request->text();
+  }
+  for (SimulatedPin& pin : chip.pins) pin.signal = SIG_GPIO_OUT_IDX;
+  initVariant();
+  look();
+  setup();
+  look();
+}
+
+void turns(uint32_t count) {
+  for (uint32_t k = 0; k < count; k++) {
+    loop();
+    pass(kTurnUs);
+  }
+}
+
+// S: bytes arrive, the button goes down (1) or up (2), so many turns follow. Says what the robot
+// sends and what it does.
+void answer_step(RequestReader* request, Writer* answer) {
+  request->u32();  // the time: this chip has its own
+  const uint8_t flags = request->u8();
+  const uint16_t count = request->u16();
+  const Bytes heard = request->bytes();
+  chip.received.append(reinterpret_cast<const char*>(heard.data.get()), heard.length);
+  chip.sending = chip.sending > kBytesPerMs ? chip.sending - kBytesPerMs : 0;
+  if ((flags & 1) != 0) set_input(kStartButton.number, false);
+  if ((flags & 2) != 0) set_input(kStartButton.number, true);
+  turns(count);
+  answer->text(chip.sent);
+  answer->text(log_of_robot);
+  answer->u8(is_there(kLight) ? output_of(kLight.number) != 0 : 0);
+  answer->u8(motors_are_stopped());
+  chip.sent.clear();
+  log_of_robot.clear();
+}
+
+// E: what a reset leaves alone.
+void answer_kept(Writer* answer) {
+  answer->text(noinit());
+  answer->u32(static_cast<uint32_t>(chip.entries.size()));
+  for (const auto& each : chip.entries) {
+    answer->text(each.first);
+    answer->text(each.second);
+  }
+  answer->u32(chip.nvs_writes);
+}
+
+// H: the main loop stands still for so many milliseconds.
+void answer_hang(RequestReader* request) {
+  for (uint32_t left = request->u32(); left > 0; left--) pass(1000);
+}
+
+// A: what an analog pin has, 0 to 4095; D: a digital one; U: how long the echo of a sensor is.
+void answer_analog(RequestReader* request) {
+  const uint8_t pin = request->u8();
+  chip.analog[pin] = request->u16();
+}
+
+void answer_digital(RequestReader* request) {
+  const uint8_t pin = request->u8();
+  set_input(pin, request->u8() != 0);
+}
+
+void answer_echo(RequestReader* request) {
+  chip.trigger_pin = request->u8();
+  chip.echo_pin = request->u8();
+  chip.echo_us = request->u32();
+}
+
+// O: what a pin has, 0 to 255. F: whether NVS is full.
+void answer_output(RequestReader* request, Writer* answer) {
+  answer->u8(output_of(request->u8()));
+}
+
+}  // namespace
+
+int main() {
+  std::string asked;
+  while (next_request(&asked)) {
+    RequestReader request(asked);
+    Writer said;
+    switch (request.u8()) {
+      case 'B':
+        answer_begin(&request);
+        break;
+      case 'S':
+        answer_step(&request, &said);
+        break;
+      case 'E':
+        answer_kept(&said);
+        break;
+      case 'H':
+        answer_hang(&request);
+        break;
+      case 'A':
+        answer_analog(&request);
+        break;
+      case 'D':
+        answer_digital(&request);
+        break;
+      case 'U':
+        answer_echo(&request);
+        break;
+      case 'O':
+        answer_output(&request, &said);
+        break;
+      case 'F':
+        chip.is_nvs_full = request.u8() != 0;
+        break;
+      default:
+        return 1;
+    }
+    send_answer(said);
+  }
+  return 0;
+}

@@ -1,0 +1,379 @@
+#include "simulated_chip.h"
+
+#include <esp_random.h>
+#include <esp_rom_gpio.h>
+#include <esp_task_wdt.h>
+#include <esp_timer.h>
+#include <nvs.h>
+#include <soc/gpio_sig_map.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+SimulatedChip chip;
+HardwareSerial Serial;
+
+extern char __start_rtc_noinit[];
+extern char __stop_rtc_noinit[];
+
+namespace {
+
+constexpr uint64_t kNever = ~uint64_t{0};
+constexpr uint32_t kEchoBeginsUs = 450;
+
+struct Timer {
+  esp_timer_cb_t callback;
+  void* argument;
+  uint64_t period_us;
+  uint64_t due_us;
+};
+
+Timer timer = {nullptr, nullptr, 0, kNever};
+OnReceiveErrorCb on_error;
+uint8_t analog_bits = 12;
+uint64_t echo_rises_us = kNever;
+uint64_t echo_falls_us = kNever;
+
+void expect(bool is_so, const char* what) {
+  if (is_so) return;
+  fprintf(stderr, "MISUSE %s\n", what);
+  abort();
+}
+
+void expect_free(const char* what) { expect(chip.in_critical == 0, what); }
+
+// Starts the echo of a trigger pulse that ends.
+void on_write(uint8_t pin, bool was_high, bool is_high) {
+  if (pin != chip.trigger_pin || !was_high || is_high || chip.echo_us == 0) return;
+  echo_rises_us = chip.now_us + kEchoBeginsUs;
+  echo_falls_us = echo_rises_us + chip.echo_us;
+}
+
+uint64_t next_event() {
+  uint64_t next = timer.due_us;
+  if (echo_rises_us < next) next = echo_rises_us;
+  if (echo_falls_us < next) next = echo_falls_us;
+  if (chip.restart_ms != 0) {
+    const uint64_t restart_us = chip.fed_us + chip.restart_ms * uint64_t{1000};
+    if (restart_us < next) next = restart_us;
+  }
+  return next;
+}
+
+void do_event() {
+  if (echo_rises_us <= chip.now_us) {
+    echo_rises_us = kNever;
+    set_input(chip.echo_pin, true);
+  } else if (echo_falls_us <= chip.now_us) {
+    echo_falls_us = kNever;
+    set_input(chip.echo_pin, false);
+  } else if (timer.due_us <= chip.now_us) {
+    timer.due_us += timer.period_us;
+    timer.callback(timer.argument);
+  } else {
+    chip.has_restarted = true;
+    chip.restart_ms = 0;
+  }
+}
+
+SimulatedChannel& channel_of(uint32_t signal) {
+#ifdef LEDC_HS_SIG_OUT0_IDX
+  return chip.channels[signal - LEDC_HS_SIG_OUT0_IDX];
+#else
+  return chip.channels[signal - LEDC_LS_SIG_OUT0_IDX];
+#endif
+}
+
+uint32_t signal_of_channel(uint8_t channel) {
+#ifdef LEDC_HS_SIG_OUT0_IDX
+  return LEDC_HS_SIG_OUT0_IDX + static_cast<uint32_t>(channel);
+#else
+  return LEDC_LS_SIG_OUT0_IDX + static_cast<uint32_t>(channel);
+#endif
+}
+
+// Two channels share a timer, so the neighbour of one gets its frequency too.
+void set_frequency(uint8_t channel, uint32_t hertz, uint8_t bits) {
+  for (uint8_t each : {channel, static_cast<uint8_t>(channel ^ 1)}) {
+    chip.channels[each].hertz = hertz;
+    chip.channels[each].bits = bits;
+  }
+}
+
+void set_duty(uint8_t channel, uint32_t duty) {
+  SimulatedChannel& each = chip.channels[channel];
+  expect(each.bits != 0, "a duty of a channel that is not set up");
+  const uint32_t most = (1U << each.bits) - 1;
+  each.duty = duty == most ? most + 1 : duty;  // as both versions of the core do
+}
+
+void set_tone(uint8_t channel, uint32_t hertz) {
+  set_frequency(channel, hertz, 10);
+  chip.channels[channel].duty = hertz == 0 ? 0 : 0x1ff;
+}
+
+// One write of NVS: an entry is as it was, as it becomes, or gone.
+esp_err_t put(const char* key, const std::string& value) {
+  expect_free("NVS in a critical section");
+  expect(strlen(key) < 16, "a key of NVS that is too long");
+  if (chip.is_nvs_full) return ESP_ERR_NVS_NOT_ENOUGH_SPACE;
+  if (chip.is_off) return ESP_OK;
+  const auto before = chip.entries.find(key);
+  if (before != chip.entries.end() && before->second == value) return ESP_OK;
+  chip.nvs_writes++;
+  if (chip.nvs_writes == chip.cut_at) {
+    chip.is_off = true;
+    if (chip.torn == TornEntry::kOld) return ESP_OK;
+    if (chip.torn == TornEntry::kLost) {
+      chip.entries.erase(key);
+      return ESP_OK;
+    }
+  }
+  chip.entries[key] = value;
+  return ESP_OK;
+}
+
+}  // namespace
+
+void pass_us(uint64_t us) {
+  const uint64_t end_us = chip.now_us + us;
+  for (uint64_t next = next_event(); next <= end_us; next = next_event()) {
+    if (next > chip.now_us) chip.now_us = next;
+    do_event();
+  }
+  chip.now_us = end_us;
+}
+
+uint8_t output_of(uint8_t pin) {
+  const SimulatedPin& each = chip.pins[pin];
+  if (!each.is_output) return 0;
+  if (each.signal == SIG_GPIO_OUT_IDX) return each.level ? 255 : 0;
+  const SimulatedChannel& channel = channel_of(each.signal);
+  if (channel.bits == 0) return 0;
+  const uint64_t level = (uint64_t{channel.duty} * 255 + (1U << channel.bits) / 2) >> channel.bits;
+  return static_cast<uint8_t>(level > 255 ? 255 : level);
+}
+
+void set_input(uint8_t pin, bool level) {
+  SimulatedPin& each = chip.pins[pin];
+  if (each.input == level) return;
+  each.input = level;
+  if (each.handler != nullptr && each.has_interrupt) each.handler();
+}
+
+std::string noinit() { return std::string(__start_rtc_noinit, __stop_rtc_noinit); }
+
+void set_noinit(const std::string& bytes) {
+  if (bytes.size() == noinit().size()) memcpy(__start_rtc_noinit, bytes.data(), bytes.size());
+}
+
+extern "C" {
+
+unsigned long millis() { return static_cast<unsigned long>(chip.now_us / 1000); }
+unsigned long micros() { return static_cast<unsigned long>(chip.now_us); }
+
+void pinMode(uint8_t pin, uint8_t mode) {
+  expect_free("pinMode in a critical section");
+  SimulatedPin& each = chip.pins[pin];
+  each.is_output = mode == OUTPUT;
+  each.signal = SIG_GPIO_OUT_IDX;
+  if (mode == INPUT_PULLUP && !each.has_pull_up) each.input = true;
+  each.has_pull_up = mode == INPUT_PULLUP;
+}
+
+void attachInterrupt(uint8_t pin, void (*handler)(void), int mode) {
+  expect_free("attachInterrupt in a critical section");
+  expect(mode == CHANGE, "an interrupt of another kind");
+  chip.pins[pin].handler = handler;
+  chip.pins[pin].has_interrupt = true;
+}
+
+uint16_t analogRead(uint8_t pin) {
+  expect_free("analogRead in a critical section");
+  return static_cast<uint16_t>(chip.analog[pin] >> (12 - analog_bits));
+}
+
+void analogReadResolution(uint8_t bits) { analog_bits = bits; }
+
+#if ESP_ARDUINO_VERSION_MAJOR >= 3
+static uint8_t attached[40];  // the channel of each pin, as the core keeps it
+
+bool ledcAttachChannel(uint8_t pin, uint32_t freq, uint8_t resolution, uint8_t channel) {
+  expect_free("ledcAttachChannel in a critical section");
+  set_frequency(channel, freq, resolution);
+  chip.pins[pin].is_output = true;
+  chip.pins[pin].signal = signal_of_channel(channel);
+  attached[pin] = channel;
+  return true;
+}
+
+bool ledcWrite(uint8_t pin, uint32_t duty) {
+  set_duty(attached[pin], duty);
+  return true;
+}
+
+uint32_t ledcWriteTone(uint8_t pin, uint32_t freq) {
+  set_tone(attached[pin], freq);
+  return freq;
+}
+#else
+uint32_t ledcSetup(uint8_t channel, uint32_t freq, uint8_t resolution_bits) {
+  expect_free("ledcSetup in a critical section");
+  set_frequency(channel, freq, resolution_bits);
+  return freq;
+}
+
+void ledcAttachPin(uint8_t pin, uint8_t channel) {
+  expect_free("ledcAttachPin in a critical section");
+  chip.pins[pin].is_output = true;
+  chip.pins[pin].signal = signal_of_channel(channel);
+}
+
+void ledcWrite(uint8_t channel, uint32_t duty) { set_duty(channel, duty); }
+
+uint32_t ledcWriteTone(uint8_t channel, uint32_t freq) {
+  set_tone(channel, freq);
+  return freq;
+}
+#endif
+
+esp_err_t gpio_set_level(gpio_num_t gpio_num, uint32_t level) {
+  SimulatedPin& each = chip.pins[gpio_num];
+  const bool before = each.level;
+  each.level = level != 0;
+  on_write(static_cast<uint8_t>(gpio_num), before, each.level);
+  return ESP_OK;
+}
+
+int gpio_get_level(gpio_num_t gpio_num) {
+  const SimulatedPin& each = chip.pins[gpio_num];
+  return each.is_output ? each.level : each.input;
+}
+
+esp_err_t gpio_intr_enable(gpio_num_t gpio_num) {
+  chip.pins[gpio_num].has_interrupt = true;
+  return ESP_OK;
+}
+
+esp_err_t gpio_intr_disable(gpio_num_t gpio_num) {
+  chip.pins[gpio_num].has_interrupt = false;
+  return ESP_OK;
+}
+
+void esp_rom_gpio_connect_out_signal(uint32_t gpio_num, uint32_t signal_idx, bool, bool) {
+  chip.pins[gpio_num].signal = signal_idx;
+}
+
+void simulated_enter_critical(portMUX_TYPE*) { chip.in_critical++; }
+
+void simulated_exit_critical(portMUX_TYPE*) {
+  expect(chip.in_critical != 0, "the end of no critical section");
+  chip.in_critical--;
+}
+
+esp_reset_reason_t esp_reset_reason(void) { return chip.reset; }
+
+uint32_t esp_random(void) { return chip.random; }
+
+esp_err_t esp_timer_create(const esp_timer_create_args_t* create_args,
+                           esp_timer_handle_t* out_handle) {
+  timer.callback = create_args->callback;
+  timer.argument = create_args->arg;
+  *out_handle = nullptr;
+  return ESP_OK;
+}
+
+esp_err_t esp_timer_start_periodic(esp_timer_handle_t, uint64_t period_us) {
+  timer.period_us = period_us;
+  timer.due_us = chip.now_us + period_us;
+  return ESP_OK;
+}
+
+#if ESP_ARDUINO_VERSION_MAJOR >= 3
+esp_err_t esp_task_wdt_init(const esp_task_wdt_config_t*) { return ESP_ERR_INVALID_STATE; }
+
+esp_err_t esp_task_wdt_reconfigure(const esp_task_wdt_config_t* config) {
+  if (config->trigger_panic) chip.restart_ms = config->timeout_ms;
+  return ESP_OK;
+}
+#else
+esp_err_t esp_task_wdt_init(uint32_t timeout, bool panic) {
+  if (panic) chip.restart_ms = timeout * 1000;
+  return ESP_OK;
+}
+#endif
+
+esp_err_t esp_task_wdt_add(TaskHandle_t) {
+  chip.fed_us = chip.now_us;
+  return ESP_OK;
+}
+
+esp_err_t esp_task_wdt_reset(void) {
+  chip.fed_us = chip.now_us;
+  return ESP_OK;
+}
+
+esp_err_t nvs_open(const char*, nvs_open_mode_t, nvs_handle_t* out_handle) {
+  *out_handle = 1;
+  return ESP_OK;
+}
+
+esp_err_t nvs_get_u32(nvs_handle_t, const char* key, uint32_t* out_value) {
+  const auto found = chip.entries.find(key);
+  if (found == chip.entries.end()) return ESP_ERR_NVS_NOT_FOUND;
+  memcpy(out_value, found->second.data(), sizeof *out_value);
+  return ESP_OK;
+}
+
+esp_err_t nvs_set_u32(nvs_handle_t, const char* key, uint32_t value) {
+  return put(key, std::string(reinterpret_cast<const char*>(&value), sizeof value));
+}
+
+esp_err_t nvs_get_blob(nvs_handle_t, const char* key, void* out_value, size_t* length) {
+  const auto found = chip.entries.find(key);
+  if (found == chip.entries.end()) return ESP_ERR_NVS_NOT_FOUND;
+  if (found->second.size() > *length) return ESP_ERR_NVS_INVALID_LENGTH;
+  *length = found->second.size();
+  memcpy(out_value, found->second.data(), *length);
+  return ESP_OK;
+}
+
+esp_err_t nvs_set_blob(nvs_handle_t, const char* key, const void* value, size_t length) {
+  return put(key, std::string(static_cast<const char*>(value), length));
+}
+
+esp_err_t nvs_commit(nvs_handle_t) { return ESP_OK; }
+
+}  // extern "C"
+
+void HardwareSerial::begin(unsigned long, uint32_t, int8_t, int8_t, bool, unsigned long, uint8_t) {}
+
+void HardwareSerial::onReceiveError(OnReceiveErrorCb function) { on_error = function; }
+
+size_t HardwareSerial::setRxBufferSize(size_t new_size) { return chip.receive_room = new_size; }
+
+size_t HardwareSerial::setTxBufferSize(size_t new_size) { return chip.send_room = new_size; }
+
+int HardwareSerial::available() {
+  expect_free("Serial in a critical section");
+  if (chip.received.size() > chip.receive_room) {
+    chip.received.resize(chip.receive_room);
+    if (on_error) on_error(UART_BUFFER_FULL_ERROR);
+  }
+  return static_cast<int>(chip.received.size());
+}
+
+int HardwareSerial::availableForWrite() { return static_cast<int>(chip.send_room - chip.sending); }
+
+int HardwareSerial::read() {
+  if (chip.received.empty()) return -1;
+  const uint8_t byte = static_cast<uint8_t>(chip.received[0]);
+  chip.received.erase(0, 1);
+  return byte;
+}
+
+size_t HardwareSerial::write(uint8_t byte) {
+  chip.sent += static_cast<char>(byte);
+  chip.sending++;
+  return 1;
+}

@@ -1,0 +1,79 @@
+// An ESP32 on a computer, for tests: what `core/` declares, done by variables.
+//
+// Knows time, pins, the GPIO matrix, LEDC, timers, UART 0, NVS and the watchdog; no instructions
+// and no second core. What may not be called in a critical section ends the program there.
+
+#ifndef TINISCRIPT_ESP32_SIMULATED_CHIP_H_
+#define TINISCRIPT_ESP32_SIMULATED_CHIP_H_
+
+#include <Arduino.h>
+
+#include <map>
+#include <string>
+
+struct SimulatedPin {
+  bool is_output;
+  bool has_pull_up;
+  bool level;       // of its GPIO register
+  bool input;       // what comes from outside
+  uint32_t signal;  // of the GPIO matrix
+  void (*handler)();
+  bool has_interrupt;
+};
+
+struct SimulatedChannel {
+  uint32_t hertz;
+  uint8_t bits;
+  uint32_t duty;
+};
+
+// What becomes of the entry of NVS that is written when the power fails.
+enum class TornEntry : uint8_t { kOld, kNew, kLost };
+
+struct SimulatedChip {
+  uint64_t now_us = 0;
+  SimulatedPin pins[40] = {};
+  SimulatedChannel channels[16] = {};
+  uint16_t analog[40] = {};  // 12 bits
+  esp_reset_reason_t reset = ESP_RST_POWERON;
+  uint32_t random = 0x12345678;
+
+  std::string received;  // waits for the firmware
+  std::string sent;
+  size_t receive_room = 256;
+  size_t send_room = 128;
+  size_t sending = 0;  // bytes that the UART has still to send
+
+  std::map<std::string, std::string> entries;  // of NVS
+  uint32_t nvs_writes = 0;
+  bool is_nvs_full = false;
+  uint32_t cut_at = 0;  // the power fails at this write; 0: it does not
+  TornEntry torn = TornEntry::kOld;
+  bool is_off = false;  // since then nothing is written
+
+  uint32_t restart_ms = 0;  // of the task watchdog; 0: it does not run
+  uint64_t fed_us = 0;
+  bool has_restarted = false;
+
+  uint8_t echo_pin = 0xff;
+  uint8_t trigger_pin = 0xff;
+  uint32_t echo_us = 0;  // 0: there is nothing to hear
+
+  uint32_t in_critical = 0;
+};
+
+extern SimulatedChip chip;
+
+// Lets time pass; what is due meanwhile happens at its microsecond.
+void pass_us(uint64_t us);
+
+// What the pin has: 0 to 255, PWM as its share.
+uint8_t output_of(uint8_t pin);
+
+void set_input(uint8_t pin, bool level);
+
+// The bytes that a reset leaves alone.
+std::string noinit();
+void set_noinit(const std::string& bytes);
+
+#endif  // TINISCRIPT_ESP32_SIMULATED_CHIP_H_

@@ -1,0 +1,66 @@
+// The link over USB: UART 0, behind the USB chip of the board.
+//
+// The driver of the core takes bytes in its interrupt, and the main loop hands them to the firmware
+// in each turn. A break comes as a byte 0.
+
+#ifdef ARDUINO_ARCH_ESP32
+
+#include <Arduino.h>
+
+#include "../../firmware/firmware.h"
+#include "../uart.h"
+#include "attention.h"
+#include "clock.h"
+
+namespace tiniscript {
+
+namespace {
+
+constexpr size_t kRoomBytes = 512;  // more than a turn of the main loop can bring
+
+// The core's task counts, the main loop reads.
+volatile uint8_t framing;
+volatile uint8_t overrun;
+
+void on_error(hardwareSerial_error_t error) {
+  switch (error) {
+    case UART_BREAK_ERROR:
+    case UART_FRAME_ERROR:
+      framing = static_cast<uint8_t>(framing + 1);
+      return;
+    case UART_BUFFER_FULL_ERROR:
+    case UART_FIFO_OVF_ERROR:
+      overrun = static_cast<uint8_t>(overrun + 1);
+      return;
+    default:
+      return;
+  }
+}
+
+}  // namespace
+
+void uart_begin(uint32_t baud) {
+  Serial.setRxBufferSize(kRoomBytes);
+  Serial.setTxBufferSize(kRoomBytes);
+  Serial.onReceiveError(on_error);
+  Serial.begin(baud);
+}
+
+void uart_tick() {}
+
+void pay_attention() {
+  for (int left = Serial.available(); left > 0; left--) {
+    firmware_on_rx_byte(static_cast<uint8_t>(Serial.read()), static_cast<uint16_t>(millis()));
+  }
+}
+
+void uart_send() {
+  uint8_t byte = 0;
+  while (Serial.availableForWrite() > 0 && firmware_next_tx_byte(&byte)) Serial.write(byte);
+}
+
+LineErrors uart_errors() { return {framing, overrun}; }
+
+}  // namespace tiniscript
+
+#endif  // ARDUINO_ARCH_ESP32

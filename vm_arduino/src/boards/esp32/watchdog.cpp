@@ -1,0 +1,127 @@
+#ifdef ARDUINO_ARCH_ESP32
+
+#include "watchdog.h"
+
+#include <esp_attr.h>
+#include <esp_system.h>
+#include <esp_task_wdt.h>
+#include <esp_timer.h>
+#if __has_include(<esp_random.h>)
+#include <esp_random.h>
+#endif
+
+#include "../../firmware/firmware.h"
+#include "../kit.h"
+
+namespace tiniscript {
+
+namespace {
+
+constexpr uint32_t kRestartSeconds = 1;  // the core of version 2 counts whole seconds
+constexpr uint64_t kLookUs = 10000;
+constexpr uint32_t kHung = 0x93c5e21b;  // value of `mark` while the record counts
+
+// Survives a restart. After power-on its contents are random: `mark` says whether it counts.
+struct Record {
+  uint32_t mark;
+  Place place;  // zeros if nothing ran
+};
+
+RTC_NOINIT_ATTR Record last;
+
+// The main loop writes these, and the timer's task reads them, or the other way round.
+volatile uint32_t fed_ms;
+volatile bool is_hanging;
+volatile bool has_stalled;
+bool has_hung;  // before the last reset; not yet reported
+Reset cause;
+
+uint32_t hung_mark() { return kHung ^ last.place.program ^ last.place.at; }
+
+Reset cause_of(esp_reset_reason_t reason) {
+  switch (reason) {
+    case ESP_RST_POWERON:
+      return Reset::kPower;
+    case ESP_RST_EXT:
+      return Reset::kButton;
+    case ESP_RST_BROWNOUT:
+      return Reset::kBrownOut;
+    case ESP_RST_PANIC:
+    case ESP_RST_INT_WDT:
+    case ESP_RST_TASK_WDT:
+    case ESP_RST_WDT:
+      return Reset::kWatchdog;
+    default:
+      return Reset::kUnknown;
+  }
+}
+
+// The timer's task.
+void look(void*) {
+  if (is_hanging || clock_ms() - fed_ms <= kStallMs) return;
+  motors_stop();
+  actuators_off(true);
+  if (!firmware_runs(&last.place)) last.place = Place();
+  last.mark = hung_mark();
+  has_stalled = true;
+  is_hanging = true;
+}
+
+void begin_restart() {
+#if ESP_ARDUINO_VERSION_MAJOR >= 3
+  esp_task_wdt_config_t settings = {};
+  settings.timeout_ms = kRestartSeconds * 1000;
+  settings.trigger_panic = true;
+  // It runs already, unless the core was built without it.
+  if (esp_task_wdt_reconfigure(&settings) != ESP_OK) esp_task_wdt_init(&settings);
+#else
+  esp_task_wdt_init(kRestartSeconds, true);
+#endif
+  esp_task_wdt_add(nullptr);  // this task: setup() and loop() run in one
+}
+
+}  // namespace
+
+void watchdog_begin() {
+  cause = cause_of(esp_reset_reason());
+  has_hung = cause == Reset::kWatchdog && last.mark == hung_mark();
+  last.mark = 0;
+  fed_ms = clock_ms();
+  esp_timer_create_args_t settings = {};
+  settings.callback = look;
+  settings.name = "tiniscript";
+  esp_timer_handle_t timer = nullptr;
+  if (esp_timer_create(&settings, &timer) == ESP_OK) esp_timer_start_periodic(timer, kLookUs);
+  begin_restart();
+}
+
+void watchdog_feed() {
+  fed_ms = clock_ms();
+  if (is_hanging) {
+    last.mark = 0;
+    is_hanging = false;
+  }
+  esp_task_wdt_reset();
+}
+
+bool watchdog_has_stalled() {
+  const CriticalSection critical;
+  const bool found = has_stalled;
+  has_stalled = false;
+  return found;
+}
+
+bool watchdog_has_hung(Place* place) {
+  if (!has_hung) return false;
+  has_hung = false;
+  *place = last.place;
+  return true;
+}
+
+Reset watchdog_reset_cause() { return cause; }
+
+uint32_t watchdog_seed() { return esp_random(); }
+
+}  // namespace tiniscript
+
+#endif  // ARDUINO_ARCH_ESP32

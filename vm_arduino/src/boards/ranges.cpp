@@ -1,0 +1,31 @@
+#include "../vm/number.h"
+#include "analog.h"
+
+namespace tiniscript {
+
+int32_t analog_scaled(int32_t count, int32_t zero, int32_t step, int32_t rest) {
+  const uint32_t parts = static_cast<uint32_t>(count * rest) + 511;
+  // Dividing by 1023 with shifts is exact up to 2^20.
+  return zero + count * step + static_cast<int32_t>((parts + (parts >> 10) + 1) >> 10);
+}
+
+int32_t in_limits(int32_t value, int32_t low, int32_t high) {
+  return value < low ? low : value > high ? high : value;
+}
+
+uint16_t part_of_range(int32_t value, int32_t low, int32_t high, uint16_t first, uint16_t last) {
+  const int32_t at = in_limits(whole(value), low, high) - low;
+  // Ranges above 2^15 are exact enough without their lowest bits.
+  uint32_t range = static_cast<uint32_t>(high - low);
+  uint32_t gone = static_cast<uint32_t>(at);
+  while (range > 0x7fff) {
+    range >>= 1;
+    gone >>= 1;
+  }
+  const bool is_falling = last < first;
+  const uint16_t way = static_cast<uint16_t>(is_falling ? first - last : last - first);
+  const uint16_t part = static_cast<uint16_t>((gone * way + range / 2) / range);
+  return static_cast<uint16_t>(is_falling ? first - part : first + part);
+}
+
+}  // namespace tiniscript
