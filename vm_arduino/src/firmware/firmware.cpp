@@ -1,5 +1,6 @@
 #include "firmware.h"
 
+#include "../vm/small.h"
 #include "holding.h"
 #include "identify.h"
 #include "identity.h"
@@ -51,7 +52,12 @@ void firmware_tick(uint32_t time_ms) {
 }
 
 void firmware_on_rx_byte(uint8_t byte, uint16_t time_ms) {
-  if (receiver.put(byte, time_ms)) board_stop();
+  // Nothing is kept beside the call, so that no register must be saved before it.
+  if (near(&receiver)->stops(byte, time_ms)) {
+    board_stop();
+    return near(&receiver)->take_last_zero();
+  }
+  near(&receiver)->take(byte, time_ms);
 }
 
 bool firmware_has_tx_byte() { return link.has_tx_byte(); }

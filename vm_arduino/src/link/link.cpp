@@ -80,9 +80,11 @@ tini_noinline void Link::seal() {
 }
 
 bool Link::next_tx_byte(uint8_t* byte) {
-  if (left_ == 0) return false;
-  left_ = static_cast<uint8_t>(left_ - 1);
-  *byte = out_[sent_++];
+  Link* const self = near(this);
+  const uint8_t left = self->left_;
+  if (left == 0) return false;
+  self->left_ = static_cast<uint8_t>(left - 1);
+  *byte = self->out_[self->sent_++];
   return true;
 }
 

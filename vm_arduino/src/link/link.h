@@ -209,7 +209,6 @@ class Link {
   FrameCheck check_;  // of the item that arrives or waits
   uint16_t now_ms_;
   uint16_t left_ms_[kTimes];
-  uint32_t nonce_;  // of the session
   uint8_t epoch_;
   uint8_t damaged_;    // number of damaged frames
   uint8_t due_;        // what is due to be sent
@@ -222,7 +221,6 @@ class Link {
   uint8_t event_seq_;
   uint8_t last_epoch_;
   uint8_t rights_;
-  uint8_t tries_;      // wrong keys since the last right one or the last pause
   Said last_;          // the last reply to a numbered request
   Said said_;          // the current reply
   uint32_t checksum_;  // of the image in a receipt
@@ -250,6 +248,8 @@ class Link {
   Said sealed_last_;     // the last reply to a sealed request
   Seal seal_;
 #endif
+  uint8_t tries_;   // wrong keys since the last right one or the last pause
+  uint32_t nonce_;  // of the session
   uint8_t challenge_[kChallengeBytes];
   uint8_t out_[kWireBytes];
 };

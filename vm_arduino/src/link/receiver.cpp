@@ -20,17 +20,15 @@ bool is_printable(uint8_t byte) { return byte >= ' ' && byte != 0x7f; }
 
 }  // namespace
 
-bool Receiver::put(uint8_t byte, uint16_t now_ms) { return near(this)->take(byte, now_ms); }
-
-bool Receiver::take(uint8_t byte, uint16_t now_ms) {
-  const bool is_quiet = static_cast<uint16_t>(now_ms - last_ms_) >= kSilenceMs;
-  last_ms_ = now_ms;
+tini_noinline void Receiver::take(uint8_t byte, uint16_t now_ms) {
   has_heard_ = true;
+  const bool is_quiet = this->is_quiet(now_ms);
+  last_ms_ = now_ms;
   if (is_quiet) {
     const bool is_text =
         place_ == Place::kText || place_ == Place::kLost || place_ == Place::kAfterText;
     if (!is_kept_ || !is_text) cut();
-    zeros_ = 0;
+    zeros_ = 1;  // this byte, if it is one
   }
   if (byte == 0) return zero();
   zeros_ = 0;
@@ -39,13 +37,12 @@ bool Receiver::take(uint8_t byte, uint16_t now_ms) {
     place_ = is_printable(byte) && byte < 0x80 ? Place::kAfterText : Place::kFrame;
     if (place_ == Place::kFrame) drop();
   }
-  if (place_ == Place::kAfterText && is_blank(byte)) return false;
+  if (place_ == Place::kAfterText && is_blank(byte)) return;
   if (place_ <= Place::kAfterText) {
     begin(byte);
   } else {
     go_on(byte);
   }
-  return false;
 }
 
 // Determines the kind of an item from its first byte, as far as possible. A frame after text has a
@@ -123,17 +120,16 @@ void Receiver::add(uint8_t byte) {
   length_ = static_cast<uint8_t>(length + 1);
 }
 
-bool Receiver::zero() {
+void Receiver::zero() {
   if (place_ >= Place::kBlank && place_ <= Place::kFrame) {
     end(Item::kFrame);
     place_ = Place::kBegin;
   } else {
     cut();
   }
-  if (++zeros_ != kStopRun) return false;
+  if (zeros_ != kStopRun) return;
   zeros_ = 0;  // four more zeros are another stop
   stop_is_due_ = true;
-  return true;
 }
 
 // Starts over; the open item never ended.

@@ -10,6 +10,7 @@
 
 #include <stdint.h>
 
+#include "../vm/small.h"
 #include "messages.h"
 
 namespace tiniscript {
@@ -30,7 +31,25 @@ class Receiver {
   // Takes a byte at the time `now_ms`. Returns whether it completes a run of four zeros, the stop
   // sequence: the motors then go off at once. Eight zeros are two stops. A byte with a framing
   // error is 0.
-  bool put(uint8_t byte, uint16_t now_ms);
+  bool put(uint8_t byte, uint16_t now_ms) {
+    const bool is_stop = stops(byte, now_ms);
+    take(byte, now_ms);
+    return is_stop;
+  }
+
+  // The halves of `put`: between them the caller turns the motors off.
+  tini_always_inline bool stops(uint8_t byte, uint16_t now_ms) {
+    if (byte != 0) return false;
+    const uint8_t zeros = static_cast<uint8_t>(zeros_ + 1);
+    zeros_ = zeros;
+    if (zeros != kStopRun || is_quiet(now_ms)) return false;
+    last_ms_ = now_ms;
+    return true;
+  }
+  void take(uint8_t byte, uint16_t now_ms);
+
+  // Takes the byte that completes a stop.
+  void take_last_zero() { take(0, last_ms_); }
 
   // Whether a frame waits, its bytes and their number.
   bool has_frame() const { return item_ == Item::kFrame; }
@@ -87,8 +106,10 @@ class Receiver {
     kSkip,  // in noise, up to the next 0x00
   };
 
-  bool take(uint8_t byte, uint16_t now_ms);
-  bool zero();
+  tini_always_inline bool is_quiet(uint16_t now_ms) const {
+    return static_cast<uint16_t>(now_ms - last_ms_) >= kSilenceMs;
+  }
+  void zero();
   void cut();
   void begin(uint8_t byte);
   void go_on(uint8_t byte);

@@ -3,6 +3,7 @@
 #include "clock.h"
 
 #include <Arduino.h>  // declares setup() and loop()
+#include <stddef.h>
 
 #include "../../vm/flags.h"
 #include "attention.h"
@@ -52,22 +53,37 @@ uint16_t clock_us() {
 
 }  // namespace tiniscript
 
-// In a frame of its own, which is quicker: the pulses of servos wait for it.
-ISR(TIMER0_OVF_vect) {
+static_assert(offsetof(tiniscript::Clock, turns) == 4 && offsetof(tiniscript::Clock, fraction) == 5 &&
+                  offsetof(tiniscript::Clock, silence_ms) == 6,
+              "the interrupt knows where they lie");
+
+// In assembly, because a stop and the pulses of servos wait for it: the compiler's code takes twice as
+// long. Once the time is whole other interrupts may come in between.
+ISR(TIMER0_OVF_vect, ISR_NAKED) {
   using namespace tiniscript;
-  call_attention();
-  uint8_t passed_ms = 1;
-  uint8_t fraction = static_cast<uint8_t>(clock.fraction + kTurnParts);
-  if (fraction >= kParts) {
-    fraction = static_cast<uint8_t>(fraction - kParts);
-    passed_ms = 2;
-  }
-  clock.fraction = fraction;
-  clock.now_ms = clock.now_ms + passed_ms;
-  clock.turns = static_cast<uint8_t>(clock.turns + 1);
-  const uint8_t silence_ms = static_cast<uint8_t>(clock.silence_ms + 1);
-  clock.silence_ms = silence_ms;
-  if (silence_ms > kStallMs) watchdog_is_stalled();
+  asm volatile(
+      "push r24\n\tin r24, __SREG__\n\tpush r24\n\tpush r25\n\tpush r30\n\tpush r31\n\t"
+      "sbi %[flags], %[attention]\n\t"
+      "ldi r30, lo8(%[clock])\n\tldi r31, hi8(%[clock])\n\t"
+      "ldd r24, Z+4\n\tinc r24\n\tstd Z+4, r24\n\t"  // turns
+      "ldi r25, 1\n\t"                                // ms that have passed
+      "ldd r24, Z+5\n\tsubi r24, %[parts] - %[more]\n\tbrcc 1f\n\t"
+      "subi r24, -%[parts]\n\trjmp 2f\n"
+      "1: inc r25\n"
+      "2: std Z+5, r24\n\t"
+      "ld r24, Z\n\tadd r24, r25\n\tst Z, r24\n\tldi r25, 0\n\t"
+      "ldd r24, Z+1\n\tadc r24, r25\n\tstd Z+1, r24\n\t"
+      "ldd r24, Z+2\n\tadc r24, r25\n\tstd Z+2, r24\n\t"
+      "ldd r24, Z+3\n\tadc r24, r25\n\tstd Z+3, r24\n\t"
+      "sei\n\t"
+      "ldd r24, Z+6\n\tinc r24\n\tstd Z+6, r24\n\t"
+      "cpi r24, %[stall] + 1\n\tbrcs 3f\n\t"
+      "cli\n\tlds r24, %[mask]\n\tori r24, %[stalled]\n\tsts %[mask], r24\n"
+      "3: pop r31\n\tpop r30\n\tpop r25\n\tpop r24\n\tout __SREG__, r24\n\tpop r24\n\treti"
+      :
+      : [flags] "I"(kFlagsAt - 0x20), [attention] "I"(tini_attention_bit), [clock] "i"(&clock),
+        [parts] "M"(kParts), [more] "M"(kTurnParts), [stall] "M"(kStallMs),
+        [mask] "n"(_SFR_MEM_ADDR(TIMSK0)), [stalled] "M"(1 << OCIE0A));
 }
 
 int main() __attribute__((OS_main));

@@ -89,13 +89,14 @@ namespace {
 void receive() {
   const uint8_t status = UCSR0A;
   uint8_t byte = UDR0;
-  if ((status & _BV(DOR0)) != 0) overrun = static_cast<uint8_t>(overrun + 1);
-  if ((status & _BV(FE0)) != 0) {
-    framing = static_cast<uint8_t>(framing + 1);
-    byte = 0;
-    watch_line();
-  } else {
-    leave_line();
+  low_turns = 0;
+  if ((status & (_BV(DOR0) | _BV(FE0))) != 0) {
+    if ((status & _BV(DOR0)) != 0) overrun = static_cast<uint8_t>(overrun + 1);
+    if ((status & _BV(FE0)) != 0) {
+      framing = static_cast<uint8_t>(framing + 1);
+      byte = 0;
+      watch_line();
+    }
   }
   call_attention();
   firmware_on_rx_byte(byte, clock_16_ms());
