@@ -24,6 +24,14 @@ from tools.bench import avr_bench
 REASON = avr_bench.missing() or missing_host()
 ROOM = 389
 ORACLE_KIT, KIT = KITS[1]
+# Where one instruction that pushes a number ends, and a longer one begins.
+NUMBERS = (
+    *range(23), *range(30, 121, 10), 99, 127, 128, 129, 250, 255, 256, 3276, 3277, 32767, 32768,
+    32769, 65535, 65536, 65537, 100000, 2147483, 2147483.647, 2147483.648, 2147484, 429496729.6,
+    4294967296, 0.1, 0.5, 1.5, 2.0, "2.00", "20.000", "5.0004", "5.0005", 12.7, 12.8, 12.9, 13.1,
+    25.5, 25.6, 127.5, 0.01, 0.001, 1.25, 32.766, 32.767, 32.768, 32.769, 65.535, 65.536, 327.67,
+    327.68, 3276.7, 3276.8, 3276.9, 6553.5, 40000.5,
+)  # fmt: skip
 
 
 def said(answer: Answer) -> list[int]:
@@ -43,6 +51,11 @@ def texts() -> list[bytes]:
         text = programs.program(rng, ORACLE_KIT)
         slip = programs.broken(rng, text).encode("utf-8", "surrogatepass")
         found += [text.encode(), damaged(rng, slip)]
+    found += [
+        f"{sign}{number}".join(("F(1, ABS(", "))")).encode()
+        for number in NUMBERS
+        for sign in ("", "-")
+    ]
     return [each + b"\n" for each in found if each.strip() and len(each) < 800]
 
 

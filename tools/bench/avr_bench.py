@@ -36,7 +36,7 @@ def missing() -> str:
 MORE = {
     "store": ("store/store.cpp", "boards/avr/eeprom.cpp"),
     "reader": tuple(
-        f"text/{path.name}" for path in sorted((SOURCES / "src" / "text").glob("*.cpp"))
+        f"text/{path.name}" for path in sorted((SOURCES / "src" / "text").glob("*.[cS]*"))
     ),
 }
 

@@ -103,7 +103,7 @@ def built(use: str, flags: tuple[str, ...]) -> Size:
     code = [
         *sorted((SOURCE / "vm").glob("*.[cS]*")),
         *sorted((SOURCE / "link").glob("*.cpp")),
-        *sorted((SOURCE / "text").glob("*.cpp")),
+        *sorted((SOURCE / "text").glob("*.[cS]*")),
     ]
     with tempfile.TemporaryDirectory() as folder:
         source, program = Path(folder) / "probe.cpp", Path(folder) / "probe"

@@ -77,7 +77,10 @@ def _size(board: str, use: str) -> Size:
 
 def linked(use: str, parts: bool = False) -> Size:
     """Return what the small program takes on an ATmega328P."""
-    code = [*sorted((SOURCE / "text").glob("*.cpp")), *sorted((SOURCE / "vm").glob("crc32*.[cS]*"))]
+    code = [
+        *sorted((SOURCE / "text").glob("*.[cS]*")),
+        *sorted((SOURCE / "vm").glob("crc32*.[cS]*")),
+    ]
     with tempfile.TemporaryDirectory() as folder:
         source, program = Path(folder) / "probe.cpp", Path(folder) / "probe"
         source.write_text(PROBE.replace("USE", use), encoding="utf-8")

@@ -104,20 +104,22 @@ tini_noinline void put_number(int32_t value) {
 
 // Puts words of the robot until the line is full. Returns whether there are more.
 bool Console::put_words() {
+  const uint8_t* word = help_;
+  if (word == nullptr) word = kWords;
+  help_ = nullptr;
   for (;;) {
-    if (help_ == nullptr) help_ = kWords;
-    if (!kReadsDefs && help_ == kWords + kDefAt) help_ += kDefBytes;
-    if (help_ == kWords + kSkippedAt) help_ = kWords + kAliasesAt + kAliasBytes;
-    if (help_ == kWords + kLaterWordsAt) help_ = robot_words();
-    if (flash_byte(help_) == 0) break;
-    if (size > kWireBytes - kLineEndBytes - kLongestWord) return true;
-    help_ = put_word(help_);
+    if (!kReadsDefs && word == kWords + kDefAt) word += kDefBytes;
+    if (word == kWords + kSkippedAt) word = kWords + kAliasesAt + kAliasBytes;
+    if (word == kWords + kLaterWordsAt) word = robot_words();
+    if (flash_byte(word) == 0) return false;
+    if (size > kWireBytes - kLineEndBytes - kLongestWord) break;
+    word = put_word(word);
     put(' ');
     // Behind a word of the kit there is no letter.
-    if (flash_byte(help_) < 'A') help_ = behind_device(help_);
+    if (flash_byte(word) < 'A') word = behind_device(word);
   }
-  help_ = nullptr;
-  return false;
+  help_ = word;
+  return true;
 }
 
 tini_noinline uint8_t Console::write_value(int32_t value, bool is_yes_no, uint8_t* out) {

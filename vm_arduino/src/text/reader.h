@@ -138,10 +138,11 @@ class Reader {
   // code and memory, in reader_code.cpp
   void emit(uint8_t byte);
   void emit_numbered(uint8_t op, uint8_t first_short, uint8_t number);
-  tini_noinline void emit_number(bool is_minus);
+  void emit_number(bool is_minus);
   void link(uint8_t* ends);
   void resolve(uint8_t at);
   tini_noinline void read_first(uint8_t sensor);
+  tini_noinline void insert(uint8_t byte);
   void push(uint8_t byte);
   bool has_room(uint16_t bytes);
   Block* top() const { return reinterpret_cast<Block*>(stack_); }
@@ -151,6 +152,8 @@ class Reader {
   uint8_t* names_;  // behind what waits, before the names
   uint8_t* end_;
   uint8_t length_;  // of the code
+  Problem problem_;
+  uint32_t value_;  // of the number's digits so far; behind the number its thousandths
   uint8_t first_;   // where the code of this instruction begins, behind its readings
 
   // characters
@@ -165,12 +168,10 @@ class Reader {
   bool is_damaged_;
   bool is_after_cr_;
   uint32_t crc_;
-  uint32_t value_;  // of the number's digits so far; behind the number its thousandths
   int8_t places_;   // decimals that it may still have; -1 behind the one that rounds it
 
   // the parser
   uint8_t state_;
-  Problem problem_;
   uint8_t setup_;
   bool has_setup_;
   uint8_t what_;      // the instruction, by its word
@@ -196,6 +197,64 @@ class Reader {
   uint8_t number_;
   const uint8_t* entry_;
 };
+
+#ifdef __AVR__
+
+// In `reader_avr.S`, with the reader in Y: a call takes less than one of the compiler's.
+
+inline void Reader::emit(uint8_t byte) {
+  register uint8_t its asm("r24") = byte;
+  asm volatile("%~call tiniscript_emit"
+               : "+r"(its)
+               : "y"(this)
+               : "r25", "r26", "r27", "r30", "r31", "memory");
+}
+
+inline void Reader::emit_numbered(uint8_t op, uint8_t first_short, uint8_t number) {
+  register uint8_t its asm("r24") = op;
+  register uint8_t first asm("r25") = first_short;
+  register uint8_t last asm("r22") = number;
+  asm volatile("%~call tiniscript_emit_numbered"
+               : "+r"(its), "+r"(first)
+               : "r"(last), "y"(this)
+               : "r26", "r27", "r30", "r31", "memory");
+}
+
+inline void Reader::emit_number(bool is_minus) {
+  register uint8_t its asm("r22") = is_minus;
+  asm volatile("%~call tiniscript_emit_number"
+               :
+               : "r"(its), "y"(this)
+               : "r18", "r19", "r20", "r21", "r23", "r24", "r25", "r26", "r27", "r30", "r31",
+                 "memory");
+}
+
+inline void Reader::push(uint8_t byte) {
+  register uint8_t its asm("r24") = byte;
+  asm volatile("%~call tiniscript_push"
+               : "+r"(its)
+               : "y"(this)
+               : "r26", "r27", "r30", "r31", "memory");
+}
+
+inline bool Reader::has_room(uint16_t bytes) {
+  register uint16_t its asm("r24") = bytes;
+  asm volatile("%~call tiniscript_has_room"
+               : "+r"(its)
+               : "y"(this)
+               : "r26", "r27", "r30", "r31", "memory");
+  return static_cast<uint8_t>(its) != 0;
+}
+
+inline void Reader::resolve(uint8_t at) {
+  register uint8_t its asm("r24") = at;
+  asm volatile("%~call tiniscript_resolve"
+               : "+r"(its)
+               : "y"(this)
+               : "r25", "r26", "r30", "r31", "memory");
+}
+
+#endif  // __AVR__
 
 }  // namespace tiniscript
 

@@ -1,5 +1,6 @@
 // The reader's memory: code that grows from the begin of its buffer, and what waits behind it.
 
+#include "reader_avr.h"
 #include "reader_parts.h"
 
 namespace tiniscript {
@@ -7,6 +8,15 @@ namespace tiniscript {
 namespace {
 
 constexpr uint8_t kTight = 16;  // more than one byte of text takes
+
+static_assert(static_cast<uint8_t>(Problem::kFull) == tini_problem_full, "");
+static_assert(kShorts == tini_shorts, "");
+static_assert(byte_of(Op::kPushNum0) == tini_push_num_0, "");
+static_assert(byte_of(Op::kPush8) == tini_push_8, "");
+static_assert(byte_of(Op::kPush16) == tini_push_16, "");
+static_assert(byte_of(Op::kPush32) == tini_push_32, "");
+static_assert(byte_of(Op::kPushTenths) == tini_push_tenths, "");
+static_assert(byte_of(Op::kPushMilli) == tini_push_milli, "");
 
 }  // namespace
 
@@ -21,6 +31,13 @@ bool Reader::wants_room() const {
 }
 
 tini_noinline void Reader::move(uint8_t* buffer, uint16_t room) {
+#ifdef __AVR__
+  static_assert(offsetof(Reader, buffer_) == tini_buffer_at, "");
+  static_assert(offsetof(Reader, stack_) == tini_waiting_at, "");
+  static_assert(offsetof(Reader, length_) == tini_code_length_at, "");
+  static_assert(offsetof(Reader, problem_) == tini_problem_at, "");
+  static_assert(offsetof(Reader, value_) == tini_value_at, "");
+#endif
   uint8_t* const end = buffer + room;
   const ptrdiff_t way = end - end_;
   __builtin_memmove(buffer, buffer_, static_cast<size_t>(length_ + letters_));
@@ -33,6 +50,8 @@ tini_noinline void Reader::move(uint8_t* buffer, uint16_t room) {
   end_ = end;
   buffer_ = buffer;
 }
+
+#ifndef __AVR__
 
 // Whether a byte fits behind the code and `bytes` more.
 bool Reader::has_room(uint16_t bytes) {
@@ -63,12 +82,6 @@ void Reader::push(uint8_t byte) {
   if (has_room(0)) *--stack_ = byte;
 }
 
-// Emits an operand that leads to an end that is not known yet.
-void Reader::link(uint8_t* ends) {
-  emit(*ends);
-  *ends = static_cast<uint8_t>(length_ - 1);
-}
-
 // Lets the operand at `at`, and those that it names one after the other, lead here.
 void Reader::resolve(uint8_t at) {
   while (at != 0) {
@@ -78,26 +91,39 @@ void Reader::resolve(uint8_t at) {
   }
 }
 
+#endif  // __AVR__
+
+// Emits an operand that leads to an end that is not known yet.
+void Reader::link(uint8_t* ends) {
+  emit(*ends);
+  *ends = static_cast<uint8_t>(length_ - 1);
+}
+
 // Puts a reading before the code of this instruction, unless it has one.
 void Reader::read_first(uint8_t sensor) {
   const SensorBits bit = static_cast<SensorBits>(SensorBits{1} << sensor);
   if ((known_ & bit) != 0) return;
   known_ |= bit;
-  const uint8_t bytes = sensor < kShorts ? 1 : 2;
-  emit(0);
-  if (bytes == 2) emit(0);
-  if (problem_ != Problem::kNone) return;
-  const uint8_t length = length_;
-  uint8_t* const first = buffer_ + first_ + bytes;
-  for (uint8_t* at = buffer_ + length; at != first;) {
-    at--;
-    *at = *(at - bytes);
+  if (sensor < kShorts) {
+    insert(static_cast<uint8_t>(byte_of(Op::kRead0) + sensor));
+  } else {
+    insert(byte_of(Op::kRead));
+    insert(sensor);
   }
-  length_ = first_;
-  emit_numbered(byte_of(Op::kRead), byte_of(Op::kRead0), sensor);
-  first_ = length_;
-  length_ = length;
 }
+
+// Puts a byte of a reading where the code of this instruction begins.
+void Reader::insert(uint8_t byte) {
+  emit(0);
+  for (uint8_t at = first_; at < length_; at++) {
+    const uint8_t next = buffer_[at];
+    buffer_[at] = byte;
+    byte = next;
+  }
+  first_++;
+}
+
+#ifndef __AVR__
 
 namespace {
 
@@ -156,5 +182,7 @@ void Reader::emit_number(bool is_minus) {
     operand >>= 8;
   }
 }
+
+#endif  // __AVR__
 
 }  // namespace tiniscript
