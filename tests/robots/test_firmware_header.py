@@ -107,7 +107,7 @@ def test_every_shipped_header_can_be_chosen() -> None:
     settings = (ROOT / "vm_arduino" / "platformio.ini").read_text(encoding="utf-8")
     for name in robots.names():
         assert f'#include "kits/{name}.h"\n' in chooser
-        if name != robots.DEFAULT:
+        if not name.startswith(robots.DEFAULT):  # that of an ESP32 is for it what tinibot is
             assert f"#if defined(tiniscript_{name})" in chooser.replace("elif", "if")
             assert f"-D tiniscript_{name}\n" in settings
 

@@ -12,7 +12,7 @@ from tiniscript.cli.inputs import shown
 from tiniscript.cli.terminal.progress import Progress
 from tiniscript.cli.texts.common import text
 from tiniscript.library import install_advice
-from tiniscript.robots.firmware import BOARDS
+from tiniscript.robots.ports import AVRS
 
 if TYPE_CHECKING:
     from tiniscript.flash.building import CannotBuild, Seen, Sources
@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 __all__ = ("BOARDS", "firmware", "on_boards", "print_list", "row")
 
 LOG = "build.log"  # the output of the last failed build, in the folder of the ready files
+
+
+BOARDS = tuple(AVRS)  # that avrdude writes to
 
 
 def on_boards(name: str | None, language: str, boards: Sequence[str] = BOARDS) -> list[Robot]:

@@ -31,7 +31,11 @@ def _others() -> dict[str, Kit]:
     from tiniscript import robots
     from tiniscript.robots import given
 
-    found = {name: robots.load(name).kit for name in robots.names()}
+    found: dict[str, Kit] = {}
+    for name in robots.names():
+        kit = robots.load(name).kit
+        if kit not in found.values():  # robots on other boards may have the kit of one
+            found[name] = kit
     for path, robot in given.profiles():
         try:
             near = min(path, os.path.relpath(path), key=len)

@@ -1,4 +1,4 @@
-// Selects the robot: kits/own.h if that file exists, else tinibot. `pio run -e nano_liner` selects
+// Selects the robot: kits/own.h if that file exists, else the TiniBot of the chip. `pio run -e nano_liner` selects
 // another one; in the Arduino IDE, write a line here such as #define tiniscript_liner
 
 #ifndef TINISCRIPT_BOARDS_KIT_H_
@@ -18,12 +18,12 @@
 #include "kits/liner.h"
 #elif defined(tiniscript_grabber)
 #include "kits/grabber.h"
-#elif defined(tiniscript_tinibot32)
-#include "kits/tinibot32.h"
-#elif defined(tiniscript_tinibotc3)
-#include "kits/tinibotc3.h"
 #elif __has_include("kits/own.h") && !defined(tiniscript_tinibot)
 #include "kits/own.h"
+#elif defined(CONFIG_IDF_TARGET_ESP32)
+#include "kits/tinibot32.h"
+#elif defined(CONFIG_IDF_TARGET_ESP32C3)
+#include "kits/tinibotc3.h"
 #else
 #include "kits/tinibot.h"
 #endif

@@ -59,8 +59,9 @@ def _chosen(options: Namespace, language: str) -> tuple[Robot, tuple[Bootloader,
     board, bootloaders = BOARDS.get(options.board or robot.board.chip, ("", ()))
     if not board:
         raise CommandError(
-            2, "no_firmware", chip=robot.board.chip, known=", ".join(firmware_build.BOARDS)
-        )
+            2, "flash_by_hand", chip=robot.board.chip, robot=robot.name,
+            known=", ".join(firmware_build.BOARDS),
+        )  # fmt: skip
     there = firmware_build.on_boards(options.robot, language, [board])
     if not there:
         fits = ", ".join(
