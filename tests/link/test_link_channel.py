@@ -196,6 +196,7 @@ class World:
     """A computer, a robot and two radios. A disconnect takes both radios out for a while."""
 
     STEP_MS = 5
+    LINE = 54  # bytes of code of a live line
 
     def __init__(self, cpp: CppLink, draw: random.Random, faults: float, drops: float) -> None:
         self.cpp, self.draw, self.drops = cpp, draw, drops
@@ -219,17 +220,26 @@ class World:
             if self.draw.random() < self.drops:
                 self._out_until = self.now_ms + self.draw.randrange(100, 3000)
             self.there.is_out = self.back.is_out = self.now_ms < self._out_until
+            self.disturb()
             data = self.session.poll(self.now_ms)
             if data:
+                self.heard(data)
                 self.there.send(data, self.now_ms)
             came = self.there.arrived(self.now_ms)
             if came or self.now_ms % 50 == 0:
                 step = self.cpp.step(self.now_ms, came)
                 self.did += step.did
                 if step.sent:
+                    self.heard(step.sent)
                     self.back.send(step.sent, self.now_ms)
             self.session.receive(self.back.arrived(self.now_ms), self.now_ms)
             self.now_ms += self.STEP_MS
+
+    def disturb(self) -> None:
+        """What others do at this time."""
+
+    def heard(self, data: bytes) -> None:
+        """What others hear."""
 
 
 def program(draw: random.Random) -> bytes:
@@ -239,11 +249,11 @@ def program(draw: random.Random) -> bytes:
     return b"".join(bytes((move, draw.randrange(256), draw.randrange(101))) for _ in range(count))
 
 
-def one_upload(cpp: CppLink, seed: int) -> str:
+def one_upload(cpp: CppLink, seed: int, world_of: type[World] = World) -> str:
     """Upload a program over another one, then send lines and stop; return how the upload went."""
     draw = random.Random(seed)
     faults = draw.choice((0, 0.001, 0.01))
-    world = World(cpp, draw, faults, drops=draw.choice((0, 0.0002, 0.002)))
+    world = world_of(cpp, draw, faults, drops=draw.choice((0, 0.0002, 0.002)))
     old = pack("SI", 0, program(draw))
     world.there.faults = world.back.faults = 0
     drops, world.drops = world.drops, 0
@@ -271,7 +281,7 @@ def one_upload(cpp: CppLink, seed: int) -> str:
     # each line runs once or not at all, and once if the computer says so
     lines = []
     for _ in range(4):
-        code = program(draw)[:54]
+        code = program(draw)[: world.LINE]
         request = world.session.live(code)
         world.run(request)
         assert request.outcome
@@ -283,7 +293,7 @@ def one_upload(cpp: CppLink, seed: int) -> str:
         assert times[row] == 1 if answer == 0 else times[row] <= 1, f"seed {seed}: {row}"
 
     # after a stop nothing begins, whatever is still under way
-    request = world.session.live(program(draw)[:54])
+    request = world.session.live(program(draw)[: world.LINE])
     world.run(None, draw.randrange(0, 200))
     before = len(world.did)
     world.session.stop(world.now_ms)

@@ -73,6 +73,22 @@ class CppLink(Process):
     def siphash(self, key: bytes, message: bytes) -> bytes:
         return self.ask(b"H", key + pack("<I", len(message)) + message)
 
+    def sealed(self, key: bytes, origin: bytes, heard: int, sent: int, frame: bytes) -> bytes:
+        """Return a frame of the robot, from its type to its MAC; nothing if no counter is left."""
+        body = b"\0" + frame[:3] + bytes(5) + frame[3:]
+        answer = self._seal(key, origin, heard, sent, body, b"")
+        return _text(answer)[0][1:]
+
+    def opens(self, key: bytes, origin: bytes, heard: int, frame: bytes) -> bool:
+        """Return whether the robot takes a frame, from its type to its MAC."""
+        return bool(self._seal(key, origin, heard, 0, bytes(9), b"\0" + frame)[-1])
+
+    def _seal(
+        self, key: bytes, origin: bytes, heard: int, sent: int, own: bytes, given: bytes
+    ) -> bytes:
+        parts = (len(each).to_bytes(4, "little") + each for each in (own, given))
+        return self.ask(b"X", key + origin + pack("<II", heard, sent) + b"".join(parts))
+
     def held(self) -> bytes:
         """Return the image that the robot holds."""
         return _text(self.ask(b"M", b""))[0]

@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "../../src/link/link.h"
+#include "../../src/link/seal.h"
 #include "../../src/link/siphash.h"
 #include "../host/wire.h"
 #include "simulated_port.h"
@@ -15,6 +16,11 @@
 using namespace tiniscript;
 
 namespace {
+
+struct TestedSeal : Seal {
+  void heard(uint32_t counter) { heard_ = counter; }
+  void sent(uint32_t counter) { sent_ = counter; }
+};
 
 Receiver receiver;
 Link link_half;
@@ -105,6 +111,9 @@ void answer_robot(RequestReader* request, Writer* answer) {
     case 'l':
       link_half.lapse();
       break;
+    case 'o':
+      port.identity.features = static_cast<uint16_t>(value);
+      break;
     case 'k':
       port.is_saving = value != 0;
       break;
@@ -182,6 +191,36 @@ void answer_hash(RequestReader* request, Writer* answer) {
   for (const uint8_t byte : hash) answer->u8(byte);
 }
 
+// X: a seal, the counters of both directions, and frames (with their COBS byte): one whose payload
+// ends after its `0` and counter are left free, which is closed, and one that is opened. Says the
+// closed one, or nothing where no counter is left, and whether the other one is taken.
+void answer_seal(RequestReader* request, Writer* answer) {
+  uint8_t key[kKeyBytes];
+  for (uint8_t& byte : key) byte = request->u8();
+  uint8_t challenge[kChallengeBytes];
+  for (uint8_t& byte : challenge) byte = request->u8();
+  SealOrigin origin = {challenge, 0, 0, 0, 0};
+  origin.nonce = request->u32();
+  origin.robot_nonce = request->u32();
+  origin.epoch = request->u8();
+  origin.which = request->u8();
+  TestedSeal seal = TestedSeal();
+  seal.begin(key, origin);
+  seal.heard(request->u32());
+  seal.sent(request->u32());
+  const Bytes open = request->bytes();
+  const Bytes heard = request->bytes();
+  uint8_t frame[kWireBytes + 8] = {};
+  std::copy(open.data.get(), open.data.get() + open.length, frame);
+  std::string closed;
+  if (seal.may_close()) {
+    const uint8_t end = seal.close(frame, static_cast<uint8_t>(open.length));
+    closed.assign(frame, frame + end);
+  }
+  answer->text(closed);
+  answer->u8(seal.open(heard.data.get(), static_cast<uint8_t>(heard.length)));
+}
+
 // M: the image that the robot holds, and whether it is what a robot may run.
 void answer_image(Writer* answer) { answer->text(port.held); }
 
@@ -207,6 +246,9 @@ int main() {
         break;
       case 'H':
         answer_hash(&request, &said);
+        break;
+      case 'X':
+        answer_seal(&request, &said);
         break;
       case 'M':
         answer_image(&said);

@@ -38,6 +38,10 @@ void Link::close_seal() {
   const bool is_tag = said_.number == number_of(Message::kAuthenticate) &&
                       said_.status == kIsFine && (rights_ & kHasChallenge) == 0;
   is_reply_sealed_ = is_sealed_ || is_tag;
+  if (is_sealed_) {  // what is not sealed comes after it, and repeats nothing
+    last_.seq = said_.seq;
+    last_.number = 0;
+  }
   is_sealed_ = false;
   if (!seal_.is_set()) left_ms_[kListen] = kListenMs;  // what has dropped it was heard
 }

@@ -46,10 +46,12 @@ class Seal {
   // Seals a frame whose payload ends at `end`: writes 0, counter and MAC. Returns where that ends.
   uint8_t close(uint8_t* bytes, uint8_t end);
 
- private:
-  bool is_set_;
+ protected:
   uint32_t heard_;  // the last counter from the computer
   uint32_t sent_;   // the last one to it
+
+ private:
+  bool is_set_;
   uint8_t key_[kKeyBytes];
 };
 

@@ -1,0 +1,158 @@
+"""The seal of a session: both halves against the same bytes, and against what is not theirs.
+
+The bytes are made here anew from what `docs/link.md` says, with SipHash alone.
+"""
+
+from __future__ import annotations
+
+import random
+
+import pytest
+
+from tests.machines.link import cpp_link, missing
+from tiniscript.link.frames import Frame, encoded
+from tiniscript.link.messages import SEALED_PAYLOAD_BYTES
+from tiniscript.link.receiver import Receiver
+from tiniscript.link.seal import LAST, Seal, session_key
+from tiniscript.link.siphash import siphash
+
+needs_host = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
+KEY = bytes(range(16))
+CHALLENGE = bytes.fromhex("a1a2a3a4a5a6a7a8")
+NONCE, ROBOT_NONCE, EPOCH, WHICH = 0x01020304, 0x08070605, 10, 0
+ORIGIN = CHALLENGE + bytes.fromhex("04030201 05060708 0a 00")
+
+
+def whole(frame: Frame) -> bytes:
+    kind = frame.number | 0x80 * frame.is_reply | 0x40 * frame.is_sealed
+    return bytes((kind, frame.seq, frame.epoch)) + frame.payload
+
+
+def by_hand(frame: Frame, counter: int) -> bytes:
+    """Return a sealed frame as the document says it, up to its MAC."""
+    key = siphash(KEY, b"\1" + ORIGIN) + siphash(KEY, b"\2" + ORIGIN)
+    kind = frame.number | 0x40 | 0x80 * frame.is_reply
+    head = bytes((kind, frame.seq, frame.epoch, 0)) + counter.to_bytes(4, "little")
+    return head + frame.payload + siphash(key, head + frame.payload)
+
+
+def seal(heard: int = 0, sent: int = 0) -> Seal:
+    found = Seal(session_key(KEY, CHALLENGE, NONCE, ROBOT_NONCE, EPOCH, WHICH))
+    found.heard, found.sent = heard, sent
+    return found
+
+
+def frame_of(data: bytes) -> Frame:
+    kind, seq, epoch = data[:3]
+    return Frame(kind & 0x3F, seq, epoch, data[3:], bool(kind & 0x80), bool(kind & 0x40))
+
+
+def random_frame(chance: random.Random, is_reply: bool) -> Frame:
+    payload = chance.randbytes(chance.randrange(SEALED_PAYLOAD_BYTES + 1))
+    number, seq, epoch = chance.randrange(1, 64), chance.randrange(256), chance.randrange(256)
+    return Frame(number, seq, epoch, payload, is_reply)
+
+
+def counters(chance: random.Random) -> int:
+    return chance.choice((1, 2, 0xFF, 0x100, LAST - 1, LAST, chance.randrange(1, LAST)))
+
+
+def test_the_computer_seals_as_written() -> None:
+    chance = random.Random(1)
+    for _ in range(300):
+        frame, counter = random_frame(chance, False), counters(chance)
+        assert whole(seal(sent=counter - 1).closed(frame)) == by_hand(frame, counter)
+
+
+def test_the_computer_opens_what_is_written_and_new() -> None:
+    chance = random.Random(2)
+    for _ in range(300):
+        frame, counter = random_frame(chance, True), counters(chance)
+        sent = frame_of(by_hand(frame, counter))
+        mine = seal(heard=counter - 1)
+        assert mine.opened(sent) == frame._replace(is_sealed=True)
+        assert mine.opened(sent) is None  # once
+        assert seal(heard=counter).opened(sent) is None
+
+
+@needs_host
+def test_the_robot_seals_as_written() -> None:
+    chance = random.Random(3)
+    for _ in range(300):
+        frame, counter = random_frame(chance, True), counters(chance)
+        marked = whole(frame._replace(is_sealed=True))
+        found = cpp_link().sealed(KEY, ORIGIN, 0, counter - 1, marked)
+        assert found == by_hand(frame, counter)
+
+
+@needs_host
+def test_the_robot_opens_what_is_written_and_new() -> None:
+    chance = random.Random(4)
+    for _ in range(300):
+        frame, counter = random_frame(chance, False), counters(chance)
+        sent = by_hand(frame, counter)
+        assert cpp_link().opens(KEY, ORIGIN, counter - 1, sent)
+        assert not cpp_link().opens(KEY, ORIGIN, counter, sent)
+
+
+@needs_host
+def test_each_bit_and_each_length_counts() -> None:
+    frame = Frame(8, 3, 10, bytes.fromhex("10448c50"))
+    to_robot, to_computer = by_hand(frame, 7), by_hand(frame._replace(is_reply=True), 7)
+    assert seal(6).opened(frame_of(to_computer))
+    assert cpp_link().opens(KEY, ORIGIN, 6, to_robot)
+    for bit in range(8 * len(to_robot)):
+        change = 1 << bit % 8
+        for data in (to_robot, to_computer):
+            other = bytearray(data)
+            other[bit // 8] ^= change
+            assert seal(0).opened(frame_of(bytes(other))) is None
+            assert not cpp_link().opens(KEY, ORIGIN, 0, bytes(other))
+    for length in range(3, len(to_robot)):
+        assert seal(0).opened(frame_of(to_computer[:length])) is None
+        assert not cpp_link().opens(KEY, ORIGIN, 0, to_robot[:length])
+
+
+@needs_host
+def test_another_origin_is_another_key() -> None:
+    sent = by_hand(Frame(7, 1, 10, b"\0"), 1)
+    assert cpp_link().opens(KEY, ORIGIN, 0, sent)
+    keys = {session_key(KEY, CHALLENGE, NONCE, ROBOT_NONCE, EPOCH, WHICH)}
+    for at in range(len(ORIGIN)):
+        other = bytearray(ORIGIN)
+        other[at] ^= 1
+        assert not cpp_link().opens(KEY, bytes(other), 0, sent)
+        nonces = (int.from_bytes(other[at : at + 4], "little") for at in (8, 12))
+        keys.add(session_key(KEY, bytes(other[:8]), *nonces, *other[16:]))
+    assert len(keys) == len(ORIGIN) + 1
+
+
+@needs_host
+def test_a_counter_at_its_end_seals_nothing_more() -> None:
+    mine = seal(sent=LAST - 1)
+    assert not mine.is_spent
+    mine.closed(Frame(2, 1, 1))
+    assert mine.is_spent
+    with pytest.raises(AssertionError):
+        mine.closed(Frame(2, 1, 1))
+    marked = whole(Frame(2, 1, 1, is_reply=True, is_sealed=True))
+    assert cpp_link().sealed(KEY, ORIGIN, 0, LAST - 1, marked)
+    assert cpp_link().sealed(KEY, ORIGIN, 0, LAST, marked) == b""
+    assert not cpp_link().opens(KEY, ORIGIN, LAST, by_hand(Frame(2, 1, 1), LAST))
+
+
+def test_no_sealed_frame_is_a_line_of_text() -> None:
+    """Its 0 comes early: so it begins with a byte up to 4."""
+    chance = random.Random(5)
+    for _ in range(2000):
+        wire = encoded(seal(sent=counters(chance) - 1).closed(random_frame(chance, False)))
+        assert wire[0] <= 4
+        receiver = Receiver()
+        for byte in wire:
+            receiver.put(byte, 0)
+        assert receiver.item and not receiver.item.is_text
+
+
+def test_a_key_is_in_no_text() -> None:
+    found = f"{seal()!r} {seal()}"
+    assert KEY.hex() not in found and "key" not in found

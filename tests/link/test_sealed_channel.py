@@ -1,0 +1,160 @@
+"""A bad line with a stranger on it: what is sealed is done once or not at all, and a stop always.
+
+The stranger hears all, and says what it likes to both ends: what it has heard, again, later, in
+another order or to the other end, frames without a seal or with a wrong one, and HELLO.
+`python -m tests.link.test_sealed_channel 10000` plays more uploads.
+"""
+
+from __future__ import annotations
+
+import random
+import re
+import sys
+import time
+from collections import Counter
+
+from tests.link.test_link_channel import (
+    World,
+    damaged,
+    needs_host,
+    one_upload,
+    program,
+)
+from tests.machines.link import CppLink, cpp_link
+from tests.support.link_cases import KIT
+from tests.support.owners import Keys
+from tiniscript.link.frames import Frame, decoded, encoded
+from tiniscript.link.messages import (
+    BY_NAME,
+    KEY_OWNER,
+    MESSAGES,
+    OWNERS,
+    SEALED_PAYLOAD_BYTES,
+    SEALS,
+    STATUSES,
+)
+from tiniscript.link.session import Session
+
+UPLOADS = 60
+HEARD = 400  # frames that the stranger keeps
+
+
+class SealedWorld(World):
+    """A robot with an owner, whose session is sealed. `says` is how often the stranger speaks."""
+
+    LINE = (SEALED_PAYLOAD_BYTES - 1) // 3 * 3
+    has_hello = True
+
+    def __init__(self, cpp: CppLink, draw: random.Random, faults: float, drops: float) -> None:
+        self.keys = Keys()
+        self.says = 0.0
+        self.frames: list[bytes] = []
+        super().__init__(cpp, draw, 0, 0)
+        cpp.happens("o", OWNERS | SEALS)
+        self.again()
+        claim = self.session.claim(KEY_OWNER)
+        self.run(None, 1000)
+        cpp.happens("h")
+        self.run(claim)
+        assert claim.outcome and claim.outcome.status == 0
+
+    def again(self) -> None:
+        """The stranger comes when a program is on the robot."""
+        self.says = self.draw.choice((0, 0.02, 0.1)) if self.keys.found else 0
+        self.session = Session(self.draw.getrandbits(32), 9600, KIT, keys=self.keys)
+
+    def heard(self, data: bytes) -> None:
+        self.frames += [each + b"\0" for each in data.split(b"\0") if each]
+        del self.frames[:-HEARD]
+
+    def disturb(self) -> None:
+        if self.says == 0 or self.draw.random() >= self.says or not self.frames:
+            return
+        data = self.forged()
+        (self.back if self.draw.random() < 0.4 else self.there).send(b"\0" + data, self.now_ms)
+
+    def forged(self) -> bytes:
+        draw = self.draw
+        how = draw.randrange(6)
+        old = draw.choice(self.frames)
+        if how == 0:
+            return damaged(old, draw)
+        frame = decoded(old.rstrip(b"\0"))
+        if how < 3 or frame is None:
+            return old
+        if how == 3:  # a seal is taken off, put on, or moved to what may still be expected
+            number = draw.choice((frame.number, BY_NAME["LIVE"].number))
+            frame = frame._replace(number=number, seq=(frame.seq + draw.randrange(3)) & 0xFF)
+            return encoded(frame._replace(is_sealed=draw.random() < 0.5))
+        if how == 4:  # the robot is said to have no seal, or to have done it
+            status = draw.choice((0, 0, STATUSES["NOT_OWNER"], STATUSES["STALE"]))
+            payload = bytes([status]) + draw.randbytes(draw.choice((0, 2, 8)))
+            return encoded(frame._replace(payload=payload, is_reply=True, is_sealed=False))
+        requests = [each for each in MESSAGES if each.number < 32]
+        message = draw.choice(requests if self.has_hello else requests[1:])
+        most = sum(field.high for field in message.request)
+        least = sum(field.low for field in message.request)
+        payload = draw.randbytes(draw.randint(least, most))
+        seq, epoch = draw.randrange(256), frame.epoch
+        return encoded(Frame(message.number, seq, epoch, payload))
+
+
+class QuietWorld(SealedWorld):
+    """Nobody else is there."""
+
+    def disturb(self) -> None: ...
+
+
+@needs_host
+def test_sealed_uploads_over_a_bad_radio() -> None:
+    found = Counter(one_upload(cpp_link(), seed, QuietWorld) for seed in range(UPLOADS))
+    assert found["done"] > UPLOADS * 0.9, found
+
+
+@needs_host
+def test_sealed_uploads_beside_a_stranger() -> None:
+    """The stranger may end sessions; nothing wrong is done or believed, and much is still done."""
+    found = Counter(one_upload(cpp_link(), seed, SealedWorld) for seed in range(UPLOADS))
+    assert found["done"] > UPLOADS * 0.4, found
+
+
+@needs_host
+def test_the_frames_of_a_session_are_sealed() -> None:
+    world = QuietWorld(cpp_link(), random.Random(1), 0, 0)
+    request = world.session.live(program(world.draw)[: world.LINE])
+    world.run(request)
+    assert request.outcome and request.outcome.status == 0
+    frames = [decoded(each.rstrip(b"\0")) for each in world.frames[-2:]]
+    assert [(each.number, each.is_sealed) for each in frames if each] == [(8, True), (8, True)]
+
+
+@needs_host
+def test_a_stop_works_whatever_is_wrong_with_its_seal() -> None:
+    world = QuietWorld(cpp_link(), random.Random(2), 0, 0)
+    stop = BY_NAME["STOP"].number
+    for payload, is_sealed in ((b"", False), (b"", True), (bytes(13), True), (bytes(30), True)):
+        assert world.session.robot
+        request = world.session.live(program(world.draw)[: world.LINE])
+        world.run(request)
+        assert request.outcome and request.outcome.status == 0
+        frame = Frame(stop, 1, 0, payload, is_sealed=is_sealed)
+        step = world.cpp.step(world.now_ms, b"\0" + encoded(frame))
+        assert "STOP" in step.did
+        world.session.receive(step.sent, world.now_ms)
+        world.run(None, 300)
+
+
+def main(uploads: int, seed: int) -> int:
+    begun = time.monotonic()
+    found: Counter[str] = Counter()
+    for number in range(seed, seed + uploads):
+        found[one_upload(cpp_link(), number, SealedWorld)] += 1
+    seconds = time.monotonic() - begun
+    print(f"{uploads} sealed uploads beside a stranger, {dict(found)}, 0 false, 0 double: "
+          f"{seconds:.0f} s")  # fmt: skip
+    return 0
+
+
+if __name__ == "__main__":
+    numbers = [int(each) for each in sys.argv[1:] if re.fullmatch(r"\d+", each)]
+    sys.exit(main(numbers[0] if numbers else 10_000, numbers[1] if numbers[1:] else 1))
