@@ -15,12 +15,15 @@ from __future__ import annotations
 import os
 import stat
 import sys
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
-from time import time
+from time import monotonic, sleep, time
 
 NEW = ".new"  # the end of the name of a file that is not yet whole
 NAME_CHARACTERS = 100  # of a file's name in that of its new one
+LOCK = ".lock"  # the end of the name of a file that commands lock while they change another one
+LOCK_S = 5.0  # for which a command waits for another one
 ABANDONED_S = 3600.0  # a new file that is older has lost its command
 
 
@@ -92,6 +95,43 @@ def replace(path: Path, data: bytes, mode: int | None = None, is_lasting: bool =
         with suppress(OSError):
             new.unlink()
         raise
+
+
+@contextmanager
+def alone(path: Path, mode: int = 0o600) -> Iterator[None]:
+    """No other process that asks for the same changes a file meanwhile. Raises OSError.
+
+    A process that ends unlocks what it has locked. One that stands still does not: then this ends
+    with TimeoutError after some seconds.
+    """
+    lock = path.with_name(path.name + LOCK)
+    flags = os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0)
+    number = os.open(lock, flags, mode)
+    try:
+        end_s = monotonic() + LOCK_S
+        while not _is_locked(number):
+            if monotonic() >= end_s:
+                raise TimeoutError(110, os.strerror(110))
+            sleep(0.02)
+        yield
+    finally:
+        os.close(number)
+
+
+def _is_locked(number: int) -> bool:
+    """Lock an open file for this process, unless another one has."""
+    try:
+        if sys.platform == "win32":
+            import msvcrt
+
+            msvcrt.locking(number, msvcrt.LK_NBLCK, 1)
+        else:
+            import fcntl
+
+            fcntl.flock(number, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except (BlockingIOError, PermissionError):
+        return False
+    return True
 
 
 def remove_abandoned(folder: Path, names: list[str], kept: tuple[str, ...] = (".json",)) -> None:

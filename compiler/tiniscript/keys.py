@@ -10,8 +10,8 @@ from __future__ import annotations
 import json
 import os
 import sys
-from collections.abc import Iterable
-from contextlib import suppress
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from threading import Lock
 
@@ -25,6 +25,7 @@ NAME_CHARACTERS = 16
 MOST = 2000  # keys in a file
 MODE = 0o600  # only this person reads it
 _LOCK = Lock()  # the robots of a fleet have threads of their own
+_MARKS = ("is_pending", "is_stale")
 _KINDS = tuple(name.lower() for name, _ in KEYS)
 
 
@@ -57,7 +58,7 @@ class KeyFile:
 
         Raises BadKeys.
         """
-        with _LOCK:
+        with self._alone():
             before = self.all()
             given = {_place(key): key for key in keys}
             rest = [key for key in before if key.is_pending or _place(key) not in given]
@@ -76,26 +77,48 @@ class KeyFile:
     def made(self, robot: int, which: int, name: str) -> RobotKey | None:
         key = RobotKey(robot, which, os.urandom(KEY_BYTES), name, is_pending=True)
         try:
-            with _LOCK:
+            with self._alone():
                 self._write([*self.all(), key])
         except BadKeys:
             return None
         return key
 
     def settle(self, key: RobotKey) -> None:
-        with suppress(BadKeys), _LOCK:
-            settled = key._replace(is_pending=False)
+        with suppress(BadKeys), self._alone():
+            settled = key._replace(is_pending=False, is_stale=False)
             rest = [each for each in self.all() if _place(each) != _place(key)]
             self._write([*rest, settled])
 
     def drop(self, key: RobotKey) -> None:
-        with suppress(BadKeys), _LOCK:
+        with suppress(BadKeys), self._alone():
             self._write([each for each in self.all() if each.key != key.key])
+
+    def refuse(self, key: RobotKey) -> None:
+        with suppress(BadKeys), self._alone():
+            before = self.all()
+            after = [
+                each._replace(is_stale=True) if each[:3] == key[:3] else each for each in before
+            ]
+            if after != before:
+                self._write(after)
+
+    @contextmanager
+    def _alone(self) -> Iterator[None]:
+        """No other thread and no other process changes the file. Raises BadKeys."""
+        with _LOCK:
+            try:
+                self._make_folder()
+                with files.alone(self.path, MODE):
+                    yield
+            except OSError as failure:
+                raise BadKeys(failure.strerror or str(failure)) from None
+
+    def _make_folder(self) -> None:
+        self.path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+        self.path.parent.chmod(0o700)
 
     def _write(self, keys: list[RobotKey]) -> None:
         try:
-            self.path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
-            self.path.parent.chmod(0o700)
             files.replace(self.path, written(keys[-MOST:]), MODE)
         except (OSError, ValueError) as failure:
             raise BadKeys(getattr(failure, "strerror", None) or str(failure)) from None
@@ -119,7 +142,7 @@ def written(keys: Iterable[RobotKey]) -> bytes:
             "name": key.name,
             "kind": _KINDS[key.which],
             "key": key.key.hex(),
-            **({"is_pending": True} if key.is_pending else {}),
+            **{name: True for name in _MARKS if getattr(key, name)},
         }
         for key in keys
     ]
@@ -143,8 +166,8 @@ def _key(row: dict[str, object]) -> RobotKey:
     if len(robot) != 8 or len(data) != KEY_BYTES or not any(data) or kind not in _KINDS:
         raise ValueError
     name = printable(str(row.get("name", "")), NAME_CHARACTERS)
-    is_pending = row.get("is_pending") is True
-    return RobotKey(int(robot, 16), _KINDS.index(kind), data, name, is_pending)
+    marks = {name: row.get(name) is True for name in _MARKS}
+    return RobotKey(int(robot, 16), _KINDS.index(kind), data, name, **marks)
 
 
 def _place(key: RobotKey) -> tuple[int, int]:

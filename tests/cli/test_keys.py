@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 import stat
+import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
 from tests.support.command import Tsc
+from tiniscript import files
 from tiniscript.keys import BadKeys, KeyFile, read, written
 from tiniscript.link.authority import RobotKey
 from tiniscript.link.messages import KEY_OWNER, KEY_TEACHER
@@ -79,6 +81,58 @@ def test_keys_go_to_another_computer(own: KeyFile, tmp_path: Path) -> None:
     newer = ONE._replace(key=b"\2" * 16)
     assert other.add([newer]) == 1
     assert sorted(other.all()) == sorted([newer, teacher])
+
+
+CLAIMS = """
+import sys
+from pathlib import Path
+from tiniscript.keys import KeyFile
+ring, first = KeyFile(Path(sys.argv[1])), int(sys.argv[2])
+for robot in range(first, first + 25):
+    key = ring.made(robot, 0, "R")
+    assert key
+    ring.settle(key)
+    ring.refuse(key) if robot % 5 == 0 else None
+"""
+
+
+def test_many_claims_at_once_lose_no_key(own: KeyFile) -> None:
+    """Each is a process of its own, as each `tsc claim` is."""
+    commands = [[sys.executable, "-c", CLAIMS, str(own.path), str(100 * k)] for k in range(6)]
+    running = [subprocess.Popen(command) for command in commands]
+    assert [each.wait() for each in running] == [0] * 6
+    found = own.all()
+    assert sorted(key.id for key in found) == [100 * k + n for k in range(6) for n in range(25)]
+    assert not any(key.is_pending for key in found)
+    assert [key.is_stale for key in found] == [key.id % 5 == 0 for key in found]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a lock there belongs to the process")
+def test_a_command_that_stands_still_keeps_no_other_one_waiting_for_ever(
+    own: KeyFile, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    own.add([ONE])
+    monkeypatch.setattr(files, "LOCK_S", 0.1)
+    with files.alone(own.path):
+        assert own.made(1, KEY_OWNER, "A") is None
+        with pytest.raises(BadKeys):
+            own.add([ONE._replace(id=2)])
+        own.drop(ONE)
+        assert own.all() == [ONE]
+    assert own.made(1, KEY_OWNER, "A")
+
+
+def test_a_refused_key_is_kept_as_a_stale_one(own: KeyFile, tsc: Tsc) -> None:
+    own.add([ONE, ONE._replace(id=7)])
+    own.refuse(ONE)
+    assert [key.is_stale for key in own.of_robot(ONE.id)] == [True]
+    assert [key.is_stale for key in own.of_robot(7)] == [False]
+    own.settle(own.of_robot(ONE.id)[0])
+    assert own.of_robot(ONE.id) == [ONE]
+    KeyFile().add([ONE])
+    KeyFile().refuse(ONE)
+    assert "refused by the robot" in tsc("keys").out
+    assert [row["is_stale"] for row in json.loads(tsc("keys", "--json").out)] == [True]
 
 
 def test_no_text_of_a_key_has_its_bytes() -> None:

@@ -62,6 +62,28 @@ def test_who_claims_a_robot_drives_it_and_nobody_else(
     assert on(pty_robot, "stop").code == 0
 
 
+def test_a_robot_that_another_one_has_claimed_says_so_and_what_to_do(
+    pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    assert claimed(pty_robot).code == 0
+    before = KeyFile().all()
+    assert on(pty_robot, "disown").code == 0
+    KeyFile().add(before)  # as on a computer that was not there
+    as_another(monkeypatch, tmp_path)
+    assert claimed(pty_robot).code == 0
+    as_another(monkeypatch, tmp_path, "settings")
+    for _ in range(7):  # more often than wrong keys are listened to
+        done = on(pty_robot, "info")
+        assert done.code == 0 and "claimed anew" in done.err and "10 s" in done.err
+    assert "lo reclamaron" in on(pty_robot, "ping", "--count", "1", "--lang", "es").err
+    assert "refused by the robot" in on(pty_robot, "keys").out
+    refused = on(pty_robot, "upload", "-e", DRIVES)
+    assert refused.code == 3 and "another key" in refused.err
+    as_another(monkeypatch, tmp_path)
+    done = on(pty_robot, "upload", "-e", DRIVES)
+    assert done.code == 0 and "claimed anew" not in done.err
+
+
 def test_a_robot_is_given_up_and_free(pty_robot: PtyRobot) -> None:
     assert "nothing to give up" in on(pty_robot, "disown").out
     assert claimed(pty_robot).code == 0

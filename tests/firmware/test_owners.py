@@ -16,7 +16,7 @@ from tests.support.owners import (
     owner_of,
     state_of,
 )
-from tiniscript.link.authority import FREE, OF_ANOTHER, YOUR_OWN
+from tiniscript.link.authority import FREE, OF_ANOTHER, YOUR_OWN, RobotKey
 from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.messages import (
     BY_NAME,
@@ -187,6 +187,32 @@ def test_a_long_press_starts_nothing_and_a_short_one_does() -> None:
     table.hold(session, 900)
     table.pass_time(session, 100)
     assert state_of(table, session) == STATE_RUNNING
+
+
+def test_a_stale_key_costs_one_try_and_no_more_at_hello() -> None:
+    table, mine, other = Owned(), Keys(), Keys(70)
+    table.claimed(mine)
+    session = table.session(mine, nonce=2)
+    assert table.outcome(session, session.disown(KEY_OWNER)) == "OK"
+    assert session.robot
+    mine.found = [RobotKey(session.robot.id, KEY_OWNER, bytes([1] * 16), "")]
+    table.claimed(other)
+    for nonce in range(10, 30):  # more often than it may be tried
+        assert owner_of(table, table.session(mine, nonce=nonce)) == OF_ANOTHER
+        assert [key.is_stale for key in mine.found] == [True]
+    assert owner_of(table, table.session(other, nonce=40)) == YOUR_OWN
+
+
+def test_a_stale_key_that_is_right_after_all_is_none() -> None:
+    """As where another session came between challenge and tag."""
+    table, keys = Owned(), Keys()
+    table.claimed(keys)
+    keys.refuse(keys.found[0])
+    session = table.session(keys, nonce=9)
+    assert owner_of(table, session) == OF_ANOTHER
+    assert table.tries(session) == "OK"
+    assert [key.is_stale for key in keys.found] == [False]
+    assert owner_of(table, table.session(keys, nonce=10)) == YOUR_OWN
 
 
 # -- the teacher ----------------------------------------------------------------------------------

@@ -54,7 +54,8 @@ class SealedWorld(World):
         self.again()
         claim = self.session.claim(KEY_OWNER)
         self.run(None, 1000)
-        cpp.happens("h")
+        while not cpp.happens("h"):  # until the claim has come
+            self.run(None, 200)
         self.run(claim)
         assert claim.outcome and claim.outcome.status == 0
 

@@ -38,7 +38,10 @@ class Keys:
 
     def settle(self, key: RobotKey) -> None:
         self.found = [each for each in self.found if (each.id, each.which) != (key.id, key.which)]
-        self.found.append(key._replace(is_pending=False))
+        self.found.append(key._replace(is_pending=False, is_stale=False))
+
+    def refuse(self, key: RobotKey) -> None:
+        self.found[self.found.index(key)] = key._replace(is_stale=True)
 
     def drop(self, key: RobotKey) -> None:
         self.found.remove(key)

@@ -27,7 +27,8 @@ FREE, YOUR_OWN, OF_ANOTHER = "free", "yours", "other"
 class RobotKey(NamedTuple):
     """A key of a robot. `which` is one of KEYS; `name` is the robot's.
 
-    `is_pending`: it is not known whether the robot has taken it.
+    `is_pending`: it is not known whether the robot has taken it; `is_stale`: the robot has refused
+    it, so it is shown only where something depends on it.
     """
 
     id: int
@@ -35,6 +36,7 @@ class RobotKey(NamedTuple):
     key: bytes
     name: str = ""
     is_pending: bool = False
+    is_stale: bool = False
 
     def __repr__(self) -> str:  # a key is in no message
         return f"RobotKey({self.id:08x}, {self.which})"
@@ -53,6 +55,10 @@ class KeyRing(Protocol):
 
     def settle(self, key: RobotKey) -> None:
         """The robot has taken a pending key: it replaces the one before."""
+        ...
+
+    def refuse(self, key: RobotKey) -> None:
+        """The robot has another key than this one: it is stale, until it is right after all."""
         ...
 
     def drop(self, key: RobotKey) -> None:
@@ -74,24 +80,30 @@ def show_keys(
     nonce: int,
     epoch: Callable[[], int],
     which: int | None = None,
+    is_needed: bool = True,
 ) -> Exchange[AuthenticateReply]:
     """Show a robot its keys, the teacher's first, until one is right; `which` alone if it is given.
 
-    Then it is known of a pending key whether the robot has taken it.
+    Then it is known of a pending key whether the robot has taken it. A stale key is shown only if
+    it `is_needed`, since a robot listens to few wrong keys.
     """
     found: Reply[AuthenticateReply] = Reply(NOT_OWNER)
     keys = [] if ring is None else ring.of_robot(robot.id)
-    for each in sorted(keys, key=lambda each: (each.which != KEY_TEACHER, each.is_pending)):
-        if which not in (None, each.which):
+    for each in sorted(keys, key=_order):
+        if which not in (None, each.which) or (each.is_stale and not is_needed):
             continue
         found = yield from _show(each, robot, nonce, epoch)
-        if ring is not None and each.is_pending and found.status == OK:
+        if ring is not None and (each.is_pending or each.is_stale) and found.status == OK:
             ring.settle(each)
-        if ring is not None and each.is_pending and found.status == WRONG_KEY:
-            ring.drop(each)
+        if ring is not None and found.status == WRONG_KEY:
+            (ring.drop if each.is_pending else ring.refuse)(each)
         if found.status != WRONG_KEY:
             break
     return found
+
+
+def _order(key: RobotKey) -> tuple[bool, bool, bool]:
+    return key.is_stale, key.which != KEY_TEACHER, key.is_pending
 
 
 def _show(

@@ -66,7 +66,7 @@ class Handshake:
             self.robot = requests.described(reply.values)
             self._state.state = reply.values.state
             if reply.values.features & OWNED:
-                shown = yield from self.show_keys()
+                shown = yield from self.show_keys(is_needed=False)
                 if shown.status == STATUSES["STALE"]:  # the robot was stopped meanwhile
                     return refused(shown)
                 return Reply(OK, 0, self.robot.values)
@@ -94,11 +94,13 @@ class Handshake:
             return refused(reply if shown.status == NOT_OWNER else shown)
         return (yield from make())
 
-    def show_keys(self, which: int | None = None) -> Exchange[AuthenticateReply]:
-        """Show the robot our keys of it; `which` alone if it is given."""
+    def show_keys(
+        self, which: int | None = None, is_needed: bool = True
+    ) -> Exchange[AuthenticateReply]:
+        """Show the robot our keys of it; `which` alone if it is given. See `authority`."""
         assert self.robot
-        keys, robot = self._keys, self.robot
-        reply = yield from authority.show_keys(keys, robot, self._nonce, self._epoch, which)
+        keys, robot, nonce = self._keys, self.robot, self._nonce
+        reply = yield from authority.show_keys(keys, robot, nonce, self._epoch, which, is_needed)
         if reply.status == OK:
             self._take_features(reply.values.features)
         return reply

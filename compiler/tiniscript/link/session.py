@@ -244,8 +244,8 @@ class Session(SessionRequests):
         pending.shown += 1
         self._sealing.seal = None
         self._transmission.end()
-        if pending.shown > MOST_SHOWN:
-            self._advance(Reply(NOT_OWNER), now_ms)
+        if pending.shown > MOST_SHOWN:  # with NOT_OWNER its exchange would begin anew
+            self._advance(Reply(LOST if frame.number >= FIRST_ACTING else NOT_OWNER), now_ms)
             return
         self._pending = PendingExchange(self._handshake.show_keys(), is_own=pending.is_own)
         self._pending.resumes = Interrupted(pending, frame)
@@ -253,13 +253,13 @@ class Session(SessionRequests):
         self._advance(None, now_ms)
 
     def _resume(self, interrupted: Interrupted, shown: Reply[Any], now_ms: int) -> None:
-        self._pending = interrupted.pending
-        if (
-            shown.status == OK
-            and self._sealing.seal is not None
-            and interrupted.frame.epoch == self._epoch
-        ):
-            self._transmission.begin(interrupted.frame, now_ms, self._sealing.seal)
+        self._pending, frame = interrupted
+        seal = self._sealing.seal
+        if shown.status == NOT_OWNER or (shown.status == OK and seal is None):
+            self._transmission.begin(frame, now_ms)
+            self._show_again(now_ms)
+        elif shown.status == OK and frame.epoch == self._epoch:
+            self._transmission.begin(frame, now_ms, seal)
         else:
             self._advance(Reply(shown.status or _STALE, shown.detail), now_ms)
 

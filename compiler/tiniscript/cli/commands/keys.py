@@ -43,7 +43,7 @@ def _export(found: list[RobotKey], name: str, language: str) -> None:
     path = Path(name)
     if path.exists():
         raise CommandError(2, "export_there", file=shown(name))
-    taken = [key for key in found if not key.is_pending]
+    taken = [key._replace(is_stale=False) for key in found if not key.is_pending]
     outputs.write(path, keys.written(taken), "unwritable_keys", keys.MODE)
     print(text("keys_exported", language).format(n=len(taken), file=shown(name)))
 
@@ -71,10 +71,11 @@ def _print(found: list[RobotKey], language: str) -> None:
     for key in sorted(found, key=lambda key: (key.name, key.id, key.which)):
         kind = text(f"kind_{KEYS[key.which][0].lower()}", language)
         row = text("key_row", language).format(id=f"{key.id:08x}", kind=kind, name=shown(key.name))
-        more = f"   ({text('key_pending', language)})" if key.is_pending else ""
+        marks = [name for name in ("pending", "stale") if getattr(key, f"is_{name}")]
+        more = "".join(f"   ({text(f'key_{name}', language)})" for name in marks)
         print(row.rstrip() + more)
 
 
 def _fields(key: RobotKey) -> dict[str, object]:
     return {"id": f"{key.id:08x}", "name": key.name, "kind": KEYS[key.which][0].lower(),
-            "is_pending": key.is_pending}  # fmt: skip
+            "is_pending": key.is_pending, "is_stale": key.is_stale}  # fmt: skip

@@ -154,7 +154,19 @@ class Connection:
         remember_profile(self.options, self.profile, device_info.kit)
         if not self.is_one_of_many:
             self.remember(device_info.name)
+            self._tell_stale_key(device_info)
         return device_info
+
+    def _tell_stale_key(self, device_info: DeviceInfo) -> None:
+        """Say what to do where the robot has refused a key of this computer."""
+        from tiniscript.keys import KeyFile
+        from tiniscript.link.authority import OF_ANOTHER, whose
+
+        if whose(device_info) != OF_ANOTHER:
+            return
+        if any(key.is_stale for key in KeyFile().of_robot(device_info.id)):
+            said = text("key_is_stale", self.language).format(robot=self.name)
+            print(said, file=sys.stderr, flush=True)
 
     def remember(self, name: str) -> None:
         """Remember the port for the next time, and the name of its robot."""

@@ -11,6 +11,8 @@ OWNER_TEXTS: dict[str, tuple[str, str]] = {
     "whose_yours": ("yours", "tuyo"),
     "whose_other": ("of another owner", "de otro dueño"),
     "port_whose": ("{said} ({whose})", "{said} ({whose})"),
+    "key_is_stale": ("tsc: {robot} has an owner, and no longer the key that this computer has of it: it was claimed anew. Ask its owner for the new key (tsc keys --export), or hold its button down for 10 s while you switch it on, then:  tsc claim",
+                     "tsc: {robot} tiene dueño, y ya no la llave que esta computadora tiene de él: lo reclamaron de nuevo. Pide la llave nueva a su dueño (tsc keys --export), o mantén pulsado su botón 10 s mientras lo enciendes, y luego:  tsc claim"),
     # claiming
     "claim_hold": ("{robot} on {port}: hold its start button down for 2 s. tsc waits 30 s.",
                    "{robot} en {port}: mantén pulsado su botón de inicio 2 s. tsc espera 30 s."),
@@ -44,6 +46,7 @@ OWNER_TEXTS: dict[str, tuple[str, str]] = {
                 "Esta computadora no tiene la llave de ningún robot. Para reclamar uno:  tsc claim"),
     "key_row": ("{id}   {kind}   {name}", "{id}   {kind}   {name}"),
     "key_pending": ("not confirmed by the robot", "sin confirmar por el robot"),
+    "key_stale": ("refused by the robot", "rechazada por el robot"),
     "kind_owner": ("owner", "dueño"),
     "kind_teacher": ("teacher", "docente"),
     "keys_exported": ("{n} keys are in {file}. Whoever has this file drives these robots: give it to nobody else.",

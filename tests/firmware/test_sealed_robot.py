@@ -1,0 +1,413 @@
+"""A whole robot with an owner, and who hears all that its owner says: nothing of that opens it.
+
+`python -m tests.firmware.test_sealed_robot 100000` sends as many frames.
+"""
+
+from __future__ import annotations
+
+import random
+import sys
+from collections import Counter
+
+import pytest
+
+from tests.firmware.test_authority import is_accepted
+from tests.machines.host_firmware import missing
+from tests.support.owners import FOREVER, PRESSED, Keys, Owned, image_of, owner_of, state_of
+from tiniscript.link.authority import OF_ANOTHER, YOUR_OWN
+from tiniscript.link.frames import Frame, decoded, encoded
+from tiniscript.link.messages import (
+    BY_NAME,
+    KEY_TEACHER,
+    MESSAGES,
+    OWNERS,
+    SEALED_PAYLOAD_BYTES,
+    SEALS,
+    STATE_FAULTED,
+    STATE_RUNNING,
+    STATE_STOPPED,
+    STATUSES,
+)
+from tiniscript.link.outcomes import LOST
+from tiniscript.link.seal import LAST, Seal
+from tiniscript.link.session import Session
+
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
+
+SHORT = "SI|F(0.1, 80)"
+
+
+def recorded(table: Owned, session: Session, text: str) -> tuple[list[bytes], list[bytes]]:
+    """Have a program run; return the frames to the robot and those back."""
+    there: list[bytes] = []
+    back: list[bytes] = []
+    request = session.upload(image_of(text), saves=False)
+    while request.outcome is None:
+        data = session.poll(table.robot.now_ms)
+        sent = table.robot.step(data)
+        session.receive(sent, table.robot.now_ms)
+        there += [each for each in data.split(b"\0") if each]
+        back.append(sent)
+    assert request.outcome.status == 0
+    return there, [each for each in b"".join(back).split(b"\0") if each]
+
+
+def answer(table: Owned, frame: Frame | bytes) -> Frame | None:
+    data = frame + b"\0" if isinstance(frame, bytes) else encoded(frame)
+    found = [each for each in table.robot.wait(20, b"\0" + data).split(b"\0") if each]
+    return decoded(found[0]) if found else None
+
+
+def open_(table: Owned, nonce: int = 4) -> tuple[Session, Keys]:
+    """Return a session whose seal both know."""
+    keys = Keys()
+    table.claimed(keys)
+    session = table.session(keys, nonce=nonce)
+    assert owner_of(table, session) == YOUR_OWN
+    return session, keys
+
+
+def test_the_robot_says_that_it_seals_and_does() -> None:
+    table = Owned()
+    session, _ = open_(table)
+    assert session.robot and session.robot.values.features & SEALS
+    there, back = recorded(table, session, SHORT)
+    for frame in map(decoded, there[-1:] + back[-1:]):
+        assert frame and frame.is_sealed
+
+
+def test_a_firmware_without_seals_does_as_before() -> None:
+    table = Owned(defines=("tiniscript_without_seals",))
+    session, _ = open_(table)
+    assert session.robot and session.robot.values.features & (SEALS | OWNERS) == OWNERS
+    there, _ = recorded(table, session, SHORT)
+    assert not any(frame.is_sealed for frame in map(decoded, there) if frame)
+    sealed = Seal(bytes(16)).closed(Frame(BY_NAME["START"].number, 1, 0, b"\0"))
+    said = answer(table, sealed)
+    assert said and said.payload[0] == STATUSES["NOT_SEALED"]
+
+
+def test_what_is_not_sealed_has_no_authority() -> None:
+    """Who writes into the owner's line, in its epoch, with the next number."""
+    table = Owned()
+    session, _ = open_(table)
+    recorded(table, session, FOREVER)
+    open_to_all = {"HELLO", "PING", "STATUS", "STOP", "CLAIM", "AUTHENTICATE", "IDENTIFY"}
+    for message in MESSAGES:
+        if message.number >= 32 or message.name in open_to_all:
+            continue
+        payload = bytes(sum(field.low for field in message.request))
+        frame = Frame(message.number, (session._seq + 1) & 0xFF, session._epoch, payload)
+        said = answer(table, frame)
+        assert said and said.payload[0] == STATUSES["NOT_OWNER"] and not said.is_sealed, message
+    for which in (0, 1):
+        claim = Frame(16, (session._seq + 1) & 0xFF, session._epoch, bytes([which]))
+        said = answer(table, claim)
+        assert said and said.payload[0] == STATUSES["NOT_OWNER"]
+    assert state_of(table, session) == STATE_RUNNING
+
+
+def test_an_answer_is_told_again_to_nobody_else() -> None:
+    """The same number without a seal gets no receipt and no bytes of the program."""
+    table = Owned()
+    session, _ = open_(table)
+    recorded(table, session, SHORT)
+    request = session.fetch()
+    assert table.outcome(session, request) == "OK"
+    frame = Frame(BY_NAME["FETCH"].number, session._seq, session._epoch, b"\0\0")
+    said = answer(table, frame)
+    assert said and said.payload == bytes([STATUSES["NOT_OWNER"], 0, 0])
+
+
+def test_a_stranger_keeps_no_program_running() -> None:
+    """The owner is gone, and somebody else pings: or opens a session and pings."""
+    ping, hello = BY_NAME["PING"].number, BY_NAME["HELLO"].number
+    for is_greeting in (False, True):
+        table = Owned()
+        session, _ = open_(table)
+        recorded(table, session, FOREVER)
+        begun_ms = table.robot.now_ms
+        if is_greeting:
+            table.robot.wait(5, encoded(Frame(hello, 1, 0, bytes(6) + b"abcd")))
+        while table.robot.now_ms < begun_ms + 1010:
+            table.robot.wait(50, b"\0" + encoded(Frame(ping, 1, 0)))
+        assert "MOTORS 0 0" in table.robot.did[-2] + table.robot.did[-1]
+        said = answer(table, Frame(ping, 1, 0))
+        assert said and said.payload[1] == STATE_FAULTED
+
+
+def test_a_relay_cannot_say_that_it_worked() -> None:
+    """Nothing reaches the robot, and what comes back is forged in all ways but with the key."""
+    chance = random.Random(1)
+    table = Owned()
+    session, _ = open_(table)
+    there, back = recorded(table, session, SHORT)
+    table.pass_time(session, 400)
+    request = session.live(image_of(SHORT).code)
+    for _ in range(25_000):
+        data = session.poll(table.robot.now_ms)
+        table.robot.now_ms += 1
+        frame = decoded(data.strip(b"\0")) if data else None
+        if frame is None:
+            continue
+        receipt = bytes(8)
+        forged = [
+            Frame(frame.number, frame.seq, frame.epoch, b"\0" + receipt, is_reply=True),
+            Frame(frame.number, frame.seq, frame.epoch, b"\0" + receipt, True, True),
+            Frame(frame.number, frame.seq, frame.epoch, bytes(22), True, True),
+            frame._replace(is_reply=True),
+        ]
+        for each in [*map(encoded, forged), *(each + b"\0" for each in back + there), data]:
+            session.receive(each, table.robot.now_ms)
+            assert request.outcome is None
+        if chance.random() < 0.2:
+            lost = bytes([STATUSES["NOT_OWNER"], 0, 0])
+            session.receive(encoded(forged[0]._replace(payload=lost)), table.robot.now_ms)
+        if request.outcome is not None:
+            break
+    assert request.outcome and request.outcome.status == LOST
+
+
+def test_a_stop_is_confirmed_with_the_seal_and_by_nothing_else() -> None:
+    table = Owned()
+    session, _ = open_(table)
+    recorded(table, session, FOREVER)
+    session.events()
+    session.stop(table.robot.now_ms)
+    forged = encoded(Frame(BY_NAME["STOPPED"].number, 9, session._epoch + 1, b"\1", is_reply=True))
+    for _ in range(500):  # the zeros do not arrive
+        session.poll(table.robot.now_ms)
+        session.receive(forged, table.robot.now_ms)
+        table.robot.step()
+    assert not [each for each in session.events() if each.name == "STOPPED"]
+    table.pass_time(session, 50)
+    assert [each for each in session.events() if each.name == "STOPPED"]
+    assert table.robot.is_latched
+
+
+@pytest.mark.parametrize("payload", [b"", bytes(12), bytes(13), bytes(40)])
+def test_a_stop_whose_seal_is_wrong_stops_all_the_same(payload: bytes) -> None:
+    for is_claimed in (False, True):
+        table = Owned()
+        if is_claimed:
+            session, _ = open_(table)
+        else:
+            session = table.session()
+        recorded(table, session, FOREVER)
+        answer(table, Frame(BY_NAME["STOP"].number, 1, 0, payload, is_sealed=True))
+        assert table.robot.is_latched
+
+
+def test_a_teachers_stop_needs_the_teachers_seal() -> None:
+    """A STOP that somebody writes into the teacher's line is nobody's: the owner goes on."""
+    table, pupil, teacher = Owned(), Keys(), Keys(90)
+    table.claimed(teacher, KEY_TEACHER)
+    table.claimed(pupil)
+    session = table.session(teacher, nonce=6)
+    assert table.tries(session) == "OK"
+    answer(table, Frame(BY_NAME["STOP"].number, 77, session._epoch))
+    assert state_of(table, session) == STATE_STOPPED
+    mine = table.session(pupil, nonce=7)
+    assert table.tries(mine) == "OK"
+
+
+def test_a_counter_at_its_end_begins_another_seal() -> None:
+    table = Owned()
+    session, _ = open_(table)
+    seal = session._sealing.seal
+    assert seal
+    seal.sent = LAST - 1
+    assert table.tries(session) == "OK"
+    assert session._sealing.seal is seal and seal.is_spent
+    assert table.tries(session) == "OK"
+    assert session._sealing.seal is not seal
+    assert session._sealing.seal and session._sealing.seal.sent < 10
+
+
+def test_a_seal_that_has_lapsed_is_made_again_for_the_same_request() -> None:
+    table = Owned()
+    session, _ = open_(table)
+    before = session._sealing.seal
+    table.pass_time(None, 2100)
+    table.robot.did.clear()
+    request = session.live(image_of(SHORT).code)
+    assert table.outcome(session, request) == "OK"
+    assert session._sealing.seal is not before
+    assert len([line for line in table.robot.did if "MOTORS 80 80" in line]) == 1
+
+
+def test_more_requests_than_numbers_and_a_lapse() -> None:
+    """AUTHENTICATE has a number after those of the sealed requests."""
+    table = Owned()
+    session, _ = open_(table)
+    for _ in range(200):
+        assert table.outcome(session, session.trim()) == "OK"
+    table.pass_time(None, 2100)
+    assert table.outcome(session, session.trim()) == "OK"
+
+
+def test_another_session_with_the_same_numbers_is_another_seal() -> None:
+    table = Owned()
+    session, keys = open_(table)
+    there, _ = recorded(table, session, SHORT)
+    table.pass_time(None, 3000)
+    table.robot.did.clear()
+    memory = table.robot.memory()
+    for seed in (0x12345678, 7):  # the same noise at the start, and another one
+        later = Owned(memory, seed=seed)
+        assert owner_of(later, later.session(keys, nonce=4)) == YOUR_OWN
+        for each in there * 3:
+            later.robot.wait(5, b"\0" + each + b"\0")
+        assert not [line for line in later.robot.did if "MOTORS" in line]
+
+
+def test_a_stranger_is_told_all_that_is_for_all_beside_a_seal() -> None:
+    table = Owned()
+    session, _ = open_(table)
+    for name, payload in (("PING", b""), ("STATUS", b""), ("IDENTIFY", b"")):
+        frame = Frame(BY_NAME[name].number, (session._seq + 9) & 0xFF, session._epoch, payload)
+        said = answer(table, frame)
+        assert said and said.payload[0] == 0 and not said.is_sealed
+    assert table.tries(session) == "OK"
+    stranger = table.session(nonce=50)
+    assert owner_of(table, stranger) == OF_ANOTHER
+
+
+def test_the_button_and_the_zeros_stop_beside_a_seal() -> None:
+    for how in ("zeros", "button"):
+        table = Owned()
+        session, _ = open_(table)
+        recorded(table, session, FOREVER)
+        table.robot.step(*((bytes(4),) if how == "zeros" else (b"", PRESSED)))
+        assert table.robot.is_latched
+
+
+def test_frames_of_the_wire_open_nothing(frames: int = 2500) -> None:
+    """As `python -m tests.firmware.test_sealed_robot 100000`, which does more of the same."""
+    found = attacked(frames, 1)
+    assert found["accepted"] == 0 and found["stops"] > 1
+
+
+# -- by command -----------------------------------------------------------------------------------
+
+
+class Thief:
+    """Who hears an owner's line, and writes into it. `recorded` has frames of other seals too."""
+
+    def __init__(self, chance: random.Random, old: list[bytes]) -> None:
+        self.chance = chance
+        self.old = old
+        self.there: list[bytes] = []  # of the present seal
+        self.back: list[bytes] = []
+
+    def frame(self, epoch: int, seq: int) -> tuple[str, bytes]:
+        chance = self.chance
+        how = chance.choice(
+            ("replayed", "reflected", "other session", "cut", "changed", "unsealed", "moved",
+             "forged", "sealed by another key")
+        )  # fmt: skip
+        mine = chance.choice(self.there)
+        frame = decoded(mine)
+        assert frame
+        if how == "replayed":
+            return how, mine
+        if how == "reflected":
+            back = decoded(chance.choice(self.back))
+            return how, _wire(back._replace(is_reply=False)) if back else mine
+        if how == "other session":
+            return how, chance.choice(self.old)
+        if how == "cut":
+            return how, _wire(frame._replace(payload=frame.payload[: -chance.randrange(1, 13)]))
+        if how == "changed":
+            changed = bytearray(frame.payload)
+            changed[chance.randrange(len(changed))] ^= 1 << chance.randrange(8)
+            return how, _wire(frame._replace(payload=bytes(changed)))
+        if how == "unsealed":
+            payload = frame.payload[5:-8]
+            return how, _wire(frame._replace(payload=payload, seq=seq, is_sealed=False))
+        if how == "moved":  # another number of the request, of the message, or of the counter
+            count = chance.choice((seq, chance.randrange(256))) if chance.random() < 0.5 else 0
+            rising = frame.payload[:1] + (2**32 - 1).to_bytes(4, "little") + frame.payload[5:]
+            number = chance.choice((frame.number, 7, 8, 9, 19))
+            payload = chance.choice((frame.payload, rising))
+            return how, _wire(frame._replace(payload=payload, seq=count, number=number))
+        acting = [each for each in MESSAGES if 6 <= each.number < 32 and each.number != 17]
+        message = chance.choice(acting)
+        low = sum(field.low for field in message.request)
+        high = min(sum(field.high for field in message.request), SEALED_PAYLOAD_BYTES)
+        asked = Frame(message.number, seq, epoch, chance.randbytes(chance.randint(low, high)))
+        if how == "forged":
+            counter = chance.choice((1, 1000, 2**32 - 1)).to_bytes(4, "little")
+            whole = b"\0" + counter + asked.payload + chance.randbytes(8)
+            return how, _wire(asked._replace(payload=whole, is_sealed=True))
+        seal = Seal(chance.randbytes(16))
+        seal.sent = 10_000
+        return how, _wire(seal.closed(asked))
+
+
+def _wire(frame: Frame) -> bytes:
+    return encoded(frame)[:-1]
+
+
+def attacked(frames: int, seed: int) -> Counter[str]:
+    """Send frames of a thief into the line of an owner, in its session, whose seal lives; return
+    how many of each kind, how many were accepted, and how many stops were tried and obeyed.
+    """
+    chance = random.Random(seed)
+    table = Owned()
+    session, _keys = open_(table)
+    there, _ = recorded(table, session, SHORT)
+    old = there[-1:]
+    robot = table.robot
+    thief = Thief(chance, old)
+    found: Counter[str] = Counter(accepted=0)
+    memory = robot.memory()
+    for count in range(frames):
+        if count % 500 == 0:
+            if count:
+                table.pass_time(session, 300)
+                robot.wait(20, bytes(8) if chance.random() < 0.5 else b"\0" + _stop(chance) + b"\0")
+                assert robot.is_latched, f"frame {count} of seed {seed}: a stop is not obeyed"
+                found["stops"] += 1
+            thief.old += thief.there[-3:]
+            session = table.session(_keys, nonce=chance.getrandbits(32))
+            there, back = recorded(table, session, SHORT)
+            thief.there = [each for each in there if _is_sealed(each)]
+            thief.back = [each for each in back if _is_sealed(each)]
+            table.pass_time(session, 300)
+            robot.did.clear()
+        if count % 200 == 100:  # the seal lives on
+            assert table.outcome(session, session.status()) == "OK", f"seed {seed}, frame {count}"
+        how, data = thief.frame(session._epoch, (session._seq + 1 + count % 3) & 0xFF)
+        found[how] += 1
+        sent = robot.wait(2, b"\0" + data + b"\0")
+        said = [each for each in sent.split(b"\0") if each]
+        found["accepted"] += sum(is_accepted(each) or _is_sealed(each) for each in said)
+        found["accepted"] += len([line for line in robot.did if "MOTORS" in line])
+        robot.did.clear()
+    found["accepted"] += robot.memory() != memory
+    assert table.tries(session) == "OK"
+    return found
+
+
+def _is_sealed(wire: bytes) -> bool:
+    frame = decoded(wire)
+    return frame is not None and frame.is_sealed
+
+
+def _stop(chance: random.Random) -> bytes:
+    """Return a STOP with any seal, or none."""
+    payload = chance.randbytes(chance.choice((13, 20)))
+    return _wire(Frame(BY_NAME["STOP"].number, chance.randrange(256), 0, payload, is_sealed=True))
+
+
+def main(frames: int, seed: int) -> int:
+    found = attacked(frames, seed)
+    kinds = ", ".join(f"{n} {how}" for how, n in sorted(found.items()) if how != "accepted")
+    print(f"{frames} frames of a thief ({kinds}): {found['accepted']} accepted (seed {seed})")
+    return int(found["accepted"] != 0)
+
+
+if __name__ == "__main__":
+    numbers = [int(each) for each in sys.argv[1:] if each.isdigit()]
+    sys.exit(main(numbers[0] if numbers else 100_000, numbers[1] if numbers[1:] else 1))
