@@ -104,7 +104,8 @@ def instructions(text: str) -> list[str]:
         ("W(25.5)", ["PUSH_MILLI 25500", "WAIT"]),
         ("X = 11; F(1, X)", ["SET_VAR8 v0 11", "PUSH_NUM_1", "PUSH_VAR_0", "MOVE_F"]),
         ("M(-100, 100)", ["MOTORS8 -100 100"]),
-        ("M(50 - 200, 1)", ["MOTORS8 -100 1"]),
+        ("M(50 - 200, 50 - 200)", ["MOTORS8 -100 -100"]),
+        ("F(1, 0)", ["MOVE8_F 100 0"]),
         # a sound with constants, whose frequency has two bytes
         ("BEEP(0.1, 440)", ["BEEP8 10 440"]),
         ("BEEP(0.1, 440.5)", ["BEEP8 10 441"]),
@@ -126,6 +127,7 @@ def instructions(text: str) -> list[str]:
          ["SET_VAR8 v0 11", "PUSH_VAR_0", "WATCH_FOREVER_B", "READ_2", "PUSH_VAR_0", "PUSH_NUM_3",
           "GT", "PUSH_SENSOR_2", "PUSH_NUM_4", "NE", "AND", "UNTIL"]),
         # a counted loop, up to 255 times
+        ("LOOP(1); S; END_LOOP", ["LOOP8 1", "STOP", "NEXT -> 0002"]),
         ("LOOP(255); S; END_LOOP", ["LOOP8 255", "STOP", "NEXT -> 0002"]),
         ("LOOP(254.5); S; END_LOOP", ["LOOP8 255", "STOP", "NEXT -> 0002"]),
         ("LOOP(256); S; END_LOOP", ["PUSH16 256", "LOOP -> 0008", "STOP", "NEXT -> 0005"]),
@@ -144,6 +146,11 @@ def instructions(text: str) -> list[str]:
          ["SET_VAR8 v0 11", "PUSH_VAR_0", "PUSH32 32768000", "LT", "IF -> 000d", "STOP"]),
         ("X = 11; IF(X < 0.5); S; ENDIF",
          ["SET_VAR8 v0 11", "PUSH_VAR_0", "PUSH_TENTHS 5", "LT", "IF -> 000a", "STOP"]),
+        # each side of an AND has a branch of its own, whatever is in it
+        ("IF((TIME > 5 OR TIME < 3) AND (TIME > 4 OR TIME < 2)); S; ENDIF",
+         ["TIME", "PUSH_NUM_5", "GT", "OR_ELSE -> 0008", "TIME", "PUSH_NUM_3", "LT", "IF -> 0015",
+          "TIME", "PUSH_NUM_4", "GT", "OR_ELSE -> 0012", "TIME", "PUSH_NUM_2", "LT", "IF -> 0015",
+          "STOP"]),
         # a reading that is used at once
         ("SHOW(DISTANCE)", ["PUSH_READ_2", "SHOW"]),
         ("DISTANCE; SHOW(DISTANCE)", ["PUSH_READ_2", "SHOW"]),
@@ -173,6 +180,8 @@ def test_a_reading_before_a_label_stays_where_it_is() -> None:
         ("Y > 2", False),
         ("Y > 2 AND Y < 5", True),  # eight terms with its AND_LEFT: a jump costs less
         ("MIN(Y, MAX(1, 3)) < Z", False),
+        ("NOT (MIN(Y, 3) < Z)", False),  # six terms
+        ("MIN(Y, MAX(Z, 3)) < Z", True),  # seven
         ("Y + 1 > 2", True),  # may overflow
         ("Y / Z > 2", True),
         ("RANDOM(1, 6) > 2", True),  # the next dice would fall otherwise

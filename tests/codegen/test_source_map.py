@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import itertools
 import json
+import os
 
 import pytest
 
 from tiniscript import Compiled, compile_text, robots
 from tiniscript.bytecode.disassembly import rows
+from tiniscript.bytecode.image import checksum
 from tiniscript.codegen import source_map
 from tiniscript.codegen.source_map import Map, MapPlace
 
@@ -145,8 +147,17 @@ def test_what_is_no_map_is_refused(changed: dict[str, object]) -> None:
 def test_a_map_is_found_by_its_image_alone() -> None:
     one, other = compiled("S"), compiled("W(1)")
     source_map.remember(one.image, source_map.from_compiled(one))
-    from tiniscript.bytecode.image import checksum
-
     recalled = source_map.recall(checksum(one.image))
     assert recalled == source_map.from_compiled(one)
     assert source_map.recall(checksum(other.image)) is None
+
+
+def test_the_oldest_maps_make_room(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(source_map, "KEPT", 3)
+    found = [compiled(f"W({k})") for k in range(1, 6)]
+    for k, each in enumerate(found):
+        source_map.remember(each.image, source_map.from_compiled(each))
+        path = source_map._path(checksum(each.image))
+        os.utime(path, (k + 1, k + 1))
+    kept = [source_map.recall(checksum(each.image)) is not None for each in found]
+    assert kept == [False, False, True, True, True]

@@ -29,6 +29,7 @@ def short(text: str) -> str:
         ("SHOW(ROUND(2.345, 1 + 1))", "Show 2.35\n"),
         ("SHOW(NOT 1 > 2)", "Show yes_no1\n"),
         ("X = 1; SHOW(X + 1 + 2)", "Assign 0 1\nShow v0 1 ADD 2 ADD\n"),
+        ("SHOW(NOT TRUE)", "Show yes_no0\n"),
         # what faults is left to fault
         ("SHOW(1 / 0)", "Show 1 0 DIV\n"),
         ("SHOW(2147483 + 1)", "Show 2147483 1 ADD\n"),
@@ -39,6 +40,8 @@ def short(text: str) -> str:
         ("X = TRUE; SHOW(X AND FALSE)", "Assign 0 yes_no1\nShow yes_no0\n"),
         ("SHOW(1 / TIME > 1 AND FALSE)", "Show 1 TIME DIV 1 GT AND_LEFT yes_no0 AND\n"),
         ("SHOW(RANDOM(1, 6) > 3 OR TRUE)", "Show 1 6 RANDOM 3 GT OR_LEFT yes_no1 OR\n"),
+        ("SHOW(NOT (1 / TIME > 1) AND FALSE)", "Show 1 TIME DIV 1 GT NOT AND_LEFT yes_no0 AND\n"),
+        ("X = 1; SHOW(1 + 1 > X AND FALSE)", "Assign 0 1\nShow yes_no0\n"),
         # arms and loops that are never taken
         ("IF(1 > 2); S; ENDIF", ""),
         ("IF(1 < 2); S; ELSE; W(1); ENDIF", "Stop\n"),
@@ -53,6 +56,10 @@ def short(text: str) -> str:
         ("WHILE(DISTANCE > 1 AND FALSE); S; END_WHILE", "Read 2\n"),
         ("IF(FALSE); S; ELSEIF(DISTANCE > 1); W(1); ENDIF",
          "Read 2\nIf\n  arm () s2 1 GT\n    Move W 1\n  else\n"),
+        ("IF(FALSE); S; ELSEIF(DISTANCE > 1); W(1); ELSEIF(TIME > 5); W(2); ENDIF",
+         "Read 2\nIf\n  arm () s2 1 GT\n    Move W 1\n  arm () TIME 5 GT\n    Move W 2\n  else\n"),
+        ("IF(TIME > 5); S; ELSEIF(DISTANCE > 1 OR TRUE); W(1); ELSE; W(2); ENDIF",
+         "If\n  arm () TIME 5 GT\n    Stop\n  arm (2,) yes_no1\n    Move W 1\n  else\n"),
     ],
 )  # fmt: skip
 def test_what_becomes_of_it(text: str, expected: str) -> None:

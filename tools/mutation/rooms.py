@@ -194,7 +194,12 @@ ROOMS = (
     Room(
         "checker",
         (f"{_PY}/semantics/checker.py", f"{_PY}/semantics/types.py"),
-        ("tests/semantics", "tests/vm/test_cases.py", "tests/diagnostics"),
+        (
+            "tests/semantics",
+            "tests/vm/test_cases.py",
+            "tests/pupils/test_pupils.py",
+            "tests/diagnostics/test_rendering.py",
+        ),
     ),
 )
 BY_NAME = {room.name: room for room in ROOMS}

@@ -9,6 +9,46 @@ _REASONS: dict[str, tuple[tuple[str, str], ...]] = {
         ("bool Store::is_committing() const { return is_busy_ && !nvm_is_ready() && step_ > waits_from_; }",
          "bool Store::is_committing() const { return is_busy_ && !nvm_is_ready() && step_ >= waits_from_; }"),
     ),
+    "0 is 0 either way": (
+        ("if (number < 0) size = static_cast<uint8_t>(-size);",
+         "if (number <= 0) size = static_cast<uint8_t>(-size);"),
+        ("if (number < 0) size = static_cast<uint8_t>(-size);",
+         "if (number < 1) size = static_cast<uint8_t>(-size);"),
+        ("if (weakened > 0)",
+         "if (weakened >= 0)"),
+    ),
+    "it is 100 already": (
+        ("if (percent > 100) percent = 100;",
+         "if (percent >= 100) percent = 100;"),
+        ("if (percent > 100) percent = 100;",
+         "if (percent > 99) percent = 100;"),
+    ),
+    "a power of 0 has returned before": (
+        ("return power < 0 ? static_cast<int16_t>(-found) : found;",
+         "return power <= 0 ? static_cast<int16_t>(-found) : found;"),
+        ("return power < 0 ? static_cast<int16_t>(-found) : found;",
+         "return power < 1 ? static_cast<int16_t>(-found) : found;"),
+    ),
+    "no percentage has the level 1, and 0 steps missing leave a level as it is": (
+        ("if (missing != 0) {",
+         "if (missing != 1) {"),
+    ),
+    "a body ends behind the first statement that does not go on": (
+        ("if made and not goes_on(tuple(made[-1:])):",
+         "if made and not goes_on(tuple(made[-2:])):"),
+    ),
+    "a label is marked before anything reads it": (
+        ("self.labels.append(-1)",
+         "self.labels.append(-2)"),
+    ),
+    "only that of a DEF is looked at, and a DEF begins with 0": (
+        ("self.deepest = 0  # blocks open at once in the routine that is being checked",
+         "self.deepest = 1  # blocks open at once in the routine that is being checked"),
+    ),
+    "both have the same length: another number of arguments was reported before": (
+        ("for each, its in zip(arguments[forever:], word.arguments[forever:], strict=True)",
+         "for each, its in zip(arguments[forever:], word.arguments[forever:], strict=False)"),
+    ),
 }
 # fmt: on
 

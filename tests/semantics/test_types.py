@@ -1,0 +1,34 @@
+"""What the checker offers instead of a value of the wrong kind, and up to where it looks."""
+
+from __future__ import annotations
+
+import pytest
+
+from tiniscript import check_text, robots
+from tiniscript.semantics.symbols import ENOUGH
+
+KIT = robots.load("tinibot").kit
+
+
+def offered(text: str) -> list[object]:
+    """Return for each mistake what may stand there instead."""
+    return [each.values.get("fix") for each in check_text(text, KIT).diagnostics]
+
+
+@pytest.mark.parametrize(("length", "fix"), [(78, "X = 6"), (80, "X = 6"), (81, None), (82, None)])
+def test_a_short_question_is_asked_again_of_the_second_number(length: int, fix: object) -> None:
+    digits = "1" if length % 2 else "11"
+    left = "X = " + "1+" * ((length - 5) // 2) + digits
+    assert len(left) == length
+    assert offered(f"X = 1; IF({left} OR 6); S; ENDIF") == [fix]
+
+
+def test_where_in_a_program_a_question_stands_does_not_matter() -> None:
+    assert offered("X = 1;" + "S;" * 50 + "IF(X = 5 OR 6); S; ENDIF") == ["X = 6"]
+
+
+def test_a_name_of_two_sensors_is_told_which_until_there_are_enough_mistakes() -> None:
+    found = check_text(";".join(["SHOW(LIGHT)"] * (ENOUGH + 3)), KIT).diagnostics
+    assert len(found) == ENOUGH + 3
+    assert found[0].values["first"] == "LIGHT_R" and found[0].values["second"] == "LIGHT_L"
+    assert ["first" in each.values for each in found] == [True] * ENOUGH + [False] * 3
