@@ -96,6 +96,7 @@ ROOMS = (
             "tests/firmware/test_undo.py",
             "tests/firmware/test_keeping.py",
             "tests/firmware/test_host_firmware.py",
+            "tests/firmware/test_other_versions.py",
             "tests/firmware/test_owners.py",
         ),
     ),
@@ -171,6 +172,7 @@ ROOMS = (
             "tests/link/test_link_cases.py",
             "tests/link/test_session.py",
             "tests/link/test_session_resets.py",
+            "tests/link/test_session_waits.py",
             "tests/link/test_robot_times.py",
         ),
     ),
@@ -224,7 +226,9 @@ def changes_of(room: Room, root: Path = ROOT) -> Iterator[Change]:
             changed = text[:start] + instead + text[end:]
             line = text.count("\n", 0, start)
             was, becomes = (each.splitlines()[line].strip() for each in (text, changed))
-            if (was, becomes) not in EQUIVALENT:
+            before = text.splitlines()[line - 1].strip()
+            with_before = (f"{before} {was}", f"{before} {becomes}")
+            if not {(was, becomes), with_before} & EQUIVALENT:
                 name = path.relative_to(root).as_posix()
                 yield Change(name, line + 1, was, becomes, changed)
 

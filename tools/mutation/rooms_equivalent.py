@@ -1,5 +1,5 @@
 """Changes of other rooms than the machine that change nothing, so that no test can notice them: the
-line, what it becomes, and why."""
+line, what it becomes, and why. A short line stands here behind the line before it."""
 
 from __future__ import annotations
 
@@ -40,6 +40,24 @@ _REASONS: dict[str, tuple[tuple[str, str], ...]] = {
     "a label is marked before anything reads it": (
         ("self.labels.append(-1)",
          "self.labels.append(-2)"),
+    ),
+    "a session looks at it when a try ends: no try ends in this millisecond": (
+        ("DEAF_MS = 3000  # a heartbeat without an answer for this time means that the link is lost",
+         "DEAF_MS = 3001  # a heartbeat without an answer for this time means that the link is lost"),
+    ),
+    "settling uses neither, and whoever writes sets both": (
+        ("for (uint8_t& held : held_) held = kNothing; length_ = 0;",
+         "for (uint8_t& held : held_) held = kNothing; ;"),
+        ("for (uint8_t& held : held_) held = kNothing; length_ = 0;",
+         "for (uint8_t& held : held_) held = kNothing; length_ = 1;"),
+        ("length_ = 0; at_ = 0;",
+         "length_ = 0; ;"),
+        ("length_ = 0; at_ = 0;",
+         "length_ = 0; at_ = 1;"),
+    ),
+    "it is the last case": (
+        ("case WriteStep::kEmpty: break;",
+         "case WriteStep::kEmpty: ;"),
     ),
     "only that of a DEF is looked at, and a DEF begins with 0": (
         ("self.deepest = 0  # blocks open at once in the routine that is being checked",
