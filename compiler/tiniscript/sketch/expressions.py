@@ -1,0 +1,156 @@
+"""Expressions in C++: the terms of the checked program with C++'s own operators and brackets.
+
+`exact` sketches calculate with the struct Number; in the others every number is a literal or a
+reading, and C++'s own numbers do. C++ may calculate the right side of an operator first: where
+both sides have a RANDOM, the left one is kept in a variable before.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+from tiniscript.fixed_point import ONE, as_text
+from tiniscript.semantics.ir import Expression
+
+_OPERATORS = {
+    "MUL": ("*", 9), "DIV": ("/", 9), "MOD": ("%", 9), "ADD": ("+", 8), "SUB": ("-", 8),
+    "LT": ("<", 7), "LE": ("<=", 7), "GT": (">", 7), "GE": (">=", 7), "EQ": ("==", 6),
+    "NE": ("!=", 6), "AND": ("&&", 5), "OR": ("||", 4),
+}  # fmt: skip
+ARITHMETIC = frozenset(("MUL", "DIV", "MOD", "ADD", "SUB"))
+COMPARED = frozenset(("LT", "LE", "GT", "GE", "EQ", "NE"))
+FUNCTIONS = {"MIN": "smaller", "MAX": "larger", "ROUND": "rounded", "RANDOM": "random"}
+_UNARY, _PRIMARY = 10, 11
+
+
+class _Operand(NamedTuple):
+    text: str
+    binds: int  # how tightly, as C++ has it
+    is_literal: bool = False  # a number that C++ itself would calculate with
+    is_random: bool = False
+
+
+class Expressions:
+    """Writes expressions. `use` is told each helper that one needs and returns its name."""
+
+    def __init__(
+        self,
+        use: Callable[[str], str],
+        is_exact: bool,
+        variables: Sequence[str],
+        sensors: Sequence[str],
+    ) -> None:
+        self.use = use
+        self.is_exact = is_exact
+        self.variables = variables
+        self.sensors = sensors
+        self.kept = 0  # left sides that need a variable
+
+    def text(self, expression: Expression, reading: tuple[int, str] | None = None) -> str:
+        """Return an expression; `reading` is a sensor, and what stands in the place of its name."""
+        stack: list[_Operand] = []
+        for op, value in expression:
+            if op == "NUMBER":
+                stack.append(self._number(value))
+            elif op == "YES_NO":
+                stack.append(_Operand("true" if value else "false", _PRIMARY))
+            elif op == "VARIABLE":
+                stack.append(_Operand(self.variables[value], _PRIMARY))
+            elif op == "SENSOR":
+                is_read = reading is not None and reading[0] == value
+                name = reading[1] if reading is not None and is_read else self.sensors[value]
+                stack.append(_Operand(name, _PRIMARY))
+            elif op == "TIME":
+                stack.append(_Operand(f"{self.use('time')}()", _PRIMARY))
+            elif op in ("NEG", "ABS", "NOT"):
+                stack.append(self._unary(op, stack.pop()))
+            elif not op.endswith("_LEFT"):
+                right, left = stack.pop(), stack.pop()
+                stack.append(self._binary(op, left, right))
+        return stack[-1].text
+
+    def keep(self) -> str:
+        """Return a variable for a left side."""
+        self.kept += 1
+        return f"first{self.kept}"
+
+    def _number(self, value: int) -> _Operand:
+        if not is_float(value):
+            return _Operand(f"{self.use('exactly')}({_long(value)})", _PRIMARY)
+        return _Operand(as_text(value), _PRIMARY if value >= 0 else _UNARY, is_literal=True)
+
+    def _unary(self, op: str, operand: _Operand) -> _Operand:
+        if op == "NOT":
+            return operand._replace(text="!" + _inside(operand, _UNARY), binds=_UNARY)
+        its = self._calculated(operand)
+        if op == "ABS":
+            return its._replace(text=f"{self.use('absolute')}({its.text})", binds=_PRIMARY)
+        self.use("NEG")
+        gap = " " if its.text.startswith("-") else ""
+        return its._replace(text=f"-{gap}{_inside(its, _UNARY)}", binds=_UNARY)
+
+    def _binary(self, op: str, left: _Operand, right: _Operand) -> _Operand:
+        is_random = left.is_random or right.is_random or op == "RANDOM"
+        first = kept = ""
+        if left.is_random and right.is_random and op not in ("AND", "OR"):
+            first = self.keep()
+            kept, left = f"{first} = {left.text}, ", _Operand(first, _PRIMARY)
+        if op in FUNCTIONS:
+            made = _Operand(f"{self.use(FUNCTIONS[op])}({left.text}, {right.text})", _PRIMARY)
+            if first:
+                made = _Operand(f"({kept}{made.text})", _PRIMARY)
+            return made._replace(is_random=is_random)
+        sign, binds = _OPERATORS[op]
+        if op in ARITHMETIC or op in COMPARED:
+            if left.is_literal and (right.is_literal or op in ARITHMETIC and not self.is_exact):
+                left = self._calculated(left)
+            if op in ARITHMETIC or self.is_exact:
+                self.use(op)
+        # Brackets that C++ does not need stand where it warns without them.
+        low = binds + (op in COMPARED or op == "OR")
+        made_text = f"{_inside(left, low)} {sign} {_inside(right, binds + 1)}"
+        if first:
+            return _Operand(f"({kept}{made_text})", _PRIMARY, is_random=True)
+        return _Operand(made_text, binds, is_random=is_random)
+
+    def _calculated(self, operand: _Operand) -> _Operand:
+        """Return an operand that C++ does not calculate with its own whole numbers."""
+        if not operand.is_literal or not self.is_exact:
+            return operand
+        return _Operand(f"{self.use('Number')}({operand.text})", _PRIMARY)
+
+
+def _inside(operand: _Operand, binds: int) -> str:
+    """Return an operand as it stands beside an operator that binds so tightly."""
+    return operand.text if operand.binds >= binds else f"({operand.text})"
+
+
+def is_float(value: int) -> bool:
+    """Whether a literal means this number of thousandths: C++ reads it as a float of 24 bits."""
+    if value % ONE == 0:
+        return value > -(2**31)
+    near: float = struct.unpack("f", struct.pack("f", abs(value) / ONE))[0]
+    grown: float = struct.unpack("f", struct.pack("f", near * ONE))[0]
+    return int(struct.unpack("f", struct.pack("f", grown + 0.5))[0]) == abs(value)
+
+
+def _long(value: int) -> str:
+    return f"{value}L" if value > -(2**31) else f"{value + 1}L - 1"
+
+
+def is_literal(expression: Expression) -> bool:
+    """Whether an expression is one number or one yes/no that the text says."""
+    return len(expression) == 1 and expression[0].op in ("NUMBER", "YES_NO")
+
+
+def has_random(expression: Expression) -> bool:
+    return any(term.op == "RANDOM" for term in expression)
+
+
+def reads_once(expression: Expression, sensor: int) -> bool:
+    """Whether a sensor's name stands once in it, and is not what an AND or OR may skip."""
+    if any(term.op in ("AND_LEFT", "OR_LEFT") for term in expression):
+        return False
+    return sum(term == ("SENSOR", sensor) for term in expression) == 1

@@ -1,0 +1,335 @@
+"""The instructions of a program as lines of C++, each with its TiniScript beside it.
+
+Knows which helper does what a word means. `Uses` collects what the sketch has to have for that.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from tiniscript.fixed_point import ONE, as_text, limited, whole
+from tiniscript.kit import Kit
+from tiniscript.printable import printable
+from tiniscript.semantics import ir
+from tiniscript.semantics.ir import Term
+from tiniscript.semantics.optimizer import constant
+from tiniscript.sketch.expressions import Expressions, has_random, reads_once
+from tiniscript.sketch.names import counter
+from tiniscript.source import Source
+
+WIDEST = 100  # columns of a line with what stands beside it
+BESIDE = 40  # the column of what stands beside code
+_MOVES = {"F": "forward", "B": "backward", "L": "turn_left", "R": "turn_right"}
+_STARTS = {"F": "start_forward", "B": "start_backward", "L": "start_left", "R": "start_right"}
+_INT = 2**15 - 1
+
+Part = tuple[ir.Expression, tuple[int, int] | None]  # and its limits; None: a time
+
+
+class Comment(NamedTuple):
+    """A comment of the program: where it begins, the line it is in, and its text."""
+
+    start: int
+    line: int
+    text: str
+
+
+class Named(NamedTuple):
+    """What things are called in C++. `reads` and `sets` are functions."""
+
+    sensors: Sequence[str]
+    reads: Sequence[str]
+    sets: Sequence[str]
+    procedures: Sequence[str]
+    variables: Sequence[str]
+
+
+class Statements:
+    def __init__(
+        self,
+        source: Source,
+        kit: Kit,
+        names: Named,
+        write: Expressions,
+        comments: Sequence[Comment],
+    ) -> None:
+        self.source = source
+        self.kit = kit
+        self.names = names
+        self.write = write
+        self.use = write.use
+        self.lines: list[str] = []
+        self.waiting = list(reversed(comments))
+        self.read_sensors: set[int] = set()
+        self.set_actuators: set[int] = set()
+        self.depth = 1
+        self.loops = 0
+
+    def body(self, body: ir.Body) -> None:
+        for statement in body:
+            self.statement(statement)
+
+    # -- lines
+
+    def line(self, code: str, beside: str = "") -> None:
+        indent = "  " * self.depth
+        plain = f"{indent}{code}"
+        if beside:
+            padded = f"{plain:<{BESIDE - 2}}  // {beside}"
+            if len(padded) <= WIDEST:
+                plain = padded
+            else:
+                self.lines.append(f"{indent}// {_shortened(beside, WIDEST - len(indent) - 3)}")
+        self.lines.append(plain)
+
+    def said(self, start: int) -> str:
+        """Return the instruction or the header of a block that begins at an offset."""
+        text, at, open_brackets = self.source.text, start, 0
+        while at < len(text):
+            letter = text[at]
+            if text.startswith("//", at):
+                end = re.compile(r"[^\r\n]*").match(text, at)
+                assert end is not None
+                if not open_brackets:
+                    break
+                at = end.end()
+                continue
+            if letter in ";~" or (letter in "\r\n" and not open_brackets):
+                break
+            open_brackets += {"(": 1, ")": -1}.get(letter, 0)
+            at += 1
+        found = re.sub(r"//[^\r\n]*", " ", text[start:at])
+        return harmless(" ".join(found.split()))
+
+    def remarks(self, start: int) -> None:
+        """Add the comments of the program before an offset, and those in its line."""
+        line = self.source.position(start)[0]
+        while self.waiting and (self.waiting[-1].start < start or self.waiting[-1].line == line):
+            for row in _rows(self.waiting.pop().text, WIDEST - 2 * self.depth - 3):
+                self.line(f"// {row}")
+
+    def rest(self) -> None:
+        """Add the comments behind the last instruction."""
+        self.remarks(len(self.source.text) + 1)
+
+    # -- instructions
+
+    def statement(self, statement: ir.Statement) -> None:
+        start = statement.span.start
+        if isinstance(statement, ir.If):
+            self.if_(statement)
+            return
+        self.remarks(start)
+        said = self.said(start)
+        if isinstance(statement, ir.Read):
+            name = said.upper() if said.replace("_", "").isalnum() else ""
+            self.line(self.reading(statement.sensor), name)
+        elif isinstance(statement, ir.Move):
+            self.move(statement, said)
+        elif isinstance(statement, ir.Motors):
+            powers = ((statement.left, (-100, 100)), (statement.right, (-100, 100)))
+            self.call("motors", said, self.arguments(*powers))
+        elif isinstance(statement, ir.Stop):
+            self.line(f"{self.use('stop_motors')}();", said)
+        elif isinstance(statement, ir.Beep):
+            parts = ((statement.time, None), (statement.hertz, (31, 20_000)))
+            self.call("beep", said, self.arguments(*parts))
+        elif isinstance(statement, ir.Show):
+            self.show(statement, said)
+        elif isinstance(statement, ir.Set):
+            self.set(statement, said)
+        elif isinstance(statement, ir.Assign):
+            name = self.names.variables[statement.variable]
+            self.line(f"{name} = {self.write.text(statement.value)};", said)
+        elif isinstance(statement, ir.Loop):
+            self.loop(statement, said)
+        elif isinstance(statement, ir.While):
+            self.while_(statement, said)
+        elif isinstance(statement, ir.Break):
+            self.line("break;", said)
+        elif isinstance(statement, ir.Call):
+            self.line(f"{self.names.procedures[statement.procedure]}();", said)
+
+    def reading(self, sensor: int) -> str:
+        self.read_sensors.add(sensor)
+        return f"{self.names.reads[sensor]}();"
+
+    def call(self, key: str, said: str, values: Sequence[str]) -> None:
+        self.line(f"{self.use(key)}({', '.join(values)});", said)
+
+    @staticmethod
+    def named_sensors(program: ir.Program) -> set[int]:
+        """Return the sensors whose names stand in expressions, read or not."""
+        bodies = (program.body, *(each.body for each in program.procedures))
+        return {
+            term.value
+            for body in bodies
+            for statement in ir.walk(body)
+            for expression in ir.expressions(statement)
+            for term in expression
+            if term.op == "SENSOR"
+        }
+
+    # -- arguments
+
+    def arguments(self, *parts: Part) -> list[str]:
+        """Return arguments; the first one is calculated before, where both have a RANDOM."""
+        keeps = len(parts) > 1 and all(has_random(value) for value, _ in parts)
+        texts: list[str] = []
+        for value, limits in parts:
+            fixed = constant(value)
+            if fixed is not None:
+                rounded = max(0, fixed) if limits is None else limited(whole(fixed), *limits) * ONE
+                texts.append(self.write.text((Term("NUMBER", rounded),)))
+                continue
+            text = self.write.text(value)
+            if keeps and not texts:
+                first = self.write.keep()
+                self.line(f"{first} = {text};")
+                text = first
+            low, high = limits or (0, 0)
+            texts.append(text if limits is None else f"{self.use('limited')}({text}, {low}, {high})")
+        return texts
+
+    # -- moves and what is shown
+
+    def move(self, move: ir.Move, said: str) -> None:
+        if move.until is not None:
+            self.until(move, move.until, said)
+            return
+        assert move.time is not None
+        if move.power is None:
+            self.call("wait", said, self.drive(move))
+        else:
+            self.call(_MOVES[move.direction], said, self.drive(move))
+
+    def drive(self, move: ir.Move) -> list[str]:
+        parts: list[Part] = [] if move.time is None else [(move.time, None)]
+        if move.power is not None:
+            parts.append((move.power, (0, 100)))
+        texts = self.arguments(*parts)
+        return texts if move.time is not None else [self.use("FOREVER"), *texts]
+
+    def set(self, its: ir.Set, said: str) -> None:
+        self.set_actuators.add(its.actuator)
+        device = self.kit.actuators[its.actuator]
+        if device.is_yes_no:
+            value = self.write.text(its.value)
+        else:
+            (value,) = self.arguments((its.value, (device.low // ONE, device.high // ONE)))
+        self.line(f"{self.names.sets[its.actuator]}({value});", said)
+
+    def until(self, move: ir.Move, until: ir.Until, said: str) -> None:
+        self.call(_STARTS.get(move.direction, "start_wait"), said, self.drive(move))
+        self.line(f"while ({self.use('move_lasts')}()) {{")
+        self.depth += 1
+        condition = self.condition(until.reads, until.condition)
+        self.line(f"if ({condition}) break;")
+        self.depth -= 1
+        self.line("}")
+        self.line(f"{self.use('end_move')}();")
+
+    def condition(self, reads: Sequence[int], condition: ir.Expression) -> str:
+        """Return a condition; its readings are taken in it, or in lines before it."""
+        if len(reads) == 1 and reads_once(condition, reads[0]):
+            return self.write.text(condition, (reads[0], self.reading(reads[0])[:-1]))
+        for sensor in reads:
+            self.line(self.reading(sensor))
+        return self.write.text(condition)
+
+    def show(self, show: ir.Show, said: str) -> None:
+        fixed = constant(show.value)
+        self.use("Serial")
+        if show.is_yes_no:
+            self.line(f"{self.use('show_yes_no')}({self.write.text(show.value)});", said)
+        elif fixed is not None:
+            self.line(f'Serial.println("{as_text(fixed)}");', said)
+        elif self.write.is_exact:
+            self.line(f"{self.use('show_number')}({self.write.text(show.value)});", said)
+        else:
+            self.line(f"Serial.println({self.write.text(show.value)});", said)
+
+    # -- blocks
+
+    def block(self, body: ir.Body, is_loop: bool = False) -> None:
+        self.depth += 1
+        self.loops += is_loop
+        self.body(body)
+        self.loops -= is_loop
+        self.depth -= 1
+
+    def if_(self, statement: ir.If) -> None:
+        nested = 0
+        for k, arm in enumerate(statement.arms):
+            said = self.said(arm.span.start)
+            self.remarks_in(arm.span.start, k)
+            before = len(self.lines)
+            inline = len(arm.reads) == 1 and reads_once(arm.condition, arm.reads[0])
+            if k and arm.reads and not inline:
+                self.line("} else {")
+                self.depth += 1
+                nested += 1
+                condition = self.condition(arm.reads, arm.condition)
+                self.line(f"if ({condition}) {{", said)
+            else:
+                condition = self.condition(arm.reads, arm.condition)
+                assert before == len(self.lines)
+                self.line(f"{'} else ' if k else ''}if ({condition}) {{", said)
+            self.block(arm.body)
+        if statement.otherwise:
+            self.line("} else {", "ELSE")
+            self.block(statement.otherwise)
+        for _ in range(nested):
+            self.line("}")
+            self.depth -= 1
+        self.line("}")
+
+    def remarks_in(self, start: int, arm: int) -> None:
+        """Add comments before an arm: those of an ELSEIF stand in the block before it."""
+        self.depth += arm > 0
+        self.remarks(start)
+        self.depth -= arm > 0
+
+    def loop(self, loop: ir.Loop, said: str) -> None:
+        if loop.times is None:
+            self.line("while (true) {", said)
+        else:
+            name = counter(self.loops)
+            fixed = constant(loop.times)
+            if fixed is None:
+                times = f"{self.use('whole')}({self.write.text(loop.times)})"
+                self.line(f"for (long {name} = {times}; {name} > 0; {name}--) {{", said)
+            else:
+                count = whole(fixed)
+                kind = "int" if abs(count) <= _INT else "long"
+                self.line(f"for ({kind} {name} = 0; {name} < {count}; {name}++) {{", said)
+        self.block(loop.body, is_loop=True)
+        self.line("}")
+
+    def while_(self, loop: ir.While, said: str) -> None:
+        inline = len(loop.reads) == 1 and reads_once(loop.condition, loop.reads[0])
+        if inline or not loop.reads:
+            self.line(f"while ({self.condition(loop.reads, loop.condition)}) {{", said)
+        else:
+            self.line("while (true) {", said)
+            self.depth += 1
+            condition = self.condition(loop.reads, loop.condition)
+            self.line(f"if (!({condition})) break;")
+            self.depth -= 1
+        self.block(loop.body, is_loop=True)
+        self.line("}")
+
+
+def harmless(text: str) -> str:
+    """Return a text that stays in its comment: no controls, and nothing that joins lines."""
+    return printable(text).replace("??/", "?? /").rstrip("\\ ")
+
+
+def _shortened(text: str, most: int) -> str:
+    return text if len(text) <= most else text[: most - 1] + "…"
+
+
+def _rows(text: str, most: int) -> list[str]:
+    return [harmless(text[at : at + most]) for at in range(0, len(text), most)] or [""]

@@ -1,0 +1,363 @@
+"""A sketch is put together: its limits, the pins, the program, then the functions it needs."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+
+from tiniscript.semantics import ir
+from tiniscript.sketch import helpers, numbers
+from tiniscript.sketch.expressions import FUNCTIONS, Expressions, is_float
+from tiniscript.sketch.names import Names
+from tiniscript.sketch.statements import Comment, Named, Statements, harmless
+from tiniscript.sketch.texts import IDENTIFIERS, TEXTS, called, said
+from tiniscript.sketch.wiring import Plan, is_count, is_small
+from tiniscript.robots.profile import Robot
+from tiniscript.source import Source
+from tiniscript.syntax.lexer import scan
+
+WIDEST = 98
+_WORD = re.compile(r"\$(\w+?)(?=_\$|_PIN\b|\b)")
+_BOARDS = {"uno": "Uno", "nano": "Nano", "mega": "Mega 2560"}
+_CALCULATES = frozenset(numbers.NUMBERS) - {"exactly", *_BOARDS} | {"NEG", "ABS", "TIME", "VARIABLE"}
+
+
+def sketch_of(source: Source, program: ir.Program, robot: Robot, language: str) -> str:
+    """Return the sketch of a checked program, for a robot on an AVR; see `robots.firmware.fits`."""
+    return _Sketch(source, program, robot, language).text()
+
+
+def needs_numbers(program: ir.Program, robot: Robot) -> bool:
+    """Whether a program calculates: then it needs numbers that are exact."""
+    kit, wired = robot.kit, robot.board.sensors
+    for statement in _every(program):
+        if isinstance(statement, ir.Show) and not statement.is_yes_no:
+            value = statement.value[0]
+            if value.op == "SENSOR" and not is_count(kit.sensors[value.value], wired[value.value]):
+                return True
+        if isinstance(statement, ir.Assign):
+            return True
+        for expression in ir.expressions(statement):
+            if any(_calculates(term) for term in expression):
+                return True
+    return not is_small(kit.sensors)
+
+
+def _calculates(term: ir.Term) -> bool:
+    if term.op == "NUMBER":
+        return not is_float(term.value) or abs(term.value) >= 2**24
+    return term.op in FUNCTIONS or term.op in ("ADD", "SUB", "MUL", "DIV", "MOD", "NEG", "ABS",
+                                               "TIME")  # fmt: skip
+
+
+def _every(program: ir.Program) -> Iterable[ir.Statement]:
+    for procedure in program.procedures:
+        yield from ir.walk(procedure.body)
+    yield from ir.walk(program.body)
+
+
+def _kinds(program: ir.Program, robot: Robot) -> list[bool]:
+    """Return for each variable whether it is a yes/no."""
+    found = [False] * len(program.variables)
+    for statement in _every(program):
+        if isinstance(statement, ir.Assign):
+            last = statement.value[-1]
+            if last.op == "VARIABLE":
+                found[statement.variable] = found[last.value]
+            elif last.op == "SENSOR":
+                found[statement.variable] = robot.kit.sensors[last.value].is_yes_no
+            else:
+                found[statement.variable] = last.op in _YES_NO
+    return found
+
+
+_YES_NO = frozenset(("YES_NO", "NOT", "AND", "OR", "LT", "LE", "GT", "GE", "EQ", "NE"))
+
+
+class _Sketch:
+    def __init__(
+        self, source: Source, program: ir.Program, robot: Robot, language: str
+    ) -> None:
+        self.source, self.program, self.robot, self.language = source, program, robot, language
+        self.is_exact = needs_numbers(program, robot)
+        self.needed: dict[str, None] = {}  # helpers, in the order in which they are met
+        names = Names(language)
+        kit = robot.kit
+        self.named = Named(
+            [names.of(each.name) for each in kit.sensors],
+            [names.of(each.name, called("read", language)) for each in kit.sensors],
+            [names.of(each.name, called("set", language)) for each in kit.actuators],
+            [names.of(each.name) for each in program.procedures],
+            [names.of(each) for each in program.variables],
+        )
+        self.write = Expressions(self.use, self.is_exact, self.named.variables, self.named.sensors)
+        self.plan = Plan(robot, self.label, self.is_exact)
+        self.functions = {**helpers.HELPERS, **numbers.NUMBERS}
+        self.functions["to_ms"] = helpers.TO_MS[self.is_exact]
+        self.functions["servo_pulse"] = helpers.SERVO_PULSE
+        self.functions["begin_servos"] = helpers.BEGIN_SERVOS
+
+    def use(self, key: str) -> str:
+        self.needed[key] = None
+        return called(key, self.language) if key in IDENTIFIERS else key
+
+    def label(self, name: str) -> str:
+        return harmless(self.robot.labels[self.language][name])
+
+    def says(self, key: str, **values: str) -> str:
+        return said(key, self.language).format(**values)
+
+    # -- the whole
+
+    def text(self) -> str:
+        program, rows = self.program, self.statements()
+        loop: ir.Body = ()
+        body = program.body
+        is_ping = program.start == "PING"
+        last = body[-1] if body else None
+        if isinstance(last, ir.Loop) and last.times is None and not ir.loops_end(last.body):
+            body, loop = body[:-1], last.body
+        procedures = [self.procedure(rows, each) for each in program.procedures]
+        rows.body(body)
+        if isinstance(last, ir.Loop) and loop:
+            start = last.span.start
+            rows.remarks(start)
+            rows.line(f"// {rows.said(start)}: {self.says('in_loop')}")
+        main, rows.lines = rows.lines, []
+        rows.body(loop)
+        rows.rest()
+        repeated, rows.lines = rows.lines, []
+        if is_ping:
+            main = []
+        elif not loop:
+            rows.line(f"{self.use('finish')}();", self.says("no_more"))
+            main += [*repeated, *rows.lines]
+            repeated = []
+        return self.layout(rows, main, repeated, procedures)
+
+    def statements(self) -> Statements:
+        comments = [
+            Comment(each.start, self.source.position(each.start)[0], harmless(each.text[2:].strip()))
+            for each in scan(self.source.text).comments
+        ]
+        return Statements(self.source, self.robot.kit, self.named, self.write, comments)
+
+    def procedure(self, rows: Statements, procedure: ir.Procedure) -> str:
+        rows.depth = 0
+        rows.remarks(procedure.span.start)
+        rows.depth = 1
+        name = self.named.procedures[self.program.procedures.index(procedure)]
+        head, rows.lines = rows.lines, []
+        rows.body(procedure.body)
+        body, rows.lines = rows.lines, []
+        header = f"void {name}() {{"
+        beside = f"{header:<38}  // {rows.said(procedure.span.start)}"
+        return "\n".join([*head, beside, *body, "}"])
+
+    def layout(
+        self, rows: Statements, main: list[str], repeated: list[str], procedures: list[str]
+    ) -> str:
+        """Return the sketch; what the program uses is known by now."""
+        is_ping, parts = self.program.start == "PING", self.plan.parts
+        if not is_ping:
+            self.plan.motors()
+        own = {
+            **{
+                self.named.reads[k]: self.plan.reader(k, self.named.sensors[k], self.named.reads[k])
+                for k in sorted(rows.read_sensors)
+            },
+            **{
+                self.named.sets[k]: self.plan.setter(k, self.named.sets[k])
+                for k in sorted(rows.set_actuators)
+            },
+        }
+        self.functions.update(parts.functions)
+        self.functions["halt"] = self.halt()
+        begin = [] if is_ping else self.begin()
+        self.follow([*main, *repeated, *procedures, *own.values(), *begin])
+        wired = [*own.values()]
+        kit = self.robot.kit
+        about = [
+            *(self.says("read", name=kit.sensors[k].name) for k in sorted(rows.read_sensors)),
+            *(self.says("set", name=kit.actuators[k].name) for k in sorted(rows.set_actuators)),
+        ]
+        functions = {key: self.functions[key] for key in self.needed if key in self.functions}
+        written = [
+            *(self.commented(note, code) for note, code in zip(about, wired, strict=True)),
+            *(self.commented(self.note(key), code) for key, code in functions.items()),
+        ]
+        used = [*procedures, *wired, *functions.values()]
+        pieces = [
+            self.opening(),
+            "#include <Arduino.h>\n",
+            self.constants(),
+            self.number() if self.is_exact else "",
+            self.kept(rows),
+            self.prototypes(used),
+            f"void setup() {{\n{_lines(begin, main)}}}\n",
+            f"void loop() {{\n{_lines(repeated)}}}\n",
+        ]
+        if procedures:
+            pieces += [_heading(self.says("def")), *(f"{each}\n" for each in procedures)]
+        if written:
+            pieces += [_heading(self.says("helpers")), *written]
+        return self.filled("\n".join(piece for piece in pieces if piece))
+
+    # -- its parts
+
+    def begin(self) -> list[str]:
+        """Return what setup() does first."""
+        lines = list(self.plan.parts.begin)
+        if self.needs_serial():
+            lines.append(f"Serial.begin({self.robot.board.baud});")
+        lines.append("pinMode($START_BUTTON_$PIN, INPUT_PULLUP);")
+        self.plan.pin("$BUZZER_$PIN", self.robot.board.buzzer)
+        self.plan.pin("$START_BUTTON_$PIN", self.robot.board.start_button)
+        if self.plan.parts.servo_pins:
+            lines.append("$begin_servos();")
+        self.needed["due"] = None
+        if self.program.start == "SB":
+            lines.append("$wait_for_button();")
+        else:
+            lines.append("$started = $due = millis();")
+        return lines
+
+    def needs_serial(self) -> bool:
+        self.follow([])
+        return "Serial" in self.needed or any(
+            "Serial" in self.functions.get(key, "") for key in self.needed
+        )
+
+    def halt(self) -> str:
+        lines = ["$stop_motors();", "noTone($BUZZER_PIN);", *self.plan.parts.off, "while (true) {"]
+        body = "\n".join(f"  {line}" for line in lines)
+        return f"void $halt() {{\n{body}\n  }}\n}}"
+
+    def follow(self, texts: Iterable[str]) -> None:
+        """Find the helpers that texts and other helpers need."""
+        by_name = {called(key, self.language): key for key in self.functions if key in IDENTIFIERS}
+        for text in texts:
+            for word in re.findall(r"\w+", text):
+                if word in by_name and f"{word}(" in text:
+                    self.needed[by_name[word]] = None
+            self._names_in(text)
+        waiting = list(self.needed)
+        while waiting:
+            text = self.functions.get(waiting.pop(), "")
+            before = set(self.needed)
+            self._names_in(text)
+            waiting += [key for key in self.needed if key not in before]
+
+    def _names_in(self, text: str) -> None:
+        for key in re.findall(r"\$([a-z_]+)", text):
+            key = key.rstrip("_")
+            key = "due" if key == "started" else "move_runs" if key.startswith("move_") and (
+                key not in self.functions
+            ) else key  # fmt: skip
+            self.needed[key] = None
+        if "$is_forever" in text:
+            self.needed["FOREVER"] = None
+            if self.is_exact:
+                self.needed["exactly"] = None
+
+    def opening(self) -> str:
+        file = harmless(self.source.name or "-e")
+        robot, board = self.label("robot"), _BOARDS[self.robot.board.chip]
+        rows = [self.says("made", file=file, robot=robot, board=board), ""]
+        rows.append(self.says("limits"))
+        limits = ["limit_ping"]
+        if self.program.start != "PING":
+            limits = ["limit_link", "limit_watch", "limit_time"]
+            limits += ["limit_si"] if self.program.start == "SI" else []
+            limits += [f"limit_{key}" for key in ("random", "fault") if key in self.needed]
+            shows = {"Serial", "show_number", "show_yes_no"} & set(self.needed)
+            limits += ["limit_show"] if shows else []
+        baud = str(self.robot.board.baud)
+        lines = ["// " + row if row else "//" for row in rows]
+        for key in limits:
+            lines += _wrapped(self.says(key, baud=baud), "// - ", "//   ")
+        return "\n".join(lines) + "\n"
+
+    def constants(self) -> str:
+        if not self.plan.parts.constants:
+            return ""
+        head = f"// {self.says('pins', robot=self.label('robot'))}"
+        return "\n".join([head, *self.plan.parts.constants]) + "\n"
+
+    def number(self) -> str:
+        return self.commented(self.says("Number"), numbers.STRUCT.rstrip())
+
+    def kept(self, rows: Statements) -> str:
+        """Return the variables of the program, of the readings, and those that functions share."""
+        lines = []
+        kinds = _kinds(self.program, self.robot)
+        for name, is_yes_no in zip(self.named.variables, kinds, strict=True):
+            lines.append(f"{'bool' if is_yes_no else '$N'} {name} = {'false' if is_yes_no else '0'};")
+        for k in sorted(rows.read_sensors | rows.named_sensors(self.program)):
+            kind = self.plan.kind(k)
+            lines.append(f"{kind} {self.named.sensors[k]} = {'false' if kind == 'bool' else '0'};")
+        pieces = ["\n".join([f"// {self.says('values')}", *lines])] if lines else []
+        for key, (note, code) in helpers.SHARED.items():
+            if key in self.needed:
+                pieces.append((f"// {self.says(note)}\n" if note else "") + code)
+        if self.plan.parts.servo_pins:
+            pieces.append(helpers.servo_shared(self.plan.parts.servo_pins))
+        if self.write.kept:
+            kept = ", ".join(f"first{k + 1}" for k in range(self.write.kept))
+            pieces.append(f"// {self.says('shared_first')}\n$N {kept};")
+        return "\n".join(pieces) + "\n" if pieces else ""
+
+    def prototypes(self, codes: Iterable[str]) -> str:
+        found = [
+            f"{line[: line.index('{')].rstrip()};"
+            for code in codes
+            for line in code.splitlines()
+            if re.match(r"(?!ISR|struct)[\w$]+( [\w$]+)* [\w$]+[^\w$ (]*\(.*\) \{", line)
+        ]
+        if not found:
+            return ""
+        last = helpers.FOREVER[self.is_exact] if "FOREVER" in self.needed else ""
+        lines = [f"// {self.says('prototypes')}", *found, *([last] if last else [])]
+        return "\n".join(lines) + "\n"
+
+    def note(self, key: str) -> str:
+        if key in ("ADD", "SUB", "MUL", "DIV", "MOD", "NEG"):
+            return self.says("operator")
+        if key in numbers.NUMBERS and key not in TEXTS:
+            return self.says("compare")
+        if key.startswith("start_") and key != "start_wait" and key != "start_move":
+            return self.says("start_forward")
+        return self.says(key) if key in TEXTS else ""
+
+    def commented(self, note: str, code: str) -> str:
+        comment = "\n".join(_wrapped(note, "// ", "// ")) + "\n" if note else ""
+        return f"{comment}{code}\n"
+
+    def filled(self, text: str) -> str:
+        """Return a text with names in the place of its `$words`."""
+        text = text.replace("$is_forever", helpers.IS_FOREVER[self.is_exact])
+        text = re.sub(r"\$N\b", called("Number", self.language) if self.is_exact else "float", text)
+
+        def name(match: re.Match[str]) -> str:
+            return called(match[1], self.language)
+
+        return _WORD.sub(name, text)
+
+
+def _lines(*parts: list[str]) -> str:
+    first, *others = parts
+    if others:
+        first = [f"  {line}" for line in first]
+        if first and others[0]:
+            first.append("")
+    return "".join(f"{line}\n" for line in (*first, *(row for rows in others for row in rows)))
+
+
+def _heading(text: str) -> str:
+    return f"// {'-' * 4} {text} {'-' * max(4, 90 - len(text))}\n"
+
+
+def _wrapped(text: str, first: str, other: str) -> list[str]:
+    from textwrap import wrap
+
+    return wrap(text, WIDEST, initial_indent=first, subsequent_indent=other)
