@@ -1,0 +1,240 @@
+"""The USB stick for a room without internet: `tools/builds/usb_stick.py`.
+
+The packages of the test are those that are installed, made wheels again: so nothing is fetched.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import re
+import shutil
+import subprocess
+import sys
+import zipfile
+from importlib.metadata import Distribution, distribution
+from pathlib import Path
+from urllib.parse import unquote
+
+import pytest
+
+from tests.support.casefile import ROOT
+from tools.builds import stick_wheels, usb_stick
+from tools.builds.stick_wheels import PYTHONS, SYSTEMS
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="it starts the script of Unix")
+
+CUT_OFF = ["unshare", "--map-root-user", "--net"]  # a process without a network
+
+
+@pytest.fixture(scope="module")
+def stick(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("stick")
+    usb_stick.add_texts(folder)
+    usb_stick.add_readme(folder, "Linux", "3.11", ["a wheel"])
+    return folder
+
+
+def wheel_of(found: Distribution, folder: Path) -> None:
+    """Make a wheel of what is installed."""
+    name = re.sub(r"[-.]+", "_", found.metadata["Name"])
+    tag = re.findall(r"(?m)^Tag: (\S+)$", found.read_text("WHEEL") or "")[-1]
+    rows = []
+    with zipfile.ZipFile(folder / f"{name}-{found.version}-{tag}.whl", "w") as wheel:
+        for each in found.files or ():
+            inside = each.as_posix()
+            if ".." in inside or inside.endswith((".pyc", "RECORD", "INSTALLER", "REQUESTED")):
+                continue
+            data = Path(str(each.locate())).read_bytes()
+            wheel.writestr(inside, data)
+            digest = base64.urlsafe_b64encode(hashlib.sha256(data).digest()).rstrip(b"=").decode()
+            rows.append(f"{inside},sha256={digest},{len(data)}\n")
+            if inside.endswith(".dist-info/METADATA"):
+                record = inside.replace("METADATA", "RECORD")
+        wheel.writestr(record, "".join([*rows, f"{record},,\n"]))
+
+
+def installed(root: str, extras: set[str]) -> dict[str, Distribution]:
+    """Return a distribution's requirements, and theirs, that this computer has."""
+    from packaging.requirements import Requirement
+
+    found: dict[str, Distribution] = {}
+    waiting = [(root, extras)]
+    while waiting:
+        name, wanted = waiting.pop()
+        here = distribution(name)
+        for text in here.requires or ():
+            need = Requirement(text)
+            environments = [{"extra": each} for each in wanted] or [{"extra": ""}]
+            if need.marker and not any(need.marker.evaluate(each) for each in environments):
+                continue
+            if need.name not in found:
+                found[need.name] = distribution(need.name)
+                waiting.append((need.name, set(need.extras)))
+    return found
+
+
+def test_it_installs_with_the_network_off(stick: Path, tmp_path: Path) -> None:
+    for needed in ("wasmtime", "bleak", "zeroconf", "PIL", "setuptools"):
+        pytest.importorskip(needed)
+    wheels = stick / "wheels"
+    wheels.mkdir()
+    for each in installed("tiniscript", {"radio", "virtual"}).values():
+        wheel_of(each, wheels)
+    copy = tmp_path / "copy"  # a build leaves folders behind
+    copy.mkdir()
+    for name in ("compiler", "vm_arduino", "pyproject.toml", "setup.py", "README.md", "LICENSE"):
+        source = ROOT / name
+        (shutil.copytree if source.is_dir() else shutil.copy)(source, copy / name)
+    build = [sys.executable, "-m", "pip", "wheel", "--quiet", "--no-index", "--no-deps",
+             "--no-build-isolation", "--wheel-dir", str(wheels), str(copy)]  # fmt: skip
+    subprocess.run(build, check=True)
+
+    home = tmp_path / "Ana María"
+    is_cut_off = not subprocess.run([*CUT_OFF, "true"], capture_output=True).returncode
+    command = ["sh", str(stick / "start.sh"), str(home)]
+    variables = {"PATH": f"{Path(sys.executable).parent}:/usr/bin:/bin", "LC_ALL": "es_PE.UTF-8",
+                 "HOME": str(tmp_path)}  # fmt: skip
+    done = subprocess.run(
+        [*(CUT_OFF if is_cut_off else []), *command], env=variables, capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "Listo." in done.stdout
+    assert (home / "pages" / "indice.html").is_file()
+    tsc = home / "tsc" / "bin" / "tsc"
+    ran = subprocess.run(
+        [tsc, "run", "--machine", "cpp", "-e", "SI|F(2, 80)"], env=variables, cwd=tmp_path,
+        capture_output=True, text=True,
+    )  # fmt: skip
+    assert ran.returncode == 0, ran.stderr
+    assert "2000 MOTORS 0 0" in ran.stdout
+    shown = subprocess.run([tsc, "check", "-e", "F(2 80)"], env=variables, capture_output=True)
+    assert shown.returncode == 1
+
+
+def test_a_stick_without_a_wheel_says_so(stick: Path, tmp_path: Path) -> None:
+    empty = tmp_path / "empty"
+    (empty / "wheels").mkdir(parents=True)
+    shutil.copy(stick / "install.py", empty)
+    done = subprocess.run(
+        [sys.executable, str(empty / "install.py"), str(tmp_path / "home")],
+        capture_output=True, text=True, env={"LC_ALL": "C", "PATH": "/usr/bin:/bin"},
+    )  # fmt: skip
+    assert done.returncode == 2
+    assert "no packages for this computer" in done.stderr
+
+
+def test_every_link_of_the_pages_leads_somewhere(stick: Path) -> None:
+    pages = stick / "pages"
+    count = 0
+    for page in pages.rglob("*.html"):
+        text = page.read_text(encoding="utf-8")
+        assert not re.search(r'(src|href)="(//|http)[^"]*\.(js|css|woff)', text), page
+        for path, anchor in re.findall(r'(?:href|src)="([^"#:]*)(#[^"]*)?"', text):
+            target = (page.parent / path) if path else page
+            assert target.is_file(), f"{page.name}: {path}"
+            if anchor and target.suffix == ".html":
+                there = target.read_text(encoding="utf-8")
+                assert f'id="{unquote(anchor[1:])}"' in there, f"{page.name}: {path}{anchor}"
+            count += 1
+    assert count > 300
+    for lesson in range(1, 13):
+        for kind in ("en", "es", "teacher.en", "teacher.es"):
+            assert (pages / "lessons" / f"{lesson:02}.{kind}.html").is_file()
+
+
+def test_each_system_has_its_script_with_its_line_ends(stick: Path) -> None:
+    for name in ("start.bat", "start.ps1"):
+        data = (stick / name).read_bytes()
+        assert data.count(b"\r\n") == data.count(b"\n") > 5
+        data.decode("ascii")  # cmd reads a file in the code page of its console
+    for name in ("start.sh", "start.command"):
+        assert b"\r" not in (stick / name).read_bytes()
+        assert (stick / name).stat().st_mode & 0o111
+        assert subprocess.run(["sh", "-n", stick / name]).returncode == 0
+    assert "falta: a wheel" in (stick / "README.txt").read_text(encoding="utf-8-sig")
+
+
+def test_nothing_of_this_computer_is_on_the_stick(stick: Path) -> None:
+    for path in stick.rglob("*"):
+        if path.suffix in (".html", ".txt", ".py", ".sh", ".bat", ".ps1", ".command"):
+            text = path.read_text(encoding="utf-8-sig")
+            assert str(ROOT) not in text, path
+            assert "index-url" not in text, path
+
+
+def test_an_installer_that_cannot_be_fetched_is_named(tmp_path: Path) -> None:
+    missing = usb_stick.add_installer(tmp_path, "file:///nowhere/python-3.13.9-amd64.exe")
+    assert "by hand" in missing[0]
+    page = tmp_path / "page.exe"
+    page.write_text("<html>blocked by the school</html>")
+    target = tmp_path / "stick"
+    target.mkdir()
+    assert "no installer" in usb_stick.add_installer(target, page.as_uri())[0]
+    assert list(target.iterdir()) == []
+    page.write_bytes(b"MZ" + b"\0" * usb_stick.SMALLEST_INSTALLER)
+    assert usb_stick.add_installer(target, page.as_uri()) == []
+    assert (target / "page.exe").is_file()
+
+
+def test_a_folder_with_something_in_it_is_left_alone(tmp_path: Path) -> None:
+    (tmp_path / "mine.txt").write_text("mine")
+    assert usb_stick.main([str(tmp_path)]) == 2
+    assert [each.name for each in tmp_path.iterdir()] == ["mine.txt"]
+
+
+def test_markers_are_those_of_the_target(tmp_path: Path) -> None:
+    """pip resolves for Windows what only Windows needs, and for an old Python what it lacks."""
+    packages = tmp_path / "packages"
+    packages.mkdir()
+    for name, needs in (("robot", ["only_windows; sys_platform == 'win32'",
+                                   "only_old; python_version < '3.11'"]),
+                        ("only_windows", []), ("only_old", [])):  # fmt: skip
+        head = f"Metadata-Version: 2.1\nName: {name}\nVersion: 1\n"
+        head += "".join(f"Requires-Dist: {each}\n" for each in needs)
+        inside = f"{name}-1.dist-info"
+        with zipfile.ZipFile(packages / f"{name}-1-py3-none-any.whl", "w") as wheel:
+            wheel.writestr(f"{inside}/METADATA", head)
+            wheel.writestr(f"{inside}/WHEEL", "Wheel-Version: 1.0\nTag: py3-none-any\n")
+            wheel.writestr(f"{inside}/RECORD", "")
+    ours = packages / "robot-1-py3-none-any.whl"
+    seen = {}
+    for system, python in (("windows", "3.10"), ("windows", "3.12"), ("mac-apple", "3.10")):
+        target = tmp_path / f"{system}{python}"
+        shutil.copytree(packages, target)
+        for each in list(target.glob("*.whl")):
+            each.unlink()
+        words = ["download", "--quiet", "--no-index", "--find-links", str(packages), "--dest",
+                 str(target), "--only-binary=:all:", "--python-version", python]  # fmt: skip
+        words += ["--platform", SYSTEMS[system].tags[0], str(ours)]
+        stick_wheels._pip(words, SYSTEMS[system].markers(python))
+        seen[system, python] = {each.name.split("-")[0] for each in target.glob("*.whl")}
+    assert seen["windows", "3.10"] == {"robot", "only_windows", "only_old"}
+    assert seen["windows", "3.12"] == {"robot", "only_windows"}
+    assert seen["mac-apple", "3.10"] == {"robot", "only_old"}
+
+
+def test_a_wheel_without_its_parts_in_c_is_for_every_system(tmp_path: Path) -> None:
+    old = tmp_path / "thing-1-cp311-cp311-linux_x86_64.whl"
+    with zipfile.ZipFile(old, "w") as wheel:
+        wheel.writestr("thing/__init__.py", "")
+        wheel.writestr("thing/fast.cpython-311-x86_64-linux-gnu.so", "x")
+        said = "Wheel-Version: 1.0\nRoot-Is-Purelib: false\nTag: cp311-cp311-linux_x86_64\n"
+        wheel.writestr("thing-1.dist-info/WHEEL", said)
+        wheel.writestr("thing-1.dist-info/RECORD", "")
+    made = stick_wheels.without_parts_in_c(old, tmp_path)
+    assert made.name == "thing-1-py3-none-any.whl"
+    with zipfile.ZipFile(made) as wheel:
+        assert not [each for each in wheel.namelist() if each.endswith(".so")]
+        said = wheel.read("thing-1.dist-info/WHEEL").decode()
+        assert "Root-Is-Purelib: true" in said
+        assert re.findall(r"(?m)^Tag: (.*)$", said) == ["py3-none-any"]
+        record = wheel.read("thing-1.dist-info/RECORD").decode()
+    assert len(record.splitlines()) == 3
+
+
+def test_a_stick_is_for_each_python_that_tsc_is_for() -> None:
+    assert PYTHONS[0] == "3.10"
+    assert [int(each.split(".")[1]) for each in PYTHONS] == list(range(10, 10 + len(PYTHONS)))
+    title = usb_stick.__doc__ or ""
+    assert f"Python {PYTHONS[0]} to {PYTHONS[-1]}" in title

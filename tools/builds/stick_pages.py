@@ -1,0 +1,153 @@
+"""The pages on a USB stick: documents, wiring and lessons as HTML that needs no network.
+
+A document becomes a page of the same name beside the same neighbours, so links stay what they
+were. What a link leads to outside of them (a source file) comes along as it is.
+"""
+
+from __future__ import annotations
+
+import re
+import shutil
+from contextlib import redirect_stdout
+from functools import partial
+from html import escape
+from io import StringIO
+from itertools import pairwise
+from pathlib import Path
+
+from markdown_it import MarkdownIt
+from markdown_it.token import Token
+
+from tiniscript import robots
+from tiniscript.lessons import catalogue
+from tiniscript.wiring.html import html_of
+from tiniscript.wiring.plan import plan_of
+
+LANGUAGES = ("en", "es")
+STYLE = """\
+body { font-family: Verdana, 'DejaVu Sans', Arial, sans-serif; line-height: 1.5; color: #111;
+  max-width: 55em; margin: 1em auto; padding: 0 1em; overflow-wrap: break-word; }
+pre { background: #f3f3f3; padding: 0.6em; overflow-x: auto; }
+table { border-collapse: collapse; display: block; overflow-x: auto; }
+th, td { border: 1px solid #999; padding: 0.25em 0.6em; text-align: left; vertical-align: top; }
+th { background: #eee; }
+img { max-width: 100%; }
+"""
+TITLES = {
+    "en": ("TiniScript without internet", "Lessons", "pupils", "teacher", "Wiring", "Guides"),
+    "es": ("TiniScript sin internet", "Lecciones", "estudiantes", "docente", "Cableado", "Guías"),
+}
+GUIDES = {
+    "en": ("docs/monday.en.md", "docs/lessons.en.md", "docs/materials.en.md",
+           "docs/language.en.md", "docs/command.en.md", "docs/worlds.en.md",
+           "docs/modules.en.md", "docs/api.en.md", "README.md"),
+    "es": ("docs/lunes.es.md", "docs/lecciones.es.md", "docs/materiales.es.md",
+           "docs/lenguaje.es.md", "docs/comandos.es.md", "docs/mundos.es.md",
+           "docs/modulos.es.md", "docs/api.es.md"),
+}  # fmt: skip
+LINK = re.compile(r'(href|src)="([^"#:]+)(#[^"]*)?"')
+
+
+def make(root: Path, folder: Path) -> None:
+    """Write all pages into a folder, with an index in each language."""
+    documents = [*root.glob("*.md"), *root.glob("docs/**/*.md")]
+    wanted: set[Path] = set()
+    for source in documents:
+        body, title = rendered(source.read_text(encoding="utf-8"))
+        wanted |= {(source.parent / path).resolve() for _, path, _ in LINK.findall(body)}
+        body = LINK.sub(partial(_to_page, folder=source.parent, documents=documents), body)
+        language = "es" if source.name.endswith(".es.md") else "en"
+        _write(folder / source.relative_to(root).with_suffix(".html"), page(title, body, language))
+    for path in sorted(wanted - {each.resolve() for each in documents}):
+        target = folder / path.relative_to(root.resolve())
+        if path.is_file():
+            target.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(path, target)
+        else:
+            _write(target / "index.html", page(path.name, f"<p>{escape(path.name)}/</p>", "en"))
+    for language in LANGUAGES:
+        for name in robots.names():
+            plan = plan_of(robots.load(name).speaking(language), language)
+            _write(folder / "wiring" / f"{name}.{language}.html", html_of(plan))
+        _write(folder / ("index.html" if language == "en" else "indice.html"),
+               _index(root, folder, language))  # fmt: skip
+
+
+def page(title: str, body: str, language: str) -> str:
+    return (
+        f'<!DOCTYPE html>\n<html lang="{language}">\n<head>\n<meta charset="utf-8">\n'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+        f"<title>{escape(title)}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n{body}\n"
+        "</body>\n</html>\n"
+    )
+
+
+def rendered(text: str) -> tuple[str, str]:
+    """Return the HTML of a Markdown text, whose headings have names as on GitHub, and its title."""
+    reader = MarkdownIt("commonmark", {"html": False}).enable("table")
+    tokens = reader.parse(text)
+    title = ""
+    known: dict[str, int] = {}
+    for token, inside in pairwise(tokens):
+        if token.type == "heading_open":
+            title = title or inside.content
+            token.attrSet("id", _name(inside, known))
+    return str(reader.renderer.render(tokens, reader.options, {})), title
+
+
+def _name(heading: Token, known: dict[str, int]) -> str:
+    words = "".join(each.content for each in heading.children or ())
+    name = re.sub(r"[^\w\- ]", "", words.lower()).replace(" ", "-")
+    number = known.get(name, 0)
+    known[name] = number + 1
+    return f"{name}-{number}" if number else name
+
+
+def _to_page(found: re.Match[str], folder: Path, documents: list[Path]) -> str:
+    kind, path, anchor = found.group(1), found.group(2), found.group(3) or ""
+    if (folder / path).resolve() in {each.resolve() for each in documents}:
+        path = path.removesuffix(".md") + ".html"
+    elif (folder / path).is_dir():
+        path = path.rstrip("/") + "/index.html"
+    return f'{kind}="{path}{anchor}"'
+
+
+def _index(root: Path, folder: Path, language: str) -> str:
+    """Write the lessons' sheets, and return the page that leads to everything."""
+    from tiniscript.cli import main as tsc
+
+    title, lessons, pupils, teacher, wiring, guides = TITLES[language]
+    other = (
+        '<a href="indice.html">Español</a>'
+        if language == "en"
+        else '<a href="index.html">English</a>'
+    )
+    rows = [f"<h1>{title}</h1>", f"<p>{other}</p>", f"<h2>{guides}</h2>", "<ul>"]
+    for name in GUIDES[language]:
+        _, heading = rendered((root / name).read_text(encoding="utf-8"))
+        rows.append(f'<li><a href="{name.removesuffix(".md")}.html">{escape(heading)}</a></li>')
+    rows += [f'<li><a href="docs/poster/poster.{language}.pdf">Poster</a></li>', "</ul>"]
+    rows += [f"<h2>{wiring}</h2>", "<ul>"]
+    for name in robots.names():
+        label = robots.load(name).labels[language]["robot"]
+        rows.append(f'<li><a href="wiring/{name}.{language}.html">{escape(label)}</a></li>')
+    rows += ["</ul>", f"<h2>{lessons}</h2>", "<ol>"]
+    for number, place in enumerate(catalogue.folders(), 1):
+        links = []
+        for label, more in ((pupils, []), (teacher, ["--teacher"])):
+            path = Path("lessons") / f"{number:02}.{'teacher.' if more else ''}{language}.html"
+            (folder / path).parent.mkdir(parents=True, exist_ok=True)
+            words = ["lesson", "sheet", str(number), "-o", str(folder / path), *more]
+            with redirect_stdout(StringIO()):
+                failed = tsc([*words, "--lang", language])
+            if failed:
+                raise SystemExit(failed)
+            links.append(f'<a href="{path.as_posix()}">{label}</a>')
+        name = escape(catalogue.load(place).titles[language])
+        rows.append(f"<li>{name}: {', '.join(links)}</li>")
+    return page(title, "\n".join([*rows, "</ol>"]), language)
+
+
+def _write(path: Path, text: str) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text, encoding="utf-8", newline="\n")

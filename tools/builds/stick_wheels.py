@@ -1,0 +1,131 @@
+"""The wheels on a USB stick: what `tsc` needs, for other systems and other versions of Python.
+
+pip resolves for each target by itself. It evaluates markers such as `sys_platform == 'win32'` for
+the computer that it runs on, so it runs here with the environment of the target.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import json
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import zipfile
+from pathlib import Path
+from typing import NamedTuple
+
+PYTHONS = ("3.10", "3.11", "3.12", "3.13", "3.14", "3.15")
+# Packages of which PyPI has only the source; those with a True have parts in C, and do without.
+SOURCES = {"cobs": True, "platformio": False}
+PURE = "py3-none-any"
+
+_PIP = """\
+import json, sys
+environment = json.loads(sys.argv.pop(1))
+from pip._vendor.packaging import markers
+found = markers.default_environment
+markers.default_environment = lambda: {**found(), **environment}
+from pip._internal.cli.main import main
+sys.exit(main())
+"""
+
+
+class CannotMake(Exception):
+    """Says what is missing, and what to do."""
+
+
+class System(NamedTuple):
+    """A kind of computer: the tags of its wheels, and what markers ask of it."""
+
+    title: str
+    tags: tuple[str, ...]
+    os_name: str
+    sys_platform: str
+    platform_system: str
+    platform_machine: str
+
+    def markers(self, python: str) -> dict[str, str]:
+        return {
+            "os_name": self.os_name, "sys_platform": self.sys_platform,
+            "platform_system": self.platform_system, "platform_machine": self.platform_machine,
+            "platform_release": "", "platform_version": "", "python_version": python,
+            "python_full_version": f"{python}.0", "implementation_version": f"{python}.0",
+            "implementation_name": "cpython", "platform_python_implementation": "CPython",
+        }  # fmt: skip
+
+
+_GLIBC = tuple(f"manylinux_2_{minor}_x86_64" for minor in range(31, 4, -1))
+SYSTEMS = {
+    "windows": System("Windows", ("win_amd64",), "nt", "win32", "Windows", "AMD64"),
+    "mac-apple": System("macOS (M1 or newer)", ("macosx_13_0_arm64",),
+                        "posix", "darwin", "Darwin", "arm64"),
+    "mac-intel": System("macOS (Intel)", ("macosx_13_0_x86_64",),
+                        "posix", "darwin", "Darwin", "x86_64"),
+    "linux": System("Linux", (*_GLIBC, "linux_x86_64"), "posix", "linux", "Linux", "x86_64"),
+}  # fmt: skip
+
+
+def make_sources(folder: Path, sources: dict[str, bool] = SOURCES) -> None:
+    """Put wheels of Python alone into a folder, for packages that PyPI has only as source."""
+    for name, has_parts_in_c in sources.items():
+        with tempfile.TemporaryDirectory() as place:
+            _pip(["wheel", "--quiet", "--no-deps", "--wheel-dir", place, name], {})
+            made = next(Path(place).glob("*.whl"))
+            if made.name.endswith(f"-{PURE}.whl"):
+                shutil.copy(made, folder)
+            elif has_parts_in_c:
+                without_parts_in_c(made, folder)
+            else:
+                raise CannotMake(f"{made.name} is for this kind of computer alone.")
+
+
+def without_parts_in_c(wheel: Path, folder: Path) -> Path:
+    """Write a wheel for every system: the same without what was compiled for this one."""
+    name, version = wheel.name.split("-")[:2]
+    target = folder / f"{name}-{version}-{PURE}.whl"
+    rows = []
+    with zipfile.ZipFile(wheel) as old, zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED) as new:
+        record = next(each for each in old.namelist() if each.endswith(".dist-info/RECORD"))
+        for each in old.namelist():
+            if each == record or each.endswith((".so", ".pyd", ".dylib", "/")):
+                continue
+            data = old.read(each)
+            if each.endswith(".dist-info/WHEEL"):
+                data = re.sub(rb"(?m)^Tag:.*\n", b"", data).rstrip() + f"\nTag: {PURE}\n".encode()
+                data = re.sub(rb"(?m)^Root-Is-Purelib:.*$", b"Root-Is-Purelib: true", data)
+            new.writestr(each, data)
+            digest = base64.urlsafe_b64encode(hashlib.sha256(data).digest()).rstrip(b"=").decode()
+            rows.append(f"{each},sha256={digest},{len(data)}\n")
+        new.writestr(record, "".join([*rows, f"{record},,\n"]))
+    return target
+
+
+def make_ours(root: Path, folder: Path) -> Path:
+    """Put the wheel of TiniScript itself into a folder; return it."""
+    with tempfile.TemporaryDirectory() as place:
+        _pip(["wheel", "--quiet", "--no-deps", "--wheel-dir", place, str(root)], {})
+        made = next(Path(place).glob("tiniscript-*.whl"))
+        return Path(shutil.copy(made, folder))
+
+
+def fetch(ours: Path, folder: Path, system: System, python: str, extras: str) -> None:
+    """Put what a wheel of ours needs on a system into a folder. Raises CannotMake."""
+    words = ["download", "--quiet", "--only-binary=:all:", "--dest", str(folder),
+             "--find-links", str(folder), "--implementation", "cp",
+             "--python-version", python]  # fmt: skip
+    for tag in system.tags:
+        words += ["--platform", tag]
+    _pip([*words, f"{ours}{extras}"], system.markers(python))
+
+
+def _pip(words: list[str], environment: dict[str, str]) -> None:
+    command = [sys.executable, "-c", _PIP, json.dumps(environment)]
+    command += [words[0], "--disable-pip-version-check", *words[1:]]
+    done = subprocess.run(command, capture_output=True, text=True)
+    if done.returncode:
+        said = [row for row in done.stderr.splitlines() if row.startswith("ERROR")]
+        raise CannotMake((said or done.stderr.splitlines() or ["pip says nothing."])[-1])

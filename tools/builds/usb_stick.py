@@ -1,0 +1,164 @@
+"""Builds a folder for a USB stick, from which a class without internet works with TiniScript.
+
+    python -m tools.builds.usb_stick stick
+
+holds the wheels for Windows, macOS (both chips) and Linux, for Python 3.10 to 3.15; the installer
+of Python for Windows; ready firmware of the shipped robots; guides, wiring and lessons as pages;
+the examples; and a start script for each system. What could not be had is said at the end, also in
+the stick's README.txt, and the exit code is then 1. The computer that builds it must be online.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shutil
+import sys
+import urllib.request
+from collections.abc import Sequence
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
+
+from tiniscript import __version__
+from tiniscript.flash import ready
+from tools.builds import stick_pages, stick_wheels
+from tools.builds.stick_wheels import PYTHONS, SYSTEMS, CannotMake
+
+SCRIPTS = ROOT / "tools" / "builds" / "stick"
+# What is wanted, and what a class does without where a new Python has no wheels yet.
+EXTRAS = "[firmware,radio,virtual]"
+FEWER_EXTRAS = "[firmware,virtual]"
+INSTALLER = "3.13.9"  # of Python for Windows: a release that has an installer for good
+INSTALLER_URL = "https://www.python.org/ftp/python/{0}/python-{0}-amd64.exe"
+INSTALLER_BEGINS = b"MZ"
+SMALLEST_INSTALLER = 10_000_000  # bytes
+README = """\
+TiniScript {version}, without internet        TiniScript {version}, sin internet
+
+Windows: double-click start.bat                Windows: doble clic en start.bat
+macOS: right-click start.command, Open         macOS: clic derecho en start.command, Abrir
+Linux: sh start.sh                             Linux: sh start.sh
+
+It installs tsc into the folder TiniScript     Instala tsc en la carpeta TiniScript de tu
+of your home folder, and asks for no           carpeta personal y no pide administrador.
+administrator. Pages: pages/index.html         Páginas: pages/indice.html
+
+Systems: {systems}
+Python: {pythons}
+{missing}"""
+
+
+def main(words: Sequence[str] | None = None) -> int:
+    reader = argparse.ArgumentParser(prog="usb_stick", description=__doc__.splitlines()[0])
+    reader.add_argument("folder", type=Path, help="a folder that is not there yet, or is empty")
+    reader.add_argument("--system", action="append", choices=SYSTEMS, help="only for this one")
+    reader.add_argument("--python", action="append", choices=PYTHONS, help="only for this one")
+    reader.add_argument("--no-firmware", action="store_true", help="build no firmware")
+    reader.add_argument("--no-installer", action="store_true", help="fetch no installer")
+    options = reader.parse_args(words)
+    folder: Path = options.folder
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        print(f"usb_stick: {folder} is there already, and is not empty.", file=sys.stderr)
+        return 2
+    wheels = folder / "wheels"
+    wheels.mkdir(parents=True)
+    missing = []
+    if not options.no_firmware:
+        missing += _firmware()
+    systems, pythons = options.system or list(SYSTEMS), options.python or list(PYTHONS)
+    try:
+        missing += add_wheels(wheels, systems, pythons)
+    except CannotMake as why:
+        print(f"usb_stick: {why} Is this computer online?", file=sys.stderr)
+        return 2
+    if not options.no_installer and "windows" in systems:
+        missing += add_installer(folder, INSTALLER_URL.format(INSTALLER))
+    add_texts(folder)
+    titles = ", ".join(SYSTEMS[each].title for each in systems)
+    add_readme(folder, titles, ", ".join(pythons), missing)
+    for each in missing:
+        print(f"missing: {each}", file=sys.stderr)
+    size = sum(path.stat().st_size for path in folder.rglob("*") if path.is_file())
+    print(f"{folder}: {size / 1e6:.0f} MB. Copy what is in it to the stick.")
+    return 1 if missing else 0
+
+
+def add_wheels(wheels: Path, systems: Sequence[str], pythons: Sequence[str]) -> list[str]:
+    """Put all wheels into a folder; return what could not be had. Raises CannotMake."""
+    stick_wheels.make_sources(wheels)
+    ours = stick_wheels.make_ours(ROOT, wheels)
+    missing = []
+    for name in systems:
+        for python in pythons:
+            title = f"{SYSTEMS[name].title}, Python {python}"
+            print(f"wheels for {title}", flush=True)
+            try:
+                stick_wheels.fetch(ours, wheels, SYSTEMS[name], python, EXTRAS)
+            except CannotMake as why:
+                missing.append(_with_fewer(ours, wheels, name, python, f"{title}: {why}"))
+    return missing
+
+
+def _with_fewer(ours: Path, wheels: Path, name: str, python: str, reason: str) -> str:
+    """Fetch what a class needs most; return a sentence about what is missing."""
+    try:
+        stick_wheels.fetch(ours, wheels, SYSTEMS[name], python, FEWER_EXTRAS)
+    except CannotMake:
+        return reason
+    return f"{reason} It has no ports ble:// and tcp:// there; all else works."
+
+
+def add_installer(folder: Path, url: str) -> list[str]:
+    """Fetch the installer of Python for Windows; return a sentence where that does not work."""
+    target = folder / url.rsplit("/", 1)[1]
+    try:
+        with urllib.request.urlopen(url, timeout=60) as answer, target.open("wb") as file:
+            shutil.copyfileobj(answer, file)
+        with target.open("rb") as file:
+            is_one = file.read(len(INSTALLER_BEGINS)) == INSTALLER_BEGINS
+        if is_one and target.stat().st_size >= SMALLEST_INSTALLER:
+            return []
+        why = "what came is no installer"
+    except (OSError, ValueError) as failure:  # also what urllib raises
+        why = str(getattr(failure, "reason", failure))
+    target.unlink(missing_ok=True)
+    return [f"Python's installer for Windows: {why}. Put {url} beside start.bat by hand."]
+
+
+def add_texts(folder: Path) -> None:
+    """Put pages, examples, licence and scripts into a folder."""
+    stick_pages.make(ROOT, folder / "pages")
+    shutil.copytree(ROOT / "examples", folder / "examples")
+    shutil.copy(ROOT / "LICENSE", folder)
+    for path in sorted(SCRIPTS.iterdir()):
+        text = path.read_text(encoding="utf-8")
+        # cmd finds a label by its line end; a shell of Unix takes a CR for a part of a word
+        end = "\r\n" if path.suffix in (".bat", ".ps1") else "\n"
+        target = folder / path.name
+        target.write_text(text, encoding="utf-8", newline=end)
+        if path.suffix in (".sh", ".command"):
+            target.chmod(0o755)
+
+
+def add_readme(folder: Path, systems: str, pythons: str, missing: Sequence[str]) -> None:
+    lacks = "".join(f"missing / falta: {each}\n" for each in missing)
+    text = README.format(version=__version__, systems=systems, pythons=pythons, missing=lacks)
+    (folder / "README.txt").write_text(text, encoding="utf-8-sig", newline="\r\n")
+
+
+def _firmware() -> list[str]:
+    """Have the firmware ready in our wheel; return a sentence where it cannot be built."""
+    if any(ready.FOLDER.glob("*.hex")):
+        return []
+    from tools.builds import firmware_files
+
+    if firmware_files.main([]):
+        return ["ready firmware: see above; tsc firmware then builds it, which wants the internet"]
+    return []
+
+
+if __name__ == "__main__":
+    os.environ.setdefault("LC_ALL", "C.UTF-8")
+    sys.exit(main())
