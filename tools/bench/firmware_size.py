@@ -27,6 +27,7 @@ DEFAULT = "tinibot"  # where the name of an environment has no robot
 FLASH_MUST, FLASH_AIM = 30_720, 30_208  # what an old bootloader leaves of a Nano; 512 to spare
 RAM_MUST, RAM_AIM = 1380, 1000
 NEW_NANO = "nano_new"
+PLATFORM = "atmelavr"
 LARGE = "mega"  # a board that has more of everything
 
 
@@ -39,12 +40,13 @@ class Sketch(NamedTuple):
 
 
 def environments() -> list[str]:
-    """Return the names of the environments that build the sketch, `mega_grabber`.
+    """Return the names of the environments that build the sketch for an AVR, `mega_grabber`.
 
     Those of a Nano with a new bootloader build what the others of a Nano do.
     """
-    names: list[str] = config_of(PROJECT).envs()
-    return [name for name in names if name != "native" and not name.startswith(NEW_NANO)]
+    config = config_of(PROJECT)
+    return [name for name in config.envs() if not name.startswith(NEW_NANO)
+            and config.get(f"env:{name}", "platform") == PLATFORM]  # fmt: skip
 
 
 def measured(name: str, project: Path = PROJECT) -> Sketch:
