@@ -290,8 +290,10 @@ def test_a_short_stall_is_a_fault_and_no_restart() -> None:
     assert again.is_latched
 
 
-@pytest.mark.parametrize(("reset", "said"), [(1, 1), (EXTERNAL, 2), (BROWN_OUT, 3),
-                                             (TASK_WATCHDOG, 4), (5, 4), (4, 4), (3, 0)])
+@pytest.mark.parametrize(
+    ("reset", "said"),
+    [(1, 1), (EXTERNAL, 2), (BROWN_OUT, 3), (TASK_WATCHDOG, 4), (5, 4), (4, 4), (3, 0)],
+)
 def test_the_cause_of_a_reset(reset: int, said: int) -> None:
     robot, session = Esp32Robot(reset=reset), computer()
     robot.wait(200)

@@ -128,7 +128,9 @@ def built(header: str, chip: str, major: int) -> Path:
     of_boards = ("-Wno-shadow", "-Wno-conversion", f'-Dtiniscript_own="{own}"')
     objects = []
     for path, text in texts.items():
-        is_other = "extras" in path.parts and (path.parent != STAND_INS or path.name not in SIMULATED)
+        is_other = "extras" in path.parts and (
+            path.parent != STAND_INS or path.name not in SIMULATED
+        )
         if path.suffix != ".cpp" or is_other:
             continue
         is_own = path.parent.name in ("boards", "esp32", "src")

@@ -112,7 +112,7 @@ def build(
         objects: list[str] = []
         for path in code:
             objects.append(str(Path(folder) / f"{len(objects)}.o"))
-            _compile(chip, path, objects[-1], flags)
+            compile_one(chip, path, objects[-1], flags)
         _command([
             *chip.linker, "--gc-sections", "--no-warn-rwx-segments", "-z", "noexecstack",
             f"--entry={entry}", f"--defsym=RAM={chip.ram:#x}",
@@ -138,7 +138,8 @@ def size(chip: Chip, probe: str, *rooms: str) -> tuple[int, int]:
     return text + data, data + bss
 
 
-def _compile(chip: Chip, path: Path, made: str, flags: Sequence[str]) -> None:
+def compile_one(chip: Chip, path: Path, made: str, flags: Sequence[str]) -> None:
+    """Make an object of one file."""
     usual = (*USUAL, *flags) if path.suffix == ".cpp" else ()
     if not chip.assembler:
         _command([*chip.compiler, *usual, str(path), "-o", made])

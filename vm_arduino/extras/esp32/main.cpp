@@ -14,7 +14,7 @@ using namespace tiniscript;
 
 namespace {
 
-constexpr uint32_t kTurnUs = 50;     // of the main loop
+constexpr uint32_t kTurnUs = 50;    // of the main loop
 constexpr size_t kBytesPerMs = 12;  // at 115200 baud
 
 std::string log_of_robot;
@@ -174,9 +174,7 @@ void answer_echo(RequestReader* request) {
 }
 
 // O: what a pin has, 0 to 255. F: whether NVS is full.
-void answer_output(RequestReader* request, Writer* answer) {
-  answer->u8(output_of(request->u8()));
-}
+void answer_output(RequestReader* request, Writer* answer) { answer->u8(output_of(request->u8())); }
 
 }  // namespace
 

@@ -13,8 +13,9 @@
 SimulatedChip chip;
 HardwareSerial Serial;
 
-extern char __start_rtc_noinit[];
-extern char __stop_rtc_noinit[];
+// Where the linker put them; nothing, if a program has none.
+extern char __start_rtc_noinit[] __attribute__((weak));
+extern char __stop_rtc_noinit[] __attribute__((weak));
 
 namespace {
 

@@ -19,8 +19,8 @@ bool analog_read(uint8_t channel, int32_t* value);
 void analog_forget();
 
 // The same for the supply: an AVR measures its voltage against the chip's band gap. This takes some
-// 3 ms, and channels wait meanwhile. Call it in every turn of the main loop: `analog_tick`, called once a
-// turn, gives up a measurement that nobody asked for.
+// 3 ms, and channels wait meanwhile. Call it in every turn of the main loop: `analog_tick`, called
+// once a turn, gives up a measurement that nobody asked for.
 Supply analog_supply();
 void analog_tick();
 

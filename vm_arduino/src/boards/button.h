@@ -11,8 +11,8 @@ namespace tiniscript {
 // release only after a debounced press and a debounced release. Each is reported once per press.
 enum class Press : uint8_t {
   kNothing,
-  kPressed,   // it goes down, or there is a spike on its wire
-  kHeld,      // it has been down for 30 ms: a press, not a spike; alone if it began before the reset
+  kPressed,  // it goes down, or there is a spike on its wire
+  kHeld,     // it has been down for 30 ms: a press, not a spike; alone if it began before the reset
   kReleased,  // it has been up for 30 ms after kHeld
 };
 

@@ -1,5 +1,6 @@
-// Selects the robot: kits/own.h if that file exists, else the TiniBot of the chip. `pio run -e nano_liner` selects
-// another one; in the Arduino IDE, write a line here such as #define tiniscript_liner
+// Selects the robot: kits/own.h if that file exists, else the TiniBot of the chip. `pio run -e
+// nano_liner` selects another one; in the Arduino IDE, write a line here such as #define
+// tiniscript_liner
 
 #ifndef TINISCRIPT_BOARDS_KIT_H_
 #define TINISCRIPT_BOARDS_KIT_H_

@@ -77,11 +77,11 @@ constexpr uint16_t kStoredCodeBytes = kImageBytes - kHeaderBytes;
 constexpr uint16_t kOldImageBytes = kProgramDistance - kBodyAt;
 
 constexpr uint16_t place_of(uint8_t slot) {
-  return static_cast<uint16_t>(
-      slot < 2                 ? kProgramsBegin + slot * kProgramDistance
-      : slot < kFirstOwnerSlot ? kRecordsBegin + (slot - 2) * kRecordSlot
-                               : kProgramsBegin + kProgramSlot +
-                                     (slot - kFirstOwnerSlot) * kProgramDistance);
+  return static_cast<uint16_t>(slot < 2 ? kProgramsBegin + slot * kProgramDistance
+                               : slot < kFirstOwnerSlot
+                                   ? kRecordsBegin + (slot - 2) * kRecordSlot
+                                   : kProgramsBegin + kProgramSlot +
+                                         (slot - kFirstOwnerSlot) * kProgramDistance);
 }
 
 static_assert(kProgramsBegin >= kRecordsBegin + 4 * kRecordSlot, "no slot lies in another one");

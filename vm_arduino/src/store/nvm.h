@@ -19,6 +19,9 @@ constexpr bool kWritesStopTheChip = true;
 constexpr bool kWritesStopTheChip = false;
 #endif
 
+// Whether a byte whose write was cut may read differently later, until it is written again.
+constexpr bool kCutBytesAreUnstable = !kWritesStopTheChip;
+
 // Whether the last write is finished: only then may a byte be read or written.
 bool nvm_is_ready();
 

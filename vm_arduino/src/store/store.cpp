@@ -298,6 +298,10 @@ void Store::look() {
   // The last mark present may be the one whose write was cut. If it is the only one, it and the
   // generation are rewritten, as the slot may have been about to be emptied. Otherwise both are
   // left as they are.
+  if (!kCutBytesAreUnstable) {
+    step_ = kKeepingEnd;
+    return;
+  }
   step_ = nvm_read(place + 2) != mark   ? kKeeping
           : nvm_read(place + 3) != mark ? kKeepingMarks
                                         : kKeepingEnd;

@@ -1,7 +1,8 @@
 // Stands for the Arduino core of an ESP32: only what the firmware calls, with the signatures of
 // versions 2 and 3. `simulated_chip.cpp` does what they say.
 //
-// Each row names the file of the core or of ESP-IDF that declares it. `../signatures.cpp` pins them.
+// Each row names the file of the core or of ESP-IDF that declares it. `../signatures.cpp` pins
+// them.
 
 #ifndef TINISCRIPT_CORE_ARDUINO_H_
 #define TINISCRIPT_CORE_ARDUINO_H_
@@ -9,7 +10,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#if __STDC_HOSTED__
 #include <functional>
+#endif
 
 #include "driver/gpio.h"
 #include "esp_attr.h"
@@ -88,14 +91,18 @@ typedef enum {
 } hardwareSerial_error_t;
 #endif
 
+#if __STDC_HOSTED__
 typedef std::function<void(hardwareSerial_error_t)> OnReceiveErrorCb;
+#else
+typedef void (*OnReceiveErrorCb)(hardwareSerial_error_t);  // a compiler without its library
+#endif
 
 #define SERIAL_8N1 0x800001c
 
 class HardwareSerial {
  public:
-  void begin(unsigned long baud, uint32_t config = SERIAL_8N1, int8_t rxPin = -1,
-             int8_t txPin = -1, bool invert = false, unsigned long timeout_ms = 20000UL,
+  void begin(unsigned long baud, uint32_t config = SERIAL_8N1, int8_t rxPin = -1, int8_t txPin = -1,
+             bool invert = false, unsigned long timeout_ms = 20000UL,
              uint8_t rxfifo_full_thrhd = 112);
   void onReceiveError(OnReceiveErrorCb function);
   size_t setRxBufferSize(size_t new_size);

@@ -28,9 +28,8 @@ tini_always_inline void begin_echo(Echo, void (*)()) {}
 
 // Turns the interrupt on or off. For callers with interrupts off.
 tini_always_inline void listen_inside(Echo echo, bool is_on) {
-  const uint16_t masks = echo.group == kExternalGroup
-                             ? kExternal
-                             : static_cast<uint16_t>(kChanges + echo.group);
+  const uint16_t masks =
+      echo.group == kExternalGroup ? kExternal : static_cast<uint16_t>(kChanges + echo.group);
   if (is_on) {
     if (echo.group == kExternalGroup) {
 #ifdef EICRB

@@ -1,8 +1,8 @@
 // Implements `nvm.h` on an ESP32: each slot of the store is two entries of NVS.
 //
 // The head of a slot (generation and marks) is a number, written at once. Its body is a blob: the
-// bytes that are written wait, and the first one that is read again has them all written. So what is
-// read is in flash, and a program takes one write instead of one for each byte. NVS leaves an
+// bytes that are written wait, and the first one that is read again has them all written. So what
+// is read is in flash, and a program takes one write instead of one for each byte. NVS leaves an
 // entry as it was when the power fails, or writes it, or loses it; the store stands all three.
 //
 // A write may stop the chip for 50 ms and more, as long as a page is erased: `kWritesStopTheChip`
@@ -11,7 +11,6 @@
 #ifdef ARDUINO_ARCH_ESP32
 
 #include <nvs.h>
-#include <string.h>
 
 #include "../../store/layout.h"
 #include "../../store/nvm.h"
@@ -24,12 +23,12 @@ constexpr char kNamespace[] = "tiniscript";
 constexpr uint8_t kEmpty = 0xff;
 
 uint8_t memory[kMemoryBytes];
-uint16_t used[kSlots];          // bytes of each body that its blob has
+uint16_t used[kSlots];  // bytes of each body that its blob has
 bool is_loaded;
 bool is_open;
 nvs_handle_t handle;
-uint8_t waiting = kSlots;           // the slot whose body waits to be written
-uint16_t first_waiting;  // the places of its bytes that wait
+uint8_t waiting = kSlots;  // the slot whose body waits to be written
+uint16_t first_waiting;    // the places of its bytes that wait
 uint16_t last_waiting;
 
 // A key: h0 is the head of slot 0, b0 its body.
@@ -47,7 +46,8 @@ uint16_t room_of(uint8_t slot) {
 
 uint8_t* body_of(uint8_t slot) { return memory + place_of(slot) + kBodyAt; }
 
-// The slot of a place. A program of version 1 could reach behind its slot, but none is on this chip.
+// The slot of a place. A program of version 1 could reach behind its slot, but none is on this
+// chip.
 uint8_t slot_of(uint16_t place) {
   for (uint8_t slot = 0; slot < kSlots; slot++) {
     const uint16_t begin = place_of(slot);
@@ -60,16 +60,16 @@ void load_head(uint8_t slot) {
   uint32_t head = 0xffffffff;
   const Key key = key_of('h', slot);
   if (!is_open || nvs_get_u32(handle, key.text, &head) != ESP_OK) head = 0xffffffff;
-  memcpy(memory + place_of(slot), &head, kBodyAt);
+  __builtin_memcpy(memory + place_of(slot), &head, kBodyAt);
 }
 
 void load_body(uint8_t slot) {
   const uint16_t room = room_of(slot);
   size_t length = room;
-  memset(body_of(slot), kEmpty, room);
+  __builtin_memset(body_of(slot), kEmpty, room);
   const Key key = key_of('b', slot);
   if (!is_open || nvs_get_blob(handle, key.text, body_of(slot), &length) != ESP_OK) {
-    memset(body_of(slot), kEmpty, room);
+    __builtin_memset(body_of(slot), kEmpty, room);
     length = 0;
   }
   used[slot] = static_cast<uint16_t>(length);
@@ -77,7 +77,7 @@ void load_body(uint8_t slot) {
 
 void load() {
   is_loaded = true;
-  memset(memory, kEmpty, sizeof memory);
+  __builtin_memset(memory, kEmpty, sizeof memory);
   is_open = nvs_open(kNamespace, NVS_READWRITE, &handle) == ESP_OK;
   for (uint8_t slot = 0; slot < kSlots; slot++) {
     load_head(slot);
@@ -87,7 +87,7 @@ void load() {
 
 void write_head(uint8_t slot) {
   uint32_t head;
-  memcpy(&head, memory + place_of(slot), kBodyAt);
+  __builtin_memcpy(&head, memory + place_of(slot), kBodyAt);
   const Key key = key_of('h', slot);
   if (is_open && nvs_set_u32(handle, key.text, head) == ESP_OK) nvs_commit(handle);
   load_head(slot);

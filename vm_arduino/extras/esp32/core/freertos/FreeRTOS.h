@@ -11,8 +11,7 @@ typedef struct {
   uint32_t count;
 } portMUX_TYPE;
 
-#define portMUX_INITIALIZER_UNLOCKED \
-  { 0xb33fffff, 0 }
+#define portMUX_INITIALIZER_UNLOCKED {0xb33fffff, 0}
 
 extern "C" {
 void simulated_enter_critical(portMUX_TYPE* mux);

@@ -1,0 +1,137 @@
+"""What an ESP32 gets compiles for cores 2 and 3, and for the instruction sets of its chips.
+
+Nothing here is Espressif's: headers of our own stand for theirs, `signatures.cpp` pins these.
+"""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from tests.machines.esp32 import STAND_INS, flags_of
+from tests.machines.host import SOURCES, missing
+from tests.project.test_cpp_sources import code_of
+from tiniscript.robots.ports import ESP32S
+from tools.builds.chips import CHIPS, compile_one
+from tools.builds.chips import missing as no_compiler
+
+BOARD = SOURCES / "src" / "boards"
+CODE = [
+    *sorted(BOARD.glob("*.cpp")),
+    *sorted((BOARD / "esp32").glob("*.cpp")),
+    SOURCES / "src" / "main.cpp",
+    STAND_INS / "signatures.cpp",
+]
+STRICT = ("-Wall", "-Wextra", "-Werror", "-fno-exceptions", "-fno-rtti", "-ffreestanding",
+          "-fsyntax-only")  # fmt: skip
+ISA = {"esp32dev": "lx6", "esp32c3": "rv32imc"}
+needs_host = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
+
+
+@needs_host
+@pytest.mark.parametrize("standard", ["gnu++11", "gnu++23"])
+@pytest.mark.parametrize("major", [2, 3])
+@pytest.mark.parametrize("chip", sorted(ESP32S))
+def test_it_compiles_for_both_cores(chip: str, major: int, standard: str) -> None:
+    """The board, file by file: the rooms that know no board are compiled elsewhere."""
+    for path in CODE:
+        command = ["g++", f"-std={standard}", *STRICT, *flags_of(chip, major), str(path)]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr[:3000]
+
+
+# What the whole sketch asks of the core and of the compiler's library.
+CORE = {
+    "analogRead", "analogReadResolution", "attachInterrupt", "esp_random", "esp_reset_reason",
+    "esp_rom_gpio_connect_out_signal", "esp_task_wdt_add", "esp_task_wdt_init",
+    "esp_task_wdt_reset", "esp_timer_create", "esp_timer_start_periodic", "gpio_get_level",
+    "gpio_intr_disable", "gpio_intr_enable", "gpio_set_level", "ledcWrite", "ledcWriteTone",
+    "micros", "millis", "nvs_commit", "nvs_get_blob", "nvs_get_u32", "nvs_open", "nvs_set_blob",
+    "nvs_set_u32", "pinMode", "Serial", "simulated_enter_critical", "simulated_exit_critical",
+}  # fmt: skip
+OF_VERSION = {2: {"ledcSetup", "ledcAttachPin"},
+              3: {"ledcAttachChannel", "esp_task_wdt_reconfigure"}}  # fmt: skip
+SERIAL = {"begin", "onReceiveError", "setRxBufferSize", "setTxBufferSize", "available",
+          "availableForWrite", "read", "write"}  # fmt: skip
+LIBRARY = re.compile(r"__\w+(si|di|sf|df)[234]?\d*|mem(cpy|set|cmp|move)|__\w*div\w*|__\w*mod\w*")
+
+
+@pytest.mark.parametrize("major", [2, 3])
+@pytest.mark.parametrize("chip", sorted(ESP32S))
+def test_the_whole_sketch_links_with_the_core_alone(chip: str, major: int, tmp_path: Path) -> None:
+    """By the compilers of the instruction sets: what stays open is what the core has."""
+    isa = CHIPS[ISA[chip]]
+    if no_compiler(isa):
+        pytest.skip(no_compiler(isa))
+    code = [path for path in sorted((SOURCES / "src").rglob("*.cpp")) if "avr" not in path.parts]
+    flags = ("-Wall", "-Wextra", "-Werror", "-ffreestanding", *flags_of(chip, major))
+    objects = []
+    for path in code:
+        objects.append(str(tmp_path / f"{len(objects)}.o"))
+        compile_one(isa, path, objects[-1], flags)
+    whole = str(tmp_path / "whole.o")
+    subprocess.run([*isa.linker, "-r", *objects, "-o", whole], check=True)
+    names = isa.measurer.replace("-size", "-nm")
+    said = subprocess.run([names, "-u", whole], capture_output=True, text=True, check=True).stdout
+    found = {line.split()[-1] for line in said.splitlines()}
+    serial = {name for name in found if "HardwareSerial" in name}
+    assert all(any(word in name for word in SERIAL) for name in serial)
+    left = {name for name in found - serial if not LIBRARY.fullmatch(name)}
+    assert left == CORE | OF_VERSION[major] | {"setup", "loop"} & left
+
+
+@needs_host
+@pytest.mark.parametrize(("major", "old", "new"), [
+    (2, "void ledcWrite(uint8_t channel", "bool ledcWrite(uint8_t channel"),
+    (3, "bool ledcWrite(uint8_t pin", "void ledcWrite(uint8_t pin"),
+    (2, "uint16_t analogRead", "int analogRead"),
+])  # fmt: skip
+def test_a_signature_that_differs_is_noticed(
+    major: int, old: str, new: str, tmp_path: Path
+) -> None:
+    text = (STAND_INS / "core" / "Arduino.h").read_text(encoding="utf-8")
+    assert old in text
+    (tmp_path / "Arduino.h").write_text(text.replace(old, new), encoding="utf-8")
+    command = ["g++", "-std=gnu++11", *STRICT, f"-isystem{tmp_path}", *flags_of("esp32dev", major)]
+    done = subprocess.run(
+        [*command, str(STAND_INS / "signatures.cpp")], capture_output=True, text=True, check=False
+    )
+    assert done.returncode != 0 and "static assertion failed" in done.stderr
+
+
+@pytest.mark.parametrize("chip", sorted(ESP32S))
+def test_every_file_says_for_which_chip_it_is(chip: str) -> None:
+    """The Arduino IDE compiles all files for any board: those of other families are empty."""
+    for folder, condition in (("avr", "__AVR__"), ("esp32", "ARDUINO_ARCH_ESP32")):
+        for path in (BOARD / folder).glob("*.cpp"):
+            code = code_of(path).split("\n")
+            lines = [line for line in code if line.strip()]
+            assert lines[0].strip() == f"#ifdef {condition}", path.name
+            assert lines[-1].strip() == "#endif", path.name
+
+
+def test_our_macros_come_behind_the_headers_of_the_core() -> None:
+    """And each has a name of ours: none may meet one of theirs."""
+    for path in sorted((BOARD / "esp32").glob("*.*")):
+        text = path.read_text(encoding="utf-8")
+        defined = re.findall(r"^ *#define ([a-z]\w*)", text, flags=re.M)
+        assert all(name.startswith("tini") for name in defined), path.name
+        for name in defined:
+            assert text.index(f"#define {name}") > text.rindex("#include <"), path.name
+
+
+def test_nothing_waits() -> None:
+    waiting = {"delay", "delayMicroseconds", "pulseIn", "vTaskDelay", "new", "malloc", "flush"}
+    for path in sorted((BOARD / "esp32").glob("*.*")):
+        assert not waiting & set(re.findall(r"\w+", code_of(path))), path.name
+
+
+def test_the_settings_need_no_registry_of_libraries() -> None:
+    text = (SOURCES / "platformio.ini").read_text(encoding="utf-8")
+    for row in ("[env:esp32dev]", "[env:esp32c3]", "board = esp32-c3-devkitm-1",
+                "platform = espressif32", "board_build.partitions = min_spiffs.csv"):  # fmt: skip
+        assert row in text
+    assert "lib_deps" not in text

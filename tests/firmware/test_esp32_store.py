@@ -1,0 +1,63 @@
+"""The store of an ESP32: whenever the plug is pulled, the old program is there or the new one.
+
+`vm_arduino/extras/esp32/powercut.cpp` pulls it at every write of NVS, in every way in which that
+may leave an entry: as it was, as it becomes, or lost.
+"""
+
+from __future__ import annotations
+
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from tests.firmware.test_store import STORE, break_of
+from tests.machines.esp32 import STAND_INS, flags_of
+from tests.machines.host import BUILDS, FLAGS, SOURCES, WARNINGS, made, missing
+
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
+
+NVS = SOURCES / "src" / "boards" / "esp32" / "nvs.cpp"
+OTHERS = [
+    SOURCES / "src" / "vm" / "crc32.cpp",
+    STAND_INS / "simulated_chip.cpp",
+    STAND_INS / "powercut.cpp",
+]
+WRITES = 8  # of a save: the body, the generation, three marks away and back
+
+
+def program(store: Path = STORE) -> Path:
+    headers = [path for part in ("src", "extras/esp32") for path in (SOURCES / part).rglob("*.h")]
+    flags = (*FLAGS, *WARNINGS, *flags_of("esp32dev", 2))
+    texts = [path.read_bytes() for path in (*sorted(headers), NVS)]
+    objects = [
+        str(made("g++", BUILDS, ".o", flags, [*texts, str(path).encode(), path.read_bytes()],
+                 ["-c", str(path)]))
+        for path in (store, *OTHERS)
+    ]  # fmt: skip
+    return made("g++", BUILDS, "", flags, [name.encode() for name in objects], objects)
+
+
+def run(made_of: Path, seed: int, size: int) -> subprocess.CompletedProcess[str]:
+    words = [str(made_of), str(seed), str(size)]
+    return subprocess.run(words, capture_output=True, text=True, check=False, timeout=300)
+
+
+@pytest.mark.parametrize("size", [3, 389, 8192])
+def test_old_or_new(size: int) -> None:
+    done = run(program(), 1, size)
+    assert done.returncode == 0, (done.stdout + done.stderr)[-2000:]
+    cases, writes = (int(line.split()[1]) for line in done.stdout.splitlines())
+    assert cases > 5_000
+    assert writes <= WRITES, "a program takes a few writes, not one for each byte"
+
+
+NOTICED = ("the mark comes before the body", "the generation is not in the body",
+           "what counts is written over", "the older one counts")  # fmt: skip
+
+
+@pytest.mark.parametrize("name", NOTICED)
+def test_a_break_is_noticed(name: str, tmp_path: Path) -> None:
+    broken = tmp_path / "store.cpp"
+    broken.write_text(break_of(name), encoding="utf-8")
+    assert run(program(broken), 1, 24).returncode == 1

@@ -1,0 +1,196 @@
+// Pulls the plug of an ESP32 at every write of NVS, and looks what the store finds at the next
+// starts.
+//
+//   powercut SEED SIZE
+//
+// runs saves of programs of SIZE bytes of code and of records. Each write of a save is cut, in each
+// way in which NVS may leave its entry; then each write of what the next start puts in order; then
+// each write of the next save. Prints how many cases it looked at. Ends with status 1 at the first
+// thing that must not be.
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#include <vector>
+
+#include "../../src/boards/esp32/nvs.cpp"
+#include "../../src/store/store.h"
+#include "../../src/vm/crc32.h"
+#include "../../src/vm/image.h"
+#include "simulated_chip.h"
+
+using namespace tiniscript;
+
+namespace {
+
+typedef std::map<std::string, std::string> Entries;
+typedef std::vector<uint8_t> Content;  // empty: nothing
+
+constexpr uint32_t kMostTicks = 60000;
+
+unsigned long cases;
+uint32_t most_writes;
+const char* doing = "";
+
+[[noreturn]] void wrong(const char* what) {
+  printf("WRONG %s: %s\n", doing, what);
+  exit(1);
+}
+
+// What a reset makes of `nvs.cpp`.
+void forget() {
+  is_loaded = false;
+  is_open = false;
+  waiting = kSlots;
+}
+
+void run(Store* store) {
+  for (uint32_t ticks = 0; store->is_busy() && !chip.is_off; ticks++) {
+    if (ticks > kMostTicks) wrong("it does not end");
+    if (nvm_is_ready()) store->tick(true);
+  }
+}
+
+void power_on(Entries entries, uint32_t cut_at, TornEntry torn) {
+  chip.entries = entries;
+  chip.nvs_writes = 0;
+  chip.cut_at = cut_at;
+  chip.torn = torn;
+  chip.is_off = false;
+  forget();
+}
+
+Content read(const Store& store, Area area) {
+  Content found;
+  uint8_t byte = 0;
+  if (!store.fetch(area, 0, &byte)) return found;
+  uint16_t length = area == Area::kOwner ? kOwnerBytes : kRecordBytes;
+  if (area == Area::kProgram) {
+    uint8_t header[kHeaderBytes];
+    if (!store.fetch_first(area, header, kHeaderBytes)) wrong("a header cannot be read");
+    length = static_cast<uint16_t>(kHeaderBytes +
+                                   (header[kCodeLengthAt] | header[kCodeLengthAt + 1] << 8));
+  }
+  found.resize(length);
+  if (!store.fetch_first(area, found.data(), length)) wrong("it cannot be read");
+  return found;
+}
+
+Content some_image(uint16_t code_bytes) {
+  Content image(kHeaderBytes + code_bytes);
+  for (uint8_t& byte : image) byte = static_cast<uint8_t>(rand());
+  image[kHeaderLengthAt] = kHeaderBytes;
+  image[kCodeLengthAt] = static_cast<uint8_t>(code_bytes);
+  image[kCodeLengthAt + 1] = static_cast<uint8_t>(code_bytes >> 8);
+  uint32_t check = crc32(0, image.data(), kChecksumAt);
+  check = crc32(check, image.data() + kChecksumAt + kCheckBytes,
+                static_cast<uint16_t>(image.size() - kChecksumAt - kCheckBytes));
+  __builtin_memcpy(image.data() + kChecksumAt, &check, kCheckBytes);
+  return image;
+}
+
+bool begin(Store* store, Area area, Content* content) {
+  if (area == Area::kProgram) return store->begin_save(content->data());
+  return store->begin_keep(area, content->data());
+}
+
+// Three starts find something that is allowed, and all the same.
+void starts(const Entries& entries, Area area, const std::vector<Content>& allowed) {
+  cases++;
+  Content first;
+  power_on(entries, 0, TornEntry::kOld);
+  for (int k = 0; k < 3; k++) {
+    Store store;
+    forget();
+    store.boot();
+    run(&store);
+    const Content found = read(store, area);
+    bool is_allowed = false;
+    for (const Content& each : allowed) is_allowed = is_allowed || found == each;
+    if (!is_allowed) wrong(found.empty() ? "nothing is there" : "there is a third thing");
+    if (k > 0 && found != first) wrong("another one at a later start");
+    first = found;
+  }
+}
+
+// Boots from `entries` and saves `content`; cut at the given write of both. Returns what is left.
+Entries saved(const Entries& entries, Area area, Content content, uint32_t cut_at, TornEntry torn,
+              bool* has_ended) {
+  power_on(entries, cut_at, torn);
+  Store store;
+  store.boot();
+  run(&store);
+  const uint32_t before = chip.nvs_writes;
+  if (!chip.is_off) {
+    if (!begin(&store, area, &content)) wrong("a save is refused");
+    run(&store);
+    if (!chip.is_off && store.state() != StoreState::kSaved) wrong("a save fails");
+  }
+  *has_ended = !chip.is_off;
+  const uint32_t writes = chip.nvs_writes - before;
+  if (*has_ended && writes > most_writes) most_writes = writes;
+  return chip.entries;
+}
+
+const TornEntry kEach[] = {TornEntry::kOld, TornEntry::kNew, TornEntry::kLost};
+
+// Cuts each write of a save; then each write of the next one, with what its start puts in order.
+void cut_everything(const Entries& before, Area area, const Content& old, const Content& content,
+                    const Content& next, int depth) {
+  for (TornEntry torn : kEach) {
+    bool has_ended = false;
+    for (uint32_t cut_at = 1; !has_ended; cut_at++) {
+      const Entries left = saved(before, area, content, cut_at, torn, &has_ended);
+      std::vector<Content> allowed = {content};
+      if (!has_ended) allowed.push_back(old);
+      starts(left, area, allowed);
+      if (depth == 0 || has_ended) continue;
+      // what counts now, for the next cut
+      power_on(left, 0, TornEntry::kOld);
+      Store store;
+      store.boot();
+      run(&store);
+      cut_everything(left, area, read(store, area), next, content, depth - 1);
+    }
+  }
+}
+
+Content some_record(Area area) {
+  Content record(area == Area::kOwner ? kOwnerBytes : kRecordBytes);
+  for (uint8_t& byte : record) byte = static_cast<uint8_t>(rand());
+  const uint32_t check =
+      crc32(0, record.data() + kCheckBytes, static_cast<uint16_t>(record.size() - kCheckBytes));
+  __builtin_memcpy(record.data(), &check, kCheckBytes);
+  return record;
+}
+
+void history(const char* name, Area area, const std::vector<Content>& contents) {
+  doing = name;
+  Entries entries;
+  Content old;
+  for (size_t k = 0; k + 1 < contents.size(); k++) {
+    cut_everything(entries, area, old, contents[k], contents[k + 1], 1);
+    bool has_ended = false;
+    entries = saved(entries, area, contents[k], 0, TornEntry::kOld, &has_ended);
+    old = contents[k];
+    starts(entries, area, {old});
+  }
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  if (count != 3) return 2;
+  srand(static_cast<unsigned>(atoi(arguments[1])));
+  const uint16_t size = static_cast<uint16_t>(atoi(arguments[2]));
+  const Content a = some_image(size);
+  const Content b = some_image(static_cast<uint16_t>(size / 2));
+  const Content c = some_image(size);
+  history("programs", Area::kProgram, {a, b, c, b, c, a});
+  for (Area area : {Area::kIdentity, Area::kFault, Area::kOwner}) {
+    std::vector<Content> records;
+    for (int k = 0; k < 4; k++) records.push_back(some_record(area));
+    history("records", area, records);
+  }
+  printf("CASES %lu\nMOST_WRITES %u\n", cases, most_writes);
+}
