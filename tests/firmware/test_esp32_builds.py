@@ -68,7 +68,7 @@ def test_the_whole_sketch_links_with_the_core_alone(chip: str, major: int, tmp_p
         pytest.skip(no_compiler(isa))
     code = [path for path in sorted((SOURCES / "src").rglob("*.cpp")) if "avr" not in path.parts]
     flags = ("-Wall", "-Wextra", "-Werror", "-ffreestanding", *flags_of(chip, major))
-    objects = []
+    objects: list[str] = []
     for path in code:
         objects.append(str(tmp_path / f"{len(objects)}.o"))
         compile_one(isa, path, objects[-1], flags)

@@ -350,8 +350,8 @@ def test_a_wrong_name_gets_the_nearest_one() -> None:
     with pytest.raises(ProfileRefused) as caught:
         robots.load("Tinybot")
     assert describe(caught.value, "es") == [
-        "No hay un robot Tinybot. ¿Quisiste decir tinibot? Los robots son: tinibot, grabber, liner, tinibot32,"
-        " tinibotc3."
+        "No hay un robot Tinybot. ¿Quisiste decir tinibot? Los robots son: tinibot, grabber,"
+        " liner, tinibot32, tinibotc3."
     ]
     for name in ("", "zzz", "\0", "💥", "{path}"):
         with pytest.raises(ProfileRefused) as caught:

@@ -55,8 +55,8 @@ class PtyRobot:
         tty.setraw(self._theirs)
         self.port = os.ttyname(self._theirs)
         self._lock = threading.Lock()
-        self._robot: HostFirmware | None = HostFirmware(kit, memory)
         self._memory = memory
+        self._robot: HostFirmware | None = self._made()
         self._flags: list[int] = []  # what happens to the button, for each of the next steps
         self._passed = 0  # bytes, through the noise
         self._is_over = False
@@ -114,7 +114,7 @@ class PtyRobot:
     def switch_on(self) -> None:
         with self._lock:
             self.off_after = None
-            self._robot = HostFirmware(self.kit, self._memory, POWER_ON, seed=0x9ABCDEF1)
+            self._robot = self._made(seed=0x9ABCDEF1)
 
     def pull(self) -> None:
         """Pull the cable out: the port is not there any more."""
@@ -135,6 +135,10 @@ class PtyRobot:
         while not is_so():
             assert time.monotonic() < end_s, f"not after {limit_s} s: {what}"
             time.sleep(0.01)
+
+    def _made(self, reset: int = POWER_ON, seed: int = 0x12345678) -> HostFirmware:
+        """Return a robot that starts with what its memory has kept."""
+        return HostFirmware(self.kit, self._memory, reset, seed)
 
     def _through_noise(self, data: bytes) -> bytes:
         self._passed += len(data)

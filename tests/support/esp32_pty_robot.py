@@ -1,0 +1,43 @@
+"""A robot with an ESP32 behind a pseudo-terminal: its sketch on a simulated chip, in real time."""
+
+from __future__ import annotations
+
+from tests.machines.esp32 import EMPTY, POWER_ON, TASK_WATCHDOG, Esp32Robot, Kept
+from tests.machines.host_firmware import HostFirmware
+from tests.support.pty_robot import PtyRobot
+from tiniscript import robots
+
+
+class Esp32PtyRobot(PtyRobot):
+    """The robot of a profile. What NVS holds stays when it is switched off."""
+
+    def __init__(self, name: str) -> None:
+        self.profile = robots.load(name)
+        self._kept: Kept = EMPTY
+        super().__init__(self.profile.kit)
+
+    def hang(self, milliseconds: int) -> None:
+        """Let the main loop stand still."""
+
+        def stand(robot: HostFirmware) -> None:
+            assert isinstance(robot, Esp32Robot)
+            robot.hang(milliseconds)
+            robot.step(ticks=0)
+
+        self.ask(stand)
+
+    def restart(self) -> None:
+        """Do what the watchdog has asked for."""
+        with self._lock:
+            self._take_power()
+            self._robot = self._made(TASK_WATCHDOG)
+
+    def _made(self, reset: int = POWER_ON, seed: int = 0x12345678) -> HostFirmware:
+        return Esp32Robot(self.profile, self._kept, reset, seed)
+
+    def _take_power(self) -> None:
+        if self._robot:
+            assert isinstance(self._robot, Esp32Robot)
+            self._kept = self._robot.kept()
+            self._robot.close()
+        self._robot = None
