@@ -21,15 +21,16 @@ constexpr uint8_t kCommentAfterAll = 255;
 
 constexpr uint32_t kTooBig = 0x10000000;  // ten times that is more than any number
 
-// Characters of three bytes: the first two, the third and how many more may follow, and what they
-// are.
+// Characters of two and three bytes: the first one, the second of three or 0, the last one and how
+// many more may follow, and what they are.
 const uint8_t kRelatives[] tini_progmem = {
-    0xe2, 0x80, 0x80, 11,  ' ',  0xe2, 0x80, 0xaf, 0,   ' ',  0xe2, 0x80, 0x90, 5,   '-', 0xe2,
+    0xc2, 0x00, 0xa0, 0,    ' ', 0xe2, 0x80, 0x80, 11,  ' ',  0xe2, 0x80, 0xaf, 0,   ' ',  0xe2, 0x80, 0x90, 5,   '-', 0xe2,
     0x88, 0x92, 0,    '-', 0xe3, 0x80, 0x80, 0,    ' ', 0xef, 0xbb, 0xbf, 0,    ' ', 0,
 };
 
 // Each sign and its token, or 0 if it may be the first half of another.
 const uint8_t kSigns[] tini_progmem = {
+    kNewline, kNewline,
     '(', '(',
     ')', ')',
     ',', ',',
@@ -119,8 +120,7 @@ uint8_t Reader::character(uint8_t byte) {
     return kUnfinished;
   }
   if (lead == 0) return kBroken;
-  if (lead < 0xe0) return lead == 0xc2 && byte == 0xa0 ? ' ' : kOdd;
-  if (second == 0) {
+  if (second == 0 && lead >= 0xe0) {
     lead_ = lead;
     second_ = byte;
     return kUnfinished;
@@ -129,13 +129,13 @@ uint8_t Reader::character(uint8_t byte) {
     lead_ = 0xe1;  // none of its characters means anything
     return kUnfinished;
   }
-  if (lead == 0xef && second == 0xbb && byte == 0xbf && column_ == 1) {
-    column_ = 0;  // the byte order mark is no part of the line
-    crc_ = 0;
-  }
   for (const uint8_t* row = kRelatives; flash_byte(row) != 0; row += 5) {
     const uint8_t above = static_cast<uint8_t>(byte - flash_byte(row + 2));
     if (lead == flash_byte(row) && second == flash_byte(row + 1) && above <= flash_byte(row + 3)) {
+      if (lead == 0xef && column_ == 1) {
+        column_ = 0;  // the byte order mark is no part of the line
+        crc_ = 0;
+      }
       return flash_byte(row + 4);
     }
   }
@@ -242,10 +242,6 @@ void Reader::add_letter(uint8_t letter) {
 }
 
 void Reader::sign(uint8_t letter) {
-  if (letter == '\n') {
-    token(kNewline);
-    return;
-  }
   for (const uint8_t* sign = kSigns; flash_byte(sign) != 0; sign += 2) {
     if (flash_byte(sign) != letter) continue;
     const uint8_t its = flash_byte(sign + 1);

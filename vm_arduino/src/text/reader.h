@@ -86,7 +86,7 @@ class Reader {
   struct Def;
 
   // characters, in reader.cpp
-  tini_noinline uint8_t character(uint8_t byte);
+  uint8_t character(uint8_t byte);
   bool checks(uint8_t letter);
   Text end_line();
   void take(uint8_t letter);
@@ -97,10 +97,10 @@ class Reader {
   void report(Problem problem) { problem_ = problem; }
 
   // words, in reader_names.cpp
-  tini_noinline void end_word();
+  void end_word();
   uint8_t find(const uint8_t* table, uint8_t unmark);
   uint8_t open_word();
-  bool matches(bool in_flash);
+  bool matches(const uint8_t** entry, bool in_flash);
   bool find_in_kit();
   void find_name();
   void add_name(uint8_t info, uint8_t more);
@@ -244,6 +244,17 @@ inline bool Reader::has_room(uint16_t bytes) {
                : "y"(this)
                : "r26", "r27", "r30", "r31", "memory");
   return static_cast<uint8_t>(its) != 0;
+}
+
+inline bool Reader::matches(const uint8_t** entry, bool in_flash) {
+  register uint8_t its asm("r24") = in_flash;
+  const uint8_t* at = *entry;
+  asm volatile("%~call tiniscript_matches"
+               : "+r"(its), "+z"(at)
+               : "y"(this)
+               : "r18", "r25", "r26", "r27", "memory");
+  *entry = at;
+  return its != 0;
 }
 
 inline void Reader::resolve(uint8_t at) {

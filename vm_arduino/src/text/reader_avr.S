@@ -97,6 +97,27 @@ starts tiniscript_resolve
     brne 1b
     ret
 
+; matches: whether the word behind the code is the one in Z, which goes behind it. `argument` says
+; whether that one is in flash, and becomes the answer.
+starts tiniscript_matches
+    ldd r26, Y + tini_buffer_at
+    ldd r27, Y + tini_buffer_at + 1
+    ldd r25, Y + tini_code_length_at
+    add r26, r25
+    adc r27, r1
+    ldi r25, 1
+1:  lpm r0, Z
+    sbrs argument, 0
+    ld r0, Z
+    adiw r30, 1
+    ld r18, X+
+    cpse r18, r0
+    clr r25
+    sbrs r0, 7              ; the last letter
+    rjmp 1b
+    mov argument, r25
+    ret
+
 #define minus r22
 #define places r23
 #define bytes r23

@@ -31,9 +31,8 @@ void Reader::end_word() {
 tini_noinline uint8_t Reader::find(const uint8_t* table, uint8_t unmark) {
   uint8_t* const last = buffer_ + length_ + letters_ - 1;
   *last |= kLastLetter;
-  entry_ = table;
   uint8_t number = 0;
-  while (flash_byte(entry_) != 0 && !matches(true)) number++;
+  while (flash_byte(table) != 0 && !matches(&table, true)) number++;
   *last ^= unmark;
   return number;
 }
@@ -44,20 +43,24 @@ uint8_t Reader::open_word() {
   return static_cast<uint8_t>(kFirstWord + find(kWords, kLastLetter));
 }
 
-// Whether the word is the one at `entry_`, which goes behind it.
-bool Reader::matches(bool in_flash) {
+#ifndef __AVR__
+
+// Whether the word is the one at `entry`, which goes behind it.
+bool Reader::matches(const uint8_t** entry, bool in_flash) {
   const uint8_t* word = buffer_ + length_;
-  const uint8_t* entry = entry_;
+  const uint8_t* at = *entry;
   bool is_same = true;
   uint8_t letter;
   do {
-    letter = in_flash ? flash_byte(entry) : *entry;
-    entry++;
+    letter = in_flash ? flash_byte(at) : *at;
+    at++;
     if (is_same && letter != *word++) is_same = false;
   } while ((letter & kLastLetter) == 0);
-  entry_ = entry;
+  *entry = at;
   return is_same;
 }
+
+#endif  // __AVR__
 
 uint8_t Reader::find_unknown(const uint8_t* table) {
   return problem_ == Problem::kUnknownWord && length_ == 0 ? find(table, 0) : uint8_t{255};
@@ -78,56 +81,58 @@ bool Reader::is_at_stop(uint8_t before) {
 }
 
 bool Reader::find_in_kit() {
-  entry_ = robot_words();
+  const uint8_t* entry = robot_words();
   uint8_t sensors = 0;
   uint8_t actuators = 0;
-  while (flash_byte(entry_) != 0) {
-    const bool is_found = matches(true);
-    const uint8_t device = flash_byte(entry_++);
-    found_ = static_cast<uint8_t>(kIsSensor | (device & kDeviceIsYesNo));
-    number_ = sensors++;
+  while (flash_byte(entry) != 0) {
+    const bool is_found = matches(&entry, true);
+    const uint8_t device = flash_byte(entry++);
+    uint8_t found = static_cast<uint8_t>(kIsSensor | (device & kDeviceIsYesNo));
+    uint8_t number = sensors++;
     if ((device & kDeviceIsActuator) != 0) {
-      found_ ^= kIsSensor | kIsActuator;
+      found ^= kIsSensor | kIsActuator;
       sensors--;
-      number_ = actuators++;
+      number = actuators++;
     }
-    if (is_found) return true;
-    if (device == kDeviceIsActuator) entry_ += kRangeBytes;
+    if (is_found) {
+      found_ = found;
+      number_ = number;
+      entry_ = entry;
+      return true;
+    }
+    if (device == kDeviceIsActuator) entry += kRangeBytes;
   }
   return false;
 }
 
 void Reader::find_name() {
-  entry_ = names_;
-  while (entry_ != end_) {
-    const uint8_t info = *entry_++;
-    const uint8_t* const facts = entry_;
+  const uint8_t* entry = names_;
+  found_ = 0;
+  while (entry != end_) {
+    const uint8_t info = *entry++;
+    const uint8_t* const facts = entry;
+    const bool is_def = kReadsDefs && (info & kNameDef) != 0;
+    if (is_def) entry += sizeof(Def);
+    if (!matches(&entry, false)) continue;
+    entry_ = facts;
+    number_ = info & (kVariables - 1);
     found_ = kIsVariable;
     if ((info & kNameYesNo) != 0) found_ = kIsVariable | kIsYesNo;
-    number_ = info & (kVariables - 1);
-    if (kReadsDefs && (info & kNameDef) != 0) {
-      found_ = kIsDef;
-      entry_ += sizeof(Def);
-    }
-    if (matches(false)) {
-      entry_ = facts;
-      return;
-    }
+    if (is_def) found_ = kIsDef;
+    return;
   }
-  found_ = 0;
 }
 
 // Adds the word as a name, `more` bytes before its letters.
 void Reader::add_name(uint8_t info, uint8_t more) {
   const uint16_t bytes = static_cast<uint16_t>(1 + more + letters_);
   if (!has_room(static_cast<uint16_t>(letters_ + bytes - 1))) return;
-  uint8_t* const names = names_ - bytes;
-  for (uint8_t* at = stack_ - bytes; at != names; at++) *at = at[bytes];
-  stack_ -= bytes;
-  names_ = names;
-  *names = info;
-  const uint8_t* word = buffer_ + length_;
-  for (uint8_t* at = names + bytes - letters_; at != names + bytes; at++) *at = *word++;
+  uint8_t* const waits = stack_ - bytes;
+  __builtin_memmove(waits, stack_, static_cast<size_t>(names_ - stack_));
+  stack_ = waits;
+  names_ -= bytes;
+  *names_ = info;
+  __builtin_memmove(names_ + 1 + more, buffer_ + length_, letters_);
 }
 
 }  // namespace tiniscript
