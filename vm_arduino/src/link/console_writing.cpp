@@ -1,6 +1,7 @@
 // Writes the answers of a conversation in text, a line at a time. Each begins as a comment does: so
 // a terminal that echoes starts no conversation.
 
+#include "../text/digits.h"
 #include "../text/kit_words.h"
 #include "../text/unpacked.h"
 #include "../text/words.h"
@@ -90,8 +91,7 @@ tini_noinline void put_number(int32_t value) {
   uint8_t* behind = point + 3;
   uint8_t* at = behind;
   do {
-    *--at = static_cast<uint8_t>('0' + rest % 10);
-    rest /= 10;
+    *--at = static_cast<uint8_t>('0' + cut_digit(&rest));
   } while (rest != 0 || at >= point);
   while (behind != point && behind[-1] == '0') behind--;
   for (; at != behind; at++) {

@@ -24,26 +24,27 @@ constexpr uint32_t kTooBig = 0x10000000;  // ten times that is more than any num
 // Characters of two and three bytes: the first one, the second of three or 0, the last one and how
 // many more may follow, and what they are.
 const uint8_t kRelatives[] tini_progmem = {
-    0xc2, 0x00, 0xa0, 0,    ' ', 0xe2, 0x80, 0x80, 11,  ' ',  0xe2, 0x80, 0xaf, 0,   ' ',  0xe2, 0x80, 0x90, 5,   '-', 0xe2,
-    0x88, 0x92, 0,    '-', 0xe3, 0x80, 0x80, 0,    ' ', 0xef, 0xbb, 0xbf, 0,    ' ', 0,
+    0xc2, 0x00, 0xa0, 0,    ' ',  0xe2, 0x80, 0x80, 11,   ' ',  0xe2, 0x80,
+    0xaf, 0,    ' ',  0xe2, 0x80, 0x90, 5,    '-',  0xe2, 0x88, 0x92, 0,
+    '-',  0xe3, 0x80, 0x80, 0,    ' ',  0xef, 0xbb, 0xbf, 0,    ' ',  0,
 };
 
 // Each sign and its token, or 0 if it may be the first half of another.
 const uint8_t kSigns[] tini_progmem = {
     kNewline, kNewline,
-    '(', '(',
-    ')', ')',
-    ',', ',',
-    ';', ';',
-    '|', '|',
-    '/', 0,
-    '<', 0,
-    '>', 0,
-    '+', token_of(Op::kAdd),
-    '-', token_of(Op::kSub),
-    '*', token_of(Op::kMul),
-    '%', token_of(Op::kMod),
-    '=', token_of(Op::kEq),
+    '(',      '(',
+    ')',      ')',
+    ',',      ',',
+    ';',      ';',
+    '|',      '|',
+    '/',      0,
+    '<',      0,
+    '>',      0,
+    '+',      token_of(Op::kAdd),
+    '-',      token_of(Op::kSub),
+    '*',      token_of(Op::kMul),
+    '%',      token_of(Op::kMod),
+    '=',      token_of(Op::kEq),
     0,
 };
 

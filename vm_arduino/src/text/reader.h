@@ -133,7 +133,7 @@ class Reader {
   Problem binary(uint8_t op);
   void apply(uint8_t op);
   void push_kind(bool is_yes_no);
-  tini_noinline Problem end_value();
+  Problem end_value();
 
   // code and memory, in reader_code.cpp
   void emit(uint8_t byte);
@@ -141,9 +141,10 @@ class Reader {
   void emit_number(bool is_minus);
   void link(uint8_t* ends);
   void resolve(uint8_t at);
-  tini_noinline void read_first(uint8_t sensor);
+  void read_first(uint8_t sensor);
   tini_noinline void insert(uint8_t byte);
   void push(uint8_t byte);
+  uint8_t pop();
   bool has_room(uint16_t bytes);
   Block* top() const { return reinterpret_cast<Block*>(stack_); }
 
@@ -168,7 +169,7 @@ class Reader {
   bool is_damaged_;
   bool is_after_cr_;
   uint32_t crc_;
-  int8_t places_;   // decimals that it may still have; -1 behind the one that rounds it
+  int8_t places_;  // decimals that it may still have; -1 behind the one that rounds it
 
   // the parser
   uint8_t state_;
@@ -235,6 +236,12 @@ inline void Reader::push(uint8_t byte) {
                : "+r"(its)
                : "y"(this)
                : "r26", "r27", "r30", "r31", "memory");
+}
+
+inline uint8_t Reader::pop() {
+  register uint8_t its asm("r24");
+  asm volatile("%~call tiniscript_pop" : "=r"(its) : "y"(this) : "r30", "r31", "memory");
+  return its;
 }
 
 inline bool Reader::has_room(uint16_t bytes) {

@@ -44,11 +44,18 @@ starts tiniscript_emit
 ; push: a byte
 starts tiniscript_push
     rcall room
-    brcc 1f
+    brcc 2f
     st -Z, argument
-    std Y + tini_waiting_at, r30
+1:  std Y + tini_waiting_at, r30
     std Y + tini_waiting_at + 1, r31
-1:  ret
+2:  ret
+
+; pop: returns the byte that was pushed last
+starts tiniscript_pop
+    ldd r30, Y + tini_waiting_at
+    ldd r31, Y + tini_waiting_at + 1
+    ld argument, Z+
+    rjmp 1b
 
 ; has_room: how many bytes more, in r25 and r24; returns 1 or 0 in r24
 starts tiniscript_has_room
@@ -139,7 +146,7 @@ starts tiniscript_emit_number
     rcall load_value
 1:  movw r26, value0
     movw r30, value2
-    rcall divide_10
+    rcall tiniscript_divide_10
     brne 2f
     dec places
     brne 1b
@@ -239,8 +246,8 @@ load_value:
     ldd value3, Y + tini_value_at + 3
     ret
 
-; Divides the value by 10. Z is set if nothing remains.
-divide_10:
+; divide_10: the value becomes a tenth, r24 what remains. Z is set if that is nothing.
+starts tiniscript_divide_10
     clr r24
     ldi r25, 32
 1:  lsl value0

@@ -82,6 +82,8 @@ void Reader::push(uint8_t byte) {
   if (has_room(0)) *--stack_ = byte;
 }
 
+uint8_t Reader::pop() { return *stack_++; }
+
 // Lets the operand at `at`, and those that it names one after the other, lead here.
 void Reader::resolve(uint8_t at) {
   while (at != 0) {

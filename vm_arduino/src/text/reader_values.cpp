@@ -93,7 +93,7 @@ Problem Reader::operand(uint8_t token) {
 
 void Reader::number() {
   bool is_minus = state_ == kAfterMinus;
-  if (is_minus) stack_++;
+  if (is_minus) pop();
   for (; places_ > 0; places_--) scale(0);
   if (value_ == 0) is_minus = false;
   if (static_cast<int32_t>(value_ - is_minus) < 0) report(Problem::kTooBig);
@@ -125,7 +125,7 @@ Problem Reader::operators(uint8_t token) {
     if (!is_end && !is_comma && token != ')') {
       return brackets_ != 0 ? Problem::kClose : Problem::kSeparator;
     }
-    while (*stack_ < kBracket) apply(*stack_++);
+    while (*stack_ < kBracket) apply(pop());
     const uint8_t bracket = *stack_;
     if (bracket != kBase) {
       if (is_end) return Problem::kClose;
@@ -137,7 +137,7 @@ Problem Reader::operators(uint8_t token) {
         *stack_ |= kSecond;
         state_ = kOperand;
       } else {
-        stack_++;
+        pop();
         brackets_--;
         if (op != 0) apply(op);
       }
@@ -147,7 +147,7 @@ Problem Reader::operators(uint8_t token) {
     if (problem != Problem::kNone) return problem;
     if (brackets_ == 0) return end_assignment(token);
   } else {
-    stack_++;  // FOREVER leaves no value
+    pop();  // FOREVER leaves no value
   }
   kinds_ = static_cast<uint8_t>(kinds_ / 16);
   if (!is_comma && token != ')') return Problem::kClose;
@@ -165,12 +165,10 @@ Problem Reader::binary(uint8_t op) {
   const uint8_t binding = binding_of(op);
   shape_ = kNoPlain;
   for (;;) {
-    const uint8_t waits = *stack_;
-    const uint8_t its = binding_of(waits);
+    const uint8_t its = binding_of(*stack_);
     if (its < binding) break;
     if (binding == kComparisons && its == kComparisons) return Problem::kCompare;
-    stack_++;
-    apply(waits);
+    apply(pop());
   }
   if (binding <= kAnds) {
     emit(byte_of(binding == kAnds ? Op::kAndThen : Op::kOrElse));
@@ -202,7 +200,7 @@ void Reader::apply(uint8_t op) {
   }
   value_kinds_ = static_cast<uint16_t>((value_kinds_ & 0xfffe) | is_yes_no);
   if (op > byte_of(Op::kNot)) {
-    const uint8_t at = static_cast<uint8_t>(first_ + *stack_++);
+    const uint8_t at = static_cast<uint8_t>(first_ + pop());
     buffer_[at] = 0;
     resolve(at);
   } else {
@@ -212,9 +210,9 @@ void Reader::apply(uint8_t op) {
 
 // An argument or the value of an assignment has ended: is it one that belongs there?
 Problem Reader::end_value() {
-  stack_++;
+  pop();
   const uint8_t kind = kinds_ & 15;
-  const bool is_yes_no = (value_kinds_ & 1) != 0;
+  const bool is_yes_no = (static_cast<uint8_t>(value_kinds_) & 1) != 0;
   if (kind == kYesNoKind) return is_yes_no ? Problem::kNone : Problem::kWantsYesNo;
   if (kind == kAnyKind) return Problem::kNone;
   if (is_yes_no) return Problem::kWantsNumber;
