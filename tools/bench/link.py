@@ -22,7 +22,7 @@ from tiniscript.bytecode.image import unpack
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.session import Session
 from tools import uno
-from tools.bench import firmware_size
+from tools.bench import firmware_size, stops
 from tools.bench.compiler import PROGRAMS
 from tools.uno import CYCLES_PER_MS, Uno
 
@@ -31,8 +31,6 @@ BAUDS = (9600, 115_200)
 MOTORS = ("D5", "D6", "D7", "D8", "D9", "D10")
 KIT = robots.load("tinibot").kit
 SHORT = PROGRAMS[0]
-# What keeps the robot busy while it is stopped: the machine, the echo, the EEPROM, the link.
-BUSY = "SI|X = 0; LOOP(FOREVER); M(80, 80); DISTANCE; SHOW(X * 1.5 / 7); X = X + 1; END_LOOP"
 
 # At most, and what is aimed at: bytes; ms from the first start bit to the pins, by baud; us.
 MOST_BYTES = 14
@@ -57,7 +55,7 @@ class Talk:
 
     def __init__(self, board: Uno, baud: int) -> None:
         self.board, self.session = board, Session(1, baud, KIT.fingerprint)
-        self._read = len(board.sent)
+        self._seen = len(board.events)
 
     def run(self, milliseconds: int) -> None:
         for _ in range(milliseconds):
@@ -66,9 +64,9 @@ class Talk:
             if data:
                 self.board.send(data)
             self.board.run_ms(1)
-            sent = self.board.sent
-            arrived = bytes(byte.value for byte in sent[self._read :])
-            self._read = len(sent)
+            new = self.board.events[self._seen :]
+            self._seen += len(new)
+            arrived = bytes(event["byte"] for event in new if event.what == "sent")
             self.session.receive(arrived, now_ms + 1)
 
     def until(self, request: PendingRequest[Any]) -> None:
@@ -87,7 +85,7 @@ class Figures(NamedTuple):
     start_ms: float
     last_us: float
     live_us: float
-    stop_us: float
+    stop: stops.Slowest
     wire: list[tuple[int, int]]
 
 
@@ -124,9 +122,9 @@ def measured(firmware: Path, baud: int) -> Figures:
         starts = [started(talk, 300 + k) for k in range(UPLOADS)]
         live_us = max(started(talk, 300 + k, is_live=True)[2] for k in range(UPLOADS))
         wire = [exchanged(talk, text) for text in PROGRAMS]
-        stop_us = max(stopped(talk, wait) for wait in (203, 711, 1307))
+        stop = stops.slowest(talk, KIT, baud, MOTORS)
     frame_bytes, start_ms, last_us = map(max, zip(*starts, strict=True))
-    return Figures(int(frame_bytes), start_ms, last_us, live_us, stop_us, wire)
+    return Figures(int(frame_bytes), start_ms, last_us, live_us, stop, wire)
 
 
 def started(talk: Talk, wait_ms: int, *, is_live: bool = False) -> tuple[int, float, float]:
@@ -164,25 +162,6 @@ def exchanged(talk: Talk, text: str) -> tuple[int, int]:
     return found
 
 
-def stopped(talk: Talk, wait_ms: int) -> float:
-    """Return the microseconds from the zero that means stop to motors off, in a busy robot."""
-    talk.until(talk.session.upload(unpack(compile_text(BUSY, KIT).image)))
-    talk.run(wait_ms)
-    began = talk.board.cycle
-    talk.board.send(bytes(8))
-    talk.board.run_ms(20)
-    off = max(
-        change.cycle
-        for pin in MOTORS
-        for change in talk.board.pins.history(pin)
-        if change.cycle > began and change.state == "low"
-    )
-    zero = max(byte.cycle for byte in talk.board.received if byte.cycle <= off)
-    talk.session.stop(talk.board.cycle // CYCLES_PER_MS)
-    talk.run(300)
-    return (off - zero) / CYCLES_PER_MS * 1000
-
-
 def main() -> int:
     if uno.missing():
         print(uno.missing(), file=sys.stderr)
@@ -205,8 +184,9 @@ def main() -> int:
         [f"{each.last_us:.0f}" for each in found.values()], *map(str, UPLOAD_US))  # fmt: skip
     row("the last byte of the same as LIVE to the motor pins, us",
         [f"{each.live_us:.0f}" for each in found.values()], *map(str, LIVE_US))  # fmt: skip
-    row("last byte of a stop to motors off, busy robot, us",
-        [f"{each.stop_us:.1f}" for each in found.values()], *map(str, STOP_US))  # fmt: skip
+    row(f"last byte of a stop to motors off, busy robot, the slowest of {found[BAUDS[0]].stop.count}, us",
+        [f"{each.stop.us:.1f}" for each in found.values()], *map(str, STOP_US))  # fmt: skip
+    row("the same, half of them, us", [f"{each.stop.median_us:.1f}" for each in found.values()])
     for number, text in enumerate(PROGRAMS):
         shown = text if len(text) < 40 else "the paper's obstacle program"
         row(f"bytes to the robot and back, `{shown}`",
@@ -228,7 +208,7 @@ def is_kept(baud: int, found: Figures) -> bool:
         for figure, (must, _) in (
             (found.last_us, UPLOAD_US),
             (found.live_us, LIVE_US),
-            (found.stop_us, STOP_US),
+            (found.stop.us, STOP_US),
         )
     )
     return is_quick and found.frame_bytes <= MOST_BYTES

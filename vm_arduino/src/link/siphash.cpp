@@ -19,13 +19,8 @@ tini_noinline void mix(uint8_t* word, const uint8_t* other) {
   for (uint8_t k = 0; k < kWord; k++) word[k] ^= other[k];
 }
 
-// Rotates a word to the left by whole bytes, then by bits.
-tini_noinline void rotate(uint8_t* word, uint8_t bytes, uint8_t bits) {
-  while (bytes-- != 0) {
-    const uint8_t last = word[kWord - 1];
-    for (uint8_t k = kWord - 1; k != 0; k--) word[k] = word[k - 1];
-    word[0] = last;
-  }
+// Rotates a word to the left.
+tini_noinline void rotate(uint8_t* word, uint8_t bits) {
   while (bits-- != 0) {
     uint8_t carry = static_cast<uint8_t>(word[kWord - 1] >> 7);
     for (uint8_t k = 0; k < kWord; k++) {
@@ -36,27 +31,32 @@ tini_noinline void rotate(uint8_t* word, uint8_t bytes, uint8_t bits) {
   }
 }
 
-// first += second; second = second rotated, XOR first.
-tini_noinline void stir(uint8_t* first, uint8_t* second, uint8_t bytes, uint8_t bits) {
-  uint8_t carry = 0;
-  for (uint8_t k = 0; k < kWord; k++) {
-    const uint16_t sum = static_cast<uint16_t>(first[k] + second[k] + carry);
-    first[k] = static_cast<uint8_t>(sum);
-    carry = static_cast<uint8_t>(sum >> 8);
-  }
-  rotate(second, bytes, bits);
-  mix(second, first);
-}
+// The quarters of a round: where two words lie, by how much the second one is rotated before it is
+// XORed with the sum that replaces the first one, and by how much the first one is rotated then.
+const uint8_t kQuarters[] tini_progmem = {
+    0 * kWord, 1 * kWord, 13, 32,  //
+    2 * kWord, 3 * kWord, 16, 0,   //
+    0 * kWord, 3 * kWord, 21, 0,   //
+    2 * kWord, 1 * kWord, 17, 32,
+};
 
 tini_noinline void go_round(uint8_t* state, uint8_t rounds) {
-  while (rounds-- != 0) {
-    stir(state, state + kWord, 1, 5);  // by 13
-    rotate(state, 4, 0);
-    stir(state + 2 * kWord, state + 3 * kWord, 2, 0);  // by 16
-    stir(state, state + 3 * kWord, 2, 5);              // by 21
-    stir(state + 2 * kWord, state + kWord, 2, 1);      // by 17
-    rotate(state + 2 * kWord, 4, 0);
-  }
+  do {
+    const uint8_t* row = kQuarters;
+    do {
+      uint8_t* const first = state + flash_byte(row++);
+      uint8_t* const second = state + flash_byte(row++);
+      uint8_t carry = 0;
+      for (uint8_t k = 0; k < kWord; k++) {
+        const uint16_t sum = static_cast<uint16_t>(first[k] + second[k] + carry);
+        first[k] = static_cast<uint8_t>(sum);
+        carry = static_cast<uint8_t>(sum >> 8);
+      }
+      rotate(second, flash_byte(row++));
+      mix(second, first);
+      rotate(first, flash_byte(row++));
+    } while (row != kQuarters + sizeof kQuarters);
+  } while (--rounds != 0);
 }
 
 }  // namespace
