@@ -1,6 +1,7 @@
 #include "ultrasonic.h"
 
 #include "../vm/flags.h"
+#include "../vm/small.h"
 #include "chip.h"
 #include "kit.h"
 
@@ -26,14 +27,6 @@ struct Reading {
   uint32_t ping_ms;  // when its ping was sent
 };
 
-Reading readings[kUltrasonics];
-Ping ping;
-uint8_t last_asked;  // the sensor of the current ping
-uint16_t ping_us;    // when the last ping of any sensor was sent
-Flag<Bit::kSpaced> is_spaced;  // kSpacingUs have passed since then
-uint16_t begun_us;   // when the trigger, or a stale echo, went high
-bool is_held;        // there is a stale echo
-
 // The interrupt's record of an echo. It ignores pulses and gaps shorter than kGlitchUs.
 enum class Heard : uint8_t {
   kNothing,
@@ -42,58 +35,74 @@ enum class Heard : uint8_t {
   kAgain,  // the line is high again since `again_us`
 };
 
-volatile Heard heard;
-volatile uint16_t rose_us;
-volatile uint16_t fell_us;
-volatile uint16_t again_us;
+Flag<Bit::kSpaced> is_spaced;  // kSpacingUs have passed since `ping_us`
+
+// Everything else lies together, as `near` makes access short.
+struct Sonar {
+  volatile Heard heard;
+  volatile uint16_t rose_us;
+  volatile uint16_t fell_us;
+  volatile uint16_t again_us;
+  Ping ping;
+  bool is_held;        // there is a stale echo
+  uint8_t last_asked;  // the sensor of the current ping
+  uint16_t ping_us;    // when the last ping of any sensor was sent
+  uint16_t begun_us;   // when the trigger, or a stale echo, went high
+  Reading readings[kUltrasonics];
+};
+
+Sonar sonar;
 
 // Where there is only one sensor, the compiler knows.
-tini_always_inline uint8_t asked() { return kUltrasonics == 1 ? 0 : last_asked; }
+tini_always_inline uint8_t asked() { return kUltrasonics == 1 ? 0 : sonar.last_asked; }
 
 tini_always_inline uint16_t since(uint16_t now_us, uint16_t then_us) {
   return static_cast<uint16_t>(now_us - then_us);
 }
 
 void on_change() {
+  Sonar* const it = near(&sonar);
   const uint16_t now_us = clock_us();
-  const Heard before = heard;
+  const Heard before = it->heard;
   if (is_high(ultrasonic_at(asked()).echo.pin)) {
     if (before == Heard::kNothing) {
-      rose_us = now_us;
-      heard = Heard::kHigh;
-    } else if (before == Heard::kEnded && since(now_us, fell_us) < kGlitchUs) {
-      again_us = now_us;
-      heard = Heard::kAgain;
+      it->rose_us = now_us;
+      it->heard = Heard::kHigh;
+    } else if (before == Heard::kEnded && since(now_us, it->fell_us) < kGlitchUs) {
+      it->again_us = now_us;
+      it->heard = Heard::kAgain;
     }
   } else if (before == Heard::kHigh) {
-    fell_us = now_us;
-    heard = since(now_us, rose_us) < kGlitchUs ? Heard::kNothing : Heard::kEnded;
+    it->fell_us = now_us;
+    it->heard = since(now_us, it->rose_us) < kGlitchUs ? Heard::kNothing : Heard::kEnded;
   } else if (before == Heard::kAgain) {
-    if (since(now_us, again_us) >= kGlitchUs) fell_us = now_us;
-    heard = Heard::kEnded;
+    if (since(now_us, it->again_us) >= kGlitchUs) it->fell_us = now_us;
+    it->heard = Heard::kEnded;
   }
 }
 
 void listen(bool is_on) {
   const CriticalSection critical;
-  if (is_on) heard = Heard::kNothing;
+  if (is_on) sonar.heard = Heard::kNothing;
   listen_inside(ultrasonic_at(asked()).echo, is_on);
 }
 
 void lower_trigger() {
+  Sonar* const it = near(&sonar);
   write(ultrasonic_at(asked()).trigger, false);
-  ping_us = clock_us();
+  it->ping_us = clock_us();
   is_spaced = false;
-  readings[asked()].ping_ms = clock_ms();
+  it->readings[asked()].ping_ms = clock_ms();
 }
 
 // Continues the current ping. Returns true when it is over and there is a reading.
 bool is_over() {
-  if (ping == Ping::kTriggered) {
-    if (since(clock_us(), begun_us) < kTriggerUs) return false;
+  Sonar* const it = near(&sonar);
+  if (it->ping == Ping::kTriggered) {
+    if (since(clock_us(), it->begun_us) < kTriggerUs) return false;
     listen(true);
     lower_trigger();
-    ping = Ping::kListening;
+    it->ping = Ping::kListening;
     return false;
   }
   Heard found;
@@ -103,42 +112,44 @@ bool is_over() {
   {
     const CriticalSection critical;
     const uint16_t now_us = clock_us();
-    gone_us = since(now_us, ping_us);
-    found = heard;
-    echo_us = since(fell_us, rose_us);
-    quiet_us = since(now_us, fell_us);
+    gone_us = since(now_us, it->ping_us);
+    found = it->heard;
+    echo_us = since(it->fell_us, it->rose_us);
+    quiet_us = since(now_us, it->fell_us);
   }
   const bool has_ended = found == Heard::kEnded;
   if (gone_us < kLimitUs && !(has_ended && quiet_us >= kGlitchUs)) return false;
   listen(false);
-  ping = Ping::kNone;
-  readings[asked()].echo_us = has_ended && echo_us < kLimitUs ? echo_us : kLimitUs;
+  it->ping = Ping::kNone;
+  it->readings[asked()].echo_us = has_ended && echo_us < kLimitUs ? echo_us : kLimitUs;
   return true;
 }
 
 void begin(uint8_t number) {
-  last_asked = number;
-  readings[number].echo_us = kNothing;
+  Sonar* const it = near(&sonar);
+  it->last_asked = number;
+  it->readings[number].echo_us = kNothing;
   write(ultrasonic_at(number).trigger, true);
-  begun_us = clock_us();
-  ping = Ping::kTriggered;
+  it->begun_us = clock_us();
+  it->ping = Ping::kTriggered;
 }
 
 // Whether kSpacingUs have passed since the last ping of any sensor.
 bool may_ping() {
-  if (since(clock_us(), ping_us) >= kSpacingUs) is_spaced = true;
+  if (since(clock_us(), sonar.ping_us) >= kSpacingUs) is_spaced = true;
   return is_spaced;
 }
 
 // The length of an echo, or kNothing: ask again.
 uint16_t echo_of(uint8_t number) {
-  const Reading& mine = readings[number];
-  if (ping != Ping::kNone && is_over() && asked() == number) return mine.echo_us;
-  if (ping != Ping::kNone && asked() == number) return kNothing;
+  Sonar* const it = near(&sonar);
+  const Reading& mine = it->readings[number];
+  if (it->ping != Ping::kNone && is_over() && asked() == number) return mine.echo_us;
+  if (it->ping != Ping::kNone && asked() == number) return kNothing;
   // A sensor without an echo holds its line high for longer and ignores triggers meanwhile.
-  const bool is_busy = ping == Ping::kNone && is_high(ultrasonic_at(number).echo.pin);
-  if (ping == Ping::kNone && !is_busy) {
-    is_held = false;
+  const bool is_busy = it->ping == Ping::kNone && is_high(ultrasonic_at(number).echo.pin);
+  if (it->ping == Ping::kNone && !is_busy) {
+    it->is_held = false;
     if (may_ping()) {
       begin(number);
       return kNothing;
@@ -146,13 +157,13 @@ uint16_t echo_of(uint8_t number) {
   }
   if (clock_ms() - mine.ping_ms <= kFreshMs) return mine.echo_us;
   if (!is_busy) return kNothing;
-  if (!is_held) {
-    is_held = true;
-    begun_us = clock_us();
+  if (!it->is_held) {
+    it->is_held = true;
+    it->begun_us = clock_us();
     return kNothing;
   }
-  if (since(clock_us(), begun_us) < kLimitUs) return kNothing;
-  is_held = false;
+  if (since(clock_us(), it->begun_us) < kLimitUs) return kNothing;
+  it->is_held = false;
   return kLimitUs;
 }
 
@@ -177,11 +188,12 @@ bool ultrasonic_read(uint8_t number, int32_t* distance) {
 }
 
 void ultrasonic_forget() {
-  if (ping == Ping::kTriggered) lower_trigger();
-  if (ping == Ping::kListening) listen(false);
-  ping = Ping::kNone;
-  is_held = false;
-  for (Reading& reading : readings) reading.echo_us = kNothing;
+  Sonar* const it = near(&sonar);
+  if (it->ping == Ping::kTriggered) lower_trigger();
+  if (it->ping == Ping::kListening) listen(false);
+  it->ping = Ping::kNone;
+  it->is_held = false;
+  for (Reading& reading : it->readings) reading.echo_us = kNothing;
 }
 
 }  // namespace tiniscript
