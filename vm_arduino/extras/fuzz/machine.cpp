@@ -86,7 +86,7 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     return 0;
   }
   const bool is_its_kit = check_devices(found, devices) == Refusal::kNone;
-  const Admission admission = admit(exact.data(), length, sensors, actuators);
+  const Admission admission = admit(exact.data(), sensors, actuators);
   must((admission.refusal == 0) == is_its_kit);
 
   std::vector<uint8_t> code(found.code, found.code + found.code_length);

@@ -183,8 +183,7 @@ uint8_t Link::commit(const uint8_t* payload) {
   copy_bytes(payload + kCommitChecksumAt, image + kChecksumAt, kChecksumBytes);
   checksum_ = get32(image + kChecksumAt);
   const DeviceInfo& device_info = port_device_info();
-  const Admission found = admit(image, static_cast<uint16_t>(kBehindChecksum + length_),
-                                device_info.sensors, device_info.actuators);
+  const Admission found = admit(image, device_info.sensors, device_info.actuators);
   if (found.refusal == static_cast<uint8_t>(Refusal::kOtherKit)) {
     return refuse(Answer::kWrongKit, port_identity().kit);
   }

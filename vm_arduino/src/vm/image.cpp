@@ -12,6 +12,21 @@ constexpr uint8_t kVersionBytes = kIsaMinorAt + 1;  // these identify an image o
 
 uint16_t word(const uint8_t* data) { return static_cast<uint16_t>(data[0] | data[1] << 8); }
 
+// Fills `*image` from an image of this version whose lengths are right, and checks the rest of it.
+Refusal read(const uint8_t* data, Image* image) {
+  image->code = data + data[kHeaderLengthAt];
+  image->code_length = word(data + kCodeLengthAt);
+  image->devices = word(data + kDevicesAt);
+  image->start = data[kStartAt];
+  uint32_t check;
+  __builtin_memcpy(&check, data + kChecksumAt, sizeof check);
+  if (image_checksum(data, image_length(data)) != check) return Refusal::kDamaged;
+  if (data[kNeedsAt] != kNeeds) return Refusal::kUnknownNeeds;
+  if (image->start >= kStarts) return Refusal::kUnknownStart;
+  if (image->start == kStartPing && image->code_length != 0) return Refusal::kPingWithCode;
+  return Refusal::kNone;
+}
+
 }  // namespace
 
 tini_noinline uint32_t image_checksum(const uint8_t* image, uint16_t length) {
@@ -29,22 +44,13 @@ Refusal unpack(const uint8_t* data, size_t length, Image* image) {
     return Refusal::kOtherVersion;
   }
   if (length < kHeaderBytes) return Refusal::kTruncated;
-  const uint8_t header_length = data[kHeaderLengthAt];
-  image->code = data + header_length;
-  image->code_length = word(data + kCodeLengthAt);
-  image->devices = word(data + kDevicesAt);
-  image->start = data[kStartAt];
-  if (header_length < kHeaderBytes || image->code_length > kCodeBytes) return Refusal::kBadHeader;
-  const uint16_t whole = static_cast<uint16_t>(header_length + image->code_length);
+  if (data[kHeaderLengthAt] < kHeaderBytes || word(data + kCodeLengthAt) > kCodeBytes) {
+    return Refusal::kBadHeader;
+  }
+  const uint16_t whole = image_length(data);
   if (length < whole) return Refusal::kTruncated;
   if (length > whole) return Refusal::kTrailing;
-  uint32_t check;
-  __builtin_memcpy(&check, data + kChecksumAt, sizeof check);
-  if (image_checksum(data, whole) != check) return Refusal::kDamaged;
-  if (data[kNeedsAt] != kNeeds) return Refusal::kUnknownNeeds;
-  if (image->start >= kStarts) return Refusal::kUnknownStart;
-  if (image->start == kStartPing && image->code_length != 0) return Refusal::kPingWithCode;
-  return Refusal::kNone;
+  return read(data, image);
 }
 
 Refusal check_devices(const Image& image, uint16_t devices) {
@@ -52,10 +58,9 @@ Refusal check_devices(const Image& image, uint16_t devices) {
   return Refusal::kNone;
 }
 
-tini_noinline Admission admit(const uint8_t* data, uint16_t length, uint8_t sensors,
-                              uint8_t actuators) {
+tini_noinline Admission admit(const uint8_t* data, uint8_t sensors, uint8_t actuators) {
   Image image;
-  const Refusal refusal = unpack(data, length, &image);
+  const Refusal refusal = read(data, &image);
   if (refusal != Refusal::kNone) return {static_cast<uint8_t>(refusal), 0};
   uint16_t devices;
   const Verdict verdict = verify(image.code, image.code_length, sensors, actuators, &devices);

@@ -45,14 +45,15 @@ Refusal unpack(const uint8_t* data, size_t length, Image* image);
 // from `verify`.
 Refusal check_devices(const Image& image, uint16_t devices);
 
-// Whether a robot with this many sensors and actuators may run the image of `length` bytes: 0, a
-// Refusal, or the verifier's Rule with its `offset`.
+// Whether a robot with this many sensors and actuators may run an image: 0, a Refusal, or the
+// verifier's Rule with its `offset`. Its version and its lengths have been checked: whoever puts it
+// into memory needs them first.
 struct Admission {
   uint8_t refusal;
   uint16_t offset;
 };
 
-Admission admit(const uint8_t* data, uint16_t length, uint8_t sensors, uint8_t actuators);
+Admission admit(const uint8_t* data, uint8_t sensors, uint8_t actuators);
 
 }  // namespace tiniscript
 
