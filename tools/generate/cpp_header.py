@@ -181,9 +181,11 @@ def form_numbers() -> str:
             "// The number of each opcode's shape; from kFirstTwin on one for two of them.\n"
             f"constexpr uint8_t kFirstTwin = 0x{FIRST_TWIN:02x};\n"
             "extern const uint8_t kShapeOf[] tini_progmem;\n",
-            "// Of each shape: pops (2 bits), pushes (1) and role (5); kBack, kFar and size (3);\n"
-            "// what the second byte is (4) and the first (4); the family.\n"
-            "extern const uint8_t kShapes[][4] tini_progmem;\n",
+            "// Of each shape: pops (2 bits), pushes (1) and role (5); the number of its operands (3),\n"
+            "// kBack, kFar and size (3); the family.\n"
+            "extern const uint8_t kShapes[][3] tini_progmem;\n",
+            "// Of operands: what the second byte is (4 bits) and the first (4).\n"
+            "extern const uint8_t kOperands[] tini_progmem;\n",
             "// The least value of a Byte, and how much more than that it may be.\n"
             "extern const uint8_t kRanges[][2] tini_progmem;\n",
         )
@@ -215,7 +217,11 @@ def tables(command: str) -> str:
                     for at in range(0, len(entries), 16)
                 ),
             ),
-            array("kShapes[][4]", ((packed(shape), names(same)) for shape, same in rows.items())),
+            array("kShapes[][3]", ((packed(shape), names(same)) for shape, same in rows.items())),
+            array(
+                "kOperands[]",
+                ((f"0x{number:02x}", ", ".join(kinds)) for number, kinds in operands().items()),
+            ),
             array(
                 "kRanges[][2]",
                 (
@@ -243,6 +249,16 @@ def packed(shape: Shape) -> str:
     assert shape.size < 8 and shape.pops < 4 and shape.pushes < 2 and roles.index(shape.role) < 32
     effects = shape.pops << 6 | shape.pushes << 5 | roles.index(shape.role)
     size = shape.size | FAR_BIT * shape.is_far | BACK_BIT * shape.is_back
-    operands = BYTES.index(shape.second) << 4 | BYTES.index(shape.first)
+    number = list(operands()).index(operand_bytes(shape))
+    assert number < 8, "three bits say which operands a shape has"
     family = families().index(shape.family)
-    return f"{{0x{effects:02x}, 0x{size:02x}, 0x{operands:02x}, {family}}}"
+    return f"{{0x{effects:02x}, 0x{number << 5 | size:02x}, {family}}}"
+
+
+def operand_bytes(shape: Shape) -> int:
+    return BYTES.index(shape.second) << 4 | BYTES.index(shape.first)
+
+
+def operands() -> dict[int, tuple[str, str]]:
+    """Return what the first two bytes of operands may be, each once, by its packed number."""
+    return {operand_bytes(shape): (shape.first, shape.second) for shape in shapes()}

@@ -411,9 +411,12 @@ constexpr uint8_t kBack = 16;
 constexpr uint8_t kFirstTwin = 0x80;
 extern const uint8_t kShapeOf[] tini_progmem;
 
-// Of each shape: pops (2 bits), pushes (1) and role (5); kBack, kFar and size (3);
-// what the second byte is (4) and the first (4); the family.
-extern const uint8_t kShapes[][4] tini_progmem;
+// Of each shape: pops (2 bits), pushes (1) and role (5); the number of its operands (3),
+// kBack, kFar and size (3); the family.
+extern const uint8_t kShapes[][3] tini_progmem;
+
+// Of operands: what the second byte is (4 bits) and the first (4).
+extern const uint8_t kOperands[] tini_progmem;
 
 // The least value of a Byte, and how much more than that it may be.
 extern const uint8_t kRanges[][2] tini_progmem;
