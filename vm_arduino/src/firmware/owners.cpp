@@ -15,12 +15,8 @@ static_assert(kKeyRoom == kKeyBytes, "a key fills its place");
 void read_owner() {
   if (!kHasOwners) return;
   uint8_t key[kKeyBytes];
-  uint8_t found = 0;
-  if (fetch_key(static_cast<uint8_t>(Key::kOwner), key)) {
-    for (const uint8_t byte : key) found |= byte;
-  }
   uint8_t features = port_identity().features & static_cast<uint8_t>(~(kOwned | kTextAllowed));
-  if (found != 0) {
+  if (fetch_key(static_cast<uint8_t>(Key::kOwner), key) && is_key(key)) {
     features |= kOwned;
   } else {
     features |= kTextAllowed;

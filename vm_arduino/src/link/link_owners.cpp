@@ -21,13 +21,13 @@ uint8_t number_of(Answer answer) { return static_cast<uint8_t>(answer); }
 
 bool has(uint8_t feature) { return (port_identity().features & feature) != 0; }
 
-bool is_key(const uint8_t* key) {
+}  // namespace
+
+tini_noinline bool is_key(const uint8_t* key) {
   uint8_t found = 0;
   for (uint8_t k = 0; k < kKeyBytes; k++) found |= key[k];
   return found != 0;
 }
-
-}  // namespace
 
 // Whether a message needs authority that the session does not have.
 bool Link::is_forbidden(uint8_t type) const {

@@ -149,6 +149,9 @@ inline bool text_may_drive() {
   return (port_identity().features & (kOwned | kTextAllowed)) != kOwned;
 }
 
+// Whether a key is one: not zeros alone (`link_owners.cpp`).
+bool is_key(const uint8_t* key);
+
 // Puts a key of the robot into `key`, zeros if it has none. kBusy: not available now; kSaving and
 // kLowSupply: another one is being saved.
 Answer port_key(uint8_t which, uint8_t* key);

@@ -21,6 +21,12 @@ constexpr uint16_t kNoiseBytes = 256;    // below the stack
 constexpr uint32_t kAlive = 0x6f3a91c4;  // value of `mark` in normal operation
 constexpr uint32_t kHung = 0x93c5e21b;   // value of `mark` after a hang, when the record counts
 
+static_assert(static_cast<uint8_t>(Reset::kPower) == PORF + 1 &&
+                  static_cast<uint8_t>(Reset::kButton) == EXTRF + 1 &&
+                  static_cast<uint8_t>(Reset::kBrownOut) == BORF + 1 &&
+                  static_cast<uint8_t>(Reset::kWatchdog) == WDRF + 1,
+              "a cause is the number of its flag in MCUSR, from 1 on");
+
 volatile bool has_stalled;
 bool has_hung;  // before the last reset; not yet reported
 
@@ -31,7 +37,7 @@ struct Record {
 };
 
 Record last __attribute__((section(".noinit")));
-uint32_t resets __attribute__((section(".noinit")));  // count of resets, from a random start
+uint16_t resets __attribute__((section(".noinit")));  // count of resets, from a random start
 uint8_t flags __attribute__((section(".noinit")));    // MCUSR after the reset
 
 // The interrupt of timer 0.
@@ -42,6 +48,8 @@ void on_stall() {
   motors_stop();
   actuators_off(true);
 }
+
+tini_noinline void be_alive() { last.mark = kAlive; }
 
 tini_noinline uint32_t hung_mark() { return kHung ^ last.place.program ^ last.place.at; }
 
@@ -68,8 +76,11 @@ void tiniscript_watchdog_off() {
 }
 
 void watchdog_begin() {
-  has_hung = last.mark == hung_mark();
-  if (!has_hung) last.mark = kAlive;
+  if (last.mark == hung_mark()) {
+    has_hung = true;
+  } else {
+    be_alive();
+  }
   const uint8_t before = SREG;
   cli();
   wdt_reset();
@@ -90,16 +101,17 @@ bool watchdog_has_hung(Place* place) {
   if (!has_hung) return false;
   has_hung = false;
   *place = last.place;
-  last.mark = kAlive;
+  be_alive();
   return true;
 }
 
 Reset watchdog_reset_cause() {
-  if (has_hung || (flags & 1 << WDRF) != 0) return Reset::kWatchdog;
-  if ((flags & 1 << PORF) != 0) return Reset::kPower;
-  if ((flags & 1 << BORF) != 0) return Reset::kBrownOut;
-  if ((flags & 1 << EXTRF) != 0) return Reset::kButton;
-  return Reset::kUnknown;  // a bootloader has cleared the flags
+  uint8_t left = flags & (1 << WDRF | 1 << PORF | 1 << BORF | 1 << EXTRF);
+  if (has_hung) left = 1 << WDRF;
+  if ((left & 1 << WDRF) == 0 && (left & 1 << PORF) != 0) left = 1 << PORF;
+  uint8_t cause = 0;  // unknown: a bootloader has cleared the flags
+  for (; left != 0; left >>= 1) cause++;
+  return static_cast<Reset>(cause);
 }
 
 uint32_t watchdog_seed() {
