@@ -14,6 +14,7 @@ import pytest
 from tests.firmware.test_authority import is_accepted
 from tests.machines.host_firmware import missing
 from tests.support.owners import FOREVER, PRESSED, Keys, Owned, image_of, owner_of, state_of
+from tests.support.thief import Thief, wire_of
 from tiniscript.link.authority import OF_ANOTHER, YOUR_OWN
 from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.messages import (
@@ -21,7 +22,6 @@ from tiniscript.link.messages import (
     KEY_TEACHER,
     MESSAGES,
     OWNERS,
-    SEALED_PAYLOAD_BYTES,
     SEALS,
     STATE_FAULTED,
     STATE_RUNNING,
@@ -291,64 +291,6 @@ def test_frames_of_the_wire_open_nothing(frames: int = 2500) -> None:
 # -- by command -----------------------------------------------------------------------------------
 
 
-class Thief:
-    """Who hears an owner's line, and writes into it. `recorded` has frames of other seals too."""
-
-    def __init__(self, chance: random.Random, old: list[bytes]) -> None:
-        self.chance = chance
-        self.old = old
-        self.there: list[bytes] = []  # of the present seal
-        self.back: list[bytes] = []
-
-    def frame(self, epoch: int, seq: int) -> tuple[str, bytes]:
-        chance = self.chance
-        how = chance.choice(
-            ("replayed", "reflected", "other session", "cut", "changed", "unsealed", "moved",
-             "forged", "sealed by another key")
-        )  # fmt: skip
-        mine = chance.choice(self.there)
-        frame = decoded(mine)
-        assert frame
-        if how == "replayed":
-            return how, mine
-        if how == "reflected":
-            back = decoded(chance.choice(self.back))
-            return how, _wire(back._replace(is_reply=False)) if back else mine
-        if how == "other session":
-            return how, chance.choice(self.old)
-        if how == "cut":
-            return how, _wire(frame._replace(payload=frame.payload[: -chance.randrange(1, 13)]))
-        if how == "changed":
-            changed = bytearray(frame.payload)
-            changed[chance.randrange(len(changed))] ^= 1 << chance.randrange(8)
-            return how, _wire(frame._replace(payload=bytes(changed)))
-        if how == "unsealed":
-            payload = frame.payload[5:-8]
-            return how, _wire(frame._replace(payload=payload, seq=seq, is_sealed=False))
-        if how == "moved":  # another number of the request, of the message, or of the counter
-            count = chance.choice((seq, chance.randrange(256))) if chance.random() < 0.5 else 0
-            rising = frame.payload[:1] + (2**32 - 1).to_bytes(4, "little") + frame.payload[5:]
-            number = chance.choice((frame.number, 7, 8, 9, 19))
-            payload = chance.choice((frame.payload, rising))
-            return how, _wire(frame._replace(payload=payload, seq=count, number=number))
-        acting = [each for each in MESSAGES if 6 <= each.number < 32 and each.number != 17]
-        message = chance.choice(acting)
-        low = sum(field.low for field in message.request)
-        high = min(sum(field.high for field in message.request), SEALED_PAYLOAD_BYTES)
-        asked = Frame(message.number, seq, epoch, chance.randbytes(chance.randint(low, high)))
-        if how == "forged":
-            counter = chance.choice((1, 1000, 2**32 - 1)).to_bytes(4, "little")
-            whole = b"\0" + counter + asked.payload + chance.randbytes(8)
-            return how, _wire(asked._replace(payload=whole, is_sealed=True))
-        seal = Seal(chance.randbytes(16))
-        seal.sent = 10_000
-        return how, _wire(seal.closed(asked))
-
-
-def _wire(frame: Frame) -> bytes:
-    return encoded(frame)[:-1]
-
-
 def attacked(frames: int, seed: int) -> Counter[str]:
     """Send frames of a thief into the line of an owner, in its session, whose seal lives; return
     how many of each kind, how many were accepted, and how many stops were tried and obeyed.
@@ -398,7 +340,7 @@ def _is_sealed(wire: bytes) -> bool:
 def _stop(chance: random.Random) -> bytes:
     """Return a STOP with any seal, or none."""
     payload = chance.randbytes(chance.choice((13, 20)))
-    return _wire(Frame(BY_NAME["STOP"].number, chance.randrange(256), 0, payload, is_sealed=True))
+    return wire_of(Frame(BY_NAME["STOP"].number, chance.randrange(256), 0, payload, is_sealed=True))
 
 
 def main(frames: int, seed: int) -> int:

@@ -1,0 +1,349 @@
+"""The start button in every state of the firmware, in all ways: what the document's table says.
+
+The wire goes through the button's own code; the whole firmware hears what that tells.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import lru_cache
+
+import pytest
+
+from tests.firmware.test_button import told
+from tests.firmware.test_host_firmware import computer, image_of, send, stored, switched_on
+from tests.firmware.test_text import typed
+from tests.machines.host_firmware import HostFirmware, missing
+from tests.support.casefile import ROOT
+from tests.support.owners import HELD, KIT, PRESSED, RELEASED, Keys
+from tiniscript.link.messages import KEY_OWNER, OWNED, TEXT_ALLOWED
+from tiniscript.link.requests import OK
+from tiniscript.link.session import Session
+
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
+
+SAVED, OTHER, MEMORY, TYPED, LINE = 80, 70, 60, 40, 30  # powers: which program it is that drives
+FLAGS = {"P": PRESSED, "H": HELD, "R": RELEASED}
+EDGE, SHORT, LATE, TWO = range(4)  # columns of the table
+
+
+def chatter(edge_ms: int) -> list[int]:
+    return [edge_ms * 1000 + us for us in (0, 700, 1500, 1900, 4000)]
+
+
+# what the wire does, in us, and which columns of the table say what comes of it
+PRESSES: dict[str, tuple[list[int], tuple[int, ...]]] = {
+    "a spike": ([0, 150], (EDGE,)),
+    "many spikes": ([us for k in range(40) for us in (k * 17_000, k * 17_000 + 150)], (EDGE,)),
+    "chatter": ([*range(0, 20_000, 900)][:22], (EDGE,)),
+    "short": ([0, 200_000], (EDGE, SHORT)),
+    "the shortest": ([0, 34_000], (EDGE, SHORT)),
+    "short, with chatter": ([*chatter(0), *chatter(300), 305_000][:10], (EDGE, SHORT)),
+    "just short": ([0, 930_000], (EDGE, SHORT)),
+    "just long": ([0, 1_040_000], (EDGE, LATE)),
+    "long, with chatter": ([*chatter(0), *chatter(1500)], (EDGE, LATE)),
+    "held 2 s": ([0, 2_200_000], (EDGE, LATE, TWO)),
+    "released late": ([0, 5_000_000], (EDGE, LATE, TWO)),
+    "held for ever": ([0, 12_000_000], (EDGE, TWO)),
+}
+FOR_EVER = "held for ever"
+
+
+@lru_cache
+def letters() -> dict[str, list[tuple[int, str]]]:
+    """Return what the button tells of each press: the millisecond, and P, H or R."""
+    found = told([(100, 0, edges) for edges, _ in PRESSES.values()])
+    rows = {}
+    for name, row in zip(PRESSES, found, strict=True):
+        rows[name] = [(us // 1000, letter) for us, letter in row]
+        if name == FOR_EVER:
+            rows[name] = [each for each in rows[name] if each[1] != "R"]
+    return rows
+
+
+class SmallRobot(HostFirmware):
+    """As an Uno: it reads text where the program is that it holds."""
+
+    has_draft = False
+
+
+class Table:
+    """A robot in a state. `program` is the power of what a press starts, `runs` of what runs."""
+
+    def __init__(self, has_draft: bool = True) -> None:
+        self.robot = switched_on() if has_draft else SmallRobot(KIT)
+        self.session = computer()
+        self.talks: Session | None = self.session  # who goes on talking
+        self.program = 0
+        self.is_reset_down = False
+
+    def send(self, text: str, **how: bool) -> None:
+        send(self.robot, self.session, text, **how)
+
+    def is_ready(self, power: int, is_saved: bool = True) -> None:
+        self.send(f"SB|F(600, {power})", saves=is_saved)
+        if is_saved:
+            stored(self.robot, self.session)
+        self.program = power
+
+    def quiet(self) -> None:
+        """The client goes; a person may type."""
+        self.robot.wait(4000)
+        self.talks = None
+
+    def talk(self, milliseconds: int, flags: int = 0) -> None:
+        for k in range(milliseconds):
+            flag = flags if k == 0 else 0
+            if self.talks is None:
+                self.robot.step(flags=flag)
+            else:
+                self.robot.talk(self.talks, 1, flag)
+
+
+def empty(table: Table) -> None:
+    assert table.robot.until(table.session, table.session.hello()) == OK
+
+
+def saved(table: Table) -> None:
+    table.is_ready(SAVED)
+
+
+def in_memory(table: Table) -> None:
+    table.is_ready(SAVED)
+    table.is_ready(MEMORY, is_saved=False)
+
+
+def typed_one(table: Table) -> None:
+    table.is_ready(SAVED)
+    table.quiet()
+    typed(table.robot, f"SB|F(600, {TYPED})\n")
+    table.program = TYPED
+
+
+def runs_memory(table: Table) -> None:
+    table.is_ready(SAVED)
+    table.send(f"SI|F(600, {MEMORY})", saves=False)
+    table.program = MEMORY
+
+
+def runs_saved(table: Table) -> None:
+    table.is_ready(SAVED)
+    assert table.robot.until(table.session, table.session.start()) == OK
+
+
+def runs_line(table: Table) -> None:
+    table.is_ready(SAVED)
+    request = table.session.live(image_of(f"SI|F(600, {LINE})").code)
+    assert table.robot.until(table.session, request) == OK
+
+
+def runs_text(table: Table) -> None:
+    table.is_ready(SAVED)
+    table.quiet()
+    typed(table.robot, f"SI|F(600, {TYPED})\n")
+
+
+def open_block(table: Table) -> None:
+    table.is_ready(SAVED)
+    table.quiet()
+    typed(table.robot, f"SI|LOOP(2)\nF(600, {TYPED})\n")
+
+
+def was_stopped(table: Table) -> None:
+    table.is_ready(SAVED)
+    table.session.stop(table.robot.now_ms)
+    table.talk(300)
+
+
+def has_fault(table: Table) -> None:
+    table.is_ready(SAVED)
+    request = table.session.live(image_of("SI|X = 0; SHOW(5 / X)").code)
+    assert table.robot.until(table.session, request) == OK
+    table.talk(300)
+
+
+def receives(table: Table) -> None:
+    table.is_ready(SAVED)
+    request = table.session.upload(image_of(f"SI|{f'F(1, {OTHER}); ' * 90}"))
+    while request.done_bytes < 60:
+        table.talk(1)
+    table.talks = None  # the rest does not come, or not in time
+
+
+def saves(table: Table) -> None:
+    table.send(f"SB|F(600, {SAVED})")
+    table.program = SAVED
+
+
+def brings_back(table: Table) -> None:
+    table.is_ready(SAVED)
+    table.is_ready(OTHER)
+    assert table.robot.until(table.session, table.session.undo()) == OK
+    table.program = SAVED
+
+
+def keeps_trim(table: Table) -> None:
+    table.is_ready(SAVED)
+    table.session.trim(b"\0\0\1")
+    table.talk(40)
+
+
+def is_claimed(table: Table) -> None:
+    table.session = table.talks = Session(1, 9600, KIT.fingerprint, keys=Keys())
+    table.is_ready(SAVED)
+    table.session.claim(KEY_OWNER)
+    table.talk(300)
+
+
+def has_owner(table: Table) -> None:
+    is_claimed(table)
+    table.talk(1, PRESSED)
+    table.talk(31)
+    table.talk(2100, HELD)
+    table.talk(1, RELEASED)
+    table.talk(1000)
+    assert table.session.robot and table.session.robot.values.features & OWNED
+    table.quiet()
+
+
+def reset_down(table: Table) -> None:
+    table.is_ready(SAVED)
+    memory = table.robot.memory()
+    table.robot = HostFirmware(KIT, memory)
+    table.talks = None
+    table.is_reset_down = True
+
+
+STATES: dict[str, Callable[[Table], None]] = {
+    "holds no program": empty,
+    "holds a saved program": saved,
+    "holds a program in memory only": in_memory,
+    "holds a program that was typed": typed_one,
+    "runs a program in memory": runs_memory,
+    "runs the saved program": runs_saved,
+    "runs a live line": runs_line,
+    "runs text": runs_text,
+    "has an open block of text": open_block,
+    "was stopped": was_stopped,
+    "has a fault": has_fault,
+    "receives an upload": receives,
+    "saves its program": saves,
+    "brings the program before back": brings_back,
+    "keeps a trim": keeps_trim,
+    "is being claimed": is_claimed,
+    "has an owner": has_owner,
+    "was reset with the button down": reset_down,
+}
+
+
+@lru_cache
+def promised() -> dict[str, list[str]]:
+    """Return the table of the document."""
+    text = (ROOT / "docs" / "link.md").read_text(encoding="utf-8")
+    rows = text.split("<!-- button -->\n")[1].split("\n\n")[0].splitlines()[2:]
+    cells = [[cell.strip() for cell in row.strip("|").split("|")] for row in rows]
+    return {name: rest for name, *rest in cells}
+
+
+def test_the_document_has_every_state() -> None:
+    assert list(promised()) == list(STATES)
+
+
+def test_the_presses_are_what_they_are_called() -> None:
+    found = {name: "".join(letter for _, letter in row) for name, row in letters().items()}
+    for name, (_, columns) in PRESSES.items():
+        is_press = columns != (EDGE,)
+        expected = "PH" + "R" * (name != FOR_EVER)
+        assert found[name] == expected if is_press else set(found[name]) <= {"P"}, name
+        assert found[name]
+
+
+def played(table: Table, press: str) -> None:
+    """Let the button go down and up, and some time pass."""
+    now_ms = 0
+    for at_ms, letter in letters()[press]:
+        if table.is_reset_down and letter == "P":
+            continue  # it was down before there was a program to see it
+        table.talk(max(0, at_ms - now_ms))
+        table.talk(1, FLAGS[letter])
+        now_ms = max(at_ms, now_ms) + 1
+    table.talk(13_000 if press == FOR_EVER else 700)
+
+
+@pytest.mark.parametrize("press", PRESSES)
+@pytest.mark.parametrize("state", STATES)
+def test_the_button(state: str, press: str) -> None:
+    table = Table()
+    STATES[state](table)
+    robot, begun_ms = table.robot, table.robot.now_ms
+    was_latched, before = robot.is_latched, len(robot.did)
+    played(table, press)
+    rows = [row.split(" ", 1) for row in robot.did[before:]]
+    moves = [(int(ms) - begun_ms, what) for ms, what in rows if what.startswith("MOTORS")]
+    wanted, columns = promised()[state], PRESSES[press][1]
+    first_ms = letters()[press][0][0]
+    stops = wanted[EDGE] == "stops it"
+    assert was_latched != stops, "a robot that runs, or one that does not"
+    starts = SHORT in columns and wanted[SHORT].startswith("starts")
+    assert not any(wanted[each] not in ("-", "stops it") for each in (EDGE, LATE))
+    if stops:
+        assert [what for _, what in moves] == ["MOTORS 0 0"]
+        assert moves[0][0] <= first_ms + 2
+        assert robot.is_latched
+    elif starts:
+        assert [what for _, what in moves] == [f"MOTORS {table.program} {table.program}"]
+        up_ms = letters()[press][-1][0]
+        assert up_ms <= moves[0][0]
+        assert not robot.is_latched
+    else:
+        assert moves == []
+        assert robot.is_latched
+    beeps = [what for _, what in rows if what.startswith("BEEP 1568")]
+    is_forgotten = table.is_reset_down and press == FOR_EVER
+    assert len(beeps) == (is_forgotten or (TWO in columns and wanted[TWO].startswith("beeps")))
+
+
+@pytest.mark.parametrize("has_draft", [True, False])
+@pytest.mark.parametrize("press", PRESSES)
+def test_text_is_lost_by_a_start_alone(press: str, has_draft: bool) -> None:
+    """A block that is open goes on after presses that start nothing."""
+    table = Table(has_draft)
+    open_block(table)
+    played(table, press)
+    answers = " ".join(typed(table.robot, "END_LOOP\n", 100))
+    if SHORT in PRESSES[press][1]:
+        assert "MOTORS 80 80" in " ".join(table.robot.did)
+        assert "MOTORS 40 40" not in " ".join(table.robot.did), answers
+    else:
+        assert "MOTORS 40 40" in " ".join(table.robot.did), answers
+
+
+@pytest.mark.parametrize("press", PRESSES)
+def test_an_upload_is_lost_by_a_start_alone(press: str) -> None:
+    table = Table()
+    table.is_ready(SAVED)
+    image = image_of(f"SI|{f'F(1, {OTHER}); ' * 90}")
+    request = table.session.upload(image)
+    while request.done_bytes < 60:
+        table.talk(1)
+    now_ms = 0
+    for at_ms, letter in letters()[press][:3]:
+        table.robot.wait(max(1, at_ms - now_ms))
+        table.robot.step(flags=FLAGS[letter])
+        now_ms = at_ms
+    if press != FOR_EVER and now_ms < 2500:
+        outcome = table.robot.until(table.session, request, 30_000)
+        drives = f"MOTORS {OTHER} {OTHER}" in " ".join(table.robot.did)
+        assert (outcome == OK) == drives == (SHORT not in PRESSES[press][1])
+
+
+def test_two_seconds_let_text_drive_an_owned_robot() -> None:
+    for press in ("just long", "held 2 s"):
+        table = Table()
+        has_owner(table)
+        played(table, press)
+        session = computer(9)
+        assert table.robot.until(session, session.hello()) == OK
+        assert session.robot
+        is_allowed = bool(session.robot.values.features & TEXT_ALLOWED)
+        assert is_allowed == (press == "held 2 s")
