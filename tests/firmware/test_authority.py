@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import random
 from typing import Any
 
@@ -10,10 +11,12 @@ import pytest
 from tests.machines.host_firmware import missing
 from tests.support.owners import (
     FOREVER,
+    WITHOUT_SEALS,
     Keys,
     Owned,
     image_of,
     owner_of,
+    robots_of_both_kinds,
     state_of,
 )
 from tiniscript.link.authority import OF_ANOTHER
@@ -29,6 +32,7 @@ from tiniscript.link.messages import (
 )
 from tiniscript.link.session import Session
 
+__all__ = ("robots_of_both_kinds",)  # a fixture
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 OPEN_TO_ALL = {"HELLO", "PING", "STATUS", "STOP", "IDENTIFY"}
@@ -285,14 +289,19 @@ def is_accepted(sent: bytes) -> bool:
     return frame.payload[0] == 0 and not is_open
 
 
-def main(frames: int, seed: int) -> int:
-    accepted = forged(frames, seed)
-    print(f"{frames} replayed, forged and reordered frames: {accepted} accepted (seed {seed})")
+def main() -> int:
+    parser = argparse.ArgumentParser(description="Throw frames at a robot with an owner for long.")
+    parser.add_argument("frames", type=int, nargs="?", default=100_000)
+    parser.add_argument("--seed", type=int, default=1)
+    options = parser.parse_args()
+    Owned.DEFINES = WITHOUT_SEALS
+    accepted = forged(options.frames, options.seed)
+    print(f"{options.frames} replayed, forged and reordered frames: {accepted} accepted "
+          f"(seed {options.seed})")  # fmt: skip
     return int(accepted != 0)
 
 
 if __name__ == "__main__":
     import sys
 
-    numbers = [int(each) for each in sys.argv[1:]]
-    sys.exit(main(numbers[0] if numbers else 100_000, numbers[1] if numbers[1:] else 1))
+    sys.exit(main())

@@ -14,6 +14,7 @@ from tests.support.owners import (
     Owned,
     image_of,
     owner_of,
+    robots_of_both_kinds,
     state_of,
 )
 from tiniscript.link.authority import FREE, OF_ANOTHER, YOUR_OWN, RobotKey
@@ -29,6 +30,7 @@ from tiniscript.link.messages import (
 )
 from tiniscript.link.outcomes import UNKEPT
 
+__all__ = ("robots_of_both_kinds",)  # a fixture
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
 

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import argparse
 import random
 import sys
 from collections import Counter
@@ -165,7 +166,7 @@ def test_a_relay_cannot_say_that_it_worked() -> None:
             session.receive(encoded(forged[0]._replace(payload=lost)), table.robot.now_ms)
         if request.outcome is not None:
             break
-    assert request.outcome and request.outcome.status == LOST
+    assert request.outcome and request.outcome.status in (LOST, STATUSES["NOT_OWNER"])
 
 
 def test_a_stop_is_confirmed_with_the_seal_and_by_nothing_else() -> None:
@@ -343,13 +344,17 @@ def _stop(chance: random.Random) -> bytes:
     return wire_of(Frame(BY_NAME["STOP"].number, chance.randrange(256), 0, payload, is_sealed=True))
 
 
-def main(frames: int, seed: int) -> int:
-    found = attacked(frames, seed)
+def main() -> int:
+    parser = argparse.ArgumentParser(description="Write into the line of a robot's owner for long.")
+    parser.add_argument("frames", type=int, nargs="?", default=100_000)
+    parser.add_argument("--seed", type=int, default=1)
+    options = parser.parse_args()
+    found = attacked(options.frames, options.seed)
     kinds = ", ".join(f"{n} {how}" for how, n in sorted(found.items()) if how != "accepted")
-    print(f"{frames} frames of a thief ({kinds}): {found['accepted']} accepted (seed {seed})")
+    print(f"{options.frames} frames of a thief ({kinds}): {found['accepted']} accepted "
+          f"(seed {options.seed})")  # fmt: skip
     return int(found["accepted"] != 0)
 
 
 if __name__ == "__main__":
-    numbers = [int(each) for each in sys.argv[1:] if each.isdigit()]
-    sys.exit(main(numbers[0] if numbers else 100_000, numbers[1] if numbers[1:] else 1))
+    sys.exit(main())

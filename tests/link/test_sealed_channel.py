@@ -7,8 +7,8 @@ another order or to the other end, frames without a seal or with a wrong one, an
 
 from __future__ import annotations
 
+import argparse
 import random
-import re
 import sys
 import time
 from collections import Counter
@@ -145,17 +145,20 @@ def test_a_stop_works_whatever_is_wrong_with_its_seal() -> None:
         world.run(None, 300)
 
 
-def main(uploads: int, seed: int) -> int:
+def main() -> int:
+    parser = argparse.ArgumentParser(description="Play a sealed line with a stranger for long.")
+    parser.add_argument("uploads", type=int, nargs="?", default=10_000)
+    parser.add_argument("--seed", type=int, default=1)
+    options = parser.parse_args()
     begun = time.monotonic()
     found: Counter[str] = Counter()
-    for number in range(seed, seed + uploads):
+    for number in range(options.seed, options.seed + options.uploads):
         found[one_upload(cpp_link(), number, SealedWorld)] += 1
     seconds = time.monotonic() - begun
-    print(f"{uploads} sealed uploads beside a stranger, {dict(found)}, 0 false, 0 double: "
-          f"{seconds:.0f} s")  # fmt: skip
+    print(f"{options.uploads} sealed uploads beside a stranger, {dict(found)}, "
+          f"0 false, 0 double: {seconds:.0f} s")  # fmt: skip
     return 0
 
 
 if __name__ == "__main__":
-    numbers = [int(each) for each in sys.argv[1:] if re.fullmatch(r"\d+", each)]
-    sys.exit(main(numbers[0] if numbers else 10_000, numbers[1] if numbers[1:] else 1))
+    sys.exit(main())

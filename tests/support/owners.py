@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import pytest
+
 from tests.machines.host_firmware import EMPTY, HostFirmware
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import Image, unpack
@@ -47,13 +49,25 @@ class Keys:
         self.found.remove(key)
 
 
+WITHOUT_SEALS = ("tiniscript_without_seals",)
+
+
+@pytest.fixture(autouse=True, params=[(), WITHOUT_SEALS], ids=["seals", "no seals"])
+def robots_of_both_kinds(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The tests of a file that imports this are done with robots that seal, and with others."""
+    monkeypatch.setattr(Owned, "DEFINES", request.param)
+
+
 class Owned:
     """A robot and one computer after the other."""
 
+    DEFINES: tuple[str, ...] = ()
+
     def __init__(
-        self, memory: bytes = EMPTY, seed: int = 0x12345678, defines: tuple[str, ...] = ()
+        self, memory: bytes = EMPTY, seed: int = 0x12345678, defines: tuple[str, ...] | None = None
     ) -> None:
-        self.robot = HostFirmware(KIT, memory, seed=seed, defines=defines)
+        given = self.DEFINES if defines is None else defines
+        self.robot = HostFirmware(KIT, memory, seed=seed, defines=given)
         self.robot.wait(300)
 
     def session(self, keys: Keys | None = None, nonce: int = 1) -> Session:

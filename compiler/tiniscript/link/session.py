@@ -244,8 +244,10 @@ class Session(SessionRequests):
         pending.shown += 1
         self._sealing.seal = None
         self._transmission.end()
-        if pending.shown > MOST_SHOWN:  # with NOT_OWNER its exchange would begin anew
-            self._advance(Reply(LOST if frame.number >= FIRST_ACTING else NOT_OWNER), now_ms)
+        if pending.shown > MOST_SHOWN:  # told to its exchange, that might do it again
+            pending.exchange.close()
+            pending.outcome = Reply(NOT_OWNER)
+            self._pending = None
             return
         self._pending = PendingExchange(self._handshake.show_keys(), is_own=pending.is_own)
         self._pending.resumes = Interrupted(pending, frame)
