@@ -16,6 +16,7 @@ namespace tiniscript {
 constexpr uint8_t kSealZeroAt = kPayloadAt;
 constexpr uint8_t kCounterAt = kSealZeroAt + 1;
 constexpr uint8_t kSealedPayloadAt = kCounterAt + sizeof(uint32_t);
+constexpr uint32_t kLastCounter = 0xffffffff;
 
 // What a key is derived from, besides the key of the robot.
 struct SealOrigin {
@@ -32,7 +33,7 @@ class Seal {
   bool is_set() const { return is_set_; }
 
   // Whether another frame may be sealed: a counter is never used twice.
-  bool may_close() const { return is_set_ && sent_ != UINT32_MAX; }
+  bool may_close() const { return is_set_ && sent_ != kLastCounter; }
 
   void begin(const uint8_t* key, const SealOrigin& origin);
 
