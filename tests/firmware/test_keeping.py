@@ -171,6 +171,28 @@ def test_a_worn_memory_is_told() -> None:
         raise AssertionError("a byte that keeps what it is was taken for one that does not")
 
 
+def test_a_name_that_fits_a_worn_byte_is_kept_after_one_that_did_not() -> None:
+    """The byte of the first letter stays an O. What did not fit leaves nothing behind."""
+    robot, session = switched_on(), computer()
+    for name in (b"OLD", b"NEW"):
+        assert robot.until(session, session.name(name)) == OK
+    robot.wear_out(4 + 4 + 8)  # of the first slot, which is the next one
+    assert robot.until(session, session.name(b"XYZ")) == STATUSES["NOT_KEPT"]
+    assert name_after_power_off(robot) == "NEW"
+    assert robot.until(session, session.name(b"ONE")) == OK
+    assert name_after_power_off(robot) == "ONE"
+
+
+def test_what_a_worn_last_byte_has_spoilt_is_empty() -> None:
+    robot, session = switched_on(), computer()
+    for least in (1, 2):
+        assert robot.until(session, session.trim(bytes((0, 0, least)))) == OK
+    robot.wear_out(4 + EACH - 1)
+    assert robot.until(session, session.trim(bytes((0, 0, 3)))) == STATUSES["NOT_KEPT"]
+    robot.talk(session, 100)
+    assert robot.memory()[4:6] == b"\xff\xff", "the generation and its mark"
+
+
 # -- the supply -----------------------------------------------------------------------------------
 
 

@@ -55,7 +55,9 @@ _REASONS: dict[str, tuple[tuple[str, str], ...]] = {
         ("length_ = 0; at_ = 0;",
          "length_ = 0; at_ = 1;"),
     ),
-    "it is the last case": (
+    "the next case does nothing, and is the last one": (
+        ("value = generation_ ^ kMarkOf; break;",
+         "value = generation_ ^ kMarkOf; ;"),
         ("case WriteStep::kEmpty: break;",
          "case WriteStep::kEmpty: ;"),
     ),
