@@ -176,7 +176,7 @@ def test_a_name_that_fits_a_worn_byte_is_kept_after_one_that_did_not() -> None:
     robot, session = switched_on(), computer()
     for name in (b"OLD", b"NEW"):
         assert robot.until(session, session.name(name)) == OK
-    robot.wear_out(4 + 4 + 8)  # of the first slot, which is the next one
+    robot.wear_out(robot.memory().index(b"OLD"))  # the next one is written there
     assert robot.until(session, session.name(b"XYZ")) == STATUSES["NOT_KEPT"]
     assert name_after_power_off(robot) == "NEW"
     assert robot.until(session, session.name(b"ONE")) == OK
@@ -185,12 +185,13 @@ def test_a_name_that_fits_a_worn_byte_is_kept_after_one_that_did_not() -> None:
 
 def test_what_a_worn_last_byte_has_spoilt_is_empty() -> None:
     robot, session = switched_on(), computer()
-    for least in (1, 2):
-        assert robot.until(session, session.trim(bytes((0, 0, least)))) == OK
-    robot.wear_out(4 + EACH - 1)
+    for name in (b"OLD", b"NEW"):
+        assert robot.until(session, session.name(name)) == OK
+    slot = robot.memory().index(b"OLD") - 4 - 8
+    robot.wear_out(slot + EACH - 1)
     assert robot.until(session, session.trim(bytes((0, 0, 3)))) == STATUSES["NOT_KEPT"]
-    robot.talk(session, 100)
-    assert robot.memory()[4:6] == b"\xff\xff", "the generation and its mark"
+    robot.talk(session, 200)
+    assert robot.memory()[slot : slot + 2] == b"\xff\xff", "the generation and its mark"
 
 
 # -- the supply -----------------------------------------------------------------------------------
