@@ -182,6 +182,7 @@ def test_the_code_is_verified_before_its_devices() -> None:
         loaded(pack("SI", 1, b"\xff"), KIT)
     verdict = check(unpack(compile_text("SHOW(1 + TIME)", KIT).image), KIT)
     assert verdict.stack_values == 2 and verdict.uses == ()
+    assert check(unpack(compile_text("S", KIT).image), KIT).stack_values == 0
 
 
 def test_the_polynomial_is_primitive() -> None:

@@ -79,6 +79,17 @@ def test_a_name_cannot_end_its_line() -> None:
     assert answer.encode("latin-1").startswith(b"// ??S;?[2J\xc3\xb1??, kit ")
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_a_robot_without_a_name_says_its_number(seed: int) -> None:
+    robot, session = HostFirmware(KIT, EMPTY, seed=0x9F0FFE8D + seed), computer()
+    robot.wait(200)
+    robot.until(session, session.hello())
+    assert session.robot and not session.robot.name
+    robot.wait(4000)
+    (answer,) = typed(robot, "PING|CHECK_CONNECTION\n")
+    assert answer.startswith(f"// {session.robot.id:08x}, kit {KIT.fingerprint:04x}, ")
+
+
 @pytest.mark.parametrize("end", ["\n", "\r", "\r\n"])
 def test_the_obstacle_program_in_lines(end: str) -> None:
     robot = switched_on()

@@ -55,6 +55,10 @@ _REASONS: dict[str, tuple[tuple[str, str], ...]] = {
         ("length_ = 0; at_ = 0;",
          "length_ = 0; at_ = 1;"),
     ),
+    "a file that is missing is an OSError, which is passed over": (
+        ("_path(port).unlink(missing_ok=True)",
+         "_path(port).unlink(missing_ok=False)"),
+    ),
     "the next case does nothing, and is the last one": (
         ("value = generation_ ^ kMarkOf; break;",
          "value = generation_ ^ kMarkOf; ;"),
