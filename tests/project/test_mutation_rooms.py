@@ -85,7 +85,7 @@ def test_what_no_test_notices_is_unnoticed(own_room: Path) -> None:
 def test_a_room_whose_tests_fail_as_it_is_is_told(own_room: Path) -> None:
     (own_room / "where.py").write_text(LOW.replace("4", "5"), encoding="utf-8")
     with pytest.raises(ValueError, match="test_low"):
-        rooms.survivors(OWN, [])
+        rooms.survivors(OWN, list(rooms.changes_of(OWN, own_room)))
 
 
 def test_what_does_not_end_is_noticed(own_room: Path, monkeypatch: pytest.MonkeyPatch) -> None:
