@@ -25,6 +25,7 @@ WRITERS = [
     (("compile", "-e", PROGRAM, "-o", "a.bin", "--map"), "--map"),
     (("wiring", "-o"), "-o"),
     (("board", "tinibot", "-o"), "-o"),
+    (("show", "--arduino", "-e", PROGRAM, "-o"), "-o"),
 ]
 
 

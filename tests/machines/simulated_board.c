@@ -6,6 +6,8 @@
  *   watch ADDRESS                    a byte of data memory
  *   pin CYCLE PORT BIT LEVEL         what a wire from outside does
  *   adc CHANNEL MILLIVOLTS
+ *   next CHANNEL MILLIVOLTS          what a conversion of that channel finds: every line is one
+ *   uart                             prints `CYCLE UART BYTE` for what the chip sends
  *   ping PORT BIT PORT BIT DELAY WIDTH AT SPAN
  *       an HC-SR04: its trigger and its echo; the echo of the next ping begins so many cycles
  *       after the trigger falls, and is so long. Every line is a ping of that trigger; its last one
@@ -22,6 +24,7 @@
  */
 #include <simavr/avr_adc.h>
 #include <simavr/avr_ioport.h>
+#include <simavr/avr_uart.h>
 #include <simavr/sim_avr.h>
 #include <simavr/sim_elf.h>
 #include <stdio.h>
@@ -72,6 +75,11 @@ static struct {
   struct wire wire;
 } sweep;
 static int is_copy;
+
+static struct conversion {
+  int channel, millivolts, is_done;
+} conversions[MOST];
+static int conversion_count;
 
 static unsigned long long since, quiet; /* how long interrupts are off */
 
@@ -166,6 +174,37 @@ static void add_ping(struct ping ping) {
   pings[ping_count++] = ping;
 }
 
+/* A conversion begins: its channel has the next of its voltages, the last one for good. */
+static void converts(avr_irq_t* irq, uint32_t value, void* param) {
+  const union {
+    avr_adc_mux_t mux;
+    uint32_t v;
+  } asked = {.v = value};
+  struct conversion* found = NULL;
+  (void)irq, (void)param;
+  for (struct conversion* each = conversions; each < conversions + conversion_count; each++) {
+    if (each->channel != asked.mux.src) continue;
+    found = each;
+    if (!each->is_done) break;
+  }
+  if (!found) return;
+  found->is_done = 1;
+  avr_raise_irq(avr_io_getirq(avr, AVR_IOCTL_ADC_GETIRQ, ADC_IRQ_ADC0 + found->channel),
+                found->millivolts);
+}
+
+static void sends(avr_irq_t* irq, uint32_t value, void* param) {
+  (void)irq, (void)param;
+  printf("%llu UART %u\n", (unsigned long long)avr->cycle, value & 0xff);
+}
+
+static void listen_to_uart(void) {
+  uint32_t flags = 0;
+  avr_ioctl(avr, AVR_IOCTL_UART_SET_FLAGS('0'), &flags);
+  avr_irq_register_notify(avr_io_getirq(avr, AVR_IOCTL_UART_GETIRQ('0'), UART_IRQ_OUTPUT), sends,
+                          NULL);
+}
+
 static void read_script(void) {
   char line[128], port, second;
   unsigned long long cycle, width, at, span;
@@ -177,6 +216,10 @@ static void read_script(void) {
       changes[change_count++] = (struct change){cycle, {port, bit}, level};
     } else if (sscanf(line, "adc %d %d", &bit, &level) == 2) {
       avr_raise_irq(avr_io_getirq(avr, AVR_IOCTL_ADC_GETIRQ, ADC_IRQ_ADC0 + bit), level);
+    } else if (sscanf(line, "next %d %d", &bit, &level) == 2) {
+      conversions[conversion_count++] = (struct conversion){bit, level, 0};
+    } else if (!strcmp(line, "uart\n")) {
+      listen_to_uart();
     } else if (sscanf(line, "ping %c %d %c %d %llu %llu %llu %llu", &port, &bit, &second, &other,
                       &cycle, &width, &at, &span) == 8) {
       add_ping((struct ping){{port, bit}, {second, other}, cycle, width, at, span, 0, 0, 0});
@@ -185,7 +228,9 @@ static void read_script(void) {
       fprintf(stderr, "not understood: %s", line);
       exit(2);
     }
-    if (watch_count == MOST || change_count == MOST || ping_count == MOST) exit(2);
+    if (watch_count == MOST || change_count == MOST || ping_count == MOST ||
+        conversion_count == MOST)
+      exit(2);
   }
 }
 
@@ -245,6 +290,8 @@ int main(int argc, char** argv) {
   firmware.vcc = firmware.avcc = firmware.aref = 5000;
   avr_load_firmware(avr, &firmware);
   avr->sleep = no_sleep;
+  avr_irq_register_notify(avr_io_getirq(avr, AVR_IOCTL_ADC_GETIRQ, ADC_IRQ_OUT_TRIGGER), converts,
+                          NULL);
   read_script();
   run_until(end);
   printf("%llu END %llu\n", (unsigned long long)avr->cycle, quiet);

@@ -33,6 +33,7 @@ UPSTREAM: dict[str, set[str]] = {
     "vm": {"fixed_point", "kit", "bytecode"},
     "robots": SHARED,
     "text": {*TEXT, "bytecode", "syntax", "semantics", "codegen", "robots"},
+    "sketch": {*TEXT, "syntax", "semantics", "robots"},  # of the syntax its comments
     "wiring": {"fixed_point", "kit", "robots"},
     "flash": {"files", "robots"},
     "link": {"files", "printable", "bytecode"},

@@ -109,8 +109,10 @@ class Expressions:
             if op in ARITHMETIC or self.is_exact:
                 self.use(op)
         # Brackets that C++ does not need stand where it warns without them.
-        low = binds + (op in COMPARED or op == "OR")
-        made_text = f"{_inside(left, low)} {sign} {_inside(right, binds + 1)}"
+        low, high = (8, 8) if op in COMPARED else (binds, binds + 1)
+        if op == "OR":
+            low, high = (6 if left.binds == _OPERATORS["AND"][1] else binds), 6
+        made_text = f"{_inside(left, low)} {sign} {_inside(right, high)}"
         if first:
             return _Operand(f"({kept}{made_text})", _PRIMARY, is_random=True)
         return _Operand(made_text, binds, is_random=is_random)

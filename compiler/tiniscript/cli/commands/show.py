@@ -1,11 +1,14 @@
-"""`tsc show`: the listing of a program."""
+"""`tsc show`: the listing of a program, or the program as an Arduino sketch."""
 
 from __future__ import annotations
 
+import sys
 from argparse import Namespace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tiniscript.cli import images, inputs
+from tiniscript.cli import images, inputs, outputs
+from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts.common import text
 
 if TYPE_CHECKING:
@@ -15,6 +18,10 @@ if TYPE_CHECKING:
 def run(options: Namespace, language: str) -> int:
     given = inputs.program(options)
     robot = inputs.robot(options, language)
+    if options.arduino:
+        return _sketch(options, given, robot, language)
+    if options.output is not None:
+        raise CommandError(2, "output_needs_arduino", file=inputs.shown(options.output))
     if given.is_image and options.robot is None:
         robot = images.robot_for(given, robot)
     ready = images.ready(given, robot, language)
@@ -24,6 +31,35 @@ def run(options: Namespace, language: str) -> int:
         print_json(ready, robot)
     else:
         print_listing(ready, robot, inputs.shown(given.name), language)
+    return 0
+
+
+def _sketch(options: Namespace, given: inputs.Input, robot: Robot, language: str) -> int:
+    from tiniscript.robots import firmware
+
+    if options.json:
+        raise CommandError(2, "sketch_or_json")
+    if given.is_image:
+        raise CommandError(2, "sketch_needs_text", file=inputs.shown(given.name))
+    if not firmware.fits(robot):
+        known = ", ".join(firmware.BOARDS)
+        raise CommandError(2, "sketch_no_board", chip=robot.board.chip, known=known)
+    compiled = inputs.compiled(given, robot, is_strict=False)
+    outputs.print_diagnostics(compiled, language)
+    if not compiled.is_right:
+        return 1
+    from tiniscript.sketch.writing import sketch_of
+
+    assert compiled.program is not None
+    sketch = sketch_of(compiled.source, compiled.program, robot, language).encode()
+    if options.output in (None, "-"):
+        sys.stdout.buffer.write(sketch)
+        sys.stdout.flush()
+        return 0
+    outputs.write(Path(options.output), sketch, "unwritable")
+    print(text("sketch", language).format(
+        file=inputs.shown(options.output), robot=inputs.shown(robot.labels[language]["robot"])
+    ))  # fmt: skip
     return 0
 
 

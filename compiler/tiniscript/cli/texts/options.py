@@ -129,6 +129,8 @@ OPTIONS: tuple[Option, ...] = (
     Option("-o", "board", ("where to; standard output if it is not given", "a dónde; la salida estándar si no se da"), IMAGE, A_FILE, "output"),
     Option("-o", "fetch", ("writes its image instead", "escribe su imagen en vez de eso"), IMAGE, A_FILE, "output"),
     Option("-o", "lesson", ("with sheet: where the page goes; - is standard output", "con sheet: a dónde va la hoja; - es la salida estándar"), IMAGE, ("PAGE.html", "PÁGINA.html"), "output"),
+    Option("--arduino", "show", ("prints the program as a commented Arduino sketch for the robot's pins", "imprime el programa como un sketch de Arduino comentado, para los pines del robot")),
+    Option("-o", "show", ("with --arduino: where the sketch goes; - is standard output", "con --arduino: a dónde va el sketch; - es la salida estándar"), IMAGE, ("SKETCH.ino", "SKETCH.ino"), "output"),
     Option("--map", "compile", ("writes which instruction comes from which line, as JSON", "escribe qué instrucción viene de qué línea, como JSON"), MAP, A_FILE),
     Option("--check", "fmt", ("changes nothing; exit code 1 where something would change", "no cambia nada; código de salida 1 si algo cambiaría")),
     Option("--fix", "check", ("makes the repairs that are sure, shows what it changed, and writes the file", "hace las correcciones seguras, muestra qué cambió y escribe el archivo")),

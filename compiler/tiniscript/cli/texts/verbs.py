@@ -70,9 +70,11 @@ VERBS: dict[str, Verb] = {
     ),
     "show": Verb(
         PROGRAMS, ("show prog.bin", "show prog.bin"),
-        ("list the instructions of a program", "lista las instrucciones de un programa"),
+        ("list its instructions; --arduino: as a sketch", "lista sus instrucciones; --arduino: como sketch"),
         ("Lists the instructions of a program (image or text): offsets, bytes, names, and source lines where they are known.",
          "Lista las instrucciones de un programa (imagen o texto): posiciones, bytes, nombres, y las líneas del texto si se conocen."),
+        ends=("With `--arduino` it prints the text as a commented Arduino sketch, each line with its TiniScript beside it: the step to the next language. The sketch builds in the Arduino IDE, and does on the board what the program does; its first lines name the limits.",
+              "Con `--arduino` imprime el texto como un sketch de Arduino comentado, cada línea con su TiniScript al lado: el paso al siguiente lenguaje. El sketch se compila en el Arduino IDE y hace en la placa lo que hace el programa; sus primeras líneas dicen los límites."),
     ),
     "fmt": Verb(
         PROGRAMS, ("fmt prog.ts", "fmt prog.ts"),

@@ -1,0 +1,194 @@
+"""An Arduino sketch of `tsc show --arduino` on a simulated Uno, Nano or Mega.
+
+Builds it with avr-g++ and the whole of Debian's Arduino core, and says what its pins and its
+UART did: signals that have a value from a time on, in milliseconds.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import tempfile
+from functools import lru_cache
+from pathlib import Path
+from typing import NamedTuple
+
+from tests.machines import board as boards
+from tests.machines.board import ARDUINO, CONNECTIONS, CONTROLS, HERTZ, MS, PORTS, run
+from tiniscript.robots.boards import CHIPS
+from tiniscript.robots.firmware import BRIDGES
+from tiniscript.robots.ports import AVRS
+from tiniscript.robots.profile import Robot
+
+FLAGS = ("-Os", "-flto", "-ffunction-sections", "-fdata-sections", "-DF_CPU=16000000L",
+         "-DARDUINO=10808", "-DDECIMAL_DIG=__DECIMAL_DIG__")  # fmt: skip
+CPP = ("-std=gnu++11", "-fno-exceptions", "-fno-threadsafe-statics")
+TIMER_2 = {"mask": 0x70, "control": 0xB1, "top": 0xB3}
+DIVIDES = (0, 1, 8, 32, 64, 128, 256, 1024)
+
+Signal = list[tuple[float, tuple[int, ...]]]  # values, each from a time on
+
+
+class Ran(NamedTuple):
+    """What a sketch did."""
+
+    motors: Signal  # left and right, in percent
+    tones: Signal  # hertz, or 0
+    pins: dict[int, Signal]  # 0 or 1
+    text: str
+    sent_ms: list[float]  # when each byte was on its way
+
+
+@lru_cache(maxsize=1)
+def _folder() -> tempfile.TemporaryDirectory[str]:
+    return tempfile.TemporaryDirectory(prefix="tiniscript-sketch-")
+
+
+def _flags(board: str) -> tuple[str, ...]:
+    return (
+        f"-mmcu={boards.CHIPS[board]}",
+        *FLAGS,
+        f"-I{ARDUINO / 'cores' / 'arduino'}",
+        f"-I{ARDUINO / 'variants' / boards.VARIANTS[board]}",
+    )
+
+
+@lru_cache(maxsize=4)
+def core(board: str) -> Path:
+    """Return the library of the whole Arduino core for a board."""
+    folder = Path(_folder().name) / board
+    folder.mkdir(exist_ok=True)
+    sources = [*(ARDUINO / "cores" / "arduino").glob("*.[cS]*")]
+    for source in sorted(sources):
+        is_cpp = source.suffix == ".cpp"
+        compiler = ("avr-g++", *CPP) if is_cpp else ("avr-gcc", "-std=gnu11")
+        if source.suffix == ".S":  # which has no body for -flto
+            compiler = ("avr-gcc", "-x", "assembler-with-cpp")
+        run(*compiler, *_flags(board), "-w", "-c", source, "-o", folder / f"{source.name}.o")
+    library = folder / "core.a"
+    run("avr-gcc-ar", "rcs", library, *sorted(folder.glob("*.o")))
+    return library
+
+
+def built(sketch: str, board: str) -> Path:
+    """Return the ELF file of a sketch, which must compile without a warning."""
+    with tempfile.NamedTemporaryFile(
+        "w", suffix=".cpp", dir=_folder().name, encoding="utf-8", delete=False
+    ) as file:
+        file.write(sketch)
+    elf = Path(file.name).with_suffix(".elf")
+    run("avr-g++", *_flags(board), *CPP, "-Wall", "-Wextra", "-Werror", "-Wl,--gc-sections",
+        file.name, core(board), "-o", elf)  # fmt: skip
+    return elf
+
+
+class SketchBoard:
+    """A sketch on the board of a robot, and what comes to it from outside; `ran` runs it."""
+
+    def __init__(self, robot: Robot, sketch: str) -> None:
+        self.robot = robot
+        self.board = robot.board.chip
+        self.avr = AVRS[self.board]
+        self.elf = built(sketch, self.board)
+        self.script = ["uart"]
+        self.events: list[tuple[int, int, bool]] = []
+        self.level(0, robot.board.start_button, True)
+
+    def level(self, ms: float, pin: int, is_high: bool) -> None:
+        self.events.append((round(ms * MS), pin, is_high))
+
+    def count(self, pin: int, counts: list[int]) -> None:
+        """Say what conversions of a pin find, the last one for good."""
+        channel = pin - (CHIPS[self.board].first_analog or 0)
+        self.script += [f"next {channel} {-(-count * 5000 // 1023)}" for count in counts]
+
+    def echoes(self, trigger: int, echo: int, widths_us: list[float]) -> None:
+        a, b = self.avr.bits[trigger], self.avr.bits[echo]
+        for width_us in widths_us:
+            self.script.append(
+                f"ping {a.port.upper()} {a.bit} {b.port.upper()} {b.bit} "
+                f"{460 * 16} {round(width_us * 16)} 0 0"
+            )
+
+    def ran(self, ms: float) -> Ran:
+        devices = [each.pins["pin"] for each in self.robot.board.actuators]
+        pins = {*self.robot.board.motors.pins.values(), *devices}
+        watched = set(TIMER_2.values())
+        for pin in pins:
+            watched.add(PORTS[self.avr.bits[pin].port])
+            if pin in self.avr.compares:
+                timer, channel = self.avr.compares[pin]
+                watched |= {CONTROLS[timer], self._compare(timer, channel)}
+        lines = [f"watch {address}" for address in sorted(watched)]
+        for cycle, pin, is_high in sorted(self.events, key=lambda event: event[0]):
+            port, bit = self.avr.bits[pin]
+            lines.append(f"pin {cycle} {port.upper()} {bit} {int(is_high)}")
+        done = subprocess.run(
+            [boards.simulator(), self.elf, boards.CHIPS[self.board], str(round(ms * MS))],
+            input="\n".join([*lines, *self.script]) + "\n",
+            capture_output=True,
+            text=True,
+            timeout=300,
+        )
+        assert done.returncode == 0, done.stderr
+        return self._seen(done.stdout, devices)
+
+    @staticmethod
+    def _compare(timer: int, channel: str) -> int:
+        number = "abc".index(channel)
+        return CONTROLS[timer] + (3 + number if timer in (0, 2) else 8 + 2 * number)
+
+    def _seen(self, printed: str, devices: list[int]) -> Ran:
+        now: dict[int, int] = {}
+        found = Ran([], [], {pin: [] for pin in devices}, "", [])
+        letters = bytearray()
+        for line in printed.splitlines():
+            words = line.split()
+            if not words or not words[0].isdigit():
+                continue
+            if words[1] == "UART":
+                letters.append(int(words[2]))
+                found.sent_ms.append(int(words[0]) / MS)
+            elif words[1] != "END":
+                now[int(words[1])] = int(words[2])
+                ms = int(words[0]) / MS
+                _note(found.motors, ms, self._motors(now))
+                _note(found.tones, ms, (self._hertz(now),))
+                for pin in devices:
+                    _note(found.pins[pin], ms, (self._level(now, pin),))
+        return found._replace(text=letters.decode("ascii"))
+
+    def _level(self, now: dict[int, int], pin: int) -> int:
+        """Return 0 to 255: what a pin does on the average."""
+        port, bit = self.avr.bits[pin]
+        if pin in self.avr.compares:
+            timer, channel = self.avr.compares[pin]
+            if now.get(CONTROLS[timer], 0) & CONNECTIONS[channel]:
+                return now.get(self._compare(timer, channel), 0)
+        return 255 if now.get(PORTS[port], 0) >> bit & 1 else 0
+
+    def _motors(self, now: dict[int, int]) -> tuple[int, ...]:
+        driver, pins, _ = self.robot.board.motors
+        powers = []
+        for side in ("left", "right"):
+            if driver == "servos":
+                powers.append(0)
+                continue
+            forward = self._level(now, pins[f"{side}_forward"])
+            backward = self._level(now, pins[f"{side}_backward"])
+            if driver in BRIDGES:
+                level = self._level(now, pins[f"{side}_pwm"])
+                forward, backward = level * (forward > 0), level * (backward > 0)
+            powers.append(round((forward - backward) / 2.55))
+        return tuple(powers)
+
+    @staticmethod
+    def _hertz(now: dict[int, int]) -> int:
+        if not now.get(TIMER_2["mask"], 0) & 2:
+            return 0
+        divides = DIVIDES[now.get(TIMER_2["control"], 0) & 7]
+        return HERTZ // (2 * divides * (now.get(TIMER_2["top"], 0) + 1)) if divides else 0
+
+
+def _note(signal: Signal, ms: float, value: tuple[int, ...]) -> None:
+    if not signal or signal[-1][1] != value:
+        signal.append((ms, value))

@@ -1,0 +1,286 @@
+"""Whether a sketch on a simulated board does what a trace says: the same, at the same times.
+
+A trace says what motors, buzzer, actuators and SHOW get, and when. Both are signals; what is
+shorter than the tolerance may be missing in the other.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+from tests.machines.sketch_board import Ran, Signal, SketchBoard
+from tests.oracle import interpreter, programs
+from tests.oracle.interpreter import Kit as OracleKit
+from tests.robots.test_robots import TEXTS
+from tests.support.kits import KITS
+from tiniscript import compile_text
+from tiniscript.fixed_point import ONE
+from tiniscript.robots.profile import Robot
+from tiniscript.robots.reader import read
+from tiniscript.sketch.writing import sketch_of
+
+PRESS_MS, RELEASE_MS, UP_MS = 20.0, 60.0, 90.0  # the button of a program that begins with SB
+NEAR_MS = 6.0  # how late or early something may be
+MAX_MS, MAX_STEPS = 3_000, 3_000
+PLAIN_MS = 250  # of SHOW that may be under way at the end
+WIDE = """
+[[kit.sensors]]
+name = "TEMPERATURE"
+kind = "number"
+range = [-40, 125]
+
+[[kit.sensors]]
+name = "TOUCH"
+kind = "yes/no"
+
+[[kit.sensors]]
+name = "LINE"
+kind = "yes/no"
+
+[[kit.actuators]]
+name = "GRIPPER"
+kind = "number"
+range = [0, 180]
+
+[[kit.actuators]]
+name = "LIFT"
+kind = "number"
+range = [-90, 90]
+
+[[kit.actuators]]
+name = "LED"
+kind = "yes/no"
+
+[board.sensors.TEMPERATURE]
+driver = "analog"
+pin = "A2"
+zero = -50
+full = 450
+
+[board.sensors.TOUCH]
+driver = "digital"
+pin = "A3"
+pull_up = true
+yes_is_low = true
+
+[board.sensors.LINE]
+driver = "threshold"
+pin = "A4"
+threshold = 600
+
+[board.actuators.GRIPPER]
+driver = "servo"
+pin = 12
+low_us = 600
+high_us = 2400
+
+[board.actuators.LIFT]
+driver = "servo"
+pin = 13
+
+[board.actuators.LED]
+driver = "digital"
+pin = "A5"
+"""
+
+
+def with_wide_kit() -> Robot:
+    """The robot tinibot with all devices of the random programs, and a quick line for SHOW."""
+    text = TEXTS["tinibot"].replace("baud = 9600", "baud = 115200")
+    for line in ("status_led = 13", "bluetooth_state = 12"):
+        assert line in text
+        text = text.replace(line, "")
+    head, _, body = text.partition("[body]")
+    labels = "".join(f'{name} = "{name}"\n' for name in WIDE_NAMES)
+    body = body.replace("[labels.es]", labels + "[labels.es]") + labels
+    kit, _, board = WIDE.partition("[board.")
+    first, _, rest = head.partition("[board]")
+    return read(f"{first}{kit}[board]{rest}[board.{board}[body]{body}", "wide")
+
+
+WIDE_NAMES = ("TEMPERATURE", "TOUCH", "LINE", "GRIPPER", "LIFT", "LED")
+
+
+class Wanted(NamedTuple):
+    """What a trace says, as signals."""
+
+    motors: Signal
+    tones: Signal
+    settings: dict[str, Signal]
+    lines: list[tuple[float, str]]
+    end_ms: float
+    is_cut: bool
+
+
+def wanted(trace: str) -> Wanted:
+    found = Wanted([(0.0, (0, 0))], [(0.0, (0,))], {}, [], 0.0, False)
+    for line in trace.splitlines():
+        ms, what, *words = line.split()
+        at = float(ms)
+        if what == "MOTORS":
+            found.motors.append((at, (int(words[0]), int(words[1]))))
+        elif what == "BEEP" and int(words[1]):
+            found.tones.append((at, (int(words[0]),)))
+            found.tones.append((at + int(words[1]), (0,)))
+        elif what == "SET":
+            value = {"TRUE": 1, "FALSE": 0}.get(words[1]) if words[1].isalpha() else int(words[1])
+            assert value is not None
+            found.settings.setdefault(words[0], [(0.0, (0,))]).append((at, (value,)))
+        elif what == "SHOW":
+            found.lines.append((at, words[0]))
+        elif what == "FAULT":
+            found.lines.append((at, line.split(" ", 1)[1]))
+        found = found._replace(end_ms=at, is_cut=what == "LIMIT")
+    if not found.is_cut:
+        found.motors.append((found.end_ms, (0, 0)))
+    return found
+
+
+def spans(signal: Signal, end: float) -> list[tuple[float, float, tuple[int, ...]]]:
+    ends = [at for at, _ in signal[1:]] + [end]
+    return [
+        (at, until, value)
+        for (at, value), until in zip(signal, ends, strict=True)
+        if at < until and at < end
+    ]
+
+
+def same(want: Signal, got: Signal, end: float, near: float, apart: float = 0) -> list[str]:
+    """Return how two signals differ; what lasts less than twice `near` may be missing."""
+
+    def agree(a: tuple[int, ...], b: tuple[int, ...]) -> bool:
+        return all(abs(x - y) <= apart * max(abs(x), abs(y)) for x, y in zip(a, b, strict=True))
+
+    wrong = []
+    ours, theirs = spans(want, end), spans(got, end)
+    for at, until, value in ours:
+        inner = [v for a, u, v in theirs if a < until - near and u > at + near]
+        if until - at > 2 * near and not all(agree(value, v) for v in inner):
+            wrong.append(f"{value} from {at} to {until}, but {inner[:4]}")
+    for at, until, value in theirs:
+        around = [v for a, u, v in ours if a < until + near and u > at - near]
+        if until - at > 2 * near and not any(agree(value, v) for v in around):
+            wrong.append(f"{value} from {at:.1f} to {until:.1f} is not in the trace")
+    return wrong
+
+
+def shifted(signal: Signal, by: float, first: tuple[int, ...]) -> Signal:
+    """Return a signal from the start of the program on."""
+    return [(0.0, first), *((max(0.0, at - by), value) for at, value in signal)]
+
+
+def differences(
+    trace: str, ran: Ran, robot: Robot, start_ms: float, near: float = NEAR_MS
+) -> list[str]:
+    """Return where a sketch's run is not what the trace says."""
+    want = wanted(trace)
+    end = want.end_ms
+    motors = [*want.motors]
+    wrong = same(motors, shifted(ran.motors, start_ms, (0, 0)), end, near)
+    wrong += same(want.tones, shifted(ran.tones, start_ms, (0,)), end, near, 0.02)
+    for device, wiring in zip(robot.kit.actuators, robot.board.actuators, strict=True):
+        signal = shifted(ran.pins[wiring.pins["pin"]], start_ms, (0,))
+        asked = want.settings.get(device.name, [(0.0, (0,))])
+        if wiring.driver == "digital":
+            low = wiring.settings["yes_is_low"]
+            levels = [(at, ((value[0] ^ low) * 255,)) for at, value in asked]
+            wrong += same(levels, signal, end, near)
+        elif wiring.driver == "servo":
+            wrong += pulses(device.low, device.high, wiring.settings, asked, signal, end)
+    return wrong + shown(want, ran, end + start_ms)
+
+
+def pulses(
+    low: int, high: int, settings: Mapping[str, int], asked: Signal, signal: Signal, end: float
+) -> list[str]:
+    """Return which pulses of a servo are not those of its settings."""
+    wrong, first, last = [], settings["low_us"], settings["high_us"]
+    for k, (at, until, value) in enumerate(spans(asked, end)):
+        seen = [
+            1000 * (gone - came)
+            for came, gone, level in spans(signal, end)
+            if level[0] and came > at + 30 and gone < until - 2
+        ]
+        if asked[0] == (at, value) and k == 0:
+            if seen:
+                wrong.append(f"pulses before a SET: {seen[:3]}")
+            continue
+        us = first + (value[0] - low / ONE) * (last - first) / ((high - low) / ONE)
+        if until - at > 60 and (not seen or any(abs(each - us) > 20 for each in seen)):
+            wrong.append(f"{value} is {us} us, but {seen[:4]}")
+    return wrong
+
+
+def shown(want: Wanted, ran: Ran, end: float) -> list[str]:
+    """Return what SHOW has said that it should not, or not said."""
+    said = ran.text.split("\r\n")[:-1]
+    asked = [line for _, line in want.lines]
+    if not want.is_cut:
+        return [] if said == asked else [f"shown {said[:20]}, not {asked[:20]}"]
+    in_time = [line for at, line in want.lines if at < want.end_ms - NEAR_MS]
+    common = min(len(said), len(asked))
+    if said[:common] != asked[:common] or len(said) < len(in_time):
+        return [f"shown {said[:20]}, not {asked[:20]}"]
+    return []
+
+
+# -- random programs
+
+
+class Example(NamedTuple):
+    seed: int
+    text: str
+    trace: str
+    counts: Mapping[str, int]  # of the converter; levels of digital pins
+
+
+def example(seed: int, robot: Robot) -> Example | None:
+    """Return a random program and what the oracle says of it; None where that takes no time."""
+    rng = random.Random(seed)
+    kit: OracleKit = KITS[1][0]
+    text = programs.program(rng, kit)
+    counts = {"LIGHT_R": rng.randint(0, 1023), "LIGHT_L": rng.randint(0, 1023),
+              "TEMPERATURE": rng.randint(20, 360), "LINE": rng.choice((100, 900)),
+              "TOUCH": rng.randint(0, 1)}  # fmt: skip
+    celsius = -50_000 + counts["TEMPERATURE"] * 488 + (counts["TEMPERATURE"] * 776 + 511) // 1023
+    senses: dict[str, Sequence[int]] = {
+        "LIGHT_R": [counts["LIGHT_R"] * ONE],
+        "LIGHT_L": [counts["LIGHT_L"] * ONE],
+        "TEMPERATURE": [min(125_000, celsius)],
+        "DISTANCE": [400_000],
+        "TOUCH": [counts["TOUCH"]],
+        "LINE": [int(counts["LINE"] > 600)],
+    }
+    trace = interpreter.run(text, kit, senses, MAX_MS, MAX_STEPS, 1)
+    if trace.endswith(" LIMIT\n") and not trace.endswith(f"\n{MAX_MS} LIMIT\n"):
+        return None
+    return Example(seed, text, trace, counts)
+
+
+def check(example: Example, robot: Robot, language: str = "en") -> None:
+    """The sketch of a random program does what the oracle says."""
+    found = compile_text(example.text, robot.kit, "prog.ts")
+    assert found.program is not None and found.is_right
+    sketch = sketch_of(found.source, found.program, robot, language)
+    board = SketchBoard(robot, sketch)
+    pins = {
+        each.name: wiring.pins
+        for each, wiring in zip(robot.kit.sensors, robot.board.sensors, strict=True)
+    }
+    for name in ("LIGHT_R", "LIGHT_L", "TEMPERATURE", "LINE"):
+        board.count(pins[name]["pin"], [example.counts[name]])
+    board.level(0, pins["TOUCH"]["pin"], not example.counts["TOUCH"])
+    board.echoes(pins["DISTANCE"]["trigger"], pins["DISTANCE"]["echo"], [0])
+    start = 0.5
+    if found.program.start == "SB":
+        start = UP_MS
+        board.level(PRESS_MS, robot.board.start_button, False)
+        board.level(RELEASE_MS, robot.board.start_button, True)
+    want = wanted(example.trace)
+    reads = example.trace.count(" READ DISTANCE ")
+    ran = board.ran(start + want.end_ms + (0 if want.is_cut else PLAIN_MS + 30 * reads))
+    near = NEAR_MS + 26 * bool(reads)
+    wrong = differences(example.trace, ran, robot, start, near)
+    assert not wrong, f"seed {example.seed}: {wrong[:3]}\n{example.text}\n{example.trace[:3000]}"
