@@ -60,7 +60,7 @@ def core(board: str) -> Path:
     sources = [*(ARDUINO / "cores" / "arduino").glob("*.[cS]*")]
     for source in sorted(sources):
         is_cpp = source.suffix == ".cpp"
-        compiler = ("avr-g++", *CPP) if is_cpp else ("avr-gcc", "-std=gnu11")
+        compiler: tuple[str, ...] = ("avr-g++", *CPP) if is_cpp else ("avr-gcc", "-std=gnu11")
         if source.suffix == ".S":  # which has no body for -flto
             compiler = ("avr-gcc", "-x", "assembler-with-cpp")
         run(*compiler, *_flags(board), "-w", "-c", source, "-o", folder / f"{source.name}.o")

@@ -104,7 +104,7 @@ class Expressions:
             return made._replace(is_random=is_random)
         sign, binds = _OPERATORS[op]
         if op in ARITHMETIC or op in COMPARED:
-            if left.is_literal and (right.is_literal or op in ARITHMETIC and not self.is_exact):
+            if left.is_literal and (right.is_literal or (op in ARITHMETIC and not self.is_exact)):
                 left = self._calculated(left)
             if op in ARITHMETIC or self.is_exact:
                 self.use(op)

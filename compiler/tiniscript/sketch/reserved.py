@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 RESERVED = frozenset(
+    # a table of words
     """
     abort abs acos acosf alignas alignof analogInputToDigitalPin analogRead analogReference
     analogWrite and arduino asin asinf asm atan atan2 atan2f atanf atexit atof atoi atol
@@ -36,5 +37,5 @@ RESERVED = frozenset(
     time tmpfile tmpnam toAscii toascii tolower tone toupper true trunc truncf try typedef typeid
     typename u16 u32 u8 ultoa ungetc union unsigned using utoa value vfprintf vfscanf virtual void
     volatile vprintf vscanf vsnprintf vsprintf while word write xor yield
-    """.split()
+    """.split()  # noqa: SIM905
 )

@@ -190,7 +190,9 @@ class Statements:
                 self.line(f"{first} = {text};")
                 text = first
             low, high = limits or (0, 0)
-            texts.append(text if limits is None else f"{self.use('limited')}({text}, {low}, {high})")
+            texts.append(
+                text if limits is None else f"{self.use('limited')}({text}, {low}, {high})"
+            )
         return texts
 
     # -- moves and what is shown

@@ -159,14 +159,13 @@ class Plan:
         pin = self.pin(f"{device.name}_$PIN", wiring.pins["pin"], "OUTPUT", beside)
         if wiring.driver == "pwm":
             self.parts.off.append(f"analogWrite({pin}, 0);")
-            return f"void {function}(long value) {{\n  analogWrite({pin}, {_part(device, 0, 255)});\n}}"
+            part = _part(device, 0, 255)
+            return f"void {function}(long value) {{\n  analogWrite({pin}, {part});\n}}"
         on, off = ("LOW", "HIGH") if wiring.settings["yes_is_low"] else ("HIGH", "LOW")
         self.parts.off.append(f"digitalWrite({pin}, {off});")
         if off == "HIGH":  # before the pin is an output, so that the part stays off
             self.parts.begin.insert(-1, f"digitalWrite({pin}, {off});")
-        return (
-            f"void {function}(bool isOn) {{\n  digitalWrite({pin}, isOn ? {on} : {off});\n}}"
-        )
+        return f"void {function}(bool isOn) {{\n  digitalWrite({pin}, isOn ? {on} : {off});\n}}"
 
 
 def _part(device: Device, first: int, last: int) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
+from tiniscript.robots.profile import Robot
 from tiniscript.semantics import ir
 from tiniscript.sketch import helpers, numbers
 from tiniscript.sketch.expressions import FUNCTIONS, Expressions, is_float
@@ -12,14 +13,18 @@ from tiniscript.sketch.names import Names
 from tiniscript.sketch.statements import Comment, Named, Statements, harmless
 from tiniscript.sketch.texts import IDENTIFIERS, TEXTS, called, said
 from tiniscript.sketch.wiring import Plan, is_count, is_small
-from tiniscript.robots.profile import Robot
 from tiniscript.source import Source
 from tiniscript.syntax.lexer import scan
 
 WIDEST = 98
 _WORD = re.compile(r"\$(\w+?)(?=_\$|_PIN\b|\b)")
 _BOARDS = {"uno": "Uno", "nano": "Nano", "mega": "Mega 2560"}
-_CALCULATES = frozenset(numbers.NUMBERS) - {"exactly", *_BOARDS} | {"NEG", "ABS", "TIME", "VARIABLE"}
+_CALCULATES = frozenset(numbers.NUMBERS) - {"exactly", *_BOARDS} | {
+    "NEG",
+    "ABS",
+    "TIME",
+    "VARIABLE",
+}
 
 
 def sketch_of(source: Source, program: ir.Program, robot: Robot, language: str) -> str:
@@ -75,9 +80,7 @@ _YES_NO = frozenset(("YES_NO", "NOT", "AND", "OR", "LT", "LE", "GT", "GE", "EQ",
 
 
 class _Sketch:
-    def __init__(
-        self, source: Source, program: ir.Program, robot: Robot, language: str
-    ) -> None:
+    def __init__(self, source: Source, program: ir.Program, robot: Robot, language: str) -> None:
         self.source, self.program, self.robot, self.language = source, program, robot, language
         self.is_exact = needs_numbers(program, robot)
         self.needed: dict[str, None] = {}  # helpers, in the order in which they are met
@@ -137,7 +140,9 @@ class _Sketch:
 
     def statements(self) -> Statements:
         comments = [
-            Comment(each.start, self.source.position(each.start)[0], harmless(each.text[2:].strip()))
+            Comment(
+                each.start, self.source.position(each.start)[0], harmless(each.text[2:].strip())
+            )
             for each in scan(self.source.text).comments
         ]
         return Statements(self.source, self.robot.kit, self.named, self.write, comments)
@@ -292,7 +297,9 @@ class _Sketch:
         lines = []
         kinds = _kinds(self.program, self.robot)
         for name, is_yes_no in zip(self.named.variables, kinds, strict=True):
-            lines.append(f"{'bool' if is_yes_no else '$N'} {name} = {'false' if is_yes_no else '0'};")
+            lines.append(
+                f"{'bool' if is_yes_no else '$N'} {name} = {'false' if is_yes_no else '0'};"
+            )
         for k in sorted(rows.read_sensors | rows.named_sensors(self.program)):
             kind = self.plan.kind(k)
             lines.append(f"{kind} {self.named.sensors[k]} = {'false' if kind == 'bool' else '0'};")
