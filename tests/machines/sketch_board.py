@@ -24,6 +24,7 @@ FLAGS = ("-Os", "-flto", "-ffunction-sections", "-fdata-sections", "-DF_CPU=1600
 CPP = ("-std=gnu++11", "-fno-exceptions", "-fno-threadsafe-statics")
 TIMER_2 = {"mask": 0x70, "control": 0xB1, "top": 0xB3}
 DIVIDES = (0, 1, 8, 32, 64, 128, 256, 1024)
+SERVO_KEYS = ("left_pin", "right_pin")
 
 Signal = list[tuple[float, tuple[int, ...]]]  # values, each from a time on
 
@@ -110,8 +111,12 @@ class SketchBoard:
             )
 
     def ran(self, ms: float) -> Ran:
-        devices = [each.pins["pin"] for each in self.robot.board.actuators]
-        pins = {*self.robot.board.motors.pins.values(), *devices}
+        board = self.robot.board
+        devices = [each.pins["pin"] for each in board.actuators]
+        devices += [
+            pin for key, pin in board.motors.pins.items() if key in ("standby", *SERVO_KEYS)
+        ]
+        pins = {*board.motors.pins.values(), *devices}
         watched = set(TIMER_2.values())
         for pin in pins:
             watched.add(PORTS[self.avr.bits[pin].port])

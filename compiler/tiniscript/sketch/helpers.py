@@ -118,7 +118,7 @@ unsigned int $ping_ms(int triggerPin, int echoPin) {
   digitalWrite(triggerPin, HIGH);
   delayMicroseconds(10);
   digitalWrite(triggerPin, LOW);
-  unsigned long echo = pulseIn(echoPin, HIGH, 25000);
+  unsigned long echo = pulseInLong(echoPin, HIGH, 25000);
   return echo == 0 ? 25000 : echo;
 }""",
     "part_of": """\

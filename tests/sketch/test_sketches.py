@@ -1,0 +1,260 @@
+"""A sketch of `tsc show --arduino` builds, and does on a simulated board what the program does.
+
+`python -m tests.sketch.test_sketches 200` tries so many random programs.
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+import pytest
+
+from tests.firmware.test_boards import BRIDGE_STATES, DRIVERS, SERVOS, driven, robot_with
+from tests.machines import MACHINES, Senses
+from tests.machines import board as boards
+from tests.machines.sketch_board import Ran, SketchBoard
+from tests.sketch.agreement import (
+    PRESS_MS,
+    RELEASE_MS,
+    UP_MS,
+    check,
+    differences,
+    example,
+    shifted,
+    spans,
+    wanted,
+    with_wide_kit,
+)
+from tests.support.casefile import ROOT
+from tiniscript import compile_text, robots
+from tiniscript.fixed_point import ONE
+from tiniscript.lessons import catalogue
+from tiniscript.robots.profile import Robot
+from tiniscript.sketch.writing import sketch_of
+
+pytestmark = pytest.mark.skipif(bool(boards.missing()), reason=boards.missing() or "there is one")
+
+EXAMPLES = sorted((ROOT / "examples").glob("*.ts"))
+ANSWERS = [
+    (f"{folder.name} {number}", answer.program)
+    for folder in catalogue.folders()
+    for number, answer in enumerate(catalogue.answers(folder)[0])
+]
+START_MS = 0.5
+FAR, NEAR = 0.0, 8 * 2 / 0.0343  # echoes: none, and that of 8 cm
+
+
+def sketch(text: str, robot: Robot, language: str = "en") -> str:
+    compiled = compile_text(text, robot.kit, "prog.ts")
+    assert compiled.program is not None and compiled.is_right, compiled.diagnostics
+    return sketch_of(compiled.source, compiled.program, robot, language)
+
+
+def ran(text: str, ms: float, robot: Robot | None = None) -> Ran:
+    robot = robot or robots.load("tinibot")
+    return SketchBoard(robot, sketch(text, robot)).ran(ms)
+
+
+def agrees(text: str, robot: Robot, echo_us: float, counts: int, seconds: float) -> None:
+    """A sketch does what the trace says, with readings that stay as they are."""
+    compiled = compile_text(text, robot.kit, "prog.ts")
+    assert compiled.program is not None and compiled.is_right
+    board = SketchBoard(robot, sketch_of(compiled.source, compiled.program, robot, "es"))
+    readings: dict[str, list[int]] = {}
+    for device, wiring in zip(robot.kit.sensors, robot.board.sensors, strict=True):
+        pins = wiring.pins
+        if wiring.driver == "hc_sr04":
+            board.echoes(pins["trigger"], pins["echo"], [echo_us])
+            readings[device.name] = [round(echo_us * 17.15) if echo_us else 400_000]
+        elif wiring.driver == "digital":
+            board.level(0, pins["pin"], bool(wiring.settings["yes_is_low"]) == (counts < 500))
+            readings[device.name] = [int(counts >= 500)]
+        else:
+            count = counts + 40 * (device.name == "LIGHT_L")
+            board.count(pins["pin"], [count])
+            readings[device.name] = [count * ONE]
+    start = START_MS
+    if compiled.program.start == "SB":
+        start = UP_MS
+        board.level(PRESS_MS, robot.board.start_button, False)
+        board.level(RELEASE_MS, robot.board.start_button, True)
+    trace = MACHINES["python"](compiled.image, robot.kit, Senses(readings, round(seconds * 1000)))
+    want = wanted(trace)
+    done = board.ran(start + want.end_ms + (0 if want.is_cut else 400))
+    near = 32 if "DISTANCE" in text.upper() else 6
+    wrong = differences(trace, done, robot, start, near, 0.2 if echo_us else 0)
+    assert not wrong, f"{wrong[:3]}\n{text}\n{trace[:2000]}"
+
+
+@pytest.mark.parametrize("echo_us", [FAR, NEAR], ids=["far", "near"])
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+def test_examples(path: Path, echo_us: float) -> None:
+    robot = robots.load("liner" if path.stem == "line" else "tinibot")
+    agrees(path.read_text(encoding="utf-8"), robot, echo_us, 300, 2)
+
+
+@pytest.mark.parametrize("number", range(len(ANSWERS)), ids=lambda n: ANSWERS[n][0])
+def test_answers_of_lessons(number: int) -> None:
+    text = ANSWERS[number][1]
+    liner = robots.load("liner").kit
+    robot = robots.load("liner" if not compile_text(text, ROBOT.kit).is_right else "tinibot")
+    assert robot.name == "tinibot" or compile_text(text, liner).is_right
+    agrees(text, robot, (FAR, NEAR)[number % 2], (300, 700)[number // 2 % 2], 2)
+
+
+ROBOT = robots.load("tinibot")
+
+
+@pytest.mark.parametrize("seeds", [range(k, k + 4) for k in range(0, 24, 4)], ids=str)
+def test_random_programs(seeds: range) -> None:
+    robot = with_wide_kit()
+    for seed in seeds:
+        made = example(seed, robot)
+        if made is not None:
+            check(made, robot, "es" if seed % 2 else "en")
+
+
+# -- parts of kits
+
+MOVES = "SI|F(0.1, 80);B(0.1, 40);M(50, -100);W(0.1)"
+POWERS = [(80, 80), (-40, -40), (50, -100), (0, 0)]
+
+
+@pytest.mark.parametrize("name", sorted(DRIVERS))
+def test_drivers_of_motors(name: str) -> None:
+    found = shifted(ran(MOVES, 400, driven(name)).motors, START_MS, (0, 0))
+    lasting = [value for at, until, value in spans(found, 399) if until - at > 5]
+    assert lasting == POWERS
+
+
+@pytest.mark.parametrize("name", ["tinibot", "liner", "grabber"])
+def test_shipped_robots(name: str) -> None:
+    found = shifted(ran(MOVES, 400, robots.load(name)).motors, START_MS, (0, 0))
+    assert [value for at, until, value in spans(found, 399) if until - at > 5] == POWERS
+
+
+def test_a_tb6612_is_awake_while_it_drives() -> None:
+    robot = robots.load("liner")
+    board = SketchBoard(robot, sketch("SI|F(0.1, 80)", robot))
+    standby = robot.board.motors.pins["standby"]
+    found = shifted(board.ran(150).pins[standby], START_MS, (0,))
+    assert [value for at, until, value in spans(found, 149) if until - at > 2] == [(255,), (0,)]
+    assert BRIDGE_STATES  # the states of the other pins are those of the drivers above
+
+
+def test_servos_that_turn_get_their_pulses() -> None:
+    """Still for a second after a stop, then none; the right one turns the other way."""
+    robot = robot_with(SERVOS)
+    board = SketchBoard(robot, sketch("SI|F(0.2, 100);W(2)", robot))
+    done = board.ran(1900)
+    for side, driving, still in (("left", 2010, 1500), ("right", 970, 1480)):
+        signal = done.pins[robot.board.motors.pins[f"{side}_pin"]]
+        seen = [(at, 1000 * (gone - at)) for at, gone, level in spans(signal, 1899) if level[0]]
+        assert all(abs(us - driving) < 25 for at, us in seen if 25 < at < 190)
+        assert all(abs(us - still) < 25 for at, us in seen if at > 230)
+        assert 48 <= sum(at > 210 for at, _ in seen) <= 51
+        assert sum(at < 200 for at, _ in seen) >= 8
+
+
+def test_a_gripper_and_a_lamp_of_a_mega() -> None:
+    robot = robots.load("grabber")
+    agrees("SI|GRIPPER(90);LED(TRUE);W(0.2);GRIPPER(0);LED(FALSE);W(0.2)", robot, FAR, 100, 1)
+
+
+def test_a_pwm_actuator() -> None:
+    from tests.robots.test_robots import TEXTS
+    from tiniscript.robots.reader import read
+
+    text = TEXTS["grabber"].replace('driver = "servo"            #', 'driver = "pwm" #')
+    for line in ("at_stop = ", "low_us = ", "high_us = "):
+        text = "\n".join(row for row in text.splitlines() if not row.startswith(line))
+    robot = read(text, "test")
+    found = ran("SI|GRIPPER(90);W(0.1);X = 180;GRIPPER(X);W(1)", 190, robot)
+    signal = shifted(found.pins[11], START_MS, (0,))
+    assert [value for at, until, value in spans(signal, 189) if until - at > 5] == [(128,), (255,)]
+
+
+@pytest.mark.parametrize("distance_cm", [3, 20, 50, 150])
+def test_an_echo_is_a_distance(distance_cm: int) -> None:
+    robot = robots.load("tinibot")
+    board = SketchBoard(robot, sketch("SI|DISTANCE;SHOW(DISTANCE)", robot))
+    pins = robot.board.sensors[2].pins
+    board.echoes(pins["trigger"], pins["echo"], [distance_cm * 2 / 0.0343])
+    assert abs(float(board.ran(400).text) - distance_cm) < 0.5
+
+
+def test_two_pings_are_30_ms_apart() -> None:
+    """What is asked sooner gets the reading before."""
+    robot = robots.load("tinibot")
+    text = "SI|DISTANCE;SHOW(ROUND(DISTANCE, 0));DISTANCE;SHOW(ROUND(DISTANCE, 0));W(0.05);"
+    board = SketchBoard(robot, sketch(text + "DISTANCE;SHOW(ROUND(DISTANCE, 0))", robot))
+    pins = robot.board.sensors[2].pins
+    board.echoes(pins["trigger"], pins["echo"], [20 * 2 / 0.0343, 40 * 2 / 0.0343])
+    assert board.ran(500).text.split() == ["20", "20", "40"]
+
+
+# -- start, end, stop
+
+
+def test_a_button_starts_and_stops() -> None:
+    robot = with_wide_kit()
+    text = "SB|LED(TRUE);GRIPPER(90);F(5, 50);SHOW(1)"
+    board = SketchBoard(robot, sketch(text, robot))
+    button, pins = robot.board.start_button, [each.pins["pin"] for each in robot.board.actuators]
+    for ms, is_high in ((100, False), (200, True), (500, False), (600, True)):
+        board.level(ms, button, is_high)
+    done = board.ran(900)
+    assert [value for at, until, value in spans(done.motors, 899) if until - at > 5] == [
+        (0, 0), (50, 50), (0, 0),
+    ]  # fmt: skip
+    on, off = (at for at, value in done.motors if value in ((50, 50), (0, 0)) and at > 100)
+    assert 228 < on < 235 and 499 < off < 502
+    lamp = done.pins[pins[2]]
+    assert lamp[-1][1] == (0,) and 499 < lamp[-1][0] < 502  # a stop turns it off
+    assert not any(level[0] and at > 505 for at, _, level in spans(done.pins[pins[0]], 899))
+    assert done.text == ""
+
+
+def test_a_program_that_has_ended_plays_its_tune() -> None:
+    tones = spans(ran("SI|F(0.1, 50)", 500).tones, 499)
+    assert [(round(until - at, -1), value[0] // 10) for at, until, value in tones if value[0]] == [
+        (120, 105), (120, 157),
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(("text", "said"), [
+    ("SI|M(50, 50);X = 2000000;X = X * X;S", "FAULT OVERFLOW"),
+    ("SI|M(50, 50);X = 0;SHOW(1 / X)", "FAULT DIVIDE_BY_ZERO"),
+    ("SI|M(50, 50);X = 0;SHOW(1 % X)", "FAULT DIVIDE_BY_ZERO"),
+])  # fmt: skip
+def test_a_fault_stops_the_motors_and_says_its_name(text: str, said: str) -> None:
+    done = ran(text, 60)
+    assert done.text == said + "\r\n"
+    assert done.motors[-1][1] == (0, 0) and (50, 50) in [value for _, value in done.motors]
+
+
+@pytest.mark.parametrize("text", ["PING|check_connection", "", "SI|"])
+def test_a_program_that_does_nothing(text: str) -> None:
+    done = ran(text, 50)
+    assert {value for _, value in done.motors} == {(0, 0)} and done.text == ""
+
+
+def campaign(first: int, count: int) -> None:
+    robot, tried, seed = with_wide_kit(), 0, first
+    while tried < count:
+        made = example(seed, robot)
+        if made is not None:
+            check(made, robot, "es" if seed % 2 else "en")
+            tried += 1
+            if tried % 20 == 0:
+                print(f"{tried} programs agree", flush=True)
+        seed += 1
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("count", nargs="?", type=int, default=200)
+    parser.add_argument("--seed", type=int, default=0)
+    options = parser.parse_args()
+    campaign(options.seed, options.count)
