@@ -13,7 +13,7 @@ import pytest
 from tests.firmware.test_boards import BRIDGE_STATES, DRIVERS, SERVOS, driven, robot_with
 from tests.machines import MACHINES, Senses
 from tests.machines import board as boards
-from tests.machines.sketch_board import Ran, SketchBoard
+from tests.machines.sketch_board import Ran, SketchBoard, built
 from tests.sketch.agreement import (
     PRESS_MS,
     RELEASE_MS,
@@ -21,6 +21,7 @@ from tests.sketch.agreement import (
     check,
     differences,
     example,
+    nearness,
     shifted,
     spans,
     wanted,
@@ -82,7 +83,7 @@ def agrees(text: str, robot: Robot, echo_us: float, counts: int, seconds: float)
     trace = MACHINES["python"](compiled.image, robot.kit, Senses(readings, round(seconds * 1000)))
     want = wanted(trace)
     done = board.ran(start + want.end_ms + (0 if want.is_cut else 400))
-    near = 32 if "DISTANCE" in text.upper() else 6
+    near = nearness(trace, echo_us)
     wrong = differences(trace, done, robot, start, near, 0.2 if echo_us else 0)
     assert not wrong, f"{wrong[:3]}\n{text}\n{trace[:2000]}"
 
@@ -192,6 +193,20 @@ def test_two_pings_are_30_ms_apart() -> None:
     pins = robot.board.sensors[2].pins
     board.echoes(pins["trigger"], pins["echo"], [20 * 2 / 0.0343, 40 * 2 / 0.0343])
     assert board.ran(500).text.split() == ["20", "20", "40"]
+
+
+@pytest.mark.parametrize("text", [
+    "SI|F(DISTANCE, 50)", "SI|F(1, LIGHT_R)", "SI|M(LIGHT_R, 0)", "SI|BEEP(0.1, LIGHT_R)",
+    "SI|LOOP(LIGHT_R);END_LOOP", "SI|GRIPPER(DISTANCE)", "SI|SHOW(DISTANCE)", "SI|SHOW(LIGHT_R)",
+    "SI|IF(TIME > 1);ENDIF", "SI|F(1, -LIGHT_R)", "SI|IF(DISTANCE < 2147483.647);ENDIF",
+    "SI|F(20000.123, 50)", "SI|W(2147483.647) UNTIL(TRUE)", "SI|X = TRUE;IF(X);ENDIF",
+    "SI|LOOP(100000);END_LOOP", "SI|F(FOREVER, 50) UNTIL(TOUCH)", "SI|F((-5), (200))",
+    "SI|IF(1 < 2 AND 3 > 2.5);ENDIF", "SI|IF(NOT (TOUCH = LINE));ENDIF",
+    "SI|IF((RANDOM(1, 2) = 1) = (RANDOM(1, 2) = 2));ENDIF",
+    "SI|X = MIN(RANDOM(1, 2), RANDOM(3, 4))",
+])  # fmt: skip
+def test_numbers_of_every_kind_compile(text: str) -> None:
+    built(sketch(text, with_wide_kit()), "uno")
 
 
 # -- start, end, stop

@@ -8,75 +8,23 @@ from collections.abc import Iterable
 from tiniscript.robots.profile import Robot
 from tiniscript.semantics import ir
 from tiniscript.sketch import helpers, numbers
-from tiniscript.sketch.expressions import FUNCTIONS, Expressions, is_float
+from tiniscript.sketch.expressions import Expressions
+from tiniscript.sketch.kinds import are_yes_no, needs_numbers
 from tiniscript.sketch.names import Names
 from tiniscript.sketch.statements import Comment, Named, Statements, harmless
 from tiniscript.sketch.texts import IDENTIFIERS, TEXTS, called, said
-from tiniscript.sketch.wiring import Plan, is_count, is_small
+from tiniscript.sketch.wiring import Plan
 from tiniscript.source import Source
 from tiniscript.syntax.lexer import scan
 
 WIDEST = 98
 _WORD = re.compile(r"\$(\w+?)(?=_\$|_PIN\b|\b)")
 _BOARDS = {"uno": "Uno", "nano": "Nano", "mega": "Mega 2560"}
-_CALCULATES = frozenset(numbers.NUMBERS) - {"exactly", *_BOARDS} | {
-    "NEG",
-    "ABS",
-    "TIME",
-    "VARIABLE",
-}
 
 
 def sketch_of(source: Source, program: ir.Program, robot: Robot, language: str) -> str:
     """Return the sketch of a checked program, for a robot on an AVR; see `robots.firmware.fits`."""
     return _Sketch(source, program, robot, language).text()
-
-
-def needs_numbers(program: ir.Program, robot: Robot) -> bool:
-    """Whether a program calculates: then it needs numbers that are exact."""
-    kit, wired = robot.kit, robot.board.sensors
-    for statement in _every(program):
-        if isinstance(statement, ir.Show) and not statement.is_yes_no:
-            value = statement.value[0]
-            if value.op == "SENSOR" and not is_count(kit.sensors[value.value], wired[value.value]):
-                return True
-        if isinstance(statement, ir.Assign):
-            return True
-        for expression in ir.expressions(statement):
-            if any(_calculates(term) for term in expression):
-                return True
-    return not is_small(kit.sensors)
-
-
-def _calculates(term: ir.Term) -> bool:
-    if term.op == "NUMBER":
-        return not is_float(term.value) or abs(term.value) >= 2**24
-    return term.op in FUNCTIONS or term.op in ("ADD", "SUB", "MUL", "DIV", "MOD", "NEG", "ABS",
-                                               "TIME")  # fmt: skip
-
-
-def _every(program: ir.Program) -> Iterable[ir.Statement]:
-    for procedure in program.procedures:
-        yield from ir.walk(procedure.body)
-    yield from ir.walk(program.body)
-
-
-def _kinds(program: ir.Program, robot: Robot) -> list[bool]:
-    """Return for each variable whether it is a yes/no."""
-    found = [False] * len(program.variables)
-    for statement in _every(program):
-        if isinstance(statement, ir.Assign):
-            last = statement.value[-1]
-            if last.op == "VARIABLE":
-                found[statement.variable] = found[last.value]
-            elif last.op == "SENSOR":
-                found[statement.variable] = robot.kit.sensors[last.value].is_yes_no
-            else:
-                found[statement.variable] = last.op in _YES_NO
-    return found
-
-
-_YES_NO = frozenset(("YES_NO", "NOT", "AND", "OR", "LT", "LE", "GT", "GE", "EQ", "NE"))
 
 
 class _Sketch:
@@ -295,7 +243,7 @@ class _Sketch:
     def kept(self, rows: Statements) -> str:
         """Return the variables of the program, of the readings, and those that functions share."""
         lines = []
-        kinds = _kinds(self.program, self.robot)
+        kinds = are_yes_no(self.program, self.robot)
         for name, is_yes_no in zip(self.named.variables, kinds, strict=True):
             lines.append(
                 f"{'bool' if is_yes_no else '$N'} {name} = {'false' if is_yes_no else '0'};"
