@@ -272,7 +272,7 @@ def example(seed: int, robot: Robot) -> Example | None:
     senses: dict[str, Sequence[int]] = {
         "LIGHT_R": [counts["LIGHT_R"] * ONE],
         "LIGHT_L": [counts["LIGHT_L"] * ONE],
-        "TEMPERATURE": [min(125_000, celsius)],
+        "TEMPERATURE": [max(-40_000, min(125_000, celsius))],
         "DISTANCE": [400_000],
         "TOUCH": [counts["TOUCH"]],
         "LINE": [int(counts["LINE"] > 600)],

@@ -1,0 +1,206 @@
+"""The text of a sketch: what stands beside each line, names, comments, limits."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from tests.machines import board as boards
+from tests.machines.sketch_board import built
+from tests.support.casefile import ROOT
+from tiniscript import compile_text, robots
+from tiniscript.cli.made import is_foreign
+from tiniscript.sketch.names import Names
+from tiniscript.sketch.reserved import RESERVED
+from tiniscript.sketch.texts import IDENTIFIERS, TEXTS
+from tiniscript.sketch.writing import sketch_of
+
+AVR = pytest.mark.skipif(bool(boards.missing()), reason=boards.missing() or "there is one")
+
+
+def sketch(text: str, language: str = "en", robot: str = "tinibot") -> str:
+    profile = robots.load(robot)
+    compiled = compile_text(text, profile.kit, "prog.ts")
+    assert compiled.program is not None and compiled.is_right, compiled.diagnostics
+    return sketch_of(compiled.source, compiled.program, profile, language)
+
+
+def part(text: str, header: str) -> list[str]:
+    """Return the body of a function without what stands beside it."""
+    body = text.partition(f"\n{header} {{")[2].partition("\n}\n")[0]
+    return [re.sub(r"  +//.*", "", row) for row in body.splitlines()[1:]]
+
+
+def test_each_instruction_has_its_tiniscript_beside_it() -> None:
+    text = sketch("SI|f( 2 , 80 );\nIF(LIGHT_R > 100); S; ELSE; W(1); ENDIF")
+    rows = text.splitlines()
+    for code, beside in (
+        ("  forward(2, 80);", "f( 2 , 80 )"),
+        ("  if (lightR > 100) {", "IF(LIGHT_R > 100)"),
+        ("    stopMotors();", "S"),
+        ("  } else {", "ELSE"),
+        ("    wait(1);", "W(1)"),
+    ):
+        assert f"{code:<38}  // {beside}" in rows
+
+
+def test_a_simple_program_has_simple_numbers() -> None:
+    text = sketch("SI|LOOP(3);F(0.5, 80);IF(DISTANCE < 10.5);BEEP(0.1, 440);ENDIF;END_LOOP")
+    assert "struct" not in text and "Serial" not in text and "float seconds" in text
+    assert "for (int i = 0; i < 3; i++) {" in text and "if (distance < 10.5) {" in text
+
+
+def test_what_is_not_used_is_not_written() -> None:
+    text = sketch("SI|F(2, 80)")
+    for word in ("tone(int", "analogRead", "beep", "backward(", "TRIGGER", "Number", "moveLasts"):
+        assert word not in text
+
+
+def test_a_loop_at_the_end_is_loop() -> None:
+    text = sketch("SI|W(1);LOOP(FOREVER);F(1, 80);END_LOOP")
+    assert part(text, "void loop()") == ["  forward(1, 80);"]
+    left = sketch("SI|LOOP(FOREVER);F(1, 80);BREAK;END_LOOP")
+    assert part(left, "void loop()") == [] and "  while (true) {" in part(left, "void setup()")
+
+
+def test_a_while_takes_its_reading_where_it_asks() -> None:
+    text = sketch(
+        "SI|WHILE(DISTANCE > 10);W(0.1);END_WHILE;WHILE(DISTANCE > 10 AND TRUE);END_WHILE"
+    )
+    assert "  while (readDistance() > 10) {" in text
+    assert "    if (!(distance > 10 && true)) break;" in text
+
+
+def test_brackets_are_those_that_cpp_needs() -> None:
+    text = sketch(
+        "X = 1;X = (X + 2) * 3 - (X - (4 - X));X = 7 / 2;X = --X;X = -(-5);"
+        "Y = NOT (X = 1 OR X < 2);"
+        "Y = (X < 1) = (X > 2);Y = X < 1 AND (Y OR X > 3) OR Y;X = 2000 * 20.5"
+    )
+    for line in (
+        "x = (x + 2) * 3 - (x - (4 - x));", "x = Number(7) / 2;", "x = - -x;", "x = -Number(-5);",
+        "y = !(x == 1 || x < 2);", "y = (x < 1) == (x > 2);", "y = (x < 1 && (y || x > 3)) || y;",
+        "x = Number(2000) * 20.5;",
+    ):  # fmt: skip
+        assert f"  {line}" in part(text, "void setup()"), line
+
+
+def test_random_is_asked_from_left_to_right() -> None:
+    text = sketch("X = RANDOM(1, 6) - RANDOM(1, 3);M(RANDOM(1, 2), RANDOM(3, 4))")
+    assert "x = (first1 = randomFrom(1, 6), first1 - randomFrom(1, 3));" in text
+    assert "first2 = randomFrom(1, 2);" in text and "Number first1, first2;" in text
+
+
+def test_comments_stay_where_they_were() -> None:
+    text = sketch(
+        "// one\nSI|F(1, 50) // two\nIF(LIGHT_R > 1)\n// three\nS\nENDIF // four\n// five"
+    )
+    rows = [row.strip() for row in text.splitlines()]
+    at = [rows.index(f"// {word}") for word in ("one", "two", "three", "four", "five")]
+    assert at == sorted(at)
+    assert rows[at[1] + 1].startswith("forward(1, 50);")
+    assert rows[at[2] + 1].startswith("stopMotors();")
+
+
+@AVR
+@pytest.mark.parametrize("comment", ["ends in \\", "??/", "*/ /* */", "ñandú ¿qué? \t x", "\\"])
+def test_a_comment_stays_a_comment(comment: str) -> None:
+    text = sketch(f"SI|F(1, 50) // {comment}\nS // {comment}")
+    assert part(text, "void setup()")[-1] == "  finish();"
+    built(text, "uno")
+
+
+def test_a_long_comment_is_broken() -> None:
+    text = sketch("SI|// " + "x" * 500 + "\nS")
+    assert max(map(len, text.splitlines())) <= 100
+
+
+# -- names
+
+
+def test_names_are_like_those_of_cpp() -> None:
+    names = Names("en")
+    asked = ("MY_SPEED", "X", "OLD__D_", "OLD_D", "DELAY", "FORWARD", "I", "I2", "FIRST1", "NUMBER")
+    made = [
+        "mySpeed",
+        "x",
+        "oldD",
+        "myOldD",
+        "myDelay",
+        "myForward",
+        "myI",
+        "myI2",
+        "myFirst1",
+        "number",
+    ]
+    assert [names.of(each) for each in asked] == made
+    assert Names("es").of("INT") == "miInt" and Names("en").of("LIGHT_R", "read") == "readLightR"
+
+
+def test_no_helper_has_a_reserved_name() -> None:
+    for both in IDENTIFIERS.values():
+        assert not RESERVED & set(both) - {"read", "leer", "time"}
+
+
+@AVR
+@pytest.mark.parametrize("first", [0, 1, 2, 3, 4, 5])
+def test_names_of_cpp_and_of_the_core_can_be_variables(first: int) -> None:
+    """Each sixth reserved name, and what looks like a macro of the core."""
+    words = sorted(word.upper() for word in RESERVED if word.isalpha())[first::6]
+    kit = robots.load("tinibot").kit
+    odd = ("A0", "B1", "PI", "HIGH", "LOW", "PORTB", "ADC", "NULL", "SPEED", "FIRST1", "INPUT")
+    usable = [each for each in (*odd, *words) if compile_text(f"{each} = 1", kit).is_right]
+    for start in range(0, len(usable), 30):
+        program = ";".join(f"{each} = 1" for each in usable[start : start + 30])
+        built(sketch(f"{program};W({usable[start]})"), "uno")
+
+
+# -- what it says of itself
+
+
+@pytest.mark.parametrize("language", ["en", "es"])
+def test_its_first_lines_name_the_limits_that_it_has(language: str) -> None:
+    which = language == "es"
+
+    def limits(text: str) -> set[str]:
+        first = " ".join(
+            row.lstrip("/ ") for row in sketch(text, language).split("#include")[0].splitlines()
+        )
+        return {
+            key
+            for key, both in TEXTS.items()
+            if key.startswith("limit_") and both[which].split("{")[0].strip() in first
+        }
+
+    always = {"limit_link", "limit_watch", "limit_time"}
+    assert limits("SB|F(1, 50)") == always
+    assert limits("SI|F(1, 50)") == always | {"limit_si"}
+    assert limits("SB|SHOW(1)") == always | {"limit_show"}
+    assert limits("SB|W(RANDOM(1, 2))") == always | {"limit_random", "limit_fault"}
+    assert limits("PING|check_connection") == {"limit_ping"}
+
+
+def test_texts_are_there_in_both_languages() -> None:
+    for both in (*TEXTS.values(), *IDENTIFIERS.values()):
+        assert len(both) == 2 and all(both)
+    for k in range(2):
+        names = [both[k] for both in IDENTIFIERS.values()]
+        assert len(set(names)) == len(names)
+
+
+@pytest.mark.parametrize(
+    "path", sorted((ROOT / "examples").glob("*.ts")), ids=lambda path: path.stem
+)
+@pytest.mark.parametrize("language", ["en", "es"])
+def test_no_line_is_too_long_and_no_gap_stays_open(
+    path: Path, language: str, tmp_path: Path
+) -> None:
+    robot = "liner" if path.stem == "line" else "tinibot"
+    text = sketch(path.read_text(encoding="utf-8"), language, robot)
+    assert "$" not in text
+    assert max(map(len, text.splitlines())) <= 110
+    made = tmp_path / "a.ino"
+    made.write_text(text, encoding="utf-8")
+    assert not is_foreign(made)
