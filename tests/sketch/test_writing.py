@@ -54,7 +54,7 @@ def test_a_simple_program_has_simple_numbers() -> None:
 
 def test_what_is_not_used_is_not_written() -> None:
     text = sketch("SI|F(2, 80)")
-    for word in ("tone(int", "analogRead", "beep", "backward(", "TRIGGER", "Number", "moveLasts"):
+    for word in ("tone(int", "analogRead", "beep(", "backward(", "TRIGGER", "Number", "moveLasts"):
         assert word not in text
 
 
@@ -204,3 +204,11 @@ def test_no_line_is_too_long_and_no_gap_stays_open(
     made = tmp_path / "a.ino"
     made.write_text(text, encoding="utf-8")
     assert not is_foreign(made)
+
+
+@pytest.mark.parametrize(("name", "language"), [("language.en.md", "en"), ("lenguaje.es.md", "es")])
+def test_the_sketch_on_the_page_is_what_tsc_writes(name: str, language: str) -> None:
+    page = (ROOT / "docs" / name).read_text(encoding="utf-8")
+    before, _, after = page.partition("```cpp\n")
+    program = before.rpartition("```tiniscript\n")[2].partition("```")[0]
+    assert "\n" + after.partition("```")[0] in sketch(program, language)

@@ -13,12 +13,13 @@ from typing import NamedTuple
 
 from tiniscript.fixed_point import ONE, as_text
 from tiniscript.semantics.ir import Expression
+from tiniscript.syntax.operators import SIGN_OF
 
-_OPERATORS = {
-    "MUL": ("*", 9), "DIV": ("/", 9), "MOD": ("%", 9), "ADD": ("+", 8), "SUB": ("-", 8),
-    "LT": ("<", 7), "LE": ("<=", 7), "GT": (">", 7), "GE": (">=", 7), "EQ": ("==", 6),
-    "NE": ("!=", 6), "AND": ("&&", 5), "OR": ("||", 4),
+_BINDS = {
+    "MUL": 9, "DIV": 9, "MOD": 9, "ADD": 8, "SUB": 8,
+    "LT": 7, "LE": 7, "GT": 7, "GE": 7, "EQ": 6, "NE": 6, "AND": 5, "OR": 4,
 }  # fmt: skip
+SIGNS = {**SIGN_OF, "EQ": "==", "NE": "!=", "AND": "&&", "OR": "||"}  # those of C++
 ARITHMETIC = frozenset(("MUL", "DIV", "MOD", "ADD", "SUB"))
 COMPARED = frozenset(("LT", "LE", "GT", "GE", "EQ", "NE"))
 FUNCTIONS = {"MIN": "smaller", "MAX": "larger", "ROUND": "rounded", "RANDOM": "random"}
@@ -102,7 +103,7 @@ class Expressions:
             if first:
                 made = _Operand(f"({kept}{made.text})", _PRIMARY)
             return made._replace(is_random=is_random)
-        sign, binds = _OPERATORS[op]
+        sign, binds = SIGNS[op], _BINDS[op]
         if op in ARITHMETIC or op in COMPARED:
             if left.is_literal and (right.is_literal or (op in ARITHMETIC and not self.is_exact)):
                 left = self._calculated(left)
@@ -111,7 +112,7 @@ class Expressions:
         # Brackets that C++ does not need stand where it warns without them.
         low, high = (8, 8) if op in COMPARED else (binds, binds + 1)
         if op == "OR":
-            low, high = (6 if left.binds == _OPERATORS["AND"][1] else binds), 6
+            low, high = (6 if left.binds == _BINDS["AND"] else binds), 6
         made_text = f"{_inside(left, low)} {sign} {_inside(right, high)}"
         if first:
             return _Operand(f"({kept}{made_text})", _PRIMARY, is_random=True)

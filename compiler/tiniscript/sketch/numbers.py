@@ -6,7 +6,7 @@ and `operator +` by `@ADD`.
 
 from __future__ import annotations
 
-from tiniscript.sketch.expressions import ARITHMETIC
+from tiniscript.sketch.expressions import ARITHMETIC, COMPARED, SIGNS
 
 STRUCT = """\
 struct $Number {
@@ -31,14 +31,10 @@ if (b.$thousandths == 0) return $fault("DIVIDE_BY_ZERO");
   if (rest != 0 && (rest < 0) != (b.$thousandths < 0)) rest += b.$thousandths;
   return $in_range(rest);""",
 }
-_SIGNS = {
-    "ADD": "+", "SUB": "-", "MUL": "*", "DIV": "/", "MOD": "%",
-    "LT": "<", "LE": "<=", "GT": ">", "GE": ">=", "EQ": "==", "NE": "!=",
-}  # fmt: skip
 
 
 def _operator(op: str) -> str:
-    sign = _SIGNS[op]
+    sign = SIGNS[op]
     if op in ARITHMETIC:
         return f"$Number operator{sign}($Number a, $Number b) {{\n  {_RESULTS[op]}\n}}"
     compared = f"a.$thousandths {sign} b.$thousandths"
@@ -46,7 +42,7 @@ def _operator(op: str) -> str:
 
 
 NUMBERS: dict[str, str] = {
-    **{op: _operator(op) for op in _SIGNS},
+    **{op: _operator(op) for op in (*_RESULTS, *sorted(COMPARED))},
     "NEG": "$Number operator-($Number a) {\n  return $in_range(-(long long)a.$thousandths);\n}",
     "exactly": """\
 $Number $exactly(long $thousandths) {
