@@ -13,6 +13,7 @@ from tiniscript.doctor.findings import Finding
 from tiniscript.link.port_names import is_address
 
 MARK = "TiniScript doctor report 1"  # the first line: the file is one of ours
+SELFTEST_MARK = "TiniScript selftest report 1"  # that of `tsc selftest`
 HIDDEN = "…"
 # Values of findings that are made by others: a robot's name, what a sketch prints, system messages.
 PRIVATE = ("name", "said", "why", "by")
@@ -22,7 +23,7 @@ PROGRAMS = ("ModemManager", "brltty", "avrdude", "arduino", "Arduino IDE", "scre
 
 def is_ours(data: bytes) -> bool:
     """Whether a file is a report, which a new one may replace."""
-    return data.split(b"\n", 1)[0].strip() == MARK.encode()
+    return data.split(b"\n", 1)[0].strip() in (MARK.encode(), SELFTEST_MARK.encode())
 
 
 def port(name: str) -> str:

@@ -64,7 +64,9 @@ class Connection:
         self._is_stopped_unseen = False
         self.starts_nothing = options.verb not in ("upload", "start", "live")
         is_detached = getattr(options, "detach", False)
-        self.drives = options.verb in ("upload", "start", "live", "trim") and not is_detached
+        self.drives = (
+            options.verb in ("upload", "start", "live", "trim", "selftest") and not is_detached
+        )
         baud = baud_of(options, robot, language)
         self.language = language
         self.profile = robot

@@ -230,6 +230,7 @@ _LATER = (
     ("lessons", "LESSON_TEXTS"),
     ("module", "MODULE_TEXTS"),
     ("doctor", "DOCTOR_TEXTS"),
+    ("selftest", "SELFTEST_TEXTS"),
 )
 
 

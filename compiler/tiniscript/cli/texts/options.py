@@ -92,7 +92,7 @@ YES = ("yes|no", "yes|no")
 A_LEVEL = ("|".join(LEVELS),) * 2
 
 TO_MANY = "ping upload stop info undo identify"  # may work on many robots at once
-TO_ONE = "live link start monitor fetch name trim claim disown text"
+TO_ONE = "live link start monitor fetch name trim claim disown text selftest"
 OWN = "upload live robot"  # may bring a virtual robot along
 
 # fmt: off
@@ -185,6 +185,7 @@ OPTIONS: tuple[Option, ...] = (
     Option("--button-at", "robot", ("pushes the start button after so many seconds; 2,10: twice", "pulsa el botón de inicio después de tantos segundos; 2,10: dos veces"), NUMBER, S),
     Option("--hold-at", "robot", ("holds the start button down for 2 s after so many seconds", "mantiene pulsado el botón de inicio 2 s después de tantos segundos"), NUMBER, S),
     Option("--yes", "doctor", ("it may open the port of a cable, which restarts the board there and ends what it runs, and ask at other speeds", "puede abrir el puerto de un cable, lo que reinicia la placa y termina lo que hace, y preguntar a otras velocidades")),
+    Option("--yes", "selftest", ("asks nobody and turns no motor: what can be checked without a person", "no pregunta a nadie y no gira ningún motor: lo que se puede revisar sin una persona")),
     Option("--watch", "doctor", ("listens to the robot for so many seconds more, while you let it drive with its button or from another terminal", "escucha al robot tantos segundos más, mientras lo haces moverse con su botón o desde otra terminal"), NUMBER, S),
     Option("--report", "doctor", ("writes what was found into a file to send to a teacher; there are no names of people, computers or networks in it", "escribe lo que encontró en un archivo para enviar a un profesor; no lleva nombres de personas, computadoras ni redes"), REPORT, A_FILE),
     Option("--port", "module", ("the port of the USB adapter that the module is on, or of the board that is held in reset", "el puerto del adaptador USB donde está el módulo, o de la placa que está en reset"), PORT, P),
@@ -194,6 +195,7 @@ OPTIONS: tuple[Option, ...] = (
     Option("--baud", "module", ("its new speed, that of the robot's profile: 9600, 19200, 38400, 57600 or 115200", "su nueva velocidad, la del perfil del robot: 9600, 19200, 38400, 57600 o 115200"), NUMBER, N),
     Option("--dry-run", "module", ("finds the module, shows what would be sent, and changes nothing", "encuentra el módulo, muestra lo que se enviaría y no cambia nada")),
     # the robot, and the way to it
+    Option("--report", "selftest", ("writes what was found into a file to send to a teacher; there are no names of people, computers, networks or robots in it", "escribe lo que encontró en un archivo para enviar a un profesor; no lleva nombres de personas, computadoras, redes ni robots"), REPORT, A_FILE),
     Option("--port", "doctor", ("the port to look at; the last used one, or the only one, where nothing is said", "el puerto que se examina; el último usado, o el único, si no se dice nada"), PORT, P),
     Option("--port", "check", ("for the robot on this port, which is asked", "para el robot en este puerto, al que se pregunta"), PORT, P),
     Option("--port", "ports", ("with --ask: this one alone", "con --ask: solo este"), PORT, P),
@@ -211,16 +213,17 @@ OPTIONS: tuple[Option, ...] = (
     Option("--baud", "robot", ("how fast its line is (as in its profile); 0 is as fast as possible", "la velocidad de su línea (la de su perfil); 0 es lo más rápido posible"), NUMBER, N),
     Option("--robot", "compile check run show fmt upload live", ("for which robot: a name (tinibot, ...) or a profile's file", "para qué robot: un nombre (tinibot, ...) o el archivo de un perfil"), ROBOT, A_ROBOT),
     Option("--robot", "wiring ports ping stop link start info monitor fetch name trim undo claim disown text identify robot", ("which robot: a name (tinibot, ...) or a profile's file", "qué robot: un nombre (tinibot, ...) o el archivo de un perfil"), ROBOT, A_ROBOT),
+    Option("--robot", "selftest", ("which robot it should be: a name (tinibot, ...) or a profile's file", "qué robot debería ser: un nombre (tinibot, ...) o el archivo de un perfil"), ROBOT, A_ROBOT),
     Option("--robot", "doctor", ("which robot it should be: a name (tinibot, ...) or a profile's file", "qué robot debería ser: un nombre (tinibot, ...) o el archivo de un perfil"), ROBOT, A_ROBOT),
     Option("--robot", "firmware", ("tinibot (if none is named), liner, grabber, or a profile of your own", "tinibot (si no se nombra ninguno), liner, grabber, o un perfil propio"), ROBOT, A_ROBOT),
     Option("--virtual", "check", ("for the virtual robot of `tsc robot`, which runs in another terminal", "para el robot virtual de `tsc robot`, que está en marcha en otra terminal")),
-    Option("--virtual", "ping link start info monitor fetch name trim undo claim disown text identify", ("the virtual robot of `tsc robot`, which runs in another terminal", "el robot virtual de `tsc robot`, que está en marcha en otra terminal")),
+    Option("--virtual", "ping link start info monitor fetch name trim undo claim disown text identify selftest", ("the virtual robot of `tsc robot`, which runs in another terminal", "el robot virtual de `tsc robot`, que está en marcha en otra terminal")),
     Option("--virtual", "stop", ("virtual robots alone: those of `tsc robot`, and of commands with --virtual", "solo robots virtuales: los de `tsc robot`, y los de comandos con --virtual")),
     Option("--virtual", "upload", ("no robot: a virtual one drives here, until the program ends or Ctrl-C; the one of `tsc robot`, if that runs in another terminal. The key b is the button of one here; where nobody is at a terminal, it is pushed at once",
                                    "sin robot: uno virtual se mueve aquí, hasta que el programa termina o Ctrl-C; el de `tsc robot`, si está en marcha en otra terminal. La tecla b es el botón del de aquí; si no hay nadie en una terminal, se pulsa enseguida")),
     Option("--virtual", "live", ("no robot: a virtual one does it here", "sin robot: lo hace aquí uno virtual")),
     # how it is said
-    Option("--json", "check show lesson ping info ports keys doctor module", ("the same as data", "lo mismo como datos")),
+    Option("--json", "check show lesson ping info ports keys doctor module selftest", ("the same as data", "lo mismo como datos")),
     Option("--json", "upload", ("prints the receipt and what comes after it as lines of JSON", "imprime el recibo y lo que viene después como líneas de JSON")),
     Option("--json", "undo", ("prints the receipt, and that it is saved, as lines of JSON", "imprime el recibo, y que está guardado, como líneas de JSON")),
     Option("--json", "stop identify", ("prints a line of JSON for each robot", "imprime una línea de JSON por cada robot")),

@@ -227,6 +227,14 @@ VERBS: dict[str, Verb] = {
               "Mientras lo mira comparte el puerto: `tsc stop` funciona en otra terminal. Antes de eso, un stop lo espera unos segundos.\n"
               "Lo que pregunta a Windows y macOS se probó con respuestas escritas de esos sistemas, no en ellos."),
     ),
+    "selftest": Verb(
+        ROBOTS, ("selftest", "selftest"),
+        ("is the robot ready for a lesson?", "¿está listo el robot para la lección?"),
+        ("Checks what a computer can of a robot that should be ready: it answers, its kit, its firmware, the line, its supply as far as the robot knows, its memory, its trim, each sensor, each motor, the buzzer. Put the wheels in the air: the motors turn one after the other, and you say what you see. `--yes` asks nobody and turns no motor. The robot keeps its program.",
+         "Revisa lo que una computadora puede de un robot que debería estar listo: responde, su kit, su firmware, la línea, su alimentación hasta donde el robot sabe, su memoria, su ajuste, cada sensor, cada motor, el zumbador. Pon las ruedas en el aire: los motores giran uno tras otro, y tú dices qué ves. `--yes` no pregunta a nadie y no gira ningún motor. El robot conserva su programa."),
+        ends=("Exit code: 0 if nothing is wrong, 3 if something is. What it cannot see has a question mark.",
+              "Código de salida: 0 si nada está mal, 3 si algo lo está. Lo que no puede ver lleva un signo de interrogación."),
+    ),
     "module": Verb(
         ROBOTS, ("module --port P", "module --port P"),
         ("name, PIN and speed of a Bluetooth module", "nombre, PIN y velocidad de un módulo Bluetooth"),

@@ -1,0 +1,219 @@
+"""`tsc selftest`: robots that are ready, and robots that are not."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from tests.machines.host_firmware import EMPTY, HostFirmware, missing
+from tests.support.command import TSC, Tsc
+from tests.support.pty_robot import PtyRobot
+from tiniscript import robots
+from tiniscript.doctor import report
+from tiniscript.link.messages import RESETS
+
+pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
+
+LIGHT, DISTANCE = 500_000, 42_000  # thousandths
+GOOD = (LIGHT, LIGHT, DISTANCE)
+KINDS = [name for name, _ in RESETS]
+
+
+def found_by(
+    tsc: Tsc, pty_robot: PtyRobot, *words: str
+) -> tuple[int, dict[str, dict[str, object]]]:
+    """Return the exit code, and each finding by what it is about."""
+    done = tsc("selftest", "--yes", "--json", "--port", pty_robot.port, *words)
+    rows = json.loads(done.out)["found"]
+    return done.code, {
+        f"{each['what']} {each['values'].get('name', '')}".strip(): each for each in rows
+    }
+
+
+def started_after(pty_robot: PtyRobot, reset: str) -> None:
+    """Let the robot have restarted for this reason."""
+    with pty_robot._lock:
+        pty_robot._take_power()
+        pty_robot._robot = HostFirmware(pty_robot.kit, EMPTY, KINDS.index(reset))
+
+
+def test_a_good_robot_without_a_person(tsc: Tsc, pty_robot: PtyRobot) -> None:
+    pty_robot.ask(lambda robot: robot.sense(*GOOD))
+    code, found = found_by(tsc, pty_robot)
+    assert code == 0
+    verdicts = {name: each["verdict"] for name, each in found.items()}
+    sensors = {f"sensor {each.name}" for each in pty_robot.kit.sensors}
+    asked = {"left", "right", "buzzer"}
+    assert {name for name, each in verdicts.items() if each == "ok"} == {
+        "answers", "kit", "firmware", "line", "supply", "store", "trim", *sensors
+    }  # fmt: skip
+    assert {name for name, each in verdicts.items() if each == "open"} == asked
+    assert not any("MOTORS" in line for line in pty_robot.did), "nobody has lifted it"
+
+
+@pytest.mark.parametrize("name", [*robots.names()])
+def test_every_board_has_its_sensors_tested(tsc: Tsc, name: str) -> None:
+    """Without `--robot`, too: the robot says which kit it has."""
+    kit = robots.load(name).kit
+    with PtyRobot(kit) as robot:
+        code, found = found_by(tsc, robot)
+        assert found["kit"]["values"] == {"robot": name}
+        assert len([each for each in found if each.startswith("sensor")]) == len(kit.sensors)
+        assert code == 0
+
+
+def test_another_kit_than_was_said(tsc: Tsc) -> None:
+    with PtyRobot(robots.load("liner").kit) as robot:
+        code, found = found_by(tsc, robot, "--robot", "tinibot")
+    assert code == 3
+    assert found["kit"]["verdict"] == "wrong"
+    assert "--robot liner" in str(found["kit"]["next"])
+
+
+@pytest.mark.parametrize(("reset", "finding"), [("BROWN_OUT", "supply_low"), ("WATCHDOG", "hung")])
+def test_a_robot_that_has_restarted(
+    tsc: Tsc, pty_robot: PtyRobot, reset: str, finding: str
+) -> None:
+    started_after(pty_robot, reset)
+    code, found = found_by(tsc, pty_robot)
+    assert code == 3
+    assert (found["supply"]["verdict"], found["supply"]["finding"]) == ("wrong", finding)
+
+
+def test_a_sensor_at_the_end_of_its_range_wants_eyes(tsc: Tsc, pty_robot: PtyRobot) -> None:
+    low = pty_robot.kit.sensors[0].low
+    pty_robot.ask(lambda robot: robot.sense(low, LIGHT, DISTANCE))
+    _, found = found_by(tsc, pty_robot)
+    first, second = (f"sensor {each.name}" for each in pty_robot.kit.sensors[:2])
+    assert found[first]["finding"] == "stuck"
+    assert found[second]["verdict"] == "ok"
+
+
+def test_a_line_that_damages_messages(tsc: Tsc, pty_robot: PtyRobot) -> None:
+    pty_robot.damages = 150
+    code, found = found_by(tsc, pty_robot)
+    assert code == 3
+    assert found["line"]["finding"] == "line_bad"
+
+
+def test_a_robot_that_falls_silent(tsc: Tsc, pty_robot: PtyRobot) -> None:
+    """What was found before is said, and the last finding is the end."""
+    pty_robot.off_after = 300
+    code, found = found_by(tsc, pty_robot)
+    assert code == 3
+    assert found["kit"]["verdict"] == "ok"
+    assert found["answers"]["verdict"] == "wrong"
+
+
+# -- with a person
+
+
+def asked(pty_robot: PtyRobot, answers: Callable[[str], str], *words: str) -> tuple[int, str, str]:
+    """Run it with a person: `answers` gets each question and returns what is typed."""
+    command = [*TSC, "selftest", "--port", pty_robot.port, "--lang", "en", *words]
+    with subprocess.Popen(
+        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    ) as process:
+        assert process.stdin and process.stdout and process.stderr
+        question, said = "", ""
+        while letter := os.read(process.stderr.fileno(), 1):
+            question += letter.decode()
+            if question.endswith(("Enter. ", "more: ")):
+                process.stdin.write(f"{answers(question)}\n".encode())
+                process.stdin.flush()
+                said, question = said + question, ""
+        out = process.stdout.read().decode()
+    return process.returncode, out, said
+
+
+def person(pty_robot: PtyRobot, motors: str = "1", is_noticed: bool = True) -> Callable[[str], str]:
+    """Return a person with a hand, who sees what the motors do."""
+
+    def answer(question: str) -> str:
+        if "Now a hand" in question and is_noticed:
+            pty_robot.ask(lambda robot: robot.sense(100_000, 100_000, 5_000))
+        elif "Nothing near" in question:
+            pty_robot.ask(lambda robot: robot.sense(*GOOD))
+        return motors if question.endswith("more: ") and "wheel" in question else "1"
+
+    return answer
+
+
+def test_a_good_robot_with_a_person(pty_robot: PtyRobot) -> None:
+    pty_robot.ask(lambda robot: robot.sense(*GOOD))
+    code, out, _ = asked(pty_robot, person(pty_robot))
+    assert code == 0, out
+    assert "WRONG" not in out and "?  " not in out
+    turned = [line for line in pty_robot.did if "MOTORS" in line]
+    assert turned == ["MOTORS 60 0", "MOTORS 0 0", "MOTORS 0 60", "MOTORS 0 0"]
+
+
+@pytest.mark.parametrize(("motors", "said"), [("2", "tsc trim"), ("3", "its wires")])
+def test_motors_that_turn_wrong_or_not_at_all(pty_robot: PtyRobot, motors: str, said: str) -> None:
+    pty_robot.ask(lambda robot: robot.sense(*GOOD))
+    code, out, _ = asked(pty_robot, person(pty_robot, motors))
+    assert code == 3
+    assert out.count("WRONG") == 2
+    assert f"Try:  {said}" in out
+
+
+def test_a_sensor_that_notices_nothing(pty_robot: PtyRobot) -> None:
+    pty_robot.ask(lambda robot: robot.sense(*GOOD))
+    code, out, _ = asked(pty_robot, person(pty_robot, is_noticed=False))
+    assert code == 3
+    assert out.count("does not notice") == len(pty_robot.kit.sensors)
+
+
+def test_once_more_turns_the_motor_again(pty_robot: PtyRobot) -> None:
+    pty_robot.ask(lambda robot: robot.sense(*GOOD))
+    answers = iter(["4", "7", "1", "1", "1"])
+
+    def answer(question: str) -> str:
+        return next(answers) if question.endswith("more: ") else ""
+
+    asked(pty_robot, answer)
+    assert sum("MOTORS 60 0" in line for line in pty_robot.did) == 3
+
+
+def test_a_person_who_leaves_leaves_questions(tsc: Tsc, pty_robot: PtyRobot) -> None:
+    pty_robot.ask(lambda robot: robot.sense(*GOOD))
+    done = subprocess.run(
+        [*TSC, "selftest", "--port", pty_robot.port], input=b"", capture_output=True
+    )
+    assert done.returncode == 0
+    assert not any("MOTORS" in line for line in pty_robot.did)
+
+
+# -- the report
+
+
+def test_a_report_has_no_names(tsc: Tsc, pty_robot: PtyRobot, tmp_path: Path) -> None:
+    assert tsc("name", "LUISITO", "--port", pty_robot.port).code == 0
+    file = tmp_path / "report.txt"
+    for _ in range(2):  # a report of ours is replaced
+        done = tsc("selftest", "--yes", "--port", pty_robot.port, "--report", file)
+    assert "LUISITO" in done.out
+    said = file.read_text(encoding="utf-8")
+    assert said.startswith(report.SELFTEST_MARK + "\n")
+    for private in ("LUISITO", str(tmp_path), os.uname().nodename):
+        assert private not in said
+    assert "sensor" in said
+    mine = tmp_path / "mine.txt"
+    mine.write_text("mine")
+    assert tsc("selftest", "--yes", "--port", pty_robot.port, "--report", mine).code == 2
+    assert mine.read_text() == "mine"
+
+
+def test_a_robot_that_is_not_there_has_a_report_too(tsc: Tsc, tmp_path: Path) -> None:
+    file = tmp_path / "report.txt"
+    done = tsc("selftest", "--port", "/dev/serial-of-Ana", "--report", file)
+    assert done.code == 3
+    said = file.read_text(encoding="utf-8")
+    assert "Ana" not in said
+    assert "tsc doctor" in said
