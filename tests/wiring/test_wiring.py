@@ -22,6 +22,7 @@ from tiniscript.robots.profile import LANGUAGES, Place, Robot, Wiring
 from tiniscript.robots.reader import read
 from tiniscript.wiring import parts
 from tiniscript.wiring.drawing import drawing_of
+from tiniscript.wiring.finished import _Finished, finished_of
 from tiniscript.wiring.headers import SIDES
 from tiniscript.wiring.html import html_of
 from tiniscript.wiring.icons import ICONS
@@ -315,7 +316,7 @@ def test_a_hostile_label_is_only_text() -> None:
         whole = html_of(plan)
         elements = Elements(whole)
         assert "script" not in elements.found
-        assert elements.found.count("svg") == 1
+        assert elements.found.count("svg") == 2
         assert elements.referred == []
         assert Elements(html_of(plain)).found.count("tr") == elements.found.count("tr")
         assert Tree.fromstring(drawing_of(plan)).tag == f"{SVG}svg"
@@ -383,3 +384,56 @@ def test_what_cannot_be_written_is_said(tsc: Tsc, tmp_path: Path) -> None:
         done = tsc("wiring", *arguments)
         assert done.code == 2
         assert sentence in done.err
+
+
+# -- the finished robot
+
+
+@each_robot
+def test_the_finished_robot_has_each_sensor_where_the_body_says(robot: Robot) -> None:
+    for language in LANGUAGES:
+        plan = plan_of(robot, language)
+        svg = finished_of(plan)
+        tree = Tree.fromstring(svg)
+        _, _, width, height = map(float, tree.attrib["viewBox"].split())
+        shown = texts_of(svg)
+        for name, place in robot.body.places.items():
+            assert name in shown
+            x, y = places_of(plan, place)
+            assert f'<circle cx="{x:g}" cy="{y:g}" r="9"' in svg
+        for each in tree.iter(f"{SVG}circle"):
+            assert 0 < float(each.attrib["cx"]) < width
+            assert 0 < float(each.attrib["cy"]) < height
+        assert f"{robot.body.length_cm:g} × {robot.body.width_cm:g} cm" in shown
+
+
+def places_of(plan: Plan, place: Place) -> tuple[float, float]:
+    return _Finished(plan).at(place.x_cm, place.y_cm)
+
+
+def test_left_is_left_and_ahead_is_up() -> None:
+    plan = plan_of(robots.load("tinibot"), "en")
+    left, right, ahead = (
+        places_of(plan, robots.load("tinibot").body.places[name])
+        for name in ("LIGHT_L", "LIGHT_R", "DISTANCE")
+    )
+    assert left[0] < ahead[0] < right[0]
+    assert ahead[1] < left[1] == right[1]
+
+
+def test_a_page_has_both_drawings_and_fits_a_phone() -> None:
+    page = html_of(plan_of(robots.load("tinibot"), "es"))
+    assert page.count("<svg") == 2
+    assert '<div class="drawing">' in page and '<div class="finished">' in page
+    assert ".drawing { overflow-x: auto; }" in page
+
+
+def test_parts_have_quantities() -> None:
+    for language in LANGUAGES:
+        plan = plan_of(robots.load("tinibot"), language)
+        needs = next(each for each in page_of(plan) if each.kind == "list").rows
+        assert all(re.search(r"\d+ × ", row[0]) for row in needs)
+        wires = next(int(found[1]) for row in needs if (found := re.search(
+            r"(\d+) (?:jumper wires|cables de puente)", row[0])))  # fmt: skip
+        joins = sum(len(block.rows) - 1 for block in page_of(plan) if block.kind == "ticks")
+        assert joins < wires < 2 * joins

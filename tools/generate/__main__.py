@@ -341,7 +341,11 @@ OUTPUTS: list[tuple[Path, Callable[[], str]]] = [
         (WIRING / name, partial(wiring_page, name))
         for path in sorted(ROBOTS.glob("*.toml"))
         for language in LANGUAGES
-        for name in (f"{path.stem}.{language}.md", f"{path.stem}.{language}.svg")
+        for name in (
+            f"{path.stem}.{language}.md",
+            f"{path.stem}.{language}.svg",
+            f"{path.stem}.finished.{language}.svg",
+        )
     ),
 ]
 

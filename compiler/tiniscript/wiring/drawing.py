@@ -77,7 +77,7 @@ def _part_of_size(sign: str) -> float:
     return 0.78 if sign.isupper() or sign in "mw%…" else 0.67
 
 
-def _text(
+def text_at(
     shown: str, x: float, y: float, room: float, anchor: str = "start", size: float = 14,
     style: str = "",
 ) -> str:  # fmt: skip
@@ -107,8 +107,8 @@ def _board(plan: Plan, layout: Layout) -> list[str]:
         f'fill="#eef4f6" stroke="{LINE}" stroke-width="2"/>',
         f'<rect x="{middle - 22:g}" y="{top - 14}" width="44" height="24" rx="3" fill="#dddddd" '
         f'stroke="{LINE}"/>',
-        _text("USB", middle, top + 3, 40, "middle", 13),
-        _text(
+        text_at("USB", middle, top + 3, 40, "middle", 13),
+        text_at(
             SIDES[plan.chip.name].name, middle, top + height - 14, width - 12, "middle", 15, BOLD
         ),
     ]
@@ -131,7 +131,7 @@ def _pin(pin: Pin, layout: Layout, plan: Plan) -> list[str]:
         is_used = True
     anchor = "start" if pin.side == LEFT else "end"
     style = BOLD if is_used else FAINT
-    lines.append(_text(shown, edge + 10 * inward, pin.y + 4.5, 62, anchor, 14, style))
+    lines.append(text_at(shown, edge + 10 * inward, pin.y + 4.5, 62, anchor, 14, style))
     if pin.name in set(BOARD_RAILS) & set(plan.rails) and pin == _first(pin.name, layout):
         near, far = edge - 5 * inward, edge - 12 * inward
         lines.append(_line(near, pin.y, far, pin.y, RAIL_INKS[pin.name]))
@@ -142,7 +142,7 @@ def _pin(pin: Pin, layout: Layout, plan: Plan) -> list[str]:
         )
         if pin.y == first:
             words = text("row_at_the_end", plan.language)
-            lines.append(_text(words, edge - 10, pin.y - STEP + 5, 100, "end", 11, FAINT))
+            lines.append(text_at(words, edge - 10, pin.y - STEP + 5, 100, "end", 11, FAINT))
     return lines
 
 
@@ -224,8 +224,8 @@ def _box(box: Box, language: str) -> list[str]:
     lines = [
         f'<rect x="{box.x}" y="{box.y}" width="{places.PART_WIDTH}" height="{box.height}" rx="6" '
         f'fill="#fafafa" stroke="{LINE}" stroke-width="2"/>',
-        _text(title, box.x + 8, box.y + 18, inside, size=15, style=BOLD),
-        _text(part.label, box.x + 8, box.y + 36, inside, size=13) if part.label else "",
+        text_at(title, box.x + 8, box.y + 18, inside, size=15, style=BOLD),
+        text_at(part.label, box.x + 8, box.y + 36, inside, size=13) if part.label else "",
         f'<g transform="translate({outer} {middle:g})" fill="#ffffff" stroke="{LINE}" '
         f'stroke-width="1.5">{icon}</g>',
     ]
@@ -273,7 +273,7 @@ def _end(end: End, y: int, box: Box) -> list[str]:
         lines.append(_tag(end.name, at(-28), y))
     else:
         style = "" if end.wire or end.rail else FAINT
-        lines.append(_text(end.name, at(-10), y + 4.5, 90, anchor, 13, style))
+        lines.append(text_at(end.name, at(-10), y + 4.5, 90, anchor, 13, style))
     return lines
 
 
@@ -289,9 +289,11 @@ def _motors(box: Box, language: str) -> list[str]:
             lines.append(_line(outer, y + rise, x, y + rise, LINE))
         lines += [
             f'<circle cx="{x}" cy="{y}" r="24" fill="#ffffff" stroke="{LINE}" stroke-width="2"/>',
-            _text("M", x, y + 6, 40, "middle", 17, BOLD),
-            _text(text(key, language), x - outward * 10, y + 42, 98, "middle", 12),
-            _text(terminals, outer - outward * 6, y + 4, 84, "end" if outward > 0 else "start", 11),
+            text_at("M", x, y + 6, 40, "middle", 17, BOLD),
+            text_at(text(key, language), x - outward * 10, y + 42, 98, "middle", 12),
+            text_at(
+                terminals, outer - outward * 6, y + 4, 84, "end" if outward > 0 else "start", 11
+            ),
         ]
     return lines
 
@@ -303,15 +305,15 @@ def _legend(plan: Plan, top: int) -> list[str]:
     lines = [
         f'<g><circle cx="29" cy="{top + 8}" r="9" fill="#ffffff" stroke="{LINE}" '
         f'stroke-width="2"/><text x="29" y="{top + 12}" text-anchor="middle" font-size="11">7'
-        f"</text>{_text(text('legend_number', plan.language), 58, top + 13, 900)}</g>"
+        f"</text>{text_at(text('legend_number', plan.language), 58, top + 13, 900)}</g>"
     ]
     for rail in plan.rails:
         y = top + 8 + LEGEND_STEP * len(lines)
         words = text(f"legend_{rail}", plan.language)
-        lines.append(f"<g>{_tag(rail, 29, y)}{_text(words, 58, y + 5, 900)}</g>")
+        lines.append(f"<g>{_tag(rail, 29, y)}{text_at(words, 58, y + 5, 900)}</g>")
     for key in ("legend_same", "legend_dot"):
         y = top + 8 + LEGEND_STEP * len(lines)
-        lines.append(_text(text(key, plan.language), 10, y + 5, 900))
+        lines.append(text_at(text(key, plan.language), 10, y + 5, 900))
     return lines
 
 

@@ -6,6 +6,7 @@ import re
 from html import escape
 
 from tiniscript.wiring.drawing import drawing_of
+from tiniscript.wiring.finished import finished_of
 from tiniscript.wiring.page import Block, page_of
 from tiniscript.wiring.plan import Plan
 
@@ -28,7 +29,10 @@ ul.checks li { text-indent: -2em; }
 ul.checks li::before { content: "\\2610"; display: inline-block; width: 1.67em; font-size: 1.2em;
   text-indent: 0; }
 td:first-child::before { content: "\\2610"; display: inline-block; width: 1.5em; }
+.finished svg { max-height: 640px; }
 @media screen and (max-width: 640px) {
+  .drawing { overflow-x: auto; }
+  .drawing svg { width: 900px; }
   thead { display: none; }
   table, tbody, tr, td { display: block; border: 0; }
   tr { border: 1px solid #777; margin: 0.5em 0; padding: 0.2em 0.4em; }
@@ -40,6 +44,7 @@ td:first-child::before { content: "\\2610"; display: inline-block; width: 1.5em;
 @media print {
   body { font-size: 10.5pt; max-width: none; margin: 0; padding: 0; }
   svg { max-height: 236mm; break-after: page; }
+  .finished svg { max-height: 120mm; break-after: auto; }
 }
 """
 
@@ -63,8 +68,9 @@ def _words(words: str) -> str:
 
 
 def _block(block: Block, plan: Plan) -> str:
-    if block.kind == "drawing":
-        return f"<p>{_words(block.words)}</p>\n{drawing_of(plan)}"
+    if block.kind in ("drawing", "finished"):
+        svg = drawing_of(plan) if block.kind == "drawing" else finished_of(plan)
+        return f'<p>{_words(block.words)}</p>\n<div class="{block.kind}">\n{svg}</div>'
     if block.kind == "ticks":
         head, *rows = block.rows
         lines = "\n".join(_row(row, head) for row in rows)

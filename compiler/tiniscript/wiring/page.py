@@ -25,7 +25,8 @@ class Block(NamedTuple):
     rows: tuple[tuple[str, ...], ...] = ()
 
 
-KINDS = ("title", "heading", "paragraph", "drawing", "list", "checks", "ticks")
+SPARE_WIRES = 10  # jumper wires that break, or that a second rail wants
+KINDS = ("title", "heading", "paragraph", "drawing", "finished", "list", "checks", "ticks")
 
 
 def page_of(plan: Plan) -> list[Block]:
@@ -74,6 +75,8 @@ class _Page:
             Block("title", say("title", robot=self.plan.robot)),
             Block("paragraph", say("intro", board=self.board)),
             Block("drawing", say("drawing")),
+            Block("heading", say("finished", robot=self.plan.robot)),
+            Block("finished", say("finished_drawing")),
             Block("heading", say("need")),
             Block("list", rows=_column(self._needs())),
             Block("heading", say("wires")),
@@ -106,7 +109,11 @@ class _Page:
             needs.append(need)
         values = ", ".join(f"{count} × {value}" for value, count in self.plan.resistors.items())
         needs.append(self.say("need_resistors", values=values))
-        needs.append(self.say("need_breadboard"))
+        joins = len(self.plan.wires) + len(self._rails()) - 1
+        needs.append(self.say("need_breadboard", count=joins + SPARE_WIRES))
+        body = self.plan.body
+        size = f"{body.length_cm:g} × {body.width_cm:g} cm"
+        needs += [self.say("need_plate", size=size), self.say("need_power_bank")]
         return needs
 
     def _rails(self) -> list[tuple[str, ...]]:

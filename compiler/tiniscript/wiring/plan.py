@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
 from tiniscript.robots.boards import CHIPS, Chip
-from tiniscript.robots.profile import Robot, Wiring
+from tiniscript.robots.profile import Body, Robot, Wiring
 from tiniscript.wiring import parts
 from tiniscript.wiring.parts import MOTOR_BATTERY, SERVO_SUPPLY, Shape
 from tiniscript.wiring.texts import text
@@ -63,6 +63,7 @@ class Plan(NamedTuple):
     parts: tuple[Part, ...]
     has_lamp: bool
     has_state: bool
+    body: Body
 
     @property
     def has_radio(self) -> bool:
@@ -177,7 +178,7 @@ def plan_of(robot: Robot, language: str) -> Plan:
             found.append(counter.part(named(key), named(f"{key}_volts"), supply, {}))
     return Plan(
         robot.labels[language]["robot"], language, chip, board.baud, tuple(found), has_lamp,
-        board.bluetooth_state is not None,
+        board.bluetooth_state is not None, body,
     )  # fmt: skip
 
 

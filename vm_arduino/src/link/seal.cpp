@@ -6,7 +6,7 @@
 
 namespace tiniscript {
 
-bool are_equal(const uint8_t* first, const uint8_t* second, uint8_t length) {
+tini_noinline bool are_equal(const uint8_t* first, const uint8_t* second, uint8_t length) {
   uint8_t differ = 0;
   while (length-- != 0) differ = static_cast<uint8_t>(differ | (*first++ ^ *second++));
   return differ == 0;

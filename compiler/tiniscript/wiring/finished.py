@@ -1,0 +1,195 @@
+"""Draws the finished robot from above, its front at the top: where wheels, parts and sensors sit.
+
+Size, wheels and sensors are those of the profile's body; where board, breadboard and batteries lie
+is a proposal. Knows a plan; what a plan's texts may hold is escaped by `drawing`.
+"""
+
+from __future__ import annotations
+
+from html import escape
+from math import cos, radians, sin
+
+from tiniscript.robots.profile import Place
+from tiniscript.wiring.drawing import BOLD, FAINT, FONT, LINE, RAIL_INKS, text_at
+from tiniscript.wiring.headers import SIDES
+from tiniscript.wiring.plan import Part, Plan
+from tiniscript.wiring.texts import text
+
+LONGEST = 520  # of the longer side of the plate
+MARGIN = 70  # above and below the plate
+BESIDE = 230  # left and right of it, for the labels
+WHEEL_CM = 6.5, 2.6  # its diameter and its width
+ROW_STEP = 44  # between two labels
+ARROW = 30
+PLATE, PARTS = "#f4f4f4", "#ffffff"
+BELOW = ' stroke-dasharray="5 4"'  # what is under the plate
+
+
+def finished_of(plan: Plan) -> str:
+    """Return the drawing as a whole `<svg>`."""
+    return _Finished(plan).svg()
+
+
+class _Finished:
+    def __init__(self, plan: Plan) -> None:
+        self.plan = plan
+        body = plan.body
+        self.scale = LONGEST / max(body.length_cm, body.width_cm, body.wheel_base_cm)
+        self.length, self.breadth = body.length_cm * self.scale, body.width_cm * self.scale
+        wheel_cm = min(WHEEL_CM[0], body.length_cm * 0.4), min(WHEEL_CM[1], body.width_cm * 0.2)
+        self.wheel = wheel_cm[0] * self.scale, wheel_cm[1] * self.scale
+        half = max(self.breadth, body.wheel_base_cm * self.scale + self.wheel[1]) / 2
+        self.left, self.right = BESIDE, BESIDE + 2 * half
+        places = [0.0, *(each.x_cm for each in body.places.values())]
+        ahead = max(0.0, max(places) * self.scale - self.length / 2)
+        self.x, self.y = BESIDE + half, MARGIN + ahead + self.length / 2
+        self.width = self.right + BESIDE
+        self.height = self.y + self.length / 2 + MARGIN
+
+    def svg(self) -> str:
+        language = self.plan.language
+        title = escape(text("finished", language).format(robot=self.plan.robot))
+        width, height = round(self.width), round(self.height)
+        return "\n".join([
+            f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" '
+            f'width="{width}" height="{height}" font-family="{escape(FONT)}" font-size="14" '
+            f'role="img" aria-label="{title}">',
+            f"<title>{title}</title>",
+            f'<rect width="{width}" height="{height}" fill="#ffffff"/>',
+            *self._plate(), *self._wheels(), *self._rows(), *self._sensors(), *self._sizes(),
+            "</svg>",
+        ]) + "\n"  # fmt: skip
+
+    def say(self, key: str) -> str:
+        return text(key, self.plan.language)
+
+    def at(self, x_cm: float, y_cm: float) -> tuple[float, float]:
+        """Return where a place of the body is drawn: `x_cm` goes forward, `y_cm` to the left."""
+        return self.x - y_cm * self.scale, self.y - x_cm * self.scale
+
+    def _plate(self) -> list[str]:
+        return [
+            _box(self.x - self.breadth / 2, self.y - self.length / 2, self.breadth, self.length,
+                 PLATE, corner=22),
+            text_at(self.say("front"), self.x, MARGIN / 2, 400, "middle", style=BOLD),
+        ]  # fmt: skip
+
+    def _wheels(self) -> list[str]:
+        """Return both wheels on their axle, each with its motor under the plate, and the caster."""
+        lines = []
+        across = self.plan.body.wheel_base_cm / 2 * self.scale
+        diameter, width = self.wheel
+        for side, key in ((-1, "left_motor"), (1, "right_motor")):
+            x = self.x + side * across
+            inner = min(x, x - side * across * 0.62)
+            lines += [
+                _box(inner, self.y - diameter * 0.17, across * 0.62, diameter * 0.34, "none",
+                     more=BELOW),
+                _box(x - width / 2, self.y - diameter / 2, width, diameter, "#333333", corner=8),
+            ]  # fmt: skip
+            outside = self.left - 10 if side < 0 else self.right + 10
+            anchor = "end" if side < 0 else "start"
+            lines.append(text_at(self.say(key), outside, self.y + 5, BESIDE - 20, anchor))
+        radius = diameter * 0.17
+        caster = self.y + self.length / 2 - radius - 12
+        lines += [
+            f'<circle cx="{self.x:g}" cy="{caster:g}" r="{radius:g}" fill="none" '
+            f'stroke="{LINE}"{BELOW}/>',
+            text_at(self.say("caster"), self.right + 10, caster + 5, BESIDE - 20),
+            _line(self.x + radius, caster, self.right + 6, caster),
+        ]  # fmt: skip
+        return lines
+
+    def _rows(self) -> list[str]:
+        """Return board, breadboard and batteries: boxes on the plate, from front to back."""
+        driver = self.plan.parts[0].title
+        supplies = [each for each in self.plan.parts if _is_supply(each)]
+        boxes = [
+            (SIDES[self.plan.chip.name].name, self.say("on_top_usb"), LINE),
+            (driver, self.say("beside_driver"), LINE),
+            *((each.title, each.label, RAIL_INKS["M+"]) for each in supplies),
+            (self.say("power_bank"), self.say("for_the_board"), RAIL_INKS["5V"]),
+        ]
+        room = self.length * 0.72
+        gap = 10.0
+        high = (room - gap * (len(boxes) - 1)) / len(boxes)
+        broad = self.breadth * 0.5
+        lines = []
+        top = self.y - self.length / 2 + self.length * 0.13
+        for title, label, ink in boxes:
+            lines += [
+                _box(self.x - broad / 2, top, broad, high, PARTS, ink),
+                text_at(title, self.x, top + high / 2 - 3, broad - 12, "middle", style=BOLD),
+                text_at(label, self.x, top + high / 2 + 16, broad - 12, "middle", 12, FAINT),
+            ]
+            top += high + gap
+        return lines
+
+    def _sensors(self) -> list[str]:
+        """Return each sensor where it sits, with an arrow to what it looks at, and its name."""
+        lines: list[str] = []
+        rows = {"left": MARGIN + 14.0, "right": MARGIN + 14.0}
+        body = self.plan.body
+        by_side = sorted(body.places.items(), key=lambda each: -each[1].x_cm)
+        labels = {each.title: each.label for each in self.plan.parts if each.is_device}
+        for name, place in by_side:
+            side = "left" if place.y_cm > 0 else "right"
+            x, y = self.at(place.x_cm, place.y_cm)
+            outside = self.left - 10 if side == "left" else self.right + 10
+            anchor = "end" if side == "left" else "start"
+            row = rows[side]
+            rows[side] += ROW_STEP
+            near = outside + (6 if side == "left" else -6)
+            edge = self.y - self.length / 2
+            if y < edge:  # it is held before the plate
+                lines.append(_line(x, y, x, edge, LINE, 4))
+            lines += [
+                _line(near, row - 5, x, y), *self._looks(place, x, y),
+                text_at(name, outside, row, BESIDE - 20, anchor, style=BOLD),
+                text_at(labels.get(name, ""), outside, row + 17, BESIDE - 20, anchor, 12, FAINT),
+            ]  # fmt: skip
+        return lines
+
+    def _looks(self, place: Place, x: float, y: float) -> list[str]:
+        if place.sees == "line":  # down, to the floor
+            return [f'<circle cx="{x:g}" cy="{y:g}" r="9" fill="{PARTS}" stroke="{LINE}"{BELOW}/>']
+        turn = radians(place.heading)
+        tip_x, tip_y = x - ARROW * sin(turn), y - ARROW * cos(turn)
+        ends = [
+            (tip_x + 9 * sin(turn + k), tip_y + 9 * cos(turn + k)) for k in (-0.5, 0.5)
+        ]  # fmt: skip
+        points = " ".join(f"{a:g},{b:g}" for a, b in ((tip_x, tip_y), *ends))
+        return [
+            f'<line x1="{x:g}" y1="{y:g}" x2="{tip_x:g}" y2="{tip_y:g}" stroke="{LINE}" '
+            f'stroke-width="2.5"/>',
+            f'<polygon points="{points}" fill="{LINE}"/>',
+            f'<circle cx="{x:g}" cy="{y:g}" r="9" fill="{PARTS}" stroke="{LINE}" '
+            f'stroke-width="2"/>',
+        ]
+
+    def _sizes(self) -> list[str]:
+        """Return how long and how wide the plate is, in centimetres."""
+        body = self.plan.body
+        size = f"{body.length_cm:g} × {body.width_cm:g} cm"
+        return [text_at(size, self.x, self.y + self.length / 2 + 26, 300, "middle")]
+
+
+def _is_supply(part: Part) -> bool:
+    return part.shape.need in ("need_battery", "need_servo_supply")
+
+
+def _box(
+    x: float, y: float, width: float, height: float, fill: str, ink: str = LINE, corner: int = 6,
+    more: str = "",
+) -> str:  # fmt: skip
+    return (
+        f'<rect x="{x:g}" y="{y:g}" width="{width:g}" height="{height:g}" rx="{corner}" '
+        f'fill="{fill}" stroke="{ink}" stroke-width="1.5"{more}/>'
+    )
+
+
+def _line(x1: float, y1: float, x2: float, y2: float, ink: str = "#888888", width: int = 1) -> str:
+    return (
+        f'<line x1="{x1:g}" y1="{y1:g}" x2="{x2:g}" y2="{y2:g}" stroke="{ink}" '
+        f'stroke-width="{width}"/>'
+    )
