@@ -53,7 +53,7 @@ def _linux_folder(variable: str, usual: str) -> Path | None:
     Nearly everywhere on Linux one of two variables says it: importing platformdirs takes as long as
     compiling a program.
     """
-    if sys.platform != "linux" or "ANDROID_ROOT" in os.environ:
+    if sys.platform not in ("linux", "emscripten") or "ANDROID_ROOT" in os.environ:
         return None
     chosen = os.environ.get(variable)
     folder = Path(chosen) if chosen else Path(os.environ.get("HOME", "")) / usual

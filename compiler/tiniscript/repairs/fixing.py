@@ -36,6 +36,9 @@ CHECKS = 400  # of one program, fewer of a long one
 CHECKED_CHARACTERS = 4_000_000
 
 
+OFFERS = 20  # repairs of one text that are tried
+
+
 class Fixed(NamedTuple):
     """`text` is the program with its sure repairs, `left` what it still has."""
 
@@ -79,6 +82,24 @@ def fixed(text: str, check: Check) -> Fixed:
         text, found, made = step
         count += made
     return Fixed(text, count, found)
+
+
+def offers(text: str, found: list[Diagnostic], check: Check) -> list[list[Edit]]:
+    """Return for each diagnostic the changes that a reader may choose to make, or none.
+
+    With them the program has fewer mistakes. They may be a guess: somebody looks at them.
+    """
+    source, tried = Source(text), 0
+    offered: list[list[Edit]] = []
+    for diagnostic in found:
+        edits = edits_of(diagnostic, source) if diagnostic.is_mistake else None
+        if not edits or tried >= OFFERS or any(_is_sealed(edit, source) for edit in edits):
+            offered.append([])
+            continue
+        tried += 1
+        after = check(applied(text, edits))
+        offered.append(edits if is_better(after, found, diagnostic.code, edits) else [])
+    return offered
 
 
 def _all_of(
