@@ -8,7 +8,7 @@ set -eu
 make_venv "[test]"
 debian_packages g++ gcc-avr avr-libc binutils-avr simavr libsimavr-dev libelf-dev \
     arduino-core-avr arduino-builder avrdude doctest-dev picocom \
-    clang-22 libclang-rt-22-dev gcc-xtensa-lx106 gcc-riscv64-unknown-elf qemu-system-misc zsh less dbus-daemon
+    clang-22 libclang-rt-22-dev gcc-xtensa-lx106 gcc-riscv64-unknown-elf qemu-system-misc zsh less dbus-daemon chromium
 
 cd "$ROOT"
 run() {
@@ -21,6 +21,8 @@ run ruff format --check .
 run mypy
 run mypy --platform win32 --cache-dir .mypy_cache/win32 compiler/tiniscript
 run tools.generate --check
+# The page of tsc studio, of packages from npm; without it its tests are skipped and say so.
+run tools.builds.studio || [ -z "${CI:-}" ]
 run pytest -n 2 --dist worksteal "$@"
 
 # Every branch of what decides whether a robot may run an image is taken by a test.

@@ -46,7 +46,7 @@ def offered(tmp_path: Path, *words: str) -> set[str]:
 @needs_bash
 def test_bash_offers_verbs_options_and_values(tmp_path: Path) -> None:
     assert offered(tmp_path, "") == set(VERBS)
-    assert offered(tmp_path, "st") == {"start", "stop"}
+    assert offered(tmp_path, "st") == {"start", "stop", "studio"}
     assert offered(tmp_path, "--lang", "es", "up") == {"upload"}
     assert offered(tmp_path, "--lang", "=", "es", "up") == {"upload"}
     assert offered(tmp_path, "--l") == {"--lang"}

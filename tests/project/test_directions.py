@@ -45,7 +45,7 @@ UPSTREAM: dict[str, set[str]] = {
     # of the syntax its tokens: which words a program uses
     "lessons": {*SHARED, "bytecode", "syntax", "vm", "robots", "link", "virtual"},
 }
-WHOLE = {"__init__", "__main__", "library", "cli"}  # what puts the stages together
+WHOLE = {"__init__", "__main__", "library", "studio", "cli"}  # what puts the stages together
 
 
 def modules_of(path: Path) -> set[str]:

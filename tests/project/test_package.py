@@ -15,10 +15,11 @@ import pytest
 from tests.support.casefile import ROOT
 from tests.support.platformio import need, prepared
 
-SKIPPED = (".git", ".venv", "build", "dist", "ready", "*.egg-info", "__pycache__", "*.pyc", ".pio",
+SKIPPED = (".git", ".venv", "build", "dist", "ready", "*.egg-info", "__pycache__", "*.pyc", ".pio", "page", "node_modules", "made",
            ".*_cache", ".coverage", "own.h", "*.bin", "way.png")  # fmt: skip
 ADDED = {"PKG-INFO", "setup.cfg"}  # by setuptools
 SOURCES = "tiniscript/flash/vm_arduino/"
+BUILT = "tiniscript/studio/page/index.html"  # by tools.builds.studio, before a wheel is made
 BUILD = "import sys; from setuptools import build_meta; print(build_meta.{0}(sys.argv[1]))"
 
 
@@ -65,10 +66,14 @@ def wheel(repo: Path, kept: set[str], tmp_path_factory: pytest.TempPathFactory) 
         (stale / name).touch()
     own = repo / "vm_arduino" / "src" / "boards" / "kits" / "own.h"
     own.write_text("#error")
+    page = repo / "compiler" / BUILT
+    page.parent.mkdir()
+    page.touch()
     folder = tmp_path_factory.mktemp("wheel")
     with zipfile.ZipFile(built(repo, "build_wheel", folder)) as packed:
         packed.extractall(folder / "unpacked")
     own.unlink()
+    shutil.rmtree(page.parent)
     return folder / "unpacked"
 
 
@@ -104,7 +109,7 @@ def test_a_wheel_has_what_is_in_the_repository_and_nothing_stale(
         if name.startswith(("vm_arduino/src/", "vm_arduino/extras/near/"))
         or name == "vm_arduino/platformio.ini"
     }
-    assert found == package | sources
+    assert found == package | sources | {BUILT}
     assert len(sources) > 50
 
 

@@ -231,6 +231,7 @@ _LATER = (
     ("module", "MODULE_TEXTS"),
     ("doctor", "DOCTOR_TEXTS"),
     ("selftest", "SELFTEST_TEXTS"),
+    ("studio", "STUDIO_TEXTS"),
 )
 
 

@@ -179,6 +179,8 @@ OPTIONS: tuple[Option, ...] = (
     Option("--import", "keys", ("takes the keys of such a file, too", "toma también las llaves de un archivo así"), KEYS, A_FILE, "bring"),
     Option("--name", "robot", ("what it is called", "cómo se llama"), TEXT, ("NAME", "NOMBRE")),
     Option("--listen", "robot", ("its TCP port, on this computer alone (any free one)", "su puerto TCP, solo en esta computadora (uno libre)"), NUMBER, P),
+    Option("--listen", "studio", ("its TCP port, on this computer alone (7070); 0: any free one", "su puerto TCP, solo en esta computadora (7070); 0: uno libre"), NUMBER, P),
+    Option("--no-browser", "studio", ("only says the address", "solo dice la dirección")),
     Option("--announce", "robot", ("lets programs of this computer find it as tcp://NAME, the name of --name", "deja que los programas de esta computadora lo encuentren como tcp://NOMBRE, el nombre de --name")),
     Option("--pty", "robot", ("a pseudo-terminal too (not on Windows)", "también una pseudoterminal (no en Windows)")),
     Option("--memory", "robot", ("keeps what it has saved in a file; without it, that is forgotten", "conserva en un archivo lo que guarda; sin esto, se olvida"), MEMORY, A_FILE),

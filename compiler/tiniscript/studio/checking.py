@@ -1,0 +1,91 @@
+"""Compiles a text for the page: its image, and what to show in the editor.
+
+Knows which repairs are offered as buttons. Lines and columns count from 1, columns in characters,
+as in `tsc check --json`; the end is not included.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import NamedTuple
+
+from tiniscript import Compiled, robots
+from tiniscript.codegen import source_map
+from tiniscript.diagnostics.rendering import Message, message
+from tiniscript.library.compiling import compiled, text_of
+from tiniscript.repairs.edits import Edit
+from tiniscript.repairs.fixing import offers
+from tiniscript.robots.profile import Robot
+from tiniscript.source import Source
+
+
+class Change(NamedTuple):
+    """`text` takes the place of a range."""
+
+    line: int
+    column: int
+    end_line: int
+    end_column: int
+    text: str
+
+
+class Finding(NamedTuple):
+    """A message as `tsc compile` prints it, and the changes of its repair, if it is offered."""
+
+    message: Message
+    repair: tuple[Change, ...]
+
+
+class Checked(NamedTuple):
+    """`image` is empty where the program has mistakes. `places` say for each instruction from
+    which offset on which range of the text it comes from."""
+
+    image: bytes
+    code_bytes: int
+    findings: tuple[Finding, ...]
+    places: tuple[source_map.MapPlace, ...]
+
+
+def check(data: bytes, robot: str, language: str) -> Checked:
+    """Compile a program's text for a shipped robot, as `tsc compile` does."""
+    profile = profile_of(robot)
+    found = compiled(data, profile, "", is_strict=True)
+    findings = _findings(data, found, profile, language)
+    if not found.is_right:
+        return Checked(b"", 0, findings, ())
+    return Checked(found.image, len(found.code), findings, source_map.from_compiled(found).places)
+
+
+def opened(data: bytes, robot: str, language: str) -> str | Message:
+    """Return the text of a file, or what is wrong with it."""
+    text = text_of(data, "")
+    if isinstance(text, str):
+        return text
+    return message(text.diagnostics[0], text.source, language)
+
+
+@cache
+def profile_of(robot: str) -> Robot:
+    assert robot in robots.names(), robot  # the page has no profiles of its own
+    return robots.load(robot)
+
+
+def _findings(data: bytes, found: Compiled, profile: Robot, language: str) -> tuple[Finding, ...]:
+    source = found.source
+    repairs = offers(
+        source.text,
+        found.diagnostics,
+        lambda text: compiled(text.encode(), profile, "", is_strict=True).diagnostics,
+    )
+    return tuple(
+        Finding(
+            message(diagnostic, source, language),
+            tuple(_change(edit, source) for edit in repair),
+        )
+        for diagnostic, repair in zip(found.diagnostics, repairs, strict=True)
+    )
+
+
+def _change(edit: Edit, source: Source) -> Change:
+    start, end = edit.span
+    return Change(*source.position(start), *source.position(end), edit.text)

@@ -1,0 +1,73 @@
+"""What the page knows before Python runs in it: robots with their words, worlds, all their names.
+
+`tools.builds.studio` writes it as JSON. Knows no program.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from tiniscript import robots
+from tiniscript.robots.profile import LANGUAGES, Robot
+from tiniscript.virtual import worlds
+from tiniscript.virtual.geometry import Point
+from tiniscript.virtual.world import World
+from tiniscript.words import WORDS
+
+_UNOFFERED = ("alias", "later")  # roles of words that a program is better off without
+
+
+def description() -> dict[str, Any]:
+    """Return everything as data for JSON."""
+    return {
+        "words": [
+            {"text": word.text, "role": word.role, "usage": word.usage, "example": word.example}
+            for word in WORDS.values()
+            if word.role not in _UNOFFERED
+        ],
+        "robots": [_robot(robots.load(name)) for name in robots.names()],
+        "worlds": [_world(name, worlds.load(name)) for name in worlds.names()],
+    }
+
+
+def _robot(profile: Robot) -> dict[str, Any]:
+    kit = profile.kit
+    return {
+        "name": profile.name,
+        "labels": {each: profile.labels[each]["robot"] for each in LANGUAGES},
+        "devices": [
+            {
+                "text": device.name,
+                "role": role,
+                "example": _example(device.name, role, device.is_yes_no),
+                "unit": device.unit,
+                "labels": {each: profile.labels[each][device.name] for each in LANGUAGES},
+            }
+            for role, devices in (("sensor", kit.sensors), ("actuator", kit.actuators))
+            for device in devices
+        ],
+    }
+
+
+def _example(name: str, role: str, is_yes_no: bool) -> str:
+    if role == "sensor":
+        return name
+    return f"{name}(TRUE)" if is_yes_no else f"{name}(0)"
+
+
+def _world(name: str, world: World) -> dict[str, Any]:
+    def corners(points: tuple[Point, ...]) -> list[list[float]]:
+        return [[point.x, point.y] for point in points]
+
+    return {
+        "name": name,
+        "labels": dict(world.labels),
+        "width_cm": world.width_cm,
+        "height_cm": world.height_cm,
+        "has_border": world.has_border,
+        "walls": [corners(wall) for wall in world.walls],
+        "boxes": [corners(box) for box in world.boxes],
+        "lines": [{"points": corners(each.points), "width_cm": each.width_cm}
+                  for each in world.lines],
+        "lamps": [[lamp.place.x, lamp.place.y] for lamp in world.lamps],
+    }  # fmt: skip

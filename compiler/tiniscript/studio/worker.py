@@ -1,0 +1,44 @@
+"""What the page calls: requests and answers are JSON.
+
+Knows the form of both. Runs in Pyodide, in a worker; knows nothing of a browser.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from typing import Any
+
+from tiniscript.diagnostics.rendering import Message
+from tiniscript.studio import checking
+
+Answer = dict[str, Any]
+
+
+def answer(request: str, data: bytes = b"") -> str:
+    """Return the answer to a request; `data` is a program's text or file."""
+    fields = json.loads(request)
+    return json.dumps(_ASKED[fields["do"]](fields, data), ensure_ascii=False)
+
+
+def _check(fields: Answer, data: bytes) -> Answer:
+    found = checking.check(data, fields["robot"], fields["language"])
+    return {
+        "image": found.image.hex(),
+        "bytes": found.code_bytes,
+        "findings": [
+            {**each.message._asdict(), "repair": [change._asdict() for change in each.repair]}
+            for each in found.findings
+        ],
+        "places": found.places,
+    }
+
+
+def _open(fields: Answer, data: bytes) -> Answer:
+    found = checking.opened(data, fields["robot"], fields["language"])
+    if isinstance(found, Message):
+        return {"message": found.message, "fix": found.fix}
+    return {"text": found}
+
+
+_ASKED: dict[str, Callable[[Answer, bytes], Answer]] = {"check": _check, "open": _open}

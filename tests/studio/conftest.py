@@ -1,0 +1,58 @@
+"""A browser and a server that the tests of the page share."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import pytest
+
+from tests.support import studio
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page, Playwright
+
+
+@pytest.fixture(scope="session")
+def playwright() -> Iterator[Playwright]:
+    with studio.driver() as found:
+        yield found
+
+
+@pytest.fixture(scope="session")
+def browser(playwright: Playwright) -> Iterator[Browser]:
+    with studio.browser(playwright) as opened:
+        yield opened
+
+
+@pytest.fixture(scope="session")
+def address(browser: Browser) -> Iterator[str]:
+    with studio.served() as server:
+        yield server.address
+
+
+@pytest.fixture
+def pages(browser: Browser, address: str) -> Iterator[studio.Pages]:
+    found = studio.Pages(browser, address)
+    yield found
+    found.close()
+    assert not found.wrong
+
+
+@pytest.fixture(scope="module")
+def only_page(browser: Browser, address: str) -> Iterator[tuple[studio.Pages, Page]]:
+    """One page for many tests: Python takes a while to start in it."""
+    found = studio.Pages(browser, address)
+    yield found, found.open()
+    found.close()
+
+
+@pytest.fixture
+def page(only_page: tuple[studio.Pages, Page]) -> Iterator[Page]:
+    """The page in English, for a tinibot. What it says of errors is looked at after each test."""
+    pages, found = only_page
+    found.select_option("#language", "en")
+    found.select_option("#robot", "tinibot")
+    yield found
+    wrong, pages.wrong[:] = pages.wrong[:], []
+    assert not wrong

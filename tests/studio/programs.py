@@ -1,0 +1,47 @@
+"""Every program of the documents, the cases and the examples, with the robot that it is for."""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+from tests.support.casefile import ROOT, all_cases
+from tiniscript import ProgramError, compile, robots
+from tiniscript.diagnostics.rendering import Message
+
+_ROBOT = re.compile(r"^\s*robot\s*=\s*(\w+)", re.MULTILINE)
+
+
+class Program(NamedTuple):
+    name: str
+    text: str
+    robot: str
+
+
+def programs() -> list[Program]:
+    found = []
+    for case in all_cases():
+        if "tiniscript" in case.parts:
+            named = _ROBOT.search(case.parts.get("senses", ""))
+            robot = named[1] if named and named[1] in robots.names() else "tinibot"
+            found.append(Program(case.id, case.parts["tiniscript"], robot))
+    for path in sorted((ROOT / "examples").glob("*.ts")):
+        robot = "liner" if path.stem == "line" else "tinibot"
+        found.append(Program(path.name, path.read_text(encoding="utf-8"), robot))
+    return found
+
+
+def image(program: Program) -> str:
+    """Return the image that `tsc compile` makes, in hexadecimal; none where there are mistakes."""
+    try:
+        return compile(program.text, program.robot).image.hex()
+    except ProgramError:
+        return ""
+
+
+def said(text: str, language: str) -> list[Message]:
+    """Return what `tsc compile` says of a program."""
+    try:
+        return list(compile(text, language=language).diagnostics)
+    except ProgramError as wrong:
+        return list(wrong.diagnostics)

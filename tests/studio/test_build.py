@@ -1,0 +1,114 @@
+"""How the page is built: of what, from where, and how large it is."""
+
+from __future__ import annotations
+
+import gzip
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+from tests.support.casefile import ROOT
+from tests.support.platformio import need
+from tiniscript.studio.policy import POLICY
+from tools.builds import studio
+
+LARGEST = 6_000_000  # bytes of all files, gzipped
+SOURCES = ROOT / "tools" / "studio"
+
+
+@pytest.fixture(scope="module")
+def page() -> Path:
+    need(studio.stale())
+    return studio.PAGE
+
+
+def test_the_packages_are_pinned_and_come_from_nowhere_in_particular() -> None:
+    wanted = json.loads((SOURCES / "package.json").read_text(encoding="utf-8"))
+    for found in (*wanted["dependencies"].values(), *wanted["devDependencies"].values()):
+        assert re.fullmatch(r"\d+\.\d+\.\d+", found)
+    lock = json.loads((SOURCES / "package-lock.json").read_text(encoding="utf-8"))
+    for name, package in lock["packages"].items():
+        assert "resolved" not in package, name
+        assert not name or package["integrity"].startswith("sha512-"), name
+
+
+def test_every_sentence_is_there_in_both_languages() -> None:
+    source = (SOURCES / "src" / "texts.js").read_text(encoding="utf-8")
+    table = source[source.index("export const TEXTS") : source.index("};")]
+    rows = re.findall(r"^  (\w+): \[", table, re.MULTILINE)
+    pairs = re.findall(r"^  \w+: \['(?:[^'\\]|\\.)*',\s+'(?:[^'\\]|\\.)*'\],$", table, re.MULTILINE)
+    assert len(rows) == len(pairs) > 20
+    for pair in pairs:
+        english, spanish = re.findall(r"'((?:[^'\\]|\\.)*)'", pair)
+        assert sorted(re.findall(r"\{\w+\}", english)) == sorted(re.findall(r"\{\w+\}", spanish))
+
+
+def test_every_sentence_is_said_somewhere() -> None:
+    names = re.findall(r"^  (\w+): \[", (SOURCES / "src" / "texts.js").read_text(), re.MULTILINE)
+    said = "".join(
+        path.read_text(encoding="utf-8")
+        for path in (SOURCES / "src").iterdir()
+        if path.suffix in (".js", ".html") and path.name != "texts.js"
+    )
+    assert [name for name in names if not re.search(rf"['\"]{name}['\"]", said)] == []
+
+
+def test_nothing_makes_markup_of_a_text() -> None:
+    for path in (SOURCES / "src").glob("*.js"):
+        source = path.read_text(encoding="utf-8")
+        for word in ("innerHTML", "outerHTML", "insertAdjacentHTML", "document.write", "eval(",
+                     "new Function"):  # fmt: skip
+            assert word not in source, f"{path.name}: {word}"
+
+
+def test_no_file_of_its_sources_is_too_full() -> None:
+    for path in (*(SOURCES / "src").glob("*.js"), *SOURCES.glob("*.mjs"), *SOURCES.glob("*.py")):
+        assert len(path.read_text(encoding="utf-8").splitlines()) <= 400, path.name
+
+
+def test_the_page_is_small_enough(page: Path) -> None:
+    files = [path for path in page.iterdir() if path.name not in (studio.STAMP, studio.LICENCES)]
+    assert sum(len(gzip.compress(path.read_bytes(), 9)) for path in files) <= LARGEST
+    assert len(studio.size_rows(page)) == len(files) + 2
+
+
+def test_the_page_has_its_policy_and_no_code_of_its_own(page: Path) -> None:
+    html = (page / "index.html").read_text(encoding="utf-8")
+    assert POLICY in html
+    assert not re.search(r"<script(?![^>]*\bsrc=)|\son\w+=|\sstyle=|<style|https?://", html)
+
+
+def test_the_page_brings_the_licences_of_what_is_in_it(page: Path) -> None:
+    found = (page / studio.LICENCES).read_text(encoding="utf-8")
+    for name in (
+        "@codemirror/view 6.",
+        "@lezer/common 1.",
+        "style-mod 4.",
+        "pyodide 314.",
+        "cobs 1.",
+    ):
+        assert f"\n{name}" in found
+    assert "Mozilla Public License 2.0" in found and "Permission is hereby granted" in found
+    assert "typescript" not in found and str(ROOT) not in found
+
+
+def test_no_address_of_the_building_computer_is_in_it(page: Path) -> None:
+    for path in page.iterdir():
+        assert str(ROOT).encode() not in path.read_bytes(), path.name
+
+
+def test_the_same_sources_give_the_same_page(page: Path, tmp_path: Path) -> None:
+    again = tmp_path / "page"
+    studio.build(again)
+    assert {path.name for path in again.iterdir()} == {path.name for path in page.iterdir()}
+    for path in again.iterdir():
+        assert path.read_bytes() == (page / path.name).read_bytes(), path.name
+
+
+def test_a_page_of_other_sources_is_not_used(tmp_path: Path) -> None:
+    assert studio.COMMAND in studio.stale(tmp_path)
+    (tmp_path / studio.STAMP).write_text('{"sources": "others"}')
+    assert "other sources" in studio.stale(tmp_path)
+    assert studio.main(["--check", "-o", str(tmp_path)]) == 2

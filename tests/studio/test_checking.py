@@ -1,0 +1,116 @@
+"""What the page is told of a program: the same as the command says."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from tests.pupils import corpus
+from tests.studio.programs import said
+from tiniscript import check, compile, robots
+from tiniscript.diagnostics.rendering import Message
+from tiniscript.studio import checking, worker
+from tiniscript.studio.description import description
+
+
+def test_a_right_program_has_the_image_of_the_command() -> None:
+    found = checking.check(b"SI|F(2, 80)", "tinibot", "en")
+    assert found.image == compile("SI|F(2, 80)").image
+    assert (found.code_bytes, found.findings) == (3, ())
+    assert found.places[0] == (0, 1, 4, 1, 12)
+
+
+@pytest.mark.parametrize("language", ["en", "es"])
+def test_messages_are_those_of_the_command(language: str) -> None:
+    for entry in corpus.entries():
+        found = checking.check(entry.program.encode(), "tinibot", language)
+        assert [each.message for each in found.findings] == said(entry.program, language)
+
+
+def test_a_program_that_is_too_large_for_the_robot_is_wrong() -> None:
+    found = checking.check(b"SI|" + b"F(1, 80);" * 500, "tinibot", "en")
+    assert not found.image and found.findings[-1].message.severity == "mistake"
+
+
+def test_a_repair_that_is_offered_leaves_fewer_mistakes() -> None:
+    offered = 0
+    for entry in corpus.entries():
+        found = checking.check(entry.program.encode(), "tinibot", "en")
+        for finding in found.findings:
+            if finding.repair:
+                offered += 1
+                changed = changed_by(entry.program, finding.repair)
+                assert mistakes(check(changed)) <= mistakes([f.message for f in found.findings])
+                assert changed != entry.program
+    assert offered > 100
+
+
+def test_a_line_with_a_checksum_is_not_repaired() -> None:
+    found = checking.check(b"SI|F(2, 80~1A2B", "tinibot", "en")
+    assert found.findings and not any(each.repair for each in found.findings)
+
+
+def test_only_so_many_repairs_are_tried() -> None:
+    program = "SI|" + "F(2, 80\n" * 90
+    found = checking.check(program.encode(), "tinibot", "en")
+    assert sum(bool(each.repair) for each in found.findings) <= 20 < len(found.findings)
+
+
+@pytest.mark.parametrize("data", [b"\xff\xfe", b"F(2\0, 80)", b"x" * 1_000_001])
+def test_a_file_that_is_no_program_gets_a_sentence(data: bytes) -> None:
+    found = checking.opened(data, "tinibot", "es")
+    assert isinstance(found, Message) and found.message
+
+
+def test_a_file_is_read_as_the_command_reads_it() -> None:
+    assert checking.opened("\ufeffSI|F(2, 80)\r\n".encode(), "liner", "en") == "SI|F(2, 80)\r\n"
+
+
+def test_a_robot_is_a_shipped_one() -> None:
+    """No name that a page sends becomes a file."""
+    with pytest.raises(AssertionError):
+        checking.check(b"", "../../etc/passwd.toml", "en")
+
+
+def test_answers_are_json() -> None:
+    request = {"do": "check", "robot": "tinibot", "language": "es"}
+    found = json.loads(worker.answer(json.dumps(request), "SI|F(-1, 80) // ñ 🤖".encode()))
+    (finding,) = found["findings"]
+    assert finding["severity"] == "mistake" and finding["code"] == "TS206"
+    assert finding["repair"][0]["text"] == "B(1, 80)"
+    opened = json.loads(worker.answer(json.dumps({**request, "do": "open"}), b"\xff"))
+    assert opened["message"]
+
+
+def test_the_page_knows_every_robot_and_its_words() -> None:
+    found = description()
+    assert [each["name"] for each in found["robots"]] == robots.names()
+    for each in found["robots"]:
+        kit = robots.load(each["name"]).kit
+        names = [device["text"] for device in each["devices"]]
+        assert names == [device.name for device in (*kit.sensors, *kit.actuators)]
+        assert set(each["labels"]) == {"en", "es"}
+    words = {each["text"] for each in found["words"]}
+    assert {"F", "IF", "END_LOOP", "UNTIL"} <= words and not words & {"TASK", "ENDLOOP"}
+    assert found["worlds"][0]["name"] == "obstacles"
+
+
+def mistakes(found: list[Message]) -> int:
+    return sum(each.severity == "mistake" for each in found)
+
+
+def changed_by(text: str, changes: tuple[checking.Change, ...]) -> str:
+    """Return a text after changes, whose places are lines and columns."""
+    starts = [0]
+    for k, character in enumerate(text):
+        if character == "\n":
+            starts.append(k + 1)
+
+    def offset(line: int, column: int) -> int:
+        return starts[line - 1] + column - 1 if line <= len(starts) else len(text)
+
+    for change in sorted(changes, reverse=True):
+        start, end = offset(change.line, change.column), offset(change.end_line, change.end_column)
+        text = text[:start] + change.text + text[end:]
+    return text

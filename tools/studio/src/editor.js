@@ -1,0 +1,191 @@
+// The text editor. Knows CodeMirror; everything else of the page only knows this file.
+//
+// It lives in a shadow root, where a style sheet can be adopted: so the page's policy needs no
+// exception for styles in elements.
+
+import { autocompletion, completionKeymap } from '@codemirror/autocomplete';
+import { defaultKeymap, history, historyKeymap } from '@codemirror/commands';
+import { bracketMatching } from '@codemirror/language';
+import { lintGutter, lintKeymap, setDiagnostics } from '@codemirror/lint';
+import { Compartment, EditorState, StateEffect, StateField } from '@codemirror/state';
+import { Decoration, EditorView, highlightActiveLine, keymap, lineNumbers } from '@codemirror/view';
+import { colors, completionOf, languageOf } from './language.js';
+import { EDITOR_PHRASES_ES, currentLanguage, text } from './texts.js';
+
+/** @typedef {import('./python.js').Finding} Finding */
+/** @typedef {import('./python.js').Change} Change */
+/** @typedef {{line: number, column: number, end_line: number, end_column: number}} Range */
+
+/** @type {import('@codemirror/state').StateEffectType<{from: number, to: number} | null>} */
+const setRunning = StateEffect.define();
+const running = StateField.define({
+  create: () => Decoration.none,
+  update(marks, transaction) {
+    let found = marks.map(transaction.changes);
+    for (const effect of transaction.effects) {
+      if (!effect.is(setRunning)) continue;
+      found = effect.value && effect.value.from < effect.value.to
+        ? Decoration.set([Decoration.mark({ class: 'cm-running' }).range(effect.value.from, effect.value.to)])
+        : Decoration.none;
+    }
+    return found;
+  },
+  provide: (field) => EditorView.decorations.from(field),
+});
+
+const theme = EditorView.theme({
+  '&': { height: '100%', fontSize: '1rem', backgroundColor: '#fff', color: '#1b2733' },
+  '&.cm-focused': { outline: '3px solid #0b4f9e', outlineOffset: '-3px' },
+  '.cm-scroller': { fontFamily: 'ui-monospace, "DejaVu Sans Mono", Menlo, Consolas, monospace', lineHeight: '1.5' },
+  '.cm-gutters': { backgroundColor: '#eef2f6', color: '#4a5663', border: 'none' },
+  '.cm-activeLine': { backgroundColor: '#eef4fb' },
+  '.cm-running': { backgroundColor: '#ffd84d' },
+  // CodeMirror draws these with pictures in its style sheet, which the page's policy forbids.
+  '.cm-lintRange': { backgroundImage: 'none', textDecorationLine: 'underline', textDecorationStyle: 'wavy', textUnderlineOffset: '3px' },
+  '.cm-lintRange-error': { backgroundImage: 'none', textDecorationColor: '#a8200f' },
+  '.cm-lintRange-warning': { backgroundImage: 'none', textDecorationColor: '#7a4b00' },
+  '.cm-lint-marker': { fontWeight: '700', textAlign: 'center', lineHeight: '1.2' },
+  '.cm-lint-marker-error': { content: '"×"', color: '#a8200f' },
+  '.cm-lint-marker-warning': { content: '"!"', color: '#7a4b00' },
+  '.cm-diagnosticAction': { minHeight: '36px', padding: '0 12px', marginLeft: '8px', font: 'inherit', backgroundColor: '#0b4f9e', color: '#fff', borderRadius: '6px' },
+  '.cm-tooltip': { maxWidth: 'min(90vw, 34rem)' },
+});
+
+export class Editor {
+  #robot = new Compartment();
+  #words = new Compartment();
+  #view;
+
+  /**
+   * @param {HTMLElement} parent
+   * @param {string} robot
+   * @param {() => void} changed
+   */
+  constructor(parent, robot, changed) {
+    const root = parent.attachShadow({ mode: 'open' });
+    const place = document.createElement('div');
+    place.style.height = '100%';
+    root.append(place);
+    this.#view = new EditorView({
+      parent: place,
+      root,
+      state: EditorState.create({
+        extensions: [
+          lineNumbers(),
+          history(),
+          // Tab leaves the editor: who has no mouse must get out.
+          keymap.of([...completionKeymap, ...lintKeymap, ...defaultKeymap, ...historyKeymap]),
+          bracketMatching(),
+          highlightActiveLine(),
+          lintGutter(),
+          running,
+          colors,
+          theme,
+          EditorView.lineWrapping,
+          this.#robot.of(this.#forRobot(robot)),
+          this.#words.of(this.#inLanguage()),
+          EditorView.updateListener.of((update) => {
+            if (update.docChanged) changed();
+          }),
+        ],
+      }),
+    });
+  }
+
+  get text() {
+    return this.#view.state.doc.toString();
+  }
+
+  /** Replaces the text; undo brings the one before back. @param {string} whole */
+  replace(whole) {
+    this.#view.dispatch({ changes: { from: 0, to: this.#view.state.doc.length, insert: whole } });
+  }
+
+  /** @param {string} robot */
+  setRobot(robot) {
+    this.#view.dispatch({ effects: this.#robot.reconfigure(this.#forRobot(robot)) });
+  }
+
+  setLanguage() {
+    this.#view.dispatch({ effects: this.#words.reconfigure(this.#inLanguage()) });
+  }
+
+  /**
+   * @param {Finding[]} findings
+   * @param {(finding: Finding) => void} repair
+   */
+  showFindings(findings, repair) {
+    const marks = findings.map((finding) => ({
+      ...this.#offsets(finding),
+      /** @type {'error' | 'warning'} */
+      severity: finding.severity === 'mistake' ? 'error' : 'warning',
+      message: finding.fix ? `${finding.message}  ${text('try')} ${finding.fix}` : finding.message,
+      actions: finding.repair.length
+        ? [{ name: text('repair'), apply: () => repair(finding) }]
+        : [],
+    }));
+    this.#view.dispatch(setDiagnostics(this.#view.state, marks));
+  }
+
+  /** @param {Change[]} changes */
+  change(changes) {
+    this.#view.dispatch({
+      changes: changes.map((change) => ({ ...this.#offsets(change), insert: change.text })),
+      userEvent: 'input.repair',
+    });
+    this.#view.focus();
+  }
+
+  /** @param {Range} range */
+  goTo(range) {
+    this.#view.dispatch({ selection: { anchor: this.#offsets(range).from }, scrollIntoView: true });
+    this.#view.focus();
+  }
+
+  /** Marks what runs now, or nothing. @param {Range | null} range */
+  showRunning(range) {
+    this.#view.dispatch({ effects: setRunning.of(range && this.#offsets(range)) });
+  }
+
+  /**
+   * Lines and columns count from 1, columns in characters; the editor counts in halves of UTF-16.
+   * @param {Range} range
+   */
+  #offsets(range) {
+    const from = this.#offset(range.line, range.column);
+    return { from, to: Math.max(from, this.#offset(range.end_line, range.end_column)) };
+  }
+
+  /**
+   * @param {number} line
+   * @param {number} column
+   */
+  #offset(line, column) {
+    const { doc } = this.#view.state;
+    if (line > doc.lines) return doc.length;
+    const found = doc.line(line);
+    const before = [...found.text].slice(0, column - 1).join('').length;
+    return found.from + before;
+  }
+
+  /** @param {string} robot */
+  #forRobot(robot) {
+    return [
+      languageOf(robot),
+      autocompletion({ override: [completionOf(robot)], icons: false }),
+    ];
+  }
+
+  #inLanguage() {
+    return [
+      EditorState.phrases.of(currentLanguage() === 'es' ? EDITOR_PHRASES_ES : {}),
+      EditorView.contentAttributes.of({
+        'aria-label': text('editor'),
+        autocapitalize: 'off',
+        autocorrect: 'off',
+        spellcheck: 'false',
+        translate: 'no',
+      }),
+    ];
+  }
+}

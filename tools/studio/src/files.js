@@ -1,0 +1,25 @@
+// Files of programs: chosen by a person, and saved as any download. Knows no program.
+
+// One more than the compiler reads: it says that the file is too large.
+const MOST_BYTES = 1_000_001;
+
+/**
+ * @param {File} file
+ * @returns {Promise<Uint8Array>}
+ */
+export async function bytesOf(file) {
+  return new Uint8Array(await file.slice(0, MOST_BYTES).arrayBuffer());
+}
+
+/**
+ * @param {string} name
+ * @param {string} text
+ */
+export function download(name, text) {
+  const address = URL.createObjectURL(new Blob([text], { type: 'text/plain;charset=utf-8' }));
+  const link = document.createElement('a');
+  link.href = address;
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(address), 10_000);
+}

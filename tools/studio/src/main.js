@@ -1,0 +1,193 @@
+// The page: puts editor, compiler, files and kept work together.
+
+import { Editor } from './editor.js';
+import { bytesOf, download } from './files.js';
+import { showMessages, summary } from './messages.js';
+import { whenOffline } from './offline.js';
+import { Python } from './python.js';
+import { currentLanguage, setLanguage, text } from './texts.js';
+import { ROBOTS } from './words.js';
+import { keep, keptWork } from './work.js';
+
+/** @typedef {import('./python.js').Checked} Checked */
+/** @typedef {import('./python.js').Finding} Finding */
+
+const TYPING_MS = 150; // of silence before a text is compiled
+const FIRST_PROGRAM = 'SI|F(2, 80);\nR(0.5, 60);\nF(1, 80);\n';
+
+/**
+ * @template {HTMLElement} T
+ * @param {string} id
+ * @param {new () => T} kind
+ * @returns {T}
+ */
+function element(id, kind) {
+  const found = document.getElementById(id);
+  if (!(found instanceof kind)) throw new Error(`no element ${id}`);
+  return found;
+}
+
+const robots = element('robot', HTMLSelectElement);
+const languages = element('language', HTMLSelectElement);
+const file = element('file', HTMLInputElement);
+const status = element('status', HTMLElement);
+const note = element('note', HTMLElement);
+const list = element('messages', HTMLElement);
+
+const kept = keptWork();
+const work = kept ?? {
+  text: FIRST_PROGRAM,
+  robot: ROBOTS[0]?.name ?? '',
+  world: 'obstacles',
+  language: navigator.language.toLowerCase().startsWith('es') ? /** @type {const} */ ('es') : /** @type {const} */ ('en'),
+  name: '',
+};
+setLanguage(work.language);
+languages.value = work.language;
+
+const python = new Python();
+const editor = new Editor(element('editor', HTMLElement), work.robot, changed);
+
+/** The newest answer, and what it is about. @type {{key: string, answer: Checked | null}} */
+let newest = { key: '', answer: null };
+let isReady = false;
+let isChecking = false;
+let timer = 0;
+
+showRobots();
+editor.replace(work.text);
+status.textContent = text('starting');
+python.ready.then(
+  () => {
+    isReady = true;
+    check();
+  },
+  () => {
+    status.textContent = text('no_compiler');
+    document.documentElement.dataset['state'] = 'failed';
+  },
+);
+
+function changed() {
+  work.text = editor.text;
+  remember();
+  clearTimeout(timer);
+  timer = window.setTimeout(check, TYPING_MS);
+}
+
+/** Compiles what is in the editor, one text at a time, until the newest has been compiled. */
+async function check() {
+  if (!isReady || isChecking) return;
+  isChecking = true;
+  try {
+    while (isStale()) {
+      const now = { text: editor.text, robot: work.robot, language: currentLanguage() };
+      const request = { do: 'check', robot: now.robot, language: now.language };
+      const answer = /** @type {Checked} */ (await python.ask(request, new TextEncoder().encode(now.text)));
+      newest = { key: keyOf(now), answer };
+    }
+    if (newest.answer) show(newest.answer); // also where a text has come back
+  } catch (why) {
+    status.textContent = text('bug', { why: String(why).split('\n').filter(Boolean).at(-1) ?? '' });
+  } finally {
+    isChecking = false;
+  }
+}
+
+/** @param {{text: string, robot: string, language: string}} what */
+function keyOf(what) {
+  return JSON.stringify([what.text, what.robot, what.language]);
+}
+
+function isStale() {
+  return newest.key !== keyOf({ text: editor.text, robot: work.robot, language: currentLanguage() });
+}
+
+/** @param {Checked} answer */
+function show(answer) {
+  editor.showFindings(answer.findings, repair);
+  showMessages(list, answer.findings, (finding) => editor.goTo(finding), repair);
+  status.textContent = summary(answer.findings, answer.bytes);
+  status.className = answer.image ? 'right' : 'wrong';
+  document.documentElement.dataset['state'] = 'checked';
+  document.documentElement.dataset['image'] = answer.image;
+}
+
+/** @param {Finding} finding */
+function repair(finding) {
+  if (!isStale()) editor.change(finding.repair); // else its places are those of another text
+}
+
+function showRobots() {
+  const language = currentLanguage();
+  robots.replaceChildren(
+    ...ROBOTS.map((robot) => new Option(`${robot.labels[language]} (${robot.name})`, robot.name)),
+  );
+  robots.value = work.robot;
+}
+
+function remember() {
+  document.documentElement.dataset['state'] = 'changed';
+  if (!keep(work)) note.textContent = text('not_kept');
+}
+
+robots.addEventListener('change', () => {
+  work.robot = robots.value;
+  editor.setRobot(work.robot);
+  remember();
+  check();
+});
+
+languages.addEventListener('change', () => {
+  work.language = languages.value === 'en' ? 'en' : 'es';
+  setLanguage(work.language);
+  editor.setLanguage();
+  showRobots();
+  note.textContent = '';
+  if (!isReady) status.textContent = text('starting');
+  remember();
+  check();
+});
+
+element('open', HTMLButtonElement).addEventListener('click', () => file.click());
+
+file.addEventListener('change', async () => {
+  const chosen = file.files?.[0];
+  file.value = '';
+  if (!chosen) return;
+  let answer;
+  try {
+    const data = await bytesOf(chosen);
+    answer = await python.ask({ do: 'open', robot: work.robot, language: currentLanguage() }, data);
+  } catch {
+    note.textContent = text('not_opened', { name: chosen.name, why: text('unreadable') });
+    return;
+  }
+  if (answer.text === undefined) {
+    const why = [answer.message, answer.fix && `${text('try')} ${answer.fix}`].filter(Boolean).join(' ');
+    note.textContent = text('not_opened', { name: chosen.name, why });
+    return;
+  }
+  work.name = chosen.name;
+  editor.replace(answer.text);
+  note.textContent = text('opened', { name: chosen.name });
+});
+
+element('save', HTMLButtonElement).addEventListener('click', () => {
+  const name = work.name || text('file_name');
+  download(name, editor.text);
+  note.textContent = text('saved', { name });
+});
+
+addEventListener('keydown', (event) => {
+  if (!(event.ctrlKey || event.metaKey) || event.altKey) return;
+  if (event.key === 's') {
+    event.preventDefault();
+    element('save', HTMLButtonElement).click();
+  } else if (event.key === 'o') {
+    event.preventDefault();
+    file.click();
+  }
+});
+
+whenOffline();

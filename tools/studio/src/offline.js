@@ -1,0 +1,8 @@
+// After the first visit the page needs no server. A newer page is taken once no tab has the old one.
+
+export function whenOffline() {
+  if (!('serviceWorker' in navigator)) return; // an address that is neither https nor localhost
+  navigator.serviceWorker.register('./service_worker.js').catch(() => {
+    // A browser that forbids it still shows the page.
+  });
+}

@@ -1,0 +1,80 @@
+// Asks the Python in the worker. Knows the form of requests and answers, and no program.
+
+/**
+ * @typedef {object} Change
+ * @property {number} line
+ * @property {number} column
+ * @property {number} end_line
+ * @property {number} end_column
+ * @property {string} text
+ */
+
+/**
+ * @typedef {object} Finding
+ * @property {string} code
+ * @property {'mistake' | 'warning'} severity
+ * @property {number} line
+ * @property {number} column
+ * @property {number} end_line
+ * @property {number} end_column
+ * @property {string} message
+ * @property {string} fix
+ * @property {Change[]} repair
+ */
+
+/**
+ * @typedef {object} Checked
+ * @property {string} image hexadecimal; empty where there are mistakes
+ * @property {number} bytes
+ * @property {Finding[]} findings
+ * @property {[number, number, number, number, number][]} places offset, line, column and the end
+ */
+
+/** @typedef {{resolve: (answer: any) => void, reject: (why: Error) => void}} Waiting */
+
+export class Python {
+  #worker = new Worker('./worker.js', { type: 'module' });
+  /** @type {Map<number, Waiting>} */
+  #waiting = new Map();
+  #asked = 0;
+  /** @type {(why: Error) => void} */
+  #fails = () => {};
+  /** Resolves when it answers; rejects when it cannot be had. @type {Promise<void>} */
+  ready;
+
+  constructor() {
+    this.ready = new Promise((resolve, reject) => {
+      this.#worker.addEventListener('message', ({ data }) => {
+        if (data.id === 0) {
+          if (data.error) reject(new Error(data.error));
+          else resolve();
+          return;
+        }
+        const waiting = this.#waiting.get(data.id);
+        this.#waiting.delete(data.id);
+        if (data.error) waiting?.reject(new Error(data.error));
+        else waiting?.resolve(JSON.parse(data.answer));
+      });
+      this.#fails = reject;
+      this.#worker.addEventListener('error', (event) => {
+        const why = new Error(event.message || 'worker');
+        this.#fails(why);
+        for (const waiting of this.#waiting.values()) waiting.reject(why);
+        this.#waiting.clear();
+      });
+    });
+  }
+
+  /**
+   * @param {Record<string, unknown>} request
+   * @param {Uint8Array} [data]
+   * @returns {Promise<any>}
+   */
+  ask(request, data = new Uint8Array()) {
+    const id = ++this.#asked;
+    return new Promise((resolve, reject) => {
+      this.#waiting.set(id, { resolve, reject });
+      this.#worker.postMessage({ id, request: JSON.stringify(request), data });
+    });
+  }
+}

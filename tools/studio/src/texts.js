@@ -1,0 +1,82 @@
+// Every sentence of the page, in English and Spanish. What is said of programs comes from the
+// compiler.
+
+/** @typedef {'en' | 'es'} Language */
+
+/** @type {Record<string, [string, string]>} */
+export const TEXTS = {
+  title: ['TiniScript Studio', 'TiniScript Studio'],
+  robot: ['Robot', 'Robot'],
+  language: ['Language', 'Idioma'],
+  open: ['Open…', 'Abrir…'],
+  save: ['Save', 'Guardar'],
+  editor: ['Program', 'Programa'],
+  messages: ['What the compiler says', 'Lo que dice el compilador'],
+  starting: ['The compiler is starting…', 'El compilador está arrancando…'],
+  right: ['The program is right: {bytes} bytes.', 'El programa está bien: {bytes} bytes.'],
+  one_mistake: ['1 mistake', '1 error'],
+  mistakes: ['{count} mistakes', '{count} errores'],
+  one_warning: ['1 warning', '1 aviso'],
+  warnings: ['{count} warnings', '{count} avisos'],
+  and: ['{one}, {other}', '{one}, {other}'],
+  line: ['Line {line}', 'Línea {line}'],
+  try: ['Try:', 'Prueba:'],
+  repair: ['Do it', 'Hacerlo'],
+  repair_line: ['Do it: line {line}, {fix}', 'Hacerlo: línea {line}, {fix}'],
+  more: ['… and {count} more.', '… y {count} más.'],
+  file_name: ['program.ts', 'programa.ts'],
+  opened: ['Opened: {name}', 'Abierto: {name}'],
+  not_opened: ['{name} was not opened. {why}', '{name} no se abrió. {why}'],
+  saved: ['Saved: {name}', 'Guardado: {name}'],
+  unreadable: ['The browser cannot read it. Copy it to another folder and try again.',
+    'El navegador no lo puede leer. Cópialo a otra carpeta y prueba otra vez.'],
+  not_kept: ['This browser keeps nothing for this page: save your program before you leave.',
+    'Este navegador no guarda nada para esta página: guarda tu programa antes de salir.'],
+  no_compiler: ['The compiler did not start. Reload the page; your program is kept.',
+    'El compilador no arrancó. Recarga la página; tu programa queda guardado.'],
+  bug: ['The studio met something it was not made for. That is our mistake, not yours. Reload the page; your program is kept. ({why})',
+    'El estudio encontró algo para lo que no está hecho. El error es nuestro, no tuyo. Recarga la página; tu programa queda guardado. ({why})'],
+};
+
+// The texts of the editor itself, as CodeMirror names them.
+/** @type {Record<string, string>} */
+export const EDITOR_PHRASES_ES = {
+  'Control character': 'Carácter de control',
+  Completions: 'Palabras posibles',
+  Diagnostics: 'Mensajes',
+  'No diagnostics': 'Sin mensajes',
+  close: 'cerrar',
+  'Fold line': 'Plegar',
+  'Unfold line': 'Desplegar',
+};
+
+/** @type {Language} */
+let language = 'en';
+
+/** @returns {Language} */
+export function currentLanguage() {
+  return language;
+}
+
+/** @param {Language} chosen */
+export function setLanguage(chosen) {
+  language = chosen;
+  document.documentElement.lang = chosen;
+  for (const element of document.querySelectorAll('[data-text]')) {
+    element.textContent = text(String(element.getAttribute('data-text')));
+  }
+  for (const element of document.querySelectorAll('[data-label]')) {
+    element.setAttribute('aria-label', text(String(element.getAttribute('data-label'))));
+  }
+}
+
+/**
+ * @param {string} key
+ * @param {Record<string, string | number>} values
+ * @returns {string}
+ */
+export function text(key, values = {}) {
+  const found = TEXTS[key];
+  if (!found) throw new Error(`no text ${key}`);
+  return found[language === 'en' ? 0 : 1].replace(/\{(\w+)\}/g, (_, name) => String(values[name]));
+}

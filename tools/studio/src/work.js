@@ -1,0 +1,58 @@
+// Keeps the work on this device: what a tab has, and what the last tab had.
+//
+// What is kept may be damaged, or from somebody else on this device: all of it is checked.
+
+import { isRobot, WORLDS } from './words.js';
+
+/** @typedef {{text: string, robot: string, world: string, language: 'en' | 'es', name: string}} Work */
+
+const PLACE = 'tiniscript.work';
+const LONGEST = 1_000_000; // characters
+
+/** @returns {Work | null} */
+export function keptWork() {
+  for (const storage of ['sessionStorage', 'localStorage']) {
+    try {
+      const kept = /** @type {any} */ (window)[storage].getItem(PLACE);
+      const work = kept && checked(JSON.parse(kept));
+      if (work) return work;
+    } catch {
+      // no storage here, or not what we have put there
+    }
+  }
+  return null;
+}
+
+/**
+ * Keeps the work; returns whether that was possible.
+ * @param {Work} work
+ * @returns {boolean}
+ */
+export function keep(work) {
+  const whole = JSON.stringify(work);
+  let isKept = false;
+  for (const storage of ['sessionStorage', 'localStorage']) {
+    try {
+      /** @type {any} */ (window)[storage].setItem(PLACE, whole);
+      isKept = true;
+    } catch {
+      // full, or forbidden
+    }
+  }
+  return isKept;
+}
+
+/**
+ * @param {any} found
+ * @returns {Work | null}
+ */
+function checked(found) {
+  if (typeof found?.text !== 'string' || found.text.length > LONGEST) return null;
+  return {
+    text: found.text,
+    robot: isRobot(found.robot) ? found.robot : 'tinibot',
+    world: WORLDS.some((world) => world.name === found.world) ? found.world : 'obstacles',
+    language: found.language === 'en' ? 'en' : 'es',
+    name: typeof found.name === 'string' ? found.name.slice(0, 200) : '',
+  };
+}
