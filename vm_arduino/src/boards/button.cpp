@@ -1,5 +1,7 @@
 #include "button.h"
 
+#include "../vm/small.h"
+
 namespace tiniscript {
 
 namespace {
@@ -13,31 +15,36 @@ enum class State : uint8_t {
   kDown,
 };
 
-State state = State::kUnknown;
-bool was_down;
-uint8_t steady_ms;  // how long it has been steady, in milliseconds that were sampled
-uint8_t last_ms;
+struct Button {
+  State state;
+  bool was_down;
+  uint8_t steady_ms;  // how long it has been steady, in milliseconds that were sampled
+  uint8_t last_ms;
+};
+
+Button button;
 
 }  // namespace
 
-bool button_has_moved(bool is_down) { return is_down != was_down; }
+bool button_has_moved(bool is_down) { return is_down != button.was_down; }
 
 Press button_read(bool is_down, uint32_t now_ms) {
+  Button* const it = near(&button);
   const uint8_t time_ms = static_cast<uint8_t>(now_ms);
-  if (is_down != was_down) {
-    was_down = is_down;
-    steady_ms = 0;
-  } else if (time_ms != last_ms && steady_ms < kDebounceMs) {
-    steady_ms++;
+  if (is_down != it->was_down) {
+    it->was_down = is_down;
+    it->steady_ms = 0;
+  } else if (time_ms != it->last_ms && it->steady_ms < kDebounceMs) {
+    it->steady_ms++;
   }
-  last_ms = time_ms;
-  if (state == State::kUp && is_down) {
-    state = State::kEdge;
+  it->last_ms = time_ms;
+  if (it->state == State::kUp && is_down) {
+    it->state = State::kEdge;
     return Press::kPressed;
   }
-  if (steady_ms < kDebounceMs || (is_down && state == State::kDown)) return Press::kNothing;
-  const State before = state;
-  state = is_down ? State::kDown : State::kUp;
+  if (it->steady_ms < kDebounceMs || (is_down && it->state == State::kDown)) return Press::kNothing;
+  const State before = it->state;
+  it->state = is_down ? State::kDown : State::kUp;
   if (is_down) return Press::kHeld;
   return before == State::kDown ? Press::kReleased : Press::kNothing;
 }

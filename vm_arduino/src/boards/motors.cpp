@@ -37,14 +37,11 @@ extern "C" void initVariant() { begin_motors(); }
 #endif
 
 void board_motors(int16_t left, int16_t right) {
-  const uint8_t left_level = size_of(left);
-  const uint8_t right_level = size_of(right);
+  uint8_t left_level = size_of(left);
+  uint8_t right_level = size_of(right);
   const CriticalSection critical;  // a stop comes before or after this block, never inside it
-  if (!is_released || (left_level | right_level) == 0) {
-    motors_off();
-    return;
-  }
-  begin_drive();
+  if (!is_released) left_level = right_level = 0;
+  begin_drive((left_level | right_level) != 0);
   if (left_level == 0) {
     off(kLeftMotor);
   } else {

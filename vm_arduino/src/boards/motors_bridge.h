@@ -44,8 +44,8 @@ tini_always_inline void drive(Bridge motor, bool is_backward, uint8_t level) {
   connect_inside(motor.pwm, level);
 }
 
-tini_always_inline void begin_drive() {
-  if (is_there(kStandby)) write(kStandby, true);
+tini_always_inline void begin_drive(bool is_on) {
+  if (is_there(kStandby)) write(kStandby, is_on);
 }
 
 }  // namespace tiniscript

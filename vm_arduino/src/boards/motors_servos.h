@@ -33,7 +33,7 @@ tini_always_inline void drive(TurningServo motor, bool is_backward, uint8_t leve
             static_cast<uint16_t>(is_shorter ? motor.still_us - more : motor.still_us + more), 0);
 }
 
-tini_always_inline void begin_drive() {}
+tini_always_inline void begin_drive(bool) {}
 
 }  // namespace tiniscript
 

@@ -34,7 +34,7 @@ tini_always_inline void drive(TwoWire motor, bool is_backward, uint8_t level) {
   }
 }
 
-tini_always_inline void begin_drive() {}
+tini_always_inline void begin_drive(bool) {}
 
 }  // namespace tiniscript
 

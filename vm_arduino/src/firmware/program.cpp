@@ -84,8 +84,9 @@ bool load_program() {
   const uint16_t bytes = held_bytes();
   if (!store.fetch_first(Area::kProgram, program, bytes)) return false;
   for (uint8_t k = 0; k < kEndBytes; k++) program[bytes + k] = static_cast<uint8_t>(Op::kEnd);
-  is_whole = admit(program, board_sensors(), board_actuators()).refusal == 0;
-  if (!is_whole) {
+  if (admit(program, board_sensors(), board_actuators()).refusal == 0) {
+    is_whole = true;
+  } else {
     // falls back to the program before it, or to none
     store.refuse();
     hold_stored();

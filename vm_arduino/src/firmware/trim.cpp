@@ -13,7 +13,7 @@ uint8_t size_of(int8_t number) {
 }
 
 // 2.55 for each percent, in steps of 8 bits: 653 / 256.
-uint8_t level_of(uint8_t percent) {
+tini_noinline uint8_t level_of(uint8_t percent) {
   if (percent > 100) percent = 100;
   return static_cast<uint8_t>(2 * percent + (percent * uint16_t{141} >> 8));
 }

@@ -45,16 +45,17 @@ tini_noinline uint32_t get32(const uint8_t* bytes) {
 uint8_t encode_frame(uint8_t* bytes, uint8_t end) {
   const uint32_t crc =
       crc32(seed_of(bytes[kTypeAt]), bytes + kTypeAt, static_cast<uint16_t>(end - kTypeAt));
-  copy_bytes(&crc, bytes + end, kCrcBytes);
-  end = static_cast<uint8_t>(end + kCrcBytes);
-  uint8_t zero = 0;  // position of the last zero
-  bytes[end] = 0;
-  for (uint8_t at = 1; at <= end; at++) {
-    if (bytes[at] != 0) continue;
-    bytes[zero] = static_cast<uint8_t>(at - zero);
+  __builtin_memcpy(bytes + end, &crc, sizeof crc);
+  uint8_t* const last = bytes + end + kCrcBytes;
+  *last = 0;
+  uint8_t* zero = bytes;  // the last one
+  uint8_t* at = bytes;
+  do {
+    if (*++at != 0) continue;
+    *zero = static_cast<uint8_t>(at - zero);
     zero = at;
-  }
-  return static_cast<uint8_t>(end + 1);
+  } while (at != last);
+  return static_cast<uint8_t>(end + kCrcBytes + 1);
 }
 
 void FrameCheck::begin() {
@@ -72,8 +73,9 @@ tini_noinline void FrameCheck::take(const uint8_t* bytes, uint8_t length) {
       zero_ = static_cast<uint8_t>(zero_ + byte);
       byte = 0;
     }
-    if (taken_ == kTypeAt) crc_ = seed_of(byte);
-    if (taken_ >= kTypeAt) crc_ = crc32(crc_, &byte, 1);
+    if (taken_ < kTypeAt) continue;
+    const uint32_t crc = taken_ == kTypeAt ? seed_of(byte) : crc_;
+    crc_ = crc32(crc, &byte, 1);
   }
 }
 

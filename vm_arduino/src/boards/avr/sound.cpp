@@ -13,9 +13,13 @@ namespace {
 constexpr uint32_t kFastestHertz = 2000000;  // the timer's clock with the fastest prescaler
 constexpr uint16_t kMostCounts = 512;        // per period: 256 for each half
 
-bool is_on;
-uint16_t next_hertz;  // the next note, or 0
-uint32_t end_ms;
+struct Sound {
+  bool is_on;
+  uint16_t next_hertz;  // the next note, or 0
+  uint32_t end_ms;
+};
+
+Sound sound;
 
 // The last count of each half period. They differ by one if the period is odd.
 volatile uint8_t first_half;
@@ -26,7 +30,7 @@ constexpr uint8_t kFastest = 2;
 
 tini_noinline void start_notes(uint16_t hertz, uint16_t next) {
   sound_start(hertz, kNoteMs);
-  next_hertz = next;
+  sound.next_hertz = next;
 }
 
 uint16_t half(uint16_t counts) { return static_cast<uint16_t>((counts + 1) >> 1); }
@@ -56,8 +60,9 @@ void sound_start(uint16_t hertz, uint32_t duration_ms) {
   TIFR2 = 1 << OCF2A;
   TIMSK2 = 1 << OCIE2A;
   TCCR2B = prescaler;
-  end_ms = clock_ms() + duration_ms;
-  is_on = true;
+  Sound* const it = near(&sound);
+  it->end_ms = clock_ms() + duration_ms;
+  it->is_on = true;
 }
 
 void sound_finished() { start_notes(kFinishedHertz[0], kFinishedHertz[1]); }
@@ -68,14 +73,15 @@ void sound_off() {
   TIMSK2 = 0;
   TCCR2B = 0;
   write(kBuzzer, false);
-  is_on = false;
-  next_hertz = 0;
+  sound.is_on = false;
+  sound.next_hertz = 0;
 }
 
 void sound_tick(uint32_t now_ms) {
-  if (!is_on || static_cast<int32_t>(now_ms - end_ms) < 0) return;
-  if (next_hertz == 0) return sound_off();
-  start_notes(next_hertz, 0);
+  const Sound* const it = near(&sound);
+  if (!it->is_on || static_cast<int32_t>(now_ms - it->end_ms) < 0) return;
+  if (it->next_hertz == 0) return sound_off();
+  start_notes(it->next_hertz, 0);
 }
 
 }  // namespace tiniscript
