@@ -184,7 +184,8 @@ def main() -> int:
         [f"{each.last_us:.0f}" for each in found.values()], *map(str, UPLOAD_US))  # fmt: skip
     row("the last byte of the same as LIVE to the motor pins, us",
         [f"{each.live_us:.0f}" for each in found.values()], *map(str, LIVE_US))  # fmt: skip
-    row(f"last byte of a stop to motors off, busy robot, the slowest of {found[BAUDS[0]].stop.count}, us",
+    stops_count = found[BAUDS[0]].stop.stops
+    row(f"last byte of a stop to motors off, busy robot, the slowest of {stops_count}, us",
         [f"{each.stop.us:.1f}" for each in found.values()], *map(str, STOP_US))  # fmt: skip
     row("the same, half of them, us", [f"{each.stop.median_us:.1f}" for each in found.values()])
     for number, text in enumerate(PROGRAMS):

@@ -35,7 +35,7 @@ QUIET_MS = 25
 class Slowest(NamedTuple):
     """Of how many stops, and microseconds."""
 
-    count: int
+    stops: int
     us: float
     median_us: float
 
@@ -51,7 +51,9 @@ def slowest(talk: Talk, kit: Kit, baud: int, motors: tuple[str, ...]) -> Slowest
     talk.session.stop(talk.board.cycle // CYCLES_PER_MS)
     talk.run(300)
     each = sorted(found.values())
-    return Slowest(len(each), each[-1] / CYCLES_PER_MS * 1000, each[len(each) // 2] / CYCLES_PER_MS * 1000)
+    return Slowest(
+        len(each), each[-1] / CYCLES_PER_MS * 1000, each[len(each) // 2] / CYCLES_PER_MS * 1000
+    )
 
 
 def stopped(talk: Talk, at: int, baud: int, motors: tuple[str, ...]) -> int:

@@ -181,8 +181,8 @@ def form_numbers() -> str:
             "// The number of each opcode's shape; from kFirstTwin on one for two of them.\n"
             f"constexpr uint8_t kFirstTwin = 0x{FIRST_TWIN:02x};\n"
             "extern const uint8_t kShapeOf[] tini_progmem;\n",
-            "// Of each shape: pops (2 bits), pushes (1) and role (5); the number of its operands (3),\n"
-            "// kBack, kFar and size (3); the family.\n"
+            "// Of each shape: pops (2 bits), pushes (1) and role (5); the number of its\n"
+            "// operands (3), kBack, kFar and size (3); the family.\n"
             "extern const uint8_t kShapes[][3] tini_progmem;\n",
             "// Of operands: what the second byte is (4 bits) and the first (4).\n"
             "extern const uint8_t kOperands[] tini_progmem;\n",

@@ -27,9 +27,9 @@ Boot boot;
 uint8_t record[kOwnerBytes];
 QuickByte<kToKeepAt> to_keep;
 QuickByte<kKeepingAt> keeping;  // the bits that the store is writing
-Flag<Bit::kLow> is_low;  // saving waits for more voltage
-uint16_t low_ms;  // when that wait began
-bool is_worn;     // the memory has failed to save the identity or a key
+Flag<Bit::kLow> is_low;         // saving waits for more voltage
+uint16_t low_ms;                // when that wait began
+bool is_worn;                   // the memory has failed to save the identity or a key
 
 // -- after a reset ------------------------------------------------------------------------------
 

@@ -18,7 +18,8 @@ namespace {
 
 Machine machine;
 const uint8_t* run_image = program;  // of the current or last run
-Flag<Bit::kMayStart> may_start;     // the button is down and nothing ran or was stopped since: its release starts
+Flag<Bit::kMayStart>
+    may_start;  // the button is down and nothing ran or was stopped since: its release starts
 Flag<Bit::kStartDue> is_start_due;  // the button was released, but the program was not available
 bool has_motors_on;
 Flag<Bit::kPrepared> is_prepared;  // machine and board are reset for a program

@@ -411,8 +411,8 @@ constexpr uint8_t kBack = 16;
 constexpr uint8_t kFirstTwin = 0x80;
 extern const uint8_t kShapeOf[] tini_progmem;
 
-// Of each shape: pops (2 bits), pushes (1) and role (5); the number of its operands (3),
-// kBack, kFar and size (3); the family.
+// Of each shape: pops (2 bits), pushes (1) and role (5); the number of its
+// operands (3), kBack, kFar and size (3); the family.
 extern const uint8_t kShapes[][3] tini_progmem;
 
 // Of operands: what the second byte is (4 bits) and the first (4).

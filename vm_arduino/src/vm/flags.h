@@ -17,20 +17,20 @@ namespace tiniscript {
 // Who has which bit.
 enum class Bit : uint8_t {
   kAttention = tini_attention_bit,
-  kReleased,   // boards/motors.cpp
-  kSpaced,     // boards/ultrasonic.cpp
-  kWhole,      // firmware/program.cpp
-  kLow,        // firmware/keeping.cpp
-  kPrepared,   // firmware/run.cpp
-  kMayStart,   // firmware/run.cpp
-  kStartDue,   // firmware/run.cpp
+  kReleased,  // boards/motors.cpp
+  kSpaced,    // boards/ultrasonic.cpp
+  kWhole,     // firmware/program.cpp
+  kLow,       // firmware/keeping.cpp
+  kPrepared,  // firmware/run.cpp
+  kMayStart,  // firmware/run.cpp
+  kStartDue,  // firmware/run.cpp
 };
 
 #ifdef __AVR__
 
-constexpr uint16_t kFlagsAt = 0x3e;     // GPIOR0
-constexpr uint16_t kToKeepAt = 0x4a;    // GPIOR1
-constexpr uint16_t kKeepingAt = 0x4b;   // GPIOR2
+constexpr uint16_t kFlagsAt = 0x3e;    // GPIOR0
+constexpr uint16_t kToKeepAt = 0x4a;   // GPIOR1
+constexpr uint16_t kKeepingAt = 0x4b;  // GPIOR2
 
 tini_always_inline volatile uint8_t& all_flags() {
   return *reinterpret_cast<volatile uint8_t*>(kFlagsAt);

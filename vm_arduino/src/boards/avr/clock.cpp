@@ -53,12 +53,13 @@ uint16_t clock_us() {
 
 }  // namespace tiniscript
 
-static_assert(offsetof(tiniscript::Clock, turns) == 4 && offsetof(tiniscript::Clock, fraction) == 5 &&
+static_assert(offsetof(tiniscript::Clock, turns) == 4 &&
+                  offsetof(tiniscript::Clock, fraction) == 5 &&
                   offsetof(tiniscript::Clock, silence_ms) == 6,
               "the interrupt knows where they lie");
 
-// In assembly, because a stop and the pulses of servos wait for it: the compiler's code takes twice as
-// long. Once the time is whole other interrupts may come in between.
+// In assembly, because a stop and the pulses of servos wait for it: the compiler's code takes twice
+// as long. Once the time is whole other interrupts may come in between.
 ISR(TIMER0_OVF_vect, ISR_NAKED) {
   using namespace tiniscript;
   asm volatile(
@@ -66,7 +67,7 @@ ISR(TIMER0_OVF_vect, ISR_NAKED) {
       "sbi %[flags], %[attention]\n\t"
       "ldi r30, lo8(%[clock])\n\tldi r31, hi8(%[clock])\n\t"
       "ldd r24, Z+4\n\tinc r24\n\tstd Z+4, r24\n\t"  // turns
-      "ldi r25, 1\n\t"                                // ms that have passed
+      "ldi r25, 1\n\t"                               // ms that have passed
       "ldd r24, Z+5\n\tsubi r24, %[parts] - %[more]\n\tbrcc 1f\n\t"
       "subi r24, -%[parts]\n\trjmp 2f\n"
       "1: inc r25\n"
