@@ -10,16 +10,17 @@ namespace {
 
 constexpr uint16_t kPatienceMs = 60000;  // for the rest of a line with a SETUP word or of a block
 constexpr uint8_t kBytesATurn = 8;
-// So many mistakes are answered without a pause of this length between two bytes: then something
-// that echoes or answers each line is on the other side.
+// So many mistakes are answered without a pause of this length between two bytes: then something that
+// echoes or answers each line is on the other side.
 constexpr uint8_t kMostMistakes = 16;
 constexpr uint16_t kPauseMs = 5000;
 constexpr uint8_t kOtherWord = 5;  // in place of a count of letters
 
 // What radio modules say, and words that ask for all others; 0x80 in the last letter of each.
-const uint8_t kSpoken[] tini_progmem = {'O', 'K' | 0x80, 'A', 'T' | 0x80, 'E', 'R',        'R',
-                                        'O', 'R' | 0x80, 'H', 'E',        'L', 'P' | 0x80, 'A',
-                                        'Y', 'U',        'D', 'A' | 0x80, 0};
+const uint8_t kSpoken[] tini_progmem = {'O', 'K' | 0x80, 'A', 'T' | 0x80,
+                                        'E', 'R', 'R', 'O', 'R' | 0x80,
+                                        'H', 'E', 'L', 'P' | 0x80,
+                                        'A', 'Y', 'U', 'D', 'A' | 0x80, 0};
 constexpr uint8_t kChatter = 3;  // so many of them
 constexpr uint8_t kAsking = 5;
 
@@ -84,7 +85,8 @@ Console::Act Console::fall_silent() {
   refused_ = Remark::kNone;
   if (!is_open_) return Act::kNone;
   // Whoever types letter by letter has typed S, and waits.
-  const bool is_stop = port_status().state == State::kRunning && reader_.is_at_stop(length_);
+  const bool is_stop =
+      port_status().state == State::kRunning && reader_.is_at_stop(length_);
   if (is_waiting_) {
     say(Remark::kWaiting);
     return is_stop ? Act::kEnd : Act::kNone;
@@ -169,6 +171,7 @@ bool Console::has_room() {
 }
 
 Console::Act Console::end_line(bool is_heard) {
+  if (refused_ != Remark::kNone) {
   if (refused_ != Remark::kNone) {
     if (stop_letters_ == 1 || stop_letters_ == 4) return stop();
     if (!is_heard) refuse();
