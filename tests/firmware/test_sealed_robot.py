@@ -129,7 +129,7 @@ def test_a_stranger_keeps_no_program_running() -> None:
         recorded(table, session, FOREVER)
         begun_ms = table.robot.now_ms
         if is_greeting:
-            table.robot.wait(5, encoded(Frame(hello, 1, 0, bytes(6) + b"abcd")))
+            table.robot.wait(5, b"\0" + encoded(Frame(hello, 1, 0, b"\1" + bytes(5) + b"abcd")))
         while table.robot.now_ms < begun_ms + 1010:
             table.robot.wait(50, b"\0" + encoded(Frame(ping, 1, 0)))
         assert "MOTORS 0 0" in table.robot.did[-2] + table.robot.did[-1]
