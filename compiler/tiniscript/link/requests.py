@@ -8,7 +8,7 @@ no retry: `session` does.
 from __future__ import annotations
 
 from collections.abc import Generator, Mapping
-from typing import Any, Generic, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
 from tiniscript.bytecode.image import HEADER_BYTES, NEEDS, STARTS, Image
 from tiniscript.bytecode.verify import RULES
@@ -34,8 +34,10 @@ from tiniscript.link.payloads import (
     ReceiptReply,
     SentReply,
 )
-from tiniscript.link.seal import Seal
 from tiniscript.printable import printable
+
+if TYPE_CHECKING:
+    from tiniscript.link.seal import Seal
 
 OK = STATUSES["OK"]
 SHORT_BYTES = BY_NAME["PROGRAM"].request[-1].high  # of code, in one frame

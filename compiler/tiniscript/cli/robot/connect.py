@@ -161,11 +161,12 @@ class Connection:
 
     def _tell_stale_key(self, device_info: DeviceInfo) -> None:
         """Say what to do where the robot has refused a key of this computer."""
-        from tiniscript.keys import KeyFile
-        from tiniscript.link.authority import OF_ANOTHER, whose
+        from tiniscript.link.messages import OWNED, YOURS
 
-        if whose(device_info) != OF_ANOTHER:
+        if device_info.values.features & (OWNED | YOURS) != OWNED:
             return
+        from tiniscript.keys import KeyFile
+
         if any(key.is_stale for key in KeyFile().of_robot(device_info.id)):
             said = text("key_is_stale", self.language).format(robot=self.name)
             print(said, file=sys.stderr, flush=True)
