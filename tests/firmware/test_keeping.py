@@ -194,6 +194,12 @@ def test_what_a_worn_last_byte_has_spoilt_is_empty() -> None:
     assert robot.memory()[slot : slot + 2] == b"\xff\xff", "the generation and its mark"
 
 
+def test_a_robot_says_of_which_kit_it_is() -> None:
+    robot, session = switched_on(), computer()
+    assert robot.until(session, session.hello()) == OK
+    assert session.robot is not None and session.robot.kit == KIT.fingerprint
+
+
 # -- the supply -----------------------------------------------------------------------------------
 
 

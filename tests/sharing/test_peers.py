@@ -194,3 +194,18 @@ def test_the_file_with_the_token_is_for_its_user_alone() -> None:
     [path] = (files.cache_folder() / "held").glob("*.json")
     assert path.stat().st_mode & 0o777 == 0o600
     assert path.parent.stat().st_mode & 0o777 == 0o700
+
+
+def test_files_of_dead_commands_go_and_those_of_servers_stay() -> None:
+    with socket.socket() as server:
+        server.bind(("127.0.0.1", 0))
+        server.listen()
+        number = server.getsockname()[1]
+        living = Registration("/dev/x", number, "a" * 32, "b" * 32, "link", 9600, os.getpid())
+        registry.write(living)
+        registry.tidy()
+        assert registry.is_taken(number)
+        assert len(list((files.cache_folder() / "held").glob("*.json"))) == 1
+    registry.tidy()
+    assert not registry.is_taken(number)
+    assert not list((files.cache_folder() / "held").glob("*.json"))

@@ -124,7 +124,7 @@ ROOMS = (
             "identity.cpp": "keeping owners host",
             "program.cpp": "host keeping undo other_versions",
             "holding.cpp": "host keeping undo other_versions",
-            "keeping.cpp": "keeping undo host",
+            "keeping.cpp": "keeping undo host owners",
             "run.cpp": "host stops button keeping",
             "firmware.cpp": "host button keeping owners",
         },

@@ -59,6 +59,10 @@ _REASONS: dict[str, tuple[tuple[str, str], ...]] = {
         ("_path(port).unlink(missing_ok=True)",
          "_path(port).unlink(missing_ok=False)"),
     ),
+    "any number but 0 turns it on": (
+        ("peer.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)",
+         "peer.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 2)"),
+    ),
     "the next case does nothing, and is the last one": (
         ("value = generation_ ^ kMarkOf; break;",
          "value = generation_ ^ kMarkOf; ;"),
