@@ -79,6 +79,9 @@ def built(sketch: str, board: str) -> Path:
     elf = Path(file.name).with_suffix(".elf")
     run("avr-g++", *_flags(board), *CPP, "-Wall", "-Wextra", "-Werror", "-Wl,--gc-sections",
         file.name, core(board), "-o", elf)  # fmt: skip
+    if board != "mega":  # it fits an Uno, with room for the stack
+        text, data, zeros = map(int, run("avr-size", elf).splitlines()[1].split()[:3])
+        assert text + data <= 32_256 and data + zeros <= 1_700, (text, data, zeros)
     return elf
 
 

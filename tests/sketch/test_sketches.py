@@ -231,6 +231,14 @@ def test_a_button_starts_and_stops() -> None:
     assert done.text == ""
 
 
+def test_a_spike_starts_nothing() -> None:
+    robot = robots.load("tinibot")
+    board = SketchBoard(robot, sketch("SB|F(1, 50)", robot))
+    board.level(100, robot.board.start_button, False)
+    board.level(110, robot.board.start_button, True)
+    assert {value for _, value in board.ran(300).motors} == {(0, 0)}
+
+
 def test_a_program_that_has_ended_plays_its_tune() -> None:
     tones = spans(ran("SI|F(0.1, 50)", 500).tones, 499)
     assert [(round(until - at, -1), value[0] // 10) for at, until, value in tones if value[0]] == [

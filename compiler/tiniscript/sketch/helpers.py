@@ -90,9 +90,11 @@ void $check_button() {
 }""",
     "wait_for_button": """\
 void $wait_for_button() {
-  while (digitalRead($START_BUTTON_PIN) == HIGH) {
-  }
-  delay(30);
+  do {
+    while (digitalRead($START_BUTTON_PIN) == HIGH) {
+    }
+    delay(30);
+  } while (digitalRead($START_BUTTON_PIN) == HIGH);
   while (digitalRead($START_BUTTON_PIN) == LOW) {
   }
   delay(30);
