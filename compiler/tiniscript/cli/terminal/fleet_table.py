@@ -27,6 +27,7 @@ class FleetTable:
         self.members = members
         self.language = language
         self.screen = Screen()
+        self.wide = [0, 0]  # columns of names and ports, so far
 
     def __enter__(self) -> FleetTable:
         self.screen.begin()
@@ -51,6 +52,10 @@ class FleetTable:
         self.screen.rest()
         self.screen.draw(self, time.monotonic() * 1000)
 
+    def _columns(self) -> tuple[list[str], list[str]]:
+        names = [shown(member.name or "?") for member in self.members]
+        return names, [shown(member.target.port) for member in self.members]
+
     def lines(self, width: int, height: int, now_ms: float) -> list[Text]:
         """Return at most `height` lines: those that are not done first, where not all fit."""
         if not self.members:
@@ -66,7 +71,12 @@ class FleetTable:
             rows = rows[: len(rows) - hidden]
         names = [shown(member.name or "?") for member in rows]
         ports = [shown(member.target.port) for member in rows]
-        wide = [max(map(cell_len, column), default=0) for column in (names, ports)]
+        # of hidden rows, too, so that no column jumps when another row is shown
+        self.wide = [
+            max(known, *map(cell_len, column))
+            for known, column in zip(self.wide, self._columns(), strict=True)
+        ]
+        wide = self.wide
         for member, name, port in zip(rows, names, ports, strict=True):
             line = Text(f"{set_cell_size(name, wide[0])}  {set_cell_size(port, wide[1])}  ")
             line.append(member.said(self.language), style=STYLES[member.mark])

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 SECONDS = 30  # from the left edge to the right one
 ROWS = 12  # at most
 KEPT = 5000  # values, the newest
+STEPS = 4  # between the marks of the axis, about
 
 
 class Board:
@@ -42,8 +43,7 @@ class Board:
         self.screen.say(line)
 
     def warn(self, line: str) -> None:
-        self.screen.flush()
-        self.screen.console.print(Text(line), soft_wrap=True)
+        self.screen.warn(line)
 
     def take(self, time_ms: int, event: Event) -> None:
         if event.name == "SHOW":
@@ -62,6 +62,7 @@ class Plot:
     def __init__(self) -> None:
         self.now_ms = 0
         self.values: deque[tuple[int, int]] = deque(maxlen=KEPT)  # when, and thousandths
+        self.margin = 0  # columns of the labels
 
     def take(self, time_ms: int, value: int, is_yes_no: bool) -> None:
         self.now_ms = time_ms
@@ -74,12 +75,12 @@ class Plot:
         while len(self.values) > 1 and self.values[1][0] < begin_ms:
             self.values.popleft()
         known = [value for _, value in self.values]
-        low, high = (min(known), max(known)) if known else (0, 1000)
-        if low == high:
-            low, high = low - 1000, high + 1000
-        labels = as_text(high), as_text(low)
-        margin = max(map(len, labels)) + 1
-        rows, columns = min(ROWS, height - 1), width - margin
+        low, high, step = scale(min(known, default=0), max(known, default=1000))
+        rows = min(ROWS, height - 1)
+        ticks = [as_text(value) for value in range(low, high + 1, step)]
+        self.margin = max(self.margin, *(len(each) + 1 for each in ticks))  # it never jumps back
+        margin = self.margin
+        columns = width - margin
         newest = as_text(known[-1]) if known else ""
         title = Text(f"── SHOW {newest} ".ljust(width - 6, "─") + f" {SECONDS} s ", style="dim")
         title.truncate(max(1, width))
@@ -87,8 +88,12 @@ class Plot:
             return [title]
         canvas = self._curve(columns, rows, begin_ms, low, high)
         found = [title]
+        marks = {
+            round((high - value) / (high - low) * (rows - 1)): as_text(value)
+            for value in range(low, high + 1, step)
+        }
         for row, curve in enumerate(layered([(canvas, "cyan")])):
-            label = labels[0] if row == 0 else labels[1] if row == rows - 1 else ""
+            label = marks.get(row, "")
             found.append(Text(f"{label:>{margin - 1}} ", style="dim").append_text(curve))
         return found
 
@@ -109,3 +114,16 @@ class Plot:
             canvas.lines([(x, y if before is None else before), (x, y), (end, y)])
             before = y
         return canvas
+
+
+def scale(low: int, high: int) -> tuple[int, int, int]:
+    """Return an axis around these values: its ends and the distance of its marks, all thousandths.
+
+    Marks are at most STEPS apart in number, at multiples of 1, 2 or 5 times a power of ten.
+    """
+    if low == high:
+        low, high = low - 1000, high + 1000
+    step = 1
+    while (high - low) > STEPS * step:
+        step = step * 5 // 2 if str(step).startswith("2") else step * 2
+    return low // step * step, -(-high // step) * step, step

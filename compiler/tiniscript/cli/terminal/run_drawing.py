@@ -64,6 +64,7 @@ class Picture:
         self.shown: deque[str] = deque(maxlen=SHOWN)
         self.hertz, self.silent_ms = 0, 0  # the newest note, and when it ends
         self.ending = ""
+        self.widest = [0, 0]  # columns of values and units, so far
 
     def take(self, event: Event) -> None:
         self.now_ms, what, values, said = event
@@ -133,7 +134,10 @@ class Picture:
             rows.append(("SHOW", newest, "", before if older else ""))
         if len(rows) > height:
             rows[1:3] = [(text("motors", language), f"{left} {right}", "%", "")]
-        names, numbers, units = (max(cell_len(row[k]) for row in rows) for k in range(3))
+        # values have a column that only grows: one that jumps cannot be read
+        names, *wide = (max(cell_len(row[k]) for row in rows) for k in range(3))
+        self.widest = [max(pair) for pair in zip(self.widest, wide, strict=True)]
+        numbers, units = self.widest
         names = min(names, max(6, width // 3))
         lines = []
         for name, value, unit, more in rows[:height]:

@@ -12,12 +12,10 @@ import time
 from typing import Protocol
 
 from rich.console import Console
-from rich.control import Control
-from rich.live import Live
-from rich.segment import ControlType
 from rich.text import Text
 
 from tiniscript.cli.encodings import DRAWN
+from tiniscript.cli.terminal.frame import Frame
 
 FRAME_S = 1 / 15
 SLOWEST_S = 0.2  # a frame that took longer (a long computation, Ctrl-Z) does not skip a move
@@ -34,30 +32,35 @@ class Screen:
 
     def __init__(self) -> None:
         self.console = Console(stderr=True)
-        self.live = Live(console=self.console, auto_refresh=False, redirect_stdout=False,
-                         redirect_stderr=False, vertical_overflow="crop")  # fmt: skip
+        self.frame = Frame(self.console)
+        self.is_begun = False
+        # Where nothing can be redrawn, only the last picture is printed.
+        self.is_still = self.console.legacy_windows or self.console.is_dumb_terminal
+        self.last = Text()
         self.lines: list[str] = []  # of the trace, for the next frame
-        self.widths: list[int] = []  # of the lines of the picture
         self.frame_s = time.monotonic()
         # where the trace goes to this very terminal, it has to go around the picture
         self.is_shared = sys.stdout.isatty() and _is_one_terminal()
 
     def begin(self) -> None:
-        self.live.start()
+        self.is_begun = True
+        if not self.is_still:
+            self.frame.begin()
 
     def end(self) -> None:
         try:
             self.flush()
         finally:
-            if self.live.is_started:
-                try:
-                    self.live.stop()
-                finally:
-                    self.console.show_cursor(True)
+            if self.is_begun:
+                self.is_begun = False
+                if self.is_still:
+                    self.console.print(self.last)
+                else:
+                    self.frame.end()
 
     def say(self, line: str) -> None:
         """Print a line of the trace, at the next frame at the latest."""
-        if self.is_shared and self.live.is_started:
+        if self.is_shared and self.is_begun and not self.is_still:
             self.lines.append(line)
         else:
             sys.stdout.write(f"{line}\n")
@@ -65,9 +68,17 @@ class Screen:
     def flush(self) -> None:
         sys.stdout.flush()
         if self.lines:
-            said = Text("\n".join(self.lines))
+            said = Text("\n".join(self.lines)).plain
             self.lines = []
-            self.console.print(said, soft_wrap=True)
+            self.frame.draw(self.frame.lines, said)
+
+    def warn(self, line: str) -> None:
+        """Print a line on standard error, above the picture."""
+        self.flush()
+        if self.is_begun and not self.is_still:
+            self.frame.draw(self.frame.lines, Text(line).plain)
+        else:
+            self.console.print(Text(line), soft_wrap=True)
 
     def rest(self) -> float:
         """Wait for the next frame; return the seconds since the last one."""
@@ -92,20 +103,15 @@ class Screen:
             for line in lines:
                 line.plain = "".join("*" if "⠀" <= c <= "⣿" else c for c in line.plain)
                 line.plain = line.plain.translate(DRAWN)
-        drawn = Text("\n", no_wrap=True).join(lines)
-        if not self.live.is_started:
+        self.last = Text("\n", no_wrap=True).join(lines)
+        if not self.is_begun:
             self.flush()
-            self.console.print(drawn)
-            return
-        # A terminal that has become narrower has wrapped the picture; rich does not know it.
-        wrapped = sum(max(0, cells - 1) // width for cells in self.widths)
-        if wrapped:
-            up = (ControlType.ERASE_IN_LINE, 2), (ControlType.CURSOR_UP, 1)
-            self.console.control(Control(ControlType.CARRIAGE_RETURN, *up * wrapped))
-        self.widths = [line.cell_len for line in lines]
-        self.live.update(drawn)
-        self.flush()
-        self.live.refresh()
+            self.console.print(self.last)
+        elif not self.is_still:
+            sys.stdout.flush()
+            said = Text("\n".join(self.lines)).plain if self.lines else ""
+            self.lines = []
+            self.frame.draw(lines, said)
 
 
 def _is_one_terminal() -> bool:

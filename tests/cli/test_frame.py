@@ -1,0 +1,174 @@
+"""A picture on a terminal: what is seen is right, and only what changes is written."""
+
+from __future__ import annotations
+
+import io
+import random
+
+import pytest
+from rich.console import Console
+from rich.text import Text
+
+from tiniscript.cli.terminal.fleet_table import FleetTable
+from tiniscript.cli.terminal.frame import BEGIN, END, Frame
+from tiniscript.cli.terminal.plot import ROWS, Plot, scale
+from tiniscript.cli.terminal.run_drawing import Picture
+
+pyte = pytest.importorskip("pyte")
+
+COLUMNS, LINES = 40, 12
+SIGNS = ["a", "b", "─", "⣿", " ", "ñ", "漢"]
+STYLES = ["", "red", "bold", "dim"]
+
+
+class Terminal:
+    """A terminal that reads what a frame writes."""
+
+    def __init__(self, columns: int = COLUMNS) -> None:
+        self.written = io.StringIO()
+        self.console = Console(
+            file=self.written, force_terminal=True, width=columns, height=LINES,
+            color_system="standard", legacy_windows=False,
+        )  # fmt: skip
+        self.frame = Frame(self.console)
+        self.screen = pyte.HistoryScreen(columns, LINES, history=10_000)
+        self.stream = pyte.Stream(self.screen)
+
+    def draw(self, lines: list[Text], above: str = "") -> str:
+        """Draw it; return what was written."""
+        self.written.seek(0)
+        self.written.truncate()
+        self.frame.draw(lines, above)
+        said = self.written.getvalue()
+        self.stream.feed(said.replace("\n", "\r\n"))  # as a terminal does
+        return said
+
+    def seen(self) -> list[str]:
+        """All lines, with those that have scrolled away."""
+        rows = [*self.screen.history.top, *(self.screen.buffer[k] for k in range(LINES))]
+        wide = self.screen.columns
+        return ["".join(row[k].data for k in range(wide)).rstrip() for row in rows]
+
+
+def line(chance: random.Random) -> Text:
+    found = Text()
+    while found.cell_len < chance.randrange(COLUMNS - 2):
+        found.append(chance.choice(SIGNS), style=chance.choice(STYLES))
+    found.rstrip()
+    return found
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_what_is_seen_is_the_last_picture_below_all_that_was_said(seed: int) -> None:
+    """With lines that come, go, change in one place, and others that are printed above."""
+    chance = random.Random(seed)
+    terminal = Terminal()
+    said: list[str] = []
+    lines = [line(chance) for _ in range(5)]
+    for number in range(30):
+        lines = [each.copy() for each in lines]
+        for k in range(len(lines)):
+            if chance.random() < 0.3:
+                lines[k] = line(chance)
+        if chance.random() < 0.2:
+            lines = lines[: chance.randrange(len(lines) + 1)]
+        if chance.random() < 0.2 and len(lines) < LINES - 4:
+            lines.append(line(chance))
+        above = f"said {number}" if chance.random() < 0.3 else ""
+        said += [above] if above else []
+        terminal.draw(lines, above)
+        expected = [*said, *(each.plain for each in lines)]
+        seen = terminal.seen()
+        assert seen[: len(expected)] == expected
+        assert not any(seen[len(expected) :])
+
+
+def test_nothing_is_written_where_nothing_changes() -> None:
+    terminal = Terminal()
+    lines = [Text("one"), Text("two", style="red")]
+    assert terminal.draw(lines)
+    assert terminal.draw([each.copy() for each in lines]) == ""
+
+
+def test_one_value_costs_few_bytes_and_is_one_update() -> None:
+    terminal = Terminal()
+    lines = [Text(f"value {k}".ljust(30) + "end") for k in range(8)]
+    terminal.draw(lines)
+    lines[3] = Text("value 7".ljust(30) + "end")
+    said = terminal.draw(lines)
+    assert said.startswith(BEGIN) and said.endswith(END)
+    assert len(said) - len(BEGIN) - len(END) < 30
+    assert "value 7" in terminal.seen()[3]
+    assert (terminal.screen.cursor.y, terminal.screen.cursor.x) == (7, 33)
+
+
+def test_another_colour_is_a_change() -> None:
+    terminal = Terminal()
+    terminal.draw([Text("stop", style="green"), Text("x")])
+    terminal.draw([Text("stop", style="red"), Text("x")])
+    assert terminal.screen.buffer[0][0].fg == "red"
+
+
+def test_a_terminal_that_becomes_wider_or_narrower_gets_all_of_it() -> None:
+    terminal = Terminal()
+    terminal.draw([Text("a" * 30), Text("b")])
+    for columns in (60, 34):
+        terminal.console.width = columns
+        terminal.screen.resize(LINES, columns)
+        said = terminal.draw([Text("a" * 30), Text("b")])
+        assert "a" * 30 in said
+        assert [each for each in terminal.seen() if each] == ["a" * 30, "b"]
+
+
+# -- the curve of tsc monitor --plot
+
+
+@pytest.mark.parametrize(
+    ("low", "high"),
+    [(0, 1000), (3_000, 97_000), (412_000, 419_000), (-5000, 5000), (7, 7), (0, 1), (-9, 10**9)],
+)
+def test_an_axis_has_round_marks_around_the_values(low: int, high: int) -> None:
+    begin, end, step = scale(low, high)
+    assert begin <= low and end >= high
+    assert begin % step == 0 and end % step == 0
+    digits = str(step).rstrip("0")
+    assert digits in ("1", "2", "5"), step
+    assert 1 <= (end - begin) // step <= 6
+
+
+def test_a_small_change_of_the_values_does_not_move_the_axis() -> None:
+    plot = Plot()
+    plot.take(0, 0, False)
+    plot.take(100, 97_300, False)
+    before = plot.lines(80, 20, 200)
+    plot.take(200, 98_900, False)
+    after = plot.lines(80, 20, 300)
+    assert [each.plain[:8] for each in before[1:]] == [each.plain[:8] for each in after[1:]]
+    assert len(after) <= ROWS + 1
+    assert sum(bool(each.plain[:5].strip()) for each in after[1:]) >= 3, "marks"
+
+
+@pytest.mark.parametrize("width", [10, 24, 80, 240])
+def test_a_curve_fits_each_terminal(width: int) -> None:
+    plot = Plot()
+    for k in range(50):
+        plot.take(k * 100, (-1) ** k * 10**k % 10**9, False)
+        for each in plot.lines(width, 8, k * 100):
+            assert each.cell_len <= width
+
+
+def test_columns_of_values_only_grow() -> None:
+    from tiniscript import robots
+    from tiniscript.vm.trace import Event
+
+    picture = Picture(robots.load("tinibot"), "en")
+    places = []
+    for k, value in enumerate((5, 400, 7)):
+        picture.take(Event(k * 100, "READ", (2, value * 1000), ""))
+        row = next(each for each in picture.lines(100, 20, k * 100) if "DISTANCE" in each.plain)
+        places.append(row.plain.index(" cm"))
+    assert places[0] <= places[1] == places[2]
+
+
+def test_a_table_of_robots_keeps_its_columns() -> None:
+    assert FleetTable([], "en").wide == [0, 0]
