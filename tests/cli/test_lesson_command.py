@@ -222,3 +222,12 @@ def test_a_page_is_printed_for_a_terminal(tsc: Tsc) -> None:
     assert "    SI|LOOP(4)\n" in done.out
     assert "Answers\n-------" in done.out
     assert "```" not in done.out
+
+
+def test_a_word_of_another_robot_gets_no_option_that_lesson_lacks(tsc: Tsc) -> None:
+    for language in ("en", "es"):
+        done = tsc("lesson", "check", "1", "-e", "SI|F(1,60) UNTIL(LINE_L)", "--lang", language)
+        assert done.code == 1
+        assert "--robot" not in done.err + done.out
+        assert "LINE_L" in done.err + done.out
+    assert "--robot liner" in tsc("check", "-e", "SI|F(1,60) UNTIL(LINE_L)").err

@@ -38,3 +38,16 @@ def test_no_sentence_is_of_a_cause_that_does_not_exist() -> None:
     known |= {"seen_no_permission_other", "next_no_permission_other"}
     named = {key for key in DOCTOR_TEXTS if key.startswith(("seen_", "next_"))}
     assert named == known
+
+
+def test_one_restart_is_said_as_one() -> None:
+    """A count of 1 has a sentence of its own: "1 veces" is no Spanish."""
+    from tiniscript.cli.commands.doctor import _said
+    from tiniscript.doctor.findings import Finding
+
+    for cause in ("restarts", "motors_restart"):
+        for count, words in (("1", ("once", "una vez")), ("3", ("3 times", "3 veces"))):
+            values = {"count": count, "reset": "BROWN_OUT"}
+            finding = Finding(cause, True, values)
+            for language, word in zip(("en", "es"), words, strict=True):
+                assert _said(finding, values, language)[1].startswith(word)

@@ -158,3 +158,28 @@ def test_both_guides_type_the_same() -> None:
         for guide in GUIDES.values()
     ]
     assert headings[0] == headings[1]
+
+
+def spanish() -> dict[str, str]:
+    """Return what is said in Spanish, by where: sentences of the package, and documents."""
+    from tiniscript.cli.texts.common import tables
+    from tiniscript.wiring.texts import TEXTS as WIRING_TEXTS
+
+    found = {key: both[1] for table in (*tables(), WIRING_TEXTS) for key, both in table.items()}
+    pages = [*ROOT.glob("docs/**/*.es.md"), *ROOT.glob("compiler/tiniscript/lessons/*/*.es.md")]
+    return found | {path.name: path.read_text(encoding="utf-8") for path in pages}
+
+
+@pytest.mark.parametrize(
+    ("wrong", "right"),
+    [
+        (r"\btensi[oó]n\b", "voltaje"),
+        (r"\b1 veces\b", "una vez"),
+        (r"\busted(es no)?\b", "tú"),
+        (r"\b(vosotros|vuestr\w+|\w+[áé]is)\b", "ustedes"),
+        (r"\bordenador(es)?\b", "computadora"),
+    ],
+)
+def test_one_thing_has_one_word_in_spanish(wrong: str, right: str) -> None:
+    found = {where for where, said in spanish().items() if re.search(wrong, said, re.I)}
+    assert not found, f"say {right}"

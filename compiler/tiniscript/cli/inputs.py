@@ -103,14 +103,15 @@ def robot(options: Namespace, language: str) -> Robot:
         ) from None
 
 
-def compiled(given: Input, robot: Robot, is_strict: bool) -> Compiled:
+def compiled(given: Input, robot: Robot, is_strict: bool, names_robots: bool = True) -> Compiled:
     """Return the result of compiling a program's text.
 
     `is_strict`: a program that is too large for the robot is a mistake, else a warning.
+    `names_robots`: the command has `--robot`.
     """
     from tiniscript.library.compiling import compiled as compiled_data
 
-    return compiled_data(given.data, robot, given.name, is_strict)
+    return compiled_data(given.data, robot, given.name, is_strict, names_robots=names_robots)
 
 
 def for_level(found: Compiled, robot: Robot, name: str | None) -> Compiled:

@@ -103,7 +103,7 @@ class _Marker:
         if given.is_image:
             file = inputs.shown(given.name)
             raise CommandError(2, "needs_text", file=file, verb=f"lesson {verb}")
-        return inputs.compiled(given, self.robot, is_strict=True)
+        return inputs.compiled(given, self.robot, is_strict=True, names_robots=False)
 
     def mark(self, given: inputs.Input, compiled: Compiled) -> Mark:
         if not compiled.is_right:

@@ -14,11 +14,17 @@ if TYPE_CHECKING:
 
 
 def compiled(
-    data: bytes, robot: Robot, name: str, is_strict: bool, optimize: bool = True
+    data: bytes,
+    robot: Robot,
+    name: str,
+    is_strict: bool,
+    optimize: bool = True,
+    names_robots: bool = True,
 ) -> Compiled:
     """Return the result of compiling a program's text.
 
     `is_strict`: a program that is too large for the robot is a mistake, else a warning.
+    `names_robots`: a word of another robot is said to be that; not where no other can be chosen.
     """
     from tiniscript import compile_text, fitting
 
@@ -27,6 +33,8 @@ def compiled(
         return text
     found = compile_text(text, robot.kit, name, optimize)
     if not found.is_right:
+        if not names_robots:
+            return found
         from tiniscript.library.known_kits import naming
 
         return naming(found, robot)

@@ -16,7 +16,7 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.robot.connect import Connection, baud_of, robot_of_kit
-from tiniscript.cli.texts.common import text
+from tiniscript.cli.texts.common import has_text, text
 from tiniscript.doctor import report
 from tiniscript.doctor.findings import CAUSES, NOTE, Finding
 
@@ -144,6 +144,8 @@ def _said(finding: Finding, values: Mapping[str, str], language: str) -> tuple[s
     seen = f"seen_{finding.cause}"
     if finding.cause == "busy" and not filled["by"]:
         seen = "seen_busy_unknown"
+    if filled.get("count") == "1" and has_text(f"{seen}_once"):
+        seen += "_once"
     then = f"next_{finding.cause}"
     if finding.cause == "no_permission" and not filled["group"]:
         seen, then = "seen_no_permission_other", "next_no_permission_other"
