@@ -80,7 +80,9 @@ def test_the_keyboard_alone_is_enough(page: Page) -> None:
         if visited[-1] == "repair":
             break
         page.keyboard.press("Tab")
-    assert visited == ["robot", "language", "open", "save", "editor", "place", "repair"]
+    assert visited == [
+        "robot", "language", "open", "save", "stop", "editor", "place", "repair"
+    ]  # fmt: skip
     page.keyboard.press("Enter")
     checked(page)
     assert image(page) == compile("B(2, 80)").image

@@ -8,8 +8,10 @@ from __future__ import annotations
 from typing import Any
 
 from tiniscript import robots
+from tiniscript.robots.kinematics import Pose
 from tiniscript.robots.profile import LANGUAGES, Robot
 from tiniscript.virtual import worlds
+from tiniscript.virtual.driving import Hull
 from tiniscript.virtual.geometry import Point
 from tiniscript.virtual.world import World
 from tiniscript.words import WORDS
@@ -35,6 +37,8 @@ def _robot(profile: Robot) -> dict[str, Any]:
     return {
         "name": profile.name,
         "labels": {each: profile.labels[each]["robot"] for each in LANGUAGES},
+        "outline": [[point.x, point.y] for point in Hull(profile.body).outline(Pose(0, 0, 0))],
+        "places": {name: place._asdict() for name, place in profile.body.places.items()},
         "devices": [
             {
                 "text": device.name,

@@ -43,6 +43,10 @@ def files(folder: Path | None = None) -> dict[str, File]:
     }
 
 
+_FOREIGN = File(b"This page is for this computer alone.\n", TYPES[".txt"])
+_MISSING = File(b"There is no such file.\n", TYPES[".txt"])
+
+
 class Server(ThreadingHTTPServer):
     """A server of the page on this computer; `port` 0 is any that is free. Raises OSError."""
 
@@ -78,16 +82,12 @@ class _Handler(BaseHTTPRequestHandler):
 
     def _answer(self, has_body: bool) -> None:
         if not self._is_own():
-            self._send(
-                403, File(b"This page is for this computer alone.\n", TYPES[".txt"]), has_body
-            )
+            self._send(HTTPStatus.FORBIDDEN, _FOREIGN, has_body)
             return
         name = urlsplit(self.path).path.removeprefix("/") or FIRST
         found = self.server.page.get(name)
         if found is None:
-            self._send(
-                HTTPStatus.NOT_FOUND, File(b"There is no such file.\n", TYPES[".txt"]), has_body
-            )
+            self._send(HTTPStatus.NOT_FOUND, _MISSING, has_body)
         else:
             self._send(HTTPStatus.OK, found, has_body)
 

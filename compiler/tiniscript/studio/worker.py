@@ -7,10 +7,13 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from tiniscript.diagnostics.rendering import Message
 from tiniscript.studio import checking
+
+if TYPE_CHECKING:
+    from tiniscript.studio.simulation import Simulation
 
 Answer = dict[str, Any]
 
@@ -41,4 +44,44 @@ def _open(fields: Answer, data: bytes) -> Answer:
     return {"text": found}
 
 
-_ASKED: dict[str, Callable[[Answer, bytes], Answer]] = {"check": _check, "open": _open}
+_simulation: Simulation | None = None  # a page has one robot
+
+
+def _power_on(fields: Answer, data: bytes) -> Answer:
+    from tiniscript.studio.simulation import Simulation
+
+    global _simulation
+    if _simulation is not None:
+        _simulation.close()
+    _simulation = Simulation(fields["robot"], fields["world"], data)
+    return _simulation.state()
+
+
+def _go(fields: Answer, data: bytes) -> Answer:
+    assert _simulation is not None, "nothing is switched on"
+    _simulation.go(fields["duration_ms"])
+    return _simulation.state()
+
+
+def _next(fields: Answer, data: bytes) -> Answer:
+    assert _simulation is not None, "nothing is switched on"
+    _simulation.go_to_next(fields["offsets"], fields["limit_ms"])
+    return _simulation.state()
+
+
+def _stop(fields: Answer, data: bytes) -> Answer:
+    assert _simulation is not None, "nothing is switched on"
+    _simulation.stop()
+    return _simulation.state()
+
+
+def _push(fields: Answer, data: bytes) -> Answer:
+    assert _simulation is not None, "nothing is switched on"
+    _simulation.push()
+    return _simulation.state()
+
+
+_ASKED: dict[str, Callable[[Answer, bytes], Answer]] = {
+    "check": _check, "open": _open, "power_on": _power_on, "go": _go, "next": _next,
+    "stop": _stop, "push": _push,
+}  # fmt: skip

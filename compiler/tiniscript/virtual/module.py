@@ -7,14 +7,19 @@ installed, or cannot run on this computer.
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from struct import pack
 from typing import NamedTuple, Protocol
 from weakref import WeakMethod
 
-from wasmtime import Func, FuncType, Instance, Memory
+if sys.platform == "emscripten":  # in a page
+    from tiniscript.vm import page_wasm as wasm_store
+    from tiniscript.vm.page_wasm import Func, FuncType, Instance, Memory
+else:
+    from wasmtime import Func, FuncType, Instance, Memory
 
-from tiniscript.vm import wasm_store
+    from tiniscript.vm import wasm_store
 
 PATH = Path(__file__).with_name("robot.wasm")
 

@@ -282,6 +282,12 @@ class VirtualRobot:
             del self._traced.events[: EVENTS // 2]
 
     @property
+    def at(self) -> int | None:
+        """Return where the instruction that runs begins, or None while no program runs."""
+        found = self._firmware.call("at") % (1 << 32)
+        return None if found == (1 << 32) - 1 else found
+
+    @property
     def held(self) -> str:
         """Return where its program is held: NOTHING, MEMORY, SAVING or STORED."""
         from tiniscript.link.messages import SAVED

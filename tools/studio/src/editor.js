@@ -21,7 +21,7 @@ const setRunning = StateEffect.define();
 const running = StateField.define({
   create: () => Decoration.none,
   update(marks, transaction) {
-    let found = marks.map(transaction.changes);
+    let found = transaction.docChanged ? Decoration.none : marks;
     for (const effect of transaction.effects) {
       if (!effect.is(setRunning)) continue;
       found = effect.value && effect.value.from < effect.value.to
@@ -181,6 +181,7 @@ export class Editor {
       EditorState.phrases.of(currentLanguage() === 'es' ? EDITOR_PHRASES_ES : {}),
       EditorView.contentAttributes.of({
         'aria-label': text('editor'),
+        tabindex: '0',
         autocapitalize: 'off',
         autocorrect: 'off',
         spellcheck: 'false',

@@ -1,11 +1,13 @@
 // The page: puts editor, compiler, files and kept work together.
 
+import { element } from './elements.js';
 import { Editor } from './editor.js';
 import { bytesOf, download } from './files.js';
 import { showMessages, summary } from './messages.js';
 import { whenOffline } from './offline.js';
 import { Python } from './python.js';
 import { currentLanguage, setLanguage, text } from './texts.js';
+import { Driving } from './driving.js';
 import { ROBOTS } from './words.js';
 import { keep, keptWork } from './work.js';
 
@@ -14,18 +16,6 @@ import { keep, keptWork } from './work.js';
 
 const TYPING_MS = 150; // of silence before a text is compiled
 const FIRST_PROGRAM = 'SI|F(2, 80);\nR(0.5, 60);\nF(1, 80);\n';
-
-/**
- * @template {HTMLElement} T
- * @param {string} id
- * @param {new () => T} kind
- * @returns {T}
- */
-function element(id, kind) {
-  const found = document.getElementById(id);
-  if (!(found instanceof kind)) throw new Error(`no element ${id}`);
-  return found;
-}
 
 const robots = element('robot', HTMLSelectElement);
 const languages = element('language', HTMLSelectElement);
@@ -47,6 +37,7 @@ languages.value = work.language;
 
 const python = new Python();
 const editor = new Editor(element('editor', HTMLElement), work.robot, changed);
+const driving = new Driving(python, editor, work, () => (isStale() ? null : newest.answer), remember);
 
 /** The newest answer, and what it is about. @type {{key: string, answer: Checked | null}} */
 let newest = { key: '', answer: null };
@@ -69,7 +60,9 @@ python.ready.then(
 );
 
 function changed() {
+  document.documentElement.dataset['state'] = 'changed';
   work.text = editor.text;
+  driving.forgetPlaces();
   remember();
   clearTimeout(timer);
   timer = window.setTimeout(check, TYPING_MS);
@@ -77,6 +70,7 @@ function changed() {
 
 /** Compiles what is in the editor, one text at a time, until the newest has been compiled. */
 async function check() {
+  document.documentElement.dataset['state'] = 'changed';
   if (!isReady || isChecking) return;
   isChecking = true;
   try {
@@ -127,13 +121,13 @@ function showRobots() {
 }
 
 function remember() {
-  document.documentElement.dataset['state'] = 'changed';
   if (!keep(work)) note.textContent = text('not_kept');
 }
 
 robots.addEventListener('change', () => {
   work.robot = robots.value;
   editor.setRobot(work.robot);
+  driving.begin();
   remember();
   check();
 });
@@ -143,6 +137,7 @@ languages.addEventListener('change', () => {
   setLanguage(work.language);
   editor.setLanguage();
   showRobots();
+  driving.setLanguage();
   note.textContent = '';
   if (!isReady) status.textContent = text('starting');
   remember();

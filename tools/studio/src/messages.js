@@ -56,9 +56,7 @@ export function summary(findings, bytes) {
   if (mistakes) parts.push(mistakes === 1 ? text('one_mistake') : text('mistakes', { count: mistakes }));
   else parts.push(text('right', { bytes }));
   if (warnings) parts.push(warnings === 1 ? text('one_warning') : text('warnings', { count: warnings }));
-  return parts.length === 2
-    ? text('and', { one: String(parts[0]), other: String(parts[1]) })
-    : String(parts[0]);
+  return parts.join(mistakes ? ', ' : ' ');
 }
 
 /**

@@ -30,6 +30,21 @@
  * @property {[number, number, number, number, number][]} places offset, line, column and the end
  */
 
+/**
+ * @typedef {object} RobotState
+ * @property {number} now_ms
+ * @property {number | null} began_ms
+ * @property {[number, number, number]} pose x and y in cm, heading in degrees
+ * @property {[number, number]} motors
+ * @property {boolean} is_running
+ * @property {boolean} is_waiting for its button
+ * @property {string} fault
+ * @property {number} bumps
+ * @property {number | null} at
+ * @property {{value: number, text: string}[]} readings
+ * @property {[number, string][]} events
+ */
+
 /** @typedef {{resolve: (answer: any) => void, reject: (why: Error) => void}} Waiting */
 
 export class Python {

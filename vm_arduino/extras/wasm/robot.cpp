@@ -282,3 +282,9 @@ tini_exported("saved") uint32_t module_saved() {
   return static_cast<uint32_t>(port_status().saved);
 }
 tini_exported("fault") uint32_t module_fault() { return port_status().fault; }
+
+// Where the instruction that runs begins; all ones while no program runs.
+tini_exported("at") uint32_t module_at() {
+  Place place;
+  return firmware_runs(&place) ? place.at : 0xffffffff;
+}

@@ -267,8 +267,8 @@ VERBS: dict[str, Verb] = {
     "studio": Verb(
         VIRTUAL, ("studio", "studio"),
         ("write programs in a page of your browser", "escribe programas en una página del navegador"),
-        ("Opens TiniScript Studio, a page for the browser of this computer: an editor that says what is wrong with a program while it is written, with the same compiler as `tsc`. Nothing leaves this computer, and after the first visit the page works without `tsc`, too. It goes on until Ctrl-C.",
-         "Abre TiniScript Studio, una página para el navegador de esta computadora: un editor que dice qué está mal en un programa mientras se escribe, con el mismo compilador que `tsc`. Nada sale de esta computadora, y después de la primera visita la página también funciona sin `tsc`. Sigue hasta Ctrl-C."),
+        ("Opens TiniScript Studio, a page for the browser of this computer: an editor that says what is wrong with a program while it is written, with the same compiler as `tsc`, and the virtual robot, which runs it. Nothing leaves this computer, and after the first visit the page works without `tsc`, too. It goes on until Ctrl-C.",
+         "Abre TiniScript Studio, una página para el navegador de esta computadora: un editor que dice qué está mal en un programa mientras se escribe, con el mismo compilador que `tsc`, y el robot virtual, que lo ejecuta. Nada sale de esta computadora, y después de la primera visita la página también funciona sin `tsc`. Sigue hasta Ctrl-C."),
         ends=("Exit code: 0 when it has ended, 2 where the page is not in this installation, 3 where its port cannot be had.",
               "Código de salida: 0 cuando terminó, 2 si la página no está en esta instalación, 3 si no se puede usar su puerto."),
     ),

@@ -1,0 +1,201 @@
+"""The virtual robot in the page: it drives as it does without one, and STOP stops it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from tests.studio.test_simulation import DANCE
+from tests.support.casefile import ROOT
+from tests.support.studio import checked, write
+from tiniscript import compile, run
+from tiniscript.studio.simulation import Simulation
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+FOREVER = "LOOP(FOREVER);\n  F(1, 80);\n  R(1, 60);\nEND_LOOP"
+# The worker, asked as the page asks it.
+ASK = """async ({requests, image}) => {
+  const worker = new Worker('./worker.js', {type: 'module'});
+  const data = new Uint8Array(image.match(/../g).map((pair) => parseInt(pair, 16)));
+  const answers = [];
+  const done = new Promise((resolve, reject) => {
+    worker.onmessage = ({data}) => {
+      if (data.error) { reject(new Error(data.error)); return; }
+      if (data.id) answers.push(JSON.parse(data.answer));
+      if (answers.length === requests.length) resolve();
+    };
+    worker.onerror = (event) => reject(new Error(event.message));
+  });
+  requests.forEach((request, k) =>
+    worker.postMessage({id: k + 1, request: JSON.stringify(request), data}));
+  await done;
+  worker.terminate();
+  return answers;
+}"""
+
+
+def in_phase(page: Page, phase: str) -> None:
+    page.locator(f"html[data-phase={phase}]").wait_for(state="attached")
+
+
+def value(page: Page, name: str) -> str:
+    return page.locator("#values div").filter(has_text=name).locator("dd").inner_text()
+
+
+def running(page: Page) -> str:
+    """Return which part of the text is marked."""
+    return " ".join(page.locator(".cm-running").all_inner_texts())
+
+
+@pytest.fixture(autouse=True)
+def at_rest(page: Page) -> None:
+    page.keyboard.press("Escape")
+    page.select_option("#speed", "1")
+    page.select_option("#world", "obstacles")
+
+
+@pytest.mark.parametrize(
+    ("name", "robot", "world"),
+    [
+        ("obstacle", "tinibot", "obstacles"),
+        ("obstacle_until", "tinibot", "obstacles"),
+        ("light", "tinibot", "light"),
+        ("line", "liner", "line"),
+    ],
+)
+def test_a_run_is_the_same_as_without_a_page(page: Page, name: str, robot: str, world: str) -> None:
+    """The browser's WebAssembly and floating point, and Python's in wasmtime: to the last digit."""
+    text = (ROOT / "examples" / f"{name}.ts").read_text(encoding="utf-8")
+    image = compile(text, robot).image
+    requests: list[dict[str, Any]] = [
+        {"do": "power_on", "robot": robot, "world": world},
+        *({"do": "go", "duration_ms": 400} for _ in range(20)),
+        {"do": "stop"},
+    ]
+    answers = page.evaluate(ASK, {"requests": requests, "image": image.hex()})
+    simulation = Simulation(robot, world, image)
+    for request, answer in zip(requests, answers, strict=True):
+        if request["do"] == "go":
+            simulation.go(400)
+        elif request["do"] == "stop":
+            simulation.stop()
+        wanted = simulation.state()
+        wanted["events"] = [list(each) for each in wanted["events"]]
+        assert answer == wanted
+
+
+def test_the_list_is_the_trace_of_the_command(page: Page) -> None:
+    write(page, DANCE)
+    page.select_option("#speed", "20")
+    page.click("#run")
+    in_phase(page, "ended")
+    wanted = [f"{each.ms} {each.text}" for each in run(DANCE).events]
+    assert (page.locator("#trace").text_content() or "").split("\n") == wanted
+    assert page.inner_text("#doing") == "It has ended."
+    page.click("summary")
+    with page.expect_download() as saved:
+        page.click("#save_trace")
+    assert saved.value.path().read_text().splitlines() == wanted
+    page.click("summary")
+
+
+@pytest.mark.parametrize("is_paused", [False, True], ids=["driving", "paused"])
+@pytest.mark.parametrize("how", ["button", "Escape", "Escape in the editor"])
+def test_stop_stops_it(page: Page, how: str, is_paused: bool) -> None:
+    write(page, FOREVER)
+    page.click("#run")
+    page.locator(".cm-running").first.wait_for()
+    if is_paused:
+        page.click("#pause")
+        in_phase(page, "paused")
+    assert value(page, "Motors").split() != ["0", "0"]
+    if how == "button":
+        page.click("#stop")
+    else:
+        if how != "Escape":
+            page.locator(".cm-content").focus()
+        page.keyboard.press("Escape")
+    page.locator("#doing").filter(has_text="Stopped.").wait_for()
+    assert value(page, "Motors").split() == ["0", "0"]
+    in_phase(page, "ended")
+    assert (page.locator("#trace").text_content() or "").endswith(" STOP")
+    assert running(page) == ""
+
+
+def test_step_goes_to_the_next_part_of_the_program(page: Page) -> None:
+    write(page, "F(1, 80);\nR(0.5, 60);\nB(1, 70)")
+    page.click("#step")
+    in_phase(page, "paused")
+    for part in ("F(1, 80)", "R(0.5, 60)", "B(1, 70)"):
+        page.locator(".cm-running", has_text=part).wait_for()
+        assert running(page) == part
+        page.click("#step")
+    in_phase(page, "ended")
+    assert value(page, "Time") == "2.5 s"
+
+
+def test_stop_comes_through_in_the_middle_of_a_long_step(page: Page) -> None:
+    write(page, "W(50);\nS")
+    page.click("#step")
+    in_phase(page, "paused")
+    page.locator(".cm-running").wait_for()
+    page.click("#step")
+    page.click("#stop")
+    page.locator("#doing").filter(has_text="Stopped.").wait_for()
+    assert float(value(page, "Time").split()[0]) < 49
+
+
+def test_a_change_of_the_text_ends_the_mark(page: Page) -> None:
+    write(page, FOREVER)
+    page.click("#step")
+    page.locator(".cm-running").wait_for()
+    page.locator(".cm-content").focus()
+    page.keyboard.type(" ")
+    checked(page)
+    assert running(page) == ""
+
+
+def test_a_wrong_program_does_not_run(page: Page) -> None:
+    write(page, "F(1, ")
+    page.click("#run")
+    page.locator("#doing").filter(has_text="First repair the program.").wait_for()
+    assert page.locator("html[data-phase=running]").count() == 0
+
+
+def test_a_program_waits_for_its_button(page: Page) -> None:
+    write(page, "SB|F(1, 80)")
+    page.select_option("#speed", "4")
+    page.click("#run")
+    page.locator("#push").click()
+    in_phase(page, "ended")
+    assert (page.locator("#trace").text_content() or "").split("\n")[-1] == "1000 DONE"
+
+
+def test_a_fault_is_named_where_it_is(page: Page) -> None:
+    write(page, "X = 0;\nSHOW(1 / X)")
+    page.select_option("#speed", "20")
+    page.click("#run")
+    page.locator("#doing").filter(has_text="DIVIDE_BY_ZERO").wait_for()
+
+
+def test_another_world_or_robot_begins_again(page: Page) -> None:
+    write(page, FOREVER)
+    page.click("#run")
+    page.locator(".cm-running").first.wait_for()
+    page.select_option("#world", "line")
+    page.locator("#doing").filter(has_text="Press Run").wait_for()
+    page.click("#run")
+    page.locator(".cm-running").first.wait_for()
+    page.select_option("#robot", "liner")
+    checked(page)
+    assert page.locator("#values").get_by_text("LINE_L").count() == 1
+    colors = page.evaluate(
+        "() => { const c = document.querySelector('#arena'); const d = c.getContext('2d')"
+        ".getImageData(0, 0, c.width, c.height).data; const found = new Set();"
+        " for (let k = 0; k < d.length; k += 4) found.add(d.slice(k, k + 3).join());"
+        " return found.size; }"
+    )
+    assert colors > 5  # floor, border, line

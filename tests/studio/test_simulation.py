@@ -1,0 +1,104 @@
+"""The virtual robot of the page: the same runs as `tsc run` and `tsc robot` have."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from tests.support.casefile import ROOT
+from tests.support.virtual_robot import Talk, missing, trace
+from tiniscript import compile, run
+from tiniscript.robots import load
+from tiniscript.studio import worker
+from tiniscript.studio.simulation import Simulation
+from tiniscript.virtual import worlds
+from tiniscript.virtual.robot import VirtualRobot
+
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
+DANCE = "F(1, 80);R(0.5, 60);BEEP(0.1, 440);SHOW(5);B(0.2, 50)"
+
+
+def lines(simulation: Simulation) -> list[str]:
+    events = simulation.robot.take_events()
+    return trace(events)
+
+
+def test_a_run_is_that_of_the_command() -> None:
+    simulation = Simulation("tinibot", "obstacles", compile(DANCE).image)
+    simulation.go(5000)
+    assert lines(simulation) == [f"{each.ms} {each.text}" for each in run(DANCE).events]
+
+
+@pytest.mark.parametrize(
+    ("name", "robot", "world"),
+    [
+        ("obstacle", "tinibot", "obstacles"),
+        ("light", "tinibot", "light"),
+        ("line", "liner", "line"),
+    ],
+)
+def test_a_run_is_that_of_the_virtual_robot(name: str, robot: str, world: str) -> None:
+    text = (ROOT / "examples" / f"{name}.ts").read_text(encoding="utf-8")
+    simulation = Simulation(robot, world, compile(text, robot).image)
+    simulation.go(8000)
+    other = VirtualRobot(load(robot), worlds.load(world))
+    talk = Talk(other)
+    talk.upload(text)
+    talk.wait(8000)
+    ours, theirs = lines(simulation), trace(other.take_events())
+    shorter = min(len(ours), len(theirs)) - 5  # the two were uploaded at other times
+    assert shorter > 10 and ours[:shorter] == theirs[:shorter]
+
+
+def test_it_is_told_which_part_of_the_text_runs() -> None:
+    text = "F(1, 80);\nR(0.5, 60);\nS"
+    simulation = Simulation("tinibot", "obstacles", compile(text).image)
+    places = [0, 3]
+    simulation.go(300)
+    assert simulation.state()["at"] in range(3)
+    simulation.go_to_next(places, 5000)
+    assert simulation.state()["at"] in range(3, 6)
+    simulation.go_to_next(places, 5000)
+    assert simulation.state()["at"] is None and not simulation.state()["is_running"]
+
+
+def test_a_stop_is_confirmed_and_the_motors_are_off() -> None:
+    simulation = Simulation("tinibot", "obstacles", compile("F(FOREVER, 80) UNTIL(FALSE)").image)
+    simulation.go(500)
+    assert simulation.state()["motors"] == [80, 80]
+    before = simulation.robot.now_ms
+    simulation.stop()
+    state = simulation.state()
+    assert state["motors"] == [0, 0] and not state["is_running"]
+    assert state["events"][-1][1] == "STOP" and simulation.robot.now_ms - before < 200
+    simulation.go(1000)
+    assert simulation.state()["events"] == []
+
+
+def test_a_program_can_wait_for_its_button() -> None:
+    simulation = Simulation("tinibot", "obstacles", compile("SB|F(1, 80)").image)
+    simulation.go(3000)
+    assert simulation.state()["is_waiting"]
+    simulation.push()
+    simulation.go(500)
+    assert simulation.state()["is_running"]
+
+
+def test_a_fault_is_named() -> None:
+    simulation = Simulation("tinibot", "obstacles", compile("X = 0; SHOW(1 / X)").image)
+    simulation.go(500)
+    assert simulation.state()["fault"] == "DIVIDE_BY_ZERO"
+
+
+def test_the_page_asks_for_all_of_it() -> None:
+    def ask(data: bytes = b"", **fields: object) -> dict[str, object]:
+        found: dict[str, object] = json.loads(worker.answer(json.dumps(fields), data))
+        return found
+
+    image = compile("SB|F(1, 80);R(1, 80)").image
+    ask(image, do="power_on", robot="tinibot", world="obstacles")
+    ask(do="go", duration_ms=1500)
+    ask(do="push")
+    assert ask(do="next", offsets=[0, 3], limit_ms=3000)["is_running"]
+    assert ask(do="stop")["motors"] == [0, 0]

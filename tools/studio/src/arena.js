@@ -1,0 +1,167 @@
+// Draws a world and the robot in it. Knows shapes; what a robot does, the firmware decides.
+
+import { ROBOTS, WORLDS } from './words.js';
+
+/** @typedef {import('./python.js').RobotState} RobotState */
+
+const MARGIN_CM = 4;
+const CONE = (15 * Math.PI) / 180; // of an ultrasonic sensor, to both sides
+const MOST_POINTS = 5000; // of the way
+
+export class Arena {
+  #canvas;
+  #context;
+  #world = WORLDS[0];
+  #robot = ROBOTS[0];
+  /** @type {[number, number][]} */
+  #way = [];
+
+  /** @param {HTMLCanvasElement} canvas */
+  constructor(canvas) {
+    this.#canvas = canvas;
+    const context = canvas.getContext('2d');
+    if (!context) throw new Error('no canvas');
+    this.#context = context;
+  }
+
+  /**
+   * Begins again: another world or robot, and no way yet.
+   * @param {string} world
+   * @param {string} robot
+   */
+  begin(world, robot) {
+    this.#world = WORLDS.find((each) => each.name === world) ?? WORLDS[0];
+    this.#robot = ROBOTS.find((each) => each.name === robot) ?? ROBOTS[0];
+    this.#way = [];
+  }
+
+  /** @param {RobotState | null} state */
+  draw(state) {
+    const world = this.#world;
+    if (!world) return;
+    const canvas = this.#canvas;
+    const ratio = window.devicePixelRatio || 1;
+    const width = Math.max(1, Math.round(canvas.clientWidth * ratio));
+    const height = Math.max(1, Math.round(canvas.clientHeight * ratio));
+    if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
+    const scale = Math.min(
+      width / (world.width_cm + 2 * MARGIN_CM),
+      height / (world.height_cm + 2 * MARGIN_CM),
+    );
+    const pen = this.#context;
+    pen.setTransform(1, 0, 0, 1, 0, 0);
+    pen.clearRect(0, 0, width, height);
+    // Centimetres from the lower left corner of the floor; y goes up.
+    pen.setTransform(
+      scale, 0, 0, -scale,
+      (width - world.width_cm * scale) / 2,
+      (height + world.height_cm * scale) / 2,
+    );
+    this.#drawWorld(world);
+    if (state) this.#drawRobot(state);
+  }
+
+  /** @param {NonNullable<typeof WORLDS[0]>} world */
+  #drawWorld(world) {
+    const pen = this.#context;
+    pen.fillStyle = '#fffdf6';
+    pen.fillRect(0, 0, world.width_cm, world.height_cm);
+    pen.lineCap = pen.lineJoin = 'round';
+    for (const line of world.lines) this.#path(line.points, '#20242a', line.width_cm);
+    for (const [x = 0, y = 0] of world.lamps) {
+      this.#dot(x, y, 9, '#ffe9a3');
+      this.#dot(x, y, 3, '#e08a1e');
+    }
+    for (const box of world.boxes) {
+      this.#path(box, '#6b4a2f', 1, true);
+      pen.fillStyle = '#c79a6b';
+      pen.fill();
+    }
+    for (const wall of world.walls) this.#path(wall, '#6b4a2f', 2);
+    if (world.has_border) {
+      pen.strokeStyle = '#6b4a2f';
+      pen.lineWidth = 2;
+      pen.strokeRect(0, 0, world.width_cm, world.height_cm);
+    }
+  }
+
+  /** @param {RobotState} state */
+  #drawRobot(state) {
+    const robot = this.#robot;
+    if (!robot) return;
+    const pen = this.#context;
+    const [x, y, heading] = state.pose;
+    const last = this.#way.at(-1);
+    if (!last || Math.hypot(last[0] - x, last[1] - y) > 0.5) this.#way.push([x, y]);
+    if (this.#way.length > MOST_POINTS) this.#way.splice(0, MOST_POINTS / 2);
+    this.#path(this.#way, '#5d94d1', 0.8);
+    pen.save();
+    pen.translate(x, y);
+    pen.rotate((heading * Math.PI) / 180);
+    this.#drawRays(state);
+    this.#path(robot.outline, '#0d4f38', 0.8, true);
+    pen.fillStyle = state.fault ? '#c8372a' : '#2a9d6f';
+    pen.fill();
+    this.#path([[6, 0], [-3, 3], [-3, -3]], '#fff', 0.4, true);
+    pen.fillStyle = '#fff';
+    pen.fill();
+    pen.restore();
+  }
+
+  /** The sensors, and how far one of distance looks. @param {RobotState} state */
+  #drawRays(state) {
+    const robot = this.#robot;
+    if (!robot) return;
+    /** @type {Record<string, {x_cm: number, y_cm: number, heading: number, sees: string} | undefined>} */
+    const places = robot.places;
+    const sensors = robot.devices.filter((device) => device.role === 'sensor');
+    sensors.forEach((device, k) => {
+      const place = places[device.text];
+      const reading = state.readings[k];
+      if (!place || !reading) return;
+      const pen = this.#context;
+      const along = (place.heading * Math.PI) / 180;
+      if (place.sees === 'distance') {
+        pen.fillStyle = '#e0452f33';
+        pen.beginPath();
+        pen.moveTo(place.x_cm, place.y_cm);
+        pen.arc(place.x_cm, place.y_cm, reading.value, along - CONE, along + CONE);
+        pen.fill();
+      } else if (place.sees === 'light') {
+        this.#path([[place.x_cm, place.y_cm], [place.x_cm + 8 * Math.cos(along), place.y_cm + 8 * Math.sin(along)]], '#e08a1e', 0.8);
+      } else {
+        this.#dot(place.x_cm, place.y_cm, 1.4, reading.value ? '#c8372a' : '#7c8894');
+      }
+    });
+  }
+
+  /**
+   * @param {number[][]} points
+   * @param {string} color
+   * @param {number} width
+   * @param {boolean} [isClosed]
+   */
+  #path(points, color, width, isClosed = false) {
+    const pen = this.#context;
+    pen.beginPath();
+    points.forEach(([x = 0, y = 0], k) => (k ? pen.lineTo(x, y) : pen.moveTo(x, y)));
+    if (isClosed) pen.closePath();
+    pen.strokeStyle = color;
+    pen.lineWidth = width;
+    pen.stroke();
+  }
+
+  /**
+   * @param {number} x
+   * @param {number} y
+   * @param {number} radius
+   * @param {string} color
+   */
+  #dot(x, y, radius, color) {
+    const pen = this.#context;
+    pen.beginPath();
+    pen.arc(x, y, radius, 0, 2 * Math.PI);
+    pen.fillStyle = color;
+    pen.fill();
+  }
+}

@@ -1,0 +1,170 @@
+// The part of the page with the virtual robot: its buttons, its picture and what is told of it.
+
+import { Arena } from './arena.js';
+import { element } from './elements.js';
+import { download } from './files.js';
+import { Simulator } from './simulator.js';
+import { currentLanguage, text } from './texts.js';
+import { ROBOTS, WORLDS } from './words.js';
+
+/** @typedef {import('./python.js').Checked} Checked */
+/** @typedef {import('./work.js').Work} Work */
+
+const SHOWN = 200; // lines of the trace
+
+export class Driving {
+  #editor;
+  #work;
+  #program;
+  #simulator;
+  #arena = new Arena(element('arena', HTMLCanvasElement));
+  #wasStopped = false;
+  #note = '';
+  /** @type {Checked['places']} */
+  #places = [];
+  #run = element('run', HTMLButtonElement);
+  #pause = element('pause', HTMLButtonElement);
+  #push = element('push', HTMLButtonElement);
+  #worlds = element('world', HTMLSelectElement);
+
+  /**
+   * @param {import('./python.js').Python} python
+   * @param {import('./editor.js').Editor} editor
+   * @param {Work} work
+   * @param {() => Checked | null} program what the compiler says of the newest text
+   * @param {() => void} remember
+   */
+  constructor(python, editor, work, program, remember) {
+    this.#editor = editor;
+    this.#work = work;
+    this.#program = program;
+    this.#simulator = new Simulator(python, () => this.#show());
+    this.#run.addEventListener('click', () => this.#start(false));
+    this.#pause.addEventListener('click', () => {
+      if (this.#simulator.phase === 'paused') this.#simulator.goOn();
+      else this.#simulator.pause();
+    });
+    element('step', HTMLButtonElement).addEventListener('click', () => {
+      if (this.#simulator.phase === 'running') this.#simulator.pause();
+      else if (this.#simulator.phase === 'paused') this.#simulator.step();
+      else this.#start(true);
+    });
+    this.#push.addEventListener('click', () => this.#simulator.push());
+    element('stop', HTMLButtonElement).addEventListener('click', () => this.#stop());
+    addEventListener('keydown', (event) => {
+      if (event.key === 'Escape') this.#stop();
+    }, { capture: true });
+    const speed = element('speed', HTMLSelectElement);
+    speed.addEventListener('change', () => {
+      this.#simulator.speed = Number(speed.value);
+    });
+    this.#worlds.addEventListener('change', () => {
+      work.world = this.#worlds.value;
+      remember();
+      this.begin();
+    });
+    element('save_trace', HTMLButtonElement).addEventListener('click', () => {
+      download(text('trace_name'), this.#simulator.trace.map((line) => `${line}\n`).join(''));
+    });
+    new ResizeObserver(() => this.#arena.draw(this.#simulator.state)).observe(element('arena', HTMLCanvasElement));
+    this.setLanguage();
+    this.begin();
+  }
+
+  setLanguage() {
+    const language = currentLanguage();
+    this.#worlds.replaceChildren(
+      ...WORLDS.map((world) => new Option(/** @type {Record<string, string>} */ (world.labels)[language], world.name)),
+    );
+    this.#worlds.value = this.#work.world;
+    this.#show();
+  }
+
+  /** Another robot or world: what drove there has ended. */
+  begin() {
+    this.#stop();
+    this.#simulator.phase = 'off';
+    this.#simulator.state = null;
+    this.#simulator.trace = [];
+    this.#arena.begin(this.#work.world, this.#work.robot);
+    this.#show();
+  }
+
+  /** The text has changed: what runs is no longer what is seen. */
+  forgetPlaces() {
+    this.#places = [];
+  }
+
+  /** @param {boolean} isPaused */
+  async #start(isPaused) {
+    const program = this.#program();
+    this.#note = program?.image ? '' : text('first_repair');
+    this.#show();
+    if (!program?.image) return;
+    await this.#simulator.stop();
+    this.#wasStopped = false;
+    this.#arena.begin(this.#work.world, this.#work.robot);
+    this.#places = program.places;
+    await this.#simulator.begin(program, this.#work.robot, this.#work.world, isPaused);
+  }
+
+  #stop() {
+    const { phase } = this.#simulator;
+    if (phase !== 'running' && phase !== 'paused') return;
+    this.#wasStopped = true;
+    this.#simulator.stop();
+  }
+
+  #show() {
+    const { phase, state, trace } = this.#simulator;
+    this.#pause.hidden = phase !== 'running' && phase !== 'paused';
+    this.#pause.textContent = text(phase === 'paused' ? 'go_on' : 'pause');
+    this.#push.hidden = !state?.is_waiting || phase !== 'running';
+    element('doing', HTMLElement).textContent = this.#note || this.#doing();
+    element('trace', HTMLElement).textContent = trace.slice(-SHOWN).join('\n');
+    this.#showValues();
+    this.#arena.draw(state);
+    const place = state?.at == null ? undefined : this.#places.findLast(([offset]) => offset <= Number(state.at));
+    if (place) {
+      const [, line, column, end_line, end_column] = place;
+      this.#editor.showRunning({ line, column, end_line, end_column });
+    } else this.#editor.showRunning(null);
+    document.documentElement.dataset['phase'] = phase;
+  }
+
+  #doing() {
+    const { phase, state, isStopping, failure } = this.#simulator;
+    if (failure) return failure;
+    if (isStopping) return text('robot_stopping');
+    if (phase === 'off' || !state) return text('robot_off');
+    if (state.fault) return text('robot_fault', { name: state.fault });
+    if (this.#wasStopped) return text('robot_stopped');
+    if (phase === 'paused') return text('robot_paused');
+    if (phase === 'ended') return text('robot_ended');
+    return text(state.is_waiting ? 'robot_waiting' : 'robot_running');
+  }
+
+  #showValues() {
+    const { state } = this.#simulator;
+    const robot = ROBOTS.find((each) => each.name === this.#work.robot);
+    const sensors = robot?.devices.filter((device) => device.role === 'sensor') ?? [];
+    const seconds = state ? ((state.now_ms - (state.began_ms ?? state.now_ms)) / 1000).toFixed(1) : '–';
+    const rows = [
+      [text('time'), state ? `${seconds} s` : '–'],
+      [text('motors'), state ? state.motors.join('  ') : '–'],
+      [text('bumps'), state ? String(state.bumps) : '–'],
+      ...sensors.map((device, k) => [device.text, state ? `${state.readings[k]?.text} ${device.unit}` : '–']),
+    ];
+    element('values', HTMLElement).replaceChildren(
+      ...rows.map(([name = '', value = '']) => {
+        const row = document.createElement('div');
+        const term = document.createElement('dt');
+        const found = document.createElement('dd');
+        term.textContent = name;
+        found.textContent = value;
+        row.append(term, found);
+        return row;
+      }),
+    );
+  }
+}

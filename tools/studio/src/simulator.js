@@ -1,0 +1,163 @@
+// Runs a program on the virtual robot in the worker: the time, and what is shown of the robot.
+//
+// The robot's time goes on only by what this page asks for, so a page that sleeps stands still.
+
+import { text } from './texts.js';
+
+/** @typedef {import('./python.js').Python} Python */
+/** @typedef {import('./python.js').Checked} Checked */
+/** @typedef {import('./python.js').RobotState} RobotState */
+/** @typedef {'off' | 'running' | 'paused' | 'ended'} Phase */
+
+const MOST_MS = 400; // of the robot's time that is asked for at once: a stop waits for no more
+const LOOKED_MS = 100; // of this computer's time at most for one picture
+const STEP_LIMIT_MS = 60_000;
+const KEPT = 5000; // lines of the trace
+
+export class Simulator {
+  #python;
+  #shown;
+  /** @type {Phase} */
+  phase = 'off';
+  /** @type {RobotState | null} */
+  state = null;
+  /** @type {string[]} */
+  trace = [];
+  speed = 1;
+  failure = ''; // a mistake of ours
+  /** @type {number[]} */
+  #offsets = [];
+  #isAsking = false;
+  isStopping = false; // it has not confirmed it yet
+  #rest = 0; // of a millisecond that is not asked for yet
+  #last = 0;
+
+  /**
+   * @param {Python} python
+   * @param {() => void} shown what shows the new state
+   */
+  constructor(python, shown) {
+    this.#python = python;
+    this.#shown = shown;
+  }
+
+  /**
+   * Switches the robot on at the start of its world, with the program.
+   * @param {Checked} program
+   * @param {string} robot
+   * @param {string} world
+   * @param {boolean} isPaused
+   */
+  async begin(program, robot, world, isPaused = false) {
+    if (this.#isAsking) return;
+    const bytes = program.image.match(/../g)?.map((pair) => parseInt(pair, 16)) ?? [];
+    this.#offsets = program.places.map(([offset]) => offset);
+    this.trace = [];
+    this.state = null;
+    this.failure = '';
+    this.phase = isPaused ? 'paused' : 'running';
+    this.#rest = 0;
+    this.#last = performance.now();
+    await this.#ask({ do: 'power_on', robot, world }, new Uint8Array(bytes));
+    if (this.phase === 'running') requestAnimationFrame((now) => this.#frame(now));
+  }
+
+  pause() {
+    if (this.phase === 'running') this.phase = 'paused';
+    this.#shown();
+  }
+
+  goOn() {
+    if (this.phase !== 'paused') return;
+    this.phase = 'running';
+    this.#last = performance.now();
+    this.#shown();
+    requestAnimationFrame((now) => this.#frame(now));
+  }
+
+  /** Lets the robot go on until another part of the program runs. */
+  async step() {
+    if (this.phase !== 'paused' || this.#isAsking) return;
+    const began = { part: this.#part, now_ms: this.state?.now_ms ?? 0 };
+    do {
+      await this.#ask({ do: 'next', offsets: this.#offsets, limit_ms: MOST_MS });
+    } while (
+      this.phase === 'paused' &&
+      this.state?.is_running &&
+      this.#part === began.part &&
+      this.state.now_ms < began.now_ms + STEP_LIMIT_MS
+    );
+  }
+
+  /** Which part of the program runs, or -1. */
+  get #part() {
+    const at = this.state?.at ?? -1;
+    return this.#offsets.findLastIndex((offset) => offset <= at);
+  }
+
+  async push() {
+    if (!this.#isAsking && this.state) await this.#ask({ do: 'push' });
+  }
+
+  /** Stops the robot over its link; it confirms. Requests that are under way come before. */
+  async stop() {
+    if ((this.phase !== 'running' && this.phase !== 'paused') || this.isStopping) return;
+    this.isStopping = true;
+    this.phase = 'ended';
+    this.#shown();
+    await this.#ask({ do: 'stop' });
+  }
+
+  /** @param {number} now */
+  async #frame(now) {
+    if (this.phase !== 'running') return;
+    if (!this.#isAsking) {
+      this.#rest += Math.min(LOOKED_MS, now - this.#last) * this.speed;
+      this.#last = now;
+      const whole = Math.min(MOST_MS, Math.floor(this.#rest));
+      if (whole > 0) {
+        this.#rest = Math.min(this.#rest - whole, MOST_MS);
+        await this.#ask({ do: 'go', duration_ms: whole });
+      }
+    }
+    requestAnimationFrame((later) => this.#frame(later));
+  }
+
+  /**
+   * @param {Record<string, unknown>} request
+   * @param {Uint8Array} [data]
+   */
+  async #ask(request, data) {
+    this.#isAsking = true;
+    try {
+      const answer = await this.#python.ask(request, data);
+      if (request['do'] === 'stop') this.isStopping = false;
+      this.#take(answer);
+    } catch (why) {
+      this.phase = 'off';
+      this.isStopping = false;
+      this.failure = text('bug', { why: String(why).split('\n').filter(Boolean).at(-1) ?? '' });
+      this.#shown();
+    } finally {
+      this.#isAsking = false;
+    }
+  }
+
+  /** @param {RobotState} state */
+  #take(state) {
+    this.state = state;
+    for (const [time, what] of state.events) {
+      if (what === 'START') this.trace = [];
+      else this.trace.push(`${time - (state.began_ms ?? 0)} ${what}`);
+    }
+    if (this.trace.length > KEPT) this.trace.splice(0, this.trace.length - KEPT);
+    const goesOn = this.phase === 'running' || this.phase === 'paused';
+    if (goesOn && this.#hasEnded(state)) this.phase = 'ended';
+    this.#shown();
+  }
+
+  /** @param {RobotState} state */
+  #hasEnded(state) {
+    return state.began_ms !== null && !state.is_running;
+  }
+}
