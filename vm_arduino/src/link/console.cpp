@@ -172,7 +172,6 @@ bool Console::has_room() {
 
 Console::Act Console::end_line(bool is_heard) {
   if (refused_ != Remark::kNone) {
-  if (refused_ != Remark::kNone) {
     if (stop_letters_ == 1 || stop_letters_ == 4) return stop();
     if (!is_heard) refuse();
   }
