@@ -132,6 +132,7 @@ def test_a_stop_needs_nothing_of_ledc(name: str) -> None:
     send(robot, session, AWAY)
     robot.talk(session, 100)
     assert happened(robot) == ["MOTORS 80 80"]
+    robot.stick_ledc()
     robot.step(bytes(4))  # a run of zeros: the link's emergency stop
     assert happened(robot)[:2] == ["MOTORS 80 80", "MOTORS 0 0"]
     assert robot.is_latched

@@ -86,6 +86,10 @@ class Esp32Robot(HostFirmware):
         """Return what a pin has: 0 to 255, PWM as its share."""
         return self.ask(b"O", pack("<B", pin))[0]
 
+    def stick_ledc(self) -> None:
+        """Let LEDC go on with what it does, whatever is asked of it."""
+        self.ask(b"L", b"")
+
     def fill_nvs(self, is_full: bool = True) -> None:
         self.ask(b"F", pack("<B", is_full))
 

@@ -173,7 +173,7 @@ void answer_echo(RequestReader* request) {
   chip.echo_us = request->u32();
 }
 
-// O: what a pin has, 0 to 255. F: whether NVS is full.
+// O: what a pin has, 0 to 255. F: whether NVS is full. L: LEDC does nothing any more.
 void answer_output(RequestReader* request, Writer* answer) { answer->u8(output_of(request->u8())); }
 
 }  // namespace
@@ -207,6 +207,9 @@ int main() {
         break;
       case 'O':
         answer_output(&request, &said);
+        break;
+      case 'L':
+        chip.is_ledc_stuck = true;
         break;
       case 'F':
         chip.is_nvs_full = request.u8() != 0;

@@ -104,6 +104,7 @@ void set_frequency(uint8_t channel, uint32_t hertz, uint8_t bits) {
 void set_duty(uint8_t channel, uint32_t duty) {
   SimulatedChannel& each = chip.channels[channel];
   expect(each.bits != 0, "a duty of a channel that is not set up");
+  if (chip.is_ledc_stuck) return;
   const uint32_t most = (1U << each.bits) - 1;
   each.duty = duty == most ? most + 1 : duty;  // as both versions of the core do
 }

@@ -55,6 +55,8 @@ struct SimulatedChip {
   uint64_t fed_us = 0;
   bool has_restarted = false;
 
+  bool is_ledc_stuck = false;  // no duty changes any more
+
   uint8_t echo_pin = 0xff;
   uint8_t trigger_pin = 0xff;
   uint32_t echo_us = 0;  // 0: there is nothing to hear
