@@ -12,9 +12,8 @@ uint8_t size_of(int8_t number) {
   return size;
 }
 
-// 2.55 for each percent, in steps of 8 bits: 653 / 256.
-tini_noinline uint8_t level_of(uint8_t percent) {
-  if (percent > 100) percent = 100;
+// 2.55 for each percent up to 100, in steps of 8 bits: 653 / 256.
+uint8_t level_of(uint8_t percent) {
   return static_cast<uint8_t>(2 * percent + (percent * uint16_t{141} >> 8));
 }
 
@@ -22,7 +21,8 @@ tini_noinline uint8_t level_of(uint8_t percent) {
 // that is positive.
 int16_t level(int8_t power, uint8_t low, int8_t weakened) {
   if (power == 0) return 0;
-  uint8_t found = level_of(size_of(power));
+  const uint8_t size = size_of(power);
+  uint8_t found = level_of(size > 100 ? 100 : size);
   uint8_t missing = low;  // of 256 steps
   if (weakened > 0)
     missing = static_cast<uint8_t>(missing + level_of(static_cast<uint8_t>(weakened)));
@@ -37,6 +37,7 @@ int16_t level(int8_t power, uint8_t low, int8_t weakened) {
 
 static_assert((kExchanged | kLeftReversed | kRightReversed) == 7,
               "a sound number has no other bits");
+static_assert(kMostBalance <= 100 && kMostLeast <= 100, "they need no limit");
 
 tini_noinline bool is_sound(const Trim& trim) {
   return trim.wheels <= (kExchanged | kLeftReversed | kRightReversed) &&
