@@ -164,6 +164,21 @@ def test_the_stop_sequence_is_at_once(uno: Uno, capsys: pytest.CaptureFixture[st
     assert states(uno) == OFF
 
 
+def test_a_stop_silences_the_buzzer(uno: Uno) -> None:
+    wired = computer(uno)
+    buzzer = f"D{robots.load('tinibot').board.buzzer}"
+    send(wired, "SI|BEEP(10, 440); W(20)")
+    wired.run(300)
+    begun = uno.cycle
+    wired.run(100)
+    assert sum(change.cycle > begun for change in uno.pins.history(buzzer)) > 20, "it sounds"
+    uno.send(bytes(8))
+    uno.run_ms(50)
+    silent = uno.cycle
+    uno.run_ms(500)
+    assert not [change for change in uno.pins.history(buzzer) if change.cycle > silent]
+
+
 def test_a_live_line_is_at_the_motors_at_once(uno: Uno) -> None:
     """Wherever the main loop is when its frame ends; and no frame is taken for a damaged one."""
     wired = computer(uno)
