@@ -35,6 +35,7 @@ def test_a_cause_says_what_is_wrong_what_was_seen_and_what_to_do(cause: str) -> 
 def test_no_sentence_is_of_a_cause_that_does_not_exist() -> None:
     known = {f"{kind}_{cause}" for kind in ("seen", "next") for cause in CAUSES}
     known |= {"seen_busy_unknown", "seen_other_sketch_silent"}
+    known |= {"seen_restarts_once", "seen_motors_restart_once"}
     known |= {"seen_no_permission_other", "next_no_permission_other"}
     named = {key for key in DOCTOR_TEXTS if key.startswith(("seen_", "next_"))}
     assert named == known
