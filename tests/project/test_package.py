@@ -15,7 +15,8 @@ import pytest
 from tests.support.casefile import ROOT
 from tests.support.platformio import need, prepared
 
-SKIPPED = (".git", ".venv", "build", "dist", "ready", "*.egg-info", "__pycache__", "*.pyc", ".pio", "page", "node_modules", "made",
+SKIPPED = (".git", ".venv", "build", "dist", "ready", "*.egg-info", "__pycache__", "*.pyc", ".pio",
+           "page", "node_modules", "made",
            ".*_cache", ".coverage", "own.h", "*.bin", "way.png")  # fmt: skip
 ADDED = {"PKG-INFO", "setup.cfg"}  # by setuptools
 SOURCES = "tiniscript/flash/vm_arduino/"
