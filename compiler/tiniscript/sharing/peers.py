@@ -57,7 +57,8 @@ def is_of_this_user(peer: socket.socket) -> bool:
 
 def _other_end(there: tuple[str, int], here: tuple[str, int]) -> End:
     """Return what the kernel knows of the socket at `there`. Raises OSError."""
-    assert sys.platform == "linux"
+    if sys.platform != "linux":
+        raise OSError(errno.ENOSYS, os.strerror(errno.ENOSYS))
     ends = _ENDS.pack(there[1], here[1], socket.inet_aton(there[0]), socket.inet_aton(here[0]),
                       0, _NO_COOKIE)  # fmt: skip
     ask = _ASK.pack(socket.AF_INET, socket.IPPROTO_TCP, 0, 0, _ALL_STATES) + ends
