@@ -17,12 +17,6 @@ _REASONS: dict[str, tuple[tuple[str, str], ...]] = {
         ("if (weakened > 0)",
          "if (weakened >= 0)"),
     ),
-    "it is 100 already": (
-        ("if (percent > 100) percent = 100;",
-         "if (percent >= 100) percent = 100;"),
-        ("if (percent > 100) percent = 100;",
-         "if (percent > 99) percent = 100;"),
-    ),
     "a power of 0 has returned before": (
         ("return power < 0 ? static_cast<int16_t>(-found) : found;",
          "return power <= 0 ? static_cast<int16_t>(-found) : found;"),

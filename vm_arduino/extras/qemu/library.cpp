@@ -13,6 +13,14 @@ void* memcpy(void* to, const void* from, size_t length) {
   return to;
 }
 
+void* memmove(void* to, const void* from, size_t length) {
+  char* out = static_cast<char*>(to);
+  const char* in = static_cast<const char*>(from);
+  if (out <= in) return memcpy(to, from, length);
+  while (length-- != 0) out[length] = in[length];
+  return to;
+}
+
 void* memset(void* to, int value, size_t length) {
   char* out = static_cast<char*>(to);
   while (length-- != 0) *out++ = static_cast<char>(value);
