@@ -24,7 +24,7 @@ ENDS = {  # what keeps a verb from waiting for something
     "monitor": ["--port", "/none"], "fetch": ["--port", "/none"], "name": ["X", "--port", "/none"],
     "ping": ["--port", "/none"], "info": ["--port", "/none"], "stop": ["--port", "/none"],
     "upload": ["-e", PROGRAM, "--port", "/none"], "live": ["F(1, 80)", "--port", "/none"],
-    "firmware": ["--port", "/none"],
+    "firmware": ["--port", "/none"], "studio": ["--listen", "none"],
 }  # fmt: skip
 CASES = [(verb, dest) for verb, parser in PARSERS.items() for dest in values_of(parser)]
 
@@ -50,7 +50,7 @@ def test_no_argument_of_any_verb_reaches_the_terminal_raw(
 ) -> None:
     option = values_of(PARSERS[verb])[dest]
     ends = ENDS.get(verb, [])
-    if dest in ("port", "ports"):
+    if dest in ("port", "ports", "listen") and ends:
         ends = ends[:-2]
     if dest in ("name", "line", "texts", "program", "text"):
         ends = [each for each in ends if each not in ("X", "-e", PROGRAM, "F(1, 80)")]

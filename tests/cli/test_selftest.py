@@ -63,7 +63,9 @@ def test_every_board_has_its_sensors_tested(tsc: Tsc, name: str) -> None:
     kit = robots.load(name).kit
     with PtyRobot(kit) as robot:
         code, found = found_by(tsc, robot)
-        assert found["kit"]["values"] == {"robot": name}
+        # an ESP32's robot has the kit of the paper's
+        same = {each for each in robots.names() if robots.load(each).kit == kit}
+        assert found["kit"]["values"]["robot"] in same and name in same
         assert len([each for each in found if each.startswith("sensor")]) == len(kit.sensors)
         assert code == 0
 

@@ -19,7 +19,7 @@ from tiniscript.syntax.lexer import scan
 
 WIDEST = 98
 _WORD = re.compile(r"\$(\w+?)(?=_\$|_PIN\b|\b)")
-_BOARDS = {"uno": "Uno", "nano": "Nano", "mega": "Mega 2560"}
+BOARDS = {"uno": "Uno", "nano": "Nano", "mega": "Mega 2560"}
 
 
 def sketch_of(source: Source, program: ir.Program, robot: Robot, language: str) -> str:
@@ -215,7 +215,7 @@ class _Sketch:
 
     def opening(self) -> str:
         file = harmless(self.source.name or "-e")
-        robot, board = self.label("robot"), _BOARDS[self.robot.board.chip]
+        robot, board = self.label("robot"), BOARDS[self.robot.board.chip]
         rows = [self.says("made", file=file, robot=robot, board=board), ""]
         rows.append(self.says("limits"))
         limits = ["limit_ping"]

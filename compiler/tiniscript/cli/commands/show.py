@@ -35,21 +35,19 @@ def run(options: Namespace, language: str) -> int:
 
 
 def _sketch(options: Namespace, given: inputs.Input, robot: Robot, language: str) -> int:
-    from tiniscript.robots import firmware
+    from tiniscript.sketch.writing import BOARDS, sketch_of
 
     if options.json:
         raise CommandError(2, "sketch_or_json")
     if given.is_image:
         raise CommandError(2, "sketch_needs_text", file=inputs.shown(given.name))
-    if not firmware.fits(robot):
-        known = ", ".join(firmware.BOARDS)
+    if robot.board.chip not in BOARDS:
+        known = ", ".join(BOARDS)
         raise CommandError(2, "sketch_no_board", chip=robot.board.chip, known=known)
     compiled = inputs.compiled(given, robot, is_strict=False)
     outputs.print_diagnostics(compiled, language)
     if not compiled.is_right:
         return 1
-    from tiniscript.sketch.writing import sketch_of
-
     assert compiled.program is not None
     sketch = sketch_of(compiled.source, compiled.program, robot, language).encode()
     if options.output in (None, "-"):
