@@ -33,7 +33,7 @@ BREAKS = {
         "if (!in_range(kind, value))",
         "if (!in_range(kind, value) && false)",
     ),
-    "link": ("src/link/link_writing.cpp", "size_ < most", "size_ < 0xff"),
+    "link": ("src/link/link_writing.cpp", "size_ < most", "size_ < most + 128"),
     "store": ("src/store/store.cpp", *STORE_BREAKS["what counts is written over"]),
 }
 
