@@ -64,8 +64,8 @@ def test_every_board_has_its_sensors_tested(tsc: Tsc, name: str) -> None:
     with PtyRobot(kit) as robot:
         code, found = found_by(tsc, robot)
         # an ESP32's robot has the kit of the paper's
-        same = {each for each in robots.names() if robots.load(each).kit == kit}
-        assert found["kit"]["values"]["robot"] in same and name in same
+        same = [{"robot": each} for each in robots.names() if robots.load(each).kit == kit]
+        assert found["kit"]["values"] in same and {"robot": name} in same
         assert len([each for each in found if each.startswith("sensor")]) == len(kit.sensors)
         assert code == 0
 
