@@ -24,7 +24,8 @@ from tools.builds.platformio_offline import CannotStandIn, config_of
 PROJECT = ROOT / "vm_arduino"
 OFFLINE = ROOT / "tools" / "builds" / "platformio_offline.py"
 DEFAULT = "tinibot"  # where the name of an environment has no robot
-FLASH_MUST, FLASH_AIM = 30_208, 28_672  # 512 and 2,048 bytes less than an old bootloader leaves of a Nano
+# 512 and 2,048 bytes less than an old bootloader leaves of a Nano.
+FLASH_MUST, FLASH_AIM = 30_208, 28_672
 RAM_MUST, RAM_AIM = 1380, 1000
 NEW_NANO = "nano_new"
 PLATFORM = "atmelavr"
