@@ -1,4 +1,8 @@
-"""A browser and a server that the tests of the page share."""
+"""A browser and a server that the tests of the page share.
+
+They end with the tests of this folder: Playwright keeps an event loop running in this thread, and
+while it does no other test can begin one.
+"""
 
 from __future__ import annotations
 
@@ -13,19 +17,19 @@ if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page, Playwright
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def playwright() -> Iterator[Playwright]:
     with studio.driver() as found:
         yield found
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def browser(playwright: Playwright) -> Iterator[Browser]:
     with studio.browser(playwright) as opened:
         yield opened
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def address(browser: Browser) -> Iterator[str]:
     with studio.served() as server:
         yield server.address
