@@ -112,7 +112,8 @@ void answer_robot(RequestReader* request, Writer* answer) {
       link_half.lapse();
       break;
     case 'o':
-      port.identity.features = static_cast<uint16_t>(value);
+      port.identity.features = static_cast<uint8_t>(value);
+      port.identity.more_features = static_cast<uint8_t>(value >> 8);
       break;
     case 'k':
       port.is_saving = value != 0;
