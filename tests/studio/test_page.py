@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page
 
 # The compiler of the page, asked as the page asks it: many programs at once.
-ASK = """async ({requests}) => {
+ASK = """async ({requests, what}) => {
   const worker = new Worker('./worker.js', {type: 'module'});
   const answers = [];
   const done = new Promise((resolve, reject) => {
@@ -31,16 +31,21 @@ ASK = """async ({requests}) => {
   });
   const encoder = new TextEncoder();
   requests.forEach(({text, ...request}, k) => worker.postMessage(
-    {id: k + 1, request: JSON.stringify({do: 'check', ...request}), data: encoder.encode(text)}));
+    {id: k + 1, request: JSON.stringify({do: what, ...request}), data: encoder.encode(text)}));
   await done;
   worker.terminate();
   return answers;
 }"""
 
 
-def asked(page: Page, requests: list[dict[str, str]]) -> list[dict[str, Any]]:
-    found: list[dict[str, Any]] = page.evaluate(ASK, {"requests": requests})
+def asked_to(page: Page, what: str, requests: list[dict[str, str]]) -> list[dict[str, Any]]:
+    """Return the answers to requests of one kind, each with a program's text."""
+    found: list[dict[str, Any]] = page.evaluate(ASK, {"requests": requests, "what": what})
     return found
+
+
+def asked(page: Page, requests: list[dict[str, str]]) -> list[dict[str, Any]]:
+    return asked_to(page, "check", requests)
 
 
 def test_every_program_gets_the_image_of_the_command(page: Page) -> None:

@@ -81,7 +81,7 @@ def test_the_keyboard_alone_is_enough(page: Page) -> None:
             break
         page.keyboard.press("Tab")
     assert visited == [
-        "robot", "language", "open", "save", "stop", "editor", "place", "repair"
+        "robot", "language", "open", "save", "my_programs", "stop", "editor", "place", "repair"
     ]  # fmt: skip
     page.keyboard.press("Enter")
     checked(page)

@@ -83,6 +83,10 @@ class Pages:
 
     def open(self, **options: Any) -> Page:
         """Open a page of a new visitor, and wait until its program is compiled."""
+        return self.visit(self.address, **options)
+
+    def visit(self, address: str, **options: Any) -> Page:
+        """Open an address of the page, for a new visitor."""
         settings = {
             "viewport": {"width": 1366, "height": 768},
             "locale": "en-US",
@@ -93,7 +97,7 @@ class Pages:
         self._contexts.append(context)
         page: Page = context.new_page()
         self.watch(page)
-        page.goto(self.address)
+        page.goto(address)
         checked(page)
         return page
 

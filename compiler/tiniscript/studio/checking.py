@@ -17,6 +17,9 @@ from tiniscript.repairs.edits import Edit
 from tiniscript.repairs.fixing import offers
 from tiniscript.robots.profile import Robot
 from tiniscript.source import Source
+from tiniscript.text.fitting import misfits
+from tiniscript.text.levels import level_of
+from tiniscript.text.line import line_of
 
 
 class Change(NamedTuple):
@@ -62,6 +65,21 @@ def opened(data: bytes, robot: str, language: str) -> str | Message:
     if isinstance(text, str):
         return text
     return message(text.diagnostics[0], text.source, language)
+
+
+def line(data: bytes, robot: str, language: str) -> str | Message:
+    """Return a program as a line of text with its checksum, as `tsc compile --text` writes it.
+
+    Or what is wrong, where such a robot cannot read it.
+    """
+    profile = profile_of(robot)
+    found = compiled(data, profile, "", is_strict=True)
+    if not found.is_right or found.program is None:
+        mistake = next(each for each in found.diagnostics if each.is_mistake)
+        return message(mistake, found.source, language)
+    level = level_of(profile.board.chip)
+    lacking = misfits(found.source, found.program, profile.kit, level)
+    return message(lacking[0], found.source, language) if lacking else line_of(found.source)
 
 
 @cache

@@ -44,6 +44,13 @@ def _open(fields: Answer, data: bytes) -> Answer:
     return {"text": found}
 
 
+def _line(fields: Answer, data: bytes) -> Answer:
+    found = checking.line(data, fields["robot"], fields["language"])
+    if isinstance(found, Message):
+        return {"message": found.message, "fix": found.fix}
+    return {"text": found}
+
+
 _simulation: Simulation | None = None  # a page has one robot
 
 
@@ -82,6 +89,6 @@ def _push(fields: Answer, data: bytes) -> Answer:
 
 
 _ASKED: dict[str, Callable[[Answer, bytes], Answer]] = {
-    "check": _check, "open": _open, "power_on": _power_on, "go": _go, "next": _next,
+    "check": _check, "open": _open, "line": _line, "power_on": _power_on, "go": _go, "next": _next,
     "stop": _stop, "push": _push,
 }  # fmt: skip

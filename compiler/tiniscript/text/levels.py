@@ -47,3 +47,11 @@ LEVELS = {
         Level("esp32", "esp32dev", 4),
     )
 }
+
+
+def level_of(chip: str) -> Level:
+    """Return the level of a robot with this chip, a name of `robots.boards`."""
+    from tiniscript.robots.boards import CHIPS
+
+    room = CHIPS[chip].program_bytes
+    return next(level for level in LEVELS.values() if level.room == room)

@@ -5,6 +5,7 @@ import { Editor } from './editor.js';
 import { bytesOf, download } from './files.js';
 import { showMessages, summary } from './messages.js';
 import { whenOffline } from './offline.js';
+import { Programs } from './programs.js';
 import { Python } from './python.js';
 import { currentLanguage, setLanguage, text } from './texts.js';
 import { Driving } from './driving.js';
@@ -38,6 +39,9 @@ languages.value = work.language;
 const python = new Python();
 const editor = new Editor(element('editor', HTMLElement), work.robot, changed);
 const driving = new Driving(python, editor, work, () => (isStale() ? null : newest.answer), remember);
+const programs = new Programs(python, work, putProgram, (said) => {
+  note.textContent = said;
+});
 
 /** The newest answer, and what it is about. @type {{key: string, answer: Checked | null}} */
 let newest = { key: '', answer: null };
@@ -124,13 +128,26 @@ function remember() {
   if (!keep(work)) note.textContent = text('not_kept');
 }
 
-robots.addEventListener('change', () => {
-  work.robot = robots.value;
-  editor.setRobot(work.robot);
+/** @param {{text: string, robot: string, name: string}} program */
+function putProgram(program) {
+  note.textContent = '';
+  if (program.robot !== work.robot) setRobot(program.robot);
+  work.name = program.name;
+  editor.replace(program.text);
+  remember();
+}
+
+/** @param {string} robot */
+function setRobot(robot) {
+  work.robot = robot;
+  robots.value = robot;
+  editor.setRobot(robot);
   driving.begin();
   remember();
   check();
-});
+}
+
+robots.addEventListener('change', () => setRobot(robots.value));
 
 languages.addEventListener('change', () => {
   work.language = languages.value === 'en' ? 'en' : 'es';
@@ -163,8 +180,7 @@ file.addEventListener('change', async () => {
     note.textContent = text('not_opened', { name: chosen.name, why });
     return;
   }
-  work.name = chosen.name;
-  editor.replace(answer.text);
+  programs.replace({ text: answer.text, robot: work.robot, name: chosen.name });
   note.textContent = text('opened', { name: chosen.name });
 });
 
@@ -186,3 +202,4 @@ addEventListener('keydown', (event) => {
 });
 
 whenOffline();
+programs.openLink();

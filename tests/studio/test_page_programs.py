@@ -1,0 +1,359 @@
+"""The window with a person's programs: links, lines, their QR codes, and earlier programs."""
+
+from __future__ import annotations
+
+import base64
+import json
+import subprocess
+import zlib
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from tests.studio.programs import programs
+from tests.studio.test_page import asked_to
+from tests.support.studio import Pages, checked, image, noted, write
+from tiniscript import check, compile
+from tiniscript.studio.checking import line
+from tools.builds.studio import MODULES, found_tools
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+TEXT = "// ñandú 🤖 </script>\nSI|LOOP(2);\n  F(1, 80);\nEND_LOOP\n"
+
+
+def content(page: Page) -> str:
+    return str(page.locator(".cm-content").inner_text())
+
+
+def share(page: Page, how: str = "link") -> str:
+    """Open the window if it is not, and return what it shares."""
+    if not page.locator("#programs").is_visible():
+        page.click("#my_programs")
+    page.click(f"#share_{how}")
+    page.locator("#programs:not([data-shared=asked])").wait_for()
+    return str(page.input_value("#shared"))
+
+
+def opened(page: Page) -> list[str]:
+    """Return the beginnings of the earlier programs."""
+    return page.locator("#versions code").all_inner_texts()
+
+
+def test_a_link_brings_the_program_and_runs_nothing(pages: Pages) -> None:
+    page = pages.open()
+    page.select_option("#robot", "grabber")
+    write(page, TEXT)
+    wanted = image(page)
+    link = share(page)
+    assert link.startswith(pages.address + "#program=")
+    other = pages.open()
+    write(other, "SI|F(9, 90)")
+    other.goto(link)  # in an open tab: only the part behind # changes
+    noted(other, "This program came with a link")
+    checked(other)
+    assert content(other).rstrip() == TEXT.rstrip()
+    assert (other.input_value("#robot"), image(other)) == ("grabber", wanted)
+    assert other.evaluate("document.documentElement.dataset.phase") == "off"
+    assert other.evaluate("location.hash") == ""
+    other.click("#my_programs")
+    assert "SI|F(9, 90)" in opened(other)
+    visitor = pages.visit(link)  # in a new tab
+    noted(visitor, "This program came with a link")
+    checked(visitor)
+    assert image(visitor) == wanted
+    visitor.reload()  # and it is kept from then on
+    checked(visitor)
+    assert image(visitor) == wanted
+
+
+def packed(content: bytes) -> str:
+    made = zlib.compressobj(9, zlib.DEFLATED, -15)
+    whole = made.compress(content) + made.flush()
+    return base64.urlsafe_b64encode(whole).decode().rstrip("=")
+
+
+def as_json(content: Any) -> str:
+    return packed(json.dumps(content).encode())
+
+
+GOOD = as_json({"text": "SI|F(9, 90)", "robot": "tinibot"})
+WRONG = {
+    "nothing": "",
+    "no letters": "<img src=x onerror=alert(1)>",
+    "cut": GOOD[:-8],
+    "not deflated": base64.urlsafe_b64encode(b'{"text": "S"}').decode().rstrip("="),
+    "no JSON": packed(b"SI|F(9, 90)"),
+    "no UTF-8": packed(b'{"text": "\xff", "robot": "tinibot"}'),
+    "null": as_json(None),
+    "a list": as_json(["S", "tinibot"]),
+    "no text": as_json({"robot": "tinibot"}),
+    "a number": as_json({"text": 9, "robot": "tinibot"}),
+    "another robot": as_json({"text": "S", "robot": "__proto__"}),
+    "a bomb": as_json({"text": "S" * 20_000_000, "robot": "tinibot"}),
+    "long": "A" * 50_000,
+}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_a_wrong_link_leaves_the_program(page: Page, name: str) -> None:
+    write(page, "SI|F(4, 80)")
+    before = image(page)
+    page.evaluate("document.querySelector('#note').textContent = ''")
+    page.evaluate("packed => { location.hash = '#program=' + packed; }", WRONG[name])
+    noted(page, "The link is not whole")
+    checked(page)
+    assert (content(page), image(page)) == ("SI|F(4, 80)", before)
+    assert page.evaluate("location.hash") == ""
+    assert page.locator("img").count() == 0
+
+
+def test_a_program_that_is_too_long_for_a_link_says_so(page: Page) -> None:
+    noise = "".join(f"// {k * 7919 % 100_003} {k * 104_729 % 99_991}\n" for k in range(2000))
+    write(page, noise)
+    assert share(page) == ""
+    assert "too long for a link" in page.inner_text("#shared_told")
+    assert not page.locator("#shared_picture, #shared, #copy").filter(visible=True).count()
+    page.keyboard.press("Escape")
+
+
+def test_every_line_is_that_of_the_command(page: Page) -> None:
+    found = programs()
+    requests = [{"text": each.text, "robot": each.robot, "language": "es"} for each in found]
+    refused = 0
+    for program, answer in zip(found, asked_to(page, "line", requests), strict=True):
+        wanted = line(program.text.encode(), program.robot, "es")
+        if isinstance(wanted, str):
+            assert answer == {"text": wanted}, program.name
+        else:
+            refused += 1
+            assert answer == {"message": wanted.message, "fix": wanted.fix}, program.name
+    assert 0 < refused < len(found)
+
+
+def test_a_line_that_the_robot_cannot_read_says_why(page: Page) -> None:
+    write(page, "DEF TURN\nR(1, 60)\nEND_DEF\nTURN")
+    assert share(page, "line") == ""
+    assert "uno" in page.inner_text("#shared_told") and "DEF" in page.inner_text("#shared_told")
+    page.click("#programs_close")
+    write(page, "F(2")
+    assert share(page, "line") == ""
+    assert check("F(2")[0].message in page.inner_text("#shared_told")
+    page.keyboard.press("Escape")
+
+
+# Reads the modules of the code as a camera would see them: another package than the one that draws.
+READ = """
+import decodeQR from 'qr/decode.js';
+let whole = '';
+for await (const part of process.stdin) whole += part;
+const { width, height, data } = JSON.parse(whole);
+process.stdout.write(decodeQR({ width, height, data: Uint8ClampedArray.from(data) }));
+"""
+PIXELS = """() => {
+  const code = document.querySelector('#shared_picture');
+  const large = document.createElement('canvas');
+  large.width = code.width * 4; large.height = code.height * 4;
+  const pen = large.getContext('2d');
+  pen.imageSmoothingEnabled = false;
+  pen.drawImage(code, 0, 0, large.width, large.height);
+  const { width, height, data } = pen.getImageData(0, 0, large.width, large.height);
+  return JSON.stringify({ width, height, data: [...data] });
+}"""
+
+
+def pictured(page: Page) -> str:
+    done = subprocess.run(
+        [*found_tools().node, "--input-type=module", "-e", READ],
+        cwd=MODULES.parent,
+        input=str(page.evaluate(PIXELS)),
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    return str(done.stdout)
+
+
+def test_the_pictures_hold_what_is_shared(page: Page) -> None:
+    write(page, TEXT)
+    for how in ("link", "line"):
+        shared = share(page, how)
+        assert pictured(page) == shared != ""
+    page.click("#programs_close")
+    write(
+        page, "SI|" + "".join(f"{letter * 190}=1;" for letter in "BCDEG")
+    )  # more than a camera reads
+    assert len(share(page, "line")) > 900
+    assert page.locator("#shared_picture").is_hidden()
+    assert "too long for a QR code" in page.inner_text("#shared_told")
+    page.keyboard.press("Escape")
+
+
+def test_what_is_shared_can_be_copied(pages: Pages) -> None:
+    page = pages.open(permissions=["clipboard-read", "clipboard-write"])
+    shared = share(page, "line")
+    page.click("#copy")
+    page.locator("#shared_told", has_text="Copied").wait_for()
+    assert page.evaluate("navigator.clipboard.readText()") == shared
+    forbidden = pages.open()
+    shared = share(forbidden, "line")
+    forbidden.evaluate(
+        "() => { navigator.clipboard.writeText = () => Promise.reject(new Error('no')); }"
+    )
+    forbidden.click("#copy")
+    forbidden.locator("#shared_told", has_text="Ctrl+C").wait_for()
+    assert forbidden.evaluate("String(getSelection())") == shared
+
+
+def test_earlier_programs_come_back(pages: Pages) -> None:
+    page = pages.open()
+    write(page, "SI|F(1, 10)")
+    page.click("#run")  # a program that has run is kept
+    write(page, "SI|F(2, 20)")
+    page.click("#my_programs")
+    assert opened(page) == ["SI|F(2, 20)", "SI|F(1, 10)"]
+    page.click("#new")
+    checked(page)
+    assert content(page).strip() == ""
+    write(page, "SI|F(3, 30)")
+    page.select_option("#robot", "liner")
+    page.reload()
+    checked(page)
+    page.click("#my_programs")
+    assert opened(page) == ["SI|F(3, 30)", "SI|F(2, 20)", "SI|F(1, 10)"]
+    rows = page.locator("#versions li")
+    rows.filter(has_text="SI|F(1, 10)").get_by_role("button").click()
+    noted(page, "Opened: the program of")
+    checked(page)
+    assert content(page) == "SI|F(1, 10)" and page.input_value("#robot") == "tinibot"
+    page.locator(".cm-content").focus()
+    page.keyboard.press("Control+z")
+    checked(page)
+    assert content(page) == "SI|F(3, 30)"
+
+
+def test_no_more_is_kept_than_has_room(page: Page) -> None:
+    kept = page.evaluate(
+        """() => {
+          const at = 'tiniscript.versions';
+          const long = Array.from({length: 60}, (_, k) =>
+            ({text: 'S;'.repeat(20000) + k, robot: 'tinibot', name: '', at_ms: k}));
+          localStorage.setItem(at, JSON.stringify(long));
+          document.querySelector('#my_programs').click();
+          return JSON.parse(localStorage.getItem(at)).map(each => each.text.length);
+        }"""
+    )
+    assert sum(kept) <= 400_000 and 5 < len(kept) <= 40
+    page.keyboard.press("Escape")
+    page.evaluate("localStorage.removeItem('tiniscript.versions')")
+
+
+DAMAGED = ("no JSON", "null", "7", '{"length": 3}', '[null, 1, {"text": 5}]',
+           '[{"text": "S", "robot": "__proto__", "name": "", "at_ms": 1}]',
+           '[{"text": "S", "robot": "tinibot", "name": {}, "at_ms": 1}]',
+           '[{"text": "S", "robot": "tinibot", "name": "", "at_ms": 1e300}]')  # fmt: skip
+
+
+@pytest.mark.parametrize("kept", DAMAGED)
+def test_damaged_programs_do_no_harm(page: Page, kept: str) -> None:
+    write(page, "SI|F(6, 60)")
+    page.evaluate("kept => localStorage.setItem('tiniscript.versions', kept)", kept)
+    page.click("#my_programs")
+    assert opened(page) == ["SI|F(6, 60)"]
+    page.keyboard.press("Escape")
+    page.evaluate("localStorage.removeItem('tiniscript.versions')")
+
+
+def test_hostile_names_are_only_text(page: Page) -> None:
+    hostile = "<img src=x onerror=alert(1)>"
+    version = {"text": hostile, "robot": "tinibot", "name": hostile, "at_ms": 1}
+    page.evaluate(
+        "kept => localStorage.setItem('tiniscript.versions', kept)", json.dumps([version])
+    )
+    page.click("#my_programs")
+    assert f"{hostile}: {hostile}" in opened(page)
+    assert page.locator("img").count() == 0
+    page.keyboard.press("Escape")
+    page.evaluate("localStorage.removeItem('tiniscript.versions')")
+
+
+def test_a_browser_that_keeps_nothing_says_so(pages: Pages) -> None:
+    page = pages.open()
+    page.evaluate(
+        "() => { Storage.prototype.setItem = () => { throw new DOMException('full'); }; }"
+    )
+    page.click("#run")
+    noted(page, "This browser keeps nothing")
+
+
+def test_a_stop_is_in_reach(page: Page) -> None:
+    write(page, "SI|LOOP(FOREVER); F(1, 80); END_LOOP")
+    for stop in ("click", "Escape"):
+        page.click("#run")
+        page.locator("html[data-phase=running]").wait_for(state="attached")
+        page.click("#my_programs")
+        if stop == "click":
+            page.click("#programs_stop")
+        else:
+            page.keyboard.press("Escape")
+        page.locator("html[data-phase=ended]").wait_for(state="attached")
+        if page.locator("#programs").is_visible():
+            page.click("#programs_close")
+
+
+LOOK = """() => {
+  const found = [];
+  const boxes = [...document.querySelectorAll('#programs button, #programs h2, #programs textarea, #programs canvas')]
+    .filter((e) => e.checkVisibility()).map((e) => [e.id || e.textContent, e.getBoundingClientRect(), e]);
+  const own = document.querySelector('#programs').getBoundingClientRect();
+  for (const [name, box, e] of boxes) {
+    if (box.left < own.left || box.right > own.right) found.push(name + ' is cut off');
+    if (e.tagName === 'BUTTON' && (box.height < 44 || box.width < 44)) found.push(name + ' is too small');
+    if (e.tagName === 'BUTTON' && e.scrollWidth > e.clientWidth + 1) found.push(name + ' does not fit');
+  }
+  const header = document.querySelectorAll('#programs header *');
+  for (const [k, one] of boxes.entries()) for (const other of boxes.slice(k + 1)) {
+    const a = one[1], b = other[1];
+    if ([...header].includes(one[2]) !== [...header].includes(other[2])) continue;  // it stays on top
+    if (Math.min(a.right, b.right) - Math.max(a.left, b.left) > 1
+        && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 1) found.push(one[0] + ' is over ' + other[0]);
+  }
+  const stop = document.querySelector('#programs_stop').getBoundingClientRect();
+  if (stop.top < 0 || stop.bottom > innerHeight) found.push('no stop in reach');
+  return found;
+}"""
+
+
+@pytest.mark.parametrize("language", ["en", "es"])
+@pytest.mark.parametrize("screen", [(1366, 768), (1024, 600), (390, 844)])
+def test_everything_is_seen(page: Page, screen: tuple[int, int], language: str) -> None:
+    page.set_viewport_size({"width": screen[0], "height": screen[1]})
+    page.select_option("#language", language)
+    write(page, TEXT)
+    for how in ("link", "line"):
+        share(page, how)
+        assert page.evaluate(LOOK) == []
+        page.evaluate((MODULES / "axe-core" / "axe.min.js").read_text(encoding="utf-8"))
+        found = page.evaluate("axe.run()")
+        assert [(each["id"], each["nodes"][0]["html"]) for each in found["violations"]] == []
+    page.locator("#versions li").last.scroll_into_view_if_needed()
+    assert page.evaluate(LOOK) == []
+    page.keyboard.press("Escape")
+
+
+def test_the_keyboard_alone_is_enough(page: Page) -> None:
+    write(page, "SI|F(5, 50)")
+    page.locator("#my_programs").focus()
+    page.keyboard.press("Enter")
+    page.locator("#programs[data-shared=done]").wait_for()
+    for _ in range(4):
+        if page.evaluate("document.activeElement.id") == "share_line":
+            break
+        page.keyboard.press("Tab")
+    page.keyboard.press("Enter")
+    page.locator("#programs[data-shared=done]").wait_for()
+    assert page.input_value("#shared") == line(b"SI|F(5, 50)", "tinibot", "en")
+    page.keyboard.press("Escape")
+    assert page.evaluate("document.activeElement.id") == "my_programs"
+    assert image(page) == compile("SI|F(5, 50)").image

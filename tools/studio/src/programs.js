@@ -1,0 +1,187 @@
+// The window with this person's programs: one is shared as a link or as a line of text, each with a
+// picture for a phone's camera, and earlier ones are opened again.
+
+import { correction, generate } from 'lean-qr';
+import { element } from './elements.js';
+import { linkOf, sharedIn } from './links.js';
+import { currentLanguage, text } from './texts.js';
+import { keepVersion, versions } from './versions.js';
+import { ROBOTS } from './words.js';
+
+/** @typedef {import('./versions.js').Version} Version */
+/** @typedef {import('./work.js').Work} Work */
+/** @typedef {{text: string} | {wrong: string}} Given what is shared, or why it is not */
+
+const MOST_PICTURED = 900; // bytes: a camera reads no picture with more from a screen
+const MARGIN = 4; // modules that must stay white around a code
+
+export class Programs {
+  #window = element('programs', HTMLDialogElement);
+  #shared = element('shared', HTMLTextAreaElement);
+  #told = element('shared_told', HTMLElement);
+  #picture = element('shared_picture', HTMLCanvasElement);
+  #link = element('share_link', HTMLButtonElement);
+  #line = element('share_line', HTMLButtonElement);
+  #copy = element('copy', HTMLButtonElement);
+  #python;
+  #work;
+  #put;
+  #tell;
+  #asked = 0;
+
+  /**
+   * @param {import('./python.js').Python} python
+   * @param {Work} work
+   * @param {(program: {text: string, robot: string, name: string}) => void} put it into the editor
+   * @param {(note: string) => void} tell
+   */
+  constructor(python, work, put, tell) {
+    this.#python = python;
+    this.#work = work;
+    this.#put = put;
+    this.#tell = tell;
+    element('my_programs', HTMLButtonElement).addEventListener('click', () => this.#open());
+    element('programs_close', HTMLButtonElement).addEventListener('click', () => this.#window.close());
+    // The page's own is behind this window.
+    element('programs_stop', HTMLButtonElement).addEventListener('click', () => element('stop', HTMLButtonElement).click());
+    element('new', HTMLButtonElement).addEventListener('click', () => {
+      this.replace({ text: '', robot: work.robot, name: '' });
+      this.#window.close();
+    });
+    this.#link.addEventListener('click', () => this.#share('link'));
+    this.#line.addEventListener('click', () => this.#share('line'));
+    this.#copy.addEventListener('click', () => this.#copyIt());
+    element('run', HTMLButtonElement).addEventListener('click', () => this.keep());
+    addEventListener('pagehide', () => this.keep());
+    addEventListener('hashchange', () => this.openLink());
+  }
+
+  /** Keeps what is in the editor among the earlier programs. */
+  keep() {
+    if (!keepVersion(this.#work)) this.#tell(text('not_kept'));
+  }
+
+  /**
+   * Puts another program into the editor. The one before is kept, and undo brings it back, too.
+   * @param {{text: string, robot: string, name: string}} program
+   */
+  replace(program) {
+    this.keep();
+    this.#put(program);
+  }
+
+  /** Opens the program of the page's address, if there is one; it does not run. */
+  async openLink() {
+    let found;
+    try {
+      found = await sharedIn(location.hash);
+    } catch {
+      this.#tell(text('link_wrong'));
+    }
+    if (found === null) return;
+    history.replaceState(null, '', location.pathname + location.search);
+    if (!found) return;
+    this.replace({ ...found, name: '' });
+    this.#tell(text('link_opened'));
+  }
+
+  #open() {
+    this.keep();
+    this.#showVersions();
+    this.#window.showModal();
+    this.#share('link');
+  }
+
+  /** @param {'link' | 'line'} how */
+  async #share(how) {
+    const asked = ++this.#asked; // only what was asked last is shown
+    this.#link.setAttribute('aria-pressed', String(how === 'link'));
+    this.#line.setAttribute('aria-pressed', String(how === 'line'));
+    this.#show({ text: '' }, '');
+    let given;
+    try {
+      given = how === 'link' ? await this.#asLink() : await this.#asLine();
+    } catch (why) {
+      given = { wrong: text('bug', { why: String(why).split('\n').filter(Boolean).at(-1) ?? '' }) };
+    }
+    if (asked === this.#asked) this.#show(given, text(how === 'link' ? 'share_link_told' : 'share_line_told'));
+  }
+
+  /** @returns {Promise<Given>} */
+  async #asLink() {
+    const link = await linkOf(this.#work, location.href);
+    return link === null ? { wrong: text('link_too_long') } : { text: link };
+  }
+
+  /** @returns {Promise<Given>} */
+  async #asLine() {
+    const request = { do: 'line', robot: this.#work.robot, language: currentLanguage() };
+    const answer = await this.#python.ask(request, new TextEncoder().encode(this.#work.text));
+    if (answer.text !== undefined) return { text: answer.text };
+    return { wrong: [answer.message, answer.fix && `${text('try')} ${answer.fix}`].filter(Boolean).join(' ') };
+  }
+
+  /**
+   * @param {Given} given
+   * @param {string} told
+   */
+  #show(given, told) {
+    const shared = 'text' in given ? given.text : '';
+    const isPictured = shared !== '' && new TextEncoder().encode(shared).length <= MOST_PICTURED;
+    this.#shared.value = shared;
+    this.#shared.hidden = this.#copy.hidden = shared === '';
+    this.#told.textContent = 'wrong' in given ? given.wrong
+      : shared && !isPictured ? `${told} ${text('no_picture')}` : told;
+    this.#picture.hidden = !isPictured;
+    if (isPictured) {
+      generate(shared, { minCorrectionLevel: correction.L })
+        .toCanvas(this.#picture, { padX: MARGIN, padY: MARGIN, on: [0, 0, 0, 255], off: [255, 255, 255, 255] });
+    }
+    this.#window.dataset['shared'] = 'wrong' in given ? 'wrong' : shared ? 'done' : 'asked';
+  }
+
+  async #copyIt() {
+    this.#shared.focus();
+    this.#shared.select();
+    try {
+      await navigator.clipboard.writeText(this.#shared.value);
+      this.#told.textContent = text('copied');
+    } catch {
+      this.#told.textContent = text('copy_by_hand'); // it is selected
+    }
+  }
+
+  #showVersions() {
+    const language = currentLanguage();
+    const time = new Intl.DateTimeFormat(language, { dateStyle: 'short', timeStyle: 'short' });
+    const rows = versions().map((version) => {
+      const row = document.createElement('li');
+      const when = document.createElement('time');
+      const what = document.createElement('code');
+      const open = document.createElement('button');
+      const at = new Date(version.at_ms);
+      when.dateTime = at.toISOString();
+      when.textContent = time.format(at);
+      what.textContent = beginOf(version);
+      open.type = 'button';
+      open.textContent = text('open_again');
+      open.setAttribute('aria-label', text('open_again_from', { time: when.textContent }));
+      open.addEventListener('click', () => {
+        this.replace(version);
+        this.#window.close();
+        this.#tell(text('opened_again', { time: String(when.textContent) }));
+      });
+      const robot = document.createElement('span');
+      robot.textContent = ROBOTS.find((each) => each.name === version.robot)?.labels[language] ?? version.robot;
+      row.append(when, robot, what, open);
+      return row;
+    });
+    element('versions', HTMLElement).replaceChildren(...rows);
+  }
+}
+
+/** @param {Version} version */
+function beginOf({ name, text: whole }) {
+  const begin = whole.trim().split('\n', 3).join(' ');
+  return (name ? `${name}: ` : '') + (begin.length > 60 ? `${begin.slice(0, 60)}…` : begin);
+}
