@@ -23,6 +23,7 @@ from tiniscript.printable import printable
 FILE_BYTES = 1_000_000
 NAME_CHARACTERS = 16
 MOST = 2000  # keys in a file
+MOST_PENDING = 1  # before a new one: a robot listens to few wrong keys
 MODE = 0o600  # only this person reads it
 _LOCK = Lock()  # the robots of a fleet have threads of their own
 _MARKS = ("is_pending", "is_stale")
@@ -78,7 +79,12 @@ class KeyFile:
         key = RobotKey(robot, which, os.urandom(KEY_BYTES), name, is_pending=True)
         try:
             with self._alone():
-                self._write([*self.all(), key])
+                before = self.all()
+                pending = [
+                    each for each in before if each.is_pending and _place(each) == _place(key)
+                ]
+                rest = [each for each in before if each not in pending[:-MOST_PENDING]]
+                self._write([*rest, key])
         except BadKeys:
             return None
         return key

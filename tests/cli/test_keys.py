@@ -189,3 +189,17 @@ def test_a_file_that_others_may_read_is_told(tsc: Tsc) -> None:
     KeyFile().add([ONE])
     KeyFile().path.chmod(0o644)
     assert "chmod 600" in tsc("keys").err
+
+
+def test_claims_that_were_left_leave_few_keys() -> None:
+    """A robot listens to few wrong keys: of pending ones the last two are kept, of each kind."""
+    own = KeyFile()
+    for _ in range(6):
+        own.made(ONE.id, ONE.which, "TINI")
+        last = own.made(ONE.id, 1 - ONE.which, "TINI")
+    other = own.made(7, 0, "")
+    assert last and other
+    own.refuse(last)
+    found = own.of_robot(ONE.id)
+    assert sorted(key.which for key in found) == [0, 0, 1, 1]
+    assert found[-1] == last._replace(is_stale=True) and own.of_robot(7) == [other]

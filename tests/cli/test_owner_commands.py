@@ -93,6 +93,21 @@ def test_a_robot_is_given_up_and_free(pty_robot: PtyRobot) -> None:
     assert ", free" in on(pty_robot, "info").out
 
 
+def test_a_live_line_has_the_room_that_sealed_frames_have(pty_robot: PtyRobot) -> None:
+    """Variables that there is no room to show are forgotten, and a longer line is told so."""
+    most = "W(0.01);" * 10 + "W(0.123);" * 4 + "X = 1"  # 38 bytes, and 46 with what tells X
+    done = on(pty_robot, "live", "-", data=f"{most}\nSHOW(X)\n".encode())
+    assert done.code == 0 and done.out.count("SHOW 1\n") == 1
+    assert claimed(pty_robot).code == 0
+    done = on(pty_robot, "live", "-", data=most.encode())
+    assert (done.code, done.out) == (0, "")
+    assert "not kept" in done.err
+    done = on(pty_robot, "live", "SHOW(TIME * 1.234);" * 8)
+    assert done.code == 1 and "room for 42" in done.err
+    done = on(pty_robot, "live", "SHOW(TIME * 1.234);" * 8, "--lang", "es")
+    assert "42" in done.err
+
+
 def test_a_claim_without_the_button_says_what_to_do(
     pty_robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:

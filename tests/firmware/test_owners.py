@@ -167,7 +167,7 @@ def test_a_claim_whose_answer_is_lost_is_settled_when_its_key_is_shown() -> None
     stale = Keys()
     stale.found = left[:2]
     assert owner_of(table, table.session(stale, nonce=100)) == OF_ANOTHER
-    assert stale.found == []
+    assert [(key.is_pending, key.is_stale) for key in stale.found] == [(True, True)] * 2
 
 
 def test_a_worn_memory_is_told() -> None:

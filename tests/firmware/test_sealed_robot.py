@@ -16,7 +16,7 @@ from tests.firmware.test_authority import is_accepted
 from tests.machines.host_firmware import missing
 from tests.support.owners import FOREVER, PRESSED, Keys, Owned, image_of, owner_of, state_of
 from tests.support.thief import Thief, wire_of
-from tiniscript.link.authority import OF_ANOTHER, YOUR_OWN
+from tiniscript.link.authority import OF_ANOTHER, YOUR_OWN, whose
 from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.messages import (
     BY_NAME,
@@ -30,6 +30,8 @@ from tiniscript.link.messages import (
     STATUSES,
 )
 from tiniscript.link.outcomes import LOST
+from tiniscript.link.payloads import HelloReply
+from tiniscript.link.requests import Reply
 from tiniscript.link.seal import LAST, Seal
 from tiniscript.link.session import Session
 
@@ -167,6 +169,50 @@ def test_a_relay_cannot_say_that_it_worked() -> None:
         if request.outcome is not None:
             break
     assert request.outcome and request.outcome.status in (LOST, STATUSES["NOT_OWNER"])
+
+
+def refused_by_a_stranger(table: Owned, session: Session, is_cut: bool) -> Reply[HelloReply]:
+    """Open a session while a stranger refuses each tag before the robot answers; where the line
+    `is_cut`, the tags do not reach the robot.
+    """
+    request = session.hello()
+    while request.outcome is None:
+        data = session.poll(table.robot.now_ms)
+        frame = decoded(data.strip(b"\0")) if data else None
+        if frame and frame.number == BY_NAME["AUTHENTICATE"].number and len(frame.payload) > 1:
+            for name in ("WRONG_KEY", "TOO_MANY_TRIES", "STALE", "NOT_OWNER"):
+                said = frame._replace(payload=bytes([STATUSES[name], 4, 0]), is_reply=True)
+                session.receive(encoded(said), table.robot.now_ms)
+            data = b"" if is_cut else data
+        session.receive(table.robot.step(data), table.robot.now_ms)
+    return request.outcome
+
+
+@pytest.mark.parametrize("is_pending", [False, True])
+def test_a_key_that_a_stranger_refuses_opens_the_robot(is_pending: bool) -> None:
+    """A refusal has no seal: the robot's own answer, which has one, is waited for."""
+    table = Owned()
+    _, keys = open_(table)
+    keys.found = [each._replace(is_pending=is_pending) for each in keys.found]
+    session = table.session(keys, nonce=8)
+    assert refused_by_a_stranger(table, session, is_cut=False).status == 0
+    assert session.robot and whose(session.robot) == YOUR_OWN
+    assert [(key.is_pending, key.is_stale) for key in keys.found] == [(False, False)]
+
+
+@pytest.mark.parametrize("is_pending", [False, True])
+def test_no_refusal_takes_a_key_from_a_computer(is_pending: bool) -> None:
+    """Whoever cuts the line may refuse a key for ever; without that it opens the robot again."""
+    table = Owned()
+    _, keys = open_(table)
+    keys.found = [each._replace(is_pending=is_pending) for each in keys.found]
+    session = table.session(keys, nonce=8)
+    assert refused_by_a_stranger(table, session, is_cut=True).status == 0
+    assert session.robot and whose(session.robot) == OF_ANOTHER
+    assert [key.is_stale for key in keys.found] == [True]
+    later = table.session(keys, nonce=9)
+    assert table.tries(later) == "OK"
+    assert [(key.is_pending, key.is_stale) for key in keys.found] == [(False, False)]
 
 
 def test_a_stop_is_confirmed_with_the_seal_and_by_nothing_else() -> None:

@@ -148,7 +148,8 @@ class RobotConnection:
         return self._begun(reply, run and ready.start == "SI", detached)
 
     def live(self, line: str) -> Receipt:
-        """Run a line once, at most 55 bytes of code; the stored program does not change.
+        """Run a line once, at most 55 bytes of code, or 42 for a robot that seals; the stored
+        program does not change.
 
         Returns when the line has begun; `wait` waits for its end. Variables do not last from one
         line to the next. Raises ProgramError, RobotError.

@@ -96,7 +96,7 @@ def show_keys(
         if ring is not None and (each.is_pending or each.is_stale) and found.status == OK:
             ring.settle(each)
         if ring is not None and found.status == WRONG_KEY:
-            (ring.drop if each.is_pending else ring.refuse)(each)
+            ring.refuse(each)  # kept all the same: the robot is not known to have said so
         if found.status != WRONG_KEY:
             break
     return found

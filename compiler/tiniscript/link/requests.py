@@ -15,6 +15,7 @@ from tiniscript.bytecode.verify import RULES
 from tiniscript.link.messages import (
     BY_NAME,
     DETACHED,
+    OWNED,
     PAYLOAD_BYTES,
     RUN,
     SAVE,
@@ -143,8 +144,9 @@ def single(request: Request, kind: type[T]) -> Exchange[T]:
 
 
 def _payload_bytes(robot: DeviceInfo) -> int:
-    """Return how long a payload may be: less where frames are sealed."""
-    is_sealed = robot.values.features & (SEALS | YOURS) == SEALS | YOURS
+    """Return how long a payload may be: less where frames are sealed, or will be with a key."""
+    features = robot.values.features
+    is_sealed = features & SEALS and features & (OWNED | YOURS)
     return SEALED_PAYLOAD_BYTES if is_sealed else PAYLOAD_BYTES
 
 

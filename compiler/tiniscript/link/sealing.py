@@ -13,6 +13,7 @@ from tiniscript.link.seal import Seal
 from tiniscript.link.transmission import Transmission
 
 UNSEALED = ("HELLO", "AUTHENTICATE")  # a seal is made of what they say
+REFUSED_TRIES = 3  # sendings of a tag before a refusal counts, which anybody may have written
 
 
 class Sealing:
@@ -39,6 +40,7 @@ class Sealing:
         """Return what a frame says, or None if it need not be the robot's.
 
         A robot that has not heard our seal for some time has dropped it, and says so without one.
+        Nor can it seal that a tag is wrong: so the tag is sent again first, for a sealed reply.
         """
         if frame.is_sealed:
             return self.seal.opened(frame) if self.seal else None
@@ -48,7 +50,8 @@ class Sealing:
             is_believed = now_ms - self.sealed_ms >= AUTHORITY_MS
         elif sent.is_answered_by(frame):
             status = frame.payload[0] if frame.payload else OK
-            is_believed = status == NOT_OWNER if sent.seal else status != OK
+            has_waited = status != OK and sent.tries >= REFUSED_TRIES
+            is_believed = status == NOT_OWNER if sent.seal else has_waited
         else:
             is_believed = True  # a second answer to what was not sealed: nothing follows from it
         return frame if is_believed else None

@@ -57,6 +57,8 @@ def run(options: Namespace, language: str) -> int:
 
 def _may_be_done(line: str, known: Known, robot: Robot, options: Namespace) -> bool:
     """Whether a line has no mistakes, perhaps for the robot that answers; else print them."""
+    from tiniscript.link.requests import SHORT_BYTES
+
     language: str = options.language
     if options.robot is None:
         compiled = own_kit.naming(known.line(line, 0).compiled, robot)
@@ -64,25 +66,27 @@ def _may_be_done(line: str, known: Known, robot: Robot, options: Namespace) -> b
             found = own_kit.of_answering(options, robot, language)
             if found is not None:
                 return True  # it is compiled again for that robot
-    return _compiled(line, known, robot, language, is_last=True) is not None
+    return _compiled(line, known, robot, language, True, SHORT_BYTES) is not None
 
 
 def _compiled(
-    line: str, known: Known, robot: Robot, language: str, is_last: bool = False
+    line: str, known: Known, robot: Robot, language: str, is_last: bool, room: int
 ) -> Line | None:
-    """Compile a line and print its diagnostics; return None if it has mistakes."""
+    """Compile a line into at most `room` bytes of code, and print its diagnostics.
+
+    Returns None if it has mistakes. Raises CommandError if it is too long.
+    """
     from tiniscript.cli.robot.live_state import header
-    from tiniscript.link.requests import SHORT_BYTES
 
     if header(line) == "SB":
         raise CommandError(1, "live_button")
-    found = known.line(line, 0 if is_last else SHORT_BYTES)
+    found = known.line(line, 0 if is_last else room)
     outputs.print_diagnostics(own_kit.naming(found.compiled, robot), language)
     if not found.compiled.is_right:
         return None
     code = len(found.compiled.code)
-    if code > SHORT_BYTES:
-        raise CommandError(1, "live_too_long", code=str(code), room=str(SHORT_BYTES))
+    if code > room:
+        raise CommandError(1, "live_too_long", code=str(code), room=str(room))
     return found
 
 
@@ -104,13 +108,15 @@ class Repl:
     def do(self, line: str, is_last: bool = False) -> int:
         """Run a line; return the exit code. Ctrl-C stops the robot."""
         from tiniscript.cli.robot.live_state import header
+        from tiniscript.link.requests import short_bytes
 
         if header(line) == "PING":
             from tiniscript.cli.commands.ping import ping
 
             return ping(self.connection, is_json=False)
         robot = self.connection.profile
-        found = _compiled(line, self.known, robot, self.language, is_last)
+        room = short_bytes(self.connection.device_info)  # less where frames are sealed
+        found = _compiled(line, self.known, robot, self.language, is_last, room)
         if found is None:
             return 1
         try:

@@ -167,7 +167,8 @@ class Connection:
             return
         from tiniscript.keys import KeyFile
 
-        if any(key.is_stale for key in KeyFile().of_robot(device_info.id)):
+        keys = KeyFile().of_robot(device_info.id)
+        if any(key.is_stale and not key.is_pending for key in keys):
             said = text("key_is_stale", self.language).format(robot=self.name)
             print(said, file=sys.stderr, flush=True)
 
