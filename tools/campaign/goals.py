@@ -38,6 +38,8 @@ GOALS: tuple[Goal, ...] = (
          "runs over all bytes", 1, 1, "tests.firmware.test_cut_uploads"),
     Goal("undos", "An undo whose answer is lost is not done twice.",
          "robots, four undos each", 10_000, 500, f"{_CHANNEL} 0 --frames 0 --undos {{count}} --seed {{seed}}", 1000),
+    Goal("lives", "A live line whose answer is lost is not done twice.",
+         "live lines", 1_000_000, 20_000, "tests.link.test_live_lines {count} --seed {seed}"),
     Goal("sealed", "A stranger on the line of a robot that seals has nothing done, nothing done twice and nothing believed; what says done is done.",
          "uploads beside a stranger", 10_000, 500, "tests.link.test_sealed_channel {count} --seed {seed}", 1000),
     Goal("thieves", "Frames of an owner's line that are replayed, forged, reflected, cut or of another session have nothing done; a stop is obeyed.",

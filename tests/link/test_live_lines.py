@@ -1,0 +1,93 @@
+"""Live lines over a bad radio: a line whose answer is lost is sent again, and never done twice.
+
+`python -m tests.link.test_live_lines 1000000` sends more of them than the tests.
+"""
+
+from __future__ import annotations
+
+import argparse
+import random
+import sys
+import time
+from collections import Counter
+
+from tests.link.test_link_channel import OUTCOMES, World, needs_host
+from tests.machines.link import CppLink, cpp_link
+from tiniscript.bytecode.image import pack, unpack
+from tiniscript.bytecode.opcodes import BY_NAME as OPCODES
+from tiniscript.link.frames import decoded
+from tiniscript.link.messages import BY_NAME
+from tiniscript.link.statuses import name_of
+
+LIVES = 2000  # in the tests
+LINES = 50  # of one robot
+SEED = 4
+LIVE = BY_NAME["LIVE"].number
+
+
+class LiveWorld(World):
+    """`sent` counts the times that a line goes out, the repeated ones too."""
+
+    sent = 0
+
+    def heard(self, data: bytes) -> None:
+        frame = decoded(data.strip(b"\0"))
+        self.sent += frame is not None and frame.number == LIVE and not frame.is_reply
+
+
+def lives(cpp: CppLink, count: int, seed: int) -> Counter[str]:
+    """Send so many lines, each of its own code, over radios that lose answers; return how that
+    went. A line begins once where the computer says so, and never twice.
+    """
+    draw = random.Random(seed)
+    found: Counter[str] = Counter()
+    for first in range(0, count, LINES):
+        world = LiveWorld(cpp, draw, draw.choice((0.001, 0.005, 0.01)), draw.choice((0, 0.0005)))
+        for number in range(first, min(first + LINES, count)):
+            world.sent = 0
+            request = world.session.live(line_of(number))
+            world.run(request)
+            assert request.outcome, f"seed {seed}, line {number} has no end"
+            status = request.outcome.status
+            times = Counter(row for row in world.did if row.startswith("TAKE"))
+            image = pack("SI", 0, line_of(number))
+            mine = times[f"TAKE live {unpack(image).checksum:08x}"]
+            assert mine == 1 if status == 0 else mine <= 1, f"seed {seed}, line {number}: {mine}"
+            assert set(times.values()) <= {1}, f"seed {seed}: an earlier line again, {number}"
+            starts = sum(row.startswith("START") for row in world.did)
+            assert starts == len(times), f"seed {seed}, line {number}: {starts} starts"
+            found[OUTCOMES.get(status) or name_of(status)] += 1
+            found["sent again"] += world.sent > 1
+            if status != 0:
+                world.again()
+    return found
+
+
+def line_of(number: int) -> bytes:
+    """Return code that no other line has."""
+    move = OPCODES["MOVE8_F"].code
+    digits = (number // 100**k % 100 for k in range(4))
+    return b"".join(bytes((move, 1, digit)) for digit in digits)
+
+
+@needs_host
+def test_live_lines_over_a_bad_radio() -> None:
+    """None is done twice, however often its answer is lost."""
+    found = lives(cpp_link(), LIVES, SEED)
+    assert found["OK"] > LIVES * 0.8 and found["sent again"] > LIVES * 0.1, found
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description="Send live lines over a bad radio.")
+    parser.add_argument("lines", type=int, nargs="?", default=100_000)
+    parser.add_argument("--seed", type=int, default=1_000_000)
+    options = parser.parse_args()
+    begun = time.monotonic()
+    found = lives(cpp_link(), options.lines, options.seed)
+    seconds = time.monotonic() - begun
+    print(f"{options.lines} live lines, {dict(found)}, 0 double: {seconds:.0f} s")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
