@@ -183,6 +183,20 @@ def test_a_name_that_fits_a_worn_byte_is_kept_after_one_that_did_not() -> None:
     assert name_after_power_off(robot) == "ONE"
 
 
+def test_a_name_is_kept_after_a_program_that_met_a_worn_byte() -> None:
+    """Each save begins with its first byte, wherever the one before has ended."""
+    robot, session = switched_on(), computer()
+    for power in (20, 30):
+        send(robot, session, f"SB|F(1, {power})")
+        assert stored(robot, session)
+    robot.wear_out(robot.memory().index(image_of("SB|F(1, 20)").code) + 2)  # the power
+    send(robot, session, "SB|F(1, 40)")
+    robot.talk(session, 1500)
+    assert saved(robot, session) == "MEMORY"
+    assert robot.until(session, session.name(b"NEW")) == OK
+    assert name_after_power_off(robot) == "NEW"
+
+
 def test_what_a_worn_last_byte_has_spoilt_is_empty() -> None:
     robot, session = switched_on(), computer()
     for name in (b"OLD", b"NEW"):
