@@ -219,6 +219,15 @@ def test_a_threshold(millivolts: int, is_true: bool) -> None:
     assert board.motors(START + 4)[0] == f"pwm {(20 if is_true else 10) * 653 >> 8}"
 
 
+def test_a_reading_is_rounded_to_thousandths() -> None:
+    """149 of 1023 are 1.4565 of 10 V, and a bit: the half is what tells the one from the other."""
+    text = "SI|IF(BATTERY > 1.456);M(20, 0);ELSE;M(10, 0);ENDIF;W(5)"
+    board = started(robots.load("liner"), text)
+    board.analog(7, 729)
+    board.ran(START + 5)
+    assert board.motors(START + 4)[0] == f"pwm {20 * 653 >> 8}"
+
+
 def test_a_reading_of_the_last_program_is_none_of_the_next() -> None:
     """A program is stopped while it measures; the next one measures again."""
     robot = robots.load("tinibot")

@@ -8,10 +8,13 @@ from struct import pack as struct_pack
 
 import pytest
 
-from tests.firmware.test_host_firmware import computer, image_of, outcome, switched_on
+from tests.firmware.test_host_firmware import KIT, computer, image_of, outcome, switched_on
 from tests.firmware.test_keeping import EACH, FIRST, SECOND, saved
 from tests.machines.host_firmware import EMPTY, HostFirmware, missing
+from tests.support.owners import Keys
 from tiniscript.bytecode.image import REFUSALS, sealed
+from tiniscript.link.authority import FREE, OF_ANOTHER, RobotKey, whose
+from tiniscript.link.messages import KEY_OWNER
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 
@@ -21,6 +24,7 @@ OTHER_VERSION = REFUSALS["OTHER_VERSION"][0]
 # `F(5, 80)`, as version 0.1.0 has compiled it.
 OLD = bytes.fromhex("54530100000000000300101604fa443250")
 MOST_OLD = 430  # bytes of code
+OWNER = SECOND - 40  # where the first slot of the keys lies
 
 
 def old(code: bytes, start: int = 0) -> bytes:
@@ -120,3 +124,18 @@ def test_name_and_trim_outlive_an_update() -> None:
     again, session = met(bytes(memory))
     assert session.robot is not None and session.robot.name == "Ada"
     assert saved(again, session) == "OTHER_VERSION"
+
+
+def test_an_owner_beside_a_program_of_version_0_1_0_gives_the_robot_up() -> None:
+    """That program lies over the other slot of the keys, which has no generation then."""
+    key, keys = bytes(range(1, 17)), Keys()
+    body = key + bytes(16)
+    record = struct_pack("<I", zlib.crc32(body)) + body
+    memory = kept((SECOND, 1, old(bytes(MOST_OLD))), (OWNER, 31, record))
+    robot, session = met(memory)
+    assert session.robot and whose(session.robot) == OF_ANOTHER
+    keys.found = [RobotKey(session.robot.id, KEY_OWNER, key)]
+    session = Session(8, 9600, KIT.fingerprint, keys=keys)
+    assert robot.until(session, session.disown(KEY_OWNER)) == OK
+    _, session = met(robot.memory())
+    assert session.robot and whose(session.robot) == FREE

@@ -181,6 +181,14 @@ def test_a_file_that_says_nothing_is_no_server(pty_robot: PtyRobot, text: str) -
         assert registry.found(other.port) is None
 
 
+@pytest.mark.skipif(os.name != "posix", reason="Windows has no such bits")
+def test_a_folder_that_others_could_read_is_closed_before_a_token_lies_in_it() -> None:
+    registry._folder().mkdir(parents=True)
+    registry._folder().chmod(0o755)
+    registry.write(Registration("/dev/ttyUSB7", 5, "a", "b", "link", 9600, os.getpid()))
+    assert stat.S_IMODE(registry._folder().stat().st_mode) == 0o700
+
+
 def test_somebody_else_at_the_number_of_a_crashed_server_is_no_server(pty_robot: PtyRobot) -> None:
     with socket.create_server((protocol.HOST, 0)) as stranger:
         number = stranger.getsockname()[1]

@@ -116,6 +116,8 @@ ROOMS = (
             "tests/firmware/test_actuator_stops.py",
             "tests/firmware/test_trim.py",
             "tests/firmware/test_text.py",
+            "tests/firmware/test_random_numbers.py",
+            "tests/firmware/test_stop_states.py",
             "tests/firmware/test_uno_robot.py::test_a_stop_silences_the_buzzer",
         ),
         {
@@ -126,7 +128,7 @@ ROOMS = (
             "program.cpp": "host keeping undo other_versions",
             "holding.cpp": "host keeping undo other_versions",
             "keeping.cpp": "keeping undo host owners",
-            "run.cpp": "host stops button keeping silences",
+            "run.cpp": "random host stops button keeping stop_states silences",
             "firmware.cpp": "host button keeping owners",
         },
     ),

@@ -9,6 +9,11 @@ _REASONS: dict[str, tuple[tuple[str, str], ...]] = {
         ("bool Store::is_committing() const { return is_busy_ && !nvm_is_ready() && step_ > waits_from_; }",
          "bool Store::is_committing() const { return is_busy_ && !nvm_is_ready() && step_ >= waits_from_; }"),
     ),
+    "a slot under a program of version 0.1.0: at one of 64 generations a save there does not count, is "
+    "told by nobody, and is done again": (
+        ("if (held == kOverlaid) { held = kNothing;",
+         "if (held == kOverlaid) { ;"),
+    ),
     "0 is 0 either way": (
         ("if (number < 0) size = static_cast<uint8_t>(-size);",
          "if (number <= 0) size = static_cast<uint8_t>(-size);"),
