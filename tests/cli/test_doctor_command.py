@@ -228,7 +228,7 @@ def test_a_report_has_the_findings_and_no_names(tsc: Tsc, tmp_path: Path) -> Non
         assert text.startswith(report.MARK + "\n")
         assert "unknown_kit sure" in text and "next: Name its profile once" in text
         assert f"port: {pty_end.port}" in text
-        for word in ("ANA", "6B", str(tmp_path), *words_of_this_computer()):
+        for word in ("ANA", "6B", "12347f3a", str(tmp_path), *words_of_this_computer()):
             assert not re.search(rf"\b{re.escape(word)}\b", text), word
         # one of its own it replaces
         tsc("doctor", "--port", "/dev/not-there", "--report", file)
@@ -272,6 +272,8 @@ def test_ports_in_a_report(port: str, told: str) -> None:
 def test_values_of_others_stay_out_of_a_report() -> None:
     finding = sure("busy", by="ModemManager, secret-tool")
     assert report.values_of(finding) == {"by": "ModemManager, …"}
+    finding = sure("fine", name="ANA", kit="tinibot", id="12347f3a", n="20")
+    assert report.values_of(finding) == {"name": "…", "kit": "tinibot", "id": "…", "n": "20"}
     finding = sure("port_broken", why="could not open /home/ana/x")
     assert report.values_of(finding) == {"why": "…"}
     finding = sure("port_missing", ports="COM3, /dev/cu.usbserial-A50285BI")

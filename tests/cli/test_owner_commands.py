@@ -49,6 +49,7 @@ def test_who_claims_a_robot_drives_it_and_nobody_else(
     assert ", yours" in on(pty_robot, "info").out
     assert ", yours" in on(pty_robot, "ping", "--count", "1").out
     assert "(yours)" in on(pty_robot, "ports", "--ask").out
+    assert "The robot has an owner" not in on(pty_robot, "doctor").out
     as_another(monkeypatch, tmp_path)
     assert ", of another owner" in on(pty_robot, "info").out
     assert "(de otro dueño)" in on(pty_robot, "ports", "--ask", "--lang", "es").out
@@ -57,6 +58,8 @@ def test_who_claims_a_robot_drives_it_and_nobody_else(
     assert "dueño" in on(pty_robot, "live", "F(1, 80)", "--lang", "es").err
     assert on(pty_robot, "claim").code == 3
     assert on(pty_robot, "disown").code == 3
+    doctor = on(pty_robot, "doctor")
+    assert doctor.code == 0 and "The robot has an owner" in doctor.out
     assert on(pty_robot, "identify").code == 0
     pty_robot.until(lambda: any("BEEP" in line for line in pty_robot.did), "its tune")
     assert on(pty_robot, "stop").code == 0

@@ -22,7 +22,15 @@ from tiniscript.doctor.examination import Expected, examined
 from tiniscript.doctor.findings import Finding
 from tiniscript.doctor.line import Line, looked, readable
 from tiniscript.doctor.robot import WireRobot
-from tiniscript.link.messages import LINK_FAULTS, SAVED, STATUSES, STOP_RUN
+from tiniscript.link.messages import (
+    LINK_FAULTS,
+    OWNED,
+    OWNERS,
+    SAVED,
+    STATUSES,
+    STOP_RUN,
+    YOURS,
+)
 from tiniscript.robots import load
 
 NAMES = {load(name).kit.fingerprint: name for name in ("tinibot", "liner", "grabber")}
@@ -32,10 +40,16 @@ STALL = next(number for number, name, _ in LINK_FAULTS if name == "STALL")
 
 
 def found(
-    end: OtherEnd, is_radio: bool = False, kit: int | None = None, baud: int = 9600
+    end: OtherEnd,
+    is_radio: bool = False,
+    kit: int | None = None,
+    baud: int = 9600,
+    its_key: int | None = None,
 ) -> list[Finding]:
+    """Return what is found; `its_key` is the id of the robot whose key the computer has."""
     wire = SimulatedWire(end, baud)
-    findings = looked(wire, Line(baud, is_radio, 4711), Expected(kit, "tinibot", NAMES.get))
+    expected = Expected(kit, "tinibot", NAMES.get, lambda robot: robot == its_key)
+    findings = looked(wire, Line(baud, is_radio, 4711), expected)
     if is_radio:
         assert {speed for speed, _ in wire.sent} == {baud}
         assert wire.restarts == 0
@@ -108,12 +122,18 @@ def test_what_a_robot_tells(values: dict[str, int], cause: str) -> None:
         ({"state": state("FAULTED")}, "stopped"),
         ({"saved": SAVED_BY_NAME["SAVING"]}, "not_saved_yet"),
         ({"saved": SAVED_BY_NAME["OTHER_VERSION"]}, "other_program"),
+        ({"features": OWNERS | OWNED}, "of_another_owner"),
     ],
 )
 def test_what_is_good_to_know_is_nothing_wrong(values: dict[str, int], cause: str) -> None:
     findings = found(Firmware(**values), kit=KIT)
     assert [(each.cause, each.is_sure) for each in findings] == [(cause, True), ("fine", True)]
     assert not any(each.is_wrong for each in findings)
+
+
+def test_a_robot_whose_key_this_computer_has_is_fine() -> None:
+    for features, key in ((OWNERS, 5), (OWNERS | OWNED, 0x12347F3A), (OWNERS | OWNED | YOURS, 5)):
+        assert only(Firmware(features=features), kit=KIT, its_key=key) == ("fine", True)
 
 
 def test_a_kit_that_nobody_knows() -> None:

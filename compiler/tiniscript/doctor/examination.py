@@ -15,12 +15,14 @@ from tiniscript.link.messages import (
     LINK_FAULTS,
     MAJOR,
     MINOR,
+    OWNED,
     RESETS,
     SAVED_LOW_SUPPLY,
     SAVED_OTHER_VERSION,
     SAVED_SAVING,
     STATE_RUNNING,
     STATUSES,
+    YOURS,
 )
 from tiniscript.link.payloads import HelloReply, SentReply, StatusReply
 from tiniscript.link.requests import Reply
@@ -36,11 +38,15 @@ _WATCHDOG = "WATCHDOG"
 
 
 class Expected(NamedTuple):
-    """The kit that the robot should have, None for any; `names` says whose a kit is, or nothing."""
+    """The kit that the robot should have, None for any; `names` says whose a kit is, or nothing.
+
+    `has_key` says whether this computer has a key of the robot with this id.
+    """
 
     kit: int | None
     name: str
     names: Callable[[int], str | None]
+    has_key: Callable[[int], bool] = lambda robot: False
 
 
 class Restart(NamedTuple):
@@ -61,7 +67,7 @@ def examined(
     hello = values_of(first)
     if hello is None:
         return [_other_link(first)]
-    findings = [*_versions(hello), *_kit(hello, expected)]
+    findings = [*_versions(hello), *_kit(hello, expected), *_owner(hello, expected)]
     before = robot.status()
     restarts: list[Restart] = []
     if before is not None:
@@ -119,6 +125,12 @@ def _kit(hello: HelloReply, expected: Expected) -> list[Finding]:
     if expected.kit is None and found is None:
         return [sure("unknown_kit", kit=kit)]
     return []
+
+
+def _owner(hello: HelloReply, expected: Expected) -> list[Finding]:
+    """Compare who may drive it: what is refused for that looks like a robot that does nothing."""
+    is_others = hello.features & (OWNED | YOURS) == OWNED and not expected.has_key(hello.id)
+    return [sure("of_another_owner")] if is_others else []
 
 
 def _told(status: StatusReply) -> list[Finding]:

@@ -59,6 +59,7 @@ CAUSES: dict[str, str] = {
     "low_supply": WRONG,
     "lossy": WRONG,
     "falls_silent": WRONG,
+    "of_another_owner": NOTE,
     "stopped": NOTE,
     "not_saved_yet": NOTE,
     "other_program": NOTE,

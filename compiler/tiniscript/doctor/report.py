@@ -15,8 +15,9 @@ from tiniscript.link.port_names import is_address
 MARK = "TiniScript doctor report 1"  # the first line: the file is one of ours
 SELFTEST_MARK = "TiniScript selftest report 1"  # that of `tsc selftest`
 HIDDEN = "…"
-# Values of findings that are made by others: a robot's name, what a sketch prints, system messages.
-PRIVATE = ("name", "said", "why", "by")
+# Values of findings that are made by others or tell whose robot it is: its name and number, what a
+# sketch prints, system messages.
+PRIVATE = ("name", "id", "said", "why", "by")
 PROGRAMS = ("ModemManager", "brltty", "avrdude", "arduino", "Arduino IDE", "screen", "minicom",
             "picocom", "putty", "tsc", "python", "python3", "java", "thonny", "code")  # fmt: skip
 

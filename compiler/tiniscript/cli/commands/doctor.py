@@ -71,7 +71,7 @@ def _question(options: Namespace, language: str) -> Question:
         port,
         last,
         baud_of(options, robot, language),
-        Expected(kit, robot.name, _name_of_kit),
+        Expected(kit, robot.name, _name_of_kit, _has_key),
         int.from_bytes(os.urandom(4), "little"),
         watch_s * 1000,
     )
@@ -82,6 +82,12 @@ def _name_of_kit(kit: int) -> str | None:
 
     found = of_kit(kit)
     return robot_of_kit(kit) or (None if found is None else found.name)
+
+
+def _has_key(robot: int) -> bool:
+    from tiniscript.keys import KeyFile
+
+    return any(not key.is_stale for key in KeyFile().of_robot(robot))
 
 
 def _doors(options: Namespace, language: str, doing: _Doing) -> Doors:
