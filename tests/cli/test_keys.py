@@ -159,13 +159,14 @@ def test_a_class_list_goes_out_and_in(
     KeyFile().add([ONE])
     KeyFile().made(7, KEY_OWNER, "not confirmed")
     listed = tmp_path / "class.json"
-    assert "1 keys" in tsc("keys", "--export", str(listed)).out
+    said = tsc("keys", "--export", str(listed)).out
+    assert "class.json: 1." in said and f"tsc keys --import {listed}" in said
     if sys.platform != "win32":
         assert stat.S_IMODE(listed.stat().st_mode) == 0o600
     again = tsc("keys", "--export", str(listed))
-    assert again.code == 2 and "already" in again.err
+    assert again.code == 2 and "is there already. Take another name" in again.err
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "two"))
-    assert "1 keys" in tsc("keys", "--import", str(listed)).out
+    assert "class.json: 1. New here, or changed: 1." in tsc("keys", "--import", str(listed)).out
     assert KeyFile().all() == [ONE]
     listed.write_text("nothing")
     wrong = tsc("keys", "--import", str(listed))

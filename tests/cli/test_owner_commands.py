@@ -56,7 +56,8 @@ def test_who_claims_a_robot_drives_it_and_nobody_else(
     refused = on(pty_robot, "upload", "-e", DRIVES)
     assert refused.code == 3 and "10 s" in refused.err
     assert "dueño" in on(pty_robot, "live", "F(1, 80)", "--lang", "es").err
-    assert on(pty_robot, "claim").code == 3
+    refused = on(pty_robot, "claim")
+    assert refused.code == 3 and "10 s" in refused.err and "2 s" not in refused.err
     assert on(pty_robot, "disown").code == 3
     doctor = on(pty_robot, "doctor")
     assert doctor.code == 0 and "The robot has an owner" in doctor.out

@@ -62,8 +62,8 @@ def check(options: Namespace, language: str) -> None:
     for output in outputs:
         if getattr(options, output.dest) is not None and output.dest in WRITES:
             _refuse_unwritable(output.path, WRITES[output.dest][1], language)
-        if output.dest not in READS:  # else it is changed in place
-            _refuse_foreign(output)
+        if output.dest not in READS and output.dest != "export":  # else it is changed in place,
+            _refuse_foreign(output)  # or whatever is there stays
 
 
 def default_output(program: str) -> str:

@@ -17,7 +17,7 @@ LIMIT_MS = 45_000  # the robot waits 30 s for the button
 def run(options: Namespace, language: str) -> int:
     with connected(options, language) as connection:
         connection.meet()
-        _refuse_old(connection)
+        _refuse_at_once(connection)
         which = KEY_TEACHER if options.teacher else KEY_OWNER
         said = text("claim_hold", language).format(
             robot=connection.name, port=shown(connection.port)
@@ -46,6 +46,14 @@ def _claim(connection: Connection, which: int) -> None:
     print(text(key, connection.language).format(robot=connection.name))
 
 
-def _refuse_old(connection: Connection) -> None:
-    if not connection.device_info.values.features & OWNERS:
+def _refuse_at_once(connection: Connection) -> None:
+    """Say what no button changes. Raises CommandError."""
+    from tiniscript.keys import KeyFile
+    from tiniscript.link.authority import NOT_OWNER, OF_ANOTHER, whose
+    from tiniscript.link.requests import Reply
+
+    device_info = connection.device_info
+    if not device_info.values.features & OWNERS:
         raise CommandError(3, "no_owners", robot=connection.name)
+    if whose(device_info) == OF_ANOTHER and not KeyFile().of_robot(device_info.id):
+        raise connection.failure(Reply(NOT_OWNER))
