@@ -23,7 +23,12 @@ from tiniscript.robots.profile import Robot
 __all__ = ("EMPTY", "Esp32Robot", "Kept", "flags_of", "missing")
 
 STAND_INS = SOURCES / "extras" / "esp32"
-SIMULATED = ("main.cpp", "simulated_chip.cpp")  # of extras: the others are programs of their own
+SIMULATED = (
+    "main.cpp",
+    "simulated_chip.cpp",
+    "simulated_radio.cpp",
+    "tasks_in_turn.cpp",
+)  # of extras: the others are programs of their own
 POWER_ON, EXTERNAL, TASK_WATCHDOG, BROWN_OUT = 1, 2, 6, 9  # esp_reset_reason_t
 US_PER_CM = 58.309  # of an echo
 
@@ -89,6 +94,10 @@ class Esp32Robot(HostFirmware):
     def stick_ledc(self) -> None:
         """Let LEDC go on with what it does, whatever is asked of it."""
         self.ask(b"L", b"")
+
+    def radio(self, what: str, data: bytes = b"") -> bytes:
+        """Let something happen on the other side of a radio: `answer_radio` of `main.cpp`."""
+        return self.ask(b"R", what.encode() + data)
 
     def fill_nvs(self, is_full: bool = True) -> None:
         self.ask(b"F", pack("<B", is_full))

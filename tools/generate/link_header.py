@@ -64,6 +64,10 @@ def header(command: str) -> str:
             ("kLongMs", messages.LONG_MS),
             ("kClaimMs", messages.CLAIM_MS),
             ("kForgetMs", messages.FORGET_MS),
+            ("kNetworkBytes", messages.NETWORK_BYTES),
+            ("kWifiTextBytes", messages.WIFI_TEXT_BYTES),
+            ("kPasswordBytes", messages.PASSWORD_BYTES),
+            ("kLeastPassword", messages.LEAST_PASSWORD),
         ),
         "// How a program starts, in one byte.\n"
         + constants(*((f"k{camel(name)}", bits) for bits, name, _ in messages.MODES)),
@@ -74,9 +78,13 @@ def header(command: str) -> str:
         enumeration("Message", named),
         "// Requests are the numbers from 1 up to this one; from kFirstActing on they act.\n"
         + constants(
-            ("kLastRequest", _requests()[-1].number),
             ("kFirstActing", messages.FIRST_ACTING),
-        ),
+        )
+        + "#ifdef ARDUINO_ARCH_ESP32\n"
+        + constants(("kLastRequest", _requests()[-1].number)).rstrip("\n")
+        + "\n#else  // it has no radio of its own\n"
+        + constants(("kLastRequest", messages.LAST_WITHOUT_RADIO)).rstrip("\n")
+        + "\n#endif\n",
         "// How long the payload of each request may be, from the first one on: least and most.\n"
         "extern const uint8_t kRequestBytes[][2] tini_progmem;\n",
         "// Where each field of a request begins.\n" + constants(*_places()),
@@ -91,6 +99,9 @@ def header(command: str) -> str:
                 ("Reset", messages.RESETS),
                 ("TextLevel", messages.TEXT_LEVELS),
                 ("Key", messages.KEYS),
+                ("WifiStep", messages.WIFI_STEPS),
+                ("WifiMode", messages.WIFI_MODES),
+                ("WifiState", messages.WIFI_STATES),
             )
         ),
         "// Faults that no instruction makes. The others are `Fault`.\n"
@@ -102,14 +113,27 @@ def header(command: str) -> str:
 
 def tables(command: str) -> str:
     """Return `messages.cpp`: the table that the header declares."""
-    rows = [("{{{}, {}}}".format(*messages.sizes(each.request)), each.name) for each in _requests()]
+    rows = [
+        ("{{{}, {}}}".format(*messages.sizes(each.request)), each.name)
+        for each in _requests()
+        if each.number <= messages.LAST_WITHOUT_RADIO
+    ]
+    of_radio = [
+        "    {{{}, {}}},  // {}".format(*messages.sizes(each.request), each.name)
+        for each in _requests()
+        if each.number > messages.LAST_WITHOUT_RADIO
+    ]
+    table = array("kRequestBytes[][2]", rows)
+    assert table.endswith("\n};\n"), table
+    guarded = ["#ifdef ARDUINO_ARCH_ESP32", *of_radio, "#endif", "};", ""]
+    table = table.removesuffix("};\n") + "\n".join(guarded)
     return "\n".join(
         (
             _first_line(command),
             '#include "messages.h"\n',
             "// clang-format off\n",
             "namespace tiniscript {\n",
-            array("kRequestBytes[][2]", rows),
+            table,
             "}  // namespace tiniscript\n",
         )
     )

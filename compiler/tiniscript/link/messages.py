@@ -83,6 +83,30 @@ KEYS = (
     ),
 )
 
+# A network of WiFi comes in several frames: its name, its password, and what to do with both.
+NETWORK_BYTES, PASSWORD_BYTES = 32, 63
+LEAST_PASSWORD = 8  # characters, of WPA2
+WIFI_TEXT_BYTES = 32  # of a name or of a part of a password
+WIFI_STEPS = (
+    ("TELL", "Changes nothing."),
+    ("NETWORK", "The name of a network: what came before it is forgotten."),
+    ("PASSWORD", "The next part of its password."),
+    ("JOIN", "The robot joins that network, now and after each reset."),
+    ("HOST", "The robot is an access point of that name."),
+    ("FORGET", "The robot has no WiFi any more."),
+)
+WIFI_MODES = (
+    ("OFF", "No network is set."),
+    ("STATION", "The robot joins a network."),
+    ("ACCESS_POINT", "The robot is one."),
+)
+WIFI_STATES = (
+    ("OFF", "The robot has no WiFi, or has not begun with it."),
+    ("SEARCHING", "It does not hear the network, or waits for an answer."),
+    ("REFUSED", "The network has refused it: the password may be another one."),
+    ("READY", "It has an address."),
+)
+
 # The trim of the motors: their wiring, how much one is weakened, and the least power that moves.
 EXCHANGED, LEFT_REVERSED, RIGHT_REVERSED = 0x01, 0x02, 0x04
 MOST_BALANCE, MOST_LEAST = 40, 40  # percent
@@ -180,6 +204,8 @@ MESSAGES = (
     _message(19, "UNDO", True, "", _RECEIPT,
              "The robot holds the program before again. What runs ends; nothing starts."),
     _message(20, "TEXT", True, "is_allowed:u8", "features:u16", "Lets lines of text drive a robot with an owner, or not, until power-off."),
+    _message(21, "WIFI", True, f"step:u8 text:rest=0..{WIFI_TEXT_BYTES}", f"mode:u8 state:u8 address:u32 network:rest=0..{NETWORK_BYTES}",
+             "Sets, forgets or tells the robot's WiFi: `step` of WIFI_STEPS. Sealed alone. OK as for NAME."),
     # events: a robot sends these without being asked
     _message(32, "SHOW", False, "", "value:i32 is_yes_no:u8", "A value that a program shows."),
     _message(33, "FAULT", False, "", "run:u8 fault:u8 at:u16 program:u32",
@@ -188,6 +214,7 @@ MESSAGES = (
     _message(35, "DONE", False, "", "run:u8", "The program has ended."),
 )
 FIRST_ACTING = 6
+LAST_WITHOUT_RADIO = 20  # requests after this one are known to robots with WiFi alone
 FIRST_EVENT = 32
 # Replies with the same fields share a type: its name, and its fields.
 SHARED_REPLIES = {
@@ -224,6 +251,8 @@ STATUSES = {
     "HOLD_BUTTON": 87,
     "HELD_BACK": 88,
     "NO_PREVIOUS": 90,
+    "OTHER_DRIVER": 91,
+    "UNOWNED": 92,
 }
 # The meaning of the number after a status other than OK. Statuses not listed here have 0.
 DETAILS = {

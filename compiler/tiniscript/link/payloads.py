@@ -103,6 +103,15 @@ class TextReply(NamedTuple):
     features: int
 
 
+class WifiReply(NamedTuple):
+    """What is in the reply to WIFI."""
+
+    mode: int
+    state: int
+    address: int
+    network: bytes
+
+
 class ShowEvent(NamedTuple):
     """A value that a program shows."""
 
@@ -146,6 +155,7 @@ SentReply = (
     | TrimReply
     | AuthenticateReply
     | TextReply
+    | WifiReply
 )
 REPLIES: dict[str, type[SentReply]] = {
     "HELLO": HelloReply,
@@ -168,6 +178,7 @@ REPLIES: dict[str, type[SentReply]] = {
     "IDENTIFY": EmptyReply,
     "UNDO": ReceiptReply,
     "TEXT": TextReply,
+    "WIFI": WifiReply,
 }
 
 

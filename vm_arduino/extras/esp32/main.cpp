@@ -9,6 +9,7 @@
 #include "../../src/boards/kit.h"
 #include "../host/wire.h"
 #include "simulated_chip.h"
+#include "simulated_radio.h"
 
 using namespace tiniscript;
 
@@ -173,6 +174,52 @@ void answer_echo(RequestReader* request) {
   chip.echo_us = request->u32();
 }
 
+// R: what happens on the other side of the radios.
+void answer_radio(RequestReader* request, Writer* answer) {
+  switch (request->u8()) {
+    case 'c':
+      return low_energy_connect();
+    case 'd':
+      return low_energy_disconnect();
+    case 'm':
+      return low_energy_agree(request->u16());
+    case 's':
+      return low_energy_subscribe(request->u8() != 0);
+    case 'w':
+      return low_energy_write(request->text());
+    case 'n': {
+      const std::vector<std::string> found = low_energy_notified();
+      answer->u32(static_cast<uint32_t>(found.size()));
+      for (const std::string& each : found) answer->text(each);
+      return;
+    }
+    case 'C':
+      return serial_port_connect(request->u8() != 0);
+    case 'W':
+      return serial_port_write(request->text());
+    case 'S':
+      return answer->text(serial_port_said());
+    case 'R': {
+      const std::string name = request->text();
+      return network_in_reach(name, request->text());
+    }
+    case 'P':
+      return answer->u16(network_port());
+    case 'I': {
+      const RadioSettings found = radio_settings();
+      for (const std::string& each : {found.advertised, found.serial_port, found.host,
+                                      found.instance, found.service, found.network,
+                                      found.password}) {
+        answer->text(each);
+      }
+      answer->u8(found.is_access_point);
+      return answer->u32(found.joins);
+    }
+    default:
+      abort();
+  }
+}
+
 // O: what a pin has, 0 to 255. F: whether NVS is full. L: LEDC does nothing any more.
 void answer_output(RequestReader* request, Writer* answer) { answer->u8(output_of(request->u8())); }
 
@@ -208,6 +255,9 @@ int main() {
       case 'O':
         answer_output(&request, &said);
         break;
+      case 'R':
+        answer_radio(&request, &said);
+        break;
       case 'L':
         chip.is_ledc_stuck = true;
         break;
@@ -219,5 +269,6 @@ int main() {
     }
     send_answer(said);
   }
-  return 0;
+  fflush(nullptr);
+  _Exit(0);  // tasks go on until then
 }

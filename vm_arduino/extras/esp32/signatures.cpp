@@ -4,15 +4,26 @@
 // are: `pio run` with `build_src_filter = +<../extras/esp32/signatures.cpp>`.
 
 #include <Arduino.h>
+#include <BLE2902.h>
+#include <BLEDevice.h>
+#include <BLEServer.h>
+#include <ESPmDNS.h>
+#include <WiFi.h>
 #include <driver/gpio.h>
 #include <esp_rom_gpio.h>
 #include <esp_system.h>
 #include <esp_task_wdt.h>
 #include <esp_timer.h>
+#include <freertos/task.h>
+#include <lwip/sockets.h>
 #include <nvs.h>
 #include <soc/gpio_sig_map.h>
 
 #include <type_traits>
+#include <utility>
+#ifdef CONFIG_BT_SPP_ENABLED
+#include <BluetoothSerial.h>
+#endif
 
 #define is_a(what, ...) static_assert(std::is_same<decltype(what), __VA_ARGS__>::value, #what)
 
@@ -71,3 +82,55 @@ is_a(&nvs_commit, esp_err_t (*)(nvs_handle_t));
 is_a(&nvs_open, esp_err_t (*)(const char*, nvs_open_mode_t, nvs_handle_t*));
 
 static_assert(SIG_GPIO_OUT_IDX == 256 || SIG_GPIO_OUT_IDX == 128, "an ESP32, or an ESP32-C3");
+
+// libraries/BLE/src of 2.0.17 and 3.0.4, as called
+is_a(&BLECharacteristic::getData, uint8_t* (BLECharacteristic::*)());
+is_a(&BLECharacteristic::getLength, size_t (BLECharacteristic::*)());
+is_a(&BLECharacteristic::notify, void (BLECharacteristic::*)(bool));
+is_a(std::declval<BLECharacteristic&>().setValue(std::declval<uint8_t*>(), size_t{}), void);
+is_a(std::declval<BLEServer&>().createService(""), BLEService*);
+is_a(std::declval<BLEService&>().createCharacteristic("", uint32_t{}), BLECharacteristic*);
+is_a(std::declval<BLE2902&>().getNotifications(), bool);
+is_a(&BLEDevice::createServer, BLEServer* (*)());
+is_a(&BLEDevice::getAdvertising, BLEAdvertising* (*)());
+is_a(&BLEDevice::setMTU, esp_err_t (*)(uint16_t));
+is_a(BLEDevice::init(""), void);
+is_a(&BLEDevice::startAdvertising, void (*)());
+is_a(&BLEServerCallbacks::onMtuChanged,
+     void (BLEServerCallbacks::*)(BLEServer*, esp_ble_gatts_cb_param_t*));
+is_a(esp_ble_gatts_cb_param_t().mtu.mtu, uint16_t);
+
+#ifdef CONFIG_BT_SPP_ENABLED
+// libraries/BluetoothSerial/src
+is_a(std::declval<BluetoothSerial&>().begin(""), bool);
+is_a(&BluetoothSerial::available, int (BluetoothSerial::*)());
+is_a(&BluetoothSerial::hasClient, bool (BluetoothSerial::*)());
+is_a(&BluetoothSerial::read, int (BluetoothSerial::*)());
+is_a(std::declval<BluetoothSerial&>().write(std::declval<const uint8_t*>(), size_t{}), size_t);
+#endif
+
+// libraries/WiFi/src and libraries/ESPmDNS/src, as called
+is_a(WiFi.begin("", ""), wl_status_t);
+is_a(WiFi.disconnect(true), bool);
+is_a(WiFi.localIP(), IPAddress);
+is_a(WiFi.mode(WIFI_STA), bool);
+is_a(WiFi.setHostname(""), bool);
+is_a(WiFi.setSleep(false), bool);
+is_a(WiFi.softAP("", ""), bool);
+is_a(WiFi.softAPdisconnect(true), bool);
+is_a(WiFi.softAPIP(), IPAddress);
+is_a(WiFi.status(), wl_status_t);
+is_a(MDNS.begin(""), bool);
+is_a(MDNS.addService("", "", uint16_t{}), bool);
+
+// components/lwip/lwip/src/include/lwip/sockets.h, and FreeRTOS
+is_a(&lwip_accept, int (*)(int, sockaddr*, socklen_t*));
+is_a(&lwip_bind, int (*)(int, const sockaddr*, socklen_t));
+is_a(&lwip_close, int (*)(int));
+is_a(&lwip_fcntl, int (*)(int, int, int));
+is_a(&lwip_listen, int (*)(int, int));
+is_a(&lwip_recv, ssize_t (*)(int, void*, size_t, int));
+is_a(&lwip_send, ssize_t (*)(int, const void*, size_t, int));
+is_a(&lwip_setsockopt, int (*)(int, int, int, const void*, socklen_t));
+is_a(&lwip_socket, int (*)(int, int, int));
+is_a(xTaskCreatePinnedToCore(nullptr, "", 0, nullptr, 0, nullptr, 0), BaseType_t);

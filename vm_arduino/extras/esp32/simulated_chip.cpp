@@ -10,8 +10,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <mutex>
+
+#include "simulated_tasks.h"
+
 SimulatedChip chip;
 HardwareSerial Serial;
+uint64_t (*next_task_us)();
+void (*run_tasks)();
 
 // Where the linker put them; nothing, if a program has none.
 extern char __start_rtc_noinit[] __attribute__((weak));
@@ -31,6 +37,8 @@ struct Timer {
 
 Timer timer = {nullptr, nullptr, 0, kNever};
 OnReceiveErrorCb on_error;
+std::recursive_mutex critical;
+thread_local uint32_t in_critical;  // how many sections this core is in
 uint8_t analog_bits = 12;
 uint64_t echo_rises_us = kNever;
 uint64_t echo_falls_us = kNever;
@@ -41,7 +49,7 @@ void expect(bool is_so, const char* what) {
   abort();
 }
 
-void expect_free(const char* what) { expect(chip.in_critical == 0, what); }
+void expect_free(const char* what) { expect(in_critical == 0, what); }
 
 // Starts the echo of a trigger pulse that ends.
 void on_write(uint8_t pin, bool was_high, bool is_high) {
@@ -54,6 +62,7 @@ uint64_t next_event() {
   uint64_t next = timer.due_us;
   if (echo_rises_us < next) next = echo_rises_us;
   if (echo_falls_us < next) next = echo_falls_us;
+  if (next_task_us != nullptr && next_task_us() < next) next = next_task_us();
   if (chip.restart_ms != 0) {
     const uint64_t restart_us = chip.fed_us + chip.restart_ms * uint64_t{1000};
     if (restart_us < next) next = restart_us;
@@ -71,6 +80,8 @@ void do_event() {
   } else if (timer.due_us <= chip.now_us) {
     timer.due_us += timer.period_us;
     timer.callback(timer.argument);
+  } else if (next_task_us != nullptr && next_task_us() <= chip.now_us) {
+    run_tasks();
   } else {
     chip.has_restarted = true;
     chip.restart_ms = 0;
@@ -266,11 +277,15 @@ void esp_rom_gpio_connect_out_signal(uint32_t gpio_num, uint32_t signal_idx, boo
   chip.pins[gpio_num].signal = signal_idx;
 }
 
-void simulated_enter_critical(portMUX_TYPE*) { chip.in_critical++; }
+void simulated_enter_critical(portMUX_TYPE*) {
+  critical.lock();
+  in_critical++;
+}
 
 void simulated_exit_critical(portMUX_TYPE*) {
-  expect(chip.in_critical != 0, "the end of no critical section");
-  chip.in_critical--;
+  expect(in_critical != 0, "the end of no critical section");
+  in_critical--;
+  critical.unlock();
 }
 
 esp_reset_reason_t esp_reset_reason(void) { return chip.reset; }

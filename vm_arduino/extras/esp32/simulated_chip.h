@@ -1,13 +1,15 @@
 // An ESP32 on a computer, for tests: what `core/` declares, done by variables.
 //
-// Knows time, pins, the GPIO matrix, LEDC, timers, UART 0, NVS and the watchdog; no instructions
-// and no second core. What may not be called in a critical section ends the program there.
+// Knows time, pins, the GPIO matrix, LEDC, timers, UART 0, NVS and the watchdog; no instructions.
+// `simulated_radio` has the radios. What may not be called in a critical section ends the program
+// there.
 
 #ifndef TINISCRIPT_ESP32_SIMULATED_CHIP_H_
 #define TINISCRIPT_ESP32_SIMULATED_CHIP_H_
 
 #include <Arduino.h>
 
+#include <atomic>
 #include <map>
 #include <string>
 
@@ -31,7 +33,7 @@ struct SimulatedChannel {
 enum class TornEntry : uint8_t { kOld, kNew, kLost };
 
 struct SimulatedChip {
-  uint64_t now_us = 0;
+  std::atomic<uint64_t> now_us{0};
   SimulatedPin pins[40] = {};
   SimulatedChannel channels[16] = {};
   uint16_t analog[40] = {};  // 12 bits
@@ -60,8 +62,6 @@ struct SimulatedChip {
   uint8_t echo_pin = 0xff;
   uint8_t trigger_pin = 0xff;
   uint32_t echo_us = 0;  // 0: there is nothing to hear
-
-  uint32_t in_critical = 0;
 };
 
 extern SimulatedChip chip;

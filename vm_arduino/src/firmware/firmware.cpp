@@ -12,14 +12,16 @@ namespace tiniscript {
 
 RobotStatus robot_status;
 uint32_t now_ms;
-Link link;
+RobotLink link;
 Store store;
 
+#ifndef tiniscript_transports
 namespace {
 
 Receiver receiver;
 
 }  // namespace
+#endif
 
 void show_light() { board_light(!is_running() && holds_program()); }
 
@@ -27,7 +29,11 @@ void firmware_begin(const Board& what) {
   robot_status.slot = kNoSlot;
   begin_identity(what);
   store.boot();
+#ifdef tiniscript_transports
+  link.begin(static_cast<uint8_t>(what.seed & 0xff));
+#else
   link.begin(&receiver, static_cast<uint8_t>(what.seed & 0xff));
+#endif
 }
 
 void firmware_on_time(uint32_t time_ms) {
@@ -51,6 +57,20 @@ void firmware_tick(uint32_t time_ms) {
   firmware_turn();
 }
 
+#ifdef tiniscript_transports
+
+void firmware_on_rx_byte(Transport transport, uint8_t byte, uint16_t time_ms) {
+  if (link.receiver(transport).put(byte, time_ms)) board_stop();
+}
+
+bool firmware_next_tx_byte(Transport transport, uint8_t* byte) {
+  return link.next_tx_byte(transport, byte);
+}
+
+Answer port_may_drive(uint8_t type) { return link.may_drive(type); }
+
+#else
+
 void firmware_on_rx_byte(uint8_t byte, uint16_t time_ms) {
   // Nothing is kept beside the call, so that no register must be saved before it.
   if (near(&receiver)->stops(byte, time_ms)) {
@@ -63,5 +83,7 @@ void firmware_on_rx_byte(uint8_t byte, uint16_t time_ms) {
 bool firmware_has_tx_byte() { return link.has_tx_byte(); }
 
 bool firmware_next_tx_byte(uint8_t* byte) { return link.next_tx_byte(byte); }
+
+#endif
 
 }  // namespace tiniscript

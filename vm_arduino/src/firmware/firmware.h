@@ -9,6 +9,7 @@
 
 #include <stdint.h>
 
+#include "../link/has_transports.h"
 #include "board.h"
 
 namespace tiniscript {
@@ -43,6 +44,24 @@ void firmware_on_disconnect();
 // interrupt, and after a reset before memory is set up.
 bool firmware_runs(Place* place);
 
+#ifdef tiniscript_transports
+// The same for each transport, all called from the main loop.
+void firmware_on_rx_byte(Transport transport, uint8_t byte, uint16_t now_ms);
+bool firmware_next_tx_byte(Transport transport, uint8_t* byte);
+
+// How the robot is called over a radio: by the name that it was given, or else, and as a host in a
+// network, by the end of its id. Both end with a 0.
+struct RadioName {
+  char name[kNameBytes + 1];
+  char host[sizeof "tini-0000"];
+};
+
+// False: the robot does not know yet.
+bool firmware_radio_name(RadioName* name);
+
+// Nobody is connected over a transport any more: ends a tethered run that it has started.
+void firmware_on_part(Transport transport);
+#else
 // A byte has arrived; one with a framing error is 0. May be called from the interrupt: a run of
 // zeros turns the motors off at once.
 void firmware_on_rx_byte(uint8_t byte, uint16_t now_ms);
@@ -51,6 +70,7 @@ void firmware_on_rx_byte(uint8_t byte, uint16_t now_ms);
 // interrupt.
 bool firmware_has_tx_byte();
 bool firmware_next_tx_byte(uint8_t* byte);
+#endif
 
 }  // namespace tiniscript
 

@@ -3,6 +3,8 @@
 #include "../link/frames.h"
 #include "../link/text_level.h"
 #include "../store/layout.h"
+#include "firmware.h"
+#include "keeping.h"
 #include "state.h"
 #include "trim.h"
 
@@ -62,6 +64,27 @@ bool change_trim(const Trim& found) {
   return change(reinterpret_cast<uint8_t*>(&trim), reinterpret_cast<const uint8_t*>(&found),
                 sizeof trim);
 }
+
+#ifdef tiniscript_transports
+bool firmware_radio_name(RadioName* name) {
+  if (!has_booted()) return false;
+  static const char kStart[] = "tini-";
+  static const char kDigits[] = "0123456789abcdef";
+  *name = RadioName();
+  uint8_t at = 0;
+  for (; kStart[at] != 0; at++) name->host[at] = kStart[at];
+  for (uint8_t shift = 16; shift > 0; at++) {
+    shift = static_cast<uint8_t>(shift - 4);
+    name->host[at] = kDigits[identity.id >> shift & 0xf];
+  }
+  if (device_info.name_length == 0) {
+    copy_bytes(name->host, reinterpret_cast<uint8_t*>(name->name), sizeof name->host);
+  } else {
+    copy_bytes(device_info.name, reinterpret_cast<uint8_t*>(name->name), device_info.name_length);
+  }
+  return true;
+}
+#endif
 
 Identity& port_identity() { return identity; }
 

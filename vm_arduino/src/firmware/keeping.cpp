@@ -191,6 +191,9 @@ Answer port_keep_key(uint8_t which, const uint8_t* key) {
   copy_bytes(key, record + kKeysAt + which * kKeyRoom, kKeyRoom);
   const bool was_worn = is_worn;
   keep_keys();
+#ifdef tiniscript_transports
+  link.lapse_others();
+#endif
   return was_worn ? Answer::kNotKept : Answer::kSaving;
 }
 

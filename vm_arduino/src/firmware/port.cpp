@@ -33,6 +33,9 @@ bool port_may_make_way(bool is_live) {
 }
 
 bool port_may_prepare() {
+#ifdef tiniscript_transports
+  if (!link.is_driving()) return false;
+#endif
   const bool is_text = kTextIsInProgram && is_image_running(program) && !is_in_memory();
   return has_booted() && !is_image_running(live) && !is_text && load_program();
 }
@@ -65,6 +68,9 @@ void port_start(bool is_live) {
 
 uint8_t* port_text_memory(uint16_t* room, bool* has_room) {
 #ifdef tiniscript_has_draft
+#ifdef tiniscript_transports
+  if (!link.take_text_memory()) return nullptr;
+#endif
   *has_room = true;
   *room = kTextRoom;
   return draft;
@@ -122,6 +128,15 @@ Answer port_image_byte(uint16_t offset, uint8_t* byte) {
       is_in_memory() || (has_booted() && store.fetch(Area::kProgram, offset, byte));
   return is_there ? Answer::kOk : not_now();
 }
+
+#ifdef tiniscript_transports
+WifiReport port_wifi_report() { return board_wifi(); }
+
+Answer port_set_wifi(WifiStep step, const uint8_t* text, uint8_t length) {
+  if (step >= WifiStep::kJoin && is_driving()) return Answer::kSaving;
+  return board_set_wifi(step, text, length);
+}
+#endif
 
 Answer port_rename(const uint8_t* name, uint8_t length) {
   if (!has_booted()) return not_now();

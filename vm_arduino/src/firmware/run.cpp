@@ -156,6 +156,14 @@ void firmware_on_disconnect() {
   link.stopped(Cause::kCable);
 }
 
+#ifdef tiniscript_transports
+void firmware_on_part(Transport transport) {
+  if (!link.part(transport) || !is_running()) return;
+  end_run(State::kStopped);
+  link.stopped(Cause::kCable);
+}
+#endif
+
 // The image may not contain its checksum yet.
 bool firmware_runs(Place* place) {
   if (!is_running()) return false;

@@ -6,14 +6,21 @@
 #include <stdint.h>
 
 #include "../link/link.h"
+#include "../link/links.h"
 #include "../store/store.h"
 #include "board.h"
 
 namespace tiniscript {
 
+#ifdef tiniscript_transports
+typedef Links RobotLink;
+#else
+typedef Link RobotLink;
+#endif
+
 extern RobotStatus robot_status;  // what the robot does and holds, and its last fault
 extern uint32_t now_ms;           // of this tick
-extern Link link;
+extern RobotLink link;
 extern Store store;
 
 inline bool is_running() { return robot_status.state == State::kRunning; }

@@ -190,6 +190,8 @@ tini_noinline void Link::handle(uint8_t end) {
     refusal = Answer::kStale;
   } else if (is_forbidden(type)) {
     refusal = Answer::kNotOwner;
+  } else {
+    refusal = port_may_drive(type);
   }
   said_.status = number_of(refusal);
   if (refusal == Answer::kOk) {
@@ -207,6 +209,10 @@ uint8_t Link::answer(Message message, const uint8_t* payload, uint8_t length) {
   switch (message) {
     case Message::kHello:
       return hello(payload);
+    case Message::kWifi:
+#ifdef tiniscript_transports
+      return set_wifi(payload, length);
+#endif
     case Message::kPing:
     case Message::kStatus:
     case Message::kShow:

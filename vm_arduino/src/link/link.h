@@ -12,6 +12,7 @@
 #include "console.h"
 #include "frames.h"
 #include "has_seals.h"
+#include "has_transports.h"
 #include "messages.h"
 #include "receiver.h"
 #include "seal.h"
@@ -74,6 +75,49 @@ class Link {
 
   // The button confirms a claim, if the session has asked for one. Returns whether it has.
   bool confirm_claim();
+
+#ifdef tiniscript_transports
+  // For `Links`: one of several links.
+
+  // Has this link make other challenges than those that begin with another number.
+  void begin_challenges(uint8_t number) { challenge_[0] = number; }
+
+  // Whether a client is heard, and whether anybody takes what a program shows.
+  bool is_heard() const { return left_ms_[kListen] > kListenMs - kAuthorityMs; }
+  bool takes_values() const { return is_listened_to() || talks(); }
+
+  bool has_asked_for_claim() const { return (rights_ & kIsAsked) != 0; }
+
+  // Whether only the teacher releases the robot.
+  bool is_held_back() const { return (rights_ & kHeldBack) != 0; }
+  void hold_back(bool is_held) {
+    rights_ = static_cast<uint8_t>(is_held ? rights_ | kHeldBack : rights_ & ~kHeldBack);
+  }
+
+  Cause cause() const { return cause_; }
+
+  // Whether the last request was done.
+  bool has_done() const { return said_.status == static_cast<uint8_t>(Answer::kOk); }
+
+  // Another session drives: what this one has begun is over.
+  void give_way() {
+    image_ = nullptr;
+    is_tethered_ = is_ready_ = false;
+    console_.drop();
+  }
+
+  // Nobody is connected any more: whoever comes next begins a session.
+  void forget_client() {
+    is_open_ = false;
+    due_ = 0;
+    left_ = 0;
+    left_ms_[kListen] = 0;
+    console_.hang_up();
+  }
+
+  bool has_open_text() const { return console_.is_open(); }
+  void drop_text() { console_.drop(); }
+#endif
 
  private:
   // What is due to be sent, one bit each: the lowest one first.
@@ -143,6 +187,12 @@ class Link {
   uint8_t authenticate(const uint8_t* payload, uint8_t length);
   Answer allow_text(const uint8_t* payload);
   Answer clear();
+
+#ifdef tiniscript_transports
+  // `link_wifi.cpp`
+  uint8_t set_wifi(const uint8_t* payload, uint8_t length);
+  void tell_wifi();
+#endif
 
   // seals: `link_seals.cpp`
 #ifdef tiniscript_seals

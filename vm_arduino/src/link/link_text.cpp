@@ -23,6 +23,7 @@ tini_noinline void Link::talk() {
 // Starts the program that was read. Returns what to say.
 Remark Link::start_text(const Console& console) {
   if (!text_may_drive()) return Remark::kNotOwner;
+  if (port_may_drive(0) != Answer::kOk) return Remark::kRefused;
   const Reader* const reader = near(&console.reader());
   const uint8_t start = reader->start();
   if (start == 0 && port_status().state >= State::kStopped) {

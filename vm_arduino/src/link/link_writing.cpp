@@ -134,6 +134,11 @@ void Link::reply() {
       if (said_.number == byte_of(Message::kAuthenticate) && (rights_ & kHasChallenge) != 0)
         put_all(challenge_, kChallengeBytes);
       break;
+    case Message::kWifi:
+#ifdef tiniscript_transports
+      tell_wifi();
+      break;
+#endif
     case Message::kStop:
     case Message::kClear:
     case Message::kAbort:

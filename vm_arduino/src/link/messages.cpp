@@ -27,6 +27,9 @@ const uint8_t kRequestBytes[][2] tini_progmem = {
     {0, 0},  // IDENTIFY
     {0, 0},  // UNDO
     {1, 1},  // TEXT
+#ifdef ARDUINO_ARCH_ESP32
+    {1, 33},  // WIFI
+#endif
 };
 
 }  // namespace tiniscript

@@ -41,6 +41,10 @@ constexpr uint16_t kKeyPauseMs = 30000;
 constexpr uint16_t kLongMs = 1000;
 constexpr uint16_t kClaimMs = 2000;
 constexpr uint16_t kForgetMs = 10000;
+constexpr uint8_t kNetworkBytes = 32;
+constexpr uint8_t kWifiTextBytes = 32;
+constexpr uint8_t kPasswordBytes = 63;
+constexpr uint8_t kLeastPassword = 8;
 
 // How a program starts, in one byte.
 constexpr uint8_t kStartBits = 3;
@@ -83,6 +87,7 @@ enum class Message : uint8_t {
   kIdentify = 18,  // The robot blinks and plays the tune of its id.
   kUndo = 19,  // The robot holds the program before again. What runs ends; nothing starts.
   kText = 20,  // Lets lines of text drive a robot with an owner, or not, until power-off.
+  kWifi = 21,  // Sets, forgets or tells the robot's WiFi: `step` of WIFI_STEPS. Sealed alone. OK as for NAME.
   kShow = 32,  // A value that a program shows.
   kFault = 33,  // The program has ended with a fault.
   kStopped = 34,  // The robot was stopped: its epoch is another one. Or again: it still is.
@@ -90,8 +95,12 @@ enum class Message : uint8_t {
 };
 
 // Requests are the numbers from 1 up to this one; from kFirstActing on they act.
-constexpr uint8_t kLastRequest = 20;
 constexpr uint8_t kFirstActing = 6;
+#ifdef ARDUINO_ARCH_ESP32
+constexpr uint8_t kLastRequest = 21;
+#else  // it has no radio of its own
+constexpr uint8_t kLastRequest = 20;
+#endif
 
 // How long the payload of each request may be, from the first one on: least and most.
 extern const uint8_t kRequestBytes[][2] tini_progmem;
@@ -126,6 +135,8 @@ constexpr uint8_t kClaimKeyAt = 1;
 constexpr uint8_t kAuthenticateWhichAt = 0;
 constexpr uint8_t kAuthenticateTagAt = 1;
 constexpr uint8_t kTextIsAllowedAt = 0;
+constexpr uint8_t kWifiStepAt = 0;
+constexpr uint8_t kWifiTextAt = 1;
 
 // What begins a reply. Below 64: an image's Refusal, or the verifier's Rule.
 enum class Answer : uint8_t {
@@ -153,6 +164,8 @@ enum class Answer : uint8_t {
   kHoldButton = 87,  // The robot waits for its button.
   kHeldBack = 88,  // The teacher has stopped the robot.
   kNoPrevious = 90,  // The robot has no program from before that it can run.
+  kOtherDriver = 91,  // Somebody else drives the robot, over another connection.
+  kUnowned = 92,  // The robot has no owner, and over WiFi only one with an owner drives.
 };
 
 enum class State : uint8_t {
@@ -198,6 +211,28 @@ enum class TextLevel : uint8_t {
 enum class Key : uint8_t {
   kOwner = 0,  // Who has claimed the robot. Where there is one, nobody drives the robot without a key.
   kTeacher = 1,  // May do what the owner may. A stop with it is released by it or by the button alone.
+};
+
+enum class WifiStep : uint8_t {
+  kTell = 0,  // Changes nothing.
+  kNetwork = 1,  // The name of a network: what came before it is forgotten.
+  kPassword = 2,  // The next part of its password.
+  kJoin = 3,  // The robot joins that network, now and after each reset.
+  kHost = 4,  // The robot is an access point of that name.
+  kForget = 5,  // The robot has no WiFi any more.
+};
+
+enum class WifiMode : uint8_t {
+  kOff = 0,  // No network is set.
+  kStation = 1,  // The robot joins a network.
+  kAccessPoint = 2,  // The robot is one.
+};
+
+enum class WifiState : uint8_t {
+  kOff = 0,  // The robot has no WiFi, or has not begun with it.
+  kSearching = 1,  // It does not hear the network, or waits for an answer.
+  kRefused = 2,  // The network has refused it: the password may be another one.
+  kReady = 3,  // It has an address.
 };
 
 // Faults that no instruction makes. The others are `Fault`.

@@ -7,6 +7,7 @@
 
 #include <stdint.h>
 
+#include "has_transports.h"
 #include "messages.h"
 
 namespace tiniscript {
@@ -148,6 +149,30 @@ inline bool is_teacher() { return (port_identity().more_features & kMoreByTeache
 inline bool text_may_drive() {
   return (port_identity().features & (kOwned | kTextAllowed)) != kOwned;
 }
+
+// Whether the session whose request of this type is handled, or whose line of text (0), may drive
+// the robot now; otherwise the reason. A robot with one transport has one session.
+#ifdef tiniscript_transports
+Answer port_may_drive(uint8_t type);
+#else
+inline Answer port_may_drive(uint8_t) { return Answer::kOk; }
+#endif
+
+#ifdef tiniscript_transports
+// What the robot says of its WiFi. `address` is as four bytes in their order.
+struct WifiReport {
+  WifiMode mode;
+  WifiState state;
+  uint8_t address[4];
+  uint8_t network_bytes;
+  uint8_t network[kNetworkBytes];
+};
+
+WifiReport port_wifi_report();
+
+// Does a step of setting WiFi. kSaving: it is kept as soon as the motors stand.
+Answer port_set_wifi(WifiStep step, const uint8_t* text, uint8_t length);
+#endif
 
 // Whether a key is one: not zeros alone (`link_owners.cpp`).
 bool is_key(const uint8_t* key);

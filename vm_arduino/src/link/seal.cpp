@@ -69,6 +69,23 @@ uint8_t Seal::close(uint8_t* bytes, uint8_t end) {
   return static_cast<uint8_t>(end + kTagBytes);
 }
 
+#ifdef tiniscript_transports
+// No other text under this key is so short. A counter is never used twice.
+void Seal::cover(const uint8_t* counter, uint8_t* bytes, uint8_t length) const {
+  uint8_t text[sizeof(uint32_t) + 1];
+  uint8_t stream[kHashBytes];
+  copy_bytes(counter, text, sizeof(uint32_t));
+  for (uint8_t k = 0; k < length; k++) {
+    const uint8_t at = k % kHashBytes;
+    if (at == 0) {
+      text[sizeof(uint32_t)] = static_cast<uint8_t>(k / kHashBytes);
+      siphash(key_, text, sizeof text, stream);
+    }
+    bytes[k] ^= stream[at];
+  }
+}
+#endif
+
 #endif
 
 }  // namespace tiniscript

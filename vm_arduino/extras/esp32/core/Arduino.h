@@ -71,6 +71,18 @@ uint32_t ledcWriteTone(uint8_t channel, uint32_t freq);
 void setup();
 void loop();
 
+// cores/esp32/WString.h
+class String {
+ public:
+  String(const char* cstr = "");
+  ~String();
+  String(const String& str);
+  const char* c_str() const;
+
+ private:
+  char* text_;
+};
+
 // cores/esp32/HardwareSerial.h
 #if ESP_ARDUINO_VERSION_MAJOR >= 3
 typedef enum {

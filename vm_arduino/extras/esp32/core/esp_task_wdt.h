@@ -5,8 +5,7 @@
 
 #include "Arduino.h"
 #include "esp_err.h"
-
-typedef void* TaskHandle_t;
+#include "freertos/task.h"
 
 extern "C" {
 #if ESP_ARDUINO_VERSION_MAJOR >= 3

@@ -7,4 +7,8 @@
 #define CONFIG_IDF_TARGET_ESP32 1
 #endif
 
+#ifdef CONFIG_IDF_TARGET_ESP32
+#define CONFIG_BT_SPP_ENABLED 1
+#endif
+
 #endif  // TINISCRIPT_CORE_SDKCONFIG_H_

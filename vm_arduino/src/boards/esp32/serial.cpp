@@ -1,7 +1,7 @@
 // The link over USB: UART 0, behind the USB chip of the board.
 //
 // The driver of the core takes bytes in its interrupt, and the main loop hands them to the firmware
-// in each turn. A break comes as a byte 0.
+// in each turn, with those of the radios. A break comes as a byte 0.
 
 #ifdef ARDUINO_ARCH_ESP32
 
@@ -11,6 +11,7 @@
 #include "../uart.h"
 #include "attention.h"
 #include "clock.h"
+#include "radio.h"
 
 namespace tiniscript {
 
@@ -46,20 +47,25 @@ void uart_begin(uint32_t baud) {
   Serial.begin(baud);
 }
 
-void uart_tick() {}
+void uart_tick() { radio_tick(); }
 
 void pay_attention() {
   for (int left = Serial.available(); left > 0; left--) {
-    firmware_on_rx_byte(static_cast<uint8_t>(Serial.read()), static_cast<uint16_t>(millis()));
+    firmware_on_rx_byte(Transport::kCable, static_cast<uint8_t>(Serial.read()),
+                        static_cast<uint16_t>(millis()));
   }
+  radio_attend();
 }
 
 void uart_send() {
   uint8_t byte = 0;
-  while (Serial.availableForWrite() > 0 && firmware_next_tx_byte(&byte)) Serial.write(byte);
+  while (Serial.availableForWrite() > 0 && firmware_next_tx_byte(Transport::kCable, &byte)) {
+    Serial.write(byte);
+  }
+  radio_send();
 }
 
-LineErrors uart_errors() { return {framing, overrun}; }
+LineErrors uart_errors() { return {framing, static_cast<uint8_t>(overrun + radio_lost())}; }
 
 }  // namespace tiniscript
 

@@ -1,0 +1,302 @@
+"""An ESP32 that is reached over several transports at once: a session each, and one that drives."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from tests.firmware.test_host_firmware import happened, image_of
+from tests.machines.esp32 import Esp32Robot, missing
+from tests.support.esp32_radio import (
+    LEAST_MTU,
+    Bytes,
+    Client,
+    End,
+    LowEnergy,
+    SerialPort,
+    radios,
+    session,
+    talk,
+)
+from tests.support.owners import Keys
+from tiniscript import robots
+from tiniscript.link.connection import PendingRequest
+from tiniscript.link.frames import Frame, encoded
+from tiniscript.link.messages import AUTHORITY_MS, STATUS_NAMES, STOP_BYTES
+from tiniscript.link.session import Session
+
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
+
+AWAY = "SI|F(60, 80)"
+Make = Callable[[Esp32Robot], End]
+RADIOS: list[Make] = [LowEnergy, SerialPort]
+Ends = list[tuple[End | None, Client]]
+
+
+def booted(name: str = "tinibot32", major: int = 2) -> Esp32Robot:
+    robot = Esp32Robot(robots.load(name), major=major)
+    robot.wait(300)
+    return robot
+
+
+def ended(robot: Esp32Robot, ends: Ends, request: PendingRequest[Any], limit_ms: int = 5000) -> str:
+    """Let all talk until a request is over; return how it ended."""
+    for _ in range(limit_ms):
+        if request.outcome is not None:
+            status = request.outcome.status
+            return STATUS_NAMES.get(status, str(status))
+        talk(robot, ends, 1)
+    raise AssertionError("the request is not over")
+
+
+def uploaded(robot: Esp32Robot, ends: Ends, who: Session, text: str = AWAY) -> str:
+    return ended(robot, ends, who.upload(image_of(text), saves=False))
+
+
+@pytest.mark.parametrize("major", [2, 3])
+@pytest.mark.parametrize("make", RADIOS)
+def test_a_program_over_each_radio(make: Make, major: int) -> None:
+    robot = booted(major=major)
+    client = session(1, robot)
+    ends: Ends = [(make(robot), client)]
+    assert uploaded(robot, ends, client, "SI|SHOW(5);F(0.5, 80)") == "OK"
+    talk(robot, ends, 700)
+    assert happened(robot)[:2] == ["MOTORS 80 80", "MOTORS 0 0"]
+    assert [event.name for event in client.events()] == ["SHOW", "DONE"]
+
+
+def test_a_chip_without_a_serial_port_over_bluetooth() -> None:
+    robot = booted("tinibotc3")
+    assert radios(robot).advertised == "tini-5678"
+    assert radios(robot).serial_port == ""
+
+
+def test_the_radios_have_the_robots_name() -> None:
+    robot = booted()
+    assert radios(robot)[:2] == ("tini-5678", "tini-5678")
+    client = session(1, robot)
+    ends: Ends = [(None, client)]
+    assert ended(robot, ends, client.name("Señal".encode())) == "OK"
+    again = Esp32Robot(kept=robot.kept())
+    again.wait(300)
+    assert radios(again)[:2] == ("Señal", "Señal")
+
+
+@pytest.mark.parametrize("make", RADIOS)
+def test_one_drives_and_the_others_look_and_stop(make: Make) -> None:
+    robot = booted()
+    driver, other = session(1, robot), session(2, robot)
+    ends: Ends = [(None, driver), (make(robot), other)]
+    assert uploaded(robot, ends, driver) == "OK"
+    assert ended(robot, ends, other.hello()) == "OK"
+    assert ended(robot, ends, other.ping()) == "OK"
+    assert ended(robot, ends, other.status()) == "OK"
+    assert ended(robot, ends, other.identify()) == "OK"
+    for refused in (other.live(image_of("F(1, 10)").code), other.start(), other.name(b"mine"),
+                    other.upload(image_of(AWAY)), other.undo(), other.trim()):  # fmt: skip
+        assert ended(robot, ends, refused) == "OTHER_DRIVER"
+    assert happened(robot) == ["MOTORS 80 80"]
+    talk(robot, ends, 1500)
+    assert happened(robot) == ["MOTORS 80 80"], "the driver's session lives beside the other one"
+    other.stop(robot.now_ms)
+    talk(robot, ends, 200)
+    assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
+    assert [each.name for each in driver.events()] == ["STOPPED"]
+    assert ended(robot, ends, other.start()) == "OTHER_DRIVER"
+    assert uploaded(robot, ends, driver) == "OK", "who drives goes on after it"
+
+
+@pytest.mark.parametrize("make", RADIOS)
+def test_the_zeros_stop_over_every_transport_at_once(make: Make) -> None:
+    robot = booted()
+    driver = session(1, robot)
+    end = make(robot)
+    ends: Ends = [(None, driver)]
+    assert uploaded(robot, ends, driver) == "OK"
+    end.send(bytes(STOP_BYTES // 2))
+    robot.wait(3)
+    assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
+
+
+def test_the_next_one_drives_when_the_first_is_silent() -> None:
+    robot = booted()
+    first, second = session(1, robot), session(2, robot)
+    ends: Ends = [(None, first), (LowEnergy(robot), second)]
+    assert uploaded(robot, ends, first, "SI|F(0.1, 30)") == "OK"
+    talk(robot, ends, 300)
+    assert uploaded(robot, ends, second) == "OTHER_DRIVER"
+    only: Ends = ends[1:]
+    talk(robot, only, AUTHORITY_MS + 50)
+    assert uploaded(robot, only, second) == "OK"
+    talk(robot, only, 1500)
+    assert happened(robot)[-1] == "MOTORS 80 80", "the tether of the first ends nothing of his"
+    assert uploaded(robot, ends, first) == "OTHER_DRIVER"
+
+
+@pytest.mark.parametrize("make", RADIOS)
+def test_who_leaves_ends_a_tethered_run_and_drives_no_more(make: Make) -> None:
+    robot = booted()
+    driver, other = session(1, robot), session(2, robot)
+    end = make(robot)
+    ends: Ends = [(end, driver), (None, other)]
+    assert uploaded(robot, ends, driver) == "OK"
+    end.leave()
+    talk(robot, ends[1:], 5)
+    assert happened(robot) == ["MOTORS 80 80", "MOTORS 0 0"]
+    assert uploaded(robot, ends[1:], other) == "OK"
+
+
+@pytest.mark.parametrize("make", RADIOS)
+def test_who_leaves_ends_nothing_of_others(make: Make) -> None:
+    robot = booted()
+    driver, other = session(1, robot), session(2, robot)
+    end = make(robot)
+    ends: Ends = [(None, driver), (end, other)]
+    assert ended(robot, ends, other.ping()) == "OK"
+    assert uploaded(robot, ends, driver) == "OK"
+    end.leave()
+    talk(robot, ends[:1], 300)
+    assert happened(robot) == ["MOTORS 80 80"]
+
+
+def test_an_upload_that_another_one_has_overtaken_is_not_begun_any_more() -> None:
+    """Its memory is another program's by then."""
+    robot = booted()
+    ends: Ends = [
+        (None, (first := session(1, robot))),
+        (LowEnergy(robot), (second := session(2, robot))),
+    ]
+    long = image_of("SB|" + ";".join("F(1, 80)" for _ in range(40)))
+    begun = first.upload(long)
+    while not begun.done_bytes:
+        talk(robot, ends, 1)
+    talk(robot, ends[1:], AUTHORITY_MS + 50)  # the first one is out of reach
+    assert uploaded(robot, ends[1:], second, "SB|F(1, 10)") == "OK"
+    talk(robot, ends[1:], 20)
+    talk(robot, [(ends[1][0], Bytes())], AUTHORITY_MS + 50)
+    assert ended(robot, ends[:1], begun, 20_000) in ("OK", "NOT_BEGUN")
+    fetch = first.fetch()
+    assert ended(robot, ends[:1], fetch) == "OK"
+
+
+def test_notifications_are_as_long_as_was_agreed() -> None:
+    robot = booted()
+    for mtu, longest in ((23, 20), (40, 37), (100, 48), (512, 48), (5, 20)):  # HELLO's answer: 48
+        client = session(mtu, robot)
+        end = LowEnergy(robot, mtu)
+        end.mtu = max(mtu, LEAST_MTU)
+        ends: Ends = [(end, client)]
+        assert ended(robot, ends, client.hello()) == "OK"
+        assert max(end.lengths) == longest
+        end.leave()
+        robot.wait(5)
+
+
+def test_slow_notifications_delay_nobody_else() -> None:
+    robot = booted()
+    driver, slow = session(1, robot), session(2, robot)
+    ends: Ends = [(None, driver), (LowEnergy(robot, slow=100), slow)]
+    asked = slow.status()
+    assert uploaded(robot, ends, driver) == "OK"
+    begun_ms = robot.now_ms
+    assert ended(robot, ends, driver.ping()) == "OK"
+    assert robot.now_ms - begun_ms < 30
+    assert ended(robot, ends, asked, 20_000) == "OK"
+    slow.stop(robot.now_ms)
+    talk(robot, ends, 20)
+    assert happened(robot)[-1] == "MOTORS 0 0", "a stop needs no notification"
+
+
+def test_a_client_that_takes_nothing_stops_nobody() -> None:
+    """The ring to it is full: its own replies wait, and the robot goes on."""
+    robot = booted()
+    driver, deaf = session(1, robot), session(2, robot)
+    end = LowEnergy(robot)
+    ends: Ends = [(None, driver), (end, deaf)]
+    assert uploaded(robot, ends, driver) == "OK"
+    robot.radio("s", b"\0")
+    talk(robot, [(None, driver), (end, Bytes(b"\0" + encoded(Frame(3, 1, 0, b"")) * 40))], 3000)
+    assert happened(robot) == ["MOTORS 80 80"]
+    end.send(bytes(STOP_BYTES))
+    talk(robot, ends[:1], 20)
+    assert happened(robot)[-1] == "MOTORS 0 0"
+
+
+def test_whoever_comes_again_begins_anew() -> None:
+    robot = booted()
+    for k in range(5):
+        client = session(k + 1, robot)
+        end = LowEnergy(robot)
+        ends: Ends = [(end, client)]
+        assert uploaded(robot, ends, client, AWAY) == "OK"
+        end.send(b"\5\7\7")  # it leaves in the middle of a frame
+        end.leave()
+        talk(robot, [], 5)
+        assert happened(robot)[-1] == "MOTORS 0 0"
+
+
+def test_text_over_a_radio_and_not_while_another_one_drives() -> None:
+    robot = booted()
+    driver, typed = session(1, robot), Bytes(b"SI|F(0.2, 50)\n")
+    end = SerialPort(robot)
+    talk(robot, [(end, typed)], 400)
+    assert happened(robot)[:2] == ["MOTORS 50 50", "MOTORS 0 0"]
+    assert b"// OK" in typed.heard
+    talk(robot, [], AUTHORITY_MS)
+    ends: Ends = [(None, driver), (end, typed)]
+    assert uploaded(robot, ends, driver) == "OK"
+    typed.said, typed.heard = b"F(0.2, 20)\n", b""
+    talk(robot, ends, 300)
+    assert happened(robot)[-1] == "MOTORS 80 80"
+    assert b"Not possible here" in typed.heard
+    typed.said = b"S\n"
+    talk(robot, ends, 50)
+    assert happened(robot)[-1] == "MOTORS 0 0"
+
+
+def test_two_who_type_at_once_get_a_program_each_or_none() -> None:
+    robot = booted()
+    first, second = Bytes(b"SI|LOOP(2);"), Bytes()
+    ends: Ends = [(None, first), (SerialPort(robot), second)]
+    talk(robot, ends, 50)
+    second.said = b"SI|F(0.1, 33)\n"
+    talk(robot, ends, 50)
+    first.said = b"F(0.1, 44);END_LOOP\n"
+    talk(robot, ends, 300)
+    assert {line for line in happened(robot) if line.startswith("MOTORS")} <= {
+        "MOTORS 33 33", "MOTORS 0 0"}  # fmt: skip
+
+
+def test_the_button_of_two_who_claim_is_nobodys() -> None:
+    robot = booted()
+    first, second = (Session(k, 115200, robot.robot.kit.fingerprint, keys=Keys(k)) for k in (1, 2))
+    ends: Ends = [(None, first), (LowEnergy(robot), second)]
+    claims = [first.claim(0), second.claim(0)]
+    talk(robot, ends, 500)
+    talk(robot, ends, 2300, flags=1)
+    talk(robot, ends, 500, flags=2)
+    assert [each.outcome for each in claims] == [None, None]
+    talk(robot, ends[:1], AUTHORITY_MS + 100)  # the second one has gone
+    talk(robot, ends[:1], 2300, flags=1)
+    talk(robot, ends[:1], 500, flags=2)
+    assert claims[0].outcome and claims[0].outcome.status == 0
+
+
+def test_a_teachers_stop_holds_on_every_transport() -> None:
+    robot = booted()
+    keys = Keys()
+    teacher = Session(1, 115200, robot.robot.kit.fingerprint, keys=keys)
+    pupil = session(2, robot)
+    ends: Ends = [(LowEnergy(robot), teacher), (None, pupil)]
+    claim = teacher.claim(1)
+    talk(robot, ends, 300)
+    talk(robot, ends, 2500, flags=1)
+    talk(robot, ends, 500, flags=2)
+    assert claim.outcome and claim.outcome.status == 0
+    assert ended(robot, ends, teacher.hold_back()) == "OK"
+    talk(robot, ends[1:], AUTHORITY_MS + 100)
+    assert ended(robot, ends[1:], pupil.clear()) == "HELD_BACK"
+    assert uploaded(robot, ends[1:], pupil) == "HELD_BACK"
+    assert ended(robot, ends, teacher.clear()) == "OK"

@@ -1,0 +1,195 @@
+"""The other side of an ESP32's radios: clients of its transports, in the chip's time."""
+
+from __future__ import annotations
+
+import socket
+from collections.abc import Sequence
+from struct import pack
+from typing import NamedTuple, Protocol
+
+from tests.machines.esp32 import Esp32Robot
+from tests.machines.host_firmware import TICKS
+from tiniscript.link.session import Session
+
+LEAST_MTU = 23
+
+
+class Client(Protocol):
+    """Somebody who is connected. `poll` says what to send, `receive` gets what has come."""
+
+    def poll(self, now_ms: int) -> bytes: ...
+
+    def receive(self, data: bytes, now_ms: int) -> None: ...
+
+
+class Bytes:
+    """A client without a session: what it says, and what it has heard."""
+
+    def __init__(self, said: bytes = b"") -> None:
+        self.said = said
+        self.heard = b""
+
+    def poll(self, now_ms: int) -> bytes:
+        said, self.said = self.said, b""
+        return said
+
+    def receive(self, data: bytes, now_ms: int) -> None:
+        self.heard += data
+
+
+class End(Protocol):
+    """A transport as its client sees it."""
+
+    def send(self, data: bytes) -> None: ...
+
+    def taken(self) -> bytes: ...
+
+    def leave(self) -> None: ...
+
+
+class LowEnergy:
+    """A client of the Nordic UART service. `slow`: it takes one notification in so many looks."""
+
+    def __init__(self, robot: Esp32Robot, mtu: int = LEAST_MTU, slow: int = 1) -> None:
+        self.robot, self.mtu, self.slow = robot, mtu, slow
+        self.lengths: list[int] = []
+        self._waiting: list[bytes] = []
+        self._looks = 0
+        robot.radio("c")
+        if mtu != LEAST_MTU:
+            robot.radio("m", pack("<H", mtu))
+        robot.radio("s", b"\1")
+
+    def send(self, data: bytes) -> None:
+        most = self.mtu - 3
+        for k in range(0, len(data), most):
+            self.robot.radio("w", _text(data[k : k + most]))
+
+    def taken(self) -> bytes:
+        answer = self.robot.radio("n")
+        count, answer = int.from_bytes(answer[:4], "little"), answer[4:]
+        for _ in range(count):
+            data, answer = _next(answer)
+            self.lengths.append(len(data))
+            self._waiting.append(data)
+        self._looks += 1
+        if self._looks % self.slow or not self._waiting:
+            return b""
+        return self._waiting.pop(0)
+
+    def leave(self) -> None:
+        self.robot.radio("d")
+
+
+class SerialPort:
+    """A client of Bluetooth with a serial port."""
+
+    def __init__(self, robot: Esp32Robot) -> None:
+        self.robot = robot
+        robot.radio("C", b"\1")
+
+    def send(self, data: bytes) -> None:
+        if data:
+            self.robot.radio("W", _text(data))
+
+    def taken(self) -> bytes:
+        return _next(self.robot.radio("S"))[0]
+
+    def leave(self) -> None:
+        self.robot.radio("C", b"\0")
+
+
+class Network:
+    """A client over TCP, on 127.0.0.1."""
+
+    def __init__(self, robot: Esp32Robot) -> None:
+        self.robot = robot
+        self.has_ended = False
+        port = port_of(robot)
+        assert port
+        self.socket = socket.create_connection(("127.0.0.1", port))
+        self.socket.setblocking(False)
+
+    def send(self, data: bytes) -> None:
+        try:
+            self.socket.sendall(data)
+        except OSError:
+            self.has_ended = True
+
+    def taken(self) -> bytes:
+        try:
+            data = self.socket.recv(65536)
+        except BlockingIOError:
+            return b""
+        except OSError:
+            data = b""
+        self.has_ended = self.has_ended or not data
+        return data
+
+    def leave(self) -> None:
+        self.socket.close()
+
+
+class Radios(NamedTuple):
+    """What the firmware has asked of the radios."""
+
+    advertised: str
+    serial_port: str
+    host: str
+    instance: str
+    service: str
+    network: str
+    password: str
+    is_access_point: bool
+    joins: int
+
+
+def radios(robot: Esp32Robot) -> Radios:
+    answer = robot.radio("I")
+    texts = []
+    for _ in range(7):
+        text, answer = _next(answer)
+        texts.append(text.decode())
+    advertised, serial_port, host, instance, service, network, password = texts
+    return Radios(advertised, serial_port, host, instance, service, network, password,
+                  bool(answer[0]), int.from_bytes(answer[1:5], "little"))  # fmt: skip
+
+
+def port_of(robot: Esp32Robot) -> int:
+    return int.from_bytes(robot.radio("P"), "little")
+
+
+def in_reach(robot: Esp32Robot, name: str, password: str) -> None:
+    """Let a network be in reach; none where its name is empty."""
+    robot.radio("R", _text(name.encode()) + _text(password.encode()))
+
+
+def talk(
+    robot: Esp32Robot, ends: Sequence[tuple[End | None, Client]], milliseconds: int, flags: int = 0
+) -> None:
+    """Let all of them talk with the robot for a while; None is the end of the cable."""
+    for _ in range(milliseconds):
+        cable = b""
+        for end, client in ends:
+            data = client.poll(robot.now_ms)
+            if end is None:
+                cable += data
+            elif data:
+                end.send(data)
+        heard = robot.step(cable, flags, TICKS)
+        flags = 0
+        for end, client in ends:
+            client.receive(heard if end is None else end.taken(), robot.now_ms)
+
+
+def session(nonce: int, robot: Esp32Robot) -> Session:
+    return Session(nonce, 115200, robot.robot.kit.fingerprint)
+
+
+def _text(data: bytes) -> bytes:
+    return pack("<I", len(data)) + data
+
+
+def _next(answer: bytes) -> tuple[bytes, bytes]:
+    length = int.from_bytes(answer[:4], "little")
+    return answer[4 : 4 + length], answer[4 + length :]

@@ -1,0 +1,22 @@
+// Stands for components/freertos/include/freertos/task.h of ESP-IDF.
+
+#ifndef TINISCRIPT_FREERTOS_TASK_H_
+#define TINISCRIPT_FREERTOS_TASK_H_
+
+#include "FreeRTOS.h"
+
+typedef int BaseType_t;
+typedef unsigned int UBaseType_t;
+typedef uint32_t TickType_t;
+typedef void (*TaskFunction_t)(void*);
+typedef void* TaskHandle_t;
+
+extern "C" {
+BaseType_t xTaskCreatePinnedToCore(TaskFunction_t pvTaskCode, const char* const pcName,
+                                   const uint32_t usStackDepth, void* const pvParameters,
+                                   UBaseType_t uxPriority, TaskHandle_t* const pvCreatedTask,
+                                   const BaseType_t xCoreID);
+void vTaskDelay(const TickType_t xTicksToDelay);
+}
+
+#endif  // TINISCRIPT_FREERTOS_TASK_H_

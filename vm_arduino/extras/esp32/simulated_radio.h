@@ -1,0 +1,46 @@
+// The radios of a simulated chip: what `core/` declares of Bluetooth and WiFi, and who is on the
+// other side.
+//
+// A client of Bluetooth LE or of a serial port is what a test does; one in a network is a real one,
+// on 127.0.0.1. Its functions may be called from any thread.
+
+#ifndef TINISCRIPT_ESP32_SIMULATED_RADIO_H_
+#define TINISCRIPT_ESP32_SIMULATED_RADIO_H_
+
+#include <stdint.h>
+
+#include <string>
+#include <vector>
+
+// Bluetooth LE.
+void low_energy_connect();
+void low_energy_disconnect();
+void low_energy_agree(uint16_t mtu);
+void low_energy_subscribe(bool has_subscribed);
+void low_energy_write(const std::string& bytes);
+std::vector<std::string> low_energy_notified();  // since the last call
+
+// Bluetooth with a serial port. One that is stuck takes nothing: `write` of the core waits then.
+void serial_port_connect(bool is_there);
+void serial_port_write(const std::string& bytes);
+std::string serial_port_said();  // since the last call
+
+// WiFi: a network in reach with its password; none if `name` is empty.
+void network_in_reach(const std::string& name, const std::string& password);
+uint16_t network_port();  // on 127.0.0.1; 0: nothing listens
+
+// What the firmware has asked of the radios, for a test to compare.
+struct RadioSettings {
+  std::string advertised;  // the name in Bluetooth LE
+  std::string serial_port;
+  std::string host;
+  std::string instance;
+  std::string service;
+  std::string network;  // that it joins or is
+  std::string password;
+  bool is_access_point;
+  uint32_t joins;  // how often it has tried
+};
+RadioSettings radio_settings();
+
+#endif  // TINISCRIPT_ESP32_SIMULATED_RADIO_H_

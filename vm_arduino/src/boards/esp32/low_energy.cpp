@@ -1,0 +1,103 @@
+// Bluetooth LE: the Nordic UART service, with the robot's name in the advertisement.
+//
+// The core's own task calls what is written to the robot, and who connects and leaves; the task of
+// this radio sends notifications.
+
+#ifdef ARDUINO_ARCH_ESP32
+
+#include <Arduino.h>
+#include <BLE2902.h>
+#include <BLEDevice.h>
+#include <BLEServer.h>
+
+#include "radio.h"
+
+namespace tiniscript {
+
+namespace {
+
+constexpr char kService[] = "6e400001-b5a3-f393-e0a9-e50e24dcca9e";
+constexpr char kToRobot[] = "6e400002-b5a3-f393-e0a9-e50e24dcca9e";
+constexpr char kToComputer[] = "6e400003-b5a3-f393-e0a9-e50e24dcca9e";
+
+constexpr uint16_t kLeastMtu = 23;  // until another one is agreed
+constexpr uint16_t kMostMtu = 247;
+constexpr uint16_t kMtuHead = 3;    // bytes of it that are no payload
+constexpr uint8_t kPauseTurns = 4;  // between two notifications: the stack takes no more at once
+
+uint16_t mtu = kLeastMtu;
+BLECharacteristic* to_computer;
+BLE2902* subscription;
+uint8_t pause_turns;
+
+Pipe& pipe() { return radio_pipe(Transport::kLowEnergy); }
+
+class Heard : public BLECharacteristicCallbacks {
+ public:
+  void onWrite(BLECharacteristic* its) override {
+    const uint8_t* const bytes = its->getData();
+    const size_t length = its->getLength();
+    for (size_t k = 0; k < length; k++) pipe().put(bytes[k]);
+  }
+};
+
+class Client : public BLEServerCallbacks {
+ public:
+  void onConnect(BLEServer*) override {
+    __atomic_store_n(&mtu, kLeastMtu, __ATOMIC_RELAXED);
+    pipe().begin();
+  }
+  void onDisconnect(BLEServer*) override {
+    pipe().part();
+    BLEDevice::startAdvertising();
+  }
+  void onMtuChanged(BLEServer*, esp_ble_gatts_cb_param_t* its) override {
+    const uint16_t found = its->mtu.mtu;
+    const uint16_t agreed = found < kLeastMtu ? kLeastMtu : found > kMostMtu ? kMostMtu : found;
+    __atomic_store_n(&mtu, agreed, __ATOMIC_RELAXED);
+  }
+};
+
+}  // namespace
+
+void low_energy_begin() {
+  static Heard heard;
+  static Client client;
+  static BLE2902 notifications;
+  BLEDevice::init(radio_name().name);
+  BLEDevice::setMTU(kMostMtu);
+  BLEServer* const server = BLEDevice::createServer();
+  server->setCallbacks(&client);
+  BLEService* const service = server->createService(kService);
+  to_computer = service->createCharacteristic(kToComputer, BLECharacteristic::PROPERTY_NOTIFY);
+  to_computer->addDescriptor(&notifications);
+  subscription = &notifications;
+  BLECharacteristic* const to_robot = service->createCharacteristic(
+      kToRobot, BLECharacteristic::PROPERTY_WRITE | BLECharacteristic::PROPERTY_WRITE_NR);
+  to_robot->setCallbacks(&heard);
+  service->start();
+  BLEAdvertising* const advertising = BLEDevice::getAdvertising();
+  advertising->addServiceUUID(kService);
+  advertising->setScanResponse(true);  // the name is in it
+  BLEDevice::startAdvertising();
+}
+
+void low_energy_turn() {
+  if (pause_turns != 0) {
+    pause_turns--;
+    return;
+  }
+  if (!pipe().is_connected() || !subscription->getNotifications()) return;
+  uint8_t bytes[kMostMtu - kMtuHead];
+  const size_t most = static_cast<size_t>(__atomic_load_n(&mtu, __ATOMIC_RELAXED) - kMtuHead);
+  size_t length = 0;
+  while (length < most && pipe().take(bytes + length)) length++;
+  if (length == 0) return;
+  to_computer->setValue(bytes, length);
+  to_computer->notify();
+  pause_turns = kPauseTurns;
+}
+
+}  // namespace tiniscript
+
+#endif  // ARDUINO_ARCH_ESP32

@@ -1,0 +1,104 @@
+// What connects the task of a radio with the main loop: bytes in both directions, and who has left.
+//
+// Each direction has one writer and one reader, on different cores: the writer publishes what it
+// has written with its index, so neither waits and no lock is needed. That a client has left comes
+// in the row of its bytes, so that none of the next one's is taken for its own.
+
+#ifndef TINISCRIPT_ESP32_PIPE_H_
+#define TINISCRIPT_ESP32_PIPE_H_
+
+#include <stddef.h>
+#include <stdint.h>
+
+namespace tiniscript {
+
+// A ring for one writer and one reader. One place stays free.
+template <class Item, uint16_t kPlaces>
+class Ring {
+ public:
+  // The writer's: how many more find room; false if none does.
+  uint16_t room() const {
+    const uint16_t first = __atomic_load_n(&first_, __ATOMIC_ACQUIRE);
+    return static_cast<uint16_t>((first + kPlaces - behind_ - 1) % kPlaces);
+  }
+  bool put(Item item) {
+    if (room() == 0) return false;
+    items_[behind_] = item;
+    const uint16_t behind = static_cast<uint16_t>((behind_ + 1) % kPlaces);
+    __atomic_store_n(&behind_, behind, __ATOMIC_RELEASE);
+    return true;
+  }
+
+  // The reader's.
+  bool take(Item* item) {
+    if (first_ == __atomic_load_n(&behind_, __ATOMIC_ACQUIRE)) return false;
+    *item = items_[first_];
+    const uint16_t first = static_cast<uint16_t>((first_ + 1) % kPlaces);
+    __atomic_store_n(&first_, first, __ATOMIC_RELEASE);
+    return true;
+  }
+
+ private:
+  uint16_t first_;   // written by the reader alone
+  uint16_t behind_;  // written by the writer alone
+  Item items_[kPlaces];
+};
+
+class Pipe {
+ public:
+  // The radio's task calls these four.
+
+  // Somebody is connected: what was meant for the one before is gone.
+  void begin() {
+    uint8_t byte;
+    while (out_.take(&byte)) continue;
+    __atomic_store_n(&is_connected_, true, __ATOMIC_RELEASE);
+  }
+
+  // A byte of the client. False: it found no room, and is counted.
+  bool put(uint8_t byte) {
+    has_parted_ = false;
+    if (in_.room() > 1 && in_.put(byte)) return true;  // one place is for `part`
+    const uint8_t lost = __atomic_load_n(&lost_, __ATOMIC_RELAXED);
+    __atomic_store_n(&lost_, static_cast<uint8_t>(lost + 1), __ATOMIC_RELAXED);
+    return false;
+  }
+
+  // The client has left.
+  void part() {
+    __atomic_store_n(&is_connected_, false, __ATOMIC_RELEASE);
+    if (!has_parted_) in_.put(kParted);
+    has_parted_ = true;  // further ones change nothing until a byte comes
+  }
+
+  // The next byte for the client.
+  bool take(uint8_t* byte) { return out_.take(byte); }
+
+  // The main loop calls these.
+
+  bool is_connected() const { return __atomic_load_n(&is_connected_, __ATOMIC_ACQUIRE); }
+
+  // What has come: a byte, or kParted.
+  bool hear(uint16_t* item) { return in_.take(item); }
+  bool has_room() const { return out_.room() != 0; }
+  void say(uint8_t byte) { out_.put(byte); }
+
+  // How many bytes were lost. It wraps around to 0.
+  uint8_t lost() const { return __atomic_load_n(&lost_, __ATOMIC_RELAXED); }
+
+  static constexpr uint16_t kParted = 0x100;
+
+ private:
+  static constexpr uint16_t kInPlaces = 1024;
+  static constexpr uint16_t kOutPlaces = 512;
+
+  Ring<uint16_t, kInPlaces> in_;
+  Ring<uint8_t, kOutPlaces> out_;
+  bool is_connected_;
+  bool has_parted_;  // the radio's: nothing has come since
+  uint8_t lost_;
+};
+
+}  // namespace tiniscript
+
+#endif  // TINISCRIPT_ESP32_PIPE_H_

@@ -1,0 +1,100 @@
+#ifdef ARDUINO_ARCH_ESP32
+
+#include "radio.h"
+
+#include <Arduino.h>
+#include <freertos/task.h>
+
+#include "wifi_settings.h"
+
+namespace tiniscript {
+
+namespace {
+
+constexpr uint8_t kBytesATurn = 128;  // of a transport, taken in a turn of the main loop
+constexpr uint32_t kStackBytes = 6144;
+constexpr int kPriority = 1;  // that of the main loop
+constexpr int kCore = 0;
+constexpr uint8_t kFirst = static_cast<uint8_t>(Transport::kSerialPort);
+
+struct Radio {
+  const char* name;
+  void (*begin)();
+  void (*turn)();
+};
+
+const Radio kSerialPortRadio = {"tini spp", serial_port_begin, serial_port_turn};
+const Radio kLowEnergyRadio = {"tini ble", low_energy_begin, low_energy_turn};
+const Radio kNetworkRadio = {"tini wifi", network_begin, network_turn};
+
+Pipe pipes[kTransports - kFirst];
+RadioName name;
+bool has_begun;
+
+// A task: what the radio makes it wait for, it waits for alone.
+void run(void* of) {
+  const Radio& radio = *static_cast<const Radio*>(of);
+  radio.begin();
+  for (;;) {
+    radio.turn();
+    vTaskDelay(1);
+  }
+}
+
+void begin(const Radio& radio) {
+  xTaskCreatePinnedToCore(run, radio.name, kStackBytes, const_cast<Radio*>(&radio), kPriority,
+                          nullptr, kCore);
+}
+
+}  // namespace
+
+Pipe& radio_pipe(Transport transport) { return pipes[static_cast<uint8_t>(transport) - kFirst]; }
+
+const RadioName& radio_name() { return name; }
+
+void radio_tick() {
+  if (has_begun || !firmware_radio_name(&name)) return;
+  has_begun = true;
+  wifi_load();
+  if (has_serial_port()) begin(kSerialPortRadio);
+  begin(kLowEnergyRadio);
+  begin(kNetworkRadio);
+}
+
+void radio_attend() {
+  for (uint8_t place = kFirst; place < kTransports; place++) {
+    const Transport transport = static_cast<Transport>(place);
+    Pipe& pipe = radio_pipe(transport);
+    uint16_t item;
+    for (uint8_t left = kBytesATurn; left > 0 && pipe.hear(&item); left--) {
+      if (item == Pipe::kParted) {
+        firmware_on_part(transport);
+      } else {
+        firmware_on_rx_byte(transport, static_cast<uint8_t>(item), static_cast<uint16_t>(millis()));
+      }
+    }
+  }
+}
+
+// What is meant for nobody is gone.
+void radio_send() {
+  for (uint8_t place = kFirst; place < kTransports; place++) {
+    const Transport transport = static_cast<Transport>(place);
+    Pipe& pipe = radio_pipe(transport);
+    const bool is_connected = pipe.is_connected();
+    uint8_t byte;
+    while ((!is_connected || pipe.has_room()) && firmware_next_tx_byte(transport, &byte)) {
+      if (is_connected) pipe.say(byte);
+    }
+  }
+}
+
+uint8_t radio_lost() {
+  uint8_t lost = 0;
+  for (const Pipe& pipe : pipes) lost = static_cast<uint8_t>(lost + pipe.lost());
+  return lost;
+}
+
+}  // namespace tiniscript
+
+#endif  // ARDUINO_ARCH_ESP32

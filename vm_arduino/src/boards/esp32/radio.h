@@ -1,0 +1,43 @@
+// The radios of an ESP32: a task and a pipe for each transport, beside the main loop.
+//
+// The tasks are on core 0, where the core has its radio stacks; the main loop is on core 1, and
+// takes bytes from pipes. So what a radio waits for stops neither motors nor the other radios. An
+// ESP32-C3 has one core: there the tasks take turns with the main loop.
+
+#ifndef TINISCRIPT_ESP32_RADIO_H_
+#define TINISCRIPT_ESP32_RADIO_H_
+
+#include <stdint.h>
+
+#include "../../firmware/firmware.h"
+#include "../../link/has_transports.h"
+#include "pipe.h"
+
+namespace tiniscript {
+
+// What the main loop calls: begins the radios when the robot knows its name; takes what they have
+// received; gives them what is to be sent.
+void radio_tick();
+void radio_attend();
+void radio_send();
+
+// Bytes that found no room. It wraps around to 0.
+uint8_t radio_lost();
+
+// What the tasks are made of. `begin` is called once in the task, `turn` every millisecond.
+const RadioName& radio_name();
+Pipe& radio_pipe(Transport transport);
+
+void serial_port_begin();
+void serial_port_turn();
+void low_energy_begin();
+void low_energy_turn();
+void network_begin();
+void network_turn();
+
+// Whether this chip has Bluetooth with a serial port.
+bool has_serial_port();
+
+}  // namespace tiniscript
+
+#endif  // TINISCRIPT_ESP32_RADIO_H_

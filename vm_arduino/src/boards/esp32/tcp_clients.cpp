@@ -1,0 +1,183 @@
+// TCP over WiFi, by sockets that never wait.
+//
+// Nothing of a connection reaches the robot before its first bytes are those of a robot's client: a
+// web page can make a browser connect to any address.
+
+#ifdef ARDUINO_ARCH_ESP32
+
+#include "tcp_clients.h"
+
+#include <Arduino.h>
+#include <lwip/sockets.h>
+#if __has_include(<errno.h>)
+#include <errno.h>
+#endif
+
+#include "first_bytes.h"
+#include "radio.h"
+#include "wifi_settings.h"
+
+namespace tiniscript {
+
+namespace {
+
+constexpr int kNone = -1;
+constexpr uint8_t kClients = 2;
+constexpr uint32_t kBeginMs = 10000;   // until the first bytes are clear
+constexpr uint32_t kSilentMs = 10000;  // silence after which a place is given to the next one
+constexpr size_t kChunk = 256;
+
+struct Client {
+  int socket;
+  Transport transport;
+  bool is_admitted;
+  uint32_t heard_ms;
+  size_t first_length;
+  uint8_t first[kFirstBytes];
+  size_t out_length;
+  size_t out_sent;
+  uint8_t out[kChunk];
+};
+
+int listener = kNone;
+Client clients[kClients];
+
+uint32_t now_ms() { return static_cast<uint32_t>(millis()); }
+
+bool may_come_later() { return errno == EAGAIN || errno == EWOULDBLOCK; }
+
+void close_client(Client* client) {
+  if (client->socket == kNone) return;
+  lwip_close(client->socket);
+  client->socket = kNone;
+  if (client->is_admitted) radio_pipe(client->transport).part();
+}
+
+void close_all() {
+  for (Client& client : clients) close_client(&client);
+  if (listener != kNone) lwip_close(listener);
+  listener = kNone;
+}
+
+void listen() {
+  const int found = lwip_socket(AF_INET, SOCK_STREAM, 0);
+  if (found < 0) return;
+  sockaddr_in place = {};
+  place.sin_family = AF_INET;
+  place.sin_port = htons(kNetworkPort);
+  place.sin_addr.s_addr = htonl(INADDR_ANY);
+  const int yes = 1;
+  lwip_setsockopt(found, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+  const bool is_there =
+      lwip_bind(found, reinterpret_cast<const sockaddr*>(&place), sizeof place) == 0 &&
+      lwip_listen(found, kClients) == 0 && lwip_fcntl(found, F_SETFL, O_NONBLOCK) >= 0;
+  if (is_there) {
+    listener = found;
+  } else {
+    lwip_close(found);
+  }
+}
+
+// A place for a new client: a free one, or that of the one that has been silent longest.
+Client* free_place() {
+  Client* oldest = nullptr;
+  for (Client& client : clients) {
+    if (client.socket == kNone) return &client;
+    if (oldest == nullptr || client.heard_ms - oldest->heard_ms > UINT32_MAX / 2) oldest = &client;
+  }
+  if (now_ms() - oldest->heard_ms < kSilentMs) return nullptr;
+  close_client(oldest);
+  return oldest;
+}
+
+void accept_next() {
+  const int found = lwip_accept(listener, nullptr, nullptr);
+  if (found < 0) return;
+  Client* const client = free_place();
+  if (client == nullptr || lwip_fcntl(found, F_SETFL, O_NONBLOCK) < 0) {
+    lwip_close(found);
+    return;
+  }
+  const int yes = 1;
+  lwip_setsockopt(found, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
+  client->socket = found;
+  client->is_admitted = false;
+  client->heard_ms = now_ms();
+  client->first_length = client->out_length = client->out_sent = 0;
+}
+
+void pass_on(Client* client, const uint8_t* bytes, size_t length) {
+  Pipe& pipe = radio_pipe(client->transport);
+  for (size_t k = 0; k < length; k++) pipe.put(bytes[k]);
+}
+
+// Looks at the first bytes, and lets the client in or hangs up.
+void look(Client* client, const uint8_t* bytes, size_t length) {
+  const size_t room = kFirstBytes - client->first_length;
+  const size_t more = length < room ? length : room;
+  __builtin_memcpy(client->first + client->first_length, bytes, more);
+  client->first_length += more;
+  const Guest guest = guest_of(client->first, client->first_length);
+  const bool is_full = client->first_length == kFirstBytes;
+  if (guest == Guest::kOther || (guest == Guest::kUnknownYet && is_full)) {
+    return close_client(client);
+  }
+  if (guest == Guest::kUnknownYet) return;
+  client->is_admitted = true;
+  radio_pipe(client->transport).begin();
+  pass_on(client, client->first, client->first_length);
+  pass_on(client, bytes + more, length - more);
+}
+
+void hear(Client* client) {
+  uint8_t bytes[kChunk];
+  const ssize_t length = lwip_recv(client->socket, bytes, sizeof bytes, MSG_DONTWAIT);
+  if (length > 0) {
+    client->heard_ms = now_ms();
+    if (!client->is_admitted) return look(client, bytes, static_cast<size_t>(length));
+    return pass_on(client, bytes, static_cast<size_t>(length));
+  }
+  if (length == 0 || !may_come_later()) return close_client(client);
+  if (!client->is_admitted && now_ms() - client->heard_ms >= kBeginMs) close_client(client);
+}
+
+void say(Client* client) {
+  if (client->socket == kNone || !client->is_admitted) return;
+  if (client->out_sent == client->out_length) {
+    client->out_sent = client->out_length = 0;
+    Pipe& pipe = radio_pipe(client->transport);
+    while (client->out_length < kChunk && pipe.take(client->out + client->out_length)) {
+      client->out_length++;
+    }
+  }
+  const size_t left = client->out_length - client->out_sent;
+  if (left == 0) return;
+  const ssize_t sent =
+      lwip_send(client->socket, client->out + client->out_sent, left, MSG_DONTWAIT);
+  if (sent > 0) client->out_sent += static_cast<size_t>(sent);
+  if (sent < 0 && !may_come_later()) close_client(client);
+}
+
+}  // namespace
+
+void network_begin() {
+  for (uint8_t k = 0; k < kClients; k++) {
+    clients[k].socket = kNone;
+    clients[k].transport = k == 0 ? Transport::kNetwork : Transport::kSecondNetwork;
+  }
+}
+
+void network_turn() {
+  if (!wifi_turn()) return close_all();
+  if (listener == kNone) listen();
+  if (listener == kNone) return;
+  accept_next();
+  for (Client& client : clients) {
+    if (client.socket != kNone) hear(&client);
+    say(&client);
+  }
+}
+
+}  // namespace tiniscript
+
+#endif  // ARDUINO_ARCH_ESP32

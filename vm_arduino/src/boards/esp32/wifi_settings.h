@@ -1,0 +1,21 @@
+// The robot's WiFi: which network it joins or is, kept in NVS, and whether it is there.
+//
+// The main loop sets it; the task of the network does what it says.
+
+#ifndef TINISCRIPT_ESP32_WIFI_SETTINGS_H_
+#define TINISCRIPT_ESP32_WIFI_SETTINGS_H_
+
+#include <stdint.h>
+
+namespace tiniscript {
+
+// The main loop's, once: reads what NVS has.
+void wifi_load();
+
+// The network's task: joins the network or opens it, again after a change. Returns whether the
+// robot has an address.
+bool wifi_turn();
+
+}  // namespace tiniscript
+
+#endif  // TINISCRIPT_ESP32_WIFI_SETTINGS_H_

@@ -1,0 +1,32 @@
+// Whether this robot is reached over several transports at once: each has a link of its own then,
+// and one of them drives (`links.h`). An ESP32 is; all others have one.
+
+#ifndef TINISCRIPT_LINK_HAS_TRANSPORTS_H_
+#define TINISCRIPT_LINK_HAS_TRANSPORTS_H_
+
+#include <stdint.h>
+
+#ifdef ARDUINO_ARCH_ESP32
+#define tiniscript_transports
+#endif
+
+namespace tiniscript {
+
+#ifdef tiniscript_transports
+constexpr bool kHasTransports = true;
+#else
+constexpr bool kHasTransports = false;
+#endif
+
+// The cable, Bluetooth with a serial port (an ESP32 alone, not its successors), Bluetooth LE, and
+// two connections in a network.
+enum class Transport : uint8_t { kCable, kSerialPort, kLowEnergy, kNetwork, kSecondNetwork };
+
+constexpr uint8_t kTransports = 5;
+
+// Whether whoever is in a network could reach it: what needs no key there moves nothing.
+inline bool is_network(Transport transport) { return transport >= Transport::kNetwork; }
+
+}  // namespace tiniscript
+
+#endif  // TINISCRIPT_LINK_HAS_TRANSPORTS_H_

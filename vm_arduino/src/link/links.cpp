@@ -1,0 +1,226 @@
+#include "links.h"
+
+#ifdef tiniscript_transports
+
+namespace tiniscript {
+
+namespace {
+
+uint8_t number_of(Message message) { return static_cast<uint8_t>(message); }
+
+}  // namespace
+
+void Links::begin(uint8_t epoch) {
+  driver_ = kNobody;
+  for (uint8_t place = 0; place < kTransports; place++) {
+    links_[place].begin(&receivers_[place], epoch);
+    links_[place].begin_challenges(place);
+  }
+}
+
+void Links::pass_time(uint16_t now_ms) {
+  const uint16_t passed = static_cast<uint16_t>(now_ms - now_ms_);
+  now_ms_ = now_ms;
+  drives_ms_ = passed < drives_ms_ ? static_cast<uint16_t>(drives_ms_ - passed) : 0;
+  for (Link& link : links_) link.pass_time(now_ms);
+  if (!is_driven()) driver_ = kNobody;
+}
+
+// Has the identity say of the session of a link what it may.
+void Links::enter(uint8_t place) {
+  current_ = place;
+  Identity& its = port_identity();
+  its.features = static_cast<uint8_t>((its.features & ~kYours) | yours_[place]);
+  its.more_features =
+      static_cast<uint8_t>((its.more_features & ~kMoreByTeacher) | by_teacher_[place]);
+}
+
+void Links::leave() {
+  const Identity& its = port_identity();
+  yours_[current_] = its.features & kYours;
+  by_teacher_[current_] = its.more_features & kMoreByTeacher;
+}
+
+void Links::tick() {
+  for (uint8_t place = 0; place < kTransports; place++) {
+    const State before = port_status().state;
+    is_asking_ = false;
+    enter(place);
+    links_[place].tick();
+    leave();
+    if (is_asking_ && (is_asking_by_text_ || links_[place].has_done())) drive();
+    spread(before);
+  }
+}
+
+// Tells all other sessions what the turn of the current one has changed for them.
+void Links::spread(State before) {
+  const State state = port_status().state;
+  const Link& its = links_[current_];
+  const bool is_held_back = its.is_held_back();
+  for (uint8_t place = 0; place < kTransports; place++) {
+    if (place == current_) continue;
+    Link& other = links_[place];
+    if (is_held_back != is_held_back_) other.hold_back(is_held_back);
+    if (state == before) continue;
+    if (state == State::kStopped) other.stopped(its.cause());
+    if (state == State::kFaulted) other.faulted();
+  }
+  is_held_back_ = is_held_back;
+}
+
+void Links::tell() {
+  for (uint8_t place = 0; place < kTransports; place++) {
+    enter(place);
+    links_[place].tell();
+    leave();
+  }
+}
+
+void Links::seal() {
+  for (Link& link : links_) link.seal();
+}
+
+bool Links::is_awaited() const {
+  for (const Link& link : links_) {
+    if (link.is_awaited()) return true;
+  }
+  return false;
+}
+
+bool Links::stop_is_due() const {
+  for (const Link& link : links_) {
+    if (link.stop_is_due()) return true;
+  }
+  return false;
+}
+
+void Links::done() {
+  for (Link& link : links_) link.done();
+}
+
+void Links::faulted() {
+  for (Link& link : links_) link.faulted();
+}
+
+void Links::stopped(Cause cause) {
+  for (Link& link : links_) link.stopped(cause);
+}
+
+void Links::drop() {
+  for (Link& link : links_) link.drop();
+  driver_ = kNobody;
+  is_held_back_ = false;
+}
+
+bool Links::is_tethered() const {
+  for (const Link& link : links_) {
+    if (link.is_tethered()) return true;
+  }
+  return false;
+}
+
+void Links::lapse() {
+  for (uint8_t place = 0; place < kTransports; place++) {
+    enter(place);
+    links_[place].lapse();
+    leave();
+  }
+}
+
+void Links::lapse_others() {
+  const uint8_t current = current_;
+  leave();
+  for (uint8_t place = 0; place < kTransports; place++) {
+    if (place == current) continue;
+    enter(place);
+    links_[place].lapse();
+    leave();
+  }
+  enter(current);
+}
+
+bool Links::confirm_claim() {
+  Link* found = nullptr;
+  for (Link& link : links_) {
+    if (!link.has_asked_for_claim()) continue;
+    if (found != nullptr) return false;  // whose press it is cannot be told
+    found = &link;
+  }
+  return found != nullptr && found->confirm_claim();
+}
+
+bool Links::show(int32_t value, bool is_yes_no) {
+  uint8_t place = driver_;
+  for (uint8_t each = 0; place == kNobody && each < kTransports; each++) {
+    if (links_[each].takes_values()) place = each;
+  }
+  if (place == kNobody) return true;
+  enter(place);
+  const bool is_taken = links_[place].show(value, is_yes_no);
+  leave();
+  return is_taken;
+}
+
+bool Links::part(Transport transport) {
+  const uint8_t place = place_of(transport);
+  const bool ends_run = links_[place].is_tethered();
+  enter(place);
+  links_[place].give_way();
+  links_[place].lapse();
+  receivers_[place].put(0, now_ms_);  // cuts what has begun
+  links_[place].forget_client();
+  leave();
+  if (driver_ == place) driver_ = kNobody;
+  return ends_run;
+}
+
+// Whether who has driven last is still heard.
+bool Links::is_driven() const {
+  return driver_ != kNobody && (drives_ms_ != 0 || links_[driver_].is_heard());
+}
+
+// The current session drives from now on: what others have begun is over.
+void Links::drive() {
+  drives_ms_ = kAuthorityMs;
+  if (driver_ == current_) return;
+  driver_ = current_;
+  for (uint8_t place = 0; place < kTransports; place++) {
+    if (place != current_) links_[place].give_way();
+  }
+}
+
+Answer Links::may_drive(uint8_t type) {
+  const bool is_remote = is_network(static_cast<Transport>(current_));
+  const bool is_owned = (port_identity().features & kOwned) != 0;
+  const bool is_text = type == 0;
+  const bool is_for_all =
+      !is_text && (type < kFirstActing || type == number_of(Message::kIdentify) ||
+                   type == number_of(Message::kAuthenticate));
+  if (is_remote && (!is_owned || is_text) && (!is_for_all || type == number_of(Message::kFetch))) {
+    return Answer::kUnowned;
+  }
+  if (type == number_of(Message::kWifi)) return is_owned ? Answer::kOk : Answer::kUnowned;
+  if (is_for_all || type == number_of(Message::kClaim) || type == number_of(Message::kText)) {
+    return Answer::kOk;
+  }
+  if (type == number_of(Message::kClear) && is_held_back_ && is_teacher()) return Answer::kOk;
+  if (driver_ != current_ && is_driven()) return Answer::kOtherDriver;
+  is_asking_ = true;
+  is_asking_by_text_ = is_text;
+  return Answer::kOk;
+}
+
+bool Links::take_text_memory() {
+  const bool is_remote = is_network(static_cast<Transport>(current_));
+  for (uint8_t place = 0; place < kTransports; place++) {
+    if (place == current_ || !links_[place].has_open_text()) continue;
+    if (is_remote) return false;
+    links_[place].drop_text();
+  }
+  return true;
+}
+
+}  // namespace tiniscript
+
+#endif  // tiniscript_transports

@@ -1,0 +1,93 @@
+// The links of a robot that is reached over several transports at once: one for each, and the one
+// that drives.
+//
+// Each transport has a receiver, a session and a seal of its own, so nobody's HELLO ends the
+// session of another. A session drives from its first request that acts on; while it is heard,
+// those of others are refused. What is for all (HELLO, PING, STATUS, STOP, IDENTIFY) is answered on
+// each, and a stop on one is a stop. Knows no bytes of a transport. All calls are the main loop's.
+
+#ifndef TINISCRIPT_LINK_LINKS_H_
+#define TINISCRIPT_LINK_LINKS_H_
+
+#include <stdint.h>
+
+#include "has_transports.h"
+#include "link.h"
+#include "port.h"
+
+#ifdef tiniscript_transports
+
+namespace tiniscript {
+
+class Links {
+ public:
+  // As those of Link, for all of them.
+  void begin(uint8_t epoch);
+  void pass_time(uint16_t now_ms);
+  void tick();
+  void tell();
+  void seal();
+  bool is_awaited() const;
+  bool stop_is_due() const;
+  void done();
+  void faulted();
+  void stopped(Cause cause);
+  void drop();
+  bool is_tethered() const;
+  void lapse();
+  bool confirm_claim();
+
+  // To who drives; if nobody does, to the first that listens.
+  bool show(int32_t value, bool is_yes_no);
+
+  // The receiver and the bytes of a transport.
+  Receiver& receiver(Transport transport) { return receivers_[place_of(transport)]; }
+  bool next_tx_byte(Transport transport, uint8_t* byte) {
+    return links_[place_of(transport)].next_tx_byte(byte);
+  }
+
+  // Nobody is connected any more: the authority of that session ends. Returns whether a run ends
+  // with it.
+  bool part(Transport transport);
+
+  // The keys have changed: ends the authority of all sessions but the one that has asked.
+  void lapse_others();
+
+  // Whether the current request (its type, or 0 for a line of text) may be done; else why not. Its
+  // session drives from now on, if it is a request of who drives and is not refused.
+  Answer may_drive(uint8_t type);
+
+  // Whether the current session drives already.
+  bool is_driving() const { return driver_ == current_; }
+
+  // A line of text of the current session begins. False: another one has the memory for it.
+  bool take_text_memory();
+
+ private:
+  static constexpr uint8_t kNobody = 0xff;
+
+  static uint8_t place_of(Transport transport) { return static_cast<uint8_t>(transport); }
+  bool is_driven() const;
+  void drive();
+  void enter(uint8_t place);
+  void leave();
+  void spread(State before);
+
+  Link links_[kTransports];
+  Receiver receivers_[kTransports];
+  uint8_t yours_[kTransports];       // kYours of each session
+  uint8_t by_teacher_[kTransports];  // kMoreByTeacher of each
+  uint8_t current_;                  // whose turn it is
+  uint8_t driver_;                   // or kNobody
+  uint16_t now_ms_;
+  uint16_t drives_ms_;  // how long its last request counts, whatever is heard
+  bool is_held_back_;
+  bool is_asking_;  // the current session, to drive
+  bool is_asking_by_text_;
+};
+
+}  // namespace tiniscript
+
+#endif  // tiniscript_transports
+
+#endif  // TINISCRIPT_LINK_LINKS_H_
