@@ -11,11 +11,15 @@ from typing import TYPE_CHECKING, Any
 
 from tiniscript.diagnostics.rendering import Message
 from tiniscript.studio import checking
+from tiniscript.studio.block_form import data_of, from_data, size_of
+from tiniscript.studio.block_printing import print_blocks
+from tiniscript.studio.block_reading import read
 
 if TYPE_CHECKING:
     from tiniscript.studio.simulation import Simulation
 
 Answer = dict[str, Any]
+MOST_BLOCKS = 1500  # that a page can move about
 
 
 def answer(request: str, data: bytes = b"") -> str:
@@ -49,6 +53,17 @@ def _line(fields: Answer, data: bytes) -> Answer:
     if isinstance(found, Message):
         return {"message": found.message, "fix": found.fix}
     return {"text": found}
+
+
+def _blocks(fields: Answer, data: bytes) -> Answer:
+    """Return the blocks of the editor's text; of one with too many only their number."""
+    form = read(data.decode(), checking.profile_of(fields["robot"]).kit)
+    size = size_of(form)
+    return {"size": size} if size > MOST_BLOCKS else {"size": size, **data_of(form)}
+
+
+def _text(fields: Answer, data: bytes) -> Answer:
+    return print_blocks(from_data(fields["form"]))._asdict()
 
 
 _simulation: Simulation | None = None  # a page has one robot
@@ -89,6 +104,6 @@ def _push(fields: Answer, data: bytes) -> Answer:
 
 
 _ASKED: dict[str, Callable[[Answer, bytes], Answer]] = {
-    "check": _check, "open": _open, "line": _line, "power_on": _power_on, "go": _go, "next": _next,
-    "stop": _stop, "push": _push,
+    "check": _check, "open": _open, "line": _line, "blocks": _blocks, "text": _text,
+    "power_on": _power_on, "go": _go, "next": _next, "stop": _stop, "push": _push,
 }  # fmt: skip

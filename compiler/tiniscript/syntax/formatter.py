@@ -28,13 +28,13 @@ def formatted(source: Source) -> str:
 
     Formatting the result again changes nothing.
     """
-    return _text(_rows(_pieces(scan(source.text))))
+    return "".join(line + "\n" for line in lines_of(_rows(pieces_of(scan(source.text)))))
 
 
 # -- what the text is made of --------------------------------------------------------------------
 
 
-class _Piece:
+class Piece:
     """An instruction, SETUP with its bar, or, where it has no tokens, a line of comment."""
 
     __slots__ = ("after_blank", "comments", "first_line", "last_line", "tokens")
@@ -55,9 +55,9 @@ class _Piece:
         return bool(self.tokens) and not self.is_setup
 
 
-def _pieces(scanned: Scan) -> list[_Piece]:
+def pieces_of(scanned: Scan) -> list[Piece]:
     """Return the pieces of a text in their order. Empty instructions are none."""
-    pieces: list[_Piece] = []
+    pieces: list[Piece] = []
     is_open = False  # whether the last piece is an instruction that has not ended
     brackets = 0  # open in it
     line = 0
@@ -82,11 +82,11 @@ def _pieces(scanned: Scan) -> list[_Piece]:
             pieces[-1].last_line == line
         )  # fmt: skip
         if not is_open and not is_behind:
-            pieces.append(_Piece(line, after_blank))
+            pieces.append(Piece(line, after_blank))
             is_open, brackets, after_blank = not is_comment, 0, False
         piece = pieces[-1]
         if is_comment:
-            piece.comments.append(_comment(token.text))
+            piece.comments.append(comment_text(token.text))
             continue
         piece.tokens.append(token)
         piece.last_line = line
@@ -100,7 +100,7 @@ def _start(token: Token) -> int:
     return token.start
 
 
-def _comment(text: str) -> str:
+def comment_text(text: str) -> str:
     """Return `// comment` for `//comment`. More spaces stay, and so do rulers like `/////`."""
     inner = text[2:].rstrip()
     apart = not inner or inner[0] == "/" or inner[0].isspace()
@@ -110,7 +110,7 @@ def _comment(text: str) -> str:
 # -- where it goes -------------------------------------------------------------------------------
 
 
-class _Row(NamedTuple):
+class Row(NamedTuple):
     """A line of the result without its indentation."""
 
     word: str  # of an instruction that stands alone, the first word
@@ -118,10 +118,10 @@ class _Row(NamedTuple):
     after_blank: bool
 
 
-def _rows(pieces: list[_Piece]) -> list[_Row]:
+def _rows(pieces: list[Piece]) -> list[Row]:
     """Return the lines that the pieces make."""
-    one_line = _is_one_line(pieces)
-    groups: list[list[_Piece]] = []
+    one_line = is_one_line(pieces)
+    groups: list[list[Piece]] = []
     for piece in pieces:
         if groups and _goes_on(groups[-1][-1], piece, one_line):
             groups[-1].append(piece)
@@ -130,7 +130,7 @@ def _rows(pieces: list[_Piece]) -> list[_Row]:
     return [_row(group, one_line) for group in groups]
 
 
-def _is_one_line(pieces: list[_Piece]) -> bool:
+def is_one_line(pieces: list[Piece]) -> bool:
     """Whether the instructions go on one line: they do already, or there is only one.
 
     A comment between SETUP and the first of them stands in the way.
@@ -147,7 +147,7 @@ def _is_one_line(pieces: list[_Piece]) -> bool:
     return first == last or pieces[first].first_line == pieces[last].last_line
 
 
-def _goes_on(before: _Piece, piece: _Piece, one_line: bool) -> bool:
+def _goes_on(before: Piece, piece: Piece, one_line: bool) -> bool:
     """Whether a piece goes on the line of the one before it."""
     if not piece.is_instruction:
         return False
@@ -156,10 +156,10 @@ def _goes_on(before: _Piece, piece: _Piece, one_line: bool) -> bool:
     return before.is_setup and not before.comments and not piece.after_blank
 
 
-def _row(group: list[_Piece], one_line: bool) -> _Row:
+def _row(group: list[Piece], one_line: bool) -> Row:
     first = group[0]
     setup = f"{first.tokens[0].text}|" if first.is_setup else ""
-    instructions = [_instruction(piece.tokens) for piece in group if piece.is_instruction]
+    instructions = [instruction_text(piece.tokens) for piece in group if piece.is_instruction]
     text = setup + ";".join(instructions)
     word = ""
     if instructions and not one_line:
@@ -168,22 +168,21 @@ def _row(group: list[_Piece], one_line: bool) -> _Row:
     comment = " ".join(group[-1].comments)
     if text and comment:
         text += BEFORE_COMMENT
-    return _Row(word, text + comment, first.after_blank)
+    return Row(word, text + comment, first.after_blank)
 
 
-def _text(rows: list[_Row]) -> str:
-    """Return the rows with their indentation and the empty lines between them."""
+def lines_of(rows: list[Row]) -> list[str]:
+    """Return each row with its indentation, and a line end before it where a line is empty."""
     lines: list[str] = []
     before = ""
     for row, depth in zip(rows, _depths(rows), strict=True):
-        if row.after_blank and lines and before not in _OPENS and row.word not in _CLOSES:
-            lines.append("")
-        lines.append(INDENT * depth + row.text)
+        is_apart = row.after_blank and before not in _OPENS and row.word not in _CLOSES
+        lines.append(("\n" if is_apart and lines else "") + INDENT * depth + row.text)
         before = row.word
-    return "".join(line + "\n" for line in lines)
+    return lines
 
 
-def _depths(rows: list[_Row]) -> list[int]:
+def _depths(rows: list[Row]) -> list[int]:
     """Return how many blocks are open around each row; a comment takes what follows."""
     depths: list[int] = []
     depth = 0
@@ -205,7 +204,7 @@ def _first_word(tokens: list[Token]) -> str:
     return ALIASES.get(text, text)
 
 
-def _instruction(tokens: list[Token]) -> str:
+def instruction_text(tokens: list[Token]) -> str:
     """Return an instruction on one line, with spaces where they belong."""
     parts = [_first_word(tokens)]
     before = tokens[0]

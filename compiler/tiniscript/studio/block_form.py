@@ -1,0 +1,119 @@
+"""What a program is as blocks, and that as data for JSON.
+
+A block of the page is a Block here, and an expression is flat, as in the AST: `values` are its
+parts in the order in which a stack machine meets them. Knows no text and no page.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+# A part: `NUMBER` and its decimal, `NAME` or `SENSOR` and the name; else what is done to the parts
+# before, with an empty text. `BRACKETS` stand around a lone number; `NOTHING` is an empty place.
+Value = tuple[tuple[str, str], ...]
+Place = tuple[int, int, int, int]  # line and column, from 1, and those of the end
+NOWHERE: Place = (0, 0, 0, 0)
+
+# How many values and bodies a kind has; those of `if` are counted by its arms.
+SHAPES = {
+    "move": (2, 0), "move_until": (3, 0), "wait": (1, 0), "wait_until": (2, 0), "motors": (2, 0),
+    "stop": (0, 0), "start": (0, 0), "beep": (2, 0), "show": (1, 0),
+    "read": (0, 0), "set": (1, 0), "call": (0, 0), "assign": (1, 0),
+    "loop": (1, 1), "forever": (0, 1), "while": (1, 1), "break": (0, 0), "def": (0, 1),
+    "comment": (0, 0), "grey": (0, 0),
+}  # fmt: skip
+
+
+class Block(NamedTuple):
+    """`word` is the word or name that it has, or the text of a comment and of a grey block.
+
+    `if` has a value and a body for each arm, and one body more for ELSE. `note` is the comment
+    behind it; `is_apart`: an empty line stands before it.
+    """
+
+    kind: str
+    word: str = ""
+    values: tuple[Value, ...] = ()
+    bodies: tuple[tuple[Block, ...], ...] = ()
+    note: str = ""
+    is_apart: bool = False
+    place: Place = NOWHERE
+
+
+class Stack(NamedTuple):
+    """Blocks that hang on nothing: instructions, or one value."""
+
+    body: tuple[Block, ...] = ()
+    value: Value = ()
+
+
+class Form(NamedTuple):
+    """`start` is SI, SB or PING, or empty where the text does not say it."""
+
+    start: str
+    note: str
+    is_one_line: bool
+    body: tuple[Block, ...]
+    loose: tuple[Stack, ...]
+
+
+def data_of(form: Form) -> dict[str, Any]:
+    """Return a program's blocks as data for JSON."""
+    return {
+        **form._asdict(),
+        "body": _data_of_all(form.body),
+        "loose": [{"body": _data_of_all(each.body), "value": each.value} for each in form.loose],
+    }
+
+
+def from_data(data: dict[str, Any]) -> Form:
+    """Return the blocks that the page has sent. Raises KeyError and the like where it has a bug."""
+    loose = tuple(
+        Stack(_blocks_from(each["body"]), _value_from(each["value"])) for each in data["loose"]
+    )
+    note, is_one_line = data["note"], data["is_one_line"]
+    return Form(data["start"], note, is_one_line, _blocks_from(data["body"]), loose)
+
+
+def size_of(form: Form) -> int:
+    """Return how many blocks of the page a program needs, those of its values included."""
+    return sum(
+        1 + sum(len(value) for value in block.values)
+        for body in (form.body, *(stack.body for stack in form.loose))
+        for block in in_order(body)
+    )
+
+
+def in_order(blocks: tuple[Block, ...]) -> list[Block]:
+    """Return blocks with all that are in them, in the order of the text."""
+    found: list[Block] = []
+    for block in blocks:
+        found.append(block)
+        for body in block.bodies:
+            found += in_order(body)
+    return found
+
+
+def _data_of_all(blocks: tuple[Block, ...]) -> list[dict[str, Any]]:
+    return [
+        {**block._asdict(), "bodies": [_data_of_all(body) for body in block.bodies]}
+        for block in blocks
+    ]
+
+
+def _blocks_from(data: list[dict[str, Any]]) -> tuple[Block, ...]:
+    return tuple(
+        Block(
+            each["kind"],
+            each["word"],
+            tuple(_value_from(value) for value in each["values"]),
+            tuple(_blocks_from(body) for body in each["bodies"]),
+            each["note"],
+            each["is_apart"],
+        )
+        for each in data
+    )
+
+
+def _value_from(data: list[list[str]]) -> Value:
+    return tuple((op, text) for op, text in data)

@@ -1,0 +1,233 @@
+"""Blocks become text, in the layout of the formatter, and each block gets its place there.
+
+Knows words, signs and which of them needs brackets. What hangs on nothing is kept in comments at
+the end of the text, which `block_reading` takes back.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+from tiniscript.studio.block_form import Block, Form, Place, Stack, Value
+from tiniscript.studio.block_reading import LOOSE, LOOSE_VALUE
+from tiniscript.syntax.formatter import BEFORE_COMMENT, Row, lines_of
+from tiniscript.syntax.operators import BINARY, COMPARISON, MINUS, NOT
+from tiniscript.words import BLOCK_ENDS, WORDS
+
+ATOM = MINUS + 1  # needs no brackets anywhere
+
+_OPERATORS = {name: (precedence, sign) for sign, (precedence, name) in BINARY.items()}
+_NO_LINE = re.compile(r"[\r\n\0]+")
+
+
+class Printed(NamedTuple):
+    """`places` are those of the blocks of the body, in the order of the text."""
+
+    text: str
+    places: tuple[Place, ...]
+
+
+class _Instruction(NamedTuple):
+    """A line of a block: an instruction, a header, an arm, an end, a comment or a grey line."""
+
+    kind: str
+    word: str  # the first, as the formatter asks for it
+    text: str
+    note: str = ""
+    is_apart: bool = False
+
+    @property
+    def is_code(self) -> bool:
+        return self.kind not in ("comment", "grey")
+
+
+class _Line(NamedTuple):
+    """A line of the text; `columns` are where its instructions begin and end."""
+
+    row: Row
+    columns: tuple[tuple[int, int], ...]
+
+
+def print_blocks(form: Form) -> Printed:
+    """Return the text of a program's blocks, and where each of them is."""
+    found: list[_Instruction] = []
+    ranges: list[tuple[int, int]] = []
+    _add_all(form.body, found, ranges)
+    lines = _lines(form, found)
+    loose = [Row("", line, k == 0) for k, line in enumerate(_loose_lines(form.loose))]
+    texts = lines_of([line.row for line in lines] + loose)
+    places: list[tuple[int, int, int]] = []  # of each instruction: line, column, end
+    number = 0
+    for text, line in zip(texts, lines, strict=False):
+        number += 1 + text.count("\n")
+        before = len(text.lstrip("\n")) - len(line.row.text) + 1
+        places += [(number, before + start, before + end) for start, end in line.columns]
+    return Printed(
+        "".join(text + "\n" for text in texts),
+        tuple((*places[first][:2], places[last][0], places[last][2]) for first, last in ranges),
+    )
+
+
+# -- instructions --------------------------------------------------------------------------------
+
+
+def _add_all(
+    blocks: tuple[Block, ...], found: list[_Instruction], ranges: list[tuple[int, int]]
+) -> None:
+    """Add the lines of blocks, and for each block the first and the last of its own."""
+    for block in blocks:
+        k, first = len(ranges), len(found)
+        ranges.append((first, first))
+        values = [text_of(value) for value in block.values]
+        if block.bodies:
+            _add_bodies(block, values, found, ranges)
+        else:
+            found.append(_instruction(block, values))
+        ranges[k] = (first, len(found) - 1)
+
+
+def _add_bodies(
+    block: Block, values: list[str], found: list[_Instruction], ranges: list[tuple[int, int]]
+) -> None:
+    word = "LOOP" if block.kind == "forever" else block.kind.upper()
+    heads = [(word, f"{word}({value})") for value in values[:1]]
+    heads += [("ELSEIF", f"ELSEIF({value})") for value in values[1:]]
+    if word == "DEF":
+        heads = [(word, f"DEF {_one_line(block.word)}")]
+    elif block.kind == "forever":
+        heads = [(word, "LOOP(FOREVER)")]
+    elif len(block.bodies) > len(values):
+        heads.append(("ELSE", "ELSE"))
+    note, is_apart = block.note, block.is_apart
+    for (first, head), body in zip(heads, block.bodies, strict=True):
+        found.append(_Instruction(block.kind, first, head, note, is_apart))
+        _add_all(body, found, ranges)
+        note, is_apart = "", False
+    found.append(_Instruction(block.kind, BLOCK_ENDS[word], BLOCK_ENDS[word]))
+
+
+def _instruction(block: Block, values: list[str]) -> _Instruction:
+    kind, word = block.kind, _one_line(block.word)
+    if kind == "comment" or (kind == "grey" and not word.strip()):
+        return _Instruction("comment", "", _comment(word), is_apart=block.is_apart)
+    if kind == "grey":
+        text = word.strip()
+    elif kind == "assign":
+        text = f"{word} = {values[0]}"
+    else:
+        until = f" UNTIL({values.pop()})" if kind.endswith("_until") else ""
+        arguments = f"({', '.join(values)})" if values else ""
+        text = (word or kind.upper()) + arguments + until
+    return _Instruction(kind, word or kind.upper(), text, block.note, block.is_apart)
+
+
+# -- lines ---------------------------------------------------------------------------------------
+
+
+def _lines(form: Form, found: list[_Instruction]) -> list[_Line]:
+    """Return the lines of a program: comments that come first stand before its start."""
+    lines: list[_Line] = []
+    if form.start:
+        while len(lines) < len(found) and found[len(lines)].kind == "comment":
+            lines.append(_line([found[len(lines)]]))
+    rest = found[len(lines) :]
+    setup = form.start + "|" * bool(form.start)
+    code = [k for k, each in enumerate(rest) if each.is_code]
+    if form.start == "PING":
+        setup += "CHECK_CONNECTION"
+    elif not form.note and _is_one_line(form, rest, code):
+        one = rest[code[0] : code[-1] + 1]
+        return [*lines, *(_line([each]) for each in rest[: code[0]]), _line(one, setup),
+                *(_line([each]) for each in rest[code[-1] + 1 :])]  # fmt: skip
+    elif not form.note and code[:1] == [0] and not rest[0].is_apart and form.start:
+        lines.append(_line(rest[:1], setup, end=";"))
+        setup, rest = "", rest[1:]
+    if setup:
+        lines.append(_Line(Row("", _with_note(setup, form.note), False), ()))
+    return lines + [_line([each], end=";" * each.is_code) for each in rest]
+
+
+def _is_one_line(form: Form, rest: list[_Instruction], code: list[int]) -> bool:
+    """Whether all instructions go on one line, as the formatter has it."""
+    if not code or (form.start and code[0] > 0):
+        return False
+    if not form.is_one_line and len(code) > 1:
+        return False
+    together = rest[code[0] : code[-1] + 1]
+    has_grey = any(each.kind == "grey" for each in rest)
+    return not has_grey and all(each.is_code and not each.note for each in together[:-1])
+
+
+def _line(instructions: list[_Instruction], setup: str = "", end: str = "") -> _Line:
+    text, columns = setup, []
+    for k, each in enumerate(instructions):
+        text += ";" * (k > 0)
+        columns.append((len(text), len(text) + len(each.text)))
+        text += each.text
+    first, last = instructions[0], instructions[-1]
+    word = last.word if len(instructions) == 1 else ""
+    is_apart = first.is_apart and not setup
+    return _Line(Row(word, _with_note(text + end, last.note), is_apart), tuple(columns))
+
+
+def _with_note(text: str, note: str) -> str:
+    return f"{text}{BEFORE_COMMENT}{_comment(_one_line(note))}" if note else text
+
+
+def _comment(text: str) -> str:
+    text = text.rstrip()
+    is_apart = not text or text[0] == "/" or text[:2] == " /"
+    return f"//{text}" if is_apart else f"// {text}"
+
+
+def _one_line(text: str) -> str:
+    return _NO_LINE.sub(" ", text)
+
+
+def _loose_lines(stacks: tuple[Stack, ...]) -> list[str]:
+    lines: list[str] = []
+    for stack in stacks:
+        if stack.body:
+            text = print_blocks(Form("", "", False, stack.body, ())).text
+        else:
+            text = LOOSE_VALUE + text_of(stack.value)
+        lines += [LOOSE] * bool(lines)
+        lines += [f"{LOOSE} {line}" for line in text.splitlines() if line]
+    return lines
+
+
+# -- values --------------------------------------------------------------------------------------
+
+
+def text_of(value: Value) -> str:
+    """Return an expression with the brackets that it needs."""
+    stack: list[tuple[str, int]] = []
+    for op, name in value:
+        if op in _OPERATORS:
+            precedence, sign = _OPERATORS[op]
+            right, left = stack.pop(), stack.pop()
+            one = _bracketed(left, precedence + (precedence == COMPARISON))
+            stack.append((f"{one} {sign} {_bracketed(right, precedence + 1)}", precedence))
+        elif op == "NOT":
+            stack.append((f"NOT {_bracketed(stack.pop(), NOT)}", NOT))
+        elif op == "NEG":
+            text, precedence = stack.pop()
+            is_number = text[:1].isdigit() or text[:1] == "-"  # whose sign it would become
+            inner = f"({text})" if is_number else _bracketed((text, precedence), ATOM)
+            stack.append((f"-{inner}", MINUS))
+        elif op == "BRACKETS":
+            stack.append((f"({stack.pop()[0]})", ATOM))
+        elif op in WORDS and WORDS[op].role == "function":
+            count = len(WORDS[op].arguments)
+            arguments = ", ".join(text for text, _ in stack[-count:])
+            stack[-count:] = [(f"{op}({arguments})", ATOM)]
+        else:
+            stack.append(("" if op == "NOTHING" else _one_line(name) or op, ATOM))
+    (found,) = stack
+    return found[0]
+
+
+def _bracketed(operand: tuple[str, int], least: int) -> str:
+    text, precedence = operand
+    return text if precedence >= least else f"({text})"

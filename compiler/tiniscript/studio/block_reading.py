@@ -1,0 +1,235 @@
+"""Text becomes blocks: the compiler's own AST, with the comments and the lines that do not parse.
+
+Knows the AST and where comments stand. A line with a mistake of syntax becomes a grey block, and
+the others are read as if it were a comment. What the checker refuses is a block like any other.
+"""
+
+from __future__ import annotations
+
+import re
+
+from tiniscript.fixed_point import as_text
+from tiniscript.kit import Kit
+from tiniscript.source import Source, Span
+from tiniscript.studio.block_form import SHAPES, Block, Form, Place, Stack, Value
+from tiniscript.syntax.ast import (
+    Argument,
+    Assign,
+    Break,
+    Command,
+    Def,
+    If,
+    Instruction,
+    Loop,
+    Part,
+    While,
+)
+from tiniscript.syntax.formatter import Piece, instruction_text, is_one_line, pieces_of
+from tiniscript.syntax.parser import Parsed, parse
+from tiniscript.words import WORDS
+
+LOOSE = "///"  # begins the lines of blocks that hang on nothing
+LOOSE_VALUE = "= "
+ROUNDS = 12  # of reading; then every line is grey
+
+_LINE_END = re.compile(r"\r\n|\n|\r")
+_LEFT_OUT = frozenset(("AND_LEFT", "OR_LEFT"))  # of parts: where the left side ends
+
+
+def read(text: str, kit: Kit) -> Form:
+    """Return the blocks of any text. `kit` says which names are sensors."""
+    lines = _LINE_END.split(text)
+    grey: set[int] = set()
+    for _ in range(ROUNDS):
+        source, parsed = _read_without(lines, grey)
+        wrong = [each.span for each in parsed.diagnostics if each.is_mistake]
+        if not wrong:
+            break
+        _mark(source, wrong, grey)
+    else:
+        grey = {k for k, line in enumerate(lines) if line.strip()}
+        source, parsed = _read_without(lines, grey)
+    return _Reader(source, parsed, kit, {k: lines[k].strip() for k in grey}).form()
+
+
+def _read_without(lines: list[str], grey: set[int]) -> tuple[Source, Parsed]:
+    kept = ("//" if k in grey else line for k, line in enumerate(lines))
+    source = Source("\n".join(kept))
+    return source, parse(source)
+
+
+def _mark(source: Source, wrong: list[Span], grey: set[int]) -> None:
+    """Mark the first line of each mistake, and the others where those are marked already."""
+    before = len(grey)
+    grey.update(source.position(span.start)[0] - 1 for span in wrong)
+    if len(grey) == before:
+        for span in wrong:
+            first, last = source.position(span.start)[0], source.position(span.end)[0]
+            grey.update(range(first - 1, last))
+
+
+class _Reader:
+    """Walks over the AST, and over the pieces of the text that it comes from."""
+
+    def __init__(self, source: Source, parsed: Parsed, kit: Kit, grey: dict[int, str]) -> None:
+        self._source = source
+        self._program = parsed.program
+        self._pieces = pieces_of(parsed.scan)
+        self._next = 0
+        self._kit = kit
+        self._sensors = frozenset(device.name for device in kit.sensors)
+        self._grey = grey
+
+    def form(self) -> Form:
+        start = note = ""
+        before = self._comments()
+        if self._next < len(self._pieces) and self._pieces[self._next].is_setup:
+            piece = self._take()
+            start, note = piece.tokens[0].text, _note(piece)
+            if start == "PING":
+                note = " // ".join(filter(None, (note, _note(self._take()))))
+        body = [*before, *self._body(self._program.body)]
+        loose = self._loose(body)
+        counted = sum(piece.is_instruction for piece in self._pieces)
+        one_line = counted > 1 and is_one_line(self._pieces)
+        return Form(start, note, one_line, tuple(body), tuple(loose))
+
+    def _take(self) -> Piece:
+        self._next += 1
+        return self._pieces[self._next - 1]
+
+    def _comments(self) -> list[Block]:
+        """Return the comments, and grey lines, that stand before the next instruction."""
+        found = []
+        while self._next < len(self._pieces) and not self._pieces[self._next].tokens:
+            piece = self._take()
+            place = (piece.first_line + 1, 1, piece.first_line + 2, 1)
+            grey = self._grey.get(piece.first_line)
+            kind, word = ("comment", _note(piece)) if grey is None else ("grey", grey)
+            found.append(Block(kind, word, is_apart=piece.after_blank, place=place))
+        return found
+
+    def _body(self, instructions: tuple[Instruction, ...]) -> list[Block]:
+        found: list[Block] = []
+        for instruction in instructions:
+            found += self._comments()
+            found += self._blocks(instruction)
+        return [*found, *self._comments()]
+
+    def _blocks(self, node: Instruction) -> list[Block]:
+        """Return the block of an instruction, and the comment behind its end."""
+        first = self._take()
+        if isinstance(node, Command):
+            block = self._command(node, first)
+        elif isinstance(node, Assign):
+            block = Block("assign", node.name, (self._value(node.value),))
+        elif isinstance(node, Break):
+            block = Block("break")
+        else:
+            bodies, values = self._arms(node)
+            kind = "forever" if isinstance(node, Loop) and not values else type(node).__name__
+            word = node.name if isinstance(node, Def) else ""
+            block = Block(kind.lower(), word, values, bodies)
+        last = self._pieces[self._next - 1]
+        block = block._replace(
+            note=_note(first), is_apart=first.after_blank, place=self._place(first, last)
+        )
+        behind = _note(last) if last is not first else ""
+        return [block, Block("comment", behind, place=block.place)] if behind else [block]
+
+    def _arms(
+        self, node: If | Loop | While | Def
+    ) -> tuple[tuple[tuple[Block, ...], ...], tuple[Value, ...]]:
+        """Read bodies and what ends them: ELSEIF, ELSE or the end of the block."""
+        heads: list[Argument | None] = []
+        inner: list[tuple[Instruction, ...]] = []
+        if isinstance(node, If):
+            heads = [arm.condition for arm in node.arms]
+            inner = [arm.body for arm in node.arms] + [node.otherwise] * node.has_else
+        else:
+            inner = [node.body]
+            if isinstance(node, While):
+                heads = [node.condition]
+            elif isinstance(node, Loop) and node.times is not None:
+                heads = [node.times]
+        bodies = []
+        behind = ""  # ELSEIF or ELSE
+        for body in inner:
+            comment = [Block("comment", behind)] if behind else []
+            bodies.append((*comment, *self._body(body)))
+            behind = _note(self._take())
+        return tuple(bodies), tuple(self._value(head) for head in heads)
+
+    def _command(self, node: Command, piece: Piece) -> Block:
+        known = WORDS.get(node.word)
+        arguments = node.arguments or ()
+        if known is not None:
+            kind = known.role
+        elif node.arguments is not None:
+            kind = "set"
+        else:
+            kind = "read" if node.word in self._sensors else "call"
+        if node.until is not None:
+            kind += "_until"
+            arguments = (*arguments, node.until)
+        if SHAPES.get(kind, (-1, 0))[0] != len(arguments):
+            return Block("grey", instruction_text(piece.tokens))
+        return Block(kind, node.word, tuple(self._value(each) for each in arguments))
+
+    def _value(self, argument: Argument | None) -> Value:
+        assert argument is not None, "the line of an unread value is grey"
+        parts = [self._part(part) for part in argument.expression if part.op not in _LEFT_OUT]
+        if len(parts) == 1 and parts[0][0] == "NUMBER" and not argument.is_plain:
+            parts.append(("BRACKETS", ""))
+        return tuple(parts)
+
+    def _part(self, part: Part) -> tuple[str, str]:
+        if part.op == "NUMBER":
+            return part.op, as_text(int(part.value))
+        if part.op == "NAME":
+            return "SENSOR" if part.value in self._sensors else "NAME", str(part.value)
+        return part.op, ""
+
+    def _place(self, first: Piece, last: Piece) -> Place:
+        start, end = first.tokens[0].start, last.tokens[-1].end
+        return (*self._source.position(start), *self._source.position(end))
+
+    def _loose(self, body: list[Block]) -> list[Stack]:
+        """Take the stacks that are kept as comments at the end, if all of them can be read."""
+        first = len(body)
+        while first and body[first - 1].kind == "comment" and _is_loose(body[first - 1].word):
+            first -= 1
+        if first == len(body):
+            return []
+        texts = "\n".join(block.word[1:].strip() for block in body[first:]).split("\n\n")
+        found = [_stack(text, self._kit) for text in texts if text.strip()]
+        stacks = [each for each in found if each is not None]
+        if len(stacks) != len(found):
+            return []
+        del body[first:]
+        return stacks
+
+
+def _note(piece: Piece) -> str:
+    """Return the comments of a piece without the signs before them: of `// a`, `a`."""
+    texts = [comment[2:].rstrip() for comment in piece.comments]
+    return " // ".join(
+        text[1:] if text[:1].isspace() and text[1:2] != "/" else text for text in texts
+    )
+
+
+def _is_loose(comment: str) -> bool:
+    return comment[:1] == "/" and comment[1:2] in ("", " ")
+
+
+def _stack(text: str, kit: Kit) -> Stack | None:
+    is_value = text.startswith(LOOSE_VALUE)
+    source = Source(f"X {text}" if is_value else text)
+    parsed = parse(source)
+    if any(each.is_mistake for each in parsed.diagnostics):
+        return None
+    reader = _Reader(source, parsed, kit, {})
+    if reader._pieces[:1] and reader._pieces[0].is_setup:
+        return None
+    body = reader._body(parsed.program.body)
+    return Stack((), body[0].values[0]) if is_value else Stack(tuple(body))

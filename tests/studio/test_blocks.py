@@ -1,0 +1,304 @@
+"""Blocks and text: neither loses anything of the other. In Python alone, as the page asks it."""
+
+from __future__ import annotations
+
+import json
+import random
+import typing
+
+import pytest
+
+from tests.oracle import programs as oracle_programs
+from tests.pupils import corpus
+from tests.studio.programs import Program, programs
+from tests.support.kits import KITS
+from tiniscript import compile_text, robots
+from tiniscript.kit import Kit
+from tiniscript.source import Source
+from tiniscript.studio.block_form import (
+    SHAPES,
+    Block,
+    Form,
+    data_of,
+    from_data,
+    in_order,
+    size_of,
+)
+from tiniscript.studio.block_printing import print_blocks
+from tiniscript.studio.block_reading import read
+from tiniscript.studio.worker import MOST_BLOCKS, answer
+from tiniscript.syntax import ast
+from tiniscript.syntax.formatter import formatted
+from tiniscript.syntax.lexer import scan
+from tiniscript.syntax.parser import parse
+from tiniscript.words import ALIASES, WORDS
+
+TINIBOT = robots.load("tinibot").kit
+GRABBER = robots.load("grabber").kit
+
+
+def kinds(text: str, kit: Kit = TINIBOT) -> list[str]:
+    return [block.kind for block in in_order(read(text, kit).body)]
+
+
+def comments(text: str) -> list[str]:
+    """Return the words of all comments: joined and moved to the next line they are the same."""
+    found = " ".join(token.text[2:] for token in scan(text).comments)
+    return [word for word in found.split() if word != "//"]
+
+
+def words(text: str) -> list[str]:
+    """Return the words and numbers of a text, comments included, in any order."""
+    kept = "".join(letter if letter.isalnum() or letter == "_" else " " for letter in text.upper())
+    return sorted(ALIASES.get(word, word) for word in kept.split())
+
+
+def check(text: str, kit: Kit) -> None:
+    """A right program keeps its image and its comments, has no grey block, and is laid out."""
+    before = compile_text(text, kit)
+    form = read(text, kit)
+    assert "grey" not in [block.kind for block in in_order(form.body)], text
+    printed = print_blocks(from_data(json.loads(json.dumps(data_of(form)))))
+    after = compile_text(printed.text, kit)
+    assert after.is_right and after.image == before.image, printed.text
+    assert formatted(Source(printed.text)) == printed.text
+    assert comments(printed.text) == comments(text), printed.text
+    again = read(printed.text, kit)
+    assert print_blocks(again).text == printed.text
+    found = zip(in_order(again.body), printed.places, strict=True)
+    for block, place in found:
+        if block.kind != "comment":
+            assert block.place == place, (block, place, printed.text)
+
+
+@pytest.mark.parametrize("program", programs(), ids=lambda each: each.name)
+def test_every_program_is_the_same_from_its_blocks(program: Program) -> None:
+    """Those of the paper, of all documents and cases, and the examples."""
+    kit = robots.load(program.robot).kit
+    if compile_text(program.text, kit).is_right:
+        check(program.text, kit)
+    else:
+        print_blocks(read(program.text, kit))
+
+
+@pytest.mark.parametrize("first", range(0, 1000, 250))
+def test_random_programs_are_the_same_from_their_blocks(first: int) -> None:
+    for seed in range(first, first + 250):
+        theirs, kit = KITS[seed % len(KITS)]
+        check(oracle_programs.program(random.Random(seed), theirs), kit)
+
+
+@pytest.mark.parametrize("first", range(0, 500, 250))
+def test_nothing_of_a_broken_text_is_lost(first: int) -> None:
+    for seed in range(first, first + 250):
+        rng = random.Random(seed)
+        theirs, kit = KITS[seed % len(KITS)]
+        text = oracle_programs.broken(rng, oracle_programs.program(rng, theirs))
+        if "~" in text or "." in text:  # checksums are made anew, and numbers are written shorter
+            print_blocks(read(text, kit))
+        else:
+            assert words(print_blocks(read(text, kit)).text) == words(text), text
+
+
+@pytest.mark.parametrize("text", sorted({each.program for each in corpus.entries()}))
+def test_what_pupils_write_becomes_blocks_and_text(text: str) -> None:
+    form = read(text, TINIBOT)
+    again = read(print_blocks(form).text, TINIBOT)
+    assert print_blocks(again).text == print_blocks(read(print_blocks(again).text, TINIBOT)).text
+    assert not text.strip() or form.body or form.start or ";" in text
+
+
+# -- every node has a block ------------------------------------------------------------------------
+
+NODES = {
+    ast.Command: ("F(2, 80)", "move"),
+    ast.Assign: ("X = 1", "assign"),
+    ast.If: ("IF(TRUE);ELSEIF(FALSE);ELSE;ENDIF", "if"),
+    ast.Loop: ("LOOP(3);END_LOOP", "loop"),
+    ast.While: ("WHILE(TRUE);END_WHILE", "while"),
+    ast.Break: ("BREAK", "break"),
+    ast.Def: ("DEF HOP;END_DEF", "def"),
+}
+# A program for each role of words; the words of a role are put in.
+ROLES = {
+    "setup": {"PING": "PING|CHECK_CONNECTION", "CHECK_CONNECTION": "PING|CHECK_CONNECTION",
+              "SI": "SI|S", "SB": "SB|S"},
+    "until": {"UNTIL": "{}"}, "forever": {"FOREVER": "LOOP(FOREVER);W(1);END_LOOP"},
+    "block": {"DEF": "DEF X;END_DEF", "IF": "IF(TRUE);ENDIF", "LOOP": "LOOP(1);END_LOOP",
+              "WHILE": "WHILE(FALSE);END_WHILE"},
+    "arm": {"ELSE": "IF(TRUE);ELSE;ENDIF", "ELSEIF": "IF(TRUE);ELSEIF(TRUE);ENDIF"},
+    "end": {"ENDIF": "IF(TRUE);ENDIF", "END_LOOP": "LOOP(1);END_LOOP",
+            "END_WHILE": "WHILE(FALSE);END_WHILE", "END_DEF": "DEF X;END_DEF"},
+    "alias": {"END_IF": "IF(TRUE);END_IF", "ENDLOOP": "LOOP(1);ENDLOOP",
+              "ENDWHILE": "WHILE(FALSE);ENDWHILE", "ENDDEF": "DEF X;ENDDEF"},
+    "break": {"BREAK": "LOOP(1);BREAK;END_LOOP"},
+    "operator": {"AND": "SHOW(TRUE AND FALSE)", "OR": "SHOW(TRUE OR FALSE)",
+                 "NOT": "SHOW(NOT TRUE)"},
+}  # fmt: skip
+
+
+def of_word(word: str) -> str:
+    role = WORDS[word].role
+    if role == "until":
+        return "W(1) UNTIL(DISTANCE < 10)"
+    if role in ("value", "function"):
+        return f"SHOW({WORDS[word].example})"
+    return ROLES[role][word] if role in ROLES else WORDS[word].example
+
+
+def test_every_node_of_the_grammar_has_a_block() -> None:
+    assert set(NODES) == set(typing.get_args(ast.Instruction))
+    for node, (text, kind) in NODES.items():
+        assert isinstance(parse(Source(text)).program.body[0], node)
+        assert kinds(text)[0] == kind
+
+
+@pytest.mark.parametrize("word", [name for name, each in WORDS.items() if each.role != "later"])
+def test_every_word_of_the_language_is_in_blocks(word: str) -> None:
+    text = of_word(word)
+    check(text, TINIBOT)
+    printed = print_blocks(read(text, TINIBOT)).text
+    assert ALIASES.get(word, word) in words(text.upper()) or word == "CHECK_CONNECTION"
+    assert sorted(words(printed)) == sorted(words(text))
+
+
+@pytest.mark.parametrize("word", ["F", "B", "L", "R", "W"])
+def test_moves_and_waits_can_have_an_until(word: str) -> None:
+    arguments = "FOREVER" if word == "W" else "FOREVER, 80"
+    check(f"{word}({arguments}) UNTIL(DISTANCE < 10)", TINIBOT)
+
+
+def test_every_word_of_a_kit_is_in_blocks() -> None:
+    for name in robots.names():
+        kit = robots.load(name).kit
+        for sensor in kit.sensors:
+            assert kinds(sensor.name, kit) == ["read"]
+            check(f"{sensor.name};SHOW({sensor.name})", kit)
+        for actuator in kit.actuators:
+            assert kinds(f"{actuator.name}(1)", kit) == ["set"]
+            check(f"{actuator.name}({'TRUE' if actuator.is_yes_no else 1})", kit)
+
+
+def test_the_shape_of_each_kind_is_what_is_read() -> None:
+    text = ";".join(of_word(word) for word in WORDS if WORDS[word].role not in ("later", "setup"))
+    text += ";F(1, 2) UNTIL(TRUE);X = 1;HOP;LED(TRUE);DISTANCE;LOOP(FOREVER);END_LOOP\n// note\nF("
+    found = in_order(read(text, TINIBOT).body)
+    assert {block.kind for block in found} == {*SHAPES, "if"}
+    for block in found:
+        if block.kind != "if":
+            assert (len(block.values), len(block.bodies)) == SHAPES[block.kind], block
+
+
+# -- by hand ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("text", "printed"),
+    [
+        ("", ""),
+        ("si|", "SI|\n"),
+        ("SI|F(2,80)", "SI|F(2, 80)\n"),
+        ("SB|F(1,60);W(0.5);B(1,60) // go", "SB|F(1, 60);W(0.5);B(1, 60)  // go\n"),
+        ("SI|F(1, 60)\nS", "SI|F(1, 60);\nS;\n"),
+        ("//first\nSI|\nF(1, 60)//go\n\nS", "// first\nSI|F(1, 60);  // go\n\nS;\n"),
+        ("SI| // start\nS;STOP", "SI|  // start\nS;\nSTOP;\n"),
+        ("PING|check_connection //?", "PING|CHECK_CONNECTION  // ?\n"),
+        ("F((2), (800))", "F((2), (800))\n"),
+        ("X = -(5) - -5 - (3 - 2) * (A = (P < C))",
+         "X = -(5) - -5 - (3 - 2) * (A = (P < C))\n"),
+        ("X = (NOT A) AND NOT (P OR Q) OR NOT D = E", "X = NOT A AND NOT (P OR Q) OR NOT D = E\n"),
+        ("X = -(-A) % -MIN(1, -(P + C))", "X = -(-A) % -MIN(1, -(P + C))\n"),
+        ("IF(TRUE) // a\nS\nELSE // b\nENDIF // c\nS // d",
+         "IF(TRUE);  // a\n  S;\nELSE;\n// b\nENDIF;\n// c\nS;  // d\n"),
+        ("/////\n// /x\n//\n//  two", "/////\n// /x\n//\n//  two\n"),
+        ("F(1, // fast\n 80)", "F(1, 80)  // fast\n"),
+    ],
+)  # fmt: skip
+def test_what_blocks_are_as_text(text: str, printed: str) -> None:
+    assert print_blocks(read(text, TINIBOT)).text == printed
+
+
+def test_a_line_that_does_not_parse_is_a_grey_block() -> None:
+    text = "SI|F(2, 80)\nF(1; 80)\n  ¿qué? // hm\nIF(DISTANCE < 10)\nS\nENDIF\n"
+    form = read(text, TINIBOT)
+    assert [(block.kind, block.word) for block in form.body if block.kind == "grey"] == [
+        ("grey", "F(1; 80)"), ("grey", "¿qué? // hm")
+    ]  # fmt: skip
+    assert [block.kind for block in form.body] == ["move", "grey", "grey", "if"]
+    printed = print_blocks(form)
+    assert printed.text == (
+        "SI|F(2, 80);\nF(1; 80)\n¿qué? // hm\nIF(DISTANCE < 10);\n  S;\nENDIF;\n"
+    )
+    assert printed.places[:3] == ((1, 4, 1, 12), (2, 1, 2, 9), (3, 1, 3, 12))
+    assert print_blocks(read(printed.text, TINIBOT)).text == printed.text
+
+
+@pytest.mark.parametrize("text", ["F(1)", "S(2)", "S UNTIL(TRUE)", "HOP(1, 2)", "F(1, 2, 3)"])
+def test_what_no_block_has_room_for_is_grey(text: str) -> None:
+    assert kinds(text) == ["grey"]
+    printed = print_blocks(read(f"{text} // no", TINIBOT)).text
+    assert printed.split() == [*text.split(), "//", "no"]
+
+
+def test_a_header_that_is_never_closed_keeps_its_lines() -> None:
+    text = "LOOP(3)\n  F(1, 80)\nIF(TRUE)\n  S\n"
+    assert kinds(text) == ["grey", "move", "grey", "stop"]
+    assert kinds("ENDIF\nS") == ["grey", "stop"]
+
+
+def test_blocks_that_hang_on_nothing_are_kept() -> None:
+    text = (
+        "SI|S\n\n/// F(1, 80);  // later\n/// IF(DISTANCE < 10);\n///   S;\n/// ENDIF;\n///\n"
+        "/// = DISTANCE < 10\n///\n/// X = 5\n"
+    )
+    form = read(text, TINIBOT)
+    assert [block.kind for block in form.body] == ["stop"]
+    assert [[block.kind for block in stack.body] for stack in form.loose] == [
+        ["move", "if"], [], ["assign"]
+    ]  # fmt: skip
+    assert form.loose[1].value == (("SENSOR", "DISTANCE"), ("NUMBER", "10"), ("LT", ""))
+    assert print_blocks(form).text == text.replace("SI|S\n", "SI|S\n")
+    assert formatted(Source(text)) == text
+
+
+@pytest.mark.parametrize("text", ["/// 5 of them", "/// SI|S", "///\n/// F(1", "/// S\nF(1, 80)"])
+def test_other_comments_with_three_signs_stay_comments(text: str) -> None:
+    form = read(text, TINIBOT)
+    assert form.loose == () and form.body[0].kind == "comment"
+    assert comments(print_blocks(form).text) == comments(text)
+
+
+def test_what_is_typed_into_a_field_stays_in_its_line() -> None:
+    body = (Block("comment", "a\r\nS"), Block("assign", "X\n", ((("NUMBER", "1"),),)),
+            Block("stop", "S", note="b\nF(1, 80)\0"), Block("grey", "  \n "),
+            Block("grey", "a\nb"))  # fmt: skip
+    assert print_blocks(Form("SI", "", False, body, ())).text == (
+        "// a S\nSI|X  = 1;\nS;  // b F(1, 80)\n//\na b\n"
+    )
+
+
+def test_empty_places_are_said_by_the_compiler() -> None:
+    nothing = (("NOTHING", ""),)
+    body = (Block("if", "", (nothing,), ((),)), Block("move", "F", (nothing, nothing)))
+    text = print_blocks(Form("SI", "", False, body, ())).text
+    assert text == "SI|IF();\nENDIF;\nF(, );\n"
+    assert compile_text(text, TINIBOT).diagnostics
+
+
+def test_the_page_asks_for_blocks_and_for_text() -> None:
+    text = "SI|GRIPPER(90); // ¡abre!\nHOP"
+    form = json.loads(answer('{"do": "blocks", "robot": "grabber"}', text.encode()))
+    assert form["body"][0]["note"] == "¡abre!"
+    printed = json.loads(answer(json.dumps({"do": "text", "form": form})))
+    assert printed["text"] == "SI|GRIPPER(90);  // ¡abre!\nHOP;\n"
+    assert printed["places"] == [[1, 4, 1, 15], [2, 1, 2, 4]]
+
+
+def test_a_very_long_program_stays_text() -> None:
+    asked = '{"do": "blocks", "robot": "tinibot"}'
+    few, many = (b"S;" * count for count in (MOST_BLOCKS, MOST_BLOCKS + 1))
+    assert len(json.loads(answer(asked, few))["body"]) == MOST_BLOCKS
+    assert json.loads(answer(asked, many)) == {"size": MOST_BLOCKS + 1}
+    deep = f"X = {'(' * 5000}1{')' * 5000}{' + 1' * MOST_BLOCKS}"
+    assert json.loads(answer(asked, deep.encode())) == {"size": 2 * MOST_BLOCKS + 2}
+    assert size_of(read("/// F(1, 2)", TINIBOT)) == 3
