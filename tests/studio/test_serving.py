@@ -105,7 +105,7 @@ def test_its_own_page_gets_it(server: serving.Server, name: str) -> None:
     assert response.status == 200
 
 
-@pytest.mark.parametrize("method", ["POST", "PUT", "DELETE", "OPTIONS", "TRACE"])
+@pytest.mark.parametrize("method", ["PUT", "DELETE", "OPTIONS", "TRACE"])
 def test_nothing_can_be_sent_to_it(server: serving.Server, method: str) -> None:
     assert ask(server, "/", method)[0].status == 501
 

@@ -167,17 +167,9 @@ def limited(
 
 def reason_of(line: LinkConnection, reply: Reply[object]) -> str:
     """Return why a reply is not OK; `status`: the robot's status gives the reason."""
-    from tiniscript.link.outcomes import CANCELLED, LOST
+    from tiniscript.link import reasons
 
-    if reply.status == CANCELLED:
-        return "stopped_elsewhere"
-    if reply.status != LOST:
-        return "status"
-    if line.robot is not None:
-        return "link_lost"
-    if line.is_echoed:
-        return "link_echo"
-    return "link_other" if line.heard else "link_silent"
+    return reasons.reason_of(line, reply)
 
 
 def reason_of_end(line: LinkConnection, gone: Gone, port: str) -> str:

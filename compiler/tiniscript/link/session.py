@@ -10,6 +10,7 @@ what ends one. `transmission` times retries, `stop_sequence` times stops, `reque
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Callable
 from typing import Any, TypeVar
 
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
@@ -81,6 +82,7 @@ class Session(SessionRequests):
         super().__init__(nonce, kit, isa, keys, lambda: self._epoch)
         self.is_attached = True  # events are wanted, so the heartbeat goes on while nothing runs
         self.tells_starts = False  # STARTED events are wanted
+        self.may_beat: Callable[[], bool] = lambda: True  # False: nobody attends to the robot
         self.damaged = 0  # count of damaged frames
         self._receiver = Receiver()
         self._events: list[Event] = []
@@ -204,7 +206,7 @@ class Session(SessionRequests):
         self._advance(None, now_ms)
 
     def _heartbeat_ms(self) -> int | None:
-        if not self._handshake.is_open:
+        if not self._handshake.is_open or not self.may_beat():
             return None
         if self.is_running:
             return HEARTBEAT_MS

@@ -16,6 +16,7 @@ from tiniscript.studio.block_printing import print_blocks
 from tiniscript.studio.block_reading import read
 
 if TYPE_CHECKING:
+    from tiniscript.studio.page_line import PageRobot
     from tiniscript.studio.simulation import Simulation
 
 Answer = dict[str, Any]
@@ -103,7 +104,42 @@ def _push(fields: Answer, data: bytes) -> Answer:
     return _simulation.state()
 
 
+_robot: PageRobot | None = None  # a page has one of these, too
+
+
+def _connect(fields: Answer, data: bytes) -> Answer:
+    """Begin a session over what the page has opened; `data` is the file of its keys, or nothing."""
+    from tiniscript.studio.page_line import BadKeys, PageKeys, PageRobot
+
+    global _robot
+    try:
+        keys = PageKeys(data)
+    except BadKeys:
+        keys = PageKeys(b"")
+    _robot = PageRobot(fields["robot"], fields["language"], keys)
+    return {}
+
+
+def _link(fields: Answer, data: bytes) -> Answer:
+    """Go on with the session; `data` has arrived."""
+    assert _robot is not None, "no robot is connected"
+    return _robot.go(data, fields["now_ms"], fields["asked"])
+
+
+def _import_keys(fields: Answer, data: bytes) -> Answer:
+    """Add the keys of a file, `data`, to those of the page, whose file is `kept`."""
+    from tiniscript.studio.page_line import BadKeys, PageKeys
+
+    try:
+        keys = PageKeys(fields["kept"].encode()) if _robot is None else _robot.keys
+        count = keys.add(data)
+    except BadKeys:
+        return {"count": None}
+    return {"count": count, "keys": keys.file()}
+
+
 _ASKED: dict[str, Callable[[Answer, bytes], Answer]] = {
     "check": _check, "open": _open, "line": _line, "blocks": _blocks, "text": _text,
     "power_on": _power_on, "go": _go, "next": _next, "stop": _stop, "push": _push,
+    "connect": _connect, "link": _link, "import_keys": _import_keys,
 }  # fmt: skip

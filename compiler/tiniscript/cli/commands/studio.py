@@ -18,8 +18,11 @@ PORT = 7070
 
 def run(options: Namespace, language: str) -> int:
     port = whole_number("--listen", options.listen, PORT, 0, 65535, language)
+    from tiniscript.studio.hosting import Hosting
+
+    hosting = Hosting()
     try:
-        server = serving.Server(serving.files(), port)
+        server = serving.Server(serving.files(), port, hosting.answer)
     except serving.NotBuilt:
         raise CommandError(2, "studio_not_built") from None
     except OSError as why:
@@ -30,16 +33,17 @@ def run(options: Namespace, language: str) -> int:
     try:
         with ended_by_signal():
             thread.start()
-            print(server.address, flush=True)
-            said = text("studio_here", language).format(address=server.address)
+            print(server.entrance, flush=True)
+            said = text("studio_here", language).format(address=server.entrance)
             print(said, file=sys.stderr, flush=True)
             if not options.no_browser:
-                webbrowser.open(server.address)
+                webbrowser.open(server.entrance)
             while thread.is_alive():
                 thread.join(1)
     except KeyboardInterrupt:
         pass
     finally:
         server.shutdown()
+        hosting.close()
         server.server_close()
     return 0

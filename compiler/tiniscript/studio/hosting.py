@@ -1,0 +1,142 @@
+"""What a page may ask of the robots of this computer: which ports there are, and one robot a page.
+
+A page is a random name that it has given itself; it drives one robot, and a port has one page.
+Knows no HTTP: `serving` lets only the page of this computer come here.
+"""
+
+from __future__ import annotations
+
+from threading import Lock
+from typing import Any
+
+from tiniscript import robots
+from tiniscript.link import known_ports, ports
+from tiniscript.link.port_names import is_there, same_for_all
+from tiniscript.printable import printable
+from tiniscript.studio.hosted_robot import HostedRobot
+from tiniscript.studio.robot_link import BadRequest, Json
+from tiniscript.virtual import directory
+
+LANGUAGES = ("en", "es")
+NAME_CHARACTERS = 64  # of a page
+PORT_CHARACTERS = 300
+MOST_ROBOTS = 40
+MOST_ASKED = 8  # requests at a time
+END_S = 8.0  # for stops to be confirmed when the server ends
+PORT_SHOWN = 200
+
+
+class Hosting:
+    """All robots that pages of this server drive. Any thread may call it."""
+
+    def __init__(self) -> None:
+        self._lock = Lock()
+        self._by_page: dict[str, HostedRobot] = {}
+        self._parting: list[HostedRobot] = []
+
+    def answer(self, request: Json) -> Json:
+        """Return the answer to a page's request. Raises BadRequest."""
+        do = request.get("do")
+        if do == "ports":
+            return {"ports": listed()}
+        if do == "stop_all":
+            return self._stop_all()
+        page = _text(request, "page", NAME_CHARACTERS)
+        if do == "connect":
+            return self._connect(page, request)
+        with self._lock:
+            robot = self._by_page.get(page)
+        if do not in ("beat", "stop", "leave"):
+            raise BadRequest
+        if robot is None:
+            return {"news": [{"over": "left", "said": "", "number": 0}]}
+        if do == "stop":
+            robot.stop()
+        elif do == "leave":
+            robot.leave()
+        return {"news": robot.hear(_requests(request), _seen(request))}
+
+    def close(self) -> None:
+        """Stop what pages have started, and close all ports."""
+        with self._lock:
+            found = [*self._by_page.values(), *self._parting]
+        for each in found:
+            each.leave()
+        for each in found:
+            each.join(END_S)
+
+    def _connect(self, page: str, request: Json) -> Json:
+        port = _text(request, "port", PORT_CHARACTERS).strip()
+        robot, language = request.get("robot"), request.get("language")
+        if robot not in robots.names() or language not in LANGUAGES or not port:
+            raise BadRequest
+        with self._lock:
+            self._forget_ended()
+            own = self._by_page.get(page)
+            if own is not None and not own.has_ended:
+                return {"failure": "connected"}
+            taken = {same_for_all(each.port) for each in self._by_page.values()}
+            if same_for_all(port) in taken:
+                return {"failure": "other_tab"}
+            if len(self._by_page) >= MOST_ROBOTS:
+                return {"failure": "too_many"}
+            self._by_page[page] = HostedRobot(port, str(robot), str(language))
+        return {}
+
+    def _forget_ended(self) -> None:
+        all_of_them = [*self._by_page.values(), *self._parting]
+        self._parting = [each for each in all_of_them if each.is_parting]
+        self._by_page = {name: each for name, each in self._by_page.items() if not each.has_ended}
+
+    def _stop_all(self) -> Json:
+        with self._lock:
+            found = [each for each in self._by_page.values() if not each.has_ended]
+        for each in found:
+            each.stop()
+        return {"stopping": len(found)}
+
+
+def listed() -> list[Json]:
+    """Return the ports of this computer, the last used one first. Opens none of them.
+
+    `name` is that of the robot that had answered there, `virtual` the profile of a virtual robot.
+    """
+    known = known_ports.known()
+    virtual = {each.address: each for each in directory.for_all()}
+    about = {each.port: each.description for each in ports.listed()}
+    names = [*about, *(port for port in virtual if port not in about)]
+    names += [port for port in known.names
+              if port not in names and is_there(port) and not directory.is_gone(port)]  # fmt: skip
+    names.sort(key=lambda port: port != known.last)
+    return [
+        {
+            "port": port,
+            "name": virtual[port].name if port in virtual else known.names.get(port, ""),
+            "description": printable(about.get(port, ""), PORT_SHOWN),
+            "virtual": virtual[port].robot if port in virtual else None,
+        }
+        for port in names
+    ]
+
+
+def _text(request: Json, name: str, most: int) -> str:
+    found = request.get(name)
+    if not isinstance(found, str) or not 1 <= len(found) <= most or not found.isprintable():
+        raise BadRequest
+    return found
+
+
+def _requests(request: Json) -> list[Json]:
+    found: Any = request.get("asked", [])
+    if not isinstance(found, list) or len(found) > MOST_ASKED:
+        raise BadRequest
+    if not all(isinstance(each, dict) for each in found):
+        raise BadRequest
+    return found
+
+
+def _seen(request: Json) -> int:
+    found = request.get("seen", 0)
+    if type(found) is not int:
+        raise BadRequest
+    return found

@@ -1,0 +1,144 @@
+"""The session with a robot in the page: its bytes come and go by what a browser can open.
+
+The page's main thread owns the port, and calls `go`. So a page whose main thread stands still sends
+nothing, and the robot's dead-man timer ends what runs; `go` stops it where the page was away for
+longer than HEARD_MS. Knows no browser and no clock.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from typing import TypeVar
+
+from tiniscript.keys import BadKeys, read, written
+from tiniscript.link.authority import RobotKey
+from tiniscript.link.backlog import Backlog
+from tiniscript.link.connection import PendingRequest, Requester
+from tiniscript.link.messages import KEY_BYTES
+from tiniscript.link.outcomes import Event
+from tiniscript.link.requests import DeviceInfo
+from tiniscript.link.session import Session
+from tiniscript.studio.checking import profile_of
+from tiniscript.studio.robot_link import Json, RobotLink
+
+T = TypeVar("T")
+
+HEARD_MS = 500  # a page that was away for longer no longer attends to its robot
+
+
+class PageKeys:
+    """The keys that a page keeps: a KeyRing. `has_changed`: the page has to keep them anew."""
+
+    def __init__(self, data: bytes) -> None:
+        """`data` is a file of keys, or nothing. Raises BadKeys."""
+        self.keys: list[RobotKey] = read(data) if data else []
+        self.has_changed = False
+
+    def file(self) -> str:
+        self.has_changed = False
+        return written(self.keys).decode("ascii")
+
+    def add(self, data: bytes) -> int:
+        """Put the keys of a file in the place of those before; return how many. Raises BadKeys."""
+        given = read(data)
+        for key in given:
+            self.settle(key)
+        return len(given)
+
+    def of_robot(self, robot: int) -> list[RobotKey]:
+        return [key for key in self.keys if key.id == robot]
+
+    def made(self, robot: int, which: int, name: str) -> RobotKey:
+        key = RobotKey(robot, which, os.urandom(KEY_BYTES), name, is_pending=True)
+        self._set([*self.keys, key])
+        return key
+
+    def settle(self, key: RobotKey) -> None:
+        rest = [each for each in self.keys if (each.id, each.which) != (key.id, key.which)]
+        self._set([*rest, key._replace(is_pending=False, is_stale=False)])
+
+    def refuse(self, key: RobotKey) -> None:
+        self._set([each._replace(is_stale=True) if each[:3] == key[:3] else each
+                   for each in self.keys])  # fmt: skip
+
+    def drop(self, key: RobotKey) -> None:
+        self._set([each for each in self.keys if each.key != key.key])
+
+    def _set(self, keys: list[RobotKey]) -> None:
+        self.has_changed = self.has_changed or keys != self.keys
+        self.keys = keys
+
+
+class PageLine:
+    """A session without a thread: what a RobotLink needs of a connection."""
+
+    def __init__(self, baud: int, kit: int, keys: PageKeys) -> None:
+        nonce = int.from_bytes(os.urandom(4), "little")
+        self.session = Session(nonce, baud, kit, keys=keys)
+        self.session.tells_starts = True
+        self.heard = 0
+        self.is_echoed = False
+        self.now_ms = 0
+        self._events = Backlog()
+
+    @property
+    def robot(self) -> DeviceInfo | None:
+        return self.session.robot
+
+    def do(self, make: Callable[[Requester], PendingRequest[T]]) -> PendingRequest[T]:
+        return make(self.session)
+
+    def event(self, limit_s: float = 0) -> tuple[int, Event] | None:
+        return self._events.take() if self._events else None
+
+    def stop(self) -> None:
+        self.session.stop(self.now_ms)
+
+    def go(self, data: bytes, now_ms: int) -> bytes:
+        """Take the bytes that have arrived; return those to send."""
+        self.heard += len(data)
+        self.now_ms = now_ms
+        self.session.receive(data, now_ms)
+        sent = self.session.poll(now_ms)
+        events = self.session.events()
+        self.is_echoed = self.is_echoed or any(event.name == "ECHO" for event in events)
+        self._events.put((now_ms, event) for event in events)
+        return sent
+
+
+class PageRobot:
+    """The robot of a page that has opened a port."""
+
+    def __init__(self, robot: str, language: str, keys: PageKeys) -> None:
+        """`robot` is the profile of the page's programs."""
+        profile = profile_of(robot)
+        self.keys = keys
+        self.line = PageLine(profile.board.baud, profile.kit.fingerprint, keys)
+        self.link = RobotLink(self.line, language)
+        self._was_here_ms: int | None = None
+
+    def go(self, data: bytes, now_ms: int, asked: list[Json]) -> Json:
+        """Let the session go on, with the bytes that have arrived and new requests.
+
+        Returns the bytes to `send` as hexadecimal digits, the time at which to call again at the
+        latest (`wakes_ms`, or None), and the news.
+        """
+        was_ms, self._was_here_ms = self._was_here_ms, now_ms
+        if was_ms is not None and now_ms - was_ms > HEARD_MS and self.link.has_run:
+            self.line.now_ms = now_ms
+            self.link.stop()
+        for request in asked:
+            self.link.ask(request)
+        sent = self.line.go(data, now_ms)
+        found: Json = {
+            "send": sent.hex(),
+            "news": self.link.news(),
+            "wakes_ms": self.line.session.wakes_at(),
+        }
+        if self.keys.has_changed:
+            found["keys"] = self.keys.file()
+        return found
+
+
+__all__ = ("BadKeys", "PageKeys", "PageRobot")

@@ -1,0 +1,308 @@
+"""What the page asks of a robot, and what it is told of it: both as data for JSON.
+
+The same code is in the page, over Web Serial and Web Bluetooth, and in `tsc studio`, over the ports
+of the computer; in both places it uses the session of `tiniscript.link`. So a request, a receipt
+and a refusal mean the same whichever way a robot is reached. `tsc studio` passes requests on and no
+bytes: other commands share its port meanwhile, and the keys of robots stay in their file.
+
+Knows no port, no browser and no clock.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple, Protocol, TypeVar
+
+from tiniscript import robots
+from tiniscript.bytecode.image import Image, ImageRefused, unpack
+from tiniscript.bytecode.opcodes import FAULTS
+from tiniscript.fixed_point import as_text
+from tiniscript.library.known_kits import may_run, shipped_of_kit
+from tiniscript.link.authority import whose
+from tiniscript.link.connection import PendingRequest, Requester
+from tiniscript.link.messages import (
+    CAUSES,
+    LINK_FAULTS,
+    MOST_BALANCE,
+    MOST_LEAST,
+    NAME_BYTES,
+    SAVED,
+    STATE_FAULTED,
+    STATE_IDLE,
+    STATE_RUNNING,
+    STATUSES,
+)
+from tiniscript.link.outcomes import Event
+from tiniscript.link.payloads import HelloReply, ReceiptReply, StatusReply, TrimReply
+from tiniscript.link.reasons import STATUS, Heard, reason_of
+from tiniscript.link.requests import OK, DeviceInfo, Reply
+from tiniscript.link.statuses import name_of, sentence
+from tiniscript.link.trim import Trim, told
+from tiniscript.printable import printable
+
+Json = dict[str, Any]
+T = TypeVar("T")
+
+LIMIT_MS = 6000  # for a robot that is known: it is silent, or busy with saving
+LONGEST_MS = 20_000
+MOST_WAITING = 8  # requests at a time
+TEXT_CHARACTERS = 200
+MOST_EVENTS = 200  # at a time
+_FAULTS = {number: name for number, name, _ in (*FAULTS, *LINK_FAULTS)}
+
+
+class BadRequest(Exception):
+    """What has come is no request: it is not of this page."""
+
+
+class Connection(Heard, Protocol):
+    """The part of a LinkConnection that is needed here; the page's has no more."""
+
+    def do(self, make: Callable[[Requester], PendingRequest[T]]) -> PendingRequest[T]: ...
+
+    def event(self, limit_s: float = ...) -> tuple[int, Event] | None: ...
+
+    def stop(self) -> None: ...
+
+
+class _Asked(NamedTuple):
+    number: int
+    pending: PendingRequest[Any]
+
+
+class RobotLink:
+    """A page's part in a connection: one thread uses it. `has_run`: a run that the page has started
+    may still go on."""
+
+    def __init__(self, connection: Connection, language: str) -> None:
+        self.language = language
+        self._connection = connection
+        self._asked: list[_Asked] = []
+        self._answers: list[Json] = []
+        # The numbers of runs: which the page has started, which was the last to begin, and to end.
+        self._run: int | None = None
+        self._begun: int | None = None
+        self._over: int | None = None
+
+    @property
+    def has_run(self) -> bool:
+        return self._run is not None or any(each.pending.starts for each in self._asked)
+
+    def ask(self, request: Json) -> None:
+        """Begin a request; its answer is among the news, with its `id`. Raises BadRequest, Gone."""
+        number, do = _number(request, "id", 0, 2**31), request.get("do")
+        if do == "stop":
+            self.stop()
+            self._answers.append({"id": number, "ok": True})
+            return
+        if not isinstance(do, str) or do not in _MAKERS or len(self._asked) >= MOST_WAITING:
+            raise BadRequest
+        make = _MAKERS[do](request)
+        limit_ms = _number(request, "limit_ms", 1, LONGEST_MS, LIMIT_MS)
+        refused = self._refused(request) if "image" in request else None
+        if refused is not None:
+            self._answers.append({"id": number, **self._failure(refused)})
+            return
+
+        def limited(session: Requester) -> PendingRequest[Any]:
+            pending = make(session)
+            if do != "claim":  # it waits for a hand on the button
+                pending.limit_ms = limit_ms
+            return pending
+
+        self._asked.append(_Asked(number, self._connection.do(limited)))
+
+    def stop(self) -> None:
+        """Stop the robot, whoever has started what it does."""
+        self._connection.stop()
+
+    def news(self, limit_s: float = 0) -> list[Json]:
+        """Return answers and events since the last call; wait that long for one. Raises Gone."""
+        found, self._answers = self._answers, []
+        for each in list(self._asked):
+            if each.pending.outcome is not None:
+                self._asked.remove(each)
+                found.append({"id": each.number, **self._answer(each.pending)})
+        for _ in range(MOST_EVENTS):
+            event = self._connection.event(0 if found else limit_s)
+            if event is None:
+                break
+            self._follow(event[1])
+            found += self._event(event[1])
+        return found
+
+    def _follow(self, event: Event) -> None:
+        """Find the end of the page's run. An end may come before the answer that names the run;
+        one without a number may be that of a run before."""
+        if event.name == "STARTED":
+            self._begun, self._over = event.run, None
+        elif event.name in ("DONE", "FAULT"):
+            self._over = event.run
+        elif event.name in ("STOPPED", "ENDED"):
+            self._over = self._begun
+        if event.name == "LOST" or (self._over is not None and self._over == self._run):
+            self._run = None
+
+    # -- requests ---------------------------------------------------------------------------------
+
+    def _refused(self, request: Json) -> Reply[Any] | None:
+        """Return the refusal of a program of another kit, before any byte is sent."""
+        robot = self._connection.robot
+        if robot is None or may_run(_image(request), robots.load(_robot(request)), robot.kit):
+            return None
+        return Reply(STATUSES["WRONG_KIT"], robot.kit)
+
+    def _answer(self, pending: PendingRequest[Any]) -> Json:
+        reply = pending.outcome
+        assert reply is not None
+        if reply.status != OK:
+            return self._failure(reply)
+        values = reply.values
+        if isinstance(values, ReceiptReply):
+            if pending.starts and values.run != self._over:
+                self._run = values.run
+            return {"ok": True, "program": f"{values.program:08x}", "saved": _saved(values.saved)}
+        if isinstance(values, TrimReply):
+            return {"ok": True, "trim": told(values)._asdict()}
+        robot = self._connection.robot
+        if isinstance(values, HelloReply) and robot is not None:
+            return {"ok": True, "robot": about(robot)}
+        return {"ok": True}
+
+    def _failure(self, reply: Reply[Any]) -> Json:
+        reason = reason_of(self._connection, reply)
+        if reason != STATUS:
+            return {"failure": reason, "said": "", "advice": ""}
+        said, advice = sentence(reply.status, reply.detail, self.language)
+        return {"failure": name_of(reply.status), "said": said, "advice": advice}
+
+    # -- events -----------------------------------------------------------------------------------
+
+    def _event(self, event: Event) -> list[Json]:
+        if event.name == "ENDED":
+            return [_end(event.status)]
+        found: Json = {"event": event.name}
+        if event.name == "SHOW":
+            yes_no = "TRUE" if event.value else "FALSE"
+            found["value"] = yes_no if event.is_yes_no else as_text(event.value)
+        elif event.name == "FAULT":
+            found |= _fault(event.fault, event.at, event.program)
+        elif event.name == "STOPPED":
+            found["cause"] = CAUSES[event.cause if event.cause < len(CAUSES) else 0][0]
+        elif event.name == "MISSED":
+            found["count"] = event.count
+        elif event.name == "TEXT":
+            found["text"] = printable(event.text.decode("utf-8", "replace"), TEXT_CHARACTERS)
+        elif event.name == "STARTED":
+            found["program"] = f"{event.program:08x}"
+        elif event.name not in ("DONE", "LOST"):
+            return []  # who else uses the port is no news for a page
+        return [found]
+
+
+def about(robot: DeviceInfo) -> Json:
+    """Return what a robot says of itself: `robot` is the name of its shipped profile or None,
+    `owner` is free, yours or other, `room` in bytes of code."""
+    return {
+        "name": printable(robot.name),
+        "id": f"{robot.id:08x}",
+        "robot": shipped_of_kit(robot.kit),
+        "owner": whose(robot),
+        "room": robot.room,
+        "is_running": robot.values.state == STATE_RUNNING,
+    }
+
+
+def _end(status: StatusReply) -> Json:
+    """Return the end of a run of which only the robot's state is known."""
+    if status.state == STATE_FAULTED:
+        return {"event": "FAULT", **_fault(status.fault, status.fault_at, status.fault_program)}
+    if status.state == STATE_IDLE:
+        return {"event": "DONE"}
+    return {"event": "STOPPED", "cause": CAUSES[0][0]}
+
+
+def _fault(number: int, at: int, program: int) -> Json:
+    return {"fault": _FAULTS.get(number, str(number)), "at": at, "program": f"{program:08x}"}
+
+
+def _saved(number: int) -> str:
+    return SAVED[number][0] if number < len(SAVED) else "MEMORY"
+
+
+# -- the fields of a request ----------------------------------------------------------------------
+
+_Make = Callable[[Requester], PendingRequest[Any]]
+
+
+def _upload(request: Json) -> _Make:
+    image, kit = _image(request), robots.load(_robot(request)).kit.fingerprint
+    runs = request.get("runs") is True
+    return lambda session: session.upload(image, runs, kit=kit)
+
+
+def _live(request: Json) -> _Make:
+    image, kit = _image(request), robots.load(_robot(request)).kit.fingerprint
+    return lambda session: session.live(image.code, kit if image.devices else 0)
+
+
+def _name(request: Json) -> _Make:
+    name = request.get("name")
+    if (
+        not isinstance(name, str)
+        or not name.isprintable()
+        or not 1 <= len(name.encode()) <= NAME_BYTES
+    ):
+        raise BadRequest
+    return lambda session: session.name(name.encode())
+
+
+def _trim(request: Json) -> _Make:
+    found = request.get("trim")
+    if found is None:
+        return lambda session: session.trim()
+    if not isinstance(found, dict):
+        raise BadRequest
+    trim = Trim(
+        found.get("is_exchanged") is True,
+        found.get("is_left_reversed") is True,
+        found.get("is_right_reversed") is True,
+        _number(found, "balance", -MOST_BALANCE, MOST_BALANCE),
+        _number(found, "least", 0, MOST_LEAST),
+    )
+    return lambda session: session.trim(trim.data())
+
+
+_MAKERS: dict[str, Callable[[Json], _Make]] = {
+    "hello": lambda request: lambda session: session.hello(),
+    "upload": _upload,
+    "live": _live,
+    "start": lambda request: lambda session: session.start(),
+    "undo": lambda request: lambda session: session.undo(),
+    "identify": lambda request: lambda session: session.identify(),
+    "name": _name,
+    "trim": _trim,
+    "claim": lambda request: lambda session: session.claim(0),
+    "disown": lambda request: lambda session: session.disown(0),
+}
+
+
+def _number(found: Json, name: str, low: int, high: int, usual: int | None = None) -> int:
+    number = found.get(name, usual)
+    if type(number) is not int or not low <= number <= high:
+        raise BadRequest
+    return number
+
+
+def _robot(request: Json) -> str:
+    robot = request.get("robot")
+    if robot not in robots.names():
+        raise BadRequest
+    return str(robot)
+
+
+def _image(request: Json) -> Image:
+    try:
+        return unpack(bytes.fromhex(request["image"]))
+    except (ImageRefused, TypeError, ValueError, KeyError):
+        raise BadRequest from None

@@ -1,0 +1,274 @@
+"""What a page reaches through `tsc studio`: the ports and robots of this computer."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import pytest
+
+from tests.support.command import FOREVER, process
+from tests.support.pty_robot import PtyRobot
+from tests.support.shared_pty_robot import Shared
+from tiniscript import compile, robots
+from tiniscript.link.messages import STOP_BYTES
+from tiniscript.studio import hosted_robot
+from tiniscript.studio.hosting import Hosting
+from tiniscript.studio.robot_link import BadRequest
+
+KIT = robots.load("tinibot").kit
+BEAT_S = 0.1
+
+
+class Page:
+    """A page that a test plays: it is heard while it waits for something."""
+
+    def __init__(self, hosting: Hosting, name: str = "page") -> None:
+        self.hosting = hosting
+        self.name = name
+        self.news: list[dict[str, Any]] = []
+        self._seen = self._count = 0
+
+    def connect(self, port: str, **fields: object) -> dict[str, Any]:
+        request = {"do": "connect", "page": self.name, "port": port, "robot": "tinibot",
+                   "language": "es", **fields}  # fmt: skip
+        return self.hosting.answer(request)
+
+    def beat(self, *asked: dict[str, Any], do: str = "beat") -> None:
+        request = {"do": do, "page": self.name, "seen": self._seen, "asked": list(asked)}
+        for each in self.hosting.answer(request)["news"]:
+            self._seen = max(self._seen, each["number"])
+            self.news.append(each)
+
+    def until(self, is_so: Callable[[dict[str, Any]], bool], limit_s: float = 15) -> dict[str, Any]:
+        """Wait for news, beating."""
+        end_s = time.monotonic() + limit_s
+        while True:
+            for each in self.news:
+                if is_so(each):
+                    self.news.remove(each)
+                    return each
+            assert time.monotonic() < end_s, self.news
+            time.sleep(BEAT_S)
+            self.beat()
+
+    def ask(self, do: str, **fields: object) -> dict[str, Any]:
+        self._count += 1
+        number = self._count
+        self.beat({"do": do, "id": number, **fields})
+        return self.until(lambda each: each.get("id") == number)
+
+    def upload(self, text: str, robot: str = "tinibot", **fields: object) -> dict[str, Any]:
+        image = compile(text, robot=robot).image.hex()
+        return self.ask("upload", image=image, robot=robot, **{"runs": True, **fields})
+
+
+@pytest.fixture
+def hosting() -> Iterator[Hosting]:
+    made = Hosting()
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def robot() -> Iterator[PtyRobot]:
+    with PtyRobot(KIT) as made:
+        yield made
+
+
+@pytest.fixture
+def page(hosting: Hosting, robot: PtyRobot) -> Page:
+    """A page that has met its robot."""
+    found = Page(hosting)
+    assert found.connect(robot.port) == {}
+    about = found.until(lambda each: "connected" in each)["connected"]
+    assert (about["robot"], about["owner"], about["is_running"]) == ("tinibot", "free", False)
+    return found
+
+
+def test_a_program_runs_and_what_it_shows_arrives(page: Page, robot: PtyRobot) -> None:
+    text = "SHOW(2.5);\nSHOW(1 < 2);\nF(0.1, 80)"
+    receipt = page.upload(text)
+    assert receipt["ok"] and receipt["program"] == f"{compile(text).checksum:08x}"
+    shown = [page.until(lambda each: each.get("event") == "SHOW")["value"] for _ in range(2)]
+    assert shown == ["2.5", "TRUE"]
+    page.until(lambda each: each.get("event") == "DONE")
+    assert "MOTORS 80 80" in robot.did
+
+
+def test_a_fault_says_where(page: Page) -> None:
+    page.upload("X = 0;\nSHOW(1 / X)")
+    fault = page.until(lambda each: each.get("event") == "FAULT")
+    assert fault["fault"] == "DIVIDE_BY_ZERO" and fault["at"] > 0
+
+
+def test_a_page_that_falls_silent_stops_its_robot(page: Page, robot: PtyRobot) -> None:
+    page.upload(FOREVER)
+    robot.until(lambda: robot.moves, "it drives")
+    page.beat()
+    began_s = time.monotonic()
+    robot.until(lambda: not robot.moves, "it stands")
+    passed_s = time.monotonic() - began_s
+    # Before the robot's own dead-man timer, which ends a run after a second.
+    assert hosted_robot.HEARD_S <= passed_s < 0.95
+    assert robot.heard.endswith(bytes(STOP_BYTES))
+
+
+def test_a_page_that_is_heard_goes_on(page: Page, robot: PtyRobot) -> None:
+    page.upload(FOREVER)
+    for _ in range(20):
+        page.beat()
+        time.sleep(BEAT_S)
+    assert robot.moves
+
+
+def test_nobody_pings_for_a_page_that_is_silent(
+    page: Page, robot: PtyRobot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Not even where the thread that should stop the robot hangs."""
+    page.upload(FOREVER)
+    robot.until(lambda: robot.moves, "it drives")
+    monkeypatch.setattr(hosted_robot.HostedRobot, "_attend", lambda *_: time.sleep(0.1))
+    robot.until(lambda: not robot.moves, "its dead-man timer stops it", limit_s=3)
+
+
+def test_stop_stops_and_says_so(page: Page, robot: PtyRobot) -> None:
+    page.upload(FOREVER)
+    robot.until(lambda: robot.moves, "it drives")
+    page.beat(do="stop")
+    assert page.until(lambda each: each.get("event") == "STOPPED")["cause"] == "SEQUENCE"
+    assert not robot.moves
+
+
+def test_another_command_stops_it_meanwhile(page: Page, robot: PtyRobot) -> None:
+    page.upload(FOREVER)
+    robot.until(lambda: robot.moves, "it drives")
+    from threading import Thread
+
+    thread = Thread(target=lambda: process("stop", "--port", robot.port))
+    thread.start()
+    page.until(lambda each: each.get("event") == "STOPPED")
+    thread.join()
+    assert not robot.moves
+
+
+def test_a_page_that_leaves_stops_its_robot(page: Page, robot: PtyRobot) -> None:
+    page.upload(FOREVER)
+    robot.until(lambda: robot.moves, "it drives")
+    page.beat(do="leave")
+    robot.until(lambda: not robot.moves, "it stands")
+
+
+def test_the_end_of_the_server_stops_robots(hosting: Hosting, page: Page, robot: PtyRobot) -> None:
+    page.upload(FOREVER)
+    robot.until(lambda: robot.moves, "it drives")
+    hosting.close()
+    assert not robot.moves
+
+
+def test_a_port_has_one_page(hosting: Hosting, page: Page, robot: PtyRobot) -> None:
+    other = Page(hosting, "other")
+    assert other.connect(robot.port) == {"failure": "other_tab"}
+    assert page.connect(robot.port) == {"failure": "connected"}
+    page.upload(FOREVER)
+    robot.until(lambda: robot.moves, "it drives")
+    assert hosting.answer({"do": "stop_all"}) == {"stopping": 1}  # STOP of a page without a robot
+    page.until(lambda each: each.get("event") == "STOPPED")
+    page.beat(do="leave")
+    time.sleep(0.5)
+    assert other.connect(robot.port) == {}
+    other.until(lambda each: "connected" in each)
+
+
+def test_it_shares_a_port_that_a_command_holds(hosting: Hosting) -> None:
+    with Shared() as (robot, _):
+        page = Page(hosting)
+        page.connect(robot.port)
+        assert page.until(lambda each: "connected" in each)["held_by"] == "link"
+        page.upload(FOREVER)
+        robot.until(lambda: robot.moves, "it drives")
+        robot.until(lambda: not robot.moves, "the page is silent", limit_s=2)
+        hosting.close()
+
+
+def test_a_refusal_has_its_sentence(page: Page) -> None:
+    refused = page.upload("SHOW(LINE_L)", robot="liner")
+    assert refused["failure"] == "WRONG_KIT" and "kit" in refused["said"]
+    assert page.ask("start")["failure"] == "NO_PROGRAM"
+    assert page.ask("identify")["ok"] and page.ask("name", name="Niña")["ok"]
+    trim = {"is_exchanged": True, "is_left_reversed": False, "is_right_reversed": True,
+            "balance": -7, "least": 12}  # fmt: skip
+    assert page.ask("trim", trim=trim)["ok"]
+    assert page.ask("trim")["trim"] == trim
+
+
+@pytest.mark.parametrize("port", ["/dev/nothing", "socket://127.0.0.1:1", "no such port"])
+def test_a_port_that_does_not_open_is_a_sentence(hosting: Hosting, port: str) -> None:
+    page = Page(hosting)
+    page.connect(port)
+    over = page.until(lambda each: "over" in each)
+    assert over["over"].startswith("port_") and port in over["said"]
+
+
+def test_a_cable_that_is_pulled_is_a_sentence(page: Page, robot: PtyRobot) -> None:
+    page.upload(FOREVER)
+    robot.pull()
+    over = page.until(lambda each: "over" in each)
+    assert over["over"] == "port_gone" and "cable" in over["said"]
+
+
+@pytest.mark.parametrize(
+    "request_",
+    [
+        {},
+        {"do": "fly"},
+        {"do": "connect"},
+        {"do": "connect", "page": "p", "port": "/dev/x\n", "robot": "tinibot", "language": "en"},
+        {"do": "connect", "page": "p", "port": "/dev/x", "robot": "/etc/passwd", "language": "en"},
+        {"do": "connect", "page": "p", "port": "/dev/x", "robot": "tinibot", "language": []},
+        {"do": "connect", "page": "p" * 1000, "port": "/dev/x", "robot": "tinibot"},
+        {"do": "beat", "page": ["p"]},
+        {"do": "beat", "page": 0},
+    ],
+)
+def test_what_is_no_request_is_refused(hosting: Hosting, request_: dict[str, Any]) -> None:
+    with pytest.raises(BadRequest):
+        hosting.answer(request_)
+
+
+@pytest.mark.parametrize(
+    "asked",
+    [
+        {"do": "upload"},
+        {"do": "upload", "image": "zz", "robot": "tinibot"},
+        {"do": "upload", "image": "00", "robot": "tinibot"},
+        {"do": "upload", "image": 5, "robot": "tinibot"},
+        {"do": "name", "name": "x\n"},
+        {"do": "name", "name": "x" * 17},
+        {"do": "trim", "trim": {"balance": 99, "least": 0}},
+        {"do": "trim", "trim": {"balance": "1", "least": 0}},
+        {"do": "identify", "limit_ms": -1},
+        {"do": ["identify"]},
+    ],
+)
+def test_a_wrong_request_harms_nothing(page: Page, asked: dict[str, Any]) -> None:
+    page.beat({"id": 77, **asked})
+    assert page.until(lambda each: each.get("id") == 77)["failure"] == "bad_request"
+    assert page.ask("identify")["ok"]
+
+
+def test_what_a_page_does_not_fetch_is_bounded() -> None:
+    robot = hosted_robot.HostedRobot("socket://127.0.0.1:1", "tinibot", "en")
+    robot._tell([{"event": "SHOW", "value": str(k)} for k in range(3000)])
+    robot._tell([{"event": "DONE"}])
+    news = robot.hear([], 0)
+    assert len(news) == hosted_robot.KEPT and news[-1]["event"] == "DONE"
+    robot.join(10)
+
+
+def test_ports_are_listed_without_opening_any(
+    hosting: Hosting, robot: PtyRobot, page: Page
+) -> None:
+    found = hosting.answer({"do": "ports"})["ports"]
+    assert all(set(each) == {"port", "name", "description", "virtual"} for each in found)

@@ -1,0 +1,203 @@
+"""Who may ask `tsc studio` for the robots of this computer: its own page alone."""
+
+from __future__ import annotations
+
+import json
+import socket
+import time
+from collections.abc import Iterator
+from http.client import HTTPConnection
+from pathlib import Path
+from threading import Thread, active_count
+from typing import Any
+
+import pytest
+
+from tiniscript.studio import serving
+from tiniscript.studio.robot_link import BadRequest
+
+
+class Recorder:
+    """Robots that a test plays: they note what reached them."""
+
+    def __init__(self) -> None:
+        self.asked: list[dict[str, Any]] = []
+
+    def answer(self, request: dict[str, Any]) -> dict[str, Any]:
+        self.asked.append(request)
+        if request.get("do") != "ports":
+            raise BadRequest
+        return {"ports": []}
+
+
+@pytest.fixture
+def robots() -> Recorder:
+    return Recorder()
+
+
+@pytest.fixture
+def server(tmp_path: Path, robots: Recorder) -> Iterator[serving.Server]:
+    (tmp_path / "index.html").write_text("<!doctype html>")
+    made = serving.Server(serving.files(tmp_path), 0, robots.answer)
+    thread = Thread(target=made.serve_forever, args=(0.02,), daemon=True)
+    thread.start()
+    yield made
+    made.shutdown()
+    made.server_close()
+    thread.join()
+
+
+def post(
+    server: serving.Server, body: bytes = b'{"do": "ports"}', path: str = serving.ROBOTS,
+    **headers: str | None,
+) -> tuple[int, bytes]:  # fmt: skip
+    """Post as the page does, with other headers or without (None)."""
+    own = f"127.0.0.1:{server.server_port}"
+    given = {"Host": own, "Origin": f"http://{own}", serving.TOKEN: server.token}
+    wanted = {name.replace("_", "-"): value for name, value in headers.items()}
+    kept = {name: value for name, value in {**given, **wanted}.items() if value is not None}
+    connection = HTTPConnection(serving.HOST, server.server_port, timeout=10)
+    try:
+        connection.request("POST", path, body, kept)
+        response = connection.getresponse()
+        return response.status, response.read()
+    finally:
+        connection.close()
+
+
+def test_its_own_page_is_answered(server: serving.Server, robots: Recorder) -> None:
+    status, data = post(server)
+    assert (status, json.loads(data)) == (200, {"ports": []})
+    own = f"localhost:{server.server_port}"
+    assert post(server, Host=own, Origin=f"http://{own}")[0] == 200
+    assert len(robots.asked) == 2
+
+
+@pytest.mark.parametrize(
+    "headers",
+    [
+        {"Host": "evil.example"},
+        {"Host": "evil.example:80"},
+        {"Host": "127.0.0.1"},
+        {"Origin": "https://evil.example"},
+        {"Origin": "null"},
+        {"Origin": None},
+        {"Origin": "http://127.0.0.1:1"},
+        {"X_TiniScript_Token": "", serving.TOKEN: None},
+        {"X_TiniScript_Token": "0" * 32, serving.TOKEN: None},
+        {"X_TiniScript_Token": "\xff" * 32, serving.TOKEN: None},
+        {serving.TOKEN: None},
+    ],
+    ids=str,
+)
+def test_nobody_else_is(
+    server: serving.Server, robots: Recorder, headers: dict[str, str | None]
+) -> None:
+    assert post(server, **headers)[0] == 403
+    assert robots.asked == []
+
+
+@pytest.mark.parametrize(
+    "body",
+    [b"", b"{", b"[]", b"5", b"\xff", b"[" * 100_000, b'{"do": "fly"}', b'{"do": ["ports"]}',
+     b" " * (serving.REQUEST_BYTES + 1)],
+    ids=lambda body: repr(body[:12]),
+)  # fmt: skip
+def test_what_is_no_request_is_refused(server: serving.Server, body: bytes) -> None:
+    assert post(server, body)[0] == 400
+    assert post(server)[0] == 200
+
+
+@pytest.mark.parametrize(
+    "length", ["-1", "1e3", "99999999999999999999", "٣", "", "5\r\nContent-Length: 6"]
+)
+def test_a_wrong_length_is_refused(server: serving.Server, robots: Recorder, length: str) -> None:
+    own = f"127.0.0.1:{server.server_port}"
+    head = (
+        f"POST {serving.ROBOTS} HTTP/1.1\r\nHost: {own}\r\nOrigin: http://{own}\r\n"
+        f"{serving.TOKEN}: {server.token}\r\nContent-Length: {length}\r\n\r\n"
+    )
+    with socket.create_connection((serving.HOST, server.server_port), timeout=10) as client:
+        client.sendall(head.encode() + b'{"do"')
+        assert client.recv(100).startswith(b"HTTP/1.1 400")
+    assert robots.asked == []
+
+
+def test_two_tokens_are_none(server: serving.Server, robots: Recorder) -> None:
+    own = f"127.0.0.1:{server.server_port}"
+    head = (
+        f"POST {serving.ROBOTS} HTTP/1.1\r\nHost: {own}\r\nOrigin: http://{own}\r\n"
+        f"{serving.TOKEN}: {server.token}\r\n{serving.TOKEN}: x\r\nContent-Length: 2\r\n\r\n{{}}"
+    )
+    with socket.create_connection((serving.HOST, server.server_port), timeout=10) as client:
+        client.sendall(head.encode())
+        assert client.recv(100).startswith(b"HTTP/1.1 403")
+    assert robots.asked == []
+
+
+def test_other_addresses_take_nothing(server: serving.Server, robots: Recorder) -> None:
+    assert post(server, path="/")[0] == 404
+    assert post(server, path="/robots/")[0] == 404
+    assert robots.asked == []
+
+
+def test_the_token_is_another_one_each_time_and_in_no_file(
+    server: serving.Server, tmp_path: Path, robots: Recorder
+) -> None:
+    assert server.entrance == f"{server.address}#token={server.token}"
+    assert len(server.token) == 32
+    other = serving.Server(serving.files(tmp_path), 0, robots.answer)
+    other.server_close()
+    assert other.token != server.token
+    connection = HTTPConnection(serving.HOST, server.server_port, timeout=10)
+    connection.request("GET", "/")
+    response = connection.getresponse()
+    assert server.token not in response.read().decode() + str(response.getheaders())
+    connection.close()
+
+
+def test_a_server_without_robots_has_none(tmp_path: Path) -> None:
+    (tmp_path / "index.html").write_text("<!doctype html>")
+    made = serving.Server(serving.files(tmp_path), 0)
+    thread = Thread(target=made.serve_forever, args=(0.02,), daemon=True)
+    thread.start()
+    try:
+        assert post(made)[0] == 404
+        assert made.entrance == made.address
+    finally:
+        made.shutdown()
+        made.server_close()
+
+
+def test_a_thousand_connections_keep_nobody_out(server: serving.Server) -> None:
+    """They say nothing, or half a request; the page's own connection stays."""
+    own = f"127.0.0.1:{server.server_port}"
+    headers = {"Origin": f"http://{own}", serving.TOKEN: server.token}
+    page = HTTPConnection(serving.HOST, server.server_port, timeout=10)
+
+    def ask() -> int:
+        page.request("POST", serving.ROBOTS, b'{"do": "ports"}', headers)
+        response = page.getresponse()
+        response.read()
+        return response.status
+
+    assert ask() == 200
+    kept = page.sock
+    before = active_count()
+    strangers = []
+    try:
+        for k in range(1000):
+            stranger = socket.create_connection((serving.HOST, server.server_port), timeout=10)
+            strangers.append(stranger)
+            if k % 2:
+                stranger.sendall(b"POST /robots HTTP/1.1\r\nHost: ")
+            if k % 50 == 0:
+                began_s = time.monotonic()
+                assert ask() == 200
+                assert time.monotonic() - began_s < 0.5
+        assert page.sock is kept
+        assert active_count() - before <= serving.CONNECTIONS + 30
+    finally:
+        for each in strangers:
+            each.close()
+        page.close()
