@@ -97,6 +97,17 @@ def test_a_program_runs_and_what_it_shows_arrives(page: Page, robot: PtyRobot) -
     assert "MOTORS 80 80" in robot.did
 
 
+def test_an_answer_comes_before_what_follows_from_it(page: Page) -> None:
+    image = compile("SHOW(1)").image.hex()
+    for number in range(5):
+        page.news.clear()
+        page.beat({"do": "live", "id": number + 1, "image": image, "robot": "tinibot"})
+        while not any(each.get("event") == "DONE" for each in page.news):
+            page.beat()
+        order = [each["id"] if "id" in each else each["event"] for each in page.news]
+        assert order == [number + 1, "STARTED", "SHOW", "DONE"]
+
+
 def test_a_fault_says_where(page: Page) -> None:
     page.upload("X = 0;\nSHOW(1 / X)")
     fault = page.until(lambda each: each.get("event") == "FAULT")
@@ -256,6 +267,31 @@ def test_a_wrong_request_harms_nothing(page: Page, asked: dict[str, Any]) -> Non
     page.beat({"id": 77, **asked})
     assert page.until(lambda each: each.get("id") == 77)["failure"] == "bad_request"
     assert page.ask("identify")["ok"]
+
+
+def test_what_was_asked_before_a_stop_and_comes_after_it_is_void(
+    hosting: Hosting, page: Page, robot: PtyRobot
+) -> None:
+    hosting.answer({"do": "stop", "page": "page", "stops": 1})
+    image = compile(FOREVER).image.hex()
+    upload = {"do": "upload", "image": image, "robot": "tinibot", "runs": True}
+    page.beat({"id": 50, "stops": 0, **upload})
+    assert page.until(lambda each: each.get("id") == 50)["failure"] == "stopped_elsewhere"
+    assert not robot.moves
+    page.beat({"id": 51, "stops": 1, **upload})
+    assert page.until(lambda each: each.get("id") == 51)["ok"]
+
+
+def test_a_request_that_comes_twice_is_done_once(page: Page, robot: PtyRobot) -> None:
+    image = compile("SHOW(1)").image.hex()
+    live = {"do": "live", "id": 9, "image": image, "robot": "tinibot"}
+    page.beat(live)
+    page.beat(live)
+    page.until(lambda each: each.get("event") == "DONE")
+    for _ in range(5):
+        page.beat()
+        time.sleep(BEAT_S)
+    assert sum(each.startswith("SHOW") for each in robot.did) == 1
 
 
 def test_what_a_page_does_not_fetch_is_bounded() -> None:

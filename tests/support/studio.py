@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from tests.support.platformio import need
 from tiniscript.studio import serving
+from tiniscript.studio.hosting import Hosting
 from tools.builds import studio
 
 if TYPE_CHECKING:
@@ -54,6 +55,22 @@ def served(port: int = 0) -> Iterator[serving.Server]:
 
 
 @contextmanager
+def hosted() -> Iterator[serving.Server]:
+    """The same with the robots of this computer, as `tsc studio` has them."""
+    hosting = Hosting()
+    server = serving.Server(serving.files(), 0, hosting.answer)
+    thread = Thread(target=server.serve_forever, args=(0.02,), daemon=True)
+    thread.start()
+    try:
+        yield server
+    finally:
+        server.shutdown()
+        hosting.close()
+        server.server_close()
+        thread.join()
+
+
+@contextmanager
 def driver() -> Iterator[Playwright]:
     """What drives browsers; there is one in a process."""
     need(missing())
@@ -75,8 +92,10 @@ def browser(playwright: Playwright) -> Iterator[Browser]:
 class Pages:
     """Pages of one server; each must have said no error, and asked nobody else, at the end."""
 
-    def __init__(self, opened: Browser, address: str) -> None:
+    def __init__(self, opened: Browser, address: str, origin: str = "") -> None:
+        """`origin` is the beginning of what pages may ask, where it is not the whole address."""
         self.address = address
+        self.origin = origin or address
         self.wrong: list[str] = []
         self._browser = opened
         self._contexts: list[Any] = []
@@ -115,7 +134,7 @@ class Pages:
             self.wrong.append(text)
 
     def _asked(self, address: str) -> None:
-        if not address.startswith((self.address, "data:", "blob:")):
+        if not address.startswith((self.origin, "data:", "blob:")):
             self.wrong.append(address)
 
 

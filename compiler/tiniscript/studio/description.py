@@ -8,6 +8,8 @@ from __future__ import annotations
 from typing import Any
 
 from tiniscript import robots
+from tiniscript.library import opening
+from tiniscript.link.messages import NAME_BYTES, STOP_BYTES
 from tiniscript.robots.kinematics import Pose
 from tiniscript.robots.profile import LANGUAGES, Robot
 from tiniscript.virtual import worlds
@@ -28,6 +30,14 @@ def description() -> dict[str, Any]:
             if word.role not in _UNOFFERED
         ],
         "robots": [_robot(robots.load(name)) for name in robots.names()],
+        "link": {
+            "stop_bytes": STOP_BYTES,
+            "cable_answer_ms": opening.CABLE_ANSWER_MS,
+            "radio_answer_ms": opening.ANSWER_MS,
+            "long_quiet_ms": round(opening.LONG_QUIET_S * 1000),
+            "confirm_ms": round(opening.CONFIRM_S * 1000),
+            "name_bytes": NAME_BYTES,
+        },
         "worlds": [_world(name, worlds.load(name)) for name in worlds.names()],
     }
 
@@ -37,6 +47,8 @@ def _robot(profile: Robot) -> dict[str, Any]:
     return {
         "name": profile.name,
         "labels": {each: profile.labels[each]["robot"] for each in LANGUAGES},
+        "baud": profile.board.baud,
+        "quiet_ms": round(opening.QUIET_S.get(profile.board.chip, 0) * 1000),
         "outline": [[point.x, point.y] for point in Hull(profile.body).outline(Pose(0, 0, 0))],
         "places": {name: place._asdict() for name, place in profile.body.places.items()},
         "devices": [

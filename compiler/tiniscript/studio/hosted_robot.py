@@ -51,6 +51,8 @@ class HostedRobot:
         self._news: list[Json] = []
         self._count = 0  # of news
         self._wants_stop = self._leaves = self._is_silent = False
+        self._last = 0  # number of the last request: one that comes again was lost on its way back
+        self._stops = 0  # that the page has asked for: what it asked before is void
         self._link: RobotLink | None = None
         self._thread = Thread(target=self._run, name="studio robot", daemon=True)
         self._thread.start()
@@ -59,12 +61,18 @@ class HostedRobot:
         """The page is there: take its requests; return the news after number `seen`."""
         with self._lock:
             self.heard_s = monotonic()
-            self._asked += requests[: KEPT - len(self._asked)]
+            for each in requests:
+                number = each.get("id")
+                if type(number) is int and number > self._last:
+                    self._last = number
+                    self._asked.append(each)
             self._news = [each for each in self._news if each["number"] > seen]
             return list(self._news)
 
-    def stop(self) -> None:
-        """Stop the robot, whatever waits."""
+    def stop(self, stops: int = 0) -> None:
+        """Stop the robot, whatever waits. Requests with fewer `stops` were made before this one:
+        they may arrive after it."""
+        self._stops = max(self._stops, stops)
         self._wants_stop = True
 
     def leave(self) -> None:
@@ -162,10 +170,14 @@ class HostedRobot:
         with self._lock:
             asked, self._asked = self._asked, []
         for request in asked:
+            stops = request.get("stops", 0)
+            if type(stops) is int and stops < self._stops:
+                self._tell([{"id": request["id"], "failure": "stopped_elsewhere"}])
+                continue
             try:
                 link.ask(request)
             except BadRequest:
-                self._tell([{"id": request.get("id"), "failure": "bad_request"}])
+                self._tell([{"id": request["id"], "failure": "bad_request"}])
         self._tell(link.news(LOOK_S))
         if self.is_attended:
             self._is_silent = False

@@ -51,10 +51,10 @@ class Hosting:
         if robot is None:
             return {"news": [{"over": "left", "said": "", "number": 0}]}
         if do == "stop":
-            robot.stop()
+            robot.stop(_count(request, "stops"))
         elif do == "leave":
             robot.leave()
-        return {"news": robot.hear(_requests(request), _seen(request))}
+        return {"news": robot.hear(_requests(request), _count(request, "seen"))}
 
     def close(self) -> None:
         """Stop what pages have started, and close all ports."""
@@ -135,8 +135,8 @@ def _requests(request: Json) -> list[Json]:
     return found
 
 
-def _seen(request: Json) -> int:
-    found = request.get("seen", 0)
+def _count(request: Json, name: str) -> int:
+    found = request.get(name, 0)
     if type(found) is not int:
         raise BadRequest
     return found

@@ -119,17 +119,20 @@ class RobotLink:
     def news(self, limit_s: float = 0) -> list[Json]:
         """Return answers and events since the last call; wait that long for one. Raises Gone."""
         found, self._answers = self._answers, []
-        for each in list(self._asked):
-            if each.pending.outcome is not None:
-                self._asked.remove(each)
-                found.append({"id": each.number, **self._answer(each.pending)})
+        found += self._outcomes()
         for _ in range(MOST_EVENTS):
             event = self._connection.event(0 if found else limit_s)
+            found += self._outcomes()  # an answer is there before the events that follow from it
             if event is None:
                 break
             self._follow(event[1])
             found += self._event(event[1])
         return found
+
+    def _outcomes(self) -> list[Json]:
+        over = [each for each in self._asked if each.pending.outcome is not None]
+        self._asked = [each for each in self._asked if each.pending.outcome is None]
+        return [{"id": each.number, **self._answer(each.pending)} for each in over]
 
     def _follow(self, event: Event) -> None:
         """Find the end of the page's run. An end may come before the answer that names the run;

@@ -9,6 +9,8 @@ import { Programs } from './programs.js';
 import { Python } from './python.js';
 import { currentLanguage, setLanguage, text } from './texts.js';
 import { Driving } from './driving.js';
+import { RobotPanel } from './robot_panel.js';
+import { chooseSide } from './robot_side.js';
 import { ROBOTS } from './words.js';
 import { keep, keptWork } from './work.js';
 
@@ -42,6 +44,15 @@ const driving = new Driving(python, editor, work, () => (isStale() ? null : newe
 const programs = new Programs(python, work, putProgram, (said) => {
   note.textContent = said;
 });
+
+const panel = new RobotPanel({
+  python,
+  program: () => (isStale() ? null : newest.answer),
+  robot: () => work.robot,
+  setRobot,
+  goTo: (place) => editor.goTo(place),
+});
+chooseSide();
 
 /** The newest answer, and what it is about. @type {{key: string, answer: Checked | null}} */
 let newest = { key: '', answer: null };
@@ -128,6 +139,17 @@ function remember() {
   if (!keep(work)) note.textContent = text('not_kept');
 }
 
+robots.addEventListener('change', () => setRobot(robots.value));
+
+/** @param {string} name */
+function setRobot(name) {
+  work.robot = robots.value = name;
+  editor.setRobot(work.robot);
+  driving.begin();
+  remember();
+  check();
+}
+
 /** @param {{text: string, robot: string, name: string}} program */
 function putProgram(program) {
   note.textContent = '';
@@ -137,24 +159,13 @@ function putProgram(program) {
   remember();
 }
 
-/** @param {string} robot */
-function setRobot(robot) {
-  work.robot = robot;
-  robots.value = robot;
-  editor.setRobot(robot);
-  driving.begin();
-  remember();
-  check();
-}
-
-robots.addEventListener('change', () => setRobot(robots.value));
-
 languages.addEventListener('change', () => {
   work.language = languages.value === 'en' ? 'en' : 'es';
   setLanguage(work.language);
   editor.setLanguage();
   showRobots();
   driving.setLanguage();
+  panel.setLanguage();
   note.textContent = '';
   if (!isReady) status.textContent = text('starting');
   remember();

@@ -1,10 +1,13 @@
 // Every sentence of the page, in English and Spanish. What is said of programs comes from the
 // compiler.
 
+import { ROBOT_TEXTS } from './robot_texts.js';
+
 /** @typedef {'en' | 'es'} Language */
 
 /** @type {Record<string, [string, string]>} */
 export const TEXTS = {
+  ...ROBOT_TEXTS,
   title: ['TiniScript Studio', 'TiniScript Studio'],
   robot: ['Robot', 'Robot'],
   language: ['Language', 'Idioma'],
@@ -119,6 +122,11 @@ export function setLanguage(chosen) {
   for (const element of document.querySelectorAll('[data-label]')) {
     element.setAttribute('aria-label', text(String(element.getAttribute('data-label'))));
   }
+}
+
+/** @param {string} key */
+export function hasText(key) {
+  return Object.hasOwn(TEXTS, key);
 }
 
 /**

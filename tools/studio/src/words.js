@@ -7,6 +7,7 @@ import description from '../made/description.json';
 
 export const ROBOTS = description.robots;
 export const WORLDS = description.worlds;
+export const LINK = description.link;
 
 /** @type {Map<string, Map<string, Word>>} */
 const WORDS = new Map(

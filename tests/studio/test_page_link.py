@@ -1,0 +1,254 @@
+"""The page and a robot through `tsc studio`: the robot's firmware is behind a pty."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import pytest
+
+from tests.support import studio
+from tests.support.command import FOREVER
+from tests.support.pty_robot import PtyRobot
+from tests.support.studio import Pages, checked, write
+from tiniscript import compile, robots
+from tiniscript.link import known_ports
+from tiniscript.studio import serving
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page
+
+KIT = robots.load("tinibot").kit
+
+
+@pytest.fixture(scope="module")
+def server(browser: Browser) -> Iterator[serving.Server]:
+    with studio.hosted() as made:
+        yield made
+
+
+@pytest.fixture
+def pages(browser: Browser, server: serving.Server) -> Iterator[Pages]:
+    found = Pages(browser, server.entrance, server.address)
+    yield found
+    found.close()
+    assert not found.wrong
+
+
+@pytest.fixture
+def robot() -> Iterator[PtyRobot]:
+    with PtyRobot(KIT) as made:
+        known_ports.remember(made.port, "TINI")  # so that it is listed, and first
+        yield made
+
+
+def said(page: Page, text: str) -> None:
+    page.locator("#link_said").filter(has_text=text).wait_for()
+
+
+def connect(page: Page) -> None:
+    page.click("#side_real")
+    page.click("#link_look")
+    page.locator("#link_port option").first.wait_for(state="attached")
+    page.click("#link_connect")
+    said(page, "Connected: ")
+
+
+@pytest.fixture
+def page(pages: Pages, robot: PtyRobot) -> Page:
+    """A page that has met its robot."""
+    found = pages.open()
+    connect(found)
+    return found
+
+
+def drives(page: Page, robot: PtyRobot) -> None:
+    write(page, FOREVER)
+    page.click("#link_upload")
+    said(page, "The robot has it")
+    robot.until(lambda: robot.moves, "it drives")
+
+
+def test_a_program_is_sent_and_runs(page: Page, robot: PtyRobot) -> None:
+    text = "SHOW(2.5);\nF(0.2, 80);\nSHOW(1 < 2)"
+    write(page, text)
+    page.click("#link_upload")
+    said(page, "Done.")
+    assert page.locator("#link_shown").inner_text() == "2.5\nTRUE"
+    assert "MOTORS 80 80" in robot.did
+    page.click("#link_send")
+    said(page, f"program {compile(text).checksum:08x}, ")
+
+
+def test_a_line_is_done_now(page: Page, robot: PtyRobot) -> None:
+    page.fill("#link_line", "SHOW(6 * 7)")
+    page.keyboard.press("Enter")
+    said(page, "Done.")
+    assert page.locator("#link_shown").inner_text() == "42"
+    page.fill("#link_line", "F(2, 500)")
+    page.keyboard.press("Enter")
+    said(page, "Try: ")
+    assert not robot.moves
+
+
+def test_a_fault_is_shown_at_its_line(page: Page) -> None:
+    write(page, "X = 0;\nF(0.1, 50);\nSHOW(1 / X)")
+    page.click("#link_upload")
+    said(page, "Line 3: something is divided by 0.")
+    page.locator(".cm-activeLine").filter(has_text="SHOW").wait_for()
+
+
+@pytest.mark.parametrize("way", ["button", "escape"])
+def test_stop_stops(page: Page, robot: PtyRobot, way: str) -> None:
+    drives(page, robot)
+    if way == "button":
+        page.click("#stop")
+    else:
+        page.locator(".cm-content").focus()
+        page.keyboard.press("Escape")
+    said(page, "Stopped: the robot has confirmed it.")
+    assert not robot.moves
+
+
+def test_stop_works_while_the_virtual_robot_is_seen(page: Page, robot: PtyRobot) -> None:
+    drives(page, robot)
+    page.click("#side_virtual")
+    page.click("#stop")
+    robot.until(lambda: not robot.moves, "it stands")
+
+
+def test_a_page_that_hangs_stops_its_robot(page: Page, robot: PtyRobot) -> None:
+    drives(page, robot)
+    began_s = time.monotonic()
+    page.evaluate("() => { setTimeout(() => { const end = performance.now() + 2500;"
+                  " while (performance.now() < end); }, 0); }")  # fmt: skip
+    robot.until(lambda: not robot.moves, "it stands")
+    assert time.monotonic() - began_s < 1.5
+    said(page, "Stopped")  # and it is told when it is back
+
+
+def test_a_page_that_is_hidden_stops_its_robot(page: Page, robot: PtyRobot) -> None:
+    drives(page, robot)
+    page.evaluate(
+        "Object.defineProperty(document, 'visibilityState', {value: 'hidden', configurable: true});"
+        "document.dispatchEvent(new Event('visibilitychange'))"
+    )
+    robot.until(lambda: not robot.moves, "it stands", limit_s=3)
+    said(page, "this page was hidden")
+
+
+def test_a_page_that_is_closed_stops_its_robot(page: Page, robot: PtyRobot) -> None:
+    drives(page, robot)
+    began_s = time.monotonic()
+    page.close()
+    robot.until(lambda: not robot.moves, "it stands", limit_s=3)
+    assert time.monotonic() - began_s < 1.5
+
+
+def test_a_page_that_reaches_nothing_stops_its_robot(
+    pages: Pages, page: Page, robot: PtyRobot
+) -> None:
+    drives(page, robot)
+    page.context.new_cdp_session(page).send("Network.emulateNetworkConditions", {
+        "offline": True, "latency": 0, "downloadThroughput": 0, "uploadThroughput": 0,
+    })  # fmt: skip
+    robot.until(lambda: not robot.moves, "it stands", limit_s=3)
+    said(page, "tsc studio does not answer any more")
+    assert all("ERR_INTERNET_DISCONNECTED" in each for each in pages.wrong)
+    pages.wrong.clear()
+
+
+def test_two_tabs_do_not_fight(pages: Pages, page: Page, robot: PtyRobot) -> None:
+    drives(page, robot)
+    other = page.context.new_page()
+    pages.watch(other)
+    other.goto(pages.address)
+    checked(other)
+    other.click("#side_real")
+    other.locator("#link_port option").first.wait_for(state="attached")
+    # A new tab takes the front, and the first one is not hidden in a headless browser.
+    other.click("#link_connect")
+    said(other, "Another tab of this browser drives this robot.")
+    assert robot.moves
+    other.click("#stop")  # whoever sees STOP may press it
+    robot.until(lambda: not robot.moves, "it stands")
+
+
+def test_identify_name_and_trim(page: Page, robot: PtyRobot) -> None:
+    page.click("#link_identify")
+    said(page, "The robot that blinks and plays its tune is")
+    page.click("#link_drive summary")
+    page.fill("#link_rename_to", "Ñandú")
+    page.click("#link_rename")
+    said(page, "The robot is called Ñandú now.")
+    assert page.locator("#link_name").inner_text() == "Ñandú"
+    page.fill("#trim_balance", "-7")
+    page.check("#trim_left")
+    page.click("#trim_set")
+    said(page, "The robot keeps it.")
+    page.click("#link_leave")
+    said(page, "Disconnected.")
+    time.sleep(0.3)
+    page.click("#link_connect")
+    said(page, "Connected: Ñandú.")
+    page.locator("#trim_left:checked").wait_for(state="attached")
+    assert page.input_value("#trim_balance") == "-7"
+
+
+HOSTILE = "<img src=x onerror=1>"
+
+
+def test_nothing_that_a_robot_says_becomes_markup(page: Page, robot: PtyRobot) -> None:
+    page.evaluate("window.before = document.querySelectorAll('*').length")
+    robot.say(b"<script>window.taken = 1</script>\r\n<b>\x1b[2J\xe2\x80\xae\r\n")
+    page.locator("#link_shown").filter(has_text="<script>").wait_for()
+    assert "\x1b" not in page.locator("#link_shown").inner_text()
+    page.click("#link_drive summary")
+    page.fill("#link_rename_to", "<b>x</b>")
+    page.click("#link_rename")
+    said(page, "The robot is called <b>x</b> now.")
+    assert page.evaluate("document.querySelectorAll('*').length === window.before")
+    assert not page.evaluate("'taken' in window")
+
+
+def test_hostile_names_of_robots_are_text(pages: Pages, robot: PtyRobot) -> None:
+    known_ports.remember(robot.port, HOSTILE)
+    page = pages.open()
+    page.click("#side_real")
+    page.locator("#link_port option").filter(has_text=HOSTILE).wait_for(state="attached")
+    assert page.locator("#link img").count() == 0
+
+
+def test_why_there_is_no_connection(pages: Pages, robot: PtyRobot) -> None:
+    page = pages.open(locale="es-AR")
+    robot.switch_off()
+    page.click("#side_real")
+    page.locator("#link_port option").first.wait_for(state="attached")
+    page.click("#link_connect")
+    page.locator("#link_said").filter(has_text="Nada responde.").wait_for()
+    robot.switch_on()
+    page.click("#link_connect")
+    page.locator("#link_said").filter(has_text="Conectado").wait_for()
+    robot.pull()
+    page.locator("#link_said").filter(has_text="cable").wait_for()
+
+
+def test_the_token_is_not_in_the_address(pages: Pages, server: serving.Server) -> None:
+    page = pages.open()
+    assert page.evaluate("location.href") == server.address
+    page.reload()
+    checked(page)
+    page.click("#side_real")
+    assert page.locator("#link_ports").is_visible()  # a tab keeps it
+
+
+def test_another_run_of_tsc_studio_is_said(pages: Pages, server: serving.Server) -> None:
+    page = pages.open()
+    page.evaluate("sessionStorage.setItem('tiniscript.token', '0'.repeat(32))")
+    page.goto(server.address)
+    checked(page)
+    page.click("#side_real")
+    said(page, "This tsc studio is another one than at first.")
+    assert [each for each in pages.wrong if "403" not in each] == []
+    pages.wrong.clear()

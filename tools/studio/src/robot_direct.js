@@ -1,0 +1,219 @@
+// A robot at a port that this browser has opened itself. The session with it is the link's own, in
+// the worker; the bytes come and go here.
+//
+// The main thread owns the port and asks the session for every byte: when it hangs or the page
+// sleeps, nothing is sent, and the robot stops by itself.
+
+import { Failed } from './robot_way.js';
+import { LINK, ROBOTS } from './words.js';
+
+/** @typedef {import('./robot_way.js').Heard} Heard */
+/** @typedef {import('./robot_way.js').Answer} Answer */
+/** @typedef {import('./robot_way.js').About} About */
+
+/**
+ * What carries bytes. `write` keeps the order; `gone` comes once, when nothing is carried any more.
+ * @typedef {object} Port
+ * @property {boolean} isRadio
+ * @property {string} goneBy why the connection is over when the port is
+ * @property {(heard: (data: Uint8Array) => void, gone: () => void) => Promise<void>} open rejects with a Failed
+ * @property {(data: Uint8Array) => Promise<void>} write
+ * @property {() => Promise<void>} close
+ */
+
+const LOOK_MS = 100; // between two looks at the latest
+const STOP = new Uint8Array(LINK.stop_bytes); // zeros stop a robot, whatever it hears
+const LOCK = 'tiniscript-robot';
+
+export class DirectRobot {
+  #python;
+  #port;
+  #heard;
+  #isOver = false;
+  #isGoing = false;
+  #isAgain = false;
+  #bytes = 0;
+  #count = 0;
+  #timer = 0;
+  /** @type {number[]} */
+  #came = [];
+  /** @type {Record<string, unknown>[]} */
+  #asked = [];
+  /** @type {Map<number, {resolve: (answer: Answer) => void, reject: (why: Error) => void}>} */
+  #waiting = new Map();
+  #unlock = () => {};
+  #keepKeys;
+
+  /**
+   * @param {import('./python.js').Python} python
+   * @param {Port} port
+   * @param {Heard} heard
+   * @param {(keys: string) => void} keepKeys
+   */
+  constructor(python, port, heard, keepKeys) {
+    this.#python = python;
+    this.#port = port;
+    this.#heard = heard;
+    this.#keepKeys = keepKeys;
+  }
+
+  /**
+   * Connects; rejects with a Failed.
+   * @param {string} robot
+   * @param {string} language
+   * @param {string} keys
+   * @returns {Promise<About>}
+   */
+  async connect(robot, language, keys) {
+    await this.#lock();
+    try {
+      await this.#python.ask({ do: 'connect', robot, language }, new TextEncoder().encode(keys));
+      await this.#port.open(
+        (data) => {
+          this.#bytes += data.length;
+          for (const byte of data) this.#came.push(byte);
+          this.#go();
+        },
+        () => this.#end(new Failed(this.#port.goneBy)),
+      );
+      return await this.#meet(robot);
+    } catch (why) {
+      const failed = why instanceof Failed ? why : new Failed('bug', String(why));
+      this.#end(failed);
+      throw failed;
+    }
+  }
+
+  /** Another tab that drives a robot of its own keeps it. */
+  #lock() {
+    if (!navigator.locks) return Promise.resolve();
+    return new Promise((resolve, reject) => {
+      navigator.locks.request(LOCK, { ifAvailable: true }, (lock) => {
+        if (!lock) {
+          reject(new Failed('other_tab'));
+          return undefined;
+        }
+        resolve(undefined);
+        return new Promise((release) => {
+          this.#unlock = () => release(undefined);
+        });
+      });
+    });
+  }
+
+  /** @param {string} robot @returns {Promise<About>} */
+  async #meet(robot) {
+    let answer;
+    if (this.#port.isRadio) answer = await this.ask({ do: 'hello', limit_ms: LINK.radio_answer_ms });
+    else {
+      // Bytes that come too early keep a board in its bootloader.
+      await pause(ROBOTS.find((each) => each.name === robot)?.quiet_ms ?? 0);
+      answer = await this.ask({ do: 'hello', limit_ms: LINK.cable_answer_ms });
+      if (!answer.ok && !this.#bytes) {
+        await pause(LINK.long_quiet_ms);
+        answer = await this.ask({ do: 'hello', limit_ms: LINK.cable_answer_ms });
+      }
+    }
+    if (!answer.robot) throw new Failed(answer.failure ?? 'bug', [answer.said, answer.advice].join(' ').trim());
+    return answer.robot;
+  }
+
+  /** @param {Record<string, unknown>} request @returns {Promise<Answer>} */
+  ask(request) {
+    const id = ++this.#count;
+    return new Promise((resolve, reject) => {
+      if (this.#isOver) {
+        reject(new Failed('left'));
+        return;
+      }
+      this.#waiting.set(id, { resolve, reject });
+      this.#asked.push({ ...request, id });
+      this.#go();
+    });
+  }
+
+  /** Stops the robot: at once, and again until it confirms. What waits is not done. */
+  stop() {
+    if (this.#isOver) return;
+    this.#port.write(STOP).catch(() => {});
+    for (const each of this.#asked.splice(0)) {
+      const id = Number(each['id']);
+      this.#waiting.get(id)?.resolve({ failure: 'stopped_elsewhere' });
+      this.#waiting.delete(id);
+    }
+    this.ask({ do: 'stop' }).catch(() => {});
+  }
+
+  /** Stops the robot and closes the port. */
+  leave() {
+    if (this.#isOver) return;
+    const last = this.#port.write(STOP).catch(() => {});
+    this.#end(new Failed('left'), last);
+  }
+
+  async #go() {
+    if (this.#isOver) return;
+    if (this.#isGoing) {
+      this.#isAgain = true;
+      return;
+    }
+    this.#isGoing = true;
+    clearTimeout(this.#timer);
+    let wakes = LOOK_MS;
+    try {
+      do {
+        this.#isAgain = false;
+        const now_ms = Math.floor(performance.now());
+        const data = new Uint8Array(this.#came.splice(0));
+        const asked = this.#asked.splice(0);
+        const answer = await this.#python.ask({ do: 'link', now_ms, asked }, data);
+        if (this.#isOver) return;
+        if (answer.send) await this.#port.write(bytesOf(answer.send));
+        if (answer.keys) this.#keepKeys(answer.keys);
+        for (const each of answer.news) {
+          this.#take(each);
+          await undefined; // who has asked hears its answer before what comes next
+        }
+        if (answer.wakes_ms !== null) wakes = Math.max(0, Math.min(LOOK_MS, answer.wakes_ms - performance.now()));
+      } while (this.#isAgain && !this.#isOver);
+    } catch (why) {
+      this.#end(why instanceof Failed ? why : new Failed(this.#port.goneBy, ''));
+    } finally {
+      this.#isGoing = false;
+    }
+    if (!this.#isOver) this.#timer = window.setTimeout(() => this.#go(), wakes);
+  }
+
+  /** @param {any} news */
+  #take(news) {
+    if (news.event) this.#heard.event(news);
+    else {
+      this.#waiting.get(news.id)?.resolve(news);
+      this.#waiting.delete(news.id);
+    }
+  }
+
+  /** @param {Failed} why @param {Promise<unknown>} [before] */
+  #end(why, before = Promise.resolve()) {
+    if (this.#isOver) return;
+    this.#isOver = true;
+    clearTimeout(this.#timer);
+    for (const waiting of this.#waiting.values()) waiting.reject(why);
+    this.#waiting.clear();
+    before
+      .then(() => this.#port.close())
+      .catch(() => {})
+      .finally(() => this.#unlock());
+    this.#heard.over(why);
+  }
+}
+
+/** @param {number} milliseconds */
+function pause(milliseconds) {
+  return new Promise((resolve) => setTimeout(resolve, milliseconds));
+}
+
+/** @param {string} digits */
+function bytesOf(digits) {
+  return new Uint8Array(digits.match(/../g)?.map((pair) => parseInt(pair, 16)) ?? []);
+}

@@ -1,0 +1,193 @@
+// A robot at a port of this computer, which `tsc studio` has. It is asked by POST with the token of
+// its run, which stands behind the # of the address that it opens.
+//
+// The main thread asks many times a second; when it hangs or the page sleeps, `tsc studio` hears
+// nothing, and stops the robot.
+
+/** @typedef {import('./robot_way.js').Heard} Heard */
+/** @typedef {import('./robot_way.js').Answer} Answer */
+/** @typedef {import('./robot_way.js').About} About */
+
+import { Failed } from './robot_way.js';
+
+/** @typedef {{port: string, name: string, description: string, virtual: string | null}} Port */
+
+const PLACE = 'tiniscript.token';
+const BEAT_MS = 100;
+const SILENT_MS = 3000; // without an answer
+const ASK_MS = 2000;
+
+const token = tokenOfAddress();
+
+/** Whether this page comes from a `tsc studio`. */
+export const hasHost = token !== '';
+
+/** Takes the token out of the address: nobody copies it with the address. */
+function tokenOfAddress() {
+  const found = /^#token=([0-9a-f]{32})$/.exec(location.hash)?.[1];
+  try {
+    if (found) sessionStorage.setItem(PLACE, found);
+    if (found) history.replaceState(null, '', location.pathname + location.search);
+    return found ?? sessionStorage.getItem(PLACE) ?? '';
+  } catch {
+    return found ?? '';
+  }
+}
+
+/**
+ * @param {Record<string, unknown>} request
+ * @param {RequestInit} [options]
+ * @returns {Promise<any>}
+ */
+async function post(request, options = {}) {
+  const answer = await fetch('./robots', {
+    method: 'POST',
+    headers: { 'X-TiniScript-Token': token, 'Content-Type': 'application/json' },
+    body: JSON.stringify(request),
+    signal: AbortSignal.timeout(ASK_MS),
+    ...options,
+  });
+  if (answer.status === 403) throw new Failed('host_other');
+  if (!answer.ok) throw new Failed('bad_request');
+  return answer.json();
+}
+
+/** @returns {Promise<Port[]>} */
+export async function hostPorts() {
+  try {
+    return (await post({ do: 'ports' })).ports;
+  } catch (why) {
+    throw why instanceof Failed ? why : new Failed('host_gone');
+  }
+}
+
+/** Stops all robots of this `tsc studio`. */
+export function stopHost() {
+  post({ do: 'stop_all' }, { keepalive: true }).catch(() => {});
+}
+
+export class HostRobot {
+  #page = [...crypto.getRandomValues(new Uint8Array(16))].map((byte) => byte.toString(16).padStart(2, '0')).join('');
+  #heard;
+  #count = 0;
+  #seen = 0;
+  #isOver = false;
+  #isAsking = false;
+  #heardAt = 0;
+  /** @type {Record<string, unknown>[]} */
+  #asked = [];
+  /** @type {Map<number, {resolve: (answer: Answer) => void, reject: (why: Error) => void}>} */
+  #waiting = new Map();
+  /** @type {(about: About) => void} */
+  #met = () => {};
+  /** @type {(why: Error) => void} */
+  #fails = () => {};
+  #timer = 0;
+  #stops = 0; // what was asked before one, and arrives after it, is void
+
+  /** @param {Heard} heard */
+  constructor(heard) {
+    this.#heard = heard;
+  }
+
+  /**
+   * Connects; rejects with a Failed.
+   * @param {string} port
+   * @param {string} robot
+   * @param {string} language
+   * @returns {Promise<About>}
+   */
+  async connect(port, robot, language) {
+    let answer;
+    try {
+      answer = await post({ do: 'connect', page: this.#page, port, robot, language });
+    } catch (why) {
+      throw why instanceof Failed ? why : new Failed('host_gone');
+    }
+    if (answer.failure) throw new Failed(answer.failure);
+    /** @type {Promise<About>} */
+    const met = new Promise((resolve, reject) => {
+      this.#met = resolve;
+      this.#fails = reject;
+    });
+    this.#heardAt = performance.now();
+    this.#beat();
+    return met;
+  }
+
+  /** @param {Record<string, unknown>} request @returns {Promise<Answer>} */
+  ask(request) {
+    const id = ++this.#count;
+    return new Promise((resolve, reject) => {
+      if (this.#isOver) {
+        reject(new Failed('left'));
+        return;
+      }
+      this.#waiting.set(id, { resolve, reject });
+      this.#asked.push({ ...request, id, stops: this.#stops });
+      clearTimeout(this.#timer);
+      this.#beat();
+    });
+  }
+
+  /** Stops the robot; that waits for nothing. */
+  stop() {
+    if (this.#isOver) return;
+    this.#stops += 1;
+    post({ do: 'stop', page: this.#page, seen: this.#seen, stops: this.#stops }, { keepalive: true }).catch(() => {});
+  }
+
+  /** Stops what this page has started, and leaves the robot. */
+  leave() {
+    if (this.#isOver) return;
+    post({ do: 'leave', page: this.#page, seen: this.#seen }, { keepalive: true }).catch(() => {});
+    this.#end(new Failed('left'));
+  }
+
+  async #beat() {
+    if (this.#isOver || this.#isAsking) return;
+    this.#isAsking = true;
+    const asked = this.#asked.splice(0, 8);
+    try {
+      const answer = await post({ do: 'beat', page: this.#page, seen: this.#seen, asked });
+      this.#heardAt = performance.now();
+      for (const each of answer.news) {
+        this.#take(each);
+        await undefined; // who has asked hears its answer before what comes next
+      }
+    } catch (why) {
+      if (why instanceof Failed) this.#end(why);
+      else {
+        this.#asked.unshift(...asked); // it has not arrived, or has: an id is answered once
+        if (performance.now() - this.#heardAt > SILENT_MS) this.#end(new Failed('host_gone'));
+      }
+    } finally {
+      this.#isAsking = false;
+    }
+    if (!this.#isOver) this.#timer = window.setTimeout(() => this.#beat(), this.#asked.length ? 0 : BEAT_MS);
+  }
+
+  /** @param {any} news */
+  #take(news) {
+    if (this.#isOver || (news.number && news.number <= this.#seen)) return;
+    this.#seen = Math.max(this.#seen, news.number ?? 0);
+    if (news.over) this.#end(new Failed(news.over, news.said));
+    else if (news.connected) this.#met(news.connected);
+    else if (news.event) this.#heard.event(news);
+    else if (news.id) {
+      this.#waiting.get(news.id)?.resolve(news);
+      this.#waiting.delete(news.id);
+    }
+  }
+
+  /** @param {Failed} why */
+  #end(why) {
+    if (this.#isOver) return;
+    this.#isOver = true;
+    clearTimeout(this.#timer);
+    this.#fails(why);
+    for (const waiting of this.#waiting.values()) waiting.reject(why);
+    this.#waiting.clear();
+    this.#heard.over(why);
+  }
+}

@@ -1,0 +1,412 @@
+// The part of the page with a real robot: how it is reached, what it is told, and what it says.
+// Everything that a robot says is put there as text, never as markup.
+
+import { element } from './elements.js';
+import { bytesOf } from './files.js';
+import { chosenDevice, BluetoothPort, hasBluetooth } from './robot_bluetooth.js';
+import { DirectRobot } from './robot_direct.js';
+import { hasHost, hostPorts, HostRobot, stopHost } from './robot_host.js';
+import { keepKeys, keptKeys } from './robot_keys.js';
+import { readTrim, showTrim } from './robot_trim.js';
+import { chosenPort, hasSerial, knownPorts, SerialPort } from './robot_serial.js';
+import { Failed } from './robot_way.js';
+import { currentLanguage, hasText, text } from './texts.js';
+import { LINK, ROBOTS } from './words.js';
+
+/** @typedef {import('./python.js').Checked} Checked */
+/** @typedef {import('./robot_way.js').About} About */
+/** @typedef {import('./robot_way.js').Answer} Answer */
+/** @typedef {import('./robot_way.js').RobotEvent} RobotEvent */
+/** @typedef {import('./robot_way.js').Way} Way */
+/** @typedef {{label: string, connect: () => Promise<void>}} Choice */
+
+const SHOWN = 200; // lines of what the robot shows
+const SHOWN_CHARACTERS = 200; // of a name or a text
+
+/**
+ * @typedef {object} Page what the panel uses of the page
+ * @property {import('./python.js').Python} python
+ * @property {() => Checked | null} program what the compiler says of the newest text
+ * @property {() => string} robot for which it compiles
+ * @property {(name: string) => void} setRobot
+ * @property {(place: import('./editor.js').Range) => void} goTo
+ */
+
+export class RobotPanel {
+  #page;
+  /** @type {Way | null} */
+  #way = null;
+  /** @type {About | null} */
+  #about = null;
+  #isBusy = false;
+  /** @type {Choice[]} */
+  #choices = [];
+  /** @type {{program: string, places: Checked['places'], of: Checked} | null} */
+  #sent = null;
+  /** @type {string[]} */
+  #shown = [];
+  /** What is said, so that it can be said in another language. @type {() => string} */
+  #said = () => '';
+  #confirming = 0;
+  #list = element('link_port', HTMLSelectElement);
+  #line = element('link_line', HTMLInputElement);
+
+  /** @param {Page} page */
+  constructor(page) {
+    this.#page = page;
+    for (const [id, act] of /** @type {[string, () => void][]} */ ([
+      ['link_look', () => this.#look()],
+      ['link_connect', () => this.#choices[this.#list.selectedIndex]?.connect()],
+      ['link_serial', () => this.#bySerial(chosenPort())],
+      ['link_bluetooth', () => this.#byBluetooth()],
+      ['link_leave', () => this.#way?.leave()],
+      ['link_identify', () => this.#ask({ do: 'identify' }, () => this.#say('say_identify', { name: this.#name }))],
+      ['link_upload', () => this.#upload(true)],
+      ['link_send', () => this.#upload(false)],
+      ['link_start', () => this.#ask({ do: 'start' }, () => this.#say('say_started'))],
+      ['link_rename', () => this.#rename()],
+      ['trim_set', () => this.#trim()],
+      ['trim_try', () => this.#live('F(2, 60)')],
+      ['keys_claim', () => this.#claim()],
+      ['keys_import', () => element('keys_file', HTMLInputElement).click()],
+    ])) element(id, HTMLButtonElement).addEventListener('click', act);
+    element('link_live', HTMLFormElement).addEventListener('submit', (event) => {
+      event.preventDefault();
+      this.#live(this.#line.value);
+    });
+    element('keys_file', HTMLInputElement).addEventListener('change', () => this.#import());
+    element('stop', HTMLButtonElement).addEventListener('click', () => this.stop());
+    addEventListener('keydown', (event) => {
+      if (event.key === 'Escape') this.stop();
+    }, { capture: true });
+    document.addEventListener('visibilitychange', () => {
+      if (document.visibilityState === 'hidden') this.#hide();
+    });
+    for (const name of ['pagehide', 'freeze']) addEventListener(name, () => this.#way?.leave());
+    this.setLanguage();
+    this.#look();
+  }
+
+  get #name() {
+    const about = this.#about;
+    if (!about) return '';
+    return shown(about.name) || ROBOTS.find((each) => each.name === about.robot)?.labels[currentLanguage()] || about.id;
+  }
+
+  setLanguage() {
+    element('link_said', HTMLElement).textContent = this.#said();
+    this.#show();
+  }
+
+  /** Stops the robot; a page without one stops all that its `tsc studio` has. */
+  stop() {
+    if (this.#way) {
+      this.#way.stop();
+      this.#say('say_stopping');
+      clearTimeout(this.#confirming);
+      this.#confirming = window.setTimeout(() => this.#say('say_not_confirmed'), LINK.confirm_ms);
+    } else if (hasHost) stopHost();
+  }
+
+  #hide() {
+    if (!this.#way) return;
+    this.stop();
+    this.#say('say_hidden');
+  }
+
+  // -- connecting ---------------------------------------------------------------------------------
+
+  /** Lists what can be reached, and opens nothing. */
+  async #look() {
+    /** @type {Choice[]} */
+    const found = [];
+    let failed = null;
+    if (hasHost) {
+      try {
+        for (const { port, name, description, virtual } of await hostPorts()) {
+          const about = virtual === null ? description : `${text('virtual_known')} ${virtual}`;
+          const label = shown([name, about, port].filter(Boolean).join(' · '));
+          found.push({ label, connect: () => this.#byHost(port) });
+        }
+      } catch (why) {
+        failed = why;
+      }
+    }
+    for (const [k, port] of (await knownPorts()).entries()) {
+      found.push({ label: text('serial_known', { number: k + 1 }), connect: () => this.#bySerial(Promise.resolve(port)) });
+    }
+    this.#choices = found;
+    this.#list.replaceChildren(...found.map(({ label }) => new Option(label)));
+    this.#show();
+    if (this.#way) return;
+    if (failed instanceof Failed) this.#fail(failed);
+    else if (found.length) this.#say('say_choose');
+    else if (hasHost) this.#say('say_none');
+    else this.#say(hasSerial || hasBluetooth ? 'say_ways' : 'say_no_way');
+  }
+
+  /** @param {string} port */
+  #byHost(port) {
+    return this.#connect(async (heard) => {
+      const way = new HostRobot(heard);
+      return { way, met: way.connect(port, this.#page.robot(), currentLanguage()) };
+    });
+  }
+
+  /** @param {Promise<any>} chosen */
+  #bySerial(chosen) {
+    return this.#connect(async (heard) => this.#direct(new SerialPort(await chosen, this.#baud), heard));
+  }
+
+  #byBluetooth() {
+    const chosen = chosenDevice();
+    return this.#connect(async (heard) => this.#direct(new BluetoothPort(await chosen, this.#baud), heard));
+  }
+
+  get #baud() {
+    return ROBOTS.find((each) => each.name === this.#page.robot())?.baud ?? 9600;
+  }
+
+  /** @param {import('./robot_direct.js').Port} port @param {import('./robot_way.js').Heard} heard */
+  #direct(port, heard) {
+    const way = new DirectRobot(this.#page.python, port, heard, keepKeys);
+    return { way, met: way.connect(this.#page.robot(), currentLanguage(), keptKeys()) };
+  }
+
+  /** @param {(heard: import('./robot_way.js').Heard) => Promise<{way: Way, met: Promise<About>}>} open */
+  async #connect(open) {
+    if (this.#isBusy || this.#way) return;
+    this.#isBusy = true;
+    this.#say('say_connecting');
+    this.#show();
+    /** @type {Way | null} */
+    let way = null;
+    const heard = {
+      event: (/** @type {RobotEvent} */ event) => this.#hear(event),
+      over: (/** @type {Failed} */ why) => {
+        if (this.#way && this.#way === way) this.#end(why);
+      },
+    };
+    try {
+      const opened = await open(heard);
+      way = this.#way = opened.way; // STOP reaches it from now on
+      this.#show();
+      const about = await opened.met;
+      this.#about = about;
+      this.#begin(about);
+    } catch (why) {
+      this.#end(why instanceof Failed ? why : new Failed('bug', String(why)));
+    } finally {
+      this.#isBusy = false;
+      this.#show();
+    }
+  }
+
+  /** @param {About} about */
+  #begin(about) {
+    this.#shown = [];
+    const isOther = about.robot !== null && about.robot !== this.#page.robot();
+    if (about.robot !== null && isOther) this.#page.setRobot(about.robot);
+    if (about.owner === 'other') this.#say('say_owned', { name: this.#name });
+    else if (isOther) this.#say('say_other_kit', { name: this.#name, robot: String(about.robot) });
+    else this.#say('say_connected', { name: this.#name });
+    element('link_rename_to', HTMLInputElement).value = shown(about.name);
+    this.#way?.ask({ do: 'trim' }).then(({ trim }) => trim && showTrim(trim)).catch(() => {});
+  }
+
+  /** @param {Failed} why */
+  #end(why) {
+    this.#way = null;
+    this.#about = null;
+    this.#sent = null;
+    clearTimeout(this.#confirming);
+    if (why.reason === 'left') this.#say('say_left');
+    else this.#fail(why);
+    this.#show();
+  }
+
+  // -- what the robot is told ---------------------------------------------------------------------
+
+  /**
+   * @param {Record<string, unknown>} request
+   * @param {(answer: Answer) => void} done
+   */
+  async #ask(request, done) {
+    if (!this.#way || !this.#about) return;
+    try {
+      const answer = await this.#way.ask(request);
+      if (answer.ok) done(answer);
+      else this.#fail(new Failed(answer.failure ?? 'bug', refusal(answer)));
+    } catch {
+      // it is over, and that was said
+    }
+  }
+
+  /** @param {boolean} runs */
+  #upload(runs) {
+    const program = this.#page.program();
+    if (!program?.image) {
+      this.#say('first_repair');
+      return;
+    }
+    this.#say('say_sending');
+    this.#shown = [];
+    this.#ask({ do: 'upload', image: program.image, robot: this.#page.robot(), runs }, (answer) => {
+      const { program: sum = '', saved = 'MEMORY' } = answer;
+      this.#sent = { program: sum, places: program.places, of: program };
+      this.#say('say_receipt', { program: sum, bytes: program.bytes }, `saved_${saved}`);
+    });
+  }
+
+  /** Runs a line now. @param {string} line */
+  async #live(line) {
+    if (!line.trim() || !this.#about) return;
+    const robot = this.#page.robot();
+    const data = new TextEncoder().encode(`SI|${line}`);
+    /** @type {Checked} */
+    const found = await this.#page.python.ask({ do: 'check', robot, language: currentLanguage() }, data);
+    const mistake = found.findings.find((each) => each.severity === 'mistake');
+    if (mistake) {
+      this.#tell([mistake.message, mistake.fix && `${text('try')} ${mistake.fix}`].filter(Boolean).join(' '));
+      return;
+    }
+    await this.#ask({ do: 'live', image: found.image, robot }, () => this.#say('say_line'));
+  }
+
+  #rename() {
+    const name = element('link_rename_to', HTMLInputElement).value.trim();
+    if (!name || new TextEncoder().encode(name).length > LINK.name_bytes) return;
+    this.#ask({ do: 'name', name }, () => {
+      if (this.#about) this.#about = { ...this.#about, name };
+      this.#say('say_named', { name: shown(name) });
+      this.#show();
+    });
+  }
+
+  #trim() {
+    this.#ask({ do: 'trim', trim: readTrim() }, ({ trim }) => {
+      if (trim) showTrim(trim);
+      this.#say('say_trimmed');
+    });
+  }
+
+  #claim() {
+    this.#say('say_claiming');
+    const isHost = this.#way instanceof HostRobot;
+    this.#ask({ do: 'claim' }, () => this.#say(isHost ? 'say_claimed_here' : 'say_claimed'));
+  }
+
+  async #import() {
+    const input = element('keys_file', HTMLInputElement);
+    const chosen = input.files?.[0];
+    input.value = '';
+    if (!chosen) return;
+    if (this.#way instanceof HostRobot) {
+      this.#say('say_keys_host');
+      return;
+    }
+    try {
+      const found = await this.#page.python.ask({ do: 'import_keys', kept: keptKeys() }, await bytesOf(chosen));
+      if (found.count) keepKeys(found.keys);
+      this.#say(found.count ? 'say_keys' : 'say_no_keys', { count: found.count });
+    } catch {
+      this.#say('say_no_keys');
+    }
+  }
+
+  // -- what the robot says ------------------------------------------------------------------------
+
+  /** @param {RobotEvent} event */
+  #hear(event) {
+    if (event.event === 'SHOW') this.#add(String(event.value));
+    else if (event.event === 'TEXT') this.#add(text('say_text', { said: shown(String(event.text)) }));
+    else if (event.event === 'MISSED') this.#add(text('say_missed', { count: Number(event.count) }));
+    else if (event.event === 'DONE') this.#say('say_done');
+    else if (event.event === 'FAULT') this.#fault(event);
+    else if (event.event === 'LOST') this.#say('why_link_lost');
+    else if (event.event === 'STOPPED') {
+      clearTimeout(this.#confirming);
+      if (document.visibilityState !== 'hidden') this.#say(`stopped_${event.cause}`);
+    }
+  }
+
+  /** @param {RobotEvent} event */
+  #fault(event) {
+    const key = hasText(`fault_${event.fault}`) ? `fault_${event.fault}` : 'fault_other';
+    const what = text(key, { name: shown(String(event.fault)) });
+    const sent = this.#sent;
+    const place = sent?.program === event.program ? sent?.places.findLast(([at]) => at <= Number(event.at)) : undefined;
+    if (!place) {
+      this.#tell(what);
+      return;
+    }
+    const [, line, column, end_line, end_column] = place;
+    this.#tell(text('say_fault', { line, what }));
+    // else the places are those of another text
+    if (this.#page.program() === sent?.of) this.#page.goTo({ line, column, end_line, end_column });
+  }
+
+  /** @param {Failed} why */
+  #fail(why) {
+    clearTimeout(this.#confirming);
+    const key = `why_${why.reason}`;
+    const said = shown(why.said, 1000);
+    const isOurs = hasText(key) && (!said || why.reason.startsWith('link_'));
+    this.#said = () => (isOurs ? text(key) : said || text('why_bug'));
+    element('link_said', HTMLElement).textContent = this.#said();
+    document.documentElement.dataset['link'] = why.reason;
+  }
+
+  /**
+   * @param {string} key
+   * @param {Record<string, string | number>} values
+   * @param {string} [saved]
+   */
+  #say(key, values = {}, saved = '') {
+    this.#said = () => text(key, saved ? { ...values, saved: text(saved) } : values);
+    element('link_said', HTMLElement).textContent = this.#said();
+    document.documentElement.dataset['link'] = key;
+  }
+
+  /** @param {string} said */
+  #tell(said) {
+    this.#said = () => said;
+    element('link_said', HTMLElement).textContent = said;
+  }
+
+  /** @param {string} line */
+  #add(line) {
+    this.#shown.push(line);
+    if (this.#shown.length > SHOWN) this.#shown.splice(0, this.#shown.length - SHOWN);
+    const list = element('link_shown', HTMLElement);
+    list.textContent = this.#shown.join('\n');
+    list.scrollTop = list.scrollHeight;
+  }
+
+  #show() {
+    const isThere = this.#about !== null;
+    element('link_ways', HTMLElement).hidden = this.#way !== null;
+    element('link_drive', HTMLElement).hidden = !isThere;
+    element('link_connected', HTMLElement).hidden = this.#way === null;
+    element('link_name', HTMLElement).textContent = this.#name;
+    element('link_serial', HTMLButtonElement).hidden = !hasSerial;
+    element('link_bluetooth', HTMLButtonElement).hidden = !hasBluetooth;
+    element('link_ports', HTMLElement).hidden = !hasHost && !this.#choices.length;
+    element('link_identify', HTMLButtonElement).hidden = !isThere;
+    for (const id of ['link_connect', 'link_serial', 'link_bluetooth']) element(id, HTMLButtonElement).disabled = this.#isBusy;
+    element('link_shown', HTMLElement).textContent = this.#shown.join('\n');
+    document.documentElement.dataset['robot'] = isThere ? 'connected' : this.#isBusy ? 'connecting' : 'none';
+  }
+}
+
+/** @param {Answer} answer */
+function refusal({ failure = '', said = '', advice = '' }) {
+  const own = `try_${failure}`;
+  return [said, hasText(own) ? text(own) : advice].join(' ').trim();
+}
+
+/** What somebody else has written, without what moves or hides text. @param {string} found */
+function shown(found, most = SHOWN_CHARACTERS) {
+  const plain = found.replace(/[\p{C}\p{Zl}\p{Zp}]/gu, '?');
+  return plain.length > most ? `${plain.slice(0, most)}…` : plain;
+}

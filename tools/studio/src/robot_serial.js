@@ -1,0 +1,102 @@
+// A serial port that the browser opens: a cable, or Bluetooth with a serial port.
+
+import { Failed } from './robot_way.js';
+
+const SERIAL = /** @type {any} */ (navigator).serial;
+const SPP = '00001101-0000-1000-8000-00805f9b34fb';
+
+export const hasSerial = SERIAL !== undefined;
+
+/** Returns the ports that a person has allowed before. @returns {Promise<any[]>} */
+export async function knownPorts() {
+  try {
+    return hasSerial ? await SERIAL.getPorts() : [];
+  } catch {
+    return []; // forbidden here
+  }
+}
+
+/** Lets a person choose a port; rejects with a Failed. */
+export async function chosenPort() {
+  try {
+    return await SERIAL.requestPort({ allowedBluetoothServiceClassIds: [SPP] });
+  } catch (why) {
+    throw new Failed(/** @type {Error} */ (why).name === 'SecurityError' ? 'port_forbidden' : 'not_chosen');
+  }
+}
+
+export class SerialPort {
+  goneBy = 'port_gone';
+  #port;
+  #baud;
+  /** @type {any} */
+  #reader = null;
+  /** @type {any} */
+  #writer = null;
+  #isClosing = false;
+  /** @type {Promise<void>} */
+  #reading = Promise.resolve();
+
+  /** @param {any} port @param {number} baud */
+  constructor(port, baud) {
+    this.#port = port;
+    this.#baud = baud;
+  }
+
+  get isRadio() {
+    return this.#port.getInfo().bluetoothServiceClassId !== undefined;
+  }
+
+  /** @param {(data: Uint8Array) => void} heard @param {() => void} gone */
+  async open(heard, gone) {
+    try {
+      await this.#port.open({ baudRate: this.#baud, bufferSize: 4096 });
+    } catch (why) {
+      const { name } = /** @type {Error} */ (why);
+      throw new Failed(name === 'InvalidStateError' ? 'port_busy' : name === 'NetworkError' ? 'port_broken' : 'port_forbidden');
+    }
+    this.#writer = this.#port.writable.getWriter();
+    this.#reading = this.#read(heard).then(() => {
+      if (!this.#isClosing) gone();
+    });
+  }
+
+  /** Reads until the port is closed or gone. @param {(data: Uint8Array) => void} heard */
+  async #read(heard) {
+    while (this.#port.readable && !this.#isClosing) {
+      this.#reader = this.#port.readable.getReader();
+      try {
+        for (;;) {
+          const { value, done } = await this.#reader.read();
+          if (done) break;
+          heard(value);
+        }
+      } catch {
+        // A framing error: there is a new reader after it. After the end there is none.
+      } finally {
+        this.#reader.releaseLock();
+      }
+    }
+  }
+
+  /** @param {Uint8Array} data */
+  async write(data) {
+    await this.#writer.write(data);
+  }
+
+  async close() {
+    this.#isClosing = true;
+    try {
+      await this.#reader?.cancel();
+      await this.#reading;
+    } catch {
+      // it has gone
+    }
+    try {
+      await this.#writer?.close();
+    } catch {
+      this.#writer?.releaseLock();
+    }
+    await this.#port.close();
+  }
+}

@@ -1,0 +1,71 @@
+// What all ways to a robot have in common: what they say, and how they fail.
+
+/**
+ * @typedef {object} About what a robot says of itself
+ * @property {string} name
+ * @property {string} id
+ * @property {string | null} robot the name of its shipped profile
+ * @property {'free' | 'yours' | 'other'} owner
+ * @property {number} room
+ * @property {boolean} is_running
+ */
+
+/**
+ * @typedef {object} Answer
+ * @property {boolean} [ok]
+ * @property {string} [failure]
+ * @property {string} [said]
+ * @property {string} [advice]
+ * @property {string} [program]
+ * @property {string} [saved]
+ * @property {Trim} [trim]
+ * @property {About} [robot]
+ */
+
+/**
+ * @typedef {object} Trim
+ * @property {boolean} is_exchanged
+ * @property {boolean} is_left_reversed
+ * @property {boolean} is_right_reversed
+ * @property {number} balance
+ * @property {number} least
+ */
+
+/**
+ * @typedef {object} RobotEvent
+ * @property {string} event
+ * @property {string} [value]
+ * @property {string} [fault]
+ * @property {number} [at]
+ * @property {string} [program]
+ * @property {string} [cause]
+ * @property {number} [count]
+ * @property {string} [text]
+ */
+
+/**
+ * Who hears of a robot: `over` comes once, when the connection has ended.
+ * @typedef {object} Heard
+ * @property {(event: RobotEvent) => void} event
+ * @property {(why: Failed) => void} over
+ */
+
+/**
+ * @typedef {object} Way a connected robot
+ * @property {(request: Record<string, unknown>) => Promise<Answer>} ask
+ * @property {() => void} stop
+ * @property {() => void} leave
+ */
+
+/** Why there is no connection: a name of `robot_texts`, and what somebody else says of it. */
+export class Failed extends Error {
+  /**
+   * @param {string} reason
+   * @param {string} said
+   */
+  constructor(reason, said = '') {
+    super(reason);
+    this.reason = reason;
+    this.said = said;
+  }
+}
