@@ -1,0 +1,62 @@
+"""A key is in its file alone: in no output, no report, no other file, no list of processes."""
+
+from __future__ import annotations
+
+import base64
+from pathlib import Path
+
+import pytest
+
+from tests.cli.test_owner_commands import claimed
+from tests.machines.host_firmware import missing
+from tests.support.command import Command
+from tests.support.pty_robot import PtyRobot, on
+from tiniscript.keys import KeyFile
+
+pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
+
+VERBS = (
+    ("info",), ("info", "--json"), ("ping", "--count", "1", "--json"), ("ports", "--ask", "--json"),
+    ("doctor",), ("doctor", "--json"), ("upload", "-e", "SI|F(0.1, 80)", "--json"),
+    ("live", "SHOW(1)"), ("live", "SHOW(1 / 0 * X)"), ("start", "--json"), ("undo", "--json"),
+    ("name", "TINI"), ("text", "on"), ("identify",), ("stop", "--teacher"), ("stop", "--json"),
+    ("selftest", "--yes"), ("disown", "--teacher"),
+)  # fmt: skip
+
+
+def forms(secret: bytes) -> list[bytes]:
+    """Return what a key may look like without spaces: its bytes, in hex, in base 64, as a list."""
+    texts = (secret.hex(), secret.hex().upper(), str(list(secret)), repr(secret))
+    found = [secret, base64.b64encode(secret), *(text.encode() for text in texts)]
+    return [b"".join(each.split()) for each in found]
+
+
+def has_one(secrets: list[bytes], data: bytes) -> bool:
+    return any(secret in b"".join(data.split()) for secret in secrets)
+
+
+def test_a_key_is_in_its_file_alone(pty_robot: PtyRobot, tmp_path: Path) -> None:
+    assert claimed(pty_robot).code == 0
+    assert claimed(pty_robot, "--teacher").code == 0
+    secrets = [form for key in KeyFile().all() for form in forms(key.key)]
+    assert len(secrets) == 12 and has_one(secrets, KeyFile().path.read_bytes())
+    said = ""
+    for verb in (*VERBS, ("doctor", "--report", str(tmp_path / "report.txt"))):
+        done = on(pty_robot, *verb)
+        said += done.out + done.err
+    said += on(pty_robot, "keys").out + on(pty_robot, "keys", "--json").out
+    link = Command("link", "--port", pty_robot.port)
+    link.until("Ctrl-C")
+    said += on(pty_robot, "upload", "-e", "SI|F(0.1, 80)").out
+    for name in ("cmdline", "environ"):
+        path = Path("/proc") / str(link.process.pid) / name
+        said += path.read_bytes().decode("latin-1") if path.exists() else ""
+    link.process.terminate()
+    said += link.ended().out
+    assert "tiniscript" in said
+    assert not has_one(secrets, said.encode("latin-1", "replace"))
+    files = [path for path in tmp_path.rglob("*") if path.is_file() and path != KeyFile().path]
+    assert len(files) > 3
+    for path in files:
+        assert not has_one(secrets, path.read_bytes()), path
