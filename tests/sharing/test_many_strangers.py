@@ -14,13 +14,17 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import NamedTuple
+from urllib.parse import urlsplit
+from urllib.request import urlopen
 
 import pytest
 
 from tests.sharing.test_strangers import few, registration_of
 from tests.support.command import FOREVER, process
 from tests.support.virtual_robot import missing
+from tiniscript.studio.serving import CONNECTIONS
 
 pytestmark = [
     pytest.mark.skipif(sys.platform != "linux", reason="only Linux tells of a process what it has"),
@@ -131,11 +135,61 @@ def test_nothing_grows_and_a_stop_gets_through(kind: str) -> None:
         assert after.memory_kb <= before.memory_kb + GROWN_KB, name
 
 
+@contextmanager
+def studio() -> Iterator[tuple[int, int]]:
+    """A `tsc studio` that may have 256 files open: the number of its process, and its port."""
+    with TemporaryDirectory() as folder:
+        Path(folder, "index.html").write_text("<!doctype html>")
+        code = (
+            "import sys; from pathlib import Path; from tiniscript.studio import serving; "
+            f"serving.PAGE = Path({folder!r}); from tiniscript.cli import main; "
+            "sys.exit(main(['studio', '--listen', '0', '--no-browser']))"
+        )
+        words = ["sh", "-c", 'ulimit -n 256; exec "$@"', "sh", sys.executable, "-c", code]
+        with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as process:
+            try:
+                assert process.stdout
+                address = process.stdout.readline().decode().strip()
+                yield process.pid, urlsplit(address).port or 0
+            finally:
+                process.kill()
+                process.communicate()
+
+
+def page(port: int) -> bytes:
+    with urlopen(f"http://127.0.0.1:{port}/", timeout=5) as response:
+        data: bytes = response.read()
+    return data
+
+
+def attack_studio(kind: str, count: int) -> tuple[str, Had, Had, Had]:
+    with studio() as (pid, port):
+        assert page(port) == b"<!doctype html>"
+        before = had(pid)
+        with visitors(port, kind, count):
+            meanwhile = had(pid)
+            assert page(port) == b"<!doctype html>"
+            meanwhile = max(meanwhile, had(pid))
+        end_s = time.monotonic() + 60
+        while had(pid).files > before.files + 3 and time.monotonic() < end_s:
+            time.sleep(0.1)
+        assert page(port) == b"<!doctype html>"
+        return "studio", before, meanwhile, had(pid)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_studio_gives_its_page_among_many_who_come(kind: str) -> None:
+    _, before, meanwhile, after = attack_studio(kind, TESTED)
+    assert meanwhile.files <= before.files + CONNECTIONS + 3
+    assert after.files <= before.files + 3
+    assert after.memory_kb <= before.memory_kb + GROWN_KB
+
+
 def campaign(count: int) -> None:
     print("| who comes | where | open files before, meanwhile, after | KB before, after |")
     print("|---|---|---|---|")
     for kind in KINDS:
-        for name, before, meanwhile, after in attack(kind, count):
+        for name, before, meanwhile, after in [*attack(kind, count), attack_studio(kind, count)]:
             print(
                 f"| {count:,} {kind} | {name} | {before.files}, {meanwhile.files}, {after.files} "
                 f"| {before.memory_kb:,}, {after.memory_kb:,} |", flush=True,

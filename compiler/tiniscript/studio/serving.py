@@ -34,7 +34,7 @@ ROBOTS = "/robots"  # where a page asks for robots
 TOKEN = "X-TiniScript-Token"
 TOKEN_BYTES = 16
 REQUEST_BYTES = 200_000  # the largest program has 32,781 bytes, and two digits for each
-CONNECTIONS = 100  # at a time; one more, and the one that has asked nothing for longest is closed
+CONNECTIONS = 64  # at a time; one more, and the one that has asked nothing for longest is closed
 
 Robots = Callable[[Json], Json]  # raises BadRequest
 
