@@ -264,9 +264,9 @@ def test_what_is_no_request_is_refused(hosting: Hosting, request_: dict[str, Any
     ],
 )
 def test_a_wrong_request_harms_nothing(page: Page, asked: dict[str, Any]) -> None:
-    page.beat({"id": 77, **asked})
-    assert page.until(lambda each: each.get("id") == 77)["failure"] == "bad_request"
-    assert page.ask("identify")["ok"]
+    page.beat({"id": 1, **asked}, {"id": 2, "do": "identify"})
+    assert page.until(lambda each: each.get("id") == 1)["failure"] == "bad_request"
+    assert page.until(lambda each: each.get("id") == 2)["ok"]
 
 
 def test_what_was_asked_before_a_stop_and_comes_after_it_is_void(
@@ -291,7 +291,7 @@ def test_a_request_that_comes_twice_is_done_once(page: Page, robot: PtyRobot) ->
     for _ in range(5):
         page.beat()
         time.sleep(BEAT_S)
-    assert sum(each.startswith("SHOW") for each in robot.did) == 1
+    assert [each["event"] for each in page.news if "event" in each] == ["STARTED", "SHOW"]
 
 
 def test_what_a_page_does_not_fetch_is_bounded() -> None:

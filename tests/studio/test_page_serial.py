@@ -1,0 +1,119 @@
+"""The page and a robot by Web Serial: the browser's own, and the robot's firmware behind a pty."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from tests.studio.test_page_link import said
+from tests.support import studio, studio_serial
+from tests.support.command import FOREVER
+from tests.support.platformio import need
+from tests.support.pty_robot import PtyRobot
+from tests.support.studio import checked, write
+from tiniscript import robots
+
+if TYPE_CHECKING:
+    from playwright.sync_api import BrowserContext, Page, Playwright
+
+
+@pytest.fixture(scope="module")
+def robot() -> Iterator[PtyRobot]:
+    with PtyRobot(robots.load("tinibot").kit) as made:
+        yield made
+
+
+@pytest.fixture(scope="module")
+def context(
+    playwright: Playwright, robot: PtyRobot, tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[BrowserContext]:
+    """A browser of its own: a page that no `tsc studio` has given, as on any static host."""
+    need(studio_serial.missing())
+    folder: Path = tmp_path_factory.mktemp("serial")
+    with (
+        studio.served() as server,
+        studio_serial.context(playwright, folder, robot.port, server.address) as opened,
+    ):
+        first = opened.pages[0]
+        first.goto(server.address)
+        checked(first)
+        yield opened
+
+
+@pytest.fixture
+def page(context: BrowserContext) -> Page:
+    """A page that has met its robot."""
+    found = context.pages[0]
+    found.click("#side_real")
+    if found.locator("html[data-robot=connected]").count() == 0:
+        found.click("#link_look")
+        found.locator("#link_port option").first.wait_for(state="attached")
+        found.click("#link_connect")
+        found.locator("html[data-robot=connected]").wait_for(state="attached")
+    return found
+
+
+def test_a_program_is_sent_and_runs(page: Page, robot: PtyRobot) -> None:
+    write(page, "SHOW(2.5);\nF(0.2, 80);\nX = 0;\nSHOW(1 / X)")
+    page.click("#link_upload")
+    said(page, "Line 4: something is divided by 0.")
+    assert page.locator("#link_shown").inner_text() == "2.5"
+    assert "MOTORS 80 80" in robot.did
+
+
+def test_stop_stops(page: Page, robot: PtyRobot) -> None:
+    write(page, FOREVER)
+    page.click("#link_upload")
+    robot.until(lambda: robot.moves, "it drives")
+    page.keyboard.press("Escape")
+    said(page, "Stopped: the robot has confirmed it.")
+    assert not robot.moves
+
+
+def test_a_page_that_hangs_stops_its_robot(page: Page, robot: PtyRobot) -> None:
+    write(page, FOREVER)
+    page.click("#link_upload")
+    robot.until(lambda: robot.moves, "it drives")
+    page.evaluate("() => { setTimeout(() => { const end = performance.now() + 3000;"
+                  " while (performance.now() < end); }, 0); }")  # fmt: skip
+    robot.until(lambda: not robot.moves, "its dead-man timer stops it", limit_s=2.9)
+
+
+def test_two_tabs_do_not_fight(context: BrowserContext, page: Page, robot: PtyRobot) -> None:
+    other = context.new_page()
+    other.goto(page.url)
+    checked(other)
+    other.click("#side_real")
+    other.locator("#link_port option").first.wait_for(state="attached")
+    other.click("#link_connect")
+    said(other, "Another tab of this browser drives this robot.")
+    other.close()
+    assert page.locator("html[data-robot=connected]").count() == 1
+
+
+def test_a_page_that_is_closed_stops_its_robot(
+    context: BrowserContext, page: Page, robot: PtyRobot
+) -> None:
+    write(page, FOREVER)
+    page.click("#link_upload")
+    robot.until(lambda: robot.moves, "it drives")
+    address = page.url
+    page.goto("about:blank")
+    robot.until(lambda: not robot.moves, "it stands", limit_s=3)
+    page.goto(address)
+    checked(page)
+
+
+def test_what_a_reload_has_left_is_met_again(page: Page) -> None:
+    page.click("#link_leave")
+    said(page, "Disconnected.")
+    page.click("#link_connect")
+    said(page, "Connected: ")
+
+
+def test_a_cable_that_is_pulled_is_said(page: Page, robot: PtyRobot) -> None:
+    robot.pull()
+    said(page, "The cable is out.")

@@ -1,0 +1,69 @@
+"""A Chromium whose Web Serial reaches a pseudo-terminal: its own serial code, and no chooser.
+
+In a mount namespace of its own the pseudo-terminal lies over /dev/ttyS0, which the kernel lists,
+and a policy grants the port to the page. Nothing outside the namespace changes. It takes root.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tests.support import studio
+
+if TYPE_CHECKING:
+    from playwright.sync_api import BrowserContext, Playwright
+
+LISTED = "/dev/ttyS0"
+SCRIPT = """#!/bin/sh
+exec unshare -m sh -ec '
+mount --bind "$ROBOT_PORT" /dev/ttyS0
+mkdir -p /etc/chromium
+mount -t tmpfs tmpfs /etc/chromium
+cd /etc/chromium
+mkdir -p policies/managed
+echo "{\\"SerialAllowAllPortsForUrls\\": [\\"$ROBOT_PAGE\\"]}" > policies/managed/robot.json
+exec "$ROBOT_BROWSER" "$@"' sh "$@"
+"""
+
+
+def missing() -> str:
+    """Return why there is no such browser here, or nothing."""
+    if not hasattr(os, "geteuid") or os.geteuid() != 0:
+        return "a mount namespace takes root"
+    if not Path(LISTED).is_char_device():
+        return f"there is no {LISTED}"
+    if shutil.which("unshare") is None:
+        return "there is no unshare"
+    tried = subprocess.run(["unshare", "-m", "mount", "--bind", "/dev/null", LISTED],
+                           capture_output=True, text=True)  # fmt: skip
+    return tried.stderr.strip() if tried.returncode else ""
+
+
+@contextmanager
+def context(
+    playwright: Playwright, folder: Path, port: str, origin: str
+) -> Iterator[BrowserContext]:
+    """A browser to whose pages at `origin` the port is granted."""
+    script = folder / "browser"
+    script.write_text(SCRIPT)
+    script.chmod(0o755)
+    environment = {
+        **os.environ,
+        "ROBOT_PORT": port,
+        "ROBOT_PAGE": origin.rstrip("/"),
+        "ROBOT_BROWSER": str(studio.chromium()),
+    }
+    opened = playwright.chromium.launch_persistent_context(
+        str(folder / "profile"), executable_path=str(script), args=list(studio.OPTIONS),
+        env=environment, locale="en-US", viewport={"width": 1366, "height": 768},
+    )  # fmt: skip
+    try:
+        yield opened
+    finally:
+        opened.close()
