@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
 
+from tests.studio.test_page_for_everyone import LOOK, SCREENS
 from tests.support import studio
 from tests.support.command import FOREVER
 from tests.support.pty_robot import PtyRobot
@@ -15,6 +17,7 @@ from tests.support.studio import Pages, checked, write
 from tiniscript import compile, robots
 from tiniscript.link import known_ports
 from tiniscript.studio import serving
+from tools.builds.studio import MODULES
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
@@ -194,6 +197,29 @@ def test_identify_name_and_trim(page: Page, robot: PtyRobot) -> None:
     said(page, "Connected: Ñandú.")
     page.locator("#trim_left:checked").wait_for(state="attached")
     assert page.input_value("#trim_balance") == "-7"
+
+
+@pytest.mark.parametrize("language", ["en", "es"])
+@pytest.mark.parametrize("screen", SCREENS, ids=lambda screen: "x".join(map(str, screen)))
+def test_everything_is_seen(
+    page: Page, screen: tuple[int, int], language: str, tmp_path: Path
+) -> None:
+    page.set_viewport_size({"width": screen[0], "height": screen[1]})
+    page.select_option("#language", language)
+    checked(page)
+    page.screenshot(path=tmp_path / "connected.png")
+    assert page.evaluate(LOOK) == []
+    page.click("#link_leave")
+    page.locator("#link_connect").wait_for()
+    page.screenshot(path=tmp_path / "left.png")
+    assert page.evaluate(LOOK) == []
+
+
+def test_axe_finds_nothing(page: Page) -> None:
+    page.click("#link_drive summary")
+    page.evaluate((MODULES / "axe-core" / "axe.min.js").read_text(encoding="utf-8"))
+    found = page.evaluate("axe.run()")
+    assert [(each["id"], each["nodes"][0]["html"]) for each in found["violations"]] == []
 
 
 HOSTILE = "<img src=x onerror=1>"

@@ -81,8 +81,9 @@ def driver() -> Iterator[Playwright]:
 
 
 @contextmanager
-def browser(playwright: Playwright) -> Iterator[Browser]:
-    opened = playwright.chromium.launch(executable_path=chromium(), args=list(OPTIONS))
+def browser(playwright: Playwright, *more: str) -> Iterator[Browser]:
+    """A browser; `more` are options of it."""
+    opened = playwright.chromium.launch(executable_path=chromium(), args=[*OPTIONS, *more])
     try:
         yield opened
     finally:

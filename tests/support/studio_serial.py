@@ -53,7 +53,7 @@ def context(
     script = folder / "browser"
     script.write_text(SCRIPT)
     script.chmod(0o755)
-    environment = {
+    environment: dict[str, str | float | bool] = {
         **os.environ,
         "ROBOT_PORT": port,
         "ROBOT_PAGE": origin.rstrip("/"),
