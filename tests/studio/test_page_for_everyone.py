@@ -73,7 +73,7 @@ def test_the_keyboard_alone_is_enough(page: Page) -> None:
     write(page, "F(-2, 80)")
     page.locator("#robot").focus()
     visited = []
-    for _ in range(12):
+    for _ in range(16):
         visited.append(
             page.evaluate("document.activeElement.id || document.activeElement.className")
         )
@@ -81,7 +81,8 @@ def test_the_keyboard_alone_is_enough(page: Page) -> None:
             break
         page.keyboard.press("Tab")
     assert visited == [
-        "robot", "language", "open", "save", "my_programs", "stop", "editor", "place", "repair"
+        "robot", "language", "open", "save", "my_programs", "stop", "view_blocks", "view_text",
+        "undo", "redo", "editor", "place", "repair",
     ]  # fmt: skip
     page.keyboard.press("Enter")
     checked(page)
@@ -140,6 +141,7 @@ def test_it_works_without_its_server(playwright: Playwright, tmp_path: Path) -> 
             page = context.new_page()
             page.goto(address)
             checked(page)
+            page.click("#view_text")
             page.evaluate("navigator.serviceWorker.ready.then(() => 1)")
             before = image(page)
             write(page, text)

@@ -101,11 +101,14 @@ class Pages:
         self._browser = opened
         self._contexts: list[Any] = []
 
-    def open(self, **options: Any) -> Page:
-        """Open a page of a new visitor, and wait until its program is compiled."""
-        return self.visit(self.address, **options)
+    def open(self, view: str = "text", **options: Any) -> Page:
+        """Open a page of a new visitor, and wait until its program is compiled.
 
-    def visit(self, address: str, **options: Any) -> Page:
+        `view` is `blocks`, which a new visitor sees, or `text`, which most tests write.
+        """
+        return self.visit(self.address, view, **options)
+
+    def visit(self, address: str, view: str = "text", **options: Any) -> Page:
         """Open an address of the page, for a new visitor."""
         settings = {
             "viewport": {"width": 1366, "height": 768},
@@ -119,6 +122,10 @@ class Pages:
         self.watch(page)
         page.goto(address)
         checked(page)
+        if view == "text":
+            page.click("#view_text")
+        else:
+            shown(page)
         return page
 
     def watch(self, page: Page) -> None:
@@ -142,6 +149,12 @@ class Pages:
 def checked(page: Page) -> None:
     """Wait until what is in the editor is compiled; the page's policy forbids waiting functions."""
     page.locator("html[data-state=checked]").wait_for(state="attached")
+
+
+def shown(page: Page) -> None:
+    """Wait until the blocks are those of the text, and the text is compiled."""
+    page.locator("#blocks[data-state=shown]").wait_for()
+    checked(page)
 
 
 def noted(page: Page, text: str) -> None:

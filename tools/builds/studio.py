@@ -27,6 +27,7 @@ sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tiniscript.studio.description import description
 from tiniscript.studio.policy import POLICY
+from tools.builds.blockly_texts import texts
 
 COMMAND = "python -m tools.builds.studio"
 SOURCES = ROOT / "tools" / "studio"
@@ -38,8 +39,12 @@ LICENCES = "licences.txt"
 OLDEST_NODE = 22
 # What a browser fetches of Pyodide; its archive of Python's library is made anew.
 PYODIDE = ("pyodide.asm.mjs", "pyodide.asm.wasm")
-COPIED = ("style.css", "manifest.webmanifest", "icon.svg")
-UNPACKED = ("@types/emscripten", "ws")  # of Pyodide, for other uses than a page
+COPIED = ("style.css", "manifest.webmanifest", "icon.svg", "more.svg", "less.svg")
+# Pictures of Blockly: of its bin, its buttons, and the hand over a block.
+BLOCKLY = MODULES / "blockly"
+PICTURES = ("sprites.svg", "handopen.cur", "handclosed.cur", "handdelete.cur", "delete-icon.svg",
+            "dropdown-arrow.svg", "foldout-icon.svg", "resize-handle.svg")  # fmt: skip
+INPUTS = "inputs.json"  # which modules are in the page's files
 MPL = "Mozilla Public License 2.0: https://www.mozilla.org/MPL/2.0/"
 PSF = "Python Software Foundation License: https://docs.python.org/3/license.html"
 
@@ -114,6 +119,7 @@ def build(page: Path = PAGE) -> None:
     install(tools)
     lock = json.loads((MODULES / "pyodide" / "pyodide-lock.json").read_text(encoding="utf-8"))
     make("description.json", description())
+    make("blockly_texts.json", texts(BLOCKLY, SOURCES / "src"))
     make("lock.json", {"info": lock["info"], "packages": {}})
     say("types of the sources")
     run(tools.node, "node_modules/typescript/bin/tsc", "-p", ".")
@@ -125,6 +131,8 @@ def build(page: Path = PAGE) -> None:
         bundle(tools, new)
         for name in PYODIDE:
             shutil.copyfile(MODULES / "pyodide" / name, new / name)
+        for name in PICTURES:
+            shutil.copyfile(BLOCKLY / "media" / name, new / name)
         for name in COPIED:
             shutil.copyfile(SOURCES / "src" / name, new / name)
         html = (SOURCES / "src" / "index.html").read_text(encoding="utf-8")
@@ -190,12 +198,13 @@ def cobs_folder() -> Path:
 
 
 def bundle(tools: Tools, target: Path) -> None:
-    """Put the page's modules together: one file for the page, one for the worker."""
+    """Put the page's modules together: a file for the page, one for the worker, and what the page
+    fetches only when it is looked at: the blocks."""
     common = ("--bundle", "--minify", "--format=esm", "--target=es2022", "--log-level=warning",
-              "--legal-comments=none", "--external:node:*", "--external:ws")  # fmt: skip
-    for name in ("main", "worker"):
-        run(tools.node, "node_modules/esbuild/bin/esbuild", f"src/{name}.js", *common,
-            f"--outfile={target / name}.js")  # fmt: skip
+              "--legal-comments=none", "--external:node:*", "--external:ws",
+              "--chunk-names=[name]-[hash]", "--splitting", f"--outdir={target}",
+              f"--metafile={SOURCES / 'made' / INPUTS}")  # fmt: skip
+    run(tools.node, "node_modules/esbuild/bin/esbuild", "src/main.js", "src/worker.js", *common)
 
 
 def offline(target: Path) -> None:
@@ -213,11 +222,8 @@ def offline(target: Path) -> None:
 def licences() -> str:
     """Return whose work is in the page, and under which licences."""
     parts = ["The page of TiniScript Studio is under the MIT licence, and contains:\n"]
-    lock = json.loads((SOURCES / "package-lock.json").read_text(encoding="utf-8"))
-    for place, package in lock["packages"].items():
-        name = place.removeprefix("node_modules/")
-        if not name or package.get("dev") or name in UNPACKED:
-            continue
+    inputs = json.loads((SOURCES / "made" / INPUTS).read_text(encoding="utf-8"))["inputs"]
+    for name in sorted({_package(path) for path in inputs if path.startswith("node_modules/")}):
         folder = MODULES / name
         about = json.loads((folder / "package.json").read_text(encoding="utf-8"))
         files = [path.read_text(encoding="utf-8") for path in sorted(folder.glob("LICEN[CS]E*"))]
@@ -226,6 +232,12 @@ def licences() -> str:
     parts.append(f"Python, as Pyodide brings it\n\n{PSF}\n")
     parts.append(f"cobs {version('cobs')}, from PyPI, under the MIT licence\n")
     return f"\n{'-' * 70}\n\n".join(parts)
+
+
+def _package(path: str) -> str:
+    """Return whose file it is: of `node_modules/@lezer/common/x.js`, `@lezer/common`."""
+    parts = path.split("/")
+    return "/".join(parts[1 : 3 if parts[1].startswith("@") else 2])
 
 
 def size_rows(page: Path) -> list[str]:

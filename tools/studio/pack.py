@@ -92,9 +92,8 @@ class Packer:
 
 
 def pyc(source: bytes, name: str) -> bytes:
-    """Return the bytecode of a module, without docstrings and asserts of Python's own library."""
-    level = 1 if name.startswith(("tiniscript/", "cobs/")) else 2
-    code = compile(source, name, "exec", dont_inherit=True, optimize=level)
+    """Return the bytecode of a module, without docstrings and asserts."""
+    code = compile(source, name, "exec", dont_inherit=True, optimize=2)
     digest = importlib.util.source_hash(source)
     made = bootstrap._code_to_hash_pyc(code, digest, False)  # type: ignore[attr-defined]
     return bytes(made)

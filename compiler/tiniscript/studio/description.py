@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import Any
 
 from tiniscript import robots
+from tiniscript.fixed_point import ONE
 from tiniscript.library import opening
 from tiniscript.link.messages import NAME_BYTES, STOP_BYTES
 from tiniscript.robots.kinematics import Pose
@@ -25,7 +26,13 @@ def description() -> dict[str, Any]:
     """Return everything as data for JSON."""
     return {
         "words": [
-            {"text": word.text, "role": word.role, "usage": word.usage, "example": word.example}
+            {
+                "text": word.text,
+                "role": word.role,
+                "usage": word.usage,
+                "example": word.example,
+                "arguments": [_range(each.low, each.high, each.sample) for each in word.arguments],
+            }
             for word in WORDS.values()
             if word.role not in _UNOFFERED
         ],
@@ -57,12 +64,19 @@ def _robot(profile: Robot) -> dict[str, Any]:
                 "role": role,
                 "example": _example(device.name, role, device.is_yes_no),
                 "unit": device.unit,
+                "is_yes_no": device.is_yes_no,
+                "arguments": [_range(device.low, device.high, "0")],
                 "labels": {each: profile.labels[each][device.name] for each in LANGUAGES},
             }
             for role, devices in (("sensor", kit.sensors), ("actuator", kit.actuators))
             for device in devices
         ],
     }
+
+
+def _range(low: int, high: int, sample: str) -> dict[str, Any]:
+    """Return which plain numbers may stand somewhere; thousandths become what is written."""
+    return {"low": low / ONE, "high": high / ONE, "sample": sample}
 
 
 def _example(name: str, role: str, is_yes_no: bool) -> str:

@@ -32,6 +32,7 @@ TYPES = {
     ".mjs": "text/javascript; charset=utf-8",
     ".css": "text/css; charset=utf-8",
     ".svg": "image/svg+xml",
+    ".cur": "image/x-icon",
     ".wasm": "application/wasm",
     ".zip": "application/zip",
     ".txt": "text/plain; charset=utf-8",

@@ -29,7 +29,7 @@ export class Driving {
 
   /**
    * @param {import('./python.js').Python} python
-   * @param {import('./editor.js').Editor} editor
+   * @param {import('./views.js').Views} editor where the line that runs is marked
    * @param {Work} work
    * @param {() => Checked | null} program what the compiler says of the newest text
    * @param {() => void} remember

@@ -4,7 +4,7 @@
 // exception for styles in elements.
 
 import { autocompletion, completionKeymap } from '@codemirror/autocomplete';
-import { defaultKeymap, history, historyKeymap } from '@codemirror/commands';
+import { defaultKeymap, history, historyKeymap, isolateHistory, redo, undo } from '@codemirror/commands';
 import { bracketMatching } from '@codemirror/language';
 import { lintGutter, lintKeymap, setDiagnostics } from '@codemirror/lint';
 import { Compartment, EditorState, StateEffect, StateField } from '@codemirror/state';
@@ -99,6 +99,33 @@ export class Editor {
   /** Replaces the text; undo brings the one before back. @param {string} whole */
   replace(whole) {
     this.#view.dispatch({ changes: { from: 0, to: this.#view.state.doc.length, insert: whole } });
+  }
+
+  get hasFocus() {
+    return this.#view.hasFocus;
+  }
+
+  undo() {
+    undo(this.#view);
+  }
+
+  redo() {
+    redo(this.#view);
+  }
+
+  /** Puts in the text of changed blocks, as one step of undo. @param {string} whole */
+  replaceByBlocks(whole) {
+    const before = this.text;
+    if (whole === before) return;
+    let from = 0;
+    while (from < Math.min(before.length, whole.length) && before[from] === whole[from]) from += 1;
+    let same = 0;
+    while (same < Math.min(before.length, whole.length) - from && before.at(-1 - same) === whole.at(-1 - same)) same += 1;
+    this.#view.dispatch({
+      changes: { from, to: before.length - same, insert: whole.slice(from, whole.length - same) },
+      annotations: isolateHistory.of('full'),
+      userEvent: 'input.blocks',
+    });
   }
 
   /** @param {string} robot */

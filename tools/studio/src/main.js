@@ -11,6 +11,7 @@ import { currentLanguage, setLanguage, text } from './texts.js';
 import { Driving } from './driving.js';
 import { RobotPanel } from './robot_panel.js';
 import { chooseSide } from './robot_side.js';
+import { Views } from './views.js';
 import { ROBOTS } from './words.js';
 import { keep, keptWork } from './work.js';
 
@@ -34,13 +35,16 @@ const work = kept ?? {
   world: 'obstacles',
   language: navigator.language.toLowerCase().startsWith('es') ? /** @type {const} */ ('es') : /** @type {const} */ ('en'),
   name: '',
+  view: /** @type {const} */ ('blocks'),
+  level: /** @type {const} */ ('few'),
 };
 setLanguage(work.language);
 languages.value = work.language;
 
 const python = new Python();
 const editor = new Editor(element('editor', HTMLElement), work.robot, changed);
-const driving = new Driving(python, editor, work, () => (isStale() ? null : newest.answer), remember);
+const views = new Views(python, editor, work, remember);
+const driving = new Driving(python, views, work, () => (isStale() ? null : newest.answer), remember);
 const programs = new Programs(python, work, putProgram, (said) => {
   note.textContent = said;
 });
@@ -67,6 +71,7 @@ python.ready.then(
   () => {
     isReady = true;
     check();
+    views.ready();
   },
   () => {
     status.textContent = text('no_compiler');
@@ -78,6 +83,7 @@ function changed() {
   document.documentElement.dataset['state'] = 'changed';
   work.text = editor.text;
   driving.forgetPlaces();
+  views.textChanged();
   remember();
   clearTimeout(timer);
   timer = window.setTimeout(check, TYPING_MS);
@@ -115,7 +121,8 @@ function isStale() {
 /** @param {Checked} answer */
 function show(answer) {
   editor.showFindings(answer.findings, repair);
-  showMessages(list, answer.findings, (finding) => editor.goTo(finding), repair);
+  views.showFindings(answer.findings);
+  showMessages(list, answer.findings, (finding) => views.goTo(finding), repair);
   status.textContent = summary(answer.findings, answer.bytes);
   status.className = answer.image ? 'right' : 'wrong';
   document.documentElement.dataset['state'] = 'checked';
@@ -145,6 +152,7 @@ robots.addEventListener('change', () => setRobot(robots.value));
 function setRobot(name) {
   work.robot = robots.value = name;
   editor.setRobot(work.robot);
+  views.setRobot();
   driving.begin();
   remember();
   check();
@@ -163,6 +171,7 @@ languages.addEventListener('change', () => {
   work.language = languages.value === 'en' ? 'en' : 'es';
   setLanguage(work.language);
   editor.setLanguage();
+  views.setLanguage();
   showRobots();
   driving.setLanguage();
   panel.setLanguage();

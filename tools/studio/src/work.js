@@ -4,7 +4,7 @@
 
 import { isRobot, WORLDS } from './words.js';
 
-/** @typedef {{text: string, robot: string, world: string, language: 'en' | 'es', name: string}} Work */
+/** @typedef {{text: string, robot: string, world: string, language: 'en' | 'es', name: string, view: 'blocks' | 'text', level: 'few' | 'usual' | 'all'}} Work */
 
 const PLACE = 'tiniscript.work';
 const LONGEST = 1_000_000; // characters
@@ -54,5 +54,7 @@ function checked(found) {
     world: WORLDS.some((world) => world.name === found.world) ? found.world : 'obstacles',
     language: found.language === 'en' ? 'en' : 'es',
     name: typeof found.name === 'string' ? found.name.slice(0, 200) : '',
+    view: found.view === 'text' ? 'text' : 'blocks',
+    level: found.level === 'all' || found.level === 'usual' ? found.level : 'few',
   };
 }

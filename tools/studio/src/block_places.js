@@ -1,0 +1,47 @@
+// Which plain numbers may stand in which place of a block. The ranges are those of the compiler's
+// table of words, and of the robot.
+
+import description from '../made/description.json';
+
+/** @typedef {{low: number, high: number, sample: string}} Range */
+
+const ANY = { low: -2147483.648, high: 2147483.647, sample: '1' };
+/** @type {Map<string, Range[]>} */
+const ARGUMENTS = new Map(description.words.map((word) => [word.text, word.arguments]));
+/** The word whose arguments a kind of block has, where the block does not say it. */
+const WORD_OF = /** @type {Record<string, string>} */ ({
+  wait: 'W', wait_until: 'W', motors: 'M', beep: 'BEEP', loop: 'LOOP', round: 'ROUND', random: 'RANDOM',
+});
+/** @type {Map<string, Range>} */
+let actuators = new Map();
+
+/** @param {string} robot */
+export function setActuators(robot) {
+  const found = description.robots.find((each) => each.name === robot);
+  actuators = new Map((found?.devices ?? []).filter((device) => device.role === 'actuator')
+    .map((device) => [device.text, /** @type {Range} */ (device.arguments[0])]));
+}
+
+/**
+ * @param {string} kind
+ * @param {string} word
+ * @param {number} index of the place
+ * @returns {Range}
+ */
+export function rangeOf(kind, word, index) {
+  if (kind === 'set') return actuators.get(word) ?? ANY;
+  const range = ARGUMENTS.get(WORD_OF[kind] ?? word)?.[index] ?? ANY;
+  return Number.isFinite(Number(range.sample)) ? range : { ...range, sample: '1' };
+}
+
+/**
+ * @param {import('blockly/core').Block | null} block a number in a place of another block
+ * @returns {Range}
+ */
+export function rangeAt(block) {
+  const parent = block?.getParent();
+  const input = parent?.inputList.find((each) => each.connection?.targetBlock() === block);
+  if (!parent || !input) return ANY;
+  const index = Number(input.name.slice(1));
+  return rangeOf(parent.type, String(parent.getFieldValue('WORD') ?? ''), index);
+}

@@ -1,0 +1,321 @@
+// The kinds of blocks: their words, places, colours and fields. The kinds and the order of their
+// values are those of `studio/block_form.py`.
+
+import * as Blockly from 'blockly/core';
+import { LineField, NameField, NumberField } from './block_fields.js';
+import { rangeOf } from './block_places.js';
+import { BLOCK_TEXTS, TIPS, said } from './block_texts.js';
+import { ROBOTS } from './words.js';
+
+/** @typedef {'number' | 'truth' | 'any'} Place what a value there is */
+/** @typedef {{colour: string, word?: string | string[], values?: Place[], bodies?: number, gives?: Place, name?: boolean, line?: boolean, device?: 'sensor' | 'actuator'}} Shape */
+
+const COMPARED = [['=', 'EQ'], ['≠', 'NE'], ['<', 'LT'], ['≤', 'LE'], ['>', 'GT'], ['≥', 'GE']];
+const RECKONED = [['+', 'ADD'], ['−', 'SUB'], ['×', 'MUL'], ['÷', 'DIV'], ['%', 'MOD']];
+const MOVES = ['F', 'B', 'L', 'R'];
+
+/** @type {Record<string, Shape>} */
+export const SHAPES = {
+  move: { colour: 'move', word: MOVES, values: ['number', 'number'] },
+  move_until: { colour: 'move', word: MOVES, values: ['number', 'number', 'truth'] },
+  wait: { colour: 'time', values: ['number'] },
+  wait_until: { colour: 'time', values: ['number', 'truth'] },
+  motors: { colour: 'move', values: ['number', 'number'] },
+  stop: { colour: 'stop' },
+  start: { colour: 'others' },
+  beep: { colour: 'time', values: ['number', 'number'] },
+  show: { colour: 'time', values: ['any'] },
+  read: { colour: 'sensors', device: 'sensor' },
+  set: { colour: 'sensors', device: 'actuator', values: ['any'] },
+  call: { colour: 'words', name: true },
+  assign: { colour: 'names', name: true, values: ['any'] },
+  if: { colour: 'control' },
+  loop: { colour: 'control', values: ['number'], bodies: 1 },
+  forever: { colour: 'control', bodies: 1 },
+  while: { colour: 'control', values: ['truth'], bodies: 1 },
+  break: { colour: 'control' },
+  def: { colour: 'words', name: true, bodies: 1 },
+  comment: { colour: 'others', line: true },
+  grey: { colour: 'grey', line: true },
+  number: { colour: 'numbers', gives: 'number' },
+  name: { colour: 'names', name: true, gives: 'any' },
+  sensor: { colour: 'sensors', device: 'sensor', gives: 'any' },
+  truth: { colour: 'decide', word: ['TRUE', 'FALSE'], gives: 'truth' },
+  time: { colour: 'time', gives: 'number' },
+  endless: { colour: 'time', gives: 'number' },
+  math: { colour: 'numbers', values: ['number', 'number'], gives: 'number' },
+  compare: { colour: 'decide', values: ['any', 'any'], gives: 'truth' },
+  logic: { colour: 'decide', values: ['truth', 'truth'], gives: 'truth' },
+  not: { colour: 'decide', values: ['truth'], gives: 'truth' },
+  negative: { colour: 'numbers', values: ['number'], gives: 'number' },
+  brackets: { colour: 'numbers', values: ['any'], gives: 'any' },
+  round: { colour: 'numbers', values: ['number', 'number'], gives: 'number' },
+  abs: { colour: 'numbers', values: ['number'], gives: 'number' },
+  extreme: { colour: 'numbers', word: ['MIN', 'MAX'], values: ['number', 'number'], gives: 'number' },
+  random: { colour: 'numbers', values: ['number', 'number'], gives: 'number' },
+};
+
+const CHECKS = { number: 'Number', truth: 'Boolean', any: null };
+/** @type {string} */
+let robot = '';
+
+/** @param {string} name of the robot whose words are offered */
+export function setRobot(name) {
+  robot = name;
+}
+
+/** @param {'sensor' | 'actuator'} role */
+export function devices(role) {
+  const devices = ROBOTS.find((each) => each.name === robot)?.devices ?? [];
+  return devices.filter((device) => device.role === role);
+}
+
+/** Lets what a text says stand anywhere: the compiler says what does not fit. */
+export class Checker extends Blockly.ConnectionChecker {
+  static isLenient = false;
+
+  /** @param {Blockly.Connection} a @param {Blockly.Connection} b */
+  doTypeChecks(a, b) {
+    return Checker.isLenient || super.doTypeChecks(a, b);
+  }
+}
+
+/**
+ * @param {Blockly.Block} block
+ * @param {Shape} shape
+ * @returns {Blockly.Field | null} what stands before its values
+ */
+function firstField(block, shape) {
+  if (shape.word) return options(/** @type {string[]} */ (shape.word).map((word) => [said(BLOCK_TEXTS, word), word]));
+  if (shape.name) return new NameField('X');
+  if (shape.line) return new LineField('');
+  if (shape.device) return new DeviceField(shape.device);
+  return block.type === 'number' ? new NumberField(0) : null;
+}
+
+/** @param {string[][]} rows */
+function options(rows) {
+  return new Blockly.FieldDropdown(/** @type {[string, string][]} */ (rows));
+}
+
+/** A word of the robot; one that it does not have stays, too. */
+class DeviceField extends Blockly.FieldDropdown {
+  /** @param {'sensor' | 'actuator'} role */
+  constructor(role) {
+    /** @this {any} */
+    super(function () {
+      const names = devices(role).map((device) => device.text);
+      const kept = /** @type {any} */ (this).kept;
+      if (kept && !names.includes(kept)) names.push(kept);
+      return (names.length ? names : ['?']).map((name) => /** @type {[string, string]} */ ([name, name]));
+    });
+  }
+
+  /** @param {string} [value] */
+  doClassValidation_(value) {
+    if (typeof value !== 'string') return null;
+    /** @type {any} */ (this).kept = value;
+    return value;
+  }
+}
+
+/**
+ * Adds what a message of `BLOCK_TEXTS` says, its fields and places.
+ * @param {Blockly.Block} block
+ * @param {string} message
+ * @param {(number: number) => Blockly.Field | string} what a field, or the name of a place
+ * @param {(name: string) => Place} kindOf
+ */
+function add(block, message, what, kindOf) {
+  let label = '';
+  /** @type {Blockly.Field[]} */
+  let fields = [];
+  const flush = () => {
+    const text = label.trim();
+    if (text) fields.push(new Blockly.FieldLabel(text));
+    label = '';
+  };
+  for (const part of message.split(/(%\d|%%)/)) {
+    if (part === '%%') label += '%';
+    else if (!/^%\d$/.test(part)) label += part;
+    else {
+      flush();
+      const found = what(Number(part[1]));
+      if (typeof found !== 'string') {
+        fields.push(found);
+        continue;
+      }
+      const input = block.appendValueInput(found).setCheck(CHECKS[kindOf(found)]);
+      for (const field of fields) input.appendField(field, field.name);
+      fields = [];
+    }
+  }
+  flush();
+  if (fields.length) {
+    const input = block.appendDummyInput();
+    for (const field of fields) input.appendField(field, field.name);
+  }
+}
+
+/** @param {Blockly.Field} field @param {string} name */
+function named(field, name) {
+  field.name = name;
+  return field;
+}
+
+/** @param {Blockly.Block} block @param {string} kind @param {Shape} shape */
+function build(block, kind, shape) {
+  const first = firstField(block, shape);
+  const sign = { math: RECKONED, compare: COMPARED, logic: [[said(BLOCK_TEXTS, 'AND'), 'AND'], [said(BLOCK_TEXTS, 'OR'), 'OR']] }[kind];
+  let value = 0;
+  add(block, said(BLOCK_TEXTS, kind), (number) => {
+    if (first && number === 1) return named(first, 'WORD');
+    if (sign && number === 2) return named(options(sign), 'SIGN');
+    return `V${value++}`;
+  }, (name) => shape.values?.[Number(name.slice(1))] ?? 'any');
+  for (let k = 0; k < (shape.bodies ?? 0); k += 1) block.appendStatementInput(`B${k}`);
+  block.setInputsInline(true);
+  if (shape.gives) block.setOutput(true, CHECKS[shape.gives]);
+  else {
+    block.setPreviousStatement(true);
+    block.setNextStatement(true);
+  }
+  block.setStyle(shape.colour);
+  fill(block, kind, shape.values ?? []);
+}
+
+/**
+ * Gives every place a value that is there while nothing else is.
+ * @param {Blockly.Block} block
+ * @param {string} kind
+ * @param {Place[]} values
+ */
+function fill(block, kind, values) {
+  values.forEach((place, k) => {
+    const word = String(block.getFieldValue('WORD') ?? '');
+    const { sample } = rangeOf(kind, word, k);
+    const device = kind === 'set' ? devices('actuator').find((each) => each.text === word) : undefined;
+    block.getInput(`V${k}`)?.connection?.setShadowState(
+      place === 'truth' || device?.is_yes_no ? truth() : { type: 'number', fields: { WORD: Number(sample) } },
+    );
+  });
+}
+
+function truth() {
+  return { type: 'truth', fields: { WORD: 'TRUE' } };
+}
+
+const MOST_ARMS = 20;
+
+/** The block of IF: as many arms as its state says. */
+const IF = {
+  arms: 1,
+  hasElse: false,
+
+  /** @this {any} */
+  saveExtraState() {
+    return { arms: this.arms, hasElse: this.hasElse };
+  },
+
+  /** @this {any} @param {{arms: number, hasElse: boolean}} state */
+  loadExtraState(state) {
+    this.setArms(state.arms, state.hasElse);
+  },
+
+  /** @this {any} @param {number} arms @param {boolean} hasElse */
+  setArms(arms, hasElse) {
+    this.arms = arms;
+    this.hasElse = hasElse;
+    for (let k = 0; k < arms; k += 1) {
+      if (this.getInput(`V${k}`)) continue;
+      add(this, said(BLOCK_TEXTS, k ? 'elseif' : 'if'), () => `V${k}`, () => 'truth');
+      this.getInput(`V${k}`).connection.setShadowState(truth());
+      this.appendStatementInput(`B${k}`);
+      if (this.getInput('ELSE')) {
+        for (const name of [`V${k}`, `B${k}`]) this.moveInputBefore(name, 'ELSE');
+      }
+    }
+    for (let k = arms; this.getInput(`V${k}`); k += 1) {
+      this.removeInput(`V${k}`);
+      this.removeInput(`B${k}`);
+    }
+    if (hasElse && !this.getInput('ELSE')) {
+      this.appendDummyInput('ELSE').appendField(said(BLOCK_TEXTS, 'else'));
+      this.appendStatementInput('OTHERWISE');
+    } else if (!hasElse && this.getInput('ELSE')) {
+      this.removeInput('ELSE');
+      this.removeInput('OTHERWISE');
+    }
+    if (this.getInput('MORE')) this.moveInputBefore('MORE', null);
+  },
+
+  /** @this {any} */
+  more() {
+    this.change(this.hasElse ? Math.min(this.arms + 1, MOST_ARMS) : this.arms, true);
+  },
+
+  /** @this {any} */
+  less() {
+    if (this.arms > 1) this.change(this.arms - 1, this.hasElse);
+    else this.change(1, false);
+  },
+
+  /** @this {any} @param {number} arms @param {boolean} hasElse */
+  change(arms, hasElse) {
+    const before = JSON.stringify(this.saveExtraState());
+    this.setArms(arms, hasElse);
+    const after = JSON.stringify(this.saveExtraState());
+    if (before !== after) {
+      Blockly.Events.fire(new (Blockly.Events.get(Blockly.Events.BLOCK_CHANGE))(this, 'mutation', null, before, after));
+    }
+  },
+
+  /** @this {any} */
+  init() {
+    this.setArms(1, false);
+    const buttons = this.appendDummyInput('MORE');
+    for (const [name, act] of [['more', () => this.more()], ['less', () => this.less()]]) {
+      const picture = new Blockly.FieldImage(`./${name}.svg`, 24, 24, said(TIPS, String(name)), /** @type {any} */ (act));
+      picture.setTooltip(said(TIPS, String(name)));
+      buttons.appendField(picture);
+    }
+    this.setInputsInline(true);
+    this.setPreviousStatement(true);
+    this.setNextStatement(true);
+    this.setStyle('control');
+    this.setTooltip(said(TIPS, 'if'));
+  },
+};
+
+/** Makes all kinds known, in the page's language. */
+export function defineBlocks() {
+  Blockly.Blocks['program'] = {
+    /** @this {Blockly.Block} */
+    init() {
+      this.appendDummyInput().appendField(options(['SI', 'SB', 'PING'].map((word) => [said(BLOCK_TEXTS, word), word])), 'WORD');
+      this.setNextStatement(true);
+      this.setDeletable(false);
+      this.setStyle('program');
+      this.setTooltip(said(TIPS, 'program'));
+    },
+  };
+  for (const [kind, shape] of Object.entries(SHAPES)) {
+    Blockly.Blocks[kind] = kind === 'if' ? IF : {
+      /** @this {Blockly.Block} */
+      init() {
+        build(this, kind, shape);
+        if (TIPS[kind]) this.setTooltip(said(TIPS, kind));
+        if (shape.device) this.setTooltip(() => tipOf(this));
+      },
+    };
+  }
+}
+
+/** @param {Blockly.Block} block of a device */
+function tipOf(block) {
+  const name = block.getFieldValue('WORD');
+  const device = [...devices('sensor'), ...devices('actuator')].find((each) => each.text === name);
+  const label = device?.labels[/** @type {'en' | 'es'} */ (document.documentElement.lang)];
+  const tip = TIPS[block.type] ? said(TIPS, block.type) : '';
+  return [label && `${name}: ${label}${device?.unit ? ` (${device.unit})` : ''}.`, tip].filter(Boolean).join(' ');
+}

@@ -1,0 +1,226 @@
+// The program as blocks. Knows Blockly; the page fetches this file when blocks are first looked at.
+//
+// The text is what is kept: a change of the blocks is told to the page, which asks for their text.
+
+import * as Blockly from 'blockly/core';
+import texts from '../made/blockly_texts.json';
+import { formOf, showForm } from './block_form.js';
+import { setActuators } from './block_places.js';
+import { Checker, defineBlocks, setRobot } from './block_shapes.js';
+import { look } from './block_styles.js';
+import { toolbox } from './block_toolbox.js';
+import { currentLanguage, text } from './texts.js';
+
+/** @typedef {import('./block_form.js').Form} Form */
+/** @typedef {import('./block_form.js').Range} Range */
+/** @typedef {import('./block_toolbox.js').Level} Level */
+/** @typedef {import('./python.js').Finding} Finding */
+/** @typedef {{changed: () => void, undo: () => void, redo: () => void}} Told */
+
+const NARROW = 700; // pixels of width, below which blocks are smaller
+const LONGEST_TIP = 42; // characters in a line of a message at a block
+
+export class Blocks {
+  #place;
+  #told;
+  #looks = look();
+  /** @type {Blockly.WorkspaceSvg} */
+  #workspace;
+  /** @type {Level} */
+  #level = 'few';
+  /** @type {{names: string[], words: string[]}} */
+  #used = { names: [], words: [] };
+  /** Ids of the blocks, and where each is in the text. @type {[string, Range][]} */
+  #places = [];
+  #running = '';
+
+  /**
+   * @param {HTMLElement} place
+   * @param {string} robot
+   * @param {Level} level
+   * @param {Told} told
+   */
+  constructor(place, robot, level, told) {
+    this.#place = place;
+    this.#told = told;
+    this.#level = level;
+    Blockly.registry.register(Blockly.registry.Type.CONNECTION_CHECKER, 'tiniscript', Checker, true);
+    this.#takeUndo();
+    setRobot(robot);
+    setActuators(robot);
+    this.#workspace = this.#begin();
+  }
+
+  /** Undo and redo are those of the text, which is what changes. */
+  #takeUndo() {
+    for (const name of ['undoWorkspace', 'redoWorkspace', 'blockDisable', 'blockInline', 'blockCollapseExpand', 'collapseWorkspace', 'expandWorkspace', 'blockHelp']) {
+      if (Blockly.ContextMenuRegistry.registry.getItem(name)) Blockly.ContextMenuRegistry.registry.unregister(name);
+    }
+    const { registry } = Blockly.ShortcutRegistry;
+    for (const [name, act] of /** @type {[string, () => void][]} */ ([['undo', () => this.#told.undo()], ['redo', () => this.#told.redo()]])) {
+      const before = registry.getRegistry()[name];
+      const keys = registry.getKeyCodesByShortcutName(name);
+      if (!before) continue;
+      registry.unregister(name);
+      registry.register({ ...before, preconditionFn: () => true, callback: (_, event) => {
+        event.preventDefault();
+        act();
+        return true;
+      } });
+      for (const key of keys) registry.addKeyMapping(key, name, true);
+    }
+  }
+
+  #begin() {
+    const language = currentLanguage();
+    Blockly.setLocale(/** @type {Record<string, string>} */ (texts[language]));
+    defineBlocks();
+    const isNarrow = innerWidth < NARROW;
+    const workspace = Blockly.inject(this.#place, {
+      ...this.#looks,
+      plugins: { connectionChecker: 'tiniscript' },
+      toolbox: toolbox(this.#level, this.#used),
+      trashcan: !isNarrow,
+      comments: false,
+      collapse: false,
+      disable: false,
+      move: { scrollbars: true, drag: true, wheel: true },
+      zoom: { controls: !isNarrow, wheel: false, pinch: true, startScale: isNarrow ? 0.62 : 0.75, minScale: 0.4, maxScale: 1.6 },
+    });
+    workspace.MAX_UNDO = 0;
+    for (const each of document.querySelectorAll('.blocklyComputeCanvas')) each.setAttribute('aria-hidden', 'true');
+    workspace.addChangeListener((event) => {
+      if (event.isUiEvent || event.type === Blockly.Events.FINISHED_LOADING) return;
+      this.#told.changed();
+    });
+    return workspace;
+  }
+
+  /** Whether a block is being dragged or a field is being typed in. */
+  get isBusy() {
+    return this.#workspace.isDragging();
+  }
+
+  get hasFocus() {
+    return this.#place.contains(document.activeElement);
+  }
+
+  setLanguage() {
+    const { form } = formOf(this.#workspace);
+    this.#workspace.dispose();
+    this.#workspace = this.#begin();
+    this.show(form);
+  }
+
+  /** @param {string} robot */
+  setRobot(robot) {
+    setRobot(robot);
+    setActuators(robot);
+    this.#workspace.updateToolbox(toolbox(this.#level, this.#used));
+  }
+
+  /** @param {Level} level */
+  setLevel(level) {
+    this.#level = level;
+    this.#workspace.updateToolbox(toolbox(level, this.#used));
+  }
+
+  resize() {
+    Blockly.svgResize(this.#workspace);
+  }
+
+  /** Replaces the blocks. @param {Form} form */
+  show(form) {
+    const hadFocus = this.hasFocus;
+    Blockly.hideChaff();
+    this.#running = '';
+    const ids = showForm(this.#workspace, form);
+    this.placed(ids, inOrder(form.body).map((block) => block.place ?? [0, 0, 0, 0]));
+    this.#use(form);
+    if (hadFocus) Blockly.getFocusManager().focusTree(this.#workspace);
+  }
+
+  /** @returns {{form: Form, ids: string[]}} */
+  read() {
+    const found = formOf(this.#workspace);
+    this.#use(found.form);
+    return found;
+  }
+
+  /**
+   * @param {string[]} ids
+   * @param {Range[]} places
+   */
+  placed(ids, places) {
+    this.#places = ids.map((id, k) => [id, places[k] ?? [0, 0, 0, 0]]);
+  }
+
+  /** Offers the names that the program has. @param {Form} form */
+  #use(form) {
+    const blocks = inOrder([...form.body, ...form.loose.flatMap((stack) => stack.body)]);
+    const of = (/** @type {string} */ kind) => [...new Set(blocks.filter((block) => block.kind === kind).map((block) => block.word))].sort();
+    const used = { names: of('assign'), words: of('def') };
+    if (JSON.stringify(used) === JSON.stringify(this.#used)) return;
+    this.#used = used;
+    if (!this.#workspace.isDragging()) this.#workspace.updateToolbox(toolbox(this.#level, used));
+  }
+
+  /** Says at each block what the compiler says of it. @param {Finding[]} findings */
+  showFindings(findings) {
+    /** @type {Map<string, string[]>} */
+    const said = new Map();
+    for (const finding of findings) {
+      const id = this.#blockAt(finding.line, finding.column) ?? '';
+      const whole = [finding.message, finding.fix && `${text('try')} ${finding.fix}`].filter(Boolean).join('\n');
+      said.set(id, [...(said.get(id) ?? []), whole]);
+    }
+    Blockly.Events.disable();
+    try {
+      for (const block of this.#workspace.getAllBlocks(false)) {
+        if (block.isShadow()) continue;
+        const messages = said.get(block.type === 'program' ? '' : block.id);
+        block.setWarningText(messages ? messages.map(folded).join('\n\n') : null);
+      }
+    } finally {
+      Blockly.Events.enable();
+    }
+  }
+
+  /** Marks the block that runs now, or none. @param {{line: number, column: number} | null} range */
+  showRunning(range) {
+    const id = range ? this.#blockAt(range.line, range.column) ?? '' : '';
+    if (id === this.#running) return;
+    this.#workspace.getBlockById(this.#running)?.removeClass('running');
+    this.#workspace.getBlockById(id)?.addClass('running');
+    this.#running = id;
+  }
+
+  /** @param {{line: number, column: number}} place */
+  goTo(place) {
+    const block = this.#workspace.getBlockById(this.#blockAt(place.line, place.column) ?? '');
+    if (!block) return;
+    this.#workspace.centerOnBlock(block.id);
+    Blockly.getFocusManager().focusNode(block);
+  }
+
+  /**
+   * @param {number} line
+   * @param {number} column
+   * @returns {string | undefined} the innermost block there
+   */
+  #blockAt(line, column) {
+    const found = this.#places.findLast(([, [first, from, last, to]]) =>
+      (line > first || (line === first && column >= from)) && (line < last || (line === last && column < to)));
+    return (found ?? this.#places.findLast(([, [first]]) => first === line))?.[0];
+  }
+}
+
+/** @param {import('./block_form.js').FormBlock[]} blocks @returns {import('./block_form.js').FormBlock[]} */
+function inOrder(blocks) {
+  return blocks.flatMap((block) => [block, ...block.bodies.flatMap(inOrder)]);
+}
+
+/** @param {string} message */
+function folded(message) {
+  return Blockly.utils.string.wrap(message, LONGEST_TIP);
+}

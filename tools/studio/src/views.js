@@ -1,0 +1,245 @@
+// The program as blocks and as text, side by side or one at a time. The text is what is kept:
+// blocks are made of it when it changes, and it is made of them when they do.
+
+import { element } from './elements.js';
+import { text } from './texts.js';
+
+/** @typedef {import('./blocks.js').Blocks} Blocks */
+/** @typedef {import('./block_form.js').Form} Form */
+/** @typedef {import('./python.js').Finding} Finding */
+/** @typedef {import('./work.js').Work} Work */
+
+const TYPING_MS = 200; // of silence before blocks are made of a text
+const LEVELS = /** @type {const} */ ([['few', 'level_few'], ['usual', 'level_usual'], ['all', 'level_all']]);
+
+export class Views {
+  #python;
+  #editor;
+  #work;
+  #remember;
+  /** @type {Blocks | null} */
+  #blocks = null;
+  /** @type {Promise<void> | null} */
+  #fetching = null;
+  /** The text that the blocks show. @type {string | null} */
+  #shown = null;
+  #isReady = false;
+  #isRefreshing = false;
+  #isSending = false;
+  #changes = 0; // of blocks that their text does not have yet
+  #timer = 0;
+  /** @type {Finding[]} */
+  #findings = [];
+  #pane = element('blocks', HTMLElement);
+  #note = element('blocks_note', HTMLElement);
+  #level = element('level', HTMLSelectElement);
+
+  /**
+   * @param {import('./python.js').Python} python
+   * @param {import('./editor.js').Editor} editor
+   * @param {Work} work
+   * @param {() => void} remember
+   */
+  constructor(python, editor, work, remember) {
+    this.#python = python;
+    this.#editor = editor;
+    this.#work = work;
+    this.#remember = remember;
+    for (const view of /** @type {const} */ (['blocks', 'text'])) {
+      element(`view_${view}`, HTMLButtonElement).addEventListener('click', () => this.#choose(view));
+    }
+    this.#level.addEventListener('change', () => {
+      work.level = LEVELS.find(([level]) => level === this.#level.value)?.[0] ?? 'few';
+      remember();
+      this.#blocks?.setLevel(work.level);
+    });
+    element('undo', HTMLButtonElement).addEventListener('click', () => this.#again(() => editor.undo()));
+    element('redo', HTMLButtonElement).addEventListener('click', () => this.#again(() => editor.redo()));
+    // A block that is touched while the text is ahead of it must not take the text back.
+    for (const kind of ['pointerdown', 'focusin']) {
+      this.#pane.addEventListener(kind, (event) => {
+        if (!this.#isStale()) return;
+        if (kind === 'pointerdown') event.stopPropagation();
+        this.#refresh(true);
+      }, { capture: true });
+    }
+    new ResizeObserver(() => this.#blocks?.resize()).observe(this.#pane);
+    this.setLanguage();
+    this.#lay();
+  }
+
+  get #isOn() {
+    return this.#work.view === 'blocks';
+  }
+
+  /** Python answers from now on. */
+  ready() {
+    this.#isReady = true;
+    if (this.#isOn) this.#refresh(true);
+  }
+
+  setLanguage() {
+    this.#level.replaceChildren(...LEVELS.map(([level, name]) => new Option(text(name), level)));
+    this.#level.value = this.#work.level;
+    this.#blocks?.setLanguage();
+    this.#blocks?.showFindings(this.#findings);
+    if (this.#blocks) this.#refresh(true);
+  }
+
+  setRobot() {
+    this.#blocks?.setRobot(this.#work.robot);
+    this.#shown = null;
+    if (this.#isOn) this.#refresh(true);
+  }
+
+  /** The text has changed, by whoever did it. */
+  textChanged() {
+    if (!this.#blocks || !this.#isStale()) return;
+    this.#showState();
+    clearTimeout(this.#timer);
+    this.#timer = window.setTimeout(() => this.#refresh(!this.#editor.hasFocus), TYPING_MS);
+  }
+
+  /** @param {Finding[]} findings of the newest text */
+  showFindings(findings) {
+    this.#findings = findings;
+    if (!this.#isStale()) this.#blocks?.showFindings(findings);
+  }
+
+  /** @param {{line: number, column: number, end_line: number, end_column: number} | null} range */
+  showRunning(range) {
+    this.#editor.showRunning(range);
+    if (!this.#isStale()) this.#blocks?.showRunning(range);
+  }
+
+  /** @param {Finding} finding */
+  goTo(finding) {
+    if (this.#isOn && this.#blocks && !this.#isStale()) this.#blocks.goTo(finding);
+    else this.#editor.goTo(finding);
+  }
+
+  /** @param {'blocks' | 'text'} view */
+  #choose(view) {
+    this.#work.view = view;
+    this.#remember();
+    this.#lay();
+    if (view === 'blocks') this.#refresh(true);
+  }
+
+  #lay() {
+    const { view } = this.#work;
+    element('writing', HTMLElement).dataset['view'] = view;
+    for (const each of ['blocks', 'text']) {
+      element(`view_${each}`, HTMLButtonElement).setAttribute('aria-pressed', String(each === view));
+    }
+    this.#level.hidden = view !== 'blocks';
+    if (view === 'blocks') this.#fetching ??= this.#fetch();
+  }
+
+  async #fetch() {
+    const { Blocks: Kind } = await import('./blocks.js');
+    this.#blocks = new Kind(this.#pane, this.#work.robot, this.#work.level, {
+      changed: () => this.#blocksChanged(),
+      undo: () => this.#again(() => this.#editor.undo()),
+      redo: () => this.#again(() => this.#editor.redo()),
+    });
+    this.#pane.dataset['state'] = 'empty';
+    if (this.#isReady) this.#refresh(true);
+  }
+
+  #isStale() {
+    return this.#shown !== this.#editor.text;
+  }
+
+  /** Undo and redo once what the blocks are has become text. @param {() => void} act */
+  async #again(act) {
+    await this.#send();
+    act();
+    if (this.#isOn) this.#refresh(true);
+  }
+
+  #blocksChanged() {
+    this.#changes += 1;
+    if (this.#shown === null) return; // those are not the text's
+    this.#pane.dataset['state'] = 'changed';
+    clearTimeout(this.#timer);
+    this.#timer = window.setTimeout(() => this.#send(), 0);
+  }
+
+  /** Makes the text of the blocks, unless somebody has changed the text meanwhile. */
+  async #send() {
+    if (!this.#blocks || this.#shown === null || this.#isSending || !this.#changes) return;
+    if (this.#blocks.isBusy) {
+      this.#timer = window.setTimeout(() => this.#send(), 50);
+      return;
+    }
+    this.#isSending = true;
+    const before = this.#editor.text;
+    try {
+      while (this.#changes && this.#shown === before) {
+        this.#changes = 0;
+        const { form, ids } = this.#blocks.read();
+        const answer = await this.#python.ask({ do: 'text', form });
+        if (this.#changes || this.#editor.text !== before) continue;
+        this.#shown = answer.text;
+        this.#blocks.placed(ids, answer.places);
+        this.#editor.replaceByBlocks(answer.text);
+      }
+    } finally {
+      this.#isSending = false;
+    }
+    this.#changes = 0;
+    if (this.#isStale()) this.#refresh(true);
+    else this.#showState();
+  }
+
+  /**
+   * Makes the blocks of the text. While somebody types a text that does not parse, the blocks stay
+   * as they are, unless `isWanted`.
+   * @param {boolean} isWanted
+   */
+  async #refresh(isWanted) {
+    if (!this.#blocks || !this.#isReady || this.#isRefreshing || !this.#isOn) return;
+    if (!this.#isStale()) {
+      this.#showState();
+      return;
+    }
+    this.#isRefreshing = true;
+    try {
+      while (this.#isStale()) {
+        const now = this.#editor.text;
+        /** @type {Form & {size: number}} */
+        const form = await this.#python.ask({ do: 'blocks', robot: this.#work.robot }, new TextEncoder().encode(now));
+        if (now !== this.#editor.text) continue;
+        const isKept = !isWanted && this.#editor.hasFocus && this.#shown !== null && hasGrey(form);
+        if (!form.body || isKept) {
+          this.#showState(form.body ? text('blocks_wait') : text('blocks_many'));
+          return;
+        }
+        this.#shown = now;
+        this.#changes = 0;
+        this.#blocks.show(form);
+        this.#blocks.showFindings(this.#findings);
+      }
+      this.#showState();
+    } finally {
+      this.#isRefreshing = false;
+    }
+  }
+
+  /** @param {string} note */
+  #showState(note = '') {
+    this.#note.textContent = note;
+    this.#pane.dataset['state'] = this.#isStale() ? 'stale' : 'shown';
+  }
+}
+
+/** @param {Form} form */
+function hasGrey(form) {
+  const waiting = [...(form.body ?? [])];
+  for (let block = waiting.pop(); block; block = waiting.pop()) {
+    if (block.kind === 'grey') return true;
+    waiting.push(...block.bodies.flat());
+  }
+  return false;
+}
