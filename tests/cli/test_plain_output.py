@@ -25,6 +25,7 @@ ENDS = {  # what keeps a verb from waiting for something
     "ping": ["--port", "/none"], "info": ["--port", "/none"], "stop": ["--port", "/none"],
     "upload": ["-e", PROGRAM, "--port", "/none"], "live": ["F(1, 80)", "--port", "/none"],
     "firmware": ["--port", "/none"], "studio": ["--listen", "none"],
+    "wifi": ["--port", "/none"],
 }  # fmt: skip
 CASES = [(verb, dest) for verb, parser in PARSERS.items() for dest in values_of(parser)]
 

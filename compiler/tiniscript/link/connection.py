@@ -19,8 +19,10 @@ from tiniscript.link.payloads import (
     StatusReply,
     TextReply,
     TrimReply,
+    WifiReply,
 )
 from tiniscript.link.requests import DeviceInfo, FetchedImage, Reply
+from tiniscript.link.wifi import Network
 
 DEADLINE_MS = 20_000  # of a request, unless another is given
 T = TypeVar("T")
@@ -77,6 +79,12 @@ class Requester(Protocol):
     def hold_back(self) -> PendingRequest[EmptyReply]: ...
 
     def allow_text(self, is_allowed: bool) -> PendingRequest[TextReply]: ...
+
+    def wifi(self) -> PendingRequest[WifiReply]: ...
+
+    def join(self, network: Network) -> PendingRequest[WifiReply]: ...
+
+    def forget_wifi(self) -> PendingRequest[WifiReply]: ...
 
 
 class LinkConnection(Protocol):

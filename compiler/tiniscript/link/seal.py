@@ -9,11 +9,13 @@ from __future__ import annotations
 from hmac import compare_digest
 
 from tiniscript.link.frames import Frame
-from tiniscript.link.messages import COUNTER_BYTES, REPLY, SEALED, TAG_BYTES
+from tiniscript.link.messages import BY_NAME, COUNTER_BYTES, REPLY, SEALED, TAG_BYTES
 from tiniscript.link.siphash import siphash
 
 LAST = (1 << 8 * COUNTER_BYTES) - 1
 _BEFORE = 1 + COUNTER_BYTES  # bytes before the payload
+_WIFI = BY_NAME["WIFI"].number
+_BLOCK = 8  # bytes that are covered at once
 
 
 def session_key(
@@ -43,7 +45,11 @@ class Seal:
         """Return a frame with the next counter and its MAC, ready to be encoded."""
         assert not self.is_spent
         self.sent += 1
-        payload = b"\0" + self.sent.to_bytes(COUNTER_BYTES, "little") + frame.payload
+        counter = self.sent.to_bytes(COUNTER_BYTES, "little")
+        said = frame.payload
+        if frame.number == _WIFI and not frame.is_reply:  # the only one with a secret: a password
+            said = said[:1] + self._covered(counter, said[1:])
+        payload = b"\0" + counter + said
         whole = frame._replace(payload=payload, is_sealed=True)
         return whole._replace(payload=payload + self._mac(whole))
 
@@ -58,6 +64,13 @@ class Seal:
             return None
         self.heard = counter
         return frame._replace(payload=payload[_BEFORE:])
+
+    def _covered(self, counter: bytes, text: bytes) -> bytes:
+        """Cover bytes of the frame with this counter: nobody else can read them."""
+        stream = b"".join(
+            siphash(self._key, counter + bytes([k])) for k in range(-(-len(text) // _BLOCK))
+        )
+        return bytes(a ^ b for a, b in zip(text, stream, strict=False))
 
     def _mac(self, frame: Frame) -> bytes:
         kind = frame.number | REPLY * frame.is_reply | SEALED

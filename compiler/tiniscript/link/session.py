@@ -54,7 +54,7 @@ from tiniscript.link.requests import (
     Reply,
     reply_of,
 )
-from tiniscript.link.sealing import UNSEALED, Sealing
+from tiniscript.link.sealing import SEALED_ALONE, UNSEALED, Sealing
 from tiniscript.link.session_requests import Interrupted, PendingExchange, SessionRequests
 from tiniscript.link.stop_sequence import StopSequence
 from tiniscript.link.transmission import TRIES, Transmission
@@ -235,6 +235,8 @@ class Session(SessionRequests):
         payload = written(message.request, request.values)
         frame = Frame(message.number, self._seq, self._epoch, payload)
         self._transmission.begin(frame, now_ms + request.pause_ms, seal)
+        if seal is None and request.name in SEALED_ALONE:
+            self._show_again(now_ms)  # before a byte of it is sent
 
     def _show_again(self, now_ms: int) -> None:
         """The robot no longer knows our seal: show a key, then go on with the same request.

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from typing import Any, NamedTuple, TypeVar
 
 from tiniscript.bytecode.image import Image
-from tiniscript.link import requests
+from tiniscript.link import requests, wifi
 from tiniscript.link.authority import KeyRing
 from tiniscript.link.connection import DEADLINE_MS, PendingRequest
 from tiniscript.link.frames import Frame
@@ -22,9 +22,11 @@ from tiniscript.link.payloads import (
     StatusReply,
     TextReply,
     TrimReply,
+    WifiReply,
 )
 from tiniscript.link.requests import Exchange, FetchedImage, Request
 from tiniscript.link.robot_state import RobotState
+from tiniscript.link.wifi import Network
 
 CLAIM_LIMIT_MS = 45_000  # the robot waits for a hand on its button
 T = TypeVar("T")
@@ -144,3 +146,14 @@ class SessionRequests:
 
     def allow_text(self, is_allowed: bool) -> PendingExchange[TextReply]:
         return self._add(self._handshake.open_then(lambda: self._handshake.allow_text(is_allowed)))
+
+    def wifi(self) -> PendingExchange[WifiReply]:
+        """Ask what the robot's WiFi is set to."""
+        return self._add(self._handshake.open_then(wifi.tell))
+
+    def join(self, network: Network) -> PendingExchange[WifiReply]:
+        """Have the robot join a network, or be its access point, now and after each reset."""
+        return self._add(self._handshake.open_then(lambda: wifi.give(network)))
+
+    def forget_wifi(self) -> PendingExchange[WifiReply]:
+        return self._add(self._handshake.open_then(wifi.forget))

@@ -11,7 +11,14 @@ from typing import Any, TypeVar
 
 from tiniscript.bytecode.image import HEADER_BYTES, STARTS, Image
 from tiniscript.link.connection import PendingRequest, Requester
-from tiniscript.link.messages import KEYS, NAME_BYTES, TRIM_BYTES
+from tiniscript.link.messages import (
+    KEYS,
+    LEAST_PASSWORD,
+    NAME_BYTES,
+    NETWORK_BYTES,
+    PASSWORD_BYTES,
+    TRIM_BYTES,
+)
 from tiniscript.link.payloads import (
     EmptyReply,
     HelloReply,
@@ -20,15 +27,18 @@ from tiniscript.link.payloads import (
     StatusReply,
     TextReply,
     TrimReply,
+    WifiReply,
 )
 from tiniscript.link.requests import FetchedImage
+from tiniscript.link.wifi import Network
 from tiniscript.sharing import protocol
 from tiniscript.sharing.protocol import BadMessage, JsonMessage
 
 CODE_BYTES = 0x7FFF  # the most that an image's header can say
 LATER_BYTES = 0xFF - HEADER_BYTES  # the most that it can say
 T = TypeVar("T")
-_PLAIN = ("hello", "ping", "status", "clear", "fetch", "undo", "identify", "hold_back")
+_PLAIN = ("hello", "ping", "status", "clear", "fetch", "undo", "identify", "hold_back",
+          "wifi", "forget_wifi")  # fmt: skip
 
 
 class ClientRequest(PendingRequest[T]):
@@ -76,6 +86,18 @@ class ClientRequests:
 
     def allow_text(self, is_allowed: bool) -> ClientRequest[TextReply]:
         return ClientRequest("allow_text", TextReply, is_allowed=is_allowed)
+
+    def wifi(self) -> ClientRequest[WifiReply]:
+        return ClientRequest("wifi", WifiReply)
+
+    def join(self, network: Network) -> ClientRequest[WifiReply]:
+        """The password goes to another process of this user, and into no file."""
+        fields = network._asdict()
+        fields.update(name=network.name.hex(), password=network.password.hex())
+        return ClientRequest("join", WifiReply, **fields)
+
+    def forget_wifi(self) -> ClientRequest[WifiReply]:
+        return ClientRequest("forget_wifi", WifiReply)
 
     def name(self, name: bytes) -> ClientRequest[EmptyReply]:
         return ClientRequest("name", EmptyReply, name=name.hex())
@@ -136,6 +158,9 @@ def _asked_for(message: JsonMessage) -> Callable[[Requester], PendingRequest[Any
         if not 1 <= len(name) <= NAME_BYTES:
             raise BadMessage
         return lambda session: session.name(name)
+    if do == "join":
+        network = _network(message)
+        return lambda session: session.join(network)
     if do in ("claim", "disown"):
         which = protocol.number(message, "which")
         if not 0 <= which < len(KEYS):
@@ -167,6 +192,15 @@ def _asked_for(message: JsonMessage) -> Callable[[Requester], PendingRequest[Any
 def _plain(session: Requester, do: str) -> PendingRequest[Any]:
     asked: PendingRequest[Any] = getattr(session, do)()
     return asked
+
+
+def _network(message: JsonMessage) -> Network:
+    name, password = protocol.data(message, "name"), protocol.data(message, "password")
+    if not 1 <= len(name) <= NETWORK_BYTES:
+        raise BadMessage
+    if not LEAST_PASSWORD <= len(password) <= PASSWORD_BYTES or b"\0" in name + password:
+        raise BadMessage
+    return Network(name, password, protocol.answer(message, "is_access_point"))
 
 
 def _image(message: JsonMessage) -> Image:

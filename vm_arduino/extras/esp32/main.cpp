@@ -6,6 +6,7 @@
 
 #include <math.h>
 
+#include "../../src/boards/esp32/first_bytes.h"
 #include "../../src/boards/kit.h"
 #include "../host/wire.h"
 #include "simulated_chip.h"
@@ -220,6 +221,13 @@ void answer_radio(RequestReader* request, Writer* answer) {
   }
 }
 
+// G: whether a connection that begins so is for a robot.
+void answer_guest(RequestReader* request, Writer* answer) {
+  const std::string bytes = request->text();
+  answer->u8(static_cast<uint8_t>(
+      guest_of(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size())));
+}
+
 // O: what a pin has, 0 to 255. F: whether NVS is full. L: LEDC does nothing any more.
 void answer_output(RequestReader* request, Writer* answer) { answer->u8(output_of(request->u8())); }
 
@@ -257,6 +265,9 @@ int main() {
         break;
       case 'R':
         answer_radio(&request, &said);
+        break;
+      case 'G':
+        answer_guest(&request, &said);
         break;
       case 'L':
         chip.is_ledc_stuck = true;

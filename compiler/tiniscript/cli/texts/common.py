@@ -232,6 +232,7 @@ _LATER = (
     ("doctor", "DOCTOR_TEXTS"),
     ("selftest", "SELFTEST_TEXTS"),
     ("studio", "STUDIO_TEXTS"),
+    ("wifi", "WIFI_TEXTS"),
 )
 
 

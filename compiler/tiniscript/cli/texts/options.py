@@ -92,7 +92,7 @@ YES = ("yes|no", "yes|no")
 A_LEVEL = ("|".join(LEVELS),) * 2
 
 TO_MANY = "ping upload stop info undo identify"  # may work on many robots at once
-TO_ONE = "live link start monitor fetch name trim claim disown text selftest"
+TO_ONE = "live link start monitor fetch name trim claim disown text wifi selftest"
 OWN = "upload live robot"  # may bring a virtual robot along
 
 # fmt: off
@@ -110,6 +110,7 @@ OPTIONS: tuple[Option, ...] = (
     Option("line", "live", ("what to do; with - lines come from standard input", "qué hacer; con - las líneas vienen de la entrada estándar"), TEXT, ("LINE", "LÍNEA")),
     Option("name", "name", ("the robot's name: 1 to 16 bytes of UTF-8", "el nombre del robot: de 1 a 16 bytes de UTF-8"), TEXT, ("NEW", "NUEVO")),
     Option("whether", "text", ("on or off", "on u off"), ON_OFF, ("on|off", "on|off")),
+    Option("network", "wifi", ("the network that the robot joins; without it tsc says which one it has", "la red a la que se une el robot; sin esto tsc dice cuál tiene"), TEXT, ("NETWORK", "RED")),
     Option("about", "help", ("the command to say more about", "el comando del que quieres saber más"), VERB, ("COMMAND", "COMANDO")),
     Option("shell", "completion", ("bash, zsh or powershell", "bash, zsh o powershell"), SHELL, ("SHELL", "TERMINAL"), is_needed=True),
     # the program
@@ -173,6 +174,8 @@ OPTIONS: tuple[Option, ...] = (
     Option("--balance", "trim", ("the left wheel gets N % less; with -N the right one does (up to 40)", "la rueda izquierda recibe N % menos; con -N, la derecha (hasta 40)"), NUMBER, N),
     Option("--least", "trim", ("the percent of power from which on the wheels move (0 to 40)", "el porcentaje de potencia desde el que se mueven las ruedas (0 a 40)"), NUMBER, N),
     Option("--teacher", "claim", ("gives the robot the teacher's key, the second of its two", "le da al robot la llave de docente, la segunda de sus dos")),
+    Option("--access-point", "wifi", ("the robot opens this network itself", "el robot mismo abre esta red")),
+    Option("--forget", "wifi", ("the robot uses no WiFi any more", "el robot ya no usa WiFi")),
     Option("--teacher", "disown", ("takes the teacher's key away", "quita la llave de docente")),
     Option("--teacher", "stop", ("with the teacher's key: only this computer, or the robot's button, lets it go on", "con la llave de docente: solo esta computadora, o el botón del robot, lo deja seguir")),
     Option("--export", "keys", ("writes the keys to a file, for another computer", "escribe las llaves en un archivo, para otra computadora"), NEW_KEYS, A_FILE),
@@ -214,12 +217,12 @@ OPTIONS: tuple[Option, ...] = (
     Option("--baud", "ports", ("with --ask: their speed (the one of the robot's profile)", "con --ask: su velocidad (la del perfil del robot)"), NUMBER, N),
     Option("--baud", "robot", ("how fast its line is (as in its profile); 0 is as fast as possible", "la velocidad de su línea (la de su perfil); 0 es lo más rápido posible"), NUMBER, N),
     Option("--robot", "compile check run show fmt upload live", ("for which robot: a name (tinibot, ...) or a profile's file", "para qué robot: un nombre (tinibot, ...) o el archivo de un perfil"), ROBOT, A_ROBOT),
-    Option("--robot", "wiring ports ping stop link start info monitor fetch name trim undo claim disown text identify robot", ("which robot: a name (tinibot, ...) or a profile's file", "qué robot: un nombre (tinibot, ...) o el archivo de un perfil"), ROBOT, A_ROBOT),
+    Option("--robot", "wiring ports ping stop link start info monitor fetch name trim undo claim disown text wifi identify robot", ("which robot: a name (tinibot, ...) or a profile's file", "qué robot: un nombre (tinibot, ...) o el archivo de un perfil"), ROBOT, A_ROBOT),
     Option("--robot", "selftest", ("which robot it should be: a name (tinibot, ...) or a profile's file", "qué robot debería ser: un nombre (tinibot, ...) o el archivo de un perfil"), ROBOT, A_ROBOT),
     Option("--robot", "doctor", ("which robot it should be: a name (tinibot, ...) or a profile's file", "qué robot debería ser: un nombre (tinibot, ...) o el archivo de un perfil"), ROBOT, A_ROBOT),
     Option("--robot", "firmware", ("tinibot (if none is named), liner, grabber, or a profile of your own", "tinibot (si no se nombra ninguno), liner, grabber, o un perfil propio"), ROBOT, A_ROBOT),
     Option("--virtual", "check", ("for the virtual robot of `tsc robot`, which runs in another terminal", "para el robot virtual de `tsc robot`, que está en marcha en otra terminal")),
-    Option("--virtual", "ping link start info monitor fetch name trim undo claim disown text identify selftest", ("the virtual robot of `tsc robot`, which runs in another terminal", "el robot virtual de `tsc robot`, que está en marcha en otra terminal")),
+    Option("--virtual", "ping link start info monitor fetch name trim undo claim disown text wifi identify selftest", ("the virtual robot of `tsc robot`, which runs in another terminal", "el robot virtual de `tsc robot`, que está en marcha en otra terminal")),
     Option("--virtual", "stop", ("virtual robots alone: those of `tsc robot`, and of commands with --virtual", "solo robots virtuales: los de `tsc robot`, y los de comandos con --virtual")),
     Option("--virtual", "upload", ("no robot: a virtual one drives here, until the program ends or Ctrl-C; the one of `tsc robot`, if that runs in another terminal. The key b is the button of one here; where nobody is at a terminal, it is pushed at once",
                                    "sin robot: uno virtual se mueve aquí, hasta que el programa termina o Ctrl-C; el de `tsc robot`, si está en marcha en otra terminal. La tecla b es el botón del de aquí; si no hay nadie en una terminal, se pulsa enseguida")),

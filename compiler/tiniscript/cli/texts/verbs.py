@@ -207,6 +207,12 @@ VERBS: dict[str, Verb] = {
          "Deja que líneas de texto, que cualquiera puede escribir en un teléfono, conduzcan un robot que tiene dueño; hasta que se apague. Lo mismo hace su botón, pulsado 2 s. La línea S detiene un robot siempre."),
         ("on|off [options]", "on|off [opciones]"),
     ),
+    "wifi": Verb(
+        ROBOTS, ("wifi NETWORK", "wifi RED"), ("bring your robot into a WiFi network", "lleva tu robot a una red WiFi"),
+        ("Has a robot with an ESP32 join a network, now and whenever it is switched on; with `--access-point` it opens one itself. tsc asks for the password, without showing it; where nobody types, it is the first line of standard input. It is in no argument and in no file of this computer, goes to the robot so that nobody who listens can read it, and no robot tells it. Only a robot with an owner takes a network, from a computer with its key. Without a network, tsc says which one the robot has.",
+         "Une un robot con ESP32 a una red, ahora y cada vez que se enciende; con `--access-point` la abre él mismo. tsc pide la contraseña sin mostrarla; si nadie escribe, es la primera línea de la entrada estándar. No está en ningún argumento ni en ningún archivo de esta computadora, va al robot sin que quien escuche pueda leerla, y ningún robot la cuenta. Solo un robot con dueño acepta una red, desde una computadora con su llave. Sin una red, tsc dice cuál tiene el robot."),
+        ("[NETWORK] [options]", "[RED] [opciones]"),
+    ),
     "keys": Verb(
         ROBOTS, ("keys", "keys"), ("the robots whose keys this computer has", "los robots cuya llave tiene esta computadora"),
         ("Lists the robots whose keys this computer has; no key is printed. `--export` writes them to a file that only you can read: a class list for another computer, which takes it with `--import`. Whoever has that file drives those robots. On Windows such a file has the permissions of its folder: keep it in your own.",

@@ -1,0 +1,137 @@
+"""`tsc wifi`: which network the robot joins, or is; its password is asked for, and kept nowhere."""
+
+from __future__ import annotations
+
+import sys
+import time
+from argparse import Namespace
+from typing import TYPE_CHECKING
+
+from tiniscript.cli.errors import CommandError
+from tiniscript.cli.inputs import shown
+from tiniscript.cli.robot.connect import Connection, connected
+from tiniscript.cli.texts.common import text
+from tiniscript.link.messages import (
+    LEAST_PASSWORD,
+    NETWORK_BYTES,
+    OWNED,
+    PASSWORD_BYTES,
+    SEALS,
+    STATUSES,
+)
+
+if TYPE_CHECKING:
+    from tiniscript.link.payloads import WifiReply
+    from tiniscript.link.requests import Reply
+    from tiniscript.link.wifi import Network
+
+READY_S = 20  # until the robot is in the network
+LOOK_S = 0.5
+LONGEST_LINE = 1024  # bytes of standard input that may be a password
+
+
+def run(options: Namespace, language: str) -> int:
+    if options.forget and (options.network is not None or options.access_point):
+        raise CommandError(2, "wifi_one_way")
+    if options.access_point and options.network is None:
+        raise CommandError(2, "wifi_no_network")
+    name = None if options.network is None else _name_bytes(options.network)
+    with connected(options, language) as connection:
+        info = connection.meet()
+        features = info.values.features
+        if not features & SEALS:
+            raise CommandError(3, "wifi_none", robot=connection.name)
+        if not features & OWNED:
+            raise CommandError(3, "wifi_unowned", robot=connection.name)
+        if options.forget:
+            _taken(connection, connection.give(lambda session: session.forget_wifi()))
+            print(text("wifi_forgotten", language).format(robot=connection.name))
+        elif name is not None:
+            _join(connection, name, options.access_point)
+        else:
+            _tell(connection, _told(connection))
+    return 0
+
+
+def _join(connection: Connection, name: bytes, is_access_point: bool) -> None:
+    from tiniscript.link.wifi import Network
+
+    _told(connection)  # nobody is asked for a password that the robot would not take
+    network = Network(name, _password(connection.language), is_access_point)
+    _taken(connection, _given(connection, network))
+    end_s = time.monotonic() + READY_S
+    told = _told(connection)
+    while told.state not in _ends() and time.monotonic() < end_s:
+        time.sleep(LOOK_S)
+        told = _told(connection)
+    _tell(connection, told)
+
+
+def _ends() -> tuple[int, int]:
+    """Return the states from which nothing further follows by itself."""
+    from tiniscript.link.wifi import STATES
+
+    return STATES.index("READY"), STATES.index("REFUSED")
+
+
+def _given(connection: Connection, network: Network) -> Reply[WifiReply]:
+    return connection.give(lambda session: session.join(network))
+
+
+def _taken(connection: Connection, reply: Reply[WifiReply]) -> None:
+    if reply.status:
+        raise connection.failure(reply)
+
+
+def _told(connection: Connection) -> WifiReply:
+    reply = connection.wait(connection.do(lambda session: session.wifi()))
+    if reply.status == STATUSES["UNKNOWN_MESSAGE"]:
+        raise CommandError(3, "wifi_none", robot=connection.name)
+    if reply.status:
+        raise connection.failure(reply)
+    return reply.values
+
+
+def _tell(connection: Connection, told: WifiReply) -> None:
+    from tiniscript.link.wifi import MODES, STATES, address
+
+    mode, state = (
+        row[number] if number < len(row) else "OFF"
+        for row, number in ((MODES, told.mode), (STATES, told.state))
+    )
+    key = "wifi_off" if mode == "OFF" else f"wifi_{mode}_{state}".lower()
+    if mode != "OFF" and state == "OFF":
+        key = "wifi_station_searching"
+    network = shown(told.network.decode("utf-8", "replace"))
+    host = f"tini-{connection.device_info.id & 0xFFFF:04x}"
+    said = text(key, connection.language)
+    print(said.format(robot=connection.name, network=network, address=address(told), host=host))
+
+
+def _name_bytes(name: str) -> bytes:
+    """Return the name of a network as bytes. Raises CommandError if there is no such name."""
+    data = name.encode("utf-8", "surrogateescape")
+    if not 1 <= len(data) <= NETWORK_BYTES or not name.isprintable():
+        raise CommandError(2, "wifi_bad_network", bytes=str(len(data)))
+    return data
+
+
+def _password(language: str) -> bytes:
+    """Ask for the password without an echo, or take it from standard input, if nobody types there.
+
+    It is in no argument, so no list of processes and no history of a shell has it.
+    """
+    if sys.stdin is not None and sys.stdin.isatty():
+        from getpass import getpass
+
+        try:
+            data = getpass(text("wifi_password", language)).encode("utf-8", "surrogateescape")
+        except EOFError:
+            data = b""
+    else:
+        data = b"" if sys.stdin is None else sys.stdin.buffer.readline(LONGEST_LINE)
+        data = data.rstrip(b"\r\n")
+    is_plain = all(byte >= ord(" ") and byte != 0x7F for byte in data)
+    if not LEAST_PASSWORD <= len(data) <= PASSWORD_BYTES or not is_plain:
+        raise CommandError(2, "wifi_bad_password")
+    return data

@@ -1,0 +1,162 @@
+"""`tsc` as processes, and a robot with an ESP32 on its cable and in a network at once."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.machines.esp32 import Esp32Robot, missing
+from tests.machines.host_firmware import HostFirmware
+from tests.support.bad_network import BadNetwork
+from tests.support.command import FOREVER, LONG, Command, process
+from tests.support.pty_robot import on
+
+if sys.platform == "win32":
+    pytest.skip("there are no pseudo-terminals", allow_module_level=True)
+
+from tests.cli.test_owner_commands import as_another, claimed
+from tests.support.esp32_pty_robot import Esp32PtyRobot
+from tests.support.esp32_radio import in_reach, port_of, radios
+
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
+NETWORK, PASSWORD = "Aula 3", b"a secret of the school"
+DRIVES = "SI|F(0.2, 80)"
+DROVE = ["MOTORS 80 80", "MOTORS 0 0"]
+
+
+@pytest.fixture
+def robot() -> Iterator[Esp32PtyRobot]:
+    found = Esp32PtyRobot("tinibot32")
+    with found:
+        yield found
+
+
+def asked(robot: Esp32PtyRobot, what: str) -> str:
+    """Return what the robot's radios are set to, or the address where it listens."""
+    said: list[str] = []
+
+    def ask(found: HostFirmware) -> None:
+        assert isinstance(found, Esp32Robot)
+        said.append(str(port_of(found) if what == "port" else getattr(radios(found), what)))
+
+    robot.ask(ask)
+    return said[0]
+
+
+def near(robot: Esp32PtyRobot, password: bytes = PASSWORD) -> None:
+    def reach(found: HostFirmware) -> None:
+        assert isinstance(found, Esp32Robot)
+        in_reach(found, NETWORK, password.decode())
+
+    robot.ask(reach)
+
+
+@pytest.fixture
+def joined(robot: Esp32PtyRobot) -> Esp32PtyRobot:
+    """A robot with an owner, in a network."""
+    near(robot)
+    assert claimed(robot).code == 0
+    done = on(robot, "wifi", NETWORK, data=PASSWORD + b"\n")
+    assert done.code == 0, done.err
+    assert f"in the network {NETWORK}" in done.out and "tcp://tini-5678.local" in done.out
+    return robot
+
+
+def drove(robot: Esp32PtyRobot) -> list[str]:
+    return [line for line in robot.did if line.startswith("MOTORS")]
+
+
+def files_with(folder: Path, words: bytes) -> list[str]:
+    return [
+        str(path) for path in folder.rglob("*") if path.is_file() and words in path.read_bytes()
+    ]
+
+
+def test_a_robot_without_an_owner_says_what_comes_first(robot: Esp32PtyRobot) -> None:
+    for words in (("wifi", NETWORK), ("wifi",), ("wifi", "--forget")):
+        done = on(robot, *words, data=PASSWORD + b"\n")
+        assert done.code == 3 and "tsc claim" in done.err and done.out == ""
+    assert "Primero hazlo tuyo" in on(robot, "wifi", NETWORK, "--lang", "es").err
+    assert asked(robot, "joins") == "0"
+
+
+def test_a_network_is_set_told_and_forgotten(joined: Esp32PtyRobot, tmp_path: Path) -> None:
+    assert asked(joined, "password").encode() == PASSWORD
+    said = on(joined, "wifi")
+    assert said.code == 0 and NETWORK in said.out and PASSWORD.decode() not in said.out + said.err
+    assert files_with(tmp_path, PASSWORD) == []
+    near(joined, b"another password")
+    joined.until(lambda: "password may be" in on(joined, "wifi").out, "it is refused")
+    assert "la contraseña es otra" in on(joined, "wifi", "--lang", "es").out
+    assert on(joined, "wifi", "--forget").code == 0
+    assert "uses no WiFi" in on(joined, "wifi").out
+    assert asked(joined, "network") == ""
+
+
+@pytest.mark.parametrize("data", [b"", b"\n", b"short\n", b"x" * 64 + b"\n", b"12345678\0\n",
+                                  b"1234567\x1b[2J\n", b"x" * 5000])  # fmt: skip
+def test_what_is_no_password_changes_nothing(joined: Esp32PtyRobot, data: bytes) -> None:
+    done = on(joined, "wifi", "Other", data=data)
+    assert done.code == 2 and "8 to 63" in done.err and "\x1b" not in done.err
+    assert asked(joined, "network") == NETWORK
+
+
+@pytest.mark.parametrize("words", [
+    ("wifi", "x" * 33), ("wifi", ""), ("wifi", "a\tb"), ("wifi", "X", "--forget"),
+    ("wifi", "--access-point"), ("wifi", "--access-point", "--forget"),
+])  # fmt: skip
+def test_words_that_make_no_sense_are_said_before_any_port_is_opened(
+    words: tuple[str, ...],
+) -> None:
+    for language in ("en", "es"):
+        done = process(*words, "--port", "/none", "--lang", language, data=PASSWORD)
+        assert done.code == 2 and done.err.startswith("tsc: ")
+
+
+def test_two_computers_at_once_over_cable_and_network(
+    joined: Esp32PtyRobot, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    place = f"socket://127.0.0.1:{asked(joined, 'port')}"
+    assert process("upload", "-e", DRIVES, "--port", place).code == 0
+    assert drove(joined)[-2:] == DROVE
+    command = Command("upload", "-e", FOREVER, "--port", place)
+    command.until("running")
+    joined.until(lambda: joined.moves, "it drives")
+    refused = on(joined, "upload", "-e", DRIVES)
+    assert refused.code == 3 and "another connection" in refused.err
+    assert "otra conexión" in on(joined, "live", "F(1, 20)", "--lang", "es").err
+    as_another(monkeypatch, tmp_path)
+    assert on(joined, "info").code == 0
+    assert joined.moves
+    assert on(joined, "stop").code == 0
+    assert not joined.moves
+    assert "stopped" in command.ended().out + command.ended().err
+    assert process("upload", "-e", DRIVES, "--port", place).code == 3, "it is another's robot"
+
+
+def test_over_a_bad_network(joined: Esp32PtyRobot, tmp_path: Path) -> None:
+    bad = BadNetwork(int(asked(joined, "port")))
+    place = f"socket://127.0.0.1:{bad.port}"
+    for _ in range(3):
+        done = process("upload", "-e", LONG, "--no-run", "--port", place)
+        assert done.code == 0, done.err
+    ours, theirs = tmp_path / "ours.bin", tmp_path / "theirs.bin"
+    assert process("compile", "-e", LONG, "-o", ours).code == 0
+    assert process("fetch", "-o", theirs, "--port", place).code == 0
+    assert ours.read_bytes() == theirs.read_bytes()
+    command = Command("upload", "-e", FOREVER, "--port", place)
+    command.until("running")
+    joined.until(lambda: joined.moves, "it drives")
+    assert process("stop", "--port", place).code == 0
+    assert not joined.moves
+    command.ended()
+    command = Command("upload", "-e", FOREVER, "--port", place)
+    command.until("running")
+    joined.until(lambda: joined.moves, "it drives")
+    bad.cut()
+    joined.until(lambda: not joined.moves, "the connection was its tether", 2)
+    assert command.ended().code == 3
+    bad.close()

@@ -1,0 +1,368 @@
+"""The WiFi of an ESP32: who sets it, who drives over it, and what else connects there."""
+
+from __future__ import annotations
+
+import socket
+from random import Random
+
+import pytest
+
+from tests.firmware.test_esp32_transports import AWAY, Ends, booted, ended, uploaded
+from tests.firmware.test_host_firmware import happened, image_of
+from tests.machines.esp32 import Esp32Robot, Kept, missing
+from tests.support.esp32_radio import (
+    Bytes,
+    LowEnergy,
+    Network,
+    in_reach,
+    port_of,
+    radios,
+    session,
+    talk,
+)
+from tests.support.owners import Keys
+from tests.virtual.test_first_bytes import NOT_FOR_ROBOTS
+from tiniscript.link import wifi
+from tiniscript.link.messages import AUTHORITY_MS, STOP_BYTES
+from tiniscript.link.payloads import WifiReply
+from tiniscript.link.session import Session
+from tiniscript.virtual.first_bytes import is_for_robot
+
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
+
+SCHOOL = wifi.Network("Aula 3 ñ".encode(), b"correct horse battery staple, and forty more")
+HOTSPOT = wifi.Network(b"Tini", b"12345678", True)
+WIFI_KEY = b"wifi"
+
+
+def owned(keys: Keys, robot: Esp32Robot | None = None) -> tuple[Esp32Robot, Session]:
+    """Return a robot with an owner, and the owner's session over the cable."""
+    robot = robot or booted()
+    owner = Session(7, 115200, robot.robot.kit.fingerprint, keys=keys)
+    ends: Ends = [(None, owner)]
+    claim = owner.claim(0)
+    talk(robot, ends, 300)
+    talk(robot, ends, 2500, flags=1)
+    talk(robot, ends, 800, flags=2)
+    assert claim.outcome and claim.outcome.status == 0
+    return robot, owner
+
+
+def joined(keys: Keys, network: wifi.Network = SCHOOL) -> tuple[Esp32Robot, Session]:
+    """Return the same with a network, which is in reach."""
+    robot, owner = owned(keys)
+    in_reach(robot, SCHOOL.name.decode(), SCHOOL.password.decode())
+    assert ended(robot, [(None, owner)], owner.join(network)) == "OK"
+    talk(robot, [(None, owner)], 50)
+    return robot, owner
+
+
+def told(robot: Esp32Robot, ends: Ends, who: Session) -> WifiReply:
+    request = who.wifi()
+    assert ended(robot, ends, request) == "OK"
+    assert request.outcome
+    return request.outcome.values
+
+
+def state(robot: Esp32Robot, owner: Session) -> tuple[str, str]:
+    found = told(robot, [(None, owner)], owner)
+    return wifi.MODES[found.mode], wifi.STATES[found.state]
+
+
+def remote(robot: Esp32Robot, keys: Keys | None, nonce: int = 9) -> Session:
+    return Session(nonce, 115200, robot.robot.kit.fingerprint, keys=keys)
+
+
+# -- setting it ---------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("network", [SCHOOL, HOTSPOT])
+def test_the_owner_gives_the_robot_a_network(network: wifi.Network) -> None:
+    robot, owner = joined(Keys(), network)
+    found = told(robot, [(None, owner)], owner)
+    assert (found.network, wifi.STATES[found.state]) == (network.name, "READY")
+    assert wifi.address(found) == ("192.168.4.1" if network.is_access_point else "127.0.0.1")
+    asked = radios(robot)
+    assert asked.network.encode() == network.name and asked.password.encode() == network.password
+    assert asked.is_access_point == network.is_access_point
+    assert (asked.host, asked.instance) == ("tini-5678", "tini-5678")
+    assert asked.service == "_tiniscript._tcp 8473"
+
+
+def test_it_is_there_again_after_a_reset_and_gone_when_forgotten() -> None:
+    robot, owner = joined(Keys())
+    again = Esp32Robot(kept=robot.kept())
+    in_reach(again, SCHOOL.name.decode(), SCHOOL.password.decode())
+    again.wait(400)
+    assert port_of(again)
+    ends: Ends = [(None, owner)]
+    assert ended(robot, ends, owner.forget_wifi()) == "OK"
+    talk(robot, ends, 50)
+    assert state(robot, owner) == ("OFF", "OFF")
+    assert radios(robot).network == "" and radios(robot).service == ""
+    third = Esp32Robot(kept=robot.kept())
+    third.wait(400)
+    assert radios(third).joins == 0
+
+
+def test_nothing_of_it_is_readable_on_the_line() -> None:
+    """Neither the name nor the password: who listens to Bluetooth LE hears all bytes."""
+    keys = Keys()
+    robot, _ = owned(keys)
+    talk(robot, [], 2500)
+    over = remote(robot, keys)
+    end = LowEnergy(robot)
+    heard = b""
+    request = over.join(SCHOOL)
+    while request.outcome is None:
+        data = over.poll(robot.now_ms)
+        heard += data
+        end.send(data)
+        robot.step()
+        over.receive(end.taken(), robot.now_ms)
+    assert request.outcome.status == 0
+    assert radios(robot).password.encode() == SCHOOL.password
+    plain = SCHOOL.name + SCHOOL.password
+    assert all(plain[k : k + 4] not in heard for k in range(len(plain) - 3))
+
+
+def test_a_robot_without_an_owner_takes_none() -> None:
+    robot = booted()
+    client = session(1, robot)
+    ends: Ends = [(None, client)]
+    there = b""
+    for request in (client.join(SCHOOL), client.forget_wifi(), client.wifi()):
+        while request.outcome is None:
+            data = client.poll(robot.now_ms)
+            there += data
+            client.receive(robot.step(data), robot.now_ms)
+        assert request.outcome.status != 0
+    assert radios(robot).joins == 0 and SCHOOL.password[:8] not in there
+    assert ended(robot, ends, client.ping()) == "OK"
+
+
+def test_a_stranger_takes_none_away() -> None:
+    robot, _ = joined(Keys())
+    stranger = remote(robot, Keys(50))
+    ends: Ends = [(LowEnergy(robot), stranger)]
+    for request in (stranger.join(HOTSPOT), stranger.forget_wifi(), stranger.wifi()):
+        assert ended(robot, ends, request) == "NOT_OWNER"
+    assert radios(robot).network.encode() == SCHOOL.name
+
+
+@pytest.mark.parametrize(("name", "password"), [
+    (b"x", b"short"), (b"x", b""), (b"a\0b", b"12345678"), (b"x", b"1234\0" + b"5678"),
+])  # fmt: skip
+def test_what_is_no_network_is_refused(name: bytes, password: bytes) -> None:
+    robot, owner = owned(Keys())
+    request = owner.join(wifi.Network(name, password))
+    assert ended(robot, [(None, owner)], request) == "BAD_VALUE"
+    assert state(robot, owner) == ("OFF", "OFF")
+
+
+def test_it_is_kept_when_the_motors_stand_and_not_where_nvs_is_full() -> None:
+    robot, owner = owned(Keys())
+    ends: Ends = [(None, owner)]
+    assert uploaded(robot, ends, owner, "SI|F(1.5, 40)") == "OK"
+    request = owner.join(SCHOOL)
+    talk(robot, ends, 800)
+    assert request.outcome is None and WIFI_KEY not in robot.kept().entries
+    assert ended(robot, ends, request) == "OK"
+    assert WIFI_KEY in robot.kept().entries
+    before = robot.kept().entries[WIFI_KEY]
+    robot.fill_nvs()
+    assert ended(robot, ends, owner.join(HOTSPOT)) == "NOT_KEPT"
+    assert robot.kept().entries[WIFI_KEY] == before
+    assert told(robot, ends, owner).network == SCHOOL.name
+
+
+@pytest.mark.parametrize("entry", [b"", b"\1" * 5, b"\xff" * 98, b"\1" + b"x" * 97])
+def test_an_entry_of_nvs_that_is_none_is_none(entry: bytes) -> None:
+    robot, _ = owned(Keys())
+    kept = robot.kept()
+    again = Esp32Robot(kept=Kept(kept.noinit, {**kept.entries, WIFI_KEY: entry}, 0))
+    again.wait(400)
+    assert radios(again).joins == 0
+
+
+def test_a_wrong_password_and_a_network_out_of_reach_are_told() -> None:
+    robot, owner = joined(Keys())
+    ends: Ends = [(None, owner)]
+    in_reach(robot, SCHOOL.name.decode(), "another one")
+    talk(robot, ends, 20)
+    assert state(robot, owner) == ("STATION", "REFUSED")
+    in_reach(robot, "", "")
+    talk(robot, ends, 20)
+    assert state(robot, owner) == ("STATION", "SEARCHING")
+    joins = radios(robot).joins
+    talk(robot, ends, 16_000)
+    assert radios(robot).joins == joins + 1
+    in_reach(robot, SCHOOL.name.decode(), SCHOOL.password.decode())
+    talk(robot, ends, 20)
+    assert state(robot, owner) == ("STATION", "READY")
+
+
+# -- over TCP -----------------------------------------------------------------------------------
+
+
+def test_the_owner_drives_over_wifi_and_a_stranger_looks_and_stops() -> None:
+    keys = Keys()
+    robot, _ = joined(keys)
+    talk(robot, [], AUTHORITY_MS + 100)
+    owner, stranger = remote(robot, keys), remote(robot, Keys(50), 11)
+    ends: Ends = [(Network(robot), owner), (Network(robot), stranger)]
+    assert uploaded(robot, ends, owner) == "OK"
+    for request in (stranger.hello(), stranger.ping(), stranger.status(), stranger.identify()):
+        assert ended(robot, ends, request) == "OK"
+    for acting in (stranger.start(), stranger.fetch(), stranger.live(image_of("F(1, 9)").code)):
+        assert ended(robot, ends, acting) == "NOT_OWNER"
+    talk(robot, ends, 1500)
+    assert happened(robot)[-1] == "MOTORS 80 80"
+    stranger.stop(robot.now_ms)
+    talk(robot, ends, 50)
+    assert happened(robot)[-1] == "MOTORS 0 0"
+
+
+def test_a_robot_that_was_given_up_does_not_move_over_wifi() -> None:
+    keys = Keys()
+    robot, owner = joined(keys)
+    assert ended(robot, [(None, owner)], owner.disown(0)) == "OK"
+    talk(robot, [], AUTHORITY_MS + 100)
+    before = len(robot.did)
+    client, typed = remote(robot, None), Bytes(b"SI|F(1, 80)\n")
+    ends: Ends = [(Network(robot), client), (Network(robot), typed)]
+    for request in (client.hello(), client.ping(), client.status(), client.identify()):
+        assert ended(robot, ends, request) == "OK"
+    for acting in (
+        client.live(image_of("F(1, 9)").code), client.upload(image_of(AWAY)), client.fetch(),
+        client.name(b"x"), client.undo(), client.clear(),
+    ):  # fmt: skip
+        assert ended(robot, ends, acting) == "UNOWNED"
+    assert "Not possible here" in typed.heard.decode()
+    assert not [line for line in robot.did[before:] if "MOTORS" in line]
+    cable = session(3, robot)
+    assert uploaded(robot, [(None, cable)], cable) == "OK"
+    typed.said = b"S\n"
+    talk(robot, [(None, cable), *ends], 100)
+    assert [each for each in happened(robot) if "MOTORS" in each][-2:] == [
+        "MOTORS 80 80", "MOTORS 0 0"]  # fmt: skip
+
+
+def test_a_network_that_drops_ends_the_run_and_the_cable_goes_on() -> None:
+    keys = Keys()
+    robot, _ = joined(keys)
+    talk(robot, [], AUTHORITY_MS + 100)
+    owner, cable = remote(robot, keys), session(12, robot)
+    end = Network(robot)
+    ends: Ends = [(end, owner), (None, cable)]
+    assert uploaded(robot, ends, owner) == "OK"
+    in_reach(robot, "", "")
+    talk(robot, ends, 10)
+    assert happened(robot)[-1] == "MOTORS 0 0"
+    assert end.has_ended
+    assert ended(robot, ends[1:], cable.ping()) == "OK"
+    in_reach(robot, SCHOOL.name.decode(), SCHOOL.password.decode())
+    talk(robot, [], 20)
+    again = remote(robot, keys, 13)
+    assert uploaded(robot, [(Network(robot), again)], again) == "OK"
+
+
+def test_a_client_that_leaves_ends_its_run_at_once() -> None:
+    keys = Keys()
+    robot, _ = joined(keys)
+    talk(robot, [], AUTHORITY_MS + 100)
+    owner = remote(robot, keys)
+    end = Network(robot)
+    assert uploaded(robot, [(end, owner)], owner) == "OK"
+    end.leave()
+    robot.wait(5)
+    assert happened(robot)[-1] == "MOTORS 0 0"
+
+
+def test_silent_clients_make_room_for_the_next_one() -> None:
+    robot, owner = joined(Keys())
+    first, second = Network(robot), Network(robot)
+    first.send(bytes(2))
+    robot.wait(5)
+    third = Network(robot)
+    robot.wait(5)
+    third.taken()
+    assert third.has_ended, "the two before may be drivers"
+    robot.wait(10_000)
+    second.taken()
+    assert second.has_ended, "it has not said what it is"
+    fourth = remote(robot, None)
+    ends: Ends = [(Network(robot), fourth)]
+    assert ended(robot, ends, fourth.ping()) == "OK"
+    fifth = remote(robot, None, 14)
+    assert ended(robot, [(Network(robot), fifth), *ends], fifth.ping()) == "OK"
+    first.taken()
+    assert first.has_ended
+    assert ended(robot, [(None, owner)], owner.ping()) == "OK"
+
+
+@pytest.fixture(scope="module")
+def knocked_at() -> Esp32Robot:
+    return joined(Keys())[0]
+
+
+@pytest.mark.parametrize("name", NOT_FOR_ROBOTS)
+def test_what_a_web_page_may_send_reaches_no_robot(knocked_at: Esp32Robot, name: str) -> None:
+    """In one piece and byte by byte: the robot hangs up and answers nothing."""
+    robot, data = knocked_at, NOT_FOR_ROBOTS[name]
+    for size in (len(data), 1 if len(data) < 1000 else 97):
+        end = Network(robot)
+        for k in range(0, len(data), size):
+            if not end.has_ended:
+                end.send(data[k : k + size])
+                robot.wait(1)
+        robot.wait(3)
+        assert end.taken() == b"" and end.has_ended
+        end.leave()
+        robot.wait(2)
+
+
+@pytest.mark.parametrize("data", [b"S\n", b"SI|F(2,80)\r\n", b"X = 5\n", b"// HTTP/1.1\n", b"\0"])
+def test_what_is_meant_for_a_robot_gets_there(knocked_at: Esp32Robot, data: bytes) -> None:
+    end = Network(knocked_at)
+    end.send(data + bytes(STOP_BYTES))
+    knocked_at.wait(5)
+    assert end.taken() != b"" and not end.has_ended, "at least the stop is confirmed"
+    end.leave()
+    knocked_at.wait(60)
+
+
+def guest_of(robot: Esp32Robot, data: bytes) -> bool | None:
+    """Return what the robot's own code says of the first bytes of a connection."""
+    return (None, True, False)[robot.ask(b"G", len(data).to_bytes(4, "little") + data)[0]]
+
+
+def test_the_robot_tells_its_clients_as_a_virtual_one_does(knocked_at: Esp32Robot) -> None:
+    chance = Random(5)
+    words = [*(data[:300] for data in NOT_FOR_ROBOTS.values()), b"PING|\n", b"POST = 5\n",
+             b"GET  /", b"S", b"a\xc3\xb1o = 5\n", b"https://x", b"HTTP/1.1",
+             b"http:", b"\r\n", b"\0", b" ",
+             b"\t", b"*", b"POST", b"pri", b"!x", b"="]  # fmt: skip
+    for _ in range(3000):
+        data = b"".join(chance.choice(words) for _ in range(chance.randrange(1, 4)))[:400]
+        data = data[: chance.randrange(len(data) + 1)]
+        if chance.random() < 0.3 and data:
+            at = chance.randrange(len(data))
+            data = data[:at] + chance.randbytes(1) + data[at + 1 :]
+        assert guest_of(knocked_at, data) is is_for_robot(data), data
+    for data in NOT_FOR_ROBOTS.values():
+        for k in range(min(len(data), 400)):
+            assert guest_of(knocked_at, data[:k]) is is_for_robot(data[:k]), data[:k]
+
+
+def test_a_client_that_takes_nothing_stops_nobody() -> None:
+    robot, owner = joined(Keys())
+    deaf = Network(robot)
+    deaf.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1)
+    ends: Ends = [(None, owner)]
+    assert uploaded(robot, ends, owner) == "OK"
+    for _ in range(300):
+        deaf.send(b"\0\2\3\3\0")  # damaged, and then a stop of two zeros less
+        deaf.send(b"PING|check_connection\n" * 3)
+        talk(robot, ends, 5)
+    assert happened(robot)[-1] == "MOTORS 80 80"
