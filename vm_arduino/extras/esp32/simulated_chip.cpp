@@ -13,6 +13,7 @@
 #include <mutex>
 
 #include "simulated_tasks.h"
+#include "simulated_timer.h"
 
 SimulatedChip chip;
 HardwareSerial Serial;
@@ -36,6 +37,7 @@ struct Timer {
 };
 
 Timer timer = {nullptr, nullptr, 0, kNever};
+bool is_timer_taken;
 OnReceiveErrorCb on_error;
 std::recursive_mutex critical;
 thread_local uint32_t in_critical;  // how many sections this core is in
@@ -166,6 +168,10 @@ uint8_t output_of(uint8_t pin) {
   const uint64_t level = (uint64_t{channel.duty} * 255 + (1U << channel.bits) / 2) >> channel.bits;
   return static_cast<uint8_t>(level > 255 ? 255 : level);
 }
+
+void take_timer() { is_timer_taken = true; }
+
+void run_timer() { timer.callback(timer.argument); }
 
 void set_input(uint8_t pin, bool level) {
   SimulatedPin& each = chip.pins[pin];
@@ -302,7 +308,7 @@ esp_err_t esp_timer_create(const esp_timer_create_args_t* create_args,
 
 esp_err_t esp_timer_start_periodic(esp_timer_handle_t, uint64_t period_us) {
   timer.period_us = period_us;
-  timer.due_us = chip.now_us + period_us;
+  timer.due_us = is_timer_taken ? kNever : chip.now_us + period_us;
   return ESP_OK;
 }
 

@@ -77,6 +77,10 @@ void low_energy_disconnect() {
 }
 
 void low_energy_agree(uint16_t mtu) {
+  {
+    const Lock lock(guard);
+    if (!is_connected) return;
+  }
   esp_ble_gatts_cb_param_t its = {};
   its.mtu.mtu = mtu;
   on_client->onMtuChanged(&server, &its);

@@ -29,10 +29,22 @@ struct Record {
 
 RTC_NOINIT_ATTR Record last;
 
-// The main loop writes these, and the timer's task reads them, or the other way round.
-volatile uint32_t fed_ms;
-volatile bool is_hanging;
-volatile bool has_stalled;
+// The main loop writes these, and the timer's task on the other core reads them, or the other way
+// round.
+uint32_t fed_ms;
+bool is_hanging;
+bool has_stalled;
+
+template <class Value>
+Value read(const Value& from) {
+  return __atomic_load_n(&from, __ATOMIC_ACQUIRE);
+}
+
+template <class Value>
+void write_to(Value* to, Value value) {
+  __atomic_store_n(to, value, __ATOMIC_RELEASE);
+}
+
 bool has_hung;  // before the last reset; not yet reported
 Reset cause;
 
@@ -58,13 +70,13 @@ Reset cause_of(esp_reset_reason_t reason) {
 
 // The timer's task.
 void look(void*) {
-  if (is_hanging || clock_ms() - fed_ms <= kStallMs) return;
+  if (read(is_hanging) || clock_ms() - read(fed_ms) <= kStallMs) return;
   motors_stop();
   actuators_off(true);
   if (!firmware_runs(&last.place)) last.place = Place();
   last.mark = hung_mark();
-  has_stalled = true;
-  is_hanging = true;
+  write_to(&has_stalled, true);
+  write_to(&is_hanging, true);
 }
 
 void begin_restart() {
@@ -86,7 +98,7 @@ void watchdog_begin() {
   cause = cause_of(esp_reset_reason());
   has_hung = cause == Reset::kWatchdog && last.mark == hung_mark();
   last.mark = 0;
-  fed_ms = clock_ms();
+  write_to(&fed_ms, clock_ms());
   esp_timer_create_args_t settings = {};
   settings.callback = look;
   settings.name = "tiniscript";
@@ -96,19 +108,18 @@ void watchdog_begin() {
 }
 
 void watchdog_feed() {
-  fed_ms = clock_ms();
-  if (is_hanging) {
+  write_to(&fed_ms, clock_ms());
+  if (read(is_hanging)) {
     last.mark = 0;
-    is_hanging = false;
+    write_to(&is_hanging, false);
   }
   esp_task_wdt_reset();
 }
 
 bool watchdog_has_stalled() {
-  const CriticalSection critical;
-  const bool found = has_stalled;
-  has_stalled = false;
-  return found;
+  if (!read(has_stalled)) return false;
+  write_to(&has_stalled, false);
+  return true;
 }
 
 bool watchdog_has_hung(Place* place) {

@@ -1,0 +1,69 @@
+"""The main loop and the radios of an ESP32 at once, under ThreadSanitizer: it finds no race.
+
+`vm_arduino/extras/esp32/two_cores.cpp` has a thread for each task.
+"""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from tests.machines.esp32 import STAND_INS, flags_of
+from tests.machines.host import BUILDS, SOURCES, made
+
+CLANG = "clang++-22"
+pytestmark = pytest.mark.skipif(
+    shutil.which(CLANG) is None, reason=f"no {CLANG}: apt-get install clang-22 libclang-rt-22-dev"
+)
+FLAGS = ("-std=gnu++11", "-O1", "-g", "-fsanitize=thread", "-fno-exceptions", "-fno-rtti",
+         *flags_of("esp32dev", 2))  # fmt: skip
+THREADS = ("two_cores.cpp", "tasks_at_once.cpp", "simulated_chip.cpp", "simulated_radio.cpp")
+PIPE = "src/boards/esp32/pipe.h"
+SECONDS = "2"
+
+
+def program(sources: Path = SOURCES) -> Path:
+    code = [
+        *(path for path in sorted((sources / "src").rglob("*.cpp")) if "avr" not in path.parts),
+        *(sources / "extras" / "esp32" / name for name in THREADS),
+    ]
+    headers = [path.read_bytes() for path in sorted((sources / "src").rglob("*.h"))]
+    headers += [path.read_bytes() for path in sorted(STAND_INS.rglob("*.h"))]
+    objects = []
+    BUILDS.mkdir(mode=0o700, exist_ok=True)
+    for path in code:
+        texts = [*headers, path.name.encode(), path.read_bytes()]
+        objects.append(str(made(CLANG, BUILDS, ".o", FLAGS, texts, ["-c", str(path)])))
+    return made(CLANG, BUILDS, "", FLAGS, [name.encode() for name in objects], objects)
+
+
+def run(sources: Path = SOURCES) -> subprocess.CompletedProcess[str]:
+    words = [str(program(sources)), SECONDS]
+    environment = {"TSAN_OPTIONS": "exitcode=66 halt_on_error=1"}
+    return subprocess.run(
+        words, capture_output=True, text=True, check=False, timeout=120, env=environment
+    )
+
+
+def test_no_two_cores_touch_the_same_at_once() -> None:
+    done = run()
+    assert done.returncode == 0, (done.stdout + done.stderr)[-4000:]
+
+
+@pytest.mark.parametrize(("file", "old", "new"), [
+    (PIPE, "__atomic_store_n(&behind_, behind, __ATOMIC_RELEASE);", "behind_ = behind;"),
+    (PIPE, "__atomic_load_n(&behind_, __ATOMIC_ACQUIRE)", "behind_"),
+    ("src/boards/esp32/watchdog.cpp", "return __atomic_load_n(&from, __ATOMIC_ACQUIRE);",
+     "return from;"),
+])  # fmt: skip
+def test_a_race_is_noticed(file: str, old: str, new: str, tmp_path: Path) -> None:
+    """What is published without the order of its bytes."""
+    copy = Path(shutil.copytree(SOURCES, tmp_path / "vm", ignore=shutil.ignore_patterns(".pio")))
+    text = (copy / file).read_text(encoding="utf-8")
+    assert old in text
+    (copy / file).write_text(text.replace(old, new), encoding="utf-8")
+    done = run(copy)
+    assert done.returncode == 66 and "data race" in done.stderr, done.stdout

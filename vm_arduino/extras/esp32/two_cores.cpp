@@ -1,0 +1,136 @@
+// The sketch with its main loop on one thread, and on others what an ESP32 has on its second core:
+// the tasks of the radios, the core's own Bluetooth task, the timer's task. With ThreadSanitizer it
+// finds what two of them touch at once.
+//
+// Run: two_cores SECONDS. Prints how much has come through on each way, and fails where nothing
+// has.
+
+#include <arpa/inet.h>
+#include <poll.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <random>
+#include <thread>
+
+#include "simulated_chip.h"
+#include "simulated_radio.h"
+#include "simulated_timer.h"
+
+namespace {
+
+// A frame whose checksum is wrong, one that is too short, a line, and the stop sequence.
+const std::string kFrame("\0\3\2\1\5\x7e\x34\xbe\x50\0", 10);
+const std::string kDamaged("\4\3\1\1\1\0", 6);
+const std::string kLine("PING|check_connection\n");
+const std::string kStop(8, '\0');
+
+std::atomic<bool> is_over{false};
+std::atomic<size_t> notified{0};
+std::atomic<size_t> said_by_port{0};
+std::atomic<size_t> said_by_network{0};
+
+void pause(int us) { std::this_thread::sleep_for(std::chrono::microseconds(us)); }
+
+// The core's Bluetooth task, and who is on the other side.
+void be_low_energy() {
+  std::minstd_rand chance(1);
+  while (!is_over) {
+    low_energy_connect();
+    low_energy_agree(static_cast<uint16_t>(20 + chance() % 300));
+    low_energy_subscribe(chance() % 8 != 0);
+    for (unsigned left = chance() % 60; left > 0 && !is_over; left--) {
+      const std::string* const said[] = {&kFrame, &kDamaged, &kLine, &kStop};
+      low_energy_write(*said[chance() % 4]);
+      notified += low_energy_notified().size();
+      pause(300);
+    }
+    low_energy_disconnect();
+    pause(500);
+  }
+}
+
+void be_serial_port() {
+  while (!is_over) {
+    serial_port_connect(true);
+    for (int left = 40; left > 0 && !is_over; left--) {
+      serial_port_write(kLine + kFrame);
+      said_by_port += serial_port_said().size();
+      pause(300);
+    }
+    serial_port_connect(false);
+    pause(2000);
+  }
+}
+
+void be_network() {
+  while (!is_over) {
+    pause(500);
+    sockaddr_in place = {};
+    place.sin_family = AF_INET;
+    place.sin_port = htons(network_port());
+    place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    const int end = socket(AF_INET, SOCK_STREAM, 0);
+    if (place.sin_port != 0 &&
+        connect(end, reinterpret_cast<sockaddr*>(&place), sizeof place) == 0) {
+      for (int left = 30; left > 0 && !is_over; left--) {
+        const std::string said = kFrame + kStop;
+        if (send(end, said.data(), said.size(), MSG_NOSIGNAL) < 0) break;
+        pollfd ready = {end, POLLIN, 0};
+        char bytes[256];
+        if (poll(&ready, 1, 2) == 1) {
+          const ssize_t length = recv(end, bytes, sizeof bytes, 0);
+          if (length <= 0) break;
+          said_by_network += static_cast<size_t>(length);
+        }
+      }
+    }
+    close(end);
+  }
+}
+
+void be_timer() {
+  while (!is_over) {
+    run_timer();
+    pause(200);
+  }
+}
+
+// An access point, as NVS has it.
+std::string network() {
+  std::string found(1 + 33 + 64, '\0');
+  found[0] = 2;
+  found.replace(1, 4, "Tini");
+  found.replace(34, 8, "12345678");
+  return found;
+}
+
+}  // namespace
+
+int main(int, char** words) {
+  chip.entries["wifi"] = network();
+  take_timer();
+  setup();
+  std::thread threads[] = {std::thread(be_low_energy), std::thread(be_serial_port),
+                           std::thread(be_network), std::thread(be_timer)};
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(atoi(words[1]));
+  for (uint32_t turn = 0; std::chrono::steady_clock::now() < end; turn++) {
+    if (turn % 4000 == 0) chip.received += "SI|F(0.1, 50)\n";
+    loop();
+    pass_us(50);
+    chip.sending = 0;
+    chip.sent.clear();
+  }
+  is_over = true;
+  for (std::thread& each : threads) each.join();
+  printf("notified %zu\nserial port %zu\nnetwork %zu\n", notified.load(), said_by_port.load(),
+         said_by_network.load());
+  fflush(nullptr);
+  const bool is_all = notified != 0 && said_by_port != 0 && said_by_network != 0;
+  _Exit(is_all ? 0 : 1);  // tasks go on until then; the race checker has ended others already
+}
