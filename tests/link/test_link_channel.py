@@ -22,15 +22,19 @@ from tiniscript.bytecode.image import pack, unpack
 from tiniscript.bytecode.opcodes import BY_NAME
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.frames import Frame, decoded, encoded
+from tiniscript.link.messages import LARGE_FRAME, payload_bytes
 from tiniscript.link.outcomes import CANCELLED, LOST
 from tiniscript.link.session import Session
 from tiniscript.link.statuses import name_of
 
 needs_host = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a host machine")
 FRAMES = 100_000  # damaged ones, in the tests
+LARGE_FRAMES = 5000
 BATCH = 20_000
 UPLOADS = 300
+LARGE_UPLOADS = 200
 UNDOS = 100
+LARGE_COUNTS = (80, 81, 160, 400, 1000, 2700)  # of moves, for a robot that is large
 SEED = 4
 OUTCOMES = {LOST: "lost", CANCELLED: "cancelled"}
 
@@ -87,11 +91,12 @@ class Line(NamedTuple):
     is_damaged: list[bool]
 
 
-def line(count: int, draw: random.Random) -> Line:
+def line(count: int, draw: random.Random, is_large: bool = False) -> Line:
     """Return a stream in which about `count` frames are damaged."""
+    most = payload_bytes(LARGE_FRAME) - 4 if is_large else 30
     parts, frames, marks = [], [], []
     for number in range(2 * count):
-        payload = number.to_bytes(4, "little") + draw.randbytes(draw.randrange(0, 30))
+        payload = number.to_bytes(4, "little") + draw.randbytes(draw.randrange(0, most))
         frame = Frame(draw.randrange(2, 15), draw.randrange(256), draw.randrange(256), payload)
         wire = encoded(frame)
         way = damaged(wire, draw) if draw.random() < 0.5 else wire
@@ -126,14 +131,14 @@ def judge(sent: Line, rows: list[str]) -> None:
             assert number in here, f"frame {number} is lost without damage to it or the one before"
 
 
-def damage_frames(count: int, seed: int, cpp: CppLink | None) -> int:
+def damage_frames(count: int, seed: int, cpp: CppLink | None, is_large: bool = False) -> int:
     """Send lines until so many frames are damaged; return how many were."""
     draw = random.Random(seed)
     done = 0
     while done < count:
-        sent = line(min(BATCH, count), draw)
+        sent = line(min(BATCH, count), draw, is_large)
         stream = [(0, byte) for byte in sent.data]
-        rows = items_of(stream)
+        rows = items_of(stream, is_large=is_large)
         judge(sent, rows)
         if cpp:
             assert cpp.items(stream) == rows
@@ -144,6 +149,11 @@ def damage_frames(count: int, seed: int, cpp: CppLink | None) -> int:
 def test_no_wrong_frame_of_many_damaged_ones() -> None:
     """And both receivers find the same in them, byte by byte."""
     assert damage_frames(FRAMES, SEED, None if missing() else cpp_link()) >= FRAMES
+
+
+def test_no_wrong_large_frame_of_many_damaged_ones() -> None:
+    cpp = None if missing() else cpp_link(is_large=True)
+    assert damage_frames(LARGE_FRAMES, SEED, cpp, is_large=True) >= LARGE_FRAMES
 
 
 def test_a_wrong_frame_would_be_seen() -> None:
@@ -196,7 +206,6 @@ class World:
     """A computer, a robot and two radios. A disconnect takes both radios out for a while."""
 
     STEP_MS = 5
-    LINE = 54  # bytes of code of a live line
 
     def __init__(self, cpp: CppLink, draw: random.Random, faults: float, drops: float) -> None:
         self.cpp, self.draw, self.drops = cpp, draw, drops
@@ -207,7 +216,8 @@ class World:
         self.session = Session(draw.getrandbits(32), baud, KIT)
         self.did: list[str] = []
         self._out_until = 0
-        cpp.begin(kit=KIT, epoch=draw.randrange(256))
+        self.line = 240 if cpp.is_large else 54  # bytes of code of a live line
+        cpp.begin(room=8192 if cpp.is_large else 389, kit=KIT, epoch=draw.randrange(256))
 
     def again(self) -> None:
         """Another session with the same robot."""
@@ -242,10 +252,10 @@ class World:
         """What others hear."""
 
 
-def program(draw: random.Random) -> bytes:
+def program(draw: random.Random, is_large: bool = False) -> bytes:
     """Return code that no other program of the test has: moves of random times and powers."""
     move = BY_NAME["MOVE8_F"].code
-    count = draw.choice((1, 3, 12, 18, 19, 40, 129))
+    count = draw.choice((1, 3, 12, 18, 19, 40, 129, *(LARGE_COUNTS if is_large else ())))
     return b"".join(bytes((move, draw.randrange(256), draw.randrange(101))) for _ in range(count))
 
 
@@ -254,7 +264,7 @@ def one_upload(cpp: CppLink, seed: int, world_of: type[World] = World) -> str:
     draw = random.Random(seed)
     faults = draw.choice((0, 0.001, 0.01))
     world = world_of(cpp, draw, faults, drops=draw.choice((0, 0.0002, 0.002)))
-    old = pack("SI", 0, program(draw))
+    old = pack("SI", 0, program(draw, cpp.is_large))
     world.there.faults = world.back.faults = 0
     drops, world.drops = world.drops, 0
     first = world.session.upload(unpack(old), runs=False)
@@ -263,7 +273,7 @@ def one_upload(cpp: CppLink, seed: int, world_of: type[World] = World) -> str:
     world.there.faults = world.back.faults = faults
     world.drops = drops
 
-    new = pack("SI", 0, program(draw))
+    new = pack("SI", 0, program(draw, cpp.is_large))
     world.again()
     request = world.session.upload(unpack(new))
     world.run(request)
@@ -281,7 +291,7 @@ def one_upload(cpp: CppLink, seed: int, world_of: type[World] = World) -> str:
     # each line runs once or not at all, and once if the computer says so
     lines = []
     for _ in range(4):
-        code = program(draw)[: world.LINE]
+        code = program(draw, cpp.is_large)[: world.line]
         request = world.session.live(code)
         world.run(request)
         assert request.outcome
@@ -293,7 +303,7 @@ def one_upload(cpp: CppLink, seed: int, world_of: type[World] = World) -> str:
         assert times[row] == 1 if answer == 0 else times[row] <= 1, f"seed {seed}: {row}"
 
     # after a stop nothing begins, whatever is still under way
-    request = world.session.live(program(draw)[: world.LINE])
+    request = world.session.live(program(draw)[: world.line])
     world.run(None, draw.randrange(0, 200))
     before = len(world.did)
     world.session.stop(world.now_ms)
@@ -310,6 +320,14 @@ def test_uploads_over_a_bad_radio() -> None:
     """No upload says done that is not, and nothing is done twice."""
     found = Counter(one_upload(cpp_link(), seed) for seed in range(UPLOADS))
     assert found["done"] > UPLOADS * 0.9, found
+
+
+@needs_host
+def test_large_uploads_over_a_bad_radio() -> None:
+    """The same with large frames, several of them under way."""
+    cpp = cpp_link(is_large=True)
+    found = Counter(one_upload(cpp, seed) for seed in range(LARGE_UPLOADS))
+    assert found["done"] > LARGE_UPLOADS * 0.85, found
 
 
 def one_undo(cpp: CppLink, seed: int) -> str:
@@ -354,18 +372,20 @@ def main() -> int:
     parser.add_argument("--frames", type=int, default=1_000_000, help="damaged ones")
     parser.add_argument("--undos", type=int, default=0)
     parser.add_argument("--seed", type=int, default=1_000_000)
+    parser.add_argument("--large", action="store_true", help="large frames, several under way")
     options = parser.parse_args()
     begun = time.monotonic()
-    count = damage_frames(options.frames, options.seed, cpp_link())
+    cpp = cpp_link(options.large)
+    count = damage_frames(options.frames, options.seed, cpp, options.large)
     print(f"{count} damaged frames, 0 wrong accepted: {time.monotonic() - begun:.0f} s")
     begun = time.monotonic()
     found: Counter[str] = Counter()
     for seed in range(options.seed, options.seed + options.uploads):
-        found[one_upload(cpp_link(), seed)] += 1
+        found[one_upload(cpp, seed)] += 1
     print(f"{options.uploads} uploads, {dict(found)}, 0 false, 0 double: "
           f"{time.monotonic() - begun:.0f} s")  # fmt: skip
     begun = time.monotonic()
-    told = Counter(one_undo(cpp_link(), options.seed + number) for number in range(options.undos))
+    told = Counter(one_undo(cpp, options.seed + number) for number in range(options.undos))
     print(f"{options.undos} robots with undos, {dict(told)}, 0 false, 0 double: "
           f"{time.monotonic() - begun:.0f} s")  # fmt: skip
     return 0

@@ -7,29 +7,33 @@ import operator
 import re
 
 import pytest
+from cobs import cobs
 
 from tiniscript.bytecode.image import REFUSALS
 from tiniscript.bytecode.verify import RULES
 from tiniscript.link import messages, statuses
-from tiniscript.link.frames import Frame, decoded, encoded
+from tiniscript.link.frames import Frame, checksum, decoded, encoded
 from tiniscript.link.messages import (
-    BY_NAME,
+    CRC_BYTES,
     FEATURES,
     FIRST_ACTING,
     FIRST_EVENT,
     FIRST_STATUS,
-    LARGEST,
+    HEAD_BYTES,
+    LARGE_FRAME,
     MESSAGES,
     PAYLOAD_BYTES,
     REPLY,
     SEALED,
+    SMALL_FRAME,
     STATUSES,
     TEXT_FROM,
     TEXT_LEVEL,
     TEXT_LEVELS,
+    payload_bytes,
     sizes,
 )
-from tiniscript.link.requests import DATA_BYTES, SHORT_BYTES
+from tiniscript.link.requests import MODE_BYTES, OFFSET_BYTES, SHORT_BYTES
 from tiniscript.text.levels import LEVELS
 from tools.bench import link_size, machine_size
 
@@ -54,21 +58,36 @@ def test_features_share_no_bit_and_levels_have_the_names_of_their_table() -> Non
 
 
 def test_every_payload_fits_a_frame() -> None:
+    """A small one, but for what fills a frame: that fills a large one, too."""
+    large = payload_bytes(LARGE_FRAME)
     for each in MESSAGES:
-        assert sizes(each.request)[1] <= PAYLOAD_BYTES, each.name
-        assert sizes(each.reply)[1] + (each.number < FIRST_EVENT) <= PAYLOAD_BYTES, each.name
-    assert (
-        sizes(BY_NAME["PROGRAM"].request)[1] == sizes(BY_NAME["DATA"].request)[1] == PAYLOAD_BYTES
-    )
-    assert (SHORT_BYTES, DATA_BYTES) == (55, 54)
+        for fields, before in ((each.request, 0), (each.reply, each.number < FIRST_EVENT)):
+            fills = any(field.fills for field in fields)
+            most = before + sizes(fields)[1]
+            assert most == large if fills else most <= PAYLOAD_BYTES, each.name
+    assert PAYLOAD_BYTES - MODE_BYTES == SHORT_BYTES == 55
+    assert (large - MODE_BYTES, large - OFFSET_BYTES) == (241, 240)
 
 
-def test_no_frame_begins_like_text() -> None:
-    for seq in range(1, 256):
-        longest = Frame(1, seq, 1, b"\1" * PAYLOAD_BYTES)
-        assert len(encoded(longest)) == LARGEST + 2
-        assert encoded(longest)[0] < TEXT_FROM
-        assert decoded(encoded(longest)[:-1]) == longest
+@pytest.mark.parametrize("length", range(PAYLOAD_BYTES - 2, payload_bytes(LARGE_FRAME) + 1))
+def test_no_frame_begins_like_text(length: int) -> None:
+    for seq in range(256):
+        frame = Frame(1, seq, 1, b"\1" * length)
+        wire = encoded(frame)
+        is_large = length > PAYLOAD_BYTES
+        assert len(wire) == length + HEAD_BYTES + CRC_BYTES + 2 + is_large
+        assert wire[0] <= (HEAD_BYTES + 1 if is_large else SMALL_FRAME + 1) < TEXT_FROM
+        assert 0 not in wire[:-1] and decoded(wire[:-1]) == frame
+
+
+@pytest.mark.parametrize("is_sealed", [False, True])
+def test_a_large_frame_has_a_zero_behind_its_head(is_sealed: bool) -> None:
+    """Also where its first byte on the wire is small for another reason: its number is 0."""
+    for zero, is_whole in ((0, True), (7, False)):
+        body = bytes([2 | SEALED * is_sealed, 0, 1, zero]) + bytes(PAYLOAD_BYTES)
+        wire = cobs.encode(body + checksum(body).to_bytes(CRC_BYTES, "little"))
+        frame = Frame(2, 0, 1, bytes(PAYLOAD_BYTES + is_sealed), is_sealed=is_sealed)
+        assert decoded(wire) == (frame if is_whole else None)
 
 
 def test_each_status_has_its_sentences() -> None:

@@ -27,11 +27,13 @@ from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.messages import (
     BY_NAME,
     KEY_OWNER,
+    LARGE_FRAME,
     MESSAGES,
     OWNERS,
-    SEALED_PAYLOAD_BYTES,
     SEALS,
+    SMALL_FRAME,
     STATUSES,
+    payload_bytes,
 )
 from tiniscript.link.session import Session
 
@@ -42,7 +44,6 @@ HEARD = 400  # frames that the stranger keeps
 class SealedWorld(World):
     """A robot with an owner, whose session is sealed. `says` is how often the stranger speaks."""
 
-    LINE = (SEALED_PAYLOAD_BYTES - 1) // 3 * 3
     has_hello = True
 
     def __init__(self, cpp: CppLink, draw: random.Random, faults: float, drops: float) -> None:
@@ -50,6 +51,8 @@ class SealedWorld(World):
         self.says = 0.0
         self.frames: list[bytes] = []
         super().__init__(cpp, draw, 0, 0)
+        largest = LARGE_FRAME if cpp.is_large else SMALL_FRAME
+        self.line = (payload_bytes(largest, is_sealed=True) - 1) // 3 * 3
         cpp.happens("o", OWNERS | SEALS)
         self.again()
         claim = self.session.claim(KEY_OWNER)
@@ -120,9 +123,23 @@ def test_sealed_uploads_beside_a_stranger() -> None:
 
 
 @needs_host
+def test_large_sealed_uploads_over_a_bad_radio() -> None:
+    cpp = cpp_link(is_large=True)
+    found = Counter(one_upload(cpp, seed, QuietWorld) for seed in range(UPLOADS))
+    assert found["done"] > UPLOADS * 0.85, found
+
+
+@needs_host
+def test_large_sealed_uploads_beside_a_stranger() -> None:
+    cpp = cpp_link(is_large=True)
+    found = Counter(one_upload(cpp, seed, SealedWorld) for seed in range(UPLOADS))
+    assert found["done"] > UPLOADS * 0.3, found
+
+
+@needs_host
 def test_the_frames_of_a_session_are_sealed() -> None:
     world = QuietWorld(cpp_link(), random.Random(1), 0, 0)
-    request = world.session.live(program(world.draw)[: world.LINE])
+    request = world.session.live(program(world.draw)[: world.line])
     world.run(request)
     assert request.outcome and request.outcome.status == 0
     frames = [decoded(each.rstrip(b"\0")) for each in world.frames[-2:]]
@@ -135,7 +152,7 @@ def test_a_stop_works_whatever_is_wrong_with_its_seal() -> None:
     stop = BY_NAME["STOP"].number
     for payload, is_sealed in ((b"", False), (b"", True), (bytes(13), True), (bytes(30), True)):
         assert world.session.robot
-        request = world.session.live(program(world.draw)[: world.LINE])
+        request = world.session.live(program(world.draw)[: world.line])
         world.run(request)
         assert request.outcome and request.outcome.status == 0
         frame = Frame(stop, 1, 0, payload, is_sealed=is_sealed)
@@ -149,11 +166,12 @@ def main() -> int:
     parser = argparse.ArgumentParser(description="Play a sealed line with a stranger for long.")
     parser.add_argument("uploads", type=int, nargs="?", default=10_000)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--large", action="store_true", help="large frames, several under way")
     options = parser.parse_args()
     begun = time.monotonic()
     found: Counter[str] = Counter()
     for number in range(options.seed, options.seed + options.uploads):
-        found[one_upload(cpp_link(), number, SealedWorld)] += 1
+        found[one_upload(cpp_link(options.large), number, SealedWorld)] += 1
     seconds = time.monotonic() - begun
     print(f"{options.uploads} sealed uploads beside a stranger, {dict(found)}, "
           f"0 false, 0 double: {seconds:.0f} s")  # fmt: skip

@@ -27,10 +27,14 @@ class Step(NamedTuple):
 
 
 class CppLink(Process):
-    """A robot with the C++ link. `sources` is a folder like `vm_arduino`."""
+    """A robot with the C++ link. `sources` is a folder like `vm_arduino`.
 
-    def __init__(self, sources: Path = SOURCES) -> None:
-        super().__init__([built(sources)], "the C++ link")
+    One that is large has the frames and the window of an ESP32.
+    """
+
+    def __init__(self, sources: Path = SOURCES, is_large: bool = False) -> None:
+        super().__init__([built(sources, is_large)], "the C++ link")
+        self.is_large = is_large
 
     def begin(
         self,
@@ -99,7 +103,7 @@ def _text(answer: bytes) -> tuple[bytes, bytes]:
     return answer[4 : 4 + length], answer[4 + length :]
 
 
-def built(sources: Path) -> Path:
+def built(sources: Path, is_large: bool = False) -> Path:
     """Return the program made from `sources`; what was made before from the same is used again."""
     inputs = sorted(
         path
@@ -109,11 +113,12 @@ def built(sources: Path) -> Path:
     )
     inputs.append(sources / "extras/host" / "wire.h")
     # the machine is not asked here, only its verifier and its checksum
+    flags = (*FLAGS, "-Dtiniscript_like_esp32") if is_large else FLAGS
     left_out = ("vm.cpp", "vm_instructions.cpp", "vm_robot.cpp", "number.cpp")
-    return compiled([each for each in inputs if each.name not in left_out], FLAGS)
+    return compiled([each for each in inputs if each.name not in left_out], flags)
 
 
-@lru_cache(maxsize=1)
-def cpp_link() -> CppLink:
+@lru_cache(maxsize=2)
+def cpp_link(is_large: bool = False) -> CppLink:
     """Return the process that all tests of a worker share."""
-    return CppLink()
+    return CppLink(is_large=is_large)

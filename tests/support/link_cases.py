@@ -29,8 +29,16 @@ from tiniscript.bytecode.image import pack, unpack
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.fields import of_event, of_payload
 from tiniscript.link.frames import Frame, decoded, encoded
-from tiniscript.link.messages import BY_NAME, BY_NUMBER, FIRST_EVENT, Malformed, read, written
-from tiniscript.link.receiver import ITEM_BYTES, Receiver
+from tiniscript.link.messages import (
+    BY_NAME,
+    BY_NUMBER,
+    FIRST_EVENT,
+    LARGE_WINDOW,
+    Malformed,
+    read,
+    written,
+)
+from tiniscript.link.receiver import LARGE_ITEM, SMALL_ITEM, Receiver
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 from tiniscript.link.statuses import name_of
@@ -375,9 +383,13 @@ def stream_of(case: LinkCase) -> tuple[list[tuple[int, int]], int]:
     return stream, held
 
 
-def items_of(stream: Iterable[tuple[int, int]], held: int = 0) -> list[str]:
-    """Return what the receiver in Python finds: the same rows as the one in C++."""
-    receiver = Receiver()
+def items_of(stream: Iterable[tuple[int, int]], held: int = 0, is_large: bool = False) -> list[str]:
+    """Return what the receiver in Python finds: the same rows as the one in C++.
+
+    A large one holds several large frames.
+    """
+    most_bytes, window = (LARGE_ITEM, LARGE_WINDOW) if is_large else (SMALL_ITEM, 1)
+    receiver = Receiver(most_bytes, window)
     rows = []
     left = 0
     for now_ms, byte in stream:
@@ -399,7 +411,7 @@ def items_of(stream: Iterable[tuple[int, int]], held: int = 0) -> list[str]:
             receiver.take()
             left = 0
     assert all(len(bytes.fromhex(" ".join(re.findall(r"\b[0-9a-f]{2}\b", row.split(" ", 2)[2]))))
-               <= ITEM_BYTES for row in rows if row[0] in "ft")  # fmt: skip
+               <= most_bytes for row in rows if row[0] in "ft")  # fmt: skip
     return [*rows, f"damaged {receiver.damaged % 256}, dropped {receiver.dropped % 256}"]
 
 

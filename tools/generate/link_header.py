@@ -39,12 +39,13 @@ def header(command: str) -> str:
         constants(
             ("kLinkMajor", messages.MAJOR),
             ("kLinkMinor", messages.MINOR),
-            ("kLargestFrame", messages.LARGEST),
+            ("kSmallFrame", messages.SMALL_FRAME),
+            ("kLargeFrame", messages.LARGE_FRAME),
+            ("kLargeWindow", messages.LARGE_WINDOW),
+            ("kLargeMinor", messages.LARGE_MINOR),
             ("kTextFrom", messages.TEXT_FROM),
             ("kHeadBytes", messages.HEAD_BYTES),
             ("kCrcBytes", messages.CRC_BYTES),
-            ("kPayloadBytes", messages.PAYLOAD_BYTES),
-            ("kWindow", messages.WINDOW),
             ("kReply", messages.REPLY),
             ("kSealed", messages.SEALED),
             ("kNameBytes", messages.NAME_BYTES),
@@ -114,12 +115,12 @@ def header(command: str) -> str:
 def tables(command: str) -> str:
     """Return `messages.cpp`: the table that the header declares."""
     rows = [
-        ("{{{}, {}}}".format(*messages.sizes(each.request)), each.name)
+        (f"{{{_length_range(each.request)}}}", each.name)
         for each in _requests()
         if each.number <= messages.LAST_WITHOUT_RADIO
     ]
     of_radio = [
-        "    {{{}, {}}},  // {}".format(*messages.sizes(each.request), each.name)
+        f"    {{{_length_range(each.request)}}},  // {each.name}"
         for each in _requests()
         if each.number > messages.LAST_WITHOUT_RADIO
     ]
@@ -130,13 +131,20 @@ def tables(command: str) -> str:
     return "\n".join(
         (
             _first_line(command),
-            '#include "messages.h"\n',
+            '#include "sizes.h"\n',
             "// clang-format off\n",
             "namespace tiniscript {\n",
             table,
             "}  // namespace tiniscript\n",
         )
     )
+
+
+def _length_range(fields: tuple[Field, ...]) -> str:
+    """Return the least and the most of a payload; what fills a frame depends on the robot."""
+    least, most = messages.sizes(fields)
+    is_filling = any(each.fills for each in fields)
+    return f"{least}, {'kPayloadBytes' if is_filling else most}"
 
 
 def _first_line(command: str) -> str:
@@ -181,7 +189,7 @@ def message_rows() -> Rows:
 def _shown(fields: Sequence[Field]) -> str:
     """Return the fields of a payload as the document names them."""
     words = [
-        f"{each.name}:{each.low}..{each.high}"
+        f"{each.name}:{each.low}..{'' if each.fills else each.high}"
         if each.kind == "rest"
         else f"{each.name}:{each.kind}"
         for each in fields

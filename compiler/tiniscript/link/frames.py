@@ -1,5 +1,8 @@
 """Encodes and decodes frames: a head, a payload and a checksum, in COBS.
 
+A large frame has a 0 behind its head: so its first byte on the wire is 4 at most. In a sealed one
+that is the 0 of the seal, which belongs to the payload.
+
 Does not know what a message means. The C++ version is `vm_arduino/src/link/frames.cpp`.
 """
 
@@ -14,10 +17,11 @@ from tiniscript.link.messages import (
     BY_NAME,
     CRC_BYTES,
     HEAD_BYTES,
-    LARGEST,
+    LARGE_FRAME,
     MAJOR,
     REPLY,
     SEALED,
+    SMALL_FRAME,
 )
 
 _HELLO = BY_NAME["HELLO"].number
@@ -37,9 +41,11 @@ class Frame(NamedTuple):
 def encoded(frame: Frame) -> bytes:
     """Return the bytes on the wire, including the 0x00 at the end."""
     kind = frame.number | REPLY * frame.is_reply | SEALED * frame.is_sealed
-    data = bytes((kind, frame.seq, frame.epoch)) + frame.payload
+    data = bytes((kind, frame.seq, frame.epoch))
+    is_large = HEAD_BYTES + len(frame.payload) + CRC_BYTES > SMALL_FRAME
+    data += b"\0" * (is_large and not frame.is_sealed) + frame.payload
     data += checksum(data).to_bytes(CRC_BYTES, "little")
-    assert len(data) <= LARGEST
+    assert len(data) <= LARGE_FRAME
     wire: bytes = cobs.encode(data)
     return wire + b"\0"
 
@@ -54,8 +60,13 @@ def decoded(wire: bytes) -> Frame | None:
     if len(body) < HEAD_BYTES or checksum(body) != int.from_bytes(crc, "little"):
         return None
     kind, seq, epoch = body[:HEAD_BYTES]
-    number = kind & ~(REPLY | SEALED)
-    return Frame(number, seq, epoch, body[HEAD_BYTES:], bool(kind & REPLY), bool(kind & SEALED))
+    number, is_sealed = kind & ~(REPLY | SEALED), bool(kind & SEALED)
+    payload = body[HEAD_BYTES:]
+    if len(data) > SMALL_FRAME:
+        if payload[0] != 0:
+            return None
+        payload = payload if is_sealed else payload[1:]
+    return Frame(number, seq, epoch, payload, bool(kind & REPLY), is_sealed)
 
 
 def checksum(data: bytes) -> int:

@@ -14,14 +14,19 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 MAJOR = 1  # if it differs, robot and computer understand only each other's HELLO
-MINOR = 1  # grows when messages, statuses or features are added
+MINOR = 2  # grows when messages, statuses or features are added
 
-LARGEST = 63  # bytes of a frame before COBS, so that its first byte on the wire is 0x40 at most
+# Bytes of a frame before COBS. A small one is so short that its first byte on the wire is 0x40 at
+# most; a large one has a 0 behind its head, so that this byte is 4 at most. Any robot takes small
+# ones; HELLO says whether it takes large ones, and how many requests it holds before it has
+# answered the first.
+SMALL_FRAME, LARGE_FRAME = 63, 250
+SMALL_WINDOW, LARGE_WINDOW = 1, 4
+LARGE_MINOR = 2  # a computer of an older version takes no large frame
 TEXT_FROM = 0x41  # an item whose first byte is this or more is no frame
 HEAD_BYTES = 3  # type, sequence number, epoch
 CRC_BYTES = 4
-PAYLOAD_BYTES = LARGEST - HEAD_BYTES - CRC_BYTES
-WINDOW = 1  # requests that a robot accepts before it has answered
+STATUS_BYTES = 1  # before the fields of a reply
 REPLY = 0x80  # flag of a type: sent to the computer
 SEALED = 0x40  # flag of a type: a 0 and a counter before the payload, and a MAC behind it
 NAME_BYTES = 16
@@ -30,7 +35,16 @@ KEY_BYTES = 16
 CHALLENGE_BYTES = 8
 TAG_BYTES = 8
 COUNTER_BYTES = 4
-SEALED_PAYLOAD_BYTES = PAYLOAD_BYTES - 1 - COUNTER_BYTES - TAG_BYTES
+
+
+def payload_bytes(largest: int, is_sealed: bool = False) -> int:
+    """Return the most bytes of a payload where a frame has `largest` bytes at most."""
+    seal = 1 + COUNTER_BYTES + TAG_BYTES if is_sealed else int(largest > SMALL_FRAME)
+    return largest - HEAD_BYTES - CRC_BYTES - seal
+
+
+PAYLOAD_BYTES = payload_bytes(SMALL_FRAME)
+SEALED_PAYLOAD_BYTES = payload_bytes(SMALL_FRAME, is_sealed=True)
 
 STOP_BYTES = 8  # zeros that a computer sends to stop a robot
 STOP_RUN = 4  # zeros in a row that stop it
@@ -118,12 +132,16 @@ WHEELS = (
 
 
 class Field(NamedTuple):
-    """`kind` is one of KINDS, or `rest`: all remaining bytes, `low` to `high` of them."""
+    """`kind` is one of KINDS, or `rest`: all remaining bytes, `low` to `high` of them.
+
+    What `fills` a frame has as many bytes as the frame; `high` is that of a large one.
+    """
 
     name: str
     kind: str
     low: int
     high: int
+    fills: bool = False
 
 
 class Message(NamedTuple):
@@ -144,14 +162,16 @@ class Message(NamedTuple):
 KINDS = {"u8": "B", "u16": "H", "u32": "I", "i8": "b", "i32": "i"}
 
 
-def _fields(text: str) -> tuple[Field, ...]:
-    found = []
+def _fields(text: str, before: int = 0) -> tuple[Field, ...]:
+    """Return the fields that a text names, behind so many bytes of the payload."""
+    found: list[Field] = []
     for word in text.split():
         name, _, kind = word.partition(":")
         kind, _, range_of_rest = kind.partition("=")
         if kind == "rest":
             low, _, high = range_of_rest.partition("..")
-            found.append(Field(name, kind, int(low), int(high)))
+            room = payload_bytes(LARGE_FRAME) - before - sum(field.high for field in found)
+            found.append(Field(name, kind, int(low), int(high or room), fills=not high))
         else:
             size = struct.calcsize(KINDS[kind])
             found.append(Field(name, kind, size, size))
@@ -159,7 +179,7 @@ def _fields(text: str) -> tuple[Field, ...]:
 
 
 def _message(number: int, name: str, acts: bool, request: str, reply: str, meaning: str) -> Message:
-    return Message(number, name, acts, _fields(request), _fields(reply), meaning)
+    return Message(number, name, acts, _fields(request), _fields(reply, STATUS_BYTES), meaning)
 
 
 # The robot's memory has these records too: `port.h`.
@@ -178,18 +198,18 @@ MESSAGES = (
     _message(3, "STATUS", False, "",
              _STATUS + " damaged:u8 dropped:u8 framing:u8 overrun:u8",
              "What the robot does, its last fault, and how well it hears."),
-    _message(4, "FETCH", False, "offset:u16", "length:u16 bytes:rest=0..53",
+    _message(4, "FETCH", False, "offset:u16", "length:u16 bytes:rest=0..",
              "The stored program's image, from `offset` on. `length` is that of all of it."),
     _message(5, "STOP", False, "", "", "The same as the stop sequence, and answered."),
     # these act: they are valid in one epoch only
     _message(6, "CLEAR", True, "", "", "Releases the latch that a stop or a fault has set."),
     _message(7, "START", True, "mode:u8", _RECEIPT, "Starts the program that the robot holds."),
-    _message(8, "LIVE", True, "mode:u8 code:rest=0..55", _RECEIPT,
+    _message(8, "LIVE", True, "mode:u8 code:rest=0..", _RECEIPT,
              "Runs code once. The program that the robot holds stays what it is."),
-    _message(9, "PROGRAM", True, "mode:u8 code:rest=0..55", _RECEIPT, "A whole program in one frame."),
+    _message(9, "PROGRAM", True, "mode:u8 code:rest=0..", _RECEIPT, "A whole program in one frame."),
     _message(10, "BEGIN", True, "mode:u8 isa_major:u8 isa_minor:u8 start:u8 header_length:u8 devices:u16 code_length:u16",
              "next:u16", "Begins a longer program: what its image's header says before its checksum."),
-    _message(11, "DATA", True, "offset:u16 bytes:rest=1..54", "next:u16",
+    _message(11, "DATA", True, "offset:u16 bytes:rest=1..", "next:u16",
              "What lies behind the checksum, from `offset` on. What does not begin at `next` is not taken."),
     _message(12, "COMMIT", True, "checksum:u32", _RECEIPT, "The program is whole: its image's checksum."),
     _message(13, "ABORT", True, "", "", "Drops the program that was begun."),

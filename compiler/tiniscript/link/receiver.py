@@ -1,17 +1,28 @@
 """Splits bytes into items: frames, lines of text, and the run of zeros that stops a robot.
 
 Knows where an item begins and ends; `frames` checks whether a frame is undamaged. Holds one item
-until it is taken; items that arrive meanwhile are dropped, a stop is not.
+until it is taken, or several frames; items that find no place are dropped, a stop is not.
 The C++ version is `vm_arduino/src/link/receiver.cpp`.
 """
 
 from __future__ import annotations
 
+from collections import deque
 from typing import NamedTuple
 
-from tiniscript.link.messages import LARGEST, SILENCE_MS, STOP_RUN, TEXT_FROM
+from tiniscript.link.messages import (
+    HEAD_BYTES,
+    LARGE_FRAME,
+    SILENCE_MS,
+    SMALL_FRAME,
+    STOP_RUN,
+    TEXT_FROM,
+)
 
-ITEM_BYTES = LARGEST + 1  # a frame and the first byte of its COBS
+# A frame and the first byte of its COBS. An item that begins with a byte of more than LARGE_FIRST
+# is no large frame.
+SMALL_ITEM, LARGE_ITEM = SMALL_FRAME + 1, LARGE_FRAME + 1
+LARGE_FIRST = HEAD_BYTES + 1
 LONGEST = 255  # a longer text counts as this long
 
 # places in the stream
@@ -39,7 +50,8 @@ class Item(NamedTuple):
 
 
 class Receiver:
-    def __init__(self) -> None:
+    def __init__(self, most_bytes: int = LARGE_ITEM, window: int = 1) -> None:
+        """A frame has `most_bytes` on the wire, without its 0x00; `window` of them may wait."""
         self.item: Item | None = None
         self.damaged = 0  # items that were cut, too long, or invalid
         self.dropped = 0  # items that arrived while one was waiting
@@ -47,12 +59,15 @@ class Receiver:
         self._data = bytearray()
         self._length = 0
         self._is_dropping = False
+        self._most_bytes = most_bytes
+        self._window = window
+        self._behind: deque[Item] = deque()  # frames behind the item that waits
         self._zeros = 0
         self._last_ms = 0
 
     def take(self) -> Item | None:
         """Return the waiting item, if there is one, and make room for the next."""
-        item, self.item = self.item, None
+        item, self.item = self.item, self._behind.popleft() if self._behind else None
         return item
 
     def put(self, byte: int, now_ms: int) -> bool:
@@ -82,7 +97,7 @@ class Receiver:
 
     def _begin(self, byte: int) -> None:
         """Classify an item by its first byte, as far as possible."""
-        self._is_dropping = self.item is not None
+        self._is_dropping = not self._has_place()
         self._data.clear()
         self._length = 0
         if byte == _DELETE:
@@ -115,7 +130,7 @@ class Receiver:
         elif self._place == _OTHER and not is_text:
             self._skip()
             return
-        if self._length == ITEM_BYTES and not self._is_dropping:
+        if self._length == self._room() and not self._is_dropping:
             if self._place == _FRAME:
                 self._skip()
                 return
@@ -127,7 +142,7 @@ class Receiver:
         self._place = _SKIP
 
     def _add(self, byte: int) -> None:
-        if len(self._data) < ITEM_BYTES:
+        if len(self._data) < self._room():
             self._data.append(byte)
         self._length = min(self._length + 1, LONGEST)
 
@@ -146,8 +161,24 @@ class Receiver:
         self._place = _BEGIN
 
     def _end(self, is_text: bool) -> None:
-        if not self._is_dropping:
-            self.item = Item(is_text, bytes(self._data), self._length)
+        if self._is_dropping:
+            return
+        item = Item(is_text, bytes(self._data), self._length)
+        if self.item is None:
+            self.item = item
+        elif is_text:  # it would come before its turn
+            self.dropped += 1
+        else:
+            self._behind.append(item)
+
+    def _has_place(self) -> bool:
+        """Return whether an item that begins now may wait: frames do, and nothing behind text."""
+        if self.item is None:
+            return True
+        return not self.item.is_text and len(self._behind) < self._window - 1
+
+    def _room(self) -> int:
+        return self._most_bytes if self._data[:1] <= bytes([LARGE_FIRST]) else SMALL_ITEM
 
 
 def _is_printable(byte: int) -> bool:

@@ -15,15 +15,17 @@ from tiniscript.bytecode.verify import RULES
 from tiniscript.link.messages import (
     BY_NAME,
     DETACHED,
+    LARGE_FRAME,
     OWNED,
     PAYLOAD_BYTES,
     RUN,
     SAVE,
-    SEALED_PAYLOAD_BYTES,
     SEALS,
+    SMALL_FRAME,
     STATUSES,
     YOURS,
     Malformed,
+    payload_bytes,
     read,
 )
 from tiniscript.link.payloads import (
@@ -35,30 +37,34 @@ from tiniscript.link.payloads import (
     ReceiptReply,
     SentReply,
 )
+from tiniscript.link.window import Pieces
 from tiniscript.printable import printable
 
 if TYPE_CHECKING:
     from tiniscript.link.seal import Seal
 
 OK = STATUSES["OK"]
-SHORT_BYTES = BY_NAME["PROGRAM"].request[-1].high  # of code, in one frame
-DATA_BYTES = BY_NAME["DATA"].request[-1].high
+MODE_BYTES, OFFSET_BYTES = 1, 2  # of LIVE and PROGRAM before the code, of DATA before its bytes
+SHORT_BYTES = PAYLOAD_BYTES - MODE_BYTES  # of code, in one frame that any robot takes
 BUSY_TRIES = 200  # while the robot saves another program
 KEPT_TRIES = 12  # while it has not written its data to EEPROM,
 LOW_TRIES = 4  # and while its voltage is too low for that: it checks every half second
 KEPT_PAUSE_MS = 200
 # The robot has the data, but would lose it at the next power-on.
 TAKEN = (STATUSES["SAVING"], STATUSES["LOW_SUPPLY"], STATUSES["NOT_KEPT"])
-assert SHORT_BYTES == PAYLOAD_BYTES - 1
 
 
 class Request(NamedTuple):
-    """`pause_ms` is how long to wait before it is sent; `seal` what its reply is sealed with."""
+    """`pause_ms` is how long to wait before it is sent; `seal` what its reply is sealed with.
+
+    With `pieces` it stands for many DATA, and its reply is the last of theirs.
+    """
 
     name: str
     values: Mapping[str, int | bytes] = {}
     pause_ms: int = 0
     seal: Seal | None = None
+    pieces: Pieces | None = None
 
 
 T_co = TypeVar("T_co", covariant=True)
@@ -146,13 +152,18 @@ def single(request: Request, kind: type[T]) -> Exchange[T]:
 def _payload_bytes(robot: DeviceInfo) -> int:
     """Return how long a payload may be: less where frames are sealed, or will be with a key."""
     features = robot.values.features
-    is_sealed = features & SEALS and features & (OWNED | YOURS)
-    return SEALED_PAYLOAD_BYTES if is_sealed else PAYLOAD_BYTES
+    is_sealed = bool(features & SEALS and features & (OWNED | YOURS))
+    return payload_bytes(largest_frame(robot), is_sealed)
+
+
+def largest_frame(robot: DeviceInfo) -> int:
+    """Return the most bytes of a frame to or from a robot that both ends take."""
+    return min(max(robot.values.largest, SMALL_FRAME), LARGE_FRAME)
 
 
 def short_bytes(robot: DeviceInfo) -> int:
     """Return the most bytes of code that a frame to this robot has."""
-    return _payload_bytes(robot) - (PAYLOAD_BYTES - SHORT_BYTES)
+    return _payload_bytes(robot) - MODE_BYTES
 
 
 def live(code: bytes, is_latched: bool, kit: int, robot: DeviceInfo) -> Exchange[ReceiptReply]:
@@ -220,7 +231,7 @@ def upload(
 
 
 def _in_pieces(image: Image, mode: int, robot: DeviceInfo) -> Exchange[ReceiptReply]:
-    most = _payload_bytes(robot) - (PAYLOAD_BYTES - DATA_BYTES)
+    most = _payload_bytes(robot) - OFFSET_BYTES
     header = {
         "mode": mode,
         "isa_major": image.isa[0],
@@ -232,6 +243,9 @@ def _in_pieces(image: Image, mode: int, robot: DeviceInfo) -> Exchange[ReceiptRe
     }
     reply = yield from patient(Request("BEGIN", header), NextReply)
     rest = bytes([NEEDS]) + image.later + image.code  # the bytes after the checksum
+    if reply.status == OK and robot.values.window > 1:
+        pieces = Pieces(rest, most, robot.values.window)
+        reply = yield from single(Request("DATA", pieces=pieces), NextReply)
     while reply.status == OK and reply.values.next < len(rest):
         at = reply.values.next
         piece = rest[at : at + most]

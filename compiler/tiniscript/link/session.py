@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
+from functools import partial
 from typing import Any, TypeVar
 
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
@@ -49,7 +50,6 @@ from tiniscript.link.payloads import (
 from tiniscript.link.receiver import Receiver
 from tiniscript.link.requests import (
     OK,
-    DeviceInfo,
     Exchange,
     Reply,
     reply_of,
@@ -58,6 +58,7 @@ from tiniscript.link.sealing import SEALED_ALONE, UNSEALED, Sealing
 from tiniscript.link.session_requests import Interrupted, PendingExchange, SessionRequests
 from tiniscript.link.stop_sequence import StopSequence
 from tiniscript.link.transmission import TRIES, Transmission
+from tiniscript.link.window import Window
 
 HEARTBEAT_MS = 200  # between two frames while a program runs
 IDLE_HEARTBEAT_MS = 1000  # between two frames otherwise
@@ -90,6 +91,7 @@ class Session(SessionRequests):
         self._pending: PendingExchange[Any] | None = None
         self._seq = nonce & 0xFF
         self._epoch = 0
+        self._baud = baud
         self._transmission = Transmission(baud)
         self._stop = StopSequence()
         self._sent_ms = 0  # time of the last transmission
@@ -102,29 +104,6 @@ class Session(SessionRequests):
         """
         self._cancel(CANCELLED)
         self._stop.begin(now_ms)
-
-    @property
-    def robot(self) -> DeviceInfo | None:
-        """The robot's description of itself, once it has answered HELLO."""
-        return self._handshake.robot
-
-    @property
-    def is_latched(self) -> bool:
-        return self._state.is_latched
-
-    @property
-    def is_running(self) -> bool:
-        return self._state.is_running
-
-    @property
-    def is_open(self) -> bool:
-        """Whether the robot has answered HELLO, and has not been lost since."""
-        return self._handshake.is_open
-
-    @property
-    def run(self) -> int | None:
-        """The last run that this session has started."""
-        return self._state.run
 
     # -- bytes in, bytes out ----------------------------------------------------------------------
 
@@ -154,7 +133,7 @@ class Session(SessionRequests):
         """Return the bytes to send now."""
         if self._stop.due_ms is not None:
             return self._send_stop(now_ms)
-        if self._transmission.frame is None:
+        if not self._transmission.is_under_way:
             self._next_pending(now_ms)
         if not self._transmission.is_due(now_ms):
             return b""
@@ -175,7 +154,7 @@ class Session(SessionRequests):
         """Return when to call `poll` next if nothing arrives, or None."""
         if self._stop.due_ms is not None:
             return self._stop.due_ms
-        if self._transmission.frame is not None:
+        if self._transmission.is_under_way:
             return self._transmission.due_ms
         if self._waiting:
             return 0
@@ -228,44 +207,56 @@ class Session(SessionRequests):
                 self._finish(pending, over.value)
             return
         message = BY_NAME[request.name]
-        self._seq = (self._seq + 1) & 0xFF
         seal = self._sealing.of_request(request)
-        if seal is not None:
-            self._seq = self._sealing.numbered(self._seq)
+        number = partial(self._number, seal is not None)
+        if request.pieces is not None:
+            self._transmission = Window(self._baud, request.pieces, self._epoch, number)
+            self._transmission.begin_again(now_ms, seal)
+            return
         payload = written(message.request, request.values)
-        frame = Frame(message.number, self._seq, self._epoch, payload)
+        frame = Frame(message.number, number(), self._epoch, payload)
+        largest = self.robot.values.largest if self.robot else 0
+        self._transmission = Transmission(self._baud, largest)
         self._transmission.begin(frame, now_ms + request.pause_ms, seal)
         if seal is None and request.name in SEALED_ALONE:
             self._show_again(now_ms)  # before a byte of it is sent
+
+    def _number(self, is_sealed: bool) -> int:
+        """Return the number of the next frame."""
+        self._seq = (self._seq + 1) & 0xFF
+        if is_sealed:
+            self._seq = self._sealing.numbered(self._seq)
+        return self._seq
 
     def _show_again(self, now_ms: int) -> None:
         """The robot no longer knows our seal: show a key, then go on with the same request.
 
         It has the same number, so the robot does nothing twice.
         """
-        pending, frame = self._pending, self._transmission.frame
-        assert pending and frame
+        pending, transmission = self._pending, self._transmission
+        assert pending
         pending.shown += 1
         self._sealing.seal = None
-        self._transmission.end()
+        self._transmission = Transmission(self._baud)
         if pending.shown > MOST_SHOWN:  # told to its exchange, that might do it again
             pending.exchange.close()
             pending.outcome = Reply(NOT_OWNER)
             self._pending = None
             return
         self._pending = PendingExchange(self._handshake.show_keys(), is_own=pending.is_own)
-        self._pending.resumes = Interrupted(pending, frame)
+        self._pending.resumes = Interrupted(pending, transmission)
         self._pending.deadline_ms = pending.deadline_ms
         self._advance(None, now_ms)
 
     def _resume(self, interrupted: Interrupted, shown: Reply[Any], now_ms: int) -> None:
-        self._pending, frame = interrupted
+        self._pending, transmission = interrupted
         seal = self._sealing.seal
         if shown.status == NOT_OWNER or (shown.status == OK and seal is None):
-            self._transmission.begin(frame, now_ms)
+            self._transmission = transmission
             self._show_again(now_ms)
-        elif shown.status == OK and frame.epoch == self._epoch:
-            self._transmission.begin(frame, now_ms, seal)
+        elif shown.status == OK and transmission.epoch == self._epoch:
+            self._transmission = transmission
+            self._transmission.begin_again(now_ms, seal)
         else:
             self._advance(Reply(shown.status or _STALE, shown.detail), now_ms)
 
@@ -303,6 +294,8 @@ class Session(SessionRequests):
         if reply is None:
             self.damaged += 1
             return
+        if isinstance(self._transmission, Window) and self._goes_on(reply, frame, now_ms):
+            return
         if frame.epoch != self._epoch:
             self._epoch = frame.epoch
             if message.name != "HELLO":  # there was a stop: earlier requests are void
@@ -322,6 +315,17 @@ class Session(SessionRequests):
             if self._pending and isinstance(reply.values, NextReply):
                 self._pending.done_bytes = reply.values.next
         self._advance(reply, now_ms)
+
+    def _goes_on(self, reply: Reply[SentReply], frame: Frame, now_ms: int) -> bool:
+        """Take a reply to one of many DATA; return whether that was not the last one."""
+        assert isinstance(self._transmission, Window)
+        if frame.epoch != self._epoch or reply.status not in (OK, _STALE):
+            return False
+        next_offset = None  # STALE in this epoch: a frame of a later number has come before
+        if reply.status == OK:
+            assert isinstance(reply.values, NextReply) and self._pending
+            next_offset = self._pending.done_bytes = reply.values.next
+        return not self._transmission.take(frame, next_offset, now_ms)
 
     def _end(self) -> Exchange[StatusReply]:
         """Ask how a run has ended."""

@@ -12,7 +12,6 @@ from tiniscript.bytecode.image import Image
 from tiniscript.link import requests, wifi
 from tiniscript.link.authority import KeyRing
 from tiniscript.link.connection import DEADLINE_MS, PendingRequest
-from tiniscript.link.frames import Frame
 from tiniscript.link.handshake import Handshake
 from tiniscript.link.payloads import (
     EmptyReply,
@@ -24,8 +23,9 @@ from tiniscript.link.payloads import (
     TrimReply,
     WifiReply,
 )
-from tiniscript.link.requests import Exchange, FetchedImage, Request
+from tiniscript.link.requests import DeviceInfo, Exchange, FetchedImage, Request
 from tiniscript.link.robot_state import RobotState
+from tiniscript.link.transmission import Transmission
 from tiniscript.link.wifi import Network
 
 CLAIM_LIMIT_MS = 45_000  # the robot waits for a hand on its button
@@ -55,11 +55,14 @@ class Interrupted(NamedTuple):
     """An exchange whose request goes on when a key was shown again."""
 
     pending: PendingExchange[Any]
-    frame: Frame
+    transmission: Transmission
 
 
 class SessionRequests:
-    """The part of a session that makes exchanges; `epoch` returns the robot's."""
+    """The part of a session that makes exchanges and says what is known of the robot.
+
+    `epoch` returns the robot's.
+    """
 
     def __init__(
         self,
@@ -71,6 +74,29 @@ class SessionRequests:
     ) -> None:
         self._state = RobotState()
         self._handshake = Handshake(nonce, kit, isa, self._state, keys, epoch)
+
+    @property
+    def robot(self) -> DeviceInfo | None:
+        """The robot's description of itself, once it has answered HELLO."""
+        return self._handshake.robot
+
+    @property
+    def is_latched(self) -> bool:
+        return self._state.is_latched
+
+    @property
+    def is_running(self) -> bool:
+        return self._state.is_running
+
+    @property
+    def is_open(self) -> bool:
+        """Whether the robot has answered HELLO, and has not been lost since."""
+        return self._handshake.is_open
+
+    @property
+    def run(self) -> int | None:
+        """The last run that this session has started."""
+        return self._state.run
 
     def _add(self, exchange: Exchange[T], starts: bool = False) -> PendingExchange[T]:
         raise NotImplementedError

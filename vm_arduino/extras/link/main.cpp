@@ -124,12 +124,12 @@ void answer_robot(RequestReader* request, Writer* answer) {
   answer->u8(is_taken);
 }
 
-// Writes a row: what was found, its length and its first bytes.
-std::string row_of(const char* what, const uint8_t* bytes, size_t length) {
+// Writes a row: what was found, its length and its first bytes, `most` of them.
+std::string row_of(const char* what, const uint8_t* bytes, size_t length, size_t most) {
   char part[40];
   snprintf(part, sizeof part, "%s %zu", what, length);
   std::string row = part;
-  for (size_t k = 0; k < length && k < kItemBytes; k++) {
+  for (size_t k = 0; k < length && k < most; k++) {
     snprintf(part, sizeof part, " %02x", bytes[k]);
     row += part;
   }
@@ -142,7 +142,7 @@ void take_lines(std::string* line, std::string* rows) {
   while (receiver.take_text(&byte)) {
     if (byte == kLineEnd) {
       const uint8_t* const bytes = reinterpret_cast<const uint8_t*>(line->data());
-      *rows += row_of("text", bytes, std::min<size_t>(line->size(), 255)) + "\n";
+      *rows += row_of("text", bytes, std::min<size_t>(line->size(), 255), kSmallItem) + "\n";
     }
     if (byte == kLineEnd || byte == kLineCut) {
       line->clear();
@@ -168,7 +168,7 @@ void answer_items(RequestReader* request, Writer* answer) {
     if (left > 0) continue;
     if (held == 0) take_lines(&line, &rows);
     if (!receiver.has_frame()) continue;
-    rows += row_of("frame", receiver.bytes(), receiver.length());
+    rows += row_of("frame", receiver.bytes(), receiver.length(), kItemBytes);
     rows += decode_frame(receiver.bytes(), receiver.length()) != 0 ? " whole\n" : " damaged\n";
     left = static_cast<uint8_t>(held + 1);
     if (held == 0) {
@@ -211,7 +211,7 @@ void answer_seal(RequestReader* request, Writer* answer) {
   seal.sent(request->u32());
   const Bytes open = request->bytes();
   const Bytes heard = request->bytes();
-  uint8_t frame[kWireBytes + 8] = {};
+  uint8_t frame[kWireBytes + kTagBytes] = {};
   std::copy(open.data.get(), open.data.get() + open.length, frame);
   std::string closed;
   if (seal.may_close()) {

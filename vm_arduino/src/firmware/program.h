@@ -7,7 +7,7 @@
 
 #include <stdint.h>
 
-#include "../link/messages.h"
+#include "../link/sizes.h"
 #include "../link/text_level.h"
 #include "../store/layout.h"
 #include "../vm/vm.h"

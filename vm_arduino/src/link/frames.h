@@ -1,14 +1,15 @@
 // Encodes and decodes frames in place: COBS and a checksum.
 //
 // Knows nothing of messages. Matches `frames.py`. In a buffer the frame follows its first byte,
-// which exists only on the wire: type, sequence number, epoch, payload, checksum.
+// which exists only on the wire: type, sequence number, epoch, payload, checksum. A large frame has a
+// 0 before its payload.
 
 #ifndef TINISCRIPT_LINK_FRAMES_H_
 #define TINISCRIPT_LINK_FRAMES_H_
 
 #include <stdint.h>
 
-#include "messages.h"
+#include "sizes.h"
 
 namespace tiniscript {
 
@@ -18,6 +19,14 @@ constexpr uint8_t kEpochAt = 3;
 constexpr uint8_t kPayloadAt = 4;
 
 constexpr uint8_t kWireBytes = kLargestFrame + 2;  // with the 0x00 at its end
+
+// Whether a frame whose payload ends at `end` is large.
+inline bool is_large(uint8_t end) {
+  return kHasLargeFrames && end > kSmallFrame + kTypeAt - kCrcBytes;
+}
+
+// Where the payload begins of a frame that is not sealed.
+inline uint8_t payload_at(uint8_t end) { return is_large(end) ? kPayloadAt + 1 : kPayloadAt; }
 
 // Numbers are little-endian on the wire and in the memory of every supported chip.
 void copy_bytes(const void* from, uint8_t* to, uint8_t length);

@@ -16,6 +16,12 @@ uint8_t number_of(Answer answer) { return static_cast<uint8_t>(answer); }
 
 bool is_latched() { return port_status().state >= State::kStopped; }
 
+// Whether a frame whose payload ends at `end` begins as one of its length does: a large one has a 0
+// before its payload. `link_seals.cpp` looks at those that are sealed.
+bool may_begin_so(const uint8_t* bytes, uint8_t end) {
+  return !is_large(end) || bytes[kPayloadAt] == 0;
+}
+
 // The reason why the robot has no program to start or to fetch, or kOk.
 Answer lacks_program() {
   const Saved saved = port_status().saved;
@@ -123,7 +129,9 @@ tini_noinline void Link::hear() {
     damaged_++;
   } else {
     const uint8_t end = check_.decode(receiver_->bytes());
-    if ((receiver_->bytes()[kTypeAt] & kReply) == 0) {  // otherwise it is an echo
+    if (!may_begin_so(receiver_->bytes(), end)) {
+      damaged_++;
+    } else if ((receiver_->bytes()[kTypeAt] & kReply) == 0) {  // otherwise it is an echo
       const uint8_t opened = open_seal(end);
       if (opened == 0) {
         damaged_++;  // forged, or sealed before another one
@@ -153,9 +161,9 @@ tini_noinline void Link::handle(uint8_t end) {
   const uint8_t type = is_marked ? bytes[kTypeAt] & static_cast<uint8_t>(~kSealed) : bytes[kTypeAt];
   const uint8_t seq = bytes[kSeqAt];
   const uint8_t epoch = bytes[kEpochAt];
-  const uint8_t payload_at = is_marked ? kSealedPayloadAt : kPayloadAt;
-  const uint8_t* const payload = bytes + payload_at;
-  const uint8_t length = static_cast<uint8_t>(end - payload_at);
+  const uint8_t begin = is_marked ? kSealedPayloadAt : payload_at(end);
+  const uint8_t* const payload = bytes + begin;
+  const uint8_t length = static_cast<uint8_t>(end - begin);
   const bool is_hello = type == static_cast<uint8_t>(Message::kHello);
 
   Said& last = this->last();
@@ -300,6 +308,7 @@ uint8_t Link::hello(const uint8_t* payload) {
   if (is_new || may_seal()) lapse();
   if (is_new) forget_answer();
   is_open_ = true;
+  note_client(payload[kHelloMinorAt]);
   copy_bytes(payload + kHelloNonceAt, reinterpret_cast<uint8_t*>(&nonce_), sizeof nonce_);
   isa_[0] = payload[kHelloIsaMajorAt];
   isa_[1] = payload[kHelloIsaMinorAt];

@@ -234,6 +234,15 @@ class Link {
   static void seal_out() {}
 #endif
 
+  // Whether the client takes large frames: what it has said of itself in HELLO.
+#ifdef tiniscript_large_frames
+  bool takes_large() const { return takes_large_; }
+  void note_client(uint8_t minor) { takes_large_ = minor >= kLargeMinor; }
+#else
+  static constexpr bool takes_large() { return false; }
+  static void note_client(uint8_t) {}
+#endif
+
   // writing
   void send();
   bool talks() const { return console_.is_talking() && !is_listened_to(); }
@@ -297,6 +306,9 @@ class Link {
   uint8_t sealed_last_epoch_;
   Said sealed_last_;     // the last reply to a sealed request
   Seal seal_;
+#endif
+#ifdef tiniscript_large_frames
+  bool takes_large_;
 #endif
   uint8_t tries_;   // wrong keys since the last right one or the last pause
   uint32_t nonce_;  // of the session

@@ -32,14 +32,15 @@ bool may_start(uint8_t mode) { return (mode & (kRun | kStartBits)) != kRun || !i
 tini_noinline void Link::prepare() {
   uint8_t* const bytes = receiver_->bytes();
   const uint8_t end = check_.decode(bytes);  // below 0 it is very large
-  if (end == ahead_ || end <= kPayloadAt || end > kLargestFrame || bytes[kTypeAt] != kLiveByte ||
-      due_ != 0 || !is_open_ || is_forbidden(kLiveByte) || console_.is_open() ||
+  const uint8_t begin = payload_at(end);
+  if (end == ahead_ || end <= begin || end > kLargestFrame || bytes[kTypeAt] != kLiveByte ||
+      (is_large(end) && bytes[kPayloadAt] != 0) || due_ != 0 || !is_open_ || is_forbidden(kLiveByte) || console_.is_open() ||
       !port_may_prepare()) {
     return;
   }
   ahead_ = end;
   is_ready_ =
-      fill(Use::kAhead, bytes + kPayloadAt, static_cast<uint8_t>(end - kPayloadAt)) == kIsFine;
+      fill(Use::kAhead, bytes + begin, static_cast<uint8_t>(end - begin)) == kIsFine;
 }
 
 // Runs the image that was made ahead. False: this frame does not allow it.

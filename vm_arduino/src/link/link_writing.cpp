@@ -17,6 +17,9 @@ const uint8_t kVersions[] tini_progmem = {kLinkMajor, kLinkMinor,    kIsaMajor,
 constexpr uint8_t kPulseBytes = 2;  // state and run of a RobotStatus
 constexpr uint8_t kPlaceBytes = 2;  // its slot and `saved`
 
+// Bytes of the image in a small reply to FETCH: beside them it has a status and a length.
+constexpr uint8_t kSmallFetch = kSmallFrame - kHeadBytes - kCrcBytes - 3;
+
 static_assert(sizeof(Identity) == 13 && sizeof(RobotStatus) == 17, "they are as they are sent");
 
 template <class Type>
@@ -165,7 +168,14 @@ void Link::describe() {
 void Link::fetch() {
   const uint16_t whole = port_image_length();
   const uint8_t first = kHasSeals ? static_cast<uint8_t>(size_ - 1) : kPayloadAt;
-  const uint8_t most = kPayloadAt + kPayloadBytes - (first != kPayloadAt ? kTagBytes : 0);
+  const bool is_sealed = first != kPayloadAt;
+  const uint8_t largest = takes_large() ? kLargestFrame : kSmallFrame;
+  const uint8_t most =
+      static_cast<uint8_t>(largest + kTypeAt - kCrcBytes - (is_sealed ? kTagBytes : 0));
+  if (takes_large() && !is_sealed && said_.detail + kSmallFetch < whole) {
+    put(out_[first]);
+    out_[first] = 0;
+  }
   put16(whole);
   for (uint16_t at = said_.detail; at < whole && size_ < most; at++) {
     const Answer found = port_image_byte(at, out_ + size_++);

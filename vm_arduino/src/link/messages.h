@@ -15,13 +15,14 @@
 namespace tiniscript {
 
 constexpr uint8_t kLinkMajor = 1;
-constexpr uint8_t kLinkMinor = 1;
-constexpr uint8_t kLargestFrame = 63;
+constexpr uint8_t kLinkMinor = 2;
+constexpr uint8_t kSmallFrame = 63;
+constexpr uint8_t kLargeFrame = 250;
+constexpr uint8_t kLargeWindow = 4;
+constexpr uint8_t kLargeMinor = 2;
 constexpr uint8_t kTextFrom = 65;
 constexpr uint8_t kHeadBytes = 3;
 constexpr uint8_t kCrcBytes = 4;
-constexpr uint8_t kPayloadBytes = 56;
-constexpr uint8_t kWindow = 1;
 constexpr uint8_t kReply = 128;
 constexpr uint8_t kSealed = 64;
 constexpr uint8_t kNameBytes = 16;

@@ -49,15 +49,15 @@ tini_noinline void Receiver::take(uint8_t byte, uint16_t now_ms) {
 // zero before it, so while text waits what follows it is text.
 void Receiver::begin(uint8_t byte) {
   if (byte == 0x7f) return skip();
-  const bool goes_on = place_ == Place::kAfterText && (first_ != behind_ || item_ == Item::kText);
+  const bool goes_on = place_ == Place::kAfterText && (first_ != behind_ || item_[filled()] == Item::kText);
   if (is_letter(byte) || (goes_on && is_printable(byte))) {
     place_ = Place::kText;
     return pass_on(byte);
   }
-  is_dropping_ = item_ != Item::kNone;
+  is_dropping_ = item_[filled()] != Item::kNone;
   if (!is_dropping_) {
-    length_ = 0;
-    has_begun_ = true;
+    length_[filled()] = 0;
+    if (is_first()) has_begun_ = true;
   }
   if (byte >= kTextFrom) {
     place_ = Place::kOther;
@@ -90,12 +90,12 @@ void Receiver::go_on(uint8_t byte) {
   } else if (place_ == Place::kOther && !is_text) {
     return skip();
   }
-  if (length_ == kItemBytes && !is_dropping_) {
+  if (length_[filled()] == most_bytes() && !is_dropping_) {
     if (place_ == Place::kFrame) return skip();
     place_ = Place::kText;
     end(Item::kText);
     is_begun_ = true;
-    if (item_ != Item::kText) place_ = Place::kLost;
+    if (item_[filled()] != Item::kText) place_ = Place::kLost;
     if (place_ == Place::kText) pass_on(byte);
     return;
   }
@@ -114,10 +114,10 @@ void Receiver::drop() {
 
 // Leaves a waiting item and its length unchanged.
 void Receiver::add(uint8_t byte) {
-  const uint8_t length = length_;
+  const uint8_t length = length_[filled()];
   if (is_dropping_ || length == kItemBytes) return;
-  bytes_[length] = byte;
-  length_ = static_cast<uint8_t>(length + 1);
+  bytes_[filled()][length] = byte;
+  length_[filled()] = static_cast<uint8_t>(length + 1);
 }
 
 void Receiver::zero() {
@@ -140,13 +140,14 @@ void Receiver::cut() {
   if (place == Place::kText || place == Place::kLost) pass_on(kLineCut);
 }
 
-// A line that may overtake older text is dropped.
+// A line that may overtake older text, or a frame, is dropped.
 void Receiver::end(Item item) {
   if (is_dropping_) return;
   is_begun_ = false;
   taken_ = 0;
-  if (item == Item::kFrame || first_ == behind_) {
-    item_ = item;
+  if (item == Item::kFrame || (first_ == behind_ && is_first())) {
+    item_[filled()] = item;
+    if (item == Item::kFrame) fill_on();
   } else {
     dropped_ = static_cast<uint8_t>(dropped_ + 1);
   }
@@ -172,14 +173,14 @@ void Receiver::end_text(uint8_t byte) {
 }
 
 bool Receiver::take_text(uint8_t* byte) {
-  if (item_ == Item::kText) {
-    if (taken_ < length_) {
-      *byte = bytes_[taken_++];
+  if (item_[looked_at()] == Item::kText) {
+    if (taken_ < length_[looked_at()]) {
+      *byte = bytes_[looked_at()][taken_++];
       return true;
     }
     const bool is_over = !is_begun_;
     asm volatile("" ::: "memory");  // barrier: the bytes are read before the interrupt may write
-    item_ = Item::kNone;
+    item_[looked_at()] = Item::kNone;
     if (is_over) {
       *byte = kLineEnd;
       return true;

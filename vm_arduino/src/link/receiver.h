@@ -1,7 +1,8 @@
 // Splits bytes into items: frames, lines of text, and the run of zeros that stops a robot.
 //
-// Knows where an item begins and ends; `frames.h` checks whether a frame is whole. Holds one frame
-// until it is released; a frame that arrives meanwhile is dropped. Text is passed on as it arrives.
+// Knows where an item begins and ends; `frames.h` checks whether a frame is whole. Holds frames until
+// they are released, kWindow of them; a frame that finds no place is dropped. Text is passed on as it
+// arrives.
 // Finds the same items as `receiver.py`. `put` may be called from an interrupt, everything else from
 // the main loop.
 
@@ -12,13 +13,9 @@
 
 #include "../vm/small.h"
 #include "messages.h"
+#include "sizes.h"
 
 namespace tiniscript {
-
-constexpr uint8_t kItemBytes = kLargestFrame + 1;  // a frame and its first COBS byte
-
-// Room for text that nobody has taken yet.
-constexpr uint8_t kTextBytes = 32;
 
 enum class Item : uint8_t { kNone, kFrame, kText };
 
@@ -26,7 +23,33 @@ enum class Item : uint8_t { kNone, kFrame, kText };
 constexpr uint8_t kLineEnd = '\n';
 constexpr uint8_t kLineCut = 0;
 
-class Receiver {
+// The places of the items that wait: the main loop looks at one, the interrupt fills one. They are
+// the same where nothing waits, or where all places are taken.
+template <uint8_t kPlaces>
+class ItemPlaces {
+ protected:
+  uint8_t looked_at() const { return looked_at_; }
+  uint8_t filled() const { return filled_; }
+  void look_on() { looked_at_ = behind(looked_at_); }
+  void fill_on() { filled_ = behind(filled_); }
+
+ private:
+  static uint8_t behind(uint8_t place) { return static_cast<uint8_t>((place + 1) % kPlaces); }
+
+  volatile uint8_t looked_at_;
+  volatile uint8_t filled_;
+};
+
+template <>
+class ItemPlaces<1> {
+ protected:
+  static constexpr uint8_t looked_at() { return 0; }
+  static constexpr uint8_t filled() { return 0; }
+  static void look_on() {}
+  static void fill_on() {}
+};
+
+class Receiver : private ItemPlaces<kWindow> {
  public:
   // Takes a byte at the time `now_ms`. Returns whether it completes a run of four zeros, the stop
   // sequence: the motors then go off at once. Eight zeros are two stops. A byte with a framing
@@ -51,14 +74,22 @@ class Receiver {
   // Takes the byte that completes a stop.
   void take_last_zero() { take(0, last_ms_); }
 
-  // Whether a frame waits, its bytes and their number.
-  bool has_frame() const { return item_ == Item::kFrame; }
-  uint8_t* bytes() { return bytes_; }
-  uint8_t length() const { return length_; }
-  void release() { item_ = Item::kNone; }
+  // Whether a frame waits, the bytes of the first one and their number.
+  bool has_frame() const { return item_[looked_at()] == Item::kFrame; }
+  uint8_t* bytes() { return bytes_[looked_at()]; }
+  uint8_t length() const { return length_[looked_at()]; }
+
+  // Goes on to the next frame: as if it began now, though it may be whole already.
+  void release() {
+    if (kWindow > 1) length_[looked_at()] = 0;
+    item_[looked_at()] = Item::kNone;
+    if (kWindow == 1) return;
+    look_on();
+    has_begun_ = true;
+  }
 
   // Whether text may wait.
-  bool has_text() const { return item_ == Item::kText || first_ != behind_; }
+  bool has_text() const { return item_[looked_at()] == Item::kText || first_ != behind_; }
 
   // Takes the next byte of text. kLineEnd: the line is whole. kLineCut: it never ends, or bytes of
   // it were lost. False: none waits.
@@ -120,8 +151,16 @@ class Receiver {
   void pass_on(uint8_t byte);
   void end_text(uint8_t byte);
 
-  // The waiting item. A line that might have been a frame waits in `bytes_` like one.
-  volatile Item item_;
+  // Whether no frame waits before the item that is being filled.
+  bool is_first() const { return filled() == looked_at(); }
+
+  // The most bytes that the item has which is being filled, if it is a frame.
+  uint8_t most_bytes() const {
+    return kHasLargeFrames && bytes_[filled()][0] > kLargeFirst ? kSmallItem : kItemBytes;
+  }
+
+  // The waiting items. A line that might have been a frame waits in `bytes_` like one, as the last.
+  volatile Item item_[kWindow];
   volatile bool has_begun_;
   volatile bool stop_is_due_;
   volatile uint8_t damaged_;
@@ -136,9 +175,9 @@ class Receiver {
   volatile uint8_t behind_;
   uint8_t text_[kTextBytes];
   uint8_t zeros_;
-  volatile uint8_t length_;
+  volatile uint8_t length_[kWindow];
   uint16_t last_ms_;
-  uint8_t bytes_[kItemBytes];
+  uint8_t bytes_[kWindow][kItemBytes];
 };
 
 }  // namespace tiniscript

@@ -9,7 +9,7 @@ namespace tiniscript {
 
 #if defined(__AVR_ATmega2560__)
 constexpr TextLevel kRobotTextLevel = TextLevel::kMega;
-#elif defined(ARDUINO_ARCH_ESP32)
+#elif defined(ARDUINO_ARCH_ESP32) || defined(tiniscript_like_esp32)
 constexpr TextLevel kRobotTextLevel = TextLevel::kEsp32;
 #else
 constexpr TextLevel kRobotTextLevel = TextLevel::kUno;

@@ -16,7 +16,7 @@ namespace tiniscript {
 // Uno and Nano.
 #if defined(__AVR_ATmega2560__)
 constexpr uint16_t kMemoryBytes = 4096;
-#elif defined(ARDUINO_ARCH_ESP32)
+#elif defined(ARDUINO_ARCH_ESP32) || defined(tiniscript_like_esp32)
 constexpr uint16_t kMemoryBytes = 16640;
 #else
 constexpr uint16_t kMemoryBytes = 1024;

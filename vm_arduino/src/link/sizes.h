@@ -1,0 +1,42 @@
+// How large the frames of this robot are, and how many of them wait until it has looked at them. HELLO
+// says both.
+//
+// An AVR has memory for one small frame. tiniscript_like_esp32 is for robots on a computer that have
+// the sizes of an ESP32.
+
+#ifndef TINISCRIPT_LINK_SIZES_H_
+#define TINISCRIPT_LINK_SIZES_H_
+
+#include "messages.h"
+
+#if defined(ARDUINO_ARCH_ESP32) || defined(tiniscript_like_esp32)
+#define tiniscript_large_frames
+#endif
+
+namespace tiniscript {
+
+#ifdef tiniscript_large_frames
+constexpr uint8_t kLargestFrame = kLargeFrame;
+constexpr uint8_t kWindow = kLargeWindow;
+constexpr uint8_t kTextBytes = 255;
+#else
+constexpr uint8_t kLargestFrame = kSmallFrame;
+constexpr uint8_t kWindow = 1;
+constexpr uint8_t kTextBytes = 32;  // of text that nobody has taken yet, and one more
+#endif
+
+constexpr bool kHasLargeFrames = kLargestFrame > kSmallFrame;
+
+// Of a frame that is not sealed; a large one has a 0 before it.
+constexpr uint8_t kPayloadBytes =
+    kLargestFrame - kHeadBytes - kCrcBytes - (kHasLargeFrames ? 1 : 0);
+
+// A frame and its first COBS byte. An item that begins with another byte than kLargeFirst or less is
+// none with more bytes than kSmallItem.
+constexpr uint8_t kItemBytes = kLargestFrame + 1;
+constexpr uint8_t kSmallItem = kSmallFrame + 1;
+constexpr uint8_t kLargeFirst = kHeadBytes + 1;
+
+}  // namespace tiniscript
+
+#endif  // TINISCRIPT_LINK_SIZES_H_
