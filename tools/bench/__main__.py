@@ -20,6 +20,7 @@ BENCHMARKS = (
     "virtual",
     "upload",
     "bluetooth",
+    "large_upload",
     "firmware_size",
     "machine_size",
     "link_size",

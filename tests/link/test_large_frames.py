@@ -1,0 +1,382 @@
+"""Robots with large frames and a window, and computers and robots that know neither."""
+
+from __future__ import annotations
+
+import random
+import struct
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from cobs import cobs
+
+from tests.link.test_link_channel import needs_host
+from tests.machines.esp32 import Esp32Robot
+from tests.machines.link import CppLink, cpp_link
+from tests.support.link_cases import KIT, items_of
+from tiniscript import robots
+from tiniscript.bytecode.image import HEADER_BYTES, pack, unpack
+from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
+from tiniscript.link.connection import PendingRequest
+from tiniscript.link.frames import Frame, checksum, decoded, encoded
+from tiniscript.link.messages import (
+    BY_NAME,
+    CRC_BYTES,
+    HEAD_BYTES,
+    LARGE_FRAME,
+    LARGE_MINOR,
+    LARGE_WINDOW,
+    MAJOR,
+    RUN,
+    SMALL_FRAME,
+    STATUSES,
+    payload_bytes,
+    read,
+    written,
+)
+from tiniscript.link.outcomes import LOST
+from tiniscript.link.receiver import LARGE_ITEM, SMALL_ITEM
+from tiniscript.link.session import Session
+from tiniscript.link.transmission import TRIES
+from tools.bench import large_upload
+
+DATA, HELLO, FETCH, LIVE, PING = (
+    BY_NAME[name].number for name in ("DATA", "HELLO", "FETCH", "LIVE", "PING")
+)
+OK, STALE = STATUSES["OK"], STATUSES["STALE"]
+EPOCH = 9  # of the robot when it begins; HELLO makes it one more
+CODE = large_upload.program(1500).code
+IMAGE = unpack(pack("SI", 0, CODE))
+BAUD = 115_200
+
+
+# -- the robot ------------------------------------------------------------------------------------
+
+
+def begun(minor: int = LARGE_MINOR, is_large: bool = True, epoch: int = EPOCH) -> CppLink:
+    """Return a robot in a session with a computer of this minor version."""
+    robot = cpp_link(is_large)
+    robot.begin(room=8192, kit=KIT, epoch=epoch)
+    payload = struct.pack("<BBBBHI", MAJOR, minor, ISA_MAJOR, ISA_MINOR, KIT, 7)
+    frames = [decoded(each) for each in sent_by(robot, Frame(HELLO, 1, 0, payload))]
+    (reply,) = [frame for frame in frames if frame]
+    found = read(BY_NAME["HELLO"].reply, reply.payload[1:])
+    sizes = (LARGE_FRAME, LARGE_WINDOW) if is_large else (SMALL_FRAME, 1)
+    assert (found["largest"], found["window"]) == sizes
+    return robot
+
+
+def sent_by(robot: CppLink, *frames: Frame, is_late: bool = False) -> list[bytes]:
+    """Return the items that a robot answers to frames."""
+    step = robot.step(10, b"".join(map(encoded, frames)), is_late=is_late)
+    return [each for each in step.sent.split(b"\0") if each]
+
+
+def answers(robot: CppLink, *frames: Frame, is_late: bool = False) -> list[Frame]:
+    found = [decoded(each) for each in sent_by(robot, *frames, is_late=is_late)]
+    assert all(found)
+    return [frame for frame in found if frame]
+
+
+def put_program(robot: CppLink) -> None:
+    """Have the robot hold IMAGE, frame after frame."""
+    session = Session(7, BAUD, KIT)
+    asked = session.upload(IMAGE, runs=False)
+    for now_ms in range(0, 3000, 5):
+        session.receive(robot.step(now_ms, session.poll(now_ms)).sent, now_ms)
+    assert asked.outcome and asked.outcome.status == OK and robot.held() == pack("SI", 0, CODE)
+
+
+@needs_host
+def test_frames_wait_until_the_robot_looks_and_one_more_is_dropped() -> None:
+    """A robot with a window of 4 answers four that came at once, one with 1 the first."""
+    for is_large, window in ((True, LARGE_WINDOW), (False, 1)):
+        robot = begun(is_large=is_large)
+        pings = [Frame(PING, 2 + k, EPOCH + 1) for k in range(window + 2)]
+        found = answers(robot, *pings, is_late=True)
+        assert [frame.seq for frame in found] == [2 + k for k in range(window)]
+        (status,) = answers(robot, Frame(BY_NAME["STATUS"].number, 50, EPOCH + 1))
+        told = read(BY_NAME["STATUS"].reply, status.payload[1:])
+        assert (told["dropped"], told["damaged"]) == (2, 0)
+
+
+@needs_host
+def test_live_code_of_a_large_frame_runs() -> None:
+    most = payload_bytes(LARGE_FRAME) - 1
+    for length in (54, 55, 56, 57, 58, most):
+        for is_late in (False, True):
+            robot = begun()
+            code = large_upload.program(length).code
+            step = robot.step(10, encoded(Frame(LIVE, 2, EPOCH + 1, bytes([RUN]) + code)), is_late)
+            checksum = unpack(pack("SI", 0, code)).checksum
+            assert f"TAKE live {checksum:08x}" in step.did, length
+            assert sum(row.startswith("START") for row in step.did) == 1
+
+
+@needs_host
+def test_a_large_frame_without_its_zero_is_damaged() -> None:
+    """Whether it is looked at while it arrives or behind its end; nothing of it runs.
+
+    On the wire it begins as a large frame does: its epoch is 0.
+    """
+    code = large_upload.program(90).code
+    for is_late in (False, True):
+        robot = begun(epoch=255)
+        wire = with_checksum(bytes([LIVE, 2, 0, RUN]) + code)
+        assert wire[0] == HEAD_BYTES
+        step = robot.step(10, wire + b"\0", is_late)
+        assert step.sent == b"" and step.did == []
+        (status,) = answers(robot, Frame(BY_NAME["STATUS"].number, 50, EPOCH + 1))
+        assert read(BY_NAME["STATUS"].reply, status.payload[1:])["damaged"] == 1
+
+
+def with_checksum(body: bytes) -> bytes:
+    wire: bytes = cobs.encode(body + checksum(body).to_bytes(CRC_BYTES, "little"))
+    return wire
+
+
+@needs_host
+@pytest.mark.parametrize(
+    ("minor", "is_large", "most"),
+    [(LARGE_MINOR, True, 239), (LARGE_MINOR - 1, True, 53), (0, True, 53), (9, False, 53)],
+)
+def test_a_computer_gets_the_image_in_frames_that_it_takes(
+    minor: int, is_large: bool, most: int
+) -> None:
+    robot = begun(is_large=is_large)
+    put_program(robot)
+    hello = struct.pack("<BBBBHI", MAJOR, minor, ISA_MAJOR, ISA_MINOR, KIT, 8)
+    answers(robot, Frame(HELLO, 1, 0, hello))
+    image = b""
+    whole = len(pack("SI", 0, CODE))
+    while len(image) < whole:
+        (wire,) = sent_by(robot, Frame(FETCH, 2, 0, struct.pack("<H", len(image))))
+        frame = decoded(wire)
+        assert frame and frame.payload[0] == OK
+        assert struct.unpack("<H", frame.payload[1:3])[0] == whole
+        assert len(frame.payload) - 3 == min(most, whole - len(image))
+        assert len(wire) <= (LARGE_ITEM if most > 53 else SMALL_ITEM)
+        image += frame.payload[3:]
+    assert image == pack("SI", 0, CODE)
+
+
+@needs_host
+def test_both_receivers_find_the_same_where_frames_wait() -> None:
+    """Frames, noise and silence, while some of them are not taken yet."""
+    draw = random.Random(3)
+    print("seed 3")
+    waited = 0
+    for _ in range(300):
+        stream: list[tuple[int, int]] = []
+        now_ms = 0
+        for number in range(draw.randrange(1, 12)):
+            payload = draw.randbytes(draw.choice((0, 3, 56, 57, 100, 242)))
+            data = encoded(Frame(draw.randrange(1, 20), number, draw.randrange(256), payload))
+            if draw.random() < 0.2:
+                noise = draw.randbytes(draw.randrange(1, 300)).replace(b"\0", b"")
+                data = draw.choice((b"\1", b"\2", b"\4", b"\5", b"\x1f")) + noise + b"\0"
+            now_ms += draw.choice((0, 0, 0, 1200))
+            stream += [(now_ms, byte) for byte in data]
+        held = draw.choice((0, 10, 100, 250))
+        rows = items_of(stream, held, is_large=True)
+        assert cpp_link(is_large=True).items(stream, held) == rows
+        waited += held > 0
+    assert waited > 100
+
+
+# -- the computer ---------------------------------------------------------------------------------
+
+
+class Answering:
+    """A robot as a computer sees it: says what it is in HELLO, and takes DATA as `takes` says.
+
+    `takes` gets each DATA that is answered: the number of it, its offset and its bytes. It returns
+    the status and what is wanted next, or None where the frame or its answer is lost.
+    """
+
+    def __init__(
+        self, takes: Callable[[int, int, bytes], tuple[int, int] | None],
+        largest: int = LARGE_FRAME, window: int = LARGE_WINDOW, baud: int = BAUD,
+    ) -> None:  # fmt: skip
+        self.takes = takes
+        self.session = Session(3, baud, KIT)
+        self.largest, self.window = largest, window
+        self.waiting: list[Frame] = []  # that are not answered yet
+        self.data: list[tuple[int, int, int]] = []  # numbers, offsets, bytes of DATA that came
+        self.most_waiting = self.longest = 0
+        self.has_commit = False
+        self.now_ms = 0
+
+    def run(self, request: PendingRequest[Any], most_ms: int = 25_000, late_ms: int = 30) -> int:
+        """Answer what came `late_ms` before; return the status of the request."""
+        due: list[tuple[int, Frame]] = []
+        while request.outcome is None and self.now_ms < most_ms:
+            for item in self.session.poll(self.now_ms).split(b"\0"):
+                frame = decoded(item) if item else None
+                if frame is not None:
+                    self.longest = max(self.longest, len(item))
+                    due.append((self.now_ms + late_ms, frame))
+            self.most_waiting = max(self.most_waiting, len(due))
+            while due and due[0][0] <= self.now_ms:
+                self.answer(due.pop(0)[1])
+            self.now_ms += 5
+        assert request.outcome, "no end"
+        return request.outcome.status
+
+    def answer(self, frame: Frame) -> None:
+        payload: bytes | None = bytes([OK])
+        message = BY_NAME["HELLO"]
+        if frame.number == HELLO:
+            values = {field.name: 0 if field.kind != "rest" else b"R" for field in message.reply}
+            values |= {"major": MAJOR, "isa_major": ISA_MAJOR, "isa_minor": ISA_MINOR, "kit": KIT}
+            values |= {"largest": self.largest, "window": self.window, "room": 8192}
+            payload = bytes([OK]) + written(message.reply, values)
+        elif frame.number == BY_NAME["BEGIN"].number:
+            payload = struct.pack("<BH", OK, 0)
+        elif frame.number == DATA:
+            (offset,) = struct.unpack("<H", frame.payload[:2])
+            self.data.append((frame.seq, offset, len(frame.payload) - 2))
+            found = self.takes(len(self.data), offset, frame.payload[2:])
+            payload = None if found is None else struct.pack("<BH", *found)
+        elif frame.number == BY_NAME["COMMIT"].number:
+            self.has_commit = True
+            payload = struct.pack("<BIBBB", OK, IMAGE.checksum, 1, 0, 3)
+        if payload is not None:
+            self.session.receive(
+                encoded(Frame(frame.number, frame.seq, frame.epoch, payload, is_reply=True)),
+                self.now_ms,
+            )
+
+
+class Taking:
+    """Takes what begins at `next`, but for DATA that are lost before it or whose answers are."""
+
+    def __init__(self, lost: tuple[int, ...] = (), unanswered: tuple[int, ...] = ()) -> None:
+        self.lost, self.unanswered = lost, unanswered
+        self.found = b""
+
+    def __call__(self, number: int, offset: int, data: bytes) -> tuple[int, int] | None:
+        if number in self.lost:
+            return None
+        if offset == len(self.found):
+            self.found += data
+        return None if number in self.unanswered else (OK, len(self.found))
+
+
+WHOLE = bytes([pack("SI", 0, CODE)[HEADER_BYTES - 1]]) + CODE  # what lies behind the checksum
+
+
+@pytest.mark.parametrize(
+    ("lost", "unanswered", "count"),
+    [
+        ((), (), 7),
+        ((), (2, 3), 7),  # the next answer tells of them
+        ((), (7,), 8),
+        ((2,), (), 10),  # what followed it is sent again
+        ((7,), (), 8),
+        ((1, 2, 3, 4), (), 11),
+    ],
+)
+def test_what_is_lost_is_sent_again_and_no_more(
+    lost: tuple[int, ...], unanswered: tuple[int, ...], count: int
+) -> None:
+    taking = Taking(lost, unanswered)
+    robot = Answering(taking)
+    assert robot.run(robot.session.upload(IMAGE)) == OK
+    assert taking.found == WHOLE and robot.has_commit
+    assert len(robot.data) == count
+    assert len({seq for seq, *_ in robot.data}) == count, "two frames have one number"
+    assert 2 <= robot.most_waiting <= LARGE_WINDOW
+
+
+@pytest.mark.parametrize("window", [0, 1])
+@pytest.mark.parametrize("largest", [0, SMALL_FRAME])
+def test_a_robot_of_before_gets_what_it_got(largest: int, window: int) -> None:
+    taking = Taking()
+    robot = Answering(taking, largest, window)
+    assert robot.run(robot.session.upload(IMAGE)) == OK
+    assert taking.found == WHOLE
+    assert robot.most_waiting == 1 and robot.longest == SMALL_ITEM
+    assert {length for *_, length in robot.data[:-1]} == {54}
+
+
+@pytest.mark.parametrize(("largest", "window"), [(255, 255), (251, 2), (100, 200)])
+def test_a_robot_that_says_more_than_there_is_gets_what_there_is(largest: int, window: int) -> None:
+    robot = Answering(Taking(), largest, window)
+    assert robot.run(robot.session.upload(IMAGE)) == OK
+    assert robot.longest == min(largest, LARGE_FRAME) + 1
+    assert robot.most_waiting == min(window, LARGE_WINDOW)
+
+
+def test_a_slow_line_has_little_before_a_stop() -> None:
+    robot = Answering(Taking(), baud=9600)
+    assert robot.run(robot.session.upload(IMAGE)) == OK
+    assert robot.most_waiting * robot.longest <= 9600 // 10 * 0.25
+
+
+@pytest.mark.parametrize(
+    ("found", "status"),
+    [
+        ((OK, 0), LOST),  # it takes nothing
+        ((STALE, 0), LOST),  # it calls all of them old, in the epoch of the session
+        ((STATUSES["NOT_BEGUN"], 0), STATUSES["NOT_BEGUN"]),
+        (None, LOST),
+    ],
+)
+def test_a_robot_that_takes_nothing_is_given_up(found: tuple[int, int] | None, status: int) -> None:
+    robot = Answering(lambda *_: found)
+    assert robot.run(robot.session.upload(IMAGE)) == status
+    assert not robot.has_commit
+    assert len(robot.data) <= (TRIES + 2) * LARGE_WINDOW
+
+
+def test_a_robot_that_jumps_to_and_fro_has_an_end() -> None:
+    draw = random.Random(5)
+    robot = Answering(lambda *_: (OK, draw.randrange(len(WHOLE))))
+    assert robot.run(robot.session.upload(IMAGE)) == LOST
+    assert not robot.has_commit
+
+
+def test_what_the_robot_says_to_have_beyond_the_end_is_left_to_commit() -> None:
+    robot = Answering(lambda *_: (OK, 0xFFFF))
+    assert robot.run(robot.session.upload(IMAGE)) == OK  # its receipt has the checksum
+    assert robot.has_commit
+
+
+def test_a_stop_ends_the_pieces() -> None:
+    robot = Answering(Taking())
+    request = robot.session.upload(IMAGE)
+    robot.session.receive(b"", 0)
+    robot.takes = lambda *_: None
+    for _ in range(40):
+        if robot.data:
+            break
+        for item in robot.session.poll(robot.now_ms).split(b"\0"):
+            frame = decoded(item) if item else None
+            if frame is not None:
+                robot.answer(frame)
+        robot.now_ms += 5
+    assert robot.data and request.outcome is None
+    robot.session.stop(robot.now_ms)
+    assert request.outcome is not None
+    assert robot.session.poll(robot.now_ms).strip(b"\0") == b""
+    seq = robot.data[0][0]
+    late = Frame(DATA, seq, 0, struct.pack("<BH", OK, 240), is_reply=True)
+    robot.session.receive(encoded(late), robot.now_ms)  # the answer comes all the same
+    assert robot.session.poll(robot.now_ms + 50).strip(b"\0") == b""
+
+
+# -- both -----------------------------------------------------------------------------------------
+
+
+@needs_host
+def test_the_largest_program_takes_little_more_than_the_wire() -> None:
+    """8,192 bytes at 115200 baud over a round trip of 40 ms, to the sketch of an ESP32."""
+    profile = robots.load("tinibot32")
+    assert profile.board.program_bytes == 8192
+    robot = Esp32Robot(profile)
+    robot.wait(300)
+    took = large_upload.uploaded(robot, profile.kit.fingerprint, 8192)
+    robot.close()
+    assert took.times <= large_upload.MUST
+    assert took.sent_bytes < 8192 * 1.1

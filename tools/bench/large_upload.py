@@ -1,0 +1,127 @@
+"""Prints how long the largest program takes to an ESP32 over a line with a round trip of 40 ms.
+
+The robot is its sketch on a simulated chip (`tests/machines/esp32.py`), at 115200 baud; time is
+simulated, so every run prints the same. The wire's time is that of the code alone.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections import deque
+from pathlib import Path
+from typing import NamedTuple
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
+
+from tests.machines.esp32 import Esp32Robot, missing
+from tests.machines.host_firmware import HostFirmware
+from tiniscript import robots
+from tiniscript.bytecode.image import Image, pack, unpack
+from tiniscript.bytecode.opcodes import BY_NAME
+from tiniscript.link.requests import OK
+from tiniscript.link.session import Session
+
+BAUD = 115_200
+ROUND_TRIP_MS = 40
+MUST = 3.0  # times the wire's time
+MOST_MS = 60_000
+MOVE = BY_NAME["MOVE8_F"].code
+
+
+class Took(NamedTuple):
+    """Of an upload: its code, ms until its receipt is there, the wire's ms, frames and bytes."""
+
+    code_bytes: int
+    took_ms: int
+    wire_ms: float
+    frames: int
+    sent_bytes: int
+
+    @property
+    def times(self) -> float:
+        return self.took_ms / self.wire_ms
+
+
+class Wire:
+    """One direction: a byte takes its time at the baud, and arrives half a round trip later."""
+
+    def __init__(self, baud: int, late_ms: float) -> None:
+        self._byte_ms, self._late_ms = 10_000 / baud, late_ms
+        self._free_ms = 0.0
+        self._queue: deque[tuple[float, int]] = deque()
+
+    def send(self, data: bytes, now_ms: int) -> None:
+        self._free_ms = max(self._free_ms, now_ms)
+        for byte in data:
+            self._free_ms += self._byte_ms
+            self._queue.append((self._free_ms + self._late_ms, byte))
+
+    def arrived(self, now_ms: int) -> bytes:
+        found = bytearray()
+        while self._queue and self._queue[0][0] <= now_ms:
+            found.append(self._queue.popleft()[1])
+        return bytes(found)
+
+
+def program(code_bytes: int) -> Image:
+    """Return a program of so many bytes: moves, and what is left of single instructions."""
+    count, rest = divmod(code_bytes, 3)
+    moves = b"".join(bytes((MOVE, k % 256, k % 101)) for k in range(count))
+    return unpack(pack("SI", 0, moves + bytes([BY_NAME["STOP"].code]) * rest))
+
+
+def uploaded(
+    robot: HostFirmware, kit: int, code_bytes: int, baud: int = BAUD,
+    round_trip_ms: float = ROUND_TRIP_MS,
+) -> Took:  # fmt: skip
+    """Upload a program to a robot that has just begun. Raises RuntimeError where it is not done."""
+    there, back = (Wire(baud, round_trip_ms / 2) for _ in range(2))
+    session = Session(7, baud, kit)
+    image = program(code_bytes)
+    hello = session.hello()
+    request = None
+    now_ms = began_ms = frames = sent_bytes = 0
+    while request is None or request.outcome is None:
+        if hello.outcome and request is None:
+            began_ms = now_ms
+            request = session.upload(image, runs=False)
+        data = session.poll(now_ms)
+        if request is not None:
+            frames += len([each for each in data.split(b"\0") if each])
+            sent_bytes += len(data)
+        there.send(data, now_ms)
+        now_ms += 1
+        back.send(robot.step(there.arrived(now_ms)), now_ms)
+        session.receive(back.arrived(now_ms), now_ms)
+        if now_ms > MOST_MS:
+            raise RuntimeError("the upload has no end")
+    if request.outcome.status != OK:
+        raise RuntimeError(f"the robot has not taken it: {request.outcome}")
+    wire_ms = code_bytes * 10_000 / baud
+    return Took(code_bytes, now_ms - began_ms, wire_ms, frames, sent_bytes)
+
+
+def main() -> int:
+    if missing():
+        print(missing(), file=sys.stderr)
+        return 2
+    profile = robots.load("tinibot32")
+    print(f"tinibot32 at {BAUD} baud, round trip {ROUND_TRIP_MS} ms, simulated time:\n")
+    print("| code | frames | bytes sent | until the receipt | times the wire's time |")
+    print("|---:|---:|---:|---:|---:|")
+    is_enough = True
+    for code_bytes in (240, 1900, profile.board.program_bytes):
+        robot = Esp32Robot(profile)
+        robot.wait(300)
+        took = uploaded(robot, profile.kit.fingerprint, code_bytes)
+        robot.close()
+        print(f"| {took.code_bytes} | {took.frames} | {took.sent_bytes} | {took.took_ms} ms "
+              f"| {took.times:.2f} |")  # fmt: skip
+        is_enough = code_bytes < profile.board.program_bytes or took.times <= MUST
+    print(f"\nThe last one must take {MUST:.0f} times the wire's time at most.")
+    return 0 if is_enough else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
