@@ -92,8 +92,15 @@ def test_frames_wait_until_the_robot_looks_and_one_more_is_dropped() -> None:
     """A robot with a window of 4 answers four that came at once, one with 1 the first."""
     for is_large, window in ((True, LARGE_WINDOW), (False, 1)):
         robot = begun(is_large=is_large)
-        pings = [Frame(PING, 2 + k, EPOCH + 1) for k in range(window + 2)]
-        found = answers(robot, *pings, is_late=True)
+        numbers = [(FETCH, PING)[k % 2] for k in range(window + 2)]
+        frames = [
+            Frame(number, 2 + k, EPOCH + 1, bytes(2 * (number == FETCH)))
+            for k, number in enumerate(numbers)
+        ]
+        found = answers(robot, *frames, is_late=True)
+        assert [frame.number for frame in found] == numbers[:window]
+        statuses = {FETCH: STATUSES["NO_PROGRAM"], PING: OK}
+        assert all(frame.payload[0] == statuses[frame.number] for frame in found)
         assert [frame.seq for frame in found] == [2 + k for k in range(window)]
         (status,) = answers(robot, Frame(BY_NAME["STATUS"].number, 50, EPOCH + 1))
         told = read(BY_NAME["STATUS"].reply, status.payload[1:])
@@ -122,7 +129,7 @@ def test_a_large_frame_without_its_zero_is_damaged() -> None:
     code = large_upload.program(90).code
     for is_late in (False, True):
         robot = begun(epoch=255)
-        wire = with_checksum(bytes([LIVE, 2, 0, RUN]) + code)
+        wire = with_checksum(bytes([LIVE, 2, 0, 7, RUN]) + code)
         assert wire[0] == HEAD_BYTES
         step = robot.step(10, wire + b"\0", is_late)
         assert step.sent == b"" and step.did == []
