@@ -96,7 +96,7 @@ def test_the_module_imports_the_robot_alone() -> None:
     from wasmtime import Engine, Module
 
     machine = {"motors", "off", "read", "beep", "show", "set"}
-    imported = {wasm.MACHINE: machine, wasm.ROBOT: {"look"}}
+    imported = {wasm.MACHINE: machine, wasm.ROBOT: {"look"}, wasm.ROBOT_ESP32: {"look"}}
     for each, names in imported.items():
         data = (ROOT / each.path).read_bytes()
         module = Module(Engine(), data)

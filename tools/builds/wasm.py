@@ -1,8 +1,9 @@
-"""Makes `machine.wasm` and `robot.wasm` from the C++: `python -m tools.builds.wasm` after changes.
+"""Makes the `.wasm` of the package from the C++: `python -m tools.builds.wasm` after changes.
 
-`tsc run --machine cpp` runs the machine, and `tsc robot` the whole robot. Needs the compiler
-`ziglang` from PyPI, in the version that the extra `test` pins: with it, the same sources give the
-same bytes wherever they are. `--check` writes nothing, and says if a file is stale.
+`tsc run --machine cpp` runs the machine, and `tsc robot` the whole robot: `robot_esp32.wasm` has
+the sizes of one with an ESP32. Needs the compiler `ziglang` from PyPI, in the version that the extra
+`test` pins: with it, the same sources give the same bytes wherever they are. `--check` writes
+nothing, and says if a file is stale.
 """
 
 from __future__ import annotations
@@ -39,6 +40,7 @@ class Module(NamedTuple):
     path: str
     files: tuple[str, ...]
     folders: tuple[str, ...]
+    flags: tuple[str, ...] = ()
 
 
 MACHINE = Module("compiler/tiniscript/vm/machine.wasm", ("extras/wasm/main.cpp",), ("src/vm",))
@@ -47,7 +49,10 @@ ROBOT = Module(
     ("extras/wasm/robot.cpp", "extras/wasm/watched.cpp"),
     ("src/firmware", "src/link", "src/store", "src/text", "src/vm"),
 )
-MODULES = (MACHINE, ROBOT)
+ROBOT_ESP32 = ROBOT._replace(
+    path="compiler/tiniscript/virtual/robot_esp32.wasm", flags=("-Dtiniscript_like_esp32",)
+)
+MODULES = (MACHINE, ROBOT, ROBOT_ESP32)
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -99,7 +104,7 @@ def built(sources: Path, module: Module) -> bytes:
         places = {"ZIG_GLOBAL_CACHE_DIR": folder, "ZIG_LOCAL_CACHE_DIR": folder}
         names = [path.relative_to(sources).as_posix() for path in files]
         done = subprocess.run(
-            [sys.executable, "-m", "ziglang", "c++", *FLAGS, *names, "-o", made],
+            [sys.executable, "-m", "ziglang", "c++", *FLAGS, *module.flags, *names, "-o", made],
             cwd=sources,
             env={**os.environ, **places},
             capture_output=True,

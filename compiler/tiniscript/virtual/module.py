@@ -1,4 +1,6 @@
-"""The robot's firmware, as the WebAssembly module `robot.wasm`: one instance is one power-on.
+"""The robot's firmware, as a WebAssembly module: one instance is one power-on.
+
+`robot.wasm` has the memory and the link of an Uno, `robot_esp32.wasm` those of an ESP32.
 
 Knows how to call the module (`vm_arduino/extras/wasm/robot.cpp` is the other side). Does not know
 what a robot does in its world: a `Board` is told. Importing this fails where `wasmtime` is not
@@ -22,6 +24,7 @@ else:
     from tiniscript.vm import wasm_store
 
 PATH = Path(__file__).with_name("robot.wasm")
+PATH_ESP32 = Path(__file__).with_name("robot_esp32.wasm")
 
 POWER_ON, RESET_BUTTON = 1, 2  # why it begins
 
@@ -74,11 +77,16 @@ class Circumstances(NamedTuple):
 
 
 class Firmware:
-    """A running firmware. `memory` is the content of its EEPROM; None: the EEPROM is empty."""
+    """A running firmware, the one of the module `path`.
 
-    def __init__(self, board: Board, what: Circumstances, memory: bytes | None = None) -> None:
+    `memory` is the content of its EEPROM; None: the EEPROM is empty.
+    """
+
+    def __init__(
+        self, board: Board, what: Circumstances, memory: bytes | None = None, path: Path = PATH
+    ) -> None:
         self._store = wasm_store.store()
-        module = wasm_store.module(PATH)
+        module = wasm_store.module(path)
         looks = WeakMethod(self._look)  # `wasm_store` says why
 
         def look_now() -> None:

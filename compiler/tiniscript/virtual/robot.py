@@ -14,9 +14,17 @@ from tiniscript.bytecode.opcodes import FAULTS
 from tiniscript.robots.boards import AT_STOP, HOLD
 from tiniscript.robots.kinematics import Pose
 from tiniscript.robots.kit_words import kit_words
+from tiniscript.robots.ports import ESP32S
 from tiniscript.robots.profile import Robot
 from tiniscript.virtual.driving import Driving
-from tiniscript.virtual.module import POWER_ON, RESET_BUTTON, Circumstances, Firmware
+from tiniscript.virtual.module import (
+    PATH,
+    PATH_ESP32,
+    POWER_ON,
+    RESET_BUTTON,
+    Circumstances,
+    Firmware,
+)
 from tiniscript.virtual.sensing import Sensing
 from tiniscript.virtual.world import World, WorldRefused
 from tiniscript.vm.trace import Event, TracedRobot
@@ -34,18 +42,21 @@ class Settings(NamedTuple):
 
     `seed` starts the random numbers. `noise` is a fraction: 0.05 is 5 %. `motors` are percent of
     each motor's nominal speed. `baud` of 0: a byte takes no time; None: as in the profile.
-    `eeprom_us` is the time to save one byte. `told` are readings of single sensors.
+    `eeprom_us` is the time to save one byte; None: as the chip takes.
+    `told` are readings of single sensors.
     """
 
     seed: int = 1
     noise: float = 0.0
     motors: tuple[float, float] = (100.0, 100.0)
     baud: int | None = None
-    eeprom_us: int = 3400
+    eeprom_us: int | None = None
     told: Mapping[int, Sequence[int]] = {}
 
 
 PLAIN = Settings()
+EEPROM_US = 3400  # of an AVR, for a byte
+FLASH_US = 10  # of an ESP32, whose NVS writes a whole program at once
 
 
 class VirtualRobot:
@@ -139,6 +150,10 @@ class VirtualRobot:
         self._began_ms = self.now_ms
         kit, board = self.profile.kit, self.profile.board
         baud = board.baud if self.settings.baud is None else self.settings.baud
+        is_esp32 = board.chip in ESP32S
+        eeprom_us = self.settings.eeprom_us
+        if eeprom_us is None:
+            eeprom_us = FLASH_US if is_esp32 else EEPROM_US
         return Firmware(
             self,
             Circumstances(
@@ -151,10 +166,11 @@ class VirtualRobot:
                 seed=self.chance.getrandbits(32),
                 max_run_ms=board.max_run_seconds * 1000,
                 byte_us=round(BITS * 1_000_000 / baud) if baud else 0,
-                eeprom_us=self.settings.eeprom_us,
+                eeprom_us=eeprom_us,
                 is_spanish=board.language == "es",
             ),
             memory,
+            PATH_ESP32 if is_esp32 else PATH,
         )
 
     # -- what it does -----------------------------------------------------------------------------
