@@ -29,8 +29,6 @@
 #include "kits/tinibot.h"
 #endif
 
-#ifdef ARDUINO_ARCH_ESP32
 static_assert(tiniscript::kProgramBytes <= tiniscript::kStoredCodeBytes, "the store has less room");
-#endif
 
 #endif  // TINISCRIPT_BOARDS_KIT_H_
