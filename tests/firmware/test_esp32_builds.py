@@ -146,6 +146,6 @@ def test_nothing_waits() -> None:
 def test_the_settings_need_no_registry_of_libraries() -> None:
     text = (SOURCES / "platformio.ini").read_text(encoding="utf-8")
     for row in ("[env:esp32dev]", "[env:esp32c3]", "board = esp32-c3-devkitm-1",
-                "platform = espressif32", "board_build.partitions = min_spiffs.csv"):  # fmt: skip
+                "platform = espressif32", "board_build.partitions = partitions.csv"):  # fmt: skip
         assert row in text
     assert "lib_deps" not in text

@@ -6,7 +6,9 @@ may leave an entry: as it was, as it becomes, or lost.
 
 from __future__ import annotations
 
+import re
 import subprocess
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -23,6 +25,9 @@ OTHERS = [
     STAND_INS / "simulated_chip.cpp",
     STAND_INS / "powercut.cpp",
 ]
+PAGE_BYTES = 4096  # of NVS
+MIN_SPIFFS_PAGES = 5  # of NVS in min_spiffs.csv
+FIRST_PARTITION, FLASH_BYTES = 0x9000, 4 << 20
 WRITES = 8  # of a save: the body, the generation, three marks away and back
 
 
@@ -38,8 +43,11 @@ def program(store: Path = STORE) -> Path:
     return made("g++", BUILDS, "", flags, [name.encode() for name in objects], objects)
 
 
-def run(made_of: Path, seed: int, size: int) -> subprocess.CompletedProcess[str]:
-    words = [str(made_of), str(seed), str(size)]
+def run(
+    made_of: Path, seed: int, size: int, pages: int | None = None
+) -> subprocess.CompletedProcess[str]:
+    """Run it; with `pages` of NVS nothing is cut, and programs are saved one after the other."""
+    words = [str(made_of), str(seed), str(size), *([] if pages is None else [str(pages)])]
     return subprocess.run(words, capture_output=True, text=True, check=False, timeout=300)
 
 
@@ -50,6 +58,26 @@ def test_old_or_new(size: int) -> None:
     cases, writes = (int(line.split()[1]) for line in done.stdout.splitlines())
     assert cases > 5_000
     assert writes <= WRITES, "a program takes a few writes, not one for each byte"
+
+
+def test_nvs_has_room_for_two_programs_and_a_third() -> None:
+    """The simulated NVS has the room of the partition; that of min_spiffs.csv is too small."""
+    text = (SOURCES / "partitions.csv").read_text(encoding="utf-8")
+    rows = [re.split(r",\s*", row) for row in text.splitlines() if not row.startswith("#")]
+    places = sorted((int(offset, 0), int(size, 0), name) for name, _, _, offset, size in rows)
+    assert places[0][0] >= FIRST_PARTITION and sum(places[-1][:2]) <= FLASH_BYTES
+    assert all(a + size <= b for (a, size, _), (b, *_) in pairwise(places)), "two overlap"
+    (nvs_bytes,) = (size for _, size, name in places if name == "nvs")
+    header = (STAND_INS / "simulated_chip.h").read_text(encoding="utf-8")
+    (pages,) = map(int, re.findall(r"nvs_room = (\d+) \* kPageEntries", header))
+    assert pages + 1 == nvs_bytes // PAGE_BYTES
+
+
+@pytest.mark.parametrize(("pages", "is_enough"), [(15, True), (MIN_SPIFFS_PAGES - 1, False)])
+def test_the_largest_programs_are_saved_again_and_again(pages: int, is_enough: bool) -> None:
+    done = run(program(), 1, 8192, pages)
+    assert (done.returncode == 0) == is_enough, (done.stdout + done.stderr)[-2000:]
+    assert is_enough or "a save fails" in done.stdout
 
 
 NOTICED = ("the mark comes before the body", "the generation is not in the body",

@@ -108,7 +108,7 @@ def test_a_wheel_has_what_is_in_the_repository_and_nothing_stale(
         SOURCES + name.removeprefix("vm_arduino/")
         for name in kept
         if name.startswith(("vm_arduino/src/", "vm_arduino/extras/near/"))
-        or name == "vm_arduino/platformio.ini"
+        or name in ("vm_arduino/platformio.ini", "vm_arduino/partitions.csv")
     }
     assert found == package | sources | {BUILT}
     assert len(sources) > 50

@@ -1,8 +1,8 @@
 """Makes the `.wasm` of the package from the C++: `python -m tools.builds.wasm` after changes.
 
 `tsc run --machine cpp` runs the machine, and `tsc robot` the whole robot: `robot_esp32.wasm` has
-the sizes of one with an ESP32. Needs the compiler `ziglang` from PyPI, in the version that the extra
-`test` pins: with it, the same sources give the same bytes wherever they are. `--check` writes
+the sizes of one with an ESP32. Needs the compiler `ziglang` from PyPI, in the version that the
+extra `test` pins: with it, the same sources give the same bytes wherever they are. `--check` writes
 nothing, and says if a file is stale.
 """
 

@@ -1,12 +1,12 @@
 // Pulls the plug of an ESP32 at every write of NVS, and looks what the store finds at the next
 // starts.
 //
-//   powercut SEED SIZE
+//   powercut SEED SIZE [PAGES]
 //
 // runs saves of programs of SIZE bytes of code and of records. Each write of a save is cut, in each
 // way in which NVS may leave its entry; then each write of what the next start puts in order; then
 // each write of the next save. Prints how many cases it looked at. Ends with status 1 at the first
-// thing that must not be.
+// thing that must not be. With PAGES of NVS it only saves, and cuts nothing.
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -177,15 +177,31 @@ void history(const char* name, Area area, const std::vector<Content>& contents) 
   }
 }
 
+// Saves one after the other; nothing is cut.
+void save_all(const std::vector<Content>& contents) {
+  doing = "programs";
+  Entries entries;
+  for (const Content& content : contents) {
+    bool has_ended = false;
+    entries = saved(entries, Area::kProgram, content, 0, TornEntry::kOld, &has_ended);
+    starts(entries, Area::kProgram, {content});
+  }
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
-  if (count != 3) return 2;
+  if (count != 3 && count != 4) return 2;
   srand(static_cast<unsigned>(atoi(arguments[1])));
   const uint16_t size = static_cast<uint16_t>(atoi(arguments[2]));
   const Content a = some_image(size);
   const Content b = some_image(static_cast<uint16_t>(size / 2));
   const Content c = some_image(size);
+  if (count == 4) {
+    chip.nvs_room = kPageEntries * static_cast<size_t>(atoi(arguments[3]));
+    save_all({a, c, a, c, some_image(size), a});
+    return 0;
+  }
   history("programs", Area::kProgram, {a, b, c, b, c, a});
   for (Area area : {Area::kIdentity, Area::kFault, Area::kOwner}) {
     std::vector<Content> records;

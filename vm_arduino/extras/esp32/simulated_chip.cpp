@@ -127,7 +127,22 @@ void set_tone(uint8_t channel, uint32_t hertz) {
   chip.channels[channel].duty = hertz == 0 ? 0 : 0x1ff;
 }
 
-// One write of NVS: an entry is as it was, as it becomes, or gone.
+// The entries of NVS that a value takes: a number has one; a blob has one for its index, one for
+// each page that it reaches into, and those of its bytes.
+size_t entries_of(const std::string& value) {
+  if (value.size() == sizeof(uint32_t)) return 1;
+  const size_t data = (value.size() + kEntryBytes - 1) / kEntryBytes;
+  return 2 + data + data / (kPageEntries - 1);
+}
+
+size_t used_entries() {
+  size_t used = 1;  // the name of the namespace
+  for (const auto& each : chip.entries) used += entries_of(each.second);
+  return used;
+}
+
+// One write of NVS: an entry is as it was, as it becomes, or gone. The old one goes when the new
+// one is there, so for a moment there is room for both.
 esp_err_t put(const char* key, const std::string& value) {
   expect_free("NVS in a critical section");
   expect(strlen(key) < 16, "a key of NVS that is too long");
@@ -135,6 +150,7 @@ esp_err_t put(const char* key, const std::string& value) {
   if (chip.is_off) return ESP_OK;
   const auto before = chip.entries.find(key);
   if (before != chip.entries.end() && before->second == value) return ESP_OK;
+  if (used_entries() + entries_of(value) > chip.nvs_room) return ESP_ERR_NVS_NOT_ENOUGH_SPACE;
   chip.nvs_writes++;
   if (chip.nvs_writes == chip.cut_at) {
     chip.is_off = true;

@@ -9,6 +9,8 @@
 
 #include <Arduino.h>
 
+#include <stddef.h>
+
 #include <atomic>
 #include <map>
 #include <string>
@@ -32,6 +34,10 @@ struct SimulatedChannel {
 // What becomes of the entry of NVS that is written when the power fails.
 enum class TornEntry : uint8_t { kOld, kNew, kLost };
 
+// NVS keeps everything in entries of 32 bytes, in pages of 4 KB.
+constexpr size_t kEntryBytes = 32;
+constexpr size_t kPageEntries = 126;
+
 struct SimulatedChip {
   std::atomic<uint64_t> now_us{0};
   SimulatedPin pins[40] = {};
@@ -49,6 +55,7 @@ struct SimulatedChip {
   std::map<std::string, std::string> entries;  // of NVS
   uint32_t nvs_writes = 0;
   bool is_nvs_full = false;
+  size_t nvs_room = 15 * kPageEntries;  // of 16 pages: one stays free
   uint32_t cut_at = 0;  // the power fails at this write; 0: it does not
   TornEntry torn = TornEntry::kOld;
   bool is_off = false;  // since then nothing is written
