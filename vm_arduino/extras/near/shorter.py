@@ -1,0 +1,345 @@
+"""Makes the compiler's assembly shorter: `link.py` runs it between compiling and linking.
+
+GCC 5 and 7 write into each function how its registers are kept, reach a far place from a condition
+by a jump of its own, and repeat how functions end. Here functions that keep the same registers
+share the instructions that do it, a condition that leads far uses a jump that is there already, and
+equal ends are there once. What interrupts reach stays as it was: nothing there gets slower.
+
+Knows the text that GCC writes for an AVR whose program counter has 2 bytes. What has another form
+than expected is left alone.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from assembly import (
+    LABEL,
+    Function,
+    Instruction,
+    between,
+    is_movable,
+    leads_on,
+    pieces,
+    places,
+    reached,
+    regions,
+)
+
+REACH = 3800  # bytes: a call or a jump over less than that takes 2 of them
+NEAR = 112  # bytes: how far a condition leads at most, less what an estimate may miss
+LONGEST = 16  # instructions of a part or an end
+LEAST_SAVED = 4  # bytes
+# What runs between a line of a computer and the motors.
+QUICK = re.compile(
+    r"4Link4hear|4Link5start|FrameCheck|begin_run|7Machine(3act|6powers|4wait|5begin|5sleep|4tick)|"
+    r"(robot|board)_motors|5level|^main$|7percent|7limited|8shape_of"
+)
+KEPT = (*range(2, 18), 28, 29)  # the registers that a function keeps, as GCC counts them
+OPPOSITE = {"eq": "ne", "lo": "sh", "lt": "ge", "mi": "pl", "cs": "cc", "vs": "vc", "ts": "tc"}
+OPPOSITE |= {value: key for key, value in OPPOSITE.items()}
+
+FRAMELESS = "/* frame size = 0 */"
+BODY, ENDING = "/* prologue: function */", "/* epilogue start */"
+SAVES = re.compile(r"\tjmp __prologue_saves__\+\(\(18 - (\d+)\) \* 2\)$")
+RESTORES = re.compile(r"\tjmp __epilogue_restores__ \+ \(\(18 - (\d+)\) \* 2\)$")
+
+
+def shorter(assembly: str, addresses: Mapping[str, int]) -> str:
+    """Return assembly that does the same. `addresses`: of functions, where they lie about."""
+    parts = pieces(assembly)
+    functions = {piece.name: piece for piece in parts if isinstance(piece, Function)}
+    vectors = [name for name in functions if name.startswith("__vector")]
+    quick = reached(vectors, functions) | {name for name in functions if QUICK.search(name)}
+    slow = [
+        each
+        for name, each in functions.items()
+        if name not in quick and name in addresses and BODY in each.lines
+    ]
+    slow.sort(key=lambda function: addresses[function.name])
+    for number, functions_near in enumerate(regions(slow, addresses, REACH)):
+        holder = functions_near[len(functions_near) // 2]
+        common = [*_share_parts(functions_near, number), *_share_registers(functions_near, number)]
+        holder.lines += common
+    _share_ends(slow, addresses)
+    for function in slow:
+        _share_jumps(function)
+    return "".join(
+        f"{line}\n"
+        for piece in parts
+        for line in (piece.lines if isinstance(piece, Function) else [piece])
+    )
+
+
+# -- conditions that lead far ---------------------------------------------------------------------
+
+
+def _share_jumps(function: Function) -> None:
+    """Let a condition that skips a jump of its own use another jump, or lead there itself."""
+    found = function.instructions()
+    at_of = places(function, found)
+    jumps = defaultdict(list)  # to a label: the instructions that do nothing else
+    for each in found:
+        if each.name == "rjmp":
+            jumps[each.operands].append(each)
+    used: set[int] = set()  # lines of jumps that others lead to
+    gone: set[int] = set()  # lines of those that nobody needs
+    new = list(function.lines)
+    for at in range(1, len(found) - 1):
+        before, branch, jump = found[at - 1 : at + 2]
+        opposite = OPPOSITE.get(branch.name[2:]) if branch.name.startswith("br") else None
+        if opposite is None or branch.operands != ".+2" or jump.name != "rjmp":
+            continue
+        if leads_on(before) or jump.line in used or jump.line != branch.line + 1:
+            continue
+        here, label = at_of[branch.line], jump.operands
+        if abs(at_of.get(label, 1 << 20) - here) > NEAR:
+            others = [each for each in jumps[label] if each != jump and each.line not in gone]
+            others.sort(key=lambda each: abs(at_of[each.line] - here))
+            if not others or abs(at_of[others[0].line] - here) > NEAR:
+                continue
+            line = others[0].line
+            label = f".Lshared{line}_{function.name}"
+            if line not in used:
+                new[line] = f"{label}:\n{new[line]}"
+                used.add(line)
+        gone.add(jump.line)
+        new[branch.line] = f"\tbr{opposite} {label}"
+    function.lines = "\n".join(line for at, line in enumerate(new) if at not in gone).split("\n")
+
+
+# -- registers that are kept ----------------------------------------------------------------------
+
+
+class Frame(NamedTuple):
+    """How a function without local variables in memory keeps registers: lines of its text."""
+
+    registers: tuple[int, ...]  # in the order of KEPT
+    begin: tuple[int, int]  # the first line and the one behind the last one
+    end: tuple[int, int]
+    saved: int  # bytes, if others do it
+
+
+def _frame(function: Function) -> Frame | None:
+    """Return how a function keeps registers, or None if that cannot be shared."""
+    lines = function.lines
+    if FRAMELESS not in lines or lines.count(BODY) != 1 or lines.count(ENDING) != 1:
+        return None
+    body, ending = lines.index(BODY), lines.index(ENDING)
+    # what belongs to the end: up to its return
+    end = lines[ending + 1 :]
+    pushed = [line.removeprefix("\tpush r") for line in lines[1:body]]
+    if pushed and all(each.isdigit() for each in pushed):
+        registers = tuple(int(each) for each in pushed)
+        expected = [f"\tpop r{each}" for each in reversed(registers)] + ["\tret"]
+        size = 4 * len(registers) + 2
+        complete = registers if registers != (28,) else (28, 29)
+        if end[: len(expected)] != expected or complete != KEPT[-len(complete) :]:
+            return None
+        return Frame(complete, (1, body), (ending + 1, ending + 1 + len(expected)), size)
+    begun = SAVES.match(lines[body - 2]) if body == 7 else None
+    ended = RESTORES.match(end[3]) if len(end) > 3 else None
+    if begun is None or ended is None or begun[1] != ended[1] or lines[body - 1] != "1:":
+        return None
+    sized = [f"\tldi r30, lo8({begun[1]})", "\tin r28,__SP_L__", "\tin r29,__SP_H__"]
+    if sorted(end[:3]) != sorted(sized) or lines[1:3] != ["\tldi r26,0", "\tldi r27,0"]:
+        return None
+    # each of the jumps takes 2 or 4 bytes
+    return Frame(KEPT[-int(begun[1]) :], (1, body), (ending + 1, ending + 5), 18)
+
+
+def _share_registers(functions: list[Function], number: int) -> list[str]:
+    """Let functions that keep the same registers call what does it, and return that."""
+    users = defaultdict(list)
+    for function in functions:
+        if (frame := _frame(function)) is not None:
+            users[frame.registers].append((function, frame))
+    shared = []
+    for registers, uses in users.items():
+        if sum(frame.saved - 4 for _, frame in uses) > 2 * len(registers) + 6:
+            shared.append(registers)
+            for function, frame in uses:
+                _use_shared(function, frame, number)
+    return _shared(shared, number) if shared else []
+
+
+def _use_shared(function: Function, frame: Frame, number: int) -> None:
+    lowest = frame.registers[0]
+    # the end first: it lies behind the begin
+    function.lines[slice(*frame.end)] = [f"\tjmp tiniscript_restore_{number}_r{lowest}"]
+    function.lines[slice(*frame.begin)] = [f"\tcall tiniscript_keep_{number}_r{lowest}"]
+
+
+def _shared(sets: list[tuple[int, ...]], number: int) -> list[str]:
+    """Return what keeps sets of registers, the last one first, and what restores them."""
+    lines = []
+    for registers in sets:
+        lines.append(f"tiniscript_keep_{number}_r{registers[0]}:")
+        lines += ["\tpop r31", "\tpop r30"]  # where the function goes on
+        lines += [f"\tpush r{each}" for each in reversed(registers)]
+        lines.append("\tijmp")
+    lowest = {registers[0] for registers in sets}
+    for each in KEPT[KEPT.index(min(lowest)) :]:
+        if each in lowest:
+            lines.append(f"tiniscript_restore_{number}_r{each}:")
+        lines.append(f"\tpop r{each}")
+    return [*lines, "\tret"]
+
+
+# -- ends that are equal --------------------------------------------------------------------------
+
+
+class End(NamedTuple):
+    """A place behind which no instruction follows the one before it."""
+
+    function: Function
+    number: int
+    found: list[Instruction]  # up to the end
+    longest: int  # instructions that may be left out here
+
+
+def _ends(function: Function) -> list[End]:
+    found = function.instructions()
+    ends: list[End] = []
+    for at, last in enumerate(found):
+        if last.name not in ("ret", "jmp", "rjmp") or "__" in last.operands or at == 0:
+            continue
+        if last.name == "rjmp" and last.operands[0] != ".":
+            continue
+        begin = at
+        while begin > 0 and at - begin < LONGEST and is_movable(found[begin - 1]):
+            if any(LABEL.match(line) for line in between(function, found, begin)):
+                break
+            begin -= 1
+        if not leads_on(found[at - 1]):
+            ends.append(End(function, len(ends), found[: at + 1], at + 1 - begin))
+    return ends
+
+
+def _share_ends(functions: list[Function], addresses: Mapping[str, int]) -> None:
+    """Let functions jump to an end that another one has, or that they have before."""
+    ends = [end for function in functions for end in _ends(function)]
+    gone: dict[tuple[str, int], tuple[int, str]] = {}  # ends: how many instructions, and to where
+    labels: dict[tuple[str, int], str] = {}  # lines
+    for length in range(LONGEST, 1, -1):
+        same = defaultdict(list)
+        for end in ends:
+            if len(end.found) > length and (end.function.name, end.number) not in gone:
+                same[tuple(each[1:] for each in end.found[-length:])].append(end)
+        for group in same.values():
+            hosts: list[End] = []
+            for end in group:
+                name = end.function.name
+                near = [
+                    host
+                    for host in hosts
+                    if abs(addresses[host.function.name] - addresses[name]) < REACH
+                ]
+                may_go = end.longest >= length and not leads_on(end.found[-length - 1])
+                if near and may_go and not _has_label(end, length, labels):
+                    host = near[-1]
+                    line = host.found[-length].line
+                    key = (host.function.name, line)
+                    label = labels.setdefault(key, f".Lend{line}_{host.function.name}")
+                    jump = "rjmp" if host.function is end.function else "jmp"
+                    gone[name, end.number] = (length, f"\t{jump} {label}")
+                else:
+                    hosts.append(end)
+    for end in reversed(ends):
+        name = end.function.name
+        if (name, end.number) in gone:
+            length, jump = gone[name, end.number]
+            lines = end.function.lines
+            for each in end.found[-length:]:
+                lines[each.line] = ""
+            lines[end.found[-1].line] = jump
+    for function in functions:
+        rows = []
+        for number, row in enumerate(function.lines):
+            shared = labels.get((function.name, number))
+            rows += [f"{shared}:", row] if shared else [row]
+        function.lines = rows
+
+
+def _has_label(end: End, length: int, labels: Mapping[tuple[str, int], str]) -> bool:
+    """Return whether somebody leads into what would be left out."""
+    return any((end.function.name, each.line) in labels for each in end.found[-length:])
+
+
+# -- parts that are equal -------------------------------------------------------------------------
+
+Key = tuple[tuple[str, str], ...]  # instructions: what they do, and with what
+
+
+class Part(NamedTuple):
+    """Instructions of a function that follow each other; nothing leads into their middle."""
+
+    function: Function
+    lines: tuple[int, ...]
+
+
+def _parts(function: Function) -> dict[Key, list[Part]]:
+    found = function.instructions()
+    parts = defaultdict(list)
+    begin = function.lines.index(BODY)
+    for first, start in enumerate(found):
+        if start.line < begin or (first > 0 and leads_on(found[first - 1])):
+            continue
+        key: list[tuple[str, str]] = []
+        for at in range(first, min(first + LONGEST, len(found))):
+            each = found[at]
+            if not is_movable(each) or each.name.startswith("br") or "__SP_" in each.operands:
+                break
+            if at > first and any(LABEL.match(line) for line in between(function, found, at)):
+                break
+            key.append((each.name, each.operands))
+            if at > first and not leads_on(each):
+                lines = tuple(one.line for one in found[first : at + 1])
+                parts[tuple(key)].append(Part(function, lines))
+            if "call" in each.name:
+                break  # nothing more of the stack is used where a call comes last
+    return parts
+
+
+def _saved(key: Key, count: int) -> int:
+    """Return the bytes that are saved where so many parts become one; calls are short."""
+    size = sum(4 if name in ("lds", "sts") else 2 for name, _ in key)
+    return count * (size - 2) - size - (0 if key[-1][0] == "call" else 2)
+
+
+def _share_parts(functions: list[Function], number: int) -> list[str]:
+    """Let functions call parts that they have in common, and return those."""
+    parts: dict[Key, list[Part]] = defaultdict(list)
+    for function in functions:
+        for key, found in _parts(function).items():
+            parts[key] += found
+    ordered = sorted(parts, key=lambda key: -_saved(key, len(parts[key])))
+    taken: dict[str, set[int]] = defaultdict(set)  # lines of functions
+    shared: list[str] = []
+    for key in ordered:
+        if _saved(key, len(parts[key])) < LEAST_SAVED:
+            break
+        alive: list[Part] = []
+        for part in parts[key]:
+            others = alive[-1].lines if alive and alive[-1].function is part.function else ()
+            if taken[part.function.name].isdisjoint((*part.lines, *others)) and (
+                set(others).isdisjoint(part.lines)
+            ):
+                alive.append(part)
+        if _saved(key, len(alive)) < LEAST_SAVED or "icall" in key[-1]:
+            continue
+        label = f"tiniscript_part_{number}_{len(shared)}"
+        for part in alive:
+            taken[part.function.name].update(part.lines)
+            for line in part.lines:
+                part.function.lines[line] = ""
+            part.function.lines[part.lines[0]] = f"\tcall {label}"
+        end = ["\tret"]
+        rows = list(key)
+        if rows[-1][0] == "call":
+            end = [f"\tjmp {rows.pop()[1]}"]
+        shared += [f"{label}:", *(f"\t{name} {operands}" for name, operands in rows), *end]
+    return shared
