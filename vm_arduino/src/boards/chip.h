@@ -9,6 +9,7 @@
 #include "avr/attention.h"
 #include "avr/clock.h"
 #include "avr/echo.h"
+#include "avr/echo_interrupt.h"
 #include "avr/pins.h"
 #include "avr/watchdog.h"
 #elif defined(ARDUINO_ARCH_ESP32)

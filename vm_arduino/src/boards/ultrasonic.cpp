@@ -81,6 +81,17 @@ void on_change() {
   }
 }
 
+#ifdef __AVR__
+// An interrupt.
+tini_always_inline void hear() {
+  if (kUltrasonics == 1) {
+    hear_change<Sonar, Heard>(&sonar, ultrasonic_at(0).echo, kGlitchUs);
+  } else {
+    call_in_frame(on_change);
+  }
+}
+#endif
+
 void listen(bool is_on) {
   const CriticalSection critical;
   if (is_on) sonar.heard = Heard::kNothing;
@@ -106,17 +117,18 @@ bool is_over() {
     return false;
   }
   Heard found;
-  uint16_t echo_us;
-  uint16_t quiet_us;
-  uint16_t gone_us;
+  uint16_t rose_us;
+  uint16_t fell_us;
   {
     const CriticalSection critical;
-    const uint16_t now_us = clock_us();
-    gone_us = since(now_us, it->ping_us);
     found = it->heard;
-    echo_us = since(it->fell_us, it->rose_us);
-    quiet_us = since(now_us, it->fell_us);
+    rose_us = it->rose_us;
+    fell_us = it->fell_us;
   }
+  const uint16_t now_us = clock_us();
+  const uint16_t gone_us = since(now_us, it->ping_us);
+  const uint16_t echo_us = since(fell_us, rose_us);
+  const uint16_t quiet_us = since(now_us, fell_us);
   const bool has_ended = found == Heard::kEnded;
   if (gone_us < kLimitUs && !(has_ended && quiet_us >= kGlitchUs)) return false;
   listen(false);
@@ -199,7 +211,8 @@ void ultrasonic_forget() {
 }  // namespace tiniscript
 
 #ifdef tiniscript_ultrasonic_vectors
-#define tiniscript_on(vector) tiniscript_interrupt(vector, tiniscript::on_change)
+#define tiniscript_on(vector) \
+  ISR(vector, ISR_NAKED) { tiniscript::hear(); }
 tiniscript_ultrasonic_vectors(tiniscript_on)
 #endif
 

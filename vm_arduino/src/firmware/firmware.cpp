@@ -16,11 +16,7 @@ RobotLink link;
 Store store;
 
 #ifndef tiniscript_transports
-namespace {
-
 Receiver receiver;
-
-}  // namespace
 #endif
 
 void show_light() { board_light(!is_running() && holds_program()); }
@@ -79,6 +75,8 @@ void firmware_on_rx_byte(uint8_t byte, uint16_t time_ms) {
   }
   near(&receiver)->take(byte, time_ms);
 }
+
+void firmware_take_rx_byte(uint8_t byte, uint16_t time_ms) { near(&receiver)->take(byte, time_ms); }
 
 bool firmware_has_tx_byte() { return link.has_tx_byte(); }
 

@@ -10,6 +10,7 @@
 #include <stdint.h>
 
 #include "../link/has_transports.h"
+#include "../link/receiver.h"
 #include "board.h"
 
 namespace tiniscript {
@@ -62,9 +63,14 @@ bool firmware_radio_name(RadioName* name);
 // Nobody is connected over a transport any more: ends a tethered run that it has started.
 void firmware_on_part(Transport transport);
 #else
+extern Receiver receiver;
+
 // A byte has arrived; one with a framing error is 0. May be called from the interrupt: a run of
 // zeros turns the motors off at once.
 void firmware_on_rx_byte(uint8_t byte, uint16_t now_ms);
+
+// The same for a board that has looked for a stop in a byte of 0 itself, as `Receiver::stops` does.
+void firmware_take_rx_byte(uint8_t byte, uint16_t now_ms);
 
 // Whether there is a byte to send; the next one, or false if there is none. May be called from an
 // interrupt.

@@ -7,6 +7,7 @@
 #ifndef TINISCRIPT_LINK_LINK_H_
 #define TINISCRIPT_LINK_LINK_H_
 
+#include <stddef.h>
 #include <stdint.h>
 
 #include "console.h"
@@ -46,6 +47,13 @@ class Link {
 
   // The next byte to send, or false if there is none. May be called from an interrupt.
   bool next_tx_byte(uint8_t* byte);
+
+#ifdef __AVR__
+  // Where what `next_tx_byte` uses lies: the interrupt there does it in assembly.
+  static constexpr size_t sent_at() { return offsetof(Link, sent_); }
+  static constexpr size_t left_at() { return offsetof(Link, left_); }
+  static constexpr size_t out_at() { return offsetof(Link, out_); }
+#endif
 
   // Whether a stop has arrived that `tick` has not handled yet: until then the motors must stay
   // off, whatever else was requested. Code that turns motors on checks this with interrupts off.

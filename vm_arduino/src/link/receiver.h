@@ -9,6 +9,7 @@
 #ifndef TINISCRIPT_LINK_RECEIVER_H_
 #define TINISCRIPT_LINK_RECEIVER_H_
 
+#include <stddef.h>
 #include <stdint.h>
 
 #include "../vm/small.h"
@@ -70,6 +71,10 @@ class Receiver : private ItemPlaces<kWindow> {
     return true;
   }
   void take(uint8_t byte, uint16_t now_ms);
+
+  // Where `zeros_` and `last_ms_` lie, for a chip whose interrupt does `stops` in assembly.
+  static constexpr size_t zeros_at() { return offsetof(Receiver, zeros_); }
+  static constexpr size_t last_ms_at() { return offsetof(Receiver, last_ms_); }
 
   // Takes the byte that completes a stop.
   void take_last_zero() { take(0, last_ms_); }

@@ -59,24 +59,26 @@ static_assert(offsetof(tiniscript::Clock, turns) == 4 &&
               "the interrupt knows where they lie");
 
 // In assembly, because a stop and the pulses of servos wait for it: the compiler's code takes twice
-// as long. Once the time is whole other interrupts may come in between.
+// as long. Others may come in between once `turns` is right, for two instructions, and once the
+// time is whole.
 ISR(TIMER0_OVF_vect, ISR_NAKED) {
   using namespace tiniscript;
   asm volatile(
-      "push r24\n\tin r24, __SREG__\n\tpush r24\n\tpush r25\n\tpush r30\n\tpush r31\n\t"
+      "push r24\n\tin r24, __SREG__\n\tpush r24\n\t"
+      "lds r24, %[clock] + 4\n\tinc r24\n\tsts %[clock] + 4, r24\n\t"  // turns
+      "sei\n\tpush r25\n\tpush r30\n\tcli\n\tpush r31\n\t"
       "sbi %[flags], %[attention]\n\t"
       "ldi r30, lo8(%[clock])\n\tldi r31, hi8(%[clock])\n\t"
-      "ldd r24, Z+4\n\tinc r24\n\tstd Z+4, r24\n\t"  // turns
-      "ldi r25, 1\n\t"                               // ms that have passed
+      "ldi r25, 1\n\t"  // ms that have passed
       "ldd r24, Z+5\n\tsubi r24, %[parts] - %[more]\n\tbrcc 1f\n\t"
       "subi r24, -%[parts]\n\trjmp 2f\n"
       "1: inc r25\n"
       "2: std Z+5, r24\n\t"
       "ld r24, Z\n\tadd r24, r25\n\tst Z, r24\n\tldi r25, 0\n\t"
       "ldd r24, Z+1\n\tadc r24, r25\n\tstd Z+1, r24\n\t"
+      "sei\n\t"  // the interrupts read the lowest 16 bits alone
       "ldd r24, Z+2\n\tadc r24, r25\n\tstd Z+2, r24\n\t"
       "ldd r24, Z+3\n\tadc r24, r25\n\tstd Z+3, r24\n\t"
-      "sei\n\t"
       "ldd r24, Z+6\n\tinc r24\n\tstd Z+6, r24\n\t"
       "cpi r24, %[stall] + 1\n\tbrcs 3f\n\t"
       "cli\n\tlds r24, %[mask]\n\tori r24, %[stalled]\n\tsts %[mask], r24\n"

@@ -8,13 +8,20 @@
 
 #include <avr/interrupt.h>
 
+namespace tiniscript {
+
+// The whole of a naked interrupt: calls `function`.
+inline __attribute__((always_inline)) void call_in_frame(void (*function)()) {
+  asm volatile(
+      "push r30\n\tpush r31\n\t"
+      "ldi r30, lo8(gs(%x0))\n\tldi r31, hi8(gs(%x0))\n\t"
+      "%~jmp tiniscript_interrupt_frame" ::"i"(function));
+}
+
+}  // namespace tiniscript
+
 // Defines the handler of `vector`: it calls `function`, which takes and returns nothing.
-#define tiniscript_interrupt(vector, function)               \
-  ISR(vector, ISR_NAKED) {                                   \
-    asm volatile(                                            \
-        "push r30\n\tpush r31\n\t"                           \
-        "ldi r30, lo8(gs(%x0))\n\tldi r31, hi8(gs(%x0))\n\t" \
-        "%~jmp tiniscript_interrupt_frame" ::"i"(function)); \
-  }
+#define tiniscript_interrupt(vector, function) \
+  ISR(vector, ISR_NAKED) { tiniscript::call_in_frame(function); }
 
 #endif  // TINISCRIPT_AVR_INTERRUPTS_H_

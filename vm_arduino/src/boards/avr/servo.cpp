@@ -4,6 +4,7 @@
 
 #include "../../vm/small.h"
 #include "../kit.h"
+#include "quick_stop.h"
 
 #ifdef tiniscript_servos
 
@@ -15,8 +16,8 @@ constexpr uint8_t kServoCount = sizeof kServos / sizeof *kServos;
 constexpr uint8_t kTicksPerUs = 2;       // 16 MHz / 8
 constexpr uint16_t kFrameTicks = 40000;  // 20 ms
 constexpr uint8_t kSoonTicks = 20;       // a compare value that is nearer than this may be missed
-constexpr uint8_t kLateTicks = 9;        // how late the interrupt ends a pulse
-constexpr uint8_t kGap = kServoCount;    // the time between the last pulse and the next frame
+constexpr uint8_t kLateTicks = kServoCount == 1 ? 5 : 9;  // how late the interrupt ends a pulse
+constexpr uint8_t kGap = kServoCount;  // the time between the last pulse and the next frame
 
 struct Pulse {
   uint16_t ticks;  // 0: no pulse
@@ -26,24 +27,32 @@ struct Pulse {
 volatile Pulse pulses[kServoCount];
 uint8_t turn = kGap;  // index of the servo whose pulse is under way
 
-// Ends a pulse and starts the next one.
+// Where there is only one servo, the compiler knows.
+tini_always_inline uint8_t now_served() { return kServoCount == 1 ? 0 : turn; }
+
+// Ends a pulse and starts the next one. In between a stop may come in, unless it changes pulses.
 tini_always_inline void next_pulse() {
   if (turn == kGap) {
     TCNT1 = 0;
     turn = 0;
   } else {
-    write(kServos[turn], false);
+    write(kServos[now_served()], false);
     turn++;
   }
+#ifdef tiniscript_has_quick_stop
+  sei();
+#endif
   for (; turn < kServoCount; turn++) {
-    volatile Pulse& pulse = pulses[turn];
+    volatile Pulse& pulse = pulses[now_served()];
     const uint16_t ticks = pulse.ticks;
     if (ticks == 0) continue;
     if (pulse.frames != 0 && --pulse.frames == 0) pulse.ticks = 0;
-    write(kServos[turn], true);
+    cli();
+    write(kServos[now_served()], true);
     OCR1A = static_cast<uint16_t>(TCNT1 + ticks - kLateTicks);
     return;
   }
+  cli();
   const uint16_t soon = static_cast<uint16_t>(TCNT1 + kSoonTicks);
   OCR1A = soon < kFrameTicks ? kFrameTicks : soon;
 }

@@ -86,10 +86,20 @@ void sound_tick(uint32_t now_ms) {
 
 }  // namespace tiniscript
 
-ISR(TIMER2_COMPA_vect) {
+// In assembly, because a stop waits for it: it changes no flag, so others may come in at once.
+ISR(TIMER2_COMPA_vect, ISR_NAKED) {
   using namespace tiniscript;
-  toggle(kBuzzer);
-  OCR2A = is_high(kBuzzer) ? second_half : first_half;
+  asm volatile(
+      "sei\n\tpush r24\n\t"
+      "ldi r24, %[mask]\n\tsts %[port] - 2, r24\n\t"  // toggles the pin
+      "lds r24, %[port]\n\tsbrs r24, %[bit]\n\trjmp 1f\n\t"
+      "lds r24, %[second]\n\trjmp 2f\n"
+      "1: lds r24, %[first]\n"
+      "2: sts %[compare], r24\n\tpop r24\n\treti"
+      :
+      : [mask] "M"(0 + kBuzzer.mask), [port] "n"(0 + kBuzzer.port),
+        [bit] "I"(__builtin_ctz(kBuzzer.mask)), [first] "i"(&first_half),
+        [second] "i"(&second_half), [compare] "n"(_SFR_MEM_ADDR(OCR2A)));
 }
 
 #endif  // __AVR__

@@ -6,11 +6,13 @@
 #include <avr/io.h>
 
 #include "../../firmware/firmware.h"
+#include "../../firmware/state.h"
 #include "../../link/messages.h"
+#include "../kit.h"
 #include "attention.h"
 #include "clock.h"
 #include "interrupts.h"
-#include "../kit.h"
+#include "quick_stop.h"
 
 #ifdef USART_RX_vect
 #define uart_receive_vect USART_RX_vect
@@ -30,9 +32,45 @@ constexpr Pin kReceive = {kPortE, 1 << 0};
 constexpr Pin kReceive = {kPortD, 1 << 0};
 #endif
 
+constexpr uint8_t kListening = _BV(RXEN0) | _BV(TXEN0) | _BV(RXCIE0);  // UCSR0B
+
 // A byte under way is over after this many turns of timer 0 (about 1 ms each). A line that is low
 // in all of them, with no byte received, is held low.
 constexpr uint8_t kHeldTurns = static_cast<uint8_t>(10000 / kBaud + 3);
+
+#ifdef tiniscript_has_quick_stop
+
+// A zero has arrived: turns the motors off if it completes a run of them that stops the robot, as
+// `Receiver::stops` finds it. Changes r24, r30 and r31 alone; for callers with interrupts off.
+extern "C" void tiniscript_on_zero() __attribute__((naked, used, noinline, externally_visible));
+void tiniscript_on_zero() {
+  asm volatile(
+      "lds r30, %[receiver] + %[zeros]\n\tinc r30\n\tsts %[receiver] + %[zeros], r30\n\t"
+      "cpi r30, %[run]\n\tbreq 2f\n"
+      "1: ret\n"
+      "2: lds r30, %[now]\n\tlds r31, %[receiver] + %[last]\n\tsub r30, r31\n\t"
+      "lds r31, %[now] + 1\n\tlds r24, %[receiver] + %[last] + 1\n\tsbc r31, r24\n\t"
+      "subi r30, lo8(%[silence])\n\tsbci r31, hi8(%[silence])\n\tbrcc 1b"
+      :
+      : [receiver] "i"(&receiver), [zeros] "n"(Receiver::zeros_at()),
+        [last] "n"(Receiver::last_ms_at()), [now] "i"(&clock), [run] "M"(kStopRun),
+        [silence] "n"(kSilenceMs)
+      : "r24", "r30", "r31");
+  motors_stop_quickly();
+  asm volatile("ret");
+}
+
+tini_always_inline void look_for_stop() { tiniscript_on_zero(); }
+
+// A byte that a stop was looked for in.
+tini_always_inline void take(uint8_t byte) { firmware_take_rx_byte(byte, clock_16_ms()); }
+
+#else
+
+tini_always_inline void look_for_stop() {}
+tini_always_inline void take(uint8_t byte) { firmware_on_rx_byte(byte, clock_16_ms()); }
+
+#endif
 
 volatile uint8_t framing;
 volatile uint8_t overrun;
@@ -42,8 +80,8 @@ volatile bool was_high;
 uint8_t low_turns;  // since the last byte with a framing error
 
 // Enables the interrupt of timer 0 that checks the line. It is on only after a framing error. Its
-// flag has been set for long: it comes at once, and that one does not count. Clearing the flag would
-// cost an instruction, and in simavr also the overflow of the clock if that is pending.
+// flag has been set for long: it comes at once, and that one does not count. Clearing the flag
+// would cost an instruction, and in simavr also the overflow of the clock if that is pending.
 tini_always_inline void watch_line() {
   low_turns = static_cast<uint8_t>(-1);
   if (!was_high) return;
@@ -57,7 +95,8 @@ void look_at_line() {
   if (is_high(kReceive)) return leave_line();
   low_turns = static_cast<uint8_t>(low_turns + 1);
   if (low_turns <= kHeldTurns) return;
-  firmware_on_rx_byte(0, clock_16_ms());
+  look_for_stop();
+  take(0);
   if (low_turns < kHeldTurns + kStopRun) return;
   was_high = false;
   leave_line();
@@ -70,7 +109,7 @@ void uart_begin(uint32_t baud) {
   UCSR0A = _BV(U2X0);
   UBRR0 = static_cast<uint16_t>((F_CPU / 4 / baud - 1) / 2);  // rounded
   UCSR0C = _BV(UCSZ01) | _BV(UCSZ00);                         // 8N1
-  UCSR0B = _BV(RXEN0) | _BV(TXEN0) | _BV(RXCIE0);
+  UCSR0B = kListening;
 }
 
 void uart_tick() {
@@ -85,38 +124,61 @@ LineErrors uart_errors() { return {framing, overrun}; }
 
 namespace {
 
-// A byte with a framing error counts as 0: only that the line is bad is known.
-void receive() {
-  const uint8_t status = UCSR0A;
-  uint8_t byte = UDR0;
+// What the interrupt leaves. A byte with a framing error is 0 here: only that the line is bad is
+// known.
+void receive(uint8_t byte, uint8_t status) {
   low_turns = 0;
   if ((status & (_BV(DOR0) | _BV(FE0))) != 0) {
     if ((status & _BV(DOR0)) != 0) overrun = static_cast<uint8_t>(overrun + 1);
     if ((status & _BV(FE0)) != 0) {
       framing = static_cast<uint8_t>(framing + 1);
-      byte = 0;
       watch_line();
     }
   }
   call_attention();
-  firmware_on_rx_byte(byte, clock_16_ms());
+  take(byte);
 }
 
 }  // namespace
 
 }  // namespace tiniscript
 
-tiniscript_interrupt(uart_receive_vect, tiniscript::receive)
-
-    tiniscript_interrupt(TIMER0_COMPB_vect, tiniscript::look_at_line)
-
-        ISR(uart_send_vect) {
-  uint8_t byte = 0;
-  if (tiniscript::firmware_next_tx_byte(&byte)) {
-    UDR0 = byte;
-  } else {
-    UCSR0B &= static_cast<uint8_t>(~_BV(UDRIE0));
-  }
+// Looks for a stop before it saves what the rest may change.
+ISR(uart_receive_vect, ISR_NAKED) {
+  asm volatile(
+      "push r30\n\tpush r31\n\tpush r24\n\tin r24, __SREG__\n\tpush r24\n\tpush r22\n\t"
+      "lds r22, %[status]\n\tlds r24, %[data]\n\t"
+      "sbrc r22, %[framing]\n\tclr r24\n\t"
+#ifdef tiniscript_has_quick_stop
+      "tst r24\n\tbrne 1f\n\t"
+      "%~call tiniscript_on_zero\n\tclr r24\n"
+      "1: "
+#endif
+      "ldi r30, lo8(gs(%x[rest]))\n\tldi r31, hi8(gs(%x[rest]))\n\t"
+      "%~jmp tiniscript_interrupt_rest"
+      :
+      : [status] "n"(_SFR_MEM_ADDR(UCSR0A)), [data] "n"(_SFR_MEM_ADDR(UDR0)), [framing] "I"(FE0),
+        [rest] "i"(tiniscript::receive));
 }
+
+// Does `firmware_next_tx_byte`; in assembly, because a stop waits for it. Where nothing is left, its
+// own interrupt goes off.
+ISR(uart_send_vect, ISR_NAKED) {
+  using namespace tiniscript;
+  asm volatile(
+      "push r30\n\tpush r31\n\tin r30, __SREG__\n\tpush r30\n\t"
+      "lds r30, %[link] + %[left]\n\tsubi r30, 1\n\tbrcs 1f\n\tsts %[link] + %[left], r30\n\t"
+      "lds r30, %[link] + %[sent]\n\tinc r30\n\tsts %[link] + %[sent], r30\n\tldi r31, 0\n\t"
+      "subi r30, lo8(-(%[link] + %[out] - 1))\n\tsbci r31, hi8(-(%[link] + %[out] - 1))\n\t"
+      "ld r30, Z\n\tsts %[data], r30\n\trjmp 2f\n"
+      "1: ldi r30, %[listening]\n\tsts %[control], r30\n"
+      "2: pop r30\n\tout __SREG__, r30\n\tpop r31\n\tpop r30\n\treti"
+      :
+      : [link] "i"(&link), [left] "n"(Link::left_at()), [sent] "n"(Link::sent_at()),
+        [out] "n"(Link::out_at()), [data] "n"(_SFR_MEM_ADDR(UDR0)),
+        [control] "n"(_SFR_MEM_ADDR(UCSR0B)), [listening] "M"(static_cast<int>(kListening)));
+}
+
+tiniscript_interrupt(TIMER0_COMPB_vect, tiniscript::look_at_line)
 
 #endif  // __AVR__
