@@ -66,6 +66,21 @@ def test_an_interrupt_takes_its_four_cycles() -> None:
     assert 4 + 3 <= high - bark <= 4 + 3 + 12
 
 
+def test_it_tells_how_long_interrupts_are_off() -> None:
+    """In the program, from the entry of an interrupt on, and where it has let others in."""
+    with Uno(built("masked", Program=500, Interrupt=300, Later=200), watches_masked=True) as uno:
+        uno.run_ms(20)
+        found = uno.masked()
+    program = [each.cycles for each in found if each.vector == 0]
+    entries = [each for each in found if each.is_entry]
+    later = [each.cycles for each in found if each.vector and not each.is_entry]
+    assert len(program) == len(entries) == len(later) == 1
+    assert program[0] == pytest.approx(500, abs=4)
+    assert entries[0].vector == 16  # the overflow of timer 0
+    assert 300 + 4 < entries[0].cycles < 300 + 60  # with what g++ saves
+    assert 200 < later[0] < 200 + 60
+
+
 def test_real_time_is_real() -> None:
     with Uno(built("echo", Baud=115200, Wait=1)) as uno:
         uno.go(speed=1.0)

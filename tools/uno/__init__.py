@@ -26,13 +26,14 @@ from pathlib import Path
 from types import TracebackType
 
 from tools.uno.build import built, missing
-from tools.uno.log import CYCLES_PER_MS, HERTZ, Byte, Event, PinChange, Pins, Stack
+from tools.uno.log import CYCLES_PER_MS, HERTZ, Byte, Event, Masked, PinChange, Pins, Stack
 
 __all__ = [
     "CYCLES_PER_MS",
     "HERTZ",
     "Byte",
     "Event",
+    "Masked",
     "PinChange",
     "Pins",
     "Stack",
@@ -63,6 +64,7 @@ class Uno:
         resets_on_open: bool = True,
         tells_sleep: bool = True,
         watches_stack: bool = False,
+        watches_masked: bool = False,
     ) -> None:
         self.board = board
         self.events: list[Event] = []
@@ -76,6 +78,7 @@ class Uno:
         options += ["--reset-on-open"] if resets_on_open else []
         options += [] if tells_sleep else ["--no-sleep"]
         options += ["--watch-stack"] if watches_stack else []
+        options += ["--watch-masked"] if watches_masked else []
         self._process = subprocess.Popen(
             [built(), *options, firmware],
             stdin=subprocess.PIPE,
@@ -245,6 +248,19 @@ class Uno:
         mark = len(self.events)
         self._tell(f"stack {from_address}")
         return Stack.of(self.wait_for(lambda event: event.what == "stack", since=mark))
+
+    # -- interrupts ---------------------------------------------------------------------------
+
+    def masked(self) -> list[Masked]:
+        """Say for how long each place has kept interrupts off, at most.
+
+        Needs `watches_masked`, which makes it about half as fast.
+        """
+        mark = len(self.events)
+        self._tell("masked")
+        self.wait_for(lambda event: event.what == "masked" and "places" in event.rest, since=mark)
+        told = [event for event in self.events[mark:] if event.what == "masked"]
+        return [Masked.of(event) for event in told if "vector" in event.rest]
 
     # -- inside -------------------------------------------------------------------------------
 

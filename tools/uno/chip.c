@@ -96,6 +96,7 @@ bool reset_where_wanted(void) {
     }
   }
   stack_after_reset(is_power_on);
+  masked_after_reset();
   avr->data[kMcusr] = flags;
   tell(avr->cycle, "reset", "\"cause\": \"%s\", \"flags\": %d", cause_name(causes), flags);
   queue_after_reset();

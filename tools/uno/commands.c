@@ -12,6 +12,7 @@
 //     hold low|high BITS        a break, or silence
 //     reset external|power-on|brown-out
 //     stack ADDRESS             tell how deep it went, and what nobody has written from there on
+//     masked                    tell how long interrupts were off
 //
 // `at CYCLE` before a line lets it happen then, `after CYCLES` so much later than now. Without them
 // it happens at once.
@@ -99,6 +100,10 @@ static bool is_done(Cycle when, const char* line) {
   }
   if (sscanf(line, "stack %d", &number) == 1 && number >= 0 && number <= avr->ramend) {
     stack_tell(number);
+    return true;
+  }
+  if (is_word(line, "masked")) {
+    masked_tell();
     return true;
   }
   if (sscanf(line, "baud %d", &number) == 1 && number > 0) {

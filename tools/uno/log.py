@@ -87,6 +87,24 @@ class Stack:
         return self.room - self.program - self.interrupt
 
 
+@dataclass(frozen=True)
+class Masked:
+    """The longest time, in cycles, for which a place has kept interrupts off.
+
+    `vector` is that of the interrupt at work, 0 in the program. `is_entry`: from its entry on;
+    otherwise from the instruction at `pc` (bytes) on.
+    """
+
+    vector: int
+    is_entry: bool
+    pc: int
+    cycles: int
+
+    @classmethod
+    def of(cls, event: Event) -> Masked:
+        return cls(event["vector"], event["is_entry"], event["pc"], event["cycles"])
+
+
 class Pins:
     """The pins of a board by their names there, or by those that the test gives them."""
 

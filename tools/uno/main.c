@@ -11,6 +11,7 @@
 //       --reset-on-open   opening the pty resets the board
 //       --bootloader HEX  where a reset begins
 //       --watch-stack     tell how deep it is on the command `stack`
+//       --watch-masked    tell how long interrupts were off on the command `masked`
 //       --no-sleep        say nothing of sleeping
 
 #define _GNU_SOURCE
@@ -142,6 +143,7 @@ static void run(void) {
     if (reset_where_wanted()) was_asleep = false;
     const int state = avr_run(avr);
     if (stack_is_watched()) stack_look();
+    if (masked_is_watched()) masked_look();
     if (state == cpu_Done && !is_paused && !reset_is_wanted()) skip_sleep();
     const bool is_asleep = state == cpu_Sleeping || state == cpu_Done;
     if (is_asleep != was_asleep && tells_sleep) {
@@ -206,7 +208,7 @@ static void load(const char* firmware, const char* bootloader) {
 
 int main(int count, char** words) {
   const char *firmware = NULL, *link = NULL, *eeprom = NULL, *bootloader = NULL;
-  bool resets_on_open = false, watches_stack = false;
+  bool resets_on_open = false, watches_stack = false, watches_masked = false;
   int baud = 115200;
   for (int k = 1; k < count; k++) {
     const char* word = words[k];
@@ -231,6 +233,8 @@ int main(int count, char** words) {
         resets_on_open = true;
       } else if (strcmp(word, "--watch-stack") == 0) {
         watches_stack = true;
+      } else if (strcmp(word, "--watch-masked") == 0) {
+        watches_masked = true;
       } else if (strcmp(word, "--no-sleep") == 0) {
         tells_sleep = false;
       } else if (word[0] != '-' && !firmware) {
@@ -254,6 +258,7 @@ int main(int count, char** words) {
   eeprom_begin(eeprom);
   wire_begin(link, resets_on_open, baud);
   if (watches_stack) stack_begin();
+  if (watches_masked) masked_begin();
   reset_soon(kPowerOn);
   reset_where_wanted();
   pace();

@@ -176,6 +176,17 @@ void stack_after_reset(bool is_power_on);
 // Tells how many bytes from an address on are as power-on has left them, and how deep it went.
 void stack_tell(int from);
 
+// -- masked.c -----------------------------------------------------------------------------------
+
+// Watches from now on how long interrupts are off, which takes its time.
+void masked_begin(void);
+bool masked_is_watched(void);
+void masked_look(void);
+void masked_after_reset(void);
+
+// Tells the longest time of each place, and then how many there are.
+void masked_tell(void);
+
 // -- commands.c ---------------------------------------------------------------------------------
 
 // Does what is waiting on the standard input. False: it has been closed.
