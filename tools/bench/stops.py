@@ -1,84 +1,199 @@
-"""The slowest stop of a busy robot on a simulated Uno: from its last byte to the motor pins.
+"""The slowest stop of a busy robot on a simulated chip: from its last byte to the motor pins.
 
-What else the chip does at that moment decides how long a stop takes, above all the interrupt of
-the clock, which comes each 16,384 cycles. So the last byte is sent at many places of that period,
-and then, cycle by cycle, around the slowest one. Meanwhile the robot runs a program that measures
-with its sonar, sends values and reads text.
+What else the chip does at that moment decides how long a stop takes: an interrupt that is at work,
+or a part of the program that keeps interrupts off. So the last byte is sent at many places: all
+over the period of the clock, more often around the slowest one, and there with an edge of an echo
+just before. Meanwhile the robot runs a program that measures, plays, sends values and reads text.
+
+No sweep meets all of that at once. So the simulator also tells for how long each place keeps
+interrupts off, and what may come before a stop is added up.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+import random
+from collections.abc import Iterable
+from pathlib import Path
+from types import TracebackType
+from typing import NamedTuple
 
+from tests.machines.wired import Wired
 from tiniscript import compile_text
 from tiniscript.bytecode.image import unpack
-from tiniscript.kit import Kit
-from tools.uno import CYCLES_PER_MS, HERTZ
+from tiniscript.kit import NUMBER, Kit
+from tiniscript.link.session import Session
+from tiniscript.robots.profile import Robot
+from tools.bench.firmware_stack import BOARDS, must, pin
+from tools.uno import CYCLES_PER_MS, HERTZ, Masked, Uno
 
-if TYPE_CHECKING:
-    from tools.bench.link import Talk
-
-# What keeps the robot busy while it is stopped: the machine, the echo, the EEPROM, the link.
-BUSY = "SI|X = 0; LOOP(FOREVER); M(80, 80); DISTANCE; SHOW(X * 1.5 / 7); X = X + 1; END_LOOP"
 TEXT = b"// nobody reads that\n", b"// nor this line, which nobody ends"
 STOP = bytes(8)
 STOP_RUN = 4
-SONAR = "D4", "D3", 50.0  # trigger, echo, cm
 
 PERIOD = 16_384  # cycles between two interrupts of the clock
 COARSE = 64  # cycles: the interrupt takes longer
 FINE, AROUND = 4, 64
+ECHOES = range(-160, 33, 8)  # cycles
+SHORT_ECHO, LONG_ECHO = 1000, 8000  # cycles
 BITS = 10  # of a byte on the wire
+SEEN_BITS = 9.5625  # from its start bit until the chip has it
 QUIET_MS = 25
+PING_MS = 100  # pings are less apart
+RECEIVED = {"uno": 18, "mega": 25}  # the number of the interrupt that sees a stop
+INSTRUCTION = 4  # cycles of the longest one
+
+
+class Place(NamedTuple):
+    """Where a stop falls: a cycle of the clock's period, and cycles from it to an echo's edge."""
+
+    at: int
+    echo: int | None = None
+    is_rise: bool = False
 
 
 class Slowest(NamedTuple):
-    """Of how many stops, and microseconds."""
+    """Of how many stops, and microseconds; `together` is what they would take at most."""
 
     stops: int
     us: float
     median_us: float
+    together_us: float
 
 
-def slowest(talk: Talk, kit: Kit, baud: int, motors: tuple[str, ...]) -> Slowest:
-    """Return the slowest of some hundred stops."""
-    talk.board.sonar(*SONAR)
-    talk.until(talk.session.upload(unpack(compile_text(BUSY, kit).image)))
-    found = {at: stopped(talk, at, baud, motors) for at in range(0, PERIOD, COARSE)}
-    center = max(found, key=lambda at: found[at])
-    for at in range(center - AROUND, center + AROUND, FINE):
-        found[at] = max(found.get(at, 0), stopped(talk, at, baud, motors))
-    talk.session.stop(talk.board.cycle // CYCLES_PER_MS)
-    talk.run(300)
-    each = sorted(found.values())
-    return Slowest(
-        len(each), each[-1] / CYCLES_PER_MS * 1000, each[len(each) // 2] / CYCLES_PER_MS * 1000
-    )
+class Busy:
+    """A busy robot on a simulated chip, to be stopped again and again."""
+
+    def __init__(self, firmware: Path, robot: Robot, board: str, baud: int) -> None:
+        """Switch it on; `board` is that of the firmware, which may be another than the robot's."""
+        self.robot, self.baud, self.cycles = robot, baud, list[int]()
+        self.chip = Uno(
+            firmware, board=BOARDS[board], baud=baud, tells_sleep=False, watches_masked=True
+        )
+        self._wired = Wired(self.chip, Session(1, baud, robot.kit.fingerprint))
+        self._motors = {pin(self.chip, number) for number in robot.board.motors.pins.values()}
+        self._sonar = ""
+        for device in robot.board.sensors:
+            if device.driver == "hc_sr04":
+                self._trigger, self._sonar = (
+                    pin(self.chip, device.pins[name]) for name in ("trigger", "echo")
+                )
+                self.chip.sonar(self._trigger, self._sonar, None)
+        self.chip.run_ms(300)
+        must(self._wired, self._wired.session.hello())
+        image = compile_text(busy(robot.kit), robot.kit).image
+        must(self._wired, self._wired.session.upload(unpack(image)))
+
+    def __enter__(self) -> Busy:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        value: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.chip.close()
+
+    @property
+    def has_echo(self) -> bool:
+        return self._sonar != ""
+
+    def stop(self, place: Place) -> int:
+        """Return the cycles of a stop whose last byte comes at a place."""
+        chip, session = self.chip, self._wired.session
+        must(self._wired, session.clear())
+        must(self._wired, session.start())
+        chip.run_ms(QUIET_MS)  # nothing of the session is on the wire any more
+        text = TEXT[place.at // FINE % len(TEXT)]
+        if place.echo is not None:  # which the robot waits for only after a ping
+            text = text[:1]
+            chip.run_until(self._trigger, "high", PING_MS)
+            chip.run_until(self._trigger, "low", PING_MS)
+        bit = HERTZ / self.baud
+        cycles = round((len(text) + STOP_RUN - 1) * BITS * bit + SEEN_BITS * bit)
+        begin = chip.cycle + CYCLES_PER_MS
+        begin += (place.at - begin - cycles) % PERIOD
+        last = begin + cycles
+        if place.echo is not None:
+            before = SHORT_ECHO if place.is_rise else LONG_ECHO
+            chip.drive(self._sonar, not place.is_rise, at=last + place.echo - before)
+            chip.drive(self._sonar, place.is_rise, at=last + place.echo)
+        since = len(chip.events)
+        chip.send(text + STOP, begin)
+        chip.run_to(last + round(BITS * BITS * bit))
+        new = chip.events[since:]
+        zeros = [each.cycle for each in new if each.what == "received" and each["byte"] == 0]
+        off = [
+            each.cycle
+            for each in new
+            if each.what == "pin"
+            and each.cycle > begin
+            and each["is"] == "low"
+            and each["pin"] in self._motors
+        ]
+        self._wired.run(2 * QUIET_MS)
+        self.cycles.append(max(off) - zeros[STOP_RUN - 1])
+        return self.cycles[-1]
+
+    def together(self) -> int:
+        """Return the cycles of a stop before which all comes that may: once, at its longest."""
+        received = RECEIVED[self.chip.board]
+        found = [each for each in self.chip.masked() if each.vector != received]
+        entries = {each.vector: each.cycles for each in found if _is_before(each, received)}
+        before = max(
+            each.cycles + sum(entries[vector] for vector in entries if vector != each.vector)
+            for each in found
+        )
+        return min(self.cycles) + INSTRUCTION + before
 
 
-def stopped(talk: Talk, at: int, baud: int, motors: tuple[str, ...]) -> int:
-    """Return the cycles of a stop whose last byte ends at a place of the clock's period."""
-    board = talk.board
-    talk.until(talk.session.clear())
-    talk.until(talk.session.start())
-    board.run_ms(QUIET_MS)  # nothing of the session is on the wire any more
-    text = TEXT[at // FINE % len(TEXT)]
-    cycles = (len(text) + STOP_RUN) * BITS * HERTZ // baud
-    begin = board.cycle + CYCLES_PER_MS
-    begin += (at - begin - cycles) % PERIOD
-    since = len(board.events)
-    board.send(text + STOP, begin)
-    board.run_to(begin + cycles + 10 * BITS * HERTZ // baud)
-    new = board.events[since:]
-    zeros = [event.cycle for event in new if event.what == "received" and event["byte"] == 0]
-    numbers = {board.pins.number(pin) for pin in motors}
-    off = [
-        event.cycle
-        for event in new
-        if event.what == "pin"
-        and event.cycle > begin
-        and event["is"] == "low"
-        and board.pins.number(event["pin"]) in numbers
+def _is_before(place: Masked, received: int) -> bool:
+    """Return whether it is an interrupt that is served before the one of a byte."""
+    return place.is_entry and 0 < place.vector < received
+
+
+def busy(kit: Kit) -> str:
+    """Return a program that measures, moves what can move, plays and sends without end."""
+    reads = [
+        f"Y = {each.name}" if each.kind == NUMBER else f"IF({each.name}); Y = 1; ENDIF"
+        for each in kit.sensors
     ]
-    talk.run(2 * QUIET_MS)
-    return max(off) - zeros[STOP_RUN - 1]
+    sets = [f"{each.name}({'X' if each.kind == NUMBER else 'TRUE'})" for each in kit.actuators]
+    lines = ["X = 0", "LOOP(FOREVER)", "M(80, 80)", *reads, *sets, "BEEP(0.005, 5000)"]
+    return "SI|" + "; ".join([*lines, "SHOW(X * 1.5 / 7)", "X = (X + 1) % 100", "END_LOOP"])
+
+
+def slowest(firmware: Path, robot: Robot, board: str, baud: int) -> Slowest:
+    """Return the slowest of some hundred stops."""
+    with Busy(firmware, robot, board, baud) as stopped:
+        found = {at: stopped.stop(Place(at)) for at in range(0, PERIOD, COARSE)}
+        center = max(found, key=lambda at: found[at])
+        for at in range(center - AROUND, center + AROUND, FINE):
+            stopped.stop(Place(at))
+        if stopped.has_echo:
+            for place in with_echoes([center]):
+                stopped.stop(place)
+        return summed_up(stopped)
+
+
+def summed_up(stopped: Busy) -> Slowest:
+    each = sorted(stopped.cycles)
+    return Slowest(len(each), *map(_us, (each[-1], each[len(each) // 2], stopped.together())))
+
+
+def with_echoes(places: Iterable[int]) -> list[Place]:
+    return [Place(at, echo, rises) for at in places for echo in ECHOES for rises in (False, True)]
+
+
+def sample(stopped: Busy, count: int, seed: int) -> list[Place]:
+    """Return so many places, half of them with the edge of an echo where there are echoes."""
+    chance = random.Random(seed)
+    places = [Place(chance.randrange(PERIOD)) for _ in range(count)]
+    if not stopped.has_echo:
+        return places
+    echoes = chance.sample(with_echoes([places[0].at]), count // 2)
+    return [*places[count // 2 :], *echoes]
+
+
+def _us(cycles: int) -> float:
+    return cycles / CYCLES_PER_MS * 1000

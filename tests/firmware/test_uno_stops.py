@@ -1,0 +1,56 @@
+"""How long a stop takes on a simulated chip, whatever else the robot does: to the motor pins.
+
+A busy robot is stopped at some places of the sweep of `python -m tools.bench.link`. And what may
+come before a stop is bounded: all that keeps interrupts off, each at its longest and all at once.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.machines.uno import needed
+from tests.support.platformio import firmware, shared
+from tiniscript import robots
+from tools.bench.stops import Busy, Place, sample
+from tools.uno import CYCLES_PER_MS
+
+MOST_CYCLES = 12 * CYCLES_PER_MS // 1000
+ECHO_AT_BEST = range(-64, -24, 8)  # cycles: just before the last byte is there
+COUNT = 24
+SEED = 12
+
+
+@pytest.mark.parametrize(("environment", "name", "more_cycles"), [
+    ("uno", "tinibot", 0),
+    ("nano_liner", "liner", 0),
+    # Addresses of three bytes, ports far away, and the pulses of a servo
+    ("mega_grabber", "grabber", 60),
+])  # fmt: skip
+def test_a_stop_is_at_the_pins_in_12_us(
+    environment: str,
+    name: str,
+    more_cycles: int,
+    tmp_path_factory: pytest.TempPathFactory,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    needed()
+    sketch: Path = firmware(
+        environment, tmp_path_factory.mktemp("sketch"), shared(tmp_path_factory)
+    )
+    robot = robots.load(name)
+    with Busy(sketch, robot, environment.partition("_")[0], robot.board.baud) as stopped:
+        places = sample(stopped, COUNT, SEED)
+        if stopped.has_echo:
+            places += [Place(places[0].at, echo, True) for echo in ECHO_AT_BEST]
+        for place in places:
+            cycles = stopped.stop(place)
+            assert 0 < cycles <= MOST_CYCLES, place
+        together = stopped.together()
+    with capsys.disabled():
+        slowest_us, together_us = (
+            each / CYCLES_PER_MS * 1000 for each in (max(stopped.cycles), together)
+        )
+        print(f"\n  {slowest_us:.1f} us; all at once {together_us:.1f} us", end=" ")
+    assert together <= MOST_CYCLES + more_cycles
