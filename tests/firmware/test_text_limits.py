@@ -111,7 +111,7 @@ def test_text_at_once_after_power_on() -> None:
     robot.wait(300)
     assert done_after(robot, "SI|F(0.2,50)\n") == LINE
     (hello,) = typed(HostFirmware(KIT, EMPTY), "PING|CHECK_CONNECTION\n")
-    assert hello.endswith(", text 1")
+    assert hello.endswith(", text uno")
 
 
 # -- what must not be run in parts ----------------------------------------------------------------

@@ -32,7 +32,7 @@ def heard(client: socket.socket, end: str) -> list[str]:
 def test_lines_are_answered_and_the_robot_drives() -> None:
     with robot("--listen", "0", "--name", "KAT") as found, visitor(found.port) as client:
         client.sendall(b"PING|CHECK_CONNECTION\r\n")
-        [hello] = heard(client, "text 1")
+        [hello] = heard(client, "text uno")
         assert hello.startswith("// KAT, kit ")
         client.sendall(b"SI|F(0.2,50);SHOW(1.5)\n")
         assert heard(client, "DONE") == ["// OK", "// 1.5", "// DONE"]

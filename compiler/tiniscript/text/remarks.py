@@ -36,6 +36,8 @@ REMARKS = (  # in the order of their numbers
     Remark("HELLO",     ", kit ",                           ", kit "),  # between name and kit
     Remark("HELP",      "",                                 ""),  # the words of this robot
     Remark("CUT",       "Bytes were lost. Begin again.",    "Se perdio algo. Empieza otra vez."),
-    Remark("LEVEL",     ", text 1",                         ", text 1"),  # behind the kit
+    Remark("LEVEL_UNO", ", text uno",                       ", text uno"),  # behind the kit
+    Remark("LEVEL_MEGA", ", text mega",                     ", text mega"),
+    Remark("LEVEL_ESP32", ", text esp32",                   ", text esp32"),
 )
 # fmt: on

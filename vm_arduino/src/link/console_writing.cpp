@@ -9,6 +9,7 @@
 #include "console.h"
 #include "frames.h"
 #include "port.h"
+#include "text_level.h"
 
 namespace tiniscript {
 
@@ -100,6 +101,10 @@ tini_noinline void put_number(int32_t value) {
   }
 }
 
+constexpr Remark kLevel = kRobotTextLevel == TextLevel::kMega    ? Remark::kLevelMega
+                          : kRobotTextLevel == TextLevel::kEsp32 ? Remark::kLevelEsp32
+                                                                 : Remark::kLevelUno;
+
 }  // namespace
 
 // Puts words of the robot until the line is full. Returns whether there are more.
@@ -158,7 +163,7 @@ tini_noinline uint8_t Console::write(uint8_t* out) {
       if (info.name_length == 0) put_hex(&identity.id, sizeof identity.id);
       put_text<put>(text);
       put_hex(&identity.kit, sizeof identity.kit);
-      text = text_of(Remark::kLevel);
+      text = text_of(kLevel);
       break;
     }
     default:

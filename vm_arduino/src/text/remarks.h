@@ -32,7 +32,9 @@ enum class Remark : uint8_t {
   kHello = 15,  // , kit
   kHelp = 16,
   kCut = 17,  // Bytes were lost. Begin again.
-  kLevel = 18,  // , text 1
+  kLevelUno = 18,  // , text uno
+  kLevelMega = 19,  // , text mega
+  kLevelEsp32 = 20,  // , text esp32
 };
 
 }  // namespace tiniscript
