@@ -48,12 +48,7 @@ from tiniscript.link.payloads import (
     StoppedEvent,
 )
 from tiniscript.link.receiver import Receiver
-from tiniscript.link.requests import (
-    OK,
-    Exchange,
-    Reply,
-    reply_of,
-)
+from tiniscript.link.requests import OK, Exchange, Reply, reply_of
 from tiniscript.link.sealing import SEALED_ALONE, UNSEALED, Sealing
 from tiniscript.link.session_requests import Interrupted, PendingExchange, SessionRequests
 from tiniscript.link.stop_sequence import StopSequence
