@@ -37,11 +37,13 @@ PARTS = {
     "machine": [f"src/vm/{name}" for name in (*VM, *MACHINE)],
     "link": [*(f"src/vm/{name}" for name in VM), "src/link/*.cpp", "src/text/*.cpp",
              "extras/link/simulated_port.cpp"],
+    "large_link": [],
     "store": ["src/vm/crc32.cpp", "src/store/store.cpp", "extras/powercut/contents.cpp",
               "extras/powercut/memory.cpp"],
 }  # fmt: skip
 HEADERS = ("src/*.h", "src/vm/*.h", "src/link/*.h", "src/text/*.h", "src/store/*.h",
            "extras/fuzz/*.h", "extras/link/*.h", "extras/powercut/*.h")  # fmt: skip
+PARTS["large_link"] = PARTS["link"]  # with the frames and the window of an ESP32
 NAMES = tuple(PARTS)
 
 
@@ -60,11 +62,14 @@ def missing() -> str:
 
 def harness(name: str, sources: Path = SOURCES) -> Path:
     """Return the program of a harness, made from a folder like `vm_arduino`."""
-    code = [sources / "extras" / "fuzz" / f"{name}.cpp"]
+    code = [sources / "extras" / "fuzz" / f"{name.removeprefix('large_')}.cpp"]
     for pattern in PARTS[name]:
         code += sorted(sources.glob(pattern))
     headers = [path for pattern in HEADERS for path in sorted(sources.glob(pattern))]
-    return built_by(COMPILER, [*code, *headers], (*FLAGS, *WARNINGS))
+    flags = (*FLAGS, *WARNINGS)
+    if name == "large_link":
+        flags += ("-Dtiniscript_like_esp32",)
+    return built_by(COMPILER, [*code, *headers], flags)
 
 
 class Found(NamedTuple):
@@ -97,7 +102,8 @@ def fuzz(program: Path, folder: Path, runs: int, seed: int) -> Found:
 
 def seeds(name: str) -> Iterator[bytes]:
     """Yield inputs as `vm_arduino/extras/fuzz` reads them."""
-    yield from {"machine": machine_seeds, "link": link_seeds, "store": store_seeds}[name]()
+    rooms = {"machine": machine_seeds, "link": link_seeds, "store": store_seeds}
+    yield from rooms[name.removeprefix("large_")]()
 
 
 def machine_seeds() -> Iterator[bytes]:

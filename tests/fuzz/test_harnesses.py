@@ -13,7 +13,7 @@ from tests.machines.host import SOURCES
 
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is libFuzzer")
 
-RUNS = {"machine": 60_000, "link": 12_000, "store": 3_000}
+RUNS = {"machine": 60_000, "link": 12_000, "large_link": 6_000, "store": 3_000}
 SEED = 1
 
 # Inputs in which something was wrong: they stay right. Those of a harness, as hexadecimal digits.
@@ -23,6 +23,7 @@ FOUND: dict[str, tuple[str, ...]] = {
         "00010a010002001b230600000040320a0910020000110000030040320b08000000aa4e4e4e4e4e4e"
         "4ec26e40320402000040320a09000200000f000f0400030040320b0600000144325040320402000040320a09000200000f000f0400030040320b0600000144325040320c04e2027ea740320a0900020000ff0000ffff40320a0900020000e8030000ff000096004032",
     ),
+    "large_link": (),
     "store": (),
 }
 
@@ -34,6 +35,7 @@ BREAKS = {
         "if (!in_range(kind, value) && false)",
     ),
     "link": ("src/link/link_writing.cpp", "size_ < most", "size_ < most + 128"),
+    "large_link": ("src/link/receiver.h", "(place + 1) % kPlaces", "(place + 1) % (kPlaces + 1)"),
     "store": ("src/store/store.cpp", *STORE_BREAKS["what counts is written over"]),
 }
 
