@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import random
+import re
 import sys
 import time
 from collections import Counter, deque
@@ -175,6 +176,7 @@ class Radio:
 
     def __init__(self, draw: random.Random, baud: int, faults: float) -> None:
         self.draw, self.byte_ms, self.faults = draw, 10_000 / baud, faults
+        self.shuffles = 0.0  # how often a frame comes twice, or before the one that it follows
         self.is_out = False
         self._queue: deque[tuple[float, int]] = deque()
         self._last_ms = 0.0
@@ -182,6 +184,8 @@ class Radio:
     def send(self, data: bytes, now_ms: int) -> None:
         if self.is_out:
             return
+        if self.shuffles:
+            data = self.shuffled(data)
         at = 0
         while at < len(data):
             if self.draw.random() < self.faults:
@@ -194,6 +198,17 @@ class Radio:
         for byte in data:
             self._last_ms += self.byte_ms
             self._queue.append((self._last_ms, byte))
+
+    def shuffled(self, data: bytes) -> bytes:
+        frames = re.findall(rb"\0*[^\0]*\0?", data)
+        for at in range(len(frames) - 1, -1, -1):
+            if self.draw.random() >= self.shuffles:
+                continue
+            if self.draw.random() < 0.5:
+                frames.insert(at, frames[at])
+            else:
+                frames[at : at + 2] = frames[at : at + 2][::-1]
+        return b"".join(frames)
 
     def arrived(self, now_ms: int) -> bytes:
         found = bytearray()
@@ -272,6 +287,8 @@ def one_upload(cpp: CppLink, seed: int, world_of: type[World] = World) -> str:
     assert first.outcome and first.outcome.status == 0 and cpp.held() == old
     world.there.faults = world.back.faults = faults
     world.drops = drops
+    if cpp.is_large:
+        world.there.shuffles = world.back.shuffles = draw.choice((0, 0, 0.02, 0.2))
 
     new = pack("SI", 0, program(draw, cpp.is_large))
     world.again()
@@ -324,7 +341,7 @@ def test_uploads_over_a_bad_radio() -> None:
 
 @needs_host
 def test_large_uploads_over_a_bad_radio() -> None:
-    """The same with large frames, several of them under way."""
+    """The same with large frames, several under way; some come twice or in another order."""
     cpp = cpp_link(is_large=True)
     found = Counter(one_upload(cpp, seed) for seed in range(LARGE_UPLOADS))
     assert found["done"] > LARGE_UPLOADS * 0.85, found
