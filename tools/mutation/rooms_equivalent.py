@@ -14,6 +14,22 @@ _REASONS: dict[str, tuple[tuple[str, str], ...]] = {
         ("if (held == kOverlaid) { held = kNothing;",
          "if (held == kOverlaid) { ;"),
     ),
+    "the supply is looked at again after half a second and a millisecond": (
+        ("if (is_low && static_cast<uint16_t>(now_ms - low_ms) < kLowMs) return false;",
+         "if (is_low && static_cast<uint16_t>(now_ms - low_ms) <= kLowMs) return false;"),
+    ),
+    "the store is free then, and every program that is held fits: a save has begun": (
+        ("if (!has_begun) keeping = 0;  // too large: no such program exists",
+         "if (!has_begun) keeping = 1;  // too large: no such program exists"),
+    ),
+    "what is to be kept has begun in the same turn; where it has not, it is kept after the keys": (
+        ("bool may_keep_keys() { return has_booted() && !store.is_busy() && (to_keep | keeping) == 0; }",
+         "bool may_keep_keys() { return has_booted() && !store.is_busy() && (to_keep & keeping) == 0; }"),
+    ),
+    "a button that is down without a press was down since the reset: nothing was counted before": (
+        ("phase = Phase::kDownSinceReset; down_ms = 0;",
+         "phase = Phase::kDownSinceReset; ;"),
+    ),
     "0 is 0 either way": (
         ("if (number < 0) size = static_cast<uint8_t>(-size);",
          "if (number <= 0) size = static_cast<uint8_t>(-size);"),
