@@ -83,6 +83,22 @@ def test_thirty_robots_get_a_program_and_three_cannot_hold_them_up() -> None:
         assert done.out.count("the robot has confirmed it") == ROBOTS - 2  # the other kit, too
 
 
+@pytest.mark.parametrize("babble", [b"DISTANCE 42\r\n" * 9, b"\x03\x81\0" * 30, b"U" * 90])
+def test_one_that_babbles_holds_up_no_other(class_: RobotFleet, babble: bytes) -> None:
+    """Another sketch that prints without an end, half frames, and the noise of a wrong speed."""
+    *others, last = class_.pupils
+    last.babble = babble
+    done = process("upload", "-e", FOREVER, "--all", "--detach", "--json")
+    rows = results(done)
+    assert done.code == 3 and len(done.out) < 10_000
+    assert {port for port, row in rows.items() if row["is_done"]} == {each.port for each in others}
+    assert all(each.moves for each in others)
+    done = process("stop", "--all", "--json")
+    rows = results(done)
+    assert {port for port, row in rows.items() if row["is_done"]} >= {each.port for each in others}
+    assert not any(each.moves for each in class_.pupils)
+
+
 def test_stop_all_stops_what_another_command_drives(class_: RobotFleet) -> None:
     command = running("upload", "-e", FOREVER, "--all")
     class_.until(lambda: all(pupil.moves for pupil in class_.pupils), "all drive")

@@ -32,6 +32,7 @@ class Pupil:
         tty.setraw(self._theirs)
         self.port = os.ttyname(self._theirs)
         self.damages = 0  # of so many bytes one changes on its way; 0: none does
+        self.babble = b""  # what it says again and again, as fast as its port takes it
         self.deaf_after: int | None = None  # so many bytes more, and it hears and says nothing
         self.heard = b""
         self._passed = 0
@@ -53,7 +54,9 @@ class Pupil:
         robot = self.robot
         robot.now_ms += passed_ms - 1
         sent = robot.step(self._through_noise(data), 0, TICKS * passed_ms)
-        if sent and self.deaf_after != 0:
+        if self.babble and select.select([], [self.ours], [], 0)[1]:
+            os.write(self.ours, self.babble)
+        elif sent and self.deaf_after != 0:
             os.write(self.ours, self._through_noise(sent))
 
     def close(self) -> None:
