@@ -99,6 +99,27 @@ def test_one_that_babbles_holds_up_no_other(class_: RobotFleet, babble: bytes) -
     assert not any(each.moves for each in class_.pupils)
 
 
+def test_a_neighbour_that_gets_its_firmware_keeps_no_stop_from_the_others(
+    class_: RobotFleet,
+) -> None:
+    """Another program has its port, as avrdude does: its stop is refused, the others are not."""
+    *others, last = class_.pupils
+    assert process("upload", "-e", FOREVER, "--all", "--detach").code == 0
+    holder = ports.opened(last.port, 115_200)
+    try:
+        for options in (("--all",), tuple(f"--port={each.port}" for each in class_.pupils)):
+            done = process("stop", *options, "--json")
+            rows = results(done)
+            assert done.code == 3 and not rows[last.port]["is_done"]
+            assert all(rows[each.port]["is_done"] for each in others)
+            assert not any(each.moves for each in others)
+            process("start", "--port", others[0].port, "--detach")
+    finally:
+        holder.close()
+    assert process("stop", "--all").code == 0
+    assert not any(each.moves for each in class_.pupils)
+
+
 def test_stop_all_stops_what_another_command_drives(class_: RobotFleet) -> None:
     command = running("upload", "-e", FOREVER, "--all")
     class_.until(lambda: all(pupil.moves for pupil in class_.pupils), "all drive")
