@@ -30,6 +30,10 @@ _REASONS: dict[str, tuple[tuple[str, str], ...]] = {
         ("phase = Phase::kDownSinceReset; down_ms = 0;",
          "phase = Phase::kDownSinceReset; ;"),
     ),
+    "the run prepares itself then: it begins some microseconds later": (
+        ("if (!is_running()) { if (!is_prepared) prepare();",
+         "if (!is_running()) { ;"),
+    ),
     "0 is 0 either way": (
         ("if (number < 0) size = static_cast<uint8_t>(-size);",
          "if (number <= 0) size = static_cast<uint8_t>(-size);"),
