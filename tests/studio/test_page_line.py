@@ -1,0 +1,145 @@
+"""The session with a robot in the page, in the robot's own time: nobody waits."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import pytest
+
+from tests.support.virtual_robot import robot_in
+from tiniscript import compile, keys, robots
+from tiniscript.link.authority import RobotKey
+from tiniscript.studio import worker
+from tiniscript.studio.page_line import HEARD_MS, PageKeys, PageRobot
+
+FOREVER = "LOOP(FOREVER);\nF(1, 80);\nEND_LOOP"
+OWNER = 0
+
+
+class Page:
+    """A page and its robot."""
+
+    def __init__(self, kept: PageKeys | None = None, memory: bytes | None = None) -> None:
+        self.robot = robot_in(memory=memory)
+        self.page = PageRobot("tinibot", "en", kept or PageKeys(b""))
+        self.news: list[dict[str, Any]] = []
+        self.file = ""
+        self._count = 0
+        self._back = b""
+
+    def go(self, milliseconds: int, *asked: dict[str, Any], is_away: bool = False) -> None:
+        """Let time go on. A page that is away asks for nothing."""
+        for each in range(milliseconds):
+            now_ms = self.robot.now_ms + 1
+            sent = b""
+            if not is_away:
+                answer = self.page.go(self._back, now_ms, list(asked) if each == 0 else [])
+                sent, self._back = bytes.fromhex(answer["send"]), b""
+                self.news += answer["news"]
+                self.file = answer.get("keys", self.file)
+            self._back += self.robot.step(now_ms, sent)
+
+    def ask(self, do: str, limit_ms: int = 30_000, **fields: object) -> dict[str, Any]:
+        self._count += 1
+        self.go(1, {"do": do, "id": self._count, **fields})
+        for _ in range(limit_ms):
+            found = [each for each in self.news if each.get("id") == self._count]
+            if found:
+                return found[0]
+            self.go(1)
+        raise AssertionError("no answer")
+
+    def upload(self, text: str) -> dict[str, Any]:
+        image = compile(text).image.hex()
+        return self.ask("upload", image=image, robot="tinibot", runs=True)
+
+    @property
+    def moves(self) -> bool:
+        return self.robot.driving.left != 0
+
+
+@pytest.fixture
+def page() -> Page:
+    found = Page()
+    assert found.ask("hello")["robot"]["robot"] == "tinibot"
+    return found
+
+
+def test_a_page_that_was_away_stops_its_robot_when_it_is_back(page: Page) -> None:
+    page.upload(FOREVER)
+    page.go(300)
+    assert page.robot.is_running
+    page.go(HEARD_MS - 100, is_away=True)
+    page.go(50)
+    assert page.robot.is_running  # for that long a browser may be busy
+    page.go(HEARD_MS + 50, is_away=True)
+    assert page.robot.is_running  # its dead-man timer takes longer
+    page.go(100)
+    assert not page.robot.is_running
+    assert page.news[-1] == {"event": "STOPPED", "cause": "SEQUENCE"}
+
+
+def test_a_page_that_stays_away_is_not_waited_for(page: Page) -> None:
+    page.upload(FOREVER)
+    page.go(300)
+    page.go(1300, is_away=True)
+    assert not page.robot.is_running
+
+
+def test_an_owner_claims_and_drives_and_nobody_else_does(page: Page) -> None:
+    for _ in range(50):
+        page.go(1)
+    page.robot.press()
+    claimed = page.ask("claim")
+    page.robot.let_go()
+    assert claimed == {"id": 2, "ok": True}
+    kept = page.file.encode()
+    assert [key.which for key in keys.read(kept)] == [OWNER]
+    page.go(3000)  # it is written
+    memory = page.robot.memory
+
+    stranger = Page(memory=memory)
+    assert stranger.ask("hello")["robot"]["owner"] == "other"
+    assert stranger.upload(FOREVER)["failure"] == "NOT_OWNER"
+    assert not stranger.robot.is_running
+
+    owner = Page(PageKeys(kept), memory)
+    assert owner.ask("hello")["robot"]["owner"] == "yours"
+    assert owner.upload(FOREVER)["ok"]
+    owner.go(100)
+    assert owner.robot.is_running
+
+
+def key(robot: int, which: int = OWNER, byte: int = 1) -> RobotKey:
+    return RobotKey(robot, which, bytes([byte] * 16), "TINI")
+
+
+def test_keys_of_a_file_replace_those_of_the_same_robot() -> None:
+    kept = PageKeys(keys.written([key(1, byte=1), key(2, byte=2)]))
+    assert kept.add(keys.written([key(1, byte=9), key(3, byte=3)])) == 2
+    assert sorted((each.id, each.key[0]) for each in keys.read(kept.file().encode())) == [
+        (1, 9), (2, 2), (3, 3),
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "data", [b"", b"{", b"[]", b"\xff", b'{"tiniscript_keys": 1}', b"[" * 5000]
+)
+def test_what_is_no_file_of_keys_changes_nothing(data: bytes) -> None:
+    kept = keys.written([key(1)]).decode()
+    answer = json.loads(worker.answer(json.dumps({"do": "import_keys", "kept": kept}), data))
+    assert answer == {"count": None}
+
+
+def test_kept_keys_that_are_damaged_do_not_keep_a_robot_out() -> None:
+    request = {"do": "connect", "robot": "tinibot", "language": "es"}
+    assert json.loads(worker.answer(json.dumps(request), b"damaged")) == {}
+    asked = {"do": "link", "now_ms": 5, "asked": [{"do": "hello", "id": 1}]}
+    answer = json.loads(worker.answer(json.dumps(asked), b""))
+    assert answer["send"] and answer["news"] == []
+
+
+def test_every_shipped_robot_can_be_named() -> None:
+    for name in robots.names():
+        assert PageRobot(name, "en", PageKeys(b"")).go(b"", 0, [])["send"] == ""
