@@ -120,6 +120,10 @@ def test_two_computers_at_once_over_cable_and_network(
     joined: Esp32PtyRobot, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     place = f"socket://127.0.0.1:{asked(joined, 'port')}"
+    for words in (("wifi", "Other"), ("wifi", "--forget")):
+        done = process(*words, "--port", place, data=PASSWORD)
+        assert done.code == 2 and "Bluetooth" in done.err
+    assert NETWORK in process("wifi", "--port", place).out
     assert process("upload", "-e", DRIVES, "--port", place).code == 0
     assert drove(joined)[-2:] == DROVE
     command = Command("upload", "-e", FOREVER, "--port", place)

@@ -14,6 +14,7 @@ from tests.support.esp32_radio import (
     Bytes,
     LowEnergy,
     Network,
+    SerialPort,
     in_reach,
     port_of,
     radios,
@@ -23,7 +24,9 @@ from tests.support.esp32_radio import (
 from tests.support.owners import Keys
 from tests.virtual.test_first_bytes import NOT_FOR_ROBOTS
 from tiniscript.link import wifi
-from tiniscript.link.messages import AUTHORITY_MS, STOP_BYTES
+from tiniscript.link.authority import RobotKey
+from tiniscript.link.frames import Frame, decoded, encoded
+from tiniscript.link.messages import AUTHORITY_MS, BY_NAME, STOP_BYTES, written
 from tiniscript.link.payloads import WifiReply
 from tiniscript.link.session import Session
 from tiniscript.virtual.first_bytes import is_for_robot
@@ -105,25 +108,27 @@ def test_it_is_there_again_after_a_reset_and_gone_when_forgotten() -> None:
     assert radios(third).joins == 0
 
 
-def test_nothing_of_it_is_readable_on_the_line() -> None:
-    """Neither the name nor the password: who listens to Bluetooth LE hears all bytes."""
+def test_the_password_is_not_readable_on_the_line() -> None:
+    """Not the password: who listens to Bluetooth LE hears all bytes. The replies have the name."""
     keys = Keys()
     robot, _ = owned(keys)
     talk(robot, [], 2500)
     over = remote(robot, keys)
     end = LowEnergy(robot)
-    heard = b""
+    there = back = b""
     request = over.join(SCHOOL)
     while request.outcome is None:
         data = over.poll(robot.now_ms)
-        heard += data
+        there += data
         end.send(data)
         robot.step()
-        over.receive(end.taken(), robot.now_ms)
+        said = end.taken()
+        back += said
+        over.receive(said, robot.now_ms)
     assert request.outcome.status == 0
     assert radios(robot).password.encode() == SCHOOL.password
-    plain = SCHOOL.name + SCHOOL.password
-    assert all(plain[k : k + 4] not in heard for k in range(len(plain) - 3))
+    for text, heard in ((SCHOOL.name, there), (SCHOOL.password, there + back)):
+        assert all(text[k : k + 4] not in heard for k in range(len(text) - 3))
 
 
 def test_a_robot_without_an_owner_takes_none() -> None:
@@ -200,6 +205,43 @@ def test_a_wrong_password_and_a_network_out_of_reach_are_told() -> None:
     in_reach(robot, SCHOOL.name.decode(), SCHOOL.password.decode())
     talk(robot, ends, 20)
     assert state(robot, owner) == ("STATION", "READY")
+
+
+def test_a_key_that_is_taken_away_ends_all_other_sessions_of_it() -> None:
+    keys = Keys()
+    robot, owner = owned(keys)
+    over = remote(robot, keys)
+    ends: Ends = [(None, owner), (LowEnergy(robot), over)]
+    assert ended(robot, ends, over.wifi()) == "OK"
+    assert ended(robot, ends, owner.disown(0)) == "OK"
+    keys.found.append(RobotKey(0x12345678, 0, bytes([1] * 16)))  # as on another computer
+    assert ended(robot, ends, over.name(b"mine")) == "WRONG_KEY"
+
+
+def test_no_two_transports_have_the_same_challenge() -> None:
+    """What was recorded on one would be a right answer on another."""
+    robot, _ = owned(Keys())
+    again = Esp32Robot(kept=robot.kept())  # no challenge before
+    again.wait(300)
+    hello = written(BY_NAME["HELLO"].request, {
+        "major": 1, "minor": 1, "isa_major": 2, "isa_minor": 0, "kit": 0, "nonce": 5,
+    })  # fmt: skip
+    asks = b"\0" + encoded(Frame(1, 1, 0, hello))
+    first, second = Bytes(asks), Bytes(asks)
+    ends: Ends = [(SerialPort(again), first), (LowEnergy(again), second)]
+    talk(again, ends, 60)
+    epoch = again_epoch(first)
+    assert epoch == again_epoch(second)
+    first.said = second.said = encoded(Frame(17, 2, epoch, b"\0"))
+    first.heard = second.heard = b""
+    talk(again, ends, 60)
+    assert len(first.heard) == 20 and first.heard != second.heard
+
+
+def again_epoch(who: Bytes) -> int:
+    frame = decoded(who.heard.strip(b"\0"))
+    assert frame
+    return frame.epoch
 
 
 # -- over TCP -----------------------------------------------------------------------------------

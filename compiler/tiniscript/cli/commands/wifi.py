@@ -43,6 +43,8 @@ def run(options: Namespace, language: str) -> int:
             raise CommandError(3, "wifi_none", robot=connection.name)
         if not features & OWNED:
             raise CommandError(3, "wifi_unowned", robot=connection.name)
+        if options.forget or name is not None:
+            _refuse_itself(connection)
         if options.forget:
             _taken(connection, connection.give(lambda session: session.forget_wifi()))
             print(text("wifi_forgotten", language).format(robot=connection.name))
@@ -53,10 +55,19 @@ def run(options: Namespace, language: str) -> int:
     return 0
 
 
+def _refuse_itself(connection: Connection) -> None:
+    """Refuse to change the network over the network: nobody would hear how that ends.
+
+    A robot that would refuse anyway does so here, before anybody is asked for a password.
+    """
+    _told(connection)
+    if connection.port.startswith(("tcp://", "socket://")):
+        raise CommandError(2, "wifi_itself", robot=connection.name)
+
+
 def _join(connection: Connection, name: bytes, is_access_point: bool) -> None:
     from tiniscript.link.wifi import Network
 
-    _told(connection)  # nobody is asked for a password that the robot would not take
     network = Network(name, _password(connection.language), is_access_point)
     _taken(connection, _given(connection, network))
     end_s = time.monotonic() + READY_S

@@ -28,6 +28,8 @@ WIFI_TEXTS: dict[str, tuple[str, str]] = {
                   "tsc: {robot} no tiene WiFi: solo lo tienen robots con un ESP32, y un firmware que lo conozca."),
     "wifi_unowned": ("tsc: {robot} has no owner, and over WiFi only a robot with an owner drives. First make it yours:  tsc claim",
                      "tsc: {robot} no tiene dueño, y por WiFi solo se conduce un robot con dueño. Primero hazlo tuyo:  tsc claim"),
+    "wifi_itself": ("tsc: over the network you cannot change the network: the connection would end before {robot} has answered. Use its cable or Bluetooth, with --port.",
+                    "tsc: por la red no se puede cambiar la red: la conexión terminaría antes de que {robot} responda. Usa su cable o Bluetooth, con --port."),
     "wifi_one_way": ("tsc: a network or --forget, one at a time.", "tsc: una red o --forget, uno a la vez."),
     "wifi_no_network": ("tsc: how should the robot's own network be called?   tsc wifi NAME --access-point",
                         "tsc: ¿cómo debe llamarse la red propia del robot?   tsc wifi NOMBRE --access-point"),
