@@ -215,8 +215,8 @@ bool Links::take_text_memory() {
   const bool is_remote = is_network(static_cast<Transport>(current_));
   for (uint8_t place = 0; place < kTransports; place++) {
     if (place == current_ || !links_[place].has_open_text()) continue;
-    if (is_remote) return false;
-    links_[place].drop_text();
+    if (is_remote || !is_network(static_cast<Transport>(place))) return false;
+    links_[place].drop_text();  // nothing that is typed in a network drives
   }
   return true;
 }

@@ -60,7 +60,7 @@ class Links {
   // Whether the current session drives already.
   bool is_driving() const { return driver_ == current_; }
 
-  // A line of text of the current session begins. False: another one has the memory for it.
+  // A line of text of the current session begins. False: another one has the memory for it now.
   bool take_text_memory();
 
  private:
