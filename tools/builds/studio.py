@@ -44,6 +44,9 @@ COPIED = ("style.css", "manifest.webmanifest", "icon.svg", "more.svg", "less.svg
 BLOCKLY = MODULES / "blockly"
 PICTURES = ("sprites.svg", "handopen.cur", "handclosed.cur", "handdelete.cur", "delete-icon.svg",
             "dropdown-arrow.svg", "foldout-icon.svg", "resize-handle.svg")  # fmt: skip
+# The one style that Blockly writes into an element, which the page's policy forbids; this direction
+# is a text's anyway.
+STYLED = ',style:`direction: ${this.workspace.RTL?"rtl":"ltr"}`'
 INPUTS = "inputs.json"  # which modules are in the page's files
 MPL = "Mozilla Public License 2.0: https://www.mozilla.org/MPL/2.0/"
 PSF = "Python Software Foundation License: https://docs.python.org/3/license.html"
@@ -120,6 +123,7 @@ def build(page: Path = PAGE) -> None:
     lock = json.loads((MODULES / "pyodide" / "pyodide-lock.json").read_text(encoding="utf-8"))
     make("description.json", description())
     make("blockly_texts.json", texts(BLOCKLY, SOURCES / "src"))
+    make_blockly()
     make("lock.json", {"info": lock["info"], "packages": {}})
     say("types of the sources")
     run(tools.node, "node_modules/typescript/bin/tsc", "-p", ".")
@@ -153,6 +157,18 @@ def make(name: str, content: object) -> None:
     path.parent.mkdir(exist_ok=True)
     whole = json.dumps(content, ensure_ascii=False, indent=1, sort_keys=True)
     path.write_text(whole + "\n", encoding="utf-8")
+
+
+def make_blockly() -> None:
+    """Write Blockly's core as the page imports it: without styles in elements."""
+    folder = SOURCES / "made" / "blockly"
+    folder.mkdir(parents=True, exist_ok=True)
+    core = (BLOCKLY / "blockly_compressed.js").read_text(encoding="utf-8")
+    if core.count(STYLED) != 1:
+        raise CannotBuild("Blockly writes other styles than before: see STYLED")
+    (folder / "blockly_compressed.js").write_text(core.replace(STYLED, ""), encoding="utf-8")
+    (folder / "package.json").write_text('{"type": "commonjs"}\n', encoding="utf-8")
+    shutil.copyfile(BLOCKLY / "blockly.mjs", folder / "blockly.mjs")
 
 
 def found_tools() -> Tools:
@@ -203,6 +219,7 @@ def bundle(tools: Tools, target: Path) -> None:
     common = ("--bundle", "--minify", "--format=esm", "--target=es2022", "--log-level=warning",
               "--legal-comments=none", "--external:node:*", "--external:ws",
               "--chunk-names=[name]-[hash]", "--splitting", f"--outdir={target}",
+              "--alias:blockly/core=./made/blockly/blockly.mjs",
               f"--metafile={SOURCES / 'made' / INPUTS}")  # fmt: skip
     run(tools.node, "node_modules/esbuild/bin/esbuild", "src/main.js", "src/worker.js", *common)
 
@@ -223,7 +240,8 @@ def licences() -> str:
     """Return whose work is in the page, and under which licences."""
     parts = ["The page of TiniScript Studio is under the MIT licence, and contains:\n"]
     inputs = json.loads((SOURCES / "made" / INPUTS).read_text(encoding="utf-8"))["inputs"]
-    for name in sorted({_package(path) for path in inputs if path.startswith("node_modules/")}):
+    names = {_package(path) for path in inputs if path.startswith("node_modules/")}
+    for name in sorted({*names, BLOCKLY.name}):
         folder = MODULES / name
         about = json.loads((folder / "package.json").read_text(encoding="utf-8"))
         files = [path.read_text(encoding="utf-8") for path in sorted(folder.glob("LICEN[CS]E*"))]

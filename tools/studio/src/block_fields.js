@@ -31,7 +31,7 @@ export class NameField extends Blockly.FieldTextInput {
   doClassValidation_(value) {
     const text = String(value ?? '').normalize('NFC').replace(/ñ/gi, 'NI').normalize('NFD').replace(/[\u0300-\u036f]/g, '');
     const plain = text.toUpperCase().trim().replace(/\W+/g, '_').replace(/^[^A-Z]+/, '');
-    return plain.slice(0, 40) || null;
+    return plain || null;
   }
 }
 

@@ -12,6 +12,7 @@ export const COLOURS = {
   move: '#0b4f9e',
   time: '#00607a',
   control: '#8a3c00',
+  choose: '#8a3c00',
   sensors: '#0d6040',
   decide: '#3f5c12',
   numbers: '#6226b0',
@@ -55,11 +56,20 @@ function adoptCommon() {
   adopt(root.querySelector('style')?.textContent ?? '');
 }
 
+/** @type {Blockly.BlocklyOptions | null} */
+let looks = null;
+
 /** @returns {Blockly.BlocklyOptions} */
 export function look() {
+  looks ??= prepared();
+  return looks;
+}
+
+/** @returns {Blockly.BlocklyOptions} */
+function prepared() {
   Blockly.blockRendering.register(RENDERER, Renderer);
   adoptCommon();
-  const styles = Object.entries(COLOURS).map(([name, colour]) => [name, { colourPrimary: colour, hat: name === 'start' ? 'cap' : '' }]);
+  const styles = Object.entries(COLOURS).map(([name, colour]) => [name, { colourPrimary: colour }]);
   const theme = Blockly.Theme.defineTheme('tiniscript', {
     name: 'tiniscript',
     base: Blockly.Themes.Zelos,

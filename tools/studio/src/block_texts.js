@@ -94,7 +94,8 @@ export const TIPS = {
 export const GROUPS = {
   move: ['Move', 'Moverse'],
   time: ['Wait, sound', 'Tiempo, sonido'],
-  control: ['Control', 'Control'],
+  control: ['Repeat', 'Repetir'],
+  choose: ['Decide', 'Decidir'],
   sensors: ['Robot', 'Robot'],
   decide: ['Compare', 'Comparar'],
   numbers: ['Numbers', 'Números'],

@@ -9,6 +9,8 @@ import { GROUPS, said } from './block_texts.js';
 
 export const LEVELS = /** @type {Level[]} */ (['few', 'usual', 'all']);
 
+const MOST_NAMES = 6; // of a program, in a group
+
 /** @param {number} value */
 function number(value) {
   return { shadow: { type: 'number', fields: { WORD: value } } };
@@ -62,8 +64,10 @@ function groups(used) {
       ['usual', until('wait_until', [5])], ['all', item('time')], ['all', item('endless')],
     ]],
     ['few', 'control', [
-      ['few', item('loop', [3])], ['few', item('forever')], ['few', asking('if', { arms: 1, hasElse: false })],
-      ['usual', asking('if', { arms: 1, hasElse: true })], ['usual', asking('while')], ['usual', item('break')],
+      ['few', item('loop', [3])], ['few', item('forever')], ['usual', asking('while')], ['usual', item('break')],
+    ]],
+    ['few', 'choose', [
+      ['few', asking('if', { arms: 1, hasElse: false })], ['few', asking('if', { arms: 1, hasElse: true })],
     ]],
     ['few', 'sensors', [
       ...sensors.map((name) => /** @type {[Level, Item]} */ (['few', item('sensor', [], name)])),
@@ -81,11 +85,11 @@ function groups(used) {
     ]],
     ['usual', 'names', [
       ['usual', item('assign', [0], used.names[0] ?? 'X')],
-      ...(used.names.length ? used.names.slice(0, 6) : ['X']).map((name) => /** @type {[Level, Item]} */ (['usual', item('name', [], name)])),
+      ...(used.names.length ? used.names.slice(0, MOST_NAMES) : ['X']).map((name) => /** @type {[Level, Item]} */ (['usual', item('name', [], name)])),
     ]],
     ['usual', 'words', [
       ['usual', item('def', [], 'HOP')],
-      ...used.words.slice(0, 6).map((name) => /** @type {[Level, Item]} */ (['usual', item('call', [], name)])),
+      ...used.words.slice(0, MOST_NAMES).map((name) => /** @type {[Level, Item]} */ (['usual', item('call', [], name)])),
     ]],
     ['usual', 'others', [['usual', item('comment')], ['all', item('start')]]],
   ];
@@ -105,7 +109,7 @@ export function toolbox(level, used) {
       kind: 'category',
       name: said(GROUPS, name),
       categorystyle: name,
-      contents: items.filter(([its]) => isShown(its)).map(([, each]) => ({ ...each, gap: 12 })),
+      contents: items.filter(([its]) => isShown(its)).map(([, each]) => ({ ...each, gap: 8 })),
     })),
   };
 }

@@ -107,9 +107,11 @@ export class Blocks {
 
   setLanguage() {
     const { form } = formOf(this.#workspace);
+    const places = this.#places.map(([, place]) => place);
     this.#workspace.dispose();
     this.#workspace = this.#begin();
     this.show(form);
+    this.placed(this.#places.map(([id]) => id), places);
   }
 
   /** @param {string} robot */

@@ -10,6 +10,7 @@ import { text } from './texts.js';
 /** @typedef {import('./work.js').Work} Work */
 
 const TYPING_MS = 200; // of silence before blocks are made of a text
+const BUSY_MS = 50; // until a block that is dragged is looked at again
 const LEVELS = /** @type {const} */ ([['few', 'level_few'], ['usual', 'level_usual'], ['all', 'level_all']]);
 
 export class Views {
@@ -26,8 +27,11 @@ export class Views {
   #isReady = false;
   #isRefreshing = false;
   #isSending = false;
+  #isWanted = false; // blocks of a text that does not parse, too
   #changes = 0; // of blocks that their text does not have yet
-  #timer = 0;
+  #form = ''; // what the blocks were when they and the text were the same
+  #typing = 0;
+  #sending = 0;
   /** @type {Finding[]} */
   #findings = [];
   #pane = element('blocks', HTMLElement);
@@ -96,8 +100,8 @@ export class Views {
   textChanged() {
     if (!this.#blocks || !this.#isStale()) return;
     this.#showState();
-    clearTimeout(this.#timer);
-    this.#timer = window.setTimeout(() => this.#refresh(!this.#editor.hasFocus), TYPING_MS);
+    clearTimeout(this.#typing);
+    this.#typing = window.setTimeout(() => this.#refresh(!this.#editor.hasFocus), TYPING_MS);
   }
 
   /** @param {Finding[]} findings of the newest text */
@@ -123,6 +127,7 @@ export class Views {
     this.#work.view = view;
     this.#remember();
     this.#lay();
+    this.#blocks?.resize();
     if (view === 'blocks') this.#refresh(true);
   }
 
@@ -162,15 +167,16 @@ export class Views {
     this.#changes += 1;
     if (this.#shown === null) return; // those are not the text's
     this.#pane.dataset['state'] = 'changed';
-    clearTimeout(this.#timer);
-    this.#timer = window.setTimeout(() => this.#send(), 0);
+    clearTimeout(this.#sending);
+    this.#sending = window.setTimeout(() => this.#send(), 0);
   }
 
   /** Makes the text of the blocks, unless somebody has changed the text meanwhile. */
   async #send() {
     if (!this.#blocks || this.#shown === null || this.#isSending || !this.#changes) return;
     if (this.#blocks.isBusy) {
-      this.#timer = window.setTimeout(() => this.#send(), 50);
+      clearTimeout(this.#sending);
+      this.#sending = window.setTimeout(() => this.#send(), BUSY_MS);
       return;
     }
     this.#isSending = true;
@@ -179,12 +185,17 @@ export class Views {
       while (this.#changes && this.#shown === before) {
         this.#changes = 0;
         const { form, ids } = this.#blocks.read();
+        const whole = JSON.stringify(form);
+        if (whole === this.#form) break; // a block was only moved about
         const answer = await this.#python.ask({ do: 'text', form });
         if (this.#changes || this.#editor.text !== before) continue;
         this.#shown = answer.text;
+        this.#form = whole;
         this.#blocks.placed(ids, answer.places);
         this.#editor.replaceByBlocks(answer.text);
       }
+    } catch (why) {
+      this.#fail(why);
     } finally {
       this.#isSending = false;
     }
@@ -199,11 +210,8 @@ export class Views {
    * @param {boolean} isWanted
    */
   async #refresh(isWanted) {
+    this.#isWanted ||= isWanted;
     if (!this.#blocks || !this.#isReady || this.#isRefreshing || !this.#isOn) return;
-    if (!this.#isStale()) {
-      this.#showState();
-      return;
-    }
     this.#isRefreshing = true;
     try {
       while (this.#isStale()) {
@@ -211,7 +219,7 @@ export class Views {
         /** @type {Form & {size: number}} */
         const form = await this.#python.ask({ do: 'blocks', robot: this.#work.robot }, new TextEncoder().encode(now));
         if (now !== this.#editor.text) continue;
-        const isKept = !isWanted && this.#editor.hasFocus && this.#shown !== null && hasGrey(form);
+        const isKept = !this.#isWanted && this.#editor.hasFocus && this.#shown !== null && hasGrey(form);
         if (!form.body || isKept) {
           this.#showState(form.body ? text('blocks_wait') : text('blocks_many'));
           return;
@@ -219,12 +227,21 @@ export class Views {
         this.#shown = now;
         this.#changes = 0;
         this.#blocks.show(form);
+        this.#form = JSON.stringify(this.#blocks.read().form);
         this.#blocks.showFindings(this.#findings);
       }
       this.#showState();
+    } catch (why) {
+      this.#fail(why);
     } finally {
       this.#isRefreshing = false;
+      this.#isWanted = false;
     }
+  }
+
+  /** @param {unknown} why */
+  #fail(why) {
+    this.#note.textContent = text('bug', { why: String(why).split('\n').filter(Boolean).at(-1) ?? '' });
   }
 
   /** @param {string} note */

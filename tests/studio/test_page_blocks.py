@@ -1,0 +1,417 @@
+"""The program as blocks in the page: what a person does with a mouse, a finger or keys."""
+
+from __future__ import annotations
+
+import json
+import random
+import re
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from tests.oracle import programs as oracle_programs
+from tests.studio.programs import programs
+from tests.studio.test_page_for_everyone import LOOK, SCREENS
+from tests.support.casefile import ROOT
+from tests.support.kits import KITS
+from tests.support.studio import Pages, image, shown, write
+from tiniscript import check, compile, robots
+from tiniscript.studio.block_form import data_of
+from tiniscript.studio.block_reading import read
+from tiniscript.studio.serving import files
+from tools.builds.blockly_texts import english
+from tools.builds.studio import BLOCKLY, MODULES, SOURCES
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Locator, Page
+
+PROGRAM = "#blocks .blocklySvg > .blocklyWorkspace > .blocklyBlockCanvas"  # no toolbox
+FLYOUT = ".blocklyFlyout:visible .blocklyBlockCanvas > .blocklyDraggable"  # no numbers in blocks
+PATIENCE_MS = 15_000
+# The blocks of the page, made of forms and read again, without the page around them.
+ROUND = """async ({name, forms}) => {
+  const {Blocks} = await import(new URL(name, location.href).href);
+  const place = document.createElement('div');
+  place.style.cssText = 'width: 600px; height: 400px';
+  document.body.append(place);
+  const blocks = new Blocks(place, 'tinibot', 'all', {changed() {}, undo() {}, redo() {}});
+  const found = forms.map((form) => { blocks.show(form); return blocks.read().form; });
+  place.remove();
+  return found;
+}"""
+
+
+@pytest.fixture
+def page(only_page: tuple[Pages, Page]) -> Any:
+    """A page in English with blocks of a small program."""
+    pages, found = only_page
+    found.set_default_timeout(PATIENCE_MS)
+    found.set_viewport_size({"width": 1366, "height": 768})
+    found.select_option("#language", "en")
+    found.select_option("#robot", "tinibot")
+    start(found, "SI|F(2, 80);\nS;\n")
+    yield found
+    wrong, pages.wrong[:] = pages.wrong[:], []
+    assert not wrong
+
+
+def start(page: Page, text: str, level: str = "few") -> None:
+    page.click("#view_text")
+    write(page, text)
+    page.click("#view_blocks")
+    page.select_option("#level", level)
+    shown(page)
+
+
+def text_of(page: Page) -> str:
+    """Return the program's text, which is beside the blocks or behind them."""
+    shown(page)
+    kept: str = page.evaluate("JSON.parse(sessionStorage['tiniscript.work']).text")
+    return kept
+
+
+def becomes(page: Page, text: str) -> None:
+    """Wait until the blocks have become this text; the page is told of a change a moment later."""
+    for _ in range(PATIENCE_MS // 50):
+        if text_of(page) == text:
+            return
+        page.wait_for_timeout(50)
+    assert text_of(page) == text
+
+
+def block(page: Page, words: str) -> Locator:
+    """Return the innermost block with these words on it."""
+    found = page.locator(f"{PROGRAM} .blocklyDraggable")
+    return found.filter(has_text=words).last
+
+
+def box_of(block: Locator) -> Any:
+    """Return the box of a block without those that hang below it, as the page has it: what
+    Playwright says of a path is beside it."""
+    return block.locator("> .blocklyPath").evaluate("e => e.getBoundingClientRect().toJSON()")
+
+
+def drag(page: Page, group: str, words: str, target: Locator) -> None:
+    """Drag a block out of a group of the toolbox, below another one."""
+    page.locator(".blocklyToolboxCategory", has_text=group).click()
+    source = page.locator(FLYOUT).filter(has_text=words).first
+    source.wait_for()
+    a, b = box_of(source), box_of(target)
+    page.mouse.move(a["x"] + 8, a["y"] + 10)
+    page.mouse.down()
+    page.mouse.move(b["x"] + 60, b["y"] + b["height"] + 40, steps=8)
+    page.mouse.move(b["x"] + 10, b["y"] + b["height"] + 8, steps=8)
+    page.mouse.up()
+    page.locator("#blocks[data-state=shown]").wait_for()
+
+
+def without_places(form: Any) -> Any:
+    if isinstance(form, list):
+        return [without_places(each) for each in form]
+    if isinstance(form, dict):
+        return {key: without_places(value) for key, value in form.items() if key != "place"}
+    return form
+
+
+def test_blocks_of_the_page_are_those_of_python(page: Page) -> None:
+    """Every program of the documents and 300 random ones: what is shown is what is read."""
+    forms = [read(each.text, robots.load(each.robot).kit) for each in programs()]
+    for seed in range(300):
+        theirs, kit = KITS[seed % len(KITS)]
+        forms.append(read(oracle_programs.program(random.Random(seed), theirs), kit))
+    data = json.loads(json.dumps([without_places(data_of(form)) for form in forms]))
+    (name,) = [name for name in files() if name.startswith("blocks-")]
+    found = page.evaluate(ROUND, {"name": name, "forms": data})
+    for k, (want, got) in enumerate(zip(data, found, strict=True)):
+        assert got == want, k
+
+
+def test_a_child_makes_a_program_and_lets_it_drive(pages: Pages) -> None:
+    page = pages.open(view="blocks", locale="es-PE")
+    page.locator("#level").wait_for()
+    assert block(page, "SI: empieza enseguida").count() == 1
+    drag(page, "Moverse", "F adelante", block(page, "R gira a la derecha"))
+    becomes(page, "SI|F(2, 80);\nR(0.5, 60);\nF(2, 80);\nF(1, 80);\n")
+    number = page.locator(f"{PROGRAM} .blocklyNumberField").nth(5)
+    number.click()
+    page.keyboard.press("Control+a")
+    page.keyboard.type("150")
+    page.keyboard.press("Enter")
+    becomes(page, "SI|F(2, 80);\nR(0.5, 60);\nF(2, 100);\nF(1, 80);\n")  # there is no more power
+    page.select_option("#speed", "20")
+    page.click("#run")
+    page.locator("html[data-phase=ended]").wait_for(state="attached")
+    assert image(page) == compile(text_of(page)).image
+
+
+def test_undo_is_one_for_blocks_and_text(page: Page) -> None:
+    drag(page, "Move", "B back", block(page, "F forward"))
+    after = text_of(page)
+    assert after == "SI|F(2, 80);\nB(2, 80);\nS;\n"
+    page.click("#undo")
+    becomes(page, "SI|F(2, 80);\nS;\n")
+    assert block(page, "B back").count() == 0
+    page.click("#redo")
+    becomes(page, after)
+    assert block(page, "B back").count() == 1
+    block(page, "S stop").click(position={"x": 6, "y": 6})
+    page.keyboard.press("Delete")
+    becomes(page, "SI|F(2, 80);\nB(2, 80);\n")
+    page.keyboard.press("Control+z")
+    page.locator("#blocks .blocklyDraggable", has_text="S stop").first.wait_for()
+    becomes(page, after)
+    page.click("#view_text")
+    page.locator(".cm-content").focus()
+    page.keyboard.press("Control+z")
+    page.click("#view_blocks")
+    becomes(page, "SI|F(2, 80);\nS;\n")
+
+
+def test_looking_at_blocks_changes_no_text(page: Page) -> None:
+    text = "// mine\nsi|f( 2,80 )\n\n\n  s // stop"
+    start(page, text)
+    page.click("#view_text")
+    page.click("#view_blocks")
+    becomes(page, text)
+    block(page, "F forward").click(position={"x": 6, "y": 6})
+    becomes(page, text)
+
+
+def test_a_block_that_hangs_on_nothing_is_kept(page: Page) -> None:
+    page.locator(".blocklyToolboxCategory", has_text="Move").click()
+    source = page.locator(".blocklyFlyout:visible .blocklyDraggable").first.bounding_box()
+    assert source is not None
+    page.mouse.move(source["x"] + 8, source["y"] + 10)
+    page.mouse.down()
+    page.mouse.move(700, 330, steps=10)
+    page.mouse.up()
+    page.locator("#blocks[data-state=shown]").wait_for()
+    becomes(page, "SI|F(2, 80);\nS;\n\n/// F(2, 80)\n")
+    assert image(page) == compile("SI|F(2, 80);S").image
+    page.click("#view_text")
+    page.click("#view_blocks")
+    assert page.locator("#blocks .blocklyDraggable", has_text="F forward").count() >= 2
+
+
+def test_a_line_that_does_not_parse_is_grey_and_not_lost(page: Page) -> None:
+    start(page, "SI|F(2, 80)\nF(1; 80) // hm\nS\n")
+    assert block(page, "F(1; 80)").count() == 1
+    drag(page, "Move", "R turn right", block(page, "S stop"))
+    becomes(page, "SI|F(2, 80);\nF(1; 80) // hm\nS;\nR(0.5, 60);\n")
+
+
+def test_blocks_wait_while_a_text_is_being_typed(page: Page) -> None:
+    page.locator(".cm-content").focus()
+    page.keyboard.press("Control+End")
+    page.keyboard.type("F(1")
+    page.locator("#blocks[data-state=stale]").wait_for()
+    page.locator("#blocks_note", has_text="wait").wait_for()
+    assert block(page, "S stop").count() == 1
+    page.keyboard.type(", 50)")
+    page.locator("#blocks[data-state=shown]").wait_for()
+    assert page.inner_text("#blocks_note") == ""
+    assert block(page, "50").count() == 1
+    page.keyboard.type("\nF(")
+    page.locator("#blocks_note", has_text="wait").wait_for()
+    page.mouse.click(600, 330)  # what was typed is not taken back
+    page.locator("#blocks[data-state=shown]").wait_for()
+    assert block(page, "F(").count() == 1
+    assert text_of(page).endswith("F(1, 50)\nF(")
+
+
+def test_what_the_compiler_says_is_at_the_block(page: Page) -> None:
+    start(page, "SI|S;\nLOOP(2);\n  F(-2, 80);\nEND_LOOP;\n")
+    icons = page.locator("#blocks .blocklyWarningIcon, #blocks .blockly-icon-warning")
+    assert icons.count() == 1
+    icons.first.click()
+    said = check("F(-2, 80)")[0]
+    bubble = page.locator("#blocks .blocklyBubble")
+    bubble.wait_for()
+    whole = "".join((bubble.text_content() or "").split())
+    assert "".join(said.message.split()) in whole and "".join(said.fix.split()) in whole
+    page.locator("#messages .place").click()
+    focused = page.evaluate("document.activeElement.closest('.blocklyDraggable')?.textContent")
+    assert "back" in focused or "forward" in focused.replace("\xa0", " ")
+    page.locator("#messages .repair").click()
+    shown(page)
+    becomes(page, "SI|S;\nLOOP(2);\n  B(2, 80);\nEND_LOOP;\n")
+    assert icons.count() == 0
+
+
+def test_the_block_that_runs_is_marked(page: Page) -> None:
+    start(page, "SI|S;\nF(FOREVER, 20) UNTIL(FALSE);\nW(1);\n", "all")
+    page.click("#run")
+    running = page.locator("#blocks .blocklyDraggable.running")
+    running.wait_for()
+    assert "until" in (running.text_content() or "")
+    page.click("#stop")
+    page.locator("html[data-phase=ended]").wait_for(state="attached")
+
+
+def flyout(page: Page, group: str) -> str:
+    page.locator(".blocklyToolboxCategory", has_text=group).click()
+    page.locator(".blocklyFlyout:visible .blocklyDraggable").first.wait_for()
+    return page.locator(".blocklyFlyout:visible").text_content() or ""
+
+
+def test_the_words_of_the_robot_are_blocks(page: Page) -> None:
+    for name in robots.names():
+        page.select_option("#robot", name)
+        shown(page)
+        said = flyout(page, "Robot")
+        kit = robots.load(name).kit
+        for device in (*kit.sensors, *kit.actuators):
+            assert device.name in said
+        page.keyboard.press("Escape")
+
+
+def test_the_names_of_the_program_are_blocks(page: Page) -> None:
+    start(page, "SI|SPEED = 5;\nDEF HOP;\n  F(1, SPEED);\nEND_DEF;\nHOP;\n", "usual")
+    assert "SPEED" in flyout(page, "Variables")
+    assert "HOP" in flyout(page, "My words")
+
+
+def test_no_group_of_the_toolbox_scrolls(page: Page) -> None:
+    for screen in SCREENS[:2]:
+        page.set_viewport_size({"width": screen[0], "height": screen[1]})
+        for name in ("tinibot", "liner", "grabber"):
+            page.select_option("#robot", name)
+            for level in ("few", "usual", "all"):
+                page.select_option("#level", level)
+                shown(page)
+                for row in page.locator(".blocklyToolboxCategory").all():
+                    row.click()
+                    page.locator(".blocklyFlyout:visible .blocklyDraggable").first.wait_for()
+                    low = max(
+                        box["y"] + box["height"]
+                        for each in page.locator(".blocklyFlyout:visible .blocklyDraggable").all()
+                        if (box := each.bounding_box())
+                    )
+                    pane = page.locator("#blocks").bounding_box()
+                    assert pane is not None
+                    assert low <= pane["y"] + pane["height"] + 1, (screen, name, level, row)
+                    row.click()
+                rows = page.locator(".blocklyToolbox")
+                assert rows.evaluate("e => e.scrollHeight <= e.clientHeight"), (screen, level)
+
+
+def test_more_cases_of_an_if(page: Page) -> None:
+    start(page, "SI|IF(DISTANCE < 10);\n  S;\nENDIF;\n")
+    for name, wanted in (
+        ("Add a case", "IF(DISTANCE < 10);\n  S;\nELSE;\nENDIF;\n"),
+        ("Add a case", "IF(DISTANCE < 10);\n  S;\nELSEIF(TRUE);\nELSE;\nENDIF;\n"),
+        ("Take the last case away", "IF(DISTANCE < 10);\n  S;\nELSE;\nENDIF;\n"),
+    ):
+        href = "more.svg" if name.startswith("Add") else "less.svg"
+        page.locator(f"#blocks .blocklyBlockCanvas image[*|href$='{href}']").first.click()
+        page.locator("#blocks[data-state=shown]").wait_for()
+        becomes(page, f"SI|{wanted}")
+
+
+def test_a_long_program_stays_text(page: Page) -> None:
+    page.click("#view_text")
+    write(page, "S;" * 1600)
+    page.click("#view_blocks")
+    page.locator("#blocks_note", has_text="too long").wait_for()
+    start(page, "SI|S\n")
+    assert page.inner_text("#blocks_note") == ""
+
+
+@pytest.mark.parametrize("language", ["en", "es"])
+@pytest.mark.parametrize("screen", SCREENS, ids=lambda screen: "x".join(map(str, screen)))
+def test_blocks_are_seen(page: Page, screen: tuple[int, int], language: str) -> None:
+    page.set_viewport_size({"width": screen[0], "height": screen[1]})
+    page.select_option("#language", language)
+    for text in ("SI|F(2, 80)", "SI|F(-2, 80);\nIF(DISTANCE < 10;\n"):
+        start(page, text)
+        assert page.evaluate(LOOK) == []
+        box = page.locator("#blocks").bounding_box()
+        assert box is not None and box["height"] >= 96 and box["width"] >= 300
+        for each in page.locator(".blocklyToolboxCategory").all():
+            found = each.bounding_box()
+            assert found is not None and found["height"] >= 40
+
+
+def test_axe_finds_nothing_with_blocks(page: Page) -> None:
+    start(page, "SI|F(-2, 80);\nIF(DISTANCE < 10);\n  S;\nENDIF;\n")
+    page.evaluate((MODULES / "axe-core" / "axe.min.js").read_text(encoding="utf-8"))
+    found: dict[str, Any] = page.evaluate("axe.run()")
+    assert [(each["id"], each["nodes"][0]["html"]) for each in found["violations"]] == []
+
+
+def test_keys_alone_add_a_block(page: Page) -> None:
+    page.locator("#redo").focus()
+    page.keyboard.press("Tab")
+    page.keyboard.press("t")
+    for key in ("ArrowRight", "Enter", "ArrowDown", "Enter"):
+        page.keyboard.press(key)
+        page.wait_for_timeout(100)  # as quick as fingers
+    for _ in range(100):
+        if text_of(page).count("F(2, 80)") == 2:
+            return
+        page.wait_for_timeout(50)
+    assert text_of(page).count("F(2, 80)") == 2
+
+
+def test_a_finger_drags_a_block(pages: Pages) -> None:
+    page = pages.open(view="blocks", has_touch=True, viewport={"width": 1024, "height": 600})
+    page.locator(".blocklyToolboxCategory", has_text="Move").tap()
+    source = page.locator(FLYOUT).nth(1)
+    source.wait_for()
+    a, b = box_of(source), box_of(block(page, "R turn right"))
+    session = page.context.new_cdp_session(page)
+
+    def touch(kind: str, x: float, y: float) -> None:
+        points = [] if kind == "touchEnd" else [{"x": x, "y": y}]
+        session.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+
+    x, y = a["x"] + 8, a["y"] + 10
+    to_x, to_y = b["x"] + 10, b["y"] + b["height"] + 8
+    touch("touchStart", x, y)
+    for k in range(1, 13):
+        touch("touchMove", x + (to_x - x) * k / 12, y + (to_y - y) * k / 12)
+    touch("touchEnd", to_x, to_y)
+    page.locator("#blocks[data-state=shown]").wait_for()
+    assert "B(2, 80)" in text_of(page)
+
+
+# -- sentences -------------------------------------------------------------------------------------
+
+
+def test_blockly_speaks_spanish() -> None:
+    wanted = english(BLOCKLY)
+    ours = json.loads((SOURCES / "src" / "blockly_es.json").read_text(encoding="utf-8"))
+    assert set(ours) == set(wanted) and len(ours) > 150
+    same = {name for name, text in ours.items() if text == wanted[name]}
+    assert same == {"ALT_KEY", "ESCAPE", "CONTROL_KEY"} & same
+    for name, text in wanted.items():
+        assert sorted(re.findall(r"%\d", text)) == sorted(re.findall(r"%\d", ours[name])), name
+
+
+def test_every_word_on_a_block_is_there_in_both_languages() -> None:
+    source = (SOURCES / "src" / "block_texts.js").read_text(encoding="utf-8")
+    rows = re.findall(r"^  (\w+): \[", source, re.MULTILINE)
+    pairs = re.findall(
+        r"^  \w+: \['((?:[^'\\]|\\.)*)',\s+'((?:[^'\\]|\\.)*)'\],$", source, re.MULTILINE
+    )
+    assert len(rows) == len(pairs) > 60
+    for one, other in pairs:
+        assert sorted(re.findall(r"%[\d%]", one)) == sorted(re.findall(r"%[\d%]", other))
+
+
+def test_the_kinds_of_blocks_are_those_of_python() -> None:
+    from tiniscript.studio.block_form import SHAPES
+
+    source = (SOURCES / "src" / "block_shapes.js").read_text(encoding="utf-8")
+    table = source[source.index("export const SHAPES") : source.index("\n};")]
+    for kind, (values, bodies) in SHAPES.items():
+        row = re.search(rf"^  {kind}: \{{(.*)\}},$", table, re.MULTILINE)
+        assert row, kind
+        listed = re.search(r"values: \[(.*?)\]", row[1])
+        assert (len(listed[1].split(",")) if listed else 0) == values, kind
+        assert int((re.search(r"bodies: (\d)", row[1]) or [0, 0])[1]) == bodies, kind
+
+
+def test_no_word_of_the_sources_is_a_picture_of_a_face() -> None:
+    for path in (ROOT / "tools" / "studio" / "src").iterdir():
+        assert not re.search("[\U0001f000-\U0001faff]", path.read_text(encoding="utf-8")), path.name
