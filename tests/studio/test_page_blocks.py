@@ -96,10 +96,11 @@ def drag(page: Page, group: str, words: str, target: Locator) -> None:
     page.locator(".blocklyToolboxCategory", has_text=group).click()
     source = page.locator(FLYOUT).filter(has_text=words).first
     source.wait_for()
-    a, b = box_of(source), box_of(target)
+    a = box_of(source)
     page.mouse.move(a["x"] + 8, a["y"] + 10)
     page.mouse.down()
-    page.mouse.move(b["x"] + 60, b["y"] + b["height"] + 40, steps=8)
+    page.mouse.move(700, 400, steps=8)
+    b = box_of(target)  # once the toolbox is no longer over it
     page.mouse.move(b["x"] + 10, b["y"] + b["height"] + 8, steps=8)
     page.mouse.up()
     page.locator("#blocks[data-state=shown]").wait_for()
@@ -158,7 +159,7 @@ def test_undo_is_one_for_blocks_and_text(page: Page) -> None:
     page.keyboard.press("Delete")
     becomes(page, "SI|F(2, 80);\nB(2, 80);\n")
     page.keyboard.press("Control+z")
-    page.locator("#blocks .blocklyDraggable", has_text="S stop").first.wait_for()
+    block(page, "S stop").wait_for()
     becomes(page, after)
     page.click("#view_text")
     page.locator(".cm-content").focus()
