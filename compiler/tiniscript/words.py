@@ -7,10 +7,13 @@ are thousandths. The words of a kit (its sensors and actuators) come from `kit`,
 from __future__ import annotations
 
 from collections.abc import Iterable
-from functools import cache
-from typing import NamedTuple
+from functools import cache, lru_cache
+from typing import TYPE_CHECKING, NamedTuple
 
 from tiniscript.fixed_point import HIGHEST, LOWEST
+
+if TYPE_CHECKING:
+    from tiniscript.spelling import Speller
 
 
 class Argument(NamedTuple):
@@ -84,20 +87,20 @@ BLOCK_ENDS = {"IF": "ENDIF", "LOOP": "END_LOOP", "WHILE": "END_WHILE", "DEF": "E
 
 # How other languages, and Spanish, say it. Used for messages alone: none of them is read.
 OTHER_WORDS = {
-    "F": "FORWARD FWD FD AHEAD GO MOVE WALK ADELANTE AVANZAR AVANZA AVANCE ADELANTA CAMINAR CAMINA ANDAR ANDA"
+    "F": "FORWARD FWD FD AHEAD GO MOVE WALK ADELANTE AVANZAR AVANZA AVANCE ADELANTA CAMINAR CAMINA ANDAR ANDA CORRER CORRE"
          " MOVER MUEVE MUEVETE",
     "B": "BACKWARD BACKWARDS BACK BK REVERSE ATRAS RETROCEDER RETROCEDE REVERSA",
     "L": "LEFT LT TURN_LEFT IZQUIERDA IZQ GIRAR_IZQUIERDA",
     "R": "RIGHT RT TURN_RIGHT DERECHA DER GIRAR_DERECHA",
-    "S": "HALT PARAR PARA PARE ALTO DETENER DETENTE FRENAR FRENA DETEN PARATE",
-    "W": "WAIT DELAY SLEEP PAUSE ESPERAR ESPERA PAUSA",
+    "S": "HALT FREEZE BRAKE PARAR PARA PARE ALTO DETENER DETENTE FRENAR FRENA DETEN PARATE QUIETO",
+    "W": "WAIT DELAY SLEEP PAUSE ESPERAR ESPERA PAUSA PAUSAR DORMIR DUERME",
     "M": "MOTOR MOTORS MOTORES",
-    "BEEP": "TONE BUZZ BUZZER SOUND PITAR PITA PITO PITIDO SONAR SUENA SONIDO TONO",
-    "SHOW": "PRINT SAY DISPLAY ECHO MOSTRAR MUESTRA IMPRIMIR IMPRIME DECIR DI ESCRIBIR ESCRIBE",
+    "BEEP": "TONE BUZZ BUZZER SOUND PITAR PITA PITO PITIDO SONAR SUENA TOCAR TOCA SONIDO TONO",
+    "SHOW": "PRINT PRINTLN PRINTF WRITE SAY DISPLAY ECHO MOSTRAR MUESTRA IMPRIMIR IMPRIME DECIR DI ESCRIBIR ESCRIBE",
     "START": "INICIO BEGIN COMENZAR COMIENZO EMPEZAR EMPIEZA INICIAR VOID_SETUP",
     "IF": "SI_ES CUANDO",
     "ELSEIF": "ELIF ELSIF SINO_SI",
-    "ELSE": "SINO SI_NO OTHERWISE",
+    "ELSE": "SINO SI_NO OTHERWISE OTRO DE_LO_CONTRARIO",
     "ENDIF": "FI FIN_SI FINSI FIN_IF FINIF IF_END",
     "LOOP": "REPEAT FOR DO TIMES REPETIR REPITE BUCLE CICLO PARA_CADA VECES",
     "END_LOOP": "FIN_BUCLE FIN_LOOP FINLOOP FIN_REPETIR FINREPETIR FIN_REPITE FIN_CICLO FIN_PARA FINPARA"
@@ -106,7 +109,7 @@ OTHER_WORDS = {
     "END_WHILE": "FIN_MIENTRAS FINMIENTRAS FIN_WHILE FINWHILE WHILE_END WEND",
     "FOREVER": "SIEMPRE INFINITO PARA_SIEMPRE POR_SIEMPRE VOID_LOOP",
     "BREAK": "EXIT LEAVE SALIR ROMPER",
-    "DEF": "FUNCTION PROCEDURE SUB FUNCION PROCEDIMIENTO",
+    "DEF": "DEFINE DEFINIR FUNCTION PROCEDURE SUB FUNCION PROCEDIMIENTO",
     "END_DEF": "END_FUNCTION FIN_FUNCION FINFUNCION FIN_DEF FINDEF DEF_END END_SUB",
     "UNTIL": "HASTA HASTA_QUE",
     "TRUE": "YES VERDADERO CIERTO",
@@ -124,7 +127,7 @@ OTHER_WORDS = {
 SENSOR_STEMS = {"LUZ": "LIGHT", "LINEA": "LINE"}
 
 # What no single word says here: which way to turn, and what to switch on or off.
-TURN_WORDS = frozenset(["TURN", "ROTATE", "GIRAR", "GIRA", "GIRO", "ROTAR", "ROTA", "VOLTEAR", "VOLTEA", "DOBLAR", "DOBLA"])
+TURN_WORDS = frozenset(["TURN", "ROTATE", "SPIN", "GIRAR", "GIRA", "GIRO", "ROTAR", "ROTA", "VOLTEAR", "VOLTEA", "DOBLAR", "DOBLA"])
 SWITCH_WORDS = {
     **dict.fromkeys(["TURN_ON", "SWITCH_ON", "PRENDER", "PRENDE", "ENCENDER", "ENCIENDE"], "TRUE"),
     **dict.fromkeys(["TURN_OFF", "SWITCH_OFF", "APAGAR", "APAGA"], "FALSE"),
@@ -139,6 +142,9 @@ PLACEHOLDERS = {
     "hertz": ("HERTZ", "HERCIOS", "HZ"),
 }
 
+# Words that have a meaning elsewhere in this table, and are no misspelt ones.
+_KNOWN_OTHERWISE = frozenset((*TURN_WORDS, *SWITCH_WORDS, *SENSOR_STEMS))
+
 # Numbers in words, of what programs often say.
 NUMBER_WORDS = {name: str(value) for value, names in (
     (1, "ONE UNO UN UNA"), (2, "TWO DOS"), (3, "THREE TRES"), (4, "FOUR CUATRO"), (5, "FIVE CINCO"),
@@ -148,13 +154,23 @@ NUMBER_WORDS = {name: str(value) for value, names in (
     (100, "HUNDRED CIEN"),
 ) for name in names.split()}
 
+# How much power a word says, where a power is wanted, and how high the notes of a song sound.
+POWER_WORDS = {name: str(value) for value, names in (
+    (100, "MAX MAXIMO MAXIMA FULL FAST RAPIDO RAPIDA FUERTE TODO TODA"),
+    (80, "NORMAL"), (50, "MEDIO MEDIA HALF MEDIUM"), (40, "SLOW LENTO LENTA DESPACIO"),
+) for name in names.split()}
+NOTE_WORDS = {"DO": "262", "RE": "294", "MI": "330", "FA": "349", "SOL": "392", "LA": "440",
+              "C4": "262", "D4": "294", "E4": "330", "F4": "349", "G4": "392", "A4": "440", "B4": "494", "C5": "523"}
+
 # What people write behind a number, which has none here: the unit that is meant, and how many
 # thousandths of it one is.
 UNITS = {name: (unit, thousandths) for unit, thousandths, names in (
     ("s", 1000, "S SEC SECS SECOND SECONDS SEG SEGS SEGUNDO SEGUNDOS"),
-    ("s", 1, "MS"), ("s", 60_000, "MIN MINUTO MINUTOS"),
-    ("cm", 1000, "CM"), ("cm", 100, "MM"), ("cm", 100_000, "M METRO METROS"),
-    ("Hz", 1000, "HZ HERTZ"), ("°", 1000, "DEG DEGREE DEGREES GRADO GRADOS °"),
+    ("s", 1, "MS MILISEGUNDO MILISEGUNDOS MILLISECOND MILLISECONDS"),
+    ("s", 60_000, "MIN MINS MINUTO MINUTOS MINUTE MINUTES"), ("s", 3_600_000, "H HORA HORAS HOUR HOURS"),
+    ("cm", 1000, "CM CMS CENTIMETRO CENTIMETROS CENTIMETER CENTIMETERS"),
+    ("cm", 100, "MM MILIMETRO MILIMETROS"), ("cm", 100_000, "M MT MTS METRO METROS METER METERS"),
+    ("Hz", 1000, "HZ HERTZ HERCIO HERCIOS"), ("°", 1000, "DEG DEGREE DEGREES GRADO GRADOS ° º"),
     ("%", 1000, "PERCENT PORCIENTO POTENCIA POWER %"), ("steps", 1000, "STEP STEPS PASO PASOS"),
     ("times", 1000, "VEZ VECES TIMES"), ("V", 1000, "V"), ("°C", 1000, "°C"),
 ) for name in names.split()}
@@ -167,8 +183,38 @@ def usage_of(word: str) -> str:
 
 
 def meant_by(word: str) -> str | None:
-    """Return the word of the language that `word` says in another one, or None."""
-    return _meanings().get(word)
+    """Return the word of the language that `word` says in another one, or None.
+
+    `word` may be misspelt: `ABANZA`, `FOWARD`.
+    """
+    return _meanings().get(word) or _misspelt(word)[0]
+
+
+def is_guessed(word: str) -> bool:
+    """Whether `meant_by` takes a letter for another one: `DERECJA` for DERECHA."""
+    return word not in _meanings() and _misspelt(word)[1]
+
+
+@lru_cache(1000)
+def _misspelt(word: str) -> tuple[str | None, bool]:
+    """Return what a misspelt word of another language means, and whether that is a guess.
+
+    A word that is rather a misspelt one of this language is left to `nearest`.
+    """
+    if word in WORDS or word in _KNOWN_OTHERWISE:
+        return None, False
+    found = _speller().alike(word)
+    if found is not None:
+        return _meanings().get(found), False
+    guessed = _meanings().get(_speller().near(word) or "")
+    return guessed, guessed is not None
+
+
+@cache
+def _speller() -> Speller:
+    from tiniscript.spelling import Speller  # a right program needs it not
+
+    return Speller([*WORDS, *_KNOWN_OTHERWISE, *_meanings()])
 
 
 @cache
@@ -188,7 +234,7 @@ def nearest(word: str, known: Iterable[str]) -> str | None:
     words, two in longer ones. A wrong suggestion is worse than none, so in a word of three
     letters no letter is taken for another.
     """
-    if not 1 < len(word) <= 40:
+    if not 2 < len(word) <= 40:
         return None
     allowed = 1 if len(word) <= 5 else 2
     best, its_edits = None, allowed + 1

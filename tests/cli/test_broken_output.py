@@ -184,7 +184,7 @@ def test_a_port_that_vanishes_is_no_bug(
     done = tsc(*words, "--port", pty_robot.port)
     assert len(asked) == which
     assert done.code == 3
-    assert "has vanished" in done.err
+    assert "is gone" in done.err
 
 
 def test_a_robot_that_is_busy_for_too_long_is_not_lost(

@@ -43,7 +43,7 @@ def test_a_folder_has_a_line_for_each_program_and_a_table(folder: Path, tsc: Tsc
         "./a.ts             0        0\n"
         "./b.ts             1        0   1: TS017\n"
         "./sub/c.ts         2        0   1: TS017\n"
-        "3 programas, 1 sin errores\n"
+        "programas: 3, sin errores: 1\n"
     )
 
 
@@ -107,7 +107,7 @@ def test_thirty_programs_and_deep_folders(folder: Path, tsc: Tsc) -> None:
         (deep / f"p{k}.ts").write_text(WRONG if k % 2 else RIGHT, encoding="utf-8")
     done = tsc("check", "d")
     assert done.code == 1
-    assert done.out.endswith("30 programs, 15 without mistakes\n")
+    assert done.out.endswith("programs: 30, without mistakes: 15\n")
 
 
 def test_a_table_of_one_program_is_refused(folder: Path, tsc: Tsc) -> None:

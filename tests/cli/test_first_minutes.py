@@ -174,7 +174,7 @@ def test_stop_stops_all_that_are_in_use() -> None:
         process("upload", "--port", found.port, "-e", FOREVER, "--detach")
         done = process("stop")
         assert done.code == 0
-        assert done.err == "3 of 3 robots: done.\n"
+        assert done.err == "Done: 3 of 3.\n"
         assert {found.port, first.port, second.port} <= set(re.findall(r"socket:\S*\d", done.out))
         for each in (first, second):
             each._process.communicate(timeout=60)

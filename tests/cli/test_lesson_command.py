@@ -83,7 +83,7 @@ def test_a_folder_gets_a_table(tsc: Tsc, folder: Path, tmp_path: Path) -> None:
     assert "mistakes" in table["carla.ts"] and "line 1" in table["carla.ts"]
     assert "done" in table["eva.ts.txt"]
     assert "mistakes" in table["fox.ts"]
-    assert done.out.splitlines()[-1] == "2 of 6 programs solve lesson 1."
+    assert done.out.splitlines()[-1] == "Lesson 1 done: 2 of 6."
     data = rows.read_bytes()
     assert data.startswith(b"\xef\xbb\xbf")  # spreadsheets on Windows ask for it
     cells = list(csv.reader(data.decode("utf-8-sig").splitlines()))

@@ -203,14 +203,14 @@ def test_a_port_that_never_had_a_robot_is_no_failure(
     done = tsc("ping", "--all", "--count", "1")
     assert done.code == 0
     assert len(done.out.splitlines()) == 4
-    assert done.err == f"4 of 4 robots: done.\nNo robot answers on {port}.\n"
+    assert done.err == f"Done: 4 of 4.\nNo robot answers on {port}.\n"
     monkeypatch.setattr("tiniscript.link.ports.listed", list)
     monkeypatch.setattr("tiniscript.library.opening.ANSWER_MS", 1000)
     known_ports.remember(known, "R9", is_used=False)
     done = tsc("ping", "--all", "--count", "1")
     assert done.code == 3
     assert f"R9 ({known}): nothing answers" in done.out
-    assert "4 of 5 robots: done." in done.err
+    assert "Done: 4 of 5." in done.err
     for end in ends:
         os.close(end)
 
@@ -262,7 +262,7 @@ def test_the_table_shows_every_robot_and_leaves_plain_rows(class_: RobotFleet) -
     assert command.wait(30) == 0
     assert seen == {"values", "running"}
     rows = [line.rstrip() for line in screen.display if line.strip()]
-    assert "4 of 4 robots: done." in rows
+    assert "Done: 4 of 4." in rows
     assert sum(row.endswith("Done.") for row in rows) == 4
     assert not any("running" in row for row in rows)
 

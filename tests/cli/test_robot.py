@@ -248,7 +248,7 @@ def test_a_cable_that_is_pulled_is_said(pty_robot: PtyRobot) -> None:
     pty_robot.pull()
     done = ended(command)
     assert done.code == 3
-    assert "has vanished" in done.err
+    assert "is gone" in done.err
 
 
 def test_power_lost_in_the_middle_leaves_the_old_program(

@@ -210,10 +210,10 @@ def test_several_robots_at_once(ble: BleRobot, bluez: FakeBluez) -> None:
         bluez.add(other)
         ports = ("--port", NAME, "--port", "ble://tini 2")
         done = process("upload", "-e", DRIVE, *ports)
-        assert (done.code, "2 of 2 robots: done." in done.err) == (0, True)
+        assert (done.code, "Done: 2 of 2." in done.err) == (0, True)
         assert (ble.robot.did, second.did) == (DROVE, DROVE)
         done = process("stop", *ports)
-        assert (done.code, "2 of 2 robots: done." in done.err) == (0, True)
+        assert (done.code, "Done: 2 of 2." in done.err) == (0, True)
 
 
 @pytest.mark.parametrize("verb", ["stop", "upload"])
@@ -222,7 +222,7 @@ def test_all_includes_a_robot_that_is_known(ble: BleRobot, verb: str) -> None:
     words = ["-e", DRIVE] if verb == "upload" else []
     done = process(verb, "--all", *words)
     assert done.code == 0, done.err
-    assert "1 of 1 robots: done." in done.err
+    assert "Done: 1 of 1." in done.err
 
 
 def test_what_is_no_robot_is_said(bluez: FakeBluez) -> None:

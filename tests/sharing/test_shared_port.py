@@ -287,7 +287,7 @@ def test_a_cable_that_is_pulled_is_said_to_all(pty_robot: PtyRobot, link: Comman
     for each in (command, link):
         done = each.ended()
         assert done.code == 3
-        assert "has vanished" in done.err
+        assert "is gone" in done.err
 
 
 def test_a_robot_that_was_lost_is_found_again(pty_robot: PtyRobot, link: Command) -> None:

@@ -104,6 +104,9 @@ BAR_BETWEEN = _mistake("TS055")
 NAME_WITH_SPACE = _mistake("TS056")
 MISSING_EQUALS = _mistake("TS057")
 PLACEHOLDER = _mistake("TS060")
+SIGN_BETWEEN = _mistake("TS061")
+REPEATED = _mistake("TS062")
+LOOP_COUNTS = _mistake("TS063")
 # the checksum of a line
 CHECKSUM_WRONG = _mistake("TS058")
 CHECKSUM_FORM = _mistake("TS059")
@@ -160,6 +163,7 @@ UNUSED_DEF = _warning("TS807")
 WILL_FAULT = _warning("TS808")
 BOARD_MAY_BE_TOO_SMALL = _warning("TS809")
 SWAPPED = _warning("TS810")
+LONG_TIME = _warning("TS811")
 
 
 def in_order(found: list[Diagnostic]) -> list[Diagnostic]:
@@ -170,9 +174,12 @@ def in_order(found: list[Diagnostic]) -> list[Diagnostic]:
     kept = []
     mistaken = set()
     seen = set()
+    translated = {each.span.start for each in found if each.code is OTHER_LANGUAGE}
     for diagnostic in found:
         start = diagnostic.span.start
         key = (diagnostic.code, diagnostic.span)
+        if diagnostic.code is BAD_NAME and start in translated:
+            continue  # `atrás(2, 80)`: the word goes, with its accent
         if key in seen or (diagnostic.is_mistake and start in mistaken):
             continue
         seen.add(key)

@@ -16,6 +16,7 @@ from tiniscript.diagnostics.codes import Code, Diagnostic
 from tiniscript.repairs.edits import Edit, applied, overlap
 from tiniscript.repairs.placing import edits_of
 from tiniscript.source import Source
+from tiniscript.words import is_guessed
 
 # Codes whose repair is a guess, also where it keeps every number.
 _GUESSED = frozenset((
@@ -161,6 +162,10 @@ def _sure(found: list[Diagnostic], text: str) -> list[_Repair]:
     repairs = []
     for diagnostic in found:
         if not diagnostic.is_mistake or diagnostic.code in _GUESSED:
+            continue
+        if diagnostic.code is codes.OTHER_LANGUAGE and any(
+            is_guessed(word) for word in diagnostic.values.get("found", "").upper().split()
+        ):
             continue
         edits = edits_of(diagnostic, source)
         if edits and any(_is_sealed(edit, source) for edit in edits):

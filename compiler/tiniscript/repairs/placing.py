@@ -79,13 +79,21 @@ def _taken_out(diagnostic: Diagnostic, source: Source) -> Edits:
     start, end = diagnostic.span
     if source[diagnostic.span].isdecimal():
         return None  # `4 F(2, 80)` may mean four times
+    if _is_inside_a_word(source.text, start, end):
+        return None  # `potencia:80` would become one word
     while source.text[end : end + 1] == " " and (not start or source.text[start - 1] in " \r\n"):
         end += 1
     return [Edit(Span(start, end), "")]
 
 
+def _is_inside_a_word(text: str, start: int, end: int) -> bool:
+    return text[max(0, start - 1) : start].isalnum() and text[end : end + 1].isalnum()
+
+
 def _extra_word(diagnostic: Diagnostic, source: Source) -> Edits:
     """A word between instructions becomes the `;` that is meant; one before or after goes."""
+    if diagnostic.place is not None:
+        return _assigned(diagnostic, source)
     start, end = diagnostic.span
     text = source.text
     before = text[:start].rstrip(" \t")
@@ -247,6 +255,9 @@ _PLACES: dict[Code, Callable[[Diagnostic, Source], Edits]] = {
     codes.NAMED_ARGUMENT: _span,
     codes.LINE_NUMBER: _taken_out,
     codes.BAR_BETWEEN: _written(";"),
+    codes.SIGN_BETWEEN: _written(";"),
+    codes.REPEATED: _span,
+    codes.LOOP_COUNTS: _span,
     codes.NAME_WITH_SPACE: _span,
     codes.MISSING_EQUALS: _span,
     codes.UNKNOWN_WORD: _span,

@@ -20,8 +20,10 @@ from tiniscript.semantics.symbols import Name, Scope
 from tiniscript.semantics.types import ANY, Kinds, Value
 from tiniscript.semantics.unknown_words import (
     report_named_arguments,
+    report_not_callable,
     report_placeholders,
     report_unknown,
+    report_words_for_numbers,
     the_other_way,
 )
 from tiniscript.source import Source, Span
@@ -162,6 +164,7 @@ class _Checker(Scope):
             for each, its in zip(arguments[forever:], word.arguments[forever:], strict=True)
         ]
         if len(self.diagnostics) > said:
+            report_words_for_numbers(self, node, word, said)
             report_named_arguments(self, node, word, said)
             report_placeholders(self, node, word, said)
         self.stack_fits(values, span)
@@ -198,8 +201,11 @@ class _Checker(Scope):
                             found=as_text(part.value), fix=fix)  # fmt: skip
         value = self.kinds.value(argument)
         if value.kind == "yes_no":
-            self.report(codes.WANTS_NUMBER, argument.span, by=word,
-                        found=self.source[argument.span])  # fmt: skip
+            text = self.source[argument.span]
+            fix = ""
+            if word == "LOOP":
+                fix = "LOOP(FOREVER)" if text.upper() == "TRUE" else f"WHILE({text})"
+            self.report(codes.WANTS_NUMBER, argument.span, by=word, found=text, fix=fix)
         return value
 
     def until(self, argument: ast.Argument) -> ir.Until:
@@ -231,7 +237,7 @@ class _Checker(Scope):
         elif name.what == "actuator":
             self.actuator(node, name.number, made)
         elif node.arguments is not None:
-            self.report(codes.NOT_CALLABLE, node.span, name=node.word)
+            report_not_callable(self, node)
         elif name.what == "sensor":
             made.append(ir.Read(name.number, node.span))
             self.surely_read |= 1 << name.number

@@ -38,6 +38,9 @@ from tiniscript.syntax.operators import SIGN_OF
 
 LONG_MOVE = 500  # ms: a robot goes a hand's breadth in this time
 LONG_TIME = 20_000  # ms: a power was meant, where the power is a time
+VERY_LONG_TIME = 500_000  # ms: milliseconds were meant, as `delay(1000)` of an Arduino has them
+LONG_BEEP = 100_000  # ms
+ANGLES = (45_000, 90_000, 135_000, 180_000, 270_000, 360_000)  # ms: degrees were meant
 LITTLE_POWER = 10_000  # thousandths of a percent
 _COMPARATORS = frozenset(name for name, _ in COMPARATORS)
 
@@ -69,6 +72,9 @@ def _look_at(body: Body, program: Program, kit: Kit, found: list[Diagnostic]) ->
             if time is not None and time <= 0:
                 _report(found, codes.MOVE_OF_NO_TIME, statement.span, word=statement.direction)
             _swapped(statement, time, found)
+            _very_long(statement, time, found)
+        if isinstance(statement, Beep):
+            _long_beep(statement, found)
         if isinstance(statement, (Loop, While)):
             _late_checks(statement.body, kit, found)
             if _is_forever(statement) and not (
@@ -98,6 +104,28 @@ def _swapped(move: Move, time: int | None, found: list[Diagnostic]) -> None:
         seconds, percent = as_text(time), as_text(power)
         fix = f"{move.direction}({percent}, {seconds})"
         _report(found, codes.SWAPPED, move.span, time=seconds, power=percent, fix=fix)
+
+
+def _very_long(move: Move, time: int | None, found: list[Diagnostic]) -> None:
+    """`R(90, 50)`, `W(1000)`: degrees and milliseconds were meant."""
+    if time is None:
+        return
+    power = None if move.power is None else constant(fold(move.power))
+    shown = "" if move.direction == "W" else f", {'80' if power is None else as_text(power)}"
+    if move.direction in ("L", "R") and time in ANGLES:
+        fix = f"{move.direction}(1{shown})"
+        _report(found, codes.LONG_TIME, move.span, degrees=as_text(time), fix=fix)
+    elif time >= VERY_LONG_TIME:
+        fix = f"{move.direction}({as_text(time // 1000)}{shown})"
+        _report(found, codes.LONG_TIME, move.span, time=as_text(time), fix=fix)
+
+
+def _long_beep(beep: Beep, found: list[Diagnostic]) -> None:
+    time, hertz = constant(fold(beep.time)), constant(fold(beep.hertz))
+    if time is not None and hertz is not None and time >= LONG_BEEP:
+        # of an Arduino: `tone(pin, hertz, milliseconds)`
+        fix = f"BEEP({as_text(hertz // 1000)}, {as_text(time)})"
+        _report(found, codes.LONG_TIME, beep.span, time=as_text(time), fix=fix)
 
 
 def _is_forever(statement: Loop | While) -> bool:

@@ -6,6 +6,7 @@ calls this module for mistakes.
 
 from __future__ import annotations
 
+import re
 from itertools import chain
 
 from tiniscript.diagnostics import codes
@@ -16,11 +17,14 @@ from tiniscript.syntax.call_suggestions import LOWEST_HERTZ, call_of, glued_call
 from tiniscript.syntax.units import converted
 from tiniscript.words import (
     IN_MILLISECONDS,
+    NOTE_WORDS,
     PLACEHOLDERS,
+    POWER_WORDS,
     SWITCH_WORDS,
     TURN_WORDS,
     WORDS,
     Word,
+    is_guessed,
     meant_by,
     usage_of,
 )
@@ -44,6 +48,11 @@ def report_unknown(scope: Scope, node: ast.Command, inside: str | None) -> None:
 def _report_unknown_word(scope: Scope, node: ast.Command) -> None:
     word, span = node.word, node.word_span
     meant = meant_by(word)
+    if is_guessed(word):  # a name of the program's own is rather meant
+        own = scope.near(word, chain(scope.names, scope.def_names))
+        if own:
+            scope.report(codes.UNKNOWN_WORD, span, found=word, near=own)
+            return
     if (word in TURN_WORDS or meant == "F") and _report_way(scope, node):
         return
     if meant is not None and (meant in WORDS or meant in scope.names):
@@ -124,6 +133,33 @@ def report_named_arguments(scope: Scope, node: ast.Command, word: Word, said: in
     del scope.diagnostics[said:]
     fix = f"{word.text}({', '.join(values)})"
     scope.report(codes.NAMED_ARGUMENT, node.span, word=word.text, fix=fix)
+
+
+def report_words_for_numbers(scope: Scope, node: ast.Command, word: Word, said: int) -> None:
+    """`F(2, rapido)`, `BEEP(1, DO)`: the number that the word says. Changes those since `said`."""
+    tables = {"%": POWER_WORDS, "Hz": NOTE_WORDS}
+    if word.role == "beep":
+        tables["s"] = NOTE_WORDS  # in the wrong order
+    for argument, its in zip(node.arguments or (), word.arguments, strict=False):
+        for k, each in enumerate(scope.diagnostics[said:], said):
+            if each.code is codes.UNKNOWN_NAME and each.span == argument.span:
+                near = tables.get(its.unit, {}).get(each.values["found"])
+                if near:
+                    values = {**each.values, "near": near}
+                    scope.diagnostics[k] = each._replace(values=values)
+
+
+def report_not_callable(scope: Scope, node: ast.Command) -> None:
+    """`SQUARE(3)`, where there is a `DEF SQUARE(SIDE)`: a variable brings the value."""
+    texts = [scope.source[each.span] for each in node.arguments or ()]
+    head = rf"(?i)\bDEF\s+{node.word}[ \t]*\(([ \t,A-Z0-9_]{{1,200}})\)"
+    found = re.search(head, scope.source.text)
+    names = [each.strip().upper() for each in found[1].split(",")] if found else []
+    fix = ""
+    if texts and len(names) == len(texts):
+        pairs = zip(names, texts, strict=True)
+        fix = ";".join((*(f"{name} = {text}" for name, text in pairs), node.word))
+    scope.report(codes.NOT_CALLABLE, node.span, name=node.word, fix=fix)
 
 
 def _is_pitch(text: str) -> bool:

@@ -17,8 +17,16 @@ from tiniscript.syntax.blocks import HEADERS, Block, Blocks
 from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.lexer import ODD, WORD, Token
 from tiniscript.syntax.one_line import line_of_block
+from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.reporter import Failed, Reporter, Resumed
-from tiniscript.syntax.suggestions import AFTER_HEADER, after_bracket, body_begins, head_in
+from tiniscript.syntax.suggestions import (
+    AFTER_HEADER,
+    OPERATOR_WORDS,
+    after_bracket,
+    body_begins,
+    counted,
+    head_in,
+)
 from tiniscript.syntax.vocabulary import Vocabulary
 from tiniscript.words import ALIASES, BLOCK_ENDS, WORDS, meant_by, nearest
 
@@ -56,7 +64,17 @@ class BlockRecovery:
         fix = head_in(known, written)
         if len(written) == 1 and self.known.is_number(written[0].text) and word.text != "LOOP":
             fix = ""  # what it is compared with is not said
+        if word.text != "LOOP" and self._is_a_sentence(written):
+            fix = known.example  # `if wall ahead`
         self.reporter.fail(codes.MISSING_OPEN, span, word=word.text, fix=fix, usage=known.usage)
+
+    def _is_a_sentence(self, written: Sequence[Token]) -> bool:
+        """Whether words that no program knows stand where a question is wanted."""
+        if any(token.kind in COMPARISONS or token.text in OPERATOR_WORDS for token in written):
+            return False
+        known = self.known
+        words = [known.value(token.text) for token in written if token.kind is WORD]
+        return any(word not in WORDS and not known.is_own(word) for word in words)
 
     def whole_line(self, word: Token, block: str) -> str | None:
         """Return how the line is written that begins with `word`, the header of a `block`.
@@ -78,6 +96,23 @@ class BlockRecovery:
         for name in line.variables:
             self.blocks.here.append(Assign(name.text, name.span, None, name.span))
         return line.text
+
+    def counted_loop(self, word: Token) -> None:
+        """`LOOP(I = 0; I < 4; I++)`: the loop counts by itself."""
+        cursor = self.cursor
+        start = cursor.i
+        end = after_bracket(cursor.tokens, start)
+        times = counted(cursor.tokens[:end], start)
+        if end is None or times is None:
+            return
+        cursor.i = end
+        place = cursor.span_from(word)
+        found = cursor.source[Span(cursor.tokens[start].end, cursor.last.start)].strip()
+        self.reporter.report(
+            codes.LOOP_COUNTS, place, found=found, times=str(times), fix=f"LOOP({times})"
+        )
+        self.begin_reported("LOOP", place)
+        self.go_on()
 
     def to_body(self, bracket: int) -> None:
         """Go to where the body begins behind the `(` at `bracket`, which cannot be read."""
@@ -134,6 +169,25 @@ class BlockRecovery:
         place = cursor.span_from(word)
         self.reporter.report(codes.NO_BRACKETS_HERE, span, place, word=word.text, fix=fix)
 
+    def def_with_values(self, word: Token, name: Token, arguments: Sequence[Argument]) -> None:
+        """`DEF SQUARE(SIDE)`: a DEF takes no values, but a variable can bring them."""
+        place = self.cursor.span_from(word)
+        names = [
+            str(part.value)
+            for each in arguments
+            for part in each.expression
+            if part.op == "NAME" and not self.is_name(str(part.value))
+        ]
+        for each in names:  # known from here on
+            self.blocks.program.append(Assign(each, name.span, None, name.span))
+        fix = ";".join((*(f"{each} = 0" for each in names), f"DEF {name.text}"))
+        if names:
+            span = Span(name.end, place.end)
+            self.reporter.report(codes.NO_BRACKETS_HERE, span, place, word=name.text, fix=fix)
+        else:
+            span = self.cursor.span_from(name)
+            self.reporter.report(codes.EMPTY_BRACKETS, span, word=name.text)
+
     # -- arms ---------------------------------------------------------------------------------
 
     def else_if(self, word: Token) -> Token:
@@ -157,9 +211,21 @@ class BlockRecovery:
         if innermost is None or not self._is_open("IF"):
             right = "IF(DISTANCE < 10)"
             self._owed += 1
-            self.reporter.fail(codes.NOT_OPEN, span, found=arm, right=right)
+            line = self._end_before(span)
+            self.reporter.fail(codes.NOT_OPEN, span, found=arm, right=right, line=line)
         self._report_wrong_end(span, arm, innermost)
         return self._end_until("IF", span)
+
+    def _end_before(self, span: Span) -> str:
+        """Return the line of the ENDIF that stands right before the arm at `span`, if one does."""
+        tokens = self.cursor.tokens
+        k = self.cursor.i
+        while k and tokens[k].start >= span.start:
+            k -= 1
+        while k and tokens[k].kind in AT_END:
+            k -= 1
+        is_end = ALIASES.get(tokens[k].text, tokens[k].text) == BLOCK_ENDS["IF"]
+        return str(self.cursor.line_of(tokens[k])) if is_end else ""
 
     # -- ends ---------------------------------------------------------------------------------
 
@@ -189,7 +255,7 @@ class BlockRecovery:
             self._report_wrong_end(span, found, block, fix=BLOCK_ENDS[block.word])
             self._owed += 1
             self.blocks.end(span)
-        else:
+        elif not self._is_misspelt_header(word):
             right = WORDS[word].example if word != "DEF" else "DEF DANCE"
             self.reporter.report(codes.NOT_OPEN, span, found=found, right=right)
 
@@ -263,6 +329,11 @@ class BlockRecovery:
             if _indent(row) <= _indent(first[1]):
                 break
             within.append((k, row))
+        if block.name is not None:  # a DEF that calls itself: the call is the program's
+            for i, (_, row) in enumerate(rest):
+                if row.split("//")[0].strip(" \t;").upper() == block.name.text:
+                    rest = rest[:i] or [(head, first[1])]
+                    break
         if not rest:
             return {"line": "", "last": ""}
         line, text = (within or rest)[-1]
@@ -295,6 +366,13 @@ class BlockRecovery:
                     self.reporter.report(codes.UNKNOWN_WORD, span, found=each.word, near=right)
                     return True
         return False
+
+    def _is_misspelt_header(self, word: str) -> bool:
+        """Whether a header with a wrong letter stands before, as `IFF(DISTANCE < 10)`."""
+        return any(
+            isinstance(each, Command) and each.word not in WORDS and nearest(each.word, (word,))
+            for each in self.blocks.here
+        )
 
     def is_name(self, word: str) -> bool:
         """Whether the kit or a DEF anywhere in the text has this name."""

@@ -57,6 +57,8 @@ def count_diagnostic(
     fix = "" if goes_on else _filled(texts, word)
     if len(texts) > wanted == 1 and word.arguments[0].name == "c":
         fix = _call(word, [" AND ".join(texts)])
+    if word.role == "show" and len(texts) > 1 and not any(text[:1] in QUOTES for text in texts):
+        fix = ";".join(_call(word, [text]) for text in texts)
     if word.role == "move" and len(texts) == wanted + 1 and _ASKS.search(texts[-1]):
         fix = f"{_call(word, texts[:-1])} UNTIL({texts[-1]})"
     values = {
@@ -100,6 +102,8 @@ def call_in(word: Word, tokens: Sequence[Token]) -> str:
         return word.example
     if len(tokens) > LONGEST:
         return ""
+    if word.role == "show" and len(texts) > 1:
+        return ";".join(_call(word, [text]) for text in texts)
     if len(texts) != len(word.arguments):
         spans = [Span(value[0].start, value[-1].end) for value in values]
         fixed = _with_points(texts, spans, word)

@@ -25,9 +25,9 @@ from tiniscript.syntax.cursor import AFTER_VALUE, AT_END, Cursor
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, Token
 from tiniscript.syntax.operators import BINARY, COMPARISONS, Operator, Postfix
 from tiniscript.syntax.reporter import Failed, Reporter
-from tiniscript.syntax.suggestions import after_bracket, operator_words
+from tiniscript.syntax.suggestions import after_bracket, between, operator_words, unchained
 from tiniscript.syntax.units import converted
-from tiniscript.words import UNITS, WORDS, Word, meant_by, other_name
+from tiniscript.words import POWER_WORDS, UNITS, WORDS, Word, meant_by, other_name
 
 
 class ExpressionRecovery:
@@ -52,6 +52,10 @@ class ExpressionRecovery:
                  right=number.text, unit="%")  # fmt: skip
         if token.kind is WORD and WORDS[token.text].role != "operator":
             self._no_value_word(token)
+        if token.kind == "+" and cursor.tokens[cursor.i + 1].kind is NUMBER:
+            number = cursor.tokens[cursor.i + 1]  # `F(+2, 80)`
+            span = Span(token.start, number.end)
+            fail(codes.BAD_NUMBER, span, found=cursor.source[span], right=number.text)
         if before.text in ("AND", "OR") and token.kind in COMPARISONS:
             self._nothing_compared(before, token, place)
         if before.kind == "," == token.kind or (before.kind == "," and token.kind == ")"):
@@ -109,6 +113,8 @@ class ExpressionRecovery:
                 fail(codes.NO_VALUE, token.span, word=word.text)
         if word.text in self.reporter.reserved_words:
             raise Failed
+        if self.cursor.source[token.span] == "l" and self.cursor.following.kind in (",", ")"):
+            fail(codes.BAD_NUMBER, token.span, found="l", right="1")
         place = self.cursor.before(self.cursor.i)
         if self.cursor.tokens[place].kind == "-" and place:
             self._sensor_in_two(self.cursor.tokens[place - 1], token)
@@ -140,6 +146,11 @@ class ExpressionRecovery:
                 usage=meant.usage,
             )
         close = cursor.following
+        devices = self.kit.sensors if self.kit is not None else ()
+        if close.kind != ")" and any(each.name == name.text for each in devices):
+            place = Span(name.start, self._end_of(cursor.i))  # `DISTANCE(cm)`
+            values = {"word": name.text, "fix": name.text}
+            reporter.fail(codes.NO_BRACKETS_HERE, cursor.token.span, place, **values)
         if close.kind != ")":
             reporter.fail(codes.NO_FUNCTION, name.span, found=name.text)
         cursor.i += 2
@@ -152,6 +163,9 @@ class ExpressionRecovery:
         while tokens[end].kind in (NUMBER, ",") or is_value_word(tokens[end]):
             end += 1
         rest = tokens[start:end]
+        is_last = start > 1 and tokens[start - 2].kind == "," and tokens[start].kind == ")"
+        if name.text == "MAX" and is_last:  # `F(2, max)`
+            self.reporter.fail(codes.UNKNOWN_NAME, name.span, found="MAX", near=POWER_WORDS["MAX"])
         place = Span(name.start, rest[-1].end if rest else name.end)
         fix = call_in(function, rest)
         self.reporter.fail(
@@ -189,12 +203,29 @@ class ExpressionRecovery:
         if said is None or (begins_instruction and not in_brackets):
             return False
         end, right = said
+        if right == "AND":
+            self._and_for_comma(tokens[cursor.before(k)], tokens[end])
         span = Span(token.start, tokens[end - 1].end)
         found = cursor.source[span]
         self.reporter.report(codes.OTHER_SIGN, span, found=found, right=right)
         tokens[end - 1] = Token(WORD if right.isalpha() else right, right, *span)
         cursor.i = end - 1
         return True
+
+    def _and_for_comma(self, before: Token, after: Token) -> None:
+        """`F(2 y 80)`."""
+        tokens = self.cursor.tokens
+        k = self.cursor.i
+        while k and tokens[k].kind not in ("(", *AT_END):
+            k -= 1
+        word = self._word_of(tokens[k - 1]) if k and tokens[k].kind == "(" else None
+        if word is None or before.kind is not NUMBER or after.kind is not NUMBER:
+            return
+        if len(word.arguments) > 1:
+            inner = [each for each in self._in_brackets(k) if each.text not in ("Y", "E", "AND")]
+            place, fix = Span(tokens[k - 1].start, self._end_of(k)), call_in(word, inner)
+            span = Span(before.start, after.end)
+            self.reporter.fail(codes.MISSING_COMMA, span, place, fix=fix, usage=word.usage)
 
     def _is_unit(self, token: Token, k: int, in_brackets: bool) -> bool:
         """`W(2 s)`, `IF(DISTANCE < 10 cm)`."""
@@ -235,7 +266,7 @@ class ExpressionRecovery:
         left = cursor.tokens[first.index - 1]
         middle = cursor.source.text[first.token.end : second.start].strip()
         right = cursor.following
-        fix = f"{left.text} {first.token.text} {middle} AND {middle} {second.text} {right.text}"
+        fix = unchained((left.text, first.token.text, middle), (middle, second.text, right.text))
         span, place = Span(first.token.start, second.end), Span(left.start, right.end)
         self.reporter.fail(codes.CHAINED, span, place, fix=fix)
 
@@ -254,6 +285,8 @@ class ExpressionRecovery:
                 cursor.i += 1
             cursor.i += 1
             fail(codes.SEMICOLON_INSIDE, token.span)
+        if token.kind == "|" and self._close_comes() and starts_value(cursor.following):
+            self._nothing_between(last, cursor.following, bracket)
         if token.kind == "=":
             fail(codes.MISSING_VALUE, token.span, found="=", before=last.text)
         if cursor.token is token and starts_value(token) and ends_value(last):
@@ -282,9 +315,10 @@ class ExpressionRecovery:
         end = after_bracket(tokens, bracket)
         if word is None or token.kind != "," or tokens[bracket - 1].kind != "(" or end is None:
             return
+        end += tokens[end].kind == ")"
         if tokens[end].kind in AT_END:
             span = Span(tokens[bracket - 2].start, tokens[end - 1].end)
-            fix = call_in(word, tokens[bracket + 1 : end - 1])
+            fix = call_in(word, self._in_brackets(bracket))
             self.cursor.i = end
             self.reporter.fail(
                 codes.MISSING_CLOSE, tokens[bracket].span, span, last=tokens[bracket].text, fix=fix
@@ -295,8 +329,13 @@ class ExpressionRecovery:
         span = Span(last.start, token.end)
         devices = (*self.kit.sensors, *self.kit.actuators) if self.kit is not None else ()
         known = {*WORDS, *(each.name for each in devices)}
+        self._between(last)
         if last.kind is WORD and token.kind is WORD and not {last.text, token.text} & known:
             right, found = f"{last.text}_{token.text}", self.cursor.source[span]
+            meant = meant_by(right)
+            if meant in known:
+                values = {"found": found, "right": meant, "fix": meant, "usage": meant}
+                self.reporter.fail(codes.OTHER_LANGUAGE, span, None, **values)
             self.reporter.fail(codes.NAME_WITH_SPACE, span, found=found, right=right)
         owner = self.cursor.tokens[bracket - 1] if bracket else self.cursor.tokens[bracket]
         word = self._word_of(owner)
@@ -308,7 +347,19 @@ class ExpressionRecovery:
         shown = {"before": last.text, "found": token.text}
         if last.kind == ")" or token.kind == "(":
             shown = {"before": "", "found": ""}
+        elif token.kind is WORD and token.text not in known and last.text in known:
+            shown["fix"] = f"{last.text} < 10"  # `DISTANCE cerca`: no value that may be compared
         self.reporter.fail(codes.MISSING_SIGN, span, None, **shown)
+
+    def _between(self, subject: Token) -> None:
+        """`DISTANCE entre 5 y 10`."""
+        k = self.cursor.after_newlines(self.cursor.i)
+        said = between(self.cursor.tokens[k : k + 4], subject.text)
+        if said is not None:
+            right, end = said
+            span = Span(subject.start, end)
+            found = self.cursor.source[span]
+            self.reporter.fail(codes.OTHER_SIGN, span, found=found, right=right)
 
     def _word_of(self, token: Token) -> Word | None:
         """Return the word of the language or of the kit that takes values in brackets here."""

@@ -21,8 +21,9 @@ from tiniscript.syntax.suggestions import (
     end_of_values,
     head_in,
     inside,
+    opposite,
 )
-from tiniscript.words import WORDS
+from tiniscript.words import WORDS, meant_by
 
 if TYPE_CHECKING:
     from tiniscript.syntax.parser import Parser
@@ -38,6 +39,10 @@ def foreign_word(parser: Parser, word: Token, meant: str) -> NoReturn:
         forever_alone(parser, word)
     if meant in ENDS:
         _end(parser, word, meant)
+    if (meant == "LOOP" and meant_by(parser.cursor.following.text) == "UNTIL") or (
+        meant == "LOOP" and parser.cursor.following.text == "UNTIL"
+    ):
+        _repeat_until(parser, word)
     if meant in HEADERS:
         line = parser.recovery.in_block.whole_line(word, meant)
         if line is not None:
@@ -54,6 +59,27 @@ def foreign_word(parser: Parser, word: Token, meant: str) -> NoReturn:
     else:
         _report(parser, word, meant, head_in(WORDS[meant], values), place)
     parser.arm(Token(WORD, meant, *word.span), is_reported=True)
+    parser.recovery.in_block.go_on()
+
+
+def _repeat_until(parser: Parser, word: Token) -> None:
+    """`repetir hasta DISTANCE < 10`: WHILE asks the opposite."""
+    cursor = parser.cursor
+    start = cursor.i + 2 + (meant_by("HASTA_" + cursor.tokens[cursor.i + 2].text) == "UNTIL")
+    values = inside(cursor.tokens, start)
+    question = opposite(values)
+    if not question:
+        return
+    end = end_of_values(cursor.tokens, start, values)
+    while cursor.token.start < end:
+        cursor.i += 1
+    place = Span(word.start, end)
+    found = cursor.source[Span(word.start, cursor.tokens[start - 1].end)]
+    parser.reporter.report(
+        codes.OTHER_LANGUAGE, Span(word.start, cursor.tokens[start - 1].end), place,
+        found=found, right="WHILE", fix=f"WHILE({question})", usage="",
+    )  # fmt: skip
+    parser.recovery.in_block.begin_reported("WHILE", place)
     parser.recovery.in_block.go_on()
 
 
@@ -122,5 +148,7 @@ def _header_fix(parser: Parser, word: Token, meant: str) -> str:
     counts = word.text in COUNTING or any(token.kind in (";", ",", "=") for token in values)
     if meant == "LOOP" and counts:  # `for (i = 0; i < 3; i++)`
         times = counted(parser.cursor.tokens, parser.cursor.i + 1)
+        if len(values) == 1 and values[0].text.isdecimal():  # `for 4 times`
+            return f"LOOP({values[0].text})"
         return WORDS[meant].example if times is None else f"LOOP({times})"
     return head_in(WORDS[meant], values)

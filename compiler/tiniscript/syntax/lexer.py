@@ -46,6 +46,8 @@ _PATTERN = re.compile(
     rf"(?P<space>[{SPACES}]+)"
     r"""
       | (?P<word>[A-Za-z][A-Za-z0-9_]*)(?!\w)
+      | (?P<clock>[0-9]{1,2}:[0-5][0-9](?=[ ]*,)|(?<=[Ww]\()[0-9]{1,2}:[0-5][0-9](?=[ ]*\)))
+      | (?P<spaced>[0-9]{1,3}[ ]000(?=[ ]*[,;)]))
       | (?P<number>(?:[0-9]+(?:\.[0-9]+)?|\.[0-9]+)(?![\w.\u00b0]|['\u00b4\u2019][0-9]))
       | (?P<newline>\r\n|\n|\r)
       | (?P<comment>//[^\r\n]*)
@@ -166,6 +168,19 @@ class _Repairs:
         meant = _digits_meant(text)
         self.report(codes.BAD_NUMBER, span, found=text, right=meant)
         return Token(NUMBER, meant or number, *span)
+
+    def clock(self, text: str, span: Span) -> Token:
+        """`1:30` is a minute and a half, in seconds."""
+        minutes, seconds = text.split(":")
+        right = str(60 * int(minutes) + int(seconds))
+        self.report(codes.BAD_NUMBER, span, found=text, right=right)
+        return Token(NUMBER, right, *span)
+
+    def spaced(self, text: str, span: Span) -> Token:
+        """`1 000`: a thousand."""
+        right = text.replace(" ", "")
+        self.report(codes.BAD_NUMBER, span, found=text, right=right)
+        return Token(NUMBER, right, *span)
 
     def badword(self, text: str, span: Span) -> Token:
         if text.isdecimal():  # of another script, or as wide as a letter

@@ -6,17 +6,15 @@ is too much. Instructions of the language without their brackets are here, too.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING, NoReturn
 
 from tiniscript.diagnostics import codes
 from tiniscript.kit import Kit
 from tiniscript.source import Span
-from tiniscript.syntax.ast import Assign, Command
+from tiniscript.syntax.ast import Assign
 from tiniscript.syntax.block_recovery import BlockRecovery
 from tiniscript.syntax.blocks import Blocks
 from tiniscript.syntax.call_suggestions import (
-    LONG_TIME_S,
     actuator_word,
     call_in,
     glued_call,
@@ -24,30 +22,27 @@ from tiniscript.syntax.call_suggestions import (
 )
 from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.foreign import foreign_word
-from tiniscript.syntax.lexer import NUMBER, ODD, QUOTES, WORD, Token
+from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, QUOTES, WORD, Token
 from tiniscript.syntax.operators import COMPARISONS, SIGNS
 from tiniscript.syntax.reporter import Failed, Reporter, Resumed
+from tiniscript.syntax.sentence_recovery import SentenceRecovery
 from tiniscript.syntax.suggestions import (
     BEFORE_CALL,
     BEFORE_NAME,
     BEFORE_NOTE,
+    CHANGING,
     COUNTING,
-    FILLERS,
+    NO_VARIABLES,
+    SETTING,
     body_begins,
-    end_of_values,
     foreign_block,
     head_in,
-    inside,
     is_assignment,
     is_counting,
-    move_said,
     spaced_name,
     update,
 )
 from tiniscript.words import (
-    SWITCH_WORDS,
-    TURN_WORDS,
-    UNITS,
     WORDS,
     Word,
     meant_by,
@@ -73,6 +68,7 @@ class NameRecovery:
         self.blocks = blocks
         self.kit = kit
         self.in_block = in_block
+        self.sentence = SentenceRecovery(cursor, reporter, blocks, in_block)
 
     def reserved_name(self, name: Token) -> None:
         """`S = 5`; but `F = 2, 80` is F without brackets."""
@@ -102,12 +98,21 @@ class NameRecovery:
             self.reporter.fail(codes.SETUP_TWICE, word.span, found=word.text)
         if word.text in COUNTING and is_counting(self.cursor.tokens, self.cursor.i + 1):
             foreign_word(parser, word, "LOOP")
+        if kind is WORD and word.text in ("WHEN", "CUANDO", "AL"):
+            self.sentence.event(word)
+        if word.text in SETTING or word.text in CHANGING:
+            self.sentence.assigned(word)
+        if word.text == "DE" and self._is_contrary(word):
+            foreign_word(parser, self.cursor.token, "ELSE")
+        said = WORDS.get(meant_by(word.text) or "")
+        if following.text == "UNTIL" and said is not None and said.role in ("move", "wait"):
+            self.sentence.until_question(word, said)
         if self.kit is not None and not self.in_block.known.is_own(word.text):
-            self._turn_by_angle(word, following)
+            self.sentence.turn_by_angle(word, following)
         if not is_alone and kind != "(":
             self._what_follows_a_name(word, following)
         if self.kit is not None and not self.in_block.is_name(word.text):
-            self._move_in_a_sentence(word)
+            self.sentence.move_in_a_sentence(word)
         if self.kit is not None or (word.text == "END" and is_alone):
             meant = foreign_block(word.text)
             if meant is not None and not self.in_block.is_name(word.text):
@@ -117,12 +122,21 @@ class NameRecovery:
                 self._actuator_without_brackets(word, self.kit)
             if kind is WORD and following.text != "UNTIL":
                 if not self.in_block.is_name(word.text):
-                    self._two_words(word, following)
+                    self.sentence.two_words(word, following)
+
+    def _is_contrary(self, word: Token) -> bool:
+        """`DE LO CONTRARIO`: then go to its last word."""
+        cursor = self.cursor
+        texts = [each.text for each in cursor.tokens[cursor.i + 1 : cursor.i + 3]]
+        if texts != ["LO", "CONTRARIO"]:
+            return False
+        cursor.i += 2
+        cursor.tokens[cursor.i] = Token(WORD, "DE_LO_CONTRARIO", word.start, cursor.token.end)
+        return True
 
     def _what_follows_a_name(self, word: Token, following: Token) -> None:
         cursor, kind = self.cursor, following.kind
-        if kind is ODD and following.text in (".", ":"):
-            self._word_and_sign(word, following)
+        self.sentence.word_and_sign(word, following)
         changed = update(word, cursor.tokens, cursor.i + 1)
         if changed is not None:
             fix, found = changed
@@ -155,6 +169,12 @@ class NameRecovery:
             end = body_begins(cursor.tokens, start + 3, names_end=False)
             value = written(cursor.tokens[start + 3 : min(end, start + 40)])
             fix = f"{following.text} = {value}"
+        elif word.text in BEFORE_NAME and cursor.tokens[start + 2].kind in AT_END:
+            cursor.i += 2
+            fix = f"{following.text} = 0"  # `VAR X`: the first value makes a variable
+            place = cursor.span_from(word)
+            self.unread_assignment(following)
+            self.reporter.fail(codes.EXTRA_WORD, word.span, place, found=word.text, fix=fix)
         elif word.text in BEFORE_CALL:
             fix = following.text
         if fix:
@@ -167,7 +187,11 @@ class NameRecovery:
         cursor, start = self.cursor, self.cursor.i + 1
         end = body_begins(cursor.tokens, start, names_end=False)
         rest = cursor.tokens[start:end]
-        is_new = meant_by(word.text) is None and not self.in_block.is_name(word.text)
+        is_new = (
+            word.text not in NO_VARIABLES
+            and meant_by(word.text) is None
+            and not self.in_block.is_name(word.text)
+        )
         if is_new and len(rest) == 1 and glued_call(word.text) is None:
             span = Span(word.start, following.end)
             fix = f"{word.text} = {following.text}"
@@ -184,10 +208,10 @@ class NameRecovery:
         if (
             meant is not None
             and following.kind is NUMBER
-            and meant.role in ("move", "wait", "show")
+            and meant.role in ("move", "wait", "show", "beep", "motors")
         ):
             cursor.i = end
-            self._say_in_other_words(word.span, word.text, meant, rest)
+            self.sentence.say_in_other_words(word.span, word.text, meant, rest)
 
     def _actuator_without_brackets(self, word: Token, kit: Kit) -> None:
         """`LED ON`, `GRIPPER 90`."""
@@ -195,51 +219,6 @@ class NameRecovery:
         if device is not None:
             self.cursor.i += 1
             self.no_bracket(word, actuator_word(device))
-
-    def _two_words(self, word: Token, following: Token) -> None:
-        """`TURN LEFT`; and of `hello world` only the first word is a mistake."""
-        tokens, start = self.cursor.tokens, self.cursor.i + 2
-        joined = f"{word.text}_{following.text}"
-        if self.in_block.is_name(joined):
-            span = Span(word.start, following.end)
-            found = self.cursor.source[span]
-            self.reporter.fail(codes.NAME_WITH_SPACE, span, found=found, right=joined)
-        if meant_by(following.text) == "BUTTON" and meant_by(word.text) == "W":
-            self.reporter.fail(codes.NO_BUTTON, Span(word.start, following.end))
-        if meant_by(joined) == "FOREVER":
-            self._void_loop(word, following)
-        if word.text in SWITCH_WORDS and meant_by(following.text) == "M":
-            span = Span(word.start, following.end)
-            self._say_in_other_words(span, self.cursor.source[span], WORDS["S"], [])
-        meant = WORDS.get(meant_by(f"{word.text}_{following.text}") or "")
-        if meant is not None and meant.role != "block":
-            span = Span(word.start, following.end)
-            rest = tokens[start : body_begins(tokens, start, names_end=False)]
-            self._say_in_other_words(span, self.cursor.source[span], meant, rest)
-        said = WORDS.get(meant_by(word.text) or "")
-        if said is not None and said.arguments and following.text not in WORDS:
-            rest = tokens[start - 1 : body_begins(tokens, start - 1, names_end=False)]
-            self._say_in_other_words(word.span, word.text, said, rest)
-        after = tokens[start].kind
-        if following.text not in WORDS and (after in AT_END or after is WORD):
-            self.blocks.here.append(Command(word.text, word.span, None, None, word.span))
-            self.cursor.i += 1
-            raise Failed
-
-    def _say_in_other_words(
-        self, span: Span, found: str, meant: Word, values: list[Token], end: int = 0
-    ) -> NoReturn:
-        """`end` is where the values end in the text, if not with the last of them."""
-        last = values[-1:]
-        values = [each for each in values if each.text not in FILLERS or [each] == last]
-        fix = call_in(meant, values) if meant.arguments else meant.text
-        if any(each.kind is WORD and not self._is_value(each) for each in values):
-            fix = ""
-        place = Span(span.start, max(span.end, end, *(each.end for each in values)))
-        self.reporter.fail(
-            codes.OTHER_LANGUAGE, span, place, found=found, right=meant.text, fix=fix,
-            usage=meant.usage,
-        )  # fmt: skip
 
     def joined(self, name: Token) -> Token:
         """`DEF MY TURN`: a name has no space."""
@@ -258,83 +237,6 @@ class NameRecovery:
         meant = self.in_block.known.command(word.text)
         return meant is not None and not self.in_block.is_name(word.text)
 
-    def _is_value(self, token: Token) -> bool:
-        """Whether a word behind a number or a command is a value or a unit."""
-        known = self.in_block.known
-        text = known.value(token.text)
-        return text in WORDS or text in UNITS or known.is_own(text)
-
-    def _move_in_a_sentence(self, word: Token) -> None:
-        """`girar a la derecha 90 grados`, `el robot avanza 2 segundos`."""
-        cursor = self.cursor
-        said = move_said(cursor.tokens, cursor.i)
-        if said is None:
-            return
-        meant, start = said
-        span = Span(word.start, cursor.tokens[start - 1].end)
-        values = inside(cursor.tokens, start)
-        end = end_of_values(cursor.tokens, start, values)
-        if meant.text in ("L", "R") and self._is_angle(values):
-            way = "left" if meant.text == "L" else "right"
-            self.reporter.fail(codes.WHICH_WAY, span, word=meant.text, way=way, usage=meant.usage)
-        self._say_in_other_words(span, cursor.source[span], meant, list(values), end)
-
-    def _turn_by_angle(self, word: Token, following: Token) -> None:
-        """`girar 90 grados a la derecha`."""
-        cursor = self.cursor
-        if word.text not in TURN_WORDS or following.kind is not NUMBER:
-            return
-        cursor.skip_instruction()
-        span = cursor.span_from(word)
-        said = [meant_by(text) for text in cursor.source[span].upper().split()]
-        for name, way in (("L", "left"), ("R", "right")):
-            if name in said:
-                usage = WORDS[name].usage
-                self.reporter.fail(codes.WHICH_WAY, span, word=name, way=way, usage=usage)
-        self.reporter.fail(codes.WHICH_WAY, span)
-
-    @staticmethod
-    def _is_angle(values: Sequence[Token]) -> bool:
-        """Whether these values are degrees: they say so, or one alone is too much for a time."""
-        numbers = [each for each in values if each.kind is NUMBER]
-        if any(UNITS.get(each.text, ("",))[0] == "°" for each in values):
-            return True
-        return len(numbers) == 1 and float(numbers[0].text) >= LONG_TIME_S
-
-    def _word_and_sign(self, word: Token, sign: Token) -> None:
-        """`robot.adelante(2, 80)`, `Primero: F(2, 80)`: the instruction is behind the sign."""
-        cursor = self.cursor
-        after = cursor.tokens[min(cursor.i + 2, len(cursor.tokens) - 1)]
-        meant = self.in_block.known.command(after.text) if after.kind is WORD else None
-        if meant is None:
-            return
-        self.reporter.answer(sign)
-        if sign.text == ".":
-            span = Span(word.start, after.end)
-            values = inside(cursor.tokens, cursor.i + 3)
-            end = end_of_values(cursor.tokens, cursor.i + 3, values)
-            self._say_in_other_words(span, cursor.source[span], meant, list(values), end)
-        found = f"{word.text}:"
-        self.reporter.report(codes.EXTRA_WORD, Span(word.start, sign.end), found=found, label=found)
-        cursor.i += 2
-        raise Resumed
-
-    def _void_loop(self, word: Token, following: Token) -> NoReturn:
-        """`void loop() {`: what repeats for ever in a sketch."""
-        cursor = self.cursor
-        cursor.i += 2
-        if cursor.token.kind == "(" and cursor.following.kind == ")":
-            cursor.i += 2
-        span = Span(word.start, following.end)
-        place = cursor.span_from(word)
-        fix = "LOOP(FOREVER)"
-        found = cursor.source[span]
-        self.reporter.report(
-            codes.OTHER_LANGUAGE, span, place, found=found, right="LOOP", fix=fix, usage=fix
-        )
-        self.in_block.begin_reported("LOOP", span)
-        self.in_block.go_on()
-
     # -- a command without brackets -----------------------------------------------------------
 
     def no_bracket(self, word: Token, known: Word) -> NoReturn:
@@ -346,10 +248,16 @@ class NameRecovery:
             raise Failed
         cursor.i = body_begins(cursor.tokens, start, names_end=False)
         rest = cursor.tokens[start : cursor.i]
+        if len(rest) > 1 and rest[0].kind in ("-", "=", "=>") and rest[1].kind == ">":
+            rest = rest[2:]  # `F -> 2, 80`
         if not rest and cursor.token.kind == "{":
             self._braces_for_brackets(word, known)
         span = Span(word.start, rest[-1].end if rest else word.end)
         fix = call_in(known, rest)
+        if rest and rest[0].text.startswith(".") and rest[0].start == word.end:
+            fix = ""  # `F.2.80`
+        if not rest and cursor.token.text == "UNTIL" and known.role in ("move", "wait"):
+            fix = known.example.replace("2" if known.role == "move" else "1", "FOREVER", 1)
         self.reporter.report(codes.MISSING_OPEN, span, word=word.text, fix=fix, usage=known.usage)
         if cursor.token.kind is WORD and cursor.token.text != "UNTIL":
             self.in_block.go_on()
@@ -360,9 +268,13 @@ class NameRecovery:
         cursor = self.cursor
         start = cursor.i + 1
         self.reporter.answer(cursor.token)
-        while cursor.token.kind not in ("}", *AT_END):
+        while cursor.token.kind not in ("}", NEWLINE, END):
             cursor.i += 1
-        fix = call_in(known, cursor.tokens[start : cursor.i])
+        values = [
+            each._replace(kind=",") if each.kind == ";" else each
+            for each in cursor.tokens[start : cursor.i]
+        ]
+        fix = call_in(known, values)
         place = word.span
         if cursor.token.kind == "}":
             self.reporter.answer(cursor.token)

@@ -25,6 +25,12 @@ BINARY: Final = {
 COMPARISONS = frozenset(sign for _, sign in COMPARATORS)
 SIGNS = frozenset(sign for sign in BINARY if not sign.isalpha())
 SIGN_OF: Final = {name: sign for sign, (_, name) in BINARY.items()}
+# What is TRUE where a comparison is not.
+OPPOSITES: Final = {
+    SIGN_OF[one]: SIGN_OF[other]
+    for pair in (("LT", "GE"), ("GT", "LE"), ("EQ", "NE"))
+    for one, other in (pair, pair[::-1])
+}
 
 
 class Operator:

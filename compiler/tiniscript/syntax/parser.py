@@ -108,6 +108,14 @@ class Parser:
         cursor = self.cursor
         cursor.to_inner()
         word, bar = cursor.token, cursor.following
+        if (
+            self._kit
+            and (word.kind is not WORD or word.text[:2] in _SETUPS)
+            and bar.kind in ("|", "(")
+        ):
+            misread = self.recovery.setup.misread(word, bar)
+            if misread is not None:
+                return misread
         if word.kind is not WORD:
             return "SI"
         if bar.kind != "|":
@@ -226,7 +234,13 @@ class Parser:
 
     def header(self, word: Token) -> None:
         """Open the block even if its header is wrong, so that its end is not a second mistake."""
-        self.cursor.i += 1
+        cursor = self.cursor
+        cursor.i += 1
+        if (
+            word.text == "LOOP"
+            and cursor.tokens[min(cursor.i + 2, len(cursor.tokens) - 1)].kind == "="
+        ):
+            self.recovery.in_block.counted_loop(word)
         try:
             head = self.argument_of(word)
         except Failed:
@@ -248,7 +262,7 @@ class Parser:
         block = self.blocks.begin("DEF", Span(word.start, name.end), name=name)
         if cursor.token.kind == "(":
             block.is_reported = True
-            self.no_arguments(name)
+            self.recovery.in_block.def_with_values(word, name, self.expressions.arguments())
             block.span = cursor.span_from(word)
 
     def arm(self, word: Token, is_reported: bool = False) -> None:

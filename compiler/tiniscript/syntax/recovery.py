@@ -27,6 +27,8 @@ from tiniscript.syntax.setup_recovery import SetupRecovery
 from tiniscript.syntax.suggestions import (
     AFTER_HEADER,
     BETWEEN,
+    TIMES,
+    after_bracket,
     body_begins,
     end_of_values,
     head_in,
@@ -39,6 +41,11 @@ if TYPE_CHECKING:
     from tiniscript.syntax.parser import Parser
 
 _TIMED = ("move", "wait")
+_SAYING_NO_MORE = frozenset((
+    "CM", "SEG", "SEGUNDOS", "SECONDS", "THE", "EL", "AL", "ROBOT", "CAR", "CARRO", "CARRITO",
+    "PLEASE", "GRACIAS",
+))  # fmt: skip
+_COMMANDS = ("move", "wait", "motors", "stop", "beep", "show")
 
 
 class Recovery:
@@ -66,12 +73,26 @@ class Recovery:
         if token.kind == "-" and cursor.token.kind == "-":
             self.of_name.other_note(token.start, "--", cursor.token.end)
         if token.kind is NUMBER:
+            self._times_before(token)
             self._line_number(token)
         if token.kind in ("-", "*") and cursor.token.kind is WORD:
             self.reporter.report(codes.LINE_NUMBER, token.span, found=token.text, dash=token.text)
             raise Resumed
         code = codes.EXTRA_CLOSE if token.kind == ")" else codes.NOT_AN_INSTRUCTION
         self.reporter.fail(code, token.span, found=token.text, fix="")
+
+    def _times_before(self, number: Token) -> None:
+        """`3 veces F(1, 50)`, `3 * F(1, 50)`."""
+        cursor = self.cursor
+        if cursor.token.kind != "*" and cursor.token.text not in TIMES and cursor.token.text != "X":
+            return
+        first = cursor.following
+        end = after_bracket(cursor.tokens, cursor.i + 2) if self._is_command(first) else None
+        if end is None or cursor.tokens[end].kind not in AT_END:
+            return
+        cursor.i = end
+        body = Span(first.start, cursor.tokens[end - 1].end)
+        self._loop_of(number, body, cursor.span_from(number))
 
     def _line_number(self, number: Token) -> None:
         """`1. F(2, 80)`, `2) S`: go on with what stands behind the number; but `50 = V` sets V."""
@@ -85,6 +106,13 @@ class Recovery:
             self.reporter.fail(
                 codes.NOT_AN_INSTRUCTION, number.span, span, found=number.text, fix=fix
             )
+        written = cursor.source[number.span]
+        after_digits = written.lstrip("0123456789_")
+        if sign.kind == "=" and after_digits[:1].isalpha() and after_digits.isascii():  # `2X = 5`
+            self.reporter.answer(number)
+            right = after_digits + written[: len(written) - len(after_digits)]
+            self.of_name.unread_assignment(Token(WORD, right.upper(), *number.span))
+            self.reporter.fail(codes.BAD_NAME, number.span, found=written, right=right)
         if sign.kind in (")", "-") or (sign.kind is ODD and sign.text in (":", ".", "°", "º")):
             cursor.i += 1
         first = WORDS.get(cursor.token.text)
@@ -111,7 +139,10 @@ class Recovery:
                 raise Failed
             forever_alone(parser, word)
         if role == "later":
+            self.of_name.sentence.event(word)
             self.reporter.fail(codes.LATER_WORD, word.span, word=word.text)
+        if role == "value":
+            self.of_name.sentence.word_and_sign(word, self.cursor.following)
         self.of_name.not_an_instruction(word)
 
     # -- UNTIL --------------------------------------------------------------------------------
@@ -180,6 +211,12 @@ class Recovery:
             self._line_of(header, token)
         if kind in ("{", "}"):
             return
+        if header is None and self._is_no_instruction(first):
+            if text == ".":
+                self.reporter.answer(token)
+                self.reporter.report(codes.UNKNOWN_WORD, first.span, found=first.text, near="")
+            if text == "." or (kind is WORD and text not in WORDS):
+                raise Failed
         is_colon = kind is ODD and text == ":" and header is not None
         if is_colon or ((kind == "," or text in (".", ":")) and after.kind is WORD):
             if header is None or not header.is_reported:
@@ -187,7 +224,7 @@ class Recovery:
             self.reporter.answer(token)
             cursor.i += 1
             raise Resumed
-        if kind is ODD:
+        if kind is ODD and not (text in ("&", "→") and self._is_command(after)):
             raise Failed
         if kind == ")":
             cursor.i += 1
@@ -199,6 +236,14 @@ class Recovery:
         if header is not None and first.text in WORDS and WORDS[first.text].arguments:
             if kind in SIGNS or text in ("AND", "OR"):
                 self._question_goes_on(first, header)
+        self._words_behind(first, token, header)
+        self._times_behind(first, token, before)
+        if text in ("+", "/", "&", "-", "→", ">") and self._is_command(after):
+            self.reporter.answer(token)
+            shown = shortened(cursor.source.text[first.start : before.end])
+            self.reporter.report(codes.SIGN_BETWEEN, token.span, found=text, before=shown)
+            cursor.i += 1
+            raise Resumed
         if kind in SIGNS:
             fail(codes.NOT_AN_INSTRUCTION, token.span, found=text, fix="")
         if kind == "," and before.kind is NUMBER and after.kind is NUMBER:
@@ -211,9 +256,50 @@ class Recovery:
                 self.reporter.report(codes.EXTRA_WORD, token.span, found=text, fix="")
                 cursor.i += 1
                 self.in_block.go_on()
-        self._separator_missing(first, token, before, header)
+        if header is not None or not self._is_no_instruction(first):
+            self._separator_missing(first, token, before, header)
         if kind is not WORD:
             raise Failed
+
+    def _is_command(self, token: Token) -> bool:
+        known = WORDS.get(token.text) if token.kind is WORD else None
+        return known is not None and known.role in _COMMANDS
+
+    def _words_behind(self, first: Token, token: Token, header: Block | None) -> None:
+        """`SHOW(DISTANCE) cm`, `STOP the robot`: words that say no more."""
+        cursor = self.cursor
+        k = cursor.i
+        while cursor.tokens[k].kind is WORD and cursor.tokens[k].text in _SAYING_NO_MORE:
+            k += 1
+        if header is None and k > cursor.i and cursor.tokens[k].kind in AT_END:
+            cursor.i = k
+            span = Span(token.start, cursor.last.end)
+            self.reporter.fail(codes.EXTRA_WORD, span, found=cursor.source[span], fix="")
+
+    def _times_behind(self, first: Token, token: Token, before: Token) -> None:
+        """`F(1, 50) * 3`, `F(1, 50) x 3`, `F(1, 50) 3 veces`."""
+        cursor = self.cursor
+        is_sign = token.kind == "*" or token.text in ("X", "POR")
+        row = list(cursor.tokens[cursor.i + is_sign : cursor.i + is_sign + 3])
+        if len(row) > 1 and row[1].text in TIMES:
+            is_sign = True
+            del row[1]
+        if not is_sign or len(row) < 2 or row[0].kind is not NUMBER or row[1].kind not in AT_END:
+            return
+        if self._is_command(first):
+            cursor.skip_instruction()
+            self._loop_of(row[0], Span(first.start, before.end), cursor.span_from(first))
+
+    def _loop_of(self, number: Token, body: Span, place: Span) -> NoReturn:
+        fix = f"LOOP({number.text});{self.cursor.source[body]};END_LOOP"
+        found = shortened(self.cursor.source[place])
+        self.reporter.fail(codes.REPEATED, place, found=found, fix=fix)
+
+    def _is_no_instruction(self, first: Token) -> bool:
+        """Whether an instruction begins with a word that nobody knows: that is said of it."""
+        known = self.in_block.known
+        is_known = first.text in WORDS or known.is_own(first.text) or meant_by(first.text)
+        return self.kit is not None and first.kind is WORD and not is_known
 
     def _line_of(self, header: Block, token: Token) -> None:
         """`IF(c) S` or `LOOP(2) { S }`: suggest the whole line, if all of it is understood."""

@@ -19,6 +19,13 @@ from tiniscript.words import WORDS
 if TYPE_CHECKING:
     from tiniscript.syntax.parser import Parser
 
+# What comes after the SI of a question: `si hay un obstaculo`, `si toca la pared`.
+_SEEING = frozenset(
+    "HAY VE VES VEO DETECTA ENCUENTRA TOCA CHOCA LLEGA ESTA EL LA UN UNA".split()  # noqa: SIM905
+)
+
+_COMMANDS = ("move", "wait", "motors", "beep", "show")
+
 
 class SetupRecovery:
     def __init__(self, cursor: Cursor, reporter: Reporter) -> None:
@@ -36,6 +43,32 @@ class SetupRecovery:
         span = Span(word.start, sign.end)
         self.reporter.report(codes.SETUP_NEEDS_BAR, span, found=word.text)
         return True
+
+    def misread(self, first: Token, bar: Token) -> str | None:
+        """`5I|F(2, 80)` and `SILF(2, 80)`: return how the program begins, None if not so."""
+        cursor = self.cursor
+        text = cursor.source[first.span].upper()
+        if bar.kind == "|" and text in ("5I", "51", "S1", "5B", "S8", "58"):
+            self.reporter.answer(first)
+            right = "SI|" if text in ("5I", "51", "S1") else "SB|"
+            self.reporter.report(codes.SETUP_UNKNOWN, first.span, found=text, right=right)
+            cursor.i += 2
+            return right[:2]
+        rest, length = WORDS.get(text[2:]), 2  # `SIF(2, 80)`
+        if rest is None and text[2:3] in ("L", "I", "1"):
+            rest, length = WORDS.get(text[3:]), 3
+        is_glued = (
+            text not in WORDS
+            and text[:2] in ("SI", "SB")
+            and rest is not None
+            and rest.role in _COMMANDS
+        )
+        if not is_glued or bar.kind != "(" or rest is None:
+            return None
+        span = Span(first.start, first.start + length)
+        self.reporter.report(codes.SETUP_NEEDS_BAR, span, found=text[:2])
+        cursor.tokens[cursor.i] = Token(WORD, rest.text, first.start + length, first.end)
+        return text[:2]
 
     def _is_command(self, k: int) -> bool:
         """Whether an instruction begins at `k`: `SI l F(2, 80)` has a letter for its bar."""
@@ -81,6 +114,9 @@ class SetupRecovery:
                 fix = head_in(WORDS["IF"], inside(cursor.tokens, cursor.i + 1))
                 self.reporter.report(codes.SPANISH_IF, word.span, fix=fix)
                 foreign_header(parser, word, "IF")
+        if word.text == "SI" and following.text in _SEEING:
+            self.reporter.report(codes.SPANISH_IF, word.span, fix=WORDS["IF"].example)
+            foreign_header(parser, word, "IF")
         code = codes.SETUP_TWICE if following.kind == "|" else codes.SETUP_NEEDS_BAR
         self.reporter.fail(code, word.span, found=word.text)
 

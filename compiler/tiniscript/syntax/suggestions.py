@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from tiniscript.syntax.call_suggestions import LONGEST, ends_value, starts_value, written
 from tiniscript.syntax.cursor import AT_END
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, Token
-from tiniscript.syntax.operators import BINARY, COMPARISONS, SIGNS
+from tiniscript.syntax.operators import BINARY, COMPARISONS, OPPOSITES, SIGN_OF, SIGNS
 from tiniscript.words import TURN_WORDS, UNITS, WORDS, Word, meant_by, other_name
 
 # Words in the place of an operator, and those that go with them.
@@ -19,19 +19,68 @@ OPERATOR_WORDS = {
     "Y": "AND", "E": "AND", "O": "OR", "U": "OR",
     "IS": "=", "ES": "=", "EQUALS": "=", "EQUAL": "=", "IGUAL": "=",
     "LESS": "<", "MENOR": "<", "GREATER": ">", "MORE": ">", "MAYOR": ">", "BIGGER": ">",
+    **dict.fromkeys(("DISTINTO", "DISTINTA", "DIFERENTE", "DIFFERENT"), SIGN_OF["NE"]),
     "MOD": "%", "X": "*", "POR": "*", "MAS": "+", "MENOS": "-",
 }  # fmt: skip
-_OPERATOR_TAILS = frozenset(("THAN", "QUE", "TO", "A"))
+_OPERATOR_TAILS = frozenset(("THAN", "QUE", "TO", "A", "DE", "FROM"))
+_EQUALS = frozenset(("IS", "ES", "EQUALS", "EQUAL", "IGUAL"))
 
 AFTER_HEADER = frozenset(("THEN", "DO", "BEGIN", "TIMES", "ENTONCES", "HACER", "HAZ", "VECES"))
+TIMES = frozenset(("VECES", "VEZ", "TIMES", "TIME"))
 # Small words that change nothing: `la distancia`, `a la derecha`, `until the distance`.
 FILLERS = frozenset(
     ("LA", "EL", "LOS", "LAS", "THE", "QUE", "A", "AL", "HACIA", "DE", "CON", "UN", "UNA")
 )
+# What stands before how long something takes: `avanza por 3 segundos`.
+BEFORE_POWER = frozenset(("POTENCIA", "POWER", "VELOCIDAD", "SPEED", "FUERZA"))
+BEFORE_TIME = frozenset(("POR", "DURANTE", "FOR"))
 # Who does it, or that something is done: the move is in the word behind.
 BEFORE_MOVE = frozenset(("ROBOT", "EL", "THE", "IR", "VE", "VAMOS", "HAZ", "GO", *TURN_WORDS))
 BETWEEN = frozenset(("AND", "Y", "THEN", "ENTONCES", "LUEGO", "DESPUES", "NEXT"))
-BEFORE_NAME = frozenset(("LET", "VAR", "SET", "INT", "FLOAT", "CONST", "GLOBAL", "DIM", "BOOL"))
+BEFORE_NAME = frozenset(
+    (
+        "LET",
+        "VAR",
+        "SET",
+        "PONER",
+        "PON",
+        "FIJAR",
+        "ASIGNAR",
+        "INT",
+        "FLOAT",
+        "CONST",
+        "GLOBAL",
+        "DIM",
+        "BOOL",
+    )
+)
+# What other languages do with a number behind it, and no variable is called.
+NO_VARIABLES = frozenset(
+    (
+        "CASE",
+        "GOTO",
+        "GOSUB",
+        "JUMP",
+        "SALTA",
+        "SALTAR",
+        "PLAY",
+        "PIN",
+        "BAILA",
+        "BAILAR",
+        "SUBE",
+        "BAJA",
+    )
+)
+SETTING = frozenset(
+    ("SET", "PUT", "PONER", "PON", "FIJAR", "FIJA", "ASIGNAR", "ASIGNA", "CAMBIA_A")
+)
+CHANGING = frozenset(
+    ("CHANGE", "ADD", "CAMBIAR", "CAMBIA", "SUMAR", "SUMA", "AUMENTAR", "RESTAR", "RESTA")
+)
+# What begins a program of Scratch: `when green flag clicked`.
+EVENTS = frozenset(
+    ("FLAG", "CLICKED", "BANDERA", "EMPIECE", "EMPIEZA", "INICIE", "COMIENCE", "START", "CLIC")
+)
 BEFORE_CALL = frozenset(("CALL", "RUN", "GOSUB", "LLAMAR", "LLAMA", "EJECUTAR", "EJECUTA"))
 BEFORE_NOTE = frozenset(("REM", "NOTE", "NOTA"))
 
@@ -52,7 +101,9 @@ def foreign_block(word: str) -> str | None:
 def is_counting(tokens: Sequence[Token], k: int) -> bool:
     """Whether `I = 1 TO 4` or `I IN` stands at `k`, after a word such as `PARA`."""
     name, sign = tokens[k], tokens[min(k + 1, len(tokens) - 1)]
-    return name.kind is WORD and (sign.kind == "=" or sign.text in ("IN", "EN", "DESDE"))
+    return name.kind is WORD and (
+        sign.kind == "=" or sign.text in ("IN", "EN", "DESDE", "DE", "FROM")
+    )
 
 
 def counted(tokens: Sequence[Token], start: int) -> int | None:
@@ -83,8 +134,25 @@ def counted(tokens: Sequence[Token], start: int) -> int | None:
 
 def head_in(word: Word, tokens: Sequence[Token]) -> str:
     """Return the header that `word` and the tokens after it were meant to be."""
-    inside = written(tokens[:LONGEST])
+    inside = written(with_signs(tokens[:LONGEST]))
     return f"{word.text}({inside})" if inside and len(tokens) <= LONGEST else word.example
+
+
+def with_signs(tokens: Sequence[Token]) -> list[Token]:
+    """Return tokens with the signs of the language in place of words such as LESS THAN."""
+    row: list[Token] = []
+    k = 0
+    ended = [*tokens, Token(END, "", 0, 0)]
+    while k < len(tokens):
+        said = operator_words(ended, k) if row and ends_value(row[-1]) else None
+        if said is None:
+            row.append(tokens[k])
+            k += 1
+        else:
+            end, sign = said
+            row.append(Token(WORD if sign.isalpha() else sign, sign, *tokens[k].span))
+            k = end
+    return row
 
 
 def body_begins(tokens: Sequence[Token], start: int, names_end: bool = True) -> int:
@@ -182,8 +250,14 @@ def operator_words(tokens: Sequence[Token], k: int) -> tuple[int, str] | None:
     """Return where words such as `Y` or `IS LESS THAN` end, and the operator that they say."""
     end, said = k, ""
     while tokens[end].kind is WORD:
-        text = tokens[end].text
-        if text in OPERATOR_WORDS:
+        text, after = tokens[end].text, tokens[min(end + 1, len(tokens) - 1)].text
+        if text in ("NO", "NOT") and (said == "=" or (not said and after in _EQUALS)):
+            said = SIGN_OF["NE"]
+        elif said in ("<", ">") and text in ("O", "OR") and after in _EQUALS:
+            said += "="
+        elif said in COMPARISONS - {"="} and text in _EQUALS:
+            said += "=" if said in ("<", ">") else ""
+        elif text in OPERATOR_WORDS:
             if said in ("AND", "OR"):
                 break
             said = OPERATOR_WORDS[text]
@@ -192,6 +266,38 @@ def operator_words(tokens: Sequence[Token], k: int) -> tuple[int, str] | None:
         end += 1
     operand = tokens[end].kind == "-" or starts_value(tokens[end]) or tokens[end].text == "NOT"
     return (end, said) if said and operand else None
+
+
+def between(tokens: Sequence[Token], name: str) -> tuple[str, int] | None:
+    """Return what `ENTRE 5 Y 10` asks of `name`, and where that ends in the text."""
+    if len(tokens) < 4 or tokens[0].text not in ("ENTRE", "BETWEEN"):
+        return None
+    low, also, high = tokens[1:4]
+    if not (low.kind is high.kind is NUMBER and also.text in ("Y", "AND", "E")):
+        return None
+    return f"{name} > {low.text} AND {name} < {high.text}", high.end
+
+
+def unchained(first: tuple[str, str, str], second: tuple[str, str, str]) -> str:
+    """Return how `1 < X < 5`, which compares three values, is written with two comparisons."""
+    if "FALSE" in (first[0], second[2]):
+        return ""
+    if second[2] == "TRUE":  # `DISTANCE < 10 = TRUE`
+        return " ".join(first)
+    if first[0] == "TRUE":
+        return " ".join(second)
+    return f"{' '.join(first)} AND {' '.join(second)}"
+
+
+def opposite(tokens: Sequence[Token]) -> str:
+    """Return the question that is TRUE where `DISTANCE < 10` is not, "" where it is no question."""
+    signs = [k for k, token in enumerate(tokens) if token.kind in OPPOSITES]
+    if any(token.text in ("AND", "OR", "NOT", "Y", "O") for token in tokens):
+        return f"NOT ({written(tokens)})"
+    if len(signs) != 1:
+        return ""
+    (k,) = signs
+    return f"{written(tokens[:k])} {OPPOSITES[tokens[k].kind]} {written(tokens[k + 1 :])}"
 
 
 def spaced_name(tokens: Sequence[Token], k: int) -> tuple[str, int] | None:

@@ -49,7 +49,7 @@ def _fitted(diagnostic: Diagnostic, word: Word, name: str, wanted: str) -> Diagn
         "word": word.text,
         "name": "@" + name,
         "wanted": _named(wanted),
-        "unit": _named(found),
+        "unit": "@metres" if UNITS[unit] == UNITS["METRO"] else _named(found),
         "usage": word.usage,
     }
     return Diagnostic(codes.OTHER_UNIT, diagnostic.span, values)

@@ -14,7 +14,7 @@ from itertools import pairwise
 from tiniscript.kit import Kit
 from tiniscript.syntax.call_suggestions import actuator_word
 from tiniscript.syntax.lexer import WORD, Token
-from tiniscript.words import WORDS, Word, meant_by
+from tiniscript.words import NUMBER_WORDS, WORDS, Word, meant_by
 
 _WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 
@@ -73,6 +73,8 @@ class Vocabulary:
 
     def value(self, word: str) -> str:
         """Return the name of a value: `DISTANCE` for `DISTANCIA`, `TRUE` for `VERDADERO`."""
+        if word.upper() in NUMBER_WORDS and not self.is_own(word.upper()):
+            return NUMBER_WORDS[word.upper()]
         meant = meant_by(word.upper())
         if meant is None or word.upper() in WORDS or self.is_own(word.upper()):
             return word

@@ -20,7 +20,7 @@ CHECK_TEXTS: dict[str, tuple[str, str]] = {
     "repaired_column": ("repaired", "corregidos"),
     "first_column": ("first", "primero"),
     "unread": ("not read", "no se leyó"),
-    "all_row": ("{n} programs, {right} without mistakes", "{n} programas, {right} sin errores"),
+    "all_row": ("programs: {n}, without mistakes: {right}", "programas: {n}, sin errores: {right}"),
     "repaired_one": ("{file}: 1 mistake is repaired.", "{file}: 1 error corregido."),
     "repaired": ("{file}: {n} mistakes are repaired.", "{file}: {n} errores corregidos."),
     "would_repair_one": (

@@ -38,7 +38,7 @@ SELFTEST_TEXTS: dict[str, tuple[str, str]] = {
     "self_firmware_is": ("instructions {isa}, as tsc has them", "instrucciones {isa}, las mismas que tsc"),
     "self_firmware_old": ("instructions {isa}; tsc has {wanted}", "instrucciones {isa}; tsc tiene {wanted}"),
     "self_line_is": ("{n} answers of {n}, {ms} ms in the middle", "{n} respuestas de {n}, {ms} ms en el medio"),
-    "self_line_bad": ("{lost} messages were damaged or lost", "{lost} mensajes llegaron dañados o se perdieron"),
+    "self_line_bad": ("messages damaged or lost: {lost}", "mensajes dañados o perdidos: {lost}"),
     "self_supply_is": ("no drop that the robot has noticed", "sin caídas que el robot haya notado"),
     "self_supply_low": ("the voltage was too low: the robot restarted, or cannot save", "el voltaje fue demasiado bajo: el robot se reinició o no puede guardar"),
     "self_hung": ("the robot's own program hung, and the watchdog restarted it", "el programa propio del robot se colgó, y el watchdog lo reinició"),

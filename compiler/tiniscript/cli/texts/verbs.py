@@ -161,7 +161,7 @@ VERBS: dict[str, Verb] = {
     "info": Verb(
         ROBOTS, ("info", "info"), ("what the robot says of itself", "lo que el robot dice de sí mismo"),
         ("Prints what the robot says of itself: name, kit, room, program, state, last fault.",
-         "Imprime lo que el robot dice de sí mismo: nombre, kit, sitio, programa, estado, última falla."),
+         "Imprime lo que el robot dice de sí mismo: nombre, kit, espacio, programa, estado, última falla."),
     ),
     "monitor": Verb(
         ROBOTS, ("monitor", "monitor"), ("print what the robot shows", "imprime lo que el robot muestra"),
