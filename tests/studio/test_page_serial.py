@@ -11,7 +11,6 @@ import pytest
 from tests.studio.test_page_link import said
 from tests.support import studio, studio_serial
 from tests.support.command import FOREVER
-from tests.support.platformio import need
 from tests.support.pty_robot import PtyRobot
 from tests.support.studio import checked, write
 from tiniscript import robots
@@ -31,7 +30,9 @@ def context(
     playwright: Playwright, robot: PtyRobot, tmp_path_factory: pytest.TempPathFactory
 ) -> Iterator[BrowserContext]:
     """A browser of its own: a page that no `tsc studio` has given, as on any static host."""
-    need(studio_serial.missing())
+    why = studio_serial.missing()
+    if why:  # in CI, too: no package brings root or a serial port
+        pytest.skip(why)
     folder: Path = tmp_path_factory.mktemp("serial")
     with (
         studio.served() as server,
