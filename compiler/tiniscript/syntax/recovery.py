@@ -87,7 +87,8 @@ class Recovery:
         if cursor.token.kind != "*" and cursor.token.text not in TIMES and cursor.token.text != "X":
             return
         first = cursor.following
-        end = after_bracket(cursor.tokens, cursor.i + 2) if self._is_command(first) else None
+        is_call = self._is_command(first) and cursor.tokens[cursor.i + 2].kind == "("
+        end = after_bracket(cursor.tokens, cursor.i + 2) if is_call else None
         if end is None or cursor.tokens[end].kind not in AT_END:
             return
         cursor.i = end
