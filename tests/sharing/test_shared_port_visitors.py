@@ -216,3 +216,13 @@ def test_a_bug_of_ours_in_a_thread_is_raised_where_somebody_waits() -> None:
                     shared.line.event()
             peer.settimeout(10)
             assert is_let_go(peer)
+
+
+def test_a_lock_that_is_given_back_leaves_no_file(tmp_path: Path) -> None:
+    path = tmp_path / "port.lock"
+    lock = registry._locked(path)
+    assert lock is not None and path.exists()
+    assert registry._locked(path) is None, "another one has it"
+    assert path.exists()
+    lock.close()
+    assert not path.exists()
