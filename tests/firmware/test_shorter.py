@@ -94,7 +94,8 @@ def test_a_condition_uses_a_jump_that_is_there() -> None:
 
 def test_a_jump_that_another_condition_uses_stays() -> None:
     far = "; ".join(f"ldi r18,{number}" for number in range(200))
-    body = f"tst r24; brne .+2; rjmp .L1; inc r24; brlo .+2; rjmp .L1; {far}; .L1:"
+    body = "tst r24; brne .+2; rjmp .L1; inc r24; brlo .+2; rjmp .L1"
+    body = f"{body}; dec r24; brne .+2; rjmp .L1; {far}; .L1:"
     found = lines_of(shorter(function("f", body)), "f")
     assert found[3] == "brlo .+2"
     assert found[4].rstrip(":") == found[1].removeprefix("breq ")

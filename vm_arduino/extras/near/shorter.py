@@ -3,7 +3,8 @@
 GCC 5 and 7 write into each function how its registers are kept, reach a far place from a condition
 by a jump of its own, and repeat how functions end. Here functions that keep the same registers
 share the instructions that do it, a condition that leads far uses a jump that is there already, and
-equal ends are there once. What interrupts reach stays as it was: nothing there gets slower.
+equal ends and parts are there once. What interrupts reach, and what a LIVE waits for, stays as it
+was: nothing there gets slower.
 
 Knows the text that GCC writes for an AVR whose program counter has 2 bytes. What has another form
 than expected is left alone.
@@ -30,6 +31,7 @@ from assembly import (
 )
 
 REACH = 3800  # bytes: a call or a jump over less than that takes 2 of them
+REGION = 5400  # bytes on each side of what a region shares: some of its calls are long
 NEAR = 112  # bytes: how far a condition leads at most, less what an estimate may miss
 LONGEST = 16  # instructions of a part or an end
 LEAST_SAVED = 4  # bytes
@@ -60,7 +62,7 @@ def shorter(assembly: str, addresses: Mapping[str, int]) -> str:
         if name not in quick and name in addresses and BODY in each.lines
     ]
     slow.sort(key=lambda function: addresses[function.name])
-    for number, functions_near in enumerate(regions(slow, addresses, REACH)):
+    for number, functions_near in enumerate(regions(slow, addresses, REGION)):
         holder = functions_near[len(functions_near) // 2]
         common = [*_share_parts(functions_near, number), *_share_registers(functions_near, number)]
         holder.lines += common
