@@ -9,14 +9,22 @@ namespace {
 
 constexpr uint16_t kFarAway = 0xffff;  // an offset behind any code
 
-enum class Kind : uint8_t { kCode, kIf, kRepeat, kCount };
+// The upper two bits of a byte of a Block.
+enum class Kind : uint8_t { kCode = 0, kIf = 0x40, kRepeat = 0x80, kCount = 0xc0 };
+
+constexpr uint8_t kKindBits = 0xc0;
+static_assert(kNestWords + 2 <= 0xff - kKindBits, "words are in the other bits");
 
 // An open block.
 struct Block {
   uint16_t end;    // 0: a loop that names none and has no BREAK yet
   uint16_t start;  // of a loop
-  Kind kind;
-  uint8_t words;  // with those around it; an IF counts as one word, a loop as two
+  // Its kind and its words with those around it; an IF counts as one word, a loop as two. In one
+  // byte: nothing lies deeper on the stack of an ATmega328P than these blocks.
+  uint8_t kind_and_words;
+
+  Kind kind() const { return static_cast<Kind>(kind_and_words & kKindBits); }
+  uint8_t words() const { return kind_and_words & static_cast<uint8_t>(~kKindBits); }
 };
 
 // The target of an AND_THEN or an OR_ELSE.
@@ -81,8 +89,7 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
   join->target = kFarAway;
   open(routine);
   top->end = 0;
-  top->kind = Kind::kCode;
-  top->words = 0;
+  top->kind_and_words = static_cast<uint8_t>(Kind::kCode);
   memory->devices = 0;
 
   for (;; at = after) {
@@ -91,7 +98,7 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
       if (join->target != at) return {Rule::kMissedTarget, at};
       if (join->depth != depth) return {Rule::kStackNotEmpty, at};
     }
-    for (; top->kind == Kind::kIf && top->end <= at; top--) {
+    for (; top->kind() == Kind::kIf && top->end <= at; top--) {
       if (top->end != at || depth != 0 || joins != 0 || is_checking) {
         return {Rule::kMissedTarget, at};
       }
@@ -169,12 +176,12 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
 
       // those that open a block: see `open` below
       case Role::kElse:
-        if (top->kind != Kind::kIf || top->end != after) return {Rule::kNotOpen, at};
+        if (top->kind() != Kind::kIf || top->end != after) return {Rule::kNotOpen, at};
         top--;
         kind = Kind::kIf;
         break;
       case Role::kIf:
-        if (top->kind == Kind::kRepeat && top->end == target) continue;  // it leaves the loop
+        if (top->kind() == Kind::kRepeat && top->end == target) continue;  // it leaves the loop
         kind = Kind::kIf;
         break;
       case Role::kForever:
@@ -192,9 +199,9 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
         const bool closes = role <= Role::kNext;
         const uint16_t end = closes ? after : target;
         Block* loop = top;
-        if (closes && loop->kind == Kind::kIf) return {Rule::kStillOpen, at};
-        while (loop->kind == Kind::kIf) loop--;
-        if (loop->kind != kind) return {Rule::kNotOpen, at};
+        if (closes && loop->kind() == Kind::kIf) return {Rule::kStillOpen, at};
+        while (loop->kind() == Kind::kIf) loop--;
+        if (loop->kind() != kind) return {Rule::kNotOpen, at};
         if (end > length) return {Rule::kBadTarget, at};
         if (closes) {
           if (target != loop->start) return {Rule::kBadLoopStart, at};
@@ -207,13 +214,13 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
       }
 
       case Role::kDef:
-        if (top->kind != Kind::kCode || routine->end != 0) return {Rule::kBadDef, at};
+        if (top->kind() != Kind::kCode || routine->end != 0) return {Rule::kBadDef, at};
         if (defs == kDefs) return {Rule::kTooManyDefs, at};
         *routine = {after, target, 0, 0};
         continue;
       case Role::kReturn:
         if (routine->end == 0) return {Rule::kNotOpen, at};
-        if (top->kind != Kind::kCode) return {Rule::kStillOpen, at};
+        if (top->kind() != Kind::kCode) return {Rule::kStillOpen, at};
         if (routine->end != after) return {Rule::kBadDef, at};
         open(++routine);
         defs++;
@@ -239,12 +246,12 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
     // where both are known: behind 0, less 1, nothing lies
     if (target > static_cast<uint16_t>(top->end - 1)) {
       // the end of a loop lies behind what closes it
-      if (target != top->end || top->kind != Kind::kIf) return {Rule::kBadTarget, at};
+      if (target != top->end || top->kind() != Kind::kIf) return {Rule::kBadTarget, at};
       if (kind == Kind::kIf) continue;
     }
-    const uint8_t words = static_cast<uint8_t>(top->words + (kind == Kind::kIf ? 1 : 2));
+    const uint8_t words = static_cast<uint8_t>(top->words() + (kind == Kind::kIf ? 1 : 2));
     if (words > kNestWords) return {Rule::kTooDeep, at};
-    *++top = {target, after, kind, words};
+    *++top = {target, after, static_cast<uint8_t>(static_cast<uint8_t>(kind) | words)};
     if (kind == Kind::kCount) {
       static_assert(kNestWords / 2 <= kCounters, "no more loops are open at once");
       counters++;
@@ -255,7 +262,7 @@ __attribute__((noinline)) Verdict pass(const uint8_t* code, uint16_t length, uin
   // finish
   if (depth != 0 || joins != 0) return {Rule::kStackNotEmpty, at};
   if (is_checking) return {Rule::kInsideCheck, at};
-  if (top->kind != Kind::kCode || routine->end != 0) return {Rule::kStillOpen, at};
+  if (top->kind() != Kind::kCode || routine->end != 0) return {Rule::kStillOpen, at};
   return {Rule::kNone, at};
 }
 
