@@ -24,7 +24,7 @@ constexpr uint16_t kMostCount = 281;  // 1024 * 1.1 V / 4.0 V: the supply is too
 // the last of these conversions (104 us each) counts.
 constexpr uint8_t kSupplyTries = 24;
 
-uint8_t measured = kNoChannel;
+uint8_t measured;       // the channel of the last conversion, or kNoChannel
 uint8_t tries;          // conversions of the reference still to come
 bool is_supply_wanted;  // somebody asked in this turn of the main loop
 
@@ -34,6 +34,7 @@ void convert() { ADCSRA |= 1 << ADSC; }
 
 void analog_begin() {
   ADCSRA = 1 << ADEN | 1 << ADPS2 | 1 << ADPS1 | 1 << ADPS0;  // 125 kHz
+  analog_forget();
 }
 
 bool analog_read(uint8_t channel, int32_t* value) {
