@@ -23,8 +23,8 @@ UPSTREAM: dict[str, set[str]] = {
     "printable": set(),
     "fixed_point": set(),
     "kit": {"fixed_point"},
-    "words": {"fixed_point", "spelling"},
     "spelling": set(),
+    "words": {"fixed_point", "spelling"},
     "diagnostics": {"source"},
     "bytecode": {"kit"},
     "syntax": {*TEXT, "bytecode"},  # of the bytecode its limits and its comparators
