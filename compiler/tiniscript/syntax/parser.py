@@ -110,6 +110,7 @@ class Parser:
         word, bar = cursor.token, cursor.following
         if (
             self._kit
+            and word.text not in WORDS
             and (word.kind is not WORD or word.text[:2] in _SETUPS)
             and bar.kind in ("|", "(")
         ):
