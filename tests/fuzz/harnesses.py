@@ -66,10 +66,8 @@ def harness(name: str, sources: Path = SOURCES) -> Path:
     for pattern in PARTS[name]:
         code += sorted(sources.glob(pattern))
     headers = [path for pattern in HEADERS for path in sorted(sources.glob(pattern))]
-    flags = (*FLAGS, *WARNINGS)
-    if name == "large_link":
-        flags += ("-Dtiniscript_like_esp32",)
-    return built_by(COMPILER, [*code, *headers], flags)
+    sizes = ("-Dtiniscript_like_esp32",) if name == "large_link" else ()
+    return built_by(COMPILER, [*code, *headers], (*FLAGS, *sizes, *WARNINGS))
 
 
 class Found(NamedTuple):
