@@ -261,7 +261,7 @@ def test_power_lost_in_the_middle_leaves_the_old_program(
         pty_robot.off_after = 250
         done = tsc("upload", "-e", LONG, "--port", pty_robot.port)
         assert done.code == 3
-        assert "lost the robot" in done.err
+        assert "lost the connection to the robot" in done.err
         pty_robot.switch_on()
         assert on(pty_robot, "fetch", "-o", tmp_path / "new.bin").code == 0
         assert (tmp_path / "new.bin").read_bytes() == old.read_bytes()
