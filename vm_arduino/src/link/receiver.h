@@ -72,9 +72,11 @@ class Receiver : private ItemPlaces<kWindow> {
   }
   void take(uint8_t byte, uint16_t now_ms);
 
-  // Where `zeros_` and `last_ms_` lie, for a chip whose interrupt does `stops` in assembly.
+#ifdef __AVR__
+  // Where `zeros_` and `last_ms_` lie: its interrupt does `stops` in assembly.
   static constexpr size_t zeros_at() { return offsetof(Receiver, zeros_); }
   static constexpr size_t last_ms_at() { return offsetof(Receiver, last_ms_); }
+#endif
 
   // Takes the byte that completes a stop.
   void take_last_zero() { take(0, last_ms_); }
