@@ -388,9 +388,7 @@ esp_err_t nvs_commit(nvs_handle_t) { return ESP_OK; }
 void HardwareSerial::begin(unsigned long, uint32_t, int8_t, int8_t, bool, unsigned long, uint8_t) {}
 
 void HardwareSerial::onReceiveError(OnReceiveErrorCb function) { on_error = function; }
-
 size_t HardwareSerial::setRxBufferSize(size_t new_size) { return chip.receive_room = new_size; }
-
 size_t HardwareSerial::setTxBufferSize(size_t new_size) { return chip.send_room = new_size; }
 
 int HardwareSerial::available() {

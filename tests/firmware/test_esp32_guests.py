@@ -1,0 +1,71 @@
+"""What connects to an ESP32 in a network: a client gets through, and a web page does not."""
+
+from __future__ import annotations
+
+from random import Random
+
+import pytest
+
+from tests.firmware.test_esp32_wifi import joined
+from tests.machines.esp32 import Esp32Robot, missing
+from tests.support.esp32_radio import Network
+from tests.support.owners import Keys
+from tests.virtual.test_first_bytes import NOT_FOR_ROBOTS
+from tiniscript.link.messages import STOP_BYTES
+from tiniscript.virtual.first_bytes import is_for_robot
+
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
+
+
+@pytest.fixture(scope="module")
+def knocked_at() -> Esp32Robot:
+    return joined(Keys())[0]
+
+
+@pytest.mark.parametrize("name", NOT_FOR_ROBOTS)
+def test_what_a_web_page_may_send_reaches_no_robot(knocked_at: Esp32Robot, name: str) -> None:
+    """In one piece and byte by byte: the robot hangs up and answers nothing."""
+    robot, data = knocked_at, NOT_FOR_ROBOTS[name]
+    for size in (len(data), 1 if len(data) < 1000 else 97):
+        end = Network(robot)
+        for k in range(0, len(data), size):
+            if not end.has_ended:
+                end.send(data[k : k + size])
+                robot.wait(1)
+        robot.wait(3)
+        assert end.taken() == b"" and end.has_ended
+        end.leave()
+        robot.wait(2)
+
+
+@pytest.mark.parametrize("data", [b"S\n", b"SI|F(2,80)\r\n", b"X = 5\n", b"// HTTP/1.1\n", b"\0"])
+def test_what_is_meant_for_a_robot_gets_there(knocked_at: Esp32Robot, data: bytes) -> None:
+    end = Network(knocked_at)
+    end.send(data + bytes(STOP_BYTES))
+    knocked_at.wait(5)
+    assert end.taken() != b"" and not end.has_ended, "at least the stop is confirmed"
+    end.leave()
+    knocked_at.wait(60)
+
+
+def guest_of(robot: Esp32Robot, data: bytes) -> bool | None:
+    """Return what the robot's own code says of the first bytes of a connection."""
+    return (None, True, False)[robot.ask(b"G", len(data).to_bytes(4, "little") + data)[0]]
+
+
+def test_the_robot_tells_its_clients_as_a_virtual_one_does(knocked_at: Esp32Robot) -> None:
+    chance = Random(5)
+    words = [*(data[:300] for data in NOT_FOR_ROBOTS.values()), b"PING|\n", b"POST = 5\n",
+             b"GET  /", b"S", b"a\xc3\xb1o = 5\n", b"https://x", b"HTTP/1.1",
+             b"http:", b"\r\n", b"\0", b" ",
+             b"\t", b"*", b"POST", b"pri", b"!x", b"="]  # fmt: skip
+    for _ in range(3000):
+        data = b"".join(chance.choice(words) for _ in range(chance.randrange(1, 4)))[:400]
+        data = data[: chance.randrange(len(data) + 1)]
+        if chance.random() < 0.3 and data:
+            at = chance.randrange(len(data))
+            data = data[:at] + chance.randbytes(1) + data[at + 1 :]
+        assert guest_of(knocked_at, data) is is_for_robot(data), data
+    for data in NOT_FOR_ROBOTS.values():
+        for k in range(min(len(data), 400)):
+            assert guest_of(knocked_at, data[:k]) is is_for_robot(data[:k]), data[:k]
