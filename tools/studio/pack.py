@@ -18,7 +18,8 @@ LEFT_OUT = ("tiniscript.cli", "tiniscript.doctor", "tiniscript.flash", "tiniscri
             "tiniscript.sharing", "tiniscript.wiring", "tiniscript.lessons")  # fmt: skip
 # Imported where there is a port, wasmtime or another system; never in a browser.
 NOT_HERE = {"wasmtime", "serial", "bleak", "zeroconf", "platformdirs", "tomli", "construct",
-            "ctypes", "multiprocessing", "urllib.request",
+            "ctypes", "multiprocessing", "urllib.request", "ssl",
+            "asyncio.windows_events", "asyncio.windows_utils",
             "pydoc", "doctest", "unittest", "pdb", "argparse"}  # fmt: skip
 DATA = {"diagnostics": ("*.toml",), "link": ("*.toml",), "robots": ("*.toml",),
         "virtual": ("*.wasm",), "virtual/worlds": ("*.toml",)}  # fmt: skip

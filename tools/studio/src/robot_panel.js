@@ -9,6 +9,7 @@ import { hasHost, hostPorts, HostRobot, stopHost } from './robot_host.js';
 import { keepKeys, keptKeys } from './robot_keys.js';
 import { readTrim, showTrim } from './robot_trim.js';
 import { chosenPort, hasSerial, knownPorts, SerialPort } from './robot_serial.js';
+import { refusal, shown } from './robot_said.js';
 import { Failed } from './robot_way.js';
 import { currentLanguage, hasText, text } from './texts.js';
 import { LINK, ROBOTS } from './words.js';
@@ -21,7 +22,6 @@ import { LINK, ROBOTS } from './words.js';
 /** @typedef {{label: string, connect: () => Promise<void>}} Choice */
 
 const SHOWN = 200; // lines of what the robot shows
-const SHOWN_CHARACTERS = 200; // of a name or a text
 
 /**
  * @typedef {object} Page what the panel uses of the page
@@ -397,16 +397,4 @@ export class RobotPanel {
     element('link_shown', HTMLElement).textContent = this.#shown.join('\n');
     document.documentElement.dataset['robot'] = isThere ? 'connected' : this.#isBusy ? 'connecting' : 'none';
   }
-}
-
-/** @param {Answer} answer */
-function refusal({ failure = '', said = '', advice = '' }) {
-  const own = `try_${failure}`;
-  return [said, hasText(own) ? text(own) : advice].join(' ').trim();
-}
-
-/** What somebody else has written, without what moves or hides text. @param {string} found */
-function shown(found, most = SHOWN_CHARACTERS) {
-  const plain = found.replace(/[\p{C}\p{Zl}\p{Zp}]/gu, '?');
-  return plain.length > most ? `${plain.slice(0, most)}…` : plain;
 }
