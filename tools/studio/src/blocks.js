@@ -88,7 +88,7 @@ export class Blocks {
       zoom: { controls: !isNarrow, wheel: false, pinch: true, startScale: isNarrow ? 0.62 : 0.75, minScale: 0.4, maxScale: 1.6 },
     });
     workspace.MAX_UNDO = 0;
-    for (const each of document.querySelectorAll('.blocklyComputeCanvas')) each.setAttribute('aria-hidden', 'true');
+    hideMeasure();
     workspace.addChangeListener((event) => {
       if (event.isUiEvent || event.type === Blockly.Events.FINISHED_LOADING) return;
       this.#told.changed();
@@ -225,4 +225,15 @@ function inOrder(blocks) {
 /** @param {string} message */
 function folded(message) {
   return Blockly.utils.string.wrap(message, LONGEST_TIP);
+}
+
+/** Hides what Blockly measures texts with, which it makes when it first needs it. */
+function hideMeasure() {
+  new MutationObserver((_, observer) => {
+    const found = document.querySelector('.blocklyComputeCanvas');
+    if (!found) return;
+    found.setAttribute('aria-hidden', 'true');
+    observer.disconnect();
+  }).observe(document.body, { childList: true });
+  document.querySelector('.blocklyComputeCanvas')?.setAttribute('aria-hidden', 'true');
 }
