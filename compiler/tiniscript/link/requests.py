@@ -37,7 +37,6 @@ from tiniscript.link.payloads import (
     ReceiptReply,
     SentReply,
 )
-from tiniscript.link.window import Pieces
 from tiniscript.printable import printable
 
 if TYPE_CHECKING:
@@ -52,6 +51,14 @@ LOW_TRIES = 4  # and while its voltage is too low for that: it checks every half
 KEPT_PAUSE_MS = 200
 # The robot has the data, but would lose it at the next power-on.
 TAKEN = (STATUSES["SAVING"], STATUSES["LOW_SUPPLY"], STATUSES["NOT_KEPT"])
+
+
+class Pieces(NamedTuple):
+    """What is sent: `data` in pieces of `most` bytes, `window` of them at once."""
+
+    data: bytes
+    most: int
+    window: int
 
 
 class Request(NamedTuple):

@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 from tiniscript.link.frames import Frame, encoded
 from tiniscript.link.messages import BY_NAME, LARGE_WINDOW, SMALL_FRAME, payload_bytes, written
+from tiniscript.link.requests import Pieces
 from tiniscript.link.seal import Seal
 from tiniscript.link.transmission import RETRY_MS, RETRY_STEPS, ROUND_MS, Transmission
 
@@ -22,14 +23,6 @@ REPLY_BYTES = 32  # of DATA on the wire, and more
 FRAME_BYTES = 24  # of DATA on the wire beside its piece, and more
 OFFSET_BYTES = 2  # of DATA before its piece
 _DATA = BY_NAME["DATA"]
-
-
-class Pieces(NamedTuple):
-    """What is sent: `data` in pieces of `most` bytes, `window` of them at once."""
-
-    data: bytes
-    most: int
-    window: int
 
 
 class SentPiece(NamedTuple):
