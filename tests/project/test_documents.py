@@ -115,7 +115,7 @@ SOURCES = sorted(
     for folder in ("compiler", "tests", "tools", "vm_arduino")
     for end in ("py", "md", "cpp", "h", "c", "S", "ini", "toml")
     for path in (ROOT / folder).rglob(f"*.{end}")
-    if ".pio" not in path.parts
+    if not {".pio", "node_modules"} & set(path.parts)
 )
 ROOMS = ("compiler", "tests", "tools", "docs", "examples", "vm_arduino")
 # Where a path in a document, a docstring or a comment begins.
