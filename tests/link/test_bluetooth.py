@@ -228,7 +228,7 @@ def test_all_includes_a_robot_that_is_known(ble: BleRobot, verb: str) -> None:
 def test_what_is_no_robot_is_said(bluez: FakeBluez) -> None:
     bluez.add(Peripheral("lamp", OTHER, LAMP))
     done = process("ping", "--port", "ble://lamp")
-    assert (done.code, "no service by which a robot is reached" in done.err) == (3, True)
+    assert (done.code, "does not offer what tsc needs" in done.err) == (3, True)
     bluez.add(Echo("echo", ADDRESS))
     done = process("ping", "--port", "ble://echo")
     assert (done.code, "comes back" in done.err) == (3, True)

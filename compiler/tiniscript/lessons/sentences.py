@@ -77,7 +77,7 @@ SENTENCES: dict[str, tuple[str, str]] = {
                     "El robot no esperó entre sus movimientos. Pon W({least}) entre dos movimientos."),
     "pauses/short": ("The robot waited {seconds} s; {least} s is the task. Put W({least}) between two moves.",
                      "El robot esperó {seconds} s; la tarea pide {least} s. Pon W({least}) entre dos movimientos."),
-    "pauses/several": ("The robot waited {least} s between its moves {found} of the {times} times. Put W({least}) there.",
+    "pauses/several": ("The robot waited {least} s between its moves {found} of {times} times. Put W({least}) there.",
                        "El robot esperó {least} s entre sus movimientos {found} de {times} veces. Pon ahí W({least})."),
     "order//moves": ("The robot did not move. Give it a move: F(2, 80)", "El robot no se movió. Dale un movimiento: F(2, 80)"),
     "order//stops": ("The robot never stopped. Let it stop: S", "El robot nunca se detuvo. Haz que pare: S"),
