@@ -16,8 +16,8 @@ uint8_t draft[kHeaderBytes + kTextRoom];
 namespace {
 
 Flag<Bit::kWhole> is_whole;            // `program` is the one in `robot_status`
-bool has_other;         // the stored program is of another version
-uint8_t header_length;  // of the program in `robot_status`, if there is one
+bool has_other;                        // the stored program is of another version
+uint8_t header_length = kHeaderBytes;  // of the program in `robot_status`
 
 bool is_other_version(const uint8_t* header) {
   return header[kIsaMajorAt] != kIsaMajor || header[kIsaMinorAt] > kIsaMinor;
