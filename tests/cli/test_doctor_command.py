@@ -112,7 +112,7 @@ def test_a_robot_that_restarts_while_it_drives(pty_robot: PtyRobot) -> None:
     on(pty_robot, "upload", "-e", FOREVER, "--detach", "--no-save")
     command = Command("doctor", "--port", pty_robot.port, "--watch", "12", "--json")
     heard = len(pty_robot.heard)
-    pty_robot.until(lambda: len(pty_robot.heard) > heard + 400, "it is watched")
+    pty_robot.until(lambda: len(pty_robot.heard) > heard + 200, "it is watched")
     pty_robot.switch_off()
     pty_robot.switch_on()
     done = command.ended()

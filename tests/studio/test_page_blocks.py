@@ -140,6 +140,8 @@ def test_a_child_makes_a_program_and_lets_it_drive(pages: Pages) -> None:
     page.keyboard.press("Enter")
     becomes(page, "SI|F(2, 80);\nR(0.5, 60);\nF(2, 100);\nF(1, 80);\n")  # there is no more power
     page.select_option("#speed", "20")
+    page.locator(".blocklyWidgetDiv input").wait_for(state="detached")
+    shown(page)
     page.click("#run")
     page.locator("html[data-phase=ended]").wait_for(state="attached")
     assert image(page) == compile(text_of(page)).image
