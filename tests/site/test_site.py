@@ -1,0 +1,259 @@
+"""The site: every document is on it, every link leads somewhere, and it is read in a browser."""
+
+from __future__ import annotations
+
+import functools
+import http.server
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+from threading import Thread
+from typing import TYPE_CHECKING
+
+import pytest
+
+from tests.support import studio
+from tests.support.casefile import ROOT
+from tools.builds import site
+from tools.builds import studio as studio_build
+from tools.site import links
+from tools.site.documents import LANGUAGES, PARTS, documents
+from tools.site.lexer import TiniScriptLexer
+from tools.site.pages import Missing, page, shelf
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page
+
+
+@pytest.fixture(scope="module")
+def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("site") / "site"
+    site.build(ROOT, folder, has_studio=not studio_build.stale())
+    return folder
+
+
+@pytest.fixture(scope="module")
+def address(built: Path) -> Iterator[str]:
+    class Quiet(http.server.SimpleHTTPRequestHandler):
+        def log_message(self, *words: object) -> None:
+            """Say nothing."""
+
+    handler = functools.partial(Quiet, directory=str(built))
+    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler)
+    thread = Thread(target=server.serve_forever, args=(0.02,), daemon=True)
+    thread.start()
+    yield f"http://127.0.0.1:{server.server_port}/"
+    server.shutdown()
+    server.server_close()
+    thread.join()
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    with studio.driver() as driver, studio.browser(driver) as opened:
+        yield opened
+
+
+@pytest.fixture
+def visitor(browser: Browser, address: str) -> Iterator[Page]:
+    """A page whose requests must stay on the site."""
+    context = browser.new_context(service_workers="block")
+    opened = context.new_page()
+    asked: list[str] = []
+    wrong: list[str] = []
+    opened.on("request", lambda request: asked.append(request.url))
+    opened.on("pageerror", lambda failure: wrong.append(str(failure)))
+    yield opened
+    context.close()
+    assert asked
+    assert [each for each in asked if not each.startswith((address, "data:"))] == []
+    assert wrong == []
+
+
+def test_every_document_is_on_the_site() -> None:
+    there = {source for each in documents(ROOT) for source in each.sources.values()}
+    paths = [*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md"),
+             *ROOT.glob("compiler/tiniscript/lessons/*/*.md")]  # fmt: skip
+    assert {path.relative_to(ROOT).as_posix() for path in paths} == there
+
+
+def test_every_page_is_there(built: Path) -> None:
+    for each in documents(ROOT):
+        for language in each.sources:
+            assert (built / language / f"{each.name}.html").is_file()
+
+
+def test_the_check_of_links_can_fail(tmp_path: Path) -> None:
+    (tmp_path / "a").mkdir()
+    (tmp_path / "a" / "one.html").write_text(
+        '<p id="here"><a href="../two.html">no</a> <a href="#here">yes</a> <a href="#there">no</a>'
+        '<a href="one.html#here">yes</a> <a href="https://example.org/">yes</a>'
+        '<script src="https://example.org/x.js"></script> <img src="data:image/png,">'
+        '<a href="../../out.html">no</a> <a href="../a">no</a>'
+    )
+    assert links.dead(tmp_path) == [
+        "a/one.html: ../two.html: no such file",
+        "a/one.html: #there: no such place on that page",
+        "a/one.html: https://example.org/x.js: fetched from another origin",
+        "a/one.html: ../../out.html: outside of the site",
+        "a/one.html: ../a: no such file",
+    ]
+
+
+@pytest.fixture
+def clone(tmp_path: Path) -> Path:
+    """The documents of this repository, to be changed."""
+    for path in ("docs", "compiler/tiniscript/lessons", "compiler/tiniscript/robots", "tools/site"):
+        shutil.copytree(ROOT / path, tmp_path / "clone" / path)
+    for file in ROOT.glob("*.md"):
+        shutil.copy(file, tmp_path / "clone")
+    return tmp_path / "clone"
+
+
+def test_a_link_that_leads_nowhere_ends_the_build(clone: Path, tmp_path: Path) -> None:
+    store = clone / "docs" / "store.md"
+    text = store.read_text(encoding="utf-8")
+    store.write_text(f"{text}\n[no](nowhere.md)\n", encoding="utf-8")
+    with pytest.raises(Missing, match=r"^docs/store\.md: nowhere\.md$"):
+        site.build(clone, tmp_path / "site", has_studio=False)
+    # what Sphinx looks at itself
+    store.write_text(f"{text}\n[no](link.md#elsewhere)\n\n```strange\nx\n```\n", encoding="utf-8")
+    with pytest.raises(site.CannotBuild) as why:
+        site.build(clone, tmp_path / "site", has_studio=False)
+    assert "elsewhere" in str(why.value)
+    assert "strange" in str(why.value)
+    assert len(str(why.value).splitlines()) <= 4, why.value
+    assert not (tmp_path / "site").exists()
+
+
+def test_a_dead_link_ends_the_build(
+    tmp_path: Path, built: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of what no half sees: links between them, and what a template has."""
+
+    def render(half: Path, folder: Path, found: object, has_studio: bool) -> None:
+        folder.mkdir(parents=True)
+        (folder / "store.html").write_text('<a href="../es/monday.html#nowhere">no</a>')
+        (folder / "monday.html").touch()
+
+    monkeypatch.setattr(site, "render", render)
+    with pytest.raises(site.CannotBuild, match="no such place on that page"):
+        site.build(ROOT, tmp_path / "site", has_studio=False)
+
+
+def test_links_lead_to_pages_and_copies() -> None:
+    on = shelf(ROOT, documents(ROOT))
+    text = page("docs/monday.en.md", on)
+    assert "](wiring/tinibot.md)" in text
+    assert '<a href="../files/docs/poster/poster.en.pdf">' in page("docs/materials.en.md", on)
+    assert '<a href="../en/command.html' in page("docs/comandos.es.md", on)
+    assert "docs/wiring/tinibot.en.svg" not in on.files | on.pictures
+    assert "![" in page("docs/wiring/tinibot.en.md", on)
+    assert "docs/wiring/tinibot.en.svg" in on.pictures
+
+
+def test_code_is_left_as_it_is(clone: Path) -> None:
+    (clone / "docs" / "store.md").write_text("# A\n\n```text\n[x](nowhere.md)\n```\n")
+    assert "[x](nowhere.md)" in page("docs/store.md", shelf(clone, documents(clone)))
+
+
+def test_programs_have_colours() -> None:
+    tokens = TiniScriptLexer().get_tokens("si|F(2.5, 80) // go")
+    found = [str(kind).removeprefix("Token.") for kind, text in tokens if text.strip()]
+    assert found == ["Keyword.Namespace", "Operator", "Name.Builtin", "Punctuation",
+                     "Literal.Number", "Punctuation", "Literal.Number", "Punctuation",
+                     "Comment.Single"]  # fmt: skip
+
+
+def test_nothing_is_wider_than_a_phone(visitor: Page, address: str) -> None:
+    visitor.set_viewport_size({"width": 390, "height": 844})
+    visitor.goto(address)
+    wide = [address] if _is_too_wide(visitor) else []
+    for each in documents(ROOT):
+        for language in each.sources:
+            visitor.goto(f"{address}{language}/{each.name}.html", wait_until="domcontentloaded")
+            if _is_too_wide(visitor):
+                wide.append(f"{language}/{each.name}")
+    assert wide == []
+
+
+@pytest.mark.parametrize(
+    "size", [(1366, 768), (1024, 600)], ids=lambda size: f"{size[0]}x{size[1]}"
+)
+def test_nothing_is_wider_than_the_screen(
+    visitor: Page, address: str, size: tuple[int, int]
+) -> None:
+    visitor.set_viewport_size({"width": size[0], "height": size[1]})
+    for name in ("en/index", "es/index", "en/promises", "en/wiring/tinibot", "es/language"):
+        visitor.goto(f"{address}{name}.html")
+        assert not _is_too_wide(visitor), name
+
+
+def _is_too_wide(page: Page) -> bool:
+    return bool(page.evaluate("document.documentElement.scrollWidth > window.innerWidth"))
+
+
+@pytest.mark.parametrize(
+    ("language", "word", "title"),
+    [
+        ("en", "heartbeat", "The link"),
+        ("es", "obstáculos", "lenguaje"),
+        ("en", "END_LOOP", "language"),
+    ],
+)
+def test_a_word_is_found(visitor: Page, address: str, language: str, word: str, title: str) -> None:
+    visitor.goto(f"{address}{language}/index.html")
+    visitor.fill("input[name=q]", word)
+    visitor.press("input[name=q]", "Enter")
+    visitor.wait_for_selector("ul.search li a")
+    found = visitor.locator("ul.search li a").all_text_contents()
+    assert any(title.lower() in each.lower() for each in found), found
+
+
+def test_each_half_leads_to_the_other(visitor: Page, address: str) -> None:
+    visitor.goto(f"{address}en/monday.html")
+    visitor.click(".halves a[lang=es]")
+    assert visitor.url == f"{address}es/monday.html"
+    assert visitor.locator("html").get_attribute("lang") == "es"
+    visitor.goto(f"{address}en/link.html")  # which is in English only
+    visitor.click(".halves a[lang=es]")
+    assert visitor.url == f"{address}es/index.html"
+
+
+def test_the_studio_is_on_the_site(visitor: Page, address: str, built: Path) -> None:
+    assert not (built / "studio" / studio_build.STAMP).exists()
+    visitor.goto(f"{address}en/lessons.html")
+    visitor.click(".halves a:has-text('Studio')")
+    visitor.wait_for_selector("[data-state]", state="attached")
+    assert visitor.url.startswith(f"{address}studio/")
+
+
+def test_a_folder_with_something_in_it_is_left_alone(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "mine.txt").write_text("mine")
+    assert site.main([str(tmp_path), "--no-studio"]) == 2
+    assert "is not empty" in capsys.readouterr().err
+    assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]
+
+
+def test_a_studio_that_is_not_built_is_said(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(studio_build, "stale", lambda: "the page is not built.")
+    assert site.main([str(tmp_path / "site")]) == 2
+    assert capsys.readouterr().err == "site: the page is not built. Without it:  --no-studio\n"
+
+
+def test_a_sphinx_that_is_missing_is_said(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(site, "find_spec", lambda name: None)
+    assert site.main([str(tmp_path / "site"), "--no-studio"]) == 2
+    assert 'pip install -e ".[site]"' in capsys.readouterr().err
+
+
+def test_both_halves_have_the_same_parts() -> None:
+    assert set(LANGUAGES) == set(PARTS)
+    assert list(PARTS["en"]) == list(PARTS["es"])
+    assert {each.part for each in documents(ROOT)} == set(PARTS["en"])

@@ -1,0 +1,147 @@
+"""Builds the site: the documents in two languages, and the studio.
+
+    python -m tools.builds.site site
+
+writes a folder for any static host: `en/` and `es/` with a search each, `studio/` where its page is
+built (`python -m tools.builds.studio`), and `files/` with what the documents lead to besides. Needs
+`pip install -e ".[site]"`. A link that leads nowhere ends it, so does every warning of Sphinx.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Sequence
+from importlib.util import find_spec
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
+
+from tools.builds import studio
+from tools.site import links
+from tools.site.documents import LANGUAGES, PARTS, Document, documents
+from tools.site.pages import FILES, Missing, Shelf, page, shelf
+
+SITE = ROOT / "tools" / "site"
+OTHER = {"en": "es", "es": "en"}
+NAMES = {"en": "English", "es": "Español"}
+
+
+class CannotBuild(Exception):
+    """Something is missing or wrong; says what."""
+
+
+def main(words: Sequence[str] | None = None) -> int:
+    reader = argparse.ArgumentParser(prog="site", description=(__doc__ or "").splitlines()[0])
+    reader.add_argument("folder", type=Path, help="a folder that is not there yet, or is empty")
+    reader.add_argument("--no-studio", action="store_true", help="leave the studio out")
+    options = reader.parse_args(words)
+    folder: Path = options.folder
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        print(f"site: {folder} is there already, and is not empty.", file=sys.stderr)
+        return 2
+    why = "" if options.no_studio else studio.stale()
+    if why:
+        print(f"site: {why} Without it:  --no-studio", file=sys.stderr)
+        return 2
+    try:
+        build(ROOT, folder, has_studio=not options.no_studio)
+    except (CannotBuild, Missing) as failure:
+        print(f"site: {failure}", file=sys.stderr)
+        return 2
+    size = sum(path.stat().st_size for path in folder.rglob("*") if path.is_file())
+    print(f"{folder}: {size / 1e6:.0f} MB")
+    return 0
+
+
+def build(root: Path, folder: Path, has_studio: bool) -> None:
+    """Write the site of a clone into a folder, whole or not at all. Raises CannotBuild, Missing."""
+    if find_spec("sphinx") is None:
+        raise CannotBuild('Sphinx is not installed. Do that with:  pip install -e ".[site]"')
+    with tempfile.TemporaryDirectory() as scratch:
+        new = Path(scratch) / "site"
+        _build(root, new, Path(scratch), has_studio)
+        shutil.copytree(new, folder, dirs_exist_ok=True)
+
+
+def _build(root: Path, folder: Path, scratch: Path, has_studio: bool) -> None:
+    found = documents(root)
+    fronts = {language: f"tools/site/index.{language}.md" for language in LANGUAGES}
+    found.append(Document("index", "", fronts))
+    on = shelf(root, found)
+    for language in LANGUAGES:
+        half = scratch / language
+        stage(half, found, on, language)
+        render(half, folder / language, found, has_studio)
+    for name in sorted(on.files):
+        _copy(root / name, folder / FILES / name)
+    link = ""
+    if has_studio:
+        shutil.copytree(studio.PAGE, folder / "studio",
+                        ignore=shutil.ignore_patterns(studio.STAMP))  # fmt: skip
+        link = '<a href="studio/index.html">TiniScript Studio</a>'
+    text = (SITE / "choice.html").read_text(encoding="utf-8")
+    (folder / "index.html").write_text(text.replace("STUDIO", link), encoding="utf-8")
+    (folder / ".nojekyll").touch()  # else some hosts leave out folders that begin with _
+    wrong = links.dead(folder)
+    if wrong:
+        raise CannotBuild("\n".join(wrong))
+
+
+def stage(half: Path, found: list[Document], on: Shelf, language: str) -> None:
+    """Write the sources of one half, as Sphinx reads them. Raises Missing."""
+    for each in found:
+        if language in each.sources:
+            text = page(each.sources[language], on)
+            if each.name == "index":
+                text += contents(found, language)
+            target = half / f"{each.name}.md"
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.write_text(text, encoding="utf-8")
+    for name in sorted(on.pictures):
+        _copy(on.root / name, half / FILES / name)
+    for name in ("templates", "static"):
+        shutil.copytree(SITE / name, half / name)
+    shutil.copy(SITE / "conf.py", half)
+
+
+def render(half: Path, folder: Path, found: list[Document], has_studio: bool) -> None:
+    """Make the pages of one half with Sphinx. Raises CannotBuild with what it complains about."""
+    language = folder.name
+    other = OTHER[language]
+    both = [each.name for each in found if set(each.sources) == set(LANGUAGES)]
+    told = {"other": other, "other_name": NAMES[other], "both": both, "has_studio": has_studio}
+    (half / "half.json").write_text(json.dumps(told), encoding="utf-8")
+    words = [sys.executable, "-m", "sphinx", "-b", "html", "-q", "-j", "2", "-W", "--keep-going",
+             "-E", "-D", f"language={language}", "-d", str(half.parent / f"{language}.trees"),
+             str(half), str(folder)]  # fmt: skip
+    paths = os.pathsep.join([str(ROOT), str(ROOT / "compiler")])
+    ended = subprocess.run(words, capture_output=True, text=True, errors="replace",
+                           env={**os.environ, "PYTHONPATH": paths})  # fmt: skip
+    if ended.returncode:
+        raise CannotBuild((ended.stdout + ended.stderr).replace(f"{half}{os.sep}", "").strip())
+
+
+def contents(found: list[Document], language: str) -> str:
+    """Return the table of contents of one half, which the page's side shows."""
+    rows: list[str] = []
+    for part, title in PARTS[language].items():
+        names = [each.name for each in found if each.part == part and language in each.sources]
+        if names:
+            rows += ["", "```{toctree}", ":hidden:", f":caption: {title}", "", *names, "```"]
+    return "\n".join(rows) + "\n"
+
+
+def _copy(source: Path, target: Path) -> None:
+    target.parent.mkdir(parents=True, exist_ok=True)
+    shutil.copyfile(source, target)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

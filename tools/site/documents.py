@@ -1,0 +1,87 @@
+"""Which documents the site has, in which language, under which name, and beside which others.
+
+Knows the repository's documents. A document that is here twice is one document in two languages.
+`test_site.py` fails where a document of the repository is in no row.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import NamedTuple
+
+LANGUAGES = ("en", "es")
+
+
+class Document(NamedTuple):
+    """`sources` are its files in the repository, by language; `name` is that of its page."""
+
+    name: str
+    part: str
+    sources: dict[str, str]
+
+
+def _both(name: str, part: str, english: str, spanish: str) -> Document:
+    return Document(name, part, {"en": english, "es": spanish})
+
+
+def _english(part: str, *sources: str) -> list[Document]:
+    return [Document(Path(source).stem.lower(), part, {"en": source}) for source in sources]
+
+
+def _wiring(root: Path) -> list[Document]:
+    found = sorted(path.name.split(".")[0] for path in root.glob("docs/wiring/*.en.md"))
+    return [
+        _both(f"wiring/{each}", "wiring", f"docs/wiring/{each}.en.md", f"docs/wiring/{each}.es.md")
+        for each in found
+    ]
+
+
+def _lessons(root: Path) -> list[Document]:
+    found: list[Document] = []
+    for folder in sorted(root.glob("compiler/tiniscript/lessons/[0-9]*")):
+        place = folder.relative_to(root).as_posix()
+        for reader in ("pupil", "teacher"):
+            sources = (f"{place}/{reader}.{language}.md" for language in LANGUAGES)
+            found.append(_both(f"lessons/{folder.name}_{reader}", f"{reader}s", *sources))
+    return found
+
+
+def documents(root: Path) -> list[Document]:
+    """Return the documents of a clone, in the order in which the site shows them."""
+    return [
+        _both("monday", "teach", "docs/monday.en.md", "docs/lunes.es.md"),
+        _both("lessons", "teach", "docs/lessons.en.md", "docs/lecciones.es.md"),
+        _both("materials", "teach", "docs/materials.en.md", "docs/materiales.es.md"),
+        _both("modules", "teach", "docs/modules.en.md", "docs/modulos.es.md"),
+        _both("language", "write", "docs/language.en.md", "docs/lenguaje.es.md"),
+        _both("command", "write", "docs/command.en.md", "docs/comandos.es.md"),
+        _both("worlds", "write", "docs/worlds.en.md", "docs/mundos.es.md"),
+        _both("library", "write", "docs/api.en.md", "docs/api.es.md"),
+        *_wiring(root),
+        *_lessons(root),
+        *_english("trust", "README.md", "docs/promises.md", "docs/computer.md"),
+        *_english("build", "bytecode_spec.md", "docs/link.md", "docs/text.md", "docs/store.md",
+                  "docs/esp32.md", "CONTRIBUTING.md", "CHANGELOG.md"),
+    ]  # fmt: skip
+
+
+PARTS = {
+    "en": {
+        "teach": "Teach",
+        "write": "Write programs",
+        "wiring": "Wire a robot",
+        "pupils": "Lessons, for pupils",
+        "teachers": "Lessons, for the teacher",
+        "trust": "Decide",
+        "build": "Build it with us",
+    },
+    "es": {
+        "teach": "Enseñar",
+        "write": "Escribir programas",
+        "wiring": "Cablear un robot",
+        "pupils": "Lecciones, para estudiantes",
+        "teachers": "Lecciones, para el docente",
+        "trust": "Decidir",
+        "build": "Construirlo con nosotros",
+    },
+}

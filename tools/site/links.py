@@ -1,0 +1,79 @@
+"""Whether every link of the finished site leads somewhere, and nothing is fetched from elsewhere.
+
+Knows HTML files in a folder. Sphinx looks at the links inside of one half; this looks at all of
+them, as a browser would follow them.
+"""
+
+from __future__ import annotations
+
+from html.parser import HTMLParser
+from pathlib import Path
+from urllib.parse import unquote, urlsplit
+
+# What a page fetches by itself, and what a reader follows.
+_FETCHED = {"img": "src", "script": "src", "link": "href", "iframe": "src", "source": "src"}
+_FOLLOWED = {"a": "href", "area": "href"}
+_NOT_FETCHED = ("canonical", "alternate", "author", "copyright", "index", "next", "prev", "search",
+                "help")  # fmt: skip
+
+
+class _Page(HTMLParser):
+    """Collects the names of a page, and its links with how they are used."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.names: set[str] = set()
+        self.links: list[tuple[str, bool]] = []  # an address, and whether it is fetched
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        values = dict(attrs)
+        self.names |= {name for name in (values.get("id"), values.get("name")) if name}
+        address = values.get(_FETCHED.get(tag, _FOLLOWED.get(tag, "")))
+        if address:
+            is_fetched = tag in _FETCHED and values.get("rel") not in _NOT_FETCHED
+            self.links.append((address, is_fetched))
+
+
+def dead(folder: Path) -> list[str]:
+    """Return a line for each link that leads nowhere, and for each file from another origin.
+
+    The studio's page is looked at, but not what its scripts do: its tests do that.
+    """
+    pages = {path: _read(path) for path in sorted(folder.rglob("*.html"))}
+    found: list[str] = []
+    for path, page in pages.items():
+        for address, is_fetched in page.links:
+            why = _wrong(folder, path, address, is_fetched, pages)
+            if why:
+                found.append(f"{path.relative_to(folder).as_posix()}: {address}: {why}")
+    return found
+
+
+def _read(path: Path) -> _Page:
+    page = _Page()
+    page.feed(path.read_text(encoding="utf-8"))
+    return page
+
+
+def _wrong(
+    folder: Path, path: Path, address: str, is_fetched: bool, pages: dict[Path, _Page]
+) -> str:
+    """Return what is wrong with a link of a page, or nothing."""
+    parts = urlsplit(address)
+    if parts.scheme or parts.netloc:
+        if is_fetched and parts.scheme != "data":
+            return "fetched from another origin"
+        return ""
+    target = path.parent / unquote(parts.path) if parts.path else path
+    target = target.resolve()
+    if not target.is_relative_to(folder.resolve()):
+        return "outside of the site"
+    if target.is_dir():
+        target /= "index.html"
+    if not target.is_file():
+        return "no such file"
+    name = unquote(parts.fragment)
+    there = pages.get(folder / target.relative_to(folder.resolve()))
+    if name and there is not None and name not in there.names:
+        return "no such place on that page"
+    return ""

@@ -1,0 +1,99 @@
+"""A document of the repository becomes a page of the site: its links lead to pages.
+
+Knows Markdown as far as its links go. A link to a document that the site has leads to its page, in
+the other language's half if it is there; one to another file of the repository to a copy of it.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from dataclasses import dataclass, field
+from html import escape
+from pathlib import Path, PurePosixPath
+from typing import NamedTuple
+
+from tools.site.documents import Document
+
+_FENCE = re.compile(r"(```|~~~)")
+_LINK = re.compile(r"(!?)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^)\s#]*)(#[^)\s]*)?\)")
+FILES = "files"  # the folder of the copies, beside the halves of the languages
+
+
+class Place(NamedTuple):
+    """A page: which half of the site it is in, and its name without an ending."""
+
+    language: str
+    name: str
+
+    @property
+    def address(self) -> str:
+        return f"{self.language}/{self.name}.html"
+
+
+class Missing(Exception):
+    """A link leads nowhere."""
+
+
+@dataclass
+class Shelf:
+    """Where the documents of a clone are on the site, and which files they lead to besides."""
+
+    root: Path
+    places: dict[str, Place]
+    files: set[str] = field(default_factory=set)
+    pictures: set[str] = field(default_factory=set)
+
+
+def shelf(root: Path, found: list[Document]) -> Shelf:
+    """Return the shelf of a clone's documents."""
+    places = {
+        source: Place(language, each.name)
+        for each in found
+        for language, source in each.sources.items()
+    }
+    return Shelf(root, places)
+
+
+def page(source: str, on: Shelf) -> str:
+    """Return the Markdown of a document's page; note the files that it leads to.
+
+    Raises Missing where a link leads to no file.
+    """
+    rows: list[str] = []
+    is_code = False
+    for row in (on.root / source).read_text(encoding="utf-8").splitlines():
+        if _FENCE.match(row.lstrip()):
+            is_code = not is_code
+        rows.append(row if is_code else _LINK.sub(lambda link: _led(link, source, on), row))
+    return "\n".join(rows) + "\n"
+
+
+def _led(link: re.Match[str], source: str, on: Shelf) -> str:
+    """Return a link of a document as the page has it."""
+    mark, text, path, anchor = link.group(1), link.group(2), link.group(3), link.group(4) or ""
+    if not path or ":" in path:
+        return link.group(0)
+    target = Path(os.path.normpath(PurePosixPath(source).parent / path)).as_posix()
+    here, there = on.places[source], on.places.get(target)
+    if there is not None and there.language == here.language:
+        return f"[{text}]({way(here.name, there.name)}.md{anchor})"
+    if there is not None:
+        return _plain(text, way(here.address, there.address) + anchor)
+    if not (on.root / target).is_file():
+        raise Missing(f"{source}: {path}")
+    if mark:
+        on.pictures.add(target)
+        return f"![{text}](/{FILES}/{target})"
+    on.files.add(target)
+    return _plain(text, way(here.address, f"{FILES}/{target}"))
+
+
+def _plain(text: str, address: str) -> str:
+    """Return a link that Sphinx leaves as it is: it leads out of this half of the site."""
+    return f'<a href="{escape(address)}">{text}</a>'
+
+
+def way(here: str, there: str) -> str:
+    """Return the relative address of one page on another, both named from the same folder."""
+    return Path(os.path.relpath(there, start=PurePosixPath(here).parent)).as_posix()
