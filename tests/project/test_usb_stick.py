@@ -29,7 +29,8 @@ CUT_OFF = ["unshare", "--map-root-user", "--net"]  # a process without a network
 
 @pytest.fixture(scope="module")
 def stick(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("stick")
+    folder = tmp_path_factory.mktemp("stick") / "memoria niñ@s & más"
+    folder.mkdir()
     usb_stick.add_texts(folder)
     usb_stick.add_readme(folder, "Linux", "3.11", ["a wheel"])
     return folder
@@ -100,6 +101,7 @@ def test_it_installs_with_the_network_off(stick: Path, tmp_path: Path) -> None:
     )
     assert done.returncode == 0, done.stdout + done.stderr
     assert "Listo." in done.stdout
+    assert "no funciona" not in done.stdout
     assert (home / "pages" / "indice.html").is_file()
     tsc = home / "tsc" / "bin" / "tsc"
     ran = subprocess.run(
@@ -155,6 +157,28 @@ def test_each_system_has_its_script_with_its_line_ends(stick: Path) -> None:
     assert "falta: a wheel" in (stick / "README.txt").read_text(encoding="utf-8-sig")
 
 
+def test_the_script_of_windows_keeps_the_rules_of_cmd(stick: Path) -> None:
+    """Nobody has run it: what can be read is read."""
+    lines = (stick / "start.bat").read_text(encoding="ascii").splitlines()
+    labels = {line[1:] for line in lines if line.startswith(":")} | {":eof"}
+    for line in lines:
+        if line.startswith("rem "):
+            continue
+        for target in re.findall(r"\bgoto (\S+)", line):
+            assert target in labels, line
+        # a folder may have spaces, & and ( in its name: only what stands in quotes is one word
+        plain = re.sub(r'set "\w+="', 'set "', line).replace('start ""', "start").replace('""', '"')
+        outside = "".join(re.split(r'("[^"]*")', plain)[::2])
+        assert not re.search(r"%(HERE|SETUP|USERPROFILE|LocalAppData)%|%%~fI", outside), line
+        # a variable of the person's own is not ours
+        for name in re.findall(r"if not defined (\w+)", line):
+            assert f'set "{name}="' in lines, line
+        # cmd takes the outer quotes away as soon as there is anything but one plain name
+        if line.startswith("cmd /k"):
+            assert re.fullmatch(r'cmd /k ""[^"]+""', line)
+    assert "/wait" in next(line for line in lines if "/passive" in line)
+
+
 def test_nothing_of_this_computer_is_on_the_stick(stick: Path) -> None:
     for path in stick.rglob("*"):
         if path.suffix in (".html", ".txt", ".py", ".sh", ".bat", ".ps1", ".command"):
@@ -170,11 +194,14 @@ def test_an_installer_that_cannot_be_fetched_is_named(tmp_path: Path) -> None:
     page.write_text("<html>blocked by the school</html>")
     target = tmp_path / "stick"
     target.mkdir()
-    assert "no installer" in usb_stick.add_installer(target, page.as_uri())[0]
+    assert "not that installer" in usb_stick.add_installer(target, page.as_uri())[0]
     assert list(target.iterdir()) == []
-    page.write_bytes(b"MZ" + b"\0" * usb_stick.SMALLEST_INSTALLER)
-    assert usb_stick.add_installer(target, page.as_uri()) == []
+    digest = hashlib.sha256(page.read_bytes()).hexdigest()
+    assert usb_stick.add_installer(target, page.as_uri(), digest) == []
     assert (target / "page.exe").is_file()
+    page.write_bytes(page.read_bytes() + b" ")
+    assert usb_stick.add_installer(target, page.as_uri(), digest)
+    assert not (target / "page.exe").exists()
 
 
 def test_a_folder_with_something_in_it_is_left_alone(tmp_path: Path) -> None:
@@ -212,6 +239,26 @@ def test_markers_are_those_of_the_target(tmp_path: Path) -> None:
     assert seen["windows", "3.10"] == {"robot", "only_windows", "only_old"}
     assert seen["windows", "3.12"] == {"robot", "only_windows"}
     assert seen["mac-apple", "3.10"] == {"robot", "only_old"}
+
+
+def test_linux_gets_the_wheel_with_the_parts_in_c(tmp_path: Path) -> None:
+    """wasmtime has one for manylinux1 and one of Python alone, which does not run."""
+    packages = tmp_path / "packages"
+    packages.mkdir()
+    for tag in ("py3-none-any", "py3-none-manylinux1_x86_64"):
+        with zipfile.ZipFile(packages / f"robot-1-{tag}.whl", "w") as wheel:
+            wheel.writestr(
+                "robot-1.dist-info/METADATA", "Metadata-Version: 2.1\nName: robot\nVersion: 1\n"
+            )
+            wheel.writestr("robot-1.dist-info/WHEEL", f"Wheel-Version: 1.0\nTag: {tag}\n")
+            wheel.writestr("robot-1.dist-info/RECORD", "")
+    target = tmp_path / "target"
+    words = ["download", "--quiet", "--no-index", "--find-links", str(packages), "--dest",
+             str(target), "--only-binary=:all:", "--python-version", "3.12"]  # fmt: skip
+    for tag in SYSTEMS["linux"].tags:
+        words += ["--platform", tag]
+    stick_wheels._pip([*words, "robot"], SYSTEMS["linux"].markers("3.12"))
+    assert [each.name for each in target.iterdir()] == ["robot-1-py3-none-manylinux1_x86_64.whl"]
 
 
 def test_a_wheel_without_its_parts_in_c_is_for_every_system(tmp_path: Path) -> None:

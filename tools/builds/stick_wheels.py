@@ -58,14 +58,18 @@ class System(NamedTuple):
         }  # fmt: skip
 
 
+# The old names of the last ones, too: pip takes them for other systems, and then for nothing at all
+# but wheels of Python alone, such as that of wasmtime without the library that it needs.
 _GLIBC = tuple(f"manylinux_2_{minor}_x86_64" for minor in range(31, 4, -1))
+_OLD_GLIBC = tuple(f"manylinux{name}_x86_64" for name in ("2014", "2010", "1"))
 SYSTEMS = {
     "windows": System("Windows", ("win_amd64",), "nt", "win32", "Windows", "AMD64"),
     "mac-apple": System("macOS (M1 or newer)", ("macosx_13_0_arm64",),
                         "posix", "darwin", "Darwin", "arm64"),
     "mac-intel": System("macOS (Intel)", ("macosx_13_0_x86_64",),
                         "posix", "darwin", "Darwin", "x86_64"),
-    "linux": System("Linux", (*_GLIBC, "linux_x86_64"), "posix", "linux", "Linux", "x86_64"),
+    "linux": System("Linux", (*_GLIBC, *_OLD_GLIBC, "linux_x86_64"),
+                    "posix", "linux", "Linux", "x86_64"),
 }  # fmt: skip
 
 

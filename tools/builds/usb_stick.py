@@ -11,6 +11,7 @@ the stick's README.txt, and the exit code is then 1. The computer that builds it
 from __future__ import annotations
 
 import argparse
+import hashlib
 import os
 import shutil
 import sys
@@ -32,13 +33,14 @@ EXTRAS = "[firmware,radio,virtual]"
 FEWER_EXTRAS = "[firmware,virtual]"
 INSTALLER = "3.13.9"  # of Python for Windows: a release that has an installer for good
 INSTALLER_URL = "https://www.python.org/ftp/python/{0}/python-{0}-amd64.exe"
-INSTALLER_BEGINS = b"MZ"
-SMALLEST_INSTALLER = 10_000_000  # bytes
+# As the catalogue of Windows' package manager has it (microsoft/winget-pkgs, Python.Python.3.13).
+INSTALLER_SHA256 = "200ddff856bbff949d2cc1be42e8807c07538abd6b6966d5113a094cf628c5c5"
 README = """\
 TiniScript {version}, without internet        TiniScript {version}, sin internet
 
 Windows: double-click start.bat                Windows: doble clic en start.bat
-macOS: right-click start.command, Open         macOS: clic derecho en start.command, Abrir
+macOS: double-click start.command              macOS: doble clic en start.command
+  refused? Terminal: sh, a space, drag it in     ¿no se abre? Terminal: sh, espacio, arrástralo
 Linux: sh start.sh                             Linux: sh start.sh
 
 It installs tsc into the folder TiniScript     Instala tsc en la carpeta TiniScript de tu
@@ -110,17 +112,15 @@ def _with_fewer(ours: Path, wheels: Path, name: str, python: str, reason: str) -
     return f"{reason} It has no ports ble:// and tcp:// there; all else works."
 
 
-def add_installer(folder: Path, url: str) -> list[str]:
+def add_installer(folder: Path, url: str, sha256: str = INSTALLER_SHA256) -> list[str]:
     """Fetch the installer of Python for Windows; return a sentence where that does not work."""
     target = folder / url.rsplit("/", 1)[1]
     try:
         with urllib.request.urlopen(url, timeout=60) as answer, target.open("wb") as file:
             shutil.copyfileobj(answer, file)
-        with target.open("rb") as file:
-            is_one = file.read(len(INSTALLER_BEGINS)) == INSTALLER_BEGINS
-        if is_one and target.stat().st_size >= SMALLEST_INSTALLER:
+        if hashlib.sha256(target.read_bytes()).hexdigest() == sha256:
             return []
-        why = "what came is no installer"
+        why = "what came is not that installer"
     except (OSError, ValueError) as failure:  # also what urllib raises
         why = str(getattr(failure, "reason", failure))
     target.unlink(missing_ok=True)

@@ -25,6 +25,8 @@ SAID = {
               "Se instala en {folder}. Tarda un minuto."),
     "failed": ("The stick has no packages for this computer ({system}, Python {version}). README.txt says for which it has.",
                "La memoria no tiene paquetes para esta computadora ({system}, Python {version}). README.txt dice para cuáles tiene."),
+    "no_robot": ("The virtual robot does not run on this computer: {why}",
+                 "El robot virtual no funciona en esta computadora: {why}"),
     "done": ("Done. In each new window first:  {activate}",
              "Listo. En cada ventana nueva, primero:  {activate}"),
     "pages": ("The guides:  {page}", "Las guías:  {page}"),
@@ -50,11 +52,16 @@ def main(words: list[str]) -> int:
         return _fail("failed", system=sys.platform, version=version)
     for name in ("pages", "examples"):
         shutil.copytree(STICK / name, folder / name, dirs_exist_ok=True)
+    tried = [str(python), "-m", "tiniscript", "run", "--machine", "cpp", "-e", "SI|F(1, 80)"]
+    ran = subprocess.run(tried, env=variables, capture_output=True)
+    if ran.returncode:
+        why = ran.stderr.decode("utf-8", "replace").strip().splitlines() or ["?"]
+        _say("no_robot", why=why[0])
     activate = f'. "{programs}/activate"'
     if IS_WINDOWS:
         activate = f'& "{programs}\\Activate.ps1"'
     _say("done", activate=activate)
-    _say("pages", page=folder / "pages" / "index.html")
+    _say("pages", page=folder / "pages" / ("indice.html" if _language() == "es" else "index.html"))
     return 0
 
 
