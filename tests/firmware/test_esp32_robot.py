@@ -20,6 +20,7 @@ from tests.machines.esp32 import (
 from tests.robots.test_robots import TEXTS
 from tiniscript import compile_text, robots
 from tiniscript.bytecode.image import unpack
+from tiniscript.link.frames import Frame, encoded
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 from tiniscript.robots.reader import read
@@ -122,6 +123,22 @@ def test_a_program_drives(name: str, major: int) -> None:
     first, second = (int(line.split()[0]) for line in robot.did[:2])
     assert second - first == 1000
     assert [event.name for event in session.events()] == ["DONE"]
+
+
+def test_a_window_of_large_frames_waits_for_a_main_loop_that_writes() -> None:
+    """As while a page of flash is written: all that a computer may have under way comes at once."""
+    robot = switched_on(Esp32Robot())
+    session = Session(1, 115200, robot.robot.kit.fingerprint)
+    robot.until(session, session.hello())
+    assert session.robot
+    frame = encoded(Frame(2, 9, 0, bytes(242)))  # a PING that is too long does nothing
+    window = session.robot.values.window
+    robot.step(b"\0" + frame * window)
+    robot.wait(50)
+    request = session.status()
+    assert robot.until(session, request) == OK and request.outcome
+    assert request.outcome.values.overrun == 0
+    assert len(frame) * window > 1000
 
 
 @pytest.mark.parametrize("name", KITS)

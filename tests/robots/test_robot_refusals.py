@@ -193,6 +193,7 @@ ESP32 = {"= 2 ": "= 4 ", "= 11 ": "= 22 ", "= 13 ": "= 23 ", "= 12 ": "= 39 ", "
 @pytest.mark.parametrize(("old", "pin", "code"), [
     *(("right_backward = 21", pin, "pin_at_boot") for pin in (0, 5, 12, 14, 15)),
     ("left_pwm = 25", 12, "pin_at_boot"),
+    ("start_button = 4 ", 0, "pin_of_reset"),
     *(("right_backward = 21", pin, "no_such_pin") for pin in range(6, 12)),
     *(("right_backward = 21", pin, "pin_of_link") for pin in (1, 3)),
     *(("right_backward = 21", pin, "pin_cannot") for pin in (34, 35, 36, 39)),
@@ -209,7 +210,7 @@ def test_pins_of_an_esp32(old: str, pin: int, code: str) -> None:
     refused = refusal(text.replace(f"{key} = {number}", f"{key} = {pin}"))
     assert codes(refused) == [code]
     said = describe(refused, "en")[0]
-    if code == "pin_at_boot":
+    if code in ("pin_at_boot", "pin_of_reset"):
         assert said.endswith(" 2, 4, 13, 16, 17, 18, 19, 21, 22, 23, 25, 26, 27, 32, 33.")
 
 
@@ -222,11 +223,13 @@ C3 = TEXTS["tinibotc3"]
     *(("right_backward = 6", pin, "pin_of_link") for pin in (20, 21)),
     ("pin = 0", 2, ""),
     *(("pin = 0", pin, "pin_cannot") for pin in (9, 19)),
+    ("start_button = 8", 9, "pin_of_reset"),
+    ("start_button = 8", 2, ""),
 ])  # fmt: skip
 def test_pins_of_an_esp32_c3(old: str, pin: int, code: str) -> None:
     """What it does at a reset starts no motor; flash, link and ADC2 are what they are."""
-    key, _, number = old.partition(" = ")
-    text = C3.replace(f"{key} = {number}\n", f"{key} = {pin}\n")
+    key = old.partition(" = ")[0]
+    text = re.sub(rf"(?m)^{old}\b", f"{key} = {pin}", C3)
     assert text != C3
     if code:
         assert codes(refusal(text)) == [code]
@@ -258,8 +261,12 @@ def test_what_is_no_motor_may_be_on_such_a_pin(pin: int) -> None:
 
 
 def test_every_code_has_a_test() -> None:
-    of_files = {"no_such_robot", "pin_at_boot", "timers_used_up", *(code for code, *_ in FILES)}
-    tested = of_files | {code for code, *_ in REFUSED}
+    of_boards = {"pin_at_boot", "pin_of_reset", "timers_used_up"}
+    tested = (
+        of_boards
+        | {"no_such_robot", *(code for code, *_ in FILES)}
+        | {code for code, *_ in REFUSED}
+    )
     assert tested == {code for code in SENTENCES if not code.endswith("/near")}
 
 

@@ -62,6 +62,9 @@ class Pins:
         elif is_motor and pin in chip.boot_pins:
             choices = _choices(chip, need, without_pins=chip.boot_pins)
             table.complain("pin_at_boot", key, **named, choices=choices)
+        elif key == "start_button" and pin == chip.reset_pin:
+            choices = _choices(chip, need, without_pins=chip.boot_pins)
+            table.complain("pin_of_reset", key, **named, choices=choices)
         elif before is not None:
             table.complain("pin_twice", key, **named, first=before.table.path_of(before.key))
         else:

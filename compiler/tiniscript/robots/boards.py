@@ -17,7 +17,8 @@ class Chip(NamedTuple):
     `digital` pins read and write, `reading` pins only read. A0 has the number `first_analog`, if
     the board prints such names. `pwm` maps each pin to its timer. The link uses `link_pins`.
     `boot_pins` are high, or do PWM, before the firmware runs, or decide how the chip starts: no
-    motor may hang on them.
+    motor may hang on them. `reset_pin` is the one that a computer may pull low when it opens the
+    port: no start button may.
     A timer field is None if the chip has enough timers. Of `pwm_timers` each serves two pins of
     one frequency; 0: the timers are those of `pwm`.
     """
@@ -34,6 +35,7 @@ class Chip(NamedTuple):
     servo_timer: int | None
     tone_timer: int | None
     boot_pins: frozenset[int] = frozenset()
+    reset_pin: int | None = None
     pwm_timers: int = 0
     pin_volts: int = 5 * ONE  # in thousandths: what its pins give, and the most that they take
 
@@ -149,6 +151,7 @@ CHIPS = {
             servo_timer=None,
             tone_timer=None,
             boot_pins=_pins(0, 5, 12, 14, 15),
+            reset_pin=0,
             pwm_timers=8,
             pin_volts=3_300,
         ),
@@ -165,6 +168,7 @@ CHIPS = {
             servo_timer=None,
             tone_timer=None,
             boot_pins=_pins(2, 8, 9, 18, 19),
+            reset_pin=9,
             pwm_timers=3,
             pin_volts=3_300,
         ),

@@ -167,6 +167,14 @@ SENTENCES: dict[str, dict[str, str]] = {
         "es": "{path} es el pin {pin}, que podría arrancar un motor de un {chip} al encenderlo,"
         " o no dejar que arranque. Elige uno de estos: {choices}.",
     },
+    "pin_of_reset": {
+        "en": "{path} is pin {pin}, which has the BOOT button of an {chip}. A computer that opens"
+        " the port may pull it low, and the robot would drive off as if somebody had pressed it."
+        " Connect a button of its own to one of these: {choices}.",
+        "es": "{path} es el pin {pin}, el del botón BOOT de un {chip}. Una computadora que abre el"
+        " puerto puede ponerlo a GND, y el robot arrancaría como si alguien lo pulsara."
+        " Conecta otro botón a uno de estos: {choices}.",
+    },
     "timer_twice": {
         "en": "{path} is pin {pin}: its PWM needs timer {timer}, which {first} uses."
         " Choose one of these: {choices}.",

@@ -17,7 +17,7 @@ namespace tiniscript {
 
 namespace {
 
-constexpr size_t kRoomBytes = 512;  // more than a turn of the main loop can bring
+constexpr size_t kRoomBytes = 1280;  // what a computer may have under way, and more
 
 // The core's task counts, the main loop reads.
 volatile uint8_t framing;
