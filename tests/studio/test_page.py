@@ -70,6 +70,12 @@ def test_every_wrong_program_gets_the_words_of_the_command(page: Page, language:
         assert got == wanted, text
 
 
+def test_a_mistake_of_ours_is_told_with_its_name(page: Page) -> None:
+    """The packed Python knows no lines of its sources; its tracebacks are made all the same."""
+    with pytest.raises(Exception, match=r"in answer[\s\S]*KeyError: 'nonsense'"):
+        asked_to(page, "nonsense", [{"text": ""}])
+
+
 def test_what_is_typed_is_compiled(page: Page) -> None:
     write(page, "SI|F(3, 70);\nS")
     assert image(page) == compile("SI|F(3, 70);\nS").image

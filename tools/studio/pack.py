@@ -11,6 +11,7 @@ import importlib._bootstrap_external as bootstrap
 import importlib.util
 import zipfile
 from pathlib import Path, PurePosixPath
+from types import CodeType
 
 ROOT = "tiniscript.studio.worker"
 # Rooms that need what no browser has: ports, a terminal, other programs.
@@ -92,9 +93,16 @@ class Packer:
         return []
 
 
+def _stripped(code: CodeType) -> CodeType:
+    """Return code without the lines of its source."""
+    constants = tuple(_stripped(each) if isinstance(each, CodeType) else each
+                      for each in code.co_consts)  # fmt: skip
+    return code.replace(co_linetable=b"", co_consts=constants)
+
+
 def pyc(source: bytes, name: str) -> bytes:
     """Return the bytecode of a module, without docstrings and asserts."""
-    code = compile(source, name, "exec", dont_inherit=True, optimize=2)
+    code = _stripped(compile(source, name, "exec", dont_inherit=True, optimize=2))
     digest = importlib.util.source_hash(source)
     made = bootstrap._code_to_hash_pyc(code, digest, False)  # type: ignore[attr-defined]
     return bytes(made)
