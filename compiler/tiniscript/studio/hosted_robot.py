@@ -43,6 +43,8 @@ class HostedRobot:
         """`robot` is the profile of the page's programs."""
         self.port = port
         self.has_ended = False
+        self.why_ended = ""
+        self.name = ""  # of the robot, once it has answered
         self.heard_s = monotonic()
         self._profile = robots.load(robot)
         self._language = language
@@ -51,6 +53,7 @@ class HostedRobot:
         self._news: list[Json] = []
         self._count = 0  # of news
         self._wants_stop = self._leaves = self._is_silent = False
+        self._why = "left"
         self._last = 0  # number of the last request: one that comes again was lost on its way back
         self._stops = 0  # that the page has asked for: what it asked before is void
         self._link: RobotLink | None = None
@@ -75,8 +78,9 @@ class HostedRobot:
         self._stops = max(self._stops, stops)
         self._wants_stop = True
 
-    def leave(self) -> None:
+    def leave(self, why: str = "left") -> None:
         """Stop what the page has started, and close the port."""
+        self._why = why
         self._leaves = True
 
     @property
@@ -108,7 +112,7 @@ class HostedRobot:
             if self._meet(line):
                 while not self._has_left():
                     self._attend(link)
-                self._end("left")
+                self._end(self._why)
         except Gone as gone:
             reason = opening.reason_of_end(line, gone, self.port)
             values = {"port": opening.shown(self.port), "verb": line.held_by}
@@ -162,6 +166,7 @@ class HostedRobot:
             self._end(reason, said)
             return False
         opening.remember(self.port, robot.name)
+        self.name = robot.name
         self._tell([{"connected": about(robot), "held_by": line.held_by}])
         return True
 
@@ -216,5 +221,6 @@ class HostedRobot:
                 self._news.remove(missed or self._news[0])
 
     def _end(self, reason: str, said: str = "") -> None:
+        self.why_ended = reason
         self.has_ended = True
         self._tell([{"over": reason, "said": said}])

@@ -56,6 +56,18 @@ class Hosting:
             robot.leave()
         return {"news": robot.hear(_requests(request), _count(request, "seen"))}
 
+    def robot_of(self, page: str) -> HostedRobot | None:
+        """Return what a page drives, or has driven last."""
+        with self._lock:
+            return self._by_page.get(page)
+
+    def is_free(self, port: str) -> bool:
+        """Return whether no page has a robot there, nor is one being left."""
+        with self._lock:
+            all_of_them = [*self._by_page.values(), *self._parting]
+        held = [each for each in all_of_them if each.is_parting or not each.has_ended]
+        return same_for_all(port) not in {same_for_all(each.port) for each in held}
+
     def close(self) -> None:
         """Stop what pages have started, and close all ports."""
         with self._lock:

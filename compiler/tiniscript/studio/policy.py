@@ -26,6 +26,8 @@ HEADERS = {
     "X-Content-Type-Options": "nosniff",
     "Cache-Control": "no-cache",
 }
+# A browser complains of this one at an address that is neither https nor of its own computer.
+SECURE_ONLY = "Cross-Origin-Opener-Policy"
 TYPES = {
     ".html": "text/html; charset=utf-8",
     ".js": "text/javascript; charset=utf-8",

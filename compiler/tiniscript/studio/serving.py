@@ -1,27 +1,31 @@
-"""Gives the built page to a browser of this computer, and to no one else.
+"""Gives the built page to a browser of this computer, or to those of a class, and to no one else.
 
 Knows which requests it answers. All of the page is read before: an update of the package does not
 change a page that is open. What a page asks of robots goes to `hosting`, if it shows the token of
-this run: that is in the address which `tsc studio` opens, behind a #, which no browser sends.
-Knows no robots.
+this run: that is in the address which `tsc studio` opens, behind a #, which no browser sends. With
+`--class` the address is one of the room's network, the token is the teacher's, and pupils have
+tokens of their own (`classroom`). Knows no robots.
 """
 
 from __future__ import annotations
 
+import gzip
+import hashlib
 import hmac
 import json
 import secrets
 import socket
+from collections import Counter
 from collections.abc import Callable
 from contextlib import suppress
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from threading import Lock
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 from urllib.parse import urlsplit
 
-from tiniscript.studio.policy import HEADERS, TYPES
+from tiniscript.studio.policy import HEADERS, SECURE_ONLY, TYPES
 from tiniscript.studio.robot_link import BadRequest, Json
 
 PAGE = Path(__file__).with_name("page")
@@ -29,14 +33,28 @@ FIRST = "index.html"
 BUILD = "build.json"  # of which sources the page is; a browser does not need it
 HOST = "127.0.0.1"
 NAMES = (HOST, "localhost")  # by which a browser here may call it
+HTTP_PORT = 80
 SILENT_S = 10  # after which a client that asks nothing is left
 ROBOTS = "/robots"  # where a page asks for robots
 TOKEN = "X-TiniScript-Token"
 TOKEN_BYTES = 16
 REQUEST_BYTES = 200_000  # the largest program has 32,781 bytes, and two digits for each
-CONNECTIONS = 64  # at a time; one more, and the one that has asked nothing for longest is closed
+# At a time; one more, and one is closed, of the address that has most. A browser has six.
+CONNECTIONS = 64
+CLASS_CONNECTIONS = 400
+HTML = b'<html lang="en"'
 
 Robots = Callable[[Json], Json]  # raises BadRequest
+
+
+class Pupils(Protocol):
+    """Who asks with a token that is not that of the run."""
+
+    def most_bytes(self, token: str) -> int:
+        """Return how large a request with this token may be; 0: nobody has it."""
+
+    def answer(self, token: str, address: str, request: Json) -> Json:
+        """Return the answer; `address` is that of the asking computer. Raises BadRequest."""
 
 
 class NotBuilt(Exception):
@@ -44,8 +62,12 @@ class NotBuilt(Exception):
 
 
 class File(NamedTuple):
+    """`tag` changes with the data; `packed` is the data gzipped, or empty."""
+
     data: bytes
     kind: str
+    tag: str = ""
+    packed: bytes = b""
 
 
 def files(folder: Path | None = None) -> dict[str, File]:
@@ -54,10 +76,26 @@ def files(folder: Path | None = None) -> dict[str, File]:
     if not (folder / FIRST).is_file():
         raise NotBuilt
     return {
-        path.name: File(path.read_bytes(), TYPES[path.suffix])
+        path.name: _tagged(path.read_bytes(), TYPES[path.suffix])
         for path in folder.iterdir()
         if path.suffix in TYPES and path.name != BUILD
     }
+
+
+def for_class(page: dict[str, File]) -> dict[str, File]:
+    """Return the page as thirty tablets on one radio fetch it: packed, and marked as a class's."""
+    found = {}
+    for name, file in page.items():
+        data = file.data
+        if name == FIRST:
+            data = data.replace(HTML, HTML + b" data-class", 1)
+        packed = gzip.compress(data, 6, mtime=0)
+        found[name] = _tagged(data, file.kind, packed if len(packed) < len(data) else b"")
+    return found
+
+
+def _tagged(data: bytes, kind: str, packed: bytes = b"") -> File:
+    return File(data, kind, f'"{hashlib.sha256(data).hexdigest()[:32]}"', packed)
 
 
 _FOREIGN = File(b"This page is for this computer alone.\n", TYPES[".txt"])
@@ -65,10 +103,16 @@ _MISSING = File(b"There is no such file.\n", TYPES[".txt"])
 _NO_REQUEST = File(b"That is no request.\n", TYPES[".txt"])
 
 
-class Server(ThreadingHTTPServer):
-    """A server of the page on this computer; `port` 0 is any that is free. Raises OSError.
+class _Client(NamedTuple):
+    address: str
+    is_known: bool  # it has shown a token
 
-    `robots` answers what a page asks of robots; without it there are none.
+
+class Server(ThreadingHTTPServer):
+    """A server of the page; `port` 0 is any that is free. Raises OSError.
+
+    `robots` answers what a page asks with the token of the run; without it there are none.
+    `host` is the one address at which it listens, `pupils` who else may ask there.
     """
 
     daemon_threads = True
@@ -76,43 +120,76 @@ class Server(ThreadingHTTPServer):
     allow_reuse_address = False
     request_queue_size = 128
 
-    def __init__(self, page: dict[str, File], port: int, robots: Robots | None = None) -> None:
-        super().__init__((HOST, port), _Handler)
+    def __init__(
+        self, page: dict[str, File], port: int, robots: Robots | None = None,
+        pupils: Pupils | None = None, host: str = HOST,
+    ) -> None:  # fmt: skip
+        super().__init__((host, port), _Handler)
         self.page = page
         self.robots = robots
-        self.own = {f"{name}:{self.server_port}" for name in NAMES}
+        self.pupils = pupils
+        names = NAMES if host == HOST else (host,)
+        self.own = {f"{name}:{self.server_port}" for name in names}
+        if self.server_port == HTTP_PORT:
+            self.own |= set(names)  # a browser leaves it out
+        self.address = f"http://{host}:{self.server_port}/"
+        self.headers = {
+            name: value for name, value in HEADERS.items() if host == HOST or name != SECURE_ONLY
+        }
         self.token = secrets.token_hex(TOKEN_BYTES)
+        self.most_connections = CONNECTIONS if pupils is None else CLASS_CONNECTIONS
         self._lock = Lock()
-        # Whether each has shown the token; which has asked last is the last.
-        self._connections: dict[socket.socket, bool] = {}
-
-    @property
-    def address(self) -> str:
-        return f"http://{HOST}:{self.server_port}/"
+        # Which has asked last is the last.
+        self._connections: dict[socket.socket, _Client] = {}
 
     @property
     def entrance(self) -> str:
         """The address with the token: whoever opens it reaches the robots of this computer."""
         return f"{self.address}#token={self.token}" if self.robots else self.address
 
+    def most_bytes(self, token: str) -> int:
+        """Return how large a request with this token may be; 0: it is refused."""
+        if self._is_own(token):
+            return REQUEST_BYTES
+        return self.pupils.most_bytes(token) if self.pupils else 0
+
+    def answer(self, token: str, address: str, request: Json) -> Json:
+        """Return the answer to a request whose token is known. Raises BadRequest."""
+        if self._is_own(token):
+            assert self.robots is not None
+            return self.robots(request)
+        assert self.pupils is not None
+        return self.pupils.answer(token, address, request)
+
+    def _is_own(self, token: str) -> bool:
+        return hmac.compare_digest(token.encode("utf-8", "replace"), self.token.encode())
+
     def trust(self, client: socket.socket) -> None:
-        """A client has shown the token: others are closed before it."""
+        """A client has shown a token: others are closed before it."""
         with self._lock:
-            if self._connections.pop(client, None) is not None:
-                self._connections[client] = True
+            found = self._connections.pop(client, None)
+            if found is not None:
+                self._connections[client] = found._replace(is_known=True)
 
     def process_request(self, request: Any, client_address: Any) -> None:
-        idle = None
+        closed = None
         with self._lock:
-            if len(self._connections) >= CONNECTIONS:
-                strangers = (each for each, is_known in self._connections.items() if not is_known)
-                idle = next(strangers, next(iter(self._connections)))
-                del self._connections[idle]
-            self._connections[request] = False
-        if idle is not None:
+            if len(self._connections) >= self.most_connections:
+                closed = self._idle()
+                del self._connections[closed]
+            self._connections[request] = _Client(client_address[0], False)
+        if closed is not None:
             with suppress(OSError):  # it has gone
-                idle.shutdown(socket.SHUT_RDWR)
+                closed.shutdown(socket.SHUT_RDWR)
         super().process_request(request, client_address)
+
+    def _idle(self) -> socket.socket:
+        """Return the connection that has asked nothing for longest: of those without a token, if
+        there are any, and of the address that has most of these."""
+        found = {each: client for each, client in self._connections.items() if not client.is_known}
+        found = found or self._connections
+        [(most, _)] = Counter(client.address for client in found.values()).most_common(1)
+        return next(each for each, client in found.items() if client.address == most)
 
     def shutdown_request(self, request: Any) -> None:
         with self._lock:
@@ -137,36 +214,34 @@ class _Handler(BaseHTTPRequestHandler):
         self._answer(has_body=False)
 
     def do_POST(self) -> None:
-        robots = self.server.robots
+        server = self.server
         origins = self.headers.get_all("Origin", [])
-        if robots is None or self.path != ROBOTS:
+        if server.robots is None or self.path != ROBOTS:
             self._send(HTTPStatus.NOT_FOUND, _MISSING, True)
             return
         # A browser says of each POST where it is from.
-        if not self._is_own() or len(origins) != 1 or not self._has_token():
+        tokens = self.headers.get_all(TOKEN, [])
+        token = tokens[0] if len(tokens) == 1 else ""
+        most = server.most_bytes(token) if len(tokens) < 2 else 0
+        if not self._is_own() or len(origins) != 1 or not most:
             self._send(HTTPStatus.FORBIDDEN, _FOREIGN, True)
             return
         try:
-            answer = robots(self._request())
+            answer = server.answer(token, self.client_address[0], self._request(most))
         except (BadRequest, OSError):
             self._send(HTTPStatus.BAD_REQUEST, _NO_REQUEST, True)
             return
-        self.server.trust(self.connection)
+        if token:
+            server.trust(self.connection)
         self._send(HTTPStatus.OK, File(json.dumps(answer).encode(), TYPES[".json"]), True)
 
-    def _has_token(self) -> bool:
-        found = self.headers.get_all(TOKEN, [])
-        return len(found) == 1 and hmac.compare_digest(
-            found[0].encode("utf-8", "replace"), self.server.token.encode()
-        )
-
-    def _request(self) -> Json:
-        """Return the object of JSON in the body. Raises BadRequest, OSError."""
+    def _request(self, most: int) -> Json:
+        """Return the object of JSON in the body, of `most` bytes. Raises BadRequest, OSError."""
         lengths = self.headers.get_all("Content-Length", [])
         if len(lengths) != 1 or not lengths[0].isascii() or not lengths[0].isdigit():
             raise BadRequest
         length = int(lengths[0][:9])
-        if length > REQUEST_BYTES or self.headers.get("Transfer-Encoding") is not None:
+        if length > most or self.headers.get("Transfer-Encoding") is not None:
             raise BadRequest
         data = self.rfile.read(length)
         try:
@@ -185,6 +260,10 @@ class _Handler(BaseHTTPRequestHandler):
         found = self.server.page.get(name)
         if found is None:
             self._send(HTTPStatus.NOT_FOUND, _MISSING, has_body)
+        elif found.tag in self.headers.get_all("If-None-Match", []):
+            self._send(HTTPStatus.NOT_MODIFIED, found._replace(data=b"", packed=b""), False)
+        elif found.packed and "gzip" in self.headers.get("Accept-Encoding", ""):
+            self._send(HTTPStatus.OK, found._replace(data=found.packed), has_body, "gzip")
         else:
             self._send(HTTPStatus.OK, found, has_body)
 
@@ -196,13 +275,20 @@ class _Handler(BaseHTTPRequestHandler):
         origins = self.headers.get_all("Origin", [])
         return all(origin in {f"http://{name}" for name in self.server.own} for origin in origins)
 
-    def _send(self, status: HTTPStatus, file: File, has_body: bool) -> None:
+    def _send(self, status: HTTPStatus, file: File, has_body: bool, coding: str = "") -> None:
         self.send_response(status)
         self.send_header("Content-Type", file.kind)
-        self.send_header("Content-Length", str(len(file.data)))
-        for name, value in HEADERS.items():
+        if status is not HTTPStatus.NOT_MODIFIED:
+            self.send_header("Content-Length", str(len(file.data)))
+        if coding:
+            self.send_header("Content-Encoding", coding)
+        if file.packed:
+            self.send_header("Vary", "Accept-Encoding")
+        if file.tag:
+            self.send_header("ETag", file.tag)
+        for name, value in self.server.headers.items():
             self.send_header(name, value)
-        if status is not HTTPStatus.OK:
+        if status not in (HTTPStatus.OK, HTTPStatus.NOT_MODIFIED):
             self.send_header("Connection", "close")
             self.close_connection = True
         self.end_headers()

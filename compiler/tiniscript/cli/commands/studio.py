@@ -2,44 +2,71 @@
 
 from __future__ import annotations
 
+import socket
 import sys
 import webbrowser
 from argparse import Namespace
 from threading import Thread
+from typing import TYPE_CHECKING
 
 from tiniscript.cli.commands.robot import ended_by_signal
 from tiniscript.cli.errors import CommandError
+from tiniscript.cli.inputs import shown
 from tiniscript.cli.options import whole_number
 from tiniscript.cli.texts.common import text
 from tiniscript.studio import serving
 
+if TYPE_CHECKING:
+    from tiniscript.studio.classroom import Classroom
+    from tiniscript.studio.hosting import Hosting
+
 PORT = 7070
+TURN_MINUTES = 3
+ELSEWHERE = "198.51.100.1"  # an address of documents, which nobody has
 
 
 def run(options: Namespace, language: str) -> int:
     port = whole_number("--listen", options.listen, PORT, 0, 65535, language)
+    minutes = whole_number("--turn", options.turn, TURN_MINUTES, 1, 60, language)
     from tiniscript.studio.hosting import Hosting
 
-    hosting = Hosting()
+    hosting, classroom = Hosting(), None
+    host = options.address or serving.HOST
+    if options.is_class:
+        from tiniscript.studio.classroom import Classroom
+
+        host = options.address or _address()
+        classroom = Classroom(hosting, _ports(options.ports), 60 * minutes)
+    elif options.address or options.ports or options.turn:
+        raise CommandError(2, "studio_needs_class")
     try:
-        server = serving.Server(serving.files(), port, hosting.answer)
+        server = _server(port, host, hosting, classroom)
     except serving.NotBuilt:
         raise CommandError(2, "studio_not_built") from None
-    except OSError as why:
-        address = f"http://{serving.HOST}:{port}/"
-        reason = why.strerror or str(why)
-        raise CommandError(3, "studio_taken", port=str(port), why=reason, address=address) from None
+    except (OSError, UnicodeError) as why:
+        address = f"http://{host}:{port}/"
+        reason = getattr(why, "strerror", None) or str(why)
+        key = "studio_no_address" if options.is_class else "studio_taken"
+        raise CommandError(
+            3, key, port=str(port), why=shown(reason), address=shown(address)
+        ) from None
     thread = Thread(target=server.serve_forever, name="studio", daemon=True)
     try:
         with ended_by_signal():
             thread.start()
             print(server.entrance, flush=True)
-            said = text("studio_here", language).format(address=server.entrance)
-            print(said, file=sys.stderr, flush=True)
+            key = "studio_class" if classroom else "studio_here"
+            values = {"address": server.address if classroom else server.entrance}
+            values["code"] = classroom.code if classroom else ""
+            print(text(key, language).format(**values), file=sys.stderr, flush=True)
             if not options.no_browser:
                 webbrowser.open(server.entrance)
             while thread.is_alive():
                 thread.join(1)
+                if classroom is not None:
+                    classroom.tend()
+                    if classroom.has_ended:
+                        break
     except KeyboardInterrupt:
         pass
     finally:
@@ -47,3 +74,27 @@ def run(options: Namespace, language: str) -> int:
         hosting.close()
         server.server_close()
     return 0
+
+
+def _server(port: int, host: str, hosting: Hosting, classroom: Classroom | None) -> serving.Server:
+    page = serving.files()
+    if classroom is None:
+        return serving.Server(page, port, hosting.answer)
+    return serving.Server(serving.for_class(page), port, classroom.teach, classroom, host)
+
+
+def _address() -> str:
+    """Return this computer's address in the network of the room. Asks nobody for it."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as asked:
+        try:
+            asked.connect((ELSEWHERE, 9))  # chooses a way, and sends nothing
+            return str(asked.getsockname()[0])
+        except OSError:
+            raise CommandError(3, "studio_no_network") from None
+
+
+def _ports(found: list[str] | None) -> list[str]:
+    for port in found or []:
+        if not port.strip() or not port.isprintable():
+            raise CommandError(2, "no_such_port", found=shown(port) or "''")
+    return found or []

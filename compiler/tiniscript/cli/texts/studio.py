@@ -11,4 +11,12 @@ STUDIO_TEXTS: dict[str, tuple[str, str]] = {
                      "tsc: no se puede usar el puerto {port}: {why}. ¿Hay otro tsc studio? Entonces abre {address}. O elige otro con --listen: lo que un navegador guarda de tu trabajo es de cada puerto."),
     "studio_here": ("TiniScript Studio is at {address}   Ctrl-C ends.",
                     "TiniScript Studio está en {address}   Ctrl-C termina."),
+    "studio_class": ("The class is at {address}   Code: {code}   Pupils open that address and write the code. The line above is yours alone: with it you see and stop everything. Ctrl-C ends.",
+                     "La clase está en {address}   Código: {code}   Los alumnos abren esa dirección y escriben el código. La línea de arriba es solo tuya: con ella ves y detienes todo. Ctrl-C termina."),
+    "studio_no_network": ("tsc: this computer is in no network that pupils could reach. Join the WiFi of the room, or name this computer's address with --address.",
+                          "tsc: esta computadora no está en ninguna red a la que lleguen los alumnos. Conéctala al WiFi del aula, o di su dirección con --address."),
+    "studio_no_address": ("tsc: the class cannot be at {address}: {why}. Is another tsc studio running? Else choose another port with --listen, or an address that this computer has with --address.",
+                          "tsc: la clase no puede estar en {address}: {why}. ¿Hay otro tsc studio? Si no, elige otro puerto con --listen, o una dirección que tenga esta computadora con --address."),
+    "studio_needs_class": ("tsc: --address, --port and --turn are for a class. Add --class.",
+                           "tsc: --address, --port y --turn son para una clase. Agrega --class."),
 }

@@ -1,0 +1,368 @@
+"""A class: its pupils, the robots that it has, whose turn it is, and what the teacher may do.
+
+A pupil joins with the code of the class and gets a token. Whoever wants a robot stands in one
+queue; a turn ends when the pupil leaves the robot or is not heard, and after a time if somebody
+waits. A pupil reaches the robot of the own turn alone: the page of a request is never one that a
+pupil names. Everything is forgotten when the process ends. Knows no HTTP and no clock of its own.
+"""
+
+from __future__ import annotations
+
+import hmac
+import secrets
+from collections.abc import Callable
+from threading import RLock
+from time import monotonic
+from typing import TYPE_CHECKING
+
+from tiniscript.link.port_names import same_for_all
+from tiniscript.printable import printable
+from tiniscript.studio.class_members import ClassRobot, Pupil
+from tiniscript.studio.hosting import PORT_CHARACTERS, Hosting, listed
+from tiniscript.studio.rate import Rate
+from tiniscript.studio.robot_link import BadRequest, Json
+from tiniscript.studio.serving import REQUEST_BYTES, TOKEN_BYTES
+
+if TYPE_CHECKING:
+    from tiniscript.studio.hosted_robot import HostedRobot
+
+LETTERS = "23456789ABCDEFGHJKLMNPQRSTUVWXYZ"  # none looks like another
+CODE_LETTERS = 6  # a thousand million codes
+JOIN_BYTES = 1000
+NAME_CHARACTERS = 24
+TEXT_CHARACTERS = 20_000  # of a program, for the teacher
+MOST_PUPILS = 60
+MOST_ROBOTS = 40
+TURN_S = 180
+SHORTEST_S, LONGEST_S = 10, 3600
+CONNECT_S = 10.0  # for a page to take its turn
+QUEUE_S = 20.0  # a page that is silent for longer waits no more
+HERE_S = 5.0  # a page that was heard since then may get a turn
+REST_S = 10.0  # of a robot with which a turn has failed
+SILENT_S = 60.0  # after which a place in a full class is given away
+OVER_S = 6.0  # for pages to hear that the class is over
+# Wrong codes of a computer: twenty, then one in three seconds. A thousand million take a century.
+WRONG = (20, 1 / 3)
+REQUESTS = (80, 40)  # of a pupil; a page that drives asks ten times a second
+# What a pupil may ask of a robot. Its name, its trim and its owner are the teacher's.
+MAY = ("hello", "upload", "live", "start", "identify", "trim", "stop")
+
+Clock = Callable[[], float]
+
+
+class Classroom:
+    """Any thread may call it. `tend` must be called once a second."""
+
+    def __init__(
+        self, hosting: Hosting, ports: list[str], turn_s: int = TURN_S, clock: Clock = monotonic
+    ) -> None:
+        self.code = _new_code()
+        self._hosting = hosting
+        self._turn_s = turn_s
+        self._clock = clock
+        self._lock = RLock()
+        self._pupils: dict[str, Pupil] = {}  # by token
+        self._robots = [ClassRobot(port, _name_of(port)) for port in ports]
+        self._wrong = Rate(*WRONG)
+        self._requests = Rate(*REQUESTS)
+        self._count = 0  # of pupils, and of places in the queue
+        self._over = ""  # or whether pupils' work is kept
+        self._over_s = 0.0
+
+    # -- pupils -----------------------------------------------------------------------------------
+
+    def most_bytes(self, token: str) -> int:
+        if not token:
+            return JOIN_BYTES
+        with self._lock:
+            return REQUEST_BYTES if token in self._pupils else 0
+
+    def answer(self, token: str, address: str, request: Json) -> Json:
+        """Return the answer to a pupil's request. Raises BadRequest."""
+        with self._lock:
+            if not token:
+                return self._join(address, request)
+            pupil = self._pupils.get(token)
+            if pupil is None:
+                raise BadRequest
+            do = request.get("do")
+            if do in ("stop", "stop_all"):
+                return self._stop(pupil, request)
+            if not self._requests.take(token, self._clock()):
+                raise BadRequest
+            pupil.heard_s = self._clock()
+            if do == "here":
+                return self._here(pupil, request)
+            if do == "connect":
+                return self._connect(pupil, request)
+            if do in ("beat", "leave"):
+                return self._drive(pupil, request)
+        raise BadRequest
+
+    def _join(self, address: str, request: Json) -> Json:
+        now_s = self._clock()
+        code, name = request.get("code"), request.get("name")
+        if request.get("do") != "join" or not isinstance(code, str) or not isinstance(name, str):
+            raise BadRequest
+        if not self._wrong.has(address, now_s):
+            return {"failure": "class_slow"}
+        given = "".join(code.upper().split()).encode("utf-8", "replace")
+        if not hmac.compare_digest(given, self.code.encode()):
+            self._wrong.take(address, now_s)
+            return {"failure": "class_code"}
+        if self._over:
+            return {"failure": "class_over"}
+        plain = printable(" ".join(name.split()), NAME_CHARACTERS)
+        if not plain:
+            return {"failure": "class_name"}
+        if len(self._pupils) >= MOST_PUPILS and not self._give_place_away(now_s):
+            return {"failure": "class_full"}
+        names = {each.name for each in self._pupils.values()}
+        same = [f"{plain} ({k})" for k in range(2, MOST_PUPILS + 2)]
+        free = next(each for each in [plain, *same] if each not in names)
+        self._count += 1
+        token = secrets.token_hex(TOKEN_BYTES)
+        self._pupils[token] = Pupil(self._count, free, address, now_s)
+        return {"token": token, "name": free}
+
+    def _give_place_away(self, now_s: float) -> bool:
+        silent = [(each.heard_s, token) for token, each in self._pupils.items()
+                  if now_s - each.heard_s > SILENT_S and self._turn(each) is None]  # fmt: skip
+        if silent:
+            del self._pupils[min(silent)[1]]
+        return bool(silent)
+
+    def _here(self, pupil: Pupil, request: Json) -> Json:
+        """A page tells of its program, and hears its place: 0 is a turn, -1 none."""
+        text, wants = request.get("text"), request.get("wants")
+        if text is not None:
+            if not isinstance(text, str):
+                raise BadRequest
+            pupil.text = text[:TEXT_CHARACTERS]
+        if wants is False:
+            pupil.waits = None
+        elif wants is True and pupil.waits is None and self._turn(pupil) is None:
+            self._count += 1
+            pupil.waits = self._count
+        self._tend()
+        if self._over:
+            pupil.knows_end = True
+            return {"over": self._over}
+        turn, waiting = self._turn(pupil), self._waiting()
+        place = -1 if turn is None else 0
+        if pupil in waiting:
+            place = waiting.index(pupil) + 1
+        return {
+            "name": pupil.name,
+            "place": place,
+            "waiting": len(waiting),
+            "robots": len(self._robots),
+            "robot": turn.name if turn else "",
+            "left_s": self._left_s(turn) if turn else 0,
+        }
+
+    def _connect(self, pupil: Pupil, request: Json) -> Json:
+        self._tend()
+        robot = self._turn(pupil)
+        if robot is None:
+            return {"failure": "turn_none"}
+        # One that this page has left a moment ago is not the robot of this turn.
+        own = {**request, "page": pupil.page, "port": robot.port}
+        answer = self._hosting.answer(own)
+        if not answer:
+            robot.hosted = self._hosting.robot_of(pupil.page)
+        return answer
+
+    def _drive(self, pupil: Pupil, request: Json) -> Json:
+        asked = request.get("asked", [])
+        if not isinstance(asked, list) or not all(_may(each) for each in asked):
+            raise BadRequest
+        return self._hosting.answer({**request, "page": pupil.page})
+
+    def _stop(self, pupil: Pupil, request: Json) -> Json:
+        """Stop the own robot, and no other, whatever was asked."""
+        return self._hosting.answer({**request, "do": "stop", "page": pupil.page, "asked": []})
+
+    # -- turns ------------------------------------------------------------------------------------
+
+    def tend(self) -> None:
+        """End turns and begin others; to be called when nobody asks, too."""
+        with self._lock:
+            self._tend()
+
+    def _tend(self) -> None:
+        now_s = self._clock()
+        for pupil in self._waiting():
+            if now_s - pupil.heard_s > QUEUE_S:
+                pupil.waits = None
+        for robot in self._robots:
+            if robot.pupil is not None:
+                self._look_at(robot, now_s)
+        for robot in self._robots:
+            if robot.pupil is None and not self._over and robot.free_s <= now_s:
+                self._begin_turn(robot, now_s)
+
+    def _look_at(self, robot: ClassRobot, now_s: float) -> None:
+        """End a turn that has to end."""
+        hosted = robot.hosted
+        if hosted is None:
+            if now_s - robot.began_s > CONNECT_S:
+                robot.end()
+        elif hosted.has_ended:
+            if hosted.name:
+                robot.name = hosted.name
+            else:  # nobody has answered: another robot is better
+                robot.free_s = now_s + REST_S
+            robot.end()
+        elif now_s - robot.began_s >= self._turn_s and self._waiting():
+            hosted.leave("turn_over")
+            robot.end()
+
+    def _begin_turn(self, robot: ClassRobot, now_s: float) -> None:
+        here = [each for each in self._waiting() if now_s - each.heard_s <= HERE_S]
+        if here and self._hosting.is_free(robot.port):
+            here[0].waits = None
+            robot.begin(here[0], now_s)
+
+    def _waiting(self) -> list[Pupil]:
+        found = [(each.waits, each) for each in self._pupils.values() if each.waits is not None]
+        return [each for _, each in sorted(found, key=lambda found: found[0])]
+
+    def _turn(self, pupil: Pupil) -> ClassRobot | None:
+        return next((each for each in self._robots if each.pupil is pupil), None)
+
+    def _left_s(self, robot: ClassRobot) -> int:
+        return max(0, round(self._turn_s - (self._clock() - robot.began_s)))
+
+    # -- the teacher ------------------------------------------------------------------------------
+
+    def teach(self, request: Json) -> Json:
+        """Return the answer to a request of the teacher's page. Raises BadRequest."""
+        do = request.get("do")
+        if not isinstance(do, str) or not do.startswith("class"):
+            return self._hosting.answer(request)
+        with self._lock:
+            if do == "class_robot":
+                self._give(request)
+            elif do == "class_turn":
+                self._turn_s = _whole(request, "seconds", SHORTEST_S, LONGEST_S)
+            elif do == "class_code":
+                self.code = _new_code()
+            elif do == "class_over":
+                self._end(request.get("erases") is True)
+            elif do in ("class_stop", "class_next", "class_remove", "class_text"):
+                token, pupil = self._pupil(request)
+                if do == "class_text":
+                    return {"text": pupil.text}
+                self._teach(do, token, pupil)
+            elif do != "class":
+                raise BadRequest
+            self._tend()
+            return self._state()
+
+    def _teach(self, do: str, token: str, pupil: Pupil) -> None:
+        robot = self._turn(pupil)
+        hosted = robot.hosted if robot else None
+        if do == "class_stop":
+            if hosted is not None:
+                hosted.stop()
+            return
+        self._take_back(robot, hosted)
+        if do == "class_remove":
+            del self._pupils[token]
+
+    def _take_back(self, robot: ClassRobot | None, hosted: HostedRobot | None) -> None:
+        if hosted is not None:
+            hosted.leave("turn_over")
+        if robot is not None:
+            robot.end()
+
+    def _give(self, request: Json) -> None:
+        """Give a robot to the class, or take it away."""
+        port = request.get("port")
+        if not isinstance(port, str) or not port.isprintable() or not port.strip():
+            raise BadRequest
+        if len(port) > PORT_CHARACTERS:
+            raise BadRequest
+        same = [each for each in self._robots if same_for_all(each.port) == same_for_all(port)]
+        for each in same:
+            if request.get("gives") is not True:
+                self._take_back(each, each.hosted)
+                self._robots.remove(each)
+        if request.get("gives") is True and not same:
+            if len(self._robots) >= MOST_ROBOTS:
+                raise BadRequest
+            self._robots.append(ClassRobot(port.strip(), _name_of(port)))
+
+    def _end(self, erases: bool) -> None:
+        for each in self._robots:
+            self._take_back(each, each.hosted)
+        self._over = "erased" if erases else "kept"
+        self._over_s = self._clock()
+
+    @property
+    def has_ended(self) -> bool:
+        """Whether the class is over and all pages know it that can."""
+        with self._lock:
+            now_s = self._clock()
+            here = [each for each in self._pupils.values() if now_s - each.heard_s <= QUEUE_S]
+            are_told = all(each.knows_end for each in here)
+            return bool(self._over) and (are_told or now_s - self._over_s > OVER_S)
+
+    def _state(self) -> Json:
+        now_s, waiting = self._clock(), self._waiting()
+        return {
+            "code": self.code,
+            "turn_s": self._turn_s,
+            "over": self._over,
+            "pupils": [
+                {
+                    "number": each.number,
+                    "name": each.name,
+                    "silent_s": round(now_s - each.heard_s),
+                    "place": waiting.index(each) + 1 if each in waiting else 0,
+                    "robot": turn.name or turn.port if (turn := self._turn(each)) else "",
+                    "characters": len(each.text),
+                }
+                for each in self._pupils.values()
+            ],
+            "robots": [
+                {
+                    "port": each.port,
+                    "name": each.name,
+                    "pupil": each.pupil.name if each.pupil else "",
+                    "left_s": self._left_s(each) if each.pupil else 0,
+                }
+                for each in self._robots
+            ],
+        }
+
+    def _pupil(self, request: Json) -> tuple[str, Pupil]:
+        for token, each in self._pupils.items():
+            if each.number == request.get("pupil"):
+                return token, each
+        raise BadRequest
+
+
+def _may(asked: object) -> bool:
+    """Return whether a pupil may ask this of a robot."""
+    if not isinstance(asked, dict) or asked.get("do") not in MAY:
+        return False
+    return asked["do"] != "trim" or asked.get("trim") is None
+
+
+def _whole(request: Json, name: str, low: int, high: int) -> int:
+    found = request.get(name)
+    if type(found) is not int or not low <= found <= high:
+        raise BadRequest
+    return found
+
+
+def _new_code() -> str:
+    return "".join(secrets.choice(LETTERS) for _ in range(CODE_LETTERS))
+
+
+def _name_of(port: str) -> str:
+    """Return the name of the robot that was there last, or nothing."""
+    same = same_for_all(port)
+    return next((str(each["name"]) for each in listed() if same_for_all(each["port"]) == same), "")

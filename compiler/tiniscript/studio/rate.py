@@ -1,0 +1,35 @@
+"""How often somebody may do something: so many at once, and then as many as come back in time.
+
+Knows no clock: the time in seconds is an argument.
+"""
+
+from __future__ import annotations
+
+MOST_NAMES = 1000  # who has not been seen for longest is forgotten
+
+
+class Rate:
+    """`burst` at once, `per_s` come back each second; for each name apart."""
+
+    def __init__(self, burst: float, per_s: float) -> None:
+        self._burst = burst
+        self._per_s = per_s
+        self._left: dict[str, tuple[float, float]] = {}  # what was left, and when
+
+    def has(self, name: str, now_s: float) -> bool:
+        """Return whether one is left."""
+        return self._now(name, now_s) >= 1
+
+    def take(self, name: str, now_s: float) -> bool:
+        """Take one; return whether one was left."""
+        left = self._now(name, now_s)
+        is_left = left >= 1
+        self._left.pop(name, None)
+        if len(self._left) >= MOST_NAMES:
+            del self._left[next(iter(self._left))]
+        self._left[name] = (left - 1 if is_left else left, now_s)
+        return is_left
+
+    def _now(self, name: str, now_s: float) -> float:
+        left, when_s = self._left.get(name, (self._burst, now_s))
+        return min(self._burst, left + (now_s - when_s) * self._per_s)

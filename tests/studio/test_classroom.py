@@ -1,0 +1,389 @@
+"""A class's rules: who joins, who waits, whose turn it is, and what only the teacher may do."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any
+
+import pytest
+
+from tiniscript.studio import classroom
+from tiniscript.studio.classroom import Classroom
+from tiniscript.studio.robot_link import BadRequest
+
+Json = dict[str, Any]
+HERE = "192.0.2.9"
+
+
+@dataclasses.dataclass
+class FakeRobot:
+    """A connection that a test plays."""
+
+    has_ended: bool = False
+    name: str = "TINI"
+    left: str = ""
+    stopped: int = 0
+
+    def leave(self, why: str) -> None:
+        self.left = why
+        self.has_ended = True
+
+    def stop(self) -> None:
+        self.stopped += 1
+
+
+class FakeHosting:
+    """Notes what reaches robots."""
+
+    def __init__(self) -> None:
+        self.asked: list[Json] = []
+        self.robots: dict[str, FakeRobot] = {}
+        self.held: set[str] = set()  # ports that are being left
+
+    def answer(self, request: Json) -> Json:
+        self.asked.append(request)
+        if request.get("do") == "connect":
+            self.robots[request["page"]] = FakeRobot()
+            return {}
+        return {"news": []}
+
+    def robot_of(self, page: str) -> FakeRobot | None:
+        return self.robots.get(page)
+
+    def is_free(self, port: str) -> bool:
+        return port not in self.held
+
+
+class Room:
+    """A class with so many robots, whose clock a test moves."""
+
+    def __init__(self, robots: int = 1) -> None:
+        self.now_s = 1000.0
+        self.hosting = FakeHosting()
+        ports = [f"port{k}" for k in range(robots)]
+        self.made = Classroom(self.hosting, ports, 60, lambda: self.now_s)  # type: ignore[arg-type]
+
+    def joins(self, name: str, address: str = HERE) -> str:
+        answer = self.made.answer("", address, {"do": "join", "code": self.made.code, "name": name})
+        return str(answer["token"])
+
+    def here(self, token: str, wants: bool | None = None, **more: Any) -> Json:
+        request = {"do": "here", **more} | ({} if wants is None else {"wants": wants})
+        return self.made.answer(token, HERE, request)
+
+    def connects(self, token: str) -> FakeRobot:
+        assert self.made.answer(token, HERE, {"do": "connect", "page": "x", "port": "y"}) == {}
+        return self.hosting.robots[self.hosting.asked[-1]["page"]]
+
+    def teaches(self, do: str, **more: Any) -> Json:
+        return self.made.teach({"do": do, **more})
+
+    def number(self, name: str) -> int:
+        return next(int(each["number"]) for each in self.teaches("class")["pupils"]
+                    if each["name"] == name)  # fmt: skip
+
+
+def test_pupils_share_a_robot_one_after_the_other() -> None:
+    room = Room()
+    ana, luz, teo = (room.joins(name) for name in ("Ana", "Luz", "Teo"))
+    assert room.here(ana)["place"] == -1
+    assert room.here(ana, True)["place"] == 0
+    assert room.here(luz, True)["place"] == 1
+    assert room.here(teo, True)["place"] == 2
+    robot = room.connects(ana)
+    assert room.hosting.asked[-1]["port"] == "port0"
+    robot.has_ended = True  # Ana has left it
+    assert [room.here(each)["place"] for each in (luz, teo, ana)] == [0, 1, -1]
+
+
+def test_a_turn_ends_after_its_time_only_if_somebody_waits() -> None:
+    room = Room()
+    ana, luz = room.joins("Ana"), room.joins("Luz")
+    room.here(ana, True)
+    robot = room.connects(ana)
+    room.now_s += 500
+    assert room.here(ana) | {"name": ""} == {
+        "name": "", "place": 0, "waiting": 0, "robots": 1, "robot": "", "left_s": 0,
+    }  # fmt: skip
+    room.here(luz, True)
+    assert robot.left == "turn_over"
+    assert room.here(luz)["place"] == 0
+    assert room.made.answer(ana, HERE, {"do": "connect"}) == {"failure": "turn_none"}
+
+
+def test_a_turn_lasts_until_its_time() -> None:
+    room = Room()
+    ana, luz = room.joins("Ana"), room.joins("Luz")
+    room.here(ana, True)
+    robot = room.connects(ana)
+    for _ in range(59):
+        room.now_s += 1
+        assert room.here(luz, True)["place"] == 1
+        room.here(ana)
+    assert robot.left == "" and room.here(ana)["left_s"] == 1
+    room.now_s += 1
+    assert room.here(luz)["place"] == 0
+
+
+def test_a_page_that_does_not_take_its_turn_loses_it() -> None:
+    room = Room()
+    ana, luz = room.joins("Ana"), room.joins("Luz")
+    room.here(ana, True)
+    room.here(luz, True)
+    room.now_s += 11
+    assert room.here(luz)["place"] == 0
+    assert room.here(ana)["place"] == -1
+
+
+def test_a_page_that_is_gone_is_passed_over_and_waits_no_more() -> None:
+    room = Room()
+    ana, luz, teo = (room.joins(name) for name in ("Ana", "Luz", "Teo"))
+    room.here(ana, True)
+    robot = room.connects(ana)
+    room.here(luz, True)
+    room.here(teo, True)
+    room.now_s += 10  # Luz is silent
+    assert room.here(teo)["place"] == 2
+    robot.has_ended = True
+    assert room.here(teo)["place"] == 0
+    assert room.here(luz)["place"] == 1  # she is back
+    room.now_s += 21
+    room.made.tend()
+    assert room.teaches("class")["pupils"][1]["place"] == 0
+
+
+def test_a_robot_that_is_silent_rests_while_another_is_free() -> None:
+    room = Room(2)
+    ana, luz = room.joins("Ana"), room.joins("Luz")
+    room.here(ana, True)
+    robot = room.connects(ana)
+    robot.name, robot.has_ended = "", True
+    room.here(luz, True)
+    room.connects(luz)
+    assert room.hosting.asked[-1]["port"] == "port1"
+    assert room.here(ana, True)["place"] == 1
+    room.now_s += 11
+    assert room.here(ana)["place"] == 0
+
+
+def test_a_port_that_is_being_left_is_given_to_nobody() -> None:
+    room = Room()
+    ana = room.joins("Ana")
+    room.hosting.held.add("port0")
+    assert room.here(ana, True)["place"] == 1
+    room.hosting.held.clear()
+    assert room.here(ana)["place"] == 0
+
+
+# -- hostile pupils
+
+
+def test_another_turn_is_reached_by_no_name() -> None:
+    room = Room()
+    ana, eve = room.joins("Ana"), room.joins("Eve")
+    room.here(ana, True)
+    room.connects(ana)
+    own = room.hosting.asked[-1]["page"]
+    assert room.made.answer(eve, HERE, {"do": "connect", "page": own, "port": "port0"}) == {
+        "failure": "turn_none"
+    }
+    for do in ("beat", "leave", "stop", "stop_all"):
+        room.made.answer(eve, HERE, {"do": do, "page": own, "asked": [{"do": "upload", "id": 1}]})
+    assert own not in [each["page"] for each in room.hosting.asked[1:]]
+    assert {each["do"] for each in room.hosting.asked[1:]} == {"beat", "leave", "stop"}
+    assert room.hosting.asked[-1]["asked"] == []
+
+
+@pytest.mark.parametrize(
+    "do", ["ports", "class", "class_over", "class_text", "fly", None, ["stop"]]
+)
+def test_what_only_the_teacher_may_ask(do: object) -> None:
+    room = Room()
+    eve = room.joins("Eve")
+    with pytest.raises(BadRequest):
+        room.made.answer(eve, HERE, {"do": do, "erases": True, "pupil": 1})
+    assert room.hosting.asked == [] and not room.made.has_ended
+
+
+@pytest.mark.parametrize(
+    "asked",
+    [{"do": "claim"}, {"do": "disown"}, {"do": "name", "name": "X"}, {"do": "trim", "trim": {}},
+     {"do": "undo"}, {}, 5, {"do": ["hello"]}],
+    ids=str,
+)  # fmt: skip
+def test_a_robot_stays_the_teachers(asked: object) -> None:
+    room = Room()
+    eve = room.joins("Eve")
+    room.here(eve, True)
+    room.connects(eve)
+    with pytest.raises(BadRequest):
+        room.made.answer(eve, HERE, {"do": "beat", "asked": [{"do": "hello", "id": 1}, asked]})
+    assert [each["do"] for each in room.hosting.asked] == ["connect"]
+
+
+def test_codes_are_not_guessed() -> None:
+    room = Room()
+    code, right = room.made.code, 0
+    for k in range(5000):
+        guess = {"do": "join", "code": f"{k:06}", "name": "Eve"}
+        right += room.made.answer("", HERE, guess)["failure"] == "class_code"
+        room.now_s += 0.01
+    assert right <= 20 + 50 / 3 + 1
+    # Not even the right one, from there; from elsewhere it is.
+    known = {"do": "join", "code": code, "name": "Eve"}
+    assert room.made.answer("", HERE, known) == {"failure": "class_slow"}
+    assert "token" in room.made.answer("", "192.0.2.10", known)
+    room.now_s += 4
+    assert "token" in room.made.answer("", HERE, known)
+
+
+def test_a_code_may_be_written_small_and_apart() -> None:
+    room = Room()
+    code = room.made.code.lower()
+    given = {"do": "join", "code": f" {code[:3]} {code[3:]}", "name": "Ana"}
+    assert room.made.answer("", HERE, given)["name"] == "Ana"
+    assert room.made.most_bytes("") == 1000
+    assert room.made.most_bytes("0" * 32) == 0
+
+
+@pytest.mark.parametrize(
+    ("name", "shown"),
+    [("  Ana \n Luz ", "Ana Luz"), ("<b>x</b>", "<b>x</b>"), ("a\x1b[2J\u202eb", "a?[2J?b"),
+     ("x" * 1000, "x" * 24 + "…"), ("ñandú 🤖", "ñandú 🤖")],
+)  # fmt: skip
+def test_names_are_plain(name: str, shown: str) -> None:
+    room = Room()
+    room.joins(name)
+    assert room.teaches("class")["pupils"][0]["name"] == shown
+    room.joins(name)
+    assert room.teaches("class")["pupils"][1]["name"] == f"{shown} (2)"
+
+
+@pytest.mark.parametrize("name", ["", "   ", 5, None, ["a"]])
+def test_nobody_joins_without_a_name(name: object) -> None:
+    room = Room()
+    try:
+        answer = room.made.answer("", HERE, {"do": "join", "code": room.made.code, "name": name})
+    except BadRequest:
+        answer = {"failure": "class_name"}
+    assert answer == {"failure": "class_name"}
+    assert room.teaches("class")["pupils"] == []
+
+
+def test_a_full_class_gives_away_the_places_of_who_has_gone() -> None:
+    room = Room()
+    first = room.joins("p0")
+    for k in range(1, classroom.MOST_PUPILS):
+        room.joins(f"p{k}")
+    more = {"do": "join", "code": room.made.code, "name": "more"}
+    assert room.made.answer("", HERE, more) == {"failure": "class_full"}
+    room.now_s += 61
+    room.here(first)
+    assert "token" in room.made.answer("", HERE, more)
+    assert len(room.teaches("class")["pupils"]) == classroom.MOST_PUPILS
+    assert room.made.most_bytes(first) > 0
+
+
+def test_a_pupil_who_asks_without_end_is_refused_but_stops() -> None:
+    room = Room()
+    eve = room.joins("Eve")
+    with pytest.raises(BadRequest):
+        for _ in range(200):
+            room.here(eve)
+    assert room.made.answer(eve, HERE, {"do": "stop"}) == {"news": []}
+    room.now_s += 1
+    for _ in range(40):
+        room.here(eve)
+
+
+def test_a_huge_program_is_cut() -> None:
+    room = Room()
+    eve = room.joins("Eve")
+    room.here(eve, text="x" * 150_000)
+    with pytest.raises(BadRequest):
+        room.here(eve, text=["x"])
+    number = room.number("Eve")
+    assert len(room.teaches("class_text", pupil=number)["text"]) == classroom.TEXT_CHARACTERS
+
+
+# -- the teacher
+
+
+def test_the_teacher_sees_stops_and_takes_back() -> None:
+    room = Room()
+    ana, luz = room.joins("Ana"), room.joins("Luz")
+    room.here(ana, True, text="F(1, 50)")
+    room.here(luz, True)
+    robot = room.connects(ana)
+    state = room.teaches("class")
+    assert [(each["name"], each["place"], each["robot"]) for each in state["pupils"]] == [
+        ("Ana", 0, "port0"), ("Luz", 1, ""),
+    ]  # fmt: skip
+    assert state["robots"] == [{"port": "port0", "name": "", "pupil": "Ana", "left_s": 60}]
+    number = room.number("Ana")
+    assert room.teaches("class_text", pupil=number) == {"text": "F(1, 50)"}
+    room.teaches("class_stop", pupil=number)
+    assert robot.stopped == 1 and not robot.left
+    room.teaches("class_next", pupil=number)
+    assert robot.left == "turn_over"
+    assert room.here(luz)["place"] == 0
+    room.teaches("class_remove", pupil=number)
+    assert room.made.most_bytes(ana) == 0
+    with pytest.raises(BadRequest):
+        room.here(ana)
+    room.teaches("stop_all")
+    assert room.hosting.asked[-1] == {"do": "stop_all"}
+
+
+def test_robots_come_and_go() -> None:
+    room = Room(0)
+    ana = room.joins("Ana")
+    assert room.here(ana, True)["robots"] == 0
+    room.teaches("class_robot", port="port7", gives=True)
+    assert len(room.teaches("class_robot", port="port7", gives=True)["robots"]) == 1
+    assert room.here(ana)["place"] == 0
+    robot = room.connects(ana)
+    assert room.teaches("class_robot", port="port7", gives=False)["robots"] == []
+    assert robot.left == "turn_over"
+    for port in ("", " ", "a\nb", 5, "x" * 301):
+        with pytest.raises(BadRequest):
+            room.teaches("class_robot", port=port, gives=True)
+
+
+def test_a_new_code_and_another_turn() -> None:
+    room = Room()
+    old = room.made.code
+    assert room.teaches("class_code")["code"] == room.made.code != old
+    assert room.made.answer("", HERE, {"do": "join", "code": old, "name": "Eve"}) == {
+        "failure": "class_code"
+    }
+    assert room.teaches("class_turn", seconds=300)["turn_s"] == 300
+    for seconds in (9, 3601, "300", True, None):
+        with pytest.raises(BadRequest):
+            room.teaches("class_turn", seconds=seconds)
+
+
+@pytest.mark.parametrize(("erases", "over"), [(True, "erased"), (False, "kept")])
+def test_the_end_reaches_every_page(erases: bool, over: str) -> None:
+    room = Room()
+    ana, luz = room.joins("Ana"), room.joins("Luz")
+    room.here(ana, True)
+    robot = room.connects(ana)
+    room.teaches("class_over", erases=erases)
+    assert robot.left == "turn_over"
+    assert not room.made.has_ended
+    assert room.here(ana) == {"over": over}
+    assert not room.made.has_ended
+    assert room.here(luz, True) == {"over": over}
+    assert room.made.has_ended
+    late = {"do": "join", "code": room.made.code, "name": "Teo"}
+    assert room.made.answer("", HERE, late) == {"failure": "class_over"}
+
+
+def test_the_end_waits_for_no_page_that_is_gone() -> None:
+    room = Room()
+    room.joins("Ana")
+    room.teaches("class_over")
+    assert not room.made.has_ended
+    room.now_s += 7
+    assert room.made.has_ended
