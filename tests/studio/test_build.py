@@ -34,9 +34,10 @@ def test_the_packages_are_pinned_and_come_from_nowhere_in_particular() -> None:
         assert not name or package["integrity"].startswith("sha512-"), name
 
 
-def test_every_sentence_is_there_in_both_languages() -> None:
-    source = (SOURCES / "src" / "texts.js").read_text(encoding="utf-8")
-    table = source[source.index("export const TEXTS") : source.index("};")]
+@pytest.mark.parametrize("file", ["texts.js", "robot_texts.js", "class_texts.js"])
+def test_every_sentence_is_there_in_both_languages(file: str) -> None:
+    source = (SOURCES / "src" / file).read_text(encoding="utf-8")
+    table = source[source.index("export const ") : source.index("};")]
     rows = re.findall(r"^  (\w+): \[", table, re.MULTILINE)
     pairs = re.findall(r"^  \w+: \['(?:[^'\\]|\\.)*',\s+'(?:[^'\\]|\\.)*'\],$", table, re.MULTILINE)
     assert len(rows) == len(pairs) > 20

@@ -120,7 +120,7 @@ def test_a_turn_lasts_until_its_time() -> None:
         room.now_s += 1
         assert room.here(luz, True)["place"] == 1
         room.here(ana)
-    assert robot.left == "" and room.here(ana)["left_s"] == 1
+    assert not robot.has_ended and room.here(ana)["left_s"] == 1
     room.now_s += 1
     assert room.here(luz)["place"] == 0
 
@@ -226,7 +226,7 @@ def test_codes_are_not_guessed() -> None:
     code, right = room.made.code, 0
     for k in range(5000):
         guess = {"do": "join", "code": f"{k:06}", "name": "Eve"}
-        right += room.made.answer("", HERE, guess)["failure"] == "class_code"
+        right += room.made.answer("", HERE, guess)["failure"] == "class_wrong"
         room.now_s += 0.01
     assert right <= 20 + 50 / 3 + 1
     # Not even the right one, from there; from elsewhere it is.
@@ -265,8 +265,8 @@ def test_nobody_joins_without_a_name(name: object) -> None:
     try:
         answer = room.made.answer("", HERE, {"do": "join", "code": room.made.code, "name": name})
     except BadRequest:
-        answer = {"failure": "class_name"}
-    assert answer == {"failure": "class_name"}
+        answer = {"failure": "class_nameless"}
+    assert answer == {"failure": "class_nameless"}
     assert room.teaches("class")["pupils"] == []
 
 
@@ -323,7 +323,7 @@ def test_the_teacher_sees_stops_and_takes_back() -> None:
     number = room.number("Ana")
     assert room.teaches("class_text", pupil=number) == {"text": "F(1, 50)"}
     room.teaches("class_stop", pupil=number)
-    assert robot.stopped == 1 and not robot.left
+    assert robot.stopped == 1 and not robot.has_ended
     room.teaches("class_next", pupil=number)
     assert robot.left == "turn_over"
     assert room.here(luz)["place"] == 0
@@ -355,7 +355,7 @@ def test_a_new_code_and_another_turn() -> None:
     old = room.made.code
     assert room.teaches("class_code")["code"] == room.made.code != old
     assert room.made.answer("", HERE, {"do": "join", "code": old, "name": "Eve"}) == {
-        "failure": "class_code"
+        "failure": "class_wrong"
     }
     assert room.teaches("class_turn", seconds=300)["turn_s"] == 300
     for seconds in (9, 3601, "300", True, None):

@@ -7,14 +7,16 @@ from __future__ import annotations
 
 import os
 import shutil
+import socket
 from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib.util import find_spec
 from threading import Thread
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tests.support.platformio import need
 from tiniscript.studio import serving
+from tiniscript.studio.classroom import Classroom
 from tiniscript.studio.hosting import Hosting
 from tools.builds import studio
 
@@ -63,6 +65,40 @@ def hosted() -> Iterator[serving.Server]:
     thread.start()
     try:
         yield server
+    finally:
+        server.shutdown()
+        hosting.close()
+        server.server_close()
+        thread.join()
+
+
+def room_address() -> str:
+    """Return an address of this computer that is not its own alone, or, without a network, one that
+    a browser takes for its own."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as asked:
+        try:
+            asked.connect(("198.51.100.1", 9))
+            return str(asked.getsockname()[0])
+        except OSError:
+            return "127.0.0.2"
+
+
+class Class(NamedTuple):
+    server: serving.Server
+    room: Classroom
+
+
+@contextmanager
+def taught(ports: list[str], turn_s: int = 180) -> Iterator[Class]:
+    """The same as a class has it, at an address of the network, as `tsc studio --class` does."""
+    hosting = Hosting()
+    room = Classroom(hosting, ports, turn_s)
+    page = serving.for_class(serving.files())
+    server = serving.Server(page, 0, room.teach, room, room_address())
+    thread = Thread(target=server.serve_forever, args=(0.02,), daemon=True)
+    thread.start()
+    try:
+        yield Class(server, room)
     finally:
         server.shutdown()
         hosting.close()

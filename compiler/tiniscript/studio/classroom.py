@@ -109,12 +109,12 @@ class Classroom:
         given = "".join(code.upper().split()).encode("utf-8", "replace")
         if not hmac.compare_digest(given, self.code.encode()):
             self._wrong.take(address, now_s)
-            return {"failure": "class_code"}
+            return {"failure": "class_wrong"}
         if self._over:
             return {"failure": "class_over"}
         plain = printable(" ".join(name.split()), NAME_CHARACTERS)
         if not plain:
-            return {"failure": "class_name"}
+            return {"failure": "class_nameless"}
         if len(self._pupils) >= MOST_PUPILS and not self._give_place_away(now_s):
             return {"failure": "class_full"}
         names = {each.name for each in self._pupils.values()}

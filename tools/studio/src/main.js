@@ -57,6 +57,9 @@ const panel = new RobotPanel({
   goTo: (place) => editor.goTo(place),
 });
 chooseSide();
+if ('class' in document.documentElement.dataset) {
+  import('./classroom.js').then(({ beginClass }) => beginClass(panel, work, () => editor.replace('')));
+}
 
 /** The newest answer, and what it is about. @type {{key: string, answer: Checked | null}} */
 let newest = { key: '', answer: null };

@@ -129,7 +129,8 @@ export class Programs {
     const shared = 'text' in given ? given.text : '';
     const isPictured = shared !== '' && new TextEncoder().encode(shared).length <= MOST_PICTURED;
     this.#shared.value = shared;
-    this.#shared.hidden = this.#copy.hidden = shared === '';
+    this.#shared.hidden = shared === '';
+    this.#copy.hidden = shared === '' || !navigator.clipboard; // which plain http has not
     this.#told.textContent = 'wrong' in given ? given.wrong
       : shared && !isPictured ? `${told} ${text('no_picture')}` : told;
     this.#picture.hidden = !isPictured;

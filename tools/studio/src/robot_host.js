@@ -1,5 +1,6 @@
 // A robot at a port of this computer, which `tsc studio` has. It is asked by POST with the token of
-// its run, which stands behind the # of the address that it opens.
+// its run, which stands behind the # of the address that it opens. In a class that is the teacher's,
+// and pupils get tokens of their own.
 //
 // The main thread asks many times a second; when it hangs or the page sleeps, `tsc studio` hears
 // nothing, and stops the robot.
@@ -17,10 +18,19 @@ const BEAT_MS = 100;
 const SILENT_MS = 3000; // without an answer
 const ASK_MS = 2000;
 
-const token = tokenOfAddress();
+let token = tokenOfAddress();
 
-/** Whether this page comes from a `tsc studio`. */
+/** Whether this page comes from a `tsc studio`, and may ask it for all that it has. */
 export const hasHost = token !== '';
+const { dataset } = document.documentElement;
+export const isTeacher = 'class' in dataset && hasHost;
+export const isPupil = 'class' in dataset && !hasHost;
+if (isPupil) dataset['class'] = 'pupil';
+
+/** From now on this page asks as a pupil. @param {string} own */
+export function askAs(own) {
+  token = own;
+}
 
 /** Takes the token out of the address: nobody copies it with the address. */
 function tokenOfAddress() {
@@ -39,7 +49,7 @@ function tokenOfAddress() {
  * @param {RequestInit} [options]
  * @returns {Promise<any>}
  */
-async function post(request, options = {}) {
+export async function post(request, options = {}) {
   const answer = await fetch('./robots', {
     method: 'POST',
     headers: { 'X-TiniScript-Token': token, 'Content-Type': 'application/json' },

@@ -5,11 +5,12 @@ import { element } from './elements.js';
 import { bytesOf } from './files.js';
 import { chosenDevice, BluetoothPort, hasBluetooth } from './robot_bluetooth.js';
 import { DirectRobot } from './robot_direct.js';
-import { hasHost, hostPorts, HostRobot, stopHost } from './robot_host.js';
+import { hasHost, hostPorts, HostRobot, isPupil, isTeacher, stopHost } from './robot_host.js';
 import { keepKeys, keptKeys } from './robot_keys.js';
 import { readTrim, showTrim } from './robot_trim.js';
 import { chosenPort, hasSerial, knownPorts, SerialPort } from './robot_serial.js';
 import { refusal, shown } from './robot_said.js';
+import { Speech } from './robot_speech.js';
 import { Failed } from './robot_way.js';
 import { currentLanguage, hasText, text } from './texts.js';
 import { LINK, ROBOTS } from './words.js';
@@ -20,8 +21,6 @@ import { LINK, ROBOTS } from './words.js';
 /** @typedef {import('./robot_way.js').RobotEvent} RobotEvent */
 /** @typedef {import('./robot_way.js').Way} Way */
 /** @typedef {{label: string, connect: () => Promise<void>}} Choice */
-
-const SHOWN = 200; // lines of what the robot shows
 
 /**
  * @typedef {object} Page what the panel uses of the page
@@ -43,10 +42,7 @@ export class RobotPanel {
   #choices = [];
   /** @type {{program: string, places: Checked['places'], of: Checked} | null} */
   #sent = null;
-  /** @type {string[]} */
-  #shown = [];
-  /** What is said, so that it can be said in another language. @type {() => string} */
-  #said = () => '';
+  #speech = new Speech();
   #confirming = 0;
   #list = element('link_port', HTMLSelectElement);
   #line = element('link_line', HTMLInputElement);
@@ -60,10 +56,10 @@ export class RobotPanel {
       ['link_serial', () => this.#bySerial(chosenPort())],
       ['link_bluetooth', () => this.#byBluetooth()],
       ['link_leave', () => this.#way?.leave()],
-      ['link_identify', () => this.#ask({ do: 'identify' }, () => this.#say('say_identify', { name: this.#name }))],
+      ['link_identify', () => this.#ask({ do: 'identify' }, () => this.#speech.say('say_identify', { name: this.#name }))],
       ['link_upload', () => this.#upload(true)],
       ['link_send', () => this.#upload(false)],
-      ['link_start', () => this.#ask({ do: 'start' }, () => this.#say('say_started'))],
+      ['link_start', () => this.#ask({ do: 'start' }, () => this.#speech.say('say_started'))],
       ['link_rename', () => this.#rename()],
       ['trim_set', () => this.#trim()],
       ['trim_try', () => this.#live('F(2, 60)')],
@@ -94,30 +90,36 @@ export class RobotPanel {
   }
 
   setLanguage() {
-    element('link_said', HTMLElement).textContent = this.#said();
+    this.#speech.setLanguage();
     this.#show();
   }
 
-  /** Stops the robot; a page without one stops all that its `tsc studio` has. */
+  get isFree() {
+    return !this.#isBusy && !this.#way;
+  }
+
+  /** Stops the robot; a page without one, or a teacher's, stops all that its `tsc studio` has. */
   stop() {
+    if (hasHost && (isTeacher || !this.#way)) stopHost();
     if (this.#way) {
       this.#way.stop();
-      this.#say('say_stopping');
+      this.#speech.say('say_stopping');
       clearTimeout(this.#confirming);
-      this.#confirming = window.setTimeout(() => this.#say('say_not_confirmed'), LINK.confirm_ms);
-    } else if (hasHost) stopHost();
+      this.#confirming = window.setTimeout(() => this.#speech.say('say_not_confirmed'), LINK.confirm_ms);
+    }
   }
 
   #hide() {
     if (!this.#way) return;
     this.stop();
-    this.#say('say_hidden');
+    this.#speech.say('say_hidden');
   }
 
   // -- connecting ---------------------------------------------------------------------------------
 
   /** Lists what can be reached, and opens nothing. */
   async #look() {
+    if (isPupil) return; // whose robot is the one of the turn
     /** @type {Choice[]} */
     const found = [];
     let failed = null;
@@ -126,7 +128,7 @@ export class RobotPanel {
         for (const { port, name, description, virtual } of await hostPorts()) {
           const about = virtual === null ? description : `${text('virtual_known')} ${virtual}`;
           const label = shown([name, about, port].filter(Boolean).join(' · '));
-          found.push({ label, connect: () => this.#byHost(port) });
+          found.push({ label, connect: () => this.byHost(port) });
         }
       } catch (why) {
         failed = why;
@@ -139,14 +141,14 @@ export class RobotPanel {
     this.#list.replaceChildren(...found.map(({ label }) => new Option(label)));
     this.#show();
     if (this.#way) return;
-    if (failed instanceof Failed) this.#fail(failed);
-    else if (found.length) this.#say('say_choose');
-    else if (hasHost) this.#say('say_none');
-    else this.#say(hasSerial || hasBluetooth ? 'say_ways' : 'say_no_way');
+    if (failed instanceof Failed) this.#speech.fail(failed);
+    else if (found.length) this.#speech.say('say_choose');
+    else if (hasHost) this.#speech.say('say_none');
+    else this.#speech.say(hasSerial || hasBluetooth ? 'say_ways' : 'say_no_way');
   }
 
-  /** @param {string} port */
-  #byHost(port) {
+  /** Connects through `tsc studio`; a pupil's port is that of the turn. @param {string} port */
+  byHost(port = 'turn') {
     return this.#connect(async (heard) => {
       const way = new HostRobot(heard);
       return { way, met: way.connect(port, this.#page.robot(), currentLanguage()) };
@@ -177,7 +179,7 @@ export class RobotPanel {
   async #connect(open) {
     if (this.#isBusy || this.#way) return;
     this.#isBusy = true;
-    this.#say('say_connecting');
+    this.#speech.say('say_connecting');
     this.#show();
     /** @type {Way | null} */
     let way = null;
@@ -204,12 +206,12 @@ export class RobotPanel {
 
   /** @param {About} about */
   #begin(about) {
-    this.#shown = [];
+    this.#speech.clear();
     const isOther = about.robot !== null && about.robot !== this.#page.robot();
     if (about.robot !== null && isOther) this.#page.setRobot(about.robot);
-    if (about.owner === 'other') this.#say('say_owned', { name: this.#name });
-    else if (isOther) this.#say('say_other_kit', { name: this.#name, robot: String(about.robot) });
-    else this.#say('say_connected', { name: this.#name });
+    if (about.owner === 'other') this.#speech.say('say_owned', { name: this.#name });
+    else if (isOther) this.#speech.say('say_other_kit', { name: this.#name, robot: String(about.robot) });
+    else this.#speech.say('say_connected', { name: this.#name });
     element('link_rename_to', HTMLInputElement).value = shown(about.name);
     this.#way?.ask({ do: 'trim' }).then(({ trim }) => trim && showTrim(trim)).catch(() => {});
   }
@@ -220,8 +222,8 @@ export class RobotPanel {
     this.#about = null;
     this.#sent = null;
     clearTimeout(this.#confirming);
-    if (why.reason === 'left') this.#say('say_left');
-    else this.#fail(why);
+    if (why.reason === 'left') this.#speech.say('say_left');
+    else this.#speech.fail(why);
     this.#show();
   }
 
@@ -236,7 +238,7 @@ export class RobotPanel {
     try {
       const answer = await this.#way.ask(request);
       if (answer.ok) done(answer);
-      else this.#fail(new Failed(answer.failure ?? 'bug', refusal(answer)));
+      else this.#speech.fail(new Failed(answer.failure ?? 'bug', refusal(answer)));
     } catch {
       // it is over, and that was said
     }
@@ -246,15 +248,15 @@ export class RobotPanel {
   #upload(runs) {
     const program = this.#page.program();
     if (!program?.image) {
-      this.#say('first_repair');
+      this.#speech.say('first_repair');
       return;
     }
-    this.#say('say_sending');
-    this.#shown = [];
+    this.#speech.say('say_sending');
+    this.#speech.clear();
     this.#ask({ do: 'upload', image: program.image, robot: this.#page.robot(), runs }, (answer) => {
       const { program: sum = '', saved = 'MEMORY' } = answer;
       this.#sent = { program: sum, places: program.places, of: program };
-      this.#say('say_receipt', { program: sum, bytes: program.bytes }, `saved_${saved}`);
+      this.#speech.say('say_receipt', { program: sum, bytes: program.bytes }, `saved_${saved}`);
     });
   }
 
@@ -267,10 +269,10 @@ export class RobotPanel {
     const found = await this.#page.python.ask({ do: 'check', robot, language: currentLanguage() }, data);
     const mistake = found.findings.find((each) => each.severity === 'mistake');
     if (mistake) {
-      this.#tell([mistake.message, mistake.fix && `${text('try')} ${mistake.fix}`].filter(Boolean).join(' '));
+      this.#speech.tell([mistake.message, mistake.fix && `${text('try')} ${mistake.fix}`].filter(Boolean).join(' '));
       return;
     }
-    await this.#ask({ do: 'live', image: found.image, robot }, () => this.#say('say_line'));
+    await this.#ask({ do: 'live', image: found.image, robot }, () => this.#speech.say('say_line'));
   }
 
   #rename() {
@@ -278,7 +280,7 @@ export class RobotPanel {
     if (!name || new TextEncoder().encode(name).length > LINK.name_bytes) return;
     this.#ask({ do: 'name', name }, () => {
       if (this.#about) this.#about = { ...this.#about, name };
-      this.#say('say_named', { name: shown(name) });
+      this.#speech.say('say_named', { name: shown(name) });
       this.#show();
     });
   }
@@ -286,14 +288,14 @@ export class RobotPanel {
   #trim() {
     this.#ask({ do: 'trim', trim: readTrim() }, ({ trim }) => {
       if (trim) showTrim(trim);
-      this.#say('say_trimmed');
+      this.#speech.say('say_trimmed');
     });
   }
 
   #claim() {
-    this.#say('say_claiming');
+    this.#speech.say('say_claiming');
     const isHost = this.#way instanceof HostRobot;
-    this.#ask({ do: 'claim' }, () => this.#say(isHost ? 'say_claimed_here' : 'say_claimed'));
+    this.#ask({ do: 'claim' }, () => this.#speech.say(isHost ? 'say_claimed_here' : 'say_claimed'));
   }
 
   async #import() {
@@ -302,15 +304,15 @@ export class RobotPanel {
     input.value = '';
     if (!chosen) return;
     if (this.#way instanceof HostRobot) {
-      this.#say('say_keys_host');
+      this.#speech.say('say_keys_host');
       return;
     }
     try {
       const found = await this.#page.python.ask({ do: 'import_keys', kept: keptKeys() }, await bytesOf(chosen));
       if (found.count) keepKeys(found.keys);
-      this.#say(found.count ? 'say_keys' : 'say_no_keys', { count: found.count });
+      this.#speech.say(found.count ? 'say_keys' : 'say_no_keys', { count: found.count });
     } catch {
-      this.#say('say_no_keys');
+      this.#speech.say('say_no_keys');
     }
   }
 
@@ -318,15 +320,15 @@ export class RobotPanel {
 
   /** @param {RobotEvent} event */
   #hear(event) {
-    if (event.event === 'SHOW') this.#add(String(event.value));
-    else if (event.event === 'TEXT') this.#add(text('say_text', { said: shown(String(event.text)) }));
-    else if (event.event === 'MISSED') this.#add(text('say_missed', { count: Number(event.count) }));
-    else if (event.event === 'DONE') this.#say('say_done');
+    if (event.event === 'SHOW') this.#speech.add(String(event.value));
+    else if (event.event === 'TEXT') this.#speech.add(text('say_text', { said: shown(String(event.text)) }));
+    else if (event.event === 'MISSED') this.#speech.add(text('say_missed', { count: Number(event.count) }));
+    else if (event.event === 'DONE') this.#speech.say('say_done');
     else if (event.event === 'FAULT') this.#fault(event);
-    else if (event.event === 'LOST') this.#say('why_link_lost');
+    else if (event.event === 'LOST') this.#speech.say('why_link_lost');
     else if (event.event === 'STOPPED') {
       clearTimeout(this.#confirming);
-      if (document.visibilityState !== 'hidden') this.#say(`stopped_${event.cause}`);
+      if (document.visibilityState !== 'hidden') this.#speech.say(`stopped_${event.cause}`);
     }
   }
 
@@ -337,50 +339,13 @@ export class RobotPanel {
     const sent = this.#sent;
     const place = sent?.program === event.program ? sent?.places.findLast(([at]) => at <= Number(event.at)) : undefined;
     if (!place) {
-      this.#tell(what);
+      this.#speech.tell(what);
       return;
     }
     const [, line, column, end_line, end_column] = place;
-    this.#tell(text('say_fault', { line, what }));
+    this.#speech.tell(text('say_fault', { line, what }));
     // else the places are those of another text
     if (this.#page.program() === sent?.of) this.#page.goTo({ line, column, end_line, end_column });
-  }
-
-  /** @param {Failed} why */
-  #fail(why) {
-    clearTimeout(this.#confirming);
-    const key = `why_${why.reason}`;
-    const said = shown(why.said, 1000);
-    const isOurs = hasText(key) && (!said || why.reason.startsWith('link_'));
-    this.#said = () => (isOurs ? text(key) : said || text('why_bug'));
-    element('link_said', HTMLElement).textContent = this.#said();
-    document.documentElement.dataset['link'] = why.reason;
-  }
-
-  /**
-   * @param {string} key
-   * @param {Record<string, string | number>} values
-   * @param {string} [saved]
-   */
-  #say(key, values = {}, saved = '') {
-    this.#said = () => text(key, saved ? { ...values, saved: text(saved) } : values);
-    element('link_said', HTMLElement).textContent = this.#said();
-    document.documentElement.dataset['link'] = key;
-  }
-
-  /** @param {string} said */
-  #tell(said) {
-    this.#said = () => said;
-    element('link_said', HTMLElement).textContent = said;
-  }
-
-  /** @param {string} line */
-  #add(line) {
-    this.#shown.push(line);
-    if (this.#shown.length > SHOWN) this.#shown.splice(0, this.#shown.length - SHOWN);
-    const list = element('link_shown', HTMLElement);
-    list.textContent = this.#shown.join('\n');
-    list.scrollTop = list.scrollHeight;
   }
 
   #show() {
@@ -394,7 +359,6 @@ export class RobotPanel {
     element('link_ports', HTMLElement).hidden = !hasHost && !this.#choices.length;
     element('link_identify', HTMLButtonElement).hidden = !isThere;
     for (const id of ['link_connect', 'link_serial', 'link_bluetooth']) element(id, HTMLButtonElement).disabled = this.#isBusy;
-    element('link_shown', HTMLElement).textContent = this.#shown.join('\n');
     document.documentElement.dataset['robot'] = isThere ? 'connected' : this.#isBusy ? 'connecting' : 'none';
   }
 }

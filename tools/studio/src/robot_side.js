@@ -1,10 +1,11 @@
-// Which robot is seen beside the program: the virtual one or a real one. Both go on meanwhile.
+// What is seen beside the program: the virtual robot, a real one, or a teacher's class. All go on meanwhile.
 
 import { element } from './elements.js';
 
 const SIDES = [
   { button: element('side_virtual', HTMLButtonElement), section: element('driving', HTMLElement) },
   { button: element('side_real', HTMLButtonElement), section: element('link', HTMLElement) },
+  { button: element('side_class', HTMLButtonElement), section: element('class', HTMLElement) },
 ];
 
 export function chooseSide() {

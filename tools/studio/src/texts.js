@@ -1,6 +1,7 @@
 // Every sentence of the page, in English and Spanish. What is said of programs comes from the
 // compiler.
 
+import { CLASS_TEXTS } from './class_texts.js';
 import { ROBOT_TEXTS } from './robot_texts.js';
 
 /** @typedef {'en' | 'es'} Language */
@@ -8,6 +9,7 @@ import { ROBOT_TEXTS } from './robot_texts.js';
 /** @type {Record<string, [string, string]>} */
 export const TEXTS = {
   ...ROBOT_TEXTS,
+  ...CLASS_TEXTS,
   title: ['TiniScript Studio', 'TiniScript Studio'],
   robot: ['Robot', 'Robot'],
   language: ['Language', 'Idioma'],

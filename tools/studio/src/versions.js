@@ -3,6 +3,7 @@
 // What is kept may be damaged, or from another tab: it is read anew each time, and all is checked.
 
 import { isRobot } from './words.js';
+import { keepsNothing } from './work.js';
 
 /** @typedef {{text: string, robot: string, name: string, at_ms: number}} Version */
 
@@ -28,7 +29,7 @@ export function versions() {
  * @returns {boolean}
  */
 export function keepVersion({ text, robot, name }, at_ms = Date.now()) {
-  if (!text.trim()) return true;
+  if (!text.trim() || keepsNothing()) return true;
   const others = versions().filter((each) => each.text !== text || each.robot !== robot);
   const all = [{ text, robot, name, at_ms }, ...others].slice(0, MOST);
   while (all.length > 1 && all.reduce((sum, each) => sum + each.text.length, 0) > MOST_CHARACTERS) all.pop();

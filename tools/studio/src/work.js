@@ -7,7 +7,27 @@ import { isRobot, WORLDS } from './words.js';
 /** @typedef {{text: string, robot: string, world: string, language: 'en' | 'es', name: string, view: 'blocks' | 'text', level: 'few' | 'usual' | 'all'}} Work */
 
 const PLACE = 'tiniscript.work';
+const OURS = 'tiniscript.'; // all places of this page
 const LONGEST = 1_000_000; // characters
+
+let isForgotten = false;
+
+/** Deletes all that this page has kept on this device; it keeps nothing from then on. */
+export function forgetAll() {
+  isForgotten = true;
+  for (const name of ['sessionStorage', 'localStorage']) {
+    try {
+      const storage = /** @type {any} */ (window)[name];
+      for (const place of Object.keys(storage)) if (place.startsWith(OURS)) storage.removeItem(place);
+    } catch {
+      // no storage here
+    }
+  }
+}
+
+export function keepsNothing() {
+  return isForgotten;
+}
 
 /** @returns {Work | null} */
 export function keptWork() {
@@ -29,6 +49,7 @@ export function keptWork() {
  * @returns {boolean}
  */
 export function keep(work) {
+  if (isForgotten) return true;
   const whole = JSON.stringify(work);
   let isKept = false;
   for (const storage of ['sessionStorage', 'localStorage']) {

@@ -6,6 +6,7 @@ import socket
 import sys
 import webbrowser
 from argparse import Namespace
+from ipaddress import IPv4Address
 from threading import Thread
 from typing import TYPE_CHECKING
 
@@ -31,11 +32,11 @@ def run(options: Namespace, language: str) -> int:
     from tiniscript.studio.hosting import Hosting
 
     hosting, classroom = Hosting(), None
-    host = options.address or serving.HOST
+    host = serving.HOST
     if options.is_class:
         from tiniscript.studio.classroom import Classroom
 
-        host = options.address or _address()
+        host = _given(options.address) if options.address else _address()
         classroom = Classroom(hosting, _ports(options.ports), 60 * minutes)
     elif options.address or options.ports or options.turn:
         raise CommandError(2, "studio_needs_class")
@@ -43,9 +44,9 @@ def run(options: Namespace, language: str) -> int:
         server = _server(port, host, hosting, classroom)
     except serving.NotBuilt:
         raise CommandError(2, "studio_not_built") from None
-    except (OSError, UnicodeError) as why:
+    except OSError as why:
         address = f"http://{host}:{port}/"
-        reason = getattr(why, "strerror", None) or str(why)
+        reason = why.strerror or str(why)
         key = "studio_no_address" if options.is_class else "studio_taken"
         raise CommandError(
             3, key, port=str(port), why=shown(reason), address=shown(address)
@@ -91,6 +92,17 @@ def _address() -> str:
             return str(asked.getsockname()[0])
         except OSError:
             raise CommandError(3, "studio_no_network") from None
+
+
+def _given(address: str) -> str:
+    """Return the address of --address, which has no other form: Host must be exactly this."""
+    try:
+        found = IPv4Address(address)
+    except ValueError:
+        found = IPv4Address(0)
+    if found.is_unspecified or found.is_multicast:
+        raise CommandError(2, "studio_bad_address", found=shown(address))
+    return str(found)
 
 
 def _ports(found: list[str] | None) -> list[str]:

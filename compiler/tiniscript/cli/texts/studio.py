@@ -17,6 +17,8 @@ STUDIO_TEXTS: dict[str, tuple[str, str]] = {
                           "tsc: esta computadora no está en ninguna red a la que lleguen los alumnos. Conéctala al WiFi del aula, o di su dirección con --address."),
     "studio_no_address": ("tsc: the class cannot be at {address}: {why}. Is another tsc studio running? Else choose another port with --listen, or an address that this computer has with --address.",
                           "tsc: la clase no puede estar en {address}: {why}. ¿Hay otro tsc studio? Si no, elige otro puerto con --listen, o una dirección que tenga esta computadora con --address."),
+    "studio_bad_address": ("tsc: --address takes an address of this computer in the room's network, such as 192.168.1.5, not {found}.",
+                           "tsc: --address lleva una dirección de esta computadora en la red del aula, como 192.168.1.5, no {found}."),
     "studio_needs_class": ("tsc: --address, --port and --turn are for a class. Add --class.",
                            "tsc: --address, --port y --turn son para una clase. Agrega --class."),
 }

@@ -1,0 +1,299 @@
+"""A class in browsers: pupils at an address of the network, a teacher, and robots behind ptys.
+
+`python -m tests.studio.test_page_class 30` lets thirty pupils share four robots.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack
+from typing import TYPE_CHECKING
+
+import pytest
+
+from tests.studio.test_page_for_everyone import LOOK, SCREENS
+from tests.support import studio
+from tests.support.command import FOREVER
+from tests.support.pty_robot import PtyRobot
+from tests.support.studio import Class, Pages, checked, write
+from tiniscript import robots
+from tools.builds.studio import MODULES
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page
+
+KIT = robots.load("tinibot").kit
+HOSTILE = "<img src=x onerror=1>"
+
+
+@pytest.fixture
+def robot() -> Iterator[PtyRobot]:
+    with PtyRobot(KIT) as made:
+        yield made
+
+
+@pytest.fixture
+def taught(robot: PtyRobot, browser: Browser) -> Iterator[Class]:
+    with studio.taught([robot.port]) as made:
+        yield made
+
+
+@pytest.fixture
+def pages(browser: Browser, taught: Class) -> Iterator[Pages]:
+    found = Pages(browser, taught.server.address)
+    yield found
+    found.close()
+    assert not found.wrong
+
+
+def said(page: Page, text: str) -> None:
+    page.locator("#class_pupil [role=status]").filter(has_text=text).wait_for()
+
+
+def linked(page: Page, text: str) -> None:
+    page.locator("#link_said").filter(has_text=text).wait_for()
+
+
+def joined(pages: Pages, taught: Class, name: str) -> Page:
+    page = pages.open()
+    page.click("#side_real")
+    page.locator("#class_pupil input").nth(0).fill(taught.room.code.lower())
+    page.locator("#class_pupil input").nth(1).fill(name)
+    page.keyboard.press("Enter")
+    said(page, "You are in the class, ")
+    return page
+
+
+def asks(page: Page) -> None:
+    page.click("[data-text=class_ask]")
+
+
+def teaches(pages: Pages, taught: Class) -> Page:
+    page = pages.visit(taught.server.entrance)
+    page.locator("[data-teacher=class_count]").wait_for(state="attached")
+    return page
+
+
+def drives(page: Page, robot: PtyRobot) -> None:
+    write(page, FOREVER)
+    page.click("#link_upload")
+    linked(page, "The robot has it")
+    robot.until(lambda: robot.moves, "it drives")
+
+
+def test_three_pupils_share_a_robot(pages: Pages, taught: Class, robot: PtyRobot) -> None:
+    ana, luz, teo = (joined(pages, taught, name) for name in ("Ana", "Luz", "Teo"))
+    teacher = teaches(pages, taught)
+    asks(ana)
+    said(ana, "It is your turn. Nobody waits.")
+    linked(ana, "Connected: ")
+    asks(luz)
+    said(luz, "Your place in the queue: 1 of 1.")
+    asks(teo)
+    said(teo, "Your place in the queue: 2 of 2.")
+    said(ana, "It is your turn. Time left: ")
+    drives(ana, robot)
+    # Only the own robot is stopped by a pupil.
+    luz.click("#stop")
+    luz.keyboard.press("Escape")
+    time.sleep(0.5)
+    assert robot.moves
+    rows = teacher.locator("#class ul").first.locator("li")
+    rows.nth(0).filter(has_text="Ana drives ").wait_for()
+    rows.nth(2).filter(has_text="Teo waits, place 2").wait_for()
+    rows.nth(0).locator("[data-text=class_see]").click()
+    teacher.locator("#class pre").filter(has_text=FOREVER.split(";")[0]).wait_for()
+    teacher.click("#stop")
+    robot.until(lambda: not robot.moves, "the teacher stops it")
+    linked(ana, "Stopped: the robot has confirmed it.")
+    drives(ana, robot)
+    rows.nth(0).locator("[data-text=stop]").click()
+    robot.until(lambda: not robot.moves, "the teacher stops this one")
+    drives(ana, robot)
+    rows.nth(0).locator("[data-text=class_next]").click()
+    robot.until(lambda: not robot.moves, "the turn is over")
+    linked(ana, "Your turn is over, and the robot was stopped.")
+    linked(luz, "Connected: ")
+    luz.click("#link_leave")
+    linked(teo, "Connected: ")
+    drives(teo, robot)
+    teo.close()
+    robot.until(lambda: not robot.moves, "a page that is closed stops it")
+
+
+def test_a_page_that_hangs_stops_its_robot(pages: Pages, taught: Class, robot: PtyRobot) -> None:
+    ana = joined(pages, taught, "Ana")
+    asks(ana)
+    linked(ana, "Connected: ")
+    drives(ana, robot)
+    began_s = time.monotonic()
+    ana.evaluate("() => { setTimeout(() => { const end = performance.now() + 2500;"
+                 " while (performance.now() < end); }, 0); }")  # fmt: skip
+    robot.until(lambda: not robot.moves, "it stands")
+    assert time.monotonic() - began_s < 1.5
+
+
+def test_what_plain_http_has_not_is_not_offered(pages: Pages, taught: Class) -> None:
+    page = joined(pages, taught, "Ana")
+    if not page.evaluate("isSecureContext"):  # it is where there is no network
+        for name in ("serial", "bluetooth", "serviceWorker", "clipboard"):
+            assert not page.evaluate(f"'{name}' in navigator && !!navigator.{name}")
+        page.click("#my_programs")
+        page.click("#share_line")
+        page.locator("#programs[data-shared=done]").wait_for()
+        assert not page.locator("#copy").is_visible()
+        page.click("#programs_close")
+    for name in ("#link_serial", "#link_bluetooth", "#keys_import", "#link_port", "#keys_claim"):
+        assert not page.locator(name).is_visible()
+    assert not page.locator("#side_class").is_visible()
+
+
+def test_a_wrong_code_is_said_and_a_pupil_is_removed(pages: Pages, taught: Class) -> None:
+    page = pages.open(locale="es-AR")
+    page.click("#side_real")
+    page.locator("#class_pupil input").nth(0).fill("000000")
+    page.locator("#class_pupil input").nth(1).fill(HOSTILE)
+    page.click("[data-text=class_join]")
+    said(page, "Ese no es el código de esta clase.")
+    page.locator("#class_pupil input").nth(0).fill(taught.room.code)
+    page.click("[data-text=class_join]")
+    said(page, "Estás en la clase, ")
+    page.reload()  # a tab keeps its place
+    checked(page)
+    page.click("#side_real")
+    said(page, f"Estás en la clase, {HOSTILE}"[:40])
+    teacher = teaches(pages, taught)
+    row = teacher.locator("#class ul").first.locator("li")
+    row.filter(has_text=HOSTILE).wait_for()
+    assert teacher.locator("#class img").count() == page.locator("#class_pupil img").count() == 0
+    row.locator("[data-text=class_remove]").click()
+    said(page, "Ahora no estás en la clase.")
+    row.wait_for(state="detached")
+    assert [each for each in pages.wrong if "403" not in each] == []
+    pages.wrong.clear()
+
+
+@pytest.mark.parametrize("erases", [True, False])
+def test_the_end(pages: Pages, taught: Class, erases: bool) -> None:
+    ana = joined(pages, taught, "Ana")
+    write(ana, "F(1, 33)")
+    ana.click("#my_programs")
+    ana.click("#new")
+    teacher = teaches(pages, taught)
+    assert taught.server.token not in teacher.evaluate("location.href")
+    if erases:
+        teacher.check("#class input[type=checkbox]")
+    teacher.click("[data-text=class_end]")
+    teacher.click("[data-text=class_end_sure]")
+    teacher.locator("[data-teacher=class_over]").wait_for(state="attached")
+    ana.locator(f"[data-pupil={'class_erased' if erases else 'class_kept'}]").wait_for(
+        state="attached"
+    )
+    checked(ana)
+    kept = "JSON.stringify(localStorage) + JSON.stringify(sessionStorage)"
+    found = ana.evaluate(kept)
+    assert ("F(1, 33)" in found) is not erases
+    if erases:
+        assert "tiniscript." not in found
+        write(ana, "F(1, 44)")  # what is written now is kept nowhere
+        assert "tiniscript." not in ana.evaluate(kept)
+    assert taught.room.has_ended
+
+
+def test_robots_are_given_and_taken(pages: Pages, taught: Class, robot: PtyRobot) -> None:
+    ana = joined(pages, taught, "Ana")
+    asks(ana)
+    linked(ana, "Connected: ")
+    teacher = teaches(pages, taught)
+    teacher.click("[data-text=class_take]")
+    linked(ana, "Your turn is over, and the robot was stopped.")
+    said(ana, "Robots: 0.")
+    teacher.click("#class [data-text=link_look]")
+    teacher.locator("#class select option").first.wait_for(state="attached")
+    assert robot.port in teacher.locator("#class select").inner_text()
+    teacher.locator("#class select").select_option(robot.port)
+    teacher.click("[data-text=class_give]")
+    said(ana, "Robots: 1.")
+
+
+def test_a_robot_that_is_off_is_said(pages: Pages, taught: Class, robot: PtyRobot) -> None:
+    robot.switch_off()
+    ana = joined(pages, taught, "Ana")
+    asks(ana)
+    linked(ana, "Nothing answers.")
+    said(ana, "You are in the class, ")
+
+
+def test_everything_is_seen_and_axe_finds_nothing(pages: Pages, taught: Class) -> None:
+    ana = joined(pages, taught, "A" * 24)
+    asks(ana)
+    linked(ana, "Connected: ")
+    for page in (ana, teaches(pages, taught)):
+        for width, height in SCREENS:
+            page.set_viewport_size({"width": width, "height": height})
+            for language in ("en", "es"):
+                page.select_option("#language", language)
+                checked(page)
+                assert page.evaluate(LOOK) == []
+        page.evaluate((MODULES / "axe-core" / "axe.min.js").read_text(encoding="utf-8"))
+        found = page.evaluate("axe.run()")
+        assert [(each["id"], each["nodes"][0]["html"]) for each in found["violations"]] == []
+
+
+def lesson(pupils: int, robots_count: int, turn_s: int = 10) -> None:
+    """Let pupils in contexts of their own ask for a robot, run a program, and give it back."""
+    with ExitStack() as stack:
+        found = [stack.enter_context(PtyRobot(KIT)) for _ in range(robots_count)]
+        taught = stack.enter_context(studio.taught([each.port for each in found], turn_s))
+        playwright = stack.enter_context(studio.driver())
+        browser = stack.enter_context(studio.browser(playwright))
+        pages = Pages(browser, taught.server.address)
+        began_s = time.monotonic()
+        rooms = []
+        for k in range(pupils):
+            page = joined(pages, taught, f"Pupil {k + 1}")
+            page.set_default_timeout(1000 * (60 + turn_s * pupils))
+            write(page, f"F(0.2, {40 + k % 40});\nSHOW({k + 1})")
+            rooms.append(page)
+        print(f"{pupils} pupils are in the class after {time.monotonic() - began_s:.0f} s")
+        began_s = time.monotonic()
+        for page in rooms:
+            asks(page)
+        waiting = dict(enumerate(rooms))
+        shown: dict[int, float] = {}
+        while waiting:
+            for k, page in list(waiting.items()):
+                if page.get_attribute("html", "data-robot") != "connected":
+                    continue
+                page.click("#link_upload")
+                linked(page, "Done.")
+                assert page.locator("#link_shown").inner_text() == str(k + 1)
+                page.click("#link_leave")
+                shown[k] = time.monotonic() - began_s
+                del waiting[k]
+            rooms[0].wait_for_timeout(50)
+        slowest_s = max(shown.values())
+        print(f"each has run a program on one of {robots_count} robots after {slowest_s:.0f} s")
+        drivers = rooms[:robots_count]
+        for page in drivers:
+            asks(page)
+            linked(page, "Connected: ")
+            write(page, FOREVER)
+            page.click("#link_upload")
+            linked(page, "The robot has it")
+        for robot in found:
+            robot.until(lambda robot=robot: robot.moves, "it drives")  # type: ignore[misc]
+        teacher = teaches(pages, taught)
+        began_s = time.monotonic()
+        teacher.click("#stop")
+        for robot in found:
+            robot.until(lambda robot=robot: not robot.moves, "it stands")  # type: ignore[misc]
+        took_ms = 1000 * (time.monotonic() - began_s)
+        print(f"the teacher's STOP stops {robots_count} in {took_ms:.0f} ms")
+        assert not pages.wrong, pages.wrong[:3]
+
+
+if __name__ == "__main__":
+    lesson(int(sys.argv[1]) if len(sys.argv) > 1 else 30, 4)

@@ -1,0 +1,199 @@
+"""A class at an address of the network: who is answered there, and what keeps nobody out.
+
+`STRANGERS=10000 pytest -k many tests/studio/test_serving_class.py` takes a minute.
+"""
+
+from __future__ import annotations
+
+import gzip
+import json
+import os
+import socket
+import time
+from collections.abc import Iterator
+from http.client import HTTPConnection, HTTPResponse
+from pathlib import Path
+from threading import Thread, active_count
+
+import pytest
+
+from tests.support.command import process
+from tests.support.studio import Class
+from tiniscript.studio import serving
+from tiniscript.studio.classroom import Classroom
+from tiniscript.studio.hosting import Hosting
+
+HOST = "127.0.0.2"  # here it stands for an address of the network
+ELSEWHERE = "127.0.0.3"
+STRANGERS = int(os.environ.get("STRANGERS", "2000"))
+
+
+@pytest.fixture
+def taught(tmp_path: Path) -> Iterator[Class]:
+    (tmp_path / "index.html").write_text('<!doctype html>\n<html lang="en">\n' + "x" * 5000)
+    room = Classroom(Hosting(), [])
+    page = serving.for_class(serving.files(tmp_path))
+    try:
+        server = serving.Server(page, 0, room.teach, room, HOST)
+    except OSError:
+        pytest.skip("this system has no 127.0.0.2")
+    thread = Thread(target=server.serve_forever, args=(0.02,), daemon=True)
+    thread.start()
+    yield Class(server, room)
+    server.shutdown()
+    server.server_close()
+    thread.join()
+
+
+def own(taught: Class) -> str:
+    return f"{HOST}:{taught.server.server_port}"
+
+
+def post(taught: Class, request: object, **headers: str) -> int:
+    """Post as a page of the class does; return the status."""
+    connection = HTTPConnection(own(taught), timeout=10)
+    given = {"Host": own(taught), "Origin": f"http://{own(taught)}", serving.TOKEN: ""}
+    try:
+        connection.request("POST", serving.ROBOTS, json.dumps(request), {**given, **headers})
+        return connection.getresponse().status
+    finally:
+        connection.close()
+
+
+def joins(taught: Class) -> str:
+    request = {"do": "join", "code": taught.room.code, "name": "Ana"}
+    return str(taught.room.answer("", ELSEWHERE, request)["token"])
+
+
+@pytest.mark.parametrize(
+    "host", ["127.0.0.1", "localhost", "evil.example", HOST, f"{HOST}.", "PORT.127.0.0.2"]
+)
+def test_the_host_is_the_shown_address_exactly(taught: Class, host: str) -> None:
+    port = taught.server.server_port
+    for name in (host, f"{host}:{port}", f"{host}:1"):
+        if name == own(taught):
+            continue
+        assert post(taught, {"do": "join"}, Host=name) == 403
+        assert post(taught, {"do": "join"}, Origin=f"http://{name}") == 403
+        assert page_of(taught, {"Host": name}).status == 403
+    assert post(taught, {"do": "join", "code": "", "name": ""}) == 200
+
+
+def page_of(taught: Class, headers: dict[str, str]) -> HTTPResponse:
+    connection = HTTPConnection(own(taught), timeout=10)
+    connection.request("GET", "/", headers=headers)
+    found = connection.getresponse()
+    found.read()
+    connection.close()
+    return found
+
+
+def test_the_page_is_packed_marked_and_fetched_once(taught: Class) -> None:
+    connection = HTTPConnection(own(taught), timeout=10)
+    connection.request("GET", "/", headers={"Accept-Encoding": "gzip, deflate"})
+    answer = connection.getresponse()
+    data = answer.read()
+    assert answer.getheader("Content-Encoding") == "gzip" and len(data) < 500
+    assert b'<html lang="en" data-class>' in gzip.decompress(data)
+    assert answer.getheader("Vary") == "Accept-Encoding"
+    assert answer.getheader("Cross-Origin-Opener-Policy") is None
+    assert "default-src 'none'" in str(answer.getheader("Content-Security-Policy"))
+    tag = str(answer.getheader("ETag"))
+    connection.request("GET", "/", headers={"If-None-Match": tag})
+    again = connection.getresponse()
+    assert (again.status, again.read()) == (304, b"")
+    connection.request("GET", "/")
+    assert connection.getresponse().read().endswith(b"xxx")
+    connection.close()
+
+
+def test_a_token_opens_its_own_door_alone(taught: Class) -> None:
+    ana, teacher = joins(taught), taught.server.token
+    assert post(taught, {"do": "here"}, **{serving.TOKEN: ana}) == 200
+    assert post(taught, {"do": "class"}, **{serving.TOKEN: ana}) == 400
+    assert post(taught, {"do": "class"}, **{serving.TOKEN: teacher}) == 200
+    assert post(taught, {"do": "here"}, **{serving.TOKEN: teacher}) == 400
+    assert post(taught, {"do": "class"}) == 400
+    assert post(taught, {"do": "class"}, **{serving.TOKEN: "0" * 32}) == 403
+    assert post(taught, {"do": "here"}, **{serving.TOKEN: f"{ana}, {teacher}"}) == 403
+
+
+def test_who_has_no_token_sends_little(taught: Class) -> None:
+    request = {"do": "join", "code": "", "name": "x" * 2000}
+    assert post(taught, request) == 400
+    ana = joins(taught)
+    assert post(taught, {"do": "here", "text": "x" * 150_000}, **{serving.TOKEN: ana}) == 200
+    assert post(taught, {"do": "here", "text": "x" * 300_000}, **{serving.TOKEN: ana}) == 400
+
+
+def test_many_connections_keep_nobody_out(taught: Class) -> None:
+    """They come from one computer, say nothing or half a request, now and then a letter more. A
+    pupil's connection stays, and a new pupil of another computer is answered."""
+    token = joins(taught)
+    headers = {"Origin": f"http://{own(taught)}", serving.TOKEN: token}
+    pupil = HTTPConnection(own(taught), timeout=10)
+    pupil.request("POST", serving.ROBOTS, '{"do": "here"}', headers)
+    assert pupil.getresponse().read()
+    kept, before, slowest_s = pupil.sock, active_count(), 0.0
+    strangers: list[socket.socket] = []
+    try:
+        for k in range(STRANGERS):
+            stranger = socket.create_connection(
+                (HOST, taught.server.server_port), timeout=10, source_address=(ELSEWHERE, 0)
+            )
+            strangers.append(stranger)
+            if k % 2:
+                stranger.sendall(b"POST /robots HTTP/1.1\r\nHost: ")
+            if k % 500 == 499:
+                began_s = time.monotonic()
+                pupil.request("POST", serving.ROBOTS, '{"do": "here"}', headers)
+                assert pupil.getresponse().read()
+                assert page_of(taught, {}).status == 200
+                slowest_s = max(slowest_s, time.monotonic() - began_s)
+            if len(strangers) > 600:  # those that the server has closed
+                strangers.pop(0).close()
+        assert pupil.sock is kept
+        assert slowest_s < 2
+        assert active_count() - before <= serving.CLASS_CONNECTIONS + 30
+    finally:
+        for each in strangers:
+            each.close()
+        pupil.close()
+
+
+def test_a_slow_stranger_does_not_close_who_loads_the_page(taught: Class) -> None:
+    """The address that has most connections loses one, not the one that asked first."""
+    early = HTTPConnection(own(taught), timeout=10)
+    early.connect()
+    strangers = [
+        socket.create_connection(
+            (HOST, taught.server.server_port), timeout=10, source_address=(ELSEWHERE, 0)
+        )
+        for _ in range(serving.CLASS_CONNECTIONS + 50)
+    ]
+    early.request("GET", "/")
+    assert early.getresponse().status == 200
+    early.close()
+    for each in strangers:
+        each.close()
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "said"),
+    [
+        (("--turn", "2"), 2, "Add --class."),
+        (("--address", "127.0.0.1"), 2, "Add --class."),
+        (("--port", "/dev/x"), 2, "Add --class."),
+        (("--class", "--turn", "0"), 2, "--turn"),
+        (("--class", "--address", "203.0.113.5"), 3, "--address."),
+        (("--class", "--address", "x y\x1b[2J"), 2, "192.168.1.5"),
+        (("--class", "--address", "\u00fc" * 300), 2, "192.168.1.5"),
+        (("--class", "--address", "0.0.0.0"), 2, "192.168.1.5"),
+        (("--class", "--address", "127.0.0.1", "--port", "a\nb"), 2, "port"),
+    ],
+    ids=range(9),
+)
+def test_the_command_says_what_is_wrong(words: tuple[str, ...], code: int, said: str) -> None:
+    done = process("studio", "--no-browser", "--lang", "en", *words)
+    assert done.code == code and said in done.err, done.err
+    assert "\x1b" not in done.err and "Traceback" not in done.err

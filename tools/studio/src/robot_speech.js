@@ -1,0 +1,66 @@
+// What the panel of a real robot says, and what the robot shows: as text, never as markup.
+
+import { element } from './elements.js';
+import { shown } from './robot_said.js';
+import { hasText, text } from './texts.js';
+
+/** @typedef {import('./robot_way.js').Failed} Failed */
+
+const SHOWN = 200; // lines of what the robot shows
+const SAID_CHARACTERS = 1000;
+
+export class Speech {
+  /** What is said, so that it can be said in another language. @type {() => string} */
+  #said = () => '';
+  /** @type {string[]} */
+  #shown = [];
+  #line = element('link_said', HTMLElement);
+  #list = element('link_shown', HTMLElement);
+
+  setLanguage() {
+    this.#line.textContent = this.#said();
+  }
+
+  /** @param {Failed} why */
+  fail(why) {
+    const key = `why_${why.reason}`;
+    const said = shown(why.said, SAID_CHARACTERS);
+    const isOurs = hasText(key) && (!said || why.reason.startsWith('link_'));
+    this.#put(() => (isOurs ? text(key) : said || text('why_bug')), why.reason);
+  }
+
+  /**
+   * @param {string} key
+   * @param {Record<string, string | number>} values
+   * @param {string} [saved]
+   */
+  say(key, values = {}, saved = '') {
+    this.#put(() => text(key, saved ? { ...values, saved: text(saved) } : values), key);
+  }
+
+  /** @param {string} said */
+  tell(said) {
+    this.#said = () => said;
+    this.setLanguage();
+  }
+
+  /** @param {() => string} said @param {string} name for tests */
+  #put(said, name) {
+    this.#said = said;
+    this.setLanguage();
+    document.documentElement.dataset['link'] = name;
+  }
+
+  /** @param {string} line */
+  add(line) {
+    this.#shown.push(line);
+    if (this.#shown.length > SHOWN) this.#shown.splice(0, this.#shown.length - SHOWN);
+    this.#list.textContent = this.#shown.join('\n');
+    this.#list.scrollTop = this.#list.scrollHeight;
+  }
+
+  clear() {
+    this.#shown = [];
+    this.#list.textContent = '';
+  }
+}
