@@ -68,6 +68,52 @@ def test_registers_are_restored_in_the_opposite_order() -> None:
     assert popped == pushed[::-1]
 
 
+RESTORED = (
+    "in r28,__SP_L__; in r29,__SP_H__; ldi r30, lo8({0}); "
+    "jmp __epilogue_restores__ + ((18 - {0}) * 2)"
+)
+
+
+def restored(name: str, body: str, kept: tuple[int, ...]) -> str:
+    """Return a function that pushes registers and restores them by libgcc."""
+    text = function(name, body, kept)
+    end = text.index("/* epilogue start */\n") + len("/* epilogue start */\n")
+    rows = RESTORED.format(len(kept)).split("; ")
+    return text[:end] + "".join(f"\t{row}\n" for row in rows) + text[text.index("\t.size") :]
+
+
+def test_a_function_may_begin_and_end_differently() -> None:
+    kept = (14, 15, 16, 17, 28, 29)
+    found = shorter("".join(restored(f"f{each}", f"call g{each}", kept) for each in range(3)))
+    for at in range(3):
+        last = [f"call g{at}", "jmp tiniscript_restore_0_r14"]
+        assert lines_of(found, f"f{at}")[:3] == ["call tiniscript_keep_0_r14", *last]
+    assert "__epilogue_restores__" not in found
+
+
+def test_a_function_whose_begin_keeps_other_registers_than_its_end_stays() -> None:
+    text = "".join(restored(f"f{each}", f"call g{each}", (16, 17, 28, 29)) for each in range(4))
+    text = text.replace("\tpush r16\n", "")
+    assert shorter(text) == text
+
+
+def test_a_function_keeps_more_registers_where_others_need_them() -> None:
+    most, fewer = (14, 15, 16, 17, 28, 29), (15, 16, 17, 28, 29)
+    text = "".join(function(f"f{each}", f"call g{each}", most) for each in range(3))
+    found = shorter(text + function("h", "call i", fewer) + function("j", "call k", (14, 28, 29)))
+    for name in ("h", "j"):
+        assert lines_of(found, name)[0] == "call tiniscript_keep_0_r14", name
+        assert "jmp tiniscript_restore_0_r14" in lines_of(found, name), name
+
+
+def test_a_function_that_needs_far_fewer_registers_keeps_those() -> None:
+    most = (*range(8, 18), 28, 29)
+    text = "".join(function(f"f{each}", f"call g{each}", most) for each in range(3))
+    found = shorter(text + function("h", "call i", (16, 17, 28, 29)))
+    assert lines_of(found, "h")[:2] == ["push r16", "push r17"]
+    assert "call tiniscript_keep_0_r8" in found
+
+
 def test_what_an_interrupt_reaches_stays_as_it_is() -> None:
     names = [f"f{number}" for number in range(6)]
     body = "lds r24,a; lds r25,b; lds r22,c"
@@ -180,5 +226,5 @@ def test_the_sketch_is_made_shorter(
     needed()
     elf = firmware("uno", tmp_path, shared(tmp_path_factory))
     said = subprocess.run(["avr-nm", elf], capture_output=True, text=True, check=True).stdout
-    for name in (r"tiniscript_keep_\d_r28", r"tiniscript_part_\d_0"):
+    for name in (r"tiniscript_keep_\d_r\d+", r"tiniscript_part_\d_0"):
         assert re.search(rf" t {name}$", said, re.MULTILINE), name

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 LONG = ("call", "jmp", "lds", "sts", "asm")  # take 4 bytes, or may
 SKIPS = ("cpse", "sbrc", "sbrs", "sbic", "sbis")
+BODY, ENDING = "/* prologue: function */", "/* epilogue start */"
 FIXED = ("asm", "push", "pop", "ret", "jmp", "rjmp", "ijmp")
 
 INSTRUCTION = re.compile(r"\t([a-z]+)(?:[ \t]+(.*?))?[ \t]*$")

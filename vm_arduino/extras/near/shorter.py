@@ -18,6 +18,7 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from assembly import (
+    BODY,
     LABEL,
     Function,
     Instruction,
@@ -29,6 +30,7 @@ from assembly import (
     reached,
     regions,
 )
+from registers import share_registers
 
 REACH = 3800  # bytes: a call or a jump over less than that takes 2 of them
 REGION = 5400  # bytes on each side of what a region shares: some of its calls are long
@@ -40,14 +42,8 @@ QUICK = re.compile(
     r"4Link4hear|4Link5start|FrameCheck|begin_run|7Machine(3act|6powers|4wait|5begin|5sleep|4tick)|"
     r"(robot|board)_motors|5level|^main$|7percent|7limited|8shape_of"
 )
-KEPT = (*range(2, 18), 28, 29)  # the registers that a function keeps, as GCC counts them
 OPPOSITE = {"eq": "ne", "lo": "sh", "lt": "ge", "mi": "pl", "cs": "cc", "vs": "vc", "ts": "tc"}
 OPPOSITE |= {value: key for key, value in OPPOSITE.items()}
-
-FRAMELESS = "/* frame size = 0 */"
-BODY, ENDING = "/* prologue: function */", "/* epilogue start */"
-SAVES = re.compile(r"\tjmp __prologue_saves__\+\(\(18 - (\d+)\) \* 2\)$")
-RESTORES = re.compile(r"\tjmp __epilogue_restores__ \+ \(\(18 - (\d+)\) \* 2\)$")
 
 
 def shorter(assembly: str, addresses: Mapping[str, int]) -> str:
@@ -64,7 +60,7 @@ def shorter(assembly: str, addresses: Mapping[str, int]) -> str:
     slow.sort(key=lambda function: addresses[function.name])
     for number, functions_near in enumerate(regions(slow, addresses, REGION)):
         holder = functions_near[len(functions_near) // 2]
-        common = [*_share_parts(functions_near, number), *_share_registers(functions_near, number)]
+        common = [*_share_parts(functions_near, number), *share_registers(functions_near, number)]
         holder.lines += common
     _share_ends(slow, addresses)
     for function in slow:
@@ -111,84 +107,6 @@ def _share_jumps(function: Function) -> None:
         gone.add(jump.line)
         new[branch.line] = f"\tbr{opposite} {label}"
     function.lines = "\n".join(line for at, line in enumerate(new) if at not in gone).split("\n")
-
-
-# -- registers that are kept ----------------------------------------------------------------------
-
-
-class Frame(NamedTuple):
-    """How a function without local variables in memory keeps registers: lines of its text."""
-
-    registers: tuple[int, ...]  # in the order of KEPT
-    begin: tuple[int, int]  # the first line and the one behind the last one
-    end: tuple[int, int]
-    saved: int  # bytes, if others do it
-
-
-def _frame(function: Function) -> Frame | None:
-    """Return how a function keeps registers, or None if that cannot be shared."""
-    lines = function.lines
-    if FRAMELESS not in lines or lines.count(BODY) != 1 or lines.count(ENDING) != 1:
-        return None
-    body, ending = lines.index(BODY), lines.index(ENDING)
-    # what belongs to the end: up to its return
-    end = lines[ending + 1 :]
-    pushed = [line.removeprefix("\tpush r") for line in lines[1:body]]
-    if pushed and all(each.isdigit() for each in pushed):
-        registers = tuple(int(each) for each in pushed)
-        expected = [f"\tpop r{each}" for each in reversed(registers)] + ["\tret"]
-        size = 4 * len(registers) + 2
-        complete = registers if registers != (28,) else (28, 29)
-        if end[: len(expected)] != expected or complete != KEPT[-len(complete) :]:
-            return None
-        return Frame(complete, (1, body), (ending + 1, ending + 1 + len(expected)), size)
-    begun = SAVES.match(lines[body - 2]) if body == 7 else None
-    ended = RESTORES.match(end[3]) if len(end) > 3 else None
-    if begun is None or ended is None or begun[1] != ended[1] or lines[body - 1] != "1:":
-        return None
-    sized = [f"\tldi r30, lo8({begun[1]})", "\tin r28,__SP_L__", "\tin r29,__SP_H__"]
-    if sorted(end[:3]) != sorted(sized) or lines[1:3] != ["\tldi r26,0", "\tldi r27,0"]:
-        return None
-    # each of the jumps takes 2 or 4 bytes
-    return Frame(KEPT[-int(begun[1]) :], (1, body), (ending + 1, ending + 5), 18)
-
-
-def _share_registers(functions: list[Function], number: int) -> list[str]:
-    """Let functions that keep the same registers call what does it, and return that."""
-    users = defaultdict(list)
-    for function in functions:
-        if (frame := _frame(function)) is not None:
-            users[frame.registers].append((function, frame))
-    shared = []
-    for registers, uses in users.items():
-        if sum(frame.saved - 4 for _, frame in uses) > 2 * len(registers) + 6:
-            shared.append(registers)
-            for function, frame in uses:
-                _use_shared(function, frame, number)
-    return _shared(shared, number) if shared else []
-
-
-def _use_shared(function: Function, frame: Frame, number: int) -> None:
-    lowest = frame.registers[0]
-    # the end first: it lies behind the begin
-    function.lines[slice(*frame.end)] = [f"\tjmp tiniscript_restore_{number}_r{lowest}"]
-    function.lines[slice(*frame.begin)] = [f"\tcall tiniscript_keep_{number}_r{lowest}"]
-
-
-def _shared(sets: list[tuple[int, ...]], number: int) -> list[str]:
-    """Return what keeps sets of registers, the last one first, and what restores them."""
-    lines = []
-    for registers in sets:
-        lines.append(f"tiniscript_keep_{number}_r{registers[0]}:")
-        lines += ["\tpop r31", "\tpop r30"]  # where the function goes on
-        lines += [f"\tpush r{each}" for each in reversed(registers)]
-        lines.append("\tijmp")
-    lowest = {registers[0] for registers in sets}
-    for each in KEPT[KEPT.index(min(lowest)) :]:
-        if each in lowest:
-            lines.append(f"tiniscript_restore_{number}_r{each}:")
-        lines.append(f"\tpop r{each}")
-    return [*lines, "\tret"]
 
 
 # -- ends that are equal --------------------------------------------------------------------------
