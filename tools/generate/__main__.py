@@ -23,6 +23,7 @@ from tiniscript.robots.reader import read
 from tiniscript.robots.refusals import describe
 from tools.generate.command_pages import PAGES
 from tools.generate.documents import DOCUMENTS, spliced, table
+from tools.generate.front import fronts
 from tools.generate.poster import posters
 
 COMMAND = "python -m tools.generate"
@@ -332,6 +333,7 @@ OUTPUTS: list[tuple[Path, Callable[[], str]]] = [
     (PAYLOADS, link_payloads),
     *((ROOT / "docs" / name, partial(command_page, language)) for language, name in PAGES.items()),
     *((ROOT / "docs" / "poster" / name, make) for name, make in posters(COMMAND).items()),
+    *((ROOT / "docs" / name, make) for name, make in fronts(COMMAND).items()),
     (ROOT / "vm_arduino" / "test" / "cases.h", cpp_cases),
     *(
         (WIRED / f"{path.stem}.h", partial(robot_header, path))
