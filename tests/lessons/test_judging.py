@@ -62,15 +62,15 @@ CASES = [
     ('kind = "reaches"\nat = [140, 100]\nby_seconds = 2', "F(1, 89)", "F(4, 22)", "after 3.0 s; it has 2 s"),
     ('kind = "reaches"\nat = [140, 100]\nby_cm = 50', "F(1, 89)", "B(1, 89); F(2, 89)", "drove 110 cm to the goal; 50 cm are enough"),
     ('kind = "stays_in"\nat = "start"\nwithin_cm = 30', "F(0.5, 50)", "F(1, 89)", "After 0.8 s the robot left the goal"),
-    ('kind = "stands_before"\nlow_cm = 20\nhigh_cm = 50', "F(1, 89)", "F(0.5, 50)", "stood 66 cm before the obstacle; 20 to 50 cm"),
+    ('kind = "stands_before"\nlow_cm = 20\nhigh_cm = 50', "F(1, 89)", "F(0.5, 50)", "stood 66 cm before the obstacle; the task asks for 20 to 50 cm"),
     ('kind = "stands_before"\nlow_cm = 20\nhigh_cm = 50', "F(1, 89)", "F(1.6, 89)", "stood 13 cm before the obstacle"),
     ('kind = "faces"\nheading = 90', "L(0.39, 60)", "L(0.2, 60)", "44 degrees too far to the right"),
     ('kind = "faces"\nheading = 90', "L(0.39, 60)", "L(0.8, 60)", "93 degrees too far to the left"),
     ('kind = "never_touches"', "F(1, 50)", "F(3, 80)", "touched a box after 2.2 s"),
     ('kind = "never_touches"', "F(1, 50)", "B(4, 80)", "touched the edge of the floor after 2.5 s"),
-    ('kind = "drives"\nat_least_cm = 30', "F(1, 89)", "F(0.5, 50)", "drove 11 cm; at least 30 cm"),
-    ('kind = "drives"\nat_most_cm = 30', "F(0.5, 50)", "F(1, 89)", "drove 40 cm; at most 30 cm"),
-    ('kind = "pauses"\nat_least_seconds = 1', "F(1,50);W(1);B(1,50)", "F(1,50);W(0.5);B(1,50)", "waited 0.5 s; 1 s is the task"),
+    ('kind = "drives"\nat_least_cm = 30', "F(1, 89)", "F(0.5, 50)", "drove 11 cm; the task asks for at least 30 cm"),
+    ('kind = "drives"\nat_most_cm = 30', "F(0.5, 50)", "F(1, 89)", "drove 40 cm; the task allows 30 cm"),
+    ('kind = "pauses"\nat_least_seconds = 1', "F(1,50);W(1);B(1,50)", "F(1,50);W(0.5);B(1,50)", "waited 0.5 s; the task asks for 1 s"),
     ('kind = "pauses"\nat_least_seconds = 1\ntimes = 2', "LOOP(3);F(0.2,50);W(1);END_LOOP", "F(1,50);W(1);B(1,50)", "1 of 2 times"),
     ('kind = "shows"\nvalue = 4', "SHOW(2 + 2)", "SHOW(5)", "showed 5; 4 is right"),
     ('kind = "shows"\nwhat = "DISTANCE"\ntolerance = 1', "SHOW(DISTANCE)", "SHOW(50)", "showed 50, but DISTANCE was about 77 then"),
@@ -106,7 +106,7 @@ def test_a_line_is_followed_or_left(tmp_path: Path) -> None:
     line = '[[criteria]]\nkind = "follows"\nwithin_cm = 9\nat_least_cm = 60\n'
     lesson = lesson_of(tmp_path, line, "liner")
     assert said(lesson, "B(1.7, 60)") == []
-    assert "of the black line; 60 cm is the task" in said(lesson, "B(0.7, 60)")[0]
+    assert "of the black line; the task asks for 60 cm" in said(lesson, "B(0.7, 60)")[0]
     assert "left the black line. Look at which way" in said(lesson, "F(1, 60)")[0]
 
 

@@ -156,10 +156,10 @@ enum class Answer : uint8_t {
   kNotBegun = 75,  // The robot no longer waits for this program: something came between.
   kIncomplete = 76,  // The program did not arrive whole: from byte {detail} on it is missing.
   kNotSealed = 77,  // The robot does not take sealed messages.
-  kSaving = 78,  // The robot has it, and keeps it as soon as its motors stand; switched off before, it forgets it.
-  kLowSupply = 79,  // The robot's batteries are too weak to save anything; switched off, it forgets what is not saved.
-  kNotKept = 80,  // The robot's memory has not kept it; switched off, it forgets it.
-  kNotOwner = 84,  // The robot has an owner, and this computer has no key of it.
+  kSaving = 78,  // The robot has it, and keeps it as soon as its motors have stopped; if it is switched off before that, it forgets it.
+  kLowSupply = 79,  // The robot's batteries are too weak to save anything; if it is switched off, it forgets what is not saved.
+  kNotKept = 80,  // The robot's memory has not kept it; if the robot is switched off, it forgets it.
+  kNotOwner = 84,  // The robot has an owner, and this computer does not have its key.
   kWrongKey = 85,  // The robot has another key than this computer. Tries that are left: {detail}.
   kTooManyTries = 86,  // The robot was shown too many wrong keys: it listens again in {detail} s.
   kHoldButton = 87,  // The robot waits for its button.

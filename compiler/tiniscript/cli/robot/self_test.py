@@ -92,7 +92,7 @@ class SelfTest:
     def _add(self, what: str, verdict: str, key: str, then: str = "", **values: str) -> None:
         self.found.append(Found(what, verdict, key, then, values))
 
-    # -- what the robot says of itself
+    # -- what the robot says about itself
 
     def _kit(self) -> Robot | None:
         """Return the robot that it is, where this computer knows it."""

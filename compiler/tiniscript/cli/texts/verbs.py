@@ -41,8 +41,8 @@ NOTES = (
     ("A program is a file, - (standard input) or `-e 'SI|F(2, 80)'`.",
      "Un programa es un archivo, - (entrada estándar) o `-e 'SI|F(2, 80)'`."),
     ("`tsc help COMMAND` says more about a command.", "`tsc help COMANDO` dice más de un comando."),
-    ("Exit codes: 0 done, 1 the program is wrong, 2 wrong use of tsc, 3 the robot or the link; 141 where whoever read the output has gone, which stops the robot that the command drives.",
-     "Códigos de salida: 0 listo, 1 el programa está mal, 2 mal uso de tsc, 3 el robot o la conexión; 141 si quien leía la salida ya no está, y eso detiene el robot que el comando mueve."),
+    ("Exit codes: 0 done, 1 the program is wrong, 2 wrong use of tsc, 3 the robot or the link; 141 when the program that read the output has ended, which stops the robot that the command drives.",
+     "Códigos de salida: 0 listo, 1 el programa está mal, 2 mal uso de tsc, 3 el robot o la conexión; 141 si el programa que leía la salida terminó, y eso detiene el robot que el comando mueve."),
 )
 
 VERBS: dict[str, Verb] = {
@@ -104,7 +104,7 @@ VERBS: dict[str, Verb] = {
         PROGRAMS, ("firmware --port COM3", "firmware --port COM3"),
         ("put the firmware of a robot on its board", "pone el firmware de un robot en su placa"),
         ("Writes the firmware of a robot on its board, over the USB cable, and reads it back. Unplug the HC-05, or whatever else is on pins 0 and 1, as long as that takes. Firmware that is not ready yet is built first, with PlatformIO; the first time that needs the internet.",
-         "Escribe el firmware de un robot en su placa, por el cable USB, y lo lee de vuelta. Desconecta el HC-05, o lo que esté en los pines 0 y 1, mientras eso dure. Si el firmware todavía no está listo, primero se construye, con PlatformIO; la primera vez hace falta internet."),
+         "Escribe el firmware de un robot en su placa, por el cable USB, y lo lee de vuelta. Desconecta el HC-05, o lo que esté en los pines 0 y 1, mientras eso dure. Si el firmware todavía no está listo, primero se compila, con PlatformIO; la primera vez hace falta internet."),
         ("--port P [--robot NAME|FILE] [--board BOARD]\n--build [--robot NAME|FILE] [--board BOARD]\n--list",
          "--port P [--robot NOMBRE|ARCHIVO] [--board PLACA]\n--build [--robot NOMBRE|ARCHIVO] [--board PLACA]\n--list"),
         ("It needs avrdude.", "Necesita avrdude."),
@@ -118,14 +118,14 @@ VERBS: dict[str, Verb] = {
     "ping": Verb(
         ROBOTS, ("ping", "ping"),
         ("who is there, and how long an answer takes", "quién está ahí, y cuánto tarda una respuesta"),
-        ("Says who answers on the port, and how long a round trip takes: at least, in the middle, at most.",
-         "Dice quién responde en el puerto, y cuánto tarda una ida y vuelta: mínimo, medio y máximo."),
+        ("Says who answers on the port, and how long a round trip takes: at least, usually, at most.",
+         "Dice quién responde en el puerto, y cuánto tarda una ida y vuelta: como mínimo, lo normal y como máximo."),
     ),
     "upload": Verb(
         ROBOTS, ("upload prog.ts", "upload prog.ts"),
-        ("bring a program to the robot, start it, and stay", "lleva un programa al robot, lo inicia y se queda"),
-        ("Compiles a program, brings it to the robot and starts it there if it begins with `SI`. Stays until it ends: prints what it shows, and a fault with its line. Ctrl-C stops the robot. A program that begins with `SB` waits for the robot's button.",
-         "Compila un programa, lo lleva al robot y lo inicia ahí si empieza con `SI`. Se queda hasta que termina: imprime lo que muestra, y una falla con su línea. Ctrl-C detiene el robot. Un programa que empieza con `SB` espera el botón del robot."),
+        ("send a program to the robot, start it, and stay", "envía un programa al robot, lo inicia y se queda"),
+        ("Compiles a program, sends it to the robot and starts it there if it begins with `SI`. Stays until it ends: prints what it shows, and a fault with its line. Ctrl-C stops the robot. A program that begins with `SB` waits for the robot's button.",
+         "Compila un programa, lo envía al robot y lo inicia ahí si empieza con `SI`. Se queda hasta que termina: imprime lo que muestra, y una falla con su línea. Ctrl-C detiene el robot. Un programa que empieza con `SB` espera el botón del robot."),
         ends=("Exit code: 0 when it is done, 1 after mistakes or a fault, 2 after Ctrl-C, 3 where the robot or the link has ended it.",
               "Código de salida: 0 si termina, 1 con errores o una falla, 2 después de Ctrl-C, 3 si el robot o la conexión lo terminó."),
         also=((VIRTUAL, ("upload prog.ts --virtual", "upload prog.ts --virtual"),
@@ -134,19 +134,19 @@ VERBS: dict[str, Verb] = {
     "live": Verb(
         ROBOTS, ("live 'F(2, 80)'", "live 'F(2, 80)'"),
         ("run one line now; without a line: a prompt", "ejecuta una línea ahora; sin línea: un diálogo"),
-        ("Runs one line on the robot now: `tsc live 'F(2, 80)'`. Without a line there is a prompt. Variables and DEFs live on until you leave: tsc keeps DEFs as text, and the values that a line has given when it was done. The program that the robot holds stays what it is. Ctrl-C stops the robot, Ctrl-D leaves.",
-         "Ejecuta una línea en el robot ahora: `tsc live 'F(2, 80)'`. Sin línea hay un diálogo. Las variables y los DEF siguen vivos hasta que sales: tsc guarda los DEF como texto, y los valores que una línea ha puesto cuando terminó. El programa que tiene el robot queda como está. Ctrl-C detiene el robot, Ctrl-D sale."),
+        ("Runs one line on the robot now: `tsc live 'F(2, 80)'`. Without a line there is a prompt. Variables and DEFs live on until you leave: tsc keeps DEFs as text, and the values that a line has set, once it is done. The program that the robot holds stays what it is. Ctrl-C stops the robot, Ctrl-D leaves.",
+         "Ejecuta una línea en el robot ahora: `tsc live 'F(2, 80)'`. Sin línea hay un diálogo. Las variables y los DEF siguen vivos hasta que sales: tsc guarda los DEF como texto, y los valores que una línea dejó al terminar. El programa que tiene el robot queda como está. Ctrl-C detiene el robot, Ctrl-D sale."),
     ),
     "stop": Verb(
         ROBOTS, ("stop", "stop"), ("stop the robot now", "detiene el robot ahora"),
         ("Stops the robot now, and says when it has confirmed that. Asks nothing before, so it stops a robot of another version or kit, too. The robot stays stopped until a new start or its button. Where no port is named it stops every robot that a tsc on this computer has now, virtual ones too, and the last used one.",
-         "Detiene el robot ahora, y dice cuándo lo ha confirmado. No pregunta nada antes, así que también detiene un robot de otra versión o de otro kit. Queda detenido hasta otro inicio o su botón. Si no se nombra un puerto, detiene todos los robots que un tsc tiene ahora en esta computadora, también los virtuales, y el último usado."),
+         "Detiene el robot ahora, y dice cuándo lo ha confirmado. No pregunta nada antes, así que también detiene un robot de otra versión o de otro kit. Queda detenido hasta otro inicio o su botón. Si no se indica un puerto, detiene todos los robots que un tsc tiene ahora en esta computadora, también los virtuales, y el último usado."),
     ),
     "link": Verb(
         ROBOTS, ("link", "link"),
-        ("hold the port, so that other commands share it", "tiene el puerto, para que otros lo compartan"),
-        ("Holds the robot's port until Ctrl-C, so that other tsc commands share it: `tsc stop` works while another terminal drives, and an upload does not reset the board. Prints what goes on. Where the robot is lost, it looks for it until it is there again. (live, monitor, and an upload or start that stays share their port, too.)",
-         "Tiene el puerto del robot hasta Ctrl-C, para que otros comandos de tsc lo compartan: `tsc stop` funciona mientras otra terminal conduce, y un upload no reinicia la placa. Imprime lo que pasa. Si el robot se pierde, lo busca hasta que vuelve. (live, monitor, y un upload o start que se queda también comparten su puerto.)"),
+        ("hold the port, so that other commands share it", "mantiene abierto el puerto, para compartirlo"),
+        ("Holds the robot's port until Ctrl-C, so that other tsc commands share it: `tsc stop` works while another terminal drives the robot, and an upload does not reset the board. Prints what goes on. Where the robot is lost, it looks for it until it is there again. (live, monitor, and an upload or start that stays share their port, too.)",
+         "Mantiene abierto el puerto del robot hasta Ctrl-C, para que otros comandos de tsc lo compartan: `tsc stop` funciona mientras otra terminal mueve el robot, y un upload no reinicia la placa. Imprime lo que pasa. Si el robot se pierde, lo busca hasta que vuelve. (live, monitor, y un upload o start que se queda también comparten su puerto.)"),
     ),
     "start": Verb(
         ROBOTS, ("start", "start"), ("start the program that the robot holds", "inicia el programa que tiene el robot"),
@@ -154,13 +154,13 @@ VERBS: dict[str, Verb] = {
          "Inicia el programa que tiene el robot y se queda hasta que termina, como `tsc upload`. Ctrl-C detiene el robot."),
     ),
     "undo": Verb(
-        ROBOTS, ("undo", "undo"), ("bring the program before back", "vuelve al programa anterior"),
+        ROBOTS, ("undo", "undo"), ("bring back the program before this one", "vuelve al programa anterior"),
         ("Brings back the program that the robot held before the last one that it has saved, and keeps that over the next power-on. What runs ends, nothing starts. A second undo brings the later program back. Where the last program was sent with --no-save, the saved one comes back, and the other is gone.",
          "Vuelve al programa que el robot tenía antes del último que guardó, y lo conserva cuando se apaga. Lo que está en marcha termina, y nada inicia. Otro undo vuelve al programa más nuevo. Si el último programa se envió con --no-save, vuelve el guardado, y el otro se pierde."),
     ),
     "info": Verb(
-        ROBOTS, ("info", "info"), ("what the robot says of itself", "lo que el robot dice de sí mismo"),
-        ("Prints what the robot says of itself: name, kit, room, program, state, last fault.",
+        ROBOTS, ("info", "info"), ("what the robot says about itself", "lo que el robot dice de sí mismo"),
+        ("Prints what the robot says about itself: name, kit, room, program, state, last fault.",
          "Imprime lo que el robot dice de sí mismo: nombre, kit, espacio, programa, estado, última falla."),
     ),
     "monitor": Verb(
@@ -182,7 +182,7 @@ VERBS: dict[str, Verb] = {
     "trim": Verb(
         ROBOTS, ("trim", "trim"), ("make the robot drive straight", "hace que el robot vaya derecho"),
         ("Makes a robot drive straight: turns its motors, asks what you see, and the robot keeps what follows from it in its own memory, whatever program it runs. No wire is changed and nothing flashed.",
-         "Hace que un robot vaya derecho: gira sus motores, pregunta qué ves, y el robot guarda lo que resulta en su propia memoria, con cualquier programa. No se cambia ningún cable ni se graba nada."),
+         "Hace que un robot vaya derecho: hace girar sus motores, pregunta qué ves, y el robot guarda lo que resulta en su propia memoria, con cualquier programa. No se cambia ningún cable ni se graba nada."),
     ),
     "identify": Verb(
         ROBOTS, ("identify", "identify"), ("which robot is it? it blinks and plays", "¿qué robot es? parpadea y toca"),
@@ -236,16 +236,16 @@ VERBS: dict[str, Verb] = {
     "selftest": Verb(
         ROBOTS, ("selftest", "selftest"),
         ("is the robot ready for a lesson?", "¿está listo el robot para la lección?"),
-        ("Checks what a computer can of a robot that should be ready: it answers, its kit, its firmware, the line, its supply as far as the robot knows, its memory, its trim, each sensor, each motor, the buzzer. Put the wheels in the air: the motors turn one after the other, and you say what you see. `--yes` asks nobody and turns no motor. The robot keeps its program.",
-         "Revisa lo que una computadora puede de un robot que debería estar listo: responde, su kit, su firmware, la línea, su alimentación hasta donde el robot sabe, su memoria, su ajuste, cada sensor, cada motor, el zumbador. Pon las ruedas en el aire: los motores giran uno tras otro, y tú dices qué ves. `--yes` no pregunta a nadie y no gira ningún motor. El robot conserva su programa."),
+        ("Checks what a computer can of a robot that should be ready: it answers, its kit, its firmware, the connection, its supply as far as the robot knows, its memory, its trim, each sensor, each motor, the buzzer. Lift the robot so that its wheels turn in the air: the motors turn one after the other, and you say what you see. `--yes` asks nobody and turns no motor. The robot keeps its program.",
+         "Revisa lo que una computadora puede de un robot que debería estar listo: responde, su kit, su firmware, la conexión, su alimentación hasta donde el robot sabe, su memoria, su ajuste, cada sensor, cada motor, el zumbador. Levanta el robot, con las ruedas en el aire: los motores giran uno tras otro, y tú dices qué ves. `--yes` no pregunta a nadie y no hace girar ningún motor. El robot conserva su programa."),
         ends=("Exit code: 0 if nothing is wrong, 3 if something is. What it cannot see has a question mark.",
               "Código de salida: 0 si nada está mal, 3 si algo lo está. Lo que no puede ver lleva un signo de interrogación."),
     ),
     "module": Verb(
         ROBOTS, ("module --port P", "module --port P"),
         ("name, PIN and speed of a Bluetooth module", "nombre, PIN y velocidad de un módulo Bluetooth"),
-        ("Sets up an HC-05, HC-06 or HM-10, or one of their clones: finds it at any speed, says which one it is, sets its name, its PIN and its speed, and reads back what the module tells. Without an option for that it only says what it has found. The module is on a USB adapter, or on a board that is held in reset (a wire from RESET to GND). An HC-05 takes these commands if its button was down when its power came. A set-up that was broken off is done by the next one.",
-         "Configura un HC-05, HC-06 o HM-10, o una de sus copias: lo encuentra a cualquier velocidad, dice cuál es, le pone su nombre, su PIN y su velocidad, y lee de vuelta lo que el módulo cuenta. Sin una opción para eso solo dice lo que encontró. El módulo está en un adaptador USB, o en una placa que está en reset (un cable de RESET a GND). Un HC-05 acepta estos comandos si su botón estaba pulsado cuando llegó la corriente. Una configuración interrumpida la termina la siguiente."),
+        ("Sets up an HC-05, HC-06 or HM-10, or one of their clones: finds it at any speed, says which one it is, sets its name, its PIN and its speed, and reads back what the module tells. Without an option for that it only says what it has found. The module is on a USB adapter, or on a board that is held in reset (a wire from RESET to GND). An HC-05 takes these commands if its button was held down when it got power. A set-up that was interrupted is finished by the next one.",
+         "Configura un HC-05, HC-06 o HM-10, o una de sus copias: lo encuentra a cualquier velocidad, dice cuál es, le pone su nombre, su PIN y su velocidad, y lee de vuelta lo que el módulo cuenta. Sin una opción para eso solo dice lo que encontró. El módulo está en un adaptador USB, o en una placa que está en reset (un cable de RESET a GND). Un HC-05 acepta estos comandos si su botón estaba pulsado cuando recibió energía. Una configuración interrumpida la termina la siguiente."),
         ("--port P [options]", "--port P [opciones]"),
         ends=("A robot cannot set up its own module: both share the wires to the computer, and the module listens to the robot's side alone.\n"
               "The answers of modules are those of their papers and users; no physical module was tried.",
@@ -262,8 +262,8 @@ VERBS: dict[str, Verb] = {
     "lesson": Verb(
         VIRTUAL, ("lesson check 1 prog.ts", "lesson check 1 prog.ts"),
         ("twelve lessons, whose tasks it checks", "doce lecciones, y revisa sus tareas"),
-        ("Twelve lessons of 45 minutes, from the first line to a robot that follows a line. Without more it lists them; `tsc lesson show 1` prints the pupils' page, `tsc lesson sheet 1 -o sheet.html` makes it a page to print. `tsc lesson check 1 prog.ts` lets the program drive in the worlds of the task, on the virtual robot, and says what is missing; of a folder it checks every program and prints a table. The same program gets the same verdict on every computer.",
-         "Doce lecciones de 45 minutos, desde la primera línea hasta un robot que sigue una línea. Sin nada más las lista; `tsc lesson show 1` imprime la página de los alumnos, `tsc lesson sheet 1 -o hoja.html` hace de ella una hoja para imprimir. `tsc lesson check 1 prog.ts` deja que el programa se mueva en los mundos de la tarea, con el robot virtual, y dice qué falta; de una carpeta revisa todos los programas e imprime una tabla. El mismo programa recibe el mismo resultado en cualquier computadora."),
+        ("Twelve lessons of 45 minutes, from the first line to a robot that follows a line. Without more it lists them; `tsc lesson show 1` prints the pupils' page, `tsc lesson sheet 1 -o sheet.html` makes it a page to print. `tsc lesson check 1 prog.ts` tries the program in the worlds of the task, on the virtual robot, and says what is missing; of a folder it checks every program and prints a table. The same program gets the same verdict on every computer.",
+         "Doce lecciones de 45 minutos, desde la primera línea hasta un robot que sigue una línea. Sin nada más, las lista; `tsc lesson show 1` imprime la página de los alumnos, `tsc lesson sheet 1 -o hoja.html` hace de ella una hoja para imprimir. `tsc lesson check 1 prog.ts` prueba el programa en los mundos de la tarea, con el robot virtual, y dice qué falta; de una carpeta revisa todos los programas e imprime una tabla. El mismo programa recibe el mismo resultado en cualquier computadora."),
         ("[ACTION [N [PROGRAM]]] [options]\nshow N [--teacher]\ncheck N PROGRAM [options]\nsheet N -o PAGE.html [--teacher]",
          "[ACCIÓN [N [PROGRAMA]]] [opciones]\nshow N [--teacher]\ncheck N PROGRAMA [opciones]\nsheet N -o PÁGINA.html [--teacher]"),
         ("With check, `--json` gives a list of `{file, verdict, seed, findings}`. Exit code of check: 0 when every program passes, 1 when one does not.",
@@ -275,7 +275,7 @@ VERBS: dict[str, Verb] = {
         ("write programs in a page of your browser", "escribe programas en una página del navegador"),
         ("Opens TiniScript Studio, a page for the browser of this computer: an editor that says what is wrong with a program while it is written, with the same compiler as `tsc`, and the virtual robot, which runs it. The page drives the robots of this computer, too: it connects, sends, runs a line, shows values and faults at their line; other commands share the port meanwhile. The robot stops when the page hangs, is hidden or closed. Whoever opens the address with its token reaches the robots; without it there are the editor and the virtual robot. Nothing leaves this computer, and after the first visit the page works without `tsc`, too. It goes on until Ctrl-C.\n\n`--class` is for a room: pupils open the address that it shows, write the code of the class and their name, and have the studio with the virtual robot in their own browser. Their programs go to the robots that this computer reaches; who waits sees the place in the queue. The address with the token is the teacher's page: all pupils, their programs and robots, a stop for all, and an end that deletes the pupils' work if you say so. Nothing leaves the room.",
          "Abre TiniScript Studio, una página para el navegador de esta computadora: un editor que dice qué está mal en un programa mientras se escribe, con el mismo compilador que `tsc`, y el robot virtual, que lo ejecuta. La página también maneja los robots de esta computadora: conecta, envía, ejecuta una línea, muestra valores y las fallas en su línea; mientras tanto otros comandos comparten el puerto. El robot se detiene si la página se cuelga, queda oculta o se cierra. Quien abre la dirección con su clave llega a los robots; sin ella hay editor y robot virtual. Nada sale de esta computadora, y después de la primera visita la página también funciona sin `tsc`. Sigue hasta Ctrl-C.\n\n`--class` es para un aula: los alumnos abren la dirección que muestra, escriben el código de la clase y su nombre, y tienen el estudio con el robot virtual en su propio navegador. Sus programas van a los robots a los que llega esta computadora; quien espera ve su lugar en la cola. La dirección con la clave es la página del profesor: todos los alumnos, sus programas y robots, una parada para todos, y un final que borra el trabajo de los alumnos si así lo dices. Nada sale del aula."),
-        ends=("Exit code: 0 when it has ended, 2 where the page is not in this installation, 3 where its port cannot be had.",
+        ends=("Exit code: 0 when it has ended, 2 where the page is not in this installation, 3 where its port cannot be used.",
               "Código de salida: 0 cuando terminó, 2 si la página no está en esta instalación, 3 si no se puede usar su puerto."),
     ),
     "help": Verb(
