@@ -24,7 +24,7 @@ from tests.support.owners import Keys
 from tiniscript import robots
 from tiniscript.link.connection import PendingRequest
 from tiniscript.link.frames import Frame, encoded
-from tiniscript.link.messages import AUTHORITY_MS, STATUS_NAMES, STOP_BYTES
+from tiniscript.link.messages import AUTHORITY_MS, BY_NAME, STATUS_NAMES, STOP_BYTES
 from tiniscript.link.session import Session
 
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
@@ -271,6 +271,24 @@ def test_of_two_who_type_at_once_the_first_line_is_read() -> None:
     talk(robot, ends, 400)
     assert [each for each in happened(robot) if "MOTORS" in each] == ["MOTORS 44 44", "MOTORS 0 0"]
     assert b"// OK" in first.heard and b"Send it again" in second.heard
+
+
+@pytest.mark.parametrize(
+    "stop", [bytes(STOP_BYTES), b"\0" + encoded(Frame(BY_NAME["STOP"].number, 99, 0))]
+)
+def test_a_stop_of_a_robot_that_stands_ends_what_is_typed_elsewhere(stop: bytes) -> None:
+    robot = booted()
+    first, second = Bytes(bytes(4)), Bytes()
+    ends: Ends = [(None, first), (SerialPort(robot), second)]
+    talk(robot, ends, 1500)
+    first.said = b"SI|LOOP(2)\n"
+    talk(robot, ends, 1500)
+    assert b"END_LOOP" in first.heard
+    second.said = stop
+    talk(robot, ends, 1500)
+    first.said = b"F(0.1, 44)\nEND_LOOP\n"
+    talk(robot, ends, 500)
+    assert happened(robot) == []
 
 
 def test_the_button_of_two_who_claim_is_nobodys() -> None:

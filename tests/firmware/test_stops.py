@@ -8,7 +8,7 @@ import pytest
 
 from tests.firmware.test_host_firmware import AWAY, computer, happened, image_of, send, switched_on
 from tests.machines.host_firmware import HostFirmware, missing
-from tiniscript.link.frames import Frame, encoded
+from tiniscript.link.frames import Frame, decoded, encoded
 from tiniscript.link.messages import BY_NAME
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
@@ -123,3 +123,18 @@ def test_a_stop_works_every_time(how: str) -> None:
         assert happened(robot)[-1] == "MOTORS 0 0"
         assert robot.is_latched
         del robot.did[:-1]
+
+
+@pytest.mark.parametrize("line", [b"", b"HELLO\n", b"SI|LOOP(2)\n", b"S\n"])
+@pytest.mark.parametrize("stops", [1, 2])
+def test_who_stops_with_zeros_is_answered_with_a_frame_whatever_was_typed_before(
+    line: bytes, stops: int
+) -> None:
+    robot = switched_on()
+    if stops == 2:
+        robot.wait(4000, bytes(8))
+    robot.wait(1500, line)
+    sent = robot.wait(60, bytes(8))
+    assert b"//" not in sent
+    frames = [decoded(each) for each in sent.split(b"\0") if each]
+    assert [each and each.number for each in frames] == [BY_NAME["STOPPED"].number]

@@ -21,7 +21,8 @@ from tests.firmware.test_host_firmware import (
 )
 from tests.machines.host_firmware import HostFirmware, missing
 from tiniscript import robots
-from tiniscript.link.messages import SAVED_STORED, STATUSES
+from tiniscript.link.frames import Frame, encoded
+from tiniscript.link.messages import BY_NAME, SAVED_STORED, STATUSES
 from tiniscript.link.payloads import StatusReply
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
@@ -31,6 +32,7 @@ pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a
 SAVED_BACK = ["MOTORS -60 -60", "MOTORS 0 0", "FINISHED"]  # what `holding` holds
 LINE = ["MOTORS 50 50", "MOTORS 0 0", "FINISHED"]
 SAVED_MEMORY = 1
+STOP_MESSAGE = b"\0" + encoded(Frame(BY_NAME["STOP"].number, 99, 0))
 
 
 def typed(robot: HostFirmware, text: str | bytes, milliseconds: int = 30) -> list[str]:
@@ -191,6 +193,22 @@ def test_what_arrives_less_than_a_second_after_a_stop_is_not_done(how: str) -> N
         typed(robot, "SI|F(1,50)\n", 700)
     assert happened(robot) == ["MOTORS 50 50", "MOTORS 0 0"]
     robot.wait(1000)
+    assert typed(robot, "SI|F(0.2,50)\n", 400) == ["// OK", "// DONE"]
+
+
+@pytest.mark.parametrize("is_stopped_before", [False, True])
+@pytest.mark.parametrize("stop", [bytes(4), STOP_MESSAGE])
+def test_a_stop_ends_a_block_that_is_open_also_where_the_robot_stands(
+    stop: bytes, is_stopped_before: bool
+) -> None:
+    """Its SETUP word is from before the stop, and releases nothing after it."""
+    robot = switched_on()
+    if is_stopped_before:
+        robot.wait(1500, bytes(4))
+    assert typed(robot, "SI|LOOP(2)\n", 1500) == ["// Waiting for END_LOOP"]
+    robot.wait(1500, stop)
+    typed(robot, "F(1,50)\nEND_LOOP\n", 1500)
+    assert happened(robot) == []
     assert typed(robot, "SI|F(0.2,50)\n", 400) == ["// OK", "// DONE"]
 
 

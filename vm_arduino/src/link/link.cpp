@@ -94,17 +94,15 @@ bool Link::next_tx_byte(uint8_t* byte) {
   return true;
 }
 
-// Stops the robot. A repeated stop is reported again, but at a limited rate. The epoch then stays,
-// or a line that is held low would exhaust it. A waiting item is from before the stop and therefore
-// stale.
+// Stops the robot. Of one that stands already the epoch stays, or a line that is held low would
+// exhaust it. A waiting item is from before the stop and therefore stale.
 tini_noinline void Link::halt(Cause cause) {
   const bool was_stopped = port_status().state == State::kStopped;
   port_stop(0);
   const bool has_stale = cause == Cause::kSequence && receiver_->has_frame();
+  note_halt();
   if (!was_stopped || has_stale) return stopped(cause);
-  if (left_ms_[kAgain] != 0) return;
-  left_ms_[kAgain] = kAgainMs;
-  due_ |= kDueStopped;
+  confirm(cause);
 }
 
 // Takes the bytes of an item that have arrived.

@@ -123,6 +123,15 @@ class Link {
     console_.hang_up();
   }
 
+  // Whether it was told to stop since this was asked last, also where the robot stood already: what
+  // was typed before, at any session, is over.
+  bool take_halted() {
+    const bool has_halted = has_halted_;
+    has_halted_ = false;
+    return has_halted;
+  }
+  void discard_text() { console_.discard(); }
+
   bool has_open_text() const { return console_.is_open(); }
   void drop_text() { console_.drop(); }
 #endif
@@ -168,6 +177,7 @@ class Link {
   void prepare();
   bool go_live();
   void halt(Cause cause);
+  void confirm(Cause cause);
   void handle(uint8_t end);
   uint8_t answer(Message message, const uint8_t* payload, uint8_t length);
   Answer set_trim(const uint8_t* payload, uint8_t length);
@@ -197,9 +207,13 @@ class Link {
   Answer clear();
 
 #ifdef tiniscript_transports
+  void note_halt() { has_halted_ = true; }
+
   // `link_wifi.cpp`
   uint8_t set_wifi(const uint8_t* payload, uint8_t length);
   void tell_wifi();
+#else
+  static void note_halt() {}
 #endif
 
   // seals: `link_seals.cpp`
@@ -317,6 +331,9 @@ class Link {
 #endif
 #ifdef tiniscript_large_frames
   bool takes_large_;
+#endif
+#ifdef tiniscript_transports
+  bool has_halted_;
 #endif
   uint8_t tries_;   // wrong keys since the last right one or the last pause
   uint32_t nonce_;  // of the session

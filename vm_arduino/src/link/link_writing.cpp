@@ -43,8 +43,15 @@ void Link::faulted() {
 void Link::stopped(Cause cause) {
   renew();
   cause_ = cause;
+  left_ms_[kAgain] = 0;
+  confirm(cause);
+}
+
+// What was typed before a stop is over. It is reported at a limited rate, to a client as a frame.
+tini_noinline void Link::confirm(Cause cause) {
   console_.discard();
-  if (cause == Cause::kSequence || cause == Cause::kMessage) console_.hang_up();
+  if (cause <= Cause::kMessage) console_.hang_up();  // one that is for computers
+  if (left_ms_[kAgain] != 0) return;
   left_ms_[kAgain] = kAgainMs;
   due_ |= kDueStopped;
 }

@@ -56,12 +56,14 @@ void Links::tick() {
 // Tells all other sessions what the turn of the current one has changed for them.
 void Links::spread(State before) {
   const State state = port_status().state;
-  const Link& its = links_[current_];
+  Link& its = links_[current_];
   const bool is_held_back = its.is_held_back();
+  const bool has_halted = its.take_halted();
   for (uint8_t place = 0; place < kTransports; place++) {
     if (place == current_) continue;
     Link& other = links_[place];
     if (is_held_back != is_held_back_) other.hold_back(is_held_back);
+    if (has_halted) other.discard_text();
     if (state == before) continue;
     if (state == State::kStopped) other.stopped(its.cause());
     if (state == State::kFaulted) other.faulted();
