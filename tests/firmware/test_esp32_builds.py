@@ -51,9 +51,9 @@ CORE = {
     "gpio_intr_disable", "gpio_intr_enable", "gpio_set_level", "ledcWrite", "ledcWriteTone",
     "micros", "millis", "nvs_commit", "nvs_get_blob", "nvs_get_u32", "nvs_open", "nvs_set_blob",
     "nvs_set_u32", "pinMode", "Serial", "simulated_enter_critical", "simulated_exit_critical",
-    "lwip_accept", "lwip_bind", "lwip_close", "lwip_fcntl", "lwip_htonl", "lwip_htons",
-    "lwip_listen", "lwip_recv", "lwip_send", "lwip_setsockopt", "lwip_socket", "vTaskDelay",
-    "xTaskCreatePinnedToCore", "WiFi", "MDNS", "__errno",
+    "lwip_accept", "lwip_bind", "lwip_close", "lwip_connect", "lwip_fcntl", "lwip_htonl",
+    "lwip_htons", "lwip_listen", "lwip_recv", "lwip_send", "lwip_setsockopt", "lwip_socket",
+    "vTaskDelay", "xTaskCreatePinnedToCore", "WiFi", "MDNS", "__errno",
 }  # fmt: skip
 # Classes of the radios' libraries, and what the compiler's own library has for them.
 RADIO = re.compile(

@@ -69,6 +69,8 @@ def header(command: str) -> str:
             ("kWifiTextBytes", messages.WIFI_TEXT_BYTES),
             ("kPasswordBytes", messages.PASSWORD_BYTES),
             ("kLeastPassword", messages.LEAST_PASSWORD),
+            ("kClassBytes", messages.CLASS_BYTES),
+            ("kBrokerPlaceBytes", messages.BROKER_PLACE_BYTES),
         ),
         "// How a program starts, in one byte.\n"
         + constants(*((f"k{camel(name)}", bits) for bits, name, _ in messages.MODES)),

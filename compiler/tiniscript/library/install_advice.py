@@ -17,7 +17,12 @@ from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parent.parent
 CLONE = PACKAGE.parent.parent
-VIRTUAL, FIRMWARE, RADIO = "virtual", "firmware", "radio"  # the extras of pyproject.toml
+VIRTUAL, FIRMWARE, RADIO, BROKER = (
+    "virtual",
+    "firmware",
+    "radio",
+    "broker",
+)  # the extras of pyproject.toml
 
 
 def command(extra: str) -> str:

@@ -109,13 +109,15 @@ def opened_line(
 def port_error(port: str, failure: PortError, language: str = "en") -> RobotError:
     """Return the error for a port that does not open."""
     from tiniscript.link import ports
+    from tiniscript.link.port_names import is_at_broker
 
     reason = f"port_{failure.reason}"
     values = {"port": shown(port), "why": shown(failure.why)}
     if failure.reason == ports.NOT_INSTALLED:
         from tiniscript.library import install_advice
 
-        values["how"] = install_advice.command(install_advice.RADIO)
+        extra = install_advice.BROKER if is_at_broker(port) else install_advice.RADIO
+        values["how"] = install_advice.command(extra)
     if failure.reason == ports.NOT_FOUND and failure.why:
         reason = "port_not_found_but"
     if failure.reason == ports.FORBIDDEN and sys.platform.startswith("linux"):
@@ -174,12 +176,15 @@ def reason_of(line: LinkConnection, reply: Reply[object]) -> str:
 
 def reason_of_end(line: LinkConnection, gone: Gone, port: str) -> str:
     """Return why a connection has ended."""
-    from tiniscript.link.port_names import is_bluetooth
+    from tiniscript.link import ports
+    from tiniscript.link.port_names import is_at_broker, is_bluetooth
 
     if gone.is_server:
         return "holder_ended"
     if is_bluetooth(port):
         return "radio_gone"
+    if is_at_broker(port):
+        return "port_taken" if str(gone) == ports.TAKEN else "broker_gone"
     if line.heard and line.robot is None:  # it reported busy, and closed
         return "port_busy"
     return "port_gone"
@@ -211,8 +216,10 @@ def remember(port: str, name: str, is_used: bool = True) -> None:
     """Remember a port and the name of its robot; not for a virtual robot, whose port is new each
     time."""
     from tiniscript.link import known_ports
-    from tiniscript.link.port_names import is_address
+    from tiniscript.link.port_names import is_address, is_at_broker
 
+    if is_at_broker(port):
+        return
     if is_address(port) or port.startswith(PSEUDO):
         from tiniscript.virtual import directory
 

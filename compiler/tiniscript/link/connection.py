@@ -22,7 +22,7 @@ from tiniscript.link.payloads import (
     WifiReply,
 )
 from tiniscript.link.requests import DeviceInfo, FetchedImage, Reply
-from tiniscript.link.wifi import Network
+from tiniscript.link.wifi import BrokerSettings, Network
 
 DEADLINE_MS = 20_000  # of a request, unless another is given
 T = TypeVar("T")
@@ -85,6 +85,10 @@ class Requester(Protocol):
     def join(self, network: Network) -> PendingRequest[WifiReply]: ...
 
     def forget_wifi(self) -> PendingRequest[WifiReply]: ...
+
+    def broker(self) -> PendingRequest[WifiReply]: ...
+
+    def use_broker(self, broker: BrokerSettings | None) -> PendingRequest[WifiReply]: ...
 
 
 class LinkConnection(Protocol):

@@ -22,6 +22,7 @@ from tiniscript.link.session import Session
 
 if TYPE_CHECKING:
     from tiniscript.link.bluetooth import BluetoothPort
+    from tiniscript.link.broker import BrokerPort
 
 T = TypeVar("T")
 
@@ -40,7 +41,7 @@ class Line:
 
     def __init__(
         self,
-        port: serial.SerialBase | BluetoothPort,
+        port: serial.SerialBase | BluetoothPort | BrokerPort,
         session: Session,
         lock: IO[bytes] | None = None,
         address: str = "",

@@ -1,6 +1,7 @@
 """The names of ports: which are addresses, and which names mean the same port.
 
-`ble://` names a robot in reach of Bluetooth LE, `tcp://` one that announces itself in the network.
+`ble://` names a robot in reach of Bluetooth LE, `tcp://` one that announces itself in the network,
+`mqtt://host:port/class/id` one at a broker.
 Opens nothing, and needs no pyserial.
 """
 
@@ -11,7 +12,7 @@ import re
 import sys
 import unicodedata
 
-BLE, TCP = "ble://", "tcp://"
+BLE, TCP, MQTT = "ble://", "tcp://", "mqtt://"
 _LOCAL = ("localhost", "[::1]")
 
 
@@ -28,6 +29,11 @@ def is_bluetooth(port: str) -> bool:
 def is_network_name(port: str) -> bool:
     """Return whether a port is the name of a robot that announces itself in the network."""
     return port[: len(TCP)].lower() == TCP
+
+
+def is_at_broker(port: str) -> bool:
+    """Return whether a port is a robot at an MQTT broker."""
+    return port[: len(MQTT)].lower() == MQTT
 
 
 def is_name(port: str) -> bool:

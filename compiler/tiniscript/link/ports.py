@@ -1,9 +1,9 @@
 """Ports: lists them, opens one, and says why one cannot be opened.
 
 Knows pyserial, for serial ports, Bluetooth's (`/dev/rfcomm0`, `COM5`, `/dev/tty.HC-05`) and the
-addresses `socket://host:port` and `rfc2217://host:port`. `bluetooth` opens `ble://name`, and
-`named_robots` finds `tcp://name`; their packages are imported with their first use. Knows no robot
-and no sentences: what goes wrong has a name.
+addresses `socket://host:port` and `rfc2217://host:port`. `bluetooth` opens `ble://name`,
+`broker` opens `mqtt://host:port/class/id`, and `named_robots` finds `tcp://name`; their packages
+are imported with their first use. Knows no robot and no sentences: what goes wrong has a name.
 """
 
 from __future__ import annotations
@@ -18,12 +18,13 @@ from typing import TYPE_CHECKING, NamedTuple
 import serial
 from serial.tools import list_ports
 
-from tiniscript.link.port_names import is_address, is_bluetooth, is_network_name
+from tiniscript.link.port_names import is_address, is_at_broker, is_bluetooth, is_network_name
 from tiniscript.printable import printable
 
 if TYPE_CHECKING:
     from tiniscript.link.bluetooth import BluetoothPort
     from tiniscript.link.bluetooth_search import Seen
+    from tiniscript.link.broker import BrokerPort
     from tiniscript.link.named_robots import Announced
 
 READ_S = 0.02  # timeout of a read: on some systems nothing can interrupt it
@@ -39,6 +40,8 @@ RADIO_SERVICE, RADIO_BROKEN = "radio_service", "radio_broken"
 NO_MULTICAST, NOT_ANNOUNCED, STRANGE = "no_multicast", "not_announced", "strange"
 # nobody has the name, several have it, whoever has it is no robot
 NOT_FOUND, SEVERAL, NO_ROBOT = "not_found", "several", "no_robot"
+# of a broker: it does not let us in, its certificate is not trusted, another client has the robot
+REFUSED, UNTRUSTED, TAKEN = "refused", "untrusted", "taken"
 
 _REASONS = {
     errno.ENOENT: MISSING,
@@ -137,7 +140,9 @@ def _installed() -> Iterator[None]:
         raise PortError(NOT_INSTALLED, missing.name or str(missing)) from None
 
 
-def opened(port: str, baud: int, limit_s: float = OPEN_S) -> serial.SerialBase | BluetoothPort:
+def opened(
+    port: str, baud: int, limit_s: float = OPEN_S
+) -> serial.SerialBase | BluetoothPort | BrokerPort:
     """Open a port for exclusive use. Raises PortError, at the latest after `limit_s`.
 
     Some drivers block in `open` for ever, so a daemon thread opens the port. A connection by
@@ -147,6 +152,10 @@ def opened(port: str, baud: int, limit_s: float = OPEN_S) -> serial.SerialBase |
         with _installed():
             from tiniscript.link import bluetooth
         return bluetooth.opened(port, baud)
+    if is_at_broker(port):
+        with _installed():
+            from tiniscript.link import broker
+        return broker.opened(port)
     done: list[serial.SerialBase | BaseException] = []
 
     def work() -> None:

@@ -26,7 +26,7 @@ from tiniscript.link.payloads import (
 from tiniscript.link.requests import DeviceInfo, Exchange, FetchedImage, Request
 from tiniscript.link.robot_state import RobotState
 from tiniscript.link.transmission import Transmission
-from tiniscript.link.wifi import Network
+from tiniscript.link.wifi import BrokerSettings, Network
 
 CLAIM_LIMIT_MS = 45_000  # the robot waits for a hand on its button
 T = TypeVar("T")
@@ -183,3 +183,11 @@ class SessionRequests:
 
     def forget_wifi(self) -> PendingExchange[WifiReply]:
         return self._add(self._handshake.open_then(wifi.forget))
+
+    def broker(self) -> PendingExchange[WifiReply]:
+        """Ask which MQTT broker the robot uses."""
+        return self._add(self._handshake.open_then(wifi.tell_broker))
+
+    def use_broker(self, broker: BrokerSettings | None) -> PendingExchange[WifiReply]:
+        """Have the robot use a broker, or none, now and after each reset."""
+        return self._add(self._handshake.open_then(lambda: wifi.use_broker(broker)))

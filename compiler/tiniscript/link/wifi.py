@@ -1,4 +1,4 @@
-"""The exchanges about a robot's WiFi: what it is set to, another network, none.
+"""The exchanges about a robot's WiFi and its MQTT broker: what it is set to, another one, none.
 
 Knows the order of messages. A name and a password go out sealed and covered: `seal` and `session`
 see to that.
@@ -6,10 +6,19 @@ see to that.
 
 from __future__ import annotations
 
+import re
 from typing import NamedTuple
 
 from tiniscript.link import requests
-from tiniscript.link.messages import WIFI_MODES, WIFI_STATES, WIFI_STEPS, WIFI_TEXT_BYTES
+from tiniscript.link.messages import (
+    CLASS_BYTES,
+    NETWORK_BYTES,
+    PASSWORD_BYTES,
+    WIFI_MODES,
+    WIFI_STATES,
+    WIFI_STEPS,
+    WIFI_TEXT_BYTES,
+)
 from tiniscript.link.payloads import WifiReply
 from tiniscript.link.requests import OK, Exchange, Request
 
@@ -27,6 +36,35 @@ class Network(NamedTuple):
 
     def __repr__(self) -> str:  # a password is in no message
         return f"Network({self.name!r})"
+
+
+class BrokerSettings(NamedTuple):
+    """Where a robot finds its broker: four bytes and a port; its class, and how it signs in."""
+
+    address: bytes
+    port: int
+    group: str
+    user: bytes = b""
+    password: bytes = b""
+
+    @property
+    def is_sound(self) -> bool:
+        return (
+            len(self.address) == 4
+            and 0 < self.port < 1 << 16
+            and is_class(self.group)
+            and len(self.user) <= NETWORK_BYTES
+            and len(self.password) <= PASSWORD_BYTES
+            and b"\0" not in self.user + self.password
+        )
+
+    def __repr__(self) -> str:  # a password is in no message
+        return f"BrokerSettings({self.group!r})"
+
+
+def is_class(name: str) -> bool:
+    """Return whether a class may be called so: its name is a part of topics."""
+    return re.fullmatch(rf"[a-z0-9-]{{1,{CLASS_BYTES}}}", name) is not None
 
 
 def tell() -> Exchange[WifiReply]:
@@ -48,6 +86,26 @@ def give(network: Network) -> Exchange[WifiReply]:
             return reply
     last = "HOST" if network.is_access_point else "JOIN"
     return (yield from requests.kept(_request(last), WifiReply))
+
+
+def tell_broker() -> Exchange[WifiReply]:
+    return requests.single(_request("TELL_BROKER"), WifiReply)
+
+
+def use_broker(broker: BrokerSettings | None) -> Exchange[WifiReply]:
+    """Give the robot a broker, or none, and have it kept."""
+    steps = [_request("BROKER")]
+    if broker is not None:
+        place = broker.address + broker.port.to_bytes(2, "little") + broker.group.encode()
+        steps = [_request("BROKER", place), _request("BROKER_USER", broker.user)]
+        for k in range(0, len(broker.password), WIFI_TEXT_BYTES):
+            part = broker.password[k : k + WIFI_TEXT_BYTES]
+            steps.append(_request("BROKER_PASSWORD", part))
+    for each in steps:
+        reply = yield from requests.single(each, WifiReply)
+        if reply.status != OK:
+            return reply
+    return (yield from requests.kept(_request("USE_BROKER"), WifiReply))
 
 
 def address(reply: WifiReply) -> str:

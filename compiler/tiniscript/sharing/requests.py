@@ -30,7 +30,7 @@ from tiniscript.link.payloads import (
     WifiReply,
 )
 from tiniscript.link.requests import FetchedImage
-from tiniscript.link.wifi import Network
+from tiniscript.link.wifi import BrokerSettings, Network
 from tiniscript.sharing import protocol
 from tiniscript.sharing.protocol import BadMessage, JsonMessage
 
@@ -38,7 +38,7 @@ CODE_BYTES = 0x7FFF  # the most that an image's header can say
 LATER_BYTES = 0xFF - HEADER_BYTES  # the most that it can say
 T = TypeVar("T")
 _PLAIN = ("hello", "ping", "status", "clear", "fetch", "undo", "identify", "hold_back",
-          "wifi", "forget_wifi")  # fmt: skip
+          "wifi", "forget_wifi", "broker", "use_no_broker")  # fmt: skip
 
 
 class ClientRequest(PendingRequest[T]):
@@ -98,6 +98,18 @@ class ClientRequests:
 
     def forget_wifi(self) -> ClientRequest[WifiReply]:
         return ClientRequest("forget_wifi", WifiReply)
+
+    def broker(self) -> ClientRequest[WifiReply]:
+        return ClientRequest("broker", WifiReply)
+
+    def use_broker(self, broker: BrokerSettings | None) -> ClientRequest[WifiReply]:
+        """The password goes as that of `join`."""
+        if broker is None:
+            return ClientRequest("use_no_broker", WifiReply)
+        fields = broker._asdict()
+        for name in ("address", "user", "password"):
+            fields[name] = fields[name].hex()
+        return ClientRequest("use_broker", WifiReply, **fields)
 
     def name(self, name: bytes) -> ClientRequest[EmptyReply]:
         return ClientRequest("name", EmptyReply, name=name.hex())
@@ -161,6 +173,9 @@ def _asked_for(message: JsonMessage) -> Callable[[Requester], PendingRequest[Any
     if do == "join":
         network = _network(message)
         return lambda session: session.join(network)
+    if do == "use_broker":
+        broker = _broker(message)
+        return lambda session: session.use_broker(broker)
     if do in ("claim", "disown"):
         which = protocol.number(message, "which")
         if not 0 <= which < len(KEYS):
@@ -190,6 +205,8 @@ def _asked_for(message: JsonMessage) -> Callable[[Requester], PendingRequest[Any
 
 
 def _plain(session: Requester, do: str) -> PendingRequest[Any]:
+    if do == "use_no_broker":
+        return session.use_broker(None)
     asked: PendingRequest[Any] = getattr(session, do)()
     return asked
 
@@ -201,6 +218,19 @@ def _network(message: JsonMessage) -> Network:
     if not LEAST_PASSWORD <= len(password) <= PASSWORD_BYTES or b"\0" in name + password:
         raise BadMessage
     return Network(name, password, protocol.answer(message, "is_access_point"))
+
+
+def _broker(message: JsonMessage) -> BrokerSettings:
+    broker = BrokerSettings(
+        protocol.data(message, "address"),
+        protocol.number(message, "port"),
+        protocol.word(message, "group"),
+        protocol.data(message, "user"),
+        protocol.data(message, "password"),
+    )
+    if not broker.is_sound:
+        raise BadMessage
+    return broker
 
 
 def _image(message: JsonMessage) -> Image:

@@ -127,6 +127,7 @@ is_a(MDNS.addService("", "", uint16_t{}), bool);
 is_a(&lwip_accept, int (*)(int, sockaddr*, socklen_t*));
 is_a(&lwip_bind, int (*)(int, const sockaddr*, socklen_t));
 is_a(&lwip_close, int (*)(int));
+is_a(&lwip_connect, int (*)(int, const sockaddr*, socklen_t));
 is_a(&lwip_fcntl, int (*)(int, int, int));
 is_a(&lwip_listen, int (*)(int, int));
 is_a(&lwip_recv, ssize_t (*)(int, void*, size_t, int));

@@ -326,6 +326,9 @@ int lwip_bind(int s, const struct sockaddr*, socklen_t) {
 }
 
 int lwip_close(int s) { return close(s); }
+int lwip_connect(int s, const struct sockaddr* name, socklen_t namelen) {
+  return connect(s, name, namelen);
+}
 int lwip_fcntl(int s, int cmd, int val) { return fcntl(s, cmd, val); }
 int lwip_listen(int s, int backlog) { return listen(s, backlog); }
 ssize_t lwip_recv(int s, void* mem, size_t len, int flags) { return recv(s, mem, len, flags); }

@@ -65,8 +65,9 @@ Supply board_supply();
 void board_light(bool is_on);
 
 #ifdef tiniscript_transports
-// The robot's WiFi. Setting it may stop the chip for a while: not while motors are on.
-WifiReport board_wifi();
+// The robot's WiFi, or its broker, as the step asks. Setting it may stop the chip for a while: not
+// while motors are on.
+WifiReport board_wifi(WifiStep step);
 Answer board_set_wifi(WifiStep step, const uint8_t* text, uint8_t length);
 #endif
 

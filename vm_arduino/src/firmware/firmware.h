@@ -51,10 +51,11 @@ void firmware_on_rx_byte(Transport transport, uint8_t byte, uint16_t now_ms);
 bool firmware_next_tx_byte(Transport transport, uint8_t* byte);
 
 // How the robot is called over a radio: by the name that it was given, or else, and as a host in a
-// network, by the end of its id. Both end with a 0.
+// network, by the end of its id; at a broker by all of its id, in hexadecimal. All end with a 0.
 struct RadioName {
   char name[kNameBytes + 1];
   char host[sizeof "tini-0000"];
+  char id[sizeof "00000000"];
 };
 
 // False: the robot does not know yet.

@@ -77,6 +77,9 @@ bool firmware_radio_name(RadioName* name) {
     shift = static_cast<uint8_t>(shift - 4);
     name->host[at] = kDigits[identity.id >> shift & 0xf];
   }
+  for (uint8_t k = 0; k < sizeof name->id - 1; k++) {
+    name->id[k] = kDigits[identity.id >> (28 - 4 * k) & 0xf];
+  }
   if (device_info.name_length == 0) {
     copy_bytes(name->host, reinterpret_cast<uint8_t*>(name->name), sizeof name->host);
   } else {

@@ -130,10 +130,12 @@ Answer port_image_byte(uint16_t offset, uint8_t* byte) {
 }
 
 #ifdef tiniscript_transports
-WifiReport port_wifi_report() { return board_wifi(); }
+WifiReport port_wifi_report(WifiStep step) { return board_wifi(step); }
 
 Answer port_set_wifi(WifiStep step, const uint8_t* text, uint8_t length) {
-  if (step >= WifiStep::kJoin && is_driving()) return Answer::kSaving;
+  const bool is_kept =
+      (step >= WifiStep::kJoin && step <= WifiStep::kForget) || step == WifiStep::kUseBroker;
+  if (is_kept && is_driving()) return Answer::kSaving;
   return board_set_wifi(step, text, length);
 }
 #endif

@@ -18,11 +18,18 @@ constexpr bool kHasTransports = true;
 constexpr bool kHasTransports = false;
 #endif
 
-// The cable, Bluetooth with a serial port (an ESP32 alone, not its successors), Bluetooth LE, and
-// two connections in a network.
-enum class Transport : uint8_t { kCable, kSerialPort, kLowEnergy, kNetwork, kSecondNetwork };
+// The cable, Bluetooth with a serial port (an ESP32 alone, not its successors), Bluetooth LE, two
+// connections in a network, and one client of an MQTT broker.
+enum class Transport : uint8_t {
+  kCable,
+  kSerialPort,
+  kLowEnergy,
+  kNetwork,
+  kSecondNetwork,
+  kBroker
+};
 
-constexpr uint8_t kTransports = 5;
+constexpr uint8_t kTransports = 6;
 
 // Whether whoever is in a network could reach it: what needs no key there moves nothing.
 inline bool is_network(Transport transport) { return transport >= Transport::kNetwork; }

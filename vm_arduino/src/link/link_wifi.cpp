@@ -1,4 +1,5 @@
-// WIFI: a network for the robot, or none. Its name and password come covered by the seal.
+// WIFI: a network and a broker for the robot, or none. Its name and password come covered by the
+// seal.
 
 #include "../vm/small.h"
 #include "link.h"
@@ -10,7 +11,7 @@ namespace tiniscript {
 
 namespace {
 
-constexpr uint8_t kLastStep = static_cast<uint8_t>(WifiStep::kForget);
+constexpr uint8_t kLastStep = static_cast<uint8_t>(WifiStep::kTellBroker);
 
 }  // namespace
 
@@ -24,11 +25,12 @@ uint8_t Link::set_wifi(const uint8_t* payload, uint8_t length) {
   seal_.cover(receiver_->bytes() + kCounterAt, text, text_bytes);
   const Answer found = port_set_wifi(static_cast<WifiStep>(step), text, text_bytes);
   for (uint8_t& byte : text) byte = 0;
+  if (found == Answer::kOk) said_.detail = step;  // what the reply is about
   return static_cast<uint8_t>(found);
 }
 
 void Link::tell_wifi() {
-  const WifiReport report = port_wifi_report();
+  const WifiReport report = port_wifi_report(static_cast<WifiStep>(said_.detail));
   put(static_cast<uint8_t>(report.mode));
   put(static_cast<uint8_t>(report.state));
   put_all(report.address, sizeof report.address);

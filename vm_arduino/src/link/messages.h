@@ -46,6 +46,8 @@ constexpr uint8_t kNetworkBytes = 32;
 constexpr uint8_t kWifiTextBytes = 32;
 constexpr uint8_t kPasswordBytes = 63;
 constexpr uint8_t kLeastPassword = 8;
+constexpr uint8_t kClassBytes = 16;
+constexpr uint8_t kBrokerPlaceBytes = 6;
 
 // How a program starts, in one byte.
 constexpr uint8_t kStartBits = 3;
@@ -211,7 +213,7 @@ enum class TextLevel : uint8_t {
 
 enum class Key : uint8_t {
   kOwner = 0,  // Who has claimed the robot. Where there is one, nobody drives the robot without a key.
-  kTeacher = 1,  // May do what the owner may. A stop with it is released by it or by the button alone.
+  kTeacher = 1,  // May do what the owner may. A stop with it: only it or the button lets it go on.
 };
 
 enum class WifiStep : uint8_t {
@@ -220,7 +222,12 @@ enum class WifiStep : uint8_t {
   kPassword = 2,  // The next part of its password.
   kJoin = 3,  // The robot joins that network, now and after each reset.
   kHost = 4,  // The robot is an access point of that name.
-  kForget = 5,  // The robot has no WiFi any more.
+  kForget = 5,  // The robot has no WiFi any more, and no broker.
+  kBroker = 6,  // An MQTT broker: its address, its port (16 bits) and the class. What came before is forgotten. Empty: none.
+  kBrokerUser = 7,  // The robot's name there.
+  kBrokerPassword = 8,  // The next part of its password there.
+  kUseBroker = 9,  // The robot connects to that broker, now and after each reset, or to none.
+  kTellBroker = 10,  // Changes nothing. The reply is about the broker: `mode` 1 if there is one, its address, and `network` is the class.
 };
 
 enum class WifiMode : uint8_t {

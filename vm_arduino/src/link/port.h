@@ -159,7 +159,7 @@ inline Answer port_may_drive(uint8_t) { return Answer::kOk; }
 #endif
 
 #ifdef tiniscript_transports
-// What the robot says of its WiFi. `address` is as four bytes in their order.
+// What the robot says of its WiFi, or of its broker. `address` is as four bytes in their order.
 struct WifiReport {
   WifiMode mode;
   WifiState state;
@@ -168,7 +168,8 @@ struct WifiReport {
   uint8_t network[kNetworkBytes];
 };
 
-WifiReport port_wifi_report();
+// What was asked with a step.
+WifiReport port_wifi_report(WifiStep step);
 
 // Does a step of setting WiFi. kSaving: it is kept as soon as the motors stand.
 Answer port_set_wifi(WifiStep step, const uint8_t* text, uint8_t length);

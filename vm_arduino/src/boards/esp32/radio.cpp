@@ -5,6 +5,7 @@
 #include <Arduino.h>
 #include <freertos/task.h>
 
+#include "broker_settings.h"
 #include "wifi_settings.h"
 
 namespace tiniscript {
@@ -56,6 +57,7 @@ void radio_tick() {
   if (has_begun || !firmware_radio_name(&name)) return;
   has_begun = true;
   wifi_load();
+  broker_load();
   if (has_serial_port()) begin(kSerialPortRadio);
   begin(kLowEnergyRadio);
   begin(kNetworkRadio);

@@ -13,6 +13,7 @@
 #include <errno.h>
 #endif
 
+#include "broker.h"
 #include "first_bytes.h"
 #include "radio.h"
 #include "wifi_settings.h"
@@ -168,7 +169,9 @@ void network_begin() {
 }
 
 void network_turn() {
-  if (!wifi_turn()) return close_all();
+  const bool has_network = wifi_turn();
+  broker_turn(has_network);
+  if (!has_network) return close_all();
   if (listener == kNone) listen();
   if (listener == kNone) return;
   accept_next();

@@ -13,9 +13,11 @@
 #include <nvs.h>
 
 #include "../../firmware/board.h"
+#include "broker_settings.h"
 #include "pins.h"
 #include "radio.h"
 #include "tcp_clients.h"
+#include "zero_ended.h"
 
 namespace tiniscript {
 
@@ -49,12 +51,6 @@ void set_state(WifiState found) {
   __atomic_store_n(&state, static_cast<uint8_t>(found), __ATOMIC_RELAXED);
 }
 
-size_t length_of(const char* text) {
-  size_t length = 0;
-  while (text[length] != 0) length++;
-  return length;
-}
-
 void clear(Settings* settings) { __builtin_memset(settings, 0, sizeof *settings); }
 
 bool is_sound(const Settings& settings) {
@@ -78,16 +74,6 @@ Answer keep(const Settings& settings) {
   if (!is_kept) return Answer::kNotKept;
   use(settings);
   return Answer::kOk;
-}
-
-bool append(char* to, size_t most, const uint8_t* text, uint8_t length) {
-  const size_t at = length_of(to);
-  if (length > most - at) return false;
-  for (uint8_t k = 0; k < length; k++) {
-    if (text[k] == 0) return false;
-  }
-  __builtin_memcpy(to + at, text, length);
-  return true;
 }
 
 Answer set(WifiMode mode) {
@@ -186,7 +172,8 @@ bool wifi_turn() {
   return false;
 }
 
-WifiReport board_wifi() {
+WifiReport board_wifi(WifiStep step) {
+  if (step > WifiStep::kForget) return broker_report();
   WifiReport report = {};
   report.mode = kept.mode;
   report.state = static_cast<WifiState>(__atomic_load_n(&state, __ATOMIC_RELAXED));
@@ -214,9 +201,17 @@ Answer board_set_wifi(WifiStep step, const uint8_t* text, uint8_t length) {
       return set(WifiMode::kStation);
     case WifiStep::kHost:
       return set(WifiMode::kAccessPoint);
-    case WifiStep::kForget:
+    case WifiStep::kForget: {
       clear(&wanted);
-      return keep(wanted);
+      const Answer found = broker_forget();
+      return found == Answer::kOk ? keep(wanted) : found;
+    }
+    case WifiStep::kBroker:
+    case WifiStep::kBrokerUser:
+    case WifiStep::kBrokerPassword:
+    case WifiStep::kUseBroker:
+    case WifiStep::kTellBroker:
+      return broker_set(step, text, length);
   }
   return Answer::kOk;
 }

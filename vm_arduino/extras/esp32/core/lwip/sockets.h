@@ -5,6 +5,7 @@
 #define TINISCRIPT_LWIP_SOCKETS_H_
 
 #if __STDC_HOSTED__
+#include <errno.h>
 #include <fcntl.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
@@ -37,6 +38,9 @@ struct sockaddr_in {
 #define INADDR_ANY 0U
 #define EAGAIN 11
 #define EWOULDBLOCK EAGAIN
+#define EINPROGRESS 119
+#define EALREADY 120
+#define EISCONN 127
 extern "C" {
 uint16_t lwip_htons(uint16_t x);
 uint32_t lwip_htonl(uint32_t x);
@@ -51,6 +55,7 @@ extern "C" {
 int lwip_accept(int s, struct sockaddr* addr, socklen_t* addrlen);
 int lwip_bind(int s, const struct sockaddr* name, socklen_t namelen);
 int lwip_close(int s);
+int lwip_connect(int s, const struct sockaddr* name, socklen_t namelen);
 int lwip_fcntl(int s, int cmd, int val);
 int lwip_listen(int s, int backlog);
 ssize_t lwip_recv(int s, void* mem, size_t len, int flags);

@@ -1,0 +1,296 @@
+"""Robots at an MQTT broker: which ones are there, a port for each, and a stop for all of them.
+
+All robots of a broker share a connection of this process. A message is a piece of the bytes that
+any port carries: nothing is retained, and everything has QoS 0, since the session repeats what is
+lost. Knows paho-mqtt; importing this fails without it. Whoever may publish at the broker can say
+anything: what is believed, the seals of the link decide. Knows no sentences.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import ssl
+from contextlib import suppress
+from threading import Condition, Lock
+from time import monotonic
+from typing import Any, NamedTuple
+
+import paho.mqtt.client as mqtt
+from paho.mqtt.enums import CallbackAPIVersion
+
+from tiniscript.link import ports
+from tiniscript.link.messages import NAME_BYTES, STOP_BYTES
+from tiniscript.link.port_names import MQTT
+from tiniscript.link.ports import READ_S, PortError
+from tiniscript.link.wifi import is_class
+
+PLAIN_PORT, TLS_PORT = 1883, 8883
+ROOT = "tiniscript"
+CONNECT_S = 5.0
+KEEP_ALIVE_S = 4
+LIST_S = 2.0  # until a broker has sent what it retains
+QUIET_S = 0.3  # of silence, and that was all
+ROBOTS = 250  # that a list keeps
+PIECE_BYTES = 400  # of a message; a robot takes 512
+KEPT_BYTES = 65_536  # of a robot that sends more than is read; more is lost
+DRIVER_S = 0.5  # of silence of the driver, after which nothing keeps a run alive
+_PORT = re.compile(rf"{MQTT}(.+):(\d{{1,5}})/([a-z0-9-]{{1,16}})/([0-9a-f]{{8}})", re.IGNORECASE)
+
+
+class Access(NamedTuple):
+    """How this process signs in: nobody's name is none; `trusted` is a file with a certificate."""
+
+    user: str = ""
+    password: str = ""
+    is_tls: bool = False
+    trusted: str | None = None
+
+    def __repr__(self) -> str:  # a password is in no message
+        return f"Access({self.user!r})"
+
+
+class Present(NamedTuple):
+    """A robot that has said that it is there, or for which the broker says that it is not."""
+
+    id: str
+    name: str
+    is_here: bool
+
+
+_accesses: dict[tuple[str, int], Access] = {}
+_brokers: dict[tuple[str, int], Broker] = {}
+_lock = Lock()
+
+
+def port_of(host: str, port: int, group: str, robot: str) -> str:
+    """Return the port of a robot."""
+    return f"{MQTT}{host}:{port}/{group}/{robot}"
+
+
+def sign_in(host: str, port: int, access: Access) -> None:
+    """Have this process sign in so from now on."""
+    _accesses[host, port] = access
+
+
+def opened(port: str) -> BrokerPort:
+    """Return the port of a robot. Raises PortError."""
+    found = _PORT.fullmatch(port)
+    if found is None or int(found[2]) >= 1 << 16:
+        raise PortError(ports.NO_PORT, port)
+    return connected(found[1], int(found[2])).robot(found[3].lower(), found[4].lower())
+
+
+def connected(host: str, port: int) -> Broker:
+    """Return the connection of this process to a broker. Raises PortError."""
+    with _lock:
+        broker = _brokers.get((host, port))
+        if broker is None or broker.gone:
+            broker = Broker(host, port, _accesses.get((host, port), Access()))
+            _brokers[host, port] = broker
+        return broker
+
+
+class Broker:
+    """A connection to a broker. `gone` says why it has ended."""
+
+    def __init__(self, host: str, port: int, access: Access) -> None:
+        """Connect. Raises PortError, at the latest after CONNECT_S for each of its addresses."""
+        self.gone = ""
+        self.peer = os.urandom(4).hex()
+        self.driver_s: float | None = None  # when the driver was heard last; None: nobody attends
+        self._news = Condition()
+        self._here: dict[str, dict[str, Present]] = {}
+        self._told_s = 0.0
+        self._ports: dict[tuple[str, str], BrokerPort] = {}
+        self._reason: str | None = None  # of a refusal; empty: let in
+        self._client = mqtt.Client(
+            CallbackAPIVersion.VERSION2, protocol=mqtt.MQTTv311, reconnect_on_failure=False
+        )
+        self._client.connect_timeout = CONNECT_S
+        self._client.on_connect = self._on_connect
+        self._client.on_disconnect = self._on_disconnect
+        self._client.on_message = self._on_message
+        self._connect(host, port, access)
+
+    def robot(self, group: str, robot: str) -> BrokerPort:
+        """Return the port of a robot, which may be there or not. Raises PortError."""
+        port = BrokerPort(self, group, robot)
+        with self._news:
+            if self.gone:
+                raise PortError(ports.UNREACHABLE, self.gone)
+            self._ports[group, robot] = port
+        self._client.subscribe(f"{ROOT}/{group}/{robot}/out/{self.peer}")
+        return port
+
+    def present(self, group: str) -> list[Present]:
+        """Return the robots of a class that the broker knows, in the order of their names."""
+        assert is_class(group)
+        end_s = monotonic() + LIST_S
+        with self._news:
+            self._here[group] = {}
+            self._told_s = monotonic()
+            self._client.subscribe(f"{ROOT}/{group}/+")
+            while monotonic() < min(end_s, self._told_s + QUIET_S) and not self.gone:
+                self._news.wait(READ_S)
+            found = list(self._here.pop(group).values())
+        self._client.unsubscribe(f"{ROOT}/{group}/+")
+        return sorted(found, key=lambda each: (each.name.casefold(), each.id))
+
+    def stop(self, group: str) -> None:
+        """Stop every robot of a class: one message for all. Nothing confirms it."""
+        self.publish(f"{ROOT}/{group}/stop", bytes(STOP_BYTES))
+
+    def publish(self, topic: str, data: bytes) -> None:
+        """Raises OSError."""
+        if self.gone:
+            raise OSError(self.gone)
+        self._client.publish(topic, data, qos=0, retain=False)
+
+    def attend(self) -> None:
+        """Say that the driver is there: from now on it has to say so every DRIVER_S."""
+        self.driver_s = monotonic()
+
+    @property
+    def has_driver(self) -> bool:
+        return self.driver_s is None or monotonic() - self.driver_s < DRIVER_S
+
+    def forget(self, port: BrokerPort) -> None:
+        """Let another client have the robot."""
+        with self._news:
+            if self._ports.get((port.group, port.robot)) is port:
+                del self._ports[port.group, port.robot]
+        with suppress(OSError):
+            self.publish(port.topic, b"")
+
+    def close(self) -> None:
+        self._client.disconnect()
+        self._client.loop_stop()
+
+    # -- paho's thread ----------------------------------------------------------------------------
+
+    def _connect(self, host: str, port: int, access: Access) -> None:
+        if access.user:
+            self._client.username_pw_set(access.user, access.password)
+        try:
+            if access.is_tls:
+                self._client.tls_set(ca_certs=access.trusted)
+            self._client.connect(host, port, KEEP_ALIVE_S)
+        except ssl.SSLError as why:
+            raise PortError(ports.UNTRUSTED, str(why.reason or why)) from None
+        except (OSError, ValueError) as why:
+            raise PortError(ports.UNREACHABLE, _said(why)) from None
+        self._client.loop_start()
+        end_s = monotonic() + CONNECT_S
+        with self._news:
+            while self._reason is None and not self.gone and monotonic() < end_s:
+                self._news.wait(READ_S)
+            reason = self._reason
+        if reason == "":
+            return
+        self.close()
+        if reason is None:
+            raise PortError(ports.UNREACHABLE, self.gone or "no answer of a broker")
+        raise PortError(ports.REFUSED, reason)
+
+    def _on_connect(self, *rest: Any) -> None:
+        code = rest[3]
+        with self._news:
+            self._reason = str(code) if code.is_failure else ""
+            self._news.notify_all()
+
+    def _on_disconnect(self, *_: Any) -> None:
+        with self._news:
+            self.gone = self.gone or "the broker has gone"
+            self._news.notify_all()
+            for port in self._ports.values():
+                port.end(self.gone)
+
+    def _on_message(self, _: Any, __: Any, message: mqtt.MQTTMessage) -> None:
+        try:
+            words = message.topic.split("/")
+        except UnicodeDecodeError:
+            return
+        with self._news:
+            if len(words) == 3:
+                self._take_presence(words[1], words[2], bytes(message.payload))
+            elif len(words) == 5 and not message.retain:
+                port = self._ports.get((words[1], words[2]))
+                if port is not None:
+                    port.take(bytes(message.payload))
+
+    def _take_presence(self, group: str, robot: str, payload: bytes) -> None:
+        here = self._here.get(group)
+        is_robot = re.fullmatch(r"[0-9a-f]{8}", robot) is not None
+        if here is None or not is_robot or not 1 <= len(payload) <= 1 + NAME_BYTES:
+            return
+        if payload[:1] not in (b"+", b"-") or (len(here) == ROBOTS and robot not in here):
+            return
+        name = payload[1:].decode("utf-8", "replace")
+        here[robot] = Present(robot, name, payload[:1] == b"+")
+        self._told_s = monotonic()
+        self._news.notify_all()
+
+
+class BrokerPort:
+    """A robot at a broker. `read`, `write`, `in_waiting`, `cancel_read` and `close` are as in
+    pyserial; where the connection has ended they raise OSError."""
+
+    def __init__(self, broker: Broker, group: str, robot: str) -> None:
+        self.group, self.robot = group, robot
+        self.topic = f"{ROOT}/{group}/{robot}/in/{broker.peer}"
+        self._broker = broker
+        self._news = Condition()
+        self._heard = bytearray()
+        self._gone = ""
+        self._is_cancelled = False
+
+    @property
+    def in_waiting(self) -> int:
+        return len(self._heard)
+
+    def read(self, size: int) -> bytes:
+        """Return what has arrived, at most `size` bytes, or nothing after READ_S."""
+        with self._news:
+            if not (self._heard or self._gone or self._is_cancelled):
+                self._news.wait(READ_S)
+            self._is_cancelled = False
+            found = bytes(self._heard[:size])
+            del self._heard[:size]
+            if self._gone and not found:
+                raise OSError(self._gone)
+            return found
+
+    def cancel_read(self) -> None:
+        with self._news:
+            self._is_cancelled = True
+            self._news.notify_all()
+
+    def write(self, data: bytes) -> None:
+        """Send bytes in pieces. Where nobody attends to the run, the robot hears a stop instead."""
+        if self._gone:
+            raise OSError(self._gone)
+        if not self._broker.has_driver:
+            data = bytes(STOP_BYTES)
+        for k in range(0, len(data), PIECE_BYTES):
+            self._broker.publish(self.topic, data[k : k + PIECE_BYTES])
+
+    def close(self) -> None:
+        self._broker.forget(self)
+
+    def take(self, data: bytes) -> None:
+        """A message of the robot has come; an empty one says that another client has it."""
+        if not data:
+            return self.end(ports.TAKEN)
+        with self._news:
+            self._heard += data[: KEPT_BYTES - len(self._heard)]
+            self._news.notify_all()
+
+    def end(self, why: str) -> None:
+        with self._news:
+            self._gone = self._gone or why
+            self._news.notify_all()
+
+
+def _said(why: Exception) -> str:
+    return (why.strerror if isinstance(why, OSError) else None) or str(why)

@@ -1,0 +1,399 @@
+"""An ESP32 at an MQTT broker, Debian's Mosquitto as it is: who drives it, and what stops it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.firmware.test_esp32_transports import AWAY, Ends, ended, uploaded
+from tests.firmware.test_esp32_wifi import joined, remote
+from tests.firmware.test_host_firmware import happened, image_of
+from tests.machines.esp32 import Esp32Robot
+from tests.machines.esp32 import missing as no_compiler
+from tests.support.esp32_radio import in_reach, talk
+from tests.support.mosquitto import AtBroker, Mosquitto, missing
+from tests.support.owners import Keys
+from tiniscript.link import ports, wifi
+from tiniscript.link.broker import ROOT, Access, Broker, Present
+from tiniscript.link.messages import AUTHORITY_MS, STOP_BYTES
+from tiniscript.link.ports import PortError
+from tiniscript.link.session import Session
+
+pytestmark = [
+    pytest.mark.skipif(bool(no_compiler()), reason=no_compiler() or "there is a compiler"),
+    pytest.mark.skipif(bool(missing()), reason=missing() or "there is a broker"),
+]
+
+ID = "12345678"
+TETHER_MS = 1050
+BROKER_KEY = b"broker"
+
+
+@pytest.fixture(scope="module")
+def broker(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Mosquitto]:
+    found = Mosquitto(tmp_path_factory.mktemp("broker"))
+    yield found
+    found.kill()
+
+
+def at(
+    broker: Mosquitto, keys: Keys, settings: wifi.BrokerSettings | None = None
+) -> tuple[Esp32Robot, Session]:
+    """Return a robot with an owner, which is at the broker, and the owner's session by cable."""
+    robot, owner = joined(keys)
+    request = owner.use_broker(settings or broker.settings())
+    assert ended(robot, [(None, owner)], request) == "OK"
+    until(robot, lambda: told(robot, owner)[1] == "READY")
+    talk(robot, [], AUTHORITY_MS + 100)
+    return robot, owner
+
+
+def until(robot: Esp32Robot, holds: Callable[[], bool], limit_ms: int = 6000) -> None:
+    for _ in range(limit_ms // 20):
+        if holds():
+            return
+        for _ in range(20):
+            robot.step()
+            time.sleep(0.0005)
+    raise AssertionError("not in time")
+
+
+def told(robot: Esp32Robot, owner: Session) -> tuple[str, str, str]:
+    """Return the mode, the state and the class of its broker."""
+    request = owner.broker()
+    assert ended(robot, [(None, owner)], request) == "OK" and request.outcome
+    found = request.outcome.values
+    return wifi.MODES[found.mode], wifi.STATES[found.state], found.network.decode()
+
+
+def present(robot: Esp32Robot, at: Broker, group: str = "aula") -> list[Present]:
+    robot.wait(20)
+    return at.present(group)
+
+
+def motors(robot: Esp32Robot) -> str:
+    return [line for line in happened(robot) if "MOTORS" in line][-1]
+
+
+# -- the road -----------------------------------------------------------------------------------
+
+
+def test_the_owner_drives_over_a_broker(broker: Mosquitto) -> None:
+    keys = Keys()
+    robot, _ = at(broker, keys)
+    teacher = broker.connected()
+    assert present(robot, teacher) == [Present(ID, "tini-5678", True)]
+    owner = remote(robot, keys)
+    ends: Ends = [(AtBroker(robot, teacher), owner)]
+    assert uploaded(robot, ends, owner) == "OK"
+    talk(robot, ends, 1500)
+    assert motors(robot) == "MOTORS 80 80"
+    owner.stop(robot.now_ms)
+    talk(robot, ends, 60)
+    assert motors(robot) == "MOTORS 0 0"
+    assert any(event.name == "STOPPED" for event in owner.events())
+    teacher.close()
+
+
+def test_a_long_program_and_what_it_shows(broker: Mosquitto) -> None:
+    keys = Keys()
+    robot, _ = at(broker, keys)
+    teacher = broker.connected()
+    owner = remote(robot, keys)
+    ends: Ends = [(AtBroker(robot, teacher), owner)]
+    lines = "".join(f"X = {k}; " for k in range(400))
+    assert uploaded(robot, ends, owner, f"SI|{lines}SHOW(X); SHOW(X > 1)") == "OK"
+    talk(robot, ends, 300)
+    names = [event.name for event in owner.events()]
+    assert names.count("SHOW") == 2 and "DONE" in names
+    teacher.close()
+
+
+def test_it_is_kept_and_told_and_forgotten(broker: Mosquitto) -> None:
+    robot, owner = at(broker, Keys())
+    assert told(robot, owner) == ("STATION", "READY", "aula")
+    again = Esp32Robot(kept=robot.kept())
+    in_reach(again, "Aula 3 ñ", "correct horse battery staple, and forty more")
+    again.wait(400)
+    teacher = broker.connected()
+    until(again, lambda: present(again, teacher) == [Present(ID, "tini-5678", True)])
+    teacher.close()
+    assert ended(robot, [(None, owner)], owner.use_broker(None)) == "OK"
+    assert told(robot, owner) == ("OFF", "OFF", "")
+    assert ended(robot, [(None, owner)], owner.use_broker(broker.settings())) == "OK"
+    assert ended(robot, [(None, owner)], owner.forget_wifi()) == "OK"
+    assert told(robot, owner)[0] == "OFF", "who gives a robot away forgets both"
+    assert b"hunter" not in b"".join(robot.kept().entries.values())
+
+
+@pytest.mark.parametrize("settings", [
+    wifi.BrokerSettings(bytes(4), 0, "aula"), wifi.BrokerSettings(bytes(4), 1883, ""),
+    *(wifi.BrokerSettings(bytes(4), 1883, name)
+      for name in ("a/b", "a+", "#", "Aula", "aula 3", "ñ", "x" * 17)),
+    wifi.BrokerSettings(bytes(4), 1883, "aula", b"a\0b"),
+    wifi.BrokerSettings(bytes(4), 1883, "aula", b"a", b"a\0b"),
+])  # fmt: skip
+def test_what_is_no_broker_is_refused(broker: Mosquitto, settings: wifi.BrokerSettings) -> None:
+    robot, owner = at(broker, Keys())
+    assert not settings.is_sound
+    assert ended(robot, [(None, owner)], owner.use_broker(settings)) == "BAD_VALUE"
+    assert told(robot, owner) == ("STATION", "READY", "aula")
+
+
+def test_a_name_and_a_password_where_the_broker_asks_for_them(tmp_path: Path) -> None:
+    own = Mosquitto(tmp_path, "robots", "a long password: 40 letters and some more")
+    try:
+        keys = Keys()
+        good = own.settings("aula", "robots", "a long password: 40 letters and some more")
+        robot, owner = at(own, keys, good)
+        kept = robot.kept().entries
+        assert b"40 letters" in kept[BROKER_KEY], "it has come whole"
+        wrong = own.settings("aula", "robots", "another one")
+        assert ended(robot, [(None, owner)], owner.use_broker(wrong)) == "OK"
+        until(robot, lambda: told(robot, owner)[1] == "REFUSED")
+        for access in (Access(), Access("robots", "another one"), Access("who", "x")):
+            with pytest.raises(PortError) as failure:
+                own.connected(access)
+            assert failure.value.reason == ports.REFUSED
+        own.connected(Access("robots", "a long password: 40 letters and some more")).close()
+    finally:
+        own.kill()
+
+
+# -- stops --------------------------------------------------------------------------------------
+
+
+def test_one_message_stops_the_class_and_no_other_class(broker: Mosquitto) -> None:
+    keys = Keys()
+    robot, _ = at(broker, keys)
+    teacher, other = broker.connected(), broker.connected()
+    owner = remote(robot, keys)
+    ends: Ends = [(AtBroker(robot, teacher), owner)]
+    assert uploaded(robot, ends, owner) == "OK"
+    other.stop("another")
+    talk(robot, ends, 200)
+    assert motors(robot) == "MOTORS 80 80"
+    other.stop("aula")
+    talk(robot, ends, 100)
+    assert motors(robot) == "MOTORS 0 0"
+    teacher.close()
+    other.close()
+
+
+def test_a_stranger_stops_and_does_nothing_else(broker: Mosquitto) -> None:
+    keys = Keys()
+    robot, _ = at(broker, keys)
+    teacher, stranger = broker.connected(), broker.connected()
+    owner, other = remote(robot, keys), remote(robot, Keys(50), 11)
+    ends: Ends = [(AtBroker(robot, teacher), owner)]
+    assert uploaded(robot, ends, owner) == "OK"
+    end = AtBroker(robot, stranger)
+    request = other.live(image_of("F(1, 9)").code)
+    talk(robot, [*ends, (end, other)], 300)
+    assert request.outcome is None and end.has_ended, "it is told that another one has the robot"
+    assert motors(robot) == "MOTORS 80 80"
+    topic = f"{ROOT}/aula/{ID}/in/{teacher.peer}"
+    for junk in (b"SI|B(9, 90)\n", b"\3\2\1\0" * 50, bytes(range(1, 255)), b"GET / HTTP/1.1\r\n"):
+        stranger.publish(topic, junk)
+        talk(robot, ends, 100)
+    assert motors(robot) == "MOTORS 80 80"
+    for name in ("in/x", "in/" + "g" * 8, "in/" + "0" * 9, "in", "stop", f"in/{ID}/more"):
+        stranger.publish(f"{ROOT}/aula/{ID}/{name}", bytes(STOP_BYTES))
+    stranger.publish(f"{ROOT}/aula/stop", b"stop")
+    stranger.publish(f"{ROOT}/aula/stop", bytes(3))
+    talk(robot, ends, 200)
+    assert motors(robot) == "MOTORS 80 80", "none of these is a stop"
+    stranger.publish(f"{ROOT}/aula/{ID}/in/{stranger.peer}", bytes(STOP_BYTES))
+    talk(robot, ends, 100)
+    assert motors(robot) == "MOTORS 0 0"
+    teacher.close()
+    stranger.close()
+
+
+def test_what_is_retained_was_said_before(broker: Mosquitto) -> None:
+    """A retained stop keeps no robot from driving, a retained request has nothing done."""
+    keys = Keys()
+    stranger = broker.connected()
+    topics = [f"{ROOT}/aula/stop", f"{ROOT}/aula/{ID}/in/{stranger.peer}"]
+    for topic in topics:
+        stranger._client.publish(topic, bytes(STOP_BYTES), retain=True)
+    try:
+        robot, _ = at(broker, keys)
+        owner = remote(robot, keys)
+        teacher = broker.connected()
+        ends: Ends = [(AtBroker(robot, teacher), owner)]
+        assert uploaded(robot, ends, owner) == "OK"
+        talk(robot, ends, 300)
+        assert motors(robot) == "MOTORS 80 80"
+        teacher.close()
+    finally:
+        for topic in topics:
+            stranger._client.publish(topic, b"", retain=True)
+        stranger.close()
+
+
+def test_what_is_said_again_has_nothing_done(broker: Mosquitto) -> None:
+    """All that the owner has said, later, in its order: a whole drive and more."""
+    keys = Keys()
+    robot, _ = at(broker, keys)
+    teacher, thief = broker.connected(), broker.connected()
+    heard: list[bytes] = []
+    end = AtBroker(robot, teacher)
+    send = end.port.write
+
+    def write(data: bytes) -> None:
+        heard.append(data)
+        send(data)
+
+    end.port.write = write  # type: ignore[method-assign]
+    owner = remote(robot, keys)
+    ends: Ends = [(end, owner)]
+    assert uploaded(robot, ends, owner, "SI|F(0.2, 80)") == "OK"
+    talk(robot, ends, 400)
+    end.leave()
+    talk(robot, [], AUTHORITY_MS + 3500)
+    before = len(robot.did)
+    for data in heard * 2:
+        thief.publish(f"{ROOT}/aula/{ID}/in/{thief.peer}", data)
+        thief.publish(end.port.topic, data)
+        for _ in range(10):
+            robot.step()
+            time.sleep(0.0005)
+    assert not [line for line in robot.did[before:] if "MOTORS" in line]
+    teacher.close()
+    thief.close()
+
+
+def test_a_robot_without_an_owner_does_nothing_at_a_broker(broker: Mosquitto) -> None:
+    robot, cable = at(broker, Keys())
+    assert ended(robot, [(None, cable)], cable.disown(0)) == "OK"
+    talk(robot, [], AUTHORITY_MS + 100)
+    before = len(robot.did)
+    teacher = broker.connected()
+    client = remote(robot, None)
+    ends: Ends = [(AtBroker(robot, teacher), client)]
+    assert ended(robot, ends, client.ping()) == "OK"
+    for acting in (client.live(image_of("F(1, 9)").code), client.upload(image_of(AWAY)),
+                   client.name(b"x")):  # fmt: skip
+        assert ended(robot, ends, acting) == "UNOWNED"
+    assert not [line for line in robot.did[before:] if "MOTORS" in line]
+    teacher.close()
+
+
+# -- ends ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("how", ["dies", "stalls", "is out of reach"])
+def test_a_broker_that_is_gone_ends_the_run(tmp_path: Path, how: str) -> None:
+    own = Mosquitto(tmp_path)
+    try:
+        keys = Keys()
+        robot, owner_by_cable = at(own, keys)
+        owner, teacher = remote(robot, keys), own.connected()
+        ends: Ends = [(AtBroker(robot, teacher), owner)]
+        assert uploaded(robot, ends, owner) == "OK"
+        talk(robot, ends, 500)
+        assert motors(robot) == "MOTORS 80 80"
+        if how == "dies":
+            own.kill()
+        elif how == "stalls":
+            own.stall()
+        else:
+            in_reach(robot, "", "")
+        begun_ms = robot.now_ms
+        while motors(robot) != "MOTORS 0 0":
+            talk(robot, ends, 5)
+            assert robot.now_ms < begun_ms + TETHER_MS
+        own.stall(False)
+        if how == "dies":
+            own.start()
+        in_reach(robot, "Aula 3 ñ", "correct horse battery staple, and forty more")
+        assert ended(robot, [(None, owner_by_cable)], owner_by_cable.ping()) == "OK"
+        until(robot, lambda: told(robot, owner_by_cable)[1] == "READY", 15_000)
+        again, end = remote(robot, keys, 13), own.connected()
+        talk(robot, [], AUTHORITY_MS + 3000)
+        assert uploaded(robot, [(AtBroker(robot, end), again)], again) == "OK"
+        end.close()
+    finally:
+        own.kill()
+
+
+def test_a_client_that_leaves_ends_its_run_and_makes_room(broker: Mosquitto) -> None:
+    keys = Keys()
+    robot, _ = at(broker, keys)
+    first, second = broker.connected(), broker.connected()
+    owner = remote(robot, keys)
+    end = AtBroker(robot, first)
+    assert uploaded(robot, [(end, owner)], owner) == "OK"
+    end.leave()
+    until(robot, lambda: motors(robot) == "MOTORS 0 0", 200)
+    again = remote(robot, keys, 13)
+    assert uploaded(robot, [(AtBroker(robot, second), again)], again) == "OK"
+    first.close()
+    second.close()
+
+
+def test_a_driver_that_hangs_keeps_no_run_alive(broker: Mosquitto) -> None:
+    keys = Keys()
+    robot, _ = at(broker, keys)
+    teacher = broker.connected()
+    owner = remote(robot, keys)
+    ends: Ends = [(AtBroker(robot, teacher), owner)]
+    teacher.attend()
+    assert uploaded(robot, ends, owner) == "OK"
+    time.sleep(0.6)
+    talk(robot, ends, 400)
+    assert motors(robot) == "MOTORS 0 0"
+    teacher.close()
+
+
+def test_the_last_will_says_who_is_not_there(broker: Mosquitto) -> None:
+    robot, _ = at(broker, Keys())
+    teacher = broker.connected()
+    robot.close()
+    for _ in range(100):
+        if teacher.present("aula") == [Present(ID, "tini-5678", False)]:
+            break
+        time.sleep(0.05)
+    assert teacher.present("aula") == [Present(ID, "tini-5678", False)]
+    teacher.close()
+
+
+def test_what_strangers_say_of_robots_is_bounded(broker: Mosquitto) -> None:
+    stranger, teacher = broker.connected(), broker.connected()
+    said = {
+        "12345678": b"+a/b+#\x1b[2J", "xyz": b"+no id", "1234567": b"+short", "1234567g": b"+no",
+        "aaaaaaaa": b"?", "bbbbbbbb": b"", "cccccccc": b"+" + b"x" * 17, "dddddddd": b"+\xff\xfe",
+    }  # fmt: skip
+    topics = {f"{ROOT}/odd/{name}": data for name, data in said.items()}
+    topics |= {f"{ROOT}/many/{k:08x}": b"+x" for k in range(300)}
+    for topic, data in topics.items():
+        stranger._client.publish(topic, data, retain=True)
+    time.sleep(0.2)
+    assert {each.id for each in teacher.present("odd")} == {"12345678", "dddddddd"}
+    assert len(teacher.present("many")) == 250
+    for topic in topics:
+        stranger._client.publish(topic, b"", retain=True)
+    time.sleep(0.2)
+    assert teacher.present("many") == []
+    stranger.close()
+    teacher.close()
+
+
+def test_a_message_that_is_too_long_is_skipped(broker: Mosquitto) -> None:
+    keys = Keys()
+    robot, _ = at(broker, keys)
+    teacher, stranger = broker.connected(), broker.connected()
+    owner = remote(robot, keys)
+    ends: Ends = [(AtBroker(robot, teacher), owner)]
+    assert uploaded(robot, ends, owner) == "OK"
+    for length in (513, 20_000):
+        stranger.publish(f"{ROOT}/aula/{ID}/in/{stranger.peer}", bytes(length))
+    talk(robot, ends, 500)
+    assert motors(robot) == "MOTORS 80 80", "neither has it stopped, nor is the run over"
+    assert ended(robot, ends, owner.ping()) == "OK"
+    teacher.close()
+    stranger.close()

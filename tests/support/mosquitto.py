@@ -1,0 +1,122 @@
+"""An MQTT broker, Debian's Mosquitto as it is, on 127.0.0.1, and a robot's client at it."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import socket
+import subprocess
+import time
+from pathlib import Path
+
+from tests.machines.esp32 import Esp32Robot
+from tiniscript.link import broker, wifi
+from tiniscript.link.broker import Access, Broker, BrokerPort
+
+PROGRAM = shutil.which("mosquitto") or next(iter(Path("/usr/sbin").glob("mosquitto")), None)
+LOCAL = bytes((127, 0, 0, 1))
+STEP_S = 0.0005  # for a millisecond of the chip: the broker lives in this computer's time
+
+
+def missing() -> str:
+    return "" if PROGRAM else "needs the broker mosquitto"
+
+
+class Mosquitto:
+    """A broker. With `password` it lets in nobody but `user`."""
+
+    def __init__(self, folder: Path, user: str = "", password: str = "", more: str = "") -> None:
+        assert PROGRAM
+        self.port = free_port()
+        self._rules = folder / f"mosquitto-{self.port}.conf"
+        lines = [f"listener {self.port} 127.0.0.1", "persistence false", f"user {_me()}", more]
+        if user:
+            passwords = folder / "passwords"
+            passwords.touch(mode=0o600)
+            command = ["mosquitto_passwd", "-b", str(passwords), user, password]
+            subprocess.run(command, check=True, capture_output=True)
+            lines += ["allow_anonymous false", f"password_file {passwords}"]
+        else:
+            lines.append("allow_anonymous true")
+        self._rules.write_text("\n".join(lines) + "\n", encoding="utf-8")
+        self.start()
+
+    def start(self) -> None:
+        self.process = subprocess.Popen(
+            [str(PROGRAM), "-c", str(self._rules)],
+            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+        )  # fmt: skip
+        for _ in range(200):
+            try:
+                socket.create_connection(("127.0.0.1", self.port), 1).close()
+                return
+            except OSError:
+                time.sleep(0.02)
+        raise AssertionError("the broker has not begun")
+
+    def stall(self, is_stalled: bool = True) -> None:
+        self.process.send_signal(signal.SIGSTOP if is_stalled else signal.SIGCONT)
+
+    def kill(self) -> None:
+        self.stall(False)
+        self.process.kill()
+        self.process.wait()
+
+    def settings(
+        self, group: str = "aula", user: str = "", password: str = ""
+    ) -> wifi.BrokerSettings:
+        return wifi.BrokerSettings(LOCAL, self.port, group, user.encode(), password.encode())
+
+    def connected(self, access: Access | None = None) -> Broker:
+        """Return a connection of its own."""
+        return Broker("127.0.0.1", self.port, access or Access())
+
+
+class AtBroker:
+    """A robot's client at a broker, as an `End` of `esp32_radio`."""
+
+    def __init__(self, robot: Esp32Robot, at: Broker, group: str = "aula") -> None:
+        self.port: BrokerPort = at.robot(group, f"{robot_id(robot):08x}")
+        self.has_ended = False
+
+    def send(self, data: bytes) -> None:
+        try:
+            self.port.write(data)
+        except OSError:
+            self.has_ended = True
+
+    def taken(self) -> bytes:
+        time.sleep(STEP_S)
+        self.port.cancel_read()  # this does not wait
+        try:
+            return self.port.read(65_536)
+        except OSError:
+            self.has_ended = True
+            return b""
+
+    def leave(self) -> None:
+        self.port.close()
+
+
+def robot_id(robot: Esp32Robot) -> int:
+    """Return the id that a simulated chip has: its first random number."""
+    return ID
+
+
+ID = 0x12345678
+
+
+def free_port() -> int:
+    with socket.socket() as found:
+        found.bind(("127.0.0.1", 0))
+        return int(found.getsockname()[1])
+
+
+def _me() -> str:
+    import pwd
+
+    return pwd.getpwuid(os.getuid()).pw_name
+
+
+assert broker.ROOT == "tiniscript"

@@ -1,0 +1,318 @@
+// MQTT over a socket that never waits.
+//
+// tiniscript/CLASS/ID           says that the robot is there, or (its last will) that it is not
+// tiniscript/CLASS/ID/in/PEER   bytes of a client, which PEER, eight hexadecimal digits, names
+// tiniscript/CLASS/ID/out/PEER  bytes for it; none at all: another client has the robot
+// tiniscript/CLASS/stop         zeros stop all robots of the class
+//
+// Who drives is the link's business: a broker, and who publishes there, is a stranger. A retained
+// message is one that was said before, so none of them is taken.
+
+#ifdef ARDUINO_ARCH_ESP32
+
+#include "broker.h"
+
+#include <Arduino.h>
+#include <lwip/sockets.h>
+#if __has_include(<errno.h>)
+#include <errno.h>
+#endif
+
+#include "broker_settings.h"
+#include "mqtt.h"
+#include "radio.h"
+#include "zero_ended.h"
+
+namespace tiniscript {
+
+namespace {
+
+constexpr int kNone = -1;
+constexpr uint32_t kAgainMs = 3000;    // between two tries to connect, and up to a second more
+constexpr uint32_t kConnectMs = 3000;  // until the broker has let the robot in
+constexpr uint16_t kKeepAliveS = 4;    // 1.5 times that, and the broker tells the last will
+constexpr uint32_t kPingMs = 1500;     // of silence of the robot
+constexpr uint32_t kSilentMs = 4000;   // of the broker, which answers pings
+constexpr uint32_t kPeerMs = 3000;     // of silence after which another client gets the robot
+constexpr size_t kPeerDigits = 8;
+constexpr size_t kChunk = 256;
+constexpr size_t kLeastStop = 4;
+constexpr char kHere = '+';
+constexpr char kGone = '-';
+
+enum class Phase : uint8_t { kOff, kConnecting, kGreeting, kReady };
+
+using Peer = char[kPeerDigits + 1];
+
+BrokerSettings settings;
+MqttReader reader;
+int connection = kNone;
+Phase phase;
+uint32_t since_ms;  // of the phase
+uint32_t heard_ms;
+uint32_t said_ms;
+
+Peer peer;  // who has the robot; empty: nobody
+uint32_t peer_ms;
+Peer refused;  // who is to be told that another client has it
+
+size_t out_length;
+size_t out_sent;
+uint8_t out[1024];
+
+Pipe& pipe() { return radio_pipe(Transport::kBroker); }
+
+uint32_t now_ms() { return static_cast<uint32_t>(millis()); }
+
+bool may_come_later() { return errno == EAGAIN || errno == EWOULDBLOCK; }
+
+// A topic of this robot, or of its class.
+class Topic {
+ public:
+  Topic() {
+    add("tiniscript/");
+    add(settings.group);
+    add("/");
+  }
+  Topic& add(const char* text) {
+    while (*text != 0 && length_ < kMqttTopicBytes) text_[length_++] = *text++;
+    text_[length_] = 0;
+    return *this;
+  }
+  Topic& of_robot() { return add(radio_name().id); }
+  const char* text() const { return text_; }
+
+ private:
+  char text_[kMqttTopicBytes + 1];
+  size_t length_ = 0;
+};
+
+// What follows `start` in a topic, or nullptr.
+const char* rest_of(const char* topic, const char* start) {
+  while (*start != 0) {
+    if (*topic++ != *start++) return nullptr;
+  }
+  return topic;
+}
+
+bool is_peer(const char* text) {
+  size_t length = 0;
+  for (; text[length] != 0; length++) {
+    const bool is_digit = text[length] >= '0' && text[length] <= '9';
+    const bool is_letter = text[length] >= 'a' && text[length] <= 'f';
+    if (!is_digit && !is_letter) return false;
+  }
+  return length == kPeerDigits;
+}
+
+bool is_stop(const uint8_t* payload, size_t length) {
+  for (size_t k = 0; k < length; k++) {
+    if (payload[k] != 0) return false;
+  }
+  return length >= kLeastStop;
+}
+
+void part() {
+  if (peer[0] == 0) return;
+  peer[0] = 0;
+  pipe().part();
+}
+
+void set_phase(Phase next) {
+  phase = next;
+  since_ms = now_ms();
+  broker_note(next == Phase::kReady ? WifiState::kReady : WifiState::kSearching);
+}
+
+void hang_up() {
+  if (connection != kNone) lwip_close(connection);
+  connection = kNone;
+  part();
+  refused[0] = 0;
+  out_length = out_sent = 0;
+  set_phase(Phase::kOff);
+}
+
+// The moment of the next try differs from robot to robot: a broker that is back gets them in turn.
+uint32_t again_ms() {
+  uint32_t spread = 0;
+  for (const char* digit = radio_name().id; *digit != 0; digit++) {
+    spread = spread * 31 + static_cast<uint8_t>(*digit);
+  }
+  return kAgainMs + spread % 1000;
+}
+
+void begin() {
+  const int found = lwip_socket(AF_INET, SOCK_STREAM, 0);
+  if (found < 0) return set_phase(Phase::kOff);
+  connection = found;
+  const int yes = 1;
+  lwip_setsockopt(found, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
+  if (lwip_fcntl(found, F_SETFL, O_NONBLOCK) < 0) return hang_up();
+  set_phase(Phase::kConnecting);
+}
+
+// Called again until it is connected: lwIP and POSIX say so by EISCONN.
+void connect() {
+  sockaddr_in place = {};
+  place.sin_family = AF_INET;
+  place.sin_port = htons(settings.port);
+  __builtin_memcpy(&place.sin_addr.s_addr, settings.address, sizeof settings.address);
+  const int found =
+      lwip_connect(connection, reinterpret_cast<const sockaddr*>(&place), sizeof place);
+  if (found != 0 && errno != EISCONN) {
+    if (errno != EINPROGRESS && errno != EALREADY) hang_up();
+    return;
+  }
+  char client[sizeof "tini-" + sizeof(RadioName::id)] = "tini-";
+  __builtin_memcpy(client + 5, radio_name().id, sizeof(RadioName::id));
+  char will[kNameBytes + 2] = {kGone};
+  __builtin_memcpy(will + 1, radio_name().name, kNameBytes + 1);
+  MqttWriter writer(out, sizeof out);
+  writer.connect(client, kKeepAliveS, Topic().of_robot().text(), will, settings.user,
+                 settings.password);
+  out_length = writer.length();
+  out_sent = 0;
+  reader.begin();
+  heard_ms = said_ms = now_ms();
+  set_phase(Phase::kGreeting);
+}
+
+void greet() {
+  set_phase(Phase::kReady);
+  char here[kNameBytes + 2] = {kHere};
+  __builtin_memcpy(here + 1, radio_name().name, kNameBytes + 1);
+  MqttWriter writer(out, sizeof out);
+  writer.subscribe(1, Topic().of_robot().add("/in/+").text(), Topic().add("stop").text());
+  writer.publish(Topic().of_robot().text(), reinterpret_cast<const uint8_t*>(here), length_of(here),
+                 true);
+  out_length = writer.length();
+  out_sent = 0;
+}
+
+void pass_on(const uint8_t* bytes, size_t length) {
+  for (size_t k = 0; k < length; k++) pipe().put(bytes[k]);
+}
+
+// A message of a client. Who has the robot keeps it until it leaves or is silent; a stop of anybody
+// is a stop.
+void hear_peer(const char* who, const uint8_t* payload, size_t length) {
+  const bool is_taken = peer[0] != 0 && !is_same(who, peer) && now_ms() - peer_ms < kPeerMs;
+  if (is_taken) {
+    if (is_stop(payload, length)) return pass_on(payload, length);
+    if (length != 0) __builtin_memcpy(refused, who, sizeof refused);
+    return;
+  }
+  if (length == 0) {  // it leaves
+    if (is_same(who, peer)) part();
+    return;
+  }
+  if (!is_same(who, peer)) {
+    part();
+    __builtin_memcpy(peer, who, sizeof peer);
+    pipe().begin();
+  }
+  peer_ms = now_ms();
+  pass_on(payload, length);
+}
+
+void hear_message() {
+  if (reader.is_retained()) return;
+  if (is_same(reader.topic(), Topic().add("stop").text())) {
+    if (is_stop(reader.payload(), reader.length())) pass_on(reader.payload(), reader.length());
+    return;
+  }
+  const char* const who = rest_of(reader.topic(), Topic().of_robot().add("/in/").text());
+  if (who != nullptr && is_peer(who)) hear_peer(who, reader.payload(), reader.length());
+}
+
+// Returns whether the connection is still there.
+bool hear_byte(uint8_t byte) {
+  switch (reader.take(byte)) {
+    case MqttEvent::kNone:
+      return true;
+    case MqttEvent::kAccepted:
+      if (phase != Phase::kGreeting) break;
+      greet();
+      return true;
+    case MqttEvent::kMessage:
+      if (phase != Phase::kReady) break;
+      hear_message();
+      return true;
+    case MqttEvent::kRefused:
+      hang_up();
+      broker_note(WifiState::kRefused);
+      return false;
+    case MqttEvent::kBroken:
+      break;
+  }
+  hang_up();
+  return false;
+}
+
+void hear() {
+  uint8_t bytes[kChunk];
+  const ssize_t length = lwip_recv(connection, bytes, sizeof bytes, MSG_DONTWAIT);
+  if (length == 0 || (length < 0 && !may_come_later())) return hang_up();
+  if (length < 0) return;
+  heard_ms = now_ms();
+  for (ssize_t k = 0; k < length; k++) {
+    if (!hear_byte(bytes[k])) return;
+  }
+}
+
+// Puts the next packet into `out`.
+void write_next() {
+  MqttWriter writer(out, sizeof out);
+  uint8_t bytes[kChunk];
+  size_t length = 0;
+  while (peer[0] != 0 && length < sizeof bytes && pipe().take(bytes + length)) length++;
+  if (length != 0) {
+    writer.publish(Topic().of_robot().add("/out/").add(peer).text(), bytes, length, false);
+  } else if (refused[0] != 0) {
+    writer.publish(Topic().of_robot().add("/out/").add(refused).text(), nullptr, 0, false);
+    refused[0] = 0;
+  } else if (now_ms() - said_ms >= kPingMs) {
+    writer.ping();
+  }
+  out_length = writer.length();
+  out_sent = 0;
+}
+
+void say() {
+  if (out_sent == out_length && phase == Phase::kReady) write_next();
+  if (out_sent == out_length) return;
+  const ssize_t sent = lwip_send(connection, out + out_sent, out_length - out_sent, MSG_DONTWAIT);
+  if (sent < 0 && !may_come_later()) return hang_up();
+  if (sent <= 0) return;
+  out_sent += static_cast<size_t>(sent);
+  said_ms = now_ms();
+}
+
+}  // namespace
+
+void broker_turn(bool has_network) {
+  if (broker_changed(&settings)) {
+    hang_up();
+    since_ms = now_ms() - again_ms();  // at once
+  }
+  if (!settings.is_set() || !has_network) {
+    if (phase != Phase::kOff) hang_up();
+    if (!settings.is_set()) broker_note(WifiState::kOff);
+    return;
+  }
+  if (phase == Phase::kOff) {
+    if (now_ms() - since_ms >= again_ms()) begin();
+    return;
+  }
+  const uint32_t waits_ms = now_ms() - since_ms;
+  if (phase != Phase::kReady && waits_ms >= kConnectMs) return hang_up();
+  if (phase == Phase::kConnecting) return connect();
+  hear();
+  if (connection != kNone) say();
+  if (phase == Phase::kReady && now_ms() - heard_ms >= kSilentMs) hang_up();
+}
+
+}  // namespace tiniscript
+
+#endif  // ARDUINO_ARCH_ESP32

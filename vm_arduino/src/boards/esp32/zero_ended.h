@@ -1,0 +1,38 @@
+// Texts that end with a 0, without a library.
+
+#ifndef TINISCRIPT_ESP32_ZERO_ENDED_H_
+#define TINISCRIPT_ESP32_ZERO_ENDED_H_
+
+#include <stddef.h>
+#include <stdint.h>
+
+namespace tiniscript {
+
+inline size_t length_of(const char* text) {
+  size_t length = 0;
+  while (text[length] != 0) length++;
+  return length;
+}
+
+inline bool is_same(const char* left, const char* right) {
+  while (*left != 0 && *left == *right) {
+    left++;
+    right++;
+  }
+  return *left == *right;
+}
+
+// Appends to a text that has `most` bytes at most, if all of it finds room and has no 0 in it.
+inline bool append(char* to, size_t most, const uint8_t* text, uint8_t length) {
+  const size_t at = length_of(to);
+  if (length > most - at) return false;
+  for (uint8_t k = 0; k < length; k++) {
+    if (text[k] == 0) return false;
+  }
+  __builtin_memcpy(to + at, text, length);
+  return true;
+}
+
+}  // namespace tiniscript
+
+#endif  // TINISCRIPT_ESP32_ZERO_ENDED_H_
