@@ -107,6 +107,16 @@ PLACEHOLDER = _mistake("TS060")
 SIGN_BETWEEN = _mistake("TS061")
 REPEATED = _mistake("TS062")
 LOOP_COUNTS = _mistake("TS063")
+ASKED_BEHIND = _mistake("TS064")
+NEEDLESS_FRAME = _mistake("TS065")
+CASES = _mistake("TS066")
+LISTS = _mistake("TS067")
+NO_INPUT = _mistake("TS068")
+CHOICE_IN_VALUE = _mistake("TS069")
+WORDS_SHOWN = _mistake("TS070")
+QUESTION_BEHIND = _mistake("TS071")
+PASTED = _mistake("TS072")
+PROSE = _mistake("TS073")
 # the checksum of a line
 CHECKSUM_WRONG = _mistake("TS058")
 CHECKSUM_FORM = _mistake("TS059")
@@ -164,6 +174,7 @@ WILL_FAULT = _warning("TS808")
 BOARD_MAY_BE_TOO_SMALL = _warning("TS809")
 SWAPPED = _warning("TS810")
 LONG_TIME = _warning("TS811")
+NEVER_REPEATS = _warning("TS812")
 
 
 def in_order(found: list[Diagnostic]) -> list[Diagnostic]:
@@ -174,9 +185,14 @@ def in_order(found: list[Diagnostic]) -> list[Diagnostic]:
     kept = []
     mistaken = set()
     seen = set()
+    other_units = [each.span for each in found if each.code is OTHER_UNIT]
     translated = {each.span.start for each in found if each.code is OTHER_LANGUAGE}
     for diagnostic in found:
         start = diagnostic.span.start
+        if diagnostic.code is ARGUMENT_COUNT and any(
+            diagnostic.span.start <= each.start < diagnostic.span.end for each in other_units
+        ):
+            continue  # `R(90 grados)`
         key = (diagnostic.code, diagnostic.span)
         if diagnostic.code is BAD_NAME and start in translated:
             continue  # `atrás(2, 80)`: the word goes, with its accent

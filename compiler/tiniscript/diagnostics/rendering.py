@@ -20,6 +20,7 @@ LINE_COLUMNS = 100  # of a program's line; of a longer one a window is shown
 COLUMNS_BEFORE = 40  # of that window, before the place
 ROW_CHARACTERS = 110  # a longer message has what to try in a row of its own
 VALUE_CHARACTERS = 60  # of a program's text within a message
+FIX_CHARACTERS = 200  # of what to try, which is cut only where nobody would copy it
 TAB = "    "
 
 _GAP = re.compile(r"\{(@?)(\w+)\}")
@@ -166,21 +167,22 @@ def _filled(texts: str | list[str], values: Mapping[str, str], lang: str) -> str
             break
 
     def gap(match: re.Match[str]) -> str:
-        return _value(values.get(match[2], ""), match[1] == "@", lang)
+        longest = FIX_CHARACTERS if match[2] in ("fix", "right") else VALUE_CHARACTERS
+        return _value(values.get(match[2], ""), match[1] == "@", lang, longest)
 
     return _GAP.sub(gap, chosen)
 
 
-def _value(value: str, is_translated: bool, lang: str) -> str:
+def _value(value: str, is_translated: bool, lang: str, longest: int) -> str:
     """Return a value as a message can hold it: translated, short, in one row, printable."""
     term = _term(value.removeprefix("@"), lang) if is_translated or value[:1] == "@" else None
     if term is not None:
         return term
     if is_translated:
         value = _TERM_WORD.sub(lambda match: _term(match[0], lang) or match[0], value)
-    value = " ".join(value[: VALUE_CHARACTERS * 4].split())
-    if len(value) > VALUE_CHARACTERS:
-        value = value[:VALUE_CHARACTERS] + "…"
+    value = " ".join(value[: longest * 4].split())
+    if len(value) > longest:
+        value = value[:longest] + "…"
     return "".join(_cell(character)[0] for character in value)
 
 

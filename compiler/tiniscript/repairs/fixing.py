@@ -23,11 +23,12 @@ _GUESSED = frozenset((
     codes.UNKNOWN_WORD, codes.UNKNOWN_NAME, codes.NEVER_ENDS, codes.OUT_OF_RANGE,
     codes.WANTS_CONDITION, codes.MIXED_COMPARE, codes.SETUP_UNKNOWN, codes.NO_BRACKETS_HERE,
     codes.WRONG_END, codes.NOT_AN_INSTRUCTION, codes.MISSING_VALUE, codes.ARGUMENT_COUNT,
+    codes.PROSE, codes.LISTS, codes.WORDS_SHOWN, codes.QUESTION_BEHIND,
 ))  # fmt: skip
 # Codes of headers: how a block ends is not looked at before its header is right.
 _HEADERS = frozenset((
     codes.SPANISH_IF, codes.OTHER_LANGUAGE, codes.MISSING_OPEN, codes.HEADER_SEPARATOR,
-    codes.BRACES,
+    codes.BRACES, codes.ASKED_BEHIND, codes.NEEDLESS_FRAME, codes.CASES, codes.PASTED,
 ))  # fmt: skip
 # Codes whose repair writes a number in another way: `500 ms` is 0.5, `8O` is 80, `X++` adds 1, and
 # the number of a line goes.

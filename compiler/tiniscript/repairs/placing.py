@@ -12,6 +12,7 @@ from collections.abc import Callable
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic
 from tiniscript.repairs.braces import without_braces
+from tiniscript.repairs.copied import without_pasted
 from tiniscript.repairs.edits import Edit
 from tiniscript.source import Source, Span
 
@@ -258,6 +259,15 @@ _PLACES: dict[Code, Callable[[Diagnostic, Source], Edits]] = {
     codes.SIGN_BETWEEN: _written(";"),
     codes.REPEATED: _span,
     codes.LOOP_COUNTS: _span,
+    codes.ASKED_BEHIND: _assigned,
+    codes.NEEDLESS_FRAME: _assigned,
+    codes.CASES: _assigned,
+    codes.LISTS: _span,
+    codes.CHOICE_IN_VALUE: _span,
+    codes.WORDS_SHOWN: _assigned,
+    codes.QUESTION_BEHIND: _assigned,
+    codes.PASTED: lambda diagnostic, source: without_pasted(source.text) or None,
+    codes.PROSE: _span,
     codes.NAME_WITH_SPACE: _span,
     codes.MISSING_EQUALS: _span,
     codes.UNKNOWN_WORD: _span,

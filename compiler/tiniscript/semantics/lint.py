@@ -35,6 +35,7 @@ from tiniscript.semantics.ir import (
 from tiniscript.semantics.optimizer import constant, fold, sure_fault
 from tiniscript.source import Span
 from tiniscript.syntax.operators import SIGN_OF
+from tiniscript.words import DEVICE_WORDS
 
 LONG_MOVE = 500  # ms: a robot goes a hand's breadth in this time
 LONG_TIME = 20_000  # ms: a power was meant, where the power is a time
@@ -77,6 +78,7 @@ def _look_at(body: Body, program: Program, kit: Kit, found: list[Diagnostic]) ->
             _long_beep(statement, found)
         if isinstance(statement, (Loop, While)):
             _late_checks(statement.body, kit, found)
+            _never_repeats(statement, found)
             if _is_forever(statement) and not (
                 loops_end(statement.body) or _takes_time(statement.body, program)
             ):
@@ -126,6 +128,14 @@ def _long_beep(beep: Beep, found: list[Diagnostic]) -> None:
         # of an Arduino: `tone(pin, hertz, milliseconds)`
         fix = f"BEEP({as_text(hertz // 1000)}, {as_text(time)})"
         _report(found, codes.LONG_TIME, beep.span, time=as_text(time), fix=fix)
+
+
+def _never_repeats(loop: Loop | While, found: list[Diagnostic]) -> None:
+    """`LOOP(0)`, `LOOP(-1)`, which other languages take for one without an end."""
+    times = None if isinstance(loop, While) or loop.times is None else constant(fold(loop.times))
+    if times is not None and times < 500:  # it is rounded
+        head = Span(loop.span.start, loop.span.start + len("LOOP"))
+        _report(found, codes.NEVER_REPEATS, head, times=as_text(times))
 
 
 def _is_forever(statement: Loop | While) -> bool:
@@ -198,7 +208,9 @@ def _unused(program: Program, statements: list[Statement]) -> Iterator[Diagnosti
         if isinstance(statement, Assign) and statement.variable not in used:
             used.add(statement.variable)  # said once
             name = program.variables[statement.variable]
-            yield Diagnostic(codes.UNUSED_VARIABLE, statement.span, {"name": name})
+            device = name if name in DEVICE_WORDS else ""
+            values = {"name": name, "device": device}
+            yield Diagnostic(codes.UNUSED_VARIABLE, statement.span, values)
     called = {each.procedure for each in statements if isinstance(each, Call)}
     for number, procedure in enumerate(program.procedures):
         if number not in called:

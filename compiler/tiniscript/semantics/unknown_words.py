@@ -123,7 +123,8 @@ def report_placeholders(scope: Scope, node: ast.Command, word: Word, said: int) 
 
 def report_named_arguments(scope: Scope, node: ast.Command, word: Word, said: int) -> None:
     """`F(t=2, p=80)`: values have no names here. Drops the diagnostics since `said`."""
-    unknown = {each.span for each in scope.diagnostics[said:] if each.code is codes.UNKNOWN_NAME}
+    codes_of_names = (codes.UNKNOWN_NAME, codes.OTHER_LANGUAGE)  # `TIEMPO` is TIME elsewhere
+    unknown = {each.span for each in scope.diagnostics[said:] if each.code in codes_of_names}
     values = []
     for argument in node.arguments or ():
         first, last = argument.expression[0], argument.expression[-1]

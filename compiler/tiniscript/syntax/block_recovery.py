@@ -18,9 +18,9 @@ from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.lexer import ODD, WORD, Token
 from tiniscript.syntax.one_line import line_of_block
 from tiniscript.syntax.operators import COMPARISONS
+from tiniscript.syntax.phrases import AFTER_HEADER
 from tiniscript.syntax.reporter import Failed, Reporter, Resumed
 from tiniscript.syntax.suggestions import (
-    AFTER_HEADER,
     OPERATOR_WORDS,
     after_bracket,
     body_begins,
@@ -70,9 +70,10 @@ class BlockRecovery:
 
     def _is_a_sentence(self, written: Sequence[Token]) -> bool:
         """Whether words that no program knows stand where a question is wanted."""
-        if any(token.kind in COMPARISONS or token.text in OPERATOR_WORDS for token in written):
-            return False
         known = self.known
+        if any(token.kind in COMPARISONS for token in written):
+            return False
+        written = [token for token in written if token.text not in OPERATOR_WORDS]
         words = [known.value(token.text) for token in written if token.kind is WORD]
         return any(word not in WORDS and not known.is_own(word) for word in words)
 
@@ -187,6 +188,14 @@ class BlockRecovery:
         else:
             span = self.cursor.span_from(name)
             self.reporter.report(codes.EMPTY_BRACKETS, span, word=name.text)
+
+    def body_of_def(self, block: Block) -> None:
+        """`def turn():`: go past the colon. That it lacks its END_DEF is another mistake."""
+        cursor = self.cursor
+        if cursor.token.kind is ODD and cursor.token.text == ":":
+            self.reporter.answer(cursor.token)
+            cursor.i += 1
+        block.is_reported = True
 
     # -- arms ---------------------------------------------------------------------------------
 
@@ -307,7 +316,7 @@ class BlockRecovery:
     def never_ended(self) -> None:
         """Report the blocks that are still open at the end of the text."""
         for block in self.blocks.open:
-            if not block.is_reported and not self._is_misspelt(block):
+            if (not block.is_reported or block.word == "DEF") and not self._is_misspelt(block):
                 right = BLOCK_ENDS[block.word]
                 where = self._last_line(block)
                 self.reporter.report(

@@ -107,6 +107,8 @@ def call_in(word: Word, tokens: Sequence[Token]) -> str:
     if len(texts) != len(word.arguments):
         spans = [Span(value[0].start, value[-1].end) for value in values]
         fixed = _with_points(texts, spans, word)
+        if len(texts) == 1 and units[0] and word.arguments[0].unit == "s":
+            return _call(word, [*texts, *(each.sample for each in word.arguments[1:])])
         return _call(word, fixed) if fixed else _filled(texts, word)
     return _call(word, texts)
 

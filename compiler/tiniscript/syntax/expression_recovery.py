@@ -23,11 +23,13 @@ from tiniscript.syntax.call_suggestions import (
 )
 from tiniscript.syntax.cursor import AFTER_VALUE, AT_END, Cursor
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, Token
-from tiniscript.syntax.operators import BINARY, COMPARISONS, Operator, Postfix
+from tiniscript.syntax.number_recovery import NumberRecovery
+from tiniscript.syntax.operators import COMPARISONS, Operator, Postfix
 from tiniscript.syntax.reporter import Failed, Reporter
 from tiniscript.syntax.suggestions import after_bracket, between, operator_words, unchained
-from tiniscript.syntax.units import converted
-from tiniscript.words import POWER_WORDS, UNITS, WORDS, Word, meant_by, other_name
+from tiniscript.syntax.value_constructs import ValueConstructs
+from tiniscript.syntax.vocabulary import Vocabulary
+from tiniscript.words import POWER_WORDS, WORDS, Word, meant_by, other_name
 
 
 class ExpressionRecovery:
@@ -35,12 +37,15 @@ class ExpressionRecovery:
         self.cursor = cursor
         self.reporter = reporter
         self.kit = kit
+        self.numbers = NumberRecovery(cursor, reporter)
+        self.constructs = ValueConstructs(cursor, reporter, Vocabulary(cursor.tokens, kit))
 
     # -- where an operand is wanted -----------------------------------------------------------
 
     def no_value(self, token: Token) -> NoReturn:
         """Say what is wrong with a token that stands where a value is wanted."""
         if token.kind is ODD:
+            self.constructs.sentence()
             raise Failed
         cursor, fail = self.cursor, self.reporter.fail
         place = cursor.before(cursor.i)
@@ -145,6 +150,7 @@ class ExpressionRecovery:
                 fix=fix,
                 usage=meant.usage,
             )
+        self.constructs.called(name, cursor.token)
         close = cursor.following
         devices = self.kit.sensors if self.kit is not None else ()
         if close.kind != ")" and any(each.name == name.text for each in devices):
@@ -191,7 +197,7 @@ class ExpressionRecovery:
         k = self.cursor.after_newlines(self.cursor.i)
         return (
             self._is_said_in_words(token, k, in_brackets)
-            or self._is_unit(token, k, in_brackets)
+            or self.numbers.is_unit(token, k, in_brackets)
             or (in_brackets and self._is_no(k, read))
         )
 
@@ -227,26 +233,6 @@ class ExpressionRecovery:
             span = Span(before.start, after.end)
             self.reporter.fail(codes.MISSING_COMMA, span, place, fix=fix, usage=word.usage)
 
-    def _is_unit(self, token: Token, k: int, in_brackets: bool) -> bool:
-        """`W(2 s)`, `IF(DISTANCE < 10 cm)`."""
-        cursor, tokens = self.cursor, self.cursor.tokens
-        before, after = tokens[cursor.before(k)], tokens[k + 1].kind
-        is_name = before.kind is WORD and token.text not in WORDS and in_brackets
-        if token.text not in UNITS or not (before.kind is NUMBER or is_name):
-            return False
-        ends_here = after in (AFTER_VALUE if in_brackets else AT_END)
-        if not (ends_here and (in_brackets or token.text not in WORDS)) and after not in BINARY:
-            return False
-        span = Span(before.start, token.end)
-        found = cursor.source[span]
-        unit = token.text
-        right = converted(before.text, unit) if before.kind is NUMBER else before.text
-        self.reporter.report(
-            codes.UNIT, span, found=found, number=before.text, right=right, unit=unit
-        )
-        cursor.i = k + 1
-        return True
-
     def _is_no(self, k: int, read: Postfix) -> bool:
         """`IF(NO BUTTON)`: the operand before was a NOT."""
         cursor = self.cursor
@@ -279,6 +265,7 @@ class ExpressionRecovery:
         last = cursor.tokens[cursor.before(cursor.i)]
         self._sensor_in_two(last, token)
         if token.kind is ODD and token.text != ":":
+            self.constructs.sentence()
             raise Failed
         if token.kind == ";" and self._close_comes():
             while cursor.token.kind != ")":
@@ -336,7 +323,9 @@ class ExpressionRecovery:
             if meant in known:
                 values = {"found": found, "right": meant, "fix": meant, "usage": meant}
                 self.reporter.fail(codes.OTHER_LANGUAGE, span, None, **values)
+            self.constructs.words_shown(right)
             self.reporter.fail(codes.NAME_WITH_SPACE, span, found=found, right=right)
+        self.numbers.with_part(last, token)
         owner = self.cursor.tokens[bracket - 1] if bracket else self.cursor.tokens[bracket]
         word = self._word_of(owner)
         if word is not None and len(word.arguments) > 1:

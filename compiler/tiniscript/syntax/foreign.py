@@ -11,17 +11,18 @@ from typing import TYPE_CHECKING, NoReturn
 from tiniscript.diagnostics import codes
 from tiniscript.source import Span
 from tiniscript.syntax.blocks import ENDS, HEADERS
+from tiniscript.syntax.call_suggestions import LONGEST
 from tiniscript.syntax.cursor import AT_END
-from tiniscript.syntax.lexer import WORD, Token
+from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Token
+from tiniscript.syntax.phrases import AFTER_HEADER, COUNTING, NEGATED
 from tiniscript.syntax.reporter import Failed, Resumed
 from tiniscript.syntax.suggestions import (
-    AFTER_HEADER,
-    COUNTING,
     counted,
     end_of_values,
     head_in,
     inside,
     opposite,
+    with_signs,
 )
 from tiniscript.words import WORDS, meant_by
 
@@ -29,11 +30,20 @@ if TYPE_CHECKING:
     from tiniscript.syntax.parser import Parser
 
 
-def foreign_word(parser: Parser, word: Token, meant: str) -> NoReturn:
-    """Read `REPEAT(3)`, `SINO`, `FIN` … `meant` is the word of the language, or END."""
+def foreign_word(parser: Parser, word: Token, meant: str) -> None:
+    """Read `REPEAT(3)`, `SINO`, `FIN` … `meant` is what `foreign_block` gives for the word."""
     if meant == "END":
         parser.recovery.in_block.end_of_any(word)
         raise Failed
+    construct = parser.recovery.construct
+    if meant == "FRAME":
+        construct.frame(word)
+        return
+    if meant == "CASES":
+        construct.cases(word)
+        return
+    if meant in ("LOOP", "FOREVER"):
+        construct.asked_behind(word)
     if meant == "FOREVER":
         _report(parser, word, meant, "LOOP(FOREVER)")
         forever_alone(parser, word)
@@ -44,7 +54,8 @@ def foreign_word(parser: Parser, word: Token, meant: str) -> NoReturn:
     ):
         _repeat_until(parser, word)
     if meant in HEADERS:
-        line = parser.recovery.in_block.whole_line(word, meant)
+        in_block = parser.recovery.in_block
+        line = None if word.text in NEGATED else in_block.whole_line(word, meant)
         if line is not None:
             _report(parser, word, meant, line, parser.cursor.span_from(word))
             raise Resumed
@@ -124,7 +135,11 @@ def _end(parser: Parser, word: Token, meant: str) -> NoReturn:
 def _definition(parser: Parser, word: Token) -> NoReturn:
     name = parser.cursor.following
     is_named = name.kind is WORD
+    cursor = parser.cursor
     place = Span(word.start, name.end) if is_named else None
+    brackets = cursor.tokens[cursor.i + 2 : cursor.i + 4]
+    if is_named and [each.kind for each in brackets] == ["(", ")"]:
+        place = Span(word.start, brackets[1].end)
     _report(parser, word, "DEF", f"DEF {name.text}" if is_named else "DEF DANCE", place)
     count = len(parser.reporter.diagnostics)
     try:
@@ -143,6 +158,16 @@ def _report(parser: Parser, word: Token, meant: str, fix: str, place: Span | Non
     )
 
 
+def _line(parser: Parser) -> list[Token]:
+    """Return the tokens from the cursor to the end of the line, of a long one the first."""
+    row = []
+    for token in parser.cursor.tokens[parser.cursor.i : parser.cursor.i + LONGEST]:
+        if token.kind in (NEWLINE, END):
+            break
+        row.append(token)
+    return row
+
+
 def _header_fix(parser: Parser, word: Token, meant: str) -> str:
     values = inside(parser.cursor.tokens, parser.cursor.i + 1)
     counts = word.text in COUNTING or any(token.kind in (";", ",", "=") for token in values)
@@ -150,5 +175,11 @@ def _header_fix(parser: Parser, word: Token, meant: str) -> str:
         times = counted(parser.cursor.tokens, parser.cursor.i + 1)
         if len(values) == 1 and values[0].text.isdecimal():  # `for 4 times`
             return f"LOOP({values[0].text})"
-        return WORDS[meant].example if times is None else f"LOOP({times})"
+        if times is None:
+            has_number = any(token.kind is NUMBER for token in _line(parser))
+            return "" if has_number else WORDS[meant].example
+        return f"LOOP({times})"
+    if word.text in NEGATED:
+        question = opposite(with_signs(values))
+        return f"IF({question})" if question else ""
     return head_in(WORDS[meant], values)

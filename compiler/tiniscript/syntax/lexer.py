@@ -12,7 +12,9 @@ from typing import NamedTuple
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic
 from tiniscript.source import Span
+from tiniscript.syntax import pasted
 from tiniscript.syntax.checksums import SPACES, without_checksums
+from tiniscript.syntax.pasted import PATTERN as PASTED
 from tiniscript.syntax.units import converted
 from tiniscript.words import UNITS
 
@@ -48,14 +50,19 @@ _PATTERN = re.compile(
       | (?P<word>[A-Za-z][A-Za-z0-9_]*)(?!\w)
       | (?P<clock>[0-9]{1,2}:[0-5][0-9](?=[ ]*,)|(?<=[Ww]\()[0-9]{1,2}:[0-5][0-9](?=[ ]*\)))
       | (?P<spaced>[0-9]{1,3}[ ]000(?=[ ]*[,;)]))
-      | (?P<number>(?:[0-9]+(?:\.[0-9]+)?|\.[0-9]+)(?![\w.\u00b0]|['\u00b4\u2019][0-9]))
+      | (?P<number>(?:[0-9]+(?:\.[0-9]+)?|\.[0-9]+)
+            (?![\w.\u00b0]|['\u00b4\u2019][0-9]|["\u201d\u2033][ ]*[,)]))
       | (?P<newline>\r\n|\n|\r)
       | (?P<comment>//[^\r\n]*)
       | (?P<othernote>\#[^\r\n]*|/\*[^*]*(?:\*(?!/)[^*]*)*(?:\*/)?)
+      | (?P<pasted>"""
+    + PASTED
+    + r""")
       | (?P<othersign>==|!=|=>|=<|><|&&|\|\||!(?=[ \t]*[\w(])|[\u2264\u2265\u2260\u00d7\u00f7])
       | (?P<sign><=|>=|<>|[-+*/%=<>(),;|])
       | (?P<dash>[\u2010-\u2015\u2212])
-      | (?P<badnumber>[0-9][0-9.]*['\u00b4\u2019][0-9][\w.]*|\.?[0-9][\w.\u00b0]*|[\u00bc-\u00be])
+      | (?P<badnumber>[0-9]+(?:\.[0-9]+)?["\u201d\u2033](?=[ ]*[,)])
+            |[0-9][0-9.]*['\u00b4\u2019][0-9][\w.]*|\.?[0-9][\w.\u00b0]*|[\u00bc-\u00be])
       | (?P<badword>\w+)
       | (?P<quote>["'`\u00b4\u2018-\u201f\u00ab\u00bb]+
             (?:[^"'`\u00b4\u2018-\u201f\u00ab\u00bb\r\n]*["'`\u00b4\u2018-\u201f\u00ab\u00bb]+)?)
@@ -63,6 +70,7 @@ _PATTERN = re.compile(
       | (?P<bracket>[][])
       | (?P<brace>[{}])
       | (?P<tilde>~[0-9A-Fa-f]*)
+      | (?P<point>(?<=[\w)])\.(?=[ \t]+[A-Za-z]))
       | (?P<odd>.)
     """,
     re.VERBOSE | re.DOTALL,
@@ -75,6 +83,7 @@ _OTHER_SIGNS = {
     "（": "(", "）": ")", "，": ",", "；": ";", "＝": "=", "＜": "<", "＞": ">", "｜": "|",
     "＋": "+", "－": "-", "[": "(", "]": ")",
 }  # fmt: skip
+_NEAR = 100  # tokens in which an open bracket is looked for
 QUOTES = "\"'`´‘’‚‛“”„‟«»"
 
 
@@ -82,7 +91,7 @@ def scan(text: str) -> Scan:
     """Return the tokens of `text`, its comments and what could not be read."""
     tokens: list[Token] = []
     comments: list[Token] = []
-    repairs = _Repairs()
+    repairs = _Repairs(text)
     if "~" in text:
         text, repairs.diagnostics = without_checksums(text)
     add = tokens.append
@@ -105,6 +114,12 @@ def scan(text: str) -> Scan:
             add(Token("-", "-", start, end))
         elif group == "comment":
             comments.append(Token("comment", match.group(), start, end))
+        elif group == "point" and not _is_inside(tokens):
+            tokens.append(repairs.point(Span(start, end)))
+        elif group == "point":
+            tokens.append(repairs.odd(".", Span(start, end)))
+        elif group == "pasted":
+            tokens += repairs.pasted(match.group(), Span(start, end))
         elif group == "othernote":
             repairs.note(match.group(), Span(start, end))
         else:
@@ -114,6 +129,16 @@ def scan(text: str) -> Scan:
     return Scan(tokens, comments, repairs.diagnostics)
 
 
+def _is_inside(tokens: list[Token]) -> bool:
+    """Whether a bracket is open after the last of these tokens."""
+    depth = 0
+    for token in reversed(tokens[-_NEAR:]):
+        if token.kind is NEWLINE or token.kind == ";":
+            break
+        depth += (token.kind == "(") - (token.kind == ")")
+    return depth > 0
+
+
 class _Repairs:
     """Reports what is wrong with a piece of text and returns the token to go on with.
 
@@ -121,11 +146,14 @@ class _Repairs:
     once.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, text: str) -> None:
+        self._text = text
         self.diagnostics: list[Diagnostic] = []
         self.open_brackets = 0
         self.has_wide = False
         self.has_braces = False
+        self.has_pasted = False
+        self.has_points = False
 
     def report(self, code: Code, span: Span, **values: str) -> None:
         self.diagnostics.append(Diagnostic(code, span, values))
@@ -154,6 +182,22 @@ class _Repairs:
             self.report(codes.BRACES, span, found=text)
         return Token(text, text, *span)
 
+    def pasted(self, text: str, span: Span) -> list[Token]:
+        if not self.has_pasted:
+            self.has_pasted = True
+            self.report(codes.PASTED, span, found=text.strip())
+        sign = pasted.meant(text).strip(" ")
+        if sign == "\n":
+            return [Token(NEWLINE, sign, *span)]
+        return [Token(WORD if sign.isalpha() else sign, sign, *span)] if sign else []
+
+    def point(self, span: Span) -> Token:
+        """The end of a sentence: `F(2, 80). R(1, 50).`"""
+        if not self.has_points:
+            self.has_points = True
+            self.report(codes.OTHER_SIGN, span, found=".", right=";")
+        return Token(";", ";", *span)
+
     def tilde(self, text: str, span: Span) -> Token:
         self.report(codes.CHECKSUM_FORM, span)
         return Token(ODD, text, *span)
@@ -162,7 +206,9 @@ class _Repairs:
         number = _number_in(text)
         unit = text[len(number) :].upper() if text.startswith(number) else ""
         if unit in UNITS:
-            right = converted(number, unit)
+            before = self._text[max(0, span.start - 1) : span.start]
+            is_part = before in ("/", "*") and UNITS[unit][1] != 1000
+            right = "" if is_part else converted(number, unit)  # `1/2min`
             self.report(codes.UNIT, span, found=text, number=number, right=right, unit=unit)
             return Token(NUMBER, number, *span)
         meant = _digits_meant(text)
@@ -226,7 +272,7 @@ def _digits_meant(text: str) -> str:
     """Return the number that was surely meant: `5` for `5.`, `80` for `8O`, `1.5` for `1'5`."""
     if text in _PARTS:
         return _PARTS[text]
-    digits = re.sub("['´’]", ".", text.translate(_LETTERS_FOR_DIGITS))
+    digits = re.sub("['´’]", ".", text.rstrip('"”″').translate(_LETTERS_FOR_DIGITS))
     match = re.fullmatch(r"([0-9]{1,40}(?:\.[0-9]{1,40})?)\.?", digits)
     return match[1] if match else ""
 

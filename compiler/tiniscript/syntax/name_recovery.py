@@ -24,21 +24,27 @@ from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.foreign import foreign_word
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, QUOTES, WORD, Token
 from tiniscript.syntax.operators import COMPARISONS, SIGNS
-from tiniscript.syntax.reporter import Failed, Reporter, Resumed
-from tiniscript.syntax.sentence_recovery import SentenceRecovery
-from tiniscript.syntax.suggestions import (
+from tiniscript.syntax.phrases import (
     BEFORE_CALL,
     BEFORE_NAME,
     BEFORE_NOTE,
+    BEFORE_SENTENCE,
     CHANGING,
     COUNTING,
+    FRAME_WORDS,
+    IMPORTING,
     NO_VARIABLES,
     SETTING,
+)
+from tiniscript.syntax.reporter import Failed, Reporter, Resumed
+from tiniscript.syntax.sentence_recovery import SentenceRecovery
+from tiniscript.syntax.suggestions import (
     body_begins,
     foreign_block,
     head_in,
     is_assignment,
     is_counting,
+    shortened,
     spaced_name,
     update,
 )
@@ -96,6 +102,13 @@ class NameRecovery:
         is_alone = kind in AT_END
         if kind == "|":
             self.reporter.fail(codes.SETUP_TWICE, word.span, found=word.text)
+        if word.text in IMPORTING and kind is WORD and not self.in_block.known.is_own(word.text):
+            self.cursor.skip_line()
+            span = Span(word.start, self.cursor.last.end)
+            shown = shortened(self.cursor.source[span])
+            self.reporter.fail(codes.EXTRA_WORD, span, found=word.text, label=shown)
+        if word.text in FRAME_WORDS:
+            parser.recovery.construct.frame(word)
         if word.text in COUNTING and is_counting(self.cursor.tokens, self.cursor.i + 1):
             foreign_word(parser, word, "LOOP")
         if kind is WORD and word.text in ("WHEN", "CUANDO", "AL"):
@@ -109,6 +122,10 @@ class NameRecovery:
             self.sentence.until_question(word, said)
         if self.kit is not None and not self.in_block.known.is_own(word.text):
             self.sentence.turn_by_angle(word, following)
+            if kind is WORD:
+                self.sentence.one_motor(word)
+            self._before_sentence(word, following)
+            self.sentence.prose(self.cursor.i)
         if not is_alone and kind != "(":
             self._what_follows_a_name(word, following)
         if self.kit is not None and not self.in_block.is_name(word.text):
@@ -123,6 +140,17 @@ class NameRecovery:
             if kind is WORD and following.text != "UNTIL":
                 if not self.in_block.is_name(word.text):
                     self.sentence.two_words(word, following)
+
+    def _before_sentence(self, word: Token, following: Token) -> None:
+        """`Luego gira a la derecha`, `Primero, avanza`: a word that says only when."""
+        cursor = self.cursor
+        if word.text not in BEFORE_SENTENCE or following.kind not in (WORD, ","):
+            return
+        cursor.i += 1 + (following.kind == ",")
+        if cursor.token.kind is WORD:
+            span = cursor.span_from(word)
+            self.reporter.report(codes.EXTRA_WORD, span, found=word.text, label=word.text)
+            raise Resumed
 
     def _is_contrary(self, word: Token) -> bool:
         """`DE LO CONTRARIO`: then go to its last word."""

@@ -14,19 +14,11 @@ from tiniscript.syntax.blocks import ENDS, HEADERS
 from tiniscript.syntax.call_suggestions import LONGEST, call_in, written
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, Token
 from tiniscript.syntax.operators import SIGNS
-from tiniscript.syntax.suggestions import (
-    AFTER_HEADER,
-    BETWEEN,
-    COUNTING,
-    ENDS_OF_ANY,
-    FILLERS,
-    after_bracket,
-    body_begins,
-    foreign_block,
-    operator_words,
-)
+from tiniscript.syntax.phrases import AFTER_HEADER, BETWEEN, COUNTING, ENDS_OF_ANY, FILLERS
+from tiniscript.syntax.suggestions import after_bracket, body_begins, foreign_block, operator_words
+from tiniscript.syntax.units import converted
 from tiniscript.syntax.vocabulary import Vocabulary
-from tiniscript.words import BLOCK_ENDS, UNITS, WORDS, Word
+from tiniscript.words import BLOCK_ENDS, IN_MILLISECONDS, UNITS, WORDS, Word
 
 _LOOSE = (";", ",", "{", ODD)  # signs between instructions, here or elsewhere
 
@@ -232,9 +224,10 @@ class _Reader:
             return self.token.kind is not NUMBER
         if word.role not in ("move", "wait", "motors", "beep", "show", "actuator"):
             return False
-        return self._call(word)
+        return self._call(word, token.text in IN_MILLISECONDS)
 
-    def _call(self, word: Word) -> bool:
+    def _call(self, word: Word, is_in_ms: bool) -> bool:
+        """`is_in_ms`: its one value is a number of milliseconds, as in `delay(1000)`."""
         self.k += 1
         if self.token.kind == "(":
             end = after_bracket(self.tokens, self.k)
@@ -248,6 +241,10 @@ class _Reader:
             each._replace(text=self.known.value(each.text)) if each.kind is WORD else each
             for each in values
         ]
+        if is_in_ms:
+            if len(values) != 1 or values[0].kind is not NUMBER:
+                return False
+            values = [values[0]._replace(text=converted(values[0].text, "MS"))]
         call = call_in(word, values)
         if not call:
             return False

@@ -82,7 +82,8 @@ class Parser:
         """The recovery of wrong texts. A correct program never loads it."""
         from tiniscript.syntax.recovery import Recovery
 
-        return Recovery(self.cursor, self.reporter, self.blocks, self._kit)
+        constructs = self.expressions.recovery.constructs
+        return Recovery(self.cursor, self.reporter, self.blocks, self._kit, constructs)
 
     # -- the program ------------------------------------------------------------------------
 
@@ -176,10 +177,12 @@ class Parser:
         if is_reserved:
             self.recovery.of_name.reserved_name(name)
         self.cursor.i += 2
+        start, said = self.cursor.i, len(self.reporter.diagnostics)
         try:
             value = self.expressions.expression(in_brackets=False)
         except Failed:
             self.recovery.of_name.unread_assignment(name)
+            self.recovery.constructs.unread_value(name, start, said)
             raise
         if is_reserved:
             raise Failed
@@ -262,9 +265,9 @@ class Parser:
             name = self.recovery.of_name.joined(name)
         block = self.blocks.begin("DEF", Span(word.start, name.end), name=name)
         if cursor.token.kind == "(":
-            block.is_reported = True
             self.recovery.in_block.def_with_values(word, name, self.expressions.arguments())
             block.span = cursor.span_from(word)
+            self.recovery.in_block.body_of_def(block)
 
     def arm(self, word: Token, is_reported: bool = False) -> None:
         """`is_reported`: `word` has a diagnostic already, and may lack its brackets."""

@@ -11,23 +11,22 @@ from typing import TYPE_CHECKING, NoReturn
 from tiniscript.diagnostics import codes
 from tiniscript.kit import Kit
 from tiniscript.source import Span
-from tiniscript.syntax.ast import Command
+from tiniscript.syntax.ast import Assign, Command
 from tiniscript.syntax.block_recovery import BlockRecovery
 from tiniscript.syntax.blocks import Block, Blocks
 from tiniscript.syntax.call_suggestions import (
     starts_value,
 )
+from tiniscript.syntax.construct_recovery import ConstructRecovery
 from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.foreign import forever_alone
 from tiniscript.syntax.lexer import NUMBER, ODD, WORD, Token
 from tiniscript.syntax.name_recovery import NameRecovery
 from tiniscript.syntax.operators import SIGNS
+from tiniscript.syntax.phrases import AFTER_HEADER, BETWEEN, TIMES
 from tiniscript.syntax.reporter import Failed, Reporter, Resumed
 from tiniscript.syntax.setup_recovery import SetupRecovery
 from tiniscript.syntax.suggestions import (
-    AFTER_HEADER,
-    BETWEEN,
-    TIMES,
     after_bracket,
     body_begins,
     end_of_values,
@@ -35,6 +34,7 @@ from tiniscript.syntax.suggestions import (
     inside,
     shortened,
 )
+from tiniscript.syntax.value_constructs import ValueConstructs
 from tiniscript.words import WORDS, meant_by
 
 if TYPE_CHECKING:
@@ -49,7 +49,15 @@ _COMMANDS = ("move", "wait", "motors", "stop", "beep", "show")
 
 
 class Recovery:
-    def __init__(self, cursor: Cursor, reporter: Reporter, blocks: Blocks, kit: Kit | None) -> None:
+    def __init__(
+        self,
+        cursor: Cursor,
+        reporter: Reporter,
+        blocks: Blocks,
+        kit: Kit | None,
+        constructs: ValueConstructs,
+    ) -> None:
+        self.constructs = constructs
         self.cursor = cursor
         self.reporter = reporter
         self.blocks = blocks
@@ -57,6 +65,7 @@ class Recovery:
         self.setup = SetupRecovery(cursor, reporter)
         self.in_block = BlockRecovery(cursor, reporter, blocks, kit)
         self.of_name = NameRecovery(cursor, reporter, blocks, kit, self.in_block)
+        self.construct = ConstructRecovery(cursor, reporter, self.in_block)
 
     # -- what is no instruction ---------------------------------------------------------------
 
@@ -69,9 +78,12 @@ class Recovery:
         if token.kind in ("{", "}"):
             return
         if token.kind is ODD:
+            self.of_name.sentence.prose(cursor.i - 1)
             raise Failed
         if token.kind == "-" and cursor.token.kind == "-":
             self.of_name.other_note(token.start, "--", cursor.token.end)
+        if token.kind is NUMBER or token.kind == "(":
+            self.constructs.values_in_front(token)
         if token.kind is NUMBER:
             self._times_before(token)
             self._line_number(token)
@@ -204,6 +216,15 @@ class Recovery:
         cursor, fail = self.cursor, self.reporter.fail
         token, before, after = cursor.token, cursor.last, cursor.following
         kind, text = token.kind, token.text
+        try:
+            self.constructs.goes_on(first)
+        except Failed:
+            here = self.blocks.here
+            if here and isinstance(here[-1], Assign):  # the value that was read is not all of it
+                here[-1] = here[-1]._replace(value=None)
+            elif here and isinstance(here[-1], Command) and here[-1].span.start == first.start:
+                del here[-1]
+            raise
         block = self.blocks.innermost
         header = block if block is not None and block.span.end == before.end else None
         goes_on = kind in SIGNS or text in ("AND", "OR")  # of the question, or of its line
@@ -282,6 +303,8 @@ class Recovery:
         cursor = self.cursor
         is_sign = token.kind == "*" or token.text in ("X", "POR")
         row = list(cursor.tokens[cursor.i + is_sign : cursor.i + is_sign + 3])
+        if token.kind is WORD and token.text[:1] == "X" and token.text[1:].isdecimal():
+            row, is_sign = [token._replace(kind=NUMBER, text=token.text[1:]), *row[1:]], True
         if len(row) > 1 and row[1].text in TIMES:
             is_sign = True
             del row[1]

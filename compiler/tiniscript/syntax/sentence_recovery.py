@@ -15,29 +15,44 @@ from tiniscript.syntax.block_recovery import BlockRecovery
 from tiniscript.syntax.blocks import Blocks
 from tiniscript.syntax.call_suggestions import LONG_TIME_S, call_in
 from tiniscript.syntax.cursor import AT_END, Cursor
-from tiniscript.syntax.lexer import NUMBER, ODD, WORD, Token
+from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, Token
 from tiniscript.syntax.operators import COMPARISONS
-from tiniscript.syntax.reporter import Failed, Reporter, Resumed
-from tiniscript.syntax.suggestions import (
+from tiniscript.syntax.phrases import (
+    BEFORE_NAME,
     BEFORE_POWER,
     BEFORE_TIME,
     CHANGING,
     EVENTS,
     FILLERS,
+    SETTING,
+    TIMES,
+)
+from tiniscript.syntax.reporter import Failed, Reporter, Resumed
+from tiniscript.syntax.suggestions import (
     body_begins,
     end_of_values,
     head_in,
     inside,
     is_filler,
     move_said,
+    shortened,
 )
 from tiniscript.syntax.units import converted
-from tiniscript.words import SWITCH_WORDS, TURN_WORDS, UNITS, WORDS, Word, meant_by
+from tiniscript.words import SWITCH_WORDS, TURN_WORDS, UNITS, WORDS, Word, is_guessed, meant_by
 
 # What stands between a variable and its new value: `set x to 5`.
 _SMALL = frozenset(
     ("A", "TO", "EN", "POR", "BY", "COMO", "IGUAL", "EL", "LA", "THE", "AL", "VALOR")
 )
+
+
+# Words that mean something elsewhere, and little in the middle of a sentence.
+_OFTEN_SAID = frozenset(("PARA", "FOR", "DO", "DI", "OTRO", "NEXT", "MOTOR", "MOTORES", "A", "E"))
+_MOTORS = frozenset(("MOTOR", "RUEDA", "WHEEL", "LLANTA"))
+_SIDES = {
+    "L": {"IZQUIERDO", "IZQUIERDA", "IZQ", "LEFT"},
+    "R": {"DERECHO", "DERECHA", "DER", "RIGHT"},
+}
 
 
 class SentenceRecovery:
@@ -173,6 +188,7 @@ class SentenceRecovery:
         self, span: Span, found: str, meant: Word, values: list[Token], end: int = 0
     ) -> NoReturn:
         """`end` is where the values end in the text, if not with the last of them."""
+        self._so_often(span, meant, values, end)
         last = values[-1:]
         if len(values) > 1 and values[0].text in BEFORE_TIME:
             del values[0]
@@ -189,6 +205,51 @@ class SentenceRecovery:
         self.reporter.fail(
             codes.OTHER_LANGUAGE, span, place, found=found, right=meant.text, fix=fix,
             usage=meant.usage,
+        )  # fmt: skip
+
+    def _so_often(self, span: Span, meant: Word, values: Sequence[Token], end: int) -> None:
+        """`pitar 3 veces`, `avanza 2 segundos 4 veces`."""
+        tokens, k = self.cursor.tokens, self.cursor.i
+        while values and tokens[k].start < values[-1].end:
+            k += 1
+        if tokens[k].text in TIMES:
+            values = [*values, tokens[k]]
+        if len(values) < 2 or values[-1].text not in TIMES or not meant.arguments:
+            return
+        number = self.in_block.known.value(values[-2].text)
+        call = call_in(meant, values[:-2])
+        if not number.isdecimal() or not call:
+            return
+        if meant.role == "beep" and len(values) == 2:
+            call = "BEEP(0.5, 440);W(0.5)"  # a pause makes them several
+        fix = f"LOOP({number});{call};END_LOOP"
+        self.cursor.skip_instruction()
+        place = Span(span.start, max(span.end, end, values[-1].end))
+        found = shortened(self.cursor.source[place])
+        self.reporter.fail(codes.REPEATED, span, place, found=found, fix=fix)
+
+    def one_motor(self, word: Token) -> None:
+        """`mover motor izquierdo 50`: M has a power for each motor."""
+        cursor = self.cursor
+        end = cursor.i
+        while cursor.tokens[end].kind not in AT_END:
+            end += 1
+        row = cursor.tokens[cursor.i : end]
+        texts = {each.text for each in row}
+        numbers = [each.text for each in row if each.kind is NUMBER]
+        sides = [side for side, names in _SIDES.items() if texts & names]
+        if not texts & _MOTORS or len(sides) != 1 or len(numbers) != 1 or len(row) > 8:
+            return
+        if any(each.kind not in (WORD, NUMBER, "%", "(", ")", ",", "-") for each in row):
+            return
+        sign = "-" if any(each.kind == "-" for each in row) else ""
+        power = sign + numbers[0]
+        fix = f"M({power}, 0)" if sides[0] == "L" else f"M(0, {power})"
+        span = Span(word.start, row[-1].end)
+        cursor.i = end
+        self.reporter.fail(
+            codes.OTHER_LANGUAGE, span, span, found=shortened(cursor.source[span]), right="M",
+            fix=fix, usage=WORDS["M"].usage,
         )  # fmt: skip
 
     def _is_value(self, token: Token) -> bool:
@@ -233,6 +294,47 @@ class SentenceRecovery:
         if any(UNITS.get(each.text, ("",))[0] == "°" for each in values):
             return True
         return len(numbers) == 1 and float(numbers[0].text) >= LONG_TIME_S
+
+    def prose(self, start: int) -> None:
+        """`Here is your program:`: a line of words of which none says what to do."""
+        cursor = self.cursor
+        tokens, end = cursor.tokens, start
+        if start and tokens[start - 1].kind not in (NEWLINE, "|", ";"):
+            return
+        while tokens[end].kind not in (NEWLINE, END):
+            if tokens[end].kind in ("(", ")", "=", "|", "{", "}", "<", ">"):
+                return
+            end += 1
+        row = tokens[start:end]
+        words = [token for token in row if token.kind is WORD]
+        if {"VUELTA", "VUELTAS"} & {token.text for token in words}:
+            cursor.i = end
+            self.reporter.fail(codes.WHICH_WAY, Span(row[0].start, row[-1].end))
+        if len(words) < 3 or any(self._says_something(tokens, k) for k in range(start, end)):
+            return
+        for token in row:
+            self.reporter.answer(token)
+        cursor.i = end
+        span = Span(row[0].start, row[-1].end)
+        fix = f"// {cursor.source[span]}"
+        self.reporter.fail(codes.PROSE, span, None, fix=fix)
+
+    def _says_something(self, tokens: Sequence[Token], k: int) -> bool:
+        """Whether the word at `k` says what a robot does, or is a name of the program."""
+        token, after = tokens[k], tokens[k + 1]
+        text = token.text
+        if token.kind is not WORD:
+            return False
+        if text in _OFTEN_SAID and after.kind is WORD:
+            return False
+        if text in BEFORE_NAME or text in SETTING or text in CHANGING:
+            return True
+        if text in TURN_WORDS or text in SWITCH_WORDS or self.in_block.is_name(text):
+            return True
+        meant = WORDS.get(text) or WORDS.get(meant_by(text) or "")
+        if meant is None or meant.role in ("value", "operator", "function"):
+            return False
+        return not is_guessed(text) or after.kind in (NUMBER, *AT_END)
 
     def word_and_sign(self, word: Token, sign: Token) -> None:
         """`robot.adelante(2, 80)`, `Primero: F(2, 80)`: the instruction is behind the sign."""

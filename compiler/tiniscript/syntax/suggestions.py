@@ -12,7 +12,15 @@ from tiniscript.syntax.call_suggestions import LONGEST, ends_value, starts_value
 from tiniscript.syntax.cursor import AT_END
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, Token
 from tiniscript.syntax.operators import BINARY, COMPARISONS, OPPOSITES, SIGN_OF, SIGNS
-from tiniscript.words import TURN_WORDS, UNITS, WORDS, Word, meant_by, other_name
+from tiniscript.syntax.phrases import (
+    AFTER_HEADER,
+    BEFORE_MOVE,
+    CASE_WORDS,
+    ENDS_OF_ANY,
+    FILLERS,
+    FRAME_NAMES,
+)
+from tiniscript.words import POWER_WORDS, UNITS, WORDS, Word, meant_by, other_name
 
 # Words in the place of an operator, and those that go with them.
 OPERATOR_WORDS = {
@@ -25,73 +33,14 @@ OPERATOR_WORDS = {
 _OPERATOR_TAILS = frozenset(("THAN", "QUE", "TO", "A", "DE", "FROM"))
 _EQUALS = frozenset(("IS", "ES", "EQUALS", "EQUAL", "IGUAL"))
 
-AFTER_HEADER = frozenset(("THEN", "DO", "BEGIN", "TIMES", "ENTONCES", "HACER", "HAZ", "VECES"))
-TIMES = frozenset(("VECES", "VEZ", "TIMES", "TIME"))
-# Small words that change nothing: `la distancia`, `a la derecha`, `until the distance`.
-FILLERS = frozenset(
-    ("LA", "EL", "LOS", "LAS", "THE", "QUE", "A", "AL", "HACIA", "DE", "CON", "UN", "UNA")
-)
-# What stands before how long something takes: `avanza por 3 segundos`.
-BEFORE_POWER = frozenset(("POTENCIA", "POWER", "VELOCIDAD", "SPEED", "FUERZA"))
-BEFORE_TIME = frozenset(("POR", "DURANTE", "FOR"))
-# Who does it, or that something is done: the move is in the word behind.
-BEFORE_MOVE = frozenset(("ROBOT", "EL", "THE", "IR", "VE", "VAMOS", "HAZ", "GO", *TURN_WORDS))
-BETWEEN = frozenset(("AND", "Y", "THEN", "ENTONCES", "LUEGO", "DESPUES", "NEXT"))
-BEFORE_NAME = frozenset(
-    (
-        "LET",
-        "VAR",
-        "SET",
-        "PONER",
-        "PON",
-        "FIJAR",
-        "ASIGNAR",
-        "INT",
-        "FLOAT",
-        "CONST",
-        "GLOBAL",
-        "DIM",
-        "BOOL",
-    )
-)
-# What other languages do with a number behind it, and no variable is called.
-NO_VARIABLES = frozenset(
-    (
-        "CASE",
-        "GOTO",
-        "GOSUB",
-        "JUMP",
-        "SALTA",
-        "SALTAR",
-        "PLAY",
-        "PIN",
-        "BAILA",
-        "BAILAR",
-        "SUBE",
-        "BAJA",
-    )
-)
-SETTING = frozenset(
-    ("SET", "PUT", "PONER", "PON", "FIJAR", "FIJA", "ASIGNAR", "ASIGNA", "CAMBIA_A")
-)
-CHANGING = frozenset(
-    ("CHANGE", "ADD", "CAMBIAR", "CAMBIA", "SUMAR", "SUMA", "AUMENTAR", "RESTAR", "RESTA")
-)
-# What begins a program of Scratch: `when green flag clicked`.
-EVENTS = frozenset(
-    ("FLAG", "CLICKED", "BANDERA", "EMPIECE", "EMPIEZA", "INICIE", "COMIENCE", "START", "CLIC")
-)
-BEFORE_CALL = frozenset(("CALL", "RUN", "GOSUB", "LLAMAR", "LLAMA", "EJECUTAR", "EJECUTA"))
-BEFORE_NOTE = frozenset(("REM", "NOTE", "NOTA"))
-
-COUNTING = frozenset(
-    ("FOR", "PARA_CADA", "PARA", "DESDE")
-)  # a variable and its values come after these
-ENDS_OF_ANY = frozenset(("END", "FIN", "DONE"))
-
 
 def foreign_block(word: str) -> str | None:
-    """Return the word of a block (IF, ELSE, END_LOOP, DEF …) that `word` says elsewhere."""
+    """Return the word of a block (IF, ELSE, END_LOOP, DEF …) that `word` says elsewhere.
+
+    END ends any block; FRAME is around a program, CASES chooses among several values.
+    """
+    if word in FRAME_NAMES or word in CASE_WORDS:
+        return "FRAME" if word in FRAME_NAMES else "CASES"
     meant = meant_by(word)
     if meant is None or WORDS.get(meant) is None:
         return "END" if word in ENDS_OF_ANY else None
@@ -119,11 +68,15 @@ def counted(tokens: Sequence[Token], start: int) -> int | None:
     words = {token.text for token in row if token.kind is WORD}
     numbers = [int(token.text) for token in row if token.kind is NUMBER and token.text.isdecimal()]
     has_other = any(token.kind is NUMBER and not token.text.isdecimal() for token in row)
-    if has_other or words & {"STEP", "PASO", "DOWNTO"} or any(t.kind == "-" for t in row):
+    steps = [k for k, token in enumerate(row[:-1]) if token.text in ("STEP", "PASO")]
+    has_step = any(row[k + 1].kind is NUMBER for k in steps)
+    if has_other or has_step or "DOWNTO" in words or any(t.kind == "-" for t in row):
         return None
     times = None
     if "RANGE" in words and len(numbers) in (1, 2):
         times = numbers[-1] - (numbers[0] if len(numbers) == 2 else 0)
+    elif len(numbers) == 1 and words & {"IN", "EN"}:
+        times = numbers[0]
     elif words & {"TO", "HASTA", "A"} and len(numbers) == 2:
         times = numbers[1] - numbers[0] + 1
     elif len(numbers) == 2 and any(token.kind in COMPARISONS - {"="} for token in row):
@@ -167,11 +120,26 @@ def body_begins(tokens: Sequence[Token], start: int, names_end: bool = True) -> 
         kind = token.kind
         if kind in ("{", "}", "|", *AT_END):
             return k
-        if kind is ODD and token.text == ":":
+        if kind is ODD and (token.text == ":" or _ends_sentence(tokens, k)):
+            return k
+        if kind == "," and k > start and _is_instruction(tokens[k + 1]):
             return k
         if kind is WORD and _begins_body(tokens, k, start, names_end):
             return k
         k += 1
+
+
+def _ends_sentence(tokens: Sequence[Token], k: int) -> bool:
+    """Whether the point at `k` ends a sentence: `avanza 2 segundos. Luego gira`."""
+    after = tokens[k + 1]
+    return tokens[k].text == "." and (after.kind in AT_END or after.start > tokens[k].end)
+
+
+def _is_instruction(token: Token) -> bool:
+    """Whether a word behind a comma begins the next instruction: `si X < 5, retrocede`."""
+    said = WORDS.get(token.text) or WORDS.get(meant_by(token.text) or "")
+    is_doing = said is not None and said.role in ("move", "wait", "stop", "beep", "show")
+    return token.kind is WORD and is_doing and token.text not in POWER_WORDS
 
 
 def _begins_body(tokens: Sequence[Token], k: int, start: int, names_end: bool) -> bool:

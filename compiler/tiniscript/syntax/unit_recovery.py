@@ -43,7 +43,7 @@ def _fitted(diagnostic: Diagnostic, word: Word, name: str, wanted: str) -> Diagn
     unit, number = diagnostic.values["unit"], diagnostic.values["number"]
     found, _ = UNITS[unit]
     if found == wanted:
-        right = converted(number, unit)
+        right = converted(number, unit) if diagnostic.values["right"] else ""
         return diagnostic._replace(values={**diagnostic.values, "right": right})
     values = {
         "word": word.text,

@@ -1,0 +1,64 @@
+"""Recovery of numbers that more than one token makes: `2 cm`, `1/2 minuto`, `1 1/2`."""
+
+from __future__ import annotations
+
+from tiniscript.diagnostics import codes
+from tiniscript.fixed_point import as_text
+from tiniscript.source import Span
+from tiniscript.syntax.cursor import AFTER_VALUE, AT_END, Cursor
+from tiniscript.syntax.lexer import NUMBER, WORD, Token
+from tiniscript.syntax.operators import BINARY
+from tiniscript.syntax.reporter import Reporter
+from tiniscript.syntax.units import converted
+from tiniscript.words import UNITS, WORDS
+
+
+class NumberRecovery:
+    def __init__(self, cursor: Cursor, reporter: Reporter) -> None:
+        self.cursor = cursor
+        self.reporter = reporter
+
+    def is_unit(self, token: Token, k: int, in_brackets: bool) -> bool:
+        """`W(2 s)`, `IF(DISTANCE < 10 cm)`."""
+        cursor, tokens = self.cursor, self.cursor.tokens
+        before, after = tokens[cursor.before(k)], tokens[k + 1].kind
+        if k > cursor.i:
+            return False  # `IF(DISTANCE < 20` and S on the next line
+        is_name = before.kind is WORD and token.text not in WORDS and in_brackets
+        if token.text not in UNITS or not (before.kind is NUMBER or is_name):
+            return False
+        ends_here = after in (AFTER_VALUE if in_brackets else AT_END)
+        if not (ends_here and (in_brackets or token.text not in WORDS)) and after not in BINARY:
+            return False
+        number, first = before.text, before
+        sign, over = tokens[cursor.before(k) - 1], tokens[max(0, cursor.before(k) - 2)]
+        if before.kind is NUMBER and sign.kind in ("/", "*"):  # `1/2 minuto`
+            number = _divided(over, sign, before)
+            first = over if number else before
+        span = Span(first.start, token.end)
+        found = cursor.source[span]
+        unit = token.text
+        right = converted(number, unit) if before.kind is NUMBER and number else number
+        self.reporter.report(codes.UNIT, span, found=found, number=number, right=right, unit=unit)
+        cursor.i = k + 1
+        return True
+
+    def with_part(self, whole: Token, over: Token) -> None:
+        """`1 1/2`: a number and a part of one."""
+        tokens = self.cursor.tokens
+        k = self.cursor.after_newlines(self.cursor.i)
+        if len(tokens) < k + 3 or not whole.kind is over.kind is NUMBER:
+            return
+        part = _divided(over, *tokens[k + 1 : k + 3])
+        if part and "." not in whole.text + over.text:
+            span = Span(whole.start, tokens[k + 2].end)
+            value = as_text(int(whole.text[:9]) * 1000 + round(float(part) * 1000))
+            self.reporter.fail(codes.BAD_NUMBER, span, found=self.cursor.source[span], right=value)
+
+
+def _divided(over: Token, sign: Token, under: Token) -> str:
+    """Return what `1/2` is, "" where it is no part of one."""
+    if sign.kind != "/" or not (over.kind is under.kind is NUMBER):
+        return ""
+    low = float(under.text[:9])
+    return as_text(round(float(over.text[:9]) / low * 1000)) if low else ""

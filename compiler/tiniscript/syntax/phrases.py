@@ -1,0 +1,84 @@
+"""Words of other languages, of Spanish and of talking, by what they do in a sentence.
+
+Knows no place in a program: recovery and suggestions look them up.
+"""
+
+from __future__ import annotations
+
+from tiniscript.words import TURN_WORDS
+
+AFTER_HEADER = frozenset(("THEN", "DO", "BEGIN", "TIMES", "ENTONCES", "HACER", "HAZ", "VECES"))
+TIMES = frozenset(("VECES", "VEZ", "TIMES", "TIME"))
+# Small words that change nothing: `la distancia`, `a la derecha`, `until the distance`.
+FILLERS = frozenset(
+    ("LA", "EL", "LOS", "LAS", "THE", "QUE", "A", "AL", "HACIA", "DE", "CON", "UN", "UNA")
+)
+# What stands before how long something takes: `avanza por 3 segundos`.
+BEFORE_POWER = frozenset(("POTENCIA", "POWER", "VELOCIDAD", "SPEED", "FUERZA"))
+BEFORE_TIME = frozenset(("POR", "DURANTE", "FOR"))
+# Who does it, or that something is done: the move is in the word behind.
+BEFORE_MOVE = frozenset(("ROBOT", "EL", "THE", "IR", "VE", "VAMOS", "HAZ", "GO", *TURN_WORDS))
+BETWEEN = frozenset(("AND", "Y", "THEN", "ENTONCES", "LUEGO", "DESPUES", "NEXT"))
+# What begins a sentence, and says only when: `Luego gira a la derecha`.
+BEFORE_SENTENCE = (BETWEEN - {"NEXT"}) | frozenset(
+    ("PRIMERO", "FIRST", "AHORA", "NOW", "FINALMENTE", "FINALLY", "ENSEGUIDA", "AFTER", "DESPUÉS")
+)
+BEFORE_NAME = frozenset(
+    (
+        "LET",
+        "VAR",
+        "SET",
+        "PONER",
+        "PON",
+        "FIJAR",
+        "ASIGNAR",
+        "INT",
+        "FLOAT",
+        "CONST",
+        "GLOBAL",
+        "DIM",
+        "BOOL",
+    )
+)
+# What other languages do with a number behind it, and no variable is called.
+NO_VARIABLES = frozenset(
+    (
+        "CASE",
+        "GOTO",
+        "GOSUB",
+        "JUMP",
+        "SALTA",
+        "SALTAR",
+        "PLAY",
+        "PIN",
+        "BAILA",
+        "BAILAR",
+        "SUBE",
+        "BAJA",
+    )
+)
+SETTING = frozenset(
+    ("SET", "PUT", "PONER", "PON", "FIJAR", "FIJA", "ASIGNAR", "ASIGNA", "CAMBIA_A")
+)
+CHANGING = frozenset(
+    ("CHANGE", "ADD", "CAMBIAR", "CAMBIA", "SUMAR", "SUMA", "AUMENTAR", "RESTAR", "RESTA")
+)
+# What begins a program of Scratch: `when green flag clicked`.
+EVENTS = frozenset(
+    ("FLAG", "CLICKED", "BANDERA", "EMPIECE", "EMPIEZA", "INICIE", "COMIENCE", "START", "CLIC")
+)
+# What begins a file of another language: `import time`.
+IMPORTING = frozenset(("IMPORT", "FROM", "USING", "INCLUDE", "PACKAGE", "REQUIRE"))
+BEFORE_CALL = frozenset(("CALL", "RUN", "GOSUB", "LLAMAR", "LLAMA", "EJECUTAR", "EJECUTA"))
+BEFORE_NOTE = frozenset(("REM", "NOTE", "NOTA"))
+
+COUNTING = frozenset(
+    ("FOR", "PARA_CADA", "PARA", "DESDE")
+)  # a variable and its values come after these
+ENDS_OF_ANY = frozenset(("END", "FIN", "DONE"))
+# What other languages put around a program: `int main() { … }`.
+FRAME_WORDS = frozenset(("INT", "VOID", "PUBLIC", "STATIC", "FUNCTION", "FUNCION"))
+FRAME_NAMES = frozenset(("MAIN", "PRINCIPAL", "SETUP"))
+CASE_WORDS = frozenset(("SWITCH", "CASE", "CASO", "SEGUN", "SELECT", "MATCH"))
+# An IF that asks for the opposite.
+NEGATED = frozenset(("UNLESS", "A_MENOS_QUE", "SALVO", "EXCEPTO"))

@@ -1,0 +1,301 @@
+"""Recovery of values that other languages have and this one has not.
+
+Knows lists, `input()`, a choice in the middle of a value, sentences to show, and a question behind
+an instruction. One diagnostic stands for all of it.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+from tiniscript.diagnostics import codes
+from tiniscript.source import Span
+from tiniscript.syntax.blocks import ENDS
+from tiniscript.syntax.call_suggestions import LONGEST, call_in, starts_value, written
+from tiniscript.syntax.cursor import AT_END, Cursor
+from tiniscript.syntax.lexer import NUMBER, ODD, QUOTES, WORD, Token
+from tiniscript.syntax.operators import COMPARISONS
+from tiniscript.syntax.phrases import NEGATED
+from tiniscript.syntax.reporter import Reporter
+from tiniscript.syntax.suggestions import (
+    after_bracket,
+    end_of_values,
+    foreign_block,
+    inside,
+    opposite,
+    with_signs,
+)
+from tiniscript.syntax.vocabulary import Vocabulary
+from tiniscript.words import WORDS, Word, meant_by
+
+_FARTHEST = 2000  # tokens in which the end of a block is looked for
+_AROUND = re.compile(r"([0-9]+(?:\.[0-9]+)?)([FBLR])([0-9]+)")
+_DOING = ("move", "wait", "motors", "stop", "beep", "show", "actuator")
+_ASKING = frozenset(
+    ("INPUT", "READ", "SCANF", "LEER", "PREGUNTAR", "ENTRADA", "PROMPT", "RAW_INPUT")
+)
+_JOINING = ("+", ",", "&", ".", ";")  # what stands between a sentence and a value
+
+
+class ValueConstructs:
+    def __init__(self, cursor: Cursor, reporter: Reporter, known: Vocabulary) -> None:
+        self.cursor = cursor
+        self.reporter = reporter
+        self.known = known
+        self._lists: set[str] = set()
+
+    # -- what a variable gets -----------------------------------------------------------------
+
+    def unread_value(self, name: Token, start: int, said: int) -> None:
+        """Look at what `name` gets, which cannot be read: the tokens from `start` on.
+
+        `said` diagnostics were there before it was read.
+        """
+        row = self._line(start)
+        if row and self._is_list(row):
+            self._list(name, row, said)
+        choice = self._choice(name, row)
+        if choice:
+            self._chosen(name, row, choice, said)
+
+    def _line(self, start: int) -> list[Token]:
+        tokens, k = self.cursor.tokens, start
+        while tokens[k].kind not in AT_END and k < start + LONGEST:
+            k += 1
+        return list(tokens[start:k])
+
+    def _is_list(self, row: Sequence[Token]) -> bool:
+        source = self.cursor.source.text
+        commas = sum(token.kind == "," for token in row)
+        begins = source[row[0].start : row[0].end]
+        return begins in ("[", "{") or (begins == "(" and commas > 1) or commas > 1
+
+    def _list(self, name: Token, row: Sequence[Token], said: int) -> None:
+        values = [token for token in row if token.kind is NUMBER]
+        if not all(token.kind in (NUMBER, ",", "(", ")", "{", "}", "-", "]") for token in row):
+            values = []
+        has_minus = any(token.kind == "-" for token in row)
+        pairs = [f"{name.text}_{k + 1} = {each.text}" for k, each in enumerate(values)]
+        self._lists.add(name.text)
+        self.reporter.withdraw(said)
+        for token in row:
+            self.reporter.answer(token)
+        self.cursor.i = self.cursor.tokens.index(row[-1]) + 1
+        fix = ";".join(pairs) if 0 < len(pairs) <= 5 and not has_minus else ""
+        self.reporter.fail(
+            codes.LISTS, Span(name.start, row[-1].end), None, found=name.text, fix=fix
+        )
+
+    def _choice(self, name: Token, row: Sequence[Token]) -> str:
+        """Return the IF that `c ? a : b` or `a if c else b` was meant to be."""
+        texts = [token.text for token in row]
+        for first, second, asks_first in (("?", ":", True), ("IF", "ELSE", False)):
+            if first not in texts or second not in texts[texts.index(first) + 1 :]:
+                continue
+            k = texts.index(first)
+            other = texts.index(second, k + 1)
+            pieces = (row[:k], row[k + 1 : other], row[other + 1 :])
+            question, yes, no = pieces if asks_first else (pieces[1], pieces[0], pieces[2])
+            if not (question and yes and no) or any(
+                token.kind is ODD for piece in pieces for token in piece
+            ):
+                return ""
+            asked, one, two = (self._said(piece) for piece in (question, yes, no))
+            return f"IF({asked});{name.text} = {one};ELSE;{name.text} = {two};ENDIF"
+        return ""
+
+    def _said(self, tokens: Sequence[Token]) -> str:
+        is_framed = tokens[0].kind == "(" and tokens[-1].kind == ")" and (
+            sum(token.kind == "(" for token in tokens) == 1
+        )  # fmt: skip
+        return self.known.translated(written(with_signs(tokens[1:-1] if is_framed else tokens)))
+
+    def _chosen(self, name: Token, row: Sequence[Token], fix: str, said: int) -> None:
+        self.reporter.withdraw(said)
+        for token in row:
+            self.reporter.answer(token)
+        self.cursor.skip_instruction()
+        span = Span(name.start, row[-1].end)
+        self.reporter.fail(codes.CHOICE_IN_VALUE, span, None, fix=fix)
+
+    # -- what looks like a function -----------------------------------------------------------
+
+    def called(self, name: Token, bracket: Token) -> None:
+        """`input()`, `V[0]`: no function, and no list."""
+        source = self.cursor.source.text
+        if source[bracket.start : bracket.end] == "[":
+            self.reporter.answer(bracket)
+            end = after_bracket(self.cursor.tokens, self.cursor.i)
+            for token in self.cursor.tokens[self.cursor.i : end]:
+                self.reporter.answer(token)
+            span = self._to(name, end)
+            if name.text in self._lists:
+                index = self.cursor.following.text
+                number = str(int(index) + 1) if index.isdecimal() else "1"
+                self.reporter.fail(codes.LISTS, span, span, found=name.text,
+                                   fix=f"{name.text}_{number}")  # fmt: skip
+            self.reporter.fail(codes.LISTS, span, None, found=name.text, fix="")
+        if name.text in _ASKING and not self.known.is_own(name.text):
+            end = after_bracket(self.cursor.tokens, self.cursor.i)
+            for token in self.cursor.tokens[self.cursor.i : end]:
+                self.reporter.answer(token)
+            self.reporter.fail(codes.NO_INPUT, self._to(name, end), None, found=name.text)
+
+    def _to(self, first: Token, end: int | None) -> Span:
+        if end is None:
+            return first.span
+        self.cursor.i = end
+        return Span(first.start, self.cursor.tokens[end - 1].end)
+
+    # -- what is shown ------------------------------------------------------------------------
+
+    def sentence(self) -> None:
+        """`SHOW("d = " + DISTANCE)`: the value can be shown, the sentence cannot."""
+        cursor = self.cursor
+        bracket = self._bracket_of_show()
+        end = None if bracket is None else after_bracket(cursor.tokens, bracket)
+        if bracket is None or end is None:
+            return
+        word = cursor.tokens[bracket - 1]
+        row = cursor.tokens[bracket + 1 : end - 1]
+        if not any(token.kind is ODD and token.text[:1] in QUOTES for token in row):
+            return
+        values = [token for token in row if token.kind is not ODD]
+        while values and values[0].kind in _JOINING:
+            del values[0]
+        while values and values[-1].kind in _JOINING:
+            del values[-1]
+        is_one = len(values) == 1 and starts_value(values[0]) and len(values) < len(row)
+        fix = f"SHOW({self.known.value(values[0].text)})" if is_one else ""
+        if values and not fix:
+            return
+        for token in row:
+            self.reporter.answer(token)
+        span = Span(row[0].start, row[-1].end)
+        place = Span(word.start, cursor.tokens[end - 1].end)
+        cursor.i = end
+        self.reporter.fail(codes.WORDS_SHOWN, span, place, fix=fix)
+
+    def words_shown(self, name: str) -> None:
+        """`SHOW(hello world)`: words that are no name of the program."""
+        bracket = self._bracket_of_show()
+        if bracket is None or self.known.is_own(name):
+            return
+        tokens = self.cursor.tokens
+        end = after_bracket(tokens, bracket)
+        if end is None or any(each.kind is not WORD for each in tokens[bracket + 1 : end - 1]):
+            return
+        span = Span(tokens[bracket].end, tokens[end - 1].start)
+        self.cursor.i = end
+        self.reporter.fail(codes.WORDS_SHOWN, span, None, fix="")
+
+    def _bracket_of_show(self) -> int | None:
+        """Return the place of the bracket around the cursor's, if it is that of SHOW or PRINT."""
+        tokens, k = self.cursor.tokens, self.cursor.i
+        while k and tokens[k].kind not in ("(", *AT_END):
+            k -= 1
+        word = tokens[k - 1] if k and tokens[k].kind == "(" else None
+        if word is None or word.kind is not WORD:
+            return None
+        meant = word.text if word.text in WORDS else meant_by(word.text)
+        return k if meant == "SHOW" else None
+
+    # -- a question behind an instruction -----------------------------------------------------
+
+    def goes_on(self, first: Token) -> None:
+        """Look at what stands where the instruction that begins with `first` must end."""
+        cursor = self.cursor
+        k = cursor.i
+        while k and cursor.tokens[k] is not first:
+            k -= 1
+        if cursor.tokens[k + 1].kind == "=":
+            self.unread_value(first, k + 2, len(self.reporter.diagnostics))
+        command = self.known.command(first.text)
+        if command is not None and command.role in _DOING:
+            self._brackets_behind(first, k, command)
+            self._question_behind(first, command)
+
+    def _brackets_behind(self, first: Token, k: int, word: Word) -> None:
+        """`F(2)(80)`: each value in brackets of its own."""
+        cursor = self.cursor
+        tokens, begin = cursor.tokens, cursor.i
+        end = after_bracket(tokens, begin) if cursor.token.kind == "(" else None
+        if end is None or tokens[k + 1].kind != "(" or tokens[end].kind not in AT_END:
+            return
+        between = Token(",", ",", *tokens[begin].span)
+        values = [*tokens[k + 2 : begin - 1], between, *tokens[begin + 1 : end - 1]]
+        fix = call_in(word, values) if len(word.arguments) > 1 else ""
+        if fix:
+            cursor.i = end
+            span = Span(first.start, tokens[end - 1].end)
+            self.reporter.fail(codes.MISSING_COMMA, span, span, fix=fix, usage=word.usage)
+
+    def _question_behind(self, first: Token, word: Word) -> None:
+        """`F(2, 80) si DISTANCE > 10`, `F(2, 80) while DISTANCE > 10`."""
+        cursor = self.cursor
+        token = cursor.token
+        meant = "IF" if token.text in ("SI", "WHEN") else meant_by(token.text) or token.text
+        if meant not in ("IF", "WHILE") or token.kind is not WORD or self._has_body(meant):
+            return
+        values = inside(cursor.tokens, cursor.i + 1)
+        row = with_signs(values)
+        if not any(each.kind in COMPARISONS for each in row) or len(row) > LONGEST:
+            return
+        end = end_of_values(cursor.tokens, cursor.i + 1, values)
+        call = cursor.source[Span(first.start, cursor.last.end)]
+        start = cursor.i
+        while cursor.token.start < end:
+            cursor.i += 1
+        if cursor.token.kind not in AT_END:
+            cursor.i = start
+            return
+        asked, contrary = (self.known.translated(each) for each in (written(row), opposite(row)))
+        fix = f"{meant}({asked});{call};{'ENDIF' if meant == 'IF' else 'END_WHILE'}"
+        if token.text in NEGATED:
+            fix = f"IF({contrary});{call};ENDIF" if contrary else ""
+        elif meant == "WHILE" and word.role in ("move", "wait"):
+            fix = f"{call} UNTIL({contrary})" if contrary else ""
+        place = Span(first.start, end)
+        self.reporter.fail(codes.QUESTION_BEHIND, token.span, place, found=token.text, fix=fix)
+
+    def _has_body(self, block: str) -> bool:
+        """Whether an end of this block comes that no header behind the cursor's begins."""
+        depth = 0
+        for token in self.cursor.tokens[self.cursor.i + 1 : self.cursor.i + _FARTHEST]:
+            if token.kind is WORD:
+                said = token.text if token.text in WORDS else foreign_block(token.text)
+                said = ENDS.get(said or "", said)
+                is_end = token.text in ENDS or foreign_block(token.text) in (*ENDS, "END")
+                if said == block or is_end:
+                    depth += -1 if is_end else 1
+                    if depth < 0:
+                        return True
+        return False
+
+    # -- values in front of their word --------------------------------------------------------
+
+    def values_in_front(self, first: Token) -> None:
+        """`(2, 80)F`, `2F80`: the values stand before their word, or around it."""
+        cursor = self.cursor
+        if first.kind is NUMBER:
+            glued = _AROUND.fullmatch(cursor.source[first.span].upper())
+            if glued is not None and cursor.token.kind in AT_END:
+                self.reporter.answer(first)
+                known = WORDS[glued[2]]
+                fix = f"{glued[2]}({glued[1]}, {glued[3]})"
+                self.reporter.fail(codes.MISSING_OPEN, first.span, None, word=known.text, fix=fix,
+                                   usage=known.usage)  # fmt: skip
+            return
+        end = after_bracket(cursor.tokens, cursor.i - 1)
+        if end is None:
+            return
+        word = cursor.tokens[end]
+        command = self.known.command(word.text) if word.kind is WORD else None
+        if command is None or not command.arguments or cursor.tokens[end + 1].kind not in AT_END:
+            return
+        fix = call_in(command, cursor.tokens[cursor.i : end - 1])
+        cursor.i = end + 1
+        span = Span(first.start, word.end)
+        self.reporter.fail(codes.MISSING_OPEN, span, span, word=command.text, fix=fix,
+                           usage=command.usage)  # fmt: skip
