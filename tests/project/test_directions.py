@@ -41,6 +41,7 @@ UPSTREAM: dict[str, set[str]] = {
     "sharing": {"files", "bytecode", "link"},
     "keys": {"files", "printable", "link"},
     "modules": {"link"},
+    "conformance": {"bytecode", "link"},
     "doctor": {"files", "bytecode", "flash", "link", "modules", "sharing"},
     "virtual": {*SHARED, "bytecode", "vm", "robots", "link", "sharing"},
     # of the syntax its tokens: which words a program uses

@@ -249,6 +249,13 @@ def cpp_cases() -> str:
     return cases_header(COMMAND)
 
 
+def machine_kit() -> str:
+    """Return `machine.json`: what machines of other languages must do."""
+    from tools.generate.machine_kit import machine_kit as kit
+
+    return kit(COMMAND)
+
+
 def robot_header(path: Path) -> str:
     """Return the header of a robot's firmware, for all the boards that its profile fits."""
     text = path.read_text(encoding="utf-8")
@@ -307,6 +314,7 @@ MACHINE = ROOT / "vm_arduino" / "src" / "vm"
 LINK = ROOT / "vm_arduino" / "src" / "link"
 PAYLOADS = ROOT / "compiler" / "tiniscript" / "link" / "payloads.py"
 TEXT = ROOT / "vm_arduino" / "src" / "text"
+CONFORMANCE = ROOT / "compiler" / "tiniscript" / "conformance"
 WIRED = ROOT / "vm_arduino" / "src" / "boards" / "kits"
 WIRING = ROOT / "docs" / "wiring"
 
@@ -335,6 +343,7 @@ OUTPUTS: list[tuple[Path, Callable[[], str]]] = [
     *((ROOT / "docs" / "poster" / name, make) for name, make in posters(COMMAND).items()),
     *((ROOT / "docs" / name, make) for name, make in fronts(COMMAND).items()),
     (ROOT / "vm_arduino" / "test" / "cases.h", cpp_cases),
+    (CONFORMANCE / "machine.json", machine_kit),
     *(
         (WIRED / f"{path.stem}.h", partial(robot_header, path))
         for path in sorted(ROBOTS.glob("*.toml"))

@@ -233,6 +233,7 @@ _LATER = (
     ("selftest", "SELFTEST_TEXTS"),
     ("studio", "STUDIO_TEXTS"),
     ("wifi", "WIFI_TEXTS"),
+    ("conform", "CONFORM_TEXTS"),
 )
 
 

@@ -146,6 +146,10 @@ OPTIONS: tuple[Option, ...] = (
     Option("--show", "run", ("on a terminal: draws the way and the values as they come", "en una terminal: dibuja el camino y los valores según llegan")),
     Option("--pace", "run", ("with --show: N times as fast as the robot (1); 0 is as fast as possible", "con --show: N veces más rápido que el robot (1); 0 es lo más rápido posible"), NUMBER, N),
     Option("--machine", "run", ("which machine runs it: the one in Python, or the robot's own, in C++", "qué máquina lo ejecuta: la de Python, o la del robot mismo, en C++"), MACHINE, ("python|cpp", "python|cpp")),
+    # another machine or robot
+    Option("--machine", "conform", ("a machine of your own: the command that starts it", "una máquina tuya: el comando que la inicia"), TEXT, ("COMMAND", "COMANDO")),
+    Option("--only", "conform", ("only the cases that have this in their name", "solo los casos que tienen esto en su nombre"), TEXT, A_TEXT),
+    Option("--timeout", "conform", ("with --machine: seconds that an answer may take (10)", "con --machine: segundos que puede tardar una respuesta (10)"), NUMBER, S),
     # a lesson
     Option("--teacher", "lesson", ("with show or sheet: the teacher's notes, with answers", "con show o sheet: las notas para el docente, con respuestas")),
     Option("--seed", "lesson", ("with check: only the world of this number, 1 to 4294967295", "con check: solo el mundo de este número, de 1 a 4294967295"), NUMBER, N),
@@ -232,7 +236,7 @@ OPTIONS: tuple[Option, ...] = (
                                    "sin robot: uno virtual se mueve aquí, hasta que el programa termina o Ctrl-C; el de `tsc robot`, si está en marcha en otra terminal. La tecla b es el botón del de aquí; si no hay nadie en una terminal, se pulsa enseguida")),
     Option("--virtual", "live", ("no robot: a virtual one does it here", "sin robot: lo hace aquí uno virtual")),
     # how it is said
-    Option("--json", "check show lesson ping info ports keys doctor module selftest", ("the same as data", "lo mismo como datos")),
+    Option("--json", "check show lesson ping info ports keys doctor module selftest conform", ("the same as data", "lo mismo como datos")),
     Option("--json", "upload", ("prints the receipt and what comes after it as lines of JSON", "imprime el recibo y lo que viene después como líneas de JSON")),
     Option("--json", "undo", ("prints the receipt, and that it is saved, as lines of JSON", "imprime el recibo, y que está guardado, como líneas de JSON")),
     Option("--json", "stop identify", ("prints a line of JSON for each robot", "imprime una línea de JSON por cada robot")),

@@ -270,6 +270,14 @@ VERBS: dict[str, Verb] = {
          "Con check, `--json` da una lista de `{file, verdict, seed, findings}`. Código de salida de check: 0 si todos los programas cumplen la tarea, 1 si alguno no."),
         also=((VIRTUAL, ("lesson", "lesson"), ("list the lessons", "lista las lecciones")),),
     ),
+    "conform": Verb(
+        ITSELF, ("conform --machine 'COMMAND'", "conform --machine 'COMANDO'"),
+        ("test a machine that others have made", "prueba una máquina hecha por otros"),
+        ("Tests whether a machine that somebody has written, in any language, runs images as the specification says: it gets several hundred images, and what it prints is compared line by line. docs/conformance.md says how it is asked. Prints what differs.",
+         "Prueba si una máquina que alguien escribió, en cualquier lenguaje, ejecuta imágenes como dice la especificación: recibe varios cientos de imágenes, y lo que imprime se compara línea por línea. docs/conformance.md dice cómo se le pregunta. Imprime lo que es distinto."),
+        ends=("Exit code: 0 if all agrees, 1 if something differs, 2 if the command does not start.",
+              "Código de salida: 0 si todo coincide, 1 si algo es distinto, 2 si el comando no arranca."),
+    ),
     "studio": Verb(
         VIRTUAL, ("studio", "studio"),
         ("write programs in a page of your browser", "escribe programas en una página del navegador"),

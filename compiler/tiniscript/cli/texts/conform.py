@@ -1,0 +1,30 @@
+"""The sentences of `tsc conform`, in English and Spanish."""
+
+from __future__ import annotations
+
+# fmt: off
+CONFORM_TEXTS: dict[str, tuple[str, str]] = {
+    # key: (English, Spanish)
+    "conform_which": ("tsc: what should be tested? Name a robot's port with --port, or a machine of your own with --machine 'COMMAND'.",
+                      "tsc: ¿qué hay que probar? Da el puerto de un robot con --port, o una máquina tuya con --machine 'COMANDO'."),
+    "conform_both": ("tsc: test one at a time: --port or --machine.",
+                     "tsc: prueba uno a la vez: --port o --machine."),
+    "conform_no_case": ("tsc: no case has {found} in its name. Without --only all run.",
+                        "tsc: ningún caso tiene {found} en su nombre. Sin --only se prueban todos."),
+    "conform_no_start": ("tsc: {command} does not start: {why}. Check the command; it is run in this folder, without a shell.",
+                         "tsc: {command} no arranca: {why}. Revisa el comando; se ejecuta en esta carpeta, sin intérprete de comandos."),
+    "conform_case": ("{name}", "{name}"),
+    "conform_line": ("  line {line}: {got}\n  should be: {want}", "  línea {line}: {got}\n  debería ser: {want}"),
+    "conform_nothing": ("(no line)", "(ninguna línea)"),
+    "conform_hang": ("  did not end its answer in {seconds} s", "  no terminó su respuesta en {seconds} s"),
+    "conform_crash": ("  ended before its answer did; exit code {detail}", "  terminó antes que su respuesta; código de salida {detail}"),
+    "conform_flood": ("  wrote far more than the answer has", "  escribió mucho más de lo que tiene la respuesta"),
+    "conform_more": ("  wrote on after the end of its answer: {detail}", "  siguió escribiendo después del final de su respuesta: {detail}"),
+    "conform_others": ("... and {n} more; --json lists all of them.", "... y {n} más; --json los lista todos."),
+    "conform_given_up": ("The other cases were not tried: too many had no answer.", "Los otros casos no se probaron: demasiados quedaron sin respuesta."),
+    "conform_machine_end": ("{good} of {all} cases agree. Kit {version}, bytecode {isa}.",
+                            "{good} de {all} casos coinciden. Kit {version}, bytecode {isa}."),
+    "conform_port_end": ("{good} of {all} checks agree. Kit {version}, link {link}, bytecode {isa}.",
+                         "{good} de {all} pruebas coinciden. Kit {version}, enlace {link}, bytecode {isa}."),
+}
+# fmt: on

@@ -1,0 +1,58 @@
+"""What differs between what was wanted and what came: a value for each case.
+
+Knows no process and no port.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import NamedTuple
+
+from tiniscript.conformance.kit import MachineCase
+from tiniscript.conformance.machine_process import Problem
+
+AGREES, DIFFERS = "agrees", "differs"  # or what a Problem says
+MOST_ENDLESS = 3  # answers that hang or flood; then nobody waits for more of them,
+MOST_SILENT = 20  # nor for a machine whose first so many runs gave no answer
+
+
+class Verdict(NamedTuple):
+    """`what` is AGREES, DIFFERS, hang, crash, flood or more. `line` counts from 1; `want` and `got`
+    are that line of the two answers, None behind their ends."""
+
+    name: str
+    what: str
+    line: int = 0
+    want: str | None = None
+    got: str | None = None
+    detail: str = ""
+
+
+def compared(name: str, want: Sequence[str], got: Sequence[str]) -> Verdict:
+    """Return the first line that differs."""
+    for number in range(max(len(want), len(got))):
+        pair = [rows[number] if number < len(rows) else None for rows in (want, got)]
+        if pair[0] != pair[1]:
+            return Verdict(name, DIFFERS, number + 1, pair[0], pair[1])
+    return Verdict(name, AGREES)
+
+
+Ask = Callable[[str, int], Sequence[str]]
+
+
+def verdicts(cases: Iterable[MachineCase], ask: Ask) -> Iterator[Verdict]:
+    """Yield the verdict of each case, up to where nobody waits for more."""
+    endless = silent = answers = 0
+    for case in cases:
+        try:
+            got = ask(case.request(), sum(len(row) + 2 for row in case.answer))
+        except Problem as problem:
+            found = compared(case.name, case.answer, problem.rows)
+            yield found._replace(what=problem.what, detail=problem.detail)
+            endless += problem.what in ("hang", "flood")
+            silent += not answers
+            if endless == MOST_ENDLESS or silent == MOST_SILENT:
+                return
+        else:
+            answers += 1
+            yield compared(case.name, case.answer, got)

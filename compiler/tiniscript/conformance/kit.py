@@ -1,0 +1,74 @@
+"""The cases that a machine must pass: what `machine.json` says, as values.
+
+`python -m tools.generate` makes the file. Knows its form, and how a case is told to a machine:
+`docs/conformance.md` has both.
+"""
+
+from __future__ import annotations
+
+import json
+from importlib import resources
+from typing import NamedTuple
+
+FORM = "tiniscript-machine-kit"
+VERSION = 1  # of the form; grows when a reader of the file, or a machine, must know more
+
+
+class MachineCase(NamedTuple):
+    """One run. `devices` are the kit's lines, as the specification hashes them; `readings` are
+    thousandths by the number of the sensor; times are milliseconds."""
+
+    name: str
+    devices: tuple[str, ...]
+    image: bytes
+    readings: dict[int, tuple[int, ...]]
+    seed: int
+    begin_ms: int
+    every_ms: int
+    until_ms: int
+    answer: tuple[str, ...]
+
+    def request(self) -> str:
+        """Return the lines that ask a machine for this run."""
+        lists = [
+            f"readings {number} {' '.join(map(str, values))}"
+            for number, values in sorted(self.readings.items())
+        ]
+        rows = (
+            *self.devices,
+            *lists,
+            f"seed {self.seed}",
+            f"begin {self.begin_ms}",
+            f"every {self.every_ms}",
+            f"until {self.until_ms}",
+            f"image {self.image.hex()}".rstrip(),
+            "run",
+        )
+        return "".join(f"{row}\n" for row in rows)
+
+
+def machine_cases() -> list[MachineCase]:
+    """Return all cases, in the order of the file."""
+    path = resources.files("tiniscript") / "conformance" / "machine.json"
+    return cases_of(path.read_text(encoding="utf-8"))
+
+
+def cases_of(text: str) -> list[MachineCase]:
+    """Return the cases of a file of this version."""
+    found = json.loads(text)
+    assert (found["form"], found["version"]) == (FORM, VERSION)
+    kits = [tuple(lines) for lines in found["kits"]]
+    return [
+        MachineCase(
+            row["name"],
+            kits[row["kit"]],
+            bytes.fromhex(row["image"]),
+            {int(number): tuple(values) for number, values in row["readings"].items()},
+            row["seed"],
+            row["begin"],
+            row["every"],
+            row["until"],
+            tuple(row["answer"]),
+        )
+        for row in found["cases"]
+    ]

@@ -1,0 +1,201 @@
+"""A machine as a process of its own: it is asked for runs on its standard input, and answers.
+
+Knows the process, its time and its bounds: one that hangs, crashes, floods or goes on after its
+answer ends as a Problem. Does not know what an answer should be. The form: `docs/conformance.md`.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import queue
+import shlex
+import signal
+import subprocess
+import sys
+import threading
+import time
+from typing import IO
+
+ENDS = ("DONE", "FAULT", "LIMIT", "REFUSED")  # a line with one of them is the last of an answer
+CHUNK_BYTES = 1 << 16
+SPARE_BYTES = 1 << 18  # that an answer may be longer than the right one
+TAIL_BYTES = 2000  # of what it writes to standard error, kept to show it
+LEAVE_S = 0.5  # for a process whose output has ended, to end with its code
+
+
+class Problem(Exception):
+    """No answer. `what` is hang, crash, flood or more; `detail` is the exit code or what it wrote;
+    `rows` are the lines that came before."""
+
+    def __init__(self, what: str, detail: str, rows: tuple[str, ...]) -> None:
+        super().__init__(what)
+        self.what = what
+        self.detail = detail
+        self.rows = rows
+
+
+class CannotStart(Exception):
+    """The command does not start a process."""
+
+
+def is_last(row: str) -> bool:
+    """Whether a line ends an answer."""
+    words = row.split(" ", 2)
+    return words[0] == "REFUSED" or (len(words) > 1 and words[0].isdigit() and words[1] in ENDS)
+
+
+class MachineProcess:
+    """Starts the command when it is asked first, and again where the process has ended."""
+
+    def __init__(self, command: str, timeout_s: float) -> None:
+        self.command = command
+        self.timeout_s = timeout_s
+        self._process: subprocess.Popen[bytes] | None = None
+        self._answers = 0  # of this process
+
+    def ask(self, request: str, expected_bytes: int) -> tuple[str, ...]:
+        """Return the lines of an answer. Raises Problem and CannotStart.
+
+        A process that has answered before may have ended since: then a new one is asked.
+        """
+        most = expected_bytes + SPARE_BYTES
+        if self._answers:
+            with contextlib.suppress(_Ended):
+                return self._asked(request, most)
+            self.close()
+        try:
+            return self._asked(request, most)
+        except _Ended as ended:
+            tail = self.close()
+            raise Problem(
+                "crash", f"{ended.code}: {tail}" if tail else str(ended.code), ()
+            ) from None
+
+    def close(self) -> str:
+        """End the process and all that it has started; return the end of its standard error."""
+        process, self._process, self._answers = self._process, None, 0
+        if process is None:
+            return ""
+        if sys.platform != "win32":
+            with contextlib.suppress(ProcessLookupError, PermissionError):
+                os.killpg(process.pid, signal.SIGKILL)
+        process.kill()
+        process.wait()
+        self._errors.join(LEAVE_S)
+        for pipe in (process.stdin, process.stdout, process.stderr):
+            with contextlib.suppress(OSError):
+                assert pipe is not None
+                pipe.close()
+        lines = bytes(self._tail).decode("utf-8", "replace").strip().splitlines()
+        return lines[-1] if lines else ""
+
+    def _start(self) -> subprocess.Popen[bytes]:
+        try:
+            command: str | list[str] = self.command
+            if sys.platform != "win32":  # where each program takes its command line apart itself
+                command = shlex.split(self.command)
+            if not command:
+                raise ValueError("no command")
+            process = subprocess.Popen(
+                command,
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+                start_new_session=True,
+            )
+        except (OSError, ValueError) as why:
+            raise CannotStart(str(why)) from None
+        assert process.stdin and process.stdout and process.stderr
+        self._chunks: queue.Queue[bytes] = queue.Queue(maxsize=64)
+        self._tail = bytearray()
+        self._rest = b""
+        self._errors = _thread(self._keep_tail, process.stderr)
+        _thread(self._read, process.stdout, self._chunks)
+        self._requests: queue.Queue[bytes] = queue.Queue()
+        _thread(self._write, process.stdin, self._requests)
+        return process
+
+    @staticmethod
+    def _read(pipe: IO[bytes], chunks: queue.Queue[bytes]) -> None:
+        """Pass on what comes; nothing is the end."""
+        data = b"?"
+        while data:
+            try:
+                data = os.read(pipe.fileno(), CHUNK_BYTES)
+            except (OSError, ValueError):
+                data = b""
+            chunks.put(data)
+
+    def _keep_tail(self, pipe: IO[bytes]) -> None:
+        tail = self._tail
+        with contextlib.suppress(OSError, ValueError):
+            while data := os.read(pipe.fileno(), CHUNK_BYTES):
+                tail += data
+                del tail[:-TAIL_BYTES]
+
+    @staticmethod
+    def _write(pipe: IO[bytes], requests: queue.Queue[bytes]) -> None:
+        with contextlib.suppress(OSError, ValueError):
+            while True:
+                pipe.write(requests.get())
+                pipe.flush()
+
+    def _asked(self, request: str, most: int) -> tuple[str, ...]:
+        if self._process is None:
+            self._process = self._start()
+        self._requests.put(request.encode())
+        ends_at = time.monotonic() + self.timeout_s
+        rows: list[str] = []
+        count = 0
+        while True:
+            *lines, self._rest = self._rest.split(b"\n")
+            for number, line in enumerate(lines, 1):
+                rows.append(line.decode("utf-8", "replace").removesuffix("\r"))
+                if is_last(rows[-1]):
+                    more = b"\n".join([*lines[number:], self._rest])
+                    if more:
+                        self._fail("more", more.decode("utf-8", "replace"), rows)
+                    self._answers += 1
+                    return tuple(rows)
+            try:
+                data = self._chunks.get(timeout=max(ends_at - time.monotonic(), 0))
+            except queue.Empty:
+                self._fail("hang", self._rest.decode("utf-8", "replace"), rows)
+            if not data:
+                code = self._exit_code()
+                if rows or self._rest:
+                    rows += [self._rest.decode("utf-8", "replace")] if self._rest else []
+                    self._fail("crash", str(code), rows)
+                raise _Ended(code)
+            count += len(data)
+            self._rest += data
+            if count > most:
+                self._fail("flood", "", rows)
+
+    def _exit_code(self) -> int | None:
+        assert self._process is not None
+        try:
+            return self._process.wait(LEAVE_S)
+        except subprocess.TimeoutExpired:
+            return None
+
+    def _fail(self, what: str, detail: str, rows: list[str]) -> None:
+        tail = self.close()
+        if what == "crash" and tail:
+            detail = f"{detail}: {tail}"
+        raise Problem(what, detail, tuple(rows))
+
+
+class _Ended(Exception):
+    """The process has ended without a byte of an answer."""
+
+    def __init__(self, code: int | None) -> None:
+        super().__init__(code)
+        self.code = code
+
+
+def _thread(work: object, *arguments: object) -> threading.Thread:
+    thread = threading.Thread(target=work, args=arguments, daemon=True)  # type: ignore[arg-type]
+    thread.start()
+    return thread

@@ -1,0 +1,221 @@
+"""The cases for machines of others: all machines of ours agree, and one from the specification."""
+
+from __future__ import annotations
+
+import json
+import re
+import shlex
+import shutil
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+import pytest
+
+from tests.machines import MACHINES, Senses
+from tests.support.casefile import ROOT
+from tests.support.command import Done, Tsc
+from tiniscript.conformance.kit import MachineCase, machine_cases
+from tiniscript.kit import Device, Kit
+from tools.builds.studio import found_tools
+
+JAVASCRIPT = Path(__file__).resolve().parent / "javascript"
+PAGE = ROOT / "docs" / "conformance.md"
+
+
+def node(folder: Path = JAVASCRIPT) -> str:
+    return shlex.join([*found_tools().node, str(folder / "conform.mjs")])
+
+
+def machine(tmp_path: Path, source: str) -> str:
+    """Return the command of a machine in Python."""
+    path = tmp_path / "machine.py"
+    path.write_text(f"import os, sys, time\n{source}\n", encoding="utf-8")
+    return shlex.join([sys.executable, str(path)])
+
+
+def conform(tsc: Tsc, command: str, *more: str) -> Done:
+    return tsc("conform", "--machine", command, *more)
+
+
+def found_by(tsc: Tsc, command: str, *more: str) -> list[dict[str, object]]:
+    """Return what differs."""
+    done = conform(tsc, command, "--json", *more)
+    assert done.code == 1
+    rows: list[dict[str, object]] = json.loads(done.out)["found"]
+    return rows
+
+
+def test_the_machine_in_javascript_passes_all(tsc: Tsc) -> None:
+    done = conform(tsc, node())
+    assert done.code == 0, done.out
+    count = len(machine_cases())
+    assert count > 500
+    assert done.out == f"{count} of {count} cases agree. Kit 1, bytecode 2.0.\n"
+
+
+# A file, what it says, what it says then, and a case that must be named.
+BREAKS = [
+    ("machine.mjs", "(2n * abs(a) + abs(b))", "(2n * abs(a))", "arithmetic: MUL"),
+    ("machine.mjs", "rest + b : rest", "rest : rest", "arithmetic: MOD"),
+    ("machine.mjs", "> 20) this.clock", "> 70) this.clock", "(called every 45 ms)"),
+    ("machine.mjs", "(this.now - time) >>> 0", "this.now - time", "(time wraps around)"),
+    ("machine.mjs", "if (watched.powers !== null) this.robot.motors(0, 0);", "", "UNTIL ends a move"),
+    ("machine.mjs", 'case "BREAK_LOOP": this.counters.pop();', 'case "BREAK_LOOP":', "blocks: "),
+    ("machine.mjs", "x ^= x >>> 17", "x ^= x >> 17", "arithmetic: RANDOM"),
+    ("machine.mjs", "limited(hertz, 31, 20000)", "hertz", "moves: "),
+    ("verifier.mjs", "this.depth > 16", "this.depth > 17", "refused: "),
+    ("verifier.mjs", "words > 32", "words > 33", "refused: "),
+    ("verifier.mjs", 'same && around.kind !== "IF"', "false", "refused: "),
+    ("verifier.mjs", "this.joins.length === 16", "this.joins.length === 17", "refused: "),
+    ("image.mjs", "bytes[3] > 0", "false", "images: a later minor version"),
+    ("image.mjs", "sum & 0x8000 ? 0x002d : 0", "0", "programs: "),
+    ("opcodes.mjs", "milli16: [2, -32768", "milli16: [2, 0", "values: "),
+    ("conform.mjs", '+$/, ""', '$/, ""', ": "),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("file", "old", "new", "named"), BREAKS, ids=[b[1] for b in BREAKS])
+def test_a_broken_machine_is_told(
+    file: str, old: str, new: str, named: str, tsc: Tsc, tmp_path: Path
+) -> None:
+    folder = tmp_path / "broken"
+    shutil.copytree(JAVASCRIPT, folder)
+    text = (folder / file).read_text(encoding="utf-8")
+    assert old in text
+    (folder / file).write_text(text.replace(old, new), encoding="utf-8")
+    rows = found_by(tsc, node(folder), "--timeout", "2")
+    assert any(named in str(row["name"]) for row in rows), [row["name"] for row in rows][:30]
+
+
+def kit_of(case: MachineCase) -> Kit:
+    devices: dict[str, list[Device]] = {"sensor": [], "actuator": []}
+    for line in case.devices:
+        what, name, kind, unit, low, high = line.split(" ")
+        devices[what].append(Device(name, kind, unit, int(low), int(high)))
+    return Kit(tuple(devices["sensor"]), tuple(devices["actuator"]))
+
+
+USUAL = [case for case in machine_cases() if (case.begin_ms, case.every_ms) == (0, 1)]
+
+
+@pytest.mark.parametrize("name", [each for each in MACHINES if each != "python"])
+def test_the_machine_in_cpp_agrees(name: str) -> None:
+    """At the usual times; what it does late is compared elsewhere. Images that are refused are the
+    verifiers' own tests'."""
+    run = [case for case in USUAL if not case.answer[-1].startswith("REFUSED")]
+    assert len(run) > 200
+    for case in run:
+        kit = kit_of(case)
+        names = [device.name for device in kit.sensors]
+        readings = {names[number]: values for number, values in case.readings.items()}
+        trace = MACHINES[name](case.image, kit, Senses(readings, case.until_ms, seed=case.seed))
+        assert trace.splitlines() == list(case.answer), case.name
+
+
+def test_names_are_unique_and_each_refusal_is_there() -> None:
+    from tiniscript.bytecode.image import REFUSALS
+    from tiniscript.bytecode.verify import RULES
+
+    cases = machine_cases()
+    assert len({case.name for case in cases}) == len(cases)
+    refused = {case.answer[-1].split()[1] for case in cases if "REFUSED" in case.answer[-1]}
+    assert refused == {*REFUSALS, *RULES} - {"CODE_LENGTH"}  # an image says that as BAD_HEADER
+
+
+# -- machines that are no machines ------------------------------------------------------------
+
+ONE_SHOT = "list(iter(sys.stdin.readline, 'run\\n'))\nprint('0 DONE', flush=True)"
+
+
+def test_a_machine_that_ends_after_each_answer_is_started_again(tsc: Tsc, tmp_path: Path) -> None:
+    rows = found_by(tsc, machine(tmp_path, ONE_SHOT), "--only", "images: ")
+    assert rows
+    assert {row["what"] for row in rows} == {"differs"}
+    assert "images: no code" not in [row["name"] for row in rows]
+
+
+HOSTILE = {
+    "hang": ("time.sleep(60)", "did not end its answer in 1 s", 3),
+    "crash": ("sys.exit('no such opcode')", "exit code 1: no such opcode", 20),
+    "flood": ("while True: os.write(1, b'0 SHOW 1\\n' * 999)", "wrote far more", 3),
+    "more": ("for row in sys.stdin:\n  if row == 'run\\n': os.write(1, b'0 DONE\\n0 DONE\\n')",
+             "after the end of its answer", 20),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("what", HOSTILE)
+def test_a_hostile_machine_is_named(what: str, tsc: Tsc, tmp_path: Path) -> None:
+    source, said, tried = HOSTILE[what]
+    command = machine(tmp_path, source)
+    done = conform(tsc, command, "--timeout", "1")
+    assert done.code == 1
+    assert said in done.out
+    assert done.out.splitlines()[-1].startswith("0 of ")
+    assert "too many had no answer" in done.out
+    rows = found_by(tsc, command, "--timeout", "1")
+    assert [row["what"] for row in rows] == [what] * tried
+
+
+def test_bytes_that_are_no_text_are_shown_without_harm(tsc: Tsc, tmp_path: Path) -> None:
+    source = "os.write(1, bytes(range(256)) + b'\\n\\x1b[2J 0 DONE')"
+    done = conform(tsc, machine(tmp_path, source), "--only", "images: whole")
+    assert done.code == 1
+    assert "\x1b" not in done.out
+    assert "\0" not in done.out
+
+
+def test_a_machine_that_reads_nothing_is_no_trouble(tsc: Tsc, tmp_path: Path) -> None:
+    """The longest image is more than a pipe holds."""
+    command = machine(tmp_path, "time.sleep(60)")
+    done = conform(tsc, command, "--only", "the longest code", "--timeout", "1")
+    assert done.code == 1
+    assert "did not end" in done.out
+
+
+def test_what_it_has_started_ends_with_it(tsc: Tsc, tmp_path: Path) -> None:
+    mark = tmp_path / "alive"
+    child = f"import time\ntime.sleep(3)\nopen({str(mark)!r}, 'w')"
+    source = (
+        f"import subprocess\nsubprocess.Popen([sys.executable, '-c', {child!r}])\ntime.sleep(60)"
+    )
+    conform(tsc, machine(tmp_path, source), "--only", "images: whole", "--timeout", "1")
+    import time
+
+    time.sleep(2.5)
+    assert not mark.exists()
+
+
+@pytest.mark.parametrize("command", ["no_such_command", "", "'", "/"])
+def test_a_command_that_does_not_start(command: str, tsc: Tsc) -> None:
+    done = conform(tsc, command)
+    assert done.code == 2
+    assert "does not start" in done.err
+    assert "no arranca" in conform(tsc, command, "--lang", "es").err
+
+
+def test_wrong_use(tsc: Tsc) -> None:
+    assert "--port" in tsc("conform").err
+    assert tsc("conform").code == 2
+    assert tsc("conform", "--machine", "x", "--only", "no such case").code == 2
+    assert tsc("conform", "--machine", "x", "--timeout", "0").code == 2
+
+
+# -- the page -----------------------------------------------------------------------------------
+
+
+def fences() -> Sequence[str]:
+    return re.findall(r"^```\n(.*?)^```", PAGE.read_text(encoding="utf-8"), re.M | re.S)
+
+
+def test_the_page_shows_a_run_as_it_is_asked_for_and_answered() -> None:
+    case = next(case for case in machine_cases() if case.name == "bytecode_spec: Instructions")
+    assert case.request() in fences()
+    assert "".join(f"{row}\n" for row in case.answer) in fences()
+
+
+def test_the_page_says_how_many(tsc: Tsc) -> None:
+    count = len(machine_cases())
+    text = PAGE.read_text(encoding="utf-8")
+    assert f"some {round(count, -1)} runs" in text
+    assert f"{count - 1} of {count} cases agree" in text

@@ -1,0 +1,241 @@
+"""Makes `conformance/machine.json`: what a machine of any language must do with images.
+
+Knows the form of the file, which `docs/conformance.md` describes, and where its cases come from:
+the case files, images that are damaged on purpose, the edges of numbers, and random programs. What
+is expected is what the machine in Python answers; the tests compare it with the others.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from itertools import product
+from typing import NamedTuple
+
+from tests.machines import Senses
+from tests.machines.python import lists_of
+from tests.support.casefile import ROOT, Case, read
+from tests.support.images import image_for
+from tests.vm.test_agreement import random_program
+from tests.vm.test_cases import compiled, robot_and_senses
+from tiniscript import robots
+from tiniscript.bytecode.disassembly import read_listing
+from tiniscript.bytecode.image import ImageRefused, pack, sealed
+from tiniscript.bytecode.loading import loaded
+from tiniscript.bytecode.opcodes import BY_NAME, ISA_MAJOR, ISA_MINOR, Op
+from tiniscript.bytecode.verify import Refused
+from tiniscript.conformance.kit import FORM, VERSION
+from tiniscript.kit import Kit
+from tiniscript.vm.machine import Machine
+from tiniscript.vm.state import DONE, FAULT, WAITING
+from tiniscript.vm.trace import TracedRobot
+from tools.generate.cpp_cases import CALCULATIONS, EDGES, push32
+
+TINIBOT = robots.load("tinibot").kit
+STEPS = 100_000  # a case that runs more without a wait says nothing about its end: it is left out
+RANDOM_PROGRAMS = range(1000, 1030)
+# When a run begins, and how often its machine is called. The first is as `tsc run` does it.
+USUAL, WRAPS, SELDOM = (0, 1), (2**32 - 7, 1), (2**31 - 30, 7)
+LATE = (0, 45)
+NOTHING = bytes([BY_NAME["SET_VAR8"].code, 0, 0])
+
+
+class Run(NamedTuple):
+    """What a machine is given. `readings` are thousandths by the sensor's name."""
+
+    name: str
+    kit: Kit
+    image: bytes
+    senses: Senses = Senses()
+    when: tuple[int, int] = USUAL
+
+
+def machine_kit(command: str) -> str:
+    """Return the text of the file: a line for each case."""
+    kits: list[Kit] = []
+    rows = []
+    for run in [*documented(), *images(), *arithmetic(), *random_programs()]:
+        answer = answer_of(run)
+        if answer is None:
+            continue
+        if run.kit not in kits:
+            kits.append(run.kit)
+        rows.append(json.dumps(case_of(run, kits.index(run.kit), answer), ensure_ascii=False))
+    head = {
+        "form": FORM,
+        "version": VERSION,
+        "made_by": command,
+        "isa": [ISA_MAJOR, ISA_MINOR],
+        "kits": [[line.removesuffix("\n") for line in kit.lines()] for kit in kits],
+    }
+    start = json.dumps(head, ensure_ascii=False, indent=1).removesuffix("\n}")
+    return f'{start},\n "cases": [\n' + ",\n".join(rows) + "\n ]\n}\n"
+
+
+def case_of(run: Run, kit: int, answer: list[str]) -> dict[str, object]:
+    """Return a case as the file has it."""
+    names = [device.name for device in run.kit.sensors]
+    begin, every = run.when
+    return {
+        "name": run.name,
+        "kit": kit,
+        "image": run.image.hex(),
+        "readings": {str(names.index(name)): list(v) for name, v in run.senses.readings.items()},
+        "seed": run.senses.seed,
+        "begin": begin,
+        "every": every,
+        "until": run.senses.max_ms,
+        "answer": answer,
+    }
+
+
+def answer_of(run: Run) -> list[str] | None:
+    """Return what the machine in Python answers; None where no step of it takes time."""
+    try:
+        code = loaded(run.image, run.kit).code
+    except Refused as refused:
+        return [f"REFUSED {refused.name} {refused.offset}"]
+    except ImageRefused as refused:
+        return [f"REFUSED {refused.name}"]
+    begin, every = run.when
+    robot = TracedRobot(run.kit, lists_of(run.kit, run.senses))
+    machine = Machine(code, robot, len(run.kit.sensors), run.senses.seed, begin)
+    while True:
+        status = machine.tick(begin + robot.now_ms, STEPS)
+        if status == DONE:
+            robot.say("DONE", (), "DONE")
+        elif status == FAULT:
+            robot.say("FAULT", (), f"FAULT {machine.fault}")
+        elif status == WAITING:
+            wake_ms = max(machine.wake_ms - begin, robot.now_ms)
+            wake_ms = -(-wake_ms // every) * every
+            if wake_ms <= run.senses.max_ms:
+                robot.now_ms = wake_ms
+                continue
+            robot.now_ms = run.senses.max_ms
+            robot.say("LIMIT", (), "LIMIT")
+        else:
+            return None
+        return [str(event) for event in robot.events]
+
+
+# -- where cases come from ----------------------------------------------------------------------
+
+
+def documented() -> Iterator[Run]:
+    """Return what the case files and the specification run or refuse."""
+    paths = [*sorted(ROOT.glob("tests/cases/*.md")), ROOT / "bytecode_spec.md"]
+    for case in (case for path in paths for case in read(path)):
+        if not case.parts.keys() & {"robot", "refused"} and not stands_alone(case):
+            continue
+        robot, senses = robot_and_senses(case)
+        run = Run(case.id, robot.kit, image_of(case, robot.kit), senses)
+        yield run
+        if "robot" not in case.parts or not takes_time(run):
+            continue
+        yield run._replace(name=f"{case.id} (time wraps around)", when=WRAPS)
+        yield run._replace(name=f"{case.id} (called every 7 ms)", when=SELDOM)
+        yield run._replace(name=f"{case.id} (called every 45 ms)", when=LATE)
+
+
+def stands_alone(case: Case) -> bool:
+    return "bytecode" in case.parts and "tiniscript" not in case.parts
+
+
+def image_of(case: Case, kit: Kit) -> bytes:
+    if stands_alone(case):
+        return image_for(read_listing(case.parts["bytecode"]), kit)
+    return compiled(case).image
+
+
+def takes_time(run: Run) -> bool:
+    answer = answer_of(run)
+    return answer is not None and not answer[-1].startswith("0 ")
+
+
+def images() -> Iterator[Run]:
+    """Return images that are cut, longer, of other versions, and wrong in more ways than one."""
+    good = compile_image("F(1, 80) UNTIL(DISTANCE < 10)")
+    for name, image in {
+        "whole": good,
+        "a header that is longer": pack("SI", 0, bytes.fromhex("440150"), b"later"),
+        "the longest header": pack("SI", 0, bytes.fromhex("440150"), bytes(range(240))),
+        "no code": pack("SI", 0, b""),
+        "the longest code": pack("SI", 0, NOTHING * 10922 + b"\x58"),
+        "waits for a button": pack("SB", 0, bytes.fromhex("440150")),
+        "only PING": pack("PING", 0, b""),
+        "PING with code": pack("PING", 0, b"\x58"),
+        "a start that is not known": changed(good, 4, 3),
+        "something of needs": changed(good, 14, 1),
+        "the last bit of needs": changed(good, 14, 128),
+        "an older major version": changed(good, 2, 1),
+        "a later major version": changed(good, 2, 3),
+        "a later minor version": changed(good, 3, 1),
+        "another version, and nothing behind it": b"TS\x01\x00",
+        "another version, and no checksum": b"TS\x03" + good[3:10] + bytes(4) + good[14:],
+        "a header of 14 bytes": changed(good, 5, 14),
+        "a header of 0 bytes": changed(good, 5, 0),
+        "more code than there may be": good[:8] + b"\x00\x80" + good[10:],
+        "one byte more": good + b"\0",
+        "one byte more, and a wrong checksum": good[:-1] + b"\0\0",
+        "a letter of another kind": b"Ts" + good[2:],
+        "one letter, another one": b"X",
+        "nothing": b"",
+        "needs before the start": changed(changed(good, 14, 1), 4, 9),
+        "a checksum before needs": changed(good, 14, 1)[:-1] + b"\0",
+        "a start before a rule": changed(pack("SI", 0, b"\xff"), 4, 3),
+        "a rule before another kit": pack("SI", 0x1234, b"\x92\xff"),
+        "another sensor": pack("SI", 0x1234, bytes.fromhex("9a")),
+        "devices where there are none": pack("SI", 1, bytes.fromhex("58")),
+        "none where there are devices": pack("SI", 0, bytes.fromhex("9a")),
+    }.items():  # fmt: skip
+        yield Run(f"images: {name}", TINIBOT, image)
+    for length in range(1, len(good)):
+        yield Run(f"images: the first {length} bytes", TINIBOT, good[:length])
+    for at in range(len(good)):
+        flipped = good[:at] + bytes([good[at] ^ 0x10]) + good[at + 1 :]
+        yield Run(f"images: byte {at} is another one", TINIBOT, flipped)
+    for name in ("liner", "grabber"):
+        yield Run(f"images: on a {name}", robots.load(name).kit, good)
+
+
+def compile_image(text: str) -> bytes:
+    from tiniscript import compile_text
+
+    return compile_text(text, TINIBOT).image
+
+
+def changed(image: bytes, at: int, value: int) -> bytes:
+    """Return an image with another byte, and the checksum that fits."""
+    return sealed(image[:at] + bytes([value]) + image[at + 1 :])
+
+
+def arithmetic() -> Iterator[Run]:
+    """Return operations on the edges of numbers: what faults ends a run, the rest shares one."""
+    for op in map(BY_NAME.__getitem__, CALCULATIONS):
+        shown = "SHOW_YES_NO" if op.code in range(0x20, 0x29) else "SHOW"
+        together = b""
+        for values in product(EDGES, repeat=op.pops):
+            code = b"".join(map(push32, values)) + bytes([op.code, BY_NAME[shown].code])
+            run = Run(title(op, values), TINIBOT, pack("SI", 0, code))
+            answer = answer_of(run)
+            assert answer is not None
+            if answer[-1].endswith("DONE"):
+                together += code
+            else:
+                yield run
+        yield Run(f"arithmetic: {op.name}", TINIBOT, pack("SI", 0, together))
+
+
+def title(op: Op, values: tuple[int, ...]) -> str:
+    return f"arithmetic: {op.name} {' '.join(str(value / 1000) for value in values)}"
+
+
+def random_programs() -> Iterator[Run]:
+    """Return programs at random, at the usual times and at others."""
+    for seed in RANDOM_PROGRAMS:
+        program = random_program(seed)
+        run = Run(f"programs: {seed}", program.kit, program.short.image, program.senses)
+        yield run
+        if takes_time(run):
+            yield run._replace(name=f"{run.name} (called every 7 ms)", when=SELDOM)
