@@ -60,8 +60,8 @@ def documents(root: Path) -> list[Document]:
         *_wiring(root),
         *_lessons(root),
         *_english("trust", "README.md", "docs/promises.md", "docs/computer.md"),
-        *_english("build", "bytecode_spec.md", "docs/link.md", "docs/text.md", "docs/store.md",
-                  "docs/esp32.md", "CONTRIBUTING.md", "CHANGELOG.md"),
+        *_english("build", "bytecode_spec.md", "docs/conformance.md", "docs/link.md", "docs/text.md",
+                  "docs/store.md", "docs/esp32.md", "CONTRIBUTING.md", "CHANGELOG.md"),
     ]  # fmt: skip
 
 
