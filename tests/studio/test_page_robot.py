@@ -165,6 +165,46 @@ def test_a_wrong_program_does_not_run(page: Page) -> None:
     assert page.locator("html[data-phase=running]").count() == 0
 
 
+# All in one turn: nothing has been compiled when the buttons are pressed.
+PASTED_AND_PRESSED = (
+    "(editor, [text, ...buttons]) => { const data = new DataTransfer();"
+    " data.setData('text/plain', text);"
+    " editor.dispatchEvent(new ClipboardEvent('paste',"
+    " {clipboardData: data, bubbles: true, cancelable: true}));"
+    " for (const each of buttons) document.querySelector(each).click(); }"
+)
+
+
+def test_run_waits_for_the_compiler(page: Page) -> None:
+    """Whoever is quick is not told to repair what is right: the newest text runs."""
+    write(page, "F(1, ")
+    page.select_option("#speed", "20")
+    page.locator(".cm-content").focus()
+    page.keyboard.press("Control+A")
+    page.evaluate(
+        "() => { const doing = document.querySelector('#doing'); window.said = [];"
+        " new MutationObserver(() => window.said.push(doing.textContent))"
+        ".observe(doing, {childList: true, characterData: true, subtree: true}); }"
+    )
+    page.locator(".cm-content").evaluate(PASTED_AND_PRESSED, ["SHOW(5)", "#run"])
+    in_phase(page, "ended")
+    assert "SHOW 5" in (page.locator("#trace").text_content() or "")
+    said = page.evaluate("() => window.said")
+    assert "The compiler is still at work…" in said
+    assert "First repair the program." not in said
+
+
+def test_stop_ends_the_waiting_for_the_compiler(page: Page) -> None:
+    write(page, "F(1, ")
+    page.locator(".cm-content").focus()
+    page.keyboard.press("Control+A")
+    page.locator(".cm-content").evaluate(PASTED_AND_PRESSED, ["F(9, 80)", "#run", "#stop"])
+    checked(page)
+    page.wait_for_timeout(300)
+    assert page.locator("html[data-phase=running]").count() == 0
+    assert page.locator("#doing", has_text="still at work").count() == 0
+
+
 def test_a_program_waits_for_its_button(page: Page) -> None:
     write(page, "SB|F(1, 80)")
     page.select_option("#speed", "4")

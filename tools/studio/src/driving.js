@@ -16,6 +16,9 @@ export class Driving {
   #editor;
   #work;
   #program;
+  #whenCompiled;
+  #starts = 0; // one that STOP or a newer one has overtaken does nothing
+  #isWaiting = false; // for the compiler
   #simulator;
   #arena = new Arena(element('arena', HTMLCanvasElement));
   #wasStopped = false;
@@ -31,13 +34,15 @@ export class Driving {
    * @param {import('./python.js').Python} python
    * @param {import('./views.js').Views} editor where the line that runs is marked
    * @param {Work} work
-   * @param {() => Checked | null} program what the compiler says of the newest text
+   * @param {() => Checked | null} program what the compiler says of the newest text; null while it is at work
+   * @param {() => Promise<Checked | null>} whenCompiled the same, when it is done; null if it cannot say
    * @param {() => void} remember
    */
-  constructor(python, editor, work, program, remember) {
+  constructor(python, editor, work, program, whenCompiled, remember) {
     this.#editor = editor;
     this.#work = work;
     this.#program = program;
+    this.#whenCompiled = whenCompiled;
     this.#simulator = new Simulator(python, () => this.#show());
     this.#run.addEventListener('click', () => this.#start(false));
     this.#pause.addEventListener('click', () => {
@@ -97,8 +102,17 @@ export class Driving {
 
   /** @param {boolean} isPaused */
   async #start(isPaused) {
-    const program = this.#program();
-    this.#note = program?.image ? '' : text('first_repair');
+    const start = ++this.#starts;
+    let program = this.#program();
+    if (!program) {
+      this.#isWaiting = true;
+      this.#note = text('still_compiling');
+      this.#show();
+      program = await this.#whenCompiled();
+      if (start !== this.#starts) return;
+      this.#isWaiting = false;
+    }
+    this.#note = !program || program.image ? '' : text('first_repair');
     this.#show();
     if (!program?.image) return;
     await this.#simulator.stop();
@@ -109,6 +123,12 @@ export class Driving {
   }
 
   #stop() {
+    this.#starts += 1;
+    if (this.#isWaiting) {
+      this.#isWaiting = false;
+      this.#note = '';
+      this.#show();
+    }
     const { phase } = this.#simulator;
     if (phase !== 'running' && phase !== 'paused') return;
     this.#wasStopped = true;

@@ -44,7 +44,7 @@ languages.value = work.language;
 const python = new Python();
 const editor = new Editor(element('editor', HTMLElement), work.robot, changed);
 const views = new Views(python, editor, work, remember);
-const driving = new Driving(python, views, work, () => (isStale() ? null : newest.answer), remember);
+const driving = new Driving(python, views, work, () => (isStale() ? null : newest.answer), whenCompiled, remember);
 const programs = new Programs(python, work, putProgram, (said) => {
   note.textContent = said;
 });
@@ -66,6 +66,8 @@ let newest = { key: '', answer: null };
 let isReady = false;
 let isChecking = false;
 let timer = 0;
+/** Those who wait for the newest answer. @type {((answer: Checked | null) => void)[]} */
+const waiting = [];
 
 showRobots();
 editor.replace(work.text);
@@ -79,6 +81,7 @@ python.ready.then(
   () => {
     status.textContent = text('no_compiler');
     document.documentElement.dataset['state'] = 'failed';
+    tell(null);
   },
 );
 
@@ -105,11 +108,27 @@ async function check() {
       newest = { key: keyOf(now), answer };
     }
     if (newest.answer) show(newest.answer); // also where a text has come back
+    tell(newest.answer);
   } catch (why) {
     status.textContent = text('bug', { why: String(why).split('\n').filter(Boolean).at(-1) ?? '' });
+    tell(null);
   } finally {
     isChecking = false;
   }
+}
+
+/** What the compiler says of the newest text, as soon as it can; null if it cannot. @returns {Promise<Checked | null>} */
+function whenCompiled() {
+  if (document.documentElement.dataset['state'] === 'failed') return Promise.resolve(null);
+  return new Promise((resolve) => {
+    waiting.push(resolve);
+    check();
+  });
+}
+
+/** @param {Checked | null} answer */
+function tell(answer) {
+  for (const each of waiting.splice(0)) each(answer);
 }
 
 /** @param {{text: string, robot: string, language: string}} what */

@@ -248,7 +248,7 @@ export class RobotPanel {
   #upload(runs) {
     const program = this.#page.program();
     if (!program?.image) {
-      this.#speech.say('first_repair');
+      this.#speech.say(program ? 'first_repair' : 'press_again'); // a robot does not start late by itself
       return;
     }
     this.#speech.say('say_sending');
