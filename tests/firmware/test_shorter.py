@@ -202,6 +202,13 @@ def test_a_part_that_ends_with_a_call_jumps_there() -> None:
     assert "call g" not in found
 
 
+def test_a_part_that_ends_with_a_call_that_may_be_skipped_goes_on_behind_it() -> None:
+    part = "lds r24,a; lds r25,b; sbrc r24,1; call g"
+    found = shorter("".join(function(f"f{at}", f"{part}; sts c{at},r24") for at in range(5)))
+    assert "jmp g" not in found
+    assert "call tiniscript_part_0_0" in found
+
+
 @pytest.mark.parametrize(
     "part",
     [

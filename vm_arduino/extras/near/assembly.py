@@ -37,6 +37,7 @@ class Function:
     def __init__(self, name: str, lines: list[str]) -> None:
         self.name = name
         self.lines = lines
+        self.before: list[str] = []  # lines in front of the label
 
     def instructions(self) -> list[Instruction]:
         """Return them; those that must stay as they are have the name asm."""

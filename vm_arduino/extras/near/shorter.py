@@ -17,6 +17,7 @@ from collections import defaultdict
 from collections.abc import Mapping
 from typing import NamedTuple
 
+from arguments import share_loads, share_objects
 from assembly import (
     BODY,
     LABEL,
@@ -42,6 +43,7 @@ QUICK = re.compile(
     r"4Link4hear|4Link5start|FrameCheck|begin_run|7Machine(3act|6powers|4wait|5begin|5sleep|4tick)|"
     r"(robot|board)_motors|5level|^main$|7percent|7limited|8shape_of"
 )
+TOLD = re.compile(r"\t\.(type|size|section)\t")
 OPPOSITE = {"eq": "ne", "lo": "sh", "lt": "ge", "mi": "pl", "cs": "cc", "vs": "vc", "ts": "tc"}
 OPPOSITE |= {value: key for key, value in OPPOSITE.items()}
 
@@ -51,25 +53,31 @@ def shorter(assembly: str, addresses: Mapping[str, int]) -> str:
     parts = pieces(assembly)
     functions = {piece.name: piece for piece in parts if isinstance(piece, Function)}
     vectors = [name for name in functions if name.startswith("__vector")]
-    quick = reached(vectors, functions) | {name for name in functions if QUICK.search(name)}
+    interrupting = reached(vectors, functions)
+    free = {name: each for name, each in functions.items() if name not in interrupting}
     slow = [
         each
-        for name, each in functions.items()
-        if name not in quick and name in addresses and BODY in each.lines
+        for name, each in free.items()
+        if QUICK.search(name) is None and name in addresses and BODY in each.lines
     ]
     slow.sort(key=lambda function: addresses[function.name])
-    for number, functions_near in enumerate(regions(slow, addresses, REGION)):
-        holder = functions_near[len(functions_near) // 2]
-        common = [*_share_parts(functions_near, number), *share_registers(functions_near, number)]
-        holder.lines += common
+    near = regions(slow, addresses, REGION)
+    fixed = [piece for piece in parts if piece not in free.values()]
+    elsewhere = "\n".join(line for piece in fixed for line in _lines(piece) if not TOLD.match(line))
+    share_objects(free, elsewhere)
+    common = [share_registers(each, number) for number, each in enumerate(near)]
+    share_objects(free, elsewhere)  # those whose registers are kept otherwise now
+    share_loads(list(free.values()))
+    for number, each in enumerate(near):
+        each[len(each) // 2].lines += [*common[number], *_share_parts(each, number)]
     _share_ends(slow, addresses)
-    for function in slow:
+    for function in free.values():
         _share_jumps(function)
-    return "".join(
-        f"{line}\n"
-        for piece in parts
-        for line in (piece.lines if isinstance(piece, Function) else [piece])
-    )
+    return "".join(f"{line}\n" for piece in parts for line in _lines(piece))
+
+
+def _lines(piece: str | Function) -> list[str]:
+    return [piece] if isinstance(piece, str) else piece.before + piece.lines
 
 
 # -- conditions that lead far ---------------------------------------------------------------------
@@ -216,7 +224,9 @@ def _parts(function: Function) -> dict[Key, list[Part]]:
             if at > first and any(LABEL.match(line) for line in between(function, found, at)):
                 break
             key.append((each.name, each.operands))
-            if at > first and not leads_on(each):
+            # a call that may be skipped would not become a jump
+            is_end = not leads_on(each) and not ("call" in each.name and leads_on(found[at - 1]))
+            if at > first and is_end:
                 lines = tuple(one.line for one in found[first : at + 1])
                 parts[tuple(key)].append(Part(function, lines))
             if "call" in each.name:
