@@ -59,7 +59,6 @@ export class Views {
     });
     element('undo', HTMLButtonElement).addEventListener('click', () => this.#again(() => editor.undo()));
     element('redo', HTMLButtonElement).addEventListener('click', () => this.#again(() => editor.redo()));
-    addEventListener('keydown', (event) => this.#undoFromNowhere(event));
     // A block that is touched while the text is ahead of it must not take the text back.
     for (const kind of ['pointerdown', 'focusin']) {
       this.#pane.addEventListener(kind, (event) => {
@@ -71,15 +70,6 @@ export class Views {
     new ResizeObserver(() => this.#blocks?.resize()).observe(this.#pane);
     this.setLanguage();
     this.#lay();
-  }
-
-  /** A block that was deleted may leave the focus nowhere. @param {KeyboardEvent} event */
-  #undoFromNowhere(event) {
-    if (!this.#isOn || document.activeElement !== document.body || !(event.ctrlKey || event.metaKey)) return;
-    const key = event.key.toLowerCase();
-    if (key !== 'z' && key !== 'y') return;
-    event.preventDefault();
-    this.#again(() => (key === 'z' && !event.shiftKey ? this.#editor.undo() : this.#editor.redo()));
   }
 
   get #isOn() {
