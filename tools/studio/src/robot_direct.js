@@ -4,7 +4,7 @@
 // The main thread owns the port and asks the session for every byte: when it hangs or the page
 // sleeps, nothing is sent, and the robot stops by itself.
 
-import { Failed } from './robot_way.js';
+import { Failed, pause } from './robot_way.js';
 import { LINK, ROBOTS } from './words.js';
 
 /** @typedef {import('./robot_way.js').Heard} Heard */
@@ -206,11 +206,6 @@ export class DirectRobot {
       .finally(() => this.#unlock());
     this.#heard.over(why);
   }
-}
-
-/** @param {number} milliseconds */
-function pause(milliseconds) {
-  return new Promise((resolve) => setTimeout(resolve, milliseconds));
 }
 
 /** @param {string} digits */

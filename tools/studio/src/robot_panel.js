@@ -20,7 +20,7 @@ import { LINK, ROBOTS } from './words.js';
 /** @typedef {import('./robot_way.js').Answer} Answer */
 /** @typedef {import('./robot_way.js').RobotEvent} RobotEvent */
 /** @typedef {import('./robot_way.js').Way} Way */
-/** @typedef {{label: string, connect: () => Promise<void>}} Choice */
+/** @typedef {{label: string, connect: () => Promise<void>, serial?: any}} Choice */
 
 /**
  * @typedef {object} Page what the panel uses of the page
@@ -44,6 +44,8 @@ export class RobotPanel {
   #sent = null;
   #speech = new Speech();
   #confirming = 0;
+  /** A firmware that a person has opened. @type {File | null} */
+  #file = null;
   #list = element('link_port', HTMLSelectElement);
   #line = element('link_line', HTMLInputElement);
 
@@ -64,6 +66,8 @@ export class RobotPanel {
       ['trim_set', () => this.#trim()],
       ['trim_try', () => this.#live('F(2, 60)')],
       ['keys_claim', () => this.#claim()],
+      ['flash_write', () => this.#flash()],
+      ['flash_open', () => element('flash_file', HTMLInputElement).click()],
       ['keys_import', () => element('keys_file', HTMLInputElement).click()],
     ])) element(id, HTMLButtonElement).addEventListener('click', act);
     element('link_live', HTMLFormElement).addEventListener('submit', (event) => {
@@ -71,6 +75,10 @@ export class RobotPanel {
       this.#live(this.#line.value);
     });
     element('keys_file', HTMLInputElement).addEventListener('change', () => this.#import());
+    element('flash_file', HTMLInputElement).addEventListener('change', () => {
+      this.#file = element('flash_file', HTMLInputElement).files?.[0] ?? null;
+      this.#speech.say('say_file', { name: shown(this.#file?.name ?? '') });
+    });
     element('stop', HTMLButtonElement).addEventListener('click', () => this.stop());
     addEventListener('keydown', (event) => {
       if (event.key === 'Escape') this.stop();
@@ -94,9 +102,7 @@ export class RobotPanel {
     this.#show();
   }
 
-  get isFree() {
-    return !this.#isBusy && !this.#way;
-  }
+  get isFree() { return !this.#isBusy && !this.#way; }
 
   /** Stops the robot; a page without one, or a teacher's, stops all that its `tsc studio` has. */
   stop() {
@@ -135,7 +141,7 @@ export class RobotPanel {
       }
     }
     for (const [k, port] of (await knownPorts()).entries()) {
-      found.push({ label: text('serial_known', { number: k + 1 }), connect: () => this.#bySerial(Promise.resolve(port)) });
+      found.push({ label: text('serial_known', { number: k + 1 }), connect: () => this.#bySerial(Promise.resolve(port)), serial: port });
     }
     this.#choices = found;
     this.#list.replaceChildren(...found.map(({ label }) => new Option(label)));
@@ -316,6 +322,34 @@ export class RobotPanel {
     }
   }
 
+  /** Puts a firmware on a board, and meets the robot that it is then. */
+  async #flash() {
+    if (!this.isFree) return;
+    const which = this.#file ?? { robot: this.#page.robot(), language: currentLanguage() };
+    const known = this.#choices[this.#list.selectedIndex]?.serial;
+    const chosen = known ? Promise.resolve(known) : chosenPort();
+    const bar = element('flash_progress', HTMLProgressElement);
+    this.#isBusy = true;
+    this.#speech.say('say_flashing');
+    this.#show();
+    try {
+      const { flashBoard } = await import('./robot_flash.js');
+      const port = await chosen;
+      bar.hidden = false;
+      await flashBoard(port, element('flash_board', HTMLSelectElement).value, which, (part) => { bar.value = part; });
+      this.#isBusy = false;
+      await this.#bySerial(Promise.resolve(port));
+    } catch (why) {
+      this.#speech.fail(why instanceof Failed ? why : new Failed('bug', String(why)));
+    } finally {
+      this.#isBusy = false;
+      bar.hidden = true;
+      this.#file = null;
+      element('flash_file', HTMLInputElement).value = '';
+      this.#show();
+    }
+  }
+
   // -- what the robot says ------------------------------------------------------------------------
 
   /** @param {RobotEvent} event */
@@ -358,7 +392,8 @@ export class RobotPanel {
     element('link_bluetooth', HTMLButtonElement).hidden = !hasBluetooth;
     element('link_ports', HTMLElement).hidden = !hasHost && !this.#choices.length;
     element('link_identify', HTMLButtonElement).hidden = !isThere;
-    for (const id of ['link_connect', 'link_serial', 'link_bluetooth']) element(id, HTMLButtonElement).disabled = this.#isBusy;
+    element('flash', HTMLElement).hidden = !hasSerial;
+    for (const id of ['link_connect', 'link_serial', 'link_bluetooth', 'flash_write', 'flash_open']) element(id, HTMLButtonElement).disabled = this.#isBusy;
     document.documentElement.dataset['robot'] = isThere ? 'connected' : this.#isBusy ? 'connecting' : 'none';
   }
 }

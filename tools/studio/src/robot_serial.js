@@ -1,8 +1,10 @@
 // A serial port that the browser opens: a cable, or Bluetooth with a serial port.
 
-import { Failed } from './robot_way.js';
+import { Failed, pause } from './robot_way.js';
 
 const SERIAL = /** @type {any} */ (navigator).serial;
+const LOW_MS = 250; // so long a board's reset is held
+const AFTER_MS = 50;
 const SPP = '00001101-0000-1000-8000-00805f9b34fb';
 
 export const hasSerial = SERIAL !== undefined;
@@ -59,6 +61,23 @@ export class SerialPort {
     this.#reading = this.#read(heard).then(() => {
       if (!this.#isClosing) gone();
     });
+  }
+
+  /** Restarts a board, as the wires of a cable can, and waits until its bootloader listens. */
+  async reset() {
+    await this.#wires(false);
+    await pause(LOW_MS);
+    await this.#wires(true);
+    await pause(AFTER_MS);
+  }
+
+  /** @param {boolean} isOn */
+  async #wires(isOn) {
+    try {
+      await this.#port.setSignals({ dataTerminalReady: isOn, requestToSend: isOn });
+    } catch {
+      // it has none: opening it has restarted the board, or a hand must
+    }
   }
 
   /** Reads until the port is closed or gone. @param {(data: Uint8Array) => void} heard */

@@ -69,3 +69,8 @@ export class Failed extends Error {
     this.said = said;
   }
 }
+
+/** @param {number} milliseconds */
+export function pause(milliseconds) {
+  return new Promise((resolve) => setTimeout(resolve, milliseconds));
+}

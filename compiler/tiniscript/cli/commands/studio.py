@@ -80,7 +80,7 @@ def run(options: Namespace, language: str) -> int:
 def _server(port: int, host: str, hosting: Hosting, classroom: Classroom | None) -> serving.Server:
     page = serving.files()
     if classroom is None:
-        return serving.Server(page, port, hosting.answer)
+        return serving.Server(serving.with_firmware(page), port, hosting.answer)
     return serving.Server(serving.for_class(page), port, classroom.teach, classroom, host)
 
 

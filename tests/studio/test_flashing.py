@@ -1,0 +1,214 @@
+"""The page's way onto a board: its own code in node, over ptys, onto the boards' bootloaders."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+import pytest
+
+from tests.machines.bootloaders import bootloader
+from tests.machines.uno import needed
+from tests.support.command import process
+from tests.support.platformio import firmware, need, shared
+from tools.builds.studio import SOURCES, CannotBuild, found_tools
+
+if sys.platform != "win32":
+    import pty
+    import tty
+
+pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
+SCRIPT = Path(__file__).with_name("flash_in_node.mjs")
+PAGE = 128
+IN_SYNC, OK, END = b"\x14", b"\x10", 0x20
+UNO = b"\x1e\x95\x0f"
+
+
+def flashed(port: str, board: str, file: Path) -> str:
+    """Return how the page's code has ended."""
+    try:
+        node = found_tools().node
+    except CannotBuild as why:
+        need(str(why))
+    words = [*node, str(SCRIPT), str(SOURCES / "src"), port, board, str(file)]
+    done = subprocess.run(words, capture_output=True, text=True, timeout=240, check=False)
+    assert done.returncode == 0, done.stderr
+    return done.stdout.strip()
+
+
+def hex_file(folder: Path, data: bytes) -> Path:
+    rows = []
+    for at in range(0, len(data), 16):
+        part = data[at : at + 16]
+        row = bytes([len(part), at >> 8, at & 255, 0]) + part
+        rows.append(row + bytes([-sum(row) & 255]))
+    file = folder / "firmware.hex"
+    lines = [f":{row.hex().upper()}" for row in rows]
+    file.write_text("\n".join([*lines, ":00000001FF"]) + "\n", encoding="ascii")
+    return file
+
+
+# -- onto simulated boards
+
+
+@pytest.mark.parametrize(("board", "of"), [("uno", "uno"), ("nano", "nano")])
+def test_a_new_board_becomes_a_robot(
+    board: str, of: str, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    """An old Nano is found at the second speed, as by `tsc firmware`."""
+    needed()
+    from tests.flash.test_flash import new_board, to_hex
+
+    elf = firmware(board, tmp_path, shared(tmp_path_factory))
+    to_hex(elf, tmp_path / "firmware.hex")
+    with new_board(bootloader(of)) as uno:
+        assert flashed(uno.pty, board, tmp_path / "firmware.hex") == "done"
+        pong = process("ping", "--port", uno.pty)
+        assert pong.code == 0, pong.err
+        assert pong.out.startswith(f"tinibot on {uno.pty}")
+
+
+def test_a_board_with_a_sketch_and_no_bootloader_stays_as_it_is(
+    tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    needed()
+    from tools.uno import Uno
+
+    elf = firmware("uno", tmp_path, shared(tmp_path_factory))
+    with Uno(elf, tells_sleep=False) as uno:
+        uno.go()
+        assert flashed(uno.pty, "uno", hex_file(tmp_path, b"x" * 500)) == "flash_nobody"
+        assert process("ping", "--port", uno.pty).code == 0
+
+
+# -- onto boards that a test plays
+
+
+class FakeBoard:
+    """A bootloader of its own: `bends` may change or drop an answer."""
+
+    def __init__(self, bends: Callable[[int, bytes], bytes | None] | None = None) -> None:
+        self.flash = bytearray(b"\xff" * 0x8000)
+        self.commands: list[int] = []
+        self._bends = bends or (lambda command, answer: answer)
+        self._at = 0
+
+    def run(self, file: int) -> None:
+        heard = b""
+        with suppress(OSError):  # it is unplugged
+            while True:
+                heard += os.read(file, 4096)
+                while (length := self._length(heard)) and len(heard) >= length:
+                    command, heard = heard[:length], heard[length:]
+                    self.commands.append(command[0])
+                    answer = self._bends(command[0], IN_SYNC + self._answer(command) + OK)
+                    if answer is None:
+                        os.close(file)
+                        return
+                    os.write(file, answer)
+
+    @staticmethod
+    def _length(heard: bytes) -> int:
+        if not heard:
+            return 0
+        return {0x55: 4, 0x64: 5 + PAGE, 0x74: 5}.get(heard[0], 2)
+
+    def _answer(self, command: bytes) -> bytes:
+        assert command[-1] == END
+        if command[0] == 0x75:
+            return UNO
+        if command[0] == 0x55:
+            self._at = 2 * int.from_bytes(command[1:3], "little")
+        elif command[0] == 0x64:
+            self.flash[self._at : self._at + PAGE] = command[4:-1]
+        elif command[0] == 0x74:
+            return bytes(self.flash[self._at : self._at + PAGE])
+        return b""
+
+
+@contextmanager
+def plugged(board: FakeBoard) -> Iterator[str]:
+    file, other = pty.openpty()
+    tty.setraw(other)
+    thread = threading.Thread(target=board.run, args=(file,), daemon=True)
+    thread.start()
+    try:
+        yield os.ttyname(other)
+    finally:
+        os.close(other)
+        with suppress(OSError):
+            os.close(file)
+
+
+def bent(at: int, *, by: bytes | None, times: int = 10_000) -> Callable[[int, bytes], bytes | None]:
+    """Answer a command otherwise; None: the cable is pulled. `times`: from which time on."""
+    count = 0
+
+    def bends(command: int, answer: bytes) -> bytes | None:
+        nonlocal count
+        count += command == at
+        return by if command == at and count >= times else answer
+
+    return bends
+
+
+def test_all_bytes_arrive_and_are_read_back(tmp_path: Path) -> None:
+    data = bytes(k * 7 % 251 for k in range(1000))
+    board = FakeBoard()
+    with plugged(board) as port:
+        assert flashed(port, "uno", hex_file(tmp_path, data)) == "done"
+    assert board.flash[:1000] == data and set(board.flash[1000:]) == {255}
+    assert board.commands.count(0x64) == board.commands.count(0x74) == 8
+    assert board.commands[-1] == 0x51
+
+
+@pytest.mark.parametrize(
+    ("bends", "how"),
+    [
+        (bent(0x30, by=b"", times=1), "flash_nobody"),
+        (bent(0x30, by=b"\x00\xff" * 40, times=1), "flash_nobody"),
+        (bent(0x75, by=b"\x14\x1e\x98\x01\x10", times=1), "flash_other_chip"),
+        (bent(0x75, by=b"", times=1), "flash_nobody"),
+        (bent(0x30, by=None, times=1), "port_gone"),
+        (bent(0x64, by=None, times=3), "flash_broken_off"),
+        (bent(0x64, by=b"", times=3), "flash_broken_off"),
+        (bent(0x64, by=b"\x15\x10", times=3), "flash_broken_off"),
+        (bent(0x74, by=None, times=2), "flash_broken_off"),
+        (bent(0x74, by=IN_SYNC + b"\x00" * PAGE + OK, times=2), "flash_differs"),
+        (bent(0x51, by=b"", times=1), "done"),
+    ],
+    ids=["silent", "noise", "other chip", "half", "pulled early", "pulled", "hangs", "refuses",
+         "pulled while reading", "differs", "begins at once"],
+)  # fmt: skip
+def test_how_it_may_end(
+    bends: Callable[[int, bytes], bytes | None], how: str, tmp_path: Path
+) -> None:
+    board = FakeBoard(bends)
+    with plugged(board) as port:
+        assert flashed(port, "uno", hex_file(tmp_path, b"\x01" * 1000)) == how
+    if how in ("flash_nobody", "flash_other_chip", "port_gone"):
+        assert set(board.flash) == {255}  # nothing was written
+
+
+def test_a_firmware_does_not_reach_into_the_bootloader(tmp_path: Path) -> None:
+    board = FakeBoard()
+    with plugged(board) as port:
+        assert flashed(port, "uno", hex_file(tmp_path, b"\x01" * 0x7E01)) == "flash_large"
+        assert 0x64 not in board.commands
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", ":00000001FF", "hello", ":0100000001FF\n:00000001FF", ":0100000001FE",
+     ":0100000001FE\n:00000001FF\n:0100000001FE", ":020000021000EC\n:0100000001FE\n:00000001FF",
+     ":0200000001FD\n:00000001FF", ":0180000001 7E\n:00000001FF", ":0100000900F6\n:00000001FF"],
+)  # fmt: skip
+def test_what_is_no_firmware_is_refused(text: str, tmp_path: Path) -> None:
+    file = tmp_path / "x.hex"
+    file.write_text(text, encoding="ascii")
+    assert flashed("/dev/null", "uno", file) == "bad_file"

@@ -1,0 +1,65 @@
+"""A new board becomes a robot from the page: the browser's own Web Serial, and a simulated Uno."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from threading import Thread
+from typing import TYPE_CHECKING
+
+import pytest
+
+from tests.flash.test_flash import new_board, to_hex
+from tests.machines.bootloaders import bootloader
+from tests.machines.uno import needed
+from tests.studio.test_page_link import said
+from tests.support import studio_serial
+from tests.support.platformio import firmware, shared
+from tests.support.studio import checked
+from tiniscript.studio import serving
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Playwright
+
+
+def test_a_new_board_becomes_a_robot(
+    playwright: Playwright, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    why = studio_serial.missing()
+    if why:  # in CI, too: no package brings root or a serial port; tests/studio/test_flashing.py
+        pytest.skip(why)
+    needed()
+    file = tmp_path / "tinibot-uno-digest.hex"
+    to_hex(firmware("uno", tmp_path, shared(tmp_path_factory)), file)
+    rows = [{"title": "tinibot", "board": "uno", "file": file.name}]
+    page = {
+        **serving.files(),
+        serving.FIRMWARE: serving.File(json.dumps(rows).encode(), "application/json"),
+        file.name: serving.File(file.read_bytes(), "text/plain"),
+    }
+    server = serving.Server(page, 0)
+    Thread(target=server.serve_forever, args=(0.02,), daemon=True).start()
+    with (
+        new_board(bootloader("uno")) as uno,
+        studio_serial.context(playwright, tmp_path, uno.pty, server.address) as context,
+    ):
+        found = context.pages[0]
+        found.set_default_timeout(120_000)
+        found.goto(server.address)
+        checked(found)
+        found.click("#side_real")
+        found.locator("#link_port option").first.wait_for(state="attached")
+        found.click("#flash summary")
+        # Of the other board there is no firmware here; what is no firmware is not written.
+        found.select_option("#flash_board", "nano")
+        found.click("#flash_write")
+        said(found, "There is no firmware of this robot for this board here.")
+        found.set_input_files("#flash_file", {"name": "<b>.hex", "mimeType": "", "buffer": b":00"})
+        said(found, "<b>.hex is next")
+        found.click("#flash_write")
+        said(found, "That is no whole HEX file")
+        found.select_option("#flash_board", "uno")
+        found.click("#flash_write")
+        said(found, "Connected: ")
+    server.shutdown()
+    server.server_close()
