@@ -16,6 +16,8 @@ from tests.machines import MACHINES, Senses
 from tests.support.casefile import ROOT
 from tests.support.command import Done, Tsc
 from tiniscript.conformance.kit import MachineCase, machine_cases
+from tiniscript.conformance.link_kit import link_kit
+from tiniscript.conformance.port_checks import all_checks
 from tiniscript.kit import Device, Kit
 from tools.builds.studio import found_tools
 
@@ -60,7 +62,7 @@ BREAKS = [
     ("machine.mjs", "rest + b : rest", "rest : rest", "arithmetic: MOD"),
     ("machine.mjs", "> 20) this.clock", "> 70) this.clock", "(called every 45 ms)"),
     ("machine.mjs", "(this.now - time) >>> 0", "this.now - time", "(time wraps around)"),
-    ("machine.mjs", "if (watched.powers !== null) this.robot.motors(0, 0);", "", "UNTIL ends a move"),
+    ("machine.mjs", "!== null) this.robot.motors(0, 0);", "!== null);", "UNTIL ends a move"),
     ("machine.mjs", 'case "BREAK_LOOP": this.counters.pop();', 'case "BREAK_LOOP":', "blocks: "),
     ("machine.mjs", "x ^= x >>> 17", "x ^= x >> 17", "arithmetic: RANDOM"),
     ("machine.mjs", "limited(hertz, 31, 20000)", "hertz", "moves: "),
@@ -218,4 +220,5 @@ def test_the_page_says_how_many(tsc: Tsc) -> None:
     count = len(machine_cases())
     text = PAGE.read_text(encoding="utf-8")
     assert f"some {round(count, -1)} runs" in text
+    assert f"some {round(len(all_checks(link_kit())), -1)} checks" in text
     assert f"{count - 1} of {count} cases agree" in text

@@ -256,6 +256,13 @@ def machine_kit() -> str:
     return kit(COMMAND)
 
 
+def link_kit() -> str:
+    """Return `link.json`: what robots of others must do on a port."""
+    from tools.generate.link_kit import link_kit as kit
+
+    return kit(COMMAND)
+
+
 def robot_header(path: Path) -> str:
     """Return the header of a robot's firmware, for all the boards that its profile fits."""
     text = path.read_text(encoding="utf-8")
@@ -344,6 +351,7 @@ OUTPUTS: list[tuple[Path, Callable[[], str]]] = [
     *((ROOT / "docs" / name, make) for name, make in fronts(COMMAND).items()),
     (ROOT / "vm_arduino" / "test" / "cases.h", cpp_cases),
     (CONFORMANCE / "machine.json", machine_kit),
+    (CONFORMANCE / "link.json", link_kit),
     *(
         (WIRED / f"{path.stem}.h", partial(robot_header, path))
         for path in sorted(ROBOTS.glob("*.toml"))

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
+import os
 from argparse import Namespace
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
 from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
 from tiniscript.cli.errors import CommandError
@@ -14,16 +17,26 @@ from tiniscript.cli.texts.common import text
 from tiniscript.conformance.comparing import AGREES, DIFFERS, Verdict, verdicts
 from tiniscript.conformance.kit import VERSION, machine_cases
 from tiniscript.conformance.machine_process import CannotStart, MachineProcess
+from tiniscript.link.messages import STOP_BYTES
+
+if TYPE_CHECKING:
+    from tiniscript.conformance.wire_robot import WireRobot
 
 PATIENCE_S = 10
 MOST_SHOWN = 20
+CABLE_MS, RADIO_MS = 300, 700  # for one try of an answer
+BOOT_MS = 1700  # an Uno takes 1.4 s after its port was opened, and a Mega wants silence until then
 ISA = f"{ISA_MAJOR}.{ISA_MINOR}"
 
 
 def run(options: Namespace, language: str) -> int:
     timeout_s = whole_number("--timeout", options.timeout, PATIENCE_S, 1, 3600, language)
-    if options.machine is None:
+    if options.machine is None and options.port is None:
         raise CommandError(2, "conform_which")
+    if options.machine is None:
+        return _port(options, language)
+    if options.port is not None or options.baud is not None:
+        raise CommandError(2, "conform_both")
     return _machine(options, timeout_s, language)
 
 
@@ -41,6 +54,58 @@ def _machine(options: Namespace, timeout_s: int, language: str) -> int:
         process.close()
     facts = {"version": str(VERSION), "isa": ISA}
     return report(found, len(cases), facts, "conform_machine_end", timeout_s, options, language)
+
+
+def _port(options: Namespace, language: str) -> int:
+    from tiniscript import robots
+    from tiniscript.cli.robot.connect import FASTEST_BAUD, SLOWEST_BAUD, port_failure
+    from tiniscript.conformance import link_kit, port_checks
+    from tiniscript.conformance.wire_robot import Silent, WireRobot
+    from tiniscript.link import ports
+    from tiniscript.link.messages import MAJOR, MINOR, OWNED
+    from tiniscript.link.wire import SerialWire
+
+    if options.timeout is not None:
+        raise CommandError(2, "conform_timeout")
+    port: str = options.port
+    if not port.strip() or not port.isprintable():
+        raise CommandError(2, "no_such_port", found=shown(port) or "''")
+    usual = robots.load(robots.DEFAULT).board.baud
+    baud = whole_number("--baud", options.baud, usual, SLOWEST_BAUD, FASTEST_BAUD, language)
+    checks = port_checks.all_checks(link_kit.link_kit())
+    checks = [check for check in checks if (options.only or "") in check.name]
+    if not checks:
+        raise CommandError(2, "conform_no_case", found=shown(options.only))
+    try:
+        wire = SerialWire(ports.opened(ports.resolved(port), baud))
+    except ports.PortError as failure:
+        raise port_failure(port, failure) from None
+    is_radio = ports.is_radio(port)
+    nonce = int.from_bytes(os.urandom(4), "little")
+    robot = WireRobot(wire, nonce, RADIO_MS if is_radio else CABLE_MS)
+    found: list[Verdict] = []
+    try:
+        wire.heard(0 if is_radio else BOOT_MS)
+        hello = port_checks.met(robot)
+        if not hello.status and hello.number("features") & OWNED:
+            raise CommandError(3, "conform_owned")
+        found.extend(port_checks.verdicts(robot, checks))
+    except Silent:
+        raise CommandError(3, "conform_silent", port=shown(port)) from None
+    except OSError as why:
+        values = {"port": shown(port), "why": shown(str(why)), "n": str(len(found))}
+        raise CommandError(3, "conform_gone", **values) from None
+    finally:
+        _left_stopped(robot)
+        wire.close()
+    facts = {"version": str(link_kit.VERSION), "link": f"{MAJOR}.{MINOR}", "isa": ISA}
+    return report(found, len(checks), facts, "conform_port_end", 0, options, language)
+
+
+def _left_stopped(robot: WireRobot) -> None:
+    """Leave nothing that runs, whatever has ended the checks."""
+    with contextlib.suppress(OSError):
+        robot.send(bytes(STOP_BYTES))
 
 
 def report(
@@ -74,7 +139,8 @@ def report(
 def _rows(each: Verdict, timeout_s: int, language: str) -> list[str]:
     rows = [text("conform_case", language).format(name=each.name)]
     if each.what != DIFFERS:
-        said = text(f"conform_{each.what}", language)
+        key = "conform_silent_check" if each.what == "silent" else f"conform_{each.what}"
+        said = text(key, language)
         rows.append(said.format(detail=shown(each.detail), seconds=timeout_s))
     if each.line:
         nothing = text("conform_nothing", language)

@@ -209,6 +209,7 @@ OPTIONS: tuple[Option, ...] = (
     Option("--dry-run", "module", ("finds the module, shows what would be sent, and changes nothing", "encuentra el módulo, muestra lo que se enviaría y no cambia nada")),
     # the robot, and the way to it
     Option("--report", "selftest", ("writes what was found into a file to send to a teacher; there are no names of people, computers, networks or robots in it", "escribe lo que encontró en un archivo para enviar a un docente; no lleva nombres de personas, computadoras, redes ni robots"), REPORT, A_FILE),
+    Option("--port", "conform", ("the port of a robot whose firmware is your own", "el puerto de un robot cuyo firmware es tuyo"), PORT, P),
     Option("--port", "doctor", ("the port to look at; the last used one, or the only one, where nothing is said", "el puerto que se examina; el último usado, o el único, si no se dice nada"), PORT, P),
     Option("--port", "check", ("for the robot on this port, which is asked", "para el robot en este puerto, al que se pregunta"), PORT, P),
     Option("--port", "ports", ("with --ask: this one alone", "con --ask: solo este"), PORT, P),
@@ -222,6 +223,7 @@ OPTIONS: tuple[Option, ...] = (
     Option("--all", "stop", ("stops every robot that there is, all at once", "detiene todos los robots que hay, todos a la vez")),
     Option("--baud", "doctor", ("the speed that its port should have (the one of the robot's profile)", "la velocidad que su puerto debería tener (la del perfil del robot)"), NUMBER, N),
     Option("--baud", f"check {TO_ONE} {TO_MANY}", ("the speed of its port (the one of the robot's profile)", "la velocidad de su puerto (la del perfil del robot)"), NUMBER, N),
+    Option("--baud", "conform", ("with --port: its speed (9600)", "con --port: su velocidad (9600)"), NUMBER, N),
     Option("--baud", "ports", ("with --ask: their speed (the one of the robot's profile)", "con --ask: su velocidad (la del perfil del robot)"), NUMBER, N),
     Option("--baud", "robot", ("how fast its line is (as in its profile); 0 is as fast as possible", "la velocidad de su línea (la de su perfil); 0 es lo más rápido posible"), NUMBER, N),
     Option("--robot", "compile check run show fmt upload live", ("for which robot: a name (tinibot, ...) or a profile's file", "para qué robot: un nombre (tinibot, ...) o el archivo de un perfil"), ROBOT, A_ROBOT),

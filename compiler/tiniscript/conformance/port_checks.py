@@ -1,0 +1,336 @@
+"""The checks of a robot on a port, one after the other: frames, programs, refusals, stops.
+
+No program turns a motor, and nothing is saved; what the robot holds in RAM is another one then.
+Knows what each answer should be. Prints nothing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from typing import NamedTuple
+
+from tiniscript.bytecode.image import HEADER_BYTES, pack
+from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
+from tiniscript.bytecode.verify import RULES
+from tiniscript.conformance.comparing import Verdict, compared
+from tiniscript.conformance.link_kit import LinkKit, LinkProgram
+from tiniscript.conformance.wire_robot import STARTS, Answer, Silent, WireRobot
+from tiniscript.link.frames import Frame, encoded
+from tiniscript.link.messages import (
+    BY_NAME,
+    MAJOR,
+    PAYLOAD_BYTES,
+    RUN,
+    SMALL_FRAME,
+    STATUSES,
+    STOP_BYTES,
+    written,
+)
+from tiniscript.link.statuses import name_of
+
+SHOW_7 = bytes.fromhex("b739")
+WAIT_20 = bytes.fromhex("bb50")  # no motor turns
+STATES = ("IDLE", "RUNNING", "STOPPED", "FAULTED")
+NO_MESSAGE = 31  # a number that no message has
+EVENT_S = 3.0  # for an event behind what has caused it
+BUSY_TRIES, BUSY_S = 50, 0.1
+HEADER = 10  # bytes of an image before its checksum
+SILENCE_S = 1.6  # more than a tethered program goes on without a frame
+
+
+class Check(NamedTuple):
+    name: str
+    wanted: tuple[str, ...]
+    found: Callable[[WireRobot], tuple[str, ...]]
+
+
+def verdicts(robot: WireRobot, checks: list[Check]) -> Iterator[Verdict]:
+    """Yield the verdict of each check. Raises OSError where the port is gone.
+
+    A robot that answers nothing any more fails a check as `silent`; after three in a row the rest
+    is left out.
+    """
+    silent = 0
+    for check in checks:
+        try:
+            ready(robot)
+            yield compared(check.name, check.wanted, check.found(robot))
+            silent = 0
+        except Silent as why:
+            yield Verdict(check.name, "silent", detail=why.message)
+            silent += 1
+            if silent == 3:
+                return
+
+
+def ready(robot: WireRobot) -> None:
+    """Leave nothing of the check before: no run, no latch, no event."""
+    state = robot.ask("PING").values.get("state")
+    if state == STATES.index("RUNNING"):
+        robot.ask("STOP")
+        state = STATES.index("STOPPED")
+    if state in (STATES.index("STOPPED"), STATES.index("FAULTED")):
+        robot.ask("CLEAR")
+    robot.events.clear()
+
+
+def met(robot: WireRobot) -> Answer:
+    """Return the robot's answer to HELLO. Raises Silent."""
+    return robot.hello(STARTS)
+
+
+def all_checks(kit: LinkKit) -> list[Check]:
+    return [
+        *LINK_CHECKS,
+        *(Check(f"programs: {each.name}", each.answer(), _program(each)) for each in kit.programs),
+        *(
+            Check(f"refused: {each.name}", (f"{each.rule} {each.at}",), _refused(each.code))
+            for each in kit.refused
+        ),
+        *IMAGE_CHECKS,
+        *STOP_CHECKS,
+    ]
+
+
+def said(answer: Answer) -> str:
+    """Return an answer as a check writes it: a name, and the detail where there is one."""
+    if answer.status == -1:
+        return "OK with other fields"
+    name = name_of(answer.status)
+    return f"{name} {answer.detail}" if answer.detail or name in RULES else name
+
+
+# -- programs -------------------------------------------------------------------------------------
+
+
+def live(robot: WireRobot, code: bytes) -> Answer:
+    return patient(robot, "LIVE", {"mode": RUN, "code": code})
+
+
+def patient(robot: WireRobot, name: str, values: Mapping[str, int | bytes]) -> Answer:
+    """Ask again while the robot is saving something."""
+    for _ in range(BUSY_TRIES):
+        answer = robot.ask(name, values)
+        if answer.status != STATUSES["BUSY"]:
+            break
+        robot.wait(BUSY_S)
+    return answer
+
+
+def sent(robot: WireRobot, image: bytes, mode: int) -> Answer:
+    """Bring an image in pieces, as it is; return the first answer that is not OK, or the last."""
+    rest = image[HEADER + 4 :]
+    answer = patient(robot, "BEGIN", {
+        "mode": mode, "isa_major": image[2], "isa_minor": image[3], "start": image[4],
+        "header_length": image[5], "devices": int.from_bytes(image[6:8], "little"),
+        "code_length": int.from_bytes(image[8:10], "little"),
+    })  # fmt: skip
+    most = PAYLOAD_BYTES - 2
+    for offset in range(0, len(rest), most):
+        if answer.status:
+            return answer
+        piece = rest[offset : offset + most]
+        answer = robot.ask("DATA", {"offset": offset, "bytes": piece})
+    if answer.status:
+        return answer
+    return robot.ask("COMMIT", {"checksum": int.from_bytes(image[HEADER : HEADER + 4], "little")})
+
+
+def _program(program: LinkProgram) -> Callable[[WireRobot], tuple[str, ...]]:
+    def found(robot: WireRobot) -> tuple[str, ...]:
+        if len(program.code) < PAYLOAD_BYTES:
+            answer = live(robot, program.code)
+        else:
+            answer = sent(robot, pack("SI", 0, program.code), RUN)
+        if answer.status:
+            return (said(answer),)
+        return _ended(robot, program.takes_s + EVENT_S)
+
+    return found
+
+
+def _ended(robot: WireRobot, seconds: float) -> tuple[str, ...]:
+    """Return what a run tells, up to its end."""
+    ends = ("DONE", "FAULT", "STOPPED")
+    for _ in range(int(seconds / 0.05)):
+        if any(event.name in ends for event in robot.events):
+            break
+        robot.wait(0.05)
+    rows = []
+    for event in robot.events:
+        if event.name == "SHOW":
+            rows.append(f"SHOW {event.number('value')} {event.number('is_yes_no')}")
+        elif event.name == "FAULT":
+            rows.append(f"FAULT {event.number('fault')} {event.number('at')}")
+        else:
+            rows.append(event.name)
+    return tuple(rows)
+
+
+def _refused(code: bytes) -> Callable[[WireRobot], tuple[str, ...]]:
+    def found(robot: WireRobot) -> tuple[str, ...]:
+        if len(code) < PAYLOAD_BYTES:
+            return (said(patient(robot, "PROGRAM", {"mode": 0, "code": code})),)
+        return (said(sent(robot, pack("SI", 0, code), 0)),)
+
+    return found
+
+
+# -- frames ---------------------------------------------------------------------------------------
+
+
+def _hello(robot: WireRobot) -> tuple[str, ...]:
+    answer = robot.hello()
+    if answer.status:
+        return (said(answer),)
+    number = answer.number
+    large = number("largest") >= SMALL_FRAME and number("window") >= 1
+    isa = f"isa {number('isa_major')}.{number('isa_minor')}"
+    epoch = robot.epoch
+    robot.hello()
+    again = "the same session" if robot.epoch == epoch else "another session"
+    frames = "frames of 63 bytes" if large else "smaller frames"
+    return (f"link {number('major')}", isa, frames, f"the same nonce again: {again}")
+
+
+def _damaged(robot: WireRobot) -> tuple[str, ...]:
+    before = robot.ask("STATUS").number("damaged")
+    frame = bytearray(encoded(Frame(BY_NAME["PING"].number, 200, robot.epoch)))
+    frame[-2] ^= 0x55  # of the checksum
+    robot.send(b"\0" + bytes(frame).replace(b"\0", b"\x55", len(frame) - 1)[:-1] + b"\0")
+    replies = robot.heard(0.3)
+    count = (robot.ask("STATUS").number("damaged") - before) % 256
+    return ("no answer" if not replies else "an answer", f"damaged: {count} more")
+
+
+def _twice(robot: WireRobot) -> tuple[str, ...]:
+    payload = written(BY_NAME["LIVE"].request, {"mode": RUN, "code": SHOW_7})
+    number = BY_NAME["LIVE"].number
+    epoch = robot.epoch
+    first = robot.ask_frame(number, payload)
+    robot.wait(EVENT_S, "DONE")
+    second = robot.again(number, payload, epoch=epoch)
+    robot.wait(0.4)
+    same = "the same answer" if first.payload == second.payload else said(second)
+    return (said(first), same, f"{sum(e.name == 'SHOW' for e in robot.events)} SHOW")
+
+
+def _noise(robot: WireRobot) -> tuple[str, ...]:
+    robot.send(bytes.fromhex("80feff80818283") * 20)
+    return (said(robot.ask("PING")),)
+
+
+def _stale(robot: WireRobot) -> tuple[str, ...]:
+    number = BY_NAME["CLEAR"].number
+    return (said(robot.ask_frame(number, b"", epoch=(robot.epoch + 100) & 0xFF)),)
+
+
+LINK_CHECKS = (
+    Check("link: HELLO", (f"link {MAJOR}", f"isa {ISA_MAJOR}.{ISA_MINOR}", "frames of 63 bytes",
+                          "the same nonce again: the same session"), _hello),
+    Check("link: PING", ("OK",), lambda robot: (said(robot.ask("PING")),)),
+    Check("link: a message that nobody knows", ("UNKNOWN_MESSAGE",),
+          lambda robot: (said(robot.ask_frame(NO_MESSAGE, b"")),)),
+    Check("link: a payload that is too long", ("BAD_LENGTH",),
+          lambda robot: (said(robot.ask_frame(BY_NAME["PING"].number, b"?")),)),
+    Check("link: a payload that is too short", ("BAD_LENGTH",),
+          lambda robot: (said(robot.ask_frame(BY_NAME["COMMIT"].number, b"abc")),)),
+    Check("link: a request of another epoch", ("STALE",), _stale),
+    Check("link: a damaged frame", ("no answer", "damaged: 1 more"), _damaged),
+    Check("link: a request behind noise", ("OK",), _noise),
+    Check("link: a request that comes twice", ("OK", "the same answer", "1 SHOW"), _twice),
+)  # fmt: skip
+
+
+# -- images ---------------------------------------------------------------------------------------
+
+LONG = pack("SI", 0, bytes.fromhex("310001") * 40)
+WHOLE = len(LONG) - HEADER - 4
+
+
+def _changed(at: int, value: int) -> bytes:
+    """Return the image with another byte and its old checksum."""
+    return LONG[:at] + bytes([value]) + LONG[at + 1 :]
+
+
+def _sent(image: bytes) -> Callable[[WireRobot], tuple[str, ...]]:
+    return lambda robot: (said(sent(robot, image, 0)),)
+
+
+def _fetched(robot: WireRobot) -> tuple[str, ...]:
+    answer = sent(robot, LONG, 0)
+    if answer.status:
+        return (said(answer),)
+    image = b""
+    while len(image) < len(LONG):
+        answer = robot.ask("FETCH", {"offset": len(image)})
+        piece = answer.values.get("bytes")
+        if answer.status or not isinstance(piece, bytes) or not piece:
+            return (said(answer),)
+        image += piece
+    return ("the same image" if image == LONG else "another image",)
+
+
+def _incomplete(robot: WireRobot) -> tuple[str, ...]:
+    head = {"mode": 0, "isa_major": ISA_MAJOR, "isa_minor": ISA_MINOR, "start": 0,
+            "header_length": HEADER_BYTES, "devices": 0, "code_length": WHOLE - 1}  # fmt: skip
+    robot.ask("BEGIN", head)
+    robot.ask("DATA", {"offset": 0, "bytes": LONG[HEADER + 4 : HEADER + 24]})
+    gap = robot.ask("DATA", {"offset": 30, "bytes": b"?"})
+    return (f"next {gap.number('next')}", said(robot.ask("COMMIT", {"checksum": 0})))
+
+
+IMAGE_CHECKS = (
+    Check("images: FETCH brings back what was sent", ("the same image",), _fetched),
+    Check("images: another major version", (f"OTHER_MACHINE {ISA_MAJOR << 8 | ISA_MINOR}",),
+          _sent(_changed(2, ISA_MAJOR + 1))),
+    Check("images: a later minor version", (f"OTHER_MACHINE {ISA_MAJOR << 8 | ISA_MINOR}",),
+          _sent(_changed(3, ISA_MINOR + 1))),
+    Check("images: another checksum", ("DAMAGED",), _sent(_changed(HEADER, LONG[HEADER] ^ 1))),
+    Check("images: a piece is missing", ("next 20", "INCOMPLETE 20"), _incomplete),
+)  # fmt: skip
+
+
+# -- stops ----------------------------------------------------------------------------------------
+
+
+def _state(answer: Answer) -> str:
+    number = answer.number("state")
+    return STATES[number] if 0 <= number < len(STATES) else f"state {number}"
+
+
+def _stopped(stop: Callable[[WireRobot], object]) -> Callable[[WireRobot], tuple[str, ...]]:
+    def found(robot: WireRobot) -> tuple[str, ...]:
+        live(robot, WAIT_20)
+        robot.events.clear()
+        stop(robot)
+        event = robot.wait(EVENT_S, "STOPPED")
+        cause = "no STOPPED" if event is None else f"STOPPED {event.number('cause')}"
+        state = _state(robot.ask("PING"))
+        latched = said(live(robot, SHOW_7))
+        return (cause, state, latched, said(robot.ask("CLEAR")), said(live(robot, SHOW_7)))
+
+    return found
+
+
+def _silence(robot: WireRobot) -> tuple[str, ...]:
+    live(robot, WAIT_20)
+    robot.wait(SILENCE_S, beats=False)
+    status = robot.ask("STATUS")
+    return (_state(status), f"fault {status.number('fault')}")
+
+
+def _attended(robot: WireRobot) -> tuple[str, ...]:
+    live(robot, WAIT_20)
+    robot.wait(2 * SILENCE_S)
+    return (_state(robot.ask("PING")),)
+
+
+STOP_CHECKS = (
+    Check("stops: the stop sequence", ("STOPPED 1", "STOPPED", "LATCHED", "OK", "OK"),
+          _stopped(lambda robot: robot.send(bytes(STOP_BYTES)))),
+    Check("stops: STOP", ("STOPPED 2", "STOPPED", "LATCHED", "OK", "OK"),
+          _stopped(lambda robot: robot.ask("STOP"))),
+    Check("stops: a second of silence", ("FAULTED", "fault 64"), _silence),
+    Check("stops: a run that is attended goes on", ("RUNNING",), _attended),
+)  # fmt: skip

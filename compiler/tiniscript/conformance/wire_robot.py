@@ -1,0 +1,175 @@
+"""A robot on a wire, asked frame by frame: also with frames that a session would never send.
+
+Knows frames, retries and the heartbeat. Does not know what an answer should be.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from time import monotonic
+from typing import NamedTuple
+
+from tiniscript.bytecode.opcodes import ISA_MAJOR, ISA_MINOR
+from tiniscript.link.frames import Frame, decoded, encoded
+from tiniscript.link.messages import (
+    BY_NAME,
+    BY_NUMBER,
+    FIRST_EVENT,
+    MAJOR,
+    MINOR,
+    STATUSES,
+    Malformed,
+    read,
+    written,
+)
+from tiniscript.link.wire import Wire
+
+TRIES = 6
+HEARTBEAT_S = 0.2
+LOOK_MS = 20
+STARTS = 8  # HELLOs: a board may have been reset, or be in its bootloader
+
+
+class Silent(Exception):
+    """The robot does not answer. `message` is the one that it was sent."""
+
+    def __init__(self, message: str) -> None:
+        super().__init__(message)
+        self.message = message
+
+
+class Answer(NamedTuple):
+    """`values` are those of the reply where the status is OK, else empty."""
+
+    status: int
+    detail: int
+    values: Mapping[str, int | bytes]
+    payload: bytes
+
+    def number(self, name: str) -> int:
+        """Return a field; -1 where the answer is not OK."""
+        return _number(self.values, name)
+
+
+class Event(NamedTuple):
+    name: str
+    values: Mapping[str, int | bytes]
+
+    def number(self, name: str) -> int:
+        return _number(self.values, name)
+
+
+def _number(values: Mapping[str, int | bytes], name: str) -> int:
+    value = values.get(name)
+    return value if isinstance(value, int) else -1
+
+
+class WireRobot:
+    """`answer_ms` is how long one try waits. Methods raise Silent, and OSError without a port."""
+
+    def __init__(self, wire: Wire, nonce: int, answer_ms: int) -> None:
+        self.wire = wire
+        self.nonce = nonce
+        self.answer_ms = answer_ms
+        self.epoch = 0
+        self.events: list[Event] = []
+        self._seq = 0
+        self._rest = b""
+        self._beat_s = 0.0
+
+    def hello(self, tries: int = TRIES) -> Answer:
+        values = {"major": MAJOR, "minor": MINOR, "isa_major": ISA_MAJOR, "isa_minor": ISA_MINOR,
+                  "kit": 0, "nonce": self.nonce}  # fmt: skip
+        return self.ask("HELLO", values, tries)
+
+    def ask(
+        self, name: str, values: Mapping[str, int | bytes] | None = None, tries: int = TRIES
+    ) -> Answer:
+        """Return the answer to a request with a new number; send it again where none comes."""
+        message = BY_NAME[name]
+        payload = written(message.request, values or {})
+        return self.ask_frame(message.number, payload, tries, message=name)
+
+    def ask_frame(
+        self, number: int, payload: bytes, tries: int = TRIES, message: str = "",
+        epoch: int | None = None,
+    ) -> Answer:  # fmt: skip
+        """The same of any message; `epoch` is another one than the robot's."""
+        self._seq = (self._seq + 1) & 0xFF
+        return self.again(number, payload, tries, message, epoch)
+
+    def again(
+        self, number: int, payload: bytes, tries: int = TRIES, message: str = "",
+        epoch: int | None = None,
+    ) -> Answer:  # fmt: skip
+        """The same with the number of the request before."""
+        frame = Frame(number, self._seq, self.epoch if epoch is None else epoch, payload)
+        for _ in range(tries):
+            self.send(b"\0" + encoded(frame))
+            until_s = monotonic() + self.answer_ms / 1000
+            while monotonic() < until_s:
+                for reply in self._replies():
+                    if (reply.number, reply.seq) == (number, self._seq) and reply.payload:
+                        return _answer(number, reply.payload)
+        raise Silent(message or str(number))
+
+    def send(self, data: bytes) -> None:
+        self._beat_s = monotonic()
+        self.wire.send(data)
+
+    def wait(self, seconds: float, name: str = "", beats: bool = True) -> Event | None:
+        """Return the first event of this name; with `beats` the robot hears a PING now and then."""
+        until_s = monotonic() + seconds
+        while True:
+            for event in self.events:
+                if event.name == name:
+                    return event
+            if monotonic() >= until_s:
+                return None
+            if beats and monotonic() - self._beat_s > HEARTBEAT_S:
+                self.ask("PING")
+            else:
+                self._replies()
+
+    def heard(self, seconds: float) -> list[Frame]:
+        """Return the replies of so long a time."""
+        until_s = monotonic() + seconds
+        found: list[Frame] = []
+        while monotonic() < until_s:
+            found += self._replies()
+        return found
+
+    def _replies(self) -> list[Frame]:
+        """Take what has arrived: keep events and the epoch, and return the replies."""
+        *items, self._rest = (self._rest + self.wire.heard(LOOK_MS, 1)).split(b"\0")
+        self._rest = self._rest[-1024:]
+        frames = [frame for frame in map(decoded, filter(None, items)) if frame]
+        replies = []
+        for frame in frames:
+            if not frame.is_reply:
+                continue  # an echo of ours
+            self.epoch = frame.epoch
+            if frame.number >= FIRST_EVENT:
+                self._keep(frame)
+            else:
+                replies.append(frame)
+        return replies
+
+    def _keep(self, frame: Frame) -> None:
+        message = BY_NUMBER.get(frame.number)
+        if message is not None:
+            try:
+                self.events.append(Event(message.name, read(message.reply, frame.payload)))
+            except Malformed:
+                self.events.append(Event(f"{message.name} with other fields", {}))
+
+
+def _answer(number: int, payload: bytes) -> Answer:
+    status, rest = payload[0], payload[1:]
+    if status != STATUSES["OK"]:
+        return Answer(status, int.from_bytes(rest[:2], "little"), {}, payload)
+    try:
+        values = read(BY_NUMBER[number].reply, rest)
+    except (KeyError, Malformed):
+        return Answer(-1, 0, {}, payload)
+    return Answer(status, 0, values, payload)

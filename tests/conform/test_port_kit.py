@@ -1,0 +1,231 @@
+"""The checks of a robot on a port: our firmware passes, and what is changed on its way is named."""
+
+from __future__ import annotations
+
+import json
+import os
+import socket
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from tests.firmware.test_uno_command import at_work
+from tests.firmware.test_uno_robot import sketch  # noqa: F401
+from tests.support.command import Tsc
+from tests.support.pty_robot import PtyRobot
+from tiniscript.conformance.comparing import AGREES
+from tiniscript.conformance.link_kit import link_kit
+from tiniscript.conformance.port_checks import all_checks, met, verdicts
+from tiniscript.conformance.wire_robot import WireRobot
+from tiniscript.link import ports
+from tiniscript.link.frames import Frame, decoded, encoded
+from tiniscript.link.messages import BY_NAME
+from tiniscript.link.wire import SerialWire
+
+Change = Callable[[Frame], "Frame | None"]
+
+
+class ChangedWire(SerialWire):
+    """A wire on which the robot's frames are other ones, or get lost."""
+
+    def __init__(self, port: str, change: Change) -> None:
+        super().__init__(ports.opened(port, 9600))
+        self.change = change
+        self.left = b""
+
+    def heard(self, wait_ms: int, quiet_ms: int = 60) -> bytes:
+        *items, self.left = (self.left + super().heard(wait_ms, quiet_ms)).split(b"\0")
+        frames = (decoded(item) for item in items if item)
+        changed = [self.change(frame) for frame in frames if frame]
+        return b"".join(encoded(frame) for frame in changed if frame)
+
+
+@contextmanager
+def asked(robot: PtyRobot, change: Change) -> Iterator[WireRobot]:
+    wire = ChangedWire(robot.port, change)
+    try:
+        yield WireRobot(wire, 5, 300)
+    finally:
+        wire.close()
+
+
+def of(name: str) -> int:
+    return BY_NAME[name].number
+
+
+def test_our_firmware_passes_all(pty_robot: PtyRobot, tsc: Tsc) -> None:
+    done = tsc("conform", "--port", pty_robot.port)
+    assert done.code == 0, done.out
+    count = len(all_checks(link_kit()))
+    assert count > 200
+    assert done.out == f"{count} of {count} checks agree. Kit 1, link 1.2, bytecode 2.0.\n"
+    assert not any("MOTORS" in row and row != "MOTORS 0 0" for row in pty_robot.did)
+
+
+@pytest.mark.parametrize("group", ["link: ", "images: ", "stops: ", "programs: moves"])
+def test_an_uno_passes(group: str, sketch: Path, tmp_path: Path, tsc: Tsc) -> None:  # noqa: F811
+    with at_work(sketch, tmp_path / "eeprom") as uno:
+        done = tsc("conform", "--port", uno.pty, "--only", group)
+    assert done.code == 0, done.out
+
+
+def altered(name: str, **fields: Callable[[bytes], bytes]) -> Change:
+    """Return what changes the payload of one message."""
+
+    def change(frame: Frame) -> Frame | None:
+        if frame.number != of(name):
+            return frame
+        return frame._replace(payload=fields["payload"](frame.payload))
+
+    return change
+
+
+def lost(name: str) -> Change:
+    return lambda frame: None if frame.number == of(name) else frame
+
+
+def with_status(number: int, status: int) -> Change:
+    """Return what has every answer of a message say another status."""
+
+    def change(frame: Frame) -> Frame | None:
+        if frame.number != number or frame.payload[:1] == b"\0":
+            return frame
+        return frame._replace(payload=bytes([status]) + frame.payload[1:])
+
+    return change
+
+
+CHANGES: dict[str, tuple[Change, str]] = {
+    "a value is one more": (
+        altered("SHOW", payload=lambda p: bytes([p[0] ^ 1]) + p[1:]), "programs: values"),
+    "a value is a number, not TRUE": (
+        altered("SHOW", payload=lambda p: p[:4] + b"\0"), "programs: instructions: What is not 0"),
+    "values get lost": (lost("SHOW"), "programs: values"),
+    "a fault is elsewhere": (
+        altered("FAULT", payload=lambda p: p[:2] + b"\x07" + p[3:]), "programs: arithmetic: DIV"),
+    "STOPPED gets lost": (lost("STOPPED"), "stops: STOP"),
+    "the cause of a stop is another": (
+        altered("STOPPED", payload=lambda p: b"\3"), "stops: the stop sequence"),
+    "an event has another form": (
+        altered("STOPPED", payload=lambda p: p + b"?"), "stops: STOP"),
+    "a rule is another": (with_status(of("PROGRAM"), 21), "refused: refused: A power over 100"),
+    "a message that nobody knows": (with_status(31, 65), "link: a message that nobody knows"),
+    "a long payload": (with_status(of("PING"), 64), "link: a payload that is too long"),
+    "damaged frames are not counted": (
+        altered("STATUS", payload=lambda p: p[:-4] + bytes(4)), "link: a damaged frame"),
+    "a wrong checksum is another error": (
+        with_status(of("COMMIT"), 76), "images: another checksum"),
+    "what is fetched is other code": (
+        altered("FETCH", payload=lambda p: p[:-1] + b"\xff"), "images: FETCH"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("what", CHANGES)
+def test_what_is_changed_on_its_way_is_named(what: str, pty_robot: PtyRobot) -> None:
+    change, named = CHANGES[what]
+    checks = [check for check in all_checks(link_kit()) if check.name.startswith(named)][:3]
+    assert checks
+    with asked(pty_robot, lambda frame: frame) as robot:
+        met(robot)
+        assert {each.what for each in verdicts(robot, checks)} == {AGREES}
+    with asked(pty_robot, change) as robot:
+        met(robot)
+        found = list(verdicts(robot, checks))
+    assert any(each.what != AGREES for each in found), found
+
+
+def test_a_robot_that_falls_silent_ends_the_checks(pty_robot: PtyRobot) -> None:
+    with asked(pty_robot, lambda frame: frame) as robot:
+        met(robot)
+        robot.answer_ms = 10
+        assert isinstance(robot.wire, ChangedWire)
+        robot.wire.change = lambda frame: None
+        found = list(verdicts(robot, all_checks(link_kit())))
+    assert [(each.what, each.detail) for each in found] == [("silent", "PING")] * 3
+
+
+def test_json_names_the_checks(pty_robot: PtyRobot, tsc: Tsc) -> None:
+    done = tsc("conform", "--port", pty_robot.port, "--only", "link: PING", "--json")
+    assert json.loads(done.out) == {
+        "version": "1", "link": "1.2", "isa": "2.0",
+        "cases": 1, "agree": 1, "differ": 0, "found": [],
+    }  # fmt: skip
+
+
+@contextmanager
+def server(serve: Callable[[socket.socket], None]) -> Iterator[str]:
+    """Yield the port of somebody who is no robot."""
+    with socket.create_server(("127.0.0.1", 0)) as listening:
+
+        def work() -> None:
+            peer, _ = listening.accept()
+            with peer:
+                try:
+                    serve(peer)
+                except OSError:
+                    return
+
+        thread = threading.Thread(target=work, daemon=True)
+        thread.start()
+        yield f"socket://127.0.0.1:{listening.getsockname()[1]}"
+
+
+def flood(peer: socket.socket) -> None:
+    while True:
+        peer.sendall(os.urandom(512))
+
+
+@pytest.mark.parametrize(
+    ("serve", "said"),
+    [
+        (lambda peer: None, "is gone"),
+        (lambda peer: peer.recv(1), "is gone"),
+        (flood, "answers HELLO"),
+    ],
+    ids=["closes", "closes later", "floods"],
+)
+def test_somebody_else_on_the_port(serve: Callable[[socket.socket], None], said: str, tsc: Tsc,
+                                   monkeypatch: pytest.MonkeyPatch) -> None:  # fmt: skip
+    from tiniscript.cli.commands import conform
+
+    monkeypatch.setattr(conform, "RADIO_MS", 50)
+    with server(serve) as port:
+        done = tsc("conform", "--port", port)
+    assert done.code == 3
+    assert said in done.err
+
+
+def test_a_cable_that_is_pulled(pty_robot: PtyRobot, tsc: Tsc) -> None:
+    pulled = threading.Timer(3.0, pty_robot.pull)
+    pulled.start()
+    done = tsc("conform", "--port", pty_robot.port)
+    pulled.join()
+    assert done.code == 3
+    assert "is gone after" in done.err
+
+
+def test_a_port_that_is_not_there(tsc: Tsc) -> None:
+    assert tsc("conform", "--port", "/dev/ttyNO").code == 3
+    assert tsc("conform", "--port", " ").code == 2
+
+
+def test_a_robot_with_an_owner_is_not_tried(pty_robot: PtyRobot, tsc: Tsc,
+                                            monkeypatch: pytest.MonkeyPatch) -> None:  # fmt: skip
+    from tiniscript.conformance import port_checks
+    from tiniscript.conformance.wire_robot import Answer
+    from tiniscript.link.messages import OWNED
+
+    monkeypatch.setattr(port_checks, "met", lambda robot: Answer(0, 0, {"features": OWNED}, b""))
+    done = tsc("conform", "--port", pty_robot.port)
+    assert done.code == 3
+    assert "tsc disown" in done.err
+
+
+def test_wrong_use_of_a_port(tsc: Tsc) -> None:
+    assert tsc("conform", "--port", "P", "--machine", "x").code == 2
+    assert tsc("conform", "--port", "P", "--timeout", "3").code == 2
+    assert tsc("conform", "--port", "P", "--only", "no such check").code == 2
+    assert tsc("conform", "--machine", "x", "--baud", "9600").code == 2

@@ -1,0 +1,134 @@
+"""Makes `conformance/link.json`: what a robot must do on a port, and conversations to play.
+
+Knows the form of the file, which `docs/conformance.md` describes. Programs and refusals are those
+of `machine_kit` that any robot can run without a sensor, a motor or a minute; the conversations
+are the cases of the link, row by row.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator
+
+from tests.support.link_cases import LinkCase, has_session, link_cases
+from tiniscript.bytecode.disassembly import listing
+from tiniscript.bytecode.image import HEADER_BYTES, ImageRefused
+from tiniscript.bytecode.loading import loaded
+from tiniscript.bytecode.opcodes import FAULTS
+from tiniscript.bytecode.verify import Refused, verify
+from tiniscript.conformance.link_kit import FORM, VERSION
+from tiniscript.link.messages import MAJOR, MINOR
+from tiniscript.vm.machine import Machine
+from tiniscript.vm.state import DONE, FAULT, WAITING
+from tiniscript.vm.trace import TracedRobot
+from tools.generate.machine_kit import STEPS, TINIBOT, USUAL, Run, arithmetic, documented
+
+LONGEST_MS = 3000
+MOST_SHOWS = 40
+MOST_BYTES = 200  # of code: any robot has room for it
+OTHERWISE = ("TIME", "RANDOM")  # what nobody knows beforehand
+KINDS = {">": "computer", "<": "robot", "did": "does", "tells": "tells", "outcome": "outcome"}
+BYTES = re.compile(r"((?:[0-9a-f]{2} ?)+)(?:   (.*))?$")
+
+
+def link_kit(command: str) -> str:
+    """Return the text of the file: a line for each case."""
+    runs = [run for run in documented() if run.when == USUAL]
+    runs += [run for run in arithmetic() if answers_fault(run)]
+    parts = {
+        "programs": list(programs(runs)),
+        "refused": list(refusals(runs)),
+        "conversations": [conversation(case) for case in link_cases("link")],
+    }
+    head = {"form": FORM, "version": VERSION, "made_by": command, "link": [MAJOR, MINOR]}
+    text = json.dumps(head, ensure_ascii=False, indent=1).removesuffix("\n}")
+    for name, rows in parts.items():
+        lines = ",\n".join(json.dumps(row, ensure_ascii=False) for row in rows)
+        text += f',\n "{name}": [\n{lines}\n ]'
+    return text + "\n}\n"
+
+
+def answers_fault(run: Run) -> bool:
+    return " " in run.name.removeprefix("arithmetic: ")  # those that fault have one each
+
+
+def programs(runs: list[Run]) -> Iterator[dict[str, object]]:
+    for run in runs:
+        try:
+            image = loaded(run.image, run.kit)
+        except (Refused, ImageRefused):
+            continue
+        code = image.code
+        words = listing(code).split()
+        if image.devices or len(code) > MOST_BYTES or any(word in words for word in OTHERWISE):
+            continue
+        robot = TracedRobot(run.kit, int)
+        machine = Machine(code, robot, len(run.kit.sensors))
+        while (status := machine.tick(robot.now_ms, STEPS)) == WAITING:
+            robot.now_ms = machine.wake_ms
+            if robot.now_ms > LONGEST_MS:
+                break
+        shows = [
+            [event.values[0], int(event.text.endswith("E"))]
+            for event in robot.events
+            if event.what == "SHOW"
+        ]
+        is_still = all(not any(e.values) for e in robot.events if e.what == "MOTORS")
+        others = {event.what for event in robot.events} - {"SHOW", "MOTORS"}
+        if status not in (DONE, FAULT) or others or not is_still or len(shows) > MOST_SHOWS:
+            continue
+        numbers = {name: number for number, name, _ in FAULTS}
+        fault = numbers[machine.fault] if machine.fault else 0
+        yield {
+            "name": run.name,
+            "code": code.hex(),
+            "shows": shows,
+            "fault": fault,
+            "at": machine.at if fault else 0,
+            "takes_ms": robot.now_ms,
+        }
+
+
+def refusals(runs: list[Run]) -> Iterator[dict[str, object]]:
+    """Return code that is refused in the same way whatever devices there are."""
+    for run in runs:
+        code = run.image[HEADER_BYTES:]
+        found = {verdict(code, 0), verdict(code, 255), verdict(code, len(TINIBOT.sensors))}
+        if len(found) > 1 or "" in found or len(code) > MOST_BYTES:
+            continue
+        rule, at = found.pop().split()
+        yield {"name": run.name, "code": code.hex(), "rule": rule, "at": int(at)}
+
+
+def verdict(code: bytes, devices: int) -> str:
+    try:
+        verify(code, devices, devices)
+    except Refused as refused:
+        return f"{refused.name} {refused.offset}"
+    return ""
+
+
+def conversation(case: LinkCase) -> dict[str, object]:
+    """Return a conversation: each row is a list of what it is, its time, and what it says."""
+    rows: list[dict[str, object]] = []
+    for row in case.rows:
+        words = row.split(maxsplit=2)
+        if not words:
+            continue
+        if not words[0].isdigit():
+            rows.append({"happens": row.strip()})
+            continue
+        kind, said = words[1], words[2] if len(words) > 2 else ""
+        step: dict[str, object] = {"ms": int(words[0])}
+        if kind[0] in "<>":
+            match = BYTES.match(said)
+            assert match, (case.id, row)
+            step[KINDS[kind[0]]] = match[1].strip()
+            step["means"] = (match[2] or "").strip()
+            if kind.endswith("x"):
+                step["is_lost"] = True
+        else:
+            step[KINDS[kind]] = said
+        rows.append(step)
+    return {"name": case.id, "has_session": has_session(case), "rows": rows}
