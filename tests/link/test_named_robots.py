@@ -40,8 +40,9 @@ def announced(name: str, address: str, number: int) -> Iterator[None]:
 
 
 @contextmanager
-def packets(name: str, number: int) -> Iterator[None]:
-    """Multicast packets that announce a name, one after the other."""
+def packets(name: str, number: int, lonely: int = 0) -> Iterator[None]:
+    """Multicast packets that announce a name, one after the other; and so many names of which
+    nobody tells the address."""
     from zeroconf._dns import DNSAddress, DNSPointer, DNSService, DNSText
     from zeroconf._protocol.outgoing import DNSOutgoing
     from zeroconf.const import (
@@ -63,6 +64,9 @@ def packets(name: str, number: int) -> Iterator[None]:
     packet.add_answer_at_time(DNSText(whole, _TYPE_TXT, _CLASS_IN, 120, b"\0"), 0)
     address = DNSAddress("far.local.", _TYPE_A, _CLASS_IN, 120, bytes((127, 0, 0, 1)))
     packet.add_answer_at_time(address, 0)
+    for k in range(lonely):
+        alone = DNSPointer(SERVICE, _TYPE_PTR, _CLASS_IN, 120, f"a{k}.{SERVICE}")
+        packet.add_answer_at_time(alone, 0)
     is_over = threading.Event()
 
     def send() -> None:
@@ -72,7 +76,8 @@ def packets(name: str, number: int) -> Iterator[None]:
             out.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEPORT, 1)
             out.bind(("127.0.0.1", 5353))  # from elsewhere nobody believes it
             while not is_over.wait(0.1):
-                out.sendto(packet.packets()[0], ("224.0.0.251", 5353))
+                for each in packet.packets():
+                    out.sendto(each, ("224.0.0.251", 5353))
 
     sender = threading.Thread(target=send, daemon=True)
     sender.start()
@@ -194,6 +199,17 @@ def test_a_packet_may_announce_anything(name: str, is_heard: bool) -> None:
     with packets(name, 7007):
         found = named_robots.listed()
     assert found == ([(name, "socket://127.0.0.1:7007")] if is_heard else [])
+
+
+def test_names_without_an_address_do_not_hold_up_the_list() -> None:
+    from tiniscript.link import named_robots
+
+    with packets("robot", 7007, lonely=40):
+        begun = time.monotonic()
+        names = [each.name for each in named_robots.listed()]
+        took_s = time.monotonic() - begun
+    assert names == ["robot"]
+    assert took_s < 15  # a second for each were 40
 
 
 def test_a_hostile_name_is_shown_without_what_a_terminal_obeys() -> None:

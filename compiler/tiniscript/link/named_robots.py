@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from ipaddress import ip_address
 from threading import Event
+from time import monotonic
 from typing import NamedTuple
 
 from zeroconf import (
@@ -26,7 +27,8 @@ from tiniscript.link.ports import PortError
 SERVICE = "_tiniscript._tcp.local."
 SEARCH_S = 5.0  # for one robot
 LISTED_S = 2.0  # for all robots,
-ROBOT_MS = 1000  # and for the address of each
+ROBOT_MS = 1000  # for the address of each that has not come with its name,
+ADDRESSES_S = 3.0  # and for all of these
 LONGEST = 63  # bytes of a name
 ROBOTS = 1000  # that a list keeps
 
@@ -70,8 +72,10 @@ def listed() -> list[Announced]:
         browser = ServiceBrowser(network, SERVICE, listener=Listener())  # type: ignore[arg-type]
         Event().wait(LISTED_S)
         browser.cancel()
+        until_s = monotonic() + ADDRESSES_S
         for name in sorted(names):
-            info = asked(network, name, ROBOT_MS)
+            left_ms = int((until_s - monotonic()) * 1000)
+            info = asked(network, name, max(1, min(left_ms, ROBOT_MS)))
             if info is None:
                 continue
             try:
