@@ -249,12 +249,11 @@ def lesson(pupils: int, robots_count: int, turn_s: int = 10) -> None:
         taught = stack.enter_context(studio.taught([each.port for each in found], turn_s))
         playwright = stack.enter_context(studio.driver())
         browser = stack.enter_context(studio.browser(playwright))
-        pages = Pages(browser, taught.server.address)
+        pages = Pages(browser, taught.server.address, patience_s=60 + turn_s * pupils)
         began_s = time.monotonic()
         rooms = []
         for k in range(pupils):
             page = joined(pages, taught, f"Pupil {k + 1}")
-            page.set_default_timeout(1000 * (60 + turn_s * pupils))
             write(page, f"F(0.2, {40 + k % 40});\nSHOW({k + 1})")
             rooms.append(page)
         print(f"{pupils} pupils are in the class after {time.monotonic() - began_s:.0f} s")

@@ -129,8 +129,11 @@ def browser(playwright: Playwright, *more: str) -> Iterator[Browser]:
 class Pages:
     """Pages of one server; each must have said no error, and asked nobody else, at the end."""
 
-    def __init__(self, opened: Browser, address: str, origin: str = "") -> None:
+    def __init__(
+        self, opened: Browser, address: str, origin: str = "", patience_s: int = 30
+    ) -> None:
         """`origin` is the beginning of what pages may ask, where it is not the whole address."""
+        self.patience_s = patience_s
         self.address = address
         self.origin = origin or address
         self.wrong: list[str] = []
@@ -153,6 +156,7 @@ class Pages:
             **options,
         }
         context = self._browser.new_context(**settings)
+        context.set_default_timeout(1000 * self.patience_s)
         self._contexts.append(context)
         page: Page = context.new_page()
         self.watch(page)
