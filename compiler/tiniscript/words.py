@@ -88,8 +88,8 @@ BLOCK_ENDS = {"IF": "ENDIF", "LOOP": "END_LOOP", "WHILE": "END_WHILE", "DEF": "E
 # How other languages, and Spanish, say it. Used for messages alone: none of them is read.
 OTHER_WORDS = {
     "F": "FORWARD FWD FD AHEAD GO MOVE WALK ADELANTE AVANZAR AVANZA AVANCE ADELANTA CAMINAR CAMINA ANDAR ANDA CORRER CORRE"
-         " MOVER MUEVE MUEVETE",
-    "B": "BACKWARD BACKWARDS BACK BK REVERSE ATRAS RETROCEDER RETROCEDE REVERSA",
+         " MOVER MUEVE MUEVETE DERECHO RECTO STRAIGHT FRENTE SIGUE SEGUIR KEEP DRIVE",
+    "B": "BACKWARD BACKWARDS BACK BK REVERSE ATRAS RETROCEDER RETROCEDE REVERSA REGRESA REGRESAR BACK_UP",
     "L": "LEFT LT TURN_LEFT IZQUIERDA IZQ GIRAR_IZQUIERDA",
     "R": "RIGHT RT TURN_RIGHT DERECHA DER GIRAR_DERECHA",
     "S": "HALT FREEZE BRAKE PARAR PARA PARE ALTO DETENER DETENTE FRENAR FRENA DETEN PARATE QUIETO",
@@ -133,6 +133,10 @@ SWITCH_WORDS = {
     **dict.fromkeys(["TURN_OFF", "SWITCH_OFF", "APAGAR", "APAGA"], "FALSE"),
 }
 
+# What a pupil asks for, where a robot measures how far something is.
+NEAR_WORDS = frozenset(
+    "OBSTACULO OBSTACLE PARED WALL MURO OBJETO OBJECT CERCA NEAR CHOCA CHOQUE COLISION".split()  # noqa: SIM905
+)
 # What a robot may have, and what nobody calls a variable.
 DEVICE_WORDS = frozenset(["LED", "LUZ", "FOCO", "LIGHT", "LAMP", "LAMPARA", "SERVO", "BUZZER", "ZUMBADOR", "BOCINA", "ALARMA", "MOTOR", "MOTORES", "GRIPPER", "GARRA", "PINZA", "PANTALLA", "LCD", "SCREEN"])
 
@@ -146,7 +150,7 @@ PLACEHOLDERS = {
 }
 
 # Words that have a meaning elsewhere in this table, and are no misspelt ones.
-_KNOWN_OTHERWISE = frozenset((*TURN_WORDS, *SWITCH_WORDS, *SENSOR_STEMS))
+_KNOWN_OTHERWISE = frozenset(("CONTINUE", "CONTINUA", "CONTINUAR", *TURN_WORDS, *SWITCH_WORDS, *SENSOR_STEMS))
 
 # Numbers in words, of what programs often say.
 NUMBER_WORDS = {name: str(value) for value, names in (
@@ -159,7 +163,7 @@ NUMBER_WORDS = {name: str(value) for value, names in (
 
 # How much power a word says, where a power is wanted, and how high the notes of a song sound.
 POWER_WORDS = {name: str(value) for value, names in (
-    (100, "MAX MAXIMO MAXIMA FULL FAST RAPIDO RAPIDA FUERTE TODO TODA"),
+    (100, "MAX MAXIMO MAXIMA FULL HIGH FAST RAPIDO RAPIDA FUERTE TODO TODA"),
     (80, "NORMAL"), (50, "MEDIO MEDIA HALF MEDIUM"), (40, "SLOW LENTO LENTA DESPACIO"),
 ) for name in names.split()}
 NOTE_WORDS = {"DO": "262", "RE": "294", "MI": "330", "FA": "349", "SOL": "392", "LA": "440",

@@ -17,6 +17,7 @@ from tiniscript.syntax.call_suggestions import LOWEST_HERTZ, call_of, glued_call
 from tiniscript.syntax.units import converted
 from tiniscript.words import (
     IN_MILLISECONDS,
+    NEAR_WORDS,
     NOTE_WORDS,
     PLACEHOLDERS,
     POWER_WORDS,
@@ -29,6 +30,7 @@ from tiniscript.words import (
     usage_of,
 )
 
+_LETTERS = {"D": "R", "I": "L", "P": "S", "E": "W"}  # derecha, izquierda, parar, esperar
 _OPPOSITE = {"F": "B", "B": "F", "L": "R", "R": "L"}
 
 
@@ -74,6 +76,9 @@ def _report_unknown_word(scope: Scope, node: ast.Command) -> None:
     commands = [each.text for each in WORDS.values() if each.role not in
                 ("setup", "later", "value", "operator", "function", "forever")]  # fmt: skip
     near = scope.near(word, chain(commands, scope.names, scope.def_names))
+    letter = _LETTERS.get(word, "")
+    if letter and len(node.arguments or ()) == len(WORDS[letter].arguments):
+        near = letter
     scope.report(codes.UNKNOWN_WORD, span, found=word, near=near)
 
 
@@ -84,6 +89,8 @@ def _report_foreign(scope: Scope, node: ast.Command, meant: str) -> None:
         spans = [each.span for each in node.arguments or ()]
         usage = WORDS[meant].usage
         fix = call_of(scope.source, WORDS[meant], spans)
+        if meant == "W" and len(spans) == 1 and re.search("[<>=]", scope.source[spans[0]]):
+            fix = f"W(FOREVER) UNTIL({scope.source[spans[0]]})"  # `wait(DISTANCE < 10)`
         if node.word in IN_MILLISECONDS and len(spans) == 1:
             number = scope.source[spans[0]]
             fix = f"W({converted(number, 'MS')})" if number.isdecimal() else ""
@@ -141,6 +148,8 @@ def report_words_for_numbers(scope: Scope, node: ast.Command, word: Word, said: 
     tables = {"%": POWER_WORDS, "Hz": NOTE_WORDS}
     if word.role == "beep":
         tables["s"] = NOTE_WORDS  # in the wrong order
+    elif word.role in ("move", "wait"):
+        tables["s"] = dict.fromkeys(("MEDIO", "MEDIA", "HALF"), "0.5")
     for argument, its in zip(node.arguments or (), word.arguments, strict=False):
         for k, each in enumerate(scope.diagnostics[said:], said):
             if each.code is codes.UNKNOWN_NAME and each.span == argument.span:
@@ -148,6 +157,31 @@ def report_words_for_numbers(scope: Scope, node: ast.Command, word: Word, said: 
                 if near:
                     values = {**each.values, "near": near}
                     scope.diagnostics[k] = each._replace(values=values)
+
+
+def hyphened(scope: Scope, span: Span, name: str) -> bool:
+    """Whether `name` is a part of `mi-velocidad`, where MI_VELOCIDAD is set; then say so once."""
+    text = scope.source.text
+    after = re.compile(r"-([A-Za-z][A-Za-z0-9_]*)").match(text, span.end)
+    if after and f"{name}_{after[1].upper()}" in scope.set_somewhere:
+        whole = Span(span.start, after.end())
+        found, right = scope.source[whole], f"{name}_{after[1].upper()}"
+        scope.report(codes.NAME_WITH_SPACE, whole, None, found=found, right=right)
+        return True
+    before = re.search(r"([A-Za-z][A-Za-z0-9_]*)-$", text[max(0, span.start - 60) : span.start])
+    return before is not None and f"{before[1].upper()}_{name}" in scope.set_somewhere
+
+
+def meant_value(scope: Scope, span: Span, name: str, is_assigned: bool) -> str:
+    """Return what `IF(obstaculo)` asks, or the number that `v = rapido` gives, else nothing."""
+    text = scope.source.text
+    before, after = text[: span.start][-60:].rstrip()[-1:], text[span.end :][:60].lstrip()[:1]
+    if name in NEAR_WORDS and (before, after) == ("(", ")") and "DISTANCE" in scope.names:
+        return "DISTANCE < 10" if _HEADER.search(text[: span.start][-60:]) else ""
+    return POWER_WORDS.get(name, "") if is_assigned and before == "=" else ""
+
+
+_HEADER = re.compile(r"(?i)\b(IF|ELSEIF|UNTIL|WHILE)\s*\(\s*$")
 
 
 def report_not_callable(scope: Scope, node: ast.Command) -> None:

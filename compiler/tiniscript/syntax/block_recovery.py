@@ -64,11 +64,11 @@ class BlockRecovery:
         fix = head_in(known, written)
         if len(written) == 1 and self.known.is_number(written[0].text) and word.text != "LOOP":
             fix = ""  # what it is compared with is not said
-        if word.text != "LOOP" and self._is_a_sentence(written):
+        if word.text != "LOOP" and self.is_a_sentence(written):
             fix = known.example  # `if wall ahead`
         self.reporter.fail(codes.MISSING_OPEN, span, word=word.text, fix=fix, usage=known.usage)
 
-    def _is_a_sentence(self, written: Sequence[Token]) -> bool:
+    def is_a_sentence(self, written: Sequence[Token]) -> bool:
         """Whether words that no program knows stand where a question is wanted."""
         known = self.known
         if any(token.kind in COMPARISONS for token in written):

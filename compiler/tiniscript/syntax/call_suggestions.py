@@ -18,7 +18,7 @@ from tiniscript.kit import Device
 from tiniscript.source import Source, Span
 from tiniscript.syntax.lexer import NEWLINE, NUMBER, ODD, QUOTES, WORD, Token
 from tiniscript.syntax.units import converted
-from tiniscript.words import UNITS, WORDS, Argument, Word
+from tiniscript.words import UNITS, WORDS, Argument, Word, meant_by
 
 LONGEST = 60  # tokens of which a suggestion is made
 LONG_TIME_S = 20  # a longer move is rarely meant: so much is a power, degrees or steps
@@ -61,6 +61,8 @@ def count_diagnostic(
         fix = ";".join(_call(word, [text]) for text in texts)
     if word.role == "move" and len(texts) == wanted + 1 and _ASKS.search(texts[-1]):
         fix = f"{_call(word, texts[:-1])} UNTIL({texts[-1]})"
+    if word.role == "move" and len(texts) == wanted + 1 and meant_by(texts[0].upper()) == word.text:
+        fix = _call(word, texts[1:])  # `R(derecha, 2, 80)`
     values = {
         "word": word.text,
         "usage": word.usage,
@@ -106,7 +108,8 @@ def call_in(word: Word, tokens: Sequence[Token]) -> str:
         return ";".join(_call(word, [text]) for text in texts)
     if len(texts) != len(word.arguments):
         spans = [Span(value[0].start, value[-1].end) for value in values]
-        fixed = _with_points(texts, spans, word)
+        commas = {token.start for token in tokens if token.kind == ","}
+        fixed = _with_points(texts, spans, word, commas)
         if len(texts) == 1 and units[0] and word.arguments[0].unit == "s":
             return _call(word, [*texts, *(each.sample for each in word.arguments[1:])])
         return _call(word, fixed) if fixed else _filled(texts, word)
@@ -264,12 +267,20 @@ def _call(word: Word, texts: Sequence[str]) -> str:
     return f"{word.text}({', '.join(texts)})"
 
 
-def _with_points(texts: Sequence[str], places: Sequence[Span], word: Word) -> list[str] | None:
-    """Return the values of `1,5, 80` where two are wanted: `1.5`, `80`. None where not meant."""
+def _with_points(
+    texts: Sequence[str], places: Sequence[Span], word: Word, commas: set[int] | None = None
+) -> list[str] | None:
+    """Return the values of `1,5, 80` where two are wanted: `1.5`, `80`. None where not meant.
+
+    `commas` are the places of commas, where other signs may stand between values: `1 50 70`.
+    """
     spare = len(texts) - len(word.arguments)
     if spare <= 0 or not word.arguments:
         return None
-    touches = [place.end + 1 == after.start for place, after in pairwise(places)]
+    touches = [
+        place.end + 1 == after.start and (commas is None or place.end in commas)
+        for place, after in pairwise(places)
+    ]
     some_are_loose = not all(touches)
     merged: list[str] = []
     k = 0

@@ -191,10 +191,15 @@ class ExpressionRecovery:
         If so, the tokens are repaired, and the cursor is at the operator, or at the NOT that was
         taken for an operand.
         """
+        k = self.cursor.after_newlines(self.cursor.i)
+        if token.text == "&" and read.brackets and starts_value(self.cursor.tokens[k + 1]):
+            self.reporter.answer(token)
+            self.reporter.report(codes.OTHER_SIGN, token.span, found="&", right="AND")
+            self.cursor.tokens[k] = Token(WORD, "AND", *token.span)
+            return True
         if token.kind is not WORD and not starts_value(token):
             return False
         in_brackets = bool(read.brackets)
-        k = self.cursor.after_newlines(self.cursor.i)
         return (
             self._is_said_in_words(token, k, in_brackets)
             or self.numbers.is_unit(token, k, in_brackets)

@@ -24,10 +24,15 @@ from tiniscript.syntax.suggestions import (
     opposite,
     with_signs,
 )
-from tiniscript.words import WORDS, meant_by
+from tiniscript.words import TURN_WORDS, WORDS, meant_by
 
 if TYPE_CHECKING:
     from tiniscript.syntax.parser import Parser
+
+
+_DOING = ("move", "wait", "stop", "motors", "beep", "show")
+_ENDLESS = frozenset(("PARA", "POR", "SIEMPRE", "FOREVER", "INFINITO", "INFINITAMENTE", "INFINITAS",
+                      "VECES", "TIMES", "INFINITE", "AND", "EVER"))  # fmt: skip
 
 
 def foreign_word(parser: Parser, word: Token, meant: str) -> None:
@@ -53,6 +58,8 @@ def foreign_word(parser: Parser, word: Token, meant: str) -> None:
         meant == "LOOP" and parser.cursor.following.text == "UNTIL"
     ):
         _repeat_until(parser, word)
+    if meant == "LOOP":
+        _for_ever(parser, word)
     if meant in HEADERS:
         in_block = parser.recovery.in_block
         line = None if word.text in NEGATED else in_block.whole_line(word, meant)
@@ -70,6 +77,25 @@ def foreign_word(parser: Parser, word: Token, meant: str) -> None:
     else:
         _report(parser, word, meant, head_in(WORDS[meant], values), place)
     parser.arm(Token(WORD, meant, *word.span), is_reported=True)
+    parser.recovery.in_block.go_on()
+
+
+def _for_ever(parser: Parser, word: Token) -> None:
+    """`repetir para siempre`: all of the line says that it has no end."""
+    cursor = parser.cursor
+    end = cursor.i + 1
+    while cursor.tokens[end].text in _ENDLESS:
+        end += 1
+    row = cursor.tokens[cursor.i + 1 : end]
+    at_end = cursor.tokens[end].kind in ("{", *AT_END) or cursor.tokens[end].text == ":"
+    if not at_end or not any(
+        meant_by(each.text) == "FOREVER" for each in row if each.text != "POR"
+    ):
+        return
+    cursor.i = end
+    place = cursor.span_from(word)
+    _report(parser, word, "LOOP", "LOOP(FOREVER)", place)
+    parser.recovery.in_block.begin_reported("LOOP", place)
     parser.recovery.in_block.go_on()
 
 
@@ -104,12 +130,27 @@ def foreign_header(parser: Parser, word: Token, meant: str) -> NoReturn:
                 break
             cursor.i += 1
     head, count = None, len(reporter.diagnostics)
+    values = inside(cursor.tokens, cursor.i)
+    if meant != "LOOP" and parser.recovery.in_block.is_a_sentence(values):
+        _to_command(parser)
     try:
         head = parser.argument_of(Token(WORD, meant, *word.span), is_reported=True)
     except Failed:
         reporter.withdraw(count)
     parser.recovery.in_block.begin_reported(meant, cursor.span_from(word), head)
     parser.recovery.in_block.go_on(word)
+
+
+def _to_command(parser: Parser) -> None:
+    """Go over a question in words to where something is done, on the same line."""
+    cursor = parser.cursor
+    while cursor.token.kind not in ("{", *AT_END) and cursor.token.text not in ("THEN", "ENTONCES"):
+        said = parser.recovery.in_block.known.command(cursor.token.text)
+        if cursor.token.kind is WORD and (
+            cursor.token.text in TURN_WORDS or (said is not None and said.role in _DOING)
+        ):  # fmt: skip
+            break
+        cursor.i += 1
 
 
 def forever_alone(parser: Parser, word: Token) -> NoReturn:
@@ -182,4 +223,19 @@ def _header_fix(parser: Parser, word: Token, meant: str) -> str:
     if word.text in NEGATED:
         question = opposite(with_signs(values))
         return f"IF({question})" if question else ""
+    numbers = [token for token in values if token.kind is NUMBER]
+    if meant == "LOOP" and len(values) > len(numbers) == 1 and numbers[0].text.isdecimal():
+        others = [each for each in values if each is not numbers[0]]
+        if all(each.kind is WORD and not _is_value(parser, each) for each in others):
+            return f"LOOP({numbers[0].text})"  # `repeat this 3 times`
+    if meant != "LOOP" and parser.recovery.in_block.is_a_sentence(values):
+        return WORDS[meant].example  # `mientras no haya pared`
+    if len(values) == 1 and values[0].kind is WORD and not _is_value(parser, values[0]):
+        return ""
     return head_in(WORDS[meant], values)
+
+
+def _is_value(parser: Parser, token: Token) -> bool:
+    known = parser.recovery.in_block.known
+    text = known.value(token.text)
+    return text in WORDS or text.isdecimal() or known.is_own(text)

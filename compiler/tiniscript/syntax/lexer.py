@@ -58,7 +58,8 @@ _PATTERN = re.compile(
       | (?P<pasted>"""
     + PASTED
     + r""")
-      | (?P<othersign>==|!=|=>|=<|><|&&|\|\||!(?=[ \t]*[\w(])|[\u2264\u2265\u2260\u00d7\u00f7])
+      | (?P<othersign>==|!=|\u00a1=|![<>]=?|=>|=<|><|&&|\|\||!(?=[ \t]*[\w(])
+            |[\u2264\u2265\u2260\u00d7\u00f7])
       | (?P<sign><=|>=|<>|[-+*/%=<>(),;|])
       | (?P<dash>[\u2010-\u2015\u2212])
       | (?P<badnumber>[0-9]+(?:\.[0-9]+)?["\u201d\u2033](?=[ ]*[,)])
@@ -78,7 +79,9 @@ _PATTERN = re.compile(
 
 # What people write, and what the language writes.
 _OTHER_SIGNS = {
-    "==": "=", "!=": "<>", "=>": ">=", "=<": "<=", "><": "<>", "&&": "AND", "||": "OR",
+    "==": "=", "!=": "<>", "¡=": "<>",
+    "!<": ">=", "!>": "<=", "!<=": ">", "!>=": "<",
+    "=>": ">=", "=<": "<=", "><": "<>", "&&": "AND", "||": "OR",
     "!": "NOT", "≤": "<=", "≥": ">=", "≠": "<>", "×": "*", "÷": "/",
     "（": "(", "）": ")", "，": ",", "；": ";", "＝": "=", "＜": "<", "＞": ">", "｜": "|",
     "＋": "+", "－": "-", "[": "(", "]": ")",
@@ -127,6 +130,13 @@ def scan(text: str) -> Scan:
             add(getattr(repairs, group)(match.group(), Span(start, end)))
     add(Token(END, "", len(text), len(text)))
     return Scan(tokens, comments, repairs.diagnostics)
+
+
+def _calculates(sign: str) -> bool:
+    """Whether a sign changes a value, as √ and ¬ do: without it the program does something else."""
+    from unicodedata import category
+
+    return sign == "^" or (category(sign) == "Sm" and not "\u2190" <= sign <= "\u21ff")
 
 
 def _is_inside(tokens: list[Token]) -> bool:
@@ -257,10 +267,13 @@ class _Repairs:
         last = self.diagnostics[-1] if self.diagnostics else None
         if last is None or last.code is not codes.ODD_CHARACTER or last.span.end != span.start:
             shown = text if text.isprintable() else f"U+{ord(text):04X}"
-            between = shown if text == "^" else ""
+            between = shown if _calculates(text) else ""
             self.report(codes.ODD_CHARACTER, span, found=shown, between=between)
         else:  # one diagnostic for a run of them
-            self.diagnostics[-1] = last._replace(span=Span(last.span.start, span.end))
+            between = last.values["between"] or (text if _calculates(text) else "")
+            self.diagnostics[-1] = last._replace(
+                span=Span(last.span.start, span.end), values={**last.values, "between": between}
+            )
         return Token(ODD, text, *span)
 
 

@@ -35,6 +35,7 @@ from tiniscript.syntax.phrases import (
     IMPORTING,
     NO_VARIABLES,
     SETTING,
+    TIMES,
 )
 from tiniscript.syntax.reporter import Failed, Reporter, Resumed
 from tiniscript.syntax.sentence_recovery import SentenceRecovery
@@ -48,6 +49,7 @@ from tiniscript.syntax.suggestions import (
     spaced_name,
     update,
 )
+from tiniscript.syntax.talk_recovery import TalkRecovery
 from tiniscript.words import (
     WORDS,
     Word,
@@ -75,6 +77,7 @@ class NameRecovery:
         self.kit = kit
         self.in_block = in_block
         self.sentence = SentenceRecovery(cursor, reporter, blocks, in_block)
+        self.talk = TalkRecovery(cursor, reporter, in_block)
 
     def reserved_name(self, name: Token) -> None:
         """`S = 5`; but `F = 2, 80` is F without brackets."""
@@ -107,6 +110,11 @@ class NameRecovery:
             span = Span(word.start, self.cursor.last.end)
             shown = shortened(self.cursor.source[span])
             self.reporter.fail(codes.EXTRA_WORD, span, found=word.text, label=shown)
+        after = self.cursor.tokens[min(self.cursor.i + 2, len(self.cursor.tokens) - 1)]
+        if kind is NUMBER and after.text in TIMES and meant_by(word.text) is None:
+            foreign_word(parser, word, "LOOP")  # `hacer 4 veces`
+        if word.text == "PARA" and following.text == "CADA":
+            foreign_word(parser, word, "LOOP")
         if word.text in FRAME_WORDS:
             parser.recovery.construct.frame(word)
         if word.text in COUNTING and is_counting(self.cursor.tokens, self.cursor.i + 1):
@@ -123,9 +131,11 @@ class NameRecovery:
         if self.kit is not None and not self.in_block.known.is_own(word.text):
             self.sentence.turn_by_angle(word, following)
             if kind is WORD:
-                self.sentence.one_motor(word)
+                if word.text in ("NO", "NUNCA", "PARA", "DEJA", "TERMINA"):
+                    self.talk.not_to_move(word)
+                self.talk.one_motor(word)
             self._before_sentence(word, following)
-            self.sentence.prose(self.cursor.i)
+            self.talk.prose(self.cursor.i)
         if not is_alone and kind != "(":
             self._what_follows_a_name(word, following)
         if self.kit is not None and not self.in_block.is_name(word.text):
@@ -177,8 +187,13 @@ class NameRecovery:
             self._word_before(word, following)
         if word.text in BEFORE_NOTE and (kind is WORD or kind is ODD):
             self.other_note(word.start, word.text, word.end)
+        if kind == "-":
+            self._arrow(word)
+            self._hyphened(word)
         if kind in SIGNS:
             self.not_an_instruction(word)
+        if kind == ",":
+            self._several_at_once(word)
         if kind is NUMBER or kind == ",":
             self._values_without_brackets(word, following)
 
@@ -210,6 +225,50 @@ class NameRecovery:
             cursor.i += 1
             raise Resumed
 
+    def _arrow(self, word: Token) -> None:
+        """`robot->avanzar(2)` is `robot.avanzar(2)`."""
+        tokens, k = self.cursor.tokens, self.cursor.i
+        if tokens[k + 2].kind == ">" and tokens[k + 3].kind is WORD:
+            point = Token(ODD, ".", tokens[k + 1].start, tokens[k + 2].end)
+            tokens[k + 1 : k + 3] = [point]
+            self.sentence.word_and_sign(word, point)
+
+    def _hyphened(self, word: Token) -> None:
+        """`mi-velocidad = 50`: a name has no hyphen."""
+        tokens, k = self.cursor.tokens, self.cursor.i
+        second = tokens[k + 2]
+        is_close = tokens[k + 1].start == word.end and second.start == tokens[k + 1].end
+        if is_close and second.kind is WORD and tokens[k + 3].kind == "=":
+            right = f"{word.text}_{second.text}"
+            span = Span(word.start, second.end)
+            self.unread_assignment(Token(WORD, right, *span))
+            found = self.cursor.source[span]
+            self.reporter.fail(codes.NAME_WITH_SPACE, span, found=found, right=right)
+
+    def _several_at_once(self, word: Token) -> None:
+        """`X, Y = 5, 6`: each variable has a line of its own."""
+        cursor = self.cursor
+        tokens, k = cursor.tokens, cursor.i
+        names = [word]
+        while tokens[k + 1].kind == "," and tokens[k + 2].kind is WORD:
+            k += 2
+            names.append(tokens[k])
+        if tokens[k + 1].kind != "=" or len(names) < 2:
+            return
+        end = k + 2
+        while tokens[end].kind not in AT_END:
+            end += 1
+        row = tokens[k + 2 : end]
+        values = [each.text for each in row if each.kind is NUMBER or each.kind is WORD]
+        is_even = len(values) == len(names) and len(row) == 2 * len(values) - 1
+        pairs = zip(names, values, strict=False)
+        fix = ";".join(f"{name.text} = {value}" for name, value in pairs) if is_even else ""
+        for name in names:
+            self.unread_assignment(name)
+        cursor.i = end
+        place = cursor.span_from(word)
+        self.reporter.fail(codes.OTHER_ASSIGNMENT, word.span, place, found=",", fix=fix)
+
     def _values_without_brackets(self, word: Token, following: Token) -> None:
         """`F2, 80`, `FORWARD 2 80`, `SPEED 50`."""
         cursor, start = self.cursor, self.cursor.i + 1
@@ -236,7 +295,7 @@ class NameRecovery:
         if (
             meant is not None
             and following.kind is NUMBER
-            and meant.role in ("move", "wait", "show", "beep", "motors")
+            and meant.role in ("move", "wait", "show", "beep", "motors", "stop")
         ):
             cursor.i = end
             self.sentence.say_in_other_words(word.span, word.text, meant, rest)

@@ -215,10 +215,11 @@ class Parser:
             self.no_arguments(word)
             return None
         arguments = self.expressions.arguments()
-        if known is not None and self.reporter.diagnostics:
+        meant = known or (self.recovery.meant(word) if self.reporter.diagnostics else None)
+        if meant is not None and self.reporter.diagnostics:
             from tiniscript.syntax.unit_recovery import fit_units  # a right program needs it not
 
-            fit_units(self.reporter, known, arguments)
+            fit_units(self.reporter, meant, arguments)
         if arguments or known is not None or self.recovery.of_name.is_said_elsewhere(word):
             return arguments
         span = self.cursor.span_from(word)

@@ -17,7 +17,11 @@ FILLERS = frozenset(
 BEFORE_POWER = frozenset(("POTENCIA", "POWER", "VELOCIDAD", "SPEED", "FUERZA"))
 BEFORE_TIME = frozenset(("POR", "DURANTE", "FOR"))
 # Who does it, or that something is done: the move is in the word behind.
-BEFORE_MOVE = frozenset(("ROBOT", "EL", "THE", "IR", "VE", "VAMOS", "HAZ", "GO", *TURN_WORDS))
+BEFORE_MOVE = TURN_WORDS | frozenset(
+    "HOLA HELLO ROBOT EL THE IR VE VAMOS HAZ GO QUIERO QUE DEBE TIENE PUEDE VA POR FAVOR MI".split()  # noqa: SIM905
+    + "I WANT TO MUST SHOULD WILL PLEASE MY".split()  # noqa: SIM905
+)
+
 BETWEEN = frozenset(("AND", "Y", "THEN", "ENTONCES", "LUEGO", "DESPUES", "NEXT"))
 # What begins a sentence, and says only when: `Luego gira a la derecha`.
 BEFORE_SENTENCE = (BETWEEN - {"NEXT"}) | frozenset(
@@ -58,7 +62,21 @@ NO_VARIABLES = frozenset(
     )
 )
 SETTING = frozenset(
-    ("SET", "PUT", "PONER", "PON", "FIJAR", "FIJA", "ASIGNAR", "ASIGNA", "CAMBIA_A")
+    (
+        "SUBE",
+        "BAJA",
+        "SUBIR",
+        "BAJAR",
+        "SET",
+        "PUT",
+        "PONER",
+        "PON",
+        "FIJAR",
+        "FIJA",
+        "ASIGNAR",
+        "ASIGNA",
+        "CAMBIA_A",
+    )
 )
 CHANGING = frozenset(
     ("CHANGE", "ADD", "CAMBIAR", "CAMBIA", "SUMAR", "SUMA", "AUMENTAR", "RESTAR", "RESTA")
@@ -70,6 +88,7 @@ EVENTS = frozenset(
 # What begins a file of another language: `import time`.
 IMPORTING = frozenset(("IMPORT", "FROM", "USING", "INCLUDE", "PACKAGE", "REQUIRE"))
 BEFORE_CALL = frozenset(("CALL", "RUN", "GOSUB", "LLAMAR", "LLAMA", "EJECUTAR", "EJECUTA"))
+READING = frozenset("LEE LEER READ MIDE MEDIR MEASURE SENSAR CHECK REVISA".split())  # noqa: SIM905
 BEFORE_NOTE = frozenset(("REM", "NOTE", "NOTA"))
 
 COUNTING = frozenset(

@@ -23,19 +23,19 @@ from tiniscript.syntax.foreign import forever_alone
 from tiniscript.syntax.lexer import NUMBER, ODD, WORD, Token
 from tiniscript.syntax.name_recovery import NameRecovery
 from tiniscript.syntax.operators import SIGNS
-from tiniscript.syntax.phrases import AFTER_HEADER, BETWEEN, TIMES
+from tiniscript.syntax.phrases import AFTER_HEADER, BETWEEN
 from tiniscript.syntax.reporter import Failed, Reporter, Resumed
 from tiniscript.syntax.setup_recovery import SetupRecovery
 from tiniscript.syntax.suggestions import (
-    after_bracket,
     body_begins,
     end_of_values,
     head_in,
     inside,
     shortened,
 )
+from tiniscript.syntax.times_recovery import TimesRecovery
 from tiniscript.syntax.value_constructs import ValueConstructs
-from tiniscript.words import WORDS, meant_by
+from tiniscript.words import WORDS, Word, meant_by
 
 if TYPE_CHECKING:
     from tiniscript.syntax.parser import Parser
@@ -65,6 +65,7 @@ class Recovery:
         self.setup = SetupRecovery(cursor, reporter)
         self.in_block = BlockRecovery(cursor, reporter, blocks, kit)
         self.of_name = NameRecovery(cursor, reporter, blocks, kit, self.in_block)
+        self.times = TimesRecovery(cursor, reporter, self.in_block)
         self.construct = ConstructRecovery(cursor, reporter, self.in_block)
 
     # -- what is no instruction ---------------------------------------------------------------
@@ -78,34 +79,22 @@ class Recovery:
         if token.kind in ("{", "}"):
             return
         if token.kind is ODD:
-            self.of_name.sentence.prose(cursor.i - 1)
+            self.of_name.talk.prose(cursor.i - 1)
             raise Failed
         if token.kind == "-" and cursor.token.kind == "-":
             self.of_name.other_note(token.start, "--", cursor.token.end)
+        if token.kind is NUMBER and cursor.token.kind is WORD:
+            self.times.so_many_times(token)
         if token.kind is NUMBER or token.kind == "(":
             self.constructs.values_in_front(token)
         if token.kind is NUMBER:
-            self._times_before(token)
+            self.times.times_before(token)
             self._line_number(token)
         if token.kind in ("-", "*") and cursor.token.kind is WORD:
             self.reporter.report(codes.LINE_NUMBER, token.span, found=token.text, dash=token.text)
             raise Resumed
         code = codes.EXTRA_CLOSE if token.kind == ")" else codes.NOT_AN_INSTRUCTION
         self.reporter.fail(code, token.span, found=token.text, fix="")
-
-    def _times_before(self, number: Token) -> None:
-        """`3 veces F(1, 50)`, `3 * F(1, 50)`."""
-        cursor = self.cursor
-        if cursor.token.kind != "*" and cursor.token.text not in TIMES and cursor.token.text != "X":
-            return
-        first = cursor.following
-        is_call = self._is_command(first) and cursor.tokens[cursor.i + 2].kind == "("
-        end = after_bracket(cursor.tokens, cursor.i + 2) if is_call else None
-        if end is None or cursor.tokens[end].kind not in AT_END:
-            return
-        cursor.i = end
-        body = Span(first.start, cursor.tokens[end - 1].end)
-        self._loop_of(number, body, cursor.span_from(number))
 
     def _line_number(self, number: Token) -> None:
         """`1. F(2, 80)`, `2) S`: go on with what stands behind the number; but `50 = V` sets V."""
@@ -239,6 +228,9 @@ class Recovery:
                 self.reporter.report(codes.UNKNOWN_WORD, first.span, found=first.text, near="")
             if text == "." or (kind is WORD and text not in WORDS):
                 raise Failed
+        is_glued = before.kind is WORD and before.end == token.start and token.end == after.start
+        if text == "." and after.kind is WORD and is_glued:  # `motorA.setSpeed(200)`
+            self._dotted(first, token)
         is_colon = kind is ODD and text == ":" and header is not None
         if is_colon or ((kind == "," or text in (".", ":")) and after.kind is WORD):
             if header is None or not header.is_reported:
@@ -259,8 +251,12 @@ class Recovery:
             if kind in SIGNS or text in ("AND", "OR"):
                 self._question_goes_on(first, header)
         self._words_behind(first, token, header)
-        self._times_behind(first, token, before)
-        if text in ("+", "/", "&", "-", "→", ">") and self._is_command(after):
+        self.times.times_behind(first, token, before)
+        if kind == "-" and after.kind == ">":  # `F(2, 80) -> R(1, 50)`
+            cursor.tokens[cursor.i : cursor.i + 2] = [Token("→", "->", token.start, after.end)]
+            token, after = cursor.token, cursor.following
+            kind, text = token.kind, token.text
+        if text in ("+", "/", "&", "-", "→", "->", ">") and self._is_command(after):
             self.reporter.answer(token)
             shown = shortened(cursor.source.text[first.start : before.end])
             self.reporter.report(codes.SIGN_BETWEEN, token.span, found=text, before=shown)
@@ -283,6 +279,11 @@ class Recovery:
         if kind is not WORD:
             raise Failed
 
+    def meant(self, word: Token) -> Word | None:
+        """Return the command that a word of another language means."""
+        meant = self.in_block.known.command(word.text)
+        return meant if meant is not None and meant.role in _COMMANDS else None
+
     def _is_command(self, token: Token) -> bool:
         known = WORDS.get(token.text) if token.kind is WORD else None
         return known is not None and known.role in _COMMANDS
@@ -297,27 +298,6 @@ class Recovery:
             cursor.i = k
             span = Span(token.start, cursor.last.end)
             self.reporter.fail(codes.EXTRA_WORD, span, found=cursor.source[span], fix="")
-
-    def _times_behind(self, first: Token, token: Token, before: Token) -> None:
-        """`F(1, 50) * 3`, `F(1, 50) x 3`, `F(1, 50) 3 veces`."""
-        cursor = self.cursor
-        is_sign = token.kind == "*" or token.text in ("X", "POR")
-        row = list(cursor.tokens[cursor.i + is_sign : cursor.i + is_sign + 3])
-        if token.kind is WORD and token.text[:1] == "X" and token.text[1:].isdecimal():
-            row, is_sign = [token._replace(kind=NUMBER, text=token.text[1:]), *row[1:]], True
-        if len(row) > 1 and row[1].text in TIMES:
-            is_sign = True
-            del row[1]
-        if not is_sign or len(row) < 2 or row[0].kind is not NUMBER or row[1].kind not in AT_END:
-            return
-        if self._is_command(first):
-            cursor.skip_instruction()
-            self._loop_of(row[0], Span(first.start, before.end), cursor.span_from(first))
-
-    def _loop_of(self, number: Token, body: Span, place: Span) -> NoReturn:
-        fix = f"LOOP({number.text});{self.cursor.source[body]};END_LOOP"
-        found = shortened(self.cursor.source[place])
-        self.reporter.fail(codes.REPEATED, place, found=found, fix=fix)
 
     def _is_no_instruction(self, first: Token) -> bool:
         """Whether an instruction begins with a word that nobody knows: that is said of it."""
@@ -362,6 +342,20 @@ class Recovery:
             code = codes.MISSING_SEPARATOR if header is None else codes.HEADER_SEPARATOR
             shown = shortened(self.cursor.source.text[first.start : before.end])
             self.reporter.report(code, token.span, found=token.text, before=shown)
+
+    def _dotted(self, first: Token, point: Token) -> NoReturn:
+        cursor = self.cursor
+        here = self.blocks.here
+        if here and isinstance(here[-1], Command) and here[-1].span.start == first.start:
+            del here[-1]
+        self.reporter.answer(point)
+        end = cursor.i
+        cursor.skip_instruction()
+        for token in cursor.tokens[end : cursor.i]:
+            self.reporter.answer(token)
+        span = Span(first.start, cursor.tokens[end + 1].end)
+        found = cursor.source[span]
+        self.reporter.fail(codes.UNKNOWN_WORD, span, None, found=found, near="")
 
     def _question_goes_on(self, first: Token, header: Block) -> NoReturn:
         """`IF (A) AND (B)`: the brackets go around the whole question."""

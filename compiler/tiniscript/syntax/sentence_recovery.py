@@ -15,16 +15,15 @@ from tiniscript.syntax.block_recovery import BlockRecovery
 from tiniscript.syntax.blocks import Blocks
 from tiniscript.syntax.call_suggestions import LONG_TIME_S, call_in
 from tiniscript.syntax.cursor import AT_END, Cursor
-from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, Token
+from tiniscript.syntax.lexer import NUMBER, ODD, WORD, Token
 from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.phrases import (
-    BEFORE_NAME,
     BEFORE_POWER,
     BEFORE_TIME,
     CHANGING,
     EVENTS,
     FILLERS,
-    SETTING,
+    READING,
     TIMES,
 )
 from tiniscript.syntax.reporter import Failed, Reporter, Resumed
@@ -37,22 +36,24 @@ from tiniscript.syntax.suggestions import (
     move_said,
     shortened,
 )
+from tiniscript.syntax.time_phrases import with_numbers
 from tiniscript.syntax.units import converted
-from tiniscript.words import SWITCH_WORDS, TURN_WORDS, UNITS, WORDS, Word, is_guessed, meant_by
+from tiniscript.words import (
+    NEAR_WORDS,
+    POWER_WORDS,
+    SWITCH_WORDS,
+    TURN_WORDS,
+    UNITS,
+    WORDS,
+    Word,
+    is_guessed,
+    meant_by,
+)
 
 # What stands between a variable and its new value: `set x to 5`.
 _SMALL = frozenset(
     ("A", "TO", "EN", "POR", "BY", "COMO", "IGUAL", "EL", "LA", "THE", "AL", "VALOR")
 )
-
-
-# Words that mean something elsewhere, and little in the middle of a sentence.
-_OFTEN_SAID = frozenset(("PARA", "FOR", "DO", "DI", "OTRO", "NEXT", "MOTOR", "MOTORES", "A", "E"))
-_MOTORS = frozenset(("MOTOR", "RUEDA", "WHEEL", "LLANTA"))
-_SIDES = {
-    "L": {"IZQUIERDO", "IZQUIERDA", "IZQ", "LEFT"},
-    "R": {"DERECHO", "DERECHA", "DER", "RIGHT"},
-}
 
 
 class SentenceRecovery:
@@ -75,8 +76,12 @@ class SentenceRecovery:
             span = Span(word.start, following.end)
             found = self.cursor.source[span]
             self.reporter.fail(codes.NAME_WITH_SPACE, span, found=found, right=joined)
-        if meant_by(following.text) == "BUTTON" and meant_by(word.text) == "W":
-            self.reporter.fail(codes.NO_BUTTON, Span(word.start, following.end))
+        row = tokens[start - 1 : start + 3]
+        asks = any("BUTTON" in (each.text, meant_by(each.text)) for each in row)
+        if asks and meant_by(word.text) == "W":
+            self.cursor.skip_instruction()
+            self.reporter.fail(codes.NO_BUTTON, self.cursor.span_from(word))
+        self._reading(word)
         if meant_by(joined) == "FOREVER":
             self._void_loop(word, following)
         if word.text in SWITCH_WORDS and meant_by(following.text) == "M":
@@ -88,6 +93,8 @@ class SentenceRecovery:
             rest = tokens[start : body_begins(tokens, start, names_end=False)]
             self.say_in_other_words(span, self.cursor.source[span], meant, rest)
         said = WORDS.get(meant_by(word.text) or "")
+        if is_guessed(word.text) and following.kind is WORD:
+            said = None  # `Quiero que`: no slip of QUIETO
         if said is not None and said.role in ("move", "wait"):
             if "UNTIL" in (following.text, meant_by(following.text)):
                 self._until_distance(word, said)
@@ -101,12 +108,29 @@ class SentenceRecovery:
             self.cursor.i += 1
             raise Failed
 
+    def _reading(self, word: Token) -> None:
+        """`lee la distancia`: a sensor's name alone takes a reading."""
+        cursor, k = self.cursor, self.cursor.i + 1
+        while is_filler(cursor.tokens, k):
+            k += 1
+        name = self.in_block.known.value(cursor.tokens[k].text)
+        is_end = cursor.tokens[k + 1].kind in AT_END
+        if word.text not in READING or not self.in_block.is_name(name) or not is_end:
+            return
+        cursor.i = k + 1
+        place = cursor.span_from(word)
+        found = shortened(cursor.source[place])
+        self.reporter.fail(
+            codes.OTHER_LANGUAGE, word.span, place, found=found, right=name, fix=name, usage=name
+        )
+
     def _until_distance(self, word: Token, meant: Word) -> None:
         """`avanza hasta 10 cm`: what ends the move is a distance."""
         cursor, start = self.cursor, self.cursor.i + 2
         while is_filler(cursor.tokens, start):
             start += 1
         number, unit = cursor.tokens[start], cursor.tokens[min(start + 1, len(cursor.tokens) - 1)]
+        self._until_something(word, meant, start)
         is_cm = number.kind is NUMBER and UNITS.get(unit.text, ("",))[0] == "cm"
         measures = self.in_block.known.is_number("DISTANCE")
         if not is_cm or not measures or meant.text not in ("F", "B"):
@@ -119,6 +143,24 @@ class SentenceRecovery:
         self.reporter.fail(
             codes.OTHER_LANGUAGE, word.span, place, found=word.text, right=meant.text, fix=fix,
             usage=meant.usage,
+        )  # fmt: skip
+
+    def _until_something(self, word: Token, meant: Word, start: int) -> None:
+        """`avanza hasta la pared`."""
+        cursor, end = self.cursor, start
+        while cursor.tokens[end].kind is WORD:
+            end += 1
+        row = cursor.tokens[start:end]
+        measures = self.in_block.known.is_number("DISTANCE")
+        is_near = any(each.text in NEAR_WORDS for each in row) and len(row) < 8
+        if not (is_near and measures and cursor.tokens[end].kind in AT_END):
+            return
+        call = "W(FOREVER)" if meant.text == "W" else f"{meant.text}(FOREVER, 80)"
+        cursor.i = end
+        place = cursor.span_from(word)
+        self.reporter.fail(
+            codes.OTHER_LANGUAGE, word.span, place, found=word.text, right=meant.text,
+            fix=f"{call} UNTIL(DISTANCE < 10)", usage=meant.usage,
         )  # fmt: skip
 
     def until_question(self, word: Token, meant: Word) -> None:
@@ -188,6 +230,7 @@ class SentenceRecovery:
         self, span: Span, found: str, meant: Word, values: list[Token], end: int = 0
     ) -> NoReturn:
         """`end` is where the values end in the text, if not with the last of them."""
+        values = with_numbers(values)
         self._so_often(span, meant, values, end)
         last = values[-1:]
         if len(values) > 1 and values[0].text in BEFORE_TIME:
@@ -198,7 +241,11 @@ class SentenceRecovery:
             if each.text not in BEFORE_POWER or not _is_number_at(values, k + 1)
         ]
         values = [each for each in values if each.text not in FILLERS or [each] == last]
+        values = self._with_power(meant, values)
         fix = call_in(meant, values) if meant.arguments else meant.text
+        if meant.role == "stop" and values:
+            pause = call_in(WORDS["W"], values)  # `para 2 segundos`
+            fix = f"{meant.text};{pause}" if pause else meant.text
         if any(each.kind is WORD and not self._is_value(each) for each in values):
             fix = ""
         place = Span(span.start, max(span.end, end, *(each.end for each in values)))
@@ -206,6 +253,15 @@ class SentenceRecovery:
             codes.OTHER_LANGUAGE, span, place, found=found, right=meant.text, fix=fix,
             usage=meant.usage,
         )  # fmt: skip
+
+    def _with_power(self, meant: Word, values: list[Token]) -> list[Token]:
+        """`avanza rapido 3 segundos`: the word says the power, and stands behind the time."""
+        said = [each for each in values if each.text in POWER_WORDS]
+        rest = [each for each in values if each.text not in POWER_WORDS]
+        if meant.role != "move" or len(said) != 1 or len(rest) not in (1, 2):
+            return values
+        power = POWER_WORDS[said[0].text]
+        return [*rest, said[0]._replace(kind=NUMBER, text=power, start=rest[-1].end + 1)]
 
     def _so_often(self, span: Span, meant: Word, values: Sequence[Token], end: int) -> None:
         """`pitar 3 veces`, `avanza 2 segundos 4 veces`."""
@@ -227,30 +283,6 @@ class SentenceRecovery:
         place = Span(span.start, max(span.end, end, values[-1].end))
         found = shortened(self.cursor.source[place])
         self.reporter.fail(codes.REPEATED, span, place, found=found, fix=fix)
-
-    def one_motor(self, word: Token) -> None:
-        """`mover motor izquierdo 50`: M has a power for each motor."""
-        cursor = self.cursor
-        end = cursor.i
-        while cursor.tokens[end].kind not in AT_END:
-            end += 1
-        row = cursor.tokens[cursor.i : end]
-        texts = {each.text for each in row}
-        numbers = [each.text for each in row if each.kind is NUMBER]
-        sides = [side for side, names in _SIDES.items() if texts & names]
-        if not texts & _MOTORS or len(sides) != 1 or len(numbers) != 1 or len(row) > 8:
-            return
-        if any(each.kind not in (WORD, NUMBER, "%", "(", ")", ",", "-") for each in row):
-            return
-        sign = "-" if any(each.kind == "-" for each in row) else ""
-        power = sign + numbers[0]
-        fix = f"M({power}, 0)" if sides[0] == "L" else f"M(0, {power})"
-        span = Span(word.start, row[-1].end)
-        cursor.i = end
-        self.reporter.fail(
-            codes.OTHER_LANGUAGE, span, span, found=shortened(cursor.source[span]), right="M",
-            fix=fix, usage=WORDS["M"].usage,
-        )  # fmt: skip
 
     def _is_value(self, token: Token) -> bool:
         """Whether a word behind a number or a command is a value or a unit."""
@@ -295,47 +327,6 @@ class SentenceRecovery:
             return True
         return len(numbers) == 1 and float(numbers[0].text) >= LONG_TIME_S
 
-    def prose(self, start: int) -> None:
-        """`Here is your program:`: a line of words of which none says what to do."""
-        cursor = self.cursor
-        tokens, end = cursor.tokens, start
-        if start and tokens[start - 1].kind not in (NEWLINE, "|", ";"):
-            return
-        while tokens[end].kind not in (NEWLINE, END):
-            if tokens[end].kind in ("(", ")", "=", "|", "{", "}", "<", ">"):
-                return
-            end += 1
-        row = tokens[start:end]
-        words = [token for token in row if token.kind is WORD]
-        if {"VUELTA", "VUELTAS"} & {token.text for token in words}:
-            cursor.i = end
-            self.reporter.fail(codes.WHICH_WAY, Span(row[0].start, row[-1].end))
-        if len(words) < 3 or any(self._says_something(tokens, k) for k in range(start, end)):
-            return
-        for token in row:
-            self.reporter.answer(token)
-        cursor.i = end
-        span = Span(row[0].start, row[-1].end)
-        fix = f"// {cursor.source[span]}"
-        self.reporter.fail(codes.PROSE, span, None, fix=fix)
-
-    def _says_something(self, tokens: Sequence[Token], k: int) -> bool:
-        """Whether the word at `k` says what a robot does, or is a name of the program."""
-        token, after = tokens[k], tokens[k + 1]
-        text = token.text
-        if token.kind is not WORD:
-            return False
-        if text in _OFTEN_SAID and after.kind is WORD:
-            return False
-        if text in BEFORE_NAME or text in SETTING or text in CHANGING:
-            return True
-        if text in TURN_WORDS or text in SWITCH_WORDS or self.in_block.is_name(text):
-            return True
-        meant = WORDS.get(text) or WORDS.get(meant_by(text) or "")
-        if meant is None or meant.role in ("value", "operator", "function"):
-            return False
-        return not is_guessed(text) or after.kind in (NUMBER, *AT_END)
-
     def word_and_sign(self, word: Token, sign: Token) -> None:
         """`robot.adelante(2, 80)`, `Primero: F(2, 80)`: the instruction is behind the sign."""
         cursor = self.cursor
@@ -343,7 +334,8 @@ class SentenceRecovery:
             return
         after = cursor.tokens[min(cursor.i + 2, len(cursor.tokens) - 1)]
         meant = self.in_block.known.command(after.text) if after.kind is WORD else None
-        if meant is None:
+        is_a_part = word.text.startswith(("SERVO", "MOTOR", "PIN", "LED", "LCD"))
+        if meant is None or (is_a_part and meant.role == "show"):  # `servo.write(90)`
             return
         self.reporter.answer(sign)
         if sign.text == ".":

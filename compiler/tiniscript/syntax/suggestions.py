@@ -20,18 +20,19 @@ from tiniscript.syntax.phrases import (
     FILLERS,
     FRAME_NAMES,
 )
-from tiniscript.words import POWER_WORDS, UNITS, WORDS, Word, meant_by, other_name
+from tiniscript.words import POWER_WORDS, TURN_WORDS, UNITS, WORDS, Word, meant_by, other_name
 
 # Words in the place of an operator, and those that go with them.
 OPERATOR_WORDS = {
     "Y": "AND", "E": "AND", "O": "OR", "U": "OR",
+    "SEA": "=", "ESTA": "=", "ARE": "=", "BE": "=",
     "IS": "=", "ES": "=", "EQUALS": "=", "EQUAL": "=", "IGUAL": "=",
     "LESS": "<", "MENOR": "<", "GREATER": ">", "MORE": ">", "MAYOR": ">", "BIGGER": ">",
     **dict.fromkeys(("DISTINTO", "DISTINTA", "DIFERENTE", "DIFFERENT"), SIGN_OF["NE"]),
     "MOD": "%", "X": "*", "POR": "*", "MAS": "+", "MENOS": "-",
 }  # fmt: skip
 _OPERATOR_TAILS = frozenset(("THAN", "QUE", "TO", "A", "DE", "FROM"))
-_EQUALS = frozenset(("IS", "ES", "EQUALS", "EQUAL", "IGUAL"))
+_EQUALS = frozenset(("SEA", "ESTA", "ARE", "BE", "IS", "ES", "EQUALS", "EQUAL", "IGUAL"))
 
 
 def foreign_block(word: str) -> str | None:
@@ -290,19 +291,23 @@ def is_filler(tokens: Sequence[Token], k: int) -> bool:
 
 def move_said(tokens: Sequence[Token], k: int) -> tuple[Word, int] | None:
     """Return the move that `girar a la derecha` or `el robot avanza` at `k` says, and its end."""
-    first = k
+    first, candidate = k, None
     while tokens[k].kind is WORD:
         text = tokens[k].text
         meant = WORDS.get(meant_by(text) or "")
         is_more = k > first and (text in FILLERS or meant_by(text) == "F")
         is_verb = text in BEFORE_MOVE or meant_by(text) == "F"
         leads = is_verb and tokens[k + 1].kind is WORD and tokens[k + 1].text not in WORDS
+        if meant is not None and meant.text == "F" and tokens[first].text in TURN_WORDS:
+            return None  # `girar recto`
         if meant is not None and meant.role == "move" and not leads:
             return (meant, k + 1) if k > first else None
+        if meant is not None and meant.text == "F" and k > first and text not in BEFORE_MOVE:
+            candidate = (meant, k + 1)
         if not (is_verb or is_more):
-            return None
+            return candidate
         k += 1
-    return None
+    return candidate
 
 
 def is_assignment(tokens: Sequence[Token], k: int) -> bool:

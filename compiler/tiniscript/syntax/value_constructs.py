@@ -16,7 +16,7 @@ from tiniscript.syntax.call_suggestions import LONGEST, call_in, starts_value, w
 from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.lexer import NUMBER, ODD, QUOTES, WORD, Token
 from tiniscript.syntax.operators import COMPARISONS
-from tiniscript.syntax.phrases import NEGATED
+from tiniscript.syntax.phrases import NEGATED, READING
 from tiniscript.syntax.reporter import Reporter
 from tiniscript.syntax.suggestions import (
     after_bracket,
@@ -136,6 +136,13 @@ class ValueConstructs:
                 self.reporter.fail(codes.LISTS, span, span, found=name.text,
                                    fix=f"{name.text}_{number}")  # fmt: skip
             self.reporter.fail(codes.LISTS, span, None, found=name.text, fix="")
+        sensor = self.known.value(self.cursor.following.text)
+        if name.text in READING and self.known.is_name(sensor):  # `X = leer(DISTANCE)`
+            end = after_bracket(self.cursor.tokens, self.cursor.i)
+            span = self._to(name, end)
+            shown = self.cursor.source[span]
+            self.reporter.fail(codes.OTHER_LANGUAGE, span, span, found=shown, right=sensor,
+                               fix=sensor, usage=sensor)  # fmt: skip
         if name.text in _ASKING and not self.known.is_own(name.text):
             end = after_bracket(self.cursor.tokens, self.cursor.i)
             for token in self.cursor.tokens[self.cursor.i : end]:

@@ -1,0 +1,121 @@
+"""Recovery of lines that are talk: prose, what the robot is not to do, and one of its motors.
+
+Knows which words say what a robot does. A line in which none does is taken for a note.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from tiniscript.diagnostics import codes
+from tiniscript.source import Span
+from tiniscript.syntax.block_recovery import BlockRecovery
+from tiniscript.syntax.cursor import AT_END, Cursor
+from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Token
+from tiniscript.syntax.phrases import BEFORE_NAME, CHANGING, SETTING
+from tiniscript.syntax.reporter import Reporter
+from tiniscript.syntax.suggestions import shortened
+from tiniscript.words import SWITCH_WORDS, TURN_WORDS, WORDS, is_guessed, meant_by
+
+# Words that mean something elsewhere, and little in the middle of a sentence.
+_OFTEN_SAID = frozenset(("PARA", "FOR", "DO", "DI", "OTRO", "NEXT", "MOTOR", "MOTORES", "A", "E"))
+_MOTORS = frozenset(("MOTOR", "RUEDA", "WHEEL", "LLANTA"))
+_SIDES = {
+    "L": {"IZQUIERDO", "IZQUIERDA", "IZQ", "LEFT"},
+    "R": {"DERECHO", "DERECHA", "DER", "RIGHT"},
+}
+
+
+class TalkRecovery:
+    def __init__(self, cursor: Cursor, reporter: Reporter, in_block: BlockRecovery) -> None:
+        self.cursor = cursor
+        self.reporter = reporter
+        self.in_block = in_block
+
+    def prose(self, start: int) -> None:
+        """`Here is your program:`: a line of words of which none says what to do."""
+        cursor = self.cursor
+        tokens, end = cursor.tokens, start
+        if start and tokens[start - 1].kind not in (NEWLINE, "|", ";"):
+            return
+        while tokens[end].kind not in (NEWLINE, END):
+            if tokens[end].kind in ("(", ")", "=", "|", "{", "}", "<", ">"):
+                return
+            end += 1
+        row = tokens[start:end]
+        words = [token for token in row if token.kind is WORD]
+        turns = ("DA", "DAR", "DE", "MEDIA", "UNA")
+        if words and words[0].text in turns and words[-1].text != "VEZ" and (
+            {"VUELTA", "VUELTAS"} & {token.text for token in words}
+        ):  # fmt: skip
+            cursor.i = end
+            self.reporter.fail(codes.WHICH_WAY, Span(row[0].start, row[-1].end))
+        if len(words) < 3 or any(self._says_something(tokens, k) for k in range(start, end)):
+            return
+        for token in row:
+            self.reporter.answer(token)
+        cursor.i = end
+        span = Span(row[0].start, row[-1].end)
+        fix = f"// {cursor.source[span]}"
+        self.reporter.fail(codes.PROSE, span, None, fix=fix)
+
+    def _says_something(self, tokens: Sequence[Token], k: int) -> bool:
+        """Whether the word at `k` says what a robot does, or is a name of the program."""
+        token, after = tokens[k], tokens[k + 1]
+        text = token.text
+        if token.kind is not WORD:
+            return False
+        if text in _OFTEN_SAID and after.kind is WORD and tokens[k - 1].kind is WORD:
+            return False
+        if text in BEFORE_NAME or text in SETTING or text in CHANGING:
+            return True
+        if self.in_block.known.is_name(self.in_block.known.value(text)):
+            return True
+        if text in TURN_WORDS or text in SWITCH_WORDS or self.in_block.is_name(text):
+            return True
+        meant = WORDS.get(text) or WORDS.get(meant_by(text) or "")
+        if meant is None or meant.role in ("value", "operator", "function"):
+            return False
+        return not is_guessed(text) or after.kind in (NUMBER, *AT_END)
+
+    def one_motor(self, word: Token) -> None:
+        """`mover motor izquierdo 50`: M has a power for each motor."""
+        cursor = self.cursor
+        end = cursor.i
+        while cursor.tokens[end].kind not in AT_END:
+            end += 1
+        row = cursor.tokens[cursor.i : end]
+        texts = {each.text for each in row}
+        numbers = [each.text for each in row if each.kind is NUMBER]
+        sides = [side for side, names in _SIDES.items() if texts & names]
+        if not texts & _MOTORS or len(sides) != 1 or len(numbers) != 1 or len(row) > 8:
+            return
+        if any(each.kind not in (WORD, NUMBER, "%", "(", ")", ",", "-") for each in row):
+            return
+        sign = "-" if any(each.kind == "-" for each in row) else ""
+        power = sign + numbers[0]
+        fix = f"M({power}, 0)" if sides[0] == "L" else f"M(0, {power})"
+        span = Span(word.start, row[-1].end)
+        cursor.i = end
+        self.reporter.fail(
+            codes.OTHER_LANGUAGE, span, span, found=shortened(cursor.source[span]), right="M",
+            fix=fix, usage=WORDS["M"].usage,
+        )  # fmt: skip
+
+    def not_to_move(self, word: Token) -> None:
+        """`no avances`, `para de avanzar`, `deja de girar`: the robot stands still."""
+        cursor, k = self.cursor, self.cursor.i + 1
+        is_end = word.text in ("PARA", "DEJA", "STOP", "TERMINA") and cursor.token is word
+        if is_end and cursor.tokens[k].text != "DE":
+            return
+        k += is_end
+        moves = WORDS.get(meant_by(cursor.tokens[k].text) or "")
+        is_move = cursor.tokens[k].text in TURN_WORDS or (moves and moves.role == "move")
+        if not is_move or cursor.tokens[k + 1].kind not in (WORD, *AT_END):
+            return
+        cursor.skip_instruction()
+        span = cursor.span_from(word)
+        self.reporter.fail(
+            codes.OTHER_LANGUAGE, span, span, found=shortened(cursor.source[span]), right="S",
+            fix="S", usage="S",
+        )  # fmt: skip

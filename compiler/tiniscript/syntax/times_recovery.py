@@ -1,0 +1,90 @@
+"""Recovery of how often, said beside an instruction: `3 veces F(1, 50)`, `F(1, 50) x3`."""
+
+from __future__ import annotations
+
+from typing import NoReturn
+
+from tiniscript.diagnostics import codes
+from tiniscript.source import Span
+from tiniscript.syntax.block_recovery import BlockRecovery
+from tiniscript.syntax.cursor import AT_END, Cursor
+from tiniscript.syntax.lexer import NUMBER, WORD, Token
+from tiniscript.syntax.phrases import TIMES
+from tiniscript.syntax.reporter import Reporter
+from tiniscript.syntax.suggestions import after_bracket, shortened
+from tiniscript.words import WORDS
+
+_COMMANDS = ("move", "wait", "motors", "stop", "beep", "show")
+
+
+class TimesRecovery:
+    def __init__(self, cursor: Cursor, reporter: Reporter, in_block: BlockRecovery) -> None:
+        self.cursor = cursor
+        self.reporter = reporter
+        self.in_block = in_block
+
+    def so_many_times(self, number: Token) -> None:
+        """`2x F(1, 50)`."""
+        written = self.cursor.source[number.span].upper()
+        if not (written[-1:] == "X" and written[:-1].isdecimal()):
+            return
+        first = self.cursor.token
+        is_call = _is_command(first) and self.cursor.following.kind == "("
+        end = after_bracket(self.cursor.tokens, self.cursor.i + 1) if is_call else None
+        if end is not None and self.cursor.tokens[end].kind in AT_END:
+            self.reporter.answer(number)
+            self.cursor.i = end
+            body = Span(first.start, self.cursor.last.end)
+            times = number._replace(text=written[:-1])
+            self._loop_of(times, body, self.cursor.span_from(number))
+
+    def times_before(self, number: Token) -> None:
+        """`3 veces F(1, 50)`, `3 * F(1, 50)`, `3 veces:`."""
+        cursor = self.cursor
+        is_head = cursor.following.kind in ("{", *AT_END) or cursor.following.text == ":"
+        if cursor.token.text in TIMES and is_head:
+            cursor.i += 1
+            span = cursor.span_from(number)
+            fix = f"LOOP({number.text})"
+            self.reporter.report(codes.REPEATED, span, span, found=cursor.source[span], fix=fix)
+            self.in_block.begin_reported("LOOP", span)
+            self.in_block.go_on()
+        if cursor.token.kind != "*" and cursor.token.text not in TIMES and cursor.token.text != "X":
+            return
+        first = cursor.following
+        is_call = _is_command(first) and cursor.tokens[cursor.i + 2].kind == "("
+        end = after_bracket(cursor.tokens, cursor.i + 2) if is_call else None
+        if end is None or cursor.tokens[end].kind not in AT_END:
+            return
+        cursor.i = end
+        body = Span(first.start, cursor.tokens[end - 1].end)
+        self._loop_of(number, body, cursor.span_from(number))
+
+    def times_behind(self, first: Token, token: Token, before: Token) -> None:
+        """`F(1, 50) * 3`, `F(1, 50) x 3`, `F(1, 50) 3 veces`."""
+        cursor = self.cursor
+        is_sign = token.kind == "*" or token.text in ("X", "POR")
+        row = list(cursor.tokens[cursor.i + is_sign : cursor.i + is_sign + 3])
+        if token.kind is WORD and token.text[:1] == "X" and token.text[1:].isdecimal():
+            row, is_sign = [token._replace(kind=NUMBER, text=token.text[1:]), *row[1:]], True
+        if token.text in ("TWICE", "THRICE"):
+            times = "2" if token.text == "TWICE" else "3"
+            row, is_sign = [token._replace(kind=NUMBER, text=times), *row[1:]], True
+        if len(row) > 1 and row[1].text in TIMES:
+            is_sign = True
+            del row[1]
+        if not is_sign or len(row) < 2 or row[0].kind is not NUMBER or row[1].kind not in AT_END:
+            return
+        if _is_command(first):
+            cursor.skip_instruction()
+            self._loop_of(row[0], Span(first.start, before.end), cursor.span_from(first))
+
+    def _loop_of(self, number: Token, body: Span, place: Span) -> NoReturn:
+        fix = f"LOOP({number.text});{self.cursor.source[body]};END_LOOP"
+        found = shortened(self.cursor.source[place])
+        self.reporter.fail(codes.REPEATED, place, found=found, fix=fix)
+
+
+def _is_command(token: Token) -> bool:
+    known = WORDS.get(token.text) if token.kind is WORD else None
+    return known is not None and known.role in _COMMANDS
