@@ -55,6 +55,7 @@ def documents(root: Path) -> list[Document]:
         _both("modules", "teach", "docs/modules.en.md", "docs/modulos.es.md"),
         _both("language", "write", "docs/language.en.md", "docs/lenguaje.es.md"),
         _both("command", "write", "docs/command.en.md", "docs/comandos.es.md"),
+        _both("class", "teach", "docs/class.en.md", "docs/clase.es.md"),
         _both("worlds", "write", "docs/worlds.en.md", "docs/mundos.es.md"),
         _both("library", "write", "docs/api.en.md", "docs/api.es.md"),
         *_wiring(root),
