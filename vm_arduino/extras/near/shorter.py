@@ -31,13 +31,13 @@ from assembly import (
     reached,
     regions,
 )
+from parts import share_parts
 from registers import share_registers
 
 REACH = 3800  # bytes: a call or a jump over less than that takes 2 of them
 REGION = 5400  # bytes on each side of what a region shares: some of its calls are long
 NEAR = 112  # bytes: how far a condition leads at most, less what an estimate may miss
-LONGEST = 16  # instructions of a part or an end
-LEAST_SAVED = 4  # bytes
+LONGEST = 16  # instructions of an end
 # What runs between a line of a computer and the motors.
 QUICK = re.compile(
     r"4Link4hear|4Link5start|FrameCheck|begin_run|7Machine(3act|6powers|4wait|5begin|5sleep|4tick)|"
@@ -69,7 +69,8 @@ def shorter(assembly: str, addresses: Mapping[str, int]) -> str:
     share_objects(free, elsewhere)  # those whose registers are kept otherwise now
     share_loads(list(free.values()))
     for number, each in enumerate(near):
-        each[len(each) // 2].lines += [*common[number], *_share_parts(each, number)]
+        each[len(each) // 2].lines += common[number]
+    share_parts(slow, addresses)
     _share_ends(slow, addresses)
     for function in free.values():
         _share_jumps(function)
@@ -195,81 +196,3 @@ def _share_ends(functions: list[Function], addresses: Mapping[str, int]) -> None
 def _has_label(end: End, length: int, labels: Mapping[tuple[str, int], str]) -> bool:
     """Return whether somebody leads into what would be left out."""
     return any((end.function.name, each.line) in labels for each in end.found[-length:])
-
-
-# -- parts that are equal -------------------------------------------------------------------------
-
-Key = tuple[tuple[str, str], ...]  # instructions: what they do, and with what
-
-
-class Part(NamedTuple):
-    """Instructions of a function that follow each other; nothing leads into their middle."""
-
-    function: Function
-    lines: tuple[int, ...]
-
-
-def _parts(function: Function) -> dict[Key, list[Part]]:
-    found = function.instructions()
-    parts = defaultdict(list)
-    begin = function.lines.index(BODY)
-    for first, start in enumerate(found):
-        if start.line < begin or (first > 0 and leads_on(found[first - 1])):
-            continue
-        key: list[tuple[str, str]] = []
-        for at in range(first, min(first + LONGEST, len(found))):
-            each = found[at]
-            if not is_movable(each) or each.name.startswith("br") or "__SP_" in each.operands:
-                break
-            if at > first and any(LABEL.match(line) for line in between(function, found, at)):
-                break
-            key.append((each.name, each.operands))
-            # a call that may be skipped would not become a jump
-            is_end = not leads_on(each) and not ("call" in each.name and leads_on(found[at - 1]))
-            if at > first and is_end:
-                lines = tuple(one.line for one in found[first : at + 1])
-                parts[tuple(key)].append(Part(function, lines))
-            if "call" in each.name:
-                break  # nothing more of the stack is used where a call comes last
-    return parts
-
-
-def _saved(key: Key, count: int) -> int:
-    """Return the bytes that are saved where so many parts become one; calls are short."""
-    size = sum(4 if name in ("lds", "sts") else 2 for name, _ in key)
-    return count * (size - 2) - size - (0 if key[-1][0] == "call" else 2)
-
-
-def _share_parts(functions: list[Function], number: int) -> list[str]:
-    """Let functions call parts that they have in common, and return those."""
-    parts: dict[Key, list[Part]] = defaultdict(list)
-    for function in functions:
-        for key, found in _parts(function).items():
-            parts[key] += found
-    ordered = sorted(parts, key=lambda key: -_saved(key, len(parts[key])))
-    taken: dict[str, set[int]] = defaultdict(set)  # lines of functions
-    shared: list[str] = []
-    for key in ordered:
-        if _saved(key, len(parts[key])) < LEAST_SAVED:
-            break
-        alive: list[Part] = []
-        for part in parts[key]:
-            others = alive[-1].lines if alive and alive[-1].function is part.function else ()
-            if taken[part.function.name].isdisjoint((*part.lines, *others)) and (
-                set(others).isdisjoint(part.lines)
-            ):
-                alive.append(part)
-        if _saved(key, len(alive)) < LEAST_SAVED or "icall" in key[-1]:
-            continue
-        label = f"tiniscript_part_{number}_{len(shared)}"
-        for part in alive:
-            taken[part.function.name].update(part.lines)
-            for line in part.lines:
-                part.function.lines[line] = ""
-            part.function.lines[part.lines[0]] = f"\tcall {label}"
-        end = ["\tret"]
-        rows = list(key)
-        if rows[-1][0] == "call":
-            end = [f"\tjmp {rows.pop()[1]}"]
-        shared += [f"{label}:", *(f"\t{name} {operands}" for name, operands in rows), *end]
-    return shared
