@@ -30,7 +30,7 @@ OTHER_NUMBERS = (
     codes.NEEDLESS_FRAME,  # with its `return 0`
     codes.LISTS,  # `V[0]` is V_1
 )
-CONVERTED = re.compile(r"(?i)[0-9] *(min|ms|mili|hora|hour)")
+CONVERTED = re.compile(r"(?i)[0-9] *(min|ms|mili|hora|hour)|delay")
 
 
 def mistakes(found: list[Diagnostic]) -> int:

@@ -7,6 +7,7 @@ that its end is not reported as a second mistake.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import NoReturn
 
 from tiniscript.diagnostics import codes
@@ -28,7 +29,9 @@ from tiniscript.syntax.suggestions import (
     head_in,
 )
 from tiniscript.syntax.vocabulary import Vocabulary
-from tiniscript.words import ALIASES, BLOCK_ENDS, WORDS, meant_by, nearest
+from tiniscript.words import ALIASES, BLOCK_ENDS, TURN_WORDS, WORDS, meant_by, nearest
+
+_DOING = ("move", "wait", "stop", "motors", "beep", "show")
 
 
 class BlockRecovery:
@@ -66,6 +69,9 @@ class BlockRecovery:
             fix = ""  # what it is compared with is not said
         if word.text != "LOOP" and self.is_a_sentence(written):
             fix = known.example  # `if wall ahead`
+            self.to_command()
+        if any(self.is_name(a.text) and b.kind == "(" for a, b in pairwise(written)):
+            fix = ""  # `IF DISTANCE(15)`
         self.reporter.fail(codes.MISSING_OPEN, span, word=word.text, fix=fix, usage=known.usage)
 
     def is_a_sentence(self, written: Sequence[Token]) -> bool:
@@ -73,9 +79,20 @@ class BlockRecovery:
         known = self.known
         if any(token.kind in COMPARISONS for token in written):
             return False
+        if len(written) > 1 and written[-1].text in ("IS", "ES", "ESTA", "SEA"):
+            return True
         written = [token for token in written if token.text not in OPERATOR_WORDS]
         words = [known.value(token.text) for token in written if token.kind is WORD]
         return any(word not in WORDS and not known.is_own(word) for word in words)
+
+    def to_command(self) -> None:
+        """Go over a question in words to where something is done, on the same line."""
+        cursor = self.cursor
+        while cursor.token.kind not in ("{", *AT_END) and cursor.token.text not in AFTER_HEADER:
+            said = self.known.command(cursor.token.text) if cursor.token.kind is WORD else None
+            if cursor.token.text in TURN_WORDS or (said is not None and said.role in _DOING):
+                break
+            cursor.i += 1
 
     def whole_line(self, word: Token, block: str) -> str | None:
         """Return how the line is written that begins with `word`, the header of a `block`.
@@ -127,11 +144,6 @@ class BlockRecovery:
         self.begin_reported(word.text, span)
         self.go_on(word)
 
-    def no_name(self, word: Token) -> NoReturn:
-        """`DEF` alone."""
-        self.begin_reported("DEF", word.span)
-        self.reporter.fail(codes.DEF_NEEDS_NAME, word.span)
-
     def begin_reported(self, word: str, span: Span, head: Argument | None = None) -> None:
         """Open a block whose header has a diagnostic already."""
         self.blocks.begin(word, span, head).is_reported = True
@@ -169,33 +181,6 @@ class BlockRecovery:
         span = cursor.span_from(bracket)
         place = cursor.span_from(word)
         self.reporter.report(codes.NO_BRACKETS_HERE, span, place, word=word.text, fix=fix)
-
-    def def_with_values(self, word: Token, name: Token, arguments: Sequence[Argument]) -> None:
-        """`DEF SQUARE(SIDE)`: a DEF takes no values, but a variable can bring them."""
-        place = self.cursor.span_from(word)
-        names = [
-            str(part.value)
-            for each in arguments
-            for part in each.expression
-            if part.op == "NAME" and not self.is_name(str(part.value))
-        ]
-        for each in names:  # known from here on
-            self.blocks.program.append(Assign(each, name.span, None, name.span))
-        fix = ";".join((*(f"{each} = 0" for each in names), f"DEF {name.text}"))
-        if names:
-            span = Span(name.end, place.end)
-            self.reporter.report(codes.NO_BRACKETS_HERE, span, place, word=name.text, fix=fix)
-        else:
-            span = self.cursor.span_from(name)
-            self.reporter.report(codes.EMPTY_BRACKETS, span, word=name.text)
-
-    def body_of_def(self, block: Block) -> None:
-        """`def turn():`: go past the colon. That it lacks its END_DEF is another mistake."""
-        cursor = self.cursor
-        if cursor.token.kind is ODD and cursor.token.text == ":":
-            self.reporter.answer(cursor.token)
-            cursor.i += 1
-        block.is_reported = True
 
     # -- arms ---------------------------------------------------------------------------------
 

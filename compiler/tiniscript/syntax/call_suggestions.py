@@ -18,7 +18,7 @@ from tiniscript.kit import Device
 from tiniscript.source import Source, Span
 from tiniscript.syntax.lexer import NEWLINE, NUMBER, ODD, QUOTES, WORD, Token
 from tiniscript.syntax.units import converted
-from tiniscript.words import UNITS, WORDS, Argument, Word, meant_by
+from tiniscript.words import NOTE_WORDS, UNITS, WORDS, Argument, Word, meant_by
 
 LONGEST = 60  # tokens of which a suggestion is made
 LONG_TIME_S = 20  # a longer move is rarely meant: so much is a power, degrees or steps
@@ -239,6 +239,14 @@ def _filled(texts: Sequence[str], word: Word) -> str:
     if len(texts) != 1 or len(word.arguments) != 2:
         return ""
     (text,) = texts
+    name = text.upper()
+    if word.role == "beep" and name in NOTE_WORDS:
+        return _call(word, [word.arguments[0].sample, NOTE_WORDS[name]])
+    if word.role == "move" and name.isidentifier() and name not in WORDS:
+        if name.startswith(("VEL", "SPEED", "POT", "POW", "FUERZA")):
+            return _call(word, [word.arguments[0].sample, text])
+        if name.startswith(("TIEM", "TIME", "SEG", "SEC")):
+            return _call(word, [text, word.arguments[1].sample])
     number = float(text) if _NUMBER.fullmatch(text) else None
     first = word.arguments[0]
     if word.role == "motors":

@@ -59,6 +59,11 @@ class ExpressionRecovery:
             self._no_value_word(token)
         if token.kind == "+" and cursor.tokens[cursor.i + 1].kind is NUMBER:
             number = cursor.tokens[cursor.i + 1]  # `F(+2, 80)`
+            name = cursor.tokens[place - 1]
+            if before.kind == "=" and before.end == token.start < number.start - 1:  # `v =+ 10`
+                fix = f"{name.text} = {name.text} + {number.text}"
+                span = Span(name.start, number.end)
+                fail(codes.OTHER_ASSIGNMENT, name.span, span, found="=+", fix=fix)
             span = Span(token.start, number.end)
             fail(codes.BAD_NUMBER, span, found=cursor.source[span], right=number.text)
         if before.text in ("AND", "OR") and token.kind in COMPARISONS:

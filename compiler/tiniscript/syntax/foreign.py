@@ -24,13 +24,12 @@ from tiniscript.syntax.suggestions import (
     opposite,
     with_signs,
 )
-from tiniscript.words import TURN_WORDS, WORDS, meant_by
+from tiniscript.words import WORDS, meant_by
 
 if TYPE_CHECKING:
     from tiniscript.syntax.parser import Parser
 
 
-_DOING = ("move", "wait", "stop", "motors", "beep", "show")
 _ENDLESS = frozenset(("PARA", "POR", "SIEMPRE", "FOREVER", "INFINITO", "INFINITAMENTE", "INFINITAS",
                       "VECES", "TIMES", "INFINITE", "AND", "EVER"))  # fmt: skip
 
@@ -131,26 +130,15 @@ def foreign_header(parser: Parser, word: Token, meant: str) -> NoReturn:
             cursor.i += 1
     head, count = None, len(reporter.diagnostics)
     values = inside(cursor.tokens, cursor.i)
-    if meant != "LOOP" and parser.recovery.in_block.is_a_sentence(values):
-        _to_command(parser)
+    is_bare = cursor.token.kind != "("
+    if is_bare and meant != "LOOP" and parser.recovery.in_block.is_a_sentence(values):
+        parser.recovery.in_block.to_command()
     try:
         head = parser.argument_of(Token(WORD, meant, *word.span), is_reported=True)
     except Failed:
         reporter.withdraw(count)
     parser.recovery.in_block.begin_reported(meant, cursor.span_from(word), head)
     parser.recovery.in_block.go_on(word)
-
-
-def _to_command(parser: Parser) -> None:
-    """Go over a question in words to where something is done, on the same line."""
-    cursor = parser.cursor
-    while cursor.token.kind not in ("{", *AT_END) and cursor.token.text not in ("THEN", "ENTONCES"):
-        said = parser.recovery.in_block.known.command(cursor.token.text)
-        if cursor.token.kind is WORD and (
-            cursor.token.text in TURN_WORDS or (said is not None and said.role in _DOING)
-        ):  # fmt: skip
-            break
-        cursor.i += 1
 
 
 def forever_alone(parser: Parser, word: Token) -> NoReturn:

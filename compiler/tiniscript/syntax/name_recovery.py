@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, NoReturn
 from tiniscript.diagnostics import codes
 from tiniscript.kit import Kit
 from tiniscript.source import Span
+from tiniscript.syntax.assignment_recovery import AssignmentRecovery
 from tiniscript.syntax.ast import Assign
 from tiniscript.syntax.block_recovery import BlockRecovery
 from tiniscript.syntax.blocks import Blocks
@@ -77,6 +78,7 @@ class NameRecovery:
         self.kit = kit
         self.in_block = in_block
         self.sentence = SentenceRecovery(cursor, reporter, blocks, in_block)
+        self.of_value = AssignmentRecovery(cursor, reporter, self.unread_assignment)
         self.talk = TalkRecovery(cursor, reporter, in_block)
 
     def reserved_name(self, name: Token) -> None:
@@ -189,11 +191,11 @@ class NameRecovery:
             self.other_note(word.start, word.text, word.end)
         if kind == "-":
             self._arrow(word)
-            self._hyphened(word)
+            self.of_value.hyphened(word)
         if kind in SIGNS:
             self.not_an_instruction(word)
         if kind == ",":
-            self._several_at_once(word)
+            self.of_value.several_at_once(word)
         if kind is NUMBER or kind == ",":
             self._values_without_brackets(word, following)
 
@@ -232,42 +234,6 @@ class NameRecovery:
             point = Token(ODD, ".", tokens[k + 1].start, tokens[k + 2].end)
             tokens[k + 1 : k + 3] = [point]
             self.sentence.word_and_sign(word, point)
-
-    def _hyphened(self, word: Token) -> None:
-        """`mi-velocidad = 50`: a name has no hyphen."""
-        tokens, k = self.cursor.tokens, self.cursor.i
-        second = tokens[k + 2]
-        is_close = tokens[k + 1].start == word.end and second.start == tokens[k + 1].end
-        if is_close and second.kind is WORD and tokens[k + 3].kind == "=":
-            right = f"{word.text}_{second.text}"
-            span = Span(word.start, second.end)
-            self.unread_assignment(Token(WORD, right, *span))
-            found = self.cursor.source[span]
-            self.reporter.fail(codes.NAME_WITH_SPACE, span, found=found, right=right)
-
-    def _several_at_once(self, word: Token) -> None:
-        """`X, Y = 5, 6`: each variable has a line of its own."""
-        cursor = self.cursor
-        tokens, k = cursor.tokens, cursor.i
-        names = [word]
-        while tokens[k + 1].kind == "," and tokens[k + 2].kind is WORD:
-            k += 2
-            names.append(tokens[k])
-        if tokens[k + 1].kind != "=" or len(names) < 2:
-            return
-        end = k + 2
-        while tokens[end].kind not in AT_END:
-            end += 1
-        row = tokens[k + 2 : end]
-        values = [each.text for each in row if each.kind is NUMBER or each.kind is WORD]
-        is_even = len(values) == len(names) and len(row) == 2 * len(values) - 1
-        pairs = zip(names, values, strict=False)
-        fix = ";".join(f"{name.text} = {value}" for name, value in pairs) if is_even else ""
-        for name in names:
-            self.unread_assignment(name)
-        cursor.i = end
-        place = cursor.span_from(word)
-        self.reporter.fail(codes.OTHER_ASSIGNMENT, word.span, place, found=",", fix=fix)
 
     def _values_without_brackets(self, word: Token, following: Token) -> None:
         """`F2, 80`, `FORWARD 2 80`, `SPEED 50`."""
@@ -377,6 +343,8 @@ class NameRecovery:
         """`DISTANCE < 10` alone: suggest the question."""
         tokens, start = self.cursor.tokens, self.cursor.i
         tokens = tokens[start : body_begins(tokens, start, names_end=False)]
+        if self.in_block.known.is_own(first.text) and not self.in_block.is_name(first.text):
+            self.of_value.changed(first, tokens)
         asks = any(token.kind in COMPARISONS or token.text == "NOT" for token in tokens)
         sign = next((token for token in tokens if token.kind in SIGNS), first)
         place = sign if asks else first

@@ -6,7 +6,7 @@ from tiniscript.diagnostics import codes
 from tiniscript.fixed_point import as_text
 from tiniscript.source import Span
 from tiniscript.syntax.cursor import AFTER_VALUE, AT_END, Cursor
-from tiniscript.syntax.lexer import NUMBER, WORD, Token
+from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Token
 from tiniscript.syntax.operators import BINARY
 from tiniscript.syntax.reporter import Reporter
 from tiniscript.syntax.units import converted
@@ -28,6 +28,8 @@ class NumberRecovery:
         if token.text not in UNITS or not (before.kind is NUMBER or is_name):
             return False
         ends_here = after in (AFTER_VALUE if in_brackets else AT_END)
+        if in_brackets and token.text in WORDS and not self._closes(k + 1):
+            return False  # `IF(DISTANCE < 10 S`: the bracket is open, and S stops
         if not (ends_here and (in_brackets or token.text not in WORDS)) and after not in BINARY:
             return False
         number, first = before.text, before
@@ -42,6 +44,13 @@ class NumberRecovery:
         self.reporter.report(codes.UNIT, span, found=found, number=number, right=right, unit=unit)
         cursor.i = k + 1
         return True
+
+    def _closes(self, k: int) -> bool:
+        """Whether a `)` comes on this line before another bracket opens."""
+        tokens = self.cursor.tokens
+        while tokens[k].kind not in ("(", ")", NEWLINE, END):
+            k += 1
+        return tokens[k].kind == ")"
 
     def with_part(self, whole: Token, over: Token) -> None:
         """`1 1/2`: a number and a part of one."""

@@ -192,6 +192,8 @@ class _Reader:
                 continue
             if token.kind is ODD or token.kind == ",":
                 return None
+            if token.kind is WORD and self.known.is_name(token.text) and padded[k].kind == "(":
+                return None  # `DISTANCE(15)`
             text = self.known.value(token.text) if token.kind is WORD else token.text
             row.append(token._replace(text=text))
         return written(row) or None

@@ -257,7 +257,7 @@ class Parser:
         cursor.i += 1
         name = cursor.token
         if name.kind is not WORD:
-            self.recovery.in_block.no_name(word)
+            self.recovery.of_def.no_name(word)
         cursor.i += 1
         if name.text in WORDS:
             right = other_name(name.text)
@@ -266,9 +266,9 @@ class Parser:
             name = self.recovery.of_name.joined(name)
         block = self.blocks.begin("DEF", Span(word.start, name.end), name=name)
         if cursor.token.kind == "(":
-            self.recovery.in_block.def_with_values(word, name, self.expressions.arguments())
+            self.recovery.of_def.def_with_values(word, name, self.expressions.arguments())
             block.span = cursor.span_from(word)
-            self.recovery.in_block.body_of_def(block)
+            self.recovery.of_def.body_of_def(block)
 
     def arm(self, word: Token, is_reported: bool = False) -> None:
         """`is_reported`: `word` has a diagnostic already, and may lack its brackets."""

@@ -19,6 +19,7 @@ from tiniscript.syntax.call_suggestions import (
 )
 from tiniscript.syntax.construct_recovery import ConstructRecovery
 from tiniscript.syntax.cursor import AT_END, Cursor
+from tiniscript.syntax.def_recovery import DefRecovery
 from tiniscript.syntax.foreign import forever_alone
 from tiniscript.syntax.lexer import NUMBER, ODD, WORD, Token
 from tiniscript.syntax.name_recovery import NameRecovery
@@ -65,6 +66,7 @@ class Recovery:
         self.setup = SetupRecovery(cursor, reporter)
         self.in_block = BlockRecovery(cursor, reporter, blocks, kit)
         self.of_name = NameRecovery(cursor, reporter, blocks, kit, self.in_block)
+        self.of_def = DefRecovery(cursor, reporter, blocks, self.in_block)
         self.times = TimesRecovery(cursor, reporter, self.in_block)
         self.construct = ConstructRecovery(cursor, reporter, self.in_block)
 

@@ -218,6 +218,10 @@ def is_question(tokens: Sequence[Token], start: int) -> bool:
 def operator_words(tokens: Sequence[Token], k: int) -> tuple[int, str] | None:
     """Return where words such as `Y` or `IS LESS THAN` end, and the operator that they say."""
     end, said = k, ""
+    if tokens[k].text in ("NO", "NOT") and len(tokens) > k + 2:  # `DISTANCE no < 10`
+        contrary = OPPOSITES.get(tokens[k + 1].kind)
+        if contrary and (starts_value(tokens[k + 2]) or tokens[k + 2].kind == "-"):
+            return k + 2, contrary
     while tokens[end].kind is WORD:
         text, after = tokens[end].text, tokens[min(end + 1, len(tokens) - 1)].text
         if text in ("NO", "NOT") and (said == "=" or (not said and after in _EQUALS)):
@@ -226,6 +230,8 @@ def operator_words(tokens: Sequence[Token], k: int) -> tuple[int, str] | None:
             said += "="
         elif said in COMPARISONS - {"="} and text in _EQUALS:
             said += "=" if said in ("<", ">") else ""
+        elif text in ("MENOS", "MAS") and after in ("DE", "QUE"):  # `menos de 15`
+            said = "<" if text == "MENOS" else ">"
         elif text in OPERATOR_WORDS:
             if said in ("AND", "OR"):
                 break

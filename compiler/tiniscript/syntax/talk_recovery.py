@@ -79,28 +79,40 @@ class TalkRecovery:
         return not is_guessed(text) or after.kind in (NUMBER, *AT_END)
 
     def one_motor(self, word: Token) -> None:
-        """`mover motor izquierdo 50`: M has a power for each motor."""
+        """`motor izquierdo 50`: M has a power for each motor, and sets both."""
         cursor = self.cursor
-        end = cursor.i
-        while cursor.tokens[end].kind not in AT_END:
-            end += 1
-        row = cursor.tokens[cursor.i : end]
-        texts = {each.text for each in row}
-        numbers = [each.text for each in row if each.kind is NUMBER]
-        sides = [side for side, names in _SIDES.items() if texts & names]
-        if not texts & _MOTORS or len(sides) != 1 or len(numbers) != 1 or len(row) > 8:
+        said = self._motor_at(cursor.i)
+        if said is None:
             return
-        if any(each.kind not in (WORD, NUMBER, "%", "(", ")", ",", "-") for each in row):
-            return
-        sign = "-" if any(each.kind == "-" for each in row) else ""
-        power = sign + numbers[0]
-        fix = f"M({power}, 0)" if sides[0] == "L" else f"M(0, {power})"
-        span = Span(word.start, row[-1].end)
+        powers = {said[0]: said[1]}
+        end = said[2]
+        other = self._motor_at(cursor.after_newlines(end + (cursor.tokens[end].kind == ";")))
+        if other is not None and other[0] not in powers:
+            powers[other[0]] = other[1]
+            end = other[2]
+        fix = f"M({powers.get('L', '0')}, {powers.get('R', '0')})"
+        span = Span(word.start, cursor.tokens[end - 1].end)
         cursor.i = end
         self.reporter.fail(
             codes.OTHER_LANGUAGE, span, span, found=shortened(cursor.source[span]), right="M",
             fix=fix, usage=WORDS["M"].usage,
         )  # fmt: skip
+
+    def _motor_at(self, start: int) -> tuple[str, str, int] | None:
+        """Return the side, the power and the end of the instruction `motor izquierdo 50`."""
+        tokens, end = self.cursor.tokens, start
+        while tokens[end].kind not in AT_END:
+            end += 1
+        row = tokens[start:end]
+        texts = {each.text for each in row}
+        numbers = [each.text for each in row if each.kind is NUMBER]
+        sides = [side for side, names in _SIDES.items() if texts & names]
+        if not texts & _MOTORS or len(sides) != 1 or len(numbers) != 1 or len(row) > 8:
+            return None
+        if any(each.kind not in (WORD, NUMBER, "%", "(", ")", ",", "-") for each in row):
+            return None
+        sign = "-" if any(each.kind == "-" for each in row) else ""
+        return sides[0], sign + numbers[0], end
 
     def not_to_move(self, word: Token) -> None:
         """`no avances`, `para de avanzar`, `deja de girar`: the robot stands still."""

@@ -1,0 +1,57 @@
+"""Recovery of the headers of DEFs: without a name, with values, with a colon."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NoReturn
+
+from tiniscript.diagnostics import codes
+from tiniscript.source import Span
+from tiniscript.syntax.ast import Argument, Assign
+from tiniscript.syntax.block_recovery import BlockRecovery
+from tiniscript.syntax.blocks import Block, Blocks
+from tiniscript.syntax.cursor import Cursor
+from tiniscript.syntax.lexer import ODD, Token
+from tiniscript.syntax.reporter import Reporter
+
+
+class DefRecovery:
+    def __init__(
+        self, cursor: Cursor, reporter: Reporter, blocks: Blocks, in_block: BlockRecovery
+    ) -> None:
+        self.cursor = cursor
+        self.reporter = reporter
+        self.blocks = blocks
+        self.in_block = in_block
+
+    def no_name(self, word: Token) -> NoReturn:
+        """`DEF` alone."""
+        self.in_block.begin_reported("DEF", word.span)
+        self.reporter.fail(codes.DEF_NEEDS_NAME, word.span)
+
+    def def_with_values(self, word: Token, name: Token, arguments: Sequence[Argument]) -> None:
+        """`DEF SQUARE(SIDE)`: a DEF takes no values, but a variable can bring them."""
+        place = self.cursor.span_from(word)
+        names = [
+            str(part.value)
+            for each in arguments
+            for part in each.expression
+            if part.op == "NAME" and not self.in_block.is_name(str(part.value))
+        ]
+        for each in names:  # known from here on
+            self.blocks.program.append(Assign(each, name.span, None, name.span))
+        fix = ";".join((*(f"{each} = 0" for each in names), f"DEF {name.text}"))
+        if names:
+            span = Span(name.end, place.end)
+            self.reporter.report(codes.NO_BRACKETS_HERE, span, place, word=name.text, fix=fix)
+        else:
+            span = self.cursor.span_from(name)
+            self.reporter.report(codes.EMPTY_BRACKETS, span, word=name.text)
+
+    def body_of_def(self, block: Block) -> None:
+        """`def turn():`: go past the colon. That it lacks its END_DEF is another mistake."""
+        cursor = self.cursor
+        if cursor.token.kind is ODD and cursor.token.text == ":":
+            self.reporter.answer(cursor.token)
+            cursor.i += 1
+        block.is_reported = True
