@@ -60,7 +60,7 @@ CASES = [
     ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "R(1, 60)", "only turned on the spot"),
     ('kind = "reaches"\nat = [[140, 100], [60, 100]]', "F(1, 89); B(2, 89)", "B(1, 89); F(2, 89)", "get to the goal 2 of 2"),
     ('kind = "reaches"\nat = [140, 100]\nby_seconds = 2', "F(1, 89)", "F(4, 22)", "after 3.0 s; it has 2 s"),
-    ('kind = "reaches"\nat = [140, 100]\nby_cm = 50', "F(1, 89)", "B(1, 89); F(2, 89)", "drove 110 cm to the goal; 50 cm are enough"),
+    ('kind = "reaches"\nat = [140, 100]\nby_cm = 50', "F(1, 89)", "B(1, 89); F(2, 89)", "drove 110 cm to the goal; 50 cm will do"),
     ('kind = "stays_in"\nat = "start"\nwithin_cm = 30', "F(0.5, 50)", "F(1, 89)", "After 0.8 s the robot left the goal"),
     ('kind = "stands_before"\nlow_cm = 20\nhigh_cm = 50', "F(1, 89)", "F(0.5, 50)", "stood 66 cm before the obstacle; the task asks for 20 to 50 cm"),
     ('kind = "stands_before"\nlow_cm = 20\nhigh_cm = 50', "F(1, 89)", "F(1.6, 89)", "stood 13 cm before the obstacle"),
@@ -72,6 +72,12 @@ CASES = [
     ('kind = "drives"\nat_most_cm = 30', "F(0.5, 50)", "F(1, 89)", "drove 40 cm; the task allows 30 cm"),
     ('kind = "pauses"\nat_least_seconds = 1', "F(1,50);W(1);B(1,50)", "F(1,50);W(0.5);B(1,50)", "waited 0.5 s; the task asks for 1 s"),
     ('kind = "pauses"\nat_least_seconds = 1\ntimes = 2', "LOOP(3);F(0.2,50);W(1);END_LOOP", "F(1,50);W(1);B(1,50)", "1 of 2 times"),
+    ('kind = "pauses"\nat_least_seconds = 1\nat = [140, 100]', "F(1,89);W(1);B(1,89)", "F(1,89);B(1,89);W(1);F(0.1,50)", "did not wait 1 s at the goal"),
+    ('kind = "pauses"\nat_least_seconds = 1\nat = ["start", [140, 100]]', "F(0.1,50);W(1);F(0.9,89);W(1);B(1,50)", "F(0.1,50);W(1);F(0.9,89);B(1,50)", "at the goal 2"),
+    ('kind = "ends_in"\nat = [140, 100]', "F(1, 89)", "F(1, 89);B(1, 89)", "was 40 cm from the goal"),
+    ('kind = "uses"\nwords = ["DEF"]', "DEF HOP;BEEP(0.1,440);END_DEF;HOP", "DEF HOP;BEEP(0.1,440);END_DEF", "word HOP and never calls it"),
+    ('kind = "uses"\nwords = ["LOOP"]', "LOOP(2);W(0.1);BEEP(0.1,440);END_LOOP", "LOOP(2);W(0.1);END_LOOP", "LOOP of the program repeats nothing"),
+    ('kind = "uses"\nwords = ["LOOP"]', "DEF HOP;BEEP(0.1,440);END_DEF;LOOP(2);HOP;END_LOOP", "LOOP(1);BEEP(0.1,440);END_LOOP", "LOOP of the program repeats nothing"),
     ('kind = "shows"\nvalue = 4', "SHOW(2 + 2)", "SHOW(5)", "showed 5; 4 is right"),
     ('kind = "shows"\nwhat = "DISTANCE"\ntolerance = 1', "SHOW(DISTANCE)", "SHOW(50)", "showed 50, but DISTANCE was about 77 then"),
     ('kind = "shows"\nwhat = "TIME"\ntolerance = 0.1', "W(1);SHOW(TIME)", "W(1);SHOW(2)", "showed 2, but it was on its way for 1 s"),
@@ -84,8 +90,8 @@ CASES = [
     ('kind = "order"\nwords = ["moves"]', "F(1,50)", "W(1)", "did not move"),
     ('kind = "ends"', "W(1)", "LOOP(FOREVER);W(1);END_LOOP", "After 10.0 s the program was still running"),
     ('kind = "uses"\nwords = ["UNTIL"]', "F(1,50) UNTIL(DISTANCE < 9)", "F(1,50) // UNTIL", "does not use UNTIL"),
-    ('kind = "uses"\nwords = ["LOOP"]\ntimes = 2', "LOOP(2);LOOP(2);W(0.1);END_LOOP;END_LOOP", "LOOP(2);W(0.1);END_LOOP", "LOOP 1 of 2 times"),
-    ('kind = "moves"\nat_most = 1', "LOOP(2);F(0.1,50);END_LOOP", "F(0.1,50);F(0.1,50)", "has 2 moves; 1 are enough"),
+    ('kind = "uses"\nwords = ["LOOP"]\ntimes = 2', "LOOP(2);LOOP(2);BEEP(0.1,440);END_LOOP;END_LOOP", "LOOP(2);W(0.1);END_LOOP", "LOOP 1 of 2 times"),
+    ('kind = "moves"\nat_most = 1', "LOOP(2);F(0.1,50);END_LOOP", "F(0.1,50);F(0.1,50)", "has 2 moves; 1 will do"),
 ]  # fmt: skip
 
 

@@ -25,13 +25,14 @@ class Kind(NamedTuple):
 
     `places` are how many places at least; 0: it has none. `words` is what its words are: "" for
     none, "word" of the language or a sensor, "event" of EVENTS, "sensor" of the lesson's robot or
-    TIME.
+    TIME. `may_be_anywhere`: its places may be left out.
     """
 
     meaning: str
     numbers: tuple[Number, ...] = ()
     places: int = 0
     words: str = ""
+    may_be_anywhere: bool = False
 
 
 EVENTS = ("moves", "stops", "beeps", "shows")
@@ -48,13 +49,13 @@ KINDS: dict[str, Kind] = {
     "never_touches": Kind("it touches nothing"),
     "follows": Kind("its line sensors stay on the black line, for so many cm of it", (Number("within_cm", 1, 500, 6), Number("at_least_cm", 1, MOST))),
     "drives": Kind("it drives so many cm", (Number("at_least_cm", 0, MOST, 0), Number("at_most_cm", 1, MOST, MOST))),
-    "pauses": Kind("it stands so long between two moves", (Number("at_least_seconds", 0.1, 600), TIMES)),
+    "pauses": Kind("it stands so long between two moves; with `at`, within so many cm of each of these places", (Number("at_least_seconds", 0.1, 600), TIMES, WITHIN), places=1, may_be_anywhere=True),
     "shows": Kind("it shows a value: any, this one, or that of a sensor or of TIME at that moment",
                   (TIMES, Number("value", -MOST, MOST, MOST + 1), Number("tolerance", 0, MOST, 0)), words="sensor"),
     "beeps": Kind("its buzzer sounds so often, at so many different pitches", (TIMES, Number("pitches", 1, 100, 1))),
     "order": Kind("these things happen one after the other: moves, stops, beeps, shows", words="event"),
     "ends": Kind("the program ends by itself"),
-    "uses": Kind("the text has these words, each so often", (TIMES,), words="word"),
+    "uses": Kind("the text has these words, each so often; a DEF counts if it is called, a LOOP if it repeats more than waiting", (TIMES,), words="word"),
     "moves": Kind("the text has at most so many moves", (Number("at_most", 1, 1000),)),
 }
 # fmt: on

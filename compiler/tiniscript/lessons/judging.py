@@ -82,6 +82,7 @@ def _causes(found: list[Finding]) -> list[Finding]:
         each
         for each in found
         if not (is_lost and each.kind in WHERE)
+        and not (each.key.startswith("pauses/place") and (is_lost or "reaches" in kinds))
         and not (each.kind == "order" and each.key.rpartition("/")[2] in kinds)
     ]
 
@@ -124,7 +125,7 @@ def _ends_in(criterion: Criterion, task: Task) -> Finding | None:
         dx, dy = end.x_cm - start.x_cm, end.y_cm - start.y_cm
         along_cm, beside_cm = dx * ux + dy * uy, abs(dy * ux - dx * uy)
         if math.dist(start[:2], end[:2]) < STILL_CM:
-            key = "turned"
+            key = "turned" if run.driven_cm < STILL_CM else "away"
         elif beside_cm <= within_cm and along_cm >= 0:
             key = "short" if along_cm < way_cm else "far"
     return Finding("ends_in", f"ends_in/{key}", {"cm": _cm(away_cm)}, criterion.labels)
@@ -295,15 +296,28 @@ def _stands(run: Run) -> list[tuple[int, int]]:
 
 def _pauses(criterion: Criterion, task: Task) -> Finding | None:
     least_s, times = criterion.numbers["at_least_seconds"], int(criterion.numbers["times"])
-    lasted = [end_ms - begin_ms for begin_ms, end_ms in _stands(task.run)]
-    long = [ms for ms in lasted if ms >= least_s * 1000 - 1]
+    stands = _stands(task.run)
+    long = [end_ms for begin_ms, end_ms in stands if end_ms - begin_ms >= least_s * 1000 - 1]
     if len(long) >= times:
-        return None
+        return _paused_at(criterion, task, long)
     values = {"least": f"{least_s:g}", "times": str(times), "found": str(len(long))}
     if times > 1:
         return Finding("pauses", "pauses/several", values)
-    values["seconds"] = _seconds(max(lasted, default=0))
-    return Finding("pauses", "pauses/short" if lasted else "pauses/none", values)
+    values["seconds"] = _seconds(max((end_ms - begin_ms for begin_ms, end_ms in stands), default=0))
+    return Finding("pauses", "pauses/short" if stands else "pauses/none", values)
+
+
+def _paused_at(criterion: Criterion, task: Task, long: list[int]) -> Finding | None:
+    """Compare where the robot stood until these times with where it should."""
+    track, least_s = task.run.track, criterion.numbers["at_least_seconds"]
+    poses = [next((pose for ms, pose in track if ms >= end), track[-1].pose) for end in long]
+    key = "pauses/place" if len(criterion.places) == 1 else "pauses/places"
+    for number in range(len(criterion.places)):
+        place, within_cm = task.point(criterion, number), criterion.numbers["within_cm"]
+        if all(math.dist(place, pose[:2]) > within_cm for pose in poses):
+            values = {"least": f"{least_s:g}", "number": str(number + 1)}
+            return Finding("pauses", key, values, criterion.labels)
+    return None
 
 
 def _order(criterion: Criterion, task: Task) -> Finding | None:
@@ -311,16 +325,14 @@ def _order(criterion: Criterion, task: Task) -> Finding | None:
     before = ""
     for word in criterion.words:
         if word not in happened:  # which goes on behind the one that it has found
-            key = f"order/{before}/{word}" if before else f"order//{word}"
-            return Finding("order", key)
+            return Finding("order", f"order/{before}/{word}")
         before = word
     return None
 
 
 def _ends(criterion: Criterion, task: Task) -> Finding | None:
-    if task.run.ending == DONE:
-        return None
-    return Finding("ends", "ends", {"seconds": _seconds(task.run.end_ms)})
+    over = {"seconds": _seconds(task.run.end_ms)}
+    return None if task.run.ending == DONE else Finding("ends", "ends", over)
 
 
 # -- what it says ---------------------------------------------------------------------------------

@@ -149,7 +149,8 @@ def _criterion(table: Table, world: World, sensors: tuple[str, ...]) -> Criterio
     for low, high in (("low_cm", "high_cm"), ("at_least_cm", "at_most_cm")):
         if low in numbers and numbers[low] > numbers.get(high, numbers[low]):
             table.complain("low_above_high", low, other=table.path_of(high))
-    places = _places(table, world, kind.places) if kind.places else ()
+    has_places = bool(kind.places) and not (kind.may_be_anywhere and not table.has("at"))
+    places = _places(table, world, kind.places) if has_places else ()
     labels: dict[str, str] = NO_LABELS
     if kind.places and any(table.has(language) for language in LANGUAGES):
         labels = _labels(table)

@@ -6,19 +6,21 @@ Knows tokens: a word in a comment does not count. Does not know what the program
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from itertools import pairwise
 
 from tiniscript import robots
 from tiniscript.lessons.judging import Finding
 from tiniscript.lessons.lesson import Criterion, Lesson
-from tiniscript.syntax.lexer import WORD, scan
+from tiniscript.syntax.lexer import NUMBER, WORD, scan
 
 MOVES = frozenset("FBLRM")
+ACTS = MOVES | {"S", "BEEP", "SHOW"}  # waiting alone is nothing to repeat
 
 
 def judged_text(text: str, lesson: Lesson) -> list[Finding]:
     """Return what is missing in a program's text, whatever it does."""
-    words = [token.text for token in scan(text).tokens if token.kind == WORD]
+    words = [token.text for token in scan(text).tokens if token.kind in (WORD, NUMBER)]
     question = {"question": _question(lesson.robot)}
     found = (JUDGES[each.kind](each, words) for each in lesson.criteria if each.kind in JUDGES)
     return [each._replace(values={**each.values, **question}) for each in found if each]
@@ -38,7 +40,36 @@ def _uses(criterion: Criterion, words: list[str]) -> Finding | None:
             key = "uses/none" if not counted[word] else "uses/few"
             values = {"word": word, "times": str(times), "found": str(counted[word])}
             return Finding("uses", key, values)
+    own = _own_words(words)
+    uncalled = [name for name in own if words.count(name) == 1]
+    if "DEF" in criterion.words and len(own) - len(uncalled) < times and uncalled:
+        return Finding("uses", "uses/uncalled", {"name": uncalled[0]})
+    if "LOOP" in criterion.words and not any(
+        ACTS.union(own).intersection(inside) for inside in _repeated(words)
+    ):
+        return Finding("uses", "uses/idle")
     return None
+
+
+def _own_words(words: Sequence[str]) -> list[str]:
+    """Return the names that the program gives with DEF."""
+    return [name for word, name in pairwise(words) if word == "DEF"]
+
+
+def _repeated(words: Sequence[str]) -> list[list[str]]:
+    """Return what is inside of each LOOP that repeats: LOOP(1) and LOOP(0) do not."""
+    found: list[list[str]] = []
+    open_loops: list[list[str]] = []
+    for word in words:
+        if word == "END_LOOP" and open_loops:
+            inside = open_loops.pop()
+            if inside[:1] not in (["0"], ["1"]):
+                found.append(inside)
+        for inside in open_loops:
+            inside.append(word)
+        if word == "LOOP":
+            open_loops.append([])
+    return found
 
 
 def _moves(criterion: Criterion, words: list[str]) -> Finding | None:
