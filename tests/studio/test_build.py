@@ -16,6 +16,7 @@ from tools.builds import studio
 
 LARGEST = 6_000_000  # bytes of all files, gzipped
 SOURCES = ROOT / "tools" / "studio"
+TEXTS = ("texts.js", "lesson_texts.js")
 
 
 @pytest.fixture(scope="module")
@@ -34,10 +35,10 @@ def test_the_packages_are_pinned_and_come_from_nowhere_in_particular() -> None:
         assert not name or package["integrity"].startswith("sha512-"), name
 
 
-@pytest.mark.parametrize("file", ["texts.js", "robot_texts.js", "class_texts.js"])
-def test_every_sentence_is_there_in_both_languages(file: str) -> None:
-    source = (SOURCES / "src" / file).read_text(encoding="utf-8")
-    table = source[source.index("export const ") : source.index("};")]
+@pytest.mark.parametrize("name", TEXTS)
+def test_every_sentence_is_there_in_both_languages(name: str) -> None:
+    source = (SOURCES / "src" / name).read_text(encoding="utf-8")
+    table = source[source.index("TEXTS = {") : source.index("};")]
     rows = re.findall(r"^  (\w+): \[", table, re.MULTILINE)
     pairs = re.findall(r"^  \w+: \['(?:[^'\\]|\\.)*',\s+'(?:[^'\\]|\\.)*'\],$", table, re.MULTILINE)
     assert len(rows) == len(pairs) > 20
@@ -46,12 +47,14 @@ def test_every_sentence_is_there_in_both_languages(file: str) -> None:
         assert sorted(re.findall(r"\{\w+\}", english)) == sorted(re.findall(r"\{\w+\}", spanish))
 
 
-def test_every_sentence_is_said_somewhere() -> None:
-    names = re.findall(r"^  (\w+): \[", (SOURCES / "src" / "texts.js").read_text(), re.MULTILINE)
+@pytest.mark.parametrize("name", TEXTS)
+def test_every_sentence_is_said_somewhere(name: str) -> None:
+    source = (SOURCES / "src" / name).read_text(encoding="utf-8")
+    names = re.findall(r"^  (\w+): \[", source, re.MULTILINE)
     said = "".join(
         path.read_text(encoding="utf-8")
         for path in (SOURCES / "src").iterdir()
-        if path.suffix in (".js", ".html") and path.name != "texts.js"
+        if path.suffix in (".js", ".html") and path.name != name
     )
     assert [name for name in names if not re.search(rf"['\"]{name}['\"]", said)] == []
 

@@ -24,8 +24,8 @@ WRONG = "SI|" + "F(-2, 80);\nIF(DISTANCE < 10;\n" * 6
 # What can be pressed or chosen, and whether another such thing or the edge of the screen cuts it.
 LOOK = """() => {
   const found = [];
-  const boxes = [...document.querySelectorAll('header button, header select, h1, main section > :not(div), #sides > *, #controls, #editor, #link_ways > *, #link_drive > *')]
-    .filter((e) => e.checkVisibility() && e.textContent || e.value)
+  const boxes = [...document.querySelectorAll('header button, header select, h1, main section > :not(div), #sides > *, #controls, #editor, #link_ways > *, #link_drive > *, #lesson_controls > *, #lesson_said, #lesson_page')]
+    .filter((e) => e.checkVisibility() && (e.textContent || e.value))
     .map((e) => [e.id || e.tagName, e.getBoundingClientRect()]);
   for (const [name, box] of boxes) {
     if (box.left < -0.5 || box.top < -0.5 || box.right > innerWidth + 0.5 || box.bottom > innerHeight + 0.5)
@@ -55,7 +55,10 @@ def test_everything_is_seen(page: Page, screen: tuple[int, int], language: str) 
     page.select_option("#language", language)
     for text in ("SI|F(2, 80)", WRONG):
         write(page, text)
-        assert page.evaluate(LOOK) == []
+        for side in ("lessons", "virtual"):
+            page.click(f"#side_{side}")
+            page.locator("#lesson_check:enabled").wait_for(state="attached")
+            assert page.evaluate(LOOK) == [], side
     page.locator("#messages li").last.scroll_into_view_if_needed()
     assert page.locator("#editor").bounding_box()["height"] >= 96  # type: ignore[index]
 
@@ -63,9 +66,14 @@ def test_everything_is_seen(page: Page, screen: tuple[int, int], language: str) 
 @pytest.mark.parametrize("text", ["SI|F(2, 80)", WRONG], ids=["right", "wrong"])
 def test_axe_finds_nothing(page: Page, text: str) -> None:
     write(page, text)
+    assert axe(page) == []
+
+
+def axe(page: Page) -> list[tuple[str, str]]:
+    """Return what axe finds in a page: the rule, and the first element."""
     page.evaluate((MODULES / "axe-core" / "axe.min.js").read_text(encoding="utf-8"))
     found: dict[str, Any] = page.evaluate("axe.run()")
-    assert [(each["id"], each["nodes"][0]["html"]) for each in found["violations"]] == []
+    return [(each["id"], each["nodes"][0]["html"]) for each in found["violations"]]
 
 
 def test_the_keyboard_alone_is_enough(page: Page) -> None:

@@ -11,6 +11,7 @@ from tests.support.casefile import ROOT
 from tests.support.studio import checked, write
 from tiniscript import compile, run
 from tiniscript.studio.simulation import Simulation
+from tiniscript.virtual import worlds
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -76,7 +77,7 @@ def test_a_run_is_the_same_as_without_a_page(page: Page, name: str, robot: str, 
         {"do": "stop"},
     ]
     answers = page.evaluate(ASK, {"requests": requests, "image": image.hex()})
-    simulation = Simulation(robot, world, image)
+    simulation = Simulation(robot, worlds.load(world), image)
     for request, answer in zip(requests, answers, strict=True):
         if request["do"] == "go":
             simulation.go(400)

@@ -25,7 +25,7 @@ def lines(simulation: Simulation) -> list[str]:
 
 
 def test_a_run_is_that_of_the_command() -> None:
-    simulation = Simulation("tinibot", "obstacles", compile(DANCE).image)
+    simulation = Simulation("tinibot", worlds.load("obstacles"), compile(DANCE).image)
     simulation.go(5000)
     assert lines(simulation) == [f"{each.ms} {each.text}" for each in run(DANCE).events]
 
@@ -40,7 +40,7 @@ def test_a_run_is_that_of_the_command() -> None:
 )
 def test_a_run_is_that_of_the_virtual_robot(name: str, robot: str, world: str) -> None:
     text = (ROOT / "examples" / f"{name}.ts").read_text(encoding="utf-8")
-    simulation = Simulation(robot, world, compile(text, robot).image)
+    simulation = Simulation(robot, worlds.load(world), compile(text, robot).image)
     simulation.go(8000)
     other = VirtualRobot(load(robot), worlds.load(world))
     talk = Talk(other)
@@ -53,7 +53,7 @@ def test_a_run_is_that_of_the_virtual_robot(name: str, robot: str, world: str) -
 
 def test_it_is_told_which_part_of_the_text_runs() -> None:
     text = "F(1, 80);\nR(0.5, 60);\nS"
-    simulation = Simulation("tinibot", "obstacles", compile(text).image)
+    simulation = Simulation("tinibot", worlds.load("obstacles"), compile(text).image)
     places = [0, 3]
     simulation.go(300)
     assert simulation.state()["at"] in range(3)
@@ -64,7 +64,9 @@ def test_it_is_told_which_part_of_the_text_runs() -> None:
 
 
 def test_a_stop_is_confirmed_and_the_motors_are_off() -> None:
-    simulation = Simulation("tinibot", "obstacles", compile("F(FOREVER, 80) UNTIL(FALSE)").image)
+    simulation = Simulation(
+        "tinibot", worlds.load("obstacles"), compile("F(FOREVER, 80) UNTIL(FALSE)").image
+    )
     simulation.go(500)
     assert simulation.state()["motors"] == [80, 80]
     before = simulation.robot.now_ms
@@ -77,7 +79,7 @@ def test_a_stop_is_confirmed_and_the_motors_are_off() -> None:
 
 
 def test_a_program_can_wait_for_its_button() -> None:
-    simulation = Simulation("tinibot", "obstacles", compile("SB|F(1, 80)").image)
+    simulation = Simulation("tinibot", worlds.load("obstacles"), compile("SB|F(1, 80)").image)
     simulation.go(3000)
     assert simulation.state()["is_waiting"]
     simulation.push()
@@ -86,7 +88,9 @@ def test_a_program_can_wait_for_its_button() -> None:
 
 
 def test_a_fault_is_named() -> None:
-    simulation = Simulation("tinibot", "obstacles", compile("X = 0; SHOW(1 / X)").image)
+    simulation = Simulation(
+        "tinibot", worlds.load("obstacles"), compile("X = 0; SHOW(1 / X)").image
+    )
     simulation.go(500)
     assert simulation.state()["fault"] == "DIVIDE_BY_ZERO"
 

@@ -114,7 +114,7 @@ def _sources() -> list[Path]:
     own = [path for path in SOURCES.rglob("*") if "node_modules" not in path.parts
            and "made" not in path.relative_to(SOURCES).parts]  # fmt: skip
     package = [path for path in (PACKAGE / "tiniscript").rglob("*")
-               if path.suffix in (".py", ".toml", ".wasm")]  # fmt: skip
+               if path.suffix in (".py", ".toml", ".wasm", ".md")]  # fmt: skip
     files = [*own, *(path for path in package if PAGE not in path.parents), Path(__file__)]
     return sorted(path for path in files if path.is_file() and "__pycache__" not in path.parts)
 

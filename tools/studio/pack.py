@@ -10,13 +10,15 @@ import ast
 import importlib._bootstrap_external as bootstrap
 import importlib.util
 import zipfile
+from collections.abc import Mapping
 from pathlib import Path, PurePosixPath
 from types import CodeType
 
 ROOT = "tiniscript.studio.worker"
+LESSONS = "tiniscript.studio.page_lessons"  # fetched when it is first needed
 # Rooms that need what no browser has: ports, a terminal, other programs.
 LEFT_OUT = ("tiniscript.cli", "tiniscript.doctor", "tiniscript.flash", "tiniscript.modules",
-            "tiniscript.sharing", "tiniscript.wiring", "tiniscript.lessons")  # fmt: skip
+            "tiniscript.sharing", "tiniscript.wiring")  # fmt: skip
 # Imported where there is a port, wasmtime or another system; never in a browser.
 NOT_HERE = {"wasmtime", "serial", "bleak", "zeroconf", "platformdirs", "tomli", "construct",
             "ctypes", "multiprocessing", "urllib.request", "ssl",
@@ -24,6 +26,7 @@ NOT_HERE = {"wasmtime", "serial", "bleak", "zeroconf", "platformdirs", "tomli", 
             "pydoc", "doctest", "unittest", "pdb", "argparse"}  # fmt: skip
 DATA = {"diagnostics": ("*.toml",), "link": ("*.toml",), "robots": ("*.toml",),
         "virtual": ("*.wasm",), "virtual/worlds": ("*.toml",)}  # fmt: skip
+DATA_OF_LESSONS = {"lessons": ("*/lesson.toml", "*/world.toml", "*/pupil.*.md")}
 ENCODINGS = ("encodings.latin_1", "encodings.ascii", "encodings.utf_8_sig", "encodings.cp437")
 STAMP = (1980, 1, 1, 0, 0, 0)
 Files = dict[str, bytes]
@@ -93,11 +96,17 @@ class Packer:
         return []
 
 
+NO_LINES = 0xF8  # of instructions without a place in the source; their number less 1 is added
+UNITS = 8  # the most of one entry
+
+
 def _stripped(code: CodeType) -> CodeType:
-    """Return code without the lines of its source."""
+    """Return code without the lines of its source, which are a fifth of it and pack badly."""
+    entries, rest = divmod(len(code.co_code) // 2, UNITS)
+    lines = bytes([NO_LINES + UNITS - 1] * entries + [NO_LINES + rest - 1] * (rest > 0))
     constants = tuple(_stripped(each) if isinstance(each, CodeType) else each
                       for each in code.co_consts)  # fmt: skip
-    return code.replace(co_linetable=b"", co_consts=constants)
+    return code.replace(co_linetable=lines, co_consts=constants)
 
 
 def pyc(source: bytes, name: str) -> bytes:
@@ -122,18 +131,27 @@ def compiled(files: Files) -> Files:
     }
 
 
+def data_of(package: str, rows: Mapping[str, tuple[str, ...]]) -> Files:
+    """Return the files of rooms that match their patterns."""
+    return {
+        path.relative_to(package).as_posix(): path.read_bytes()
+        for room, patterns in rows.items()
+        for pattern in patterns
+        for path in (Path(package) / "tiniscript" / room).glob(pattern)
+    }
+
+
 def pack(start: list[str], package: str, cobs: str, standard: str, target: str) -> str:
-    """Write `python.zip` and `tiniscript.zip`; return what was packed, in words."""
+    """Write `python.zip`, `tiniscript.zip` and `lessons.zip`; return what was packed, in words."""
     library = zipfile.ZipFile(standard)
     packer = Packer([Path(package), Path(cobs)], library)
     for name in (*start, *ENCODINGS, ROOT):
         packer.add(name)
-    data: Files = {}
-    for folder, patterns in DATA.items():
-        room = Path(package) / "tiniscript" / folder
-        for pattern in patterns:
-            for path in room.glob(pattern):
-                data[f"tiniscript/{folder}/{path.name}"] = path.read_bytes()
+    packed = set(packer.own)
+    write(f"{target}/tiniscript.zip", {**compiled(packer.own), **data_of(package, DATA)})
+    packer.add(LESSONS)  # what of Python's library these need is in the archive of that
+    lessons = {name: source for name, source in packer.own.items() if name not in packed}
+    data = data_of(package, DATA_OF_LESSONS)
+    write(f"{target}/lessons.zip", {**compiled(lessons), **data})
     write(f"{target}/python.zip", compiled(packer.standard))
-    write(f"{target}/tiniscript.zip", {**compiled(packer.own), **data})
     return f"{len(packer.own)} modules of tiniscript and cobs, {len(packer.standard)} of Python"

@@ -109,30 +109,21 @@ class _Marker:
         if not compiled.is_right:
             return Mark(given.name, MISTAKES, 0, tuple(self._mistakes(compiled)))
         try:
-            from tiniscript.lessons import running
+            from tiniscript.lessons.marking import Marking
         except (ImportError, OSError, RuntimeError) as why:  # missing, or not for this computer
             from tiniscript.cli.robot.simulator_options import not_installed
 
             raise not_installed("virtual_needs_wasmtime", why) from None
-        from tiniscript.lessons.judging import judged
-        from tiniscript.lessons.text_judging import judged_text
         from tiniscript.library.compiling import image_of
         from tiniscript.virtual.world import WorldRefused
 
         image = image_of(compiled, self.robot)
-        of_text = judged_text(compiled.source.text, self.lesson)
-        run = None
-        for seed in self.seeds:
-            try:
-                run = running.run(image, self.robot, self.lesson, seed)
-            except WorldRefused as refused:
-                raise self._blocked(refused, seed) from None
-            findings = judged(run, self.lesson)
-            if findings:
-                return Mark(given.name, FAILED, seed, self._said([*findings, *of_text]), run)
-        if of_text:
-            return Mark(given.name, FAILED, 0, self._said(of_text), run)
-        return Mark(given.name, PASSED, 0, (), run)
+        marking = Marking(compiled.source.text, image, self.robot, self.lesson, self.seeds)
+        try:
+            found = marking.whole()
+        except WorldRefused as refused:
+            raise self._blocked(refused, marking.seed) from None
+        return Mark(given.name, found.verdict, found.seed, self._said(found.findings), found.run)
 
     def _said(self, findings: Iterable[Finding]) -> tuple[tuple[str, str], ...]:
         from tiniscript.lessons.sentences import sentence

@@ -90,30 +90,50 @@ def run(image: Image, profile: Robot, lesson: Lesson, seed: int) -> Run:
 
     Raises WorldRefused where the robot does not fit into that world.
     """
-    robot = VirtualRobot(
-        profile, varied(lesson, seed), Settings(seed=seed, noise=lesson.noise, eeprom_us=0)
-    )
-    witness = _Witness(robot, seed)
-    if image.start == "PING":
-        return witness.run(ASKS)
-    _bring(robot, image)
-    witness.look()
-    end_ms = robot.now_ms + BRINGING_MS
-    while witness.began_ms is None and robot.now_ms < end_ms:
-        robot.step(robot.now_ms + 1)
-        witness.look()
-    assert witness.began_ms is not None, "the program does not begin"
-    limit_ms = witness.began_ms + round(lesson.seconds * 1000)
-    while robot.is_running:
-        if robot.now_ms >= limit_ms:
-            robot.rest()
-            return witness.run(LIMIT)
-        robot.step(min(robot.now_ms + STEP_MS, limit_ms))
-        witness.look()
-        if witness.events > EVENTS:
-            robot.rest()
-            return witness.run(BUSY)
-    return witness.run(FAULT if robot.fault else DONE)
+    found = Trial(image, profile, lesson, seed).go()
+    assert found is not None, "it goes on to the end"
+    return found
+
+
+class Trial:
+    """A program on its way through the world of a seed."""
+
+    def __init__(self, image: Image, profile: Robot, lesson: Lesson, seed: int) -> None:
+        """Raises WorldRefused where the robot does not fit into that world."""
+        robot = self._robot = VirtualRobot(
+            profile, varied(lesson, seed), Settings(seed=seed, noise=lesson.noise, eeprom_us=0)
+        )
+        self._witness = _Witness(robot, seed)
+        self._asks = image.start == "PING"
+        if self._asks:
+            return
+        _bring(robot, image)
+        self._witness.look()
+        end_ms = robot.now_ms + BRINGING_MS
+        while self._witness.began_ms is None and robot.now_ms < end_ms:
+            robot.step(robot.now_ms + 1)
+            self._witness.look()
+        assert self._witness.began_ms is not None, "the program does not begin"
+        self._limit_ms = self._witness.began_ms + round(lesson.seconds * 1000)
+
+    def go(self, most_ms: int | None = None) -> Run | None:
+        """Let the robot's time go on, at most by `most_ms`; return what it did, once it is over."""
+        robot, witness = self._robot, self._witness
+        if self._asks:
+            return witness.run(ASKS)
+        until_ms = self._limit_ms if most_ms is None else robot.now_ms + most_ms
+        while robot.is_running:
+            if robot.now_ms >= self._limit_ms:
+                robot.rest()
+                return witness.run(LIMIT)
+            if robot.now_ms >= until_ms:
+                return None
+            robot.step(min(robot.now_ms + STEP_MS, self._limit_ms))
+            witness.look()
+            if witness.events > EVENTS:
+                robot.rest()
+                return witness.run(BUSY)
+        return witness.run(FAULT if robot.fault else DONE)
 
 
 def _bring(robot: VirtualRobot, image: Image) -> None:

@@ -13,10 +13,9 @@ from tiniscript.library import opening
 from tiniscript.link.messages import NAME_BYTES, STOP_BYTES
 from tiniscript.robots.kinematics import Pose
 from tiniscript.robots.profile import LANGUAGES, Robot
+from tiniscript.studio.world_form import drawn
 from tiniscript.virtual import worlds
 from tiniscript.virtual.driving import Hull
-from tiniscript.virtual.geometry import Point
-from tiniscript.virtual.world import World
 from tiniscript.words import WORDS
 
 _UNOFFERED = ("alias", "later")  # roles of words that a program is better off without
@@ -45,7 +44,7 @@ def description() -> dict[str, Any]:
             "confirm_ms": round(opening.CONFIRM_S * 1000),
             "name_bytes": NAME_BYTES,
         },
-        "worlds": [_world(name, worlds.load(name)) for name in worlds.names()],
+        "worlds": [drawn(worlds.load(name)) for name in worlds.names()],
     }
 
 
@@ -83,21 +82,3 @@ def _example(name: str, role: str, is_yes_no: bool) -> str:
     if role == "sensor":
         return name
     return f"{name}(TRUE)" if is_yes_no else f"{name}(0)"
-
-
-def _world(name: str, world: World) -> dict[str, Any]:
-    def corners(points: tuple[Point, ...]) -> list[list[float]]:
-        return [[point.x, point.y] for point in points]
-
-    return {
-        "name": name,
-        "labels": dict(world.labels),
-        "width_cm": world.width_cm,
-        "height_cm": world.height_cm,
-        "has_border": world.has_border,
-        "walls": [corners(wall) for wall in world.walls],
-        "boxes": [corners(box) for box in world.boxes],
-        "lines": [{"points": corners(each.points), "width_cm": each.width_cm}
-                  for each in world.lines],
-        "lamps": [[lamp.place.x, lamp.place.y] for lamp in world.lamps],
-    }  # fmt: skip

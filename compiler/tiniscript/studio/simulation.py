@@ -11,8 +11,8 @@ from tiniscript.bytecode.image import unpack
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 from tiniscript.studio.checking import profile_of
-from tiniscript.virtual import worlds
 from tiniscript.virtual.robot import VirtualRobot
+from tiniscript.virtual.world import World
 
 LONGEST_MS = 10_000  # for a robot to answer
 PUSH_MS = 60
@@ -22,10 +22,10 @@ NONCE = 1  # the same program makes the same run
 class Simulation:
     """A robot that stands at the start of a world and has the program."""
 
-    def __init__(self, robot: str, world: str, image: bytes) -> None:
-        assert world in worlds.names(), world  # the page has no worlds of its own
+    def __init__(self, robot: str, world: World, image: bytes) -> None:
+        """Raises WorldRefused where the robot does not fit into the world."""
         profile = profile_of(robot)
-        self.robot = VirtualRobot(profile, worlds.load(world))
+        self.robot = VirtualRobot(profile, world)
         self.session = Session(NONCE, profile.board.baud, profile.kit.fingerprint)
         self.is_stopped = False
         pending = self.session.upload(unpack(image), runs=True, saves=True)

@@ -6,7 +6,9 @@ Knows the form of both. Runs in Pyodide, in a worker; knows nothing of a browser
 from __future__ import annotations
 
 import json
+import sys
 from collections.abc import Callable
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from tiniscript.diagnostics.rendering import Message
@@ -71,12 +73,26 @@ _simulation: Simulation | None = None  # a page has one robot
 
 
 def _power_on(fields: Answer, data: bytes) -> Answer:
+    """Switch the virtual robot on in `world`: a shipped one's name, or one of a lesson."""
     from tiniscript.studio.simulation import Simulation
+    from tiniscript.virtual import worlds
+    from tiniscript.virtual.world import WorldRefused
+    from tiniscript.virtual.world_refusals import describe
 
     global _simulation
     if _simulation is not None:
         _simulation.close()
-    _simulation = Simulation(fields["robot"], fields["world"], data)
+        _simulation = None
+    where = fields["world"]
+    try:
+        if isinstance(where, str):
+            assert where in worlds.names(), where
+            world = worlds.load(where)
+        else:
+            world = _lessons().world(where["lesson"], where["seed"])
+        _simulation = Simulation(fields["robot"], world, data)
+    except WorldRefused as refused:
+        return {"refused": describe(refused, fields["language"])}
     return _simulation.state()
 
 
@@ -138,8 +154,42 @@ def _import_keys(fields: Answer, data: bytes) -> Answer:
     return {"count": count, "keys": keys.file()}
 
 
+_check_of_lesson: Any = None  # the one that goes on
+
+
+def _lessons() -> Any:
+    """Return the lessons, which the page has fetched meanwhile; its first archive lacks them."""
+    sys.path_importer_cache.clear()
+    return import_module("tiniscript.studio.page_lessons")
+
+
+def _lesson_titles(fields: Answer, data: bytes) -> Answer:
+    return {"lessons": _lessons().titles(fields["language"])}
+
+
+def _lesson_page(fields: Answer, data: bytes) -> Answer:
+    return {"blocks": _lessons().page(fields["number"], fields["language"])}
+
+
+def _lesson_world(fields: Answer, data: bytes) -> Answer:
+    return {"world": _lessons().world_drawn(fields["number"], fields["seed"])}
+
+
+def _lesson_check(fields: Answer, data: bytes) -> Answer:
+    global _check_of_lesson
+    _check_of_lesson = _lessons().Check(fields["number"], data, fields["language"])
+    return {}
+
+
+def _lesson_go(fields: Answer, data: bytes) -> Answer:
+    found: Answer = _check_of_lesson.go(fields["most_ms"])
+    return found
+
+
 _ASKED: dict[str, Callable[[Answer, bytes], Answer]] = {
     "check": _check, "open": _open, "line": _line, "blocks": _blocks, "text": _text,
     "power_on": _power_on, "go": _go, "next": _next, "stop": _stop, "push": _push,
+    "lesson_titles": _lesson_titles, "lesson_page": _lesson_page, "lesson_world": _lesson_world,
+    "lesson_check": _lesson_check, "lesson_go": _lesson_go,
     "connect": _connect, "link": _link, "import_keys": _import_keys,
 }  # fmt: skip

@@ -26,11 +26,11 @@ export class Arena {
 
   /**
    * Begins again: another world or robot, and no way yet.
-   * @param {string} world
+   * @param {typeof WORLDS[number]} world
    * @param {string} robot
    */
   begin(world, robot) {
-    this.#world = WORLDS.find((each) => each.name === world) ?? WORLDS[0];
+    this.#world = world;
     this.#robot = ROBOTS.find((each) => each.name === robot) ?? ROBOTS[0];
     this.#way = [];
   }

@@ -4,8 +4,9 @@ import { Arena } from './arena.js';
 import { element } from './elements.js';
 import { download } from './files.js';
 import { Simulator } from './simulator.js';
-import { currentLanguage, text } from './texts.js';
-import { ROBOTS, WORLDS } from './words.js';
+import { text } from './texts.js';
+import { ROBOTS } from './words.js';
+import { WorldChoice } from './world_choice.js';
 
 /** @typedef {import('./python.js').Checked} Checked */
 /** @typedef {import('./work.js').Work} Work */
@@ -19,6 +20,7 @@ export class Driving {
   #whenCompiled;
   #starts = 0; // one that STOP or a newer one has overtaken does nothing
   #isWaiting = false; // for the compiler
+  #python;
   #simulator;
   #arena = new Arena(element('arena', HTMLCanvasElement));
   #wasStopped = false;
@@ -28,7 +30,8 @@ export class Driving {
   #run = element('run', HTMLButtonElement);
   #pause = element('pause', HTMLButtonElement);
   #push = element('push', HTMLButtonElement);
-  #worlds = element('world', HTMLSelectElement);
+  #world;
+  #remember;
 
   /**
    * @param {import('./python.js').Python} python
@@ -43,6 +46,9 @@ export class Driving {
     this.#work = work;
     this.#program = program;
     this.#whenCompiled = whenCompiled;
+    this.#python = python;
+    this.#remember = remember;
+    this.#world = new WorldChoice(work, () => this.#enter());
     this.#simulator = new Simulator(python, () => this.#show());
     this.#run.addEventListener('click', () => this.#start(false));
     this.#pause.addEventListener('click', () => {
@@ -63,11 +69,6 @@ export class Driving {
     speed.addEventListener('change', () => {
       this.#simulator.speed = Number(speed.value);
     });
-    this.#worlds.addEventListener('change', () => {
-      work.world = this.#worlds.value;
-      remember();
-      this.begin();
-    });
     element('save_trace', HTMLButtonElement).addEventListener('click', () => {
       download(text('trace_name'), this.#simulator.trace.map((line) => `${line}\n`).join(''));
     });
@@ -77,12 +78,26 @@ export class Driving {
   }
 
   setLanguage() {
-    const language = currentLanguage();
-    this.#worlds.replaceChildren(
-      ...WORLDS.map((world) => new Option(/** @type {Record<string, string>} */ (world.labels)[language], world.name)),
-    );
-    this.#worlds.value = this.#work.world;
+    this.#world.setLanguage();
     this.#show();
+  }
+
+  /** Another world has been chosen. */
+  #enter() {
+    this.#remember();
+    this.begin();
+  }
+
+  /**
+   * Shows a world of a lesson.
+   * @param {number} number
+   * @param {number} seed
+   * @param {() => string} label
+   */
+  async showLesson(number, seed, label) {
+    const { world } = await this.#python.ask({ do: 'lesson_world', number, seed });
+    this.#world.bring({ request: { lesson: number, seed }, shapes: world, label });
+    this.begin();
   }
 
   /** Another robot or world: what drove there has ended. */
@@ -91,7 +106,7 @@ export class Driving {
     this.#simulator.phase = 'off';
     this.#simulator.state = null;
     this.#simulator.trace = [];
-    this.#arena.begin(this.#work.world, this.#work.robot);
+    this.#arena.begin(this.#world.shapes, this.#work.robot);
     this.#show();
   }
 
@@ -117,9 +132,9 @@ export class Driving {
     if (!program?.image) return;
     await this.#simulator.stop();
     this.#wasStopped = false;
-    this.#arena.begin(this.#work.world, this.#work.robot);
+    this.#arena.begin(this.#world.shapes, this.#work.robot);
     this.#places = program.places;
-    await this.#simulator.begin(program, this.#work.robot, this.#work.world, isPaused);
+    await this.#simulator.begin(program, this.#work.robot, this.#world.request, isPaused);
   }
 
   #stop() {

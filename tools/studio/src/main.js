@@ -3,6 +3,7 @@
 import { element } from './elements.js';
 import { Editor } from './editor.js';
 import { bytesOf, download } from './files.js';
+import { Lessons } from './lessons.js';
 import { showMessages, summary } from './messages.js';
 import { whenOffline } from './offline.js';
 import { Programs } from './programs.js';
@@ -10,7 +11,7 @@ import { Python } from './python.js';
 import { currentLanguage, setLanguage, text } from './texts.js';
 import { Driving } from './driving.js';
 import { RobotPanel } from './robot_panel.js';
-import { chooseSide } from './robot_side.js';
+import { chooseSide, showSide } from './robot_side.js';
 import { Views } from './views.js';
 import { ROBOTS } from './words.js';
 import { keep, keptWork } from './work.js';
@@ -56,6 +57,21 @@ const panel = new RobotPanel({
   setRobot,
   goTo: (place) => editor.goTo(place),
 });
+const lessons = new Lessons({
+  python,
+  program: () => editor.text,
+  setRobot: (name) => {
+    if (name !== work.robot) setRobot(name);
+  },
+  put: (program) => programs.replace({ ...program, name: '' }),
+  showWorld: async (lesson, seed, label) => {
+    await driving.showLesson(lesson, seed, label);
+    showSide('side_virtual');
+  },
+  tell: (said) => {
+    note.textContent = said;
+  },
+});
 chooseSide();
 if ('class' in document.documentElement.dataset) {
   import('./classroom.js').then(({ beginClass }) => beginClass(panel, work, () => editor.replace('')));
@@ -90,6 +106,7 @@ function changed() {
   work.text = editor.text;
   driving.forgetPlaces();
   views.textChanged();
+  lessons.textChanged();
   remember();
   clearTimeout(timer);
   timer = window.setTimeout(check, TYPING_MS);
@@ -197,6 +214,7 @@ languages.addEventListener('change', () => {
   showRobots();
   driving.setLanguage();
   panel.setLanguage();
+  lessons.setLanguage();
   note.textContent = '';
   if (!isReady) status.textContent = text('starting');
   remember();

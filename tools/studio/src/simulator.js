@@ -2,7 +2,7 @@
 //
 // The robot's time goes on only by what this page asks for, so a page that sleeps stands still.
 
-import { text } from './texts.js';
+import { currentLanguage, text } from './texts.js';
 
 /** @typedef {import('./python.js').Python} Python */
 /** @typedef {import('./python.js').Checked} Checked */
@@ -45,7 +45,7 @@ export class Simulator {
    * Switches the robot on at the start of its world, with the program.
    * @param {Checked} program
    * @param {string} robot
-   * @param {string} world
+   * @param {unknown} world
    * @param {boolean} isPaused
    */
   async begin(program, robot, world, isPaused = false) {
@@ -58,7 +58,7 @@ export class Simulator {
     this.phase = isPaused ? 'paused' : 'running';
     this.#rest = 0;
     this.#last = performance.now();
-    await this.#ask({ do: 'power_on', robot, world }, new Uint8Array(bytes));
+    await this.#ask({ do: 'power_on', robot, world, language: currentLanguage() }, new Uint8Array(bytes));
     if (this.phase === 'running') requestAnimationFrame((now) => this.#frame(now));
   }
 
@@ -132,7 +132,8 @@ export class Simulator {
     try {
       const answer = await this.#python.ask(request, data);
       if (request['do'] === 'stop') this.isStopping = false;
-      this.#take(answer);
+      if (answer.refused) this.#refuse(answer.refused);
+      else this.#take(answer);
     } catch (why) {
       this.phase = 'off';
       this.isStopping = false;
@@ -141,6 +142,13 @@ export class Simulator {
     } finally {
       this.#isAsking = false;
     }
+  }
+
+  /** @param {string[]} why the robot cannot be in that world */
+  #refuse(why) {
+    this.phase = 'off';
+    this.failure = why.join(' ');
+    this.#shown();
   }
 
   /** @param {RobotState} state */

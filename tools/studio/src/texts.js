@@ -2,12 +2,14 @@
 // compiler.
 
 import { CLASS_TEXTS } from './class_texts.js';
+import { LESSON_TEXTS } from './lesson_texts.js';
 import { ROBOT_TEXTS } from './robot_texts.js';
 
 /** @typedef {'en' | 'es'} Language */
 
 /** @type {Record<string, [string, string]>} */
 export const TEXTS = {
+  ...LESSON_TEXTS,
   ...ROBOT_TEXTS,
   ...CLASS_TEXTS,
   title: ['TiniScript Studio', 'TiniScript Studio'],

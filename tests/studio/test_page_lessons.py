@@ -1,0 +1,177 @@
+"""The lessons beside the program: read, checked as by the command, and kept on the device."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING
+
+import pytest
+
+from tests.studio.test_page_for_everyone import axe
+from tests.support.studio import Pages, checked, noted, write
+from tiniscript.lessons import catalogue
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+FOLDERS = catalogue.folders()
+SLOW = "SI|LOOP(FOREVER);SHOW(1);END_LOOP"  # thousands of actions in a second
+PATIENCE_MS = 60_000
+
+
+@pytest.fixture
+def page(page: Page) -> Page:
+    page.set_viewport_size({"width": 1366, "height": 768})
+    page.click("#side_lessons")
+    page.locator("#lesson_check:enabled").wait_for()
+    return page
+
+
+def choose(page: Page, number: int) -> None:
+    page.select_option("#lesson", str(number))
+    title = catalogue.page(FOLDERS[number - 1], catalogue.PUPIL, "en").partition("## ")[2]
+    page.locator("#lesson_page h2").first.filter(has_text=title.partition("\n")[0]).wait_for()
+
+
+def check(page: Page, program: str) -> tuple[str, list[str]]:
+    """Let the page check a program; return its verdict and its sentences."""
+    write(page, program)
+    page.click("#lesson_check")
+    page.locator("#lesson_said[data-verdict]").wait_for(timeout=PATIENCE_MS)
+    verdict = page.locator("#lesson_said").get_attribute("data-verdict")
+    return str(verdict), page.locator("#lesson_findings li").all_inner_texts()
+
+
+@pytest.mark.parametrize("number", range(1, len(FOLDERS) + 1))
+def test_a_lesson_gives_the_verdict_of_the_command(page: Page, number: int) -> None:
+    """What `tsc lesson check` says of each answer is tested with the lessons."""
+    right, wrong = catalogue.answers(FOLDERS[number - 1])
+    choose(page, number)
+    assert check(page, wrong[0].program) == ("failed", [wrong[0].said["en"], *rest(page)])
+    assert page.inner_text("#lesson_said").startswith("Not yet")
+    assert check(page, right[0].program) == ("passed", [])
+    lesson = catalogue.load(FOLDERS[number - 1])
+    worlds = f", in {lesson.worlds} worlds" if lesson.worlds > 1 else ""
+    wanted = f"Done! The task of lesson {number} is solved{worlds}."
+    assert page.inner_text("#lesson_said") == wanted
+
+
+def rest(page: Page) -> list[str]:
+    """Return what is said behind the first sentence, which may be nothing."""
+    return page.locator("#lesson_findings li").all_inner_texts()[1:]
+
+
+@pytest.mark.parametrize(
+    "program, verdict",
+    [("", "failed"), ("FF(2, 80)", "mistakes"), ("PING|F(1, 80)", "mistakes"),
+     ("\0🤖<b>", "mistakes"), ("SI|SHOW(1 / 0 * DISTANCE)", "failed"),
+     ("X = 0; SHOW(1 / X)", "failed")],
+)  # fmt: skip
+def test_any_program_can_be_checked(page: Page, program: str, verdict: str) -> None:
+    choose(page, 1)
+    found, said = check(page, program)
+    assert found == verdict
+    assert len(said) == (verdict == "failed")
+
+
+def test_a_check_can_be_ended(page: Page) -> None:
+    choose(page, 9)
+    write(page, SLOW)
+    page.click("#lesson_check")
+    page.locator("#lesson_said", has_text="World 1 of 5").wait_for()
+    page.click("#lesson_end")
+    assert page.inner_text("#lesson_said") == "The check was ended. Nothing was decided."
+    assert page.evaluate("document.activeElement.id") == "lesson_check"
+    right, _ = catalogue.answers(FOLDERS[8])
+    assert check(page, right[0].program) == ("passed", [])  # and not the other one's verdict
+
+
+def test_a_verdict_is_of_the_program_that_is_there(page: Page) -> None:
+    choose(page, 1)
+    right, _ = catalogue.answers(FOLDERS[0])
+    assert check(page, right[0].program)[0] == "passed"
+    page.locator(".cm-content").focus()
+    page.keyboard.type(" ")
+    page.locator("#lesson_said:not([data-verdict])").wait_for()
+    write(page, SLOW)
+    page.click("#lesson_check")
+    page.locator("#lesson_end").wait_for()
+    write(page, "SI|S")
+    page.locator("#lesson_check").wait_for()
+    assert page.locator("#lesson_said[data-verdict]").count() == 0
+
+
+def test_the_world_where_it_failed_is_seen(page: Page) -> None:
+    choose(page, 12)
+    _, wrong = catalogue.answers(FOLDERS[11])
+    assert check(page, wrong[0].program)[0] == "failed"
+    said = page.inner_text("#lesson_said")
+    page.click("#lesson_world")
+    page.locator("#arena").wait_for()
+    page.locator("html[data-image]:not([data-image=''])").wait_for(state="attached")
+    assert page.input_value("#robot") == "liner"
+    label = page.locator("#world option:checked").inner_text()
+    assert label.startswith("Lesson 12, world ") and label.rpartition(" ")[2] in said
+    page.select_option("#language", "es")
+    assert page.locator("#world option:checked").inner_text().startswith("Lección 12, mundo ")
+    checked(page)
+    page.click("#step")
+    page.locator("html[data-phase=paused]").wait_for(state="attached")
+    page.locator("#values dd").first.filter(has_text=" s").wait_for()
+    page.keyboard.press("Escape")
+    page.select_option("#world", "obstacles")
+    assert page.locator("#world option", has_text="12").count() == 0
+
+
+def test_a_page_of_a_lesson_is_read_in_spanish_and_its_programs_are_used(page: Page) -> None:
+    choose(page, 4)
+    page.select_option("#language", "es")
+    page.locator("#lesson_page h2", has_text="Lo que necesitas").wait_for()
+    assert page.locator("#lesson option").nth(3).inner_text().startswith("4. Un cuadrado con LOOP")
+    assert "tsc lesson check" not in page.inner_text("#lesson_page")
+    assert page.locator("#lesson_page code", has_text="LOOP(4)").count() == 1
+    assert "`" not in page.inner_text("#lesson_page") and "**" not in page.inner_text(
+        "#lesson_page"
+    )
+    page.get_by_role("button", name="Ponerlo en el programa").first.click()
+    noted(page, "Ya está en el programa")
+    assert page.locator(".cm-content").inner_text().startswith("SI|LOOP(4)\n  F(1, 60)")
+
+
+def test_what_is_done_is_kept(pages: Pages) -> None:
+    page = pages.open()
+    right, _ = catalogue.answers(FOLDERS[1])
+    page.click("#side_lessons")
+    kept = (json.dumps(["01_first_line", 5, "<b>", "x" * 500, None]), '"x"', "no JSON", "[]")
+    for k, each in enumerate(kept):
+        page.evaluate("kept => localStorage.setItem('tiniscript.lessons', kept)", each)
+        page.select_option("#language", "es")
+        page.locator("#lesson_said", has_text="lecciones listas").wait_for()
+        page.select_option("#language", "en")
+        page.locator("#lesson_said", has_text="lessons done").wait_for()
+        assert page.inner_text("#lesson_said") == f"{int(k == 0)} of {len(FOLDERS)} lessons done."
+    page.select_option("#lesson", "2")
+    assert check(page, right[0].program)[0] == "passed"
+    assert page.locator("#lesson option:checked").inner_text().endswith("✓ done")
+    page.reload()
+    checked(page)
+    page.click("#side_lessons")
+    page.locator("#lesson_said", has_text=f"1 of {len(FOLDERS)}").wait_for()
+
+
+def test_lessons_that_do_not_come_are_told_and_come_later(pages: Pages) -> None:
+    page = pages.open()
+    page.route("**/lessons.zip", lambda route: route.abort())
+    page.click("#side_lessons")
+    page.locator("#lesson_said", has_text="did not come").wait_for()
+    assert page.locator("#lesson_check").is_disabled()
+    page.unroute("**/lessons.zip")
+    pages.wrong.clear()
+    page.click("#side_lessons")
+    page.locator("#lesson_check:enabled").wait_for()
+
+
+def test_axe_finds_nothing(page: Page) -> None:
+    choose(page, 6)
+    assert check(page, "SI|S")[0] == "failed"
+    assert axe(page) == []
