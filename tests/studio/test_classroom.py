@@ -8,7 +8,9 @@ from typing import Any
 import pytest
 
 from tiniscript.studio import classroom
+from tiniscript.studio import rate as rate_of
 from tiniscript.studio.classroom import Classroom
+from tiniscript.studio.rate import Rate
 from tiniscript.studio.robot_link import BadRequest
 
 Json = dict[str, Any]
@@ -273,15 +275,18 @@ def test_nobody_joins_without_a_name(name: object) -> None:
 def test_a_full_class_gives_away_the_places_of_who_has_gone() -> None:
     room = Room()
     first = room.joins("p0")
+    room.here(first, True)
+    room.connects(first)
+    room.now_s += 1
     for k in range(1, classroom.MOST_PUPILS):
         room.joins(f"p{k}")
     more = {"do": "join", "code": room.made.code, "name": "more"}
+    room.now_s += 30
     assert room.made.answer("", HERE, more) == {"failure": "class_full"}
-    room.now_s += 61
-    room.here(first)
+    room.now_s += 31
     assert "token" in room.made.answer("", HERE, more)
     assert len(room.teaches("class")["pupils"]) == classroom.MOST_PUPILS
-    assert room.made.most_bytes(first) > 0
+    assert room.made.most_bytes(first) > 0  # it is her turn
 
 
 def test_a_pupil_who_asks_without_end_is_refused_but_stops() -> None:
@@ -369,13 +374,16 @@ def test_the_end_reaches_every_page(erases: bool, over: str) -> None:
     ana, luz = room.joins("Ana"), room.joins("Luz")
     room.here(ana, True)
     robot = room.connects(ana)
+    room.here(luz, True)
     room.teaches("class_over", erases=erases)
     assert robot.left == "turn_over"
+    room.made.tend()
     assert not room.made.has_ended
     assert room.here(ana) == {"over": over}
     assert not room.made.has_ended
     assert room.here(luz, True) == {"over": over}
     assert room.made.has_ended
+    assert [each["pupil"] for each in room.teaches("class")["robots"]] == [""]
     late = {"do": "join", "code": room.made.code, "name": "Teo"}
     assert room.made.answer("", HERE, late) == {"failure": "class_over"}
 
@@ -387,3 +395,11 @@ def test_the_end_waits_for_no_page_that_is_gone() -> None:
     assert not room.made.has_ended
     room.now_s += 7
     assert room.made.has_ended
+
+
+def test_who_has_asked_is_forgotten_after_a_thousand_others() -> None:
+    rate = Rate(1, 0)
+    assert rate.take("a", 0) and not rate.take("a", 0)
+    for k in range(rate_of.MOST_NAMES):
+        assert rate.take(f"b{k}", 0)
+    assert rate.take("a", 0)

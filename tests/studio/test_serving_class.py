@@ -126,20 +126,22 @@ def test_who_has_no_token_sends_little(taught: Class) -> None:
     assert post(taught, {"do": "here", "text": "x" * 300_000}, **{serving.TOKEN: ana}) == 400
 
 
-def test_many_connections_keep_nobody_out(taught: Class) -> None:
-    """They come from one computer, say nothing or half a request, now and then a letter more. A
-    pupil's connection stays, and a new pupil of another computer is answered."""
+@pytest.mark.parametrize("is_same", [False, True], ids=["another computer", "the same"])
+def test_many_connections_keep_nobody_out(taught: Class, is_same: bool) -> None:
+    """They come from one computer, a pupil's or another, say nothing or half a request. The pupil's
+    connection stays, and a new pupil is answered."""
     token = joins(taught)
     headers = {"Origin": f"http://{own(taught)}", serving.TOKEN: token}
     pupil = HTTPConnection(own(taught), timeout=10)
     pupil.request("POST", serving.ROBOTS, '{"do": "here"}', headers)
     assert pupil.getresponse().read()
     kept, before, slowest_s = pupil.sock, active_count(), 0.0
+    source = kept.getsockname()[0] if is_same else ELSEWHERE
     strangers: list[socket.socket] = []
     try:
         for k in range(STRANGERS):
             stranger = socket.create_connection(
-                (HOST, taught.server.server_port), timeout=10, source_address=(ELSEWHERE, 0)
+                (HOST, taught.server.server_port), timeout=10, source_address=(source, 0)
             )
             strangers.append(stranger)
             if k % 2:
@@ -171,6 +173,7 @@ def test_a_slow_stranger_does_not_close_who_loads_the_page(taught: Class) -> Non
         )
         for _ in range(serving.CLASS_CONNECTIONS + 50)
     ]
+    assert page_of(taught, {}).status == 200  # so all of them have come
     early.request("GET", "/")
     assert early.getresponse().status == 200
     early.close()
