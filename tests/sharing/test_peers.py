@@ -209,3 +209,29 @@ def test_files_of_dead_commands_go_and_those_of_servers_stay() -> None:
     registry.tidy()
     assert not registry.is_taken(number)
     assert not list((files.cache_folder() / "held").glob("*.json"))
+
+
+@linux
+def test_a_port_whose_server_has_just_gone_is_free() -> None:
+    """Connections that it has closed are remembered by the system for a minute."""
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        number = server.getsockname()[1]
+        client = socket.create_connection(server.getsockname())
+        accepted, _ = server.accept()
+        accepted.close()
+        assert client.recv(1) == b""
+        client.close()
+    assert not registry.is_taken(number)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such modes")
+def test_a_folder_that_others_can_read_is_closed_and_what_was_in_it_is_not_believed() -> None:
+    registration = Registration("/dev/x", 1, "a" * 32, "b" * 32, "link", 9600, os.getpid())
+    registry.write(registration)
+    folder = files.cache_folder() / "held"
+    assert registry.found("/dev/x") == registration
+    folder.chmod(0o750)
+    assert registry.found("/dev/x") is None
+    registry.write(registration)
+    assert folder.stat().st_mode & 0o777 == 0o700
+    assert registry.found("/dev/x") == registration
