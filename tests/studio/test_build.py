@@ -16,7 +16,7 @@ from tools.builds import studio
 
 LARGEST = 6_000_000  # bytes of all files, gzipped
 SOURCES = ROOT / "tools" / "studio"
-TEXTS = ("texts.js", "lesson_texts.js")
+TEXTS = ("texts.js", "robot_texts.js", "class_texts.js", "lesson_texts.js")
 
 
 @pytest.fixture(scope="module")

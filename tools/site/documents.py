@@ -60,9 +60,11 @@ def documents(root: Path) -> list[Document]:
         _both("library", "write", "docs/api.en.md", "docs/api.es.md"),
         *_wiring(root),
         *_lessons(root),
-        *_english("trust", "README.md", "docs/promises.md", "docs/computer.md"),
-        *_english("build", "bytecode_spec.md", "docs/conformance.md", "docs/link.md", "docs/text.md",
-                  "docs/store.md", "docs/esp32.md", "CONTRIBUTING.md", "CHANGELOG.md"),
+        *_english("trust", "README.md", "docs/promises.md", "docs/computer.md", "SECURITY.md",
+                  "CODE_OF_CONDUCT.md"),
+        *_english("build", "bytecode_spec.md", "docs/conformance.md", "docs/link.md",
+                  "docs/text.md", "docs/store.md", "docs/esp32.md", "docs/versions.md",
+                  "CONTRIBUTING.md", "CHANGELOG.md"),
     ]  # fmt: skip
 
 
