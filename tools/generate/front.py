@@ -134,7 +134,7 @@ def _said(verb: str, program: str, language: str) -> list[str]:
 def _way() -> Way:
     """Drive, and return the way."""
     program = tiniscript.compile(PROGRAM.read_text(encoding="utf-8"), robot=ROBOT)
-    simulation = Simulation(ROBOT, WORLD, program.image)
+    simulation = Simulation(ROBOT, worlds.load(WORLD), program.image)
     points = []
     for _ in range(0, LASTS_MS, SAMPLE_MS):
         simulation.go(SAMPLE_MS)
