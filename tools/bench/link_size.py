@@ -22,7 +22,7 @@ MUST = 16_000  # bytes of flash, of the link with the reader of text
 # A robot that holds nothing, and a use of each part that no optimiser can leave out.
 PORT = """
 namespace tiniscript {
-Identity identity; RobotStatus robot_status; DeviceInfo device_info;
+Identity identity; RobotStatus robot_status; DeviceInfo device_info; Receiver receiver;
 Identity& port_identity() { return identity; }
 const RobotStatus& port_status() { return robot_status; }
 Trim trim;
@@ -67,7 +67,7 @@ PORT_USED = """port_identity(); port_status(); port_device_info(); sink = port_r
   port_release(); sink = port_image_length(); port_image_byte(sink, bytes); port_rename(bytes, 1);
   port_key(1, bytes); port_keep_key(1, bytes); port_identify();
 """
-LINK = """{ static Receiver receiver; static Link link;
+LINK = """{ static Link link;
         link.begin(&receiver, sink); sink = receiver.put(sink, sink);
         link.pass_time(sink); link.tick(); sink = link.has_tx_byte();
         link.tell(); link.seal();

@@ -286,7 +286,7 @@ class Link {
   void close();
   void hand_over();
 
-  Receiver* receiver_;
+  ReceiverOfLink receiver_;
   FrameCheck check_;  // of the item that arrives or waits
   uint16_t now_ms_;
   uint16_t left_ms_[kTimes];

@@ -187,6 +187,26 @@ class Receiver : private ItemPlaces<kWindow> {
   uint8_t bytes_[kWindow][kItemBytes];
 };
 
+#ifdef __AVR__
+
+// Where a link has its receiver. An AVR has one link, and a known address takes less flash than a
+// pointer in memory does, and less time.
+class ReceiverOfLink {
+ public:
+  void operator=(Receiver*) {}
+  Receiver* operator->() const { return *this; }
+  operator Receiver*() const {
+    extern Receiver receiver;  // firmware/firmware.cpp
+    return &receiver;
+  }
+};
+
+#else
+
+typedef Receiver* ReceiverOfLink;
+
+#endif
+
 }  // namespace tiniscript
 
 #endif  // TINISCRIPT_LINK_RECEIVER_H_
