@@ -17,14 +17,14 @@ namespace {
 
 Flag<Bit::kWhole> is_whole;            // `program` is the one in `robot_status`
 bool has_other;                        // the stored program is of another version
-uint8_t header_length = kHeaderBytes;  // of the program in `robot_status`
+uint8_t more_header;                   // its header, in bytes beyond kHeaderBytes
 
 bool is_other_version(const uint8_t* header) {
   return header[kIsaMajorAt] != kIsaMajor || header[kIsaMinorAt] > kIsaMinor;
 }
 
 void hold(const uint8_t* header) {
-  header_length = header[kHeaderLengthAt];
+  more_header = static_cast<uint8_t>(header[kHeaderLengthAt] - kHeaderBytes);
   robot_status.length = get16(header + kCodeLengthAt);
 }
 
@@ -32,7 +32,10 @@ void hold(const uint8_t* header) {
 
 bool is_in_memory() { return is_whole; }
 
-uint16_t held_bytes() { return static_cast<uint16_t>(header_length + robot_status.length); }
+uint16_t held_bytes() {
+  return static_cast<uint16_t>(static_cast<uint8_t>(more_header + kHeaderBytes) +
+                               robot_status.length);
+}
 
 void hold_stored() {
   is_whole = false;

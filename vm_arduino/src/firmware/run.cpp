@@ -17,7 +17,7 @@ namespace tiniscript {
 namespace {
 
 Machine machine;
-const uint8_t* run_image = program;  // of the current or last run
+const uint8_t* run_image;  // of the current or last run
 Flag<Bit::kMayStart>
     may_start;  // the button is down and nothing ran or was stopped since: its release starts
 Flag<Bit::kStartDue> is_start_due;  // the button was released, but the program was not available
