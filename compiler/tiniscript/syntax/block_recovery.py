@@ -19,7 +19,7 @@ from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.lexer import ODD, WORD, Token
 from tiniscript.syntax.one_line import line_of_block
 from tiniscript.syntax.operators import COMPARISONS
-from tiniscript.syntax.phrases import AFTER_HEADER
+from tiniscript.syntax.phrases import AFTER_HEADER, TITLES
 from tiniscript.syntax.reporter import Failed, Reporter, Resumed
 from tiniscript.syntax.suggestions import (
     OPERATOR_WORDS,
@@ -270,6 +270,12 @@ class BlockRecovery:
         if named.text == "SI" or (named.kind is WORD and meant_by(named.text) in BLOCK_ENDS):
             cursor.i += 1  # `FIN SI`, `FIN MIENTRAS`
         block = self.blocks.innermost
+        if block is None and named.text in TITLES:  # `FIN PROGRAMA`
+            cursor.i += 1
+            span = cursor.span_from(end)
+            shown = cursor.source[span]
+            self.reporter.report(codes.EXTRA_WORD, span, found=end.text, label=shown)
+            return
         if block is None:
             self.reporter.report(codes.EXTRA_WORD, end.span, found=end.text, fix="")
             return

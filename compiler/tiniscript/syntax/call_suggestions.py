@@ -251,6 +251,8 @@ def _filled(texts: Sequence[str], word: Word) -> str:
     first = word.arguments[0]
     if word.role == "motors":
         return _call(word, [text, text]) if number is not None else ""
+    if word.text == "ROUND":
+        return _call(word, [text, "0"])
     if word.text == "RANDOM":
         return _call(word, ["1", text]) if text.isdecimal() and text not in ("0", "1") else ""
     if first.unit != "s":

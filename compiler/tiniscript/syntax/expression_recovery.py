@@ -57,15 +57,7 @@ class ExpressionRecovery:
                  right=number.text, unit="%")  # fmt: skip
         if token.kind is WORD and WORDS[token.text].role != "operator":
             self._no_value_word(token)
-        if token.kind == "+" and cursor.tokens[cursor.i + 1].kind is NUMBER:
-            number = cursor.tokens[cursor.i + 1]  # `F(+2, 80)`
-            name = cursor.tokens[place - 1]
-            if before.kind == "=" and before.end == token.start < number.start - 1:  # `v =+ 10`
-                fix = f"{name.text} = {name.text} + {number.text}"
-                span = Span(name.start, number.end)
-                fail(codes.OTHER_ASSIGNMENT, name.span, span, found="=+", fix=fix)
-            span = Span(token.start, number.end)
-            fail(codes.BAD_NUMBER, span, found=cursor.source[span], right=number.text)
+        self.numbers.plus(token, place)
         if before.text in ("AND", "OR") and token.kind in COMPARISONS:
             self._nothing_compared(before, token, place)
         if before.kind == "," == token.kind or (before.kind == "," and token.kind == ")"):
@@ -118,6 +110,8 @@ class ExpressionRecovery:
             fail(codes.FOREVER_NOT_HERE, token.span)
         if word.role == "until":
             fail(codes.UNTIL_ALONE, token.span, fix="")
+        if word.text == "SI":  # `X = si`
+            fail(codes.OTHER_LANGUAGE, token.span, found="SI", right="TRUE", fix="TRUE", usage="")
         if word.role in ("move", "wait", "motors", "beep", "show"):
             if self.cursor.following.kind == "(":
                 fail(codes.NO_VALUE, token.span, word=word.text)

@@ -36,7 +36,9 @@ from tiniscript.syntax.phrases import (
     IMPORTING,
     NO_VARIABLES,
     SETTING,
+    STEPS,
     TIMES,
+    TITLES,
 )
 from tiniscript.syntax.reporter import Failed, Reporter, Resumed
 from tiniscript.syntax.sentence_recovery import SentenceRecovery
@@ -107,12 +109,16 @@ class NameRecovery:
         is_alone = kind in AT_END
         if kind == "|":
             self.reporter.fail(codes.SETUP_TWICE, word.span, found=word.text)
-        if word.text in IMPORTING and kind is WORD and not self.in_block.known.is_own(word.text):
+        after = self.cursor.tokens[min(self.cursor.i + 2, len(self.cursor.tokens) - 1)]
+        is_title = word.text in TITLES and after.kind in AT_END
+        if (is_title or word.text in IMPORTING) and (
+            kind is WORD and not self.in_block.known.is_own(word.text)
+        ):
             self.cursor.skip_line()
             span = Span(word.start, self.cursor.last.end)
             shown = shortened(self.cursor.source[span])
             self.reporter.fail(codes.EXTRA_WORD, span, found=word.text, label=shown)
-        after = self.cursor.tokens[min(self.cursor.i + 2, len(self.cursor.tokens) - 1)]
+        self._label(word, following, after)
         if kind is NUMBER and after.text in TIMES and meant_by(word.text) is None:
             foreign_word(parser, word, "LOOP")  # `hacer 4 veces`
         if word.text == "PARA" and following.text == "CADA":
@@ -226,6 +232,25 @@ class NameRecovery:
             self.reporter.report(codes.EXTRA_WORD, word.span, found=word.text, fix=fix)
             cursor.i += 1
             raise Resumed
+
+    def _label(self, word: Token, following: Token, after: Token) -> None:
+        """`Paso 1: F(2, 80)`, `a) F(2, 80)`: what counts the lines."""
+        cursor = self.cursor
+        is_step = word.text in STEPS and following.kind is NUMBER and after.text in (":", ")")
+        is_letter = len(word.text) == 1 and following.kind == ")"
+        count = 3 if is_step else 2
+        last = cursor.tokens[cursor.i + count - 1]
+        target = cursor.tokens[min(cursor.i + count, len(cursor.tokens) - 1)]
+        is_own_line = cursor.line_of(target) == cursor.line_of(word)
+        if not (is_step or is_letter) or target.kind is not WORD or not is_own_line:
+            return
+        if self.in_block.is_name(word.text):
+            return
+        self.reporter.answer(last)
+        cursor.i += count
+        span = Span(word.start, last.end)
+        self.reporter.report(codes.LINE_NUMBER, span, found=cursor.source[span])
+        raise Resumed
 
     def _arrow(self, word: Token) -> None:
         """`robot->avanzar(2)` is `robot.avanzar(2)`."""

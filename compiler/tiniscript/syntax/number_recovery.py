@@ -45,6 +45,20 @@ class NumberRecovery:
         cursor.i = k + 1
         return True
 
+    def plus(self, token: Token, place: int) -> None:
+        """`F(+2, 80)`; and `v =+ 10` adds."""
+        cursor = self.cursor
+        before = cursor.tokens[place]
+        if token.kind == "+" and cursor.tokens[cursor.i + 1].kind is NUMBER:
+            number = cursor.tokens[cursor.i + 1]  # `F(+2, 80)`
+            name = cursor.tokens[place - 1]
+            if before.kind == "=" and before.end == token.start < number.start - 1:  # `v =+ 10`
+                fix = f"{name.text} = {name.text} + {number.text}"
+                span = Span(name.start, number.end)
+                self.reporter.fail(codes.OTHER_ASSIGNMENT, name.span, span, found="=+", fix=fix)
+            span = Span(token.start, number.end)
+            self.reporter.fail(codes.BAD_NUMBER, span, found=cursor.source[span], right=number.text)
+
     def _closes(self, k: int) -> bool:
         """Whether a `)` comes on this line before another bracket opens."""
         tokens = self.cursor.tokens

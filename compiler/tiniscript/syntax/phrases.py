@@ -86,7 +86,10 @@ EVENTS = frozenset(
     ("FLAG", "CLICKED", "BANDERA", "EMPIECE", "EMPIEZA", "INICIE", "COMIENCE", "START", "CLIC")
 )
 # What begins a file of another language: `import time`.
-IMPORTING = frozenset(("IMPORT", "FROM", "USING", "INCLUDE", "PACKAGE", "REQUIRE"))
+IMPORTING = frozenset("IMPORT FROM USING INCLUDE PACKAGE REQUIRE".split())  # noqa: SIM905
+# What names a program, and what counts its lines: `Algoritmo cuadrado`, `Paso 1:`.
+TITLES = frozenset("PROGRAMA PROGRAM ALGORITMO ALGORITHM PROYECTO".split())  # noqa: SIM905
+STEPS = frozenset("PASO STEP LINEA LINE INSTRUCCION PARTE ETAPA MOVIMIENTO".split())  # noqa: SIM905
 BEFORE_CALL = frozenset(("CALL", "RUN", "GOSUB", "LLAMAR", "LLAMA", "EJECUTAR", "EJECUTA"))
 READING = frozenset("LEE LEER READ MIDE MEDIR MEASURE SENSAR CHECK REVISA".split())  # noqa: SIM905
 BEFORE_NOTE = frozenset(("REM", "NOTE", "NOTA"))

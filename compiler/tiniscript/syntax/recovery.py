@@ -120,7 +120,7 @@ class Recovery:
         if sign.kind in (")", "-") or (sign.kind is ODD and sign.text in (":", ".", "°", "º")):
             cursor.i += 1
         first = WORDS.get(cursor.token.text)
-        has_sign = cursor.last is not number
+        has_sign = cursor.last is not number or written.endswith(".")  # `1. Avanza`
         is_before_word = first is not None and first.role not in ("value", "operator", "function")
         is_same_line = cursor.line_of(cursor.token) == cursor.line_of(number)
         if cursor.token.kind is WORD and is_same_line and (has_sign or is_before_word):

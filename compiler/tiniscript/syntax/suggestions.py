@@ -68,7 +68,11 @@ def counted(tokens: Sequence[Token], start: int) -> int | None:
         row.append(token)
     words = {token.text for token in row if token.kind is WORD}
     numbers = [int(token.text) for token in row if token.kind is NUMBER and token.text.isdecimal()]
-    has_other = any(token.kind is NUMBER and not token.text.isdecimal() for token in row)
+    has_other = any(
+        token.kind is NUMBER
+        and (not token.text.isdecimal() or token.end - token.start != len(token.text))
+        for token in row
+    )  # `1.5`, and `1..4` of which only the 1 is read
     steps = [k for k, token in enumerate(row[:-1]) if token.text in ("STEP", "PASO")]
     has_step = any(row[k + 1].kind is NUMBER for k in steps)
     if has_other or has_step or "DOWNTO" in words or any(t.kind == "-" for t in row):

@@ -230,6 +230,8 @@ class ValueConstructs:
         end = after_bracket(tokens, begin) if cursor.token.kind == "(" else None
         if end is None or tokens[k + 1].kind != "(" or tokens[end].kind not in AT_END:
             return
+        if any(token.kind == "," for token in tokens[k:end]):
+            return  # `F(2, 80) (avanza)`
         between = Token(",", ",", *tokens[begin].span)
         values = [*tokens[k + 2 : begin - 1], between, *tokens[begin + 1 : end - 1]]
         fix = call_in(word, values) if len(word.arguments) > 1 else ""
