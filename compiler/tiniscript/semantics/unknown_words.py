@@ -76,6 +76,9 @@ def _report_unknown_word(scope: Scope, node: ast.Command) -> None:
     commands = [each.text for each in WORDS.values() if each.role not in
                 ("setup", "later", "value", "operator", "function", "forever")]  # fmt: skip
     near = scope.near(word, chain(commands, scope.names, scope.def_names))
+    glued_loop = re.fullmatch(r"LOOP_?([0-9]+)", word)
+    if glued_loop and node.arguments is None:
+        near = f"LOOP({glued_loop[1]})"
     letter = _LETTERS.get(word, "")
     if letter and len(node.arguments or ()) == len(WORDS[letter].arguments):
         near = letter

@@ -15,8 +15,9 @@ from tiniscript.kit import Kit
 from tiniscript.source import Span
 from tiniscript.syntax.ast import Argument, Assign, Command
 from tiniscript.syntax.blocks import HEADERS, Block, Blocks
+from tiniscript.syntax.call_suggestions import ends_value
 from tiniscript.syntax.cursor import AT_END, Cursor
-from tiniscript.syntax.lexer import ODD, WORD, Token
+from tiniscript.syntax.lexer import NUMBER, ODD, WORD, Token
 from tiniscript.syntax.one_line import line_of_block
 from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.phrases import AFTER_HEADER, TITLES
@@ -27,6 +28,7 @@ from tiniscript.syntax.suggestions import (
     body_begins,
     counted,
     head_in,
+    with_signs,
 )
 from tiniscript.syntax.vocabulary import Vocabulary
 from tiniscript.words import ALIASES, BLOCK_ENDS, TURN_WORDS, WORDS, meant_by, nearest
@@ -72,6 +74,8 @@ class BlockRecovery:
             self.to_command()
         if any(self.is_name(a.text) and b.kind == "(" for a, b in pairwise(written)):
             fix = ""  # `IF DISTANCE(15)`
+        if any(ends_value(a) and b.kind is NUMBER for a, b in pairwise(with_signs(written))):
+            fix = ""  # `IF DISTANCE 10`
         self.reporter.fail(codes.MISSING_OPEN, span, word=word.text, fix=fix, usage=known.usage)
 
     def is_a_sentence(self, written: Sequence[Token]) -> bool:

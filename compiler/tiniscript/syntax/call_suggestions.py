@@ -57,7 +57,10 @@ def count_diagnostic(
     fix = "" if goes_on else _filled(texts, word)
     if len(texts) > wanted == 1 and word.arguments[0].name == "c":
         fix = _call(word, [" AND ".join(texts)])
-    if word.role == "show" and len(texts) > 1 and not any(text[:1] in QUOTES for text in texts):
+    shown = [text for text in texts if text[:1] not in QUOTES]
+    if word.role == "show" and len(shown) == 1 < len(texts):  # `SHOW("far", DISTANCE)`
+        fix = _call(word, shown)
+    if word.role == "show" and len(texts) > 1 and len(shown) == len(texts):
         fix = ";".join(_call(word, [text]) for text in texts)
     if word.role == "move" and len(texts) == wanted + 1 and _ASKS.search(texts[-1]):
         fix = f"{_call(word, texts[:-1])} UNTIL({texts[-1]})"
@@ -93,6 +96,8 @@ def call_in(word: Word, tokens: Sequence[Token]) -> str:
     `2 80` for F is `F(2, 80)`, `0,5` for W is `W(0.5)`; nothing at all is an example.
     """
     values = _values(tokens[:LONGEST])
+    if word.role == "show":  # `SHOW DISTANCE cm`
+        values = [each for k, each in enumerate(values) if not k or each[0].text not in UNITS]
     texts = [written(value) for value in values]
     units = [_in_our_unit(value, word, k) for k, value in enumerate(values)]
     if None in units:

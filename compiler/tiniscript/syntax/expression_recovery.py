@@ -327,6 +327,7 @@ class ExpressionRecovery:
             if meant in known:
                 values = {"found": found, "right": meant, "fix": meant, "usage": meant}
                 self.reporter.fail(codes.OTHER_LANGUAGE, span, None, **values)
+            self.constructs.near_said(span, found, last, token, bracket)
             self.constructs.words_shown(right)
             self.reporter.fail(codes.NAME_WITH_SPACE, span, found=found, right=right)
         self.numbers.with_part(last, token)

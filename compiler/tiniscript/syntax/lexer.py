@@ -254,7 +254,7 @@ class _Repairs:
         self.report(codes.QUOTE, span, found=text[0], right=inside if is_program else "")
         if number:
             return Token(NUMBER, inside, *span)
-        if re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", inside):
+        if inside.isupper() and re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", inside):
             return Token(WORD, inside.upper(), *span)
         return Token(ODD, text, *span)
 

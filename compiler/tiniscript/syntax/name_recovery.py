@@ -30,6 +30,7 @@ from tiniscript.syntax.phrases import (
     BEFORE_NAME,
     BEFORE_NOTE,
     BEFORE_SENTENCE,
+    BEFORE_TIME,
     CHANGING,
     COUNTING,
     FRAME_WORDS,
@@ -94,6 +95,13 @@ class NameRecovery:
             cursor.i = end
             fix = call_in(word, rest)
             self.reporter.fail(codes.MISSING_OPEN, span, word=name.text, fix=fix, usage=word.usage)
+        if name.text == "LOOP" and len(rest) == 1 and rest[0].kind is NUMBER:
+            cursor.i = end
+            place = cursor.span_from(name)
+            fix = f"LOOP({rest[0].text})"
+            self.reporter.report(codes.MISSING_OPEN, place, word="LOOP", fix=fix, usage=word.usage)
+            self.in_block.begin_reported("LOOP", place)
+            self.in_block.go_on()
         self.reporter.reserved_words.add(name.text)
         right = other_name(name.text)
         self.reporter.report(codes.RESERVED, name.span, word=name.text, right=right)
@@ -320,12 +328,17 @@ class NameRecovery:
     def no_bracket(self, word: Token, known: Word) -> NoReturn:
         """`F 2 80`: suggest the same with brackets and commas."""
         cursor = self.cursor
-        start = cursor.i
         first = cursor.source.text[cursor.token.start : cursor.token.start + 1]
         if first in tuple(QUOTES):
             raise Failed
+        if cursor.token.text in (":", *BEFORE_TIME):  # `F: 2, 80`, `beep for 2 seconds`
+            self.reporter.answer(cursor.token)
+            cursor.i += 1
+        start = cursor.i
         cursor.i = body_begins(cursor.tokens, start, names_end=False)
         rest = cursor.tokens[start : cursor.i]
+        if cursor.token.text in TIMES:  # `BEEP 3 times`
+            self.sentence.so_often(word.span, known, rest, 0)
         if len(rest) > 1 and rest[0].kind in ("-", "=", "=>") and rest[1].kind == ">":
             rest = rest[2:]  # `F -> 2, 80`
         if not rest and cursor.token.kind == "{":

@@ -19,7 +19,7 @@ BEFORE_TIME = frozenset(("POR", "DURANTE", "FOR"))
 # Who does it, or that something is done: the move is in the word behind.
 BEFORE_MOVE = TURN_WORDS | frozenset(
     "HOLA HELLO ROBOT EL THE IR VE VAMOS HAZ GO QUIERO QUE DEBE TIENE PUEDE VA POR FAVOR MI".split()  # noqa: SIM905
-    + "I WANT TO MUST SHOULD WILL PLEASE MY".split()  # noqa: SIM905
+    + "I WANT TO MUST SHOULD WILL PLEASE MY GOES DRIVES MOVES".split()  # noqa: SIM905
 )
 
 BETWEEN = frozenset(("AND", "Y", "THEN", "ENTONCES", "LUEGO", "DESPUES", "NEXT"))

@@ -218,6 +218,9 @@ class Recovery:
             raise
         block = self.blocks.innermost
         header = block if block is not None and block.span.end == before.end else None
+        if header is not None and header.word != "DEF" and self._is_colon(token):
+            token, after = cursor.token, cursor.following
+            kind, text = token.kind, token.text
         goes_on = kind in SIGNS or text in ("AND", "OR")  # of the question, or of its line
         goes_on = goes_on or (text in AFTER_HEADER and after.kind in AT_END)
         if header is not None and header.word != "DEF" and first.text != "ELSE" and not goes_on:
@@ -358,6 +361,23 @@ class Recovery:
         span = Span(first.start, cursor.tokens[end + 1].end)
         found = cursor.source[span]
         self.reporter.fail(codes.UNKNOWN_WORD, span, None, found=found, near="")
+
+    def _is_colon(self, token: Token) -> bool:
+        """Whether `=`, `->` or `?` stands behind a question for the colon; then it becomes one."""
+        tokens, k = self.cursor.tokens, self.cursor.i
+        end = k + 1 + (token.kind == "-" and tokens[k + 1].kind == ">")
+        is_sign = token.kind == "=" or end == k + 2 or token.text in ("?", "→")
+        if not is_sign or not self._is_command(tokens[end]):
+            return False
+        self.reporter.answer(token)
+        tokens[k:end] = [Token(ODD, ":", token.start, tokens[end - 1].end)]
+        other = k + 1
+        while tokens[other].kind not in AT_END and tokens[other].text != ":":
+            other += 1
+        if token.text == "?" and tokens[other].text == ":":  # `IF(c) ? F(1, 50) : S`
+            self.reporter.answer(tokens[other])
+            tokens[other] = Token(WORD, "ELSE", *tokens[other].span)
+        return True
 
     def _question_goes_on(self, first: Token, header: Block) -> NoReturn:
         """`IF (A) AND (B)`: the brackets go around the whole question."""

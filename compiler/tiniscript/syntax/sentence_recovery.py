@@ -231,7 +231,7 @@ class SentenceRecovery:
     ) -> NoReturn:
         """`end` is where the values end in the text, if not with the last of them."""
         values = with_numbers(values)
-        self._so_often(span, meant, values, end)
+        self.so_often(span, meant, values, end)
         last = values[-1:]
         if len(values) > 1 and values[0].text in BEFORE_TIME:
             del values[0]
@@ -263,7 +263,7 @@ class SentenceRecovery:
         power = POWER_WORDS[said[0].text]
         return [*rest, said[0]._replace(kind=NUMBER, text=power, start=rest[-1].end + 1)]
 
-    def _so_often(self, span: Span, meant: Word, values: Sequence[Token], end: int) -> None:
+    def so_often(self, span: Span, meant: Word, values: Sequence[Token], end: int) -> None:
         """`pitar 3 veces`, `avanza 2 segundos 4 veces`."""
         tokens, k = self.cursor.tokens, self.cursor.i
         while values and tokens[k].start < values[-1].end:

@@ -27,7 +27,7 @@ from tiniscript.syntax.suggestions import (
     with_signs,
 )
 from tiniscript.syntax.vocabulary import Vocabulary
-from tiniscript.words import WORDS, Word, meant_by
+from tiniscript.words import NEAR_WORDS, WORDS, Word, meant_by
 
 _FARTHEST = 2000  # tokens in which the end of a block is looked for
 _AROUND = re.compile(r"([0-9]+(?:\.[0-9]+)?)([FBLR])([0-9]+)")
@@ -62,6 +62,10 @@ class ValueConstructs:
     def _line(self, start: int) -> list[Token]:
         tokens, k = self.cursor.tokens, start
         while tokens[k].kind not in AT_END and k < start + LONGEST:
+            is_call = tokens[k].kind is WORD and tokens[k + 1].kind == "("
+            command = self.known.command(tokens[k].text) if is_call else None
+            if command is not None and command.role in _DOING:
+                break  # `X = 50, F(2, X)`
             k += 1
         return list(tokens[start:k])
 
@@ -183,6 +187,17 @@ class ValueConstructs:
         place = Span(word.start, cursor.tokens[end - 1].end)
         cursor.i = end
         self.reporter.fail(codes.WORDS_SHOWN, span, place, fix=fix)
+
+    def near_said(self, span: Span, found: str, last: Token, token: Token, bracket: int) -> None:
+        """`IF(HAY PARED)`: what a robot measures is how far it is."""
+        owner = self.cursor.tokens[bracket - 1].text if bracket else ""
+        is_near = last.text in NEAR_WORDS or token.text in NEAR_WORDS
+        end = self.cursor.following.kind
+        if is_near and end == ")" and owner in ("IF", "ELSEIF", "WHILE", "UNTIL") and (
+            self.known.is_number("DISTANCE")
+        ):  # fmt: skip
+            self.cursor.i += 1
+            self.reporter.fail(codes.UNKNOWN_NAME, span, None, found=found, near="DISTANCE < 10")
 
     def words_shown(self, name: str) -> None:
         """`SHOW(hello world)`: words that are no name of the program."""
