@@ -163,7 +163,7 @@ NUMBER_WORDS = {name: str(value) for value, names in (
 
 # How much power a word says, where a power is wanted, and how high the notes of a song sound.
 POWER_WORDS = {name: str(value) for value, names in (
-    (100, "MAX MAXIMO MAXIMA FULL HIGH FAST RAPIDO RAPIDA FUERTE TODO TODA"),
+    (100, "ALTA MAX MAXIMO MAXIMA FULL HIGH FAST RAPIDO RAPIDA FUERTE TODO TODA"),
     (80, "NORMAL"), (50, "MEDIO MEDIA HALF MEDIUM"), (40, "SLOW LENTO LENTA DESPACIO"),
 ) for name in names.split()}
 NOTE_WORDS = {"DO": "262", "RE": "294", "MI": "330", "FA": "349", "SOL": "392", "LA": "440",

@@ -41,7 +41,8 @@ def joined(
                     if written.upper() in fix.upper() and right:
                         fix = _replaced(fix, written, right)
                     mended.add(k)
-            fix = known.translated(fix)
+            if diagnostic.code is not codes.PROSE:  # whose fix is a note
+                fix = known.translated(fix)
             diagnostic = diagnostic._replace(values={**diagnostic.values, "fix": fix})
         kept.append(diagnostic)
     return [each for k, each in enumerate(kept) if k not in mended] + list(found[ENOUGH:])

@@ -57,6 +57,10 @@ def _report_unknown_word(scope: Scope, node: ast.Command) -> None:
             return
     if (word in TURN_WORDS or meant == "F") and _report_way(scope, node):
         return
+    is_value = meant in WORDS and WORDS[meant].role == "value" and word != "TIEMPO"
+    if is_value:  # `no avances si …`
+        scope.report(codes.UNKNOWN_WORD, span, found=word, near="")
+        return
     if meant is not None and (meant in WORDS or meant in scope.names):
         _report_foreign(scope, node, meant)
         return

@@ -211,7 +211,7 @@ def _values(tokens: Sequence[Token]) -> list[list[Token]]:
 
 def _without_angles(tokens: Sequence[Token]) -> Sequence[Token]:
     """Return `2, 80` for the `< 2, 80 >` that someone put there for brackets."""
-    is_framed = len(tokens) > 2 and tokens[0].kind == "<" and tokens[-1].kind == ">"
+    is_framed = len(tokens) > 2 and (tokens[0].kind, tokens[-1].kind) in (("<", ">"), ("/", "/"))
     return tokens[1:-1] if is_framed else tokens
 
 

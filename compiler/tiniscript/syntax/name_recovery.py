@@ -37,7 +37,6 @@ from tiniscript.syntax.phrases import (
     IMPORTING,
     NO_VARIABLES,
     SETTING,
-    STEPS,
     TIMES,
     TITLES,
 )
@@ -126,7 +125,7 @@ class NameRecovery:
             span = Span(word.start, self.cursor.last.end)
             shown = shortened(self.cursor.source[span])
             self.reporter.fail(codes.EXTRA_WORD, span, found=word.text, label=shown)
-        self._label(word, following, after)
+        self.talk.label(word, following, after)
         if kind is NUMBER and after.text in TIMES and meant_by(word.text) is None:
             foreign_word(parser, word, "LOOP")  # `hacer 4 veces`
         if word.text == "PARA" and following.text == "CADA":
@@ -241,25 +240,6 @@ class NameRecovery:
             cursor.i += 1
             raise Resumed
 
-    def _label(self, word: Token, following: Token, after: Token) -> None:
-        """`Paso 1: F(2, 80)`, `a) F(2, 80)`: what counts the lines."""
-        cursor = self.cursor
-        is_step = word.text in STEPS and following.kind is NUMBER and after.text in (":", ")")
-        is_letter = len(word.text) == 1 and following.kind == ")"
-        count = 3 if is_step else 2
-        last = cursor.tokens[cursor.i + count - 1]
-        target = cursor.tokens[min(cursor.i + count, len(cursor.tokens) - 1)]
-        is_own_line = cursor.line_of(target) == cursor.line_of(word)
-        if not (is_step or is_letter) or target.kind is not WORD or not is_own_line:
-            return
-        if self.in_block.is_name(word.text):
-            return
-        self.reporter.answer(last)
-        cursor.i += count
-        span = Span(word.start, last.end)
-        self.reporter.report(codes.LINE_NUMBER, span, found=cursor.source[span])
-        raise Resumed
-
     def _arrow(self, word: Token) -> None:
         """`robot->avanzar(2)` is `robot.avanzar(2)`."""
         tokens, k = self.cursor.tokens, self.cursor.i
@@ -271,6 +251,9 @@ class NameRecovery:
     def _values_without_brackets(self, word: Token, following: Token) -> None:
         """`F2, 80`, `FORWARD 2 80`, `SPEED 50`."""
         cursor, start = self.cursor, self.cursor.i + 1
+        if following.kind == "," and cursor.tokens[start + 1].kind is NUMBER:
+            start += 1  # `atras, 2, 50`
+            following = cursor.tokens[start]
         end = body_begins(cursor.tokens, start, names_end=False)
         rest = cursor.tokens[start:end]
         is_new = (
@@ -341,6 +324,8 @@ class NameRecovery:
             self.sentence.so_often(word.span, known, rest, 0)
         if len(rest) > 1 and rest[0].kind in ("-", "=", "=>") and rest[1].kind == ">":
             rest = rest[2:]  # `F -> 2, 80`
+        if len(rest) > 1 and rest[0].kind == "-" and rest[0].start == word.end:
+            rest = rest[1:]  # `F-2, 80`
         if not rest and cursor.token.kind == "{":
             self._braces_for_brackets(word, known)
         span = Span(word.start, rest[-1].end if rest else word.end)

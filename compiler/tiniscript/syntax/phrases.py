@@ -18,7 +18,8 @@ BEFORE_POWER = frozenset(("POTENCIA", "POWER", "VELOCIDAD", "SPEED", "FUERZA"))
 BEFORE_TIME = frozenset(("POR", "DURANTE", "FOR"))
 # Who does it, or that something is done: the move is in the word behind.
 BEFORE_MOVE = TURN_WORDS | frozenset(
-    "HOLA HELLO ROBOT EL THE IR VE VAMOS HAZ GO QUIERO QUE DEBE TIENE PUEDE VA POR FAVOR MI".split()  # noqa: SIM905
+    "HOLA HELLO CARRO CARRITO AUTO CAR".split()  # noqa: SIM905
+    + "ROBOT EL THE IR VE VAMOS HAZ GO QUIERO QUE DEBE TIENE PUEDE VA POR FAVOR MI".split()  # noqa: SIM905
     + "I WANT TO MUST SHOULD WILL PLEASE MY GOES DRIVES MOVES".split()  # noqa: SIM905
 )
 
@@ -83,7 +84,20 @@ CHANGING = frozenset(
 )
 # What begins a program of Scratch: `when green flag clicked`.
 EVENTS = frozenset(
-    ("FLAG", "CLICKED", "BANDERA", "EMPIECE", "EMPIEZA", "INICIE", "COMIENCE", "START", "CLIC")
+    (
+        "FLAG",
+        "CLICKED",
+        "BANDERA",
+        "EMPIECE",
+        "EMPIEZA",
+        "INICIE",
+        "COMIENCE",
+        "START",
+        "CLIC",
+        "INICIAR",
+        "EMPEZAR",
+        "COMENZAR",
+    )
 )
 # What begins a file of another language: `import time`.
 IMPORTING = frozenset("IMPORT FROM USING INCLUDE PACKAGE REQUIRE".split())  # noqa: SIM905

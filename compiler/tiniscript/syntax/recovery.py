@@ -274,6 +274,8 @@ class Recovery:
             fix = f"{whole}.{after.text}"
             span = Span(before.start, after.end)
             fail(codes.DECIMAL_COMMA, span, Span(first.start, after.end), fix=fix)
+        if kind is WORD and text in BETWEEN:
+            self.reporter.answer(token)  # `después` has an accent
         if kind is WORD and text in (BETWEEN if header is None else AFTER_HEADER):
             if header is not None or (after.kind is WORD and not self.in_block.is_name(text)):
                 self.reporter.report(codes.EXTRA_WORD, token.span, found=text, fix="")

@@ -26,15 +26,18 @@ from tiniscript.syntax.phrases import (
     READING,
     TIMES,
 )
+from tiniscript.syntax.question_recovery import QuestionRecovery
 from tiniscript.syntax.reporter import Failed, Reporter, Resumed
 from tiniscript.syntax.suggestions import (
     body_begins,
     end_of_values,
+    foreign_block,
     head_in,
     inside,
     is_filler,
     move_said,
     shortened,
+    with_signs,
 )
 from tiniscript.syntax.time_phrases import with_numbers
 from tiniscript.syntax.units import converted
@@ -64,6 +67,7 @@ class SentenceRecovery:
         self.reporter = reporter
         self.blocks = blocks
         self.in_block = in_block
+        self.questions = QuestionRecovery(cursor, reporter, in_block)
 
     def two_words(self, word: Token, following: Token) -> None:
         """`TURN LEFT`; and of `hello world` only the first word is a mistake."""
@@ -76,7 +80,7 @@ class SentenceRecovery:
             span = Span(word.start, following.end)
             found = self.cursor.source[span]
             self.reporter.fail(codes.NAME_WITH_SPACE, span, found=found, right=joined)
-        row = tokens[start - 1 : start + 3]
+        row = tokens[start - 1 : start + 4]
         asks = any("BUTTON" in (each.text, meant_by(each.text)) for each in row)
         if asks and meant_by(word.text) == "W":
             self.cursor.skip_instruction()
@@ -167,7 +171,7 @@ class SentenceRecovery:
         """`esperar hasta distancia < 10`."""
         cursor, start = self.cursor, self.cursor.i + 2
         values = inside(cursor.tokens, start)
-        if not any(each.kind in COMPARISONS for each in values):
+        if not any(each.kind in COMPARISONS for each in with_signs(values)):
             return
         end = end_of_values(cursor.tokens, start, values)
         found = cursor.source[Span(word.start, cursor.tokens[start - 1].end)]
@@ -230,6 +234,9 @@ class SentenceRecovery:
         self, span: Span, found: str, meant: Word, values: list[Token], end: int = 0
     ) -> NoReturn:
         """`end` is where the values end in the text, if not with the last of them."""
+        behind = self.questions.behind(span, values, end)
+        if behind is not None:
+            values = [each for each in values if each.start < behind.start]
         values = with_numbers(values)
         self.so_often(span, meant, values, end)
         last = values[-1:]
@@ -249,6 +256,8 @@ class SentenceRecovery:
         if any(each.kind is WORD and not self._is_value(each) for each in values):
             fix = ""
         place = Span(span.start, max(span.end, end, *(each.end for each in values)))
+        if behind is not None:
+            self.questions.asked(span, behind, fix or meant.example, meant)
         self.reporter.fail(
             codes.OTHER_LANGUAGE, span, place, found=found, right=meant.text, fix=fix,
             usage=meant.usage,
@@ -333,6 +342,8 @@ class SentenceRecovery:
         if sign.kind is not ODD or sign.text not in (".", ":"):
             return
         after = cursor.tokens[min(cursor.i + 2, len(cursor.tokens) - 1)]
+        if sign.text == ":" and foreign_block(word.text) is not None:
+            return  # `repite: avanza 1`
         meant = self.in_block.known.command(after.text) if after.kind is WORD else None
         is_a_part = word.text.startswith(("SERVO", "MOTOR", "PIN", "LED", "LCD"))
         if meant is None or (is_a_part and meant.role == "show"):  # `servo.write(90)`

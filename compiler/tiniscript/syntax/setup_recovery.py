@@ -14,7 +14,7 @@ from tiniscript.syntax.foreign import foreign_header
 from tiniscript.syntax.lexer import WORD, Token
 from tiniscript.syntax.reporter import Reporter, Resumed
 from tiniscript.syntax.suggestions import head_in, inside, is_question
-from tiniscript.words import WORDS
+from tiniscript.words import WORDS, meant_by
 
 if TYPE_CHECKING:
     from tiniscript.syntax.parser import Parser
@@ -105,7 +105,9 @@ class SetupRecovery:
             parser.arm(Token(WORD, "ELSE", word.start, following.end), is_reported=True)
             parser.recovery.in_block.go_on()
         if word.text == "SI" and following.kind != "|":
-            if following.kind == "(" or is_question(cursor.tokens, cursor.i + 1):
+            known = parser.recovery.in_block.known
+            asks = is_question(cursor.tokens, cursor.i + 1) or known.is_number(following.text)
+            if following.kind == "(" or asks:
                 line = parser.recovery.in_block.whole_line(word, "IF")
                 if line is not None:
                     place = cursor.span_from(word)
@@ -114,6 +116,9 @@ class SetupRecovery:
                 fix = head_in(WORDS["IF"], inside(cursor.tokens, cursor.i + 1))
                 self.reporter.report(codes.SPANISH_IF, word.span, fix=fix)
                 foreign_header(parser, word, "IF")
+        row = cursor.tokens[cursor.i + 1 : cursor.i + 5]
+        if word.text == "SI" and any(meant_by(each.text) == "BUTTON" for each in row):
+            self.reporter.fail(codes.NO_BUTTON, word.span)
         if word.text == "SI" and following.text in _SEEING:
             self.reporter.report(codes.SPANISH_IF, word.span, fix=WORDS["IF"].example)
             foreign_header(parser, word, "IF")

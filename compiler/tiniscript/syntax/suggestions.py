@@ -234,6 +234,8 @@ def operator_words(tokens: Sequence[Token], k: int) -> tuple[int, str] | None:
             said += "="
         elif said in COMPARISONS - {"="} and text in _EQUALS:
             said += "=" if said in ("<", ">") else ""
+        elif text in ("ENTRE", "DIVIDIDO") and tokens[min(end + 2, len(tokens) - 1)].text != "Y":
+            said = "/"  # `10 entre 2`
         elif text in ("MENOS", "MAS") and after in ("DE", "QUE"):  # `menos de 15`
             said = "<" if text == "MENOS" else ">"
         elif text in OPERATOR_WORDS:

@@ -12,9 +12,9 @@ from tiniscript.source import Span
 from tiniscript.syntax.block_recovery import BlockRecovery
 from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Token
-from tiniscript.syntax.phrases import BEFORE_NAME, CHANGING, SETTING
-from tiniscript.syntax.reporter import Reporter
-from tiniscript.syntax.suggestions import shortened
+from tiniscript.syntax.phrases import BEFORE_NAME, CHANGING, SETTING, STEPS
+from tiniscript.syntax.reporter import Reporter, Resumed
+from tiniscript.syntax.suggestions import foreign_block, shortened
 from tiniscript.words import SWITCH_WORDS, TURN_WORDS, WORDS, is_guessed, meant_by
 
 # Words that mean something elsewhere, and little in the middle of a sentence.
@@ -24,6 +24,9 @@ _SIDES = {
     "L": {"IZQUIERDO", "IZQUIERDA", "IZQ", "LEFT"},
     "R": {"DERECHO", "DERECHA", "DER", "RIGHT"},
 }
+
+
+_ASKING = frozenset(("IF", "SI", "WHILE", "UNTIL", "HASTA"))
 
 
 class TalkRecovery:
@@ -123,11 +126,34 @@ class TalkRecovery:
         k += is_end
         moves = WORDS.get(meant_by(cursor.tokens[k].text) or "")
         is_move = cursor.tokens[k].text in TURN_WORDS or (moves and moves.role == "move")
-        if not is_move or cursor.tokens[k + 1].kind not in (WORD, *AT_END):
-            return
+        end = k + 1
+        while cursor.tokens[end].kind is WORD:
+            end += 1
+        said = {foreign_block(each.text) or each.text for each in cursor.tokens[k + 1 : end]}
+        if not is_move or cursor.tokens[end].kind not in AT_END or said & _ASKING:
+            return  # `no avances si …`
         cursor.skip_instruction()
         span = cursor.span_from(word)
         self.reporter.fail(
             codes.OTHER_LANGUAGE, span, span, found=shortened(cursor.source[span]), right="S",
             fix="S", usage="S",
         )  # fmt: skip
+
+    def label(self, word: Token, following: Token, after: Token) -> None:
+        """`Paso 1: F(2, 80)`, `a) F(2, 80)`: what counts the lines."""
+        cursor = self.cursor
+        is_step = word.text in STEPS and following.kind is NUMBER and after.text in (":", ")")
+        is_letter = len(word.text) == 1 and following.kind == ")"
+        count = 3 if is_step else 2
+        last = cursor.tokens[cursor.i + count - 1]
+        target = cursor.tokens[min(cursor.i + count, len(cursor.tokens) - 1)]
+        is_own_line = cursor.line_of(target) == cursor.line_of(word)
+        if not (is_step or is_letter) or target.kind is not WORD or not is_own_line:
+            return
+        if self.in_block.is_name(word.text):
+            return
+        self.reporter.answer(last)
+        cursor.i += count
+        span = Span(word.start, last.end)
+        self.reporter.report(codes.LINE_NUMBER, span, found=cursor.source[span])
+        raise Resumed

@@ -268,6 +268,8 @@ class ValueConstructs:
             return
         end = end_of_values(cursor.tokens, cursor.i + 1, values)
         call = cursor.source[Span(first.start, cursor.last.end)]
+        if first.text not in WORDS:  # `avanza si …`
+            call = word.example
         start = cursor.i
         while cursor.token.start < end:
             cursor.i += 1
