@@ -24,10 +24,11 @@ SAID = {
         "Un robot virtual lo hace aquí durante 30 segundos. Ctrl-C lo detiene antes.",
     ),
     "warning": (
-        "The warning above: for a second at a time this robot drives without looking. In the room of"
-        " the\nvirtual robot that is soon enough; examples/obstacle_until.ts looks 50 times a second.",
-        "La advertencia: este robot avanza un segundo sin mirar cada vez. En la sala del robot virtual"
-        "\nalcanza; examples/obstacle_until.ts mira 50 veces por segundo.",
+        "The warning above: this robot drives for a second at a time without looking.\n"
+        "In its virtual room that is enough; examples/obstacle_until.ts looks 50 times\n"
+        "a second.",
+        "El aviso de arriba: este robot avanza cada vez un segundo sin mirar. En su\n"
+        "sala virtual alcanza; examples/obstacle_until.ts mira 50 veces por segundo.",
     ),
     "drawn": (
         "Its way is drawn in way.png, in this folder.",

@@ -88,7 +88,7 @@ def test_what_lies_in_a_folder_does_no_harm(folder: Path, tsc: Tsc) -> None:
     assert ".hidden" not in done.out
     assert "./x??[31m.ts: no mistakes" in done.out
     assert "./bytes.ts: line 1: This file is not text" in done.out
-    assert "./pipe.ts is no file with text" in done.out
+    assert "./pipe.ts is not a text file" in done.out
     assert "./dangling.ts: there is no file" in done.out
 
 
@@ -194,7 +194,7 @@ def test_a_file_that_cannot_be_written_is_as_it_was(
     monkeypatch.setattr("tiniscript.files.replace", full)
     done = tsc("check", "--fix", "b.ts")
     assert (done.code, (folder / "b.ts").read_text("utf-8")) == (2, WRONG)
-    assert "b.ts cannot be written: No space left on device. It is as it was." in done.err
+    assert "b.ts cannot be written: No space left on device. The file stays as it was." in done.err
     done = tsc("check", "--fix", "b.ts", "a.ts")
     assert done.code == 2
     assert "a.ts: no mistakes" in done.out

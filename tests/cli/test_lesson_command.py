@@ -231,3 +231,35 @@ def test_a_word_of_another_robot_gets_no_option_that_lesson_lacks(tsc: Tsc) -> N
         assert "--robot" not in done.err + done.out
         assert "LINE_L" in done.err + done.out
     assert "--robot liner" in tsc("check", "-e", "SI|F(1,60) UNTIL(LINE_L)").err
+
+
+@needs_wasm
+def test_a_folder_of_thirty_has_anything_in_it(tsc: Tsc, tmp_path: Path) -> None:
+    """Broken, empty, huge, binary and wrongly stored files have a row each, and no one is lost."""
+    pupils = tmp_path / "class"
+    pupils.mkdir()
+    odd = {
+        "empty.ts": (b"", "not yet"), "blank.ts": (b"  \n\n", "not yet"),
+        "binary.ts": (bytes(range(256)) * 10, "mistakes"),
+        "huge.ts": (b"F(1,80);" * 200_000, "mistakes"),
+        "latin1.ts": ("SI|F(2.5, 80) // año".encode("latin-1"), "mistakes"),
+        "utf16.ts": (RIGHT.encode("utf-16"), "mistakes"),
+        "notepad.txt": (b"\xef\xbb\xbf" + RIGHT.encode() + b"\r\n", "done"),
+        "ping.ts": (b"PING|CHECK_CONNECTION", "not yet"),
+        "José Ñañez.ts": (RIGHT.encode(), "done"), "red\x1b[31m.ts": (RIGHT.encode(), "done"),
+    }  # fmt: skip
+    for name, (data, _) in odd.items():
+        (pupils / name).write_bytes(data)
+    for number in range(30 - len(odd)):
+        (pupils / f"pupil {number}.ts").write_text(RIGHT, encoding="utf-8")
+    (pupils / "folder.ts").mkdir()
+    rows = tmp_path / "marks.csv"
+    done = tsc("lesson", "check", "1", pupils, "--csv", rows)
+    assert done.code == 1
+    assert done.out.splitlines()[-1] == "Lesson 1 done: 23 of 30."
+    assert "\x1b" not in done.out
+    assert b"\x1b" not in rows.read_bytes()
+    verdicts = {"done": "passed", "not yet": "failed", "mistakes": "mistakes"}
+    found = {row[0]: row[1] for row in csv.reader(rows.read_text("utf-8-sig").splitlines())}
+    for name, (_, verdict) in odd.items():
+        assert found[name.replace("\x1b", "?")] == verdicts[verdict], name

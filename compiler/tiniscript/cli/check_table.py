@@ -54,7 +54,7 @@ def check(options: Namespace, robot: Robot, language: str) -> int:
     else:
         print("\n" + "\n".join(_table(rows, language)))
     if options.csv is not None:
-        outputs.write(Path(options.csv), _as_csv(rows).encode("utf-8-sig"), "unwritable_rows")
+        outputs.write(Path(options.csv), _as_csv(rows), "unwritable_rows")
     if any(row.problem for row in rows):
         return 2
     return 1 if any(row.mistakes for row in rows) else 0
@@ -157,22 +157,15 @@ def _as_data(row: Row) -> dict[str, object]:
     }
 
 
-def _as_csv(rows: Sequence[Row]) -> str:
-    """Return the rows for a spreadsheet, which takes no cell of them for a formula."""
-    import csv
-    from io import StringIO
+def _as_csv(rows: Sequence[Row]) -> bytes:
+    from tiniscript.cli.spreadsheet import as_csv
 
-    written = StringIO()
-    table = csv.writer(written, lineterminator="\n")
-    table.writerow(("file", "mistakes", "warnings", "repaired", "line", "code", "message"))
-    for row in rows:
-        first = row.messages[0] if row.mistakes else None
-        name = inputs.shown(row.name)
-        table.writerow((
-            f"'{name}" if name[:1] in tuple("=+-@") else name,
-            row.mistakes, row.warnings, row.repaired,
-            "" if first is None else first.line,
-            "" if first is None else first.code,
-            row.problem if first is None else first.message,
-        ))  # fmt: skip
-    return written.getvalue()
+    def cells(row: Row) -> tuple[object, ...]:
+        counts = (inputs.shown(row.name), row.mistakes, row.warnings, row.repaired)
+        if not row.mistakes:
+            return (*counts, "", "", row.problem)
+        first = row.messages[0]
+        return (*counts, first.line, first.code, first.message)
+
+    head = ("file", "mistakes", "warnings", "repaired", "line", "code", "message")
+    return as_csv(head, map(cells, rows))

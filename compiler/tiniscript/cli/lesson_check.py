@@ -6,8 +6,6 @@ Decides what is said of a program and in which form; `lessons.running` lets it d
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 from argparse import Namespace
 from collections.abc import Iterable, Sequence
@@ -230,15 +228,15 @@ def _data(mark: Mark) -> dict[str, object]:
 
 
 def _rows(marks: Sequence[Mark]) -> bytes:
-    """Return the marks as CSV, as spreadsheets read it: no cell begins a formula."""
-    file = io.StringIO()
-    writer = csv.writer(file)
-    writer.writerow(("file", "verdict", "seed", "sentence"))
-    for mark in marks:
-        sentence = mark.said[0][1] if mark.said else ""
-        cells = (mark.name, mark.verdict, str(mark.seed or ""), sentence)
-        writer.writerow([f"'{cell}" if cell[:1] in tuple("=+-@\t\r") else cell for cell in cells])
-    return file.getvalue().encode("utf-8-sig", "backslashreplace")
+    from tiniscript.cli.spreadsheet import as_csv
+
+    return as_csv(
+        ("file", "verdict", "seed", "sentence"),
+        (
+            (mark.name, mark.verdict, mark.seed or "", mark.said[0][1] if mark.said else "")
+            for mark in marks
+        ),
+    )
 
 
 def _picture(run: Run, language: str) -> bytes:

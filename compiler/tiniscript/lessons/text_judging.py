@@ -13,6 +13,7 @@ from tiniscript import robots
 from tiniscript.lessons.judging import Finding
 from tiniscript.lessons.lesson import Criterion, Lesson
 from tiniscript.syntax.lexer import NUMBER, WORD, scan
+from tiniscript.words import ALIASES, BLOCK_ENDS
 
 MOVES = frozenset("FBLRM")
 ACTS = MOVES | {"S", "BEEP", "SHOW"}  # waiting alone is nothing to repeat
@@ -61,7 +62,7 @@ def _repeated(words: Sequence[str]) -> list[list[str]]:
     found: list[list[str]] = []
     open_loops: list[list[str]] = []
     for word in words:
-        if word == "END_LOOP" and open_loops:
+        if ALIASES.get(word, word) == BLOCK_ENDS["LOOP"] and open_loops:
             inside = open_loops.pop()
             if inside[:1] not in (["0"], ["1"]):
                 found.append(inside)

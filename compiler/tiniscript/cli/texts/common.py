@@ -157,7 +157,7 @@ TEXTS: dict[str, tuple[str, str]] = {
     "runs_between": ("{least} to {most} s", "de {least} a {most} s"),
     "runs_at_least": ("at least {least} s", "al menos {least} s"),
     "runs_forever": ("until it is stopped", "hasta que lo detengan"),
-    "file_no_file": ("tsc: {file} is not a text file. Save the program as text (UTF-8) and try again.", "tsc: {file} no es un archivo de texto. Guarda el programa como texto (UTF-8) y prueba otra vez."),
+    "file_no_file": ("tsc: {file} is not a text file. Give the file that has the program.", "tsc: {file} no es un archivo de texto. Da el archivo donde está el programa."),
     "no_mistakes": ("{file}: no mistakes.", "{file}: sin errores."),
     "count_mistake": ("1 mistake", "1 error"),
     "count_mistakes": ("{n} mistakes", "{n} errores"),
