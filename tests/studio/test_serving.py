@@ -8,11 +8,11 @@ import sys
 from collections.abc import Iterator
 from http.client import HTTPConnection, HTTPResponse
 from pathlib import Path
-from threading import Thread
 
 import pytest
 
 from tests.support.command import Command, Tsc
+from tests.support.page_server import serves
 from tiniscript.studio import serving
 from tiniscript.studio.policy import POLICY
 
@@ -33,13 +33,8 @@ def folder(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def server(folder: Path) -> Iterator[serving.Server]:
-    made = serving.Server(serving.files(folder), 0)
-    thread = Thread(target=made.serve_forever, args=(0.02,), daemon=True)
-    thread.start()
-    yield made
-    made.shutdown()
-    made.server_close()
-    thread.join()
+    with serves(serving.Server(serving.files(folder), 0)) as made:
+        yield made
 
 
 def ask(

@@ -13,6 +13,7 @@ from typing import Any
 
 import pytest
 
+from tests.support.page_server import serves
 from tiniscript.studio import serving
 from tiniscript.studio.robot_link import BadRequest
 
@@ -38,13 +39,8 @@ def robots() -> Recorder:
 @pytest.fixture
 def server(tmp_path: Path, robots: Recorder) -> Iterator[serving.Server]:
     (tmp_path / "index.html").write_text("<!doctype html>")
-    made = serving.Server(serving.files(tmp_path), 0, robots.answer)
-    thread = Thread(target=made.serve_forever, args=(0.02,), daemon=True)
-    thread.start()
-    yield made
-    made.shutdown()
-    made.server_close()
-    thread.join()
+    with serves(serving.Server(serving.files(tmp_path), 0, robots.answer)) as made:
+        yield made
 
 
 def post(

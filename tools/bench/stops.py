@@ -14,7 +14,6 @@ from __future__ import annotations
 import random
 from collections.abc import Iterable
 from pathlib import Path
-from types import TracebackType
 from typing import NamedTuple
 
 from tests.machines.wired import Wired
@@ -86,12 +85,7 @@ class Busy:
     def __enter__(self) -> Busy:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        value: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *raised: object) -> None:
         self.chip.close()
 
     @property

@@ -23,7 +23,6 @@ import threading
 import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from types import TracebackType
 
 from tools.uno.build import built, missing
 from tools.uno.log import CYCLES_PER_MS, HERTZ, Byte, Event, Masked, PinChange, Pins, Stack
@@ -93,12 +92,7 @@ class Uno:
     def __enter__(self) -> Uno:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        value: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *raised: object) -> None:
         self.close()
 
     def close(self) -> None:

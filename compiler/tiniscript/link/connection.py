@@ -21,7 +21,8 @@ from tiniscript.link.payloads import (
     TrimReply,
     WifiReply,
 )
-from tiniscript.link.requests import DeviceInfo, FetchedImage, Reply
+from tiniscript.link.reasons import Heard
+from tiniscript.link.requests import FetchedImage, Reply
 from tiniscript.link.wifi import BrokerSettings, Network
 
 DEADLINE_MS = 20_000  # of a request, unless another is given
@@ -91,22 +92,12 @@ class Requester(Protocol):
     def use_broker(self, broker: BrokerSettings | None) -> PendingRequest[WifiReply]: ...
 
 
-class LinkConnection(Protocol):
+class LinkConnection(Heard, Protocol):
     """A connection to a robot. All methods but `close` and `stop` raise Gone once it has ended.
 
-    `heard` counts received bytes; `is_echoed`: the line returns what is sent; `held_by` is the
-    verb of the command that holds the port, if that is another command; `has_ended`: the
-    connection is gone.
+    `held_by` is the verb of the command that holds the port, if that is another command;
+    `has_ended`: the connection is gone.
     """
-
-    @property
-    def robot(self) -> DeviceInfo | None: ...
-
-    @property
-    def heard(self) -> int: ...
-
-    @property
-    def is_echoed(self) -> bool: ...
 
     @property
     def held_by(self) -> str: ...

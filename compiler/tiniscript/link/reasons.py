@@ -14,7 +14,10 @@ STATUS = "status"  # the robot's status says why
 
 
 class Heard(Protocol):
-    """What is known of a connection: whether a robot has answered, and what else came."""
+    """What is known of a connection: whether a robot has answered, and what else came.
+
+    `heard` counts received bytes; `is_echoed`: the line returns what is sent.
+    """
 
     @property
     def robot(self) -> DeviceInfo | None: ...

@@ -80,14 +80,15 @@ class MessageReader:
         *lines, self._rest = (self._rest + data).split(b"\n")
         if any(len(line) > self.limit_bytes for line in (*lines, self._rest)):
             raise BadMessage
-        return [_message(line) for line in lines]
+        return [message_of(line) for line in lines]
 
 
 def written(message: Mapping[str, object]) -> bytes:
     return json.dumps(message, separators=(",", ":")).encode() + b"\n"
 
 
-def _message(line: bytes) -> JsonMessage:
+def message_of(line: bytes) -> JsonMessage:
+    """Return the object of JSON that these bytes are. Raises BadMessage."""
     try:
         found = json.loads(line)
     except (ValueError, RecursionError):

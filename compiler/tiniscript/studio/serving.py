@@ -26,6 +26,7 @@ from typing import Any, NamedTuple, Protocol
 from urllib.parse import urlsplit
 
 from tiniscript.flash import ready
+from tiniscript.sharing.protocol import BadMessage, message_of
 from tiniscript.studio.policy import HEADERS, SECURE_ONLY, TYPES
 from tiniscript.studio.robot_link import BadRequest, Json
 
@@ -258,12 +259,9 @@ class _Handler(BaseHTTPRequestHandler):
             raise BadRequest
         data = self.rfile.read(length)
         try:
-            found = json.loads(data)
-        except (ValueError, RecursionError):
+            return message_of(data)
+        except BadMessage:
             raise BadRequest from None
-        if not isinstance(found, dict):
-            raise BadRequest
-        return found
 
     def _answer(self, has_body: bool) -> None:
         if not self._is_own():
