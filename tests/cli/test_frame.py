@@ -102,6 +102,32 @@ def test_one_value_costs_few_bytes_and_is_one_update() -> None:
     assert (terminal.screen.cursor.y, terminal.screen.cursor.x) == (7, 33)
 
 
+def test_what_is_said_does_not_write_the_picture_again() -> None:
+    terminal = Terminal()
+    lines = [Text(f"value {k}".ljust(30) + "end") for k in range(8)]
+    terminal.draw(lines)
+    for number in range(20):  # also where the screen is full, and scrolls
+        said = terminal.draw(lines, f"said {number}")
+        assert len(said) - len(BEGIN) - len(END) < 40
+    assert terminal.seen()[18:22] == ["said 18", "said 19", lines[0].plain, lines[1].plain]
+    assert (terminal.screen.cursor.y, terminal.screen.cursor.x) == (LINES - 1, 33)
+
+
+@pytest.mark.parametrize("rows", [1, 3, 4, 5, 30])
+def test_what_is_long_or_much_is_said_whole(rows: int) -> None:
+    """A row that wraps, and more rows than there is room for above the picture."""
+    terminal = Terminal()
+    lines = [Text(f"value {k}") for k in range(8)]
+    terminal.draw(lines)
+    much = "\n".join(f"row {k}" for k in range(rows))
+    terminal.draw(lines, much)
+    terminal.draw(lines, "x" * COLUMNS * 2)
+    terminal.draw(lines, "y" * (COLUMNS - 1))
+    expected = [*much.split("\n"), "x" * COLUMNS, "x" * COLUMNS, "y" * (COLUMNS - 1)]
+    expected += [each.plain for each in lines]
+    assert [each for each in terminal.seen() if each] == expected
+
+
 def test_another_colour_is_a_change() -> None:
     terminal = Terminal()
     terminal.draw([Text("stop", style="green"), Text("x")])

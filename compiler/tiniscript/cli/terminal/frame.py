@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from rich.cells import cell_len
 from rich.console import Console
 from rich.text import Text
 
@@ -33,11 +34,14 @@ class Frame:
 
     def draw(self, lines: Sequence[Text], above: str = "") -> None:
         """Show these lines in place of the last ones, and print `above` over them, to stay."""
-        width = self.console.size.width
-        if above or width != self._width or not self.lines or not lines:
+        width, height = self.console.size
+        rows = above.split("\n") if above else []
+        is_narrow = any(cell_len(row) >= width for row in rows)  # then it wraps
+        is_full = len(rows) + max(len(self.lines), len(lines)) >= height
+        if width != self._width or not self.lines or not lines or is_narrow or is_full:
             written = self._whole(lines, above)
         else:
-            written = self._changes(lines)
+            written = self._inserted(rows) + self._changes(lines)
         self.lines = [line.copy() for line in lines]
         self._width = width
         if written:
@@ -54,6 +58,15 @@ class Frame:
         parts.append(f"{TO_LINE_END}\n".join(map(self._styled, lines)))
         erased = TO_SCREEN_END if width != self._width else ""
         return f"\r{_up(rows)}{erased}{''.join(parts)}{TO_SCREEN_END}"
+
+    def _inserted(self, rows: Sequence[str]) -> str:
+        """Return what writes rows over the picture, which is moved down and not written again."""
+        if not rows:
+            return ""
+        count, before = len(rows), len(self.lines)
+        room = "\n" * count + _up(count + before - 1) + f"\x1b[{count}L"  # insert lines
+        said = "".join(f"{row}\r\n" for row in rows)
+        return f"\r{room}{said}{_up(1 - before)}{_right(self.lines[-1].cell_len)}"
 
     def _changes(self, lines: Sequence[Text]) -> str:
         """Return what writes the lines that are not as they were."""
