@@ -105,7 +105,7 @@ def clone(tmp_path: Path) -> Path:
     """The documents of this repository, to be changed."""
     for path in ("docs", "compiler/tiniscript/lessons", "compiler/tiniscript/robots", "tools/site"):
         shutil.copytree(ROOT / path, tmp_path / "clone" / path)
-    for file in ROOT.glob("*.md"):
+    for file in (*ROOT.glob("*.md"), ROOT / "CITATION.cff"):
         shutil.copy(file, tmp_path / "clone")
     return tmp_path / "clone"
 

@@ -11,7 +11,7 @@ import subprocess
 import sys
 
 BENCHMARKS = (
-    # in the order of README, then what the documents do not quote
+    # in the order of `docs/figures.md`, then what the documents do not quote
     "compiler",
     "machine",
     "code_size",

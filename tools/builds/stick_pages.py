@@ -39,10 +39,10 @@ TITLES = {
 }
 GUIDES = {
     "en": ("docs/monday.en.md", "docs/lessons.en.md", "docs/materials.en.md",
-           "docs/language.en.md", "docs/command.en.md", "docs/worlds.en.md",
+           "docs/language.en.md", "docs/robots.en.md", "docs/command.en.md", "docs/worlds.en.md",
            "docs/modules.en.md", "docs/api.en.md", "README.md"),
     "es": ("docs/lunes.es.md", "docs/lecciones.es.md", "docs/materiales.es.md",
-           "docs/lenguaje.es.md", "docs/comandos.es.md", "docs/mundos.es.md",
+           "docs/lenguaje.es.md", "docs/robots.es.md", "docs/comandos.es.md", "docs/mundos.es.md",
            "docs/modulos.es.md", "docs/api.es.md"),
 }  # fmt: skip
 LINK = re.compile(r'(href|src)="([^"#:]+)(#[^"]*)?"')

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 from tools.site.documents import Document
 
-_FENCE = re.compile(r"(```|~~~)")
+_FENCED = re.compile(r"(^ *```.*?^ *```$)", re.DOTALL | re.MULTILINE)
 _LINK = re.compile(r"(!?)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^)\s#]*)(#[^)\s]*)?\)")
 FILES = "files"  # the folder of the copies, beside the halves of the languages
 
@@ -60,13 +60,12 @@ def page(source: str, on: Shelf) -> str:
 
     Raises Missing where a link leads to no file.
     """
-    rows: list[str] = []
-    is_code = False
-    for row in (on.root / source).read_text(encoding="utf-8").splitlines():
-        if _FENCE.match(row.lstrip()):
-            is_code = not is_code
-        rows.append(row if is_code else _LINK.sub(lambda link: _led(link, source, on), row))
-    return "\n".join(rows) + "\n"
+    found: list[str] = []
+    text = (on.root / source).read_text(encoding="utf-8")
+    for number, part in enumerate(_FENCED.split(text)):
+        is_code = number % 2 == 1
+        found.append(part if is_code else _LINK.sub(lambda link: _led(link, source, on), part))
+    return "".join(found)
 
 
 def _led(link: re.Match[str], source: str, on: Shelf) -> str:
