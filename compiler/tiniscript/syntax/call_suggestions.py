@@ -310,6 +310,7 @@ def _with_points(
             and k + 1 < len(texts)
             and _ends_whole(texts[k], len(word.arguments) == 1)
             and texts[k + 1].isdecimal()
+            and texts[k + 1] != "000"  # `1,000` is a thousand
             and touches[k]
         )
         merged.append(f"{texts[k]}.{texts[k + 1]}" if joins else texts[k])

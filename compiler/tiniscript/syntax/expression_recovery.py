@@ -166,6 +166,8 @@ class ExpressionRecovery:
         tokens, start = self.cursor.tokens, self.cursor.i
         end = start
         while tokens[end].kind in (NUMBER, ",") or is_value_word(tokens[end]):
+            if tokens[start].kind == ",":  # `F(RANDOM, 50)`: the 50 is no value of RANDOM
+                break
             end += 1
         rest = tokens[start:end]
         is_last = start > 1 and tokens[start - 2].kind == "," and tokens[start].kind == ")"

@@ -30,7 +30,10 @@ class NumberRecovery:
         ends_here = after in (AFTER_VALUE if in_brackets else AT_END)
         if in_brackets and token.text in WORDS and not self._closes(k + 1):
             return False  # `IF(DISTANCE < 10 S`: the bracket is open, and S stops
-        if not (ends_here and (in_brackets or token.text not in WORDS)) and after not in BINARY:
+        if (
+            not (ends_here and (in_brackets or token.text not in WORDS))
+            and tokens[k + 1].text not in BINARY
+        ):
             return False
         number, first = before.text, before
         sign, over = tokens[cursor.before(k) - 1], tokens[max(0, cursor.before(k) - 2)]

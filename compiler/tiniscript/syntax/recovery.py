@@ -85,6 +85,8 @@ class Recovery:
             raise Failed
         if token.kind == "-" and cursor.token.kind == "-":
             self.of_name.other_note(token.start, "--", cursor.token.end)
+        if token.kind == "/" and cursor.token.kind is WORD and not self._is_command(cursor.token):
+            self.of_name.other_note(token.start, "/", cursor.token.start)  # `/ gira`
         if token.kind is NUMBER and cursor.token.kind is WORD:
             self.times.so_many_times(token)
         if token.kind is NUMBER or token.kind == "(":
@@ -269,6 +271,9 @@ class Recovery:
             raise Resumed
         if kind in SIGNS:
             fail(codes.NOT_AN_INSTRUCTION, token.span, found=text, fix="")
+        if kind == "," and before.kind is NUMBER and after.text == "000":  # `X = 1,000`
+            span = Span(before.start, after.end)
+            fail(codes.BAD_NUMBER, span, found=cursor.source[span], right=before.text + "000")
         if kind == "," and before.kind is NUMBER and after.kind is NUMBER:
             whole = cursor.source[Span(first.start, before.end)]
             fix = f"{whole}.{after.text}"

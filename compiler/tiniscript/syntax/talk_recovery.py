@@ -10,8 +10,9 @@ from collections.abc import Sequence
 from tiniscript.diagnostics import codes
 from tiniscript.source import Span
 from tiniscript.syntax.block_recovery import BlockRecovery
+from tiniscript.syntax.call_suggestions import LONGEST
 from tiniscript.syntax.cursor import AT_END, Cursor
-from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Token
+from tiniscript.syntax.lexer import NEWLINE, NUMBER, WORD, Token
 from tiniscript.syntax.phrases import BEFORE_NAME, CHANGING, SETTING, STEPS
 from tiniscript.syntax.reporter import Reporter, Resumed
 from tiniscript.syntax.suggestions import foreign_block, shortened
@@ -41,8 +42,17 @@ class TalkRecovery:
         tokens, end = cursor.tokens, start
         if start and tokens[start - 1].kind not in (NEWLINE, "|", ";"):
             return
-        while tokens[end].kind not in (NEWLINE, END):
-            if tokens[end].kind in ("(", ")", "=", "|", "{", "}", "<", ">"):
+        while tokens[end].kind not in AT_END:
+            if end > start + LONGEST or tokens[end].kind in (
+                "(",
+                ")",
+                "=",
+                "|",
+                "{",
+                "}",
+                "<",
+                ">",
+            ):
                 return
             end += 1
         row = tokens[start:end]
