@@ -301,8 +301,8 @@ def test_damaged_images_are_refused_by_name(tsc: Tsc, tmp_path: Path, verb: str)
         (whole[:-1], "missing"),
         (whole + b"x", "longer"),
         (whole[:-1] + b"\xff", "damaged"),
-        (b"", "no compiled"),
-        (b"SI|F(2,80)", "no compiled"),
+        (b"", "not a compiled"),
+        (b"SI|F(2,80)", "not a compiled"),
     ):
         target.write_bytes(data)
         done = tsc(verb, target)
@@ -339,7 +339,7 @@ def test_an_image_of_another_robot_says_which(tsc: Tsc, tmp_path: Path) -> None:
         assert tsc("compile", "-e", text, "-o", target, "--robot", robot).code == 0
         done = tsc("run", target)
         assert done.code == 1
-        assert f"is for another robot than tinibot. Name it:  --robot {robot}" in done.err
+        assert f"is for another robot, not for tinibot. Name it:  --robot {robot}" in done.err
         assert tsc("run", target, "--robot", robot).code == 0
         assert f"for {robot}" in tsc("show", target).out
 

@@ -59,7 +59,7 @@ def test_after_ctrl_c_it_is_told_that_it_is_saved(pty_robot: PtyRobot) -> None:
 
 
 @pytest.mark.parametrize(
-    ("language", "said"), [("en", "keeps it as soon as its motors stand"), ("es", "lo guarda en")]
+    ("language", "said"), [("en", "keeps it as soon as its motors have stopped"), ("es", "lo guarda en")]
 )
 def test_a_name_while_it_drives_is_told_to_be_kept_later(
     pty_robot: PtyRobot, language: str, said: str
@@ -78,7 +78,7 @@ def test_a_name_while_it_drives_is_told_to_be_kept_later(
 def test_a_trim_while_it_drives_is_told_to_be_kept_later(pty_robot: PtyRobot) -> None:
     command = uploading(pty_robot)
     done = on(pty_robot, "trim", "--balance", "5")
-    assert done.code == 3 and "keeps it as soon as its motors stand" in done.err
+    assert done.code == 3 and "keeps it as soon as its motors have stopped" in done.err
     interrupted(command)
     assert on(pty_robot, "trim", "--balance", "5").code == 0
 

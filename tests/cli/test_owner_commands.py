@@ -78,14 +78,14 @@ def test_a_robot_that_another_one_has_claimed_says_so_and_what_to_do(
     as_another(monkeypatch, tmp_path, "settings")
     for _ in range(7):  # more often than wrong keys are listened to
         done = on(pty_robot, "info")
-        assert done.code == 0 and "claimed anew" in done.err and "10 s" in done.err
-    assert "lo reclamaron" in on(pty_robot, "ping", "--count", "1", "--lang", "es").err
+        assert done.code == 0 and "claimed it again" in done.err and "10 s" in done.err
+    assert "lo reclamó" in on(pty_robot, "ping", "--count", "1", "--lang", "es").err
     assert [key.is_stale for key in KeyFile().all()] == [True]
     refused = on(pty_robot, "upload", "-e", DRIVES)
     assert refused.code == 3 and "another key" in refused.err
     as_another(monkeypatch, tmp_path)
     done = on(pty_robot, "upload", "-e", DRIVES)
-    assert done.code == 0 and "claimed anew" not in done.err
+    assert done.code == 0 and "claimed it again" not in done.err
 
 
 def test_a_robot_is_given_up_and_free(pty_robot: PtyRobot) -> None:

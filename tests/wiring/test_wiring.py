@@ -201,7 +201,7 @@ def test_what_a_robot_does_not_have_is_not_said() -> None:
     assert "S+" not in said["tinibot"]
     assert "S+" in said["grabber"]
     assert "tsc module --port P --baud 57600" in said["grabber"]
-    assert "AT+UART" not in said["tinibot"]
+    assert "tsc module" not in said["tinibot"]
     assert "STATE tells" in said["tinibot"]
     assert "STATE stays free" in said["liner"]
     assert "resistors of 10 kΩ at STBY" in said["liner"]
