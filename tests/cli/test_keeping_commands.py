@@ -59,7 +59,8 @@ def test_after_ctrl_c_it_is_told_that_it_is_saved(pty_robot: PtyRobot) -> None:
 
 
 @pytest.mark.parametrize(
-    ("language", "said"), [("en", "keeps it as soon as its motors have stopped"), ("es", "lo guarda en")]
+    ("language", "said"),
+    [("en", "keeps it as soon as its motors have stopped"), ("es", "lo guarda en")],
 )
 def test_a_name_while_it_drives_is_told_to_be_kept_later(
     pty_robot: PtyRobot, language: str, said: str

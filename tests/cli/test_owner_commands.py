@@ -143,7 +143,7 @@ def test_a_teachers_stop_holds_until_the_teacher_or_the_button(
     assert on(pty_robot, "upload", "-e", DRIVES).code == 0
     assert "teacher's key" in on(pty_robot, "stop", "--teacher").err  # a pupil has none
     as_another(monkeypatch, tmp_path, "settings")
-    assert "goes on when" in on(pty_robot, "stop", "--teacher").out
+    assert "goes on only after" in on(pty_robot, "stop", "--teacher").out
     as_another(monkeypatch, tmp_path, "pupil")
     held = on(pty_robot, "start")
     assert held.code == 3 and "teacher" in held.err
@@ -156,7 +156,7 @@ def test_text_on_and_off(pty_robot: PtyRobot) -> None:
     assert "no owner" in on(pty_robot, "text", "off").out
     assert claimed(pty_robot).code == 0
     assert "until it is switched off" in on(pty_robot, "text", "on").out
-    assert "but S" in on(pty_robot, "text", "off").out
+    assert "except S" in on(pty_robot, "text", "off").out
     assert on(pty_robot, "text").code == 2
     assert on(pty_robot, "text", "perhaps").code == 2
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -83,3 +84,11 @@ class Command:
     def ended(self) -> Done:
         out, err = self.process.communicate(timeout=30)
         return Done(self.process.returncode, out.decode(), err.decode())
+
+
+def rest_of(terminal: int) -> bytes:
+    """Return what a pseudo-terminal's other end has written, or nothing once it is closed."""
+    try:
+        return os.read(terminal, 65536)
+    except OSError:  # Linux: the other end is closed
+        return b""

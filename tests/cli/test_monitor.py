@@ -1,0 +1,99 @@
+"""`tsc monitor` and a robot: what it prints, keeps and draws."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from tests.machines.host_firmware import missing
+from tests.support.command import TSC, ended, process, rest_of, running
+from tests.support.pty_robot import PtyRobot, on
+
+pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
+
+
+def test_monitor_writes_what_the_robot_shows(pty_robot: PtyRobot, tmp_path: Path) -> None:
+    rows = tmp_path / "rows.csv"
+    assert (
+        on(pty_robot, "upload", "-e", "SB|SHOW(1.5);W(0.1);SHOW(TRUE);X = 0;SHOW(1 / X)").code == 0
+    )
+    command = running("monitor", "--port", pty_robot.port, "--csv", str(rows), "--json")
+    assert command.stderr
+    command.stderr.readline()  # it watches
+    pty_robot.push()
+    pty_robot.until(
+        lambda: "FAULT" in rows.read_text(encoding="utf-8"), "the fault is written down"
+    )
+    command.send_signal(signal.SIGINT)
+    done = ended(command)
+    assert done.code == 0
+    events = [json.loads(line) for line in done.out.splitlines()]
+    assert [event["event"] for event in events] == ["SHOW", "SHOW", "FAULT"]
+    assert [row.split(",")[1:] for row in rows.read_text(encoding="utf-8").splitlines()] == [
+        ["event", "value"], ["SHOW", "1.5"], ["SHOW", "TRUE"], ["FAULT", "DIVIDE_BY_ZERO"],
+    ]  # fmt: skip
+
+
+def test_monitor_keeps_the_last_rows_where_no_robot_answers(tmp_path: Path) -> None:
+    rows = tmp_path / "rows.csv"
+    rows.write_text("ms,event,value\n1,SHOW,5\n", encoding="utf-8")
+    done = process("monitor", "--port", tmp_path / "no-port", "--csv", rows, "--max-time", "1")
+    assert done.code == 3
+    assert rows.read_text(encoding="utf-8") == "ms,event,value\n1,SHOW,5\n"
+
+
+def test_monitor_draws_a_curve(pty_robot: PtyRobot) -> None:
+    pty = pytest.importorskip("pty")
+    assert on(pty_robot, "upload", "-e", "SB|SHOW(-2.5);W(0.3);SHOW(7);W(0.3);SHOW(TRUE)").code == 0
+    ours, theirs = pty.openpty()
+    environ = {**os.environ, "TERM": "xterm", "COLUMNS": "80", "LINES": "24"}
+    command = subprocess.Popen(
+        [*TSC, "monitor", "--port", pty_robot.port, "--plot"],
+        stdin=subprocess.DEVNULL, stdout=theirs, stderr=theirs, env=environ,
+    )  # fmt: skip
+    os.close(theirs)
+    written = b""
+    while "── SHOW".encode() not in written:
+        written += os.read(ours, 65536)
+    pty_robot.push()
+    while b"Done." not in written or "── SHOW 1 ".encode() not in written:
+        written += os.read(ours, 65536)
+    command.send_signal(signal.SIGINT)
+    while part := rest_of(ours):
+        written += part
+    assert command.wait(30) == 0
+    os.close(ours)
+    seen = written.decode()
+    assert "SHOW -2.5" in seen and "SHOW TRUE" in seen
+    assert any("⠀" < letter <= "⣿" for letter in seen)
+    assert seen.endswith("\n")
+
+
+@pytest.mark.parametrize("values", [[], [(0, 5)], [(0, -5), (900, 7000), (20_000, 7000)]])
+def test_every_curve_fits_its_terminal(values: list[tuple[int, int]]) -> None:
+    from tiniscript.cli.terminal.plot import Plot
+
+    plot = Plot()
+    for time_ms, value in values:
+        plot.take(time_ms, value, is_yes_no=False)
+    for now_ms in (20_000, 45_000, 90_000):
+        for width in (1, 2, 5, 8, 20, 80, 200):
+            for height in (1, 2, 3, 8, 50):
+                lines = plot.lines(width, height, now_ms)
+                assert 1 <= len(lines) <= height
+                assert all(line.cell_len <= width for line in lines)
+
+
+def test_monitor_and_a_full_disk(pty_robot: PtyRobot, tmp_path: Path) -> None:
+    files = [Path("/dev/full"), tmp_path, tmp_path / "no" / "such"]
+    for file in files if files[0].exists() else files[1:]:
+        done = on(pty_robot, "monitor", "--csv", file, "--max-time", "1")
+        assert (done.code, done.out) == (2, "")
+        assert "--csv" in done.err
+    assert on(pty_robot, "monitor", "--max-time", "1").code == 0

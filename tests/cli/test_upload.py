@@ -1,0 +1,170 @@
+"""`tsc upload` and a robot: real processes, a real port, the whole firmware behind it."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from tests.machines.host_firmware import missing
+from tests.support.command import LONG, OBSTACLE, TSC, process, rest_of
+from tests.support.pty_robot import PtyRobot, on
+from tiniscript import compile_text, robots
+
+pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
+
+KIT = robots.load("tinibot").kit
+
+
+def test_upload_runs_the_program_and_stays_until_it_ends(
+    pty_robot: PtyRobot, tmp_path: Path
+) -> None:
+    program = tmp_path / "drive.ts"
+    program.write_text("SI|F(0.2, 80)\nSHOW(DISTANCE + 1.5); SHOW(TRUE)\n", encoding="utf-8")
+    pty_robot.ask(lambda robot: robot.sense(0, 0, 42_000))
+    done = on(pty_robot, "upload", program)
+    assert (done.code, done.err) == (0, "")
+    receipt, *rest = done.out.splitlines()
+    image = compile_text(program.read_text(encoding="utf-8"), KIT).image
+    assert receipt.startswith(f"{program} -> tinibot ({pty_robot.port})   {len(image)} bytes")
+    assert f"checksum {int.from_bytes(image[10:14], 'little'):08x}" in receipt
+    assert receipt.endswith("saving   SI: running")
+    assert rest == ["SHOW 43.5", "SHOW TRUE", "Done.", "Saved in slot 0."]
+    assert pty_robot.did == ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]
+
+
+@pytest.mark.parametrize(
+    ("text", "trace"),
+    [
+        ("SI|F(5, 80)", ["MOTORS 80 80", "MOTORS 0 0", "FINISHED"]),
+        (
+            "SI|LOOP(3);F(2, 50);END_LOOP",
+            [*["MOTORS 50 50", "MOTORS 0 0"] * 3, "FINISHED"],
+        ),
+        (OBSTACLE, ["MOTORS 80 80", "MOTORS 0 0", "MOTORS 60 -60", "MOTORS 0 0", "MOTORS 80 80"]),
+    ],
+)
+def test_the_papers_programs_arrive_and_run(
+    pty_robot: PtyRobot, text: str, trace: list[str]
+) -> None:
+    done = on(pty_robot, "upload", "-e", text, "--detach")
+    assert done.code == 0
+    assert done.out.endswith("SI: running without tsc\n")
+    pty_robot.ask(lambda robot: robot.wait(7000))
+    assert pty_robot.did[: len(trace)] == trace
+
+
+def test_a_program_that_waits_ends_with_its_receipt(pty_robot: PtyRobot) -> None:
+    done = on(pty_robot, "upload", "-e", "SB|F(0.1, 80)")
+    assert (done.code, pty_robot.did) == (0, [])
+    assert "SB: waits for the button or tsc start\nSaved in slot" in done.out
+    pty_robot.push()
+    pty_robot.until(lambda: "FINISHED" in pty_robot.did, "the button starts it")
+    done = on(pty_robot, "start")
+    assert done.code == 0
+    assert done.out.endswith("Done.\n")
+    assert pty_robot.did.count("FINISHED") == 2
+
+
+def test_a_longer_program_goes_in_pieces_and_comes_back(
+    pty_robot: PtyRobot, tmp_path: Path
+) -> None:
+    ours, theirs = tmp_path / "ours.bin", tmp_path / "theirs.bin"
+    process("compile", "-e", LONG, "-o", ours)
+    done = on(pty_robot, "upload", ours, "--no-run", "--no-save")
+    assert (done.code, pty_robot.did) == (0, [])
+    assert "in RAM only   SI: waits" in done.out
+    done = on(pty_robot, "fetch", "-o", theirs)
+    assert done.code == 0
+    assert theirs.read_bytes() == ours.read_bytes()
+    listing = on(pty_robot, "fetch").out
+    assert listing.split("\n", 1)[1] == process("show", ours).out.split("\n", 1)[1]
+
+
+def test_noise_on_the_line_costs_time_and_nothing_else(pty_robot: PtyRobot, tmp_path: Path) -> None:
+    ours, theirs = tmp_path / "ours.bin", tmp_path / "theirs.bin"
+    process("compile", "-e", LONG, "-o", ours)
+    pty_robot.damages = 211
+    assert on(pty_robot, "upload", ours, "--no-run", "--no-save").code == 0
+    assert on(pty_robot, "fetch", "-o", theirs).code == 0
+    assert theirs.read_bytes() == ours.read_bytes()
+    assert json.loads(on(pty_robot, "info", "--json").out)["damaged"] > 0
+
+
+def test_the_receipt_is_data_too(pty_robot: PtyRobot) -> None:
+    done = on(
+        pty_robot, "upload", "-e", "SI|SHOW(0.5);SHOW(2);SHOW(FALSE);X = 0;SHOW(1 / X)", "--json"
+    )
+    assert done.code == 1
+    lines = [json.loads(line) for line in done.out.splitlines()]
+    assert [line["event"] for line in lines] == [
+        "RECEIPT",
+        "SHOW",
+        "SHOW",
+        "SHOW",
+        "FAULT",
+        "SAVED",
+    ]
+    assert [line["value"] for line in lines[1:4]] == [0.5, 2, False]
+    assert (lines[0]["start"], lines[0]["is_running"], lines[0]["saved"]) == ("SI", True, "SAVING")
+    assert lines[0]["is_pushed"] is False
+    assert (lines[4]["fault"], lines[4]["line"]) == ("DIVIDE_BY_ZERO", 1)
+
+
+def test_a_fault_names_its_line(pty_robot: PtyRobot, tmp_path: Path) -> None:
+    program = tmp_path / "divide.ts"
+    program.write_text("SI|F(0.1, 50)\nX = 0\nSHOW(1 / X)\n", encoding="utf-8")
+    done = on(pty_robot, "upload", program, "--lang", "es")
+    assert done.code == 1
+    assert "falla DIVIDE_BY_ZERO" in done.err
+    assert "línea 3:  SHOW(1 / X)" in done.err
+    assert not pty_robot.moves
+    done = on(pty_robot, "info")  # the text is in the cache
+    assert "divide.ts, line 3:  SHOW(1 / X)" in done.out
+    assert on(pty_robot, "start").code == 1
+
+
+def test_mistakes_keep_the_program_off_the_robot(pty_robot: PtyRobot) -> None:
+    done = on(pty_robot, "upload", "-e", "F(2 80)")
+    assert done.code == 1
+    assert "TS017" in done.err
+    assert pty_robot.heard == b""
+
+
+def test_what_does_not_fit_is_said_with_numbers(pty_robot: PtyRobot, tmp_path: Path) -> None:
+    target = tmp_path / "a.bin"
+    process("compile", "-e", "SHOW(TIME * 1.234);" * 90, "-o", target, "--robot", "grabber")
+    done = on(pty_robot, "upload", target)
+    assert done.code == 1
+    assert "540 bytes of code, 151 more than the robot has room for (389)" in done.err
+    done = on(pty_robot, "upload", "-e", "SHOW(LINE_L)", "--robot", "liner")
+    assert done.code == 3
+    assert "--robot tinibot" in done.err
+    done = on(pty_robot, "start")
+    assert done.code == 3
+    assert "tsc upload" in done.err
+
+
+def test_a_long_way_has_a_bar_that_is_gone_at_the_end() -> None:
+    pty, pyte = pytest.importorskip("pty"), pytest.importorskip("pyte")
+    with PtyRobot(KIT, bytes_per_ms=1) as pty_robot:
+        ours, theirs = pty.openpty()
+        command = subprocess.Popen(
+            [*TSC, "upload", "-e", LONG, "--no-run", "--no-save", "--port", pty_robot.port],
+            stdin=subprocess.DEVNULL, stdout=theirs, stderr=theirs,
+        )  # fmt: skip
+        os.close(theirs)
+        written = b""
+        while part := rest_of(ours):
+            written += part
+        os.close(ours)
+        assert command.wait(30) == 0
+    assert b"sending [" in written
+    screen = pyte.Screen(200, 5)
+    pyte.ByteStream(screen).feed(written)
+    assert screen.display[0].startswith("-e -> tinibot")
+    assert "sending" not in "".join(screen.display)
