@@ -25,7 +25,7 @@ ENDS = {  # what keeps a verb from waiting for something
     "ping": ["--port", "/none"], "info": ["--port", "/none"], "stop": ["--port", "/none"],
     "upload": ["-e", PROGRAM, "--port", "/none"], "live": ["F(1, 80)", "--port", "/none"],
     "firmware": ["--port", "/none"], "studio": ["--listen", "none"],
-    "wifi": ["--port", "/none"],
+    "wifi": ["--port", "/none"], "class": ["--broker", "127.0.0.1:1"],
 }  # fmt: skip
 CASES = [(verb, dest) for verb, parser in PARSERS.items() for dest in values_of(parser)]
 

@@ -191,6 +191,7 @@ def test_a_stranger_stops_and_does_nothing_else(broker: Mosquitto) -> None:
     ends: Ends = [(AtBroker(robot, teacher), owner)]
     assert uploaded(robot, ends, owner) == "OK"
     end = AtBroker(robot, stranger)
+    end.port._patient_until_s = 0.0
     request = other.live(image_of("F(1, 9)").code)
     talk(robot, [*ends, (end, other)], 300)
     assert request.outcome is None and end.has_ended, "it is told that another one has the robot"

@@ -63,12 +63,16 @@ def ended(command: subprocess.Popen[bytes]) -> Done:
 class Command:
     """A `tsc` that stays."""
 
-    def __init__(self, *arguments: str, code: str = "") -> None:
+    def __init__(self, *arguments: str, code: str = "", data: bytes = b"") -> None:
         words = [sys.executable, "-c", code] if code else TSC
         self.process = subprocess.Popen(
             [*words, *arguments], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
         )  # fmt: skip
+        if data:
+            assert self.process.stdin
+            self.process.stdin.write(data)
+            self.process.stdin.flush()
 
     def until(self, said: str) -> None:
         """Wait until it has printed a line with these words."""

@@ -11,8 +11,10 @@ from tiniscript import robots
 class Esp32PtyRobot(PtyRobot):
     """The robot of a profile. What NVS holds stays when it is switched off."""
 
-    def __init__(self, name: str) -> None:
+    def __init__(self, name: str, seed: int = 0x12345678) -> None:
+        """`seed` makes its id."""
         self.profile = robots.load(name)
+        self.seed = seed
         self._kept: Kept = EMPTY
         super().__init__(self.profile.kit)
 
@@ -32,8 +34,8 @@ class Esp32PtyRobot(PtyRobot):
             self._take_power()
             self._robot = self._made(TASK_WATCHDOG)
 
-    def _made(self, reset: int = POWER_ON, seed: int = 0x12345678) -> HostFirmware:
-        return Esp32Robot(self.profile, self._kept, reset, seed)
+    def _made(self, reset: int = POWER_ON, seed: int = 0) -> HostFirmware:
+        return Esp32Robot(self.profile, self._kept, reset, seed or self.seed)
 
     def _take_power(self) -> None:
         if self._robot:

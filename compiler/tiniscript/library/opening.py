@@ -118,6 +118,8 @@ def port_error(port: str, failure: PortError, language: str = "en") -> RobotErro
 
         extra = install_advice.BROKER if is_at_broker(port) else install_advice.RADIO
         values["how"] = install_advice.command(extra)
+    if failure.reason == ports.UNREACHABLE and is_at_broker(port):
+        reason = "broker_unreachable"
     if failure.reason == ports.NOT_FOUND and failure.why:
         reason = "port_not_found_but"
     if failure.reason == ports.FORBIDDEN and sys.platform.startswith("linux"):

@@ -99,6 +99,8 @@ TEXTS: dict[str, tuple[str, str]] = {
                      "El comando que tenía el puerto {port} terminó ({verb}), y con él un programa iniciado sin detach. Conecta otra vez."),
     "port_gone": ("The port {port} has vanished. A program that is not detached ends a second after that. Plug the cable in and connect again.",
                   "El puerto {port} desapareció. Un programa iniciado sin detach termina un segundo después. Enchufa el cable y conecta otra vez."),
+    "broker_unreachable": ("No MQTT broker answers at {port} ({why}). Does it run there, and is this computer in its network?",
+                           "Ningún broker MQTT responde en {port} ({why}). ¿Funciona ahí, y está esta computadora en su red?"),
     "port_refused": ("The broker of {port} does not let this computer in ({why}). Ask who keeps the broker for a name and a password.",
                      "El broker de {port} no deja entrar a esta computadora ({why}). Pide un nombre y una contraseña a quien lo administra."),
     "port_untrusted": ("This computer does not trust the certificate of the broker of {port} ({why}).",

@@ -30,6 +30,8 @@ ROOT = "tiniscript"
 CONNECT_S = 5.0
 KEEP_ALIVE_S = 4
 LIST_S = 2.0  # until a broker has sent what it retains
+LEAVE_S = 0.5
+PATIENCE_S = 4.0  # a robot frees its place when a client that was killed has been silent for 3 s
 QUIET_S = 0.3  # of silence, and that was all
 ROBOTS = 250  # that a list keeps
 PIECE_BYTES = 400  # of a message; a robot takes 512
@@ -141,11 +143,11 @@ class Broker:
         """Stop every robot of a class: one message for all. Nothing confirms it."""
         self.publish(f"{ROOT}/{group}/stop", bytes(STOP_BYTES))
 
-    def publish(self, topic: str, data: bytes) -> None:
+    def publish(self, topic: str, data: bytes) -> mqtt.MQTTMessageInfo:
         """Raises OSError."""
         if self.gone:
             raise OSError(self.gone)
-        self._client.publish(topic, data, qos=0, retain=False)
+        return self._client.publish(topic, data, qos=0, retain=False)
 
     def attend(self) -> None:
         """Say that the driver is there: from now on it has to say so every DRIVER_S."""
@@ -160,8 +162,8 @@ class Broker:
         with self._news:
             if self._ports.get((port.group, port.robot)) is port:
                 del self._ports[port.group, port.robot]
-        with suppress(OSError):
-            self.publish(port.topic, b"")
+        with suppress(OSError, RuntimeError, ValueError):  # the broker has gone
+            self.publish(port.topic, b"").wait_for_publish(LEAVE_S)  # before the process ends
 
     def close(self) -> None:
         self._client.disconnect()
@@ -244,6 +246,7 @@ class BrokerPort:
         self._heard = bytearray()
         self._gone = ""
         self._is_cancelled = False
+        self._patient_until_s = monotonic() + PATIENCE_S
 
     @property
     def in_waiting(self) -> int:
@@ -276,13 +279,17 @@ class BrokerPort:
             self._broker.publish(self.topic, data[k : k + PIECE_BYTES])
 
     def close(self) -> None:
+        self.end("closed")  # whoever writes after the goodbye would come in again
         self._broker.forget(self)
 
     def take(self, data: bytes) -> None:
         """A message of the robot has come; an empty one says that another client has it."""
         if not data:
-            return self.end(ports.TAKEN)
+            if monotonic() > self._patient_until_s:
+                self.end(ports.TAKEN)
+            return
         with self._news:
+            self._patient_until_s = 0.0
             self._heard += data[: KEPT_BYTES - len(self._heard)]
             self._news.notify_all()
 

@@ -21,7 +21,7 @@ def run(options: Namespace, language: str) -> int:
     if are_many(options):
         from tiniscript.cli.robot.fleet import together
 
-        return together(options, robot, language, _one_of_many)
+        return together(options, robot, language, one_of_many)
     with Connection(options, robot, language) as connection:
         connection.meet()
         description = Description(connection)
@@ -29,7 +29,7 @@ def run(options: Namespace, language: str) -> int:
     return 0
 
 
-def _one_of_many(connection: Connection, member: Member) -> Result:
+def one_of_many(connection: Connection, member: Member) -> Result:
     from tiniscript.cli.robot.fleet import Result
 
     member.meet(connection)

@@ -1,15 +1,19 @@
-"""`tsc wifi`: which network the robot joins, or is; its password is asked for, and kept nowhere."""
+"""`tsc wifi`: which network the robot joins, or is, and which MQTT broker it uses.
+
+A password is asked for, and kept nowhere.
+"""
 
 from __future__ import annotations
 
-import sys
 import time
 from argparse import Namespace
 from typing import TYPE_CHECKING
 
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
+from tiniscript.cli.robot import robot_broker
 from tiniscript.cli.robot.connect import Connection, connected
+from tiniscript.cli.terminal import password
 from tiniscript.cli.texts.common import text
 from tiniscript.link.messages import (
     LEAST_PASSWORD,
@@ -27,7 +31,6 @@ if TYPE_CHECKING:
 
 READY_S = 20  # until the robot is in the network
 LOOK_S = 0.5
-LONGEST_LINE = 1024  # bytes of standard input that may be a password
 
 
 def run(options: Namespace, language: str) -> int:
@@ -35,6 +38,13 @@ def run(options: Namespace, language: str) -> int:
         raise CommandError(2, "wifi_one_way")
     if options.access_point and options.network is None:
         raise CommandError(2, "wifi_no_network")
+    is_about_broker = options.broker is not None or options.no_broker
+    is_about_network = options.network is not None or options.forget
+    if is_about_broker and (is_about_network or (options.broker is not None and options.no_broker)):
+        raise CommandError(2, "wifi_one_way")
+    if options.broker is None and (options.user is not None or options.group is not None):
+        raise CommandError(2, "broker_no_user")
+    broker = robot_broker.settings(options, language) if options.broker is not None else None
     name = None if options.network is None else _name_bytes(options.network)
     with connected(options, language) as connection:
         info = connection.meet()
@@ -43,6 +53,9 @@ def run(options: Namespace, language: str) -> int:
             raise CommandError(3, "wifi_none", robot=connection.name)
         if not features & OWNED:
             raise CommandError(3, "wifi_unowned", robot=connection.name)
+        if is_about_broker:
+            robot_broker.use(connection, broker)
+            return 0
         if options.forget or name is not None:
             _refuse_itself(connection)
         if options.forget:
@@ -52,6 +65,7 @@ def run(options: Namespace, language: str) -> int:
             _join(connection, name, options.access_point)
         else:
             _tell(connection, _told(connection))
+            robot_broker.tell_if_any(connection)
     return 0
 
 
@@ -128,21 +142,5 @@ def _name_bytes(name: str) -> bytes:
 
 
 def _password(language: str) -> bytes:
-    """Ask for the password without an echo, or take it from standard input, if nobody types there.
-
-    It is in no argument, so no list of processes and no history of a shell has it.
-    """
-    if sys.stdin is not None and sys.stdin.isatty():
-        from getpass import getpass
-
-        try:
-            data = getpass(text("wifi_password", language)).encode("utf-8", "surrogateescape")
-        except EOFError:
-            data = b""
-    else:
-        data = b"" if sys.stdin is None else sys.stdin.buffer.readline(LONGEST_LINE)
-        data = data.rstrip(b"\r\n")
-    is_plain = all(byte >= ord(" ") and byte != 0x7F for byte in data)
-    if not LEAST_PASSWORD <= len(data) <= PASSWORD_BYTES or not is_plain:
-        raise CommandError(2, "wifi_bad_password")
-    return data
+    prompt = text("wifi_password", language)
+    return password.asked(prompt, LEAST_PASSWORD, PASSWORD_BYTES, "wifi_bad_password")

@@ -155,8 +155,10 @@ class Fleet:
         self.language = language
         self.is_interrupted = False
         self._news = Event()
+        self._attend: Callable[[], None] = getattr(options, "attend", lambda: None)
 
     def begin(self, work: Work) -> None:
+        self._attend()
         for member in self.members:
             Thread(target=self._run, args=(member, work), name="robot", daemon=True).start()
 
@@ -166,6 +168,7 @@ class Fleet:
         begin_s = monotonic()
         end_s: float | None = None
         while untold and (end_s is None or monotonic() < end_s):
+            self._attend()
             if monotonic() - begin_s > STRANGER_S and all(map(_is_stranger, untold)):
                 self._give_up(untold)
             try:
@@ -197,6 +200,7 @@ class Fleet:
         """Wait until all robots have a result."""
         end_s = monotonic() + limit_s
         while monotonic() < end_s and any(member.result is None for member in self.members):
+            self._attend()
             self._news.wait(LOOK_S)
             self._news.clear()
 

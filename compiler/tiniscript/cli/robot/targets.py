@@ -26,7 +26,7 @@ def are_many(options: Namespace) -> bool:
         raise CommandError(2, "virtual_and_port")
     if options.all and options.ports:
         raise CommandError(2, "all_or_ports", verb=options.verb)
-    return bool(options.all) or len(options.ports) > 1
+    return bool(options.all) or len(options.ports) > 1 or options.verb == "class"
 
 
 def targets(options: Namespace) -> list[Target]:

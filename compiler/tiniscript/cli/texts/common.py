@@ -234,6 +234,7 @@ _LATER = (
     ("studio", "STUDIO_TEXTS"),
     ("wifi", "WIFI_TEXTS"),
     ("conform", "CONFORM_TEXTS"),
+    ("classroom", "CLASS_TEXTS"),
 )
 
 

@@ -80,6 +80,8 @@ LANGUAGE = Kind("choice", choices=("en", "es"))
 MACHINE = Kind("choice", choices=("python", "cpp"))
 YES_NO = Kind("choice", choices=("yes", "no"))
 ON_OFF = Kind("choice", choices=("on", "off"))
+IN_CLASS = Kind("choice", choices=("list", "upload", "stop", "show"))
+TRUST = Kind("file", reads="path_trust")
 SHELL = Kind("choice", choices=("bash", "zsh", "powershell"))
 LEVEL = Kind("choice", choices=tuple(LEVELS))
 
@@ -101,6 +103,8 @@ OPTIONS: tuple[Option, ...] = (
     Option("action", "lesson", ("show, check or sheet; without it the lessons are listed", "show, check o sheet; sin esto se listan las lecciones"), ACTION, ("ACTION", "ACCIÓN")),
     Option("number", "lesson", ("the lesson's number, or the folder of a lesson of your own", "el número de la lección, o la carpeta de una lección tuya"), TEXT, ("N", "N")),
     Option("program", "lesson", ("with check: a file, a folder of programs, or - for standard input", "con check: un archivo, una carpeta de programas, o - para la entrada estándar"), PROGRAM, ("PROGRAM", "PROGRAMA")),
+    Option("action", "class", ("list, upload, stop or show; without it the robots are listed", "list, upload, stop o show; sin esto se listan los robots"), IN_CLASS, ("ACTION", "ACCIÓN")),
+    Option("program", "class", ("with upload: a file, or - for standard input", "con upload: un archivo, o - para la entrada estándar"), PROGRAM, ("PROGRAM", "PROGRAMA")),
     Option("program", "compile run show fmt upload",
            ("a file, or - for standard input", "un archivo, o - para la entrada estándar"), PROGRAM, ("PROGRAM", "PROGRAMA")),
     Option("programs", "check",
@@ -114,7 +118,7 @@ OPTIONS: tuple[Option, ...] = (
     Option("about", "help", ("the command to say more about", "el comando del que quieres saber más"), VERB, ("COMMAND", "COMANDO")),
     Option("shell", "completion", ("bash, zsh or powershell", "bash, zsh o powershell"), SHELL, ("SHELL", "TERMINAL"), is_needed=True),
     # the program
-    Option("-e", "compile check run show fmt upload lesson", ("the program itself, instead of a file: `-e 'SI|F(2, 80)'`", "el programa mismo, en vez de un archivo: `-e 'SI|F(2, 80)'`"), TEXT, A_TEXT, "texts", repeats=True),
+    Option("-e", "compile check run show fmt upload lesson class", ("the program itself, instead of a file: `-e 'SI|F(2, 80)'`", "el programa mismo, en vez de un archivo: `-e 'SI|F(2, 80)'`"), TEXT, A_TEXT, "texts", repeats=True),
     Option("-e", "live", ("the line, too", "también la línea"), TEXT, A_TEXT, "text"),
     # files
     Option("-o", "compile", ("where to, beside the program if it is not given; - is standard output, where --text writes if it is not given",
@@ -162,14 +166,21 @@ OPTIONS: tuple[Option, ...] = (
     Option("--build", "firmware", ("makes the firmware ready and writes nothing: for later, without internet", "deja listo el firmware y no escribe nada: para después, sin internet")),
     Option("--list", "firmware", ("lists which firmware is ready", "lista qué firmware está listo")),
     # what a verb does
-    Option("--no-run", "upload", ("sends the program, and does not start it", "envía el programa y no lo inicia")),
-    Option("--no-save", "upload", ("the robot forgets it when it is switched off", "el robot lo olvida cuando se apaga")),
-    Option("--detach", "upload start", ("starts it and leaves: it goes on without tsc", "lo inicia y se va: sigue sin tsc")),
+    Option("--broker", "class", ("the computer on which the broker runs; its port, if it is not 1883 (8883 with --tls)", "la computadora donde está el broker; su puerto, si no es 1883 (8883 con --tls)"), TEXT, ("HOST[:PORT]", "HOST[:PUERTO]")),
+    Option("--broker", "wifi", ("the robot connects to this MQTT broker, too", "el robot se conecta también a este broker MQTT"), TEXT, ("HOST[:PORT]", "HOST[:PUERTO]")),
+    Option("--class", "class wifi", ("the name of the class: up to 16 of a to z, 0 to 9 and - (class)", "el nombre de la clase: hasta 16 de a a z, 0 a 9 y - (class)"), TEXT, ("NAME", "NOMBRE"), "group"),
+    Option("--user", "class wifi", ("signs in at the broker with this name; tsc asks for the password", "entra en el broker con este nombre; tsc pide la contraseña"), TEXT, ("NAME", "NOMBRE")),
+    Option("--no-broker", "wifi", ("the robot uses no broker any more", "el robot ya no usa ningún broker")),
+    Option("--tls", "class", ("this computer speaks with the broker by TLS", "esta computadora habla con el broker por TLS")),
+    Option("--trust", "class", ("with --tls: a file with the certificate to trust", "con --tls: un archivo con el certificado en el que confiar"), TRUST, A_FILE),
+    Option("--no-run", "upload class", ("sends the program, and does not start it", "envía el programa y no lo inicia")),
+    Option("--no-save", "upload class", ("the robot forgets it when it is switched off", "el robot lo olvida cuando se apaga")),
+    Option("--detach", "upload start class", ("starts it and leaves: it goes on without tsc", "lo inicia y se va: sigue sin tsc")),
     Option("--ask", "ports", ("opens each and says which robot answers there; searches with Bluetooth LE and in the network, too", "abre cada uno y dice qué robot responde ahí; busca también por Bluetooth LE y en la red")),
     Option("--count", "ping", ("how many round trips (10)", "cuántas idas y vueltas (10)"), NUMBER, N),
     Option("--plot", "monitor", ("on a terminal: draws the values of the last 30 seconds as a curve", "en una terminal: dibuja los valores de los últimos 30 segundos como una curva")),
     Option("--csv", "monitor", ("writes rows of ms,event,value, too", "escribe además filas de ms,event,value"), ROWS, A_FILE),
-    Option("--max-time", "monitor", ("leaves after S seconds", "sale después de S segundos"), NUMBER, S),
+    Option("--max-time", "monitor class", ("leaves after S seconds", "sale después de S segundos"), NUMBER, S),
     Option("--show", "trim", ("only prints what the robot keeps", "solo imprime lo que guarda el robot")),
     Option("--reset", "trim", ("motors as they are wired, both equally strong", "motores como están conectados, los dos con igual fuerza")),
     Option("--exchange", "trim", ("yes: left and right motor are the wrong way round", "yes: el motor izquierdo y el derecho están al revés"), YES_NO, YES),
@@ -181,7 +192,7 @@ OPTIONS: tuple[Option, ...] = (
     Option("--access-point", "wifi", ("the robot opens this network itself", "el robot mismo abre esta red")),
     Option("--forget", "wifi", ("the robot uses no WiFi any more", "el robot ya no usa WiFi")),
     Option("--teacher", "disown", ("takes the teacher's key away", "quita la llave de docente")),
-    Option("--teacher", "stop", ("with the teacher's key: only this computer, or the robot's button, lets it go on", "con la llave de docente: solo esta computadora, o el botón del robot, lo deja seguir")),
+    Option("--teacher", "stop class", ("with the teacher's key: only this computer, or the robot's button, lets it go on", "con la llave de docente: solo esta computadora, o el botón del robot, lo deja seguir")),
     Option("--export", "keys", ("writes the keys to a file, for another computer", "escribe las llaves en un archivo, para otra computadora"), NEW_KEYS, A_FILE),
     Option("--import", "keys", ("takes the keys of such a file, too", "toma también las llaves de un archivo así"), KEYS, A_FILE, "bring"),
     Option("--name", "robot", ("what it is called", "cómo se llama"), TEXT, ("NAME", "NOMBRE")),
@@ -226,7 +237,7 @@ OPTIONS: tuple[Option, ...] = (
     Option("--baud", "conform", ("with --port: its speed (9600)", "con --port: su velocidad (9600)"), NUMBER, N),
     Option("--baud", "ports", ("with --ask: their speed (the one of the robot's profile)", "con --ask: su velocidad (la del perfil del robot)"), NUMBER, N),
     Option("--baud", "robot", ("how fast its line is (as in its profile); 0 is as fast as possible", "la velocidad de su línea (la de su perfil); 0 es lo más rápido posible"), NUMBER, N),
-    Option("--robot", "compile check run show fmt upload live", ("for which robot: a name (tinibot, ...) or a profile's file", "para qué robot: un nombre (tinibot, ...) o el archivo de un perfil"), ROBOT, A_ROBOT),
+    Option("--robot", "compile check run show fmt upload live class", ("for which robot: a name (tinibot, ...) or a profile's file", "para qué robot: un nombre (tinibot, ...) o el archivo de un perfil"), ROBOT, A_ROBOT),
     Option("--robot", "wiring ports ping stop link start info monitor fetch name trim undo claim disown text wifi identify robot", ("which robot: a name (tinibot, ...) or a profile's file", "qué robot: un nombre (tinibot, ...) o el archivo de un perfil"), ROBOT, A_ROBOT),
     Option("--robot", "selftest", ("which robot it should be: a name (tinibot, ...) or a profile's file", "qué robot debería ser: un nombre (tinibot, ...) o el archivo de un perfil"), ROBOT, A_ROBOT),
     Option("--robot", "doctor", ("which robot it should be: a name (tinibot, ...) or a profile's file", "qué robot debería ser: un nombre (tinibot, ...) o el archivo de un perfil"), ROBOT, A_ROBOT),
@@ -239,7 +250,7 @@ OPTIONS: tuple[Option, ...] = (
     Option("--virtual", "live", ("no robot: a virtual one does it here", "sin robot: lo hace aquí uno virtual")),
     # how it is said
     Option("--json", "check show lesson ping info ports keys doctor module selftest conform", ("the same as data", "lo mismo como datos")),
-    Option("--json", "upload", ("prints the receipt and what comes after it as lines of JSON", "imprime el recibo y lo que viene después como líneas de JSON")),
+    Option("--json", "upload class", ("prints the receipt and what comes after it as lines of JSON", "imprime el recibo y lo que viene después como líneas de JSON")),
     Option("--json", "undo", ("prints the receipt, and that it is saved, as lines of JSON", "imprime el recibo, y que está guardado, como líneas de JSON")),
     Option("--json", "stop identify", ("prints a line of JSON for each robot", "imprime una línea de JSON por cada robot")),
     Option("--json", "link start monitor", ("prints lines of JSON", "imprime líneas de JSON")),

@@ -63,6 +63,8 @@ LINK_TEXTS: dict[str, tuple[str, str]] = {
                           "tsc: aquí no se pueden encontrar robots por su nombre: esta computadora no llega a ninguna red con multicast ({why}). Entra en la red del robot, o indica su dirección:  socket://HOST:PUERTO"),
     "port_strange": ("tsc: {port} announces an address that is not in this network ({why}), so tsc does not connect. If it is yours:  socket://HOST:PORT",
                      "tsc: {port} anuncia una dirección que no es de esta red ({why}), así que tsc no se conecta. Si es tuya:  socket://HOST:PUERTO"),
+    "broker_unreachable": ("tsc: no MQTT broker answers at {port} ({why}). Does it run there, and is this computer in its network? With TLS:  --tls",
+                           "tsc: ningún broker MQTT responde en {port} ({why}). ¿Funciona ahí, y está esta computadora en su red? Con TLS:  --tls"),
     "port_refused": ("tsc: the broker of {port} does not let this computer in ({why}). Ask who keeps the broker for a name and a password:  tsc class --broker HOST --user NAME",
                      "tsc: el broker de {port} no deja entrar a esta computadora ({why}). Pide un nombre y una contraseña a quien lo administra:  tsc class --broker HOST --user NOMBRE"),
     "port_untrusted": ("tsc: this computer does not trust the certificate of the broker of {port} ({why}). If it is your own, name the file with its certificate:  --trust FILE",

@@ -1,0 +1,53 @@
+"""What the options of a command say of an MQTT broker: where it is, which class, who signs in."""
+
+from __future__ import annotations
+
+import re
+from argparse import Namespace
+from typing import NamedTuple
+
+from tiniscript.cli.errors import CommandError
+from tiniscript.cli.inputs import shown
+from tiniscript.cli.terminal import password
+from tiniscript.cli.texts.common import text
+from tiniscript.link.messages import NETWORK_BYTES, PASSWORD_BYTES
+from tiniscript.link.wifi import is_class
+
+PLAIN_PORT, TLS_PORT = 1883, 8883
+GROUP = "class"  # of who names none
+
+
+class Place(NamedTuple):
+    host: str
+    port: int
+
+    def __str__(self) -> str:
+        return f"{self.host}:{self.port}"
+
+
+def place(options: Namespace, is_tls: bool = False) -> Place:
+    """Return where the broker is. Raises CommandError."""
+    found = re.fullmatch(r"([A-Za-z0-9][A-Za-z0-9._-]{0,252})(?::([0-9]{1,5}))?", options.broker)
+    port = int(found[2] or (TLS_PORT if is_tls else PLAIN_PORT)) if found else 0
+    if found is None or not 0 < port < 1 << 16:
+        raise CommandError(2, "broker_bad_host", found=shown(options.broker) or "''")
+    return Place(found[1].lower(), port)
+
+
+def group(options: Namespace) -> str:
+    """Return the name of the class. Raises CommandError."""
+    name = GROUP if options.group is None else str(options.group)
+    if not is_class(name):
+        raise CommandError(2, "class_bad_name", found=shown(name) or "''")
+    return name
+
+
+def user(options: Namespace, language: str) -> tuple[bytes, bytes]:
+    """Return a name and its password, or two empty ones. Raises CommandError."""
+    if options.user is None:
+        return b"", b""
+    name = options.user.encode("utf-8", "surrogateescape")
+    if not 1 <= len(name) <= NETWORK_BYTES or not options.user.isprintable():
+        raise CommandError(2, "broker_bad_user")
+    prompt = text("broker_password", language).format(user=shown(options.user))
+    return name, password.asked(prompt, 1, PASSWORD_BYTES, "broker_bad_password")

@@ -1,0 +1,165 @@
+"""`tsc class`: the robots of a class at an MQTT broker, as one fleet."""
+
+from __future__ import annotations
+
+from argparse import Namespace
+from pathlib import Path
+from time import monotonic
+from typing import TYPE_CHECKING
+
+from tiniscript.cli import inputs
+from tiniscript.cli.errors import CommandError
+from tiniscript.cli.inputs import shown
+from tiniscript.cli.options import whole_number
+from tiniscript.cli.robot import broker_options
+from tiniscript.cli.robot.connect import port_failure
+from tiniscript.cli.texts.common import text
+
+if TYPE_CHECKING:
+    from tiniscript.cli.robot.connect import Connection
+    from tiniscript.cli.robot.fleet import Member, Result
+    from tiniscript.link.broker import Access, Broker, Present
+
+STOPS = 3  # messages to all, as each may be lost
+WITHOUT: dict[str, object] = {  # what the fleet and its verbs ask of options that this verb has not
+    "ports": [], "port": None, "all": False, "baud": None, "virtual": False, "plot": None,
+}  # fmt: skip
+
+
+class Classroom:
+    """A broker, a class, and how this computer signs in there. Raises CommandError."""
+
+    def __init__(self, options: Namespace, language: str) -> None:
+        if options.broker is None:
+            if options.user is not None:
+                raise CommandError(2, "broker_no_user")
+            raise CommandError(2, "class_no_broker")
+        if options.trust is not None and not options.tls:
+            raise CommandError(2, "broker_trust_alone")
+        self.options = options
+        self.language = language
+        self.place = broker_options.place(options, options.tls)
+        self.group = broker_options.group(options)
+        self.broker = self._connected(options)
+
+    def _connected(self, options: Namespace) -> Broker:
+        from tiniscript.link.ports import NOT_INSTALLED, PortError
+
+        port = f"mqtt://{self.place}"
+        try:
+            from tiniscript.link import broker
+        except ImportError as missing:
+            failure = PortError(NOT_INSTALLED, missing.name or "")
+            raise port_failure(port, failure) from None
+        try:
+            broker.sign_in(*self.place, self._access(options))
+            return broker.connected(*self.place)
+        except PortError as why:
+            raise port_failure(port, why) from None
+
+    def _access(self, options: Namespace) -> Access:
+        from tiniscript.link.broker import Access
+
+        if options.trust is not None:
+            try:
+                Path(options.trust).read_bytes()
+            except (OSError, ValueError) as why:
+                reason = (why.strerror if isinstance(why, OSError) else None) or str(why)
+                raise CommandError(
+                    2, "broker_unread", file=shown(options.trust), why=reason
+                ) from None
+        user, password = broker_options.user(options, self.language)
+        name, word = (each.decode("utf-8", "surrogateescape") for each in (user, password))
+        return Access(name, word, bool(options.tls), options.trust)
+
+    def present(self) -> list[Present]:
+        """Return the robots that the broker knows, those that have gone, too."""
+        found = self.broker.present(self.group)
+        if not any(each.is_here for each in found):
+            raise CommandError(3, "class_empty", group=self.group, host=str(self.place))
+        return found
+
+    def targets(self, found: list[Present]) -> Namespace:
+        """Return the options with which a verb reaches these robots."""
+        from tiniscript.link.broker import port_of
+
+        ports = [port_of(*self.place, self.group, each.id) for each in found if each.is_here]
+        own = Namespace(**{**WITHOUT, **vars(self.options)})
+        own.ports = ports
+        own.attend = self.broker.attend
+        return own
+
+
+def list_robots(room: Classroom) -> int:
+    from tiniscript.cli.commands.info import one_of_many
+    from tiniscript.cli.robot.fleet import together
+
+    found = room.present()
+    own = room.targets(found)
+    code = together(own, inputs.robot(own, room.language), room.language, one_of_many)
+    for each in found:
+        if not each.is_here and not own.json:
+            said = text("class_gone", room.language)
+            print(said.format(robot=shown(each.name), id=each.id))
+    return code
+
+
+def upload(room: Classroom) -> int:
+    from tiniscript.cli.commands import upload as verb
+
+    return verb.run(room.targets(room.present()), room.language)
+
+
+def stop(room: Classroom) -> int:
+    """Stop all at once, with one message; then ask each of them whether it stands."""
+    from tiniscript.cli.commands import stop as verb
+
+    for _ in range(STOPS):
+        room.broker.stop(room.group)
+    return verb.run(room.targets(room.present()), room.language)
+
+
+def show(room: Classroom) -> int:
+    """Print what the robots show, until Ctrl-C or for some seconds."""
+    from tiniscript.cli.robot.fleet import together
+
+    options, language = room.options, room.language
+    seconds = whole_number("--max-time", options.max_time, 0, 1, 10**6, language)
+    own = room.targets(room.present())
+    end_s = monotonic() + seconds if seconds else None
+    code = together(own, inputs.robot(own, language), language, Listener(own.json, end_s).listen)
+    return 0 if code == 2 else code  # Ctrl-C is the usual way to end it
+
+
+class Listener:
+    """Prints the events of one of many robots, and changes nothing of its run."""
+
+    def __init__(self, is_json: bool, end_s: float | None) -> None:
+        self.is_json = is_json
+        self.end_s = end_s
+
+    def listen(self, connection: Connection, member: Member) -> Result:
+        from tiniscript.cli.robot.event_printer import Bookkeeping, EventPrinter
+        from tiniscript.cli.robot.fleet import Result
+
+        member.meet(connection)
+        about = {"port": connection.port, "robot": connection.name}
+
+        def out(line: str) -> None:
+            member.print(line if self.is_json else f"{connection.name}: {line}")
+
+        printer = EventPrinter(
+            connection.language, self.is_json, about=about, has_times=self.is_json, out=out, err=out
+        )
+        bookkeeping = Bookkeeping()
+        try:
+            while self.end_s is None or monotonic() < self.end_s:
+                found = connection.event()
+                if found is None or bookkeeping.hides(found[1]):
+                    continue
+                if found[1].name == "LOST":
+                    raise CommandError(3, "link_lost", port=shown(connection.port))
+                printer.tell(*found)
+        except KeyboardInterrupt:
+            pass
+        return Result(True, text("class_over", connection.language))

@@ -1,0 +1,228 @@
+"""`tsc class` as processes: robots with an ESP32 at Mosquitto, and what else is there."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.cli.test_esp32_radio import DRIVES, DROVE, NETWORK, PASSWORD, drove, files_with, near
+from tests.machines.esp32 import missing as no_compiler
+from tests.support.command import FOREVER, Command, process
+from tests.support.esp32_pty_robot import Esp32PtyRobot
+from tests.support.mosquitto import Mosquitto, missing
+from tests.support.pty_robot import on
+from tiniscript.link.broker import ROOT
+
+if sys.platform == "win32":
+    pytest.skip("there are no pseudo-terminals", allow_module_level=True)
+
+from tests.cli.test_owner_commands import as_another, claimed
+
+pytestmark = [
+    pytest.mark.skipif(bool(no_compiler()), reason=no_compiler() or "there is a compiler"),
+    pytest.mark.skipif(bool(missing()), reason=missing() or "there is a broker"),
+]
+SECRET = b"the password of all robots"
+SEEDS = (0x12345678, 0x0BADCAFE)
+
+
+class Class(list[Esp32PtyRobot]):
+    """Two robots with owners at a broker, which asks for a password."""
+
+    def __init__(self, folder: Path) -> None:
+        self.broker = Mosquitto(folder, "robots", SECRET.decode())
+        super().__init__(Esp32PtyRobot("tinibot32", seed) for seed in SEEDS)
+        for robot in self:
+            near(robot)
+            assert claimed(robot).code == 0
+            assert on(robot, "wifi", NETWORK, data=PASSWORD + b"\n").code == 0
+            done = on(robot, "wifi", *self.place, "--user", "robots", data=SECRET + b"\n")
+            assert done.code == 0, done.err
+            assert "in the class 3b" in done.out and SECRET.decode() not in done.out + done.err
+
+    @property
+    def place(self) -> list[str]:
+        return ["--broker", f"127.0.0.1:{self.broker.port}", "--class", "3b"]
+
+    @property
+    def access(self) -> list[str]:
+        return [*self.place, "--user", "robots"]
+
+    def close(self) -> None:
+        for robot in self:
+            robot.clear_away()
+        self.broker.kill()
+
+
+@pytest.fixture
+def room(tmp_path: Path) -> Iterator[Class]:
+    found = Class(tmp_path)
+    yield found
+    found.close()
+
+
+def tsc(room: Class, *words: str) -> tuple[int, str, str]:
+    done = process("class", *words, *room.access, data=SECRET + b"\n")
+    assert SECRET.decode() not in done.out + done.err
+    return done.code, done.out, done.err
+
+
+def test_a_class_is_listed_driven_and_stopped(room: Class, tmp_path: Path) -> None:
+    code, said, _ = tsc(room)
+    assert code == 0 and "12345678" in said and "0badcafe" in said, said
+    code, said, _ = tsc(room, "upload", "-e", "SI|F(0.2, 80); SHOW(7)")
+    assert code == 0 and said.count("SHOW 7") == 2, said
+    assert all(drove(robot)[-2:] == DROVE for robot in room)
+    assert files_with(tmp_path / "cache", SECRET) == []
+    command = Command("class", "upload", "-e", FOREVER, *room.access, data=SECRET + b"\n")
+    for robot in room:
+        robot.until(lambda robot=robot: robot.moves, "it drives")  # type: ignore[misc]
+    code, said, error = tsc(room, "stop")
+    assert not any(robot.moves for robot in room)
+    assert (code, said.count("has confirmed")) == (0, 2), (said, error)
+    assert command.ended().code != 0
+
+
+def test_who_has_no_key_sees_and_stops(
+    room: Class, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    code, _, _ = tsc(room, "upload", "-e", "SI|LOOP(FOREVER); F(1, 80); END_LOOP", "--detach")
+    assert code == 0 and all(robot.moves for robot in room)
+    as_another(monkeypatch, tmp_path)
+    assert tsc(room, "list")[0] == 0
+    code, said, _ = tsc(room, "upload", "-e", DRIVES)
+    assert code == 3 and said.count("has an owner") == 2
+    assert all(robot.moves for robot in room)
+    assert tsc(room, "stop")[0] == 0
+    assert not any(robot.moves for robot in room)
+
+
+def test_a_driver_that_is_stopped_keeps_no_robot_driving(room: Class) -> None:
+    command = Command("class", "upload", "-e", FOREVER, *room.access, data=SECRET + b"\n")
+    for robot in room:
+        robot.until(lambda robot=robot: robot.moves, "it drives")  # type: ignore[misc]
+    command.process.send_signal(signal.SIGSTOP)
+    begun_s = time.monotonic()
+    for robot in room:
+        robot.until(lambda robot=robot: not robot.moves, "it stands")  # type: ignore[misc]
+    assert time.monotonic() - begun_s < 2, "the tether is a second of the robot's time"
+    command.process.kill()
+
+
+def test_values_are_collected(room: Class) -> None:
+    text = "SI|LOOP(FOREVER); SHOW(5); W(0.3); END_LOOP"
+    assert tsc(room, "upload", "-e", text, "--detach")[0] == 0
+    code, said, error = tsc(room, "show", "--max-time", "3", "--json")
+    values = [json.loads(line) for line in said.splitlines() if '"SHOW"' in line]
+    assert code == 0, said + error
+    assert len({each["port"] for each in values}) == 2, said
+
+
+def test_a_robot_that_is_off_is_told(room: Class) -> None:
+    room[1].switch_off()
+    end_s = time.monotonic() + 15
+    said = ""
+    while "not at the broker any more" not in said and time.monotonic() < end_s:
+        said = tsc(room)[1]
+    assert "0badcafe) is not at the broker any more" in said
+
+
+def test_a_broker_that_does_not_let_us_in(room: Class) -> None:
+    for data in (b"wrong\n", b"\n", b""):
+        done = process("class", *room.access, data=data)
+        assert done.code in (2, 3) and done.out == "" and "assword" in done.err
+    done = process("class", *room.place)
+    assert done.code == 3 and "does not let this computer in" in done.err
+    assert "no deja entrar" in process("class", *room.place, "--lang", "es").err
+
+
+def test_what_a_stranger_retains_reaches_no_terminal_raw(tmp_path: Path) -> None:
+    broker = Mosquitto(tmp_path)
+    try:
+        stranger = broker.connected()
+        for robot, data in (("00000001", b"+\x1b[2Jtsc: ok\n"), ("00000002", b"-\x9b2J\r")):
+            stranger._client.publish(f"{ROOT}/class/{robot}", data, retain=True)
+        time.sleep(0.3)
+        done = process("class", "--broker", f"127.0.0.1:{broker.port}")
+        assert done.code == 3
+        assert not set(done.out + done.err) & set("\x1b\x9b\r")
+        assert "is not at the broker" in done.out
+    finally:
+        broker.kill()
+
+
+@pytest.mark.parametrize("words", [
+    [], ["--user", "x"], ["--broker", ""], ["--broker", "x:0"], ["--broker", "x:65536"],
+    ["--broker", "http://x"], ["--broker", "x", "--class", "a/b"],
+    ["--broker", "x", "--class", "#"], ["--broker", "x", "--class", ""],
+    ["--broker", "x", "--trust", "f"], ["list", "prog.ts", "--broker", "x"],
+    ["--broker", "x", "--tls", "--trust", "/none"], ["--broker", "x", "--user", ""],
+    ["drive", "--broker", "x"],
+])  # fmt: skip
+def test_words_that_make_no_sense_are_said_before_anything_is_reached(words: list[str]) -> None:
+    for language in ("en", "es"):
+        done = process("class", *words, "--lang", language)
+        assert done.code == 2 and done.err.startswith("tsc: ") and not done.out
+
+
+@pytest.mark.parametrize("words", [
+    ["--broker", "x", "--no-broker"], ["NET", "--broker", "x"], ["--forget", "--no-broker"],
+    ["--user", "x"], ["--class", "x"], ["--broker", "no.such.host.invalid"],
+])  # fmt: skip
+def test_a_robots_broker_is_told_in_words_that_make_sense(words: list[str]) -> None:
+    done = process("wifi", *words, "--port", "/none", data=PASSWORD)
+    assert done.code == 2 and done.err.startswith("tsc: ")
+
+
+@pytest.mark.skipif(shutil.which("openssl") is None, reason="needs openssl")
+def test_tls_as_the_broker_offers_it(tmp_path: Path) -> None:
+    """The computer's half. Who is not trusted is told apart from who is not there."""
+    key, certificate = tmp_path / "key.pem", tmp_path / "certificate.pem"
+    subprocess.run(
+        ["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", "2", "-keyout", key,
+         "-out", certificate, "-subj", "/CN=127.0.0.1", "-addext", "subjectAltName=IP:127.0.0.1"],
+        check=True, capture_output=True,
+    )  # fmt: skip
+    broker = Mosquitto(tmp_path, more=f"certfile {certificate}\nkeyfile {key}")
+    try:
+        place = ["class", "--broker", f"127.0.0.1:{broker.port}"]
+        trusted = process(*place, "--tls", "--trust", certificate)
+        assert trusted.code == 3 and "no robot of the class class" in trusted.err
+        strange = process(*place, "--tls")
+        assert strange.code == 3 and "does not trust the certificate" in strange.err
+        assert process(*place).code == 3, "without TLS it is no broker"
+    finally:
+        broker.kill()
+
+
+def test_nobody_at_the_broker(tmp_path: Path) -> None:
+    done = process("class", "--broker", "127.0.0.1:1")
+    assert done.code == 3 and "no MQTT broker answers" in done.err
+    broker = Mosquitto(tmp_path)
+    try:
+        for words in ([], ["stop"], ["upload", "-e", DRIVES], ["show"]):
+            done = process("class", *words, "--broker", f"127.0.0.1:{broker.port}")
+            assert done.code == 3 and "no robot of the class class" in done.err
+        done = process("class", "--tls", "--broker", f"127.0.0.1:{broker.port}")
+        assert done.code == 3
+    finally:
+        broker.kill()
+
+
+def test_who_comes_after_a_driver_that_was_killed(room: Class) -> None:
+    """A robot keeps its client for 3 s; another client waits so long, and then is told."""
+    command = Command("class", "upload", "-e", FOREVER, *room.access, data=SECRET + b"\n")
+    for robot in room:
+        robot.until(lambda robot=robot: robot.moves, "it drives")  # type: ignore[misc]
+    command.process.kill()
+    command.process.wait()
+    code, said, error = tsc(room, "upload", "-e", DRIVES)
+    assert code == 0, said + error
