@@ -220,7 +220,9 @@ def test_only_two_rooms_know_pyserial() -> None:
             assert path.parent.name == "link" and path.stem in ("ports", "line"), path.name
 
 
-AROUND_THE_LINK = ("ports", "line", "bluetooth", "bluetooth_search", "event_loop", "named_robots")
+AROUND_THE_LINK = (
+    "ports", "line", "bluetooth", "bluetooth_search", "broker", "event_loop", "named_robots",
+)  # fmt: skip
 
 
 def test_the_link_has_no_port_and_no_clock() -> None:

@@ -21,6 +21,7 @@ BENCHMARKS = (
     "upload",
     "bluetooth",
     "large_upload",
+    "classroom",
     "firmware_size",
     "machine_size",
     "link_size",
