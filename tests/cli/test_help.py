@@ -140,12 +140,12 @@ def test_names_that_help_lists_are_those_that_there_are(
 def test_a_program_on_the_command_line_works_in_every_verb_that_takes_one(
     tsc: Tsc, tmp_path: Path
 ) -> None:
-    """`upload`, which takes one too, needs a robot, and `lesson` a task: their tests do so."""
+    """`upload`, which takes one too, needs a robot, `class` some, `lesson` a task: see theirs."""
     takes = [verb for verb in VERBS if any(each.kind is A_PROGRAM for each in of_verb(verb))]
-    assert takes == ["compile", "check", "run", "show", "fmt", "upload", "lesson"]
+    assert takes == ["compile", "check", "run", "show", "fmt", "upload", "class", "lesson"]
     for verb in takes:
         assert "-e" in {flag for each in PARSERS[verb]._actions for flag in each.option_strings}
-        if verb not in ("upload", "lesson"):
+        if verb not in ("upload", "class", "lesson"):
             more = ["-o", str(tmp_path / "a.bin")] if verb == "compile" else []
             assert tsc(verb, "-e", PROGRAM, *more).code == 0
     assert "-e" in {flag for each in PARSERS["live"]._actions for flag in each.option_strings}

@@ -26,6 +26,7 @@ BENCHMARKS = (
     "machine_size",
     "link_size",
     "text_size",
+    "targets",
     "arithmetic",
 )
 
