@@ -140,6 +140,15 @@ def test_a_condition_uses_a_jump_that_is_there() -> None:
     assert found[4] == "rjmp .L1"
 
 
+def test_an_interrupt_leads_to_what_is_near_and_uses_no_second_jump() -> None:
+    far = "; ".join(f"ldi r18,{number}" for number in range(200))
+    body = "tst r24; brne .+2; rjmp .L1; inc r24; rjmp .L1"
+    text = function("__vector_3", f"{body}; {far}; .L1:", (0,), "Signal")
+    assert shorter(text) == text
+    text = function("__vector_3", f"{body}; .L1:", (0,), "Signal")
+    assert "breq .L1" in lines_of(shorter(text), "__vector_3")
+
+
 def test_a_jump_that_another_condition_uses_stays() -> None:
     far = "; ".join(f"ldi r18,{number}" for number in range(200))
     body = "tst r24; brne .+2; rjmp .L1; inc r24; brlo .+2; rjmp .L1"

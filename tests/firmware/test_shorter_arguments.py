@@ -62,7 +62,6 @@ def test_a_method_that_needs_its_object_elsewhere_moves_it_there(rest: str) -> N
         function("h", "movw r24,r28; sbrc r22,1; call m"),
         function("h", "sbrs r22,1; movw r24,r28; call m"),
         function("h", "movw r24,r28; jmp m"),
-        function("__vector_3", "movw r24,r28; call m", (0,), "Signal"),
         "\t.global\tm\n",
     ],
 )

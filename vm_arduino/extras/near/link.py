@@ -59,7 +59,7 @@ def shorten(target: list, source: list, env: object) -> None:
         done(*linked, "short.elf", "-fno-lto", "short.o", *others, *libraries)
         shutil.copyfile(folder / "short.elf", elf)
     except (OSError, RuntimeError, ValueError) as why:
-        print(f"The sketch takes 500 bytes more: {why}")
+        print(f"The sketch takes 1,200 bytes more: {why}")
 
 
 def _absolute(word: str) -> str:

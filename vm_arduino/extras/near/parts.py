@@ -16,7 +16,7 @@ from assembly import BODY, LABEL, Function, Instruction, between, is_movable, le
 
 REACH = 3600  # bytes: a call over less than that takes 2 of them
 LONGEST = 16  # instructions
-LEAST_SAVED = 4  # bytes
+LEAST_SAVED = 2  # bytes
 
 Key = tuple[tuple[str, str], ...]  # instructions: what they do, and with what
 

@@ -3,8 +3,8 @@
 GCC 5 and 7 write into each function how its registers are kept, reach a far place from a condition
 by a jump of its own, and repeat how functions end. Here functions that keep the same registers
 share the instructions that do it, a condition that leads far uses a jump that is there already, and
-equal ends and parts are there once. What interrupts reach, and what a LIVE waits for, stays as it
-was: nothing there gets slower.
+equal ends and parts are there once. What interrupts reach, and what a LIVE waits for, only gets what
+makes nothing slower.
 
 Knows the text that GCC writes for an AVR whose program counter has 2 bytes. What has another form
 than expected is left alone.
@@ -62,18 +62,18 @@ def shorter(assembly: str, addresses: Mapping[str, int]) -> str:
     ]
     slow.sort(key=lambda function: addresses[function.name])
     near = regions(slow, addresses, REGION)
-    fixed = [piece for piece in parts if piece not in free.values()]
-    elsewhere = "\n".join(line for piece in fixed for line in _lines(piece) if not TOLD.match(line))
-    share_objects(free, elsewhere)
+    others = [piece for piece in parts if isinstance(piece, str) and not TOLD.match(piece)]
+    elsewhere = "\n".join(others)
+    share_objects(functions, elsewhere)
     common = [share_registers(each, number) for number, each in enumerate(near)]
-    share_objects(free, elsewhere)  # those whose registers are kept otherwise now
-    share_loads(list(free.values()))
+    share_objects(functions, elsewhere)  # those whose registers are kept otherwise now
+    share_loads(list(functions.values()))
     for number, each in enumerate(near):
         each[len(each) // 2].lines += common[number]
     share_parts(slow, addresses)
     _share_ends(slow, addresses)
-    for function in free.values():
-        _share_jumps(function)
+    for name, function in functions.items():
+        _share_jumps(function, name in interrupting)
     return "".join(f"{line}\n" for piece in parts for line in _lines(piece))
 
 
@@ -84,8 +84,8 @@ def _lines(piece: str | Function) -> list[str]:
 # -- conditions that lead far ---------------------------------------------------------------------
 
 
-def _share_jumps(function: Function) -> None:
-    """Let a condition that skips a jump of its own use another jump, or lead there itself."""
+def _share_jumps(function: Function, is_hurried: bool) -> None:
+    """Let a condition that skips a jump of its own lead there itself, or else use another jump."""
     found = function.instructions()
     at_of = places(function, found)
     jumps = defaultdict(list)  # to a label: the instructions that do nothing else
@@ -104,6 +104,8 @@ def _share_jumps(function: Function) -> None:
             continue
         here, label = at_of[branch.line], jump.operands
         if abs(at_of.get(label, 1 << 20) - here) > NEAR:
+            if is_hurried:
+                continue  # two jumps take longer than one
             others = [each for each in jumps[label] if each != jump and each.line not in gone]
             others.sort(key=lambda each: abs(at_of[each.line] - here))
             if not others or abs(at_of[others[0].line] - here) > NEAR:
