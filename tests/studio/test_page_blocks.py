@@ -422,3 +422,22 @@ def test_the_kinds_of_blocks_are_those_of_python() -> None:
 def test_no_word_of_the_sources_is_a_picture_of_a_face() -> None:
     for path in (ROOT / "tools" / "studio" / "src").iterdir():
         assert not re.search("[\U0001f000-\U0001faff]", path.read_text(encoding="utf-8")), path.name
+
+
+def test_a_fault_is_said_at_its_block(page: Page) -> None:
+    start(page, "X = 0;\nSHOW(1 / X);\nS;\n")
+    page.select_option("#speed", "20")
+    page.click("#run")
+    fault = page.locator(f"{PROGRAM} .blocklyDraggable.fault")
+    fault.wait_for()
+    assert fault.count() == 1 and "SHOW" in str(fault.text_content())
+    assert fault.locator(".blocklyIconGroup").count() == 1
+    page.select_option("#language", "es")
+    page.locator("#doing", has_text="Línea 2: algo se divide entre 0.").wait_for()
+    shown(page)
+    fault.wait_for()  # the blocks are others now
+    page.click("#view_text")
+    write(page, "X = 1;\nSHOW(1 / X);\n")
+    page.click("#view_blocks")
+    shown(page)
+    assert fault.count() == 0 and page.locator(f"{PROGRAM} .blocklyIconGroup").count() == 0

@@ -11,6 +11,7 @@ from tests.support.virtual_robot import Talk, missing, trace
 from tiniscript import compile, run
 from tiniscript.robots import load
 from tiniscript.studio import worker
+from tiniscript.studio.checking import check
 from tiniscript.studio.simulation import Simulation
 from tiniscript.virtual import worlds
 from tiniscript.virtual.robot import VirtualRobot
@@ -89,10 +90,16 @@ def test_a_program_can_wait_for_its_button() -> None:
 
 def test_a_fault_is_named() -> None:
     simulation = Simulation(
-        "tinibot", worlds.load("obstacles"), compile("X = 0; SHOW(1 / X)").image
+        "tinibot", worlds.load("obstacles"), compile("W(1); X = 0; SHOW(1 / X)").image
     )
-    simulation.go(500)
-    assert simulation.state()["fault"] == "DIVIDE_BY_ZERO"
+    assert simulation.state()["fault_at"] is None
+    while not simulation.state()["fault"]:
+        simulation.go(1)
+    state = simulation.state()
+    assert (state["fault"], state["at"]) == ("DIVIDE_BY_ZERO", None)
+    found = check(b"W(1); X = 0; SHOW(1 / X)", "tinibot", "en")
+    place = max(place for place in found.places if place.offset <= state["fault_at"])
+    assert (place.line, place.column) == (1, 14)
 
 
 def test_the_page_asks_for_all_of_it() -> None:

@@ -16,6 +16,7 @@ from tiniscript.virtual.world import World
 
 LONGEST_MS = 10_000  # for a robot to answer
 PUSH_MS = 60
+FAULT_MS = 500  # for a robot to tell of a fault
 NONCE = 1  # the same program makes the same run
 
 
@@ -28,18 +29,30 @@ class Simulation:
         self.robot = VirtualRobot(profile, world)
         self.session = Session(NONCE, profile.board.baud, profile.kit.fingerprint)
         self.is_stopped = False
+        self.fault_at: int | None = None  # where the last fault was, as the robot has told
         pending = self.session.upload(unpack(image), runs=True, saves=True)
         self._until(lambda: pending.outcome is not None)
         assert pending.outcome is not None and pending.outcome.status == OK, "not taken"
 
     def go(self, duration_ms: int) -> None:
-        """Let time go on."""
+        """Let time go on; after a fault a little longer, until the robot has told where it was."""
+        self._go(duration_ms)
+        if not self.robot.fault:
+            self.fault_at = None
+        for _ in range(FAULT_MS):
+            if not self.robot.fault or self.fault_at is not None:
+                return
+            self._go(1)
+
+    def _go(self, duration_ms: int) -> None:
         for _ in range(duration_ms):
             now_ms = self.robot.now_ms + 1
             sent = self.robot.step(now_ms, self.session.poll(now_ms))
             self.session.receive(sent, now_ms)
         for event in self.session.events():
             self.is_stopped = self.is_stopped or event.name == "STOPPED"
+            if event.name == "FAULT":
+                self.fault_at = event.at
 
     def go_to_next(self, offsets: list[int], limit_ms: int) -> None:
         """Let time go on until another part of the text runs; parts begin at `offsets`."""
@@ -79,6 +92,7 @@ class Simulation:
             "is_running": robot.is_running,
             "is_waiting": robot.is_lit and not robot.is_running,
             "fault": robot.fault,
+            "fault_at": self.fault_at if robot.fault else None,
             "bumps": robot.driving.bumps,
             "at": robot.at,
             "readings": [{"value": value / 1000, "text": device.text(value)}

@@ -33,6 +33,9 @@ export class Blocks {
   /** Ids of the blocks, and where each is in the text. @type {[string, Range][]} */
   #places = [];
   #running = '';
+  #fault = { id: '', said: '' };
+  /** @type {Finding[]} */
+  #findings = [];
 
   /**
    * @param {HTMLElement} place
@@ -136,6 +139,7 @@ export class Blocks {
     const hadFocus = this.hasFocus;
     Blockly.hideChaff();
     this.#running = '';
+    this.#fault = { id: '', said: '' };
     const ids = showForm(this.#workspace, form);
     this.placed(ids, inOrder(form.body).map((block) => block.place ?? [0, 0, 0, 0]));
     this.#use(form);
@@ -169,8 +173,10 @@ export class Blocks {
 
   /** Says at each block what the compiler says of it. @param {Finding[]} findings */
   showFindings(findings) {
+    this.#findings = findings;
     /** @type {Map<string, string[]>} */
     const said = new Map();
+    if (this.#fault.id) said.set(this.#fault.id, [this.#fault.said]);
     for (const finding of findings) {
       const id = this.#blockAt(finding.line, finding.column) ?? '';
       const whole = [finding.message, finding.fix && `${text('try')} ${finding.fix}`].filter(Boolean).join('\n');
@@ -195,6 +201,20 @@ export class Blocks {
     this.#workspace.getBlockById(this.#running)?.removeClass('running');
     this.#workspace.getBlockById(id)?.addClass('running');
     this.#running = id;
+  }
+
+  /**
+   * Says at a block which fault it had, or that there is none.
+   * @param {{line: number, column: number} | null} range
+   * @param {string} said
+   */
+  showFault(range, said) {
+    const id = range ? this.#blockAt(range.line, range.column) ?? '' : '';
+    if (id === this.#fault.id && said === this.#fault.said) return;
+    this.#workspace.getBlockById(this.#fault.id)?.removeClass('fault');
+    this.#workspace.getBlockById(id)?.addClass('fault');
+    this.#fault = { id, said };
+    this.showFindings(this.#findings);
   }
 
   /** @param {{line: number, column: number}} place */

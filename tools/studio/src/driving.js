@@ -2,6 +2,7 @@
 
 import { Arena } from './arena.js';
 import { element } from './elements.js';
+import { faultSaid } from './faults.js';
 import { download } from './files.js';
 import { Simulator } from './simulator.js';
 import { text } from './texts.js';
@@ -113,6 +114,7 @@ export class Driving {
   /** The text has changed: what runs is no longer what is seen. */
   forgetPlaces() {
     this.#places = [];
+    this.#show();
   }
 
   /** @param {boolean} isPaused */
@@ -159,12 +161,19 @@ export class Driving {
     element('trace', HTMLElement).textContent = trace.slice(-SHOWN).join('\n');
     this.#showValues();
     this.#arena.draw(state);
-    const place = state?.at == null ? undefined : this.#places.findLast(([offset]) => offset <= Number(state.at));
-    if (place) {
-      const [, line, column, end_line, end_column] = place;
-      this.#editor.showRunning({ line, column, end_line, end_column });
-    } else this.#editor.showRunning(null);
+    const place = this.#place();
+    const [, line = 0, column = 0, end_line = 0, end_column = 0] = place ?? [];
+    const range = place ? { line, column, end_line, end_column } : null;
+    this.#editor.showRunning(range);
+    this.#editor.showFault(state?.fault ? range : null, state?.fault ? faultSaid(state.fault) : '');
     document.documentElement.dataset['phase'] = phase;
+  }
+
+  /** What runs in the text that is seen, or what had a fault. @returns {Checked['places'][0] | undefined} */
+  #place() {
+    const { state } = this.#simulator;
+    const at = state?.fault ? state.fault_at : state?.at;
+    return at == null ? undefined : this.#places.findLast(([offset]) => offset <= at);
   }
 
   #doing() {
@@ -172,7 +181,11 @@ export class Driving {
     if (failure) return failure;
     if (isStopping) return text('robot_stopping');
     if (phase === 'off' || !state) return text('robot_off');
-    if (state.fault) return text('robot_fault', { name: state.fault });
+    if (state.fault) {
+      const what = faultSaid(state.fault);
+      const line = this.#place()?.[1];
+      return line ? text('say_fault', { line, what }) : text('robot_fault', { what });
+    }
     if (this.#wasStopped) return text('robot_stopped');
     if (phase === 'paused') return text('robot_paused');
     if (phase === 'ended') return text('robot_ended');

@@ -55,7 +55,7 @@ const panel = new RobotPanel({
   program: () => (isStale() ? null : newest.answer),
   robot: () => work.robot,
   setRobot,
-  goTo: (place) => editor.goTo(place),
+  goTo: (place) => views.goTo(place),
 });
 const lessons = new Lessons({
   python,

@@ -41,6 +41,7 @@
  * @property {string} fault
  * @property {number} bumps
  * @property {number | null} at
+ * @property {number | null} fault_at
  * @property {{value: number, text: string}[]} readings
  * @property {[number, string][]} events
  */

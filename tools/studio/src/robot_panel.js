@@ -2,6 +2,7 @@
 // Everything that a robot says is put there as text, never as markup.
 
 import { element } from './elements.js';
+import { faultSaid } from './faults.js';
 import { bytesOf } from './files.js';
 import { chosenDevice, BluetoothPort, hasBluetooth } from './robot_bluetooth.js';
 import { DirectRobot } from './robot_direct.js';
@@ -368,8 +369,7 @@ export class RobotPanel {
 
   /** @param {RobotEvent} event */
   #fault(event) {
-    const key = hasText(`fault_${event.fault}`) ? `fault_${event.fault}` : 'fault_other';
-    const what = text(key, { name: shown(String(event.fault)) });
+    const what = faultSaid(event.fault);
     const sent = this.#sent;
     const place = sent?.program === event.program ? sent?.places.findLast(([at]) => at <= Number(event.at)) : undefined;
     if (!place) {

@@ -94,7 +94,7 @@ export const TEXTS = {
   robot_ended: ['It has ended.', 'Terminó.'],
   robot_stopping: ['Stopping…', 'Deteniendo…'],
   robot_stopped: ['Stopped.', 'Detenido.'],
-  robot_fault: ['Fault: {name}', 'Falla: {name}'],
+  robot_fault: ['Fault: {what}', 'Falla: {what}'],
   still_compiling: ['The compiler is still at work…', 'El compilador todavía trabaja…'],
   press_again: ['The compiler is still at work. Press again in a moment.', 'El compilador todavía trabaja. Pulsa otra vez en un momento.'],
   first_repair: ['First repair the program.', 'Primero corrige el programa.'],

@@ -34,6 +34,8 @@ export class Views {
   #sending = 0;
   /** @type {Finding[]} */
   #findings = [];
+  /** @type {[import('./editor.js').Range | null, string]} */
+  #fault = [null, ''];
   #pane = element('blocks', HTMLElement);
   #note = element('blocks_note', HTMLElement);
   #level = element('level', HTMLSelectElement);
@@ -116,7 +118,16 @@ export class Views {
     if (!this.#isStale()) this.#blocks?.showRunning(range);
   }
 
-  /** @param {Finding} finding */
+  /**
+   * @param {import('./editor.js').Range | null} range where a run had a fault
+   * @param {string} said
+   */
+  showFault(range, said) {
+    this.#fault = [range, said];
+    if (!range || !this.#isStale()) this.#blocks?.showFault(range, said);
+  }
+
+  /** @param {import('./editor.js').Range} finding */
   goTo(finding) {
     if (this.#isOn && this.#blocks && !this.#isStale()) this.#blocks.goTo(finding);
     else this.#editor.goTo(finding);
@@ -229,6 +240,7 @@ export class Views {
         this.#blocks.show(form);
         this.#form = JSON.stringify(this.#blocks.read().form);
         this.#blocks.showFindings(this.#findings);
+        this.#blocks.showFault(...this.#fault);
       }
       this.#showState();
     } catch (why) {
