@@ -3,8 +3,8 @@
 GCC 5 and 7 write into each function how its registers are kept, reach a far place from a condition
 by a jump of its own, and repeat how functions end. Here functions that keep the same registers
 share the instructions that do it, a condition that leads far uses a jump that is there already, and
-equal ends and parts are there once. What interrupts reach, and what a LIVE waits for, only gets what
-makes nothing slower.
+equal ends and parts are there once. What interrupts reach, and what a LIVE waits for, only gets
+what makes nothing slower.
 
 Knows the text that GCC writes for an AVR whose program counter has 2 bytes. What has another form
 than expected is left alone.
