@@ -121,7 +121,8 @@ REPAIRS: dict[str, tuple[list[str], list[tuple[str, str, str | None]]]] = {
     "año": (["word 'ANIO'"], [("TS009", "año", "anio")]),
     "_paso": (["word 'PASO'"], [("TS009", "_paso", "paso")]),
     '"5"': (["number '5'"], [("TS006", '"5"', "5")]),
-    "“hola”": (["word 'HOLA'"], [("TS006", "“hola”", "")]),
+    "“hola”": (["odd '“hola”'"], [("TS006", "“hola”", "")]),  # a sentence
+    "“HOLA”": (["word 'HOLA'"], [("TS006", "“HOLA”", "HOLA")]),
     '"F(2)"': (["odd '\"F(2)\"'"], [("TS006", '"F(2)"', "F(2)")]),
     "S # stop": (["word 'S'"], [("TS007", "# stop", "// stop")]),
     "/* a\nb */S": (["word 'S'"], [("TS007", "/* a\nb */", "// a\nb")]),

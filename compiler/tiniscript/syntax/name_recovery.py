@@ -337,6 +337,9 @@ class NameRecovery:
         self.reporter.report(codes.MISSING_OPEN, span, word=word.text, fix=fix, usage=known.usage)
         if cursor.token.kind is WORD and cursor.token.text != "UNTIL":
             self.in_block.go_on()
+        if cursor.token.kind == ",":  # `F 2, 80, R 1, 50`
+            cursor.i += 1
+            raise Resumed
         raise Failed
 
     def _braces_for_brackets(self, word: Token, known: Word) -> NoReturn:
