@@ -124,7 +124,7 @@ class FakeBoard:
             return UNO
         if command[0] == 0x55:
             self._at = 2 * int.from_bytes(command[1:3], "little")
-        elif command[0] == 0x64:
+        elif command[0] == 0x64 and 0x50 in self.commands:  # it has been told to program
             self.flash[self._at : self._at + PAGE] = command[4:-1]
         elif command[0] == 0x74:
             return bytes(self.flash[self._at : self._at + PAGE])
@@ -206,7 +206,8 @@ def test_a_firmware_does_not_reach_into_the_bootloader(tmp_path: Path) -> None:
     "text",
     ["", ":00000001FF", "hello", ":0100000001FF\n:00000001FF", ":0100000001FE",
      ":0100000001FE\n:00000001FF\n:0100000001FE", ":020000021000EC\n:0100000001FE\n:00000001FF",
-     ":0200000001FD\n:00000001FF", ":0180000001 7E\n:00000001FF", ":0100000900F6\n:00000001FF"],
+     ":0200000001FD\n:00000001FF", ":01800000017E\n:00000001FF",
+     ":0100000001FE\n:0100000900F6\n:00000001FF"],
 )  # fmt: skip
 def test_what_is_no_firmware_is_refused(text: str, tmp_path: Path) -> None:
     file = tmp_path / "x.hex"

@@ -17,7 +17,7 @@ from tests.studio.test_page_for_everyone import LOOK, SCREENS
 from tests.support import studio
 from tests.support.command import FOREVER
 from tests.support.pty_robot import PtyRobot
-from tests.support.studio import Class, Pages, checked, write
+from tests.support.studio import Class, Pages, checked, hang, write
 from tiniscript import robots
 from tools.builds.studio import MODULES
 
@@ -129,8 +129,7 @@ def test_a_page_that_hangs_stops_its_robot(pages: Pages, taught: Class, robot: P
     linked(ana, "Connected: ")
     drives(ana, robot)
     began_s = time.monotonic()
-    ana.evaluate("() => { setTimeout(() => { const end = performance.now() + 2500;"
-                 " while (performance.now() < end); }, 0); }")  # fmt: skip
+    hang(ana, 2500)
     robot.until(lambda: not robot.moves, "it stands")
     assert time.monotonic() - began_s < 1.5
 

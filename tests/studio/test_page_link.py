@@ -13,7 +13,7 @@ from tests.studio.test_page_for_everyone import LOOK, SCREENS
 from tests.support import studio
 from tests.support.command import FOREVER
 from tests.support.pty_robot import PtyRobot
-from tests.support.studio import Pages, checked, write
+from tests.support.studio import Pages, checked, hang, write
 from tiniscript import compile, robots
 from tiniscript.link import known_ports
 from tiniscript.studio import serving
@@ -124,8 +124,7 @@ def test_stop_works_while_the_virtual_robot_is_seen(page: Page, robot: PtyRobot)
 def test_a_page_that_hangs_stops_its_robot(page: Page, robot: PtyRobot) -> None:
     drives(page, robot)
     began_s = time.monotonic()
-    page.evaluate("() => { setTimeout(() => { const end = performance.now() + 2500;"
-                  " while (performance.now() < end); }, 0); }")  # fmt: skip
+    hang(page, 2500)
     robot.until(lambda: not robot.moves, "it stands")
     assert time.monotonic() - began_s < 1.5
     said(page, "Stopped")  # and it is told when it is back

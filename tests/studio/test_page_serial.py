@@ -12,7 +12,7 @@ from tests.studio.test_page_link import said
 from tests.support import studio, studio_serial
 from tests.support.command import FOREVER
 from tests.support.pty_robot import PtyRobot
-from tests.support.studio import checked, write
+from tests.support.studio import checked, hang, write
 from tiniscript import robots
 
 if TYPE_CHECKING:
@@ -78,8 +78,7 @@ def test_a_page_that_hangs_stops_its_robot(page: Page, robot: PtyRobot) -> None:
     write(page, FOREVER)
     page.click("#link_upload")
     robot.until(lambda: robot.moves, "it drives")
-    page.evaluate("() => { setTimeout(() => { const end = performance.now() + 3000;"
-                  " while (performance.now() < end); }, 0); }")  # fmt: skip
+    hang(page, 3000)
     robot.until(lambda: not robot.moves, "its dead-man timer stops it", limit_s=2.9)
 
 

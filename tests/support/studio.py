@@ -197,6 +197,15 @@ def shown(page: Page) -> None:
     checked(page)
 
 
+def hang(page: Page, milliseconds: int) -> None:
+    """Let the page's main thread hang, from now on."""
+    page.evaluate(
+        "(hung) => { setTimeout(() => { const end = performance.now() + hung;"
+        " while (performance.now() < end); }, 0); }",
+        milliseconds,
+    )
+
+
 def noted(page: Page, text: str) -> None:
     """Wait until the page has said so below the editor."""
     page.locator("#note").filter(has_text=text).wait_for()
