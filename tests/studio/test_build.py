@@ -11,6 +11,8 @@ import pytest
 
 from tests.support.casefile import ROOT
 from tests.support.platformio import need
+from tiniscript.flash import ready
+from tiniscript.studio import serving
 from tiniscript.studio.policy import POLICY
 from tools.builds import studio
 
@@ -116,3 +118,25 @@ def test_a_page_of_other_sources_is_not_used(tmp_path: Path) -> None:
     (tmp_path / studio.STAMP).write_text('{"sources": "others"}')
     assert "other sources" in studio.stale(tmp_path)
     assert studio.main(["--check", "-o", str(tmp_path)]) == 2
+
+
+def test_firmware_is_beside_the_page_and_in_no_count(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """`tsc studio` and a static host give the same files, by the same list."""
+    brought = ready.Ready("tinibot", "uno", "digest", tmp_path / "tinibot-uno-digest.hex")
+    brought.path.write_text(":0100000001FE\n:00000001FF\n")
+    (tmp_path / "page").mkdir()
+    monkeypatch.setattr(ready, "files", list)
+    with pytest.raises(studio.CannotBuild, match="firmware_files"):
+        studio.bring_firmware(tmp_path / "page")
+    monkeypatch.setattr(ready, "files", lambda: [brought])
+    studio.bring_firmware(tmp_path / "page")
+    given = serving.with_firmware({})
+    assert {each.name for each in (tmp_path / "page").iterdir()} == set(given)
+    for name, file in given.items():
+        assert (tmp_path / "page" / name).read_bytes() == file.data
+    [row] = json.loads(given[serving.FIRMWARE].data)
+    assert row == {"title": "tinibot", "board": "uno", "file": brought.path.name}
+    assert given[row["file"]].data == brought.path.read_bytes()
+    assert len(studio.size_rows(tmp_path / "page")) == 2  # the head, and the sum
