@@ -281,6 +281,7 @@ def lesson(pupils: int, robots_count: int, turn_s: int = 30) -> None:
                 if has_run(page, str(k + 1)):
                     shown[k] = time.monotonic() - began_s
                     del waiting[k]
+                    print(f"{len(waiting)} pupils wait", flush=True)
             rooms[0].wait_for_timeout(50)
         slowest_s = max(shown.values())
         print(f"each has run a program on one of {robots_count} robots after {slowest_s:.0f} s")
@@ -304,4 +305,5 @@ def lesson(pupils: int, robots_count: int, turn_s: int = 30) -> None:
 
 
 if __name__ == "__main__":
-    lesson(int(sys.argv[1]) if len(sys.argv) > 1 else 30, 4)
+    count = int(sys.argv[1]) if len(sys.argv) > 1 else 30
+    lesson(count, min(4, count))
