@@ -72,6 +72,8 @@ GOALS: tuple[Goal, ...] = (
          "programs, and twenty changed texts of each", 100_000, 1_000, "tests.text.test_reader_agreement {count} --seed {seed}", 10_000),
     Goal("text", "A robot does a line of text after anything was thrown at it.",
          "robots", 10_000, 100, "tests.firmware.test_text {count} --seed {seed}", 1000),
+    Goal("clients", "A robot answers each whole frame, does nothing that is stale, and can be stopped, after any frames.",
+         "clients", 10_000, 100, "tests.firmware.test_hostile_client {count} --seed {seed}", 1000),
     Goal("fuzz-compiler", "Any text is compiled, or refused with mistakes that can be said in both languages.",
          "texts", 1_000_000, 5_000, "tests.fuzz.test_python compiler {count} --seed {seed}"),
     Goal("fuzz-profiles", "Any profile of a robot is read, or refused.",

@@ -1,0 +1,214 @@
+"""A client that sends whole frames of any kind, length and order, text and zeros between them.
+
+Each of its requests is answered; what is stale does nothing; a program that the robot says it has
+is the one that was sent. Afterwards a stop stops it, and the next line is done.
+`python -m tests.firmware.test_hostile_client 1000` is a campaign.
+"""
+
+from __future__ import annotations
+
+import argparse
+import random
+
+import pytest
+
+from tests.firmware.test_host_firmware import KIT, switched_on
+from tests.machines.host_firmware import missing
+from tiniscript.bytecode.image import HEADER_BYTES, pack
+from tiniscript.link.frames import Frame, decoded, encoded
+from tiniscript.link.messages import (
+    BY_NAME,
+    BY_NUMBER,
+    FIRST_ACTING,
+    STATUSES,
+    payload_bytes,
+    sizes,
+)
+
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
+
+SEEDS = 12  # in the tests; a campaign runs more
+TURNS = 120
+LARGEST = 63
+EVENTS = range(32, 36)
+REQUESTS = tuple(message for message in BY_NUMBER.values() if message.number not in EVENTS)
+UNKNOWN = range(REQUESTS[-1].number + 1, EVENTS[0])
+LATER = "WIFI"  # of an ESP32 alone
+OK, STALE, BUSY = STATUSES["OK"], STATUSES["STALE"], STATUSES["BUSY"]
+NO_ACT = {STATUSES[name] for name in ("STALE", "BAD_LENGTH", "UNKNOWN_MESSAGE")}
+MODES = (0x00, 0x01, 0x10, 0x20, 0x30, 0x50, 0x70, 0x13, 0xFF)
+CODES = (b"", b"\x58", b"\x44\xf0\x50", b"\x68\xb1\x39\x6b\x04", b"\x68\x5a\x32\xce\x6b\x05",
+         b"\xff", b"\0", b"\x51\x01" * 27)  # fmt: skip
+LINES = (b"SI|F(5,50)\n", b"SI|LOOP(FOREVER);SHOW(1);END_LOOP\n", b"SB|F(1,2)\r\n", b"S\n", b"~\n",
+         b"SI|LOOP(2)\n", b"(" * 250 + b"\n", b"SI|F(1," + b"9" * 30 + b")\n")  # fmt: skip
+ROOM = 389
+
+
+class Client:
+    def __init__(self, seed: int) -> None:
+        self.rng = random.Random(seed)
+        self.robot = switched_on()
+        self.heard = b""
+        self.seq, self.epoch = self.rng.randrange(256), 0
+        self.replies: list[Frame] = []
+
+    def put(self, data: bytes, milliseconds: int = 3) -> None:
+        """Send bytes, and hear what the robot says in this time."""
+        *items, self.heard = (self.heard + self.robot.wait(milliseconds, data)).split(b"\0")
+        for item in items:
+            frame = decoded(item)
+            if frame is not None:  # else it is text
+                self.epoch = frame.epoch
+                self.replies += [frame] if frame.number not in EVENTS else []
+
+    def ask(self, number: int, payload: bytes = b"", epoch: int | None = None) -> bytes:
+        """Return the reply to a request, from its status on."""
+        self.seq = (self.seq + 1) % 256
+        self.replies.clear()
+        sent = self.epoch if epoch is None else epoch
+        self.put(encoded(Frame(number, self.seq, sent, payload)))
+        [reply] = [each for each in self.replies if each.seq == self.seq]
+        assert reply.number == number and reply.is_reply
+        assert reply.payload[0] == OK or len(reply.payload) == 3, reply
+        return reply.payload
+
+    def named(self, name: str, payload: bytes = b"") -> bytes:
+        return self.ask(BY_NAME[name].number, payload)
+
+    def hello(self) -> None:
+        kit = self.rng.choice((KIT.fingerprint, 7)).to_bytes(2, "little")
+        nonce = self.rng.choice((5, self.rng.getrandbits(32))).to_bytes(4, "little")
+        assert self.named("HELLO", bytes((1, 2, 2, 0)) + kit + nonce)[0] == OK
+
+    # -- what it does ---------------------------------------------------------------------------
+
+    def request(self) -> None:
+        """Any message, of a right or a wrong length, in any epoch."""
+        rng = self.rng
+        number = rng.choice((*(each.number for each in REQUESTS[1:]), rng.choice(UNKNOWN), 0))
+        fields = BY_NUMBER[number].request if number in BY_NUMBER else ()
+        least, most = sizes(fields)
+        most = min(most, payload_bytes(LARGEST))
+        payload = rng.randbytes(
+            rng.choice((least, most, rng.randrange(most + 1), rng.randrange(57)))
+        )
+        if fields and fields[0].name == "mode" and payload:
+            payload = bytes([rng.choice(MODES)]) + payload[1:]
+        if number in (BY_NAME["LIVE"].number, BY_NAME["PROGRAM"].number):
+            payload = payload[:1] + rng.choice(CODES)
+        epoch = rng.choice((self.epoch, self.epoch, self.epoch ^ rng.randrange(1, 256)))
+        is_stale = epoch != self.epoch
+        self.robot.did.clear()
+        before = self.robot.is_latched
+        status = self.ask(number, payload, epoch)[0]
+        is_known = number in BY_NUMBER and BY_NUMBER[number].name != LATER
+        if not is_known:
+            assert status == STATUSES["UNKNOWN_MESSAGE"]
+        elif not least <= len(payload) <= most:
+            assert status == STATUSES["BAD_LENGTH"]
+        elif is_stale and number >= FIRST_ACTING:
+            assert status == STALE
+        if status in NO_ACT and before:
+            assert not [line for line in self.robot.did if " MOTORS " in line]
+
+    def again(self) -> None:
+        """The same frame twice: the same answer, and what runs is the same run."""
+        name = self.rng.choice(("START", "CLEAR", "IDENTIFY", "ABORT"))
+        mode = b"\x40" if name == "START" else b""
+        first = self.named(name, mode)
+        self.replies.clear()
+        epoch = self.epoch
+        self.put(b"\0" + encoded(Frame(BY_NAME[name].number, self.seq, epoch, mode)))
+        if self.epoch == epoch and first[0] != STALE:
+            assert [each.payload for each in self.replies] == [first]
+
+    def upload(self) -> None:
+        """A program in pieces; something comes between. What is confirmed is what was sent."""
+        rng = self.rng
+        code = rng.choice((b"", b"\x58" * 388, b"\x58" * 389, b"\x58" * 390, b"\xff" * 9,
+                           b"\x51\x01" * rng.randrange(1, 190)))  # fmt: skip
+        image = pack("SI", 0, code)
+        mode = bytes([rng.choice((0x00, 0x20, 0x30))])
+        reply = self.named("BEGIN", mode + image[2:10])
+        body, at = image[14:], 0
+        if len(code) > ROOM and reply[0] != STALE:
+            assert reply[0] != OK
+        while reply[0] == OK and at < len(body):
+            if rng.random() < 0.1:
+                rng.choice((self.hello, self.zeros, self.line, self.request))()
+            piece = body[at : at + rng.choice((1, 20, 53))]
+            reply = self.named("DATA", at.to_bytes(2, "little") + piece)
+            if reply[0] == OK:
+                at = int.from_bytes(reply[1:3], "little")
+                assert at <= len(body)
+        if self.named("COMMIT", image[10:14])[0] == OK:
+            assert self.held() == image
+            assert code != b"\xff" * 9
+
+    def held(self) -> bytes:
+        """Return the image that the robot holds."""
+        image, whole = b"", HEADER_BYTES
+        while len(image) < whole:
+            reply = self.named("FETCH", len(image).to_bytes(2, "little"))
+            if reply[0] == BUSY:
+                self.put(b"", 50)
+                continue
+            assert reply[0] == OK
+            whole = int.from_bytes(reply[1:3], "little")
+            image += reply[3:]
+        return image
+
+    def zeros(self) -> None:
+        self.put(bytes(self.rng.choice((4, 8, 9, 31))))
+        assert self.robot.is_latched
+
+    def line(self) -> None:
+        self.put(self.rng.choice(LINES) + b"\0", 5)
+
+    def noise(self) -> None:
+        self.put(self.rng.randbytes(self.rng.randrange(1, 90)) + b"\0")
+
+    def silence(self) -> None:
+        self.put(b"", self.rng.choice((30, 999, 1001, 2500)))
+
+    def button(self) -> None:
+        self.robot.push(self.rng.choice((40, 2100)))
+
+    def turn(self) -> None:
+        self.rng.choice((
+            self.request, self.request, self.request, self.again, self.upload, self.hello,
+            self.zeros, self.line, self.noise, self.silence, self.button,
+        ))()  # fmt: skip
+
+    def is_alive(self) -> None:
+        """A stop stops it; after a second of silence the next line is done."""
+        self.put(bytes(4), 1200)
+        assert self.robot.is_latched
+        self.robot.did.clear()
+        self.put(b"SI|M(13,17);W(1)\n", 40)
+        assert self.robot.did[0].endswith(" MOTORS 13 17")
+        self.put(bytes(4))
+        assert self.robot.did[-1].endswith(" MOTORS 0 0")
+
+
+def play(seed: int) -> None:
+    client = Client(seed)
+    client.hello()
+    for _ in range(TURNS):
+        client.turn()
+    client.is_alive()
+
+
+@pytest.mark.parametrize("seed", range(SEEDS))
+def test_a_hostile_client_is_answered_and_the_robot_lives(seed: int) -> None:
+    play(seed)
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("count", nargs="?", type=int, default=1000)
+    parser.add_argument("--seed", type=int, default=1000)
+    options = parser.parse_args()
+    for number in range(options.seed, options.seed + options.count):
+        play(number)
+    print(f"{options.count} clients, {options.count * TURNS} turns: the robot lives")
