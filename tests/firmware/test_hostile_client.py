@@ -54,7 +54,10 @@ class Client:
 
     def put(self, data: bytes, milliseconds: int = 3) -> None:
         """Send bytes, and hear what the robot says in this time."""
-        *items, self.heard = (self.heard + self.robot.wait(milliseconds, data)).split(b"\0")
+        self.hear(self.robot.wait(milliseconds, data))
+
+    def hear(self, sent: bytes) -> None:
+        *items, self.heard = (self.heard + sent).split(b"\0")
         for item in items:
             frame = decoded(item)
             if frame is not None:  # else it is text
@@ -172,7 +175,9 @@ class Client:
         self.put(b"", self.rng.choice((30, 999, 1001, 2500)))
 
     def button(self) -> None:
-        self.robot.push(self.rng.choice((40, 2100)))
+        self.hear(self.robot.step(flags=1))
+        self.put(b"", self.rng.choice((40, 2100)))
+        self.hear(self.robot.step(flags=2))
 
     def turn(self) -> None:
         self.rng.choice((
