@@ -22,6 +22,7 @@ FILES = [
     *PORTABLE,
     *sorted(path for name in TESTED for path in (EXTRAS / name).glob("*.[ch]*")),
     *sorted((EXTRAS / "wasm").glob("*.cpp")),
+    *sorted((EXTRAS / "library" / "src").glob("*.[ch]*")),
 ]
 BOARDS = sorted(
     path for folder in ("", "avr") for path in (SOURCES / "src/boards" / folder).glob("*.[ch]*")

@@ -35,7 +35,8 @@ NO_MESSAGE = 31  # a number that no message has
 EVENT_S = 3.0  # for an event behind what has caused it
 BUSY_TRIES, BUSY_S = 50, 0.1
 HEADER = 10  # bytes of an image before its checksum
-SILENCE_S = 1.6  # more than a tethered program goes on without a frame
+SILENCE_S = 5.0  # at most, until a tethered program ends without a frame: it does after 1 s
+ATTENDED_S = 3.0
 
 
 class Check(NamedTuple):
@@ -315,14 +316,14 @@ def _stopped(stop: Callable[[WireRobot], object]) -> Callable[[WireRobot], tuple
 
 def _silence(robot: WireRobot) -> tuple[str, ...]:
     live(robot, WAIT_20)
-    robot.wait(SILENCE_S, beats=False)
+    robot.wait(SILENCE_S, "FAULT", beats=False)
     status = robot.ask("STATUS")
     return (_state(status), f"fault {status.number('fault')}")
 
 
 def _attended(robot: WireRobot) -> tuple[str, ...]:
     live(robot, WAIT_20)
-    robot.wait(2 * SILENCE_S)
+    robot.wait(ATTENDED_S)
     return (_state(robot.ask("PING")),)
 
 

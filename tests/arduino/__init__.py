@@ -1,0 +1,1 @@
+"""The library for sketches of others: it builds, runs and keeps the rules of the registries."""

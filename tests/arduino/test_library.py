@@ -1,0 +1,231 @@
+"""The library for Arduino and PlatformIO: its files, its examples on chips, and the link of one."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import tarfile
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from tests.machines import board as boards
+from tests.machines import sketch_board
+from tests.support.command import process
+from tests.support.platformio import need, shared
+from tools.builds import chips, library
+from tools.builds.library_rules import complaints
+from tools.uno import Uno
+
+URL = "https://example.org/tiniscript"
+EXAMPLES = ("ImageInFlash", "OwnSensor", "Link")
+PRELUDE = "#include <Arduino.h>\nvoid setup();\nvoid loop();\n#line 1\n"
+# What stands for Arduino's core where a chip has none here.
+STAND_IN = """
+#pragma once
+#include <stdint.h>
+#define PROGMEM
+#define HIGH 1
+#define LOW 0
+#define OUTPUT 1
+#define A0 14
+#define A5 19
+unsigned long millis();
+unsigned long micros();
+void pinMode(int, int);
+void digitalWrite(int, int);
+void analogWrite(int, int);
+int analogRead(int);
+struct Port {
+  void begin(long);
+  int available();
+  int availableForWrite();
+  int read();
+  void write(uint8_t);
+  void print(const char*);
+  void println(const char*);
+  void println(int);
+  void println(double, int);
+};
+extern Port Serial;
+"""
+# What these compilers have no C library for.
+STRING_H = """
+#pragma once
+#include <stddef.h>
+extern "C" {
+size_t strlen(const char*);
+void* memcpy(void*, const void*, size_t);
+void* memset(void*, int, size_t);
+}
+"""
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("library") / "TiniScript"
+    assert library.main([str(folder), "--url", URL]) == 0
+    return folder
+
+
+def sources(folder: Path) -> list[Path]:
+    return [p for p in sorted((folder / "src").rglob("*")) if p.suffix in (".cpp", ".S")]
+
+
+def elf(made: Path, example: str, board: str, folder: Path) -> Path:
+    """Return an example as the Arduino IDE builds it: no warning, and it fits."""
+    need(boards.missing())
+    found = folder / f"{example}-{board}.elf"
+    if found.exists():
+        return found
+    sketch = folder / f"{example}.cpp"
+    text = (made / "examples" / example / f"{example}.ino").read_text(encoding="utf-8")
+    sketch.write_text(PRELUDE + text, encoding="utf-8")
+    flags = [*sketch_board._flags(board), *sketch_board.CPP, "-Wall", "-Wextra", "-Werror"]
+    boards.run(
+        "avr-g++", *flags, "-Wl,--gc-sections", f"-I{made / 'src'}", sketch, *sources(made),
+        sketch_board.core(board), "-o", found,
+    )  # fmt: skip
+    return found
+
+
+@pytest.mark.parametrize("board", ["uno", "mega"])
+@pytest.mark.parametrize("example", EXAMPLES)
+def test_an_example_builds_and_fits(
+    made: Path, example: str, board: str, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    program = elf(made, example, board, shared(tmp_path_factory))
+    text, data, zeros = map(int, boards.run("avr-size", program).splitlines()[1].split()[:3])
+    flash, ram = (32_256, 2_048) if board == "uno" else (253_952, 8_192)
+    assert text + data <= flash
+    assert data + zeros <= ram - 400, "no room for the stack"
+
+
+@pytest.mark.parametrize("name", chips.CHIPS)
+def test_library_and_examples_compile_for_a_chip_of_esp_boards(
+    made: Path, name: str, tmp_path: Path
+) -> None:
+    need(chips.missing(chips.CHIPS[name]))
+    (tmp_path / "Arduino.h").write_text(STAND_IN, encoding="utf-8")
+    (tmp_path / "string.h").write_text(STRING_H, encoding="utf-8")
+    sketches = []
+    for example in EXAMPLES:
+        text = (made / "examples" / example / f"{example}.ino").read_text(encoding="utf-8")
+        sketches.append(tmp_path / f"{example}.cpp")
+        sketches[-1].write_text(PRELUDE + text, encoding="utf-8")
+    flags = (f"-I{made / 'src'}", f"-I{tmp_path}")
+    for path in [*(made / "src").glob("*.cpp"), *sketches]:  # the rest is built for them elsewhere
+        chips.compile_one(chips.CHIPS[name], path, str(tmp_path / "one.o"), flags)
+
+
+def test_an_image_in_flash_drives(made: Path, tmp_path_factory: pytest.TempPathFactory) -> None:
+    program = elf(made, "ImageInFlash", "uno", shared(tmp_path_factory))
+    with Uno(program, names={"left": "D5", "back": "D7"}) as uno:
+        uno.run_ms(500)
+        assert uno.pins.history("left")[-1].state == "pwm"
+        uno.run_ms(800)  # the right wheel turns backward now
+        assert uno.pins.history("back")[-1].state == "high"
+        uno.run_ms(700)
+        assert uno.pins.history("left")[-1].state == "low"
+        assert uno.pins.history("back")[-1].state == "low"
+
+
+def test_the_link_of_an_example_conforms(
+    made: Path, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    program = elf(made, "Link", "uno", shared(tmp_path_factory))
+    with Uno(program, baud=115_200, tells_sleep=False) as uno:
+        uno.go()
+        done = process("conform", "--port", uno.pty, "--baud", "115200")
+        assert done.code == 0, done.out + done.err
+        done = process("upload", "-e", "SI|SHOW(1 + 1)", "--port", uno.pty, "--baud", "115200",
+                       "--no-save")  # fmt: skip
+        assert "SHOW 2" in done.out, done.out + done.err
+
+
+# -- the rules ------------------------------------------------------------------------------------
+
+
+def test_the_library_keeps_the_rules(made: Path) -> None:
+    assert complaints(made) == []
+
+
+def replaced(name: str, old: str, new: str) -> Callable[[Path], None]:
+    def change(folder: Path) -> None:
+        path = folder / name
+        text = path.read_text(encoding="utf-8")
+        assert old in text
+        path.write_text(text.replace(old, new), encoding="utf-8")
+
+    return change
+
+
+BREAKS: dict[str, Callable[[Path], object]] = {
+    "paragraph is missing": replaced("library.properties", "paragraph=", "#"),
+    "nobody knows colour": replaced("library.properties", "license=", "colour="),
+    "no name for a library": replaced("library.properties", "name=Tini", "name=Arduino Tini"),
+    "not MAJOR.MINOR.PATCH": replaced("library.properties", "version=", "version=v"),
+    "the category": replaced("library.properties", "Device Control", "Robots"),
+    "the url": replaced("library.properties", "https:", "ftp:"),
+    "says the sentence again": replaced("library.properties", "paragraph=Runs",
+                                        f"paragraph={library.SENTENCE} Runs"),
+    "the architecture": replaced("library.properties", "avr,", "avr,z80,"),
+    "to include": replaced("library.properties", "includes=Tini", "includes=Tiny"),
+    "cannot be read": replaced("library.json", "{", "["),
+    "version is another one": replaced("library.json", '"version": "', '"version": "9'),
+    "keywords is missing": replaced("library.json", '"keywords"', '"words"'),
+    "no header": replaced("library.json", "TiniScriptLink.h", "TiniScriptLnk.h"),
+    "the header TiniScript.h is missing": lambda f: (f / "src" / "TiniScript.h").unlink(),
+    "LICENSE is missing": lambda f: (f / "LICENSE").unlink(),
+    "a library has no such folder": lambda f: (f / "tests").mkdir(),
+    "no file of a library": lambda f: (f / "src" / "a.exe").write_text(""),
+    "a link": lambda f: (f / "src" / "b.h").symlink_to("TiniScript.h"),
+    "a sketch outside": lambda f: (f / "src" / "b.ino").write_text(""),
+    "a name with other signs": lambda f: (f / "src" / "b c.h").write_text(""),
+    "has no sketch of its name": lambda f: (f / "examples" / "Other").mkdir(),
+    "is no word, a tab": replaced("keywords.txt", "motors\t", "motors "),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("rule", BREAKS)
+def test_a_rule_that_is_broken_is_named(rule: str, made: Path, tmp_path: Path) -> None:
+    import shutil
+
+    folder = tmp_path / "TiniScript"
+    shutil.copytree(made, folder)
+    BREAKS[rule](folder)
+    assert any(rule in each for each in complaints(folder)), complaints(folder)
+
+
+def test_platformio_packs_it(made: Path, tmp_path: Path) -> None:
+    """Its list of licences comes from the internet, so one stands in for it."""
+    pytest.importorskip("platformio")
+    code = (
+        "import json, sys\n"
+        "from platformio.package.manifest import schema\n"
+        "licences = {'licenses': [{'licenseId': 'MIT'}]}\n"
+        "schema.ManifestSchema.load_spdx_licenses = staticmethod(lambda: licences)\n"
+        "from platformio.__main__ import main\n"
+        "sys.exit(main(['pio', 'pkg', 'pack', sys.argv[1], '-o', sys.argv[2]]))\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code, made, tmp_path], capture_output=True,
+                          text=True, check=False)  # fmt: skip
+    assert done.returncode == 0, done.stdout + done.stderr
+    (packed,) = tmp_path.glob("*.tar.gz")
+    with tarfile.open(packed) as found:
+        names = set(found.getnames())
+    assert {"src/TiniScript.h", "src/vm/vm.h", "library.json", "examples/Link/Link.ino"} <= names
+
+
+def test_a_folder_of_somebody_else_stays(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "kept.txt").write_text("mine", encoding="utf-8")
+    assert library.main([str(tmp_path), "--url", URL]) == 2
+    assert (tmp_path / "kept.txt").read_text(encoding="utf-8") == "mine"
+    assert "no library" in capsys.readouterr().err
+
+
+def test_a_wrong_address_is_told(tmp_path: Path) -> None:
+    assert library.main([str(tmp_path / "new"), "--url", "nowhere"]) == 1

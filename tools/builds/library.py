@@ -1,0 +1,142 @@
+"""Makes "TiniScript", a library for PlatformIO's registry and the Arduino Library Manager.
+
+    python -m tools.builds.library FOLDER --url https://…
+
+takes the machine, the link and what they need from `vm_arduino/src`, and what is for sketches from
+`vm_arduino/extras/library`; compiles the images of the examples; and looks at the result with the
+rules of both registries. `pio pkg pack FOLDER` makes of it what is uploaded.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import shutil
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
+
+from tiniscript import __version__, compile_text, robots
+from tiniscript.kit import NUMBER, YES_NO, Device, Kit
+from tools.builds.library_rules import complaints
+
+SOURCES = ROOT / "vm_arduino" / "src"
+OWN = ROOT / "vm_arduino" / "extras" / "library"
+ROOMS = ("vm", "link", "text")  # the link has the reader of text, which gets no memory here
+SENTENCE = "The machine of TiniScript, a language of single lines for robots."
+PARAGRAPH = (
+    "Runs images that tsc compile has made on motors and sensors of your own sketch: verified "
+    "before they run, without heap and without waiting. With the link tsc sends programs."
+)
+PEOPLE = "The TiniScript developers"
+ARCHITECTURES = ("avr", "esp32", "esp8266")
+PLATFORMS = ("atmelavr", "espressif32", "espressif8266")
+KEYWORDS = ("education", "robotics", "bytecode", "interpreter", "robot")
+
+HEAT = Kit((Device("HEAT", NUMBER, "%", 0, 100_000),), (Device("LAMP", YES_NO, "", 0, 1),))
+# What each example runs, and for which kit.
+PROGRAMS = {
+    "ImageInFlash": ("F(1, 80); R(0.5, 60)", robots.load("tinibot").kit),
+    "OwnSensor": ("LOOP(FOREVER); SHOW(HEAT); LAMP(HEAT > 30); W(1); END_LOOP", HEAT),
+}
+
+
+def main(arguments: list[str] | None = None) -> int:
+    parser = argparse.ArgumentParser(description="Make the library for Arduino and PlatformIO.")
+    parser.add_argument("folder", type=Path, help="a new folder, or one that this has made")
+    parser.add_argument("--url", required=True, help="where its sources are, https://…")
+    given = parser.parse_args(arguments)
+    folder: Path = given.folder
+    if folder.exists() and not is_ours(folder):
+        print(f"{folder} is there, and is no library of TiniScript. Name another.", file=sys.stderr)
+        return 2
+    make(folder, given.url)
+    wrong = complaints(folder)
+    for each in wrong:
+        print(each, file=sys.stderr)
+    if not wrong:
+        print(f"TiniScript {__version__} is in {folder}. Pack it:  pio pkg pack {folder}")
+    return 1 if wrong else 0
+
+
+def is_ours(folder: Path) -> bool:
+    """Whether a folder is empty, or a library that was made here."""
+    if not folder.is_dir():
+        return False
+    about = folder / "library.properties"
+    has_name = about.is_file() and about.read_text("utf-8").startswith("name=TiniScript\n")
+    return has_name or not any(folder.iterdir())
+
+
+def make(folder: Path, url: str) -> None:
+    """Write the library into a folder; what was there before is gone."""
+    if folder.exists():
+        shutil.rmtree(folder)
+    source = folder / "src"
+    shutil.copytree(OWN / "src", source)
+    for room in ROOMS:
+        shutil.copytree(SOURCES / room, source / room)
+    shutil.copyfile(SOURCES / "robot.h", source / "robot.h")
+    for path in sorted((OWN / "examples").rglob("*.ino")):
+        target = folder / "examples" / path.parent.name / path.name
+        target.parent.mkdir(parents=True)
+        target.write_text(with_image(path), encoding="utf-8")
+    for name in ("keywords.txt", "README.md"):
+        shutil.copyfile(OWN / name, folder / name)
+    shutil.copyfile(ROOT / "LICENSE", folder / "LICENSE")
+    (folder / "library.properties").write_text(properties(url), encoding="utf-8")
+    (folder / "library.json").write_text(manifest(url), encoding="utf-8")
+
+
+def with_image(example: Path) -> str:
+    """Return an example with its program's image, as bytes of C."""
+    text = example.read_text(encoding="utf-8")
+    if "@IMAGE@" not in text:
+        return text
+    program, kit = PROGRAMS[example.stem]
+    image = compile_text(program, kit).image
+    rows = [image[k : k + 12] for k in range(0, len(image), 12)]
+    lines = ",\n    ".join(", ".join(f"0x{byte:02x}" for byte in row) for row in rows)
+    return text.replace("{@IMAGE@}", f"{{\n    {lines}}}")
+
+
+def properties(url: str) -> str:
+    """Return `library.properties`, for the Arduino Library Manager."""
+    fields = {
+        "name": "TiniScript",
+        "version": __version__,
+        "author": PEOPLE,
+        "maintainer": PEOPLE,
+        "sentence": SENTENCE,
+        "paragraph": PARAGRAPH,
+        "category": "Device Control",
+        "url": url,
+        "architectures": ",".join(ARCHITECTURES),
+        "includes": "TiniScript.h",
+        "license": "MIT",
+    }
+    return "".join(f"{name}={value}\n" for name, value in fields.items())
+
+
+def manifest(url: str) -> str:
+    """Return `library.json`, for PlatformIO."""
+    found = {
+        "name": "TiniScript",
+        "version": __version__,
+        "description": f"{SENTENCE} {PARAGRAPH}",
+        "keywords": list(KEYWORDS),
+        "repository": {"type": "git", "url": url},
+        "homepage": url,
+        "authors": [{"name": PEOPLE, "maintainer": True}],
+        "license": "MIT",
+        "frameworks": ["arduino"],
+        "platforms": list(PLATFORMS),
+        "headers": ["TiniScript.h", "TiniScriptLink.h"],
+    }
+    return json.dumps(found, indent=2) + "\n"
+
+
+if __name__ == "__main__":
+    sys.exit(main())
