@@ -49,7 +49,10 @@ def test_monitor_keeps_the_last_rows_where_no_robot_answers(tmp_path: Path) -> N
 
 
 def test_monitor_draws_a_curve(pty_robot: PtyRobot) -> None:
-    pty = pytest.importorskip("pty")
+    """What is written is read as a terminal reads it: of the title only the value changes."""
+    pty, pyte = pytest.importorskip("pty"), pytest.importorskip("pyte")
+    screen = pyte.Screen(80, 24)
+    stream = pyte.ByteStream(screen)
     assert on(pty_robot, "upload", "-e", "SB|SHOW(-2.5);W(0.3);SHOW(7);W(0.3);SHOW(TRUE)").code == 0
     ours, theirs = pty.openpty()
     environ = {**os.environ, "TERM": "xterm", "COLUMNS": "80", "LINES": "24"}
@@ -61,9 +64,12 @@ def test_monitor_draws_a_curve(pty_robot: PtyRobot) -> None:
     written = b""
     while "── SHOW".encode() not in written:
         written += os.read(ours, 65536)
+    stream.feed(written)
     pty_robot.push()
-    while b"Done." not in written or "── SHOW 1 ".encode() not in written:
-        written += os.read(ours, 65536)
+    while b"Done." not in written or not any("── SHOW 1 " in row for row in screen.display):
+        part = os.read(ours, 65536)
+        stream.feed(part)
+        written += part
     command.send_signal(signal.SIGINT)
     while part := rest_of(ours):
         written += part
