@@ -13,7 +13,7 @@ import { chosenPort, hasSerial, knownPorts, SerialPort } from './robot_serial.js
 import { refusal, shown } from './robot_said.js';
 import { Speech } from './robot_speech.js';
 import { Failed } from './robot_way.js';
-import { currentLanguage, hasText, text } from './texts.js';
+import { currentLanguage, text } from './texts.js';
 import { LINK, ROBOTS } from './words.js';
 
 /** @typedef {import('./python.js').Checked} Checked */
