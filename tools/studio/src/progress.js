@@ -2,6 +2,8 @@
 //
 // What is kept may be damaged, or from another tab: it is read anew each time, and all is checked.
 
+import { keepsNothing } from './work.js';
+
 const PLACE = 'tiniscript.lessons';
 const MOST = 100;
 
@@ -17,6 +19,7 @@ export function lessonsDone() {
 
 /** Keeps that a lesson is done; returns whether that was possible. @param {string} name */
 export function keepDone(name) {
+  if (keepsNothing()) return true;
   try {
     localStorage.setItem(PLACE, JSON.stringify([...lessonsDone().add(name)]));
     return true;
