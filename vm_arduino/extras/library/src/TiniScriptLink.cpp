@@ -7,6 +7,12 @@
 
 using namespace tiniscript;
 
+namespace tiniscript {
+
+Receiver receiver;  // where `link/receiver.h` looks for it on an AVR
+
+}  // namespace tiniscript
+
 namespace {
 
 TiniLink* only = nullptr;
@@ -25,7 +31,6 @@ bool show_on_link(int32_t value, bool is_yes_no) { return only->show(value, is_y
 
 TiniLink::TiniLink(TiniPlayer* player, const char* name, uint32_t id)
     : player_(player),
-      receiver_(),
       link_(),
       identity_(),
       status_(),
@@ -45,11 +50,11 @@ void TiniLink::begin(uint32_t random) {
   identity_.kit = kit.fingerprint();
   identity_.nonce = random;
   player_->show_by(show_on_link);
-  link_.begin(&receiver_, static_cast<uint8_t>(random));
+  link_.begin(&receiver, static_cast<uint8_t>(random));
 }
 
 void TiniLink::hear(uint8_t byte, uint32_t now_ms) {
-  if (receiver_.put(byte, static_cast<uint16_t>(now_ms))) player_->stop();
+  if (receiver.put(byte, static_cast<uint16_t>(now_ms))) player_->stop();
 }
 
 void TiniLink::tick(uint32_t now_ms) {

@@ -52,7 +52,6 @@ class TiniLink {
   void record(uint8_t fault);
 
   TiniPlayer* player_;
-  tiniscript::Receiver receiver_;
   tiniscript::Link link_;
   tiniscript::Identity identity_;
   tiniscript::RobotStatus status_;
