@@ -19,6 +19,8 @@ from tools.builds import studio
 LARGEST = 6_000_000  # bytes of all files, gzipped
 SOURCES = ROOT / "tools" / "studio"
 TEXTS = ("texts.js", "robot_texts.js", "class_texts.js", "lesson_texts.js")
+# whose names stand in the sources; those of the others are made of what a robot or a class says
+NAMED_TEXTS = ("texts.js", "lesson_texts.js")
 
 
 @pytest.fixture(scope="module")
@@ -49,7 +51,7 @@ def test_every_sentence_is_there_in_both_languages(name: str) -> None:
         assert sorted(re.findall(r"\{\w+\}", english)) == sorted(re.findall(r"\{\w+\}", spanish))
 
 
-@pytest.mark.parametrize("name", TEXTS)
+@pytest.mark.parametrize("name", NAMED_TEXTS)
 def test_every_sentence_is_said_somewhere(name: str) -> None:
     source = (SOURCES / "src" / name).read_text(encoding="utf-8")
     names = re.findall(r"^  (\w+): \[", source, re.MULTILINE)
