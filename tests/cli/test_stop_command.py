@@ -104,7 +104,7 @@ def test_a_stop_waits_for_a_port_longer_than_others(
 def test_nobody_is_told_to_push_the_button_of_a_robot_that_may_stand(language: str) -> None:
     said = text("not_confirmed", language)
     assert not re.search(r"press its button|pulsa su botón", said)
-    assert re.search(r"batter|bater", said)
+    assert re.search(r"batter|pilas", said)
 
 
 def test_info_tells_what_the_uart_has_noticed(pty_robot: PtyRobot) -> None:

@@ -21,13 +21,13 @@ SHORTER = (
     "import shorter; text = sys.stdin.read();"
     "names = shorter.re.findall(r'@function\\n(\\w+):', text);"
     "addresses = {name: 2000 + int(sys.argv[2]) * at for at, name in enumerate(names)};"
-    "print(shorter.shorter(text, addresses), end='')"
+    "print(shorter.shorter(text, addresses, sys.argv[3] == 'True'), end='')"
 )
 
 
-def shorter(assembly: str, apart: int = 40) -> str:
+def shorter(assembly: str, apart: int = 40, wants_room: bool = False) -> str:
     """Return shorter assembly. Its functions lie so many bytes apart."""
-    command = [sys.executable, "-c", SHORTER, str(NEAR), str(apart)]
+    command = [sys.executable, "-c", SHORTER, str(NEAR), str(apart), str(wants_room)]
     done = subprocess.run(command, input=assembly, capture_output=True, text=True, check=True)
     return done.stdout
 
@@ -129,6 +129,13 @@ def test_what_a_line_of_a_computer_waits_for_stays_as_it_is() -> None:
     text = function(name, "lds r24,a; lds r25,b; lds r22,c; lds r24,a; lds r25,b; lds r22,c")
     assert shorter(text) == text
     assert shorter(text.replace("3act", "3set")) != text.replace("3act", "3set")
+
+
+def test_the_main_loop_calls_parts_where_room_is_wanted() -> None:
+    body = "lds r24,a; lds r25,b; lds r22,c; inc r24"
+    text = function("main", body) + function("f", body)
+    assert shorter(text) == text
+    assert lines_of(shorter(text, wants_room=True), "main")[0] == "call tiniscript_part_0"
 
 
 def test_a_condition_uses_a_jump_that_is_there() -> None:
