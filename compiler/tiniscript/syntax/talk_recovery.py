@@ -13,7 +13,7 @@ from tiniscript.syntax.block_recovery import BlockRecovery
 from tiniscript.syntax.call_suggestions import LONGEST
 from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.lexer import NEWLINE, NUMBER, WORD, Token
-from tiniscript.syntax.phrases import BEFORE_NAME, CHANGING, SETTING, STEPS
+from tiniscript.syntax.phrases import BEFORE_NAME, BEFORE_NOTE, CHANGING, SETTING, STEPS
 from tiniscript.syntax.reporter import Reporter, Resumed
 from tiniscript.syntax.suggestions import foreign_block, shortened
 from tiniscript.words import SWITCH_WORDS, TURN_WORDS, WORDS, is_guessed, meant_by
@@ -41,6 +41,8 @@ class TalkRecovery:
         cursor = self.cursor
         tokens, end = cursor.tokens, start
         if start and tokens[start - 1].kind not in (NEWLINE, "|", ";"):
+            return
+        if tokens[start].text in BEFORE_NOTE:
             return
         while tokens[end].kind not in AT_END:
             if end > start + LONGEST or tokens[end].kind in (

@@ -71,9 +71,12 @@ class ValueConstructs:
 
     def _is_list(self, row: Sequence[Token]) -> bool:
         source = self.cursor.source.text
-        commas = sum(token.kind == "," for token in row)
         begins = source[row[0].start : row[0].end]
-        return begins in ("[", "{") or (begins == "(" and commas > 1) or commas > 1
+        depth, commas = 0, 0
+        for token in row[1 if begins == "(" else 0 :]:  # `ROUND(1,5, 0)` has none
+            commas += token.kind == "," and not depth
+            depth += (token.kind == "(") - (token.kind == ")")
+        return begins in ("[", "{") or commas > 1
 
     def _list(self, name: Token, row: Sequence[Token], said: int) -> None:
         values = [token for token in row if token.kind is NUMBER]
