@@ -83,7 +83,7 @@ class ConstructRecovery:
     def _tail(self, word: Token, start: int) -> _Tail | None:
         tokens = self.cursor.tokens
         if tokens[start].kind == "{":
-            close = matching_brace(tokens, start)
+            close = self.cursor.closing(start)
             if close is None:
                 return None
             return self._asks(close, self.cursor.after_newlines(close + 1), word)
@@ -153,7 +153,7 @@ class ConstructRecovery:
         if tokens[k].kind == "(":
             k = after_bracket(tokens, k) or k
         k = cursor.after_newlines(k)
-        close = matching_brace(tokens, k) if tokens[k].kind == "{" else None
+        close = cursor.closing(k) if tokens[k].kind == "{" else None
         if close is None:
             return
         body = Span(tokens[k].end, tokens[close].start)
@@ -253,7 +253,7 @@ class ConstructRecovery:
             k += 1
         k = self.cursor.after_newlines(k)
         if tokens[k].kind == "{":
-            return matching_brace(tokens, k)
+            return self.cursor.closing(k)
         for place in range(k, min(len(tokens), k + _FARTHEST)):
             text = tokens[place].text
             is_end = text in ENDS_OF_ANY or text.startswith(("END", "FIN"))
@@ -262,13 +262,3 @@ class ConstructRecovery:
             if tokens[place].kind is END:
                 return place
         return None
-
-
-def matching_brace(tokens: list[Token], start: int) -> int | None:
-    """Return the place of the `}` that belongs to the `{` at `start`, None where none does."""
-    depth = 0
-    for k in range(start, len(tokens)):
-        depth += (tokens[k].kind == "{") - (tokens[k].kind == "}")
-        if not depth:
-            return k
-    return None

@@ -15,12 +15,13 @@ AFTER_VALUE = frozenset((",", ")", *AT_END))  # where a value does
 class Cursor:
     """`tokens[i]` is the token to read next. The caller that reads it advances `i`."""
 
-    __slots__ = ("i", "source", "tokens")
+    __slots__ = ("_braces", "i", "source", "tokens")
 
     def __init__(self, source: Source, tokens: list[Token]) -> None:
         self.source = source
         self.tokens = tokens  # the last one is END, and is never gone past
         self.i = 0
+        self._braces: tuple[int, dict[int, int]] = (0, {})  # of so many tokens, see `closing`
 
     @property
     def token(self) -> Token:
@@ -42,6 +43,18 @@ class Cursor:
 
     def line_of(self, token: Token) -> int:
         return self.source.position(token.start)[0]
+
+    def closing(self, start: int) -> int | None:
+        """Return the place of the `}` that belongs to the `{` at `start`, None where none does."""
+        if self._braces[0] != len(self.tokens):  # a repair may have made one of two
+            open_ones, pairs = [], {}
+            for k, token in enumerate(self.tokens):
+                if token.kind == "{":
+                    open_ones.append(k)
+                elif token.kind == "}" and open_ones:
+                    pairs[open_ones.pop()] = k
+            self._braces = (len(self.tokens), pairs)
+        return self._braces[1].get(start)
 
     # -- looking over line ends, which are white space in brackets ------------------------------
 

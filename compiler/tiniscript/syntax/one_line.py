@@ -21,6 +21,7 @@ from tiniscript.syntax.vocabulary import Vocabulary
 from tiniscript.words import BLOCK_ENDS, IN_MILLISECONDS, UNITS, WORDS, Word
 
 _LOOSE = (";", ",", "{", ODD)  # signs between instructions, here or elsewhere
+_FARTHEST = 1000  # tokens in which the end of a block is looked for
 
 
 class Line(NamedTuple):
@@ -278,7 +279,7 @@ class _Reader:
             return True
         inner = 0
         is_first = True
-        for k in range(after, len(tokens) - 1):
+        for k in range(after, min(len(tokens) - 1, after + _FARTHEST)):
             token = tokens[k]
             if is_first and token.kind is WORD:
                 text = token.text
