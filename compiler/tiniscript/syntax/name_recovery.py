@@ -128,6 +128,10 @@ class NameRecovery:
         self.talk.label(word, following, after)
         if kind is NUMBER and after.text in TIMES and meant_by(word.text) is None:
             foreign_word(parser, word, "LOOP")  # `hacer 4 veces`
+        if word.text == "SIEMPRE" and following.text == "QUE":  # no loop without end
+            whenever = Token(WORD, "SIEMPRE QUE", word.start, following.end)
+            self.cursor.tokens[self.cursor.i : self.cursor.i + 2] = [whenever]
+            foreign_word(parser, whenever, "IF")
         if word.text == "PARA" and following.text == "CADA":
             foreign_word(parser, word, "LOOP")
         if word.text in FRAME_WORDS:
