@@ -75,7 +75,10 @@ class ConstructRecovery:
         for token in (sign, *tokens[tail.first : tail.end]):
             self.reporter.answer(token)
         span = Span(tokens[tail.first].start, last)
-        tokens[tail.first : tail.end] = [Token(";", ";", *span), Token(WORD, "END_LOOP", *span)]
+        tokens[tail.first : tail.end] = [
+            Token(";", ";", *span),
+            Token(WORD, BLOCK_ENDS["LOOP"], *span),
+        ]
         cursor.i += 1
         self.in_block.begin_reported("LOOP", word.span)
         self.in_block.go_on()
@@ -136,7 +139,8 @@ class ConstructRecovery:
             return True
         rest = tokens[tail.end : tail.end + _FARTHEST]
         ends = {foreign_block(each.text) or each.text for each in rest if each.kind is WORD}
-        return "END_WHILE" not in ends and not ends & {"END", "END_LOOP", "ENDWHILE", "ENDLOOP"}
+        others = {"END", "ENDWHILE", "ENDLOOP", BLOCK_ENDS["LOOP"], BLOCK_ENDS["WHILE"]}
+        return not ends & others
 
     # -- a frame around the program -----------------------------------------------------------
 
@@ -207,7 +211,7 @@ class ConstructRecovery:
         fix = ""
         if row and None not in bodies and limits and tokens[places[0]].text not in _OTHERWISE:
             pairs = zip(row, bodies, strict=True)
-            fix = "\n".join((*(f"{head}\n{body}" for head, body in pairs), "ENDIF"))
+            fix = "\n".join((*(f"{head}\n{body}" for head, body in pairs), BLOCK_ENDS["IF"]))
         last = tokens[end]
         for token in tokens[cursor.i : end + 1]:
             self.reporter.answer(token)

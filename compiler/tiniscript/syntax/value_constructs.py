@@ -27,8 +27,9 @@ from tiniscript.syntax.suggestions import (
     with_signs,
 )
 from tiniscript.syntax.vocabulary import Vocabulary
-from tiniscript.words import NEAR_WORDS, WORDS, Word, meant_by
+from tiniscript.words import BLOCK_ENDS, NEAR_WORDS, WORDS, Word, meant_by
 
+_ENDIF = BLOCK_ENDS["IF"]
 _FARTHEST = 2000  # tokens in which the end of a block is looked for
 _AROUND = re.compile(r"([0-9]+(?:\.[0-9]+)?)([FBLR])([0-9]+)")
 _DOING = ("move", "wait", "motors", "stop", "beep", "show", "actuator")
@@ -109,7 +110,7 @@ class ValueConstructs:
             ):
                 return ""
             asked, one, two = (self._said(piece) for piece in (question, yes, no))
-            return f"IF({asked});{name.text} = {one};ELSE;{name.text} = {two};ENDIF"
+            return f"IF({asked});{name.text} = {one};ELSE;{name.text} = {two};{_ENDIF}"
         return ""
 
     def _said(self, tokens: Sequence[Token]) -> str:
@@ -280,9 +281,10 @@ class ValueConstructs:
             cursor.i = start
             return
         asked, contrary = (self.known.translated(each) for each in (written(row), opposite(row)))
-        fix = f"{meant}({asked});{call};{'ENDIF' if meant == 'IF' else 'END_WHILE'}"
+        block_end = _ENDIF if meant == "IF" else BLOCK_ENDS["WHILE"]
+        fix = f"{meant}({asked});{call};{block_end}"
         if token.text in NEGATED:
-            fix = f"IF({contrary});{call};ENDIF" if contrary else ""
+            fix = f"IF({contrary});{call};{_ENDIF}" if contrary else ""
         elif meant == "WHILE" and word.role in ("move", "wait"):
             fix = f"{call} UNTIL({contrary})" if contrary else ""
         place = Span(first.start, end)

@@ -64,7 +64,7 @@ def use(connection: Connection, broker: BrokerSettings | None) -> None:
 def tell_if_any(connection: Connection) -> None:
     """Say where the robot's broker is, if it has one."""
     reply = connection.wait(connection.do(lambda session: session.broker()))
-    if reply.status == 0 and reply.values.network:
+    if reply.status == STATUSES["OK"] and reply.values.network:
         tell(connection, reply.values)
 
 
