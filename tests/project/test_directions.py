@@ -222,6 +222,7 @@ def test_only_two_rooms_know_pyserial() -> None:
 
 AROUND_THE_LINK = (
     "ports", "line", "bluetooth", "bluetooth_search", "broker", "event_loop", "named_robots",
+    "pushed_port",
 )  # fmt: skip
 
 

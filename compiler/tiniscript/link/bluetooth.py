@@ -9,7 +9,6 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Coroutine
 from contextlib import suppress
-from threading import Condition
 from typing import Any, NamedTuple, TypeVar
 
 from bleak import BleakClient
@@ -21,12 +20,12 @@ from tiniscript.link import bluetooth_search as search
 from tiniscript.link import ports
 from tiniscript.link.event_loop import EventLoop, shared
 from tiniscript.link.port_names import BLE, canonical, name_in
-from tiniscript.link.ports import READ_S, WRITE_S, PortError
+from tiniscript.link.ports import WRITE_S, PortError
+from tiniscript.link.pushed_port import ENDED, PushedPort
 
 CONNECT_S = 15.0
 QUEUE_S = 60.0  # and of those that wait for the connections of others
 CLOSE_S = 5.0  # BlueZ takes 2 s
-KEPT_BYTES = 65_536  # of a device that sends more than is read; more is lost
 UART_BITS = 10  # of a byte, with its start and its stop
 SMALLEST = 20  # bytes of a write before more is negotiated
 
@@ -97,17 +96,14 @@ def opened(port: str, baud: int) -> BluetoothPort:
     return bluetooth_port
 
 
-class BluetoothPort:
+class BluetoothPort(PushedPort):
     """A connection to a device. `read`, `write`, `in_waiting`, `cancel_read` and `close` are as in
     pyserial; where the connection has ended they raise OSError."""
 
     def __init__(self, loop: EventLoop, baud: int) -> None:
+        super().__init__()
         self._loop = loop
         self._byte_s = UART_BITS / baud
-        self._news = Condition()
-        self._heard = bytearray()
-        self._gone = ""
-        self._is_cancelled = False
         self._client: BleakClient | None = None
         self._writes: BleakGATTCharacteristic | None = None
         self._is_paced = False
@@ -121,27 +117,6 @@ class BluetoothPort:
         except BaseException:
             self.close()
             raise
-
-    @property
-    def in_waiting(self) -> int:
-        return len(self._heard)
-
-    def read(self, size: int) -> bytes:
-        """Return what has arrived, at most `size` bytes, or nothing after READ_S."""
-        with self._news:
-            if not (self._heard or self._gone or self._is_cancelled):
-                self._news.wait(READ_S)
-            self._is_cancelled = False
-            found = bytes(self._heard[:size])
-            del self._heard[:size]
-            if self._gone and not found:
-                raise OSError(self._gone)
-            return found
-
-    def cancel_read(self) -> None:
-        with self._news:
-            self._is_cancelled = True
-            self._news.notify_all()
 
     def write(self, data: bytes) -> None:
         """Send bytes in pieces. Pieces that do not get through in time are lost."""
@@ -191,23 +166,16 @@ class BluetoothPort:
                 await self._client.write_gatt_char(self._writes, piece, response=response)
             except Exception as why:
                 if not self._client.is_connected:
-                    self._end(str(why))
+                    self.end(str(why))
                 raise
             if self._is_paced:
                 self._ready_s = time() + len(piece) * self._byte_s
 
     def _hear(self, _: BleakGATTCharacteristic, data: bytearray) -> None:
-        with self._news:
-            self._heard += data[: KEPT_BYTES - len(self._heard)]
-            self._news.notify_all()
+        self.bring(data)
 
     def _part(self, _: BleakClient) -> None:
-        self._end("the connection has ended")
-
-    def _end(self, why: str) -> None:
-        with self._news:
-            self._gone = self._gone or why or "the connection has ended"
-            self._news.notify_all()
+        self.end(ENDED)
 
 
 def _run(loop: EventLoop, work: Coroutine[Any, Any, T], limit_s: float) -> T:

@@ -23,6 +23,7 @@ from tiniscript.link import ports
 from tiniscript.link.messages import NAME_BYTES, STOP_BYTES
 from tiniscript.link.port_names import MQTT
 from tiniscript.link.ports import READ_S, PortError
+from tiniscript.link.pushed_port import PushedPort
 from tiniscript.link.wifi import is_class
 
 PLAIN_PORT, TLS_PORT = 1883, 8883
@@ -35,7 +36,6 @@ PATIENCE_S = 4.0  # a robot frees its place when a client that was killed has be
 QUIET_S = 0.3  # of silence, and that was all
 ROBOTS = 250  # that a list keeps
 PIECE_BYTES = 400  # of a message; a robot takes 512
-KEPT_BYTES = 65_536  # of a robot that sends more than is read; more is lost
 DRIVER_S = 0.5  # of silence of the driver, after which nothing keeps a run alive
 _PORT = re.compile(rf"{MQTT}(.+):(\d{{1,5}})/([a-z0-9-]{{1,16}})/([0-9a-f]{{8}})", re.IGNORECASE)
 
@@ -234,40 +234,16 @@ class Broker:
         self._news.notify_all()
 
 
-class BrokerPort:
+class BrokerPort(PushedPort):
     """A robot at a broker. `read`, `write`, `in_waiting`, `cancel_read` and `close` are as in
     pyserial; where the connection has ended they raise OSError."""
 
     def __init__(self, broker: Broker, group: str, robot: str) -> None:
+        super().__init__()
         self.group, self.robot = group, robot
         self.topic = f"{ROOT}/{group}/{robot}/in/{broker.peer}"
         self._broker = broker
-        self._news = Condition()
-        self._heard = bytearray()
-        self._gone = ""
-        self._is_cancelled = False
         self._patient_until_s = monotonic() + PATIENCE_S
-
-    @property
-    def in_waiting(self) -> int:
-        return len(self._heard)
-
-    def read(self, size: int) -> bytes:
-        """Return what has arrived, at most `size` bytes, or nothing after READ_S."""
-        with self._news:
-            if not (self._heard or self._gone or self._is_cancelled):
-                self._news.wait(READ_S)
-            self._is_cancelled = False
-            found = bytes(self._heard[:size])
-            del self._heard[:size]
-            if self._gone and not found:
-                raise OSError(self._gone)
-            return found
-
-    def cancel_read(self) -> None:
-        with self._news:
-            self._is_cancelled = True
-            self._news.notify_all()
 
     def write(self, data: bytes) -> None:
         """Send bytes in pieces. Where nobody attends to the run, the robot hears a stop instead."""
@@ -288,15 +264,8 @@ class BrokerPort:
             if monotonic() > self._patient_until_s:
                 self.end(ports.TAKEN)
             return
-        with self._news:
-            self._patient_until_s = 0.0
-            self._heard += data[: KEPT_BYTES - len(self._heard)]
-            self._news.notify_all()
-
-    def end(self, why: str) -> None:
-        with self._news:
-            self._gone = self._gone or why
-            self._news.notify_all()
+        self._patient_until_s = 0.0
+        self.bring(data)
 
 
 def _said(why: Exception) -> str:
