@@ -73,7 +73,7 @@ ROOMS = (
             "tests/link/test_robot_times.py",
             "tests/firmware/test_terminal_programs.py",
             "tests/firmware/test_text.py",
-            "tests/link/test_link_channel.py",
+            "tests/link/test_damaged_frames.py",
         ),
         {
             "siphash.cpp": "siphash",
@@ -81,7 +81,7 @@ ROOMS = (
             "console.cpp": "link_cases text_limits terminal",
             "console_writing.cpp": "link_cases text_limits terminal",
             "link_text.cpp": "link_cases text_limits terminal",
-            "frames.cpp": "link_cases robot_times channel",
+            "frames.cpp": "link_cases robot_times damaged",
             "receiver.cpp": "link_cases robot_times text_limits",
             "link.cpp": "link_cases robot_times host owners keeping",
             "link_programs.cpp": "link_cases host text_limits",

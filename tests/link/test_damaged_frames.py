@@ -1,0 +1,178 @@
+"""Receivers on a line that damages frames: bytes lost, changed, doubled, put in, frames joined.
+
+No frame that was changed is accepted, and damage costs one more frame at most. The frames are made,
+damaged and judged in C++ with the robot's receiver; a sample of the same lines goes through the
+receiver and the decoder in Python, and through the C++ with sanitizers, which find the same.
+`python -m tests.link.test_damaged_frames 10000000` damages more of them than the tests.
+"""
+
+from __future__ import annotations
+
+import argparse
+import shutil
+import sys
+import time
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+from tests.machines.damage import CppDamage, DamagedLine, cpp_damage
+from tests.machines.host import SOURCES
+from tests.machines.link import cpp_link, missing
+from tests.support.link_cases import items_of
+from tiniscript.link.frames import Frame, decoded, encoded
+from tiniscript.link.messages import CRC_BYTES, HEAD_BYTES, SMALL_FRAME
+
+needs_host = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a host machine")
+FRAMES = 1_000_000  # damaged ones, in the tests
+LARGE_FRAMES = 200_000
+LINES = 200  # that are judged at a time; a line has about 500 damaged frames
+SAMPLED = 20  # lines in the tests
+LARGE_SAMPLED = 4
+SAMPLED_OF = 1000  # one line of so many, in a campaign
+SEED = 4
+
+# Breaks that a campaign must see: the file, what it has, and what becomes of that.
+BREAKS = {
+    "no checksum": ("src/link/frames.cpp", "crc_ == kBehindItself", "crc_ != 0"),
+    "half of the checksum": ("src/link/frames.cpp", "crc_ == kBehindItself",
+                             "(crc_ & 0xffff) == (kBehindItself & 0xffff)"),
+    "noise has no end": ("src/link/receiver.cpp", "} else {\n    cut();\n  }\n  if (zeros_",
+                         "} else if (place_ != Place::kSkip) {\n    cut();\n  }\n  if (zeros_"),
+    "a frame comes twice": ("extras/damage/main.cpp", "if (end != 0) found(",
+                            "for (int k = 0; k < 2 && end != 0; k++) found("),
+}  # fmt: skip
+
+
+class Line(NamedTuple):
+    """A stream of frames: those that were sent, and which of them were damaged on the way."""
+
+    data: bytes
+    frames: list[Frame]
+    is_damaged: list[bool]
+
+
+def judge(sent: Line, accepted: list[Frame]) -> None:
+    """Assert that nothing wrong was accepted, and that damage costs one more frame at most."""
+    numbers = {frame: number for number, frame in enumerate(sent.frames)}
+    got = []
+    for frame in accepted:
+        assert frame in numbers, f"a frame that nobody has sent was accepted: {frame}"
+        got.append(numbers[frame])
+    assert got == sorted(set(got)), "a frame came twice, or before one that was sent earlier"
+    here = set(got)
+    for number, is_damaged in enumerate(sent.is_damaged):
+        if not is_damaged and (number == 0 or not sent.is_damaged[number - 1]):
+            assert number in here, f"frame {number} is lost without damage to it or the one before"
+
+
+def frame_of(data: bytes) -> Frame:
+    """Return the frame from its type to the end of its payload, as the C++ has it."""
+    number, seq, epoch = data[:HEAD_BYTES]
+    payload = data[HEAD_BYTES:]
+    if len(data) + CRC_BYTES > SMALL_FRAME:
+        assert payload[0] == 0, "a large frame has a 0 before its payload"
+        payload = payload[1:]
+    return Frame(number, seq, epoch, payload)
+
+
+def whole(rows: list[str]) -> list[Frame]:
+    """Return the whole frames in what a receiver has found."""
+    found = []
+    for row in rows:
+        if row.endswith(" whole"):
+            frame = decoded(bytes.fromhex(row.split(" ", 2)[2].removesuffix(" whole")))
+            assert frame
+            found.append(frame)
+    return found
+
+
+def judge_in_python(line: DamagedLine, is_large: bool) -> None:
+    """Assert that Python encodes, receives and decodes a line as the C++ does."""
+    sent = Line(line.data, [frame_of(each) for each in line.frames], line.is_damaged)
+    at = 0
+    for frame, is_damaged in zip(sent.frames, sent.is_damaged, strict=True):
+        if not is_damaged:
+            wire = encoded(frame)
+            found = sent.data.find(wire, at)
+            assert found >= 0, f"the C++ encodes it in another way: {frame}"
+            at = found + len(wire)
+    stream = [(0, byte) for byte in sent.data]
+    rows = items_of(stream, is_large=is_large)
+    assert cpp_link(is_large).items(stream) == rows
+    judge(sent, whole(rows))
+    assert [frame_of(each) for each in line.accepted] == whole(rows)
+
+
+def damage_frames(cpp: CppDamage, count: int, seed: int) -> tuple[int, int]:
+    """Send lines until so many frames are damaged; return how many were, and the lines."""
+    done = lines = 0
+    while done < count:
+        done += cpp.judged(seed, lines, LINES)
+        lines += LINES
+    return done, lines
+
+
+@needs_host
+@pytest.mark.parametrize("is_large", [False, True])
+def test_no_wrong_frame_of_many_damaged_ones(is_large: bool) -> None:
+    count = LARGE_FRAMES if is_large else FRAMES
+    assert damage_frames(cpp_damage(is_large), count, SEED)[0] >= count
+
+
+@needs_host
+@pytest.mark.parametrize("is_large", [False, True])
+def test_python_finds_the_same_in_them(is_large: bool) -> None:
+    for number in range(LARGE_SAMPLED if is_large else SAMPLED):
+        judge_in_python(cpp_damage(is_large).line(SEED, number), is_large)
+
+
+@needs_host
+@pytest.mark.parametrize("name", BREAKS)
+def test_a_broken_receiver_is_seen(name: str, tmp_path: Path) -> None:
+    file, old, new = BREAKS[name]
+    for part in ("src", "extras"):
+        shutil.copytree(SOURCES / part, tmp_path / part)
+    text = (tmp_path / file).read_text(encoding="utf-8")
+    assert text.count(old) == 1, "the sources were rewritten: BREAKS"
+    (tmp_path / file).write_text(text.replace(old, new), encoding="utf-8")
+    with pytest.raises(AssertionError, match=r"accepted|lost without damage|came twice"):
+        damage_frames(CppDamage(tmp_path), FRAMES, SEED)
+
+
+def test_a_wrong_frame_would_be_seen() -> None:
+    frame = Frame(8, 1, 1, b"abcd")
+    sent = Line(encoded(frame), [frame], [False])
+    wire = encoded(frame._replace(payload=b"abce"))[:-1]
+    row = f"frame {len(wire)} {wire.hex(' ')} whole"
+    with pytest.raises(AssertionError, match="nobody has sent"):
+        judge(sent, whole([row]))
+    with pytest.raises(AssertionError, match="without damage"):
+        judge(sent, [])
+    with pytest.raises(AssertionError, match="came twice"):
+        judge(sent, [frame, frame])
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description="Damage many frames.")
+    parser.add_argument("frames", type=int, nargs="?", default=10_000_000, help="damaged ones")
+    parser.add_argument("--seed", type=int, default=1_000_000)
+    parser.add_argument("--large", action="store_true", help="large frames")
+    options = parser.parse_args()
+    begun = time.monotonic()
+    cpp = cpp_damage(options.large)
+    count, lines = damage_frames(cpp, options.frames, options.seed)
+    seconds = time.monotonic() - begun
+    print(f"{count} damaged frames in {lines} lines, 0 wrong accepted: {seconds:.0f} s")
+    begun = time.monotonic()
+    sampled = range(0, lines, SAMPLED_OF)
+    for number in sampled:
+        judge_in_python(cpp.line(options.seed, number), options.large)
+    seconds = time.monotonic() - begun
+    print(f"{len(sampled)} of these lines in Python and with sanitizers, the same: {seconds:.0f} s")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,79 @@
+"""Damaged frames and the receiver in C++ on this computer, hundreds of thousands a second.
+
+Builds `vm_arduino/extras/damage` with the very receiver of a robot, without sanitizers, which would
+take three times as long.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from pathlib import Path
+from struct import pack, unpack_from
+from typing import NamedTuple
+
+from tests.machines.host import SOURCES, Process, compiled
+
+FLAGS = ("-std=c++11", "-O2")
+LARGE = ("-Dtiniscript_like_esp32",)
+
+
+class DamagedLine(NamedTuple):
+    """`data` arrives; `frames` were sent, from the type to the end of the payload."""
+
+    data: bytes
+    frames: list[bytes]
+    is_damaged: list[bool]
+    accepted: list[bytes]
+
+
+class CppDamage(Process):
+    """`sources` is a folder like `vm_arduino`. A line is determined by a seed and its number."""
+
+    def __init__(self, sources: Path = SOURCES, is_large: bool = False) -> None:
+        super().__init__([built(sources, is_large)], "the receiver in C++")
+
+    def judged(self, seed: int, line: int, lines: int) -> int:
+        """Damage frames of so many lines; return how many. Raise what must not be."""
+        answer = self.ask(b"J", pack("<III", seed, line, lines))
+        wrong = answer[8:].decode()
+        assert not wrong, f"{wrong} of seed {seed}"
+        return int.from_bytes(answer[:4], "little")
+
+    def line(self, seed: int, line: int) -> DamagedLine:
+        texts = _Texts(self.ask(b"L", pack("<II", seed, line)))
+        data = texts.text()
+        frames, is_damaged = [], []
+        for _ in range(texts.number("I")):
+            is_damaged.append(bool(texts.number("B")))
+            frames.append(texts.text())
+        accepted = [texts.text() for _ in range(texts.number("I"))]
+        return DamagedLine(data, frames, is_damaged, accepted)
+
+
+class _Texts:
+    def __init__(self, data: bytes) -> None:
+        self._data, self._at = data, 0
+
+    def number(self, form: str) -> int:
+        found: int = unpack_from("<" + form, self._data, self._at)[0]
+        self._at += 1 if form == "B" else 4
+        return found
+
+    def text(self) -> bytes:
+        length = self.number("I")
+        self._at += length
+        return self._data[self._at - length : self._at]
+
+
+def built(sources: Path, is_large: bool) -> Path:
+    code = ("src/link/receiver.cpp", "src/link/frames.cpp", "src/vm/crc32.cpp")
+    inputs = [sources / name for name in (*code, "extras/damage/main.cpp", "extras/host/wire.h")]
+    for folder in ("vm", "link"):
+        inputs += sorted((sources / "src" / folder).glob("*.h"))
+    return compiled(inputs, (*FLAGS, *LARGE * is_large))
+
+
+@lru_cache(maxsize=2)
+def cpp_damage(is_large: bool = False) -> CppDamage:
+    """Return the process that all tests of a worker share."""
+    return CppDamage(is_large=is_large)
