@@ -1,12 +1,22 @@
-"""What `pyproject.toml` cannot say: a wheel brings the firmware's sources, and nothing stale."""
+"""What `pyproject.toml` cannot say.
+
+A wheel brings the firmware's sources, and nothing stale. The links of its description lead to the
+project's address, where `pyproject.toml` has one. With SOURCE_DATE_EPOCH a source package has the
+same bytes whenever and wherever it is made, as setuptools does that for a wheel.
+"""
 
 from __future__ import annotations
 
+import gzip
+import os
+import re
 import shutil
+import tarfile
 from pathlib import Path
 
 from setuptools import setup
 from setuptools.command.build_py import build_py
+from setuptools.command.sdist import sdist
 
 ROOT = Path(__file__).resolve().parent
 PROJECT = ROOT / "vm_arduino"
@@ -46,4 +56,60 @@ class Build(build_py):
         return [*outputs, *map(str, self._copies().values())]
 
 
-setup(cmdclass={"build_py": Build})
+class Sources(sdist):
+    """Packs files by name, and with nothing of the computer that packs them."""
+
+    def make_archive(  # type: ignore[no-untyped-def]
+        self, base_name, format, root_dir=None, base_dir=None, owner=None, group=None
+    ):
+        if format != "gztar" or not base_dir:
+            return super().make_archive(base_name, format, root_dir, base_dir, owner, group)
+        epoch = os.environ.get("SOURCE_DATE_EPOCH", "")
+        target = Path(f"{base_name}.tar.gz")
+        target.parent.mkdir(parents=True, exist_ok=True)
+        with (
+            target.open("wb") as file,
+            gzip.GzipFile("", "wb", fileobj=file, mtime=int(epoch or 0)) as packed,
+            tarfile.open(fileobj=packed, mode="w", format=tarfile.PAX_FORMAT) as archive,
+        ):
+            for path in sorted(Path(base_dir).rglob("*")):
+                row = archive.gettarinfo(path, path.as_posix())
+                row.uid = row.gid = 0
+                row.uname = row.gname = ""
+                row.mode = 0o755 if row.mode & 0o100 else 0o644
+                row.mtime = int(epoch) if epoch else int(row.mtime)
+                if row.isfile():
+                    with path.open("rb") as content:
+                        archive.addfile(row, content)
+                else:
+                    archive.addfile(row)
+        return str(target)
+
+
+def found_in(name: str, pattern: str) -> str:
+    """Return what a line of a file names, or nothing."""
+    found = re.search(pattern, (ROOT / name).read_text(encoding="utf-8"), re.MULTILINE)
+    return found.group(1) if found else ""
+
+
+def description() -> str:
+    """Return README as a registry shows it: away from its neighbours.
+
+    Their addresses are those of GitHub and of forges that do the same.
+    """
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    address = found_in("pyproject.toml", r'^Source = "(https://[^"]+)"$').rstrip("/")
+    if not address:
+        return text
+    version = found_in("compiler/tiniscript/__init__.py", r'^__version__ = "([^"]+)"$')
+    text = re.sub(r"(!\[[^]]*\]\()(?=[\w.])(?!https?:)", rf"\g<1>{address}/raw/v{version}/", text)
+    return re.sub(
+        r"((?<!!)\[[^]]*\]\()(?=[\w.])(?!https?:)", rf"\g<1>{address}/blob/v{version}/", text
+    )
+
+
+setup(
+    cmdclass={"build_py": Build, "sdist": Sources},
+    long_description=description(),
+    long_description_content_type="text/markdown",
+)

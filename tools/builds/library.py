@@ -1,10 +1,11 @@
 """Makes "TiniScript", a library for PlatformIO's registry and the Arduino Library Manager.
 
-    python -m tools.builds.library FOLDER --url https://…
+    python -m tools.builds.library FOLDER
 
 takes the machine, the link and what they need from `vm_arduino/src`, and what is for sketches from
 `vm_arduino/extras/library`; compiles the images of the examples; and looks at the result with the
-rules of both registries. `pio pkg pack FOLDER` makes of it what is uploaded.
+rules of both registries. Where its sources are says `pyproject.toml`, or --url. `pio pkg pack
+FOLDER` makes of it what is uploaded.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 from tiniscript import __version__, compile_text, robots
 from tiniscript.kit import NUMBER, YES_NO, Device, Kit
 from tools.builds.library_rules import complaints
+from tools.release.facts import PEOPLE, address
 
 SOURCES = ROOT / "vm_arduino" / "src"
 OWN = ROOT / "vm_arduino" / "extras" / "library"
@@ -30,7 +32,6 @@ PARAGRAPH = (
     "Runs images that tsc compile has made on motors and sensors of your own sketch: verified "
     "before they run, without heap and without waiting. With the link tsc sends programs."
 )
-PEOPLE = "The TiniScript developers"
 ARCHITECTURES = ("avr", "esp32", "esp8266")
 PLATFORMS = ("atmelavr", "espressif32", "espressif8266")
 KEYWORDS = ("education", "robotics", "bytecode", "interpreter", "robot")
@@ -46,11 +47,14 @@ PROGRAMS = {
 def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description="Make the library for Arduino and PlatformIO.")
     parser.add_argument("folder", type=Path, help="a new folder, or one that this has made")
-    parser.add_argument("--url", required=True, help="where its sources are, https://…")
+    parser.add_argument("--url", default=address(ROOT), help="where its sources are, https://…")
     given = parser.parse_args(arguments)
     folder: Path = given.folder
     if folder.exists() and not is_ours(folder):
         print(f"{folder} is there, and is no library of TiniScript. Name another.", file=sys.stderr)
+        return 2
+    if not given.url:
+        print("pyproject.toml has no address. Say it:  --url https://…", file=sys.stderr)
         return 2
     make(folder, given.url)
     wrong = complaints(folder)

@@ -22,6 +22,7 @@ PYTHONS = ("3.10", "3.11", "3.12", "3.13", "3.14", "3.15")
 # Packages of which PyPI has only the source; those with a True have parts in C, and do without.
 SOURCES = {"cobs": True, "platformio": False}
 PURE = "py3-none-any"
+OLDEST = (1980, 1, 1, 0, 0, 0)  # the earliest time of a ZIP file
 
 _PIP = """\
 import json, sys
@@ -88,10 +89,14 @@ def make_sources(folder: Path, sources: dict[str, bool] = SOURCES) -> None:
 
 
 def without_parts_in_c(wheel: Path, folder: Path) -> Path:
-    """Write a wheel for every system: the same without what was compiled for this one."""
+    """Write a wheel for every system: the same without what was compiled for this one.
+
+    Its files have the times that they had, so that the same wheel gives the same bytes.
+    """
     name, version = wheel.name.split("-")[:2]
     target = folder / f"{name}-{version}-{PURE}.whl"
     rows = []
+    moment = OLDEST
     with zipfile.ZipFile(wheel) as old, zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED) as new:
         record = next(each for each in old.namelist() if each.endswith(".dist-info/RECORD"))
         for each in old.namelist():
@@ -101,10 +106,12 @@ def without_parts_in_c(wheel: Path, folder: Path) -> Path:
             if each.endswith(".dist-info/WHEEL"):
                 data = re.sub(rb"(?m)^Tag:.*\n", b"", data).rstrip() + f"\nTag: {PURE}\n".encode()
                 data = re.sub(rb"(?m)^Root-Is-Purelib:.*$", b"Root-Is-Purelib: true", data)
-            new.writestr(each, data)
+            moment = old.getinfo(each).date_time
+            new.writestr(zipfile.ZipInfo(each, moment), data, zipfile.ZIP_DEFLATED)
             digest = base64.urlsafe_b64encode(hashlib.sha256(data).digest()).rstrip(b"=").decode()
             rows.append(f"{each},sha256={digest},{len(data)}\n")
-        new.writestr(record, "".join([*rows, f"{record},,\n"]))
+        whole = "".join([*rows, f"{record},,\n"])
+        new.writestr(zipfile.ZipInfo(record, moment), whole, zipfile.ZIP_DEFLATED)
     return target
 
 

@@ -59,6 +59,7 @@ def main(words: Sequence[str] | None = None) -> int:
     reader.add_argument("--python", action="append", choices=PYTHONS, help="only for this one")
     reader.add_argument("--no-firmware", action="store_true", help="build no firmware")
     reader.add_argument("--no-installer", action="store_true", help="fetch no installer")
+    reader.add_argument("--wheel", type=Path, help="TiniScript's wheel, if it is made already")
     options = reader.parse_args(words)
     folder: Path = options.folder
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
@@ -67,11 +68,11 @@ def main(words: Sequence[str] | None = None) -> int:
     wheels = folder / "wheels"
     wheels.mkdir(parents=True)
     missing = []
-    if not options.no_firmware:
+    if not options.no_firmware and not options.wheel:
         missing += _firmware()
     systems, pythons = options.system or list(SYSTEMS), options.python or list(PYTHONS)
     try:
-        missing += add_wheels(wheels, systems, pythons)
+        missing += add_wheels(wheels, systems, pythons, options.wheel)
     except CannotMake as why:
         print(f"usb_stick: {why} Is this computer online?", file=sys.stderr)
         return 2
@@ -87,19 +88,24 @@ def main(words: Sequence[str] | None = None) -> int:
     return 1 if missing else 0
 
 
-def add_wheels(wheels: Path, systems: Sequence[str], pythons: Sequence[str]) -> list[str]:
-    """Put all wheels into a folder; return what could not be had. Raises CannotMake."""
+def add_wheels(
+    wheels: Path, systems: Sequence[str], pythons: Sequence[str], ours: Path | None = None
+) -> list[str]:
+    """Put all wheels into a folder; return what could not be had. Raises CannotMake.
+
+    `ours` is the wheel of TiniScript; where there is none it is made.
+    """
     stick_wheels.make_sources(wheels)
-    ours = stick_wheels.make_ours(ROOT, wheels)
+    here = Path(shutil.copy(ours, wheels)) if ours else stick_wheels.make_ours(ROOT, wheels)
     missing = []
     for name in systems:
         for python in pythons:
             title = f"{SYSTEMS[name].title}, Python {python}"
             print(f"wheels for {title}", flush=True)
             try:
-                stick_wheels.fetch(ours, wheels, SYSTEMS[name], python, EXTRAS)
+                stick_wheels.fetch(here, wheels, SYSTEMS[name], python, EXTRAS)
             except CannotMake as why:
-                missing.append(_with_fewer(ours, wheels, name, python, f"{title}: {why}"))
+                missing.append(_with_fewer(here, wheels, name, python, f"{title}: {why}"))
     return missing
 
 

@@ -1,0 +1,209 @@
+"""Rehearses a release: makes all that is published, twice, compares, installs and drives it.
+
+    python -m tools.release FOLDER
+
+takes the commit that is checked out into two clean folders, makes firmware, studio, wheel, source
+package, library, site and USB stick in both, and says what is not the same byte for byte; looks at
+the packages as a registry does; installs each into a fresh environment and drives the virtual robot
+with it. FOLDER then has the files and SHA256SUMS. Nothing is uploaded. It takes about half an hour.
+
+`--url https://…` rehearses with an address that pyproject.toml does not have yet; `--as-is` goes on
+where something keeps the commit from being released; `--part NAME` makes only some; `--once`
+compares nothing; `--whole-stick` makes the stick for every system, not for this one alone.
+The exit code is 0 if it can be released, 1 if not, 2 where the rehearsal cannot begin.
+"""
+
+from __future__ import annotations
+
+import argparse
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Sequence
+from importlib.util import find_spec
+from pathlib import Path
+from typing import NamedTuple
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
+
+from tools.builds.studio import CannotBuild, found_tools
+from tools.release import facts
+from tools.release.packing import difference, sha256
+from tools.release.parts import PARTS, CannotMake, Clone, chosen
+from tools.release.trying import TRIES, Made, NotTried, TryFailed
+
+SUMS = "SHA256SUMS"
+# Two folders of other depths and names: what has a path in it differs.
+PLACES = ("one/tiniscript", "two/somewhere else/tiniscript-ñ")
+NEEDED = {"setuptools": "release", "twine": "release", "sphinx": "site", "platformio": "firmware"}
+
+
+class Row(NamedTuple):
+    """A line of the table: a file, and what was seen of it."""
+
+    part: str
+    file: Path
+    same: str
+    tried: str
+
+
+def main(words: Sequence[str] | None = None) -> int:
+    about, _, more = (__doc__ or "").partition("\n\n")
+    reader = argparse.ArgumentParser(
+        prog="python -m tools.release", description=about, epilog=more,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )  # fmt: skip
+    reader.add_argument("folder", type=Path, help="a folder that is not there yet, or is empty")
+    reader.add_argument("--url", default="", help="an address instead of pyproject.toml's")
+    reader.add_argument("--as-is", action="store_true", help="go on with what cannot be released")
+    reader.add_argument("--part", action="append", default=[], choices=PARTS, help="only this one")
+    reader.add_argument("--once", action="store_true", help="make it once, compare nothing")
+    reader.add_argument("--whole-stick", action="store_true", help="for every system and Python")
+    options = reader.parse_args(words)
+    folder: Path = options.folder.absolute()
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        return _fail(f"{folder} is there already, and is not empty.")
+    parts = chosen(options.part)
+    lacking = lacks(parts)
+    if lacking:
+        return _fail(lacking)
+    with tempfile.TemporaryDirectory(prefix="tiniscript-release-") as scratch:
+        try:
+            clones = _clones(Path(scratch), options.url, 1 if options.once else 2, options)
+        except CannotMake as why:
+            return _fail(str(why))
+        wrong = list(facts.complaints(clones[0].root))
+        wrong += [each for each in facts.complaints(ROOT) if "not committed" in each]
+        for each in wrong:
+            _say(each)
+        if wrong and not options.as_is:
+            return _fail("Nothing was made. To rehearse all the same:  --as-is")
+        try:
+            made = [_make(clone, parts) for clone in clones]
+            for file in (*made[0].get("wheel", ()), *made[0].get("sdist", ())):
+                _say(f"twine check {file.name}")
+                clones[0].python("-m", "twine", "check", "--strict", str(file))
+        except CannotMake as why:
+            return _fail(str(why))
+        rows, failed = _looked_at(made, clones, Path(scratch))
+        shutil.copytree(clones[0].parts, folder, dirs_exist_ok=True)
+    (folder / SUMS).write_text(
+        "".join(f"{sha256(folder / row.file.name)}  {row.file.name}\n" for row in rows),
+        encoding="utf-8", newline="\n",
+    )  # fmt: skip
+    print("\n".join(table(folder, rows)))
+    if options.url and facts.address(ROOT) != options.url.rstrip("/"):
+        _say(f"pyproject.toml does not have {options.url}: what is published is made with it there")
+    for each in failed:
+        print(each, file=sys.stderr)
+    return 1 if wrong or failed else 0
+
+
+def lacks(parts: Sequence[str]) -> str:
+    """Return a sentence about what this computer lacks to make parts, or nothing."""
+    for name, extra in NEEDED.items():
+        if find_spec(name) is None:
+            return f'{name} is not installed. Do that with:  pip install -e ".[{extra}]"'
+    if "studio" in parts:
+        try:
+            found_tools()
+        except CannotBuild as why:
+            return str(why)
+    return ""
+
+
+def _clones(scratch: Path, url: str, count: int, options: argparse.Namespace) -> list[Clone]:
+    """Take the commit into clean folders, whose times, rights and address are the release's."""
+    found = []
+    for number, place in enumerate(PLACES[:count], 1):
+        root, parts = scratch / place, scratch / f"parts{number}"
+        parts.mkdir()
+        words = ["git", "clone", "--quiet", "--no-hardlinks", str(ROOT), str(root)]
+        done = subprocess.run(words, capture_output=True, text=True, umask=0o022)
+        if done.returncode:
+            said = done.stderr.strip().splitlines() or ["git says nothing"]
+            raise CannotMake(f"This folder is no clone that git can copy: {said[-1]}")
+        about = root / "pyproject.toml"
+        if url:
+            about.write_text(facts.with_address(about.read_text("utf-8"), url), encoding="utf-8")
+            _commit(root)
+        found.append(Clone(root, parts, facts.version(root), facts.address(root),
+                           facts.epoch(ROOT), number, options.whole_stick))  # fmt: skip
+    return found
+
+
+def _commit(root: Path) -> None:
+    """Keep the address of a rehearsal, so that a clone is clean, and its tags stay where it is."""
+    git = ["git", "-C", str(root), "-c", "user.name=release", "-c", "user.email=release@localhost"]
+    tags = subprocess.run([*git, "tag", "--points-at", "HEAD"], capture_output=True, text=True)
+    subprocess.run([*git, "commit", "--quiet", "-am", "release: An address to rehearse with."],
+                   check=True)  # fmt: skip
+    for tag in tags.stdout.split():
+        subprocess.run([*git, "tag", "--force", tag], check=True, capture_output=True)
+
+
+def _make(clone: Clone, parts: Sequence[str]) -> dict[str, list[Path]]:
+    """Make parts in a clone; return the files of each."""
+    found = {}
+    for name in parts:
+        _say(f"{name}, in {clone.root.name}")
+        begun = time.monotonic()
+        found[name] = PARTS[name].make(clone)
+        _say(f"{name}: {time.monotonic() - begun:.0f} s")
+    return found
+
+
+def _looked_at(
+    made: Sequence[dict[str, list[Path]]], clones: Sequence[Clone], scratch: Path
+) -> tuple[list[Row], list[str]]:
+    """Compare and try what was made; return the table's rows, and what is wrong."""
+    rows, failed = [], []
+    tries = Made(clones[0].parts, scratch / "tries", clones[0].version, facts.meets(ROOT))
+    tries.scratch.mkdir()
+    for name, files in made[0].items():
+        tried = ""
+        if name in TRIES:
+            _say(f"trying: {name}")
+            try:
+                tried = TRIES[name](tries)
+            except NotTried as why:
+                tried = f"not tried: {why}"
+            except TryFailed as why:
+                tried = "FAILED"
+                failed.append(f"{name}: {why}")
+        for file in files:
+            same = ""
+            if len(made) > 1:
+                what = difference(file, clones[1].parts / file.name)
+                same = "no" if what else "yes"
+                failed += [f"made twice, it is not the same: {what}"] if what else []
+            rows.append(Row(name, file, same, tried))
+    return rows, failed
+
+
+def table(folder: Path, rows: Sequence[Row]) -> list[str]:
+    """Return the lines of the table, in Markdown."""
+    found = ["| part | file | bytes | SHA-256 | same twice | tried |", "|---|---|---|---|---|---|"]
+    for row in rows:
+        file = folder / row.file.name
+        found.append(
+            f"| {row.part} | {file.name} | {file.stat().st_size:,} | {sha256(file)[:16]}… "
+            f"| {row.same or '-'} | {row.tried or '-'} |"
+        )
+    return found
+
+
+def _say(line: str) -> None:
+    print(f"release: {line}", file=sys.stderr, flush=True)
+
+
+def _fail(line: str) -> int:
+    _say(line)
+    return 2
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,111 @@
+"""What a release says of itself in more than one place: version, date, address, people.
+
+Knows a clone as files, and git's answers about it. The version's home is `tiniscript/__init__.py`,
+the address's is `[project.urls]` of `pyproject.toml`.
+"""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+
+PEOPLE = "The TiniScript developers"
+_DATED = re.compile(r"^## (\d+\.\d+\.\d+) \((\d{4}-\d{2}-\d{2})\)$", re.MULTILINE)
+# Each place that repeats the version, and how.
+_REPEATED = {
+    "CITATION.cff": r"(?m)^version: (\S+)$",
+    "docs/versions.md": r"\| TiniScript, the package \| `([^`]+)` \|",
+}
+# Each place that repeats who has made it.
+_PEOPLE = {
+    "LICENSE": r"Copyright \(c\) \d{4} (.+)",
+    "CITATION.cff": r'  - name: "(.+)"',
+    "pyproject.toml": r'authors = \[\{ name = "([^"]+)" \}\]',
+}
+
+
+def version(root: Path) -> str:
+    """Return the version of a clone, `0.2.0`."""
+    return _first(root / "compiler" / "tiniscript" / "__init__.py", r'(?m)^__version__ = "(.+)"$')
+
+
+def address(root: Path) -> str:
+    """Return where a clone is published, as `https://…`, or nothing where it does not say so."""
+    return _first(root / "pyproject.toml", r'(?m)^Source = "(https://[^"]+)"$').rstrip("/")
+
+
+def meets(root: Path) -> dict[str, str]:
+    """Return the versions by which a robot meets others, of `docs/versions.md`: isa and link."""
+    page = root / "docs" / "versions.md"
+    names = {"isa": "bytecode", "link": "link"}
+    return {each: _first(page, rf"\| the {name} \| ([\d.]+) \|") for each, name in names.items()}
+
+
+def with_address(text: str, url: str) -> str:
+    """Return `pyproject.toml` with another address."""
+    without = re.sub(r"(?m)^\[project\.urls\]\n(?:\w+ = .*\n)*\n?", "", text)
+    return f'{without.rstrip()}\n\n[project.urls]\nSource = "{url}"\n'
+
+
+def epoch(root: Path) -> int:
+    """Return the time of a clone's commit, in seconds since 1970: all that is made has it."""
+    return int(_git(root, "log", "-1", "--format=%ct"))
+
+
+def complaints(root: Path) -> Iterator[str]:
+    """Yield a sentence for each thing that keeps a clone from being released."""
+    changed = _git(root, "status", "--porcelain").splitlines()
+    if changed:
+        name = changed[0][3:]
+        yield f"{len(changed)} files are not committed, {name} among them. Commit them first."
+    ours = version(root)
+    yield from _about_tags(root, ours)
+    yield from _about_changes(root, ours)
+    for name, pattern in _REPEATED.items():
+        found = _first(root / name, pattern)
+        if found != ours:
+            yield f"{name} has version {found or 'none'}; tiniscript/__init__.py has {ours}."
+    for name, pattern in _PEOPLE.items():
+        found = _first(root / name, pattern)
+        if found != PEOPLE:
+            yield f"{name} names {found or 'nobody'}, not {PEOPLE}."
+    if not address(root):
+        yield (
+            "pyproject.toml does not say where it is published. Add there:  [project.urls]  and "
+            'Source = "https://…". To rehearse with an address:  --url https://…'
+        )
+
+
+def _about_tags(root: Path, ours: str) -> Iterator[str]:
+    tags = [each for each in _git(root, "tag", "--points-at", "HEAD").splitlines()
+            if re.fullmatch(r"v\d.*", each)]  # fmt: skip
+    if tags and f"v{ours}" not in tags:
+        yield f"The commit has the tag {tags[0]}, and the version {ours}: one of both is wrong."
+    elif not tags and _git(root, "tag", "--list", f"v{ours}"):
+        yield f"The tag v{ours} is that of another commit: give this one a new version."
+
+
+def _about_changes(root: Path, ours: str) -> Iterator[str]:
+    text = (root / "CHANGELOG.md").read_text(encoding="utf-8")
+    dated = _DATED.search(text)
+    if f"\n## {ours}" not in text:
+        yield f"CHANGELOG.md has no section for {ours}."
+    elif dated is None or dated.group(1) != ours:
+        yield f"CHANGELOG.md has no date for {ours}. Write:  ## {ours} (2026-01-31)"
+    _, _, rest = text.partition("\n## Unreleased\n")
+    if not rest:
+        yield "CHANGELOG.md has no section Unreleased: the next change has no place."
+    elif f"\n## {ours}" in text and rest.partition("\n## ")[0].strip():
+        yield f"CHANGELOG.md has changes under Unreleased, above {ours}: they are not released."
+
+
+def _first(path: Path, pattern: str) -> str:
+    found = re.search(pattern, path.read_text(encoding="utf-8")) if path.is_file() else None
+    return found.group(1) if found else ""
+
+
+def _git(root: Path, *words: str) -> str:
+    done = subprocess.run(["git", "-C", str(root), *words], capture_output=True, text=True)
+    return done.stdout.strip("\n") if done.returncode == 0 else ""
