@@ -1,0 +1,127 @@
+"""The workflows for a forge: nobody here can run one, so what can be read of them is read."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from collections.abc import Iterator
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.support.casefile import ROOT
+from tests.support.command import process
+from tools.release.__main__ import main as release
+
+yaml = pytest.importorskip("yaml")
+
+FOLDER = ROOT / ".github" / "workflows"
+FILES = sorted(FOLDER.glob("*.yml"))
+JOB = {"runs-on", "container", "timeout-minutes", "steps", "strategy", "env"}
+STEP = {"name", "uses", "with", "run", "if", "env"}
+# Programs that a runner has; the others are ours, or pip's.
+THEIRS = {"apt-get", "git", "env", "sh", "py", "python", "python3", ".venv/bin/python", "tsc"}
+PINNED = re.compile(r"^ +(?:- )?uses: actions/[a-z-]+@[0-9a-f]{40} # v\d+\.\d+\.\d+$")
+
+
+def loaded(path: Path) -> dict[str, Any]:
+    found: dict[str, Any] = yaml.load(path.read_text(encoding="utf-8"), Loader=yaml.BaseLoader)
+    return found
+
+
+def steps() -> Iterator[tuple[str, dict[str, Any]]]:
+    for path in FILES:
+        for job in loaded(path)["jobs"].values():
+            for step in job["steps"]:
+                yield path.name, step
+
+
+def commands() -> list[list[str]]:
+    """Return every command of every step, as words of a shell."""
+    found = []
+    for _, step in steps():
+        for line in step.get("run", "").replace("\\", "/").splitlines():
+            found += [shlex.split(each) for each in line.split("&&")]
+    return found
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.name))
+def test_a_workflow_has_a_form_that_forges_read(path: Path) -> None:
+    found = loaded(path)
+    assert set(found) == {"name", "on", "permissions", "concurrency", "jobs"}
+    assert found["permissions"] == {"contents": "read"}, "more rights than it needs"
+    for job in found["jobs"].values():
+        assert set(job) <= JOB
+        assert 0 < int(job["timeout-minutes"]) <= 120
+        for step in job["steps"]:
+            assert set(step) <= STEP
+            assert ("uses" in step) != ("run" in step)
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.name))
+def test_a_workflow_trusts_nobody(path: Path) -> None:
+    """Actions are those of a commit; no secret, and nothing of a stranger in a shell."""
+    text = path.read_text(encoding="utf-8")
+    assert "secrets" not in text
+    assert "pull_request_target" not in text
+    for line in text.splitlines():
+        if "uses:" in line:
+            assert PINNED.match(line), line
+    for _, step in steps():
+        assert "${{" not in step.get("run", ""), step
+        if "checkout" in step.get("uses", ""):
+            assert step["with"]["persist-credentials"] == "false"
+
+
+def test_visitors_commands_are_those_of_readme() -> None:
+    runs = [step.get("run", "") for name, step in steps() if name == "checks.yml"]
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    for line in (r"py tools\try.py", "python3 tools/try.py", "sh tools/try.sh"):
+        assert f"| `{line}` |" in text
+        assert line in runs
+    assert "$ sh tools/test.sh" in text
+    assert "env -u CI sh tools/test.sh" in runs
+    assert 'pip install ".[virtual]"' in text
+    assert 'python -m pip install ".[virtual]"' in runs
+
+
+def test_what_a_workflow_runs_is_there() -> None:
+    about = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
+    count = 0
+    for words in commands():
+        assert words[0] in THEIRS, words
+        for word in words:
+            if word.startswith("tools/"):
+                assert (ROOT / word).is_file(), word
+                count += 1
+        if "-m" in words:
+            name = words[words.index("-m") + 1]
+            assert find_spec(name) is not None, name
+            count += 1
+        for extras in re.findall(r"\[([a-z,]+)\]", " ".join(words)):
+            for extra in extras.split(","):
+                assert f"\n{extra} = [" in about, extra
+    assert count >= 6
+
+
+def test_lines_of_tsc_do_what_they_should() -> None:
+    ours = [words for words in commands() if words[0] == "tsc"]
+    assert len(ours) == 2
+    for words in ours:
+        done = process(*words[1:])
+        assert done.code == 0, done.err
+    assert "drove" in done.out + done.err
+
+
+def test_the_rehearsal_knows_its_options(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        release(["--help"])
+    known = capsys.readouterr().out
+    (words,) = [words for words in commands() if "tools.release" in words]
+    options = [word for word in words if word.startswith("--")]
+    options += re.findall(r"'(--[a-z-]+)'", (FOLDER / "release.yml").read_text(encoding="utf-8"))
+    assert len(options) == 2
+    for each in options:
+        assert each in known
