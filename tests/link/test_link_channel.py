@@ -17,7 +17,7 @@ from typing import Any
 
 import pytest
 
-from tests.machines.link import CppLink, cpp_link, missing
+from tests.machines.link import CppLink, cpp_link, link_library, missing
 from tests.support.link_cases import KIT
 from tiniscript.bytecode.image import pack, unpack
 from tiniscript.bytecode.opcodes import BY_NAME
@@ -300,7 +300,7 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1_000_000)
     parser.add_argument("--large", action="store_true", help="large frames, several under way")
     options = parser.parse_args()
-    cpp = cpp_link(options.large)
+    cpp = link_library(options.large)
     begun = time.monotonic()
     found: Counter[str] = Counter()
     for seed in range(options.seed, options.seed + options.uploads):

@@ -12,7 +12,7 @@ import time
 from collections import Counter
 
 from tests.link.test_link_channel import OUTCOMES, World, needs_host
-from tests.machines.link import CppLink, cpp_link
+from tests.machines.link import CppLink, cpp_link, link_library
 from tiniscript.bytecode.image import pack, unpack
 from tiniscript.bytecode.opcodes import BY_NAME as OPCODES
 from tiniscript.link.frames import decoded
@@ -83,7 +83,7 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1_000_000)
     options = parser.parse_args()
     begun = time.monotonic()
-    found = lives(cpp_link(), options.lines, options.seed)
+    found = lives(link_library(), options.lines, options.seed)
     seconds = time.monotonic() - begun
     print(f"{options.lines} live lines, {dict(found)}, 0 double: {seconds:.0f} s")
     return 0

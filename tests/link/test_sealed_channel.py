@@ -20,7 +20,7 @@ from tests.link.test_link_channel import (
     one_upload,
     program,
 )
-from tests.machines.link import CppLink, cpp_link
+from tests.machines.link import CppLink, cpp_link, link_library
 from tests.support.link_cases import KIT
 from tests.support.owners import Keys
 from tiniscript.link.frames import Frame, decoded, encoded
@@ -171,7 +171,7 @@ def main() -> int:
     begun = time.monotonic()
     found: Counter[str] = Counter()
     for number in range(options.seed, options.seed + options.uploads):
-        found[one_upload(cpp_link(options.large), number, SealedWorld)] += 1
+        found[one_upload(link_library(options.large), number, SealedWorld)] += 1
     seconds = time.monotonic() - begun
     print(f"{options.uploads} sealed uploads beside a stranger, {dict(found)}, "
           f"0 false, 0 double: {seconds:.0f} s")  # fmt: skip

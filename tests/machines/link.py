@@ -1,11 +1,12 @@
 """The robot's half of the link in C++ on this computer, with the sanitizers of the compiler.
 
 Builds `vm_arduino/extras/link` with g++ and talks to one process of it, as `host` does for the
-machine.
+machine. What is asked for long asks a library: without sanitizers, and many times as quick.
 """
 
 from __future__ import annotations
 
+import ctypes
 from collections.abc import Sequence
 from functools import lru_cache
 from pathlib import Path
@@ -16,7 +17,9 @@ from tests.machines.host import FLAGS, SOURCES, Process, compiled, missing
 from tiniscript import robots
 from tiniscript.robots.kit_words import kit_words
 
-__all__ = ("CppLink", "Step", "built", "cpp_link", "missing")
+__all__ = ("CppLink", "Step", "built", "cpp_link", "link_library", "missing")
+
+LIBRARY = ("-std=c++11", "-O1", "-shared", "-fPIC")
 
 
 class Step(NamedTuple):
@@ -26,15 +29,13 @@ class Step(NamedTuple):
     did: list[str]
 
 
-class CppLink(Process):
-    """A robot with the C++ link. `sources` is a folder like `vm_arduino`.
+class CppLink:
+    """A robot with the C++ link. One that is large has the frames and the window of an ESP32."""
 
-    One that is large has the frames and the window of an ESP32.
-    """
+    is_large: bool
 
-    def __init__(self, sources: Path = SOURCES, is_large: bool = False) -> None:
-        super().__init__([built(sources, is_large)], "the C++ link")
-        self.is_large = is_large
+    def ask(self, letter: bytes, request: bytes) -> bytes:
+        raise NotImplementedError
 
     def begin(
         self,
@@ -98,13 +99,36 @@ class CppLink(Process):
         return _text(self.ask(b"M", b""))[0]
 
 
+class LinkProcess(Process, CppLink):
+    """With sanitizers. `sources` is a folder like `vm_arduino`."""
+
+    def __init__(self, sources: Path = SOURCES, is_large: bool = False) -> None:
+        super().__init__([built(sources, is_large)], "the C++ link")
+        self.is_large = is_large
+
+
+class LinkLibrary(CppLink):
+    """Within this process: nothing waits for another one. What aborts ends this process."""
+
+    def __init__(self, is_large: bool = False) -> None:
+        self.is_large = is_large
+        library = ctypes.CDLL(str(built(SOURCES, is_large, LIBRARY)))
+        self._answer = library.link_answer
+        self._answer.restype = ctypes.c_void_p
+
+    def ask(self, letter: bytes, request: bytes) -> bytes:
+        asked, length = letter + request, ctypes.c_uint32()
+        found = self._answer(asked, len(asked), ctypes.byref(length))
+        return ctypes.string_at(found, length.value)
+
+
 def _text(answer: bytes) -> tuple[bytes, bytes]:
     length = int.from_bytes(answer[:4], "little")
     return answer[4 : 4 + length], answer[4 + length :]
 
 
-def built(sources: Path, is_large: bool = False) -> Path:
-    """Return the program made from `sources`; what was made before from the same is used again."""
+def built(sources: Path, is_large: bool = False, flags: Sequence[str] = FLAGS) -> Path:
+    """Return the program or the library made from `sources`, or what was made from the same."""
     inputs = sorted(
         path
         for folder in ("src/vm", "src/link", "src/text", "extras/link")
@@ -113,7 +137,7 @@ def built(sources: Path, is_large: bool = False) -> Path:
     )
     inputs.append(sources / "extras/host" / "wire.h")
     # the machine is not asked here, only its verifier and its checksum
-    flags = (*FLAGS, "-Dtiniscript_like_esp32") if is_large else FLAGS
+    flags = (*flags, "-Dtiniscript_like_esp32") if is_large else flags
     left_out = ("vm.cpp", "vm_instructions.cpp", "vm_robot.cpp", "number.cpp")
     return compiled([each for each in inputs if each.name not in left_out], flags)
 
@@ -121,4 +145,10 @@ def built(sources: Path, is_large: bool = False) -> Path:
 @lru_cache(maxsize=2)
 def cpp_link(is_large: bool = False) -> CppLink:
     """Return the process that all tests of a worker share."""
-    return CppLink(is_large=is_large)
+    return LinkProcess(is_large=is_large)
+
+
+@lru_cache(maxsize=2)
+def link_library(is_large: bool = False) -> LinkLibrary:
+    """Return the one of this process: a library has one robot."""
+    return LinkLibrary(is_large)

@@ -1,4 +1,4 @@
-// The robot's half of the link on a computer, for tests: many requests to one process.
+// The robot's half of the link on a computer, for tests: many requests to one process, or to a library.
 //
 // A request is four bytes of length and a letter with what it asks; an answer is four bytes of
 // length and what was found. `tests/machines/link.py` is the other side. Ends with its input.
@@ -225,38 +225,53 @@ void answer_seal(RequestReader* request, Writer* answer) {
 // M: the image that the robot holds, and whether it is what a robot may run.
 void answer_image(Writer* answer) { answer->text(port.held); }
 
+bool answer(const std::string& asked, Writer* said) {
+  RequestReader request(asked);
+  switch (request.u8()) {
+    case 'B':
+      answer_begin(&request);
+      break;
+    case 'S':
+      answer_step(&request, said);
+      break;
+    case 'R':
+      answer_robot(&request, said);
+      break;
+    case 'I':
+      answer_items(&request, said);
+      break;
+    case 'H':
+      answer_hash(&request, said);
+      break;
+    case 'X':
+      answer_seal(&request, said);
+      break;
+    case 'M':
+      answer_image(said);
+      break;
+    default:
+      return false;
+  }
+  return true;
+}
+
 }  // namespace
+
+// For who loads it as a library: the answer to a request, until the next one.
+extern "C" const char* link_answer(const char* asked, uint32_t length, uint32_t* answer_length);
+extern "C" const char* link_answer(const char* asked, uint32_t length, uint32_t* answer_length) {
+  static Writer said;
+  said = Writer();
+  if (!answer(std::string(asked, asked + length), &said)) abort();
+  *answer_length = static_cast<uint32_t>(said.data().size());
+  return said.data().data();
+}
 
 int main() {
   std::string asked;
   while (next_request(&asked)) {
-    RequestReader request(asked);
     Writer said;
-    switch (request.u8()) {
-      case 'B':
-        answer_begin(&request);
-        break;
-      case 'S':
-        answer_step(&request, &said);
-        break;
-      case 'R':
-        answer_robot(&request, &said);
-        break;
-      case 'I':
-        answer_items(&request, &said);
-        break;
-      case 'H':
-        answer_hash(&request, &said);
-        break;
-      case 'X':
-        answer_seal(&request, &said);
-        break;
-      case 'M':
-        answer_image(&said);
-        break;
-      default:
-        return 1;
-    }
+    if (!answer(asked, &said)) return 1;
     send_answer(said);
   }
   return 0;
