@@ -118,6 +118,17 @@ class Compiled(NamedTuple):
 
 def check_text(text: str, kit: Kit, name: str = "") -> Compiled:
     """Return the checked program of a text, and all that is wrong with it."""
+    found = _checked(text, kit, name)
+    if found.is_right:
+        return found
+    from tiniscript.repairs.vouching import vouched
+
+    kept = vouched(found.diagnostics, found.source, lambda other: _checked(other, kit).diagnostics)
+    return found._replace(diagnostics=kept)
+
+
+def _checked(text: str, kit: Kit, name: str = "") -> Compiled:
+    """Return the checked program of a text, and what is wrong with it; no repair is vouched for."""
     from tiniscript.diagnostics.codes import in_order
     from tiniscript.semantics.checker import check
     from tiniscript.semantics.lint import advice

@@ -14,9 +14,7 @@ from tiniscript.source import Span
 from tiniscript.syntax.ast import Assign, Command
 from tiniscript.syntax.block_recovery import BlockRecovery
 from tiniscript.syntax.blocks import Block, Blocks
-from tiniscript.syntax.call_suggestions import (
-    starts_value,
-)
+from tiniscript.syntax.call_suggestions import starts_value
 from tiniscript.syntax.construct_recovery import ConstructRecovery
 from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.def_recovery import DefRecovery
@@ -393,8 +391,10 @@ class Recovery:
         while cursor.tokens[start] is not first:
             start -= 1
         cursor.i = body_begins(cursor.tokens, cursor.i)
-        fix = head_in(WORDS[first.text], cursor.tokens[start + 1 : cursor.i])
+        known = WORDS[first.text]
+        fix = head_in(known, cursor.tokens[start + 1 : cursor.i])
         header.is_reported = True
         span = cursor.span_from(first)
-        self.reporter.report(codes.MISSING_OPEN, span, word=first.text, fix=fix, usage=fix)
+        values = {"word": first.text, "fix": fix, "usage": known.usage}
+        self.reporter.report(codes.MISSING_OPEN, span, span, **values)
         self.in_block.go_on()

@@ -1,0 +1,115 @@
+"""Lets a diagnostic offer a repair only where copying it does what was written.
+
+Two things are asked of each repair, whichever rule has made it. It keeps what the text said: see
+`accounting`. And with it the instruction that it is in has no mistake any more, so that nobody
+copies a part of what they meant. A diagnostic whose repair fails says how to write it instead.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Diagnostic
+from tiniscript.repairs.accounting import lost, makes_up
+from tiniscript.repairs.edits import Edit, applied, overlap
+from tiniscript.repairs.placing import edits_of
+from tiniscript.source import Source
+
+Check = Callable[[str], Sequence[Diagnostic]]
+ALONE = 8  # repairs that are tried alone, because they touch another one
+MANY = 100  # diagnostics of a text whose repairs are tried
+# Mistakes of other places, or that no repair of an instruction can know.
+_ELSEWHERE = frozenset((
+    codes.NEVER_ENDS, codes.NOT_OPEN, codes.WRONG_END, codes.AFTER_ELSE, codes.BRACES,
+    codes.BREAK_OUTSIDE, codes.NAME_TAKEN, codes.DEF_TWICE, codes.CALL_BEFORE_DEF,
+    codes.CALLS_ITSELF, codes.DEF_NOT_TOP, codes.OTHER_ROBOT, codes.NO_BUTTON,
+    codes.USED_BEFORE_SET, codes.SETUP_TWICE, codes.UNTIL_ALONE,
+))  # fmt: skip
+# Mistakes between two instructions, which are reported where the second one begins.
+_BETWEEN = (codes.MISSING_SEPARATOR, codes.HEADER_SEPARATOR, codes.EXTRA_WORD)
+_REST = re.compile(r"[^;\r\n{}]*")
+
+
+class _Offer(NamedTuple):
+    place: int  # of its diagnostic among all
+    edits: list[Edit]
+
+
+def vouched(found: Sequence[Diagnostic], source: Source, check: Check) -> list[Diagnostic]:
+    """Return diagnostics of which none offers a repair that loses something or is only a part.
+
+    `check` finds the diagnostics of another text.
+    """
+    kept = list(found)
+    offers = []
+    for k, diagnostic in enumerate(found[:MANY]):
+        edits = edits_of(diagnostic, source) if diagnostic.is_mistake else None
+        if not edits:
+            continue
+        before = " ".join(source[edit.span] for edit in edits)
+        after = " ".join(edit.text for edit in edits)
+        if diagnostic.values.get("fix") and lost(before, after, diagnostic.code):
+            kept[k] = _without(diagnostic)
+        else:
+            offers.append(_Offer(k, edits))
+    together: list[_Offer] = []
+    apart: list[_Offer] = []
+    for offer in offers:
+        touches = any(overlap(offer.edits, other.edits) for other in together)
+        (apart if touches else together).append(offer)
+    for group in (together, *([each] for each in apart if found[each.place].values.get("fix"))):
+        for k in _partial(group, source.text, found, check):
+            kept[k] = _without(kept[k])
+    return kept
+
+
+def _without(diagnostic: Diagnostic) -> Diagnostic:
+    """Return a diagnostic that says how it is written, and offers no repair."""
+    usage = diagnostic.values.get("usage") or diagnostic.values.get("right", "")
+    values = {**diagnostic.values, "fix": "", "usage": usage}
+    return diagnostic._replace(values=values, place=None)
+
+
+def _speaks_against(diagnostic: Diagnostic) -> bool:
+    """Whether a diagnostic says that the instruction it is in is not meant as it stands."""
+    if not diagnostic.is_mistake:
+        return diagnostic.code in (codes.SWAPPED, codes.LONG_TIME)
+    return diagnostic.code not in _ELSEWHERE
+
+
+def _is_next_step(diagnostic: Diagnostic) -> bool:
+    """Whether a mistake says by itself how all of its instruction goes on."""
+    is_next = diagnostic.code in (codes.MISSING_SEPARATOR, codes.EXTRA_WORD)
+    ends_a_move = diagnostic.values.get("word") == "UNTIL"  # which then needs no time
+    return is_next or (bool(diagnostic.values.get("fix")) and not ends_a_move)
+
+
+def _partial(
+    offers: list[_Offer], text: str, found: Sequence[Diagnostic], check: Check
+) -> list[int]:
+    """Return the diagnostics whose repair leaves a mistake in its instruction."""
+    if not any(found[offer.place].values.get("fix") for offer in offers):
+        return []
+    changed = applied(text, [edit for offer in offers for edit in offer.edits])
+    after = [each for each in check(changed) if _speaks_against(each)]
+    within = [each.span.start for each in after]
+    behind = [each.span.start for each in after if not _is_next_step(each)]
+    between = {each.span.start for each in after if each.code in _BETWEEN}
+    partial = []
+    edits = sorted((edit, offer.place) for offer in offers for edit in offer.edits)
+    shift = 0
+    for edit, k in edits:
+        start = edit.span.start + shift
+        end = start + len(edit.text)
+        shift += len(edit.text) - (edit.span.end - edit.span.start)
+        if not found[k].values.get("fix"):
+            continue
+        rest = _REST.match(changed, end)
+        is_wrong = any(start + (start in between) <= at < end for at in within)
+        is_part = rest is not None and any(end <= at < rest.end() for at in behind)
+        if is_wrong or (is_part and makes_up(text[slice(*edit.span)], edit.text)):
+            partial.append(k)
+    return partial

@@ -1,0 +1,87 @@
+"""A repair is offered only where copying it does what was written."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.pupils.corpus import check
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.rendering import message
+from tiniscript.repairs.accounting import lost, makes_up
+from tiniscript.source import Source
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "gone"),
+    [
+        ("adelante 2 segundos", "F(2, 80)", []),
+        ("F 2 80", "F(3, 80)", ["2"]),
+        ("delay(500)", "W(0.5)", []),
+        ("delay(500)", "W(5)", ["500"]),
+        ("W 2 min", "W(120)", []),
+        ("F(1,5, 80)", "F(1.5, 80)", []),
+        ("si no hay pared avanza", "F(2, 80)", ["NO", "PARED", "SI"]),
+        ("si ve una pared gira", "IF(DISTANCE < 10)", ["GIRA"]),
+        ("mientras DISTANCE > 10", "WHILE(DISTANCE > 10)", []),
+        ("F(2, 80) mientras DISTANCE > 10", "F(2, 80) UNTIL(DISTANCE <= 10)", []),
+        ("F(2, 80) mientras DISTANCE > 10", "F(2, 80) UNTIL(DISTANCE > 10)", ["MIENTRAS"]),
+        ("avanza hasta DISTANCE < 10", "F(2, 80)", ["10", "DISTANCE", "HASTA"]),
+        ("F(1, 50);F(1, 50)", "F(1, 50)", ["1", "50", "F"]),
+        ("mi vel = 5", "MI_VEL = 5", []),
+        ("else if (X > 1)", "ELSEIF(X > 1)", []),
+        ("R(1, 50) // gira", "// R(1, 50) gira", ["//", "R"]),
+        ("F(-2, 80)", "B(2, 80)", []),
+        ("F(2, 80)", "B(2, 80)", ["F"]),
+        ("tres veces", "LOOP(3)", []),
+        ("NOT X", "X", ["NOT"]),
+    ],
+)
+def test_what_a_change_loses_is_named(before: str, after: str, gone: list[str]) -> None:
+    assert lost(before, after) == gone
+
+
+def test_a_rule_that_writes_a_number_in_another_way_may_do_so() -> None:
+    assert lost("1/2 min", "30") == ["1", "2"]
+    assert lost("1/2 min", "30", codes.UNIT) == []
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "is_made_up"),
+    [
+        ("adelante", "F(2, 80)", True),
+        ("adelante 2", "F(2, 80)", False),  # a power is always made up
+        ("si X < 15", "IF(X < 15)", False),
+        ("si hay pared", "IF(DISTANCE < 10)", True),
+    ],
+)
+def test_numbers_of_examples_are_made_up(before: str, after: str, is_made_up: bool) -> None:
+    assert makes_up(before, after) == is_made_up
+
+
+def tried(program: str) -> list[str]:
+    """Return what to try, in English, for each mistake."""
+    source = Source(program)
+    return [message(each, source, "en").fix for each in check(program) if each.is_mistake]
+
+
+@pytest.mark.parametrize(
+    ("program", "wrong"),
+    [
+        ("WAIT(500)", "W(500)"),  # rather milliseconds
+        ("drive forward until you see a wall then turn left", "F(2, 80)"),
+        ("cuando distancia menor a 15 frenar y girar izquierda", "IF(DISTANCE < 10)"),
+        ("si ve una pared gira", "IF(DISTANCE < 10)"),
+        ("if DISTANCE > 10 and < 30: F(1,50)", "IF(DISTANCE > 10 AND < 30);F(1, 50);ENDIF"),
+        ("para cada vuelta\nF(1,50)\nfin", "LOOP(3)"),
+    ],
+)
+def test_what_does_something_else_is_not_offered(program: str, wrong: str) -> None:
+    found = tried(program)
+    assert found
+    assert wrong not in found
+    assert all(found), "each mistake still says what to try"
+
+
+def test_a_step_that_keeps_all_that_was_said_is_offered() -> None:
+    assert tried("LEFT(1,50) AND FORWARD(2,80)")[0] == "L(1, 50)"
+    assert tried("repetir 4 veces avanzar 1 y girar derecha 1")[0] == "LOOP(4)"
