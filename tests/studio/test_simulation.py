@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterable
 
 import pytest
 
@@ -12,7 +13,7 @@ from tiniscript import compile, run
 from tiniscript.robots import load
 from tiniscript.studio import worker
 from tiniscript.studio.checking import check
-from tiniscript.studio.simulation import Simulation
+from tiniscript.studio.simulation import Marks, Simulation
 from tiniscript.virtual import worlds
 from tiniscript.virtual.robot import VirtualRobot
 
@@ -23,6 +24,14 @@ DANCE = "F(1, 80);R(0.5, 60);BEEP(0.1, 440);SHOW(5);B(0.2, 50)"
 def lines(simulation: Simulation) -> list[str]:
     events = simulation.robot.take_events()
     return trace(events)
+
+
+def begun(text: str, at: Iterable[int] = (), is_held: bool = False) -> Simulation:
+    """Return a simulation of a program with breakpoints in front of those parts of its text."""
+    found = check(text.encode(), "tinibot", "en")
+    parts = tuple(place.offset for place in found.places)
+    marks = Marks(parts, tuple(parts[k] for k in at), len(found.variables), is_held)
+    return Simulation("tinibot", worlds.load("obstacles"), found.image, marks)
 
 
 def test_a_run_is_that_of_the_command() -> None:
@@ -54,13 +63,14 @@ def test_a_run_is_that_of_the_virtual_robot(name: str, robot: str, world: str) -
 
 def test_it_is_told_which_part_of_the_text_runs() -> None:
     text = "F(1, 80);\nR(0.5, 60);\nS"
-    simulation = Simulation("tinibot", worlds.load("obstacles"), compile(text).image)
-    places = [0, 3]
+    simulation = begun(text)
     simulation.go(300)
-    assert simulation.state()["at"] in range(3)
-    simulation.go_to_next(places, 5000)
-    assert simulation.state()["at"] in range(3, 6)
-    simulation.go_to_next(places, 5000)
+    assert simulation.state()["at"] in range(3) and not simulation.state()["is_held"]
+    simulation.step(5000)
+    assert simulation.held_at == simulation.state()["at"] == 3
+    assert simulation.robot.now_ms - simulation.state()["began_ms"] == 1000
+    simulation.step(5000)
+    simulation.step(5000)
     assert simulation.state()["at"] is None and not simulation.state()["is_running"]
 
 
@@ -108,8 +118,8 @@ def test_the_page_asks_for_all_of_it() -> None:
         return found
 
     image = compile("SB|F(1, 80);R(1, 80)").image
-    ask(image, do="power_on", robot="tinibot", world="obstacles")
+    ask(image, do="power_on", robot="tinibot", world="obstacles", parts=[0, 3])
     ask(do="go", duration_ms=1500)
     ask(do="push")
-    assert ask(do="next", offsets=[0, 3], limit_ms=3000)["is_running"]
+    assert ask(do="step", limit_ms=3000)["is_running"]
     assert ask(do="stop")["motors"] == [0, 0]

@@ -46,7 +46,7 @@ class Module(NamedTuple):
 MACHINE = Module("compiler/tiniscript/vm/machine.wasm", ("extras/wasm/main.cpp",), ("src/vm",))
 ROBOT = Module(
     "compiler/tiniscript/virtual/robot.wasm",
-    ("extras/wasm/robot.cpp", "extras/wasm/watched.cpp"),
+    ("extras/wasm/robot.cpp", "extras/wasm/watched.cpp", "extras/wasm/watched_run.cpp"),
     ("src/firmware", "src/link", "src/store", "src/text", "src/vm"),
 )
 ROBOT_ESP32 = ROBOT._replace(

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from tiniscript.fixed_point import as_text
+from tiniscript.kit import Kit
 from tiniscript.source import Span
 
 # An expression is flat, in the order in which a stack machine meets it. `op` is NUMBER, YES_NO,
@@ -157,6 +158,31 @@ def walk(body: Body) -> Iterator[Statement]:
         yield statement
         for inner in bodies(statement):
             yield from walk(inner)
+
+
+def every(program: Program) -> Iterator[Statement]:
+    """Yield every statement of a program, those of its DEFs first."""
+    for procedure in program.procedures:
+        yield from walk(procedure.body)
+    yield from walk(program.body)
+
+
+_YES_NO = frozenset(("YES_NO", "NOT", "AND", "OR", "LT", "LE", "GT", "GE", "EQ", "NE"))
+
+
+def are_yes_no(program: Program, kit: Kit) -> list[bool]:
+    """Return for each variable of a program whether it is a yes/no."""
+    found = [False] * len(program.variables)
+    for statement in every(program):
+        if isinstance(statement, Assign):
+            last = statement.value[-1]
+            if last.op == "VARIABLE":
+                found[statement.variable] = found[last.value]
+            elif last.op == "SENSOR":
+                found[statement.variable] = kit.sensors[last.value].is_yes_no
+            else:
+                found[statement.variable] = last.op in _YES_NO
+    return found
 
 
 def expressions(statement: Statement) -> Iterator[Expression]:

@@ -1,8 +1,6 @@
-"""What kind of numbers a sketch needs, and which of its variables are yes/no."""
+"""What kind of numbers a sketch needs."""
 
 from __future__ import annotations
-
-from collections.abc import Iterable
 
 from tiniscript.robots.profile import Robot
 from tiniscript.semantics import ir
@@ -14,7 +12,7 @@ from tiniscript.sketch.wiring import is_count, is_small
 def needs_numbers(program: ir.Program, robot: Robot) -> bool:
     """Whether a program calculates: then it needs numbers that are exact."""
     kit, wired = robot.kit, robot.board.sensors
-    for statement in every(program):
+    for statement in ir.every(program):
         if isinstance(statement, ir.Show) and not statement.is_yes_no:
             value = statement.value[0]
             if value.op == "SENSOR" and not is_count(kit.sensors[value.value], wired[value.value]):
@@ -51,27 +49,3 @@ def _calculates(term: ir.Term) -> bool:
         return not is_float(term.value) or abs(term.value) >= 2**24
     return term.op in FUNCTIONS or term.op in ("ADD", "SUB", "MUL", "DIV", "MOD", "NEG", "ABS",
                                                "TIME")  # fmt: skip
-
-
-def every(program: ir.Program) -> Iterable[ir.Statement]:
-    for procedure in program.procedures:
-        yield from ir.walk(procedure.body)
-    yield from ir.walk(program.body)
-
-
-def are_yes_no(program: ir.Program, robot: Robot) -> list[bool]:
-    """Return for each variable whether it is a yes/no."""
-    found = [False] * len(program.variables)
-    for statement in every(program):
-        if isinstance(statement, ir.Assign):
-            last = statement.value[-1]
-            if last.op == "VARIABLE":
-                found[statement.variable] = found[last.value]
-            elif last.op == "SENSOR":
-                found[statement.variable] = robot.kit.sensors[last.value].is_yes_no
-            else:
-                found[statement.variable] = last.op in _YES_NO
-    return found
-
-
-_YES_NO = frozenset(("YES_NO", "NOT", "AND", "OR", "LT", "LE", "GT", "GE", "EQ", "NE"))

@@ -9,7 +9,7 @@ from tiniscript.robots.profile import Robot
 from tiniscript.semantics import ir
 from tiniscript.sketch import helpers, numbers
 from tiniscript.sketch.expressions import Expressions
-from tiniscript.sketch.kinds import are_yes_no, needs_numbers
+from tiniscript.sketch.kinds import needs_numbers
 from tiniscript.sketch.names import Names
 from tiniscript.sketch.statements import Comment, Named, Statements, harmless
 from tiniscript.sketch.texts import IDENTIFIERS, TEXTS, called, said
@@ -243,7 +243,7 @@ class _Sketch:
     def kept(self, rows: Statements) -> str:
         """Return the variables of the program, of the readings, and those that functions share."""
         lines = []
-        kinds = are_yes_no(self.program, self.robot)
+        kinds = ir.are_yes_no(self.program, self.robot.kit)
         for name, is_yes_no in zip(self.named.variables, kinds, strict=True):
             lines.append(
                 f"{'bool' if is_yes_no else '$N'} {name} = {'false' if is_yes_no else '0'};"

@@ -16,6 +16,7 @@ from tiniscript.library.compiling import compiled, text_of
 from tiniscript.repairs.edits import Edit
 from tiniscript.repairs.fixing import offers
 from tiniscript.robots.profile import Robot
+from tiniscript.semantics import ir
 from tiniscript.source import Source
 from tiniscript.text.fitting import misfits
 from tiniscript.text.levels import level_of
@@ -39,14 +40,21 @@ class Finding(NamedTuple):
     repair: tuple[Change, ...]
 
 
+class Variable(NamedTuple):
+    name: str
+    is_yes_no: bool
+
+
 class Checked(NamedTuple):
     """`image` is empty where the program has mistakes. `places` say for each instruction from
-    which offset on which range of the text it comes from."""
+    which offset on which range of the text it comes from; `variables` are in the order of their
+    numbers."""
 
     image: bytes
     code_bytes: int
     findings: tuple[Finding, ...]
     places: tuple[source_map.MapPlace, ...]
+    variables: tuple[Variable, ...] = ()
 
 
 def check(data: bytes, robot: str, language: str) -> Checked:
@@ -54,9 +62,12 @@ def check(data: bytes, robot: str, language: str) -> Checked:
     profile = profile_of(robot)
     found = compiled(data, profile, "", is_strict=True)
     findings = _findings(data, found, profile, language)
-    if not found.is_right:
+    if not found.is_right or found.program is None:
         return Checked(b"", 0, findings, ())
-    return Checked(found.image, len(found.code), findings, source_map.from_compiled(found).places)
+    kinds = ir.are_yes_no(found.program, profile.kit)
+    variables = tuple(map(Variable, found.program.variables, kinds))
+    places = source_map.from_compiled(found).places
+    return Checked(found.image, len(found.code), findings, places, variables)
 
 
 def opened(data: bytes, robot: str, language: str) -> str | Message:

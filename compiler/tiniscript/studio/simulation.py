@@ -5,9 +5,11 @@ Time only goes on when it is asked to. Knows no page and no clock.
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable, Iterable
+from typing import Any, NamedTuple
 
 from tiniscript.bytecode.image import unpack
+from tiniscript.fixed_point import ONE
 from tiniscript.link.requests import OK
 from tiniscript.link.session import Session
 from tiniscript.studio.checking import profile_of
@@ -18,24 +20,50 @@ LONGEST_MS = 10_000  # for a robot to answer
 PUSH_MS = 60
 FAULT_MS = 500  # for a robot to tell of a fault
 NONCE = 1  # the same program makes the same run
+PART, BREAKPOINT = 1, 2  # marks in a program's code
+MOST_CODE = 1 << 16  # bytes
+
+
+class Marks(NamedTuple):
+    """Where a program may be held, and what is looked at.
+
+    `parts` are the offsets at which parts of its text begin, `variables` how many it has;
+    `is_held`: in front of the first part, too.
+    """
+
+    parts: tuple[int, ...]
+    breakpoints: tuple[int, ...] = ()
+    variables: int = 0
+    is_held: bool = False
 
 
 class Simulation:
-    """A robot that stands at the start of a world and has the program."""
+    """A robot that stands at the start of a world and has the program.
 
-    def __init__(self, robot: str, world: World, image: bytes) -> None:
+    The program is held in front of its breakpoints, and after a step in front of the next part of
+    its text. Time does not go on while it is held, so it does nothing else than without them.
+    """
+
+    def __init__(self, robot: str, world: World, image: bytes, marks: Marks | None = None) -> None:
         """Raises WorldRefused where the robot does not fit into the world."""
         profile = profile_of(robot)
         self.robot = VirtualRobot(profile, world)
         self.session = Session(NONCE, profile.board.baud, profile.kit.fingerprint)
         self.is_stopped = False
         self.fault_at: int | None = None  # where the last fault was, as the robot has told
-        pending = self.session.upload(unpack(image), runs=True, saves=True)
-        self._until(lambda: pending.outcome is not None)
-        assert pending.outcome is not None and pending.outcome.status == OK, "not taken"
+        self.marks = marks or Marks(())
+        self._mark()
+        self._want(is_stepping=self.marks.is_held)
+        self._upload = self.session.upload(unpack(image), runs=True, saves=True)
+        self._until(lambda: self._upload.outcome is not None or self.held_at is not None)
+        assert self.held_at is not None or self._is_taken(), "not taken"
+        self._want(is_stepping=False)
 
     def go(self, duration_ms: int) -> None:
-        """Let time go on; after a fault a little longer, until the robot has told where it was."""
+        """Let time go on, unless the program is held or until it is.
+
+        After a fault a little longer, until the robot has told where it was.
+        """
         self._go(duration_ms)
         if not self.robot.fault:
             self.fault_at = None
@@ -44,26 +72,69 @@ class Simulation:
                 return
             self._go(1)
 
+    def set_breakpoints(self, breakpoints: Iterable[int]) -> None:
+        """Hold the program in front of these offsets from now on, and of no others."""
+        self.marks = self.marks._replace(breakpoints=tuple(breakpoints))
+        self._mark()
+        self._want(is_stepping=False)
+
+    def go_on(self) -> None:
+        """Let a program that is held go on to the next breakpoint, as time goes on."""
+        self.robot.go_on()
+
+    def step(self, limit_ms: int) -> None:
+        """Let time go on until another part of the text is next, or the program has ended."""
+        self._want(is_stepping=True)
+        self.robot.go_on()
+        for _ in range(limit_ms):
+            if self.held_at is not None or not self.robot.is_running:
+                break
+            self.go(1)
+        self._want(is_stepping=False)
+
+    @property
+    def held_at(self) -> int | None:
+        """Return the offset in front of which the program is held, or None."""
+        return self.robot.watched.held_at
+
+    def _mark(self) -> None:
+        marks = bytearray(MOST_CODE)
+        for offsets, bit in ((self.marks.parts, PART), (self.marks.breakpoints, BREAKPOINT)):
+            for offset in offsets:
+                if 0 <= offset < MOST_CODE:
+                    marks[offset] |= bit
+        self.robot.watched.mark(bytes(marks))
+
+    def _want(self, is_stepping: bool) -> None:
+        breakpoint_bit = BREAKPOINT if self.marks.breakpoints else 0
+        self.robot.watched.want(breakpoint_bit | (PART if is_stepping else 0))
+
+    def _is_taken(self) -> bool:
+        return self._upload.outcome is not None and self._upload.outcome.status == OK
+
     def _go(self, duration_ms: int) -> None:
         for _ in range(duration_ms):
-            now_ms = self.robot.now_ms + 1
-            sent = self.robot.step(now_ms, self.session.poll(now_ms))
-            self.session.receive(sent, now_ms)
+            if self.held_at is not None:
+                break
+            self._pass()
+        self._hear()
+
+    def _pass(self) -> None:
+        now_ms = self.robot.now_ms + 1
+        sent = self.robot.step(now_ms, self.session.poll(now_ms))
+        self.session.receive(sent, self.robot.now_ms)
+
+    def _hear(self) -> None:
         for event in self.session.events():
             self.is_stopped = self.is_stopped or event.name == "STOPPED"
             if event.name == "FAULT":
                 self.fault_at = event.at
 
-    def go_to_next(self, offsets: list[int], limit_ms: int) -> None:
-        """Let time go on until another part of the text runs; parts begin at `offsets`."""
-        began = self._part(offsets)
-        for _ in range(limit_ms):
-            self.go(1)
-            if self._part(offsets) != began or not self.robot.is_running:
-                return
-
     def stop(self) -> None:
-        """Stop the robot, as any computer at its line does, and wait until it has confirmed it."""
+        """Stop the robot, as any computer at its line does, and wait until it has confirmed it.
+
+        A held program does nothing more.
+        """
         self.is_stopped = False
         self.session.stop(self.robot.now_ms)
         self._until(lambda: self.is_stopped)
@@ -94,19 +165,19 @@ class Simulation:
             "fault": robot.fault,
             "fault_at": self.fault_at if robot.fault else None,
             "bumps": robot.driving.bumps,
-            "at": robot.at,
-            "readings": [{"value": value / 1000, "text": device.text(value)}
+            "at": robot.at if self.held_at is None else self.held_at,
+            "is_held": self.held_at is not None,
+            "variables": [value / ONE for value in robot.watched.variables(self.marks.variables)],
+            "readings": [{"value": value / ONE, "text": device.text(value)}
                          for device, value in zip(kit.sensors, readings, strict=True)],
             "events": [[event.time_ms, event.text] for event in robot.take_events()],
         }  # fmt: skip
 
-    def _part(self, offsets: list[int]) -> int:
-        at = self.robot.at
-        return -1 if at is None else sum(offset <= at for offset in offsets)
-
-    def _until(self, is_over: Any) -> None:
+    def _until(self, is_over: Callable[[], bool]) -> None:
+        """Let time go on, also for a program that is held."""
         for _ in range(LONGEST_MS):
             if is_over():
                 return
-            self.go(1)
+            self._pass()
+            self._hear()
         raise AssertionError("the virtual robot does not answer")

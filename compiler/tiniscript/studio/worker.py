@@ -41,6 +41,7 @@ def _check(fields: Answer, data: bytes) -> Answer:
             for each in found.findings
         ],
         "places": found.places,
+        "variables": [each._asdict() for each in found.variables],
     }
 
 
@@ -73,8 +74,11 @@ _simulation: Simulation | None = None  # a page has one robot
 
 
 def _power_on(fields: Answer, data: bytes) -> Answer:
-    """Switch the virtual robot on in `world`: a shipped one's name, or one of a lesson."""
-    from tiniscript.studio.simulation import Simulation
+    """Switch the virtual robot on in `world`: a shipped one's name, or one of a lesson.
+
+    With `is_held` it stands in front of the program's first part.
+    """
+    from tiniscript.studio.simulation import Marks, Simulation
     from tiniscript.virtual import worlds
     from tiniscript.virtual.world import WorldRefused
     from tiniscript.virtual.world_refusals import describe
@@ -90,7 +94,9 @@ def _power_on(fields: Answer, data: bytes) -> Answer:
             world = worlds.load(where)
         else:
             world = _lessons().world(where["lesson"], where["seed"])
-        _simulation = Simulation(fields["robot"], world, data)
+        marks = Marks(tuple(fields.get("parts", ())), tuple(fields.get("breakpoints", ())),
+                      fields.get("variables", 0), fields.get("is_held", False))  # fmt: skip
+        _simulation = Simulation(fields["robot"], world, data, marks)
     except WorldRefused as refused:
         return {"refused": describe(refused, fields["language"])}
     return _simulation.state()
@@ -102,9 +108,22 @@ def _go(fields: Answer, data: bytes) -> Answer:
     return _simulation.state()
 
 
-def _next(fields: Answer, data: bytes) -> Answer:
+def _step(fields: Answer, data: bytes) -> Answer:
     assert _simulation is not None, "nothing is switched on"
-    _simulation.go_to_next(fields["offsets"], fields["limit_ms"])
+    _simulation.step(fields["limit_ms"])
+    return _simulation.state()
+
+
+def _go_on(fields: Answer, data: bytes) -> Answer:
+    """Let a held program go on, as soon as time does."""
+    assert _simulation is not None, "nothing is switched on"
+    _simulation.go_on()
+    return _simulation.state()
+
+
+def _breakpoints(fields: Answer, data: bytes) -> Answer:
+    assert _simulation is not None, "nothing is switched on"
+    _simulation.set_breakpoints(fields["breakpoints"])
     return _simulation.state()
 
 
@@ -188,7 +207,8 @@ def _lesson_go(fields: Answer, data: bytes) -> Answer:
 
 _ASKED: dict[str, Callable[[Answer, bytes], Answer]] = {
     "check": _check, "open": _open, "line": _line, "blocks": _blocks, "text": _text,
-    "power_on": _power_on, "go": _go, "next": _next, "stop": _stop, "push": _push,
+    "power_on": _power_on, "go": _go, "step": _step, "go_on": _go_on, "breakpoints": _breakpoints,
+    "stop": _stop, "push": _push,
     "lesson_titles": _lesson_titles, "lesson_page": _lesson_page, "lesson_world": _lesson_world,
     "lesson_check": _lesson_check, "lesson_go": _lesson_go,
     "connect": _connect, "link": _link, "import_keys": _import_keys,

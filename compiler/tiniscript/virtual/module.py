@@ -27,6 +27,7 @@ PATH = Path(__file__).with_name("robot.wasm")
 PATH_ESP32 = Path(__file__).with_name("robot_esp32.wasm")
 
 POWER_ON, RESET_BUTTON = 1, 2  # why it begins
+NOWHERE = (1 << 32) - 1
 
 
 class Board(Protocol):
@@ -112,6 +113,7 @@ class Firmware:
         self._numbers = wasm_store.numbers(self._store, found)
         self._notes, self._noted = self.call("notes") // 4, self.call("noted") // 4
         self._reading = self.call("reading") // 4
+        self.is_watched = False  # its program may be held
         self._told = [(getattr(board, name), count) for name, count in _WHAT]
         whole = ((memory or b"") + bytes(size).replace(b"\0", b"\xff"))[:size]
         self._memory.write(self._store, whole, self._eeprom)
@@ -123,7 +125,10 @@ class Firmware:
         self._look()
 
     def run(self, until_us: int, data: bytes = b"") -> bytes:
-        """Run until `until_us`, with `data` as received bytes. Return the bytes sent meanwhile."""
+        """Run until `until_us`, with `data` as received bytes. Return the bytes sent meanwhile.
+
+        Returns earlier where the program is held.
+        """
         self._waiting += data
         sent = bytearray()
         while True:
@@ -136,8 +141,43 @@ class Firmware:
             self._look()
             if count:
                 sent += self._memory.read(self._store, self._outbox, self._outbox + count)
-            if self.call("now_us") >= until_us:
+            if self.call("now_us") >= until_us or self.held_at is not None:
                 return bytes(sent)
+
+    # -- to look at its program -------------------------------------------------------------------
+
+    def mark(self, marks: bytes) -> None:
+        """Set the marks of the offsets of a program's code from 0 on: bits for each."""
+        size = self.call("marks_bytes")
+        whole = marks[:size] + bytes(size - len(marks[:size]))
+        self._memory.write(self._store, whole, self.call("marks"))
+
+    def want(self, bits: int) -> None:
+        """Hold a program from now on in front of what has a mark with one of these bits."""
+        self.is_watched = self.is_watched or bits != 0
+        self.call("want", bits)
+
+    @property
+    def held_at(self) -> int | None:
+        """Return the offset in front of which the program is held, or None."""
+        if not self.is_watched:
+            return None
+        found = self.call("held_at") % _CLOCK
+        return None if found == NOWHERE else found
+
+    @property
+    def now_us(self) -> int:
+        return self.call("now_us")
+
+    def go_on(self) -> None:
+        """Let the held program go on, in the tick in which it was held."""
+        self.call("go_on")
+        self._look()
+
+    def variables(self, count: int) -> list[int]:
+        """Return the first variables of the program that runs or has run, in thousandths."""
+        start = self.call("variables") // 4
+        return [int(each) for each in self._numbers[start : start + count]]
 
     @property
     def unheard(self) -> int:

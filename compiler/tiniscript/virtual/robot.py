@@ -18,6 +18,7 @@ from tiniscript.robots.ports import ESP32S
 from tiniscript.robots.profile import Robot
 from tiniscript.virtual.driving import Driving
 from tiniscript.virtual.module import (
+    NOWHERE,
     PATH,
     PATH_ESP32,
     POWER_ON,
@@ -98,9 +99,14 @@ class VirtualRobot:
     # -- what happens to it -----------------------------------------------------------------------
 
     def step(self, now_ms: int, data: bytes = b"") -> bytes:
-        """Go on up to a time; bytes arrive from now on. Return what the robot sends meanwhile."""
+        """Go on up to a time; bytes arrive from now on. Return what the robot sends meanwhile.
+
+        Where the program is held, time goes on no further.
+        """
         sent = self._firmware.run((now_ms - self._began_ms) * 1000, data)
         self.now_ms = now_ms
+        if self._firmware.is_watched:
+            self.now_ms = min(now_ms, self._began_ms + self._firmware.now_us // 1000)
         self._settle()
         if self.is_at_rest:
             del self._traced.events[self._told :]
@@ -301,7 +307,17 @@ class VirtualRobot:
     def at(self) -> int | None:
         """Return where the instruction that runs begins, or None while no program runs."""
         found = self._firmware.call("at") % (1 << 32)
-        return None if found == (1 << 32) - 1 else found
+        return None if found == NOWHERE else found
+
+    @property
+    def watched(self) -> Firmware:
+        """The firmware, for who holds its program and looks at it."""
+        return self._firmware
+
+    def go_on(self) -> None:
+        """Let a held program go on."""
+        self._firmware.go_on()
+        self._settle()
 
     @property
     def held(self) -> str:

@@ -11,6 +11,7 @@
 #include "../../src/store/layout.h"
 #include "../../src/store/nvm.h"
 #include "../../src/text/kit_words.h"
+#include "watched_run.h"
 
 #define tini_exported(name) extern "C" __attribute__((export_name(name)))
 #define tini_imported(name) extern "C" __attribute__((import_module("robot"), import_name(name)))
@@ -249,11 +250,12 @@ tini_exported("put") void module_put(uint32_t bytes) {
   if (hears_us < now_us + byte_us) hears_us = now_us + byte_us;
 }
 
-// Goes on up to a time, or until the inbox is empty where `has_more`, or the outbox is full.
-// Returns how many bytes are in the outbox: they are to be fetched now.
+// Goes on up to a time, or until the inbox is empty where `has_more`, or the outbox is full, or the
+// program is held. Returns how many bytes are in the outbox: they are to be fetched now.
 tini_exported("run") uint32_t module_run(uint64_t until_us, uint32_t has_more) {
   said = 0;
-  while (now_us < until_us && said < kBoxBytes) {
+  watched_begin();
+  while (now_us < until_us && said < kBoxBytes && !watched_has_held()) {
     if (has_more != 0 && heard == to_hear) break;
     now_us += kTickUs;
     hear();
@@ -288,3 +290,11 @@ tini_exported("at") uint32_t module_at() {
   Place place;
   return firmware_runs(&place) ? place.at : 0xffffffff;
 }
+
+// Marks for each offset of a program's code: where it is held, before it runs what is there.
+tini_exported("marks") uint8_t* module_marks() { return watched_marks(); }
+tini_exported("marks_bytes") uint32_t module_marks_bytes() { return watched_marks_bytes(); }
+tini_exported("want") void module_want(uint32_t bits) { watched_want(static_cast<uint8_t>(bits)); }
+tini_exported("held_at") uint32_t module_held_at() { return watched_held_at(); }
+tini_exported("go_on") void module_go_on() { watched_go_on(); }
+tini_exported("variables") const int32_t* module_variables() { return watched_variables(); }

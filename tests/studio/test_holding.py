@@ -1,0 +1,166 @@
+"""A program that is held, at breakpoints and after steps, and does the same as ever."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import pytest
+
+from tests.studio.test_simulation import begun, lines
+from tests.support.casefile import ROOT
+from tests.support.virtual_robot import missing
+from tiniscript import run
+from tiniscript.studio.checking import check
+from tiniscript.studio.simulation import Marks, Simulation
+from tiniscript.virtual import worlds
+
+pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
+COUNT = "X = 3;\nLOOP(2);\n  X = X + 1;\n  SHOW(X);\nEND_LOOP;\nIS = X > 4;\nF(0.5, 80)"
+STEPS = ["X = 3", "LOOP(2);", "X = X + 1", "SHOW(X)", "LOOP(2);", "X = X + 1", "SHOW(X)",
+         "LOOP(2);", "IS = X > 4", "F(0.5, 80)"]  # fmt: skip
+EXAMPLES = (
+    ("obstacle", "tinibot", "obstacles"),
+    ("line", "liner", "line"),
+)
+
+
+def part(text: str, simulation: Simulation) -> str:
+    """Return the first line of the part of the text in front of which a program is held."""
+    at = simulation.held_at
+    assert at is not None
+    place = next(each for each in check(text.encode(), "tinibot", "en").places if each.offset == at)
+    end = place.end_column - 1 if place.end_line == place.line else None
+    return text.split("\n")[place.line - 1][place.column - 1 : end]
+
+
+def steps(text: str, simulation: Simulation, most: int = 100) -> Iterable[str]:
+    for _ in range(most):
+        if simulation.held_at is None:
+            return
+        yield part(text, simulation)
+        simulation.step(5000)
+
+
+def test_steps_go_through_every_part_in_their_order() -> None:
+    simulation = begun(COUNT, is_held=True)
+    assert simulation.state()["events"] == [[simulation.robot.now_ms, "START"]]
+    assert list(steps(COUNT, simulation)) == STEPS
+    assert not simulation.robot.is_running
+
+
+def test_a_step_goes_into_a_word_of_ones_own() -> None:
+    text = "DEF HOP;\n  F(0.1, 80);\nEND_DEF;\nHOP;\nSHOW(1)"
+    wanted = ["DEF HOP;", "HOP", "F(0.1, 80)", "SHOW(1)"]
+    assert list(steps(text, begun(text, is_held=True))) == wanted
+
+
+def test_variables_are_told_where_it_is_held() -> None:
+    simulation = begun(COUNT, is_held=True)
+    found = []
+    while simulation.held_at is not None:
+        found.append(simulation.state()["variables"])
+        simulation.step(5000)
+    assert found[:4] == [[0, 0], [3, 0], [3, 0], [4, 0]] and found[-1] == [5, 0.001]
+
+
+@pytest.mark.parametrize("how", ["steps", "breakpoints"])
+@pytest.mark.parametrize(("name", "robot", "world"), EXAMPLES)
+def test_a_program_that_was_held_does_the_same(name: str, robot: str, world: str, how: str) -> None:
+    """The same at the same times, to the last event: with steps, and at 1,000 breakpoints."""
+    found = check((ROOT / "examples" / f"{name}.ts").read_bytes(), robot, "en")
+    plain = Simulation(robot, worlds.load(world), found.image)
+    plain.go(2500)
+    wanted = plain.robot.take_events()
+    parts = tuple(place.offset for place in found.places)
+    marks = Marks(parts, (*parts, *range(1000)) if how == "breakpoints" else (), 0, how == "steps")
+    held = Simulation(robot, worlds.load(world), found.image, marks)
+    pauses = 0
+    while held.robot.now_ms < plain.robot.now_ms:
+        if how == "steps":
+            held.step(plain.robot.now_ms - held.robot.now_ms)
+        else:
+            held.go_on()
+            held.go(plain.robot.now_ms - held.robot.now_ms)
+        pauses += held.held_at is not None
+    assert pauses > 5
+    assert held.robot.take_events() == wanted
+    assert held.robot.pose == plain.robot.pose
+
+
+def test_a_program_that_was_held_takes_as_long_as_it_calculates() -> None:
+    """It goes on in the tick in which it was held, with the instructions that were left of it."""
+    text = "X = 0;\nLOOP(300);\n  X = X + 1;\nEND_LOOP;\nBEEP(0.1, 440)"
+    found = []
+    for at in ((), (2,)):
+        simulation = begun(text, at)
+        while simulation.robot.is_running:
+            simulation.go_on()
+            simulation.go(50)
+        found.append(lines(simulation))
+    assert found[0] == found[1] == ["2 BEEP 440 100", "100 DONE"]
+
+
+def test_a_breakpoint_is_arrived_at_once_however_long_it_looks() -> None:
+    """The looks of an UNTIL, fifty in a second, are one stay."""
+    text = "LOOP(2);\n  W(1) UNTIL(DISTANCE < 3);\nEND_LOOP"
+    simulation = begun(text, at=(1,))
+    times = []
+    while simulation.robot.is_running:
+        if simulation.held_at is not None:
+            times.append(simulation.robot.now_ms)
+            simulation.go_on()
+        simulation.go(5000)
+    assert len(times) == 2 and times[1] - times[0] == 1000
+
+
+def test_nothing_passes_while_it_is_held() -> None:
+    simulation = begun("F(1, 80);\nR(1, 60)", at=(1,))
+    simulation.go(5000)
+    state = simulation.state()
+    assert state["is_held"] and simulation.robot.now_ms - state["began_ms"] == 1000
+    simulation.go(5000)
+    assert simulation.state() == {**state, "events": []}
+
+
+def test_a_stop_ends_a_held_program() -> None:
+    """And nothing of it is done any more."""
+    simulation = begun("F(1, 80);\nR(1, 60)", at=(1,))
+    simulation.go(5000)
+    simulation.state()
+    simulation.set_breakpoints(())
+    simulation.stop()
+    state = simulation.state()
+    assert [text for _, text in state["events"]] == ["STOP"]
+    assert not state["is_held"] and state["at"] is None and state["motors"] == [0, 0]
+
+
+def test_a_program_that_never_waits_is_held_too() -> None:
+    simulation = begun("LOOP(FOREVER);\n  X = X + 1;\nEND_LOOP".replace("X = X", "X = 1"), at=(1,))
+    for _ in range(5):
+        simulation.go(100)
+        assert simulation.held_at is not None
+        simulation.go_on()
+    simulation.set_breakpoints(())
+    simulation.go_on()
+    simulation.go(400)
+    assert simulation.held_at is None and simulation.robot.is_running
+
+
+def test_its_button_starts_a_program_that_can_be_held_again() -> None:
+    simulation = begun("SB|F(0.2, 80);SHOW(5)", at=(1,))
+    for ends in (lambda: simulation.stop(), lambda: simulation.go_on()):
+        simulation.go(100)
+        simulation.push()
+        simulation.go(1000)
+        assert simulation.held_at is not None
+        ends()
+        simulation.go(1000)
+        assert not simulation.robot.is_running
+
+
+def test_offsets_outside_of_the_program_hold_nothing() -> None:
+    simulation = begun("F(0.1, 80)")
+    simulation.set_breakpoints([-1, 5000, 70_000, 1 << 40])
+    simulation.go(2000)
+    assert not simulation.robot.is_running
+    assert lines(simulation) == [f"{each.ms} {each.text}" for each in run("F(0.1, 80)").events]

@@ -1,0 +1,98 @@
+// The run of a program, which a virtual robot can hold in front of an instruction.
+//
+// Stands for `run.cpp` in its module. A held program waits within a tick, and goes on with the
+// rest of that tick's budget: so it does the same at the same times as one that was never held.
+// Where no mark is wanted, the machine runs as on a robot.
+
+#include "watched_run.h"
+
+#include "../../src/firmware/program.h"
+#include "../../src/vm/vm.h"
+
+namespace tiniscript {
+
+namespace {
+
+uint8_t marks[kImageBytes];  // bits for each offset of the code
+uint8_t wanted;              // a program is held at the marks that have one of these bits
+uint8_t rest;                // of the budget of the tick in which it is held
+bool is_held;
+bool has_held;  // since `watched_begin`
+bool passes;    // the instruction in front of which it was held
+
+class HeldMachine : public Machine {
+ public:
+  void start_prepared(const uint8_t* code, uint16_t length, int32_t* readings, uint8_t sensors,
+                      uint32_t seed, uint32_t now_ms) {
+    is_held = false;
+    passes = false;
+    rest = 0;
+    Machine::start_prepared(code, length, readings, sensors, seed, now_ms);
+  }
+
+  Status tick(uint32_t now_ms, uint8_t budget) {
+    if (is_held) return status();
+    if (rest != 0) budget = rest;
+    rest = 0;
+    if (wanted == 0) return Machine::tick(now_ms, budget);
+    Status found;
+    do {
+      if (is_marked(now_ms)) {
+        is_held = true;
+        has_held = true;
+        rest = budget;
+        return Status::kRunning;
+      }
+      found = Machine::tick(now_ms, 1);
+      budget = static_cast<uint8_t>(budget - 1 + left());
+      passes = passes && left() != 0;  // a SHOW that waits for room to be sent
+    } while (budget != 0 && found == Status::kRunning && left() == 0);
+    return found;
+  }
+
+ private:
+  // Whether the program waits for a later time.
+  bool is_early(uint32_t now_ms) const {
+    return task().wait != Wait::kNothing && static_cast<int32_t>(now_ms - task().clock_ms) < 0;
+  }
+
+  bool is_marked(uint32_t now_ms) const {
+    const uint16_t at = task().pc;
+    return !passes && !is_early(now_ms) && at < kImageBytes && (marks[at] & wanted) != 0;
+  }
+};
+
+}  // namespace
+
+}  // namespace tiniscript
+
+#define Machine HeldMachine
+
+#include "../../src/firmware/run.cpp"
+
+#undef Machine
+
+namespace tiniscript {
+
+uint8_t* watched_marks() { return marks; }
+
+uint32_t watched_marks_bytes() { return kImageBytes; }
+
+void watched_want(uint8_t bits) { wanted = bits; }
+
+void watched_begin() { has_held = false; }
+
+bool watched_has_held() { return has_held; }
+
+uint32_t watched_held_at() { return is_held && is_running() ? machine.task().pc : kNowhere; }
+
+void watched_go_on() {
+  if (!is_held) return;
+  is_held = false;
+  passes = true;
+  if (is_running()) go_on();
+}
+
+const int32_t* watched_variables() { return machine.task().variables; }
+
+}  // namespace tiniscript
