@@ -49,6 +49,7 @@ Content read(const Store& store, Area area) {
   if (store.used(area) == kNoSlot) return found;
   size_t length = area == Area::kOwner ? kOwnerBytes : kRecordBytes;
   if (area == Area::kProgram) length = kHeaderBytes;
+  found.reserve(kHeaderBytes);
   while (found.size() < length) {
     uint8_t byte;
     if (!store.fetch(area, static_cast<uint16_t>(found.size()), &byte)) {
@@ -61,6 +62,7 @@ Content read(const Store& store, Area area) {
       const bool is_old = found[kHeaderLengthAt] == 0;
       length = is_old ? kBehindChecksum : found[kHeaderLengthAt];
       length += found[kCodeLengthAt] + found[kCodeLengthAt + 1] * 256U;
+      if (length < kMemoryBytes) found.reserve(length);
     }
   }
   return found;
