@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.machines.esp32 import STAND_INS, flags_of
+from tests.machines.esp32 import HAS_TLS, STAND_INS, flags_of
 from tests.machines.host import SOURCES, missing
 from tests.project.test_cpp_sources import code_of
 from tiniscript.robots.ports import ESP32S
@@ -43,9 +43,24 @@ def test_it_compiles_for_both_cores(chip: str, major: int, standard: str) -> Non
         assert done.returncode == 0, done.stderr[:3000]
 
 
+@needs_host
+@pytest.mark.skipif(not HAS_TLS, reason="needs libmbedtls-dev")
+def test_what_it_asks_of_tls_is_what_mbedtls_has() -> None:
+    """Debian's headers: in version 12 those of 2.28, as in ESP-IDF 4.4."""
+    command = ["g++", "-std=gnu++11", "-fsyntax-only", *flags_of("esp32dev", 2)]
+    found = subprocess.run(
+        [*command, "-dM", "-E", str(STAND_INS / "signatures.cpp")],
+        capture_output=True, text=True, check=True,
+    ).stdout  # fmt: skip
+    assert "tiniscript_no_mbedtls" not in found and "MBEDTLS_SSL_MAX_HOST_NAME_LEN" in found
+    command.append(str(STAND_INS / "signatures.cpp"))
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr[:3000]
+
+
 # What the whole sketch asks of the core and of the compiler's library.
 CORE = {
-    "analogRead", "analogReadResolution", "attachInterrupt", "esp_random", "esp_reset_reason",
+    "analogRead", "analogReadResolution", "attachInterrupt", "esp_reset_reason",
     "esp_rom_gpio_connect_out_signal", "esp_task_wdt_add", "esp_task_wdt_init",
     "esp_task_wdt_reset", "esp_timer_create", "esp_timer_start_periodic", "gpio_get_level",
     "gpio_intr_disable", "gpio_intr_enable", "gpio_set_level", "ledcWrite", "ledcWriteTone",
@@ -54,6 +69,12 @@ CORE = {
     "lwip_accept", "lwip_bind", "lwip_close", "lwip_connect", "lwip_fcntl", "lwip_htonl",
     "lwip_htons", "lwip_listen", "lwip_recv", "lwip_send", "lwip_setsockopt", "lwip_socket",
     "vTaskDelay", "xTaskCreatePinnedToCore", "WiFi", "MDNS", "__errno",
+    "esp_random", "lwip_gethostbyname", "mbedtls_ssl_conf_authmode", "mbedtls_ssl_conf_ca_chain",
+    "mbedtls_ssl_conf_rng", "mbedtls_ssl_conf_verify", "mbedtls_ssl_config_defaults",
+    "mbedtls_ssl_config_free", "mbedtls_ssl_config_init", "mbedtls_ssl_free",
+    "mbedtls_ssl_handshake", "mbedtls_ssl_init", "mbedtls_ssl_read", "mbedtls_ssl_set_bio",
+    "mbedtls_ssl_set_hostname", "mbedtls_ssl_setup", "mbedtls_ssl_write",
+    "mbedtls_x509_crt_free", "mbedtls_x509_crt_init", "mbedtls_x509_crt_parse_der",
 }  # fmt: skip
 # Classes of the radios' libraries, and what the compiler's own library has for them.
 RADIO = re.compile(
@@ -98,13 +119,18 @@ def test_the_whole_sketch_links_with_the_core_alone(chip: str, major: int, tmp_p
     (2, "void ledcWrite(uint8_t channel", "bool ledcWrite(uint8_t channel"),
     (3, "bool ledcWrite(uint8_t pin", "void ledcWrite(uint8_t pin"),
     (2, "uint16_t analogRead", "int analogRead"),
+    (2, "int mbedtls_ssl_handshake(", "void mbedtls_ssl_handshake("),
+    (3, "hostent* lwip_gethostbyname(const", "hostent* lwip_gethostbyname("),
 ])  # fmt: skip
 def test_a_signature_that_differs_is_noticed(
     major: int, old: str, new: str, tmp_path: Path
 ) -> None:
-    text = (STAND_INS / "core" / "Arduino.h").read_text(encoding="utf-8")
-    assert old in text
-    (tmp_path / "Arduino.h").write_text(text.replace(old, new), encoding="utf-8")
+    core = STAND_INS / "core"
+    texts = {path: path.read_text(encoding="utf-8") for path in core.rglob("*.h")}
+    [path] = [path for path, text in texts.items() if old in text]
+    other = tmp_path / path.relative_to(core)
+    other.parent.mkdir(exist_ok=True)
+    other.write_text(texts[path].replace(old, new), encoding="utf-8")
     command = ["g++", "-std=gnu++11", *STRICT, f"-isystem{tmp_path}", *flags_of("esp32dev", major)]
     done = subprocess.run(
         [*command, str(STAND_INS / "signatures.cpp")], capture_output=True, text=True, check=False

@@ -1,4 +1,4 @@
-"""The main loop and the radios of an ESP32 at once, under ThreadSanitizer: it finds no race.
+"""The tasks of an ESP32 at once, under ThreadSanitizer: main loop, radios, a broker. No race.
 
 `vm_arduino/extras/esp32/two_cores.cpp` has a thread for each task.
 """
@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.machines.esp32 import STAND_INS, flags_of
+from tests.machines.esp32 import STAND_INS, TLS, flags_of
 from tests.machines.host import BUILDS, SOURCES, made
 
 CLANG = "clang++-22"
@@ -20,7 +20,13 @@ pytestmark = pytest.mark.skipif(
 )
 FLAGS = ("-std=gnu++11", "-O1", "-g", "-fsanitize=thread", "-fno-exceptions", "-fno-rtti",
          *flags_of("esp32dev", 2))  # fmt: skip
-THREADS = ("two_cores.cpp", "tasks_at_once.cpp", "simulated_chip.cpp", "simulated_radio.cpp")
+THREADS = (
+    "two_cores.cpp",
+    "tasks_at_once.cpp",
+    "simulated_chip.cpp",
+    "simulated_radio.cpp",
+    "simulated_tls.cpp",
+)
 PIPE = "src/boards/esp32/pipe.h"
 SECONDS = "2"
 
@@ -37,7 +43,7 @@ def program(sources: Path = SOURCES) -> Path:
     for path in code:
         texts = [*headers, path.name.encode(), path.read_bytes()]
         objects.append(str(made(CLANG, BUILDS, ".o", FLAGS, texts, ["-c", str(path)])))
-    return made(CLANG, BUILDS, "", FLAGS, [name.encode() for name in objects], objects)
+    return made(CLANG, BUILDS, "", FLAGS, [name.encode() for name in objects], [*objects, *TLS])
 
 
 def run(sources: Path = SOURCES) -> subprocess.CompletedProcess[str]:
@@ -58,6 +64,9 @@ def test_no_two_cores_touch_the_same_at_once() -> None:
     (PIPE, "__atomic_load_n(&behind_, __ATOMIC_ACQUIRE)", "behind_"),
     ("src/boards/esp32/watchdog.cpp", "return __atomic_load_n(&from, __ATOMIC_ACQUIRE);",
      "return from;"),
+    ("src/boards/esp32/kept_settings.h", "    const CriticalSection critical;\n    *found = now_;",
+     "    *found = now_;"),
+    ("src/boards/esp32/broker_settings.cpp", "__atomic_load_n(&state, __ATOMIC_RELAXED)", "state"),
 ])  # fmt: skip
 def test_a_race_is_noticed(file: str, old: str, new: str, tmp_path: Path) -> None:
     """What is published without the order of its bytes."""

@@ -27,8 +27,11 @@ SIMULATED = (
     "main.cpp",
     "simulated_chip.cpp",
     "simulated_radio.cpp",
+    "simulated_tls.cpp",
     "tasks_in_turn.cpp",
 )  # of extras: the others are programs of their own
+HAS_TLS = Path("/usr/include/mbedtls/ssl.h").exists()
+TLS = ("-lmbedtls", "-lmbedx509", "-lmbedcrypto") if HAS_TLS else ()
 POWER_ON, EXTERNAL, TASK_WATCHDOG, BROWN_OUT = 1, 2, 6, 9  # esp_reset_reason_t
 US_PER_CM = 58.309  # of an echo
 
@@ -149,7 +152,7 @@ def built(header: str, chip: str, major: int) -> Path:
         is_own = path.parent.name in ("boards", "esp32", "src")
         flags = (*usual, *of_boards) if is_own else usual
         objects.append(str(made("g++", BUILDS, ".o", flags, [*headers, text], ["-c", str(path)])))
-    return made("g++", BUILDS, "", usual, [name.encode() for name in objects], objects)
+    return made("g++", BUILDS, "", usual, [name.encode() for name in objects], [*objects, *TLS])
 
 
 assert TICKS == 20  # turns in a millisecond, as `main.cpp` has them

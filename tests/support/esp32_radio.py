@@ -164,6 +164,11 @@ def in_reach(robot: Esp32Robot, name: str, password: str) -> None:
     robot.radio("R", _text(name.encode()) + _text(password.encode()))
 
 
+def known(robot: Esp32Robot, name: str, address: str) -> None:
+    """Let the network know a computer's name."""
+    robot.radio("N", _text(name.encode()) + _text(address.encode()))
+
+
 def talk(
     robot: Esp32Robot, ends: Sequence[tuple[End | None, Client]], milliseconds: int, flags: int = 0
 ) -> None:

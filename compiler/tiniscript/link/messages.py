@@ -13,6 +13,8 @@ import struct
 from collections.abc import Mapping
 from typing import NamedTuple
 
+from tiniscript.link.network_messages import NETWORK_BYTES, WIFI_TEXT_BYTES
+
 MAJOR = 1  # if it differs, robot and computer understand only each other's HELLO
 MINOR = 2  # grows when messages, statuses or features are added
 
@@ -92,41 +94,6 @@ KEYS = (
         "Who has claimed the robot. Where there is one, nobody drives the robot without a key.",
     ),
     ("TEACHER", "May do what the owner may. A stop with it: only it or the button lets it go on."),
-)
-
-# A network of WiFi comes in several frames: its name, its password, and what to do with both.
-NETWORK_BYTES, PASSWORD_BYTES = 32, 63
-LEAST_PASSWORD, WIFI_TEXT_BYTES = 8, 32  # of WPA2; of a name or of a part of a password
-CLASS_BYTES, BROKER_PLACE_BYTES = 16, 6  # of a class: a to z, 0 to 9, -; of an address and a port
-WIFI_STEPS = (
-    ("TELL", "Changes nothing."),
-    ("NETWORK", "The name of a network: what came before it is forgotten."),
-    ("PASSWORD", "The next part of its password."),
-    ("JOIN", "The robot joins that network, now and after each reset."),
-    ("HOST", "The robot is an access point of that name."),
-    ("FORGET", "The robot has no WiFi any more, and no broker."),
-    (
-        "BROKER",
-        "An MQTT broker: its address, its port (16 bits) and the class. What came before is forgotten. Empty: none.",
-    ),
-    ("BROKER_USER", "The robot's name there."),
-    ("BROKER_PASSWORD", "The next part of its password there."),
-    ("USE_BROKER", "The robot connects to that broker, now and after each reset, or to none."),
-    (
-        "TELL_BROKER",
-        "Changes nothing. The reply is about the broker: `mode` 1 if there is one, its address, and `network` is the class.",
-    ),
-)
-WIFI_MODES = (
-    ("OFF", "No network is set."),
-    ("STATION", "The robot joins a network."),
-    ("ACCESS_POINT", "The robot is one."),
-)
-WIFI_STATES = (
-    ("OFF", "The robot has no WiFi, or has not begun with it."),
-    ("SEARCHING", "It does not hear the network, or waits for an answer."),
-    ("REFUSED", "The network has refused it: the password may be another one."),
-    ("READY", "It has an address."),
 )
 
 # The trim of the motors: their wiring, how much one is weakened, and the least power that moves.

@@ -10,10 +10,12 @@ import re
 from typing import NamedTuple
 
 from tiniscript.link import requests
-from tiniscript.link.messages import (
+from tiniscript.link.network_messages import (
+    BROKER_NAME_BYTES,
     CLASS_BYTES,
     NETWORK_BYTES,
     PASSWORD_BYTES,
+    TRUST_BYTES,
     WIFI_MODES,
     WIFI_STATES,
     WIFI_STEPS,
@@ -38,14 +40,26 @@ class Network(NamedTuple):
         return f"Network({self.name!r})"
 
 
+class Tls(NamedTuple):
+    """What makes a robot speak TLS: a certificate that it trusts, in DER, and today's date."""
+
+    trust: bytes
+    date: int  # as 20261121
+
+
 class BrokerSettings(NamedTuple):
-    """Where a robot finds its broker: four bytes and a port; its class, and how it signs in."""
+    """Where a robot finds its broker: four bytes and a port; its class, and how it signs in.
+
+    It looks up `name`, if there is one, and takes the four bytes where nobody knows it.
+    """
 
     address: bytes
     port: int
     group: str
     user: bytes = b""
     password: bytes = b""
+    name: bytes = b""
+    tls: Tls | None = None
 
     @property
     def is_sound(self) -> bool:
@@ -55,8 +69,13 @@ class BrokerSettings(NamedTuple):
             and is_class(self.group)
             and len(self.user) <= NETWORK_BYTES
             and len(self.password) <= PASSWORD_BYTES
-            and b"\0" not in self.user + self.password
+            and len(self.name) <= BROKER_NAME_BYTES
+            and b"\0" not in self.user + self.password + self.name
+            and (self.tls is None or self._is_sound_tls(self.tls))
         )
+
+    def _is_sound_tls(self, tls: Tls) -> bool:
+        return bool(self.name) and 0 < len(tls.trust) <= TRUST_BYTES and 0 < tls.date < 1 << 32
 
     def __repr__(self) -> str:  # a password is in no message
         return f"BrokerSettings({self.group!r})"
@@ -77,15 +96,8 @@ def forget() -> Exchange[WifiReply]:
 
 def give(network: Network) -> Exchange[WifiReply]:
     """Give the robot a network, in the parts that find room in a frame, and have it kept."""
-    steps = [_request("NETWORK", network.name)]
-    for k in range(0, len(network.password), WIFI_TEXT_BYTES):
-        steps.append(_request("PASSWORD", network.password[k : k + WIFI_TEXT_BYTES]))
-    for each in steps:
-        reply = yield from requests.single(each, WifiReply)
-        if reply.status != OK:
-            return reply
-    last = "HOST" if network.is_access_point else "JOIN"
-    return (yield from requests.kept(_request(last), WifiReply))
+    steps = [_request("NETWORK", network.name), *_parts("PASSWORD", network.password)]
+    return (yield from _given(steps, "HOST" if network.is_access_point else "JOIN"))
 
 
 def tell_broker() -> Exchange[WifiReply]:
@@ -98,14 +110,11 @@ def use_broker(broker: BrokerSettings | None) -> Exchange[WifiReply]:
     if broker is not None:
         place = broker.address + broker.port.to_bytes(2, "little") + broker.group.encode()
         steps = [_request("BROKER", place), _request("BROKER_USER", broker.user)]
-        for k in range(0, len(broker.password), WIFI_TEXT_BYTES):
-            part = broker.password[k : k + WIFI_TEXT_BYTES]
-            steps.append(_request("BROKER_PASSWORD", part))
-    for each in steps:
-        reply = yield from requests.single(each, WifiReply)
-        if reply.status != OK:
-            return reply
-    return (yield from requests.kept(_request("USE_BROKER"), WifiReply))
+        steps += _parts("BROKER_PASSWORD", broker.password) + _parts("BROKER_NAME", broker.name)
+        if broker.tls is not None:
+            steps.append(_request("BROKER_TLS", broker.tls.date.to_bytes(4, "little")))
+            steps += _parts("BROKER_TRUST", broker.tls.trust)
+    return (yield from _given(steps, "USE_BROKER"))
 
 
 def address(reply: WifiReply) -> str:
@@ -115,3 +124,18 @@ def address(reply: WifiReply) -> str:
 
 def _request(step: str, text: bytes = b"") -> Request:
     return Request("WIFI", {"step": _STEPS.index(step), "text": text})
+
+
+def _parts(step: str, text: bytes) -> list[Request]:
+    """Return what brings a text in the parts that find room in a frame."""
+    parts = range(0, len(text), WIFI_TEXT_BYTES)
+    return [_request(step, text[k : k + WIFI_TEXT_BYTES]) for k in parts]
+
+
+def _given(steps: list[Request], last: str) -> Exchange[WifiReply]:
+    """Take the steps up to the first that is refused, then the one that has them kept."""
+    for each in steps:
+        reply = yield from requests.single(each, WifiReply)
+        if reply.status != OK:
+            return reply
+    return (yield from requests.kept(_request(last), WifiReply))

@@ -11,14 +11,8 @@ from typing import Any, TypeVar
 
 from tiniscript.bytecode.image import HEADER_BYTES, STARTS, Image
 from tiniscript.link.connection import PendingRequest, Requester
-from tiniscript.link.messages import (
-    KEYS,
-    LEAST_PASSWORD,
-    NAME_BYTES,
-    NETWORK_BYTES,
-    PASSWORD_BYTES,
-    TRIM_BYTES,
-)
+from tiniscript.link.messages import KEYS, NAME_BYTES, TRIM_BYTES
+from tiniscript.link.network_messages import LEAST_PASSWORD, NETWORK_BYTES, PASSWORD_BYTES
 from tiniscript.link.payloads import (
     EmptyReply,
     HelloReply,
@@ -30,12 +24,13 @@ from tiniscript.link.payloads import (
     WifiReply,
 )
 from tiniscript.link.requests import FetchedImage
-from tiniscript.link.wifi import BrokerSettings, Network
+from tiniscript.link.wifi import BrokerSettings, Network, Tls
 from tiniscript.sharing import protocol
 from tiniscript.sharing.protocol import BadMessage, JsonMessage
 
 CODE_BYTES = 0x7FFF  # the most that an image's header can say
 LATER_BYTES = 0xFF - HEADER_BYTES  # the most that it can say
+NO_TLS = Tls(b"", 0)
 T = TypeVar("T")
 _PLAIN = ("hello", "ping", "status", "clear", "fetch", "undo", "identify", "hold_back",
           "wifi", "forget_wifi", "broker", "use_no_broker")  # fmt: skip
@@ -106,8 +101,9 @@ class ClientRequests:
         """The password goes as that of `join`."""
         if broker is None:
             return ClientRequest("use_no_broker", WifiReply)
-        fields = broker._asdict()
-        for name in ("address", "user", "password"):
+        fields = {**broker._asdict(), **(broker.tls or NO_TLS)._asdict()}
+        del fields["tls"]
+        for name in ("address", "user", "password", "name", "trust"):
             fields[name] = fields[name].hex()
         return ClientRequest("use_broker", WifiReply, **fields)
 
@@ -221,12 +217,15 @@ def _network(message: JsonMessage) -> Network:
 
 
 def _broker(message: JsonMessage) -> BrokerSettings:
+    tls = Tls(protocol.data(message, "trust"), protocol.number(message, "date"))
     broker = BrokerSettings(
         protocol.data(message, "address"),
         protocol.number(message, "port"),
         protocol.word(message, "group"),
         protocol.data(message, "user"),
         protocol.data(message, "password"),
+        protocol.data(message, "name"),
+        None if tls == NO_TLS else tls,
     )
     if not broker.is_sound:
         raise BadMessage

@@ -204,6 +204,10 @@ void answer_radio(RequestReader* request, Writer* answer) {
       const std::string name = request->text();
       return network_in_reach(name, request->text());
     }
+    case 'N': {
+      const std::string name = request->text();
+      return network_name(name, request->text());
+    }
     case 'P':
       return answer->u16(network_port());
     case 'I': {

@@ -15,7 +15,10 @@
 #include <esp_task_wdt.h>
 #include <esp_timer.h>
 #include <freertos/task.h>
+#include <lwip/netdb.h>
 #include <lwip/sockets.h>
+#include <mbedtls/ssl.h>
+#include <mbedtls/x509_crt.h>
 #include <nvs.h>
 #include <soc/gpio_sig_map.h>
 
@@ -134,4 +137,38 @@ is_a(&lwip_recv, ssize_t (*)(int, void*, size_t, int));
 is_a(&lwip_send, ssize_t (*)(int, const void*, size_t, int));
 is_a(&lwip_setsockopt, int (*)(int, int, int, const void*, socklen_t));
 is_a(&lwip_socket, int (*)(int, int, int));
+is_a(&lwip_gethostbyname, hostent* (*)(const char*));
 is_a(xTaskCreatePinnedToCore(nullptr, "", 0, nullptr, 0, nullptr, 0), BaseType_t);
+
+// components/mbedtls/mbedtls/include/mbedtls of 2.28 and 3.5, as called
+typedef int Look(void*, mbedtls_x509_crt*, int, uint32_t*);
+typedef int Fill(void*, unsigned char*, size_t);
+is_a(&mbedtls_ssl_init, void (*)(mbedtls_ssl_context*));
+is_a(&mbedtls_ssl_free, void (*)(mbedtls_ssl_context*));
+is_a(&mbedtls_ssl_setup, int (*)(mbedtls_ssl_context*, const mbedtls_ssl_config*));
+is_a(&mbedtls_ssl_set_hostname, int (*)(mbedtls_ssl_context*, const char*));
+is_a(&mbedtls_ssl_set_bio, void (*)(mbedtls_ssl_context*, void*, mbedtls_ssl_send_t*,
+                                    mbedtls_ssl_recv_t*, mbedtls_ssl_recv_timeout_t*));
+is_a(static_cast<mbedtls_ssl_send_t*>(nullptr), int (*)(void*, const unsigned char*, size_t));
+is_a(static_cast<mbedtls_ssl_recv_t*>(nullptr), int (*)(void*, unsigned char*, size_t));
+is_a(&mbedtls_ssl_handshake, int (*)(mbedtls_ssl_context*));
+is_a(&mbedtls_ssl_read, int (*)(mbedtls_ssl_context*, unsigned char*, size_t));
+is_a(&mbedtls_ssl_write, int (*)(mbedtls_ssl_context*, const unsigned char*, size_t));
+is_a(&mbedtls_ssl_config_init, void (*)(mbedtls_ssl_config*));
+is_a(&mbedtls_ssl_config_free, void (*)(mbedtls_ssl_config*));
+is_a(&mbedtls_ssl_config_defaults, int (*)(mbedtls_ssl_config*, int, int, int));
+is_a(&mbedtls_ssl_conf_authmode, void (*)(mbedtls_ssl_config*, int));
+is_a(&mbedtls_ssl_conf_ca_chain,
+     void (*)(mbedtls_ssl_config*, mbedtls_x509_crt*, mbedtls_x509_crl*));
+is_a(&mbedtls_ssl_conf_verify, void (*)(mbedtls_ssl_config*, Look*, void*));
+is_a(&mbedtls_ssl_conf_rng, void (*)(mbedtls_ssl_config*, Fill*, void*));
+is_a(&mbedtls_x509_crt_init, void (*)(mbedtls_x509_crt*));
+is_a(&mbedtls_x509_crt_free, void (*)(mbedtls_x509_crt*));
+is_a(&mbedtls_x509_crt_parse_der, int (*)(mbedtls_x509_crt*, const unsigned char*, size_t));
+is_a(mbedtls_x509_crt::valid_to, mbedtls_x509_time);
+is_a(mbedtls_x509_time::year, int);
+static_assert(MBEDTLS_ERR_SSL_WANT_READ == -0x6900 && MBEDTLS_ERR_SSL_WANT_WRITE == -0x6880 &&
+                  MBEDTLS_ERR_SSL_CONN_EOF == -0x7280 && MBEDTLS_X509_BADCERT_EXPIRED == 1 &&
+                  MBEDTLS_X509_BADCERT_CN_MISMATCH == 4 && MBEDTLS_X509_BADCERT_NOT_TRUSTED == 8 &&
+                  MBEDTLS_X509_BADCERT_FUTURE == 0x200,
+              "numbers of mbedTLS");

@@ -5,11 +5,14 @@
 #include <BluetoothSerial.h>
 #include <ESPmDNS.h>
 #include <WiFi.h>
+#include <arpa/inet.h>
+#include <lwip/netdb.h>
 #include <lwip/sockets.h>
 #include <string.h>
 #include <unistd.h>
 
 #include <deque>
+#include <map>
 #include <mutex>
 
 WiFiClass WiFi;
@@ -47,6 +50,7 @@ wifi_mode_t wifi_mode = WIFI_OFF;
 std::string near_name;
 std::string near_password;
 uint16_t bound_port;
+std::map<std::string, std::string> addresses = {{"localhost", "127.0.0.1"}};
 
 }  // namespace
 
@@ -128,6 +132,11 @@ void network_in_reach(const std::string& name, const std::string& password) {
   const Lock lock(guard);
   near_name = name;
   near_password = password;
+}
+
+void network_name(const std::string& name, const std::string& address) {
+  const Lock lock(guard);
+  addresses[name] = address;
 }
 
 uint16_t network_port() {
@@ -330,6 +339,15 @@ int lwip_connect(int s, const struct sockaddr* name, socklen_t namelen) {
   return connect(s, name, namelen);
 }
 int lwip_fcntl(int s, int cmd, int val) { return fcntl(s, cmd, val); }
+struct hostent* lwip_gethostbyname(const char* name) {
+  static in_addr address;  // of one task alone, as with lwIP
+  static char* list[] = {reinterpret_cast<char*>(&address), nullptr};
+  static hostent found = {nullptr, nullptr, AF_INET, sizeof address, list};
+  const Lock lock(guard);
+  const auto known = addresses.find(name);
+  if (known == addresses.end() || inet_aton(known->second.c_str(), &address) == 0) return nullptr;
+  return &found;
+}
 int lwip_listen(int s, int backlog) { return listen(s, backlog); }
 ssize_t lwip_recv(int s, void* mem, size_t len, int flags) { return recv(s, mem, len, flags); }
 ssize_t lwip_send(int s, const void* dataptr, size_t size, int flags) {

@@ -11,7 +11,7 @@ namespace tiniscript {
 
 namespace {
 
-constexpr uint8_t kLastStep = static_cast<uint8_t>(WifiStep::kTellBroker);
+constexpr uint8_t kLastStep = static_cast<uint8_t>(WifiStep::kBrokerTrust);
 
 }  // namespace
 

@@ -48,6 +48,8 @@ constexpr uint8_t kPasswordBytes = 63;
 constexpr uint8_t kLeastPassword = 8;
 constexpr uint8_t kClassBytes = 16;
 constexpr uint8_t kBrokerPlaceBytes = 6;
+constexpr uint8_t kBrokerNameBytes = 96;
+constexpr uint16_t kTrustBytes = 2048;
 
 // How a program starts, in one byte.
 constexpr uint8_t kStartBits = 3;
@@ -228,6 +230,9 @@ enum class WifiStep : uint8_t {
   kBrokerPassword = 8,  // The next part of its password there.
   kUseBroker = 9,  // The robot connects to that broker, now and after each reset, or to none.
   kTellBroker = 10,  // Changes nothing. The reply is about the broker: `mode` 1 if there is one, its address, and `network` is the class.
+  kBrokerName = 11,  // The next part of the broker's name, which its certificate has. Who is not found by it is at the address.
+  kBrokerTls = 12,  // Speak TLS with the broker. The text is today's date, as 20261121 (32 bits): a certificate that ended before is refused.
+  kBrokerTrust = 13,  // The next part of the certificate that signs the broker's, in DER.
 };
 
 enum class WifiMode : uint8_t {
@@ -241,6 +246,10 @@ enum class WifiState : uint8_t {
   kSearching = 1,  // It does not hear the network, or waits for an answer.
   kRefused = 2,  // The network has refused it: the password may be another one.
   kReady = 3,  // It has an address.
+  kUntrusted = 4,  // The broker's certificate is not signed by the one that the robot trusts.
+  kOtherName = 5,  // The broker's certificate is for a computer of another name.
+  kExpired = 6,  // The broker's certificate had ended before the robot was told of it.
+  kNoTls = 7,  // The broker and the robot agree on no TLS, or the robot has no memory left for it.
 };
 
 // Faults that no instruction makes. The others are `Fault`.

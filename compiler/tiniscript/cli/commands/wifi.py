@@ -15,14 +15,8 @@ from tiniscript.cli.robot import robot_broker
 from tiniscript.cli.robot.connect import Connection, connected
 from tiniscript.cli.terminal import password
 from tiniscript.cli.texts.common import text
-from tiniscript.link.messages import (
-    LEAST_PASSWORD,
-    NETWORK_BYTES,
-    OWNED,
-    PASSWORD_BYTES,
-    SEALS,
-    STATUSES,
-)
+from tiniscript.link.messages import OWNED, SEALS, STATUSES
+from tiniscript.link.network_messages import LEAST_PASSWORD, NETWORK_BYTES, PASSWORD_BYTES
 
 if TYPE_CHECKING:
     from tiniscript.link.payloads import WifiReply
@@ -42,7 +36,8 @@ def run(options: Namespace, language: str) -> int:
     is_about_network = options.network is not None or options.forget
     if is_about_broker and (is_about_network or (options.broker is not None and options.no_broker)):
         raise CommandError(2, "wifi_one_way")
-    if options.broker is None and (options.user is not None or options.group is not None):
+    of_broker = (options.user, options.group, options.trust, options.tls or None)
+    if options.broker is None and any(each is not None for each in of_broker):
         raise CommandError(2, "broker_no_user")
     broker = robot_broker.settings(options, language) if options.broker is not None else None
     name = None if options.network is None else _name_bytes(options.network)

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import re
 from argparse import Namespace
+from pathlib import Path
 from typing import NamedTuple
 
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.terminal import password
 from tiniscript.cli.texts.common import text
-from tiniscript.link.messages import NETWORK_BYTES, PASSWORD_BYTES
+from tiniscript.link.network_messages import NETWORK_BYTES, PASSWORD_BYTES
 from tiniscript.link.wifi import is_class
 
 PLAIN_PORT, TLS_PORT = 1883, 8883
@@ -51,3 +52,19 @@ def user(options: Namespace, language: str) -> tuple[bytes, bytes]:
         raise CommandError(2, "broker_bad_user")
     prompt = text("broker_password", language).format(user=shown(options.user))
     return name, password.asked(prompt, 1, PASSWORD_BYTES, "broker_bad_password")
+
+
+def trust(options: Namespace) -> bytes | None:
+    """Return what the file with a certificate has; None: there is no such option.
+
+    Raises CommandError.
+    """
+    if options.trust is None:
+        return None
+    if not options.tls:
+        raise CommandError(2, "broker_trust_alone")
+    try:
+        return Path(options.trust).read_bytes()
+    except (OSError, ValueError) as why:
+        reason = (why.strerror if isinstance(why, OSError) else None) or str(why)
+        raise CommandError(2, "broker_unread", file=shown(options.trust), why=reason) from None

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from argparse import Namespace
-from pathlib import Path
 from time import monotonic
 from typing import TYPE_CHECKING
 
@@ -34,8 +33,7 @@ class Classroom:
             if options.user is not None:
                 raise CommandError(2, "broker_no_user")
             raise CommandError(2, "class_no_broker")
-        if options.trust is not None and not options.tls:
-            raise CommandError(2, "broker_trust_alone")
+        broker_options.trust(options)
         self.options = options
         self.language = language
         self.place = broker_options.place(options, options.tls)
@@ -60,14 +58,6 @@ class Classroom:
     def _access(self, options: Namespace) -> Access:
         from tiniscript.link.broker import Access
 
-        if options.trust is not None:
-            try:
-                Path(options.trust).read_bytes()
-            except (OSError, ValueError) as why:
-                reason = (why.strerror if isinstance(why, OSError) else None) or str(why)
-                raise CommandError(
-                    2, "broker_unread", file=shown(options.trust), why=reason
-                ) from None
         user, password = broker_options.user(options, self.language)
         name, word = (each.decode("utf-8", "surrogateescape") for each in (user, password))
         return Access(name, word, bool(options.tls), options.trust)

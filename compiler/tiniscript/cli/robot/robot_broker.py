@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import socket
 import time
 from argparse import Namespace
@@ -13,31 +14,78 @@ from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot import broker_options
 from tiniscript.cli.texts.common import text
 from tiniscript.link.messages import STATUSES
+from tiniscript.link.network_messages import BROKER_NAME_BYTES, TRUST_BYTES
 from tiniscript.link.port_names import is_at_broker
 
 if TYPE_CHECKING:
     from tiniscript.cli.robot.connect import Connection
     from tiniscript.link.payloads import WifiReply
     from tiniscript.link.requests import Reply
-    from tiniscript.link.wifi import BrokerSettings
+    from tiniscript.link.wifi import BrokerSettings, Tls
 
-READY_S = 12  # until the robot is at the broker
+READY_S = 20  # until the robot is at the broker
 LOOK_S = 0.5
+_PEM = r"-----BEGIN CERTIFICATE-----.+?-----END CERTIFICATE-----"
 
 
 def settings(options: Namespace, language: str) -> BrokerSettings:
     """Return what the options say; the password is asked for. Raises CommandError."""
     from tiniscript.link.wifi import BrokerSettings
 
-    place, group = broker_options.place(options), broker_options.group(options)
+    is_tls = bool(options.tls)
+    place, group = broker_options.place(options, is_tls), broker_options.group(options)
+    address = _address(place)
+    is_name = not re.fullmatch(r"[0-9.]+", place.host)
+    if is_name and len(place.host) > BROKER_NAME_BYTES:
+        raise CommandError(2, "broker_long_name", host=place.host, bytes=str(BROKER_NAME_BYTES))
+    tls = _tls(options, place, is_name)
+    user, password = broker_options.user(options, language)
+    name = place.host.encode() if is_name else b""
+    return BrokerSettings(address.packed, place.port, group, user, password, name, tls)
+
+
+def _address(place: broker_options.Place) -> IPv4Address:
+    """Return where the broker is now. Raises CommandError."""
     try:
         found = socket.getaddrinfo(place.host, place.port, socket.AF_INET, socket.SOCK_STREAM)
-        address = IPv4Address(found[0][4][0])
+        return IPv4Address(found[0][4][0])
     except (OSError, UnicodeError, ValueError) as why:
         reason = (why.strerror if isinstance(why, OSError) else None) or str(why)
         raise CommandError(2, "broker_unknown", host=place.host, why=shown(reason)) from None
-    user, password = broker_options.user(options, language)
-    return BrokerSettings(address.packed, place.port, group, user, password)
+
+
+def _tls(options: Namespace, place: broker_options.Place, is_name: bool) -> Tls | None:
+    """Return whom the robot trusts, if it is to speak TLS. Raises CommandError."""
+    from tiniscript.link.wifi import Tls
+
+    data = broker_options.trust(options)
+    if not options.tls:
+        return None
+    if data is None:
+        raise CommandError(2, "broker_no_trust")
+    if not is_name:
+        raise CommandError(2, "broker_tls_name", host=place.host)
+    trust = _certificate(data)
+    if trust is None or len(trust) > TRUST_BYTES:
+        file = shown(options.trust)
+        raise CommandError(2, "broker_bad_trust", file=file, bytes=str(TRUST_BYTES))
+    return Tls(trust, int(time.strftime("%Y%m%d")))
+
+
+def _certificate(data: bytes) -> bytes | None:
+    """Return the one certificate that a file has, in DER, or None."""
+    import ssl
+
+    texts = re.findall(_PEM, data.decode("latin-1"), re.DOTALL)
+    if len(texts) > 1:
+        return None
+    try:
+        found = ssl.PEM_cert_to_DER_cert(texts[0]) if texts else data
+        context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
+        context.load_verify_locations(cadata=found)
+    except (ssl.SSLError, ValueError):
+        return None
+    return found if context.cert_store_stats()["x509"] == 1 else None
 
 
 def use(connection: Connection, broker: BrokerSettings | None) -> None:
@@ -58,7 +106,7 @@ def use(connection: Connection, broker: BrokerSettings | None) -> None:
     while _state(told) == "SEARCHING" and time.monotonic() < end_s:
         time.sleep(LOOK_S)
         told = _told(connection)
-    tell(connection, told)
+    tell(connection, told, broker.name.decode())
 
 
 def tell_if_any(connection: Connection) -> None:
@@ -68,13 +116,14 @@ def tell_if_any(connection: Connection) -> None:
         tell(connection, reply.values)
 
 
-def tell(connection: Connection, told: WifiReply) -> None:
+def tell(connection: Connection, told: WifiReply, name: str = "") -> None:
+    """Say where the robot's broker is: under its name, where that is known."""
     from tiniscript.link.wifi import address
 
     key = f"broker_{_state(told).lower()}" if told.network else "broker_none"
     group = shown(told.network.decode("utf-8", "replace"))
     said = text(key, connection.language)
-    print(said.format(robot=connection.name, address=address(told), group=group))
+    print(said.format(robot=connection.name, address=name or address(told), group=group))
 
 
 def _state(told: WifiReply) -> str:

@@ -1,4 +1,4 @@
-// MQTT over a socket that never waits.
+// MQTT over a connection that never waits.
 //
 // tiniscript/CLASS/ID           says that the robot is there, or (its last will) that it is not
 // tiniscript/CLASS/ID/in/PEER   bytes of a client, which PEER, eight hexadecimal digits, names
@@ -10,26 +10,22 @@
 
 #ifdef ARDUINO_ARCH_ESP32
 
-#include "broker.h"
-
 #include <Arduino.h>
-#include <lwip/sockets.h>
-#if __has_include(<errno.h>)
-#include <errno.h>
-#endif
 
+#include "broker_line.h"
 #include "broker_settings.h"
 #include "mqtt.h"
 #include "radio.h"
+#include "wifi_settings.h"
 #include "zero_ended.h"
 
 namespace tiniscript {
 
 namespace {
 
-constexpr int kNone = -1;
 constexpr uint32_t kAgainMs = 3000;    // between two tries to connect, and up to a second more
 constexpr uint32_t kConnectMs = 3000;  // until the broker has let the robot in
+constexpr uint32_t kTlsMs = 12000;     // the same with TLS: an ESP32 calculates for seconds
 constexpr uint16_t kKeepAliveS = 4;    // 1.5 times that, and the broker tells the last will
 constexpr uint32_t kPingMs = 1500;     // of silence of the robot
 constexpr uint32_t kSilentMs = 4000;   // of the broker, which answers pings
@@ -46,7 +42,6 @@ using Peer = char[kPeerDigits + 1];
 
 BrokerSettings settings;
 MqttReader reader;
-int connection = kNone;
 Phase phase;
 uint32_t since_ms;  // of the phase
 uint32_t heard_ms;
@@ -63,8 +58,6 @@ uint8_t out[1024];
 Pipe& pipe() { return radio_pipe(Transport::kBroker); }
 
 uint32_t now_ms() { return static_cast<uint32_t>(millis()); }
-
-bool may_come_later() { return errno == EAGAIN || errno == EWOULDBLOCK; }
 
 // A topic of this robot, or of its class.
 class Topic {
@@ -121,16 +114,16 @@ void part() {
 void set_phase(Phase next) {
   phase = next;
   since_ms = now_ms();
-  broker_note(next == Phase::kReady ? WifiState::kReady : WifiState::kSearching);
 }
 
-void hang_up() {
-  if (connection != kNone) lwip_close(connection);
-  connection = kNone;
+// `why` stays until there is something else to say: each of the next tries may end so, too.
+void hang_up(WifiState why = WifiState::kSearching) {
+  line_end();
   part();
   refused[0] = 0;
   out_length = out_sent = 0;
   set_phase(Phase::kOff);
+  broker_note(why);
 }
 
 // The moment of the next try differs from robot to robot: a broker that is back gets them in turn.
@@ -143,27 +136,16 @@ uint32_t again_ms() {
 }
 
 void begin() {
-  const int found = lwip_socket(AF_INET, SOCK_STREAM, 0);
-  if (found < 0) return set_phase(Phase::kOff);
-  connection = found;
-  const int yes = 1;
-  lwip_setsockopt(found, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
-  if (lwip_fcntl(found, F_SETFL, O_NONBLOCK) < 0) return hang_up();
   set_phase(Phase::kConnecting);
+  if (!line_begin(settings)) hang_up();
+  since_ms = now_ms();  // a name may have taken a while
 }
 
-// Called again until it is connected: lwIP and POSIX say so by EISCONN.
 void connect() {
-  sockaddr_in place = {};
-  place.sin_family = AF_INET;
-  place.sin_port = htons(settings.port);
-  __builtin_memcpy(&place.sin_addr.s_addr, settings.address, sizeof settings.address);
-  const int found =
-      lwip_connect(connection, reinterpret_cast<const sockaddr*>(&place), sizeof place);
-  if (found != 0 && errno != EISCONN) {
-    if (errno != EINPROGRESS && errno != EALREADY) hang_up();
-    return;
-  }
+  const WifiState found = line_connect();
+  if (found == WifiState::kSearching) return;
+  if (found != WifiState::kReady)
+    return hang_up(found == WifiState::kOff ? WifiState::kSearching : found);
   char client[sizeof "tini-" + sizeof(RadioName::id)] = "tini-";
   __builtin_memcpy(client + 5, radio_name().id, sizeof(RadioName::id));
   char will[kNameBytes + 2] = {kGone};
@@ -180,6 +162,7 @@ void connect() {
 
 void greet() {
   set_phase(Phase::kReady);
+  broker_note(WifiState::kReady);
   char here[kNameBytes + 2] = {kHere};
   __builtin_memcpy(here + 1, radio_name().name, kNameBytes + 1);
   MqttWriter writer(out, sizeof out);
@@ -240,8 +223,7 @@ bool hear_byte(uint8_t byte) {
       hear_message();
       return true;
     case MqttEvent::kRefused:
-      hang_up();
-      broker_note(WifiState::kRefused);
+      hang_up(WifiState::kRefused);
       return false;
     case MqttEvent::kBroken:
       break;
@@ -252,11 +234,11 @@ bool hear_byte(uint8_t byte) {
 
 void hear() {
   uint8_t bytes[kChunk];
-  const ssize_t length = lwip_recv(connection, bytes, sizeof bytes, MSG_DONTWAIT);
-  if (length == 0 || (length < 0 && !may_come_later())) return hang_up();
-  if (length < 0) return;
+  const int length = line_receive(bytes, sizeof bytes);
+  if (length == kEnded) return hang_up();
+  if (length == kNothingYet) return;
   heard_ms = now_ms();
-  for (ssize_t k = 0; k < length; k++) {
+  for (int k = 0; k < length; k++) {
     if (!hear_byte(bytes[k])) return;
   }
 }
@@ -282,21 +264,21 @@ void write_next() {
 void say() {
   if (out_sent == out_length && phase == Phase::kReady) write_next();
   if (out_sent == out_length) return;
-  const ssize_t sent = lwip_send(connection, out + out_sent, out_length - out_sent, MSG_DONTWAIT);
-  if (sent < 0 && !may_come_later()) return hang_up();
-  if (sent <= 0) return;
+  const int sent = line_send(out + out_sent, out_length - out_sent);
+  if (sent == kEnded) return hang_up();
+  if (sent == kNothingYet) return;
   out_sent += static_cast<size_t>(sent);
   said_ms = now_ms();
 }
 
 }  // namespace
 
-void broker_turn(bool has_network) {
+void broker_turn() {
   if (broker_changed(&settings)) {
     hang_up();
     since_ms = now_ms() - again_ms();  // at once
   }
-  if (!settings.is_set() || !has_network) {
+  if (!settings.is_set() || !wifi_is_there()) {
     if (phase != Phase::kOff) hang_up();
     if (!settings.is_set()) broker_note(WifiState::kOff);
     return;
@@ -306,10 +288,11 @@ void broker_turn(bool has_network) {
     return;
   }
   const uint32_t waits_ms = now_ms() - since_ms;
-  if (phase != Phase::kReady && waits_ms >= kConnectMs) return hang_up();
+  const uint32_t limit_ms = settings.is_tls() ? kTlsMs : kConnectMs;
+  if (phase != Phase::kReady && waits_ms >= limit_ms) return hang_up();
   if (phase == Phase::kConnecting) return connect();
   hear();
-  if (connection != kNone) say();
+  if (phase != Phase::kOff) say();
   if (phase == Phase::kReady && now_ms() - heard_ms >= kSilentMs) hang_up();
 }
 

@@ -5,26 +5,20 @@
 
 #include "broker_settings.h"
 
-#include <Arduino.h>
-#include <nvs.h>
-
-#include "pins.h"
+#include "kept_settings.h"
 #include "zero_ended.h"
 
 namespace tiniscript {
 
 namespace {
 
-constexpr char kNamespace[] = "tiniscript";
-constexpr char kKey[] = "broker";
+constexpr uint8_t kDateBytes = 4;
 
-BrokerSettings kept;    // written by the main loop, in a critical section
+KeptSettings<BrokerSettings> kept("broker");
 BrokerSettings wanted;  // the main loop's: what has come so far
-uint32_t changes;       // of `kept`
-uint32_t seen_changes;  // the network's task
-uint8_t state;          // a WifiState, written by the network's task
+uint8_t state;          // a WifiState, written by the broker's task
 
-void clear(BrokerSettings* settings) { __builtin_memset(settings, 0, sizeof *settings); }
+void clear() { __builtin_memset(&wanted, 0, sizeof wanted); }
 
 // A class is a part of topics: nothing in it has a meaning there.
 bool is_class(const char* name) {
@@ -36,32 +30,9 @@ bool is_class(const char* name) {
   return true;
 }
 
-bool is_sound(const BrokerSettings& settings) {
-  return settings.group[kClassBytes] == 0 && settings.user[kNetworkBytes] == 0 &&
-         settings.password[kPasswordBytes] == 0 && is_class(settings.group);
-}
-
-void use(const BrokerSettings& settings) {
-  {
-    const CriticalSection critical;
-    kept = settings;
-  }
-  __atomic_store_n(&changes, changes + 1, __ATOMIC_RELEASE);  // it has one writer
-}
-
-Answer keep(const BrokerSettings& settings) {
-  nvs_handle_t handle;
-  const bool is_kept = nvs_open(kNamespace, NVS_READWRITE, &handle) == ESP_OK &&
-                       nvs_set_blob(handle, kKey, &settings, sizeof settings) == ESP_OK &&
-                       nvs_commit(handle) == ESP_OK;
-  if (!is_kept) return Answer::kNotKept;
-  use(settings);
-  return Answer::kOk;
-}
-
 // The address, the port and the class.
 bool begin(const uint8_t* text, uint8_t length) {
-  clear(&wanted);
+  clear();
   if (length == 0) return true;
   if (length <= kBrokerPlaceBytes) return false;
   __builtin_memcpy(wanted.address, text, sizeof wanted.address);
@@ -71,14 +42,36 @@ bool begin(const uint8_t* text, uint8_t length) {
          is_class(wanted.group) && wanted.port != 0;
 }
 
+bool take_date(const uint8_t* text, uint8_t length) {
+  if (length != kDateBytes) return false;
+  wanted.date = 0;
+  for (uint8_t k = kDateBytes; k > 0; k--) wanted.date = wanted.date << 8 | text[k - 1];
+  return wanted.date != 0;
+}
+
+bool take_trust(const uint8_t* text, uint8_t length) {
+  if (length > kTrustBytes - wanted.trust_bytes) return false;
+  __builtin_memcpy(wanted.trust + wanted.trust_bytes, text, length);
+  wanted.trust_bytes = static_cast<uint16_t>(wanted.trust_bytes + length);
+  return true;
+}
+
 bool take(WifiStep step, const uint8_t* text, uint8_t length) {
   switch (step) {
     case WifiStep::kBroker:
       return begin(text, length);
+    case WifiStep::kBrokerName:
+      return append(wanted.name, kBrokerNameBytes, text, length);
     case WifiStep::kBrokerUser:
       return append(wanted.user, kNetworkBytes, text, length);
     case WifiStep::kBrokerPassword:
       return append(wanted.password, kPasswordBytes, text, length);
+    case WifiStep::kBrokerTls:
+      return take_date(text, length);
+    case WifiStep::kBrokerTrust:
+      return take_trust(text, length);
+    case WifiStep::kUseBroker:
+      return wanted.is_sound();
     default:
       return true;
   }
@@ -86,50 +79,48 @@ bool take(WifiStep step, const uint8_t* text, uint8_t length) {
 
 }  // namespace
 
-void broker_load() {
-  BrokerSettings found;
-  size_t length = sizeof found;
-  nvs_handle_t handle;
-  const bool is_there = nvs_open(kNamespace, NVS_READWRITE, &handle) == ESP_OK &&
-                        nvs_get_blob(handle, kKey, &found, &length) == ESP_OK &&
-                        length == sizeof found && is_sound(found);
-  if (is_there) use(found);
+// TLS without a certificate that is trusted would be a connection to anybody, and without a name
+// to any computer that the certificate's owner knows.
+bool BrokerSettings::is_sound() const {
+  const bool has_ends = group[kClassBytes] == 0 && name[kBrokerNameBytes] == 0 &&
+                        user[kNetworkBytes] == 0 && password[kPasswordBytes] == 0;
+  const bool has_trust = trust_bytes != 0 && name[0] != 0;
+  return has_ends && is_class(group) && trust_bytes <= kTrustBytes &&
+         (is_tls() ? has_trust : trust_bytes == 0);
 }
 
+void broker_load() { kept.load(); }
+
+bool broker_is_set() { return kept.now().is_set(); }
+
 WifiReport broker_report() {
+  const BrokerSettings& now = kept.now();
   WifiReport report = {};
-  report.mode = kept.is_set() ? WifiMode::kStation : WifiMode::kOff;
+  report.mode = now.is_set() ? WifiMode::kStation : WifiMode::kOff;
   report.state = static_cast<WifiState>(__atomic_load_n(&state, __ATOMIC_RELAXED));
-  __builtin_memcpy(report.address, kept.address, sizeof report.address);
-  report.network_bytes = static_cast<uint8_t>(length_of(kept.group));
-  __builtin_memcpy(report.network, kept.group, report.network_bytes);
+  __builtin_memcpy(report.address, now.address, sizeof report.address);
+  report.network_bytes = static_cast<uint8_t>(length_of(now.group));
+  __builtin_memcpy(report.network, now.group, report.network_bytes);
   return report;
 }
 
 Answer broker_set(WifiStep step, const uint8_t* text, uint8_t length) {
   if (!take(step, text, length)) {
-    clear(&wanted);
+    clear();
     return Answer::kBadValue;
   }
   if (step != WifiStep::kUseBroker) return Answer::kOk;
-  const Answer found = keep(wanted);
-  if (found == Answer::kOk) clear(&wanted);
+  const Answer found = kept.keep(wanted);
+  if (found == Answer::kOk) clear();
   return found;
 }
 
 Answer broker_forget() {
-  clear(&wanted);
-  return kept.is_set() ? keep(wanted) : Answer::kOk;
+  clear();
+  return broker_is_set() ? kept.keep(wanted) : Answer::kOk;
 }
 
-bool broker_changed(BrokerSettings* found) {
-  const uint32_t now = __atomic_load_n(&changes, __ATOMIC_ACQUIRE);
-  if (now == seen_changes) return false;
-  seen_changes = now;
-  const CriticalSection critical;
-  *found = kept;
-  return true;
-}
+bool broker_changed(BrokerSettings* found) { return kept.changed(found); }
 
 void broker_note(WifiState found) {
   __atomic_store_n(&state, static_cast<uint8_t>(found), __ATOMIC_RELAXED);

@@ -1,11 +1,11 @@
-// Where the robot's MQTT broker is, and how the robot signs in there: kept in NVS.
+// Where the robot's MQTT broker is, how the robot signs in there, and whom it trusts: kept in NVS.
 //
-// The main loop sets it; the task of the network uses it. The address is one of numbers: a name
-// would have the task wait for its resolution, and a stop with it.
+// The main loop sets it; the task of the broker uses it.
 
 #ifndef TINISCRIPT_ESP32_BROKER_SETTINGS_H_
 #define TINISCRIPT_ESP32_BROKER_SETTINGS_H_
 
+#include <stddef.h>
 #include <stdint.h>
 
 #include "../../link/messages.h"
@@ -13,28 +13,36 @@
 
 namespace tiniscript {
 
-// As in NVS. Texts end with a 0; without a class there is no broker.
+// As in NVS. Texts end with a 0; without a class there is no broker. With a date there is TLS.
 struct BrokerSettings {
-  uint8_t address[4];
+  uint8_t address[4];  // where the broker was when a computer looked
   uint16_t port;
-  char group[kClassBytes + 1];  // the class
+  char group[kClassBytes + 1];      // the class
+  char name[kBrokerNameBytes + 1];  // of the broker's computer; empty: the address alone
   char user[kNetworkBytes + 1];
   char password[kPasswordBytes + 1];
+  uint32_t date;         // as 20261121: when a computer said so
+  uint16_t trust_bytes;  // of a certificate in DER
+  uint8_t trust[kTrustBytes];
 
   bool is_set() const { return group[0] != 0; }
+  bool is_tls() const { return date != 0; }
+  size_t kept_bytes() const { return offsetof(BrokerSettings, trust) + trust_bytes; }
+  bool is_sound() const;
 };
 
 // The main loop's. `broker_load` reads once what NVS has.
 void broker_load();
+bool broker_is_set();
 WifiReport broker_report();
 Answer broker_set(WifiStep step, const uint8_t* text, uint8_t length);
 Answer broker_forget();
 
-// The network's task: whether the settings have changed since the last call; then they are in
+// The broker's task: whether the settings have changed since the last call; then they are in
 // `*found`.
 bool broker_changed(BrokerSettings* found);
 
-// The network's task says whether the robot is connected.
+// The broker's task says whether the robot is connected, or why not.
 void broker_note(WifiState found);
 
 }  // namespace tiniscript

@@ -14,6 +14,7 @@ namespace {
 
 constexpr uint8_t kBytesATurn = 128;  // of a transport, taken in a turn of the main loop
 constexpr uint32_t kStackBytes = 6144;
+constexpr uint32_t kTlsStackBytes = 10240;
 constexpr int kPriority = 1;  // that of the main loop
 constexpr int kCore = 0;
 constexpr uint8_t kFirst = static_cast<uint8_t>(Transport::kSerialPort);
@@ -22,20 +23,23 @@ struct Radio {
   const char* name;
   void (*begin)();
   void (*turn)();
+  uint32_t stack_bytes;
 };
 
-const Radio kSerialPortRadio = {"tini spp", serial_port_begin, serial_port_turn};
-const Radio kLowEnergyRadio = {"tini ble", low_energy_begin, low_energy_turn};
-const Radio kNetworkRadio = {"tini wifi", network_begin, network_turn};
+const Radio kSerialPortRadio = {"tini spp", serial_port_begin, serial_port_turn, kStackBytes};
+const Radio kLowEnergyRadio = {"tini ble", low_energy_begin, low_energy_turn, kStackBytes};
+const Radio kNetworkRadio = {"tini wifi", network_begin, network_turn, kStackBytes};
+const Radio kBrokerRadio = {"tini mqtt", nullptr, broker_turn, kTlsStackBytes};
 
 Pipe pipes[kTransports - kFirst];
 RadioName name;
 bool has_begun;
+bool has_broker;
 
 // A task: what the radio makes it wait for, it waits for alone.
 void run(void* of) {
   const Radio& radio = *static_cast<const Radio*>(of);
-  radio.begin();
+  if (radio.begin != nullptr) radio.begin();
   for (;;) {
     radio.turn();
     vTaskDelay(1);
@@ -43,8 +47,16 @@ void run(void* of) {
 }
 
 void begin(const Radio& radio) {
-  xTaskCreatePinnedToCore(run, radio.name, kStackBytes, const_cast<Radio*>(&radio), kPriority,
+  xTaskCreatePinnedToCore(run, radio.name, radio.stack_bytes, const_cast<Radio*>(&radio), kPriority,
                           nullptr, kCore);
+}
+
+// The broker has a task of its own: looking its name up waits, and TLS calculates, for seconds. Who
+// uses no broker has no memory taken by it.
+void begin_broker() {
+  if (!has_begun || has_broker || !broker_is_set()) return;
+  has_broker = true;
+  begin(kBrokerRadio);
 }
 
 }  // namespace
@@ -54,6 +66,7 @@ Pipe& radio_pipe(Transport transport) { return pipes[static_cast<uint8_t>(transp
 const RadioName& radio_name() { return name; }
 
 void radio_tick() {
+  begin_broker();
   if (has_begun || !firmware_radio_name(&name)) return;
   has_begun = true;
   wifi_load();

@@ -34,6 +34,7 @@ void low_energy_begin();
 void low_energy_turn();
 void network_begin();
 void network_turn();
+void broker_turn();
 
 // Whether this chip has Bluetooth with a serial port.
 bool has_serial_port();

@@ -13,7 +13,6 @@
 #include <errno.h>
 #endif
 
-#include "broker.h"
 #include "first_bytes.h"
 #include "radio.h"
 #include "wifi_settings.h"
@@ -170,7 +169,6 @@ void network_begin() {
 
 void network_turn() {
   const bool has_network = wifi_turn();
-  broker_turn(has_network);
   if (!has_network) return close_all();
   if (listener == kNone) listen();
   if (listener == kNone) return;

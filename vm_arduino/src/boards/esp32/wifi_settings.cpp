@@ -10,11 +10,10 @@
 #include <Arduino.h>
 #include <ESPmDNS.h>
 #include <WiFi.h>
-#include <nvs.h>
 
 #include "../../firmware/board.h"
 #include "broker_settings.h"
-#include "pins.h"
+#include "kept_settings.h"
 #include "radio.h"
 #include "tcp_clients.h"
 #include "zero_ended.h"
@@ -23,8 +22,7 @@ namespace tiniscript {
 
 namespace {
 
-constexpr char kNamespace[] = "tiniscript";
-constexpr char kKey[] = "wifi";
+constexpr uint8_t kReady = static_cast<uint8_t>(WifiState::kReady);
 constexpr uint32_t kJoinAgainMs = 15000;  // between two tries to join
 
 // As in NVS. Texts end with a 0.
@@ -32,17 +30,21 @@ struct Settings {
   WifiMode mode;
   char network[kNetworkBytes + 1];
   char password[kPasswordBytes + 1];
+
+  size_t kept_bytes() const { return sizeof *this; }
+  bool is_sound() const {
+    return mode <= WifiMode::kAccessPoint && network[kNetworkBytes] == 0 &&
+           password[kPasswordBytes] == 0;
+  }
 };
 
-Settings kept;     // written by the main loop, in a critical section
-Settings wanted;   // the main loop's: what has come so far
-uint32_t changes;  // of `kept`
+KeptSettings<Settings> kept("wifi");
+Settings wanted;  // the main loop's: what has come so far
 
 uint8_t state;     // a WifiState; these two are written by the network's task
 uint32_t address;  // its bytes in their order
 
 // The network's task.
-uint32_t seen_changes;
 uint32_t tried_ms;
 bool is_announced;
 Settings used;
@@ -53,35 +55,12 @@ void set_state(WifiState found) {
 
 void clear(Settings* settings) { __builtin_memset(settings, 0, sizeof *settings); }
 
-bool is_sound(const Settings& settings) {
-  return settings.mode <= WifiMode::kAccessPoint && settings.network[kNetworkBytes] == 0 &&
-         settings.password[kPasswordBytes] == 0;
-}
-
-void use(const Settings& settings) {
-  {
-    const CriticalSection critical;
-    kept = settings;
-  }
-  __atomic_store_n(&changes, changes + 1, __ATOMIC_RELEASE);  // it has one writer
-}
-
-Answer keep(const Settings& settings) {
-  nvs_handle_t handle;
-  const bool is_kept = nvs_open(kNamespace, NVS_READWRITE, &handle) == ESP_OK &&
-                       nvs_set_blob(handle, kKey, &settings, sizeof settings) == ESP_OK &&
-                       nvs_commit(handle) == ESP_OK;
-  if (!is_kept) return Answer::kNotKept;
-  use(settings);
-  return Answer::kOk;
-}
-
 Answer set(WifiMode mode) {
   if (wanted.network[0] == 0 || length_of(wanted.password) < kLeastPassword) {
     return Answer::kBadValue;
   }
   wanted.mode = mode;
-  const Answer found = keep(wanted);
+  const Answer found = kept.keep(wanted);
   if (found == Answer::kOk) clear(&wanted);
   return found;
 }
@@ -97,10 +76,6 @@ void leave() {
 }
 
 void begin() {
-  {
-    const CriticalSection critical;
-    used = kept;
-  }
   leave();
   WiFi.persistent(false);  // the core would keep the password a second time
   if (used.mode == WifiMode::kOff) return;
@@ -134,22 +109,12 @@ void note_address(const IPAddress& found) {
 
 }  // namespace
 
-void wifi_load() {
-  Settings found;
-  size_t length = sizeof found;
-  nvs_handle_t handle;
-  const bool is_there = nvs_open(kNamespace, NVS_READWRITE, &handle) == ESP_OK &&
-                        nvs_get_blob(handle, kKey, &found, &length) == ESP_OK &&
-                        length == sizeof found && is_sound(found);
-  if (is_there) use(found);
-}
+void wifi_load() { kept.load(); }
+
+bool wifi_is_there() { return __atomic_load_n(&state, __ATOMIC_RELAXED) == kReady; }
 
 bool wifi_turn() {
-  const uint32_t now = __atomic_load_n(&changes, __ATOMIC_ACQUIRE);
-  if (now != seen_changes) {
-    seen_changes = now;
-    begin();
-  }
+  if (kept.changed(&used)) begin();
   if (used.mode == WifiMode::kOff) return false;
   if (used.mode == WifiMode::kAccessPoint) {
     announce();
@@ -175,12 +140,12 @@ bool wifi_turn() {
 WifiReport board_wifi(WifiStep step) {
   if (step > WifiStep::kForget) return broker_report();
   WifiReport report = {};
-  report.mode = kept.mode;
+  report.mode = kept.now().mode;
   report.state = static_cast<WifiState>(__atomic_load_n(&state, __ATOMIC_RELAXED));
   const uint32_t found = __atomic_load_n(&address, __ATOMIC_RELAXED);
   __builtin_memcpy(report.address, &found, sizeof report.address);
-  report.network_bytes = static_cast<uint8_t>(length_of(kept.network));
-  __builtin_memcpy(report.network, kept.network, report.network_bytes);
+  report.network_bytes = static_cast<uint8_t>(length_of(kept.now().network));
+  __builtin_memcpy(report.network, kept.now().network, report.network_bytes);
   return report;
 }
 
@@ -204,13 +169,16 @@ Answer board_set_wifi(WifiStep step, const uint8_t* text, uint8_t length) {
     case WifiStep::kForget: {
       clear(&wanted);
       const Answer found = broker_forget();
-      return found == Answer::kOk ? keep(wanted) : found;
+      return found == Answer::kOk ? kept.keep(wanted) : found;
     }
     case WifiStep::kBroker:
     case WifiStep::kBrokerUser:
     case WifiStep::kBrokerPassword:
     case WifiStep::kUseBroker:
     case WifiStep::kTellBroker:
+    case WifiStep::kBrokerName:
+    case WifiStep::kBrokerTls:
+    case WifiStep::kBrokerTrust:
       return broker_set(step, text, length);
   }
   return Answer::kOk;

@@ -16,6 +16,9 @@ void wifi_load();
 // robot has an address.
 bool wifi_turn();
 
+// Any task: whether it had one in the last turn.
+bool wifi_is_there();
+
 }  // namespace tiniscript
 
 #endif  // TINISCRIPT_ESP32_WIFI_SETTINGS_H_

@@ -1,0 +1,113 @@
+"""`tsc wifi --broker --tls` as processes: a robot with an ESP32 at Mosquitto with certificates."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+from tests.cli.test_esp32_radio import NETWORK, PASSWORD, near
+from tests.machines.esp32 import HAS_TLS
+from tests.machines.esp32 import missing as no_compiler
+from tests.support import certificates
+from tests.support.certificates import Authority
+from tests.support.command import process
+from tests.support.esp32_pty_robot import Esp32PtyRobot
+from tests.support.mosquitto import Mosquitto, missing
+from tests.support.pty_robot import on
+from tiniscript.link.network_messages import WIFI_STATES
+
+if sys.platform == "win32":
+    pytest.skip("there are no pseudo-terminals", allow_module_level=True)
+
+from tests.cli.test_owner_commands import claimed
+
+NEEDS = no_compiler() or missing() or certificates.missing()
+NEEDS = NEEDS or ("" if HAS_TLS else "needs libmbedtls-dev")
+pytestmark = pytest.mark.skipif(bool(NEEDS), reason=NEEDS or "there is mbedTLS")
+NAME = "localhost"
+
+
+class School(NamedTuple):
+    robot: Esp32PtyRobot
+    broker: Mosquitto
+    authority: Authority
+
+    def place(self, trust: Path | None = None) -> list[str]:
+        return ["--broker", f"{NAME}:{self.broker.port}", "--class", "3b", "--tls",
+                "--trust", str(trust or self.authority.file)]  # fmt: skip
+
+
+@pytest.fixture
+def school(tmp_path: Path) -> Iterator[School]:
+    authority = Authority(tmp_path)
+    broker = Mosquitto(tmp_path, "robots", "a secret", authority.rules(NAME))
+    robot = Esp32PtyRobot("tinibot32")
+    try:
+        near(robot)
+        assert claimed(robot).code == 0
+        assert on(robot, "wifi", NETWORK, data=PASSWORD + b"\n").code == 0
+        yield School(robot, broker, authority)
+    finally:
+        robot.clear_away()
+        broker.kill()
+
+
+def test_a_robot_speaks_tls_with_whom_it_trusts(school: School, tmp_path: Path) -> None:
+    def used(*words: str) -> str:
+        done = on(school.robot, "wifi", *words, "--user", "robots", data=b"a secret\n")
+        assert done.code == 0 and "a secret" not in done.out + done.err, done.err
+        return done.out
+
+    stranger = Authority(tmp_path, "Otra")
+    assert "does not trust its certificate" in used(*school.place(stranger.file))
+    assert "is at the broker localhost, in the class 3b" in used(*school.place())
+    assert "is at the broker" in on(school.robot, "wifi").out
+    at_it = ["class", *school.place(), "--user", "robots"]
+    assert "no program; nothing runs; yours" in process(*at_it, data=b"a secret\n").out
+
+
+def test_what_is_no_certificate_is_said_before_the_robot_is_asked(tmp_path: Path) -> None:
+    authority, other = Authority(tmp_path), Authority(tmp_path, "Otra")
+    text = authority.file.read_bytes()
+    begin = text.index(b"-----BEGIN")
+    files = {
+        "none": b"", "text": b"hello\n", "cut": text[: begin + 200], "der": authority.der[:-1],
+        "two der": authority.der + other.der,
+        "two": text + other.file.read_bytes(), "junk": text.replace(b"M", b"!"),
+        "long": text[:begin] + bytes(5000), "key": (tmp_path / "Aula.key").read_bytes(),
+    }  # fmt: skip
+    for name, data in files.items():
+        (tmp_path / name).write_bytes(data)
+        words = ("wifi", "--broker", NAME, "--tls", "--trust", str(tmp_path / name))
+        for language, said in (("en", "is not a file with one"), ("es", "no es un archivo con un")):
+            done = process(*words, "--port", "/none", "--lang", language)
+            assert done.code == 2 and said in done.err and done.err.count("\n") == 1, name
+    for form in (authority.der, b"Certificate:\n  x\n" + text):
+        (tmp_path / "good").write_bytes(form)
+        words = ("wifi", "--broker", NAME, "--tls", "--trust", str(tmp_path / "good"))
+        assert process(*words, "--port", "/none").code == 3, "there is no such port"
+
+
+@pytest.mark.parametrize(("words", "said"), [
+    (["--broker", NAME, "--tls"], "--tls --trust FILE"),
+    (["--broker", NAME, "--trust", "x"], "--trust is for a connection with --tls"),
+    (["--broker", NAME, "--tls", "--trust", "/none"], "cannot be read"),
+    (["--broker", "127.0.0.1", "--tls", "--trust", "CA"], "name it so, and not 127.0.0.1"),
+    (["--tls"], "--broker HOST"), (["--trust", "CA"], "--broker HOST"),
+])  # fmt: skip
+def test_options_that_make_no_sense(words: list[str], said: str, tmp_path: Path) -> None:
+    file = str(Authority(tmp_path).file)
+    words = [file if word == "CA" else word for word in words]
+    done = process("wifi", *words, "--port", "/none")
+    assert done.code == 2 and said in done.err and not done.out
+
+
+def test_every_state_of_a_broker_has_a_sentence() -> None:
+    from tiniscript.cli.texts.classroom import CLASS_TEXTS
+
+    for state, _ in WIFI_STATES:
+        assert state == "OFF" or f"broker_{state.lower()}" in CLASS_TEXTS

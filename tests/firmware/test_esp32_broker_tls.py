@@ -1,0 +1,208 @@
+"""An ESP32 at a broker that it knows by its name, and one that speaks TLS: mbedTLS as it is."""
+
+from __future__ import annotations
+
+import socket
+from collections.abc import Iterator
+from datetime import date
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+from tests.firmware.test_esp32_broker import ID, TETHER_MS, at, motors, present, told, until
+from tests.firmware.test_esp32_transports import Ends, ended, uploaded
+from tests.firmware.test_esp32_wifi import joined, remote
+from tests.machines.esp32 import HAS_TLS, Esp32Robot
+from tests.machines.esp32 import missing as no_compiler
+from tests.support import certificates
+from tests.support.certificates import Authority
+from tests.support.esp32_radio import in_reach, known, talk
+from tests.support.mosquitto import LOCAL, AtBroker, Mosquitto, missing
+from tests.support.owners import Keys
+from tiniscript.link import wifi
+from tiniscript.link.broker import Access, Broker, Present
+from tiniscript.link.network_messages import BROKER_NAME_BYTES, TRUST_BYTES
+
+NEEDS = no_compiler() or missing() or certificates.missing()
+NEEDS = NEEDS or ("" if HAS_TLS else "needs libmbedtls-dev")
+pytestmark = pytest.mark.skipif(bool(NEEDS), reason=NEEDS or "there is mbedTLS")
+
+NAME = "broker.aula"
+NOBODY = bytes((127, 0, 0, 9))
+TODAY = int(date.today().strftime("%Y%m%d"))
+LATER = 20991231
+
+
+class Room(NamedTuple):
+    broker: Mosquitto
+    authority: Authority
+
+    def settings(
+        self, name: str = NAME, today: int = TODAY, trust: bytes | None = None
+    ) -> wifi.BrokerSettings:
+        tls = wifi.Tls(self.authority.der if trust is None else trust, today)
+        return self.broker.settings()._replace(name=name.encode(), tls=tls)
+
+    def connected(self) -> Broker:
+        return self.broker.connected(Access(is_tls=True, trusted=str(self.authority.file)))
+
+
+@pytest.fixture(scope="module")
+def room(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Room]:
+    folder = tmp_path_factory.mktemp("tls")
+    authority = Authority(folder)
+    found = Room(Mosquitto(folder, more=authority.rules(NAME)), authority)
+    yield found
+    found.broker.kill()
+
+
+def test_the_owner_drives_over_tls(room: Room) -> None:
+    keys = Keys()
+    robot, _ = at(room.broker, keys, room.settings())
+    teacher = room.connected()
+    assert present(robot, teacher) == [Present(ID, "tini-5678", True)]
+    owner = remote(robot, keys)
+    ends: Ends = [(AtBroker(robot, teacher), owner)]
+    lines = "".join(f"X = {k}; " for k in range(200))
+    assert uploaded(robot, ends, owner, f"SI|{lines}F(9, 80)") == "OK"
+    talk(robot, ends, 300)
+    assert motors(robot) == "MOTORS 80 80"
+    teacher.stop("aula")
+    talk(robot, ends, 100)
+    assert motors(robot) == "MOTORS 0 0"
+    teacher.close()
+
+
+def test_it_is_kept_and_used_after_a_reset(room: Room) -> None:
+    robot, _ = at(room.broker, Keys(), room.settings())
+    again = Esp32Robot(kept=robot.kept())
+    in_reach(again, "Aula 3 ñ", "correct horse battery staple, and forty more")
+    again.wait(400)
+    teacher = room.connected()
+    until(again, lambda: present(again, teacher) == [Present(ID, "tini-5678", True)])
+    teacher.close()
+
+
+@pytest.mark.parametrize(("what", "state"), [
+    ("another authority", "UNTRUSTED"), ("no certificate", "UNTRUSTED"),
+    ("another name", "OTHER_NAME"), ("the start of the name", "OTHER_NAME"),
+    ("it has ended", "EXPIRED"), ("a broker without TLS", "NO_TLS"),
+])  # fmt: skip
+def test_who_is_not_trusted_gets_nothing(room: Room, tmp_path: Path, what: str, state: str) -> None:
+    own = None
+    settings = room.settings()
+    if what == "another authority":
+        settings = room.settings(trust=Authority(tmp_path).der)
+    elif what == "no certificate":
+        settings = room.settings(trust=b"\x30\x82\x01\x00" + bytes(256))
+    elif what == "another name":
+        settings = room.settings("localhost")
+    elif what == "the start of the name":
+        settings = room.settings(NAME[:-1])
+    elif what == "it has ended":
+        settings = room.settings(today=LATER)
+    else:
+        own = Mosquitto(tmp_path)
+        settings = settings._replace(port=own.port)
+    keys = Keys()
+    robot, owner = joined(keys)
+    try:
+        assert ended(robot, [(None, owner)], owner.use_broker(settings)) == "OK"
+        until(robot, lambda: told(robot, owner)[1] == state)
+        talk(robot, [(None, owner)], 1000)
+        assert told(robot, owner)[1] == state, "it stays while the robot tries again"
+        if own is None:
+            teacher = room.connected()
+            assert not [each for each in present(robot, teacher) if each.is_here]
+            teacher.close()
+            assert ended(robot, [(None, owner)], owner.use_broker(room.settings())) == "OK"
+            until(robot, lambda: told(robot, owner)[1] == "READY")
+    finally:
+        if own is not None:
+            own.kill()
+
+
+def test_a_broker_that_dies_ends_the_run_over_tls(tmp_path: Path) -> None:
+    authority = Authority(tmp_path)
+    own = Room(Mosquitto(tmp_path, more=authority.rules(NAME)), authority)
+    try:
+        keys = Keys()
+        robot, _ = at(own.broker, keys, own.settings())
+        owner = remote(robot, keys)
+        ends: Ends = [(AtBroker(robot, own.connected()), owner)]
+        assert uploaded(robot, ends, owner) == "OK"
+        talk(robot, ends, 500)
+        assert motors(robot) == "MOTORS 80 80"
+        own.broker.kill()
+        begun_ms = robot.now_ms
+        while motors(robot) != "MOTORS 0 0":
+            talk(robot, ends, 5)
+            assert robot.now_ms < begun_ms + TETHER_MS
+    finally:
+        own.broker.kill()
+
+
+def test_who_never_answers_is_given_up_and_the_robot_drives_by_its_cable(room: Room) -> None:
+    """A computer that takes the connection and says nothing; then the broker."""
+    keys = Keys()
+    robot, owner = joined(keys)
+    with socket.create_server(("127.0.0.1", 0)) as silent:
+        settings = room.settings()._replace(port=silent.getsockname()[1])
+        assert ended(robot, [(None, owner)], owner.use_broker(settings)) == "OK"
+        assert uploaded(robot, [(None, owner)], owner) == "OK"
+        talk(robot, [(None, owner)], 300)
+        assert motors(robot) == "MOTORS 80 80"
+        talk(robot, [(None, owner)], 16_500)
+        silent.settimeout(1)
+        for _ in range(2):  # it has tried again
+            silent.accept()[0].close()
+        assert told(robot, owner)[1] == "SEARCHING"
+
+
+@pytest.mark.parametrize(("name", "address", "is_found"), [
+    (NAME, NOBODY, True), ("nobody.aula", LOCAL, True), ("nobody.aula", NOBODY, False),
+])  # fmt: skip
+def test_a_broker_is_found_by_its_name_or_where_it_was(
+    tmp_path: Path, name: str, address: bytes, is_found: bool
+) -> None:
+    own = Mosquitto(tmp_path)
+    try:
+        robot, owner = joined(Keys())
+        known(robot, NAME, "127.0.0.1")
+        settings = own.settings()._replace(name=name.encode(), address=address)
+        assert ended(robot, [(None, owner)], owner.use_broker(settings)) == "OK"
+        if is_found:
+            until(robot, lambda: told(robot, owner)[1] == "READY")
+        talk(robot, [(None, owner)], 500)
+        assert told(robot, owner)[1] == ("READY" if is_found else "SEARCHING")
+    finally:
+        own.kill()
+
+
+TRUST = bytes(range(1, 201))
+PLAIN = wifi.BrokerSettings(LOCAL, 8883, "aula", name=b"x")
+
+
+@pytest.mark.parametrize("settings", [
+    PLAIN._replace(name=b"", tls=wifi.Tls(TRUST, TODAY)),
+    PLAIN._replace(tls=wifi.Tls(b"", TODAY)), PLAIN._replace(tls=wifi.Tls(TRUST, 0)),
+    PLAIN._replace(tls=wifi.Tls(bytes(TRUST_BYTES + 1), TODAY)),
+    PLAIN._replace(name=b"x" * (BROKER_NAME_BYTES + 1)), PLAIN._replace(name=b"a\0b"),
+])  # fmt: skip
+def test_what_is_no_tls_is_refused(settings: wifi.BrokerSettings) -> None:
+    robot, owner = joined(Keys())
+    assert not settings.is_sound
+    assert ended(robot, [(None, owner)], owner.use_broker(settings)) == "BAD_VALUE"
+    assert told(robot, owner) == ("OFF", "OFF", "")
+    most = PLAIN._replace(name=b"x" * BROKER_NAME_BYTES, tls=wifi.Tls(bytes(TRUST_BYTES), TODAY))
+    assert most.is_sound
+    assert ended(robot, [(None, owner)], owner.use_broker(most)) == "OK"
+
+
+def test_a_full_nvs_keeps_the_broker_that_was(room: Room) -> None:
+    robot, owner = at(room.broker, Keys(), room.settings())
+    robot.fill_nvs()
+    assert ended(robot, [(None, owner)], owner.use_broker(PLAIN)) == "NOT_KEPT"
+    talk(robot, [(None, owner)], 100)
+    assert told(robot, owner) == ("STATION", "READY", "aula")

@@ -1,0 +1,40 @@
+"""Certificates for tests, made by openssl: an authority, and what it signs for a name."""
+
+from __future__ import annotations
+
+import shutil
+import ssl
+import subprocess
+from pathlib import Path
+
+_COMMON = ("openssl", "req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:P-256",
+           "-nodes", "-days", "2")  # fmt: skip
+
+
+def missing() -> str:
+    return "" if shutil.which("openssl") else "needs openssl"
+
+
+class Authority:
+    """Who signs certificates: `file` has its own, `der` the same as bytes."""
+
+    def __init__(self, folder: Path, name: str = "Aula") -> None:
+        self._folder, self._key = folder, folder / f"{name}.key"
+        self.file = folder / f"{name}.pem"
+        _run(*_COMMON, "-keyout", self._key, "-out", self.file, "-subj", f"/CN={name}")
+
+    @property
+    def der(self) -> bytes:
+        return ssl.PEM_cert_to_DER_cert(self.file.read_text(encoding="ascii"))
+
+    def rules(self, name: str) -> str:
+        """Return what makes Mosquitto speak TLS as a computer of a name, and of 127.0.0.1."""
+        key, file = self._folder / f"{name}.key", self._folder / f"{name}.pem"
+        _run(*_COMMON, "-CA", self.file, "-CAkey", self._key, "-keyout", key, "-out", file,
+             "-subj", f"/CN={name}", "-addext", f"subjectAltName=DNS:{name},IP:127.0.0.1",
+             "-addext", "basicConstraints=critical,CA:FALSE")  # fmt: skip
+        return f"certfile {file}\nkeyfile {key}"
+
+
+def _run(*command: str | Path) -> None:
+    subprocess.run([str(each) for each in command], check=True, capture_output=True)

@@ -1,0 +1,85 @@
+#ifdef ARDUINO_ARCH_ESP32
+
+#include "broker_line.h"
+
+#include <lwip/netdb.h>
+#include <lwip/sockets.h>
+#if __has_include(<errno.h>)
+#include <errno.h>
+#endif
+
+namespace tiniscript {
+
+namespace {
+
+constexpr int kNone = -1;
+
+const BrokerSettings* its;
+sockaddr_in place;
+int connection = kNone;
+bool is_shaking;
+
+bool may_come_later() { return errno == EAGAIN || errno == EWOULDBLOCK; }
+
+// Where the broker's name says that it is, or where a computer has found it.
+void look_up() {
+  place = {};
+  place.sin_family = AF_INET;
+  place.sin_port = htons(its->port);
+  const hostent* const found = its->name[0] == 0 ? nullptr : lwip_gethostbyname(its->name);
+  const bool is_known = found != nullptr && found->h_addrtype == AF_INET;
+  __builtin_memcpy(&place.sin_addr.s_addr,
+                   is_known ? found->h_addr_list[0] : reinterpret_cast<const char*>(its->address),
+                   sizeof its->address);
+}
+
+}  // namespace
+
+bool line_begin(const BrokerSettings& settings) {
+  its = &settings;
+  look_up();
+  connection = lwip_socket(AF_INET, SOCK_STREAM, 0);
+  if (connection < 0) return false;
+  is_shaking = false;
+  const int yes = 1;
+  lwip_setsockopt(connection, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
+  return lwip_fcntl(connection, F_SETFL, O_NONBLOCK) >= 0;
+}
+
+// Called again until it is connected: lwIP and POSIX say so by EISCONN.
+WifiState line_connect() {
+  if (is_shaking) return tls_shake();
+  const int found =
+      lwip_connect(connection, reinterpret_cast<const sockaddr*>(&place), sizeof place);
+  if (found != 0 && errno != EISCONN) {
+    const bool is_under_way = errno == EINPROGRESS || errno == EALREADY;
+    return is_under_way ? WifiState::kSearching : WifiState::kOff;
+  }
+  if (!its->is_tls()) return WifiState::kReady;
+  is_shaking = true;
+  return tls_begin(connection, *its);
+}
+
+int line_receive(uint8_t* bytes, size_t room) {
+  if (is_shaking) return tls_receive(bytes, room);
+  const ssize_t length = lwip_recv(connection, bytes, room, MSG_DONTWAIT);
+  if (length > 0) return static_cast<int>(length);
+  return length < 0 && may_come_later() ? kNothingYet : kEnded;
+}
+
+int line_send(const uint8_t* bytes, size_t length) {
+  if (is_shaking) return tls_send(bytes, length);
+  const ssize_t sent = lwip_send(connection, bytes, length, MSG_DONTWAIT);
+  if (sent > 0) return static_cast<int>(sent);
+  return sent == 0 || may_come_later() ? kNothingYet : kEnded;
+}
+
+void line_end() {
+  tls_end();
+  if (connection >= 0) lwip_close(connection);
+  connection = kNone;
+}
+
+}  // namespace tiniscript
+
+#endif  // ARDUINO_ARCH_ESP32

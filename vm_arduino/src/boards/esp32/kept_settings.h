@@ -1,0 +1,79 @@
+// Settings of a radio: one entry of NVS, so a power cut leaves those before or the new ones.
+//
+// The main loop keeps them; one task of a radio takes them after each change. `Settings` is plain
+// bytes, of which `kept_bytes()` are in NVS, and `is_sound()` says whether these may be used.
+
+#ifndef TINISCRIPT_ESP32_KEPT_SETTINGS_H_
+#define TINISCRIPT_ESP32_KEPT_SETTINGS_H_
+
+#include <nvs.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "../../link/messages.h"
+#include "pins.h"
+
+namespace tiniscript {
+
+template <class Settings>
+class KeptSettings {
+ public:
+  explicit constexpr KeptSettings(const char* key)
+      : key_(key), changes_(0), seen_changes_(0), now_() {}
+
+  // The main loop calls these three. `load` is called once, before there is a task.
+  void load() {
+    size_t length = sizeof now_;
+    nvs_handle_t handle;
+    const bool is_there = nvs_open(kNamespace, NVS_READWRITE, &handle) == ESP_OK &&
+                          nvs_get_blob(handle, key_, &now_, &length) == ESP_OK && now_.is_sound() &&
+                          length == now_.kept_bytes();
+    if (is_there) {
+      changes_ = 1;
+    } else {
+      __builtin_memset(&now_, 0, sizeof now_);
+    }
+  }
+
+  Answer keep(const Settings& settings) {
+    nvs_handle_t handle;
+    const bool is_kept = nvs_open(kNamespace, NVS_READWRITE, &handle) == ESP_OK &&
+                         nvs_set_blob(handle, key_, &settings, settings.kept_bytes()) == ESP_OK &&
+                         nvs_commit(handle) == ESP_OK;
+    if (!is_kept) return Answer::kNotKept;
+    use(settings);
+    return Answer::kOk;
+  }
+
+  const Settings& now() const { return now_; }
+
+  // The task's: whether they have changed since its last call; then they are in `*found`.
+  bool changed(Settings* found) {
+    const uint32_t changes = __atomic_load_n(&changes_, __ATOMIC_ACQUIRE);
+    if (changes == seen_changes_) return false;
+    seen_changes_ = changes;
+    const CriticalSection critical;
+    *found = now_;
+    return true;
+  }
+
+ private:
+  static constexpr const char* kNamespace = "tiniscript";
+
+  void use(const Settings& settings) {
+    {
+      const CriticalSection critical;
+      now_ = settings;
+    }
+    __atomic_store_n(&changes_, changes_ + 1, __ATOMIC_RELEASE);  // it has one writer
+  }
+
+  const char* key_;
+  uint32_t changes_;
+  uint32_t seen_changes_;  // the task's
+  Settings now_;           // written by the main loop, in a critical section
+};
+
+}  // namespace tiniscript
+
+#endif  // TINISCRIPT_ESP32_KEPT_SETTINGS_H_

@@ -1,0 +1,131 @@
+// The robot has no clock. A computer says what day it is when it sets the broker, so a certificate
+// that has ended by then is refused; one that ends later is not noticed.
+
+#ifdef ARDUINO_ARCH_ESP32
+
+#include "tls.h"
+
+#include <esp_random.h>
+#include <lwip/sockets.h>
+#include <mbedtls/ssl.h>
+#include <mbedtls/x509_crt.h>
+#if __has_include(<errno.h>)
+#include <errno.h>
+#endif
+
+namespace tiniscript {
+
+namespace {
+
+mbedtls_ssl_context connection;
+mbedtls_ssl_config rules;
+mbedtls_x509_crt trusted;
+uint32_t today;
+uint32_t flaws;  // of the certificates that came
+int socket_of_it;
+bool has_begun;
+
+bool may_come_later() { return errno == EAGAIN || errno == EWOULDBLOCK; }
+
+int fill(void*, unsigned char* bytes, size_t length) {
+  uint32_t chance = 0;
+  for (size_t k = 0; k < length; k++) {
+    if (k % 4 == 0) chance = esp_random();
+    bytes[k] = static_cast<unsigned char>(chance >> (8 * (k % 4)));
+  }
+  return 0;
+}
+
+int send(void*, const unsigned char* bytes, size_t length) {
+  const ssize_t sent = lwip_send(socket_of_it, bytes, length, MSG_DONTWAIT);
+  if (sent >= 0) return static_cast<int>(sent);
+  return may_come_later() ? MBEDTLS_ERR_SSL_WANT_WRITE : MBEDTLS_ERR_SSL_CONN_EOF;
+}
+
+int receive(void*, unsigned char* bytes, size_t room) {
+  const ssize_t length = lwip_recv(socket_of_it, bytes, room, MSG_DONTWAIT);
+  if (length > 0) return static_cast<int>(length);
+  return length < 0 && may_come_later() ? MBEDTLS_ERR_SSL_WANT_READ : MBEDTLS_ERR_SSL_CONN_EOF;
+}
+
+// Each certificate of the way to the trusted one. The core's own look at dates needs a clock.
+int look(void*, mbedtls_x509_crt* certificate, int, uint32_t* found) {
+  const mbedtls_x509_time& end = certificate->valid_to;
+  const uint32_t last = static_cast<uint32_t>((end.year * 100 + end.mon) * 100 + end.day);
+  *found &= ~static_cast<uint32_t>(MBEDTLS_X509_BADCERT_EXPIRED | MBEDTLS_X509_BADCERT_FUTURE);
+  if (last < today) *found |= MBEDTLS_X509_BADCERT_EXPIRED;
+  flaws |= *found;
+  return 0;
+}
+
+WifiState failure() {
+  if (flaws == 0) return WifiState::kNoTls;
+  if ((flaws & MBEDTLS_X509_BADCERT_NOT_TRUSTED) != 0) return WifiState::kUntrusted;
+  if ((flaws & MBEDTLS_X509_BADCERT_CN_MISMATCH) != 0) return WifiState::kOtherName;
+  if ((flaws & MBEDTLS_X509_BADCERT_EXPIRED) != 0) return WifiState::kExpired;
+  return WifiState::kUntrusted;
+}
+
+bool is_only_later(int found) {
+  return found == MBEDTLS_ERR_SSL_WANT_READ || found == MBEDTLS_ERR_SSL_WANT_WRITE;
+}
+
+int count_of(int found) {
+  if (is_only_later(found)) return kNothingYet;
+  return found > 0 ? found : kEnded;
+}
+
+}  // namespace
+
+WifiState tls_begin(int socket, const BrokerSettings& settings) {
+  socket_of_it = socket;
+  today = settings.date;
+  flaws = 0;
+  has_begun = true;
+  mbedtls_ssl_init(&connection);
+  mbedtls_ssl_config_init(&rules);
+  mbedtls_x509_crt_init(&trusted);
+  if (mbedtls_x509_crt_parse_der(&trusted, settings.trust, settings.trust_bytes) != 0) {
+    return WifiState::kUntrusted;
+  }
+  if (mbedtls_ssl_config_defaults(&rules, MBEDTLS_SSL_IS_CLIENT, MBEDTLS_SSL_TRANSPORT_STREAM,
+                                  MBEDTLS_SSL_PRESET_DEFAULT) != 0) {
+    return WifiState::kNoTls;
+  }
+  mbedtls_ssl_conf_authmode(&rules, MBEDTLS_SSL_VERIFY_REQUIRED);
+  mbedtls_ssl_conf_ca_chain(&rules, &trusted, nullptr);
+  mbedtls_ssl_conf_verify(&rules, look, nullptr);
+  mbedtls_ssl_conf_rng(&rules, fill, nullptr);
+  if (mbedtls_ssl_setup(&connection, &rules) != 0 ||
+      mbedtls_ssl_set_hostname(&connection, settings.name) != 0) {
+    return WifiState::kNoTls;
+  }
+  mbedtls_ssl_set_bio(&connection, nullptr, send, receive, nullptr);
+  return WifiState::kSearching;
+}
+
+WifiState tls_shake() {
+  const int found = mbedtls_ssl_handshake(&connection);
+  if (found == 0) return WifiState::kReady;
+  return is_only_later(found) ? WifiState::kSearching : failure();
+}
+
+int tls_receive(uint8_t* bytes, size_t room) {
+  return count_of(mbedtls_ssl_read(&connection, bytes, room));
+}
+
+int tls_send(const uint8_t* bytes, size_t length) {
+  return count_of(mbedtls_ssl_write(&connection, bytes, length));
+}
+
+void tls_end() {
+  if (!has_begun) return;
+  has_begun = false;
+  mbedtls_ssl_free(&connection);
+  mbedtls_ssl_config_free(&rules);
+  mbedtls_x509_crt_free(&trusted);
+}
+
+}  // namespace tiniscript
+
+#endif  // ARDUINO_ARCH_ESP32

@@ -1,0 +1,32 @@
+// TLS over a socket that never waits, by the mbedTLS of ESP-IDF.
+//
+// One connection at a time. It takes memory from the heap while it lasts, as the radios do: without
+// enough of it there is no connection. What a handshake calculates keeps its task busy.
+
+#ifndef TINISCRIPT_ESP32_TLS_H_
+#define TINISCRIPT_ESP32_TLS_H_
+
+#include "broker_settings.h"
+
+namespace tiniscript {
+
+constexpr int kNothingYet = 0;
+constexpr int kEnded = -1;
+
+// Begins a connection to the broker of `settings`, which stay where they are until `tls_end`.
+// Returns kSearching, or why there is none.
+WifiState tls_begin(int socket, const BrokerSettings& settings);
+
+// Goes on with the handshake: kSearching until it is kReady, or why it has failed.
+WifiState tls_shake();
+
+// How many bytes there were or found room, kNothingYet or kEnded. What was not sent must be the
+// first of the next ones.
+int tls_receive(uint8_t* bytes, size_t room);
+int tls_send(const uint8_t* bytes, size_t length);
+
+void tls_end();
+
+}  // namespace tiniscript
+
+#endif  // TINISCRIPT_ESP32_TLS_H_
