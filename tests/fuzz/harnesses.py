@@ -44,9 +44,12 @@ PARTS = {
     "large_link": [],
     "store": ["src/vm/crc32.cpp", "src/store/store.cpp", "extras/powercut/contents.cpp",
               "extras/powercut/memory.cpp"],
+    "mqtt": ["src/boards/esp32/mqtt.cpp"],
 }  # fmt: skip
-HEADERS = ("src/*.h", "src/vm/*.h", "src/link/*.h", "src/text/*.h", "src/store/*.h",
-           "extras/fuzz/*.h", "extras/link/*.h", "extras/powercut/*.h")  # fmt: skip
+DEFINED = {"large_link": ("-Dtiniscript_like_esp32",), "mqtt": ("-DARDUINO_ARCH_ESP32",)}
+HEADERS = ("src/*.h", "src/boards/esp32/*.h", "src/vm/*.h", "src/link/*.h", "src/text/*.h",
+           "src/store/*.h", "extras/fuzz/*.h", "extras/link/*.h",
+           "extras/powercut/*.h")  # fmt: skip
 PARTS["large_link"] = PARTS["link"]  # with the frames and the window of an ESP32
 NAMES = tuple(PARTS)
 
@@ -70,9 +73,7 @@ def harness(name: str, sources: Path = SOURCES) -> Path:
     for pattern in PARTS[name]:
         code += sorted(sources.glob(pattern))
     headers = [path for pattern in HEADERS for path in sorted(sources.glob(pattern))]
-    own = () if name == "machine" else (NOT_COMPARED,)
-    if name == "large_link":
-        own += ("-Dtiniscript_like_esp32",)
+    own = DEFINED.get(name, ()) + (() if name == "machine" else (NOT_COMPARED,))
     return built_by(COMPILER, [*code, *headers], (*FLAGS, *own, *WARNINGS))
 
 
@@ -108,7 +109,8 @@ def fuzz(program: Path, folder: Path, runs: int, seed: int) -> Found:
 
 def seeds(name: str) -> Iterator[bytes]:
     """Yield inputs as `vm_arduino/extras/fuzz` reads them."""
-    rooms = {"machine": machine_seeds, "link": link_seeds, "store": store_seeds}
+    rooms = {"machine": machine_seeds, "link": link_seeds, "store": store_seeds,
+             "mqtt": mqtt_seeds}  # fmt: skip
     yield from rooms[name.removeprefix("large_")]()
 
 
@@ -147,6 +149,17 @@ def store_seeds() -> Iterator[bytes]:
         yield draw.randbytes(2) + b"\xff\0" + draw.randbytes(4 * (count % 12 + 1))
     for path in sorted((ROOT / "examples").glob("*.ts"))[:4]:
         yield draw.randbytes(3) + bytes([1]) + bytes([128, 0, 200]) + path.read_bytes()[:200]
+
+
+def mqtt_seeds() -> Iterator[bytes]:
+    """Messages of the robot's writer, and what a broker says."""
+    said = ("20020000", "20020005", "d000", "9003000100", "3101ff", "30ffffffff7f", "3003000561")
+    for text in said:
+        data = bytes.fromhex(text)
+        yield bytes([0x40 + len(data)]) + data + bytes([0x42]) + b"\xd0\0"
+    for topic, payload in ((20, 40), (64, 512), (65, 1), (1, 513), (0, 0)):
+        message = bytes([0, topic]) + b"t" * topic + payload.to_bytes(2, "little")
+        yield (message + b"p" * payload + b"\0") * 2
 
 
 def main() -> int:

@@ -13,7 +13,8 @@ from tests.machines.host import SOURCES
 
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is libFuzzer")
 
-RUNS = {"machine": 60_000, "link": 12_000, "large_link": 6_000, "store": 3_000}
+RUNS = {"machine": 60_000, "link": 12_000, "large_link": 6_000, "store": 3_000,
+        "mqtt": 15_000}  # fmt: skip
 SEED = 1
 
 # Inputs in which something was wrong: they stay right. Those of a harness, as hexadecimal digits.
@@ -25,6 +26,7 @@ FOUND: dict[str, tuple[str, ...]] = {
     ),
     "large_link": (),
     "store": (),
+    "mqtt": (),
 }
 
 # A break of each harness's sources: the file, what it has, and what becomes of that.
@@ -37,6 +39,11 @@ BREAKS = {
     "link": ("src/link/link_writing.cpp", "size_ < most", "size_ < most + 128"),
     "large_link": ("src/link/receiver.h", "(place + 1) % kPlaces", "(place + 1) % (kPlaces + 1)"),
     "store": ("src/store/store.cpp", *STORE_BREAKS["what counts is written over"]),
+    "mqtt": (
+        "src/boards/esp32/mqtt.cpp",
+        "topic_left_ > kMqttTopicBytes ?",
+        "topic_left_ > kMqttTopicBytes + 1 ?",
+    ),
 }
 
 

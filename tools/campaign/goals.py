@@ -74,6 +74,8 @@ GOALS: tuple[Goal, ...] = (
          "robots", 10_000, 100, "tests.firmware.test_text {count} --seed {seed}", 1000),
     Goal("clients", "A robot answers each whole frame, does nothing that is stale, and can be stopped, after any frames.",
          "clients", 10_000, 100, "tests.firmware.test_hostile_client {count} --seed {seed}", 1000),
+    Goal("fuzz-mqtt", f"Whatever a broker says, an ESP32's reader of MQTT finds what a second one finds, within its memory ({FUZZ}).",
+         "inputs", 10_000_000, 200_000, "tests.fuzz.harnesses mqtt {count} --seed {seed}"),
     Goal("fuzz-compiler", "Any text is compiled, or refused with mistakes that can be said in both languages.",
          "texts", 1_000_000, 5_000, "tests.fuzz.test_python compiler {count} --seed {seed}"),
     Goal("fuzz-profiles", "Any profile of a robot is read, or refused.",
