@@ -10,7 +10,8 @@ import pytest
 from tests.machines.wasm import missing
 from tiniscript import robots
 from tiniscript.lessons import catalogue, text_judging
-from tiniscript.lessons.judging import JUDGES, Finding, judged
+from tiniscript.lessons.findings import Finding
+from tiniscript.lessons.judging import JUDGES, judged
 from tiniscript.lessons.lesson import Answer, Lesson
 from tiniscript.lessons.markdown import blocks
 from tiniscript.lessons.sentences import sentence

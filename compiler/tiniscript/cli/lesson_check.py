@@ -19,7 +19,7 @@ from tiniscript.cli.texts.common import Said, text
 
 if TYPE_CHECKING:
     from tiniscript import Compiled
-    from tiniscript.lessons.judging import Finding
+    from tiniscript.lessons.findings import Finding
     from tiniscript.lessons.lesson import Lesson
     from tiniscript.lessons.running import Run
     from tiniscript.robots.profile import Robot

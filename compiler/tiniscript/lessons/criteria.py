@@ -46,7 +46,7 @@ KINDS: dict[str, Kind] = {
     "stays_in": Kind("it never is further than so many cm from a place", (Number("within_cm", 1, 500),), places=1),
     "stands_before": Kind("at the end it stands so many cm before what is ahead of it", (Number("low_cm", 0, 400), Number("high_cm", 0, 400))),
     "faces": Kind("at the end it looks where a heading points to", (Number("heading", -360, 360), Number("within_degrees", 1, 180, 15))),
-    "never_touches": Kind("it touches nothing"),
+    "never_touches": Kind("it touches nothing; with `at`, before it has been within so many cm of this place", (WITHIN,), places=1, may_be_anywhere=True),
     "follows": Kind("its line sensors stay on the black line, for so many cm of it", (Number("within_cm", 1, 500, 6), Number("at_least_cm", 1, MOST))),
     "drives": Kind("it drives so many cm", (Number("at_least_cm", 0, MOST, 0), Number("at_most_cm", 1, MOST, MOST))),
     "pauses": Kind("it stands so long between two moves; with `at`, within so many cm of each of these places", (Number("at_least_seconds", 0.1, 600), TIMES, WITHIN), places=1, may_be_anywhere=True),

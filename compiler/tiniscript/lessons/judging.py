@@ -1,53 +1,32 @@
 """Compares a run with the criteria of a lesson: what is missing becomes findings.
 
 A finding is the name of a sentence and the values of its gaps; `sentences` makes words of it.
-Knows no languages, and no texts of programs: `text_judging` looks at those.
+Knows no languages. `place_judging` has the criteria that name places, `text_judging` those of the
+text of a program.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
-from typing import NamedTuple
+from collections.abc import Callable
 
 from tiniscript.fixed_point import ONE, as_text
+from tiniscript.lessons import place_judging
 from tiniscript.lessons.criteria import ANY_VALUE
+from tiniscript.lessons.findings import STILL_CM, Finding, Task, between, in_cm, in_seconds
 from tiniscript.lessons.lesson import Criterion, Lesson
 from tiniscript.lessons.reader import TIME
-from tiniscript.lessons.running import ASKS, BUSY, DONE, FAULT, LIMIT, Run, Sample, Shown
-from tiniscript.lessons.variation import is_mirrored, point_of
-from tiniscript.robots.kinematics import Pose
-from tiniscript.virtual.geometry import Point, joined, seen
+from tiniscript.lessons.running import ASKS, BUSY, DONE, FAULT, LIMIT, Run, Shown
+from tiniscript.lessons.variation import is_mirrored
 from tiniscript.virtual.geometry import distance as distance_to
-from tiniscript.virtual.sensing import CONE
+from tiniscript.virtual.geometry import joined
 
-STILL_CM, STILL_DEGREES = 1.0, 5.0  # less is no move
+STILL_DEGREES = 5.0  # less is no turn
+RESTED_MS = 3000  # without power at the end of the time: there it stays
 SAMPLE_CM = 5.0  # between two points of a line that is followed
 MOVING = frozenset({"ends_in", "reaches", "stands_before", "follows", "drives", "faces"})
 AT_END = frozenset({"ends_in", "stands_before", "faces"})  # where the robot is when it is over
 WHERE = AT_END | {"reaches"}
-
-
-class Finding(NamedTuple):
-    """What is missing. `kind` is that of the criterion, or "" for the run as a whole.
-
-    `key` names a sentence. `labels` is what its place is called in each language.
-    """
-
-    kind: str
-    key: str
-    values: Mapping[str, str] = {}
-    labels: Mapping[str, str] = {}
-
-
-class Task(NamedTuple):
-    """What a criterion is compared with: a run, and whether its world is mirrored."""
-
-    run: Run
-    mirrored: bool
-
-    def point(self, criterion: Criterion, number: int = 0) -> Point:
-        return point_of(criterion.places[number], self.run.world, self.mirrored)
 
 
 def judged(run: Run, lesson: Lesson) -> list[Finding]:
@@ -55,16 +34,16 @@ def judged(run: Run, lesson: Lesson) -> list[Finding]:
     if run.ending == ASKS:
         return [Finding("", "asks")]
     if run.ending == BUSY:
-        return [Finding("", "busy", {"seconds": _seconds(run.end_ms)})]
+        return [Finding("", "busy", {"seconds": in_seconds(run.end_ms)})]
     if run.ending == FAULT:
-        values = {"fault": run.fault, "seconds": _seconds(run.end_ms)}
+        values = {"fault": run.fault, "seconds": in_seconds(run.end_ms)}
         return [Finding("", f"fault/{run.fault}", values)]
     kinds = {criterion.kind for criterion in lesson.criteria}
     if kinds & MOVING and _is_still(run):
         return [Finding("", "still")]
     found: list[Finding] = []
-    if run.ending == LIMIT and kinds & AT_END and "ends" not in kinds:
-        found.append(Finding("", "long", {"seconds": _seconds(run.end_ms)}))
+    if run.ending == LIMIT and kinds & AT_END and "ends" not in kinds and not _rests(run):
+        found.append(Finding("", "long", {"seconds": in_seconds(run.end_ms)}))
     task = Task(run, is_mirrored(lesson, run.seed))
     for criterion in lesson.criteria:
         judge = JUDGES.get(criterion.kind)
@@ -96,145 +75,27 @@ def _is_still(run: Run) -> bool:
     )
 
 
-def _seconds(ms: float) -> str:
-    return f"{ms / 1000:.1f}"
-
-
-def _cm(length: float) -> str:
-    return f"{length:.0f}"
-
-
-def _end(run: Run) -> Pose:
-    return run.track[-1].pose
-
-
-# -- places ---------------------------------------------------------------------------------------
-
-
-def _ends_in(criterion: Criterion, task: Task) -> Finding | None:
-    place, run = task.point(criterion), task.run
-    within_cm = criterion.numbers["within_cm"]
-    start, end = run.world.start, _end(run)
-    away_cm = math.dist(place, end[:2])
-    if away_cm <= within_cm:
-        return None
-    way_cm = math.dist(place, start[:2])
-    key = "away"
-    if way_cm > within_cm:  # else it should come back
-        ux, uy = (place.x - start.x_cm) / way_cm, (place.y - start.y_cm) / way_cm
-        dx, dy = end.x_cm - start.x_cm, end.y_cm - start.y_cm
-        along_cm, beside_cm = dx * ux + dy * uy, abs(dy * ux - dx * uy)
-        if math.dist(start[:2], end[:2]) < STILL_CM:
-            key = "turned" if run.driven_cm < STILL_CM else "away"
-        elif beside_cm <= within_cm and along_cm >= 0:
-            key = "short" if along_cm < way_cm else "far"
-    return Finding("ends_in", f"ends_in/{key}", {"cm": _cm(away_cm)}, criterion.labels)
-
-
-def _reaches(criterion: Criterion, task: Task) -> Finding | None:
-    within_cm = criterion.numbers["within_cm"]
-    points = iter(_between(task.run.track))
-    at = On(0.0, 0.0, 0.0, 0.0)
-    for number in range(len(criterion.places)):
-        place = task.point(criterion, number)
-        nearest_cm = math.inf
-        for at in points:
-            nearest_cm = min(nearest_cm, math.dist(place, (at.x_cm, at.y_cm)))
-            if nearest_cm <= within_cm:
-                break
-        else:
-            values = {"number": str(number + 1), "all": str(len(criterion.places))}
-            if nearest_cm < math.inf:
-                values["cm"] = _cm(nearest_cm)
-            key = "one" if len(criterion.places) == 1 else "several"
-            return Finding("reaches", f"reaches/{key}", values, criterion.labels)
-    limit_s, limit_cm = criterion.numbers["by_seconds"], criterion.numbers["by_cm"]
-    if at.ms > limit_s * 1000:
-        values = {"seconds": _seconds(at.ms), "limit": f"{limit_s:g}"}
-        return Finding("reaches", "reaches/late", values, criterion.labels)
-    if at.way_cm > limit_cm:
-        values = {"cm": _cm(at.way_cm), "limit": f"{limit_cm:g}"}
-        return Finding("reaches", "reaches/around", values, criterion.labels)
-    return None
-
-
-class On(NamedTuple):
-    """A point on the way: when, where, and how far the robot had driven."""
-
-    ms: float
-    x_cm: float
-    y_cm: float
-    way_cm: float
-
-
-def _between(track: tuple[Sample, ...]) -> list[On]:
-    """Return points of the way, at most a centimetre from each other."""
-    found = [On(float(track[0].ms), *track[0].pose[:2], 0.0)]
-    for sample in track[1:]:
-        ms, x, y, way_cm = found[-1]
-        step_cm = math.dist((x, y), sample.pose[:2])
-        steps = max(1, math.ceil(step_cm))
-        for k in range(1, steps + 1):
-            part = k / steps
-            found.append(
-                On(
-                    ms + (sample.ms - ms) * part,
-                    x + (sample.pose.x_cm - x) * part,
-                    y + (sample.pose.y_cm - y) * part,
-                    way_cm + step_cm * part,
-                )
-            )
-    return found
-
-
-def _stays_in(criterion: Criterion, task: Task) -> Finding | None:
-    place, within_cm = task.point(criterion), criterion.numbers["within_cm"]
-    for ms, pose in task.run.track:
-        if math.dist(place, pose[:2]) > within_cm:
-            return Finding("stays_in", "stays_in", {"seconds": _seconds(ms)}, criterion.labels)
-    return None
-
-
-def _stands_before(criterion: Criterion, task: Task) -> Finding | None:
-    """Compare with the nearest thing that an echo from the middle of its front would tell."""
-    run, pose = task.run, _end(task.run)
-    hull = run.robot.driving.hull
-    along = math.radians(pose.heading)
-    front = hull.spine(pose).b
-    eye = Point(
-        front.x + hull.radius_cm * math.cos(along), front.y + hull.radius_cm * math.sin(along)
-    )
-    gap_cm = seen(run.world.obstacles(), eye, along, CONE)
-    low, high = criterion.numbers["low_cm"], criterion.numbers["high_cm"]
-    values = {"low": f"{low:g}", "high": f"{high:g}"}
-    if gap_cm is None:
-        return Finding("stands_before", "stands_before/nothing", values)
-    if low <= gap_cm <= high:
-        return None
-    values["cm"] = _cm(gap_cm)
-    key = "far" if gap_cm > high else "near"
-    return Finding("stands_before", f"stands_before/{key}", values)
-
-
-def _faces(criterion: Criterion, task: Task) -> Finding | None:
-    wanted = criterion.numbers["heading"]
-    if task.mirrored:
-        wanted = -wanted
-    off = (_end(task.run).heading - wanted + 180) % 360 - 180
-    if abs(off) <= criterion.numbers["within_degrees"]:
-        return None
-    key = "left" if off > 0 else "right"  # it looks too far to the left
-    return Finding("faces", f"faces/{key}", {"degrees": f"{abs(off):.0f}"})
+def _rests(run: Run) -> bool:
+    """Whether its motors were off at the end, and had been for RESTED_MS."""
+    driven = [k for k, (_, *powers) in enumerate(run.motors) if any(powers)]
+    off = run.motors[driven[-1] + 1 :] if driven else ()
+    return not driven or bool(off and run.end_ms - off[0][0] >= RESTED_MS)
 
 
 # -- ways -----------------------------------------------------------------------------------------
 
 
 def _never_touches(criterion: Criterion, task: Task) -> Finding | None:
-    if not task.run.touches:
+    touches = task.run.touches
+    if criterion.places:
+        place, within_cm = task.point(criterion), criterion.numbers["within_cm"]
+        there = (at.ms for at in between(task.run.track) if math.dist(place, at[1:3]) <= within_cm)
+        there_ms = next(there, math.inf)
+        touches = tuple(each for each in touches if each.ms < there_ms)
+    if not touches:
         return None
-    first = task.run.touches[0]
-    return Finding("never_touches", f"touches/{first.what}", {"seconds": _seconds(first.ms)})
+    first = touches[0]
+    return Finding("never_touches", f"touches/{first.what}", {"seconds": in_seconds(first.ms)})
 
 
 def _follows(criterion: Criterion, task: Task) -> Finding | None:
@@ -261,10 +122,10 @@ def _follows(criterion: Criterion, task: Task) -> Finding | None:
         left = {point for point in left if math.dist(point, (x, y)) > within_cm}
     least_cm = criterion.numbers["at_least_cm"]
     followed_cm = (there - len(left)) * SAMPLE_CM
-    values = {"cm": _cm(followed_cm), "least": f"{least_cm:g}"}
+    values = {"cm": in_cm(followed_cm, least_cm), "least": f"{least_cm:g}"}
     if off_ms is not None:
         key = "early" if followed_cm < least_cm / 4 else "off"
-        return Finding("follows", f"follows/{key}", {**values, "seconds": _seconds(off_ms)})
+        return Finding("follows", f"follows/{key}", {**values, "seconds": in_seconds(off_ms)})
     return Finding("follows", "follows/short", values) if followed_cm < least_cm else None
 
 
@@ -274,7 +135,9 @@ def _drives(criterion: Criterion, task: Task) -> Finding | None:
     if low <= driven_cm <= high:
         return None
     key, limit = ("short", low) if driven_cm < low else ("long", high)
-    return Finding("drives", f"drives/{key}", {"cm": _cm(driven_cm), "limit": f"{limit:g}"})
+    return Finding(
+        "drives", f"drives/{key}", {"cm": in_cm(driven_cm, limit), "limit": f"{limit:g}"}
+    )
 
 
 # -- times ----------------------------------------------------------------------------------------
@@ -303,7 +166,9 @@ def _pauses(criterion: Criterion, task: Task) -> Finding | None:
     values = {"least": f"{least_s:g}", "times": str(times), "found": str(len(long))}
     if times > 1:
         return Finding("pauses", "pauses/several", values)
-    values["seconds"] = _seconds(max((end_ms - begin_ms for begin_ms, end_ms in stands), default=0))
+    values["seconds"] = in_seconds(
+        max((end_ms - begin_ms for begin_ms, end_ms in stands), default=0)
+    )
     return Finding("pauses", "pauses/short" if stands else "pauses/none", values)
 
 
@@ -331,7 +196,7 @@ def _order(criterion: Criterion, task: Task) -> Finding | None:
 
 
 def _ends(criterion: Criterion, task: Task) -> Finding | None:
-    over = {"seconds": _seconds(task.run.end_ms)}
+    over = {"seconds": in_seconds(task.run.end_ms)}
     return None if task.run.ending == DONE else Finding("ends", "ends", over)
 
 
@@ -362,12 +227,22 @@ def _shows(criterion: Criterion, task: Task) -> Finding | None:
 
 def _should_show(shown: Shown, what: str, wanted: float, run: Run) -> float | None:
     """Return the thousandths that a value should be, or None for any."""
-    if what == TIME:
-        return float(shown.ms)
+    if what == TIME:  # that of the moment, or of any since it has stopped
+        return float(min(max(shown.value, _stopped_ms(shown, run)), shown.ms))
     if what:
         names = [device.name for device in run.robot.profile.kit.sensors]
         return run.robot.sensing.look(names.index(what), shown.pose)
     return None if wanted == ANY_VALUE else wanted * ONE
+
+
+def _stopped_ms(shown: Shown, run: Run) -> int:
+    """Return since when the robot stood as it showed a value, or that moment if it drove."""
+    since_ms = shown.ms
+    for ms, *powers in run.motors:
+        if ms > shown.ms:
+            break
+        since_ms = shown.ms if any(powers) else ms
+    return since_ms
 
 
 def _beeps(criterion: Criterion, task: Task) -> Finding | None:
@@ -384,11 +259,7 @@ def _beeps(criterion: Criterion, task: Task) -> Finding | None:
 
 
 JUDGES: dict[str, Callable[[Criterion, Task], Finding | None]] = {
-    "ends_in": _ends_in,
-    "reaches": _reaches,
-    "stays_in": _stays_in,
-    "stands_before": _stands_before,
-    "faces": _faces,
+    **place_judging.JUDGES,
     "never_touches": _never_touches,
     "follows": _follows,
     "drives": _drives,

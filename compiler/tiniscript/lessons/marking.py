@@ -9,7 +9,8 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from tiniscript.bytecode.image import Image
-from tiniscript.lessons.judging import Finding, judged
+from tiniscript.lessons.findings import Finding
+from tiniscript.lessons.judging import judged
 from tiniscript.lessons.lesson import Lesson
 from tiniscript.lessons.running import Run, Trial
 from tiniscript.lessons.text_judging import judged_text

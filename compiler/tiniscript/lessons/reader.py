@@ -9,7 +9,7 @@ import re
 
 from tiniscript import robots
 from tiniscript.fixed_point import ONE
-from tiniscript.lessons.criteria import ANY_VALUE, EVENTS, KINDS, Number
+from tiniscript.lessons.criteria import ANY_VALUE, EVENTS, KINDS, WITHIN, Number
 from tiniscript.lessons.lesson import (
     PARTS,
     Answer,
@@ -145,14 +145,15 @@ def _criterion(table: Table, world: World, sensors: tuple[str, ...]) -> Criterio
             known = ", ".join(KINDS)
             table.complain("unknown_criterion", "kind", found=shown(name), near=near, known=known)
         return Criterion("", {}, (), (), NO_LABELS)
-    numbers = {each.key: _number(table, each) for each in kind.numbers}
+    has_places = bool(kind.places) and not (kind.may_be_anywhere and not table.has("at"))
+    asked = [each for each in kind.numbers if has_places or each is not WITHIN]
+    numbers = {each.key: _number(table, each) for each in asked}
     for low, high in (("low_cm", "high_cm"), ("at_least_cm", "at_most_cm")):
         if low in numbers and numbers[low] > numbers.get(high, numbers[low]):
             table.complain("low_above_high", low, other=table.path_of(high))
-    has_places = bool(kind.places) and not (kind.may_be_anywhere and not table.has("at"))
     places = _places(table, world, kind.places) if has_places else ()
     labels: dict[str, str] = NO_LABELS
-    if kind.places and any(table.has(language) for language in LANGUAGES):
+    if has_places and any(table.has(language) for language in LANGUAGES):
         labels = _labels(table)
     words: tuple[str, ...] = ()
     if kind.words == "sensor":

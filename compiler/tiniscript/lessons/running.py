@@ -196,10 +196,13 @@ class _Witness:
 
     def _take(self, event: Event, ms: int, pose: Pose) -> None:
         if event.what == "MOTORS":
+            before = self._motors[-1][1:] if self._motors else (0, 0)
             self._motors.append((ms, event.values[0], event.values[1]))
-            if any(event.values) != self._is_moving:
-                self._is_moving = not self._is_moving
-                self._happened.append("moves" if self._is_moving else "stops")
+            if any(event.values) and event.values[:2] != before:
+                self._happened.append("moves")
+            elif self._is_moving and not any(event.values):
+                self._stops(ms)
+            self._is_moving = any(event.values)
         elif event.what == "BEEP":
             self._beeps.append(Beep(ms, event.values[0]))
             self._happened.append("beeps")
@@ -207,6 +210,15 @@ class _Witness:
             self._happened.append("shows")
             is_yes_no = event.text.endswith(("TRUE", "FALSE"))
             self._shown.append(Shown(ms, event.values[0], is_yes_no, pose))
+
+    def _stops(self, ms: int) -> None:
+        """Note a stop, before what it has shown in the same moment."""
+        at_once = 0
+        for shown, word in zip(reversed(self._shown), reversed(self._happened), strict=False):
+            if word != "shows" or shown.ms != ms:
+                break
+            at_once += 1
+        self._happened.insert(len(self._happened) - at_once, "stops")
 
     def _touched(self, pose: Pose) -> str:
         """Return what the robot is nearest to."""
@@ -229,9 +241,11 @@ class _Witness:
         if self.began_ms is not None:
             ended_ms = robot.now_ms if robot.ended_ms is None else robot.ended_ms
             end_ms = ended_ms - self.began_ms
+        if self._is_moving:
+            self._stops(end_ms)
         return Run(
             self.seed, ending, robot.fault, end_ms,
             tuple(self._track) or (Sample(0, robot.world.start),),
             tuple(self._touches), tuple(self._shown), tuple(self._beeps), tuple(self._motors),
-            (*self._happened, *["stops"] * self._is_moving), robot.driving.driven_cm, robot,
+            tuple(self._happened), robot.driving.driven_cm, robot,
         )  # fmt: skip

@@ -5,7 +5,7 @@ Knows every key of `judging`. Does not know when one applies.
 
 from __future__ import annotations
 
-from tiniscript.lessons.judging import Finding
+from tiniscript.lessons.findings import Finding
 from tiniscript.printable import printable
 from tiniscript.words import WORDS
 
@@ -16,8 +16,8 @@ SENTENCES: dict[str, tuple[str, str]] = {
              "El programa empieza con PING, así que el robot no hace nada. Empieza con SI o sin nada."),
     "busy": ("In {seconds} s the robot did more than 200000 things without a rest. Put W(0.05) into the loop.",
              "En {seconds} s el robot hizo más de 200000 cosas sin descanso. Pon W(0.05) dentro del bucle."),
-    "long": ("After {seconds} s the robot was still on its way when the time was over. Times are seconds: look for one that is too large.",
-             "A los {seconds} s el robot todavía seguía y el tiempo se acabó. Los tiempos son segundos: busca uno demasiado grande."),
+    "long": ("After {seconds} s the robot was still moving when the time was over. Times are seconds: look for one that is too large, or for a loop without an end.",
+             "A los {seconds} s el robot todavía se movía y el tiempo se acabó. Los tiempos son segundos: busca uno demasiado grande, o un bucle sin final."),
     "still": ("The robot did not move. Give it a move with time and power: F(2, 80)",
               "El robot no se movió. Dale un movimiento con tiempo y potencia: F(2, 80)"),
     "fault/OVERFLOW": ("After {seconds} s a number got too large and the program stopped. Use smaller numbers.",
@@ -37,6 +37,8 @@ SENTENCES: dict[str, tuple[str, str]] = {
                      "Al final el robot quedó a {cm} cm {of_place}. Mira por dónde fue y cambia un solo número."),
     "reaches/one": ("The robot came no nearer to {place} than {cm} cm. Look at the way that it went.",
                     "El robot no se acercó a menos de {cm} cm {of_place}. Mira por dónde fue."),
+    "reaches/over": ("The program ended when {place} was still {cm} cm away. Let it go on for longer.",
+                     "El programa terminó cuando al robot le faltaban {cm} cm para llegar {to_place}. Haz que siga más tiempo."),
     "reaches/several": ("The robot did not get to {place} {number} of {all}. Look at the move before it.",
                         "El robot no llegó {to_place} {number} de {all}. Mira el movimiento anterior."),
     "reaches/late": ("The robot was at {place} after {seconds} s; it has {limit} s. Make it quicker, or its way shorter.",

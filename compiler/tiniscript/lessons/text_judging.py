@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 from itertools import pairwise
 
 from tiniscript import robots
-from tiniscript.lessons.judging import Finding
+from tiniscript.lessons.findings import Finding
 from tiniscript.lessons.lesson import Criterion, Lesson
 from tiniscript.syntax.lexer import NUMBER, WORD, scan
 from tiniscript.words import ALIASES, BLOCK_ENDS

@@ -1,0 +1,80 @@
+"""What judging a run is made of: a finding, the task that it is compared with, the way it took.
+
+Knows no criteria and no languages.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from tiniscript.lessons.lesson import Criterion
+from tiniscript.lessons.running import Run, Sample
+from tiniscript.lessons.variation import point_of
+from tiniscript.virtual.geometry import Point
+
+STILL_CM = 1.0  # less is no move
+
+
+class Finding(NamedTuple):
+    """What is missing. `kind` is that of the criterion, or "" for the run as a whole.
+
+    `key` names a sentence. `labels` is what its place is called in each language.
+    """
+
+    kind: str
+    key: str
+    values: Mapping[str, str] = {}
+    labels: Mapping[str, str] = {}
+
+
+class Task(NamedTuple):
+    """What a criterion is compared with: a run, and whether its world is mirrored."""
+
+    run: Run
+    mirrored: bool
+
+    def point(self, criterion: Criterion, number: int = 0) -> Point:
+        return point_of(criterion.places[number], self.run.world, self.mirrored)
+
+
+class On(NamedTuple):
+    """A point on the way: when, where, and how far the robot had driven."""
+
+    ms: float
+    x_cm: float
+    y_cm: float
+    way_cm: float
+
+
+def between(track: tuple[Sample, ...]) -> list[On]:
+    """Return points of the way, at most a centimetre from each other."""
+    found = [On(float(track[0].ms), *track[0].pose[:2], 0.0)]
+    for sample in track[1:]:
+        ms, x, y, way_cm = found[-1]
+        step_cm = math.dist((x, y), sample.pose[:2])
+        steps = max(1, math.ceil(step_cm))
+        for k in range(1, steps + 1):
+            part = k / steps
+            found.append(
+                On(
+                    ms + (sample.ms - ms) * part,
+                    x + (sample.pose.x_cm - x) * part,
+                    y + (sample.pose.y_cm - y) * part,
+                    way_cm + step_cm * part,
+                )
+            )
+    return found
+
+
+def in_seconds(ms: float) -> str:
+    return f"{ms / 1000:.1f}"
+
+
+def in_cm(length: float, limit: float = math.inf) -> str:
+    """Return a length in words. One that misses a limit does not look like the limit."""
+    is_less = length < limit
+    if round(length) != limit and (round(length) < limit) == is_less:
+        return f"{length:.0f}"
+    return f"{(math.floor if is_less else math.ceil)(length * 10) / 10:g}"
