@@ -32,7 +32,9 @@ def stick(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("stick") / "memoria niñ@s & más"
     folder.mkdir()
     usb_stick.add_texts(folder)
-    usb_stick.add_readme(folder, "Linux", "3.11", ["a wheel"])
+    usb_stick.add_readme(
+        folder, "Linux", "3.11", [usb_stick.Missing("a wheel", "una rueda", "no network")]
+    )
     return folder
 
 
@@ -154,7 +156,8 @@ def test_each_system_has_its_script_with_its_line_ends(stick: Path) -> None:
         assert b"\r" not in (stick / name).read_bytes()
         assert (stick / name).stat().st_mode & 0o111
         assert subprocess.run(["sh", "-n", stick / name]).returncode == 0
-    assert "falta: a wheel" in (stick / "README.txt").read_text(encoding="utf-8-sig")
+    readme = (stick / "README.txt").read_text(encoding="utf-8-sig")
+    assert "missing: a wheel\nfalta: una rueda\n" in readme
 
 
 def test_the_script_of_windows_keeps_the_rules_of_cmd(stick: Path) -> None:
@@ -189,12 +192,14 @@ def test_nothing_of_this_computer_is_on_the_stick(stick: Path) -> None:
 
 def test_an_installer_that_cannot_be_fetched_is_named(tmp_path: Path) -> None:
     missing = usb_stick.add_installer(tmp_path, "file:///nowhere/python-3.13.9-amd64.exe")
-    assert "by hand" in missing[0]
+    assert "by hand" in missing[0].en
+    assert "a mano" in missing[0].es
+    assert "No such file" in missing[0].why
     page = tmp_path / "page.exe"
     page.write_text("<html>blocked by the school</html>")
     target = tmp_path / "stick"
     target.mkdir()
-    assert "not that installer" in usb_stick.add_installer(target, page.as_uri())[0]
+    assert "not that installer" in usb_stick.add_installer(target, page.as_uri())[0].why
     assert list(target.iterdir()) == []
     digest = hashlib.sha256(page.read_bytes()).hexdigest()
     assert usb_stick.add_installer(target, page.as_uri(), digest) == []
@@ -202,6 +207,14 @@ def test_an_installer_that_cannot_be_fetched_is_named(tmp_path: Path) -> None:
     page.write_bytes(page.read_bytes() + b" ")
     assert usb_stick.add_installer(target, page.as_uri(), digest)
     assert not (target / "page.exe").exists()
+
+
+def test_the_index_speaks_one_language(stick: Path) -> None:
+    index = (stick / "pages" / "indice.html").read_text(encoding="utf-8")
+    assert "El lenguaje en una página" in index
+    assert "Una clase en el estudio" in index
+    assert "`" not in index
+    assert not re.search(r"Poster|Wiring|teacher</a>", index)
 
 
 def test_a_folder_with_something_in_it_is_left_alone(tmp_path: Path) -> None:

@@ -34,16 +34,19 @@ th { background: #eee; }
 img { max-width: 100%; }
 """
 TITLES = {
-    "en": ("TiniScript without internet", "Lessons", "pupils", "teacher", "Wiring", "Guides"),
-    "es": ("TiniScript sin internet", "Lecciones", "estudiantes", "docente", "Cableado", "Guías"),
-}
+    "en": ("TiniScript without internet", "Lessons", "pupils", "teacher", "Wiring", "Guides",
+           "The language on one page"),
+    "es": ("TiniScript sin internet", "Lecciones", "alumnos", "docente", "Conexiones", "Guías",
+           "El lenguaje en una página"),
+}  # fmt: skip
 GUIDES = {
     "en": ("docs/monday.en.md", "docs/lessons.en.md", "docs/materials.en.md",
-           "docs/language.en.md", "docs/robots.en.md", "docs/command.en.md", "docs/worlds.en.md",
-           "docs/modules.en.md", "docs/api.en.md", "README.md"),
+           "docs/studio.en.md", "docs/class.en.md", "docs/language.en.md", "docs/robots.en.md",
+           "docs/command.en.md", "docs/worlds.en.md", "docs/modules.en.md", "docs/api.en.md",
+           "README.md"),
     "es": ("docs/lunes.es.md", "docs/lecciones.es.md", "docs/materiales.es.md",
-           "docs/lenguaje.es.md", "docs/robots.es.md", "docs/comandos.es.md", "docs/mundos.es.md",
-           "docs/modulos.es.md", "docs/api.es.md"),
+           "docs/estudio.es.md", "docs/clase.es.md", "docs/lenguaje.es.md", "docs/robots.es.md",
+           "docs/comandos.es.md", "docs/mundos.es.md", "docs/modulos.es.md", "docs/api.es.md"),
 }  # fmt: skip
 LINK = re.compile(r'(href|src)="([^"#:]+)(#[^"]*)?"')
 
@@ -90,7 +93,7 @@ def rendered(text: str) -> tuple[str, str]:
     known: dict[str, int] = {}
     for token, inside in pairwise(tokens):
         if token.type == "heading_open":
-            title = title or inside.content
+            title = title or inside.content.replace("`", "")
             token.attrSet("id", _name(inside, known))
     return str(reader.renderer.render(tokens, reader.options, {})), title
 
@@ -116,7 +119,7 @@ def _index(root: Path, folder: Path, language: str) -> str:
     """Write the lessons' sheets, and return the page that leads to everything."""
     from tiniscript.cli import main as tsc
 
-    title, lessons, pupils, teacher, wiring, guides = TITLES[language]
+    title, lessons, pupils, teacher, wiring, guides, poster = TITLES[language]
     other = (
         '<a href="indice.html">Español</a>'
         if language == "en"
@@ -126,7 +129,7 @@ def _index(root: Path, folder: Path, language: str) -> str:
     for name in GUIDES[language]:
         _, heading = rendered((root / name).read_text(encoding="utf-8"))
         rows.append(f'<li><a href="{name.removesuffix(".md")}.html">{escape(heading)}</a></li>')
-    rows += [f'<li><a href="docs/poster/poster.{language}.pdf">Poster</a></li>', "</ul>"]
+    rows += [f'<li><a href="docs/poster/poster.{language}.pdf">{poster}</a></li>', "</ul>"]
     rows += [f"<h2>{wiring}</h2>", "<ul>"]
     for name in robots.names():
         label = robots.load(name).labels[language]["robot"]

@@ -18,6 +18,7 @@ import sys
 import urllib.request
 from collections.abc import Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
@@ -52,6 +53,14 @@ Python: {pythons}
 {missing}"""
 
 
+class Missing(NamedTuple):
+    """A sentence about what could not be had, in both languages, and why, for who builds it."""
+
+    en: str
+    es: str
+    why: str
+
+
 def main(words: Sequence[str] | None = None) -> int:
     reader = argparse.ArgumentParser(prog="usb_stick", description=__doc__.splitlines()[0])
     reader.add_argument("folder", type=Path, help="a folder that is not there yet, or is empty")
@@ -67,7 +76,7 @@ def main(words: Sequence[str] | None = None) -> int:
         return 2
     wheels = folder / "wheels"
     wheels.mkdir(parents=True)
-    missing = []
+    missing: list[Missing] = []
     if not options.no_firmware and not options.wheel:
         missing += _firmware()
     systems, pythons = options.system or list(SYSTEMS), options.python or list(PYTHONS)
@@ -82,7 +91,7 @@ def main(words: Sequence[str] | None = None) -> int:
     titles = ", ".join(SYSTEMS[each].title for each in systems)
     add_readme(folder, titles, ", ".join(pythons), missing)
     for each in missing:
-        print(f"missing: {each}", file=sys.stderr)
+        print(f"missing: {each.en} ({each.why})", file=sys.stderr)
     size = sum(path.stat().st_size for path in folder.rglob("*") if path.is_file())
     print(f"{folder}: {size / 1e6:.0f} MB. Copy what is in it to the stick.")
     return 1 if missing else 0
@@ -90,14 +99,14 @@ def main(words: Sequence[str] | None = None) -> int:
 
 def add_wheels(
     wheels: Path, systems: Sequence[str], pythons: Sequence[str], ours: Path | None = None
-) -> list[str]:
+) -> list[Missing]:
     """Put all wheels into a folder; return what could not be had. Raises CannotMake.
 
     `ours` is the wheel of TiniScript; where there is none it is made.
     """
     stick_wheels.make_sources(wheels)
     here = Path(shutil.copy(ours, wheels)) if ours else stick_wheels.make_ours(ROOT, wheels)
-    missing = []
+    missing: list[Missing] = []
     for name in systems:
         for python in pythons:
             title = f"{SYSTEMS[name].title}, Python {python}"
@@ -105,21 +114,30 @@ def add_wheels(
             try:
                 stick_wheels.fetch(here, wheels, SYSTEMS[name], python, EXTRAS)
             except CannotMake as why:
-                missing.append(_with_fewer(here, wheels, name, python, f"{title}: {why}"))
+                missing.append(_with_fewer(here, wheels, name, python, str(why)))
     return missing
 
 
-def _with_fewer(ours: Path, wheels: Path, name: str, python: str, reason: str) -> str:
-    """Fetch what a class needs most; return a sentence about what is missing."""
+def _with_fewer(ours: Path, wheels: Path, name: str, python: str, why: str) -> Missing:
+    """Fetch what a class needs most; return what is missing then."""
+    title = f"{SYSTEMS[name].title}, Python {python}"
     try:
         stick_wheels.fetch(ours, wheels, SYSTEMS[name], python, FEWER_EXTRAS)
     except CannotMake:
-        return reason
-    return f"{reason} It has no ports ble:// and tcp:// there; all else works."
+        return Missing(
+            f"{title}: this stick does not install there.",
+            f"{title}: ahí esta memoria no se instala.",
+            why,
+        )
+    return Missing(
+        f"{title}: no ports ble:// and tcp://. All else works.",
+        f"{title}: sin puertos ble:// ni tcp://. Lo demás funciona.",
+        why,
+    )
 
 
-def add_installer(folder: Path, url: str, sha256: str = INSTALLER_SHA256) -> list[str]:
-    """Fetch the installer of Python for Windows; return a sentence where that does not work."""
+def add_installer(folder: Path, url: str, sha256: str = INSTALLER_SHA256) -> list[Missing]:
+    """Fetch the installer of Python for Windows; return what is missing then."""
     target = folder / url.rsplit("/", 1)[1]
     try:
         with urllib.request.urlopen(url, timeout=60) as answer, target.open("wb") as file:
@@ -130,7 +148,13 @@ def add_installer(folder: Path, url: str, sha256: str = INSTALLER_SHA256) -> lis
     except (OSError, ValueError) as failure:  # also what urllib raises
         why = str(getattr(failure, "reason", failure))
     target.unlink(missing_ok=True)
-    return [f"Python's installer for Windows: {why}. Put {url} beside start.bat by hand."]
+    return [
+        Missing(
+            f"Python's installer for Windows. Put {url} beside start.bat by hand.",
+            f"el instalador de Python para Windows. Pon a mano {url} al lado de start.bat.",
+            why,
+        )
+    ]
 
 
 def add_texts(folder: Path) -> None:
@@ -148,20 +172,26 @@ def add_texts(folder: Path) -> None:
             target.chmod(0o755)
 
 
-def add_readme(folder: Path, systems: str, pythons: str, missing: Sequence[str]) -> None:
-    lacks = "".join(f"missing / falta: {each}\n" for each in missing)
+def add_readme(folder: Path, systems: str, pythons: str, missing: Sequence[Missing]) -> None:
+    lacks = "".join(f"missing: {each.en}\nfalta: {each.es}\n" for each in missing)
     text = README.format(version=__version__, systems=systems, pythons=pythons, missing=lacks)
     (folder / "README.txt").write_text(text, encoding="utf-8-sig", newline="\r\n")
 
 
-def _firmware() -> list[str]:
-    """Have the firmware ready in our wheel; return a sentence where it cannot be built."""
+def _firmware() -> list[Missing]:
+    """Have the firmware ready in our wheel; return what is missing where it cannot be built."""
     if any(ready.FOLDER.glob("*.hex")):
         return []
     from tools.builds import firmware_files
 
     if firmware_files.main([]):
-        return ["ready firmware: see above; tsc firmware then builds it, which wants the internet"]
+        return [
+            Missing(
+                "ready firmware. tsc firmware builds it, with internet.",
+                "el firmware listo. tsc firmware lo construye, con internet.",
+                "see above",
+            )
+        ]
     return []
 
 

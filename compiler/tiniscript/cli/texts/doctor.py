@@ -145,7 +145,7 @@ DOCTOR_TEXTS: dict[str, tuple[str, str]] = {
     "next_firmware_newer": ("Install a newer tsc, the way you installed this one.", "Instala un tsc más nuevo, tal como instalaste este."),
     "doctor_wrong_kit": ("This is not the robot that you named", "Este es otro robot, no el que indicaste"),
     "seen_wrong_kit": ("its kit is {kit} ({robot}), not that of {expected}", "su kit es {kit} ({robot}), no el de {expected}"),
-    "next_wrong_kit": ("Name it:  --robot {robot}   Or, if its wires are those of {expected}, put that firmware on it:  tsc firmware --robot {expected}", "Indícalo:  --robot {robot}   O, si está cableado como {expected}, ponle ese firmware:  tsc firmware --robot {expected}"),
+    "next_wrong_kit": ("Name it:  --robot {robot}   Or, if its wires are those of {expected}, put that firmware on it:  tsc firmware --robot {expected}", "Indícalo:  --robot {robot}   O, si sus cables son los de {expected}, ponle ese firmware:  tsc firmware --robot {expected}"),
     "doctor_unknown_kit": ("This computer does not know the robot's kit", "Esta computadora no conoce el kit del robot"),
     "seen_unknown_kit": ("its kit is {kit}, of no shipped profile and of none that was given here", "su kit es {kit}, de ningún perfil incluido y de ninguno que se haya dado aquí"),
     "next_unknown_kit": ("Name its profile once:  tsc info --robot myrobot.toml", "Indica su perfil una vez:  tsc info --robot mirobot.toml"),

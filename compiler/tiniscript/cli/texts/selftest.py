@@ -69,7 +69,7 @@ SELFTEST_TEXTS: dict[str, tuple[str, str]] = {
     "then_again": ("switch it off and on; if it comes back, send this report", "apágalo y enciéndelo; si vuelve a pasar, envía este informe"),
     "then_upload": ("tsc upload prog.ts", "tsc upload prog.ts"),
     "then_hand": ("a hand in front of it, and tsc live \"SHOW({name})\": the value changes if it is connected", "una mano delante, y tsc live \"SHOW({name})\": el valor cambia si está conectado"),
-    "then_wires": ("its wires on the wiring page, power and GND too:  tsc wiring", "sus cables en la página de cableado, también alimentación y GND:  tsc wiring"),
+    "then_wires": ("its wires on the wiring page, power and GND too:  tsc wiring", "sus cables en la página de conexiones, también energía y GND:  tsc wiring"),
     "then_trim": ("tsc trim", "tsc trim"),
     "then_person": ("tsc selftest without --yes, with somebody beside the robot", "tsc selftest sin --yes, con alguien al lado del robot"),
     "selftest_silent": ("it shows nothing", "no muestra nada"),
