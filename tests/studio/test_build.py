@@ -18,7 +18,7 @@ from tools.builds import studio
 
 LARGEST = 6_000_000  # bytes of all files, gzipped
 SOURCES = ROOT / "tools" / "studio"
-TEXTS = ("texts.js", "robot_texts.js", "class_texts.js", "lesson_texts.js")
+TEXTS = ("texts.js", "robot_texts.js", "class_texts.js", "lesson_texts.js", "world_texts.js")
 # whose names stand in the sources; those of the others are made of what a robot or a class says
 NAMED_TEXTS = ("texts.js", "lesson_texts.js")
 

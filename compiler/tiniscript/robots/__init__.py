@@ -78,6 +78,14 @@ def text_of(path: str) -> str:
         is_directory = os.path.isdir(path)  # noqa: PTH112 - Path raises for those names
         code = "file_is_directory" if is_directory else "file_unreadable"
         raise ProfileRefused((code, values)) from None
+    return decoded(found, path)
+
+
+def decoded(found: bytes, name: str) -> str:
+    """Return the text of a file's bytes, as `text_of` does. Raises ProfileRefused."""
+    from tiniscript.robots.refusals import shown
+
+    values = {"file": shown(name)}
     if len(found) > FILE_BYTES:
         limit = f"{FILE_BYTES // 1024} KB"
         raise ProfileRefused(("file_too_large", {**values, "limit": limit}))

@@ -13,7 +13,7 @@ from tiniscript.library import opening
 from tiniscript.link.messages import NAME_BYTES, STOP_BYTES
 from tiniscript.robots.kinematics import Pose
 from tiniscript.robots.profile import LANGUAGES, Robot
-from tiniscript.studio.world_form import drawn
+from tiniscript.studio.world_form import form_of, limits
 from tiniscript.virtual import worlds
 from tiniscript.virtual.driving import Hull
 from tiniscript.words import WORDS
@@ -44,7 +44,8 @@ def description() -> dict[str, Any]:
             "confirm_ms": round(opening.CONFIRM_S * 1000),
             "name_bytes": NAME_BYTES,
         },
-        "worlds": [drawn(worlds.load(name)) for name in worlds.names()],
+        "worlds": [form_of(worlds.load(name)) for name in worlds.names()],
+        "world_limits": limits(),
     }
 
 

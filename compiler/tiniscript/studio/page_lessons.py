@@ -18,7 +18,7 @@ from tiniscript.lessons.sentences import sentence
 from tiniscript.lessons.variation import varied
 from tiniscript.library.compiling import compiled, image_of
 from tiniscript.studio.checking import profile_of
-from tiniscript.studio.world_form import drawn
+from tiniscript.studio.world_form import Form, form_of
 from tiniscript.virtual.world import World
 
 MISTAKES = "mistakes"
@@ -45,8 +45,8 @@ def world(number: int, seed: int) -> World:
     return varied(_lesson(number), seed)
 
 
-def world_drawn(number: int, seed: int) -> dict[str, Any]:
-    return drawn(world(number, seed))
+def world_form(number: int, seed: int) -> Form:
+    return form_of(world(number, seed))
 
 
 class Check:

@@ -74,13 +74,15 @@ _simulation: Simulation | None = None  # a page has one robot
 
 
 def _power_on(fields: Answer, data: bytes) -> Answer:
-    """Switch the virtual robot on in `world`: a shipped one's name, or one of a lesson.
+    """Switch the virtual robot on in `world`: a shipped one's name, a form, or one of a lesson.
 
     With `is_held` it stands in front of the program's first part.
     """
     from tiniscript.studio.simulation import Marks, Simulation
+    from tiniscript.studio.world_form import toml_of
     from tiniscript.virtual import worlds
     from tiniscript.virtual.world import WorldRefused
+    from tiniscript.virtual.world_reader import read as read_world
     from tiniscript.virtual.world_refusals import describe
 
     global _simulation
@@ -92,6 +94,8 @@ def _power_on(fields: Answer, data: bytes) -> Answer:
         if isinstance(where, str):
             assert where in worlds.names(), where
             world = worlds.load(where)
+        elif "form" in where:
+            world = read_world(toml_of(where["form"]), "")
         else:
             world = _lessons().world(where["lesson"], where["seed"])
         marks = Marks(tuple(fields.get("parts", ())), tuple(fields.get("breakpoints", ())),
@@ -137,6 +141,35 @@ def _push(fields: Answer, data: bytes) -> Answer:
     assert _simulation is not None, "nothing is switched on"
     _simulation.push()
     return _simulation.state()
+
+
+def _open_world(fields: Answer, data: bytes) -> Answer:
+    """Return the form of a world's file, `data`, or why it is none."""
+    from tiniscript.robots import decoded
+    from tiniscript.robots.profile import ProfileRefused
+    from tiniscript.studio.world_form import form_of
+    from tiniscript.virtual.world import WorldRefused
+    from tiniscript.virtual.world_reader import read as read_world
+    from tiniscript.virtual.world_refusals import describe
+
+    name = fields["name"]
+    try:
+        world = read_world(decoded(data, name), name.removesuffix(".toml"))
+        return {"world": form_of(world)}
+    except ProfileRefused as refused:
+        return {"refused": describe(WorldRefused(*refused.reasons), fields["language"])}
+
+
+def _write_world(fields: Answer, data: bytes) -> Answer:
+    """Return the text of a form, and why the robot could not begin there, if it could not."""
+    from tiniscript.studio.world_form import toml_of
+    from tiniscript.virtual.driving import Driving
+    from tiniscript.virtual.world_reader import read as read_world
+
+    text = toml_of(fields["form"])
+    world = read_world(text, "")
+    body = checking.profile_of(fields["robot"]).body
+    return {"text": text, "is_blocked": Driving(body, world.obstacles(), world.start).is_blocked()}
 
 
 _robot: PageRobot | None = None  # a page has one of these, too
@@ -191,7 +224,7 @@ def _lesson_page(fields: Answer, data: bytes) -> Answer:
 
 
 def _lesson_world(fields: Answer, data: bytes) -> Answer:
-    return {"world": _lessons().world_drawn(fields["number"], fields["seed"])}
+    return {"world": _lessons().world_form(fields["number"], fields["seed"])}
 
 
 def _lesson_check(fields: Answer, data: bytes) -> Answer:
@@ -208,7 +241,7 @@ def _lesson_go(fields: Answer, data: bytes) -> Answer:
 _ASKED: dict[str, Callable[[Answer, bytes], Answer]] = {
     "check": _check, "open": _open, "line": _line, "blocks": _blocks, "text": _text,
     "power_on": _power_on, "go": _go, "step": _step, "go_on": _go_on, "breakpoints": _breakpoints,
-    "stop": _stop, "push": _push,
+    "stop": _stop, "push": _push, "open_world": _open_world, "write_world": _write_world,
     "lesson_titles": _lesson_titles, "lesson_page": _lesson_page, "lesson_world": _lesson_world,
     "lesson_check": _lesson_check, "lesson_go": _lesson_go,
     "connect": _connect, "link": _link, "import_keys": _import_keys,

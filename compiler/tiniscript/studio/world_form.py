@@ -1,29 +1,94 @@
-"""A world as the page draws it, in the form of JSON."""
+"""A world as the page draws and changes it, in the form of JSON, and the TOML text of that form.
+
+The form has the keys of a world's file. Lengths are centimetres, headings degrees. Knows no page.
+"""
 
 from __future__ import annotations
 
+import json
+import math
 from typing import Any
 
 from tiniscript.virtual.geometry import Point
 from tiniscript.virtual.world import World
+from tiniscript.virtual.world_reader import PARTS, POINTS
+
+DECIMALS = 3  # that a world's file may have
+Form = dict[str, Any]
 
 
-def drawn(world: World) -> dict[str, Any]:
-    """Return the shapes of a world; lengths are centimetres, the heading is degrees."""
+def limits() -> dict[str, int]:
+    """Return how many parts of a kind a world may have, and how many points a part."""
+    return {"parts": PARTS, "points": POINTS}
 
-    def corners(points: tuple[Point, ...]) -> list[list[float]]:
-        return [[point.x, point.y] for point in points]
 
+def form_of(world: World) -> Form:
+    """Return the form of a world."""
+    x_cm, y_cm, heading = world.start
     return {
         "name": world.name,
         "labels": dict(world.labels),
         "width_cm": world.width_cm,
         "height_cm": world.height_cm,
         "has_border": world.has_border,
-        "start": list(world.start),
-        "walls": [corners(wall) for wall in world.walls],
-        "boxes": [corners(box) for box in world.boxes],
-        "lines": [{"points": corners(each.points), "width_cm": each.width_cm}
+        "ambient_percent": round(world.ambient * 100, DECIMALS),
+        "start": {"x_cm": x_cm, "y_cm": y_cm, "heading": heading},
+        "walls": [{"points": _pairs(wall)} for wall in world.walls],
+        "boxes": [_box(corners) for corners in world.boxes],
+        "lines": [{"points": _pairs(each.points), "width_cm": each.width_cm}
                   for each in world.lines],
-        "lamps": [[lamp.place.x, lamp.place.y] for lamp in world.lamps],
+        "lamps": [{"x_cm": lamp.place.x, "y_cm": lamp.place.y, "reach_cm": lamp.reach_cm}
+                  for lamp in world.lamps],
     }  # fmt: skip
+
+
+def toml_of(form: Form) -> str:
+    """Return the text that `world_reader` reads as the world of a form."""
+    floor = {"width_cm": form["width_cm"], "height_cm": form["height_cm"],
+             "border": form["has_border"]}  # fmt: skip
+    labels = form["labels"]
+    if set(labels.values()) == {form["name"]}:
+        labels = {}  # the name of a file, which the next one may have differently
+    tables = [
+        _table("[floor]", floor),
+        _table("[start]", form["start"]),
+        _table("[light]", {"ambient_percent": form["ambient_percent"]}),
+        *(
+            _table(f"[[{kind}]]", part)
+            for kind in ("walls", "boxes", "lines", "lamps")
+            for part in form[kind]
+        ),
+        _table("[labels]", labels),
+    ]
+    return "\n".join(tables)
+
+
+def _pairs(points: tuple[Point, ...]) -> list[list[float]]:
+    return [[point.x, point.y] for point in points]
+
+
+def _box(corners: tuple[Point, ...]) -> Form:
+    """Return middle, size and heading of a box; its first two corners lie along its heading."""
+    front, back, other, _ = corners
+    along, across = (front.x - back.x, front.y - back.y), (back.x - other.x, back.y - other.y)
+    found = {
+        "x_cm": (front.x + other.x) / 2,
+        "y_cm": (front.y + other.y) / 2,
+        "length_cm": math.hypot(*along),
+        "width_cm": math.hypot(*across),
+        "heading": math.degrees(math.atan2(along[1], along[0])),
+    }
+    return {key: round(value, DECIMALS) for key, value in found.items()}
+
+
+def _table(head: str, values: Form) -> str:
+    return "".join([f"{head}\n", *(f"{key} = {_value(value)}\n" for key, value in values.items())])
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, list):
+        return f"[{', '.join(map(_value, value))}]"
+    if isinstance(value, bool | str):
+        return json.dumps(value, ensure_ascii=False)
+    number = round(float(value), DECIMALS)
+    return f"{number:.{DECIMALS}f}".rstrip("0").rstrip(".") if number else "0"

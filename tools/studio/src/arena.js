@@ -1,11 +1,15 @@
 // Draws a world and the robot in it. Knows shapes; what a robot does, the firmware decides.
 
 import { ROBOTS, WORLDS } from './words.js';
+import { cornersOf } from './world_parts.js';
 
 /** @typedef {import('./python.js').RobotState} RobotState */
+/** @typedef {import('./world_parts.js').World} World */
+/** @typedef {import('./world_parts.js').Place} Place */
 
 const MARGIN_CM = 4;
 const CONE = (15 * Math.PI) / 180; // of an ultrasonic sensor, to both sides
+const FINGER = 22; // pixels that a finger may miss
 const MOST_POINTS = 5000; // of the way
 
 export class Arena {
@@ -15,6 +19,9 @@ export class Arena {
   #robot = ROBOTS[0];
   /** @type {[number, number][]} */
   #way = [];
+  #scale = 1; // pixels of the canvas for a centimetre
+  /** What is chosen to be changed. @type {{points: Place[], point: number} | null} */
+  #mark = null;
 
   /** @param {HTMLCanvasElement} canvas */
   constructor(canvas) {
@@ -26,13 +33,33 @@ export class Arena {
 
   /**
    * Begins again: another world or robot, and no way yet.
-   * @param {typeof WORLDS[number]} world
+   * @param {World} world
    * @param {string} robot
    */
   begin(world, robot) {
     this.#world = world;
     this.#robot = ROBOTS.find((each) => each.name === robot) ?? ROBOTS[0];
     this.#way = [];
+  }
+
+  /** @param {{points: Place[], point: number} | null} mark the points that can be taken, and which one is */
+  mark(mark) {
+    this.#mark = mark;
+  }
+
+  /**
+   * Returns the place on the floor under a finger, and how far it may miss.
+   * @param {PointerEvent} event
+   * @returns {{place: Place, reach_cm: number}}
+   */
+  floorAt(event) {
+    const box = this.#canvas.getBoundingClientRect();
+    const scale = this.#scale / (window.devicePixelRatio || 1);
+    const { width_cm, height_cm } = this.#world ?? { width_cm: 0, height_cm: 0 };
+    return {
+      place: [(event.clientX - box.left - box.width / 2) / scale + width_cm / 2, (box.top + box.height / 2 - event.clientY) / scale + height_cm / 2],
+      reach_cm: FINGER / scale,
+    };
   }
 
   /** @param {RobotState | null} state */
@@ -48,6 +75,7 @@ export class Arena {
       width / (world.width_cm + 2 * MARGIN_CM),
       height / (world.height_cm + 2 * MARGIN_CM),
     );
+    this.#scale = scale;
     const pen = this.#context;
     pen.setTransform(1, 0, 0, 1, 0, 0);
     pen.clearRect(0, 0, width, height);
@@ -59,25 +87,27 @@ export class Arena {
     );
     this.#drawWorld(world);
     if (state) this.#drawRobot(state);
+    else this.#drawBody(world.start.x_cm, world.start.y_cm, world.start.heading, null);
+    this.#drawMark();
   }
 
-  /** @param {NonNullable<typeof WORLDS[0]>} world */
+  /** @param {World} world */
   #drawWorld(world) {
     const pen = this.#context;
     pen.fillStyle = '#fffdf6';
     pen.fillRect(0, 0, world.width_cm, world.height_cm);
     pen.lineCap = pen.lineJoin = 'round';
     for (const line of world.lines) this.#path(line.points, '#20242a', line.width_cm);
-    for (const [x = 0, y = 0] of world.lamps) {
+    for (const { x_cm: x, y_cm: y } of world.lamps) {
       this.#dot(x, y, 9, '#ffe9a3');
       this.#dot(x, y, 3, '#e08a1e');
     }
     for (const box of world.boxes) {
-      this.#path(box, '#6b4a2f', 1, true);
+      this.#path(cornersOf(box), '#6b4a2f', 1, true);
       pen.fillStyle = '#c79a6b';
       pen.fill();
     }
-    for (const wall of world.walls) this.#path(wall, '#6b4a2f', 2);
+    for (const wall of world.walls) this.#path(wall.points, '#6b4a2f', 2);
     if (world.has_border) {
       pen.strokeStyle = '#6b4a2f';
       pen.lineWidth = 2;
@@ -87,25 +117,46 @@ export class Arena {
 
   /** @param {RobotState} state */
   #drawRobot(state) {
-    const robot = this.#robot;
-    if (!robot) return;
-    const pen = this.#context;
     const [x, y, heading] = state.pose;
     const last = this.#way.at(-1);
     if (!last || Math.hypot(last[0] - x, last[1] - y) > 0.5) this.#way.push([x, y]);
     if (this.#way.length > MOST_POINTS) this.#way.splice(0, MOST_POINTS / 2);
     this.#path(this.#way, '#5d94d1', 0.8);
+    this.#drawBody(x, y, heading, state);
+  }
+
+  /**
+   * @param {number} x
+   * @param {number} y
+   * @param {number} heading
+   * @param {RobotState | null} state null of a robot that is off
+   */
+  #drawBody(x, y, heading, state) {
+    const robot = this.#robot;
+    if (!robot) return;
+    const pen = this.#context;
     pen.save();
     pen.translate(x, y);
     pen.rotate((heading * Math.PI) / 180);
-    this.#drawRays(state);
+    if (state) this.#drawRays(state);
     this.#path(robot.outline, '#0d4f38', 0.8, true);
-    pen.fillStyle = state.fault ? '#c8372a' : '#2a9d6f';
+    pen.fillStyle = state?.fault ? '#c8372a' : '#2a9d6f';
     pen.fill();
     this.#path([[6, 0], [-3, 3], [-3, -3]], '#fff', 0.4, true);
     pen.fillStyle = '#fff';
     pen.fill();
     pen.restore();
+  }
+
+  #drawMark() {
+    const mark = this.#mark;
+    if (!mark) return;
+    this.#path(mark.points, '#b0186b', 0.6);
+    const radius = (7 * (window.devicePixelRatio || 1)) / this.#scale;
+    mark.points.forEach(([x, y], k) => {
+      this.#dot(x, y, radius, '#fff');
+      this.#dot(x, y, radius * 0.75, mark.point < 0 || k === mark.point ? '#b0186b' : '#7c8894');
+    });
   }
 
   /** The sensors, and how far one of distance looks. @param {RobotState} state */

@@ -5,9 +5,11 @@ import { element } from './elements.js';
 import { faultSaid } from './faults.js';
 import { download } from './files.js';
 import { Simulator } from './simulator.js';
-import { text } from './texts.js';
+import { currentLanguage, text } from './texts.js';
 import { ROBOTS } from './words.js';
+import { keptWorld, OWN_WORLD } from './work.js';
 import { WorldChoice } from './world_choice.js';
+import { WorldDrawing } from './world_drawing.js';
 
 /** @typedef {import('./python.js').Checked} Checked */
 /** @typedef {import('./work.js').Work} Work */
@@ -32,6 +34,10 @@ export class Driving {
   #pause = element('pause', HTMLButtonElement);
   #push = element('push', HTMLButtonElement);
   #world;
+  #drawing;
+  /** While a finger moves a part. @type {import('./world_parts.js').World | null} */
+  #preview = null;
+  #restored;
   #remember;
 
   /**
@@ -51,6 +57,28 @@ export class Driving {
     this.#remember = remember;
     this.#world = new WorldChoice(work, () => this.#enter());
     this.#simulator = new Simulator(python, () => this.#show());
+    this.#drawing = new WorldDrawing(python, this.#arena, {
+      world: () => this.#shapes,
+      isOwn: () => this.#world.isOwn,
+      robot: () => {
+        const [x, y] = this.#simulator.state?.pose ?? [this.#shapes.start.x_cm, this.#shapes.start.y_cm];
+        return [x, y];
+      },
+      robotName: () => work.robot,
+      isDriving: () => this.#isDriving,
+      rest: () => this.#rest(),
+      put: (world) => {
+        this.#preview = null;
+        this.#world.putOwn(world);
+        remember();
+        this.#rest();
+      },
+      preview: (world) => {
+        this.#preview = world;
+        this.#rest();
+      },
+      tell: () => this.#show(),
+    });
     this.#run.addEventListener('click', () => this.#start(false));
     this.#pause.addEventListener('click', () => {
       if (this.#simulator.phase === 'paused') this.#simulator.goOn();
@@ -76,10 +104,21 @@ export class Driving {
     new ResizeObserver(() => this.#arena.draw(this.#simulator.state)).observe(element('arena', HTMLCanvasElement));
     this.setLanguage();
     this.begin();
+    this.#restored = this.#restore();
+  }
+
+  get #shapes() {
+    return this.#preview ?? this.#world.shapes;
+  }
+
+  get #isDriving() {
+    const { phase } = this.#simulator;
+    return phase === 'running' || phase === 'paused';
   }
 
   setLanguage() {
     this.#world.setLanguage();
+    this.#drawing.setLanguage();
     this.#show();
   }
 
@@ -103,12 +142,36 @@ export class Driving {
 
   /** Another robot or world: what drove there has ended. */
   begin() {
+    this.#preview = null;
+    this.#rest();
+    this.#drawing.forget();
+  }
+
+  /** Stops, and switches off. */
+  #rest() {
     this.#stop();
     this.#simulator.phase = 'off';
     this.#simulator.state = null;
     this.#simulator.trace = [];
-    this.#arena.begin(this.#world.shapes, this.#work.robot);
+    this.#arena.begin(this.#shapes, this.#work.robot);
     this.#show();
+  }
+
+  /** Brings the world back that was drawn here. */
+  async #restore() {
+    const kept = keptWorld();
+    if (!kept) return;
+    const request = { do: 'open_world', name: '', language: currentLanguage() };
+    try {
+      await this.#python.ready;
+      const { world } = await this.#python.ask(request, new TextEncoder().encode(kept));
+      const isChosen = this.#work.world === OWN_WORLD;
+      if (world) this.#world.putOwn(world, isChosen);
+      else if (isChosen) this.#note = text('world_lost');
+      if (isChosen) this.begin();
+    } catch {
+      // the page says that there is no compiler
+    }
   }
 
   /** The text has changed: what runs is no longer what is seen. */
@@ -120,12 +183,14 @@ export class Driving {
   /** @param {boolean} isPaused */
   async #start(isPaused) {
     const start = ++this.#starts;
+    this.#drawing.said = '';
     let program = this.#program();
     if (!program) {
       this.#isWaiting = true;
       this.#note = text('still_compiling');
       this.#show();
       program = await this.#whenCompiled();
+      await this.#restored;
       if (start !== this.#starts) return;
       this.#isWaiting = false;
     }
@@ -146,18 +211,17 @@ export class Driving {
       this.#note = '';
       this.#show();
     }
-    const { phase } = this.#simulator;
-    if (phase !== 'running' && phase !== 'paused') return;
+    if (!this.#isDriving) return;
     this.#wasStopped = true;
     this.#simulator.stop();
   }
 
   #show() {
     const { phase, state, trace } = this.#simulator;
-    this.#pause.hidden = phase !== 'running' && phase !== 'paused';
+    this.#pause.hidden = !this.#isDriving;
     this.#pause.textContent = text(phase === 'paused' ? 'go_on' : 'pause');
     this.#push.hidden = !state?.is_waiting || phase !== 'running';
-    element('doing', HTMLElement).textContent = this.#note || this.#doing();
+    element('doing', HTMLElement).textContent = this.#note || this.#drawing.said || this.#doing();
     element('trace', HTMLElement).textContent = trace.slice(-SHOWN).join('\n');
     this.#showValues();
     this.#arena.draw(state);

@@ -4,6 +4,7 @@
 import { CLASS_TEXTS } from './class_texts.js';
 import { LESSON_TEXTS } from './lesson_texts.js';
 import { ROBOT_TEXTS } from './robot_texts.js';
+import { WORLD_TEXTS } from './world_texts.js';
 
 /** @typedef {'en' | 'es'} Language */
 
@@ -12,6 +13,7 @@ export const TEXTS = {
   ...LESSON_TEXTS,
   ...ROBOT_TEXTS,
   ...CLASS_TEXTS,
+  ...WORLD_TEXTS,
   title: ['TiniScript Studio', 'TiniScript Studio'],
   robot: ['Robot', 'Robot'],
   language: ['Language', 'Idioma'],

@@ -6,7 +6,8 @@ import description from '../made/description.json';
 /** @typedef {{text: string, role: string, usage?: string, example: string}} Word */
 
 export const ROBOTS = description.robots;
-export const WORLDS = description.worlds;
+export const WORLDS = /** @type {import('./world_parts.js').World[]} */ (description.worlds);
+export const WORLD_LIMITS = description.world_limits;
 export const LINK = description.link;
 
 /** @type {Map<string, Map<string, Word>>} */

@@ -7,6 +7,8 @@ import { isRobot, WORLDS } from './words.js';
 /** @typedef {{text: string, robot: string, world: string, language: 'en' | 'es', name: string, view: 'blocks' | 'text', level: 'few' | 'usual' | 'all'}} Work */
 
 const PLACE = 'tiniscript.work';
+const WORLD_PLACE = 'tiniscript.world'; // the text of a world that was drawn here
+export const OWN_WORLD = ':own'; // no name of a shipped world
 const OURS = 'tiniscript.'; // all places of this page
 const LONGEST = 1_000_000; // characters
 
@@ -31,11 +33,26 @@ export function keepsNothing() {
 
 /** @returns {Work | null} */
 export function keptWork() {
+  return kept(PLACE, (found) => checked(JSON.parse(found)));
+}
+
+/** Returns the text of the world that was drawn here; who reads it checks it. @returns {string | null} */
+export function keptWorld() {
+  return kept(WORLD_PLACE, (found) => found);
+}
+
+/**
+ * @template T
+ * @param {string} place
+ * @param {(found: string) => T | null} read
+ * @returns {T | null}
+ */
+function kept(place, read) {
   for (const storage of ['sessionStorage', 'localStorage']) {
     try {
-      const kept = /** @type {any} */ (window)[storage].getItem(PLACE);
-      const work = kept && checked(JSON.parse(kept));
-      if (work) return work;
+      const found = /** @type {any} */ (window)[storage].getItem(place);
+      const whole = found && read(found);
+      if (whole) return whole;
     } catch {
       // no storage here, or not what we have put there
     }
@@ -49,12 +66,21 @@ export function keptWork() {
  * @returns {boolean}
  */
 export function keep(work) {
+  return put(PLACE, JSON.stringify(work));
+}
+
+/** Keeps the text of a world that was drawn. @param {string} text @returns {boolean} */
+export function keepWorld(text) {
+  return put(WORLD_PLACE, text);
+}
+
+/** @param {string} place @param {string} whole @returns {boolean} */
+function put(place, whole) {
   if (isForgotten) return true;
-  const whole = JSON.stringify(work);
   let isKept = false;
   for (const storage of ['sessionStorage', 'localStorage']) {
     try {
-      /** @type {any} */ (window)[storage].setItem(PLACE, whole);
+      /** @type {any} */ (window)[storage].setItem(place, whole);
       isKept = true;
     } catch {
       // full, or forbidden
@@ -72,7 +98,7 @@ function checked(found) {
   return {
     text: found.text,
     robot: isRobot(found.robot) ? found.robot : 'tinibot',
-    world: WORLDS.some((world) => world.name === found.world) ? found.world : 'obstacles',
+    world: found.world === OWN_WORLD || WORLDS.some((world) => world.name === found.world) ? found.world : 'obstacles',
     language: found.language === 'en' ? 'en' : 'es',
     name: typeof found.name === 'string' ? found.name.slice(0, 200) : '',
     view: found.view === 'text' ? 'text' : 'blocks',

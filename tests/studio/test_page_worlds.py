@@ -1,0 +1,325 @@
+"""A world is drawn and changed by hand in the page: with a mouse, a finger and keys alone."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from tests.studio.test_page_for_everyone import LOOK, SCREENS, axe
+from tests.studio.test_page_robot import in_phase
+from tests.support.studio import Pages, checked, write
+from tiniscript import compile
+from tiniscript.studio.simulation import Simulation
+from tiniscript.virtual import worlds
+from tiniscript.virtual.world import World
+from tiniscript.virtual.world_reader import read
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from playwright.sync_api import Page
+
+Place = tuple[float, float]
+
+
+def on_screen(page: Page, place: Place, floor: Place = (220, 200)) -> Place:
+    """Return where a place on the floor, in centimetres, is on the screen."""
+    box = page.locator("#arena").bounding_box()
+    assert box is not None
+    scale = min(box["width"] / (floor[0] + 8), box["height"] / (floor[1] + 8))
+    return (
+        box["x"] + box["width"] / 2 + (place[0] - floor[0] / 2) * scale,
+        box["y"] + box["height"] / 2 - (place[1] - floor[1] / 2) * scale,
+    )
+
+
+def drag(page: Page, way: Sequence[Place]) -> None:
+    """Go along a way on the floor with the mouse down."""
+    page.mouse.move(*on_screen(page, way[0]))
+    page.mouse.down()
+    for place in way[1:]:
+        page.mouse.move(*on_screen(page, place), steps=4)
+    page.mouse.up()
+
+
+def said(page: Page, text: str) -> None:
+    page.locator("#doing").filter(has_text=text).wait_for()
+
+
+def saved(page: Page) -> World:
+    """Save the world as a person does, and read it as `tsc robot --world` does."""
+    with page.expect_download() as download:
+        page.click("#world_save")
+    path = Path(download.value.path())
+    named = path.with_suffix(".toml")
+    path.rename(named)
+    assert download.value.suggested_filename in ("world.toml", "mundo.toml")
+    return worlds.load(str(named))
+
+
+def number(page: Page, key: str) -> float:
+    return float(page.input_value(f"#world_{key}"))
+
+
+def chosen(page: Page) -> str:
+    return page.locator("#world_part option:checked").inner_text()
+
+
+@pytest.fixture(autouse=True)
+def at_rest(page: Page) -> None:
+    page.set_viewport_size({"width": 1366, "height": 768})
+    if page.locator("#world_done").is_visible():
+        page.click("#world_done")
+    page.select_option("#world", "obstacles")
+
+
+@pytest.fixture
+def floor(page: Page) -> Page:
+    """A page on which the shipped obstacles can be changed."""
+    page.click("#world_draw")
+    return page
+
+
+def test_a_mouse_adds_moves_and_deletes(floor: Page) -> None:
+    shipped = worlds.load("obstacles")
+    floor.click("#world_add_boxes")
+    assert floor.locator("#world_add_boxes").get_attribute("aria-pressed") == "true"
+    drag(floor, [(140, 60), (170, 80)])
+    assert chosen(floor) == "Box 13"
+    drag(floor, [(155, 70), (155, 110), (145, 120)])
+    found = saved(floor)
+    corners = sorted((round(x), round(y)) for x, y in found.boxes[-1])
+    assert all(abs(a - b) <= 1 for (a, _), b in zip(corners, (130, 130, 160, 160), strict=True))
+    assert found.boxes[:-1] == shipped.boxes
+    assert found.labels == {"en": "my world", "es": "mi mundo"}
+    floor.click("#world_delete")
+    assert saved(floor).boxes == shipped.boxes
+    floor.click("#world_undo")
+    floor.click("#world_undo")  # the drag, too
+    corners = sorted((round(x), round(y)) for x, y in saved(floor).boxes[-1])
+    assert all(abs(a - b) <= 1 for (a, _), b in zip(corners, (140, 140, 170, 170), strict=True))
+    floor.click("#world_redo")
+    floor.select_option("#world_part", label="Box 13")
+    assert abs(number(floor, "x_cm") - 145) <= 1 and abs(number(floor, "y_cm") - 120) <= 1
+
+
+def test_each_kind_is_drawn_and_found_again(floor: Page) -> None:
+    floor.click("#world_add_walls")
+    drag(floor, [(60, 30), (100, 60)])
+    floor.click("#world_add_lines")
+    drag(floor, [(150, 60), (150, 90), (120, 140), (60, 140)])
+    floor.click("#world_add_lamps")
+    floor.mouse.click(*on_screen(floor, (200, 180)))
+    found = saved(floor)
+    assert [(round(x), round(y)) for x, y in found.walls[0]] == [(60, 30), (100, 60)]
+    line = [(round(x), round(y)) for x, y in found.lines[0].points]
+    assert (line[0], line[-1]) == ((150, 60), (60, 140)) and 3 <= len(line) <= 9
+    assert [round(each) for each in found.lamps[0].place] == [200, 180]
+    there = {(80, 45): "Wall 1", (100, 140): "Line 1", (200, 180): "Lamp 1", (56, 75): "Robot",
+             (110, 100): "Box 1", (10, 190): "Floor"}  # fmt: skip
+    for place, name in there.items():
+        floor.mouse.click(*on_screen(floor, place))
+        assert chosen(floor) == name
+    floor.mouse.click(*on_screen(floor, (80, 45)))
+    drag(floor, [(60, 30), (60, 50)])  # an end of the wall, by its handle
+    assert [(round(x), round(y)) for x, y in saved(floor).walls[0]] == [(60, 50), (100, 60)]
+
+
+def test_keys_alone_are_enough(floor: Page) -> None:
+    press = floor.keyboard.press
+    floor.click("#world_done")
+    floor.locator("#world_draw").focus()
+    press("Enter")
+    assert floor.evaluate("document.activeElement.id") == "world_part"
+    floor.locator("#world_add_walls").focus()
+    press("Enter")  # in the middle: there is no finger
+    assert chosen(floor) == "Wall 1"
+    floor.locator("#arena").focus()
+    for key in ("ArrowUp", "Shift+ArrowLeft", "p", "p", "Shift+ArrowDown", "+", "Shift+ArrowUp"):
+        press(key)
+    walls = saved(floor).walls
+    assert walls == (((89, 105), (129, 104), (149, 104.5)),)
+    floor.locator("#arena").focus()
+    press("Control+z")
+    press("Control+z")
+    assert saved(floor).walls == (((89, 105), (129, 104)),)
+    floor.locator("#arena").focus()
+    press("Delete")
+    said(floor, "Deleted: Wall 1")
+    assert saved(floor).walls == ()
+    floor.select_option("#world_part", label="Robot")
+    floor.locator("#arena").focus()
+    press("r")
+    press("ArrowRight")
+    assert saved(floor).start == (61, 75, 15)
+    floor.locator("#world_heading").fill("-90")
+    press("Enter")
+    assert saved(floor).start.heading == -90
+    for wrong in ("", "1e9"):
+        floor.locator("#world_x_cm").fill(wrong)
+        press("Enter")
+        assert 0 <= saved(floor).start.x_cm <= 220
+    floor.select_option("#world_part", label="Floor")
+    floor.locator("#world_width_cm").fill("100")
+    press("Enter")
+    floor.uncheck("#world_border")
+    found = saved(floor)  # the robot is still on the floor
+    assert (found.width_cm, found.start.x_cm, found.has_border) == (100, 100, False)
+
+
+def test_nothing_leaves_the_floor(floor: Page) -> None:
+    drag(floor, [(56, 75), (-60, 300)])
+    assert saved(floor).start[:2] == (0, 200)
+    said(floor, "does not fit there")
+    floor.click("#world_undo")
+    assert saved(floor).start[:2] == (56, 75)
+
+
+def finger(page: Page, way: Sequence[Place]) -> None:
+    """Go along a way on the floor with a finger."""
+    session = page.context.new_cdp_session(page)
+    for k, place in enumerate([*way, None]):
+        kind = "touchEnd" if place is None else "touchMove" if k else "touchStart"
+        x, y = on_screen(page, place) if place else (0, 0)
+        points = [] if place is None else [{"x": x, "y": y}]
+        session.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+    session.detach()
+
+
+def test_a_finger_draws_and_drags_on_a_small_screen(pages: Pages) -> None:
+    page = pages.open(viewport={"width": 390, "height": 844}, has_touch=True, locale="es-ES")
+    page.tap("#world_draw")
+    page.tap("#world_add_lines")
+    finger(page, [(60, 40), (100, 40), (150, 60), (160, 80)])
+    assert chosen(page) == "Línea 1"
+    finger(page, [(56, 75), (56, 90), (60, 110)])
+    assert chosen(page) == "Robot"
+    found = saved(page)
+    assert abs(found.start.x_cm - 60) <= 1 and abs(found.start.y_cm - 110) <= 1
+    assert len(found.lines) == 1 and abs(found.lines[0].points[-1].x - 160) < 1
+    page.tap("#world_done")
+    assert page.locator("#world option:checked").inner_text() == "mi mundo"
+    finger(page, [(60, 110), (60, 100)])  # outside of the drawing, too
+    page.reload()  # and it is kept
+    checked(page)
+    assert page.locator("#world option:checked").inner_text() == "mi mundo"
+    page.tap("#world_draw")
+    again = saved(page)
+    assert abs(again.start.y_cm - 100) <= 1 and again.lines == found.lines
+
+
+def test_the_robot_begins_where_it_was_put(page: Page) -> None:
+    """In a shipped world, without drawing, and again after a run has driven it away."""
+    page.select_option("#world", "light")
+    write(page, "SHOW(DISTANCE);\nF(1, 80)")
+    page.select_option("#speed", "20")
+    page.mouse.move(*on_screen(page, (40, 40), (240, 180)))
+    page.mouse.down()
+    page.mouse.move(*on_screen(page, (80, 60), (240, 180)), steps=3)
+    page.mouse.up()
+    assert page.locator("#world option:checked").inner_text() == "my world"
+    page.click("#run")
+    in_phase(page, "ended")
+    shown = (page.locator("#trace").text_content() or "").partition("SHOW ")[2].split()[0]
+    page.click("#world_draw")
+    world = saved(page)
+    page.click("#world_done")
+    assert abs(world.start.x_cm - 80) <= 1 and world.lamps == worlds.load("light").lamps
+    simulation = Simulation("tinibot", world, compile("SHOW(DISTANCE);\nF(1, 80)").image)
+    simulation.go(2000)
+    events = [event.text for event in simulation.robot.take_events()]
+    assert f"SHOW {shown}" in events
+    page.select_option("#world", "light")
+    assert read_start(page) == (40, 40)
+
+
+def read_start(page: Page) -> Place:
+    page.click("#world_draw")
+    start = saved(page).start
+    page.click("#world_done")
+    return start.x_cm, start.y_cm
+
+
+def put(page: Page, data: bytes, name: str = "own.toml") -> None:
+    page.set_input_files(
+        "#world_file", {"name": name, "mimeType": "application/toml", "buffer": data}
+    )
+
+
+OWN = b"""[floor]
+width_cm = 90
+height_cm = 70
+[start]
+x_cm = 30
+y_cm = 30
+[[boxes]]
+x_cm = 70
+y_cm = 50
+length_cm = 10
+width_cm = 10
+heading = 270
+[labels]
+en = "<img src=x onerror=alert(1)>"
+es = "aula"
+"""
+
+
+def test_a_file_is_opened_or_says_why_not(floor: Page) -> None:
+    put(floor, OWN)
+    said(floor, "Opened: own.toml")
+    wanted = read(OWN.decode(), "own")
+    found = saved(floor)
+    assert (found.start, found.width_cm, found.labels) == (wanted.start, 90, wanted.labels)
+    near = [(round(x, 2), round(y, 2)) for x, y in found.boxes[0]]
+    assert near == [(round(x, 2), round(y, 2)) for x, y in wanted.boxes[0]]
+    assert floor.locator("img").count() == 0
+    for data, why in (
+        (b"\xff", "UTF-8"),
+        (b"[floor]\nwidth_cm = 1\n", "own.toml was not opened. "),
+        (OWN.replace(b"x_cm = 30", b"x_cm = 900"), "starts outside the floor"),
+        (b"#" * 3_000_000, "has more than"),
+    ):
+        put(floor, data)
+        said(floor, why)
+        assert floor.input_value("#world_width_cm") == "90"
+    floor.select_option("#language", "es")
+    put(floor, b"\xff")
+    said(floor, "no se abrió")
+
+
+def test_a_damaged_world_does_no_harm(page: Page) -> None:
+    write(page, "SI|F(1, 80)")
+    page.evaluate(
+        """() => { for (const each of [sessionStorage, localStorage]) {
+          each.setItem('tiniscript.world', 'no TOML');
+          const work = JSON.parse(each.getItem('tiniscript.work'));
+          each.setItem('tiniscript.work', JSON.stringify({...work, world: ':own'}));
+        } }"""
+    )
+    page.reload()
+    checked(page)
+    assert page.input_value("#world") == "obstacles"
+    said(page, "cannot be read any more")
+    page.click("#run")
+    page.locator("html[data-phase=running]").wait_for(state="attached")
+    page.keyboard.press("Escape")
+
+
+@pytest.mark.parametrize("language", ["en", "es"])
+def test_everything_is_seen(floor: Page, language: str) -> None:
+    floor.select_option("#language", language)
+    floor.locator("#world_add_lines").focus()
+    floor.keyboard.press("Enter")
+    line = floor.locator("#world_part option:checked").inner_text()
+    parts = floor.locator("#world_part option")
+    for screen in SCREENS:
+        floor.set_viewport_size({"width": screen[0], "height": screen[1]})
+        for name in (*parts.all_inner_texts()[:3], line):
+            floor.select_option("#world_part", label=name)
+            assert floor.evaluate(LOOK) == [], (screen, name)
+        arena = floor.locator("#arena").bounding_box()
+        assert arena is not None and min(arena["width"], arena["height"]) >= 120
+    floor.set_viewport_size({"width": 1366, "height": 768})
+    assert axe(floor) == []

@@ -1,0 +1,130 @@
+"""A world in the page's form: its text is read as the same world, and other files say why not."""
+
+from __future__ import annotations
+
+import json
+from random import Random
+from typing import Any
+
+import pytest
+
+from tiniscript.lessons import catalogue
+from tiniscript.lessons.variation import varied
+from tiniscript.studio import worker
+from tiniscript.studio.world_form import form_of, limits, toml_of
+from tiniscript.virtual import worlds
+from tiniscript.virtual.world import World
+from tiniscript.virtual.world_reader import read
+
+
+def is_near(one: Any, other: Any) -> bool:
+    """The same but for the last digits of what was calculated."""
+    if isinstance(one, float | int) and not isinstance(one, bool):
+        return isinstance(other, float | int) and abs(one - other) < 0.002
+    if isinstance(one, tuple):
+        return len(one) == len(other) and all(map(is_near, one, other))
+    return bool(one == other)
+
+
+def shipped() -> list[World]:
+    lessons = [catalogue.load(folder) for folder in catalogue.folders()]
+    return [*map(worlds.load, worlds.names()), *(varied(each, 3) for each in lessons)]
+
+
+def test_the_text_of_a_form_is_the_same_world() -> None:
+    found = shipped()
+    assert len(found) > 10 and any(world.lamps for world in found)
+    for world in found:
+        again = read(toml_of(form_of(world)), world.name)
+        assert is_near(tuple(again), tuple(world)), world.name
+
+
+def test_random_forms_keep_every_number() -> None:
+    chance = Random(16)
+
+    def number(low: float, high: float) -> float:
+        return round(chance.uniform(low, high), chance.randrange(4))
+
+    def points() -> list[list[float]]:
+        return [[number(0, 200), number(0, 150)] for _ in range(chance.randint(2, 9))]
+
+    for _ in range(200):
+        form = {
+            "name": "own",
+            "labels": {"en": chance.choice(['my "own"', "a\\b", "own"]), "es": "ñandú 🤖"},
+            "width_cm": 200.5,
+            "height_cm": 150,
+            "has_border": chance.random() < 0.5,
+            "ambient_percent": number(0, 100),
+            "start": {"x_cm": number(0, 200), "y_cm": number(0, 150), "heading": number(-180, 180)},
+            "walls": [{"points": points()} for _ in range(chance.randrange(4))],
+            "boxes": [{"x_cm": number(0, 200), "y_cm": number(0, 150), "length_cm": number(1, 60),
+                       "width_cm": number(1, 60), "heading": number(-179, 179)}
+                      for _ in range(chance.randrange(4))],
+            "lines": [{"points": points(), "width_cm": number(0.5, 9)}
+                      for _ in range(chance.randrange(3))],
+            "lamps": [{"x_cm": number(0, 200), "y_cm": number(0, 150), "reach_cm": number(1, 300)}
+                      for _ in range(chance.randrange(3))],
+        }  # fmt: skip
+        assert is_near(as_tuples(form_of(read(toml_of(form), "own"))), as_tuples(form))
+
+
+def as_tuples(value: Any) -> Any:
+    if isinstance(value, dict):
+        return tuple((key, as_tuples(value[key])) for key in value)
+    return tuple(map(as_tuples, value)) if isinstance(value, list) else value
+
+
+def opened(data: bytes, name: str = "own.toml", language: str = "en") -> dict[str, Any]:
+    request = {"do": "open_world", "name": name, "language": language}
+    found: dict[str, Any] = json.loads(worker.answer(json.dumps(request), data))
+    return found
+
+
+GOOD = b"[floor]\nwidth_cm = 100\nheight_cm = 80\n[start]\nx_cm = 30\ny_cm = 30\n"
+HOSTILE = {
+    "nothing": (b"", "floor"),
+    "no TOML": (b"SI|F(2, 80)", "Line 1"),
+    "no UTF-8": (b"\xff\xfe[floor]", "UTF-8"),
+    "too large": (b"#" * 2_000_000, "has more than"),
+    "another key": (GOOD + b"[lamp]\nx = 1\n", "lamp"),
+    "a start outside": (GOOD.replace(b"x_cm = 30", b"x_cm = 300"), "starts outside"),
+    "endless": (GOOD.replace(b"100", b"inf"), "width_cm"),
+    "too many parts": (GOOD + b"[[lamps]]\nx_cm = 1\ny_cm = 1\n" * 101, "101 parts"),
+    "a long number": (GOOD.replace(b"100", b"9" * 5000), ""),
+    "deep": (b"a = " + b"[" * 5000, ""),
+}
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_a_file_that_is_no_world_says_why(name: str) -> None:
+    data, said = HOSTILE[name]
+    for language in ("en", "es"):
+        found = opened(data, language=language)
+        assert set(found) == {"refused"} and found["refused"]
+        assert all(len(each) < 400 and each.isprintable() for each in found["refused"])
+        assert language == "es" or said in " ".join(found["refused"])
+
+
+@pytest.mark.parametrize("name", ["a.toml", ".toml", "", "x" * 5000 + ".toml", "\x1b[31m\n.toml"])
+def test_any_name_of_a_file_can_be_opened_and_written(name: str) -> None:
+    found = opened(GOOD, name)
+    request = {"do": "write_world", "form": found["world"], "robot": "tinibot"}
+    answer = json.loads(worker.answer(json.dumps(request)))
+    assert not answer["is_blocked"]
+    assert read(answer["text"], "own").start == (30, 30, 0)
+
+
+def test_a_robot_that_does_not_fit_is_told() -> None:
+    world = opened(GOOD.replace(b"x_cm = 30", b"x_cm = 3"))["world"]
+    request = {"do": "write_world", "form": world, "robot": "tinibot"}
+    assert json.loads(worker.answer(json.dumps(request)))["is_blocked"]
+    start = {"do": "power_on", "robot": "tinibot", "world": {"form": world}, "language": "en"}
+    assert "does not fit" in json.loads(worker.answer(json.dumps(start)))["refused"][0]
+
+
+def test_the_limits_are_those_of_the_reader() -> None:
+    parts, points = limits()["parts"], limits()["points"]
+    form = opened(GOOD)["world"]
+    form["walls"] = [{"points": [[1, 1]] * points}] * parts
+    assert len(read(toml_of(form), "").walls) == parts
