@@ -16,6 +16,12 @@ if TYPE_CHECKING:
     from tiniscript.spelling import Speller
 
 
+# Roles of instructions: these have values in brackets, and STOP does something, too. A new role of a
+# word that does something is a name here.
+CALLS = frozenset(("move", "wait", "motors", "beep", "show"))
+INSTRUCTIONS = CALLS | {"stop"}
+
+
 class Argument(NamedTuple):
     """What an argument means, and what a plain number there may be."""
 
@@ -30,6 +36,16 @@ class Word(NamedTuple):
     text: str
     role: str
     arguments: tuple[Argument, ...] = ()
+
+    @property
+    def is_call(self) -> bool:
+        """Whether it is an instruction with values in brackets."""
+        return self.role in CALLS
+
+    @property
+    def is_instruction(self) -> bool:
+        """Whether a robot does something at it."""
+        return self.role in INSTRUCTIONS
 
     @property
     def usage(self) -> str:

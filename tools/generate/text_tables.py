@@ -30,7 +30,13 @@ def role_of(word: Word) -> str:
     if word.text in ("LOOP", "DEF", "ELSE"):
         return word.text.lower()
     roles = {"block": "question", "arm": "question", "until": "question", "alias": "end"}
-    return roles.get(word.role, word.role)
+    role = roles.get(word.role, word.role)
+    if role not in ROLES:
+        raise LookupError(
+            f"{word.text} has a role of its own, {role}. A robot's reader of text needs it: a name "
+            "in ROLES of tools/generate/text_tables.py, and what it does in vm_arduino/src/text/"
+        )
+    return role
 
 
 def words_in_order() -> list[Word]:

@@ -167,11 +167,13 @@ class _Part:
             elif driver == "two_wire":
                 forward, backward = (self._pwm(pins[f"{side}_{way}"]) for way in _WAYS)
                 lines.append(f"constexpr TwoWire {name} = {{{forward}, {backward}}};")
-            else:
+            elif driver == "servos":
                 self.servos.append(pins[f"{side}_pin"])
                 still, is_reversed = settings[f"{side}_still_us"], settings[f"{side}_reversed"]
                 reverse = "true" if is_reversed else "false"
                 lines.append(f"constexpr TurningServo {name} = {{{number}, {still}, {reverse}}};")
+            else:
+                raise _untold(driver)
         if driver in BRIDGES:
             lines.append(f"constexpr Pin kStandby = {self._pin(pins.get('standby'))};")
         return lines
@@ -190,6 +192,8 @@ class _Part:
                 self.begin.append(f"begin_input({pin});")
             low = "!" if settings["yes_is_low"] else ""
             return [f"      *value = {low}is_high({pin});", "      return true;"]
+        if driver not in ("analog", "threshold"):
+            raise _untold(driver)
         channel = pins["pin"] - (CHIPS[self.robot.board.chip].first_analog or 0)
         read = f"      if (!analog_read({channel}, value)) return false;"
         if driver == "threshold":
@@ -246,6 +250,8 @@ class _Part:
             self.off.append(f"disconnect(Pwm{self._pwm(pin)});  // {device.name}")
             part = f"part_of_range(value, {low}, {high}, 0, 255)"
             return [f"      connect(Pwm{self._pwm(pin)}, {part});", "      return;"]
+        if driver != "servo":
+            raise _untold(driver)
         self.servos.append(pin)
         pulse = f"part_of_range(value, {low}, {high}, {settings['low_us']}, {settings['high_us']})"
         number = len(self.servos) - 1
@@ -264,6 +270,10 @@ class _Part:
             *(f"  {line}" for line in self.off),
             "}",
         ]
+
+
+def _untold(driver: str) -> NotImplementedError:
+    return NotImplementedError(f"robots/firmware.py does not say what the firmware does: {driver}")
 
 
 def _hashes(kit: Kit) -> str:

@@ -102,6 +102,8 @@ class Plan:
                 lines = [f"{name} = analogRead({pin}) {sign} {wiring.settings['threshold']};"]
             elif is_count(device, wiring):
                 lines = [f"{name} = analogRead({pin});"]
+            elif wiring.driver != "analog":
+                raise _untold(wiring.driver)
             else:
                 lines = self.scaled(device, wiring, name, pin)
         body = "\n".join(f"  {line}" for line in (*lines, f"return {name};"))
@@ -161,6 +163,8 @@ class Plan:
             self.parts.off.append(f"analogWrite({pin}, 0);")
             part = _part(device, 0, 255)
             return f"void {function}(long value) {{\n  analogWrite({pin}, {part});\n}}"
+        if wiring.driver != "digital":
+            raise _untold(wiring.driver)
         on, off = ("LOW", "HIGH") if wiring.settings["yes_is_low"] else ("HIGH", "LOW")
         self.parts.off.append(f"digitalWrite({pin}, {off});")
         if off == "HIGH":  # before the pin is an output, so that the part stays off
@@ -170,6 +174,10 @@ class Plan:
 
 def _part(device: Device, first: int, last: int) -> str:
     return f"$part_of(value, {device.low // ONE}, {device.high // ONE}, {first}, {last})"
+
+
+def _untold(driver: str) -> NotImplementedError:
+    return NotImplementedError(f"sketch/wiring.py does not say what a sketch does: {driver}")
 
 
 def is_count(device: Device, wiring: Wiring) -> bool:

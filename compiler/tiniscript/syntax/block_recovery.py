@@ -33,8 +33,6 @@ from tiniscript.syntax.suggestions import (
 from tiniscript.syntax.vocabulary import Vocabulary
 from tiniscript.words import ALIASES, BLOCK_ENDS, TURN_WORDS, WORDS, meant_by, nearest
 
-_DOING = ("move", "wait", "stop", "motors", "beep", "show")
-
 
 class BlockRecovery:
     def __init__(self, cursor: Cursor, reporter: Reporter, blocks: Blocks, kit: Kit | None) -> None:
@@ -94,7 +92,7 @@ class BlockRecovery:
         cursor = self.cursor
         while cursor.token.kind not in ("{", *AT_END) and cursor.token.text not in AFTER_HEADER:
             said = self.known.command(cursor.token.text) if cursor.token.kind is WORD else None
-            if cursor.token.text in TURN_WORDS or (said is not None and said.role in _DOING):
+            if cursor.token.text in TURN_WORDS or (said is not None and said.is_instruction):
                 break
             cursor.i += 1
 

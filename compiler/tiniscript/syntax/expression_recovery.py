@@ -112,7 +112,7 @@ class ExpressionRecovery:
             fail(codes.UNTIL_ALONE, token.span, fix="")
         if word.text == "SI":  # `X = si`
             fail(codes.OTHER_LANGUAGE, token.span, found="SI", right="TRUE", fix="TRUE", usage="")
-        if word.role in ("move", "wait", "motors", "beep", "show"):
+        if word.is_call:
             if self.cursor.following.kind == "(":
                 fail(codes.NO_VALUE, token.span, word=word.text)
         if word.text in self.reporter.reserved_words:

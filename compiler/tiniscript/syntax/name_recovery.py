@@ -278,11 +278,7 @@ class NameRecovery:
             name = glued.partition("(")[0]
             self.reporter.fail(codes.MISSING_OPEN, span, word=name, fix=glued, usage=usage_of(name))
         meant = WORDS.get(meant_by(word.text) or "")
-        if (
-            meant is not None
-            and following.kind is NUMBER
-            and meant.role in ("move", "wait", "show", "beep", "motors", "stop")
-        ):
+        if meant is not None and following.kind is NUMBER and meant.is_instruction:
             cursor.i = end
             self.sentence.say_in_other_words(word.span, word.text, meant, rest)
 

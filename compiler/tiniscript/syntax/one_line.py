@@ -225,7 +225,7 @@ class _Reader:
                 self.k += 2
             self.row.append(word.text)
             return self.token.kind is not NUMBER
-        if word.role not in ("move", "wait", "motors", "beep", "show", "actuator"):
+        if not word.is_call and word.role != "actuator":
             return False
         return self._call(word, token.text in IN_MILLISECONDS)
 

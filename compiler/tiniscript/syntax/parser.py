@@ -49,7 +49,6 @@ ENOUGH = 100  # diagnostics after which reading on helps nobody
 
 _SETUPS = frozenset(("SI", "SB", "PING"))
 _AFTER_NAME = frozenset(("(", *AT_END))
-_COMMANDS = frozenset(("move", "wait", "motors", "stop", "start", "beep", "show"))  # roles
 
 
 class Parsed(NamedTuple):
@@ -197,7 +196,7 @@ class Parser:
         if known is None:
             if following.kind not in _AFTER_NAME or foreign_block(word.text):
                 self.recovery.of_name.unknown_word(self, word, following)
-        elif known.role not in _COMMANDS:
+        elif not known.is_instruction and known.role != "start":
             self.recovery.no_command(self, word, known.role)
         cursor.i += 1
         arguments = until = None

@@ -44,7 +44,6 @@ _SAYING_NO_MORE = frozenset((
     "CM", "SEG", "SEGUNDOS", "SECONDS", "THE", "EL", "AL", "ROBOT", "CAR", "CARRO", "CARRITO",
     "PLEASE", "GRACIAS",
 ))  # fmt: skip
-_COMMANDS = ("move", "wait", "motors", "stop", "beep", "show")
 
 
 class Recovery:
@@ -292,11 +291,11 @@ class Recovery:
     def meant(self, word: Token) -> Word | None:
         """Return the command that a word of another language means."""
         meant = self.in_block.known.command(word.text)
-        return meant if meant is not None and meant.role in _COMMANDS else None
+        return meant if meant is not None and meant.is_instruction else None
 
     def _is_command(self, token: Token) -> bool:
         known = WORDS.get(token.text) if token.kind is WORD else None
-        return known is not None and known.role in _COMMANDS
+        return known is not None and known.is_instruction
 
     def _words_behind(self, first: Token, token: Token, header: Block | None) -> None:
         """`SHOW(DISTANCE) cm`, `STOP the robot`: words that say no more."""

@@ -24,8 +24,6 @@ _SEEING = frozenset(
     "HAY VE VES VEO DETECTA ENCUENTRA TOCA CHOCA LLEGA ESTA EL LA UN UNA".split()  # noqa: SIM905
 )
 
-_COMMANDS = ("move", "wait", "motors", "beep", "show")
-
 
 class SetupRecovery:
     def __init__(self, cursor: Cursor, reporter: Reporter) -> None:
@@ -58,10 +56,7 @@ class SetupRecovery:
         if rest is None and text[2:3] in ("L", "I", "1"):
             rest, length = WORDS.get(text[3:]), 3
         is_glued = (
-            text not in WORDS
-            and text[:2] in ("SI", "SB")
-            and rest is not None
-            and rest.role in _COMMANDS
+            text not in WORDS and text[:2] in ("SI", "SB") and rest is not None and rest.is_call
         )
         if not is_glued or bar.kind != "(" or rest is None:
             return None

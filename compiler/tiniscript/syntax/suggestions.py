@@ -169,7 +169,7 @@ def _begins_body(tokens: Sequence[Token], k: int, start: int, names_end: bool) -
         return False
     if following.kind == "=":
         return after_value
-    if word.role in ("move", "wait", "motors", "beep", "show"):
+    if word.is_call:
         return following.kind in ("(", NUMBER, "-")
     return True
 

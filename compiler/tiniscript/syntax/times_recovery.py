@@ -14,8 +14,6 @@ from tiniscript.syntax.reporter import Reporter
 from tiniscript.syntax.suggestions import after_bracket, shortened
 from tiniscript.words import WORDS
 
-_COMMANDS = ("move", "wait", "motors", "stop", "beep", "show")
-
 
 class TimesRecovery:
     def __init__(self, cursor: Cursor, reporter: Reporter, in_block: BlockRecovery) -> None:
@@ -87,4 +85,4 @@ class TimesRecovery:
 
 def _is_command(token: Token) -> bool:
     known = WORDS.get(token.text) if token.kind is WORD else None
-    return known is not None and known.role in _COMMANDS
+    return known is not None and known.is_instruction

@@ -32,7 +32,6 @@ from tiniscript.words import BLOCK_ENDS, NEAR_WORDS, WORDS, Word, meant_by
 _ENDIF = BLOCK_ENDS["IF"]
 _FARTHEST = 2000  # tokens in which the end of a block is looked for
 _AROUND = re.compile(r"([0-9]+(?:\.[0-9]+)?)([FBLR])([0-9]+)")
-_DOING = ("move", "wait", "motors", "stop", "beep", "show", "actuator")
 _ASKING = frozenset(
     ("INPUT", "READ", "SCANF", "LEER", "PREGUNTAR", "ENTRADA", "PROMPT", "RAW_INPUT")
 )
@@ -65,7 +64,7 @@ class ValueConstructs:
         while tokens[k].kind not in AT_END and k < start + LONGEST:
             is_call = tokens[k].kind is WORD and tokens[k + 1].kind == "("
             command = self.known.command(tokens[k].text) if is_call else None
-            if command is not None and command.role in _DOING:
+            if command is not None and (command.is_instruction or command.role == "actuator"):
                 break  # `X = 50, F(2, X)`
             k += 1
         return list(tokens[start:k])
@@ -238,7 +237,7 @@ class ValueConstructs:
         if cursor.tokens[k + 1].kind == "=":
             self.unread_value(first, k + 2, len(self.reporter.diagnostics))
         command = self.known.command(first.text)
-        if command is not None and command.role in _DOING:
+        if command is not None and (command.is_instruction or command.role == "actuator"):
             self._brackets_behind(first, k, command)
             self._question_behind(first, command)
 

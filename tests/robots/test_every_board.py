@@ -1,0 +1,43 @@
+"""Every board that has firmware is in each table that knows boards: the message names the one."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from tests.machines.board import VARIANTS
+from tests.support.casefile import ROOT
+from tiniscript.flash import bootloaders
+from tiniscript.robots import firmware
+from tiniscript.robots.boards import CHIPS
+from tiniscript.robots.ports import AVRS
+from tiniscript.sketch import writing
+from tiniscript.wiring.headers import SIDES
+
+INI = ROOT / "vm_arduino" / "platformio.ini"
+
+
+@pytest.mark.parametrize("board", firmware.BOARDS)
+def test_a_board_is_drawn_and_built(board: str) -> None:
+    assert board in CHIPS, "robots/boards.py says what its pins can do"
+    assert board in SIDES, "wiring/headers.py says where its pins are"
+    environments = re.findall(r"(?m)^\[env:(.+)\]$", INI.read_text(encoding="utf-8"))
+    assert board in environments, "vm_arduino/platformio.ini has an environment of its name"
+
+
+@pytest.mark.parametrize("board", AVRS)
+def test_a_board_with_an_avr_is_written_and_has_sketches(board: str) -> None:
+    written = {firmware_board for firmware_board, _ in bootloaders.BOARDS.values()}
+    assert board in written, "flash/bootloaders.py says how its firmware is written"
+    assert board in writing.BOARDS, "sketch/writing.py says how a sketch calls it"
+    assert board in VARIANTS, "tests/machines/board.py names the core's folder with its pins"
+
+
+def test_no_table_has_a_board_without_firmware() -> None:
+    assert set(SIDES) | set(writing.BOARDS) <= set(firmware.BOARDS)
+    assert {board for board, _ in bootloaders.BOARDS.values()} <= set(firmware.BOARDS)
+
+
+def test_every_chip_has_firmware() -> None:
+    assert set(CHIPS) == set(firmware.BOARDS)

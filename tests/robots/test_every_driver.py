@@ -1,0 +1,63 @@
+"""Every driver of the table goes the whole road: the firmware's header, a sketch, a drawing."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.wiring.test_wiring import DEVICES, MOTORS, robot_with
+from tiniscript import compile_text, robots
+from tiniscript.robots import firmware
+from tiniscript.robots.boards import Driver
+from tiniscript.robots.profile import Robot
+from tiniscript.sketch.writing import sketch_of
+
+
+def written(robot: Robot) -> tuple[str, str]:
+    """Return the header and a sketch of a robot that uses all that it has."""
+    uses = [f"SHOW({device.name})" for device in robot.kit.sensors]
+    uses += [
+        f"{device.name}({'TRUE' if device.is_yes_no else 1})" for device in robot.kit.actuators
+    ]
+    compiled = compile_text("; ".join(["F(1, 50)", *uses]), robot.kit, "prog.ts")
+    assert compiled.program is not None and compiled.is_right, compiled.diagnostics
+    sketch = sketch_of(compiled.source, compiled.program, robot, "en")
+    return firmware.header([robot], "a test."), sketch
+
+
+def names(drivers: list[Driver]) -> list[str]:
+    return [f"{each.used_by} {each.name}" for each in drivers]
+
+
+@pytest.mark.parametrize("driver", DEVICES, ids=names(DEVICES))
+def test_a_device_is_read_or_set_by_firmware_and_sketch(driver: Driver) -> None:
+    header, sketch = written(robot_with("l298n", [driver]))
+    assert "case 0:  // D0" in header
+    assert "D0_PIN" in sketch or "D0_TRIGGER_PIN" in sketch
+
+
+@pytest.mark.parametrize("motors", MOTORS)
+def test_motors_are_driven_by_firmware_and_sketch(motors: str) -> None:
+    header, sketch = written(robot_with(motors, []))
+    assert "kLeftMotor" in header and "kRightMotor" in header
+    assert "void driveMotor(" in sketch
+
+
+@pytest.mark.parametrize("table", ["motors", "sensors", "actuators"])
+def test_a_driver_that_nothing_is_said_of_is_named(table: str) -> None:
+    robot = robot_with("l298n", DEVICES)
+    board = robot.board
+    if table == "motors":
+        board = board._replace(motors=board.motors._replace(driver="new"))
+    elif table == "sensors":
+        board = board._replace(sensors=tuple(e._replace(driver="new") for e in board.sensors))
+    else:
+        board = board._replace(actuators=tuple(e._replace(driver="new") for e in board.actuators))
+    with pytest.raises(NotImplementedError, match="new"):
+        firmware.header([robot._replace(board=board)], "a test.")
+
+
+def test_shipped_robots_have_drivers_of_the_table() -> None:
+    known = {driver.name for driver in DEVICES}
+    for name in robots.names():
+        board = robots.load(name).board
+        assert {each.driver for each in (*board.sensors, *board.actuators)} <= known
