@@ -112,6 +112,15 @@ def test_the_pages_of_a_lesson_are_whole(folder: Path, language: str) -> None:
 
 @each
 @in_both
+def test_every_row_of_a_table_has_its_cells(folder: Path, language: str) -> None:
+    """An empty cell is a place to write: the sheet draws it."""
+    for block in blocks(catalogue.page(folder, catalogue.PUPIL, language)):
+        if block.kind == "table":
+            assert {len(row) for row in block.rows} == {len(block.rows[0])}
+
+
+@each
+@in_both
 @pytest.mark.parametrize("who", [catalogue.PUPIL, catalogue.TEACHER])
 def test_programs_on_pages_compile(folder: Path, language: str, who: str) -> None:
     lesson = catalogue.load(folder)

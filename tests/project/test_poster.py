@@ -77,3 +77,10 @@ def test_nothing_is_written_over_something_else(language: str) -> None:
         letter = {MONO: 0.6}.get(line.font, 0.52) * line.size
         end = line.x + letter * len(line.text)
         assert end <= (poster.SAYS_X if line.font == MONO else paper.WIDTH), line.text
+
+
+def test_the_poster_names_own_words_in_its_language() -> None:
+    """STEP and SPEED are words of nobody who reads Spanish."""
+    spanish = " ".join(line.text for line in lines_of("es"))
+    assert re.search(r"DEF PASO .* VELOCIDAD = 50", spanish)
+    assert not re.search(r"\b(STEP|SPEED)\b", spanish)

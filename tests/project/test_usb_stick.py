@@ -209,11 +209,14 @@ def test_an_installer_that_cannot_be_fetched_is_named(tmp_path: Path) -> None:
     assert not (target / "page.exe").exists()
 
 
-def test_the_index_speaks_one_language(stick: Path) -> None:
+def test_the_pages_speak_one_language_and_have_boxes_to_tick(stick: Path) -> None:
     index = (stick / "pages" / "indice.html").read_text(encoding="utf-8")
     assert "El lenguaje en una página" in index
     assert "Una clase en el estudio" in index
     assert "`" not in index
+    materials = (stick / "pages" / "docs" / "materiales.es.html").read_text(encoding="utf-8")
+    assert materials.count('<li class="check">☐ ') == 12
+    assert "[ ]" not in materials
     assert not re.search(r"Poster|Wiring|teacher</a>", index)
 
 

@@ -32,6 +32,9 @@ table { border-collapse: collapse; display: block; overflow-x: auto; }
 th, td { border: 1px solid #999; padding: 0.25em 0.6em; text-align: left; vertical-align: top; }
 th { background: #eee; }
 img { max-width: 100%; }
+li.check { list-style: none; }
+@page { size: A4; margin: 15mm; }
+@media print { h2, h3 { break-after: avoid; } tr, pre, li { break-inside: avoid; } }
 """
 TITLES = {
     "en": ("TiniScript without internet", "Lessons", "pupils", "teacher", "Wiring", "Guides",
@@ -95,7 +98,8 @@ def rendered(text: str) -> tuple[str, str]:
         if token.type == "heading_open":
             title = title or inside.content.replace("`", "")
             token.attrSet("id", _name(inside, known))
-    return str(reader.renderer.render(tokens, reader.options, {})), title
+    body = str(reader.renderer.render(tokens, reader.options, {}))
+    return body.replace("<li>[ ] ", '<li class="check">\N{BALLOT BOX} '), title
 
 
 def _name(heading: Token, known: dict[str, int]) -> str:

@@ -36,11 +36,15 @@ FEET = {
 
 
 class Row(NamedTuple):
-    """`code` shows a word; `{F}` in it is the example that the table has for F."""
+    """`code` shows a word; `{F}` in it is the example that the table has for F.
+
+    `code_es` is what stands there in Spanish, where a pupil's own word is in it.
+    """
 
     code: str
     en: str
     es: str
+    code_es: str = ""
 
 
 class Group(NamedTuple):
@@ -78,14 +82,14 @@ GROUPS = (
         Row("BREAK", "leaves the loop", "sale del bucle"),
     )),
     Group("Words of your own", "Palabras tuyas", (
-        Row("DEF STEP ... END_DEF", "teaches a new word: STEP", "enseña una palabra nueva: STEP"),
-        Row("STEP", "does what STEP means", "hace lo que STEP significa"),
-        Row("SPEED = 50", "a variable keeps a value under a name", "una variable guarda un valor con un nombre"),
+        Row("DEF STEP ... END_DEF", "teaches a new word: STEP", "enseña una palabra nueva: PASO", "DEF PASO ... END_DEF"),
+        Row("STEP", "does what STEP means", "hace lo que PASO significa", "PASO"),
+        Row("SPEED = 50", "a variable keeps a value under a name", "una variable guarda un valor con un nombre", "VELOCIDAD = 50"),
     )),
     Group("Questions", "Preguntas", (
         Row("TRUE   FALSE", "yes, no", "sí, no"),
         Row("A AND B   A OR B   NOT A", "both; one is enough; the contrary", "las dos; basta una; lo contrario"),
-        Row("=  <>  <  >  <=  >=", "equal, not equal, less, more, at most, at least", "igual, distinto, menor, mayor, hasta, desde"),
+        Row("=  <>  <  >  <=  >=", "equal, not equal, less, more, at most, at least", "igual, distinto, menor, mayor, como máximo, como mínimo"),
     )),
     Group("Calculate", "Calcular", (
         Row("+  -  *  /  %", "plus, minus, times, divided by, remainder", "más, menos, por, entre, resto"),
@@ -131,7 +135,8 @@ def page(language: str) -> Page:
         found.append(Line(LEFT, y + 15, 12, BOLD, BLUE, group.es if k else group.en))
         y += HEAD_PT
         for number, row in enumerate(group.rows):
-            code = re.sub(r"\{(\w+)\}", lambda match: WORDS[match[1]].example, row.code)
+            wanted = row.code_es if k and row.code_es else row.code
+            code = re.sub(r"\{(\w+)\}", lambda match: WORDS[match[1]].example, wanted)
             says = row.es if k else row.en
             assert len(code) <= CODE_SIGNS and len(says) <= SAYS_SIGNS, (code, says)
             shown += re.findall(r"[A-Z_]+", re.sub(r"\(.*?\)", "", code.replace(",", "")))

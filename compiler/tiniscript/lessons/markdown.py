@@ -56,7 +56,8 @@ def blocks(text: str) -> list[Block]:
 def _paragraph(lines: list[str]) -> list[Block]:
     """Return the blocks of lines without an empty one among them."""
     if lines[0].startswith("|"):
-        rows = [tuple(cell.strip() for cell in line.strip("| ").split("|")) for line in lines]
+        inside = (line.strip().removeprefix("|").removesuffix("|") for line in lines)
+        rows = [tuple(cell.strip() for cell in row.split("|")) for row in inside]
         return [Block("table", tuple(row for row in rows if set("".join(row)) - set("-: ")))]
     found: list[tuple[str, list[str]]] = []
     for line in lines:
