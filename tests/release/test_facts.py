@@ -1,0 +1,128 @@
+"""What keeps a commit from being released: each is said in one sentence."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from tests.support.casefile import ROOT
+from tools.release import facts
+
+VERSION = "9.8.7"
+URL = "https://example.org/tiniscript"
+FILES = ("CITATION.cff", "LICENSE", "docs/versions.md", "pyproject.toml", "CHANGELOG.md",
+         "compiler/tiniscript/__init__.py")  # fmt: skip
+CHANGES = f"# Changelog\n\n## Unreleased\n\n## {VERSION} (2031-02-03)\n\n- All.\n"
+
+
+def git(root: Path, *words: str) -> None:
+    known = ("-c", "user.name=a", "-c", "user.email=a@localhost", "-c", "init.defaultBranch=main")
+    subprocess.run(["git", "-C", root, *known, *words], check=True, capture_output=True)
+
+
+def replaced(name: str, old: str, new: str) -> Callable[[Path], None]:
+    def change(root: Path) -> None:
+        path = root / name
+        text = path.read_text(encoding="utf-8")
+        assert old in text, (name, old)
+        path.write_text(text.replace(old, new), encoding="utf-8")
+
+    return change
+
+
+def commit(root: Path) -> None:
+    git(root, "add", "-A")
+    git(root, "commit", "-q", "--allow-empty", "-m", "a: b.")
+
+
+@pytest.fixture
+def clone(tmp_path: Path) -> Path:
+    """A repository with all that repeats a fact, ready to be released."""
+    root = tmp_path / "clone"
+    here = facts.version(ROOT)
+    for name in FILES:
+        (root / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(ROOT / name, root / name)
+        path = root / name
+        path.write_text(path.read_text("utf-8").replace(here, VERSION), encoding="utf-8")
+    (root / "CHANGELOG.md").write_text(CHANGES, encoding="utf-8")
+    about = root / "pyproject.toml"
+    about.write_text(facts.with_address(about.read_text("utf-8"), URL), encoding="utf-8")
+    git(tmp_path, "init", "-q", str(root))
+    commit(root)
+    return root
+
+
+def test_what_is_ready_gets_no_complaint(clone: Path) -> None:
+    assert list(facts.complaints(clone)) == []
+    git(clone, "tag", f"v{VERSION}")
+    assert list(facts.complaints(clone)) == []
+
+
+WRONG: dict[str, Callable[[Path], object]] = {
+    "CHANGELOG.md has no section for": replaced("CHANGELOG.md", f"## {VERSION} (", "## 1.0.0 ("),
+    "CHANGELOG.md has no date": replaced("CHANGELOG.md", " (2031-02-03)", ""),
+    "has no section Unreleased": replaced("CHANGELOG.md", "## Unreleased\n", ""),
+    "changes under Unreleased": replaced(
+        "CHANGELOG.md", "## Unreleased\n", "## Unreleased\n\n- B\n"
+    ),
+    "CITATION.cff has version": replaced("CITATION.cff", f"version: {VERSION}", "version: 0.0.1"),
+    "docs/versions.md has version": replaced("docs/versions.md", f"`{VERSION}`", "`0.0.1`"),
+    "LICENSE names Somebody": replaced("LICENSE", facts.PEOPLE, "Somebody"),
+    "CITATION.cff names nobody": replaced("CITATION.cff", facts.PEOPLE, ""),
+    "pyproject.toml names": replaced("pyproject.toml", facts.PEOPLE, "Ann"),
+    "does not say where it is published": replaced("pyproject.toml", "Source =", "Home ="),
+}
+
+
+@pytest.mark.parametrize("why", WRONG)
+def test_what_is_wrong_is_said_in_a_sentence(why: str, clone: Path) -> None:
+    WRONG[why](clone)
+    commit(clone)
+    (found,) = facts.complaints(clone)
+    assert why in found
+    assert len(found) < 200
+
+
+def test_a_file_that_is_not_committed_is_named(clone: Path) -> None:
+    (clone / "new.txt").touch()
+    (found,) = facts.complaints(clone)
+    assert found.startswith("1 files are not committed, new.txt among them.")
+
+
+def test_another_commit_with_the_tag_of_this_version_is_told(clone: Path) -> None:
+    git(clone, "tag", f"v{VERSION}")
+    commit(clone)
+    (found,) = facts.complaints(clone)
+    assert found == f"The tag v{VERSION} is that of another commit: give this one a new version."
+
+
+def test_a_tag_of_another_version_is_told(clone: Path) -> None:
+    git(clone, "tag", "v1.2.3")
+    git(clone, "tag", "seen")
+    (found,) = facts.complaints(clone)
+    assert "v1.2.3" in found and VERSION in found
+
+
+def test_an_address_has_one_place() -> None:
+    text = (
+        "[project]\nname = 'a'\n\n[project.urls]\nSource = \"https://a.example\"\n\n[tool]\nb = 1\n"
+    )
+    once = facts.with_address(text, URL)
+    assert once.count("[project.urls]") == 1
+    assert "a.example" not in once
+    assert "[tool]\nb = 1\n" in once
+    assert facts.with_address(once, URL) == once
+
+
+def test_this_repository_agrees_with_itself() -> None:
+    """But for what a release alone brings: a date, an address, a commit of everything."""
+    brought = ("CHANGELOG.md", "not committed", "does not say where", "The tag", "The commit has")
+    assert [each for each in facts.complaints(ROOT)
+            if not any(word in each for word in brought)] == []  # fmt: skip
+    assert facts.meets(ROOT).keys() == {"isa", "link"}
+    assert all(facts.meets(ROOT).values())

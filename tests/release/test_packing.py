@@ -1,0 +1,93 @@
+"""Archives are the same wherever and whenever they are made, and a difference is named."""
+
+from __future__ import annotations
+
+import os
+import tarfile
+import zipfile
+from pathlib import Path
+
+from tools.builds import library
+from tools.release.packing import OLDEST, difference, pack, sha256, unpack
+
+EPOCH = 1_700_000_000
+
+
+def folder(place: Path, names: list[str], when: int) -> Path:
+    for name in names:
+        path = place / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(f"{name}\n", encoding="utf-8")
+        os.utime(path, (when, when))
+        path.chmod(0o755 if name.endswith(".sh") else 0o640 if when % 2 else 0o664)
+    return place
+
+
+def test_the_same_files_give_the_same_bytes(tmp_path: Path) -> None:
+    names = ["b.sh", "a/ñ.txt", "a/b.txt"]
+    one = folder(tmp_path / "one", names, EPOCH + 1)
+    other = folder(tmp_path / "other place", names[::-1], 10_000)
+    first = pack(one, tmp_path / "x-1.zip", EPOCH)
+    (tmp_path / "again").mkdir()
+    second = pack(other, tmp_path / "again" / "x-1.zip", EPOCH)
+    assert first.read_bytes() == second.read_bytes()
+    assert difference(first, second) == ""
+    with zipfile.ZipFile(first) as packed:
+        assert packed.namelist() == ["x-1/a/b.txt", "x-1/a/ñ.txt", "x-1/b.sh"]
+        assert {row.date_time for row in packed.infolist()} == {(2023, 11, 14, 22, 13, 20)}
+
+
+def test_what_may_be_started_may_be_started_when_unpacked(tmp_path: Path) -> None:
+    made = pack(folder(tmp_path / "one", ["b.sh", "a.txt"], EPOCH), tmp_path / "x.zip", EPOCH)
+    inside = unpack(made, tmp_path / "out")
+    assert (inside / "b.sh").stat().st_mode & 0o777 == 0o755
+    assert (inside / "a.txt").stat().st_mode & 0o777 == 0o644
+
+
+def test_a_time_before_zip_files_is_the_oldest_that_they_know(tmp_path: Path) -> None:
+    made = pack(folder(tmp_path / "one", ["a.txt"], EPOCH), tmp_path / "x.zip", 0)
+    with zipfile.ZipFile(made) as packed:
+        assert packed.infolist()[0].date_time == (1980, 1, 1, 0, 0, 0)
+    assert OLDEST > 0
+
+
+def test_a_difference_names_the_files(tmp_path: Path) -> None:
+    one = pack(folder(tmp_path / "one", ["a", "b", "c"], EPOCH), tmp_path / "x.zip", EPOCH)
+    (tmp_path / "one" / "b").write_text("other")
+    (tmp_path / "one" / "c").unlink()
+    (tmp_path / "2").mkdir()
+    other = pack(tmp_path / "one", tmp_path / "2" / "x.zip", EPOCH)
+    assert difference(one, other) == "x.zip: x/b, x/c"
+    (tmp_path / "3").mkdir()
+    later = pack(tmp_path / "one", tmp_path / "3" / "x.zip", EPOCH + 10)
+    assert difference(other, later) == "x.zip: times, rights or the order of its files"
+
+
+def test_a_difference_of_source_packages_names_the_files(tmp_path: Path) -> None:
+    found = []
+    for name in ("1", "2"):
+        place = folder(tmp_path / name, ["a", "b"], EPOCH)
+        (place / "b").write_text(name)
+        made = tmp_path / f"{name}.tar.gz"
+        with tarfile.open(made, "w:gz") as archive:
+            archive.add(place, "x")
+        found.append(made)
+    assert difference(*found) == "1.tar.gz: x/b"
+
+
+def test_many_differences_are_counted(tmp_path: Path) -> None:
+    names = [f"{k}" for k in range(9)]
+    one = pack(folder(tmp_path / "one", names, EPOCH), tmp_path / "x.zip", EPOCH)
+    (tmp_path / "x").mkdir()
+    (tmp_path / "2").mkdir()
+    other = pack(tmp_path / "x", tmp_path / "2" / "x.zip", EPOCH)
+    assert difference(one, other).endswith("x/4 and 4 more")
+
+
+def test_the_library_is_the_same_twice(tmp_path: Path) -> None:
+    sums = set()
+    for place in ("one", "other place"):
+        made = tmp_path / place / "TiniScript"
+        assert library.main([str(made), "--url", "https://example.org/t"]) == 0
+        sums.add(sha256(pack(made, tmp_path / place / "TiniScript-1.zip", EPOCH)))
+    assert len(sums) == 1
