@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -14,6 +15,8 @@ import pytest
 
 from tests.support.casefile import ROOT
 from tests.support.platformio import need, prepared
+from tools.release import facts
+from tools.release.packing import difference
 
 SKIPPED = (".git", ".venv", "build", "dist", "ready", "*.egg-info", "__pycache__", "*.pyc", ".pio",
            "page", "node_modules", "made",
@@ -21,6 +24,8 @@ SKIPPED = (".git", ".venv", "build", "dist", "ready", "*.egg-info", "__pycache__
 ADDED = {"PKG-INFO", "setup.cfg"}  # by setuptools
 SOURCES = "tiniscript/flash/vm_arduino/"
 BUILT = "tiniscript/studio/page/index.html"  # by tools.builds.studio, before a wheel is made
+URL = "https://example.org/tiniscript"
+EPOCH = "1700000000"
 BUILD = "import sys; from setuptools import build_meta; print(build_meta.{0}(sys.argv[1]))"
 
 
@@ -35,6 +40,8 @@ def repo(tmp_path_factory: pytest.TempPathFactory) -> Path:
         need("setuptools is older than 77")
     folder = tmp_path_factory.mktemp("package") / "repo"
     shutil.copytree(ROOT, folder, ignore=shutil.ignore_patterns(*SKIPPED))
+    about = folder / "pyproject.toml"
+    about.write_text(facts.with_address(about.read_text("utf-8"), URL), encoding="utf-8")
     return folder
 
 
@@ -48,6 +55,7 @@ def built(repo: Path, what: str, target: Path) -> Path:
     done = subprocess.run(
         [sys.executable, "-c", BUILD.format(what), str(target)],
         cwd=repo, capture_output=True, text=True, check=False,
+        env={**os.environ, "SOURCE_DATE_EPOCH": EPOCH},
     )  # fmt: skip
     assert done.returncode == 0, done.stderr[-3000:]
     assert "deprecated" not in (done.stdout + done.stderr).lower()
@@ -120,6 +128,27 @@ def test_a_wheel_says_its_licence(wheel: Path) -> None:
     assert (about / "licenses" / "LICENSE").read_text() == (ROOT / "LICENSE").read_text()
 
 
+def test_a_description_leads_to_files_wherever_it_is_shown(wheel: Path, repo: Path) -> None:
+    (about,) = wheel.glob("*.dist-info")
+    text = (about / "METADATA").read_text(encoding="utf-8")
+    head, _, shown = text.partition("\n\n")
+    for row in (f"Project-URL: Source, {URL}", f"Author: {facts.PEOPLE}",
+                "Description-Content-Type: text/markdown"):  # fmt: skip
+        assert f"\n{row}\n" in f"{head}\n"
+    links = re.findall(r"(!?)\[[^]]*\]\(([^)]+)\)", shown)
+    assert len(links) > 40
+    ours = 0
+    for is_picture, link in links:
+        assert link.startswith(("https://", "#")), link
+        if link.startswith(URL):
+            kind, tag, path = link.removeprefix(f"{URL}/").split("#")[0].split("/", 2)
+            assert kind == ("raw" if is_picture else "blob")
+            assert tag == f"v{facts.version(ROOT)}"
+            assert (repo / path).exists(), path
+            ours += 1
+    assert ours > 40
+
+
 def test_a_wheel_builds_its_own_firmware(wheel: Path, tmp_path: Path) -> None:
     variables, why = prepared()
     need(why)
@@ -135,6 +164,26 @@ def test_a_wheel_builds_its_own_firmware(wheel: Path, tmp_path: Path) -> None:
 def test_a_source_package_has_the_whole_repository(unpacked: Path, kept: set[str]) -> None:
     found = {name for name in files_of(unpacked) if ".egg-info/" not in name}
     assert found - ADDED == kept - ADDED
+
+
+def test_a_source_package_is_the_same_from_another_place(
+    repo: Path, unpacked: Path, tmp_path: Path
+) -> None:
+    """Twice in a row, of files with other times, in a folder with another name."""
+    first = next(unpacked.parent.parent.glob("*.tar.gz"))
+    other = tmp_path / "another place"
+    shutil.copytree(repo, other, copy_function=shutil.copy,
+                    ignore=shutil.ignore_patterns("*.egg-info", "build"))  # fmt: skip
+    second = built(other, "build_sdist", tmp_path / "made")
+    assert difference(first, second) == ""
+
+
+def test_a_registry_takes_both_packages(wheel: Path, unpacked: Path) -> None:
+    files = [*wheel.parent.glob("*.whl"), *unpacked.parent.parent.glob("*.tar.gz")]
+    assert len(files) == 2
+    done = python("-m", "twine", "check", "--strict", *map(str, files), folder=wheel)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert done.stdout.count("PASSED") == 2
 
 
 def test_the_tests_of_a_source_package_run(unpacked: Path) -> None:

@@ -279,15 +279,18 @@ def test_linux_gets_the_wheel_with_the_parts_in_c(tmp_path: Path) -> None:
 
 def test_a_wheel_without_its_parts_in_c_is_for_every_system(tmp_path: Path) -> None:
     old = tmp_path / "thing-1-cp311-cp311-linux_x86_64.whl"
+    said = "Wheel-Version: 1.0\nRoot-Is-Purelib: false\nTag: cp311-cp311-linux_x86_64\n"
+    files = {"thing/__init__.py": "", "thing/fast.cpython-311-x86_64-linux-gnu.so": "x",
+             "thing-1.dist-info/WHEEL": said, "thing-1.dist-info/RECORD": ""}  # fmt: skip
     with zipfile.ZipFile(old, "w") as wheel:
-        wheel.writestr("thing/__init__.py", "")
-        wheel.writestr("thing/fast.cpython-311-x86_64-linux-gnu.so", "x")
-        said = "Wheel-Version: 1.0\nRoot-Is-Purelib: false\nTag: cp311-cp311-linux_x86_64\n"
-        wheel.writestr("thing-1.dist-info/WHEEL", said)
-        wheel.writestr("thing-1.dist-info/RECORD", "")
+        for name, text in files.items():
+            wheel.writestr(zipfile.ZipInfo(name, (2020, 1, 2, 3, 4, 6)), text)
+    with zipfile.ZipFile(old) as wheel:
+        when = wheel.infolist()[0].date_time
     made = stick_wheels.without_parts_in_c(old, tmp_path)
     assert made.name == "thing-1-py3-none-any.whl"
     with zipfile.ZipFile(made) as wheel:
+        assert {row.date_time for row in wheel.infolist()} == {when}, "another time, other bytes"
         assert not [each for each in wheel.namelist() if each.endswith(".so")]
         said = wheel.read("thing-1.dist-info/WHEEL").decode()
         assert "Root-Is-Purelib: true" in said
