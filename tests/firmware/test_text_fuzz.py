@@ -52,21 +52,38 @@ class Fuzz:
         robot.did.clear()
         was_latched = robot.is_latched
         sent = robot.step(data, flags)
-        for line in robot.did:
-            assert "MARK" not in line and "MEASURED" not in line, line
-        moves = [line for line in robot.did if " MOTORS " in line]
-        if not data:  # of several lines at once one may start what the next one stops
-            assert not (was_latched and robot.is_latched and moves), robot.did
-        if robot.is_latched and moves:
-            assert moves[-1].endswith("MOTORS 0 0"), moves
+        self.check(was_latched, robot.is_latched, robot.did, has_data=bool(data))
         return sent
 
-    def wait(self, milliseconds: int, data: bytes = b"") -> bytes:
-        sent = self.step(data)
-        return sent + b"".join(self.step() for _ in range(milliseconds - 1))
+    def check(self, was_latched: bool, is_latched: bool, did: list[str], has_data: bool) -> None:
+        """Assert what must be so of a millisecond."""
+        for line in did:
+            assert "MARK" not in line and "MEASURED" not in line, line
+        moves = [line for line in did if " MOTORS " in line]
+        if not has_data:  # of several lines at once one may start what the next one stops
+            assert not (was_latched and is_latched and moves), did
+        if is_latched and moves:
+            assert moves[-1].endswith("MOTORS 0 0"), moves
+
+    def steps(self, milliseconds: int, data: bytes) -> bytes:
+        """Let milliseconds pass, in each of which a byte arrives, if there is one."""
+        robot = self.robot
+        robot.did.clear()
+        was_latched, begin_ms = robot.is_latched, robot.now_ms + 1
+        sent, latched = robot.latched_while(milliseconds, data, is_spread=True)
+        did: list[list[str]] = [[] for _ in latched]
+        for line in robot.did:
+            did[int(line.split()[0]) - begin_ms].append(line)
+        for number, is_latched in enumerate(latched):
+            self.check(was_latched, is_latched, did[number], has_data=number < len(data))
+            was_latched = is_latched
+        return sent
+
+    def wait(self, milliseconds: int) -> bytes:
+        return self.steps(milliseconds, b"")
 
     def type(self, data: bytes) -> bytes:
-        return b"".join(self.step(bytes((byte,))) for byte in data)
+        return self.steps(len(data), data) if data else b""
 
     # -- what is thrown -------------------------------------------------------------------------
 

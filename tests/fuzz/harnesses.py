@@ -30,7 +30,7 @@ COMPILER = "clang++-22"
 FLAGS = ("-std=c++11", "-O2", "-g", "-fsanitize=fuzzer,address,undefined",
          "-fno-sanitize-recover=all")  # fmt: skip
 # What is compared with what takes half of the time. Only the machine's harness needs to be told:
-# the others make checksums right themselves, and their first inputs have every message and record.
+# the others make checksums right themselves, and begin with every message and record.
 NOT_COMPARED = "-fno-sanitize-coverage=trace-cmp"
 MOST_BYTES = 700  # of an input
 DONE = re.compile(r"Done (\d+) runs")

@@ -79,11 +79,25 @@ class HostFirmware(Process):
         return sent
 
     def wait(self, milliseconds: int, data: bytes = b"") -> bytes:
-        """Let time pass; the bytes arrive at its beginning."""
-        sent = self.step(data)
-        for _ in range(milliseconds - 1):
-            sent += self.step()
-        return sent
+        """Let time pass, at least a millisecond; the bytes arrive at its beginning."""
+        return self.latched_while(max(1, milliseconds), data)[0]
+
+    def latched_while(
+        self, milliseconds: int, data: bytes = b"", is_spread: bool = False
+    ) -> tuple[bytes, list[bool]]:
+        """The same, in one request; return also whether it was latched after each millisecond.
+
+        Bytes that are spread arrive one in each.
+        """
+        head = pack("<IIHBI", self.now_ms + 1, milliseconds, TICKS, is_spread, len(data))
+        self.now_ms += milliseconds
+        sent, rest = _text(self.ask(b"W", head + data))
+        did, rest = _text(rest)
+        self.did += did.decode().splitlines()
+        self.is_lit = bool(rest[0])
+        latched = [bool(each) for each in _text(rest[1:])[0]]
+        self.is_latched = latched[-1]
+        return sent, latched
 
     def push(self, milliseconds: int = 100) -> None:
         """Push the start button, and let it go."""

@@ -7,6 +7,8 @@
 #include <math.h>
 #include <stdio.h>
 
+#include <algorithm>
+#include <string>
 #include <vector>
 
 #include "../../src/firmware/firmware.h"
@@ -99,6 +101,21 @@ void answer_begin(RequestReader* request) {
   firmware_begin(board);
 }
 
+// Lets so many ticks of a millisecond pass, and as many more as bytes arrive, one in each tick.
+// Returns what the robot sends.
+std::string pass(uint32_t now_ms, uint16_t ticks, const uint8_t* heard, size_t length) {
+  std::string sent;
+  size_t next = 0;
+  for (uint16_t k = 0; k < ticks || next < length; k++) {
+    if (next < length) firmware_on_rx_byte(heard[next++], static_cast<uint16_t>(now_ms));
+    firmware_tick(now_ms);
+    if (table.busy_ticks != 0) table.busy_ticks--;
+    uint8_t byte = 0;
+    while (firmware_next_tx_byte(&byte)) sent += static_cast<char>(byte);
+  }
+  return sent;
+}
+
 // S: bytes arrive at a time, the button goes down (1) or up (2), the main loop stood still (4),
 // nobody is connected (8), the bytes come before all that (16), the button has been down for a
 // while (32); so many ticks follow. Says what the robot sends and what it does.
@@ -117,18 +134,43 @@ void answer_step(RequestReader* request, Writer* answer) {
   if ((flags & 2) != 0) firmware_on_released();
   if ((flags & 8) != 0) firmware_on_disconnect();
   if ((flags & 32) != 0) firmware_on_held();
-  std::string sent;
-  for (uint16_t k = 0; k < ticks || next < heard.length; k++) {
-    if (next < heard.length) firmware_on_rx_byte(heard.data[next++], static_cast<uint16_t>(now_ms));
-    firmware_tick(now_ms);
-    if (table.busy_ticks != 0) table.busy_ticks--;
-    uint8_t byte = 0;
-    while (firmware_next_tx_byte(&byte)) sent += static_cast<char>(byte);
-  }
-  answer->text(sent);
+  answer->text(pass(now_ms, ticks, heard.data.get() + next, heard.length - next));
   answer->text(table.log);
   answer->u8(table.is_lit);
   answer->u8(table.is_latched);
+}
+
+// W: so many milliseconds from a time on, so many ticks each. Bytes arrive in the first of them, or one
+// in each. Says what the robot sends, what it does and when, its light, and after each of the
+// milliseconds whether it is latched.
+void answer_wait(RequestReader* request, Writer* answer) {
+  const uint32_t first_ms = request->u32();
+  const uint32_t count = request->u32();
+  const uint16_t ticks = request->u16();
+  const bool is_spread = request->u8() != 0;
+  const Bytes heard = request->bytes();
+  table.has_stalled = false;
+  std::string sent;
+  std::string did;
+  std::string latched;
+  for (uint32_t k = 0; k < count; k++) {
+    const size_t begin = is_spread || k == 0 ? std::min<size_t>(k, heard.length) : heard.length;
+    const size_t left = heard.length - begin;
+    const size_t length = is_spread ? std::min<size_t>(1, left) : left;
+    table.log.clear();
+    sent += pass(first_ms + k, ticks, heard.data.get() + begin, length);
+    size_t at = 0;
+    while (at < table.log.size()) {
+      const size_t end = table.log.find('\n', at) + 1;
+      did += std::to_string(first_ms + k) + " " + table.log.substr(at, end - at);
+      at = end;
+    }
+    latched += static_cast<char>(table.is_latched);
+  }
+  answer->text(sent);
+  answer->text(did);
+  answer->u8(table.is_lit);
+  answer->text(latched);
 }
 
 // E: the contents of the memory.
@@ -268,6 +310,9 @@ int main() {
         break;
       case 'S':
         answer_step(&request, &said);
+        break;
+      case 'W':
+        answer_wait(&request, &said);
         break;
       case 'E':
         answer_memory(&said);
