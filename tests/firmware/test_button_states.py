@@ -74,6 +74,7 @@ class Table:
         self.robot = switched_on() if has_draft else SmallRobot(KIT)
         self.session = computer()
         self.talks: Session | None = self.session  # who goes on talking
+        self.keys: Keys | None = None  # of the one who has claimed it
         self.program = 0
         self.is_reset_down = False
 
@@ -189,7 +190,8 @@ def keeps_trim(table: Table) -> None:
 
 
 def is_claimed(table: Table) -> None:
-    table.session = table.talks = Session(1, 9600, KIT.fingerprint, keys=Keys())
+    table.keys = Keys()
+    table.session = table.talks = Session(1, 9600, KIT.fingerprint, keys=table.keys)
     table.is_ready(SAVED)
     table.session.claim(KEY_OWNER)
     table.talk(300)

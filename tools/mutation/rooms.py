@@ -14,14 +14,14 @@ import json
 import os
 import random
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from datetime import datetime, timezone
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any, NamedTuple
 
 ROOT = Path(__file__).resolve().parent.parent.parent
@@ -32,186 +32,13 @@ from tools.mutation.mutants import blanked
 from tools.mutation.operators import changes
 from tools.mutation.python_operators import python_changes
 from tools.mutation.rooms_equivalent import EQUIVALENT
+from tools.mutation.rooms_table import BY_NAME, ROOMS, Room
 
 WRITTEN = Path(__file__).with_name("rooms.json")
-LEFT_OUT = ("-k", "not keeps_to_its_size")  # a size notices any change
+LEFT_OUT = "not keeps_to_its_size"  # a size notices any change
 LIMIT_S = 600  # for the tests of one change: an endless loop is noticed, too
 COPIED = ("compiler", "vm_arduino", "tests", "tools", "docs", "examples")
 KEPT = ("README.md", "CONTRIBUTING.md", "bytecode_spec.md", "pyproject.toml", "setup.py")
-
-
-class Room(NamedTuple):
-    """`files` are patterns below the repository; `tests` are given to pytest, quick ones first.
-
-    Of a file whose name is in `about`, only those run that have one of its words.
-    """
-
-    name: str
-    files: tuple[str, ...]
-    tests: tuple[str, ...]
-    about: Mapping[str, str] = MappingProxyType({})
-
-    def tests_of(self, file: str) -> tuple[str, ...]:
-        words = self.about.get(Path(file).name, "").split()
-        fit = [test for word in words for test in self.tests if word in test]
-        return tuple(dict.fromkeys(fit)) or self.tests
-
-
-_CPP, _PY = "vm_arduino/src", "compiler/tiniscript"
-ROOMS = (
-    Room(
-        "link",
-        (f"{_CPP}/link/[!m]*.cpp",),  # `messages.cpp` is a table
-        (
-            "tests/link/test_link_cases.py",
-            "tests/link/test_siphash.py",
-            "tests/firmware/test_host_firmware.py",
-            "tests/firmware/test_owners.py",
-            "tests/firmware/test_authority.py",
-            "tests/firmware/test_keeping.py",
-            "tests/firmware/test_text_limits.py",
-            "tests/link/test_robot_times.py",
-            "tests/firmware/test_terminal_programs.py",
-            "tests/firmware/test_text.py",
-            "tests/link/test_damaged_frames.py",
-        ),
-        {
-            "siphash.cpp": "siphash",
-            "link_owners.cpp": "link_cases owners authority",
-            "console.cpp": "link_cases text_limits terminal",
-            "console_writing.cpp": "link_cases text_limits terminal",
-            "link_text.cpp": "link_cases text_limits terminal",
-            "frames.cpp": "link_cases robot_times damaged",
-            "receiver.cpp": "link_cases robot_times text_limits",
-            "link.cpp": "link_cases robot_times host owners keeping",
-            "link_programs.cpp": "link_cases host text_limits",
-            "link_writing.cpp": "link_cases host owners",
-        },
-    ),
-    Room(
-        "store",
-        (f"{_CPP}/store/store.cpp",),
-        (
-            "tests/firmware/test_store.py::test_with_the_plug_in",
-            "tests/firmware/test_store.py::test_old_or_new",
-            "tests/firmware/test_store.py::test_what_breaks_are_noticed_by_finds_nothing",
-            "tests/firmware/test_undo.py",
-            "tests/firmware/test_keeping.py",
-            "tests/firmware/test_host_firmware.py",
-            "tests/firmware/test_other_versions.py",
-            "tests/firmware/test_owners.py",
-        ),
-    ),
-    Room(
-        "firmware",
-        (f"{_CPP}/firmware/*.cpp",),
-        (
-            "tests/firmware/test_host_firmware.py",
-            "tests/firmware/test_keeping.py",
-            "tests/firmware/test_undo.py",
-            "tests/firmware/test_stops.py",
-            "tests/firmware/test_other_versions.py",
-            "tests/firmware/test_button.py",
-            "tests/firmware/test_owners.py",
-            "tests/firmware/test_actuator_stops.py",
-            "tests/firmware/test_trim.py",
-            "tests/firmware/test_text.py",
-            "tests/firmware/test_random_numbers.py",
-            "tests/firmware/test_replaced_runs.py",
-            "tests/firmware/test_stop_states.py",
-            "tests/firmware/test_uno_robot.py::test_a_stop_silences_the_buzzer",
-        ),
-        {
-            "owners.cpp": "owners",
-            "identify.cpp": "owners",
-            "trim.cpp": "trim",
-            "identity.cpp": "keeping owners host",
-            "program.cpp": "host keeping undo other_versions",
-            "holding.cpp": "host keeping undo other_versions",
-            "keeping.cpp": "keeping undo host owners",
-            "run.cpp": "random replaced host stops button keeping stop_states silences",
-            "firmware.cpp": "host button keeping owners",
-        },
-    ),
-    Room(
-        "boards",
-        (f"{_CPP}/boards/*.cpp", f"{_CPP}/boards/avr/*.cpp"),
-        (
-            "tests/firmware/test_boards.py",
-            "tests/firmware/test_board_devices.py",
-            "tests/firmware/test_board_sonar.py",
-            "tests/firmware/test_board_stops.py",
-            "tests/firmware/test_uno_robot.py",
-            "tests/firmware/test_uno_line.py",
-            "tests/firmware/test_uno_watchdog.py",
-            "tests/firmware/test_uno_supply.py",
-            "tests/firmware/test_uno_stops.py",
-        ),
-        {
-            "analog.cpp": "devices supply",
-            "board.cpp": "boards devices",
-            "button.cpp": "boards uno_robot",
-            "clock.cpp": "boards uno_robot uno_stops",
-            "eeprom.cpp": "uno_robot",
-            "interrupts.cpp": "uno_line uno_stops",
-            "motors.cpp": "boards board_stops",
-            "servo.cpp": "boards devices",
-            "sound.cpp": "devices",
-            "uart.cpp": "uno_line uno_robot uno_stops",
-            "ultrasonic.cpp": "sonar devices",
-            "watchdog.cpp": "watchdog uno_robot",
-        },
-    ),
-    Room(
-        "verifier",
-        (f"{_PY}/bytecode/verify.py", f"{_PY}/bytecode/image.py"),
-        ("tests/bytecode/test_image.py", "tests/vm/test_cases.py", "tests/bytecode"),
-    ),
-    Room(
-        "session",
-        (
-            f"{_PY}/link/session.py",
-            f"{_PY}/link/requests.py",
-            f"{_PY}/link/robot_state.py",
-            f"{_PY}/link/receiver.py",
-        ),
-        (
-            "tests/link/test_link_cases.py",
-            "tests/link/test_session.py",
-            "tests/link/test_session_resets.py",
-            "tests/link/test_session_waits.py",
-            "tests/link/test_robot_times.py",
-        ),
-    ),
-    Room(
-        "sharing",
-        (f"{_PY}/sharing/*.py",),
-        (
-            "tests/sharing/test_peers.py",
-            "tests/sharing/test_run_owners.py",
-            "tests/sharing/test_shared_port.py",
-            "tests/sharing/test_shared_port_visitors.py",
-            "tests/sharing/test_strangers.py",
-        ),
-    ),
-    Room(
-        "optimizer",
-        (f"{_PY}/semantics/optimizer.py",),
-        ("tests/semantics", "tests/vm/test_cases.py"),
-    ),
-    Room("lowering", (f"{_PY}/codegen/*.py",), ("tests/codegen", "tests/vm/test_cases.py")),
-    Room(
-        "checker",
-        (f"{_PY}/semantics/checker.py", f"{_PY}/semantics/types.py"),
-        (
-            "tests/semantics",
-            "tests/vm/test_cases.py",
-            "tests/pupils/test_pupils.py",
-            "tests/diagnostics/test_rendering.py",
-        ),
-    ),
-)
-BY_NAME = {room.name: room for room in ROOMS}
 
 
 class Change(NamedTuple):
@@ -249,25 +76,28 @@ def copied(to: Path) -> None:
         shutil.copy(ROOT / name, to / name)
 
 
-def failing(copy: Path, tests: Sequence[str]) -> str:
+def failing(copy: Path, tests: Sequence[str], without: Sequence[str] = ()) -> str:
     """Return what fails first of the tests of a copy, or nothing."""
     environment = {
         **os.environ,
         "PYTHONPATH": str(copy / "compiler"),
         "PYTHONDONTWRITEBYTECODE": "1",
     }
-    command = [sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", *LEFT_OUT]
-    command += tests
+    command = [sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider"]
+    command += ["-k", " and not ".join((LEFT_OUT, *without)), *tests]
+    done = subprocess.Popen(
+        command, cwd=copy, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT, text=True, errors="replace", start_new_session=True,
+    )  # fmt: skip
     try:
-        done = subprocess.run(
-            command, cwd=copy, env=environment, capture_output=True, text=True, errors="replace",
-            timeout=LIMIT_S, stdin=subprocess.DEVNULL,
-        )  # fmt: skip
+        output, _ = done.communicate(timeout=LIMIT_S)
     except subprocess.TimeoutExpired:
+        os.killpg(done.pid, signal.SIGKILL)  # and robots that its tests have started
+        done.communicate()
         return "it does not end"
     if done.returncode == 0:
         return ""
-    said = [line for line in done.stdout.splitlines() if line.startswith(("FAILED", "ERROR"))]
+    said = [line for line in output.splitlines() if line.startswith(("FAILED", "ERROR"))]
     return said[0] if said else f"exit code {done.returncode}"
 
 
@@ -281,7 +111,7 @@ def survivors(room: Room, chosen: Sequence[Change]) -> list[Change]:
         copy = Path(folder)
         copied(copy)
         needed = {test for change in chosen for test in room.tests_of(change.file)}
-        why = failing(copy, [test for test in room.tests if test in needed])
+        why = failing(copy, [test for test in room.tests if test in needed], room.without)
         if why:
             raise ValueError(why)
         for change in chosen:
@@ -289,7 +119,7 @@ def survivors(room: Room, chosen: Sequence[Change]) -> list[Change]:
             path = copy / change.file
             right = path.read_bytes()
             path.write_text(change.text, encoding="utf-8")
-            noticed = failing(copy, room.tests_of(change.file))
+            noticed = failing(copy, room.tests_of(change.file), room.without)
             path.write_bytes(right)
             seconds = time.monotonic() - begun
             print(
