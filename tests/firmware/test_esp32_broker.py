@@ -222,14 +222,19 @@ def test_what_is_retained_was_said_before(broker: Mosquitto) -> None:
     for topic in topics:
         stranger._client.publish(topic, bytes(STOP_BYTES), retain=True)
     try:
-        robot, _ = at(broker, keys)
-        owner = remote(robot, keys)
-        teacher = broker.connected()
-        ends: Ends = [(AtBroker(robot, teacher), owner)]
-        assert uploaded(robot, ends, owner) == "OK"
-        talk(robot, ends, 300)
-        assert motors(robot) == "MOTORS 80 80"
-        teacher.close()
+        robot, owner = at(broker, keys)
+        cable: Ends = [(None, owner)]
+        in_reach(robot, "", "")
+        talk(robot, cable, 50)
+        assert uploaded(robot, cable, owner) == "OK"
+        in_reach(robot, "Aula 3 ñ", "correct horse battery staple, and forty more")
+        for _ in range(600):  # a broker says what it retains when the robot comes back
+            talk(robot, cable, 10)
+            time.sleep(0.005)
+            if told(robot, owner)[1] == "READY":
+                break
+        talk(robot, cable, 300)
+        assert told(robot, owner)[1] == "READY" and motors(robot) == "MOTORS 80 80"
     finally:
         for topic in topics:
             stranger._client.publish(topic, b"", retain=True)

@@ -108,6 +108,13 @@ class Esp32Robot(HostFirmware):
         """Let something happen on the other side of a radio: `answer_radio` of `main.cpp`."""
         return self.ask(b"R", what.encode() + data)
 
+    def moved(self) -> tuple[int, float]:
+        """Return after how many turns of the main loop, and microseconds of this computer, a motor
+        pin changed in the last step."""
+        answer = self.ask(b"M", b"")
+        turns, ns = (int.from_bytes(answer[k : k + 4], "little") for k in (0, 4))
+        return turns, ns / 1000
+
     def fill_nvs(self, is_full: bool = True) -> None:
         self.ask(b"F", pack("<B", is_full))
 

@@ -38,11 +38,12 @@ def missing(name: str) -> str:
 
 
 class Emulated(Process):
-    """One emulator. `program` is what `built` returns."""
+    """One emulator. `program` is what `built` returns, `more` what QEMU is told besides."""
 
-    def __init__(self, name: str, program: Path) -> None:
+    def __init__(self, name: str, program: Path, more: tuple[str, ...] = ()) -> None:
+        words = [*chips.CHIPS[name].emulator, *QUIET, *more]
         load = ("-device", f"loader,file={program},cpu-num=0")
-        super().__init__([*chips.CHIPS[name].emulator, *QUIET, *load], chips.CHIPS[name].board)
+        super().__init__([*words, *load], chips.CHIPS[name].board)
 
     def run(self, image: bytes, kit: Kit, senses: Senses) -> Ran:
         return ran(self.ask(b"R", run_request(image, kit, senses)).decode())

@@ -1,7 +1,10 @@
-"""Prints how much flash and RAM machine, link and reader of text take on each chip, linked.
+"""Prints what the chips of robots take: flash and RAM of each part, and the machine's instructions.
 
 The rows of `machine_size`, `link_size` and `text_size`, in one table. The link has what every robot
-has: one transport, with the reader of text.
+has: one transport, with the reader of text. Instructions of an ESP's chip are counted by QEMU,
+which knows no cycles: the chips' pipelines, caches and flash are not in them. An AVR's are cycles.
+Then what an upload takes over Bluetooth LE, and the host build of an ESP32 from a frame's last byte
+to its pins.
 """
 
 from __future__ import annotations
@@ -13,8 +16,18 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT)]
 
-from tools.bench import link_size, machine_size, text_size
+from tools.bench import (
+    emulated_counts,
+    esp32_frames,
+    link_size,
+    machine_cycles,
+    machine_size,
+    text_size,
+)
+from tools.bench.avr_bench import missing as no_avr
+from tools.bench.compiler import table
 from tools.bench.machine_size import AVR, EMULATED, Size, missing
+from tools.bench.workloads import OTHERS, WORKS
 from tools.builds import chips
 
 
@@ -36,15 +49,39 @@ PARTS: dict[str, Callable[[str], Size]] = {
 }
 
 
-def main() -> int:
+def sizes() -> None:
     print("| chip |", " | ".join(f"{part}: flash | RAM" for part in PARTS), "|")
     print("| --- |", " | ".join("---: | ---:" for _ in PARTS), "|")
     for name in (AVR, *EMULATED):
         if missing(name):
             print(missing(name), file=sys.stderr)
             continue
-        sizes = [measure(name) for measure in PARTS.values()]
-        print(f"| {name} |", " | ".join(f"{each.flash:,} | {each.ram}" for each in sizes), "|")
+        found = [measure(name) for measure in PARTS.values()]
+        print(f"| {name} |", " | ".join(f"{each.flash:,} | {each.ram}" for each in found), "|")
+
+
+def instructions() -> None:
+    rows: list[tuple[object, ...]] = []
+    for name, chip in chips.CHIPS.items():
+        if emulated_counts.missing(name):
+            print(emulated_counts.missing(name), file=sys.stderr)
+            continue
+        counting = emulated_counts.Counting(name)
+        found = [round(counting.per_iteration(work)) for work in WORKS]
+        counting.close()
+        rows.append((chip.board, "instructions", *found))
+    if not no_avr():
+        found = [round(machine_cycles.per_iteration(work)) for work in WORKS]
+        rows.append((AVR, "cycles", *found))
+    rows += [(f"  {name}, on an AVR", "cycles", *map(round, each)) for name, _, each in OTHERS]
+    title = "One iteration of A, B and C, all of `tick`"
+    table(title, ("", "of", "A", "B", "C"), rows)
+
+
+def main() -> int:
+    sizes()
+    instructions()
+    esp32_frames.main()
     return 0
 
 

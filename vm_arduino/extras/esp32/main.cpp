@@ -6,6 +6,8 @@
 
 #include <math.h>
 
+#include <chrono>
+
 #include "../../src/boards/esp32/first_bytes.h"
 #include "../../src/boards/kit.h"
 #include "../host/wire.h"
@@ -23,6 +25,13 @@ std::string log_of_robot;
 int shown_left;
 int shown_right;
 uint32_t shown_hertz;
+
+// Since the last request began: turns of the main loop, and those until a motor pin has changed.
+typedef std::chrono::steady_clock Watch;
+uint32_t turns_begun;
+Watch::time_point begun;
+uint32_t turns_until_moved;
+uint64_t moved_ns;
 
 void say(const std::string& line) { log_of_robot += line + "\n"; }
 
@@ -74,6 +83,9 @@ void look() {
   const int right = power_of(kRightMotor);
   if (left != shown_left || right != shown_right) {
     say("MOTORS " + std::to_string(left) + " " + std::to_string(right));
+    turns_until_moved = turns_begun;
+    const Watch::duration took = Watch::now() - begun;
+    moved_ns = static_cast<uint64_t>(std::chrono::nanoseconds(took).count());
   }
   shown_left = left;
   shown_right = right;
@@ -116,7 +128,10 @@ void answer_begin(RequestReader* request) {
 }
 
 void turns(uint32_t count) {
+  turns_begun = 0;
+  begun = Watch::now();
   for (uint32_t k = 0; k < count; k++) {
+    turns_begun++;
     loop();
     pass(kTurnUs);
   }
@@ -232,6 +247,13 @@ void answer_guest(RequestReader* request, Writer* answer) {
       guest_of(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size())));
 }
 
+// M: how many turns of the main loop, and nanoseconds of this computer, the last step took until a
+// motor pin changed.
+void answer_moved(Writer* answer) {
+  answer->u32(turns_until_moved);
+  answer->u32(static_cast<uint32_t>(moved_ns));
+}
+
 // O: what a pin has, 0 to 255. F: whether NVS is full. L: LEDC does nothing any more.
 void answer_output(RequestReader* request, Writer* answer) { answer->u8(output_of(request->u8())); }
 
@@ -272,6 +294,9 @@ int main() {
         break;
       case 'G':
         answer_guest(&request, &said);
+        break;
+      case 'M':
+        answer_moved(&said);
         break;
       case 'L':
         chip.is_ledc_stuck = true;

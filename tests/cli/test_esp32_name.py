@@ -1,0 +1,48 @@
+"""`tcp://NAME` and `tsc ports --ask` against the firmware of an ESP32, by real multicast DNS."""
+
+from __future__ import annotations
+
+import sys
+from importlib.util import find_spec
+
+import pytest
+
+from tests.machines.esp32 import missing
+from tests.support.command import FOREVER, Command, process
+from tests.support.pty_robot import on
+
+if sys.platform == "win32":
+    pytest.skip("there are no pseudo-terminals", allow_module_level=True)
+
+from tests.cli.test_esp32_radio import asked, joined, robot
+from tests.support.esp32_announced import Announced
+from tests.support.esp32_pty_robot import Esp32PtyRobot
+
+WHY = missing() or ("" if find_spec("zeroconf") else "no zeroconf: pip install zeroconf")
+pytestmark = pytest.mark.skipif(bool(WHY), reason=WHY or "there is zeroconf")
+PLACE = "tcp://tini-5678"
+
+__all__ = ("joined", "robot")
+
+
+def is_listed() -> bool:
+    rows = [row for row in process("ports", "--ask").out.split("\n") if row.startswith(PLACE)]
+    return "announced in the network" in rows[0] and "robot tinibot (yours)" in rows[0]
+
+
+def test_a_robot_is_found_and_driven_by_its_name(joined: Esp32PtyRobot) -> None:
+    with Announced(joined):
+        for place in (f"{PLACE}.local", PLACE):  # the last one is remembered
+            assert process("ping", "--port", place, "--count", "1").code == 0
+        joined.until(is_listed, "it is listed")  # a busy computer misses what comes after 2 s
+        command = Command("upload", "-e", FOREVER, "--port", PLACE)
+        command.until("running")
+        joined.until(lambda: joined.moves, "it drives")
+        assert process("stop", "--port", PLACE).code == 0
+        assert not joined.moves
+        command.ended()
+        assert on(joined, "wifi", "--forget").code == 0
+        assert asked(joined, "service") == ""
+        joined.until(
+            lambda: "announces itself" in process("ping", "--port", PLACE).err, "it is silent"
+        )

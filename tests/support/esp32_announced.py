@@ -1,0 +1,72 @@
+"""What an ESP32 says of itself by multicast DNS, for real: on 127.0.0.1, by zeroconf.
+
+The firmware's calls of `MDNS` decide what is announced, and when: this repeats them.
+"""
+
+from __future__ import annotations
+
+import threading
+from typing import Any
+
+from tests.machines.esp32 import Esp32Robot
+from tests.machines.host_firmware import HostFirmware
+from tests.support.esp32_pty_robot import Esp32PtyRobot
+from tests.support.esp32_radio import Radios, port_of, radios
+
+LOOK_S = 0.1
+PORT = 8473  # that the firmware announces; many robots are on this computer, at ports that are free
+
+
+class Announced:
+    """Repeats what a robot announces until `close`."""
+
+    def __init__(self, robot: Esp32PtyRobot) -> None:
+        from zeroconf import Zeroconf
+
+        self._robot = robot
+        self._network = Zeroconf(interfaces=["127.0.0.1"])
+        self._is_over = threading.Event()
+        self._thread = threading.Thread(target=self._follow, daemon=True)
+        self._thread.start()
+
+    def __enter__(self) -> Announced:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._is_over.set()
+        self._thread.join()
+        self._network.close()
+
+    def _follow(self) -> None:
+        before: Any = None
+        while not self._is_over.wait(LOOK_S):
+            said, number = self._said()
+            now = _info(said, number) if said.service else None
+            if now == before:
+                continue
+            if before is not None:
+                self._network.unregister_service(before)
+            if now is not None:
+                self._network.register_service(now)
+            before = now
+
+    def _said(self) -> tuple[Radios, int]:
+        found: list[tuple[Radios, int]] = []
+
+        def look(robot: HostFirmware) -> None:
+            assert isinstance(robot, Esp32Robot)
+            found.append((radios(robot), port_of(robot)))
+
+        self._robot.ask(look)
+        return found[0]
+
+
+def _info(said: Radios, number: int) -> Any:
+    from zeroconf import ServiceInfo
+
+    kind, port = said.service.split()
+    service = f"{kind}.local."
+    return ServiceInfo(
+        service, f"{said.instance}.{service}", number if int(port) == PORT else int(port),
+        addresses=[bytes((127, 0, 0, 1))], server=f"{said.host}.local.",
+    )  # fmt: skip
