@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import shutil
 import signal
@@ -117,13 +118,21 @@ def test_a_driver_that_is_stopped_keeps_no_robot_driving(room: Class) -> None:
     command.process.kill()
 
 
-def test_values_are_collected(room: Class) -> None:
+def test_values_are_collected(room: Class, tmp_path: Path) -> None:
     text = "SI|LOOP(FOREVER); SHOW(5); W(0.3); END_LOOP"
     assert tsc(room, "upload", "-e", text, "--detach")[0] == 0
-    code, said, error = tsc(room, "show", "--max-time", "3", "--json")
+    (tmp_path / "rows.csv").write_bytes(b"robot,id,ms,event,value\nan older one\n")
+    words = ("show", "--max-time", "3", "--json", "--csv", str(tmp_path / "rows.csv"))
+    code, said, error = tsc(room, *words)
     values = [json.loads(line) for line in said.splitlines() if '"SHOW"' in line]
     assert code == 0, said + error
     assert len({each["port"] for each in values}) == 2, said
+    with (tmp_path / "rows.csv").open(encoding="utf-8", newline="") as file:
+        first, *rows = csv.reader(file)
+    assert first == ["robot", "id", "ms", "event", "value"]
+    shows = {(row[0], row[1], row[4]) for row in rows if row[3] == "SHOW"}
+    assert shows == {("tinibot", f"{seed:08x}", "5") for seed in SEEDS}
+    assert len([row for row in rows if row[3] == "SHOW"]) == len(values)
 
 
 def test_a_robot_that_is_off_is_told(room: Class) -> None:
@@ -165,7 +174,7 @@ def test_what_a_stranger_retains_reaches_no_terminal_raw(tmp_path: Path) -> None
     ["--broker", "x", "--class", "#"], ["--broker", "x", "--class", ""],
     ["--broker", "x", "--trust", "f"], ["list", "prog.ts", "--broker", "x"],
     ["--broker", "x", "--tls", "--trust", "/none"], ["--broker", "x", "--user", ""],
-    ["drive", "--broker", "x"],
+    ["drive", "--broker", "x"], ["list", "--broker", "x", "--csv", "f"],
 ])  # fmt: skip
 def test_words_that_make_no_sense_are_said_before_anything_is_reached(words: list[str]) -> None:
     for language in ("en", "es"):

@@ -50,7 +50,9 @@ def told(text: str, is_json: bool) -> tuple[str, str]:
     """Return what is printed of a robot's text, and its row."""
     said: list[str] = []
     rows = io.StringIO()
-    printer = EventPrinter("en", is_json, rows=rows, out=said.append, err=said.append)
+    writer = csv.writer(rows, lineterminator="\n")
+    add = lambda *cells: writer.writerow(cells)  # noqa: E731
+    printer = EventPrinter("en", is_json, rows=add, out=said.append, err=said.append)
     printer.tell(5, TextEvent(text.encode("utf-8", "surrogateescape")))
     return "\n".join(said), rows.getvalue()
 

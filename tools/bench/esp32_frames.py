@@ -113,8 +113,8 @@ def main() -> int:
         turns = [turn for turn, _ in all_of]
         us = statistics.median(us for _, us in all_of)
         pins.append((what, f"{min(turns)} to {max(turns)}", f"{us:.0f}"))
-    head = ("last byte to motor pin", "turns of the main loop", "us here, median")
-    table(f"The host build of an ESP32, {RUNS} times", head, pins)
+    words = ("last byte to motor pin", "turns of the main loop", "us here, median")
+    table(f"The host build of an ESP32, {RUNS} times", words, pins)
     return 0
 
 

@@ -19,4 +19,6 @@ def run(options: Namespace, language: str) -> int:
     }
     if options.action != "upload" and (options.program is not None or options.texts):
         raise CommandError(2, "class_no_upload")
+    if options.action != "show" and options.csv is not None:
+        raise CommandError(2, "class_no_show")
     return actions[options.action](classroom.Classroom(options, language))

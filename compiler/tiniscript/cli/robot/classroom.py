@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from argparse import Namespace
+from functools import partial
 from time import monotonic
 from typing import TYPE_CHECKING
 
@@ -17,6 +18,7 @@ from tiniscript.cli.texts.common import text
 if TYPE_CHECKING:
     from tiniscript.cli.robot.connect import Connection
     from tiniscript.cli.robot.fleet import Member, Result
+    from tiniscript.cli.robot.rows import Rows
     from tiniscript.link.broker import Access, Broker, Present
 
 STOPS = 3  # messages to all, as each may be lost
@@ -111,25 +113,34 @@ def stop(room: Classroom) -> int:
 
 def show(room: Classroom) -> int:
     """Print what the robots show, until Ctrl-C or for some seconds."""
+    from tiniscript.cli.made import CLASS_ROWS
     from tiniscript.cli.robot.fleet import together
+    from tiniscript.cli.robot.rows import Rows
 
     options, language = room.options, room.language
     seconds = whole_number("--max-time", options.max_time, 0, 1, 10**6, language)
     own = room.targets(room.present())
     end_s = monotonic() + seconds if seconds else None
-    code = together(own, inputs.robot(own, language), language, Listener(own.json, end_s).listen)
+    rows = Rows(options.csv, CLASS_ROWS) if options.csv is not None else None
+    listener = Listener(own.json, end_s, rows)
+    try:
+        code = together(own, inputs.robot(own, language), language, listener.listen)
+    finally:
+        if rows is not None:
+            rows.close()
     return 0 if code == 2 else code  # Ctrl-C is the usual way to end it
 
 
 class Listener:
     """Prints the events of one of many robots, and changes nothing of its run."""
 
-    def __init__(self, is_json: bool, end_s: float | None) -> None:
+    def __init__(self, is_json: bool, end_s: float | None, rows: Rows | None = None) -> None:
         self.is_json = is_json
         self.end_s = end_s
+        self.rows = rows
 
     def listen(self, connection: Connection, member: Member) -> Result:
-        from tiniscript.cli.robot.event_printer import Bookkeeping, EventPrinter
+        from tiniscript.cli.robot.event_printer import Bookkeeping, EventPrinter, no_formula
         from tiniscript.cli.robot.fleet import Result
 
         member.meet(connection)
@@ -138,9 +149,12 @@ class Listener:
         def out(line: str) -> None:
             member.print(line if self.is_json else f"{connection.name}: {line}")
 
+        add = self.rows.add if self.rows is not None else None
+        who = no_formula(shown(connection.name)), f"{connection.device_info.id:08x}"
         printer = EventPrinter(
-            connection.language, self.is_json, about=about, has_times=self.is_json, out=out, err=out
-        )
+            connection.language, self.is_json, about=about, has_times=self.is_json, out=out,
+            err=out, rows=partial(add, *who) if add is not None else None,
+        )  # fmt: skip
         bookkeeping = Bookkeeping()
         try:
             while self.end_s is None or monotonic() < self.end_s:

@@ -7,9 +7,8 @@ from __future__ import annotations
 
 import json
 import sys
-from typing import TYPE_CHECKING, TextIO
+from typing import TYPE_CHECKING
 
-from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.texts.common import text
 
@@ -79,8 +78,8 @@ def _err(line: str) -> None:
 class EventPrinter:
     """Prints events. `has_times`: each with the milliseconds since the first.
 
-    `out` and `err` replace `print` while a picture is on the terminal. JSON lines also get the
-    fields of `about`.
+    `rows` gets the cells of each, for a CSV file. `out` and `err` replace `print` while a picture
+    is on the terminal. JSON lines also get the fields of `about`.
     """
 
     def __init__(
@@ -89,7 +88,7 @@ class EventPrinter:
         is_json: bool = False,
         has_times: bool = False,
         places: Map | None = None,
-        rows: TextIO | None = None,
+        rows: Callable[[int, str, str], None] | None = None,
         out: Callable[[str], None] | None = None,
         err: Callable[[str], None] | None = None,
         about: Mapping[str, object] | None = None,
@@ -157,7 +156,7 @@ class EventPrinter:
     ) -> None:  # fmt: skip
         """Print an event: `said`, or its name and its values. JSON gets the fields."""
         if self.rows is not None:
-            self._add_row(since_ms, name, what)
+            self.rows(since_ms, name, what)
         if self.is_json:
             times = {"ms": since_ms} if self.has_times else {}
             self.out(json.dumps({**times, "event": name, **self.about, **fields}))
@@ -166,18 +165,6 @@ class EventPrinter:
         else:
             time = f"{since_ms} " if self.has_times else ""
             self.out(time + (said or f"{name} {what}"))
-
-    def _add_row(self, since_ms: int, name: str, what: str) -> None:
-        import csv
-
-        assert self.rows is not None
-        try:
-            csv.writer(self.rows, lineterminator="\n").writerow((since_ms, name, what))
-            self.rows.flush()
-        except (OSError, ValueError) as why:
-            reason = why.strerror if isinstance(why, OSError) and why.strerror else str(why)
-            file = shown(str(self.rows.name))
-            raise CommandError(2, "unwritable_rows", file=file, why=reason) from None
 
 
 class Bookkeeping:

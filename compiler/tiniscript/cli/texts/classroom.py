@@ -32,6 +32,7 @@ CLASS_TEXTS: dict[str, tuple[str, str]] = {
                       "{robot} encuentra el broker {address}, y no se entienden por TLS: ¿lo habla el broker en este puerto, y sin pedir un certificado al robot? Si es así, quizá al robot le falta memoria: apágalo y enciéndelo."),
     "class_no_broker": ("tsc: which broker? Name the computer on which it runs:  tsc class --broker HOST",
                         "tsc: ¿qué broker? Nombra la computadora donde está:  tsc class --broker HOST"),
+    "class_no_show": ("tsc: --csv is for  tsc class show", "tsc: --csv es para  tsc class show"),
     "class_no_upload": ("tsc: a program is for  tsc class upload", "tsc: un programa es para  tsc class upload"),
     "class_empty": ("tsc: no robot of the class {group} is at the broker {host}. Is it on, and was it brought there?   tsc wifi --broker HOST --class {group}",
                     "tsc: no hay ningún robot de la clase {group} en el broker {host}. ¿Está encendido, y lo llevaste ahí?   tsc wifi --broker HOST --class {group}"),

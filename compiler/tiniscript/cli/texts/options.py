@@ -182,6 +182,7 @@ OPTIONS: tuple[Option, ...] = (
     Option("--count", "ping", ("how many round trips (10)", "cuántas idas y vueltas (10)"), NUMBER, N),
     Option("--plot", "monitor", ("on a terminal: draws the values of the last 30 seconds as a curve", "en una terminal: dibuja los valores de los últimos 30 segundos como una curva")),
     Option("--csv", "monitor", ("writes rows of ms,event,value, too", "escribe además filas de ms,event,value"), ROWS, A_FILE),
+    Option("--csv", "class", ("with show: writes rows of robot,id,ms,event,value, too", "con show: escribe además filas de robot,id,ms,event,value"), ROWS, A_FILE),
     Option("--max-time", "monitor class", ("leaves after S seconds", "sale después de S segundos"), NUMBER, S),
     Option("--show", "trim", ("only prints what the robot keeps", "solo imprime lo que guarda el robot")),
     Option("--reset", "trim", ("motors as they are wired, both equally strong", "motores como están conectados, los dos con igual fuerza")),
