@@ -155,7 +155,7 @@ def test_files_that_are_named_exist(document: Path) -> None:
     `NAME.toml` and `tests/*.py` are no names.
     """
     known = {path.name for path in (*SOURCES, *ROOT.glob("examples/*.ts"), *ROOT.iterdir())}
-    known |= OTHERS_FILES | {"machine.wasm", "robot.wasm", "robot_esp32.wasm"}
+    known |= OTHERS_FILES | {"machine.wasm", "robot.wasm", "robot_mega.wasm", "robot_esp32.wasm"}
     wrong = []
     for span in spans_of(document):
         is_path = bool(re.fullmatch(PATH, span)) and span.split("/")[0] in ROOMS

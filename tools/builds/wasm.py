@@ -1,9 +1,9 @@
 """Makes the `.wasm` of the package from the C++: `python -m tools.builds.wasm` after changes.
 
-`tsc run --machine cpp` runs the machine, and `tsc robot` the whole robot: `robot_esp32.wasm` has
-the sizes of one with an ESP32. Needs the compiler `ziglang` from PyPI, in the version that the
-extra `test` pins: with it, the same sources give the same bytes wherever they are. `--check` writes
-nothing, and says if a file is stale.
+`tsc run --machine cpp` runs the machine, and `tsc robot` the whole robot: `robot_mega.wasm` and
+`robot_esp32.wasm` have the sizes of one with a Mega and with an ESP32. Needs the compiler `ziglang`
+from PyPI, in the version that the extra `test` pins: with it, the same sources give the same bytes
+wherever they are. `--check` writes nothing, and says if a file is stale.
 """
 
 from __future__ import annotations
@@ -52,7 +52,10 @@ ROBOT = Module(
 ROBOT_ESP32 = ROBOT._replace(
     path="compiler/tiniscript/virtual/robot_esp32.wasm", flags=("-Dtiniscript_like_esp32",)
 )
-MODULES = (MACHINE, ROBOT, ROBOT_ESP32)
+ROBOT_MEGA = ROBOT._replace(
+    path="compiler/tiniscript/virtual/robot_mega.wasm", flags=("-Dtiniscript_like_mega",)
+)
+MODULES = (MACHINE, ROBOT, ROBOT_MEGA, ROBOT_ESP32)
 
 
 def main(arguments: list[str] | None = None) -> int:

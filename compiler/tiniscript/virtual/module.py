@@ -1,6 +1,7 @@
 """The robot's firmware, as a WebAssembly module: one instance is one power-on.
 
-`robot.wasm` has the memory and the link of an Uno, `robot_esp32.wasm` those of an ESP32.
+`robot.wasm` has the memory and the link of an Uno, `robot_mega.wasm` and `robot_esp32.wasm` those
+of a Mega and of an ESP32.
 
 Knows how to call the module (`vm_arduino/extras/wasm/robot.cpp` is the other side). Does not know
 what a robot does in its world: a `Board` is told. Importing this fails where `wasmtime` is not
@@ -24,6 +25,7 @@ else:
     from tiniscript.vm import wasm_store
 
 PATH = Path(__file__).with_name("robot.wasm")
+PATH_MEGA = Path(__file__).with_name("robot_mega.wasm")
 PATH_ESP32 = Path(__file__).with_name("robot_esp32.wasm")
 
 POWER_ON, RESET_BUTTON = 1, 2  # why it begins

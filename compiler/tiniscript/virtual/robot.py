@@ -21,6 +21,7 @@ from tiniscript.virtual.module import (
     NOWHERE,
     PATH,
     PATH_ESP32,
+    PATH_MEGA,
     POWER_ON,
     RESET_BUTTON,
     Circumstances,
@@ -57,6 +58,7 @@ class Settings(NamedTuple):
 
 PLAIN = Settings()
 EEPROM_US = 3400  # of an AVR, for a byte
+MODULES = {"mega": PATH_MEGA, **dict.fromkeys(ESP32S, PATH_ESP32)}  # of chips, beside an Uno's
 FLASH_US = 10  # of an ESP32, whose NVS writes a whole program at once
 
 
@@ -176,7 +178,7 @@ class VirtualRobot:
                 is_spanish=board.language == "es",
             ),
             memory,
-            PATH_ESP32 if is_esp32 else PATH,
+            MODULES.get(board.chip, PATH),
         )
 
     # -- what it does -----------------------------------------------------------------------------

@@ -7,7 +7,7 @@
 
 namespace tiniscript {
 
-#if defined(__AVR_ATmega2560__)
+#if defined(__AVR_ATmega2560__) || defined(tiniscript_like_mega)
 constexpr TextLevel kRobotTextLevel = TextLevel::kMega;
 #elif defined(ARDUINO_ARCH_ESP32) || defined(tiniscript_like_esp32)
 constexpr TextLevel kRobotTextLevel = TextLevel::kEsp32;

@@ -14,7 +14,7 @@ namespace tiniscript {
 
 // The EEPROM size: Mega 2560; what an ESP32 has in its place, with room for 8,192 bytes of code;
 // Uno and Nano.
-#if defined(__AVR_ATmega2560__)
+#if defined(__AVR_ATmega2560__) || defined(tiniscript_like_mega)
 constexpr uint16_t kMemoryBytes = 4096;
 #elif defined(ARDUINO_ARCH_ESP32) || defined(tiniscript_like_esp32)
 constexpr uint16_t kMemoryBytes = 16640;
