@@ -112,7 +112,7 @@ OTHER_WORDS = {
     "W": "WAIT DELAY SLEEP PAUSE ESPERAR ESPERA PAUSA PAUSAR DORMIR DUERME",
     "M": "MOTOR MOTORS MOTORES",
     "BEEP": "TONE BUZZ BUZZER SOUND PITAR PITA PITO PITIDO SONAR SUENA TOCAR TOCA SONIDO TONO",
-    "SHOW": "PRINT PRINTLN PRINTF WRITE SAY DISPLAY ECHO MOSTRAR MUESTRA IMPRIMIR IMPRIME DECIR DI ESCRIBIR ESCRIBE",
+    "SHOW": "PRINT PRINTLN PRINTF WRITE SAY DISPLAY ECHO LOG MOSTRAR MUESTRA IMPRIMIR IMPRIME DECIR DI ESCRIBIR ESCRIBE",
     "START": "INICIO BEGIN COMENZAR COMIENZO EMPEZAR EMPIEZA INICIAR VOID_SETUP",
     "IF": "SI_ES CUANDO UNLESS A_MENOS_QUE SALVO EXCEPTO",
     "ELSEIF": "ELIF ELSIF SINO_SI",
@@ -158,6 +158,20 @@ DEVICE_WORDS = frozenset(["LED", "LUZ", "FOCO", "LIGHT", "LAMP", "LAMPARA", "SER
 
 # Commands of other languages whose time is in milliseconds.
 IN_MILLISECONDS = frozenset(["DELAY"])
+# What other languages do, and this one does not: pins and jumps. What the robot knows instead.
+NOT_DONE = {
+    **dict.fromkeys(("DIGITALWRITE", "ANALOGWRITE", "PINMODE", "DIGITALREAD", "ANALOGREAD", "PIN"), "pins"),
+    **dict.fromkeys(("GOTO", "GOSUB", "JUMP", "SALTA", "SALTAR", "IRA", "IR_A"), "jump"),
+}
+_INSTEAD = {"pins": "F(2, 80)", "jump": "LOOP(FOREVER)", "motors": "M(50, 50)"}
+
+
+def said_instead(word: str) -> dict[str, str]:
+    """Return what a message says of a word of another language that has no like here."""
+    kind = "motors" if word.startswith("MOTOR") else NOT_DONE.get(word, "")
+    return {kind: _INSTEAD[kind]} if kind else {}
+
+
 # What documents write for a value, and pupils copy.
 PLACEHOLDERS = {
     "time": ("TIME", "TIEMPO", "T"), "seconds": ("SECONDS", "SEGUNDOS", "TIME", "TIEMPO"),
@@ -166,7 +180,7 @@ PLACEHOLDERS = {
 }
 
 # Words that have a meaning elsewhere in this table, and are no misspelt ones.
-_KNOWN_OTHERWISE = frozenset(("CONTINUE", "CONTINUA", "CONTINUAR", *TURN_WORDS, *SWITCH_WORDS, *SENSOR_STEMS))
+_KNOWN_OTHERWISE = frozenset(("CONTINUE", "CONTINUA", "CONTINUAR", *TURN_WORDS, *SWITCH_WORDS, *SENSOR_STEMS, *NOT_DONE))
 
 # Numbers in words, of what programs often say.
 NUMBER_WORDS = {name: str(value) for value, names in (
@@ -211,7 +225,7 @@ def meant_by(word: str) -> str | None:
 
     `word` may be misspelt: `ABANZA`, `FOWARD`.
     """
-    return _meanings().get(word) or _misspelt(word)[0]
+    return _meanings().get(word) or _misspelt(word)[0] or _meant_in_two(word)
 
 
 def is_guessed(word: str) -> bool:
@@ -232,6 +246,31 @@ def _misspelt(word: str) -> tuple[str | None, bool]:
         return _meanings().get(found), False
     guessed = _meanings().get(_speller().near(word) or "")
     return guessed, guessed is not None
+
+
+@lru_cache(1000)
+def _meant_in_two(word: str) -> str | None:
+    """Return what `moverAdelante` or `MOTOR_STOP` means: two words that say one command."""
+    if word in WORDS or word in _KNOWN_OTHERWISE or len(word) > 24:
+        return None
+    for k in range(2, len(word) - 1):
+        first, second = word[:k].rstrip("_"), word[k:].lstrip("_")
+        if not all(
+            half in _WHO or half in TURN_WORDS or half in _meanings() for half in (first, second)
+        ):
+            continue
+        meant = {_meanings().get(first), _meanings().get(second)}
+        is_framed = first in _WHO or second in _WHO or _meanings().get(first) == "F"
+        said = meant - {None, "M", "F"} or meant - {None, "M"}
+        is_turn = first in TURN_WORDS and said <= {"L", "R"}
+        if (is_framed or is_turn) and len(said) == 1 and said <= _DOING:
+            return said.pop()
+    return None
+
+
+# Who moves, in a name of two words, and what is done by one.
+_WHO = frozenset("ROBOT CAR CARRO AUTO MOTOR MOTORS MOTORES IR".split())  # noqa: SIM905
+_DOING = frozenset(("F", "B", "L", "R", "S", "BEEP"))
 
 
 @cache

@@ -7,7 +7,8 @@ import pytest
 from tests.pupils.corpus import check
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.rendering import message
-from tiniscript.repairs.accounting import lost, makes_up
+from tiniscript.repairs.accounting import lost, makes_up, makes_up_names
+from tiniscript.repairs.fixing import fixed
 from tiniscript.source import Source
 
 
@@ -71,7 +72,7 @@ def tried(program: str) -> list[str]:
         ("drive forward until you see a wall then turn left", "F(2, 80)"),
         ("cuando distancia menor a 15 frenar y girar izquierda", "IF(DISTANCE < 10)"),
         ("si ve una pared gira", "IF(DISTANCE < 10)"),
-        ("if DISTANCE > 10 and < 30: F(1,50)", "IF(DISTANCE > 10 AND < 30);F(1, 50);ENDIF"),
+        ("IF(DISTANCE < 10);S\nF(1,50)", "Write ENDIF after line 2: F(1,50)"),
         ("para cada vuelta\nF(1,50)\nfin", "LOOP(3)"),
     ],
 )
@@ -85,3 +86,59 @@ def test_what_does_something_else_is_not_offered(program: str, wrong: str) -> No
 def test_a_step_that_keeps_all_that_was_said_is_offered() -> None:
     assert tried("LEFT(1,50) AND FORWARD(2,80)")[0] == "L(1, 50)"
     assert tried("repetir 4 veces avanzar 1 y girar derecha 1")[0] == "LOOP(4)"
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "is_made_up"),
+    [
+        ("SHOW", "SHOW(DISTANCE)", True),
+        ("mostrar distancia", "SHOW(DISTANCE)", False),
+        ("mientras no haya pared", "WHILE(DISTANCE > 10)", False),
+        ("mi vel = 5", "MI_VEL = 5", False),
+    ],
+)
+def test_names_of_examples_are_made_up(before: str, after: str, is_made_up: bool) -> None:
+    assert makes_up_names(before, after) == is_made_up
+
+
+@pytest.mark.parametrize(
+    "program",
+    [
+        "W(15.)",  # 1.5, or 15
+        "LOOP(1000o);END_LOOP",
+        "SHOW(1.5l)",
+        "SHOW(5 / 3 - 3))",  # one bracket too many, or one missing
+        "X = (5 - 3 / 2",
+        "SPEED = 5;:PEED = 6",
+        "W(0.?1)",
+        "SHOW;",
+        "X = 1;X = + 5",
+        "F(2,8 0)",
+        "F(2,80,60)",
+        "WAIT(500)",
+        "DEF LOOK;S;END_DEF;LOOK:F(2, 80)",  # LOOK is called
+    ],
+)
+def test_a_slip_that_has_two_repairs_is_left_to_its_author(program: str) -> None:
+    assert check(program)
+    done = fixed(program, check).text
+    assert done in (program, program.replace("LOOK:", "LOOK;"))
+
+
+@pytest.mark.parametrize(
+    ("program", "right"),
+    [
+        ("F(2, 8O)", "F(2, 80)"),
+        ("F(2, 80))", "F(2, 80)"),
+        ("F(2, 80", "F(2, 80)"),
+        ("\u00a1F(2, 80)", "F(2, 80)"),
+        ("F(2;80", "F(2, 80)"),
+        ("F(\u221e, 80) UNTIL(DISTANCE < 10)", "F(FOREVER, 80) UNTIL(DISTANCE < 10)"),
+        ("F(2, 80)\\nR(1, 60)", "F(2, 80);R(1, 60)"),
+        ("F(time=2, power=80)", "F(2, 80)"),
+        ("x = la distancia", "x = DISTANCE"),
+        ("for i in range(3): F(1, 60); S", "LOOP(3);F(1, 60);S;END_LOOP"),
+    ],
+)
+def test_a_slip_that_has_one_repair_gets_it(program: str, right: str) -> None:
+    assert fixed(program, check).text == right

@@ -125,7 +125,7 @@ REPAIRS: dict[str, tuple[list[str], list[tuple[str, str, str | None]]]] = {
     "“HOLA”": (["word 'HOLA'"], [("TS006", "“HOLA”", "HOLA")]),
     '"F(2)"': (["odd '\"F(2)\"'"], [("TS006", '"F(2)"', "F(2)")]),
     "S # stop": (["word 'S'"], [("TS007", "# stop", "// stop")]),
-    "/* a\nb */S": (["word 'S'"], [("TS007", "/* a\nb */", "// a\nb")]),
+    "/* a\nb */S": (["word 'S'"], [("TS007", "/* a\nb */", "")]),
     "?¿S": (["odd '?'", "odd '¿'", "word 'S'"], [("TS005", "?¿", None)]),  # once for a run
 }
 

@@ -79,6 +79,7 @@ _OTHER_WAY = {"F": "B", "B": "F", "L": "R", "R": "L"}
 _REWRITES = frozenset((
     codes.UNIT, codes.BAD_NUMBER, codes.LINE_NUMBER, codes.LOOP_COUNTS, codes.NEEDLESS_FRAME,
     codes.LISTS, codes.SETUP_UNKNOWN, codes.OTHER_ASSIGNMENT, codes.QUOTE, codes.WANTS_CONDITION,
+    codes.MIXED_COMPARE,
 ))  # fmt: skip
 _RENAMES = frozenset((
     codes.PROSE, codes.UNKNOWN_WORD, codes.UNKNOWN_NAME, codes.OTHER_NOTE, codes.SETUP_UNKNOWN,
@@ -111,6 +112,18 @@ def makes_up(before: str, after: str) -> bool:
     list(account.lost_numbers())
     list(account.lost_words())
     return any(number not in _EXAMPLES for number in account.spare.elements())
+
+
+def makes_up_names(before: str, after: str) -> bool:
+    """Whether `after` names something that `before` does not: `SHOW(DISTANCE)` for SHOW alone."""
+    old = _content(before).words
+    said = {part for word in old for part in word.split("_")}
+    meant = {meant_by(word) for word in old}
+    for word in _content(after).words:
+        is_known = word in WORDS or word in old or word in meant
+        if not is_known and not (set(word.split("_")) <= said or nearest(word, old)):
+            return not (word == "DISTANCE" and NEAR_WORDS & set(old))
+    return False
 
 
 class _Account:
@@ -160,6 +173,14 @@ class _Account:
         for word in rest:
             if not self._is_said(word):
                 yield word
+        if self._loses_a_minus():
+            yield "-"
+
+    def _loses_a_minus(self) -> bool:
+        """Whether a value changes its sign: in `F-2, 80` and `F(2-80)` the `-` is none."""
+        lost = self._old.signs["-"] > self._new.signs["-"]
+        is_turned = any(word in _OTHER_WAY for word in self._new.words)
+        return lost and not is_turned and bool({"SHOW", "M"} & set(self._new.words))
 
     def fills_a_note(self) -> bool:
         return bool(self._new.in_notes - self._old.in_notes)

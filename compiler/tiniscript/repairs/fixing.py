@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 from tiniscript.diagnostics import codes
 from tiniscript.diagnostics.codes import Code, Diagnostic
+from tiniscript.repairs.certain import is_certain
 from tiniscript.repairs.edits import Edit, applied, overlap
 from tiniscript.repairs.placing import edits_of
 from tiniscript.source import Source
@@ -169,9 +170,11 @@ def _sure(found: list[Diagnostic], text: str) -> list[_Repair]:
         ):
             continue
         edits = edits_of(diagnostic, source)
-        if edits and any(_is_sealed(edit, source) for edit in edits):
+        if not edits or not is_certain(diagnostic, edits, source):
             continue
-        if edits and (diagnostic.code in _REWRITTEN or keeps_numbers(text, edits)):
+        if any(_is_sealed(edit, source) for edit in edits):
+            continue
+        if diagnostic.code in _REWRITTEN or keeps_numbers(text, edits):
             repairs.append(_Repair(diagnostic.code, edits))
     return repairs
 

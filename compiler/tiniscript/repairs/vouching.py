@@ -17,6 +17,7 @@ from tiniscript.repairs.accounting import lost, makes_up
 from tiniscript.repairs.edits import Edit, applied, overlap
 from tiniscript.repairs.placing import edits_of
 from tiniscript.source import Source
+from tiniscript.words import usage_of
 
 Check = Callable[[str], Sequence[Diagnostic]]
 ALONE = 8  # repairs that are tried alone, because they touch another one
@@ -68,8 +69,9 @@ def vouched(found: Sequence[Diagnostic], source: Source, check: Check) -> list[D
 
 def _without(diagnostic: Diagnostic) -> Diagnostic:
     """Return a diagnostic that says how it is written, and offers no repair."""
-    usage = diagnostic.values.get("usage") or diagnostic.values.get("right", "")
-    values = {**diagnostic.values, "fix": "", "usage": usage}
+    said = diagnostic.values
+    usage = said.get("usage") or usage_of(said.get("right") or said.get("word", ""))
+    values = {**said, "fix": "", "usage": usage}
     return diagnostic._replace(values=values, place=None)
 
 
@@ -77,6 +79,8 @@ def _speaks_against(diagnostic: Diagnostic) -> bool:
     """Whether a diagnostic says that the instruction it is in is not meant as it stands."""
     if not diagnostic.is_mistake:
         return diagnostic.code in (codes.SWAPPED, codes.LONG_TIME)
+    if diagnostic.code is codes.OUT_OF_RANGE and diagnostic.values.get("fix"):
+        return False  # `F -1 80`: the next message says B
     return diagnostic.code not in _ELSEWHERE
 
 

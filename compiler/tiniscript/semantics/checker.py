@@ -202,7 +202,7 @@ class _Checker(Scope):
         value = self.kinds.value(argument)
         if value.kind == "yes_no":
             text = self.source[argument.span]
-            fix = ""
+            fix = f"W(FOREVER) UNTIL({text})" if word == "W" and set(text) & set("<>=") else ""
             if word == "LOOP":
                 fix = "LOOP(FOREVER)" if text.upper() == "TRUE" else f"WHILE({text})"
             self.report(codes.WANTS_NUMBER, argument.span, by=word, found=text, fix=fix)

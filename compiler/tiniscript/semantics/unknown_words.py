@@ -27,6 +27,7 @@ from tiniscript.words import (
     Word,
     is_guessed,
     meant_by,
+    said_instead,
     usage_of,
 )
 
@@ -86,7 +87,8 @@ def _report_unknown_word(scope: Scope, node: ast.Command) -> None:
     letter = _LETTERS.get(word, "")
     if letter and len(node.arguments or ()) == len(WORDS[letter].arguments):
         near = letter
-    scope.report(codes.UNKNOWN_WORD, span, found=word, near=near)
+    values = {"found": word, "near": near, **({} if near else said_instead(word))}
+    scope.report(codes.UNKNOWN_WORD, span, None, **values)
 
 
 def _report_foreign(scope: Scope, node: ast.Command, meant: str) -> None:
@@ -140,9 +142,11 @@ def report_named_arguments(scope: Scope, node: ast.Command, word: Word, said: in
     codes_of_names = (codes.UNKNOWN_NAME, codes.OTHER_LANGUAGE)  # `TIEMPO` is TIME elsewhere
     unknown = {each.span for each in scope.diagnostics[said:] if each.code in codes_of_names}
     values = []
-    for argument in node.arguments or ():
+    for argument, its in zip(node.arguments or (), word.arguments, strict=False):
         first, last = argument.expression[0], argument.expression[-1]
-        if last.op != "EQ" or Span(first.start, first.end) not in unknown:
+        name = Span(first.start, first.end)
+        is_name = name in unknown or scope.source[name].upper() in PLACEHOLDERS.get(its.name, ())
+        if last.op != "EQ" or not is_name:
             return
         values.append(scope.source[Span(last.end, argument.span.end)].strip())
     del scope.diagnostics[said:]

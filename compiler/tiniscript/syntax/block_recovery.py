@@ -336,7 +336,9 @@ class BlockRecovery:
                 if row.split("//")[0].strip(" \t;").upper() == block.name.text:
                     rest = rest[:i] or [(head, first[1])]
                     break
-        if not rest:
+        on_line = self.cursor.source.text[block.span.end :].split("\n", 1)[0].strip(" \t\r;:{")
+        begins_there = bool(on_line) and not (on_line.startswith("//") or within)
+        if not rest or (begins_there and block.name is None):  # `IF(c);S` may be all of it
             return {"line": "", "last": ""}
         line, text = (within or rest)[-1]
         return {"line": str(line), "last": text.strip()}

@@ -290,7 +290,7 @@ def _with_points(
     `commas` are the places of commas, where other signs may stand between values: `1 50 70`.
     """
     spare = len(texts) - len(word.arguments)
-    if spare <= 0 or not word.arguments:
+    if spare <= 0 or not word.arguments or (commas is not None and texts[-1] == "0"):
         return None
     touches = [
         place.end + 1 == after.start and (commas is None or place.end in commas)
@@ -310,7 +310,8 @@ def _with_points(
             and k + 1 < len(texts)
             and _ends_whole(texts[k], len(word.arguments) == 1)
             and texts[k + 1].isdecimal()
-            and texts[k + 1] != "000"  # `1,000` is a thousand
+            and texts[k + 1] not in ("000", "0")  # `1,000` is a thousand; `2,8 0` is no 2.8
+            and (len(word.arguments) == 1 or texts[k + 1][-1:] != "0")  # nor is `2,80,60` 2.8
             and touches[k]
         )
         merged.append(f"{texts[k]}.{texts[k + 1]}" if joins else texts[k])

@@ -44,7 +44,7 @@ class ExpressionRecovery:
 
     def no_value(self, token: Token) -> NoReturn:
         """Say what is wrong with a token that stands where a value is wanted."""
-        if token.kind is ODD:
+        if token.kind is ODD or (token.text == "F" and self.cursor.following.kind is ODD):
             self.constructs.sentence()
             raise Failed
         cursor, fail = self.cursor, self.reporter.fail
@@ -290,6 +290,7 @@ class ExpressionRecovery:
             if token.text in (":", ".") and self._close_comes() and starts_value(cursor.following):
                 self._nothing_between(last, cursor.following, bracket)
         self._open_too_many(bracket, token)
+        self.numbers.cut_in_two(self._word_of(cursor.tokens[bracket - 1]), bracket)
         fail(codes.MISSING_CLOSE, last.span, last=last.text)
 
     def _sensor_in_two(self, first: Token, second: Token) -> None:

@@ -115,6 +115,8 @@ class ExpressionParser:
     def word(self, token: Token, read: Postfix) -> bool:
         cursor = self.cursor
         known = WORDS.get(token.text)
+        if known is None and self.recovery.constructs.is_article(token):
+            return False
         if known is None or known.role == "value":
             cursor.i += 1
             if cursor.tokens[cursor.i].kind == "(":

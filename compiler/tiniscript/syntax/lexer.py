@@ -58,8 +58,8 @@ _PATTERN = re.compile(
       | (?P<pasted>"""
     + PASTED
     + r""")
-      | (?P<othersign>==|!=|\u00a1=|![<>]=?|=>|=<|><|&&|\|\||!(?=[ \t]*[\w(])
-            |[\u2264\u2265\u2260\u00d7\u00f7])
+      | (?P<othersign>\\n|==|!=|\u00a1=|![<>]=?|=>|=<|><|&&|\|\||!(?=[ \t]*[\w(])
+            |[\u2264\u2265\u2260\u00d7\u00f7\u221e])
       | (?P<sign><=|>=|<>|[-+*/%=<>(),;|])
       | (?P<dash>[\u2010-\u2015\u2212])
       | (?P<badnumber>[0-9]+(?:\.[0-9]+)?["\u201d\u2033](?=[ ]*[,)])
@@ -82,7 +82,7 @@ _OTHER_SIGNS = {
     "==": "=", "!=": "<>", "¡=": "<>",
     "!<": ">=", "!>": "<=", "!<=": ">", "!>=": "<",
     "=>": ">=", "=<": "<=", "><": "<>", "&&": "AND", "||": "OR",
-    "!": "NOT", "≤": "<=", "≥": ">=", "≠": "<>", "×": "*", "÷": "/",
+    "!": "NOT", "≤": "<=", "≥": ">=", "≠": "<>", "×": "*", "÷": "/", "∞": "FOREVER", "\\n": ";",
     "（": "(", "）": ")", "，": ",", "；": ";", "＝": "=", "＜": "<", "＞": ">", "｜": "|",
     "＋": "+", "－": "-", "[": "(", "]": ")",
 }  # fmt: skip
@@ -261,7 +261,10 @@ class _Repairs:
     def note(self, text: str, span: Span) -> None:
         sign = "#" if text[0] == "#" else "/*"
         inside = text[len(sign) :].removesuffix("*/").strip()[:40]
-        self.report(codes.OTHER_NOTE, span, found=sign, right=f"// {inside}")
+        behind = self._text[span.end : span.end + 1000].splitlines()[:1]
+        is_last = "\n" not in text.strip() and not "".join(behind).strip(" \t;")
+        right = f"// {inside}" if is_last else ""  # what stands behind would be in the note
+        self.report(codes.OTHER_NOTE, span, found=sign, right=right)
 
     def odd(self, text: str, span: Span) -> Token:
         last = self.diagnostics[-1] if self.diagnostics else None

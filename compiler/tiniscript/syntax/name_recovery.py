@@ -324,7 +324,8 @@ class NameRecovery:
             self.sentence.so_often(word.span, known, rest, 0)
         if len(rest) > 1 and rest[0].kind in ("-", "=", "=>") and rest[1].kind == ">":
             rest = rest[2:]  # `F -> 2, 80`
-        if len(rest) > 1 and rest[0].kind == "-" and rest[0].start == word.end:
+        is_dash = known.role in ("move", "wait", "beep")  # no value of theirs is below 0
+        if is_dash and len(rest) > 1 and rest[0].kind == "-" and rest[0].start == word.end:
             rest = rest[1:]  # `F-2, 80`
         if not rest and cursor.token.kind == "{":
             self._braces_for_brackets(word, known)

@@ -10,7 +10,7 @@ from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Token
 from tiniscript.syntax.operators import BINARY
 from tiniscript.syntax.reporter import Reporter
 from tiniscript.syntax.units import converted
-from tiniscript.words import UNITS, WORDS
+from tiniscript.words import UNITS, WORDS, Word
 
 
 class NumberRecovery:
@@ -60,7 +60,25 @@ class NumberRecovery:
                 span = Span(name.start, number.end)
                 self.reporter.fail(codes.OTHER_ASSIGNMENT, name.span, span, found="=+", fix=fix)
             span = Span(token.start, number.end)
-            self.reporter.fail(codes.BAD_NUMBER, span, found=cursor.source[span], right=number.text)
+            is_sign = token.end == number.start and before.kind != "="
+            right = number.text if is_sign else ""  # of `X = + 1` a name may be missing
+            self.reporter.fail(codes.BAD_NUMBER, span, found=cursor.source[span], right=right)
+
+    def cut_in_two(self, word: Word | None, bracket: int) -> None:
+        """`F(2;80`: a `;` for the comma, and no `)`."""
+        cursor = self.cursor
+        row = cursor.tokens[bracket + 1 : bracket + 5]
+        if len(row) < 4:
+            return
+        first, sign, second, after = row
+        is_cut = first.kind is NUMBER and sign.kind == ";" and second.kind is NUMBER
+        if word is None or len(word.arguments) != 2 or not is_cut or after.kind not in AT_END:
+            return
+        while cursor.token is not after:
+            cursor.i += 1
+        span = Span(cursor.tokens[bracket - 1].start, second.end)
+        fix = f"{word.text}({first.text}, {second.text})"
+        self.reporter.fail(codes.MISSING_CLOSE, first.span, span, last=first.text, fix=fix)
 
     def _closes(self, k: int) -> bool:
         """Whether a `)` comes on this line before another bracket opens."""

@@ -15,7 +15,13 @@ from tiniscript.syntax.call_suggestions import LONGEST, call_in, written
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, Token
 from tiniscript.syntax.operators import SIGNS
 from tiniscript.syntax.phrases import AFTER_HEADER, BETWEEN, COUNTING, ENDS_OF_ANY, FILLERS
-from tiniscript.syntax.suggestions import after_bracket, body_begins, foreign_block, operator_words
+from tiniscript.syntax.suggestions import (
+    after_bracket,
+    asked_again,
+    body_begins,
+    foreign_block,
+    operator_words,
+)
 from tiniscript.syntax.units import converted
 from tiniscript.syntax.vocabulary import Vocabulary
 from tiniscript.words import BLOCK_ENDS, IN_MILLISECONDS, UNITS, WORDS, Word
@@ -179,6 +185,7 @@ class _Reader:
         k = 0
         while k < len(values):
             token = padded[k]
+            row += asked_again(row, token)
             said = operator_words(padded, k) if row else None
             if said is not None:
                 k, sign = said

@@ -34,7 +34,7 @@ from tiniscript.syntax.suggestions import (
 )
 from tiniscript.syntax.times_recovery import TimesRecovery
 from tiniscript.syntax.value_constructs import ValueConstructs
-from tiniscript.words import WORDS, Word, meant_by
+from tiniscript.words import NOT_DONE, WORDS, Word, meant_by, said_instead
 
 if TYPE_CHECKING:
     from tiniscript.syntax.parser import Parser
@@ -105,10 +105,8 @@ class Recovery:
         if sign.kind == "=" and name.kind is WORD and name.text not in WORDS:
             span = Span(number.start, name.end)
             self.of_name.unread_assignment(name)
-            fix = f"{name.text} = {number.text}"
-            self.reporter.fail(
-                codes.NOT_AN_INSTRUCTION, number.span, span, found=number.text, fix=fix
-            )
+            values = {"found": number.text, "fix": f"{name.text} = {number.text}"}
+            self.reporter.fail(codes.NOT_AN_INSTRUCTION, number.span, span, **values)
         written = cursor.source[number.span]
         after_digits = written.lstrip("0123456789_")
         if sign.kind == "=" and after_digits[:1].isalpha() and after_digits.isascii():  # `2X = 5`
@@ -120,6 +118,7 @@ class Recovery:
             cursor.i += 1
         first = WORDS.get(cursor.token.text)
         has_sign = cursor.last is not number or written.endswith(".")  # `1. Avanza`
+        has_sign |= cursor.token.text in NOT_DONE  # `30 GOTO 10`
         is_before_word = first is not None and first.role not in ("value", "operator", "function")
         is_same_line = cursor.line_of(cursor.token) == cursor.line_of(number)
         if cursor.token.kind is WORD and is_same_line and (has_sign or is_before_word):
@@ -363,8 +362,8 @@ class Recovery:
         for token in cursor.tokens[end : cursor.i]:
             self.reporter.answer(token)
         span = Span(first.start, cursor.tokens[end + 1].end)
-        found = cursor.source[span]
-        self.reporter.fail(codes.UNKNOWN_WORD, span, None, found=found, near="")
+        values = {"found": cursor.source[span], "near": "", **said_instead(first.text)}
+        self.reporter.fail(codes.UNKNOWN_WORD, span, None, **values)
 
     def _is_colon(self, token: Token) -> bool:
         """Whether `=`, `->` or `?` stands behind a question for the colon; then it becomes one."""

@@ -344,6 +344,8 @@ class SentenceRecovery:
         after = cursor.tokens[min(cursor.i + 2, len(cursor.tokens) - 1)]
         if sign.text == ":" and foreign_block(word.text) is not None:
             return  # `repite: avanza 1`
+        if sign.text == ":" and self.in_block.known.is_own(word.text):
+            return  # a DEF and a `;` that is none
         meant = self.in_block.known.command(after.text) if after.kind is WORD else None
         is_a_part = word.text.startswith(("SERVO", "MOTOR", "PIN", "LED", "LCD"))
         if meant is None or (is_a_part and meant.role == "show"):  # `servo.write(90)`

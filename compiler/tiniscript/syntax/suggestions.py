@@ -63,7 +63,7 @@ def counted(tokens: Sequence[Token], start: int) -> int | None:
     """
     row = []
     for token in tokens[start : start + 20]:
-        if token.kind in (NEWLINE, END, "{"):
+        if token.kind in (NEWLINE, END, "{") or token.text == ":":
             break
         row.append(token)
     words = {token.text for token in row if token.kind is WORD}
@@ -96,6 +96,12 @@ def head_in(word: Word, tokens: Sequence[Token]) -> str:
     return f"{word.text}({inside})" if inside and len(tokens) <= LONGEST else word.example
 
 
+def asked_again(row: Sequence[Token], token: Token) -> Sequence[Token]:
+    """Return the name that `DISTANCE > 10 AND < 30` leaves out before its second sign."""
+    is_left_out = len(row) > 3 and row[-1].text in ("AND", "OR") and row[-3].kind in COMPARISONS
+    return row[-4:-3] if is_left_out and token.kind in COMPARISONS else ()
+
+
 def with_signs(tokens: Sequence[Token]) -> list[Token]:
     """Return tokens with the signs of the language in place of words such as LESS THAN."""
     row: list[Token] = []
@@ -103,6 +109,7 @@ def with_signs(tokens: Sequence[Token]) -> list[Token]:
     ended = [*tokens, Token(END, "", 0, 0)]
     while k < len(tokens):
         said = operator_words(ended, k) if row and ends_value(row[-1]) else None
+        row += asked_again(row, tokens[k])
         if said is None:
             row.append(tokens[k])
             k += 1

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from itertools import pairwise
 
 from tiniscript.diagnostics import codes
 from tiniscript.source import Span
@@ -16,7 +17,7 @@ from tiniscript.syntax.call_suggestions import LONGEST, call_in, starts_value, w
 from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.lexer import NUMBER, ODD, QUOTES, WORD, Token
 from tiniscript.syntax.operators import COMPARISONS
-from tiniscript.syntax.phrases import NEGATED, READING
+from tiniscript.syntax.phrases import FILLERS, NEGATED, READING
 from tiniscript.syntax.reporter import Reporter
 from tiniscript.syntax.suggestions import (
     after_bracket,
@@ -126,6 +127,21 @@ class ValueConstructs:
         span = Span(name.start, row[-1].end)
         self.reporter.fail(codes.CHOICE_IN_VALUE, span, None, fix=fix)
 
+    def is_article(self, word: Token) -> bool:
+        """`X = la distancia`: report the word before a name of the program, and go on behind it."""
+        after = self.cursor.following
+        name = self.known.value(after.text)
+        if word.text not in FILLERS or after.kind is not WORD or self.known.is_own(word.text):
+            return False
+        if not self.known.is_own(name):
+            return False
+        span = Span(word.start, after.end)
+        shown = self.cursor.source[span]
+        self.reporter.report(codes.OTHER_LANGUAGE, span, span, found=shown, right=name, fix=name,
+                             usage=name)  # fmt: skip
+        self.cursor.i += 1
+        return True
+
     # -- what looks like a function -----------------------------------------------------------
 
     def called(self, name: Token, bracket: Token) -> None:
@@ -175,13 +191,17 @@ class ValueConstructs:
         row = cursor.tokens[bracket + 1 : end - 1]
         if not any(token.kind is ODD and token.text[:1] in QUOTES for token in row):
             return
-        values = [token for token in row if token.kind is not ODD]
+        values = [
+            token
+            for token, after in pairwise((*row, cursor.tokens[end - 1]))
+            if token.kind is not ODD and not (token.text == "F" and after.kind is ODD)
+        ]
         while values and values[0].kind in _JOINING:
             del values[0]
         while values and values[-1].kind in _JOINING:
             del values[-1]
         is_one = len(values) == 1 and starts_value(values[0]) and len(values) < len(row)
-        fix = f"SHOW({self.known.value(values[0].text)})" if is_one else ""
+        fix = f"SHOW({self.known.value(values[0].text)})" if is_one else self._shown_within(row)
         if values and not fix:
             return
         for token in row:
@@ -190,6 +210,13 @@ class ValueConstructs:
         place = Span(word.start, cursor.tokens[end - 1].end)
         cursor.i = end
         self.reporter.fail(codes.WORDS_SHOWN, span, place, fix=fix)
+
+    def _shown_within(self, row: Sequence[Token]) -> str:
+        """`print(f"{DISTANCE} cm")`: the one value that a sentence of Python names."""
+        text = self.cursor.source[Span(row[0].start, row[-1].end)]
+        names = [self.known.value(name.upper()) for name in re.findall(r"\{(\w+)\}", text)]
+        is_one = len(names) == 1 and self.known.is_own(names[0])
+        return f"SHOW({names[0]})" if is_one else ""
 
     def near_said(self, span: Span, found: str, last: Token, token: Token, bracket: int) -> None:
         """`IF(HAY PARED)`: what a robot measures is how far it is."""

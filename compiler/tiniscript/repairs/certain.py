@@ -1,0 +1,58 @@
+"""Which repairs leave no choice: a slip whose sign could stand elsewhere is left to its author.
+
+Knows the diagnostic, the changes that it asks for, and the text around them.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Diagnostic
+from tiniscript.repairs.accounting import makes_up_names
+from tiniscript.repairs.edits import Edit
+from tiniscript.source import Source
+
+# `8O` and `1OO`: in any other place a letter may be one too many.
+_LETTER_FOR_ZERO = re.compile(r"[1-9][Oo]{1,2}")
+_MARKS = "¡¿→•·►▶"  # that stand before a sentence or in a list, and for no other sign
+_LETTERS = re.compile(r"[A-Za-z]")
+# A call without calculations: of `5 / 3 - 3)` a bracket may be missing.
+_PLAIN_CALL = re.compile(r"\s*[A-Za-z_]\w*\s*\([^()+*/%<>=-]*\)+\s*")
+_AROUND = 80  # characters of an instruction that are looked at
+
+
+def is_certain(diagnostic: Diagnostic, edits: Sequence[Edit], source: Source) -> bool:
+    """Whether nothing else than this repair can be meant, as far as the signs around it tell."""
+    text, span = source.text, diagnostic.span
+    if diagnostic.code is codes.BAD_NUMBER:
+        return _is_number(source[span])
+    if diagnostic.code is codes.ODD_CHARACTER:
+        after = text[span.end : span.end + 1]
+        is_mark = set(source[span]) <= set(_MARKS)
+        return is_mark or not (after.isalnum() or after == "_")  # `:PEED`, `0.?1`
+    if diagnostic.code is codes.EXTRA_CLOSE:
+        return _PLAIN_CALL.fullmatch(_before(text, span.end)) is not None
+    if diagnostic.code is codes.MISSING_CLOSE and not diagnostic.values.get("fix"):
+        return not _is_grouped(_before(text, span.end))
+    return not any(makes_up_names(source[edit.span], edit.text) for edit in edits)
+
+
+def _is_number(written: str) -> bool:
+    if _LETTERS.search(written):
+        return _LETTER_FOR_ZERO.fullmatch(written) is not None
+    return written[-1:].isnumeric()  # `15.` may be 1.5, and `10"` has a slip in it
+
+
+def _before(text: str, end: int) -> str:
+    """Return what stands of an instruction before `end`."""
+    part = text[max(0, end - _AROUND) : end]
+    return re.split(r"[;\r\n|{}]", part)[-1]
+
+
+def _is_grouped(part: str) -> bool:
+    """Whether the bracket that is open last begins a part of a calculation."""
+    opened = part.rfind("(")
+    is_calculated = re.search(r"[-+*/%]", part[opened + 1 :]) is not None
+    return is_calculated and not part[:opened].rstrip()[-1:].isalnum()
