@@ -160,13 +160,29 @@ def test_both_guides_type_the_same() -> None:
     assert headings[0] == headings[1]
 
 
-def spanish() -> dict[str, str]:
-    """Return what is said in Spanish, by where: sentences of the package, and documents."""
+def said_in(language: str) -> dict[str, str]:
+    """Return what is said in a language, by where: sentences of the package, and documents."""
     from tiniscript.cli.texts.common import tables
+    from tiniscript.lessons.sentences import SENTENCES
+    from tiniscript.library.texts import TEXTS as LIBRARY_TEXTS
+    from tiniscript.robots.profile import LANGUAGES
+    from tiniscript.robots.toml_table import parse_toml
     from tiniscript.wiring.texts import TEXTS as WIRING_TEXTS
 
-    found = {key: both[1] for table in (*tables(), WIRING_TEXTS) for key, both in table.items()}
-    pages = [*ROOT.glob("docs/**/*.es.md"), *ROOT.glob("compiler/tiniscript/lessons/*/*.es.md")]
+    both_languages = (*tables(), WIRING_TEXTS, LIBRARY_TEXTS, SENTENCES)
+    k = LANGUAGES.index(language)
+    found = {key: both[k] for table in both_languages for key, both in table.items()}
+    catalogue = ROOT / "compiler" / "tiniscript" / "diagnostics" / "catalogue.toml"
+    entries = parse_toml(catalogue.read_text(encoding="utf-8"))
+    assert isinstance(entries, dict)
+    for code, entry in entries.items():
+        assert isinstance(entry, dict)
+        found[code] = "\n".join(
+            str(said) for key, said in entry.items() if key.startswith(language)
+        )
+    found |= {key: words[language] for key, words in statuses.texts().items()}
+    name = f"*.{language}.md"
+    pages = [*ROOT.glob(f"docs/**/{name}"), *ROOT.glob(f"compiler/tiniscript/lessons/*/{name}")]
     return found | {path.name: path.read_text(encoding="utf-8") for path in pages}
 
 
@@ -176,10 +192,34 @@ def spanish() -> dict[str, str]:
         (r"\btensi[oó]n\b", "voltaje"),
         (r"\b1 veces\b", "una vez"),
         (r"\busted(es no)?\b", "tú"),
-        (r"\b(vosotros|vuestr\w+|\w+[áé]is)\b", "ustedes"),
+        (r"\b(vosotros|vuestr\w+|(?!\w*séis\b)\w+[áé]is)\b", "ustedes"),
         (r"\bordenador(es)?\b", "computadora"),
+        (r"(?<!internet )\b(celular|m[oó]vil|smartphone)(es)?\b", "teléfono"),
+        (r"\b(estudiante|pupilo)s?\b", "alumno"),
+        (r"\bcablead[oa]s?\b", "conexiones, cables"),
+        (r"\ble\w*[nd]?o? de vuelta\b", "comprobar"),
+        (r"\brueda (hecha|de Python)", "wheel"),
+        (r"\b[0-9],[0-9]+ ?(V|GHz|kΩ|cm|s)\b", "a decimal point"),
+        (r"(?<!/)\bp[oó]ster\b(?![/.])", "afiche"),
+        (r"\b(click(ear)?|resetea\w*|chequea\w*|linkea\w*)\b", "a Spanish word"),
     ],
 )
 def test_one_thing_has_one_word_in_spanish(wrong: str, right: str) -> None:
-    found = {where for where, said in spanish().items() if re.search(wrong, said, re.I)}
+    found = {where for where, said in said_in("es").items() if re.search(wrong, said, re.I)}
+    assert not found, f"say {right}"
+
+
+@pytest.mark.parametrize(
+    ("wrong", "right"),
+    [
+        (r"\bthere is no verb\b", "there is no command"),
+        (r"\bnobody is reached\b", "cannot reach the robot"),
+        (r"\bdo a line at once\b", "run one line now"),
+        (r"\b1 times\b", "once"),
+        (r"\bhung up on\b", "the connection ends"),
+        (r"\bstudents?\b", "pupils"),
+    ],
+)
+def test_one_thing_has_one_word_in_english(wrong: str, right: str) -> None:
+    found = {where for where, said in said_in("en").items() if re.search(wrong, said, re.I)}
     assert not found, f"say {right}"

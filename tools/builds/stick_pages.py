@@ -33,6 +33,7 @@ th, td { border: 1px solid #999; padding: 0.25em 0.6em; text-align: left; vertic
 th { background: #eee; }
 img { max-width: 100%; }
 li.check { list-style: none; }
+@media (max-width: 40em) { th, td { font-size: 0.8em; padding: 0.15em 0.3em; } }
 @page { size: A4; margin: 15mm; }
 @media print { h2, h3 { break-after: avoid; } tr, pre, li { break-inside: avoid; } }
 """

@@ -6,10 +6,10 @@ from __future__ import annotations
 FLASH_TEXTS: dict[str, tuple[str, str]] = {
     # key: (English, Spanish)
     "flash_writing": ("writing", "escribiendo"),
-    "flash_reading": ("reading back", "leyendo de vuelta"),
+    "flash_reading": ("reading back", "comprobando"),
     "flash_older": ("Nobody answers yet; now as an older Nano.", "Todavía nadie responde; ahora como un Nano más antiguo."),
     "flash_done": ("{robot} on the {board}: {bytes} bytes written, read back and compared.",
-                   "{robot} en el {board}: {bytes} bytes escritos, leídos de vuelta y comparados."),
+                   "{robot} en el {board}: {bytes} bytes escritos y comprobados."),
     "flash_row": ("{robot} on {board}: ready, {bytes} bytes", "{robot} en {board}: listo, {bytes} bytes"),
     "flash_row_none": ("{robot} on {board}: is built when it is first written", "{robot} en {board}: se compila la primera vez que se escribe"),
     "flash_builds": ("PlatformIO builds the firmware of {robot} for the {board}; that is done once.",

@@ -42,7 +42,7 @@ LINK_TEXTS: dict[str, tuple[str, str]] = {
     "port_not_installed": ("tsc: {port} needs a package that is not installed here ({why}). Install it and try again:  {how}",
                            "tsc: {port} necesita un paquete que aquí no está instalado ({why}). Instálalo y prueba otra vez:  {how}"),
     "port_radio_off": ("tsc: the Bluetooth of this computer is off, or it has none with Bluetooth LE. Switch it on or plug in a USB adapter for it, and try again.",
-                       "tsc: el Bluetooth de esta computadora está apagado, o no tiene uno con Bluetooth LE. Enciéndelo o conecta un adaptador USB, y prueba otra vez."),
+                       "tsc: el Bluetooth de esta computadora está apagado, o ella no tiene Bluetooth LE. Enciéndelo o conecta un adaptador USB, y prueba otra vez."),
     "port_radio_forbidden": ("tsc: this program may not use Bluetooth. Allow it to the terminal in the system's privacy settings (on Linux ask whoever looks after this computer), and try again.",
                              "tsc: este programa no tiene permiso para usar Bluetooth. Dáselo a la terminal en los ajustes de privacidad del sistema (en Linux, pídelo a quien cuida esta computadora) y prueba otra vez."),
     "port_radio_service": ("tsc: the Bluetooth service of this computer does not run. Start it and try again; on Linux:  sudo systemctl start bluetooth",

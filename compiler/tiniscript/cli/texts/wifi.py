@@ -14,7 +14,7 @@ WIFI_TEXTS: dict[str, tuple[str, str]] = {
     "wifi_station_ready": ("{robot} is in the network {network}, at {address}. From a computer in it:  tsc ping --port tcp://{host}.local",
                            "{robot} está en la red {network}, en {address}. Desde una computadora de esa red:  tsc ping --port tcp://{host}.local"),
     "wifi_station_searching": ("{robot} keeps the network {network}, and does not reach it yet: is it in reach, and of 2.4 GHz? It goes on trying. To look again:  tsc wifi",
-                               "{robot} guarda la red {network}, y todavía no llega a ella: ¿está cerca, y es de 2,4 GHz? Lo sigue intentando. Para verlo otra vez:  tsc wifi"),
+                               "{robot} guarda la red {network}, y todavía no llega a ella: ¿está cerca, y es de 2.4 GHz? Lo sigue intentando. Para verlo otra vez:  tsc wifi"),
     "wifi_station_refused": ("{robot} keeps the network {network}, which does not let it in: the password may be another one. To give it again:  tsc wifi NETWORK",
                              "{robot} guarda la red {network}, que no lo deja entrar: quizá la contraseña es otra. Para darla otra vez:  tsc wifi RED"),
     "wifi_access_point_ready": ("{robot} has a network of its own, {network}: a computer that joins it finds the robot at {address}:  tsc ping --port tcp://{host}.local",
