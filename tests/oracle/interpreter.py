@@ -12,24 +12,17 @@ import sys
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from tests.oracle.text import (
+from tests.oracle.text import Parser
+from tests.oracle.tree import Do, Expression, If, Loop, Program, Statement, Value, While
+from tests.oracle.words import (
     COMPARATORS,
     HIGHEST,
     LOWEST,
     MOVES,
     PAPER_KIT,
     Device,
-    Do,
-    Expression,
-    If,
     Kit,
-    Loop,
     Mistake,
-    Parser,
-    Program,
-    Statement,
-    Value,
-    While,
 )
 
 __all__ = ["PAPER_KIT", "Device", "Kit", "Mistake", "run"]

@@ -25,7 +25,7 @@ from tests.oracle.arithmetic import (
     within,
 )
 from tests.oracle.spec_tables import Instruction, instructions
-from tests.oracle.text import Device, Kit
+from tests.oracle.words import Device, Kit
 
 TOO_MANY = "TOO MANY STEPS"  # the last line of a run that this machine gives up
 

@@ -9,7 +9,7 @@ import pytest
 from tests.oracle import interpreter
 from tests.oracle.interpreter import PAPER_KIT, Kit, Mistake, run
 from tests.oracle.programs import WIDE_KIT, broken, program, senses
-from tests.oracle.text import Do, If, Loop, While
+from tests.oracle.tree import Do, If, Loop, While
 
 
 def lines(text: str, *, kit: Kit = WIDE_KIT, **options: object) -> list[str]:

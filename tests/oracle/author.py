@@ -1,0 +1,302 @@
+"""Writes random programs as lists of instructions, each a list of words and signs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from tests.oracle.author_values import (
+    MAX_CALLS,
+    MAX_DEFS,
+    MAX_NESTING,
+    MAX_STACK,
+    MAX_VARIABLES,
+    Tokens,
+    ValueAuthor,
+)
+
+
+class Author(ValueAuthor):
+    """Writes one program."""
+
+    # Instructions
+
+    def move(self) -> None:
+        """F B L R or W, perhaps with UNTIL."""
+        word = self.rng.choice("FBLRFW")
+        time, until = self.seconds(), []
+        if self.chance(0.25):
+            if self.chance(0.5):
+                time = ["FOREVER"]
+            until = ["UNTIL", *self.condition()]
+            if self.chance(0.4):
+                end = f"{self.rng.uniform(0, 6):.2f}"
+                until = ["UNTIL", "(", "TIME", self.rng.choice((">", ">=")), end, ")"]
+        power = [] if word == "W" else [",", *self.within(0, 100)]
+        self.say(word, "(", *time, *power, ")", *until)
+
+    def simple(self) -> None:
+        """M, S, W, BEEP or START."""
+        word = self.rng.choice(("M", "M", "S", "STOP", "W", "BEEP", "BEEP", "START"))
+        if word == "M":
+            self.say("M", "(", *self.within(-100, 100), ",", *self.within(-100, 100), ")")
+        elif word == "W":
+            self.say("W", "(", *self.seconds(), ")")
+        elif word == "BEEP":
+            self.say("BEEP", "(", *self.seconds(), ",", *self.within(31, 20_000), ")")
+        else:
+            self.say(word)
+
+    def show(self) -> None:
+        """SHOW of either kind."""
+        value = self.yes_no() if self.chance(0.25) else self.number(3)
+        self.say("SHOW", "(", *value, ")")
+
+    def assign(self) -> None:
+        """An assignment, to a new variable or to an old one."""
+        targets = [name for name in self.variables if name not in self.counters]
+        if self.names and len(self.variables) < MAX_VARIABLES and self.chance(0.5):
+            name = self.names.pop(self.rng.randrange(len(self.names)))
+            kind = self.chance(0.3)
+        elif targets:
+            name = self.rng.choice(targets)
+            kind = self.variables[name]
+        else:
+            return
+        self.constant = self.chance(0.15)
+        size = self.rng.choice((0, 1, 2, 3))
+        value = self.yes_no(size) if kind else self.number(size)
+        if not kind and self.chance(0.01):
+            value = self.crowded()
+        self.constant = False
+        self.variables[name] = kind
+        self.say(name, "=", *value)
+
+    def crowded(self) -> Tokens:
+        """A number that needs nearly all or all of the stack."""
+        leaves = self.rng.randint(MAX_STACK - 3, MAX_STACK)
+        tokens = self.leaf()
+        for _ in range(leaves - 1):
+            tokens = [*self.leaf(), self.rng.choice("+-"), "(", *tokens, ")"]
+        return tokens
+
+    def read(self) -> None:
+        """A sensor's name."""
+        if self.kit.sensors:
+            self.say(self.rng.choice(self.kit.sensors).name)
+
+    def set(self) -> None:
+        """An actuator."""
+        if self.kit.actuators:
+            device = self.rng.choice(self.kit.actuators)
+            if device.is_yes_no:
+                self.say(device.name, "(", *self.yes_no(), ")")
+            else:
+                value = self.within(-(-device.low // 1000), device.high // 1000)
+                self.say(device.name, "(", *value, ")")
+
+    def call(self) -> None:
+        """A call, where the depths allow one."""
+        fits = [
+            name
+            for name, (blocks, calls) in self.defs.items()
+            if self.depth + blocks <= MAX_NESTING and 1 + calls <= MAX_CALLS - self.in_def
+        ]
+        if fits:
+            name = self.rng.choice(fits)
+            blocks, calls = self.defs[name]
+            self.deepest = max(self.deepest, self.depth + blocks)
+            self.called = max(self.called, 1 + calls)
+            self.say(name)
+
+    def leave(self) -> None:
+        """BREAK, mostly inside an IF."""
+        if self.loops == 0:
+            return
+        if self.chance(0.2) or self.depth >= MAX_NESTING:
+            self.say("BREAK")
+            return
+        self.open_block("IF", *self.condition())
+        self.say("BREAK")
+        self.close_block("IF")
+
+    # Blocks
+
+    def open_block(self, *header: str) -> None:
+        """Writes a header."""
+        self.say(*header)
+        self.depth += 1
+        self.deepest = max(self.deepest, self.depth)
+
+    def close_block(self, word: str) -> None:
+        """Writes the end that belongs to a header, in one of its spellings."""
+        ends = {
+            "IF": ("ENDIF", "ENDIF", "END_IF"),
+            "LOOP": ("END_LOOP", "END_LOOP", "ENDLOOP"),
+            "WHILE": ("END_WHILE", "END_WHILE", "ENDWHILE"),
+        }
+        self.say(self.rng.choice(ends[word]))
+        self.depth -= 1
+
+    def choose(self) -> None:
+        """IF with ELSEIF and ELSE."""
+        self.open_block("IF", *self.condition())
+        self.body()
+        while self.chance(0.25):
+            self.say("ELSEIF", *self.condition())
+            self.body()
+        if self.chance(0.45):
+            self.say("ELSE")
+            self.body()
+        self.close_block("IF")
+
+    def loop(self) -> None:
+        """LOOP a few times, or FOREVER with a wait in it."""
+        roll = self.rng.random()
+        forever = roll < 0.15
+        count: Tokens
+        if forever:
+            count = ["FOREVER"]
+        elif roll < 0.75:
+            count = [self.rng.choice(("0", "1", "2", "2", "3", "4", "1.5", "2.4999"))]
+        elif roll < 0.92:
+            count = ["MIN", "(", *self.number(), ",", self.rng.choice(("2", "3", "5")), ")"]
+        elif roll < 0.99:
+            count = ["(", *self.number(), ")", "%", self.rng.choice(("3", "4"))]
+        else:
+            count = self.number()
+        self.open_block("LOOP", "(", *count, ")")
+        self.loops += 1
+        if forever and self.chance(0.97):
+            self.pause()
+        self.body()
+        if forever and self.chance(0.4):
+            self.leave()
+        self.loops -= 1
+        self.close_block("LOOP")
+
+    def pause(self) -> None:
+        """Lets time pass for sure."""
+        time = self.rng.choice(("0.1", "0.25", "0.5", "1", "2"))
+        if self.chance(0.5):
+            self.say("W", "(", time, ")")
+        else:
+            self.say(self.rng.choice("FBLR"), "(", time, ",", *self.within(0, 100), ")")
+
+    def repeat(self) -> None:
+        """WHILE: with a counter, with a wait, or with a BREAK at its end."""
+        counted = self.chance(0.5) and len(self.variables) < MAX_VARIABLES
+        counter = f"N{len(self.variables)}"
+        if counted and counter not in self.taken:
+            self.say(counter, "=", "0")
+            self.variables[counter] = False
+            self.counters.add(counter)
+            limit = self.rng.choice(("1", "2", "3", "4.5"))
+            more = ["AND", *self.yes_no(1)] if self.chance(0.3) else []
+            more = ["OR", "FALSE"] if self.chance(0.05) else more
+            self.open_block("WHILE", "(", counter, "<", limit, *more, ")")
+        else:
+            counted = False
+            self.open_block("WHILE", *self.condition())
+        self.loops += 1
+        self.body()
+        if counted:
+            self.say(counter, "=", counter, "+", "1")
+        elif self.chance(0.6):
+            self.pause()
+        elif self.chance(0.95):
+            self.say("BREAK")
+        self.loops -= 1
+        self.close_block("WHILE")
+
+    def tower(self) -> None:
+        """Blocks in blocks, as deep as they may be."""
+        height = self.rng.randint(1, MAX_NESTING - self.depth)
+        words = [self.rng.choice(("IF", "LOOP", "WHILE")) for _ in range(height)]
+        for word in words:
+            self.open_block(word, "(", "1" if word == "LOOP" else "TRUE", ")")
+            self.loops += word != "IF"
+        self.show()
+        for word in reversed(words):
+            if word == "WHILE":
+                self.say("BREAK")
+            self.loops -= word != "IF"
+            self.close_block(word)
+
+    def body(self) -> None:
+        """A few instructions, perhaps none."""
+        for _ in range(self.rng.choice((0, 1, 1, 1, 2, 2, 3, 4))):
+            self.statement()
+
+    def statement(self) -> None:
+        """Any instruction."""
+        blocks: list[tuple[int, Callable[[], None]]] = []
+        if self.left > 0 and self.depth < MAX_NESTING:
+            blocks = [(9, self.choose), (7, self.loop), (5, self.repeat)]
+            if self.chance(0.05):
+                blocks.append((5, self.tower))
+        others: list[tuple[int, Callable[[], None]]] = [
+            (14, self.move),
+            (9, self.simple),
+            (13, self.show),
+            (18, self.assign),
+            (9, self.read),
+            (6, self.set),
+            (8, self.call),
+            (3, self.leave),
+        ]
+        weights, writers = zip(*blocks, *others, strict=True)
+        self.rng.choices(writers, weights)[0]()
+
+    def define(self) -> None:
+        """A DEF."""
+        free = self.free_defs
+        if not free or len(self.defs) == MAX_DEFS:
+            return
+        name = free.pop(self.rng.randrange(len(free)))
+        self.say("DEF", name)
+        deepest, called = self.deepest, self.called
+        self.deepest, self.called, self.in_def = 0, 0, True
+        for _ in range(self.rng.randint(0, 4)):
+            self.statement()
+        self.defs[name] = (self.deepest, self.called)
+        self.deepest, self.called, self.in_def = deepest, called, False
+        self.say(self.rng.choice(("END_DEF", "ENDDEF")))
+
+    def chain(self) -> None:
+        """DEFs that call each other, as deep as they may."""
+        before = ""
+        for number in range(self.rng.randint(2, MAX_CALLS)):
+            name = f"CHAIN{number}"
+            self.say("DEF", name)
+            self.say(before) if before else self.show()
+            self.say("END_DEF")
+            self.defs[name] = (0, number)
+            before = name
+        self.say(before)
+
+    def crowd(self) -> None:
+        """As many variables as there may be."""
+        for number in range(MAX_VARIABLES - len(self.variables)):
+            name = f"MANY{number}"
+            self.say(name, "=", str(number))
+            self.variables[name] = False
+
+    def program(self) -> list[Tokens]:
+        """A whole program."""
+        roll = self.rng.random()
+        size = self.rng.randint(1, 8)
+        if roll < 0.4:
+            size = self.rng.randint(6, 25)
+        if roll < 0.1:
+            size = self.rng.randint(20, 60)
+        self.left = size
+        if self.chance(0.01):
+            self.chain()
+        if self.chance(0.005):
+            self.crowd()
+        while self.left > 0:
+            if self.chance(0.1 if self.defs else 0.06):
+                self.define()
+            else:
+                self.statement()
+        return self.page

@@ -1,0 +1,175 @@
+"""Writes random values: literals of every kind, expressions, conditions."""
+
+from __future__ import annotations
+
+import random
+import re
+
+from tests.oracle.words import Kit
+
+Tokens = list[str]
+
+VARIABLES = ("X", "Y", "Z", "COUNT", "SPEED", "D", "A1", "T_2", "NEAR", "FOUND", "I", "OLD__D_")
+PROCEDURES = ("TURN", "LOOK", "DANCE", "SQUARE", "P1", "GO_ON", "BACK_OFF", "TELL", "Q")
+MAX_VARIABLES = 32
+MAX_DEFS = 16
+MAX_NESTING = 16
+MAX_CALLS = 8
+MAX_STACK = 16
+
+TIMES = ("0", "0.02", "0.05", ".1", "0.25", "0.033", "0.5", "1", "1.5", "0.001", "2.0")
+SMALL = ("0", "1", "2", "3", "4", "5", "7", "10", "0.5", ".25", "1.5", "2.75", "0.1", "0.2", "0.3")
+WIDE = ("9", "20", "50", "100", "128.5", "400", "500", "1000", "1023", "12.345", "0.001", "007")
+LONG = ("0.0005", "1.2345", "2.71828", "3.00049", "99.9995", "0.33333333333333")
+BIG = ("2147483.647", "2147483", "2000000", "1073741.824", "46340.95", "999999.999")
+LEAST = "-2147483.648"
+
+_PLAIN = re.compile(r"-?[0-9.]+")
+
+
+def plain(tokens: Tokens) -> bool:
+    """Whether an argument is just one number, with or without a minus."""
+    return _PLAIN.fullmatch("".join(tokens)) is not None
+
+
+class ValueAuthor:
+    """Writes the values of a program: numbers, yes/no values and conditions of random shape."""
+
+    def __init__(self, rng: random.Random, kit: Kit) -> None:
+        """Starts with an empty page."""
+        self.rng = rng
+        self.kit = kit
+        self.page: list[Tokens] = []
+        self.left = 0  # instructions still to write
+        taken = {device.name for device in (*kit.sensors, *kit.actuators)}
+        self.names = [name for name in VARIABLES if name not in taken]
+        self.free_defs = [name for name in PROCEDURES if name not in taken]
+        self.taken = taken | set(VARIABLES) | set(PROCEDURES)
+        self.variables: dict[str, bool] = {}
+        self.counters: set[str] = set()
+        self.defs: dict[str, tuple[int, int]] = {}  # blocks and DEFs open in it at once
+        self.depth = 0  # blocks open here
+        self.deepest = 0
+        self.called = 0
+        self.loops = 0
+        self.in_def = False
+        self.constant = False  # expressions have only literals for leaves
+
+    def chance(self, probability: float) -> bool:
+        """Happens that often."""
+        return self.rng.random() < probability
+
+    def say(self, *tokens: str) -> None:
+        """Writes an instruction."""
+        self.page.append(list(tokens))
+        self.left -= 1
+
+    # Expressions
+
+    def literal(self) -> Tokens:
+        """A number."""
+        roll = self.rng.random()
+        if roll < 0.55:
+            return [self.rng.choice(SMALL)]
+        if roll < 0.85:
+            return [self.rng.choice(WIDE)]
+        if roll < 0.92:
+            return [f"{self.rng.uniform(0, 200):.{self.rng.randint(1, 3)}f}"]
+        if roll < 0.97:
+            return [self.rng.choice(LONG)]
+        return [self.rng.choice(BIG)] if self.chance(0.7) else [LEAST]
+
+    def named(self, is_yes_no: bool) -> Tokens | None:
+        """A variable or a sensor of the kind, if there is one."""
+        variables = [name for name, kind in self.variables.items() if kind == is_yes_no]
+        sensors = [sensor.name for sensor in self.kit.sensors if sensor.is_yes_no == is_yes_no]
+        names = variables if variables and (self.chance(0.5) or not sensors) else sensors
+        return [self.rng.choice(names)] if names else None
+
+    def leaf(self) -> Tokens:
+        """A number without operators."""
+        if not self.constant and self.chance(0.55):
+            if self.chance(0.12):
+                return ["TIME"]
+            return self.named(False) or self.literal()
+        return self.literal()
+
+    def number(self, size: int = 2) -> Tokens:
+        """An expression of the kind number; size bounds how deep it branches."""
+        roll = self.rng.random()
+        if size <= 0 or roll < 0.3:
+            return self.leaf()
+        if roll < 0.36:
+            return ["-", *self.number(size - 1)]
+        if roll < 0.46:
+            return ["(", *self.number(size - 1), ")"]
+        if roll < 0.78:
+            sign = self.rng.choice("++---**/%")
+            right = self.number(size - 1)
+            if sign in "/%" and self.chance(0.7):
+                right = [self.rng.choice(("2", "3", "0.5", "7", "1.001", "10"))]
+                right = ["-", *right] if self.chance(0.2) else right
+            return [*self.number(size - 1), sign, *right]
+        name = self.rng.choice(("ROUND", "ABS", "MIN", "MAX", "RANDOM"))
+        first, second = self.number(size - 1), self.number(size - 1)
+        if name == "ABS":
+            return [name, "(", *first, ")"]
+        if name == "ROUND" and self.chance(0.7):
+            second = self.rng.choice((["0"], ["1"], ["2"], ["-", "1"], ["-", "2"], ["1.5"], ["3"]))
+        if name == "RANDOM" and self.chance(0.6):
+            first, second = ["1"], [self.rng.choice(("2", "6", "10", "0", "100.5"))]
+        return [name, "(", *first, ",", *second, ")"]
+
+    def yes_no(self, size: int = 2) -> Tokens:
+        """An expression of the kind yes/no."""
+        roll = self.rng.random()
+        if size <= 0 or roll < 0.12:
+            found = None if self.constant or self.chance(0.3) else self.named(True)
+            return found or [self.rng.choice(("TRUE", "FALSE"))]
+        if roll < 0.2:
+            return ["NOT", *self.yes_no(size - 1)]
+        if roll < 0.27:
+            return ["(", *self.yes_no(size - 1), ")"]
+        if roll < 0.45:
+            word = self.rng.choice(("AND", "OR"))
+            return [*self.yes_no(size - 1), word, *self.yes_no(size - 1)]
+        if roll < 0.5:
+            sides = [self.yes_no(size - 1) for _ in range(2)]
+            left, right = (side if len(side) == 1 else ["(", *side, ")"] for side in sides)
+            return [*left, self.rng.choice(("=", "<>")), *right]
+        comparator = self.rng.choice(("=", "<", ">", "<=", ">=", "<>", "<", ">"))
+        return [*self.number(size - 1), comparator, *self.number(size - 1)]
+
+    def condition(self) -> Tokens:
+        """A yes/no value in parentheses."""
+        self.constant = self.chance(0.06)
+        tokens = self.yes_no(self.rng.choice((1, 1, 2, 2, 3)))
+        self.constant = False
+        return ["(", *tokens, ")"]
+
+    def computed(self) -> Tokens:
+        """A number that is not checked against a range before the program runs."""
+        self.constant = self.chance(0.15)
+        tokens = self.number(self.rng.choice((1, 2, 2, 3)))
+        self.constant = False
+        return ["(", *tokens, ")"] if plain(tokens) else tokens
+
+    def within(self, low: int, high: int) -> Tokens:
+        """A lone number from low to high, or something computed."""
+        if self.chance(0.3):
+            return self.computed()
+        value = self.rng.choice((low, high, *(self.rng.randint(low, high) for _ in range(6))))
+        if self.chance(0.1) and low < value < high:
+            return [*(["-"] if value < 0 else []), f"{abs(value)}.{self.rng.randint(1, 999):03}"]
+        return [*(["-"] if value < 0 else []), str(abs(value))]
+
+    def seconds(self) -> Tokens:
+        """A time, mostly short."""
+        roll = self.rng.random()
+        if roll < 0.8:
+            return [self.rng.choice(TIMES)]
+        if roll < 0.88:
+            return ["MIN", "(", *self.number(1), ",", self.rng.choice(TIMES), ")"]
+        if roll < 0.96:
+            return ["(", *self.number(1), ")", "/", "100"]
+        return self.computed()

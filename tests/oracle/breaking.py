@@ -1,0 +1,39 @@
+"""Breaks the text of a program at random."""
+
+from __future__ import annotations
+
+import random
+import re
+
+_PIECES = re.compile(r"[A-Za-z0-9_.]+|\s+|.", re.DOTALL)
+_NOISE = "~();,|=<>+-*/%._ \n\t'\"#@!?&[]{}0123456789abcEFLWXYZñé¿½"
+_WORDS = (
+    "IF", "ELSE", "ELSEIF", "ENDIF", "LOOP", "END_LOOP", "WHILE", "END_WHILE", "BREAK", "DEF",
+    "END_DEF", "UNTIL", "FOREVER", "SI", "SB", "|", "PING", "TRUE", "AND", "NOT", "X", "DISTANCE",
+    "TIME", "5", "100.4", "2147483.648", "-", "RANDOM", "(", ")", ",", ";", "\n", "TASK",
+)  # fmt: skip
+
+
+def broken(rng: random.Random, text: str) -> str:
+    """The text with a few pieces lost, doubled, swapped or replaced, or with stray characters."""
+    pieces = _PIECES.findall(text)
+    for _ in range(rng.choice((1, 1, 1, 2, 3))):
+        at = rng.randrange(len(pieces) + 1)
+        what = rng.randrange(7)
+        if what == 0 or at == len(pieces):
+            pieces.insert(at, rng.choice(_NOISE))
+        elif what == 1:
+            del pieces[at]
+        elif what == 2:
+            pieces.insert(at, pieces[at])
+        elif what == 3:
+            other = rng.randrange(len(pieces))
+            pieces[at], pieces[other] = pieces[other], pieces[at]
+        elif what == 4:
+            pieces[at] = rng.choice(_WORDS)
+        elif what == 5:
+            pieces.insert(at, rng.choice(_WORDS))
+        else:
+            cut = rng.randrange(len(pieces[at]) + 1)
+            pieces[at] = pieces[at][:cut] + rng.choice(_NOISE) + pieces[at][cut + 1 :]
+    return "".join(pieces)

@@ -1,0 +1,87 @@
+"""Says of each instruction which readings it takes, and how deep blocks and DEFs are open."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from tests.oracle.tree import (
+    Do,
+    Expression,
+    Facts,
+    If,
+    Loop,
+    Statement,
+    sensors_in,
+)
+
+
+def inner_blocks(statement: Statement) -> list[list[Statement]]:
+    """The bodies of a statement."""
+    if isinstance(statement, If):
+        return [arm.body for arm in statement.arms]
+    return [] if isinstance(statement, Do) else [statement.body]
+
+
+def nesting(body: list[Statement], defs: Mapping[str, Facts]) -> int:
+    """How deep blocks are open in a body; those of a DEF count on top of those at its call."""
+    deepest = 0
+    for statement in body:
+        for inner in inner_blocks(statement):
+            deepest = max(deepest, 1 + nesting(inner, defs))
+        if isinstance(statement, Do) and statement.word == "CALL":
+            deepest = max(deepest, defs[statement.name].nesting)
+    return deepest
+
+
+def calling(body: list[Statement], defs: Mapping[str, Facts]) -> int:
+    """How many DEFs a body has open at once."""
+    deepest = 0
+    for statement in body:
+        for inner in inner_blocks(statement):
+            deepest = max(deepest, calling(inner, defs))
+        if isinstance(statement, Do) and statement.word == "CALL":
+            deepest = max(deepest, 1 + defs[statement.name].calling)
+    return deepest
+
+
+def settle_readings(
+    body: list[Statement], sure: frozenset[str], defs: Mapping[str, Facts]
+) -> frozenset[str]:
+    """Writes down which readings each instruction takes.
+
+    `sure` are the sensors that have surely been read by name before the body; what has surely
+    been read after it is returned. Only `X;` makes X surely read.
+    """
+
+    def missing(expressions: Iterable[Expression | None], known: frozenset[str]) -> tuple[str, ...]:
+        return tuple(name for name in sensors_in(expressions) if name not in known)
+
+    nothing: frozenset[str] = frozenset()
+    for statement in body:
+        if isinstance(statement, Do):
+            statement.reads = missing(statement.arguments, sure)
+            # UNTIL is there to watch: it takes every sensor of its condition at every check.
+            statement.until_reads = sensors_in((statement.until,))
+            if statement.word == "READ":
+                sure |= {statement.name}
+            elif statement.word == "CALL":
+                # A DEF's body begins with nothing surely read, and a call adds what it leaves.
+                sure |= defs[statement.name].surely_read
+        elif isinstance(statement, If):
+            taken = sure  # what this chain need not take (again)
+            ends: list[frozenset[str]] = []
+            for arm in statement.arms:
+                arm.reads = missing((arm.condition,), taken)
+                taken |= set(arm.reads)
+                # The readings for conditions are the compiler's: they make nothing surely read.
+                ends.append(settle_readings(arm.body, sure, defs))
+            if statement.arms[-1].condition is not None:
+                ends.append(sure)  # a missing ELSE is an empty arm
+            sure = frozenset.intersection(*ends)
+        elif isinstance(statement, Loop):
+            statement.reads = missing((statement.count,), sure)
+            settle_readings(statement.body, nothing, defs)
+        else:
+            statement.reads = missing((statement.condition,), nothing)
+            settle_readings(statement.body, nothing, defs)
+    return sure

@@ -1,0 +1,72 @@
+"""Cuts the text of a program into words, numbers and signs."""
+
+from __future__ import annotations
+
+import re
+import zlib
+from typing import NamedTuple
+
+from tests.oracle.words import Mistake
+
+
+class Token(NamedTuple):
+    """A word (in capitals), number, symbol, newline, or the end of the text."""
+
+    kind: str
+    text: str
+    line: int
+
+
+_TOKEN = re.compile(
+    r"""(?P<space>[ \t\u00a0\u202f]+|//[^\n]*)
+      | (?P<newline>\n)
+      | (?P<number>(?:[0-9]+(?:\.[0-9]+)?|\.[0-9]+)(?![A-Za-z0-9_.]))
+      | (?P<word>[A-Za-z][A-Za-z0-9_]*)
+      | (?P<symbol><=|>=|<>|[-+*/%=<>(),;|])""",
+    re.VERBOSE,
+)
+
+
+def without_checksum(line: str) -> str:
+    """A line without the checksum at its first ~, if there is one; it must fit."""
+    before, _, behind = line.partition("~")
+    digits = behind.rstrip(" \t\u00a0\u202f")
+    if not re.fullmatch(r"[0-9A-Fa-f]{8}", digits):
+        return line
+    if int(digits, 16) != zlib.crc32(before.encode()):
+        raise Mistake(f"{line!r} does not fit its checksum")
+    return before
+
+
+def tokens_of(text: str) -> list[Token]:
+    """Cuts a text into tokens; an end of line inside parentheses is white space."""
+    text = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n")
+    text = "\n".join(map(without_checksum, text.split("\n")))
+    found: list[Token] = []
+    line, depth, at = 1, 0, 0
+    while at < len(text):
+        match = _TOKEN.match(text, at)
+        if match is None:
+            raise Mistake(f"line {line}: {text[at]!r} is not understood")
+        kind, word = str(match.lastgroup), match.group().upper()
+        at = match.end()
+        if kind == "symbol" and word in "()":
+            depth = max(0, depth + (1 if word == "(" else -1))
+        if word == ";" and depth > 0:
+            raise Mistake(f"line {line}: a ; inside parentheses")
+        if kind != "space" and not (kind == "newline" and depth > 0):
+            found.append(Token(kind, word, line))
+        if kind == "newline":
+            line += 1
+    found.append(Token("end", "", line))
+    return found
+
+
+def thousandths(text: str) -> int:
+    """The value of a literal, rounded half away from zero; it may be out of range."""
+    whole, _, places = text.partition(".")
+    whole = whole.lstrip("0")
+    if len(whole) > 10:
+        return 10**13  # out of range anyhow
+    value = int(whole or "0") * 1000 + int((places + "000")[:3])
+    return value + (1 if len(places) > 3 and places[3] >= "5" else 0)

@@ -1,0 +1,120 @@
+"""A program that was read: instructions, their blocks and their expressions.
+
+Numbers are Python integers that count thousandths; yes/no values are bools.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+Value = int | bool
+
+
+@dataclass(frozen=True)
+class Expression:
+    """An operator, a function or a leaf.
+
+    `operator` is NUMBER, TRUTH, VARIABLE, SENSOR, TIME, MINUS, NOT, or the word or sign of the
+    language. `plain` marks a number that stands alone: with or without one minus, and without
+    parentheses.
+    """
+
+    operator: str
+    is_yes_no: bool
+    parts: tuple[Expression, ...] = ()
+    value: Value = 0
+    name: str = ""
+    plain: bool = False
+
+
+@dataclass
+class Do:
+    """An instruction without a body; the FOREVER of a move or wait is a None argument.
+
+    `reads` are the readings that are taken before anything of the instruction is evaluated,
+    `until_reads` those before each check of UNTIL.
+    """
+
+    word: str
+    name: str = ""
+    arguments: tuple[Expression | None, ...] = ()
+    until: Expression | None = None
+    reads: tuple[str, ...] = ()
+    until_reads: tuple[str, ...] = ()
+
+
+@dataclass
+class Arm:
+    """One arm of an IF: its condition (None for ELSE) and what it does."""
+
+    condition: Expression | None
+    body: list[Statement]
+    reads: tuple[str, ...] = ()
+
+
+@dataclass
+class If:
+    """An IF with its ELSEIFs and its ELSE."""
+
+    arms: list[Arm]
+
+
+@dataclass
+class Loop:
+    """A LOOP; the count None is FOREVER."""
+
+    count: Expression | None
+    body: list[Statement]
+    reads: tuple[str, ...] = ()
+
+
+@dataclass
+class While:
+    """A WHILE."""
+
+    condition: Expression
+    body: list[Statement]
+    reads: tuple[str, ...] = ()
+
+
+Statement = Do | If | Loop | While
+
+
+@dataclass
+class Program:
+    """A program that has passed every check."""
+
+    main: list[Statement]
+    defs: dict[str, list[Statement]]
+    variables: dict[str, bool]  # name: is it a yes/no value
+
+
+class Facts(NamedTuple):
+    """What a call of a DEF brings along."""
+
+    nesting: int  # blocks open in it at once
+    calling: int  # DEFs that it has open at once, itself not counted
+    surely_read: frozenset[str]
+
+
+def stack_need(expression: Expression) -> int:
+    """How many values the text of an expression keeps at once."""
+    return max([1, *(i + stack_need(part) for i, part in enumerate(expression.parts))])
+
+
+def sensors_in(expressions: Iterable[Expression | None]) -> tuple[str, ...]:
+    """The sensors that are named, each once, in order of appearance."""
+    found: dict[str, None] = {}
+
+    def look(expression: Expression) -> None:
+        if expression.operator == "SENSOR":
+            found[expression.name] = None
+        for part in expression.parts:
+            look(part)
+
+    for expression in expressions:
+        if expression is not None:
+            look(expression)
+    return tuple(found)

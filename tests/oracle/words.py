@@ -1,0 +1,81 @@
+"""What a robot may have, and the words and limits of the language. Independent of the compiler."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class Device(NamedTuple):
+    """A sensor or an actuator; low and high are thousandths (0 and 1 for yes/no)."""
+
+    name: str
+    is_yes_no: bool
+    low: int
+    high: int
+
+
+class Kit(NamedTuple):
+    """What a robot has."""
+
+    sensors: tuple[Device, ...]
+    actuators: tuple[Device, ...]
+
+
+PAPER_KIT = Kit(
+    sensors=(
+        Device("LIGHT_R", False, 0, 1_023_000),
+        Device("LIGHT_L", False, 0, 1_023_000),
+        Device("DISTANCE", False, 0, 400_000),
+    ),
+    actuators=(),
+)
+
+
+class Mistake(Exception):
+    """The program is wrong; the text says why."""
+
+
+LOWEST = -(2**31)
+HIGHEST = 2**31 - 1
+MAX_VARIABLES = 32
+MAX_NESTING = 16
+MAX_STACK = 16
+MAX_DEFS = 16
+MAX_CALLS = 8
+
+SETUPS = ("PING", "SI", "SB")
+COMPARATORS = ("=", "<>", "<", ">", "<=", ">=")
+FUNCTIONS = {"ROUND": 2, "ABS": 1, "MIN": 2, "MAX": 2, "RANDOM": 2}
+MOVES = ("F", "B", "L", "R")
+
+# The other spellings that are accepted for the ends of blocks.
+ALIASES = {
+    "END_IF": "ENDIF",
+    "ENDLOOP": "END_LOOP",
+    "ENDWHILE": "END_WHILE",
+    "ENDDEF": "END_DEF",
+}
+BLOCK_WORDS = ("ELSEIF", "ELSE", "ENDIF", "END_LOOP", "END_WHILE", "END_DEF")
+LATER_WORDS = ("TASK", "END_TASK", "WHEN", "END_WHEN", "SEND")
+
+# Instructions with arguments in parentheses, and the range of each argument.
+_TIME = (0, HIGHEST)
+_POWER = (0, 100_000)
+_SIDE = (-100_000, 100_000)
+RANGES: dict[str, tuple[tuple[int, int], ...]] = {
+    "F": (_TIME, _POWER),
+    "B": (_TIME, _POWER),
+    "L": (_TIME, _POWER),
+    "R": (_TIME, _POWER),
+    "M": (_SIDE, _SIDE),
+    "W": (_TIME,),
+    "BEEP": (_TIME, (31_000, 20_000_000)),
+}
+
+RESERVED = frozenset(
+    (
+        *SETUPS, *MOVES, *FUNCTIONS, *ALIASES, *BLOCK_WORDS, *LATER_WORDS,
+        "M", "S", "STOP", "W", "UNTIL", "FOREVER", "BEEP", "SHOW", "IF", "LOOP", "WHILE",
+        "BREAK", "DEF", "START", "TRUE", "FALSE", "AND", "OR", "NOT", "TIME",
+    )
+)  # fmt: skip
