@@ -61,6 +61,8 @@ def test_variables_are_told_where_it_is_held() -> None:
         found.append(simulation.state()["variables"])
         simulation.step(5000)
     assert found[:4] == [[0, 0], [3, 0], [3, 0], [4, 0]] and found[-1] == [5, 0.001]
+    simulation.go(500)
+    assert simulation.state()["variables"] == [5, 0.001]  # that it has left
 
 
 @pytest.mark.parametrize("how", ["steps", "breakpoints"])
@@ -148,7 +150,7 @@ def test_a_program_that_never_waits_is_held_too() -> None:
 
 def test_its_button_starts_a_program_that_can_be_held_again() -> None:
     simulation = begun("SB|F(0.2, 80);SHOW(5)", at=(1,))
-    for ends in (lambda: simulation.stop(), lambda: simulation.go_on()):
+    for ends in (simulation.stop, simulation.go_on):
         simulation.go(100)
         simulation.push()
         simulation.go(1000)

@@ -24,7 +24,7 @@ WRONG = "SI|" + "F(-2, 80);\nIF(DISTANCE < 10;\n" * 6
 # What can be pressed or chosen, and whether another such thing or the edge of the screen cuts it.
 LOOK = """() => {
   const found = [];
-  const boxes = [...document.querySelectorAll('header button, header select, h1, main section > :not(div), #sides > *, #controls, #editor, #link_ways > *, #link_drive > *, #lesson_controls > *, #lesson_said, #lesson_page, #arena, #world_tools > :not(span), #world_numbers > *')]
+  const boxes = [...document.querySelectorAll('header button, header select, h1, main section > :not(div), #sides > *, #views_of_run > *, #controls > *, #editor, #link_ways > *, #link_drive > *, #lesson_controls > *, #lesson_said, #lesson_page, #arena, #world_tools > :not(span), #world_numbers > *')]
     .filter((e) => e.checkVisibility() && (e.textContent || e.value || e.id === 'arena' || e.querySelector('svg')))
     .map((e) => [e.id || e.tagName, e.getBoundingClientRect()]);
   for (const [name, box] of boxes) {

@@ -96,11 +96,11 @@ def test_the_list_is_the_trace_of_the_command(page: Page) -> None:
     wanted = [f"{each.ms} {each.text}" for each in run(DANCE).events]
     assert (page.locator("#trace").text_content() or "").split("\n") == wanted
     assert page.inner_text("#doing") == "It has ended."
-    page.click("summary")
+    page.select_option("#seen", "trace")
     with page.expect_download() as saved:
         page.click("#save_trace")
     assert saved.value.path().read_text().splitlines() == wanted
-    page.click("summary")
+    page.select_option("#seen", "arena")
 
 
 @pytest.mark.parametrize("is_paused", [False, True], ids=["driving", "paused"])

@@ -112,6 +112,11 @@ def test_a_fault_is_named() -> None:
     assert (place.line, place.column) == (1, 14)
 
 
+def test_a_fault_at_once_is_named_too() -> None:
+    state = begun("X = 0; SHOW(1 / X)").state()
+    assert state["fault"] == "DIVIDE_BY_ZERO" and state["fault_at"] is not None
+
+
 def test_the_page_asks_for_all_of_it() -> None:
     def ask(data: bytes = b"", **fields: object) -> dict[str, object]:
         found: dict[str, object] = json.loads(worker.answer(json.dumps(fields), data))

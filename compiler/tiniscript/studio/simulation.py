@@ -58,6 +58,7 @@ class Simulation:
         self._until(lambda: self._upload.outcome is not None or self.held_at is not None)
         assert self.held_at is not None or self._is_taken(), "not taken"
         self._want(is_stepping=False)
+        self.go(0)
 
     def go(self, duration_ms: int) -> None:
         """Let time go on, unless the program is held or until it is.

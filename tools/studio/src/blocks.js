@@ -15,7 +15,7 @@ import { currentLanguage, text } from './texts.js';
 /** @typedef {import('./block_form.js').Range} Range */
 /** @typedef {import('./block_toolbox.js').Level} Level */
 /** @typedef {import('./python.js').Finding} Finding */
-/** @typedef {{changed: () => void, undo: () => void, redo: () => void}} Told */
+/** @typedef {{changed: () => void, undo: () => void, redo: () => void, toggle: (place: {line: number, column: number}) => void}} Told */
 
 const NARROW = 700; // pixels of width, below which blocks are smaller
 const LONGEST_TIP = 42; // characters in a line of a message at a block
@@ -49,6 +49,7 @@ export class Blocks {
     this.#level = level;
     Blockly.registry.register(Blockly.registry.Type.CONNECTION_CHECKER, 'tiniscript', Checker, true);
     this.#takeUndo();
+    this.#offerBreakpoints();
     setRobot(robot);
     setActuators(robot);
     this.#workspace = this.#begin();
@@ -72,6 +73,34 @@ export class Blocks {
       } });
       for (const key of keys) registry.addKeyMapping(key, name, true);
     }
+  }
+
+  /** In the menu of a block, and by F9. */
+  #offerBreakpoints() {
+    const toggle = (/** @type {any} */ block) => {
+      const place = block && this.#places.find(([id]) => id === block.id)?.[1];
+      if (place?.[0]) this.#told.toggle({ line: place[0], column: place[1] });
+      return Boolean(place?.[0]);
+    };
+    Blockly.ContextMenuRegistry.registry.register({
+      id: 'breakpoint',
+      weight: 0,
+      scopeType: Blockly.ContextMenuRegistry.ScopeType.BLOCK,
+      displayText: () => text('breakpoint'),
+      preconditionFn: ({ block }) => (this.#places.some(([id]) => id === block?.id) ? 'enabled' : 'hidden'),
+      callback: ({ block }) => toggle(block),
+    });
+    Blockly.ShortcutRegistry.registry.register({
+      name: 'breakpoint',
+      keyCodes: [Blockly.utils.KeyCodes.F9],
+      callback: () => {
+        let node = Blockly.getFocusManager().getFocusedNode();
+        while (node && !(node instanceof Blockly.BlockSvg)) node = /** @type {any} */ (node).getSourceBlock?.() ?? null;
+        let block = /** @type {Blockly.BlockSvg | null} */ (node);
+        while (block && !this.#places.some(([id]) => id === block?.id)) block = block.getParent();
+        return toggle(block);
+      },
+    });
   }
 
   #begin() {
@@ -201,6 +230,16 @@ export class Blocks {
     this.#workspace.getBlockById(this.#running)?.removeClass('running');
     this.#workspace.getBlockById(id)?.addClass('running');
     this.#running = id;
+  }
+
+  /** @param {{line: number, column: number}[]} breakpoints */
+  showBreakpoints(breakpoints) {
+    const ids = new Set(breakpoints.map(({ line, column }) => this.#blockAt(line, column)));
+    for (const [id] of this.#places) {
+      const block = this.#workspace.getBlockById(id);
+      if (ids.has(id)) block?.addClass('breakpoint');
+      else block?.removeClass('breakpoint');
+    }
   }
 
   /**

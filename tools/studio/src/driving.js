@@ -4,6 +4,8 @@ import { Arena } from './arena.js';
 import { element } from './elements.js';
 import { faultSaid } from './faults.js';
 import { download } from './files.js';
+import { offsetsOf } from './parts.js';
+import { Plot } from './plot.js';
 import { Simulator } from './simulator.js';
 import { currentLanguage, text } from './texts.js';
 import { ROBOTS } from './words.js';
@@ -15,6 +17,7 @@ import { WorldDrawing } from './world_drawing.js';
 /** @typedef {import('./work.js').Work} Work */
 
 const SHOWN = 200; // lines of the trace
+const SEEN = /** @type {const} */ (['arena', 'plot', 'trace']);
 
 export class Driving {
   #editor;
@@ -26,10 +29,15 @@ export class Driving {
   #python;
   #simulator;
   #arena = new Arena(element('arena', HTMLCanvasElement));
+  #plot = new Plot(element('plot', HTMLCanvasElement));
+  #shown = ''; // what SHOW has shown last
+  #seen = element('seen', HTMLSelectElement);
   #wasStopped = false;
   #note = '';
   /** @type {Checked['places']} */
   #places = [];
+  /** @type {Checked['variables']} */
+  #variables = [];
   #run = element('run', HTMLButtonElement);
   #pause = element('pause', HTMLButtonElement);
   #push = element('push', HTMLButtonElement);
@@ -56,7 +64,10 @@ export class Driving {
     this.#python = python;
     this.#remember = remember;
     this.#world = new WorldChoice(work, () => this.#enter());
-    this.#simulator = new Simulator(python, () => this.#show());
+    this.#simulator = new Simulator(python, (state) => {
+      if (state) this.#keep(state);
+      this.#show();
+    });
     this.#drawing = new WorldDrawing(python, this.#arena, {
       world: () => this.#shapes,
       isOwn: () => this.#world.isOwn,
@@ -101,6 +112,8 @@ export class Driving {
     element('save_trace', HTMLButtonElement).addEventListener('click', () => {
       download(text('trace_name'), this.#simulator.trace.map((line) => `${line}\n`).join(''));
     });
+    this.#seen.addEventListener('change', () => this.#choose());
+    new ResizeObserver(() => this.#plot.draw()).observe(element('plot_place', HTMLElement));
     new ResizeObserver(() => this.#arena.draw(this.#simulator.state)).observe(element('arena', HTMLCanvasElement));
     this.setLanguage();
     this.begin();
@@ -117,8 +130,20 @@ export class Driving {
   }
 
   setLanguage() {
+    const { value } = this.#seen;
+    this.#seen.replaceChildren(...SEEN.map((each) => new Option(text(`seen_${each}`), each)));
+    this.#seen.value = value || 'arena';
     this.#world.setLanguage();
     this.#drawing.setLanguage();
+    this.#show();
+  }
+
+  /** Shows the robot from above, or its values, or what it has done. */
+  #choose() {
+    const { value } = this.#seen;
+    element('arena', HTMLElement).hidden = value !== 'arena';
+    element('plot_place', HTMLElement).hidden = value !== 'plot';
+    element('trace_place', HTMLElement).hidden = value !== 'trace';
     this.#show();
   }
 
@@ -153,6 +178,8 @@ export class Driving {
     this.#simulator.phase = 'off';
     this.#simulator.state = null;
     this.#simulator.trace = [];
+    this.#plot.begin();
+    this.#variables = [];
     this.#arena.begin(this.#shapes, this.#work.robot);
     this.#show();
   }
@@ -180,6 +207,12 @@ export class Driving {
     this.#show();
   }
 
+  /** The program is to stop elsewhere. */
+  breakpointsChanged() {
+    this.#editor.showBreakpoints();
+    if (this.#places.length) this.#simulator.setBreakpoints(offsetsOf(this.#places, this.#editor.breakpoints));
+  }
+
   /** @param {boolean} isPaused */
   async #start(isPaused) {
     const start = ++this.#starts;
@@ -200,8 +233,12 @@ export class Driving {
     await this.#simulator.stop();
     this.#wasStopped = false;
     this.#arena.begin(this.#world.shapes, this.#work.robot);
+    this.#plot.begin();
+    this.#shown = '';
     this.#places = program.places;
-    await this.#simulator.begin(program, this.#work.robot, this.#world.request, isPaused);
+    this.#variables = program.variables;
+    const breakpoints = offsetsOf(this.#places, this.#editor.breakpoints);
+    await this.#simulator.begin(program, this.#work.robot, this.#world.request, breakpoints, isPaused);
   }
 
   #stop() {
@@ -224,11 +261,13 @@ export class Driving {
     element('doing', HTMLElement).textContent = this.#note || this.#drawing.said || this.#doing();
     element('trace', HTMLElement).textContent = trace.slice(-SHOWN).join('\n');
     this.#showValues();
+    this.#plot.draw();
     this.#arena.draw(state);
     const place = this.#place();
     const [, line = 0, column = 0, end_line = 0, end_column = 0] = place ?? [];
-    const range = place ? { line, column, end_line, end_column } : null;
-    this.#editor.showRunning(range);
+    const end = end_line > line ? { end_line: line, end_column: Infinity } : { end_line, end_column }; // of a block its head
+    const range = place ? { line, column, ...end } : null;
+    this.#editor.showRunning(range, Boolean(state?.is_held));
     this.#editor.showFault(state?.fault ? range : null, state?.fault ? faultSaid(state.fault) : '');
     document.documentElement.dataset['phase'] = phase;
   }
@@ -238,6 +277,23 @@ export class Driving {
     const { state } = this.#simulator;
     const at = state?.fault ? state.fault_at : state?.at;
     return at == null ? undefined : this.#places.findLast(([offset]) => offset <= at);
+  }
+
+  /** Keeps for the curves what is to be seen. @param {import('./python.js').RobotState} state */
+  #keep(state) {
+    if (state.began_ms === null) return;
+    const shown = state.events.findLast(([, what]) => what.startsWith('SHOW '));
+    if (shown) this.#shown = shown[1].slice('SHOW '.length);
+    this.#plot.add(state.now_ms - state.began_ms, [
+      ...this.#sensors().map((device, k) => ({ name: device.text, value: numberOf(state.readings[k]?.text) })),
+      ...this.#variables.map(({ name, is_yes_no }, k) => ({ name, value: is_yes_no ? Number(Boolean(state.variables[k])) : state.variables[k] })),
+      { name: 'SHOW', value: numberOf(this.#shown) },
+    ]);
+  }
+
+  #sensors() {
+    const robot = ROBOTS.find((each) => each.name === this.#work.robot);
+    return robot?.devices.filter((device) => device.role === 'sensor') ?? [];
   }
 
   #doing() {
@@ -251,6 +307,8 @@ export class Driving {
       return line ? text('say_fault', { line, what }) : text('robot_fault', { what });
     }
     if (this.#wasStopped) return text('robot_stopped');
+    const held = state.is_held && this.#place()?.[1];
+    if (phase === 'paused' && held) return text('robot_held', { line: held });
     if (phase === 'paused') return text('robot_paused');
     if (phase === 'ended') return text('robot_ended');
     return text(state.is_waiting ? 'robot_waiting' : 'robot_running');
@@ -258,14 +316,13 @@ export class Driving {
 
   #showValues() {
     const { state } = this.#simulator;
-    const robot = ROBOTS.find((each) => each.name === this.#work.robot);
-    const sensors = robot?.devices.filter((device) => device.role === 'sensor') ?? [];
     const seconds = state ? ((state.now_ms - (state.began_ms ?? state.now_ms)) / 1000).toFixed(1) : '–';
     const rows = [
       [text('time'), state ? `${seconds} s` : '–'],
       [text('motors'), state ? state.motors.join('  ') : '–'],
       [text('bumps'), state ? String(state.bumps) : '–'],
-      ...sensors.map((device, k) => [device.text, state ? `${state.readings[k]?.text} ${device.unit}` : '–']),
+      ...this.#sensors().map((device, k) => [device.text, state ? `${state.readings[k]?.text} ${device.unit}` : '–']),
+      ...this.#variables.map(({ name, is_yes_no }, k) => [name, written(state?.variables[k], is_yes_no)]),
     ];
     element('values', HTMLElement).replaceChildren(
       ...rows.map(([name = '', value = '']) => {
@@ -279,4 +336,20 @@ export class Driving {
       }),
     );
   }
+}
+
+/**
+ * A variable as SHOW says it.
+ * @param {number | undefined} value
+ * @param {boolean} isYesNo
+ */
+function written(value, isYesNo) {
+  if (value === undefined) return '–';
+  return isYesNo ? (value ? 'TRUE' : 'FALSE') : String(value);
+}
+
+/** @param {string | undefined} said a value as SHOW says it, or nothing */
+function numberOf(said) {
+  if (!said) return undefined;
+  return { TRUE: 1, FALSE: 0 }[said] ?? Number(said);
 }

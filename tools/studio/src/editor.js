@@ -9,7 +9,9 @@ import { bracketMatching } from '@codemirror/language';
 import { lintGutter, lintKeymap, setDiagnostics } from '@codemirror/lint';
 import { Compartment, EditorState, StateEffect, StateField } from '@codemirror/state';
 import { Decoration, EditorView, highlightActiveLine, keymap, lineNumbers } from '@codemirror/view';
+import { breakpoints, placesOf, pressed, setBreakpoints } from './breakpoints.js';
 import { colors, completionOf, languageOf } from './language.js';
+import { partAt } from './parts.js';
 import { EDITOR_PHRASES_ES, currentLanguage, text } from './texts.js';
 
 /** @typedef {import('./python.js').Finding} Finding */
@@ -40,6 +42,9 @@ const theme = EditorView.theme({
   '.cm-gutters': { backgroundColor: '#eef2f6', color: '#4a5663', border: 'none' },
   '.cm-activeLine': { backgroundColor: '#eef4fb' },
   '.cm-running': { backgroundColor: '#ffd84d' },
+  '.cm-breakpoint': { boxShadow: 'inset 3px 0 #a8200f' },
+  '.cm-breakpoints': { width: '1.3em', color: '#a8200f', cursor: 'pointer', textAlign: 'center' },
+  '.cm-lineNumbers': { cursor: 'pointer' },
   // CodeMirror draws these with pictures in its style sheet, which the page's policy forbids.
   '.cm-lintRange': { backgroundImage: 'none', textDecorationLine: 'underline', textDecorationStyle: 'wavy', textUnderlineOffset: '3px' },
   '.cm-lintRange-error': { backgroundImage: 'none', textDecorationColor: '#a8200f' },
@@ -55,13 +60,22 @@ export class Editor {
   #robot = new Compartment();
   #words = new Compartment();
   #view;
+  /** Where parts of the newest text begin; null while it is not compiled. @type {import('./parts.js').Places | null} */
+  #places = null;
+  #noBreakpoint;
+  #held = -1; // where the program is held, and the editor has been scrolled to
 
   /**
    * @param {HTMLElement} parent
    * @param {string} robot
    * @param {() => void} changed
+   * @param {() => void} breakpointsChanged
+   * @param {(line: number) => void} noBreakpoint there is nothing to stop at
    */
-  constructor(parent, robot, changed) {
+  constructor(parent, robot, changed, breakpointsChanged, noBreakpoint) {
+    this.#noBreakpoint = noBreakpoint;
+    /** @type {(at: number, isLine: boolean) => void} */
+    const toggle = (at, isLine) => this.#toggle(at, isLine);
     const root = parent.attachShadow({ mode: 'open' });
     const place = document.createElement('div');
     place.style.height = '100%';
@@ -71,7 +85,8 @@ export class Editor {
       root,
       state: EditorState.create({
         extensions: [
-          lineNumbers(),
+          breakpoints(toggle, breakpointsChanged),
+          lineNumbers({ domEventHandlers: { mousedown: (_, line) => pressed(line, toggle) } }),
           history(),
           // Tab leaves the editor: who has no mouse must get out.
           keymap.of([...completionKeymap, ...lintKeymap, ...defaultKeymap, ...historyKeymap]),
@@ -85,7 +100,9 @@ export class Editor {
           this.#robot.of(this.#forRobot(robot)),
           this.#words.of(this.#inLanguage()),
           EditorView.updateListener.of((update) => {
-            if (update.docChanged) changed();
+            if (!update.docChanged) return;
+            this.#places = null;
+            changed();
           }),
         ],
       }),
@@ -154,6 +171,54 @@ export class Editor {
     this.#view.dispatch(setDiagnostics(this.#view.state, marks));
   }
 
+  /** The text is compiled: where its parts begin. @param {import('./parts.js').Places} places */
+  setPlaces(places) {
+    this.#places = places.length ? places : null;
+  }
+
+  /** Where the program is to stop. @returns {{line: number, column: number}[]} */
+  get breakpoints() {
+    return placesOf(this.#view.state).map((at) => this.#placeAt(at));
+  }
+
+  /** @param {{line: number, column: number}} place the beginning of a part, or of a block */
+  toggleBreakpoint(place) {
+    this.#toggle(this.#offset(place.line, place.column), false);
+  }
+
+  /**
+   * @param {number} at
+   * @param {boolean} isLine of the whole line
+   */
+  #toggle(at, isLine) {
+    const line = this.#view.state.doc.lineAt(at);
+    const here = placesOf(this.#view.state).filter((each) => each >= line.from && each <= line.to);
+    if (isLine && here.length) {
+      setBreakpoints(this.#view, here, false);
+      return;
+    }
+    const begin = this.#partAt(at, isLine);
+    if (begin === null) this.#noBreakpoint(line.number);
+    else setBreakpoints(this.#view, [begin], !placesOf(this.#view.state).includes(begin));
+  }
+
+  /** @param {number} at @param {boolean} isLine @returns {number | null} */
+  #partAt(at, isLine) {
+    if (this.#places) {
+      const part = partAt(this.#places, this.#placeAt(at), isLine);
+      return part && this.#offset(part.line, part.column);
+    }
+    const line = this.#view.state.doc.lineAt(at); // of a text with mistakes: what there is
+    const first = line.text.search(/\S/);
+    return first < 0 || line.text.startsWith('//', first) ? null : line.from + first;
+  }
+
+  /** @param {number} at */
+  #placeAt(at) {
+    const line = this.#view.state.doc.lineAt(at);
+    return { line: line.number, column: [...line.text.slice(0, at - line.from)].length + 1 };
+  }
+
   /** @param {Change[]} changes */
   change(changes) {
     this.#view.dispatch({
@@ -169,9 +234,18 @@ export class Editor {
     this.#view.focus();
   }
 
-  /** Marks what runs now, or nothing. @param {Range | null} range */
-  showRunning(range) {
-    this.#view.dispatch({ effects: setRunning.of(range && this.#offsets(range)) });
+  /**
+   * Marks what runs now, or nothing.
+   * @param {Range | null} range
+   * @param {boolean} isHeld there: it is scrolled to
+   */
+  showRunning(range, isHeld = false) {
+    const offsets = range && this.#offsets(range);
+    /** @type {StateEffect<unknown>[]} */
+    const effects = [setRunning.of(offsets)];
+    if (offsets && isHeld && offsets.from !== this.#held) effects.push(EditorView.scrollIntoView(offsets.from, { y: 'nearest', yMargin: 24 }));
+    this.#held = offsets && isHeld ? offsets.from : -1;
+    this.#view.dispatch({ effects });
   }
 
   /**

@@ -43,7 +43,9 @@ setLanguage(work.language);
 languages.value = work.language;
 
 const python = new Python();
-const editor = new Editor(element('editor', HTMLElement), work.robot, changed);
+const editor = new Editor(element('editor', HTMLElement), work.robot, changed, () => driving.breakpointsChanged(), (line) => {
+  note.textContent = text('no_breakpoint', { line });
+});
 const views = new Views(python, editor, work, remember);
 const driving = new Driving(python, views, work, () => (isStale() ? null : newest.answer), whenCompiled, remember);
 const programs = new Programs(python, work, putProgram, (said) => {
@@ -160,6 +162,7 @@ function isStale() {
 /** @param {Checked} answer */
 function show(answer) {
   editor.showFindings(answer.findings, repair);
+  editor.setPlaces(answer.places);
   views.showFindings(answer.findings);
   showMessages(list, answer.findings, (finding) => views.goTo(finding), repair);
   status.textContent = summary(answer.findings, answer.bytes);

@@ -28,6 +28,7 @@
  * @property {number} bytes
  * @property {Finding[]} findings
  * @property {[number, number, number, number, number][]} places offset, line, column and the end
+ * @property {{name: string, is_yes_no: boolean}[]} variables
  */
 
 /**
@@ -40,7 +41,9 @@
  * @property {boolean} is_waiting for its button
  * @property {string} fault
  * @property {number} bumps
- * @property {number | null} at
+ * @property {number | null} at where the program is, or what it does next where it is held
+ * @property {boolean} is_held
+ * @property {number[]} variables
  * @property {number | null} fault_at
  * @property {{value: number, text: string}[]} readings
  * @property {[number, string][]} events

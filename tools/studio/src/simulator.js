@@ -25,8 +25,6 @@ export class Simulator {
   trace = [];
   speed = 1;
   failure = ''; // a mistake of ours
-  /** @type {number[]} */
-  #offsets = [];
   #isAsking = false;
   isStopping = false; // it has not confirmed it yet
   #rest = 0; // of a millisecond that is not asked for yet
@@ -34,7 +32,7 @@ export class Simulator {
 
   /**
    * @param {Python} python
-   * @param {() => void} shown what shows the new state
+   * @param {(state?: RobotState) => void} shown what shows how it is, and its newest state
    */
   constructor(python, shown) {
     this.#python = python;
@@ -46,19 +44,22 @@ export class Simulator {
    * @param {Checked} program
    * @param {string} robot
    * @param {unknown} world
-   * @param {boolean} isPaused
+   * @param {number[]} breakpoints offsets in its code
+   * @param {boolean} isPaused in front of its first part
    */
-  async begin(program, robot, world, isPaused = false) {
+  async begin(program, robot, world, breakpoints = [], isPaused = false) {
     if (this.#isAsking) return;
     const bytes = program.image.match(/../g)?.map((pair) => parseInt(pair, 16)) ?? [];
-    this.#offsets = program.places.map(([offset]) => offset);
+    const parts = program.places.map(([offset]) => offset);
+    const variables = program.variables.length;
     this.trace = [];
     this.state = null;
     this.failure = '';
     this.phase = isPaused ? 'paused' : 'running';
     this.#rest = 0;
     this.#last = performance.now();
-    await this.#ask({ do: 'power_on', robot, world, language: currentLanguage() }, new Uint8Array(bytes));
+    const request = { do: 'power_on', robot, world, language: currentLanguage(), parts, breakpoints, variables, is_held: isPaused };
+    await this.#ask(request, new Uint8Array(bytes));
     if (this.phase === 'running') requestAnimationFrame((now) => this.#frame(now));
   }
 
@@ -67,32 +68,33 @@ export class Simulator {
     this.#shown();
   }
 
-  goOn() {
-    if (this.phase !== 'paused') return;
+  async goOn() {
+    if (this.phase !== 'paused' || this.#isAsking) return;
     this.phase = 'running';
+    if (this.state?.is_held) await this.#ask({ do: 'go_on' });
+    if (this.phase !== 'running') return;
     this.#last = performance.now();
     this.#shown();
     requestAnimationFrame((now) => this.#frame(now));
   }
 
-  /** Lets the robot go on until another part of the program runs. */
+  /** Lets the robot go on until another part of the program is next. */
   async step() {
     if (this.phase !== 'paused' || this.#isAsking) return;
-    const began = { part: this.#part, now_ms: this.state?.now_ms ?? 0 };
+    const until_ms = (this.state?.now_ms ?? 0) + STEP_LIMIT_MS;
     do {
-      await this.#ask({ do: 'next', offsets: this.#offsets, limit_ms: MOST_MS });
+      await this.#ask({ do: 'step', limit_ms: MOST_MS });
     } while (
       this.phase === 'paused' &&
       this.state?.is_running &&
-      this.#part === began.part &&
-      this.state.now_ms < began.now_ms + STEP_LIMIT_MS
+      !this.state.is_held &&
+      this.state.now_ms < until_ms
     );
   }
 
-  /** Which part of the program runs, or -1. */
-  get #part() {
-    const at = this.state?.at ?? -1;
-    return this.#offsets.findLastIndex((offset) => offset <= at);
+  /** @param {number[]} breakpoints offsets in its code, from now on */
+  async setBreakpoints(breakpoints) {
+    if (this.phase === 'running' || this.phase === 'paused') await this.#ask({ do: 'breakpoints', breakpoints });
   }
 
   async push() {
@@ -161,7 +163,8 @@ export class Simulator {
     if (this.trace.length > KEPT) this.trace.splice(0, this.trace.length - KEPT);
     const goesOn = this.phase === 'running' || this.phase === 'paused';
     if (goesOn && this.#hasEnded(state)) this.phase = 'ended';
-    this.#shown();
+    if (this.phase === 'running' && state.is_held) this.phase = 'paused';
+    this.#shown(state);
   }
 
   /** @param {RobotState} state */

@@ -36,6 +36,8 @@ export class Views {
   #findings = [];
   /** @type {[import('./editor.js').Range | null, string]} */
   #fault = [null, ''];
+  /** @type {import('./editor.js').Range | null} */
+  #running = null;
   #pane = element('blocks', HTMLElement);
   #note = element('blocks_note', HTMLElement);
   #level = element('level', HTMLSelectElement);
@@ -112,9 +114,22 @@ export class Views {
     if (!this.#isStale()) this.#blocks?.showFindings(findings);
   }
 
-  /** @param {{line: number, column: number, end_line: number, end_column: number} | null} range */
-  showRunning(range) {
-    this.#editor.showRunning(range);
+  get breakpoints() {
+    return this.#editor.breakpoints;
+  }
+
+  /** Shows where the program is to stop, at the blocks, too. */
+  showBreakpoints() {
+    if (!this.#isStale()) this.#blocks?.showBreakpoints(this.#editor.breakpoints);
+  }
+
+  /**
+   * @param {import('./editor.js').Range | null} range
+   * @param {boolean} isHeld there, so somebody wants to see it
+   */
+  showRunning(range, isHeld) {
+    this.#running = range;
+    this.#editor.showRunning(range, isHeld);
     if (!this.#isStale()) this.#blocks?.showRunning(range);
   }
 
@@ -158,6 +173,9 @@ export class Views {
       changed: () => this.#blocksChanged(),
       undo: () => this.#again(() => this.#editor.undo()),
       redo: () => this.#again(() => this.#editor.redo()),
+      toggle: (place) => {
+        if (!this.#isStale()) this.#editor.toggleBreakpoint(place);
+      },
     });
     this.#pane.dataset['state'] = 'empty';
     if (this.#isReady) this.#refresh(true);
@@ -204,6 +222,7 @@ export class Views {
         this.#form = whole;
         this.#blocks.placed(ids, answer.places);
         this.#editor.replaceByBlocks(answer.text);
+        this.showBreakpoints();
       }
     } catch (why) {
       this.#fail(why);
@@ -241,6 +260,8 @@ export class Views {
         this.#form = JSON.stringify(this.#blocks.read().form);
         this.#blocks.showFindings(this.#findings);
         this.#blocks.showFault(...this.#fault);
+        this.#blocks.showRunning(this.#running);
+        this.showBreakpoints();
       }
       this.#showState();
     } catch (why) {

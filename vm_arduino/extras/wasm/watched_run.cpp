@@ -17,16 +17,25 @@ uint8_t marks[kImageBytes];  // bits for each offset of the code
 uint8_t wanted;              // a program is held at the marks that have one of these bits
 uint8_t rest;                // of the budget of the tick in which it is held
 bool is_held;
-bool has_held;  // since `watched_begin`
-bool passes;    // the instruction in front of which it was held
+bool has_held;                  // since `watched_begin`
+bool passes;                    // the instruction in front of which it was held
+int32_t left_over[kVariables];  // of a program that has ended, once the machine is reset
+bool is_reset;
 
 class HeldMachine : public Machine {
  public:
+  void prepare() {
+    for (uint8_t k = 0; k < kVariables; k++) left_over[k] = task().variables[k];
+    is_reset = true;
+    Machine::prepare();
+  }
+
   void start_prepared(const uint8_t* code, uint16_t length, int32_t* readings, uint8_t sensors,
                       uint32_t seed, uint32_t now_ms) {
     is_held = false;
     passes = false;
     rest = 0;
+    is_reset = false;
     Machine::start_prepared(code, length, readings, sensors, seed, now_ms);
   }
 
@@ -93,6 +102,6 @@ void watched_go_on() {
   if (is_running()) go_on();
 }
 
-const int32_t* watched_variables() { return machine.task().variables; }
+const int32_t* watched_variables() { return is_reset ? left_over : machine.task().variables; }
 
 }  // namespace tiniscript

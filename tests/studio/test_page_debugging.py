@@ -1,0 +1,184 @@
+"""Breakpoints, steps and values in the page: by mouse and keys, in the text and in blocks."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from tests.studio.test_page_for_everyone import LOOK, SCREENS, axe
+from tests.studio.test_page_robot import in_phase, running, value
+from tests.support.studio import checked, noted, shown, write
+from tiniscript import run
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+COUNT = """SI|X = 0;
+LOOP(3);
+  X = X + 1; W(0.1);
+  // a note
+  SHOW(X * X);
+
+END_LOOP"""
+
+
+@pytest.fixture(autouse=True)
+def at_rest(page: Page) -> None:
+    page.set_viewport_size({"width": 1366, "height": 768})
+    page.keyboard.press("Escape")
+    page.click("#view_text")
+    page.select_option("#speed", "20")
+    page.select_option("#seen", "arena")
+
+
+def press_margin(page: Page, line: int) -> None:
+    numbers = page.locator(".cm-lineNumbers .cm-gutterElement")
+    numbers.filter(has_text=str(line)).last.click()
+
+
+def points(page: Page) -> int:
+    return page.locator(".cm-breakpoints").get_by_text("●").count()
+
+
+def held(page: Page, line: int) -> None:
+    page.locator("#doing").filter(has_text=f"It stops before line {line}.").wait_for()
+
+
+def test_it_stops_at_a_breakpoint_each_time_and_shows_the_values(page: Page) -> None:
+    write(page, COUNT)
+    press_margin(page, 5)
+    page.click("#run")
+    for x in (1, 2, 3):
+        page.locator("#values div").filter(has_text="X").get_by_text(str(x), exact=True).wait_for()
+        held(page, 5)
+        assert running(page) == "SHOW(X * X)"
+        page.click("#pause")
+    in_phase(page, "ended")
+    assert value(page, "X") == "3"
+    wanted = [f"{each.ms} {each.text}" for each in run(COUNT).events]
+    assert (page.locator("#trace").text_content() or "").split("\n") == wanted
+
+
+def test_a_breakpoint_of_a_line_with_nothing_on_it_is_that_of_the_next_part(page: Page) -> None:
+    write(page, COUNT)
+    press_margin(page, 4)
+    assert page.locator(".cm-breakpoint").all_inner_texts() == ["S"]  # of SHOW
+    press_margin(page, 5)
+    assert points(page) == 0
+    press_margin(page, 6)
+    noted(page, "From line 6 on there is nothing to stop at.")
+    assert points(page) == 0
+
+
+def test_a_breakpoint_moves_with_its_text_and_goes_with_it(page: Page) -> None:
+    write(page, "F(0.1, 80);\nSHOW(7);\nB(0.1, 80)")
+    page.keyboard.press("Control+Home")
+    page.keyboard.press("ArrowDown")
+    page.keyboard.press("F9")
+    assert points(page) == 1
+    page.keyboard.insert_text("W(0.1);\n")
+    checked(page)
+    page.click("#run")
+    held(page, 3)
+    page.locator(".cm-content").focus()
+    page.keyboard.press("Control+a")
+    page.keyboard.press("Delete")
+    checked(page)
+    assert points(page) == 0
+
+
+def test_one_line_has_several_breakpoints(page: Page) -> None:
+    write(page, "SI|SHOW(1);SHOW(2);SHOW(3)")
+    for _ in range(2):
+        page.keyboard.press("F9")  # behind the last part begins no other: it is that
+        for _ in range(9):
+            page.keyboard.press("ArrowLeft")
+    assert page.locator(".cm-breakpoint").count() == 2
+    page.click("#run")
+    for part in ("SHOW(2)", "SHOW(3)"):
+        page.locator(".cm-running", has_text=part).wait_for()
+        in_phase(page, "paused")
+        page.click("#pause")
+    in_phase(page, "ended")
+
+
+def test_breakpoints_are_seen_and_set_at_blocks(page: Page) -> None:
+    write(page, COUNT)
+    press_margin(page, 3)
+    page.click("#view_blocks")
+    shown(page)
+    page.locator("#blocks .breakpoint").filter(has_text="+").wait_for()
+    show = page.locator("#blocks .blocklyDraggable", has_text="SHOW").last
+    show.click(button="right", position={"x": 6, "y": 6})
+    page.get_by_role("menuitem", name="Stop here, or not (F9)").click()
+    page.locator("#blocks .show.breakpoint").wait_for()
+    page.click("#run")
+    for line in (3, 5, 3):
+        held(page, line)
+        page.locator("#blocks .running.breakpoint").wait_for()
+        page.click("#pause")
+    page.locator("#blocks .show .blocklyText", has_text="SHOW").click()
+    page.keyboard.press("F9")
+    page.locator("#blocks .show.breakpoint").wait_for(state="detached")
+
+
+def test_a_breakpoint_can_be_set_and_taken_away_while_it_runs(page: Page) -> None:
+    write(page, "LOOP(FOREVER);\n  F(0.2, 80);\n  SHOW(1);\nEND_LOOP")
+    page.click("#run")
+    page.locator(".cm-running").first.wait_for()
+    press_margin(page, 3)
+    held(page, 3)
+    press_margin(page, 3)
+    page.click("#pause")
+    in_phase(page, "running")
+    page.wait_for_timeout(200)
+    in_phase(page, "running")
+
+
+def test_a_breakpoint_in_every_line_is_no_hurdle(page: Page) -> None:
+    """In a program as long as a robot takes, and behind its end; and it stops at the first ones."""
+    write(page, "\n".join(f"W({k + 1})" for k in range(150)) + "\n// a note" * 50)
+    pressed = page.locator(".cm-content").evaluate(
+        "(content) => { const key = (key, keyCode) => content.dispatchEvent(new KeyboardEvent("
+        "'keydown', {key, keyCode, bubbles: true, cancelable: true}));"
+        " const began = performance.now();"
+        " for (let k = 0; k < 200; k += 1) { key('F9', 120); key('ArrowUp', 38); }"
+        " return performance.now() - began; }"
+    )
+    assert pressed < 10_000
+    page.click("#run")
+    held(page, 1)
+    page.click("#pause")
+    held(page, 2)
+
+
+@pytest.mark.parametrize("seen", ["plot", "trace"])
+def test_everything_is_seen_of_values_and_lists(page: Page, seen: str) -> None:
+    write(page, COUNT + ";" + ";".join(f"V{k} = {k}" for k in range(12)))
+    page.click("#run")
+    in_phase(page, "ended")
+    for language in ("en", "es"):
+        page.select_option("#language", language)
+        page.select_option("#seen", seen)
+        for width, height in SCREENS:
+            page.set_viewport_size({"width": width, "height": height})
+            assert page.evaluate(LOOK) == [], (width, language)
+            box = page.locator(f"#{seen}_place").bounding_box()
+            assert box is not None and box["height"] >= 60 and box["width"] > 300
+    assert axe(page) == []
+
+
+def test_curves_are_drawn_of_sensors_variables_and_what_is_shown(page: Page) -> None:
+    write(page, COUNT)
+    page.select_option("#seen", "plot")
+    page.click("#run")
+    in_phase(page, "ended")
+    colors = page.evaluate(
+        "() => { const c = document.querySelector('#plot'); const d = c.getContext('2d')"
+        ".getImageData(0, 0, c.width, c.height).data; const found = new Set();"
+        " for (let k = 0; k < d.length; k += 4)"
+        " if (d[k + 3] === 255) found.add(d.slice(k, k + 3).join());"
+        " return [...found]; }"
+    )
+    assert {"11,79,158", "168,32,15", "13,96,64", "122,75,0", "91,42,134"} <= set(colors)
