@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import base64
 import json
+import random
 import subprocess
 import zlib
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -110,7 +112,8 @@ def test_a_wrong_link_leaves_the_program(page: Page, name: str) -> None:
 
 
 def test_a_program_that_is_too_long_for_a_link_says_so(page: Page) -> None:
-    noise = "".join(f"// {k * 7919 % 100_003} {k * 104_729 % 99_991}\n" for k in range(2000))
+    chance = random.Random(1)
+    noise = "".join(f"// {chance.randbytes(40).hex()}\n" for _ in range(200))  # nothing packs it
     write(page, noise)
     assert share(page) == ""
     assert "too long for a link" in page.inner_text("#shared_told")
@@ -187,6 +190,66 @@ def test_the_pictures_hold_what_is_shared(page: Page) -> None:
     assert len(share(page, "line")) > 900
     assert page.locator("#shared_picture").is_hidden()
     assert "too long for a QR code" in page.inner_text("#shared_told")
+    page.keyboard.press("Escape")
+
+
+COLOURS = """async (letters) => {
+  const image = await createImageBitmap(new Blob([Uint8Array.from(atob(letters), (c) => c.charCodeAt(0))]));
+  const sheet = document.createElement('canvas');
+  Object.assign(sheet, { width: image.width, height: image.height });
+  const pen = sheet.getContext('2d');
+  pen.drawImage(image, 0, 0);
+  const { data } = pen.getImageData(0, 0, image.width, image.height);
+  const counts = {};
+  for (let k = 0; k < data.length; k += 4) {
+    const colour = data.slice(k, k + 3).join();
+    counts[colour] = (counts[colour] ?? 0) + 1;
+  }
+  return [image.width, image.height, counts];
+}"""
+
+
+def picture_of_blocks(page: Page) -> tuple[int, int, dict[str, int]]:
+    """Save the picture of the blocks; return its size, and how often it has each colour."""
+    with page.expect_download() as download:
+        page.click("#share_picture")
+    assert download.value.suggested_filename.endswith(".png")
+    return colours(page, Path(download.value.path()).read_bytes())
+
+
+def colours(page: Page, data: bytes) -> tuple[int, int, dict[str, int]]:
+    assert data.startswith(b"\x89PNG\r\n")
+    width, height, counts = page.evaluate(COLOURS, base64.b64encode(data).decode())
+    return width, height, counts
+
+
+MOVE = "11,79,158"  # the colour of blocks that move, as block_styles.js has it
+
+
+@pytest.mark.parametrize("view", ["text", "blocks"])
+def test_the_blocks_are_saved_as_a_picture(page: Page, view: str) -> None:
+    write(page, "SI|F(2, 80)")
+    page.click(f"#view_{view}")
+    page.click("#my_programs")
+    small = picture_of_blocks(page)
+    page.click("#programs_close")
+    assert page.locator("#blocks").is_visible() == (view == "blocks")
+    page.click("#view_text")
+    write(page, "SI|" + "F(2, 80);" * 5)
+    page.click("#my_programs")
+    large = picture_of_blocks(page)
+    page.keyboard.press("Escape")
+    assert large[1] > small[1] * 1.8  # rows
+    assert large[2][MOVE] > 4 * small[2][MOVE] > 4000  # the blocks are filled
+    assert small[2]["255,255,255"] > small[0] * small[1] / 10  # letters and what is around
+    assert not {each for each in small[2] if each in ("0,0,0",)}  # nothing lacks its colour
+
+
+def test_without_blocks_there_is_no_picture(page: Page) -> None:
+    write(page, "S;" * 1600)
+    page.click("#my_programs")
+    page.click("#share_picture")
+    page.locator("#shared_told", has_text="There is no picture").wait_for()
     page.keyboard.press("Escape")
 
 

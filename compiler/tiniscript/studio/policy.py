@@ -10,7 +10,7 @@ _DIRECTIVES = (
     "default-src 'none'",
     "script-src 'self' 'wasm-unsafe-eval'",
     "style-src 'self'",
-    "img-src 'self'",
+    "img-src 'self' blob:",  # a blob is made by the page: its picture of blocks
     "connect-src 'self'",
     "worker-src 'self'",
     "manifest-src 'self'",

@@ -7,6 +7,7 @@ import texts from '../made/blockly_texts.json';
 import { formOf, showForm } from './block_form.js';
 import { setActuators } from './block_places.js';
 import { Checker, defineBlocks, setRobot } from './block_shapes.js';
+import { pictureOf } from './block_picture.js';
 import { look } from './block_styles.js';
 import { toolbox } from './block_toolbox.js';
 import { currentLanguage, text } from './texts.js';
@@ -157,6 +158,11 @@ export class Blocks {
   setLevel(level) {
     this.#level = level;
     this.#workspace.updateToolbox(toolbox(level, this.#used));
+  }
+
+  /** The blocks as a PNG file; null without any. @returns {Promise<Blob | null>} */
+  picture() {
+    return pictureOf(this.#workspace.getCanvas(), this.#workspace.getBlocksBoundingBox());
   }
 
   resize() {

@@ -16,7 +16,15 @@ export async function bytesOf(file) {
  * @param {string} text
  */
 export function download(name, text) {
-  const address = URL.createObjectURL(new Blob([text], { type: 'text/plain;charset=utf-8' }));
+  downloadFile(name, new Blob([text], { type: 'text/plain;charset=utf-8' }));
+}
+
+/**
+ * @param {string} name
+ * @param {Blob} file
+ */
+export function downloadFile(name, file) {
+  const address = URL.createObjectURL(file);
   const link = document.createElement('a');
   link.href = address;
   link.download = name;

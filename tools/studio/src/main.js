@@ -50,7 +50,7 @@ const views = new Views(python, editor, work, remember);
 const driving = new Driving(python, views, work, () => (isStale() ? null : newest.answer), whenCompiled, remember);
 const programs = new Programs(python, work, putProgram, (said) => {
   note.textContent = said;
-});
+}, () => views.picture());
 
 const panel = new RobotPanel({
   python,

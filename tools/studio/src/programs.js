@@ -3,6 +3,7 @@
 
 import { correction, generate } from 'lean-qr';
 import { element } from './elements.js';
+import { downloadFile } from './files.js';
 import { linkOf, sharedIn } from './links.js';
 import { currentLanguage, text } from './texts.js';
 import { keepVersion, versions } from './versions.js';
@@ -25,6 +26,7 @@ export class Programs {
   #copy = element('copy', HTMLButtonElement);
   #python;
   #work;
+  #picturing;
   #put;
   #tell;
   #asked = 0;
@@ -34,12 +36,14 @@ export class Programs {
    * @param {Work} work
    * @param {(program: {text: string, robot: string, name: string}) => void} put it into the editor
    * @param {(note: string) => void} tell
+   * @param {() => Promise<Blob | null>} picturing the program's blocks, as a file
    */
-  constructor(python, work, put, tell) {
+  constructor(python, work, put, tell, picturing) {
     this.#python = python;
     this.#work = work;
     this.#put = put;
     this.#tell = tell;
+    this.#picturing = picturing;
     element('my_programs', HTMLButtonElement).addEventListener('click', () => this.#open());
     element('programs_close', HTMLButtonElement).addEventListener('click', () => this.#window.close());
     // The page's own is behind this window.
@@ -50,6 +54,7 @@ export class Programs {
     });
     this.#link.addEventListener('click', () => this.#share('link'));
     this.#line.addEventListener('click', () => this.#share('line'));
+    element('share_picture', HTMLButtonElement).addEventListener('click', () => this.#savePicture());
     this.#copy.addEventListener('click', () => this.#copyIt());
     element('run', HTMLButtonElement).addEventListener('click', () => this.keep());
     addEventListener('pagehide', () => this.keep());
@@ -139,6 +144,18 @@ export class Programs {
         .toCanvas(this.#picture, { padX: MARGIN, padY: MARGIN, on: [0, 0, 0, 255], off: [255, 255, 255, 255] });
     }
     this.#window.dataset['shared'] = 'wrong' in given ? 'wrong' : shared ? 'done' : 'asked';
+  }
+
+  async #savePicture() {
+    const name = (this.#work.name || text('file_name')).replace(/\.\w+$/, '') + '.png';
+    let file = null;
+    try {
+      file = await this.#picturing();
+    } catch {
+      // said below
+    }
+    if (file) downloadFile(name, file);
+    this.#told.textContent = file ? text('saved', { name }) : text('share_picture_not');
   }
 
   async #copyIt() {

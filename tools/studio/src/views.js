@@ -148,6 +148,24 @@ export class Views {
     else this.#editor.goTo(finding);
   }
 
+  /**
+   * Returns a picture of the program's blocks, which are made if only the text is seen.
+   * @returns {Promise<Blob | null>} null where there are none
+   */
+  async picture() {
+    const { view } = this.#work;
+    if (view !== 'blocks') this.#choose('blocks');
+    try {
+      await this.#fetching;
+      await this.#send();
+      this.#refresh(true);
+      while (this.#isRefreshing) await new Promise((resolve) => setTimeout(resolve, BUSY_MS));
+      return this.#blocks && !this.#isStale() ? await this.#blocks.picture() : null;
+    } finally {
+      if (view !== 'blocks') this.#choose(view);
+    }
+  }
+
   /** @param {'blocks' | 'text'} view */
   #choose(view) {
     this.#work.view = view;
