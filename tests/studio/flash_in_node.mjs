@@ -1,12 +1,15 @@
-// node flash_in_node.mjs SOURCES PTY BOARD HEX: writes a firmware as the page does, over a pty in the
-// place of a cable. Prints how it ended: done, or the name of the failure.
+// node flash_in_node.mjs SOURCES PTY BOARD HEX [PART]: writes a firmware as the page does, over a pty in the
+// place of a cable. It is cancelled once PART of it is done, 0 to 1, or before it begins where that is
+// negative. Prints how it ended: done, or the name of the failure.
 
 import { execFileSync } from 'node:child_process';
 import fs from 'node:fs';
 import { pathToFileURL } from 'node:url';
 import tty from 'node:tty';
 
-const [sources, path, board, file] = process.argv.slice(2);
+const [sources, path, board, file, part = 'never'] = process.argv.slice(2);
+const cancelling = new AbortController();
+if (part < 0) cancelling.abort();
 const of = (name) => import(pathToFileURL(`${sources}/${name}`).href);
 const { BOARDS, flash } = await of('stk500.js');
 const { BadHex, readHex } = await of('intel_hex.js');
@@ -47,7 +50,7 @@ class Cable {
 
 try {
   const firmware = readHex(fs.readFileSync(file, 'utf8'), 0x8000);
-  await flash((baud) => new Cable(baud), BOARDS[board], firmware, () => {});
+  await flash((baud) => new Cable(baud), BOARDS[board], firmware, (done) => { if (done >= part) cancelling.abort(); }, cancelling.signal);
   console.log('done');
 } catch (why) {
   console.log(why instanceof BadHex ? 'bad_file' : (why.reason ?? String(why)));

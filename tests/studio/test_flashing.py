@@ -29,13 +29,13 @@ IN_SYNC, OK, END = b"\x14", b"\x10", 0x20
 UNO = b"\x1e\x95\x0f"
 
 
-def flashed(port: str, board: str, file: Path) -> str:
-    """Return how the page's code has ended."""
+def flashed(port: str, board: str, file: Path, *cancelled: str) -> str:
+    """Return how the page's code has ended; `cancelled`: at which part of the work."""
     try:
         node = found_tools().node
     except CannotBuild as why:
         need(str(why))
-    words = [*node, str(SCRIPT), str(SOURCES / "src"), port, board, str(file)]
+    words = [*node, str(SCRIPT), str(SOURCES / "src"), port, board, str(file), *cancelled]
     done = subprocess.run(words, capture_output=True, text=True, timeout=240, check=False)
     assert done.returncode == 0, done.stderr
     return done.stdout.strip()
@@ -193,6 +193,19 @@ def test_how_it_may_end(
         assert flashed(port, "uno", hex_file(tmp_path, b"\x01" * 1000)) == how
     if how in ("flash_nobody", "flash_other_chip", "port_gone"):
         assert set(board.flash) == {255}  # nothing was written
+
+
+def test_it_can_be_cancelled(tmp_path: Path) -> None:
+    """Before the first byte the board stays as it is; in the middle it is left without firmware;
+    after the last byte nothing is cancelled any more."""
+    file = hex_file(tmp_path, b"\x01" * 1000)
+    for part, how in (("-1", "flash_not_begun"), ("0.25", "flash_cancelled"),
+                      ("0.75", "flash_cancelled"), ("1", "done")):  # fmt: skip
+        board = FakeBoard()
+        with plugged(board) as port:
+            assert flashed(port, "uno", file, part) == how
+        written = board.commands.count(0x64)
+        assert written == {"-1": 0, "0.25": 4}.get(part, 8)
 
 
 def test_a_firmware_does_not_reach_into_the_bootloader(tmp_path: Path) -> None:

@@ -18,8 +18,9 @@ const MOST_CHARACTERS = 200_000; // of a file; a full flash has 92,000
  * @param {string} board
  * @param {{robot: string, language: string} | File} which
  * @param {(part: number) => void} progress
+ * @param {AbortSignal} cancelled
  */
-export async function flashBoard(port, board, which, progress) {
+export async function flashBoard(port, board, which, progress, cancelled) {
   const text = which instanceof File ? await which.slice(0, MOST_CHARACTERS).text() : await fetched(which, board);
   let firmware;
   try {
@@ -28,7 +29,7 @@ export async function flashBoard(port, board, which, progress) {
     if (why instanceof BadHex) throw new Failed('flash_bad_file');
     throw why;
   }
-  await flash((baud) => new SerialPort(port, baud), BOARDS[board] ?? [], firmware, progress);
+  await flash((baud) => new SerialPort(port, baud), BOARDS[board] ?? [], firmware, progress, cancelled);
 }
 
 /** @param {{robot: string, language: string}} which @param {string} board */

@@ -8,6 +8,7 @@ import { chosenDevice, BluetoothPort, hasBluetooth } from './robot_bluetooth.js'
 import { DirectRobot } from './robot_direct.js';
 import { hasHost, hostPorts, HostRobot, isPupil, isTeacher, stopHost } from './robot_host.js';
 import { keepKeys, keptKeys } from './robot_keys.js';
+import { Flashing } from './robot_flashing.js';
 import { readTrim, showTrim } from './robot_trim.js';
 import { chosenPort, hasSerial, knownPorts, SerialPort } from './robot_serial.js';
 import { refusal, shown } from './robot_said.js';
@@ -45,8 +46,6 @@ export class RobotPanel {
   #sent = null;
   #speech = new Speech();
   #confirming = 0;
-  /** A firmware that a person has opened. @type {File | null} */
-  #file = null;
   #list = element('link_port', HTMLSelectElement);
   #line = element('link_line', HTMLInputElement);
 
@@ -67,8 +66,6 @@ export class RobotPanel {
       ['trim_set', () => this.#trim()],
       ['trim_try', () => this.#live('F(2, 60)')],
       ['keys_claim', () => this.#claim()],
-      ['flash_write', () => this.#flash()],
-      ['flash_open', () => element('flash_file', HTMLInputElement).click()],
       ['keys_import', () => element('keys_file', HTMLInputElement).click()],
     ])) element(id, HTMLButtonElement).addEventListener('click', act);
     element('link_live', HTMLFormElement).addEventListener('submit', (event) => {
@@ -76,9 +73,16 @@ export class RobotPanel {
       this.#live(this.#line.value);
     });
     element('keys_file', HTMLInputElement).addEventListener('change', () => this.#import());
-    element('flash_file', HTMLInputElement).addEventListener('change', () => {
-      this.#file = element('flash_file', HTMLInputElement).files?.[0] ?? null;
-      this.#speech.say('say_file', { name: shown(this.#file?.name ?? '') });
+    new Flashing({
+      speech: this.#speech,
+      robot: page.robot,
+      port: () => this.#choices[this.#list.selectedIndex]?.serial,
+      isFree: () => this.isFree,
+      setBusy: (isBusy) => {
+        this.#isBusy = isBusy;
+        this.#show();
+      },
+      meet: (port) => this.#bySerial(Promise.resolve(port)),
     });
     element('stop', HTMLButtonElement).addEventListener('click', () => this.stop());
     addEventListener('keydown', (event) => {
@@ -320,34 +324,6 @@ export class RobotPanel {
       this.#speech.say(found.count ? 'say_keys' : 'say_no_keys', { count: found.count });
     } catch {
       this.#speech.say('say_no_keys');
-    }
-  }
-
-  /** Puts a firmware on a board, and meets the robot that it is then. */
-  async #flash() {
-    if (!this.isFree) return;
-    const which = this.#file ?? { robot: this.#page.robot(), language: currentLanguage() };
-    const known = this.#choices[this.#list.selectedIndex]?.serial;
-    const chosen = known ? Promise.resolve(known) : chosenPort();
-    const bar = element('flash_progress', HTMLProgressElement);
-    this.#isBusy = true;
-    this.#speech.say('say_flashing');
-    this.#show();
-    try {
-      const { flashBoard } = await import('./robot_flash.js');
-      const port = await chosen;
-      bar.hidden = false;
-      await flashBoard(port, element('flash_board', HTMLSelectElement).value, which, (part) => { bar.value = part; });
-      this.#isBusy = false;
-      await this.#bySerial(Promise.resolve(port));
-    } catch (why) {
-      this.#speech.fail(why instanceof Failed ? why : new Failed('bug', String(why)));
-    } finally {
-      this.#isBusy = false;
-      bar.hidden = true;
-      this.#file = null;
-      element('flash_file', HTMLInputElement).value = '';
-      this.#show();
     }
   }
 

@@ -44,10 +44,11 @@ const ANSWER_MS = 1000;
  * @param {Bootloader[]} bootloaders
  * @param {Uint8Array} firmware
  * @param {(part: number) => void} progress from 0 to 1
+ * @param {AbortSignal} [cancelled] somebody wants it no more
  */
-export async function flash(cable, bootloaders, firmware, progress) {
+export async function flash(cable, bootloaders, firmware, progress, cancelled) {
   for (const [k, { baud, room }] of bootloaders.entries()) {
-    const board = new Board(cable(baud));
+    const board = new Board(cable(baud), cancelled);
     try {
       await board.open();
       if (!(await board.meets())) {
@@ -72,9 +73,12 @@ class Board {
   /** @type {() => void} */
   #wake = () => {};
 
-  /** @param {Cable} cable */
-  constructor(cable) {
+  #cancelled;
+
+  /** @param {Cable} cable @param {AbortSignal} [cancelled] */
+  constructor(cable, cancelled) {
     this.#cable = cable;
+    this.#cancelled = cancelled;
   }
 
   async open() {
@@ -126,7 +130,8 @@ class Board {
       if (hex(found) !== hex(whole.subarray(at, at + PAGE))) throw new Failed('flash_differs');
       progress(0.5 + (at + PAGE) / whole.length / 2);
     }
-    await this.#ask([LEAVE], 0, ANSWER_MS); // it is written, whatever comes now
+    this.#cancelled = undefined; // it is written, whatever comes now
+    await this.#ask([LEAVE], 0, ANSWER_MS);
   }
 
   /** @param {number} at in bytes; the bootloader counts words */
@@ -149,6 +154,7 @@ class Board {
    * @returns {Promise<Uint8Array | null>}
    */
   async #ask(command, bytes, limit_ms) {
+    if (this.#cancelled?.aborted) throw new Failed(this.#isWriting ? 'flash_cancelled' : 'flash_not_begun');
     try {
       await this.#cable.write(Uint8Array.of(...command, END));
     } catch {

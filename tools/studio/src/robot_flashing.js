@@ -1,0 +1,66 @@
+// The part of the page that puts a firmware on a board: which file, how far it is, and its end.
+
+import { element } from './elements.js';
+import { chosenPort } from './robot_serial.js';
+import { shown } from './robot_said.js';
+import { Failed } from './robot_way.js';
+import { currentLanguage } from './texts.js';
+
+/**
+ * @typedef {object} Panel what is used of the part with a robot
+ * @property {import('./robot_speech.js').Speech} speech
+ * @property {() => string} robot whose firmware is wanted
+ * @property {() => any} port the known one that is chosen, if one is
+ * @property {() => boolean} isFree
+ * @property {(isBusy: boolean) => void} setBusy
+ * @property {(port: any) => Promise<void>} meet the robot that the board is then
+ */
+
+export class Flashing {
+  #panel;
+  /** A firmware that a person has opened. @type {File | null} */
+  #file = null;
+  #chooser = element('flash_file', HTMLInputElement);
+  #bar = element('flash_progress', HTMLProgressElement);
+  #cancel = element('flash_cancel', HTMLButtonElement);
+  #cancelling = new AbortController();
+
+  /** @param {Panel} panel */
+  constructor(panel) {
+    this.#panel = panel;
+    element('flash_write', HTMLButtonElement).addEventListener('click', () => this.#flash());
+    element('flash_open', HTMLButtonElement).addEventListener('click', () => this.#chooser.click());
+    this.#cancel.addEventListener('click', () => this.#cancelling.abort());
+    this.#chooser.addEventListener('change', () => {
+      this.#file = this.#chooser.files?.[0] ?? null;
+      panel.speech.say('say_file', { name: shown(this.#file?.name ?? '') });
+    });
+  }
+
+  async #flash() {
+    const { speech, robot, port: known, isFree, setBusy, meet } = this.#panel;
+    if (!isFree()) return;
+    const which = this.#file ?? { robot: robot(), language: currentLanguage() };
+    const chosen = known() ? Promise.resolve(known()) : chosenPort();
+    this.#cancelling = new AbortController();
+    speech.say('say_flashing');
+    setBusy(true);
+    try {
+      const { flashBoard } = await import('./robot_flash.js');
+      const port = await chosen;
+      this.#bar.hidden = this.#cancel.hidden = false;
+      const board = element('flash_board', HTMLSelectElement).value;
+      await flashBoard(port, board, which, (part) => { this.#bar.value = part; }, this.#cancelling.signal);
+      setBusy(false);
+      this.#cancel.hidden = true;
+      await meet(port);
+    } catch (why) {
+      speech.fail(why instanceof Failed ? why : new Failed('bug', String(why)));
+    } finally {
+      this.#bar.hidden = this.#cancel.hidden = true;
+      this.#file = null;
+      this.#chooser.value = '';
+      setBusy(false);
+    }
+  }
+}
