@@ -38,6 +38,15 @@ def missing() -> str:
     return studio.stale()
 
 
+def missing_firefox() -> str:
+    """Return why no page can be opened in Firefox here, or nothing."""
+    return missing() or ("" if firefox() else "there is no Firefox: apt-get install firefox-esr")
+
+
+def firefox() -> str | None:
+    return os.environ.get("FIREFOX") or shutil.which("firefox-esr") or shutil.which("firefox")
+
+
 def chromium() -> str | None:
     return os.environ.get("CHROMIUM") or shutil.which("chromium")
 

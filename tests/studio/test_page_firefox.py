@@ -1,0 +1,137 @@
+"""The page in the system's Firefox: all but a real robot, which that browser does not reach."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import pytest
+
+from tests.studio.test_page_programs import MOVE, colours, content, opened, share
+from tests.studio.test_page_robot import in_phase
+from tests.studio.test_simulation import DANCE
+from tests.support import studio
+from tests.support.platformio import need
+from tests.support.studio import Pages, checked, image, shown, write
+from tiniscript import compile, run
+from tiniscript.virtual.world_reader import read
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page, Playwright
+
+PROGRAM = "SI|LOOP(2);\n  F(0.2, 80);\nEND_LOOP;\nSHOW(5)"
+
+
+@pytest.fixture(scope="module")
+def firefox(playwright: Playwright) -> Iterator[Browser]:
+    need(studio.missing_firefox())
+    opened = playwright.firefox.launch(channel="moz-firefox", executable_path=studio.firefox())
+    yield opened
+    opened.close()
+
+
+# Playwright does not hear of downloads in this Firefox: what the page gives to the browser is kept.
+KEEP = """() => { const make = URL.createObjectURL.bind(URL);
+  URL.createObjectURL = (blob) => { window.made = blob; return make(blob); }; }"""
+READ = """async () => { const bytes = new Uint8Array(await window.made.arrayBuffer());
+  return btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join('')); }"""
+
+
+def saved(page: Page) -> bytes:
+    """Return the newest file that the page has saved."""
+    return base64.b64decode(page.evaluate(READ))
+
+
+@pytest.fixture(scope="module")
+def visited(firefox: Browser, address: str) -> Iterator[tuple[Pages, Page]]:
+    pages = Pages(firefox, address)
+    page = pages.open("blocks")
+    page.evaluate(KEEP)
+    yield pages, page
+    pages.close()
+
+
+@pytest.fixture
+def page(visited: tuple[Pages, Page]) -> Iterator[Page]:
+    pages, found = visited
+    yield found
+    wrong, pages.wrong[:] = pages.wrong[:], []
+    assert not wrong
+
+
+def test_blocks_and_text_are_the_same_program(page: Page) -> None:
+    page.click("#view_text")
+    write(page, PROGRAM)
+    assert image(page) == compile(PROGRAM).image
+    page.click("#view_blocks")
+    shown(page)
+    assert page.locator("#blocks .blocklyDraggable").count() >= 4
+    page.click("#undo")
+    shown(page)
+    assert image(page) == compile("SI|F(2, 80);R(0.5, 60);F(1, 80)").image
+    page.click("#redo")
+    shown(page)
+    assert image(page) == compile(PROGRAM).image
+    page.click("#view_text")
+
+
+def test_a_mistake_is_said_in_spanish_and_repaired(page: Page) -> None:
+    page.select_option("#language", "es")
+    write(page, "F(-2, 80)")
+    assert page.inner_text("#status") == "1 error"
+    page.get_by_role("button", name="Hacerlo: línea 1, B(2, 80)").click()
+    checked(page)
+    assert image(page) == compile("B(2, 80)").image
+    page.select_option("#language", "en")
+
+
+def test_a_run_is_that_of_the_command(page: Page) -> None:
+    write(page, DANCE)
+    page.select_option("#speed", "20")
+    page.click("#run")
+    in_phase(page, "ended")
+    wanted = [f"{each.ms} {each.text}" for each in run(DANCE).events]
+    assert (page.locator("#trace").text_content() or "").split("\n") == wanted
+
+
+def test_a_world_is_changed_and_saved(page: Page) -> None:
+    page.click("#world_draw")
+    page.locator("#world_add_boxes").focus()
+    page.keyboard.press("Enter")
+    page.locator("#arena").focus()
+    page.keyboard.press("ArrowRight")
+    page.click("#world_save")
+    page.locator("#doing").filter(has_text="Saved: world.toml").wait_for()
+    found = read(saved(page).decode(), "world")
+    assert max(x for x, _ in found.boxes[-1]) == 125
+    page.click("#world_done")
+
+
+def test_programs_are_shared_kept_and_pictured(page: Page) -> None:
+    write(page, PROGRAM)
+    link = share(page)
+    assert "#program=" in link and PROGRAM.split("\n")[0] in " ".join(opened(page))
+    page.click("#share_picture")
+    page.locator("#shared_told").filter(has_text="Saved: program.png").wait_for()
+    width, height, counts = colours(page, saved(page))
+    assert width > 200 and height > 200 and counts[MOVE] > 1000
+    page.keyboard.press("Escape")
+    page.goto(link)
+    page.locator("#note").filter(has_text="This program came with a link").wait_for()
+    assert content(page).rstrip() == PROGRAM
+
+
+def test_it_works_without_its_server(firefox: Browser) -> None:
+    context = firefox.new_context()
+    page = context.new_page()
+    with studio.served() as server:
+        page.goto(server.address)
+        page.evaluate("navigator.serviceWorker.ready.then(() => 1)")
+        checked(page)
+        address = server.address
+    page.goto(address)
+    page.click("#view_text")
+    write(page, PROGRAM)
+    assert image(page) == compile(PROGRAM).image
+    context.close()
