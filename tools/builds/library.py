@@ -137,7 +137,7 @@ def manifest(url: str) -> str:
         "license": "MIT",
         "frameworks": ["arduino"],
         "platforms": list(PLATFORMS),
-        "headers": ["TiniScript.h", "TiniScriptLink.h"],
+        "headers": ["TiniScript.h", "TiniScriptLink.h", "TiniMotor.h"],
     }
     return json.dumps(found, indent=2) + "\n"
 

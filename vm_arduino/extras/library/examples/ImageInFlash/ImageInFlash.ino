@@ -3,26 +3,20 @@
 //   tsc compile -e 'F(1, 80); R(0.5, 60)' -o prog.bin
 //   xxd -i prog.bin
 //
-// It runs on two motors of an L298N or an L9110 whose speed pins are those below.
+// It runs on two motors of an L298N or an L9110, at the pins below.
 
+#include <TiniMotor.h>
 #include <TiniScript.h>
 
 const uint8_t image[] PROGMEM = {@IMAGE@};
 
-const int left_forward = 5, left_backward = 4, right_forward = 6, right_backward = 7;
+const TiniMotor left_motor = {5, 4}, right_motor = {6, 7};  // pins: PWM, and which way
 
 class Robot : public TiniRobot {
  public:
   void motors(int8_t left, int8_t right) override {
-    drive(left_forward, left_backward, left);
-    drive(right_forward, right_backward, right);
-  }
-
- private:
-  void drive(int forward, int backward, int percent) {
-    digitalWrite(backward, percent < 0 ? HIGH : LOW);
-    const int pwm = percent * 255 / 100;
-    analogWrite(forward, percent < 0 ? 255 + pwm : pwm);
+    left_motor.drive(left);
+    right_motor.drive(right);
   }
 };
 
@@ -33,8 +27,8 @@ TiniPlayer player(&robot, &kit, memory, sizeof memory, nullptr);
 
 void setup() {
   Serial.begin(115200);
-  const int pins[] = {left_forward, left_backward, right_forward, right_backward};
-  for (int pin : pins) pinMode(pin, OUTPUT);
+  left_motor.begin();
+  right_motor.begin();
   const uint8_t reason = player.load(image, sizeof image);
   if (reason != 0) {
     Serial.print("refused: ");

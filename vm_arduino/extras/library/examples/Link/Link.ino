@@ -3,22 +3,16 @@
 // The robot has no sensor; its motors are the two of the example ImageInFlash. What is sent stays
 // in RAM. `tsc conform --port P --baud 115200` tests it.
 
+#include <TiniMotor.h>
 #include <TiniScriptLink.h>
 
-const int left_forward = 5, left_backward = 4, right_forward = 6, right_backward = 7;
+const TiniMotor left_motor = {5, 4}, right_motor = {6, 7};  // pins: PWM, and which way
 
 class Robot : public TiniRobot {
  public:
   void motors(int8_t left, int8_t right) override {
-    drive(left_forward, left_backward, left);
-    drive(right_forward, right_backward, right);
-  }
-
- private:
-  void drive(int forward, int backward, int percent) {
-    digitalWrite(backward, percent < 0 ? HIGH : LOW);
-    const int pwm = percent * 255 / 100;
-    analogWrite(forward, percent < 0 ? 255 + pwm : pwm);
+    left_motor.drive(left);
+    right_motor.drive(right);
   }
 };
 
@@ -30,8 +24,8 @@ TiniLink robot_link(&player, "Own", 0x12345678);
 
 void setup() {
   Serial.begin(115200);
-  const int pins[] = {left_forward, left_backward, right_forward, right_backward};
-  for (int pin : pins) pinMode(pin, OUTPUT);
+  left_motor.begin();
+  right_motor.begin();
   uint32_t random = micros();
   for (int k = 0; k < 32; k++) random = random << 1 ^ static_cast<uint32_t>(analogRead(A5));
   robot_link.begin(random);
