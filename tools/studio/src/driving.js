@@ -77,7 +77,11 @@ export class Driving {
       },
       robotName: () => work.robot,
       isDriving: () => this.#isDriving,
-      rest: () => this.#rest(),
+      rest: () => {
+        this.#rest();
+        this.#seen.value = 'arena';
+        this.#choose();
+      },
       put: (world) => {
         this.#preview = null;
         this.#world.putOwn(world);

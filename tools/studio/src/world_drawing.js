@@ -21,7 +21,7 @@ import { nameOf, showNumbers } from './world_numbers.js';
  * @property {() => Place} robot where it is seen
  * @property {() => boolean} isDriving
  * @property {() => boolean} isOwn whether that world was drawn or opened here
- * @property {() => void} rest the robot stops, and is off
+ * @property {() => void} rest the robot is off, and its floor seen in place of curves
  * @property {(world: World) => void} put a changed world takes the place of the one that is seen
  * @property {(world: World) => void} preview the same, for as long as a finger is down
  * @property {() => void} tell something is to be shown anew
