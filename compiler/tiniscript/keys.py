@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import sys
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
@@ -38,6 +39,10 @@ class BadKeys(Exception):
         self.why = why
 
 
+class TooManyKeys(BadKeys):
+    """More keys than a file has: none was written."""
+
+
 class KeyFile:
     """The keys in a file; the user's own where no path is given. Each call reads it anew."""
 
@@ -57,7 +62,7 @@ class KeyFile:
     def add(self, keys: Iterable[RobotKey]) -> int:
         """Put keys into the file in the place of those before; return how many are new or other.
 
-        Raises BadKeys.
+        Raises BadKeys, and TooManyKeys where keys that are there would go for it.
         """
         with self._alone():
             before = self.all()
@@ -124,8 +129,10 @@ class KeyFile:
         self.path.parent.chmod(0o700)
 
     def _write(self, keys: list[RobotKey]) -> None:
+        if len(keys) > MOST:
+            raise TooManyKeys
         try:
-            files.replace(self.path, written(keys[-MOST:]), MODE)
+            files.replace(self.path, written(keys), MODE)
         except (OSError, ValueError) as failure:
             raise BadKeys(getattr(failure, "strerror", None) or str(failure)) from None
 
@@ -161,7 +168,9 @@ def read(data: bytes) -> list[RobotKey]:
         found = json.loads(data)
         if found["tiniscript_keys"] != 1:
             raise BadKeys
-        return [_key(row) for row in found["keys"][:MOST]]
+        if len(found["keys"]) > MOST:
+            raise BadKeys
+        return [_key(row) for row in found["keys"]]
     except (ValueError, TypeError, KeyError, IndexError, RecursionError):
         raise BadKeys from None
 
@@ -169,7 +178,12 @@ def read(data: bytes) -> list[RobotKey]:
 def _key(row: dict[str, object]) -> RobotKey:
     robot, kind, key = (str(row[name]) for name in ("id", "kind", "key"))
     data = bytes.fromhex(key)
-    if len(robot) != 8 or len(data) != KEY_BYTES or not any(data) or kind not in _KINDS:
+    if (
+        not re.fullmatch("[0-9a-f]{8}", robot)
+        or len(data) != KEY_BYTES
+        or not any(data)
+        or kind not in _KINDS
+    ):
         raise ValueError
     name = printable(str(row.get("name", "")), NAME_CHARACTERS)
     marks = {name: row.get(name) is True for name in _MARKS}

@@ -12,7 +12,7 @@ import pytest
 
 from tests.support.command import Tsc
 from tiniscript import files
-from tiniscript.keys import BadKeys, KeyFile, read, written
+from tiniscript.keys import MOST, BadKeys, KeyFile, read, written
 from tiniscript.link.authority import RobotKey
 from tiniscript.link.messages import KEY_OWNER, KEY_TEACHER
 
@@ -58,7 +58,8 @@ def test_only_this_person_reads_the_file(own: KeyFile) -> None:
      b'{"tiniscript_keys": 1, "keys": [{}]}', b'{"tiniscript_keys": 1, "keys": 3}',
      written([ONE]).replace(b"owner", b"boss"), written([ONE]).replace(SECRET[:2].encode(), b"zz"),
      written([ONE._replace(key=bytes(16))]), written([ONE._replace(key=bytes(3))]),
-     written([ONE]).replace(b"12345678", b"1234567"), b"[" * 100_000],
+     written([ONE]).replace(b"12345678", b"1234567"), b"[" * 100_000,
+     written([ONE]).replace(b"12345678", b"-1234567"), written([ONE] * (MOST + 1))],
 )  # fmt: skip
 def test_a_file_that_is_none_is_left_as_it_is(own: KeyFile, data: bytes) -> None:
     own.path.parent.mkdir()
@@ -174,6 +175,21 @@ def test_a_class_list_goes_out_and_in(
     assert tsc("keys", "--import", str(tmp_path / "none")).code == 2
     both = tsc("keys", "--import", str(listed), "--export", str(tmp_path / "x"))
     assert both.code == 2 and "one at a time" in both.err
+
+
+def test_keys_that_do_not_fit_leave_those_that_are_there(tsc: Tsc, tmp_path: Path) -> None:
+    """As a list of a stranger, who would have a person's own robots gone."""
+    own, many = KeyFile(), tmp_path / "many.json"
+    own.add([ONE])
+    others = [RobotKey(robot, KEY_OWNER, bytes([7] * 16), "X") for robot in range(MOST)]
+    many.write_bytes(written(others))
+    for language, words in (("en", "2000 keys"), ("es", "2000 llaves")):
+        found = tsc("keys", "--import", str(many), "--lang", language)
+        assert found.code == 2 and words in found.err and found.out == ""
+    assert own.all() == [ONE]
+    assert own.add(others[1:]) == MOST - 1
+    assert own.made(5_000, KEY_OWNER, "A") is None, "no key is dropped for a new one"
+    assert ONE in own.all() and len(own.all()) == MOST
 
 
 def test_a_broken_file_is_told_and_kept(tsc: Tsc) -> None:

@@ -11,8 +11,9 @@ import pytest
 from tests.support.casefile import ROOT
 from tools.mutation import rooms
 from tools.mutation.python_operators import python_changes
-from tools.mutation.rooms import ROOMS, Change, Room
+from tools.mutation.rooms import Change
 from tools.mutation.rooms_equivalent import EQUIVALENT
+from tools.mutation.rooms_table import ROOMS, Room
 
 SOURCE = '''
 from here import of

@@ -1,4 +1,4 @@
-"""The rooms of the house that are broken on purpose: their files, and the tests that are about them.
+"""The rooms of the house that are broken on purpose: their files, and the tests about them.
 
 The table of `rooms.py`; knows nothing of changes.
 """
@@ -14,8 +14,8 @@ from typing import NamedTuple
 class Room(NamedTuple):
     """`files` are patterns below the repository; `tests` are given to pytest, quick ones first.
 
-    Of a file whose name is in `about`, only those run that have one of its words. No test runs whose
-    name has a word of `without`: it takes long, and others ask the same.
+    Of a file whose name is in `about`, only those run that have one of its words. No test runs
+    whose name has a word of `without`: it takes long, and others ask the same.
     """
 
     name: str

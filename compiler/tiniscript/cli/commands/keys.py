@@ -12,7 +12,7 @@ from tiniscript.cli import outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.texts.common import text
-from tiniscript.keys import BadKeys, KeyFile
+from tiniscript.keys import BadKeys, KeyFile, TooManyKeys
 from tiniscript.link.authority import RobotKey
 from tiniscript.link.messages import KEYS
 
@@ -55,6 +55,8 @@ def _import(own: KeyFile, name: str, language: str) -> None:
         raise CommandError(2, "bad_keys", file=shown(name)) from None
     try:
         changed = own.add(brought)
+    except TooManyKeys:
+        raise CommandError(2, "too_many_keys", most=str(keys.MOST), file=shown(name)) from None
     except BadKeys as why:
         raise _own(own, "own_keys_full", why) from None
     said = text("keys_imported", language)

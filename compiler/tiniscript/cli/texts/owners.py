@@ -55,6 +55,8 @@ OWNER_TEXTS: dict[str, tuple[str, str]] = {
                       "Llaves en {file}: {all}. Nuevas aquí, o cambiadas: {n}."),
     "bad_keys": ("tsc: {file} has no keys of robots, or cannot be read. Export it again on the computer that has them:  tsc keys --export keys.json",
                  "tsc: {file} no tiene llaves de robots, o no se puede leer. Expórtalo otra vez en la computadora que las tiene:  tsc keys --export llaves.json"),
+    "too_many_keys": ("tsc: this computer keeps {most} keys, and with those in {file} there would be more. Nothing has changed. Bring a file with fewer robots.",
+                      "tsc: esta computadora guarda {most} llaves, y con las de {file} serían más. No cambió nada. Trae un archivo con menos robots."),
     "own_keys_bad": ("tsc: the file with your keys, {file}, cannot be read{why}. Move it away and claim your robots again, or bring the keys from another computer:  tsc keys --import keys.json",
                      "tsc: no se puede leer el archivo con tus llaves, {file}{why}. Apártalo y reclama tus robots otra vez, o trae las llaves de otra computadora:  tsc keys --import llaves.json"),
     "own_keys_full": ("tsc: the file with your keys, {file}, cannot be written{why}. Make room, or check its permissions.",
