@@ -50,6 +50,14 @@ def test_a_good_robot_without_a_person(tsc: Tsc, pty_robot: PtyRobot) -> None:
     verdicts = {name: each["verdict"] for name, each in found.items()}
     sensors = {f"sensor {each.name}" for each in pty_robot.kit.sensors}
     asked = {"left", "right", "buzzer"}
+    sizes = found["firmware"]["values"]
+    assert isinstance(sizes, dict)
+    assert {name: sizes[name] for name in ("largest", "window")} == {"largest": "63", "window": "1"}
+    assert int(sizes["room"]) >= 389
+    assert found["supply"]["values"] == {"reset": "power on"}
+    times = found["line"]["values"]
+    assert isinstance(times, dict)
+    assert float(times["least"]) <= float(times["ms"]) <= float(times["most"])
     assert {name for name, each in verdicts.items() if each == "ok"} == {
         "answers", "kit", "firmware", "line", "supply", "store", "trim", *sensors
     }  # fmt: skip

@@ -190,7 +190,7 @@ def test_one_message_stops_the_class_and_no_other_class(broker: Mosquitto) -> No
 
 
 def test_a_stranger_stops_and_does_nothing_else(broker: Mosquitto) -> None:
-    robot, teacher, _, ends = driving(broker)
+    robot, teacher, owner, ends = driving(broker)
     stranger, other = broker.connected(), remote(robot, Keys(50), 11)
     end = AtBroker(robot, stranger)
     end.port._patient_until_s = 0.0
@@ -198,6 +198,12 @@ def test_a_stranger_stops_and_does_nothing_else(broker: Mosquitto) -> None:
     talk(robot, [*ends, (end, other)], 300)
     assert request.outcome is None and end.has_ended, "it is told that another one has the robot"
     assert motors(robot) == "MOTORS 80 80"
+    for _ in range(20):  # an unfinished frame would spoil the owner's next one
+        stranger.publish(f"{ROOT}/aula/{ID}/in/{stranger.peer}", b"\3\2\1")
+        talk(robot, ends, 10)
+    asked = owner.status()
+    assert ended(robot, ends, asked) == "OK" and asked.outcome
+    assert asked.outcome.values.damaged == 0
     topic = f"{ROOT}/aula/{ID}/in/{teacher.peer}"
     for junk in (b"SI|B(9, 90)\n", b"\3\2\1\0" * 50, bytes(range(1, 255)), b"GET / HTTP/1.1\r\n"):
         stranger.publish(topic, junk)

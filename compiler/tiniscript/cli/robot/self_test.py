@@ -117,6 +117,8 @@ class SelfTest:
         major, minor = self.connection.device_info.isa
         said = {"isa": f"{major}.{minor}", "wanted": f"{ISA_MAJOR}.{ISA_MINOR}"}
         said["robot"] = robot.name if robot is not None else "my.toml"
+        hello = self.connection.device_info.values
+        said |= {name: str(getattr(hello, name)) for name in ("room", "largest", "window")}
         if (major, minor) == (ISA_MAJOR, ISA_MINOR):
             self._add("firmware", OK, "self_firmware_is", **said)
         else:
@@ -133,6 +135,7 @@ class SelfTest:
             times.append((perf_counter() - begin_s) * 1000)
         lost = _lost(ask(lambda session: session.status()).values) - before
         said = {"n": str(PINGS), "ms": f"{median(times):.0f}", "lost": str(lost)}
+        said |= {"least": f"{min(times):.0f}", "most": f"{max(times):.0f}"}
         if lost > 0:
             self._add("line", WRONG, "self_line_bad", "then_nearer", **said)
         else:
@@ -145,7 +148,7 @@ class SelfTest:
         elif reset == "WATCHDOG":
             self._add("supply", WRONG, "self_hung", "then_again")
         else:
-            self._add("supply", OK, "self_supply_is")
+            self._add("supply", OK, "self_supply_is", reset=text(f"reset_{reset}", self.language))
 
     def _store(self, status: StatusReply) -> None:
         saved = _name(SAVED, status.saved)
