@@ -35,8 +35,8 @@ SAID = {
         "Su camino está dibujado en way.png, en esta carpeta.",
     ),
     "now": (
-        "Now yours:  {activate}   and   tsc upload -e 'SI|F(2, 80)' --virtual",
-        "Ahora el tuyo:  {activate}   y   tsc upload -e 'SI|F(2, 80)' --virtual",
+        'Now yours:  {activate}   and   tsc upload -e "SI|F(2, 80)" --virtual',
+        'Ahora el tuyo:  {activate}   y   tsc upload -e "SI|F(2, 80)" --virtual',
     ),
     "blocked": (
         "(Where PowerShell runs no scripts:  Set-ExecutionPolicy -Scope Process RemoteSigned"

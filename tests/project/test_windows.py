@@ -6,6 +6,7 @@ Types for Windows are checked by `mypy --platform win32` in `tools/test.sh`.
 from __future__ import annotations
 
 import io
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -201,3 +202,11 @@ def test_keys_come_from_the_console(monkeypatch: pytest.MonkeyPatch) -> None:
         waiting += "\x03"
         with pytest.raises(KeyboardInterrupt):
             keys.pressed()
+
+
+def test_programs_on_a_command_line_stand_in_double_quotes() -> None:
+    """PowerShell, cmd and every shell take those; cmd hands single ones on to tsc."""
+    said = [each for table in tables() for both in table.values() for each in both]
+    pages = [ROOT / "README.md", *ROOT.glob("docs/*.md"), *ROOT.glob("tools/try*")]
+    said += [page.read_text(encoding="utf-8") for page in pages]
+    assert not [found for each in said for found in re.findall(r"(?:-e|tsc live) '[^']*'", each)]

@@ -118,7 +118,7 @@ OPTIONS: tuple[Option, ...] = (
     Option("about", "help", ("the command to say more about", "el comando del que quieres saber más"), VERB, ("COMMAND", "COMANDO")),
     Option("shell", "completion", ("bash, zsh or powershell", "bash, zsh o powershell"), SHELL, ("SHELL", "TERMINAL"), is_needed=True),
     # the program
-    Option("-e", "compile check run show fmt upload lesson class", ("the program itself, instead of a file: `-e 'SI|F(2, 80)'`", "el programa mismo, en vez de un archivo: `-e 'SI|F(2, 80)'`"), TEXT, A_TEXT, "texts", repeats=True),
+    Option("-e", "compile check run show fmt upload lesson class", ("the program itself, instead of a file: `-e \"SI|F(2, 80)\"`", "el programa mismo, en vez de un archivo: `-e \"SI|F(2, 80)\"`"), TEXT, A_TEXT, "texts", repeats=True),
     Option("-e", "live", ("the line, too", "también la línea"), TEXT, A_TEXT, "text"),
     # files
     Option("-o", "compile", ("where to, beside the program if it is not given; - is standard output, where --text writes if it is not given",

@@ -38,8 +38,8 @@ ROBOTS = ("With a robot on a port (`--port /dev/rfcomm0`, `COM5`, ...; later the
 VIRTUAL = ("Without one:", "Sin robot:")
 ITSELF = ("And:", "Y además:")
 NOTES = (
-    ("A program is a file, - (standard input) or `-e 'SI|F(2, 80)'`.",
-     "Un programa es un archivo, - (entrada estándar) o `-e 'SI|F(2, 80)'`."),
+    ("A program is a file, - (standard input) or `-e \"SI|F(2, 80)\"`.",
+     "Un programa es un archivo, - (entrada estándar) o `-e \"SI|F(2, 80)\"`."),
     ("`tsc help COMMAND` says more about a command.", "`tsc help COMANDO` dice más de un comando."),
     ("Exit codes: 0 done, 1 the program is wrong, 2 wrong use of tsc, 3 the robot or the link; 141 when the program that read the output has ended, which stops the robot that the command drives.",
      "Códigos de salida: 0 listo, 1 el programa está mal, 2 mal uso de tsc, 3 el robot o la conexión; 141 si el programa que leía la salida terminó, y eso detiene el robot que el comando mueve."),
@@ -132,10 +132,10 @@ VERBS: dict[str, Verb] = {
                ("a virtual robot drives here, in its own world", "un robot virtual se mueve aquí, en su mundo")),),
     ),
     "live": Verb(
-        ROBOTS, ("live 'F(2, 80)'", "live 'F(2, 80)'"),
+        ROBOTS, ('live "F(2, 80)"', 'live "F(2, 80)"'),
         ("run one line now; without a line: a prompt", "ejecuta una línea ahora; sin línea: un diálogo"),
-        ("Runs one line on the robot now: `tsc live 'F(2, 80)'`. Without a line there is a prompt. Variables and DEFs live on until you leave: tsc keeps DEFs as text, and the values that a line has set, once it is done. The program that the robot holds stays what it is. Ctrl-C stops the robot, Ctrl-D leaves.",
-         "Ejecuta una línea en el robot ahora: `tsc live 'F(2, 80)'`. Sin línea hay un diálogo. Las variables y los DEF siguen vivos hasta que sales: tsc guarda los DEF como texto, y los valores que una línea dejó al terminar. El programa que tiene el robot queda como está. Ctrl-C detiene el robot, Ctrl-D sale."),
+        ("Runs one line on the robot now: `tsc live \"F(2, 80)\"`. Without a line there is a prompt. Variables and DEFs live on until you leave: tsc keeps DEFs as text, and the values that a line has set, once it is done. The program that the robot holds stays what it is. Ctrl-C stops the robot, Ctrl-D leaves.",
+         "Ejecuta una línea en el robot ahora: `tsc live \"F(2, 80)\"`. Sin línea hay un diálogo. Las variables y los DEF siguen vivos hasta que sales: tsc guarda los DEF como texto, y los valores que una línea dejó al terminar. El programa que tiene el robot queda como está. Ctrl-C detiene el robot, Ctrl-D sale."),
     ),
     "stop": Verb(
         ROBOTS, ("stop", "stop"), ("stop the robot now", "detiene el robot ahora"),
