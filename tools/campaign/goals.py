@@ -68,6 +68,8 @@ GOALS: tuple[Goal, ...] = (
          "runs", 100_000, 5_000, "tests.oracle.test_machine {count} --seed {seed}"),
     Goal("compiler", "Programs do what the interpreter written from the language reference does.",
          "programs, right and broken", 100_000, 5_000, "tests.vm.test_agreement {count} --seed {seed}", 10_000),
+    Goal("page", "The studio's page makes of a program, from its text and from its blocks, the bytecode of tsc compile.",
+         "programs", 1_000, 100, "tests.studio.test_page_random {count} --seed {seed}", 100),
     Goal("reader", "The robot's reader of text makes what the compiler makes of it.",
          "programs, and twenty changed texts of each", 100_000, 1_000, "tests.text.test_reader_agreement {count} --seed {seed}", 10_000),
     Goal("text", "A robot does a line of text after anything was thrown at it.",

@@ -1,0 +1,118 @@
+"""Random programs in the page, from text and from its own blocks: the bytecode of `tsc compile`.
+
+`python -m tests.studio.test_page_random 1000 --seed 0` takes so many.
+"""
+
+from __future__ import annotations
+
+import argparse
+import random
+import sys
+import time
+from typing import TYPE_CHECKING, Any
+
+from tests.oracle import interpreter as oracle
+from tests.oracle import programs as oracle_programs
+from tests.studio.test_page import asked
+from tests.studio.test_page_blocks import ROUND, without_places
+from tests.support import studio
+from tests.support.studio import Pages
+from tiniscript import ProgramError, compile
+from tiniscript.studio.serving import files
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
+
+SAMPLE = 40
+# Forms of blocks from the worker, and texts of forms: requests, each with what it says besides.
+ASK = """async (requests) => {
+  const worker = new Worker('./worker.js', {type: 'module'});
+  const answers = [];
+  const done = new Promise((resolve, reject) => {
+    worker.onmessage = ({data}) => {
+      if (data.error) { reject(new Error(data.error)); return; }
+      if (data.id) answers.push(JSON.parse(data.answer));
+      if (answers.length === requests.length) resolve();
+    };
+  });
+  requests.forEach(({text, ...request}, k) => worker.postMessage(
+    {id: k + 1, request: JSON.stringify(request), data: new TextEncoder().encode(text ?? '')}));
+  await done;
+  worker.terminate();
+  return answers;
+}"""
+
+
+def wanted(text: str) -> str:
+    try:
+        return compile(text, "tinibot").image.hex()
+    except ProgramError:
+        return ""
+
+
+def images(page: Page, texts: list[str]) -> list[str]:
+    """Return what the page's compiler makes of texts; empty where they are wrong."""
+    requests = [{"text": text, "robot": "tinibot", "language": "en"} for text in texts]
+    return [answer["image"] for answer in asked(page, requests)]
+
+
+def through_blocks(page: Page, texts: list[str]) -> list[str]:
+    """Return the texts that the page makes of its blocks of texts."""
+    requests = [{"do": "blocks", "robot": "tinibot", "text": text} for text in texts]
+    forms: list[dict[str, Any]] = page.evaluate(ASK, requests)
+    for form in forms:
+        del form["size"]
+    (name,) = [name for name in files() if name.startswith("blocks-")]
+    seen = page.evaluate(ROUND, {"name": name, "forms": without_places(forms)})
+    answers = page.evaluate(ASK, [{"do": "text", "form": form} for form in seen])
+    return [answer["text"] for answer in answers]
+
+
+def compare(page: Page, count: int, seed: int) -> int:
+    """Compare so many programs; return how many were right ones."""
+    texts = [
+        oracle_programs.program(random.Random(seed + k), oracle.PAPER_KIT) for k in range(count)
+    ]
+    want = [wanted(text) for text in texts]
+    from_blocks = images(page, through_blocks(page, texts))
+    rows = zip(texts, want, images(page, texts), from_blocks, strict=True)
+    for k, (text, image, from_text, from_block) in enumerate(rows):
+        assert from_text == image, f"seed {seed + k}, from its text:\n{text}"
+        assert from_block == image, f"seed {seed + k}, from its blocks:\n{text}"
+    return sum(bool(image) for image in want)
+
+
+def test_random_programs_get_the_image_of_the_command(pages: Pages) -> None:
+    page = pages.open()
+    assert compare(page, SAMPLE, seed=1000) > SAMPLE * 0.9
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description="Compile random programs in the studio's page.")
+    parser.add_argument("count", type=int)
+    parser.add_argument("--seed", type=int, default=0)
+    options = parser.parse_args()
+    begun = time.monotonic()
+    with (
+        studio.driver() as driver,
+        studio.browser(driver) as browser,
+        studio.served() as server,
+    ):
+        pages = Pages(browser, server.address, patience_s=300)
+        page = pages.open()
+        right = sum(
+            compare(page, min(100, options.count - at), options.seed + at)
+            for at in range(0, options.count, 100)
+        )
+        assert not pages.wrong, pages.wrong[:3]
+        pages.close()
+    seconds = time.monotonic() - begun
+    print(
+        f"{options.count} programs, {right} right: from text and from blocks"
+        f" the image of tsc compile: {seconds:.0f} s"
+    )
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
