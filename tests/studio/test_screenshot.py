@@ -1,0 +1,46 @@
+"""The pictures of the studio show what its page says: seen without a browser."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from PIL import Image
+from PIL.PngImagePlugin import PngInfo
+
+from tests.support.casefile import ROOT
+from tiniscript.robots.profile import LANGUAGES
+from tools.builds import screenshot
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_a_picture_has_words_of_the_page_alone(language: str) -> None:
+    assert screenshot.stale(language) == ""
+    with Image.open(screenshot.picture(language)) as image:
+        assert image.size == (screenshot.SIZE["width"], screenshot.SIZE["height"])
+        assert len(json.loads(image.info[screenshot.KEPT])) > 12
+    assert screenshot.picture(language).stat().st_size < 80_000
+
+
+def test_a_word_that_the_page_says_no_more_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(screenshot, "picture", lambda language: tmp_path / f"{language}.png")
+    assert screenshot.main(["--check"]) == 1
+    assert "there is no en.png" in capsys.readouterr().err
+    for language, words in (("en", ["Run", "Halt at once"]), ("es", [])):
+        kept = PngInfo()
+        kept.add_text(screenshot.KEPT, json.dumps(words))
+        Image.new("RGB", (1, 1)).save(tmp_path / f"{language}.png", pnginfo=kept)
+    assert screenshot.main(["--check"]) == 1
+    said = capsys.readouterr().err.splitlines()
+    assert "shows “Halt at once”" in said[0]
+    assert "does not say what can be read" in said[1]
+
+
+def test_readme_and_both_pages_show_it() -> None:
+    shown = {"README.md": "docs/studio.en.png", "docs/studio.en.md": "studio.en.png",
+             "docs/estudio.es.md": "studio.es.png"}  # fmt: skip
+    for name, picture in shown.items():
+        assert f"]({picture})" in (ROOT / name).read_text(encoding="utf-8")

@@ -1,0 +1,122 @@
+"""Takes the pictures of the studio for README and its pages, in Chromium: `docs/studio.en.png`.
+
+    python -m tools.builds.screenshot
+
+opens the built page (`python -m tools.builds.studio`), runs a program to its end on the virtual
+robot, and keeps what is seen then. A picture carries the words that could be read in it, so that
+`--check` sees without a browser whether the page still says them. It does not see what is new.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import re
+import sys
+from io import BytesIO
+from pathlib import Path
+
+from PIL import Image
+from PIL.PngImagePlugin import PngInfo
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
+
+from tests.support import studio
+from tiniscript.robots.profile import LANGUAGES
+
+COMMAND = "python -m tools.builds.screenshot"
+PROGRAM = """\
+SI|LOOP(6)
+  F(FOREVER, 80) UNTIL(DISTANCE < 15)
+  BEEP(0.1, 880)
+  R(0.5, 60)
+END_LOOP
+"""
+SIZE = {"width": 1280, "height": 760}
+COLOURS = 128  # of a picture: its bytes are halved, and nobody sees it
+KEPT = "words"  # the text of the picture that has them
+SEEN = "button, label, h1, h2, .blocklyToolboxCategoryLabel"
+TEXTS = sorted((ROOT / "tools" / "studio" / "src").glob("*texts.js"))
+
+
+def picture(language: str) -> Path:
+    return ROOT / "docs" / f"studio.{language}.png"
+
+
+def main(arguments: list[str] | None = None) -> int:
+    parser = argparse.ArgumentParser(description="Take the pictures of the studio.")
+    parser.add_argument("--check", action="store_true", help="only say whether they are stale")
+    options = parser.parse_args(arguments)
+    if not options.check:
+        why = studio.missing()
+        if why:
+            print(f"screenshot: {why}", file=sys.stderr)
+            return 2
+        for language in LANGUAGES:
+            take(language, picture(language))
+            print(f"wrote {picture(language).relative_to(ROOT)}")
+        return 0
+    wrong = [why for language in LANGUAGES if (why := stale(language))]
+    for why in wrong:
+        print(f"screenshot: {why}", file=sys.stderr)
+    return 1 if wrong else 0
+
+
+def take(language: str, target: Path) -> None:
+    """Write the picture of the page in a language, with the words that are in it."""
+    with (
+        studio.served() as server,
+        studio.driver() as driver,
+        studio.browser(driver) as opened,
+    ):
+        pages = studio.Pages(opened, server.address, patience_s=120)
+        page = pages.open("text", viewport=SIZE, device_scale_factor=1)
+        page.select_option("#language", language)
+        studio.write(page, PROGRAM)
+        page.select_option("#speed", "20")
+        page.click("#run")
+        page.locator("[data-phase=ended]").first.wait_for(state="attached")
+        page.select_option("#speed", "1")
+        page.click("#view_blocks")
+        studio.shown(page)
+        words = page.eval_on_selector_all(
+            SEEN, "all => all.filter(one => one.checkVisibility()).map(one => one.innerText)"
+        )
+        seen = page.screenshot()
+        pages.close()
+    if pages.wrong:
+        raise SystemExit(f"the page said {pages.wrong[0]}")
+    kept = PngInfo()
+    said = sorted({row.strip() for each in words for row in each.splitlines() if row.strip()})
+    kept.add_text(KEPT, json.dumps([each for each in said if is_said(each)]))
+    image = Image.open(BytesIO(seen)).convert("RGB")
+    image.quantize(COLOURS).save(target, optimize=True, pnginfo=kept)
+
+
+def is_said(words: str) -> bool:
+    """Whether the page's sentences have these words."""
+    return any(f"'{words}'" in text for text in _sources())
+
+
+def stale(language: str) -> str:
+    """Return why a picture is not one of this page, or nothing."""
+    path = picture(language)
+    if not path.is_file():
+        return f"there is no {path.name}. Take it:  {COMMAND}"
+    with Image.open(path) as image:
+        words = json.loads(str(image.info.get(KEPT, "[]")))
+    if not words:
+        return f"{path.name} does not say what can be read in it. Take it:  {COMMAND}"
+    gone = [each for each in words if not is_said(each)]
+    if gone:
+        return f"{path.name} shows “{gone[0]}”, which the page says no more. Take it:  {COMMAND}"
+    return ""
+
+
+def _sources() -> list[str]:
+    return [re.sub(r"\\'", "’", path.read_text(encoding="utf-8")) for path in TEXTS]
+
+
+if __name__ == "__main__":
+    sys.exit(main())
