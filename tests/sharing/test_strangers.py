@@ -23,11 +23,12 @@ from tiniscript.sharing.registry import Registration
 pytest.importorskip("pty", reason="Windows has no pseudo-terminals of this kind")
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
-GREETING = b'{"tsc":"%s","token":"%s","verb":"link"}\n' % (__version__.encode(), b"0" * 32)
+OURS = __version__.encode()
+GREETING = b'{"tsc":"%s","token":"%s","verb":"link"}\n' % (OURS, b"0" * 32)
 STRANGE = (
     b'{"token":"\\ud800","verb":"x"}\n',
-    b'{"tsc":"0.1.0","token":"\\ud800","verb":"x"}\n',
-    b'{"tsc":"0.1.0","token":"' + b"0" * 32 + b'","verb":"\\udfff"}\n',
+    b'{"tsc":"' + OURS + b'","token":"\\ud800","verb":"x"}\n',
+    b'{"tsc":"' + OURS + b'","token":"' + b"0" * 32 + b'","verb":"\\udfff"}\n',
     '{"token":"é","verb":"x"}\n'.encode(),
     b'{"token":"\xff\xfe","verb":"x"}\n',
     b'{"token":NaN,"verb":Infinity}\n',
