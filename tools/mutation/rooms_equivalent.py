@@ -5,6 +5,10 @@ from __future__ import annotations
 
 # fmt: off
 _REASONS: dict[str, tuple[tuple[str, str], ...]] = {
+    "what is behind is read next": (
+        ("data = self._peer.recv(65536)",
+         "data = self._peer.recv(65537)"),
+    ),
     "no byte is being written when a save comes to its first step that waits": (
         ("bool Store::is_committing() const { return is_busy_ && !nvm_is_ready() && step_ > waits_from_; }",
          "bool Store::is_committing() const { return is_busy_ && !nvm_is_ready() && step_ >= waits_from_; }"),

@@ -160,6 +160,7 @@ ROOMS = (
         "sharing",
         (f"{_PY}/sharing/*.py",),
         (
+            "tests/sharing/test_requests.py",
             "tests/sharing/test_peers.py",
             "tests/sharing/test_run_owners.py",
             "tests/sharing/test_shared_port.py",
@@ -171,7 +172,7 @@ ROOMS = (
             "registry.py": "peers shared_port",
             "protocol.py": "shared_port strangers",
             "client.py": "shared_port run_owners",
-            "requests.py": "shared_port run_owners",
+            "requests.py": "test_requests shared_port.py",
             "server.py": "run_owners shared_port strangers",
         },
         (

@@ -189,10 +189,10 @@ def _asked_for(message: JsonMessage) -> Callable[[Requester], PendingRequest[Any
         is_alone = protocol.answer(message, "is_detached")
         return lambda session: session.start(is_alone)
     if do == "live":
-        code, kit = protocol.data(message, "code"), protocol.number(message, "kit")
+        code, kit = protocol.data(message, "code"), _kit(message)
         return lambda session: session.live(code, kit)
     if do == "upload":
-        image, kit = _image(message), protocol.number(message, "kit")
+        image, kit = _image(message), _kit(message)
         runs, saves, is_alone = (
             protocol.answer(message, name) for name in ("runs", "saves", "is_detached")
         )
@@ -205,6 +205,13 @@ def _plain(session: Requester, do: str) -> PendingRequest[Any]:
         return session.use_broker(None)
     asked: PendingRequest[Any] = getattr(session, do)()
     return asked
+
+
+def _kit(message: JsonMessage) -> int:
+    kit = protocol.number(message, "kit")
+    if not 0 <= kit < 1 << 16:
+        raise BadMessage
+    return kit
 
 
 def _network(message: JsonMessage) -> Network:

@@ -1,0 +1,82 @@
+"""What a client asks for arrives at the session as it was asked; what is none is refused."""
+
+from __future__ import annotations
+
+import json
+from typing import Any, NamedTuple
+from unittest.mock import Mock
+
+import pytest
+
+from tiniscript.bytecode.image import Image
+from tiniscript.link.wifi import BrokerSettings, Network
+from tiniscript.sharing.protocol import BadMessage, message_of
+from tiniscript.sharing.requests import ClientRequest, ClientRequests, asked_for
+
+HOME = Network(b"Home", b"a password", False)
+BROKER = BrokerSettings(bytes((10, 0, 0, 7)), 1883, "class", b"robot", b"secret")
+IMAGE = Image("SI", 3, b"\x44\xf0\x50", 0xFFFFFFFF, (2, 0), b"\1")
+
+
+class Asked(NamedTuple):
+    """A method of a client, with what it is given."""
+
+    method: str
+    given: tuple[Any, ...] = ()
+
+    def message(self) -> dict[str, Any]:
+        request: ClientRequest[Any] = getattr(ClientRequests(), self.method)(*self.given)
+        return message_of(json.dumps(request.message).encode())
+
+
+ASKED = (
+    *(Asked(name) for name in ("hello", "ping", "status", "clear", "fetch", "undo", "identify",
+                               "hold_back", "wifi", "forget_wifi", "broker")),
+    Asked("claim", (0,)), Asked("claim", (1,)), Asked("disown", (1,)),
+    Asked("allow_text", (True,)), Asked("name", (b"A",)), Asked("name", (b"A" * 16,)),
+    Asked("trim", (b"",)), Asked("trim", (b"\1\2\3",)), Asked("start", (True,)),
+    Asked("live", (b"\x44", 7)), Asked("join", (HOME,)),
+    Asked("join", (Network(b"N" * 32, b"p" * 63, True),)),
+    Asked("join", (Network(b"N", b"p" * 8, False),)),
+    Asked("use_broker", (BROKER,)), Asked("use_broker", (None,)),
+    Asked("upload", (IMAGE, False, True, True, 7)),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("asked", ASKED, ids=str)
+def test_it_is_asked_of_the_session_as_of_the_client(asked: Asked) -> None:
+    session = Mock()
+    request = asked_for(asked.message(), 700)(session)
+    ((name, taken, named),) = session.method_calls
+    assert (name, taken, named) == (asked.method, asked.given, {})
+    assert request.limit_ms == 700
+
+
+def of(method: str, *given: object, **changed: object) -> dict[str, Any]:
+    return {**Asked(method, given).message(), **changed}
+
+
+BAD: tuple[dict[str, Any], ...] = (
+    {"do": "poll"}, {"do": None}, {}, of("claim", 2), of("claim", -1), of("disown", 2),
+    of("allow_text", 1), of("name", b""), of("name", b"A" * 17), of("name", b"A", name="g"),
+    of("trim", b"\1"), of("trim", b"\1\2\3\4"), of("start", 1), of("live", b"\x44", kit="7"),
+    of("live", b"\x44", kit=-1), of("live", b"\x44", kit=1 << 16),
+    of("join", Network(b"", b"a password", False)),
+    of("join", Network(b"N" * 33, b"a password", False)),
+    of("join", Network(b"N", b"p" * 7, False)), of("join", Network(b"N", b"p" * 64, False)),
+    of("join", Network(b"N\0", b"a password", False)),
+    of("join", Network(b"N", b"a pass\0word", False)), of("join", HOME, is_access_point=None),
+    of("use_broker", BROKER, port=0), of("use_broker", BROKER, port=1 << 16),
+    of("use_broker", BROKER, address=""), of("use_broker", BROKER, password="61" * 64),
+    of("upload", IMAGE, start="XX"), of("upload", IMAGE, isa="02"), of("upload", IMAGE, later="1"),
+    of("upload", IMAGE, devices=-1), of("upload", IMAGE, devices=1 << 16),
+    of("upload", IMAGE, checksum=1 << 32), of("upload", IMAGE, code="00" * 0x8000),
+    of("upload", IMAGE, later="00" * 242), of("upload", IMAGE, runs=1),
+    of("upload", IMAGE, kit=1 << 16), of("upload", IMAGE, kit=-1),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("message", BAD, ids=lambda message: str(message)[:60])
+def test_what_no_session_may_be_asked_is_refused(message: dict[str, Any]) -> None:
+    with pytest.raises(BadMessage):
+        asked_for(message, 700)
