@@ -344,6 +344,22 @@ def test_a_robot_makes_itself_known_and_leaves_the_buzzer_to_a_program() -> None
     assert not [line for line in table.robot.did if "BEEP" in line]
 
 
+def test_a_storm_of_identify_leaves_a_run_and_a_stop_alone() -> None:
+    """A stranger may ask as often as the line carries it."""
+    table, keys = Owned(), Keys()
+    session = table.claimed(keys)
+    assert table.tries(session) == "OK"
+    table.robot.did.clear()
+    number, epoch = BY_NAME["IDENTIFY"].number, session._epoch
+    for seq in range(300):
+        table.robot.step(b"\0" + encoded(Frame(number, seq % 256, epoch)))
+        table.pass_time(session, 9)
+    assert state_of(table, session) == STATE_RUNNING
+    assert not [line for line in table.robot.did if "MOTORS" in line or "BEEP" in line]
+    table.robot.step(bytes(4))
+    assert table.robot.is_latched
+
+
 def test_a_firmware_without_owners_says_so_and_is_free() -> None:
     table = Owned(defines=("tiniscript_without_owners",))
     session = table.session(Keys())

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import deque
+
 import pytest
 
 from tests.support.simulated_modules import KINDS, Bt05, Cc41, Hc05, Hc05New, Hc06, Hm10
@@ -30,6 +32,81 @@ def ended(wire: SimulatedWire, module: Module, wanted: Wanted) -> list[Outcome]:
     outcomes = set_up.done(wire, module, set_up.steps(wanted, module.dialect), told.append)
     assert told == outcomes
     return outcomes
+
+
+class Odd:
+    """A module, or a clone of it, on a wire: it says again what it hears, is late, or is silent at
+    some commands."""
+
+    def __init__(
+        self, module: Simulated, echoes: bool = False, late_ms: int = 0, deaf: str = "none"
+    ):
+        self.module, self.echoes, self.late_ms, self.deaf = module, echoes, late_ms, deaf
+        self._heard = b""
+        self._later: deque[tuple[int, bytes]] = deque()
+        self._now_ms = 0
+
+    @property
+    def baud(self) -> int:
+        return self.module.baud
+
+    def restart(self) -> None:
+        self.module.restart()
+
+    def step(self, data: bytes) -> bytes:
+        self._now_ms += 1
+        self._heard += data
+        before = len(self.module.commands)
+        said = self.module.step(data)
+        if len(self.module.commands) > before:
+            asked, self._heard = self._heard, b""
+            is_deaf = self.deaf in self.module.commands[-1]
+            said = b"" if is_deaf else (asked + said if self.echoes else said)
+        if said:
+            self._later.append((self._now_ms + self.late_ms, said))
+        if self._later and self._later[0][0] <= self._now_ms:
+            return self._later.popleft()[1]
+        return b""
+
+
+@of_each
+@pytest.mark.parametrize("late_ms", [0, 200])
+def test_a_module_that_echoes_or_is_late_is_the_same(kind: str, late_ms: int) -> None:
+    end: Simulated = KINDS[kind]()
+    wire = SimulatedWire(Odd(end, echoes=True, late_ms=late_ms))
+    module = met(wire)
+    assert (module.dialect.name, module.version[:2]) == (kind, met_plainly(kind).version[:2])
+    wanted = Wanted("Tini-7F3A", pin_of(module.dialect), 9600)
+    outcomes = ended(wire, module, wanted)
+    assert [each.how in set_up.GOOD for each in outcomes] == [True] * 3
+    assert (end.name, end.pin, end.data_baud) == wanted
+
+
+def met_plainly(kind: str) -> Module:
+    return met(SimulatedWire(KINDS[kind]()))
+
+
+@pytest.mark.parametrize("kind", ["HC-05", "HC-06"])
+def test_a_module_that_says_no_version_is_found_all_the_same(kind: str) -> None:
+    end: Simulated = KINDS[kind]()
+    wire = SimulatedWire(Odd(end, deaf="VER"))
+    module = met(wire)
+    assert (module.dialect.name, module.version) == (kind, "")
+    assert [each.how in set_up.GOOD for each in ended(wire, module, Wanted("Tini"))] == [True]
+    assert end.name == "Tini"
+
+
+def test_a_wire_that_only_echoes_is_no_module() -> None:
+    class Echo:
+        baud = 9600
+
+        def step(self, data: bytes) -> bytes:
+            return data
+
+        def restart(self) -> None:
+            """Nobody is there."""
+
+    assert found(SimulatedWire(Echo())) is None
 
 
 def test_every_dialect_has_a_simulated_module() -> None:

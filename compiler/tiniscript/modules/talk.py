@@ -40,9 +40,13 @@ class Module(NamedTuple):
 
 
 def asked(wire: Wire, command: str, ending: bytes, wait_ms: int) -> str:
-    """Send a command and return the answer, or an empty text where none comes."""
+    """Send a command and return the answer, or an empty text where none comes.
+
+    Some clones say a command again before they answer it: that is no part of the answer.
+    """
     wire.send(command.encode("ascii") + ending)
-    return wire.heard(wait_ms).decode("ascii", "replace").strip()
+    said = wire.heard(wait_ms).decode("ascii", "replace").strip()
+    return said.removeprefix(command).lstrip()
 
 
 def found(
