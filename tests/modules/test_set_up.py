@@ -50,6 +50,10 @@ class Odd:
     def baud(self) -> int:
         return self.module.baud
 
+    @baud.setter
+    def baud(self, baud: int) -> None:
+        self.module.baud = baud
+
     def restart(self) -> None:
         self.module.restart()
 

@@ -225,6 +225,19 @@ def test_a_port_whose_server_has_just_gone_is_free() -> None:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such modes")
+def test_who_lets_a_port_go_leaves_the_file_of_the_next_one(tmp_path: Path) -> None:
+    """Somebody has removed ours meanwhile, and another command has the port."""
+    path = tmp_path / "port"
+    for is_others in (False, True):
+        held = registry._locked(path)
+        assert held is not None
+        if is_others:
+            path.unlink()
+            path.write_text("of another command")
+        held.close()
+        assert path.exists() == is_others
+
+
 def test_a_folder_that_others_can_read_is_closed_and_what_was_in_it_is_not_believed() -> None:
     registration = Registration("/dev/x", 1, "a" * 32, "b" * 32, "link", 9600, os.getpid())
     registry.write(registration)
