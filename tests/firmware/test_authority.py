@@ -36,6 +36,7 @@ from tiniscript.link.session import Session
 __all__ = ("robots_of_both_kinds",)  # a fixture
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is a compiler")
 
+DISCONNECTED = 8  # the STATE pin of a module
 OPEN_TO_ALL = {"HELLO", "PING", "STATUS", "STOP", "IDENTIFY"}
 
 
@@ -99,6 +100,23 @@ def test_authority_lapses_and_is_shown_again() -> None:
     assert table.outcome(session, session.trim()) == "NOT_OWNER"
     session._handshake._keys = kept
     assert table.outcome(session, session.trim()) == "OK"  # it shows the key by itself
+
+
+@pytest.mark.parametrize("how", ["STATE", "HELLO"])
+def test_authority_ends_with_its_connection(how: str) -> None:
+    """Less than 2 s after its last frame: as where a radio dropped out, and somebody else comes."""
+    table, keys = Owned(), Keys()
+    session = table.claimed(keys)
+    assert table.outcome(session, session.trim()) == "OK"
+    session._handshake._keys = None  # it cannot show a key now
+    if how == "STATE":
+        table.pass_time(None, 10, DISCONNECTED)
+    else:
+        session = table.session(nonce=9)
+        assert table.outcome(session, session.hello()) == "OK"
+    assert table.outcome(session, session.trim()) == "NOT_OWNER"
+    session._handshake._keys = keys
+    assert table.outcome(session, session.trim()) == "OK"
 
 
 def test_a_recorded_session_opens_nothing() -> None:
