@@ -225,6 +225,24 @@ def test_a_port_whose_server_has_just_gone_is_free() -> None:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such modes")
+@pytest.mark.parametrize("has_third", [False, True])
+def test_a_file_that_is_replaced_while_it_is_removed_stays(tmp_path: Path, has_third: bool) -> None:
+    """A server writes its own between our look and our hands; a third one may come meanwhile."""
+    path = tmp_path / "port.json"
+    path.write_text("of the next server")
+    looks: list[object] = []
+
+    def is_meant(found: object) -> bool:
+        looks.append(found)
+        if has_third and len(looks) == 2:
+            path.write_text("of a third one")
+        return len(looks) == 1
+
+    registry._remove(path, is_meant)
+    assert path.read_text() == ("of a third one" if has_third else "of the next server")
+    assert list(tmp_path.iterdir()) == [path]
+
+
 def test_who_lets_a_port_go_leaves_the_file_of_the_next_one(tmp_path: Path) -> None:
     """Somebody has removed ours meanwhile, and another command has the port."""
     path = tmp_path / "port"
