@@ -17,6 +17,7 @@ from tests.machines.esp32 import HAS_TLS, Esp32Robot
 from tests.machines.esp32 import missing as no_compiler
 from tests.support import certificates
 from tests.support.certificates import Authority
+from tests.support.cutting_network import CuttingNetwork
 from tests.support.esp32_radio import in_reach, known, talk
 from tests.support.mosquitto import LOCAL, AtBroker, Mosquitto, missing
 from tests.support.owners import Keys
@@ -158,6 +159,24 @@ def test_who_never_answers_is_given_up_and_the_robot_drives_by_its_cable(room: R
         for _ in range(2):  # it has tried again
             silent.accept()[0].close()
         assert told(robot, owner)[1] == "SEARCHING"
+
+
+def test_a_network_that_breaks_off_in_the_middle_of_tls_is_tried_again(room: Room) -> None:
+    """In the first hello, in the certificate, behind the handshake; and in pieces of 7 bytes."""
+    cuts = CuttingNetwork(room.broker.port, (3, 200, 1500))
+    keys = Keys()
+    robot, owner = joined(keys)
+    try:
+        settings = room.settings()._replace(port=cuts.port)
+        assert ended(robot, [(None, owner)], owner.use_broker(settings)) == "OK"
+        until(robot, lambda: told(robot, owner)[1] == "READY", 30_000)
+        assert cuts.cuts == []
+        teacher = room.connected()
+        far = remote(robot, keys)
+        assert uploaded(robot, [(AtBroker(robot, teacher), far)], far) == "OK"
+        teacher.close()
+    finally:
+        cuts.close()
 
 
 @pytest.mark.parametrize(("name", "address", "is_found"), [

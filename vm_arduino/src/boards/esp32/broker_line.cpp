@@ -3,23 +3,17 @@
 #include "broker_line.h"
 
 #include <lwip/netdb.h>
-#include <lwip/sockets.h>
-#if __has_include(<errno.h>)
-#include <errno.h>
-#endif
+
+#include "sockets.h"
 
 namespace tiniscript {
 
 namespace {
 
-constexpr int kNone = -1;
-
 const BrokerSettings* its;
 sockaddr_in place;
-int connection = kNone;
+int connection = kNoSocket;
 bool is_shaking;
-
-bool may_come_later() { return errno == EAGAIN || errno == EWOULDBLOCK; }
 
 // Where the broker's name says that it is, or where a computer has found it.
 void look_up() {
@@ -77,7 +71,7 @@ int line_send(const uint8_t* bytes, size_t length) {
 void line_end() {
   tls_end();
   if (connection >= 0) lwip_close(connection);
-  connection = kNone;
+  connection = kNoSocket;
 }
 
 }  // namespace tiniscript

@@ -8,20 +8,16 @@
 #include "tcp_clients.h"
 
 #include <Arduino.h>
-#include <lwip/sockets.h>
-#if __has_include(<errno.h>)
-#include <errno.h>
-#endif
 
 #include "first_bytes.h"
 #include "radio.h"
+#include "sockets.h"
 #include "wifi_settings.h"
 
 namespace tiniscript {
 
 namespace {
 
-constexpr int kNone = -1;
 constexpr uint8_t kClients = 2;
 constexpr uint32_t kBeginMs = 10000;   // until the first bytes are clear
 constexpr uint32_t kSilentMs = 10000;  // silence after which a place is given to the next one
@@ -39,24 +35,22 @@ struct Client {
   uint8_t out[kChunk];
 };
 
-int listener = kNone;
+int listener = kNoSocket;
 Client clients[kClients];
 
 uint32_t now_ms() { return static_cast<uint32_t>(millis()); }
 
-bool may_come_later() { return errno == EAGAIN || errno == EWOULDBLOCK; }
-
 void close_client(Client* client) {
-  if (client->socket == kNone) return;
+  if (client->socket == kNoSocket) return;
   lwip_close(client->socket);
-  client->socket = kNone;
+  client->socket = kNoSocket;
   if (client->is_admitted) radio_pipe(client->transport).part();
 }
 
 void close_all() {
   for (Client& client : clients) close_client(&client);
-  if (listener != kNone) lwip_close(listener);
-  listener = kNone;
+  if (listener != kNoSocket) lwip_close(listener);
+  listener = kNoSocket;
 }
 
 void listen() {
@@ -82,7 +76,7 @@ void listen() {
 Client* free_place() {
   Client* oldest = nullptr;
   for (Client& client : clients) {
-    if (client.socket == kNone) return &client;
+    if (client.socket == kNoSocket) return &client;
     if (oldest == nullptr || client.heard_ms - oldest->heard_ms > UINT32_MAX / 2) oldest = &client;
   }
   if (now_ms() - oldest->heard_ms < kSilentMs) return nullptr;
@@ -142,7 +136,7 @@ void hear(Client* client) {
 }
 
 void say(Client* client) {
-  if (client->socket == kNone || !client->is_admitted) return;
+  if (client->socket == kNoSocket || !client->is_admitted) return;
   if (client->out_sent == client->out_length) {
     client->out_sent = client->out_length = 0;
     Pipe& pipe = radio_pipe(client->transport);
@@ -162,7 +156,7 @@ void say(Client* client) {
 
 void network_begin() {
   for (uint8_t k = 0; k < kClients; k++) {
-    clients[k].socket = kNone;
+    clients[k].socket = kNoSocket;
     clients[k].transport = k == 0 ? Transport::kNetwork : Transport::kSecondNetwork;
   }
 }
@@ -170,11 +164,11 @@ void network_begin() {
 void network_turn() {
   const bool has_network = wifi_turn();
   if (!has_network) return close_all();
-  if (listener == kNone) listen();
-  if (listener == kNone) return;
+  if (listener == kNoSocket) listen();
+  if (listener == kNoSocket) return;
   accept_next();
   for (Client& client : clients) {
-    if (client.socket != kNone) hear(&client);
+    if (client.socket != kNoSocket) hear(&client);
     say(&client);
   }
 }

@@ -6,12 +6,10 @@
 #include "tls.h"
 
 #include <esp_random.h>
-#include <lwip/sockets.h>
 #include <mbedtls/ssl.h>
 #include <mbedtls/x509_crt.h>
-#if __has_include(<errno.h>)
-#include <errno.h>
-#endif
+
+#include "sockets.h"
 
 namespace tiniscript {
 
@@ -24,8 +22,6 @@ uint32_t today;
 uint32_t flaws;  // of the certificates that came
 int socket_of_it;
 bool has_begun;
-
-bool may_come_later() { return errno == EAGAIN || errno == EWOULDBLOCK; }
 
 int fill(void*, unsigned char* bytes, size_t length) {
   uint32_t chance = 0;
