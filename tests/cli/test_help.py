@@ -269,3 +269,20 @@ def test_help_is_narrow_on_a_narrow_terminal() -> None:
         shell = on_terminal(100, "stop --help --lang en")
         assert shell.end() == 0
     assert printed(shell.written) == help.of("stop", "en", 60)
+
+
+@pytest.mark.parametrize(
+    ("words", "english", "spanish"),
+    [
+        (["ping", "--port"], "--port needs a value", "a --port le falta su valor"),
+        (["ping", "--json=3"], "--json takes no value: '3'", "--json no lleva valor: '3'"),
+        (["ping", "x"], "x means nothing here", "no conozco x"),
+    ],
+)
+def test_what_argparse_says_is_said_in_plain_words(
+    capsys: pytest.CaptureFixture[str], words: list[str], english: str, spanish: str
+) -> None:
+    for language, said in (("en", english), ("es", spanish)):
+        done = Tsc(capsys)(words[0], "--lang", language, *words[1:])
+        assert done.code == 2
+        assert done.err.startswith(f"tsc: {said}. ")

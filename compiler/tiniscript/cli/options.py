@@ -11,13 +11,16 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.texts.common import text
 from tiniscript.cli.texts.options import Option, of_verb
 
-# The messages of argparse, and their Spanish translations.
-_SPANISH = (
-    (r"the following arguments are required: (.*)", r"falta \1"),
-    (r"unrecognized arguments: (.*)", r"no conozco \1"),
-    (r"argument (\S+): expected one argument", r"a \1 le falta su valor"),
-    (r"argument (\S+): not allowed with argument (\S+)", r"\1 no va junto con \2"),
-    (r"argument (\S+): ignored explicit argument (.*)", r"\1 no lleva valor: \2"),
+# The messages of argparse, and what is said instead, in English and Spanish.
+_MESSAGES = (
+    (r"the following arguments are required: (.*)", r"\1 is missing", r"falta \1"),
+    (r"unrecognized arguments: (.*)", r"\1 means nothing here", r"no conozco \1"),
+    (r"argument (\S+): expected one argument", r"\1 needs a value", r"a \1 le falta su valor"),
+    (
+        r"argument (\S+): ignored explicit argument (.*)",
+        r"\1 takes no value: \2",
+        r"\1 no lleva valor: \2",
+    ),
 )
 
 
@@ -73,9 +76,8 @@ class Options(ArgumentParser):
             raise bad_choice(label, known, found, self.language)
 
     def error(self, message: str) -> NoReturn:
-        if self.language == "es":
-            for pattern, spanish in _SPANISH:
-                message = re.sub(pattern, spanish, message)
+        for pattern, *said in _MESSAGES:
+            message = re.sub(pattern, said[self.language == "es"], message)
         raise CommandError(2, "bad_option", detail=message, verb=self.verb)
 
 
