@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -275,3 +276,27 @@ def test_another_run_of_tsc_studio_is_said(pages: Pages, server: serving.Server)
     said(page, "This tsc studio is another one than at first.")
     assert [each for each in pages.wrong if "403" not in each] == []
     pages.wrong.clear()
+
+
+def test_a_run_is_recorded_and_compared_with_the_virtual_robot(page: Page, tmp_path: Path) -> None:
+    write(page, "SHOW(DISTANCE);\nF(0.2, 80);\nSHOW(5);\nW(0.1)")
+    page.click("#link_upload")
+    said(page, "Done.")
+    page.click("#record summary")
+    page.click("#record_compare")
+    told = page.locator("#record_said")
+    told.filter(has_text="Both did the same: 3 times").wait_for()
+    with page.expect_download() as saved:
+        page.click("#record_save")
+    lines = saved.value.path().read_text().splitlines()
+    assert [json.loads(each).get("event") for each in lines[2:]] == ["SHOW 5", "DONE"]
+    other = tmp_path / "other.jsonl"
+    other.write_text("\n".join(lines).replace("SHOW 5", "SHOW 6"))
+    page.set_input_files("#record_file", other)
+    told.filter(has_text="Line 3: the robot says 6 after 0.").wait_for()
+    other.write_text("\n".join(lines)[:-9])
+    page.set_input_files("#record_file", other)
+    told.filter(has_text="(line 4)").wait_for()
+    write(page, "SHOW(5)")
+    page.click("#record_compare")
+    told.filter(has_text="of another program").wait_for()

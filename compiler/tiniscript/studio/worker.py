@@ -20,6 +20,7 @@ from tiniscript.studio.block_reading import read
 if TYPE_CHECKING:
     from tiniscript.studio.page_line import PageRobot
     from tiniscript.studio.simulation import Simulation
+    from tiniscript.virtual.world import World
 
 Answer = dict[str, Any]
 MOST_BLOCKS = 1500  # that a page can move about
@@ -73,31 +74,39 @@ def _text(fields: Answer, data: bytes) -> Answer:
 _simulation: Simulation | None = None  # a page has one robot
 
 
+def _world(where: Any) -> World:
+    """Return a world: a shipped one's name, a form, or the number and the seed of one of a lesson.
+
+    Raises WorldRefused.
+    """
+    from tiniscript.studio.world_form import toml_of
+    from tiniscript.virtual import worlds
+    from tiniscript.virtual.world_reader import read as read_world
+
+    if isinstance(where, str):
+        assert where in worlds.names(), where
+        return worlds.load(where)
+    if "form" in where:
+        return read_world(toml_of(where["form"]), "")
+    found: World = _lessons().world(where["lesson"], where["seed"])
+    return found
+
+
 def _power_on(fields: Answer, data: bytes) -> Answer:
     """Switch the virtual robot on in `world`: a shipped one's name, a form, or one of a lesson.
 
     With `is_held` it stands in front of the program's first part.
     """
     from tiniscript.studio.simulation import Marks, Simulation
-    from tiniscript.studio.world_form import toml_of
-    from tiniscript.virtual import worlds
     from tiniscript.virtual.world import WorldRefused
-    from tiniscript.virtual.world_reader import read as read_world
     from tiniscript.virtual.world_refusals import describe
 
     global _simulation
     if _simulation is not None:
         _simulation.close()
         _simulation = None
-    where = fields["world"]
     try:
-        if isinstance(where, str):
-            assert where in worlds.names(), where
-            world = worlds.load(where)
-        elif "form" in where:
-            world = read_world(toml_of(where["form"]), "")
-        else:
-            world = _lessons().world(where["lesson"], where["seed"])
+        world = _world(fields["world"])
         marks = Marks(tuple(fields.get("parts", ())), tuple(fields.get("breakpoints", ())),
                       fields.get("variables", 0), fields.get("is_held", False))  # fmt: skip
         _simulation = Simulation(fields["robot"], world, data, marks)
@@ -172,6 +181,25 @@ def _write_world(fields: Answer, data: bytes) -> Answer:
     return {"text": text, "is_blocked": Driving(body, world.obstacles(), world.start).is_blocked()}
 
 
+def _replay(fields: Answer, data: bytes) -> Answer:
+    """Compare a recording, `data`, with the same run of the program `text` on a virtual robot."""
+    from tiniscript.studio import recordings
+    from tiniscript.virtual.world import WorldRefused
+    from tiniscript.virtual.world_refusals import describe
+
+    try:
+        recording = recordings.read(data)
+        found = recordings.replay(
+            recording, fields["text"].encode(), fields["robot"], _world(fields["world"])
+        )
+    except recordings.BadRecording as bad:
+        return {"what": bad.reason, "line": bad.line}
+    except WorldRefused as refused:
+        return {"what": "refused", "said": " ".join(describe(refused, fields["language"]))}
+    robot, virtual = (each and each._asdict() for each in (found.robot, found.virtual))
+    return {**found._asdict(), "robot": robot, "virtual": virtual}
+
+
 _robot: PageRobot | None = None  # a page has one of these, too
 
 
@@ -242,6 +270,7 @@ _ASKED: dict[str, Callable[[Answer, bytes], Answer]] = {
     "check": _check, "open": _open, "line": _line, "blocks": _blocks, "text": _text,
     "power_on": _power_on, "go": _go, "step": _step, "go_on": _go_on, "breakpoints": _breakpoints,
     "stop": _stop, "push": _push, "open_world": _open_world, "write_world": _write_world,
+    "replay": _replay,
     "lesson_titles": _lesson_titles, "lesson_page": _lesson_page, "lesson_world": _lesson_world,
     "lesson_check": _lesson_check, "lesson_go": _lesson_go,
     "connect": _connect, "link": _link, "import_keys": _import_keys,

@@ -151,6 +151,11 @@ export class Driving {
     this.#show();
   }
 
+  /** What the worker is asked for to have the world that is shown. */
+  get world() {
+    return this.#world.request;
+  }
+
   /** Another world has been chosen. */
   #enter() {
     this.#remember();

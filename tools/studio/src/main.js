@@ -10,6 +10,7 @@ import { Programs } from './programs.js';
 import { Python } from './python.js';
 import { currentLanguage, setLanguage, text } from './texts.js';
 import { Driving } from './driving.js';
+import { Recorder } from './recorder.js';
 import { RobotPanel } from './robot_panel.js';
 import { chooseSide, showSide } from './robot_side.js';
 import { Views } from './views.js';
@@ -52,7 +53,9 @@ const programs = new Programs(python, work, putProgram, (said) => {
   note.textContent = said;
 }, () => views.picture());
 
+const recorder = new Recorder({ python, text: () => editor.text, robot: () => work.robot, world: () => driving.world });
 const panel = new RobotPanel({
+  recorder,
   python,
   program: () => (isStale() ? null : newest.answer),
   robot: () => work.robot,
@@ -217,6 +220,7 @@ languages.addEventListener('change', () => {
   showRobots();
   driving.setLanguage();
   panel.setLanguage();
+  recorder.setLanguage();
   lessons.setLanguage();
   note.textContent = '';
   if (!isReady) status.textContent = text('starting');

@@ -31,6 +31,7 @@ import { LINK, ROBOTS } from './words.js';
  * @property {() => string} robot for which it compiles
  * @property {(name: string) => void} setRobot
  * @property {(place: import('./editor.js').Range) => void} goTo
+ * @property {import('./recorder.js').Recorder} recorder of what the robot tells
  */
 
 export class RobotPanel {
@@ -61,7 +62,7 @@ export class RobotPanel {
       ['link_identify', () => this.#ask({ do: 'identify' }, () => this.#speech.say('say_identify', { name: this.#name }))],
       ['link_upload', () => this.#upload(true)],
       ['link_send', () => this.#upload(false)],
-      ['link_start', () => this.#ask({ do: 'start' }, () => this.#speech.say('say_started'))],
+      ['link_start', () => this.#ask({ do: 'start' }, ({ program = '' }) => (this.#page.recorder.begin(program), this.#speech.say('say_started')))],
       ['link_rename', () => this.#rename()],
       ['trim_set', () => this.#trim()],
       ['trim_try', () => this.#live('F(2, 60)')],
@@ -195,7 +196,7 @@ export class RobotPanel {
     /** @type {Way | null} */
     let way = null;
     const heard = {
-      event: (/** @type {RobotEvent} */ event) => this.#hear(event),
+      event: (/** @type {RobotEvent} */ event) => (this.#page.recorder.hear(event), this.#hear(event)),
       over: (/** @type {Failed} */ why) => {
         if (this.#way && this.#way === way) this.#end(why);
       },
@@ -262,11 +263,11 @@ export class RobotPanel {
       this.#speech.say(program ? 'first_repair' : 'press_again'); // a robot does not start late by itself
       return;
     }
-    this.#speech.say('say_sending');
-    this.#speech.clear();
+    this.#speech.begin('say_sending');
     this.#ask({ do: 'upload', image: program.image, robot: this.#page.robot(), runs }, (answer) => {
       const { program: sum = '', saved = 'MEMORY' } = answer;
       this.#sent = { program: sum, places: program.places, of: program };
+      if (runs) this.#page.recorder.begin(sum);
       this.#speech.say('say_receipt', { program: sum, bytes: program.bytes }, `saved_${saved}`);
     });
   }

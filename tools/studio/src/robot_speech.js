@@ -63,4 +63,10 @@ export class Speech {
     this.#shown = [];
     this.#list.textContent = '';
   }
+
+  /** Something new begins: what was shown before is gone. @param {string} key */
+  begin(key) {
+    this.clear();
+    this.say(key);
+  }
 }
