@@ -22,6 +22,7 @@ BENCHMARKS = (
     "bluetooth",
     "large_upload",
     "classroom",
+    "studio",
     "firmware_size",
     "machine_size",
     "link_size",
