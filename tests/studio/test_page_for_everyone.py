@@ -17,7 +17,7 @@ from tiniscript.studio import serving
 from tools.builds.studio import MODULES
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Page, Playwright
+    from playwright.sync_api import Browser, Page, Playwright
 
 SCREENS = ((1366, 768), (1024, 600), (390, 844))
 WRONG = "SI|" + "F(-2, 80);\nIF(DISTANCE < 10;\n" * 6
@@ -161,6 +161,47 @@ def test_it_works_without_its_server(playwright: Playwright, tmp_path: Path) -> 
         address = server.address
         visit(address, "SI|F(7, 70)")
     assert visit(address, "SI|S") == compile("SI|F(7, 70)").image
+
+
+def test_an_open_page_is_left_by_its_update(browser: Browser) -> None:
+    """A newer build waits until no tab has the old one, and is there then."""
+    need(studio.missing())
+    page = serving.files()
+    context = browser.new_context()
+    with studio.served(page=page) as server:
+        tab = context.new_page()
+        tab.goto(server.address)
+        tab.evaluate("navigator.serviceWorker.ready.then(() => 1)")
+        checked(tab)
+        tab.click("#view_text")
+        for name, old, new in (
+            ("index.html", b"<html ", b'<html data-build="2" '),
+            ("service_worker.js", b"VERSION = '", b"VERSION = 'newer"),
+        ):
+            data = page[name].data.replace(old, new, 1)
+            assert data != page[name].data
+            page[name] = page[name]._replace(data=data, tag=f'"{new.hex()}"')
+        tab.evaluate(UPDATE)
+        write(tab, "SI|F(3, 30)")  # the old one goes on
+        tab.reload()
+        checked(tab)
+        assert tab.locator("html[data-build]").count() == 0
+        assert image(tab) == compile("SI|F(3, 30)").image
+        tab.close()
+        again = context.new_page()
+        again.goto(server.address)
+        checked(again)
+        assert again.locator("html[data-build]").count() == 1
+        assert image(again) == compile("SI|F(3, 30)").image  # and the work is kept
+    context.close()
+
+
+# Looks for a newer build, and waits until it is whole and waits.
+UPDATE = """async () => {
+  const found = await navigator.serviceWorker.getRegistration();
+  await found.update();
+  while (!found.waiting) await new Promise((resolve) => setTimeout(resolve, 20));
+}"""
 
 
 def test_the_service_worker_has_every_file() -> None:

@@ -52,9 +52,9 @@ def chromium() -> str | None:
 
 
 @contextmanager
-def served(port: int = 0) -> Iterator[serving.Server]:
-    """The built page at an address of this computer."""
-    server = serving.Server(serving.files(), port)
+def served(port: int = 0, page: dict[str, serving.File] | None = None) -> Iterator[serving.Server]:
+    """The built page, or another one, at an address of this computer."""
+    server = serving.Server(page or serving.files(), port)
     thread = Thread(target=server.serve_forever, args=(0.02,), daemon=True)
     thread.start()
     try:

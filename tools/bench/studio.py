@@ -3,12 +3,14 @@
 One table, of the system's Chromium on this computer. Each time is the least of several, since other
 work makes a browser slower and never faster; `--slower 2` lets the browser's processor be so many
 times slower. What is fetched comes from this computer. Lighthouse (npm, as `lighthouse/` here pins
-it) is fetched at the first time: desktop preset, median of five; `--no-lighthouse` leaves it out.
+it) is fetched at the first time: desktop preset, median of five, of the page gzipped, as static
+hosts send it; `--no-lighthouse` leaves it out.
 """
 
 from __future__ import annotations
 
 import argparse
+import gzip
 import json
 import os
 import subprocess
@@ -23,6 +25,7 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 sys.path[:0] = [str(ROOT / "compiler"), str(ROOT)]
 
 from tests.support import studio
+from tiniscript.studio import serving
 from tools.builds.studio import PAGE, found_tools, size_rows
 
 if TYPE_CHECKING:
@@ -91,11 +94,15 @@ def main() -> None:
     if why := studio.missing():
         sys.exit(why)
     print(f"{'':44} {'found':>14}  {'wanted':>12}")
-    with studio.driver() as driver, studio.served() as server:
-        with studio.browser(driver) as browser:
-            for row in _measured(browser, server.address, options.slower):
-                print("{:44} {:>14}  {:>12}".format(*row), flush=True)
-        if not options.no_lighthouse:
+    with (
+        studio.driver() as driver,
+        studio.served() as server,
+        studio.browser(driver) as browser,
+    ):
+        for row in _measured(browser, server.address, options.slower):
+            print("{:44} {:>14}  {:>12}".format(*row), flush=True)
+    if not options.no_lighthouse:
+        with studio.served(page=_packed()) as server:
             for name, points in _rated(server.address).items():
                 print(f"{'Lighthouse: ' + name:44} {points:14.0f}  {'>= 95':>12}")
     packed = size_rows(PAGE)[-1].split()[1]
@@ -164,6 +171,13 @@ def _program() -> str:
     for k in range((LINES - 4) // 4):
         rows += [f"  IF(DISTANCE < {k})", "    R(0.5, 60)", "  END_IF", "  F(1, 80)"]
     return ";\n".join([*rows, "  S", "  W(1)", "END_LOOP"])
+
+
+def _packed() -> dict[str, serving.File]:
+    return {
+        name: file._replace(packed=gzip.compress(file.data, 6, mtime=0))
+        for name, file in serving.files().items()
+    }
 
 
 def _rated(address: str) -> dict[str, float]:
