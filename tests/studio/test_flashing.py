@@ -60,13 +60,16 @@ def hex_file(folder: Path, data: bytes) -> Path:
 def test_a_new_board_becomes_a_robot(
     board: str, of: str, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
-    """An old Nano is found at the second speed, as by `tsc firmware`."""
+    """An old Nano is found at the second speed, as by `tsc firmware`; an Uno that was left without
+    firmware by somebody who cancelled is no worse than a new one."""
     needed()
     from tests.flash.test_flash import new_board, to_hex
 
     elf = firmware(board, tmp_path, shared(tmp_path_factory))
     to_hex(elf, tmp_path / "firmware.hex")
     with new_board(bootloader(of)) as uno:
+        if board == "uno":
+            assert flashed(uno.pty, board, tmp_path / "firmware.hex", "0.25") == "flash_cancelled"
         assert flashed(uno.pty, board, tmp_path / "firmware.hex") == "done"
         pong = process("ping", "--port", uno.pty)
         assert pong.code == 0, pong.err
