@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import subprocess
 from collections.abc import Callable
@@ -48,7 +49,9 @@ def clone(tmp_path: Path) -> Path:
         (root / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(ROOT / name, root / name)
         path = root / name
-        path.write_text(path.read_text("utf-8").replace(here, VERSION), encoding="utf-8")
+        text = path.read_text("utf-8").replace(here, VERSION)
+        text = re.sub(r"(?m)^date-released: .*\n", "", text)
+        path.write_text(text, encoding="utf-8")
     (root / "CHANGELOG.md").write_text(CHANGES, encoding="utf-8")
     about = root / "pyproject.toml"
     about.write_text(facts.with_address(about.read_text("utf-8"), URL), encoding="utf-8")
@@ -71,6 +74,9 @@ WRONG: dict[str, Callable[[Path], object]] = {
         "CHANGELOG.md", "## Unreleased\n", "## Unreleased\n\n- B\n"
     ),
     "CITATION.cff has version": replaced("CITATION.cff", f"version: {VERSION}", "version: 0.0.1"),
+    "CITATION.cff has the date 2030": replaced(
+        "CITATION.cff", "license:", "date-released: 2030-01-01\nlicense:"
+    ),
     "docs/versions.md has version": replaced("docs/versions.md", f"`{VERSION}`", "`0.0.1`"),
     "LICENSE names Somebody": replaced("LICENSE", facts.PEOPLE, "Somebody"),
     "CITATION.cff names nobody": replaced("CITATION.cff", facts.PEOPLE, ""),

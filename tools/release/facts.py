@@ -94,6 +94,9 @@ def _about_changes(root: Path, ours: str) -> Iterator[str]:
         yield f"CHANGELOG.md has no section for {ours}."
     elif dated is None or dated.group(1) != ours:
         yield f"CHANGELOG.md has no date for {ours}. Write:  ## {ours} (2026-01-31)"
+    elif cited := _first(root / "CITATION.cff", r"(?m)^date-released: (\S+)$"):
+        if cited != dated.group(2):
+            yield f"CITATION.cff has the date {cited}; CHANGELOG.md has {dated.group(2)}."
     _, _, rest = text.partition("\n## Unreleased\n")
     if not rest:
         yield "CHANGELOG.md has no section Unreleased: the next change has no place."
