@@ -69,6 +69,28 @@ def test_a_folder_without_git_is_told(
     assert line.startswith("release: This folder is no clone")
 
 
+def test_a_folder_that_cannot_be_made_is_told_before_anything_is_made(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(release, "lacks", lambda parts: "")
+    (tmp_path / "file").touch()
+    assert release.main([str(tmp_path / "file" / "new")]) == 2
+    (line,) = said(capsys).splitlines()
+    assert line.startswith("release: Not a directory")
+
+
+def test_ctrl_c_ends_it_in_a_sentence(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def interrupted(*_: object) -> int:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(release, "lacks", lambda parts: "")
+    monkeypatch.setattr(release, "rehearse", interrupted)
+    assert release.main([str(tmp_path / "new")]) == 2
+    assert said(capsys) == "release: Ended. Nothing is in the folder.\n"
+
+
 def test_parts_bring_those_that_they_need_in_their_order() -> None:
     assert chosen([]) == list(PARTS)
     assert chosen(["stick"]) == ["wheel", "stick"]

@@ -70,6 +70,17 @@ def main(words: Sequence[str] | None = None) -> int:
     lacking = lacks(parts)
     if lacking:
         return _fail(lacking)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)  # who cannot have it hears so before an hour
+        return rehearse(folder, parts, options)
+    except OSError as why:
+        return _fail(f"{why.strerror or why}: {why.filename or folder}")
+    except KeyboardInterrupt:
+        return _fail("Ended. Nothing is in the folder.")
+
+
+def rehearse(folder: Path, parts: Sequence[str], options: argparse.Namespace) -> int:
+    """Make parts, look at them and put them into a folder; return the exit code."""
     with tempfile.TemporaryDirectory(prefix="tiniscript-release-") as scratch:
         try:
             clones = _clones(Path(scratch), options.url, 1 if options.once else 2, options)
