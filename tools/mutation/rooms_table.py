@@ -134,6 +134,7 @@ ROOMS = (
             "ultrasonic.cpp": "sonar devices",
             "watchdog.cpp": "watchdog uno_robot",
         },
+        ("nano", "(mega and (12_us or hangs))"),  # what an Uno tells, too
     ),
     Room(
         "verifier",
