@@ -248,29 +248,27 @@ def _misspelt(word: str) -> tuple[str | None, bool]:
     return guessed, guessed is not None
 
 
-@lru_cache(1000)
-def _meant_in_two(word: str) -> str | None:
-    """Return what `moverAdelante` or `MOTOR_STOP` means: two words that say one command."""
-    if word in WORDS or word in _KNOWN_OTHERWISE or len(word) > 24:
-        return None
-    for k in range(2, len(word) - 1):
-        first, second = word[:k].rstrip("_"), word[k:].lstrip("_")
-        if not all(
-            half in _WHO or half in TURN_WORDS or half in _meanings() for half in (first, second)
-        ):
-            continue
-        meant = {_meanings().get(first), _meanings().get(second)}
-        is_framed = first in _WHO or second in _WHO or _meanings().get(first) == "F"
-        said = meant - {None, "M", "F"} or meant - {None, "M"}
-        is_turn = first in TURN_WORDS and said <= {"L", "R"}
-        if (is_framed or is_turn) and len(said) == 1 and said <= _DOING:
-            return said.pop()
-    return None
-
-
 # Who moves, in a name of two words, and what is done by one.
 _WHO = frozenset("ROBOT CAR CARRO AUTO MOTOR MOTORS MOTORES IR".split())  # noqa: SIM905
 _DOING = frozenset(("F", "B", "L", "R", "S", "BEEP"))
+
+
+@lru_cache(1000)
+def _meant_in_two(word: str) -> str | None:
+    """Return what `moverAdelante` or `stopMotors` means: two words that say one command."""
+    if word in WORDS or word in _KNOWN_OTHERWISE or len(word) > 24:
+        return None
+    for k in range(2, len(word) - 1):
+        halves = word[:k].rstrip("_"), word[k:].lstrip("_")
+        meant = {"S" if half == "STOP" else _meanings().get(half, "") for half in halves}
+        said = meant - {"", "M", "F"} or meant - {"", "M"}
+        is_framed = "F" in meant or any(half in _WHO for half in halves)
+        is_turn = halves[0] in TURN_WORDS and said <= {"L", "R"}
+        unknown = [half for half in halves if half not in _WHO and half not in TURN_WORDS]
+        is_known = all(half == "STOP" or half in _meanings() for half in unknown)
+        if is_known and (is_framed or is_turn) and len(said) == 1 and said <= _DOING:
+            return said.pop()
+    return None
 
 
 @cache

@@ -6,10 +6,15 @@ import pytest
 
 from tests.pupils.corpus import check
 from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.diagnostics.rendering import message
+from tiniscript.repairs import fixing
 from tiniscript.repairs.accounting import lost, makes_up, makes_up_names
+from tiniscript.repairs.edits import Edit
 from tiniscript.repairs.fixing import fixed
+from tiniscript.repairs.placing import edits_of
 from tiniscript.source import Source
+from tiniscript.syntax.parser import parse
 
 
 @pytest.mark.parametrize(
@@ -72,6 +77,13 @@ def tried(program: str) -> list[str]:
         ("drive forward until you see a wall then turn left", "F(2, 80)"),
         ("cuando distancia menor a 15 frenar y girar izquierda", "IF(DISTANCE < 10)"),
         ("si ve una pared gira", "IF(DISTANCE < 10)"),
+        ("turn left for 1 second at 50 percent", "L(1, 80)"),
+        ("while (DISTANCE > 15) F(0.2,50); S;", "WHILE(DISTANCE > 15);F(0.2, 50);S;END_WHILE"),
+        (
+            "while (true) { if (DISTANCE < 10) break; F(0.2,50); }",
+            "WHILE(TRUE);IF(DISTANCE < 10);BREAK;F(0.2, 50);ENDIF;END_WHILE",
+        ),
+        ("IF(DISTANCE<10,S)", "S_1"),
         ("IF(DISTANCE < 10);S\nF(1,50)", "Write ENDIF after line 2: F(1,50)"),
         ("para cada vuelta\nF(1,50)\nfin", "LOOP(3)"),
     ],
@@ -116,6 +128,7 @@ def test_names_of_examples_are_made_up(before: str, after: str, is_made_up: bool
         "F(2,8 0)",
         "F(2,80,60)",
         "WAIT(500)",
+        "F(TIEMPO, 80)",  # a variable whose value is missing
         "DEF LOOK;S;END_DEF;LOOK:F(2, 80)",  # LOOK is called
     ],
 )
@@ -137,8 +150,35 @@ def test_a_slip_that_has_two_repairs_is_left_to_its_author(program: str) -> None
         ("F(2, 80)\\nR(1, 60)", "F(2, 80);R(1, 60)"),
         ("F(time=2, power=80)", "F(2, 80)"),
         ("x = la distancia", "x = DISTANCE"),
+        ("F(dos segundos, 80)", "F(2, 80)"),
+        ("TIEMPO 2\nF(TIEMPO, 80)", "TIEMPO = 2\nF(TIEMPO, 80)"),
         ("for i in range(3): F(1, 60); S", "LOOP(3);F(1, 60);S;END_LOOP"),
     ],
 )
 def test_a_slip_that_has_one_repair_gets_it(program: str, right: str) -> None:
     assert fixed(program, check).text == right
+
+
+@pytest.mark.parametrize("piece", ["(({[|", "F 2 80 R 1 "])
+def test_a_long_hostile_text_takes_few_steps(piece: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    text = piece * (7000 // len(piece))
+    looked_at = []
+    checks = []
+
+    def counted(other: str) -> list[Diagnostic]:
+        checks.append(other)
+        return _read(other)
+
+    def placed(diagnostic: Diagnostic, source: Source) -> list[Edit] | None:
+        looked_at.append(diagnostic)
+        return edits_of(diagnostic, source)
+
+    monkeypatch.setattr(fixing, "edits_of", placed)
+    fixed(text, counted)
+    assert len(checks) <= 20 + fixing.CHECKED_CHARACTERS // len(text) + fixing.MANY
+    assert len(looked_at) <= fixing.MANY * len(checks)
+
+
+def _read(text: str) -> list[Diagnostic]:
+    """Return what the parser says alone, which takes a tenth of the time."""
+    return parse(Source(text), None).diagnostics

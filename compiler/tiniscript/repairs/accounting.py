@@ -106,12 +106,15 @@ def lost(before: str, after: str, code: codes.Code | None = None) -> list[str]:
     return sorted((*numbers, *words, *notes))
 
 
-def makes_up(before: str, after: str) -> bool:
-    """Whether `after` has a number that `before` does not say, besides what every example has."""
+def makes_up(before: str, after: str, is_strict: bool = False) -> bool:
+    """Whether `after` has a number that `before` does not say.
+
+    What every example has is none, unless it `is_strict`.
+    """
     account = _Account(before, after)
     list(account.lost_numbers())
     list(account.lost_words())
-    return any(number not in _EXAMPLES for number in account.spare.elements())
+    return any(is_strict or number not in _EXAMPLES for number in account.spare.elements())
 
 
 def makes_up_names(before: str, after: str) -> bool:
@@ -229,7 +232,7 @@ class _Account:
         if said.isalpha() and (said in self._new.words or any(len(sign) > 1 for sign in signs)):
             return True
         return bool(said and any(sign[:1] == said[:1] for sign in new)) or (
-            word in ("MAYOR", "MENOR", "GREATER", "LESS", "MENOS", "MAS", "MORE") and is_turned
+            word in ("MAYOR", "MENOR", "MENOS", "MAS") and is_turned
         )
 
     def _is_number(self, word: str) -> bool:

@@ -28,10 +28,12 @@ def is_certain(diagnostic: Diagnostic, edits: Sequence[Edit], source: Source) ->
     text, span = source.text, diagnostic.span
     if diagnostic.code is codes.BAD_NUMBER:
         return _is_number(source[span])
+    if diagnostic.code is codes.OTHER_LANGUAGE and diagnostic.values.get("right") == "TIME":
+        return False  # TIEMPO is rather a variable whose value is not set
     if diagnostic.code is codes.ODD_CHARACTER:
         after = text[span.end : span.end + 1]
         is_mark = set(source[span]) <= set(_MARKS)
-        return is_mark or not (after.isalnum() or after == "_")  # `:PEED`, `0.?1`
+        return is_mark or not (after.isalnum() or after in ("_", "."))  # `:PEED`, `0.?1`
     if diagnostic.code is codes.EXTRA_CLOSE:
         return _PLAIN_CALL.fullmatch(_before(text, span.end)) is not None
     if diagnostic.code is codes.MISSING_CLOSE and not diagnostic.values.get("fix"):

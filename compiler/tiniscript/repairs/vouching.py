@@ -31,6 +31,10 @@ _ELSEWHERE = frozenset((
 ))  # fmt: skip
 # Mistakes between two instructions, which are reported where the second one begins.
 _BETWEEN = (codes.MISSING_SEPARATOR, codes.HEADER_SEPARATOR, codes.EXTRA_WORD)
+# What says the power of a move that stands before it: `at 50 percent`.
+_ITS_POWER = re.compile(
+    r"(?i)[\s,]*(at|with|con|al|a|en|by|de|potencia|power|speed|velocidad)\b[^();]*[0-9]"
+)
 _REST = re.compile(r"[^;\r\n{}]*")
 
 
@@ -114,6 +118,9 @@ def _partial(
         rest = _REST.match(changed, end)
         is_wrong = any(start + (start in between) <= at < end for at in within)
         is_part = rest is not None and any(end <= at < rest.end() for at in behind)
-        if is_wrong or (is_part and makes_up(text[slice(*edit.span)], edit.text)):
+        has_power = rest is not None and _ITS_POWER.match(rest[0]) is not None
+        before = text[slice(*edit.span)]
+        is_made_up = (is_part or has_power) and makes_up(before, edit.text, is_strict=has_power)
+        if is_wrong or is_made_up:
             partial.append(k)
     return partial

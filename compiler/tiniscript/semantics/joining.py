@@ -17,6 +17,8 @@ from tiniscript.syntax.vocabulary import Vocabulary
 
 # What is mended within a larger repair: a word, a number or a sign.
 _SMALL = (codes.OTHER_LANGUAGE, codes.UNIT, codes.OTHER_SIGN, codes.BAD_NUMBER)
+# Whose fix is a note, or the name of a new variable.
+_OWN_WORDS = (codes.PROSE, codes.MISSING_EQUALS)
 ENOUGH = 100  # diagnostics that are joined
 
 
@@ -41,7 +43,7 @@ def joined(
                     if written.upper() in fix.upper() and right:
                         fix = _replaced(fix, written, right)
                     mended.add(k)
-            if diagnostic.code is not codes.PROSE:  # whose fix is a note
+            if diagnostic.code not in _OWN_WORDS:
                 fix = known.translated(fix)
             diagnostic = diagnostic._replace(values={**diagnostic.values, "fix": fix})
         kept.append(diagnostic)
@@ -49,6 +51,8 @@ def joined(
 
 
 def _replaced(text: str, old: str, new: str) -> str:
-    """Return `text` with the first `old` in it, in any case, replaced."""
+    """Return `text` with the first `old` replaced, in any case, if it is no part of more."""
     start = text.upper().index(old.upper())
-    return text[:start] + new + text[start + len(old) :]
+    end = start + len(old)
+    is_part = text[end : end + 1].isalnum() and text[end - 1 : end] in (".", "_", *"0123456789")
+    return text if is_part else text[:start] + new + text[end:]  # `0.` within `0.5`

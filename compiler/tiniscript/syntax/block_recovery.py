@@ -72,6 +72,8 @@ class BlockRecovery:
             self.to_command()
         if any(self.is_name(a.text) and b.kind == "(" for a, b in pairwise(written)):
             fix = ""  # `IF DISTANCE(15)`
+        if written and written[0].text[:1] == "." and written[0].start == word.end:
+            fix = ""  # `LOOP.4)`
         if any(ends_value(a) and b.kind is NUMBER for a, b in pairwise(with_signs(written))):
             fix = ""  # `IF DISTANCE 10`
         self.reporter.fail(codes.MISSING_OPEN, span, word=word.text, fix=fix, usage=known.usage)

@@ -11,7 +11,7 @@ from tiniscript.syntax.ast import Argument, Assign
 from tiniscript.syntax.block_recovery import BlockRecovery
 from tiniscript.syntax.blocks import Block, Blocks
 from tiniscript.syntax.cursor import Cursor
-from tiniscript.syntax.lexer import ODD, Token
+from tiniscript.syntax.lexer import NUMBER, ODD, Token
 from tiniscript.syntax.reporter import Reporter
 
 
@@ -25,8 +25,15 @@ class DefRecovery:
         self.in_block = in_block
 
     def no_name(self, word: Token) -> NoReturn:
-        """`DEF` alone."""
+        """`DEF` alone, or with a name that begins with digits: `DEF 1PASO`."""
         self.in_block.begin_reported("DEF", word.span)
+        name = self.cursor.token
+        found = self.cursor.source[name.span]
+        letters = found.lstrip("0123456789_")
+        if name.kind is NUMBER and letters.isalnum() and letters.isascii():
+            self.reporter.answer(name)
+            right = letters + found[: len(found) - len(letters)]
+            self.reporter.fail(codes.BAD_NAME, name.span, found=found, right=right)
         self.reporter.fail(codes.DEF_NEEDS_NAME, word.span)
 
     def def_with_values(self, word: Token, name: Token, arguments: Sequence[Argument]) -> None:

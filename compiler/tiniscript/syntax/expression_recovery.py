@@ -25,6 +25,7 @@ from tiniscript.syntax.cursor import AFTER_VALUE, AT_END, Cursor
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, Token
 from tiniscript.syntax.number_recovery import NumberRecovery
 from tiniscript.syntax.operators import COMPARISONS, Operator, Postfix
+from tiniscript.syntax.phrases import AFTER_HEADER
 from tiniscript.syntax.reporter import Failed, Reporter
 from tiniscript.syntax.suggestions import after_bracket, between, operator_words, unchained
 from tiniscript.syntax.value_constructs import ValueConstructs
@@ -117,6 +118,8 @@ class ExpressionRecovery:
                 fail(codes.NO_VALUE, token.span, word=word.text)
         if word.text in self.reporter.reserved_words:
             raise Failed
+        if word.role == "stop" and self.cursor.tokens[self.cursor.i - 1].kind == ",":
+            fail(codes.NO_VALUE, token.span, word=word.text)  # `IF(DISTANCE < 10, S)`
         if self.cursor.source[token.span] == "l" and self.cursor.following.kind in (",", ")"):
             fail(codes.BAD_NUMBER, token.span, found="l", right="1")
         place = self.cursor.before(self.cursor.i)
@@ -342,7 +345,7 @@ class ExpressionRecovery:
             place = Span(owner.start, self._end_of(bracket))
             self.reporter.fail(codes.MISSING_COMMA, span, place, fix=fix, usage=word.usage)
         shown = {"before": last.text, "found": token.text}
-        if last.kind == ")" or token.kind == "(":
+        if last.kind == ")" or token.kind == "(" or token.text in AFTER_HEADER:
             shown = {"before": "", "found": ""}
         elif token.kind is WORD and token.text not in known and last.text in known:
             shown["fix"] = f"{last.text} < 10"  # `DISTANCE cerca`: no value that may be compared

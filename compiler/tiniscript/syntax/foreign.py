@@ -103,7 +103,7 @@ def _repeat_until(parser: Parser, word: Token) -> None:
     cursor = parser.cursor
     start = cursor.i + 2 + (meant_by("HASTA_" + cursor.tokens[cursor.i + 2].text) == "UNTIL")
     values = inside(cursor.tokens, start)
-    question = opposite(values)
+    question = opposite(with_signs(values))
     if not question:
         return
     end = end_of_values(cursor.tokens, start, values)

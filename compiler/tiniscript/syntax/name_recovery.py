@@ -262,7 +262,7 @@ class NameRecovery:
         rest = cursor.tokens[start:end]
         is_new = (
             word.text not in NO_VARIABLES
-            and meant_by(word.text) is None
+            and meant_by(word.text) in (None, "TIME")
             and not self.in_block.is_name(word.text)
         )
         if is_new and len(rest) == 1 and glued_call(word.text) is None:
@@ -330,7 +330,7 @@ class NameRecovery:
         if not rest and cursor.token.kind == "{":
             self._braces_for_brackets(word, known)
         span = Span(word.start, rest[-1].end if rest else word.end)
-        fix = call_in(known, rest)
+        fix = "" if self.in_block.is_name(word.text) else call_in(known, rest)  # `DEF B` comes
         if rest and rest[0].text.startswith(".") and rest[0].start == word.end:
             fix = ""  # `F.2.80`
         if not rest and cursor.token.text == "UNTIL" and known.role in ("move", "wait"):
@@ -377,6 +377,15 @@ class NameRecovery:
         place = sign if asks else first
         fix = head_in(WORDS["IF"], tokens) if asks else ""
         self.reporter.fail(codes.NOT_AN_INSTRUCTION, place.span, found=place.text, fix=fix)
+
+    def note_behind(self, token: Token, after: Token) -> None:
+        """`F(2, 80) -- go`, `F(2, 80) - avanza`, `F(2, 80) (avanza)`."""
+        if token.kind == after.kind == "-" and after.start == token.end:
+            self.other_note(token.start, "--", after.end)
+        behind = self.cursor.tokens[min(self.cursor.i + 2, len(self.cursor.tokens) - 1)]
+        is_talk = after.kind is WORD and after.text not in WORDS and behind.kind not in ("(", ",")
+        if token.kind in ("(", "-") and is_talk and not self.in_block.known.is_own(after.text):
+            self.other_note(token.start, token.kind, after.start)
 
     def other_note(self, start: int, sign: str, text_start: int) -> NoReturn:
         """`-- go` or `REM go`: the rest of the line is a note."""

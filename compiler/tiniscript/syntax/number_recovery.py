@@ -10,7 +10,7 @@ from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Token
 from tiniscript.syntax.operators import BINARY
 from tiniscript.syntax.reporter import Reporter
 from tiniscript.syntax.units import converted
-from tiniscript.words import UNITS, WORDS, Word
+from tiniscript.words import NUMBER_WORDS, UNITS, WORDS, Word
 
 
 class NumberRecovery:
@@ -35,7 +35,7 @@ class NumberRecovery:
             and tokens[k + 1].text not in BINARY
         ):
             return False
-        number, first = before.text, before
+        number, first = NUMBER_WORDS.get(before.text, before.text), before
         sign, over = tokens[cursor.before(k) - 1], tokens[max(0, cursor.before(k) - 2)]
         if before.kind is NUMBER and sign.kind in ("/", "*"):  # `1/2 minuto`
             number = _divided(over, sign, before)
@@ -43,7 +43,8 @@ class NumberRecovery:
         span = Span(first.start, token.end)
         found = cursor.source[span]
         unit = token.text
-        right = converted(number, unit) if before.kind is NUMBER and number else number
+        is_number = before.kind is NUMBER or number.isdecimal()  # `dos segundos`
+        right = converted(number, unit) if is_number and number else number
         self.reporter.report(codes.UNIT, span, found=found, number=number, right=right, unit=unit)
         cursor.i = k + 1
         return True

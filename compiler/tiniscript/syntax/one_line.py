@@ -57,6 +57,8 @@ class _Reader:
         self.row: list[str] = []
         self.open: list[str] = []
         self.variables: list[Token] = []
+        self.has_braces = False
+        self.has_parted = False  # a `;` stands behind an instruction of a block
 
     @property
     def token(self) -> Token:
@@ -69,6 +71,8 @@ class _Reader:
         while self.token.kind not in (NEWLINE, END):
             if self.k > start + 2 * LONGEST or not self._step():
                 return None
+        if self.open and self.open[-1] != "LOOP" and self.has_parted and not self.has_braces:
+            return None  # `IF(c) S; F(1, 50)`: which of them belong to it is not said
         if self.open and not self._goes_on(start):
             while self.open:
                 self._end()
@@ -82,7 +86,13 @@ class _Reader:
         token = self.token
         if token.kind in _LOOSE or (token.kind is WORD and token.text in (*AFTER_HEADER, *BETWEEN)):
             self.k += 1
+            self.has_braces |= token.kind == "{"
+            after = self.token.kind is WORD and not self._is_of_block(self.token)
+            is_body = bool(self.open) and self.row[-1].partition("(")[0] not in (*HEADERS, "ELSE")
+            self.has_parted |= token.kind == ";" and is_body and after
             return token.kind is not ODD or token.text in (":", ".")
+        if token.kind == "}" and self.has_parted and not self.has_braces:
+            return False  # `while (c) { if (d) break; F(1, 50); }`: the `}` is of another block
         if token.kind in ("}", ")"):  # a `]` is a `)` by now
             self.k += 1
             goes_on = self._block_of(self.token) in ("ELSE", "ELSEIF")
@@ -117,9 +127,10 @@ class _Reader:
         if block == "ELSE":
             self.k += 1
             self.row.append("ELSE")
+            self.has_parted = False
             return True
         if block in HEADERS or block == "ELSEIF":
-            return self._header(block)
+            return self._header(block) and (self.token.kind == "{" or not self.has_braces)
         if following.kind == "=":
             return self._assignment(word)
         return self._command(word)
@@ -130,6 +141,10 @@ class _Reader:
             return None
         return token.text if token.text in WORDS else foreign_block(token.text)
 
+    def _is_of_block(self, token: Token) -> bool:
+        block = self._block_of(token) or token.text
+        return block in (*HEADERS, *ENDS, "ELSE", "ELSEIF", *ENDS_OF_ANY)
+
     def _names_block(self, word: str) -> bool:
         return word == "SI" or word in BLOCK_ENDS or foreign_block(word) in BLOCK_ENDS
 
@@ -137,6 +152,7 @@ class _Reader:
         if not self.open:
             return False
         self.row.append(BLOCK_ENDS[self.open.pop()])
+        self.has_parted = False
         return True
 
     def _header(self, block: str) -> bool:

@@ -111,7 +111,7 @@ BEFORE_NOTE = frozenset(("REM", "NOTE", "NOTA"))
 COUNTING = frozenset(
     ("FOR", "PARA_CADA", "PARA", "DESDE")
 )  # a variable and its values come after these
-ENDS_OF_ANY = frozenset(("END", "FIN", "DONE"))
+ENDS_OF_ANY = frozenset(("END", "FIN", "DONE", "FINAL", "TERMINAR", "ACABAR"))
 # What other languages put around a program: `int main() { … }`.
 FRAME_WORDS = frozenset(("INT", "VOID", "PUBLIC", "STATIC", "FUNCTION", "FUNCION"))
 FRAME_NAMES = frozenset(("MAIN", "PRINCIPAL", "SETUP"))

@@ -248,8 +248,8 @@ class Recovery:
             fail(codes.EXTRA_CLOSE, token.span, found=")")
         if kind == "|":
             self.setup.bar_between(first, token)
-        if kind == "-" and after.kind == "-" and after.start == token.end:
-            self.of_name.other_note(token.start, "--", after.end)
+        if header is None:
+            self.of_name.note_behind(token, after)
         if header is not None and first.text in WORDS and WORDS[first.text].arguments:
             if kind in SIGNS or text in ("AND", "OR"):
                 self._question_goes_on(first, header)

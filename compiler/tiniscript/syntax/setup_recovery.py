@@ -73,6 +73,11 @@ class SetupRecovery:
 
     def unknown(self, word: Token) -> str:
         """`START|F(2, 80)`, `GO|F(2, 80)`: go on as after `SI|`."""
+        known = WORDS.get(word.text)
+        if known is not None and known.role == "block":  # `IF|DISTANCE < 10|S`
+            values = {"word": word.text, "fix": "", "usage": known.usage}
+            self.reporter.report(codes.MISSING_OPEN, word.span, None, **values)
+            return "SI"
         right = "SI|START;" if word.text == "START" else "SI|"
         self.reporter.report(codes.SETUP_UNKNOWN, word.span, found=word.text, right=right)
         return "SI"

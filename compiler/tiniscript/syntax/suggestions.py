@@ -28,6 +28,7 @@ OPERATOR_WORDS = {
     "SEA": "=", "ESTA": "=", "ARE": "=", "BE": "=",
     "IS": "=", "ES": "=", "EQUALS": "=", "EQUAL": "=", "IGUAL": "=",
     "LESS": "<", "MENOR": "<", "GREATER": ">", "MORE": ">", "MAYOR": ">", "BIGGER": ">",
+    "SMALLER": "<", "LOWER": "<", "CLOSER": "<", "HIGHER": ">", "LARGER": ">", "FARTHER": ">",
     **dict.fromkeys(("DISTINTO", "DISTINTA", "DIFERENTE", "DIFFERENT"), SIGN_OF["NE"]),
     "MOD": "%", "X": "*", "POR": "*", "MAS": "+", "MENOS": "-",
 }  # fmt: skip
@@ -62,7 +63,9 @@ def counted(tokens: Sequence[Token], start: int) -> int | None:
     None where that is not sure: a value that is no whole number, a step that is not 1.
     """
     row = []
-    for token in tokens[start : start + 20]:
+    is_framed = start < len(tokens) and tokens[start].kind == "("
+    end = (after_bracket(tokens, start) if is_framed else None) or start + 20
+    for token in tokens[start : min(start + 20, end)]:
         if token.kind in (NEWLINE, END, "{") or token.text == ":":
             break
         row.append(token)
