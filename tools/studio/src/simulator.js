@@ -69,7 +69,7 @@ export class Simulator {
   }
 
   async goOn() {
-    if (this.phase !== 'paused' || this.#isAsking) return;
+    if (this.phase !== 'paused') return;
     this.phase = 'running';
     if (this.state?.is_held) await this.#ask({ do: 'go_on' });
     if (this.phase !== 'running') return;
@@ -98,7 +98,7 @@ export class Simulator {
   }
 
   async push() {
-    if (!this.#isAsking && this.state) await this.#ask({ do: 'push' });
+    if (this.state) await this.#ask({ do: 'push' }); // behind what is under way
   }
 
   /** Stops the robot over its link; it confirms. Requests that are under way come before. */
