@@ -131,6 +131,15 @@ def test_blocks_of_the_page_are_those_of_python(pages: Pages) -> None:
         assert got == want, k
 
 
+def test_a_program_is_seen_from_its_beginning(pages: Pages) -> None:
+    page = pages.open("text")
+    start(page, "SI|LOOP(6)\n  F(FOREVER, 80) UNTIL(DISTANCE < 15)\n  BEEP(0.1, 880)\nEND_LOOP\n")
+    first = box_of(block(page, "SI: start at once"))
+    pane, words = (page.locator(one).bounding_box() for one in ("#blocks", ".blocklyToolbox"))
+    assert pane is not None and words is not None
+    assert first["x"] > words["x"] + words["width"] and first["y"] > pane["y"]
+
+
 def test_a_child_makes_a_program_and_lets_it_drive(pages: Pages) -> None:
     page = pages.open(view="blocks", locale="es-PE")
     page.locator("#level").wait_for()

@@ -33,6 +33,7 @@ export class Blocks {
   #used = { names: [], words: [] };
   /** Ids of the blocks, and where each is in the text. @type {[string, Range][]} */
   #places = [];
+  #isTouched = false; // by somebody, who may have scrolled
   #running = '';
   #fault = { id: '', said: '' };
   /** @type {Finding[]} */
@@ -54,6 +55,9 @@ export class Blocks {
     setRobot(robot);
     setActuators(robot);
     this.#workspace = this.#begin();
+    for (const kind of ['pointerdown', 'wheel', 'keydown']) {
+      place.addEventListener(kind, () => { this.#isTouched = true; }, { capture: true, passive: true });
+    }
   }
 
   /** Undo and redo are those of the text, which is what changes. */
@@ -83,6 +87,7 @@ export class Blocks {
       if (place?.[0]) this.#told.toggle({ line: place[0], column: place[1] });
       return Boolean(place?.[0]);
     };
+    if (Blockly.ContextMenuRegistry.registry.getItem('breakpoint')) return; // a page has its blocks once
     Blockly.ContextMenuRegistry.registry.register({
       id: 'breakpoint',
       weight: 0,
@@ -167,6 +172,12 @@ export class Blocks {
 
   resize() {
     Blockly.svgResize(this.#workspace);
+    this.#seeBeginning();
+  }
+
+  /** Until somebody scrolls: Blockly keeps the place of its scrollbars, not that of the blocks. */
+  #seeBeginning() {
+    if (!this.#isTouched && this.#place.clientWidth) this.#workspace.scroll(0, 0);
   }
 
   /** Replaces the blocks. @param {Form} form */
@@ -178,6 +189,7 @@ export class Blocks {
     const ids = showForm(this.#workspace, form);
     this.placed(ids, inOrder(form.body).map((block) => block.place ?? [0, 0, 0, 0]));
     this.#use(form);
+    this.#seeBeginning();
     if (hadFocus) Blockly.getFocusManager().focusTree(this.#workspace);
   }
 
@@ -266,6 +278,7 @@ export class Blocks {
   goTo(place) {
     const block = this.#workspace.getBlockById(this.#blockAt(place.line, place.column) ?? '');
     if (!block) return;
+    this.#isTouched = true;
     this.#workspace.centerOnBlock(block.id);
     Blockly.getFocusManager().focusNode(block);
   }
