@@ -42,7 +42,7 @@ def test_the_packages_are_pinned_and_come_from_nowhere_in_particular() -> None:
 @pytest.mark.parametrize("name", TEXTS)
 def test_every_sentence_is_there_in_both_languages(name: str) -> None:
     source = (SOURCES / "src" / name).read_text(encoding="utf-8")
-    table = source[source.index("TEXTS = {") : source.index("};")]
+    table = source[source.index("TEXTS = {") : source.index("\n};")]
     rows = re.findall(r"^  (\w+): \[", table, re.MULTILINE)
     pairs = re.findall(r"^  \w+: \['(?:[^'\\]|\\.)*',\s+'(?:[^'\\]|\\.)*'\],$", table, re.MULTILINE)
     assert len(rows) == len(pairs) > 20

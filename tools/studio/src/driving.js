@@ -17,7 +17,7 @@ import { WorldDrawing } from './world_drawing.js';
 /** @typedef {import('./work.js').Work} Work */
 
 const SHOWN = 200; // lines of the trace
-const SEEN = /** @type {const} */ (['arena', 'plot', 'trace']);
+const SEEN = { arena: 'seen_arena', plot: 'seen_plot', trace: 'seen_trace' };
 
 export class Driving {
   #editor;
@@ -135,7 +135,7 @@ export class Driving {
 
   setLanguage() {
     const { value } = this.#seen;
-    this.#seen.replaceChildren(...SEEN.map((each) => new Option(text(`seen_${each}`), each)));
+    this.#seen.replaceChildren(...Object.entries(SEEN).map(([each, name]) => new Option(text(name), each)));
     this.#seen.value = value || 'arena';
     this.#world.setLanguage();
     this.#drawing.setLanguage();
