@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import re
 import shutil
 import subprocess
@@ -11,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from tests.support.casefile import ROOT
+from tools.release import __main__ as release
 from tools.release import facts
 
 VERSION = "9.8.7"
@@ -123,6 +125,20 @@ def test_an_address_has_one_place() -> None:
     assert "a.example" not in once
     assert "[tool]\nb = 1\n" in once
     assert facts.with_address(once, URL) == once
+
+
+def test_an_address_is_kept_where_it_is_another_one(
+    clone: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(release, "ROOT", clone)
+    for url, commits in ((URL, 1), ("https://example.org/other", 2)):
+        scratch = tmp_path / str(commits)
+        scratch.mkdir()
+        (made,) = release._clones(scratch, url, 1, argparse.Namespace(whole_stick=False))
+        kept = subprocess.run(["git", "-C", made.root, "log", "--format=%s"], text=True,
+                              capture_output=True, check=True)  # fmt: skip
+        assert len(kept.stdout.splitlines()) == commits
+        assert made.address == url
 
 
 def test_this_repository_agrees_with_itself() -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import shutil
 import subprocess
 from pathlib import Path
 
@@ -17,8 +19,10 @@ from tools.release.trying import (
     NotTried,
     TryFailed,
     try_firmware,
+    try_library,
     try_page,
     try_site,
+    try_stick,
 )
 
 END = ":00000001FF\n"
@@ -137,7 +141,7 @@ def made(tmp_path: Path, name: str, files: dict[str, str]) -> Made:
     parts = tmp_path / "parts"
     parts.mkdir()
     pack(folder, parts / f"{name}-1.zip", 0)
-    return Made(parts, tmp_path / "scratch", "1", {})
+    return Made(parts, tmp_path / "scratch", "1", {}, frozenset(("tini-uno-", "tini_es-uno-")))
 
 
 FIRMWARE = {"NOTICE.txt": "", "LGPL-2.1.txt": "", "tini-uno-1.hex": END, "tini_es-uno-2.hex": END}
@@ -150,6 +154,7 @@ def test_firmware_is_whole_in_both_languages_with_its_notices(tmp_path: Path) ->
 
 @pytest.mark.parametrize("wrong", [
     {"tini-uno-1.hex": ":00"}, {"NOTICE.txt": None}, {"tini_es-uno-2.hex": None},
+    {"tini-uno-1.hex": None, "tini_es-uno-2.hex": None},
 ])  # fmt: skip
 def test_firmware_that_lacks_something_is_told(tmp_path: Path, wrong: dict[str, str]) -> None:
     files = {name: text for name, text in {**FIRMWARE, **wrong}.items() if text is not None}
@@ -169,11 +174,44 @@ def test_a_page_that_lacks_a_file_is_told(tmp_path: Path) -> None:
         try_page(made(tmp_path, "tiniscript-studio", files))
 
 
-def test_what_was_not_made_is_not_tried(tmp_path: Path) -> None:
+def test_a_part_without_its_file_is_told(tmp_path: Path) -> None:
     for each in TRIES.values():
-        if each.__name__ != "try_library":
-            with pytest.raises(NotTried):
-                each(Made(tmp_path, tmp_path, "1", {}))
+        with pytest.raises((TryFailed, NotTried)):
+            each(Made(tmp_path, tmp_path, "1", {}, frozenset()))
+
+
+def test_a_library_without_examples_is_told(tmp_path: Path) -> None:
+    with pytest.raises((TryFailed, NotTried), match=r"examples|arduino-builder"):
+        try_library(made(tmp_path, "TiniScript", {"TiniScript/library.json": "{}"}))
+
+
+def test_a_computer_that_cannot_cut_the_network_says_so(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    stick = made(tmp_path, "tiniscript-stick", {"start.sh": "true"})
+    monkeypatch.setattr(shutil, "which", lambda name: None)
+    with pytest.raises(NotTried, match="unshare"):
+        try_stick(stick)
+
+
+def test_a_try_that_breaks_or_cannot_be_made_is_no_release(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def breaks(made: Made) -> str:
+        return str(json.loads("a note"))
+
+    def cannot(made: Made) -> str:
+        raise NotTried("there is no tool")
+
+    monkeypatch.setattr(release, "TRIES", {"wheel": breaks, "stick": cannot})
+    file = tmp_path / "a.zip"
+    file.write_bytes(b"PK")
+    scratch = tmp_path / "scratch"
+    scratch.mkdir()
+    clone = Clone(tmp_path, tmp_path, "1", "", 0, 1, False)
+    rows, failed = release._looked_at([{"wheel": [file], "stick": [file]}], [clone], scratch)
+    assert [row.tried for row in rows] == ["FAILED", "not tried"]
+    assert len(failed) == 2 and "there is no tool" in failed[1]
 
 
 def test_the_line_that_the_tries_wait_for_is_the_commands() -> None:

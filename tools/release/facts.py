@@ -78,6 +78,15 @@ def complaints(root: Path) -> Iterator[str]:
         )
 
 
+def firmware() -> frozenset[str]:
+    """Return how the files of the shipped robots' firmware begin: a robot's name and its chip."""
+    from tiniscript.flash.ready import name_of, title_of
+    from tools.builds.firmware_files import shipped
+
+    names = (name_of(title_of(robot), robot.board.chip, "") for robot in shipped())
+    return frozenset(name.removesuffix(".hex") for name in names)
+
+
 def _about_tags(root: Path, ours: str) -> Iterator[str]:
     tags = [each for each in _git(root, "tag", "--points-at", "HEAD").splitlines()
             if re.fullmatch(r"v\d.*", each)]  # fmt: skip
