@@ -30,13 +30,15 @@ PAIRS = [
     if output in paths.WRITES and other != output and {other} & {*paths.READS, *paths.WRITES}
     if not (verb == "monitor" and output == "plot")
 ]
+# What a verb is told to do, before its files.
+ACTIONS = {"lesson": ("check", "1"), "class": ("upload",)}
 needs_links = pytest.mark.skipif(os.name == "nt", reason="Windows wants a right for links")
 
 
 def arguments(verb: str, files: dict[str, Path]) -> list[str]:
     """Return the words of a command with these files for its options."""
     known = values_of(PARSERS[verb])
-    words = [verb, "check", "1"] if verb == "lesson" else [verb]
+    words = [verb, *ACTIONS.get(verb, ())]
     if "program" in known and "program" not in files:
         words += ["-e", PROGRAM]
     for dest, path in files.items():
