@@ -40,6 +40,14 @@ from tiniscript.syntax.parser import parse
         ("F(2, 80)", "B(2, 80)", ["F"]),
         ("tres veces", "LOOP(3)", []),
         ("NOT X", "X", ["NOT"]),
+        (
+            "avanza hasta la pared y gira a la derecha",
+            "F(2, 80)",
+            ["DERECHA", "GIRA", "HASTA", "PARED"],
+        ),
+        ("motor izquierda 50", "M(50, 0)", []),
+        ("si hay pared adelante para", "IF(DISTANCE < 10);S;ENDIF", []),
+        ("adelante y para", "S", ["ADELANTE"]),
     ],
 )
 def test_what_a_change_loses_is_named(before: str, after: str, gone: list[str]) -> None:
@@ -97,7 +105,7 @@ def test_what_does_something_else_is_not_offered(program: str, wrong: str) -> No
 
 def test_a_step_that_keeps_all_that_was_said_is_offered() -> None:
     assert tried("LEFT(1,50) AND FORWARD(2,80)")[0] == "L(1, 50)"
-    assert tried("repetir 4 veces avanzar 1 y girar derecha 1")[0] == "LOOP(4)"
+    assert tried("repetir 4 veces avanza 1 segundo y luego pita")[0] == "LOOP(4)"
 
 
 @pytest.mark.parametrize(

@@ -117,6 +117,7 @@ WORDS_SHOWN = _mistake("TS070")
 QUESTION_BEHIND = _mistake("TS071")
 PASTED = _mistake("TS072")
 PROSE = _mistake("TS073")
+SEVERAL_ORDERS = _mistake("TS074")
 # the checksum of a line
 CHECKSUM_WRONG = _mistake("TS058")
 CHECKSUM_FORM = _mistake("TS059")

@@ -55,7 +55,7 @@ _SMALL = frozenset((
     *phrases.FRAME_WORDS, *phrases.FRAME_NAMES, *phrases.CASE_WORDS, *phrases.COUNTING,
     *phrases.BEFORE_NOTE, *UNITS, *(name for names in PLACEHOLDERS.values() for name in names),
     *_PLAIN.split(),
-)) - _TURNING  # fmt: skip
+)) - _TURNING - {"LEFT", "RIGHT", "IZQUIERDA", "DERECHA"}  # fmt: skip
 _LABEL = re.compile(r"\s*\w+(?:\s+[0-9]+)?\s*:\s*")  # the name of a step
 # Two words and more that say what one word does.
 _PHRASES = tuple(
@@ -260,13 +260,18 @@ class _Account:
     def _is_kind(self, word: str, meant: str | None) -> bool:
         """Whether what it does is said in another way: a turn, a switch, something near."""
         new = self._new.words
-        if word in TURN_WORDS or word in ("IZQUIERDO", "DERECHO", "MOTOR", "MOTORES"):
+        if word in TURN_WORDS:
+            return bool({"L", "R", "M", "S"} & set(new))
+        if word in ("IZQUIERDO", "DERECHO", "MOTOR", "MOTORES"):
             return bool({"L", "R", "M", "F", "S"} & set(new))
+        if meant in ("L", "R") and meant in new:
+            return True  # `R(derecha, 2, 80)`
         if word in SWITCH_WORDS:
             return SWITCH_WORDS[word] in new or "S" in new
-        if word in NEAR_WORDS or word in ("TOUCHING", "CLOSE"):
+        is_ahead = word in ("AHEAD", "ADELANTE", "ENFRENTE") and NEAR_WORDS & set(self._old.words)
+        if word in NEAR_WORDS or word in ("TOUCHING", "CLOSE") or is_ahead:
             return "DISTANCE" in new
-        if meant == "F" and "M" in new:  # `mover motor izquierdo 50`
+        if meant in ("F", "L", "R") and "M" in new:  # `mover motor izquierdo 50`
             return True
         if meant == "LOOP":
             return "WHILE" in new  # `repetir hasta`

@@ -1,7 +1,7 @@
 """Recovery of instructions that begin with a name, or with a word of another language.
 
 Knows what people write behind a name: values without brackets, other signs for `=`, a word that
-is too much. Instructions of the language without their brackets are here, too.
+is too much.
 """
 
 from __future__ import annotations
@@ -15,22 +15,23 @@ from tiniscript.syntax.assignment_recovery import AssignmentRecovery
 from tiniscript.syntax.ast import Assign
 from tiniscript.syntax.block_recovery import BlockRecovery
 from tiniscript.syntax.blocks import Blocks
+from tiniscript.syntax.bracket_recovery import BracketRecovery
 from tiniscript.syntax.call_suggestions import (
     actuator_word,
     call_in,
     glued_call,
     written,
 )
+from tiniscript.syntax.clause_recovery import ClauseRecovery
 from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.foreign import foreign_word
-from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, QUOTES, WORD, Token
+from tiniscript.syntax.lexer import NUMBER, ODD, WORD, Token
 from tiniscript.syntax.operators import COMPARISONS, SIGNS
 from tiniscript.syntax.phrases import (
     BEFORE_CALL,
     BEFORE_NAME,
     BEFORE_NOTE,
     BEFORE_SENTENCE,
-    BEFORE_TIME,
     CHANGING,
     COUNTING,
     FRAME_WORDS,
@@ -55,7 +56,6 @@ from tiniscript.syntax.suggestions import (
 from tiniscript.syntax.talk_recovery import TalkRecovery
 from tiniscript.words import (
     WORDS,
-    Word,
     meant_by,
     other_name,
     usage_of,
@@ -82,6 +82,8 @@ class NameRecovery:
         self.sentence = SentenceRecovery(cursor, reporter, blocks, in_block)
         self.of_value = AssignmentRecovery(cursor, reporter, self.unread_assignment)
         self.talk = TalkRecovery(cursor, reporter, in_block)
+        self.clauses = ClauseRecovery(cursor, reporter, in_block)
+        self.brackets = BracketRecovery(cursor, reporter, in_block, self.sentence, self.clauses)
 
     def reserved_name(self, name: Token) -> None:
         """`S = 5`; but `F = 2, 80` is F without brackets."""
@@ -126,6 +128,8 @@ class NameRecovery:
             shown = shortened(self.cursor.source[span])
             self.reporter.fail(codes.EXTRA_WORD, span, found=word.text, label=shown)
         self.talk.label(word, following, after)
+        if self.kit is not None:
+            self.clauses.several(self.cursor.i)
         if kind is NUMBER and after.text in TIMES and meant_by(word.text) is None:
             foreign_word(parser, word, "LOOP")  # `hacer 4 veces`
         if word.text == "SIEMPRE" and following.text == "QUE":  # no loop without end
@@ -287,7 +291,7 @@ class NameRecovery:
         device = next((each for each in kit.actuators if each.name == word.text), None)
         if device is not None:
             self.cursor.i += 1
-            self.no_bracket(word, actuator_word(device))
+            self.brackets.no_bracket(word, actuator_word(device))
 
     def joined(self, name: Token) -> Token:
         """`DEF MY TURN`: a name has no space."""
@@ -305,64 +309,6 @@ class NameRecovery:
         """Whether `word` is a command of another language, as in `PARAR()`."""
         meant = self.in_block.known.command(word.text)
         return meant is not None and not self.in_block.is_name(word.text)
-
-    # -- a command without brackets -----------------------------------------------------------
-
-    def no_bracket(self, word: Token, known: Word) -> NoReturn:
-        """`F 2 80`: suggest the same with brackets and commas."""
-        cursor = self.cursor
-        first = cursor.source.text[cursor.token.start : cursor.token.start + 1]
-        if first in tuple(QUOTES):
-            raise Failed
-        if cursor.token.text in (":", *BEFORE_TIME):  # `F: 2, 80`, `beep for 2 seconds`
-            self.reporter.answer(cursor.token)
-            cursor.i += 1
-        start = cursor.i
-        cursor.i = body_begins(cursor.tokens, start, names_end=False)
-        rest = cursor.tokens[start : cursor.i]
-        if cursor.token.text in TIMES:  # `BEEP 3 times`
-            self.sentence.so_often(word.span, known, rest, 0)
-        if len(rest) > 1 and rest[0].kind in ("-", "=", "=>") and rest[1].kind == ">":
-            rest = rest[2:]  # `F -> 2, 80`
-        is_dash = known.role in ("move", "wait", "beep")  # no value of theirs is below 0
-        if is_dash and len(rest) > 1 and rest[0].kind == "-" and rest[0].start == word.end:
-            rest = rest[1:]  # `F-2, 80`
-        if not rest and cursor.token.kind == "{":
-            self._braces_for_brackets(word, known)
-        span = Span(word.start, rest[-1].end if rest else word.end)
-        fix = "" if self.in_block.is_name(word.text) else call_in(known, rest)  # `DEF B` comes
-        if rest and rest[0].text.startswith(".") and rest[0].start == word.end:
-            fix = ""  # `F.2.80`
-        if not rest and cursor.token.text == "UNTIL" and known.role in ("move", "wait"):
-            fix = known.example.replace("2" if known.role == "move" else "1", "FOREVER", 1)
-        self.reporter.report(codes.MISSING_OPEN, span, word=word.text, fix=fix, usage=known.usage)
-        if cursor.token.kind is WORD and cursor.token.text != "UNTIL":
-            self.in_block.go_on()
-        if cursor.token.kind == ",":  # `F 2, 80, R 1, 50`
-            cursor.i += 1
-            raise Resumed
-        raise Failed
-
-    def _braces_for_brackets(self, word: Token, known: Word) -> NoReturn:
-        """`F{2, 80}`."""
-        cursor = self.cursor
-        start = cursor.i + 1
-        self.reporter.answer(cursor.token)
-        while cursor.token.kind not in ("}", NEWLINE, END):
-            cursor.i += 1
-        values = [
-            each._replace(kind=",") if each.kind == ";" else each
-            for each in cursor.tokens[start : cursor.i]
-        ]
-        fix = call_in(known, values)
-        place = word.span
-        if cursor.token.kind == "}":
-            self.reporter.answer(cursor.token)
-            cursor.i += 1
-            place = cursor.span_from(word)
-        self.reporter.fail(
-            codes.MISSING_OPEN, word.span, place, word=word.text, fix=fix, usage=known.usage
-        )
 
     # -- what is no instruction ---------------------------------------------------------------
 

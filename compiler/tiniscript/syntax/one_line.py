@@ -12,7 +12,9 @@ from typing import NamedTuple
 
 from tiniscript.syntax.blocks import ENDS, HEADERS
 from tiniscript.syntax.call_suggestions import LONGEST, call_in, written
+from tiniscript.syntax.clauses import order_at
 from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, Token
+from tiniscript.syntax.near import ASKING, near_at
 from tiniscript.syntax.operators import SIGNS
 from tiniscript.syntax.phrases import AFTER_HEADER, BETWEEN, COUNTING, ENDS_OF_ANY, FILLERS
 from tiniscript.syntax.suggestions import (
@@ -27,6 +29,8 @@ from tiniscript.syntax.vocabulary import Vocabulary
 from tiniscript.words import BLOCK_ENDS, IN_MILLISECONDS, UNITS, WORDS, Word
 
 _LOOSE = (";", ",", "{", ODD)  # signs between instructions, here or elsewhere
+# What goes on behind a block as well as in it: `repite 4 veces avanza y luego pita`.
+_AFTERWARDS = frozenset(("LUEGO", "DESPUES", "NEXT", "FINALMENTE", "FINALLY"))
 _FARTHEST = 1000  # tokens in which the end of a block is looked for
 
 
@@ -89,6 +93,8 @@ class _Reader:
             self.has_braces |= token.kind == "{"
             after = self.token.kind is WORD and not self._is_of_block(self.token)
             is_body = bool(self.open) and self.row[-1].partition("(")[0] not in (*HEADERS, "ELSE")
+            if token.text in _AFTERWARDS and is_body and self.open[-1] == "LOOP":
+                return False
             self.has_parted |= token.kind == ";" and is_body and after
             return token.kind is not ODD or token.text in (":", ".")
         if token.kind == "}" and self.has_parted and not self.has_braces:
@@ -133,6 +139,11 @@ class _Reader:
             return self._header(block) and (self.token.kind == "{" or not self.has_braces)
         if following.kind == "=":
             return self._assignment(word)
+        order = order_at(self.tokens, self.k, self.known) if following.kind != "(" else None
+        if order is not None:
+            text, self.k = order
+            self.row.append(text)
+            return True
         return self._command(word)
 
     def _block_of(self, token: Token) -> str | None:
@@ -158,6 +169,12 @@ class _Reader:
     def _header(self, block: str) -> bool:
         word = self.token
         self.k += 1
+        near = near_at(self.tokens, self.k, self.known) if block in ASKING else None
+        if near is not None:
+            self.row.append(f"{block}({near.question})")
+            self.open += [] if block == "ELSEIF" else [block]
+            self.k = near.end
+            return True
         values = self._values()
         if block == "LOOP" and word.text in COUNTING:
             return False  # the count may be used in the body
@@ -307,6 +324,8 @@ class _Reader:
             if is_first and token.kind is WORD:
                 text = token.text
                 block = text if text in WORDS else foreign_block(text)
+                if text == "SI" and tokens[k + 1].text == "NO":
+                    text, block = "SINO", "ELSE"
                 if block in BLOCK_ENDS or (text == "SI" and tokens[k + 1].kind != "|"):
                     inner += 1
                 elif block in ENDS or text in ENDS_OF_ANY or block in ("ELSE", "ELSEIF"):

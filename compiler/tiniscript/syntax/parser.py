@@ -203,7 +203,7 @@ class Parser:
         if following.kind == "(":
             arguments = self.arguments_of(word, known)
         elif known is not None and known.arguments:
-            self.recovery.of_name.no_bracket(word, known)
+            self.recovery.of_name.brackets.no_bracket(word, known)
         if tokens[cursor.i].kind not in AT_END:
             until = self.until(word)
         span = cursor.span_from(word)

@@ -23,6 +23,11 @@ BEFORE_MOVE = TURN_WORDS | frozenset(
     + "I WANT TO MUST SHOULD WILL PLEASE MY GOES DRIVES MOVES".split()  # noqa: SIM905
 )
 
+# Names of ways, and no verbs: `2 segundos adelante`.
+WAYS = frozenset(
+    "AHEAD STRAIGHT FORWARD BACKWARD BACKWARDS BACK LEFT RIGHT".split()  # noqa: SIM905
+    + "ADELANTE DERECHO RECTO FRENTE ATRAS IZQUIERDA DERECHA IZQ DER".split()  # noqa: SIM905
+)
 BETWEEN = frozenset(("AND", "Y", "THEN", "ENTONCES", "LUEGO", "DESPUES", "NEXT"))
 # What begins a sentence, and says only when: `Luego gira a la derecha`.
 BEFORE_SENTENCE = (BETWEEN - {"NEXT"}) | frozenset(

@@ -12,6 +12,7 @@ from tiniscript.source import Span
 from tiniscript.syntax.cursor import Cursor
 from tiniscript.syntax.foreign import foreign_header
 from tiniscript.syntax.lexer import WORD, Token
+from tiniscript.syntax.near import near_at
 from tiniscript.syntax.reporter import Reporter, Resumed
 from tiniscript.syntax.suggestions import head_in, inside, is_question
 from tiniscript.words import WORDS, meant_by
@@ -95,6 +96,8 @@ class SetupRecovery:
         following = cursor.following
         if word.text == "CHECK_CONNECTION":
             self.reporter.fail(codes.PING_ALONE, word.span)
+        if word.text == "SI" and following.kind is WORD:
+            self._near(parser, word)
         if word.text == "SI" and following.text == "NO":
             found = cursor.source[Span(word.start, following.end)]
             values = {"found": found, "right": "ELSE", "fix": "ELSE", "usage": "ELSE"}
@@ -124,6 +127,23 @@ class SetupRecovery:
             foreign_header(parser, word, "IF")
         code = codes.SETUP_TWICE if following.kind == "|" else codes.SETUP_NEEDS_BAR
         self.reporter.fail(code, word.span, found=word.text)
+
+    def _near(self, parser: Parser, word: Token) -> None:
+        """`si hay una pared para`, `si no hay pared`."""
+        cursor, in_block = self.cursor, parser.recovery.in_block
+        near = near_at(cursor.tokens, cursor.i + 1, in_block.known)
+        if near is None:
+            return
+        line = in_block.whole_line(word, "IF")
+        if line is not None:
+            self.reporter.report(codes.SPANISH_IF, word.span, cursor.span_from(word), fix=line)
+            raise Resumed
+        cursor.i = near.end
+        place = cursor.span_from(word)
+        fix = f"IF({near.question})"
+        self.reporter.report(codes.SPANISH_IF, word.span, place, fix=fix)
+        in_block.begin_reported("IF", place)
+        in_block.go_on()
 
     def bar_between(self, first: Token, bar: Token) -> NoReturn:
         """`F(2, 80)|R(1, 60)`: a `;` is meant where the word before is an instruction."""

@@ -1,0 +1,91 @@
+"""Recovery of an instruction of the language without its brackets: `F 2 80`, `F{2, 80}`."""
+
+from __future__ import annotations
+
+from typing import NoReturn
+
+from tiniscript.diagnostics import codes
+from tiniscript.source import Span
+from tiniscript.syntax.block_recovery import BlockRecovery
+from tiniscript.syntax.call_suggestions import call_in
+from tiniscript.syntax.clause_recovery import ClauseRecovery
+from tiniscript.syntax.cursor import Cursor
+from tiniscript.syntax.lexer import END, NEWLINE, QUOTES, WORD, Token
+from tiniscript.syntax.phrases import BEFORE_TIME, TIMES
+from tiniscript.syntax.reporter import Failed, Reporter, Resumed
+from tiniscript.syntax.sentence_recovery import SentenceRecovery
+from tiniscript.syntax.suggestions import body_begins
+from tiniscript.words import Word
+
+
+class BracketRecovery:
+    def __init__(
+        self,
+        cursor: Cursor,
+        reporter: Reporter,
+        in_block: BlockRecovery,
+        sentence: SentenceRecovery,
+        clauses: ClauseRecovery,
+    ) -> None:
+        self.cursor = cursor
+        self.reporter = reporter
+        self.in_block = in_block
+        self.sentence = sentence
+        self.clauses = clauses
+
+    def no_bracket(self, word: Token, known: Word) -> NoReturn:
+        """`F 2 80`: suggest the same with brackets and commas."""
+        cursor = self.cursor
+        self.clauses.several(cursor.i - 1)
+        first = cursor.source.text[cursor.token.start : cursor.token.start + 1]
+        if first in tuple(QUOTES):
+            raise Failed
+        if cursor.token.text in (":", *BEFORE_TIME):  # `F: 2, 80`, `beep for 2 seconds`
+            self.reporter.answer(cursor.token)
+            cursor.i += 1
+        start = cursor.i
+        cursor.i = body_begins(cursor.tokens, start, names_end=False)
+        rest = cursor.tokens[start : cursor.i]
+        if cursor.token.text in TIMES:  # `BEEP 3 times`
+            self.sentence.so_often(word.span, known, rest, 0)
+        if len(rest) > 1 and rest[0].kind in ("-", "=", "=>") and rest[1].kind == ">":
+            rest = rest[2:]  # `F -> 2, 80`
+        is_dash = known.role in ("move", "wait", "beep")  # no value of theirs is below 0
+        if is_dash and len(rest) > 1 and rest[0].kind == "-" and rest[0].start == word.end:
+            rest = rest[1:]  # `F-2, 80`
+        if not rest and cursor.token.kind == "{":
+            self._braces_for_brackets(word, known)
+        span = Span(word.start, rest[-1].end if rest else word.end)
+        fix = "" if self.in_block.is_name(word.text) else call_in(known, rest)  # `DEF B` comes
+        if rest and rest[0].text.startswith(".") and rest[0].start == word.end:
+            fix = ""  # `F.2.80`
+        if not rest and cursor.token.text == "UNTIL" and known.role in ("move", "wait"):
+            fix = known.example.replace("2" if known.role == "move" else "1", "FOREVER", 1)
+        self.reporter.report(codes.MISSING_OPEN, span, word=word.text, fix=fix, usage=known.usage)
+        if cursor.token.kind is WORD and cursor.token.text != "UNTIL":
+            self.in_block.go_on()
+        if cursor.token.kind == ",":  # `F 2, 80, R 1, 50`
+            cursor.i += 1
+            raise Resumed
+        raise Failed
+
+    def _braces_for_brackets(self, word: Token, known: Word) -> NoReturn:
+        """`F{2, 80}`."""
+        cursor = self.cursor
+        start = cursor.i + 1
+        self.reporter.answer(cursor.token)
+        while cursor.token.kind not in ("}", NEWLINE, END):
+            cursor.i += 1
+        values = [
+            each._replace(kind=",") if each.kind == ";" else each
+            for each in cursor.tokens[start : cursor.i]
+        ]
+        fix = call_in(known, values)
+        place = word.span
+        if cursor.token.kind == "}":
+            self.reporter.answer(cursor.token)
+            cursor.i += 1
+            place = cursor.span_from(word)
+        self.reporter.fail(
+            codes.MISSING_OPEN, word.span, place, word=word.text, fix=fix, usage=known.usage
+        )

@@ -1,0 +1,41 @@
+"""Recovery of several orders in one sentence: `avanza 2 segundos y luego para`."""
+
+from __future__ import annotations
+
+from tiniscript.diagnostics import codes
+from tiniscript.source import Span
+from tiniscript.syntax.block_recovery import BlockRecovery
+from tiniscript.syntax.clauses import sentence_at
+from tiniscript.syntax.cursor import AT_END, Cursor
+from tiniscript.syntax.lexer import Token
+from tiniscript.syntax.phrases import AFTER_HEADER
+from tiniscript.syntax.reporter import Reporter
+
+
+class ClauseRecovery:
+    def __init__(self, cursor: Cursor, reporter: Reporter, in_block: BlockRecovery) -> None:
+        self.cursor = cursor
+        self.reporter = reporter
+        self.in_block = in_block
+
+    def several(self, start: int) -> None:
+        """Report the orders from the token at `start` on, if they are more than one."""
+        cursor = self.cursor
+        before = cursor.tokens[start - 1]
+        is_first = not start or before.kind in (*AT_END, "|", "{", "}")
+        if not (is_first or before.text in AFTER_HEADER or before.text == ":"):
+            return  # a part of a sentence: `if wall ahead then turn right`
+        sentence = sentence_at(cursor.tokens, start, self.in_block.known)
+        if sentence is None or len(sentence.orders) < 2:
+            return
+        first: Token = cursor.tokens[start]
+        cursor.i = sentence.end
+        for token in cursor.tokens[start : cursor.i]:
+            self.reporter.answer(token)  # an accent, a point at the end
+        if sentence.turn is not None:
+            self.reporter.fail(codes.WHICH_WAY, sentence.turn)
+        place = Span(first.start, cursor.last.end)
+        self.reporter.fail(
+            codes.SEVERAL_ORDERS, place, place, fix=";".join(sentence.orders),
+            example=", ".join(sentence.examples),
+        )  # fmt: skip
