@@ -158,12 +158,13 @@ DEVICE_WORDS = frozenset(["LED", "LUZ", "FOCO", "LIGHT", "LAMP", "LAMPARA", "SER
 
 # Commands of other languages whose time is in milliseconds.
 IN_MILLISECONDS = frozenset(["DELAY"])
-# What other languages do, and this one does not: pins and jumps. What the robot knows instead.
+# What other languages do, and this one does not: pins, jumps, clocks. What the robot knows instead.
 NOT_DONE = {
     **dict.fromkeys(("DIGITALWRITE", "ANALOGWRITE", "PINMODE", "DIGITALREAD", "ANALOGREAD", "PIN"), "pins"),
+    **dict.fromkeys(("CADA", "EVERY"), "every"),
     **dict.fromkeys(("GOTO", "GOSUB", "JUMP", "SALTA", "SALTAR", "IRA", "IR_A"), "jump"),
 }
-_INSTEAD = {"pins": "F(2, 80)", "jump": "LOOP(FOREVER)", "motors": "M(50, 50)"}
+_INSTEAD = {"pins": "F(2, 80)", "jump": "LOOP(FOREVER)", "every": "LOOP(FOREVER)", "motors": "M(50, 50)"}
 
 
 def said_instead(word: str) -> dict[str, str]:

@@ -11,8 +11,10 @@ from tiniscript.syntax.ast import Argument, Assign
 from tiniscript.syntax.block_recovery import BlockRecovery
 from tiniscript.syntax.blocks import Block, Blocks
 from tiniscript.syntax.cursor import Cursor
-from tiniscript.syntax.lexer import NUMBER, ODD, Token
+from tiniscript.syntax.lexer import NUMBER, ODD, WORD, Token
 from tiniscript.syntax.reporter import Reporter
+from tiniscript.syntax.vocabulary import is_part_of_name
+from tiniscript.words import WORDS
 
 
 class DefRecovery:
@@ -35,6 +37,20 @@ class DefRecovery:
             right = letters + found[: len(found) - len(letters)]
             self.reporter.fail(codes.BAD_NAME, name.span, found=found, right=right)
         self.reporter.fail(codes.DEF_NEEDS_NAME, word.span)
+
+    def joined(self, name: Token) -> Token:
+        """`DEF MY TURN`, `DEF PASO-UNO`: a name has no space, and no `-`."""
+        cursor, tokens = self.cursor, self.cursor.tokens
+        k = cursor.i + (cursor.token.kind == "-")
+        second = tokens[k]
+        is_word = second.kind is WORD or k > cursor.i  # no number behind a space
+        if not is_word or name.text in WORDS or not is_part_of_name(second, tokens[k + 1]):
+            return name
+        cursor.i = k + 1
+        whole = Token(WORD, f"{name.text}_{second.text}", name.start, second.end)
+        found = cursor.source[whole.span]
+        self.reporter.report(codes.NAME_WITH_SPACE, whole.span, found=found, right=whole.text)
+        return whole
 
     def def_with_values(self, word: Token, name: Token, arguments: Sequence[Argument]) -> None:
         """`DEF SQUARE(SIDE)`: a DEF takes no values, but a variable can bring them."""

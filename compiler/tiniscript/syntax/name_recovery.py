@@ -212,6 +212,7 @@ class NameRecovery:
             self.other_note(word.start, word.text, word.end)
         if kind == "-":
             self._arrow(word)
+            self._call_with_hyphen(word)
             self.of_value.hyphened(word)
         if kind in SIGNS:
             self.not_an_instruction(word)
@@ -256,6 +257,16 @@ class NameRecovery:
             tokens[k + 1 : k + 3] = [point]
             self.sentence.word_and_sign(word, point)
 
+    def _call_with_hyphen(self, word: Token) -> None:
+        """`PASO-UNO`, where there is a `DEF PASO-UNO`."""
+        cursor = self.cursor
+        second = cursor.tokens[cursor.i + 2]
+        whole = f"{word.text}_{second.text}"
+        if self.in_block.is_name(whole):
+            span = Span(word.start, second.end)
+            found = cursor.source[span]
+            self.reporter.fail(codes.NAME_WITH_SPACE, span, found=found, right=whole)
+
     def _values_without_brackets(self, word: Token, following: Token) -> None:
         """`F2, 80`, `FORWARD 2 80`, `SPEED 50`."""
         cursor, start = self.cursor, self.cursor.i + 1
@@ -292,18 +303,6 @@ class NameRecovery:
         if device is not None:
             self.cursor.i += 1
             self.brackets.no_bracket(word, actuator_word(device))
-
-    def joined(self, name: Token) -> Token:
-        """`DEF MY TURN`: a name has no space."""
-        cursor = self.cursor
-        second = cursor.token
-        if second.text in WORDS or cursor.following.kind not in AT_END:
-            return name
-        cursor.i += 1
-        whole = Token(WORD, f"{name.text}_{second.text}", name.start, second.end)
-        found = cursor.source[whole.span]
-        self.reporter.report(codes.NAME_WITH_SPACE, whole.span, found=found, right=whole.text)
-        return whole
 
     def is_said_elsewhere(self, word: Token) -> bool:
         """Whether `word` is a command of another language, as in `PARAR()`."""

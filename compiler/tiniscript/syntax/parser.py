@@ -228,7 +228,7 @@ class Parser:
     def until(self, word: Token) -> Argument | None:
         cursor = self.cursor
         is_said_so = cursor.token.kind is WORD and cursor.token.text == "UNTIL"
-        if not is_said_so and not self.recovery.is_taken_for_until(word):
+        if not is_said_so and not self.recovery.of_until.is_taken_for_until(word):
             return None
         until = Token(WORD, "UNTIL", *cursor.token.span)
         cursor.i += 1
@@ -261,8 +261,8 @@ class Parser:
         if name.text in WORDS:
             right = other_name(name.text)
             self.reporter.report(codes.RESERVED, name.span, word=name.text, right=right)
-        if cursor.token.kind is WORD and name.kind is WORD:
-            name = self.recovery.of_name.joined(name)
+        if cursor.token.kind is WORD or cursor.token.kind == "-":
+            name = self.recovery.of_def.joined(name)
         block = self.blocks.begin("DEF", Span(word.start, name.end), name=name)
         if cursor.token.kind == "(":
             self.recovery.of_def.def_with_values(word, name, self.expressions.arguments())

@@ -14,7 +14,6 @@ from tiniscript.source import Span
 from tiniscript.syntax.ast import Assign, Command
 from tiniscript.syntax.block_recovery import BlockRecovery
 from tiniscript.syntax.blocks import Block, Blocks
-from tiniscript.syntax.call_suggestions import starts_value
 from tiniscript.syntax.construct_recovery import ConstructRecovery
 from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.def_recovery import DefRecovery
@@ -27,19 +26,17 @@ from tiniscript.syntax.reporter import Failed, Reporter, Resumed
 from tiniscript.syntax.setup_recovery import SetupRecovery
 from tiniscript.syntax.suggestions import (
     body_begins,
-    end_of_values,
     head_in,
-    inside,
     shortened,
 )
 from tiniscript.syntax.times_recovery import TimesRecovery
+from tiniscript.syntax.until_recovery import UntilRecovery
 from tiniscript.syntax.value_constructs import ValueConstructs
 from tiniscript.words import NOT_DONE, WORDS, Word, meant_by, said_instead
 
 if TYPE_CHECKING:
     from tiniscript.syntax.parser import Parser
 
-_TIMED = ("move", "wait")
 _SAYING_NO_MORE = frozenset((
     "CM", "SEG", "SEGUNDOS", "SECONDS", "THE", "EL", "AL", "ROBOT", "CAR", "CARRO", "CARRITO",
     "PLEASE", "GRACIAS",
@@ -64,6 +61,7 @@ class Recovery:
         self.in_block = BlockRecovery(cursor, reporter, blocks, kit)
         self.of_name = NameRecovery(cursor, reporter, blocks, kit, self.in_block)
         self.of_def = DefRecovery(cursor, reporter, blocks, self.in_block)
+        self.of_until = UntilRecovery(cursor, reporter, blocks)
         self.times = TimesRecovery(cursor, reporter, self.in_block)
         self.construct = ConstructRecovery(cursor, reporter, self.in_block)
 
@@ -134,7 +132,7 @@ class Recovery:
         if role == "setup":
             self.setup.in_the_middle(parser, word)
         if role == "until":
-            self._until_after_its_move(parser, word)
+            self.of_until.after_its_move(parser, word)
         if role == "forever":
             self.reporter.report(codes.FOREVER_NOT_HERE, word.span)
             if self.cursor.following.kind == "(":
@@ -146,57 +144,6 @@ class Recovery:
         if role == "value":
             self.of_name.sentence.word_and_sign(word, self.cursor.following)
         self.of_name.not_an_instruction(word)
-
-    # -- UNTIL --------------------------------------------------------------------------------
-
-    def is_taken_for_until(self, word: Token) -> bool:
-        """Whether `F(2, 80), UNTIL(c)` or `F(2, 80) HASTA(c)` is meant; then go to that word."""
-        cursor = self.cursor
-        token, following = cursor.token, cursor.following
-        if token.kind == ",":
-            if following.kind is not WORD or following.text != "UNTIL":
-                return False
-            cursor.i += 1
-            self._until_alone(following, cursor.source[Span(word.start, token.start)])
-            return True
-        if token.kind is not WORD or meant_by(token.text) != "UNTIL":
-            return False
-        if not starts_value(following):
-            return False
-        values = inside(cursor.tokens, cursor.i + 1)
-        fix = head_in(WORDS["UNTIL"], values)
-        place = Span(token.start, end_of_values(cursor.tokens, cursor.i + 1, values))
-        self.reporter.report(
-            codes.OTHER_LANGUAGE,
-            token.span,
-            place,
-            found=token.text,
-            right="UNTIL",
-            fix=fix,
-            usage=fix,
-        )
-        return True
-
-    def _until_after_its_move(self, parser: Parser, word: Token) -> NoReturn:
-        """`F(2, 80);UNTIL(c)`: the move has its UNTIL, only not where it belongs."""
-        here = self.blocks.here
-        last = here[-1] if here else None
-        known = WORDS.get(last.word) if isinstance(last, Command) else None
-        if not isinstance(last, Command) or known is None or known.role not in _TIMED or last.until:
-            self.reporter.fail(codes.UNTIL_ALONE, word.span, fix="")
-        self._until_alone(word, self.cursor.source[last.span])
-        self.cursor.i += 1
-        here[-1] = last._replace(until=parser.argument_of(word, is_reported=True))
-        raise Failed
-
-    def _until_alone(self, until: Token, before: str) -> None:
-        values = inside(self.cursor.tokens, self.cursor.i + 1)
-        fix = f"{before} {head_in(WORDS['UNTIL'], values)}" if before else ""
-        place = None
-        if before:
-            end = end_of_values(self.cursor.tokens, self.cursor.i + 1, values)
-            place = Span(self.cursor.source.text.rindex(before, 0, until.start), end)
-        self.reporter.report(codes.UNTIL_ALONE, until.span, place, fix=fix)
 
     # -- where an instruction must end --------------------------------------------------------
 

@@ -353,6 +353,9 @@ class SentenceRecovery:
         self.reporter.answer(sign)
         if sign.text == ".":
             span = Span(word.start, after.end)
+            if meant.role == "start":  # `Serial.begin(9600)`
+                found = cursor.source[span]
+                self.reporter.fail(codes.UNKNOWN_WORD, span, None, found=found, near="")
             values = inside(cursor.tokens, cursor.i + 3)
             end = end_of_values(cursor.tokens, cursor.i + 3, values)
             self.say_in_other_words(span, cursor.source[span], meant, list(values), end)

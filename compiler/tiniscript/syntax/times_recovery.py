@@ -12,7 +12,7 @@ from tiniscript.syntax.lexer import NUMBER, WORD, Token
 from tiniscript.syntax.phrases import TIMES
 from tiniscript.syntax.reporter import Reporter
 from tiniscript.syntax.suggestions import after_bracket, shortened
-from tiniscript.words import WORDS
+from tiniscript.words import NUMBER_WORDS, WORDS
 
 
 class TimesRecovery:
@@ -68,6 +68,8 @@ class TimesRecovery:
         if token.text in ("TWICE", "THRICE"):
             times = "2" if token.text == "TWICE" else "3"
             row, is_sign = [token._replace(kind=NUMBER, text=times), *row[1:]], True
+        if len(row) > 1 and row[0].text in NUMBER_WORDS:  # `F(1, 50) cuatro veces`
+            row[0] = row[0]._replace(kind=NUMBER, text=NUMBER_WORDS[row[0].text])
         if len(row) > 1 and row[1].text in TIMES:
             is_sign = True
             del row[1]

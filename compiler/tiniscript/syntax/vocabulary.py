@@ -13,7 +13,8 @@ from itertools import pairwise
 
 from tiniscript.kit import Kit
 from tiniscript.syntax.call_suggestions import actuator_word
-from tiniscript.syntax.lexer import WORD, Token
+from tiniscript.syntax.cursor import AT_END
+from tiniscript.syntax.lexer import NUMBER, WORD, Token
 from tiniscript.words import NUMBER_WORDS, WORDS, Word, meant_by
 
 _WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
@@ -34,9 +35,10 @@ class Vocabulary:
         found = set()
         for k, (first, name) in enumerate(pairs):
             if first.text == "DEF":
-                second = self._tokens[min(k + 2, len(self._tokens) - 1)]
-                is_spaced = second.kind is WORD and second.text not in WORDS  # `DEF MY TURN`
-                found.add(f"{name.text}_{second.text}" if is_spaced else name.text)
+                row = [*self._tokens[k + 2 : k + 5], *[self._tokens[-1]] * 3]
+                second, after = row[1:3] if row[0].kind == "-" else row[:2]
+                is_joined = name.text not in WORDS and is_part_of_name(second, after)
+                found.add(f"{name.text}_{second.text}" if is_joined else name.text)
         actuators = self._kit.actuators if self._kit else ()
         return frozenset(found | self._sensors | {each.name for each in actuators})
 
@@ -84,3 +86,10 @@ class Vocabulary:
     def translated(self, text: str) -> str:
         """Return a piece of program with its values in the words of the language."""
         return _WORD.sub(lambda match: self.value(match[0]), text)
+
+
+def is_part_of_name(second: Token, after: Token) -> bool:
+    """Whether the word behind the name of a DEF belongs to it: `DEF MY TURN`, `DEF a b`."""
+    known = WORDS.get(second.text)
+    is_instruction = known is not None and not (known.is_instruction and known.arguments)
+    return second.kind in (WORD, NUMBER) and not is_instruction and after.kind in AT_END

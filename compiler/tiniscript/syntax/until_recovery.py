@@ -1,0 +1,97 @@
+"""Recovery of an UNTIL that does not stand behind its move: `F(2, 80);UNTIL(c)`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NoReturn
+
+from tiniscript.diagnostics import codes
+from tiniscript.source import Span
+from tiniscript.syntax.ast import Command
+from tiniscript.syntax.blocks import Blocks
+from tiniscript.syntax.call_suggestions import starts_value
+from tiniscript.syntax.cursor import AT_END, Cursor
+from tiniscript.syntax.lexer import WORD, Token
+from tiniscript.syntax.reporter import Failed, Reporter
+from tiniscript.syntax.suggestions import after_bracket, end_of_values, head_in, inside
+from tiniscript.words import WORDS, meant_by
+
+if TYPE_CHECKING:
+    from tiniscript.syntax.parser import Parser
+
+_TIMED = ("move", "wait")
+
+
+class UntilRecovery:
+    def __init__(self, cursor: Cursor, reporter: Reporter, blocks: Blocks) -> None:
+        self.cursor = cursor
+        self.reporter = reporter
+        self.blocks = blocks
+
+    def is_taken_for_until(self, word: Token) -> bool:
+        """Whether `F(2, 80), UNTIL(c)` or `F(2, 80) HASTA(c)` is meant; then go to that word."""
+        cursor = self.cursor
+        token, following = cursor.token, cursor.following
+        if token.kind == ",":
+            if following.kind is not WORD or following.text != "UNTIL":
+                return False
+            cursor.i += 1
+            self._alone(following, cursor.source[Span(word.start, token.start)])
+            return True
+        if token.kind is not WORD or meant_by(token.text) != "UNTIL":
+            return False
+        if not starts_value(following):
+            return False
+        values = inside(cursor.tokens, cursor.i + 1)
+        fix = head_in(WORDS["UNTIL"], values)
+        place = Span(token.start, end_of_values(cursor.tokens, cursor.i + 1, values))
+        self.reporter.report(
+            codes.OTHER_LANGUAGE,
+            token.span,
+            place,
+            found=token.text,
+            right="UNTIL",
+            fix=fix,
+            usage=fix,
+        )
+        return True
+
+    def after_its_move(self, parser: Parser, word: Token) -> NoReturn:
+        """`F(2, 80);UNTIL(c)`: the move has its UNTIL, only not where it belongs."""
+        here = self.blocks.here
+        last = here[-1] if here else None
+        known = WORDS.get(last.word) if isinstance(last, Command) else None
+        if not isinstance(last, Command) or known is None or known.role not in _TIMED or last.until:
+            self._before_its_move(word)
+            self.reporter.fail(codes.UNTIL_ALONE, word.span, fix="")
+        self._alone(word, self.cursor.source[last.span])
+        self.cursor.i += 1
+        here[-1] = last._replace(until=parser.argument_of(word, is_reported=True))
+        raise Failed
+
+    def _alone(self, until: Token, before: str) -> None:
+        values = inside(self.cursor.tokens, self.cursor.i + 1)
+        fix = f"{before} {head_in(WORDS['UNTIL'], values)}" if before else ""
+        place = None
+        if before:
+            end = end_of_values(self.cursor.tokens, self.cursor.i + 1, values)
+            place = Span(self.cursor.source.text.rindex(before, 0, until.start), end)
+        self.reporter.report(codes.UNTIL_ALONE, until.span, place, fix=fix)
+
+    def _before_its_move(self, until: Token) -> None:
+        """`UNTIL(DISTANCE < 10) F(2, 60)`: the question goes behind."""
+        cursor, start = self.cursor, self.cursor.i + 1
+        middle = after_bracket(cursor.tokens, start) if cursor.tokens[start].kind == "(" else None
+        if middle is None:
+            return
+        move = cursor.tokens[middle]
+        known = WORDS.get(move.text)
+        is_call = cursor.tokens[min(middle + 1, len(cursor.tokens) - 1)].kind == "("
+        end = after_bracket(cursor.tokens, middle + 1) if is_call else None
+        is_timed = known is not None and known.role in _TIMED
+        if not is_timed or end is None or cursor.tokens[end].kind not in AT_END:
+            return
+        head = cursor.source[Span(until.start, cursor.tokens[middle - 1].end)]
+        call = cursor.source[Span(move.start, cursor.tokens[end - 1].end)]
+        cursor.i = end
+        place = cursor.span_from(until)
+        self.reporter.fail(codes.UNTIL_ALONE, until.span, place, fix=f"{call} {head}")

@@ -1,0 +1,48 @@
+"""A DEF whose name has a space or a `-`, and other lines that got half a repair before."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.pupils.corpus import check
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.rendering import message
+from tiniscript.repairs.fixing import fixed
+from tiniscript.source import Source
+
+
+@pytest.mark.parametrize(
+    ("program", "right"),
+    [
+        ("DEF a b;R(1, 50);END_DEF;a b", "DEF A_B;R(1, 50);END_DEF;A_B"),
+        ("DEF PASO-UNO;S;END_DEF;PASO-UNO", "DEF PASO_UNO;S;END_DEF;PASO_UNO"),
+        ("DEF PASO-1;S;END_DEF;PASO-1", "DEF PASO_1;S;END_DEF;PASO_1"),
+        ("DEF PARAR S\nEND_DEF;PARAR", "DEF PARAR; S\nEND_DEF;PARAR"),  # S does something
+        ("F(1, 80) cuatro veces", "F(1, 80) cuatro veces"),  # a number in words is left to look at
+    ],
+)
+def test_a_name_in_two_parts_is_one(program: str, right: str) -> None:
+    assert fixed(program, check).text == right
+
+
+def test_what_a_repair_says_of_the_whole_instruction() -> None:
+    (found,) = check("UNTIL(DISTANCE < 10) F(2, 60)")
+    assert found.values["fix"] == "F(2, 60) UNTIL(DISTANCE < 10)"
+    (found,) = check("F(1, 80) cuatro veces")
+    assert found.values["fix"] == "LOOP(4);F(1, 80);END_LOOP"
+    assert check("UNTIL(DISTANCE < 10) SHOW(TIME)")[0].values["fix"] == ""
+
+
+@pytest.mark.parametrize(("lang", "part"), [("es", "una y otra vez"), ("en", "again and again")])
+def test_a_clock_of_another_language_is_explained(lang: str, part: str) -> None:
+    program = "CADA 2 segundos\nF(1, 50)"
+    (found,) = check(program)
+    shown = message(found, Source(program), lang)
+    assert part in shown.fix
+    assert "LOOP(FOREVER)" in shown.fix
+
+
+def test_the_set_up_of_a_port_is_no_start() -> None:
+    (found,) = check("Serial.begin(9600);\nF(1, 50)")
+    assert found.code is codes.UNKNOWN_WORD
+    assert found.values["found"] == "Serial.begin"
