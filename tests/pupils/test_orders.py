@@ -121,3 +121,26 @@ def test_a_block_whose_orders_are_not_sure_is_not(program: str) -> None:
 def test_a_block_that_goes_on_below_is_not_ended() -> None:
     found = said("si hay pared gira a la derecha\nsi no avanza")
     assert found[0][1] == "IF(DISTANCE < 10);R(2, 80)"
+
+
+@pytest.mark.parametrize(
+    ("program", "fix"),
+    [
+        ("go forward until you see a wall", "F(FOREVER, 80) UNTIL(DISTANCE < 10)"),
+        ("cuando veas una pared para", "IF(DISTANCE < 10);S;ENDIF"),
+        ("move(50, 50)", ""),  # two powers, and no move of 50 s
+        ("move(2, 50)", "F(2, 50)"),
+        ("avanza 2 minutos", "F(120, 80)"),
+        ("avanzar 20 cm", ""),
+        ("Hola robot, avanza 2 segundos y para", "F(2, 80);S"),
+    ],
+)
+def test_what_one_sentence_gets(program: str, fix: str) -> None:
+    ((_, found),) = said(program)
+    assert found == fix
+
+
+@pytest.mark.parametrize(("lang", "part"), [("es", "no una distancia"), ("en", "no distance")])
+def test_a_distance_is_no_time(lang: str, part: str) -> None:
+    (found,) = check("avanzar 20 cm")
+    assert part in message(found, Source("avanzar 20 cm"), lang).fix

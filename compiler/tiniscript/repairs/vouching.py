@@ -17,6 +17,7 @@ from tiniscript.repairs.accounting import lost, makes_up
 from tiniscript.repairs.edits import Edit, applied, overlap
 from tiniscript.repairs.placing import edits_of
 from tiniscript.source import Source
+from tiniscript.syntax.call_suggestions import LONG_TIME_S
 from tiniscript.words import usage_of
 
 Check = Callable[[str], Sequence[Diagnostic]]
@@ -35,6 +36,7 @@ _BETWEEN = (codes.MISSING_SEPARATOR, codes.HEADER_SEPARATOR, codes.EXTRA_WORD)
 _ITS_POWER = re.compile(
     r"(?i)[\s,]*(at|with|con|al|a|en|by|de|potencia|power|speed|velocidad)\b[^();]*[0-9]"
 )
+_TIME = re.compile(r"[FBLR]\(([0-9]{1,9}(?:\.[0-9]+)?)\s*,")
 _REST = re.compile(r"[^;\r\n{}]*")
 
 
@@ -56,7 +58,8 @@ def vouched(found: Sequence[Diagnostic], source: Source, check: Check) -> list[D
             continue
         before = " ".join(source[edit.span] for edit in edits)
         after = " ".join(edit.text for edit in edits)
-        if diagnostic.values.get("fix") and lost(before, after, diagnostic.code):
+        is_long = diagnostic.code is codes.OTHER_LANGUAGE and _takes_long(before, after)
+        if is_long or (diagnostic.values.get("fix") and lost(before, after, diagnostic.code)):
             kept[k] = _without(diagnostic)
         else:
             offers.append(_Offer(k, edits))
@@ -69,6 +72,13 @@ def vouched(found: Sequence[Diagnostic], source: Source, check: Check) -> list[D
         for k in _partial(group, source.text, found, check):
             kept[k] = _without(kept[k])
     return kept
+
+
+def _takes_long(before: str, after: str) -> bool:
+    """Whether `move(50, 50)` would become a move of 50 s: powers or steps are meant."""
+    time = _TIME.match(after)
+    is_same = time is not None and re.search(rf"\(\s*{re.escape(time[1])}\s*[,)]", before)
+    return time is not None and bool(is_same) and float(time[1]) >= LONG_TIME_S
 
 
 def _without(diagnostic: Diagnostic) -> Diagnostic:

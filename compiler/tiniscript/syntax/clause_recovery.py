@@ -10,6 +10,7 @@ from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.lexer import Token
 from tiniscript.syntax.phrases import AFTER_HEADER
 from tiniscript.syntax.reporter import Reporter
+from tiniscript.words import WORDS
 
 
 class ClauseRecovery:
@@ -19,14 +20,14 @@ class ClauseRecovery:
         self.in_block = in_block
 
     def several(self, start: int) -> None:
-        """Report the orders from the token at `start` on, if they are more than one."""
+        """Report the orders from `start` on, where one word alone does not say them."""
         cursor = self.cursor
         before = cursor.tokens[start - 1]
         is_first = not start or before.kind in (*AT_END, "|", "{", "}")
         if not (is_first or before.text in AFTER_HEADER or before.text == ":"):
             return  # a part of a sentence: `if wall ahead then turn right`
         sentence = sentence_at(cursor.tokens, start, self.in_block.known)
-        if sentence is None or len(sentence.orders) < 2:
+        if sentence is None or (len(sentence.orders) < 2 and not sentence.has_until):
             return
         first: Token = cursor.tokens[start]
         cursor.i = sentence.end
@@ -35,6 +36,12 @@ class ClauseRecovery:
         if sentence.turn is not None:
             self.reporter.fail(codes.WHICH_WAY, sentence.turn)
         place = Span(first.start, cursor.last.end)
+        if len(sentence.orders) == 1:  # `avanza hasta que veas una pared`
+            usage, fix = WORDS["F"].usage, sentence.orders[0]
+            self.reporter.fail(
+                codes.OTHER_LANGUAGE, first.span, place, found=first.text, right="F", fix=fix,
+                usage=usage,
+            )  # fmt: skip
         self.reporter.fail(
             codes.SEVERAL_ORDERS, place, place, fix=";".join(sentence.orders),
             example=", ".join(sentence.examples),

@@ -48,6 +48,10 @@ class Sentence(NamedTuple):
     examples: tuple[str, ...]  # the time and the power that nobody has said, with their units
     turn: Span | None  # one that says no way; then the orders are not all
 
+    @property
+    def has_until(self) -> bool:
+        return any("UNTIL" in order for order in self.orders)
+
 
 def sentence_at(tokens: Sequence[Token], start: int, known: Vocabulary) -> Sentence | None:
     """Return the orders from `start` to the end of its instruction, None where not understood."""
@@ -134,6 +138,10 @@ class _Order:
                 return False  # `después de 2 segundos`
             self.k += 1
         while (token := self._at(self.k)) is not None:
+            is_greeting = token.kind == "," and self._is_empty()
+            if is_greeting:  # `Hola robot, avanza`
+                self.k += 1
+                continue
             if token.kind == "," or (token.kind is WORD and token.text in BETWEEN):
                 break
             if self._begins_another(token) or self._is_of_block(token):
@@ -141,6 +149,9 @@ class _Order:
             if not (self._is_until(token) or self._is_understood(token)):
                 return False
         return self.verb is not None or self.is_turn
+
+    def _is_empty(self) -> bool:
+        return self.verb is None and not (self.is_turn or self.time or self.power)
 
     def _is_until(self, token: Token) -> bool:
         """`hasta la pared`: go past it."""

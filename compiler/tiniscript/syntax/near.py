@@ -17,7 +17,7 @@ ASKING = frozenset(("IF", "ELSEIF", "WHILE", "UNTIL"))
 # What stands around what the robot sees: `si el robot ve una pared`.
 _THERE_IS = frozenset(
     "HAY HAYA UN UNA EL LA DE THE THERE IS A AN ROBOT ESTA CLOSE TO".split()  # noqa: SIM905
-    + "VE VES SEE SEES DETECTA DETECTAS DETECTS ENCUENTRA ENCUENTRAS".split()  # noqa: SIM905
+    + "QUE YOU IT VE VES VEA VEAS SEE SEES DETECTA DETECTAS DETECTS ENCUENTRA".split()  # noqa: SIM905
 )
 _AHEAD = frozenset(("ADELANTE", "AHEAD", "ENFRENTE"))
 

@@ -255,12 +255,14 @@ class SentenceRecovery:
             fix = f"{meant.text};{pause}" if pause else meant.text
         if any(each.kind is WORD and not self._is_value(each) for each in values):
             fix = ""
+        is_far = any(UNITS.get(each.text, ("",))[0] == "cm" for each in values)
+        far = meant.text if is_far and not fix and meant.role == "move" else ""
         place = Span(span.start, max(span.end, end, *(each.end for each in values)))
         if behind is not None:
             self.questions.asked(span, behind, fix or meant.example, meant)
         self.reporter.fail(
             codes.OTHER_LANGUAGE, span, place, found=found, right=meant.text, fix=fix,
-            usage=meant.usage,
+            usage=meant.usage, far=far,
         )  # fmt: skip
 
     def _with_power(self, meant: Word, values: list[Token]) -> list[Token]:
