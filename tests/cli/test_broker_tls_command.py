@@ -13,7 +13,7 @@ from tests.cli.test_esp32_radio import NETWORK, PASSWORD, near
 from tests.machines.esp32 import HAS_TLS
 from tests.machines.esp32 import missing as no_compiler
 from tests.support import certificates
-from tests.support.certificates import Authority
+from tests.support.certificates import Authority, der
 from tests.support.command import process
 from tests.support.esp32_pty_robot import Esp32PtyRobot
 from tests.support.mosquitto import Mosquitto, missing
@@ -90,6 +90,27 @@ def test_what_is_no_certificate_is_said_before_the_robot_is_asked(tmp_path: Path
         (tmp_path / "good").write_bytes(form)
         words = ("wifi", "--broker", NAME, "--tls", "--trust", str(tmp_path / "good"))
         assert process(*words, "--port", "/none").code == 3, "there is no such port"
+
+
+def test_a_computer_trusts_the_brokers_own_certificate_whoever_signed_it(tmp_path: Path) -> None:
+    """As a robot does; not another one of its authority."""
+    authority = Authority(tmp_path)
+    broker = Mosquitto(tmp_path, more=authority.rules(NAME))
+    authority.rules("other.aula")
+    binary = tmp_path / "own.der"
+    binary.write_bytes(der(authority.signed(NAME)))
+    (tmp_path / "none").write_bytes(b"hello")
+    try:
+        for file, said in (
+            (authority.signed(NAME), "no robot of the class"), (binary, "no robot of the class"),
+            (authority.signed("other.aula"), "does not trust the certificate"),
+            (tmp_path / "none", "does not trust the certificate"),
+        ):  # fmt: skip
+            words = ("--broker", f"{NAME}:{broker.port}", "--tls", "--trust", file)
+            done = process("class", *words)
+            assert done.code == 3 and said in done.err, (file, done.err)
+    finally:
+        broker.kill()
 
 
 @pytest.mark.parametrize(("words", "said"), [

@@ -16,7 +16,7 @@ from tests.firmware.test_esp32_wifi import joined, remote
 from tests.machines.esp32 import HAS_TLS, Esp32Robot
 from tests.machines.esp32 import missing as no_compiler
 from tests.support import certificates
-from tests.support.certificates import Authority
+from tests.support.certificates import Authority, der
 from tests.support.cutting_network import CuttingNetwork
 from tests.support.esp32_radio import in_reach, known, talk
 from tests.support.mosquitto import LOCAL, AtBroker, Mosquitto, missing
@@ -122,6 +122,30 @@ def test_who_is_not_trusted_gets_nothing(room: Room, tmp_path: Path, what: str, 
     finally:
         if own is not None:
             own.kill()
+
+
+@pytest.mark.parametrize("is_chain", [False, True])
+def test_the_brokers_own_certificate_is_enough_and_no_other_of_its_authority(
+    tmp_path: Path, is_chain: bool
+) -> None:
+    """One that an authority has signed, which nobody knows. Its name and its date still count."""
+    authority = Authority(tmp_path)
+    own = Room(Mosquitto(tmp_path, more=authority.rules(NAME, is_chain)), authority)
+    authority.rules("other.aula")
+    trust, other = (der(authority.signed(name)) for name in (NAME, "other.aula"))
+    keys = Keys()
+    robot, owner = joined(keys)
+    try:
+        for settings, state in (
+            (own.settings(trust=other), "UNTRUSTED"), (own.settings(trust=trust), "READY"),
+            (own.settings("localhost", trust=trust), "OTHER_NAME"),
+            (own.settings(today=LATER, trust=trust), "EXPIRED"),
+        ):  # fmt: skip
+            assert ended(robot, [(None, owner)], owner.use_broker(settings)) == "OK"
+            talk(robot, [(None, owner)], 50)
+            until(robot, lambda state=state: told(robot, owner)[1] == state)  # type: ignore[misc]
+    finally:
+        own.broker.kill()
 
 
 def test_a_broker_that_dies_ends_the_run_over_tls(tmp_path: Path) -> None:

@@ -15,6 +15,12 @@ def missing() -> str:
     return "" if shutil.which("openssl") else "needs openssl"
 
 
+def der(file: Path) -> bytes:
+    """Return the first certificate of a file."""
+    end = "-----END CERTIFICATE-----"
+    return ssl.PEM_cert_to_DER_cert(file.read_text(encoding="ascii").partition(end)[0] + end)
+
+
 class Authority:
     """Who signs certificates: `file` has its own, `der` the same as bytes."""
 
@@ -25,15 +31,25 @@ class Authority:
 
     @property
     def der(self) -> bytes:
-        return ssl.PEM_cert_to_DER_cert(self.file.read_text(encoding="ascii"))
+        return der(self.file)
 
-    def rules(self, name: str) -> str:
-        """Return what makes Mosquitto speak TLS as a computer of a name, and of 127.0.0.1."""
-        key, file = self._folder / f"{name}.key", self._folder / f"{name}.pem"
+    def rules(self, name: str, is_chain: bool = False) -> str:
+        """Return what makes Mosquitto speak TLS as a computer of a name, and of 127.0.0.1.
+
+        `is_chain`: it shows the authority's certificate behind its own.
+        """
+        key, file = self._folder / f"{name}.key", self.signed(name)
         _run(*_COMMON, "-CA", self.file, "-CAkey", self._key, "-keyout", key, "-out", file,
              "-subj", f"/CN={name}", "-addext", f"subjectAltName=DNS:{name},IP:127.0.0.1",
              "-addext", "basicConstraints=critical,CA:FALSE")  # fmt: skip
+        if is_chain:
+            own = file.read_text(encoding="ascii")
+            file.write_text(own + self.file.read_text(encoding="ascii"), encoding="ascii")
         return f"certfile {file}\nkeyfile {key}"
+
+    def signed(self, name: str) -> Path:
+        """Return the file with what was signed for a name."""
+        return self._folder / f"{name}.pem"
 
 
 def _run(*command: str | Path) -> None:

@@ -12,6 +12,7 @@ import os
 import re
 import ssl
 from contextlib import suppress
+from pathlib import Path
 from threading import Condition, Lock
 from time import monotonic
 from typing import Any, NamedTuple
@@ -91,6 +92,20 @@ def connected(host: str, port: int) -> Broker:
             broker = Broker(host, port, _accesses.get((host, port), Access()))
             _brokers[host, port] = broker
         return broker
+
+
+def _trusting(file: str | None) -> ssl.SSLContext:
+    """Return whom TLS trusts: what a file has, in PEM or DER, or whom this computer does.
+
+    A broker's own certificate is enough, whoever has signed it. Raises OSError.
+    """
+    data = None if file is None else Path(file).read_bytes()
+    if data is None or b"-----BEGIN" in data:
+        context = ssl.create_default_context(cafile=file)
+    else:
+        context = ssl.create_default_context(cadata=data)
+    context.verify_flags |= ssl.VERIFY_X509_PARTIAL_CHAIN
+    return context
 
 
 class Broker:
@@ -176,7 +191,7 @@ class Broker:
             self._client.username_pw_set(access.user, access.password)
         try:
             if access.is_tls:
-                self._client.tls_set(ca_certs=access.trusted)
+                self._client.tls_set_context(_trusting(access.trusted))
             self._client.connect(host, port, KEEP_ALIVE_S)
         except ssl.SSLError as why:
             raise PortError(ports.UNTRUSTED, str(why.reason or why)) from None

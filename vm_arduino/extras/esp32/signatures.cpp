@@ -167,8 +167,11 @@ is_a(&mbedtls_x509_crt_free, void (*)(mbedtls_x509_crt*));
 is_a(&mbedtls_x509_crt_parse_der, int (*)(mbedtls_x509_crt*, const unsigned char*, size_t));
 is_a(mbedtls_x509_crt::valid_to, mbedtls_x509_time);
 is_a(mbedtls_x509_time::year, int);
+is_a(mbedtls_x509_crt::raw, mbedtls_x509_buf);
+is_a(mbedtls_x509_buf::len, size_t);
+is_a(mbedtls_x509_buf::p, unsigned char*);
 static_assert(MBEDTLS_ERR_SSL_WANT_READ == -0x6900 && MBEDTLS_ERR_SSL_WANT_WRITE == -0x6880 &&
                   MBEDTLS_ERR_SSL_CONN_EOF == -0x7280 && MBEDTLS_X509_BADCERT_EXPIRED == 1 &&
                   MBEDTLS_X509_BADCERT_CN_MISMATCH == 4 && MBEDTLS_X509_BADCERT_NOT_TRUSTED == 8 &&
-                  MBEDTLS_X509_BADCERT_FUTURE == 0x200,
+                  MBEDTLS_X509_BADCERT_FUTURE == 0x200 && MBEDTLS_ERR_X509_ALLOC_FAILED == -0x2880,
               "numbers of mbedTLS");

@@ -171,7 +171,7 @@ OPTIONS: tuple[Option, ...] = (
     Option("--class", "class wifi", ("the name of the class: up to 16 of a to z, 0 to 9 and - (class)", "el nombre de la clase: hasta 16 de a a z, 0 a 9 y - (class)"), TEXT, ("NAME", "NOMBRE"), "group"),
     Option("--user", "class wifi", ("signs in at the broker with this name; tsc asks for the password", "entra en el broker con este nombre; tsc pide la contraseña"), TEXT, ("NAME", "NOMBRE")),
     Option("--no-broker", "wifi", ("the robot uses no broker any more", "el robot ya no usa ningún broker")),
-    Option("--tls", "wifi", ("with --broker: the robot speaks with it by TLS, and takes no certificate that --trust has not signed", "con --broker: el robot habla con él por TLS, y no acepta ningún certificado que --trust no haya firmado")),
+    Option("--tls", "wifi", ("with --broker: the robot speaks with it by TLS, and trusts the certificate of --trust alone", "con --broker: el robot habla con él por TLS, y solo confía en el certificado de --trust")),
     Option("--trust", "wifi", ("with --tls: a file with the one certificate that the robot trusts", "con --tls: un archivo con el único certificado en el que confía el robot"), TRUST, A_FILE),
     Option("--tls", "class", ("this computer speaks with the broker by TLS", "esta computadora habla con el broker por TLS")),
     Option("--trust", "class", ("with --tls: a file with the certificate to trust", "con --tls: un archivo con el certificado en el que confiar"), TRUST, A_FILE),

@@ -44,13 +44,27 @@ int receive(void*, unsigned char* bytes, size_t room) {
   return length < 0 && may_come_later() ? MBEDTLS_ERR_SSL_WANT_READ : MBEDTLS_ERR_SSL_CONN_EOF;
 }
 
-// Each certificate of the way to the trusted one. The core's own look at dates needs a clock.
-int look(void*, mbedtls_x509_crt* certificate, int, uint32_t* found) {
+bool is_the_trusted(const mbedtls_x509_crt& certificate) {
+  const mbedtls_x509_buf& its = certificate.raw;
+  return its.len == trusted.raw.len && __builtin_memcmp(its.p, trusted.raw.p, its.len) == 0;
+}
+
+// Each certificate of the way to the trusted one, the broker's own at last, with which all of them
+// are judged. mbedTLS trusts a certificate by itself only if it has signed itself: who trusts the
+// broker's own asks for its name and its date alone. The core's own look at dates needs a clock.
+int look(void*, mbedtls_x509_crt* certificate, int depth, uint32_t* found) {
   const mbedtls_x509_time& end = certificate->valid_to;
   const uint32_t last = static_cast<uint32_t>((end.year * 100 + end.mon) * 100 + end.day);
-  *found &= ~static_cast<uint32_t>(MBEDTLS_X509_BADCERT_EXPIRED | MBEDTLS_X509_BADCERT_FUTURE);
-  if (last < today) *found |= MBEDTLS_X509_BADCERT_EXPIRED;
-  flaws |= *found;
+  uint32_t its = *found;
+  its &= ~static_cast<uint32_t>(MBEDTLS_X509_BADCERT_EXPIRED | MBEDTLS_X509_BADCERT_FUTURE);
+  if (last < today) its |= MBEDTLS_X509_BADCERT_EXPIRED;
+  *found = 0;
+  flaws |= its;
+  if (depth != 0) return 0;
+  if (is_the_trusted(*certificate)) {
+    flaws = its & ~static_cast<uint32_t>(MBEDTLS_X509_BADCERT_NOT_TRUSTED);
+  }
+  *found = flaws;
   return 0;
 }
 
@@ -81,8 +95,10 @@ WifiState tls_begin(int socket, const BrokerSettings& settings) {
   mbedtls_ssl_init(&connection);
   mbedtls_ssl_config_init(&rules);
   mbedtls_x509_crt_init(&trusted);
-  if (mbedtls_x509_crt_parse_der(&trusted, settings.trust, settings.trust_bytes) != 0) {
-    return WifiState::kUntrusted;
+  const int parsed = mbedtls_x509_crt_parse_der(&trusted, settings.trust, settings.trust_bytes);
+  if (parsed != 0) {
+    const bool is_memory = parsed == MBEDTLS_ERR_X509_ALLOC_FAILED;
+    return is_memory ? WifiState::kNoTls : WifiState::kUntrusted;
   }
   if (mbedtls_ssl_config_defaults(&rules, MBEDTLS_SSL_IS_CLIENT, MBEDTLS_SSL_TRANSPORT_STREAM,
                                   MBEDTLS_SSL_PRESET_DEFAULT) != 0) {

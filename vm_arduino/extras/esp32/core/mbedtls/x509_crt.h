@@ -11,6 +11,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#define MBEDTLS_ERR_X509_ALLOC_FAILED -0x2880
 #define MBEDTLS_X509_BADCERT_EXPIRED 0x01
 #define MBEDTLS_X509_BADCERT_CN_MISMATCH 0x04
 #define MBEDTLS_X509_BADCERT_NOT_TRUSTED 0x08
@@ -22,7 +23,15 @@ typedef struct mbedtls_x509_time {
   int hour, min, sec;
 } mbedtls_x509_time;
 
+typedef struct mbedtls_asn1_buf {
+  int tag;
+  size_t len;
+  unsigned char* p;
+} mbedtls_asn1_buf;
+typedef mbedtls_asn1_buf mbedtls_x509_buf;
+
 typedef struct mbedtls_x509_crt {
+  mbedtls_x509_buf raw;
   void* before[64];
   mbedtls_x509_time valid_from;
   mbedtls_x509_time valid_to;
