@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -64,10 +65,12 @@ def test_a_robot_speaks_tls_with_whom_it_trusts(school: School, tmp_path: Path) 
 
     stranger = Authority(tmp_path, "Otra")
     assert "does not trust its certificate" in used(*school.place(stranger.file))
-    assert "is at the broker localhost, in the class 3b" in used(*school.place())
-    assert "is at the broker" in on(school.robot, "wifi").out
-    at_it = ["class", *school.place(), "--user", "robots"]
-    assert "no program; nothing runs; yours" in process(*at_it, data=b"a secret\n").out
+    said = used(*school.place())
+    assert "is at the broker localhost, in the class 3b" in said
+    later = on(school.robot, "wifi").out
+    assert "is at the broker" in later and "tsc class" not in later, "it knows no port"
+    _, *next_command = shlex.split(said.partition("To see all of them:  ")[2])
+    assert "no program; nothing runs; yours" in process(*next_command, data=b"a secret\n").out
 
 
 def test_what_is_no_certificate_is_said_before_the_robot_is_asked(tmp_path: Path) -> None:

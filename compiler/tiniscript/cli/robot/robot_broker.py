@@ -13,6 +13,7 @@ from tiniscript.cli.errors import CommandError
 from tiniscript.cli.inputs import shown
 from tiniscript.cli.robot import broker_options
 from tiniscript.cli.texts.common import text
+from tiniscript.library.install_advice import quoted
 from tiniscript.link.messages import STATUSES
 from tiniscript.link.network_messages import BROKER_NAME_BYTES, TRUST_BYTES
 from tiniscript.link.port_names import is_at_broker
@@ -88,8 +89,11 @@ def _certificate(data: bytes) -> bytes | None:
     return found if context.cert_store_stats()["x509"] == 1 else None
 
 
-def use(connection: Connection, broker: BrokerSettings | None) -> None:
-    """Give the robot a broker, or none, and say whether it is there. Raises CommandError."""
+def use(connection: Connection, broker: BrokerSettings | None, options: Namespace) -> None:
+    """Give the robot the broker of the options, or none, and say whether it is there.
+
+    Raises CommandError.
+    """
     if is_at_broker(connection.port):
         raise CommandError(2, "broker_over_it", robot=connection.name)
     if broker is not None and IPv4Address(broker.address).is_loopback:
@@ -106,7 +110,7 @@ def use(connection: Connection, broker: BrokerSettings | None) -> None:
     while _state(told) == "SEARCHING" and time.monotonic() < end_s:
         time.sleep(LOOK_S)
         told = _told(connection)
-    tell(connection, told, broker.name.decode())
+    tell(connection, told, broker.name.decode(), _class_command(options))
 
 
 def tell_if_any(connection: Connection) -> None:
@@ -116,14 +120,35 @@ def tell_if_any(connection: Connection) -> None:
         tell(connection, reply.values)
 
 
-def tell(connection: Connection, told: WifiReply, name: str = "") -> None:
-    """Say where the robot's broker is: under its name, where that is known."""
+def tell(connection: Connection, told: WifiReply, name: str = "", command: str = "") -> None:
+    """Say where the robot's broker is: under its name, where that is known.
+
+    `command` reaches all robots of the class: a robot tells neither port nor certificate.
+    """
     from tiniscript.link.wifi import address
 
-    key = f"broker_{_state(told).lower()}" if told.network else "broker_none"
+    state = _state(told)
+    key = f"broker_{state.lower()}" if told.network else "broker_none"
     group = shown(told.network.decode("utf-8", "replace"))
-    said = text(key, connection.language)
-    print(said.format(robot=connection.name, address=name or address(told), group=group))
+    said = text(key, connection.language).format(
+        robot=connection.name, address=name or address(told), group=group
+    )
+    if command and state == "READY":
+        said += text("broker_all", connection.language).format(command=command)
+    print(said)
+
+
+def _class_command(options: Namespace) -> str:
+    """Return `tsc class` at the broker of the options, as this computer reaches it."""
+    place = broker_options.place(options, bool(options.tls))
+    usual = broker_options.place(Namespace(broker=place.host), bool(options.tls))
+    words = ["--broker", place.host if place == usual else str(place)]
+    words += ["--class", broker_options.group(options)]
+    if options.user is not None:
+        words += ["--user", options.user]
+    if options.tls:
+        words += ["--tls", "--trust", options.trust]
+    return shown(" ".join(["tsc", "class", *(quoted(str(each)) for each in words)]))
 
 
 def _state(told: WifiReply) -> str:
