@@ -124,6 +124,24 @@ def test_who_is_not_trusted_gets_nothing(room: Room, tmp_path: Path, what: str, 
             own.kill()
 
 
+def test_a_broker_that_is_set_anew_is_not_answered_with_what_was_wrong_before(
+    room: Room, tmp_path: Path
+) -> None:
+    """Its task is looking a name up, for seconds, when the new one comes."""
+    robot, owner = joined(Keys())
+    known(robot, NAME, "127.0.0.1", wait_ms=3000)
+    wrong = room.settings(trust=Authority(tmp_path).der)
+    assert ended(robot, [(None, owner)], owner.use_broker(wrong)) == "OK"
+    until(robot, lambda: told(robot, owner)[1] == "UNTRUSTED")
+    talk(robot, [(None, owner)], 4500)
+    assert told(robot, owner)[1] == "UNTRUSTED"
+    assert ended(robot, [(None, owner)], owner.use_broker(room.settings())) == "OK"
+    while (state := told(robot, owner)[1]) != "READY":
+        assert state == "SEARCHING"
+        talk(robot, [(None, owner)], 20)
+        assert robot.now_ms < 30_000
+
+
 @pytest.mark.parametrize("is_chain", [False, True])
 def test_the_brokers_own_certificate_is_enough_and_no_other_of_its_authority(
     tmp_path: Path, is_chain: bool

@@ -164,9 +164,10 @@ def in_reach(robot: Esp32Robot, name: str, password: str) -> None:
     robot.radio("R", _text(name.encode()) + _text(password.encode()))
 
 
-def known(robot: Esp32Robot, name: str, address: str) -> None:
-    """Let the network know a computer's name."""
-    robot.radio("N", _text(name.encode()) + _text(address.encode()))
+def known(robot: Esp32Robot, name: str, address: str, wait_ms: int = 0) -> None:
+    """Let the network know a computer's name, which it takes some time to look up."""
+    words = _text(name.encode()) + _text(address.encode())
+    robot.radio("N", words + wait_ms.to_bytes(2, "little"))
 
 
 def talk(

@@ -221,7 +221,8 @@ void answer_radio(RequestReader* request, Writer* answer) {
     }
     case 'N': {
       const std::string name = request->text();
-      return network_name(name, request->text());
+      const std::string address = request->text();
+      return network_name(name, address, request->u16());
     }
     case 'P':
       return answer->u16(network_port());

@@ -6,6 +6,7 @@
 #include <ESPmDNS.h>
 #include <WiFi.h>
 #include <arpa/inet.h>
+#include <freertos/task.h>
 #include <lwip/netdb.h>
 #include <lwip/sockets.h>
 #include <string.h>
@@ -51,6 +52,7 @@ std::string near_name;
 std::string near_password;
 uint16_t bound_port;
 std::map<std::string, std::string> addresses = {{"localhost", "127.0.0.1"}};
+std::map<std::string, uint16_t> waits_ms;  // until a name is looked up
 
 }  // namespace
 
@@ -134,9 +136,10 @@ void network_in_reach(const std::string& name, const std::string& password) {
   near_password = password;
 }
 
-void network_name(const std::string& name, const std::string& address) {
+void network_name(const std::string& name, const std::string& address, uint16_t wait_ms) {
   const Lock lock(guard);
   addresses[name] = address;
+  waits_ms[name] = wait_ms;
 }
 
 uint16_t network_port() {
@@ -343,6 +346,13 @@ struct hostent* lwip_gethostbyname(const char* name) {
   static in_addr address;  // of one task alone, as with lwIP
   static char* list[] = {reinterpret_cast<char*>(&address), nullptr};
   static hostent found = {nullptr, nullptr, AF_INET, sizeof address, list};
+  uint16_t wait_ms;
+  {
+    const Lock lock(guard);
+    const auto wait = waits_ms.find(name);
+    wait_ms = wait == waits_ms.end() ? 0 : wait->second;
+  }
+  if (wait_ms != 0) vTaskDelay(wait_ms);
   const Lock lock(guard);
   const auto known = addresses.find(name);
   if (known == addresses.end() || inet_aton(known->second.c_str(), &address) == 0) return nullptr;

@@ -28,7 +28,8 @@ std::string serial_port_said();  // since the last call
 // WiFi: a network in reach with its password; none if `name` is empty.
 void network_in_reach(const std::string& name, const std::string& password);
 // Lets the network know a name of a computer; none but "localhost" is known before.
-void network_name(const std::string& name, const std::string& address);
+// Looking it up takes `wait_ms`.
+void network_name(const std::string& name, const std::string& address, uint16_t wait_ms);
 uint16_t network_port();  // on 127.0.0.1; 0: nothing listens
 
 // What the firmware has asked of the radios, for a test to compare.

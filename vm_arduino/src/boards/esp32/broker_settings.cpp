@@ -77,6 +77,13 @@ bool take(WifiStep step, const uint8_t* text, uint8_t length) {
   }
 }
 
+// While its task has not taken the settings, it speaks of those before: it may be looking up a name.
+WifiState state_now() {
+  if (!kept.now().is_set()) return WifiState::kOff;
+  if (kept.is_new()) return WifiState::kSearching;
+  return static_cast<WifiState>(__atomic_load_n(&state, __ATOMIC_RELAXED));
+}
+
 }  // namespace
 
 // TLS without a certificate that is trusted would be a connection to anybody, and without a name
@@ -97,7 +104,7 @@ WifiReport broker_report() {
   const BrokerSettings& now = kept.now();
   WifiReport report = {};
   report.mode = now.is_set() ? WifiMode::kStation : WifiMode::kOff;
-  report.state = static_cast<WifiState>(__atomic_load_n(&state, __ATOMIC_RELAXED));
+  report.state = state_now();
   __builtin_memcpy(report.address, now.address, sizeof report.address);
   report.network_bytes = static_cast<uint8_t>(length_of(now.group));
   __builtin_memcpy(report.network, now.group, report.network_bytes);
@@ -120,7 +127,12 @@ Answer broker_forget() {
   return broker_is_set() ? kept.keep(wanted) : Answer::kOk;
 }
 
-bool broker_changed(BrokerSettings* found) { return kept.changed(found); }
+// What it says of those before is over when the main loop learns that it has taken these.
+bool broker_changed(BrokerSettings* found) {
+  if (!kept.is_new()) return false;
+  broker_note(WifiState::kSearching);
+  return kept.changed(found);
+}
 
 void broker_note(WifiState found) {
   __atomic_store_n(&state, static_cast<uint8_t>(found), __ATOMIC_RELAXED);

@@ -51,10 +51,18 @@ class KeptSettings {
   bool changed(Settings* found) {
     const uint32_t changes = __atomic_load_n(&changes_, __ATOMIC_ACQUIRE);
     if (changes == seen_changes_) return false;
-    seen_changes_ = changes;
-    const CriticalSection critical;
-    *found = now_;
+    {
+      const CriticalSection critical;
+      *found = now_;
+    }
+    __atomic_store_n(&seen_changes_, changes, __ATOMIC_RELEASE);
     return true;
+  }
+
+  // For both: whether the task has still to take them.
+  bool is_new() const {
+    return __atomic_load_n(&changes_, __ATOMIC_ACQUIRE) !=
+           __atomic_load_n(&seen_changes_, __ATOMIC_ACQUIRE);
   }
 
  private:
