@@ -72,7 +72,7 @@ CORE = {
     "esp_random", "lwip_gethostbyname", "mbedtls_ssl_conf_authmode", "mbedtls_ssl_conf_ca_chain",
     "mbedtls_ssl_conf_rng", "mbedtls_ssl_conf_verify", "mbedtls_ssl_config_defaults",
     "mbedtls_ssl_config_free", "mbedtls_ssl_config_init", "mbedtls_ssl_free",
-    "mbedtls_ssl_handshake", "mbedtls_ssl_init", "mbedtls_ssl_read", "mbedtls_ssl_set_bio",
+    "mbedtls_ssl_handshake_step", "mbedtls_ssl_init", "mbedtls_ssl_read", "mbedtls_ssl_set_bio",
     "mbedtls_ssl_set_hostname", "mbedtls_ssl_setup", "mbedtls_ssl_write",
     "mbedtls_x509_crt_free", "mbedtls_x509_crt_init", "mbedtls_x509_crt_parse_der",
 }  # fmt: skip
@@ -82,7 +82,7 @@ RADIO = re.compile(
 )
 OF_CLASSES = {"_ZdlPv", "_ZdlPvj", "__cxa_guard_acquire", "__cxa_guard_release", "__cxa_atexit",
               "__dso_handle", "atexit", "__cxa_pure_virtual"}  # fmt: skip
-OF_VERSION = {2: {"ledcSetup", "ledcAttachPin"},
+OF_VERSION = {2: {"ledcSetup", "ledcAttachPin", "esp_task_wdt_delete", "xTaskGetIdleTaskHandleForCPU"},
               3: {"ledcAttachChannel", "esp_task_wdt_reconfigure"}}  # fmt: skip
 SERIAL = {"begin", "onReceiveError", "setRxBufferSize", "setTxBufferSize", "available",
           "availableForWrite", "read", "write"}  # fmt: skip
@@ -119,7 +119,9 @@ def test_the_whole_sketch_links_with_the_core_alone(chip: str, major: int, tmp_p
     (2, "void ledcWrite(uint8_t channel", "bool ledcWrite(uint8_t channel"),
     (3, "bool ledcWrite(uint8_t pin", "void ledcWrite(uint8_t pin"),
     (2, "uint16_t analogRead", "int analogRead"),
-    (2, "int mbedtls_ssl_handshake(", "void mbedtls_ssl_handshake("),
+    (2, "int mbedtls_ssl_handshake_step(", "void mbedtls_ssl_handshake_step("),
+    (2, "esp_err_t esp_task_wdt_delete(TaskHandle_t", "void esp_task_wdt_delete(TaskHandle_t"),
+    (2, "TaskHandle_t xTaskGetIdle", "UBaseType_t xTaskGetIdle"),
     (3, "hostent* lwip_gethostbyname(const", "hostent* lwip_gethostbyname("),
 ])  # fmt: skip
 def test_a_signature_that_differs_is_noticed(

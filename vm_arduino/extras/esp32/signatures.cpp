@@ -18,6 +18,7 @@
 #include <lwip/netdb.h>
 #include <lwip/sockets.h>
 #include <mbedtls/ssl.h>
+#include <mbedtls/version.h>
 #include <mbedtls/x509_crt.h>
 #include <nvs.h>
 #include <soc/gpio_sig_map.h>
@@ -47,6 +48,8 @@ is_a(&ledcWrite, void (*)(uint8_t, uint32_t));
 is_a(&ledcWriteTone, uint32_t (*)(uint8_t, uint32_t));
 // components/esp_system/include/esp_task_wdt.h of ESP-IDF 4.4
 is_a(&esp_task_wdt_init, esp_err_t (*)(uint32_t, bool));
+is_a(&esp_task_wdt_delete, esp_err_t (*)(TaskHandle_t));
+is_a(xTaskGetIdleTaskHandleForCPU(0), TaskHandle_t);
 #endif
 
 // cores/esp32/esp32-hal-gpio.h and esp32-hal-adc.h, of both versions
@@ -151,7 +154,12 @@ is_a(&mbedtls_ssl_set_bio, void (*)(mbedtls_ssl_context*, void*, mbedtls_ssl_sen
                                     mbedtls_ssl_recv_t*, mbedtls_ssl_recv_timeout_t*));
 is_a(static_cast<mbedtls_ssl_send_t*>(nullptr), int (*)(void*, const unsigned char*, size_t));
 is_a(static_cast<mbedtls_ssl_recv_t*>(nullptr), int (*)(void*, unsigned char*, size_t));
-is_a(&mbedtls_ssl_handshake, int (*)(mbedtls_ssl_context*));
+is_a(&mbedtls_ssl_handshake_step, int (*)(mbedtls_ssl_context*));
+#if MBEDTLS_VERSION_NUMBER >= 0x03020000
+is_a(mbedtls_ssl_is_handshake_over(nullptr), int);
+#else
+is_a(mbedtls_ssl_context::state, int);
+#endif
 is_a(&mbedtls_ssl_read, int (*)(mbedtls_ssl_context*, unsigned char*, size_t));
 is_a(&mbedtls_ssl_write, int (*)(mbedtls_ssl_context*, const unsigned char*, size_t));
 is_a(&mbedtls_ssl_config_init, void (*)(mbedtls_ssl_config*));

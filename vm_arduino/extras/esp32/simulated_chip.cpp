@@ -333,11 +333,22 @@ esp_err_t esp_task_wdt_init(const esp_task_wdt_config_t*) { return ESP_ERR_INVAL
 
 esp_err_t esp_task_wdt_reconfigure(const esp_task_wdt_config_t* config) {
   if (config->trigger_panic) chip.restart_ms = config->timeout_ms;
+  chip.watches_idle = (config->idle_core_mask & 1) != 0;
   return ESP_OK;
 }
 #else
 esp_err_t esp_task_wdt_init(uint32_t timeout, bool panic) {
   if (panic) chip.restart_ms = timeout * 1000;
+  return ESP_OK;
+}
+
+TaskHandle_t xTaskGetIdleTaskHandleForCPU(UBaseType_t cpuid) {
+  static int idle[2];
+  return &idle[cpuid];
+}
+
+esp_err_t esp_task_wdt_delete(TaskHandle_t handle) {
+  if (handle == xTaskGetIdleTaskHandleForCPU(0)) chip.watches_idle = false;
   return ESP_OK;
 }
 #endif

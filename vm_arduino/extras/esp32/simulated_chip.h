@@ -62,6 +62,7 @@ struct SimulatedChip {
 
   uint32_t restart_ms = 0;  // of the task watchdog; 0: it does not run
   uint64_t fed_us = 0;
+  bool watches_idle = true;  // the task watchdog, that of core 0, which nobody feeds meanwhile
   bool has_restarted = false;
 
   bool is_ledc_stuck = false;  // no duty changes any more

@@ -13,7 +13,7 @@ int mbedtls_ssl_setup(mbedtls_ssl_context*, const mbedtls_ssl_config*) { return 
 int mbedtls_ssl_set_hostname(mbedtls_ssl_context*, const char*) { return -1; }
 void mbedtls_ssl_set_bio(mbedtls_ssl_context*, void*, mbedtls_ssl_send_t*, mbedtls_ssl_recv_t*,
                          mbedtls_ssl_recv_timeout_t*) {}
-int mbedtls_ssl_handshake(mbedtls_ssl_context*) { return -1; }
+int mbedtls_ssl_handshake_step(mbedtls_ssl_context*) { return -1; }
 int mbedtls_ssl_read(mbedtls_ssl_context*, unsigned char*, size_t) { return -1; }
 int mbedtls_ssl_write(mbedtls_ssl_context*, const unsigned char*, size_t) { return -1; }
 void mbedtls_ssl_config_init(mbedtls_ssl_config*) {}

@@ -1,6 +1,8 @@
 // Tasks that go on in the chip's time, one after the other: each run repeats.
 
 #include <freertos/task.h>
+#include <stdio.h>
+#include <stdlib.h>
 
 #include <condition_variable>
 #include <memory>
@@ -18,6 +20,8 @@ struct Task {
   void* parameters;
   uint64_t due_us;
 };
+
+constexpr uint32_t kLongestMs = 10000;  // that a task calculates without a pause
 
 std::vector<std::unique_ptr<Task>> tasks;
 std::mutex turn;
@@ -63,6 +67,10 @@ extern "C" {
 BaseType_t xTaskCreatePinnedToCore(TaskFunction_t pvTaskCode, const char* const, const uint32_t,
                                    void* const pvParameters, UBaseType_t, TaskHandle_t* const,
                                    const BaseType_t) {
+  if (chip.watches_idle && chip.restart_ms != 0 && chip.restart_ms < kLongestMs) {
+    fprintf(stderr, "MISUSE a task beside an idle task that is watched\n");
+    abort();
+  }
   tasks.emplace_back(new Task{pvTaskCode, pvParameters, chip.now_us + 1000});
   std::thread(live, tasks.back().get()).detach();
   next_task_us = next_us;

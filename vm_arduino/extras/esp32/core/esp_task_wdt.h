@@ -21,6 +21,7 @@ esp_err_t esp_task_wdt_reconfigure(const esp_task_wdt_config_t* config);
 esp_err_t esp_task_wdt_init(uint32_t timeout, bool panic);
 #endif
 esp_err_t esp_task_wdt_add(TaskHandle_t handle);
+esp_err_t esp_task_wdt_delete(TaskHandle_t handle);
 esp_err_t esp_task_wdt_reset(void);
 }
 

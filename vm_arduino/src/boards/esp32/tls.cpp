@@ -7,6 +7,7 @@
 
 #include <esp_random.h>
 #include <mbedtls/ssl.h>
+#include <mbedtls/version.h>
 #include <mbedtls/x509_crt.h>
 
 #include "sockets.h"
@@ -80,6 +81,14 @@ bool is_only_later(int found) {
   return found == MBEDTLS_ERR_SSL_WANT_READ || found == MBEDTLS_ERR_SSL_WANT_WRITE;
 }
 
+bool has_shaken() {
+#if MBEDTLS_VERSION_NUMBER >= 0x03020000
+  return mbedtls_ssl_is_handshake_over(&connection) != 0;
+#else
+  return connection.state == MBEDTLS_SSL_HANDSHAKE_OVER;
+#endif
+}
+
 int count_of(int found) {
   if (is_only_later(found)) return kNothingYet;
   return found > 0 ? found : kEnded;
@@ -117,9 +126,9 @@ WifiState tls_begin(int socket, const BrokerSettings& settings) {
 }
 
 WifiState tls_shake() {
-  const int found = mbedtls_ssl_handshake(&connection);
-  if (found == 0) return WifiState::kReady;
-  return is_only_later(found) ? WifiState::kSearching : failure();
+  const int found = mbedtls_ssl_handshake_step(&connection);
+  if (found != 0) return is_only_later(found) ? WifiState::kSearching : failure();
+  return has_shaken() ? WifiState::kReady : WifiState::kSearching;
 }
 
 int tls_receive(uint8_t* bytes, size_t room) {

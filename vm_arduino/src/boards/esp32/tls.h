@@ -17,7 +17,8 @@ constexpr int kEnded = -1;
 // Returns kSearching, or why there is none.
 WifiState tls_begin(int socket, const BrokerSettings& settings);
 
-// Goes on with the handshake: kSearching until it is kReady, or why it has failed.
+// Goes on with the handshake by one step, after which its task is to pause: kSearching until it is
+// kReady, or why it has failed.
 WifiState tls_shake();
 
 // How many bytes there were or found room, kNothingYet or kEnded. What was not sent must be the

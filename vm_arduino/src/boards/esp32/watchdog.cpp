@@ -6,6 +6,7 @@
 #include <esp_system.h>
 #include <esp_task_wdt.h>
 #include <esp_timer.h>
+#include <freertos/task.h>
 #if __has_include(<esp_random.h>)
 #include <esp_random.h>
 #endif
@@ -87,7 +88,9 @@ void begin_restart() {
   // It runs already, unless the core was built without it.
   if (esp_task_wdt_reconfigure(&settings) != ESP_OK) esp_task_wdt_init(&settings);
 #else
+  // It runs already, and watches the idle task of core 0 too: TLS calculates there for longer.
   esp_task_wdt_init(kRestartSeconds, true);
+  esp_task_wdt_delete(xTaskGetIdleTaskHandleForCPU(0));
 #endif
   esp_task_wdt_add(nullptr);  // this task: setup() and loop() run in one
 }

@@ -16,6 +16,7 @@ BaseType_t xTaskCreatePinnedToCore(TaskFunction_t pvTaskCode, const char* const 
                                    const uint32_t usStackDepth, void* const pvParameters,
                                    UBaseType_t uxPriority, TaskHandle_t* const pvCreatedTask,
                                    const BaseType_t xCoreID);
+TaskHandle_t xTaskGetIdleTaskHandleForCPU(UBaseType_t cpuid);
 void vTaskDelay(const TickType_t xTicksToDelay);
 }
 

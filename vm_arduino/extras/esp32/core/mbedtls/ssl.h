@@ -8,6 +8,7 @@
 #include_next <mbedtls/ssl.h>
 #else
 
+#include <mbedtls/version.h>
 #include <mbedtls/x509_crt.h>
 
 #define MBEDTLS_ERR_SSL_WANT_READ -0x6900
@@ -18,7 +19,10 @@
 #define MBEDTLS_SSL_PRESET_DEFAULT 0
 #define MBEDTLS_SSL_VERIFY_REQUIRED 2
 
+typedef enum { MBEDTLS_SSL_HANDSHAKE_OVER = 16 } mbedtls_ssl_states;  // 27 in version 3
+
 typedef struct mbedtls_ssl_context {
+  int state;  // since version 3 behind mbedtls_ssl_is_handshake_over
   void* inner[96];
 } mbedtls_ssl_context;
 typedef struct mbedtls_ssl_config {
@@ -37,7 +41,7 @@ int mbedtls_ssl_setup(mbedtls_ssl_context* ssl, const mbedtls_ssl_config* conf);
 int mbedtls_ssl_set_hostname(mbedtls_ssl_context* ssl, const char* hostname);
 void mbedtls_ssl_set_bio(mbedtls_ssl_context* ssl, void* p_bio, mbedtls_ssl_send_t* f_send,
                          mbedtls_ssl_recv_t* f_recv, mbedtls_ssl_recv_timeout_t* f_recv_timeout);
-int mbedtls_ssl_handshake(mbedtls_ssl_context* ssl);
+int mbedtls_ssl_handshake_step(mbedtls_ssl_context* ssl);
 int mbedtls_ssl_read(mbedtls_ssl_context* ssl, unsigned char* buf, size_t len);
 int mbedtls_ssl_write(mbedtls_ssl_context* ssl, const unsigned char* buf, size_t len);
 void mbedtls_ssl_config_init(mbedtls_ssl_config* conf);
@@ -52,6 +56,12 @@ void mbedtls_ssl_conf_verify(mbedtls_ssl_config* conf,
 void mbedtls_ssl_conf_rng(mbedtls_ssl_config* conf, int (*f_rng)(void*, unsigned char*, size_t),
                           void* p_rng);
 }
+
+#if MBEDTLS_VERSION_NUMBER >= 0x03020000
+static inline int mbedtls_ssl_is_handshake_over(mbedtls_ssl_context* ssl) {
+  return ssl->state >= MBEDTLS_SSL_HANDSHAKE_OVER;
+}
+#endif
 
 #endif
 #endif  // TINISCRIPT_MBEDTLS_SSL_H_
