@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import socket
+import ssl
+import warnings
 from collections.abc import Iterator
+from contextlib import suppress
 from datetime import date
 from pathlib import Path
+from threading import Thread
 from typing import NamedTuple
 
 import pytest
@@ -140,6 +144,40 @@ def test_a_broker_that_is_set_anew_is_not_answered_with_what_was_wrong_before(
         assert state == "SEARCHING"
         talk(robot, [(None, owner)], 20)
         assert robot.now_ms < 30_000
+
+
+@pytest.mark.parametrize(("version", "state"), [
+    (ssl.TLSVersion.TLSv1_1, "NO_TLS"), (ssl.TLSVersion.TLSv1_2, "SEARCHING"),
+])  # fmt: skip
+def test_an_old_tls_is_none(tmp_path: Path, version: ssl.TLSVersion, state: str) -> None:
+    """A computer with the right certificate which is no broker."""
+    authority = Authority(tmp_path)
+    authority.rules(NAME)
+    rules = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
+    rules.set_ciphers("ALL:@SECLEVEL=0")  # else this computer offers no old version itself
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DeprecationWarning)
+        rules.minimum_version = rules.maximum_version = version
+    rules.load_cert_chain(authority.signed(NAME), tmp_path / f"{NAME}.key")
+    robot, owner = joined(Keys())
+    spoken: list[str | None] = []
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        server.settimeout(10)
+
+        def serve() -> None:
+            taken, _ = server.accept()
+            with taken, suppress(OSError):
+                spoken.append(rules.wrap_socket(taken, server_side=True).version())
+
+        thread = Thread(target=serve)
+        thread.start()
+        tls = wifi.Tls(authority.der, TODAY)
+        settings = PLAIN._replace(port=server.getsockname()[1], name=NAME.encode(), tls=tls)
+        assert ended(robot, [(None, owner)], owner.use_broker(settings)) == "OK"
+        until(robot, lambda: not thread.is_alive())
+        until(robot, lambda: told(robot, owner)[1] == state)
+        thread.join()
+    assert spoken == ([] if state == "NO_TLS" else ["TLSv1.2"])
 
 
 @pytest.mark.parametrize("is_chain", [False, True])

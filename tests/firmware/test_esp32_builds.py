@@ -82,7 +82,8 @@ RADIO = re.compile(
 )
 OF_CLASSES = {"_ZdlPv", "_ZdlPvj", "__cxa_guard_acquire", "__cxa_guard_release", "__cxa_atexit",
               "__dso_handle", "atexit", "__cxa_pure_virtual"}  # fmt: skip
-OF_VERSION = {2: {"ledcSetup", "ledcAttachPin", "esp_task_wdt_delete", "xTaskGetIdleTaskHandleForCPU"},
+OF_VERSION = {2: {"ledcSetup", "ledcAttachPin", "esp_task_wdt_delete",
+                  "xTaskGetIdleTaskHandleForCPU", "mbedtls_ssl_conf_min_version"},
               3: {"ledcAttachChannel", "esp_task_wdt_reconfigure"}}  # fmt: skip
 SERIAL = {"begin", "onReceiveError", "setRxBufferSize", "setTxBufferSize", "available",
           "availableForWrite", "read", "write"}  # fmt: skip
@@ -122,6 +123,7 @@ def test_the_whole_sketch_links_with_the_core_alone(chip: str, major: int, tmp_p
     (2, "int mbedtls_ssl_handshake_step(", "void mbedtls_ssl_handshake_step("),
     (2, "esp_err_t esp_task_wdt_delete(TaskHandle_t", "void esp_task_wdt_delete(TaskHandle_t"),
     (2, "TaskHandle_t xTaskGetIdle", "UBaseType_t xTaskGetIdle"),
+    (3, "mbedtls_ssl_protocol_version tls_version", "int tls_version"),
     (3, "hostent* lwip_gethostbyname(const", "hostent* lwip_gethostbyname("),
 ])  # fmt: skip
 def test_a_signature_that_differs_is_noticed(

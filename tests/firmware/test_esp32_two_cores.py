@@ -64,8 +64,8 @@ def test_no_two_cores_touch_the_same_at_once() -> None:
     (PIPE, "__atomic_load_n(&behind_, __ATOMIC_ACQUIRE)", "behind_"),
     ("src/boards/esp32/watchdog.cpp", "return __atomic_load_n(&from, __ATOMIC_ACQUIRE);",
      "return from;"),
-    ("src/boards/esp32/kept_settings.h", "      const CriticalSection critical;\n      *found = now_;",
-     "      *found = now_;"),
+    ("src/boards/esp32/kept_settings.h",
+     "      const CriticalSection critical;\n      *found = now_;", "      *found = now_;"),
     ("src/boards/esp32/broker_settings.cpp", "__atomic_load_n(&state, __ATOMIC_RELAXED)", "state"),
 ])  # fmt: skip
 def test_a_race_is_noticed(file: str, old: str, new: str, tmp_path: Path) -> None:

@@ -157,8 +157,12 @@ is_a(static_cast<mbedtls_ssl_recv_t*>(nullptr), int (*)(void*, unsigned char*, s
 is_a(&mbedtls_ssl_handshake_step, int (*)(mbedtls_ssl_context*));
 #if MBEDTLS_VERSION_NUMBER >= 0x03020000
 is_a(mbedtls_ssl_is_handshake_over(nullptr), int);
+is_a(&mbedtls_ssl_conf_min_tls_version,
+     void (*)(mbedtls_ssl_config*, mbedtls_ssl_protocol_version));
 #else
 is_a(mbedtls_ssl_context::state, int);
+is_a(&mbedtls_ssl_conf_min_version, void (*)(mbedtls_ssl_config*, int, int));
+static_assert(MBEDTLS_SSL_MAJOR_VERSION_3 == 3 && MBEDTLS_SSL_MINOR_VERSION_3 == 3, "TLS 1.2");
 #endif
 is_a(&mbedtls_ssl_read, int (*)(mbedtls_ssl_context*, unsigned char*, size_t));
 is_a(&mbedtls_ssl_write, int (*)(mbedtls_ssl_context*, const unsigned char*, size_t));

@@ -19,6 +19,9 @@ int mbedtls_ssl_write(mbedtls_ssl_context*, const unsigned char*, size_t) { retu
 void mbedtls_ssl_config_init(mbedtls_ssl_config*) {}
 void mbedtls_ssl_config_free(mbedtls_ssl_config*) {}
 int mbedtls_ssl_config_defaults(mbedtls_ssl_config*, int, int, int) { return -1; }
+#if MBEDTLS_VERSION_NUMBER < 0x03020000
+void mbedtls_ssl_conf_min_version(mbedtls_ssl_config*, int, int) {}
+#endif
 void mbedtls_ssl_conf_authmode(mbedtls_ssl_config*, int) {}
 void mbedtls_ssl_conf_ca_chain(mbedtls_ssl_config*, mbedtls_x509_crt*, mbedtls_x509_crl*) {}
 void mbedtls_ssl_conf_verify(mbedtls_ssl_config*, int (*)(void*, mbedtls_x509_crt*, int, uint32_t*),

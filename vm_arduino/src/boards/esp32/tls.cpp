@@ -81,6 +81,15 @@ bool is_only_later(int found) {
   return found == MBEDTLS_ERR_SSL_WANT_READ || found == MBEDTLS_ERR_SSL_WANT_WRITE;
 }
 
+// mbedTLS 2 would speak TLS 1.0.
+void refuse_old_versions() {
+#if MBEDTLS_VERSION_NUMBER >= 0x03020000
+  mbedtls_ssl_conf_min_tls_version(&rules, MBEDTLS_SSL_VERSION_TLS1_2);
+#else
+  mbedtls_ssl_conf_min_version(&rules, MBEDTLS_SSL_MAJOR_VERSION_3, MBEDTLS_SSL_MINOR_VERSION_3);
+#endif
+}
+
 bool has_shaken() {
 #if MBEDTLS_VERSION_NUMBER >= 0x03020000
   return mbedtls_ssl_is_handshake_over(&connection) != 0;
@@ -113,6 +122,7 @@ WifiState tls_begin(int socket, const BrokerSettings& settings) {
                                   MBEDTLS_SSL_PRESET_DEFAULT) != 0) {
     return WifiState::kNoTls;
   }
+  refuse_old_versions();
   mbedtls_ssl_conf_authmode(&rules, MBEDTLS_SSL_VERIFY_REQUIRED);
   mbedtls_ssl_conf_ca_chain(&rules, &trusted, nullptr);
   mbedtls_ssl_conf_verify(&rules, look, nullptr);

@@ -15,6 +15,10 @@
 #define MBEDTLS_ERR_SSL_WANT_WRITE -0x6880
 #define MBEDTLS_ERR_SSL_CONN_EOF -0x7280
 #define MBEDTLS_SSL_IS_CLIENT 0
+#if MBEDTLS_VERSION_NUMBER < 0x03020000
+#define MBEDTLS_SSL_MAJOR_VERSION_3 3
+#define MBEDTLS_SSL_MINOR_VERSION_3 3
+#endif
 #define MBEDTLS_SSL_TRANSPORT_STREAM 0
 #define MBEDTLS_SSL_PRESET_DEFAULT 0
 #define MBEDTLS_SSL_VERIFY_REQUIRED 2
@@ -25,7 +29,9 @@ typedef struct mbedtls_ssl_context {
   int state;  // since version 3 behind mbedtls_ssl_is_handshake_over
   void* inner[96];
 } mbedtls_ssl_context;
+typedef enum { MBEDTLS_SSL_VERSION_TLS1_2 = 0x0303 } mbedtls_ssl_protocol_version;
 typedef struct mbedtls_ssl_config {
+  mbedtls_ssl_protocol_version min_tls_version;
   void* inner[96];
 } mbedtls_ssl_config;
 typedef struct mbedtls_x509_crl mbedtls_x509_crl;
@@ -48,6 +54,9 @@ void mbedtls_ssl_config_init(mbedtls_ssl_config* conf);
 void mbedtls_ssl_config_free(mbedtls_ssl_config* conf);
 int mbedtls_ssl_config_defaults(mbedtls_ssl_config* conf, int endpoint, int transport, int preset);
 void mbedtls_ssl_conf_authmode(mbedtls_ssl_config* conf, int authmode);
+#if MBEDTLS_VERSION_NUMBER < 0x03020000
+void mbedtls_ssl_conf_min_version(mbedtls_ssl_config* conf, int major, int minor);
+#endif
 void mbedtls_ssl_conf_ca_chain(mbedtls_ssl_config* conf, mbedtls_x509_crt* ca_chain,
                                mbedtls_x509_crl* ca_crl);
 void mbedtls_ssl_conf_verify(mbedtls_ssl_config* conf,
@@ -58,6 +67,11 @@ void mbedtls_ssl_conf_rng(mbedtls_ssl_config* conf, int (*f_rng)(void*, unsigned
 }
 
 #if MBEDTLS_VERSION_NUMBER >= 0x03020000
+static inline void mbedtls_ssl_conf_min_tls_version(mbedtls_ssl_config* conf,
+                                                    mbedtls_ssl_protocol_version tls_version) {
+  conf->min_tls_version = tls_version;
+}
+
 static inline int mbedtls_ssl_is_handshake_over(mbedtls_ssl_context* ssl) {
   return ssl->state >= MBEDTLS_SSL_HANDSHAKE_OVER;
 }
