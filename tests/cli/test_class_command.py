@@ -11,6 +11,8 @@ import sys
 import time
 from collections.abc import Iterator
 from pathlib import Path
+from types import SimpleNamespace
+from typing import cast
 
 import pytest
 
@@ -20,7 +22,11 @@ from tests.support.command import FOREVER, Command, process
 from tests.support.esp32_pty_robot import Esp32PtyRobot
 from tests.support.mosquitto import Mosquitto, missing
 from tests.support.pty_robot import on
+from tiniscript.cli.robot.classroom import Listener
+from tiniscript.cli.robot.connect import Connection
+from tiniscript.cli.robot.fleet import Member
 from tiniscript.link.broker import ROOT
+from tiniscript.link.line import now_ms
 
 if sys.platform == "win32":
     pytest.skip("there are no pseudo-terminals", allow_module_level=True)
@@ -133,6 +139,35 @@ def test_values_are_collected(room: Class, tmp_path: Path) -> None:
     shows = {(row[0], row[1], row[4]) for row in rows if row[3] == "SHOW"}
     assert shows == {("tinibot", f"{seed:08x}", "5") for seed in SEEDS}
     assert len([row for row in rows if row[3] == "SHOW"]) == len(values)
+
+
+def test_the_times_of_all_robots_count_from_one_start() -> None:
+    printed: list[str] = []
+    listener = Listener(True, None)
+    began_ms = now_ms()
+    shown = ShowEvent(5000, False)
+
+    def listen(robot: int, after_ms: int) -> None:
+        events = iter([(began_ms + after_ms, shown), (began_ms + after_ms + 100, shown)])
+
+        def event() -> tuple[int, ShowEvent]:
+            try:
+                return next(events)
+            except StopIteration:
+                raise KeyboardInterrupt from None
+
+        connection = SimpleNamespace(
+            port="x", name="tini", language="en", device_info=SimpleNamespace(id=robot), event=event
+        )
+        member = SimpleNamespace(meet=lambda _: None, print=printed.append)
+        listener.listen(cast(Connection, connection), cast(Member, member))
+
+    listen(1, 2000)
+    listen(2, 7000)
+    times = [json.loads(line)["ms"] for line in printed]
+    early_ms = times[0] - 2000
+    assert 0 <= early_ms < 1000
+    assert [each - early_ms for each in times] == [2000, 2100, 7000, 7100]
 
 
 def test_a_robot_that_is_off_is_told(room: Class) -> None:

@@ -132,12 +132,18 @@ def show(room: Classroom) -> int:
 
 
 class Listener:
-    """Prints the events of one of many robots, and changes nothing of its run."""
+    """Prints the events of one of many robots, and changes nothing of its run.
+
+    The times of all count from when the listener is made.
+    """
 
     def __init__(self, is_json: bool, end_s: float | None, rows: Rows | None = None) -> None:
+        from tiniscript.link.line import now_ms
+
         self.is_json = is_json
         self.end_s = end_s
         self.rows = rows
+        self.began_ms = now_ms()
 
     def listen(self, connection: Connection, member: Member) -> Result:
         from tiniscript.cli.robot.event_printer import Bookkeeping, EventPrinter, no_formula
@@ -154,6 +160,7 @@ class Listener:
         printer = EventPrinter(
             connection.language, self.is_json, about=about, has_times=self.is_json, out=out,
             err=out, rows=partial(add, *who) if add is not None else None,
+            began_ms=self.began_ms,
         )  # fmt: skip
         bookkeeping = Bookkeeping()
         try:

@@ -76,7 +76,7 @@ def _err(line: str) -> None:
 
 
 class EventPrinter:
-    """Prints events. `has_times`: each with the milliseconds since the first.
+    """Prints events. `has_times`: each with the milliseconds since `began_ms`, else the first.
 
     `rows` gets the cells of each, for a CSV file. `out` and `err` replace `print` while a picture
     is on the terminal. JSON lines also get the fields of `about`.
@@ -92,6 +92,7 @@ class EventPrinter:
         out: Callable[[str], None] | None = None,
         err: Callable[[str], None] | None = None,
         about: Mapping[str, object] | None = None,
+        began_ms: int | None = None,
     ) -> None:
         self.language = language
         self.is_json = is_json
@@ -101,7 +102,7 @@ class EventPrinter:
         self.out = out or _out
         self.err = err or _err
         self.about = about or {}
-        self.began_ms: int | None = None
+        self.began_ms = began_ms
 
     def tell(self, time_ms: int, event: Event) -> None:
         if self.began_ms is None:
