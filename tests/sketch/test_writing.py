@@ -52,6 +52,11 @@ def test_a_simple_program_has_simple_numbers() -> None:
     assert "for (int i = 0; i < 3; i++) {" in text and "if (distance < 10.5) {" in text
 
 
+def test_a_variable_that_a_def_copies_from_below_is_a_yes_no() -> None:
+    text = sketch("Q = TRUE; DEF LOOK; SEEN = Q; END_DEF; LOOK; SHOW(SEEN)")
+    assert "bool q = false;" in text and "bool seen = false;" in text
+
+
 def test_what_is_not_used_is_not_written() -> None:
     text = sketch("SI|F(2, 80)")
     for word in ("tone(int", "analogRead", "beep(", "backward(", "TRIGGER", "Number", "moveLasts"):

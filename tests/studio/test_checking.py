@@ -114,3 +114,21 @@ def changed_by(text: str, changes: tuple[checking.Change, ...]) -> str:
         start, end = offset(change.line, change.column), offset(change.end_line, change.end_column)
         text = text[:start] + change.text + text[end:]
     return text
+
+
+@pytest.mark.parametrize(
+    ("program", "yes_no"),
+    [
+        ("Q = TRUE; DEF LOOK; SEEN = Q; END_DEF; LOOK", ["Q", "SEEN"]),
+        (
+            "Q = DISTANCE < 9; N = 1; DEF A; C = Q; K = N; END_DEF; A; D = C;"
+            " DEF G; E = D; K = N; END_DEF; G",
+            ["Q", "C", "D", "E"],
+        ),
+    ],
+)
+def test_a_variable_is_a_yes_no_however_its_value_gets_there(
+    program: str, yes_no: list[str]
+) -> None:
+    variables = checking.check(program.encode(), "tinibot", "en").variables
+    assert {each.name for each in variables if each.is_yes_no} == set(yes_no)

@@ -173,15 +173,22 @@ _YES_NO = frozenset(("YES_NO", "NOT", "AND", "OR", "LT", "LE", "GT", "GE", "EQ",
 def are_yes_no(program: Program, kit: Kit) -> list[bool]:
     """Return for each variable of a program whether it is a yes/no."""
     found = [False] * len(program.variables)
+    copies: list[Assign] = []  # the value is another variable
     for statement in every(program):
-        if isinstance(statement, Assign):
-            last = statement.value[-1]
-            if last.op == "VARIABLE":
-                found[statement.variable] = found[last.value]
-            elif last.op == "SENSOR":
-                found[statement.variable] = kit.sensors[last.value].is_yes_no
-            else:
-                found[statement.variable] = last.op in _YES_NO
+        if not isinstance(statement, Assign):
+            continue
+        last = statement.value[-1]
+        if last.op == "VARIABLE":
+            copies.append(statement)
+        elif last.op == "SENSOR":
+            found[statement.variable] = kit.sensors[last.value].is_yes_no
+        else:
+            found[statement.variable] = last.op in _YES_NO
+    known = -1
+    while known < sum(found):  # a DEF may copy a variable that is set below it
+        known = sum(found)
+        for copy in copies:
+            found[copy.variable] |= found[copy.value[-1].value]
     return found
 
 
