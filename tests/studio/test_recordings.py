@@ -8,8 +8,9 @@ import pytest
 
 from tests.support.virtual_robot import missing
 from tiniscript import compile
-from tiniscript.studio import worker
+from tiniscript.studio import recordings, worker
 from tiniscript.studio.recordings import BadRecording, Parting, read, replay
+from tiniscript.studio.simulation import Simulation
 from tiniscript.virtual import worlds
 
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing() or "there is wasmtime")
@@ -47,14 +48,65 @@ def test_the_first_time_that_differs_is_told() -> None:
 
 
 def test_who_goes_on_alone_is_told() -> None:
-    assert parting(*LINES[:4]).what == "virtual_more"
+    found = parting(*LINES[:2], (9000, "STOPPED"))
+    assert (found.what, found.agreed, found.line) == ("virtual_more", 2, 3)
     more = parting((100, "SHOW 1"), (200, "SHOW 2"), text="SHOW(1);W(0.1)")
     assert (more.what, more.agreed) == ("value", 1)  # DONE in place of the second one
     assert parting((100, "SHOW 1"), text="W(9);SHOW(1)").what == "robot_more"
 
 
-def test_a_stop_by_a_person_is_no_difference() -> None:
-    assert parting(*LINES[:2], (1500, "STOPPED")) == Parting("same", 3)
+@pytest.mark.parametrize("end", [[], [(1500, "STOPPED")], [(2200, "STOPPED")], [(9000, "LOST")]])
+def test_a_recording_that_is_cut_is_compared_as_far_as_it_goes(end: list[tuple[int, str]]) -> None:
+    """By a person, by the link, or because the robot still runs: each of them is no difference."""
+    assert parting(*LINES[:2], *end) == Parting("same", 2)
+    found = parting(LINES[0], (1020, "SHOW 36"), *end)
+    assert (found.what, found.agreed) == ("value", 1)
+
+
+def test_what_did_not_arrive_ends_the_comparison() -> None:
+    assert parting(*LINES[:2], (2060, "MISSED")) == Parting("missed", 2)
+    assert parting((9, "MISSED")) == Parting("missed", 0)
+    assert parting(LINES[0], (1020, "SHOW 36"), (2060, "MISSED")).what == "value"
+
+
+@pytest.mark.parametrize("waited_ms", [0, 100, 7000])
+def test_a_program_of_the_button_is_pushed_and_compared_from_its_first_event(
+    waited_ms: int,
+) -> None:
+    """A hand is slow, and no robot tells when its program begins."""
+    text = "SB|W(1);SHOW(5);W(2);SHOW(6)"
+    lines = [(waited_ms, "SHOW 5"), (waited_ms + 2000, "SHOW 6"), (waited_ms + 2001, "DONE")]
+    assert parting(*lines, text=text) == Parting("same", 3)
+    found = parting(lines[0], (waited_ms + 3000, "SHOW 6"), text=text)
+    assert (found.what, found.agreed) == ("time", 1)
+    assert found.virtual is not None and found.virtual.ms < 3100
+    assert found.robot is not None and found.robot.ms == found.virtual.ms + 1000
+    assert parting(lines[0], (lines[0][0] + 900, "STOPPED"), text=text) == Parting("same", 1)
+    assert parting(text=text) == parting((0, "STOPPED"), text=text) == Parting("same", 0)
+    assert parting((0, "SHOW 5"), (1, "DONE"), text="SB|SHOW(5)") == Parting("same", 2)
+    assert parting((0, "SHOW 5"), text="SB|W(1)").what == "value"
+
+
+@pytest.mark.parametrize(
+    ("text", "events"),
+    [
+        ("SB|SHOW(5);W(30)", ((7000, "SHOW 5"), (7500, "LOST"))),
+        ("SB|W(30);SHOW(5)", ((4000, "STOPPED"),)),
+    ],
+)
+def test_the_virtual_robot_runs_no_longer_than_what_is_compared(
+    text: str, events: tuple[tuple[int, str], ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ran_ms = []
+
+    class Timed(Simulation):
+        def close(self) -> None:
+            ran_ms.append(self.robot.now_ms)
+            super().close()
+
+    monkeypatch.setattr(recordings, "Simulation", Timed)
+    assert parting(*events, text=text).what == "same"
+    assert ran_ms[0] < 8000
 
 
 def test_a_recording_of_another_program_is_not_compared() -> None:
@@ -77,6 +129,7 @@ def test_a_recording_of_another_program_is_not_compared() -> None:
         (file((5, "SHOW 99999999999")), "unreadable", 2),
         (file((5, "SHOW NaN")), "unreadable", 2),
         (file((5, "FAULT <b>")), "unreadable", 2),
+        (file((5, "MISSED"), (6, "SHOW 2")), "unreadable", 3),
         (file((-1, "SHOW 1")), "unreadable", 2),
         (file((10**9, "SHOW 1")), "too_long", 2),
         (b"{" + b" " * 1_000_000, "too_long", 1),

@@ -2,8 +2,10 @@
 
 A file is JSON Lines: `{"tiniscript_recording": 1, "program": "89abcdef", "robot": "tinibot"}`, then
 a line for each event, `{"ms": 120, "event": "SHOW 2.5"}`, with the milliseconds since the program
-began. Events are SHOW, DONE, FAULT and STOPPED; one that ends the run is the last one. Knows no
-clock and no page.
+began; those of a program that waits for the robot's button count from its first event. Events are
+SHOW, and one that is the last: DONE, FAULT, STOPPED (or saved while it ran), LOST (the link) and
+MISSED (values did not arrive). A recording is compared as far as it goes. Knows no clock and no
+page.
 """
 
 from __future__ import annotations
@@ -26,8 +28,10 @@ MOST_BYTES = 1_000_000
 MOST_MS = 600_000
 LEAST_OFF_MS, OFF = 250, 0.05  # how much later or earlier is the same time
 STEP_MS = 100
+BEGINNING_MS = 1000  # limit for a program to begin after its button
+CUT = ("STOPPED", "LOST", "MISSED")  # the end of a recording, and not what the program did
 _EVENT = re.compile(
-    r"SHOW (?:TRUE|FALSE|-?\d{1,7}(?:\.\d{1,3})?)|DONE|STOPPED|FAULT [A-Z_0-9]{1,40}"
+    r"SHOW (?:TRUE|FALSE|-?\d{1,7}(?:\.\d{1,3})?)|DONE|STOPPED|LOST|MISSED|FAULT [A-Z_0-9]{1,40}"
 )
 _PROGRAM = re.compile(r"[0-9a-f]{8}")
 
@@ -54,8 +58,9 @@ class Recording(NamedTuple):
 class Parting(NamedTuple):
     """Where a recording and the virtual robot part.
 
-    `what` is same, other_program, value, time, robot_more or virtual_more; `line` is that of the
-    program, or 0, and `robot` and `virtual` are the events there. `agreed` events were the same.
+    `what` is same, missed (the same until values did not arrive), other_program, value, time,
+    robot_more or virtual_more; `line` is that of the program, or 0, and `robot` and `virtual` are
+    the events there. `agreed` events were the same.
     """
 
     what: str
@@ -123,13 +128,16 @@ def replay(recording: Recording, text: bytes, robot: str, world: World) -> Parti
     simulation = Simulation(robot, world, found.image, Marks(parts, tuple(shows)))
     virtual: list[Recorded] = []
     lines: list[int] = []
-    ends = recording.events[-1] if recording.events else Recorded(0, "STOPPED")
-    until_ms = ends.ms + _off_ms(ends.ms)
+    is_by_button = found.program.start == "SB"
+    if is_by_button:
+        _push(simulation)
+    events = recording.events
+    until_ms = _until_ms(events, [], is_by_button)
     while simulation.robot.now_ms - (simulation.robot.started_ms or 0) < until_ms:
         began_ms = simulation.robot.started_ms or 0
         if simulation.held_at is not None:
             line, sensor = shows[simulation.held_at]
-            said = recording.events[len(lines)].event if len(lines) < len(recording.events) else ""
+            said = events[len(lines)].event if len(lines) < len(events) else ""
             if sensor is not None and said.startswith("SHOW"):
                 simulation.robot.sensing.tell(sensor, _number(said))
             lines.append(line)
@@ -138,10 +146,51 @@ def replay(recording: Recording, text: bytes, robot: str, world: World) -> Parti
         for event in simulation.robot.take_events():
             if _EVENT.fullmatch(event.text):
                 virtual.append(Recorded(event.time_ms - began_ms, event.text))
-        if not simulation.robot.is_running or len(virtual) > len(recording.events):
+        until_ms = _until_ms(events, virtual, is_by_button)
+        if not simulation.robot.is_running or len(virtual) > len(events):
             break
     simulation.close()
-    return _compared(recording.events, virtual, lines, until_ms)
+    if is_by_button:
+        events = _since(events, virtual)
+    return _compared(events, virtual, lines)
+
+
+def _push(simulation: Simulation) -> None:
+    """Push the start button, and wait until the program has begun."""
+    simulation.push()
+    for _ in range(BEGINNING_MS):
+        if simulation.robot.started_ms is not None:
+            return
+        simulation.go(1)
+    raise AssertionError("the program does not begin")
+
+
+def _until_ms(events: tuple[Recorded, ...], virtual: list[Recorded], is_by_button: bool) -> int:
+    """Return how long the virtual robot runs to be compared with all of `events`.
+
+    By its button its first event is waited for, whose time the recording does not have.
+    """
+    if not events:
+        return 0
+    if not is_by_button or not _is_said(events[0]):
+        return events[-1].ms + _off_ms(events[-1].ms)
+    if not virtual:
+        return MOST_MS
+    last_ms = _since(events, virtual)[-1].ms
+    return last_ms + _off_ms(last_ms)
+
+
+def _since(events: tuple[Recorded, ...], virtual: list[Recorded]) -> tuple[Recorded, ...]:
+    """Return `events` as if the first one had been at the time of the virtual one."""
+    if not events or not virtual:
+        return events
+    late_ms = virtual[0].ms - events[0].ms
+    return tuple(each._replace(ms=each.ms + late_ms) for each in events)
+
+
+def _is_said(event: Recorded) -> bool:
+    """Whether the program has said that, so that the virtual robot should say it, too."""
+    return event.event not in CUT
 
 
 def _shown_sensors(program: ir.Program) -> dict[int, int | None]:
@@ -164,25 +213,22 @@ def _off_ms(ms: int) -> int:
     return LEAST_OFF_MS + round(ms * OFF)
 
 
-def _compared(
-    recorded: tuple[Recorded, ...], virtual: list[Recorded], lines: list[int], until_ms: int
-) -> Parting:
-    for count, ours in enumerate(recorded):
+def _compared(recorded: tuple[Recorded, ...], virtual: list[Recorded], lines: list[int]) -> Parting:
+    said = tuple(filter(_is_said, recorded))
+    for count, ours in enumerate(said):
         line = lines[count] if count < len(lines) else 0
         theirs = virtual[count] if count < len(virtual) else None
         if theirs is None:
-            if ours.event == "STOPPED":
-                break  # a person has done that
             return Parting("robot_more", count, line, ours)
-        if ours.event == "STOPPED":
-            break
         if ours.event != theirs.event:
             return Parting("value", count, line, ours, theirs)
         if abs(ours.ms - theirs.ms) > _off_ms(max(ours.ms, theirs.ms)):
             return Parting("time", count, line, ours, theirs)
-    else:
-        if len(virtual) > len(recorded) and virtual[len(recorded)].ms <= until_ms:
-            count = len(recorded)
+    count = len(said)
+    ends = recorded[-1] if recorded else Recorded(0, "STOPPED")
+    if ends.event == "STOPPED" and len(virtual) > count:
+        theirs = virtual[count]  # the robot has not said that, and had the time for it
+        if theirs.ms + _off_ms(ends.ms) < ends.ms:
             line = lines[count] if count < len(lines) else 0
-            return Parting("virtual_more", count, line, None, virtual[count])
-    return Parting("same", len(recorded))
+            return Parting("virtual_more", count, line, None, theirs)
+    return Parting("missed" if ends.event == "MISSED" else "same", count)

@@ -15,6 +15,8 @@ export const ROBOT_TEXTS = {
   record_comparing: ['The virtual robot is doing the same…', 'El robot virtual está haciendo lo mismo…'],
   record_same: ['Both did the same: {count} times the robot said what the virtual one says.',
     'Los dos hicieron lo mismo: {count} veces el robot dijo lo que dice el virtual.'],
+  record_missed: ['Then values of the robot did not arrive, so nothing after that is compared. Before that both were the same ({count} times).',
+    'Después no llegaron valores del robot, y desde ahí no se compara. Hasta ahí los dos iban igual ({count} veces).'],
   record_value: ['{place}: the robot says {robot}, the virtual one {virtual}. Before that both were the same ({count} times).',
     '{place}: el robot dice {robot}; el virtual, {virtual}. Hasta ahí los dos iban igual ({count} veces).'],
   record_time: ['{place}: the robot got there at another time. The robot says {robot}, the virtual one {virtual}.',
