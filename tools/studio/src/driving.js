@@ -184,9 +184,7 @@ export class Driving {
   /** Stops, and switches off. */
   #rest() {
     this.#stop();
-    this.#simulator.phase = 'off';
-    this.#simulator.state = null;
-    this.#simulator.trace = [];
+    this.#simulator.leave();
     this.#plot.begin();
     this.#variables = [];
     this.#arena.begin(this.#shapes, this.#work.robot);
@@ -240,6 +238,7 @@ export class Driving {
     this.#show();
     if (!program?.image) return;
     await this.#simulator.stop();
+    if (start !== this.#starts) return;
     this.#wasStopped = false;
     this.#arena.begin(this.#world.shapes, this.#work.robot);
     this.#plot.begin();

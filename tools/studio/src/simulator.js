@@ -29,6 +29,9 @@ export class Simulator {
   isStopping = false; // it has not confirmed it yet
   #rest = 0; // of a millisecond that is not asked for yet
   #last = 0;
+  #left = 0; // runs that were left
+  /** @type {Promise<void> | null} */
+  #stopped = null; // when the last stop is confirmed
 
   /**
    * @param {Python} python
@@ -103,11 +106,21 @@ export class Simulator {
 
   /** Stops the robot over its link; it confirms. Requests that are under way come before. */
   async stop() {
-    if ((this.phase !== 'running' && this.phase !== 'paused') || this.isStopping) return;
-    this.isStopping = true;
-    this.phase = 'ended';
-    this.#shown();
-    await this.#ask({ do: 'stop' });
+    if ((this.phase === 'running' || this.phase === 'paused') && !this.isStopping) {
+      this.isStopping = true;
+      this.phase = 'ended';
+      this.#shown();
+      this.#stopped = this.#ask({ do: 'stop' });
+    }
+    await this.#stopped;
+  }
+
+  /** Nothing of the run is seen any more, nor what it answers later. It was stopped. */
+  leave() {
+    this.#left += 1;
+    this.phase = 'off';
+    this.state = null;
+    this.trace = [];
   }
 
   /** @param {number} now */
@@ -130,11 +143,13 @@ export class Simulator {
    * @param {Uint8Array} [data]
    */
   async #ask(request, data) {
+    const left = this.#left;
     this.#isAsking = true;
     try {
       const answer = await this.#python.ask(request, data);
       if (request['do'] === 'stop') this.isStopping = false;
-      if (answer.refused) this.#refuse(answer.refused);
+      if (left !== this.#left) this.#shown();
+      else if (answer.refused) this.#refuse(answer.refused);
       else this.#take(answer);
     } catch (why) {
       this.phase = 'off';
