@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.studio.test_page_robot import in_phase
-from tests.studio.test_page_worlds import read_start, said, saved
+from tests.studio.test_page_worlds import put, read_start, said, saved
 from tests.support.studio import write
 
 if TYPE_CHECKING:
@@ -49,3 +49,14 @@ def test_a_run_that_was_left_moves_nothing(page: Page) -> None:
     assert read_start(page) == (40, 40)
     assert page.locator("#values dd").first.inner_text() == "–"
     said(page, "Press Run")
+
+
+def test_the_robot_stays_on_a_floor_of_any_size(page: Page) -> None:
+    page.click("#world_draw")
+    put(page, NO_BORDER)
+    said(page, "Opened")
+    page.select_option("#world_part", label="Robot")
+    page.locator("#arena").focus()
+    page.keyboard.press("ArrowRight")
+    page.keyboard.press("ArrowUp")
+    assert saved(page).start[:2] == (120.06, 80)

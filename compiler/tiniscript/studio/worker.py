@@ -170,13 +170,18 @@ def _open_world(fields: Answer, data: bytes) -> Answer:
 
 
 def _write_world(fields: Answer, data: bytes) -> Answer:
-    """Return the text of a form, and why the robot could not begin there, if it could not."""
+    """Return the text of a form, and whether the robot fits at its start, or why it is no world."""
     from tiniscript.studio.world_form import toml_of
     from tiniscript.virtual.driving import Driving
+    from tiniscript.virtual.world import WorldRefused
     from tiniscript.virtual.world_reader import read as read_world
+    from tiniscript.virtual.world_refusals import describe
 
     text = toml_of(fields["form"])
-    world = read_world(text, "")
+    try:
+        world = read_world(text, "")
+    except WorldRefused as refused:
+        return {"refused": describe(refused, fields["language"])}
     body = checking.profile_of(fields["robot"]).body
     return {"text": text, "is_blocked": Driving(body, world.obstacles(), world.start).is_blocked()}
 

@@ -105,7 +105,7 @@ export function moved(world, part, right_cm, up_cm, point = -1) {
   const right = within(right_cm, taken.map(([x]) => x), world.width_cm);
   const up = within(up_cm, taken.map(([, y]) => y), world.height_cm);
   /** @param {Place} place @returns {Place} */
-  const there = ([x, y]) => [neat(x + right), neat(y + up)];
+  const there = ([x, y]) => [neatOn(x + right, world.width_cm), neatOn(y + up, world.height_cm)];
   const value = valueOf(world, part);
   if (!value.points) {
     const [x_cm, y_cm] = there([value.x_cm, value.y_cm]);
@@ -285,6 +285,11 @@ function turned([x, y], [midX, midY], degrees) {
   return [midX + (x - midX) * cos - (y - midY) * sin, midY + (x - midX) * sin + (y - midY) * cos];
 }
 
+/** @param {Place} place @param {World} world @returns {Place} the nearest on the floor */
+export function onFloor([x, y], { width_cm, height_cm }) {
+  return [Math.max(0, Math.min(width_cm, x)), Math.max(0, Math.min(height_cm, y))];
+}
+
 /** @param {number} degrees */
 function around(degrees) {
   return Math.round((((((degrees + 180) % 360) + 360) % 360) - 180) * 10) / 10;
@@ -293,4 +298,10 @@ function around(degrees) {
 /** @param {number} cm */
 function neat(cm) {
   return Math.round(cm * 10) / 10;
+}
+
+/** The same, but what is on the floor is not rounded off it. @param {number} cm @param {number} end */
+function neatOn(cm, end) {
+  const rounded = neat(cm);
+  return rounded - end < SMALLEST_CM / 10 ? Math.min(end, rounded) : rounded;
 }
