@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.studio.test_page_robot import in_phase
-from tests.studio.test_page_worlds import put, read_start, said, saved
-from tests.support.studio import write
+from tests.studio.test_page_worlds import drag, put, read_start, said, saved
+from tests.support.studio import Pages, checked, write
+from tiniscript.virtual import worlds
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -30,6 +31,94 @@ def at_rest(page: Page) -> None:
     if page.locator("#world_done").is_visible():
         page.click("#world_done")
     page.select_option("#world", "obstacles")
+
+
+def draw_wall(page: Page) -> None:
+    """Make a world of one's own, with a wall."""
+    page.select_option("#world", "obstacles")
+    page.click("#world_draw")
+    page.click("#world_add_walls")
+    drag(page, [(60, 30), (100, 60)])
+    assert len(saved(page).walls) == 1
+    page.click("#world_done")
+
+
+def listed(page: Page) -> list[str]:
+    shipped = len(worlds.names())
+    return page.locator("#world option").all_inner_texts()[shipped:]
+
+
+def walls_of(page: Page, label: str) -> int:
+    """Choose a world of the list; return how many walls it has."""
+    page.select_option("#world", label=label)
+    page.click("#world_draw")
+    found = len(saved(page).walls)
+    page.click("#world_done")
+    return found
+
+
+def test_a_world_is_not_lost_to_the_next_one(pages: Pages) -> None:
+    page = pages.open()
+    draw_wall(page)
+    page.select_option("#world", "obstacles")
+    drag(page, [OBSTACLES_START, (56, 90)])  # no pencil, and another world of one's own
+    assert listed(page) == ["my world", "my world (before)"]
+    assert walls_of(page, "my world") == 0
+    assert walls_of(page, "my world (before)") == 1
+    assert listed(page) == ["my world", "my world (before)"]  # they have changed places
+    assert page.locator("#world option:checked").inner_text() == "my world"
+    page.reload()
+    checked(page)
+    assert listed(page) == ["my world", "my world (before)"]
+    assert walls_of(page, "my world (before)") == 0
+    assert walls_of(page, "my world (before)") == 1
+    page.click("#world_draw")
+    put(page, NO_BORDER, "aula.toml")  # nor to a file that is opened
+    said(page, "Opened: aula.toml")
+    page.click("#world_done")
+    assert listed(page) == ["aula", "my world (before)", "my world (before 2)"]
+    assert walls_of(page, "my world (before)") == 1
+    assert listed(page) == ["my world", "aula (before)", "my world (before 2)"]
+    page.select_option("#language", "es")
+    assert "mi mundo (de antes 2)" in listed(page)
+
+
+def test_changes_of_one_world_make_no_other(page: Page) -> None:
+    draw_wall(page)
+    count = len(listed(page))
+    drag(page, [OBSTACLES_START, (56, 90)])
+    page.click("#world_draw")
+    page.click("#world_undo")
+    page.click("#world_redo")
+    assert abs(saved(page).start.y_cm - 90) <= 1
+    assert len(listed(page)) == count
+
+
+def test_five_worlds_before_are_kept(page: Page) -> None:
+    page.click("#world_draw")
+    for k in range(8):
+        put(page, NO_BORDER, f"w{k}.toml")
+        said(page, f"Opened: w{k}.toml")
+    numbers = ["", " 2", " 3", " 4", " 5"]
+    found = ["w7", *(f"w{6 - k} (before{number})" for k, number in enumerate(numbers))]
+    assert listed(page) == found
+
+
+def test_damaged_worlds_before_do_no_harm(page: Page) -> None:
+    draw_wall(page)
+    page.click("#world_draw")
+    saved(page)
+    page.click("#world_done")
+    page.evaluate(
+        """() => {
+          sessionStorage.setItem('tiniscript.worlds_before', '7');
+          localStorage.setItem('tiniscript.worlds_before', '[1, "no TOML", null, {}]');
+        }"""
+    )
+    page.reload()
+    checked(page)
+    assert listed(page) == ["my world"]
+    assert walls_of(page, "my world") == 1
 
 
 def test_a_run_that_was_left_moves_nothing(page: Page) -> None:
@@ -60,3 +149,27 @@ def test_the_robot_stays_on_a_floor_of_any_size(page: Page) -> None:
     page.keyboard.press("ArrowRight")
     page.keyboard.press("ArrowUp")
     assert saved(page).start[:2] == (120.06, 80)
+
+
+def test_a_world_that_cannot_be_written_is_told(page: Page) -> None:
+    """A mistake of ours: the page asks for the text of a world whose robot is off its floor."""
+    page.click("#world_draw")
+    page.evaluate(
+        """() => {
+          window.posted = Worker.prototype.postMessage;
+          Worker.prototype.postMessage = function (message, ...rest) {
+            const request = JSON.parse(message.request);
+            if (request.do === 'write_world') request.form.start.x_cm = 999;
+            window.posted.call(this, { ...message, request: JSON.stringify(request) }, ...rest);
+          };
+        }"""
+    )
+    try:
+        page.click("#world_save")
+        said(page, "starts outside the floor")
+        page.select_option("#world_part", label="Robot")
+        page.locator("#arena").focus()
+        page.keyboard.press("ArrowRight")
+        said(page, "starts outside the floor")
+    finally:
+        page.evaluate("() => { Worker.prototype.postMessage = window.posted; }")

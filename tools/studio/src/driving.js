@@ -7,9 +7,9 @@ import { download } from './files.js';
 import { offsetsOf } from './parts.js';
 import { Plot } from './plot.js';
 import { Simulator } from './simulator.js';
-import { currentLanguage, text } from './texts.js';
+import { text } from './texts.js';
 import { ROBOTS } from './words.js';
-import { keptWorld, OWN_WORLD } from './work.js';
+import { OWN_WORLD } from './work.js';
 import { WorldChoice } from './world_choice.js';
 import { WorldDrawing } from './world_drawing.js';
 
@@ -63,7 +63,7 @@ export class Driving {
     this.#whenCompiled = whenCompiled;
     this.#python = python;
     this.#remember = remember;
-    this.#world = new WorldChoice(work, () => this.#enter());
+    this.#world = new WorldChoice(python, work, () => this.#enter());
     this.#simulator = new Simulator(python, (state) => {
       if (state) this.#keep(state);
       this.#show();
@@ -71,20 +71,21 @@ export class Driving {
     this.#drawing = new WorldDrawing(python, this.#arena, {
       world: () => this.#shapes,
       isOwn: () => this.#world.isOwn,
+      keepOwn: () => this.#world.keepOwn(),
+      write: (world) => this.#world.write(world),
       robot: () => {
         const [x, y] = this.#simulator.state?.pose ?? [this.#shapes.start.x_cm, this.#shapes.start.y_cm];
         return [x, y];
       },
-      robotName: () => work.robot,
       isDriving: () => this.#isDriving,
       rest: () => {
         this.#rest();
         this.#seen.value = 'arena';
         this.#choose();
       },
-      put: (world) => {
+      put: (world, isOther) => {
         this.#preview = null;
-        this.#world.putOwn(world);
+        this.#world.putOwn(world, isOther);
         remember();
         this.#rest();
       },
@@ -191,18 +192,13 @@ export class Driving {
     this.#show();
   }
 
-  /** Brings the world back that was drawn here. */
+  /** Brings the worlds back that were drawn here. */
   async #restore() {
-    const kept = keptWorld();
-    if (!kept) return;
-    const request = { do: 'open_world', name: '', language: currentLanguage() };
     try {
-      await this.#python.ready;
-      const { world } = await this.#python.ask(request, new TextEncoder().encode(kept));
-      const isChosen = this.#work.world === OWN_WORLD;
-      if (world) this.#world.putOwn(world, isChosen);
-      else if (isChosen) this.#note = text('world_lost');
-      if (isChosen) this.begin();
+      const isWhole = await this.#world.restoreOwn();
+      if (this.#work.world !== OWN_WORLD) return;
+      if (!isWhole) this.#note = text('world_lost');
+      this.begin();
     } catch {
       // the page says that there is no compiler
     }

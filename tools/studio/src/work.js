@@ -7,7 +7,8 @@ import { isRobot, WORLDS } from './words.js';
 /** @typedef {{text: string, robot: string, world: string, language: 'en' | 'es', name: string, view: 'blocks' | 'text', level: 'few' | 'usual' | 'all'}} Work */
 
 const PLACE = 'tiniscript.work';
-const WORLD_PLACE = 'tiniscript.world'; // the text of a world that was drawn here
+const WORLD_PLACE = 'tiniscript.world'; // the text of the newest world that was drawn here
+const BEFORE_PLACE = 'tiniscript.worlds_before'; // the texts of those before it
 export const OWN_WORLD = ':own'; // no name of a shipped world
 const OURS = 'tiniscript.'; // all places of this page
 const LONGEST = 1_000_000; // characters
@@ -36,9 +37,15 @@ export function keptWork() {
   return kept(PLACE, (found) => checked(JSON.parse(found)));
 }
 
-/** Returns the text of the world that was drawn here; who reads it checks it. @returns {string | null} */
-export function keptWorld() {
-  return kept(WORLD_PLACE, (found) => found);
+/** Returns the texts of the worlds that were drawn here; who reads them checks them. @returns {{newest: string, before: string[]}} */
+export function keptWorlds() {
+  return {
+    newest: kept(WORLD_PLACE, (found) => found) ?? '',
+    before: kept(BEFORE_PLACE, (found) => {
+      const texts = JSON.parse(found);
+      return Array.isArray(texts) ? texts.filter((each) => typeof each === 'string' && each) : null;
+    }) ?? [],
+  };
 }
 
 /**
@@ -69,9 +76,16 @@ export function keep(work) {
   return put(PLACE, JSON.stringify(work));
 }
 
-/** Keeps the text of a world that was drawn. @param {string} text @returns {boolean} */
-export function keepWorld(text) {
-  return put(WORLD_PLACE, text);
+/**
+ * Keeps the texts of the worlds that were drawn: the newest, and of those before it as many as fit in.
+ * @param {string} newest
+ * @param {string[]} before the last one first
+ */
+export function keepWorlds(newest, before) {
+  let rest = LONGEST;
+  const fitting = before.filter((each) => (rest -= each.length) >= 0);
+  put(BEFORE_PLACE, JSON.stringify(fitting));
+  if (newest) put(WORLD_PLACE, newest);
 }
 
 /** @param {string} place @param {string} whole @returns {boolean} */

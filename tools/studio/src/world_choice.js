@@ -4,6 +4,7 @@
 import { element } from './elements.js';
 import { currentLanguage, text } from './texts.js';
 import { WORLDS } from './words.js';
+import { OwnWorlds } from './own_worlds.js';
 import { OWN_WORLD } from './work.js';
 
 /** @typedef {import('./world_parts.js').World} World */
@@ -15,24 +16,31 @@ import { OWN_WORLD } from './work.js';
  */
 
 const BROUGHT = ':brought'; // no name of a shipped world
+const BEFORE = ':before'; // nor this, with a number behind it
 
 export class WorldChoice {
   #work;
   #choice = element('world', HTMLSelectElement);
   /** @type {Brought | null} */
   #brought = null;
-  /** @type {World | null} */
-  #own = null;
+  #own;
 
   /**
+   * @param {import('./python.js').Python} python
    * @param {import('./work.js').Work} work
    * @param {() => void} changed
    */
-  constructor(work, changed) {
+  constructor(python, work, changed) {
     this.#work = work;
+    this.#own = new OwnWorlds(python);
     this.#choice.addEventListener('change', () => {
-      if (this.#choice.value !== BROUGHT) {
-        this.#work.world = this.#choice.value;
+      const { value } = this.#choice;
+      if (value.startsWith(BEFORE)) {
+        this.#own.takeBack(Number(value.slice(BEFORE.length)));
+        this.keepOwn();
+      }
+      if (value !== BROUGHT) {
+        this.#work.world = value.startsWith(BEFORE) ? OWN_WORLD : value;
         this.#brought = null;
         this.setLanguage();
       }
@@ -43,19 +51,19 @@ export class WorldChoice {
 
   /** Whether the world that is seen was drawn or opened here. */
   get isOwn() {
-    return !this.#brought && this.#own !== null && this.#work.world === OWN_WORLD;
+    return !this.#brought && this.#own.newest !== null && this.#work.world === OWN_WORLD;
   }
 
   /** @returns {World} */
   get shapes() {
     const { world } = this.#work;
-    if (this.isOwn && this.#own) return this.#own;
+    if (this.isOwn && this.#own.newest) return this.#own.newest;
     return this.#brought?.shapes ?? WORLDS.find((each) => each.name === world) ?? /** @type {World} */ (WORLDS[0]);
   }
 
   /** What the worker is asked for. */
   get request() {
-    if (this.isOwn) return { form: this.#own };
+    if (this.isOwn) return { form: this.#own.newest };
     return this.#brought?.request ?? this.shapes.name;
   }
 
@@ -67,24 +75,42 @@ export class WorldChoice {
 
   /**
    * @param {World} world is this person's own from now on
-   * @param {boolean} isChosen
+   * @param {boolean} isOther than the one that is seen
    */
-  putOwn(world, isChosen = true) {
-    this.#own = world;
-    if (isChosen) {
-      this.#brought = null;
-      this.#work.world = OWN_WORLD;
-    }
+  putOwn(world, isOther) {
+    this.#own.put(world, isOther || !this.isOwn);
+    this.#brought = null;
+    this.#work.world = OWN_WORLD;
     this.setLanguage();
+  }
+
+  /** @param {World} world it is written as a file has it */
+  write(world) {
+    return this.#own.write(world, this.#work.robot);
+  }
+
+  /** Keeps this person's worlds on this device. */
+  keepOwn() {
+    return this.#own.keep(this.#work.robot);
+  }
+
+  /** Brings this person's worlds back; returns whether the newest can still be read. */
+  async restoreOwn() {
+    const isWhole = await this.#own.restore();
+    this.setLanguage();
+    return isWhole;
   }
 
   setLanguage() {
     const language = currentLanguage();
     const brought = this.#brought;
-    const own = this.#own;
+    const { newest, before } = this.#own;
+    /** @param {World} world */
+    const label = (world) => world.labels[language].trim() || text('world_own');
     this.#choice.replaceChildren(
       ...WORLDS.map((world) => new Option(world.labels[language], world.name)),
-      ...(own ? [new Option(own.labels[language].trim() || text('world_own'), OWN_WORLD)] : []),
+      ...(newest ? [new Option(label(newest), OWN_WORLD)] : []),
+      ...before.map((world, k) => new Option(text(k ? 'world_before_more' : 'world_before', { world: label(world), number: k + 1 }), `${BEFORE}${k}`)),
       ...(brought ? [new Option(brought.label(), BROUGHT)] : []),
     );
     this.#choice.value = brought ? BROUGHT : this.isOwn ? OWN_WORLD : this.shapes.name;

@@ -3,12 +3,12 @@
 
 import { element } from './elements.js';
 import { bytesOf, download } from './files.js';
-import { currentLanguage, text, TEXTS } from './texts.js';
+import { ownCopy } from './own_worlds.js';
+import { currentLanguage, text } from './texts.js';
 import {
-  FLOOR, isSame, KINDS, moved, NUMBERS, partAt, partsOf, pointAt, pointsOf, START, turnedPart,
+  FLOOR, isSame, KINDS, moved, NUMBERS, onFloor, partAt, partsOf, pointAt, pointsOf, START, turnedPart,
   valueOf, withDrawn, without, withPoint,
 } from './world_parts.js';
-import { keepWorld } from './work.js';
 import { nameOf, showNumbers } from './world_numbers.js';
 
 /** @typedef {import('./world_parts.js').World} World */
@@ -22,10 +22,11 @@ import { nameOf, showNumbers } from './world_numbers.js';
  * @property {() => boolean} isDriving
  * @property {() => boolean} isOwn whether that world was drawn or opened here
  * @property {() => void} rest the robot is off, and its floor seen in place of curves
- * @property {(world: World) => void} put a changed world takes the place of the one that is seen
+ * @property {(world: World) => Promise<{text?: string, is_blocked?: boolean, refused?: string[]}>} write it as a file has it, or why it is none
+ * @property {() => void} keepOwn what was drawn or opened here is kept
+ * @property {(world: World, isOther: boolean) => void} put a changed world, or another one, takes the place of the one that is seen
  * @property {(world: World) => void} preview the same, for as long as a finger is down
  * @property {() => void} tell something is to be shown anew
- * @property {() => string} robotName
  */
 /** @typedef {{how: 'move' | 'draw', part: Part, point: number, from: Place, before: World, base: World, way: Place[]}} Drag `base`: what is moved */
 
@@ -99,7 +100,7 @@ export class WorldDrawing {
     this.#canvas.addEventListener('pointerdown', (event) => this.#down(event));
     this.#canvas.addEventListener('pointermove', (event) => this.#move(event));
     this.#canvas.addEventListener('pointerup', () => this.#up());
-    this.#canvas.addEventListener('pointercancel', () => this.#letGo());
+    this.#canvas.addEventListener('pointercancel', () => this.letGo());
     this.#canvas.addEventListener('keydown', (event) => this.#key(event));
   }
 
@@ -111,7 +112,7 @@ export class WorldDrawing {
 
   /** The seen world is another one than this has made. */
   forget() {
-    this.#letGo();
+    this.letGo();
     this.#before = [];
     this.#after = [];
     this.#chosen = FLOOR;
@@ -172,15 +173,15 @@ export class WorldDrawing {
   #change(world, before = this.#page.world()) {
     if (JSON.stringify(world) === JSON.stringify(before)) return;
     const isOwn = this.#page.isOwn();
-    this.#before.push(isOwn ? before : own(before));
+    this.#before.push(isOwn ? before : ownCopy(before));
     if (this.#before.length > KEPT) this.#before.shift();
     this.#after = [];
-    this.#put(isOwn ? world : own(world));
+    this.#put(isOwn ? world : ownCopy(world));
   }
 
   /** @param {World} world */
   #put(world) {
-    this.#page.put(world);
+    this.#page.put(world, false);
     if (!partsOf(world).some((part) => isSame(part, this.#chosen))) this.#chosen = FLOOR;
     if (this.#point >= pointsOf(world, this.#chosen).length) this.#point = -1;
     this.said = this.#sentence();
@@ -188,19 +189,19 @@ export class WorldDrawing {
     this.#write();
   }
 
-  /** Keeps the world's text and asks whether the robot fits; returns the text. @returns {Promise<string>} */
+  /** Keeps the world and asks whether the robot fits; returns its text, or says why it has none. @returns {Promise<string>} */
   async #write() {
     const asked = ++this.#written;
-    const answer = await this.#python.ask({ do: 'write_world', form: this.#page.world(), robot: this.#page.robotName() });
-    if (asked === this.#written) {
-      if (this.#page.isOwn()) keepWorld(answer.text);
-      if (answer.is_blocked !== this.#isBlocked) {
-        this.#isBlocked = answer.is_blocked;
-        this.said = answer.is_blocked ? text('world_blocked') : this.#sentence();
-        this.#page.tell();
+    const { text: written = '', is_blocked = false, refused } = await this.#page.write(this.#page.world());
+    if (refused) this.#say(refused.join(' '));
+    else if (asked === this.#written) {
+      this.#page.keepOwn();
+      if (is_blocked !== this.#isBlocked) {
+        this.#isBlocked = is_blocked;
+        this.#say(is_blocked ? text('world_blocked') : this.#sentence());
       }
     }
-    return answer.text;
+    return written;
   }
 
   /** @param {World[]} from @param {World[]} to */
@@ -331,7 +332,8 @@ export class WorldDrawing {
     this.#change(world, drag.before);
   }
 
-  #letGo() {
+  /** What a finger moves is again where it was. */
+  letGo() {
     if (this.#drag?.how === 'move') this.#page.preview(this.#drag.before);
     this.#drag = null;
   }
@@ -346,7 +348,7 @@ export class WorldDrawing {
       const data = await bytesOf(chosen);
       const answer = await this.#python.ask({ do: 'open_world', name, language: currentLanguage() }, data);
       if (answer.world) {
-        this.#page.put(answer.world);
+        this.#page.put(answer.world, true);
         this.forget();
         this.#write();
         this.#say(text('world_opened', { name }));
@@ -361,7 +363,9 @@ export class WorldDrawing {
 
   async #save() {
     const name = text('world_name');
-    download(name, await this.#write());
+    const written = await this.#write();
+    if (!written) return;
+    download(name, written);
     this.#say([text('saved', { name }), this.#isBlocked && text('world_blocked')].filter(Boolean).join(' '));
   }
 
@@ -386,14 +390,4 @@ export class WorldDrawing {
     showNumbers(this.#numbers, world, this.#chosen, (changed) => this.#change(changed));
     this.#mark();
   }
-}
-
-/** A shipped world that is changed is nobody's but this person's. @param {World} world @returns {World} */
-function own(world) {
-  return { ...world, name: '', labels: { en: TEXTS['world_own']?.[0] ?? '', es: TEXTS['world_own']?.[1] ?? '' } };
-}
-
-/** @param {Place} place @param {World} world @returns {Place} */
-function onFloor([x, y], { width_cm, height_cm }) {
-  return [Math.max(0, Math.min(width_cm, x)), Math.max(0, Math.min(height_cm, y))];
 }

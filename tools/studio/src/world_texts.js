@@ -5,6 +5,8 @@
 export const WORLD_TEXTS = {
   world_draw: ['Change this world', 'Cambiar este mundo'],
   world_own: ['my world', 'mi mundo'],
+  world_before: ['{world} (before)', '{world} (de antes)'],
+  world_before_more: ['{world} (before {number})', '{world} (de antes {number})'],
   world_tools: ['Tools for the world', 'Herramientas del mundo'],
   world_floor_label: ['The floor with its parts: arrow keys move the chosen one, R turns it, P chooses a point of it, Delete deletes it',
     'El piso con sus partes: las flechas mueven la elegida, R la gira, P elige un punto, Supr la borra'],
