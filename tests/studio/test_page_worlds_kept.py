@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.studio.test_page_robot import in_phase
-from tests.studio.test_page_worlds import drag, put, read_start, said, saved
+from tests.studio.test_page_worlds import drag, on_screen, put, read_start, said, saved
 from tests.support.studio import Pages, checked, write
 from tiniscript.virtual import worlds
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Page
+    from playwright.sync_api import Page, Route
 
 OBSTACLES_START = (56, 75)
 NO_BORDER = b"""[floor]
@@ -119,6 +119,39 @@ def test_damaged_worlds_before_do_no_harm(page: Page) -> None:
     checked(page)
     assert listed(page) == ["my world"]
     assert walls_of(page, "my world") == 1
+
+
+def test_nothing_is_drawn_before_the_kept_world_is_there(page: Page) -> None:
+    draw_wall(page)
+    page.select_option("#world", "obstacles")
+    mine = listed(page)
+    held: list[Route] = []
+    page.route("**/python.zip", lambda route: held.append(route))
+    page.reload()
+    try:
+        assert page.locator("#world_draw").is_disabled()
+        drag(page, [OBSTACLES_START, (56, 120)])
+        assert page.input_value("#world") == "obstacles"
+        assert held
+    finally:
+        for route in held:
+            route.continue_()
+        page.unroute("**/python.zip")
+    checked(page)
+    page.locator("#world_draw:not([disabled])").wait_for()
+    assert listed(page) == mine
+    assert walls_of(page, "my world") == 1
+
+
+def test_a_drag_ends_where_another_world_begins(page: Page) -> None:
+    page.mouse.move(*on_screen(page, OBSTACLES_START))
+    page.mouse.down()
+    page.mouse.move(*on_screen(page, (56, 100)), steps=3)
+    page.select_option("#world", "light")
+    page.mouse.up()
+    assert page.input_value("#world") == "light"
+    light = worlds.load("light").start
+    assert read_start(page) == (light.x_cm, light.y_cm)
 
 
 def test_a_run_that_was_left_moves_nothing(page: Page) -> None:

@@ -177,6 +177,7 @@ export class Driving {
 
   /** Another robot or world: what drove there has ended. */
   begin() {
+    this.#drawing.letGo();
     this.#preview = null;
     this.#rest();
     this.#drawing.forget();
@@ -192,7 +193,7 @@ export class Driving {
     this.#show();
   }
 
-  /** Brings the worlds back that were drawn here. */
+  /** Brings the worlds back that were drawn here; none is drawn before, for it would take their place. */
   async #restore() {
     try {
       const isWhole = await this.#world.restoreOwn();
@@ -201,6 +202,8 @@ export class Driving {
       this.begin();
     } catch {
       // the page says that there is no compiler
+    } finally {
+      this.#drawing.allow();
     }
   }
 

@@ -43,6 +43,7 @@ export class WorldDrawing {
   #arena;
   #page;
   #canvas = element('arena', HTMLCanvasElement);
+  #pencil = element('world_draw', HTMLButtonElement);
   #tools = element('world_tools', HTMLElement);
   #parts = element('world_part', HTMLSelectElement);
   #numbers = element('world_numbers', HTMLElement);
@@ -108,6 +109,11 @@ export class WorldDrawing {
     if (!this.isOn) return;
     this.said = text('world_hint');
     this.#show();
+  }
+
+  /** The kept worlds are there: from now on one can be changed. */
+  allow() {
+    this.#pencil.disabled = false;
   }
 
   /** The seen world is another one than this has made. */
@@ -271,7 +277,7 @@ export class WorldDrawing {
 
   /** @param {PointerEvent} event */
   #down(event) {
-    if (!event.isPrimary || event.button !== 0 || this.#drag) return;
+    if (!event.isPrimary || event.button !== 0 || this.#drag || this.#pencil.disabled) return;
     const { place, reach_cm } = this.#arena.floorAt(event);
     const before = this.#page.world();
     if (!this.isOn) {
