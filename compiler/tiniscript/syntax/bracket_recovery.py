@@ -56,7 +56,8 @@ class BracketRecovery:
         if not rest and cursor.token.kind == "{":
             self._braces_for_brackets(word, known)
         span = Span(word.start, rest[-1].end if rest else word.end)
-        fix = "" if self.in_block.is_name(word.text) else call_in(known, rest)  # `DEF B` comes
+        is_def = known.role != "actuator" and self.in_block.is_name(word.text)  # `DEF B` comes
+        fix = "" if is_def else call_in(known, rest)
         if rest and rest[0].text.startswith(".") and rest[0].start == word.end:
             fix = ""  # `F.2.80`
         if not rest and cursor.token.text == "UNTIL" and known.role in ("move", "wait"):
