@@ -29,6 +29,7 @@ BOARDS = sorted(
 )
 STRICT = ("-std=c++11", "-pedantic", "-fno-exceptions", "-fno-rtti", *WARNINGS, "-fsyntax-only")
 ALLOWED = {"<stdint.h>", "<stddef.h>", "<avr/pgmspace.h>"}
+ARDUINOS = {"HIGH", "LOW", "OUTPUT"}  # said by a header that is for sketches
 CHIP_OF_THE_CORE = "ARDUINO_ARCH_ESP32"  # defined on the command line, as __AVR__ is for an AVR
 FORBIDDEN = ("virtual", "new", "delete", "throw", "try", "float", "double", "goto", "malloc",
              "dynamic_cast", "typeid", "Arduino", "String")  # fmt: skip
@@ -47,7 +48,8 @@ def shouting(path: Path) -> set[str]:
     text = code_of(path)
     guard = re.match(r"\s*#ifndef (\w+_H_)\s*\n#define \1\s", text)
     found = set(re.findall(r"\b[A-Z][A-Z0-9_]*\b", text))
-    return found - {guard.group(1) if guard else "", CHIP_OF_THE_CORE}
+    arduinos = ARDUINOS if "#include <Arduino.h>" in text else set()
+    return found - {guard.group(1) if guard else "", CHIP_OF_THE_CORE} - arduinos
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)
