@@ -108,6 +108,18 @@ def test_an_answer_comes_before_what_follows_from_it(page: Page) -> None:
         assert order == [number + 1, "STARTED", "SHOW", "DONE"]
 
 
+def test_a_start_says_whether_it_is_a_program_of_the_page(page: Page) -> None:
+    """A page records programs: a line that is tried is none of them."""
+    image = compile("SHOW(1)").image.hex()
+    for do, is_program in (("upload", True), ("live", False), ("start", True), ("live", False)):
+        fields = {} if do == "start" else {"image": image, "robot": "tinibot"}
+        page.news.clear()
+        page.ask(do, **fields, **({"runs": True} if do == "upload" else {}))
+        started = page.until(lambda each: each.get("event") == "STARTED")
+        assert started["is_program"] is is_program, do
+        page.until(lambda each: each.get("event") == "DONE")
+
+
 def test_a_fault_says_where(page: Page) -> None:
     page.upload("X = 0;\nSHOW(1 / X)")
     fault = page.until(lambda each: each.get("event") == "FAULT")

@@ -278,6 +278,51 @@ def test_another_run_of_tsc_studio_is_said(pages: Pages, server: serving.Server)
     pages.wrong.clear()
 
 
+def test_a_line_and_a_lost_link_leave_a_recording_as_it_is(page: Page) -> None:
+    write(page, "SHOW(5);\nW(60);\nSHOW(6)")
+    page.click("#link_upload")
+    said(page, "The robot has it")
+    page.locator("#record_compare:enabled").wait_for(state="attached")
+    page.click("#record summary")
+    told = page.locator("#record_said")
+    page.click("#record_compare")
+    told.filter(has_text="Both did the same: 1 times").wait_for()  # it still runs
+    page.click("#stop")
+    said(page, "stopped")
+    page.fill("#link_line", "SHOW(7)")
+    page.keyboard.press("Enter")
+    said(page, "Done.")
+    assert events(page) == ["SHOW 5", "STOPPED"]
+    page.click("#link_upload")
+    said(page, "The robot has it")
+    page.locator("#record_compare:enabled").wait_for(state="attached")
+    page.click("#link_leave")
+    page.locator("#link_ways").wait_for()
+    assert events(page) == ["SHOW 5", "LOST"]
+
+
+def test_a_program_of_the_button_is_recorded_from_its_first_event(
+    page: Page, robot: PtyRobot
+) -> None:
+    write(page, "SB|SHOW(5);\nW(0.5);\nSHOW(6)")
+    page.click("#link_upload")
+    said(page, "The robot has it")
+    page.wait_for_timeout(700)
+    robot.push()
+    said(page, "Done.")
+    page.click("#record summary")
+    page.click("#record_compare")
+    page.locator("#record_said").filter(has_text="Both did the same: 3 times").wait_for()
+    assert events(page) == ["SHOW 5", "SHOW 6", "DONE"]
+
+
+def events(page: Page) -> list[str]:
+    """Return what the page saves of the last run."""
+    with page.expect_download() as saved:
+        page.click("#record_save")
+    return [json.loads(each)["event"] for each in saved.value.path().read_text().splitlines()[1:]]
+
+
 def test_a_run_is_recorded_and_compared_with_the_virtual_robot(page: Page, tmp_path: Path) -> None:
     write(page, "SHOW(DISTANCE);\nF(0.2, 80);\nSHOW(5);\nW(0.1)")
     page.click("#link_upload")

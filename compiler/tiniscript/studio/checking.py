@@ -48,13 +48,14 @@ class Variable(NamedTuple):
 class Checked(NamedTuple):
     """`image` is empty where the program has mistakes. `places` say for each instruction from
     which offset on which range of the text it comes from; `variables` are in the order of their
-    numbers."""
+    numbers; `start` is SI, SB or PING, or nothing where there are mistakes."""
 
     image: bytes
     code_bytes: int
     findings: tuple[Finding, ...]
     places: tuple[source_map.MapPlace, ...]
     variables: tuple[Variable, ...] = ()
+    start: str = ""
 
 
 def check(data: bytes, robot: str, language: str) -> Checked:
@@ -67,7 +68,7 @@ def check(data: bytes, robot: str, language: str) -> Checked:
     kinds = ir.are_yes_no(found.program, profile.kit)
     variables = tuple(map(Variable, found.program.variables, kinds))
     places = source_map.from_compiled(found).places
-    return Checked(found.image, len(found.code), findings, places, variables)
+    return Checked(found.image, len(found.code), findings, places, variables, found.program.start)
 
 
 def opened(data: bytes, robot: str, language: str) -> str | Message:

@@ -68,6 +68,7 @@ class Connection(Heard, Protocol):
 class _Asked(NamedTuple):
     number: int
     pending: PendingRequest[Any]
+    is_program: bool  # it sends or starts one, and no line
 
 
 class RobotLink:
@@ -83,6 +84,7 @@ class RobotLink:
         self._run: int | None = None
         self._begun: int | None = None
         self._over: int | None = None
+        self._program_run: int | None = None  # that of the newest program that the page has started
 
     @property
     def has_run(self) -> bool:
@@ -110,7 +112,7 @@ class RobotLink:
                 pending.limit_ms = limit_ms
             return pending
 
-        self._asked.append(_Asked(number, self._connection.do(limited)))
+        self._asked.append(_Asked(number, self._connection.do(limited), do in ("upload", "start")))
 
     def stop(self) -> None:
         """Stop the robot, whoever has started what it does."""
@@ -132,6 +134,13 @@ class RobotLink:
     def _outcomes(self) -> list[Json]:
         over = [each for each in self._asked if each.pending.outcome is not None]
         self._asked = [each for each in self._asked if each.pending.outcome is None]
+        for each in over:
+            reply = each.pending.outcome
+            if reply and isinstance(reply.values, ReceiptReply):
+                if each.is_program:
+                    self._program_run = reply.values.run
+                elif reply.values.run == self._program_run:  # the robot counts anew
+                    self._program_run = None
         return [{"id": each.number, **self._answer(each.pending)} for each in over]
 
     def _follow(self, event: Event) -> None:
@@ -198,6 +207,7 @@ class RobotLink:
             found["text"] = printable(event.text.decode("utf-8", "replace"), TEXT_CHARACTERS)
         elif event.name == "STARTED":
             found["program"] = f"{event.program:08x}"
+            found["is_program"] = event.run == self._program_run  # no line, and nobody else's
         elif event.name not in ("DONE", "LOST"):
             return []  # who else uses the port is no news for a page
         return [found]

@@ -43,6 +43,7 @@ def _check(fields: Answer, data: bytes) -> Answer:
         ],
         "places": found.places,
         "variables": [each._asdict() for each in found.variables],
+        "start": found.start,
     }
 
 

@@ -29,6 +29,7 @@
  * @property {Finding[]} findings
  * @property {[number, number, number, number, number][]} places offset, line, column and the end
  * @property {{name: string, is_yes_no: boolean}[]} variables
+ * @property {string} start SI, SB or PING; empty where there are mistakes
  */
 
 /**

@@ -17,7 +17,8 @@ export class Recorder {
   #page;
   #said = () => ''; // so that it can be said in another language
   #program = '';
-  #began = 0;
+  /** When what is recorded began; null until the first event of a run by the robot's button. @type {number | null} */
+  #began = null;
   #isOver = true;
   /** @type {Recorded[]} */
   #events = [];
@@ -56,30 +57,55 @@ export class Recorder {
     this.setLanguage();
   }
 
-  /** A program has begun. @param {string} program its checksum, in hexadecimal */
-  begin(program) {
-    this.#program = program;
-    this.#began = performance.now();
-    this.#events = [];
-    this.#isOver = false;
+  /** A program waits for the robot's button: no robot tells when it begins. @param {string} program its checksum, in hexadecimal */
+  wait(program) {
+    this.#record(program, null);
+  }
+
+  /** The recording is over, if there is one. @param {string} event the last one */
+  end(event) {
+    if (this.#isOver) return;
+    this.#events.push({ ms: Math.min(this.#ms, MOST_MS), event });
+    this.#isOver = true;
     this.#show();
   }
 
   /** @param {RobotEvent} event */
   hear(event) {
-    if (event.event === 'STARTED' && event.program && this.#isOver) this.begin(event.program);
-    const said = { SHOW: `SHOW ${event.value}`, DONE: 'DONE', FAULT: `FAULT ${event.fault}`, STOPPED: 'STOPPED', LOST: 'STOPPED' }[event.event];
+    if (event.event === 'STARTED') {
+      if (event.is_program && event.program) this.#record(event.program, performance.now());
+      else this.end('STOPPED');
+    }
+    const said = { SHOW: `SHOW ${event.value}`, DONE: 'DONE', FAULT: `FAULT ${event.fault}`, STOPPED: 'STOPPED', LOST: 'LOST', MISSED: 'MISSED' }[event.event];
     if (!said || this.#isOver) return;
-    const ms = Math.round(performance.now() - this.#began);
-    const isLast = event.event !== 'SHOW' || this.#events.length >= MOST || ms > MOST_MS;
-    this.#events.push({ ms: Math.min(ms, MOST_MS), event: isLast && event.event === 'SHOW' ? 'STOPPED' : said });
-    this.#isOver = isLast;
+    this.#began ??= performance.now();
+    if (event.event !== 'SHOW') this.end(said);
+    else if (this.#events.length >= MOST || this.#ms > MOST_MS) this.end('STOPPED');
+    else this.#events.push({ ms: this.#ms, event: said });
     this.#show();
   }
 
+  /**
+   * @param {string} program
+   * @param {number | null} began
+   */
+  #record(program, began) {
+    this.#program = program;
+    this.#began = began;
+    this.#events = [];
+    this.#isOver = false;
+    this.#show();
+  }
+
+  get #ms() {
+    return this.#began === null ? 0 : Math.round(performance.now() - this.#began);
+  }
+
+  /** The file; of a run that goes on, what there is. */
   #whole() {
     const head = { tiniscript_recording: VERSION, program: this.#program, robot: this.#page.robot() };
-    return [head, ...this.#events].map((row) => `${JSON.stringify(row)}\n`).join('');
+    const end = this.#isOver ? [] : [{ ms: Math.min(this.#ms, MOST_MS), event: 'STOPPED' }];
+    return [head, ...this.#events, ...end].map((row) => `${JSON.stringify(row)}\n`).join('');
   }
 
   #show() {

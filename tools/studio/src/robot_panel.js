@@ -62,7 +62,7 @@ export class RobotPanel {
       ['link_identify', () => this.#ask({ do: 'identify' }, () => this.#speech.say('say_identify', { name: this.#name }))],
       ['link_upload', () => this.#upload(true)],
       ['link_send', () => this.#upload(false)],
-      ['link_start', () => this.#ask({ do: 'start' }, ({ program = '' }) => (this.#page.recorder.begin(program), this.#speech.say('say_started')))],
+      ['link_start', () => this.#ask({ do: 'start' }, () => this.#speech.say('say_started'))],
       ['link_rename', () => this.#rename()],
       ['trim_set', () => this.#trim()],
       ['trim_try', () => this.#live('F(2, 60)')],
@@ -233,6 +233,7 @@ export class RobotPanel {
     this.#way = null;
     this.#about = null;
     this.#sent = null;
+    this.#page.recorder.end('LOST');
     clearTimeout(this.#confirming);
     if (why.reason === 'left') this.#speech.say('say_left');
     else this.#speech.fail(why);
@@ -267,7 +268,7 @@ export class RobotPanel {
     this.#ask({ do: 'upload', image: program.image, robot: this.#page.robot(), runs }, (answer) => {
       const { program: sum = '', saved = 'MEMORY' } = answer;
       this.#sent = { program: sum, places: program.places, of: program };
-      if (runs) this.#page.recorder.begin(sum);
+      if (runs && program.start === 'SB') this.#page.recorder.wait(sum);
       this.#speech.say('say_receipt', { program: sum, bytes: program.bytes }, `saved_${saved}`);
     });
   }

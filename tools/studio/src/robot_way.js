@@ -38,6 +38,7 @@
  * @property {string} [fault]
  * @property {number} [at]
  * @property {string} [program]
+ * @property {boolean} [is_program] one that this page has started, and no line
  * @property {string} [cause]
  * @property {number} [count]
  * @property {string} [text]
