@@ -136,6 +136,60 @@ def test_a_breakpoint_can_be_set_and_taken_away_while_it_runs(page: Page) -> Non
     in_phase(page, "running")
 
 
+def test_breakpoints_of_a_program_that_runs_stay_where_they_were_while_its_text_changes(
+    page: Page,
+) -> None:
+    """Its lines are others then; and one that is taken away no longer stops it."""
+    write(page, "W(0.3);\nSHOW(1);\nSHOW(2);\nLOOP(FOREVER);\n  SHOW(3);\n  W(0.1);\nEND_LOOP")
+    press_margin(page, 1)
+    press_margin(page, 3)
+    page.click("#run")
+    held(page, 1)
+    page.locator(".cm-content").focus()
+    page.keyboard.press("Control+Home")
+    page.keyboard.insert_text("SHOW(9);\n")
+    checked(page)
+    page.click("#pause")
+    in_phase(page, "paused")
+    page.locator("#trace").filter(has_text="SHOW 1").wait_for(state="attached")
+    assert "SHOW 2" not in (page.locator("#trace").text_content() or "")
+    assert points(page) == 2
+    press_margin(page, 4)  # the next one, that the loop never reaches again
+    press_margin(page, 6)
+    page.click("#pause")
+    page.locator("#trace").filter(has_text="SHOW 3").wait_for(state="attached")
+    in_phase(page, "running")
+    page.keyboard.press("Escape")
+
+
+def test_a_breakpoint_is_taken_away_from_a_program_whose_text_has_changed(page: Page) -> None:
+    write(page, "LOOP(FOREVER);\n  W(0.1);\n  SHOW(3);\nEND_LOOP")
+    press_margin(page, 3)
+    page.click("#run")
+    held(page, 3)
+    page.locator(".cm-content").focus()
+    page.keyboard.press("Control+Home")
+    page.keyboard.insert_text("SHOW(9);\n")
+    checked(page)
+    press_margin(page, 4)
+    assert points(page) == 0
+    page.click("#pause")
+    page.locator("#trace").filter(has_text="SHOW 3").wait_for(state="attached")
+    page.wait_for_timeout(200)
+    in_phase(page, "running")
+    page.keyboard.press("Escape")
+
+
+def test_only_the_left_button_sets_a_breakpoint(page: Page) -> None:
+    write(page, COUNT)
+    numbers = page.locator(".cm-lineNumbers .cm-gutterElement")
+    numbers.filter(has_text="5").last.click(button="right")
+    numbers.filter(has_text="3").last.click(button="middle")
+    assert points(page) == 0
+    press_margin(page, 5)
+    assert points(page) == 1
+
+
 def test_a_breakpoint_in_every_line_is_no_hurdle(page: Page) -> None:
     """In a program as long as a robot takes, and behind its end; and it stops at the first ones."""
     write(page, "\n".join(f"W({k + 1})" for k in range(150)) + "\n// a note" * 50)

@@ -9,9 +9,6 @@ class Breakpoint extends RangeValue {
   startSide = 1; // what is written in front of its part does not belong to it
   endSide = 1;
   mapMode = MapMode.TrackAfter; // it goes with its first character
-  eq() {
-    return true;
-  }
 }
 
 class Dot extends GutterMarker {
@@ -22,7 +19,6 @@ class Dot extends GutterMarker {
   }
 }
 
-const POINT = new Breakpoint();
 const DOT = new Dot();
 const FIRST = Decoration.mark({ class: 'cm-breakpoint' });
 
@@ -37,7 +33,7 @@ const field = StateField.define({
     for (const effect of transaction.effects) {
       if (!effect.is(change)) continue;
       const { at, isSet } = effect.value;
-      found = found.update({ filter: (from) => from !== at, add: isSet ? [POINT.range(at)] : [] });
+      found = found.update({ filter: (from) => from !== at, add: isSet ? [new Breakpoint().range(at)] : [] });
     }
     return found;
   },
@@ -62,7 +58,7 @@ export function breakpoints(toggle, changed) {
       class: 'cm-breakpoints',
       lineMarker: (view, line) => (within(view.state, line.from, line.to).length ? DOT : null),
       lineMarkerChange: (update) => update.startState.field(field) !== update.state.field(field),
-      domEventHandlers: { mousedown: (_, line) => pressed(line, toggle) },
+      domEventHandlers: { mousedown: (_, line, event) => pressed(line, event, toggle) },
     }),
     keymap.of([{ key: 'F9', run: (view) => {
       toggle(view.state.selection.main.head, false);
@@ -75,10 +71,13 @@ export function breakpoints(toggle, changed) {
 }
 
 /**
+ * A press beside a line; the right button has the menu of the browser.
  * @param {BlockInfo} line
+ * @param {Event} event
  * @param {(at: number, isLine: boolean) => void} toggle
  */
-export function pressed(line, toggle) {
+export function pressed(line, event, toggle) {
+  if (!(event instanceof MouseEvent) || event.button !== 0) return false;
   toggle(line.from, true);
   return true;
 }
@@ -86,6 +85,20 @@ export function pressed(line, toggle) {
 /** @param {import('@codemirror/state').EditorState} state @returns {number[]} */
 export function placesOf(state) {
   return within(state, 0, state.doc.length);
+}
+
+/**
+ * Where the program is to stop; `point` stays the same while its text moves.
+ * @param {import('@codemirror/state').EditorState} state
+ * @returns {{at: number, point: object}[]}
+ */
+export function pointsOf(state) {
+  /** @type {{at: number, point: object}[]} */
+  const found = [];
+  state.field(field).between(0, state.doc.length, (at, _, point) => {
+    found.push({ at, point });
+  });
+  return found;
 }
 
 /**

@@ -36,6 +36,8 @@ export class Driving {
   #note = '';
   /** @type {Checked['places']} */
   #places = [];
+  /** Offsets at which the program that runs stops, for each breakpoint. @type {Map<object, number[]>} */
+  #stops = new Map();
   /** @type {Checked['variables']} */
   #variables = [];
   #run = element('run', HTMLButtonElement);
@@ -216,7 +218,21 @@ export class Driving {
   /** The program is to stop elsewhere. */
   breakpointsChanged() {
     this.#editor.showBreakpoints();
-    if (this.#places.length) this.#simulator.setBreakpoints(offsetsOf(this.#places, this.#editor.breakpoints));
+    const before = this.#offsets.join();
+    this.#findStops();
+    if (this.#offsets.join() !== before) this.#simulator.setBreakpoints(this.#offsets);
+  }
+
+  /** After a change of the text those remain whose breakpoints are still there. */
+  #findStops() {
+    const points = this.#editor.breakpoints;
+    this.#stops = new Map(points.map((each) => [
+      each.point, this.#places.length ? offsetsOf(this.#places, [each]) : this.#stops.get(each.point) ?? [],
+    ]));
+  }
+
+  get #offsets() {
+    return [...new Set([...this.#stops.values()].flat())];
   }
 
   /** @param {boolean} isPaused */
@@ -244,8 +260,8 @@ export class Driving {
     this.#shown = '';
     this.#places = program.places;
     this.#variables = program.variables;
-    const breakpoints = offsetsOf(this.#places, this.#editor.breakpoints);
-    await this.#simulator.begin(program, this.#work.robot, this.#world.request, breakpoints, isPaused);
+    this.#findStops();
+    await this.#simulator.begin(program, this.#work.robot, this.#world.request, this.#offsets, isPaused);
   }
 
   #stop() {

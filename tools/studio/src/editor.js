@@ -9,7 +9,7 @@ import { bracketMatching } from '@codemirror/language';
 import { lintGutter, lintKeymap, setDiagnostics } from '@codemirror/lint';
 import { Compartment, EditorState, StateEffect, StateField } from '@codemirror/state';
 import { Decoration, EditorView, highlightActiveLine, keymap, lineNumbers } from '@codemirror/view';
-import { breakpoints, placesOf, pressed, setBreakpoints } from './breakpoints.js';
+import { breakpoints, placesOf, pointsOf, pressed, setBreakpoints } from './breakpoints.js';
 import { colors, completionOf, languageOf } from './language.js';
 import { partAt } from './parts.js';
 import { EDITOR_PHRASES_ES, currentLanguage, text } from './texts.js';
@@ -85,8 +85,13 @@ export class Editor {
       root,
       state: EditorState.create({
         extensions: [
+          EditorView.updateListener.of((update) => { // before breakpoints are told: they are of another text
+            if (!update.docChanged) return;
+            this.#places = null;
+            changed();
+          }),
           breakpoints(toggle, breakpointsChanged),
-          lineNumbers({ domEventHandlers: { mousedown: (_, line) => pressed(line, toggle) } }),
+          lineNumbers({ domEventHandlers: { mousedown: (_, line, event) => pressed(line, event, toggle) } }),
           history(),
           // Tab leaves the editor: who has no mouse must get out.
           keymap.of([...completionKeymap, ...lintKeymap, ...defaultKeymap, ...historyKeymap]),
@@ -99,11 +104,6 @@ export class Editor {
           EditorView.lineWrapping,
           this.#robot.of(this.#forRobot(robot)),
           this.#words.of(this.#inLanguage()),
-          EditorView.updateListener.of((update) => {
-            if (!update.docChanged) return;
-            this.#places = null;
-            changed();
-          }),
         ],
       }),
     });
@@ -176,9 +176,9 @@ export class Editor {
     this.#places = places.length ? places : null;
   }
 
-  /** Where the program is to stop. @returns {{line: number, column: number}[]} */
+  /** Where the program is to stop; `point` stays the same while its text moves. */
   get breakpoints() {
-    return placesOf(this.#view.state).map((at) => this.#placeAt(at));
+    return pointsOf(this.#view.state).map(({ at, point }) => ({ ...this.#placeAt(at), point }));
   }
 
   /** @param {{line: number, column: number}} place the beginning of a part, or of a block */
