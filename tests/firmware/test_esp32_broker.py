@@ -100,6 +100,16 @@ def driving(broker: Mosquitto, text: str = AWAY) -> Drive:
     return Drive(robot, teacher, owner, ends)
 
 
+def test_a_broker_for_which_there_is_no_memory_is_told_and_tried_again(broker: Mosquitto) -> None:
+    robot, owner = joined(Keys())
+    robot.radio("H", b"\1")
+    assert ended(robot, [(None, owner)], owner.use_broker(broker.settings())) == "OK"
+    talk(robot, [(None, owner)], 1500)
+    assert told(robot, owner)[1] == "NO_TLS"
+    robot.radio("H", b"\0")
+    until(robot, lambda: told(robot, owner)[1] == "READY")
+
+
 # -- the road -----------------------------------------------------------------------------------
 
 

@@ -224,6 +224,9 @@ void answer_radio(RequestReader* request, Writer* answer) {
       const std::string address = request->text();
       return network_name(name, address, request->u16());
     }
+    case 'H':
+      chip.is_heap_full = request->u8() != 0;
+      return;
     case 'P':
       return answer->u16(network_port());
     case 'I': {

@@ -65,6 +65,8 @@ struct SimulatedChip {
   bool watches_idle = true;  // the task watchdog, that of core 0, which nobody feeds meanwhile
   bool has_restarted = false;
 
+  bool is_heap_full = false;  // no stack finds room
+
   bool is_ledc_stuck = false;  // no duty changes any more
 
   uint8_t echo_pin = 0xff;

@@ -16,6 +16,7 @@ constexpr uint8_t kDateBytes = 4;
 
 KeptSettings<BrokerSettings> kept("broker");
 BrokerSettings wanted;  // the main loop's: what has come so far
+bool lacks_memory;      // the main loop's: for the broker's task
 uint8_t state;          // a WifiState, written by the broker's task
 
 void clear() { __builtin_memset(&wanted, 0, sizeof wanted); }
@@ -80,6 +81,7 @@ bool take(WifiStep step, const uint8_t* text, uint8_t length) {
 // While its task has not taken the settings, it speaks of those before: it may be looking up a name.
 WifiState state_now() {
   if (!kept.now().is_set()) return WifiState::kOff;
+  if (lacks_memory) return WifiState::kNoTls;
   if (kept.is_new()) return WifiState::kSearching;
   return static_cast<WifiState>(__atomic_load_n(&state, __ATOMIC_RELAXED));
 }
@@ -126,6 +128,8 @@ Answer broker_forget() {
   clear();
   return broker_is_set() ? kept.keep(wanted) : Answer::kOk;
 }
+
+void broker_has_memory(bool is_so) { lacks_memory = !is_so; }
 
 // What it says of those before is over when the main loop learns that it has taken these.
 bool broker_changed(BrokerSettings* found) {

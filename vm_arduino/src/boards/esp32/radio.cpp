@@ -15,6 +15,7 @@ namespace {
 constexpr uint8_t kBytesATurn = 128;  // of a transport, taken in a turn of the main loop
 constexpr uint32_t kStackBytes = 6144;
 constexpr uint32_t kTlsStackBytes = 10240;
+constexpr uint32_t kAgainMs = 1000;  // until the broker's task is tried again
 constexpr int kPriority = 1;  // that of the main loop
 constexpr int kCore = 0;
 constexpr uint8_t kFirst = static_cast<uint8_t>(Transport::kSerialPort);
@@ -35,6 +36,8 @@ Pipe pipes[kTransports - kFirst];
 RadioName name;
 bool has_begun;
 bool has_broker;
+bool has_failed;  // to begin the broker's task
+uint32_t failed_ms;
 
 // A task: what the radio makes it wait for, it waits for alone.
 void run(void* of) {
@@ -46,17 +49,22 @@ void run(void* of) {
   }
 }
 
-void begin(const Radio& radio) {
-  xTaskCreatePinnedToCore(run, radio.name, radio.stack_bytes, const_cast<Radio*>(&radio), kPriority,
-                          nullptr, kCore);
+// Whether there was memory for it.
+bool begin(const Radio& radio) {
+  return xTaskCreatePinnedToCore(run, radio.name, radio.stack_bytes, const_cast<Radio*>(&radio),
+                                 kPriority, nullptr, kCore) == pdPASS;
 }
 
 // The broker has a task of its own: looking its name up waits, and TLS calculates, for seconds. Who
-// uses no broker has no memory taken by it.
+// uses no broker has no stack taken by it.
 void begin_broker() {
   if (!has_begun || has_broker || !broker_is_set()) return;
-  has_broker = true;
-  begin(kBrokerRadio);
+  const uint32_t now_ms = static_cast<uint32_t>(millis());
+  if (has_failed && now_ms - failed_ms < kAgainMs) return;
+  has_broker = begin(kBrokerRadio);
+  has_failed = !has_broker;
+  failed_ms = now_ms;
+  broker_has_memory(has_broker);
 }
 
 }  // namespace

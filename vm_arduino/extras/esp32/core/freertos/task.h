@@ -11,6 +11,8 @@ typedef uint32_t TickType_t;
 typedef void (*TaskFunction_t)(void*);
 typedef void* TaskHandle_t;
 
+#define pdPASS 1
+
 extern "C" {
 BaseType_t xTaskCreatePinnedToCore(TaskFunction_t pvTaskCode, const char* const pcName,
                                    const uint32_t usStackDepth, void* const pvParameters,
