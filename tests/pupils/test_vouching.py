@@ -48,6 +48,9 @@ from tiniscript.syntax.parser import parse
         ("motor izquierda 50", "M(50, 0)", []),
         ("si hay pared adelante para", "IF(DISTANCE < 10);S;ENDIF", []),
         ("adelante y para", "S", ["ADELANTE"]),
+        ("F(2, 80); S", "F(2, 80)", ["S"]),
+        ("M 50 50", "F(50, 50)", ["M"]),
+        ("F 2 s 80", "F(2, 80)", []),
     ],
 )
 def test_what_a_change_loses_is_named(before: str, after: str, gone: list[str]) -> None:

@@ -55,7 +55,8 @@ _SMALL = frozenset((
     *phrases.FRAME_WORDS, *phrases.FRAME_NAMES, *phrases.CASE_WORDS, *phrases.COUNTING,
     *phrases.BEFORE_NOTE, *UNITS, *(name for names in PLACEHOLDERS.values() for name in names),
     *_PLAIN.split(),
-)) - _TURNING - {"LEFT", "RIGHT", "IZQUIERDA", "DERECHA"}  # fmt: skip
+)) - _TURNING - {"LEFT", "RIGHT", "IZQUIERDA", "DERECHA", "S", "M"}  # fmt: skip
+_COMMANDS_AND_UNITS = {"S": "SEG", "M": "MT"}  # units only right behind a number
 _LABEL = re.compile(r"\s*\w+(?:\s+[0-9]+)?\s*:\s*")  # the name of a step
 # Two words and more that say what one word does.
 _PHRASES = tuple(
@@ -300,9 +301,11 @@ def _content(text: str) -> _Content:
         if token.kind is NUMBER:
             numbers[float(token.text)] += 1
             unit = text[token.start : token.end].lstrip("0123456789.").upper()
-            words += [unit] if unit in UNITS else []
+            words += [_COMMANDS_AND_UNITS.get(unit, unit)] if unit in UNITS else []
         elif token.kind is WORD:
-            if last is None or not _says_it_again(last, token):
+            if last is not None and last.kind is NUMBER and token.text in _COMMANDS_AND_UNITS:
+                words.append(_COMMANDS_AND_UNITS[token.text])
+            elif last is None or not _says_it_again(last, token):
                 words.append(ALIASES.get(token.text, token.text))
         elif token.kind is ODD:
             words += re.findall("[A-Z]+", token.text.upper())

@@ -6,6 +6,7 @@ is too much.
 
 from __future__ import annotations
 
+from itertools import takewhile
 from typing import TYPE_CHECKING, NoReturn
 
 from tiniscript.diagnostics import codes
@@ -25,7 +26,7 @@ from tiniscript.syntax.call_suggestions import (
 from tiniscript.syntax.clause_recovery import ClauseRecovery
 from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.foreign import foreign_word
-from tiniscript.syntax.lexer import NUMBER, ODD, WORD, Token
+from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, ODD, WORD, Token
 from tiniscript.syntax.operators import COMPARISONS, SIGNS
 from tiniscript.syntax.phrases import (
     BEFORE_CALL,
@@ -55,6 +56,7 @@ from tiniscript.syntax.suggestions import (
 )
 from tiniscript.syntax.talk_recovery import TalkRecovery
 from tiniscript.words import (
+    TURN_WORDS,
     WORDS,
     meant_by,
     other_name,
@@ -323,14 +325,32 @@ class NameRecovery:
         fix = head_in(WORDS["IF"], tokens) if asks else ""
         self.reporter.fail(codes.NOT_AN_INSTRUCTION, place.span, found=place.text, fix=fix)
 
-    def note_behind(self, token: Token, after: Token) -> None:
-        """`F(2, 80) -- go`, `F(2, 80) - avanza`, `F(2, 80) (avanza)`."""
+    def note_behind(self, first: Token, token: Token, after: Token) -> None:
+        """`F(2, 80) -- go`, `F(2, 80) - avanza`, `F(2, 80) (avanza)`.
+
+        What says another command than the instruction's is an order: `F(2, 80) - retrocede 2`.
+        """
         if token.kind == after.kind == "-" and after.start == token.end:
             self.other_note(token.start, "--", after.end)
         behind = self.cursor.tokens[min(self.cursor.i + 2, len(self.cursor.tokens) - 1)]
         is_talk = after.kind is WORD and after.text not in WORDS and behind.kind not in ("(", ",")
-        if token.kind in ("(", "-") and is_talk and not self.in_block.known.is_own(after.text):
+        if token.kind in ("(", "-") and is_talk and not self._orders_behind(first):
             self.other_note(token.start, token.kind, after.start)
+
+    def _orders_behind(self, first: Token) -> bool:
+        """Whether the rest of the line says a command that is not `first`, or a name of ours."""
+        known, tokens = self.in_block.known, self.cursor.tokens
+        own = known.command(first.text)
+        turns = own is not None and own.text in ("L", "R")
+        for each in takewhile(
+            lambda token: token.kind not in (NEWLINE, END), tokens[self.cursor.i + 1 :]
+        ):
+            meant = known.command(each.text) if each.kind is WORD else None
+            if meant is not None and meant.is_instruction and meant is not own:
+                return True
+            if known.is_own(each.text) or (each.text in TURN_WORDS and not turns):
+                return True
+        return False
 
     def other_note(self, start: int, sign: str, text_start: int) -> NoReturn:
         """`-- go` or `REM go`: the rest of the line is a note."""

@@ -196,7 +196,7 @@ class Recovery:
         if kind == "|":
             self.setup.bar_between(first, token)
         if header is None:
-            self.of_name.note_behind(token, after)
+            self.of_name.note_behind(first, token, after)
         if header is not None and first.text in WORDS and WORDS[first.text].arguments:
             if kind in SIGNS or text in ("AND", "OR"):
                 self._question_goes_on(first, header)
