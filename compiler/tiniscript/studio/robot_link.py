@@ -136,7 +136,7 @@ class RobotLink:
         self._asked = [each for each in self._asked if each.pending.outcome is None]
         for each in over:
             reply = each.pending.outcome
-            if reply and isinstance(reply.values, ReceiptReply):
+            if reply and reply.status == OK and isinstance(reply.values, ReceiptReply):
                 if each.is_program:
                     self._program_run = reply.values.run
                 elif reply.values.run == self._program_run:  # the robot counts anew
