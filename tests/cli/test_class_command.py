@@ -27,6 +27,7 @@ from tiniscript.cli.robot.connect import Connection
 from tiniscript.cli.robot.fleet import Member
 from tiniscript.link.broker import ROOT
 from tiniscript.link.line import now_ms
+from tiniscript.link.payloads import ShowEvent
 
 if sys.platform == "win32":
     pytest.skip("there are no pseudo-terminals", allow_module_level=True)
