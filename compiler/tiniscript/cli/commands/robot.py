@@ -228,10 +228,18 @@ def ended_by_signal() -> Iterator[Ended]:
     """A signal that ends this process works as Ctrl-C does, so that no files are left over."""
     ended = Ended()
     numbers = (signal.SIGTERM, signal.SIGINT)
+    tell = sys.unraisablehook
+
+    def tell_others(dropped: sys.UnraisableHookArgs) -> None:
+        if not issubclass(dropped.exc_type, KeyboardInterrupt):  # of which the flag is left
+            tell(dropped)
+
+    sys.unraisablehook = tell_others
     before = [signal.signal(number, ended.ask) for number in numbers]
     try:
         yield ended
     finally:
+        sys.unraisablehook = tell
         for number, handler in zip(numbers, before, strict=True):
             signal.signal(number, handler)
 
