@@ -5,7 +5,7 @@
 
 #include "Arduino.h"
 #include "esp_err.h"
-#include "freertos/task.h"
+#include <freertos/task.h>
 
 extern "C" {
 #if ESP_ARDUINO_VERSION_MAJOR >= 3

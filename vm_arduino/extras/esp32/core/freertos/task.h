@@ -3,7 +3,7 @@
 #ifndef TINISCRIPT_FREERTOS_TASK_H_
 #define TINISCRIPT_FREERTOS_TASK_H_
 
-#include "FreeRTOS.h"
+#include <freertos/FreeRTOS.h>
 
 typedef int BaseType_t;
 typedef unsigned int UBaseType_t;
