@@ -19,10 +19,6 @@ def run(options: Namespace, language: str) -> int:
         connection.meet()
         _refuse_at_once(connection)
         which = KEY_TEACHER if options.teacher else KEY_OWNER
-        said = text("claim_hold", language).format(
-            robot=connection.name, port=shown(connection.port)
-        )
-        print(said, file=sys.stderr, flush=True)
         _claim(connection, which)
     return 0
 
@@ -32,7 +28,12 @@ def _claim(connection: Connection, which: int) -> None:
     from tiniscript.link.outcomes import UNKEPT
 
     make = limited(lambda session: session.claim(which), LIMIT_MS)
-    reply = connection.wait(connection.line.do(make))
+    request = connection.line.do(make)
+    # Said once the robot is asked: a press that has lasted 2 s before counts for nothing.
+    said = text("claim_hold", connection.language)
+    said = said.format(robot=connection.name, port=shown(connection.port))
+    print(said, file=sys.stderr, flush=True)
+    reply = connection.wait(request)
     if reply.status == UNKEPT:
         from tiniscript.keys import KeyFile
 
