@@ -11,41 +11,16 @@ import pytest
 from tests.pupils import corpus
 from tests.studio.programs import image as image_of
 from tests.studio.programs import programs, said
-from tests.support.studio import Pages, checked, image, noted, write
+from tests.support.studio import Pages, asked, checked, image, noted, write
 from tiniscript import check, compile
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
-# The compiler of the page, asked as the page asks it: many programs at once.
-ASK = """async ({requests, what}) => {
-  const worker = new Worker('./worker.js', {type: 'module'});
-  const answers = [];
-  const done = new Promise((resolve, reject) => {
-    worker.onmessage = ({data}) => {
-      if (data.error) { reject(new Error(data.error)); return; }
-      if (data.id) answers.push(JSON.parse(data.answer));
-      if (answers.length === requests.length) resolve();
-    };
-    worker.onerror = (event) => reject(new Error(event.message));
-  });
-  const encoder = new TextEncoder();
-  requests.forEach(({text, ...request}, k) => worker.postMessage(
-    {id: k + 1, request: JSON.stringify({do: what, ...request}), data: encoder.encode(text)}));
-  await done;
-  worker.terminate();
-  return answers;
-}"""
 
-
-def asked_to(page: Page, what: str, requests: list[dict[str, str]]) -> list[dict[str, Any]]:
-    """Return the answers to requests of one kind, each with a program's text."""
-    found: list[dict[str, Any]] = page.evaluate(ASK, {"requests": requests, "what": what})
-    return found
-
-
-def asked(page: Page, requests: list[dict[str, str]]) -> list[dict[str, Any]]:
-    return asked_to(page, "check", requests)
+def checks(page: Page, requests: list[dict[str, str]]) -> list[dict[str, Any]]:
+    """Return what the page's compiler says of programs."""
+    return asked(page, [{"do": "check", **each} for each in requests])
 
 
 def test_every_program_gets_the_image_of_the_command(page: Page) -> None:
@@ -53,7 +28,7 @@ def test_every_program_gets_the_image_of_the_command(page: Page) -> None:
     found = programs()
     assert len(found) > 300
     requests = [{"text": each.text, "robot": each.robot, "language": "en"} for each in found]
-    answers = asked(page, requests)
+    answers = checks(page, requests)
     for program, answer in zip(found, answers, strict=True):
         assert answer["image"] == image_of(program), program.name
 
@@ -63,7 +38,7 @@ def test_every_wrong_program_gets_the_words_of_the_command(page: Page, language:
     """This finds a module or a table that was not packed, too."""
     texts = [each.program for each in corpus.entries()]
     requests = [{"text": text, "robot": "tinibot", "language": language} for text in texts]
-    for text, answer in zip(texts, asked(page, requests), strict=True):
+    for text, answer in zip(texts, checks(page, requests), strict=True):
         wanted = [each._asdict() for each in said(text, language)]
         got = [{key: value for key, value in each.items() if key != "repair"}
                for each in answer["findings"]]  # fmt: skip
@@ -73,7 +48,7 @@ def test_every_wrong_program_gets_the_words_of_the_command(page: Page, language:
 def test_a_mistake_of_ours_is_told_with_its_name(page: Page) -> None:
     """The packed Python knows no lines of its sources; its tracebacks are made all the same."""
     with pytest.raises(Exception, match=r"in answer\nKeyError: 'nonsense'"):
-        asked_to(page, "nonsense", [{"text": ""}])
+        asked(page, [{"do": "nonsense", "text": ""}])
 
 
 def test_what_is_typed_is_compiled(page: Page) -> None:
@@ -259,5 +234,5 @@ def test_a_long_program_is_compiled_while_it_is_typed(page: Page) -> None:
 
 def test_numbers_of_json_stay_whole(page: Page) -> None:
     """Places of instructions come as lists of whole numbers."""
-    (answer,) = asked(page, [{"text": "SI|F(2, 80)", "robot": "tinibot", "language": "en"}])
+    (answer,) = checks(page, [{"text": "SI|F(2, 80)", "robot": "tinibot", "language": "en"}])
     assert json.dumps(answer["places"]) == "[[0, 1, 4, 1, 12]]"

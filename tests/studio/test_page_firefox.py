@@ -9,12 +9,11 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.studio.test_page_programs import MOVE, colours, content, opened, share
-from tests.studio.test_page_robot import in_phase
 from tests.studio.test_simulation import DANCE
 from tests.support import studio
 from tests.support.platformio import need
-from tests.support.studio import Pages, checked, image, shown, write
-from tiniscript import compile, run
+from tests.support.studio import Pages, checked, image, runs_like_the_command, shown, write
+from tiniscript import compile
 from tiniscript.virtual.world_reader import read
 
 if TYPE_CHECKING:
@@ -87,12 +86,7 @@ def test_a_mistake_is_said_in_spanish_and_repaired(page: Page) -> None:
 
 
 def test_a_run_is_that_of_the_command(page: Page) -> None:
-    write(page, DANCE)
-    page.select_option("#speed", "20")
-    page.click("#run")
-    in_phase(page, "ended")
-    wanted = [f"{each.ms} {each.text}" for each in run(DANCE).events]
-    assert (page.locator("#trace").text_content() or "").split("\n") == wanted
+    runs_like_the_command(page, DANCE)
 
 
 def test_a_world_is_changed_and_saved(page: Page) -> None:

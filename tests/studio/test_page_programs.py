@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from tests.studio.programs import programs
-from tests.studio.test_page import asked_to
-from tests.support.studio import Pages, checked, image, noted, write
+from tests.support.studio import Pages, asked, checked, image, noted, write
 from tiniscript import check, compile
 from tiniscript.studio.checking import line
 from tools.builds.studio import MODULES, found_tools
@@ -125,7 +124,9 @@ def test_every_line_is_that_of_the_command(page: Page) -> None:
     found = programs()
     requests = [{"text": each.text, "robot": each.robot, "language": "es"} for each in found]
     refused = 0
-    for program, answer in zip(found, asked_to(page, "line", requests), strict=True):
+    for program, answer in zip(
+        found, asked(page, [{"do": "line", **each} for each in requests]), strict=True
+    ):
         wanted = line(program.text.encode(), program.robot, "es")
         if isinstance(wanted, str):
             assert answer == {"text": wanted}, program.name

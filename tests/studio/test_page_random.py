@@ -9,11 +9,11 @@ import argparse
 import random
 import sys
 import time
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from tests.oracle import interpreter as oracle
 from tests.oracle import programs as oracle_programs
-from tests.studio.test_page import asked
+from tests.studio.test_page import checks
 from tests.studio.test_page_blocks import ROUND, without_places
 from tests.support import studio
 from tests.support.studio import Pages
@@ -24,23 +24,6 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page
 
 SAMPLE = 40
-# Forms of blocks from the worker, and texts of forms: requests, each with what it says besides.
-ASK = """async (requests) => {
-  const worker = new Worker('./worker.js', {type: 'module'});
-  const answers = [];
-  const done = new Promise((resolve, reject) => {
-    worker.onmessage = ({data}) => {
-      if (data.error) { reject(new Error(data.error)); return; }
-      if (data.id) answers.push(JSON.parse(data.answer));
-      if (answers.length === requests.length) resolve();
-    };
-  });
-  requests.forEach(({text, ...request}, k) => worker.postMessage(
-    {id: k + 1, request: JSON.stringify(request), data: new TextEncoder().encode(text ?? '')}));
-  await done;
-  worker.terminate();
-  return answers;
-}"""
 
 
 def wanted(text: str) -> str:
@@ -53,18 +36,18 @@ def wanted(text: str) -> str:
 def images(page: Page, texts: list[str]) -> list[str]:
     """Return what the page's compiler makes of texts; empty where they are wrong."""
     requests = [{"text": text, "robot": "tinibot", "language": "en"} for text in texts]
-    return [answer["image"] for answer in asked(page, requests)]
+    return [answer["image"] for answer in checks(page, requests)]
 
 
 def through_blocks(page: Page, texts: list[str]) -> list[str]:
     """Return the texts that the page makes of its blocks of texts."""
     requests = [{"do": "blocks", "robot": "tinibot", "text": text} for text in texts]
-    forms: list[dict[str, Any]] = page.evaluate(ASK, requests)
+    forms = studio.asked(page, requests)
     for form in forms:
         del form["size"]
     (name,) = [name for name in files() if name.startswith("blocks-")]
     seen = page.evaluate(ROUND, {"name": name, "forms": without_places(forms)})
-    answers = page.evaluate(ASK, [{"do": "text", "form": form} for form in seen])
+    answers = studio.asked(page, [{"do": "text", "form": form} for form in seen])
     return [answer["text"] for answer in answers]
 
 

@@ -8,8 +8,8 @@ import pytest
 
 from tests.studio.test_simulation import DANCE
 from tests.support.casefile import ROOT
-from tests.support.studio import checked, write
-from tiniscript import compile, run
+from tests.support.studio import asked, checked, runs_like_the_command, write
+from tiniscript import compile
 from tiniscript.studio.simulation import Simulation
 from tiniscript.virtual import worlds
 
@@ -17,25 +17,6 @@ if TYPE_CHECKING:
     from playwright.sync_api import Page
 
 FOREVER = "LOOP(FOREVER);\n  F(1, 80);\n  R(1, 60);\nEND_LOOP"
-# The worker, asked as the page asks it.
-ASK = """async ({requests, image}) => {
-  const worker = new Worker('./worker.js', {type: 'module'});
-  const data = new Uint8Array(image.match(/../g).map((pair) => parseInt(pair, 16)));
-  const answers = [];
-  const done = new Promise((resolve, reject) => {
-    worker.onmessage = ({data}) => {
-      if (data.error) { reject(new Error(data.error)); return; }
-      if (data.id) answers.push(JSON.parse(data.answer));
-      if (answers.length === requests.length) resolve();
-    };
-    worker.onerror = (event) => reject(new Error(event.message));
-  });
-  requests.forEach((request, k) =>
-    worker.postMessage({id: k + 1, request: JSON.stringify(request), data}));
-  await done;
-  worker.terminate();
-  return answers;
-}"""
 
 
 def in_phase(page: Page, phase: str) -> None:
@@ -76,7 +57,7 @@ def test_a_run_is_the_same_as_without_a_page(page: Page, name: str, robot: str, 
         *({"do": "go", "duration_ms": 400} for _ in range(20)),
         {"do": "stop"},
     ]
-    answers = page.evaluate(ASK, {"requests": requests, "image": image.hex()})
+    answers = asked(page, [{**each, "image": image.hex()} for each in requests])
     simulation = Simulation(robot, worlds.load(world), image)
     for request, answer in zip(requests, answers, strict=True):
         if request["do"] == "go":
@@ -89,12 +70,7 @@ def test_a_run_is_the_same_as_without_a_page(page: Page, name: str, robot: str, 
 
 
 def test_the_list_is_the_trace_of_the_command(page: Page) -> None:
-    write(page, DANCE)
-    page.select_option("#speed", "20")
-    page.click("#run")
-    in_phase(page, "ended")
-    wanted = [f"{each.ms} {each.text}" for each in run(DANCE).events]
-    assert (page.locator("#trace").text_content() or "").split("\n") == wanted
+    wanted = runs_like_the_command(page, DANCE)
     assert page.inner_text("#doing") == "It has ended."
     page.select_option("#seen", "trace")
     with page.expect_download() as saved:

@@ -69,6 +69,11 @@ def chosen(page: Page) -> str:
 
 @pytest.fixture(autouse=True)
 def at_rest(page: Page) -> None:
+    rest(page)
+
+
+def rest(page: Page) -> None:
+    """Leave the drawing, and take a shipped world."""
     page.set_viewport_size({"width": 1366, "height": 768})
     if page.locator("#world_done").is_visible():
         page.click("#world_done")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.studio.test_page_robot import in_phase
-from tests.studio.test_page_worlds import drag, on_screen, put, read_start, said, saved
+from tests.studio.test_page_worlds import drag, on_screen, put, read_start, rest, said, saved
 from tests.support.studio import Pages, checked, write
 from tiniscript.virtual import worlds
 
@@ -27,10 +27,7 @@ y_cm = 78
 
 @pytest.fixture(autouse=True)
 def at_rest(page: Page) -> None:
-    page.set_viewport_size({"width": 1366, "height": 768})
-    if page.locator("#world_done").is_visible():
-        page.click("#world_done")
-    page.select_option("#world", "obstacles")
+    rest(page)
 
 
 def draw_wall(page: Page) -> None:

@@ -8,13 +8,14 @@ from __future__ import annotations
 import os
 import shutil
 import socket
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from importlib.util import find_spec
 from threading import Thread
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tests.support.platformio import need
+from tiniscript import run
 from tiniscript.studio import serving
 from tiniscript.studio.classroom import Classroom
 from tiniscript.studio.hosting import Hosting
@@ -233,3 +234,44 @@ def write(page: Page, text: str) -> None:
 
 def image(page: Page) -> bytes:
     return bytes.fromhex(str(page.evaluate("document.documentElement.dataset.image")))
+
+
+# The page's Python, asked as the page asks it: many requests at once. What a request has besides is
+# the bytes of `text`, or of `image` in hexadecimal digits.
+_ASK = """async (requests) => {
+  const worker = new Worker('./worker.js', {type: 'module'});
+  const answers = [];
+  const done = new Promise((resolve, reject) => {
+    worker.onmessage = ({data}) => {
+      if (data.error) { reject(new Error(data.error)); return; }
+      if (data.id) answers.push(JSON.parse(data.answer));
+      if (answers.length === requests.length) resolve();
+    };
+    worker.onerror = (event) => reject(new Error(event.message));
+  });
+  requests.forEach(({text, image, ...request}, k) => {
+    const data = image ? Uint8Array.from(image.match(/../g), (pair) => parseInt(pair, 16))
+      : new TextEncoder().encode(text ?? '');
+    worker.postMessage({id: k + 1, request: JSON.stringify(request), data});
+  });
+  await done;
+  worker.terminate();
+  return answers;
+}"""
+
+
+def asked(page: Page, requests: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Return the answers of a worker to requests, in their order."""
+    found: list[dict[str, Any]] = page.evaluate(_ASK, requests)
+    return found
+
+
+def runs_like_the_command(page: Page, program: str) -> list[str]:
+    """Run a program that takes no reading to its end: the list is the trace of `tsc run`."""
+    write(page, program)
+    page.select_option("#speed", "20")
+    page.click("#run")
+    page.locator("html[data-phase=ended]").wait_for(state="attached")
+    wanted = [f"{each.ms} {each.text}" for each in run(program).events]
+    assert (page.locator("#trace").text_content() or "").split("\n") == wanted
+    return wanted
