@@ -85,7 +85,9 @@ def test_another_terminal_finds_it_and_it_says_what_it_does(tmp_path: Path) -> N
         listed = json.loads(process("ports", "--json").out)
         [row] = [each for each in listed if each["port"] == found.port]
         assert row["is_virtual"]
-        assert row["description"] == 'KAT: virtual robot tinibot, world "light"'
+        assert row["description"] == 'KAT: virtual robot tinibot, world "lamps in the dark"'
+        in_spanish = 'KAT: robot virtual tinibot, mundo "lámparas en la oscuridad"'
+        assert f"{found.port}   {in_spanish}" in process("ports", "--lang", "es").out
         done = process("upload", "--virtual", "-e", "SI|F(0.2, 50);SHOW(1.5);BEEP(0.1, 440)")
         assert (done.code, done.err) == (0, "")
         receipt, *rest = done.out.splitlines()

@@ -15,6 +15,7 @@ import pytest
 from tests.support.fake_computer import FakeComputer
 from tests.support.simulated_ends import KIT, Firmware, Nobody
 from tests.support.simulated_wire import OtherEnd, SimulatedWire
+from tiniscript.cli.commands.doctor import _said
 from tiniscript.doctor.diagnosis import Diagnosis, Doors, Question, diagnosed
 from tiniscript.doctor.examination import Expected
 from tiniscript.doctor.findings import CAUSES
@@ -76,6 +77,7 @@ class Case:
         self.shared: Shared | None = None
         self.watched = Shared(Reply(LOST))
         self.watch_ms = 0
+        self.virtual: tuple[str, ...] = ()
 
     def with_bluetooth(self, *paired: str, is_off: bool = False) -> Case:
         self.system.write("/sys/class/bluetooth/hci0/address", "0")
@@ -118,7 +120,8 @@ class Case:
 
         expected = Expected(None, "tinibot", {KIT: "tinibot"}.get)
         doors = Doors(self.system, open_wire, join, may_open, lambda name: "rfcomm" in name, share)
-        return diagnosed(doors, Question(port, self.last, 9600, expected, 7, self.watch_ms))
+        asked = Question(port, self.last, 9600, expected, 7, self.watch_ms, self.virtual)
+        return diagnosed(doors, asked)
 
     def cause(self, port: str | None = CABLE) -> tuple[str, bool]:
         (finding,) = self.diagnosis(port).findings
@@ -233,6 +236,21 @@ def test_a_port_of_a_cable_is_opened_after_a_yes_alone(case: Case) -> None:
     assert case.cause() == ("fine", True)
     assert case.opened == [CABLE]
     assert case.wire is not None and case.wire.is_gone  # it is closed
+
+
+def test_ports_that_are_no_cable_s_are_named_beside(case: Case) -> None:
+    """`tsc ports` lists them: the doctor does not say that there are none."""
+    case.virtual = ("socket://127.0.0.1:7007",)
+    (finding,) = case.diagnosis(None).findings
+    assert (finding.cause, finding.values) == ("no_port", {"ports": case.virtual[0]})
+    case.with_port("/dev/ttyS0")
+    (finding,) = case.diagnosis(None).findings
+    assert finding.cause == "charging_cable"
+    assert finding.values == {"ports": f"/dev/ttyS0, {case.virtual[0]}"}
+    for language in ("en", "es"):
+        _, seen, then = _said(finding, finding.values, language)
+        assert finding.values["ports"] in seen
+        assert "tsc doctor --port" in then
 
 
 def test_a_radio_is_opened_without_a_question(case: Case) -> None:

@@ -37,6 +37,7 @@ def test_no_sentence_is_of_a_cause_that_does_not_exist() -> None:
     known |= {"seen_busy_unknown", "seen_other_sketch_silent"}
     known |= {"seen_restarts_once", "seen_motors_restart_once"}
     known |= {"seen_no_permission_other", "next_no_permission_other"}
+    known |= {"seen_no_port_others", "next_no_port_others"}
     named = {key for key in DOCTOR_TEXTS if key.startswith(("seen_", "next_"))}
     assert named == known
 

@@ -47,7 +47,10 @@ class Doors(NamedTuple):
 
 
 class Question(NamedTuple):
-    """What the user asks about. `last` is the port that was used last, if it is there."""
+    """What the user asks about. `last` is the port that was used last, if it is there.
+
+    `virtual` are the ports of the virtual robots that run on this computer.
+    """
 
     port: str | None
     last: str | None
@@ -55,6 +58,7 @@ class Question(NamedTuple):
     expected: Expected
     nonce: int
     watch_ms: int = 0
+    virtual: tuple[str, ...] = ()
 
 
 class Diagnosis(NamedTuple):
@@ -71,7 +75,7 @@ def diagnosed(doors: Doors, question: Question) -> Diagnosis:
     found = computer.looked(doors.system)
     port = question.port or question.last or _only(found)
     if port is None:
-        return Diagnosis(None, _without_port(found), found, False)
+        return Diagnosis(None, _without_port(found, question.virtual), found, False)
     client = None
     try:
         client = doors.join(port)
@@ -124,11 +128,15 @@ def _only(found: Computer) -> str | None:
     return names[0] if len(names) == 1 else None
 
 
-def _without_port(found: Computer) -> tuple[Finding, ...]:
-    """Return why there is no port to look at."""
+def _without_port(found: Computer, virtual: tuple[str, ...]) -> tuple[Finding, ...]:
+    """Return why there is no port to look at; ports that may be no robot's are named beside."""
+    listed = ", ".join([*(each.port for each in found.ports), *virtual])
     if len(found.ports) > 1:
-        return (sure("which_port", ports=", ".join(each.port for each in found.ports)),)
-    return (_absent(found),)
+        return (sure("which_port", ports=listed),)
+    absent = _absent(found)
+    if listed and absent.cause in ("no_port", "charging_cable"):
+        return (absent._replace(values={**absent.values, "ports": listed}),)
+    return (absent,)
 
 
 def _absent(found: Computer) -> Finding:

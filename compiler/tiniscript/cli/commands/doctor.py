@@ -74,6 +74,7 @@ def _question(options: Namespace, language: str) -> Question:
         Expected(kit, robot.name, _name_of_kit, _has_key),
         int.from_bytes(os.urandom(4), "little"),
         watch_s * 1000,
+        tuple(each.address for each in directory.for_all()),
     )
 
 
@@ -155,6 +156,8 @@ def _said(finding: Finding, values: Mapping[str, str], language: str) -> tuple[s
     then = f"next_{finding.cause}"
     if finding.cause == "no_permission" and not filled["group"]:
         seen, then = "seen_no_permission_other", "next_no_permission_other"
+    if finding.cause in ("no_port", "charging_cable") and filled.get("ports"):
+        seen, then = "seen_no_port_others", "next_no_port_others"
     if finding.cause == "other_sketch" and not filled["said"]:
         seen = "seen_other_sketch_silent"
     keys = f"doctor_{finding.cause}", seen, then

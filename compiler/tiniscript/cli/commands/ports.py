@@ -100,8 +100,13 @@ def _rows(options: Namespace, in_reach: InReach, language: str) -> list[dict[str
 
 
 def _virtual(running: Running, language: str) -> str:
-    """Return the description of a virtual robot."""
-    said = text("virtual_port", language).format(robot=running.robot, world=running.world)
+    """Return the description of a virtual robot; a shipped world has a name in each language."""
+    from tiniscript.virtual import worlds
+
+    world = running.world
+    if world in worlds.names():
+        world = worlds.load(world).labels[language]
+    said = text("virtual_port", language).format(robot=running.robot, world=world)
     return f"{running.name}: {said}" if running.name else said
 
 

@@ -34,9 +34,11 @@ DOCTOR_TEXTS: dict[str, tuple[str, str]] = {
     "doing_pings": ("Asking the robot 20 times …", "Preguntando al robot 20 veces …"),
     "doing_watch": ("Watching whether it restarts …", "Mirando si se reinicia …"),
     # the computer
-    "doctor_no_port": ("This computer has no serial port", "Esta computadora no tiene ningún puerto serie"),
+    "doctor_no_port": ("This computer has no port of a USB cable or of Bluetooth", "Esta computadora no tiene ningún puerto de cable USB ni de Bluetooth"),
     "seen_no_port": ("no port is listed", "no hay ningún puerto en la lista"),
     "next_no_port": ("Plug the robot's cable in, or pair its Bluetooth, and run tsc doctor again.", "Conecta el cable del robot, o empareja su Bluetooth, y ejecuta tsc doctor otra vez."),
+    "seen_no_port_others": ("tsc ports lists only: {ports}", "tsc ports solo muestra: {ports}"),
+    "next_no_port_others": ("For a robot with a cable, plug it in (one that carries data); for one with Bluetooth, pair it. Then run tsc doctor again. To look at one of the others:  tsc doctor --port P", "Si tu robot usa cable, conéctalo (uno que lleve datos); si usa Bluetooth, empareja el robot. Después ejecuta tsc doctor otra vez. Para mirar uno de los otros:  tsc doctor --port P"),
     "doctor_charging_cable": ("Nothing is plugged in that this computer sees: perhaps the cable only charges", "No hay nada conectado que esta computadora vea: tal vez el cable solo carga"),
     "seen_charging_cable": ("no port is listed, and no USB adapter of a board", "no hay ningún puerto en la lista, ni ningún adaptador USB de una placa"),
     "next_charging_cable": ("If the board's light is on while it is plugged in, take another cable, one that carries data. For Bluetooth pair the module first.", "Si la luz de la placa está encendida con el cable conectado, toma otro cable, uno que lleve datos. Si es Bluetooth, empareja antes el módulo."),
