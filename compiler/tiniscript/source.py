@@ -63,14 +63,16 @@ class Unreadable(Exception):
 def decode(data: bytes) -> str:
     """Return the text of a file: UTF-8, with or without a byte order mark.
 
-    Raises Unreadable where it is too large, holds NUL bytes or is no UTF-8.
+    Raises Unreadable where it is too large, holds NUL bytes or is no UTF-8. UTF-16 with its mark,
+    which Windows calls Unicode, is text in another encoding, in spite of its NUL bytes.
     """
     if len(data) > LARGEST_SOURCE:
         raise Unreadable("too_large", LARGEST_SOURCE)
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as failure:
-        nul = data.find(b"\0", 0, 4096)
+        is_utf16 = data.startswith((b"\xff\xfe", b"\xfe\xff"))
+        nul = -1 if is_utf16 else data.find(b"\0", 0, 4096)
         raise Unreadable("encoding" if nul < 0 else "binary", failure.start) from None
     nul = text.find("\0")
     if nul >= 0:

@@ -178,6 +178,19 @@ def test_what_is_no_text_stays_as_it_is(folder: Path, tsc: Tsc) -> None:
     assert "TS003" in done.err
 
 
+@pytest.mark.parametrize("encoding", ["utf-16", "utf-16-be", "utf-16-le"])
+def test_notepad_s_unicode_is_text_in_another_encoding(
+    tmp_path: Path, tsc: Tsc, encoding: str
+) -> None:
+    """So PowerShell's > writes it, too: `explain TS003` names it, and what to choose."""
+    path = tmp_path / "unicode.ts"
+    path.write_bytes(("" if encoding == "utf-16" else "\ufeff").encode(encoding)
+                     + RIGHT.encode(encoding))  # fmt: skip
+    assert "TS003" in tsc("check", path).err
+    path.write_bytes(RIGHT.encode("utf-16-le"))  # without its mark it may be anything
+    assert "TS002" in tsc("check", path).err
+
+
 def test_a_line_with_a_checksum_is_not_repaired(folder: Path, tsc: Tsc) -> None:
     line = "SI|F(2 80);S~21FFE748\n"
     (folder / "b.ts").write_text(line, encoding="utf-8")

@@ -6,6 +6,8 @@ import csv
 import json
 import os
 import re
+import sys
+from argparse import Namespace
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -13,6 +15,7 @@ import pytest
 
 from tests.machines.wasm import missing
 from tests.support.command import Tsc
+from tiniscript.cli import lesson_check
 from tiniscript.lessons import catalogue
 from tiniscript.robots.profile import LANGUAGES
 
@@ -152,12 +155,9 @@ def test_images_and_odd_files_are_refused(tsc: Tsc, tmp_path: Path) -> None:
     (tmp_path / "a.bin").write_bytes(b"TS\x02")
     assert "its text" in tsc("lesson", "check", "1", tmp_path / "a.bin").err
     (tmp_path / "image.ts").write_bytes(b"TS\x02\0")
-    if hasattr(os, "mkfifo"):
-        os.mkfifo(tmp_path / "pipe.ts")  # nobody writes into it: nobody may wait
     done = tsc("lesson", "check", "1", tmp_path)
     assert done.code == 1
     assert "image.ts  unreadable" in done.out
-    assert "pipe.ts" not in done.out
 
 
 @needs_wasm
@@ -263,3 +263,72 @@ def test_a_folder_of_thirty_has_anything_in_it(tsc: Tsc, tmp_path: Path) -> None
     found = {row[0]: row[1] for row in csv.reader(rows.read_text("utf-8-sig").splitlines())}
     for name, (_, verdict) in odd.items():
         assert found[name.replace("\x1b", "?")] == verdicts[verdict], name
+
+
+@needs_wasm
+def test_notes_are_no_programs_and_folders_of_pupils_are(tsc: Tsc, tmp_path: Path) -> None:
+    pupils = tmp_path / "año 3 ñandú"
+    for name in ("Ana", "Beto", "x.ts"):
+        (pupils / name).mkdir(parents=True)
+        (pupils / name / "square.ts").write_text(RIGHT, encoding="utf-8")
+    files = {
+        "README.txt": "Para entregar: los de tercero.\nGracias (a todos).\n",
+        "lista.TXT": "Ana 15\nBeto 12\n", "notepad.txt": RIGHT, "wrong.txt": "ADELANTE (2)",
+        "empty.txt": "", "note.ts": "Ana 15", "also.ts.txt": "Ana 15",
+    }  # fmt: skip
+    for name, content in files.items():
+        (pupils / name).write_text(content, encoding="utf-8")
+    (pupils / ".hidden").mkdir()
+    (pupils / ".hidden" / "old.ts").write_text(RIGHT, encoding="utf-8")
+    done = tsc("lesson", "check", "1", pupils, "--json")
+    assert done.code == 1
+    found = {row["file"].replace(os.sep, "/"): row["verdict"] for row in json.loads(done.out)}
+    assert found == {
+        "also.ts.txt": "mistakes", "empty.txt": "failed", "note.ts": "mistakes",
+        "notepad.txt": "passed", "wrong.txt": "mistakes", "Ana/square.ts": "passed",
+        "Beto/square.ts": "passed", "x.ts/square.ts": "passed",
+    }  # fmt: skip
+    assert done.err.startswith("Not checked, since no line looks like a program: README.txt, lista")
+    for name in found:
+        (pupils / name).unlink()
+    for language, words in (("en", "there is no program"), ("es", "no hay ningún programa")):
+        done = tsc("lesson", "check", "1", pupils, "--lang", language)
+        assert (done.code, done.out) == (2, "")
+        assert words in done.err
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows has no pipes among its files")
+@needs_wasm
+def test_what_is_no_file_has_a_row(tsc: Tsc, folder: Path) -> None:
+    """A link in a circle, a link to nothing and a pipe: nobody waits, and nobody is left out."""
+    (folder / "circle.ts").symlink_to("circle.ts")
+    (folder / "nothing.ts").symlink_to("gone")
+    (folder / "above").symlink_to(".")
+    os.mkfifo(folder / "pipe.ts")  # nobody writes into it
+    done = tsc("lesson", "check", "1", folder, "--json")
+    rows = {row["file"]: row for row in json.loads(done.out)}
+    assert len(rows) == 9
+    for name in ("circle.ts", "nothing.ts", "pipe.ts"):
+        assert rows[name]["verdict"] == "unreadable"
+        (finding,) = rows[name]["findings"]
+        assert name in finding["sentence"]
+        assert str(folder) not in finding["sentence"]
+        assert not finding["sentence"].startswith("tsc")
+
+
+@pytest.mark.parametrize("columns", [40, 80, 200])
+def test_a_table_fits_the_terminal(
+    columns: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    said = "The robot stood 18 cm before the middle of the garage. Make it drive further. " * 2
+    marks = [
+        lesson_check.Mark("José Ñáñez (1).ts", "failed", 1, (("", said),)),
+        lesson_check.Mark("ana.ts", "passed", 0, ()),
+    ]
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
+    monkeypatch.setattr(lesson_check, "get_terminal_size", lambda: os.terminal_size((columns, 24)))
+    lesson_check._print_table(marks, Namespace(number="1"), "en")
+    lines = capsys.readouterr().out.splitlines()
+    assert max(map(len, lines)) < columns
+    assert " ".join(" ".join(lines).split()).count("Make it drive further.") == 2
+    assert "ana.ts             done" in lines

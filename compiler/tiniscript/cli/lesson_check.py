@@ -7,14 +7,21 @@ Decides what is said of a program and in which form; `lessons.running` lets it d
 from __future__ import annotations
 
 import json
+import os
+import re
+import sys
+import textwrap
 from argparse import Namespace
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import islice
 from pathlib import Path
+from shutil import get_terminal_size
 from typing import TYPE_CHECKING, NamedTuple
 
 from tiniscript.cli import inputs, outputs
 from tiniscript.cli.errors import CommandError
 from tiniscript.cli.options import whole_number
+from tiniscript.cli.program_files import ENDS, Found, in_folder, read
 from tiniscript.cli.texts.common import Said, text
 
 if TYPE_CHECKING:
@@ -25,7 +32,10 @@ if TYPE_CHECKING:
     from tiniscript.robots.profile import Robot
 
 PROGRAMS = 200  # of a folder
-ENDINGS = (".ts", ".txt")
+LEAST_COLUMNS = 24  # of a sentence beside its program; below that it stands under it
+TEXTS = (*ENDS, ".txt")
+# A line of a program begins so, also a wrong one: `SI|`, `F(2, 80)`, `ADELANTE (2)`, `x = 3`.
+LIKE_A_PROGRAM = re.compile(r"^\s*\w+(?:\s*[|=]|\(|\s+\(\s*\d)", re.MULTILINE)
 PASSED, FAILED, MISTAKES, UNREADABLE = "passed", "failed", "mistakes", "unreadable"
 
 
@@ -54,7 +64,7 @@ def check(options: Namespace, lesson: Lesson, language: str) -> int:
     if _is_folder(options):
         if options.plot is not None:
             raise CommandError(2, "lesson_one_picture", file=inputs.shown(options.program))
-        marks = [marker.of_file(path, options) for path in _programs(options.program)]
+        marks = [marker.of_file(found, name) for name, found in _programs(options, language)]
     else:
         if options.plot is not None:
             from tiniscript.cli.robot.simulator_options import check_picture
@@ -87,15 +97,18 @@ class _Marker:
         self.seeds = seeds
         self.language = language
 
-    def of_file(self, path: Path, options: Namespace) -> Mark:
+    def of_file(self, found: Found, name: str) -> Mark:
         """Mark a file of a folder; one that cannot be read gets a row, too."""
-        one = Namespace(program=str(path), texts=[], language=options.language)
+        given = inputs.Input(name, found.data, Path(found.name))
         try:
-            given = inputs.program(one)
+            if found.problem is not None:
+                raise found.problem
             compiled = self.compiled(given, "check")
         except CommandError as failure:
-            return Mark(path.name, UNREADABLE, 0, (("", failure.sentence(self.language)),))
-        return self.mark(given._replace(name=path.name), compiled)
+            said = failure.sentence(self.language).removeprefix("tsc: ")
+            said = said.replace(inputs.shown(found.name), inputs.shown(name))
+            return Mark(name, UNREADABLE, 0, (("", said),))
+        return self.mark(given, compiled)
 
     def compiled(self, given: inputs.Input, verb: str) -> Compiled:
         if given.is_image:
@@ -156,24 +169,47 @@ def _is_folder(options: Namespace) -> bool:
         return False
 
 
-def _programs(folder: str) -> list[Path]:
-    """Return the programs of a folder, by their names. Raises CommandError."""
+def _programs(options: Namespace, language: str) -> Iterator[tuple[str, Found]]:
+    """Yield the programs of a folder and those below, each with its name there.
+
+    A `.txt` without a line that looks like a program is a note: those are named at the end.
+    Raises CommandError.
+    """
+    folder = options.program
     try:
-        found = sorted(
-            path
-            for path in Path(folder).iterdir()
-            if path.name.lower().endswith(ENDINGS)
-            and not path.name.startswith(".")
-            and path.is_file()
-        )
+        os.scandir(folder).close()
     except OSError as why:
         reason = why.strerror or str(why)
         raise CommandError(2, "lesson_folder", file=inputs.shown(folder), why=reason) from None
-    if not found:
-        raise CommandError(2, "lesson_empty", file=inputs.shown(folder))
-    if len(found) > PROGRAMS:
+    names = list(islice(in_folder(folder, TEXTS), PROGRAMS + 1))
+    if len(names) > PROGRAMS:
         raise CommandError(2, "lesson_many", file=inputs.shown(folder), most=str(PROGRAMS))
-    return found
+    notes = []
+    for each in names:
+        name, found = os.path.relpath(each, folder), read(each)
+        if _is_note(found):
+            notes.append(inputs.shown(name))
+        else:
+            yield name, found
+    if len(notes) == len(names):
+        raise CommandError(2, "lesson_empty", file=inputs.shown(folder))
+    if notes:
+        said = text("lesson_notes", language)
+        number = inputs.shown(options.number)
+        print(said.format(files=", ".join(notes), number=number), file=sys.stderr)
+
+
+def _is_note(found: Found) -> bool:
+    """Whether a file is a `.txt` with text, and no program in it; in doubt it is a program."""
+    if found.name.lower().endswith(ENDS) or found.problem is not None:
+        return False
+    from tiniscript.source import Unreadable, decode
+
+    try:
+        note = decode(found.data)
+    except Unreadable:
+        return False
+    return bool(note.strip()) and LIKE_A_PROGRAM.search(note) is None
 
 
 def _print_one(mark: Mark, seeds: Sequence[int], options: Namespace, language: str) -> None:
@@ -205,9 +241,19 @@ def _print_table(marks: Sequence[Mark], options: Namespace, language: str) -> No
         for mark in marks
     ]
     wide = [max(cell_len(row[k]) for row in rows) for k in (0, 1)]
+    columns = get_terminal_size().columns if sys.stdout.isatty() else 0
     for name, verdict, sentence in rows:
-        cells = f"{set_cell_size(name, wide[0])}  {set_cell_size(verdict, wide[1])}  {sentence}"
-        print(cells.rstrip())
+        cells = f"{set_cell_size(name, wide[0])}  {set_cell_size(verdict, wide[1])}  "
+        room = columns - cell_len(cells) - 1
+        if not columns or cell_len(sentence) <= room:
+            print(f"{cells}{sentence}".rstrip())
+            continue
+        if room < LEAST_COLUMNS:  # the sentence has lines of its own
+            print(cells.rstrip())
+            cells, room = "    ", columns - 5
+        for part in textwrap.wrap(sentence, max(room, LEAST_COLUMNS)):
+            print(f"{cells}{part}")
+            cells = " " * cell_len(cells)
     passed = sum(mark.verdict == PASSED for mark in marks)
     count = text("lesson_count", language)
     number = inputs.shown(options.number)

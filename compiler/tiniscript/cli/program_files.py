@@ -35,22 +35,25 @@ def programs(names: Sequence[str]) -> Iterator[Found]:
     """Yield the programs that are named, each once. Raises CommandError for an empty folder."""
     seen: set[str] = set()
     for name in names:
-        found = list(_in_folder(name)) if _is_folder(name) else [real_name(name)]
+        found = list(in_folder(name)) if _is_folder(name) else [real_name(name)]
         if not found:
             raise CommandError(2, "no_programs", file=inputs.shown(name))
         for each in found:
             real = os.path.realpath(each)
             if real not in seen:
                 seen.add(real)
-                yield _read(each)
+                yield read(each)
 
 
 def _is_folder(name: str) -> bool:
     return os.path.isdir(name)  # noqa: PTH112 - a name that no file can have gets no Path
 
 
-def _in_folder(top: str) -> Iterator[str]:
-    """Yield the names of programs in a folder and those below, in order; none that is hidden."""
+def in_folder(top: str, ends: tuple[str, ...] = ENDS) -> Iterator[str]:
+    """Yield the names of programs in a folder and those below, in order; none that is hidden.
+
+    `ends` are the ends of their names. A folder that cannot be read is yielded itself.
+    """
     waiting = [top]
     while waiting:
         folder = waiting.pop()
@@ -61,14 +64,15 @@ def _in_folder(top: str) -> Iterator[str]:
             yield folder  # reading it says why
             continue
         for entry in inside:
-            if not entry.name.startswith(".") and entry.name.lower().endswith(ENDS):
+            if not entry.name.startswith(".") and entry.name.lower().endswith(ends):
                 if not entry.is_dir(follow_symlinks=False):
                     yield entry.path
         below = (entry for entry in inside if entry.is_dir(follow_symlinks=False))
         waiting += [each.path for each in reversed(list(below)) if not each.name.startswith(".")]
 
 
-def _read(name: str) -> Found:
+def read(name: str) -> Found:
+    """Return what is in a file, or why it cannot be read. A pipe or a device is not opened."""
     try:
         found = Path(name).stat()
         if not (stat.S_ISREG(found.st_mode) or stat.S_ISDIR(found.st_mode)):
