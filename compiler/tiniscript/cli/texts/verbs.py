@@ -54,7 +54,7 @@ VERBS: dict[str, Verb] = {
     ),
     "check": Verb(
         PROGRAMS, ("check prog.ts", "check prog.ts"),
-        ("show all mistakes and warnings; --fix repairs", "muestra todos los errores y avisos; --fix corrige"),
+        ("show all mistakes and warnings; --fix repairs", "muestra errores y avisos; --fix corrige"),
         ("Shows all mistakes and warnings of a program. Of several programs, or of a folder, it shows a line each and a table. `--fix` makes the repairs that are sure: those that drop no number, guess no name and leave fewer mistakes.",
          "Muestra todos los errores y avisos de un programa. De varios programas, o de una carpeta, muestra una línea por cada uno y una tabla. `--fix` hace las correcciones seguras: las que no quitan ningún número, no adivinan ningún nombre y dejan menos errores."),
         ends=("`--json` gives a list of `{code, severity, line, column, end_line, end_column, message, fix}`; lines and columns count from 1, columns in characters, the end is not included. Of several programs it gives a list of `{file, mistakes, warnings, repaired, problem, messages}`. The exit code is 1 if a program has mistakes, 2 if one cannot be read.",
@@ -84,9 +84,9 @@ VERBS: dict[str, Verb] = {
     ),
     "explain": Verb(
         PROGRAMS, ("explain TS012", "explain TS012"),
-        ("say more about a mistake", "explica mejor un error"),
+        ("say more about a mistake", "explica un error con más detalle"),
         ("Says more about a mistake, with an example. Without a code it lists all.",
-         "Explica mejor un error, con un ejemplo. Sin código los lista todos."),
+         "Explica un error con más detalle y un ejemplo. Sin código los lista todos."),
     ),
     "wiring": Verb(
         PROGRAMS, ("wiring", "wiring"),
@@ -103,8 +103,8 @@ VERBS: dict[str, Verb] = {
     "firmware": Verb(
         PROGRAMS, ("firmware --port COM3", "firmware --port COM3"),
         ("put the firmware of a robot on its board", "pone el firmware de un robot en su placa"),
-        ("Writes the firmware of a robot on its board, over the USB cable, and reads it back. Unplug the HC-05, or whatever else is on pins 0 and 1, as long as that takes. Firmware that is not ready yet is built first, with PlatformIO; the first time that needs the internet.",
-         "Escribe el firmware de un robot en su placa, por el cable USB, y comprueba que quedó bien. Desconecta el HC-05, o lo que esté en los pines 0 y 1, mientras eso dure. Si el firmware todavía no está listo, primero se compila, con PlatformIO; la primera vez hace falta internet."),
+        ("Writes the firmware of a robot on its board, over the USB cable, and reads it back. Meanwhile the HC-05, or whatever else is on pins 0 and 1, must be unplugged. Firmware that is not ready yet is built first, with PlatformIO; the first time that needs the internet.",
+         "Escribe el firmware de un robot en su placa, por el cable USB, y comprueba que quedó bien. Mientras tanto, ten desconectado el HC-05, o lo que esté en los pines 0 y 1. Si el firmware todavía no está listo, primero se compila, con PlatformIO; la primera vez hace falta internet."),
         ("--port P [--robot NAME|FILE] [--board BOARD]\n--build [--robot NAME|FILE] [--board BOARD]\n--list",
          "--port P [--robot NOMBRE|ARCHIVO] [--board PLACA]\n--build [--robot NOMBRE|ARCHIVO] [--board PLACA]\n--list"),
         ("It needs avrdude.", "Necesita avrdude."),
@@ -112,14 +112,14 @@ VERBS: dict[str, Verb] = {
     "ports": Verb(
         ROBOTS, ("ports", "ports"),
         ("list the ports; --ask: which robot answers where", "los puertos; --ask: qué robot responde en cuál"),
-        ("Lists the serial ports of this computer, which robots have answered there before, and which tsc holds one. Opens none of them: opening a port resets most boards. A robot with Bluetooth LE (an HM-10, say) is no serial port: its port is `ble://NAME` or `ble://ADDRESS`; that of a robot which announces itself in the network is `tcp://NAME`.",
-         "Lista los puertos serie de esta computadora, qué robots respondieron ahí antes, y qué tsc tiene uno. No abre ninguno: abrir un puerto reinicia la mayoría de las placas. Un robot con Bluetooth LE (un HM-10, por ejemplo) no es un puerto serie: su puerto es `ble://NOMBRE` o `ble://DIRECCIÓN`; el de un robot que se anuncia en la red es `tcp://NOMBRE`."),
+        ("Lists the serial ports of this computer, which robots have answered there before, and which one another tsc has open. Opens none of them: opening a port resets most boards. A robot with Bluetooth LE (an HM-10, say) is no serial port: its port is `ble://NAME` or `ble://ADDRESS`; that of a robot which announces itself in the network is `tcp://NAME`.",
+         "Lista los puertos serie de esta computadora, qué robots respondieron ahí antes, y cuál tiene abierto otro tsc. No abre ninguno: abrir un puerto reinicia la mayoría de las placas. Un robot con Bluetooth LE (un HM-10, por ejemplo) no es un puerto serie: su puerto es `ble://NOMBRE` o `ble://DIRECCIÓN`; el de un robot que se anuncia en la red es `tcp://NOMBRE`."),
     ),
     "ping": Verb(
         ROBOTS, ("ping", "ping"),
         ("who is there, and how long an answer takes", "quién está ahí, y cuánto tarda una respuesta"),
-        ("Says who answers on the port, and how long a round trip takes: at least, usually, at most.",
-         "Dice quién responde en el puerto, y cuánto tarda una ida y vuelta: como mínimo, lo normal y como máximo."),
+        ("Says who answers on the port, and how long a round trip takes: the shortest, the usual and the longest.",
+         "Dice quién responde en el puerto, y cuánto tarda una ida y vuelta: la más corta, la normal y la más larga."),
     ),
     "upload": Verb(
         ROBOTS, ("upload prog.ts", "upload prog.ts"),
@@ -133,14 +133,14 @@ VERBS: dict[str, Verb] = {
     ),
     "live": Verb(
         ROBOTS, ('live "F(2, 80)"', 'live "F(2, 80)"'),
-        ("run one line now; without a line: a prompt", "ejecuta una línea ahora; sin línea: un diálogo"),
-        ("Runs one line on the robot now: `tsc live \"F(2, 80)\"`. Without a line there is a prompt. Variables and DEFs live on until you leave: tsc keeps DEFs as text, and the values that a line has set, once it is done. The program that the robot holds stays what it is. Ctrl-C stops the robot, Ctrl-D leaves.",
-         "Ejecuta una línea en el robot ahora: `tsc live \"F(2, 80)\"`. Sin línea hay un diálogo. Las variables y los DEF siguen vivos hasta que sales: tsc guarda los DEF como texto, y los valores que una línea dejó al terminar. El programa que tiene el robot queda como está. Ctrl-C detiene el robot, Ctrl-D sale."),
+        ("run one line now; without a line: a prompt", "ejecuta una línea ahora; sin ella, las pide"),
+        ("Runs one line on the robot now: `tsc live \"F(2, 80)\"`. Without a line there is a prompt. Variables and DEFs are kept until you leave: the DEFs as text, and the values that a line has set once it is done. The program that the robot holds stays what it is. Ctrl-C stops the robot, Ctrl-D leaves.",
+         "Ejecuta una línea en el robot ahora: `tsc live \"F(2, 80)\"`. Sin una línea, tsc las pide una por una. Las variables y los DEF se conservan hasta que sales: los DEF como texto, y los valores que una línea dejó al terminar. El programa que tiene el robot queda como está. Ctrl-C detiene el robot, Ctrl-D sale."),
     ),
     "stop": Verb(
         ROBOTS, ("stop", "stop"), ("stop the robot now", "detiene el robot ahora"),
-        ("Stops the robot now, and says when it has confirmed that. Asks nothing before, so it stops a robot of another version or kit, too. The robot stays stopped until a new start or its button. Where no port is named it stops every robot that a tsc on this computer has now, virtual ones too, and the last used one.",
-         "Detiene el robot ahora, y dice cuándo lo ha confirmado. No pregunta nada antes, así que también detiene un robot de otra versión o de otro kit. Queda detenido hasta otro inicio o su botón. Si no se indica un puerto, detiene todos los robots que un tsc tiene ahora en esta computadora, también los virtuales, y el último usado."),
+        ("Stops the robot now, and says when it has confirmed that. Asks nothing before, so it stops a robot of another version or kit, too. The robot stays stopped until it is started again, or its button is pushed. Where no port is named it stops every robot that some tsc is using on this computer, virtual ones too, and the last used one.",
+         "Detiene el robot ahora, y dice cuándo lo ha confirmado. No pregunta nada antes, así que también detiene un robot de otra versión o de otro kit. Queda detenido hasta que lo inicies otra vez o pulses su botón. Si no se indica un puerto, detiene todos los robots que algún tsc está usando en esta computadora, también los virtuales, y el último usado."),
     ),
     "link": Verb(
         ROBOTS, ("link", "link"),
@@ -155,8 +155,8 @@ VERBS: dict[str, Verb] = {
     ),
     "undo": Verb(
         ROBOTS, ("undo", "undo"), ("bring back the program before this one", "vuelve al programa anterior"),
-        ("Brings back the program that the robot held before the last one that it has saved, and keeps that over the next power-on. What runs ends, nothing starts. A second undo brings the later program back. Where the last program was sent with --no-save, the saved one comes back, and the other is gone.",
-         "Vuelve al programa que el robot tenía antes del último que guardó, y lo conserva cuando se apaga. Lo que está en marcha termina, y nada inicia. Otro undo vuelve al programa más nuevo. Si el último programa se envió con --no-save, vuelve el guardado, y el otro se pierde."),
+        ("Brings back the program that the robot held before the last one that it has saved, and keeps that over the next power-on. What runs ends, and nothing is started. A second undo brings the later program back. Where the last program was sent with --no-save, the saved one comes back, and the other is gone.",
+         "Vuelve al programa que el robot tenía antes del último que guardó, y lo conserva cuando se apaga. Lo que está en marcha termina, y no se inicia nada. Otro undo vuelve al programa más nuevo. Si el último programa se envió con --no-save, vuelve el guardado, y el otro se pierde."),
     ),
     "info": Verb(
         ROBOTS, ("info", "info"), ("what the robot says about itself", "lo que el robot dice de sí mismo"),
@@ -182,17 +182,17 @@ VERBS: dict[str, Verb] = {
     "trim": Verb(
         ROBOTS, ("trim", "trim"), ("make the robot drive straight", "hace que el robot vaya derecho"),
         ("Makes a robot drive straight: turns its motors, asks what you see, and the robot keeps what follows from it in its own memory, whatever program it runs. No wire is changed and nothing flashed.",
-         "Hace que un robot vaya derecho: hace girar sus motores, pregunta qué ves, y el robot guarda lo que resulta en su propia memoria, con cualquier programa. No se cambia ningún cable ni se graba nada."),
+         "Hace que un robot vaya derecho: hace girar sus motores, pregunta qué ves, y el robot guarda lo que resulta en su propia memoria, con cualquier programa. No se cambia ningún cable ni se escribe otro firmware."),
     ),
     "identify": Verb(
         ROBOTS, ("identify", "identify"), ("which robot is it? it blinks and plays", "¿qué robot es? parpadea y toca"),
-        ("The robot blinks for 3 s and plays its own three notes. Anybody may ask that. While a program runs it plays nothing, since the buzzer is the program's; the light blinks all the same. `--all`: each robot that answers.",
-         "El robot parpadea 3 s y toca sus tres notas. Cualquiera puede pedirlo. Mientras corre un programa no toca nada, porque el zumbador es del programa; la luz parpadea igual. `--all`: cada robot que responde."),
+        ("The robot blinks for 3 s and plays its own three notes. Anybody may ask for that. While a program runs it plays nothing, since the buzzer is the program's; the light blinks all the same. `--all`: each robot that answers.",
+         "El robot parpadea 3 s y toca sus tres notas. Cualquiera puede pedirlo. Mientras un programa está en marcha no toca nada, porque el zumbador es del programa; la luz parpadea igual. `--all`: cada robot que responde."),
     ),
     "claim": Verb(
         ROBOTS, ("claim", "claim"), ("make the robot yours: only you drive it", "hace tuyo el robot: solo tú lo conduces"),
-        ("Makes the robot yours. Hold its start button down for 2 s while tsc waits. From then on only a computer that has its key drives it; everybody else may look at it, make it blink and stop it. With `--teacher` the robot gets a second key, which may do the same; a stop with it (`tsc stop --teacher`) is released by it, or by the button, alone. A robot without an owner is free to use.",
-         "Hace tuyo el robot. Mantén pulsado su botón de inicio 2 s mientras tsc espera. Desde entonces solo lo conduce una computadora que tiene su llave; los demás pueden mirarlo, hacerlo parpadear y detenerlo. Con `--teacher` el robot recibe una segunda llave, que puede lo mismo; una parada con ella (`tsc stop --teacher`) la libera solo ella, o el botón. Un robot sin dueño es libre para todos."),
+        ("Makes the robot yours. Hold its start button down for 2 s while tsc waits. From then on only a computer that has its key drives it; everybody else may look at it, make it blink and stop it. With `--teacher` the robot gets a second key, which may do the same; a robot that it has stopped (`tsc stop --teacher`) goes on only with that key, or with its button. A robot without an owner is free to use.",
+         "Hace tuyo el robot. Mantén pulsado su botón de inicio 2 s mientras tsc espera. Desde entonces solo lo conduce una computadora que tiene su llave; los demás pueden mirarlo, hacerlo parpadear y detenerlo. Con `--teacher` el robot recibe una segunda llave, que puede lo mismo; un robot que se detuvo con ella (`tsc stop --teacher`) solo sigue con esa llave, o con su botón. Un robot sin dueño es libre para todos."),
         ends=("To make a robot forget its keys: hold its button down, switch it on, and hold it for 10 s more, until it beeps.",
               "Para que un robot olvide sus llaves: mantén pulsado su botón, enciéndelo, y sigue así 10 s más, hasta que suene."),
     ),
@@ -202,25 +202,25 @@ VERBS: dict[str, Verb] = {
          "Le quita al robot la llave del dueño: queda libre. Hace falta la llave del dueño o la de docente."),
     ),
     "text": Verb(
-        ROBOTS, ("text on", "text on"), ("let lines of text drive your robot, or not", "deja que líneas de texto conduzcan tu robot, o no"),
+        ROBOTS, ("text on", "text on"), ("let lines of text drive your robot, or not", "deja que líneas de texto lo conduzcan, o no"),
         ("Lets lines of text, which anybody may type on a phone, drive a robot that has an owner; until it is switched off. So does its button, held down for 2 s. The line S stops a robot always.",
          "Deja que líneas de texto, que cualquiera puede escribir en un teléfono, conduzcan un robot que tiene dueño; hasta que se apague. Lo mismo hace su botón, pulsado 2 s. La línea S detiene un robot siempre."),
         ("on|off [options]", "on|off [opciones]"),
     ),
     "wifi": Verb(
         ROBOTS, ("wifi NETWORK", "wifi RED"), ("bring your robot into a WiFi network", "lleva tu robot a una red WiFi"),
-        ("Has a robot with an ESP32 join a network, now and whenever it is switched on; with `--access-point` it opens one itself. tsc asks for the password, without showing it; where nobody types, it is the first line of standard input. It is in no argument and in no file of this computer, goes to the robot so that nobody who listens can read it, and no robot tells it. Only a robot with an owner takes a network, from a computer with its key. Without a network, tsc says which one the robot has. With `--broker` the robot also connects to an MQTT broker in that network, for `tsc class`: by its name, or, where the network does not know that, at the address that it has now.",
-         "Une un robot con ESP32 a una red, ahora y cada vez que se enciende; con `--access-point` la abre él mismo. tsc pide la contraseña sin mostrarla; si nadie escribe, es la primera línea de la entrada estándar. No está en ningún argumento ni en ningún archivo de esta computadora, va al robot sin que quien escuche pueda leerla, y ningún robot la cuenta. Solo un robot con dueño acepta una red, desde una computadora con su llave. Sin una red, tsc dice cuál tiene el robot. Con `--broker` el robot se conecta además a un broker MQTT de esa red, para `tsc class`: por su nombre o, si la red no lo conoce, en la dirección que tiene ahora."),
+        ("Has a robot with an ESP32 join a network, now and whenever it is switched on; with `--access-point` it opens one itself. tsc asks for the password, without showing it; where nobody types, it is the first line of standard input. It is in no argument and in no file of this computer, goes to the robot so that nobody who listens can read it, and no robot shows it. Only a robot with an owner takes a network, from a computer with its key. Without a network, tsc says which one the robot has. With `--broker` the robot also connects to an MQTT broker in that network, for `tsc class`: by its name, or, where the network does not know that, at the address that it has now.",
+         "Une un robot con ESP32 a una red, ahora y cada vez que se enciende; con `--access-point` la abre él mismo. tsc pide la contraseña sin mostrarla; si nadie escribe, es la primera línea de la entrada estándar. No está en ningún argumento ni en ningún archivo de esta computadora, va al robot sin que quien escuche pueda leerla, y ningún robot la muestra. Solo un robot con dueño acepta una red, desde una computadora con su llave. Sin una red, tsc dice cuál tiene el robot. Con `--broker` el robot se conecta además a un broker MQTT de esa red, para `tsc class`: por su nombre o, si la red no lo conoce, en la dirección que tiene ahora."),
         ("[NETWORK] [options]", "[RED] [opciones]"),
     ),
     "class": Verb(
         ROBOTS, ("class --broker HOST", "class --broker HOST"), ("a class of robots at an MQTT broker", "una clase de robots en un broker MQTT"),
-        ("Reaches robots with an ESP32 that `tsc wifi --broker` has brought to the MQTT broker of a school: it lists them, uploads a program to all of them, stops all of them, or prints what they show. Each of them has an owner, and this computer its key (`tsc keys --import`): what it says is sealed, so a broker, and whoever else is at it, can keep it from arriving and nothing more. A stop reaches every robot of the class, whoever drives it.",
-         "Llega a robots con ESP32 que `tsc wifi --broker` llevó al broker MQTT de una escuela: los lista, lleva un programa a todos, los detiene a todos, o imprime lo que muestran. Cada uno tiene dueño, y esta computadora su llave (`tsc keys --import`): lo que dice va sellado, así que un broker, y cualquiera que esté en él, puede impedir que llegue y nada más. Una parada llega a todos los robots de la clase, los conduzca quien los conduzca."),
+        ("Reaches robots with an ESP32 that `tsc wifi --broker` has brought to the MQTT broker of a school: it lists them, uploads a program to all of them, stops all of them, or prints what they show. Each of them has an owner, and this computer its key (`tsc keys --import`): what it says is sealed, so a broker, and whoever else is at it, can keep it from arriving, and do nothing else. A stop reaches every robot of the class, whoever drives it.",
+         "Llega a robots con ESP32 que `tsc wifi --broker` llevó al broker MQTT de una escuela: los lista, lleva un programa a todos, los detiene a todos, o imprime lo que muestran. Cada uno tiene dueño, y esta computadora su llave (`tsc keys --import`): lo que dice va sellado, así que un broker, y cualquiera que esté en él, puede impedir que llegue y nada más. Una parada llega a todos los robots de la clase, sin importar quién los conduce."),
         ("[ACTION] [PROGRAM] --broker HOST [options]",
          "[ACCIÓN] [PROGRAMA] --broker HOST [opciones]"),
-        ends=("It needs `pip install \".[broker]\"`. One client at a time has a robot; another one is told so.\nWith `--tls` this computer speaks TLS with the broker; a robot does where `tsc wifi --tls` has said so. Without it, passwords for the broker go through the school's network as they are.",
-              "Necesita `pip install \".[broker]\"`. Un cliente a la vez tiene un robot; a otro se le dice.\nCon `--tls` esta computadora habla TLS con el broker; un robot, si se lo pidió `tsc wifi --tls`. Sin eso, las contraseñas para el broker van por la red de la escuela tal cual."),
+        ends=("It needs `pip install \".[broker]\"`. Only one tsc at a time has a robot; a second one says so.\nWith `--tls` this computer speaks TLS with the broker; a robot does where `tsc wifi --tls` has said so. Without it, passwords for the broker go through the school's network as they are.",
+              "Necesita `pip install \".[broker]\"`. Solo un tsc a la vez tiene un robot; un segundo tsc lo dice.\nCon `--tls` esta computadora habla TLS con el broker; un robot, si se lo pidió `tsc wifi --tls`. Sin eso, las contraseñas para el broker van por la red de la escuela tal cual."),
     ),
     "keys": Verb(
         ROBOTS, ("keys", "keys"), ("the robots whose keys this computer has", "los robots cuya llave tiene esta computadora"),
@@ -232,12 +232,12 @@ VERBS: dict[str, Verb] = {
         ROBOTS, ("doctor", "doctor"),
         ("find out what is wrong, and what to do", "averigua qué está mal, y qué hacer"),
         ("Finds out what is wrong with a port, a Bluetooth module or a robot: what it saw, how sure it is, and the next step. First it looks at this computer alone and opens no port. The port of a radio, and one that another tsc has, it then uses: it sends HELLO, STATUS and 20 PING. Opening the port of a cable restarts most boards, so it asks before (`--yes` says yes); where no robot answers there it asks at other speeds, sends AT, which a module answers, and the greeting of bootloaders. It never drives a robot, starts or stops nothing, and writes into no memory.",
-         "Averigua qué está mal en un puerto, un módulo Bluetooth o un robot: qué vio, qué tan seguro está y el siguiente paso. Primero mira solo esta computadora y no abre ningún puerto. Después usa el puerto de una radio, y el que tiene otro tsc: envía HELLO, STATUS y 20 PING. Abrir el puerto de un cable reinicia la mayoría de las placas, así que antes pregunta (`--yes` dice que sí); si ahí no responde ningún robot, pregunta a otras velocidades, envía AT, que un módulo responde, y el saludo de los cargadores de arranque. Nunca mueve un robot, no inicia ni detiene nada, y no escribe en ninguna memoria."),
+         "Averigua qué está mal en un puerto, un módulo Bluetooth o un robot: qué vio, qué tan seguro está y el siguiente paso. Primero mira solo esta computadora y no abre ningún puerto. Después usa el puerto de una radio, y el que tiene otro tsc: envía HELLO, STATUS y 20 PING. Abrir el puerto de un cable reinicia la mayoría de las placas, así que antes pregunta (`--yes` dice que sí); si ahí no responde ningún robot, pregunta a otras velocidades, envía AT, que es lo que responde un módulo, y el saludo de los cargadores de arranque. Nunca mueve un robot, no inicia ni detiene nada, y no escribe en ninguna memoria."),
         ends=("Exit code: 0 if a robot answers and nothing is wrong, 3 if something is or nobody could be asked.\n"
               "With `--watch 20` it sees a robot that restarts when its motors start: let it drive meanwhile.\n"
               "While it watches it shares the port: `tsc stop` works in another terminal. Before that a stop waits some seconds for it.\n"
               "What it asks of Windows and macOS was tested with written-down answers of these systems, not on them.",
-              "Código de salida: 0 si un robot responde y nada está mal, 3 si algo lo está o no se pudo preguntar a nadie.\n"
+              "Código de salida: 0 si un robot responde y nada está mal, 3 si algo lo está, o si ningún robot respondió.\n"
               "Con `--watch 20` ve un robot que se reinicia cuando arrancan sus motores: haz que se mueva mientras tanto.\n"
               "Mientras lo mira comparte el puerto: `tsc stop` funciona en otra terminal. Antes de eso, un stop lo espera unos segundos.\n"
               "Lo que pregunta a Windows y macOS se probó con respuestas escritas de esos sistemas, no en ellos."),
@@ -245,8 +245,8 @@ VERBS: dict[str, Verb] = {
     "selftest": Verb(
         ROBOTS, ("selftest", "selftest"),
         ("is the robot ready for a lesson?", "¿está listo el robot para la lección?"),
-        ("Checks what a computer can of a robot that should be ready: it answers, its kit, its firmware, the connection, its supply as far as the robot knows, its memory, its trim, each sensor, each motor, the buzzer. Lift the robot so that its wheels turn in the air: the motors turn one after the other, and you say what you see. `--yes` asks nobody and turns no motor. The robot keeps its program.",
-         "Revisa lo que una computadora puede de un robot que debería estar listo: responde, su kit, su firmware, la conexión, su alimentación hasta donde el robot sabe, su memoria, su ajuste, cada sensor, cada motor, el zumbador. Levanta el robot, con las ruedas en el aire: los motores giran uno tras otro, y tú dices qué ves. `--yes` no pregunta a nadie y no hace girar ningún motor. El robot conserva su programa."),
+        ("Checks what a computer can check of a robot that should be ready: whether it answers, its kit, its firmware, the connection, its supply as far as the robot knows it, its memory, its trim, each sensor, each motor and the buzzer. Lift the robot so that its wheels turn in the air: the motors turn one after the other, and you say what you see. `--yes` asks nobody and turns no motor. The robot keeps its program.",
+         "Revisa lo que una computadora puede revisar de un robot que debería estar listo: si responde, su kit, su firmware, la conexión, su alimentación hasta donde el robot la conoce, su memoria, su ajuste, cada sensor, cada motor y el zumbador. Levanta el robot, con las ruedas en el aire: los motores giran uno tras otro, y tú dices qué ves. `--yes` no pregunta a nadie y no hace girar ningún motor. El robot conserva su programa."),
         ends=("Exit code: 0 if nothing is wrong, 3 if something is. What it cannot see has a question mark.",
               "Código de salida: 0 si nada está mal, 3 si algo lo está. Lo que no puede ver lleva un signo de interrogación."),
     ),
@@ -265,7 +265,7 @@ VERBS: dict[str, Verb] = {
         VIRTUAL, ("robot", "robot"),
         ("a virtual robot with a port, for other terminals", "un robot virtual, para otras terminales"),
         ("A virtual robot: the firmware of the real one, in a world of walls, lines and lamps. It has a port like any other robot, and another terminal finds it (`tsc upload prog.ts --virtual`). On a terminal it is drawn, and keys push its buttons; elsewhere a line says what it does.",
-         "Un robot virtual: el firmware del verdadero, en un mundo de paredes, líneas y lámparas. Tiene un puerto como cualquier robot, y otra terminal lo encuentra (`tsc upload prog.ts --virtual`). En una terminal se dibuja, y hay teclas para sus botones; en otro lugar una línea dice lo que hace."),
+         "Un robot virtual: el mismo firmware que uno de verdad, en un mundo de paredes, líneas y lámparas. Tiene un puerto como cualquier robot, y otra terminal lo encuentra (`tsc upload prog.ts --virtual`). En una terminal se dibuja, y hay teclas para sus botones; en otro lugar una línea dice lo que hace."),
         ends=("Exit code: 0 when it has ended.", "Código de salida: 0 cuando terminó."),
     ),
     "lesson": Verb(
