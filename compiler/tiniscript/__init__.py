@@ -132,6 +132,7 @@ def _checked(text: str, kit: Kit, name: str = "") -> Compiled:
     from tiniscript.diagnostics.codes import in_order
     from tiniscript.semantics.checker import check
     from tiniscript.semantics.lint import advice
+    from tiniscript.semantics.notes import in_notes
     from tiniscript.source import Source
     from tiniscript.syntax.parser import parse
 
@@ -145,6 +146,7 @@ def _checked(text: str, kit: Kit, name: str = "") -> Compiled:
         found = joined(found, source, parsed.scan.tokens, kit)
     else:
         found += advice(checked.program, kit)
+        found += in_notes(parsed.scan.comments, parsed.scan.tokens, source)
     return Compiled(source, in_order(found), checked.program)
 
 

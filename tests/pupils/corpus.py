@@ -1,8 +1,8 @@
 """Wrong programs as pupils write them, and what is said of each.
 
-`programs.txt` has a program, then a line for each message, `> 1 TS012 F(1.5, 80)`: its line, its
-code and what to try, in Spanish; then, where `tsc check --fix` changes it, the program that it
-makes, each line behind a `=`, without spaces at its end. A line of `%%` ends it.
+They are in the files `*.txt` here. A program has a line for each message, `> 1 TS012 F(1.5, 80)`:
+its line, its code and what to try, in Spanish; then, where `tsc check --fix` changes it, the
+program that it makes, each line behind a `=`, without spaces at its end. A line of `%%` ends it.
 """
 
 from __future__ import annotations
@@ -18,10 +18,13 @@ from tiniscript.library.compiling import compiled
 from tiniscript.repairs.fixing import fixed
 from tiniscript.source import Source
 
-FILE = Path(__file__).with_name("programs.txt")
+FOLDER = Path(__file__).parent
 
 
 class Entry(NamedTuple):
+    """`file` is the name of the file that has the program."""
+
+    file: str
     program: str
     said: tuple[str, ...]
     mended: str | None
@@ -30,12 +33,13 @@ class Entry(NamedTuple):
 @cache
 def entries() -> tuple[Entry, ...]:
     found = []
-    for part in FILE.read_text(encoding="utf-8").split("\n%%\n"):
-        lines = part.removesuffix("\n%%").split("\n")
-        program = [line for line in lines if line[:1] not in (">", "=")]
-        mended = [line[1:].removeprefix(" ") for line in lines if line[:1] == "="]
-        said = tuple(line[2:] for line in lines if line[:1] == ">")
-        found.append(Entry("\n".join(program).rstrip("\n"), said, "\n".join(mended) or None))
+    for file in sorted(FOLDER.glob("*.txt")):
+        for part in file.read_text(encoding="utf-8").split("\n%%\n"):
+            lines = part.removesuffix("\n%%").split("\n")
+            program = "\n".join(line for line in lines if line[:1] not in (">", "="))
+            mended = "\n".join(line[1:].removeprefix(" ") for line in lines if line[:1] == "=")
+            said = tuple(line[2:] for line in lines if line[:1] == ">")
+            found.append(Entry(file.name, program.rstrip("\n"), said, mended or None))
     return tuple(each for each in found if each.program)
 
 
@@ -44,21 +48,24 @@ def check(text: str) -> list[Diagnostic]:
     return compiled(text.encode(), robot, "prog.ts", is_strict=False).diagnostics
 
 
-def found_in(program: str) -> Entry:
+def found_in(entry: Entry) -> Entry:
     """Return what is said of a program now, and what becomes of it."""
+    program = entry.program
     found = check(program)
     source = Source(program)
     messages = [message(each, source, "es") for each in found]
     mended = fixed(program, check).text
     said = tuple(f"{each.line} {each.code} {each.fix}".rstrip() for each in messages)
     kept = "\n".join(line.rstrip() for line in mended.split("\n"))  # as the file keeps it
-    return Entry(program, said, kept or None if mended != program else None)
+    return Entry(entry.file, program, said, kept or None if mended != program else None)
 
 
 def write(found: list[Entry]) -> None:
-    rows = []
-    for entry in found:
-        rows += [entry.program, *(f"> {said}" for said in entry.said)]
-        rows += [f"= {line}".rstrip() for line in (entry.mended or "").split("\n") if entry.mended]
-        rows.append("%%")
-    FILE.write_text("\n".join(rows) + "\n", encoding="utf-8")
+    for file in {entry.file for entry in found}:
+        rows = []
+        for entry in found:
+            if entry.file == file:
+                mended = entry.mended.split("\n") if entry.mended else []
+                rows += [entry.program, *(f"> {said}" for said in entry.said)]
+                rows += [*(f"= {line}".rstrip() for line in mended), "%%"]
+        (FOLDER / file).write_text("\n".join(rows) + "\n", encoding="utf-8")

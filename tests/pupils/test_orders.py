@@ -81,10 +81,14 @@ def test_a_sentence_with_something_else_in_it_is_not(program: str) -> None:
 
 
 def test_a_turn_without_a_way_is_asked_for() -> None:
-    program = "avanza 3 segundos y despues dobla"
+    program = "dobla, avanza 3 segundos y despues dobla"
     (found,) = check(program)
-    assert found.code is codes.WHICH_WAY
-    assert Source(program)[found.span] == "y despues dobla"
+    assert found.code is codes.SEVERAL_ORDERS
+    assert found.values["right"] == "R(2, 80);F(3, 80);R(2, 80)"
+    assert message(found, Source(program), "en").fix.endswith(
+        "with L in place of R where it turns left."
+    )
+    assert fixed(program, check).text == program, "which way is not guessed"
 
 
 @pytest.mark.parametrize(

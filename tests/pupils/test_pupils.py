@@ -57,7 +57,7 @@ def test_there_are_enough() -> None:
 
 
 def test_the_corpus_is_as_it_was(request: pytest.FixtureRequest) -> None:
-    found = [found_in(each.program) for each in ENTRIES]
+    found = [found_in(each) for each in ENTRIES]
     if request.config.getoption("--accept"):
         write(found)
         return

@@ -28,6 +28,8 @@ KIT = robots.load("tinibot").kit
         ("DEF A;S;END_DEF", "TS807"),
         ("SHOW(5 % (3 - 3))", "TS808"),
         ("IF(2147483 * 2 > DISTANCE);S;ENDIF", "TS808"),
+        ("F(2, 80)//R(1, 60)", "TS816"),
+        ("F(2, 80); // r(1,60); S", "TS816"),
     ],
 )  # fmt: skip
 def test_advice(text: str, code: str) -> None:
@@ -51,6 +53,10 @@ def test_advice(text: str, code: str) -> None:
         "N = 3;WHILE(N > 0);N = N - 1;END_WHILE",
         "X = 0;SHOW(X / X)",
         "SHOW(FALSE AND 1 / 0 > 2)",
+        "F(2, 80) // turns right: R(1, 60)",
+        "// R(1, 60)\nF(2, 80)",
+        "F(2, // R(1, 60)\n80)",
+        "F(2, 80) // S",
     ],
 )
 def test_no_advice(text: str) -> None:

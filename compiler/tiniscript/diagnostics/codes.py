@@ -118,6 +118,7 @@ QUESTION_BEHIND = _mistake("TS071")
 PASTED = _mistake("TS072")
 PROSE = _mistake("TS073")
 SEVERAL_ORDERS = _mistake("TS074")
+GROUPED = _mistake("TS080")
 # the checksum of a line
 CHECKSUM_WRONG = _mistake("TS058")
 CHECKSUM_FORM = _mistake("TS059")
@@ -176,6 +177,7 @@ BOARD_MAY_BE_TOO_SMALL = _warning("TS809")
 SWAPPED = _warning("TS810")
 LONG_TIME = _warning("TS811")
 NEVER_REPEATS = _warning("TS812")
+IN_A_NOTE = _warning("TS816")
 
 
 def in_order(found: list[Diagnostic]) -> list[Diagnostic]:

@@ -25,11 +25,13 @@ def without_braces(text: str) -> list[Edit] | None:
     for k, token in enumerate(tokens):
         if token.kind == "{":
             word = _header(tokens, k)
+            word = "" if word is None and _is_alone(tokens, k) else word
             if word is None:
                 return None
             opened.append("IF" if word in _ARMS else word)
             after = tokens[k + 1].kind
-            new = "" if after in ("}", *AT_END) else "; "
+            is_own_line = k == 0 or tokens[k - 1].kind is NEWLINE
+            new = "" if is_own_line or after in ("}", *AT_END) else "; "
             edits.append(_replaced(text, tokens, k, new))
         elif token.kind == "}":
             if not opened:
@@ -39,7 +41,7 @@ def without_braces(text: str) -> list[Edit] | None:
                 is_alone = tokens[k - 1].kind in (NEWLINE, ";", "{") or k == 0
                 edits.append(_replaced(text, tokens, k, "" if is_alone else ";"))
                 continue
-            edits.append(_ended(tokens, k, BLOCK_ENDS[word]))
+            edits.append(_ended(tokens, k, BLOCK_ENDS[word]) if word else _gone(tokens, k))
     return None if opened else edits
 
 
@@ -55,6 +57,27 @@ def _header(tokens: Sequence[Token], brace: int) -> str | None:
         return None
     word = first.text if first.text in WORDS else foreign_block(first.text)
     return word if word in BLOCK_ENDS or word in _ARMS else None
+
+
+def _is_alone(tokens: Sequence[Token], brace: int) -> bool:
+    """Whether a `{` begins the text, or stands behind an instruction that begins no block."""
+    k = brace
+    while k and tokens[k - 1].kind in (NEWLINE, ";"):
+        k -= 1
+    if not k or tokens[k - 1].kind == "|":
+        return True
+    if k == brace:
+        return False
+    while k and tokens[k - 1].kind not in AT_END:
+        k -= 1
+    known = WORDS.get(tokens[k].text)
+    return known is not None and known.is_instruction
+
+
+def _gone(tokens: Sequence[Token], k: int) -> Edit:
+    """A `}` that ends no block goes."""
+    is_between = tokens[k - 1].kind not in AT_END and tokens[k + 1].kind not in AT_END
+    return Edit(tokens[k].span, ";" if is_between else "")
 
 
 def _goes_on(tokens: Sequence[Token], brace: int) -> bool:

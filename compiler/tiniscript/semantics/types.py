@@ -40,6 +40,7 @@ class _Operand(NamedTuple):
 _ARITHMETIC = frozenset(("ADD", "SUB", "MUL", "DIV", "MOD", "MIN", "MAX", "RANDOM", "ROUND"))
 _ORDER = frozenset(("LT", "LE", "GT", "GE"))
 _EQUAL = frozenset(("EQ", "NE"))
+_COMPARES = re.compile(r"\w+\s*((?:<=|>=|<>|[<>=])\s*[\w.]+)")  # `> 5` of `X > 5`
 _COMPARED = re.compile(r"[^<>=]{1,40}?\s*(?:<=|>=|<>|[<>=])(?=[^<>=]*$)")  # `X =` of `X = 5`
 _UNARY = {"NEG": "-", "ABS": "ABS"}
 _LEAVES = {"TRUE": Term("YES_NO", 1), "FALSE": Term("YES_NO", 0), "TIME": Term("TIME")}
@@ -155,7 +156,7 @@ class Kinds:
             self._wants_number(SIGN_OF.get(op, op), right)
             kind = NUMBER
         elif op in ("AND", "OR"):
-            self._wants_yes_no(op, left)
+            self._wants_yes_no(op, left, right)
             self._wants_yes_no(op, right, left)
         elif left.kind != right.kind:
             if ANY not in (left.kind, right.kind):
@@ -172,15 +173,22 @@ class Kinds:
             found = self.scope.source[span]
             self.scope.report(codes.WANTS_NUMBER, span, by=by, found=found)
 
-    def _wants_yes_no(self, by: str, operand: _Operand, left: _Operand | None = None) -> None:
-        """`left` stands before an AND or OR: `X = 5 OR 6` means `X = 5 OR X = 6`."""
+    def _wants_yes_no(self, by: str, operand: _Operand, other: _Operand | None = None) -> None:
+        """`other` is the other side of an AND or OR.
+
+        `X = 5 OR 6` means `X = 5 OR X = 6`, and `X AND Y > 5` means `X > 5 AND Y > 5`.
+        """
         if operand.kind == NUMBER:
             span = Span(operand.start, operand.end)
             found = self.scope.source[span]
             values = self.question(found)
-            if left is not None and left.end - left.start <= 80:
-                asked = _COMPARED.match(self.scope.source[Span(left.start, left.end)])
-                values = {"fix": f"{asked[0]} {found}"} if asked else values
+            if other is not None and other.end - other.start <= 80:
+                asked = self.scope.source[Span(other.start, other.end)]
+                before, behind = _COMPARED.match(asked), _COMPARES.fullmatch(asked)
+                if other.start < operand.start and before:
+                    values = {"fix": f"{before[0]} {found}"}
+                elif behind and found.isidentifier():
+                    values = {"fix": f"{found} {behind[1]}"}
             self.scope.report(codes.WANTS_CONDITION, span, None, by=by, found=found, **values)
 
     def question(self, found: str) -> dict[str, str]:

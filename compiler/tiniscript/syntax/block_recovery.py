@@ -14,7 +14,7 @@ from tiniscript.diagnostics import codes
 from tiniscript.kit import Kit
 from tiniscript.source import Span
 from tiniscript.syntax.ast import Argument, Assign, Command
-from tiniscript.syntax.blocks import HEADERS, Block, Blocks
+from tiniscript.syntax.blocks import ENDS, HEADERS, Block, Blocks
 from tiniscript.syntax.call_suggestions import ends_value
 from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.lexer import NUMBER, ODD, WORD, Token
@@ -30,6 +30,7 @@ from tiniscript.syntax.suggestions import (
     head_in,
     with_signs,
 )
+from tiniscript.syntax.unended import where_it_ends
 from tiniscript.syntax.vocabulary import Vocabulary
 from tiniscript.words import ALIASES, BLOCK_ENDS, TURN_WORDS, WORDS, meant_by, nearest
 
@@ -135,6 +136,19 @@ class BlockRecovery:
         )
         self.begin_reported("LOOP", place)
         self.go_on()
+
+    def bare_header(self, word: Token) -> None:
+        """`LOOP` alone behind the body of a LOOP: its end is meant, if no other comes."""
+        block = self.blocks.innermost
+        if block is None or block.word != word.text or not block.here:
+            return
+        rest = self.cursor.tokens[self.cursor.i :]
+        if any(ENDS.get(each.text) == word.text for each in rest):
+            return
+        right = BLOCK_ENDS[word.text]
+        self.reporter.report(codes.END_ALONE, word.span, found=word.text, right=right)
+        self.blocks.end(word.span)
+        raise Resumed
 
     def to_body(self, bracket: int) -> None:
         """Go to where the body begins behind the `(` at `bracket`, which cannot be read."""
@@ -299,6 +313,16 @@ class BlockRecovery:
             self.blocks.end(brace.span)
             self._owed += 1
 
+    def alone(self, brace: Token) -> None:
+        """`{` where an instruction begins: if no block is meant, both brackets go."""
+        block = self.blocks.innermost
+        source = self.cursor.source
+        if block is not None and not source[Span(block.span.end, brace.start)].strip("(); \t\r\n"):
+            return
+        for k, diagnostic in enumerate(self.reporter.diagnostics):
+            if diagnostic.code is codes.BRACES and diagnostic.span.start == brace.start:
+                self.reporter.change(k, diagnostic._replace(values={"alone": "{ }"}))
+
     def _name_end(self, block: Block) -> None:
         """Let the diagnostic of the first brace name the end of its block, which is known now."""
         start = block.arms[0].span.end if block.arms else block.span.end
@@ -313,37 +337,10 @@ class BlockRecovery:
         for block in self.blocks.open:
             if (not block.is_reported or block.word == "DEF") and not self._is_misspelt(block):
                 right = BLOCK_ENDS[block.word]
-                where = self._last_line(block)
+                where = where_it_ends(block, self.cursor.source)
                 self.reporter.report(
                     codes.NEVER_ENDS, block.span, None, word=block.word, right=right, **where
                 )
-
-    def _last_line(self, block: Block) -> dict[str, str]:
-        """Return the line that a block without an end probably ends with, and its text.
-
-        Lines that stand further in than the header belong to it; where none does, all that follow.
-        """
-        source = self.cursor.source
-        head = source.position(block.span.start)[0]
-        last = source.position(len(source.text))[0]
-        rows = [(k, source.line_text(k)) for k in range(head, min(last, head + 400) + 1)]
-        first, *rest = [(k, row) for k, row in rows if row.strip()] or [(head, "")]
-        within = []
-        for k, row in rest:
-            if _indent(row) <= _indent(first[1]):
-                break
-            within.append((k, row))
-        if block.name is not None:  # a DEF that calls itself: the call is the program's
-            for i, (_, row) in enumerate(rest):
-                if row.split("//")[0].strip(" \t;").upper() == block.name.text:
-                    rest = rest[:i] or [(head, first[1])]
-                    break
-        on_line = self.cursor.source.text[block.span.end :].split("\n", 1)[0].strip(" \t\r;:{")
-        begins_there = bool(on_line) and not (on_line.startswith("//") or within)
-        if not rest or (begins_there and block.name is None):  # `IF(c);S` may be all of it
-            return {"line": "", "last": ""}
-        line, text = (within or rest)[-1]
-        return {"line": str(line), "last": text.strip()}
 
     def _is_open(self, word: str) -> bool:
         return any(block.word == word for block in self.blocks.open)
@@ -383,7 +380,3 @@ class BlockRecovery:
     def is_name(self, word: str) -> bool:
         """Whether the kit or a DEF anywhere in the text has this name."""
         return self.known.is_name(word)
-
-
-def _indent(row: str) -> int:
-    return len(row) - len(row.lstrip())

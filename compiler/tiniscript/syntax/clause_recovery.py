@@ -33,9 +33,12 @@ class ClauseRecovery:
         cursor.i = sentence.end
         for token in cursor.tokens[start : cursor.i]:
             self.reporter.answer(token)  # an accent, a point at the end
-        if sentence.turn is not None:
-            self.reporter.fail(codes.WHICH_WAY, sentence.turn)
         place = Span(first.start, cursor.last.end)
+        if sentence.turn is not None:
+            self.reporter.fail(
+                codes.SEVERAL_ORDERS, place, sentence.turn, fix="",
+                example=", ".join(sentence.examples), right=";".join(sentence.orders),
+            )  # fmt: skip
         if len(sentence.orders) == 1:  # `avanza hasta que veas una pared`
             usage, fix = WORDS["F"].usage, sentence.orders[0]
             self.reporter.fail(

@@ -29,7 +29,7 @@ from tiniscript.syntax.suggestions import foreign_block
 from tiniscript.syntax.time_phrases import with_numbers
 from tiniscript.syntax.units import converted
 from tiniscript.syntax.vocabulary import Vocabulary
-from tiniscript.words import POWER_WORDS, TURN_WORDS, UNITS, Word, is_guessed
+from tiniscript.words import POWER_WORDS, TURN_WORDS, UNITS, WORDS, Word, is_guessed
 
 # What says where to, beside a word for a move: `a la derecha`, `to the left`.
 _TOWARDS = FILLERS | {"TO", "TOWARDS", "TOWARD"}
@@ -46,7 +46,7 @@ class Sentence(NamedTuple):
     orders: tuple[str, ...]
     end: int
     examples: tuple[str, ...]  # the time and the power that nobody has said, with their units
-    turn: Span | None  # one that says no way; then the orders are not all
+    turn: Span | None  # the first that says no way; the orders have R for it
 
     @property
     def has_until(self) -> bool:
@@ -70,9 +70,11 @@ def sentence_at(tokens: Sequence[Token], start: int, known: Vocabulary) -> Sente
         if not order.is_read():
             return None
         text = order.text()
-        if order.is_turn and order.verb is None and turn is None:
-            turn = Span(row[k].start, row[order.k - 1].end)
-        elif not text:
+        if order.is_turn and order.verb is None:
+            turn = turn or Span(row[k].start, row[order.k - 1].end)
+            order.verb = WORDS["R"]
+            text = order.text()
+        if not text:
             return None
         orders.append(text)
         examples |= order.examples

@@ -59,7 +59,7 @@ _PATTERN = re.compile(
     + PASTED
     + r""")
       | (?P<othersign>\\n|==|!=|\u00a1=|![<>]=?|=>|=<|><|&&|\|\||!(?=[ \t]*[\w(])
-            |[\u2264\u2265\u2260\u00d7\u00f7\u221e])
+            |=[ ]+[<>=]|[<>][ ]+=|<[ ]+>|>[ ]+<|[\u2264\u2265\u2260\u00d7\u00f7\u221e])
       | (?P<sign><=|>=|<>|[-+*/%=<>(),;|])
       | (?P<dash>[\u2010-\u2015\u2212])
       | (?P<badnumber>[0-9]+(?:\.[0-9]+)?["\u201d\u2033](?=[ ]*[,)])
@@ -169,7 +169,8 @@ class _Repairs:
         self.diagnostics.append(Diagnostic(code, span, values))
 
     def othersign(self, text: str, span: Span) -> Token:
-        right = _OTHER_SIGNS[text]
+        sign = text.replace(" ", "")  # `= <`
+        right = _OTHER_SIGNS.get(sign, sign)
         self.report(codes.OTHER_SIGN, span, found=text, right=right)
         return Token(WORD if right.isalpha() else right, right, *span)
 

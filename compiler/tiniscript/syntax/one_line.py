@@ -135,6 +135,9 @@ class _Reader:
             self.row.append("ELSE")
             self.has_parted = False
             return True
+        if block in HEADERS and following.kind in (NEWLINE, END) and block in self.open[-1:]:
+            self.k += 1  # `LOOP(4) F(1, 50) LOOP`
+            return self._end()
         if block in HEADERS or block == "ELSEIF":
             return self._header(block) and (self.token.kind == "{" or not self.has_braces)
         if following.kind == "=":

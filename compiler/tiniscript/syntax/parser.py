@@ -240,14 +240,18 @@ class Parser:
         """Open the block even if its header is wrong, so that its end is not a second mistake."""
         cursor = self.cursor
         cursor.i += 1
+        if cursor.token.kind in AT_END:
+            self.recovery.in_block.bare_header(word)
         if (
             word.text == "LOOP"
             and cursor.tokens[min(cursor.i + 2, len(cursor.tokens) - 1)].kind == "="
         ):
             self.recovery.in_block.counted_loop(word)
+        start, said = cursor.i, len(self.reporter.diagnostics)
         try:
             head = self.argument_of(word)
         except Failed:
+            self.recovery.groups.in_header(word, start, said)
             self.recovery.in_block.unread_header(word)
         self.blocks.begin(word.text, self.cursor.span_from(word), head)
 

@@ -18,6 +18,7 @@ from tiniscript.syntax.construct_recovery import ConstructRecovery
 from tiniscript.syntax.cursor import AT_END, Cursor
 from tiniscript.syntax.def_recovery import DefRecovery
 from tiniscript.syntax.foreign import forever_alone
+from tiniscript.syntax.group_recovery import GroupRecovery
 from tiniscript.syntax.lexer import NUMBER, ODD, WORD, Token
 from tiniscript.syntax.name_recovery import NameRecovery
 from tiniscript.syntax.operators import SIGNS
@@ -64,6 +65,7 @@ class Recovery:
         self.of_until = UntilRecovery(cursor, reporter, blocks)
         self.times = TimesRecovery(cursor, reporter, self.in_block)
         self.construct = ConstructRecovery(cursor, reporter, self.in_block)
+        self.groups = GroupRecovery(cursor, reporter, self.in_block)
 
     # -- what is no instruction ---------------------------------------------------------------
 
@@ -73,6 +75,8 @@ class Recovery:
         cursor.i += 1
         if token.kind == "}":
             self.in_block.close_brace(token)
+        if token.kind == "{":
+            self.in_block.alone(token)
         if token.kind in ("{", "}"):
             return
         if token.kind is ODD:
@@ -82,6 +86,10 @@ class Recovery:
             self.of_name.other_note(token.start, "--", cursor.token.end)
         if token.kind == "/" and cursor.token.kind is WORD and not self._is_command(cursor.token):
             self.of_name.other_note(token.start, "/", cursor.token.start)  # `/ gira`
+        if token.kind == "(":
+            self.groups.alone(cursor.i - 1)
+        if token.kind is NUMBER:
+            self.groups.counted(token)
         if token.kind is NUMBER and cursor.token.kind is WORD:
             self.times.so_many_times(token)
         if token.kind is NUMBER or token.kind == "(":
@@ -134,6 +142,7 @@ class Recovery:
         if role == "until":
             self.of_until.after_its_move(parser, word)
         if role == "forever":
+            self.groups.forever(word)
             self.reporter.report(codes.FOREVER_NOT_HERE, word.span)
             if self.cursor.following.kind == "(":
                 raise Failed
@@ -168,6 +177,8 @@ class Recovery:
             kind, text = token.kind, token.text
         goes_on = kind in SIGNS or text in ("AND", "OR")  # of the question, or of its line
         goes_on = goes_on or (text in AFTER_HEADER and after.kind in AT_END)
+        if header is not None and kind == "(":
+            self.groups.body(header, cursor.i)
         if header is not None and header.word != "DEF" and first.text != "ELSE" and not goes_on:
             self._line_of(header, token)
         if kind in ("{", "}"):

@@ -127,7 +127,32 @@ class ValueConstructs:
         span = Span(name.start, row[-1].end)
         self.reporter.fail(codes.CHOICE_IN_VALUE, span, None, fix=fix)
 
-    def is_article(self, word: Token) -> bool:
+    def is_said_with_more(self, word: Token) -> bool:
+        """Whether a name has a word beside it that says no more; then read on with the name."""
+        return self._is_dotted(word) or self._is_article(word)
+
+    def _is_dotted(self, word: Token) -> bool:
+        """`DISTANCE.read()`, `robot.DISTANCE`: what a sensor measures is its name alone."""
+        tokens, k = self.cursor.tokens, self.cursor.i
+        point = self.cursor.following
+        if point.kind is not ODD or point.text != "." or tokens[k + 2].kind is not WORD:
+            return False
+        names = [self.known.value(tokens[i].text) for i in (k, k + 2)]
+        names = [name for name in names if self.known.is_own(name)]
+        end = k + 3
+        if tokens[end].kind == "(" and tokens[end + 1].kind == ")":
+            end += 2
+        if len(names) != 1 or tokens[end].kind == "(":
+            return False
+        self.reporter.answer(point)
+        span = Span(word.start, tokens[end - 1].end)
+        shown = self.cursor.source[span]
+        self.reporter.report(codes.OTHER_LANGUAGE, span, span, found=shown, right=names[0],
+                             fix=names[0], usage=names[0])  # fmt: skip
+        tokens[k:end] = [Token(WORD, names[0], *span)]
+        return True
+
+    def _is_article(self, word: Token) -> bool:
         """`X = la distancia`: report the word before a name of the program, and go on behind it."""
         after = self.cursor.following
         name = self.known.value(after.text)

@@ -1,0 +1,35 @@
+"""A warning for instructions that stand in a note: `F(2, 80)//R(1, 60)`.
+
+Knows the notes of a text and what stands before them on their line. Only a note that is a row of
+calls with numbers is taken for a slip, behind an instruction: a whole line may be set aside.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Diagnostic
+from tiniscript.source import Source
+from tiniscript.syntax.lexer import Token
+
+_CALL = r"(?:[FBLRM]|BEEP)\(\s*-?[0-9.]+\s*,\s*-?[0-9.]+\s*\)|W\(\s*[0-9.]+\s*\)"
+_CALLS = re.compile(rf"/+\s*(?:{_CALL})(?:[;,/\s]*(?:{_CALL}|STOP|S))*[;,/\s]*", re.IGNORECASE)
+LONGEST = 200  # characters of a note that is looked at
+
+
+def in_notes(notes: Sequence[Token], tokens: Sequence[Token], source: Source) -> list[Diagnostic]:
+    """Return the warnings for instructions that the robot does not do."""
+    found = []
+    rows = [each for each in notes if len(each.text) <= LONGEST and _CALLS.fullmatch(each.text)]
+    depth = k = 0
+    for note in rows:
+        while tokens[k].start < note.start:
+            depth += (tokens[k].kind == "(") - (tokens[k].kind == ")")
+            k += 1
+        begin = max(source.text.rfind(sign, 0, note.start) for sign in "\r\n") + 1
+        if not depth and source.text[begin : note.start].strip(" \t;"):
+            values = {"found": note.text.strip("/; \t")}
+            found.append(Diagnostic(codes.IN_A_NOTE, note.span, values))
+    return found

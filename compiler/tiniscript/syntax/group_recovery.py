@@ -1,0 +1,239 @@
+"""Recovery of instructions in brackets: `LOOP(4);(F(1, 60);R(1, 60))`, `LOOP(F(1, 50), 4)`, `[S]`.
+
+Knows what stands between the brackets, and which block it is the body of. One diagnostic stands for
+all of it: the tokens are replaced by those that were meant, and the grammar reads on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from tiniscript.diagnostics import codes
+from tiniscript.source import Span
+from tiniscript.syntax.block_recovery import BlockRecovery
+from tiniscript.syntax.blocks import ENDS, Block
+from tiniscript.syntax.call_suggestions import written
+from tiniscript.syntax.cursor import AT_END, Cursor
+from tiniscript.syntax.lexer import END, NEWLINE, NUMBER, WORD, Token
+from tiniscript.syntax.operators import COMPARISONS
+from tiniscript.syntax.phrases import TIMES
+from tiniscript.syntax.reporter import Reporter, Resumed
+from tiniscript.syntax.suggestions import foreign_block, with_signs
+from tiniscript.words import BLOCK_ENDS, WORDS
+
+_FARTHEST = 1000  # tokens in which the `)` is looked for
+_BETWEEN = (";", ",", NEWLINE)
+
+
+class _Group(NamedTuple):
+    """The pieces between two brackets, and the place behind the last one."""
+
+    values: tuple[Sequence[Token], ...]
+    orders: tuple[Sequence[Token], ...]
+    end: int
+
+
+class GroupRecovery:
+    def __init__(self, cursor: Cursor, reporter: Reporter, in_block: BlockRecovery) -> None:
+        self.cursor = cursor
+        self.reporter = reporter
+        self.in_block = in_block
+
+    # -- where they stand ---------------------------------------------------------------------
+
+    def alone(self, k: int) -> None:
+        """`(F(2, 80), S)` at `k`, or the body of the header right before it."""
+        group = self._orders_at(k)
+        if group is None:
+            return
+        block = self.in_block.blocks.innermost
+        if block is not None and not block.here and self._stands_behind(block, k):
+            self.body(block, k)
+        times, end = self._times_behind(group.end)
+        if times is not None:
+            self._loop(times, group, k, end)
+        tokens = self.cursor.tokens
+        fix = ";".join(self._said(each) for each in group.orders)
+        self._report(Span(tokens[k].start, tokens[group.end - 1].end), tokens[k], fix)
+        self._read_on(k, group.end, self._row(group, k))
+
+    def body(self, block: Block, k: int) -> None:
+        """`LOOP(4)(F(1, 60), S)`: the brackets at `k` hold the body of a block that begins here."""
+        group = self._orders_at(k)
+        if group is None or block.word == "DEF":
+            return
+        cursor, tokens = self.cursor, self.cursor.tokens
+        right, end = BLOCK_ENDS[block.word], group.end
+        is_ended, last = self._end_comes(block.word, end)
+        head = cursor.source[block.span]
+        orders = ";".join(self._said(each) for each in group.orders)
+        place = Span(block.span.start, tokens[(last if is_ended else end) - 1].end)
+        otherwise = self.in_block.cursor.tokens[cursor.after_newlines(end)].text
+        if otherwise in ("ELSE", "ELSEIF", "SINO"):
+            place, right, is_ended = Span(block.span.start, tokens[end - 1].end), "", True
+        fix = ";".join(filter(None, (head, orders, right)))
+        if not block.is_reported:
+            self._report(place, tokens[k], fix)
+        else:
+            self.reporter.answer(tokens[k])
+        row = self._row(group, k)
+        if not is_ended:
+            span = tokens[end - 1].span
+            row += [Token(WORD, BLOCK_ENDS[block.word], *span), Token(";", ";", *span)]
+        self._read_on(k, end, row)
+
+    def forever(self, word: Token) -> None:
+        """`FOREVER(F(1, 60);R(1, 60))`."""
+        group = self._orders_at(self.cursor.i + 1)
+        if group is not None:
+            number = Token(WORD, "FOREVER", *word.span)
+            self._loop(number, group, self.cursor.i, group.end)
+
+    def counted(self, number: Token) -> None:
+        """`4 LOOP(F(1, 50))`, `4 veces (F(1, 50);S)`, `4(F(1, 50))`: behind `number`."""
+        cursor = self.cursor
+        k = cursor.i
+        token = cursor.tokens[k]
+        word = token.text if token.text in WORDS else foreign_block(token.text)
+        k += token.kind == "*" or token.text in (*TIMES, "X") or word == "LOOP"
+        group = self._orders_at(k) if cursor.tokens[k].kind == "(" else None
+        if group is not None:
+            self._loop(number, group, cursor.i - 1, group.end)
+
+    def in_header(self, word: Token, bracket: int, said: int) -> None:
+        """`LOOP(F(1, 50), 4)`, `IF(DISTANCE < 10, S)`: the body stands in the header's brackets.
+
+        `said` diagnostics were there before the header was read.
+        """
+        tokens = self.cursor.tokens
+        group = self._group_at(bracket) if tokens[bracket].kind == "(" else None
+        if group is None or not group.orders:
+            return
+        right = BLOCK_ENDS.get(word.text, "")
+        asked = [each for each in group.values if self._is_head(word.text, each)]
+        known = len(asked) == len(group.values) == 1 and bool(right)
+        is_one = word.text == "LOOP" or len(group.orders) == 1
+        if len(group.values) > len(asked) or len(asked) > 1 or not right:
+            return
+        self.reporter.withdraw(said)
+        span = Span(word.start, tokens[group.end - 1].end)
+        orders = ";".join(self._said(each) for each in group.orders)
+        head = written(with_signs(asked[0])) if asked else ""
+        fix = f"{word.text}({head});{orders};{right}" if known and is_one else ""
+        self.reporter.report(
+            codes.GROUPED, span, span, word=word.text, fix=fix, right=right,
+            head=f"{word.text}({head})" if head else WORDS[word.text].usage,
+        )  # fmt: skip
+        for token in tokens[bracket : group.end]:
+            self.reporter.answer(token)
+        row = [*self._row(group, bracket), Token(WORD, right, *tokens[group.end - 1].span)]
+        self.in_block.begin_reported(word.text, span)
+        self._read_on(bracket, group.end, [*row, Token(";", ";", *tokens[group.end - 1].span)])
+
+    # -- what stands there --------------------------------------------------------------------
+
+    def _orders_at(self, k: int) -> _Group | None:
+        """Return the group that begins at `k`, if it has orders and nothing else."""
+        group = self._group_at(k)
+        return group if group is not None and group.orders and not group.values else None
+
+    def _group_at(self, k: int) -> _Group | None:
+        tokens = self.cursor.tokens
+        depth, first = 0, k + 1
+        values: list[Sequence[Token]] = []
+        orders: list[Sequence[Token]] = []
+        for i in range(k, min(len(tokens), k + _FARTHEST)):
+            token = tokens[i]
+            depth += (token.kind == "(") - (token.kind == ")")
+            if (depth == 1 and i > k and token.kind in _BETWEEN) or not depth:
+                piece = tokens[first:i]
+                if piece:
+                    (orders if self._is_order(piece) else values).append(piece)
+                first = i + 1
+            if not depth:
+                return _Group(tuple(values), tuple(orders), i + 1)
+            if token.kind in (END, "{", "}"):
+                break
+        return None
+
+    def _is_order(self, piece: Sequence[Token]) -> bool:
+        first = piece[0]
+        if first.kind is not WORD:
+            return False
+        known = self.in_block.known
+        command = known.command(first.text)
+        if len(piece) == 1:
+            return command is not None and command.role in ("stop", "break")
+        is_call = piece[1].kind == "("
+        is_block = command is not None and command.role in ("block", "arm", "end")
+        is_doing = command is not None and (command.is_instruction or command.role == "actuator")
+        return (is_call and (is_doing or is_block)) or first.text in ENDS
+
+    def _is_head(self, word: str, piece: Sequence[Token]) -> bool:
+        if word == "LOOP":
+            is_value = piece[0].kind is NUMBER or self.in_block.known.is_own(piece[0].text)
+            return len(piece) == 1 and (is_value or piece[0].text == "FOREVER")
+        return any(each.kind in COMPARISONS for each in with_signs(piece))
+
+    def _said(self, piece: Sequence[Token]) -> str:
+        return self.cursor.source[Span(piece[0].start, piece[-1].end)]
+
+    def _stands_behind(self, block: Block, k: int) -> bool:
+        """Whether nothing but separators stands between the header of `block` and `k`."""
+        text = self.cursor.source.text[block.span.end : self.cursor.tokens[k].start]
+        return not text.strip(" \t\r\n;:")
+
+    def _end_comes(self, word: str, k: int) -> tuple[bool, int]:
+        """Whether the end of a block of `word` follows at `k`, and the place behind it."""
+        tokens = self.cursor.tokens
+        while tokens[k].kind in (NEWLINE, ";"):
+            k += 1
+        return ENDS.get(tokens[k].text) == word, k + 1
+
+    def _times_behind(self, k: int) -> tuple[Token | None, int]:
+        """`[F(1, 60), S] * 4`: return how often, and the place behind it."""
+        tokens = self.cursor.tokens
+        is_sign = tokens[k].kind == "*" or tokens[k].text in ("X", "POR")
+        number = tokens[k + is_sign] if tokens[k].kind is not END else tokens[k]
+        after = k + is_sign + 1
+        if number.kind is not NUMBER:
+            return None, k
+        is_said = tokens[after].text in TIMES
+        after += is_said
+        return (
+            (number, after) if (is_sign or is_said) and tokens[after].kind in AT_END else (None, k)
+        )
+
+    # -- what is read instead -----------------------------------------------------------------
+
+    def _loop(self, times: Token, group: _Group, start: int, end: int) -> None:
+        tokens = self.cursor.tokens
+        place = Span(tokens[start].start, tokens[end - 1].end)
+        orders = ";".join(self._said(each) for each in group.orders)
+        fix = f"LOOP({times.text});{orders};{BLOCK_ENDS['LOOP']}"
+        bracket = next(each for each in tokens[start:end] if each.kind == "(")
+        self._report(place, bracket, fix)
+        head = [Token(kind, text, *times.span) for kind, text in (
+            (WORD, "LOOP"), ("(", "("), (times.kind, times.text), (")", ")"), (";", ";"),
+        )]  # fmt: skip
+        last = tokens[end - 1].span
+        tail = [Token(WORD, BLOCK_ENDS["LOOP"], *last), Token(";", ";", *last)]
+        self._read_on(start, end, [*head, *self._row(group, start), *tail])
+
+    def _row(self, group: _Group, k: int) -> list[Token]:
+        """Return the orders with a `;` around each."""
+        sign = Token(";", ";", *self.cursor.tokens[k].span)
+        row = [sign]
+        for piece in group.orders:
+            row += [*piece, sign]
+        return row
+
+    def _report(self, place: Span, bracket: Token, fix: str) -> None:
+        self.reporter.answer(bracket)
+        self.reporter.report(codes.GROUPED, place, place, fix=fix)
+
+    def _read_on(self, start: int, end: int, row: Sequence[Token]) -> None:
+        self.cursor.tokens[start:end] = row
+        self.cursor.i = start
+        raise Resumed
