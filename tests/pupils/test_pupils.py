@@ -29,6 +29,7 @@ OTHER_NUMBERS = (
     codes.LOOP_COUNTS,
     codes.NEEDLESS_FRAME,  # with its `return 0`
     codes.LISTS,  # `V[0]` is V_1
+    codes.PASTED,  # `[20:14] Luis:`
 )
 CONVERTED = re.compile(r"(?i)[0-9] *(min|ms|mili|hora|hour)|delay")
 

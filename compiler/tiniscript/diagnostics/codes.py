@@ -118,6 +118,7 @@ QUESTION_BEHIND = _mistake("TS071")
 PASTED = _mistake("TS072")
 PROSE = _mistake("TS073")
 SEVERAL_ORDERS = _mistake("TS074")
+OTHER_CALL = _mistake("TS076")
 GROUPED = _mistake("TS080")
 # the checksum of a line
 CHECKSUM_WRONG = _mistake("TS058")

@@ -14,8 +14,8 @@ from tiniscript.repairs.accounting import makes_up_names
 from tiniscript.repairs.edits import Edit
 from tiniscript.source import Source
 
-# `8O` and `1OO`: in any other place a letter may be one too many.
-_LETTER_FOR_ZERO = re.compile(r"[1-9][Oo]{1,2}")
+# `8O`, `1OO` and `O.5`: in any other place a letter may be one too many.
+_LETTER_FOR_ZERO = re.compile(r"[1-9][Oo]{1,2}|[Oo]\.[0-9]+")
 _MARKS = "¡¿→•·►▶"  # that stand before a sentence or in a list, and for no other sign
 _LETTERS = re.compile(r"[A-Za-z]")
 # A call without calculations: of `5 / 3 - 3)` a bracket may be missing.

@@ -269,6 +269,7 @@ _PLACES: dict[Code, Callable[[Diagnostic, Source], Edits]] = {
     codes.PASTED: lambda diagnostic, source: without_pasted(source.text) or None,
     codes.PROSE: _span,
     codes.SEVERAL_ORDERS: _span,
+    codes.OTHER_CALL: _span,
     codes.GROUPED: _span,
     codes.NAME_WITH_SPACE: _span,
     codes.MISSING_EQUALS: _span,

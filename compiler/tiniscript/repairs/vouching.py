@@ -16,6 +16,7 @@ from tiniscript.diagnostics.codes import Diagnostic
 from tiniscript.repairs.accounting import lost, makes_up
 from tiniscript.repairs.edits import Edit, applied, overlap
 from tiniscript.repairs.placing import edits_of
+from tiniscript.repairs.whole_calls import with_whole_calls
 from tiniscript.source import Source
 from tiniscript.syntax.call_suggestions import LONG_TIME_S
 from tiniscript.words import usage_of
@@ -71,7 +72,7 @@ def vouched(found: Sequence[Diagnostic], source: Source, check: Check) -> list[D
     for group in (together, *([each] for each in apart if found[each.place].values.get("fix"))):
         for k in _partial(group, source.text, found, check):
             kept[k] = _without(kept[k])
-    return kept
+    return with_whole_calls(kept, source, check)
 
 
 def _takes_long(before: str, after: str) -> bool:

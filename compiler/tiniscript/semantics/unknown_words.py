@@ -84,7 +84,8 @@ def _report_unknown_word(scope: Scope, node: ast.Command) -> None:
     glued_loop = re.fullmatch(r"LOOP_?([0-9]+)", word)
     if glued_loop and node.arguments is None:
         near = f"LOOP({glued_loop[1]})"
-    letter = _LETTERS.get(word, "")
+    is_held = len(word) <= 3 and len(set(word)) == 1  # `FF(2, 80)`: a key that was held
+    letter = word[0] if is_held and word[0] in WORDS else _LETTERS.get(word, "")
     if letter and len(node.arguments or ()) == len(WORDS[letter].arguments):
         near = letter
     values = {"found": word, "near": near, **({} if near else said_instead(word))}

@@ -36,6 +36,7 @@ class BracketRecovery:
     def no_bracket(self, word: Token, known: Word) -> NoReturn:
         """`F 2 80`: suggest the same with brackets and commas."""
         cursor = self.cursor
+        self._letter_of_list(word)
         self.clauses.several(cursor.i - 1)
         first = cursor.source.text[cursor.token.start : cursor.token.start + 1]
         if first in tuple(QUOTES):
@@ -69,6 +70,16 @@ class BracketRecovery:
             cursor.i += 1
             raise Resumed
         raise Failed
+
+    def _letter_of_list(self, word: Token) -> None:
+        """`b) R(1, 50)`, below `a) F(2, 80)`: what counts the lines."""
+        cursor = self.cursor
+        is_own_line = cursor.line_of(cursor.following) == cursor.line_of(word)
+        if cursor.token.kind == ")" and cursor.following.kind is WORD and is_own_line:
+            cursor.i += 1
+            span = cursor.span_from(word)
+            self.reporter.report(codes.LINE_NUMBER, span, found=cursor.source[span])
+            raise Resumed
 
     def _braces_for_brackets(self, word: Token, known: Word) -> NoReturn:
         """`F{2, 80}`."""

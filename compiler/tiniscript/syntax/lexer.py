@@ -15,6 +15,7 @@ from tiniscript.source import Span
 from tiniscript.syntax import pasted
 from tiniscript.syntax.checksums import SPACES, without_checksums
 from tiniscript.syntax.pasted import PATTERN as PASTED
+from tiniscript.syntax.pasted import SPEAKER
 from tiniscript.syntax.units import converted
 from tiniscript.words import UNITS
 
@@ -47,6 +48,10 @@ class Scan(NamedTuple):
 _PATTERN = re.compile(
     rf"(?P<space>[{SPACES}]+)"
     r"""
+      | (?P<speaker>"""
+    + SPEAKER
+    + r""")
+      | (?P<lettered>[OoIl]\.[0-9]+(?!\w))
       | (?P<word>[A-Za-z][A-Za-z0-9_]*)(?!\w)
       | (?P<clock>[0-9]{1,2}:[0-5][0-9](?=[ ]*,)|(?<=[Ww]\()[0-9]{1,2}:[0-5][0-9](?=[ ]*\)))
       | (?P<spaced>[0-9]{1,3}[ ]000(?=[ ]*[,;)]))
@@ -67,7 +72,7 @@ _PATTERN = re.compile(
       | (?P<badword>\w+)
       | (?P<quote>["'`\u00b4\u2018-\u201f\u00ab\u00bb]+
             (?:[^"'`\u00b4\u2018-\u201f\u00ab\u00bb\r\n]*["'`\u00b4\u2018-\u201f\u00ab\u00bb]+)?)
-      | (?P<wide>[\uff08\uff09\uff0c\uff1b\uff1d\uff1c\uff1e\uff5c\uff0b\uff0d])
+      | (?P<wide>[\u3001\uff08\uff09\uff0c\uff1b\uff1d\uff1c\uff1e\uff5c\uff0b\uff0d])
       | (?P<bracket>[][])
       | (?P<brace>[{}])
       | (?P<tilde>~[0-9A-Fa-f]*)
@@ -83,8 +88,8 @@ _OTHER_SIGNS = {
     "!<": ">=", "!>": "<=", "!<=": ">", "!>=": "<",
     "=>": ">=", "=<": "<=", "><": "<>", "&&": "AND", "||": "OR",
     "!": "NOT", "≤": "<=", "≥": ">=", "≠": "<>", "×": "*", "÷": "/", "∞": "FOREVER", "\\n": ";",
-    "（": "(", "）": ")", "，": ",", "；": ";", "＝": "=", "＜": "<", "＞": ">", "｜": "|",
-    "＋": "+", "－": "-", "[": "(", "]": ")",
+    "（": "(", "）": ")", "，": ",", "、": ",", "；": ";", "＝": "=", "＜": "<", "＞": ">",
+    "｜": "|", "＋": "+", "－": "-", "[": "(", "]": ")",
 }  # fmt: skip
 _NEAR = 100  # tokens in which an open bracket is looked for
 QUOTES = "\"'`´‘’‚‛“”„‟«»"
@@ -121,7 +126,7 @@ def scan(text: str) -> Scan:
             tokens.append(repairs.point(Span(start, end)))
         elif group == "point":
             tokens.append(repairs.odd(".", Span(start, end)))
-        elif group == "pasted":
+        elif group == "pasted" or group == "speaker":
             tokens += repairs.pasted(match.group(), Span(start, end))
         elif group == "othernote":
             repairs.note(match.group(), Span(start, end))
@@ -225,6 +230,10 @@ class _Repairs:
         meant = _digits_meant(text)
         self.report(codes.BAD_NUMBER, span, found=text, right=meant)
         return Token(NUMBER, meant or number, *span)
+
+    def lettered(self, text: str, span: Span) -> Token:
+        """`O.5`: a letter in the place of the first digit."""
+        return self.badnumber(text, span)
 
     def clock(self, text: str, span: Span) -> Token:
         """`1:30` is a minute and a half, in seconds."""

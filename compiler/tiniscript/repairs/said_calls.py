@@ -1,0 +1,276 @@
+"""A single instruction whose values are said in another way: with units, in words, in other signs.
+
+Reads the text of one instruction as a whole, and gives its call only where nothing is left over.
+Knows which value is meant by its unit or its name, and no program.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Container, Sequence
+from typing import NamedTuple
+from unicodedata import combining, normalize
+
+from tiniscript.fixed_point import as_text
+from tiniscript.syntax.call_suggestions import LONG_TIME_S
+from tiniscript.words import NUMBER_WORDS, UNITS, WORDS, Word, meant_by
+
+_ROLES = ("move", "wait", "motors", "beep")
+LONGEST = 120  # characters of an instruction that are read
+_HEAD = re.compile(r"\s*([A-Za-z]+)(?!\.)")
+_GOES_ON = re.compile(r"\)\s*[^\s)]")  # `F(2, 80) S`
+_STOPS = re.compile(r"[0-9] +[Ss]$")  # `W 1 S`: seconds, or the command
+_DIGITS = str.maketrans("OoIl", "0011")
+_LETTERED = re.compile(r"(?<![\w.,])(?:[0-9OoIl]+(?:\.[0-9OoIl]+)?)(?![A-Za-z_])")
+_LETTER = re.compile(r"(?<=[(,])\s*[OoIl]\s*(?=[,)])")
+_PIECE = re.compile(
+    r"(?P<number>[0-9]+(?:\.[0-9]+)?|\.[0-9]+)|(?P<word>[A-Z][A-Z_]*[0-9]*)|(?P<sign>\S)"
+)
+_BETWEEN = frozenset('()[]{}<>,;:=/"')
+_SMALL = frozenset("A AL CON POR DE DURANTE EN LA EL THE AT WITH FOR OF TO Y E AND".split())  # noqa: SIM905
+# Names of values, which stand before or behind their number.
+_NAMES = {
+    name: unit
+    for unit, names in (
+        ("s", "TIEMPO TIME T DURACION"),
+        ("%", "POTENCIA POWER POT P VELOCIDAD VEL SPEED FUERZA"),
+        ("Hz", "FRECUENCIA FREQUENCY TONO"),
+    )
+    for name in names.split()
+}
+_TEENS = {
+    "CERO": 0, "ZERO": 0, "ONCE": 11, "DOCE": 12, "TRECE": 13, "CATORCE": 14, "QUINCE": 15,
+    "VEINTICINCO": 25, "FIFTEEN": 15,
+}  # fmt: skip
+_HALVES = ("MEDIO", "MEDIA", "HALF")
+_PARTS = (("1", "2"), ("1", "4"), ("3", "4"))  # of one, with a `/`
+
+
+class Said(NamedTuple):
+    """`call` is the instruction; `example` what of it was not said, or nothing."""
+
+    word: Word
+    call: str
+    example: str
+
+
+class _Value(NamedTuple):
+    text: str
+    unit: str  # "" where none is said
+    is_joined: bool = False  # a `,` without a space is before it
+    thousandths: int = 1000  # of our unit in the one that was said
+
+
+def said_call(text: str, names: Container[str]) -> Said | None:
+    """Return what one instruction says, None where that is not all sure.
+
+    `names` are those of the program's variables.
+    """
+    if len(text) > LONGEST or _GOES_ON.search(text) or _STOPS.search(text):
+        return None
+    plain = "".join(c for c in normalize("NFKD", text) if not combining(c)).replace("、", ",")
+    head = _HEAD.match(plain)
+    if head is None or head[1].upper() in names:
+        return None
+    name = head[1].upper()
+    word = WORDS.get(name) or WORDS.get(meant_by(name) or "")
+    if word is None or word.role not in _ROLES:
+        return None
+    values = _values(plain[head.end() :], names)
+    return None if not values else _fitted(word, values)
+
+
+def _values(text: str, names: Container[str]) -> list[_Value] | None:
+    text = _LETTERED.sub(lambda match: _digits(match[0]), text)
+    text = _LETTER.sub(lambda match: match[0].translate(_DIGITS), text).upper()
+    reader = _Reader(list(_PIECE.finditer(text)), names)
+    return reader.found if reader.is_read() and not reader.unit else None
+
+
+class _Reader:
+    """Takes the pieces of a text one by one into the values that it says."""
+
+    def __init__(self, pieces: list[re.Match[str]], names: Container[str]) -> None:
+        self._pieces = pieces
+        self._names = names
+        self.found: list[_Value] = []
+        self.unit = ""  # of the value that comes
+        self._is_behind_value = False
+
+    def is_read(self) -> bool:
+        """Whether all pieces are values, what they are, and signs between them."""
+        for k, piece in enumerate(self._pieces):
+            is_value = False
+            if piece.lastgroup == "number":
+                is_value = self._is_number(k)
+                if not is_value:
+                    return False
+            elif piece.lastgroup == "word":
+                count = len(self.found)
+                if not self._is_word(k):
+                    return False
+                is_value = len(self.found) > count or (
+                    self._is_behind_value and piece[0] in NUMBER_WORDS
+                )
+            elif not self._is_sign(k):
+                return False
+            self._is_behind_value = is_value
+        return True
+
+    def _add(self, text: str, is_joined: bool = False) -> None:
+        self.found.append(_Value(text, self.unit, is_joined))
+        self.unit = ""
+
+    def _at(self, k: int) -> str:
+        return self._pieces[k][0] if 0 <= k < len(self._pieces) else ""
+
+    def _touches(self, k: int) -> bool:
+        """Whether there is no space between this piece and the one before."""
+        return self._pieces[k - 1].end() == self._pieces[k].start()
+
+    def _is_number(self, k: int) -> bool:
+        text = self._at(k)
+        if self._at(k - 1) == "/" and self._divides(k):
+            self.found[-1] = self.found[-1]._replace(text=f"{self._at(k - 2)}/{text}")
+            return True
+        is_joined = k > 1 and self._at(k - 1) == "," and self._touches(k) and self._touches(k - 1)
+        self._add(text, is_joined)
+        return True
+
+    def _divides(self, k: int) -> bool:
+        """Whether `/` makes a part of one: `1/2`, and not `2/80`."""
+        over = self._at(k - 2)
+        return bool(self.found) and over == self.found[-1].text and (over, self._at(k)) in _PARTS
+
+    def _is_sign(self, k: int) -> bool:
+        sign = self._at(k)
+        if sign == "%":
+            return self._is_behind_value and self._takes_unit("%")
+        if sign == "-":  # between two values, and none of them is negative
+            is_between = self._is_behind_value and k + 1 < len(self._pieces)
+            return is_between and not self._touches(k) and not self._touches(k + 1)
+        return sign in _BETWEEN
+
+    def _is_word(self, k: int) -> bool:
+        word = self._at(k)
+        number = _TEENS.get(word, NUMBER_WORDS.get(word))
+        if word in self._names:
+            self._add(word)
+        elif word in _HALVES:
+            return self._is_half(k)
+        elif number is not None:
+            self._count(k, int(number))
+        elif word in _NAMES:
+            return self._is_name(k)
+        elif word in UNITS:
+            return self._is_behind_value and self._takes_unit(word)
+        else:
+            return word in _SMALL
+        return True
+
+    def _is_name(self, k: int) -> bool:
+        """`potencia 80`, `80 pot`; but of `2 potencia 80` it may be both."""
+        is_before = k + 1 < len(self._pieces) and self._pieces[k + 1].lastgroup == "number"
+        is_before = is_before or self._at(k + 1) in ("=", ":", *NUMBER_WORDS)
+        if self._is_behind_value:
+            return not is_before and self._takes_unit(self._at(k))
+        self.unit = _NAMES[self._at(k)]
+        return True
+
+    def _takes_unit(self, name: str) -> bool:
+        last = self.found[-1]
+        unit, thousandths = (_NAMES[name], 1000) if name in _NAMES else UNITS[name]
+        text = last.text
+        over, _, under = text.partition("/")
+        if last.unit or (thousandths != 1000 and not _is_number(over)):
+            return False
+        if under or thousandths != 1000:
+            text = as_text(round(float(over) / float(under or 1) * thousandths))
+        self.found[-1] = last._replace(text=text, unit=unit, thousandths=thousandths)
+        return True
+
+    def _is_half(self, k: int) -> bool:
+        """`medio segundo`, `dos y medio`, `un segundo y medio`."""
+        last = self.found[-1] if self.found else None
+        if self._at(k - 1) in ("Y", "AND"):
+            if last is None or last.unit not in ("", "s") or not _is_number(last.text):
+                return False
+            value = round(float(last.text) * 1000) + last.thousandths // 2
+            self.found[-1] = last._replace(text=as_text(value))
+        elif self._is_behind_value:
+            return False
+        else:
+            self._add("0.5")
+        return True
+
+    def _count(self, k: int, number: int) -> None:
+        """Take a number in words: `dos`, `treinta y cinco`."""
+        last = self.found[-1] if self.found else None
+        is_ten = last is not None and last.text.isdecimal() and 30 <= int(last.text[:9]) <= 90
+        if last is not None and is_ten and self._at(k - 1) == "Y" and number < 10:
+            self.found[-1] = last._replace(text=str(int(last.text) + number))
+        else:
+            self._add(str(number))
+
+
+def _fitted(word: Word, values: Sequence[_Value]) -> Said | None:
+    """Give each value its place, by its unit or else in order."""
+    values = _with_points(values, len(word.arguments))
+    units = [each.unit for each in word.arguments]
+    places = [""] * len(units)
+    loose = []
+    for value in values:
+        if not value.unit:
+            loose.append(value.text)
+        elif value.unit not in units:
+            return None
+        else:
+            free = [k for k, unit in enumerate(units) if unit == value.unit and not places[k]]
+            if not free:
+                return None
+            places[free[0]] = value.text
+    for text in loose:
+        if all(places):
+            return None
+        places[places.index("")] = text
+    return _checked(word, places, is_unnamed=len(loose) == len(values))
+
+
+def _checked(word: Word, places: list[str], is_unnamed: bool) -> Said | None:
+    example = ""
+    numbers = [float(text) if _is_number(text) else None for text in places]
+    first = numbers[0]
+    if is_unnamed and word.role != "motors" and first is not None and first >= LONG_TIME_S:
+        return None  # the power, degrees, milliseconds
+    if "" in places:
+        if places.count("") > 1 or first is None or "." in places[0] or word.role == "motors":
+            return None
+        last = word.arguments[-1]
+        example = f"{last.sample} {last.unit}"
+        places[-1] = last.sample
+    for argument, number in zip(word.arguments, numbers, strict=True):
+        if number is not None and not argument.low <= number * 1000 <= argument.high:
+            return None
+        if number is not None and argument.unit == "%" and 0 < number < 1:
+            return None  # `medio` is a half of something
+    return Said(word, f"{word.text}({', '.join(places)})", example)
+
+
+def _with_points(values: Sequence[_Value], wanted: int) -> Sequence[_Value]:
+    """`0,5, 80` is 0.5 and 80, where that makes as many as there should be."""
+    if len(values) != wanted + 1 or not values[1].is_joined or values[0].unit:
+        return values
+    first, second = values[:2]
+    is_whole = first.text.isdecimal() and second.text.isdecimal()
+    if not is_whole or second.text.endswith("0") or values[-1].text == "0":  # `2,8 0`
+        return values
+    return [second._replace(text=f"{first.text}.{second.text}", is_joined=False), *values[2:]]
+
+
+def _digits(text: str) -> str:
+    """`O.5` is 0.5, `8O` is 80; a letter alone stays."""
+    return text.translate(_DIGITS) if any(c.isdecimal() for c in text) else text
+
+
+def _is_number(text: str) -> bool:
+    return re.fullmatch(r"[0-9]+(?:\.[0-9]+)?|\.[0-9]+", text) is not None

@@ -1,0 +1,132 @@
+"""One message for a single instruction whose values are said in another way.
+
+Where the repairs of its mistakes do not make the instruction right, and all that it says is one
+call (`said_calls`), that call is offered in their place.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from itertools import pairwise
+from typing import NamedTuple
+
+from tiniscript.diagnostics import codes
+from tiniscript.diagnostics.codes import Diagnostic
+from tiniscript.repairs.edits import Edit, applied
+from tiniscript.repairs.placing import edits_of
+from tiniscript.repairs.said_calls import Said, said_call
+from tiniscript.source import Source, Span
+from tiniscript.syntax.lexer import NEWLINE, scan
+
+Check = Callable[[str], Sequence[Diagnostic]]
+MANY = 20  # instructions of a text that are read
+_ENDS = re.compile(r"[;\r\n|{}]|//")
+_CLOSES = re.compile(r"[^;\r\n|{}()A-Za-z]*\)")  # `F(2;80)`
+_UNTIL = re.compile(r"(?i)\s*\bUNTIL\b")
+_VARIABLE = re.compile(r"([A-Za-z]\w*)\s*=(?!=)")
+# Messages that are true of the whole instruction, too.
+_KEPT = (codes.MISSING_OPEN, codes.OTHER_LANGUAGE)
+# Mistakes of a block, and those that have more to say than how a call is written.
+_OTHERS = frozenset((
+    codes.NEVER_ENDS, codes.NOT_OPEN, codes.WRONG_END, codes.BRACES, codes.SETUP_TWICE,
+    codes.OUT_OF_RANGE, codes.PLACEHOLDER, codes.WHICH_WAY, codes.REPEATED, codes.PASTED,
+    codes.MISSING_VALUE, codes.BAR_BETWEEN,
+))  # fmt: skip
+
+
+class _Whole(NamedTuple):
+    """The diagnostics `places` are in the instruction at `span`, which says `said`."""
+
+    span: Span
+    said: Said
+    places: list[int]
+
+
+def with_whole_calls(found: Sequence[Diagnostic], source: Source, check: Check) -> list[Diagnostic]:
+    """Return the diagnostics with one for each instruction that is read as a whole."""
+    text = source.text
+    names = {match[1].upper() for match in _VARIABLE.finditer(text)}
+    wholes = [each for each in _instructions(found, text, names) if _is_better(each, found, source)]
+    if not wholes:
+        return list(found)
+    changed = applied(text, [Edit(each.span, each.said.call) for each in wholes])
+    after = [each.span.start for each in check(changed) if each.is_mistake]
+    kept: list[Diagnostic | None] = list(found)
+    shift = 0
+    for each in wholes:
+        start = each.span.start + shift
+        end = start + len(each.said.call)
+        shift += len(each.said.call) - (each.span.end - each.span.start)
+        if not any(start <= place < end for place in after):
+            for k in each.places:
+                kept[k] = None
+            kept[each.places[0]] = _of_the_whole(found[each.places[0]], each, text)
+    return [each for each in kept if each is not None]
+
+
+def _instructions(found: Sequence[Diagnostic], text: str, names: set[str]) -> list[_Whole]:
+    """Return the instructions with mistakes of which all is read, in order."""
+    groups: dict[Span, list[int]] = {}
+    for k, diagnostic in enumerate(found):
+        if diagnostic.is_mistake and len(groups) < MANY:
+            groups.setdefault(_around(text, diagnostic.span.start), []).append(k)
+    wholes = []
+    for span, places in sorted(groups.items()):
+        said = said_call(text[slice(*span)], names)
+        if said is not None and not any(found[k].code in _OTHERS for k in places):
+            wholes.append(_Whole(span, said, places))
+    return wholes
+
+
+def _around(text: str, place: int) -> Span:
+    """Return the instruction at `place`, without what stands around it and its UNTIL."""
+    start = max(
+        (match.end() for match in _ENDS.finditer(text, max(0, place - 200), place)), default=0
+    )
+    if start == 0 and place > 200:
+        start = place - 200
+    cut = _ENDS.search(text, place)
+    end = cut.start() if cut else len(text)
+    part = text[start:end]
+    if cut and cut[0] in ";|" and part.count("(") > part.count(")"):
+        closes = _CLOSES.match(text, cut.end())
+        end = closes.end() if closes else end
+        if closes is None and text[cut.end() :][:9].lstrip(" ")[:1].isdecimal():
+            end = start  # `F(2;80`
+    until = _UNTIL.search(text, start, end)
+    if until and until.start() >= place:
+        end = until.start()
+    part = text[start:end]
+    return Span(start + len(part) - len(part.lstrip()), end - len(part) + len(part.rstrip()))
+
+
+def _is_better(whole: _Whole, found: Sequence[Diagnostic], source: Source) -> bool:
+    """Whether the repairs of the mistakes do not give what the instruction says."""
+    text = source.text
+    edits = [edit for k in whole.places for edit in edits_of(found[k], source) or ()]
+    if not all(edits_of(found[k], source) for k in whole.places):
+        return True
+    start, end = whole.span
+    inside = [edit for edit in sorted(edits) if start <= edit.span.start and edit.span.end <= end]
+    if len(inside) < len(edits) or any(
+        one.span.end > other.span.start for one, other in pairwise(inside)
+    ):
+        return True
+    moved = [Edit(Span(e.span.start - start, e.span.end - start), e.text) for e in inside]
+    return _signs(applied(text[start:end], moved)) != _signs(whole.said.call)
+
+
+def _signs(text: str) -> list[str]:
+    return [token.text for token in scan(text).tokens if token.kind is not NEWLINE]
+
+
+def _of_the_whole(first: Diagnostic, whole: _Whole, text: str) -> Diagnostic:
+    said = whole.said
+    has_bracket = "(" in text[slice(*whole.span)]
+    if first.code in _KEPT and not (first.code is codes.MISSING_OPEN and has_bracket):
+        return first._replace(values={**first.values, "fix": said.call}, place=whole.span)
+    values = {"word": said.word.text, "usage": said.word.usage, "fix": said.call}
+    if said.example:
+        values["example"] = said.example
+    return Diagnostic(codes.OTHER_CALL, whole.span, values)
