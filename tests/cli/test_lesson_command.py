@@ -57,7 +57,7 @@ def test_one_program(tsc: Tsc, folder: Path) -> None:
     done = tsc("lesson", "check", "1", "-e", WRONG)
     assert done.code == 1
     assert "TS017" in done.err
-    assert "mend the mistakes first" in done.out
+    assert "repair the mistakes first" in done.out
 
 
 @needs_wasm

@@ -306,7 +306,7 @@ def test_a_lamp_cannot_be_held() -> None:
 def test_a_refusal_says_what_to_do() -> None:
     refused = refusal(edited("tinibot", "left_pwm = 5", "left_pwm = 4"))
     assert describe(refused, "en") == [
-        "board.motors.left_pwm is pin 4, which cannot be a PWM output on uno."
+        "board.motors.left_pwm is pin 4, which cannot be a PWM output on the board uno."
         " These can: 3, 5, 6, 9, 10, 11."
     ]
     refused = refusal(edited("tinibot", "[0, 400]", "400"))
@@ -314,12 +314,43 @@ def test_a_refusal_says_what_to_do() -> None:
         "kit.sensors[3].range es un número. Escribe ahí dos números, [menor, mayor]."
     ]
     refused = refusal(edited("tinibot", "baud =", "buad ="))
-    assert "Did you mean baud?" in describe(refused, "en")[1]
+    assert "Did you mean baud?" in describe(refused, "en")[0]
 
 
 @pytest.mark.parametrize("word", sorted(WORDS))
 def test_no_device_takes_a_word_of_the_language(word: str) -> None:
     assert "name_is_word" in codes(refusal(TEXTS["tinibot"].replace("LIGHT_R", word.lower())))
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new", "sentences"),
+    [
+        ("tinibot", "[board]", "[bord]", ["Did you mean board?"]),
+        ("tinibot", "length_cm", "lenght_cm", ["Did you mean length_cm?"]),
+        ("tinibot", "left_pwm = 5", "left_pvm = 5", ["Did you mean left_pwm?"]),
+        ("tinibot", 'name = "DISTANCE"', 'name = "F"', ["a word of TiniScript"]),
+        ("tinibot", 'name = "DISTANCE"', 'name = "AÑO"', ["no accents or ñ"]),
+        # what is missing for another cause is told
+        ("tinibot", "length_cm = 21\nwidth_cm", "lenght_cm = 21\n#",
+         ["width_cm is missing", "Did you mean length_cm?"]),
+        ("tinibot", "trigger = 4\necho", "triger = 4\n#",
+         ["echo is missing", "Did you mean trigger?"]),
+    ],
+)  # fmt: skip
+def test_one_slip_is_one_complaint(name: str, old: str, new: str, sentences: list[str]) -> None:
+    said = describe(refusal(edited(name, old, new)), "en")
+    assert len(said) == len(sentences), said
+    for sentence, found in zip(sentences, said, strict=True):
+        assert sentence in found
+
+
+def test_another_name_in_the_kit_names_the_tables_that_need_it_too() -> None:
+    said = describe(refusal(edited("tinibot", 'name = "DISTANCE"', 'name = "DISTANCIA"')), "en")
+    assert [each.partition(":")[0] for each in said] == [
+        "board.sensors.DISTANCE", "body.sensors.DISTANCE",
+        "labels.en.DISTANCE", "labels.es.DISTANCE",
+    ]  # fmt: skip
+    assert all(each.endswith("Did you mean DISTANCIA?") for each in said)
 
 
 def test_what_is_shown_is_short_and_printable() -> None:

@@ -5,12 +5,14 @@ Knows every code of ProfileRefused. Does not know when a code applies.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import re
+from collections.abc import Mapping, Sequence
 
 from tiniscript.printable import printable
-from tiniscript.robots.profile import LANGUAGES, ProfileRefused
+from tiniscript.robots.profile import LANGUAGES, ProfileRefused, Reason
 
 SHOWN_CHARACTERS = 40
+DEVICE = re.compile(r"board\.(?:sensors|actuators)\.[^.]*")  # the path of its table
 
 # The sentence of a code with `/near` is used if `near` holds a similar name.
 SENTENCES: dict[str, dict[str, str]] = {
@@ -136,7 +138,8 @@ SENTENCES: dict[str, dict[str, str]] = {
     },
     "label_bad": {
         "en": "{path} is empty or cannot be printed. Write 1 to {most} characters in one line.",
-        "es": "{path} está vacío o no se puede mostrar. Escribe de 1 a {most} caracteres.",
+        "es": "{path} está vacío o no se puede mostrar. Escribe de 1 a {most} caracteres"
+        " en una línea.",
     },
     "at_stop_of_no_servo": {
         "en": "{path}: a stop always turns this off, whatever the profile says. Take the line out;"
@@ -158,8 +161,10 @@ SENTENCES: dict[str, dict[str, str]] = {
         "es": "{path} es el pin {pin}, que {first} ya usa. Elige otro pin.",
     },
     "pin_cannot": {
-        "en": "{path} is pin {pin}, which cannot be {need} on {chip}. These can: {choices}.",
-        "es": "{path} es el pin {pin}, que en {chip} no sirve de {need}. Sirven: {choices}.",
+        "en": "{path} is pin {pin}, which cannot be {need} on the board {chip}."
+        " These can: {choices}.",
+        "es": "{path} es el pin {pin}, que en la placa {chip} no sirve de {need}."
+        " Sirven: {choices}.",
     },
     "pin_at_boot": {
         "en": "{path} is pin {pin}, which could start a motor of an {chip} when it is switched on,"
@@ -195,6 +200,7 @@ WORDS_FOR: dict[str, dict[str, dict[str, str]]] = {
     "type": {
         "text": {"en": "a text in quotes", "es": "un texto entre comillas"},
         "number": {"en": "a number", "es": "un número"},
+        "decimal": {"en": "a number with decimals", "es": "un número con decimales"},
         "whole": {"en": "a number without decimals", "es": "un número sin decimales"},
         "yes_no": {"en": "true or false", "es": "true o false"},
         "list": {"en": "a list", "es": "una lista"},
@@ -231,7 +237,7 @@ def describe(
     known_sentences = {**SENTENCES, **(own or {})}
     lang = lang if lang in LANGUAGES else LANGUAGES[0]
     sentences = []
-    for code, values in refused.reasons:
+    for code, values in _causes(refused.reasons):
         words = {key: printable(value) for key, value in values.items()}
         group = {"wrong_type": "type", "pin_cannot": "need"}.get(code)
         if group:
@@ -242,6 +248,31 @@ def describe(
         key = f"{code}/near" if words.get("near") else code
         sentences.append(known_sentences[key][lang].format_map(words))
     return sentences
+
+
+def _causes(reasons: Sequence[Reason]) -> list[Reason]:
+    """Return the reasons without those that go when another one is mended.
+
+    Beside a misspelt key nothing is said of the key that it should be, nor, beside the refused
+    name of a device, of the tables that have this name.
+    """
+    meant, is_name_refused = set(), False
+    for code, values in reasons:
+        parent, _, _ = values.get("path", "").rpartition(".")
+        is_name_refused |= code.startswith("name_") and parent.startswith("kit.")
+        if code in ("unknown_key", "not_in_kit") and values.get("near"):
+            meant.add(f"{parent}.{values['near']}".lstrip("."))
+    found = []
+    for code, values in reasons:
+        path = values.get("path", "")
+        is_meant = any(path == each or path.startswith(f"{each}.") for each in meant)
+        is_device = code == "missing" and DEVICE.fullmatch(path) is not None
+        if code == "missing" and is_meant:
+            continue
+        if is_name_refused and (is_device or code == "not_in_kit"):
+            continue
+        found.append((code, values))
+    return found
 
 
 def shown(value: object) -> str:

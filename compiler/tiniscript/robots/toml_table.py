@@ -204,6 +204,6 @@ class Table:
 
 def _type_of(value: object) -> str:
     if isinstance(value, Written):
-        return "number"
+        return "decimal"
     names = {str: "text", bool: "yes_no", int: "number", list: "list", dict: "table"}
     return names.get(type(value), "date")

@@ -34,8 +34,8 @@ SENTENCES: dict[str, dict[str, str]] = {
         "es": "{path} tiene {found} partes. Deja {most} como máximo.",
     },
     "points_count": {
-        "en": "{path} has {found} points. Write 2 to {most} points, such as [[20, 50], [80, 50]].",
-        "es": "{path} tiene {found} puntos. Escribe de 2 a {most}, como [[20, 50], [80, 50]].",
+        "en": "Points of {path}: {found}. Write 2 to {most} of them, such as [[20, 50], [80, 50]].",
+        "es": "Puntos de {path}: {found}. Escribe de 2 a {most}, como [[20, 50], [80, 50]].",
     },
     "start_outside": {
         "en": "Line {line}: the robot starts outside the floor. {path} is {found};"

@@ -24,7 +24,7 @@ export const LESSON_TEXTS = {
     '¡Listo! La tarea de la lección {number} está resuelta, en {worlds} mundos.'],
   lesson_failed: ['Not yet.', 'Todavía no.'],
   lesson_failed_world: ['Not yet, in world {seed}.', 'Todavía no, en el mundo {seed}.'],
-  lesson_mistakes: ['Mend the mistakes first; nothing was tried.', 'Primero arregla los errores; no se probó nada.'],
+  lesson_mistakes: ['Repair the mistakes first; nothing was tried.', 'Primero corrige los errores; no se probó nada.'],
   lesson_ended: ['The check was ended. Nothing was decided.', 'Terminaste la revisión. No se decidió nada.'],
   lesson_is_done: ['done', 'lista'],
   world_of_lesson: ['Lesson {number}', 'Lección {number}'],

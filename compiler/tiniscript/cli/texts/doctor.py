@@ -90,7 +90,7 @@ DOCTOR_TEXTS: dict[str, tuple[str, str]] = {
     "next_out_of_reach": ("Switch the robot on, bring it within two meters, and see that its module blinks. Then try again.", "Enciende el robot, acércalo a dos metros y mira que su módulo parpadee. Después prueba otra vez."),
     "doctor_other_host": ("Another computer or phone is connected to the robot", "Otra computadora o un teléfono está conectado al robot"),
     "seen_other_host": ("somebody is there, and refuses or ends the connection", "hay alguien ahí, y rechaza o corta la conexión"),
-    "next_other_host": ("If the module's light does not blink, it is taken: end the connection there, or switch the robot off and on and be the first.", "Si la luz del módulo no parpadea, está ocupado: corta la conexión allá, o apaga y enciende el robot y sé el primero."),
+    "next_other_host": ("If the module's light does not blink, it is taken: end the connection there, or switch the robot off and on and be the first.", "Si la luz del módulo no parpadea, está ocupado: corta la conexión allá, o apaga y enciende el robot y conéctate tú primero."),
     "doctor_slow_port": ("The port does not open", "El puerto no se abre"),
     "seen_slow_port": ("after 20 seconds it was still not open", "después de 20 segundos seguía sin abrirse"),
     "next_slow_port": ("Switch the robot off and on. On Windows an HC-05 has two ports: take the one named Outgoing.", "Apaga y enciende el robot. En Windows un HC-05 tiene dos puertos: toma el que se llama Saliente."),

@@ -6,7 +6,7 @@ from __future__ import annotations
 OWNER_TEXTS: dict[str, tuple[str, str]] = {
     # key: (English, Spanish)
     "identified": ("{robot} on {port} blinks now, and plays its tune if no program runs.",
-                   "{robot} en {port} parpadea ahora, y toca su melodía si no corre ningún programa."),
+                   "{robot} en {port} parpadea ahora, y toca su melodía si no hay ningún programa en marcha."),
     "whose_free": ("free", "libre"),
     "whose_yours": ("yours", "tuyo"),
     "whose_other": ("of another owner", "de otro dueño"),
