@@ -64,6 +64,7 @@ _PHRASES = tuple(
     for pattern, word in (
         (r"SI\s+NO(?!\s+(?:HAY|HAYA|VE|ES|ESTA|TIENE|DETECTA))", "ELSE"),
         (r"DE\s+LO\s+CONTRARIO", "ELSE"),
+        (r"\A\s*IF\s+NOT?\s*\Z", "ELSE"),
         (r"SIEMPRE\s+QUE", "IF"),
         (r"BACK\s+UP", "BACK"),
         (r"(?:PARA|DEJA|NO)\s+(?:DE\s+)?AVANZ?C?[AE]R?S?(?:\s+MAS)?", "S"),
@@ -86,6 +87,7 @@ _RENAMES = frozenset((
     codes.PROSE, codes.UNKNOWN_WORD, codes.UNKNOWN_NAME, codes.OTHER_NOTE, codes.SETUP_UNKNOWN,
     codes.SETUP_NEEDS_BAR, codes.BAD_NAME, codes.PASTED, codes.LINE_NUMBER, codes.BAD_NUMBER,
     codes.QUOTE, codes.LISTS, codes.WANTS_CONDITION, codes.WORDS_SHOWN, codes.MIXED_COMPARE,
+    codes.NAMED_ARGUMENT,
 ))  # fmt: skip
 
 
@@ -243,7 +245,9 @@ class _Account:
                 return True
         if word in ("MEDIO", "MEDIA", "HALF"):
             return any(number % 1 == 0.5 for number in self.spare)
-        if word in ("TWICE", "THRICE") or (word[:1] == "X" and word[1:].isdecimal()):
+        if word[:1] == "X" and word[1:].isdecimal() and self.spare[float(word[1:])] > 0:
+            return "LOOP" in self._new.words
+        if word in ("TWICE", "THRICE"):
             return self._said["LOOP"] > 0
         return word == "X" and bool("LOOP" in self._new.words or self._new.signs["*"])
 

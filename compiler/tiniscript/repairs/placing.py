@@ -246,6 +246,7 @@ _PLACES: dict[Code, Callable[[Diagnostic, Source], Edits]] = {
     codes.SETUP_NEEDS_BAR: _bar,
     codes.CHAINED: _assigned,
     codes.NO_BRACKETS_HERE: _assigned,
+    codes.NO_VALUE: _assigned,
     codes.EXTRA_CLOSE: _taken_out,
     codes.NOT_AN_INSTRUCTION: _assigned,
     codes.EXTRA_WORD: _extra_word,

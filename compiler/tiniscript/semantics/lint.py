@@ -52,6 +52,7 @@ def advice(program: Program, kit: Kit) -> list[Diagnostic]:
     found: list[Diagnostic] = []
     routines = [*(procedure.body for procedure in program.procedures), program.body]
     for body in routines:
+        _swapped_names(body, program, found)
         _look_at(body, program, kit, found)
     statements = [statement for body in routines for statement in walk(body)]
     found += _unused(program, statements)
@@ -107,6 +108,31 @@ def _swapped(move: Move, time: int | None, found: list[Diagnostic]) -> None:
         seconds, percent = as_text(time), as_text(power)
         fix = f"{move.direction}({percent}, {seconds})"
         _report(found, codes.SWAPPED, move.span, time=seconds, power=percent, fix=fix)
+
+
+def _swapped_names(body: Body, program: Program, found: list[Diagnostic]) -> None:
+    """`F(SPEED, TIME_S)`: a long time and a little power in variables that are set once."""
+    routines = [*(procedure.body for procedure in program.procedures), program.body]
+    set_to: dict[int, list[int | None]] = {}
+    for statement in (each for routine in routines for each in walk(routine)):
+        if isinstance(statement, Assign):
+            set_to.setdefault(statement.variable, []).append(constant(fold(statement.value)))
+    for move in (each for each in walk(body) if isinstance(each, Move)):
+        if move.until is not None or move.time is None or move.power is None:
+            continue
+        sides = (move.time, move.power)
+        if not all(len(side) == 1 and side[0].op == "VARIABLE" for side in sides):
+            continue
+        numbers = [side[0].value for side in sides]
+        values = [set_to.get(each, []) for each in numbers]
+        if not all(len(each) == 1 and each[0] is not None for each in values):
+            continue
+        time, power = (each[0] or 0 for each in values)
+        if LONG_TIME <= time <= 100_000 and 0 < power <= LITTLE_POWER:
+            first, second = (program.variables[each] for each in numbers)
+            fix = f"{move.direction}({second}, {first})"
+            _report(found, codes.SWAPPED, move.span, fix=fix,
+                    time=as_text(time), power=as_text(power))  # fmt: skip
 
 
 def _very_long(move: Move, time: int | None, found: list[Diagnostic]) -> None:

@@ -198,7 +198,7 @@ class Kinds:
         if name is not None:
             return {"example": f"{word} < 10" if name.what == "sensor" else f"{word} > 0"}
         meant = {"0": "FALSE", "1": "TRUE"}.get(word)
-        return {"fix": meant} if meant else {}
+        return {"fix": meant} if meant else {"times": word} if word.isdecimal() else {}
 
     def _yes_no_alone(self, op: str, left: _Operand, right: _Operand) -> str:
         """`BUTTON = 1` is `BUTTON`, and `BUTTON = 0` is `NOT BUTTON`."""

@@ -7,6 +7,7 @@ calls this module for mistakes.
 from __future__ import annotations
 
 import re
+from collections import defaultdict
 from itertools import chain
 
 from tiniscript.diagnostics import codes
@@ -138,20 +139,38 @@ def report_placeholders(scope: Scope, node: ast.Command, word: Word, said: int) 
         scope.report(codes.PLACEHOLDER, node.span, usage=word.usage, example=word.example)
 
 
+# How pupils name a value, beside its placeholders: `F(t=2, vel=80)`.
+_NAMES = defaultdict(tuple, {
+    "time": ("SECONDS", "SEGUNDOS", "SEG", "DURACION", "DURATION"),
+    "power": ("VEL", "VELOCIDAD", "SPEED", "V", "FUERZA", "POT"),
+})  # fmt: skip
+
+
 def report_named_arguments(scope: Scope, node: ast.Command, word: Word, said: int) -> None:
     """`F(t=2, p=80)`: values have no names here. Drops the diagnostics since `said`."""
     codes_of_names = (codes.UNKNOWN_NAME, codes.OTHER_LANGUAGE)  # `TIEMPO` is TIME elsewhere
     unknown = {each.span for each in scope.diagnostics[said:] if each.code in codes_of_names}
-    values = []
-    for argument, its in zip(node.arguments or (), word.arguments, strict=False):
+    values: dict[str, str] = {}
+    names = [its.name for its in word.arguments]
+    count = 0
+    for argument, slot in zip(node.arguments or (), names, strict=False):
         first, last = argument.expression[0], argument.expression[-1]
         name = Span(first.start, first.end)
-        is_name = name in unknown or scope.source[name].upper() in PLACEHOLDERS.get(its.name, ())
-        if last.op != "EQ" or not is_name:
+        text = scope.source[name].upper()
+        means = [each for each in names if text in (*PLACEHOLDERS.get(each, ()), *_NAMES[each])]
+        is_named = last.op == "EQ" and (name in unknown or slot in means)
+        if not is_named and not argument.is_plain:
             return
-        values.append(scope.source[Span(last.end, argument.span.end)].strip())
+        count += is_named
+        its = means[0] if is_named and means else slot
+        if its in values:
+            return
+        value = Span(last.end, argument.span.end) if is_named else argument.span
+        values[its] = scope.source[value].strip()
+    if not count or (list(values) != names and set(values) != set(names[: len(values)])):
+        return
     del scope.diagnostics[said:]
-    fix = f"{word.text}({', '.join(values)})"
+    fix = f"{word.text}({', '.join(values[each] for each in names if each in values)})"
     scope.report(codes.NAMED_ARGUMENT, node.span, word=word.text, fix=fix)
 
 

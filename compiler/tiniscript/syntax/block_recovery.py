@@ -14,10 +14,11 @@ from tiniscript.diagnostics import codes
 from tiniscript.kit import Kit
 from tiniscript.source import Span
 from tiniscript.syntax.ast import Argument, Assign, Command
-from tiniscript.syntax.blocks import ENDS, HEADERS, Block, Blocks
+from tiniscript.syntax.blocks import HEADERS, Block, Blocks
 from tiniscript.syntax.call_suggestions import ends_value
 from tiniscript.syntax.cursor import AT_END, Cursor
-from tiniscript.syntax.lexer import NUMBER, ODD, WORD, Token
+from tiniscript.syntax.header_recovery import HeaderRecovery
+from tiniscript.syntax.lexer import NEWLINE, NUMBER, ODD, WORD, Token
 from tiniscript.syntax.one_line import line_of_block
 from tiniscript.syntax.operators import COMPARISONS
 from tiniscript.syntax.phrases import AFTER_HEADER, TITLES
@@ -26,7 +27,7 @@ from tiniscript.syntax.suggestions import (
     OPERATOR_WORDS,
     after_bracket,
     body_begins,
-    counted,
+    foreign_block,
     head_in,
     with_signs,
 )
@@ -42,6 +43,7 @@ class BlockRecovery:
         self.blocks = blocks
         self.kit = kit
         self.known = Vocabulary(cursor.tokens, kit)
+        self.other = HeaderRecovery(cursor, reporter, blocks)
         self._owed = 0  # blocks that were closed by another one's end: their own may still come
 
     # -- headers ------------------------------------------------------------------------------
@@ -53,6 +55,7 @@ class BlockRecovery:
         cursor.i = body_begins(cursor.tokens, start)
         if is_reported:
             raise Failed
+        self.other.if_not(word, start)
         end = body_begins(cursor.tokens, start)
         if word.text in HEADERS and cursor.tokens[end].kind not in AT_END:
             cursor.i = start - 1
@@ -62,6 +65,7 @@ class BlockRecovery:
                 self.reporter.report(codes.MISSING_OPEN, place, word=word.text, fix=line, usage="")
                 raise Resumed
             cursor.i = body_begins(cursor.tokens, start)
+        self.other.instead(word, start)
         written = cursor.tokens[start : cursor.i]
         span = Span(word.start, written[-1].end if written else word.end)
         known = WORDS[word.text]
@@ -119,36 +123,6 @@ class BlockRecovery:
         for name in line.variables:
             self.blocks.here.append(Assign(name.text, name.span, None, name.span))
         return line.text
-
-    def counted_loop(self, word: Token) -> None:
-        """`LOOP(I = 0; I < 4; I++)`: the loop counts by itself."""
-        cursor = self.cursor
-        start = cursor.i
-        end = after_bracket(cursor.tokens, start)
-        times = counted(cursor.tokens[:end], start)
-        if end is None or times is None:
-            return
-        cursor.i = end
-        place = cursor.span_from(word)
-        found = cursor.source[Span(cursor.tokens[start].end, cursor.last.start)].strip()
-        self.reporter.report(
-            codes.LOOP_COUNTS, place, found=found, times=str(times), fix=f"LOOP({times})"
-        )
-        self.begin_reported("LOOP", place)
-        self.go_on()
-
-    def bare_header(self, word: Token) -> None:
-        """`LOOP` alone behind the body of a LOOP: its end is meant, if no other comes."""
-        block = self.blocks.innermost
-        if block is None or block.word != word.text or not block.here:
-            return
-        rest = self.cursor.tokens[self.cursor.i :]
-        if any(ENDS.get(each.text) == word.text for each in rest):
-            return
-        right = BLOCK_ENDS[word.text]
-        self.reporter.report(codes.END_ALONE, word.span, found=word.text, right=right)
-        self.blocks.end(word.span)
-        raise Resumed
 
     def to_body(self, bracket: int) -> None:
         """Go to where the body begins behind the `(` at `bracket`, which cannot be read."""
@@ -263,6 +237,8 @@ class BlockRecovery:
             self.blocks.end(span)
         elif self._owed:
             self._owed -= 1
+        elif block is not None and word == "LOOP" and _has_a_number(block):
+            self.blocks.end(span)  # `WHILE(4)`: it is said there
         elif block is not None:
             self._report_wrong_end(span, found, block, fix=BLOCK_ENDS[block.word])
             self._owed += 1
@@ -288,6 +264,9 @@ class BlockRecovery:
         if named.text == "SI" or (named.kind is WORD and meant_by(named.text) in BLOCK_ENDS):
             cursor.i += 1  # `FIN SI`, `FIN MIENTRAS`
         block = self.blocks.innermost
+        if named is cursor.token and block is not None and self._else_comes():
+            self.reporter.report(codes.EXTRA_WORD, end.span, found=end.text, fix="")
+            return
         if block is None and named.text in TITLES:  # `FIN PROGRAMA`
             cursor.i += 1
             span = cursor.span_from(end)
@@ -303,6 +282,18 @@ class BlockRecovery:
             found = cursor.source[span].upper()
             self.reporter.report(codes.END_ALONE, span, found=found, right=right)
         self.blocks.end(end.span)
+
+    def _else_comes(self) -> bool:
+        """Whether an ELSE follows the end of an IF: it ends later then."""
+        tokens, k = self.cursor.tokens, self.cursor.i
+        while tokens[k].kind in (NEWLINE, ";"):
+            k += 1
+        is_no = tokens[k].text == "SI" and tokens[k + 1].text == "NO"
+        said = "ELSE" if is_no else tokens[k].text if tokens[k].text in WORDS else ""
+        said = said or foreign_block(tokens[k].text) or ""
+        innermost = self.blocks.innermost
+        is_if = innermost is not None and innermost.word == "IF" and innermost.otherwise is None
+        return is_if and said in ("ELSE", "ELSEIF")
 
     def close_brace(self, brace: Token) -> None:
         """`}` ends the innermost block, except before ELSE. The lexer has reported it."""
@@ -380,3 +371,8 @@ class BlockRecovery:
     def is_name(self, word: str) -> bool:
         """Whether the kit or a DEF anywhere in the text has this name."""
         return self.known.is_name(word)
+
+
+def _has_a_number(block: Block) -> bool:
+    """Whether a number alone is what an IF or WHILE asks: a LOOP was meant."""
+    return block.word in ("IF", "WHILE") and block.head is not None and block.head.is_plain

@@ -12,7 +12,7 @@ from tiniscript.syntax.block_recovery import BlockRecovery
 from tiniscript.syntax.blocks import Block, Blocks
 from tiniscript.syntax.cursor import Cursor
 from tiniscript.syntax.lexer import NUMBER, ODD, WORD, Token
-from tiniscript.syntax.reporter import Reporter
+from tiniscript.syntax.reporter import Reporter, Resumed
 from tiniscript.syntax.vocabulary import is_part_of_name
 from tiniscript.words import WORDS
 
@@ -27,7 +27,16 @@ class DefRecovery:
         self.in_block = in_block
 
     def no_name(self, word: Token) -> NoReturn:
-        """`DEF` alone, or with a name that begins with digits: `DEF 1PASO`."""
+        """`DEF` alone, with a name that begins with digits: `DEF 1PASO`, or `DEF(DANCE)`."""
+        tokens, k = self.cursor.tokens, self.cursor.i
+        if tokens[k].kind == "(" and tokens[k + 1].kind is WORD and tokens[k + 2].kind == ")":
+            name = tokens[k + 1]
+            self.cursor.i = k + 3
+            place = self.cursor.span_from(word)
+            self.reporter.report(codes.NO_BRACKETS_HERE, Span(tokens[k].start, place.end), place,
+                                 word=word.text, fix=f"DEF {name.text}")  # fmt: skip
+            self.blocks.begin("DEF", place, name=name)
+            raise Resumed
         self.in_block.begin_reported("DEF", word.span)
         name = self.cursor.token
         found = self.cursor.source[name.span]

@@ -61,7 +61,7 @@ class GroupRecovery:
     def body(self, block: Block, k: int) -> None:
         """`LOOP(4)(F(1, 60), S)`: the brackets at `k` hold the body of a block that begins here."""
         group = self._orders_at(k)
-        if group is None or block.word == "DEF":
+        if group is None:
             return
         cursor, tokens = self.cursor, self.cursor.tokens
         right, end = BLOCK_ENDS[block.word], group.end
@@ -111,6 +111,12 @@ class GroupRecovery:
         if group is None or not group.orders:
             return
         right = BLOCK_ENDS.get(word.text, "")
+        times, end = self._times_behind(group.end)
+        if times is None and tokens[end].kind is NUMBER and tokens[end + 1].kind in AT_END:
+            times, end = tokens[end], end + 1  # `LOOP(F(1, 50)) 4`
+        if times is not None and word.text == "LOOP" and not group.values:
+            self.reporter.withdraw(said)
+            self._loop(times, group, self._place_of(word, bracket), end)
         asked = [each for each in group.values if self._is_head(word.text, each)]
         known = len(asked) == len(group.values) == 1 and bool(right)
         is_one = word.text == "LOOP" or len(group.orders) == 1
@@ -130,6 +136,66 @@ class GroupRecovery:
         row = [*self._row(group, bracket), Token(WORD, right, *tokens[group.end - 1].span)]
         self.in_block.begin_reported(word.text, span)
         self._read_on(bracket, group.end, [*row, Token(";", ";", *tokens[group.end - 1].span)])
+
+    def line_of_def(self, block: Block) -> None:
+        """`DEF TURN = R(1, 60)`: behind the sign at the cursor stands what it does."""
+        tokens, k = self.cursor.tokens, self.cursor.i
+        end = first = k + 1
+        orders: list[Sequence[Token]] = []
+        depth = 0
+        while True:
+            depth += (tokens[end].kind == "(") - (tokens[end].kind == ")")
+            is_parted = tokens[end].kind in (";", ",") and not depth
+            if is_parted or tokens[end].kind in (NEWLINE, END):
+                if end > first and not self._is_order(tokens[first:end]):
+                    return
+                orders += [tokens[first:end]] * (end > first)
+                first = end + 1
+            if tokens[end].kind in (NEWLINE, END):
+                break
+            end += 1
+        if not orders or block.name is None:
+            return
+        has_end = ENDS.get(orders[-1][0].text) == "DEF"
+        is_ended, last = (True, end) if has_end else self._end_comes("DEF", end)
+        right = "" if has_end else BLOCK_ENDS["DEF"]
+        texts = (self.cursor.source[block.span], *(self._said(each) for each in orders), right)
+        self.reporter.answer(tokens[k])
+        place = Span(block.span.start, tokens[last - 1].end if is_ended else tokens[end - 1].end)
+        fix = ";".join(filter(None, texts))
+        self.reporter.report(codes.HEADER_SEPARATOR, tokens[k].span, place, fix=fix,
+                             before=self.cursor.source[block.span])  # fmt: skip
+        row = self._row(_Group((), tuple(orders), end), k)
+        if not is_ended:
+            row.append(Token(WORD, BLOCK_ENDS["DEF"], *tokens[end - 1].span))
+        self._read_on(k, end, row)
+
+    def named(self, name: Token, start: int, said: int) -> None:
+        """`TURN = R(1, 60)` at `start` behind the sign, where TURN alone is an instruction below.
+
+        `said` diagnostics were there before the value was read.
+        """
+        tokens, end = self.cursor.tokens, start
+        while tokens[end].kind not in AT_END:
+            end += 1
+        piece = tokens[start:end]
+        if name.text in WORDS or not piece or not self._is_order(piece):
+            return
+        is_called = any(
+            tokens[i].text == name.text
+            and tokens[i - 1].kind in AT_END and tokens[i + 1].kind in AT_END
+            for i in range(end, len(tokens) - 1)
+        )  # fmt: skip
+        if not is_called or self.in_block.blocks.open:
+            return
+        self.reporter.withdraw(said)
+        span = Span(name.start, piece[-1].end)
+        fix = f"DEF {name.text};{self._said(piece)};{BLOCK_ENDS['DEF']}"
+        self.reporter.report(codes.NO_VALUE, piece[0].span, span, word=piece[0].text, fix=fix)
+        self.in_block.known.add(name.text)
+        last, sign = piece[-1].span, Token(";", ";", *piece[-1].span)
+        head = [Token(WORD, "DEF", *name.span), name, sign]
+        self._read_on(start - 2, end, [*head, *piece, sign, Token(WORD, BLOCK_ENDS["DEF"], *last)])
 
     # -- what stands there --------------------------------------------------------------------
 
@@ -190,6 +256,11 @@ class GroupRecovery:
         while tokens[k].kind in (NEWLINE, ";"):
             k += 1
         return ENDS.get(tokens[k].text) == word, k + 1
+
+    def _place_of(self, word: Token, k: int) -> int:
+        while self.cursor.tokens[k].start > word.start:
+            k -= 1
+        return k
 
     def _times_behind(self, k: int) -> tuple[Token | None, int]:
         """`[F(1, 60), S] * 4`: return how often, and the place behind it."""

@@ -317,7 +317,8 @@ class NameRecovery:
         """`DISTANCE < 10` alone: suggest the question."""
         tokens, start = self.cursor.tokens, self.cursor.i
         tokens = tokens[start : body_begins(tokens, start, names_end=False)]
-        if self.in_block.known.is_own(first.text) and not self.in_block.is_name(first.text):
+        is_variable = self.in_block.known.is_own(first.text) or meant_by(first.text) is None
+        if is_variable and first.text not in WORDS and not self.in_block.is_name(first.text):
             self.of_value.changed(first, tokens)
         asks = any(token.kind in COMPARISONS or token.text == "NOT" for token in tokens)
         sign = next((token for token in tokens if token.kind in SIGNS), first)

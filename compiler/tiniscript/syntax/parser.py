@@ -180,6 +180,7 @@ class Parser:
         try:
             value = self.expressions.expression(in_brackets=False)
         except Failed:
+            self.recovery.groups.named(name, start, said)
             self.recovery.of_name.unread_assignment(name)
             self.recovery.constructs.unread_value(name, start, said)
             raise
@@ -241,15 +242,17 @@ class Parser:
         cursor = self.cursor
         cursor.i += 1
         if cursor.token.kind in AT_END:
-            self.recovery.in_block.bare_header(word)
+            self.recovery.in_block.other.bare_header(word)
         if (
             word.text == "LOOP"
             and cursor.tokens[min(cursor.i + 2, len(cursor.tokens) - 1)].kind == "="
         ):
-            self.recovery.in_block.counted_loop(word)
+            self.recovery.in_block.other.counted_loop(word)
         start, said = cursor.i, len(self.reporter.diagnostics)
         try:
             head = self.argument_of(word)
+        except Resumed:
+            raise  # all of it was read as another header, or as a whole line
         except Failed:
             self.recovery.groups.in_header(word, start, said)
             self.recovery.in_block.unread_header(word)
@@ -269,6 +272,7 @@ class Parser:
             name = self.recovery.of_def.joined(name)
         block = self.blocks.begin("DEF", Span(word.start, name.end), name=name)
         if cursor.token.kind == "(":
+            self.recovery.groups.body(block, cursor.i)
             self.recovery.of_def.def_with_values(word, name, self.expressions.arguments())
             block.span = cursor.span_from(word)
             self.recovery.of_def.body_of_def(block)

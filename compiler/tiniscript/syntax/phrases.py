@@ -28,6 +28,11 @@ WAYS = frozenset(
     "AHEAD STRAIGHT FORWARD BACKWARD BACKWARDS BACK LEFT RIGHT".split()  # noqa: SIM905
     + "ADELANTE DERECHO RECTO FRENTE ATRAS IZQUIERDA DERECHA IZQ DER".split()  # noqa: SIM905
 )
+# Two words that say the same: `y al final`.
+FINALLY = frozenset((
+    ("AL", "FINAL"), ("AL", "FIN"), ("POR", "ULTIMO"), ("POR", "FIN"), ("AND", "FINALLY"),
+    ("A", "CONTINUACION"), ("MAS", "TARDE"), ("AFTER", "THAT"),
+))  # fmt: skip
 BETWEEN = frozenset(("AND", "Y", "THEN", "ENTONCES", "LUEGO", "DESPUES", "NEXT"))
 # What begins a sentence, and says only when: `Luego gira a la derecha`.
 BEFORE_SENTENCE = (BETWEEN - {"NEXT"}) | frozenset(

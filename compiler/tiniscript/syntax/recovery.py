@@ -22,7 +22,7 @@ from tiniscript.syntax.group_recovery import GroupRecovery
 from tiniscript.syntax.lexer import NUMBER, ODD, WORD, Token
 from tiniscript.syntax.name_recovery import NameRecovery
 from tiniscript.syntax.operators import SIGNS
-from tiniscript.syntax.phrases import AFTER_HEADER, BETWEEN
+from tiniscript.syntax.phrases import AFTER_HEADER, BETWEEN, FINALLY
 from tiniscript.syntax.reporter import Failed, Reporter, Resumed
 from tiniscript.syntax.setup_recovery import SetupRecovery
 from tiniscript.syntax.suggestions import (
@@ -177,6 +177,8 @@ class Recovery:
             kind, text = token.kind, token.text
         goes_on = kind in SIGNS or text in ("AND", "OR")  # of the question, or of its line
         goes_on = goes_on or (text in AFTER_HEADER and after.kind in AT_END)
+        if header is not None and header.word == "DEF" and text in ("=", ":"):
+            self.groups.line_of_def(header)
         if header is not None and kind == "(":
             self.groups.body(header, cursor.i)
         if header is not None and header.word != "DEF" and first.text != "ELSE" and not goes_on:
@@ -233,17 +235,32 @@ class Recovery:
             fix = f"{whole}.{after.text}"
             span = Span(before.start, after.end)
             fail(codes.DECIMAL_COMMA, span, Span(first.start, after.end), fix=fix)
-        if kind is WORD and text in BETWEEN:
-            self.reporter.answer(token)  # `después` has an accent
-        if kind is WORD and text in (BETWEEN if header is None else AFTER_HEADER):
+        is_joining = header is None and kind is WORD and self._joining_words() > 0
+        if is_joining or (kind is WORD and header is not None and text in AFTER_HEADER):
             if header is not None or (after.kind is WORD and not self.in_block.is_name(text)):
-                self.reporter.report(codes.EXTRA_WORD, token.span, found=text, fix="")
-                cursor.i += 1
+                cursor.i += 1 if header is not None else self._joining_words()
+                span = cursor.span_from(token)
+                shown = cursor.source[span].upper()
+                self.reporter.report(codes.EXTRA_WORD, span, found=shown, fix="")
                 self.in_block.go_on()
         if header is not None or not self._is_no_instruction(first):
             self._separator_missing(first, token, before, header)
         if kind is not WORD:
             raise Failed
+
+    def _joining_words(self) -> int:
+        """Return how many words at the cursor only join two instructions: `y despues al final`."""
+        tokens, start = self.cursor.tokens, self.cursor.i
+        k = start
+        while tokens[k].kind is WORD:
+            if (tokens[k].text, tokens[k + 1].text) in FINALLY:
+                k += 2
+            elif tokens[k].text in BETWEEN and not self.in_block.is_name(tokens[k].text):
+                self.reporter.answer(tokens[k])  # `después` has an accent
+                k += 1
+            else:
+                break
+        return k - start
 
     def meant(self, word: Token) -> Word | None:
         """Return the command that a word of another language means."""

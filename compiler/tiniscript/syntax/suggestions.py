@@ -231,7 +231,7 @@ def is_question(tokens: Sequence[Token], start: int) -> bool:
 
 def operator_words(tokens: Sequence[Token], k: int) -> tuple[int, str] | None:
     """Return where words such as `Y` or `IS LESS THAN` end, and the operator that they say."""
-    end, said = k, ""
+    end, said, is_not = k, "", False
     if tokens[k].text in ("NO", "NOT") and len(tokens) > k + 2:  # `DISTANCE no < 10`
         contrary = OPPOSITES.get(tokens[k + 1].kind)
         if contrary and (starts_value(tokens[k + 2]) or tokens[k + 2].kind == "-"):
@@ -239,7 +239,7 @@ def operator_words(tokens: Sequence[Token], k: int) -> tuple[int, str] | None:
     while tokens[end].kind is WORD:
         text, after = tokens[end].text, tokens[min(end + 1, len(tokens) - 1)].text
         if text in ("NO", "NOT") and (said == "=" or (not said and after in _EQUALS)):
-            said = SIGN_OF["NE"]
+            said, is_not = SIGN_OF["NE"], True
         elif said in ("<", ">") and text in ("O", "OR") and after in _EQUALS:
             said += "="
         elif said in COMPARISONS - {"="} and text in _EQUALS:
@@ -255,6 +255,8 @@ def operator_words(tokens: Sequence[Token], k: int) -> tuple[int, str] | None:
         elif not (said and text in _OPERATOR_TAILS):
             break
         end += 1
+    if is_not and said in ("<", "<=", ">", ">="):  # `no es menor que`
+        said = OPPOSITES[said]
     operand = tokens[end].kind == "-" or starts_value(tokens[end]) or tokens[end].text == "NOT"
     return (end, said) if said and operand else None
 

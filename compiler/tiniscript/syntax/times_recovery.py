@@ -73,9 +73,11 @@ class TimesRecovery:
         if len(row) > 1 and row[1].text in TIMES:
             is_sign = True
             del row[1]
+        is_called = self.in_block.known.is_def(first.text)
+        is_sign = is_sign or (is_called and row[0].kind is NUMBER)  # `DANCE 3`
         if not is_sign or len(row) < 2 or row[0].kind is not NUMBER or row[1].kind not in AT_END:
             return
-        if _is_command(first):
+        if _is_command(first) or is_called:
             cursor.skip_instruction()
             self._loop_of(row[0], Span(first.start, before.end), cursor.span_from(first))
 

@@ -34,7 +34,9 @@ class Vocabulary:
         pairs = pairwise(self._tokens)
         found = set()
         for k, (first, name) in enumerate(pairs):
-            if first.text == "DEF":
+            if first.text == "DEF" and name.kind == "(":  # `DEF(DANCE)`
+                found.add(self._tokens[min(k + 2, len(self._tokens) - 1)].text)
+            elif first.text == "DEF":
                 row = [*self._tokens[k + 2 : k + 5], *[self._tokens[-1]] * 3]
                 second, after = row[1:3] if row[0].kind == "-" else row[:2]
                 is_joined = name.text not in WORDS and is_part_of_name(second, after)
@@ -49,6 +51,10 @@ class Vocabulary:
             name.text for name, sign in pairs if name.kind is WORD and sign.kind == "="
         )
 
+    def add(self, name: str) -> None:
+        """Know a DEF that is written without its word."""
+        self.__dict__["_names"] = self._names | {name}
+
     def is_number(self, word: str) -> bool:
         """Whether a sensor of the kit, or what means one, gives a number."""
         name = self.value(word)
@@ -58,6 +64,11 @@ class Vocabulary:
     def is_name(self, word: str) -> bool:
         """Whether the kit or a DEF anywhere in the text has this name."""
         return word in self._names
+
+    def is_def(self, word: str) -> bool:
+        """Whether a DEF anywhere in the text has this name."""
+        devices = (*self._kit.sensors, *self._kit.actuators) if self._kit else ()
+        return word in self._names and all(each.name != word for each in devices)
 
     def is_own(self, word: str) -> bool:
         """Whether the kit or the program gives this name to something."""
